@@ -1,0 +1,94 @@
+//! What can be wrong with a file, and where.
+
+use std::path::{Path, PathBuf};
+
+use thiserror::Error;
+
+/// A place in a file.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Place {
+    /// A line of a text file, counted from 1.
+    Line(usize),
+    /// A byte of a binary file, counted from 0.
+    Byte(usize),
+    /// A named part: `header`, `accessor 7`, `node 3`.
+    Part(String),
+}
+
+impl std::fmt::Display for Place {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Line(line) => write!(f, "line {line}"),
+            Self::Byte(byte) => write!(f, "byte {byte}"),
+            Self::Part(part) => f.write_str(part),
+        }
+    }
+}
+
+/// What a parser found wrong: the place and the reason, without the file's name.
+#[derive(Clone, Debug, Error, PartialEq, Eq)]
+#[error("{place}: {reason}")]
+pub struct ParseError {
+    /// Where.
+    pub place: Place,
+    /// What is wrong there, and what to do where that is clear.
+    pub reason: String,
+}
+
+impl ParseError {
+    /// Wrong at a line, counted from 1.
+    pub fn line(line: usize, reason: impl Into<String>) -> Self {
+        Self { place: Place::Line(line), reason: reason.into() }
+    }
+
+    /// Wrong at a byte, counted from 0.
+    pub fn byte(byte: usize, reason: impl Into<String>) -> Self {
+        Self { place: Place::Byte(byte), reason: reason.into() }
+    }
+
+    /// Wrong in a named part.
+    pub fn part(part: impl Into<String>, reason: impl Into<String>) -> Self {
+        Self { place: Place::Part(part.into()), reason: reason.into() }
+    }
+}
+
+/// Why a file was not read or written. Prints as one line that names the file.
+#[derive(Debug, Error)]
+pub enum IoError {
+    /// The operating system refused.
+    #[error("{}: {source}", path.display())]
+    System {
+        /// The file.
+        path: PathBuf,
+        /// Its reason.
+        source: std::io::Error,
+    },
+    /// The contents are wrong.
+    #[error("{}: {source}", path.display())]
+    Parse {
+        /// The file.
+        path: PathBuf,
+        /// Where and why.
+        source: ParseError,
+    },
+    /// No format goes with the suffix.
+    #[error("{}: unknown suffix; known are {known}", path.display())]
+    UnknownFormat {
+        /// The file.
+        path: PathBuf,
+        /// The suffixes that would do.
+        known: &'static str,
+    },
+}
+
+impl IoError {
+    /// A system error at a path.
+    pub fn system(path: &Path, source: std::io::Error) -> Self {
+        Self::System { path: path.to_owned(), source }
+    }
+
+    /// A parse error at a path.
+    pub fn parse(path: &Path, source: ParseError) -> Self {
+        Self::Parse { path: path.to_owned(), source }
+    }
+}

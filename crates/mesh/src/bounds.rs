@@ -1,0 +1,88 @@
+//! Axis-aligned boxes.
+
+use glam::DVec3;
+
+/// An axis-aligned box. Empty (`min` above `max`) until a point is added.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Bounds {
+    /// Least corner.
+    pub min: [f64; 3],
+    /// Greatest corner.
+    pub max: [f64; 3],
+}
+
+impl Default for Bounds {
+    fn default() -> Self {
+        Self::EMPTY
+    }
+}
+
+impl Bounds {
+    /// The box of no points.
+    pub const EMPTY: Self = Self { min: [f64::INFINITY; 3], max: [f64::NEG_INFINITY; 3] };
+
+    /// The least box around some points.
+    pub fn of<'a>(points: impl IntoIterator<Item = &'a [f64; 3]>) -> Self {
+        let mut bounds = Self::EMPTY;
+        for &point in points {
+            bounds.add(point);
+        }
+        bounds
+    }
+
+    /// Grows to hold `point`.
+    #[inline]
+    pub fn add(&mut self, point: [f64; 3]) {
+        for ((min, max), x) in self.min.iter_mut().zip(&mut self.max).zip(point) {
+            *min = min.min(x);
+            *max = max.max(x);
+        }
+    }
+
+    /// Grows to hold `other`.
+    #[inline]
+    pub fn merge(&mut self, other: &Self) {
+        for axis in 0..3 {
+            self.min[axis] = self.min[axis].min(other.min[axis]);
+            self.max[axis] = self.max[axis].max(other.max[axis]);
+        }
+    }
+
+    /// Whether it holds no point.
+    #[inline]
+    pub fn is_empty(&self) -> bool {
+        self.min[0] > self.max[0]
+    }
+
+    /// The middle; the origin when empty.
+    pub fn center(&self) -> [f64; 3] {
+        if self.is_empty() {
+            return [0.0; 3];
+        }
+        (DVec3::from(self.min) * 0.5 + DVec3::from(self.max) * 0.5).into()
+    }
+
+    /// The length of the diagonal, in model units; 0 when empty.
+    pub fn diagonal(&self) -> f64 {
+        if self.is_empty() {
+            return 0.0;
+        }
+        (DVec3::from(self.max) - DVec3::from(self.min)).length()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn diagonal_of_a_unit_cube() {
+        let cube = Bounds::of(&[[0.0, 0.0, 1.0], [1.0, 1.0, 0.0]]);
+        assert_eq!((cube.diagonal(), cube.center()), (3f64.sqrt(), [0.5; 3]));
+    }
+
+    #[test]
+    fn nothing_has_no_extent() {
+        assert_eq!((Bounds::EMPTY.diagonal(), Bounds::EMPTY.center()), (0.0, [0.0; 3]));
+    }
+}

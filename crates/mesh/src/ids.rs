@@ -1,0 +1,52 @@
+//! Typed indices: `u32` inside, printed as `v12`, `f3`, `w7`.
+
+use std::fmt;
+
+macro_rules! id {
+    ($name:ident, $letter:literal, $what:literal) => {
+        #[doc = concat!("Index of ", $what, ".")]
+        #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Default)]
+        #[repr(transparent)]
+        pub struct $name(pub u32);
+
+        impl $name {
+            #[doc = concat!("The id of ", $what, " at `index` of its array.\n\nPanics at 2^32 and above: no mesh here is that large.")]
+            #[inline]
+            pub fn new(index: usize) -> Self {
+                Self(u32::try_from(index).expect("ids are 32 bits"))
+            }
+
+            /// Where it stands in its array.
+            #[inline]
+            pub const fn index(self) -> usize {
+                self.0 as usize
+            }
+        }
+
+        impl fmt::Display for $name {
+            fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                write!(f, concat!($letter, "{}"), self.0)
+            }
+        }
+
+        impl fmt::Debug for $name {
+            fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                fmt::Display::fmt(self, f)
+            }
+        }
+    };
+}
+
+id!(VertexId, "v", "a vertex: a point of the surface");
+id!(FaceId, "f", "a face: a triangle");
+id!(WedgeId, "w", "a wedge: a vertex with one set of attributes");
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ids_print_with_their_letter() {
+        assert_eq!(format!("{} {:?} {}", VertexId(12), FaceId(3), WedgeId(7)), "v12 f3 w7");
+    }
+}

@@ -1,0 +1,30 @@
+//! Triangle meshes: ids, attributes, connectivity, bounds, procedural samples.
+//!
+//! No I/O, no threads, no policy. Positions are `f64`; attributes hang on *wedges*, which have
+//! their own corner indices, so that a texture seam never tears the surface.
+//!
+//! ```
+//! use meshlod_mesh::{Connectivity, sample};
+//!
+//! let mesh = sample::sphere(1000);
+//! let connectivity = Connectivity::new(&mesh.faces, mesh.positions.len());
+//! assert!(connectivity.is_closed());
+//! ```
+#![forbid(unsafe_code)]
+
+mod attributes;
+mod bounds;
+mod components;
+mod connectivity;
+mod ids;
+mod labels;
+mod mesh;
+pub mod sample;
+
+pub use attributes::{Attributes, Layer, LayerKind};
+pub use bounds::Bounds;
+pub use components::face_components;
+pub use connectivity::{Connectivity, Marks, Side, Twin};
+pub use ids::{FaceId, VertexId, WedgeId};
+pub use labels::Labels;
+pub use mesh::{Mesh, MeshError};
