@@ -1,0 +1,27 @@
+//! Mesh files in and out, one format a module: bytes in, typed errors out.
+#![forbid(unsafe_code)]
+
+mod error;
+pub mod gltf;
+pub mod obj;
+pub mod off;
+pub mod ply;
+mod polygon;
+mod scene;
+pub mod smf;
+pub mod stl;
+mod weld;
+
+pub use error::{IoError, ParseError, Place};
+pub use scene::{Image, Material, Node, Scene, SceneMesh};
+pub use weld::weld;
+
+/// How coordinates are written.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Precision {
+    /// As 32-bit floats: what most programs read.
+    #[default]
+    F32,
+    /// As 64-bit floats, bit for bit.
+    F64,
+}
