@@ -1,0 +1,4 @@
+//! The command `meshlod`.
+#![forbid(unsafe_code)]
+
+fn main() {}
