@@ -1,0 +1,173 @@
+use std::collections::{BTreeMap, BTreeSet};
+
+use glam::DVec3;
+
+use super::*;
+use crate::{Connectivity, VertexId, face_components};
+
+const CLOSED: [&str; 5] = ["sphere", "torus", "faceted-torus", "knot", "gyroid"];
+
+fn named(name: &str, faces: usize) -> Mesh {
+    by_name(name, Some(faces)).expect("a known name")
+}
+
+/// Every edge by its directed ends, and how many faces run along it that way.
+fn directed_edges(mesh: &Mesh) -> BTreeMap<[VertexId; 2], usize> {
+    let mut edges = BTreeMap::new();
+    for &[a, b, c] in &mesh.faces {
+        for edge in [[a, b], [b, c], [c, a]] {
+            *edges.entry(edge).or_default() += 1;
+        }
+    }
+    edges
+}
+
+fn volume(mesh: &Mesh) -> f64 {
+    let parts = mesh.faces.iter().map(|&face| {
+        let [a, b, c] = mesh.triangle(face);
+        a.dot(b.cross(c)) / 6.0
+    });
+    parts.sum()
+}
+
+fn doubled_area(mesh: &Mesh, face: [VertexId; 3]) -> f64 {
+    let [a, b, c] = mesh.triangle(face);
+    (b - a).cross(c - a).length()
+}
+
+/// V − E + F over the vertices that are there.
+fn euler(mesh: &Mesh) -> i64 {
+    let edges = directed_edges(mesh).len() / 2;
+    mesh.positions.len() as i64 - edges as i64 + mesh.faces.len() as i64
+}
+
+/// Closed, oriented outward, one fan at each vertex, nothing unused, nothing degenerate.
+fn assert_watertight(name: &str, mesh: &Mesh) {
+    mesh.validate().unwrap_or_else(|error| panic!("{name}: {error}"));
+    let edges = directed_edges(mesh);
+    for (&[a, b], &count) in &edges {
+        assert_eq!(count, 1, "{name}: faces run twice along {a} {b}");
+        assert!(edges.contains_key(&[b, a]), "{name}: {a} {b} has one face");
+    }
+    let connectivity = Connectivity::new(&mesh.faces, mesh.positions.len());
+    assert!(connectivity.is_closed(), "{name}: not closed");
+    assert_eq!(connectivity.inconsistent_edges(), 0, "{name}");
+    assert_eq!(connectivity.pinched_vertices(), 0, "{name}");
+    assert!(mesh.used_vertices().into_iter().all(|used| used), "{name}: unused vertices");
+    assert!(volume(mesh) > 0.0, "{name}: inside out");
+    for &face in &mesh.faces {
+        let least = 1e-3 / mesh.faces.len() as f64;
+        assert!(doubled_area(mesh, face) > least * 0.1, "{name}: face {face:?} is degenerate");
+    }
+}
+
+#[test]
+fn every_name_is_known_and_no_other() {
+    for name in NAMES {
+        assert!(by_name(name, Some(100)).is_some_and(|mesh| !mesh.faces.is_empty()), "{name}");
+    }
+    assert_eq!(by_name("cube", None), None);
+}
+
+#[test]
+fn closed_samples_are_watertight_at_any_size() {
+    for name in CLOSED {
+        for faces in [0, 100, 1_000, 5_000, 20_011] {
+            assert_watertight(&format!("{name} of {faces}"), &named(name, faces));
+        }
+    }
+}
+
+#[test]
+fn face_counts_come_near_the_wish() {
+    let within = [
+        ("sphere", 0.04),
+        ("torus", 0.01),
+        ("faceted-torus", 0.05),
+        ("knot", 0.01),
+        ("gyroid", 0.05),
+        ("terrain", 0.01),
+    ];
+    for (name, part) in within {
+        for wish in [20_000, 33_333, 100_000] {
+            let found = named(name, wish).faces.len();
+            let off = found.abs_diff(wish) as f64 / wish as f64;
+            assert!(off <= part, "{name}: {found} faces for {wish}");
+        }
+    }
+}
+
+#[test]
+fn genus_is_what_the_shape_has() {
+    assert_eq!(euler(&sphere(2_000)), 2);
+    for mesh in [torus(2_000), faceted_torus(2_000), knot(2_000)] {
+        assert_eq!(euler(&mesh), 0);
+    }
+}
+
+#[test]
+fn the_gyroid_is_one_piece_with_many_tunnels() {
+    let mesh = gyroid(40_000);
+    let components: BTreeSet<u32> =
+        face_components(&mesh.faces, mesh.positions.len()).0.into_iter().collect();
+    assert_eq!(components.len(), 1);
+    let genus = (2 - euler(&mesh)) / 2;
+    assert!(genus >= 30, "genus {genus}");
+}
+
+#[test]
+fn sphere_and_torus_near_their_closed_forms() {
+    use std::f64::consts::PI;
+    let exact = 4.0 / 3.0 * PI;
+    assert!((volume(&sphere(20_000)) / exact - 1.0).abs() < 1e-3);
+    let exact = 2.0 * PI * PI * 0.7 * 0.3 * 0.3;
+    assert!((volume(&torus(20_000)) / exact - 1.0).abs() < 2e-3);
+}
+
+#[test]
+fn a_faceted_torus_has_72_planes() {
+    let mesh = faceted_torus(10_000);
+    let mut planes: Vec<(DVec3, f64)> = Vec::new();
+    for &face in &mesh.faces {
+        let [a, b, c] = mesh.triangle(face);
+        let normal = (b - a).cross(c - a).normalize();
+        let known = planes
+            .iter()
+            .any(|(n, d)| normal.distance(*n) < 1e-9 && (normal.dot(a) - d).abs() < 1e-12);
+        if !known {
+            planes.push((normal, normal.dot(a)));
+        }
+    }
+    assert_eq!(planes.len(), 72);
+}
+
+#[test]
+fn terrain_is_one_open_sheet_that_looks_up() {
+    let mesh = terrain(5_000);
+    let connectivity = Connectivity::new(&mesh.faces, mesh.positions.len());
+    assert_eq!(connectivity.boundary_edges(), 4 * 50);
+    assert_eq!((connectivity.non_manifold_edges(), connectivity.inconsistent_edges()), (0, 0));
+    for &face in &mesh.faces {
+        let [a, b, c] = mesh.triangle(face);
+        assert!((b - a).cross(c - a).y > 0.0);
+    }
+}
+
+#[test]
+fn finer_terrain_is_the_same_landscape() {
+    let (coarse, fine) = (terrain(2 * 20 * 20), terrain(2 * 40 * 40));
+    for row in 0..=20 {
+        for column in 0..=20 {
+            let a = DVec3::from(coarse.positions[row * 21 + column]);
+            let b = DVec3::from(fine.positions[2 * row * 41 + 2 * column]);
+            assert!(a.distance(b) < 1e-12);
+        }
+    }
+}
+
+#[test]
+fn a_sample_is_the_same_each_time() {
+    for name in NAMES {
+        assert_eq!(named(name, 3_000), named(name, 3_000));
+    }
+}

@@ -1,0 +1,184 @@
+//! A closed level set as a mesh, by marching tetrahedra.
+//!
+//! Every cube of a lattice is cut into six tetrahedra around its diagonal, each face of which is cut
+//! alike on both sides. In a tetrahedron the surface is one triangle or one quad, by the signs at
+//! the corners alone; so neighbours agree, and the result is a closed 2-manifold for *any* signs,
+//! which marching cubes does not give.
+
+use glam::DVec3;
+
+use super::grid::split;
+use crate::{Mesh, VertexId};
+
+/// The surface of where `field` is negative, inside the cube [-1, 1]³ with `cells` cells a side.
+///
+/// `field` must not be negative on the border of the cube, else the surface ends there.
+/// Cost: O(cells³) calls of `field`, O(cells²) memory beside the mesh.
+pub(super) fn polygonize(cells: usize, field: impl Fn(DVec3) -> f64) -> Mesh {
+    let mut march = March {
+        cells,
+        field: &field,
+        below: Layer::default(),
+        above: Layer::sampled(cells, 0, &field),
+        mesh: Mesh::default(),
+    };
+    for z in 0..cells {
+        march.below = std::mem::replace(&mut march.above, Layer::sampled(cells, z + 1, &field));
+        for y in 0..cells {
+            for x in 0..cells {
+                march.cube([x, y, z]);
+            }
+        }
+    }
+    march.mesh
+}
+
+/// A vertex never comes nearer to a lattice point than this part of the edge it lies on: no face
+/// degenerates where the surface passes through a lattice point.
+const LEAST_FRACTION: f64 = 0.1;
+/// Steps of bisection: 2⁻¹² of a cell is far below what the mesh resolves.
+const BISECTIONS: usize = 12;
+/// No vertex yet on an edge.
+const NONE: u32 = u32::MAX;
+
+/// The lattice points of one height: values, and the vertices on the seven edges up from each, by
+/// the edge's direction as a bit per axis.
+#[derive(Default)]
+struct Layer {
+    values: Vec<f64>,
+    vertices: Vec<[u32; 8]>,
+}
+
+impl Layer {
+    fn sampled(cells: usize, z: usize, field: &impl Fn(DVec3) -> f64) -> Self {
+        let side = cells + 1;
+        let values = (0..side * side).map(|i| field(place(cells, [i % side, i / side, z])));
+        Self { values: values.collect(), vertices: vec![[NONE; 8]; side * side] }
+    }
+}
+
+/// Where a lattice point lies.
+fn place(cells: usize, point: [usize; 3]) -> DVec3 {
+    DVec3::from(point.map(|i| 2.0 * i as f64 / cells as f64 - 1.0))
+}
+
+/// The three axes in every order: even ones first. A tetrahedron goes from a cube's least corner to
+/// its greatest, one axis after the other; even orders give positive volumes.
+const ORDERS: [[usize; 3]; 6] = [[0, 1, 2], [1, 2, 0], [2, 0, 1], [0, 2, 1], [2, 1, 0], [1, 0, 2]];
+
+/// A lattice point that is a tetrahedron's corner: a bit per axis, from the cube's least corner.
+type Corner = usize;
+
+struct March<'a, F> {
+    cells: usize,
+    field: &'a F,
+    below: Layer,
+    above: Layer,
+    mesh: Mesh,
+}
+
+impl<F: Fn(DVec3) -> f64> March<'_, F> {
+    fn cube(&mut self, cube: [usize; 3]) {
+        let inside: [bool; 8] = std::array::from_fn(|corner| self.value(cube, corner) < 0.0);
+        if inside == [inside[0]; 8] {
+            return;
+        }
+        for (i, [first, second, _]) in ORDERS.into_iter().enumerate() {
+            let mut tetrahedron = [0, 1 << first, (1 << first) | (1 << second), 7];
+            if i >= 3 {
+                tetrahedron.swap(1, 2);
+            }
+            self.tetrahedron(cube, tetrahedron, &inside);
+        }
+    }
+
+    /// Adds the surface within a tetrahedron of positive volume.
+    fn tetrahedron(&mut self, cube: [usize; 3], corners: [Corner; 4], inside: &[bool; 8]) {
+        let ([a, b, c, d], count) = inside_first(corners, inside);
+        let mut vertex = |from, to| self.vertex(cube, from, to);
+        match count {
+            1 => {
+                let face = [vertex(a, b), vertex(a, c), vertex(a, d)];
+                self.mesh.faces.push(face);
+            }
+            2 => {
+                let quad = [vertex(a, c), vertex(a, d), vertex(b, d), vertex(b, c)];
+                self.mesh.faces.extend(split(quad));
+            }
+            3 => {
+                let face = [vertex(a, d), vertex(b, d), vertex(c, d)];
+                self.mesh.faces.push(face);
+            }
+            _ => {}
+        }
+    }
+
+    /// The vertex on an edge whose ends lie on different sides.
+    fn vertex(&mut self, cube: [usize; 3], from: Corner, to: Corner) -> VertexId {
+        let (low, high) = (from & to, from | to);
+        let (slot, direction) = (self.slot(cube, low), low ^ high);
+        let layer = if low & 4 == 0 { &self.below } else { &self.above };
+        let known = layer.vertices[slot][direction];
+        if known != NONE {
+            return VertexId(known);
+        }
+        let id = VertexId::new(self.mesh.positions.len());
+        self.mesh.positions.push(self.crossing(cube, low, high).into());
+        let layer = if low & 4 == 0 { &mut self.below } else { &mut self.above };
+        layer.vertices[slot][direction] = id.0;
+        id
+    }
+
+    /// Where the field changes its sign between two lattice points.
+    fn crossing(&self, cube: [usize; 3], low: Corner, high: Corner) -> DVec3 {
+        let [start, end] = [low, high].map(|corner| place(self.cells, at(cube, corner)));
+        let starts_inside = self.value(cube, low) < 0.0;
+        let (mut near, mut far) = (0.0, 1.0);
+        for _ in 0..BISECTIONS {
+            let middle = 0.5 * (near + far);
+            if ((self.field)(start.lerp(end, middle)) < 0.0) == starts_inside {
+                near = middle;
+            } else {
+                far = middle;
+            }
+        }
+        start.lerp(end, (0.5 * (near + far)).clamp(LEAST_FRACTION, 1.0 - LEAST_FRACTION))
+    }
+
+    fn value(&self, cube: [usize; 3], corner: Corner) -> f64 {
+        let layer = if corner & 4 == 0 { &self.below } else { &self.above };
+        layer.values[self.slot(cube, corner)]
+    }
+
+    /// Where a corner stands in its layer.
+    fn slot(&self, cube: [usize; 3], corner: Corner) -> usize {
+        let [x, y, _] = at(cube, corner);
+        y * (self.cells + 1) + x
+    }
+}
+
+/// The lattice point of a cube's corner.
+fn at([x, y, z]: [usize; 3], corner: Corner) -> [usize; 3] {
+    [x + (corner & 1), y + (corner >> 1 & 1), z + (corner >> 2)]
+}
+
+/// The corners with those inside first, still of positive volume, and how many are inside.
+fn inside_first(corners: [Corner; 4], inside: &[bool; 8]) -> ([Corner; 4], usize) {
+    let mut sorted = corners;
+    let mut swaps = 0;
+    // Four corners: three rounds of neighbour swaps put any order right.
+    for _ in 0..3 {
+        for i in 0..3 {
+            if !inside[sorted[i]] && inside[sorted[i + 1]] {
+                sorted.swap(i, i + 1);
+                swaps += 1;
+            }
+        }
+    }
+    let count = sorted.iter().filter(|&&corner| inside[corner]).count();
+    if swaps % 2 == 1 {
+        // One more swap among corners of one side mends the sign.
+        if count >= 2 { sorted.swap(0, 1) } else { sorted.swap(2, 3) }
+    }
+    (sorted, count)
+}

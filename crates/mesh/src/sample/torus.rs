@@ -1,0 +1,62 @@
+//! Tori: smooth, and of flat facets.
+
+use std::f64::consts::TAU;
+
+use glam::DVec3;
+
+use super::grid::{self, Size};
+use crate::Mesh;
+
+/// From the axis to the middle of the tube.
+const RING: f64 = 0.7;
+/// Radius of the tube.
+const TUBE: f64 = 0.3;
+
+/// A smooth torus around the y axis, nearly square quads split into two.
+///
+/// Faces: within half a row of quads around the tube of `faces`, a few per cent from 1,000 on; at
+/// least 18.
+pub fn torus(faces: usize) -> Mesh {
+    let size = Size::for_faces(faces, RING / TUBE);
+    grid::wrapped(size, |column, row| {
+        point(column as f64 / size.columns as f64, row as f64 / size.rows as f64)
+    })
+}
+
+/// Flat facets around the axis and around the tube.
+const FACETS: Size = Size { columns: 12, rows: 6 };
+
+/// A torus of 12 × 6 flat trapezoids that meet in creases, each finely split.
+///
+/// What a simplifier should find here: all faces but those of the 144 facet halves can go at no
+/// error, and no crease may blur. Faces: 144 times a product of two whole numbers that differ
+/// little; within one part in the square root of `faces / 144`, at least 144.
+pub fn faceted_torus(faces: usize) -> Mesh {
+    let parts = faces as f64 / (2 * FACETS.columns * FACETS.rows) as f64;
+    let rows = parts.sqrt().round().max(1.0);
+    let split = Size { columns: (parts / rows).round().max(1.0) as usize, rows: rows as usize };
+    let size = Size { columns: FACETS.columns * split.columns, rows: FACETS.rows * split.rows };
+    grid::wrapped(size, |column, row| {
+        let (c, s) = (column / split.columns, fraction(column, split.columns));
+        let (r, t) = (row / split.rows, fraction(row, split.rows));
+        let corner = |c: usize, r: usize| {
+            point(c as f64 / FACETS.columns as f64, r as f64 / FACETS.rows as f64)
+        };
+        let near = corner(c, r).lerp(corner(c, r + 1), t);
+        let far = corner(c + 1, r).lerp(corner(c + 1, r + 1), t);
+        near.lerp(far, s)
+    })
+}
+
+/// How far `i` is into its group of `of`, in [0, 1).
+fn fraction(i: usize, of: usize) -> f64 {
+    (i % of) as f64 / of as f64
+}
+
+/// The point at `u` turns around the axis and `v` turns around the tube.
+fn point(u: f64, v: f64) -> DVec3 {
+    let (sin_u, cos_u) = (TAU * u).sin_cos();
+    let (sin_v, cos_v) = (TAU * v).sin_cos();
+    let radius = RING + TUBE * cos_v;
+    DVec3::new(radius * sin_u, TUBE * sin_v, radius * cos_u)
+}
