@@ -18,9 +18,10 @@ const ASPECT: f64 = 11.5;
 
 /// A tube along the (2, 3) torus knot, the trefoil.
 ///
-/// Faces: within half a ring of quads of `faces`, under 1 % from 10,000 on; at least 18.
+/// Faces: within half a ring of quads of `faces`, under 1 % from 10,000 on; at least 300,
+/// below which strands would run through each other.
 pub fn knot(faces: usize) -> Mesh {
-    let size = Size::for_faces(faces, ASPECT);
+    let size = Size::for_faces(faces.max(300), ASPECT);
     grid::wrapped(size, |column, row| {
         let frame = frame(column as f64 / size.columns as f64);
         let (sin, cos) = (TAU * row as f64 / size.rows as f64).sin_cos();

@@ -125,7 +125,8 @@ fn sphere_and_torus_near_their_closed_forms() {
 }
 
 #[test]
-fn a_faceted_torus_has_72_planes() {
+fn a_faceted_torus_lies_in_50_planes() {
+    // 12 × 6 facets, but the 12 on top lie in one plane, and so do those below.
     let mesh = faceted_torus(10_000);
     let mut planes: Vec<(DVec3, f64)> = Vec::new();
     for &face in &mesh.faces {
@@ -138,7 +139,7 @@ fn a_faceted_torus_has_72_planes() {
             planes.push((normal, normal.dot(a)));
         }
     }
-    assert_eq!(planes.len(), 72);
+    assert_eq!(planes.len(), 50);
 }
 
 #[test]

@@ -28,8 +28,8 @@ const FACETS: Size = Size { columns: 12, rows: 6 };
 
 /// A torus of 12 × 6 flat trapezoids that meet in creases, each finely split.
 ///
-/// What a simplifier should find here: all faces but those of the 144 facet halves can go at no
-/// error, and no crease may blur. Faces: 144 times a product of two whole numbers that differ
+/// What a simplifier should find here: all but 144 faces can go at no error, and no crease may
+/// blur. Faces: 144 times a product of two whole numbers that differ
 /// little; within one part in the square root of `faces / 144`, at least 144.
 pub fn faceted_torus(faces: usize) -> Mesh {
     let parts = faces as f64 / (2 * FACETS.columns * FACETS.rows) as f64;
