@@ -1,0 +1,305 @@
+//! Building: top down, splitting where the binned surface area cost is least.
+
+use glam::{Vec3, Vec4};
+use meshlod_mesh::FaceId;
+use rayon::prelude::*;
+
+use crate::bvh::{INNER, Node};
+use crate::triangle::Triangle;
+
+/// Most triangles of a leaf.
+const LEAF: usize = 4;
+/// Bins along the longest axis.
+const BINS: usize = 16;
+/// Ranges at least this long build their children in parallel, each in nodes of its own.
+const GRAIN: usize = 1 << 13;
+/// Below this many levels ranges are halved instead: hostile meshes must not make the tree deep.
+const MAX_COSTED_DEPTH: usize = 40;
+/// Bound of the depth: after `MAX_COSTED_DEPTH`, each level halves at most 2^32 faces.
+pub(crate) const MAX_DEPTH: usize = MAX_COSTED_DEPTH + 32;
+
+/// Least extent of doubled centres that is binned; local coordinates go up to about 2.
+const MIN_EXTENT: f32 = 1e-30;
+
+/// A face and its box, rounded outwards.
+#[derive(Clone, Copy)]
+struct Item {
+    bounds: Box3,
+    face: FaceId,
+}
+
+#[derive(Clone, Copy)]
+struct Box3 {
+    lo: Vec3,
+    hi: Vec3,
+}
+
+/// A run of items that becomes one child of a node.
+struct Run<'a> {
+    items: &'a mut [Item],
+    /// Where its first item stands among all items.
+    first: usize,
+    bounds: Box3,
+}
+
+/// The nodes, root first, and the faces in the order of the leaves.
+pub(crate) fn build(
+    count: usize,
+    triangle: impl Fn(FaceId) -> Triangle + Sync,
+) -> (Vec<Node>, Vec<FaceId>) {
+    let mut items: Vec<Item> = (0..count)
+        .into_par_iter()
+        .map(|i| {
+            let face = FaceId::new(i);
+            Item { bounds: Box3::around(&triangle(face)), face }
+        })
+        .collect();
+    let bounds = Box3::union(&items);
+    let nodes = build_nodes(Run { items: &mut items, first: 0, bounds }, 0);
+    (nodes, items.iter().map(|item| item.face).collect())
+}
+
+/// The nodes of a run, its top node first; inner children are counted from it.
+fn build_nodes(run: Run<'_>, depth: usize) -> Vec<Node> {
+    let parallel = run.items.len() >= GRAIN;
+    let runs = split_in_four(run, depth);
+    let mut nodes = vec![Node::of(&runs)];
+    let inner: Vec<(usize, Run<'_>)> =
+        runs.into_iter().enumerate().filter(|(_, run)| run.items.len() > LEAF).collect();
+    if parallel {
+        let built: Vec<(usize, Vec<Node>)> = inner
+            .into_par_iter()
+            .map(|(child, run)| (child, build_nodes(run, depth + 1)))
+            .collect();
+        for (child, subtree) in built {
+            let base = nodes.len() as u32;
+            nodes[0].first[child] = base;
+            nodes.extend(subtree.into_iter().map(|node| node.moved(base)));
+        }
+    } else {
+        for (child, run) in inner {
+            nodes[0].first[child] = nodes.len() as u32;
+            append_nodes(&mut nodes, run, depth + 1);
+        }
+    }
+    nodes
+}
+
+/// Appends the nodes of a run, its top node first; inner children are counted from the start.
+fn append_nodes(nodes: &mut Vec<Node>, run: Run<'_>, depth: usize) {
+    let top = nodes.len();
+    let runs = split_in_four(run, depth);
+    nodes.push(Node::of(&runs));
+    for (child, run) in runs.into_iter().enumerate() {
+        if run.items.len() > LEAF {
+            nodes[top].first[child] = nodes.len() as u32;
+            append_nodes(nodes, run, depth + 1);
+        }
+    }
+}
+
+/// Splits a run, then the larger of its parts, until there are four or all are leaves.
+fn split_in_four(run: Run<'_>, depth: usize) -> Vec<Run<'_>> {
+    let mut runs = Vec::with_capacity(4);
+    runs.push(run);
+    while runs.len() < 4 {
+        let largest = (0..runs.len())
+            .filter(|&i| runs[i].items.len() > LEAF)
+            .max_by(|&i, &j| runs[i].bounds.area().total_cmp(&runs[j].bounds.area()));
+        let Some(largest) = largest else { break };
+        let (left, right) = split(runs.remove(largest), depth);
+        runs.insert(largest, left);
+        runs.insert(largest + 1, right);
+    }
+    runs
+}
+
+/// Two parts, neither empty: where count × area is least, or in the middle when that cannot be told.
+fn split(run: Run<'_>, depth: usize) -> (Run<'_>, Run<'_>) {
+    let Run { items, first, .. } = run;
+    let centers = items.iter().map(|item| item.bounds.center());
+    let (lo, hi) = centers.fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(lo, hi), center| {
+        (lo.min(center), hi.max(center))
+    });
+    let axis = (hi - lo).max_position();
+    let extent = (hi - lo)[axis];
+    let cut = if depth < MAX_COSTED_DEPTH && extent > MIN_EXTENT {
+        Binning { axis, start: lo[axis], per_unit: BINS as f32 / extent }.split(items)
+    } else {
+        halve(items, axis)
+    };
+    let (left, right) = items.split_at_mut(cut.middle);
+    (
+        Run { items: left, first, bounds: cut.left },
+        Run { items: right, first: first + cut.middle, bounds: cut.right },
+    )
+}
+
+/// Where a run is parted, and the boxes of the parts.
+struct Cut {
+    middle: usize,
+    left: Box3,
+    right: Box3,
+}
+
+/// As many items on the left as on the right, by their centres along `axis`.
+fn halve(items: &mut [Item], axis: usize) -> Cut {
+    let middle = items.len() / 2;
+    items.select_nth_unstable_by(middle, |x, y| {
+        let [x_at, y_at] = [x, y].map(|item| item.bounds.center()[axis]);
+        x_at.total_cmp(&y_at).then(x.face.cmp(&y.face))
+    });
+    let (left, right) = items.split_at(middle);
+    Cut { middle, left: Box3::union(left), right: Box3::union(right) }
+}
+
+/// Equal bins along an axis, by the centres of boxes.
+struct Binning {
+    axis: usize,
+    start: f32,
+    per_unit: f32,
+}
+
+#[derive(Clone, Copy)]
+struct Bin {
+    bounds: Box3,
+    count: usize,
+}
+
+impl Binning {
+    fn bin(&self, item: &Item) -> usize {
+        let at = (item.bounds.center()[self.axis] - self.start) * self.per_unit;
+        (at as usize).min(BINS - 1)
+    }
+
+    /// Parts the items at the cheapest bound between bins. The first and the last bin hold the
+    /// extreme centres, so there always is one with items on both sides.
+    fn split(&self, items: &mut [Item]) -> Cut {
+        let empty = Bin { bounds: Box3::EMPTY, count: 0 };
+        let mut bins = [empty; BINS];
+        for item in items.iter() {
+            bins[self.bin(item)].add(&Bin { bounds: item.bounds, count: 1 });
+        }
+        // `after[i]` holds all bins from i on.
+        let mut after = bins;
+        for i in (0..BINS - 1).rev() {
+            let next = after[i + 1];
+            after[i].add(&next);
+        }
+        let mut before = empty;
+        let mut least = f32::INFINITY;
+        let (mut bound, mut cut) = (1, None);
+        for i in 1..BINS {
+            before.add(&bins[i - 1]);
+            let cost = before.cost() + after[i].cost();
+            if before.count > 0 && after[i].count > 0 && (cut.is_none() || cost < least) {
+                (least, bound) = (cost, i);
+                cut =
+                    Some(Cut { middle: before.count, left: before.bounds, right: after[i].bounds });
+            }
+        }
+        partition(items, |item| self.bin(item) < bound);
+        cut.expect("the extreme centres are in the extreme bins")
+    }
+}
+
+impl Bin {
+    fn add(&mut self, other: &Self) {
+        self.bounds = self.bounds.merged(&other.bounds);
+        self.count += other.count;
+    }
+
+    fn cost(&self) -> f32 {
+        self.bounds.area() * self.count as f32
+    }
+}
+
+/// Moves the items that are `left` to the front.
+fn partition(items: &mut [Item], left: impl Fn(&Item) -> bool) {
+    let (mut i, mut j) = (0, items.len());
+    loop {
+        while i < j && left(&items[i]) {
+            i += 1;
+        }
+        while i < j && !left(&items[j - 1]) {
+            j -= 1;
+        }
+        if i >= j {
+            return;
+        }
+        items.swap(i, j - 1);
+    }
+}
+
+impl Box3 {
+    const EMPTY: Self = Self { lo: Vec3::INFINITY, hi: Vec3::NEG_INFINITY };
+
+    /// The least `f32` box that holds a triangle.
+    fn around(&[a, b, c]: &Triangle) -> Self {
+        let (lo, hi) = (a.min(b).min(c), a.max(b).max(c));
+        Self {
+            lo: Vec3::from_array(lo.to_array().map(round_down)),
+            hi: Vec3::from_array(hi.to_array().map(round_up)),
+        }
+    }
+
+    fn union(items: &[Item]) -> Self {
+        items.iter().fold(Self::EMPTY, |all, item| all.merged(&item.bounds))
+    }
+
+    fn merged(&self, other: &Self) -> Self {
+        Self { lo: self.lo.min(other.lo), hi: self.hi.max(other.hi) }
+    }
+
+    /// Twice the centre: enough to compare.
+    fn center(&self) -> Vec3 {
+        self.lo + self.hi
+    }
+
+    /// Half the surface area; 0 for the empty box.
+    fn area(&self) -> f32 {
+        let size = (self.hi - self.lo).max(Vec3::ZERO);
+        size.x * (size.y + size.z) + size.y * size.z
+    }
+}
+
+/// The greatest `f32` not above `x`.
+pub(crate) fn round_down(x: f64) -> f32 {
+    let nearest = x as f32;
+    if f64::from(nearest) > x { nearest.next_down() } else { nearest }
+}
+
+/// The least `f32` not below `x`.
+pub(crate) fn round_up(x: f64) -> f32 {
+    let nearest = x as f32;
+    if f64::from(nearest) < x { nearest.next_up() } else { nearest }
+}
+
+impl Node {
+    /// The node over up to four runs, leaves where they are small enough.
+    fn of(runs: &[Run<'_>]) -> Self {
+        // A child that is not there is infinitely far, and a leaf of nothing.
+        let mut lo = [Vec4::INFINITY; 3];
+        let mut hi = [Vec4::NEG_INFINITY; 3];
+        let (mut first, mut count) = ([0; 4], [0; 4]);
+        for (child, run) in runs.iter().enumerate() {
+            for axis in 0..3 {
+                lo[axis][child] = run.bounds.lo[axis];
+                hi[axis][child] = run.bounds.hi[axis];
+            }
+            first[child] = run.first as u32;
+            count[child] = if run.items.len() > LEAF { INNER } else { run.items.len() as u8 };
+        }
+        Self { lo, hi, first, count }
+    }
+
+    /// The same node where `base` nodes stand before its tree.
+    fn moved(mut self, base: u32) -> Self {
+        for child in 0..4 {
+            if self.count[child] == INNER {
+                self.first[child] += base;
+            }
+        }
+        self
+    }
+}

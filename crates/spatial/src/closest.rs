@@ -1,0 +1,159 @@
+//! Closest points: boxes in `f32`, never too far; triangles in `f64`.
+
+use glam::{DVec3, Vec4};
+use meshlod_mesh::FaceId;
+
+use crate::Bvh;
+use crate::build::{MAX_DEPTH, round_down, round_up};
+use crate::bvh::{INNER, Node};
+use crate::triangle::closest_point;
+
+/// The point of a mesh closest to a point.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Closest {
+    /// Where it is, in model units.
+    pub point: [f64; 3],
+    /// The face it is on: where several are equally close, the one of lowest id.
+    pub face: FaceId,
+    /// The square of its distance, in square model units.
+    pub distance_squared: f64,
+}
+
+/// What the answers allow themselves, in local coordinates, where the mesh is about 4 wide: a box
+/// is entered although it seems this much too far, relative and absolute, in squared distance.
+///
+/// Box distances round to within five parts in 2^24 of themselves. Triangle distances are off by
+/// up to 1e-15, and (d + 1e-15)² is at most d² (1 + 2^-21) + 1e-23.
+const SLACK_RELATIVE: f64 = 1.0 + 1.0 / (1 << 20) as f64;
+const SLACK: f64 = 1e-23;
+
+/// Three children of every node on the way may be waiting.
+const STACK: usize = 3 * MAX_DEPTH + 4;
+
+impl Bvh {
+    /// The point of the mesh closest to `point`, which must be finite.
+    ///
+    /// `hint` is a face thought to be near, such as the answer to a neighbouring query: a good one
+    /// saves time, no hint changes the answer. Exact but for the rounding of `f64`, relative to the
+    /// size of the mesh. Where distances come out equal, the face of lowest id answers.
+    ///
+    /// Cost: O(log n) for points near the surface, n = faces.
+    pub fn closest(&self, point: [f64; 3], hint: Option<FaceId>) -> Closest {
+        let p = self.frame.local(point);
+        let start = hint.and_then(|face| self.slots.get(face.index())).map_or(0, |&slot| slot);
+        let mut best = self.candidate(p, start as usize);
+        self.descend(p, &mut best);
+        Closest {
+            point: self.frame.model(best.point),
+            face: best.face,
+            distance_squared: self.frame.model_squared(best.distance_squared),
+        }
+    }
+
+    fn candidate(&self, p: DVec3, slot: usize) -> Candidate {
+        let point = closest_point(p, &self.triangles[slot]);
+        Candidate { point, face: self.faces[slot], distance_squared: p.distance_squared(point) }
+    }
+
+    /// Improves `best` to the closest of all: nearest boxes first, no box beyond the best so far.
+    fn descend(&self, p: DVec3, best: &mut Candidate) {
+        let query = Query::new(p);
+        let mut reach = reach(best.distance_squared);
+        let mut stack = [(0.0, 0); STACK];
+        let mut waiting = 1;
+        while waiting > 0 {
+            waiting -= 1;
+            let (distance_squared, index) = stack[waiting];
+            if distance_squared > reach {
+                continue;
+            }
+            let node: &Node = &self.nodes[index as usize];
+            let distances = query.distances_squared(node);
+            let bottom = waiting;
+            for child in within(distances, reach) {
+                let distance_squared = distances[child];
+                if node.count[child] == INNER {
+                    let mut i = waiting;
+                    // Farthest at the bottom: the nearest is taken first.
+                    while i > bottom && stack[i - 1].0 < distance_squared {
+                        stack[i] = stack[i - 1];
+                        i -= 1;
+                    }
+                    stack[i] = (distance_squared, node.first[child]);
+                    waiting += 1;
+                } else {
+                    let first = node.first[child] as usize;
+                    for slot in first..first + usize::from(node.count[child]) {
+                        if best.improve(self.candidate(p, slot)) {
+                            reach = self::reach(best.distance_squared);
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// A closest point in local coordinates.
+struct Candidate {
+    point: DVec3,
+    face: FaceId,
+    distance_squared: f64,
+}
+
+impl Candidate {
+    /// Becomes `other` if that is nearer, or as near and of lower id.
+    #[inline]
+    fn improve(&mut self, other: Self) -> bool {
+        let nearer = other.distance_squared < self.distance_squared
+            || (other.distance_squared == self.distance_squared && other.face < self.face);
+        if nearer {
+            *self = other;
+        }
+        nearer
+    }
+}
+
+/// The greatest squared box distance at which something as near as `distance_squared` may be.
+#[inline]
+fn reach(distance_squared: f64) -> f32 {
+    round_up(distance_squared * SLACK_RELATIVE + SLACK)
+}
+
+/// The children at most `reach` away.
+#[inline]
+fn within(distances_squared: Vec4, reach: f32) -> impl Iterator<Item = usize> {
+    let mut mask = distances_squared.cmple(Vec4::splat(reach)).bitmask();
+    std::iter::from_fn(move || {
+        let child = mask.trailing_zeros() as usize;
+        mask &= mask.wrapping_sub(1);
+        (child < 4).then_some(child)
+    })
+}
+
+/// A point between two `f32` points, each coordinate in four lanes.
+struct Query {
+    below: [Vec4; 3],
+    above: [Vec4; 3],
+}
+
+impl Query {
+    fn new(p: DVec3) -> Self {
+        Self {
+            below: p.to_array().map(|x| Vec4::splat(round_down(x))),
+            above: p.to_array().map(|x| Vec4::splat(round_up(x))),
+        }
+    }
+
+    /// Squared distances to the four boxes, too small rather than too large.
+    #[inline]
+    fn distances_squared(&self, node: &Node) -> Vec4 {
+        let along = |axis: usize| {
+            let distance = (node.lo[axis] - self.above[axis])
+                .max(self.below[axis] - node.hi[axis])
+                .max(Vec4::ZERO);
+            distance * distance
+        };
+        along(0) + along(1) + along(2)
+    }
+}

@@ -1,0 +1,82 @@
+//! The hierarchy's own coordinates: about the middle of the box, at a size near 1.
+
+use glam::DVec3;
+use meshlod_mesh::Bounds;
+
+/// Local coordinates: the middle of the box at the origin, the box between -2 and 2, or -4 and 4 at
+/// the very end of the range of `f64`.
+///
+/// The scale is a power of two, so scaling rounds nothing. Far-away and extremely large or small
+/// meshes then fit the `f32` boxes, and fourth powers of lengths fit an `f64`.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Frame {
+    origin: DVec3,
+    scale: f64,
+}
+
+/// Bound of the exponent of the scale: keeps it and its inverse finite, and normal.
+const MAX_EXPONENT: f64 = 1022.0;
+
+impl Frame {
+    /// The frame of a box of finite extent.
+    pub(crate) fn of(bounds: &Bounds) -> Self {
+        let half = DVec3::from(bounds.max) * 0.5 - DVec3::from(bounds.min) * 0.5;
+        let half = half.max_element();
+        let scale = if half > 0.0 {
+            let exponent = -half.log2().floor();
+            2f64.powi(exponent.clamp(-MAX_EXPONENT, MAX_EXPONENT) as i32)
+        } else {
+            1.0
+        };
+        Self { origin: bounds.center().into(), scale }
+    }
+
+    /// A point of the model in local coordinates.
+    #[inline]
+    pub(crate) fn local(&self, point: [f64; 3]) -> DVec3 {
+        (DVec3::from(point) - self.origin) * self.scale
+    }
+
+    /// A local point in the model.
+    #[inline]
+    pub(crate) fn model(&self, local: DVec3) -> [f64; 3] {
+        (local / self.scale + self.origin).into()
+    }
+
+    /// A squared local distance in squared model units.
+    #[inline]
+    pub(crate) fn model_squared(&self, local: f64) -> f64 {
+        local / self.scale / self.scale
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn frame(min: f64, max: f64) -> Frame {
+        Frame::of(&Bounds { min: [min; 3], max: [max; 3] })
+    }
+
+    #[test]
+    fn every_finite_box_comes_to_a_size_near_one() {
+        for (min, max) in
+            [(-1.0, 1.0), (1e6, 1e6 + 1.0), (-1e308, 1e308), (0.0, 1e-200), (1e-5, 3e7)]
+        {
+            let corner = frame(min, max).local([max; 3]).x;
+            assert!((0.99..2.3).contains(&corner), "{min} {max}: {corner}");
+        }
+    }
+
+    #[test]
+    fn a_point_comes_back() {
+        let frame = frame(1e6, 1e6 + 3.0);
+        let point = [1e6 + 0.125, 1e6 + 2.75, 1e6 + 1.0];
+        assert_eq!(frame.model(frame.local(point)), point);
+    }
+
+    #[test]
+    fn a_box_without_extent_keeps_its_units() {
+        assert_eq!(frame(7.0, 7.0).local([9.0; 3]).x, 2.0);
+    }
+}

@@ -1,0 +1,29 @@
+//! What several crates search meshes with: a bounding volume hierarchy ([`Bvh`]) over triangles.
+//!
+//! Boxes are compact and rounded outwards; answers are computed from the triangles in `f64` and do
+//! not depend on the tree, the hint or the number of threads.
+//!
+//! ```
+//! use meshlod_mesh::{FaceId, Mesh, VertexId};
+//! use meshlod_spatial::Bvh;
+//!
+//! let positions = vec![[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
+//! let mesh = Mesh::new(positions, vec![[VertexId(0), VertexId(1), VertexId(2)]]);
+//! let bvh = Bvh::new(&mesh).unwrap();
+//!
+//! let closest = bvh.closest([0.25, 0.25, 2.0], None);
+//! assert_eq!(closest.point, [0.25, 0.25, 0.0]);
+//! assert_eq!((closest.face, closest.distance_squared), (FaceId(0), 4.0));
+//! ```
+#![forbid(unsafe_code)]
+
+mod build;
+mod bvh;
+mod closest;
+mod frame;
+#[cfg(test)]
+mod tests;
+mod triangle;
+
+pub use bvh::{Bvh, BvhError};
+pub use closest::Closest;

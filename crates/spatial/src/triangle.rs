@@ -1,0 +1,162 @@
+//! The point of a triangle closest to a point, in `f64`, for any triangle.
+
+use glam::DVec3;
+
+/// Three corners.
+pub(crate) type Triangle = [DVec3; 3];
+
+/// Squared sine of the first corner's angle below which the normal is not trusted alone.
+///
+/// At a sine of 1e-6 the normal still has ten good digits.
+const SLIVER: f64 = 1e-12;
+
+/// The point of the triangle closest to `p`.
+///
+/// Where the projection of `p` falls inside, it is the weighted mean of the corners; else it is on
+/// one of the edges that `p` lies beyond. Slivers, whose normal is uncertain, and degenerate
+/// triangles are also asked edge by edge, so the answer is always a point of the triangle. A corner
+/// is given back bit for bit.
+#[inline]
+pub(crate) fn closest_point(p: DVec3, &[a, b, c]: &Triangle) -> DVec3 {
+    let (ab, bc, ca) = (b - a, c - b, a - c);
+    let normal = ca.cross(ab);
+    // Each is the area of the part opposite the corner, times twice the normal's square.
+    let wa = bc.cross(p - b).dot(normal);
+    let wb = ca.cross(p - c).dot(normal);
+    let wc = ab.cross(p - a).dot(normal);
+    let sum = wa + wb + wc;
+    let inside = wa >= 0.0 && wb >= 0.0 && wc >= 0.0 && sum > 0.0;
+    let sliver = normal.length_squared() <= SLIVER * ab.length_squared() * ca.length_squared();
+    let projection = || a + ab * (wb / sum) - ca * (wc / sum);
+    if inside && !sliver {
+        return projection();
+    }
+    let mut nearest = Nearest { point: a, distance_squared: f64::INFINITY };
+    for (weight, from, to) in [(wc, a, b), (wa, b, c), (wb, c, a)] {
+        if weight < 0.0 || sliver {
+            nearest.offer(p, closest_on_segment(p, from, to));
+        }
+    }
+    if inside {
+        nearest.offer(p, projection());
+    }
+    nearest.point
+}
+
+/// The best point so far.
+struct Nearest {
+    point: DVec3,
+    distance_squared: f64,
+}
+
+impl Nearest {
+    #[inline]
+    fn offer(&mut self, p: DVec3, point: DVec3) {
+        let distance_squared = p.distance_squared(point);
+        if distance_squared < self.distance_squared {
+            *self = Self { point, distance_squared };
+        }
+    }
+}
+
+#[inline]
+fn closest_on_segment(p: DVec3, from: DVec3, to: DVec3) -> DVec3 {
+    let along = to - from;
+    let (t, length_squared) = ((p - from).dot(along), along.length_squared());
+    if t <= 0.0 {
+        from
+    } else if t >= length_squared {
+        to
+    } else {
+        from + along * (t / length_squared)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    /// The distance by search: that to the slice parallel to `bc` is a convex function of where
+    /// the slice is.
+    fn searched(p: DVec3, &[a, b, c]: &Triangle) -> f64 {
+        let distance = |t: f64| p.distance(closest_on_segment(p, a + (b - a) * t, a + (c - a) * t));
+        let (mut lo, mut hi) = (0.0, 1.0);
+        for _ in 0..200 {
+            let (left, right) = (lo + (hi - lo) / 3.0, hi - (hi - lo) / 3.0);
+            if distance(left) < distance(right) { hi = right } else { lo = left }
+        }
+        [lo, hi, 0.0, 1.0].map(distance).into_iter().fold(f64::INFINITY, f64::min)
+    }
+
+    /// How far `q` is from being a weighted mean of the corners.
+    fn off(q: DVec3, triangle: &Triangle) -> f64 {
+        let apart = |from: DVec3, to: DVec3| closest_on_segment(q, from, to).distance(q);
+        let [a, b, c] = *triangle;
+        let normal = (b - a).cross(c - a).normalize_or_zero();
+        let edges = apart(a, b).min(apart(b, c)).min(apart(c, a));
+        (q - a).dot(normal).abs().min(edges)
+    }
+
+    fn coordinate() -> impl Strategy<Value = f64> {
+        prop_oneof![-1.0..1.0, (-2i32..3).prop_map(|x| f64::from(x) / 2.0), -1e-7..1e-7]
+    }
+
+    fn point() -> impl Strategy<Value = DVec3> {
+        [coordinate(), coordinate(), coordinate()].prop_map(DVec3::from)
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(4000))]
+
+        #[test]
+        fn nothing_of_the_triangle_is_nearer(p in point(), triangle in [point(), point(), point()]) {
+            let q = closest_point(p, &triangle);
+            prop_assert!(off(q, &triangle) < 1e-14, "{q} is not on it");
+            let (found, searched) = (p.distance(q), searched(p, &triangle));
+            prop_assert!(found <= searched + 1e-14, "{found} where {searched} can be had");
+        }
+
+        #[test]
+        fn a_corner_is_its_own_closest_point(triangle in [point(), point(), point()]) {
+            for corner in triangle {
+                prop_assert!(closest_point(corner, &triangle).distance(corner) < 1e-15);
+            }
+        }
+    }
+
+    const UNIT: Triangle = [DVec3::ZERO, DVec3::X, DVec3::Y];
+
+    #[test]
+    fn each_region_has_its_answer() {
+        for (p, q) in [
+            ([0.25, 0.25, 3.0], [0.25, 0.25, 0.0]),
+            ([-1.0, -2.0, 1.0], [0.0, 0.0, 0.0]),
+            ([3.0, 0.5, 1.0], [1.0, 0.0, 0.0]),
+            ([0.5, 9.0, 1.0], [0.0, 1.0, 0.0]),
+            ([0.5, -1.0, 1.0], [0.5, 0.0, 0.0]),
+            ([-1.0, 0.5, 1.0], [0.0, 0.5, 0.0]),
+            ([1.0, 1.0, 1.0], [0.5, 0.5, 0.0]),
+        ] {
+            assert_eq!(closest_point(p.into(), &UNIT), q.into(), "{p:?}");
+        }
+    }
+
+    #[test]
+    fn beyond_an_obtuse_corner_the_far_edge_answers() {
+        let obtuse = [DVec3::ZERO, DVec3::X, DVec3::new(-1.0, 0.25, 0.0)];
+        let p = DVec3::new(-0.5, 0.0, 0.0);
+        let q = closest_point(p, &obtuse);
+        assert!((p.distance(q) - searched(p, &obtuse)).abs() < 1e-15 && q.x < -0.1);
+    }
+
+    #[test]
+    fn points_and_segments_are_triangles_too() {
+        let p = DVec3::new(0.25, 1.0, 0.0);
+        assert_eq!(closest_point(p, &[DVec3::X; 3]), DVec3::X);
+        let on_segment = DVec3::new(0.25, 0.0, 0.0);
+        assert_eq!(closest_point(p, &[DVec3::ZERO, DVec3::X, DVec3::X * 0.5]), on_segment);
+        assert_eq!(closest_point(p, &[DVec3::ZERO, DVec3::ZERO, DVec3::X]), on_segment);
+    }
+}
