@@ -52,6 +52,23 @@ impl ParseError {
     }
 }
 
+/// What of a scene a format cannot hold: the part and the reason, without the file's name.
+#[derive(Clone, Debug, Error, PartialEq, Eq)]
+#[error("{part}: {reason}")]
+pub struct Unfit {
+    /// Which part: `mesh 3`, `v12`.
+    pub part: String,
+    /// Why, and what to do where that is clear.
+    pub reason: String,
+}
+
+impl Unfit {
+    /// A part that does not fit, and why.
+    pub fn new(part: impl Into<String>, reason: impl Into<String>) -> Self {
+        Self { part: part.into(), reason: reason.into() }
+    }
+}
+
 /// Why a file was not read or written. Prints as one line that names the file.
 #[derive(Debug, Error)]
 pub enum IoError {
@@ -70,6 +87,14 @@ pub enum IoError {
         path: PathBuf,
         /// Where and why.
         source: ParseError,
+    },
+    /// The format cannot hold the scene.
+    #[error("{}: {source}", path.display())]
+    Unfit {
+        /// The file.
+        path: PathBuf,
+        /// What does not fit.
+        source: Unfit,
     },
     /// No format goes with the suffix.
     #[error("{}: unknown suffix; known are {known}", path.display())]
@@ -90,5 +115,10 @@ impl IoError {
     /// A parse error at a path.
     pub fn parse(path: &Path, source: ParseError) -> Self {
         Self::Parse { path: path.to_owned(), source }
+    }
+
+    /// A scene that does not fit a format, at a path.
+    pub fn unfit(path: &Path, source: Unfit) -> Self {
+        Self::Unfit { path: path.to_owned(), source }
     }
 }

@@ -2,17 +2,25 @@
 #![forbid(unsafe_code)]
 
 mod error;
+mod files;
+mod flatten;
+mod format;
 pub mod gltf;
 pub mod obj;
 pub mod off;
 pub mod ply;
+mod pending;
 mod polygon;
+mod replace;
 mod scene;
 pub mod smf;
 pub mod stl;
 mod weld;
 
-pub use error::{IoError, ParseError, Place};
+pub use error::{IoError, ParseError, Place, Unfit};
+pub use files::{ReadOptions, Resolve, Weld, WriteOptions, read, read_bytes, write};
+pub use flatten::Placement;
+pub use format::Format;
 pub use scene::{Image, Material, Node, Scene, SceneMesh};
 pub use weld::weld;
 

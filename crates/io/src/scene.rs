@@ -2,12 +2,14 @@
 
 use meshlod_mesh::Mesh;
 
+use crate::gltf::Source;
+
 /// A file's contents. A format without nodes gives one mesh under one root.
 #[derive(Clone, Debug, Default)]
 pub struct Scene {
-    /// Meshes, each in its own space. A mesh's `materials` labels index `Scene::materials` by name order of its own table.
+    /// Meshes, each in its own space.
     pub meshes: Vec<SceneMesh>,
-    /// Nodes; parents and children by index.
+    /// Nodes; children by index. No node has two parents.
     pub nodes: Vec<Node>,
     /// The nodes without a parent that the scene shows.
     pub roots: Vec<usize>,
@@ -15,14 +17,20 @@ pub struct Scene {
     pub materials: Vec<Material>,
     /// Images of the materials, still encoded.
     pub images: Vec<Image>,
+    /// The glTF document that the scene came from, if it came from one.
+    ///
+    /// A scene with a source is written to glTF as that document with the geometry of
+    /// [`Scene::meshes`] in it; changes to the other fields do not show there. Set to `None` to
+    /// write the fields alone.
+    pub source: Option<Source>,
 }
 
-/// A mesh and its name.
+/// A mesh, its name and its materials.
 #[derive(Clone, Debug, Default)]
 pub struct SceneMesh {
     /// The file's name of it, or "".
     pub name: String,
-    /// The geometry.
+    /// The geometry. From glTF, its `materials` labels are the primitives, in the file's order.
     pub mesh: Mesh,
     /// For each name of `mesh.materials` (for the whole mesh where it has none: one entry), the
     /// index into `Scene::materials`.
@@ -30,7 +38,7 @@ pub struct SceneMesh {
 }
 
 /// A place in the scene.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Node {
     /// The file's name of it, or "".
     pub name: String,
@@ -43,7 +51,7 @@ pub struct Node {
 }
 
 /// What of a material a picture needs.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Material {
     /// The file's name of it, or "".
     pub name: String,
@@ -54,10 +62,47 @@ pub struct Material {
 }
 
 /// An image as the file has it.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Image {
     /// File name or the file's name of it.
     pub name: String,
-    /// Encoded bytes: PNG or JPEG.
+    /// Encoded bytes, PNG or JPEG as a rule; empty where the file that holds them is not there.
     pub bytes: Vec<u8>,
+}
+
+/// The transform that moves nothing.
+pub(crate) const IDENTITY: [[f64; 4]; 4] =
+    [[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0], [0.0, 0.0, 0.0, 1.0]];
+
+impl Default for Node {
+    fn default() -> Self {
+        Self { name: String::new(), transform: IDENTITY, mesh: None, children: Vec::new() }
+    }
+}
+
+impl Default for Material {
+    fn default() -> Self {
+        Self { name: String::new(), base_color: [1.0; 4], base_color_image: None }
+    }
+}
+
+impl Scene {
+    /// One mesh of that name under one nameless root; each of its material labels becomes a
+    /// white material.
+    pub fn from_mesh(name: impl Into<String>, mesh: Mesh) -> Self {
+        let labels = mesh.materials.as_ref().map_or(&[][..], |labels| &labels.names);
+        let materials: Vec<Material> = labels
+            .iter()
+            .map(|name| Material { name: name.clone(), ..Material::default() })
+            .collect();
+        let of_labels =
+            if labels.is_empty() { vec![None] } else { (0..labels.len()).map(Some).collect() };
+        Self {
+            meshes: vec![SceneMesh { name: name.into(), mesh, materials: of_labels }],
+            nodes: vec![Node { mesh: Some(0), ..Node::default() }],
+            roots: vec![0],
+            materials,
+            ..Self::default()
+        }
+    }
 }

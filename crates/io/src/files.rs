@@ -1,0 +1,198 @@
+//! Files by path: the suffix decides on the format.
+
+use std::fs;
+use std::io::{self, Write};
+use std::path::{Component, Path, PathBuf};
+
+use crate::pending::{obj, one as off, one as smf, one as ply, stl};
+use crate::replace::replace;
+use crate::{Format, Image, IoError, ParseError, Precision, Scene, Unfit, gltf, weld};
+
+/// How vertices at the same place are treated on reading.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum Weld {
+    /// As the file has them.
+    Off,
+    /// glTF and STL tear vertices at seams: there those at bit-identical places become one, with a
+    /// wedge for each set of attributes. Other formats say themselves what is one.
+    #[default]
+    Exact,
+    /// Those within this distance become one, in model units, in any format.
+    Within(f64),
+}
+
+/// How a file is read.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct ReadOptions {
+    /// What becomes one vertex.
+    pub weld: Weld,
+}
+
+/// How a file is written.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct WriteOptions {
+    /// Of coordinates in PLY, OBJ, OFF and SMF; STL and glTF have 32 bits always.
+    pub precision: Precision,
+}
+
+/// Finds the files that a file names, such as buffers, images and material libraries.
+///
+/// It is given the name as the file has it, `%20` and the like decoded; `None` means not there.
+pub type Resolve<'a> = &'a mut dyn FnMut(&str) -> Option<Vec<u8>>;
+
+/// Reads a mesh file and the files that it names, relative to its folder.
+///
+/// # Errors
+/// One line that names the file, the place in it and the reason: an unknown suffix, a file that
+/// is not there, wrong contents.
+pub fn read(path: &Path, options: &ReadOptions) -> Result<Scene, IoError> {
+    let format = Format::of_path(path)?;
+    let bytes = fs::read(path).map_err(|error| IoError::system(path, error))?;
+    let folder = path.parent().unwrap_or(Path::new(""));
+    let mut resolve = |name: &str| read_beside(folder, name);
+    let mut scene = read_bytes(&bytes, format, &mut resolve, options)
+        .map_err(|error| IoError::parse(path, error))?;
+    if let [only] = &mut scene.meshes[..]
+        && only.name.is_empty()
+        && scene.source.is_none()
+    {
+        only.name = stem(path);
+    }
+    Ok(scene)
+}
+
+/// Reads a mesh file that is in memory; `resolve` gives the files that it names.
+///
+/// # Errors
+/// The place and the reason when the contents are wrong.
+pub fn read_bytes(
+    bytes: &[u8],
+    format: Format,
+    resolve: Resolve<'_>,
+    options: &ReadOptions,
+) -> Result<Scene, ParseError> {
+    let mut scene = match format {
+        Format::Gltf | Format::Glb => return gltf::read(bytes, resolve, options.weld),
+        Format::Obj => obj::read(bytes, resolve)?,
+        Format::Ply => Scene::from_mesh("", ply::read(bytes)?),
+        Format::Stl => Scene::from_mesh("", stl::read(bytes)?),
+        Format::Off => Scene::from_mesh("", off::read(bytes)?),
+        Format::Smf => Scene::from_mesh("", smf::read(bytes)?),
+    };
+    let epsilon = match options.weld {
+        Weld::Within(epsilon) => Some(epsilon),
+        Weld::Exact if format == Format::Stl => Some(0.0),
+        Weld::Exact | Weld::Off => None,
+    };
+    if let Some(epsilon) = epsilon {
+        for mesh in &mut scene.meshes {
+            weld(&mut mesh.mesh, epsilon);
+        }
+    }
+    Ok(scene)
+}
+
+/// Writes a scene; files that go with it (`.bin`, `.mtl`, images) come beside.
+///
+/// Each file is written under another name in the same folder and renamed when complete, the one
+/// at `path` last. PLY, STL, OFF and SMF hold one mesh: that of [`Scene::flatten`]. An image that
+/// is there already with other bytes is not overwritten.
+///
+/// # Errors
+/// One line that names the file: an unknown suffix, a refusal of the system, or what of the scene
+/// the format cannot hold. Then what was at `path` before is still there.
+pub fn write(path: &Path, scene: &Scene, options: &WriteOptions) -> Result<(), IoError> {
+    let precision = options.precision;
+    match Format::of_path(path)? {
+        Format::Gltf | Format::Glb => write_lods(path, scene, &[]),
+        Format::Obj => write_obj(path, scene, precision),
+        Format::Ply => write_one(path, |out| ply::write(&scene.shown_mesh(), precision, out)),
+        Format::Stl => write_one(path, |out| stl::write(&scene.shown_mesh(), out)),
+        Format::Off => write_one(path, |out| off::write(&scene.shown_mesh(), precision, out)),
+        Format::Smf => write_one(path, |out| smf::write(&scene.shown_mesh(), precision, out)),
+    }
+}
+
+/// Writes a scene and coarser levels of its meshes as glTF or GLB, linked by `MSFT_lod`; see
+/// [`gltf::write_glb`].
+///
+/// # Errors
+/// As for [`write`]; also another suffix, and levels with another number of meshes than the scene.
+pub fn write_lods(path: &Path, scene: &Scene, levels: &[gltf::Level]) -> Result<(), IoError> {
+    let unfit = |error| IoError::unfit(path, error);
+    match Format::of_path(path)? {
+        Format::Glb => {
+            let bytes = gltf::write_glb(scene, levels).map_err(unfit)?;
+            write_one(path, |out| out.write_all(&bytes))
+        }
+        Format::Gltf => {
+            let written = gltf::write(scene, levels, &stem(path)).map_err(unfit)?;
+            for image in &written.images {
+                write_image(path, image)?;
+            }
+            if let Some((name, bytes)) = &written.buffer {
+                write_one(&path.with_file_name(name), |out| out.write_all(bytes))?;
+            }
+            write_one(path, |out| out.write_all(&written.document))
+        }
+        _ => Err(unfit(Unfit::new("levels", "only .glb and .gltf hold levels; use one of those"))),
+    }
+}
+
+fn write_obj(path: &Path, scene: &Scene, precision: Precision) -> Result<(), IoError> {
+    let library = (!scene.materials.is_empty()).then(|| format!("{}.mtl", stem(path)));
+    for image in scene.images.iter().filter(|image| !image.bytes.is_empty()) {
+        write_image(path, image)?;
+    }
+    if let Some(name) = &library {
+        write_one(&path.with_file_name(name), |out| obj::write_mtl(scene, out))?;
+    }
+    write_one(path, |out| obj::write(scene, precision, out, library.as_deref()))
+}
+
+fn write_one(
+    path: &Path,
+    fill: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+) -> Result<(), IoError> {
+    replace(path, fill).map_err(|error| IoError::system(path, error))
+}
+
+/// Writes an image under its name beside `path`, unless it is there; one that differs is not ours
+/// to overwrite.
+fn write_image(path: &Path, image: &Image) -> Result<(), IoError> {
+    let Some(name) = inner_path(&image.name) else {
+        let reason = "its name leads out of the folder; write .glb, which holds images inside";
+        return Err(IoError::unfit(path, Unfit::new(format!("image {:?}", image.name), reason)));
+    };
+    let target = path.parent().unwrap_or(Path::new("")).join(name);
+    match fs::read(&target) {
+        Ok(found) if found == image.bytes => return Ok(()),
+        Ok(_) => {
+            let reason = "another image of that name is there already; move it, or write .glb";
+            return Err(IoError::unfit(&target, Unfit::new("image", reason)));
+        }
+        Err(_) => {}
+    }
+    if let Some(folder) = target.parent() {
+        fs::create_dir_all(folder).map_err(|error| IoError::system(folder, error))?;
+    }
+    write_one(&target, |out| out.write_all(&image.bytes))
+}
+
+/// A name as a path that stays within the folder that it is joined to.
+pub(crate) fn inner_path(name: &str) -> Option<PathBuf> {
+    let path = Path::new(name);
+    let inside = path.components().all(|part| matches!(part, Component::Normal(_)));
+    (inside && !name.is_empty()).then(|| path.to_owned())
+}
+
+fn read_beside(folder: &Path, name: &str) -> Option<Vec<u8>> {
+    // Exporters on Windows write backslashes.
+    [name.to_owned(), name.replace('\\', "/")]
+        .iter()
+        .find_map(|name| fs::read(folder.join(name)).ok())
+}
+
+fn stem(path: &Path) -> String {
+    path.file_stem().unwrap_or_default().to_string_lossy().into_owned()
+}
