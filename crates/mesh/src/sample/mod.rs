@@ -15,6 +15,7 @@
 //! assert!(mesh.faces.len().abs_diff(20_000) < 200);
 //! ```
 
+mod fish;
 mod grid;
 mod gyroid;
 mod knot;
@@ -25,6 +26,7 @@ mod tests;
 mod tetrahedra;
 mod torus;
 
+pub use fish::fish;
 pub use gyroid::gyroid;
 pub use knot::knot;
 pub use sphere::sphere;
@@ -34,7 +36,8 @@ pub use torus::{faceted_torus, torus};
 use crate::Mesh;
 
 /// The samples that [`by_name`] knows.
-pub const NAMES: [&str; 6] = ["sphere", "torus", "faceted-torus", "knot", "gyroid", "terrain"];
+pub const NAMES: [&str; 7] =
+    ["sphere", "torus", "faceted-torus", "knot", "gyroid", "terrain", "fish"];
 
 /// The most faces that [`by_name`] makes; it takes a greater wish as this.
 pub const MAX_FACES: usize = 500_000_000;
@@ -49,6 +52,7 @@ pub fn by_name(name: &str, faces: Option<usize>) -> Option<Mesh> {
         "knot" => (knot, 10_000),
         "gyroid" => (gyroid, 50_000),
         "terrain" => (terrain, 20_000),
+        "fish" => (fish, 4_000),
         _ => return None,
     };
     Some(make(faces.unwrap_or(default_faces).min(MAX_FACES)))

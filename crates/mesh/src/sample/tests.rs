@@ -5,7 +5,7 @@ use glam::DVec3;
 use super::*;
 use crate::{Connectivity, VertexId, face_components};
 
-const CLOSED: [&str; 5] = ["sphere", "torus", "faceted-torus", "knot", "gyroid"];
+const CLOSED: [&str; 6] = ["sphere", "torus", "faceted-torus", "knot", "gyroid", "fish"];
 
 fn named(name: &str, faces: usize) -> Mesh {
     by_name(name, Some(faces)).expect("a known name")
@@ -87,6 +87,7 @@ fn face_counts_come_near_the_wish() {
         ("knot", 0.01),
         ("gyroid", 0.05),
         ("terrain", 0.01),
+        ("fish", 0.02),
     ];
     for (name, part) in within {
         for wish in [20_000, 33_333, 100_000] {
