@@ -1,6 +1,7 @@
 //! Mesh files in and out, one format a module: bytes in, typed errors out.
 #![forbid(unsafe_code)]
 
+mod buckets;
 mod error;
 mod files;
 mod flatten;
@@ -15,6 +16,7 @@ mod replace;
 mod scene;
 pub mod smf;
 pub mod stl;
+mod text;
 mod weld;
 
 pub use error::{IoError, ParseError, Place, Unfit};
@@ -22,7 +24,7 @@ pub use files::{ReadOptions, Resolve, Weld, WriteOptions, read, read_bytes, writ
 pub use flatten::Placement;
 pub use format::Format;
 pub use scene::{Image, Material, Node, Scene, SceneMesh};
-pub use weld::weld;
+pub use weld::{merge_equal_wedges, weld};
 
 /// How coordinates are written.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -1,6 +1,10 @@
 //! Polygons to triangles: always `n - 2` of them, concave-safe, in time linear in what was asked.
 
+use std::ops::RangeInclusive;
+
 use glam::{DVec2, DVec3};
+
+use crate::buckets::Buckets;
 
 /// Tips, cells and points that may be looked at, per corner of the polygon, before the rest becomes
 /// a fan. Only a polygon made to be slow meets the limit; 10^5 such corners then take 0.4 s.
@@ -100,7 +104,7 @@ impl EarClipper {
         Self {
             previous: (0..n).map(|i| ((i + n - 1) % n) as u32).collect(),
             next: (0..n).map(|i| ((i + 1) % n) as u32).collect(),
-            grid: Grid::new(&points, &blockers),
+            grid: Grid::new(&points, blockers),
             looks_left: n * LOOKS_PER_CORNER,
             points,
             spatial,
@@ -174,7 +178,10 @@ impl EarClipper {
             for column in columns.clone() {
                 let corners = self.grid.cell(column, row);
                 self.looks_left = self.looks_left.saturating_sub(1 + corners.len());
-                let hit = |&i: &u32| self.blocks[i as usize] && inside(self.points[i as usize]);
+                let hit = |&place: &u32| {
+                    let i = self.grid.corners[place as usize] as usize;
+                    self.blocks[i] && inside(self.points[i])
+                };
                 if corners.iter().any(hit) {
                     return true;
                 }
@@ -211,65 +218,52 @@ impl EarClipper {
 
 /// Reflex corners by place: about one a cell, in rows and columns of the polygon's box.
 struct Grid {
-    low: DVec2,
-    cells_per_unit: DVec2,
-    side: usize,
-    /// Where each cell's corners start in `corners`; one more entry than cells.
-    starts: Vec<u32>,
+    frame: Frame,
+    /// For each cell, places in `corners`.
+    cells: Buckets,
     corners: Vec<u32>,
 }
 
+/// Where the cells lie.
+struct Frame {
+    low: DVec2,
+    cells_per_unit: DVec2,
+    side: usize,
+}
+
 impl Grid {
-    fn new(points: &[DVec2], members: &[u32]) -> Self {
-        let side = ((members.len() as f64).sqrt() as usize).max(1);
+    fn new(points: &[DVec2], corners: Vec<u32>) -> Self {
+        let side = ((corners.len() as f64).sqrt() as usize).max(1);
         let low = points.iter().copied().fold(DVec2::INFINITY, DVec2::min);
         let high = points.iter().copied().fold(DVec2::NEG_INFINITY, DVec2::max);
-        let cells_per_unit = side as f64 / (high - low);
-        let mut grid = Self { low, cells_per_unit, side, starts: Vec::new(), corners: Vec::new() };
-        let cells: Vec<usize> = members
-            .iter()
-            .map(|&i| {
-                let [column, row] = grid.place(points[i as usize]);
-                row * side + column
-            })
-            .collect();
-        // A counting sort: `starts` first holds each cell's end, and is counted down as it fills.
-        let mut starts = vec![0; side * side + 1];
-        for &cell in &cells {
-            starts[cell] += 1;
-        }
-        let mut sum = 0;
-        for start in &mut starts {
-            sum += *start;
-            *start = sum;
-        }
-        grid.corners = vec![0; members.len()];
-        for (&corner, &cell) in members.iter().zip(&cells) {
-            starts[cell] -= 1;
-            grid.corners[starts[cell] as usize] = corner;
-        }
-        grid.starts = starts;
-        grid
-    }
-
-    /// Column and row of a point; `as` saturates, so nothing falls outside.
-    fn place(&self, p: DVec2) -> [usize; 2] {
-        let cell = (p - self.low) * self.cells_per_unit;
-        [cell.x, cell.y].map(|x| (x as usize).min(self.side - 1))
+        let frame = Frame { low, cells_per_unit: side as f64 / (high - low), side };
+        let cells = corners.iter().map(|&i| {
+            let [column, row] = frame.place(points[i as usize]);
+            row * side + column
+        });
+        Self { cells: Buckets::new(side * side, cells), frame, corners }
     }
 
     fn cells_between(
         &self,
         low: DVec2,
         high: DVec2,
-    ) -> (std::ops::RangeInclusive<usize>, std::ops::RangeInclusive<usize>) {
-        let ([left, bottom], [right, top]) = (self.place(low), self.place(high));
+    ) -> (RangeInclusive<usize>, RangeInclusive<usize>) {
+        let ([left, bottom], [right, top]) = (self.frame.place(low), self.frame.place(high));
         (left..=right, bottom..=top)
     }
 
+    /// The corners in a cell, as places in `corners`.
     fn cell(&self, column: usize, row: usize) -> &[u32] {
-        let cell = row * self.side + column;
-        &self.corners[self.starts[cell] as usize..self.starts[cell + 1] as usize]
+        self.cells.of(row * self.frame.side + column)
+    }
+}
+
+impl Frame {
+    /// Column and row of a point; `as` saturates, so nothing falls outside.
+    fn place(&self, p: DVec2) -> [usize; 2] {
+        let cell = (p - self.low) * self.cells_per_unit;
+        [cell.x, cell.y].map(|x| (x as usize).min(self.side - 1))
     }
 }
 

@@ -1,0 +1,53 @@
+//! Things by a small whole number, in two arrays.
+
+/// The numbers `0..n` sorted into buckets; each bucket keeps their order.
+pub(crate) struct Buckets {
+    /// Where each bucket starts in `members`; one more entry than buckets.
+    starts: Vec<u32>,
+    members: Vec<u32>,
+}
+
+impl Buckets {
+    /// Puts `i` into the bucket that the `i`-th of `of_members` names, of `count` buckets.
+    ///
+    /// Cost: O(count + members).
+    pub(crate) fn new(
+        count: usize,
+        of_members: impl DoubleEndedIterator<Item = usize> + ExactSizeIterator + Clone,
+    ) -> Self {
+        let mut starts = vec![0_u32; count + 1];
+        for bucket in of_members.clone() {
+            starts[bucket] += 1;
+        }
+        let mut sum = 0;
+        for start in &mut starts {
+            sum += *start;
+            *start = sum;
+        }
+        // Each start is counted down from its bucket's end, so the members go in backwards.
+        let mut members = vec![0; of_members.len()];
+        for (member, bucket) in of_members.enumerate().rev() {
+            starts[bucket] -= 1;
+            members[starts[bucket] as usize] = member as u32;
+        }
+        Self { starts, members }
+    }
+
+    /// The members of a bucket, in order.
+    #[inline]
+    pub(crate) fn of(&self, bucket: usize) -> &[u32] {
+        &self.members[self.starts[bucket] as usize..self.starts[bucket + 1] as usize]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn members_keep_their_order() {
+        let buckets = Buckets::new(4, [2, 0, 2, 3, 0].into_iter());
+        let all: Vec<&[u32]> = (0..4).map(|bucket| buckets.of(bucket)).collect();
+        assert_eq!(all, [&[1, 4][..], &[], &[0, 2], &[3]]);
+    }
+}

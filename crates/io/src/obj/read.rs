@@ -1,0 +1,352 @@
+//! OBJ in: one pass over the bytes.
+
+use std::num::NonZeroU32;
+
+use meshlod_mesh::{Mesh, VertexId};
+
+use super::labels::LabelRuns;
+use super::mtl::{self, Library};
+use super::wedges::{self, CornerIds, Pools};
+use crate::polygon::triangulate;
+use crate::text::{Text, quoted};
+use crate::{Node, ParseError, Scene, SceneMesh};
+
+/// Reads an OBJ file as one mesh under one node; `resolve` gives the bytes of the files that
+/// `mtllib` and `map_Kd` name, or `None` where they are not there.
+///
+/// Polygons are triangulated. Of each `v` three coordinates count, and the colour behind them; of
+/// each `vt` two. Values of `vt`, `vn` and colours that are not finite become 0, as do those of
+/// corners that lack what others have; colours above 1 are taken to be of 255. `o` wins over `g`.
+/// A material whose library or image is missing keeps its name. Lines, points, curves and what
+/// else is no face are left out.
+///
+/// Cost: O(n), n = bytes, beside that of concave polygons.
+/// # Errors
+/// The line and the reason: what is no number, a coordinate that is not finite, an index out of
+/// range, a face of fewer than three corners. A file without faces, one that is no text.
+pub fn read(
+    bytes: &[u8],
+    resolve: &mut dyn FnMut(&str) -> Option<Vec<u8>>,
+) -> Result<Scene, ParseError> {
+    let mut reader = Reader::new(bytes)?;
+    loop {
+        reader.statement()?;
+        if !reader.text.next_line() {
+            break;
+        }
+    }
+    reader.finish(resolve)
+}
+
+/// A corner as the file has it, ids counted from 1 and not yet compared with what there is.
+#[derive(Clone, Copy)]
+struct Corner {
+    vertex: NonZeroU32,
+    ids: CornerIds,
+}
+
+/// A polygon that names what comes later in the file. `n - 2` faces hold its place.
+struct Forward {
+    line: usize,
+    first_face: usize,
+    corners: Vec<Corner>,
+}
+
+struct Reader<'a> {
+    text: Text<'a>,
+    positions: Vec<[f64; 3]>,
+    pools: Pools,
+    faces: Vec<[VertexId; 3]>,
+    /// For each face; empty until a corner has any.
+    corners: Vec<[CornerIds; 3]>,
+    forward: Vec<Forward>,
+    objects: LabelRuns,
+    materials: LabelRuns,
+    has_object: bool,
+    libraries: Vec<String>,
+    /// The polygon being read, its vertices and its triangles.
+    polygon: Vec<Corner>,
+    outline: Vec<u32>,
+    triangles: Vec<[u32; 3]>,
+}
+
+impl<'a> Reader<'a> {
+    fn new(bytes: &'a [u8]) -> Result<Self, ParseError> {
+        Ok(Self {
+            text: Text::new(bytes)?,
+            positions: Vec::new(),
+            pools: Pools::default(),
+            faces: Vec::new(),
+            corners: Vec::new(),
+            forward: Vec::new(),
+            objects: LabelRuns::default(),
+            materials: LabelRuns::default(),
+            has_object: false,
+            libraries: Vec::new(),
+            polygon: Vec::new(),
+            outline: Vec::new(),
+            triangles: Vec::new(),
+        })
+    }
+
+    fn statement(&mut self) -> Result<(), ParseError> {
+        if !self.text.more() {
+            return Ok(());
+        }
+        match self.text.word() {
+            b"v" => self.vertex(),
+            b"vt" => self.uv(),
+            b"vn" => self.normal(),
+            b"f" => self.face(),
+            b"o" => {
+                self.has_object = true;
+                let name = self.text.name();
+                self.objects.set(self.faces.len(), name);
+                Ok(())
+            }
+            b"g" => {
+                let name = self.text.name();
+                if !self.has_object {
+                    self.objects.set(self.faces.len(), name);
+                }
+                Ok(())
+            }
+            b"usemtl" => {
+                let name = self.text.name();
+                self.materials.set(self.faces.len(), name);
+                Ok(())
+            }
+            b"mtllib" => {
+                let name = self.text.name();
+                self.libraries.push(name);
+                Ok(())
+            }
+            // Lines, curves, smoothing groups, and what programs added to the format.
+            other if is_keyword(other) => Ok(()),
+            other => Err(self.text.error(format!("{} begins no OBJ statement", quoted(other)))),
+        }
+    }
+
+    fn vertex(&mut self) -> Result<(), ParseError> {
+        const NEED: &str = "a vertex needs three coordinates";
+        let position = [self.text.number(NEED)?, self.text.number(NEED)?, self.text.number(NEED)?];
+        if self.positions.len() == u32::MAX as usize {
+            return Err(self.text.error("more than 2^32 vertices"));
+        }
+        self.positions.push(position);
+        if self.text.more() { self.vertex_extras() } else { Ok(()) }
+    }
+
+    /// What may stand behind a position: `w`, `r g b`, `r g b a` or `w r g b`, told apart by
+    /// their number; of four the first is the red.
+    fn vertex_extras(&mut self) -> Result<(), ParseError> {
+        let mut extras = [0.0; 4];
+        let mut count = 0;
+        while count < extras.len() && self.text.more() {
+            extras[count] = self.text.attribute("")?;
+            count += 1;
+        }
+        if count >= 3 {
+            let [r, g, b, _] = extras;
+            self.pools.add_color(self.positions.len(), [r, g, b]);
+        }
+        Ok(())
+    }
+
+    fn uv(&mut self) -> Result<(), ParseError> {
+        let u = self.text.attribute("a texture coordinate needs a number")?;
+        let v = if self.text.more() { self.text.attribute("")? } else { 0.0 };
+        self.pools.uvs.push([u, v]);
+        Ok(())
+    }
+
+    fn normal(&mut self) -> Result<(), ParseError> {
+        const NEED: &str = "a normal needs three numbers";
+        let normal =
+            [self.text.attribute(NEED)?, self.text.attribute(NEED)?, self.text.attribute(NEED)?];
+        self.pools.normals.push(normal);
+        Ok(())
+    }
+
+    fn face(&mut self) -> Result<(), ParseError> {
+        self.polygon.clear();
+        let mut known = true;
+        while self.text.more() {
+            let corner = self.corner()?;
+            known &= is_known(corner, self.positions.len(), &self.pools);
+            self.polygon.push(corner);
+        }
+        if self.polygon.len() < 3 {
+            let found = self.polygon.len();
+            return Err(self.text.error(format!("a face needs three corners, this has {found}")));
+        }
+        let first_face = self.faces.len();
+        if first_face + self.polygon.len() > u32::MAX as usize / 3 {
+            return Err(self.text.error("more than 2^32 corners"));
+        }
+        self.triangulate(known);
+        let has_ids = !self.corners.is_empty()
+            || self.polygon.iter().any(|corner| corner.ids != CornerIds::default());
+        if has_ids {
+            // Does something once: for the faces before the first that has any.
+            self.corners.resize(first_face, Default::default());
+        }
+        for triangle in &self.triangles {
+            let corners = triangle.map(|i| self.polygon[i as usize]);
+            self.faces.push(corners.map(|corner| VertexId(corner.vertex.get() - 1)));
+            if has_ids {
+                self.corners.push(corners.map(|corner| corner.ids));
+            }
+        }
+        if !known {
+            let corners = self.polygon.clone();
+            self.forward.push(Forward { line: self.text.line(), first_face, corners });
+        }
+        Ok(())
+    }
+
+    /// Fills `triangles` with those of `polygon`: a fan while not all of its positions are known.
+    fn triangulate(&mut self, known: bool) {
+        self.triangles.clear();
+        if known {
+            self.outline.clear();
+            self.outline.extend(self.polygon.iter().map(|corner| corner.vertex.get() - 1));
+            triangulate(&self.positions, &self.outline, &mut self.triangles);
+        } else {
+            self.triangles.extend((2..self.polygon.len() as u32).map(|i| [0, i - 1, i]));
+        }
+    }
+
+    /// `v`, `v/vt`, `v//vn` or `v/vt/vn`; the slashes may stand without a number behind them.
+    fn corner(&mut self) -> Result<Corner, ParseError> {
+        let vertex = self.index("vertex", self.positions.len())?;
+        let mut ids = CornerIds::default();
+        if self.text.take(b'/') {
+            ids.uv = self.optional_index("texture coordinate", self.pools.uvs.len())?;
+            if self.text.take(b'/') {
+                ids.normal = self.optional_index("normal", self.pools.normals.len())?;
+            }
+        }
+        if !self.text.at_blank() {
+            return Err(self.text.refuse("part of a corner such as 1, 1/2, 1//3 or 1/2/3"));
+        }
+        Ok(Corner { vertex, ids })
+    }
+
+    fn optional_index(
+        &mut self,
+        what: &str,
+        count: usize,
+    ) -> Result<Option<NonZeroU32>, ParseError> {
+        if self.text.at_blank() || self.text.comes(b'/') {
+            return Ok(None);
+        }
+        self.index(what, count).map(Some)
+    }
+
+    /// An index counted from 1, or back from the last of `count` so far when negative.
+    #[inline]
+    fn index(&mut self, what: &str, count: usize) -> Result<NonZeroU32, ParseError> {
+        let written = self.text.integer("an index is missing")?;
+        let index = if written < 0 { written + 1 + count as i64 } else { written };
+        match u32::try_from(index).ok().and_then(NonZeroU32::new) {
+            Some(index) => Ok(index),
+            None => Err(out_of_range(self.text.line(), what, written, count)),
+        }
+    }
+
+    fn finish(
+        mut self,
+        resolve: &mut dyn FnMut(&str) -> Option<Vec<u8>>,
+    ) -> Result<Scene, ParseError> {
+        self.settle_forward()?;
+        if self.faces.is_empty() {
+            let points = self.positions.len();
+            return Err(self
+                .text
+                .error(format!("the file ends without faces ({points} vertices)")));
+        }
+        let objects = self.objects.finish(self.faces.len());
+        let materials = self.materials.finish(self.faces.len());
+        let attributes =
+            wedges::attributes(self.positions.len(), &self.faces, &self.corners, self.pools);
+        let mut library = Library::default();
+        for name in &self.libraries {
+            library.add(name, resolve)?;
+        }
+        let used = materials.as_ref().map_or(&[][..], |labels| &labels.names);
+        let resolved = mtl::materials(used, &library, resolve);
+        let mesh =
+            Mesh { positions: self.positions, faces: self.faces, attributes, materials, objects };
+        Ok(Scene {
+            meshes: vec![SceneMesh { name: String::new(), mesh, materials: resolved.labels }],
+            nodes: vec![Node { mesh: Some(0), ..Node::default() }],
+            roots: vec![0],
+            materials: resolved.materials,
+            images: resolved.images,
+            ..Scene::default()
+        })
+    }
+
+    /// Checks and triangulates the polygons that named what came later.
+    fn settle_forward(&mut self) -> Result<(), ParseError> {
+        for Forward { line, first_face, corners } in std::mem::take(&mut self.forward) {
+            for &corner in &corners {
+                check_range(line, corner, self.positions.len(), &self.pools)?;
+            }
+            self.polygon = corners;
+            self.triangulate(true);
+            for (i, triangle) in self.triangles.iter().enumerate() {
+                let corners = triangle.map(|corner| self.polygon[corner as usize]);
+                self.faces[first_face + i] = corners.map(|c| VertexId(c.vertex.get() - 1));
+                if !self.corners.is_empty() {
+                    self.corners[first_face + i] = corners.map(|c| c.ids);
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+fn is_keyword(word: &[u8]) -> bool {
+    word[0].is_ascii_alphabetic() && word.iter().all(|&b| b.is_ascii_alphanumeric() || b == b'_')
+}
+
+#[inline]
+fn is_known(corner: Corner, positions: usize, pools: &Pools) -> bool {
+    let within =
+        |id: Option<NonZeroU32>, count: usize| id.is_none_or(|id| id.get() as usize <= count);
+    corner.vertex.get() as usize <= positions
+        && within(corner.ids.uv, pools.uvs.len())
+        && within(corner.ids.normal, pools.normals.len())
+}
+
+fn check_range(
+    line: usize,
+    corner: Corner,
+    positions: usize,
+    pools: &Pools,
+) -> Result<(), ParseError> {
+    let ids = [
+        ("vertex", Some(corner.vertex), positions),
+        ("texture coordinate", corner.ids.uv, pools.uvs.len()),
+        ("normal", corner.ids.normal, pools.normals.len()),
+    ];
+    for (what, id, count) in ids {
+        if let Some(id) = id.filter(|id| id.get() as usize > count) {
+            return Err(out_of_range(line, what, id.get().into(), count));
+        }
+    }
+    Ok(())
+}
+
+#[cold]
+fn out_of_range(line: usize, what: &str, written: i64, count: usize) -> ParseError {
+    let there = match count {
+        0 => format!("there is no {what}"),
+        1 => format!("there is only 1 {what}"),
+        _ => format!("there are only {count}"),
+    };
+    let so_far = if written < 0 { " so far" } else { "" };
+    ParseError::line(line, format!("a face names {what} {written}, but {there}{so_far}"))
+}

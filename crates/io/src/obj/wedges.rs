@@ -1,0 +1,148 @@
+//! Wedges from the corners of an OBJ file.
+
+use std::num::NonZeroU32;
+
+use meshlod_mesh::{Attributes, Layer, LayerKind, VertexId, WedgeId};
+
+use crate::buckets::Buckets;
+
+/// What a corner names beside its vertex; ids counted from 1.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct CornerIds {
+    pub(super) uv: Option<NonZeroU32>,
+    pub(super) normal: Option<NonZeroU32>,
+}
+
+/// The values that corners name, and those of vertices.
+#[derive(Default)]
+pub(super) struct Pools {
+    pub(super) uvs: Vec<[f32; 2]>,
+    pub(super) normals: Vec<[f32; 3]>,
+    /// For the vertices up to the last that has one; empty where none has.
+    colors: Vec<[f32; 3]>,
+}
+
+impl Pools {
+    /// Gives the last of `vertices` a colour; those before it without one are white.
+    pub(super) fn add_color(&mut self, vertices: usize, color: [f32; 3]) {
+        self.colors.resize(vertices - 1, WHITE);
+        self.colors.push(color);
+    }
+
+    fn uv(&self, ids: CornerIds) -> [f32; 2] {
+        ids.uv.map_or([0.0; 2], |id| self.uvs[id.get() as usize - 1])
+    }
+
+    fn normal(&self, ids: CornerIds) -> [f32; 3] {
+        ids.normal.map_or([0.0; 3], |id| self.normals[id.get() as usize - 1])
+    }
+
+    /// The values as bits: equal for what is one wedge.
+    fn key(&self, ids: CornerIds) -> [u32; 5] {
+        let ([u, v], [x, y, z]) = (self.uv(ids), self.normal(ids));
+        [u, v, x, y, z].map(f32::to_bits)
+    }
+}
+
+const WHITE: [f32; 3] = [1.0; 3];
+
+/// The attributes of a mesh: one wedge for each vertex with one uv and one normal, by *value*, so
+/// that exporters which write each corner's values anew make no seams.
+///
+/// `corners` is empty or has an entry per face; its ids must be in the pools. Wedges are numbered
+/// by vertex. `None` where no corner and no vertex has any attribute.
+pub(super) fn attributes(
+    vertices: usize,
+    faces: &[[VertexId; 3]],
+    corners: &[[CornerIds; 3]],
+    mut pools: Pools,
+) -> Option<Attributes> {
+    scale_colors(&mut pools.colors, vertices);
+    if corners.is_empty() {
+        let corners = faces.iter().map(|face| face.map(|v| WedgeId(v.0))).collect();
+        let colors = color_layer(pools.colors.into_flattened());
+        return (vertices > 0 && !colors.values.is_empty()).then(|| Attributes {
+            corners,
+            wedge_count: vertices,
+            layers: vec![colors],
+        });
+    }
+    let ids = corners.as_flattened();
+    let mut numbers = vec![[WedgeId::default(); 3]; faces.len()];
+    let shown = number(vertices, faces, ids, &pools, numbers.as_flattened_mut());
+    let layers = layers(&shown, ids, &pools);
+    Some(Attributes { corners: numbers, wedge_count: shown.len(), layers })
+}
+
+/// Colours for all vertices in [0, 1], where any has one.
+fn scale_colors(colors: &mut Vec<[f32; 3]>, vertices: usize) {
+    if colors.is_empty() {
+        return;
+    }
+    if colors.as_flattened().iter().any(|&c| c > 1.0) {
+        colors.as_flattened_mut().iter_mut().for_each(|c| *c /= 255.0);
+    }
+    colors.resize(vertices, WHITE);
+}
+
+/// A vertex and a corner at it that shows a wedge's values.
+struct Shown {
+    vertex: usize,
+    corner: u32,
+}
+
+/// Numbers the wedges vertex by vertex, into `numbers` for each corner.
+fn number(
+    vertices: usize,
+    faces: &[[VertexId; 3]],
+    ids: &[CornerIds],
+    pools: &Pools,
+    numbers: &mut [WedgeId],
+) -> Vec<Shown> {
+    let corners = Buckets::new(vertices, faces.as_flattened().iter().map(|v| v.index()));
+    let mut shown: Vec<Shown> = Vec::with_capacity(vertices);
+    let mut keyed: Vec<([u32; 5], u32)> = Vec::new();
+    for vertex in 0..vertices {
+        let around = corners.of(vertex);
+        let Some((&corner, others)) = around.split_first() else { continue };
+        if others.iter().all(|&other| ids[other as usize] == ids[corner as usize]) {
+            for &corner in around {
+                numbers[corner as usize] = WedgeId::new(shown.len());
+            }
+            shown.push(Shown { vertex, corner });
+            continue;
+        }
+        // Sorted rather than compared with each other: one vertex may have a million corners.
+        keyed.clear();
+        keyed.extend(around.iter().map(|&corner| (pools.key(ids[corner as usize]), corner)));
+        keyed.sort_unstable();
+        for same in keyed.chunk_by(|(a, _), (b, _)| a == b) {
+            for &(_, corner) in same {
+                numbers[corner as usize] = WedgeId::new(shown.len());
+            }
+            shown.push(Shown { vertex, corner: same[0].1 });
+        }
+    }
+    shown
+}
+
+fn layers(shown: &[Shown], ids: &[CornerIds], pools: &Pools) -> Vec<Layer> {
+    let of = |shown: &Shown| ids[shown.corner as usize];
+    let mut layers = Vec::new();
+    if ids.iter().any(|ids| ids.uv.is_some()) {
+        let values = shown.iter().flat_map(|shown| pools.uv(of(shown))).collect();
+        layers.push(Layer { kind: LayerKind::Uv(0), name: "uv".to_owned(), width: 2, values });
+    }
+    if ids.iter().any(|ids| ids.normal.is_some()) {
+        let values = shown.iter().flat_map(|shown| pools.normal(of(shown))).collect();
+        layers.push(Layer { kind: LayerKind::Normal, name: "normal".to_owned(), width: 3, values });
+    }
+    if !pools.colors.is_empty() {
+        layers.push(color_layer(shown.iter().flat_map(|s| pools.colors[s.vertex]).collect()));
+    }
+    layers
+}
+
+fn color_layer(values: Vec<f32>) -> Layer {
+    Layer { kind: LayerKind::Color(0), name: "color".to_owned(), width: 3, values }
+}
