@@ -1,0 +1,134 @@
+//! Textures from PNG and JPEG files.
+
+use std::io::Cursor;
+
+use zune_core::colorspace::ColorSpace;
+use zune_core::options::DecoderOptions;
+
+use crate::error::check_size;
+use crate::{MAX_SIDE, PictureError, Texture};
+
+/// What every JPEG begins with.
+const JPEG_START: [u8; 2] = [0xff, 0xd8];
+
+/// Bytes that one byte of a deflate stream can become.
+const DEFLATE_AT_BEST: usize = 1032;
+
+/// Pixels that one byte of a JPEG can become: every block of 8 by 8 takes a bit.
+const JPEG_AT_BEST: usize = 8 * 64;
+
+impl Texture {
+    /// Reads the bytes of a PNG or a JPEG file, told apart by how they begin.
+    ///
+    /// Grey, palette and 16-bit images become 8-bit colour.
+    ///
+    /// # Errors
+    /// Damaged or cut files, and images larger than [`MAX_SIDE`] a side.
+    pub fn decode(bytes: &[u8]) -> Result<Self, PictureError> {
+        if bytes.starts_with(&JPEG_START) { Self::from_jpeg(bytes) } else { Self::from_png(bytes) }
+    }
+
+    /// Reads the bytes of a PNG file.
+    ///
+    /// # Errors
+    /// As for [`Texture::decode`].
+    pub fn from_png(bytes: &[u8]) -> Result<Self, PictureError> {
+        let wrong = |e: png::DecodingError| damaged("png", e);
+        let mut decoder = png::Decoder::new(Cursor::new(bytes));
+        decoder.set_transformations(png::Transformations::normalize_to_color8());
+        let mut reader = decoder.read_info().map_err(wrong)?;
+        let (width, height) = (reader.info().width, reader.info().height);
+        check_size(width.into(), height.into())?;
+        check_plausible("png", reader.info().raw_bytes(), DEFLATE_AT_BEST, bytes)?;
+        let length = reader.output_buffer_size();
+        let length = length.ok_or_else(|| damaged("png", "the size does not fit memory"))?;
+        let mut pixels = vec![0; length];
+        let frame = reader.next_frame(&mut pixels).map_err(wrong)?;
+        let rgba = match frame.color_type {
+            png::ColorType::Rgba => pixels,
+            png::ColorType::Rgb => rgba(&pixels, 3, |p| [p[0], p[1], p[2], 255]),
+            png::ColorType::GrayscaleAlpha => rgba(&pixels, 2, |p| [p[0], p[0], p[0], p[1]]),
+            png::ColorType::Grayscale => rgba(&pixels, 1, |p| [p[0], p[0], p[0], 255]),
+            png::ColorType::Indexed => return Err(damaged("png", "its palette was not applied")),
+        };
+        Self::new(width, height, &rgba)
+    }
+
+    /// Reads the bytes of a JPEG file.
+    ///
+    /// # Errors
+    /// As for [`Texture::decode`].
+    pub fn from_jpeg(bytes: &[u8]) -> Result<Self, PictureError> {
+        let options = DecoderOptions::default()
+            .set_max_width(MAX_SIDE as usize)
+            .set_max_height(MAX_SIDE as usize)
+            .jpeg_set_out_colorspace(ColorSpace::RGBA);
+        let mut decoder = zune_jpeg::JpegDecoder::new_with_options(Cursor::new(bytes), options);
+        let wrong = |e: zune_jpeg::errors::DecodeErrors| damaged("jpeg", format!("{e:?}"));
+        decoder.decode_headers().map_err(wrong)?;
+        let size = decoder.dimensions().ok_or_else(|| damaged("jpeg", "it has no size"))?;
+        check_size(size.0 as u64, size.1 as u64)?;
+        check_plausible("jpeg", size.0 * size.1, JPEG_AT_BEST, bytes)?;
+        let pixels = decoder.decode().map_err(wrong)?;
+        Self::new(size.0 as u32, size.1 as u32, &pixels)
+    }
+}
+
+/// Refuses a file too short to hold what its header claims, before memory is taken for it.
+fn check_plausible(
+    kind: &'static str,
+    claimed: usize,
+    per_byte: usize,
+    bytes: &[u8],
+) -> Result<(), PictureError> {
+    if claimed / per_byte <= bytes.len() {
+        return Ok(());
+    }
+    Err(damaged(kind, format!("{} bytes cannot hold the size it claims", bytes.len())))
+}
+
+fn rgba(pixels: &[u8], width: usize, widen: impl Fn(&[u8]) -> [u8; 4]) -> Vec<u8> {
+    pixels.chunks_exact(width).flat_map(widen).collect()
+}
+
+fn damaged(kind: &'static str, reason: impl ToString) -> PictureError {
+    PictureError::Decode { kind, reason: reason.to_string() }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Picture;
+
+    fn png_of(rgba: &[u8]) -> Vec<u8> {
+        Picture::new(2, 1, rgba.to_vec()).unwrap().png()
+    }
+
+    #[test]
+    fn a_png_comes_back_as_it_was_written() {
+        for rgba in [[1, 2, 3, 255, 9, 8, 7, 255], [1, 2, 3, 4, 5, 6, 7, 8]] {
+            let texture = Texture::decode(&png_of(&rgba)).unwrap();
+            assert_eq!(texture, Texture::new(2, 1, &rgba).unwrap());
+        }
+    }
+
+    #[test]
+    fn every_cut_of_a_file_is_an_error() {
+        let whole = png_of(&[1, 2, 3, 255, 9, 8, 7, 255]);
+        // The end mark, 12 bytes, carries nothing.
+        for length in 0..whole.len() - 12 {
+            assert!(Texture::decode(&whole[..length]).is_err(), "{length} bytes");
+        }
+        assert!(Texture::decode(&JPEG_START).is_err());
+        assert!(Texture::decode(&[0xff, 0xd8, 0xff, 0xe0, 0, 16, b'J', b'F']).is_err());
+    }
+
+    #[test]
+    fn a_header_that_lies_about_its_size_is_refused() {
+        let mut bytes = png_of(&[0; 8]);
+        for claim in [0x7fff_ffff, MAX_SIDE] {
+            bytes[16..20].copy_from_slice(&claim.to_be_bytes());
+            assert!(Texture::decode(&bytes).is_err());
+        }
+    }
+}

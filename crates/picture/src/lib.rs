@@ -1,0 +1,63 @@
+//! Pictures of triangle meshes, drawn on the CPU: for reports, for the error that the eye sees, for
+//! finding cracks. The same pixels on every machine and for any number of threads.
+//!
+//! A [`Camera`] finds its place by itself; a [`Style`] says how the surface looks; [`render`] gives
+//! a [`Picture`], which becomes a PNG:
+//!
+//! ```
+//! use meshlod_mesh::sample;
+//! use meshlod_picture::{Camera, Style, View, Wireframe, render};
+//!
+//! let mesh = sample::torus(2_000);
+//! let camera = Camera::fit_mesh(&mesh, &View::default());
+//! let style = Style { wireframe: Some(Wireframe::default()), size: [256, 256], ..Style::default() };
+//! let picture = render(&mesh, &camera, &style)?;
+//! assert_eq!(&picture.png()[1..4], b"PNG");
+//! # Ok::<(), meshlod_picture::PictureError>(())
+//! ```
+//!
+//! [`Paint`] colours it: plainly, by materials and textures, by one colour a face, or by numbers
+//! through a [`ColorMap`], as in a heat map of errors. [`visibility()`] tells which face each pixel
+//! sees, without any shading.
+//!
+//! # How it works
+//! Vertices are projected once, to fixed point. Faces are sorted into tiles; each tile finds the
+//! nearest face of every sample by integer edge functions, so that faces with a common edge neither
+//! overlap nor leave a gap; then it shades what is seen. Tiles know nothing of each other, and of
+//! equally near faces the lower id wins: order and threads leave no trace. Only + - * / and square
+//! roots are used, which are the same on all machines.
+#![forbid(unsafe_code)]
+
+mod bins;
+mod camera;
+mod clip;
+mod color_map;
+mod decode;
+mod error;
+mod facet;
+mod light;
+mod normals;
+mod picture;
+mod pigment;
+mod project;
+mod raster;
+mod render;
+#[cfg(test)]
+mod scenes;
+mod srgb;
+mod style;
+mod texture;
+mod trigonometry;
+mod visibility;
+
+pub use camera::{Camera, UpAxis, View};
+pub use color_map::ColorMap;
+pub use error::{MAX_SIDE, PictureError};
+pub use picture::{Picture, beside, grid};
+pub use render::render;
+pub use style::{
+    Antialiasing, Background, Backs, Lighting, Material, Materials, Normals, Paint, Style, Values,
+    Wireframe,
+};
+pub use texture::Texture;
+pub use visibility::{Visibility, visibility};

@@ -1,0 +1,189 @@
+//! Textures and how they are looked up.
+
+use glam::{Vec2, Vec3};
+
+use crate::PictureError;
+use crate::error::{check_length, check_size};
+use crate::srgb::{DECODE, encode};
+
+/// An sRGB image that repeats over the uv plane, with its coarser copies.
+///
+/// uv (0, 0) is the lower left corner of the image, (1, 1) the upper right.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Texture {
+    /// The image, then halves of halves down to a single texel.
+    levels: Vec<Level>,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+struct Level {
+    width: u32,
+    height: u32,
+    texels: Vec<[u8; 4]>,
+}
+
+/// How many places along a stretched footprint are looked up at most.
+const MOST_PROBES: f32 = 8.0;
+
+impl Texture {
+    /// A texture of given texels: four bytes each, row after row from the top. Alpha is not used.
+    ///
+    /// # Errors
+    /// A side of zero or above [`MAX_SIDE`](crate::MAX_SIDE), or not `4 * width * height` bytes.
+    pub fn new(width: u32, height: u32, rgba: &[u8]) -> Result<Self, PictureError> {
+        check_size(width.into(), height.into())?;
+        check_length("texture bytes", rgba.len(), 4 * width as usize * height as usize)?;
+        let texels = rgba.chunks_exact(4).map(|t| [t[0], t[1], t[2], t[3]]).collect();
+        let mut levels = vec![Level { width, height, texels }];
+        while let Some(half) = levels.last().and_then(Level::half) {
+            levels.push(half);
+        }
+        Ok(Self { levels })
+    }
+
+    /// A checkerboard of `squares` by `squares`, reddish to the right and greenish upwards, so
+    /// that turns and stretches show.
+    pub fn checker(squares: u32) -> Self {
+        const SIDE: u32 = 512;
+        let squares = squares.clamp(1, SIDE);
+        let texel = |i: u32| {
+            let (x, y) = (i % SIDE, i / SIDE);
+            let (column, row) = (x * squares / SIDE, y * squares / SIDE);
+            let light = if (column + row).is_multiple_of(2) { 235 } else { 120 };
+            let part = |along: u32| 0.62 + 0.38 * (along as f32 + 0.5) / squares as f32;
+            let shade = |amount: f32| (light as f32 * amount) as u8;
+            [shade(part(column)), shade(part(squares - 1 - row)), shade(0.80), 255]
+        };
+        let rgba: Vec<u8> = (0..SIDE * SIDE).flat_map(texel).collect();
+        Self::new(SIDE, SIDE, &rgba).expect("the size is right")
+    }
+
+    /// Linear light at `uv`, averaged over a footprint: what a step of a pixel to the right and
+    /// down adds to uv.
+    pub(crate) fn sample(&self, uv: Vec2, footprint: [Vec2; 2]) -> Vec3 {
+        let base = &self.levels[0];
+        let size = Vec2::new(base.width as f32, base.height as f32);
+        let [x, y] = footprint.map(|step| (step * size).length());
+        let (long, along, short) = if x > y { (x, footprint[0], y) } else { (y, footprint[1], x) };
+        // A long and narrow footprint is seen through several round ones in a row.
+        let probes = (long / short.max(1.0)).clamp(1.0, MOST_PROBES).ceil();
+        let probes = if probes.is_finite() { probes } else { 1.0 };
+        let width = short.max(long / probes);
+        let mut sum = Vec3::ZERO;
+        for probe in 0..probes as u32 {
+            let offset = (probe as f32 + 0.5) / probes - 0.5;
+            sum += self.trilinear(uv + along * offset, width);
+        }
+        sum / probes
+    }
+
+    /// Linear light around `uv` over a footprint `width` texels wide, from the two nearest levels.
+    fn trilinear(&self, uv: Vec2, mut width: f32) -> Vec3 {
+        let mut level = 0;
+        while width >= 2.0 && level + 1 < self.levels.len() {
+            width *= 0.5;
+            level += 1;
+        }
+        let fine = self.levels[level].bilinear(uv);
+        match self.levels.get(level + 1) {
+            Some(coarse) if width > 1.0 => fine + (coarse.bilinear(uv) - fine) * (width - 1.0),
+            _ => fine,
+        }
+    }
+}
+
+impl Level {
+    /// The mean of every two by two texels in linear light; of an odd side the last row or column
+    /// goes unseen. None where one texel is all there is.
+    fn half(&self) -> Option<Self> {
+        if self.width == 1 && self.height == 1 {
+            return None;
+        }
+        let [width, height] = [self.width, self.height].map(|side| (side / 2).max(1));
+        let mut texels = Vec::with_capacity(width as usize * height as usize);
+        for (x, y) in (0..height).flat_map(|y| (0..width).map(move |x| (x, y))) {
+            let mut sum = Vec3::ZERO;
+            for (dx, dy) in [(0, 0), (1, 0), (0, 1), (1, 1)] {
+                let [x, y] = [(2 * x + dx).min(self.width - 1), (2 * y + dy).min(self.height - 1)];
+                sum += self.texel(x, y);
+            }
+            let [r, g, b] = (sum * 0.25).to_array().map(encode);
+            texels.push([r, g, b, 255]);
+        }
+        Some(Self { width, height, texels })
+    }
+
+    fn texel(&self, x: u32, y: u32) -> Vec3 {
+        let [r, g, b, _] = self.texels[y as usize * self.width as usize + x as usize];
+        Vec3::new(DECODE[r as usize], DECODE[g as usize], DECODE[b as usize])
+    }
+
+    fn bilinear(&self, uv: Vec2) -> Vec3 {
+        let ([x0, x1], s) = neighbours(uv.x, self.width);
+        let ([y0, y1], t) = neighbours(1.0 - uv.y, self.height);
+        let top = self.texel(x0, y0).lerp(self.texel(x1, y0), s);
+        let bottom = self.texel(x0, y1).lerp(self.texel(x1, y1), s);
+        top.lerp(bottom, t)
+    }
+}
+
+/// The two texels on either side of a place on an axis, and how far it is from the first to the
+/// second. No finite place is the start.
+fn neighbours(place: f32, count: u32) -> ([u32; 2], f32) {
+    let within = if place.is_finite() { place - place.floor() } else { 0.0 };
+    let at = within * count as f32 - 0.5;
+    let low = at.floor();
+    let wrap = |i: i64| i.rem_euclid(i64::from(count)) as u32;
+    ([wrap(low as i64), wrap(low as i64 + 1)], at - low)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Two by two: red and green above, blue and white below.
+    fn four() -> Texture {
+        let rgba = [[255, 0, 0, 255], [0, 255, 0, 255], [0, 0, 255, 255], [255; 4]].concat();
+        Texture::new(2, 2, &rgba).unwrap()
+    }
+
+    const NO_STEP: [Vec2; 2] = [Vec2::ZERO; 2];
+
+    #[test]
+    fn the_lower_left_corner_is_the_origin() {
+        let at = |u, v| four().sample(Vec2::new(u, v), NO_STEP);
+        assert_eq!([at(0.25, 0.75), at(0.75, 0.75)], [Vec3::X, Vec3::Y]);
+        assert_eq!([at(0.25, 0.25), at(0.75, 0.25)], [Vec3::Z, Vec3::ONE]);
+    }
+
+    #[test]
+    fn it_repeats() {
+        for shift in [-3.0, 1.0, 8.0] {
+            assert_eq!(four().sample(Vec2::new(0.25 + shift, 0.75 - shift), NO_STEP), Vec3::X);
+        }
+    }
+
+    #[test]
+    fn between_texels_it_blends_even_across_the_border() {
+        let at = |u, v| four().sample(Vec2::new(u, v), NO_STEP);
+        let mean = Vec3::new(0.5, 0.5, 0.5);
+        assert_eq!([at(0.5, 0.5), at(0.0, 0.0), at(1.0, 0.5)], [mean; 3]);
+    }
+
+    #[test]
+    fn from_afar_it_is_its_mean() {
+        let step = [Vec2::X * 40.0, Vec2::Y * 40.0];
+        let far = four().sample(Vec2::new(0.3, 0.9), step);
+        assert!((far - Vec3::splat(0.5)).abs().max_element() < 0.005, "{far}");
+    }
+
+    #[test]
+    fn odd_places_are_no_trouble() {
+        for place in [f32::NAN, f32::INFINITY, -1e30, 1e30] {
+            let uv = Vec2::splat(place);
+            assert!(four().sample(uv, [uv, Vec2::ZERO]).is_finite());
+        }
+        let checker = Texture::checker(0);
+        assert!(checker.sample(Vec2::ZERO, [Vec2::splat(1e-30); 2]).is_finite());
+    }
+}

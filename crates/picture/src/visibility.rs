@@ -1,0 +1,196 @@
+//! Which face is seen where: the first half of every picture, and all of a crack test.
+
+use meshlod_mesh::{FaceId, Mesh};
+use rayon::prelude::*;
+
+use crate::bins::{Bins, Tiling};
+use crate::camera::Lens;
+use crate::error::check_size;
+use crate::project::Point;
+use crate::raster::{Window, cover};
+use crate::{Camera, PictureError};
+
+/// The face that each pixel's middle sees, and how far away it is.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Visibility {
+    width: u32,
+    height: u32,
+    near: f64,
+    samples: Vec<Sample>,
+}
+
+/// The nearest face at a sample; nothing where `face` is [`NO_FACE`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Sample {
+    pub nearness: f32,
+    pub face: u32,
+}
+
+/// One more than the last face can be.
+pub(crate) const NO_FACE: u32 = u32::MAX;
+
+/// Finds the nearest face at the middle of every pixel; of equally near ones that of the lowest id.
+///
+/// `size` is width and height in pixels. Faces are seen from both sides. Faces that share an edge
+/// leave no pixel of it out, and a lone edge covers no pixel twice: a pixel without a face within a
+/// closed silhouette is a crack. The same for any number of threads.
+///
+/// Cost: O(faces + pixels covered, counting layers). Memory: 16 bytes a vertex, 8 a pixel, 4 a face
+/// and 64-pixel tile that it touches.
+///
+/// # Errors
+/// A mesh that breaks [`Mesh::validate`], or an impossible size.
+pub fn visibility(
+    mesh: &Mesh,
+    camera: &Camera,
+    size: [u32; 2],
+) -> Result<Visibility, PictureError> {
+    let [width, height] = size;
+    check_size(width.into(), height.into())?;
+    mesh.validate()?;
+    let lens = camera.lens(width, height);
+    let tiling = Tiling { size, side: 64 };
+    let tiles = draw_tiles(mesh, &lens, tiling, |window, samples| (window, samples.to_vec()));
+    let mut samples = vec![Sample::NOTHING; width as usize * height as usize];
+    for (window, tile) in tiles {
+        let tile_width = (window.end[0] - window.start[0]) as usize;
+        for (row, y) in tile.chunks_exact(tile_width).zip(window.start[1]..) {
+            let at = y as usize * width as usize + window.start[0] as usize;
+            samples[at..at + tile_width].copy_from_slice(row);
+        }
+    }
+    Ok(Visibility { width, height, near: lens.near(), samples })
+}
+
+impl Visibility {
+    /// Pixels in a row.
+    pub fn width(&self) -> u32 {
+        self.width
+    }
+
+    /// Rows.
+    pub fn height(&self) -> u32 {
+        self.height
+    }
+
+    /// The face that each pixel sees, row after row from the top.
+    pub fn faces(&self) -> impl ExactSizeIterator<Item = Option<FaceId>> + '_ {
+        self.samples.iter().map(|s| (s.face != NO_FACE).then_some(FaceId(s.face)))
+    }
+
+    /// The depth along the camera's forward axis at each pixel, in model units.
+    pub fn depths(&self) -> impl ExactSizeIterator<Item = Option<f64>> + '_ {
+        let depth = |s: &Sample| self.near / f64::from(s.nearness);
+        self.samples.iter().map(move |s| (s.face != NO_FACE).then(|| depth(s)))
+    }
+
+    /// How many pixels see a face.
+    pub fn covered(&self) -> usize {
+        self.faces().flatten().count()
+    }
+}
+
+impl Sample {
+    const NOTHING: Self = Self { nearness: 0.0, face: NO_FACE };
+}
+
+/// Draws every tile and hands its window and samples to `finish`; what that gives comes back in
+/// the order of the tiles.
+pub(crate) fn draw_tiles<T: Send>(
+    mesh: &Mesh,
+    lens: &Lens,
+    tiling: Tiling,
+    finish: impl Fn(Window, &[Sample]) -> T + Sync,
+) -> Vec<T> {
+    let bins = Bins::new(mesh, lens, tiling);
+    let draw = |samples: &mut Vec<Sample>, tile| {
+        let window = tiling.window(tile);
+        let [width, height] = [0, 1].map(|axis| (window.end[axis] - window.start[axis]) as usize);
+        samples.clear();
+        samples.resize(width * height, Sample::NOTHING);
+        bins.visit(tile, |face, triangle| draw(samples, &window, face, triangle));
+        finish(window, samples)
+    };
+    (0..tiling.count()).into_par_iter().map_init(Vec::new, draw).collect()
+}
+
+fn draw(samples: &mut [Sample], window: &Window, face: u32, triangle: &[Point; 3]) {
+    let width = (window.end[0] - window.start[0]) as usize;
+    cover(triangle, window, |x, y, nearness| {
+        let at = (y - window.start[1]) as usize * width + (x - window.start[0]) as usize;
+        let seen = &mut samples[at];
+        if nearness > seen.nearness || (nearness == seen.nearness && face < seen.face) {
+            *seen = Sample { nearness, face };
+        }
+    });
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::View;
+    use crate::scenes::{from_front, sheet, stack};
+
+    #[test]
+    fn the_nearer_face_is_seen() {
+        let seen = visibility(&stack(&[0.0, 1.0, 0.5]), &from_front(3.0), [9, 9]).unwrap();
+        assert_eq!(seen.faces().nth(40).unwrap(), Some(FaceId(1)));
+        let depth = seen.depths().nth(40).unwrap().unwrap();
+        assert!((depth - 2.0).abs() < 1e-6, "{depth}");
+    }
+
+    #[test]
+    fn of_equal_faces_the_lower_id_is_seen() {
+        let mut mesh = stack(&[0.0, 0.0]);
+        // The same triangle turned over and begun elsewhere.
+        let [a, b, c] = mesh.faces[0];
+        mesh.faces[1] = [b, a, c];
+        let camera = Camera::look_at([0.3, 0.2, 3.0], [0.0; 3], [0.1, 1.0, 0.0], 0.8);
+        let seen = visibility(&mesh, &camera, [50, 50]).unwrap();
+        assert!(seen.covered() > 100);
+        assert!(seen.faces().flatten().all(|face| face == FaceId(0)));
+    }
+
+    #[test]
+    fn a_sheet_has_no_cracks_from_any_side() {
+        for [x, y] in [[0.0, 0.0], [0.9, 0.3], [-2.0, 1.7]] {
+            let camera = Camera::look_at([x, y, 2.0], [0.0; 3], [0.0, 1.0, 0.0], 0.2);
+            let seen = visibility(&sheet(23), &camera, [200, 200]).unwrap();
+            assert_eq!(seen.covered(), 200 * 200, "the sheet fills the view from {x} {y}");
+        }
+    }
+
+    #[test]
+    fn flying_through_leaves_no_cracks() {
+        // Half of the sheet is behind the eye, much of it far outside of the frame.
+        let mut mesh = sheet(40);
+        for p in &mut mesh.positions {
+            *p = [p[0] * 1e3, -0.5, p[1] * 1e3];
+        }
+        let camera = Camera::look_at([0.0; 3], [0.0, -0.4, -1.0], [0.0, 1.0, 0.0], 0.7);
+        let seen = visibility(&mesh, &camera.with_near(1e-3), [200, 200]).unwrap();
+        assert_eq!(seen.covered(), 200 * 200);
+    }
+
+    #[test]
+    fn huge_and_tiny_models_are_seen_alike() {
+        let count = |scale: f64| {
+            let mut mesh = sheet(3);
+            mesh.positions.iter_mut().flatten().for_each(|x| *x *= scale);
+            visibility(&mesh, &Camera::fit_mesh(&mesh, &View::default()), [100, 100])
+                .unwrap()
+                .covered()
+        };
+        assert_eq!([1e-9, 1.0, 1e15].map(count), [count(1.0); 3]);
+        assert!(count(1.0) > 1000);
+    }
+
+    #[test]
+    fn endless_spans_do_not_panic() {
+        let mut mesh = stack(&[0.0]);
+        mesh.positions[0] = [f64::MAX, f64::MIN, f64::MAX];
+        for camera in [from_front(3.0), Camera::fit_mesh(&mesh, &View::default())] {
+            visibility(&mesh, &camera, [20, 20]).unwrap();
+        }
+    }
+}
