@@ -14,6 +14,8 @@ const PERIODS: f64 = 3.0;
 const LEVEL: f64 = 0.2;
 /// Radius of the ball: clear of the lattice's border.
 const RADIUS: f64 = 0.97;
+/// How far from the edge that the ball cuts its rounding begins, in units of length.
+const ROUNDING: f64 = 0.05;
 /// Faces are near `SQUARE * cells² - LINE * cells`: fitted at 16, 24, 32 and 64 cells a side.
 const SQUARE: f64 = 53.0;
 const LINE: f64 = 90.0;
@@ -21,20 +23,28 @@ const LINE: f64 = 90.0;
 /// One of the gyroid's two labyrinths, cut off by a ball: one closed surface with dozens of tunnels.
 ///
 /// Faces: within 5 % of `faces` from 20,000 on; at least about 6,500, below which the lattice would
-/// be too coarse for the tunnels. Sharp where the ball cuts. The finest tunnels, and with them the
+/// be too coarse for the tunnels. The edges that the ball cuts are
+/// rounded a little. The finest tunnels, and with them the
 /// genus, depend a little on the size. Cost: O(faces^1.5).
 /// # References
 /// [Sch70], by the usual trigonometric level set.
 pub fn gyroid(faces: usize) -> Mesh {
     let root = (LINE * LINE + 4.0 * SQUARE * faces as f64).sqrt();
     let cells = ((LINE + root) / (2.0 * SQUARE)).round().max(12.0) as usize;
-    largest_piece(polygonize(cells, |p| labyrinth(p).max(p.length() - RADIUS)))
+    largest_piece(polygonize(cells, |p| both(labyrinth(p), p.length() - RADIUS)))
 }
 
-/// Negative inside the labyrinth.
+/// Negative inside the labyrinth; grows by about 1 per unit of length.
 fn labyrinth(p: DVec3) -> f64 {
-    let [(sx, cx), (sy, cy), (sz, cz)] = (p * (TAU * PERIODS / 2.0)).to_array().map(f64::sin_cos);
-    sx * cy + sy * cz + sz * cx - LEVEL
+    let scale = TAU * PERIODS / 2.0;
+    let [(sx, cx), (sy, cy), (sz, cz)] = (p * scale).to_array().map(f64::sin_cos);
+    (sx * cy + sy * cz + sz * cx - LEVEL) / (1.4 * scale)
+}
+
+/// Negative where both are, the edge between them rounded.
+fn both(a: f64, b: f64) -> f64 {
+    let near = (1.0 - (a - b).abs() / ROUNDING).max(0.0);
+    a.max(b) + 0.25 * ROUNDING * near * near
 }
 
 /// Leaves only the component with the most faces, the first of them where several have as many.

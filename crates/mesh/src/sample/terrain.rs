@@ -22,7 +22,7 @@ const OCTAVES: u32 = 11;
 /// Cells of the coarsest octave along a side.
 const FREQUENCY: f64 = 1.2;
 /// Height of a slope over its run at which finer noise has faded to half.
-const STEEPNESS: f64 = 0.9;
+const STEEPNESS: f64 = 0.7;
 
 /// Height above the plain, in [-0.3, 0.6] or so.
 ///
@@ -31,7 +31,7 @@ const STEEPNESS: f64 = 0.9;
 fn height(place: DVec2) -> f64 {
     let mut sum = 0.0;
     let mut slope = DVec2::ZERO;
-    let (mut amplitude, mut frequency) = (0.42, FREQUENCY);
+    let (mut amplitude, mut frequency) = (0.33, FREQUENCY);
     for octave in 0..OCTAVES {
         let noise = noise(place * frequency, octave);
         slope += noise.slope * amplitude;

@@ -35,7 +35,7 @@ pub(super) fn polygonize(cells: usize, field: impl Fn(DVec3) -> f64) -> Mesh {
 
 /// A vertex never comes nearer to a lattice point than this part of the edge it lies on: no face
 /// degenerates where the surface passes through a lattice point.
-const LEAST_FRACTION: f64 = 0.1;
+const LEAST_FRACTION: f64 = 0.04;
 /// Steps of bisection: 2⁻¹² of a cell is far below what the mesh resolves.
 const BISECTIONS: usize = 12;
 /// No vertex yet on an edge.

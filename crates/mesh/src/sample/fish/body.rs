@@ -13,14 +13,6 @@ pub(super) enum Side {
 }
 
 impl Side {
-    /// A place around the body given for the left, on this side.
-    pub fn turn(self, left: f64) -> f64 {
-        match self {
-            Self::Left => left,
-            Self::Right => 1.0 - left,
-        }
-    }
-
     /// +1 on the left, where z is positive.
     pub fn sign(self) -> f64 {
         match self {
@@ -30,11 +22,29 @@ impl Side {
     }
 }
 
-/// The left eye's block of the grid: middle and half its size, in `along` and turns.
+/// A block of the grid on the left side, and to what size it is bent: (along, turns) each.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Eyes {
+pub(super) struct Site {
     pub middle: [f64; 2],
+    /// Half the block before.
     pub half: [f64; 2],
+    /// Half of what it becomes.
+    pub open: [f64; 2],
+}
+
+impl Site {
+    /// A place of the bent block, each coordinate in [-1, 1].
+    pub fn at(&self, a: f64, b: f64) -> [f64; 2] {
+        [self.middle[0] + a * self.open[0], self.middle[1] + b * self.open[1]]
+    }
+}
+
+/// The blocks that the grid bends for; those on the right mirror them.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Sites {
+    pub eye: Site,
+    pub pectoral: Site,
+    pub pelvic: Site,
 }
 
 /// Where the tail fin begins.
@@ -92,25 +102,33 @@ pub(super) fn point(along: f64, turn: f64) -> DVec3 {
     DVec3::new(-1.0 + 1.9 * along + fork, -height * cos, width * sin)
 }
 
-/// A place on the body that runs round the eyes: the square around each block is bent to a circle.
-fn bend(along: f64, turn: f64, eyes: &Eyes) -> [f64; 2] {
-    let (left, mirrored) = if turn > 0.5 { (1.0 - turn, true) } else { (turn, false) };
-    let [a, b] = [(along - eyes.middle[0]) / eyes.half[0], (left - eyes.middle[1]) / eyes.half[1]];
-    let square = a.abs().max(b.abs());
-    let reach = (2.2 - square).clamp(0.0, 1.2) / 1.2;
-    let reach = reach * reach * (3.0 - 2.0 * reach);
-    if reach == 0.0 || square < 1e-9 {
-        return [along, turn];
-    }
-    let [round_along, round_turn] = super::eye::on_disc(a, b, eyes);
-    let along = along + reach * (round_along - along);
-    let left = left + reach * (round_turn - left);
-    [along, if mirrored { 1.0 - left } else { left }]
+/// How many half sizes around a block the grid takes to run straight again.
+const REACH: f64 = 2.4;
+
+/// A place on the grid, bent: blocks of eyes are rounded to discs, those of fins drawn to slits.
+fn bend(along: f64, turn: f64, sites: &Sites) -> [f64; 2] {
+    let right = turn > 0.5;
+    let left = [along, if right { 1.0 - turn } else { turn }];
+    let mut bent = left;
+    let mut pull = |site: &Site, target: &dyn Fn(f64, f64) -> [f64; 2]| {
+        let [a, b] = [0, 1].map(|k| (left[k] - site.middle[k]) / site.half[k]);
+        let near = 1.0 - step(1.0, REACH, a.abs().max(b.abs()));
+        // Nothing crosses the belly's line or the back's, where the sides meet.
+        let near = near * step(0.0, 0.03, left[1]) * step(0.0, 0.03, 0.5 - left[1]);
+        if near > 0.0 {
+            let target = target(a, b);
+            bent = [0, 1].map(|k| bent[k] + near * (target[k] - left[k]));
+        }
+    };
+    pull(&sites.eye, &|a, b| super::eye::on_disc(a, b, &sites.eye));
+    pull(&sites.pectoral, &|a, b| sites.pectoral.at(a, b));
+    pull(&sites.pelvic, &|a, b| sites.pelvic.at(a, b));
+    [bent[0], if right { 1.0 - bent[1] } else { bent[1] }]
 }
 
 /// The body's surface, with its colour.
-pub(super) fn skin(along: f64, turn: f64, eyes: &Eyes) -> Spot {
-    let [along, turn] = bend(along, turn, eyes);
+pub(super) fn skin(along: f64, turn: f64, sites: &Sites) -> Spot {
+    let [along, turn] = bend(along, turn, sites);
     Spot { position: point(along, turn), color: color(along, turn) }
 }
 

@@ -14,7 +14,7 @@ pub(super) struct Spot {
 }
 
 /// A block of the grid's quads: from the first ring to the last, and around likewise; places around
-/// may exceed the count and start again.
+/// may go past the count, up to three times, and start again.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Block {
     pub rings: [usize; 2],
@@ -30,7 +30,7 @@ impl Block {
     fn holds(&self, ring: usize, j: usize, around: usize) -> bool {
         let [first, last] = self.rings;
         (first..last).contains(&ring)
-            && (j + 2 * around - self.around[0]) % around < self.around[1] - self.around[0]
+            && (j + 3 * around - self.around[0]) % around < self.around[1] - self.around[0]
     }
 }
 

@@ -2,12 +2,12 @@
 
 use glam::DVec3;
 
-use super::body::{self, Eyes, Side};
+use super::body::{self, Side, Site};
 use super::build::{Block, Chart, Patch, Shape, Spot, Within};
+use super::fin::Root;
 
-/// The eye's extent along the body, and its place around the left side.
-pub(super) const ALONG: [f64; 2] = [0.085, 0.155];
-pub(super) const TURN: f64 = 0.335;
+/// Where the left eye sits.
+pub(super) const ROOT: Root = Root::Along([0.085, 0.155], 0.335);
 /// Radius of the whole eye, in units of the model.
 const RADIUS: f64 = 0.052;
 
@@ -17,25 +17,31 @@ const RINGS: [[f64; 2]; 3] = [[1.0, 0.0], [0.86, 0.013], [0.56, 0.020]];
 const PUPIL: f64 = 0.023;
 
 /// An eye that grows out of `block`.
-pub(super) fn patch(side: Side, block: Block, eyes: Eyes) -> Patch {
-    Patch { block, levels: RINGS.len() - 1, shape: Box::new(Eye { side, eyes }) }
+pub(super) fn patch(side: Side, block: Block, site: Site) -> Patch {
+    Patch { block, levels: RINGS.len() - 1, shape: Box::new(Eye { side, site }) }
 }
 
-/// The place, on the left side, of a point of the square [-1, 1]² around the eye's block once the
-/// square is rounded to a disc.
-pub(super) fn on_disc(a: f64, b: f64, eyes: &Eyes) -> [f64; 2] {
-    let [along, turn] = eyes.middle;
+/// Half the size of an eye around `middle`, along and in turns: as a circle on the skin.
+pub(super) fn open(middle: [f64; 2]) -> [f64; 2] {
+    let step = 1e-3;
+    let [along, turn] = middle;
+    let from = body::point(along, turn);
+    let per_along = from.distance(body::point(along + step, turn)) / step;
+    let per_turn = from.distance(body::point(along, turn + step)) / step;
+    [RADIUS / per_along, RADIUS / per_turn]
+}
+
+/// The place of a point of the square [-1, 1]² around the eye's block once the square is rounded to
+/// a disc.
+pub(super) fn on_disc(a: f64, b: f64, site: &Site) -> [f64; 2] {
     let square = a.abs().max(b.abs());
     let round = if square == 0.0 { 0.0 } else { square / a.hypot(b) };
-    let step = 1e-3;
-    let per_along = body::point(along, turn).distance(body::point(along + step, turn)) / step;
-    let per_turn = body::point(along, turn).distance(body::point(along, turn + step)) / step;
-    [along + a * round * RADIUS / per_along, turn + b * round * RADIUS / per_turn]
+    site.at(a * round, b * round)
 }
 
 struct Eye {
     side: Side,
-    eyes: Eyes,
+    site: Site,
 }
 
 impl Eye {
@@ -57,7 +63,7 @@ impl Shape for Eye {
     fn place(&self, at: Within) -> DVec3 {
         let [a, b] = self.square(at);
         let [radius, height] = Self::ring(at, a.abs().max(b.abs()));
-        let [along, turn] = on_disc(a * radius, b * radius, &self.eyes);
+        let [along, turn] = on_disc(a * radius, b * radius, &self.site);
         let (dx, dy) = (1e-3, 1e-3);
         let skin = body::point(along, turn);
         let across =

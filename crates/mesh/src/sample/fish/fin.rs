@@ -2,15 +2,13 @@
 
 use glam::DVec3;
 
-use super::body::{self, FIN_RIM, FIN_ROOT, Side, step};
+use super::body::{self, FIN_RIM, FIN_ROOT, Side, Site, Sites, step};
 use super::build::{Chart, Shape, Spot, Within};
+use super::radians;
 
-/// A fin and where it stands.
+/// A fin that grows out of a block of the grid.
 pub(super) struct Fin {
-    /// Its root along the body.
-    pub along: [f64; 2],
-    /// Its root around the body.
-    pub turn: f64,
+    pub root: Root,
     /// Rows of quads from root to rim at 32 quads around the body.
     pub levels: usize,
     /// The first of the two charts that its sides take.
@@ -18,88 +16,120 @@ pub(super) struct Fin {
     kind: Kind,
 }
 
+/// Where a fin stands, given for the left.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Root {
+    /// Its chord runs along the body: from, to, and the place around.
+    Along([f64; 2], f64),
+    /// Its chord runs around the body: the place along, from and to around.
+    Around(f64, [f64; 2]),
+}
+
+/// Roots of the dorsal, anal, pectoral and pelvic fins.
+const DORSAL: Root = Root::Along([0.27, 0.70], 0.5);
+const ANAL: Root = Root::Along([0.50, 0.71], 0.0);
+pub(super) const PECTORAL: Root = Root::Around(0.265, [0.15, 0.275]);
+pub(super) const PELVIC: Root = Root::Along([0.33, 0.42], 0.085);
+
+/// Half the size of the slits in the body from which they grow, along and in turns.
+pub(super) const PECTORAL_SLIT: [f64; 2] = [0.007, 0.03];
+pub(super) const PELVIC_SLIT: [f64; 2] = [0.034, 0.008];
+
 enum Kind {
     /// On the back or below, in the plane of symmetry: height, and how far it sweeps back.
     Median { height: f64, sweep: f64 },
-    /// One of a pair: its span as a vector on the left side, and its breadth at the rim.
-    Paired { side: Side, span: [f64; 3], breadth: f64 },
+    /// One of a pair: its span, and its chord at the rim, as vectors.
+    Paired { side: Side, site: Site, span: DVec3, chord: DVec3 },
 }
 
-/// All fins but the tail.
-pub(super) fn all() -> Vec<Fin> {
-    let mut fins = vec![
-        Fin {
-            along: [0.27, 0.70],
-            turn: 0.5,
-            levels: 4,
-            cell: 2,
-            kind: Kind::Median { height: 0.25, sweep: 0.55 },
-        },
-        Fin {
-            along: [0.50, 0.71],
-            turn: 0.0,
-            levels: 3,
-            cell: 4,
-            kind: Kind::Median { height: 0.23, sweep: 0.8 },
-        },
-    ];
-    for (side, cell) in [(Side::Left, 6), (Side::Right, 8)] {
-        let (span, breadth) = ([0.27, -0.06, 0.17], 0.24);
-        let kind = Kind::Paired { side, span, breadth };
-        fins.push(Fin { along: [0.25, 0.325], turn: side.turn(0.215), levels: 4, cell, kind });
+impl Fin {
+    /// All fins but the tail.
+    pub fn all(sites: &Sites) -> Vec<Self> {
+        let median = |root, levels, cell, height, sweep| {
+            let kind = Kind::Median { height, sweep };
+            Self { root, levels, cell, kind }
+        };
+        let mut fins = vec![median(DORSAL, 4, 2, 0.25, 0.55), median(ANAL, 3, 4, 0.23, 0.8)];
+        for (side, cell) in [(Side::Left, 6), (Side::Right, 8)] {
+            let span = DVec3::new(0.27, -0.05, 0.17 * side.sign());
+            let chord = DVec3::new(0.10, 0.24, -0.03 * side.sign());
+            let kind = Kind::Paired { side, site: sites.pectoral, span, chord };
+            fins.push(Self { root: PECTORAL, levels: 5, cell, kind });
+        }
+        for (side, cell) in [(Side::Left, 10), (Side::Right, 12)] {
+            let span = DVec3::new(0.17, -0.20, 0.07 * side.sign());
+            let chord = DVec3::new(0.13, 0.07, 0.0);
+            let kind = Kind::Paired { side, site: sites.pelvic, span, chord };
+            fins.push(Self { root: PELVIC, levels: 4, cell, kind });
+        }
+        fins
     }
-    for (side, cell) in [(Side::Left, 10), (Side::Right, 12)] {
-        let (span, breadth) = ([0.20, -0.24, 0.05], 0.13);
-        let kind = Kind::Paired { side, span, breadth };
-        fins.push(Fin { along: [0.33, 0.395], turn: side.turn(0.075), levels: 4, cell, kind });
+
+    /// Left for the median ones.
+    pub fn side(&self) -> Side {
+        match self.kind {
+            Kind::Median { .. } => Side::Left,
+            Kind::Paired { side, .. } => side,
+        }
     }
-    fins
+
+    /// The place with `u` along the chord and `v` across the sheet, whichever way the block lies.
+    fn local(&self, at: Within) -> Within {
+        match (self.root, self.side()) {
+            (Root::Along(..), _) => at,
+            (Root::Around(..), Side::Left) => Within { u: at.v, v: at.u, ..at },
+            (Root::Around(..), Side::Right) => Within { u: 1.0 - at.v, v: at.u, ..at },
+        }
+    }
 }
 
 /// Half the thickness at the root; it thins towards the rim.
 const THICKNESS: f64 = 0.011;
 
 impl Fin {
-    /// The middle of the sheet: `u` from its front to its back, `t` from root to rim.
+    /// The middle of the sheet: `u` along its chord, `t` from root to rim.
     fn sheet(&self, u: f64, t: f64) -> DVec3 {
-        let root = body::point(self.along[0] + u * (self.along[1] - self.along[0]), self.turn);
         match self.kind {
-            Kind::Median { height, sweep } => {
-                // Tall in front, low at the back, with a swing to a point at the very end.
-                let rise = 0.18 + 0.82 * step(0.0, 0.28, u) * (1.0 - 0.45 * step(0.3, 0.9, u));
-                let outward = root.y.signum();
-                let back = sweep * t * (0.35 + 0.65 * t) * (0.45 + 0.55 * u);
-                root + t * height * rise * DVec3::Y * outward + height * back * DVec3::X
-            }
-            Kind::Paired { side, span, breadth } => {
-                let middle = body::point(0.5 * (self.along[0] + self.along[1]), self.turn);
-                let span = DVec3::new(span[0], span[1], span[2] * side.sign());
-                let across = self.chord();
-                let spread = step(-0.3, 0.75, t);
-                let swell = across * (u - 0.5) * breadth;
+            Kind::Median { height, sweep } => self.median(u, t, height, sweep),
+            Kind::Paired { side, site, span, chord } => {
+                let on_skin = |a, b| {
+                    let [along, turn] = site.at(a, b);
+                    body::point(along, turn) * DVec3::new(1.0, 1.0, side.sign())
+                };
+                let middle = on_skin(0.0, 0.0);
+                let root = match self.root {
+                    Root::Along(..) => on_skin(2.0 * u - 1.0, 0.0),
+                    Root::Around(..) => on_skin(0.0, 2.0 * u - 1.0),
+                };
                 // The rim is round: its middle rays are the longest.
-                let ray = 1.0 - 0.32 * (2.0 * u - 1.0).powi(2) * t;
-                let bow = DVec3::Z * side.sign() * 0.05 * t * (1.0 - t);
-                (root - middle).lerp(swell, spread) + middle + span * t * ray + bow
+                let ray = 1.0 - 0.3 * (2.0 * u - 1.0).powi(2) * t;
+                let bow = DVec3::Z * side.sign() * 0.10 * t * (1.0 - t);
+                let across = (root - middle).lerp(chord * (u - 0.5), step(-0.3, 0.9, t));
+                middle + across + span * t * ray + bow
             }
         }
     }
 
-    /// The direction from a paired fin's front to its back at the rim.
-    fn chord(&self) -> DVec3 {
-        let Kind::Paired { side, span, .. } = self.kind else { return DVec3::X };
-        let span = DVec3::new(span[0], span[1], span[2] * side.sign());
-        let lift = DVec3::new(0.5, -0.85, -0.1 * side.sign());
-        (lift - span * lift.dot(span) / span.length_squared()).normalize()
+    fn median(&self, u: f64, t: f64, height: f64, sweep: f64) -> DVec3 {
+        let Root::Along([from, to], turn) = self.root else { unreachable!("they run along") };
+        let root = body::point(from + u * (to - from), turn);
+        // Tall in front, low at the back, with a swing to a point at the very end.
+        let rise = 0.18 + 0.82 * step(0.0, 0.28, u) * (1.0 - 0.45 * step(0.3, 0.9, u));
+        let back = sweep * t * (0.35 + 0.65 * t) * (0.45 + 0.55 * u);
+        root + t * height * rise * root.y.signum() * DVec3::Y + height * back * DVec3::X
     }
 
-    /// The unit vector across the sheet, towards greater `v`.
+    /// The unit vector across the sheet, the way the block's coordinate across it grows.
     fn across(&self) -> DVec3 {
-        match self.kind {
-            Kind::Median { .. } => DVec3::Z * if self.turn == 0.5 { -1.0 } else { 1.0 },
-            Kind::Paired { side, span, .. } => {
-                let span = DVec3::new(span[0], span[1], span[2] * side.sign());
-                span.cross(self.chord()).normalize()
+        match (&self.kind, self.root) {
+            (Kind::Median { .. }, Root::Along(_, turn)) if turn == 0.5 => DVec3::NEG_Z,
+            (Kind::Median { .. }, _) => DVec3::Z,
+            (Kind::Paired { span, chord, .. }, root) => {
+                let across = span.cross(*chord).normalize();
+                match root {
+                    Root::Along(..) => across,
+                    Root::Around(..) => across * across.x.signum(),
+                }
             }
         }
     }
@@ -107,6 +137,7 @@ impl Fin {
 
 impl Shape for Fin {
     fn place(&self, at: Within) -> DVec3 {
+        let at = self.local(at);
         // Thin at the rim and at both edges, nowhere nothing.
         let round = 0.25 + 0.75 * (1.0 - (2.0 * at.u - 1.0).powi(4));
         let half = THICKNESS * round * (1.0 - 0.75 * at.t);
@@ -114,7 +145,9 @@ impl Shape for Fin {
     }
 
     fn look(&self, at: Within, quad: Within) -> (Chart, Spot) {
-        let rays = 0.06 * (radians_of_rays(at.u)).cos();
+        let position = self.place(at);
+        let (at, quad) = (self.local(at), self.local(quad));
+        let rays = 0.06 * radians(6.0 * at.u).cos();
         let color = FIN_ROOT.lerp(FIN_RIM, step(0.1, 1.0, at.t)) * (1.0 + rays);
         let color = color.min(DVec3::ONE);
         // The narrow faces on the rims fold out beside their side's chart.
@@ -127,11 +160,6 @@ impl Shape for Fin {
         let t = if at.t == 1.0 { 1.0 + fold } else { at.t };
         let cell = self.cell + usize::from(quad.v > 0.5);
         let uv = [0.08 + 0.84 * u, 0.02 + 0.9 * t];
-        (Chart { cell, uv }, Spot { position: self.place(at), color })
+        (Chart { cell, uv }, Spot { position, color })
     }
-}
-
-/// Rays from the root to the rim, as an angle.
-fn radians_of_rays(u: f64) -> f64 {
-    super::radians(6.0 * u)
 }

@@ -17,8 +17,9 @@ mod fin;
 
 use std::f64::consts::TAU;
 
-use body::{Eyes, Side};
+use body::{Side, Site, Sites};
 use build::{Block, Builder, Patch};
+use fin::{Fin, Root};
 
 use crate::Mesh;
 
@@ -34,10 +35,10 @@ pub fn fish(faces: usize) -> Mesh {
     let plan = Plan::for_faces(faces);
     let mut builder = Builder::new(plan.rings, plan.around);
     let patches = plan.patches();
-    let eyes = plan.eyes();
+    let sites = plan.sites();
     builder.body(&patches, |ring, turn| match ring.checked_sub(MOUTH_RINGS) {
         None => body::mouth(ring, turn),
-        Some(ring) => body::skin(plan.along(ring), turn, &eyes),
+        Some(ring) => body::skin(plan.along(ring), turn, &sites),
     });
     for patch in &patches {
         builder.patch(patch);
@@ -87,42 +88,63 @@ impl Plan {
         ring as f64 / (self.rings - MOUTH_RINGS) as f64
     }
 
-    /// The block of `along` and of turns around `middle` that is `width` quads wide.
-    fn block(&self, along: [f64; 2], middle: f64, width: usize) -> Block {
-        let rings = (self.rings - MOUTH_RINGS) as f64;
-        let first = (along[0] * rings).round() as usize;
-        let last = ((along[1] * rings).round() as usize).max(first + 1);
-        let middle = (middle * self.around as f64).round() as usize + self.around;
-        let low = middle - width / 2;
-        Block { rings: [first + MOUTH_RINGS, last + MOUTH_RINGS], around: [low, low + width] }
+    /// The block at a root, of this side; `thickness` quads across where the root has no width.
+    fn block(&self, root: Root, side: Side, thickness: usize) -> Block {
+        let ring = |along: f64| (along * (self.rings - MOUTH_RINGS) as f64).round() as usize;
+        let place = |turn: f64| (turn * self.around as f64).round() as usize;
+        let (rings, [low, high]) = match root {
+            Root::Along([from, to], turn) => {
+                let low = place(turn) + self.around - thickness / 2;
+                ([ring(from), ring(to).max(ring(from) + 1)], [low, low + thickness])
+            }
+            Root::Around(along, [from, to]) => {
+                let first = ring(along) - thickness / 2;
+                ([first, first + thickness], [place(from), place(to).max(place(from) + 2)])
+            }
+        };
+        let around = match side {
+            Side::Left => [low, high],
+            Side::Right => [3 * self.around - high, 3 * self.around - low],
+        };
+        Block { rings: rings.map(|ring| ring + MOUTH_RINGS), around }
     }
 
     fn eye_block(&self, side: Side) -> Block {
-        self.block(eye::ALONG, side.turn(eye::TURN), (self.around / 8).max(2))
+        self.block(eye::ROOT, side, (self.around / 8).max(2))
     }
 
-    /// Where the grid must bend to run round the eyes.
-    fn eyes(&self) -> Eyes {
-        let block = self.eye_block(Side::Left);
-        let [first, last] = block.rings.map(|ring| self.along(ring - MOUTH_RINGS));
-        let [low, high] = block.around.map(|j| j as f64 / self.around as f64 - 1.0);
-        Eyes {
-            middle: [0.5 * (first + last), 0.5 * (low + high)],
-            half: [0.5 * (last - first), 0.5 * (high - low)],
+    /// Quads across a fin's root: an even number, so that a line runs along its rim.
+    fn thickness(&self) -> usize {
+        2 * (self.around as f64 / 40.0).round().max(1.0) as usize
+    }
+
+    /// Where the grid must bend, to run round the eyes and close up to the fins.
+    fn sites(&self) -> Sites {
+        let site = |block: Block| {
+            let [first, last] = block.rings.map(|ring| self.along(ring - MOUTH_RINGS));
+            let [low, high] = block.around.map(|j| (j as f64 / self.around as f64).fract());
+            let middle = [0.5 * (first + last), 0.5 * (low + high)];
+            Site { middle, half: [0.5 * (last - first), 0.5 * (high - low)], open: [0.0; 2] }
+        };
+        let eye = site(self.eye_block(Side::Left));
+        let fin = |root| site(self.block(root, Side::Left, self.thickness()));
+        Sites {
+            eye: Site { open: eye::open(eye.middle), ..eye },
+            pectoral: Site { open: fin::PECTORAL_SLIT, ..fin(fin::PECTORAL) },
+            pelvic: Site { open: fin::PELVIC_SLIT, ..fin(fin::PELVIC) },
         }
     }
 
     /// Eyes and fins, in the order of their texture charts.
     fn patches(&self) -> Vec<Patch> {
-        let finer = |levels: usize| (levels * self.around).div_ceil(32).max(2);
-        let thickness = 2 * (self.around as f64 / 40.0).round().max(1.0) as usize;
+        let sites = self.sites();
         let mut patches: Vec<_> = [Side::Left, Side::Right]
             .into_iter()
-            .map(|side| eye::patch(side, self.eye_block(side), self.eyes()))
+            .map(|side| eye::patch(side, self.eye_block(side), sites.eye))
             .collect();
-        for fin in fin::all() {
-            let block = self.block(fin.along, fin.turn, thickness);
-            let levels = finer(fin.levels);
+        for fin in Fin::all(&sites) {
+            let block = self.block(fin.root, fin.side(), self.thickness());
+            let levels = (fin.levels * self.around).div_ceil(32).max(2);
             patches.push(Patch { block, levels, shape: Box::new(fin) });
         }
         patches
