@@ -7,6 +7,7 @@ mod files;
 mod flatten;
 mod format;
 pub mod gltf;
+mod lines;
 pub mod obj;
 pub mod off;
 pub mod ply;

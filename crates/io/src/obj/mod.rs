@@ -7,6 +7,8 @@ mod labels;
 mod mtl;
 mod read;
 mod wedges;
+mod write;
 
 pub use mtl::write as write_mtl;
 pub use read::read;
+pub use write::write;

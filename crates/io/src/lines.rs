@@ -1,0 +1,172 @@
+//! Text out: lines of words and numbers.
+
+use std::fmt::Write as _;
+use std::io::{self, Write};
+
+use crate::Precision;
+
+/// Full lines go on to `out` in pieces of about this many bytes.
+const PIECE: usize = 1 << 16;
+
+/// Writes lines of words, each with a space before it but the first.
+///
+/// Numbers are the shortest that read back as the same `f32` or `f64`. What is left at the end
+/// must be sent by [`Lines::finish`].
+pub(crate) struct Lines<'a> {
+    out: &'a mut dyn Write,
+    precision: Precision,
+    buffer: String,
+    at_start: bool,
+}
+
+impl<'a> Lines<'a> {
+    pub(crate) fn new(out: &'a mut dyn Write, precision: Precision) -> Self {
+        Self { out, precision, buffer: String::with_capacity(PIECE + 1024), at_start: true }
+    }
+
+    /// A word as it is.
+    pub(crate) fn word(&mut self, word: &str) {
+        self.blank();
+        self.buffer.push_str(word);
+    }
+
+    /// A whole number.
+    pub(crate) fn integer(&mut self, number: usize) {
+        self.blank();
+        push_integer(&mut self.buffer, number);
+    }
+
+    /// A position, in this writer's precision; `vertex` is for the message.
+    ///
+    /// # Errors
+    /// Where a coordinate is not finite, or too large for 32 bits.
+    pub(crate) fn position(&mut self, vertex: usize, position: [f64; 3]) -> io::Result<()> {
+        for x in position {
+            self.blank();
+            let done = match self.precision {
+                Precision::F32 => push_f32(&mut self.buffer, x as f32),
+                Precision::F64 => push_f64(&mut self.buffer, x),
+            };
+            if !done {
+                let reason = format!("v{vertex} does not fit {}", self.precision.advice());
+                return Err(io::Error::new(io::ErrorKind::InvalidData, reason));
+            }
+        }
+        Ok(())
+    }
+
+    /// Values that hang on a point; what is not finite is written as 0.
+    pub(crate) fn attributes(&mut self, values: &[f32]) {
+        for &x in values {
+            self.blank();
+            if !push_f32(&mut self.buffer, x) {
+                self.buffer.push('0');
+            }
+        }
+    }
+
+    /// Ends the line.
+    ///
+    /// # Errors
+    /// Those of `out`.
+    pub(crate) fn end(&mut self) -> io::Result<()> {
+        self.buffer.push('\n');
+        self.at_start = true;
+        if self.buffer.len() < PIECE { Ok(()) } else { self.flush() }
+    }
+
+    /// Sends what is left.
+    ///
+    /// # Errors
+    /// Those of `out`.
+    pub(crate) fn finish(mut self) -> io::Result<()> {
+        self.flush()
+    }
+
+    /// Appends to the word before, with no blank between.
+    pub(crate) fn glue(&mut self, mark: char, number: Option<usize>) {
+        self.buffer.push(mark);
+        if let Some(number) = number {
+            push_integer(&mut self.buffer, number);
+        }
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.out.write_all(self.buffer.as_bytes())?;
+        self.buffer.clear();
+        Ok(())
+    }
+
+    fn blank(&mut self) {
+        if !std::mem::take(&mut self.at_start) {
+            self.buffer.push(' ');
+        }
+    }
+}
+
+impl Precision {
+    fn advice(self) -> &'static str {
+        match self {
+            Self::F32 => "32-bit floats; write it with 64 bits, or scale it down",
+            Self::F64 => "a number: a coordinate is not finite",
+        }
+    }
+}
+
+fn push_integer(buffer: &mut String, number: usize) {
+    // Formatting into a string cannot fail.
+    let _ = write!(buffer, "{number}");
+}
+
+/// False, and nothing done, where `x` is not finite.
+fn push_f32(buffer: &mut String, x: f32) -> bool {
+    let plain = x == 0.0 || (1e-5..1e9).contains(&x.abs());
+    let _ = match (plain, x.is_finite()) {
+        (true, _) => write!(buffer, "{x}"),
+        (false, true) => write!(buffer, "{x:e}"),
+        (false, false) => return false,
+    };
+    true
+}
+
+/// False, and nothing done, where `x` is not finite.
+fn push_f64(buffer: &mut String, x: f64) -> bool {
+    let plain = x == 0.0 || (1e-5..1e17).contains(&x.abs());
+    let _ = match (plain, x.is_finite()) {
+        (true, _) => write!(buffer, "{x}"),
+        (false, true) => write!(buffer, "{x:e}"),
+        (false, false) => return false,
+    };
+    true
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn written(precision: Precision, position: [f64; 3]) -> Result<String, String> {
+        let mut out = Vec::new();
+        let mut lines = Lines::new(&mut out, precision);
+        lines.word("v");
+        lines.position(7, position).map_err(|error| error.to_string())?;
+        lines.end().unwrap();
+        lines.finish().unwrap();
+        Ok(String::from_utf8(out).unwrap())
+    }
+
+    #[test]
+    fn numbers_are_as_short_as_their_precision_allows() {
+        let position = [0.1, -1e-20, 16777217.0];
+        assert_eq!(written(Precision::F32, position).unwrap(), "v 0.1 -1e-20 16777216\n");
+        assert_eq!(written(Precision::F64, position).unwrap(), "v 0.1 -1e-20 16777217\n");
+        let third = [1.0 / 3.0, -0.0, 1e300];
+        assert_eq!(written(Precision::F64, third).unwrap(), "v 0.3333333333333333 -0 1e300\n");
+    }
+
+    #[test]
+    fn what_does_not_fit_is_refused_by_name() {
+        let message = written(Precision::F32, [0.0, 1e300, 0.0]).unwrap_err();
+        assert!(message.starts_with("v7 does not fit 32-bit floats"), "{message}");
+        assert!(written(Precision::F64, [f64::NAN, 0.0, 0.0]).is_err());
+    }
+}

@@ -1,0 +1,256 @@
+//! OBJ out: one pool each of positions, uvs and normals.
+
+use std::collections::HashMap;
+use std::io::{self, Write};
+
+use meshlod_mesh::{Labels, LayerKind, Mesh};
+
+use super::mtl::{names, one_line};
+use crate::lines::Lines;
+use crate::{Precision, Scene};
+
+/// Writes all that a scene shows, in world space, as one OBJ; `mtl_name` names the library that
+/// [`write_mtl`](super::write_mtl) writes.
+///
+/// Equal uvs and equal normals are written once. Colours are written behind the positions, for
+/// each vertex that of its first wedge. Objects become `o`, materials `usemtl` under names made
+/// unique. Read back, positions (at `F64`), uvs and normals are the same to the bit. Other layers
+/// have no place in the format.
+///
+/// # Errors
+/// Those of `out`, and a position that `precision` cannot hold.
+pub fn write(
+    scene: &Scene,
+    precision: Precision,
+    out: &mut dyn Write,
+    mtl_name: Option<&str>,
+) -> io::Result<()> {
+    let mesh = scene.flatten();
+    let mut lines = Lines::new(out, precision);
+    if let Some(name) = mtl_name {
+        lines.word("mtllib");
+        lines.word(name);
+        lines.end()?;
+    }
+    write_positions(&mesh, &mut lines)?;
+    let uvs = Pool::write(&mesh, LayerKind::Uv(0), "vt", &mut lines)?;
+    let normals = Pool::write(&mesh, LayerKind::Normal, "vn", &mut lines)?;
+    let objects = Changes::new("o", mesh.objects.as_ref(), &[]);
+    let materials = Changes::new("usemtl", mesh.materials.as_ref(), &names(&scene.materials));
+    write_faces(&mesh, [&uvs, &normals], [objects, materials], &mut lines)?;
+    lines.finish()
+}
+
+fn write_positions(mesh: &Mesh, lines: &mut Lines) -> io::Result<()> {
+    let colors = vertex_colors(mesh);
+    for (v, &position) in mesh.positions.iter().enumerate() {
+        lines.word("v");
+        lines.position(v, position)?;
+        if let Some(colors) = &colors {
+            lines.attributes(&colors[v]);
+        }
+        lines.end()?;
+    }
+    Ok(())
+}
+
+/// The colour of each vertex's first wedge; white where no face uses it.
+fn vertex_colors(mesh: &Mesh) -> Option<Vec<[f32; 3]>> {
+    let attributes = mesh.attributes.as_ref()?;
+    let layer = attributes.layer(LayerKind::Color(0))?;
+    let mut colors = vec![[1.0; 3]; mesh.positions.len()];
+    let corners = attributes.corners.as_flattened().iter().zip(mesh.faces.as_flattened());
+    for (&wedge, vertex) in corners.rev() {
+        if let [r, g, b, ..] = *layer.of(wedge) {
+            colors[vertex.index()] = [r, g, b];
+        }
+    }
+    Some(colors)
+}
+
+/// The values of a layer, each once, and the number from 1 that each wedge's has.
+struct Pool {
+    of_wedge: Option<Vec<u32>>,
+}
+
+impl Pool {
+    /// Writes the values of a layer, where the mesh has it.
+    fn write(mesh: &Mesh, kind: LayerKind, word: &str, lines: &mut Lines) -> io::Result<Self> {
+        let layer = mesh.attributes.as_ref().and_then(|attributes| attributes.layer(kind));
+        let Some(layer) = layer else { return Ok(Self { of_wedge: None }) };
+        let mut numbers: HashMap<[u32; 3], u32> = HashMap::new();
+        let mut of_wedge = Vec::with_capacity(layer.values.len() / layer.width);
+        for values in layer.values.chunks_exact(layer.width) {
+            let mut bits = [0; 3];
+            for (bits, value) in bits.iter_mut().zip(values) {
+                *bits = value.to_bits();
+            }
+            let next = numbers.len() as u32 + 1;
+            let number = *numbers.entry(bits).or_insert(next);
+            if number == next {
+                lines.word(word);
+                lines.attributes(values);
+                lines.end()?;
+            }
+            of_wedge.push(number);
+        }
+        Ok(Self { of_wedge: Some(of_wedge) })
+    }
+}
+
+/// Lines that say where a label begins to hold.
+struct Changes<'a> {
+    word: &'static str,
+    labels: Option<&'a Labels>,
+    names: Vec<String>,
+    /// The label that holds; none does before the first line.
+    current: Option<u32>,
+}
+
+impl<'a> Changes<'a> {
+    /// `names` stand for the first of the labels' own.
+    fn new(word: &'static str, labels: Option<&'a Labels>, names: &[String]) -> Self {
+        let own = labels.map_or(&[][..], |labels| &labels.names);
+        let rest = own.iter().skip(names.len()).map(|name| one_line(name));
+        Self { word, labels, names: names.iter().cloned().chain(rest).collect(), current: None }
+    }
+
+    fn write(&mut self, face: usize, lines: &mut Lines) -> io::Result<()> {
+        let Some(labels) = self.labels else { return Ok(()) };
+        let label = labels.of(face);
+        if self.current == Some(label) {
+            return Ok(());
+        }
+        let name = &self.names[label as usize];
+        // Before the first line no name holds anyway.
+        if self.current.is_some() || !name.is_empty() {
+            lines.word(self.word);
+            lines.word(name);
+            lines.end()?;
+        }
+        self.current = Some(label);
+        Ok(())
+    }
+}
+
+fn write_faces(
+    mesh: &Mesh,
+    [uvs, normals]: [&Pool; 2],
+    mut changes: [Changes; 2],
+    lines: &mut Lines,
+) -> io::Result<()> {
+    let corners = mesh.attributes.as_ref().map(|attributes| &attributes.corners);
+    for (i, face) in mesh.faces.iter().enumerate() {
+        for change in &mut changes {
+            change.write(i, lines)?;
+        }
+        lines.word("f");
+        for (corner, vertex) in face.iter().enumerate() {
+            lines.integer(vertex.index() + 1);
+            let number = |pool: &Pool| {
+                let wedge = corners?[i][corner];
+                Some(pool.of_wedge.as_ref()?[wedge.index()] as usize)
+            };
+            let (uv, normal) = (number(uvs), number(normals));
+            if uv.is_some() || normal.is_some() {
+                lines.glue('/', uv);
+            }
+            if normal.is_some() {
+                lines.glue('/', normal);
+            }
+        }
+        lines.end()?;
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::obj::{read, write_mtl};
+
+    fn written(scene: &Scene, precision: Precision, mtl_name: Option<&str>) -> String {
+        let mut out = Vec::new();
+        write(scene, precision, &mut out, mtl_name).unwrap();
+        String::from_utf8(out).unwrap()
+    }
+
+    const TWO: &str = "mtllib two.mtl\n\
+        v 0 0 0 1 0 0\nv 1 0 0 1 0 0\nv 1 1 0 0 1 0\nv 0 1 0 0 0 1\n\
+        vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nvt 0.5 0.25\n\
+        vn 0 0 1\n\
+        o first\nusemtl red\n\
+        f 1/1/1 2/2/1 3/3/1\n\
+        o second\nusemtl wood grain\n\
+        f 1/5/1 3/3/1 4/4/1\n";
+
+    fn resolve(name: &str) -> Option<Vec<u8>> {
+        match name {
+            "two.mtl" => Some(
+                b"newmtl red\nKd 1 0 0\nd 1\nnewmtl wood grain\nKd 1 1 1\nd 0.5\nmap_Kd w.png\n"
+                    .to_vec(),
+            ),
+            "w.png" => Some(vec![7]),
+            _ => None,
+        }
+    }
+
+    #[test]
+    fn what_was_read_is_written_as_it_was() {
+        let scene = read(TWO.as_bytes(), &mut resolve).unwrap();
+        let again = written(&scene, Precision::F32, Some("two.mtl"));
+        // The pools come in the order of wedges.
+        let sorted = |text: &str| {
+            let mut lines: Vec<String> =
+                text.lines().filter(|l| !l.starts_with('f')).map(str::to_owned).collect();
+            lines.sort();
+            lines
+        };
+        assert_eq!(sorted(&again), sorted(TWO));
+        let mut library = Vec::new();
+        write_mtl(&scene, &mut library).unwrap();
+        assert_eq!(String::from_utf8(library).unwrap().as_bytes(), resolve("two.mtl").unwrap());
+        let twice = read(again.as_bytes(), &mut resolve).unwrap();
+        assert_eq!(twice.meshes[0].mesh, scene.meshes[0].mesh);
+        assert_eq!(twice.materials, scene.materials);
+    }
+
+    #[test]
+    fn a_bare_mesh_is_bare() {
+        let scene = read(b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", &mut |_| None).unwrap();
+        let text = written(&scene, Precision::F32, None);
+        assert_eq!(text, "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    }
+
+    #[test]
+    fn normals_without_uvs_have_two_slashes() {
+        let text = "v 0 0 0\nv 1 0 0\nv 0 1 0\nvn 0 0 1\nf 1//1 2//1 3//1\n";
+        let scene = read(text.as_bytes(), &mut |_| None).unwrap();
+        assert_eq!(written(&scene, Precision::F64, None), text);
+    }
+
+    proptest! {
+        #[test]
+        fn positions_come_back(
+            points in prop::array::uniform3(prop::array::uniform3(-1e30_f64..1e30)),
+        ) {
+            let mut text = String::new();
+            for [x, y, z] in points {
+                text += &format!("v {x} {y} {z:e}\n");
+            }
+            let scene = read((text + "f 1 2 3").as_bytes(), &mut |_| None).unwrap();
+            let mesh = &scene.meshes[0].mesh;
+            prop_assert_eq!(&mesh.positions[..], &points);
+            let long = read(written(&scene, Precision::F64, None).as_bytes(), &mut |_| None);
+            prop_assert_eq!(&long.unwrap().meshes[0].mesh, mesh);
+            let short = written(&scene, Precision::F32, None);
+            let again = read(short.as_bytes(), &mut |_| None).unwrap();
+            for (a, b) in again.meshes[0].mesh.positions.iter().zip(&points) {
+                prop_assert_eq!(a.map(|x| x as f32), b.map(|x| x as f32));
+            }
+            prop_assert_eq!(written(&again, Precision::F32, None), short);
+        }
+    }
+}
