@@ -1,0 +1,44 @@
+//! The methods as sets of policies: the table of the house.
+
+use meshlod_mesh::Connectivity;
+
+use crate::candidates::Edges;
+use crate::checks::EDGE_CHECKS;
+use crate::engine::{Algorithm, Engine};
+use crate::options::Method;
+use crate::qem::{Endpoint, Optimal, Quadrics};
+use crate::simplifier::Run;
+use crate::surface::Surface;
+
+/// Sets a method to work on a surface.
+pub(crate) fn start(
+    method: Method,
+    surface: Surface,
+    connectivity: Connectivity,
+) -> Box<dyn Run> {
+    let memory = Quadrics::new(&surface, &connectivity);
+    match method {
+        Method::Qem => Box::new(Engine::new(
+            Algorithm {
+                candidates: Edges,
+                memory,
+                priority: Optimal,
+                placement: Optimal,
+                checks: EDGE_CHECKS,
+            },
+            surface,
+            connectivity,
+        )),
+        Method::QemEndpoint => Box::new(Engine::new(
+            Algorithm {
+                candidates: Edges,
+                memory,
+                priority: Endpoint,
+                placement: Endpoint,
+                checks: EDGE_CHECKS,
+            },
+            surface,
+            connectivity,
+        )),
+    }
+}

@@ -1,0 +1,78 @@
+//! What every contraction must respect: as manifold, closed and oriented after as before.
+
+use crate::policy::{Check, Proposal};
+use crate::refusal::Refusal;
+use crate::surface::Flags;
+
+/// The rules for edges, the cheapest and most often met first.
+pub(crate) const EDGE_CHECKS: &[Check] = &[shape, link, closing, flip];
+
+/// The rules for faces.
+pub(crate) const FACE_CHECKS: &[Check] = &[face_boundary, link, closing, flip];
+
+/// The least cosine between a face's normal before and after; found on bunny, horse and dragon:
+/// 0 lets folds through that raise the maximum, 0.5 costs a tenth of the accuracy at 1 %.
+const LEAST_COSINE: f64 = 0.2;
+
+/// An edge of at most two faces; not one that joins two boundaries across the surface; not the last
+/// of its component.
+fn shape(proposal: &Proposal<'_>) -> Result<(), Refusal> {
+    let hood = proposal.hood;
+    if hood.dying.len() > 2 {
+        return Err(Refusal::NonManifold);
+    }
+    let both_on_boundary =
+        hood.contracted.iter().all(|&v| proposal.surface.flags(v).any(Flags::BOUNDARY));
+    if hood.dying.len() == 2 && both_on_boundary {
+        return Err(Refusal::Boundary);
+    }
+    if hood.spokes.is_empty() { Err(Refusal::LastFaces) } else { Ok(()) }
+}
+
+/// A face whose corners are all inside: only then is its ring closed.
+fn face_boundary(proposal: &Proposal<'_>) -> Result<(), Refusal> {
+    let hood = proposal.hood;
+    if hood.contracted.iter().any(|&v| proposal.surface.flags(v).any(Flags::BOUNDARY)) {
+        return Err(Refusal::Boundary);
+    }
+    if hood.spokes.is_empty() { Err(Refusal::LastFaces) } else { Ok(()) }
+}
+
+/// The link condition for vertices [DEGN99]: a common neighbour of contracted vertices is the apex
+/// of a dying face on just these.
+fn link(proposal: &Proposal<'_>) -> Result<(), Refusal> {
+    let apart = |adjacent: u8, wing: u8| adjacent.count_ones() < 2 || adjacent == wing;
+    let ok = proposal.hood.ring.iter().all(|r| {
+        apart(r.adjacent, r.wing) && (r.adjacent.count_ones() < 3 || proposal.hood.dying.len() == 1)
+    });
+    if ok { Ok(()) } else { Err(Refusal::Link) }
+}
+
+/// The link condition for edges: no two surviving faces on the same two wings, or they would
+/// become one face twice. So does a tetrahedron end.
+fn closing(proposal: &Proposal<'_>) -> Result<(), Refusal> {
+    let hood = proposal.hood;
+    let shared = |place: u32| hood.ring[place as usize].adjacent.count_ones() > 1;
+    let across = hood.spokes.iter().filter(|spoke| shared(spoke.a) && shared(spoke.b));
+    if across.count() < 2 { Ok(()) } else { Err(Refusal::Link) }
+}
+
+/// No surviving face turns over, or by more than a limit, or loses its area. One without area
+/// before may do as it likes.
+fn flip(proposal: &Proposal<'_>) -> Result<(), Refusal> {
+    let Proposal { surface, hood, position } = *proposal;
+    for spoke in &hood.spokes {
+        let (a, b) = (hood.ring[spoke.a as usize].position, hood.ring[spoke.b as usize].position);
+        let old = surface.position(hood.contracted[spoke.owner()]);
+        let before = (a - old).cross(b - old);
+        let after = (a - position).cross(b - position);
+        let turn = before.dot(after);
+        let sizes = before.length_squared() * after.length_squared();
+        if !(turn > 0.0 && turn * turn > LEAST_COSINE * LEAST_COSINE * sizes)
+            && before.length_squared() > 0.0
+        {
+            return Err(Refusal::Flip);
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,288 @@
+//! The one loop: take the cheapest candidate, ask whether it may, contract, renew.
+//!
+//! Costs are renewed lazily. A candidate whose vertices have changed since it was costed is costed
+//! again only when it comes to the front; as long as costs rise with contractions this is the order
+//! of eager renewal, and each contraction costs one or two evaluations instead of a ring of them.
+//! A refused candidate waits until the neighbourhood of one of its vertices changes.
+
+use meshlod_mesh::{Connectivity, VertexId};
+use rayon::prelude::*;
+use rustc_hash::FxHashMap;
+
+use crate::candidates::CandidateId;
+use crate::contracted::{Contracted, Freedom};
+use crate::neighbourhood::{Neighbourhood, freedom};
+use crate::policy::{Books, Candidates, Check, Memory, Observe, Placement, Priority, Proposal, Stop};
+use crate::queue::{Entry, Key, Queue};
+use crate::refusal::{Refusal, Refusals};
+use crate::surface::{Flags, Placed, State, Surface};
+
+/// An algorithm: a choice of policies. What stops it and who observes come with each run.
+pub(crate) struct Algorithm<C, M, P, L> {
+    pub(crate) candidates: C,
+    pub(crate) memory: M,
+    pub(crate) priority: P,
+    pub(crate) placement: L,
+    pub(crate) checks: &'static [Check],
+}
+
+/// An algorithm at work on a surface.
+pub(crate) struct Engine<C, M, P, L> {
+    algorithm: Algorithm<C, M, P, L>,
+    surface: Surface,
+    hood: Neighbourhood,
+    waiting: Waiting,
+    /// Room for the candidates that a contraction opens.
+    opened: Vec<CandidateId>,
+    /// Room for the entries of a bucket.
+    taken: Vec<(Entry, Contracted)>,
+    refusals: Refusals,
+    error_estimate: f64,
+}
+
+impl<C, M, P, L> Engine<C, M, P, L>
+where
+    C: Candidates,
+    M: Memory,
+    P: Priority<M>,
+    L: Placement<M>,
+{
+    pub(crate) fn new(
+        algorithm: Algorithm<C, M, P, L>,
+        mut surface: Surface,
+        connectivity: Connectivity,
+    ) -> Self {
+        let seeds = algorithm.candidates.seed(&surface, &connectivity);
+        // Its room is wanted for the queue.
+        drop(connectivity);
+        let entries: Vec<Entry> =
+            seeds.into_par_iter().map(|id| algorithm.entry(&surface, id)).collect();
+        let waiting = Waiting::new(&entries, &mut surface);
+        Self {
+            algorithm,
+            surface,
+            hood: Neighbourhood::default(),
+            waiting,
+            opened: Vec::new(),
+            taken: Vec::new(),
+            refusals: Refusals::default(),
+            error_estimate: 0.0,
+        }
+    }
+
+    /// Contracts until `stop` says enough or no candidate is left that may.
+    pub(crate) fn run(&mut self, stop: &Stop, observer: &mut dyn Observe) {
+        while self.surface.live_faces() > stop.faces && self.step(stop, observer) {}
+    }
+
+    /// One contraction; false when no candidate is left that may.
+    pub(crate) fn step(&mut self, stop: &Stop, observer: &mut dyn Observe) -> bool {
+        while let Some(entry) = self.next_fresh() {
+            match self.contract(entry, stop, observer) {
+                Ok(()) => return true,
+                Err(refusal) => {
+                    self.refusals.add(refusal);
+                    let vertices = self.algorithm.candidates.vertices(&self.surface, entry.id);
+                    self.waiting.park(entry, &vertices, &mut self.surface);
+                }
+            }
+        }
+        false
+    }
+
+    /// The cost of the contraction that is next, before any check.
+    pub(crate) fn next_cost(&mut self) -> Option<f64> {
+        let entry = self.next_fresh()?;
+        self.waiting.put(entry, &mut self.surface);
+        Some(entry.key.cost())
+    }
+
+    /// Takes the cheapest candidate off the queue.
+    fn next_fresh(&mut self) -> Option<Entry> {
+        loop {
+            let Some(entry) = self.waiting.queue.pop() else {
+                let bucket = self.waiting.queue.next_bucket()?;
+                self.freshen_all(bucket);
+                continue;
+            };
+            if let Some(vertices) = self.take(entry) {
+                let entry = self.freshen(entry, &vertices);
+                if self.waiting.queue.peek().is_none_or(|next| entry < next) {
+                    return Some(entry);
+                }
+                self.waiting.put(entry, &mut self.surface);
+            }
+        }
+    }
+
+    /// Costs the stale entries of a bucket again, in loops whose loads do not wait for each other:
+    /// met one by one between contractions, they would cost a memory latency each.
+    fn freshen_all(&mut self, bucket: Vec<Entry>) {
+        let mut taken = std::mem::take(&mut self.taken);
+        taken.extend(bucket.into_iter().filter_map(|entry| Some((entry, self.take(entry)?))));
+        for (entry, vertices) in taken.drain(..) {
+            let entry = self.freshen(entry, &vertices);
+            self.waiting.put(entry, &mut self.surface);
+        }
+        self.taken = taken;
+    }
+
+    /// The vertices of an entry that has left the queue; nothing if its candidate is off the books.
+    #[inline]
+    fn take(&mut self, entry: Entry) -> Option<Contracted> {
+        let state = std::mem::take(self.surface.state(entry.id));
+        (state == State::Queued)
+            .then(|| self.algorithm.candidates.vertices(&self.surface, entry.id))
+    }
+
+    /// The entry, costed again if its vertices have changed.
+    #[inline]
+    fn freshen(&self, entry: Entry, vertices: &Contracted) -> Entry {
+        if entry.stamp == self.surface.stamp(vertices) {
+            return entry;
+        }
+        self.algorithm.entry(&self.surface, entry.id)
+    }
+
+    fn contract(
+        &mut self,
+        entry: Entry,
+        stop: &Stop,
+        observer: &mut dyn Observe,
+    ) -> Result<(), Refusal> {
+        let Self { algorithm, surface, hood, .. } = self;
+        let contracted = algorithm.candidates.vertices(surface, entry.id);
+        hood.gather(surface, contracted)?;
+        let placed = algorithm.placement.place(surface, &algorithm.memory, hood)?;
+        if placed.error_estimate > stop.error {
+            return Err(Refusal::Error);
+        }
+        let proposal = Proposal { surface, hood, position: placed.position };
+        algorithm.checks.iter().try_for_each(|check| check(&proposal))?;
+
+        observer.before(surface, hood, &placed);
+        algorithm.memory.merge(surface, hood, &placed);
+        surface.contract(hood, &placed);
+        observer.after(surface, hood, &placed);
+        self.error_estimate = self.error_estimate.max(placed.error_estimate);
+        self.renew(&placed);
+        Ok(())
+    }
+
+    /// Brings the books up to date after a contraction, and wakes those who waited for a change.
+    fn renew(&mut self, placed: &Placed) {
+        let Self { algorithm, surface, hood, waiting, opened, .. } = self;
+        algorithm.candidates.settle(hood, &mut Desk { surface, opened });
+        for id in opened.drain(..) {
+            let entry = algorithm.entry(surface, id);
+            waiting.put(entry, surface);
+        }
+        for v in hood.contracted.iter().copied().chain(hood.ring.iter().map(|r| r.id)) {
+            if surface.flags(v).any(Flags::AWAITED) {
+                surface.unflag(v, Flags::AWAITED);
+                waiting.wake(v, surface);
+            }
+        }
+        // The kept vertex has the flags of all the contracted; those who waited are awake.
+        surface.unflag(hood.contracted[placed.kept], Flags::AWAITED);
+    }
+
+    pub(crate) fn surface(&self) -> &Surface {
+        &self.surface
+    }
+
+    pub(crate) fn refusals(&self) -> Refusals {
+        self.refusals
+    }
+
+    /// The greatest estimate of a contraction made so far, in model units.
+    pub(crate) fn error_estimate(&self) -> f64 {
+        self.error_estimate
+    }
+}
+
+impl<C: Candidates, M, P: Priority<M>, L> Algorithm<C, M, P, L> {
+    /// A candidate with its cost now; what may never be contracted goes last, and is refused there.
+    #[inline]
+    fn entry(&self, surface: &Surface, id: CandidateId) -> Entry {
+        let contracted = self.candidates.vertices(surface, id);
+        let cost = self.cost(surface, &contracted).unwrap_or(f64::INFINITY);
+        Entry { key: Key::new(cost), id, stamp: surface.stamp(&contracted) }
+    }
+
+    #[inline]
+    fn cost(&self, surface: &Surface, contracted: &Contracted) -> Option<f64> {
+        let special = |&v: &VertexId| surface.flags(v).any(Flags::PINNED.or(Flags::SEAM));
+        let freedom = if contracted.iter().any(special) {
+            freedom(surface, contracted, &mut Vec::new()).ok()?
+        } else {
+            Freedom::Free
+        };
+        self.priority.cost(surface, &self.memory, contracted, freedom)
+    }
+}
+
+/// The candidates that wait: in the queue, or parked until their neighbourhood changes.
+struct Waiting {
+    queue: Queue,
+    parked: FxHashMap<VertexId, Vec<Entry>>,
+}
+
+impl Waiting {
+    fn new(entries: &[Entry], surface: &mut Surface) -> Self {
+        for entry in entries {
+            *surface.state(entry.id) = State::Queued;
+        }
+        Self { queue: Queue::new(entries), parked: FxHashMap::default() }
+    }
+
+    #[inline]
+    fn put(&mut self, entry: Entry, surface: &mut Surface) {
+        let state = surface.state(entry.id);
+        // A ghost's entry comes to life again: its key may be old, so it is costed when met.
+        if *state != State::Ghost {
+            self.queue.push(entry);
+        }
+        *state = State::Queued;
+    }
+
+    fn park(&mut self, entry: Entry, vertices: &[VertexId], surface: &mut Surface) {
+        *surface.state(entry.id) = State::Parked;
+        for &v in vertices {
+            surface.flag(v, Flags::AWAITED);
+            self.parked.entry(v).or_default().push(entry);
+        }
+    }
+
+    fn wake(&mut self, vertex: VertexId, surface: &mut Surface) {
+        for entry in self.parked.remove(&vertex).into_iter().flatten() {
+            if *surface.state(entry.id) == State::Parked {
+                self.put(entry, surface);
+            }
+        }
+    }
+}
+
+/// The books, as a candidates policy sees them after a contraction.
+struct Desk<'a> {
+    surface: &'a mut Surface,
+    opened: &'a mut Vec<CandidateId>,
+}
+
+impl Books for Desk<'_> {
+    fn is_open(&mut self, id: CandidateId) -> bool {
+        matches!(self.surface.state(id), State::Queued | State::Parked)
+    }
+
+    fn open(&mut self, id: CandidateId) {
+        self.opened.push(id);
+    }
+
+    fn close(&mut self, id: CandidateId) {
+        let state = self.surface.state(id);
+        *state = match *state {
+            State::Queued | State::Ghost => State::Ghost,
+            State::Parked | State::Closed => State::Closed,
+        };
+    }
+}

@@ -1,0 +1,56 @@
+//! Coarser triangle meshes: one contraction engine, algorithms as sets of policies.
+//!
+//! ```
+//! use meshlod_mesh::sample;
+//! use meshlod_simplify::{Options, Target, simplify};
+//!
+//! let mesh = sample::sphere(1000);
+//! let (level, report) = simplify(&mesh, Target::Ratio(0.1), &Options::default())?;
+//! assert!(report.reached && level.faces.len() <= 100);
+//! # Ok::<(), meshlod_simplify::SimplifyError>(())
+//! ```
+//!
+//! Same input, same options, same bytes out, for any number of threads. After every contraction the
+//! surface is as manifold, as closed and as oriented as before.
+#![forbid(unsafe_code)]
+
+mod algorithms;
+mod candidates;
+mod checks;
+mod clean;
+mod contracted;
+mod engine;
+mod neighbourhood;
+mod options;
+mod policy;
+mod qem;
+mod quadric;
+mod queue;
+mod refusal;
+mod simplifier;
+mod surface;
+mod wedges;
+
+use meshlod_mesh::Mesh;
+
+pub use contracted::{Contracted, Freedom};
+pub use neighbourhood::{Dying, Neighbourhood, RingVertex, Spoke};
+pub use options::{Method, Options, Report, SimplifyError, Target};
+pub use policy::Observe;
+pub use refusal::{Refusal, Refusals};
+pub use simplifier::Simplifier;
+pub use surface::{Placed, Surface};
+
+/// A coarser mesh, and what was done to get it.
+///
+/// The result holds only what its faces use. A target out of reach is approached as far as the
+/// rules allow; the report says so, and why.
+pub fn simplify(
+    mesh: &Mesh,
+    target: Target,
+    options: &Options,
+) -> Result<(Mesh, Report), SimplifyError> {
+    let mut simplifier = Simplifier::new(mesh, options)?;
+    let report = simplifier.run(target, &mut ())?;
+    Ok((simplifier.level(), report))
+}

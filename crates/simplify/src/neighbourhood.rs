@@ -1,0 +1,217 @@
+//! Everything around a candidate, gathered once and lent to all policies.
+//!
+//! ```text
+//!          vl              v0 v1   contracted
+//!        / || \            vl vr   wings: apexes of the dying faces
+//!   a --v0-||--v1-- b      a b …   the rest of the ring
+//!        \ || /            faces v0 a vl …: spokes, they survive with v0, v1 replaced
+//!          vr
+//! ```
+
+use glam::DVec3;
+use meshlod_mesh::{FaceId, VertexId, WedgeId};
+
+use crate::contracted::{Contracted, Freedom};
+use crate::refusal::Refusal;
+use crate::surface::{Flags, Surface, corner_of};
+
+/// More faces than this around a candidate are refused. The hub of a huge fan can wait: its rim is
+/// contracted first, and an attempt at the hub would cost the square of its faces.
+const MOST_FACES: usize = 256;
+
+/// A face that survives the contraction: one corner is contracted, two are on the ring.
+#[derive(Clone, Copy, Debug)]
+pub struct Spoke {
+    /// The face.
+    pub face: FaceId,
+    /// Its corner after the contracted one, as a place in the ring.
+    pub a: u32,
+    /// The corner after that.
+    pub b: u32,
+    corner: u8,
+    owner: u8,
+}
+
+impl Spoke {
+    /// Which corner of the face is contracted.
+    #[inline]
+    pub fn corner(&self) -> usize {
+        self.corner.into()
+    }
+
+    /// Which of the contracted vertices that is.
+    #[inline]
+    pub fn owner(&self) -> usize {
+        self.owner.into()
+    }
+}
+
+/// A face that goes: two or all three of its corners are contracted.
+#[derive(Clone, Copy, Debug)]
+pub struct Dying {
+    /// The face.
+    pub face: FaceId,
+    apex: u32,
+}
+
+impl Dying {
+    const NO_APEX: u32 = u32::MAX;
+
+    /// Its corner that is not contracted, as a place in the ring: a wing.
+    #[inline]
+    pub fn apex(&self) -> Option<usize> {
+        (self.apex != Self::NO_APEX).then_some(self.apex as usize)
+    }
+}
+
+/// A vertex next to a contracted one.
+#[derive(Clone, Copy, Debug)]
+pub struct RingVertex {
+    /// The vertex.
+    pub id: VertexId,
+    /// Where it is.
+    pub position: DVec3,
+    /// One bit per contracted vertex: is there an edge to it?
+    pub(crate) adjacent: u8,
+    /// The same bits for the ends of the contracted edges it is a wing of.
+    pub(crate) wing: u8,
+}
+
+/// The neighbourhood of one candidate. Reused from one to the next.
+#[derive(Default)]
+pub struct Neighbourhood {
+    pub(crate) contracted: Contracted,
+    pub(crate) freedom: Freedom,
+    pub(crate) spokes: Vec<Spoke>,
+    pub(crate) dying: Vec<Dying>,
+    pub(crate) ring: Vec<RingVertex>,
+    /// Wedges that meet along an edge: at its first end and at its second.
+    pub(crate) wedge_pairs: Vec<[WedgeId; 2]>,
+    /// Room for the faces around, with the contracted vertex they were met at and their vertices.
+    star: Vec<(FaceId, u8, [VertexId; 3])>,
+}
+
+impl Neighbourhood {
+    /// The vertices that become one.
+    pub fn contracted(&self) -> &Contracted {
+        &self.contracted
+    }
+
+    /// The faces that survive.
+    pub fn spokes(&self) -> &[Spoke] {
+        &self.spokes
+    }
+
+    /// The faces that go.
+    pub fn dying(&self) -> &[Dying] {
+        &self.dying
+    }
+
+    /// The vertices around.
+    pub fn ring(&self) -> &[RingVertex] {
+        &self.ring
+    }
+
+    /// Where the new vertex may be.
+    pub fn freedom(&self) -> Freedom {
+        self.freedom
+    }
+
+    /// Fills this with what is around `contracted`; refuses what pins or seams forbid.
+    pub(crate) fn gather(
+        &mut self,
+        surface: &Surface,
+        contracted: Contracted,
+    ) -> Result<(), Refusal> {
+        self.contracted = contracted;
+        self.spokes.clear();
+        self.dying.clear();
+        self.ring.clear();
+        if contracted.iter().map(|&v| surface.star(v).len()).sum::<usize>() > MOST_FACES {
+            return Err(Refusal::Valence);
+        }
+        self.freedom = freedom(surface, &contracted, &mut self.wedge_pairs)?;
+        // Short loops of loads that do not wait for each other: most of the time here is memory's.
+        self.star.clear();
+        for (owner, &v) in contracted.iter().enumerate() {
+            let star = surface.star(v).iter();
+            self.star.extend(star.map(|&face| (face, owner as u8, surface.face(face))));
+        }
+        for i in 0..self.star.len() {
+            let (face, owner, corners) = self.star[i];
+            self.add(face, owner.into(), corners);
+        }
+        for r in &mut self.ring {
+            r.position = surface.position(r.id);
+        }
+        Ok(())
+    }
+
+    #[inline]
+    fn add(&mut self, face: FaceId, owner: usize, corners: [VertexId; 3]) {
+        let corner = corner_of(corners, self.contracted[owner]);
+        let (a, b) = (corners[(corner + 1) % 3], corners[(corner + 2) % 3]);
+        let bit = |v: VertexId| {
+            self.contracted.iter().position(|&other| other == v).map_or(0, |i| 1u8 << i)
+        };
+        let (bit_a, bit_b) = (bit(a), bit(b));
+        let mask = 1 << owner | bit_a | bit_b;
+        if bit_a | bit_b == 0 {
+            let (a, b) = (self.ring_place(a, mask, 0), self.ring_place(b, mask, 0));
+            self.spokes.push(Spoke { face, a, b, corner: corner as u8, owner: owner as u8 });
+        } else if mask.trailing_zeros() as usize == owner {
+            // Only the first of its contracted corners brings a dying face.
+            let apex = match (bit_a, bit_b) {
+                (0, _) => self.ring_place(a, mask, mask),
+                (_, 0) => self.ring_place(b, mask, mask),
+                _ => Dying::NO_APEX,
+            };
+            self.dying.push(Dying { face, apex });
+        }
+    }
+
+    /// A search along the ring: it is short, and stays so by [`MOST_FACES`].
+    #[inline]
+    fn ring_place(&mut self, id: VertexId, adjacent: u8, wing: u8) -> u32 {
+        if let Some(place) = self.ring.iter().position(|r| r.id == id) {
+            self.ring[place].adjacent |= adjacent;
+            self.ring[place].wing |= wing;
+            return place as u32;
+        }
+        self.ring.push(RingVertex { id, position: DVec3::ZERO, adjacent, wing });
+        self.ring.len() as u32 - 1
+    }
+}
+
+/// How free the contraction of these vertices is, and which wedges of an edge's ends meet along it.
+pub(crate) fn freedom(
+    surface: &Surface,
+    contracted: &Contracted,
+    wedge_pairs: &mut Vec<[WedgeId; 2]>,
+) -> Result<Freedom, Refusal> {
+    wedge_pairs.clear();
+    let mut pinned = None;
+    let mut seam = false;
+    for (i, &v) in contracted.iter().enumerate() {
+        let flags = surface.flags(v);
+        seam |= flags.any(Flags::SEAM);
+        if flags.any(Flags::PINNED) && pinned.replace(i).is_some() {
+            return Err(Refusal::Locked);
+        }
+    }
+    let by_pin = pinned.map_or(Freedom::Free, Freedom::At);
+    let by_seam = match (&surface.wedges, &contracted[..]) {
+        (Some(wedges), &[v0, v1]) => {
+            wedges.pair(surface, [v0, v1], wedge_pairs);
+            if seam { wedges.freedom(surface, [v0, v1], wedge_pairs)? } else { Freedom::Free }
+        }
+        // Wedges pair along edges only.
+        (Some(_), _) => return Err(Refusal::Seam),
+        (None, _) => Freedom::Free,
+    };
+    match (by_pin, by_seam) {
+        (Freedom::Free, other) | (other, Freedom::Free) => Ok(other),
+        (a, b) if a == b => Ok(a),
+        _ => Err(Refusal::Seam),
+    }
+}

@@ -1,0 +1,103 @@
+//! What a user may ask for, and what comes back beside the mesh.
+
+use meshlod_mesh::MeshError;
+use thiserror::Error;
+
+use crate::refusal::Refusals;
+
+/// An algorithm by name.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Method {
+    /// Quadric error metrics with optimal placement [GH97].
+    #[default]
+    Qem,
+    /// The same, but every vertex of the result is one of the input: half-edge contraction.
+    QemEndpoint,
+}
+
+impl Method {
+    /// Every method.
+    pub const ALL: [Self; 2] = [Self::Qem, Self::QemEndpoint];
+
+    /// Its name on the command line and in reports.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Qem => "qem",
+            Self::QemEndpoint => "qem-endpoint",
+        }
+    }
+
+    /// The method of that name.
+    pub fn by_name(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|method| method.name() == name)
+    }
+}
+
+/// How far to go.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Target {
+    /// To this many faces or the next number below that contractions reach.
+    Faces(usize),
+    /// To this part of the input's faces, between 0 and 1.
+    Ratio(f64),
+    /// As far as the algorithm's own estimate of the error stays within this, in model units.
+    Error(f64),
+}
+
+/// How to simplify.
+#[derive(Clone, Debug, Default)]
+pub struct Options {
+    /// The algorithm.
+    pub method: Method,
+    /// Keep every vertex of a boundary edge where it is.
+    pub lock_boundary: bool,
+    /// One flag per vertex: keep it where it is. Empty for none.
+    pub locked: Vec<bool>,
+}
+
+/// Why a mesh cannot be simplified at all.
+#[derive(Clone, Debug, Error, PartialEq)]
+pub enum SimplifyError {
+    /// It breaks a rule of [`meshlod_mesh::Mesh::validate`].
+    #[error(transparent)]
+    Mesh(#[from] MeshError),
+    /// It has no faces.
+    #[error("the mesh has no faces")]
+    NoFaces,
+    /// None of its faces has three different vertices.
+    #[error("none of the {0} faces has three different vertices")]
+    AllDegenerate(usize),
+    /// The lock mask is for another mesh.
+    #[error("the lock mask has {found} flags for {expected} vertices")]
+    BadMask {
+        /// Its length.
+        found: usize,
+        /// The number of vertices.
+        expected: usize,
+    },
+    /// A target that is no target.
+    #[error("{0} is not a target: give a ratio between 0 and 1 or an error of at least 0")]
+    BadTarget(f64),
+}
+
+/// What a run did.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Report {
+    /// Faces of the input, all of them.
+    pub input_faces: usize,
+    /// Faces of the input left out because they repeat a vertex.
+    pub degenerate_faces: usize,
+    /// Faces of the input left out because they repeat another face.
+    pub duplicate_faces: usize,
+    /// Vertices of the input that are kept in place because the surface is not manifold there.
+    pub non_manifold_vertices: usize,
+    /// Faces that are left.
+    pub output_faces: usize,
+    /// Whether the target was reached.
+    pub reached: bool,
+    /// The greatest distance that the algorithm estimates for any contraction, in model units:
+    /// for quadrics, the root of the mean squared distance to the planes gone into a vertex.
+    pub error_estimate: f64,
+    /// Why candidates were refused, and how often.
+    pub refusals: Refusals,
+}

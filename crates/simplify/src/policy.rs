@@ -1,0 +1,121 @@
+//! The six policies. An algorithm is a choice of them; the engine asks, they answer.
+//!
+//! | policy | answers |
+//! |---|---|
+//! | [`Candidates`] | what may be contracted, and what to ask again after a contraction |
+//! | [`Priority`] | the cost of a candidate, or "never" |
+//! | [`Placement`] | where the new vertex goes, or "cannot" |
+//! | [`Check`] | a reason against it |
+//! | [`Stop`] | enough |
+//! | [`Observe`] | hooks before and after |
+//!
+//! Priority and placement share a [`Memory`]: what the algorithm keeps per vertex.
+
+use glam::DVec3;
+use meshlod_mesh::Connectivity;
+
+use crate::candidates::CandidateId;
+use crate::contracted::{Contracted, Freedom};
+use crate::neighbourhood::Neighbourhood;
+use crate::refusal::Refusal;
+use crate::surface::{Placed, Surface};
+
+/// What may be contracted.
+pub(crate) trait Candidates: Sync {
+    /// The candidates of an untouched surface, each once.
+    fn seed(&self, surface: &Surface, connectivity: &Connectivity) -> Vec<CandidateId>;
+
+    /// The vertices that the candidate would make one.
+    fn vertices(&self, surface: &Surface, id: CandidateId) -> Contracted;
+
+    /// After a contraction: closes the candidates that went with their faces, and sees to it that
+    /// each of the others is on the books once.
+    fn settle(&self, hood: &Neighbourhood, books: &mut dyn Books);
+}
+
+/// The engine's books of which candidates are waiting.
+pub(crate) trait Books {
+    /// Whether the candidate is waiting.
+    fn is_open(&mut self, id: CandidateId) -> bool;
+    /// Puts a candidate on the books.
+    fn open(&mut self, id: CandidateId);
+    /// Takes a candidate off the books.
+    fn close(&mut self, id: CandidateId);
+}
+
+/// What an algorithm keeps per vertex, such as quadrics. `()` for the memoryless.
+pub(crate) trait Memory: Sync {
+    /// Told of a contraction just before the surface changes.
+    fn merge(&mut self, surface: &Surface, hood: &Neighbourhood, placed: &Placed);
+}
+
+/// The order of contractions.
+pub(crate) trait Priority<M>: Sync {
+    /// The cost of a candidate, lowest first; `None` is never. Between contractions the cost of a
+    /// candidate may rise unseen; if it falls, that may be noticed late.
+    fn cost(&self, surface: &Surface, memory: &M, of: &Contracted, freedom: Freedom)
+    -> Option<f64>;
+}
+
+/// The place of the new vertex.
+pub(crate) trait Placement<M>: Sync {
+    /// Where the new vertex goes, within the neighbourhood's freedom.
+    fn place(&self, surface: &Surface, memory: &M, hood: &Neighbourhood)
+    -> Result<Placed, Refusal>;
+}
+
+/// A contraction before it is allowed.
+pub(crate) struct Proposal<'a> {
+    pub(crate) surface: &'a Surface,
+    pub(crate) hood: &'a Neighbourhood,
+    pub(crate) position: DVec3,
+}
+
+/// One rule that a proposal must pass.
+pub(crate) type Check = fn(&Proposal<'_>) -> Result<(), Refusal>;
+
+/// When to stop.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Stop {
+    /// Enough when no more faces than this are left.
+    pub(crate) faces: usize,
+    /// Contractions estimated to move the surface further than this, in model units, are refused.
+    pub(crate) error: f64,
+}
+
+/// Hooks into the engine's loop. All do nothing unless written.
+pub trait Observe {
+    /// A contraction is about to change `surface`.
+    fn before(&mut self, surface: &Surface, hood: &Neighbourhood, placed: &Placed) {
+        let _ = (surface, hood, placed);
+    }
+
+    /// The contraction is done.
+    fn after(&mut self, surface: &Surface, hood: &Neighbourhood, placed: &Placed) {
+        let _ = (surface, hood, placed);
+    }
+}
+
+impl Observe for () {}
+
+impl<A: Observe, B: Observe> Observe for (A, B) {
+    fn before(&mut self, surface: &Surface, hood: &Neighbourhood, placed: &Placed) {
+        self.0.before(surface, hood, placed);
+        self.1.before(surface, hood, placed);
+    }
+
+    fn after(&mut self, surface: &Surface, hood: &Neighbourhood, placed: &Placed) {
+        self.0.after(surface, hood, placed);
+        self.1.after(surface, hood, placed);
+    }
+}
+
+impl<O: Observe + ?Sized> Observe for &mut O {
+    fn before(&mut self, surface: &Surface, hood: &Neighbourhood, placed: &Placed) {
+        (**self).before(surface, hood, placed);
+    }
+
+    fn after(&mut self, surface: &Surface, hood: &Neighbourhood, placed: &Placed) {
+        (**self).after(surface, hood, placed);
+    }
+}

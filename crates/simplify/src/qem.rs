@@ -1,0 +1,185 @@
+//! Quadric error metrics [GH97]: an edge costs what its best place costs by the planes of all the
+//! faces that have gone into its ends.
+//!
+//! Our choices: planes weigh by area; boundary edges and seams stand as planes at right angles to
+//! their faces; quadrics are kept relative to their vertices, and the optimum is pulled a little
+//! towards the middle of the edge, so that flats and straight edges need no special case.
+
+use glam::DVec3;
+use meshlod_mesh::{Connectivity, FaceId, Side, Twin, VertexId};
+
+use crate::contracted::{Contracted, Freedom};
+use crate::neighbourhood::Neighbourhood;
+use crate::policy::{Memory, Placement, Priority};
+use crate::quadric::Quadric;
+use crate::refusal::Refusal;
+use crate::surface::{Placed, Surface};
+
+/// How strongly the optimum is pulled to the middle of the edge.
+const PULL: f64 = 1e-6;
+
+/// The weight of a boundary edge's plane, against the square of its length as an area.
+const BOUNDARY_WEIGHT: f64 = 1.0;
+
+/// The weight of a seam's plane likewise.
+const SEAM_WEIGHT: f64 = 1.0;
+
+/// A quadric per vertex.
+pub(crate) struct Quadrics(Vec<Quadric>);
+
+impl Quadrics {
+    pub(crate) fn new(surface: &Surface, connectivity: &Connectivity) -> Self {
+        let mut quadrics = vec![Quadric::default(); surface.vertex_count()];
+        for f in 0..surface.face_count() {
+            let face = FaceId(f as u32);
+            if surface.is_alive(face) {
+                add_face(&mut quadrics, surface, face, connectivity);
+            }
+        }
+        Self(quadrics)
+    }
+
+    /// The sum of the contracted vertices' quadrics, seen from the first.
+    #[inline]
+    fn sum(&self, surface: &Surface, contracted: &Contracted) -> Quadric {
+        let origin = surface.position(contracted[0]);
+        let mut sum = self.0[contracted[0].index()];
+        for &v in &contracted[1..] {
+            sum = sum + self.0[v.index()].seen_from(origin - surface.position(v));
+        }
+        sum
+    }
+}
+
+impl Memory for Quadrics {
+    fn merge(&mut self, surface: &Surface, hood: &Neighbourhood, placed: &Placed) {
+        let origin = surface.position(hood.contracted()[0]);
+        let sum = self.sum(surface, hood.contracted());
+        let kept = hood.contracted()[placed.kept];
+        self.0[kept.index()] = sum.seen_from(placed.position - origin);
+    }
+}
+
+fn add_face(
+    quadrics: &mut [Quadric],
+    surface: &Surface,
+    face: FaceId,
+    connectivity: &Connectivity,
+) {
+    let area_normal = surface.area_normal(face);
+    let Some(normal) = area_normal.try_normalize() else { return };
+    let plane = Quadric::plane(normal, 0.5 * area_normal.length());
+    let corners = surface.face(face);
+    for v in corners {
+        quadrics[v.index()] = quadrics[v.index()] + plane;
+    }
+    for k in 0..3 {
+        let weight = match connectivity.twin(Side::new(face, k)) {
+            Twin::Boundary => BOUNDARY_WEIGHT,
+            Twin::Side(twin) if is_seam(surface, Side::new(face, k), twin) => SEAM_WEIGHT,
+            _ => continue,
+        };
+        let ends = [corners[k], corners[(k + 1) % 3]];
+        let along = surface.position(ends[1]) - surface.position(ends[0]);
+        if let Some(across) = along.cross(normal).try_normalize() {
+            let fence = Quadric::plane(across, weight * along.length_squared()).as_constraint();
+            for v in ends {
+                quadrics[v.index()] = quadrics[v.index()] + fence;
+            }
+        }
+    }
+}
+
+/// Whether the two faces of an edge use different wedges at an end of it.
+fn is_seam(surface: &Surface, side: Side, twin: Side) -> bool {
+    let Some(wedges) = &surface.wedges else { return false };
+    let ends = |side: Side| [side.corner(), (side.corner() + 1) % 3];
+    let vertex = |side: Side, k: usize| surface.face(side.face())[k];
+    ends(side).into_iter().any(|k| {
+        let at: VertexId = vertex(side, k);
+        ends(twin).into_iter().any(|l| {
+            vertex(twin, l) == at && wedges.at(twin.face(), l) != wedges.at(side.face(), k)
+        })
+    })
+}
+
+/// Where a rule of placement puts the vertex, and what that costs.
+struct Choice {
+    /// From the first of the contracted.
+    offset: DVec3,
+    kept: usize,
+    cost: f64,
+}
+
+/// The optimum of the summed quadric, as priority and as placement.
+pub(crate) struct Optimal;
+
+/// The better end of the edge, as priority and as placement: no vertex ever moves.
+pub(crate) struct Endpoint;
+
+trait Rule: Sync {
+    fn choose(sum: &Quadric, surface: &Surface, of: &Contracted, freedom: Freedom) -> Choice;
+}
+
+/// The place of one of the contracted.
+fn at(sum: &Quadric, surface: &Surface, of: &Contracted, kept: usize) -> Choice {
+    let offset = surface.position(of[kept]) - surface.position(of[0]);
+    Choice { offset, kept, cost: sum.at(offset) }
+}
+
+impl Rule for Optimal {
+    #[inline]
+    fn choose(sum: &Quadric, surface: &Surface, of: &Contracted, freedom: Freedom) -> Choice {
+        if let Freedom::At(kept) = freedom {
+            return at(sum, surface, of, kept);
+        }
+        let origin = surface.position(of[0]);
+        let middle = of.iter().map(|&v| surface.position(v) - origin).sum::<DVec3>()
+            / of.len() as f64;
+        let offset = sum.optimum(middle, PULL);
+        Choice { offset, kept: 0, cost: sum.at(offset) }
+    }
+}
+
+impl Rule for Endpoint {
+    #[inline]
+    fn choose(sum: &Quadric, surface: &Surface, of: &Contracted, freedom: Freedom) -> Choice {
+        match freedom {
+            Freedom::At(kept) => at(sum, surface, of, kept),
+            Freedom::Free => (0..of.len())
+                .map(|kept| at(sum, surface, of, kept))
+                .min_by(|a, b| a.cost.total_cmp(&b.cost))
+                .expect("a candidate has vertices"),
+        }
+    }
+}
+
+impl<R: Rule> Priority<Quadrics> for R {
+    #[inline]
+    fn cost(
+        &self,
+        surface: &Surface,
+        memory: &Quadrics,
+        of: &Contracted,
+        freedom: Freedom,
+    ) -> Option<f64> {
+        Some(R::choose(&memory.sum(surface, of), surface, of, freedom).cost)
+    }
+}
+
+impl<R: Rule> Placement<Quadrics> for R {
+    fn place(
+        &self,
+        surface: &Surface,
+        memory: &Quadrics,
+        hood: &Neighbourhood,
+    ) -> Result<Placed, Refusal> {
+        let sum = memory.sum(surface, hood.contracted());
+        let choice = R::choose(&sum, surface, hood.contracted(), hood.freedom());
+        // An end keeps its position to the bit.
+        let origin = surface.position(hood.contracted()[0]);
+        let kept = surface.position(hood.contracted()[choice.kept]);
+        let position = if choice.offset == kept - origin { kept } else { origin + choice.offset };
+        Ok(Placed { position, kept: choice.kept, error_estimate: sum.distance(choice.cost) })
+    }
+}

@@ -1,0 +1,143 @@
+//! Quadrics: squared distance to weighted planes [GH97], seen from a point of the surface.
+//!
+//! A quadric is kept relative to its vertex, not to the world's origin: the planes around a vertex
+//! pass through it, so the sums stay small and nothing cancels, wherever the model stands.
+
+use std::ops::Add;
+
+use glam::{DMat3, DVec3};
+
+/// The function Q(x) = x'Ax + 2b·x + c, x an offset from the quadric's origin, and its weight.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Quadric {
+    /// A: xx, yy, zz.
+    diagonal: DVec3,
+    /// A: yz, zx, xy.
+    off_diagonal: DVec3,
+    b: DVec3,
+    c: f64,
+    /// The sum of the planes' weights: with areas as weights, Q / weight is a mean squared
+    /// distance.
+    weight: f64,
+}
+
+impl Add for Quadric {
+    type Output = Self;
+
+    #[inline]
+    fn add(self, other: Self) -> Self {
+        Self {
+            diagonal: self.diagonal + other.diagonal,
+            off_diagonal: self.off_diagonal + other.off_diagonal,
+            b: self.b + other.b,
+            c: self.c + other.c,
+            weight: self.weight + other.weight,
+        }
+    }
+}
+
+impl Quadric {
+    /// Squared distance to the plane through the origin with this unit normal, times `weight`.
+    #[inline]
+    pub(crate) fn plane(normal: DVec3, weight: f64) -> Self {
+        let n = normal;
+        Self {
+            diagonal: n * n * weight,
+            off_diagonal: DVec3::new(n.y * n.z, n.z * n.x, n.x * n.y) * weight,
+            weight,
+            ..Self::default()
+        }
+    }
+
+    /// The same function with a weight that counts for nothing in the mean.
+    #[inline]
+    pub(crate) fn as_constraint(self) -> Self {
+        Self { weight: 0.0, ..self }
+    }
+
+    /// The same function, seen from an origin moved by `offset`.
+    #[inline]
+    pub(crate) fn seen_from(self, offset: DVec3) -> Self {
+        let ax = self.apply(offset);
+        Self { b: self.b + ax, c: self.c + (2.0 * self.b + ax).dot(offset), ..self }
+    }
+
+    /// A times `x`.
+    #[inline]
+    fn apply(&self, x: DVec3) -> DVec3 {
+        let o = self.off_diagonal;
+        self.diagonal * x
+            + DVec3::new(o.z * x.y + o.y * x.z, o.z * x.x + o.x * x.z, o.y * x.x + o.x * x.y)
+    }
+
+    /// Q at an offset. Rounding can put it a little below zero; it is cut there.
+    #[inline]
+    pub(crate) fn at(&self, x: DVec3) -> f64 {
+        ((self.apply(x) + 2.0 * self.b).dot(x) + self.c).max(0.0)
+    }
+
+    /// The root of the mean squared distance that a value of this quadric stands for.
+    #[inline]
+    pub(crate) fn distance(&self, value: f64) -> f64 {
+        if self.weight > 0.0 { (value / self.weight).sqrt() } else { 0.0 }
+    }
+
+    /// The offset where Q + `pull`·trace(A)·|x − toward|² is least.
+    ///
+    /// The pull decides only where the planes leave the point free, along a flat or an edge, and
+    /// keeps the system well conditioned there: no rank to guess, no special case.
+    #[inline]
+    pub(crate) fn optimum(&self, toward: DVec3, pull: f64) -> DVec3 {
+        let spring = pull * self.diagonal.element_sum();
+        if spring <= f64::MIN_POSITIVE {
+            return toward;
+        }
+        let (d, o) = (self.diagonal + spring, self.off_diagonal);
+        // Symmetric, so the rows of the adjugate are cross products of the columns.
+        let (x, y, z) =
+            (DVec3::new(d.x, o.z, o.y), DVec3::new(o.z, d.y, o.x), DVec3::new(o.y, o.x, d.z));
+        let (yz, zx, xy) = (y.cross(z), z.cross(x), x.cross(y));
+        let right = toward * spring - self.b;
+        let solution = DMat3::from_cols(yz, zx, xy) * right / x.dot(yz);
+        if solution.is_finite() { solution } else { toward }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn corner() -> Quadric {
+        Quadric::plane(DVec3::X, 1.0) + Quadric::plane(DVec3::Y, 2.0) + Quadric::plane(DVec3::Z, 3.0)
+    }
+
+    #[test]
+    fn measures_squared_distance_to_a_plane() {
+        let n = DVec3::new(1.0, 2.0, 2.0) / 3.0;
+        let quadric = Quadric::plane(n, 4.0);
+        assert!((quadric.at(n * 0.5 + DVec3::new(2.0, -1.0, 0.0)) - 1.0).abs() < 1e-15);
+        assert!((quadric.distance(1.0) - 0.5).abs() < 1e-15);
+    }
+
+    #[test]
+    fn is_the_same_function_from_elsewhere() {
+        let (quadric, offset) = (corner(), DVec3::new(0.3, -2.0, 5.0));
+        let x = DVec3::new(1.0, 2.0, 3.0);
+        assert!((quadric.seen_from(offset).at(x - offset) - quadric.at(x)).abs() < 1e-12);
+    }
+
+    #[test]
+    fn finds_the_corner_where_three_planes_meet() {
+        let quadric = corner().seen_from(DVec3::new(1.0, 2.0, 3.0));
+        let found = quadric.optimum(DVec3::ZERO, 1e-9);
+        assert!((found - DVec3::new(-1.0, -2.0, -3.0)).length() < 1e-6);
+    }
+
+    #[test]
+    fn on_a_flat_it_stays_where_it_is_pulled() {
+        let flat = Quadric::plane(DVec3::Z, 1.0);
+        let toward = DVec3::new(7.0, -3.0, 0.0);
+        assert!((flat.optimum(toward, 1e-6) - toward).length() < 1e-9);
+        assert_eq!(Quadric::default().optimum(toward, 1e-6), toward);
+    }
+}

@@ -1,0 +1,318 @@
+//! The surface while it shrinks: vertices with their stars, faces, wedges.
+//!
+//! A star is a run of face ids in one shared array, so that the faces around a vertex load side by
+//! side; a vertex's position, star and flags are one record, since they are wanted together.
+//! Nothing here needs the surface to be manifold.
+
+use glam::DVec3;
+use meshlod_mesh::{Connectivity, FaceId, Mesh, VertexId};
+
+use crate::candidates::CandidateId;
+use crate::contracted::Contracted;
+use crate::neighbourhood::Neighbourhood;
+use crate::wedges::Wedges;
+
+/// Where a contraction puts its vertex, and which of the contracted lives on as it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Placed {
+    /// The new position.
+    pub position: DVec3,
+    /// The vertex that stays, by its place among the contracted.
+    pub kept: usize,
+    /// The algorithm's own estimate of how far the surface moves here, in model units.
+    pub error_estimate: f64,
+}
+
+/// What is known of a candidate. At most one entry of it is in the queue at any time.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[repr(u8)]
+pub(crate) enum State {
+    /// Not on the books.
+    #[default]
+    Closed,
+    /// In the queue.
+    Queued,
+    /// Refused; not in the queue.
+    Parked,
+    /// Closed, but its entry is still in the queue, to be dropped when met.
+    Ghost,
+}
+
+/// A face, and how the candidates on it stand: whoever wants one wants the other.
+#[derive(Clone, Copy, Debug)]
+struct Face {
+    vertices: [VertexId; 3],
+    alive: bool,
+    states: [State; 3],
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Vertex {
+    position: DVec3,
+    star: u32,
+    valence: u32,
+    version: u32,
+    flags: Flags,
+}
+
+/// What the engine must know of a vertex.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) struct Flags(u32);
+
+impl Flags {
+    /// It ends a boundary edge.
+    pub(crate) const BOUNDARY: Self = Self(1);
+    /// It must not move: locked, or not manifold.
+    pub(crate) const PINNED: Self = Self(2);
+    /// It may have more than one wedge.
+    pub(crate) const SEAM: Self = Self(4);
+    /// A refused candidate waits for its neighbourhood to change.
+    pub(crate) const AWAITED: Self = Self(8);
+
+    #[inline]
+    pub(crate) fn any(self, of: Self) -> bool {
+        self.0 & of.0 != 0
+    }
+
+    #[inline]
+    pub(crate) fn or(self, other: Self) -> Self {
+        Self(self.0 | other.0)
+    }
+}
+
+/// A surface that contractions change in place. Ids stay those of the input mesh.
+pub struct Surface {
+    vertices: Vec<Vertex>,
+    faces: Vec<Face>,
+    stars: Vec<FaceId>,
+    live_faces: usize,
+    pub(crate) wedges: Option<Wedges>,
+}
+
+impl Surface {
+    /// The surface of the faces that `connectivity` connects; others are not alive in it.
+    pub(crate) fn new(mesh: &Mesh, connectivity: &Connectivity) -> Self {
+        let face = |&vertices: &[VertexId; 3]| Face {
+            vertices,
+            alive: false,
+            states: [State::default(); 3],
+        };
+        let mut faces: Vec<Face> = mesh.faces.iter().map(face).collect();
+        let mut stars = Vec::with_capacity(mesh.faces.len() * 3 + mesh.faces.len() / 2 + 64);
+        let vertices = (0..mesh.positions.len())
+            .map(|v| {
+                let star = connectivity.star(VertexId::new(v));
+                let start = stars.len() as u32;
+                stars.extend_from_slice(star);
+                star.iter().for_each(|f| faces[f.index()].alive = true);
+                let marks = connectivity.marks(VertexId::new(v));
+                let mut flags = Flags::default();
+                if marks.boundary() {
+                    flags = flags.or(Flags::BOUNDARY);
+                }
+                if marks.non_manifold() {
+                    flags = flags.or(Flags::PINNED);
+                }
+                Vertex {
+                    position: mesh.positions[v].into(),
+                    star: start,
+                    valence: star.len() as u32,
+                    version: 0,
+                    flags,
+                }
+            })
+            .collect();
+        let live_faces = faces.iter().filter(|face| face.alive).count();
+        let mut surface =
+            Self { vertices, faces, stars, live_faces, wedges: Wedges::of(mesh) };
+        surface.flag_seams();
+        surface
+    }
+
+    fn flag_seams(&mut self) {
+        let Some(wedges) = &self.wedges else { return };
+        let on_seam = |&v: &VertexId| {
+            let mut at = self.star(v).iter().map(|&f| wedges.at(f, self.corner(f, v)));
+            let first = at.next();
+            at.any(|wedge| Some(wedge) != first)
+        };
+        let seams: Vec<_> =
+            (0..self.vertices.len()).map(VertexId::new).filter(on_seam).collect();
+        for v in seams {
+            self.flag(v, Flags::SEAM);
+        }
+    }
+
+    /// How many faces are left.
+    #[inline]
+    pub fn live_faces(&self) -> usize {
+        self.live_faces
+    }
+
+    /// Whether a face is left.
+    #[inline]
+    pub fn is_alive(&self, face: FaceId) -> bool {
+        self.faces[face.index()].alive
+    }
+
+    /// The vertices of a face now; of one that is gone, when it went.
+    #[inline]
+    pub fn face(&self, face: FaceId) -> [VertexId; 3] {
+        self.faces[face.index()].vertices
+    }
+
+    /// How a candidate stands.
+    #[inline]
+    pub(crate) fn state(&mut self, id: CandidateId) -> &mut State {
+        &mut self.faces[id.face().index()].states[id.corner()]
+    }
+
+    /// Where a vertex is now; one that is gone, where it went.
+    #[inline]
+    pub fn position(&self, vertex: VertexId) -> DVec3 {
+        self.vertices[vertex.index()].position
+    }
+
+    /// The faces around a vertex, in no order.
+    #[inline]
+    pub fn star(&self, vertex: VertexId) -> &[FaceId] {
+        let Vertex { star, valence, .. } = self.vertices[vertex.index()];
+        &self.stars[star as usize..(star + valence) as usize]
+    }
+
+    /// How many vertices the input had; ids run below this.
+    #[inline]
+    pub fn vertex_count(&self) -> usize {
+        self.vertices.len()
+    }
+
+    /// How many faces the input had; ids run below this.
+    #[inline]
+    pub fn face_count(&self) -> usize {
+        self.faces.len()
+    }
+
+    /// Twice the area of a face, along its normal.
+    #[inline]
+    pub fn area_normal(&self, face: FaceId) -> DVec3 {
+        let [a, b, c] = self.face(face).map(|v| self.position(v));
+        (b - a).cross(c - a)
+    }
+
+    /// Which corner of `face` is at `vertex`.
+    #[inline]
+    pub(crate) fn corner(&self, face: FaceId, vertex: VertexId) -> usize {
+        corner_of(self.face(face), vertex)
+    }
+
+    #[inline]
+    pub(crate) fn flags(&self, vertex: VertexId) -> Flags {
+        self.vertices[vertex.index()].flags
+    }
+
+    #[inline]
+    pub(crate) fn flag(&mut self, vertex: VertexId, flag: Flags) {
+        let flags = &mut self.vertices[vertex.index()].flags;
+        *flags = flags.or(flag);
+    }
+
+    #[inline]
+    pub(crate) fn unflag(&mut self, vertex: VertexId, flag: Flags) {
+        self.vertices[vertex.index()].flags.0 &= !flag.0;
+    }
+
+    /// A number that changes whenever a vertex among these does, and never comes back.
+    #[inline]
+    pub(crate) fn stamp(&self, vertices: &[VertexId]) -> u32 {
+        vertices.iter().fold(0, |sum, v| sum.wrapping_add(self.vertices[v.index()].version))
+    }
+
+    /// Makes one vertex of the contracted ones, at `placed`, exactly as `hood` was gathered.
+    pub(crate) fn contract(&mut self, hood: &Neighbourhood, placed: &Placed) {
+        let kept = hood.contracted[placed.kept];
+        if let Some(wedges) = &mut self.wedges {
+            let t = blend_factor(&self.vertices, &hood.contracted, placed);
+            wedges.contract(hood, placed.kept, t);
+        }
+        for spoke in hood.spokes.iter().filter(|spoke| spoke.owner() != placed.kept) {
+            self.faces[spoke.face.index()].vertices[spoke.corner()] = kept;
+        }
+        for dying in &hood.dying {
+            self.faces[dying.face.index()].alive = false;
+            if let Some(apex) = dying.apex() {
+                self.leave_star(hood.ring[apex].id, dying.face);
+            }
+        }
+        self.live_faces -= hood.dying.len();
+        self.join(hood, kept, placed.position);
+    }
+
+    /// Gives `kept` the surviving faces, the flags and a version above all the contracted.
+    fn join(&mut self, hood: &Neighbourhood, kept: VertexId, position: DVec3) {
+        let mut joined = Vertex {
+            position,
+            valence: hood.spokes.len() as u32,
+            version: 1,
+            ..self.vertices[kept.index()]
+        };
+        let mut room = 0;
+        for v in hood.contracted.iter() {
+            let vertex = &mut self.vertices[v.index()];
+            joined.flags = joined.flags.or(vertex.flags);
+            joined.version = joined.version.wrapping_add(vertex.version);
+            if vertex.valence > room {
+                (room, joined.star) = (vertex.valence, vertex.star);
+            }
+            vertex.valence = 0;
+        }
+        if joined.valence > room {
+            if self.stars.len() + hood.spokes.len() > self.stars.capacity() {
+                self.pack_stars(hood.spokes.len());
+            }
+            joined.star = self.stars.len() as u32;
+            self.stars.extend(hood.spokes.iter().map(|spoke| spoke.face));
+        } else {
+            for (slot, spoke) in self.stars[joined.star as usize..].iter_mut().zip(&hood.spokes) {
+                *slot = spoke.face;
+            }
+        }
+        self.vertices[kept.index()] = joined;
+    }
+
+    fn leave_star(&mut self, vertex: VertexId, face: FaceId) {
+        let Vertex { star, valence, .. } = &mut self.vertices[vertex.index()];
+        let star = &mut self.stars[*star as usize..(*star + *valence) as usize];
+        if let Some(place) = star.iter().position(|&f| f == face) {
+            star.swap(place, star.len() - 1);
+            *valence -= 1;
+        }
+    }
+
+    /// Moves the stars together again, with room for `more` and then some.
+    fn pack_stars(&mut self, more: usize) {
+        let live = self.live_faces * 3;
+        let mut packed = Vec::with_capacity(live + live / 4 + more + 64);
+        for vertex in &mut self.vertices {
+            let star = vertex.star as usize..(vertex.star + vertex.valence) as usize;
+            vertex.star = packed.len() as u32;
+            packed.extend_from_slice(&self.stars[star]);
+        }
+        self.stars = packed;
+    }
+}
+
+/// Which of a face's vertices this is.
+#[inline]
+pub(crate) fn corner_of(face: [VertexId; 3], vertex: VertexId) -> usize {
+    usize::from(face[0] != vertex) + usize::from(face[0] != vertex && face[1] != vertex)
+}
+
+/// Where between the kept vertex (0) and the other end of an edge (1) the new position lies.
+fn blend_factor(vertices: &[Vertex], contracted: &Contracted, placed: &Placed) -> f64 {
+    let &[v0, v1] = &contracted[..] else { return 0.0 };
+    let (kept, gone) = if placed.kept == 0 { (v0, v1) } else { (v1, v0) };
+    let from = vertices[kept.index()].position;
+    let along = vertices[gone.index()].position - from;
+    let t = (placed.position - from).dot(along) / along.length_squared();
+    if t.is_finite() { t.clamp(0.0, 1.0) } else { 0.0 }
+}
