@@ -9,23 +9,22 @@ use crate::{Mesh, face_components};
 
 /// Periods of the gyroid across the lattice.
 const PERIODS: f64 = 3.0;
-/// The level whose inside is kept. At 0 both sides are alike and the ball leaves crumbs of tubes
-/// that it cuts off; at 0.2 they are rare.
-const LEVEL: f64 = 0.2;
+/// The level whose inside is kept: below 0, so that its tubes are thinner than its tunnels.
+const LEVEL: f64 = -0.3;
 /// Radius of the ball: clear of the lattice's border.
 const RADIUS: f64 = 0.97;
 /// How far from the edge that the ball cuts its rounding begins, in units of length.
-const ROUNDING: f64 = 0.05;
-/// Faces are near `SQUARE * cells² - LINE * cells`: fitted at 16, 24, 32 and 64 cells a side.
-const SQUARE: f64 = 53.0;
-const LINE: f64 = 90.0;
+const ROUNDING: f64 = 0.15;
+/// Faces are near `SQUARE * cells² - LINE * cells`: fitted at 12 to 98 cells a side.
+const SQUARE: f64 = 42.0;
+const LINE: f64 = 52.0;
 
 /// One of the gyroid's two labyrinths, cut off by a ball: one closed surface with dozens of tunnels.
 ///
-/// Faces: within 5 % of `faces` from 20,000 on; at least about 6,500, below which the lattice would
-/// be too coarse for the tunnels. The edges that the ball cuts are
-/// rounded a little. The finest tunnels, and with them the
-/// genus, depend a little on the size. Cost: O(faces^1.5).
+/// Faces: within 5 % of `faces` from 20,000 on; at least about 5,000, below which the lattice would
+/// be too coarse for the tunnels. The edges that the ball cuts are rounded a little. Which tunnels
+/// the ball grazes depends on the size, and with them the genus, between 28 and 43.
+/// Cost: O(faces^1.5).
 /// # References
 /// [Sch70], by the usual trigonometric level set.
 pub fn gyroid(faces: usize) -> Mesh {

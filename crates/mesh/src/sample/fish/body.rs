@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::build::Spot;
+use super::patch::Spot;
 use super::radians;
 
 /// Left or right.

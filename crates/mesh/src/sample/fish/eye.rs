@@ -3,8 +3,8 @@
 use glam::DVec3;
 
 use super::body::{self, Side, Site};
-use super::build::{Block, Chart, Patch, Shape, Spot, Within};
 use super::fin::Root;
+use super::patch::{Block, Chart, Patch, Shape, Spot, Within};
 
 /// Where the left eye sits.
 pub(super) const ROOT: Root = Root::Along([0.085, 0.155], 0.335);

@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::body::{self, FIN_RIM, FIN_ROOT, Side, Site, Sites, step};
-use super::build::{Chart, Shape, Spot, Within};
+use super::patch::{Chart, Shape, Spot, Within};
 use super::radians;
 
 /// A fin that grows out of a block of the grid.
@@ -111,8 +111,11 @@ impl Fin {
     }
 
     fn median(&self, u: f64, t: f64, height: f64, sweep: f64) -> DVec3 {
-        let Root::Along([from, to], turn) = self.root else { unreachable!("they run along") };
-        let root = body::point(from + u * (to - from), turn);
+        let [along, turn] = match self.root {
+            Root::Along([from, to], turn) => [from + u * (to - from), turn],
+            Root::Around(along, [from, to]) => [along, from + u * (to - from)],
+        };
+        let root = body::point(along, turn);
         // Tall in front, low at the back, with a swing to a point at the very end.
         let rise = 0.18 + 0.82 * step(0.0, 0.28, u) * (1.0 - 0.45 * step(0.3, 0.9, u));
         let back = sweep * t * (0.35 + 0.65 * t) * (0.45 + 0.55 * u);
@@ -122,7 +125,7 @@ impl Fin {
     /// The unit vector across the sheet, the way the block's coordinate across it grows.
     fn across(&self) -> DVec3 {
         match (&self.kind, self.root) {
-            (Kind::Median { .. }, Root::Along(_, turn)) if turn == 0.5 => DVec3::NEG_Z,
+            (Kind::Median { .. }, Root::Along(_, 0.5)) => DVec3::NEG_Z,
             (Kind::Median { .. }, _) => DVec3::Z,
             (Kind::Paired { span, chord, .. }, root) => {
                 let across = span.cross(*chord).normalize();

@@ -14,12 +14,16 @@ mod body;
 mod build;
 mod eye;
 mod fin;
+mod patch;
+#[cfg(test)]
+mod tests;
 
 use std::f64::consts::TAU;
 
 use body::{Side, Site, Sites};
-use build::{Block, Builder, Patch};
+use build::Builder;
 use fin::{Fin, Root};
+use patch::{Block, Patch};
 
 use crate::Mesh;
 
