@@ -1,0 +1,99 @@
+//! Faces and strips, to triangles.
+
+use meshlod_mesh::VertexId;
+
+use super::header::{Element, Shape};
+use super::source::{Row, Source};
+use crate::ParseError;
+use crate::polygon::triangulate;
+
+/// Ends a strip within a list; no vertex has this index.
+const RESTART: u32 = u32::MAX;
+
+/// The triangles so far, and room that is used again for every row.
+#[derive(Default)]
+pub(super) struct Faces {
+    pub triangles: Vec<[VertexId; 3]>,
+    list: Vec<u32>,
+    corners: Vec<[u32; 3]>,
+}
+
+impl Faces {
+    /// Adds the rows of an element `face` or `tristrips`.
+    pub fn read<S: Source>(
+        &mut self,
+        source: &mut S,
+        element: &Element,
+        positions: &[[f64; 3]],
+    ) -> Result<(), ParseError> {
+        let Some(list) = element.face_list() else {
+            let reason = format!("element {} has no list vertex_indices", element.name);
+            return Err(ParseError::part("header", reason));
+        };
+        let is_strip = element.name == "tristrips";
+        let mut first = 0;
+        if !is_strip {
+            first = source.quick_triangles(element, positions.len(), &mut self.triangles);
+            let rest = (element.count - first).min(source.most_rows(element) as u64);
+            self.triangles.reserve(rest as usize);
+        }
+        for index in first..element.count {
+            let row = Row { element, index };
+            source.begin_row();
+            for (at, property) in element.properties.iter().enumerate() {
+                match property.shape {
+                    Shape::List { length, item } if at == list => {
+                        let length = source.length(length, item, row)?;
+                        self.list.clear();
+                        for _ in 0..length {
+                            let index = source.number(item, row)?;
+                            let vertex = match index {
+                                -1.0 if is_strip => RESTART,
+                                _ => checked(index, positions.len())
+                                    .map_err(|reason| source.wrong(format!("{row} {reason}")))?,
+                            };
+                            self.list.push(vertex);
+                        }
+                    }
+                    shape => source.pass_property(shape, row)?,
+                }
+            }
+            source.end_row(row)?;
+            if is_strip { self.add_strips() } else { self.add_polygon(positions) }
+        }
+        Ok(())
+    }
+
+    fn add_polygon(&mut self, positions: &[[f64; 3]]) {
+        if let [a, b, c] = self.list[..] {
+            self.triangles.push([a, b, c].map(VertexId));
+            return;
+        }
+        self.corners.clear();
+        triangulate(positions, &self.list, &mut self.corners);
+        let vertex = |corner: u32| VertexId(self.list[corner as usize]);
+        self.triangles.extend(self.corners.iter().map(|triangle| triangle.map(vertex)));
+    }
+
+    /// Every second triangle of a strip is turned round. Those that repeat a vertex only join one
+    /// part of a strip to the next.
+    fn add_strips(&mut self) {
+        for strip in self.list.split(|&v| v == RESTART) {
+            for (i, window) in strip.windows(3).enumerate() {
+                let (a, b, c) = (window[0], window[1], window[2]);
+                if a != b && b != c && c != a {
+                    let triangle = if i % 2 == 0 { [a, b, c] } else { [b, a, c] };
+                    self.triangles.push(triangle.map(VertexId));
+                }
+            }
+        }
+    }
+}
+
+/// The index of a vertex, or why it is none.
+fn checked(index: f64, vertices: usize) -> Result<u32, String> {
+    if index.fract() == 0.0 && (0.0..vertices as f64).contains(&index) {
+        return Ok(index as u32);
+    }
+    Err(format!("names vertex {index}, but there are only {vertices} vertices, counted from 0"))
+}

@@ -1,0 +1,348 @@
+//! The header: which elements follow, and what each of their rows holds.
+
+use std::collections::HashSet;
+
+use crate::ParseError;
+
+/// How the body is written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Encoding {
+    Text,
+    LittleEndian,
+    BigEndian,
+}
+
+/// The type of a number.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Scalar {
+    I8,
+    U8,
+    I16,
+    U16,
+    I32,
+    U32,
+    F32,
+    F64,
+}
+
+/// What a property holds in each row.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Shape {
+    One(Scalar),
+    /// A length, then so many items.
+    List {
+        length: Scalar,
+        item: Scalar,
+    },
+}
+
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) struct Property {
+    pub name: String,
+    pub shape: Shape,
+}
+
+/// `count` rows of `properties`.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) struct Element {
+    pub name: String,
+    pub count: u64,
+    pub properties: Vec<Property>,
+}
+
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) struct Header {
+    pub encoding: Encoding,
+    pub elements: Vec<Element>,
+    /// Where the body begins: its byte, and its line counted from 1.
+    pub body: usize,
+    pub body_line: usize,
+}
+
+impl Header {
+    /// Reads up to and with the line `end_header`.
+    pub fn parse(bytes: &[u8]) -> Result<Self, ParseError> {
+        if bytes.is_empty() {
+            return Err(ParseError::byte(0, "the file is empty"));
+        }
+        let mut lines = Lines { rest: bytes, number: 0 };
+        if lines.next().is_none_or(|line| line.trim_ascii() != b"ply") {
+            return Err(ParseError::line(1, "not a PLY file: its first line must be \"ply\""));
+        }
+        let mut draft = Draft::default();
+        while let Some(line) = lines.next() {
+            let line = String::from_utf8_lossy(line);
+            let wrong = |reason: String| ParseError::line(lines.number, reason);
+            let mut words = line.split_ascii_whitespace();
+            match words.next() {
+                Some("end_header") => {
+                    let encoding = draft
+                        .encoding
+                        .ok_or_else(|| wrong("the header ends without a line \"format\"".into()))?;
+                    let body = bytes.len() - lines.rest.len();
+                    let body_line = lines.number + 1;
+                    return Ok(Self { encoding, elements: draft.elements, body, body_line });
+                }
+                Some(keyword) => draft.add(keyword, &mut words).map_err(wrong)?,
+                None => {}
+            }
+        }
+        Err(ParseError::line(lines.number, "the file ends before \"end_header\""))
+    }
+}
+
+/// Lines that end in LF, CR LF or CR, without the end.
+struct Lines<'a> {
+    rest: &'a [u8],
+    number: usize,
+}
+
+impl<'a> Iterator for Lines<'a> {
+    type Item = &'a [u8];
+
+    fn next(&mut self) -> Option<&'a [u8]> {
+        if self.rest.is_empty() {
+            return None;
+        }
+        let bytes = self.rest;
+        let end = bytes.iter().position(|b| matches!(b, b'\n' | b'\r')).unwrap_or(bytes.len());
+        let ending = match bytes[end..] {
+            [b'\r', b'\n', ..] => 2,
+            [] => 0,
+            _ => 1,
+        };
+        self.rest = &bytes[end + ending..];
+        self.number += 1;
+        Some(&bytes[..end])
+    }
+}
+
+/// The header so far.
+#[derive(Default)]
+struct Draft {
+    encoding: Option<Encoding>,
+    elements: Vec<Element>,
+    /// Names of elements, and of the properties of the last one.
+    element_names: HashSet<String>,
+    property_names: HashSet<String>,
+}
+
+impl Draft {
+    /// Takes one line in.
+    fn add<'a>(
+        &mut self,
+        keyword: &str,
+        words: &mut impl Iterator<Item = &'a str>,
+    ) -> Result<(), String> {
+        match keyword {
+            "comment" | "obj_info" => Ok(()),
+            "format" => self.add_format(words.next()),
+            "element" => self.add_element(words.next(), words.next()),
+            "property" => self.add_property(words),
+            _ => Err(format!(
+                "unknown keyword \"{}\"; known are format, element, property, comment, obj_info, \
+                 end_header",
+                shown(keyword)
+            )),
+        }
+    }
+
+    fn add_format(&mut self, name: Option<&str>) -> Result<(), String> {
+        self.encoding = Some(match name {
+            Some("ascii") => Encoding::Text,
+            Some("binary_little_endian") => Encoding::LittleEndian,
+            Some("binary_big_endian") => Encoding::BigEndian,
+            other => {
+                return Err(format!(
+                    "unknown format \"{}\"; known are ascii, binary_little_endian, \
+                     binary_big_endian",
+                    shown(other.unwrap_or_default())
+                ));
+            }
+        });
+        Ok(())
+    }
+
+    fn add_element(&mut self, name: Option<&str>, count: Option<&str>) -> Result<(), String> {
+        let (Some(name), Some(count)) = (name, count) else {
+            return Err("an element needs a name and a count".into());
+        };
+        let count = count
+            .parse()
+            .map_err(|_| format!("element {}: \"{}\" is not a count", shown(name), shown(count)))?;
+        if !self.element_names.insert(name.to_owned()) {
+            return Err(format!("a second element {}", shown(name)));
+        }
+        self.property_names.clear();
+        self.elements.push(Element { name: name.to_owned(), count, properties: Vec::new() });
+        Ok(())
+    }
+
+    fn add_property<'a>(
+        &mut self,
+        words: &mut impl Iterator<Item = &'a str>,
+    ) -> Result<(), String> {
+        let element = self.elements.last_mut().ok_or("a property before the first element")?;
+        let shape = match words.next() {
+            Some("list") => {
+                let length = scalar(words.next())?;
+                if matches!(length, Scalar::F32 | Scalar::F64) {
+                    return Err("the length of a list must have a whole-number type".into());
+                }
+                Shape::List { length, item: scalar(words.next())? }
+            }
+            one => Shape::One(scalar(one)?),
+        };
+        let name = words.next().ok_or("a property needs a type and a name")?.to_owned();
+        if !self.property_names.insert(name.clone()) {
+            return Err(format!("element {}: a second {}", shown(&element.name), shown(&name)));
+        }
+        element.properties.push(Property { name, shape });
+        Ok(())
+    }
+}
+
+/// The type of a name, in the old and in the sized spelling.
+fn scalar(name: Option<&str>) -> Result<Scalar, String> {
+    let name = name.ok_or("a property needs a type and a name")?;
+    Ok(match name {
+        "char" | "int8" => Scalar::I8,
+        "uchar" | "uint8" => Scalar::U8,
+        "short" | "int16" => Scalar::I16,
+        "ushort" | "uint16" => Scalar::U16,
+        "int" | "int32" => Scalar::I32,
+        "uint" | "uint32" => Scalar::U32,
+        "float" | "float32" => Scalar::F32,
+        "double" | "float64" => Scalar::F64,
+        _ => return Err(format!("unknown type \"{}\"", shown(name))),
+    })
+}
+
+/// A word of the file as an error shows it: short, and on one line.
+pub(super) fn shown(word: &str) -> String {
+    const MOST: usize = 40;
+    let mut text: String = word.chars().take(MOST).flat_map(char::escape_debug).collect();
+    if word.chars().nth(MOST).is_some() {
+        text.push('…');
+    }
+    text
+}
+
+impl Scalar {
+    /// Bytes in binary data.
+    pub fn size(self) -> usize {
+        match self {
+            Self::I8 | Self::U8 => 1,
+            Self::I16 | Self::U16 => 2,
+            Self::I32 | Self::U32 | Self::F32 => 4,
+            Self::F64 => 8,
+        }
+    }
+
+    /// Least and greatest value; `None` for the floating types.
+    pub fn whole_range(self) -> Option<(i64, i64)> {
+        Some(match self {
+            Self::I8 => (i8::MIN.into(), i8::MAX.into()),
+            Self::U8 => (0, u8::MAX.into()),
+            Self::I16 => (i16::MIN.into(), i16::MAX.into()),
+            Self::U16 => (0, u16::MAX.into()),
+            Self::I32 => (i32::MIN.into(), i32::MAX.into()),
+            Self::U32 => (0, u32::MAX.into()),
+            Self::F32 | Self::F64 => return None,
+        })
+    }
+}
+
+impl Shape {
+    /// Least bytes in binary data: a list may be empty.
+    pub fn least_size(self) -> usize {
+        match self {
+            Self::One(scalar) => scalar.size(),
+            Self::List { length, .. } => length.size(),
+        }
+    }
+}
+
+impl Element {
+    /// Least bytes of a row in binary data; its bytes where there are no lists.
+    pub fn least_row_size(&self) -> usize {
+        self.properties.iter().map(|property| property.shape.least_size()).sum()
+    }
+
+    /// Whether every row has the same size.
+    pub fn is_fixed(&self) -> bool {
+        self.properties.iter().all(|property| matches!(property.shape, Shape::One(_)))
+    }
+
+    /// Whether its rows are faces or strips.
+    pub fn holds_faces(&self) -> bool {
+        matches!(self.name.as_str(), "face" | "tristrips")
+    }
+
+    /// Which property lists the vertices of a face.
+    pub fn face_list(&self) -> Option<usize> {
+        self.properties.iter().position(|property| {
+            matches!(property.name.as_str(), "vertex_indices" | "vertex_index")
+                && matches!(property.shape, Shape::List { .. })
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn parse(text: &str) -> Result<Header, String> {
+        Header::parse(text.as_bytes()).map_err(|e| e.to_string())
+    }
+
+    #[test]
+    fn body_begins_behind_any_kind_of_line_end() {
+        for (end, data) in [("\n", "\n\n"), ("\r\n", "\n"), ("\r", "x")] {
+            let head = ["ply", "format ascii 1.0", "end_header", ""].join(end);
+            let header = parse(&(head.clone() + data)).unwrap();
+            assert_eq!((header.body, header.body_line), (head.len(), 4), "{end:?}");
+        }
+    }
+
+    #[test]
+    fn both_spellings_name_the_same_type() {
+        let header = |kind: &str, list: &str| {
+            let text = format!(
+                "ply\nformat ascii 1.0\nelement a 1\nproperty {kind} p\nproperty list {list} {kind} q\nend_header\n"
+            );
+            parse(&text).unwrap().elements
+        };
+        assert_eq!(header("double", "uchar"), header("float64", "uint8"));
+        assert_ne!(header("float", "uchar"), header("float64", "uint8"));
+    }
+
+    #[test]
+    fn errors_name_the_line() {
+        let cases = [
+            ("", "byte 0: the file is empty"),
+            ("solid x\n", "line 1: not a PLY file: its first line must be \"ply\""),
+            ("ply\nformat ascii 1.0\n", "line 2: the file ends before \"end_header\""),
+            ("ply\nend_header\n", "line 2: the header ends without a line \"format\""),
+            ("ply\nelement vertex -3\n", "line 2: element vertex: \"-3\" is not a count"),
+            ("ply\nproperty int x\n", "line 2: a property before the first element"),
+            ("ply\nelement e 1\nproperty real x\n", "line 3: unknown type \"real\""),
+            ("ply\nelement e 1\nproperty int\n", "line 3: a property needs a type and a name"),
+            ("ply\nelement e 1\nelement e 1\n", "line 3: a second element e"),
+            ("ply\nelement e 1\nproperty int x\nproperty int x\n", "line 4: element e: a second x"),
+            (
+                "ply\nelement e 1\nproperty list float int x\n",
+                "line 3: the length of a list must have a whole-number type",
+            ),
+        ];
+        for (text, message) in cases {
+            assert_eq!(parse(text).unwrap_err(), message);
+        }
+    }
+
+    #[test]
+    fn long_and_odd_words_are_shown_short_and_on_one_line() {
+        let message = parse(&format!("ply\n\u{1b}[2J{}\n", "x".repeat(1000))).unwrap_err();
+        assert!(message.len() < 200 && !message.contains('\u{1b}'), "{message}");
+    }
+}

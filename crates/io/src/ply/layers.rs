@@ -1,0 +1,273 @@
+//! Which vertex properties make which layer: one table, read in both directions.
+
+use std::collections::{HashMap, HashSet};
+
+use meshlod_mesh::{Layer, LayerKind};
+
+use super::header::{Property, Shape};
+
+/// A layer of the file, before its values.
+#[derive(Debug, PartialEq)]
+pub(super) struct LayerColumns {
+    pub kind: LayerKind,
+    pub name: String,
+    /// Never empty; one per value of a wedge.
+    pub columns: Vec<Column>,
+}
+
+/// Where one value comes from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Column {
+    /// By index among the element's properties.
+    pub property: usize,
+    /// What the file's number is divided by.
+    pub unit: f64,
+}
+
+/// The layers among the properties of a vertex, in the order of the file.
+///
+/// Sets of which a name is missing, and what is not known, become [`LayerKind::Other`]; lists and
+/// the coordinates become nothing.
+pub(super) fn columns(properties: &[Property]) -> Vec<LayerColumns> {
+    let mut free = free_numbers(properties);
+    let mut layers: Vec<LayerColumns> = Vec::new();
+    for property in properties {
+        if let Some((kind, names)) = known_set(&property.name)
+            && layers.iter().all(|layer| layer.kind != kind)
+            && let Some(mut columns) = take(&mut free, &names)
+        {
+            if let LayerKind::Color(set) = kind {
+                let alpha = numbered("alpha", set);
+                columns.extend(take(&mut free, &[alpha]).unwrap_or_default());
+                columns.iter_mut().for_each(|c| c.unit = greatest(&properties[c.property]));
+            }
+            let name = columns.iter().map(|c| properties[c.property].name.as_str());
+            let name = name.collect::<Vec<_>>().join(" ");
+            layers.push(LayerColumns { kind, name, columns });
+        }
+    }
+    for property in properties {
+        let names = run_from(&property.name, &free);
+        if let Some(columns) = take(&mut free, &names) {
+            let name = match names.len() {
+                1 => property.name.clone(),
+                _ => property.name[..property.name.len() - "_0".len()].to_owned(),
+            };
+            layers.push(LayerColumns { kind: LayerKind::Other, name, columns });
+        }
+    }
+    layers.sort_by_key(|layer| layer.columns[0].property);
+    layers
+}
+
+/// The properties that hold one number each, by name, without the coordinates.
+fn free_numbers(properties: &[Property]) -> HashMap<&str, usize> {
+    properties
+        .iter()
+        .enumerate()
+        .filter(|(_, p)| matches!(p.shape, Shape::One(_)) && !is_coordinate(&p.name))
+        .map(|(i, p)| (p.name.as_str(), i))
+        .collect()
+}
+
+fn is_coordinate(name: &str) -> bool {
+    matches!(name, "x" | "y" | "z")
+}
+
+/// The columns of all these names, which are then no longer free, or `None` if one is not.
+fn take(free: &mut HashMap<&str, usize>, names: &[String]) -> Option<Vec<Column>> {
+    let columns = names
+        .iter()
+        .map(|name| free.get(name.as_str()).map(|&property| Column { property, unit: 1.0 }))
+        .collect::<Option<Vec<_>>>()?;
+    for name in names {
+        free.remove(name.as_str());
+    }
+    Some(columns)
+}
+
+/// The known set that begins with a name: its kind and all its names, without alpha.
+fn known_set(first: &str) -> Option<(LayerKind, Vec<String>)> {
+    // What others call the set that is written as "s t".
+    if let Some(second) = match first {
+        "u" => Some("v"),
+        "texture_u" => Some("texture_v"),
+        _ => None,
+    } {
+        return Some((LayerKind::Uv(0), vec![first.into(), second.into()]));
+    }
+    let digits = first.find(|c: char| c.is_ascii_digit()).unwrap_or(first.len());
+    let (stem, number) = first.split_at(digits);
+    let set = match number.trim_end_matches("_0") {
+        "" => 0,
+        number => number.parse().ok()?,
+    };
+    let kind = match stem {
+        "nx" => LayerKind::Normal,
+        "s" => LayerKind::Uv(set),
+        "red" => LayerKind::Color(set),
+        "tx" => LayerKind::Tangent,
+        "joint" => LayerKind::Joints(set),
+        "weight" => LayerKind::Weights(set),
+        _ => return None,
+    };
+    let names = set_names(kind);
+    // "s01" and "red0" are names of something else.
+    (names[0] == first).then_some((kind, names))
+}
+
+/// The names of a known set, without alpha; none for the other layers.
+fn set_names(kind: LayerKind) -> Vec<String> {
+    let several = |stems: &[&str], set| stems.iter().map(|stem| numbered(stem, set)).collect();
+    let four = |stem: &str, set: u8| (0..4).map(|i| format!("{stem}{set}_{i}")).collect();
+    match kind {
+        LayerKind::Normal => several(&["nx", "ny", "nz"], 0),
+        LayerKind::Uv(set) => several(&["s", "t"], set),
+        LayerKind::Color(set) => several(&["red", "green", "blue"], set),
+        LayerKind::Tangent => several(&["tx", "ty", "tz", "tw"], 0),
+        LayerKind::Joints(set) => four("joint", set),
+        LayerKind::Weights(set) => four("weight", set),
+        LayerKind::Other => Vec::new(),
+    }
+}
+
+/// The name in a set: the first set has no number.
+fn numbered(stem: &str, set: u8) -> String {
+    match set {
+        0 => stem.to_owned(),
+        _ => format!("{stem}{set}"),
+    }
+}
+
+/// The free names `name_0 name_1` … that begin with this one; else this one alone.
+fn run_from(first: &str, free: &HashMap<&str, usize>) -> Vec<String> {
+    let Some(base) = first.strip_suffix("_0") else { return vec![first.to_owned()] };
+    let run = (0..).map(|i| format!("{base}_{i}"));
+    let run: Vec<_> = run.take_while(|name| free.contains_key(name.as_str())).collect();
+    if run.is_empty() { vec![first.to_owned()] } else { run }
+}
+
+/// What a colour is divided by: the greatest value of a whole-number type, 1 for the others.
+fn greatest(property: &Property) -> f64 {
+    let (Shape::One(kind) | Shape::List { item: kind, .. }) = property.shape;
+    kind.whole_range().map_or(1.0, |(_, most)| most as f64)
+}
+
+/// The property names that each layer is written under, one per value of a wedge. No name comes
+/// twice, and none is a coordinate's.
+pub(super) fn names(layers: &[Layer]) -> Vec<Vec<String>> {
+    let mut used: HashSet<String> = ["x", "y", "z"].map(str::to_owned).into();
+    layers
+        .iter()
+        .map(|layer| {
+            let names = layer_names(layer, &used);
+            used.extend(names.iter().cloned());
+            names
+        })
+        .collect()
+}
+
+fn layer_names(layer: &Layer, used: &HashSet<String>) -> Vec<String> {
+    let mut known = set_names(layer.kind);
+    if let LayerKind::Color(set) = layer.kind
+        && layer.width == 4
+    {
+        known.push(numbered("alpha", set));
+    }
+    if known.len() == layer.width && known.iter().all(|name| !used.contains(name)) {
+        return known;
+    }
+    let mut base = one_word(&layer.name);
+    loop {
+        let names: Vec<_> = match layer.width {
+            1 => vec![base.clone()],
+            width => (0..width).map(|i| format!("{base}_{i}")).collect(),
+        };
+        if names.iter().all(|name| !used.contains(name)) {
+            return names;
+        }
+        base.push('_');
+    }
+}
+
+/// A name that the header can hold.
+fn one_word(name: &str) -> String {
+    let odd = |c: char| c.is_whitespace() || c.is_control();
+    match name.trim() {
+        "" => "layer".to_owned(),
+        name => name.replace(odd, "_"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::header::Scalar;
+    use super::*;
+
+    /// Kind, name and width of what float properties of these names become.
+    fn kinds(names: &str) -> Vec<(LayerKind, String, usize)> {
+        let shape = Shape::One(Scalar::F32);
+        let names = names.split_whitespace();
+        let properties: Vec<_> = names.map(|name| Property { name: name.into(), shape }).collect();
+        let layers = columns(&properties);
+        layers.into_iter().map(|l| (l.kind, l.name, l.columns.len())).collect()
+    }
+
+    fn other(name: &str, width: usize) -> (LayerKind, String, usize) {
+        (LayerKind::Other, name.to_owned(), width)
+    }
+
+    #[test]
+    fn known_sets_are_found_in_any_order_of_their_names() {
+        let found = kinds("blue x green y red z t s alpha");
+        let color = (LayerKind::Color(0), "red green blue alpha".to_owned(), 4);
+        assert_eq!(found, [color, (LayerKind::Uv(0), "s t".to_owned(), 2)]);
+    }
+
+    #[test]
+    fn incomplete_sets_are_other_layers() {
+        assert_eq!(
+            kinds("x y z nx ny red alpha"),
+            ["nx", "ny", "red", "alpha"].map(|n| other(n, 1))
+        );
+    }
+
+    #[test]
+    fn a_second_first_set_is_an_other_layer() {
+        let found = kinds("u v s t");
+        assert_eq!(found[0], (LayerKind::Uv(0), "u v".to_owned(), 2));
+        assert_eq!(found[1..], [other("s", 1), other("t", 1)]);
+    }
+
+    #[test]
+    fn runs_of_numbered_names_are_one_layer() {
+        assert_eq!(
+            kinds("f_rest_0 f_rest_1 f_rest_2 f_dc_0 scale_1"),
+            [other("f_rest", 3), other("f_dc_0", 1), other("scale_1", 1)]
+        );
+    }
+
+    #[test]
+    fn written_names_never_come_twice() {
+        let layer =
+            |kind, name: &str, width| Layer { kind, name: name.into(), width, values: vec![] };
+        let layers = [
+            layer(LayerKind::Normal, "n", 3),
+            layer(LayerKind::Normal, "n", 3),
+            layer(LayerKind::Other, "x", 1),
+            layer(LayerKind::Other, "two words", 1),
+            layer(LayerKind::Other, "", 2),
+            layer(LayerKind::Color(2), "", 4),
+        ];
+        let names: Vec<_> = names(&layers).iter().map(|names| names.join(" ")).collect();
+        let expected = [
+            "nx ny nz",
+            "n_0 n_1 n_2",
+            "x_",
+            "two_words",
+            "layer_0 layer_1",
+            "red2 green2 blue2 alpha2",
+        ];
+        assert_eq!(names, expected);
+    }
+}

@@ -1,0 +1,119 @@
+//! The element `vertex`: positions, and layers of what else stands beside them.
+
+use meshlod_mesh::Layer;
+
+use super::header::{Element, Shape};
+use super::layers::{self, LayerColumns};
+use super::source::{Row, Source};
+use crate::ParseError;
+
+/// All vertices of a file.
+#[derive(Default)]
+pub(super) struct Vertices {
+    pub positions: Vec<[f64; 3]>,
+    /// One wedge per vertex.
+    pub layers: Vec<Layer>,
+}
+
+/// Reads every row of the element.
+pub(super) fn read<S: Source>(source: &mut S, element: &Element) -> Result<Vertices, ParseError> {
+    if element.count > u64::from(u32::MAX) {
+        let most = source.most_rows(element);
+        return Err(ParseError::part(
+            "header",
+            format!("{} vertices are claimed, but no more than {most} can follow", element.count),
+        ));
+    }
+    let xyz = coordinates(element)?;
+    let columns = layers::columns(&element.properties);
+    let mut vertices = Vertices::default();
+    let rows = source.most_rows(element).min(element.count as usize);
+    let first = match columns.is_empty() {
+        true => source.quick_positions(element, xyz, &mut vertices.positions),
+        false => 0,
+    };
+    vertices.positions.reserve_exact(rows - first as usize);
+    vertices.layers = columns.iter().map(|columns| columns.layer(rows)).collect();
+
+    let mut numbers = vec![0.0; element.properties.len()];
+    for index in first..element.count {
+        let row = Row { element, index };
+        source.begin_row();
+        read_numbers(source, row, &mut numbers)?;
+        vertices.add(source, xyz, &columns, &numbers)?;
+        source.end_row(row)?;
+    }
+    Ok(vertices)
+}
+
+/// Which properties are x, y and z.
+fn coordinates(element: &Element) -> Result<[usize; 3], ParseError> {
+    let mut xyz = [0; 3];
+    for (at, name) in xyz.iter_mut().zip(["x", "y", "z"]) {
+        let found = element
+            .properties
+            .iter()
+            .position(|property| property.name == name && matches!(property.shape, Shape::One(_)));
+        *at = found.ok_or_else(|| {
+            ParseError::part("header", format!("element vertex has no number {name}"))
+        })?;
+    }
+    Ok(xyz)
+}
+
+/// One number per property; lists leave theirs alone.
+fn read_numbers<S: Source>(
+    source: &mut S,
+    row: Row,
+    numbers: &mut [f64],
+) -> Result<(), ParseError> {
+    for (number, property) in numbers.iter_mut().zip(&row.element.properties) {
+        match property.shape {
+            Shape::One(kind) => *number = source.number(kind, row)?,
+            list @ Shape::List { .. } => source.pass_property(list, row)?,
+        }
+    }
+    Ok(())
+}
+
+impl Vertices {
+    /// Adds one vertex from the numbers of its row.
+    fn add(
+        &mut self,
+        source: &impl Source,
+        xyz: [usize; 3],
+        columns: &[LayerColumns],
+        numbers: &[f64],
+    ) -> Result<(), ParseError> {
+        let vertex = self.positions.len();
+        let position = xyz.map(|property| numbers[property]);
+        if !position.iter().all(|x| x.is_finite()) {
+            return Err(source.wrong(format!(
+                "vertex {vertex} has a coordinate that is not finite: {position:?}"
+            )));
+        }
+        self.positions.push(position);
+        for (layer, columns) in self.layers.iter_mut().zip(columns) {
+            for column in &columns.columns {
+                let value = (numbers[column.property] / column.unit) as f32;
+                if !value.is_finite() {
+                    return Err(source.wrong(format!(
+                        "vertex {vertex} has a value of \"{}\" that is not finite in 32 bits: {:?}",
+                        layer.name, numbers[column.property]
+                    )));
+                }
+                layer.values.push(value);
+            }
+        }
+        Ok(())
+    }
+}
+
+impl LayerColumns {
+    /// The empty layer, with room for so many wedges.
+    fn layer(&self, wedges: usize) -> Layer {
+        let width = self.columns.len();
+        let values = Vec::with_capacity(wedges * width);
+        Layer { kind: self.kind, name: self.name.clone(), width, values }
+    }
+}

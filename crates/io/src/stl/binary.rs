@@ -1,0 +1,91 @@
+//! Binary STL: 80 free bytes, a count, 50 bytes per facet.
+
+use std::io::{Result as IoResult, Write};
+
+use glam::DVec3;
+use meshlod_mesh::Mesh;
+
+use super::weld::Welder;
+use super::{invalid, normal, write_blocks};
+use crate::ParseError;
+
+const HEADER: usize = 80;
+const PREAMBLE: usize = HEADER + 4;
+/// A normal and three corners as 32-bit floats, and two bytes that mean nothing certain.
+const FACET: usize = 50;
+
+/// Whether the file is just as long as its count of facets says.
+pub(super) fn has_fitting_length(bytes: &[u8]) -> bool {
+    claimed(bytes).is_some_and(|count| {
+        count.checked_mul(FACET).and_then(|n| n.checked_add(PREAMBLE)) == Some(bytes.len())
+    })
+}
+
+fn claimed(bytes: &[u8]) -> Option<usize> {
+    let count = bytes.get(HEADER..)?.first_chunk()?;
+    Some(u32::from_le_bytes(*count) as usize)
+}
+
+/// Reads as many facets as are claimed; what follows them means nothing.
+pub(super) fn read(bytes: &[u8]) -> Result<Mesh, ParseError> {
+    let Some(claimed) = claimed(bytes) else {
+        let reason = "not an STL file: neither a text that begins with \"solid\", nor as long as \
+                      the header of a binary file";
+        return Err(ParseError::byte(bytes.len(), reason));
+    };
+    let body = &bytes[PREAMBLE..];
+    let there = body.len() / FACET;
+    if there < claimed {
+        let reason = format!("the file ends inside facet {there} of {claimed}");
+        return Err(ParseError::byte(bytes.len(), reason));
+    }
+    if claimed == 0 {
+        return Err(ParseError::byte(HEADER, "no faces: the count of facets is 0"));
+    }
+    let mut welder = Welder::with_facets(claimed);
+    let mut faces = Vec::with_capacity(claimed);
+    for (i, facet) in body.chunks_exact(FACET).take(claimed).enumerate() {
+        let corners = [12, 24, 36].map(|at| [0, 4, 8].map(|axis| float(facet, at + axis)));
+        if let Some(corner) = corners.iter().find(|c| !c.iter().all(|x| x.is_finite())) {
+            let reason =
+                format!("facet {i} of {claimed} has a coordinate that is not finite: {corner:?}");
+            return Err(ParseError::byte(PREAMBLE + i * FACET, reason));
+        }
+        faces.push(corners.map(|corner| welder.vertex(corner)));
+    }
+    Ok(Mesh::new(welder.positions, faces))
+}
+
+fn float(facet: &[u8], at: usize) -> f64 {
+    f32::from_le_bytes(*facet[at..].first_chunk().expect("inside the facet")).into()
+}
+
+/// Writes a mesh as binary STL: 32-bit floats, computed normals, no attributes, no names.
+///
+/// # Errors
+/// Those of `out`; a mesh that breaks [`Mesh::validate`], a coordinate that is not finite as a
+/// 32-bit float: nothing has been written then.
+pub fn write(mesh: &Mesh, out: &mut dyn Write) -> IoResult<()> {
+    mesh.validate().map_err(invalid)?;
+    let large = |position: &[f64; 3]| position.iter().any(|&x| !(x as f32).is_finite());
+    if let Some(vertex) = mesh.positions.iter().position(large) {
+        let position = mesh.positions[vertex];
+        let reason = format!("vertex {vertex} at {position:?} does not fit 32-bit floats");
+        return Err(invalid(reason));
+    }
+    let count = u32::try_from(mesh.faces.len()).map_err(invalid)?;
+    let mut preamble = [b' '; PREAMBLE];
+    preamble[..7].copy_from_slice(b"meshlod");
+    preamble[HEADER..].copy_from_slice(&count.to_le_bytes());
+    out.write_all(&preamble)?;
+    let append = |triangle: [DVec3; 3], block: &mut Vec<u8>| {
+        let [a, b, c] = triangle;
+        for vector in [normal(triangle), a, b, c] {
+            for x in vector.as_vec3().to_array() {
+                block.extend_from_slice(&x.to_le_bytes());
+            }
+        }
+        block.extend_from_slice(&[0; 2]);
+    };
+    write_blocks(mesh.faces.iter().map(|&face| mesh.triangle(face)), append, out)
+}
