@@ -10,7 +10,7 @@ use crate::triangle::Triangle;
 /// Most triangles of a leaf.
 const LEAF: usize = 4;
 /// Bins along the longest axis.
-const BINS: usize = 16;
+const BINS: usize = 8;
 /// Ranges at least this long build their children in parallel, each in nodes of its own.
 const GRAIN: usize = 1 << 13;
 /// Below this many levels ranges are halved instead: hostile meshes must not make the tree deep.

@@ -1,4 +1,4 @@
-//! The hierarchy's own coordinates: about the middle of the box, at a size near 1.
+//! Coordinates to calculate in: about the middle of a box, at a size near 1.
 
 use glam::DVec3;
 use meshlod_mesh::Bounds;
@@ -9,7 +9,7 @@ use meshlod_mesh::Bounds;
 /// The scale is a power of two, so scaling rounds nothing. Far-away and extremely large or small
 /// meshes then fit the `f32` boxes, and fourth powers of lengths fit an `f64`.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Frame {
+pub struct Frame {
     origin: DVec3,
     scale: f64,
 }
@@ -18,8 +18,8 @@ pub(crate) struct Frame {
 const MAX_EXPONENT: f64 = 1022.0;
 
 impl Frame {
-    /// The frame of a box of finite extent.
-    pub(crate) fn of(bounds: &Bounds) -> Self {
+    /// The frame of a box that is finite; an empty or pointlike box keeps the model's units.
+    pub fn of(bounds: &Bounds) -> Self {
         let half = DVec3::from(bounds.max) * 0.5 - DVec3::from(bounds.min) * 0.5;
         let half = half.max_element();
         let scale = if half > 0.0 {
@@ -31,21 +31,27 @@ impl Frame {
         Self { origin: bounds.center().into(), scale }
     }
 
+    /// Local units to one model unit: a power of two.
+    #[inline]
+    pub fn scale(&self) -> f64 {
+        self.scale
+    }
+
     /// A point of the model in local coordinates.
     #[inline]
-    pub(crate) fn local(&self, point: [f64; 3]) -> DVec3 {
+    pub fn local(&self, point: [f64; 3]) -> DVec3 {
         (DVec3::from(point) - self.origin) * self.scale
     }
 
     /// A local point in the model.
     #[inline]
-    pub(crate) fn model(&self, local: DVec3) -> [f64; 3] {
+    pub fn model(&self, local: DVec3) -> [f64; 3] {
         (local / self.scale + self.origin).into()
     }
 
-    /// A squared local distance in squared model units.
+    /// A squared local length, or an area, in squared model units.
     #[inline]
-    pub(crate) fn model_squared(&self, local: f64) -> f64 {
+    pub fn model_squared(&self, local: f64) -> f64 {
         local / self.scale / self.scale
     }
 }

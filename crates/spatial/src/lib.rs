@@ -27,3 +27,4 @@ mod triangle;
 
 pub use bvh::{Bvh, BvhError};
 pub use closest::Closest;
+pub use frame::Frame;

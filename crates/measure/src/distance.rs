@@ -1,0 +1,331 @@
+//! The distance of two surfaces, both ways.
+
+use meshlod_mesh::{FaceId, Mesh};
+use meshlod_spatial::Closest;
+use rayon::prelude::*;
+use thiserror::Error;
+
+use crate::sample::samples;
+use crate::surface::{Surface, SurfaceError};
+
+/// How to measure a distance.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct DistanceOptions {
+    /// Samples each way, spread evenly by area. Half a million leave the mean within about 0.1 %.
+    pub samples: usize,
+    /// What the samples are drawn by.
+    pub seed: u64,
+}
+
+impl Default for DistanceOptions {
+    fn default() -> Self {
+        Self { samples: 500_000, seed: 0 }
+    }
+}
+
+/// How far two surfaces, A and B, are apart. All lengths in model units.
+///
+/// These are measured values: the mean and the RMS are those of the samples, and the maximum is a
+/// lower bound of the true one, sharp where it is at a vertex.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Distance {
+    /// Points of A against B.
+    pub forward: OneWay,
+    /// Points of B against A.
+    pub backward: OneWay,
+    /// The length of the diagonal of A's box.
+    pub diagonal: f64,
+}
+
+/// How far points of one surface are from another. All lengths in model units.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct OneWay {
+    /// Mean of the samples.
+    pub mean: f64,
+    /// Square root of the mean square of the samples.
+    pub rms: f64,
+    /// The greatest of samples and used vertices.
+    pub max: f64,
+    /// Where that is.
+    pub place: Place,
+}
+
+/// A point and its closest on the other surface.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Place {
+    /// The point.
+    pub from: [f64; 3],
+    /// The closest point of the other surface.
+    pub to: [f64; 3],
+    /// The face of the other surface that is on.
+    pub face: FaceId,
+}
+
+/// Why there is no distance.
+#[derive(Clone, Debug, Error, PartialEq)]
+pub enum MeasureError {
+    /// The first mesh cannot be measured.
+    #[error("the first mesh: {0}")]
+    First(SurfaceError),
+    /// The second mesh cannot be measured.
+    #[error("the second mesh: {0}")]
+    Second(SurfaceError),
+    /// Without samples there is no mean.
+    #[error("no samples were asked for; take at least one")]
+    NoSamples,
+}
+
+impl Distance {
+    /// The average of both ways.
+    pub fn mean(&self) -> f64 {
+        (self.forward.mean + self.backward.mean) * 0.5
+    }
+
+    /// The quadratic mean of both ways.
+    pub fn rms(&self) -> f64 {
+        ((self.forward.rms.powi(2) + self.backward.rms.powi(2)) * 0.5).sqrt()
+    }
+
+    /// The larger of both ways: the Hausdorff distance, as far as the samples see it.
+    pub fn max(&self) -> f64 {
+        self.forward.max.max(self.backward.max)
+    }
+
+    /// A length as a percentage of A's diagonal.
+    pub fn percent(&self, length: f64) -> f64 {
+        100.0 * length / self.diagonal
+    }
+}
+
+/// The distance of two meshes.
+///
+/// Every sample and every used vertex is held against the exact closest point of the other mesh.
+/// Same meshes and options, same answer to the bit, for any number of threads.
+///
+/// Cost: O((samples + vertices + faces) log faces); in parallel.
+/// # Errors
+/// A mesh that is none or has no area; no samples.
+/// # References
+/// [CRS98]; differs: samples in strata of equal area, not by face or by grid.
+pub fn distance(a: &Mesh, b: &Mesh, options: &DistanceOptions) -> Result<Distance, MeasureError> {
+    let a = Surface::new(a).map_err(MeasureError::First)?;
+    let b = Surface::new(b).map_err(MeasureError::Second)?;
+    surface_distance(&a, &b, options)
+}
+
+/// [`distance`] of surfaces that are ready, for when one is measured more than once.
+///
+/// # Errors
+/// No samples.
+pub fn surface_distance(
+    a: &Surface<'_>,
+    b: &Surface<'_>,
+    options: &DistanceOptions,
+) -> Result<Distance, MeasureError> {
+    if options.samples == 0 {
+        return Err(MeasureError::NoSamples);
+    }
+    let (forward, backward) = (one_way(a, b, options), one_way(b, a, options));
+    Ok(Distance { forward, backward, diagonal: a.diagonal })
+}
+
+/// The distance of every vertex of `a`, used or not, from the surface `b`, in model units.
+///
+/// One value per position; NaN for a position that is not finite. Cost: O(n log f), n = vertices
+/// of `a`, f = faces of `b`; in parallel.
+pub fn vertex_errors(a: &Mesh, b: &Surface<'_>) -> Vec<f64> {
+    let chunks = a.positions.par_chunks(CHUNK);
+    chunks
+        .flat_map_iter(|chunk| {
+            closest_to_each(chunk.iter().copied(), b).map(|(_, closest)| length(&closest))
+        })
+        .collect()
+}
+
+/// Points that one task takes after one another, each answer the hint for the next. Fixed, as the
+/// sums are rounded chunk by chunk.
+const CHUNK: usize = 2048;
+
+fn one_way(from: &Surface<'_>, to: &Surface<'_>, options: &DistanceOptions) -> OneWay {
+    let count = options.samples;
+    let vertices = from.vertices.par_chunks(CHUNK).map(|chunk| {
+        let points = chunk.iter().map(|v| from.mesh.positions[v.index()]);
+        Part::of(closest_to_each(points, to))
+    });
+    let samples = (0..count.div_ceil(CHUNK)).into_par_iter().map(|i| {
+        let range = i * CHUNK..((i + 1) * CHUNK).min(count);
+        Part::of(closest_to_each(samples(from, count, options.seed, range), to))
+    });
+    // Vertices first: where a sample is as far, the vertex is the place.
+    let vertices: Vec<Part> = vertices.collect();
+    let samples: Vec<Part> = samples.collect();
+    let worst = vertices.iter().chain(&samples).map(|part| part.worst).reduce(farther);
+    let (max, place) = worst.expect("there are samples");
+    let mean = samples.iter().map(|part| part.sum).sum::<f64>() / count as f64;
+    let square = samples.iter().map(|part| part.sum_of_squares).sum::<f64>() / count as f64;
+    OneWay { mean, rms: square.sqrt(), max, place }
+}
+
+fn closest_to_each(
+    points: impl Iterator<Item = [f64; 3]>,
+    to: &Surface<'_>,
+) -> impl Iterator<Item = ([f64; 3], Closest)> {
+    let mut hint = None;
+    points.map(move |point| {
+        let closest = to.bvh.closest(point, hint);
+        hint = Some(closest.face);
+        (point, closest)
+    })
+}
+
+fn length(closest: &Closest) -> f64 {
+    closest.distance_squared.sqrt()
+}
+
+/// What one chunk of points adds.
+struct Part {
+    sum: f64,
+    sum_of_squares: f64,
+    worst: (f64, Place),
+}
+
+impl Part {
+    fn of(closest: impl Iterator<Item = ([f64; 3], Closest)>) -> Self {
+        let nowhere = Place { from: [f64::NAN; 3], to: [f64::NAN; 3], face: FaceId(0) };
+        let mut part = Self { sum: 0.0, sum_of_squares: 0.0, worst: (-1.0, nowhere) };
+        for (from, closest) in closest {
+            let length = length(&closest);
+            part.sum += length;
+            part.sum_of_squares += closest.distance_squared;
+            let place = Place { from, to: closest.point, face: closest.face };
+            part.worst = farther(part.worst, (length, place));
+        }
+        part
+    }
+}
+
+/// The farther of two; the first where they are equal.
+fn farther(first: (f64, Place), second: (f64, Place)) -> (f64, Place) {
+    if second.0 > first.0 { second } else { first }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fixtures::{cube, moved, plane, scaled, sphere};
+
+    fn options(samples: usize) -> DistanceOptions {
+        DistanceOptions { samples, ..Default::default() }
+    }
+
+    #[test]
+    fn concentric_spheres_are_their_radii_apart() {
+        let (inner, outer) = (sphere(100, 1.0), sphere(80, 1.25));
+        let apart = distance(&inner, &outer, &options(20_000)).unwrap();
+        // A chord of a turn t is r (1 - cos(t / 2)) inside; across a face two of them add up.
+        let sag = |n: f64, r: f64| 2.0 * r * (1.0 - (std::f64::consts::PI / n / 2.0).cos());
+        let (low, high) = (0.25 - sag(80.0, 1.25), 0.25 + sag(100.0, 1.0));
+        for way in [apart.forward, apart.backward] {
+            for value in [way.mean, way.rms, way.max] {
+                assert!((low..=high).contains(&value), "{low} {value} {high}");
+            }
+        }
+    }
+
+    #[test]
+    fn offset_planes_are_exact() {
+        let apart = distance(&plane(7, 0.0), &plane(3, 0.125), &options(5_000)).unwrap();
+        for way in [apart.forward, apart.backward] {
+            assert!((way.mean - 0.125).abs() < 1e-15 && (way.rms - 0.125).abs() < 1e-15);
+            assert!((way.max - 0.125).abs() < 1e-15);
+        }
+    }
+
+    #[test]
+    fn a_ramp_has_the_moments_of_its_height() {
+        // Against the wide plane below, the height is all: 0 to 1, evenly.
+        let mut ramp = plane(9, 0.0);
+        ramp.positions.iter_mut().for_each(|position| position[2] = position[0]);
+        let ground = moved(&scaled(&plane(1, 0.0), 8.0), -4.0);
+        let way = distance(&ramp, &moved_up(ground, 4.0), &options(50_000)).unwrap().forward;
+        assert!((way.mean - 0.5).abs() < 1e-3, "{way:?}");
+        assert!((way.rms - (1f64 / 3.0).sqrt()).abs() < 1e-3, "{way:?}");
+        assert_eq!((way.max, way.place.from[0]), (1.0, 1.0));
+    }
+
+    fn moved_up(mut mesh: Mesh, z: f64) -> Mesh {
+        mesh.positions.iter_mut().for_each(|position| position[2] += z);
+        mesh
+    }
+
+    #[test]
+    fn a_mesh_is_no_distance_from_itself() {
+        let mesh = moved(&sphere(20, 1.0), 1e6);
+        let apart = distance(&mesh, &mesh, &options(5_000)).unwrap();
+        assert!(apart.max() < 1e-9 && apart.mean() < 1e-9, "{apart:?}");
+        assert!(vertex_errors(&mesh, &Surface::new(&mesh).unwrap()).iter().all(|&e| e == 0.0));
+    }
+
+    #[test]
+    fn a_spike_counts_from_its_own_side_only() {
+        let flat = plane(10, 0.0);
+        let mut spiked = flat.clone();
+        let tip = 5 * 11 + 5;
+        spiked.positions[tip][2] = 3.0;
+        let apart = distance(&spiked, &flat, &options(5_000)).unwrap();
+        assert_eq!((apart.forward.max, apart.max()), (3.0, 3.0));
+        assert_eq!(apart.forward.place.from, [0.5, 0.5, 3.0]);
+        assert_eq!(apart.forward.place.to, [0.5, 0.5, 0.0]);
+        assert!(flat.faces[apart.forward.place.face.index()].iter().any(|v| v.index() == tip));
+        assert!(apart.backward.max < 0.2, "{:?}", apart.backward);
+        let errors = vertex_errors(&spiked, &Surface::new(&flat).unwrap());
+        assert!(errors.iter().enumerate().all(|(v, &e)| e == if v == tip { 3.0 } else { 0.0 }));
+    }
+
+    #[test]
+    fn both_ways_are_joined_as_named() {
+        let place = Place { from: [0.0; 3], to: [0.0; 3], face: FaceId(0) };
+        let forward = OneWay { mean: 1.0, rms: 1.0, max: 4.0, place };
+        let backward = OneWay { mean: 3.0, rms: 7.0, max: 9.0, place };
+        let apart = Distance { forward, backward, diagonal: 50.0 };
+        assert_eq!((apart.mean(), apart.rms(), apart.max()), (2.0, 5.0, 9.0));
+        assert_eq!(apart.percent(apart.max()), 18.0);
+    }
+
+    #[test]
+    fn vertices_that_no_face_uses_are_left_out() {
+        let mut mesh = cube();
+        mesh.positions.push([100.0; 3]);
+        assert!(distance(&mesh, &cube(), &options(100)).unwrap().max() < 1e-15);
+    }
+
+    #[test]
+    fn any_number_of_threads_gives_the_same_bits() {
+        let (a, b) = (sphere(30, 1.0), sphere(23, 1.1));
+        let measure = |threads| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+            pool.install(|| distance(&a, &b, &options(30_000))).unwrap()
+        };
+        assert_eq!(measure(1), measure(2));
+    }
+
+    #[test]
+    fn another_seed_gives_another_but_near_mean() {
+        let (a, b) = (sphere(10, 1.0), cube());
+        let mean = |seed| {
+            let options = DistanceOptions { samples: 20_000, seed };
+            distance(&a, &b, &options).unwrap().mean()
+        };
+        assert_ne!(mean(1), mean(2));
+        assert!((mean(1) / mean(2) - 1.0).abs() < 1e-3);
+    }
+
+    #[test]
+    fn errors_say_which_mesh() {
+        let error = |a: &Mesh, b: &Mesh, n| distance(a, b, &options(n)).unwrap_err().to_string();
+        assert_eq!(error(&Mesh::default(), &cube(), 9), "the first mesh: the mesh has no faces");
+        let flat = scaled(&cube(), 0.0);
+        assert_eq!(error(&cube(), &flat, 9), "the second mesh: all faces have zero area");
+        assert_eq!(error(&cube(), &cube(), 0), MeasureError::NoSamples.to_string());
+    }
+}

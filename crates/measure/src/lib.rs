@@ -1,0 +1,43 @@
+//! Measures of triangle meshes: surface distance both ways, area, volume, triangle quality.
+//!
+//! [`distance`] measures how far two meshes are apart, by samples spread evenly over each. To
+//! measure many against one, make a [`Surface`] of each and use [`surface_distance`].
+//!
+//! ```
+//! use meshlod_measure::{DistanceOptions, Surface, distance, surface_distance, volume};
+//! use meshlod_mesh::{Mesh, VertexId};
+//!
+//! let square = |z: f64| {
+//!     let positions = vec![[0.0, 0.0, z], [3.0, 0.0, z], [3.0, 4.0, z], [0.0, 4.0, z]];
+//!     Mesh::new(positions, [[0, 1, 2], [0, 2, 3]].map(|face| face.map(VertexId)).to_vec())
+//! };
+//! let (original, level) = (square(0.0), square(0.5));
+//! let options = DistanceOptions { samples: 1000, ..Default::default() };
+//!
+//! let apart = distance(&original, &level, &options).unwrap();
+//! assert_eq!((apart.mean(), apart.rms(), apart.max()), (0.5, 0.5, 0.5));
+//! assert_eq!(apart.percent(apart.max()), 10.0);
+//!
+//! let target = Surface::new(&original).unwrap();
+//! let again = surface_distance(&target, &Surface::new(&level).unwrap(), &options).unwrap();
+//! assert_eq!(again, apart);
+//! assert_eq!(volume(&level), 0.0);
+//! ```
+#![forbid(unsafe_code)]
+
+mod distance;
+#[cfg(test)]
+mod fixtures;
+mod quality;
+mod sample;
+mod size;
+mod sum;
+mod surface;
+
+pub use distance::{
+    Distance, DistanceOptions, MeasureError, OneWay, Place, distance, surface_distance,
+    vertex_errors,
+};
+pub use quality::{QUALITY_BINS, Quality, quality};
+pub use size::{area, volume};
+pub use surface::{Surface, SurfaceError};

@@ -1,0 +1,48 @@
+//! Sums that do not lose their small terms.
+
+/// A compensated sum: the rounding of each addition is kept and added at the end.
+///
+/// Good to within a few ulp of the sum, unless terms cancel by more than fifteen digits.
+/// # References
+/// [Neu74] algorithm IV.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Sum {
+    total: f64,
+    lost: f64,
+}
+
+impl Sum {
+    #[inline]
+    pub(crate) fn add(&mut self, term: f64) {
+        let total = self.total + term;
+        self.lost += if self.total.abs() >= term.abs() {
+            (self.total - total) + term
+        } else {
+            (term - total) + self.total
+        };
+        self.total = total;
+    }
+
+    pub(crate) fn value(self) -> f64 {
+        self.total + self.lost
+    }
+}
+
+impl FromIterator<f64> for Sum {
+    fn from_iter<I: IntoIterator<Item = f64>>(terms: I) -> Self {
+        let mut sum = Self::default();
+        terms.into_iter().for_each(|term| sum.add(term));
+        sum
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn small_terms_survive_large_ones() {
+        let terms = [1.0, 1e100, 1.0, -1e100];
+        assert_eq!(terms.into_iter().collect::<Sum>().value(), 2.0);
+    }
+}
