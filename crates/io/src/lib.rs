@@ -18,6 +18,7 @@ mod scene;
 pub mod smf;
 pub mod stl;
 mod text;
+mod torn;
 mod weld;
 
 pub use error::{IoError, ParseError, Place, Unfit};

@@ -6,6 +6,7 @@ use crate::ParseError;
 ///
 /// Lines end with LF, CR LF or CR; the end of the text ends the last one. Blanks are all bytes up
 /// to the space; a backslash at the end of a line makes the next one part of it.
+#[derive(Clone)]
 pub(crate) struct Text<'a> {
     bytes: &'a [u8],
     at: usize,
@@ -75,6 +76,15 @@ impl<'a> Text<'a> {
         let word = self.here();
         self.at += word.len();
         word
+    }
+
+    /// Moves behind the words that are left of the statement, and says how many they were.
+    pub(crate) fn words_left(&mut self) -> usize {
+        let mut count = 0;
+        while !self.word().is_empty() {
+            count += 1;
+        }
+        count
     }
 
     /// What is left of the line without the blanks around it, `#` and all: a name.
@@ -212,6 +222,18 @@ impl<'a> Text<'a> {
         found
     }
 
+    /// Moves over these bytes if they come next, with no blank before them.
+    pub(crate) fn take_word(&mut self, word: &[u8]) -> bool {
+        let found = self.bytes[self.at..].starts_with(word);
+        self.at += if found { word.len() } else { 0 };
+        found
+    }
+
+    /// Whether a digit or a sign comes next.
+    pub(crate) fn comes_digit(&self) -> bool {
+        self.byte().is_ascii_digit() || matches!(self.byte(), b'-' | b'+')
+    }
+
     /// Whether `byte` comes next.
     #[inline]
     pub(crate) fn comes(&self, byte: u8) -> bool {
@@ -250,7 +272,8 @@ impl<'a> Text<'a> {
         self.at += usize::from(self.bytes[self.at] == b'\\');
         let pair = self.bytes[self.at..].starts_with(b"\r\n");
         self.at += 1 + usize::from(pair);
-        self.line += 1;
+        // Behind the last line end there is no further line.
+        self.line += usize::from(self.at < self.bytes.len());
     }
 }
 

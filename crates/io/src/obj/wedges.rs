@@ -5,6 +5,7 @@ use std::num::NonZeroU32;
 use meshlod_mesh::{Attributes, Layer, LayerKind, VertexId, WedgeId};
 
 use crate::buckets::Buckets;
+use crate::torn::{layer, of_vertices, to_unit};
 
 /// What a corner names beside its vertex; ids counted from 1.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -57,32 +58,20 @@ pub(super) fn attributes(
     corners: &[[CornerIds; 3]],
     mut pools: Pools,
 ) -> Option<Attributes> {
-    scale_colors(&mut pools.colors, vertices);
+    to_unit(pools.colors.as_flattened_mut());
+    if !pools.colors.is_empty() {
+        pools.colors.resize(vertices, WHITE);
+    }
     if corners.is_empty() {
-        let corners = faces.iter().map(|face| face.map(|v| WedgeId(v.0))).collect();
-        let colors = color_layer(pools.colors.into_flattened());
-        return (vertices > 0 && !colors.values.is_empty()).then(|| Attributes {
-            corners,
-            wedge_count: vertices,
-            layers: vec![colors],
-        });
+        let colors = Some(pools.colors.into_flattened()).filter(|colors| !colors.is_empty());
+        let layers = colors.map(|values| layer(LayerKind::Color(0), 3, values));
+        return of_vertices(vertices, faces, layers.into_iter().collect());
     }
     let ids = corners.as_flattened();
     let mut numbers = vec![[WedgeId::default(); 3]; faces.len()];
     let shown = number(vertices, faces, ids, &pools, numbers.as_flattened_mut());
     let layers = layers(&shown, ids, &pools);
     Some(Attributes { corners: numbers, wedge_count: shown.len(), layers })
-}
-
-/// Colours for all vertices in [0, 1], where any has one.
-fn scale_colors(colors: &mut Vec<[f32; 3]>, vertices: usize) {
-    if colors.is_empty() {
-        return;
-    }
-    if colors.as_flattened().iter().any(|&c| c > 1.0) {
-        colors.as_flattened_mut().iter_mut().for_each(|c| *c /= 255.0);
-    }
-    colors.resize(vertices, WHITE);
 }
 
 /// A vertex and a corner at it that shows a wedge's values.
@@ -131,18 +120,15 @@ fn layers(shown: &[Shown], ids: &[CornerIds], pools: &Pools) -> Vec<Layer> {
     let mut layers = Vec::new();
     if ids.iter().any(|ids| ids.uv.is_some()) {
         let values = shown.iter().flat_map(|shown| pools.uv(of(shown))).collect();
-        layers.push(Layer { kind: LayerKind::Uv(0), name: "uv".to_owned(), width: 2, values });
+        layers.push(layer(LayerKind::Uv(0), 2, values));
     }
     if ids.iter().any(|ids| ids.normal.is_some()) {
         let values = shown.iter().flat_map(|shown| pools.normal(of(shown))).collect();
-        layers.push(Layer { kind: LayerKind::Normal, name: "normal".to_owned(), width: 3, values });
+        layers.push(layer(LayerKind::Normal, 3, values));
     }
     if !pools.colors.is_empty() {
-        layers.push(color_layer(shown.iter().flat_map(|s| pools.colors[s.vertex]).collect()));
+        let values = shown.iter().flat_map(|shown| pools.colors[shown.vertex]).collect();
+        layers.push(layer(LayerKind::Color(0), 3, values));
     }
     layers
-}
-
-fn color_layer(values: Vec<f32>) -> Layer {
-    Layer { kind: LayerKind::Color(0), name: "color".to_owned(), width: 3, values }
 }

@@ -1,0 +1,336 @@
+//! OFF in.
+
+use meshlod_mesh::{Attributes, LayerKind, Mesh, VertexId};
+
+use crate::ParseError;
+use crate::polygon::triangulate;
+use crate::text::Text;
+use crate::torn::{layer, of_vertices, to_unit};
+
+/// Reads a text OFF file.
+///
+/// The header may be missing or stand before the counts without a blank; comments may stand
+/// anywhere. Polygons are triangulated, colours of faces left out. Colours of vertices have three
+/// or four parts; where any is above 1, they are of 255. Normals, colours and texture coordinates
+/// that are not finite become 0.
+///
+/// Cost: O(n), n = bytes, beside that of concave polygons.
+/// # Errors
+/// The line and the reason: counts that the file is too short for, what is no number, a coordinate
+/// that is not finite, an index out of range, a face of fewer than three corners; files without
+/// faces, binary ones, and those in other than three dimensions.
+/// # References
+/// [Geomview], section OFF.
+pub fn read(bytes: &[u8]) -> Result<Mesh, ParseError> {
+    let mut text = Text::new(bytes)?;
+    if !text.more_anywhere() {
+        return Err(text.error("the file is empty"));
+    }
+    let mut layout = header(&mut text)?;
+    let [vertices, faces] = counts(&mut text)?;
+    let mut columns = Columns::default();
+    for v in 0..vertices {
+        need(&mut text, v, vertices, "vertices")?;
+        if v == 0 {
+            layout.measure_color(&text)?;
+        }
+        columns.read(layout, &mut text)?;
+    }
+    let mut triangles = Vec::with_capacity(faces);
+    let mut scratch = Scratch::default();
+    for f in 0..faces {
+        need(&mut text, f, faces, "faces")?;
+        scratch.face(&columns.positions, &mut text, &mut triangles)?;
+    }
+    if triangles.is_empty() {
+        return Err(text.error("the file has no faces"));
+    }
+    let attributes = columns.attributes(layout, &triangles);
+    Ok(Mesh { attributes, ..Mesh::new(columns.positions, triangles) })
+}
+
+/// What a vertex has behind its position, in this order.
+#[derive(Clone, Copy, Default)]
+struct Layout {
+    has_normal: bool,
+    /// Parts of a colour: 0 where there is none, 3 until the first vertex tells.
+    color_width: usize,
+    has_uv: bool,
+}
+
+impl Layout {
+    /// Colours have as many parts as the line of the first vertex leaves room for.
+    fn measure_color(&mut self, text: &Text) -> Result<(), ParseError> {
+        if self.color_width == 0 {
+            return Ok(());
+        }
+        let others = 3 + if self.has_normal { 3 } else { 0 } + if self.has_uv { 2 } else { 0 };
+        let words = text.clone().words_left();
+        match words.checked_sub(others) {
+            Some(width @ (3 | 4)) => {
+                self.color_width = width;
+                Ok(())
+            }
+            _ => Err(text.error(format!(
+                "a vertex of this header has {} or {} numbers, this line has {words}",
+                others + 3,
+                others + 4
+            ))),
+        }
+    }
+}
+
+/// The header word, if there is one, up to the first count.
+fn header(text: &mut Text) -> Result<Layout, ParseError> {
+    if text.comes_digit() {
+        return if text.take_word(b"4OFF") || text.take_word(b"4nOFF") {
+            Err(text.error("only three dimensions are read"))
+        } else {
+            Ok(Layout::default())
+        };
+    }
+    let start = text.clone();
+    let has_uv = text.take_word(b"ST");
+    let color_width = if text.take(b'C') { 3 } else { 0 };
+    let has_normal = text.take(b'N');
+    if text.comes(b'4') || text.comes(b'n') {
+        return Err(text.error("only three dimensions are read"));
+    }
+    if !text.take_word(b"OFF") {
+        return Err(start.refuse("an OFF header, nor a count"));
+    }
+    if text.more() && text.take_word(b"BINARY") {
+        return Err(text.error("this OFF file is binary; convert it to text, or to PLY"));
+    }
+    Ok(Layout { has_normal, color_width, has_uv })
+}
+
+/// The numbers of vertices and faces; that of edges is not needed.
+fn counts(text: &mut Text) -> Result<[usize; 2], ParseError> {
+    const NEED: &str = "the counts of vertices and faces are missing";
+    let mut counts = [0; 2];
+    for count in &mut counts {
+        text.more_anywhere();
+        let number = text.integer(NEED)?;
+        *count = usize::try_from(number).map_err(|_| text.error("a negative count"))?;
+    }
+    let line = text.line();
+    text.words_left();
+    // A vertex has 3 numbers at least and a face 4, each of 2 bytes at least with its blank.
+    let [vertices, faces] = counts;
+    if vertices.saturating_mul(6).saturating_add(faces.saturating_mul(8)) > text.left() + 1 {
+        let reason = format!(
+            "the header counts {vertices} vertices and {faces} faces, but only {} bytes follow",
+            text.left()
+        );
+        return Err(ParseError::line(line, reason));
+    }
+    if vertices > u32::MAX as usize {
+        return Err(ParseError::line(line, "more than 2^32 vertices"));
+    }
+    Ok(counts)
+}
+
+/// Moves to the next vertex or face.
+fn need(text: &mut Text, done: usize, all: usize, what: &str) -> Result<(), ParseError> {
+    if text.more_anywhere() {
+        return Ok(());
+    }
+    Err(text.error(format!("the file ends after {done} of {all} {what}")))
+}
+
+/// The values of the vertices.
+#[derive(Default)]
+struct Columns {
+    positions: Vec<[f64; 3]>,
+    normals: Vec<f32>,
+    colors: Vec<f32>,
+    uvs: Vec<f32>,
+}
+
+impl Columns {
+    fn read(&mut self, layout: Layout, text: &mut Text) -> Result<(), ParseError> {
+        let mut position = [0.0; 3];
+        for x in &mut position {
+            text.more_anywhere();
+            *x = text.number("the file ends within a vertex")?;
+        }
+        self.positions.push(position);
+        let normal_width = if layout.has_normal { 3 } else { 0 };
+        let uv_width = if layout.has_uv { 2 } else { 0 };
+        for (values, width) in [
+            (&mut self.normals, normal_width),
+            (&mut self.colors, layout.color_width),
+            (&mut self.uvs, uv_width),
+        ] {
+            for _ in 0..width {
+                text.more_anywhere();
+                values.push(text.attribute("the file ends within a vertex")?);
+            }
+        }
+        Ok(())
+    }
+
+    fn attributes(&mut self, layout: Layout, faces: &[[VertexId; 3]]) -> Option<Attributes> {
+        to_unit(&mut self.colors);
+        let layers = [
+            (LayerKind::Normal, 3, std::mem::take(&mut self.normals)),
+            (LayerKind::Color(0), layout.color_width, std::mem::take(&mut self.colors)),
+            (LayerKind::Uv(0), 2, std::mem::take(&mut self.uvs)),
+        ];
+        let present = layers.into_iter().filter(|(_, _, values)| !values.is_empty());
+        let layers = present.map(|(kind, width, values)| layer(kind, width, values)).collect();
+        of_vertices(self.positions.len(), faces, layers)
+    }
+}
+
+/// The polygon being read and its triangles.
+#[derive(Default)]
+struct Scratch {
+    polygon: Vec<u32>,
+    triangles: Vec<[u32; 3]>,
+}
+
+impl Scratch {
+    /// Reads one face: its number of corners, the corners, a colour or whatever else stands behind
+    /// them on the line.
+    fn face(
+        &mut self,
+        positions: &[[f64; 3]],
+        text: &mut Text,
+        out: &mut Vec<[VertexId; 3]>,
+    ) -> Result<(), ParseError> {
+        let corners = text.integer("a face is missing")?;
+        if corners < 3 {
+            return Err(text.error(format!("a face needs three corners, this has {corners}")));
+        }
+        self.polygon.clear();
+        for _ in 0..corners {
+            text.more_anywhere();
+            let index = text.integer("the file ends within a face")?;
+            if index < 0 || index >= positions.len() as i64 {
+                let count = positions.len();
+                let reason = format!("a face names vertex {index}, but there are only {count}");
+                return Err(text.error(reason));
+            }
+            self.polygon.push(index as u32);
+        }
+        text.words_left();
+        self.triangles.clear();
+        triangulate(positions, &self.polygon, &mut self.triangles);
+        let corner = |i: u32| VertexId(self.polygon[i as usize]);
+        out.extend(self.triangles.iter().map(|triangle| triangle.map(corner)));
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn error(text: &str) -> String {
+        read(text.as_bytes()).unwrap_err().to_string()
+    }
+
+    const TETRAHEDRON: &str = "0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 0 3 2\n";
+
+    #[test]
+    fn headers_come_in_many_forms() {
+        let expected = read(format!("OFF\n4 4 6\n{TETRAHEDRON}").as_bytes()).unwrap();
+        assert_eq!((expected.positions.len(), expected.faces.len()), (4, 4));
+        for header in [
+            "OFF 4 4 6\n",
+            "\t OFF4 4 6 # or so\n",
+            "4 4 6\n",
+            "# first\r\nOFF # second\r\n\r\n# third\r\n4 4 6\r\n\r\n",
+            "OFF\n4 4\n",
+            "OFF\r4\r4 0\r",
+        ] {
+            let mesh = read(format!("{header}{TETRAHEDRON}").as_bytes());
+            assert_eq!(mesh.as_ref(), Ok(&expected), "{header:?}");
+        }
+    }
+
+    #[test]
+    fn numbers_may_stand_on_any_lines() {
+        let text = "OFF 3 1 0 0 0\n0 1 # x\n 0 0 0 1\n0 3 0\n1 2";
+        let mesh = read(text.as_bytes());
+        assert!(mesh.is_err(), "what is behind the counts on their line is no vertex");
+        let text = "OFF 3 1 0\n0 0\n0 1 # x\n 0 0 0 1\n0 3 0\n1 2";
+        let mesh = read(text.as_bytes()).unwrap();
+        assert_eq!(mesh.positions, [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]);
+        assert_eq!(mesh.faces, [[0, 1, 2].map(VertexId)]);
+    }
+
+    #[test]
+    fn attributes_come_in_the_order_of_geomview() {
+        let text = "STCNOFF\n3 1 0\n\
+                    0 0 0  0 0 1  255 0 0 51  0.5 0.25\n\
+                    1 0 0  0 nan 1  0 255 0 51  1 0\n\
+                    0 1 0  0 0 1  0 0 255 51  0 1\n3 0 1 2 0.5 0.5 0.5\n";
+        let attributes = read(text.as_bytes()).unwrap().attributes.unwrap();
+        let values = |kind| attributes.layer(kind).unwrap().values.clone();
+        assert_eq!(values(LayerKind::Normal), [0., 0., 1., 0., 0., 1., 0., 0., 1.]);
+        assert_eq!(values(LayerKind::Color(0))[..5], [1.0, 0.0, 0.0, 0.2, 0.0]);
+        assert_eq!(values(LayerKind::Uv(0)), [0.5, 0.25, 1.0, 0.0, 0.0, 1.0]);
+    }
+
+    #[test]
+    fn colours_of_three_parts_are_told_from_those_of_four() {
+        for (color, width) in [("1 0.5 0", 3), ("1 0.5 0 1", 4)] {
+            let vertex = |p: &str| format!("{p} {color} # red\n");
+            let vertices: String = ["0 0 0", "1 0 0", "0 1 0"].map(vertex).concat();
+            let text = format!("COFF\n3 1 0\n{vertices}3 0 1 2\n");
+            let attributes = read(text.as_bytes()).unwrap().attributes.unwrap();
+            assert_eq!(attributes.layers[0].width, width);
+            assert_eq!(attributes.layers[0].values[..3], [1.0, 0.5, 0.0]);
+        }
+        assert_eq!(
+            error("COFF\n3 1 0\n0 0 0 7\n1 0 0 7\n0 1 0 7\n3 0 1 2\n"),
+            "line 3: a vertex of this header has 6 or 7 numbers, this line has 4"
+        );
+    }
+
+    #[test]
+    fn polygons_are_triangulated() {
+        let text = "OFF\n5 2 0\n0 0 0\n2 0 0\n2 2 0\n1 0.5 0\n0 2 0\n5 0 1 2 3 4 1 0 0\n3 0 1 2\n";
+        assert_eq!(read(text.as_bytes()).unwrap().faces.len(), 4);
+    }
+
+    #[test]
+    fn what_is_wrong_is_named_with_its_line() {
+        for (text, message) in [
+            ("", "byte 0: the file is empty"),
+            ("# only\n", "line 1: the file is empty"),
+            ("ply\n", "line 1: \"ply\" is not an OFF header, nor a count"),
+            ("OFF\n3", "line 2: the counts of vertices and faces are missing"),
+            (
+                "OFF\n353535235358 6 0\n0 0 0\n",
+                "line 2: the header counts 353535235358 vertices and 6 faces, but only 7 bytes \
+                 follow",
+            ),
+            ("4OFF\n3 1 0\n", "line 1: only three dimensions are read"),
+            ("nOFF\n3\n", "line 1: only three dimensions are read"),
+            ("OFF BINARY\n", "line 1: this OFF file is binary; convert it to text, or to PLY"),
+            ("OFF\n3 0 0\n0 0 0\n1 0 0\n0 1 0\n", "line 5: the file has no faces"),
+            (
+                "OFF\n3 1 0\n0 0 0\n1 0 inf\n0 1 0\n3 0 1 2\n",
+                "line 4: \"inf\" is not a finite number",
+            ),
+            (
+                "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 3\n",
+                "line 6: a face names vertex 3, but there are only 3",
+            ),
+            (
+                "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n2 0 1   \n",
+                "line 6: a face needs three corners, this has 2",
+            ),
+            (
+                "OFF\n3 2 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2 0 0 0 0 0",
+                "line 6: the file ends after 1 of 2 faces",
+            ),
+        ] {
+            assert_eq!(error(text), message);
+        }
+    }
+}

@@ -1,0 +1,111 @@
+//! Attributes in formats that have one set of them per vertex.
+
+use meshlod_mesh::{Attributes, Layer, LayerKind, Mesh, VertexId, WedgeId};
+
+/// Attributes with one wedge per vertex: `layers` have a value for each vertex. `None` without
+/// layers.
+pub(crate) fn of_vertices(
+    vertices: usize,
+    faces: &[[VertexId; 3]],
+    layers: Vec<Layer>,
+) -> Option<Attributes> {
+    let corners = || faces.iter().map(|face| face.map(|v| WedgeId(v.0))).collect();
+    (!layers.is_empty()).then(|| Attributes { corners: corners(), wedge_count: vertices, layers })
+}
+
+/// A layer of a known kind under its usual name.
+pub(crate) fn layer(kind: LayerKind, width: usize, values: Vec<f32>) -> Layer {
+    let name = match kind {
+        LayerKind::Normal => "normal",
+        LayerKind::Uv(_) => "uv",
+        LayerKind::Color(_) => "color",
+        _ => "",
+    };
+    Layer { kind, name: name.to_owned(), width, values }
+}
+
+/// Brings colours to [0, 1]: where any is above 1, all are taken to be of 255.
+pub(crate) fn to_unit(colors: &mut [f32]) {
+    if colors.iter().any(|&c| c > 1.0) {
+        colors.iter_mut().for_each(|c| *c /= 255.0);
+    }
+}
+
+/// A vertex as a file has it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Row {
+    pub(crate) vertex: VertexId,
+    /// The attributes of it; none where no face uses the vertex.
+    pub(crate) wedge: Option<WedgeId>,
+}
+
+/// The vertices and faces of a file in which a vertex has one set of attributes.
+pub(crate) struct Torn {
+    pub(crate) rows: Vec<Row>,
+    pub(crate) faces: Vec<[u32; 3]>,
+}
+
+/// Tears a mesh at its seams: the vertices in order, each with its first wedge, then one more for
+/// each further wedge. Where there are no seams, vertices and faces are those of the mesh.
+pub(crate) fn tear(mesh: &Mesh) -> Torn {
+    let mut rows: Vec<Row> =
+        (0..mesh.positions.len()).map(|v| Row { vertex: VertexId::new(v), wedge: None }).collect();
+    let mut faces: Vec<[u32; 3]> = mesh.faces.iter().map(|face| face.map(|v| v.0)).collect();
+    let Some(attributes) = &mesh.attributes else { return Torn { rows, faces } };
+    let mut row_of: Vec<Option<u32>> = vec![None; attributes.wedge_count];
+    for (corner, &wedge) in
+        faces.as_flattened_mut().iter_mut().zip(attributes.corners.as_flattened())
+    {
+        let vertex = VertexId(*corner);
+        *corner = *row_of[wedge.index()].get_or_insert_with(|| {
+            if rows[vertex.index()].wedge.is_none() {
+                rows[vertex.index()].wedge = Some(wedge);
+                return vertex.0;
+            }
+            rows.push(Row { vertex, wedge: Some(wedge) });
+            rows.len() as u32 - 1
+        });
+    }
+    Torn { rows, faces }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Two triangles over four vertices and an unused one; their wedges as given.
+    fn two(corners: [[u32; 3]; 2]) -> Mesh {
+        let faces = vec![[0, 1, 2].map(VertexId), [2, 1, 3].map(VertexId)];
+        let attributes = Attributes {
+            corners: corners.map(|corners| corners.map(WedgeId)).to_vec(),
+            wedge_count: 6,
+            layers: Vec::new(),
+        };
+        Mesh { attributes: Some(attributes), ..Mesh::new(vec![[0.0; 3]; 5], faces) }
+    }
+
+    #[test]
+    fn without_seams_vertices_stay() {
+        let torn = tear(&two([[3, 1, 0], [0, 1, 2]]));
+        assert_eq!(torn.faces, [[0, 1, 2], [2, 1, 3]]);
+        let wedges: Vec<Option<u32>> = torn.rows.iter().map(|row| row.wedge.map(|w| w.0)).collect();
+        assert_eq!(wedges, [Some(3), Some(1), Some(0), Some(2), None]);
+    }
+
+    #[test]
+    fn further_wedges_come_behind() {
+        let torn = tear(&two([[0, 1, 2], [3, 4, 5]]));
+        assert_eq!(torn.faces, [[0, 1, 2], [5, 6, 3]]);
+        assert_eq!(torn.rows[5], Row { vertex: VertexId(2), wedge: Some(WedgeId(3)) });
+        assert_eq!(torn.rows.len(), 7);
+    }
+
+    #[test]
+    fn colours_of_255_become_unit() {
+        let mut colors = [0.0, 255.0, 51.0];
+        to_unit(&mut colors);
+        assert_eq!(colors, [0.0, 1.0, 0.2]);
+        to_unit(&mut colors);
+        assert_eq!(colors, [0.0, 1.0, 0.2]);
+    }
+}
