@@ -1,0 +1,163 @@
+//! A glTF document: JSON, buffers, and checked access to its arrays.
+
+use std::cell::Cell;
+
+use serde_json::Value;
+
+use super::schema::{self, Accessor, Buffer, View};
+use super::uri::{self, Uri};
+use crate::{ParseError, Resolve};
+
+/// How many values a file may unfold to for each of its bytes.
+///
+/// One is honest work; accessors shared by many primitives, strips and accessors without data give
+/// more. Instanced test scenes stay below 4.
+const UNFOLDING: u64 = 64;
+
+/// A document with its parts in reach.
+pub(super) struct Document<'a> {
+    pub json: &'a Value,
+    pub buffers: &'a [Vec<u8>],
+    pub accessors: Vec<Accessor>,
+    pub views: Vec<View>,
+    pub meshes: Vec<schema::Mesh>,
+    /// How many more values may come out of it.
+    budget: Cell<u64>,
+}
+
+impl<'a> Document<'a> {
+    /// Types the parts that geometry needs.
+    pub fn new(json: &'a Value, buffers: &'a [Vec<u8>]) -> Result<Self, ParseError> {
+        let views: Vec<View> = schema::array(json, "bufferViews", "bufferView")?;
+        for (i, view) in views.iter().enumerate() {
+            check_view(i, view, buffers)?;
+        }
+        let accessors: Vec<Accessor> = schema::array(json, "accessors", "accessor")?;
+        let meshes: Vec<schema::Mesh> = schema::array(json, "meshes", "mesh")?;
+        // An entry of the document takes about a hundred bytes of JSON.
+        let entries = accessors.len() + meshes.iter().map(|m| m.primitives.len()).sum::<usize>();
+        let bytes = buffers.iter().map(Vec::len).sum::<usize>() + 100 * entries;
+        let budget = Cell::new((1 << 16) + bytes as u64 * UNFOLDING);
+        Ok(Self { json, buffers, accessors, views, meshes, budget })
+    }
+
+    /// The bytes of a buffer view.
+    pub fn view(&self, index: usize) -> Result<(&View, &'a [u8]), ParseError> {
+        let Some(view) = self.views.get(index) else {
+            return Err(missing("bufferView", index, self.views.len()));
+        };
+        Ok((view, &self.buffers[view.buffer][view.byte_offset..][..view.byte_length]))
+    }
+
+    /// Accounts for `values` numbers about to be made, so that a small file cannot ask for more
+    /// memory than there is.
+    pub fn spend(&self, part: &str, values: usize) -> Result<(), ParseError> {
+        let left = self.budget.get().checked_sub(values as u64).ok_or_else(|| {
+            let reason = format!("{values} values here are far more than the file has data for");
+            ParseError::part(part, reason)
+        })?;
+        self.budget.set(left);
+        Ok(())
+    }
+}
+
+/// An entry that is named, but not there.
+pub(super) fn missing(entry: &str, index: usize, count: usize) -> ParseError {
+    ParseError::part(format!("{entry} {index}"), format!("is named, but there are only {count}"))
+}
+
+/// Refuses what cannot be read: another version, a required extension that is not known here.
+pub(super) fn check_head(json: &Value) -> Result<(), ParseError> {
+    let version = json.pointer("/asset/version").and_then(Value::as_str).unwrap_or("");
+    if !version.starts_with("2.") {
+        let reason = format!("glTF version {version:?}; only 2.0 is read");
+        return Err(ParseError::part("asset", reason));
+    }
+    let required: Vec<String> = schema::array(json, "extensionsRequired", "extensionsRequired")?;
+    match required.iter().find(|name| !is_understood(name)) {
+        None => Ok(()),
+        Some(name) if compresses(name) => Err(compressed("extensionsRequired", name)),
+        Some(name) => {
+            let reason = format!("the file needs the extension {name}, which is not known here");
+            Err(ParseError::part("extensionsRequired", reason))
+        }
+    }
+}
+
+/// The extensions that change how geometry is to be read and are read so, and those that leave
+/// geometry alone.
+fn is_understood(name: &str) -> bool {
+    const GEOMETRY: [&str; 2] = ["KHR_mesh_quantization", "MSFT_lod"];
+    const OTHERS: [&str; 12] = [
+        "KHR_materials_",
+        "KHR_texture_",
+        "KHR_lights_",
+        "KHR_animation_",
+        "KHR_xmp",
+        "KHR_audio",
+        "EXT_texture_",
+        "EXT_lights_",
+        "MSFT_texture_",
+        "MSFT_packing_",
+        "MSFT_screencoverage",
+        "EXT_materials_",
+    ];
+    GEOMETRY.contains(&name) || OTHERS.iter().any(|prefix| name.starts_with(prefix))
+}
+
+fn compresses(name: &str) -> bool {
+    name.contains("draco") || name.contains("meshopt")
+}
+
+/// Geometry in a compressed form.
+pub(super) fn compressed(part: &str, extension: &str) -> ParseError {
+    let reason = format!("compressed with {extension}, which is not read; decompress it first");
+    ParseError::part(part, reason)
+}
+
+/// The buffers of a document: the chunk of the GLB, data URIs, files.
+pub(super) fn buffers(
+    json: &Value,
+    chunk: Option<&[u8]>,
+    resolve: Resolve<'_>,
+) -> Result<Vec<Vec<u8>>, ParseError> {
+    let declared: Vec<Buffer> = schema::array(json, "buffers", "buffer")?;
+    let load = |(i, buffer): (usize, &Buffer)| {
+        let wrong = |reason| ParseError::part(format!("buffer {i}"), reason);
+        let bytes = match (&buffer.uri, chunk) {
+            (None, Some(chunk)) if i == 0 => chunk.to_vec(),
+            (None, _) => return Err(wrong("has neither a URI nor the chunk of a GLB".to_owned())),
+            (Some(uri), _) => match uri::parse(uri).map_err(wrong)? {
+                Uri::Data(bytes) => bytes,
+                Uri::File(name) => resolve(&name).ok_or_else(|| {
+                    wrong(format!("names the file {name:?}, which cannot be read"))
+                })?,
+            },
+        };
+        if bytes.len() < buffer.byte_length {
+            let (found, expected) = (bytes.len(), buffer.byte_length);
+            return Err(wrong(format!("has {found} bytes where {expected} are declared")));
+        }
+        Ok(bytes)
+    };
+    declared.iter().enumerate().map(load).collect()
+}
+
+fn check_view(index: usize, view: &View, buffers: &[Vec<u8>]) -> Result<(), ParseError> {
+    let part = format!("bufferView {index}");
+    if let Some(extension) = view.extensions.keys().find(|name| compresses(name)) {
+        return Err(compressed(&part, extension));
+    }
+    let Some(buffer) = buffers.get(view.buffer) else {
+        return Err(missing("buffer", view.buffer, buffers.len()));
+    };
+    match view.byte_offset.checked_add(view.byte_length) {
+        Some(end) if end <= buffer.len() => Ok(()),
+        _ => {
+            let (offset, length, found) = (view.byte_offset, view.byte_length, buffer.len());
+            let reason =
+                format!("{length} bytes at {offset} of buffer {}, which has {found}", view.buffer);
+            Err(ParseError::part(part, reason))
+        }
+    }
+}

@@ -1,0 +1,186 @@
+//! The faces of one primitive as the arrays that a GPU reads.
+
+use meshlod_mesh::{Layer, LayerKind, Mesh, WedgeId};
+
+use super::accessor::component;
+use super::mesh::flip_v;
+use super::pool::{Blob, Usage};
+use crate::Unfit;
+
+/// The arrays of a primitive.
+pub(super) struct Arrays {
+    /// Positions of the vertices.
+    pub positions: Blob,
+    /// The layers asked for, in order.
+    pub layers: Vec<Blob>,
+    /// Three per face.
+    pub indices: Blob,
+}
+
+/// A layer and the component type that its file had it in, if it came from one.
+#[derive(Clone, Copy)]
+pub(super) struct Typed<'a> {
+    pub layer: &'a Layer,
+    pub component: Option<u32>,
+}
+
+/// Makes the arrays of the faces at `faces`. Every pair of a vertex and its wedge is one vertex of
+/// the primitive, in the order of wedges, which is that of the file where the mesh came from one.
+///
+/// # Errors
+/// When a coordinate is beyond 32 bits, or a layer is of a width that the format has not.
+pub(super) fn arrays(mesh: &Mesh, faces: &[u32], layers: &[Typed<'_>]) -> Result<Arrays, Unfit> {
+    let corners: Vec<u64> = faces.iter().flat_map(|&face| keys(mesh, face as usize)).collect();
+    let mut vertices = corners.clone();
+    vertices.sort_unstable();
+    vertices.dedup();
+    let indices = index_blob(&corners, &vertices);
+    let blobs = layers.iter().map(|&typed| layer_blob(typed, &vertices));
+    Ok(Arrays {
+        layers: blobs.collect::<Result<_, _>>()?,
+        positions: positions(mesh, &vertices)?,
+        indices,
+    })
+}
+
+/// A primitive that shows nothing at `point`: the format allows no empty mesh.
+pub(super) fn nothing(point: [f64; 3]) -> Result<Arrays, Unfit> {
+    let face = [meshlod_mesh::VertexId(0); 3];
+    arrays(&Mesh::new(vec![point], vec![face]), &[0], &[])
+}
+
+/// Wedge and vertex of each corner in one number, the wedge first.
+fn keys(mesh: &Mesh, face: usize) -> [u64; 3] {
+    let vertices = mesh.faces[face];
+    let wedges = match &mesh.attributes {
+        Some(attributes) => attributes.corners[face],
+        None => vertices.map(|v| WedgeId(v.0)),
+    };
+    std::array::from_fn(|i| u64::from(wedges[i].0) << 32 | u64::from(vertices[i].0))
+}
+
+fn wedge_of(key: u64) -> WedgeId {
+    WedgeId((key >> 32) as u32)
+}
+
+fn index_blob(corners: &[u64], vertices: &[u64]) -> Blob {
+    let find = |corner| vertices.binary_search(corner).expect("every corner is a vertex");
+    let indices = corners.iter().map(find);
+    // The greatest number of a type restarts strips and is no index.
+    let (component, bytes): (_, Vec<u8>) = if vertices.len() < usize::from(u16::MAX) {
+        (component::U16, indices.flat_map(|i| (i as u16).to_le_bytes()).collect())
+    } else {
+        (component::U32, indices.flat_map(|i| (i as u32).to_le_bytes()).collect())
+    };
+    Blob {
+        component,
+        shape: "SCALAR",
+        normalized: false,
+        count: corners.len(),
+        bytes,
+        stride: None,
+        extent: None,
+        usage: Usage::Indices,
+    }
+}
+
+fn positions(mesh: &Mesh, vertices: &[u64]) -> Result<Blob, Unfit> {
+    let mut extent = [[f32::INFINITY; 3], [f32::NEG_INFINITY; 3]];
+    let mut bytes = Vec::with_capacity(vertices.len() * 12);
+    for &key in vertices {
+        let vertex = key as u32;
+        let position = mesh.positions[vertex as usize].map(|x| x as f32);
+        if !position.iter().all(|x| x.is_finite()) {
+            let reason = "a coordinate is beyond 32-bit floats, which is all that glTF has";
+            return Err(Unfit::new(format!("v{vertex}"), reason));
+        }
+        for (axis, x) in position.into_iter().enumerate() {
+            extent[0][axis] = extent[0][axis].min(x);
+            extent[1][axis] = extent[1][axis].max(x);
+            bytes.extend_from_slice(&x.to_le_bytes());
+        }
+    }
+    Ok(Blob { extent: Some(extent), ..floats("VEC3", vertices.len(), bytes) })
+}
+
+fn layer_blob(typed: Typed<'_>, vertices: &[u64]) -> Result<Blob, Unfit> {
+    let Typed { layer, component } = typed;
+    let shape = match layer.width {
+        1 => "SCALAR",
+        2 => "VEC2",
+        3 => "VEC3",
+        4 => "VEC4",
+        9 => "MAT3",
+        16 => "MAT4",
+        width => {
+            let reason = format!("is {width} wide; glTF has 1 to 4, 9 and 16");
+            return Err(Unfit::new(format!("layer {:?}", layer.name), reason));
+        }
+    };
+    let mut values: Vec<f32> =
+        vertices.iter().flat_map(|&key| layer.of(wedge_of(key))).copied().collect();
+    if matches!(layer.kind, LayerKind::Uv(_)) {
+        flip_v(&mut values);
+    }
+    let integers = match (layer.kind, component) {
+        (LayerKind::Joints(_), _) if values.iter().any(|&x| x > 255.0) => {
+            Some((component::U16, 1.0))
+        }
+        (LayerKind::Joints(_), _) => Some((component::U8, 1.0)),
+        (LayerKind::Color(_), Some(component::U16)) => Some((component::U16, 65535.0)),
+        (LayerKind::Color(_), Some(component::U8)) => Some((component::U8, 255.0)),
+        (LayerKind::Color(_), None) if all_are_bytes(&values) => Some((component::U8, 255.0)),
+        _ => None,
+    };
+    let Some((component, scale)) = integers else {
+        let bytes = values.iter().flat_map(|x| x.to_le_bytes()).collect();
+        return Ok(floats(shape, vertices.len(), bytes));
+    };
+    let (bytes, stride) = whole_numbers(&values, layer.width, component, scale);
+    Ok(Blob {
+        component,
+        normalized: scale > 1.0,
+        stride: (stride != layer.width * component_size(component)).then_some(stride),
+        ..floats(shape, vertices.len(), bytes)
+    })
+}
+
+/// Whether colours are bytes divided by 255, so that bytes lose nothing.
+fn all_are_bytes(values: &[f32]) -> bool {
+    values.iter().all(|&x| (0.0..=1.0).contains(&x) && (x * 255.0).round() / 255.0 == x)
+}
+
+fn component_size(component: u32) -> usize {
+    if component == component::U8 { 1 } else { 2 }
+}
+
+/// Values times `scale` as unsigned integers, each element filled up to a multiple of four bytes.
+fn whole_numbers(values: &[f32], width: usize, component: u32, scale: f32) -> (Vec<u8>, usize) {
+    let stride = (width * component_size(component)).next_multiple_of(4);
+    let mut bytes = Vec::with_capacity(values.len() / width * stride);
+    for element in values.chunks_exact(width) {
+        for &value in element {
+            // `as` saturates: what is out of range becomes the nearest that is in it.
+            let whole = (value * scale).round();
+            match component {
+                component::U8 => bytes.push(whole as u8),
+                _ => bytes.extend_from_slice(&(whole as u16).to_le_bytes()),
+            }
+        }
+        bytes.resize(bytes.len().next_multiple_of(4), 0);
+    }
+    (bytes, stride)
+}
+
+fn floats(shape: &'static str, count: usize, bytes: Vec<u8>) -> Blob {
+    Blob {
+        component: component::F32,
+        shape,
+        normalized: false,
+        count,
+        bytes,
+        stride: None,
+        extent: None,
+        usage: Usage::Vertices,
+    }
+}

@@ -1,0 +1,186 @@
+//! Levels of detail in a document, by the extension `MSFT_lod`.
+
+use std::collections::BTreeSet;
+
+use meshlod_mesh::Mesh;
+use serde_json::{Map, Value, json};
+
+use super::nodes::{self, MSFT_LOD};
+use super::primitives::Replacer;
+use crate::Unfit;
+
+/// A coarser level of a whole scene.
+#[derive(Clone, Debug)]
+pub struct Level {
+    /// One mesh for each of the scene's, in its order, with its material labels.
+    pub meshes: Vec<Mesh>,
+    /// The level is shown where a node covers less than this part of the screen, in [0, 1], and
+    /// the next one does not yet.
+    pub screen_coverage: f64,
+}
+
+/// Adds the levels of all meshes, and nodes that show them.
+///
+/// `templates` are the meshes of the document before their geometry was replaced.
+pub(super) fn add(
+    json: &mut Value,
+    templates: &[Value],
+    levels: &[Level],
+    replacer: &mut Replacer<'_>,
+) -> Result<(), Unfit> {
+    check(levels, templates.len())?;
+    let first = add_meshes(json, templates, levels, replacer)?;
+    let count = json.get("nodes").and_then(Value::as_array).map_or(0, Vec::len);
+    let hidden = nodes::levels(json, count);
+    let moving = moving(json);
+    for node in (0..count).filter(|&node| !hidden[node]) {
+        let Some(mesh) = json["nodes"][node].get("mesh").and_then(Value::as_u64) else { continue };
+        let ids: Vec<usize> =
+            (0..levels.len()).map(|k| first + k * templates.len() + mesh as usize).collect();
+        let has_children = json["nodes"][node].get("children").is_some();
+        let name = base_name(json, node, mesh as usize);
+        let shown =
+            if has_children || moving.contains(&node) { give_to_child(json, node) } else { node };
+        link(json, shown, &name, &ids, levels);
+    }
+    use_extension(json);
+    Ok(())
+}
+
+fn check(levels: &[Level], meshes: usize) -> Result<(), Unfit> {
+    for (k, level) in levels.iter().enumerate() {
+        let wrong = |reason| Err(Unfit::new(format!("level {}", k + 1), reason));
+        if level.meshes.len() != meshes {
+            let found = level.meshes.len();
+            return wrong(format!("has {found} meshes where the scene has {meshes}"));
+        }
+        if !(0.0..=1.0).contains(&level.screen_coverage) {
+            return wrong(format!("a screen coverage of {}, not in [0, 1]", level.screen_coverage));
+        }
+    }
+    Ok(())
+}
+
+/// Adds the meshes, level after level, and says the number of the first.
+fn add_meshes(
+    json: &mut Value,
+    templates: &[Value],
+    levels: &[Level],
+    replacer: &mut Replacer<'_>,
+) -> Result<usize, Unfit> {
+    let mut new = Vec::new();
+    for (k, level) in levels.iter().enumerate() {
+        for (template, mesh) in templates.iter().zip(&level.meshes) {
+            let mut coarse = template.clone();
+            replacer.replace(&mut coarse, mesh)?;
+            if let Some(name) = template.get("name").and_then(Value::as_str) {
+                coarse["name"] = format!("{name}_LOD{}", k + 1).into();
+            }
+            new.push(coarse);
+        }
+    }
+    if new.is_empty() {
+        return Ok(0);
+    }
+    Ok(extend(json, "meshes", new))
+}
+
+/// Appends to an array of the document, which may not be there yet, and says where.
+fn extend(json: &mut Value, key: &str, new: Vec<Value>) -> usize {
+    let mut values = match json[key].take() {
+        Value::Array(values) => values,
+        _ => Vec::new(),
+    };
+    let first = values.len();
+    values.extend(new);
+    json[key] = values.into();
+    first
+}
+
+/// The nodes that animations or skins move: a level that stands beside such a node would not
+/// follow it.
+fn moving(json: &Value) -> BTreeSet<usize> {
+    let array = |value: &Value, key: &str| {
+        value.get(key).and_then(Value::as_array).cloned().unwrap_or_default()
+    };
+    let channels = array(json, "animations").into_iter().flat_map(|a| array(&a, "channels"));
+    let animated = channels.map(|channel| channel["target"]["node"].clone());
+    let joints = array(json, "skins").into_iter().flat_map(|skin| array(&skin, "joints"));
+    animated.chain(joints).filter_map(|node| node.as_u64()).map(|node| node as usize).collect()
+}
+
+fn base_name(json: &Value, node: usize, mesh: usize) -> String {
+    let name = |value: &Value| value.get("name").and_then(Value::as_str).map(str::to_owned);
+    let named = name(&json["nodes"][node])
+        .or_else(|| name(&json["meshes"][mesh]))
+        .filter(|name| !name.is_empty())
+        .unwrap_or_else(|| format!("node{node}"));
+    named.strip_suffix("_LOD0").map(str::to_owned).unwrap_or(named)
+}
+
+/// Moves the mesh of a node, with what belongs to it, to a new child, and says which.
+fn give_to_child(json: &mut Value, node: usize) -> usize {
+    let mut child = Map::new();
+    if let Some(parent) = json["nodes"][node].as_object_mut() {
+        for key in ["mesh", "skin", "weights"] {
+            if let Some(value) = parent.shift_remove(key) {
+                child.insert(key.into(), value);
+            }
+        }
+    }
+    let number = extend(json, "nodes", vec![child.into()]);
+    extend(&mut json["nodes"][node], "children", vec![number.into()]);
+    // Weights of morph targets are animated where the mesh is.
+    let animations = json.get_mut("animations").and_then(Value::as_array_mut);
+    let channels = animations
+        .into_iter()
+        .flatten()
+        .filter_map(|animation| animation.get_mut("channels")?.as_array_mut())
+        .flatten();
+    for target in channels.filter_map(|channel| channel.get_mut("target")) {
+        if target["path"] == "weights" && target["node"] == node {
+            target["node"] = number.into();
+        }
+    }
+    number
+}
+
+/// Adds the nodes of the coarser levels of a node, at its place, and links them to it.
+fn link(json: &mut Value, node: usize, name: &str, meshes: &[usize], levels: &[Level]) {
+    let mut shown = json["nodes"][node].take();
+    let coarser = meshes.iter().enumerate().map(|(k, &mesh)| {
+        let mut coarse = shown.clone();
+        if let Some(coarse) = coarse.as_object_mut() {
+            for key in ["children", "camera", "extensions", "extras"] {
+                coarse.shift_remove(key);
+            }
+        }
+        coarse["mesh"] = mesh.into();
+        coarse["name"] = format!("{name}_LOD{}", k + 1).into();
+        coarse
+    });
+    let first = extend(json, "nodes", coarser.collect());
+    let ids: Vec<usize> = (first..first + meshes.len()).collect();
+    // The least coverage of each level; the last is shown however small.
+    let coverage: Vec<f64> =
+        levels.iter().map(|level| level.screen_coverage).chain([0.0]).collect();
+    shown["name"] = format!("{name}_LOD0").into();
+    set(&mut shown, "extensions", MSFT_LOD, json!({ "ids": ids }));
+    set(&mut shown, "extras", "MSFT_screencoverage", json!(coverage));
+    json["nodes"][node] = shown;
+}
+
+/// Sets an entry of an object of a node; extras that are no object go.
+fn set(node: &mut Value, object: &str, key: &str, value: Value) {
+    if !node[object].is_object() {
+        node[object] = json!({});
+    }
+    node[object][key] = value;
+}
+
+fn use_extension(json: &mut Value) {
+    let used = json.get("extensionsUsed").and_then(Value::as_array);
+    if !used.is_some_and(|used| used.iter().any(|name| name == MSFT_LOD)) {
+        extend(json, "extensionsUsed", vec![MSFT_LOD.into()]);
+    }
+}

@@ -1,0 +1,55 @@
+//! Materials and images of a document, as far as a picture needs them.
+
+use serde_json::Value;
+
+use super::document::{Document, missing};
+use super::schema::{self, Texture};
+use super::uri::{self, Uri};
+use crate::{Image, Material, ParseError, Resolve};
+
+/// Reads the materials; each image that they name is one of `images`.
+pub(super) fn materials(json: &Value, images: usize) -> Result<Vec<Material>, ParseError> {
+    let textures: Vec<Texture> = schema::array(json, "textures", "texture")?;
+    let materials: Vec<schema::Material> = schema::array(json, "materials", "material")?;
+    let read = |material: schema::Material| {
+        let surface = material.pbr_metallic_roughness;
+        let base_color_image = match surface.base_color_texture {
+            None => None,
+            Some(texture) => match textures.get(texture.index) {
+                None => return Err(missing("texture", texture.index, textures.len())),
+                Some(texture) => texture.source,
+            },
+        };
+        if let Some(image) = base_color_image.filter(|&image| image >= images) {
+            return Err(missing("image", image, images));
+        }
+        Ok(Material {
+            name: material.name.unwrap_or_default(),
+            base_color: surface.base_color_factor.unwrap_or([1.0; 4]),
+            base_color_image,
+        })
+    };
+    materials.into_iter().map(read).collect()
+}
+
+/// Reads the images, which stay encoded. One whose file is not there has no bytes: a picture is
+/// the poorer, the geometry is not.
+pub(super) fn images(
+    document: &Document<'_>,
+    resolve: Resolve<'_>,
+) -> Result<Vec<Image>, ParseError> {
+    let images: Vec<schema::Image> = schema::array(document.json, "images", "image")?;
+    let mut read = |(i, image): (usize, schema::Image)| {
+        let named = || image.name.clone().unwrap_or_else(|| format!("image {i}"));
+        if let Some(view) = image.buffer_view {
+            let (_, bytes) = document.view(view)?;
+            return Ok(Image { name: named(), bytes: bytes.to_vec() });
+        }
+        Ok(match image.uri.as_deref().map(uri::parse) {
+            Some(Ok(Uri::Data(bytes))) => Image { name: named(), bytes },
+            Some(Ok(Uri::File(name))) => Image { bytes: resolve(&name).unwrap_or_default(), name },
+            Some(Err(_)) | None => Image { name: named(), bytes: Vec::new() },
+        })
+    };
+    images.into_iter().enumerate().map(&mut read).collect()
+}

@@ -1,0 +1,270 @@
+//! A mesh of a document: its primitives as one surface.
+
+use meshlod_mesh::{Attributes, Labels, Layer, LayerKind, Mesh, VertexId, WedgeId};
+use rustc_hash::FxHashMap;
+
+use super::accessor::Values;
+use super::document::{Document, compressed};
+use super::schema::Primitive;
+use crate::weld::weld;
+use crate::{ParseError, Weld};
+
+/// Reads mesh `index`: all its triangle primitives as one mesh, whose material labels say which
+/// primitive a face is of. Points and lines have a label, but no face.
+///
+/// Primitives that name the same positions share their vertices, and those that name the same
+/// attributes altogether share their wedges.
+pub(super) fn read(document: &Document<'_>, index: usize, how: Weld) -> Result<Mesh, ParseError> {
+    let mut builder = Builder::default();
+    for (p, primitive) in document.meshes[index].primitives.iter().enumerate() {
+        builder.labels.names.push(format!("primitive {p}"));
+        if primitive.has_faces() {
+            builder.add(document, primitive, &format!("mesh {index}, primitive {p}"))?;
+        }
+    }
+    let mut mesh = builder.finish(document, &format!("mesh {index}"))?;
+    match how {
+        Weld::Off => 0,
+        Weld::Exact => weld(&mut mesh, 0.0),
+        Weld::Within(epsilon) => weld(&mut mesh, epsilon),
+    };
+    Ok(mesh)
+}
+
+/// What an attribute means.
+pub(super) fn kind(name: &str) -> LayerKind {
+    let numbered = |prefix| name.strip_prefix(prefix).and_then(|set| set.parse::<u8>().ok());
+    match name {
+        "NORMAL" => LayerKind::Normal,
+        "TANGENT" => LayerKind::Tangent,
+        _ => numbered("TEXCOORD_")
+            .map(LayerKind::Uv)
+            .or_else(|| numbered("COLOR_").map(LayerKind::Color))
+            .or_else(|| numbered("JOINTS_").map(LayerKind::Joints))
+            .or_else(|| numbered("WEIGHTS_").map(LayerKind::Weights))
+            .unwrap_or(LayerKind::Other),
+    }
+}
+
+/// Turns texture coordinates from an origin at the upper left to one at the lower left, or back.
+///
+/// In 32 bits `1 - v` rounds where v is small, by 2^-25 at most; what has been turned once comes
+/// back bit for bit after two more turns, so a level written and read again is the same.
+pub(super) fn flip_v(uvs: &mut [f32]) {
+    for uv in uvs.as_chunks_mut::<2>().0 {
+        uv[1] = 1.0 - uv[1];
+    }
+}
+
+/// A mesh as it grows by primitives.
+#[derive(Default)]
+struct Builder {
+    mesh: Mesh,
+    labels: Labels,
+    corners: Vec<[WedgeId; 3]>,
+    wedge_count: usize,
+    layers: Vec<Layer>,
+    layer_by_name: FxHashMap<String, usize>,
+    /// Accessor of positions → its first vertex.
+    vertex_pools: FxHashMap<usize, usize>,
+    /// All accessors of a primitive → its first wedge.
+    wedge_pools: FxHashMap<Vec<(String, usize)>, usize>,
+}
+
+impl Builder {
+    fn add(
+        &mut self,
+        document: &Document<'_>,
+        primitive: &Primitive,
+        part: &str,
+    ) -> Result<(), ParseError> {
+        const DRACO: &str = "KHR_draco_mesh_compression";
+        if primitive.extensions.contains_key(DRACO) {
+            return Err(compressed(part, DRACO));
+        }
+        let accessors = primitive.accessors().map_err(|reason| ParseError::part(part, reason))?;
+        let Some(&(_, positions)) = accessors.iter().find(|(name, _)| name == "POSITION") else {
+            return Err(ParseError::part(part, "has no POSITION"));
+        };
+        let first_vertex = match self.vertex_pools.get(&positions) {
+            Some(&first) => first,
+            None => self.add_vertices(document, positions)?,
+        };
+        let count = document.accessors[positions].count;
+        let first_wedge = match self.wedge_pools.get(&accessors) {
+            Some(&first) => first,
+            None => self.add_wedges(document, accessors, count, part)?,
+        };
+        let indices = match primitive.indices {
+            Some(indices) => document.indices(indices, count)?,
+            None => (0..count as u32).collect(),
+        };
+        document.spend(part, indices.len() * 3)?;
+        let label = self.labels.names.len() as u32 - 1;
+        for face in triangles(primitive.mode, &indices) {
+            let at = |first: usize| face.map(|i| first as u32 + i);
+            self.mesh.faces.push(at(first_vertex).map(VertexId));
+            self.corners.push(at(first_wedge).map(WedgeId));
+            self.labels.of_face.push(label);
+        }
+        Ok(())
+    }
+
+    fn add_vertices(
+        &mut self,
+        document: &Document<'_>,
+        accessor: usize,
+    ) -> Result<usize, ParseError> {
+        let Values { width, values } = document.floats(accessor)?;
+        if width != 3 {
+            return Err(ParseError::part(format!("accessor {accessor}"), "POSITION must be VEC3"));
+        }
+        let first = self.mesh.positions.len();
+        let points = values.as_chunks::<3>().0;
+        self.mesh.positions.extend(points.iter().map(|point| point.map(f64::from)));
+        ids_fit(accessor, self.mesh.positions.len())?;
+        self.vertex_pools.insert(accessor, first);
+        Ok(first)
+    }
+
+    fn add_wedges(
+        &mut self,
+        document: &Document<'_>,
+        accessors: Vec<(String, usize)>,
+        count: usize,
+        part: &str,
+    ) -> Result<usize, ParseError> {
+        let first = self.wedge_count;
+        for (name, accessor) in accessors.iter().filter(|(name, _)| name != "POSITION") {
+            let values = document.floats(*accessor)?;
+            if values.count() != count {
+                let found = values.count();
+                let reason = format!("{name} has {found} elements, but POSITION {count}");
+                return Err(ParseError::part(part, reason));
+            }
+            self.add_values(name, values, first)
+                .map_err(|reason| ParseError::part(part, reason))?;
+        }
+        self.wedge_count += count;
+        ids_fit(accessors[0].1, self.wedge_count)?;
+        self.wedge_pools.insert(accessors, first);
+        Ok(first)
+    }
+
+    /// Appends values to the layer of that name, with zeros up to wedge `first` where it lacks some.
+    fn add_values(&mut self, name: &str, mut new: Values, first: usize) -> Result<(), String> {
+        let kind = kind(name);
+        if !fits(kind, new.width) {
+            return Err(format!("{name} cannot be {} wide", new.width));
+        }
+        if matches!(kind, LayerKind::Uv(_)) {
+            flip_v(&mut new.values);
+        }
+        let Some(&known) = self.layer_by_name.get(name) else {
+            let mut values = vec![0.0; first * new.width];
+            values.append(&mut new.values);
+            self.layer_by_name.insert(name.to_owned(), self.layers.len());
+            self.layers.push(Layer { kind, name: name.to_owned(), width: new.width, values });
+            return Ok(());
+        };
+        let layer = &mut self.layers[known];
+        if matches!(kind, LayerKind::Color(_)) && new.width != layer.width {
+            add_alpha(&mut new.width, &mut new.values);
+            add_alpha(&mut layer.width, &mut layer.values);
+        }
+        if new.width != layer.width {
+            let (known, width) = (layer.width, new.width);
+            return Err(format!("{name} is {width} wide, but {known} in an earlier primitive"));
+        }
+        layer.values.resize(first * layer.width, 0.0);
+        layer.values.append(&mut new.values);
+        Ok(())
+    }
+
+    fn finish(mut self, document: &Document<'_>, part: &str) -> Result<Mesh, ParseError> {
+        let width: usize = self.layers.iter().map(|layer| layer.width).sum();
+        document.spend(part, width.saturating_mul(self.wedge_count))?;
+        for layer in &mut self.layers {
+            layer.values.resize(self.wedge_count * layer.width, 0.0);
+        }
+        if !self.layers.is_empty() {
+            let Self { corners, wedge_count, layers, .. } = self;
+            self.mesh.attributes = Some(Attributes { corners, wedge_count, layers });
+        }
+        self.mesh.materials = Some(self.labels);
+        Ok(self.mesh)
+    }
+}
+
+fn ids_fit(accessor: usize, count: usize) -> Result<(), ParseError> {
+    if u32::try_from(count).is_ok() {
+        return Ok(());
+    }
+    let reason = "the mesh has more than 2^32 vertices with this";
+    Err(ParseError::part(format!("accessor {accessor}"), reason))
+}
+
+fn fits(kind: LayerKind, width: usize) -> bool {
+    match kind {
+        LayerKind::Normal => width == 3,
+        LayerKind::Uv(_) => width == 2,
+        LayerKind::Color(_) => matches!(width, 3 | 4),
+        LayerKind::Tangent | LayerKind::Joints(_) | LayerKind::Weights(_) => width == 4,
+        LayerKind::Other => true,
+    }
+}
+
+/// Makes colours of three values ones of four, opaque.
+fn add_alpha(width: &mut usize, values: &mut Vec<f32>) {
+    if *width == 3 {
+        let opaque = |&[r, g, b]: &[f32; 3]| [r, g, b, 1.0];
+        *values = values.as_chunks().0.iter().flat_map(opaque).collect();
+        *width = 4;
+    }
+}
+
+/// The triangles of a list, a strip or a fan of indices. Strips and fans turn on triangles that
+/// repeat an index; those are no faces.
+fn triangles(mode: u32, indices: &[u32]) -> impl Iterator<Item = [u32; 3]> {
+    let list = (mode == 4).then(|| indices.as_chunks::<3>().0.iter().copied());
+    let windows = if mode == 4 { &[][..] } else { indices };
+    let turning = windows.windows(3).enumerate().filter_map(move |(i, next)| {
+        let &[a, b, c] = next else { return None };
+        let face = match mode {
+            5 if i % 2 == 1 => [b, a, c],
+            5 => [a, b, c],
+            _ => [windows[0], b, c],
+        };
+        (face[0] != face[1] && face[1] != face[2] && face[2] != face[0]).then_some(face)
+    });
+    list.into_iter().flatten().chain(turning)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lists_strips_and_fans_give_their_triangles() {
+        let of = |mode, indices: &[u32]| triangles(mode, indices).collect::<Vec<_>>();
+        assert_eq!(of(4, &[0, 1, 2, 2, 2, 3, 9]), [[0, 1, 2], [2, 2, 3]]);
+        assert_eq!(of(5, &[0, 1, 2, 3, 4]), [[0, 1, 2], [2, 1, 3], [2, 3, 4]]);
+        assert_eq!(of(5, &[0, 1, 2, 2, 5, 5, 6, 7]), [[0, 1, 2], [6, 5, 7]]);
+        assert_eq!(of(6, &[0, 1, 2, 3]), [[0, 1, 2], [0, 2, 3]]);
+        for mode in 4..=6 {
+            assert!(of(mode, &[0, 1]).is_empty());
+        }
+    }
+
+    #[test]
+    fn texture_coordinates_turn_to_a_fixed_point() {
+        for v in [0.1, 1e-9, 0.3, 0.7, 1.0, -3.3, 5.3, 0.0] {
+            let mut once = [0.0, v];
+            flip_v(&mut once);
+            let mut thrice = once;
+            flip_v(&mut thrice);
+            flip_v(&mut thrice);
+            assert_eq!(once[1].to_bits(), thrice[1].to_bits(), "{v}");
+        }
+    }
+}

@@ -1,0 +1,217 @@
+//! The nodes of a document: which are shown, where, and that they form trees.
+
+use glam::{DMat4, DQuat, DVec3};
+use serde_json::Value;
+
+use super::document::missing;
+use super::schema::{self, Roots};
+use crate::{Node, ParseError, Scene};
+
+/// The most faces that a scene may show, over all instances. 2^28 take some 10 GB as one mesh.
+const MOST_SHOWN_FACES: usize = 1 << 28;
+
+/// The greatest entry of a world transform: positions of 32 bits stay finite under it.
+const GREATEST_ENTRY: f64 = 1e200;
+
+/// The extension that links a node to its coarser levels.
+pub(super) const MSFT_LOD: &str = "MSFT_lod";
+
+/// Reads nodes and roots into a scene that has its meshes.
+///
+/// Coarser levels by `MSFT_lod` are nodes, but neither roots nor children of any.
+pub(super) fn read(json: &Value, scene: &mut Scene) -> Result<(), ParseError> {
+    let nodes: Vec<schema::Node> = schema::array(json, "nodes", "node")?;
+    let parents = parents(&nodes)?;
+    check_trees(&nodes, &parents)?;
+    let hidden = levels(json, nodes.len());
+    scene.roots = roots(json, &parents)?.into_iter().filter(|&root| !hidden[root]).collect();
+    for (i, node) in nodes.into_iter().enumerate() {
+        if let Some(mesh) = node.mesh.filter(|&mesh| mesh >= scene.meshes.len()) {
+            return Err(missing("mesh", mesh, scene.meshes.len()));
+        }
+        let transform = transform(&node).map_err(|e| ParseError::part(format!("node {i}"), e))?;
+        scene.nodes.push(Node {
+            name: node.name.unwrap_or_default(),
+            transform: transform.to_cols_array_2d(),
+            mesh: node.mesh,
+            children: node.children.into_iter().filter(|&child| !hidden[child]).collect(),
+        });
+    }
+    check_placements(scene)
+}
+
+/// One flag per node: is it a coarser level of another, by `MSFT_lod`?
+pub(super) fn levels(json: &Value, count: usize) -> Vec<bool> {
+    let mut hidden = vec![false; count];
+    let nodes = json.get("nodes").and_then(Value::as_array);
+    for node in nodes.into_iter().flatten() {
+        let ids = node.pointer("/extensions/MSFT_lod/ids").and_then(Value::as_array);
+        for id in ids.into_iter().flatten().filter_map(Value::as_u64) {
+            if let Some(hidden) = hidden.get_mut(id as usize) {
+                *hidden = true;
+            }
+        }
+    }
+    hidden
+}
+
+fn parents(nodes: &[schema::Node]) -> Result<Vec<Option<usize>>, ParseError> {
+    let mut parents = vec![None; nodes.len()];
+    for (i, node) in nodes.iter().enumerate() {
+        for &child in &node.children {
+            let Some(parent) = parents.get_mut(child) else {
+                return Err(missing("node", child, nodes.len()));
+            };
+            if let Some(other) = parent.replace(i) {
+                let reason = format!("is a child of node {other} and of node {i}");
+                return Err(ParseError::part(format!("node {child}"), reason));
+            }
+        }
+    }
+    Ok(parents)
+}
+
+/// With one parent at most, what cannot be reached from above runs in a circle.
+fn check_trees(nodes: &[schema::Node], parents: &[Option<usize>]) -> Result<(), ParseError> {
+    let mut reached = vec![false; nodes.len()];
+    let mut stack: Vec<usize> = (0..nodes.len()).filter(|&i| parents[i].is_none()).collect();
+    while let Some(node) = stack.pop() {
+        reached[node] = true;
+        stack.extend_from_slice(&nodes[node].children);
+    }
+    match reached.iter().position(|&reached| !reached) {
+        None => Ok(()),
+        Some(node) => {
+            let reason = "is in a circle of nodes that are each other's children";
+            Err(ParseError::part(format!("node {node}"), reason))
+        }
+    }
+}
+
+/// The roots of the scene that is shown first; without scenes, every node that has no parent.
+fn roots(json: &Value, parents: &[Option<usize>]) -> Result<Vec<usize>, ParseError> {
+    let scenes: Vec<Roots> = schema::array(json, "scenes", "scene")?;
+    let shown = match json.get("scene") {
+        None => 0,
+        Some(shown) => shown
+            .as_u64()
+            .ok_or_else(|| ParseError::part("scene", "must be the number of a scene"))?
+            as usize,
+    };
+    if scenes.is_empty() {
+        return Ok((0..parents.len()).filter(|&node| parents[node].is_none()).collect());
+    }
+    let Some(Roots { nodes }) = scenes.get(shown) else {
+        return Err(missing("scene", shown, scenes.len()));
+    };
+    for &node in nodes {
+        match parents.get(node) {
+            None => return Err(missing("node", node, parents.len())),
+            Some(Some(parent)) => {
+                let reason = format!("names node {node}, which is a child of node {parent}");
+                return Err(ParseError::part(format!("scene {shown}"), reason));
+            }
+            Some(None) => {}
+        }
+    }
+    Ok(nodes.clone())
+}
+
+fn transform(node: &schema::Node) -> Result<DMat4, String> {
+    if let Some(matrix) = &node.matrix {
+        return Ok(DMat4::from_cols_array(matrix));
+    }
+    let rotation = DQuat::from_array(node.rotation.unwrap_or([0.0, 0.0, 0.0, 1.0]));
+    // Those of 32 bits are a little off unit length.
+    let length = rotation.length();
+    if !(0.5..2.0).contains(&length) {
+        return Err(format!("its rotation is no unit quaternion: its length is {length}"));
+    }
+    Ok(DMat4::from_scale_rotation_translation(
+        DVec3::from_array(node.scale.unwrap_or([1.0; 3])),
+        rotation.normalize(),
+        DVec3::from_array(node.translation.unwrap_or_default()),
+    ))
+}
+
+/// That no transform leaves the numbers, and that instances do not multiply beyond memory.
+fn check_placements(scene: &Scene) -> Result<(), ParseError> {
+    let mut faces = 0;
+    for placement in scene.placements() {
+        let part = || format!("node {}", placement.node);
+        let entries = placement.transform.as_flattened();
+        if !entries.iter().all(|entry| entry.abs() <= GREATEST_ENTRY) {
+            return Err(ParseError::part(part(), "its place in the world is not finite"));
+        }
+        let mesh = &scene.meshes[placement.mesh].mesh;
+        faces += mesh.faces.len().max(mesh.positions.len());
+        if faces > MOST_SHOWN_FACES {
+            let reason = format!("the scene shows more than {MOST_SHOWN_FACES} faces up to here");
+            return Err(ParseError::part(part(), reason));
+        }
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use serde_json::json;
+
+    use super::*;
+
+    fn read_nodes(json: Value) -> Result<Scene, String> {
+        let mut scene = Scene::default();
+        read(&json, &mut scene).map_err(|error| error.to_string())?;
+        Ok(scene)
+    }
+
+    #[test]
+    fn circles_and_shared_children_are_errors() {
+        for (nodes, place) in [
+            (json!([{"children": [1]}, {"children": [0]}]), "node 0"),
+            (json!([{"children": [0]}]), "node 0"),
+            (json!([{"children": [1]}, {}, {"children": [1]}]), "node 1"),
+            (json!([{"children": [1, 1]}, {}]), "node 1"),
+            (json!([{"children": [7]}]), "node 7"),
+            (json!([{"mesh": 0}]), "mesh 0"),
+            (json!([{"rotation": [0, 0, 0, 0]}]), "node 0"),
+        ] {
+            let error = read_nodes(json!({ "nodes": nodes })).unwrap_err();
+            assert!(error.starts_with(place), "{error}");
+        }
+    }
+
+    #[test]
+    fn a_long_chain_of_nodes_is_no_deep_recursion() {
+        let node = |i: usize| json!({ "children": if i < 99_999 { vec![i + 1] } else { vec![] } });
+        let nodes: Vec<Value> = (0..100_000).map(node).collect();
+        assert_eq!(read_nodes(json!({ "nodes": nodes })).unwrap().roots, [0]);
+    }
+
+    #[test]
+    fn a_transform_beyond_the_numbers_is_an_error() {
+        let nodes = json!([
+            {"scale": [1e150, 1, 1], "children": [1]},
+            {"scale": [1e150, 1, 1], "mesh": 0},
+        ]);
+        let mut scene = Scene { meshes: vec![crate::SceneMesh::default()], ..Scene::default() };
+        let error = read(&json!({ "nodes": nodes }), &mut scene).unwrap_err().to_string();
+        assert!(error.starts_with("node 1"), "{error}");
+    }
+
+    #[test]
+    fn coarser_levels_are_not_shown() {
+        let nodes = json!([
+            {"extensions": {"MSFT_lod": {"ids": [1, 2]}}}, {}, {}, {"children": [0]}
+        ]);
+        assert_eq!(read_nodes(json!({ "nodes": nodes })).unwrap().roots, [3]);
+    }
+
+    #[test]
+    fn the_scene_named_is_the_one_shown() {
+        let json = json!({
+            "scene": 1, "scenes": [{"nodes": [0]}, {"nodes": [1]}], "nodes": [{}, {}]
+        });
+        assert_eq!(read_nodes(json).unwrap().roots, [1]);
+    }
+}

@@ -1,0 +1,122 @@
+//! A document for a scene that came from no glTF.
+
+use serde_json::{Map, Value, json};
+
+use super::pool::Pool;
+use crate::scene::IDENTITY;
+use crate::{Material, Node, Scene, SceneMesh};
+
+/// The JSON of a scene but for the geometry: its meshes have bare primitives, one a material label.
+pub(super) fn document(scene: &Scene, pool: &mut Pool) -> Value {
+    let mut images = Images::default();
+    let materials: Vec<Value> =
+        scene.materials.iter().map(|m| material(m, images.texture(m, scene, pool))).collect();
+    let mut json = json!({
+        "asset": {
+            "version": "2.0",
+            "generator": concat!("meshlod ", env!("CARGO_PKG_VERSION")),
+        },
+        "scene": 0,
+        "scenes": [if scene.roots.is_empty() { json!({}) } else { json!({ "nodes": scene.roots }) }],
+    });
+    for (key, values) in [
+        ("nodes", scene.nodes.iter().map(node).collect()),
+        ("meshes", scene.meshes.iter().map(mesh).collect()),
+        ("materials", materials),
+        ("textures", (0..images.json.len()).map(|i| json!({ "source": i })).collect()),
+        ("images", images.json),
+    ] {
+        // The format has no empty arrays.
+        if !Vec::<Value>::is_empty(&values) {
+            json[key] = values.into();
+        }
+    }
+    json
+}
+
+/// The kind of an encoded image by its first bytes, where it is one that glTF knows.
+pub(super) fn mime_type(bytes: &[u8]) -> Option<&'static str> {
+    match bytes {
+        [0x89, b'P', b'N', b'G', ..] => Some("image/png"),
+        [0xff, 0xd8, 0xff, ..] => Some("image/jpeg"),
+        [b'R', b'I', b'F', b'F', _, _, _, _, b'W', b'E', b'B', b'P', ..] => Some("image/webp"),
+        [0xab, b'K', b'T', b'X', ..] => Some("image/ktx2"),
+        _ => None,
+    }
+}
+
+/// The images in use; image `i` is texture `i`.
+#[derive(Default)]
+struct Images {
+    json: Vec<Value>,
+    /// Image of the scene → texture.
+    of_scene: std::collections::BTreeMap<usize, usize>,
+}
+
+impl Images {
+    /// The texture of a material; none where its image is neither PNG nor JPEG, as glTF has no
+    /// other.
+    fn texture(&mut self, material: &Material, scene: &Scene, pool: &mut Pool) -> Option<usize> {
+        let index = material.base_color_image?;
+        if let Some(&texture) = self.of_scene.get(&index) {
+            return Some(texture);
+        }
+        let image = scene.images.get(index)?;
+        let kind =
+            mime_type(&image.bytes).filter(|kind| matches!(*kind, "image/png" | "image/jpeg"))?;
+        let view = pool.add_view(&image.bytes);
+        self.json.push(json!({ "name": image.name, "bufferView": view, "mimeType": kind }));
+        self.of_scene.insert(index, self.json.len() - 1);
+        Some(self.json.len() - 1)
+    }
+}
+
+fn material(material: &Material, texture: Option<usize>) -> Value {
+    let mut surface = json!({
+        "baseColorFactor": material.base_color.map(|x| if x.is_finite() { x.clamp(0.0, 1.0) } else { 1.0 }),
+        "metallicFactor": 0,
+        "roughnessFactor": 1,
+    });
+    if let Some(texture) = texture {
+        surface["baseColorTexture"] = json!({ "index": texture });
+    }
+    let mut json = named(&material.name);
+    json.insert("pbrMetallicRoughness".into(), surface);
+    if material.base_color[3] < 1.0 {
+        json.insert("alphaMode".into(), "BLEND".into());
+    }
+    json.into()
+}
+
+fn node(node: &Node) -> Value {
+    let mut json = named(&node.name);
+    if node.transform != IDENTITY {
+        json.insert("matrix".into(), json!(node.transform.as_flattened()));
+    }
+    if let Some(mesh) = node.mesh {
+        json.insert("mesh".into(), mesh.into());
+    }
+    if !node.children.is_empty() {
+        json.insert("children".into(), json!(node.children));
+    }
+    json.into()
+}
+
+fn mesh(mesh: &SceneMesh) -> Value {
+    let count = mesh.mesh.materials.as_ref().map_or(1, |labels| labels.names.len().max(1));
+    let primitive = |label: usize| match mesh.materials.get(label).copied().flatten() {
+        Some(material) => json!({ "material": material }),
+        None => json!({}),
+    };
+    let mut json = named(&mesh.name);
+    json.insert("primitives".into(), (0..count).map(primitive).collect());
+    json.into()
+}
+
+fn named(name: &str) -> Map<String, Value> {
+    let mut json = Map::new();
+    if !name.is_empty() {
+        json.insert("name".into(), name.into());
+    }
+    json
+}

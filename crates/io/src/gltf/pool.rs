@@ -1,0 +1,231 @@
+//! The accessors, buffer views and the one buffer of a document that is being written.
+
+use std::ops::Range;
+
+use serde_json::{Map, Value, json};
+
+use super::accessor::component;
+use super::document::Document;
+
+/// What becomes an accessor of its own.
+pub(super) struct Blob {
+    /// Component type by the format's number.
+    pub component: u32,
+    /// `SCALAR`, `VEC3`, …
+    pub shape: &'static str,
+    pub normalized: bool,
+    pub count: usize,
+    /// The elements, each beginning at a multiple of four bytes unless they are indices.
+    pub bytes: Vec<u8>,
+    /// Bytes from one element to the next where there is padding between.
+    pub stride: Option<usize>,
+    /// Least and greatest element, which positions must have.
+    pub extent: Option<[[f32; 3]; 2]>,
+    pub usage: Usage,
+}
+
+/// What a GPU does with a blob.
+#[derive(Clone, Copy, PartialEq)]
+pub(super) enum Usage {
+    Vertices = 34962,
+    Indices = 34963,
+}
+
+/// A document's accessors and buffer views, those of its first reading in their places.
+///
+/// Places that are free are used again; none moves, so whatever names one, extensions that nobody
+/// here knows included, keeps its meaning.
+#[derive(Default)]
+pub(super) struct Pool {
+    accessors: Vec<Value>,
+    views: Vec<Value>,
+    free_accessors: Vec<usize>,
+    free_views: Vec<usize>,
+    bytes: Vec<u8>,
+}
+
+impl Pool {
+    /// The pool of a document that was read, `free_accessors` and what only they used given up.
+    pub fn of(document: &Document<'_>, free_accessors: &[bool]) -> Self {
+        let array = |key| document.json.get(key).and_then(Value::as_array).cloned();
+        let mut pool = Self {
+            accessors: array("accessors").unwrap_or_default(),
+            views: array("bufferViews").unwrap_or_default(),
+            ..Self::default()
+        };
+        let free_views = free_views(document, &pool.accessors, free_accessors);
+        pool.free_accessors = places(free_accessors);
+        pool.free_views = places(&free_views);
+        pool.keep_bytes(document, &free_views);
+        pool
+    }
+
+    /// Adds an accessor with its buffer view, and says its number.
+    pub fn add(&mut self, blob: Blob) -> usize {
+        let mut view = self.view_of(&blob.bytes);
+        view.insert("target".into(), (blob.usage as u32).into());
+        if let Some(stride) = blob.stride {
+            view.insert("byteStride".into(), stride.into());
+        }
+        let view = place(&mut self.views, &mut self.free_views, view.into());
+        let mut accessor = json!({
+            "bufferView": view,
+            "componentType": blob.component,
+            "count": blob.count,
+            "type": blob.shape,
+        });
+        if blob.normalized {
+            accessor["normalized"] = true.into();
+        }
+        if let Some([min, max]) = blob.extent {
+            accessor["min"] = json!(min);
+            accessor["max"] = json!(max);
+        }
+        place(&mut self.accessors, &mut self.free_accessors, accessor)
+    }
+
+    /// Adds a buffer view of bytes that are no accessor's, such as an image.
+    pub fn add_view(&mut self, bytes: &[u8]) -> usize {
+        let view = self.view_of(bytes);
+        place(&mut self.views, &mut self.free_views, view.into())
+    }
+
+    /// Puts accessors, views and the description of the buffer into the document, and gives back
+    /// the buffer.
+    pub fn finish(mut self, json: &mut Map<String, Value>) -> Vec<u8> {
+        drop_last(&mut self.accessors, &mut self.free_accessors);
+        // A place that is still free must hold something valid: one zero.
+        for at in std::mem::take(&mut self.free_accessors) {
+            let view = self.add_view(&[0; 4]);
+            self.accessors[at] = json!({
+                "bufferView": view, "componentType": component::F32, "count": 1, "type": "SCALAR",
+            });
+        }
+        drop_last(&mut self.views, &mut self.free_views);
+        for at in std::mem::take(&mut self.free_views) {
+            self.views[at] = self.view_of(&[0; 4]).into();
+        }
+        let mut buffer = json
+            .remove("buffers")
+            .and_then(|buffers| buffers.as_array()?.first()?.as_object().cloned())
+            .unwrap_or_default();
+        buffer.insert("byteLength".into(), self.bytes.len().into());
+        let buffers = if self.bytes.is_empty() { vec![] } else { vec![buffer.into()] };
+        for (key, values) in
+            [("accessors", self.accessors), ("bufferViews", self.views), ("buffers", buffers)]
+        {
+            if values.is_empty() {
+                json.shift_remove(key);
+            } else {
+                json.insert(key.into(), values.into());
+            }
+        }
+        self.bytes
+    }
+
+    /// Appends bytes to the buffer, and describes where they are.
+    fn view_of(&mut self, bytes: &[u8]) -> Map<String, Value> {
+        self.bytes.resize(self.bytes.len().next_multiple_of(4), 0);
+        let view = json!({
+            "buffer": 0, "byteOffset": self.bytes.len(), "byteLength": bytes.len(),
+        });
+        self.bytes.extend_from_slice(bytes);
+        match view {
+            Value::Object(view) => view,
+            _ => unreachable!("made as an object just above"),
+        }
+    }
+
+    /// Copies what the kept views show, once where they overlap, and makes them show the copy.
+    fn keep_bytes(&mut self, document: &Document<'_>, free: &[bool]) {
+        let mut kept: Vec<usize> = (0..free.len()).filter(|&view| !free[view]).collect();
+        let range = |view: usize| {
+            let view = &document.views[view];
+            (view.buffer, view.byte_offset, view.byte_offset + view.byte_length)
+        };
+        kept.sort_by_key(|&view| range(view));
+        // The run of overlapping views that is being copied: its buffer, its bytes there, and where
+        // the first of them is here.
+        let mut run: Option<(usize, Range<usize>, usize)> = None;
+        for view in kept {
+            let (buffer, start, end) = range(view);
+            let (run_range, run_at) = match &mut run {
+                Some((b, range, at)) if *b == buffer && start < range.end => (range, *at),
+                _ => {
+                    // The same place modulo 8, so that every alignment holds.
+                    while self.bytes.len() % 8 != start % 8 {
+                        self.bytes.push(0);
+                    }
+                    let (_, range, at) = run.insert((buffer, start..start, self.bytes.len()));
+                    (range, *at)
+                }
+            };
+            if end > run_range.end {
+                self.bytes.extend_from_slice(&document.buffers[buffer][run_range.end..end]);
+                run_range.end = end;
+            }
+            self.views[view]["buffer"] = 0.into();
+            self.views[view]["byteOffset"] = (run_at + start - run_range.start).into();
+        }
+    }
+}
+
+fn places(flags: &[bool]) -> Vec<usize> {
+    // The first is taken first.
+    (0..flags.len()).rev().filter(|&place| flags[place]).collect()
+}
+
+fn place(values: &mut Vec<Value>, free: &mut Vec<usize>, value: Value) -> usize {
+    match free.pop() {
+        Some(at) => {
+            values[at] = value;
+            at
+        }
+        None => {
+            values.push(value);
+            values.len() - 1
+        }
+    }
+}
+
+/// Free places at the end need not be there at all.
+fn drop_last(values: &mut Vec<Value>, free: &mut Vec<usize>) {
+    while free.first().is_some_and(|&at| at + 1 == values.len()) {
+        values.pop();
+        free.remove(0);
+    }
+}
+
+/// One flag per buffer view: is it used by free accessors, and by nothing else?
+fn free_views(document: &Document<'_>, accessors: &[Value], free_accessors: &[bool]) -> Vec<bool> {
+    let count = document.views.len();
+    let (mut by_free, mut by_others) = (vec![false; count], vec![false; count]);
+    for (accessor, &free) in accessors.iter().zip(free_accessors) {
+        mark_views(accessor, if free { &mut by_free } else { &mut by_others });
+    }
+    let rest = document.json.as_object().into_iter().flatten();
+    for (_, value) in rest.filter(|(key, _)| *key != "accessors") {
+        mark_views(value, &mut by_others);
+    }
+    by_free.iter().zip(by_others).map(|(&by_free, by_others)| by_free && !by_others).collect()
+}
+
+/// Marks every number under the key `bufferView` at any depth, which JSON's reader bounds.
+fn mark_views(value: &Value, marks: &mut [bool]) {
+    match value {
+        Value::Array(values) => values.iter().for_each(|value| mark_views(value, marks)),
+        Value::Object(entries) => {
+            for (key, value) in entries {
+                match value.as_u64().filter(|_| key == "bufferView") {
+                    Some(view) => {
+                        if let Some(mark) = marks.get_mut(view as usize) {
+                            *mark = true;
+                        }
+                    }
+                    None => mark_views(value, marks),
+                }
+            }
+        }
+        _ => {}
+    }
+}

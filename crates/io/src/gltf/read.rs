@@ -1,0 +1,80 @@
+//! Reading glTF and GLB.
+
+use std::sync::Arc;
+
+use serde_json::Value;
+
+use super::document::{self, Document};
+use super::{container, materials, mesh, nodes};
+use crate::{ParseError, Resolve, Scene, SceneMesh, Weld};
+
+/// The glTF document that a scene came from; what is not geometry goes from it to the output.
+///
+/// Cheap to clone.
+#[derive(Clone, Debug)]
+pub struct Source(pub(super) Arc<Contents>);
+
+/// A document's JSON and buffers, and how its vertices were read.
+#[derive(Debug)]
+pub(super) struct Contents {
+    pub json: Value,
+    pub buffers: Vec<Vec<u8>>,
+    pub weld: Weld,
+}
+
+/// Reads glTF or GLB, whichever the bytes are; `resolve` gives the buffers and images that the
+/// document names by file.
+///
+/// Every mesh of the document is one of the scene; its material labels are its primitives, in
+/// order, whose materials are `SceneMesh::materials`. Attributes become layers named as in the
+/// document; texture coordinates are turned to an origin at the lower left. Morph targets become
+/// layers named `target 0 POSITION`. Skins and poses are carried through, not applied.
+///
+/// Read: triangles, strips and fans; any index and component type; strides; sparse accessors;
+/// `KHR_mesh_quantization`; `MSFT_lod` (the finest level is shown).
+///
+/// # Errors
+/// The place (`accessor 7`, `node 3`) and the reason. Compressed geometry (Draco, meshopt) and
+/// unknown required extensions are refused by name; a coordinate that is not finite, too.
+pub fn read(bytes: &[u8], resolve: Resolve<'_>, weld: Weld) -> Result<Scene, ParseError> {
+    let (text, chunk) = container::split(bytes)?;
+    let mut json: Value = serde_json::from_slice(text)
+        .map_err(|error| ParseError::part("JSON", error.to_string()))?;
+    document::check_head(&json)?;
+    let buffers = document::buffers(&json, chunk, resolve)?;
+    let mut scene = Scene::default();
+    let document = Document::new(&json, &buffers)?;
+    scene.images = materials::images(&document, resolve)?;
+    scene.materials = materials::materials(&json, scene.images.len())?;
+    for index in 0..document.meshes.len() {
+        scene.meshes.push(scene_mesh(&document, index, weld, &scene)?);
+    }
+    nodes::read(&json, &mut scene)?;
+    forget_uris(&mut json);
+    scene.source = Some(Source(Arc::new(Contents { json, buffers, weld })));
+    Ok(scene)
+}
+
+fn scene_mesh(
+    document: &Document<'_>,
+    index: usize,
+    weld: Weld,
+    scene: &Scene,
+) -> Result<SceneMesh, ParseError> {
+    let read = &document.meshes[index];
+    let materials: Vec<Option<usize>> = read.primitives.iter().map(|p| p.material).collect();
+    let count = scene.materials.len();
+    if let Some(&material) = materials.iter().flatten().find(|&&material| material >= count) {
+        return Err(document::missing("material", material, count));
+    }
+    let name = read.name.clone().unwrap_or_default();
+    Ok(SceneMesh { name, mesh: mesh::read(document, index, weld)?, materials })
+}
+
+/// Drops the URIs of buffers, which can be most of the document: their bytes are read.
+fn forget_uris(json: &mut Value) {
+    let buffers = json.get_mut("buffers").and_then(Value::as_array_mut);
+    for buffer in buffers.into_iter().flatten().filter_map(Value::as_object_mut) {
+        buffer.remove("uri");
+    }
+}

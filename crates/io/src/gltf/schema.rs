@@ -1,0 +1,212 @@
+//! The parts of a glTF document that geometry needs, as types.
+//!
+//! The document itself is kept as JSON, so that what is not named here is carried through.
+
+use serde::Deserialize;
+use serde::de::DeserializeOwned;
+use serde_json::{Map, Value};
+
+use crate::ParseError;
+
+/// `accessors[i]`.
+#[derive(Debug, Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub(super) struct Accessor {
+    pub buffer_view: Option<usize>,
+    #[serde(default)]
+    pub byte_offset: usize,
+    pub component_type: u32,
+    #[serde(default)]
+    pub normalized: bool,
+    pub count: usize,
+    #[serde(rename = "type")]
+    pub shape: String,
+    pub sparse: Option<Sparse>,
+}
+
+/// `accessors[i].sparse`.
+#[derive(Debug, Deserialize)]
+pub(super) struct Sparse {
+    pub count: usize,
+    pub indices: SparseIndices,
+    pub values: SparseValues,
+}
+
+/// `accessors[i].sparse.indices`.
+#[derive(Debug, Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub(super) struct SparseIndices {
+    pub buffer_view: usize,
+    #[serde(default)]
+    pub byte_offset: usize,
+    pub component_type: u32,
+}
+
+/// `accessors[i].sparse.values`.
+#[derive(Debug, Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub(super) struct SparseValues {
+    pub buffer_view: usize,
+    #[serde(default)]
+    pub byte_offset: usize,
+}
+
+/// `bufferViews[i]`.
+#[derive(Debug, Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub(super) struct View {
+    pub buffer: usize,
+    #[serde(default)]
+    pub byte_offset: usize,
+    pub byte_length: usize,
+    pub byte_stride: Option<usize>,
+    #[serde(default)]
+    pub extensions: Map<String, Value>,
+}
+
+/// `meshes[i]`.
+#[derive(Debug, Deserialize)]
+pub(super) struct Mesh {
+    pub name: Option<String>,
+    pub primitives: Vec<Primitive>,
+}
+
+/// `meshes[i].primitives[j]`.
+#[derive(Debug, Deserialize)]
+pub(super) struct Primitive {
+    #[serde(default)]
+    pub attributes: Map<String, Value>,
+    pub indices: Option<usize>,
+    pub material: Option<usize>,
+    #[serde(default = "Primitive::triangles")]
+    pub mode: u32,
+    #[serde(default)]
+    pub targets: Vec<Map<String, Value>>,
+    #[serde(default)]
+    pub extensions: Map<String, Value>,
+}
+
+impl Primitive {
+    fn triangles() -> u32 {
+        4
+    }
+
+    /// Whether it is a surface: triangles, a strip or a fan, not points or lines.
+    pub fn has_faces(&self) -> bool {
+        matches!(self.mode, 4..=6)
+    }
+
+    /// Each attribute by name and accessor, then those of the morph targets by
+    /// [`target_name`].
+    ///
+    /// # Errors
+    /// When one does not name its accessor by a number.
+    pub fn accessors(&self) -> Result<Vec<(String, usize)>, String> {
+        let own = self.attributes.iter().map(|(name, value)| (name.clone(), value));
+        let targets = self.targets.iter().enumerate().flat_map(|(k, target)| {
+            target.iter().map(move |(name, value)| (target_name(k, name), value))
+        });
+        own.chain(targets)
+            .map(|(name, value)| match value.as_u64() {
+                Some(index) => Ok((name, index as usize)),
+                None => Err(format!("attribute {name} must be the number of an accessor")),
+            })
+            .collect()
+    }
+}
+
+/// The layer name of an attribute of a morph target.
+pub(super) fn target_name(target: usize, attribute: &str) -> String {
+    format!("target {target} {attribute}")
+}
+
+/// The target and the attribute of a name made by [`target_name`].
+pub(super) fn parse_target_name(name: &str) -> Option<(usize, &str)> {
+    let (target, attribute) = name.strip_prefix("target ")?.split_once(' ')?;
+    Some((target.parse().ok()?, attribute))
+}
+
+/// `nodes[i]`.
+#[derive(Debug, Deserialize)]
+pub(super) struct Node {
+    pub name: Option<String>,
+    #[serde(default)]
+    pub children: Vec<usize>,
+    pub mesh: Option<usize>,
+    pub matrix: Option<[f64; 16]>,
+    pub translation: Option<[f64; 3]>,
+    pub rotation: Option<[f64; 4]>,
+    pub scale: Option<[f64; 3]>,
+}
+
+/// `scenes[i]`.
+#[derive(Debug, Deserialize)]
+pub(super) struct Roots {
+    #[serde(default)]
+    pub nodes: Vec<usize>,
+}
+
+/// `materials[i]`.
+#[derive(Debug, Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub(super) struct Material {
+    pub name: Option<String>,
+    #[serde(default)]
+    pub pbr_metallic_roughness: MetallicRoughness,
+}
+
+/// `materials[i].pbrMetallicRoughness`.
+#[derive(Debug, Default, Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub(super) struct MetallicRoughness {
+    pub base_color_factor: Option<[f32; 4]>,
+    pub base_color_texture: Option<TextureUse>,
+}
+
+/// A texture as a material names it.
+#[derive(Debug, Deserialize)]
+pub(super) struct TextureUse {
+    pub index: usize,
+}
+
+/// `textures[i]`.
+#[derive(Debug, Deserialize)]
+pub(super) struct Texture {
+    pub source: Option<usize>,
+}
+
+/// `images[i]`.
+#[derive(Debug, Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub(super) struct Image {
+    pub name: Option<String>,
+    pub uri: Option<String>,
+    pub buffer_view: Option<usize>,
+}
+
+/// `buffers[i]`.
+#[derive(Debug, Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub(super) struct Buffer {
+    pub uri: Option<String>,
+    pub byte_length: usize,
+}
+
+/// The array `json[key]` as types; none when it is not there. Errors name the entry, as
+/// `accessor 7`.
+pub(super) fn array<T: DeserializeOwned>(
+    json: &Value,
+    key: &str,
+    entry: &str,
+) -> Result<Vec<T>, ParseError> {
+    let Some(value) = json.get(key) else { return Ok(Vec::new()) };
+    let Some(values) = value.as_array() else {
+        return Err(ParseError::part(key, "must be an array"));
+    };
+    let typed = |(i, value)| {
+        T::deserialize(value).map_err(|error: serde_json::Error| {
+            ParseError::part(format!("{entry} {i}"), error.to_string())
+        })
+    };
+    values.iter().enumerate().map(typed).collect()
+}

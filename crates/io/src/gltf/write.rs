@@ -1,0 +1,224 @@
+//! Writing glTF and GLB: the document that the scene came from, with other geometry.
+
+use meshlod_mesh::Mesh;
+use serde_json::{Map, Value, json};
+
+use super::document::Document;
+use super::lod::{self, Level};
+use super::pool::Pool;
+use super::primitives::{Replacer, attributes, is_surface};
+use super::read::Contents;
+use super::uri::{self, Uri};
+use super::{container, mesh, plain};
+use crate::{Image, Scene, Unfit};
+
+/// A `.gltf` file and the files that go with it.
+#[derive(Clone, Debug)]
+pub struct Written {
+    /// The JSON document.
+    pub document: Vec<u8>,
+    /// The buffer and the name of its file, if there is one.
+    pub buffer: Option<(String, Vec<u8>)>,
+    /// Images that the document names as files, by those names.
+    pub images: Vec<Image>,
+}
+
+/// Writes a scene as GLB, everything in one; `levels`, which may be none, hold coarser meshes.
+///
+/// A scene that came from glTF is written as that document. Its nodes, materials, animations,
+/// extras, extensions and all else pass through; a mesh that was not changed keeps its arrays bit
+/// by bit, and one that was gets new ones (f32, 16-bit indices where they do, colours as they
+/// were). The buffer is put together anew without what nothing uses any more. Any other scene gets
+/// a plain document with its nodes, materials, PNGs and JPEGs. A mesh that has no face left keeps
+/// one without area, as glTF knows no empty mesh.
+///
+/// With levels, every node with a mesh is named `…_LOD0` and linked by the extension `MSFT_lod` to
+/// nodes `…_LOD1`, `…_LOD2` and so on, and its `extras.MSFT_screencoverage` says when each is
+/// shown. A node that has children or moves keeps its name, and a child takes its mesh.
+///
+/// # Errors
+/// When a mesh is not valid or leaves 32 bits; when labels or numbers of meshes do not match the
+/// source; above 4 GB.
+pub fn write_glb(scene: &Scene, levels: &[Level]) -> Result<Vec<u8>, Unfit> {
+    let mut output = Output::of(scene, levels)?;
+    output.embed_images(scene, |_| true);
+    let buffer = output.pool.finish(&mut output.json);
+    container::join(&to_bytes(output.json)?, &buffer)
+}
+
+/// Writes a scene as a `.gltf` of that stem, with its buffer as `stem.bin`. Images that were files
+/// stay files. See [`write_glb`].
+///
+/// # Errors
+/// As for [`write_glb`], but for the size.
+pub fn write(scene: &Scene, levels: &[Level], stem: &str) -> Result<Written, Unfit> {
+    let mut output = Output::of(scene, levels)?;
+    // One that lies elsewhere is not ours to write.
+    output.embed_images(scene, |name| crate::files::inner_path(name).is_none());
+    let images = output.external_images(scene);
+    let bytes = output.pool.finish(&mut output.json);
+    let name = format!("{stem}.bin");
+    if let Some(buffer) = output.json.get_mut("buffers") {
+        buffer[0]["uri"] = uri::of_file(&name).into();
+    }
+    let document = to_bytes(output.json)?;
+    Ok(Written { document, buffer: (!bytes.is_empty()).then_some((name, bytes)), images })
+}
+
+/// A document with its geometry in it, but for the buffer.
+struct Output {
+    json: Map<String, Value>,
+    pool: Pool,
+}
+
+impl Output {
+    fn of(scene: &Scene, levels: &[Level]) -> Result<Self, Unfit> {
+        match &scene.source {
+            Some(source) => Self::with_source(scene, &source.0, levels),
+            None => {
+                let mut pool = Pool::default();
+                let json = plain::document(scene, &mut pool);
+                let all = vec![true; scene.meshes.len()];
+                Self::finish(json, scene, &all, Replacer { document: None, pool }, levels)
+            }
+        }
+    }
+
+    fn with_source(scene: &Scene, source: &Contents, levels: &[Level]) -> Result<Self, Unfit> {
+        let (json, buffers) = (&source.json, &source.buffers);
+        let unreadable = |error: crate::ParseError| Unfit::new("source", error.to_string());
+        let document = Document::new(json, buffers).map_err(unreadable)?;
+        let count = document.meshes.len();
+        if scene.meshes.len() != count {
+            let reason =
+                format!("it has {count} meshes, the scene {}; drop the source", scene.meshes.len());
+            return Err(Unfit::new("source", reason));
+        }
+        let mut changed = Vec::new();
+        for (index, mesh) in scene.meshes.iter().enumerate() {
+            let old = mesh::read(&document, index, source.weld).map_err(unreadable)?;
+            changed.push(!same_geometry(&old, &mesh.mesh));
+        }
+        let pool = Pool::of(&document, &free_accessors(&document, &changed));
+        let replacer = Replacer { document: Some(&document), pool };
+        Self::finish(json.clone(), scene, &changed, replacer, levels)
+    }
+
+    /// Puts the meshes that changed and the levels into the document.
+    fn finish(
+        mut json: Value,
+        scene: &Scene,
+        changed: &[bool],
+        mut replacer: Replacer<'_>,
+        levels: &[Level],
+    ) -> Result<Self, Unfit> {
+        let templates = json.get("meshes").and_then(Value::as_array).cloned().unwrap_or_default();
+        for (index, mesh) in scene.meshes.iter().enumerate().filter(|&(index, _)| changed[index]) {
+            let mut new = templates[index].clone();
+            replacer.replace(&mut new, &mesh.mesh)?;
+            json["meshes"][index] = new;
+        }
+        if !levels.is_empty() {
+            lod::add(&mut json, &templates, levels, &mut replacer)?;
+        }
+        match json {
+            Value::Object(json) => Ok(Self { json, pool: replacer.pool }),
+            _ => Err(Unfit::new("source", "is no JSON object")),
+        }
+    }
+
+    /// Takes images that are files into the buffer, where their bytes are known and `inside` says
+    /// so of their names.
+    fn embed_images(&mut self, scene: &Scene, inside: impl Fn(&str) -> bool) {
+        let images = self.json.get_mut("images").and_then(Value::as_array_mut);
+        for (image, read) in images.into_iter().flatten().zip(&scene.images) {
+            let Some(name) = file_name(image) else { continue };
+            let Some(kind) = mime_type(&name, &read.bytes).filter(|_| inside(&name)) else {
+                continue;
+            };
+            image["bufferView"] = self.pool.add_view(&read.bytes).into();
+            image["mimeType"] = kind.into();
+            if let Some(image) = image.as_object_mut() {
+                image.shift_remove("uri");
+            }
+        }
+    }
+
+    fn external_images(&self, scene: &Scene) -> Vec<Image> {
+        let images = self.json.get("images").and_then(Value::as_array);
+        let pairs = images.into_iter().flatten().zip(&scene.images);
+        pairs
+            .filter(|(_, read)| !read.bytes.is_empty())
+            .filter_map(|(image, read)| {
+                Some(Image { name: file_name(image)?, bytes: read.bytes.clone() })
+            })
+            .collect()
+    }
+}
+
+/// The file that an image of a document names.
+fn file_name(image: &Value) -> Option<String> {
+    match uri::parse(image.get("uri")?.as_str()?) {
+        Ok(Uri::File(name)) => Some(name),
+        _ => None,
+    }
+}
+
+/// The kind of an image by its bytes, else by its name; none where there are no bytes.
+fn mime_type(name: &str, bytes: &[u8]) -> Option<&'static str> {
+    let by_name = || {
+        let suffix = name.rsplit('.').next().unwrap_or_default().to_ascii_lowercase();
+        if suffix == "png" { "image/png" } else { "image/jpeg" }
+    };
+    (!bytes.is_empty()).then(|| plain::mime_type(bytes).unwrap_or_else(by_name))
+}
+
+/// Whether meshes are equal in all that is written of them.
+fn same_geometry(a: &Mesh, b: &Mesh) -> bool {
+    let label = |mesh: &Mesh, face| mesh.materials.as_ref().map(|labels| labels.of(face));
+    a.positions == b.positions
+        && a.faces == b.faces
+        && a.attributes == b.attributes
+        && (0..a.faces.len()).all(|face| label(a, face) == label(b, face))
+}
+
+/// One flag per accessor: is it of a triangle primitive of a changed mesh, and of nothing else?
+fn free_accessors(document: &Document<'_>, changed: &[bool]) -> Vec<bool> {
+    let count = document.accessors.len();
+    let (mut replaced, mut kept) = (vec![false; count], vec![false; count]);
+    let meshes = document.json.get("meshes").and_then(Value::as_array);
+    for (mesh, &changed) in meshes.into_iter().flatten().zip(changed) {
+        let primitives = mesh.get("primitives").and_then(Value::as_array);
+        for primitive in primitives.into_iter().flatten() {
+            let marks = if changed && is_surface(primitive) { &mut replaced } else { &mut kept };
+            let indices = primitive.get("indices").and_then(Value::as_u64).map(|i| i as usize);
+            for accessor in attributes(primitive).into_values().chain(indices) {
+                if let Some(mark) = marks.get_mut(accessor) {
+                    *mark = true;
+                }
+            }
+        }
+    }
+    mark_others(document.json, &mut kept);
+    replaced.iter().zip(kept).map(|(&replaced, kept)| replaced && !kept).collect()
+}
+
+/// Marks the accessors of skins and animations.
+fn mark_others(json: &Value, marks: &mut [bool]) {
+    let array = |value: &'_ Value, key: &str| {
+        value.get(key).and_then(Value::as_array).cloned().unwrap_or_default()
+    };
+    let skins = array(json, "skins").into_iter().map(|skin| skin["inverseBindMatrices"].clone());
+    let samplers = array(json, "animations").into_iter().flat_map(|a| array(&a, "samplers"));
+    let animated =
+        samplers.flat_map(|sampler| [sampler["input"].clone(), sampler["output"].clone()]);
+    for accessor in skins.chain(animated).filter_map(|value| value.as_u64()) {
+        if let Some(mark) = marks.get_mut(accessor as usize) {
+            *mark = true;
+        }
+    }
+}
+
+fn to_bytes(json: Map<String, Value>) -> Result<Vec<u8>, Unfit> {
+    serde_json::to_vec(&json!(json)).map_err(|error| Unfit::new("JSON", error.to_string()))
+}
