@@ -1,4 +1,34 @@
 //! `cargo xtask VERB`: what the project does to itself.
 #![forbid(unsafe_code)]
 
-fn main() {}
+mod check;
+mod doc;
+mod project;
+
+use std::process::ExitCode;
+
+use project::Project;
+
+const USAGE: &str = "usage: cargo xtask VERB
+  check   keys of references, arrows between crates, lengths of files
+  doc     the documentation of all crates, warnings being errors";
+
+fn main() -> ExitCode {
+    let verb = std::env::args().nth(1);
+    let project = Project::here();
+    let outcome = match verb.as_deref() {
+        Some("check") => check::run(&project),
+        Some("doc") => doc::run(&project),
+        _ => {
+            eprintln!("{USAGE}");
+            return ExitCode::from(2);
+        }
+    };
+    match outcome {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("error: {error:#}");
+            ExitCode::FAILURE
+        }
+    }
+}

@@ -229,7 +229,7 @@ impl Builder {
     }
 }
 
-/// Unit normals of vertices: those of their faces, weighted by the angle there.
+/// Unit normals of vertices: those of their faces, weighted by the angle there [TW98].
 fn vertex_normals(mesh: &Mesh) -> Vec<[f32; 3]> {
     let mut sums = vec![DVec3::ZERO; mesh.positions.len()];
     for &face in &mesh.faces {

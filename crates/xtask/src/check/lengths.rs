@@ -1,0 +1,60 @@
+//! No file is long without a reason.
+
+use crate::project::Text;
+
+/// Lines above which a file is listed, and above which it must give a reason.
+const LONG: usize = 300;
+const TOO_LONG: usize = 600;
+/// How the reason begins, and within how many lines of the file's start.
+const REASON: &str = "//! Long because ";
+const REASON_WITHIN: usize = 10;
+
+/// What was found.
+#[derive(Debug, Default, PartialEq)]
+pub struct Lengths {
+    /// Long, which may be.
+    pub notes: Vec<String>,
+    /// Too long without a reason.
+    pub errors: Vec<String>,
+}
+
+/// Lists sources of more than 300 lines, and refuses those of more than 600 that do not say
+/// `//! Long because …` in their first ten lines.
+pub fn check(sources: &[Text]) -> Lengths {
+    let mut found = Lengths::default();
+    for source in sources {
+        let lines = source.text.lines().count();
+        let reason = source.text.lines().take(REASON_WITHIN).any(|line| line.starts_with(REASON));
+        if lines > TOO_LONG && !reason {
+            let path = &source.path;
+            found
+                .errors
+                .push(format!("{path}: {lines} lines; split it, or begin it with `{REASON}…`"));
+        } else if lines > LONG {
+            found.notes.push(format!("{}: {lines} lines", source.path));
+        }
+    }
+    found
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn source(first: &str, lines: usize) -> Text {
+        Text { path: "a.rs".into(), text: format!("{first}\n{}", "x\n".repeat(lines - 1)) }
+    }
+
+    #[test]
+    fn short_is_silent_long_is_noted_too_long_is_refused() {
+        assert_eq!(check(&[source("", 300)]), Lengths::default());
+        assert_eq!(check(&[source("", 600)]).notes, ["a.rs: 600 lines"]);
+        assert_eq!(check(&[source("", 601)]).errors.len(), 1);
+    }
+
+    #[test]
+    fn a_reason_excuses_length() {
+        let found = check(&[source("//! Long because it is a table.", 700)]);
+        assert_eq!((found.notes.len(), found.errors.len()), (1, 0));
+    }
+}

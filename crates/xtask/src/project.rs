@@ -1,0 +1,67 @@
+//! The project's folder and its text files.
+
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context, Result};
+
+/// A folder with a workspace in it.
+pub struct Project {
+    root: PathBuf,
+}
+
+/// A text file of the project.
+#[derive(Clone, Debug)]
+pub struct Text {
+    /// Its path from the root, with slashes.
+    pub path: String,
+    /// Its contents.
+    pub text: String,
+}
+
+/// Folders that hold nothing written by hand.
+const GENERATED: [&str; 4] = ["target", "corpus", "artifacts", "out"];
+
+impl Project {
+    /// The project that this program was built from.
+    pub fn here() -> Self {
+        Self { root: Path::new(env!("CARGO_MANIFEST_DIR")).join("../..") }
+    }
+
+    /// Its folder.
+    pub fn root(&self) -> &Path {
+        &self.root
+    }
+
+    /// One file of it.
+    pub fn read(&self, path: &str) -> Result<Text> {
+        let text =
+            std::fs::read_to_string(self.root.join(path)).with_context(|| path.to_owned())?;
+        Ok(Text { path: path.to_owned(), text })
+    }
+
+    /// The files below `folder` (from the root) that end in `suffix`, in order of their paths;
+    /// none where the folder is missing.
+    pub fn files(&self, folder: &str, suffix: &str) -> Result<Vec<Text>> {
+        let mut paths = Vec::new();
+        self.walk(folder, suffix, &mut paths)?;
+        paths.sort();
+        paths.iter().map(|path| self.read(path)).collect()
+    }
+
+    fn walk(&self, folder: &str, suffix: &str, paths: &mut Vec<String>) -> Result<()> {
+        let Ok(entries) = std::fs::read_dir(self.root.join(folder)) else { return Ok(()) };
+        for entry in entries {
+            let entry = entry?;
+            let name = entry.file_name().to_string_lossy().into_owned();
+            let path = if folder == "." { name.clone() } else { format!("{folder}/{name}") };
+            if entry.path().is_dir() {
+                if !name.starts_with('.') && !GENERATED.contains(&name.as_str()) {
+                    self.walk(&path, suffix, paths)?;
+                }
+            } else if name.ends_with(suffix) {
+                paths.push(path);
+            }
+        }
+        Ok(())
+    }
+}
