@@ -3,7 +3,7 @@
 //! A quadric is kept relative to its vertex, not to the world's origin: the planes around a vertex
 //! pass through it, so the sums stay small and nothing cancels, wherever the model stands.
 
-use std::ops::Add;
+use std::ops::{Add, Mul};
 
 use glam::{DMat3, DVec3};
 
@@ -36,6 +36,21 @@ impl Add for Quadric {
     }
 }
 
+impl Mul<f64> for Quadric {
+    type Output = Self;
+
+    #[inline]
+    fn mul(self, factor: f64) -> Self {
+        Self {
+            diagonal: self.diagonal * factor,
+            off_diagonal: self.off_diagonal * factor,
+            b: self.b * factor,
+            c: self.c * factor,
+            weight: self.weight * factor,
+        }
+    }
+}
+
 impl Quadric {
     /// Squared distance to the plane through the origin with this unit normal, times `weight`.
     #[inline]
@@ -46,6 +61,18 @@ impl Quadric {
             off_diagonal: DVec3::new(n.y * n.z, n.z * n.x, n.x * n.y) * weight,
             weight,
             ..Self::default()
+        }
+    }
+
+    /// The plane of a face through the origin, given twice its area along its normal, weighted by
+    /// its area. A face without area has no plane and weighs nothing.
+    #[inline]
+    pub(crate) fn face(area_normal: DVec3) -> Self {
+        let twice_area = area_normal.length();
+        if twice_area > 0.0 {
+            Self::plane(area_normal / twice_area, 0.5 * twice_area)
+        } else {
+            Self::default()
         }
     }
 
