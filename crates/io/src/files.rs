@@ -4,9 +4,13 @@ use std::fs;
 use std::io::{self, Write};
 use std::path::{Component, Path, PathBuf};
 
-use crate::pending::{obj, one as off, one as smf, one as ply, stl};
+use meshlod_mesh::{Mesh, VertexId};
+
 use crate::replace::replace;
-use crate::{Format, Image, IoError, ParseError, Precision, Scene, Unfit, gltf, weld};
+use crate::{
+    Format, Image, IoError, ParseError, Precision, Scene, Unfit, gltf, obj, off, ply, smf, stl,
+    weld,
+};
 
 /// How vertices at the same place are treated on reading.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -79,14 +83,11 @@ pub fn read_bytes(
         Format::Off => Scene::from_mesh("", off::read(bytes)?),
         Format::Smf => Scene::from_mesh("", smf::read(bytes)?),
     };
-    let epsilon = match options.weld {
-        Weld::Within(epsilon) => Some(epsilon),
-        Weld::Exact if format == Format::Stl => Some(0.0),
-        Weld::Exact | Weld::Off => None,
-    };
-    if let Some(epsilon) = epsilon {
-        for mesh in &mut scene.meshes {
-            weld(&mut mesh.mesh, epsilon);
+    for mesh in &mut scene.meshes {
+        match options.weld {
+            Weld::Within(epsilon) => drop(weld(&mut mesh.mesh, epsilon)),
+            Weld::Off if format == Format::Stl => tear(&mut mesh.mesh),
+            Weld::Exact | Weld::Off => {}
         }
     }
     Ok(scene)
@@ -136,6 +137,14 @@ pub fn write_lods(path: &Path, scene: &Scene, levels: &[gltf::Level]) -> Result<
             write_one(path, |out| out.write_all(&written.document))
         }
         _ => Err(unfit(Unfit::new("levels", "only .glb and .gltf hold levels; use one of those"))),
+    }
+}
+
+/// Gives every corner a vertex of its own, as STL has them.
+fn tear(mesh: &mut Mesh) {
+    mesh.positions = mesh.faces.iter().flatten().map(|v| mesh.positions[v.index()]).collect();
+    for (i, vertex) in mesh.faces.iter_mut().flatten().enumerate() {
+        *vertex = VertexId::new(i);
     }
 }
 
@@ -196,3 +205,6 @@ fn read_beside(folder: &Path, name: &str) -> Option<Vec<u8>> {
 fn stem(path: &Path) -> String {
     path.file_stem().unwrap_or_default().to_string_lossy().into_owned()
 }
+
+#[cfg(test)]
+mod tests;

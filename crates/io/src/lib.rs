@@ -11,7 +11,6 @@ mod lines;
 pub mod obj;
 pub mod off;
 pub mod ply;
-mod pending;
 mod polygon;
 mod replace;
 mod scene;
@@ -22,7 +21,7 @@ mod torn;
 mod weld;
 
 pub use error::{IoError, ParseError, Place, Unfit};
-pub use files::{ReadOptions, Resolve, Weld, WriteOptions, read, read_bytes, write};
+pub use files::{ReadOptions, Resolve, Weld, WriteOptions, read, read_bytes, write, write_lods};
 pub use flatten::Placement;
 pub use format::Format;
 pub use scene::{Image, Material, Node, Scene, SceneMesh};

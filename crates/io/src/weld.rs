@@ -192,7 +192,7 @@ mod tests {
                 kind: LayerKind::Uv(0),
                 name: "uv".to_owned(),
                 width: 2,
-                values: uvs.into_flattened(),
+                values: uvs.as_flattened().to_vec(),
             }],
         };
         Mesh { attributes: Some(attributes), ..Mesh::new(positions, faces) }
