@@ -11,11 +11,7 @@ use crate::simplifier::Run;
 use crate::surface::Surface;
 
 /// Sets a method to work on a surface.
-pub(crate) fn start(
-    method: Method,
-    surface: Surface,
-    connectivity: Connectivity,
-) -> Box<dyn Run> {
+pub(crate) fn start(method: Method, surface: Surface, connectivity: Connectivity) -> Box<dyn Run> {
     let memory = Quadrics::new(&surface, &connectivity);
     match method {
         Method::Qem => Box::new(Engine::new(

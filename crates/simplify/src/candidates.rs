@@ -1,4 +1,4 @@
-//! Edges and faces as candidates.
+//! Edges as candidates.
 
 use meshlod_mesh::{Connectivity, FaceId};
 
@@ -75,27 +75,5 @@ fn keep_one(hood: &Neighbourhood, wing: u32, books: &mut dyn Books) {
     }
     if let (Some(side), false) = (first, open) {
         books.open(side);
-    }
-}
-
-/// Every face.
-pub(crate) struct Faces;
-
-impl Candidates for Faces {
-    fn seed(&self, surface: &Surface, _: &Connectivity) -> Vec<CandidateId> {
-        (0..surface.face_count())
-            .map(FaceId::new)
-            .filter(|&f| surface.is_alive(f))
-            .map(|f| CandidateId::side(f, 0))
-            .collect()
-    }
-
-    #[inline]
-    fn vertices(&self, surface: &Surface, id: CandidateId) -> Contracted {
-        Contracted::face(surface.face(id.face()))
-    }
-
-    fn settle(&self, hood: &Neighbourhood, books: &mut dyn Books) {
-        hood.dying.iter().for_each(|dying| books.close(CandidateId::side(dying.face, 0)));
     }
 }

@@ -8,6 +8,7 @@ use crate::surface::Flags;
 pub(crate) const EDGE_CHECKS: &[Check] = &[shape, link, closing, flip];
 
 /// The rules for faces.
+#[cfg(test)]
 pub(crate) const FACE_CHECKS: &[Check] = &[face_boundary, link, closing, flip];
 
 /// The least cosine between a face's normal before and after; found on bunny, horse and dragon:
@@ -30,6 +31,7 @@ fn shape(proposal: &Proposal<'_>) -> Result<(), Refusal> {
 }
 
 /// A face whose corners are all inside: only then is its ring closed.
+#[cfg(test)]
 fn face_boundary(proposal: &Proposal<'_>) -> Result<(), Refusal> {
     let hood = proposal.hood;
     if hood.contracted.iter().any(|&v| proposal.surface.flags(v).any(Flags::BOUNDARY)) {

@@ -35,11 +35,7 @@ fn duplicates(faces: &[[VertexId; 3]], connectivity: &Connectivity) -> Vec<FaceI
         .collect()
 }
 
-fn repeats_lower(
-    faces: &[[VertexId; 3]],
-    connectivity: &Connectivity,
-    face: FaceId,
-) -> bool {
+fn repeats_lower(faces: &[[VertexId; 3]], connectivity: &Connectivity, face: FaceId) -> bool {
     let [a, b, c] = faces[face.index()];
     let turns = [[a, b, c], [b, c, a], [c, a, b]];
     connectivity
@@ -60,7 +56,8 @@ mod tests {
 
     #[test]
     fn a_face_given_twice_counts_once() {
-        let (connectivity, duplicates) = connect(&mesh(&[[0, 1, 2], [1, 3, 2], [2, 0, 1], [1, 2, 0]]));
+        let (connectivity, duplicates) =
+            connect(&mesh(&[[0, 1, 2], [1, 3, 2], [2, 0, 1], [1, 2, 0]]));
         assert_eq!(duplicates, 2);
         assert_eq!((connectivity.non_manifold_edges(), connectivity.boundary_edges()), (0, 4));
     }

@@ -12,7 +12,9 @@ use rustc_hash::FxHashMap;
 use crate::candidates::CandidateId;
 use crate::contracted::{Contracted, Freedom};
 use crate::neighbourhood::{Neighbourhood, freedom};
-use crate::policy::{Books, Candidates, Check, Memory, Observe, Placement, Priority, Proposal, Stop};
+use crate::policy::{
+    Books, Candidates, Check, Memory, Observe, Placement, Priority, Proposal, Stop,
+};
 use crate::queue::{Entry, Key, Queue};
 use crate::refusal::{Refusal, Refusals};
 use crate::surface::{Flags, Placed, State, Surface};
@@ -189,6 +191,10 @@ where
 
     pub(crate) fn surface(&self) -> &Surface {
         &self.surface
+    }
+
+    pub(crate) fn into_surface(self) -> Surface {
+        self.surface
     }
 
     pub(crate) fn refusals(&self) -> Refusals {

@@ -20,6 +20,10 @@ mod checks;
 mod clean;
 mod contracted;
 mod engine;
+#[cfg(test)]
+mod faces;
+mod history;
+mod level;
 mod neighbourhood;
 mod options;
 mod policy;
@@ -34,6 +38,7 @@ mod wedges;
 use meshlod_mesh::Mesh;
 
 pub use contracted::{Contracted, Freedom};
+pub use history::{Contraction, History, Rewind};
 pub use neighbourhood::{Dying, Neighbourhood, RingVertex, Spoke};
 pub use options::{Method, Options, Report, SimplifyError, Target};
 pub use policy::Observe;

@@ -91,9 +91,9 @@ impl Memory for Quadrics {
 /// The planes of the surviving faces, with their vertex at `position`, seen from there.
 fn star(hood: &Neighbourhood, position: DVec3) -> Quadric {
     let at = |place: u32| hood.ring()[place as usize].position - position;
-    hood.spokes().iter().fold(Quadric::default(), |sum, spoke| {
-        sum + Quadric::face(at(spoke.a).cross(at(spoke.b)))
-    })
+    hood.spokes()
+        .iter()
+        .fold(Quadric::default(), |sum, spoke| sum + Quadric::face(at(spoke.a).cross(at(spoke.b))))
 }
 
 fn add_face(
@@ -170,8 +170,8 @@ impl Rule for Optimal {
             return at(sum, surface, of, kept);
         }
         let origin = surface.position(of[0]);
-        let middle = of.iter().map(|&v| surface.position(v) - origin).sum::<DVec3>()
-            / of.len() as f64;
+        let middle =
+            of.iter().map(|&v| surface.position(v) - origin).sum::<DVec3>() / of.len() as f64;
         let offset = sum.optimum(middle, PULL);
         Choice { offset, kept: 0, cost: sum.at(offset) }
     }

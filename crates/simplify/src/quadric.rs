@@ -135,7 +135,9 @@ mod tests {
     use super::*;
 
     fn corner() -> Quadric {
-        Quadric::plane(DVec3::X, 1.0) + Quadric::plane(DVec3::Y, 2.0) + Quadric::plane(DVec3::Z, 3.0)
+        Quadric::plane(DVec3::X, 1.0)
+            + Quadric::plane(DVec3::Y, 2.0)
+            + Quadric::plane(DVec3::Z, 3.0)
     }
 
     #[test]

@@ -1,10 +1,11 @@
 //! A mesh being simplified: run it to a target, take the level, run on.
 
-use meshlod_mesh::{FaceId, Mesh, VertexId};
+use meshlod_mesh::{Mesh, VertexId};
 
 use crate::algorithms;
 use crate::clean;
 use crate::engine::Engine;
+use crate::level::level;
 use crate::options::{Options, Report, SimplifyError, Target};
 use crate::policy::{Candidates, Memory, Observe, Placement, Priority, Stop};
 use crate::refusal::Refusals;
@@ -31,6 +32,7 @@ pub(crate) trait Run {
     fn step(&mut self, stop: &Stop, observer: &mut dyn Observe) -> bool;
     fn next_cost(&mut self) -> Option<f64>;
     fn surface(&self) -> &Surface;
+    fn into_surface(self: Box<Self>) -> Surface;
     fn refusals(&self) -> Refusals;
     fn error_estimate(&self) -> f64;
 }
@@ -56,6 +58,10 @@ where
 
     fn surface(&self) -> &Surface {
         Engine::surface(self)
+    }
+
+    fn into_surface(self: Box<Self>) -> Surface {
+        Engine::into_surface(*self)
     }
 
     fn refusals(&self) -> Refusals {
@@ -155,25 +161,10 @@ impl<'m> Simplifier<'m> {
 
     /// The mesh as it is now: unused vertices and wedges left out, the rest in the input's order.
     pub fn level(&self) -> Mesh {
-        let surface = self.engine.surface();
-        let kept: Vec<u32> =
-            (0..surface.face_count() as u32).filter(|&f| surface.is_alive(FaceId(f))).collect();
-        let mut level = Mesh {
-            positions: Vec::new(),
-            faces: kept.iter().map(|&f| surface.face(FaceId(f))).collect(),
-            attributes: self
-                .mesh
-                .attributes
-                .as_ref()
-                .and(surface.wedges.as_ref())
-                .map(|wedges| wedges.select(&kept)),
-            materials: self.mesh.materials.as_ref().map(|labels| labels.select(&kept)),
-            objects: self.mesh.objects.as_ref().map(|labels| labels.select(&kept)),
-        };
-        level.positions = (0..surface.vertex_count())
-            .map(|v| surface.position(VertexId::new(v)).to_array())
-            .collect();
-        level.compact();
-        level
+        level(self.mesh, self.engine.surface())
+    }
+
+    pub(crate) fn into_surface(self) -> (&'m Mesh, Surface) {
+        (self.mesh, self.engine.into_surface())
     }
 }

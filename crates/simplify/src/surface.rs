@@ -9,6 +9,7 @@ use meshlod_mesh::{Connectivity, FaceId, Mesh, VertexId};
 
 use crate::candidates::CandidateId;
 use crate::contracted::Contracted;
+use crate::history::Moved;
 use crate::neighbourhood::Neighbourhood;
 use crate::wedges::Wedges;
 
@@ -123,8 +124,7 @@ impl Surface {
             })
             .collect();
         let live_faces = faces.iter().filter(|face| face.alive).count();
-        let mut surface =
-            Self { vertices, faces, stars, live_faces, wedges: Wedges::of(mesh) };
+        let mut surface = Self { vertices, faces, stars, live_faces, wedges: Wedges::of(mesh) };
         surface.flag_seams();
         surface
     }
@@ -136,8 +136,7 @@ impl Surface {
             let first = at.next();
             at.any(|wedge| Some(wedge) != first)
         };
-        let seams: Vec<_> =
-            (0..self.vertices.len()).map(VertexId::new).filter(on_seam).collect();
+        let seams: Vec<_> = (0..self.vertices.len()).map(VertexId::new).filter(on_seam).collect();
         for v in seams {
             self.flag(v, Flags::SEAM);
         }
@@ -167,7 +166,7 @@ impl Surface {
         &mut self.faces[id.face().index()].states[id.corner()]
     }
 
-    /// Where a vertex is now; one that is gone, where it went.
+    /// Where a vertex is now; one that is gone, where it was last.
     #[inline]
     pub fn position(&self, vertex: VertexId) -> DVec3 {
         self.vertices[vertex.index()].position
@@ -245,6 +244,26 @@ impl Surface {
         }
         self.live_faces -= hood.dying.len();
         self.join(hood, kept, placed.position);
+    }
+
+    /// Takes a contraction back as far as positions and faces go: stars and flags stay as they are.
+    pub(crate) fn expand(
+        &mut self,
+        (kept, position): (VertexId, DVec3),
+        moved: &[Moved],
+        died: &[FaceId],
+    ) {
+        self.vertices[kept.index()].position = position;
+        for &Moved { corner, vertex, wedge } in moved {
+            self.faces[corner.face().index()].vertices[corner.corner()] = vertex;
+            if let Some(wedges) = &mut self.wedges {
+                wedges.set(corner.face(), corner.corner(), wedge);
+            }
+        }
+        for face in died {
+            self.faces[face.index()].alive = true;
+        }
+        self.live_faces += died.len();
     }
 
     /// Gives `kept` the surviving faces, the flags and a version above all the contracted.

@@ -134,6 +134,24 @@ impl Wedges {
         self.layers.iter().flat_map(move |layer| layer.of(wedge)).copied()
     }
 
+    /// How many values a wedge has in all layers.
+    pub(crate) fn width(&self) -> usize {
+        self.layers.iter().map(|layer| layer.width).sum()
+    }
+
+    /// Gives a wedge back the values that [`Self::values`] gave.
+    pub(crate) fn restore(&mut self, wedge: WedgeId, mut values: &[f32]) {
+        for layer in &mut self.layers {
+            let (these, rest) = values.split_at(layer.width);
+            layer.of_mut(wedge).copy_from_slice(these);
+            values = rest;
+        }
+    }
+
+    pub(crate) fn set(&mut self, face: FaceId, corner: usize, wedge: WedgeId) {
+        self.corners[face.index()][corner] = wedge;
+    }
+
     /// The attributes of the faces at `kept`, in that order, with all wedges still in place.
     pub(crate) fn select(&self, kept: &[u32]) -> Attributes {
         Attributes {

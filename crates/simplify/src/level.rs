@@ -1,0 +1,23 @@
+//! A mesh out of the surface as it is.
+
+use meshlod_mesh::{FaceId, Mesh, VertexId};
+
+use crate::surface::Surface;
+
+/// The faces that are left, with what they use, in the input's order.
+pub(crate) fn level(mesh: &Mesh, surface: &Surface) -> Mesh {
+    let kept: Vec<u32> =
+        (0..surface.face_count() as u32).filter(|&f| surface.is_alive(FaceId(f))).collect();
+    let attributes = mesh.attributes.as_ref().and(surface.wedges.as_ref());
+    let mut level = Mesh {
+        positions: (0..surface.vertex_count())
+            .map(|v| surface.position(VertexId::new(v)).into())
+            .collect(),
+        faces: kept.iter().map(|&f| surface.face(FaceId(f))).collect(),
+        attributes: attributes.map(|wedges| wedges.select(&kept)),
+        materials: mesh.materials.as_ref().map(|labels| labels.select(&kept)),
+        objects: mesh.objects.as_ref().map(|labels| labels.select(&kept)),
+    };
+    level.compact();
+    level
+}

@@ -1,0 +1,236 @@
+//! What every method must keep on every mesh.
+
+use std::collections::HashSet;
+
+use meshlod_fixtures as fixtures;
+use meshlod_mesh::{Connectivity, Mesh, VertexId, face_components, sample};
+use meshlod_simplify::{Method, Options, Report, Simplifier, Target, simplify};
+
+fn meshes() -> Vec<(&'static str, Mesh)> {
+    vec![
+        ("tetrahedron", fixtures::tetrahedron()),
+        ("cube", fixtures::cube()),
+        ("grid", fixtures::grid(12)),
+        ("fan", fixtures::fan()),
+        ("hourglass", fixtures::hourglass()),
+        ("moebius", fixtures::moebius(40)),
+        ("seam strip", fixtures::seam_strip()),
+        ("two objects", fixtures::two_objects()),
+        ("sphere", sample::sphere(2000)),
+        ("torus", sample::torus(2000)),
+        ("faceted torus", sample::faceted_torus(2000)),
+        ("knot", sample::knot(3000)),
+        ("gyroid", sample::gyroid(3000)),
+        ("terrain", sample::terrain(2000)),
+        ("fish", sample::fish(2000)),
+    ]
+}
+
+/// What a contraction must not change, or not make worse.
+#[derive(Debug, PartialEq)]
+struct Topology {
+    components: usize,
+    euler: i64,
+    boundary_loops_closed: bool,
+    non_manifold_edges: usize,
+    inconsistent_edges: usize,
+}
+
+fn topology(mesh: &Mesh) -> Topology {
+    let c = Connectivity::new(&mesh.faces, mesh.positions.len());
+    let used = mesh.used_vertices().iter().filter(|&&used| used).count();
+    Topology {
+        components: face_components(&mesh.faces, mesh.positions.len()).1,
+        euler: used as i64 - c.edge_count() as i64 + mesh.faces.len() as i64,
+        boundary_loops_closed: c.is_closed(),
+        non_manifold_edges: c.non_manifold_edges(),
+        inconsistent_edges: c.inconsistent_edges(),
+    }
+}
+
+fn run(mesh: &Mesh, method: Method, ratio: f64) -> (Mesh, Report) {
+    simplify(mesh, Target::Ratio(ratio), &Options { method, ..Options::default() }).unwrap()
+}
+
+fn each_level(check: impl Fn(&str, &Mesh, &Mesh, &Report)) {
+    for (name, mesh) in meshes() {
+        for method in Method::ALL {
+            for ratio in [0.5, 0.1, 0.0] {
+                let (level, report) = run(&mesh, method, ratio);
+                check(&format!("{name} by {} to {ratio}", method.name()), &mesh, &level, &report);
+            }
+        }
+    }
+}
+
+#[test]
+fn a_level_is_as_closed_manifold_and_oriented_as_its_mesh() {
+    each_level(|what, mesh, level, _| {
+        let (before, after) = (topology(mesh), topology(level));
+        assert_eq!(before.components, after.components, "{what}");
+        assert_eq!(before.euler, after.euler, "{what}");
+        assert_eq!(before.boundary_loops_closed, after.boundary_loops_closed, "{what}");
+        assert!(after.non_manifold_edges <= before.non_manifold_edges, "{what}");
+        // A strip without orientation may shift where its two turns meet, and must keep one.
+        if before.inconsistent_edges == 0 {
+            assert_eq!(after.inconsistent_edges, 0, "{what}");
+        }
+    });
+}
+
+#[test]
+fn a_level_is_valid_and_has_no_face_twice() {
+    each_level(|what, _, level, report| {
+        level.validate().unwrap_or_else(|error| panic!("{what}: {error}"));
+        assert_eq!(level.faces.len(), report.output_faces, "{what}");
+        assert!(level.used_vertices().iter().all(|&used| used), "{what}");
+        let mut seen = HashSet::new();
+        for face in &level.faces {
+            let mut sorted = face.map(|v| v.0);
+            sorted.sort_unstable();
+            assert!(sorted[0] < sorted[1] && sorted[1] < sorted[2], "{what}: {face:?}");
+            assert!(seen.insert(sorted), "{what}: {face:?} stands twice");
+        }
+    });
+}
+
+#[test]
+fn smooth_samples_reach_their_target() {
+    for mesh in [sample::sphere(2000), sample::torus(2000), sample::knot(3000)] {
+        for method in Method::ALL {
+            let (level, report) = run(&mesh, method, 0.05);
+            let target = mesh.faces.len() / 20;
+            assert!(report.reached && (target - 1..=target).contains(&level.faces.len()));
+        }
+    }
+}
+
+#[test]
+fn what_stopped_it_is_reported() {
+    let (level, report) = run(&fixtures::tetrahedron(), Method::Qem, 0.0);
+    assert_eq!(level.faces.len(), 4);
+    let refused: u64 = report.refusals.iter().map(|(_, count)| count).sum();
+    assert!(refused >= 6, "all six edges are refused, not {refused}");
+}
+
+#[test]
+fn every_single_step_keeps_a_closed_surface_closed() {
+    for method in Method::ALL {
+        let mesh = sample::torus(300);
+        let mut simplifier =
+            Simplifier::new(&mesh, &Options { method, ..Options::default() }).unwrap();
+        while simplifier.step(&mut ()) {
+            let level = simplifier.level();
+            assert_eq!(topology(&level), Topology { ..topology(&mesh) });
+        }
+        assert!(simplifier.live_faces() < 40);
+    }
+}
+
+#[test]
+fn the_same_bytes_for_any_number_of_threads() {
+    for (name, mesh) in meshes() {
+        for method in Method::ALL {
+            let with = |threads| {
+                let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+                pool.install(|| run(&mesh, method, 0.2))
+            };
+            assert_eq!(with(1), with(2), "{name}");
+        }
+    }
+}
+
+#[test]
+fn locked_vertices_stay_where_they_are() {
+    let mesh = sample::sphere(1000);
+    let locked: Vec<bool> = (0..mesh.positions.len()).map(|v| v % 7 == 0).collect();
+    for method in Method::ALL {
+        let options = Options { method, locked: locked.clone(), ..Options::default() };
+        let (level, _) = simplify(&mesh, Target::Faces(0), &options).unwrap();
+        let places: HashSet<_> = level.positions.iter().map(|p| p.map(f64::to_bits)).collect();
+        for (v, position) in mesh.positions.iter().enumerate().filter(|(v, _)| locked[*v]) {
+            assert!(places.contains(&position.map(f64::to_bits)), "{}", VertexId::new(v));
+        }
+    }
+}
+
+#[test]
+fn a_locked_boundary_keeps_every_vertex() {
+    let mesh = sample::terrain(800);
+    let options = Options { lock_boundary: true, ..Options::default() };
+    let (level, report) = simplify(&mesh, Target::Faces(1), &options).unwrap();
+    let edges = |mesh: &Mesh| Connectivity::new(&mesh.faces, mesh.positions.len()).boundary_edges();
+    assert_eq!(edges(&level), edges(&mesh));
+    assert!(!report.reached && level.faces.len() < mesh.faces.len() / 2);
+}
+
+#[test]
+fn endpoint_keeps_to_the_vertices_of_the_input() {
+    let mesh = sample::knot(2000);
+    let places: HashSet<_> = mesh.positions.iter().map(|p| p.map(f64::to_bits)).collect();
+    let (level, _) = run(&mesh, Method::QemEndpoint, 0.1);
+    assert!(level.positions.iter().all(|p| places.contains(&p.map(f64::to_bits))));
+}
+
+#[test]
+fn a_flat_costs_nothing_and_keeps_its_outline() {
+    let mesh = fixtures::grid(16);
+    for method in Method::ALL {
+        let options = Options { method, ..Options::default() };
+        let (level, report) = simplify(&mesh, Target::Error(1e-9), &options).unwrap();
+        assert!(level.faces.len() <= 8, "{} faces are left of a square", level.faces.len());
+        assert!(report.error_estimate < 1e-9);
+        assert!((level.bounds().diagonal() - 16.0 * 2f64.sqrt()).abs() < 1e-6);
+    }
+}
+
+#[test]
+fn an_error_bound_stops_what_would_exceed_it() {
+    let mesh = sample::sphere(5000);
+    let mut last = mesh.faces.len();
+    for error in [1e-3, 3e-3, 1e-2, 3e-2] {
+        let (level, report) = simplify(&mesh, Target::Error(error), &Options::default()).unwrap();
+        assert!(report.error_estimate <= error && level.faces.len() < last);
+        last = level.faces.len();
+    }
+}
+
+#[test]
+fn far_from_the_origin_is_as_good_as_near() {
+    let near = sample::torus(2000);
+    let mut far = near.clone();
+    far.positions.iter_mut().flatten().for_each(|x| *x += 65536.0);
+    let (a, b) = (run(&near, Method::Qem, 0.1), run(&far, Method::Qem, 0.1));
+    let relative = a.1.error_estimate / b.1.error_estimate;
+    assert!((0.9..1.1).contains(&relative), "{relative}");
+}
+
+#[test]
+fn the_seam_of_a_strip_keeps_its_two_wedges() {
+    let mesh = sample::fish(2000);
+    for method in Method::ALL {
+        let (level, _) = run(&mesh, method, 0.1);
+        let attributes = level.attributes.as_ref().unwrap();
+        let mut wedges = vec![HashSet::new(); level.positions.len()];
+        for (face, corners) in level.faces.iter().zip(&attributes.corners) {
+            for (v, w) in face.iter().zip(corners) {
+                wedges[v.index()].insert(*w);
+            }
+        }
+        assert!(wedges.iter().any(|at| at.len() > 1), "the seam is gone");
+        // A wedge belongs to one vertex.
+        assert_eq!(wedges.iter().map(HashSet::len).sum::<usize>(), attributes.wedge_count);
+    }
+}
+
+#[test]
+fn what_is_no_mesh_is_refused() {
+    let empty = Mesh::default();
+    assert!(simplify(&empty, Target::Faces(1), &Options::default()).is_err());
+    let mut nan = fixtures::tetrahedron();
+    nan.positions[0][0] = f64::NAN;
+    assert!(simplify(&nan, Target::Faces(1), &Options::default()).is_err());
+    for bad in [Target::Ratio(f64::NAN), Target::Ratio(1.5), Target::Error(-1.0)] {
+        assert!(simplify(&fixtures::cube(), bad, &Options::default()).is_err());
+    }
+}
