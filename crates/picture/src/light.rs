@@ -25,6 +25,7 @@ impl Lights {
         match self.lighting {
             Lighting::Unlit => color,
             Lighting::Headlight => color * (0.2 + 0.8 * facing),
+            Lighting::Soft => color * (0.45 + 0.55 * facing),
             Lighting::Studio => self.studio(color, normal, to_eye, facing),
         }
     }
@@ -32,12 +33,12 @@ impl Lights {
     /// A key light from the upper left, a weak one from the eye so that no form is lost in the
     /// dark, a cool sky over a warm ground, a soft gloss. The numbers are tuned by eye.
     fn studio(&self, color: Vec3, normal: Vec3, to_eye: Vec3, facing: f32) -> Vec3 {
-        const SKY: Vec3 = Vec3::new(0.25, 0.275, 0.31);
-        const GROUND: Vec3 = Vec3::new(0.10, 0.092, 0.085);
-        const KEY: Vec3 = Vec3::new(0.74, 0.71, 0.66);
+        const SKY: Vec3 = Vec3::new(0.21, 0.235, 0.27);
+        const GROUND: Vec3 = Vec3::new(0.075, 0.066, 0.06);
+        const KEY: Vec3 = Vec3::new(0.90, 0.86, 0.79);
         let key = ((normal.dot(self.to_key) + 0.1) / 1.1).max(0.0);
         let ambient = GROUND.lerp(SKY, 0.5 + 0.5 * normal.dot(self.up));
-        let diffuse = ambient + KEY * key + Vec3::splat(0.16 * facing);
+        let diffuse = ambient + KEY * key + Vec3::splat(0.13 * facing);
         let half = (self.to_key + to_eye).normalize_or_zero();
         let gloss = power_of_32(normal.dot(half).max(0.0)) * 0.10;
         color * diffuse + Vec3::splat(gloss)

@@ -41,12 +41,11 @@ impl Default for Style<'_> {
 impl Style<'_> {
     /// The style in which pictures of two meshes are compared, beside
     /// [`Camera::icosahedron_views`](crate::Camera::icosahedron_views): 1024 by 1024, headlight
-    /// plus ambient, mid-grey background, both sides of faces alike.
+    /// plus ambient, mid-grey background.
     pub fn comparison() -> Self {
         Self {
             normals: Normals::FromMesh,
             lighting: Lighting::Headlight,
-            backs: Backs::Same,
             background: Background::Plain([128; 3]),
             ..Self::default()
         }
@@ -77,7 +76,7 @@ pub enum Paint<'a> {
 
 impl Default for Paint<'_> {
     fn default() -> Self {
-        Self::Plain([196, 205, 216])
+        Self::Plain([226, 208, 186])
     }
 }
 
@@ -136,23 +135,25 @@ pub enum Lighting {
     Studio,
     /// From the eye, with an even rest: for pictures to compare.
     Headlight,
+    /// Mostly even, a little from the eye: for colours that mean something, as in heat maps.
+    Soft,
     /// Colours as they are.
     Unlit,
 }
 
 /// How the inner sides of faces look.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Backs {
     /// As the outer ones.
+    #[default]
     Same,
     /// In one colour, whatever the paint: turned faces and holes catch the eye.
     Tint([u8; 3]),
 }
 
-impl Default for Backs {
-    fn default() -> Self {
-        Self::Tint([196, 92, 78])
-    }
+impl Backs {
+    /// A red that no surface is mistaken for.
+    pub const RED: Self = Self::Tint([196, 92, 78]);
 }
 
 /// Lines along the edges of all faces. They fade where faces become too small for them.

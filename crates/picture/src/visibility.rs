@@ -129,7 +129,7 @@ fn draw(samples: &mut [Sample], window: &Window, face: u32, triangle: &[Point; 3
 mod tests {
     use super::*;
     use crate::View;
-    use crate::scenes::{from_front, sheet, stack};
+    use crate::scenes::{ball, from_front, sheet, stack};
 
     #[test]
     fn the_nearer_face_is_seen() {
@@ -141,14 +141,15 @@ mod tests {
 
     #[test]
     fn of_equal_faces_the_lower_id_is_seen() {
-        let mut mesh = stack(&[0.0, 0.0]);
-        // The same triangle turned over and begun elsewhere.
-        let [a, b, c] = mesh.faces[0];
-        mesh.faces[1] = [b, a, c];
-        let camera = Camera::look_at([0.3, 0.2, 3.0], [0.0; 3], [0.1, 1.0, 0.0], 0.8);
-        let seen = visibility(&mesh, &camera, [50, 50]).unwrap();
-        assert!(seen.covered() > 100);
-        assert!(seen.faces().flatten().all(|face| face == FaceId(0)));
+        let mut mesh = ball(3);
+        let count = mesh.faces.len();
+        // The same faces turned over and begun elsewhere.
+        mesh.faces.extend_from_within(..);
+        mesh.faces[count..].iter_mut().for_each(|face| *face = [face[2], face[1], face[0]]);
+        let seen =
+            visibility(&mesh, &Camera::fit_mesh(&mesh, &View::default()), [300, 300]).unwrap();
+        assert!(seen.covered() > 1000);
+        assert!(seen.faces().flatten().all(|face| face.index() < count));
     }
 
     #[test]
@@ -161,15 +162,25 @@ mod tests {
     }
 
     #[test]
-    fn flying_through_leaves_no_cracks() {
-        // Half of the sheet is behind the eye, much of it far outside of the frame.
-        let mut mesh = sheet(40);
-        for p in &mut mesh.positions {
-            *p = [p[0] * 1e3, -0.5, p[1] * 1e3];
-        }
+    fn flying_through_shows_what_rays_hit() {
+        // Half of the ground is behind the eye, some of it too far aside for fixed point.
+        let (cells, reach) = (40, 1e4);
+        let mut mesh = sheet(cells);
+        mesh.positions.iter_mut().for_each(|p| *p = [p[0] * reach, -0.5, p[1] * reach]);
         let camera = Camera::look_at([0.0; 3], [0.0, -0.4, -1.0], [0.0, 1.0, 0.0], 0.7);
-        let seen = visibility(&mesh, &camera.with_near(1e-3), [200, 200]).unwrap();
-        assert_eq!(seen.covered(), 200 * 200);
+        let camera = camera.with_near(1e-3);
+        let lens = camera.lens(200, 200);
+        let seen = visibility(&mesh, &camera, [200, 200]).unwrap();
+        for (pixel, face) in seen.faces().enumerate() {
+            let ray = lens.ray((pixel % 200) as f64 + 0.5, (pixel / 200) as f64 + 0.5);
+            let hit = ray * (-0.5 / ray.y);
+            let [i, j] = [hit.x, hit.z].map(|x| (x / reach + 1.0) * 0.5 * f64::from(cells));
+            let face = face.expect("the ground fills the view").index();
+            // Snapping to fixed point moves an edge by a part of a pixel.
+            let [near_i, near_j] = [i, j].map(|x| (x - x.round()).abs() < 0.01);
+            let cell = (j.floor() * f64::from(cells) + i.floor()) as usize;
+            assert!(near_i || near_j || face / 2 == cell, "pixel {pixel}: {i} {j} is not f{face}");
+        }
     }
 
     #[test]
