@@ -197,9 +197,10 @@ pub(crate) fn inner_path(name: &str) -> Option<PathBuf> {
 
 fn read_beside(folder: &Path, name: &str) -> Option<Vec<u8>> {
     // Exporters on Windows write backslashes.
-    [name.to_owned(), name.replace('\\', "/")]
-        .iter()
-        .find_map(|name| fs::read(folder.join(name)).ok())
+    let names = [name.to_owned(), name.replace('\\', "/")];
+    // A device would be read without end.
+    let file = names.iter().map(|name| folder.join(name)).find(|path| path.is_file());
+    fs::read(file?).ok()
 }
 
 fn stem(path: &Path) -> String {

@@ -34,6 +34,15 @@ impl<'a> Document<'a> {
         }
         let accessors: Vec<Accessor> = schema::array(json, "accessors", "accessor")?;
         let meshes: Vec<schema::Mesh> = schema::array(json, "meshes", "mesh")?;
+        for (i, mesh) in json["meshes"].as_array().into_iter().flatten().enumerate() {
+            // Types alone would take arrays as well.
+            if !mesh["primitives"].as_array().is_some_and(|p| p.iter().all(Value::is_object)) {
+                return Err(ParseError::part(
+                    format!("mesh {i}"),
+                    "has a primitive that is no object",
+                ));
+            }
+        }
         // An entry of the document takes about a hundred bytes of JSON.
         let entries = accessors.len() + meshes.iter().map(|m| m.primitives.len()).sum::<usize>();
         let bytes = buffers.iter().map(Vec::len).sum::<usize>() + 100 * entries;

@@ -5,6 +5,7 @@ use meshlod_mesh::{Layer, LayerKind, Mesh, WedgeId};
 use super::accessor::component;
 use super::mesh::flip_v;
 use super::pool::{Blob, Usage};
+use super::schema::parse_target_name;
 use crate::Unfit;
 
 /// The arrays of a primitive.
@@ -85,8 +86,7 @@ fn index_blob(corners: &[u64], vertices: &[u64]) -> Blob {
 }
 
 fn positions(mesh: &Mesh, vertices: &[u64]) -> Result<Blob, Unfit> {
-    let mut extent = [[f32::INFINITY; 3], [f32::NEG_INFINITY; 3]];
-    let mut bytes = Vec::with_capacity(vertices.len() * 12);
+    let mut points = Vec::with_capacity(vertices.len());
     for &key in vertices {
         let vertex = key as u32;
         let position = mesh.positions[vertex as usize].map(|x| x as f32);
@@ -94,13 +94,22 @@ fn positions(mesh: &Mesh, vertices: &[u64]) -> Result<Blob, Unfit> {
             let reason = "a coordinate is beyond 32-bit floats, which is all that glTF has";
             return Err(Unfit::new(format!("v{vertex}"), reason));
         }
-        for (axis, x) in position.into_iter().enumerate() {
-            extent[0][axis] = extent[0][axis].min(x);
-            extent[1][axis] = extent[1][axis].max(x);
-            bytes.extend_from_slice(&x.to_le_bytes());
+        points.push(position);
+    }
+    let bytes = points.as_flattened().iter().flat_map(|x| x.to_le_bytes()).collect();
+    Ok(Blob { extent: Some(extent(&points)), ..floats("VEC3", points.len(), bytes) })
+}
+
+/// The least and the greatest of each coordinate.
+fn extent(points: &[[f32; 3]]) -> [[f32; 3]; 2] {
+    let mut extent = [[f32::INFINITY; 3], [f32::NEG_INFINITY; 3]];
+    for point in points {
+        for axis in 0..3 {
+            extent[0][axis] = extent[0][axis].min(point[axis]);
+            extent[1][axis] = extent[1][axis].max(point[axis]);
         }
     }
-    Ok(Blob { extent: Some(extent), ..floats("VEC3", vertices.len(), bytes) })
+    extent
 }
 
 fn layer_blob(typed: Typed<'_>, vertices: &[u64]) -> Result<Blob, Unfit> {
@@ -134,7 +143,11 @@ fn layer_blob(typed: Typed<'_>, vertices: &[u64]) -> Result<Blob, Unfit> {
     };
     let Some((component, scale)) = integers else {
         let bytes = values.iter().flat_map(|x| x.to_le_bytes()).collect();
-        return Ok(floats(shape, vertices.len(), bytes));
+        let moves = matches!(parse_target_name(&layer.name), Some((_, "POSITION")));
+        return Ok(Blob {
+            extent: moves.then(|| extent(values.as_chunks().0)),
+            ..floats(shape, vertices.len(), bytes)
+        });
     };
     let (bytes, stride) = whole_numbers(&values, layer.width, component, scale);
     Ok(Blob {

@@ -3,6 +3,7 @@
 use serde_json::Value;
 
 use super::document::{Document, missing};
+use super::plain::mime_type;
 use super::schema::{self, Texture};
 use super::uri::{self, Uri};
 use crate::{Image, Material, ParseError, Resolve};
@@ -40,16 +41,27 @@ pub(super) fn images(
 ) -> Result<Vec<Image>, ParseError> {
     let images: Vec<schema::Image> = schema::array(document.json, "images", "image")?;
     let mut read = |(i, image): (usize, schema::Image)| {
-        let named = || image.name.clone().unwrap_or_else(|| format!("image {i}"));
+        let named = |bytes: &[u8]| file_name(image.name.clone(), i, bytes);
         if let Some(view) = image.buffer_view {
             let (_, bytes) = document.view(view)?;
-            return Ok(Image { name: named(), bytes: bytes.to_vec() });
+            return Ok(Image { name: named(bytes), bytes: bytes.to_vec() });
         }
         Ok(match image.uri.as_deref().map(uri::parse) {
-            Some(Ok(Uri::Data(bytes))) => Image { name: named(), bytes },
+            Some(Ok(Uri::Data(bytes))) => Image { name: named(&bytes), bytes },
             Some(Ok(Uri::File(name))) => Image { bytes: resolve(&name).unwrap_or_default(), name },
-            Some(Err(_)) | None => Image { name: named(), bytes: Vec::new() },
+            Some(Err(_)) | None => Image { name: named(&[]), bytes: Vec::new() },
         })
     };
     images.into_iter().enumerate().map(&mut read).collect()
+}
+
+/// The name of an image that is no file of its own, as a file: other formats write it as one.
+fn file_name(name: Option<String>, index: usize, bytes: &[u8]) -> String {
+    let name = name.filter(|name| !name.is_empty()).unwrap_or_else(|| format!("image{index}"));
+    let suffix = match mime_type(bytes) {
+        Some("image/png") => ".png",
+        Some("image/jpeg") => ".jpg",
+        _ => "",
+    };
+    if name.to_ascii_lowercase().ends_with(suffix) { name } else { format!("{name}{suffix}") }
 }

@@ -203,7 +203,11 @@ pub(super) fn array<T: DeserializeOwned>(
     let Some(values) = value.as_array() else {
         return Err(ParseError::part(key, "must be an array"));
     };
-    let typed = |(i, value)| {
+    let typed = |(i, value): (usize, &Value)| {
+        // An array would do for a struct, field after field; what follows counts on objects.
+        if value.is_array() {
+            return Err(ParseError::part(format!("{entry} {i}"), "must not be an array"));
+        }
         T::deserialize(value).map_err(|error: serde_json::Error| {
             ParseError::part(format!("{entry} {i}"), error.to_string())
         })

@@ -10,7 +10,7 @@ use crate::{Image, Material, Scene};
 
 /// A square with morph target, bytes as colours, points beside it, an animation, and things that
 /// nobody here knows.
-fn rich() -> Scene {
+pub(super) fn rich() -> Scene {
     let (mut json, mut buffer) = square();
     let floats = |buffer: &mut Vec<u8>, values: &[f32]| {
         buffer.extend(values.iter().flat_map(|x| x.to_le_bytes()));
@@ -92,6 +92,8 @@ fn all_but_geometry_passes_through_a_change() {
     let colors = new["primitives"][1]["attributes"]["COLOR_0"].as_u64().unwrap() as usize;
     assert_eq!(after["accessors"][colors]["componentType"], 5121, "colours stay bytes");
     assert_eq!(after["accessors"][4], before["accessors"][4], "the animation's accessor");
+    let target = new["primitives"][1]["targets"][0]["POSITION"].as_u64().unwrap() as usize;
+    assert_eq!(after["accessors"][target]["max"], json!([0.0, 0.0, 0.5]));
     let again = round_trip(&scene);
     assert_eq!(again.meshes[0].mesh, scene.meshes[0].mesh);
 }

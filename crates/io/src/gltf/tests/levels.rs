@@ -7,7 +7,7 @@ use crate::gltf::{Level, write, write_glb};
 use crate::{Node, Scene};
 
 /// Levels of which each has the first faces of the one before.
-fn levels(scene: &Scene) -> Vec<Level> {
+pub(super) fn levels(scene: &Scene) -> Vec<Level> {
     let level = |faces: usize, screen_coverage| Level {
         meshes: scene
             .meshes

@@ -3,6 +3,7 @@
 mod broken;
 mod carried;
 mod levels;
+mod mutated;
 mod shared;
 
 use serde_json::{Value, json};
