@@ -16,7 +16,7 @@ pub fn run(project: &Project) -> Result<()> {
     let references = project.read("docs/REFERENCES.md")?;
     let keys = keys_of(&references);
     let output = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()))
-        .args(["doc", "--no-deps", "--workspace", "--quiet", "--message-format", "json"])
+        .args(["doc", "--release", "--no-deps", "--workspace", "--quiet", "--message-format=json"])
         .env("RUSTDOCFLAGS", "-Wrustdoc::broken_intra_doc_links")
         .current_dir(project.root())
         .stderr(Stdio::inherit())

@@ -104,7 +104,8 @@ mod tests {
 
     #[test]
     fn a_key_cited_and_defined_is_fine() {
-        let sources = [text("a.rs", "/// [GH97] eq. 2.\nlet x = y[AB12];")];
+        let code = text("b.rs", "let x = y[AB12];");
+        let sources = [text("a.rs", "/// [GH97] eq. 2."), code];
         let pages = [text(PAGE, "- **[GH97]** Garland and Heckbert.")];
         assert_eq!(check(&sources, &pages), [""; 0]);
     }

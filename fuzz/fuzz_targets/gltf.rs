@@ -1,0 +1,11 @@
+#![no_main]
+
+use meshlod_io::{Weld, gltf};
+
+libfuzzer_sys::fuzz_target!(init: meshlod_fuzz::plant("gltf"), |bytes: &[u8]| {
+    if let Ok(scene) = gltf::read(bytes, &mut |_| Some(bytes.to_vec()), Weld::Exact) {
+        meshlod_fuzz::accept_scene(&scene);
+        // What passes through from the document must not trip the writer.
+        let _ = gltf::write_glb(&scene, &[]);
+    }
+});

@@ -1,0 +1,113 @@
+//! Files to start from, made by our writers and by hand, so that mutations begin near the grammar.
+
+use std::path::Path;
+
+use meshlod_fixtures as fixtures;
+use meshlod_io::{Precision, Scene, gltf, obj, off, ply, smf, stl};
+use meshlod_mesh::Mesh;
+
+/// Writes a target's seeds into its corpus; the fuzzer reads them after this.
+///
+/// # Panics
+/// When the corpus cannot be written.
+pub fn plant(target: &str) {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("corpus").join(target);
+    std::fs::create_dir_all(&folder).expect("a folder for the corpus");
+    for (i, seed) in seeds(target).into_iter().enumerate() {
+        std::fs::write(folder.join(format!("seed-{i}")), seed).expect("a seed");
+    }
+}
+
+fn seeds(target: &str) -> Vec<Vec<u8>> {
+    let meshes = [fixtures::cube(), fixtures::seam_strip(), fixtures::two_objects()];
+    let by_hand: &[&str] = match target {
+        "ply" => &PLY,
+        "obj" => &OBJ,
+        "stl" => &STL,
+        "off" => &OFF,
+        "smf" => &SMF,
+        _ => &GLTF,
+    };
+    let written = meshes.iter().map(|mesh| write(target, mesh));
+    written.chain(by_hand.iter().map(|text| text.as_bytes().to_vec())).collect()
+}
+
+fn write(target: &str, mesh: &Mesh) -> Vec<u8> {
+    let scene = Scene::from_mesh("seed", mesh.clone());
+    let mut out = Vec::new();
+    match target {
+        "ply" => ply::write(mesh, Precision::F64, &mut out),
+        "obj" => obj::write(&scene, Precision::F32, &mut out, Some("seed.mtl")),
+        "stl" => stl::write(mesh, &mut out),
+        "off" => off::write(mesh, Precision::F32, &mut out),
+        "smf" => smf::write(mesh, Precision::F32, &mut out),
+        _ => {
+            out = gltf::write_glb(&scene, &[]).expect("a fixture fits");
+            Ok(())
+        }
+    }
+    .expect("memory takes all bytes");
+    out
+}
+
+const PLY: [&str; 3] = [
+    "ply\nformat ascii 1.0\ncomment c\nelement vertex 4\nproperty float x\nproperty float y\n\
+     property double z\nproperty uchar red\nproperty uchar green\nproperty uchar blue\n\
+     property float nx\nproperty float ny\nproperty float nz\nelement face 2\n\
+     property list uchar int vertex_indices\nproperty list uchar float texcoord\nend_header\n\
+     0 0 0 255 0 0 0 0 1\n1 0 0 0 255 0 0 0 1\n1 1 0 0 0 255 0 0 1\n0 1 0 9 9 9 0 0 1\n\
+     4 0 1 2 3 8 0 0 1 0 1 1 0 1\n3 0 1 2 6 0 0 1 0 1 1\n",
+    "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\n\
+     property float z\nelement tristrips 1\nproperty list int int vertex_indices\nend_header\n\
+     0 0 0\n1 0 0\n0 1 0\n1 1 0\n8 0 1 2 3 -1 0 1 3\n",
+    "ply\nformat binary_big_endian 1.0\nelement vertex 3\nproperty float x\nproperty float y\n\
+     property float z\nelement face 1\nproperty list uchar uint vertex_indices\nend_header\n\
+     ????????????????????????????????????\u{3}\0\0\0\0\0\0\0\u{1}\0\0\0\u{2}",
+];
+
+const OBJ: [&str; 2] = [
+    "# c\nmtllib a.mtl\no first\nv 0 0 0 1 0 0\nv 1 0 0 0 1 0\nv 1 1 0 0 0 1\nv 0.5 0.2 0\n\
+     v 0 1e0 0\nvt 0 0\nvt 1 0.5 0\nvn 0 0 1\ng part one\nusemtl red\ns 1\n\
+     f 1/1/1 2/2/1 3/1/1 4/2/1 5/1/1\nf -1//-1 -2//-1 -3//-1\nf 1 2 \\\n3\nl 1 2\np 1\n",
+    "newmtl red\nKd 1 0 0\nd 0.5\nmap_Kd -s 1 1 1 a.png\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n",
+];
+
+const STL: [&str; 2] = [
+    "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\n\
+     endfacet\nendsolid a\nsolid b\nendsolid b\n",
+    "solid\n facet normal 0 0 0\n  outer loop\n   vertex 0 0 1e-3\n   vertex +1. 0 0\n   \
+     vertex 0 -1E2 0\n  endloop\n endfacet\nendsolid\n",
+];
+
+const OFF: [&str; 4] = [
+    "OFF\n4 2 0\n0 0 0\n1 0 0\n1 1 0 # c\n0 1 0\n4 0 1 2 3\n3 0 1 2 255 0 0\n",
+    "COFF\n3 1 0\n0 0 0 1 0 0 1\n1 0 0 0 1 0 1\n0 1 0 0 0 1 1\n3 0 1 2\n",
+    "NOFF\n3 1 0\n0 0 0 0 0 1\n1 0 0 0 0 1\n0 1 0 0 0 1\n3 0 1 2\n",
+    "STCNOFF 3 1 0\n0 0 0 0 0 1 1 0 0 1 0 0\n1 0 0 0 0 1 1 0 0 1 0 0\n\
+     0 1 0 0 0 1 1 0 0 1 0 0\n3 0 1 2\n",
+];
+
+const SMF: [&str; 2] = [
+    "#$SMF 1.0\n#$vertices 4\nbegin\ntrans 1 0 0\nscale 2 2 2\nrot x 90\nv 0 0 0\nv 1 0 0\n\
+     v 0 1 0\nv 0 0 1\nend\nbind c vertex\nc 1 0 0\nc 0 1 0\nc 0 0 1\nc 1 1 1\nt 1 2 3\nf 1 2 3 4\n",
+    "bind n face\nbind r vertex\nv 0 0 0\nv 1 0 0\nv 0 1 0\nn 0 0 1\nr 0 0\nr 1 0\nr 0 1\nf -1 -2 -3\n",
+];
+
+const GLTF: [&str; 2] = [
+    r#"{"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],
+"nodes":[{"mesh":0,"children":[1],"translation":[1,0,0],"scale":[2,2,2]},{"rotation":[0,0,0,1],"mesh":0}],
+"meshes":[{"primitives":[{"attributes":{"POSITION":0},"indices":1,"material":0},{"attributes":{"POSITION":0},"mode":5}]}],
+"materials":[{"pbrMetallicRoughness":{"baseColorFactor":[1,0,0,1],"baseColorTexture":{"index":0}}}],
+"textures":[{"source":0}],"images":[{"uri":"a.png"}],
+"accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3","min":[0,0,0],"max":[1,1,0],
+"sparse":{"count":1,"indices":{"bufferView":1,"componentType":5121},"values":{"bufferView":0}}},
+{"bufferView":1,"componentType":5121,"count":3,"type":"SCALAR"}],
+"bufferViews":[{"buffer":0,"byteLength":36},{"buffer":0,"byteOffset":36,"byteLength":3}],
+"buffers":[{"byteLength":39,"uri":"data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAAAAEC"}]}"#,
+    r#"{"asset":{"version":"2.0"},"extensionsRequired":["KHR_mesh_quantization"],"extensionsUsed":["KHR_mesh_quantization","MSFT_lod"],
+"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0,"matrix":[1,0,0,0,0,1,0,0,0,0,1,0,0,0,0,1],"extensions":{"MSFT_lod":{"ids":[1]}}},{"mesh":0}],
+"meshes":[{"primitives":[{"attributes":{"POSITION":0,"TEXCOORD_0":1},"targets":[{"POSITION":0}]}]}],
+"accessors":[{"bufferView":0,"componentType":5120,"normalized":true,"count":3,"type":"VEC3"},{"bufferView":0,"byteOffset":0,"componentType":5123,"normalized":true,"count":3,"type":"VEC2"}],
+"bufferViews":[{"buffer":0,"byteLength":12,"byteStride":4}],
+"buffers":[{"byteLength":12,"uri":"data:;base64,AAAAAEAAAAAAQAAA"}]}"#,
+];
