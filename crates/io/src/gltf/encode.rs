@@ -69,9 +69,15 @@ fn index_blob(corners: &[u64], vertices: &[u64]) -> Blob {
     let indices = corners.iter().map(find);
     // The greatest number of a type restarts strips and is no index.
     let (component, bytes): (_, Vec<u8>) = if vertices.len() < usize::from(u16::MAX) {
-        (component::U16, indices.flat_map(|i| (i as u16).to_le_bytes()).collect())
+        (
+            component::U16,
+            indices.map(|i| (i as u16).to_le_bytes()).collect::<Vec<_>>().into_flattened(),
+        )
     } else {
-        (component::U32, indices.flat_map(|i| (i as u32).to_le_bytes()).collect())
+        (
+            component::U32,
+            indices.map(|i| (i as u32).to_le_bytes()).collect::<Vec<_>>().into_flattened(),
+        )
     };
     Blob {
         component,
@@ -96,8 +102,10 @@ fn positions(mesh: &Mesh, vertices: &[u64]) -> Result<Blob, Unfit> {
         }
         points.push(position);
     }
-    let bytes = points.as_flattened().iter().flat_map(|x| x.to_le_bytes()).collect();
-    Ok(Blob { extent: Some(extent(&points)), ..floats("VEC3", points.len(), bytes) })
+    Ok(Blob {
+        extent: Some(extent(&points)),
+        ..floats("VEC3", points.len(), points.as_flattened())
+    })
 }
 
 /// The least and the greatest of each coordinate.
@@ -142,19 +150,19 @@ fn layer_blob(typed: Typed<'_>, vertices: &[u64]) -> Result<Blob, Unfit> {
         _ => None,
     };
     let Some((component, scale)) = integers else {
-        let bytes = values.iter().flat_map(|x| x.to_le_bytes()).collect();
         let moves = matches!(parse_target_name(&layer.name), Some((_, "POSITION")));
         return Ok(Blob {
             extent: moves.then(|| extent(values.as_chunks().0)),
-            ..floats(shape, vertices.len(), bytes)
+            ..floats(shape, vertices.len(), &values)
         });
     };
     let (bytes, stride) = whole_numbers(&values, layer.width, component, scale);
     Ok(Blob {
         component,
         normalized: scale > 1.0,
+        bytes,
         stride: (stride != layer.width * component_size(component)).then_some(stride),
-        ..floats(shape, vertices.len(), bytes)
+        ..floats(shape, vertices.len(), &[])
     })
 }
 
@@ -185,13 +193,13 @@ fn whole_numbers(values: &[f32], width: usize, component: u32, scale: f32) -> (V
     (bytes, stride)
 }
 
-fn floats(shape: &'static str, count: usize, bytes: Vec<u8>) -> Blob {
+fn floats(shape: &'static str, count: usize, values: &[f32]) -> Blob {
     Blob {
         component: component::F32,
         shape,
         normalized: false,
         count,
-        bytes,
+        bytes: values.iter().map(|x| x.to_le_bytes()).collect::<Vec<_>>().into_flattened(),
         stride: None,
         extent: None,
         usage: Usage::Vertices,

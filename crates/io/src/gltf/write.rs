@@ -1,7 +1,7 @@
 //! Writing glTF and GLB: the document that the scene came from, with other geometry.
 
 use meshlod_mesh::Mesh;
-use serde_json::{Map, Value, json};
+use serde_json::{Map, Value};
 
 use super::document::Document;
 use super::lod::{self, Level};
@@ -220,5 +220,5 @@ fn mark_others(json: &Value, marks: &mut [bool]) {
 }
 
 fn to_bytes(json: Map<String, Value>) -> Result<Vec<u8>, Unfit> {
-    serde_json::to_vec(&json!(json)).map_err(|error| Unfit::new("JSON", error.to_string()))
+    serde_json::to_vec(&json).map_err(|error| Unfit::new("JSON", error.to_string()))
 }
