@@ -5,8 +5,8 @@
 
 use meshlod_mesh::VertexId;
 
+use super::binary::little;
 use super::header::{Element, Scalar, Shape};
-use super::source::little;
 
 /// Bytes of a face of three 32-bit indices behind its length.
 pub(super) const TRIANGLE_ROW: usize = 13;

@@ -28,10 +28,10 @@ pub(super) fn read<S: Source>(source: &mut S, element: &Element) -> Result<Verti
     let columns = layers::columns(&element.properties);
     let mut vertices = Vertices::default();
     let rows = source.most_rows(element).min(element.count as usize);
-    let first = match columns.is_empty() {
-        true => source.quick_positions(element, xyz, &mut vertices.positions),
-        false => 0,
-    };
+    let mut first = 0;
+    if columns.is_empty() {
+        first = source.quick_positions(element, xyz, &mut vertices.positions);
+    }
     vertices.positions.reserve_exact(rows - first as usize);
     vertices.layers = columns.iter().map(|columns| columns.layer(rows)).collect();
 

@@ -11,7 +11,7 @@ use crate::ParseError;
 /// Reads every solid; those without facets leave no trace.
 pub(super) fn read(bytes: &[u8]) -> Result<Mesh, ParseError> {
     let mut words = Words { rest: bytes, line: 1 };
-    let mut welder = Welder::default();
+    let mut welder = Welder::with_facets(0);
     let mut faces = Vec::new();
     let mut solids = Labels::default();
     while words.peek_is("solid") {

@@ -1,0 +1,113 @@
+//! The body as binary data of either byte order.
+
+use meshlod_mesh::VertexId;
+
+use super::fast;
+use super::header::{Element, Header, Scalar};
+use super::source::{Row, Source};
+use crate::ParseError;
+
+/// Binary data; `BIG` is the byte order.
+#[derive(Clone)]
+pub(super) struct Binary<'a, const BIG: bool> {
+    rest: &'a [u8],
+    /// Bytes of the whole file.
+    total: usize,
+    /// Where the row that was begun last begins.
+    row_at: usize,
+}
+
+impl<'a, const BIG: bool> Binary<'a, BIG> {
+    pub fn new(bytes: &'a [u8], header: &Header) -> Self {
+        Self { rest: &bytes[header.body..], total: bytes.len(), row_at: header.body }
+    }
+
+    /// An error: the file ends within a row.
+    fn ended(&self, row: Row) -> ParseError {
+        ParseError::byte(self.total, format!("the file ends inside {row}"))
+    }
+
+    #[inline]
+    fn take<const N: usize>(&mut self, row: Row) -> Result<[u8; N], ParseError> {
+        let Some((&raw, rest)) = self.rest.split_first_chunk::<N>() else {
+            return Err(self.ended(row));
+        };
+        self.rest = rest;
+        Ok(little::<N, BIG>(raw))
+    }
+}
+
+/// The bytes of a number in little-endian order.
+#[inline]
+pub(super) fn little<const N: usize, const BIG: bool>(mut raw: [u8; N]) -> [u8; N] {
+    if BIG {
+        raw.reverse();
+    }
+    raw
+}
+
+impl<const BIG: bool> Source for Binary<'_, BIG> {
+    #[inline]
+    fn begin_row(&mut self) {
+        self.row_at = self.total - self.rest.len();
+    }
+
+    #[inline]
+    fn end_row(&mut self, _row: Row) -> Result<(), ParseError> {
+        Ok(())
+    }
+
+    #[inline]
+    fn number(&mut self, kind: Scalar, row: Row) -> Result<f64, ParseError> {
+        Ok(match kind {
+            Scalar::I8 => i8::from_le_bytes(self.take(row)?).into(),
+            Scalar::U8 => u8::from_le_bytes(self.take(row)?).into(),
+            Scalar::I16 => i16::from_le_bytes(self.take(row)?).into(),
+            Scalar::U16 => u16::from_le_bytes(self.take(row)?).into(),
+            Scalar::I32 => i32::from_le_bytes(self.take(row)?).into(),
+            Scalar::U32 => u32::from_le_bytes(self.take(row)?).into(),
+            Scalar::F32 => f32::from_le_bytes(self.take(row)?).into(),
+            Scalar::F64 => f64::from_le_bytes(self.take(row)?),
+        })
+    }
+
+    fn pass(&mut self, kind: Scalar, count: usize, row: Row) -> Result<(), ParseError> {
+        let bytes = count.checked_mul(kind.size()).filter(|&bytes| bytes <= self.rest.len());
+        self.rest = &self.rest[bytes.ok_or_else(|| self.ended(row))?..];
+        Ok(())
+    }
+
+    fn most_items(&self, kind: Scalar) -> usize {
+        self.rest.len() / kind.size()
+    }
+
+    fn most_rows(&self, element: &Element) -> usize {
+        self.rest.len() / element.least_row_size().max(1)
+    }
+
+    fn wrong(&self, reason: String) -> ParseError {
+        ParseError::byte(self.row_at, reason)
+    }
+
+    fn quick_positions(
+        &mut self,
+        element: &Element,
+        xyz: [usize; 3],
+        positions: &mut Vec<[f64; 3]>,
+    ) -> u64 {
+        let rows = fast::positions::<BIG>(self.rest, element, xyz, positions);
+        self.rest = &self.rest[rows * element.least_row_size()..];
+        rows as u64
+    }
+
+    fn quick_triangles(
+        &mut self,
+        element: &Element,
+        vertices: usize,
+        triangles: &mut Vec<[VertexId; 3]>,
+    ) -> u64 {
+        let rows = fast::triangles::<BIG>(self.rest, element, vertices, triangles);
+        self.rest = &self.rest[rows * fast::TRIANGLE_ROW..];
+        rows as u64
+    }
+}
