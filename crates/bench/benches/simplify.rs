@@ -1,0 +1,31 @@
+//! Simplification of procedural meshes to 10 %, with the peer beside it.
+
+use criterion::{Criterion, criterion_group, criterion_main};
+use meshlod_bench::peer::{Indexed, simplify_with_update};
+use meshlod_mesh::sample;
+use meshlod_simplify::{Method, Options, Target, simplify};
+
+fn to_a_tenth(c: &mut Criterion) {
+    let mut group = c.benchmark_group("to 10 %");
+    group.sample_size(10);
+    for (name, mesh) in [("gyroid", sample::gyroid(50_000)), ("terrain", sample::terrain(50_000))] {
+        for method in Method::ALL {
+            let options = Options { method, ..Options::default() };
+            group.bench_function(format!("{name}/{}", method.name()), |b| {
+                b.iter(|| {
+                    let (level, report) = simplify(&mesh, Target::Ratio(0.1), &options).unwrap();
+                    // The benchmark carries its expected result.
+                    assert!(report.reached && level.faces.len() * 10 <= mesh.faces.len());
+                });
+            });
+        }
+        let indexed = Indexed::from(&mesh);
+        group.bench_function(format!("{name}/meshoptimizer with update"), |b| {
+            b.iter(|| simplify_with_update(&indexed, mesh.faces.len() / 10));
+        });
+    }
+    group.finish();
+}
+
+criterion_group!(benches, to_a_tenth);
+criterion_main!(benches);

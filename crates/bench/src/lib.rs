@@ -1,0 +1,8 @@
+//! meshlod beside its peers: the same work by turns in one run, so that whatever else the machine
+//! does falls on both.
+mod alternate;
+mod corpus;
+pub mod peer;
+
+pub use alternate::{Ratio, alternate, one_core};
+pub use corpus::{read, read_scene};
