@@ -110,6 +110,7 @@ impl Edge {
 }
 
 /// Nearness as a linear function over the samples.
+#[derive(Debug, PartialEq)]
 struct Slope {
     origin: [f64; 2],
     at_origin: f64,
@@ -242,6 +243,21 @@ mod tests {
         cover(&triangle, &Window { start: [0, 0], end: [9, 9] }, |x, y, near| {
             assert!((near - (0.1 * x as f32 + 0.05 * y as f32)).abs() < 1e-6, "{x} {y} {near}");
         });
+    }
+
+    #[test]
+    fn nearness_does_not_depend_on_the_order_of_corners() {
+        let mut state = 3;
+        for _ in 0..100 {
+            let mut corner = || {
+                let [x, y] = [9000, 9000].map(|below| scatter(&mut state, below));
+                Point { x, y, nearness: scatter(&mut state, 1 << 24) as f32 / 16_777_259.0 }
+            };
+            let [a, b, c] = [corner(), corner(), corner()];
+            for turned in [[b, c, a], [c, a, b], [c, b, a], [b, a, c], [a, c, b]] {
+                assert_eq!(Slope::new([a, b, c]), Slope::new(turned));
+            }
+        }
     }
 
     #[test]

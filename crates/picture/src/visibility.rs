@@ -164,7 +164,7 @@ mod tests {
     #[test]
     fn flying_through_shows_what_rays_hit() {
         // Half of the ground is behind the eye, some of it too far aside for fixed point.
-        let (cells, reach) = (40, 1e4);
+        let (cells, reach) = (40, 1e6);
         let mut mesh = sheet(cells);
         mesh.positions.iter_mut().for_each(|p| *p = [p[0] * reach, -0.5, p[1] * reach]);
         let camera = Camera::look_at([0.0; 3], [0.0, -0.4, -1.0], [0.0, 1.0, 0.0], 0.7);
