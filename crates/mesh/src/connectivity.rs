@@ -195,8 +195,8 @@ impl Connectivity {
 
     /// Finds the edges and fans at one vertex by sorting its two sides per face by neighbour.
     fn connect(&mut self, faces: &[[VertexId; 3]], vertex: VertexId, scratch: &mut Scratch) {
-        let range = self.star_start[vertex.index()] as usize
-            ..self.star_start[vertex.index() + 1] as usize;
+        let range =
+            self.star_start[vertex.index()] as usize..self.star_start[vertex.index() + 1] as usize;
         let star = &self.star[range];
         scratch.gather(faces, star, vertex);
         let mut fans = star.len();
@@ -224,9 +224,8 @@ impl Connectivity {
 
 /// Faces by vertex, as a start per vertex (and one past the end) into one array.
 fn stars(faces: &[[VertexId; 3]], vertex_count: usize) -> (Vec<u32>, Vec<FaceId>) {
-    let whole = |face: &[VertexId; 3]| {
-        face[0] != face[1] && face[1] != face[2] && face[2] != face[0]
-    };
+    let whole =
+        |face: &[VertexId; 3]| face[0] != face[1] && face[1] != face[2] && face[2] != face[0];
     let mut start = vec![0u32; vertex_count + 1];
     for v in faces.iter().filter(|face| whole(face)).flatten() {
         start[v.index()] += 1;

@@ -36,7 +36,7 @@ const PULL: f64 = 1e-5;
 const MEMORY: f64 = 0.1;
 
 /// The weight of a boundary edge's plane, against the square of its length as an area.
-const BOUNDARY_WEIGHT: f64 = 1.0;
+const BOUNDARY_WEIGHT: f64 = 2.0;
 
 /// The weight of a seam's plane likewise.
 const SEAM_WEIGHT: f64 = 1.0;

@@ -1,6 +1,7 @@
 //! Why a contraction may not happen, and how often each reason was met.
 
 use std::fmt;
+use std::ops::AddAssign;
 
 /// Why a contraction may not happen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -73,6 +74,12 @@ impl Refusals {
 
     pub(crate) fn add(&mut self, refusal: Refusal) {
         self.0[refusal as usize] += 1;
+    }
+}
+
+impl AddAssign for Refusals {
+    fn add_assign(&mut self, other: Self) {
+        self.0.iter_mut().zip(other.0).for_each(|(count, more)| *count += more);
     }
 }
 

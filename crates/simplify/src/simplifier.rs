@@ -111,7 +111,7 @@ impl<'m> Simplifier<'m> {
     ) -> Result<Report, SimplifyError> {
         let stop = self.stop(target)?;
         self.engine.run(&stop, observer);
-        Ok(self.report(&stop))
+        Ok(self.report(target, &stop))
     }
 
     /// Makes the one next contraction, whatever it costs; false when none may be made.
@@ -131,15 +131,16 @@ impl<'m> Simplifier<'m> {
     }
 
     /// What was done so far.
-    fn report(&self, stop: &Stop) -> Report {
+    fn report(&self, target: Target, stop: &Stop) -> Report {
         let output_faces = self.live_faces();
+        let reached = matches!(target, Target::Error(_)) || output_faces <= stop.faces;
         Report {
             input_faces: self.mesh.faces.len(),
             degenerate_faces: self.input.degenerate_faces,
             duplicate_faces: self.input.duplicate_faces,
             non_manifold_vertices: self.input.non_manifold_vertices,
             output_faces,
-            reached: stop.faces == 0 || output_faces <= stop.faces,
+            reached,
             error_estimate: self.engine.error_estimate(),
             refusals: self.engine.refusals(),
         }
