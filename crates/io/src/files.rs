@@ -118,7 +118,7 @@ pub fn write(path: &Path, scene: &Scene, options: &WriteOptions) -> Result<(), I
 /// [`gltf::write_glb`].
 ///
 /// # Errors
-/// As for [`write`]; also another suffix, and levels with another number of meshes than the scene.
+/// As for [`write()`]; also another suffix, and levels with another number of meshes than the scene.
 pub fn write_lods(path: &Path, scene: &Scene, levels: &[gltf::Level]) -> Result<(), IoError> {
     let unfit = |error| IoError::unfit(path, error);
     match Format::of_path(path)? {

@@ -1,4 +1,17 @@
 //! Mesh files in and out, one format a module: bytes in, typed errors out.
+//!
+//! [`read()`] and [`write()`] go by path, and the suffix decides. What a file holds is a [`Scene`];
+//! [`Scene::flatten`] makes one mesh of it. A scene from glTF keeps its document, so that writing
+//! it as glTF changes geometry alone.
+//!
+//! ```
+//! use meshlod_io::{Format, ReadOptions, read_bytes};
+//!
+//! let off = b"OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
+//! let scene = read_bytes(off, Format::Off, &mut |_| None, &ReadOptions::default())?;
+//! assert_eq!(scene.into_mesh().faces.len(), 1);
+//! # Ok::<(), meshlod_io::ParseError>(())
+//! ```
 #![forbid(unsafe_code)]
 
 mod buckets;
