@@ -4,14 +4,17 @@
 mod check;
 mod doc;
 mod project;
+mod results;
 
 use std::process::ExitCode;
 
 use project::Project;
 
 const USAGE: &str = "usage: cargo xtask VERB
-  check   keys of references, arrows between crates, lengths of files
-  doc     the documentation of all crates, warnings being errors";
+  check    keys of references, arrows between crates, lengths of files
+  doc      the documentation of all crates, warnings being errors
+  results  every figure of docs/RESULTS.md
+  compare  simplification beside meshoptimizer, by turns on one core";
 
 fn main() -> ExitCode {
     let verb = std::env::args().nth(1);
@@ -19,6 +22,8 @@ fn main() -> ExitCode {
     let outcome = match verb.as_deref() {
         Some("check") => check::run(&project),
         Some("doc") => doc::run(&project),
+        Some("results") => results::run(&project),
+        Some("compare") => results::compare(&project),
         _ => {
             eprintln!("{USAGE}");
             return ExitCode::from(2);

@@ -1,0 +1,49 @@
+//! `cargo xtask results`: every figure of docs/RESULTS.md, made anew.
+
+mod accuracy;
+mod command;
+mod machine;
+mod memory;
+mod reading;
+mod speed;
+mod table;
+
+use anyhow::{Context, Result};
+
+use crate::project::Project;
+
+/// Makes all tables, writes docs/RESULTS.md and the same as a dated record beside it.
+///
+/// Takes some minutes. Tables whose meshes are not here say so.
+pub fn run(project: &Project) -> Result<()> {
+    let machine = machine::describe();
+    let mut page = format!(
+        "# Results\n\nMade by `cargo xtask results` on {}, {}. Distances are measured both ways with \
+         500,000 samples each and all vertices, in % of the diagonal of the input's box.\n",
+        machine.date, machine.what
+    );
+    type Section = fn(&Project) -> Result<String>;
+    let sections: [(&str, Section); 4] = [
+        ("Accuracy", accuracy::section),
+        ("Speed of simplification", speed::section),
+        ("Reading and measuring", reading::section),
+        ("Memory and determinism", memory::section),
+    ];
+    for (title, section) in sections {
+        eprintln!("{title} …");
+        page.push_str(&format!("\n## {title}\n\n{}", section(project)?));
+    }
+    for path in ["docs/RESULTS.md".to_owned(), format!("docs/records/{}.md", machine.date)] {
+        let path = project.root().join(path);
+        std::fs::create_dir_all(path.parent().context("a file has a folder")?)?;
+        std::fs::write(&path, &page).with_context(|| path.display().to_string())?;
+    }
+    print!("{page}");
+    Ok(())
+}
+
+/// Prints the table of speeds alone.
+pub fn compare(project: &Project) -> Result<()> {
+    print!("{}", speed::section(project)?);
+    Ok(())
+}

@@ -1,0 +1,46 @@
+//! The command line program, built and run.
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+
+use anyhow::{Context, Result, bail};
+use wait4::{ResourceUsage, Wait4};
+
+use crate::project::Project;
+
+/// The program `meshlod`, built for release.
+pub struct Program(PathBuf);
+
+impl Program {
+    /// Builds it.
+    pub fn build(project: &Project) -> Result<Self> {
+        let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
+        let status = Command::new(cargo)
+            .args(["build", "--release", "--package", "meshlod-cli"])
+            .current_dir(project.root())
+            .status()?;
+        if !status.success() {
+            bail!("meshlod does not build");
+        }
+        let target = std::env::current_exe()?;
+        let folder = target.parent().context("a program has a folder")?;
+        Ok(Self(folder.join("meshlod")))
+    }
+
+    /// Runs it to a successful end, and says what it used.
+    pub fn run(&self, arguments: &[&str], files: [&Path; 2]) -> Result<ResourceUsage> {
+        let mut child = Command::new(&self.0)
+            .arg(arguments[0])
+            .args(files)
+            .args(&arguments[1..])
+            .stdout(Stdio::null())
+            .stderr(Stdio::null())
+            .spawn()
+            .with_context(|| self.0.display().to_string())?;
+        let used = child.wait4()?;
+        if !used.status.success() {
+            bail!("meshlod {} failed", arguments.join(" "));
+        }
+        Ok(used.rusage)
+    }
+}

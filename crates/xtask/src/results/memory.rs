@@ -1,0 +1,39 @@
+//! What the program needs and whether it always gives the same bytes.
+
+use anyhow::{Context, Result};
+
+use super::command::Program;
+use super::table::Table;
+use crate::project::Project;
+
+/// Peak resident memory of a whole run, and the same bytes from 1 and 2 threads.
+pub fn section(project: &Project) -> Result<String> {
+    let mut table = Table::new([
+        "meshlod simplify MESH out.ply --ratio 10%",
+        "peak, MB",
+        "bytes per input face",
+        "same bytes with 1 and 2 threads",
+    ]);
+    let program = Program::build(project)?;
+    let folder = tempfile::tempdir()?;
+    for file in ["horse-97k.ply", "dragon.ply"] {
+        let Some(path) = meshlod_fixtures::shared_mesh(file) else { continue };
+        let faces = meshlod_bench::read(file)?.context("it is there")?.faces.len();
+        let mut peak = 0;
+        let mut outputs = Vec::new();
+        for threads in ["1", "2"] {
+            let out = folder.path().join("out.ply");
+            let arguments = ["simplify", "--ratio", "10%", "--threads", threads];
+            peak = peak.max(program.run(&arguments, [&path, &out])?.maxrss);
+            outputs.push(std::fs::read(out)?);
+        }
+        let per_face = peak as f64 / faces as f64;
+        table.row([
+            file.to_owned(),
+            format!("{:.0}", peak as f64 / 1e6),
+            format!("{per_face:.0}"),
+            if outputs[0] == outputs[1] { "yes" } else { "NO" }.to_owned(),
+        ]);
+    }
+    Ok(table.markdown())
+}

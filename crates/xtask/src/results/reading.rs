@@ -1,0 +1,66 @@
+//! Readers beside tobj, and the rate of distance samples.
+
+use std::time::Instant;
+
+use anyhow::{Context, Result};
+use meshlod_bench::{alternate, one_core};
+use meshlod_measure::{DistanceOptions, Surface, surface_distance};
+use meshlod_simplify::{Options, Target, simplify};
+
+use super::table::Table;
+use crate::project::Project;
+
+const ROUNDS: usize = 7;
+
+/// Three one-line tables in one.
+pub fn section(_: &Project) -> Result<String> {
+    let mut table = Table::new(["on one core", "figure"]);
+    one_core(|| -> Result<()> {
+        if let Some(path) = meshlod_fixtures::shared_mesh("dragon.ply") {
+            let bytes = std::fs::read(&path)?;
+            let read = || meshlod_io::ply::read(&bytes).map(|mesh| mesh.faces.len());
+            let least = (0..ROUNDS).map(|_| seconds(read)).fold(f64::INFINITY, f64::min);
+            table.row(["dragon.ply read, best ms".to_owned(), format!("{:.1}", least * 1e3)]);
+        }
+        if let Some(path) = meshlod_fixtures::shared_mesh("sponza.obj") {
+            let bytes = std::fs::read(&path)?;
+            let ratio = alternate(
+                ROUNDS,
+                || meshlod_io::obj::read(&bytes, &mut |_| None).map(|scene| scene.meshes.len()),
+                || tobj_read(&bytes),
+            );
+            let what = "sponza.obj read, times as fast as tobj".to_owned();
+            table.row([what, format!("{:.2}", ratio.ratio)]);
+        }
+        if let Some(mesh) = meshlod_bench::read("dragon.ply")? {
+            let (level, _) = simplify(&mesh, Target::Ratio(0.1), &Options::default())?;
+            let (fine, coarse) = (Surface::new(&mesh)?, Surface::new(&level)?);
+            let options = DistanceOptions { samples: 500_000, seed: 1 };
+            let start = Instant::now();
+            let distance = surface_distance(&fine, &coarse, &options)?;
+            let queries = 2 * options.samples + mesh.positions.len() + level.positions.len();
+            let rate = queries as f64 / start.elapsed().as_secs_f64() / 1e6;
+            let what = "dragon against its 10 %, million samples and vertices a second".to_owned();
+            table.row([what, format!("{rate:.2}")]);
+            anyhow::ensure!(distance.mean() > 0.0, "a level is not its mesh");
+        }
+        Ok(())
+    })
+    .context("reading and measuring")?;
+    Ok(table.markdown())
+}
+
+fn tobj_read(bytes: &[u8]) -> Option<usize> {
+    let options = tobj::LoadOptions { triangulate: true, ..Default::default() };
+    let (models, _) = tobj::load_obj_buf(&mut &bytes[..], &options, |_| {
+        tobj::MTLLoadResult::Ok(Default::default())
+    })
+    .ok()?;
+    Some(models.len())
+}
+
+fn seconds<T>(work: impl Fn() -> T) -> f64 {
+    let start = Instant::now();
+    std::hint::black_box(work());
+    start.elapsed().as_secs_f64()
+}

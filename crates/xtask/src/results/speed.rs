@@ -1,0 +1,48 @@
+//! Simplification by turns with meshoptimizer, on one core.
+
+use anyhow::Result;
+use meshlod_bench::peer::{Indexed, simplify_with_update};
+use meshlod_bench::{Ratio, alternate, one_core};
+use meshlod_simplify::{Method, Options, Target, simplify};
+
+use super::table::Table;
+use crate::project::Project;
+
+const ROUNDS: usize = 5;
+const MESHES: [&str; 4] = ["bunny.ply", "horse-97k.ply", "igea.ply", "dragon.ply"];
+
+/// Seconds and ratio per mesh and method.
+pub fn section(_: &Project) -> Result<String> {
+    let mut table = Table::new([
+        "mesh to 10 %, method",
+        "ours, s",
+        "million faces/s",
+        "meshoptimizer, s",
+        "times as fast",
+    ]);
+    for file in MESHES {
+        let Some(mesh) = meshlod_bench::read(file)? else { continue };
+        let indexed = Indexed::from(&mesh);
+        for method in Method::ALL {
+            let options = Options { method, ..Options::default() };
+            let Ratio { ours, theirs, ratio } = one_core(|| {
+                alternate(
+                    ROUNDS,
+                    || simplify(&mesh, Target::Ratio(0.1), &options),
+                    || simplify_with_update(&indexed, mesh.faces.len() / 10),
+                )
+            });
+            let rate = mesh.faces.len() as f64 / ours / 1e6;
+            let figures = [format!("{ours:.3}"), format!("{rate:.2}"), format!("{theirs:.3}")];
+            let [ours, rate, theirs] = figures;
+            let what = format!("{file}, {}", method.name());
+            table.row([what, ours, rate, theirs, format!("{ratio:.2}")]);
+        }
+    }
+    Ok(format!(
+        "One core, by turns, medians of {ROUNDS} rounds; files excluded, connectivity and the mesh \
+         that comes out included. The peer is simplify with update. Again: `cargo xtask \
+         compare`.\n\n{}",
+        table.markdown()
+    ))
+}
