@@ -180,10 +180,8 @@ impl<'a> Text<'a> {
                 Ok(Some(x))
             }
             Ok(_) => Ok(None),
-            // C libraries print -nan, nan(ind), 1.#IND and the like.
-            Err(_) if ["nan", "inf", ".#"].iter().any(|s| text.to_lowercase().contains(s)) => {
-                Ok(None)
-            }
+            // C libraries print -nan, nan(ind) and the like.
+            Err(_) if ["nan", "inf"].iter().any(|s| text.to_lowercase().contains(s)) => Ok(None),
             Err(_) => Err(self.refuse("a number")),
         }
     }
@@ -240,16 +238,16 @@ impl<'a> Text<'a> {
         self.byte() == byte
     }
 
-    /// Whether a blank, a line end or the end comes next.
+    /// Whether a blank, a comment, a line end or the end comes next.
     #[inline]
     pub(crate) fn at_blank(&self) -> bool {
-        self.byte() <= b' ' || self.continues()
+        ends_word(self.byte()) || self.continues()
     }
 
     /// The word that begins at the cursor.
     fn here(&self) -> &'a [u8] {
         let rest = &self.bytes[self.at..];
-        let end = rest.iter().position(|&b| b <= b' ').unwrap_or(rest.len());
+        let end = rest.iter().position(|&b| ends_word(b)).unwrap_or(rest.len());
         let glued = end < rest.len() && is_line_end(rest[end]) && rest[..end].ends_with(b"\\");
         &rest[..end - usize::from(glued)]
     }
@@ -288,6 +286,11 @@ pub(crate) fn quoted(word: &[u8]) -> String {
 #[inline]
 fn is_line_end(byte: u8) -> bool {
     byte == b'\n' || byte == b'\r'
+}
+
+#[inline]
+fn ends_word(byte: u8) -> bool {
+    byte <= b' ' || byte == b'#'
 }
 
 #[inline]
@@ -339,7 +342,7 @@ fn short_number(bytes: &[u8], start: usize) -> Option<(f64, usize)> {
         exponent += shift;
         at = end;
     }
-    if bytes.get(at).is_some_and(|&b| b > b' ') {
+    if bytes.get(at).is_some_and(|&b| !ends_word(b)) {
         return None;
     }
     let size = match exponent {
@@ -419,7 +422,7 @@ mod tests {
 
     #[test]
     fn attributes_that_are_not_finite_are_zero() {
-        let mut text = Text::new(b"nan -inf 1e300 0.25 1.#QNAN 2").unwrap();
+        let mut text = Text::new(b"nan -inf 1e300 0.25 -nan(ind) 2").unwrap();
         let values: Vec<f32> = (0..6).map(|_| text.attribute("").unwrap()).collect();
         assert_eq!(values, [0.0, 0.0, 0.0, 0.25, 0.0, 2.0]);
     }

@@ -6,6 +6,8 @@
 mod labels;
 mod mtl;
 mod read;
+#[cfg(test)]
+mod tests;
 mod wedges;
 mod write;
 

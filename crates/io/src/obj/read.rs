@@ -343,10 +343,11 @@ fn check_range(
 #[cold]
 fn out_of_range(line: usize, what: &str, written: i64, count: usize) -> ParseError {
     let there = match count {
-        0 => format!("there is no {what}"),
-        1 => format!("there is only 1 {what}"),
+        _ if written == 0 => "they count from 1".to_owned(),
+        0 => "there is none".to_owned(),
+        1 => "there is only 1".to_owned(),
         _ => format!("there are only {count}"),
     };
-    let so_far = if written < 0 { " so far" } else { "" };
+    let so_far = if written < 0 && count > 0 { " so far" } else { "" };
     ParseError::line(line, format!("a face names {what} {written}, but {there}{so_far}"))
 }
