@@ -7,7 +7,7 @@ use glam::{DVec2, DVec3};
 use crate::buckets::Buckets;
 
 /// Tips, cells and points that may be looked at, per corner of the polygon, before the rest becomes
-/// a fan. Only a polygon made to be slow meets the limit; 10^5 such corners then take 0.4 s.
+/// a fan. Only a polygon made to be slow meets the limit; 10^5 such corners then take about 0.5 s.
 const LOOKS_PER_CORNER: usize = 1000;
 
 /// A quad is split along corners 1–3 only when that diagonal is clearly the shorter one, so that
