@@ -112,6 +112,35 @@ mod tests {
         }
     }
 
+    /// Eight by eight pixels of one grey: a table of ones, one code of one bit for each Huffman
+    /// table, and two bits of data.
+    fn grey_jpeg() -> Vec<u8> {
+        let quantizers = [&[0xff, 0xdb, 0, 67, 0][..], &[1; 64]].concat();
+        let frame = [0xff, 0xc0, 0, 11, 8, 0, 8, 0, 8, 1, 1, 0x11, 0];
+        let huffman = |class| {
+            let mut lengths = [0; 16];
+            lengths[0] = 1;
+            [&[0xff, 0xc4, 0, 20, class][..], &lengths, &[0]].concat()
+        };
+        let scan = [0xff, 0xda, 0, 8, 1, 1, 0, 0, 63, 0, 0b0011_1111, 0xff, 0xd9];
+        [&JPEG_START[..], &quantizers, &frame, &huffman(0x00), &huffman(0x10), &scan].concat()
+    }
+
+    #[test]
+    fn a_jpeg_is_read() {
+        let grey = Texture::new(8, 8, &[128, 128, 128, 255].repeat(64)).unwrap();
+        assert_eq!(Texture::decode(&grey_jpeg()).unwrap(), grey);
+    }
+
+    #[test]
+    fn a_jpeg_that_lies_about_its_size_is_refused() {
+        let mut bytes = grey_jpeg();
+        let frame = bytes.windows(2).position(|mark| mark == [0xff, 0xc0]).unwrap();
+        bytes[frame + 5..frame + 9].copy_from_slice(&[0x40, 0, 0x40, 0]);
+        let message = Texture::decode(&bytes).unwrap_err().to_string();
+        assert!(message.contains("cannot hold"), "{message}");
+    }
+
     #[test]
     fn every_cut_of_a_file_is_an_error() {
         let whole = png_of(&[1, 2, 3, 255, 9, 8, 7, 255]);
