@@ -16,7 +16,7 @@ pub(crate) const FACE_CHECKS: &[Check] = &[face_boundary, link, closing, flip];
 const LEAST_COSINE: f64 = 0.2;
 
 /// An edge of at most two faces; not one that joins two boundaries across the surface; not the last
-/// of its component.
+/// of what hangs together.
 fn shape(proposal: &Proposal<'_>) -> Result<(), Refusal> {
     let hood = proposal.hood;
     if hood.dying.len() > 2 {
@@ -27,7 +27,17 @@ fn shape(proposal: &Proposal<'_>) -> Result<(), Refusal> {
     if hood.dying.len() == 2 && both_on_boundary {
         return Err(Refusal::Boundary);
     }
-    if hood.spokes.is_empty() { Err(Refusal::LastFaces) } else { Ok(()) }
+    lasting(proposal)
+}
+
+/// Something is left, and every wing still hangs on it by a face.
+fn lasting(proposal: &Proposal<'_>) -> Result<(), Refusal> {
+    let hood = proposal.hood;
+    let hangs_on = |wing: usize| {
+        hood.spokes.iter().any(|spoke| spoke.a as usize == wing || spoke.b as usize == wing)
+    };
+    let mut wings = hood.dying.iter().filter_map(|dying| dying.apex());
+    if wings.all(hangs_on) && !hood.spokes.is_empty() { Ok(()) } else { Err(Refusal::LastFaces) }
 }
 
 /// A face whose corners are all inside: only then is its ring closed.
@@ -37,7 +47,7 @@ fn face_boundary(proposal: &Proposal<'_>) -> Result<(), Refusal> {
     if hood.contracted.iter().any(|&v| proposal.surface.flags(v).any(Flags::BOUNDARY)) {
         return Err(Refusal::Boundary);
     }
-    if hood.spokes.is_empty() { Err(Refusal::LastFaces) } else { Ok(()) }
+    lasting(proposal)
 }
 
 /// The link condition for vertices [DEGN99]: a common neighbour of contracted vertices is the apex
@@ -56,7 +66,9 @@ fn closing(proposal: &Proposal<'_>) -> Result<(), Refusal> {
     let hood = proposal.hood;
     let shared = |place: u32| hood.ring[place as usize].adjacent.count_ones() > 1;
     let across = hood.spokes.iter().filter(|spoke| shared(spoke.a) && shared(spoke.b));
-    if across.count() < 2 { Ok(()) } else { Err(Refusal::Link) }
+    // The two sides of a leaf have one apex: with them would go what closes the edges to it.
+    let leaf = matches!(hood.dying[..], [a, b] if a.apex() == b.apex());
+    if across.count() < 2 && !leaf { Ok(()) } else { Err(Refusal::Link) }
 }
 
 /// No surviving face turns over, or by more than a limit, or loses its area. One without area

@@ -40,6 +40,9 @@ pub(crate) struct Engine<C, M, P, L> {
     taken: Vec<(Entry, Contracted)>,
     refusals: Refusals,
     error_estimate: f64,
+    /// Refused for nothing but their error, to be tried again under a wider bound than this.
+    too_far: Vec<Entry>,
+    too_far_for: f64,
 }
 
 impl<C, M, P, L> Engine<C, M, P, L>
@@ -69,6 +72,8 @@ where
             taken: Vec::new(),
             refusals: Refusals::default(),
             error_estimate: 0.0,
+            too_far: Vec::new(),
+            too_far_for: f64::INFINITY,
         }
     }
 
@@ -79,6 +84,7 @@ where
 
     /// One contraction; false when no candidate is left that may.
     pub(crate) fn step(&mut self, stop: &Stop, observer: &mut dyn Observe) -> bool {
+        self.try_again_within(stop.error);
         while let Some(entry) = self.next_fresh() {
             match self.contract(entry, stop, observer) {
                 Ok(()) => return true,
@@ -86,6 +92,10 @@ where
                     self.refusals.add(refusal);
                     let vertices = self.algorithm.candidates.vertices(&self.surface, entry.id);
                     self.waiting.park(entry, &vertices, &mut self.surface);
+                    if refusal == Refusal::Error {
+                        self.too_far.push(entry);
+                        self.too_far_for = self.too_far_for.min(stop.error);
+                    }
                 }
             }
         }
@@ -94,9 +104,21 @@ where
 
     /// The cost of the contraction that is next, before any check.
     pub(crate) fn next_cost(&mut self) -> Option<f64> {
+        self.try_again_within(f64::INFINITY);
         let entry = self.next_fresh()?;
         self.waiting.put(entry, &mut self.surface);
         Some(entry.key.cost())
+    }
+
+    /// Puts the candidates that a narrower bound refused back in the queue.
+    #[inline]
+    fn try_again_within(&mut self, error: f64) {
+        if error > self.too_far_for {
+            self.too_far_for = f64::INFINITY;
+            for entry in self.too_far.drain(..) {
+                self.waiting.unpark(entry, &mut self.surface);
+            }
+        }
     }
 
     /// Takes the cheapest candidate off the queue.
@@ -262,9 +284,14 @@ impl Waiting {
 
     fn wake(&mut self, vertex: VertexId, surface: &mut Surface) {
         for entry in self.parked.remove(&vertex).into_iter().flatten() {
-            if *surface.state(entry.id) == State::Parked {
-                self.put(entry, surface);
-            }
+            self.unpark(entry, surface);
+        }
+    }
+
+    /// Puts a parked candidate in the queue; one that went another way since stays there.
+    fn unpark(&mut self, entry: Entry, surface: &mut Surface) {
+        if *surface.state(entry.id) == State::Parked {
+            self.put(entry, surface);
         }
     }
 }

@@ -5,6 +5,7 @@ use std::collections::HashSet;
 use meshlod_fixtures as fixtures;
 use meshlod_mesh::{Connectivity, Mesh, VertexId, face_components, sample};
 use meshlod_simplify::{Method, Options, Report, Simplifier, Target, simplify};
+use proptest::prelude::*;
 
 fn meshes() -> Vec<(&'static str, Mesh)> {
     vec![
@@ -155,6 +156,23 @@ fn locked_vertices_stay_where_they_are() {
 }
 
 #[test]
+fn a_wider_bound_goes_on_where_a_narrower_one_stopped() {
+    let mesh = sample::knot(2000);
+    for method in Method::ALL {
+        let options = Options { method, ..Options::default() };
+        let mut simplifier = Simplifier::new(&mesh, &options).unwrap();
+        let mut faces = mesh.faces.len();
+        for error in [0.002, 0.004, 0.008, 0.016] {
+            let report = simplifier.run(Target::Error(error), &mut ()).unwrap();
+            assert!(report.error_estimate <= error && report.output_faces < faces * 9 / 10);
+            faces = report.output_faces;
+        }
+        let report = simplifier.run(Target::Faces(faces / 4), &mut ()).unwrap();
+        assert!(report.reached);
+    }
+}
+
+#[test]
 fn a_locked_boundary_keeps_every_vertex() {
     let mesh = sample::terrain(800);
     let options = Options { lock_boundary: true, ..Options::default() };
@@ -232,5 +250,38 @@ fn what_is_no_mesh_is_refused() {
     assert!(simplify(&nan, Target::Faces(1), &Options::default()).is_err());
     for bad in [Target::Ratio(f64::NAN), Target::Ratio(1.5), Target::Error(-1.0)] {
         assert!(simplify(&fixtures::cube(), bad, &Options::default()).is_err());
+    }
+}
+
+/// Open and non-manifold edges, and components.
+fn defects(mesh: &Mesh) -> [usize; 3] {
+    let c = Connectivity::new(&mesh.faces, mesh.positions.len());
+    let components = face_components(&mesh.faces, mesh.positions.len()).1;
+    [c.boundary_edges(), c.non_manifold_edges(), components]
+}
+
+proptest! {
+    /// Soups of few vertices, where nearly every edge is a special case.
+    #[test]
+    fn a_soup_gets_no_worse(
+        positions in prop::collection::vec(prop::array::uniform3(-4i8..4), 4..14),
+        raw in prop::collection::vec(prop::array::uniform3(0u32..14), 1..40),
+        method in prop::sample::select(&Method::ALL[..]),
+        ratio in 0.0..1.0f64,
+    ) {
+        let count = positions.len() as u32;
+        let mesh = Mesh::new(
+            positions.iter().map(|p| p.map(f64::from)).collect(),
+            raw.iter().map(|face| face.map(|v| VertexId(v % count))).collect(),
+        );
+        let at = |ratio| simplify(&mesh, Target::Ratio(ratio), &Options { method, ..Options::default() });
+        // All is degenerate, then there is nothing to keep.
+        if let (Ok((cleaned, _)), Ok((level, _))) = (at(1.0), at(ratio)) {
+            level.validate().unwrap();
+            let (before, after) = (defects(&cleaned), defects(&level));
+            prop_assert!(after[0] <= before[0], "open edges: {before:?} {after:?}");
+            prop_assert!(after[1] <= before[1], "non-manifold edges: {before:?} {after:?}");
+            prop_assert_eq!(after[2], before[2], "components");
+        }
     }
 }
