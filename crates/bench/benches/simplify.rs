@@ -1,9 +1,9 @@
 //! Simplification of procedural meshes to 10 %, with the peer beside it.
 
 use criterion::{Criterion, criterion_group, criterion_main};
+use meshlod::mesh::sample;
+use meshlod::simplify::{Method, Options, Target, simplify};
 use meshlod_bench::peer::{Indexed, simplify_with_update};
-use meshlod_mesh::sample;
-use meshlod_simplify::{Method, Options, Target, simplify};
 
 fn to_a_tenth(c: &mut Criterion) {
     let mut group = c.benchmark_group("to 10 %");

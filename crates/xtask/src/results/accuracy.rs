@@ -1,10 +1,10 @@
 //! How near the levels are to their meshes, beside the peers.
 
 use anyhow::Result;
+use meshlod::measure::{Distance, DistanceOptions, Surface, surface_distance};
+use meshlod::mesh::Mesh;
+use meshlod::simplify::{Method, Options, Target, simplify};
 use meshlod_bench::peer::{Indexed, simplify_with_update};
-use meshlod_measure::{Distance, DistanceOptions, Surface, surface_distance};
-use meshlod_mesh::Mesh;
-use meshlod_simplify::{Method, Options, Target, simplify};
 
 use super::table::Table;
 use crate::project::Project;

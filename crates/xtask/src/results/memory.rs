@@ -17,7 +17,7 @@ pub fn section(project: &Project) -> Result<String> {
     let program = Program::build(project)?;
     let folder = tempfile::tempdir()?;
     for file in ["horse-97k.ply", "dragon.ply"] {
-        let Some(path) = meshlod_fixtures::shared_mesh(file) else { continue };
+        let Some(path) = meshlod_bench::shared_mesh(file) else { continue };
         let faces = meshlod_bench::read(file)?.context("it is there")?.faces.len();
         let mut peak = 0;
         let mut outputs = Vec::new();

@@ -3,9 +3,9 @@
 use std::time::Instant;
 
 use anyhow::{Context, Result};
+use meshlod::measure::{DistanceOptions, Surface, surface_distance};
+use meshlod::simplify::{Options, Target, simplify};
 use meshlod_bench::{alternate, one_core};
-use meshlod_measure::{DistanceOptions, Surface, surface_distance};
-use meshlod_simplify::{Options, Target, simplify};
 
 use super::table::Table;
 use crate::project::Project;
@@ -16,17 +16,17 @@ const ROUNDS: usize = 7;
 pub fn section(_: &Project) -> Result<String> {
     let mut table = Table::new(["on one core", "figure"]);
     one_core(|| -> Result<()> {
-        if let Some(path) = meshlod_fixtures::shared_mesh("dragon.ply") {
+        if let Some(path) = meshlod_bench::shared_mesh("dragon.ply") {
             let bytes = std::fs::read(&path)?;
-            let read = || meshlod_io::ply::read(&bytes).map(|mesh| mesh.faces.len());
+            let read = || meshlod::io::ply::read(&bytes).map(|mesh| mesh.faces.len());
             let least = (0..ROUNDS).map(|_| seconds(read)).fold(f64::INFINITY, f64::min);
             table.row(["dragon.ply read, best ms".to_owned(), format!("{:.1}", least * 1e3)]);
         }
-        if let Some(path) = meshlod_fixtures::shared_mesh("sponza.obj") {
+        if let Some(path) = meshlod_bench::shared_mesh("sponza.obj") {
             let bytes = std::fs::read(&path)?;
             let ratio = alternate(
                 ROUNDS,
-                || meshlod_io::obj::read(&bytes, &mut |_| None).map(|scene| scene.meshes.len()),
+                || meshlod::io::obj::read(&bytes, &mut |_| None).map(|scene| scene.meshes.len()),
                 || tobj_read(&bytes),
             );
             let what = "sponza.obj read, times as fast as tobj".to_owned();

@@ -1,9 +1,9 @@
 //! Simplification by turns with meshoptimizer, on one core.
 
 use anyhow::Result;
+use meshlod::simplify::{Method, Options, Target, simplify};
 use meshlod_bench::peer::{Indexed, simplify_with_update};
 use meshlod_bench::{Ratio, alternate, one_core};
-use meshlod_simplify::{Method, Options, Target, simplify};
 
 use super::table::Table;
 use crate::project::Project;
