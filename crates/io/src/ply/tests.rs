@@ -283,7 +283,9 @@ fn errors_in_binary_name_the_byte_and_the_row() {
         format!("byte {}: the file ends inside vertex 1 of 4", vertices + 13)
     );
     whole[end - 4] = 4;
-    assert!(message(&whole).starts_with(&format!("byte {}: face 3 of 4 names vertex 4,", end - 13)));
+    assert!(
+        message(&whole).starts_with(&format!("byte {}: face 3 of 4 names vertex 4,", end - 13))
+    );
     whole[end - 1] = 0x80;
     assert!(message(&whole).starts_with(&format!("byte {}: face 3 of 4 names vertex -", end - 13)));
     whole[vertices + 12..][..4].copy_from_slice(&f32::INFINITY.to_le_bytes());
