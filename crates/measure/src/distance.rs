@@ -317,7 +317,7 @@ mod tests {
             distance(&a, &b, &options).unwrap().mean()
         };
         assert_ne!(mean(1), mean(2));
-        assert!((mean(1) / mean(2) - 1.0).abs() < 1e-3);
+        assert!((mean(1) / mean(2) - 1.0).abs() < 1e-3, "{} {}", mean(1), mean(2));
     }
 
     #[test]

@@ -7,8 +7,9 @@ use crate::surface::Surface;
 /// Samples of the range `which` of `count`, which divide the surface into equal areas: each is a
 /// random point of its part.
 ///
-/// Parts follow one another in the order of the hierarchy, so they are compact patches, and
-/// neighbouring samples are near each other. A sample depends on `seed` and its own number only.
+/// The surface is walked face after face in the order of the hierarchy, and each face along a curve
+/// that fills it, so the parts are compact patches and neighbouring samples are near each other. A
+/// sample depends on `seed` and its own number only.
 pub(crate) fn samples<'s>(
     surface: &'s Surface<'_>,
     count: usize,
@@ -22,50 +23,61 @@ pub(crate) fn samples<'s>(
     let start = total * (which.start as f64 / count as f64);
     let mut slot = up_to.partition_point(|&area| area <= start).min(last);
     which.map(move |i| {
-        let mut random = Random::new(seed, i as u64);
-        let target = total * ((i as f64 + random.unit()) / count as f64);
+        let target = total * ((i as f64 + random_unit(seed, i as u64)) / count as f64);
         while slot < last && up_to[slot] <= target {
             slot += 1;
         }
+        let before = if slot == 0 { 0.0 } else { up_to[slot - 1] };
+        let [s, t] = along_triangle((target - before) / (up_to[slot] - before));
         let face = surface.bvh.faces_in_order()[slot];
         let [a, b, c] = surface.mesh.triangle(surface.mesh.faces[face.index()]);
-        let [mut s, mut t] = [random.unit(), random.unit()];
-        if s + t > 1.0 {
-            (s, t) = (1.0 - s, 1.0 - t);
-        }
         (a + (b - a) * s + (c - a) * t).into()
     })
 }
 
-/// SplitMix64: a counter, hashed.
+/// Where a curve that fills the triangle (0, 0), (1, 0), (0, 1) is after a `part` of its way: equal
+/// parts cover equal areas.
+///
+/// Each two bits of `part` choose one of four smaller triangles; after 32 bits it is the middle.
+/// # References
+/// [BO15], the triangular van der Corput points; differs: the order of the four.
+fn along_triangle(part: f64) -> [f64; 2] {
+    // Out of range by rounding, the cast stops at the ends.
+    let mut bits = (part * 2f64.powi(32)) as u32;
+    // The right angle and the signed length of the legs.
+    let (mut s, mut t, mut leg) = (0.0, 0.0, 1.0);
+    for _ in 0..16 {
+        let half = leg * 0.5;
+        leg = half;
+        match bits >> 30 {
+            0 => {}
+            1 => (s, t, leg) = (s + half, t + half, -half),
+            2 => s += half,
+            _ => t += half,
+        }
+        bits <<= 2;
+    }
+    [s + leg / 3.0, t + leg / 3.0]
+}
+
+/// Evenly from [0, 1), by number `index` of the sequence of `seed`.
 ///
 /// # References
-/// [SLF14].
-struct Random(u64);
+/// [SLF14], the generator SplitMix64, whose every state is known in advance.
+fn random_unit(seed: u64, index: u64) -> f64 {
+    // Hashed, so that neighbouring seeds do not share the sequence but for a step.
+    let start = hash(seed.wrapping_add(STEP));
+    let state = start.wrapping_add(STEP.wrapping_mul(index.wrapping_add(1)));
+    (hash(state) >> 11) as f64 / (1u64 << 53) as f64
+}
 
-const GOLDEN: u64 = 0x9E37_79B9_7F4A_7C15;
+/// What the generator adds at each step: 2^64 over the golden ratio.
+const STEP: u64 = 0x9E37_79B9_7F4A_7C15;
 
-impl Random {
-    /// The generator of sample `index`: its own hash of the seed, so that sequences do not overlap
-    /// for neighbouring samples.
-    fn new(seed: u64, index: u64) -> Self {
-        let mut stream = Self(seed);
-        let key = stream.next();
-        Self(Self(key ^ index).next())
-    }
-
-    fn next(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(GOLDEN);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        z ^ (z >> 31)
-    }
-
-    /// Evenly from [0, 1).
-    fn unit(&mut self) -> f64 {
-        (self.next() >> 11) as f64 / (1u64 << 53) as f64
-    }
+fn hash(state: u64) -> u64 {
+    let z = (state ^ (state >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+    let z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+    z ^ (z >> 31)
 }
 
 #[cfg(test)]
@@ -77,9 +89,26 @@ mod tests {
 
     #[test]
     fn the_generator_gives_the_published_numbers() {
-        let mut random = Random(1_234_567);
-        assert_eq!(random.next(), 6_457_827_717_110_365_317);
-        assert_eq!(random.next(), 3_203_168_211_198_807_973);
+        let state = |step| 1_234_567u64.wrapping_add(STEP.wrapping_mul(step));
+        assert_eq!(hash(state(1)), 6_457_827_717_110_365_317);
+        assert_eq!(hash(state(2)), 3_203_168_211_198_807_973);
+    }
+
+    #[test]
+    fn the_curve_fills_the_triangle_evenly() {
+        // 64 steps, and 64 small triangles: half squares of a grid of 8 by 8.
+        let cell = |i: u32| {
+            let [s, t] = along_triangle((f64::from(i) + 0.5) / 64.0);
+            assert!(s > 0.0 && t > 0.0 && s + t < 1.0);
+            let above = (s * 8.0).fract() + (t * 8.0).fract() > 1.0;
+            ((s * 8.0) as u32, (t * 8.0) as u32, above)
+        };
+        let cells: std::collections::HashSet<_> = (0..64).map(cell).collect();
+        assert_eq!(cells.len(), 64);
+        for part in [-1e-9, 0.0, 1.0, 1.5] {
+            let [s, t] = along_triangle(part);
+            assert!(s >= 0.0 && t >= 0.0 && s + t <= 1.0, "{part}");
+        }
     }
 
     #[test]
@@ -98,15 +127,18 @@ mod tests {
 
     #[test]
     fn samples_are_spread_more_evenly_than_by_chance() {
-        let surface = plane(40, 0.0);
-        let surface = Surface::new(&surface).unwrap();
-        let mut cells = [0usize; 64];
-        for [x, y, _] in samples(&surface, 6400, 7, 0..6400) {
-            cells[(x * 8.0) as usize * 8 + (y * 8.0) as usize] += 1;
+        // Faces smaller than the cells, and faces that hold many.
+        for squares in [40, 1] {
+            let mesh = plane(squares, 0.0);
+            let surface = Surface::new(&mesh).unwrap();
+            let mut cells = [0usize; 64];
+            for [x, y, _] in samples(&surface, 6400, 7, 0..6400) {
+                cells[(x * 8.0) as usize * 8 + (y * 8.0) as usize] += 1;
+            }
+            // By chance the variance would be about 100.
+            let variance = cells.iter().map(|&n| (n as f64 - 100.0).powi(2)).sum::<f64>() / 64.0;
+            assert!(variance < 15.0, "{squares}: {variance}");
         }
-        // By chance the variance would be about 100.
-        let variance = cells.iter().map(|&n| (n as f64 - 100.0).powi(2)).sum::<f64>() / 64.0;
-        assert!(variance < 30.0, "{variance}");
     }
 
     #[test]

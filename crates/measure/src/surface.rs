@@ -38,7 +38,7 @@ pub enum SurfaceError {
 impl<'m> Surface<'m> {
     /// Builds what searching and sampling `mesh` need.
     ///
-    /// Cost: O(n log n), n = faces; in parallel. About 140 bytes a face.
+    /// Cost: O(n log n), n = faces; in parallel. About 130 bytes a face.
     /// # Errors
     /// No faces, invalid faces or positions, no area, or an extent near the end of the floats.
     pub fn new(mesh: &'m Mesh) -> Result<Self, SurfaceError> {

@@ -7,9 +7,10 @@ use rayon::prelude::*;
 use crate::bvh::{INNER, Node};
 use crate::triangle::Triangle;
 
-/// Most triangles of a leaf.
-const LEAF: usize = 4;
-/// Bins along the longest axis.
+/// Most triangles of a leaf. On the dragon, 871,000 faces, against 2: with 1 queries gain 7 % and
+/// building takes 15 % longer; with 4 queries lose 15 % and building takes 20 % less.
+const LEAF: usize = 2;
+/// Bins along the longest axis. With 16, queries are the same and building takes 5 % longer.
 const BINS: usize = 8;
 /// Ranges at least this long build their children in parallel, each in nodes of its own.
 const GRAIN: usize = 1 << 13;
@@ -17,9 +18,6 @@ const GRAIN: usize = 1 << 13;
 const MAX_COSTED_DEPTH: usize = 40;
 /// Bound of the depth: after `MAX_COSTED_DEPTH`, each level halves at most 2^32 faces.
 pub(crate) const MAX_DEPTH: usize = MAX_COSTED_DEPTH + 32;
-
-/// Least extent of doubled centres that is binned; local coordinates go up to about 2.
-const MIN_EXTENT: f32 = 1e-30;
 
 /// A face and its box, rounded outwards.
 #[derive(Clone, Copy)]
@@ -116,18 +114,9 @@ fn split_in_four(run: Run<'_>, depth: usize) -> Vec<Run<'_>> {
 
 /// Two parts, neither empty: where count × area is least, or in the middle when that cannot be told.
 fn split(run: Run<'_>, depth: usize) -> (Run<'_>, Run<'_>) {
-    let Run { items, first, .. } = run;
-    let centers = items.iter().map(|item| item.bounds.center());
-    let (lo, hi) = centers.fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(lo, hi), center| {
-        (lo.min(center), hi.max(center))
-    });
-    let axis = (hi - lo).max_position();
-    let extent = (hi - lo)[axis];
-    let cut = if depth < MAX_COSTED_DEPTH && extent > MIN_EXTENT {
-        Binning { axis, start: lo[axis], per_unit: BINS as f32 / extent }.split(items)
-    } else {
-        halve(items, axis)
-    };
+    let Run { items, first, bounds } = run;
+    let cheapest = if depth < MAX_COSTED_DEPTH { Binning::of(&bounds).split(items) } else { None };
+    let cut = cheapest.unwrap_or_else(|| halve(items));
     let (left, right) = items.split_at_mut(cut.middle);
     (
         Run { items: left, first, bounds: cut.left },
@@ -142,8 +131,14 @@ struct Cut {
     right: Box3,
 }
 
-/// As many items on the left as on the right, by their centres along `axis`.
-fn halve(items: &mut [Item], axis: usize) -> Cut {
+/// As many items on the left as on the right, by their centres along the axis where these differ
+/// most.
+fn halve(items: &mut [Item]) -> Cut {
+    let centers = items.iter().map(|item| item.bounds.center());
+    let (lo, hi) = centers.fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(lo, hi), center| {
+        (lo.min(center), hi.max(center))
+    });
+    let axis = (hi - lo).max_position();
     let middle = items.len() / 2;
     items.select_nth_unstable_by(middle, |x, y| {
         let [x_at, y_at] = [x, y].map(|item| item.bounds.center()[axis]);
@@ -153,7 +148,7 @@ fn halve(items: &mut [Item], axis: usize) -> Cut {
     Cut { middle, left: Box3::union(left), right: Box3::union(right) }
 }
 
-/// Equal bins along an axis, by the centres of boxes.
+/// Equal bins along the longest axis of a box, by the centres of boxes in it.
 struct Binning {
     axis: usize,
     start: f32,
@@ -167,14 +162,21 @@ struct Bin {
 }
 
 impl Binning {
+    fn of(bounds: &Box3) -> Self {
+        let extent = bounds.hi - bounds.lo;
+        let axis = extent.max_position();
+        // Centres are doubled, and so is their range. Without extent all are in one bin.
+        let per_unit = BINS as f32 / (2.0 * extent[axis]).max(f32::MIN_POSITIVE * BINS as f32);
+        Self { axis, start: 2.0 * bounds.lo[axis], per_unit }
+    }
+
     fn bin(&self, item: &Item) -> usize {
         let at = (item.bounds.center()[self.axis] - self.start) * self.per_unit;
         (at as usize).min(BINS - 1)
     }
 
-    /// Parts the items at the cheapest bound between bins. The first and the last bin hold the
-    /// extreme centres, so there always is one with items on both sides.
-    fn split(&self, items: &mut [Item]) -> Cut {
+    /// Parts the items at the cheapest bound between bins; `None` when all are in one bin.
+    fn split(&self, items: &mut [Item]) -> Option<Cut> {
         let empty = Bin { bounds: Box3::EMPTY, count: 0 };
         let mut bins = [empty; BINS];
         for item in items.iter() {
@@ -188,18 +190,18 @@ impl Binning {
         }
         let mut before = empty;
         let mut least = f32::INFINITY;
-        let (mut bound, mut cut) = (1, None);
+        let mut cheapest = None;
         for i in 1..BINS {
             before.add(&bins[i - 1]);
             let cost = before.cost() + after[i].cost();
-            if before.count > 0 && after[i].count > 0 && (cut.is_none() || cost < least) {
-                (least, bound) = (cost, i);
-                cut =
-                    Some(Cut { middle: before.count, left: before.bounds, right: after[i].bounds });
+            if before.count > 0 && after[i].count > 0 && cost < least {
+                least = cost;
+                cheapest = Some((i, before, after[i].bounds));
             }
         }
+        let (bound, left, right) = cheapest?;
         partition(items, |item| self.bin(item) < bound);
-        cut.expect("the extreme centres are in the extreme bins")
+        Some(Cut { middle: left.count, left: left.bounds, right })
     }
 }
 

@@ -11,7 +11,7 @@ use crate::triangle::Triangle;
 
 /// A bounding volume hierarchy over the faces of a mesh, which it does not keep.
 ///
-/// Size: about 130 bytes a face. The same for any number of threads.
+/// Size: about 120 bytes a face. The same for any number of threads.
 #[derive(Clone, Debug)]
 pub struct Bvh {
     pub(crate) frame: Frame,

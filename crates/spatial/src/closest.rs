@@ -81,7 +81,7 @@ impl Bvh {
                     }
                     stack[i] = (distance_squared, node.first[child]);
                     waiting += 1;
-                } else {
+                } else if distance_squared <= reach {
                     let first = node.first[child] as usize;
                     for slot in first..first + usize::from(node.count[child]) {
                         if best.improve(self.candidate(p, slot)) {

@@ -4,6 +4,7 @@ use glam::DVec3;
 use meshlod_mesh::{FaceId, Mesh, MeshError, VertexId};
 use proptest::prelude::*;
 
+use crate::bvh::INNER;
 use crate::triangle::closest_point;
 use crate::{Bvh, BvhError, Closest};
 
@@ -132,12 +133,25 @@ fn a_million_times_the_same_triangle_is_no_trouble() {
     assert_eq!(bvh.closest([0.0, 0.5, 1.0], Some(FaceId(9_000))).face, FaceId(0));
 }
 
+/// Levels of nodes below and with `node`.
+fn depth(bvh: &Bvh, node: u32) -> usize {
+    let node = &bvh.nodes[node as usize];
+    let inner = (0..4).filter(|&child| node.count[child] == INNER);
+    1 + inner.map(|child| depth(bvh, node.first[child])).max().unwrap_or(0)
+}
+
 #[test]
 fn shrinking_steps_do_not_make_the_tree_deep() {
-    let positions: Vec<_> =
-        (0..3000).map(|i| [1.01f64.powi(-3 * i), 0.0, 1.3f64.powi(-i)]).collect();
-    let faces = (0..2998).map(|i| [0, 1, 2].map(|k| VertexId::new(i + k))).collect();
-    let bvh = Bvh::new(&Mesh::new(positions, faces)).unwrap();
+    // Towards the origin along the axes: taken one by one, 1200 points would be 400 levels.
+    let position = |i: usize| {
+        let mut position = [0.0; 3];
+        position[i % 3] = 1.2f64.powi(-(i as i32 / 3));
+        position
+    };
+    let faces = (0..1200).map(|i| [VertexId::new(i); 3]).collect();
+    let bvh = Bvh::new(&Mesh::new((0..1200).map(position).collect(), faces)).unwrap();
+    let depth = depth(&bvh, 0);
+    assert!((6..30).contains(&depth), "{depth} levels");
     check(&bvh, [1e-20, 1.0, 1e-30], None);
 }
 

@@ -16,6 +16,9 @@ const SLIVER: f64 = 1e-12;
 /// one of the edges that `p` lies beyond. Slivers, whose normal is uncertain, and degenerate
 /// triangles are also asked edge by edge, so the answer is always a point of the triangle. A corner
 /// is given back bit for bit.
+/// # References
+/// [Eri05] section 5.1.5; differs: weights from the normal, which keep their digits in narrow
+/// triangles, and edges where these leave doubt.
 #[inline]
 pub(crate) fn closest_point(p: DVec3, &[a, b, c]: &Triangle) -> DVec3 {
     let (ab, bc, ca) = (b - a, c - b, a - c);
