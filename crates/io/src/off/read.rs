@@ -20,7 +20,7 @@ use crate::torn::{layer, of_vertices, to_unit};
 /// that is not finite, an index out of range, a face of fewer than three corners; files without
 /// faces, binary ones, and those in other than three dimensions.
 /// # References
-/// [Geomview], section OFF.
+/// [PLM93], section OFF of its manual.
 pub fn read(bytes: &[u8]) -> Result<Mesh, ParseError> {
     let mut text = Text::new(bytes)?;
     if !text.more_anywhere() {
