@@ -82,10 +82,14 @@ where
         while self.surface.live_faces() > stop.faces && self.step(stop, observer) {}
     }
 
-    /// One contraction; false when no candidate is left that may.
+    /// One contraction; false when no candidate is left that may, at the cost allowed.
     pub(crate) fn step(&mut self, stop: &Stop, observer: &mut dyn Observe) -> bool {
         self.try_again_within(stop.error);
         while let Some(entry) = self.next_fresh() {
+            if entry.key.cost() > stop.cost {
+                self.waiting.put(entry, &mut self.surface);
+                return false;
+            }
             match self.contract(entry, stop, observer) {
                 Ok(()) => return true,
                 Err(refusal) => {

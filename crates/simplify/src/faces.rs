@@ -74,7 +74,7 @@ fn contract_faces(mesh: &Mesh, faces: usize) -> Mesh {
         checks: FACE_CHECKS,
     };
     let mut engine = Engine::new(algorithm, surface, connectivity);
-    engine.run(&Stop { faces, error: f64::INFINITY }, &mut ());
+    engine.run(&Stop { faces, ..Stop::NEVER }, &mut ());
     level(mesh, engine.surface())
 }
 

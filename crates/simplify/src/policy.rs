@@ -81,6 +81,13 @@ pub(crate) struct Stop {
     pub(crate) faces: usize,
     /// Contractions estimated to move the surface further than this, in model units, are refused.
     pub(crate) error: f64,
+    /// Enough when the next contraction costs more than this.
+    pub(crate) cost: f64,
+}
+
+impl Stop {
+    /// Goes on while anything may be contracted.
+    pub(crate) const NEVER: Self = Self { faces: 0, error: f64::INFINITY, cost: f64::INFINITY };
 }
 
 /// Hooks into the engine's loop. All do nothing unless written.

@@ -114,13 +114,15 @@ impl<'m> Simplifier<'m> {
         Ok(self.report(target, &stop))
     }
 
-    /// Makes the one next contraction, whatever it costs; false when none may be made.
-    pub fn step(&mut self, observer: &mut dyn Observe) -> bool {
-        self.engine.step(&Stop { faces: 0, error: f64::INFINITY }, observer)
+    /// Makes the one next contraction that costs at most `most_cost`; false when none may be made.
+    pub fn step(&mut self, most_cost: f64, observer: &mut dyn Observe) -> bool {
+        self.engine.step(&Stop { cost: most_cost, ..Stop::NEVER }, observer)
     }
 
-    /// The cost of the next contraction, in the method's own terms (for quadrics: squared distance
-    /// times area); `None` when no candidate is left.
+    /// The cost of the candidate that is tried next, in the method's own terms (for quadrics:
+    /// squared distance times area); `None` when no candidate is left.
+    ///
+    /// It may turn out refused: the contraction that is made next costs this or more.
     pub fn next_cost(&mut self) -> Option<f64> {
         self.engine.next_cost()
     }
@@ -149,13 +151,13 @@ impl<'m> Simplifier<'m> {
     fn stop(&self, target: Target) -> Result<Stop, SimplifyError> {
         let all = self.mesh.faces.len();
         match target {
-            Target::Faces(faces) => Ok(Stop { faces, error: f64::INFINITY }),
+            Target::Faces(faces) => Ok(Stop { faces, ..Stop::NEVER }),
             Target::Ratio(ratio) if (0.0..=1.0).contains(&ratio) => {
                 // Never more than asked for, but 29 % of 100 is 29.
                 let faces = (all as f64 * ratio + 1e-6).floor() as usize;
-                Ok(Stop { faces, error: f64::INFINITY })
+                Ok(Stop { faces, ..Stop::NEVER })
             }
-            Target::Error(error) if error >= 0.0 => Ok(Stop { faces: 0, error }),
+            Target::Error(error) if error >= 0.0 => Ok(Stop { error, ..Stop::NEVER }),
             Target::Ratio(bad) | Target::Error(bad) => Err(SimplifyError::BadTarget(bad)),
         }
     }

@@ -120,11 +120,28 @@ fn every_single_step_keeps_a_closed_surface_closed() {
         let mesh = sample::torus(300);
         let mut simplifier =
             Simplifier::new(&mesh, &Options { method, ..Options::default() }).unwrap();
-        while simplifier.step(&mut ()) {
+        while simplifier.step(f64::INFINITY, &mut ()) {
             let level = simplifier.level();
             assert_eq!(topology(&level), Topology { ..topology(&mesh) });
         }
         assert!(simplifier.live_faces() < 40);
+    }
+}
+
+#[test]
+fn steps_stop_where_they_would_cost_too_much() {
+    let mesh = sample::knot(1000);
+    for method in Method::ALL {
+        let options = Options { method, ..Options::default() };
+        let mut simplifier = Simplifier::new(&mesh, &options).unwrap();
+        for _ in 0..20 {
+            assert!(simplifier.step(f64::INFINITY, &mut ()));
+        }
+        let (before, most_cost) = (simplifier.live_faces(), 2.0 * simplifier.next_cost().unwrap());
+        while simplifier.step(most_cost, &mut ()) {}
+        let stopped = simplifier.live_faces();
+        assert!((before * 9 / 10..before).contains(&stopped), "{before} {stopped}");
+        assert!(simplifier.step(f64::INFINITY, &mut ()) && simplifier.live_faces() < stopped);
     }
 }
 
