@@ -37,6 +37,7 @@ pub use error::{IoError, ParseError, Place, Unfit};
 pub use files::{ReadOptions, Resolve, Weld, WriteOptions, read, read_bytes, write, write_lods};
 pub use flatten::Placement;
 pub use format::Format;
+pub use replace::{abandon_files, write_file};
 pub use scene::{Image, Material, Node, Scene, SceneMesh};
 pub use weld::{merge_equal_wedges, weld};
 

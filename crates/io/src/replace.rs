@@ -4,6 +4,28 @@ use std::fs::{self, File, OpenOptions};
 use std::io::{self, BufWriter, ErrorKind, Write};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+use crate::IoError;
+
+/// Writes a file, whole or not at all: what was at `path` stays until the new bytes are complete.
+///
+/// # Errors
+/// Those of the system, with the path.
+pub fn write_file(path: &Path, bytes: &[u8]) -> Result<(), IoError> {
+    replace(path, |out| out.write_all(bytes)).map_err(|error| IoError::system(path, error))
+}
+
+/// Removes the unfinished files of this process: for a program that is about to end before its
+/// time, as by Ctrl-C.
+///
+/// Threads that are writing go on without a file to finish, so end the process next.
+pub fn abandon_files() {
+    for path in unfinished().drain(..) {
+        // Nobody is left to be told.
+        let _ = fs::remove_file(path);
+    }
+}
 
 /// Writes a file with `fill`; the old one stays as it is until the new one is complete.
 ///
@@ -35,6 +57,18 @@ fn fill_file<E: From<io::Error>>(
     Ok(())
 }
 
+/// Temporary files that exist now.
+static UNFINISHED: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
+
+fn unfinished() -> MutexGuard<'static, Vec<PathBuf>> {
+    // A list of paths is whole at any time.
+    UNFINISHED.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+fn forget(path: &Path) {
+    unfinished().retain(|other| other != path);
+}
+
 /// A file that goes away unless it is renamed.
 struct Temporary(Option<PathBuf>);
 
@@ -45,8 +79,13 @@ impl Temporary {
         loop {
             let number = NEXT.fetch_add(1, Ordering::Relaxed);
             let path = target.with_file_name(format!(".{name}.{}-{number}", std::process::id()));
+            // Held while the file is made, so that none is missed.
+            let mut unfinished = unfinished();
             match OpenOptions::new().write(true).create_new(true).open(&path) {
-                Ok(file) => return Ok((Self(Some(path)), file)),
+                Ok(file) => {
+                    unfinished.push(path.clone());
+                    return Ok((Self(Some(path)), file));
+                }
                 Err(error) if error.kind() == ErrorKind::AlreadyExists => {}
                 Err(error) => return Err(error),
             }
@@ -56,6 +95,7 @@ impl Temporary {
     fn rename(mut self, target: &Path) -> io::Result<()> {
         let path = self.0.as_ref().expect("renamed once");
         fs::rename(path, target)?;
+        forget(path);
         self.0 = None;
         Ok(())
     }
@@ -65,7 +105,8 @@ impl Drop for Temporary {
     fn drop(&mut self) {
         if let Some(path) = self.0.take() {
             // The error that brought us here is the one worth telling.
-            let _ = fs::remove_file(path);
+            let _ = fs::remove_file(&path);
+            forget(&path);
         }
     }
 }
@@ -89,6 +130,25 @@ mod tests {
         replace::<io::Error>(&path, |out| out.write_all(b"new")).unwrap();
         assert_eq!(fs::read(&path).unwrap(), b"new");
         assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
+    }
+
+    #[test]
+    fn an_abandoned_file_is_gone_and_the_old_one_is_not() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.txt");
+        write_file(&path, b"old").unwrap();
+        let failed = replace(&path, |out| {
+            out.write_all(b"half")?;
+            let own = |other: &PathBuf| other.starts_with(folder.path());
+            let listed = unfinished().iter().filter(|other| own(other)).count();
+            assert_eq!((listed, fs::read_dir(folder.path())?.count()), (1, 2));
+            // As `abandon_files`, but for the files of other tests.
+            let half = unfinished().iter().find(|other| own(other)).cloned();
+            fs::remove_file(half.unwrap())
+        });
+        assert!(failed.is_err(), "there is nothing to rename");
+        assert!(!unfinished().iter().any(|other| other.starts_with(folder.path())));
+        assert_eq!(fs::read(&path).unwrap(), b"old");
     }
 
     #[cfg(unix)]
