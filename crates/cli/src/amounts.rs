@@ -1,0 +1,212 @@
+//! Words of the command line that become values. Errors say what would be right.
+
+use std::fmt;
+
+use meshlod::io::Precision;
+use meshlod::{Format, Method, Target};
+
+/// A bound of the error.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Bound {
+    /// In model units.
+    Length(f64),
+    /// As a part of the diagonal of what the scene shows.
+    OfDiagonal(f64),
+}
+
+impl Bound {
+    /// The bound in model units.
+    pub fn length(self, diagonal: f64) -> f64 {
+        match self {
+            Self::Length(length) => length,
+            Self::OfDiagonal(part) => part * diagonal,
+        }
+    }
+}
+
+/// How large a level shall be.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Size {
+    /// So many faces.
+    Faces(usize),
+    /// This part of the input's.
+    Ratio(f64),
+}
+
+impl Size {
+    pub fn target(self) -> Target {
+        match self {
+            Self::Faces(faces) => Target::Faces(faces),
+            Self::Ratio(ratio) => Target::Ratio(ratio),
+        }
+    }
+}
+
+impl fmt::Display for Size {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Faces(faces) => write!(f, "{faces} faces"),
+            // What a user wrote as 12.5% shall not come back as 12.500000000000002%.
+            Self::Ratio(ratio) => write!(f, "{}%", (ratio * 1e8).round() / 1e6),
+        }
+    }
+}
+
+/// Where to look.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Look {
+    /// From a side of the model: the direction if y is up.
+    From([f64; 3]),
+    /// In this direction.
+    Along([f64; 3]),
+}
+
+/// `10%` or `0.1`.
+pub fn ratio(text: &str) -> Result<f64, String> {
+    let ratio = match text.strip_suffix('%') {
+        Some(percent) => number(percent)? / 100.0,
+        None => number(text)?,
+    };
+    match ratio {
+        _ if (0.0..=1.0).contains(&ratio) => Ok(ratio),
+        _ if text.ends_with('%') => Err("a part goes from 0% to 100%".into()),
+        _ => Err(format!("a part goes from 0 to 1; is {text}% meant?")),
+    }
+}
+
+/// `0.5` in model units, or `0.1%` of the diagonal.
+pub fn bound(text: &str) -> Result<Bound, String> {
+    match text.strip_suffix('%') {
+        Some(percent) => Ok(Bound::OfDiagonal(length(percent)? / 100.0)),
+        None => Ok(Bound::Length(length(text)?)),
+    }
+}
+
+/// `50%` or `0.5` of the faces, or `5000` faces.
+pub fn size(text: &str) -> Result<Size, String> {
+    match text.parse() {
+        Ok(faces) => Ok(Size::Faces(faces)),
+        Err(_) => ratio(text).map(Size::Ratio),
+    }
+}
+
+/// A length: finite, at least 0.
+pub fn length(text: &str) -> Result<f64, String> {
+    match number(text)? {
+        length if length >= 0.0 => Ok(length),
+        _ => Err("it must be at least 0".into()),
+    }
+}
+
+/// A whole number above 0.
+pub fn positive(text: &str) -> Result<usize, String> {
+    match text.parse() {
+        Ok(number) if number > 0 => Ok(number),
+        _ => Err("it must be a whole number above 0".into()),
+    }
+}
+
+/// `640x480`.
+pub fn pixels(text: &str) -> Result<[u32; 2], String> {
+    let sides = text.split_once('x').map(|(width, height)| (width.parse(), height.parse()));
+    let allowed = 1..=meshlod::picture::MAX_SIDE;
+    match sides {
+        Some((Ok(w), Ok(h))) if allowed.contains(&w) && allowed.contains(&h) => Ok([w, h]),
+        _ => Err(format!("write 640x480; sides go to {}", allowed.end())),
+    }
+}
+
+/// A side of the model by name, or `x,y,z`: the direction to look in.
+pub fn look(text: &str) -> Result<Look, String> {
+    const NAMED: [(&str, [f64; 3]); 6] = [
+        ("front", [0.0, 0.0, -1.0]),
+        ("back", [0.0, 0.0, 1.0]),
+        ("left", [1.0, 0.0, 0.0]),
+        ("right", [-1.0, 0.0, 0.0]),
+        ("top", [0.0, -1.0, 0.0]),
+        ("bottom", [0.0, 1.0, 0.0]),
+    ];
+    if let Some((_, direction)) = NAMED.iter().find(|(name, _)| *name == text) {
+        return Ok(Look::From(*direction));
+    }
+    let numbers: Result<Vec<f64>, String> = text.split(',').map(number).collect();
+    match numbers.as_deref() {
+        Ok(&[x, y, z]) if [x, y, z] != [0.0; 3] => Ok(Look::Along([x, y, z])),
+        _ => Err("write front, back, left, right, top, bottom, or a direction x,y,z".into()),
+    }
+}
+
+/// A method by name.
+pub fn method(text: &str) -> Result<Method, String> {
+    let known = || Method::ALL.map(Method::name).join(", ");
+    Method::by_name(text).ok_or_else(|| format!("known are {}", known()))
+}
+
+/// A format by its suffix.
+pub fn format(text: &str) -> Result<Format, String> {
+    let known = || Format::ALL.map(|(suffix, _)| suffix).join(", ");
+    Format::of_suffix(text).ok_or_else(|| format!("known are {}", known()))
+}
+
+/// `f32` or `f64`.
+pub fn precision(text: &str) -> Result<Precision, String> {
+    match text {
+        "f32" => Ok(Precision::F32),
+        "f64" => Ok(Precision::F64),
+        _ => Err("write f32 or f64".into()),
+    }
+}
+
+fn number(text: &str) -> Result<f64, String> {
+    match text.trim().parse::<f64>() {
+        Ok(number) if number.is_finite() => Ok(number),
+        _ => Err(format!("{text:?} is not a number")),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ratios_come_with_and_without_percent() {
+        assert_eq!((ratio("10%"), ratio("0.1"), ratio("1")), (Ok(0.1), Ok(0.1), Ok(1.0)));
+        assert!(ratio("10").unwrap_err().contains("10%"));
+        for bad in ["", "%", "-1%", "101%", "nan", "ten", "inf"] {
+            assert!(ratio(bad).is_err(), "{bad}");
+        }
+    }
+
+    #[test]
+    fn bounds_are_lengths_or_parts_of_the_diagonal() {
+        assert_eq!(bound("0.5").unwrap().length(20.0), 0.5);
+        assert_eq!(bound("0.1%").unwrap().length(20.0), 0.02);
+        assert!(bound("-0.1%").is_err() && bound("inf").is_err());
+    }
+
+    #[test]
+    fn sizes_print_as_they_are_written() {
+        for text in ["50%", "12.5%", "0.1%", "33.3%"] {
+            assert_eq!(size(text).unwrap().to_string(), text);
+        }
+        assert_eq!(size("5000").unwrap().to_string(), "5000 faces");
+        assert_eq!(size("0.25"), Ok(Size::Ratio(0.25)));
+    }
+
+    #[test]
+    fn pictures_have_sides() {
+        assert_eq!(pixels("640x480"), Ok([640, 480]));
+        for bad in ["640", "0x9", "9x0", "640x", "99999x2", "-3x4"] {
+            assert!(pixels(bad).is_err(), "{bad}");
+        }
+    }
+
+    #[test]
+    fn directions_have_names_or_numbers() {
+        assert_eq!(look("top"), Ok(Look::From([0.0, -1.0, 0.0])));
+        assert_eq!(look("1,-2,0.5"), Ok(Look::Along([1.0, -2.0, 0.5])));
+        for bad in ["0,0,0", "1,2", "1,2,3,4", "up", "1,nan,2"] {
+            assert!(look(bad).is_err(), "{bad}");
+        }
+    }
+}

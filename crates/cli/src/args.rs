@@ -1,0 +1,132 @@
+//! What may be written on the command line, but for the options of single verbs.
+
+use clap::{Args, Parser, Subcommand};
+use meshlod::io::{Precision, Weld};
+use meshlod::{Format, ReadOptions, WriteOptions};
+
+use crate::amounts;
+use crate::answer::Answer;
+use crate::failure::Failure;
+use crate::session::Session;
+use crate::verbs::{info, lods, measure, render, sample, simplify};
+
+/// Level of detail for triangle meshes.
+///
+/// Formats go by suffix: .ply .obj .stl .off .smf .gltf .glb; - is standard input or output.
+#[derive(Parser)]
+#[command(name = "meshlod", version, max_term_width = 100)]
+pub struct Cli {
+    #[command(flatten)]
+    pub global: Global,
+    #[command(subcommand)]
+    pub verb: Verb,
+}
+
+/// Options of every verb.
+#[derive(Args)]
+pub struct Global {
+    /// Print one JSON object on standard output, and nothing else there
+    #[arg(long, global = true)]
+    pub json: bool,
+    /// Threads to work with [default: one per core]
+    #[arg(long, global = true, value_name = "N", value_parser = amounts::positive)]
+    pub threads: Option<usize>,
+    /// The format of -, as a suffix: ply, glb, …
+    #[arg(long, global = true, value_name = "SUFFIX", value_parser = amounts::format)]
+    pub format: Option<Format>,
+}
+
+/// What to do.
+#[derive(Subcommand)]
+pub enum Verb {
+    /// Say what is in a file: counts, bounds, area, volume, closed or not
+    Info(info::Info),
+    /// Make a mesh coarser
+    Simplify(simplify::Simplify),
+    /// Make a chain of coarser levels, as glTF with MSFT_lod or one file each
+    Lods(lods::Lods),
+    /// Measure how far two meshes are apart, both ways
+    Measure(measure::Measure),
+    /// Write a procedural mesh of any size
+    Sample(sample::Sample),
+    /// Draw a picture
+    Render(render::Render),
+}
+
+impl Verb {
+    pub fn run(self, session: &Session) -> Result<Answer, Failure> {
+        match self {
+            Self::Info(verb) => verb.run(session),
+            Self::Simplify(verb) => verb.run(session),
+            Self::Lods(verb) => verb.run(session),
+            Self::Measure(verb) => verb.run(session),
+            Self::Sample(verb) => verb.run(session),
+            Self::Render(verb) => verb.run(session),
+        }
+    }
+}
+
+/// Options of every verb that reads meshes.
+#[derive(Args)]
+pub struct Reading {
+    /// Keep vertices apart that glTF and STL have apart
+    #[arg(long, conflicts_with = "weld")]
+    no_weld: bool,
+    /// Make one vertex of those within EPS of each other, in model units
+    #[arg(long, value_name = "EPS", value_parser = amounts::length)]
+    weld: Option<f64>,
+}
+
+impl Reading {
+    pub fn options(&self) -> ReadOptions {
+        let weld = match self.weld {
+            Some(epsilon) => Weld::Within(epsilon),
+            None if self.no_weld => Weld::Off,
+            None => Weld::Exact,
+        };
+        ReadOptions { weld }
+    }
+}
+
+/// Options of every verb that writes meshes.
+#[derive(Args)]
+pub struct Writing {
+    /// Of coordinates in PLY, OBJ, OFF and SMF: f32 or f64
+    #[arg(long, value_name = "TYPE", default_value = "f32", value_parser = amounts::precision)]
+    precision: Precision,
+}
+
+impl Writing {
+    pub fn options(&self) -> WriteOptions {
+        WriteOptions { precision: self.precision }
+    }
+}
+
+/// How a distance is sampled.
+#[derive(Args)]
+pub struct Sampling {
+    /// Samples each way, beside all vertices
+    #[arg(long, value_name = "N", default_value_t = 500_000, value_parser = amounts::positive)]
+    samples: usize,
+    /// What the samples are drawn by
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    seed: u64,
+}
+
+impl Sampling {
+    pub fn options(&self) -> meshlod::measure::DistanceOptions {
+        meshlod::measure::DistanceOptions { samples: self.samples, seed: self.seed }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use clap::CommandFactory;
+
+    use super::*;
+
+    #[test]
+    fn the_command_line_is_sound() {
+        Cli::command().debug_assert();
+    }
+}

@@ -1,0 +1,90 @@
+//! Measured distances: of scenes, as JSON, as text.
+
+use std::path::Path;
+
+use meshlod::measure::{
+    Distance, DistanceOptions, MeasureError, OneWay, Surface, surface_distance,
+};
+use meshlod::{Mesh, Scene, io::SceneMesh};
+use serde_json::{Value, json};
+
+use crate::failure::Failure;
+use crate::numbers;
+use crate::table::aligned;
+
+/// The bare surface that a scene shows in world space, or would show with other meshes.
+pub fn surface_of<'m>(scene: &Scene, meshes: impl IntoIterator<Item = &'m Mesh>) -> Mesh {
+    let bare = |mesh: &Mesh| Mesh::new(mesh.positions.clone(), mesh.faces.clone());
+    let meshes = meshes.into_iter().map(|m| SceneMesh { mesh: bare(m), ..SceneMesh::default() });
+    Scene {
+        meshes: meshes.collect(),
+        nodes: scene.nodes.clone(),
+        roots: scene.roots.clone(),
+        ..Scene::default()
+    }
+    .into_mesh()
+}
+
+/// The meshes of a scene, as they are.
+pub fn meshes(scene: &Scene) -> impl Iterator<Item = &Mesh> {
+    scene.meshes.iter().map(|mesh| &mesh.mesh)
+}
+
+/// The mesh of a file, ready to be measured.
+pub fn ready<'m>(mesh: &'m Mesh, path: &Path) -> Result<Surface<'m>, Failure> {
+    Surface::new(mesh).map_err(|error| Failure::at(path, error))
+}
+
+/// The distance of a level of a scene from the original.
+pub fn of_level(
+    original: &Surface<'_>,
+    scene: &Scene,
+    level: &[Mesh],
+) -> Result<Distance, MeasureError> {
+    let level = surface_of(scene, level);
+    let level = Surface::new(&level).map_err(MeasureError::Second)?;
+    surface_distance(original, &level, &DistanceOptions::default())
+}
+
+/// Both ways and what they come to, in model units and in percent of the diagonal.
+pub fn to_json(distance: &Distance) -> Value {
+    let lengths = |mean: f64, rms: f64, max: f64| {
+        json!({
+            "mean": mean,
+            "rms": rms,
+            "max": max,
+            "mean_percent": distance.percent(mean),
+            "rms_percent": distance.percent(rms),
+            "max_percent": distance.percent(max),
+        })
+    };
+    let way = |way: &OneWay| {
+        let mut json = lengths(way.mean, way.rms, way.max);
+        json["place"] =
+            json!({ "from": way.place.from, "to": way.place.to, "face": way.place.face.0 });
+        json
+    };
+    let mut json = lengths(distance.mean(), distance.rms(), distance.max());
+    json["diagonal"] = distance.diagonal.into();
+    json["forward"] = way(&distance.forward);
+    json["backward"] = way(&distance.backward);
+    json
+}
+
+/// Both ways and what they come to, as a table.
+pub fn to_table(distance: &Distance) -> String {
+    let row = |name: &str, mean: f64, rms: f64, max: f64| {
+        let cell = |length| {
+            [numbers::value(length), format!("({})", numbers::percent(distance.percent(length)))]
+        };
+        let ([a, b], [c, d], [e, f]) = (cell(mean), cell(rms), cell(max));
+        [name.into(), a, b, c, d, e, f]
+    };
+    let way = |name, way: &OneWay| row(name, way.mean, way.rms, way.max);
+    aligned(&[
+        ["", "mean", "", "RMS", "", "max", ""].map(String::from),
+        way("forward", &distance.forward),
+        way("backward", &distance.backward),
+        row("both", distance.mean(), distance.rms(), distance.max()),
+    ])
+}

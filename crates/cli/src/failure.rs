@@ -1,0 +1,49 @@
+//! Why a verb could not: one line, and the exit code that goes with it.
+
+use std::fmt;
+use std::path::Path;
+use std::process::ExitCode;
+
+use meshlod::IoError;
+
+use crate::files;
+
+/// A reason to stop, as one line: `FILE: place: reason`.
+#[derive(Debug)]
+pub struct Failure {
+    line: String,
+    wrong_usage: bool,
+}
+
+impl Failure {
+    pub fn new(line: impl fmt::Display) -> Self {
+        Self { line: line.to_string(), wrong_usage: false }
+    }
+
+    /// Something about a file.
+    pub fn at(path: &Path, reason: impl fmt::Display) -> Self {
+        Self::new(format_args!("{}: {reason}", files::name(path)))
+    }
+
+    /// Options that do not go together, where the parser of the command line could not tell.
+    pub fn usage(line: impl fmt::Display) -> Self {
+        Self { wrong_usage: true, ..Self::new(line) }
+    }
+
+    pub fn exit_code(&self) -> ExitCode {
+        if self.wrong_usage { ExitCode::from(2) } else { ExitCode::FAILURE }
+    }
+}
+
+impl fmt::Display for Failure {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        // A file's name or contents may bring line ends into a reason.
+        f.write_str(&self.line.replace(['\n', '\r'], " "))
+    }
+}
+
+impl From<IoError> for Failure {
+    fn from(error: IoError) -> Self {
+        Self::new(error)
+    }
+}

@@ -1,0 +1,94 @@
+//! Meshes in and out, by path or through a pipe.
+
+use std::io::{self, BufWriter, Read, Write};
+use std::path::Path;
+
+use meshlod::io::{gltf, obj, off, ply, read_bytes, smf, stl};
+use meshlod::{Format, Scene, WriteOptions};
+
+use crate::args::{Reading, Writing};
+use crate::failure::Failure;
+use crate::session::Session;
+
+/// Whether a path stands for standard input or output.
+pub fn is_pipe(path: &Path) -> bool {
+    path == Path::new("-")
+}
+
+/// A path as messages name it.
+pub fn name(path: &Path) -> String {
+    if is_pipe(path) { "-".into() } else { path.display().to_string() }
+}
+
+/// Reads a mesh file, or standard input.
+pub fn read(path: &Path, reading: &Reading, session: &Session) -> Result<Scene, Failure> {
+    session.progress.stage(&format!("reading {}", name(path)));
+    if !is_pipe(path) {
+        return Ok(meshlod::read(path, &reading.options())?);
+    }
+    let format = pipe_format(session)?;
+    let mut bytes = Vec::new();
+    io::stdin().lock().read_to_end(&mut bytes).map_err(|error| Failure::at(path, error))?;
+    // What a pipe names beside itself is not there.
+    read_bytes(&bytes, format, &mut |_| None, &reading.options())
+        .map_err(|error| Failure::at(path, error))
+}
+
+/// Refuses an output that could not be written, before any work is done.
+pub fn check_output(path: &Path, session: &Session) -> Result<Format, Failure> {
+    if !is_pipe(path) {
+        return Ok(Format::of_path(path)?);
+    }
+    if session.json {
+        return Err(Failure::usage("-: --json has standard output to itself; name a file"));
+    }
+    match pipe_format(session)? {
+        Format::Gltf => {
+            Err(Failure::usage("-: .gltf keeps its buffer beside it; use --format glb"))
+        }
+        format => Ok(format),
+    }
+}
+
+/// Writes a mesh file, or standard output.
+pub fn write(
+    path: &Path,
+    scene: &Scene,
+    writing: &Writing,
+    session: &Session,
+) -> Result<(), Failure> {
+    session.progress.stage(&format!("writing {}", name(path)));
+    if !is_pipe(path) {
+        return Ok(meshlod::write(path, scene, &writing.options())?);
+    }
+    let format = check_output(path, session)?;
+    let mut out = BufWriter::new(io::stdout().lock());
+    write_pipe(format, scene, writing.options(), &mut out)?;
+    out.flush().map_err(|error| Failure::at(path, error))
+}
+
+fn write_pipe(
+    format: Format,
+    scene: &Scene,
+    options: WriteOptions,
+    out: &mut impl Write,
+) -> Result<(), Failure> {
+    let precision = options.precision;
+    let flat = || scene.flatten();
+    let written = match format {
+        Format::Ply => ply::write(&flat(), precision, out),
+        Format::Stl => stl::write(&flat(), out),
+        Format::Off => off::write(&flat(), precision, out),
+        Format::Smf => smf::write(&flat(), precision, out),
+        Format::Obj => obj::write(scene, precision, out, None),
+        Format::Glb | Format::Gltf => {
+            let bytes = gltf::write_glb(scene, &[]);
+            out.write_all(&bytes.map_err(|error| Failure::at(Path::new("-"), error))?)
+        }
+    };
+    written.map_err(|error| Failure::at(Path::new("-"), error))
+}
+
+fn pipe_format(session: &Session) -> Result<Format, Failure> {
+    session.format.ok_or_else(|| Failure::usage("-: a pipe has no suffix; give --format"))
+}

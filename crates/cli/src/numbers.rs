@@ -1,0 +1,75 @@
+//! Numbers as people read them.
+
+/// A count with commas: 871,414.
+pub fn count(number: usize) -> String {
+    let digits = number.to_string();
+    let mut text = String::new();
+    for (i, digit) in digits.chars().enumerate() {
+        if i > 0 && (digits.len() - i).is_multiple_of(3) {
+            text.push(',');
+        }
+        text.push(digit);
+    }
+    text
+}
+
+/// Six digits that matter: 0.00123457, 12.3457, 1.23457e12.
+pub fn value(number: f64) -> String {
+    digits(number, 6)
+}
+
+/// A percentage with four digits that matter: 0.01235%.
+pub fn percent(number: f64) -> String {
+    if number.is_finite() { format!("{}%", digits(number, 4)) } else { "-".into() }
+}
+
+/// What became of a quantity, in percent with its sign; a dash where there was none.
+pub fn change(before: f64, after: f64) -> String {
+    let change = 100.0 * (after - before) / before.abs();
+    match change {
+        _ if !change.is_finite() => "-".into(),
+        _ if change < 0.0 => percent(change),
+        _ => format!("+{}", percent(change)),
+    }
+}
+
+fn digits(number: f64, digits: i32) -> String {
+    if number == 0.0 || !number.is_finite() {
+        return number.to_string();
+    }
+    let places = number.abs().log10().floor() as i32;
+    if !(-5..12).contains(&places) {
+        return format!("{number:.*e}", (digits - 1) as usize);
+    }
+    let text = format!("{number:.*}", (digits - 1 - places).max(0) as usize);
+    if text.contains('.') {
+        return text.trim_end_matches('0').trim_end_matches('.').to_owned();
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn counts_have_commas() {
+        assert_eq!([0, 999, 1_000, 871_414].map(count), ["0", "999", "1,000", "871,414"]);
+    }
+
+    #[test]
+    fn values_keep_the_digits_that_matter() {
+        let texts = [0.0, 1.0, -0.001_234_567_8, 12.345_678, 871_414.4, 1.5e-9, 2e15].map(value);
+        assert_eq!(
+            texts,
+            ["0", "1", "-0.00123457", "12.3457", "871414", "1.50000e-9", "2.00000e15"]
+        );
+        assert_eq!(value(f64::NAN), "NaN");
+    }
+
+    #[test]
+    fn changes_have_a_sign() {
+        assert_eq!((change(2.0, 3.0), change(2.0, 1.0)), ("+50%".into(), "-50%".into()));
+        assert_eq!((change(-2.0, -1.0), change(0.0, 1.0)), ("+50%".into(), "-".into()));
+    }
+}

@@ -1,0 +1,77 @@
+//! Signs of life on a terminal, and nothing elsewhere.
+
+use std::io::IsTerminal;
+use std::time::Duration;
+
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use meshlod::simplify::{Neighbourhood, Observe, Placed, Surface};
+
+/// A line on standard error that says what is being done.
+pub struct Progress {
+    bar: ProgressBar,
+}
+
+impl Progress {
+    pub fn new() -> Self {
+        let on_terminal = std::io::stderr().is_terminal();
+        let target =
+            if on_terminal { ProgressDrawTarget::stderr() } else { ProgressDrawTarget::hidden() };
+        let bar = ProgressBar::with_draw_target(None, target);
+        if on_terminal {
+            bar.enable_steady_tick(Duration::from_millis(100));
+        }
+        Self { bar }
+    }
+
+    /// Work whose length is not known begins.
+    pub fn stage(&self, what: &str) {
+        self.bar.set_style(ProgressStyle::default_spinner());
+        self.bar.set_message(what.to_owned());
+    }
+
+    /// Contractions begin; `faces` are to go where that is known.
+    pub fn contractions(&self, what: &str, faces: Option<usize>) -> Watch<'_> {
+        self.stage(what);
+        if let Some(faces) = faces {
+            let style = ProgressStyle::with_template("{spinner} {msg} {bar:40} {percent}%");
+            self.bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
+            self.bar.set_length(faces as u64);
+        }
+        self.bar.set_position(0);
+        Watch { bar: &self.bar, gone: 0, before: 0, calls: 0 }
+    }
+
+    /// Does something with the line out of the way.
+    pub fn suspend(&self, act: impl FnOnce()) {
+        self.bar.suspend(act);
+    }
+
+    pub fn clear(&self) {
+        self.bar.finish_and_clear();
+    }
+}
+
+/// Counts the faces that contractions take away.
+pub struct Watch<'p> {
+    bar: &'p ProgressBar,
+    gone: u64,
+    before: usize,
+    calls: u32,
+}
+
+/// Contractions between two looks at the bar, which costs more than one of them.
+const CALLS_A_LOOK: u32 = 4096;
+
+impl Observe for Watch<'_> {
+    fn before(&mut self, surface: &Surface, _: &Neighbourhood, _: &Placed) {
+        self.before = surface.live_faces();
+    }
+
+    fn after(&mut self, surface: &Surface, _: &Neighbourhood, _: &Placed) {
+        self.gone += (self.before - surface.live_faces()) as u64;
+        self.calls += 1;
+        if self.calls.is_multiple_of(CALLS_A_LOOK) {
+            self.bar.set_position(self.gone);
+        }
+    }
+}

@@ -1,0 +1,167 @@
+//! `info`: what is in a file.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use meshlod::Mesh;
+use meshlod::measure::{area, volume};
+use meshlod::mesh::{Connectivity, LayerKind, face_components};
+use serde_json::{Value, json};
+
+use crate::answer::Answer;
+use crate::args::Reading;
+use crate::failure::Failure;
+use crate::files;
+use crate::numbers::{count, value};
+use crate::session::Session;
+use crate::table::aligned;
+
+#[derive(Args)]
+pub struct Info {
+    /// File to read, or -
+    #[arg(value_name = "IN")]
+    input: PathBuf,
+    #[command(flatten)]
+    reading: Reading,
+}
+
+impl Info {
+    pub fn run(self, session: &Session) -> Result<Answer, Failure> {
+        let scene = files::read(&self.input, &self.reading, session)?;
+        session.progress.stage("looking");
+        let meshes = scene.meshes.len();
+        let mesh = scene.into_mesh();
+        let facts = Facts::of(&mesh);
+        let mut json = facts.json();
+        json["file"] = files::name(&self.input).into();
+        json["meshes"] = meshes.into();
+        let text = format!("{}\n{}", files::name(&self.input), facts.text());
+        Ok(Answer::new(json, text))
+    }
+}
+
+/// All there is to say about what a scene shows.
+struct Facts<'m> {
+    mesh: &'m Mesh,
+    connectivity: Connectivity,
+    components: usize,
+    objects: usize,
+    unreferenced: usize,
+    area: f64,
+    volume: f64,
+}
+
+impl<'m> Facts<'m> {
+    fn of(mesh: &'m Mesh) -> Self {
+        let components = face_components(&mesh.faces, mesh.positions.len()).1;
+        // Objects are those that the file names, else what hangs together.
+        let objects = mesh.objects.as_ref().map_or(components, |labels| labels_in_use(labels));
+        Self {
+            mesh,
+            connectivity: Connectivity::new(&mesh.faces, mesh.positions.len()),
+            components,
+            objects,
+            unreferenced: mesh.used_vertices().iter().filter(|used| !**used).count(),
+            area: area(mesh),
+            volume: volume(mesh),
+        }
+    }
+
+    fn json(&self) -> Value {
+        let Self { mesh, connectivity, .. } = self;
+        let bounds = mesh.bounds();
+        let box_json =
+            (!bounds.is_empty()).then(|| json!({ "min": bounds.min, "max": bounds.max }));
+        let materials = mesh.materials.as_ref().map_or(&[][..], |labels| &labels.names);
+        json!({
+            "vertices": mesh.positions.len(),
+            "unreferenced": self.unreferenced,
+            "faces": mesh.faces.len(),
+            "degenerate_faces": connectivity.degenerate_faces(),
+            "edges": connectivity.edge_count(),
+            "boundary_edges": connectivity.boundary_edges(),
+            "non_manifold_edges": connectivity.non_manifold_edges(),
+            "inconsistent_edges": connectivity.inconsistent_edges(),
+            "pinched_vertices": connectivity.pinched_vertices(),
+            "components": self.components,
+            "objects": self.objects,
+            "closed": connectivity.is_closed(),
+            "bounds": box_json,
+            "diagonal": bounds.diagonal(),
+            "area": self.area,
+            "volume": self.volume,
+            "wedges": mesh.attributes.as_ref().map(|attributes| attributes.wedge_count),
+            "attributes": self.attributes(),
+            "materials": materials,
+        })
+    }
+
+    fn text(&self) -> String {
+        let Self { mesh, connectivity, .. } = self;
+        let number = |name: &str, number: usize| [format!("  {name}"), count(number)];
+        let mut rows = vec![number("vertices", mesh.positions.len())];
+        // What a sound mesh has none of is told only where there is some.
+        let odd = |rows: &mut Vec<_>, name: &str, amount: usize| {
+            if amount > 0 {
+                rows.push(number(name, amount));
+            }
+        };
+        odd(&mut rows, "  in no face", self.unreferenced);
+        rows.push(number("faces", mesh.faces.len()));
+        odd(&mut rows, "  degenerate", connectivity.degenerate_faces());
+        rows.push(number("edges", connectivity.edge_count()));
+        rows.push(number("  boundary", connectivity.boundary_edges()));
+        rows.push(number("  non-manifold", connectivity.non_manifold_edges()));
+        odd(&mut rows, "  inconsistent", connectivity.inconsistent_edges());
+        odd(&mut rows, "pinched vertices", connectivity.pinched_vertices());
+        rows.push(number("components", self.components));
+        rows.push(number("objects", self.objects));
+        let closed = if connectivity.is_closed() { "yes" } else { "no" };
+        rows.push(["  closed".into(), closed.into()]);
+        for (name, amount) in
+            [("diagonal", mesh.bounds().diagonal()), ("area", self.area), ("volume", self.volume)]
+        {
+            rows.push([format!("  {name}"), value(amount)]);
+        }
+        aligned(&rows) + &self.lines()
+    }
+
+    /// Bounds, attributes and materials, which fit no column.
+    fn lines(&self) -> String {
+        let bounds = self.mesh.bounds();
+        let corner = |corner: [f64; 3]| corner.map(value).join(" ");
+        let mut text = String::new();
+        if !bounds.is_empty() {
+            text += &format!("  from  {}\n  to    {}\n", corner(bounds.min), corner(bounds.max));
+        }
+        if let Some(attributes) = &self.mesh.attributes {
+            let names = self.attributes().join(", ");
+            text += &format!("  attributes  {names} on {} wedges\n", count(attributes.wedge_count));
+        }
+        if let Some(labels) = &self.mesh.materials {
+            text += &format!("  materials   {}\n", labels.names.join(", "));
+        }
+        text
+    }
+
+    fn attributes(&self) -> Vec<String> {
+        let layers = self.mesh.attributes.iter().flat_map(|attributes| &attributes.layers);
+        layers
+            .map(|layer| match layer.kind {
+                LayerKind::Normal => "normal".into(),
+                LayerKind::Uv(set) => format!("uv{set}"),
+                LayerKind::Color(set) => format!("color{set}"),
+                LayerKind::Tangent => "tangent".into(),
+                LayerKind::Joints(set) => format!("joints{set}"),
+                LayerKind::Weights(set) => format!("weights{set}"),
+                LayerKind::Other => layer.name.clone(),
+            })
+            .collect()
+    }
+}
+
+fn labels_in_use(labels: &meshlod::mesh::Labels) -> usize {
+    let mut used = vec![false; labels.names.len()];
+    labels.of_face.iter().for_each(|&label| used[label as usize] = true);
+    used.iter().filter(|used| **used).count()
+}

@@ -1,0 +1,8 @@
+//! The verbs, one a file: arguments, work, answer.
+
+pub mod info;
+pub mod lods;
+pub mod measure;
+pub mod render;
+pub mod sample;
+pub mod simplify;

@@ -1,0 +1,60 @@
+//! `sample`: procedural meshes.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use clap::builder::PossibleValuesParser;
+use meshlod::Scene;
+use meshlod::mesh::sample;
+use serde_json::json;
+
+use crate::amounts;
+use crate::answer::Answer;
+use crate::args::Writing;
+use crate::failure::Failure;
+use crate::files;
+use crate::numbers::count;
+use crate::session::Session;
+
+#[derive(Args)]
+pub struct Sample {
+    /// Which
+    #[arg(value_name = "NAME", value_parser = PossibleValuesParser::new(sample::NAMES))]
+    name: String,
+    /// File to write, or -
+    #[arg(value_name = "OUT")]
+    output: PathBuf,
+    /// About how many faces [default: what shows it well]
+    #[arg(long, value_name = "N", value_parser = faces)]
+    faces: Option<usize>,
+    #[command(flatten)]
+    writing: Writing,
+}
+
+impl Sample {
+    pub fn run(self, session: &Session) -> Result<Answer, Failure> {
+        files::check_output(&self.output, session)?;
+        session.progress.stage("making it");
+        let mesh = sample::by_name(&self.name, self.faces)
+            .ok_or_else(|| Failure::usage(format_args!("no sample is called {}", self.name)))?;
+        let (vertices, faces) = (mesh.positions.len(), mesh.faces.len());
+        let scene = Scene::from_mesh(&self.name, mesh);
+        files::write(&self.output, &scene, &self.writing, session)?;
+        let json = json!({
+            "name": self.name,
+            "file": files::name(&self.output),
+            "vertices": vertices,
+            "faces": faces,
+        });
+        let out = files::name(&self.output);
+        let text = format!("{out}: {} vertices, {} faces\n", count(vertices), count(faces));
+        Ok(Answer { mesh_on_stdout: files::is_pipe(&self.output), ..Answer::new(json, text) })
+    }
+}
+
+fn faces(text: &str) -> Result<usize, String> {
+    match amounts::positive(text)? {
+        faces if faces <= sample::MAX_FACES => Ok(faces),
+        _ => Err(format!("at most {}", sample::MAX_FACES)),
+    }
+}

@@ -1,0 +1,182 @@
+//! `simplify`: one coarser mesh.
+
+use std::path::PathBuf;
+use std::time::Duration;
+
+use clap::Args;
+use meshlod::{Method, Options, Scene, Target, world_bounds};
+use serde_json::{Value, json};
+
+use crate::amounts::{self, Bound};
+use crate::answer::Answer;
+use crate::args::{Reading, Writing};
+use crate::distance;
+use crate::failure::Failure;
+use crate::files;
+use crate::numbers::{count, percent, value};
+use crate::reduce::{self, Engine, Reduced};
+use crate::session::Session;
+use crate::within::Search;
+
+#[derive(Args)]
+pub struct Simplify {
+    /// File to read, or -
+    #[arg(value_name = "IN")]
+    input: PathBuf,
+    /// File to write, or -
+    #[arg(value_name = "OUT")]
+    output: PathBuf,
+    #[command(flatten)]
+    goal: Goal,
+    #[command(flatten)]
+    manner: Manner,
+    /// Measure the result; with --error, go on until the greatest distance measured is within
+    #[arg(long)]
+    measured: bool,
+    /// Exit with 1 when the target is out of reach
+    #[arg(long)]
+    strict: bool,
+    #[command(flatten)]
+    reading: Reading,
+    #[command(flatten)]
+    writing: Writing,
+}
+
+/// How far to go.
+#[derive(Args)]
+#[group(required = true, multiple = false)]
+struct Goal {
+    /// To this many faces
+    #[arg(long, value_name = "N")]
+    faces: Option<usize>,
+    /// To this part of the faces: 10% or 0.1
+    #[arg(long, value_name = "PART", value_parser = amounts::ratio)]
+    ratio: Option<f64>,
+    /// As far as the estimated error stays within: 0.5 in model units, 0.1% of the diagonal
+    #[arg(long, value_name = "BOUND", value_parser = amounts::bound)]
+    error: Option<Bound>,
+}
+
+/// How contractions are done.
+#[derive(Args)]
+pub struct Manner {
+    /// qem: new vertices where they fit best; qem-endpoint: only vertices of the input
+    #[arg(long, value_name = "NAME", default_value = "qem", value_parser = amounts::method)]
+    pub method: Method,
+    /// Keep every vertex of a boundary edge where it is
+    #[arg(long)]
+    lock_boundary: bool,
+}
+
+impl Manner {
+    pub fn options(&self) -> Options {
+        Options { method: self.method, lock_boundary: self.lock_boundary, ..Options::default() }
+    }
+}
+
+impl Goal {
+    /// The target, with an error in world units.
+    fn target(&self, scene: &Scene) -> Target {
+        match (self.faces, self.ratio, self.error) {
+            (Some(faces), ..) => Target::Faces(faces),
+            (_, Some(ratio), _) => Target::Ratio(ratio),
+            (_, _, bound) => {
+                let bound = bound.unwrap_or(Bound::Length(0.0));
+                Target::Error(bound.length(world_bounds(scene).diagonal()))
+            }
+        }
+    }
+}
+
+impl Simplify {
+    pub fn run(self, session: &Session) -> Result<Answer, Failure> {
+        files::check_output(&self.output, session)?;
+        let mut scene = files::read(&self.input, &self.reading, session)?;
+        let target = self.goal.target(&scene);
+        let (Reduced { meshes, report, measured }, time) = match target {
+            Target::Error(_) => self.measured_run(&scene, target, session)?,
+            _ if self.measured => self.measured_run(&scene, target, session)?,
+            _ => self.plain_run(&scene, target, session)?,
+        };
+        reduce::replace(&mut scene, meshes);
+        files::write(&self.output, &scene, &self.writing, session)?;
+        if !report.reached {
+            let reason = Failure::at(&self.input, reduce::why_not_reached(&report));
+            session.warn(reason);
+        }
+        let done = Reduced { meshes: Vec::new(), report, measured };
+        Ok(Answer {
+            mesh_on_stdout: files::is_pipe(&self.output),
+            missed: self.strict && !report.reached,
+            ..Answer::new(self.json(&done, time), self.text(&done, time))
+        })
+    }
+
+    fn plain_run(
+        &self,
+        scene: &Scene,
+        target: Target,
+        session: &Session,
+    ) -> Result<(Reduced, Duration), Failure> {
+        let mut engine = Engine::start(scene, &self.manner.options(), &self.input, session)?;
+        let report = engine.run(target)?;
+        let reduced = Reduced { meshes: engine.level(), report, measured: None };
+        Ok((reduced, engine.time()))
+    }
+
+    /// A run that is measured, or led by what is measured.
+    fn measured_run(
+        &self,
+        scene: &Scene,
+        target: Target,
+        session: &Session,
+    ) -> Result<(Reduced, Duration), Failure> {
+        let original = distance::surface_of(scene, distance::meshes(scene));
+        let surface = match distance::ready(&original, &self.input) {
+            Ok(surface) => Some(surface),
+            Err(failure) if self.measured => return Err(failure),
+            Err(_) => None,
+        };
+        if let (Target::Error(bound), Some(original), true) = (target, &surface, self.measured) {
+            let (options, path) = (&self.manner.options(), &self.input);
+            return Search { scene, options, original, bound, path, session }.run();
+        }
+        let (reduced, time) = self.plain_run(scene, target, session)?;
+        let measured = reduce::measure(surface.as_ref(), scene, &reduced.meshes, session);
+        Ok((Reduced { measured, ..reduced }, time))
+    }
+
+    fn json(&self, done: &Reduced, time: Duration) -> Value {
+        let report = &done.report;
+        let mut json = json!({ "method": self.manner.method.name() });
+        for (key, value) in reduce::report_json(report).as_object().into_iter().flatten() {
+            json[key] = value.clone();
+        }
+        json["error_measured"] = done.measured.as_ref().map(distance::to_json).into();
+        json["simplify_seconds"] = time.as_secs_f64().into();
+        json["degenerate_faces"] = report.degenerate_faces.into();
+        json["duplicate_faces"] = report.duplicate_faces.into();
+        json["non_manifold_vertices"] = report.non_manifold_vertices.into();
+        json["refusals"] = reduce::refusals_json(report);
+        json["file"] = files::name(&self.output).into();
+        json
+    }
+
+    fn text(&self, done: &Reduced, time: Duration) -> String {
+        let report = &done.report;
+        let part = 100.0 * report.output_faces as f64 / report.input_faces as f64;
+        let mut text = format!(
+            "{}: {} faces to {} ({})\n{}",
+            files::name(&self.output),
+            count(report.input_faces),
+            count(report.output_faces),
+            percent(part),
+            reduce::oddities(report),
+        );
+        text += &format!("error_estimate: {}\n", value(report.error_estimate));
+        if let Some(distance) = &done.measured {
+            text += &format!("error_measured:\n{}", distance::to_table(distance));
+        }
+        text + &reduce::seconds_line(time)
+    }
+}

@@ -1,0 +1,100 @@
+//! A scene's materials as pictures want them.
+
+use meshlod_io::{Image, Scene};
+use meshlod_picture::{Material, Materials, Texture};
+
+/// The materials of a scene, for a picture of [`Scene::flatten`], and the images that could not be
+/// read.
+///
+/// There is one entry for every material of the scene and a light grey one for faces without.
+/// Where an image cannot be read the material keeps its colour alone. Cost: that of decoding each
+/// image that a material uses, once.
+pub fn materials_of(scene: &Scene) -> (Materials, Vec<UnreadImage>) {
+    let mut textures = Vec::new();
+    let mut unread = Vec::new();
+    let mut texture_of = vec![None; scene.images.len()];
+    let mut texture = |index: usize| {
+        let image = scene.images.get(index)?;
+        *texture_of[index].get_or_insert_with(|| match decode(image) {
+            Ok(texture) => {
+                textures.push(texture);
+                Some(textures.len() - 1)
+            }
+            Err(reason) => {
+                unread.push(UnreadImage { name: image.name.clone(), reason });
+                None
+            }
+        })
+    };
+    let mut materials: Vec<Material> = scene
+        .materials
+        .iter()
+        .map(|material| {
+            let [r, g, b, _] = material.base_color;
+            let texture = material.base_color_image.and_then(&mut texture);
+            Material { base_color: [r, g, b], texture }
+        })
+        .collect();
+    materials.push(Material { base_color: [0.7; 3], texture: None });
+    (Materials { materials, textures }, unread)
+}
+
+/// An image that a picture has to do without.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct UnreadImage {
+    /// The scene's name of it.
+    pub name: String,
+    /// What is wrong with it.
+    pub reason: String,
+}
+
+fn decode(image: &Image) -> Result<Texture, String> {
+    if image.bytes.is_empty() {
+        return Err("the file is not there".into());
+    }
+    Texture::decode(&image.bytes).map_err(|error| error.to_string())
+}
+
+#[cfg(test)]
+mod tests {
+    use meshlod_io as io;
+    use meshlod_picture::Picture;
+
+    use super::*;
+
+    fn scene() -> Scene {
+        let png = Picture::new(1, 1, vec![9; 4]).unwrap().png();
+        let image = |name: &str, bytes| Image { name: name.into(), bytes };
+        let material = |image| io::Material {
+            base_color: [0.1, 0.2, 0.3, 0.4],
+            base_color_image: image,
+            ..Default::default()
+        };
+        Scene {
+            images: vec![image("cut", png[..20].to_vec()), image("a", png), image("gone", vec![])],
+            materials: [Some(1), None, Some(0), Some(2), Some(1), Some(9)].map(material).into(),
+            ..Scene::default()
+        }
+    }
+
+    #[test]
+    fn every_material_has_its_colour_and_shared_images_are_read_once() {
+        let (materials, _) = materials_of(&scene());
+        let textures: Vec<_> = materials.materials.iter().map(|m| m.texture).collect();
+        assert_eq!(textures, [Some(0), None, None, None, Some(0), None, None]);
+        assert_eq!(materials.textures.len(), 1);
+        assert!(materials.materials[..6].iter().all(|m| m.base_color == [0.1, 0.2, 0.3]));
+    }
+
+    #[test]
+    fn images_that_cannot_be_read_are_named_once() {
+        let (_, unread) = materials_of(&scene());
+        let names: Vec<_> = unread.iter().map(|image| &image.name[..]).collect();
+        assert_eq!(names, ["cut", "gone"]);
+    }
+
+    #[test]
+    fn a_scene_without_materials_has_one_to_paint_with() {
+        assert_eq!(materials_of(&Scene::default()).0.materials.len(), 1);
+    }
+}

@@ -1,0 +1,99 @@
+//! How large the world shows things.
+
+use glam::{DMat3, DMat4, DVec3};
+use meshlod_io::Scene;
+use meshlod_mesh::Bounds;
+
+/// The box around all that the scene shows, in world space: that of [`Scene::flatten`], without
+/// making it. Vertices that no face uses do not count.
+///
+/// Cost: linear in what is shown.
+pub fn world_bounds(scene: &Scene) -> Bounds {
+    let mut bounds = Bounds::EMPTY;
+    for placement in scene.placements() {
+        let world = DMat4::from_cols_array_2d(&placement.transform);
+        let mesh = &scene.meshes[placement.mesh].mesh;
+        if world == DMat4::IDENTITY {
+            bounds.merge(&mesh.bounds());
+            continue;
+        }
+        for vertex in mesh.faces.iter().flatten() {
+            let position = DVec3::from(mesh.positions[vertex.index()]);
+            bounds.add(world.transform_point3(position).to_array());
+        }
+    }
+    bounds
+}
+
+/// The most by which a transform lengthens anything: its greatest singular value.
+///
+/// Squaring MᵀM over and over leaves the direction that it lengthens most. Plain arithmetic, so
+/// that the same meshes come out on every machine.
+pub(crate) fn length_scale(transform: &[[f64; 4]; 4]) -> f64 {
+    let linear = DMat3::from_mat4(DMat4::from_cols_array_2d(transform));
+    let size = linear.to_cols_array().iter().fold(0.0, |size: f64, x| size.max(x.abs()));
+    if size == 0.0 || !size.is_finite() {
+        return size;
+    }
+    let linear = linear * (1.0 / size);
+    let square = linear.transpose() * linear;
+    let mut power = square;
+    for _ in 0..SQUARINGS {
+        power = power * power;
+        power *= 1.0 / trace(&power);
+    }
+    size * (trace(&(square * power)) / trace(&power)).sqrt()
+}
+
+/// After so many, singular values that differ by 1e-12 are told apart or as good as equal.
+const SQUARINGS: usize = 40;
+
+fn trace(matrix: &DMat3) -> f64 {
+    matrix.x_axis.x + matrix.y_axis.y + matrix.z_axis.z
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::DQuat;
+    use meshlod_mesh::sample;
+
+    use super::*;
+
+    fn scale(matrix: DMat4) -> f64 {
+        length_scale(&matrix.to_cols_array_2d())
+    }
+
+    #[test]
+    fn the_longest_axis_counts_however_turned() {
+        let turn = DMat4::from_quat(DQuat::from_xyzw(0.1, 0.7, -0.3, 0.5).normalize());
+        for axes in [[1.0, 1.0, 1.0], [-3.0, 3.0, 2.0], [0.0, 0.0, 1e-9], [1e200, 1.0, 1.0]] {
+            let longest = axes.iter().fold(0.0, |most: f64, x: &f64| most.max(x.abs()));
+            let found = scale(turn * DMat4::from_scale(axes.into()) * turn);
+            assert!((found / longest - 1.0).abs() < 1e-12, "{found}, not {longest}");
+        }
+    }
+
+    #[test]
+    fn a_shear_lengthens_by_the_golden_ratio() {
+        let mut shear = DMat4::IDENTITY;
+        shear.y_axis.x = 1.0;
+        assert!((scale(shear) - (1.0 + 5f64.sqrt()) / 2.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn odd_transforms_give_no_nan() {
+        assert_eq!(scale(DMat4::ZERO), 0.0);
+        assert_eq!(scale(DMat4::from_scale(DVec3::splat(f64::INFINITY))), f64::INFINITY);
+    }
+
+    #[test]
+    fn the_world_box_is_that_of_the_flat_mesh() {
+        let mut scene = Scene::from_mesh("torus", sample::torus(500));
+        scene.meshes[0].mesh.positions.push([99.0; 3]);
+        assert_eq!(world_bounds(&scene), scene.flatten().bounds());
+        let turn = DQuat::from_xyzw(0.1, 0.7, -0.3, 0.5).normalize();
+        scene.nodes[0].transform =
+            DMat4::from_rotation_translation(turn, DVec3::ONE).to_cols_array_2d();
+        assert_eq!(world_bounds(&scene), scene.flatten().bounds());
+    }
+}

@@ -1,0 +1,294 @@
+//! Scenes simplified as a whole: one budget or one bound for all their meshes.
+
+use meshlod_io::Scene;
+use meshlod_mesh::Mesh;
+use meshlod_simplify::{Observe, Options, Refusals, Report, Simplifier, SimplifyError, Target};
+use thiserror::Error;
+
+use crate::place::length_scale;
+
+/// The meshes of a scene at work under one target: each detail goes where the world misses it
+/// least.
+///
+/// Everything is counted and measured as the scene shows it: a mesh that three nodes show has its
+/// faces three times, and errors are in world units, by the greatest length scale of its nodes.
+/// Meshes that no node shows, and those without a face that could go, stay as they are.
+///
+/// Levels taken from one run are nested. Of a scene with one mesh, placed as it is, this is
+/// [`Simplifier`].
+pub struct SceneSimplifier<'s> {
+    scene: &'s Scene,
+    parts: Vec<Part<'s>>,
+    /// Shown faces of the meshes that stay as they are.
+    still_faces: usize,
+}
+
+/// A mesh at work.
+struct Part<'s> {
+    mesh: usize,
+    /// How many nodes show it.
+    copies: usize,
+    /// World units per unit of the mesh, where it is shown largest.
+    scale: f64,
+    simplifier: Simplifier<'s>,
+}
+
+/// Why a scene cannot be simplified.
+#[derive(Clone, Debug, Error, PartialEq)]
+pub enum SceneError {
+    /// Its only mesh, or what is asked for.
+    #[error(transparent)]
+    Whole(#[from] SimplifyError),
+    /// One of its meshes.
+    #[error("mesh {mesh}{}: {source}", in_brackets(name))]
+    Mesh {
+        /// Its index in the scene.
+        mesh: usize,
+        /// Its name there.
+        name: String,
+        /// What is wrong with it.
+        source: SimplifyError,
+    },
+}
+
+/// Simplifies every mesh of a scene in place, under one target; see [`SceneSimplifier`].
+///
+/// # Errors
+/// As for [`SceneSimplifier::new`], and a target that is none; then the scene is as it was.
+pub fn simplify_scene(
+    scene: &mut Scene,
+    target: Target,
+    options: &Options,
+) -> Result<Report, SceneError> {
+    let mut simplifier = SceneSimplifier::new(scene, options)?;
+    let report = simplifier.run(target, &mut ())?;
+    let level = simplifier.level();
+    for (mesh, level) in scene.meshes.iter_mut().zip(level) {
+        mesh.mesh = level;
+    }
+    Ok(report)
+}
+
+impl<'s> SceneSimplifier<'s> {
+    /// Connects every mesh that the scene shows; nothing is contracted yet.
+    ///
+    /// `options.locked` has one flag per vertex of all meshes of the scene, mesh after mesh; empty
+    /// for none.
+    ///
+    /// Cost: O(n log n), n = faces.
+    /// # Errors
+    /// A mesh that breaks a rule of meshes; a lock mask of another length; when no mesh has a face
+    /// to work on.
+    pub fn new(scene: &'s Scene, options: &Options) -> Result<Self, SceneError> {
+        let masks = lock_masks(scene, options)?;
+        let mut this = Self { scene, parts: Vec::new(), still_faces: 0 };
+        let mut still = None;
+        for (index, (copies, scale)) in shown(scene).into_iter().enumerate() {
+            let mesh = &scene.meshes[index].mesh;
+            if copies == 0 {
+                continue;
+            }
+            let options = Options { locked: masks[index].to_vec(), ..options.clone() };
+            match Simplifier::new(mesh, &options) {
+                Ok(simplifier) => this.parts.push(Part { mesh: index, copies, scale, simplifier }),
+                Err(error @ (SimplifyError::NoFaces | SimplifyError::AllDegenerate(_))) => {
+                    this.still_faces += copies * mesh.faces.len();
+                    still.get_or_insert(error);
+                }
+                Err(source) => return Err(this.error_of(index, source)),
+            }
+        }
+        match (this.parts.is_empty(), still) {
+            (true, reason) => Err(reason.unwrap_or(SimplifyError::NoFaces).into()),
+            _ => Ok(this),
+        }
+    }
+
+    /// Contracts until the target is reached or nothing more may be contracted.
+    ///
+    /// A number of faces is shared: the mesh whose next contraction is the cheapest in the world
+    /// goes on. A bound of the error holds for each mesh by itself, at its size in the world.
+    ///
+    /// # Errors
+    /// A target that is none.
+    pub fn run(
+        &mut self,
+        target: Target,
+        observer: &mut dyn Observe,
+    ) -> Result<Report, SimplifyError> {
+        let budget = match target {
+            Target::Faces(faces) => faces,
+            Target::Ratio(ratio) if (0.0..=1.0).contains(&ratio) => {
+                (self.input_faces() as f64 * ratio + 1e-6).floor() as usize
+            }
+            Target::Error(error) if error >= 0.0 => return self.run_within(error, observer),
+            Target::Ratio(bad) | Target::Error(bad) => return Err(SimplifyError::BadTarget(bad)),
+        };
+        let others = self.still_faces;
+        match &mut self.parts[..] {
+            [only] => {
+                let faces = budget.saturating_sub(others) / only.copies;
+                only.simplifier.run(Target::Faces(faces), observer)?;
+            }
+            _ => self.share(budget, observer),
+        }
+        let report = self.report()?;
+        Ok(Report { reached: report.output_faces <= budget, ..report })
+    }
+
+    /// Faces that the scene shows now.
+    pub fn live_faces(&self) -> usize {
+        let of = |part: &Part<'_>| part.copies * part.simplifier.live_faces();
+        self.still_faces + self.parts.iter().map(of).sum::<usize>()
+    }
+
+    /// Faces that the scene showed at first.
+    pub fn input_faces(&self) -> usize {
+        let of = |part: &Part<'_>| part.copies * self.scene.meshes[part.mesh].mesh.faces.len();
+        self.still_faces + self.parts.iter().map(of).sum::<usize>()
+    }
+
+    /// Every mesh of the scene as it is now, in the scene's order.
+    pub fn level(&self) -> Vec<Mesh> {
+        let mut parts = self.parts.iter().peekable();
+        let meshes = self.scene.meshes.iter().enumerate();
+        let now = meshes.map(|(index, mesh)| match parts.next_if(|part| part.mesh == index) {
+            Some(part) => part.simplifier.level(),
+            None => mesh.mesh.clone(),
+        });
+        now.collect()
+    }
+
+    fn run_within(
+        &mut self,
+        error: f64,
+        observer: &mut dyn Observe,
+    ) -> Result<Report, SimplifyError> {
+        for part in &mut self.parts {
+            let own = error / part.scale;
+            // A mesh that the world squeezes to a point may lose anything.
+            let own = if own.is_nan() { f64::INFINITY } else { own };
+            part.simplifier.run(Target::Error(own), observer)?;
+        }
+        self.report()
+    }
+
+    /// Takes steps in the mesh with the cheapest next one, until `budget` faces are shown.
+    fn share(&mut self, budget: usize, observer: &mut dyn Observe) {
+        let mut costs: Vec<Option<f64>> = self.parts.iter_mut().map(Part::next_cost).collect();
+        let mut faces = self.live_faces();
+        while faces > budget {
+            let Some((cheapest, runner_up)) = two_cheapest(&costs) else { return };
+            let part = &mut self.parts[cheapest];
+            let most_cost = part.cost_up_to(runner_up);
+            while faces > budget {
+                let before = part.simplifier.live_faces();
+                if !part.simplifier.step(most_cost, observer) {
+                    break;
+                }
+                faces -= part.copies * (before - part.simplifier.live_faces());
+            }
+            costs[cheapest] = part.next_cost();
+        }
+    }
+
+    /// What was done so far, summed over the meshes; a target of an error counts as reached.
+    fn report(&mut self) -> Result<Report, SimplifyError> {
+        let mut whole = Report {
+            input_faces: self.input_faces(),
+            degenerate_faces: 0,
+            duplicate_faces: 0,
+            non_manifold_vertices: 0,
+            output_faces: self.live_faces(),
+            reached: true,
+            error_estimate: 0.0,
+            refusals: Refusals::default(),
+        };
+        for part in &mut self.parts {
+            // A run to where it stands does nothing and tells all.
+            let here = Target::Faces(part.simplifier.live_faces());
+            let report = part.simplifier.run(here, &mut ())?;
+            whole.degenerate_faces += part.copies * report.degenerate_faces;
+            whole.duplicate_faces += part.copies * report.duplicate_faces;
+            whole.non_manifold_vertices += part.copies * report.non_manifold_vertices;
+            whole.error_estimate = whole.error_estimate.max(part.scale * report.error_estimate);
+            whole.refusals += report.refusals;
+        }
+        Ok(whole)
+    }
+
+    fn error_of(&self, mesh: usize, source: SimplifyError) -> SceneError {
+        match &self.scene.meshes[..] {
+            [_] => SceneError::Whole(source),
+            all => SceneError::Mesh { mesh, name: all[mesh].name.clone(), source },
+        }
+    }
+}
+
+impl Part<'_> {
+    /// The cost of the next contraction in world terms: squared distance times area, to the fourth
+    /// power of the scale.
+    fn next_cost(&mut self) -> Option<f64> {
+        self.simplifier.next_cost().map(|cost| cost * self.scale.powi(4))
+    }
+
+    /// A cost in world terms in those of the mesh; at least that of the next contraction, however
+    /// the division rounds, so that there is always one to try.
+    fn cost_up_to(&mut self, world: f64) -> f64 {
+        let own = self.simplifier.next_cost().unwrap_or(0.0);
+        own.max(world / self.scale.powi(4))
+    }
+}
+
+/// The flags of each mesh among those of all, or an empty slice for each.
+fn lock_masks<'o>(scene: &Scene, options: &'o Options) -> Result<Vec<&'o [bool]>, SceneError> {
+    let mut rest = &options.locked[..];
+    if rest.is_empty() {
+        return Ok(vec![rest; scene.meshes.len()]);
+    }
+    let vertices = |mesh: &meshlod_io::SceneMesh| mesh.mesh.positions.len();
+    let expected = scene.meshes.iter().map(vertices).sum();
+    if rest.len() != expected {
+        return Err(SimplifyError::BadMask { found: rest.len(), expected }.into());
+    }
+    let mut take = |mesh| {
+        let (own, others) = rest.split_at(vertices(mesh));
+        rest = others;
+        own
+    };
+    Ok(scene.meshes.iter().map(&mut take).collect())
+}
+
+/// For each mesh how many nodes show it, and the greatest length scale of those.
+fn shown(scene: &Scene) -> Vec<(usize, f64)> {
+    let mut shown = vec![(0, 0.0f64); scene.meshes.len()];
+    for placement in scene.placements() {
+        let (copies, scale) = &mut shown[placement.mesh];
+        *copies += 1;
+        *scale = scale.max(length_scale(&placement.transform));
+    }
+    shown
+}
+
+/// The place of the least cost, and the least of the others.
+fn two_cheapest(costs: &[Option<f64>]) -> Option<(usize, f64)> {
+    let mut cheapest: Option<(usize, f64)> = None;
+    let mut runner_up = f64::INFINITY;
+    for (i, cost) in costs.iter().enumerate().filter_map(|(i, cost)| Some((i, (*cost)?))) {
+        match cheapest {
+            Some((_, least)) if cost >= least => runner_up = runner_up.min(cost),
+            previous => {
+                runner_up = previous.map_or(runner_up, |(_, least)| least);
+                cheapest = Some((i, cost));
+            }
+        }
+    }
+    cheapest.map(|(i, _)| (i, runner_up))
+}
+
+fn in_brackets(name: &str) -> String {
+    if name.is_empty() { String::new() } else { format!(" ({name})") }
+}
+
+#[cfg(test)]
+mod tests;
