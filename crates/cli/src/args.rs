@@ -6,6 +6,7 @@ use meshlod::{Format, ReadOptions, WriteOptions};
 
 use crate::amounts;
 use crate::answer::Answer;
+use crate::demo::Demo;
 use crate::failure::Failure;
 use crate::session::Session;
 use crate::verbs::{info, lods, measure, render, sample, simplify};
@@ -51,6 +52,8 @@ pub enum Verb {
     Sample(sample::Sample),
     /// Draw a picture
     Render(render::Render),
+    /// Run the whole line on samples, and write a page of it with pictures
+    Demo(Demo),
 }
 
 impl Verb {
@@ -62,6 +65,7 @@ impl Verb {
             Self::Measure(verb) => verb.run(session),
             Self::Sample(verb) => verb.run(session),
             Self::Render(verb) => verb.run(session),
+            Self::Demo(verb) => verb.run(session),
         }
     }
 }

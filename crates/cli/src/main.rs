@@ -7,6 +7,7 @@
 mod amounts;
 mod answer;
 mod args;
+mod demo;
 mod distance;
 mod failure;
 mod files;

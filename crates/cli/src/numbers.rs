@@ -13,6 +13,11 @@ pub fn count(number: usize) -> String {
     text
 }
 
+/// A count of faces: 1 face, 2 faces.
+pub fn faces(number: usize) -> String {
+    format!("{} face{}", count(number), if number == 1 { "" } else { "s" })
+}
+
 /// Six digits that matter: 0.00123457, 12.3457, 1.23457e12.
 pub fn value(number: f64) -> String {
     digits(number, 6)

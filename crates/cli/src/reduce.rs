@@ -9,7 +9,7 @@ use meshlod::{Mesh, Options, Report, Scene, SceneError, SceneSimplifier, Target}
 use serde_json::{Map, Value, json};
 
 use crate::failure::Failure;
-use crate::numbers::{count, value};
+use crate::numbers::{count, faces, value};
 use crate::session::Session;
 
 /// A level of a scene.
@@ -47,7 +47,7 @@ impl<'s> Engine<'s> {
         let to_go = match target {
             Target::Faces(faces) => Some(now.saturating_sub(faces)),
             Target::Ratio(ratio) => {
-                Some(now.saturating_sub((self.simplifier.input_faces() as f64 * ratio) as usize))
+                Some(now.saturating_sub((self.input_faces() as f64 * ratio) as usize))
             }
             Target::Error(_) => None,
         };
@@ -56,6 +56,11 @@ impl<'s> Engine<'s> {
         let report = self.simplifier.run(target, &mut watch);
         self.time += start.elapsed();
         report.map_err(|error| at(self.path, &error.into()))
+    }
+
+    /// Faces that the scene showed at first.
+    pub fn input_faces(&self) -> usize {
+        self.simplifier.input_faces()
     }
 
     /// The meshes as they are now.
@@ -109,8 +114,8 @@ pub fn report_json(report: &Report) -> Value {
 /// One line that says why there are more faces than wanted.
 pub fn why_not_reached(report: &Report) -> String {
     format!(
-        "target not reached: {} faces are left and nothing more may be contracted (refused: {})",
-        count(report.output_faces),
+        "target not reached: nothing more may be contracted at {} (refused: {})",
+        faces(report.output_faces),
         report.refusals,
     )
 }

@@ -36,6 +36,9 @@ struct Part<'s> {
 /// Why a scene cannot be simplified.
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum SceneError {
+    /// There is nothing to simplify.
+    #[error("nodes: none of them shows a mesh")]
+    Nothing,
     /// Its only mesh, or what is asked for.
     #[error(transparent)]
     Whole(#[from] SimplifyError),
@@ -99,7 +102,7 @@ impl<'s> SceneSimplifier<'s> {
             }
         }
         match (this.parts.is_empty(), still) {
-            (true, reason) => Err(reason.unwrap_or(SimplifyError::NoFaces).into()),
+            (true, reason) => Err(reason.map_or(SceneError::Nothing, SceneError::Whole)),
             _ => Ok(this),
         }
     }

@@ -55,7 +55,7 @@ impl<'m> Facts<'m> {
     fn of(mesh: &'m Mesh) -> Self {
         let components = face_components(&mesh.faces, mesh.positions.len()).1;
         // Objects are those that the file names, else what hangs together.
-        let objects = mesh.objects.as_ref().map_or(components, |labels| labels_in_use(labels));
+        let objects = mesh.objects.as_ref().map_or(components, labels_in_use);
         Self {
             mesh,
             connectivity: Connectivity::new(&mesh.faces, mesh.positions.len()),

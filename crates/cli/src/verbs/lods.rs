@@ -92,6 +92,7 @@ impl Lods {
             .inspect_err(|failure| session.warn(format_args!("not measured: {failure}")))
             .ok();
         let mut engine = Engine::start(scene, options, &self.input, session)?;
+        check_order(&self.levels, engine.input_faces())?;
         let mut chain: Vec<Link> = Vec::new();
         for (i, &size) in self.levels.iter().enumerate() {
             let report = engine.run(size.target())?;
@@ -201,8 +202,23 @@ impl Lods {
     }
 }
 
+/// Refuses a level that is not coarser than the one before.
+fn check_order(levels: &[Size], input_faces: usize) -> Result<(), Failure> {
+    let faces = |size: Size| match size {
+        Size::Faces(faces) => faces as f64,
+        Size::Ratio(ratio) => ratio * input_faces as f64,
+    };
+    match levels.windows(2).find(|pair| faces(pair[1]) >= faces(pair[0])) {
+        None => Ok(()),
+        Some(pair) => Err(Failure::usage(format_args!(
+            "--levels: {} is not coarser than {}; write the finest first",
+            pair[1], pair[0]
+        ))),
+    }
+}
+
 /// The part of the screen's area below which a level is within a pixel of the original.
-fn screen_coverage(distance: &Distance) -> f64 {
+pub fn screen_coverage(distance: &Distance) -> f64 {
     let most_pixels = distance.diagonal / distance.max();
     let coverage = (most_pixels / SCREEN_LINES).powi(2);
     if coverage.is_finite() { coverage.min(1.0) } else { 1.0 }

@@ -13,7 +13,7 @@ use crate::args::{Reading, Writing};
 use crate::distance;
 use crate::failure::Failure;
 use crate::files;
-use crate::numbers::{count, percent, value};
+use crate::numbers::{count, faces, percent, value};
 use crate::reduce::{self, Engine, Reduced};
 use crate::session::Session;
 use crate::within::Search;
@@ -166,9 +166,9 @@ impl Simplify {
         let report = &done.report;
         let part = 100.0 * report.output_faces as f64 / report.input_faces as f64;
         let mut text = format!(
-            "{}: {} faces to {} ({})\n{}",
+            "{}: {} to {} ({})\n{}",
             files::name(&self.output),
-            count(report.input_faces),
+            faces(report.input_faces),
             count(report.output_faces),
             percent(part),
             reduce::oddities(report),

@@ -119,7 +119,7 @@ fn errors_name_the_mesh_where_there_are_several() {
     two.meshes[1].name = "wing".into();
     assert!(error(&two).to_string().starts_with("mesh 1 (wing): vertex v1"), "{}", error(&two));
     assert!(matches!(error(&Scene::from_mesh("", bad)), SceneError::Whole(_)));
-    assert_eq!(error(&Scene::default()), SceneError::Whole(SimplifyError::NoFaces));
+    assert_eq!(error(&Scene::default()), SceneError::Nothing);
 }
 
 #[test]

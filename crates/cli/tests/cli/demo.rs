@@ -1,0 +1,168 @@
+//! The demo: a page, its pictures, its files.
+
+use std::collections::BTreeMap;
+use std::sync::LazyLock;
+
+use serde_json::Value;
+
+use crate::run::Run;
+
+/// One run for all tests, and what it said.
+static DEMO: LazyLock<(Run, Value)> = LazyLock::new(|| {
+    let run = Run::new();
+    let json = run.json(&["demo", "out"]);
+    (run, json)
+});
+
+fn page() -> String {
+    std::fs::read_to_string(DEMO.0.path("out/index.html")).unwrap()
+}
+
+fn list<'v>(json: &'v Value, field: &str) -> &'v Vec<Value> {
+    json[field].as_array().unwrap()
+}
+
+fn levels(sample: &Value) -> impl Iterator<Item = &Value> {
+    list(sample, "chains").iter().flat_map(|chain| list(chain, "levels"))
+}
+
+#[test]
+fn every_promised_picture_is_in_the_page() {
+    let page = page();
+    for sample in list(&DEMO.1, "samples") {
+        let id = format!("<section id=\"{}\"", sample["sample"].as_str().unwrap());
+        let section = page.split_once(&id).unwrap().1.split_once("</section>").unwrap().0;
+        let of_chain = list(&sample["chains"][0], "levels").len();
+        let pictures: Vec<&str> = section.split("<img ").skip(1).collect();
+        assert_eq!(pictures.len(), 3 * of_chain + 2, "the input has no error to show");
+        for picture in pictures {
+            let tag = picture.split_once('>').unwrap().0;
+            assert!(tag.contains("src=\"data:image/png;base64,iVBORw0KGgo"), "a PNG");
+            assert!(tag.contains(" alt=\"") && !tag.contains(" alt=\"\""));
+        }
+        assert_eq!(section.matches("<svg ").count(), 1);
+        assert_eq!(section.matches("<polyline ").count(), list(sample, "chains").len());
+    }
+}
+
+#[test]
+fn the_page_needs_nothing_else_and_is_not_large() {
+    let page = page();
+    assert_eq!(DEMO.1["page_bytes"], page.len());
+    assert!(page.len() < 6_000_000, "{}", page.len());
+    for foreign in ["http:", "https:", "<script", "<link", "url(", "@import"] {
+        assert!(!page.contains(foreign), "{foreign}");
+    }
+}
+
+#[test]
+fn the_page_has_the_figures_of_the_json() {
+    let page = page();
+    let has = |value: &Value| {
+        let value = value.as_f64().unwrap_or_else(|| panic!("a number, not {value}"));
+        assert!(page.contains(&format!("<data value=\"{value}\">")), "{value}");
+    };
+    for sample in list(&DEMO.1, "samples") {
+        let counts = ["vertices", "faces", "boundary_edges", "components", "area", "volume"];
+        counts.iter().for_each(|field| has(&sample[*field]));
+        for level in levels(sample) {
+            ["mean_percent", "rms_percent", "max_percent"]
+                .iter()
+                .for_each(|field| has(&level["error_measured"][*field]));
+            ["faces", "volume_change_percent", "quality_mean", "simplify_seconds"]
+                .iter()
+                .for_each(|field| has(&level[*field]));
+        }
+    }
+}
+
+#[test]
+fn every_file_is_there_and_holds_the_promised_faces() {
+    let (run, json) = &*DEMO;
+    let mut promised = vec![json["page"].as_str().unwrap(), json["picture"].as_str().unwrap()];
+    for sample in list(json, "samples") {
+        let files = [("file", sample), ("lods", sample)];
+        for (field, of) in files.into_iter().chain(levels(sample).map(|level| ("file", level))) {
+            let file = of[field].as_str().unwrap();
+            assert_eq!(run.json(&["info", file])["faces"], of["faces"], "{file}");
+            promised.push(file);
+        }
+    }
+    promised.sort_unstable();
+    let written: Vec<String> = contents(run, "out").into_keys().collect();
+    assert_eq!(written, promised);
+    assert!(page_links().iter().all(|link| written.contains(&format!("out/{link}"))));
+}
+
+fn page_links() -> Vec<String> {
+    let page = page();
+    let links = page.split("href=\"").skip(1).map(|rest| rest.split_once('"').unwrap().0);
+    links.filter(|link| !link.starts_with('#')).map(String::from).collect()
+}
+
+/// The files of a folder by their names, with what they hold.
+fn contents(run: &Run, folder: &str) -> BTreeMap<String, Vec<u8>> {
+    let entries = std::fs::read_dir(run.path(folder)).unwrap();
+    let entry = |path: std::path::PathBuf| {
+        let name = path.file_name().unwrap().to_str().unwrap();
+        (format!("{folder}/{name}"), std::fs::read(&path).unwrap())
+    };
+    entries.map(|found| entry(found.unwrap().path())).collect()
+}
+
+#[test]
+fn levels_are_as_small_as_asked_for_and_as_whole_as_the_input() {
+    for sample in list(&DEMO.1, "samples") {
+        for level in levels(sample) {
+            let wanted = level["ratio"].as_f64().unwrap() * sample["faces"].as_f64().unwrap();
+            assert!(level["faces"].as_f64().unwrap() <= wanted && level["reached"] == true);
+            for field in ["closed", "genus", "components"] {
+                assert_eq!(level[field], sample[field], "{field} of {}", level["file"]);
+            }
+        }
+    }
+}
+
+#[test]
+fn again_with_one_thread_all_but_the_seconds_is_the_same() {
+    let (run, first) = &*DEMO;
+    let again = Run::new();
+    let second = again.json(&["demo", "out", "--threads", "1"]);
+    assert_eq!(timeless(first.clone()), timeless(second));
+    let (mut first, mut second) = (contents(run, "out"), contents(&again, "out"));
+    assert!(first.remove("out/index.html").is_some() && second.remove("out/index.html").is_some());
+    assert!(first == second);
+}
+
+/// Without what the clock has a say in.
+fn timeless(mut json: Value) -> Value {
+    match &mut json {
+        Value::Object(fields) => {
+            fields.retain(|name, _| !name.ends_with("seconds") && name != "page_bytes");
+            fields.values_mut().for_each(|value| *value = timeless(value.take()));
+        }
+        Value::Array(values) => values.iter_mut().for_each(|value| *value = timeless(value.take())),
+        _ => {}
+    }
+    json
+}
+
+#[test]
+fn people_get_a_table_and_the_page_last() {
+    let run = Run::new();
+    let done = run.run(&["demo", "new/folder"]);
+    assert_eq!((done.code, done.err.as_str()), (0, ""));
+    assert!(done.text().ends_with("new/folder/index.html\n"), "{}", done.text());
+}
+
+#[test]
+fn a_file_is_no_folder() {
+    let run = Run::new();
+    std::fs::write(run.path("out"), "mine").unwrap();
+    let done = run.run(&["demo", "out"]);
+    assert_eq!((done.code, done.out.len()), (1, 0));
+    assert_eq!(done.only_line(), "meshlod: out: is a file; name a folder to write to");
+    assert_eq!(std::fs::read(run.path("out")).unwrap(), b"mine");
+    let done = run.run(&["demo", "out/inner"]);
+    assert!(done.code == 1 && done.only_line().contains("out"), "{done:?}");
+}

@@ -1,0 +1,72 @@
+//! Damaged files: a valid result, or one line and no result.
+
+use std::path::Path;
+
+use meshlod_fixtures::shared_broken;
+
+use crate::run::{Done, Run};
+
+/// Runs a verb that writes `out`, and holds what it did against the rule.
+fn check(run: &Run, arguments: &[&str], input: &Path, out: &str) -> Done {
+    let done = run.run(arguments);
+    let name = input.display();
+    match done.code {
+        0 => assert!(run.path(out).exists(), "{name}"),
+        1 => {
+            let lines: Vec<&str> =
+                done.err.lines().filter(|line| !line.contains(": warning: ")).collect();
+            assert!(
+                matches!(lines[..], [line] if line.starts_with("meshlod: ")),
+                "{name}: {done:?}"
+            );
+            assert!(done.out.is_empty() && run.files().is_empty(), "{name}: {:?}", run.files());
+        }
+        code => panic!("{name}: exit code {code}: {done:?}"),
+    }
+    done
+}
+
+#[test]
+fn every_damaged_file_is_simplified_or_named() {
+    for input in shared_broken() {
+        let path = input.to_str().unwrap();
+        for out in ["out.ply", "out.glb"] {
+            let run = Run::new();
+            let arguments = ["simplify", path, out, "--ratio", "50%", "--json"];
+            let done = check(&run, &arguments, &input, out);
+            if done.code == 1 {
+                assert!(done.err.contains(path), "{done:?}");
+                continue;
+            }
+            let (report, info) = (done.json(), run.json(&["info", out]));
+            assert!(report["output_faces"].as_u64() > Some(0), "{path}");
+            if out == "out.ply" {
+                assert_eq!(info["faces"], report["output_faces"], "{path}");
+            }
+        }
+    }
+}
+
+#[test]
+fn every_damaged_file_is_looked_at_or_named() {
+    for input in shared_broken() {
+        let (run, path) = (Run::new(), input.to_str().unwrap());
+        let info = run.run(&["info", path, "--json"]);
+        match info.code {
+            0 => assert!(info.json()["faces"].is_u64() && info.err.is_empty(), "{info:?}"),
+            _ => assert!(info.code == 1 && info.only_line().contains(path), "{info:?}"),
+        }
+        check(&run, &["render", path, "out.png", "--size", "32x32"], &input, "out.png");
+    }
+}
+
+#[test]
+fn a_result_that_cannot_be_kept_leaves_the_old_one() {
+    let run = Run::new();
+    run.sample("sphere", 100, "out.ply");
+    let before = std::fs::read(run.path("out.ply")).unwrap();
+    std::fs::write(run.path("bad.off"), "OFF\n1 1 0\n0 0 0\n3 0 0 7\n").unwrap();
+    let done = run.run(&["simplify", "bad.off", "out.ply", "--ratio", "50%"]);
+    assert_eq!(done.code, 1, "{done:?}");
+    assert_eq!(std::fs::read(run.path("out.ply")).unwrap(), before);
+}

@@ -1,0 +1,61 @@
+//! Chains of levels.
+
+use serde_json::Value;
+
+use crate::run::Run;
+
+/// The document of a GLB.
+fn document(bytes: &[u8]) -> Value {
+    let length = u32::from_le_bytes(bytes[12..16].try_into().unwrap()) as usize;
+    serde_json::from_slice(&bytes[20..20 + length]).unwrap()
+}
+
+#[test]
+fn a_glb_holds_all_levels() {
+    let run = Run::new();
+    run.sample("fish", 2_000, "fish.obj");
+    let report = run.json(&["lods", "fish.obj", "out.glb", "--levels", "50%,0.2,100"]);
+    let levels = report["levels"].as_array().unwrap();
+    let of = |field: &str| levels.iter().map(|l| l[field].as_f64().unwrap()).collect::<Vec<_>>();
+    let max: Vec<_> = levels.iter().map(|l| l["error_measured"]["max"].as_f64().unwrap()).collect();
+    assert!(of("faces").is_sorted_by(|a, b| a > b) && of("faces")[2] <= 100.0, "{report}");
+    assert!(max.is_sorted() && max[0] > 0.0, "{max:?}");
+    assert!(of("screen_coverage").is_sorted_by(|a, b| a >= b));
+
+    let json = document(&std::fs::read(run.path("out.glb")).unwrap());
+    let names: Vec<_> =
+        json["nodes"].as_array().unwrap().iter().filter_map(|node| node["name"].as_str()).collect();
+    for level in 0..4 {
+        assert!(names.iter().any(|name| name.ends_with(&format!("_LOD{level}"))), "{names:?}");
+    }
+    assert_eq!(json["extensionsUsed"], serde_json::json!(["MSFT_lod"]));
+    let shown = run.json(&["info", "out.glb"])["faces"].clone();
+    assert_eq!(shown, report["input_faces"], "the finest level is what is shown");
+}
+
+#[test]
+fn other_formats_get_a_file_a_level() {
+    let run = Run::new();
+    run.sample("torus", 1_000, "in.ply");
+    let report = run.json(&["lods", "in.ply", "t.off", "--levels", "30%,10%"]);
+    assert_eq!(run.files(), ["in.ply", "t_LOD1.off", "t_LOD2.off"]);
+    for level in report["levels"].as_array().unwrap() {
+        assert_eq!(run.json(&["info", level["file"].as_str().unwrap()])["faces"], level["faces"]);
+    }
+    let text = run.run(&["lods", "in.ply", "t.off", "--levels", "30%,10%"]);
+    assert!(text.text().contains("LOD2") && text.err.is_empty(), "{text:?}");
+}
+
+#[test]
+fn levels_are_nested() {
+    let run = Run::new();
+    run.sample("knot", 1_000, "in.ply");
+    let endpoint = ["--method", "qem-endpoint", "--precision", "f64"];
+    run.json(&[&["lods", "in.ply", "k.obj", "--levels", "50%,20%"], &endpoint[..]].concat());
+    let vertices = |name: &str| {
+        let text = std::fs::read_to_string(run.path(name)).unwrap();
+        text.lines().filter(|l| l.starts_with("v ")).map(String::from).collect::<Vec<_>>()
+    };
+    let finer = vertices("k_LOD1.obj");
+    assert!(vertices("k_LOD2.obj").iter().all(|vertex| finer.contains(vertex)));
+}

@@ -1,0 +1,9 @@
+//! The program as its users meet it: exit codes, streams, files.
+
+mod demo;
+mod hostile;
+mod levels;
+mod pipes;
+mod run;
+mod usage;
+mod verbs;

@@ -1,0 +1,78 @@
+//! Meshes through pipes, and pipes that close early.
+
+use std::process::{Command, Stdio};
+
+use crate::run::Run;
+
+#[test]
+fn a_sample_goes_through_a_pipe() {
+    let run = Run::new();
+    let sample = run.run(&["sample", "torus", "-", "--format", "ply", "--faces", "2000"]);
+    assert!(sample.code == 0 && sample.out.starts_with(b"ply\n"), "{}", sample.err);
+    assert!(sample.err.contains("faces"), "what there is to say is not in the mesh");
+    let arguments = ["simplify", "-", "-", "--format", "ply", "--ratio", "10%"];
+    let level = run.run_with(&arguments, &sample.out);
+    assert_eq!(level.code, 0, "{}", level.err);
+    let info = run.run_with(&["info", "-", "--format", "ply", "--json"], &level.out).json();
+    assert!(info["faces"].as_u64().is_some_and(|faces| (190..=200).contains(&faces)), "{info}");
+    assert_eq!(info["closed"], true);
+}
+
+#[test]
+fn every_format_but_gltf_goes_through_a_pipe() {
+    let run = Run::new();
+    for format in ["ply", "obj", "stl", "off", "smf", "glb"] {
+        let sample = run.run(&["sample", "sphere", "-", "--format", format, "--faces", "500"]);
+        let info = run.run_with(&["info", "-", "--format", format, "--json"], &sample.out).json();
+        assert_eq!(
+            (&info["closed"], info["components"].as_u64()),
+            (&true.into(), Some(1)),
+            "{format}"
+        );
+    }
+}
+
+#[test]
+fn errors_of_a_pipe_name_it() {
+    let run = Run::new();
+    let done = run.run_with(&["info", "-", "--format", "off"], b"OFF\n3 x 0\n");
+    assert_eq!(done.code, 1);
+    assert!(done.only_line().starts_with("meshlod: -: line 2: "), "{done:?}");
+}
+
+#[test]
+fn a_pipe_that_closes_is_no_panic() {
+    let run = Run::new();
+    run.sample("knot", 50_000, "in.ply");
+    for arguments in [
+        &["info", "in.ply"][..],
+        &["info", "in.ply", "--json"],
+        &["--help"],
+        &["sample", "knot", "-", "--format", "obj", "--faces", "50000"],
+    ] {
+        let mut child =
+            run.command(arguments).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+        drop(child.stdout.take());
+        let done = child.wait_with_output().unwrap();
+        let err = String::from_utf8(done.stderr).unwrap();
+        assert!(!err.contains("panicked") && done.status.code().is_some(), "{arguments:?}: {err}");
+    }
+}
+
+#[cfg(unix)]
+#[test]
+fn an_interrupted_run_leaves_nothing() {
+    let run = Run::new();
+    run.sample("knot", 400_000, "in.ply");
+    let mut child =
+        run.command(&["simplify", "in.ply", "out.ply", "--ratio", "1%"]).spawn().unwrap();
+    std::thread::sleep(std::time::Duration::from_millis(50));
+    let killed = Command::new("kill").args(["-INT", &child.id().to_string()]).status();
+    assert!(killed.is_ok_and(|status| status.success()));
+    // It may have been done before; then the file is there, and whole.
+    if child.wait().unwrap().code() == Some(0) {
+        assert_eq!(run.json(&["info", "out.ply"])["closed"], true);
+    } else {
+        assert_eq!(run.files(), ["in.ply"]);
+    }
+}

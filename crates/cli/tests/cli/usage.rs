@@ -1,0 +1,72 @@
+//! Wrong usage: exit code 2, a reason on standard error, nothing written.
+
+use crate::run::Run;
+
+#[test]
+fn wrong_usage_is_2_and_writes_nothing() {
+    let run = Run::new();
+    run.sample("sphere", 100, "in.ply");
+    let cases: &[&[&str]] = &[
+        &[],
+        &["frobnicate"],
+        &["info"],
+        &["simplify", "in.ply", "out.ply"],
+        &["simplify", "in.ply", "out.ply", "--faces", "10", "--ratio", "10%"],
+        &["simplify", "in.ply", "out.ply", "--ratio", "10"],
+        &["simplify", "in.ply", "out.ply", "--error", "-1"],
+        &["simplify", "in.ply", "out.ply", "--faces", "10", "--method", "magic"],
+        &["simplify", "in.ply", "out.ply", "--faces", "10", "--no-weld", "--weld", "1"],
+        &["simplify", "in.ply", "out.ply", "--faces", "10", "--threads", "0"],
+        &["simplify", "-", "out.ply", "--faces", "10"],
+        &["simplify", "in.ply", "-", "--faces", "10"],
+        &["simplify", "in.ply", "-", "--faces", "10", "--format", "ply", "--json"],
+        &["simplify", "in.ply", "-", "--faces", "10", "--format", "gltf"],
+        &["lods", "in.ply", "-", "--format", "glb"],
+        &["lods", "in.ply", "out.glb", "--levels", "50%,x"],
+        &["lods", "in.ply", "out.glb", "--levels", "50%,10%,20"],
+        &["measure", "-", "-", "--format", "ply"],
+        &["measure", "in.ply", "in.ply", "--samples", "0"],
+        &["sample", "teapot", "out.ply"],
+        &["sample", "fish", "out.ply", "--faces", "9999999999"],
+        &["render", "in.ply", "out.png", "--size", "0x9"],
+        &["render", "in.ply", "out.png", "--view", "sideways"],
+    ];
+    for arguments in cases {
+        let done = run.run(arguments);
+        assert_eq!((done.code, &done.out[..]), (2, &b""[..]), "{arguments:?}: {done:?}");
+        assert!(!done.err.is_empty() && !done.err.contains("panicked"), "{done:?}");
+        assert_eq!(run.files(), ["in.ply"], "{arguments:?}");
+    }
+}
+
+#[test]
+fn help_and_version_are_answers() {
+    let run = Run::new();
+    for arguments in [&["--help"][..], &["--version"], &["simplify", "--help"]] {
+        let done = run.run(arguments);
+        assert_eq!((done.code, &done.err[..]), (0, ""), "{arguments:?}");
+        assert!(done.text().contains("meshlod"), "{done:?}");
+    }
+}
+
+#[test]
+fn what_could_not_be_done_is_1_and_one_line() {
+    let run = Run::new();
+    run.sample("sphere", 100, "in.ply");
+    let cases: [(&[&str], &str); 6] = [
+        (&["info", "none.ply"], "none.ply: "),
+        (&["info", "in.fbx"], "in.fbx: unknown suffix"),
+        (&["simplify", "in.ply", "out.xyz", "--faces", "9"], "out.xyz: unknown suffix"),
+        (&["simplify", "in.ply", "no/out.ply", "--faces", "9"], "no/out.ply: "),
+        (&["measure", "in.ply", "none.obj"], "none.obj: "),
+        (&["render", "in.ply", "no/out.png"], "no/out.png: "),
+    ];
+    for (arguments, beginning) in cases {
+        for json in [&[][..], &["--json"]] {
+            let done = run.run(&[arguments, json].concat());
+            assert_eq!((done.code, &done.out[..]), (1, &b""[..]), "{arguments:?}: {done:?}");
+            assert!(done.only_line().starts_with(&format!("meshlod: {beginning}")), "{done:?}");
+        }
+    }
+    assert_eq!(run.files(), ["in.ply"]);
+}

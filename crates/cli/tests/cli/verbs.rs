@@ -1,0 +1,171 @@
+//! What the verbs answer.
+
+use serde_json::{Value, json};
+
+use crate::run::Run;
+
+fn number(value: &Value) -> f64 {
+    value.as_f64().unwrap_or_else(|| panic!("{value} is no number"))
+}
+
+#[test]
+fn info_knows_a_cube() {
+    let run = Run::new();
+    // A cube of quads, a point that no face uses, two objects.
+    let obj = "v 9 9 9\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nv 0 0 1\nv 1 0 1\nv 0 1 1\nv 1 1 1\n\
+        o sides\nf 2 3 7 6\nf 3 5 9 7\nf 5 4 8 9\nf 4 2 6 8\no caps\nf 2 4 5 3\nf 6 7 9 8\n";
+    std::fs::write(run.path("cube.obj"), obj).unwrap();
+    let info = run.json(&["info", "cube.obj"]);
+    let expected = json!({
+        "vertices": 9, "unreferenced": 1, "faces": 12, "degenerate_faces": 0, "edges": 18,
+        "boundary_edges": 0, "non_manifold_edges": 0, "inconsistent_edges": 0,
+        "pinched_vertices": 0, "components": 1, "objects": 2, "closed": true,
+        "bounds": { "min": [0.0, 0.0, 0.0], "max": [1.0, 1.0, 1.0] }, "diagonal": 3f64.sqrt(),
+        "area": 6.0, "volume": 1.0, "wedges": null, "attributes": [], "materials": [],
+        "file": "cube.obj", "meshes": 1,
+    });
+    assert_eq!(info, expected);
+    let text = run.run(&["info", "cube.obj"]);
+    assert!(text.text().contains("in no face") && text.err.is_empty(), "{text:?}");
+}
+
+#[test]
+fn simplify_reaches_a_ratio_and_says_so() {
+    let run = Run::new();
+    run.sample("knot", 4_000, "in.ply");
+    let report = run.json(&["simplify", "in.ply", "out.ply", "--ratio", "10%", "--measured"]);
+    assert_eq!((&report["method"], &report["reached"]), (&"qem".into(), &true.into()));
+    assert_eq!(report["output_faces"], run.json(&["info", "out.ply"])["faces"]);
+    assert!(number(&report["output_faces"]) <= 0.1 * number(&report["input_faces"]));
+    assert!(number(&report["simplify_seconds"]) > 0.0 && number(&report["error_estimate"]) > 0.0);
+    assert!(report["refusals"]["flip"].is_u64());
+    let measured = &report["error_measured"];
+    let again = run.json(&["measure", "in.ply", "out.ply"]);
+    for field in ["mean", "rms", "max", "max_percent"] {
+        // The file holds 32 bits, and samples fall elsewhere.
+        let (in_report, of_file) = (number(&measured[field]), number(&again[field]));
+        assert!((in_report / of_file - 1.0).abs() < 0.02, "{field}: {in_report}, {of_file}");
+    }
+}
+
+#[test]
+fn simplify_talks_to_people_too() {
+    let run = Run::new();
+    run.sample("sphere", 1_000, "in.ply");
+    let done = run.run(&["simplify", "in.ply", "out.obj", "--faces", "100"]);
+    assert_eq!((done.code, &done.err[..]), (0, ""));
+    assert!(done.text().lines().any(|line| line.starts_with("simplify_seconds: ")), "{done:?}");
+}
+
+#[test]
+fn an_error_bound_comes_with_what_was_measured() {
+    let run = Run::new();
+    run.sample("knot", 4_000, "in.ply");
+    let report = run.json(&["simplify", "in.ply", "out.ply", "--error", "0.2%"]);
+    let bound = 0.002 * number(&report["error_measured"]["diagonal"]);
+    assert!(number(&report["error_estimate"]) <= bound);
+    assert!(number(&report["output_faces"]) < 0.5 * number(&report["input_faces"]));
+}
+
+#[test]
+fn measured_means_that_the_measure_is_within() {
+    let run = Run::new();
+    run.sample("knot", 4_000, "in.ply");
+    let sizes = ["0.1%", "1%"].map(|bound| {
+        let report = run.json(&["simplify", "in.ply", "out.ply", "--error", bound, "--measured"]);
+        let percent: f64 = bound.trim_end_matches('%').parse().unwrap();
+        let max = number(&report["error_measured"]["max_percent"]);
+        assert!(report["reached"] == true && max <= percent && max > percent / 2.0, "{report}");
+        number(&report["output_faces"])
+    });
+    assert!(sizes[1] < sizes[0]);
+}
+
+#[test]
+fn a_target_out_of_reach_is_a_warning_or_strictly_a_failure() {
+    let run = Run::new();
+    run.sample("torus", 400, "in.ply");
+    let arguments = ["simplify", "in.ply", "out.ply", "--faces", "3", "--json"];
+    let done = run.run(&arguments);
+    assert_eq!((done.code, &done.json()["reached"]), (0, &false.into()));
+    assert!(done.only_line().contains("warning: in.ply: target not reached"), "{done:?}");
+    let strict = run.run(&[&arguments[..], &["--strict"]].concat());
+    assert_eq!((strict.code, &strict.json()["reached"]), (1, &false.into()));
+    assert_eq!(run.json(&["info", "out.ply"])["closed"], true);
+}
+
+#[test]
+fn any_number_of_threads_gives_the_same_file() {
+    let run = Run::new();
+    run.sample("gyroid", 20_000, "in.ply");
+    for threads in ["1", "2"] {
+        let out = format!("{threads}.ply");
+        run.json(&["simplify", "in.ply", &out, "--ratio", "5%", "--threads", threads]);
+    }
+    let bytes = |name| std::fs::read(run.path(name)).unwrap();
+    assert!(bytes("1.ply") == bytes("2.ply"));
+}
+
+#[test]
+fn precision_f64_keeps_every_bit() {
+    let run = Run::new();
+    let coordinate = 1.000_000_000_000_1;
+    std::fs::write(run.path("in.obj"), format!("v 0 0 0\nv {coordinate} 0 0\nv 0 1 0\nf 1 2 3\n"))
+        .unwrap();
+    let x = |arguments: &[&str]| {
+        run.json(&[&["simplify", "in.obj", "out.ply", "--faces", "1"], arguments].concat());
+        number(&run.json(&["info", "out.ply"])["bounds"]["max"][0])
+    };
+    assert_eq!((x(&["--precision", "f64"]), x(&[])), (coordinate, 1.0));
+}
+
+#[test]
+fn welding_is_a_choice() {
+    let run = Run::new();
+    run.sample("sphere", 500, "in.stl");
+    let vertices = |arguments: &[&str]| {
+        number(&run.json(&[&["info", "in.stl"], arguments].concat())["vertices"])
+    };
+    let faces = number(&run.json(&["info", "in.stl"])["faces"]);
+    assert_eq!((vertices(&["--no-weld"]), vertices(&[])), (3.0 * faces, faces / 2.0 + 2.0));
+    assert_eq!(vertices(&["--weld", "100"]), 1.0);
+}
+
+#[test]
+fn measure_has_both_ways_and_the_seed_counts() {
+    let run = Run::new();
+    run.sample("sphere", 2_000, "a.ply");
+    run.sample("sphere", 200, "b.ply");
+    let measure =
+        |seed| run.json(&["measure", "a.ply", "b.ply", "--samples", "5000", "--seed", seed]);
+    let (first, other) = (measure("1"), measure("2"));
+    assert_eq!(first, measure("1"));
+    assert_ne!(first["forward"]["mean"], other["forward"]["mean"]);
+    for way in ["forward", "backward"] {
+        assert!(number(&first[way]["max"]) >= number(&first[way]["rms"]));
+        assert_eq!(first[way]["place"]["from"].as_array().map(Vec::len), Some(3));
+    }
+    assert!(number(&first["volume_b"]) < number(&first["volume_a"]));
+    assert!(number(&first["area_b"]) < number(&first["area_a"]));
+    assert!(run.run(&["measure", "a.ply", "b.ply"]).text().contains("backward"));
+}
+
+#[test]
+fn render_draws_in_every_way() {
+    let run = Run::new();
+    run.sample("fish", 1_000, "fish.obj");
+    run.sample("fish", 200, "coarse.obj");
+    for options in [
+        &[][..],
+        &["--wireframe", "--flat"],
+        &["--checker", "--view", "top"],
+        &["--view", "-1,-0.5,0.2", "--up", "z"],
+        &["--heat-against", "coarse.obj"],
+    ] {
+        let arguments = [&["render", "fish.obj", "out.png", "--size", "64x48"], options].concat();
+        let report = run.json(&arguments);
+        assert_eq!((&report["width"], &report["height"]), (&64.into(), &48.into()));
+        assert_eq!(report["heat_max"].is_number(), options.contains(&"--heat-against"));
+        assert!(std::fs::read(run.path("out.png")).unwrap().starts_with(b"\x89PNG"));
+    }
+}
