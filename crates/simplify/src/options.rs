@@ -95,8 +95,8 @@ pub struct Report {
     pub output_faces: usize,
     /// Whether the target was reached.
     pub reached: bool,
-    /// The greatest distance that the algorithm estimates for any contraction, in model units:
-    /// for quadrics, the root of the mean squared distance to the planes gone into a vertex.
+    /// The greatest distance that the algorithm estimates for any contraction, in model units: an
+    /// estimate of the maximum that `measure` finds, not a bound of it.
     pub error_estimate: f64,
     /// Why candidates were refused, and how often.
     pub refusals: Refusals,

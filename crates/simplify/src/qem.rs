@@ -10,6 +10,7 @@
 
 use glam::DVec3;
 use meshlod_mesh::{Connectivity, FaceId, Side, Twin, VertexId};
+use meshlod_spatial::closest_point;
 
 use crate::contracted::{Contracted, Freedom};
 use crate::neighbourhood::Neighbourhood;
@@ -86,6 +87,20 @@ impl Memory for Quadrics {
         self.quadrics[kept] = merged;
         self.moved[kept] = placed.error_estimate as f32;
     }
+}
+
+/// How far the contracted vertices are from the faces they had and that now meet in `position`.
+/// Quadrics do not see the tip of a spike: its planes all pass close by its foot.
+fn stand_off(surface: &Surface, hood: &Neighbourhood, position: DVec3) -> f64 {
+    let mut nearest = [f64::INFINITY; 3];
+    for spoke in hood.spokes() {
+        let v = surface.position(hood.contracted()[spoke.owner()]);
+        let [a, b] = [spoke.a, spoke.b].map(|r| hood.ring()[r as usize].position);
+        let closest = closest_point(v, &[position, a, b]);
+        let nearest = &mut nearest[spoke.owner()];
+        *nearest = nearest.min(v.distance_squared(closest));
+    }
+    nearest.into_iter().filter(|d| d.is_finite()).fold(0.0, f64::max).sqrt()
 }
 
 /// The planes of the surviving faces, with their vertex at `position`, seen from there.
@@ -218,7 +233,8 @@ impl<R: Rule> Placement<Quadrics> for R {
         let position = if choice.offset == kept - origin { kept } else { origin + choice.offset };
         // What was moved before and what is moved now are taken as independent.
         let before = hood.contracted().iter().map(|v| memory.moved[v.index()]).fold(0.0, f32::max);
-        let error_estimate = sum.distance(choice.cost).hypot(before.into());
+        let now = sum.distance(choice.cost).max(stand_off(surface, hood, position));
+        let error_estimate = now.hypot(before.into());
         Ok(Placed { position, kept: choice.kept, error_estimate })
     }
 }

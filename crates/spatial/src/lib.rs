@@ -28,3 +28,4 @@ mod triangle;
 pub use bvh::{Bvh, BvhError};
 pub use closest::Closest;
 pub use frame::Frame;
+pub use triangle::{Triangle, closest_point};

@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 /// Three corners.
-pub(crate) type Triangle = [DVec3; 3];
+pub type Triangle = [DVec3; 3];
 
 /// Squared sine of the first corner's angle below which the normal is not trusted alone.
 ///
@@ -20,7 +20,7 @@ const SLIVER: f64 = 1e-12;
 /// [Eri05] section 5.1.5; differs: weights from the normal, which keep their digits in narrow
 /// triangles, and edges where these leave doubt.
 #[inline]
-pub(crate) fn closest_point(p: DVec3, &[a, b, c]: &Triangle) -> DVec3 {
+pub fn closest_point(p: DVec3, &[a, b, c]: &Triangle) -> DVec3 {
     let (ab, bc, ca) = (b - a, c - b, a - c);
     let normal = ca.cross(ab);
     // Each is the area of the part opposite the corner, times twice the normal's square.
