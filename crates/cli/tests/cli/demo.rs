@@ -1,21 +1,35 @@
 //! The demo: a page, its pictures, its files.
 
 use std::collections::BTreeMap;
+use std::path::PathBuf;
 use std::sync::LazyLock;
 
 use serde_json::Value;
 
 use crate::run::Run;
 
-/// One run for all tests, and what it said.
-static DEMO: LazyLock<(Run, Value)> = LazyLock::new(|| {
-    let run = Run::new();
-    let json = run.json(&["demo", "out"]);
-    (run, json)
-});
+/// What a run said, and the files that it wrote.
+struct Demo {
+    json: Value,
+    files: BTreeMap<String, Vec<u8>>,
+}
 
-fn page() -> String {
-    std::fs::read_to_string(DEMO.0.path("out/index.html")).unwrap()
+/// One run for all tests. Its folder is gone: what is never dropped would leave it behind.
+static DEMO: LazyLock<Demo> = LazyLock::new(|| demo(&[]));
+
+fn demo(options: &[&str]) -> Demo {
+    let run = Run::new();
+    let json = run.json(&[&["demo", "out"], options].concat());
+    let entries = std::fs::read_dir(run.path("out")).unwrap();
+    let file = |path: PathBuf| {
+        let name = path.file_name().unwrap().to_str().unwrap();
+        (format!("out/{name}"), std::fs::read(&path).unwrap())
+    };
+    Demo { json, files: entries.map(|entry| file(entry.unwrap().path())).collect() }
+}
+
+fn page() -> &'static str {
+    std::str::from_utf8(&DEMO.files["out/index.html"]).unwrap()
 }
 
 fn list<'v>(json: &'v Value, field: &str) -> &'v Vec<Value> {
@@ -29,7 +43,7 @@ fn levels(sample: &Value) -> impl Iterator<Item = &Value> {
 #[test]
 fn every_promised_picture_is_in_the_page() {
     let page = page();
-    for sample in list(&DEMO.1, "samples") {
+    for sample in list(&DEMO.json, "samples") {
         let id = format!("<section id=\"{}\"", sample["sample"].as_str().unwrap());
         let section = page.split_once(&id).unwrap().1.split_once("</section>").unwrap().0;
         let of_chain = list(&sample["chains"][0], "levels").len();
@@ -48,7 +62,7 @@ fn every_promised_picture_is_in_the_page() {
 #[test]
 fn the_page_needs_nothing_else_and_is_not_large() {
     let page = page();
-    assert_eq!(DEMO.1["page_bytes"], page.len());
+    assert_eq!(DEMO.json["page_bytes"], page.len());
     assert!(page.len() < 6_000_000, "{}", page.len());
     for foreign in ["http:", "https:", "<script", "<link", "url(", "@import"] {
         assert!(!page.contains(foreign), "{foreign}");
@@ -62,7 +76,7 @@ fn the_page_has_the_figures_of_the_json() {
         let value = value.as_f64().unwrap_or_else(|| panic!("a number, not {value}"));
         assert!(page.contains(&format!("<data value=\"{value}\">")), "{value}");
     };
-    for sample in list(&DEMO.1, "samples") {
+    for sample in list(&DEMO.json, "samples") {
         let counts = ["vertices", "faces", "boundary_edges", "components", "area", "volume"];
         counts.iter().for_each(|field| has(&sample[*field]));
         for level in levels(sample) {
@@ -78,41 +92,30 @@ fn the_page_has_the_figures_of_the_json() {
 
 #[test]
 fn every_file_is_there_and_holds_the_promised_faces() {
-    let (run, json) = &*DEMO;
+    let Demo { json, files } = &*DEMO;
+    let run = Run::new();
+    std::fs::create_dir(run.path("out")).unwrap();
+    files.iter().for_each(|(name, bytes)| std::fs::write(run.path(name), bytes).unwrap());
     let mut promised = vec![json["page"].as_str().unwrap(), json["picture"].as_str().unwrap()];
     for sample in list(json, "samples") {
-        let files = [("file", sample), ("lods", sample)];
-        for (field, of) in files.into_iter().chain(levels(sample).map(|level| ("file", level))) {
+        let own = [("file", sample), ("lods", sample)];
+        for (field, of) in own.into_iter().chain(levels(sample).map(|level| ("file", level))) {
             let file = of[field].as_str().unwrap();
             assert_eq!(run.json(&["info", file])["faces"], of["faces"], "{file}");
             promised.push(file);
         }
     }
     promised.sort_unstable();
-    let written: Vec<String> = contents(run, "out").into_keys().collect();
-    assert_eq!(written, promised);
-    assert!(page_links().iter().all(|link| written.contains(&format!("out/{link}"))));
-}
-
-fn page_links() -> Vec<String> {
-    let page = page();
-    let links = page.split("href=\"").skip(1).map(|rest| rest.split_once('"').unwrap().0);
-    links.filter(|link| !link.starts_with('#')).map(String::from).collect()
-}
-
-/// The files of a folder by their names, with what they hold.
-fn contents(run: &Run, folder: &str) -> BTreeMap<String, Vec<u8>> {
-    let entries = std::fs::read_dir(run.path(folder)).unwrap();
-    let entry = |path: std::path::PathBuf| {
-        let name = path.file_name().unwrap().to_str().unwrap();
-        (format!("{folder}/{name}"), std::fs::read(&path).unwrap())
-    };
-    entries.map(|found| entry(found.unwrap().path())).collect()
+    assert!(files.keys().eq(&promised), "{promised:?} and no other");
+    let links = page().split("href=\"").skip(1).map(|rest| rest.split_once('"').unwrap().0);
+    for link in links.filter(|link| !link.starts_with('#')) {
+        assert!(files.contains_key(&format!("out/{link}")), "{link}");
+    }
 }
 
 #[test]
 fn levels_are_as_small_as_asked_for_and_as_whole_as_the_input() {
-    for sample in list(&DEMO.1, "samples") {
+    for sample in list(&DEMO.json, "samples") {
         for level in levels(sample) {
             let wanted = level["ratio"].as_f64().unwrap() * sample["faces"].as_f64().unwrap();
             assert!(level["faces"].as_f64().unwrap() <= wanted && level["reached"] == true);
@@ -125,13 +128,14 @@ fn levels_are_as_small_as_asked_for_and_as_whole_as_the_input() {
 
 #[test]
 fn again_with_one_thread_all_but_the_seconds_is_the_same() {
-    let (run, first) = &*DEMO;
-    let again = Run::new();
-    let second = again.json(&["demo", "out", "--threads", "1"]);
-    assert_eq!(timeless(first.clone()), timeless(second));
-    let (mut first, mut second) = (contents(run, "out"), contents(&again, "out"));
-    assert!(first.remove("out/index.html").is_some() && second.remove("out/index.html").is_some());
-    assert!(first == second);
+    let again = demo(&["--threads", "1"]);
+    assert_eq!(timeless(DEMO.json.clone()), timeless(again.json));
+    let unclocked = |files: &BTreeMap<String, Vec<u8>>| {
+        let mut files = files.clone();
+        assert!(files.remove("out/index.html").is_some());
+        files
+    };
+    assert!(unclocked(&DEMO.files) == unclocked(&again.files));
 }
 
 /// Without what the clock has a say in.

@@ -1,0 +1,79 @@
+//! What a mesh is made of, and whether it is whole.
+
+use meshlod::Mesh;
+use meshlod::measure::{area, volume};
+use meshlod::mesh::{Connectivity, face_components};
+use serde_json::{Value, json};
+
+/// What there is to count and to check.
+pub struct Counts {
+    pub vertices: usize,
+    pub faces: usize,
+    pub boundary_edges: usize,
+    pub non_manifold_edges: usize,
+    pub components: usize,
+    pub closed: bool,
+    /// Tunnels of a closed manifold surface, all components together.
+    pub genus: Option<usize>,
+    pub diagonal: f64,
+    pub area: f64,
+    pub volume: f64,
+}
+
+impl Counts {
+    /// Of a mesh that uses all its vertices, as samples and levels do.
+    pub fn of(mesh: &Mesh) -> Self {
+        let connectivity = Connectivity::new(&mesh.faces, mesh.positions.len());
+        let components = face_components(&mesh.faces, mesh.positions.len()).1;
+        Self {
+            vertices: mesh.positions.len(),
+            faces: mesh.faces.len(),
+            boundary_edges: connectivity.boundary_edges(),
+            non_manifold_edges: connectivity.non_manifold_edges(),
+            components,
+            closed: connectivity.is_closed(),
+            genus: genus(mesh, &connectivity, components),
+            diagonal: mesh.bounds().diagonal(),
+            area: area(mesh),
+            volume: volume(mesh),
+        }
+    }
+
+    pub fn json(&self) -> Value {
+        json!({
+            "vertices": self.vertices,
+            "faces": self.faces,
+            "boundary_edges": self.boundary_edges,
+            "non_manifold_edges": self.non_manifold_edges,
+            "components": self.components,
+            "closed": self.closed,
+            "genus": self.genus,
+            "diagonal": self.diagonal,
+            "area": self.area,
+            "volume": self.volume,
+        })
+    }
+}
+
+/// From Euler's formula: vertices - edges + faces = 2 components - 2 genus.
+fn genus(mesh: &Mesh, connectivity: &Connectivity, components: usize) -> Option<usize> {
+    let manifold = connectivity.is_closed() && connectivity.pinched_vertices() == 0;
+    let doubled = (2 * components + connectivity.edge_count())
+        .checked_sub(mesh.positions.len() + mesh.faces.len())?;
+    manifold.then_some(doubled / 2)
+}
+
+#[cfg(test)]
+mod tests {
+    use meshlod::mesh::sample;
+
+    use super::*;
+
+    #[test]
+    fn a_sphere_has_no_tunnel_and_a_torus_one() {
+        let genus = |mesh: Mesh| Counts::of(&mesh).genus;
+        assert_eq!(genus(sample::sphere(500)), Some(0));
+        assert_eq!(genus(sample::torus(500)), Some(1));
+        assert_eq!(genus(sample::terrain(500)), None, "it is open");
+    }
+}

@@ -1,0 +1,62 @@
+//! The end of the page: how to do it oneself, and what lies beside.
+
+use maud::{Markup, html};
+
+use crate::demo::exhibit::Exhibit;
+
+/// A step, and the line that does it.
+const STEPS: [(&str, &str); 6] = [
+    ("Look inside", "meshlod info your.ply"),
+    ("Make it coarser", "meshlod simplify your.ply small.ply --ratio 10%"),
+    ("Say how far off it may be", "meshlod simplify your.ply small.ply --error 0.1% --measured"),
+    ("Measure what became of it", "meshlod measure your.ply small.ply"),
+    ("Put all levels in one file", "meshlod lods your.ply your.glb --levels 50%,25%,10%,3%"),
+    ("Draw it, and the error on it", "meshlod render your.ply error.png --heat-against small.ply"),
+];
+
+/// The commands to do each step on a mesh of one's own.
+pub fn commands() -> Markup {
+    html! {
+        section id="own" {
+            h2 { "On your own mesh" }
+            p {
+                "PLY, OBJ, STL, OFF, SMF, glTF and GLB, in and out. " code { "--json" }
+                " gives every figure to a program; " code { "meshlod help" } " has the rest."
+            }
+            ol.steps {
+                @for (what, line) in STEPS {
+                    li { h3 { (what) } pre { code { (line) } } }
+                }
+            }
+        }
+    }
+}
+
+/// What was written beside the page.
+pub fn files(exhibits: &[Exhibit]) -> Markup {
+    html! {
+        section id="files" {
+            h2 { "Files beside this page" }
+            div.files {
+                @for exhibit in exhibits {
+                    div {
+                        h3 { (exhibit.subject.title) }
+                        ul {
+                            (file(&exhibit.input_file(), "the input"))
+                            (file(&exhibit.lods_file(), "input and levels, linked by MSFT_lod"))
+                            @for chain in &exhibit.chains {
+                                @for level in &chain.levels {
+                                    (file(&exhibit.level_file(chain.method, level), ""))
+                                }
+                            }
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
+fn file(name: &str, what: &str) -> Markup {
+    html! { li { a href=(name) { (name) } @if !what.is_empty() { " " small { (what) } } } }
+}
