@@ -80,9 +80,9 @@ impl Observe for History {
         }));
         self.died.extend(hood.dying().iter().map(|dying| dying.face));
         if let Some(wedges) = &surface.wedges {
-            for pair in &hood.wedge_pairs {
-                self.blended.push(pair[placed.kept]);
-                self.values.extend(wedges.values(pair[placed.kept]));
+            for wedge in wedges.changing(hood, placed.kept) {
+                self.blended.push(wedge);
+                self.values.extend(wedges.values(wedge));
             }
         }
     }

@@ -16,6 +16,7 @@
 
 mod algorithms;
 mod candidates;
+mod charts;
 mod checks;
 mod clean;
 mod contracted;

@@ -141,7 +141,7 @@ fn add_face(
     }
 }
 
-/// Whether the two faces of an edge use different wedges at an end of it.
+/// Whether the two faces of an edge use different charts at an end of it.
 fn is_seam(surface: &Surface, side: Side, twin: Side) -> bool {
     let Some(wedges) = &surface.wedges else { return false };
     let ends = |side: Side| [side.corner(), (side.corner() + 1) % 3];
@@ -149,7 +149,8 @@ fn is_seam(surface: &Surface, side: Side, twin: Side) -> bool {
     ends(side).into_iter().any(|k| {
         let at: VertexId = vertex(side, k);
         ends(twin).into_iter().any(|l| {
-            vertex(twin, l) == at && wedges.at(twin.face(), l) != wedges.at(side.face(), k)
+            vertex(twin, l) == at
+                && wedges.chart_at(twin.face(), l) != wedges.chart_at(side.face(), k)
         })
     })
 }

@@ -65,7 +65,7 @@ impl Flags {
     pub(crate) const BOUNDARY: Self = Self(1);
     /// It must not move: locked, or not manifold.
     pub(crate) const PINNED: Self = Self(2);
-    /// It may have more than one wedge.
+    /// It may have more than one chart.
     pub(crate) const SEAM: Self = Self(4);
     /// A refused candidate waits for its neighbourhood to change.
     pub(crate) const AWAITED: Self = Self(8);
@@ -132,7 +132,7 @@ impl Surface {
     fn flag_seams(&mut self) {
         let Some(wedges) = &self.wedges else { return };
         let on_seam = |&v: &VertexId| {
-            let mut at = self.star(v).iter().map(|&f| wedges.at(f, self.corner(f, v)));
+            let mut at = self.star(v).iter().map(|&f| wedges.chart_at(f, self.corner(f, v)));
             let first = at.next();
             at.any(|wedge| Some(wedge) != first)
         };

@@ -1,12 +1,13 @@
 //! Attributes while the surface shrinks: wedges follow their vertices.
 //!
 //! Where an edge is contracted, the wedges that meet along it become one, blended at the new place.
-//! A wedge of the removed end that meets none has nowhere to go; so a seam can only be contracted
+//! A chart of the removed end that meets none has nowhere to go; so a seam can only be contracted
 //! along itself, or by an end that has no seam onto one that has.
 
 use meshlod_mesh::{Attributes, FaceId, Layer, LayerKind, Mesh, VertexId, WedgeId};
 use rustc_hash::FxHashMap;
 
+use crate::charts::{charts, is_shading};
 use crate::contracted::Freedom;
 use crate::neighbourhood::Neighbourhood;
 use crate::refusal::Refusal;
@@ -17,54 +18,30 @@ use crate::surface::Surface;
 pub(crate) struct Wedges {
     corners: Vec<[WedgeId; 3]>,
     layers: Vec<Layer>,
-    count: usize,
+    charts: Vec<WedgeId>,
 }
 
 impl Wedges {
     /// The wedges of a mesh that has attributes or materials.
     pub(crate) fn of(mesh: &Mesh) -> Option<Self> {
         let several_materials = mesh.materials.as_ref().filter(|m| m.names.len() > 1);
-        let mut wedges = match (&mesh.attributes, several_materials) {
-            (Some(attributes), _) => Self {
-                corners: attributes.corners.clone(),
-                layers: attributes.layers.clone(),
-                count: attributes.wedge_count,
-            },
+        let (mut corners, mut layers, mut count) = match (&mesh.attributes, several_materials) {
+            (Some(a), _) => (a.corners.clone(), a.layers.clone(), a.wedge_count),
             (None, Some(_)) => {
                 let corners = mesh.faces.iter().map(|face| face.map(|v| WedgeId(v.0))).collect();
-                Self { corners, layers: Vec::new(), count: mesh.positions.len() }
+                (corners, Vec::new(), mesh.positions.len())
             }
             (None, None) => return None,
         };
-        if let Some(materials) = several_materials {
-            wedges.split_by(&materials.of_face);
-        }
-        Some(wedges)
-    }
-
-    /// Gives each label its own wedges; the first label to use one keeps it.
-    fn split_by(&mut self, labels: &[u32]) {
-        let mut owner = vec![u32::MAX; self.count];
-        let mut copies = FxHashMap::default();
-        for (corners, &label) in self.corners.iter_mut().zip(labels) {
-            for wedge in corners {
-                let owner = &mut owner[wedge.index()];
-                if *owner == u32::MAX {
-                    *owner = label;
-                }
-                if *owner != label {
-                    let source = *wedge;
-                    *wedge = *copies.entry((source, label)).or_insert_with(|| {
-                        for layer in &mut self.layers {
-                            let from = source.index() * layer.width;
-                            layer.values.extend_from_within(from..from + layer.width);
-                        }
-                        self.count += 1;
-                        WedgeId::new(self.count - 1)
-                    });
-                }
-            }
-        }
+        let labels = several_materials.map_or(Vec::new(), |materials| {
+            let labels = split_by(&materials.of_face, &mut corners, &mut layers, count);
+            count = labels.len();
+            labels
+        });
+        let of_corners =
+            mesh.faces.iter().flatten().copied().zip(corners.iter().flatten().copied());
+        let charts = charts(&layers, &labels, count, of_corners);
+        Some(Self { corners, layers, charts })
     }
 
     /// The wedge at a corner of a face.
@@ -90,7 +67,18 @@ impl Wedges {
         }
     }
 
-    /// Which ends of the edge can be given up: those whose every wedge meets exactly one wedge of
+    /// The chart at a corner of a face.
+    #[inline]
+    pub(crate) fn chart_at(&self, face: FaceId, corner: usize) -> WedgeId {
+        self.chart(self.at(face, corner))
+    }
+
+    #[inline]
+    fn chart(&self, wedge: WedgeId) -> WedgeId {
+        self.charts[wedge.index()]
+    }
+
+    /// Which ends of the edge can be given up: those whose every chart meets exactly one chart of
     /// the other end.
     pub(crate) fn freedom(
         &self,
@@ -100,8 +88,10 @@ impl Wedges {
     ) -> Result<Freedom, Refusal> {
         let gives_up = |end: usize| {
             surface.star(ends[end]).iter().all(|&face| {
-                let wedge = self.at(face, surface.corner(face, ends[end]));
-                pairs.iter().filter(|pair| pair[end] == wedge).count() == 1
+                let chart = self.chart_at(face, surface.corner(face, ends[end]));
+                let mut met = pairs.iter().filter(|pair| self.chart(pair[end]) == chart);
+                let other = |pair: &[WedgeId; 2]| self.chart(pair[1 - end]);
+                met.next().is_some_and(|first| met.all(|pair| other(pair) == other(first)))
             })
         };
         match (gives_up(0), gives_up(1)) {
@@ -112,21 +102,55 @@ impl Wedges {
         }
     }
 
-    /// Moves the corners of the removed end to the wedges of the kept one, and blends those a way
-    /// `t` (0 to 1) towards what they replace.
+    /// The wedges whose values a contraction changes; some may come more than once.
+    pub(crate) fn changing<'a>(
+        &'a self,
+        hood: &'a Neighbourhood,
+        kept: usize,
+    ) -> impl Iterator<Item = WedgeId> + 'a {
+        let paired = hood.wedge_pairs.iter().map(move |pair| pair[kept]);
+        let alone = hood.spokes.iter().filter_map(|spoke| {
+            let wedge = self.at(spoke.face, spoke.corner());
+            let meets = |pair: &[WedgeId; 2]| pair[spoke.owner()] == wedge;
+            (!hood.wedge_pairs.iter().any(meets)).then_some(wedge)
+        });
+        paired.chain(alone)
+    }
+
+    /// Makes one set of wedges of the two ends'. Those that meet along the edge become one, blended
+    /// a way `t` (0 to 1) from the kept one towards the other. The rest stay with their faces and
+    /// their shading, and take their textures from the wedge that their chart became.
     pub(crate) fn contract(&mut self, hood: &Neighbourhood, kept: usize, t: f64) {
-        let gone = 1 - kept;
-        for spoke in hood.spokes.iter().filter(|spoke| spoke.owner() != kept) {
-            let wedge = &mut self.corners[spoke.face.index()][spoke.corner()];
-            if let Some(pair) = hood.wedge_pairs.iter().find(|pair| pair[gone] == *wedge) {
-                *wedge = pair[kept];
-            }
-        }
+        let pairs = &hood.wedge_pairs;
         if t > 0.0 {
-            for pair in &hood.wedge_pairs {
-                self.layers.iter_mut().for_each(|layer| blend(layer, pair[kept], pair[gone], t));
+            for (i, pair) in pairs.iter().enumerate() {
+                // One that meets several is blended once.
+                if pairs[..i].iter().all(|before| before[kept] != pair[kept]) {
+                    let layers = self.layers.iter_mut();
+                    layers.for_each(|layer| blend(layer, pair[kept], pair[1 - kept], t));
+                }
             }
         }
+        for spoke in &hood.spokes {
+            let wedge = self.at(spoke.face, spoke.corner());
+            let end = spoke.owner();
+            if let Some(pair) = pairs.iter().find(|pair| pair[end] == wedge) {
+                self.set(spoke.face, spoke.corner(), pair[kept]);
+            } else if let Some(pair) =
+                pairs.iter().find(|p| self.chart(p[end]) == self.chart(wedge))
+            {
+                self.follow(wedge, pair[kept]);
+            }
+        }
+    }
+
+    /// Gives a wedge the chart and the textures of another; its shading stays.
+    fn follow(&mut self, wedge: WedgeId, other: WedgeId) {
+        for layer in self.layers.iter_mut().filter(|layer| !is_shading(layer)) {
+            let from = other.index() * layer.width;
+            layer.values.copy_within(from..from + layer.width, wedge.index() * layer.width);
+        }
+        self.charts[wedge.index()] = self.chart(other);
     }
 
     /// The values of a wedge in all layers, one after the other.
@@ -156,10 +180,40 @@ impl Wedges {
     pub(crate) fn select(&self, kept: &[u32]) -> Attributes {
         Attributes {
             corners: kept.iter().map(|&f| self.corners[f as usize]).collect(),
-            wedge_count: self.count,
+            wedge_count: self.charts.len(),
             layers: self.layers.clone(),
         }
     }
+}
+
+/// Gives each label wedges of its own; the first label to use one keeps it. The label of each wedge.
+fn split_by(
+    labels: &[u32],
+    corners: &mut [[WedgeId; 3]],
+    layers: &mut [Layer],
+    count: usize,
+) -> Vec<u32> {
+    let mut owner = vec![u32::MAX; count];
+    let mut copies = FxHashMap::default();
+    for (corners, &label) in corners.iter_mut().zip(labels) {
+        for wedge in corners {
+            if owner[wedge.index()] == u32::MAX {
+                owner[wedge.index()] = label;
+            }
+            if owner[wedge.index()] != label {
+                let source = *wedge;
+                *wedge = *copies.entry((source, label)).or_insert_with(|| {
+                    for layer in layers.iter_mut() {
+                        let from = source.index() * layer.width;
+                        layer.values.extend_from_within(from..from + layer.width);
+                    }
+                    owner.push(label);
+                    WedgeId::new(owner.len() - 1)
+                });
+            }
+        }
+    }
+    owner
 }
 
 /// Moves a wedge's values a way `t` towards another's, as its kind asks.

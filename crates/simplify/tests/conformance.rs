@@ -3,7 +3,9 @@
 use std::collections::HashSet;
 
 use meshlod_fixtures as fixtures;
-use meshlod_mesh::{Connectivity, Mesh, VertexId, face_components, sample};
+use meshlod_mesh::{
+    Attributes, Connectivity, Layer, LayerKind, Mesh, VertexId, WedgeId, face_components, sample,
+};
 use meshlod_simplify::{Method, Options, Report, Simplifier, Target, simplify};
 use proptest::prelude::*;
 
@@ -301,5 +303,31 @@ proptest! {
             prop_assert!(after[1] <= before[1], "non-manifold edges: {before:?} {after:?}");
             prop_assert_eq!(after[2], before[2], "components");
         }
+    }
+}
+
+#[test]
+fn normals_of_its_own_at_every_face_stop_nothing() {
+    let mut mesh = sample::torus(2000);
+    let corners = (0..mesh.faces.len() as u32 * 3).map(WedgeId).collect::<Vec<_>>();
+    let normals = mesh.faces.iter().flat_map(|&face| {
+        let [a, b, c] = mesh.triangle(face);
+        [(b - a).cross(c - a).normalize().as_vec3().to_array(); 3].concat()
+    });
+    mesh.attributes = Some(Attributes {
+        corners: corners.as_chunks::<3>().0.to_vec(),
+        wedge_count: corners.len(),
+        layers: vec![Layer {
+            kind: LayerKind::Normal,
+            name: String::new(),
+            width: 3,
+            values: normals.collect(),
+        }],
+    });
+    for method in Method::ALL {
+        let (level, report) = run(&mesh, method, 0.1);
+        assert!(report.reached, "{}", report.refusals);
+        // Where faces of several normals meet they still do: it is a crease, not one smooth vertex.
+        assert!(level.attributes.as_ref().unwrap().wedge_count > level.positions.len());
     }
 }
