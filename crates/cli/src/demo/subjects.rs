@@ -63,7 +63,7 @@ pub const ALL: [Subject; 3] = [
         normals: Normals::Creased { crease_rad: CREASE_RAD },
         lines: [24, 32, 46],
         line_opacity: 0.8,
-        direction: [-0.35, -0.75, -1.0],
+        direction: [0.4, 0.8, 0.75],
     },
 ];
 
