@@ -53,6 +53,16 @@ pub enum MeshError {
         /// How many wedges there are.
         count: usize,
     },
+    /// A wedge stands at two vertices.
+    #[error("face {face} has wedge {wedge} at vertex {vertex}, another face has it elsewhere")]
+    SharedWedge {
+        /// The face.
+        face: FaceId,
+        /// The wedge.
+        wedge: u32,
+        /// The vertex it is at there.
+        vertex: VertexId,
+    },
     /// An array that goes with another has the wrong length.
     #[error("{what} has {found} entries where {expected} are needed")]
     BadLength {
@@ -131,11 +141,29 @@ impl Mesh {
                 return Err(MeshError::BadWedge { face: FaceId::new(i), wedge: wedge.0, count });
             }
         }
+        self.validate_wedges(attributes)?;
         for layer in &attributes.layers {
             let what = format!("attribute layer \"{}\"", layer.name);
             same_length(&what, layer.values.len(), count * layer.width)?;
             if let Some(width) = fixed_width(layer.kind) {
                 same_length(&format!("a wedge of {what}"), layer.width, width)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Every wedge belongs to one vertex.
+    fn validate_wedges(&self, attributes: &Attributes) -> Result<(), MeshError> {
+        let mut home = vec![None; attributes.wedge_count];
+        for (i, (face, corners)) in self.faces.iter().zip(&attributes.corners).enumerate() {
+            for (&vertex, wedge) in face.iter().zip(corners) {
+                if *home[wedge.index()].get_or_insert(vertex) != vertex {
+                    return Err(MeshError::SharedWedge {
+                        face: FaceId::new(i),
+                        wedge: wedge.0,
+                        vertex,
+                    });
+                }
             }
         }
         Ok(())

@@ -119,13 +119,9 @@ impl<'s> SceneSimplifier<'s> {
         target: Target,
         observer: &mut dyn Observe,
     ) -> Result<Report, SimplifyError> {
-        let budget = match target {
-            Target::Faces(faces) => faces,
-            Target::Ratio(ratio) if (0.0..=1.0).contains(&ratio) => {
-                (self.input_faces() as f64 * ratio + 1e-6).floor() as usize
-            }
-            Target::Error(error) if error >= 0.0 => return self.run_within(error, observer),
-            Target::Ratio(bad) | Target::Error(bad) => return Err(SimplifyError::BadTarget(bad)),
+        let budget = match target.valid()? {
+            Target::Error(error) => return self.run_within(error, observer),
+            target => target.faces_of(self.input_faces()),
         };
         let others = self.still_faces;
         match &mut self.parts[..] {

@@ -4,10 +4,9 @@ use meshlod_mesh::Connectivity;
 
 use crate::candidates::Edges;
 use crate::checks::EDGE_CHECKS;
-use crate::engine::{Algorithm, Engine};
+use crate::engine::{Algorithm, Engine, Run};
 use crate::options::Method;
 use crate::qem::{Endpoint, Optimal, Quadrics};
-use crate::simplifier::Run;
 use crate::surface::Surface;
 
 /// Sets a method to work on a surface.

@@ -38,8 +38,10 @@ fn duplicates(faces: &[[VertexId; 3]], connectivity: &Connectivity) -> Vec<FaceI
 fn repeats_lower(faces: &[[VertexId; 3]], connectivity: &Connectivity, face: FaceId) -> bool {
     let [a, b, c] = faces[face.index()];
     let turns = [[a, b, c], [b, c, a], [c, a, b]];
+    // A hub has many faces, its rim few.
+    let corner = [a, b, c].into_iter().min_by_key(|&v| connectivity.star(v).len());
     connectivity
-        .star(a)
+        .star(corner.unwrap_or(a))
         .iter()
         .take_while(|&&other| other < face)
         .any(|other| turns.contains(&faces[other.index()]))

@@ -2,7 +2,7 @@
 //!
 //! Costs are renewed lazily. A candidate whose vertices have changed since it was costed is costed
 //! again only when it comes to the front; as long as costs rise with contractions this is the order
-//! of eager renewal, and each contraction costs one or two evaluations instead of a ring of them.
+//! of eager renewal, at about half the evaluations.
 //! A refused candidate waits until the neighbourhood of one of its vertices changes.
 
 use meshlod_mesh::{Connectivity, VertexId};
@@ -40,9 +40,8 @@ pub(crate) struct Engine<C, M, P, L> {
     taken: Vec<(Entry, Contracted)>,
     refusals: Refusals,
     error_estimate: f64,
-    /// Refused for nothing but their error, to be tried again under a wider bound than this.
-    too_far: Vec<Entry>,
-    too_far_for: f64,
+    /// The narrowest bound of the error that has refused a candidate since all were awake.
+    refused_above: f64,
 }
 
 impl<C, M, P, L> Engine<C, M, P, L>
@@ -72,56 +71,16 @@ where
             taken: Vec::new(),
             refusals: Refusals::default(),
             error_estimate: 0.0,
-            too_far: Vec::new(),
-            too_far_for: f64::INFINITY,
+            refused_above: f64::INFINITY,
         }
     }
 
-    /// Contracts until `stop` says enough or no candidate is left that may.
-    pub(crate) fn run(&mut self, stop: &Stop, observer: &mut dyn Observe) {
-        while self.surface.live_faces() > stop.faces && self.step(stop, observer) {}
-    }
-
-    /// One contraction; false when no candidate is left that may, at the cost allowed.
-    pub(crate) fn step(&mut self, stop: &Stop, observer: &mut dyn Observe) -> bool {
-        self.try_again_within(stop.error);
-        while let Some(entry) = self.next_fresh() {
-            if entry.key.cost() > stop.cost {
-                self.waiting.put(entry, &mut self.surface);
-                return false;
-            }
-            match self.contract(entry, stop, observer) {
-                Ok(()) => return true,
-                Err(refusal) => {
-                    self.refusals.add(refusal);
-                    let vertices = self.algorithm.candidates.vertices(&self.surface, entry.id);
-                    self.waiting.park(entry, &vertices, &mut self.surface);
-                    if refusal == Refusal::Error {
-                        self.too_far.push(entry);
-                        self.too_far_for = self.too_far_for.min(stop.error);
-                    }
-                }
-            }
-        }
-        false
-    }
-
-    /// The cost of the contraction that is next, before any check.
-    pub(crate) fn next_cost(&mut self) -> Option<f64> {
-        self.try_again_within(f64::INFINITY);
-        let entry = self.next_fresh()?;
-        self.waiting.put(entry, &mut self.surface);
-        Some(entry.key.cost())
-    }
-
-    /// Puts the candidates that a narrower bound refused back in the queue.
+    /// Wakes everybody where a narrower bound than this has refused somebody.
     #[inline]
     fn try_again_within(&mut self, error: f64) {
-        if error > self.too_far_for {
-            self.too_far_for = f64::INFINITY;
-            for entry in self.too_far.drain(..) {
-                self.waiting.unpark(entry, &mut self.surface);
-            }
+        if error > self.refused_above {
+            self.refused_above = f64::INFINITY;
+            self.waiting.wake_all(&mut self.surface);
         }
     }
 
@@ -135,7 +94,7 @@ where
             };
             if let Some(vertices) = self.take(entry) {
                 let entry = self.freshen(entry, &vertices);
-                if self.waiting.queue.peek().is_none_or(|next| entry < next) {
+                if self.waiting.queue.peek().is_none_or(|next| entry <= next) {
                     return Some(entry);
                 }
                 self.waiting.put(entry, &mut self.surface);
@@ -158,9 +117,12 @@ where
     /// The vertices of an entry that has left the queue; nothing if its candidate is off the books.
     #[inline]
     fn take(&mut self, entry: Entry) -> Option<Contracted> {
-        let state = std::mem::take(self.surface.state(entry.id));
-        (state == State::Queued)
-            .then(|| self.algorithm.candidates.vertices(&self.surface, entry.id))
+        let state = self.surface.state(entry.id);
+        let queued = *state == State::Queued;
+        if matches!(state, State::Queued | State::Ghost) {
+            *state = State::Closed;
+        }
+        queued.then(|| self.algorithm.candidates.vertices(&self.surface, entry.id))
     }
 
     /// The entry, costed again if its vertices have changed.
@@ -214,21 +176,76 @@ where
         // The kept vertex has the flags of all the contracted; those who waited are awake.
         surface.unflag(hood.contracted[placed.kept], Flags::AWAITED);
     }
+}
 
-    pub(crate) fn surface(&self) -> &Surface {
+/// An engine with its algorithm erased.
+pub(crate) trait Run {
+    /// Contracts until `stop` says enough or no candidate is left that may.
+    fn run(&mut self, stop: &Stop, observer: &mut dyn Observe);
+    /// One contraction; false when no candidate is left that may, at the cost allowed.
+    fn step(&mut self, stop: &Stop, observer: &mut dyn Observe) -> bool;
+    /// The cost of the contraction that is next, before any check.
+    fn next_cost(&mut self) -> Option<f64>;
+    fn surface(&self) -> &Surface;
+    fn into_surface(self: Box<Self>) -> Surface;
+    fn refusals(&self) -> Refusals;
+    /// The greatest estimate of a contraction made so far, in model units.
+    fn error_estimate(&self) -> f64;
+}
+
+impl<C, M, P, L> Run for Engine<C, M, P, L>
+where
+    C: Candidates,
+    M: Memory,
+    P: Priority<M>,
+    L: Placement<M>,
+{
+    fn run(&mut self, stop: &Stop, observer: &mut dyn Observe) {
+        while self.surface.live_faces() > stop.faces && self.step(stop, observer) {}
+    }
+
+    fn step(&mut self, stop: &Stop, observer: &mut dyn Observe) -> bool {
+        self.try_again_within(stop.error);
+        while let Some(entry) = self.next_fresh() {
+            if entry.key.cost() > stop.cost {
+                self.waiting.put(entry, &mut self.surface);
+                return false;
+            }
+            match self.contract(entry, stop, observer) {
+                Ok(()) => return true,
+                Err(refusal) => {
+                    self.refusals.add(refusal);
+                    let vertices = self.algorithm.candidates.vertices(&self.surface, entry.id);
+                    self.waiting.park(entry, &vertices, &mut self.surface);
+                    if refusal == Refusal::Error {
+                        self.refused_above = self.refused_above.min(stop.error);
+                    }
+                }
+            }
+        }
+        false
+    }
+
+    fn next_cost(&mut self) -> Option<f64> {
+        self.try_again_within(f64::INFINITY);
+        let entry = self.next_fresh()?;
+        self.waiting.put(entry, &mut self.surface);
+        Some(entry.key.cost())
+    }
+
+    fn surface(&self) -> &Surface {
         &self.surface
     }
 
-    pub(crate) fn into_surface(self) -> Surface {
+    fn into_surface(self: Box<Self>) -> Surface {
         self.surface
     }
 
-    pub(crate) fn refusals(&self) -> Refusals {
+    fn refusals(&self) -> Refusals {
         self.refusals
     }
 
-    /// The greatest estimate of a contraction made so far, in model units.
-    pub(crate) fn error_estimate(&self) -> f64 {
+    fn error_estimate(&self) -> f64 {
         self.error_estimate
     }
 }
@@ -246,6 +263,9 @@ impl<C: Candidates, M, P: Priority<M>, L> Algorithm<C, M, P, L> {
     fn cost(&self, surface: &Surface, contracted: &Contracted) -> Option<f64> {
         let special = |&v: &VertexId| surface.flags(v).any(Flags::PINNED.or(Flags::SEAM));
         let freedom = if contracted.iter().any(special) {
+            if surface.is_crowded(contracted) {
+                return None;
+            }
             freedom(surface, contracted, &mut Vec::new()).ok()?
         } else {
             Freedom::Free
@@ -270,12 +290,8 @@ impl Waiting {
 
     #[inline]
     fn put(&mut self, entry: Entry, surface: &mut Surface) {
-        let state = surface.state(entry.id);
-        // A ghost's entry comes to life again: its key may be old, so it is costed when met.
-        if *state != State::Ghost {
-            self.queue.push(entry);
-        }
-        *state = State::Queued;
+        *surface.state(entry.id) = State::Queued;
+        self.queue.push(entry);
     }
 
     fn park(&mut self, entry: Entry, vertices: &[VertexId], surface: &mut Surface) {
@@ -288,6 +304,12 @@ impl Waiting {
 
     fn wake(&mut self, vertex: VertexId, surface: &mut Surface) {
         for entry in self.parked.remove(&vertex).into_iter().flatten() {
+            self.unpark(entry, surface);
+        }
+    }
+
+    fn wake_all(&mut self, surface: &mut Surface) {
+        for entry in std::mem::take(&mut self.parked).into_values().flatten() {
             self.unpark(entry, surface);
         }
     }

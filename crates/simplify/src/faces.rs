@@ -5,7 +5,7 @@ use meshlod_mesh::{Connectivity, FaceId, Mesh, sample};
 use crate::candidates::CandidateId;
 use crate::checks::FACE_CHECKS;
 use crate::contracted::{Contracted, Freedom};
-use crate::engine::{Algorithm, Engine};
+use crate::engine::{Algorithm, Engine, Run};
 use crate::level::level;
 use crate::neighbourhood::Neighbourhood;
 use crate::policy::{Books, Candidates, Memory, Placement, Priority, Stop};

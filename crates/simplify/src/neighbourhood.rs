@@ -15,10 +15,6 @@ use crate::contracted::{Contracted, Freedom};
 use crate::refusal::Refusal;
 use crate::surface::{Flags, Surface, corner_of};
 
-/// More faces than this around a candidate are refused. The hub of a huge fan can wait: its rim is
-/// contracted first, and an attempt at the hub would cost the square of its faces.
-const MOST_FACES: usize = 256;
-
 /// A face that survives the contraction: one corner is contracted, two are on the ring.
 #[derive(Clone, Copy, Debug)]
 pub struct Spoke {
@@ -127,15 +123,15 @@ impl Neighbourhood {
         self.spokes.clear();
         self.dying.clear();
         self.ring.clear();
-        if contracted.iter().map(|&v| surface.star(v).len()).sum::<usize>() > MOST_FACES {
+        if surface.is_crowded(&contracted) {
             return Err(Refusal::Valence);
         }
         self.freedom = freedom(surface, &contracted, &mut self.wedge_pairs)?;
         // Short loops of loads that do not wait for each other: most of the time here is memory's.
         self.star.clear();
         for (owner, &v) in contracted.iter().enumerate() {
-            let star = surface.star(v).iter();
-            self.star.extend(star.map(|&face| (face, owner as u8, surface.face(face))));
+            let star = surface.star(v);
+            self.star.extend(star.map(|face| (face, owner as u8, surface.face(face))));
         }
         for i in 0..self.star.len() {
             let (face, owner, corners) = self.star[i];
@@ -170,7 +166,7 @@ impl Neighbourhood {
         }
     }
 
-    /// A search along the ring: it is short, and stays so by [`MOST_FACES`].
+    /// A search along the ring: it is short, and stays so by [`Surface::is_crowded`].
     #[inline]
     fn ring_place(&mut self, id: VertexId, adjacent: u8, wing: u8) -> u32 {
         if let Some(place) = self.ring.iter().position(|r| r.id == id) {

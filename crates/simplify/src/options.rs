@@ -44,6 +44,34 @@ pub enum Target {
     Error(f64),
 }
 
+impl Target {
+    /// Itself, if it is one.
+    ///
+    /// # Errors
+    /// A ratio outside 0 to 1, an error below 0, NaN.
+    pub fn valid(self) -> Result<Self, SimplifyError> {
+        match self {
+            Self::Ratio(ratio) if !(0.0..=1.0).contains(&ratio) => {
+                Err(SimplifyError::BadTarget(ratio))
+            }
+            Self::Error(error) if error.is_nan() || error < 0.0 => {
+                Err(SimplifyError::BadTarget(error))
+            }
+            target => Ok(target),
+        }
+    }
+
+    /// The number of faces to go to from `all`; 0 for an error, which sets none.
+    pub fn faces_of(self, all: usize) -> usize {
+        match self {
+            Self::Faces(faces) => faces,
+            // Never more than asked for, but 29 % of 100 is 29.
+            Self::Ratio(ratio) => (all as f64 * ratio + 1e-6).floor() as usize,
+            Self::Error(_) => 0,
+        }
+    }
+}
+
 /// How to simplify.
 #[derive(Clone, Debug, Default)]
 pub struct Options {
@@ -67,6 +95,12 @@ pub enum SimplifyError {
     /// None of its faces has three different vertices.
     #[error("none of the {0} faces has three different vertices")]
     AllDegenerate(usize),
+    /// It is too small or too large to compute with.
+    #[error("the mesh is {diagonal:e} from corner to corner; scale it to between 1e-30 and 1e30")]
+    Extent {
+        /// Of its box.
+        diagonal: f64,
+    },
     /// The lock mask is for another mesh.
     #[error("the lock mask has {found} flags for {expected} vertices")]
     BadMask {

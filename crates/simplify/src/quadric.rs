@@ -100,7 +100,14 @@ impl Quadric {
     /// Q at an offset. Rounding can put it a little below zero; it is cut there.
     #[inline]
     pub(crate) fn at(&self, x: DVec3) -> f64 {
-        ((self.apply(x) + 2.0 * self.b).dot(x) + self.c).max(0.0)
+        let value = (self.apply(x) + 2.0 * self.b).dot(x) + self.c;
+        if value < 0.0 { 0.0 } else { value }
+    }
+
+    /// The value that stands for this mean squared distance.
+    #[inline]
+    pub(crate) fn mean_of(&self, squared: f64) -> f64 {
+        self.weight * squared
     }
 
     /// The root of the mean squared distance that a value of this quadric stands for.

@@ -4,12 +4,15 @@ use meshlod_mesh::{Mesh, VertexId};
 
 use crate::algorithms;
 use crate::clean;
-use crate::engine::Engine;
+use crate::engine::Run;
 use crate::level::level;
 use crate::options::{Options, Report, SimplifyError, Target};
-use crate::policy::{Candidates, Memory, Observe, Placement, Priority, Stop};
-use crate::refusal::Refusals;
+use crate::policy::{Observe, Stop};
 use crate::surface::{Flags, Surface};
+
+/// The diagonals that can be worked with. Costs go with the fifth power of a length, checks with the
+/// eighth; beyond, doubles would run out.
+const EXTENTS: std::ops::RangeInclusive<f64> = 1e-30..=1e30;
 
 /// A mesh at work. Levels taken from one run are nested: each comes from the one before.
 pub struct Simplifier<'m> {
@@ -26,59 +29,16 @@ struct Input {
     non_manifold_vertices: usize,
 }
 
-/// An engine with its algorithm erased.
-pub(crate) trait Run {
-    fn run(&mut self, stop: &Stop, observer: &mut dyn Observe);
-    fn step(&mut self, stop: &Stop, observer: &mut dyn Observe) -> bool;
-    fn next_cost(&mut self) -> Option<f64>;
-    fn surface(&self) -> &Surface;
-    fn into_surface(self: Box<Self>) -> Surface;
-    fn refusals(&self) -> Refusals;
-    fn error_estimate(&self) -> f64;
-}
-
-impl<C, M, P, L> Run for Engine<C, M, P, L>
-where
-    C: Candidates,
-    M: Memory,
-    P: Priority<M>,
-    L: Placement<M>,
-{
-    fn run(&mut self, stop: &Stop, observer: &mut dyn Observe) {
-        Engine::run(self, stop, observer);
-    }
-
-    fn step(&mut self, stop: &Stop, observer: &mut dyn Observe) -> bool {
-        Engine::step(self, stop, observer)
-    }
-
-    fn next_cost(&mut self) -> Option<f64> {
-        Engine::next_cost(self)
-    }
-
-    fn surface(&self) -> &Surface {
-        Engine::surface(self)
-    }
-
-    fn into_surface(self: Box<Self>) -> Surface {
-        Engine::into_surface(*self)
-    }
-
-    fn refusals(&self) -> Refusals {
-        Engine::refusals(self)
-    }
-
-    fn error_estimate(&self) -> f64 {
-        Engine::error_estimate(self)
-    }
-}
-
 impl<'m> Simplifier<'m> {
     /// Connects the mesh and costs its candidates; nothing is contracted yet.
     pub fn new(mesh: &'m Mesh, options: &Options) -> Result<Self, SimplifyError> {
         mesh.validate()?;
         if mesh.faces.is_empty() {
             return Err(SimplifyError::NoFaces);
+        }
+        let diagonal = mesh.bounds().diagonal();
+        if diagonal > 0.0 && !EXTENTS.contains(&diagonal) {
+            return Err(SimplifyError::Extent { diagonal });
         }
         let expected = mesh.positions.len();
         if !options.locked.is_empty() && options.locked.len() != expected {
@@ -149,22 +109,20 @@ impl<'m> Simplifier<'m> {
     }
 
     fn stop(&self, target: Target) -> Result<Stop, SimplifyError> {
-        let all = self.mesh.faces.len();
-        match target {
-            Target::Faces(faces) => Ok(Stop { faces, ..Stop::NEVER }),
-            Target::Ratio(ratio) if (0.0..=1.0).contains(&ratio) => {
-                // Never more than asked for, but 29 % of 100 is 29.
-                let faces = (all as f64 * ratio + 1e-6).floor() as usize;
-                Ok(Stop { faces, ..Stop::NEVER })
-            }
-            Target::Error(error) if error >= 0.0 => Ok(Stop { error, ..Stop::NEVER }),
-            Target::Ratio(bad) | Target::Error(bad) => Err(SimplifyError::BadTarget(bad)),
-        }
+        Ok(match target.valid()? {
+            Target::Error(error) => Stop { error, ..Stop::NEVER },
+            target => Stop { faces: target.faces_of(self.mesh.faces.len()), ..Stop::NEVER },
+        })
     }
 
     /// The mesh as it is now: unused vertices and wedges left out, the rest in the input's order.
     pub fn level(&self) -> Mesh {
         level(self.mesh, self.engine.surface())
+    }
+
+    /// How many faces there were before the first contraction.
+    pub(crate) fn first_faces(&self) -> usize {
+        self.mesh.faces.len() - self.input.degenerate_faces - self.input.duplicate_faces
     }
 
     pub(crate) fn into_surface(self) -> (&'m Mesh, Surface) {

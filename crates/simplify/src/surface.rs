@@ -24,7 +24,13 @@ pub struct Placed {
     pub error_estimate: f64,
 }
 
-/// What is known of a candidate. At most one entry of it is in the queue at any time.
+/// More faces than this around a candidate are refused.
+const MOST_FACES: usize = 256;
+
+/// The largest star that is searched for each face that leaves it.
+const SEARCHED: u32 = 32;
+
+/// What is known of a candidate.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[repr(u8)]
 pub(crate) enum State {
@@ -51,7 +57,9 @@ struct Face {
 struct Vertex {
     position: DVec3,
     star: u32,
+    /// Faces in the star, those that are gone but not yet taken out among them.
     valence: u32,
+    gone: u32,
     version: u32,
     flags: Flags,
 }
@@ -118,6 +126,7 @@ impl Surface {
                     position: mesh.positions[v].into(),
                     star: start,
                     valence: star.len() as u32,
+                    gone: 0,
                     version: 0,
                     flags,
                 }
@@ -132,7 +141,7 @@ impl Surface {
     fn flag_seams(&mut self) {
         let Some(wedges) = &self.wedges else { return };
         let on_seam = |&v: &VertexId| {
-            let mut at = self.star(v).iter().map(|&f| wedges.chart_at(f, self.corner(f, v)));
+            let mut at = self.star(v).map(|f| wedges.chart_at(f, self.corner(f, v)));
             let first = at.next();
             at.any(|wedge| Some(wedge) != first)
         };
@@ -174,9 +183,24 @@ impl Surface {
 
     /// The faces around a vertex, in no order.
     #[inline]
-    pub fn star(&self, vertex: VertexId) -> &[FaceId] {
+    pub fn star(&self, vertex: VertexId) -> impl Iterator<Item = FaceId> + '_ {
         let Vertex { star, valence, .. } = self.vertices[vertex.index()];
-        &self.stars[star as usize..(star + valence) as usize]
+        let star = &self.stars[star as usize..(star + valence) as usize];
+        star.iter().copied().filter(|face| self.faces[face.index()].alive)
+    }
+
+    /// How many faces are around a vertex.
+    #[inline]
+    pub fn valence(&self, vertex: VertexId) -> usize {
+        let Vertex { valence, gone, .. } = self.vertices[vertex.index()];
+        (valence - gone) as usize
+    }
+
+    /// Whether more faces meet in these vertices than are looked at. The hub of a huge fan can wait:
+    /// its rim is contracted first, and an attempt at the hub would cost the square of its faces.
+    #[inline]
+    pub(crate) fn is_crowded(&self, vertices: &[VertexId]) -> bool {
+        vertices.iter().map(|&v| self.valence(v)).sum::<usize>() > MOST_FACES
     }
 
     /// How many vertices the input had; ids run below this.
@@ -239,7 +263,7 @@ impl Surface {
         for dying in &hood.dying {
             self.faces[dying.face.index()].alive = false;
             if let Some(apex) = dying.apex() {
-                self.leave_star(hood.ring[apex].id, dying.face);
+                self.a_face_left(hood.ring[apex].id);
             }
         }
         self.live_faces -= hood.dying.len();
@@ -271,6 +295,7 @@ impl Surface {
         let mut joined = Vertex {
             position,
             valence: hood.spokes.len() as u32,
+            gone: 0,
             version: 1,
             ..self.vertices[kept.index()]
         };
@@ -282,7 +307,7 @@ impl Surface {
             if vertex.valence > room {
                 (room, joined.star) = (vertex.valence, vertex.star);
             }
-            vertex.valence = 0;
+            (vertex.valence, vertex.gone) = (0, 0);
         }
         if joined.valence > room {
             if self.stars.len() + hood.spokes.len() > self.stars.capacity() {
@@ -298,13 +323,23 @@ impl Surface {
         self.vertices[kept.index()] = joined;
     }
 
-    fn leave_star(&mut self, vertex: VertexId, face: FaceId) {
-        let Vertex { star, valence, .. } = &mut self.vertices[vertex.index()];
-        let star = &mut self.stars[*star as usize..(*star + *valence) as usize];
-        if let Some(place) = star.iter().position(|&f| f == face) {
-            star.swap(place, star.len() - 1);
-            *valence -= 1;
+    /// A face that is gone leaves a star: at once a small one, together with others a large one,
+    /// which would take too long to search each time.
+    fn a_face_left(&mut self, vertex: VertexId) {
+        let Vertex { star, valence, gone, .. } = &mut self.vertices[vertex.index()];
+        *gone += 1;
+        if *valence > SEARCHED && *gone * 2 < *valence {
+            return;
         }
+        let mut kept = *star as usize;
+        for place in *star as usize..(*star + *valence) as usize {
+            let face = self.stars[place];
+            if self.faces[face.index()].alive {
+                self.stars[kept] = face;
+                kept += 1;
+            }
+        }
+        (*valence, *gone) = (kept as u32 - *star, 0);
     }
 
     /// Moves the stars together again, with room for `more` and then some.

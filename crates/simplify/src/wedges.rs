@@ -57,8 +57,10 @@ impl Wedges {
         [v0, v1]: [VertexId; 2],
         pairs: &mut Vec<[WedgeId; 2]>,
     ) {
-        for &face in surface.star(v0) {
-            if surface.face(face).contains(&v1) {
+        let shorter = if surface.valence(v0) <= surface.valence(v1) { v0 } else { v1 };
+        for face in surface.star(shorter) {
+            let vertices = surface.face(face);
+            if vertices.contains(&v0) && vertices.contains(&v1) {
                 let pair = [v0, v1].map(|v| self.at(face, surface.corner(face, v)));
                 if !pairs.contains(&pair) {
                     pairs.push(pair);
@@ -87,7 +89,7 @@ impl Wedges {
         pairs: &[[WedgeId; 2]],
     ) -> Result<Freedom, Refusal> {
         let gives_up = |end: usize| {
-            surface.star(ends[end]).iter().all(|&face| {
+            surface.star(ends[end]).all(|face| {
                 let chart = self.chart_at(face, surface.corner(face, ends[end]));
                 let mut met = pairs.iter().filter(|pair| self.chart(pair[end]) == chart);
                 let other = |pair: &[WedgeId; 2]| self.chart(pair[1 - end]);
@@ -226,7 +228,12 @@ fn blend(layer: &mut Layer, wedge: WedgeId, toward: WedgeId, t: f64) {
         }
         return;
     }
-    for i in 0..layer.width {
+    // A tangent's last value is its hand, one or minus one.
+    let blended = if layer.kind == LayerKind::Tangent { 3 } else { layer.width };
+    if blended < layer.width && t > 0.5 {
+        layer.values[from + blended] = layer.values[to + blended];
+    }
+    for i in 0..blended {
         layer.values[from + i] += (layer.values[to + i] - layer.values[from + i]) * t as f32;
     }
     if matches!(layer.kind, LayerKind::Normal | LayerKind::Tangent) {

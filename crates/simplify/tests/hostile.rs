@@ -1,0 +1,125 @@
+//! Meshes made to be slow or to break the arithmetic. What counts is that they end, and how.
+
+use meshlod_fixtures as fixtures;
+use meshlod_mesh::{Attributes, Connectivity, Layer, LayerKind, Mesh, VertexId, WedgeId, sample};
+use meshlod_simplify::{Options, Refusal, SimplifyError, Target, simplify};
+
+fn run(mesh: &Mesh, target: Target) -> (Mesh, meshlod_simplify::Report) {
+    simplify(mesh, target, &Options::default()).unwrap()
+}
+
+/// `n` faces around one vertex, a little above its rim.
+fn cone(n: u32) -> Mesh {
+    let mut positions = vec![[0.0, 0.0, 0.5]];
+    positions.extend((0..n).map(|i| {
+        let (y, x) = (std::f64::consts::TAU * f64::from(i) / f64::from(n)).sin_cos();
+        [x, y, 0.0]
+    }));
+    let rim = |i: u32| VertexId(1 + i % n);
+    Mesh::new(positions, (0..n).map(|i| [VertexId(0), rim(i), rim(i + 1)]).collect())
+}
+
+#[test]
+fn a_flat_grows_no_hubs() {
+    let (level, report) = run(&fixtures::grid(200), Target::Ratio(0.02));
+    assert!(report.reached);
+    assert_eq!(report.refusals.count(Refusal::Valence), 0);
+    let connectivity = Connectivity::new(&level.faces, level.positions.len());
+    let valence = |v| connectivity.star(VertexId::new(v)).len();
+    let most = (0..level.positions.len()).map(valence).max().unwrap();
+    assert!(most < 40, "a vertex of {most} faces");
+}
+
+#[test]
+fn a_hub_shrinks_with_its_rim() {
+    let (level, report) = run(&cone(100_000), Target::Faces(100));
+    assert!(report.reached, "{}", report.refusals);
+    assert!((level.bounds().max[2] - 0.5).abs() < 0.01, "the tip is still there");
+}
+
+#[test]
+fn a_hub_given_twice_is_a_hub() {
+    let mut mesh = cone(20_000);
+    mesh.faces.extend_from_within(..);
+    let (_, report) = run(&mesh, Target::Faces(100));
+    assert_eq!((report.duplicate_faces, report.reached), (20_000, true));
+}
+
+#[test]
+fn a_bound_holds_where_faces_have_no_area() {
+    let positions = (0..200).map(|i| [f64::from(i) * f64::from(i), 0.0, 0.0]).collect();
+    let strip = |i: u32| [VertexId(i), VertexId(i + 1), VertexId(i + 2)];
+    let mesh = Mesh::new(positions, (0..198).map(strip).collect());
+    let (level, report) = run(&mesh, Target::Error(1e-6));
+    assert!(report.error_estimate <= 1e-6);
+    let ends = |mesh: &Mesh| [mesh.bounds().min[0], mesh.bounds().max[0]];
+    let [from, to] = ends(&level);
+    assert!(from.abs() < 1e-5 && (to - ends(&mesh)[1]).abs() < 1e-5, "{from} {to}");
+}
+
+#[test]
+fn scale_changes_nothing_until_it_is_refused_by_name() {
+    let scaled = |factor: f64| {
+        let mut mesh = sample::torus(1000);
+        mesh.positions.iter_mut().flatten().for_each(|x| *x *= factor);
+        simplify(&mesh, Target::Ratio(0.1), &Options::default())
+    };
+    let faces = |factor| scaled(factor).unwrap().0.faces;
+    // Powers of two round alike.
+    for factor in [2f64.powi(-90), 2f64.powi(90)] {
+        assert_eq!(faces(factor), faces(1.0), "{factor:e}");
+    }
+    for factor in [1e-40, 1e40] {
+        assert!(matches!(scaled(factor), Err(SimplifyError::Extent { .. })), "{factor:e}");
+    }
+}
+
+#[test]
+fn all_in_one_point_ends() {
+    let mut mesh = sample::sphere(2000);
+    mesh.positions.fill([1.0; 3]);
+    let (level, _) = run(&mesh, Target::Ratio(0.1));
+    assert!(level.faces.len() <= mesh.faces.len());
+}
+
+/// A sphere with one layer of four values a vertex.
+fn with_layer(kind: LayerKind, value: impl Fn(usize) -> [f32; 4]) -> Mesh {
+    let mut mesh = sample::sphere(2000);
+    let count = mesh.positions.len();
+    mesh.attributes = Some(Attributes {
+        corners: mesh.faces.iter().map(|face| face.map(|v| WedgeId(v.0))).collect(),
+        wedge_count: count,
+        layers: vec![Layer {
+            kind,
+            name: String::new(),
+            width: 4,
+            values: (0..count).flat_map(value).collect(),
+        }],
+    });
+    mesh
+}
+
+#[test]
+fn the_hand_of_a_tangent_stays_one_or_minus_one() {
+    let hand = |v: usize| if v.is_multiple_of(2) { 1.0 } else { -1.0 };
+    let mesh = with_layer(LayerKind::Tangent, |v| [1.0, 0.0, 0.0, hand(v)]);
+    let (level, _) = run(&mesh, Target::Ratio(0.1));
+    let values = &level.attributes.unwrap().layers[0].values;
+    assert!(values.iter().skip(3).step_by(4).all(|w| w.abs() == 1.0));
+}
+
+#[test]
+fn joints_are_never_blended() {
+    let mesh = with_layer(LayerKind::Joints(0), |v| [(v % 50) as f32; 4]);
+    let (level, _) = run(&mesh, Target::Ratio(0.1));
+    let values = &level.attributes.unwrap().layers[0].values;
+    assert!(values.iter().all(|joint| joint.fract() == 0.0));
+}
+
+#[test]
+fn a_wedge_at_two_vertices_is_no_mesh() {
+    let mut mesh = with_layer(LayerKind::Other, |_| [0.0; 4]);
+    mesh.attributes.as_mut().unwrap().corners[0].swap(0, 1);
+    let error = simplify(&mesh, Target::Ratio(0.5), &Options::default()).unwrap_err();
+    assert!(matches!(error, SimplifyError::Mesh(_)), "{error}");
+}
