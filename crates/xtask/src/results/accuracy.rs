@@ -9,7 +9,7 @@ use meshlod_bench::peer::{Indexed, simplify_with_update};
 use super::table::Table;
 use crate::project::Project;
 
-/// Mean and RMS, in % of the diagonal, at a ratio.
+/// Mean, RMS and maximum, in % of the diagonal, at a ratio.
 struct Peer {
     ratio: f64,
     mean: f64,
