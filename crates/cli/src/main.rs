@@ -28,12 +28,12 @@ use crate::args::Cli;
 use crate::failure::Failure;
 use crate::session::Session;
 
-/// What shells report of a program that Ctrl-C has ended.
+/// What shells report of a program that Ctrl-C has ended; said of SIGTERM and SIGHUP too.
 const INTERRUPTED: i32 = 130;
 
 fn main() -> ExitCode {
     let cli = Cli::parse();
-    // Without a handler Ctrl-C still ends the program; it only might leave a temporary file.
+    // Without a handler signals still end the program; it only might leave a temporary file.
     let _ = ctrlc::set_handler(|| {
         meshlod::io::abandon_files();
         exit(INTERRUPTED);

@@ -64,15 +64,18 @@ fn a_pipe_that_closes_is_no_panic() {
 fn an_interrupted_run_leaves_nothing() {
     let run = Run::new();
     run.sample("knot", 400_000, "in.ply");
-    let mut child =
-        run.command(&["simplify", "in.ply", "out.ply", "--ratio", "1%"]).spawn().unwrap();
-    std::thread::sleep(std::time::Duration::from_millis(50));
-    let killed = Command::new("kill").args(["-INT", &child.id().to_string()]).status();
-    assert!(killed.is_ok_and(|status| status.success()));
-    // It may have been done before; then the file is there, and whole.
-    if child.wait().unwrap().code() == Some(0) {
-        assert_eq!(run.json(&["info", "out.ply"])["closed"], true);
-    } else {
-        assert_eq!(run.files(), ["in.ply"]);
+    for signal in ["-INT", "-TERM", "-HUP"] {
+        let mut child =
+            run.command(&["simplify", "in.ply", "out.ply", "--ratio", "1%"]).spawn().unwrap();
+        std::thread::sleep(std::time::Duration::from_millis(50));
+        let killed = Command::new("kill").args([signal, &child.id().to_string()]).status();
+        assert!(killed.is_ok_and(|status| status.success()));
+        // It may have been done before; then the file is there, and whole.
+        if child.wait().unwrap().code() == Some(0) {
+            assert_eq!(run.json(&["info", "out.ply"])["closed"], true);
+            std::fs::remove_file(run.path("out.ply")).unwrap();
+        } else {
+            assert_eq!(run.files(), ["in.ply"], "{signal}");
+        }
     }
 }
