@@ -5,6 +5,8 @@ use std::fmt;
 use meshlod::io::Precision;
 use meshlod::{Format, Method, Target};
 
+use crate::numbers::count;
+
 /// A bound of the error.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Bound {
@@ -61,6 +63,9 @@ pub enum Look {
     Along([f64; 3]),
 }
 
+/// More threads than any machine has use for, fewer than would choke one.
+const MAX_THREADS: usize = 256;
+
 /// `10%` or `0.1`.
 pub fn ratio(text: &str) -> Result<f64, String> {
     let ratio = match text.strip_suffix('%') {
@@ -104,6 +109,11 @@ pub fn positive(text: &str) -> Result<usize, String> {
         Ok(number) if number > 0 => Ok(number),
         _ => Err("it must be a whole number above 0".into()),
     }
+}
+
+/// A number of threads.
+pub fn threads(text: &str) -> Result<usize, String> {
+    at_most(MAX_THREADS, text)
 }
 
 /// `640x480`.
@@ -154,6 +164,13 @@ pub fn precision(text: &str) -> Result<Precision, String> {
         "f32" => Ok(Precision::F32),
         "f64" => Ok(Precision::F64),
         _ => Err("write f32 or f64".into()),
+    }
+}
+
+fn at_most(most: usize, text: &str) -> Result<usize, String> {
+    match positive(text)? {
+        number if number <= most => Ok(number),
+        _ => Err(format!("at most {}", count(most))),
     }
 }
 

@@ -30,7 +30,7 @@ pub struct Global {
     #[arg(long, global = true)]
     pub json: bool,
     /// Threads to work with [default: one per core]
-    #[arg(long, global = true, value_name = "N", value_parser = amounts::positive)]
+    #[arg(long, global = true, value_name = "N", value_parser = amounts::threads)]
     pub threads: Option<usize>,
     /// The format of -, as a suffix: ply, glb, …
     #[arg(long, global = true, value_name = "SUFFIX", value_parser = amounts::format)]

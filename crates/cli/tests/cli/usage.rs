@@ -17,6 +17,7 @@ fn wrong_usage_is_2_and_writes_nothing() {
         &["simplify", "in.ply", "out.ply", "--faces", "10", "--method", "magic"],
         &["simplify", "in.ply", "out.ply", "--faces", "10", "--no-weld", "--weld", "1"],
         &["simplify", "in.ply", "out.ply", "--faces", "10", "--threads", "0"],
+        &["simplify", "in.ply", "out.ply", "--faces", "10", "--threads", "257"],
         &["simplify", "-", "out.ply", "--faces", "10"],
         &["simplify", "in.ply", "-", "--faces", "10"],
         &["simplify", "in.ply", "-", "--faces", "10", "--format", "ply", "--json"],
