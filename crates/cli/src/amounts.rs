@@ -66,6 +66,9 @@ pub enum Look {
 /// More threads than any machine has use for, fewer than would choke one.
 const MAX_THREADS: usize = 256;
 
+/// Samples that fit in the memory of a common machine.
+const MAX_SAMPLES: usize = 100_000_000;
+
 /// `10%` or `0.1`.
 pub fn ratio(text: &str) -> Result<f64, String> {
     let ratio = match text.strip_suffix('%') {
@@ -114,6 +117,11 @@ pub fn positive(text: &str) -> Result<usize, String> {
 /// A number of threads.
 pub fn threads(text: &str) -> Result<usize, String> {
     at_most(MAX_THREADS, text)
+}
+
+/// A number of samples.
+pub fn samples(text: &str) -> Result<usize, String> {
+    at_most(MAX_SAMPLES, text)
 }
 
 /// `640x480`.

@@ -110,7 +110,7 @@ impl Writing {
 #[derive(Args)]
 pub struct Sampling {
     /// Samples each way, beside all vertices
-    #[arg(long, value_name = "N", default_value_t = 500_000, value_parser = amounts::positive)]
+    #[arg(long, value_name = "N", default_value_t = 500_000, value_parser = amounts::samples)]
     samples: usize,
     /// What the samples are drawn by
     #[arg(long, value_name = "N", default_value_t = 0)]

@@ -27,6 +27,7 @@ fn wrong_usage_is_2_and_writes_nothing() {
         &["lods", "in.ply", "out.glb", "--levels", "50%,10%,20"],
         &["measure", "-", "-", "--format", "ply"],
         &["measure", "in.ply", "in.ply", "--samples", "0"],
+        &["measure", "in.ply", "in.ply", "--samples", "100000001"],
         &["sample", "teapot", "out.ply"],
         &["sample", "fish", "out.ply", "--faces", "9999999999"],
         &["render", "in.ply", "out.png", "--size", "0x9"],
