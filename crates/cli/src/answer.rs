@@ -13,15 +13,15 @@ pub struct Answer {
     pub json: Value,
     /// What people read: whole lines.
     pub text: String,
-    /// Whether standard output holds a mesh, so that text has to go elsewhere.
-    pub mesh_on_stdout: bool,
+    /// Whether standard output holds a mesh or a picture, so that text has to go elsewhere.
+    pub file_on_stdout: bool,
     /// Whether the user was strict about a target that was not reached.
     pub missed: bool,
 }
 
 impl Answer {
     pub fn new(json: Value, text: String) -> Self {
-        Self { json, text, mesh_on_stdout: false, missed: false }
+        Self { json, text, file_on_stdout: false, missed: false }
     }
 
     /// Prints itself where it belongs, and gives the exit code.
@@ -30,7 +30,7 @@ impl Answer {
     pub fn print(&self, json: bool) -> Result<ExitCode, Failure> {
         let written = if json {
             write_all(&mut io::stdout(), &format!("{:#}\n", self.json))
-        } else if self.mesh_on_stdout {
+        } else if self.file_on_stdout {
             write_all(&mut io::stderr(), &self.text)
         } else {
             write_all(&mut io::stdout(), &self.text)

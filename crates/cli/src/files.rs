@@ -1,9 +1,9 @@
-//! Meshes in and out, by path or through a pipe.
+//! Meshes in and out, pictures out, by path or through a pipe.
 
 use std::io::{self, BufWriter, Read, Write};
 use std::path::Path;
 
-use meshlod::io::{gltf, obj, off, ply, read_bytes, smf, stl};
+use meshlod::io::{gltf, obj, off, ply, read_bytes, smf, stl, write_file};
 use meshlod::{Format, Scene, WriteOptions};
 
 use crate::args::{Reading, Writing};
@@ -39,15 +39,33 @@ pub fn check_output(path: &Path, session: &Session) -> Result<Format, Failure> {
     if !is_pipe(path) {
         return Ok(Format::of_path(path)?);
     }
-    if session.json {
-        return Err(Failure::usage("-: --json has standard output to itself; name a file"));
-    }
+    check_stdout(session)?;
     match pipe_format(session)? {
         Format::Gltf => {
             Err(Failure::usage("-: .gltf keeps its buffer beside it; use --format glb"))
         }
         format => Ok(format),
     }
+}
+
+/// Refuses a picture that could not be written, before any work is done.
+pub fn check_picture(path: &Path, session: &Session) -> Result<(), Failure> {
+    if is_pipe(path) {
+        return check_stdout(session);
+    }
+    match path.extension() {
+        Some(suffix) if suffix.eq_ignore_ascii_case("png") => Ok(()),
+        _ => Err(Failure::usage(format_args!("{}: pictures are .png", name(path)))),
+    }
+}
+
+/// Writes a PNG file, or standard output.
+pub fn write_picture(path: &Path, png: &[u8]) -> Result<(), Failure> {
+    if !is_pipe(path) {
+        return Ok(write_file(path, png)?);
+    }
+    let mut out = io::stdout().lock();
+    out.write_all(png).and_then(|()| out.flush()).map_err(|error| Failure::at(path, error))
 }
 
 /// Writes a mesh file, or standard output.
@@ -87,6 +105,13 @@ fn write_pipe(
         }
     };
     written.map_err(|error| Failure::at(Path::new("-"), error))
+}
+
+fn check_stdout(session: &Session) -> Result<(), Failure> {
+    match session.json {
+        true => Err(Failure::usage("-: --json has standard output to itself; name a file")),
+        false => Ok(()),
+    }
 }
 
 fn pipe_format(session: &Session) -> Result<Format, Failure> {

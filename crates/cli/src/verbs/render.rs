@@ -3,7 +3,6 @@
 use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
-use meshlod::io::write_file;
 use meshlod::measure::vertex_errors;
 use meshlod::mesh::LayerKind;
 use meshlod::picture::{
@@ -27,7 +26,7 @@ pub struct Render {
     /// File to read, or -
     #[arg(value_name = "IN")]
     input: PathBuf,
-    /// PNG to write
+    /// PNG to write, or -
     #[arg(value_name = "OUT.png")]
     output: PathBuf,
     /// Width and height in pixels
@@ -76,6 +75,7 @@ struct Heat {
 
 impl Render {
     pub fn run(self, session: &Session) -> Result<Answer, Failure> {
+        files::check_picture(&self.output, session)?;
         let scene = files::read(&self.input, &self.reading, session)?;
         let (materials, unread) = materials_of(&scene);
         for image in unread {
@@ -93,7 +93,7 @@ impl Render {
         let style = self.style(&mesh, materials.as_ref(), heat.as_ref());
         let picture = render(&mesh, &self.camera(&mesh), &style)
             .map_err(|error| Failure::at(&self.input, error))?;
-        write_file(&self.output, &picture.png())?;
+        files::write_picture(&self.output, &picture.png())?;
 
         let [width, height] = self.size;
         let file = files::name(&self.output);
@@ -111,7 +111,7 @@ impl Render {
             let (max, part) = (value(max), percent(max_percent));
             text += &format!("darkest at a distance of {max} ({part} of the diagonal)\n");
         }
-        Ok(Answer::new(json, text))
+        Ok(Answer { file_on_stdout: files::is_pipe(&self.output), ..Answer::new(json, text) })
     }
 
     fn heat(&self, mesh: &Mesh, session: &Session) -> Result<Option<Heat>, Failure> {

@@ -48,7 +48,7 @@ impl Sample {
         });
         let out = files::name(&self.output);
         let text = format!("{out}: {} vertices, {} faces\n", count(vertices), count(faces));
-        Ok(Answer { mesh_on_stdout: files::is_pipe(&self.output), ..Answer::new(json, text) })
+        Ok(Answer { file_on_stdout: files::is_pipe(&self.output), ..Answer::new(json, text) })
     }
 }
 

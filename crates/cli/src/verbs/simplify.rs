@@ -106,7 +106,7 @@ impl Simplify {
         }
         let done = Reduced { meshes: Vec::new(), report, measured };
         Ok(Answer {
-            mesh_on_stdout: files::is_pipe(&self.output),
+            file_on_stdout: files::is_pipe(&self.output),
             missed: self.strict && !report.reached,
             ..Answer::new(self.json(&done, time), self.text(&done, time))
         })

@@ -33,6 +33,16 @@ fn every_format_but_gltf_goes_through_a_pipe() {
 }
 
 #[test]
+fn a_picture_goes_through_a_pipe() {
+    let run = Run::new();
+    run.sample("sphere", 100, "in.ply");
+    let done = run.run(&["render", "in.ply", "-", "--size", "16x16"]);
+    assert_eq!(done.code, 0, "{}", done.err);
+    assert!(done.out.starts_with(b"\x89PNG") && done.out.ends_with(b"IEND\xaeB`\x82"));
+    assert_eq!((done.err.as_str(), run.files()), ("-: 16 x 16\n", vec!["in.ply".into()]));
+}
+
+#[test]
 fn errors_of_a_pipe_name_it() {
     let run = Run::new();
     let done = run.run_with(&["info", "-", "--format", "off"], b"OFF\n3 x 0\n");

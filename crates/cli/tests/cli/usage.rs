@@ -31,6 +31,9 @@ fn wrong_usage_is_2_and_writes_nothing() {
         &["sample", "teapot", "out.ply"],
         &["sample", "fish", "out.ply", "--faces", "9999999999"],
         &["render", "in.ply", "out.png", "--size", "0x9"],
+        &["render", "in.ply", "out.jpg"],
+        &["render", "in.ply", "out"],
+        &["render", "in.ply", "-", "--json"],
         &["render", "in.ply", "out.png", "--view", "sideways"],
     ];
     for arguments in cases {
