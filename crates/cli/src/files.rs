@@ -1,5 +1,6 @@
 //! Meshes in and out, pictures out, by path or through a pipe.
 
+use std::fs;
 use std::io::{self, BufWriter, Read, Write};
 use std::path::Path;
 
@@ -37,7 +38,8 @@ pub fn read(path: &Path, reading: &Reading, session: &Session) -> Result<Scene, 
 /// Refuses an output that could not be written, before any work is done.
 pub fn check_output(path: &Path, session: &Session) -> Result<Format, Failure> {
     if !is_pipe(path) {
-        return Ok(Format::of_path(path)?);
+        let format = Format::of_path(path).map_err(Failure::usage)?;
+        return check_place(path).map(|()| format);
     }
     check_stdout(session)?;
     match pipe_format(session)? {
@@ -54,8 +56,21 @@ pub fn check_picture(path: &Path, session: &Session) -> Result<(), Failure> {
         return check_stdout(session);
     }
     match path.extension() {
-        Some(suffix) if suffix.eq_ignore_ascii_case("png") => Ok(()),
+        Some(suffix) if suffix.eq_ignore_ascii_case("png") => check_place(path),
         _ => Err(Failure::usage(format_args!("{}: pictures are .png", name(path)))),
+    }
+}
+
+/// Refuses a file that has no folder to be in, or whose place a folder has.
+pub fn check_place(path: &Path) -> Result<(), Failure> {
+    if path.is_dir() {
+        return Err(Failure::at(path, "is a folder; name a file to write"));
+    }
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
+    match folder.map(fs::metadata).transpose() {
+        Ok(Some(found)) if !found.is_dir() => Err(Failure::at(path, "its folder is a file")),
+        Ok(_) => Ok(()),
+        Err(error) => Err(Failure::at(path, format_args!("its folder: {error}"))),
     }
 }
 

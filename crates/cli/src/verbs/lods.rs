@@ -62,6 +62,9 @@ impl Lods {
             return Err(Failure::usage("-: levels need a file to go to"));
         }
         let format = files::check_output(&self.output, session)?;
+        if !holds_levels(format) {
+            (1..=self.levels.len()).try_for_each(|i| files::check_place(&self.file_of(i)))?;
+        }
         let mut scene = files::read(&self.input, &self.reading, session)?;
         let (mut chain, time) = self.chain(&scene, &self.manner.options(), session)?;
         let input_faces = chain.first().map_or(0, |link| link.reduced.report.input_faces);
@@ -125,7 +128,7 @@ impl Lods {
         session: &Session,
     ) -> Result<(), Failure> {
         let meshes = |link: &mut Link| std::mem::take(&mut link.reduced.meshes);
-        if !matches!(format, Format::Glb | Format::Gltf) {
+        if !holds_levels(format) {
             for link in chain {
                 reduce::replace(scene, meshes(link));
                 files::write(&link.file, scene, &self.writing, session)?;
@@ -200,6 +203,11 @@ impl Lods {
         }
         text + &reduce::seconds_line(time)
     }
+}
+
+/// Whether one file holds all levels.
+fn holds_levels(format: Format) -> bool {
+    matches!(format, Format::Glb | Format::Gltf)
 }
 
 /// Refuses a level that is not coarser than the one before.

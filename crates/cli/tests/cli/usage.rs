@@ -25,6 +25,9 @@ fn wrong_usage_is_2_and_writes_nothing() {
         &["lods", "in.ply", "-", "--format", "glb"],
         &["lods", "in.ply", "out.glb", "--levels", "50%,x"],
         &["lods", "in.ply", "out.glb", "--levels", "50%,10%,20"],
+        &["simplify", "none.ply", "out.xyz", "--faces", "9"],
+        &["lods", "none.ply", "out"],
+        &["sample", "sphere", "out.fbx"],
         &["measure", "-", "-", "--format", "ply"],
         &["measure", "in.ply", "in.ply", "--samples", "0"],
         &["measure", "in.ply", "in.ply", "--samples", "100000001"],
@@ -58,13 +61,19 @@ fn help_and_version_are_answers() {
 fn what_could_not_be_done_is_1_and_one_line() {
     let run = Run::new();
     run.sample("sphere", 100, "in.ply");
-    let cases: [(&[&str], &str); 6] = [
+    let folders = ["folder.glb", "folder.ply", "l_LOD2.off"];
+    folders.iter().for_each(|name| std::fs::create_dir(run.path(name)).unwrap());
+    let cases: [(&[&str], &str); 10] = [
         (&["info", "none.ply"], "none.ply: "),
         (&["info", "in.fbx"], "in.fbx: unknown suffix"),
-        (&["simplify", "in.ply", "out.xyz", "--faces", "9"], "out.xyz: unknown suffix"),
-        (&["simplify", "in.ply", "no/out.ply", "--faces", "9"], "no/out.ply: "),
+        (&["simplify", "none.ply", "no/out.ply", "--faces", "9"], "no/out.ply: "),
+        (&["simplify", "none.ply", "in.ply/out.ply", "--faces", "9"], "in.ply/out.ply: "),
+        (&["lods", "none.ply", "no/out.off"], "no/out.off: "),
+        (&["sample", "sphere", "folder.ply"], "folder.ply: is a folder"),
+        (&["lods", "none.ply", "folder.glb"], "folder.glb: is a folder"),
+        (&["lods", "none.ply", "l.off"], "l_LOD2.off: is a folder"),
         (&["measure", "in.ply", "none.obj"], "none.obj: "),
-        (&["render", "in.ply", "no/out.png"], "no/out.png: "),
+        (&["render", "none.ply", "no/out.png"], "no/out.png: "),
     ];
     for (arguments, beginning) in cases {
         for json in [&[][..], &["--json"]] {
@@ -73,5 +82,5 @@ fn what_could_not_be_done_is_1_and_one_line() {
             assert!(done.only_line().starts_with(&format!("meshlod: {beginning}")), "{done:?}");
         }
     }
-    assert_eq!(run.files(), ["in.ply"]);
+    assert_eq!(run.files(), ["folder.glb", "folder.ply", "in.ply", "l_LOD2.off"]);
 }
