@@ -106,6 +106,11 @@ pub fn length(text: &str) -> Result<f64, String> {
     }
 }
 
+/// A whole number.
+pub fn whole(text: &str) -> Result<usize, String> {
+    text.parse().map_err(|_| "it must be a whole number, at least 0".into())
+}
+
 /// A whole number above 0.
 pub fn positive(text: &str) -> Result<usize, String> {
     match text.parse() {

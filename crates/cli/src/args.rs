@@ -30,7 +30,8 @@ pub struct Global {
     #[arg(long, global = true)]
     pub json: bool,
     /// Threads to work with [default: one per core]
-    #[arg(long, global = true, value_name = "N", value_parser = amounts::threads)]
+    #[arg(long, global = true, value_name = "N", value_parser = amounts::threads,
+        allow_negative_numbers = true)]
     pub threads: Option<usize>,
     /// The format of -, as a suffix: ply, glb, …
     #[arg(long, global = true, value_name = "SUFFIX", value_parser = amounts::format)]
@@ -77,7 +78,8 @@ pub struct Reading {
     #[arg(long, conflicts_with = "weld")]
     no_weld: bool,
     /// Make one vertex of those within EPS of each other, in model units
-    #[arg(long, value_name = "EPS", value_parser = amounts::length)]
+    #[arg(long, value_name = "EPS", value_parser = amounts::length,
+        allow_negative_numbers = true)]
     weld: Option<f64>,
 }
 
@@ -110,10 +112,11 @@ impl Writing {
 #[derive(Args)]
 pub struct Sampling {
     /// Samples each way, beside all vertices
-    #[arg(long, value_name = "N", default_value_t = 500_000, value_parser = amounts::samples)]
+    #[arg(long, value_name = "N", default_value_t = 500_000, value_parser = amounts::samples,
+        allow_negative_numbers = true)]
     samples: usize,
     /// What the samples are drawn by
-    #[arg(long, value_name = "N", default_value_t = 0)]
+    #[arg(long, value_name = "N", default_value_t = 0, allow_negative_numbers = true)]
     seed: u64,
 }
 

@@ -32,7 +32,7 @@ pub struct Lods {
     output: PathBuf,
     /// Sizes of the levels, finest first: 50% or 0.5 of the faces, or a number of them
     #[arg(long, value_name = "SIZES", value_delimiter = ',', default_value = "50%,25%,10%",
-        value_parser = amounts::size)]
+        value_parser = amounts::size, allow_hyphen_values = true)]
     levels: Vec<Size>,
     #[command(flatten)]
     manner: Manner,

@@ -25,7 +25,7 @@ pub struct Sample {
     #[arg(value_name = "OUT")]
     output: PathBuf,
     /// About how many faces [default: what shows it well]
-    #[arg(long, value_name = "N", value_parser = faces)]
+    #[arg(long, value_name = "N", value_parser = faces, allow_negative_numbers = true)]
     faces: Option<usize>,
     #[command(flatten)]
     writing: Writing,

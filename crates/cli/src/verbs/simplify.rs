@@ -47,13 +47,13 @@ pub struct Simplify {
 #[group(required = true, multiple = false)]
 struct Goal {
     /// To this many faces
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_parser = amounts::whole, allow_negative_numbers = true)]
     faces: Option<usize>,
     /// To this part of the faces: 10% or 0.1
-    #[arg(long, value_name = "PART", value_parser = amounts::ratio)]
+    #[arg(long, value_name = "PART", value_parser = amounts::ratio, allow_hyphen_values = true)]
     ratio: Option<f64>,
     /// As far as the estimated error stays within: 0.5 in model units, 0.1% of the diagonal
-    #[arg(long, value_name = "BOUND", value_parser = amounts::bound)]
+    #[arg(long, value_name = "BOUND", value_parser = amounts::bound, allow_hyphen_values = true)]
     error: Option<Bound>,
 }
 

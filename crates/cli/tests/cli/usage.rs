@@ -48,6 +48,25 @@ fn wrong_usage_is_2_and_writes_nothing() {
 }
 
 #[test]
+fn amounts_below_zero_get_the_reason_of_their_option() {
+    let run = Run::new();
+    let cases: [(&[&str], &str); 7] = [
+        (&["simplify", "a.ply", "b.ply", "--error", "-1"], "at least 0"),
+        (&["simplify", "a.ply", "b.ply", "--error", "-1%"], "at least 0"),
+        (&["simplify", "a.ply", "b.ply", "--ratio", "-10%"], "from 0% to 100%"),
+        (&["simplify", "a.ply", "b.ply", "--faces", "-1"], "a whole number"),
+        (&["lods", "a.ply", "b.glb", "--levels", "-50%"], "from 0% to 100%"),
+        (&["measure", "a.ply", "b.ply", "--samples", "-5"], "above 0"),
+        (&["info", "a.ply", "--threads", "-2"], "above 0"),
+    ];
+    for (arguments, reason) in cases {
+        let done = run.run(arguments);
+        assert!(done.code == 2 && done.err.contains(reason), "{arguments:?}: {done:?}");
+        assert!(!done.err.contains("unexpected argument"), "{done:?}");
+    }
+}
+
+#[test]
 fn help_and_version_are_answers() {
     let run = Run::new();
     for arguments in [&["--help"][..], &["--version"], &["simplify", "--help"]] {
