@@ -5,7 +5,7 @@ use std::fmt;
 use meshlod::io::Precision;
 use meshlod::{Format, Method, Target};
 
-use crate::numbers::count;
+use crate::numbers::{count, plural};
 
 /// A bound of the error.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -47,7 +47,7 @@ impl Size {
 impl fmt::Display for Size {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Faces(faces) => write!(f, "{faces} faces"),
+            Self::Faces(faces) => write!(f, "{faces} face{}", plural(*faces)),
             // What a user wrote as 12.5% shall not come back as 12.500000000000002%.
             Self::Ratio(ratio) => write!(f, "{}%", (ratio * 1e8).round() / 1e6),
         }
@@ -220,6 +220,7 @@ mod tests {
             assert_eq!(size(text).unwrap().to_string(), text);
         }
         assert_eq!(size("5000").unwrap().to_string(), "5000 faces");
+        assert_eq!(size("1").unwrap().to_string(), "1 face");
         assert_eq!(size("0.25"), Ok(Size::Ratio(0.25)));
     }
 

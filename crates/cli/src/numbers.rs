@@ -15,7 +15,12 @@ pub fn count(number: usize) -> String {
 
 /// A count of faces: 1 face, 2 faces.
 pub fn faces(number: usize) -> String {
-    format!("{} face{}", count(number), if number == 1 { "" } else { "s" })
+    format!("{} face{}", count(number), plural(number))
+}
+
+/// What a word takes on beside a count: nothing for one.
+pub fn plural(number: usize) -> &'static str {
+    if number == 1 { "" } else { "s" }
 }
 
 /// Six digits that matter: 0.00123457, 12.3457, 1.23457e12.

@@ -9,7 +9,7 @@ use meshlod::{Mesh, Options, Report, Scene, SceneError, SceneSimplifier, Target}
 use serde_json::{Map, Value, json};
 
 use crate::failure::Failure;
-use crate::numbers::{count, faces, value};
+use crate::numbers::{count, faces, plural, value};
 use crate::session::Session;
 
 /// A level of a scene.
@@ -128,8 +128,10 @@ pub fn oddities(report: &Report) -> String {
             text.push_str(&format!("{} {what}\n", count(number)));
         }
     };
-    line(report.degenerate_faces, "degenerate faces left out");
-    line(report.duplicate_faces, "duplicate faces left out");
+    let faces = plural(report.degenerate_faces);
+    line(report.degenerate_faces, &format!("degenerate face{faces} left out"));
+    let faces = plural(report.duplicate_faces);
+    line(report.duplicate_faces, &format!("duplicate face{faces} left out"));
     line(report.non_manifold_vertices, "vertices kept in place: not manifold there");
     text
 }

@@ -13,7 +13,7 @@ use crate::answer::Answer;
 use crate::args::Writing;
 use crate::failure::Failure;
 use crate::files;
-use crate::numbers::count;
+use crate::numbers::{self, count};
 use crate::session::Session;
 
 #[derive(Args)]
@@ -47,7 +47,7 @@ impl Sample {
             "faces": faces,
         });
         let out = files::name(&self.output);
-        let text = format!("{out}: {} vertices, {} faces\n", count(vertices), count(faces));
+        let text = format!("{out}: {} vertices, {}\n", count(vertices), numbers::faces(faces));
         Ok(Answer { file_on_stdout: files::is_pipe(&self.output), ..Answer::new(json, text) })
     }
 }
