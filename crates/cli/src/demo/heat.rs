@@ -5,7 +5,7 @@ use meshlod::picture::{ColorMap, Values};
 /// Powers of ten of a percent of the diagonal: what has the first and the last colour.
 const DECADES: [i32; 2] = [-3, 0];
 
-/// Errors in model units as values for [`paint`].
+/// Errors in model units as values for [`Paint`](meshlod::picture::Paint).
 pub fn values(errors: &[f64], diagonal: f64) -> Vec<f32> {
     let decade = |error: &f64| (100.0 * error / diagonal).log10() as f32;
     errors.iter().map(|error| decade(error).max(DECADES[0] as f32)).collect()
