@@ -150,11 +150,16 @@ fn tear(mesh: &mut Mesh) {
 
 fn write_obj(path: &Path, scene: &Scene, precision: Precision) -> Result<(), IoError> {
     let library = (!scene.materials.is_empty()).then(|| format!("{}.mtl", stem(path)));
-    for image in scene.images.iter().filter(|image| !image.bytes.is_empty()) {
+    let mut images = scene.images.clone();
+    for image in images.iter_mut().filter(|image| !image.bytes.is_empty()) {
+        if let Some(name) = plain_name(path, image) {
+            image.name = name;
+        }
         write_image(path, image)?;
     }
     if let Some(name) = &library {
-        write_one(&path.with_file_name(name), |out| obj::write_mtl(scene, out))?;
+        let named = Scene { materials: scene.materials.clone(), images, ..Scene::default() };
+        write_one(&path.with_file_name(name), |out| obj::write_mtl(&named, out))?;
     }
     write_one(path, |out| obj::write(scene, precision, out, library.as_deref()))
 }
@@ -170,6 +175,9 @@ fn write_one(
 /// to overwrite.
 fn write_image(path: &Path, image: &Image) -> Result<(), IoError> {
     let Some(name) = inner_path(&image.name) else {
+        if is_beside(path, image) {
+            return Ok(());
+        }
         let reason = "its name leads out of the folder; write .glb, which holds images inside";
         return Err(IoError::unfit(path, Unfit::new(format!("image {:?}", image.name), reason)));
     };
@@ -188,6 +196,21 @@ fn write_image(path: &Path, image: &Image) -> Result<(), IoError> {
     write_one(&target, |out| out.write_all(&image.bytes))
 }
 
+/// The file name alone of an image whose name leads out of the folder, unless it leads to that
+/// image from `path`, too.
+fn plain_name(path: &Path, image: &Image) -> Option<String> {
+    if inner_path(&image.name).is_some() || is_beside(path, image) {
+        return None;
+    }
+    Path::new(&image.name).file_name().map(|name| name.to_string_lossy().into_owned())
+}
+
+/// Whether the name of an image leads from the folder of `path` to a file of the same bytes.
+fn is_beside(path: &Path, image: &Image) -> bool {
+    let folder = path.parent().unwrap_or(Path::new(""));
+    read_beside(folder, &image.name).is_some_and(|found| found == image.bytes)
+}
+
 /// A name as a path that stays within the folder that it is joined to.
 pub(crate) fn inner_path(name: &str) -> Option<PathBuf> {
     let path = Path::new(name);
@@ -195,12 +218,19 @@ pub(crate) fn inner_path(name: &str) -> Option<PathBuf> {
     (inside && !name.is_empty()).then(|| path.to_owned())
 }
 
+/// The file of a name relative to a folder; an absolute one names none, as no file that is passed
+/// on can know where things are here.
 fn read_beside(folder: &Path, name: &str) -> Option<Vec<u8>> {
     // Exporters on Windows write backslashes.
     let names = [name.to_owned(), name.replace('\\', "/")];
+    let relative = names.iter().filter(|name| is_relative(Path::new(name)));
     // A device would be read without end.
-    let file = names.iter().map(|name| folder.join(name)).find(|path| path.is_file());
+    let file = relative.map(|name| folder.join(name)).find(|path| path.is_file());
     fs::read(file?).ok()
+}
+
+fn is_relative(path: &Path) -> bool {
+    !path.components().any(|part| matches!(part, Component::RootDir | Component::Prefix(_)))
 }
 
 fn stem(path: &Path) -> String {

@@ -42,6 +42,11 @@ pub(crate) fn replace<E: From<io::Error>>(
         return fill_file(OpenOptions::new().write(true).open(&target)?, fill);
     }
     let (temporary, file) = Temporary::beside(&target)?;
+    if let Ok(found) = fs::metadata(&target) {
+        // Before the first byte, as what was private stays so; some network drives know no such
+        // thing, and the file is worth more.
+        let _ = file.set_permissions(found.permissions());
+    }
     fill_file(file, fill)?;
     temporary.rename(&target)?;
     Ok(())
@@ -149,6 +154,21 @@ mod tests {
         assert!(failed.is_err(), "there is nothing to rename");
         assert!(!unfinished().iter().any(|other| other.starts_with(folder.path())));
         assert_eq!(fs::read(&path).unwrap(), b"old");
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn a_file_keeps_its_permissions() {
+        use std::os::unix::fs::PermissionsExt;
+
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.txt");
+        fs::write(&path, "old").unwrap();
+        for mode in [0o600, 0o664, 0o444] {
+            fs::set_permissions(&path, PermissionsExt::from_mode(mode)).unwrap();
+            replace::<io::Error>(&path, |out| out.write_all(b"new")).unwrap();
+            assert_eq!(fs::metadata(&path).unwrap().permissions().mode() & 0o777, mode);
+        }
     }
 
     #[cfg(unix)]

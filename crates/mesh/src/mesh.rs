@@ -54,7 +54,7 @@ pub enum MeshError {
         count: usize,
     },
     /// A wedge stands at two vertices.
-    #[error("face {face} has wedge {wedge} at vertex {vertex}, another face has it elsewhere")]
+    #[error("face {face} has wedge w{wedge} at {vertex}, another face has it elsewhere")]
     SharedWedge {
         /// The face.
         face: FaceId,

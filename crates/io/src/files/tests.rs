@@ -51,8 +51,55 @@ fn an_image_that_differs_is_not_overwritten() {
     let error = write(&scene).unwrap_err().to_string();
     assert!(error.contains("a.png") && error.contains("there already"), "{error}");
     assert_eq!(fs::read(folder.path().join("maps/a.png")).unwrap(), b"one");
-    scene.images[0].name = "../a.png".into();
+    scene.images[0].name = "..".into();
     assert!(write(&scene).unwrap_err().to_string().contains("out of the folder"));
+}
+
+#[test]
+fn a_texture_outside_of_the_folder_stays_there_or_comes_beside() {
+    let folder = tempdir().unwrap();
+    for name in ["in", "tex", "far/out"] {
+        fs::create_dir_all(folder.path().join(name)).unwrap();
+    }
+    fs::write(folder.path().join("tex/a.png"), b"one").unwrap();
+    let mut scene = Scene::from_mesh("strip", seam_strip());
+    scene.materials = vec![Material { base_color_image: Some(0), ..Material::default() }];
+    scene.images = vec![Image { name: "../tex/a.png".into(), bytes: b"one".to_vec() }];
+    for (place, name, copied) in [("in", "../tex/a.png", false), ("far/out", "a.png", true)] {
+        let path = folder.path().join(place).join("strip.obj");
+        write(&path, &scene, &WriteOptions::default()).unwrap();
+        let library = fs::read_to_string(path.with_extension("mtl")).unwrap();
+        assert!(library.contains(&format!("map_Kd {name}\n")), "{library}");
+        assert_eq!(path.with_file_name("a.png").exists(), copied, "{place}");
+        let picture = fs::read(path.parent().unwrap().join(name)).unwrap();
+        assert_eq!(picture, b"one");
+    }
+}
+
+#[test]
+fn only_images_come_in_from_the_files_that_a_document_names() {
+    let folder = tempdir().unwrap();
+    let inner = folder.path().join("inner");
+    fs::create_dir(&inner).unwrap();
+    let outer = folder.path().join("a.png");
+    fs::write(&outer, b"\x89PNG1234").unwrap();
+    fs::write(folder.path().join("secret.png"), "SECRET").unwrap();
+    let absolute = outer.to_str().unwrap();
+    let uris = ["../a.png", "../secret.png", absolute];
+    let json = serde_json::json!({
+        "asset": { "version": "2.0" },
+        "images": uris.map(|uri| serde_json::json!({ "uri": uri })),
+    });
+    let path = inner.join("a.gltf");
+    fs::write(&path, json.to_string()).unwrap();
+    let scene = read_default(&path).unwrap();
+    let bytes: Vec<&[u8]> = scene.images.iter().map(|image| &image.bytes[..]).collect();
+    assert_eq!(bytes, [&b"\x89PNG1234"[..], b"", b""]);
+    let glb = inner.join("a.glb");
+    write(&glb, &scene, &WriteOptions::default()).unwrap();
+    let written = String::from_utf8_lossy(&fs::read(&glb).unwrap()).into_owned();
+    assert!(!written.contains("SECRET"), "{written}");
+    assert!(uris[1..].iter().all(|uri| written.contains(uri)), "{written}");
 }
 
 #[test]

@@ -34,7 +34,8 @@ pub(super) fn materials(json: &Value, images: usize) -> Result<Vec<Material>, Pa
 }
 
 /// Reads the images, which stay encoded. One whose file is not there has no bytes: a picture is
-/// the poorer, the geometry is not.
+/// the poorer, the geometry is not. The same goes for a file that is no image: a document from
+/// elsewhere must not carry what else can be read here into what is written.
 pub(super) fn images(
     document: &Document<'_>,
     resolve: Resolve<'_>,
@@ -48,7 +49,10 @@ pub(super) fn images(
         }
         Ok(match image.uri.as_deref().map(uri::parse) {
             Some(Ok(Uri::Data(bytes))) => Image { name: named(&bytes), bytes },
-            Some(Ok(Uri::File(name))) => Image { bytes: resolve(&name).unwrap_or_default(), name },
+            Some(Ok(Uri::File(name))) => {
+                let bytes = resolve(&name).filter(|bytes| mime_type(bytes).is_some());
+                Image { bytes: bytes.unwrap_or_default(), name }
+            }
             Some(Err(_)) | None => Image { name: named(&[]), bytes: Vec::new() },
         })
     };

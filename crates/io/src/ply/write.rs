@@ -60,21 +60,18 @@ impl Rows {
             Some(attributes)
                 if !attributes.layers.is_empty() && !is_one_to_one(mesh, attributes) =>
             {
-                Self::of_wedges(mesh, attributes)
+                Ok(Self::of_wedges(mesh, attributes))
             }
             _ => Ok(Self::Vertices),
         }
     }
 
     /// Numbers the used wedges in their order.
-    fn of_wedges(mesh: &Mesh, attributes: &Attributes) -> Result<Self> {
+    fn of_wedges(mesh: &Mesh, attributes: &Attributes) -> Self {
         let mut owner = vec![None; attributes.wedge_count];
         for (face, corners) in mesh.faces.iter().zip(&attributes.corners) {
             for (&v, &w) in face.iter().zip(corners) {
-                let owner = owner[w.index()].get_or_insert(v);
-                if *owner != v {
-                    return Err(invalid(format!("wedge {w} belongs to both {owner} and {v}")));
-                }
+                owner[w.index()] = Some(v);
             }
         }
         let mut rows = Vec::new();
@@ -86,7 +83,7 @@ impl Rows {
             }
         }
         let faces = attributes.corners.iter().map(|face| face.map(|w| row_of[w.index()]));
-        Ok(Self::Wedges { rows, faces: faces.collect() })
+        Self::Wedges { rows, faces: faces.collect() }
     }
 
     fn len(&self, mesh: &Mesh) -> usize {
