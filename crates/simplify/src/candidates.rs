@@ -1,31 +1,46 @@
-//! Edges as candidates.
+//! What may be contracted: edges, or faces with edges where a face cannot go.
 
-use meshlod_mesh::{Connectivity, FaceId};
+use meshlod_mesh::{Connectivity, FaceId, VertexId};
 
 use crate::contracted::Contracted;
 use crate::neighbourhood::{Neighbourhood, Spoke};
 use crate::policy::{Books, Candidates};
-use crate::surface::Surface;
+use crate::surface::{Flags, Surface};
 
-/// A candidate by number: side k of face f, from corner k to corner k + 1, is 3f + k; a face is its
-/// side 0.
+/// A candidate by number: side k of face f, from corner k to corner k + 1, is 4f + k; the face
+/// itself is 4f + 3.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct CandidateId(pub(crate) u32);
 
 impl CandidateId {
     #[inline]
     pub(crate) fn side(face: FaceId, k: usize) -> Self {
-        Self(face.0 * 3 + k as u32)
+        Self(face.0 * 4 + k as u32)
+    }
+
+    #[inline]
+    pub(crate) fn whole(face: FaceId) -> Self {
+        Self(face.0 * 4 + 3)
     }
 
     #[inline]
     pub(crate) fn face(self) -> FaceId {
-        FaceId(self.0 / 3)
+        FaceId(self.0 / 4)
+    }
+
+    /// Which of its face's four candidates: a side by its corner, or 3.
+    #[inline]
+    pub(crate) fn slot(self) -> usize {
+        (self.0 % 4) as usize
     }
 
     #[inline]
-    pub(crate) fn corner(self) -> usize {
-        (self.0 % 3) as usize
+    fn vertices(self, surface: &Surface) -> Contracted {
+        let face = surface.face(self.face());
+        match self.slot() {
+            3 => Contracted::face(face),
+            k => Contracted::edge([face[k], face[(k + 1) % 3]]),
+        }
     }
 }
 
@@ -43,26 +58,72 @@ impl Candidates for Edges {
 
     #[inline]
     fn vertices(&self, surface: &Surface, id: CandidateId) -> Contracted {
-        let face = surface.face(id.face());
-        let k = id.corner();
-        Contracted::edge([face[k], face[(k + 1) % 3]])
+        id.vertices(surface)
     }
 
-    fn settle(&self, hood: &Neighbourhood, books: &mut dyn Books) {
-        for dying in &hood.dying {
-            (0..3).for_each(|k| books.close(CandidateId::side(dying.face, k)));
-        }
+    fn settle(&self, hood: &Neighbourhood, _: VertexId, books: &mut dyn Books) {
+        close_dying(hood, books);
         for wing in hood.dying.iter().filter_map(|dying| dying.apex()) {
             keep_one(hood, wing as u32, books);
         }
     }
 }
 
-/// Leaves one open side on the edge from the new vertex to a wing.
-fn keep_one(hood: &Neighbourhood, wing: u32, books: &mut dyn Books) {
+/// Every face with at most one special corner, and every edge with a special end.
+///
+/// A face whose corners are inside a chart, off every boundary and free to move, is contracted as a
+/// whole; onto a corner that is not; and where two are not, it is left to its edges.
+pub(crate) struct FacesAndEdges;
+
+impl Candidates for FacesAndEdges {
+    fn seed(&self, surface: &Surface, connectivity: &Connectivity) -> Vec<CandidateId> {
+        let faces = (0..surface.face_count())
+            .map(FaceId::new)
+            .filter(|&face| surface.is_alive(face))
+            .filter(|&face| {
+                surface.face(face).into_iter().filter(|&v| special(surface, v)).count() < 2
+            })
+            .map(CandidateId::whole);
+        let edges = connectivity
+            .edges()
+            .map(|side| CandidateId::side(side.face(), side.corner()))
+            .filter(|id| id.vertices(surface).iter().any(|&v| special(surface, v)));
+        faces.chain(edges).collect()
+    }
+
+    #[inline]
+    fn vertices(&self, surface: &Surface, id: CandidateId) -> Contracted {
+        id.vertices(surface)
+    }
+
+    fn settle(&self, hood: &Neighbourhood, kept: VertexId, books: &mut dyn Books) {
+        close_dying(hood, books);
+        for (place, r) in hood.ring.iter().enumerate() {
+            if [kept, r.id].iter().any(|&v| special(books.surface(), v)) {
+                keep_one(hood, place as u32, books);
+            }
+        }
+    }
+}
+
+/// Whether a vertex cannot simply be merged into a face's middle.
+#[inline]
+fn special(surface: &Surface, v: VertexId) -> bool {
+    surface.flags(v).any(Flags::BOUNDARY.or(Flags::PINNED).or(Flags::SEAM))
+}
+
+fn close_dying(hood: &Neighbourhood, books: &mut dyn Books) {
+    for dying in &hood.dying {
+        (0..3).for_each(|k| books.close(CandidateId::side(dying.face, k)));
+        books.close(CandidateId::whole(dying.face));
+    }
+}
+
+/// Leaves one open side on the edge from the new vertex to one on the ring.
+fn keep_one(hood: &Neighbourhood, ring: u32, books: &mut dyn Books) {
     let side = |spoke: &Spoke| {
-        let k = if spoke.a == wing { spoke.corner() } else { (spoke.corner() + 2) % 3 };
-        (spoke.a == wing || spoke.b == wing).then(|| CandidateId::side(spoke.face, k))
+        let k = if spoke.a == ring { spoke.corner() } else { (spoke.corner() + 2) % 3 };
+        (spoke.a == ring || spoke.b == ring).then(|| CandidateId::side(spoke.face, k))
     };
     let mut first = None;
     let mut open = false;

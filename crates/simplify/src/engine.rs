@@ -10,11 +10,10 @@ use rayon::prelude::*;
 use rustc_hash::FxHashMap;
 
 use crate::candidates::CandidateId;
+use crate::checks::CHECKS;
 use crate::contracted::{Contracted, Freedom};
 use crate::neighbourhood::{Neighbourhood, freedom};
-use crate::policy::{
-    Books, Candidates, Check, Memory, Observe, Placement, Priority, Proposal, Stop,
-};
+use crate::policy::{Books, Candidates, Memory, Observe, Placement, Priority, Proposal, Stop};
 use crate::queue::{Entry, Key, Queue};
 use crate::refusal::{Refusal, Refusals};
 use crate::surface::{Flags, Placed, State, Surface};
@@ -25,7 +24,6 @@ pub(crate) struct Algorithm<C, M, P, L> {
     pub(crate) memory: M,
     pub(crate) priority: P,
     pub(crate) placement: L,
-    pub(crate) checks: &'static [Check],
 }
 
 /// An algorithm at work on a surface.
@@ -33,6 +31,8 @@ pub(crate) struct Engine<C, M, P, L> {
     algorithm: Algorithm<C, M, P, L>,
     surface: Surface,
     hood: Neighbourhood,
+    /// Room for one of the edges that a face goes by.
+    part: Neighbourhood,
     waiting: Waiting,
     /// Room for the candidates that a contraction opens.
     opened: Vec<CandidateId>,
@@ -66,6 +66,7 @@ where
             algorithm,
             surface,
             hood: Neighbourhood::default(),
+            part: Neighbourhood::default(),
             waiting,
             opened: Vec::new(),
             taken: Vec::new(),
@@ -118,11 +119,11 @@ where
     #[inline]
     fn take(&mut self, entry: Entry) -> Option<Contracted> {
         let state = self.surface.state(entry.id);
-        let queued = *state == State::Queued;
         if matches!(state, State::Queued | State::Ghost) {
-            *state = State::Closed;
+            self.surface.set_state(entry.id, State::Closed);
         }
-        queued.then(|| self.algorithm.candidates.vertices(&self.surface, entry.id))
+        (state == State::Queued)
+            .then(|| self.algorithm.candidates.vertices(&self.surface, entry.id))
     }
 
     /// The entry, costed again if its vertices have changed.
@@ -140,7 +141,7 @@ where
         stop: &Stop,
         observer: &mut dyn Observe,
     ) -> Result<(), Refusal> {
-        let Self { algorithm, surface, hood, .. } = self;
+        let Self { algorithm, surface, hood, part, .. } = self;
         let contracted = algorithm.candidates.vertices(surface, entry.id);
         hood.gather(surface, contracted)?;
         let placed = algorithm.placement.place(surface, &algorithm.memory, hood)?;
@@ -148,12 +149,14 @@ where
             return Err(Refusal::Error);
         }
         let proposal = Proposal { surface, hood, position: placed.position };
-        algorithm.checks.iter().try_for_each(|check| check(&proposal))?;
+        CHECKS.iter().try_for_each(|check| check(&proposal))?;
 
-        observer.before(surface, hood, &placed);
         algorithm.memory.merge(surface, hood, &placed);
-        surface.contract(hood, &placed);
-        observer.after(surface, hood, &placed);
+        match hood.contracted[..] {
+            [_, _] => change(surface, hood, &placed, observer),
+            _ => follow(surface, hood, part, &placed, observer),
+        }
+        algorithm.memory.renew(surface, hood, &placed);
         self.error_estimate = self.error_estimate.max(placed.error_estimate);
         self.renew(&placed);
         Ok(())
@@ -162,7 +165,8 @@ where
     /// Brings the books up to date after a contraction, and wakes those who waited for a change.
     fn renew(&mut self, placed: &Placed) {
         let Self { algorithm, surface, hood, waiting, opened, .. } = self;
-        algorithm.candidates.settle(hood, &mut Desk { surface, opened });
+        let kept = hood.contracted[placed.kept];
+        algorithm.candidates.settle(hood, kept, &mut Desk { surface, opened });
         for id in opened.drain(..) {
             let entry = algorithm.entry(surface, id);
             waiting.put(entry, surface);
@@ -174,7 +178,36 @@ where
             }
         }
         // The kept vertex has the flags of all the contracted; those who waited are awake.
-        surface.unflag(hood.contracted[placed.kept], Flags::AWAITED);
+        surface.unflag(kept, Flags::AWAITED);
+    }
+}
+
+/// Contracts an edge before the eyes of the observer.
+fn change(
+    surface: &mut Surface,
+    hood: &Neighbourhood,
+    placed: &Placed,
+    observer: &mut dyn Observe,
+) {
+    observer.before(surface, hood, placed);
+    surface.contract(hood, placed);
+    observer.after(surface, hood, placed);
+}
+
+/// Contracts a face as two edges: its other corners follow each other into the kept one. So wedges,
+/// the history and all that is built on it know of edges only.
+fn follow(
+    surface: &mut Surface,
+    hood: &Neighbourhood,
+    part: &mut Neighbourhood,
+    placed: &Placed,
+    observer: &mut dyn Observe,
+) {
+    let kept = hood.contracted[placed.kept];
+    for &gone in hood.contracted.iter().filter(|&&v| v != kept) {
+        part.gather(surface, Contracted::edge([kept, gone]))
+            .expect("what may be contracted as a face may be as its edges");
+        change(surface, part, &Placed { kept: 0, ..*placed }, observer);
     }
 }
 
@@ -283,19 +316,19 @@ struct Waiting {
 impl Waiting {
     fn new(entries: &[Entry], surface: &mut Surface) -> Self {
         for entry in entries {
-            *surface.state(entry.id) = State::Queued;
+            surface.set_state(entry.id, State::Queued);
         }
         Self { queue: Queue::new(entries), parked: FxHashMap::default() }
     }
 
     #[inline]
     fn put(&mut self, entry: Entry, surface: &mut Surface) {
-        *surface.state(entry.id) = State::Queued;
+        surface.set_state(entry.id, State::Queued);
         self.queue.push(entry);
     }
 
     fn park(&mut self, entry: Entry, vertices: &[VertexId], surface: &mut Surface) {
-        *surface.state(entry.id) = State::Parked;
+        surface.set_state(entry.id, State::Parked);
         for &v in vertices {
             surface.flag(v, Flags::AWAITED);
             self.parked.entry(v).or_default().push(entry);
@@ -316,7 +349,7 @@ impl Waiting {
 
     /// Puts a parked candidate in the queue; one that went another way since stays there.
     fn unpark(&mut self, entry: Entry, surface: &mut Surface) {
-        if *surface.state(entry.id) == State::Parked {
+        if surface.state(entry.id) == State::Parked {
             self.put(entry, surface);
         }
     }
@@ -329,7 +362,11 @@ struct Desk<'a> {
 }
 
 impl Books for Desk<'_> {
-    fn is_open(&mut self, id: CandidateId) -> bool {
+    fn surface(&self) -> &Surface {
+        self.surface
+    }
+
+    fn is_open(&self, id: CandidateId) -> bool {
         matches!(self.surface.state(id), State::Queued | State::Parked)
     }
 
@@ -338,10 +375,10 @@ impl Books for Desk<'_> {
     }
 
     fn close(&mut self, id: CandidateId) {
-        let state = self.surface.state(id);
-        *state = match *state {
+        let state = match self.surface.state(id) {
             State::Queued | State::Ghost => State::Ghost,
             State::Parked | State::Closed => State::Closed,
         };
+        self.surface.set_state(id, state);
     }
 }

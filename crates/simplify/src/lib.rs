@@ -14,22 +14,18 @@
 //! surface is as manifold, as closed and as oriented as before.
 #![forbid(unsafe_code)]
 
-mod algorithms;
 mod candidates;
 mod charts;
 mod checks;
 mod clean;
 mod contracted;
 mod engine;
-#[cfg(test)]
-mod faces;
 mod history;
 mod level;
+mod methods;
 mod neighbourhood;
 mod options;
 mod policy;
-mod qem;
-mod quadric;
 mod queue;
 mod refusal;
 mod simplifier;

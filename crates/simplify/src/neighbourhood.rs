@@ -188,10 +188,13 @@ pub(crate) fn freedom(
     wedge_pairs.clear();
     let mut pinned = None;
     let mut seam = false;
+    // A face has no edge to slide along the boundary: its corner there is where it goes.
+    let pins =
+        if contracted.len() == 2 { Flags::PINNED } else { Flags::PINNED.or(Flags::BOUNDARY) };
     for (i, &v) in contracted.iter().enumerate() {
         let flags = surface.flags(v);
         seam |= flags.any(Flags::SEAM);
-        if flags.any(Flags::PINNED) && pinned.replace(i).is_some() {
+        if flags.any(pins) && pinned.replace(i).is_some() {
             return Err(Refusal::Locked);
         }
     }
@@ -201,8 +204,8 @@ pub(crate) fn freedom(
             wedges.pair(surface, [v0, v1], wedge_pairs);
             if seam { wedges.freedom(surface, [v0, v1], wedge_pairs)? } else { Freedom::Free }
         }
-        // Wedges pair along edges only.
-        (Some(_), _) => return Err(Refusal::Seam),
+        (Some(wedges), corners) if seam => wedges.freedom_of_face(surface, corners, wedge_pairs)?,
+        (Some(_), _) => Freedom::Free,
         (None, _) => Freedom::Free,
     };
     match (by_pin, by_seam) {

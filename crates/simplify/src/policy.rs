@@ -12,7 +12,7 @@
 //! Priority and placement share a [`Memory`]: what the algorithm keeps per vertex.
 
 use glam::DVec3;
-use meshlod_mesh::Connectivity;
+use meshlod_mesh::{Connectivity, VertexId};
 
 use crate::candidates::CandidateId;
 use crate::contracted::{Contracted, Freedom};
@@ -30,13 +30,15 @@ pub(crate) trait Candidates: Sync {
 
     /// After a contraction: closes the candidates that went with their faces, and sees to it that
     /// each of the others is on the books once.
-    fn settle(&self, hood: &Neighbourhood, books: &mut dyn Books);
+    fn settle(&self, hood: &Neighbourhood, kept: VertexId, books: &mut dyn Books);
 }
 
 /// The engine's books of which candidates are waiting.
 pub(crate) trait Books {
+    /// The surface that they are on.
+    fn surface(&self) -> &Surface;
     /// Whether the candidate is waiting.
-    fn is_open(&mut self, id: CandidateId) -> bool;
+    fn is_open(&self, id: CandidateId) -> bool;
     /// Puts a candidate on the books.
     fn open(&mut self, id: CandidateId);
     /// Takes a candidate off the books.
@@ -46,8 +48,17 @@ pub(crate) trait Books {
 /// What an algorithm keeps per vertex, such as quadrics. `()` for the memoryless.
 pub(crate) trait Memory: Sync {
     /// Told of a contraction just before the surface changes.
-    fn merge(&mut self, surface: &Surface, hood: &Neighbourhood, placed: &Placed);
+    fn merge(&mut self, surface: &Surface, hood: &Neighbourhood, placed: &Placed) {
+        let _ = (surface, hood, placed);
+    }
+
+    /// Told of it again just after. `hood` is as it was gathered before.
+    fn renew(&mut self, surface: &Surface, hood: &Neighbourhood, placed: &Placed) {
+        let _ = (surface, hood, placed);
+    }
 }
+
+impl Memory for () {}
 
 /// The order of contractions.
 pub(crate) trait Priority<M>: Sync {
@@ -91,6 +102,8 @@ impl Stop {
 }
 
 /// Hooks into the engine's loop. All do nothing unless written.
+///
+/// They see edges only: a face is contracted as two edges, the second through the first's vertex.
 pub trait Observe {
     /// A contraction is about to change `surface`.
     fn before(&mut self, surface: &Surface, hood: &Neighbourhood, placed: &Placed) {

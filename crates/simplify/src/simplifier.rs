@@ -2,10 +2,10 @@
 
 use meshlod_mesh::{Mesh, VertexId};
 
-use crate::algorithms;
 use crate::clean;
 use crate::engine::Run;
 use crate::level::level;
+use crate::methods;
 use crate::options::{Options, Report, SimplifyError, Target};
 use crate::policy::{Observe, Stop};
 use crate::surface::{Flags, Surface};
@@ -60,7 +60,7 @@ impl<'m> Simplifier<'m> {
             }
         }
         let input = Input { degenerate_faces, duplicate_faces, non_manifold_vertices };
-        Ok(Self { mesh, engine: algorithms::start(options.method, surface, connectivity), input })
+        Ok(Self { mesh, engine: methods::start(options.method, surface, connectivity), input })
     }
 
     /// Contracts until the target is reached or nothing more may be contracted.

@@ -50,7 +50,28 @@ pub(crate) enum State {
 struct Face {
     vertices: [VertexId; 3],
     alive: bool,
-    states: [State; 3],
+    states: States,
+}
+
+/// The states of a face's four candidates, two bits each.
+#[derive(Clone, Copy, Debug, Default)]
+struct States(u8);
+
+impl States {
+    #[inline]
+    fn get(self, slot: usize) -> State {
+        match self.0 >> (2 * slot) & 3 {
+            0 => State::Closed,
+            1 => State::Queued,
+            2 => State::Parked,
+            _ => State::Ghost,
+        }
+    }
+
+    #[inline]
+    fn set(&mut self, slot: usize, state: State) {
+        self.0 = self.0 & !(3 << (2 * slot)) | (state as u8) << (2 * slot);
+    }
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -101,11 +122,8 @@ pub struct Surface {
 impl Surface {
     /// The surface of the faces that `connectivity` connects; others are not alive in it.
     pub(crate) fn new(mesh: &Mesh, connectivity: &Connectivity) -> Self {
-        let face = |&vertices: &[VertexId; 3]| Face {
-            vertices,
-            alive: false,
-            states: [State::default(); 3],
-        };
+        let face =
+            |&vertices: &[VertexId; 3]| Face { vertices, alive: false, states: States::default() };
         let mut faces: Vec<Face> = mesh.faces.iter().map(face).collect();
         let mut stars = Vec::with_capacity(mesh.faces.len() * 3 + mesh.faces.len() / 2 + 64);
         let vertices = (0..mesh.positions.len())
@@ -171,8 +189,13 @@ impl Surface {
 
     /// How a candidate stands.
     #[inline]
-    pub(crate) fn state(&mut self, id: CandidateId) -> &mut State {
-        &mut self.faces[id.face().index()].states[id.corner()]
+    pub(crate) fn state(&self, id: CandidateId) -> State {
+        self.faces[id.face().index()].states.get(id.slot())
+    }
+
+    #[inline]
+    pub(crate) fn set_state(&mut self, id: CandidateId, state: State) {
+        self.faces[id.face().index()].states.set(id.slot(), state);
     }
 
     /// Where a vertex is now; one that is gone, where it was last.
@@ -279,9 +302,9 @@ impl Surface {
     ) {
         self.vertices[kept.index()].position = position;
         for &Moved { corner, vertex, wedge } in moved {
-            self.faces[corner.face().index()].vertices[corner.corner()] = vertex;
+            self.faces[corner.face().index()].vertices[corner.slot()] = vertex;
             if let Some(wedges) = &mut self.wedges {
-                wedges.set(corner.face(), corner.corner(), wedge);
+                wedges.set(corner.face(), corner.slot(), wedge);
             }
         }
         for face in died {

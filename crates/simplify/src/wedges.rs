@@ -11,7 +11,7 @@ use crate::charts::{charts, is_shading};
 use crate::contracted::Freedom;
 use crate::neighbourhood::Neighbourhood;
 use crate::refusal::Refusal;
-use crate::surface::Surface;
+use crate::surface::{Flags, Surface};
 
 /// The wedges of a surface: those of its mesh, split further where the material changes, so that
 /// the borders of materials are seams like any other.
@@ -102,6 +102,28 @@ impl Wedges {
             (false, true) => Ok(Freedom::At(0)),
             (false, false) => Err(Refusal::Seam),
         }
+    }
+
+    /// How free a face with a corner on a seam is: that one stays, and the others must each be able
+    /// to follow along its edge to it. `room` is for the wedges that meet there.
+    pub(crate) fn freedom_of_face(
+        &self,
+        surface: &Surface,
+        corners: &[VertexId],
+        room: &mut Vec<[WedgeId; 2]>,
+    ) -> Result<Freedom, Refusal> {
+        let on_seam = |v: &VertexId| surface.flags(*v).any(Flags::SEAM);
+        let stays = corners.iter().position(on_seam).ok_or(Refusal::Seam)?;
+        for (i, &v) in corners.iter().enumerate().filter(|&(i, _)| i != stays) {
+            room.clear();
+            let ends = [corners[stays], v];
+            self.pair(surface, ends, room);
+            if on_seam(&corners[i]) || self.freedom(surface, ends, room)? == Freedom::At(1) {
+                return Err(Refusal::Seam);
+            }
+        }
+        room.clear();
+        Ok(Freedom::At(stays))
     }
 
     /// The wedges whose values a contraction changes; some may come more than once.

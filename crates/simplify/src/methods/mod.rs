@@ -1,12 +1,14 @@
 //! The methods as sets of policies: the table of the house.
 
+mod qem;
+mod quadric;
+
 use meshlod_mesh::Connectivity;
 
 use crate::candidates::Edges;
-use crate::checks::EDGE_CHECKS;
 use crate::engine::{Algorithm, Engine, Run};
+use crate::methods::qem::{Endpoint, Optimal, Quadrics};
 use crate::options::Method;
-use crate::qem::{Endpoint, Optimal, Quadrics};
 use crate::surface::Surface;
 
 /// Sets a method to work on a surface.
@@ -14,24 +16,12 @@ pub(crate) fn start(method: Method, surface: Surface, connectivity: Connectivity
     let memory = Quadrics::new(&surface, &connectivity);
     match method {
         Method::Qem => Box::new(Engine::new(
-            Algorithm {
-                candidates: Edges,
-                memory,
-                priority: Optimal,
-                placement: Optimal,
-                checks: EDGE_CHECKS,
-            },
+            Algorithm { candidates: Edges, memory, priority: Optimal, placement: Optimal },
             surface,
             connectivity,
         )),
         Method::QemEndpoint => Box::new(Engine::new(
-            Algorithm {
-                candidates: Edges,
-                memory,
-                priority: Endpoint,
-                placement: Endpoint,
-                checks: EDGE_CHECKS,
-            },
+            Algorithm { candidates: Edges, memory, priority: Endpoint, placement: Endpoint },
             surface,
             connectivity,
         )),

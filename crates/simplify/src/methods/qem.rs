@@ -13,9 +13,9 @@ use meshlod_mesh::{Connectivity, FaceId, Side, Twin, VertexId};
 use meshlod_spatial::closest_point;
 
 use crate::contracted::{Contracted, Freedom};
+use crate::methods::quadric::Quadric;
 use crate::neighbourhood::{Neighbourhood, Spoke};
 use crate::policy::{Memory, Placement, Priority};
-use crate::quadric::Quadric;
 use crate::refusal::Refusal;
 use crate::surface::{Flags, Placed, Surface};
 
