@@ -13,17 +13,20 @@ pub enum Method {
     Qem,
     /// The same, but every vertex of the result is one of the input: half-edge contraction.
     QemEndpoint,
+    /// Simple polygon reduction [Mel98]: length times turn, onto vertices of the input.
+    Spr,
 }
 
 impl Method {
     /// Every method.
-    pub const ALL: [Self; 2] = [Self::Qem, Self::QemEndpoint];
+    pub const ALL: [Self; 3] = [Self::Qem, Self::QemEndpoint, Self::Spr];
 
     /// Its name on the command line and in reports.
     pub fn name(self) -> &'static str {
         match self {
             Self::Qem => "qem",
             Self::QemEndpoint => "qem-endpoint",
+            Self::Spr => "spr",
         }
     }
 

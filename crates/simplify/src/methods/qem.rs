@@ -10,11 +10,11 @@
 
 use glam::DVec3;
 use meshlod_mesh::{Connectivity, FaceId, Side, Twin, VertexId};
-use meshlod_spatial::closest_point;
 
 use crate::contracted::{Contracted, Freedom};
+use crate::methods::drift::Drift;
 use crate::methods::quadric::Quadric;
-use crate::neighbourhood::{Neighbourhood, Spoke};
+use crate::neighbourhood::Neighbourhood;
 use crate::policy::{Memory, Placement, Priority};
 use crate::refusal::Refusal;
 use crate::surface::{Flags, Placed, Surface};
@@ -47,11 +47,10 @@ const BOUNDARY_WEIGHT: f64 = 2.0;
 /// The weight of a seam's plane likewise.
 const SEAM_WEIGHT: f64 = 1.0;
 
-/// A quadric per vertex, and an estimate of how far the surface has moved there.
+/// A quadric per vertex, and how far the surface has moved.
 pub(crate) struct Quadrics {
     quadrics: Vec<Quadric>,
-    /// In model units.
-    moved: Vec<f32>,
+    drift: Drift,
 }
 
 impl Quadrics {
@@ -63,7 +62,7 @@ impl Quadrics {
                 add_face(&mut quadrics, surface, face, connectivity);
             }
         }
-        Self { moved: vec![0.0; quadrics.len()], quadrics }
+        Self { quadrics, drift: Drift::new(surface) }
     }
 
     /// The sum of the contracted vertices' quadrics, seen from the first.
@@ -90,30 +89,8 @@ impl Memory for Quadrics {
         }
         let kept = hood.contracted()[placed.kept].index();
         self.quadrics[kept] = merged;
-        self.moved[kept] = placed.error_estimate as f32;
+        self.drift.merge(surface, hood, placed);
     }
-}
-
-/// How far the contracted vertices are from the faces they had and that now meet in `position`; one
-/// that had none but dying ones, from all that survive. Quadrics do not see the tip of a spike: its
-/// planes all pass close by its foot.
-fn stand_off(surface: &Surface, hood: &Neighbourhood, position: DVec3) -> f64 {
-    let ring = |place: u32| hood.ring()[place as usize].position;
-    let squared = |v: DVec3, spoke: &Spoke| {
-        v.distance_squared(closest_point(v, &[position, ring(spoke.a), ring(spoke.b)]))
-    };
-    let mut nearest = [f64::INFINITY; 3];
-    for spoke in hood.spokes() {
-        let v = surface.position(hood.contracted()[spoke.owner()]);
-        let nearest = &mut nearest[spoke.owner()];
-        *nearest = nearest.min(squared(v, spoke));
-    }
-    let of_one = |(&v, own): (&VertexId, f64)| {
-        let v = surface.position(v);
-        let all = || hood.spokes().iter().map(|spoke| squared(v, spoke)).fold(own, f64::min);
-        if own.is_finite() { own } else { all() }
-    };
-    hood.contracted().iter().zip(nearest).map(of_one).fold(0.0, f64::max).sqrt()
 }
 
 /// The planes of the surviving faces, with their vertex at `position`, seen from there.
@@ -248,10 +225,8 @@ impl<R: Rule> Placement<Quadrics> for R {
         let origin = surface.position(hood.contracted()[0]);
         let kept = surface.position(hood.contracted()[choice.kept]);
         let position = if choice.offset == kept - origin { kept } else { origin + choice.offset };
-        // What was moved before and what is moved now are taken as independent.
-        let before = hood.contracted().iter().map(|v| memory.moved[v.index()]).fold(0.0, f32::max);
-        let now = sum.distance(choice.cost).max(stand_off(surface, hood, position));
-        let error_estimate = now.hypot(before.into());
+        let by_planes = sum.distance(choice.cost);
+        let error_estimate = memory.drift.estimate(surface, hood, position, by_planes);
         Ok(Placed { position, kept: choice.kept, error_estimate })
     }
 }

@@ -1,0 +1,180 @@
+//! Simple polygon reduction [Mel98]: an edge costs its length times how sharply the surface turns at
+//! the end that is given up, and nothing moves.
+//!
+//! cost(u→v) = |u−v| · max over the faces f at u of min over the faces n on uv of (1 − f·n) / 2.
+//!
+//! The inner minimum lets a crease be shortened along itself. Our choices: a boundary edge stands as
+//! a face at right angles to its own, so that the same formula keeps outlines and their corners; both
+//! directions are looked at and the cheaper is taken; and a little of the length always counts, so
+//! that flats are taken short edges first.
+
+use glam::DVec3;
+use meshlod_mesh::{FaceId, VertexId};
+
+use crate::contracted::{Contracted, Freedom};
+use crate::methods::drift::Drift;
+use crate::neighbourhood::Neighbourhood;
+use crate::policy::{Placement, Priority};
+use crate::refusal::Refusal;
+use crate::surface::{Flags, Placed, Surface};
+
+/// What counts of the length where nothing turns. Without it a flat is taken in the order of its ids
+/// and grows hubs.
+const FLAT: f64 = 1e-4;
+
+/// Faces and fences on the edge that are compared with; what has more is refused anyway.
+const MOST_SIDES: usize = 4;
+
+/// [Mel98] as priority and as placement.
+pub(crate) struct Turn;
+
+impl Priority<Drift> for Turn {
+    fn cost(&self, surface: &Surface, _: &Drift, of: &Contracted, freedom: Freedom) -> Option<f64> {
+        Some(cheaper(surface, of, freedom).1)
+    }
+}
+
+impl Placement<Drift> for Turn {
+    fn place(
+        &self,
+        surface: &Surface,
+        drift: &Drift,
+        hood: &Neighbourhood,
+    ) -> Result<Placed, Refusal> {
+        let (kept, _) = cheaper(surface, hood.contracted(), hood.freedom());
+        let position = surface.position(hood.contracted()[kept]);
+        let error_estimate = drift.estimate(surface, hood, position, 0.0);
+        Ok(Placed { position, kept, error_estimate })
+    }
+}
+
+/// Which end is kept, and what that costs.
+fn cheaper(surface: &Surface, of: &Contracted, freedom: Freedom) -> (usize, f64) {
+    let onto = |kept: usize| (kept, cost(surface, of[1 - kept], of[kept]));
+    match freedom {
+        Freedom::At(kept) => onto(kept),
+        Freedom::Free => {
+            let (first, second) = (onto(0), onto(1));
+            if second.1 < first.1 { second } else { first }
+        }
+    }
+}
+
+/// The cost of giving up `u` for `v` [Mel98].
+fn cost(surface: &Surface, u: VertexId, v: VertexId) -> f64 {
+    let mut sides = [DVec3::ZERO; MOST_SIDES];
+    let mut count = 0;
+    let mut add = |normal: DVec3| {
+        if count < MOST_SIDES {
+            sides[count] = normal;
+            count += 1;
+        }
+    };
+    for face in surface.star(u).filter(|&face| surface.face(face).contains(&v)) {
+        normals(surface, u, face, Some(v)).into_iter().flatten().for_each(&mut add);
+    }
+    let turn =
+        |f: DVec3| sides[..count].iter().map(|&n| (1.0 - f.dot(n)) / 2.0).fold(1.0, f64::min);
+    let around = surface.star(u).flat_map(|face| normals(surface, u, face, None));
+    let sharpest = around.flatten().map(turn).fold(0.0, f64::max);
+    surface.position(u).distance(surface.position(v)) * (sharpest + FLAT)
+}
+
+/// The normals of a face at `u`, and of the fences on its sides there, or only on the one to `v`;
+/// none of a face without area.
+fn normals(
+    surface: &Surface,
+    u: VertexId,
+    face: FaceId,
+    v: Option<VertexId>,
+) -> [Option<DVec3>; 3] {
+    let Some(normal) = surface.area_normal(face).try_normalize() else { return [None; 3] };
+    if !surface.flags(u).any(Flags::BOUNDARY) {
+        return [Some(normal), None, None];
+    }
+    let (vertices, corner) = (surface.face(face), surface.corner(face, u));
+    let fence = |from: VertexId, to: VertexId| {
+        let other = if from == u { to } else { from };
+        let wanted = v.is_none_or(|v| v == other);
+        let faces = || surface.star(u).filter(|&face| surface.face(face).contains(&other));
+        let along = surface.position(to) - surface.position(from);
+        (wanted && faces().count() == 1).then(|| along.cross(normal).try_normalize()).flatten()
+    };
+    let (next, last) = (vertices[(corner + 1) % 3], vertices[(corner + 2) % 3]);
+    [Some(normal), fence(u, next), fence(last, u)]
+}
+
+#[cfg(test)]
+mod tests {
+    use meshlod_mesh::{Connectivity, Mesh};
+
+    use super::*;
+
+    fn cost_in(mesh: &Mesh, u: u32, v: u32) -> f64 {
+        let connectivity = Connectivity::new(&mesh.faces, mesh.positions.len());
+        cost(&Surface::new(mesh, &connectivity), VertexId(u), VertexId(v))
+    }
+
+    fn mesh(positions: &[[f64; 3]], faces: &[[u32; 3]]) -> Mesh {
+        Mesh::new(positions.to_vec(), faces.iter().map(|face| face.map(VertexId)).collect())
+    }
+
+    /// A roof with a ridge of right angles along x, closed below: v0 and v1 on the ridge.
+    fn roof() -> Mesh {
+        let positions = [
+            [0.0, 0.0, 1.0],
+            [2.0, 0.0, 1.0],
+            [-1.0, -1.0, 0.0],
+            [3.0, -1.0, 0.0],
+            [3.0, 1.0, 0.0],
+            [-1.0, 1.0, 0.0],
+        ];
+        let faces = [
+            [2, 3, 1],
+            [2, 1, 0],
+            [4, 5, 0],
+            [4, 0, 1],
+            [5, 2, 0],
+            [3, 4, 1],
+            [2, 5, 4],
+            [2, 4, 3],
+        ];
+        mesh(&positions, &faces)
+    }
+
+    #[test]
+    fn a_roof_costs_what_it_does_by_hand() {
+        // At v0: the slopes (0, ∓1, 1) / √2 and the gable (−1, 0, 1) / √2. On v0v1 both slopes, so
+        // only the gable turns: 1 − 1/2 from either, halved.
+        let along_the_ridge = 2.0 * (0.25 + FLAT);
+        assert!((cost_in(&roof(), 0, 1) - along_the_ridge).abs() < 1e-15);
+        // Down to v2 only the slope of −y and the gable are on the edge: the other slope is at a
+        // right angle to the one, 1 − 1/2 from the other, and the other is less.
+        let down = 3f64.sqrt() * (0.25 + FLAT);
+        assert!((cost_in(&roof(), 0, 2) - down).abs() < 1e-15);
+    }
+
+    #[test]
+    fn an_outline_turns_at_its_corners_only() {
+        // A square of four, open, with v4 in the middle of it and v5 on a side.
+        let positions = [
+            [0.0, 0.0, 0.0],
+            [2.0, 0.0, 0.0],
+            [2.0, 2.0, 0.0],
+            [0.0, 2.0, 0.0],
+            [1.0, 1.0, 0.0],
+            [1.0, 0.0, 0.0],
+        ];
+        let faces = [[0, 5, 4], [5, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4]];
+        let mesh = mesh(&positions, &faces);
+        let turn = |u: u32, v: u32| {
+            let length = DVec3::from(mesh.positions[u as usize])
+                .distance(DVec3::from(mesh.positions[v as usize]));
+            cost_in(&mesh, u, v) / length - FLAT
+        };
+        assert!(turn(4, 5).abs() < 1e-12, "inside nothing turns");
+        assert!(turn(5, 1).abs() < 1e-12, "nor along a side");
+        assert!((turn(5, 4) - 0.5).abs() < 1e-12, "a side goes inwards");
+        assert!((turn(1, 5) - 0.5).abs() < 1e-12, "a corner goes");
+    }
+}
