@@ -8,7 +8,6 @@ use glam::DVec3;
 use meshlod_mesh::{Connectivity, FaceId, Mesh, VertexId};
 
 use crate::candidates::CandidateId;
-use crate::contracted::Contracted;
 use crate::history::Moved;
 use crate::neighbourhood::Neighbourhood;
 use crate::wedges::Wedges;
@@ -151,7 +150,7 @@ impl Surface {
             })
             .collect();
         let live_faces = faces.iter().filter(|face| face.alive).count();
-        let mut surface = Self { vertices, faces, stars, live_faces, wedges: Wedges::of(mesh) };
+        let mut surface = Self { vertices, faces, stars, live_faces, wedges: Wedges::new(mesh) };
         surface.flag_seams();
         surface
     }
@@ -276,9 +275,9 @@ impl Surface {
     /// Makes one vertex of the contracted ones, at `placed`, exactly as `hood` was gathered.
     pub(crate) fn contract(&mut self, hood: &Neighbourhood, placed: &Placed) {
         let kept = hood.contracted[placed.kept];
-        if let Some(wedges) = &mut self.wedges {
-            let t = blend_factor(&self.vertices, &hood.contracted, placed);
-            wedges.contract(hood, placed.kept, t);
+        if let Some(mut wedges) = self.wedges.take() {
+            wedges.contract(self, hood, placed);
+            self.wedges = Some(wedges);
         }
         for spoke in hood.spokes.iter().filter(|spoke| spoke.owner() != placed.kept) {
             self.faces[spoke.face.index()].vertices[spoke.corner()] = kept;
@@ -382,14 +381,4 @@ impl Surface {
 #[inline]
 pub(crate) fn corner_of(face: [VertexId; 3], vertex: VertexId) -> usize {
     usize::from(face[0] != vertex) + usize::from(face[0] != vertex && face[1] != vertex)
-}
-
-/// Where between the kept vertex (0) and the other end of an edge (1) the new position lies.
-fn blend_factor(vertices: &[Vertex], contracted: &Contracted, placed: &Placed) -> f64 {
-    let &[v0, v1] = &contracted[..] else { return 0.0 };
-    let (kept, gone) = if placed.kept == 0 { (v0, v1) } else { (v1, v0) };
-    let from = vertices[kept.index()].position;
-    let along = vertices[gone.index()].position - from;
-    let t = (placed.position - from).dot(along) / along.length_squared();
-    if t.is_finite() { t.clamp(0.0, 1.0) } else { 0.0 }
 }

@@ -1,17 +1,19 @@
 //! Attributes while the surface shrinks: wedges follow their vertices.
 //!
-//! Where an edge is contracted, the wedges that meet along it become one, blended at the new place.
-//! A chart of the removed end that meets none has nowhere to go; so a seam can only be contracted
+//! Where an edge is contracted, the wedges that meet along it become one, with the values that the
+//! surface had next to the new place. A chart of the removed end that meets none has nowhere to go; so a seam can only be contracted
 //! along itself, or by an end that has no seam onto one that has.
 
-use meshlod_mesh::{Attributes, FaceId, Layer, LayerKind, Mesh, VertexId, WedgeId};
+use meshlod_mesh::{Attributes, FaceId, Layer, Mesh, VertexId, WedgeId};
 use rustc_hash::FxHashMap;
 
 use crate::charts::{charts, is_shading};
 use crate::contracted::Freedom;
+use crate::interpolate::interpolate;
+use crate::nearest::Nearby;
 use crate::neighbourhood::Neighbourhood;
 use crate::refusal::Refusal;
-use crate::surface::{Flags, Surface};
+use crate::surface::{Flags, Placed, Surface};
 
 /// The wedges of a surface: those of its mesh, split further where the material changes, so that
 /// the borders of materials are seams like any other.
@@ -23,7 +25,7 @@ pub(crate) struct Wedges {
 
 impl Wedges {
     /// The wedges of a mesh that has attributes or materials.
-    pub(crate) fn of(mesh: &Mesh) -> Option<Self> {
+    pub(crate) fn new(mesh: &Mesh) -> Option<Self> {
         let several_materials = mesh.materials.as_ref().filter(|m| m.names.len() > 1);
         let (mut corners, mut layers, mut count) = match (&mesh.attributes, several_materials) {
             (Some(a), _) => (a.corners.clone(), a.layers.clone(), a.wedge_count),
@@ -48,6 +50,12 @@ impl Wedges {
     #[inline]
     pub(crate) fn at(&self, face: FaceId, corner: usize) -> WedgeId {
         self.corners[face.index()][corner]
+    }
+
+    /// The wedges at the corners of a face.
+    #[inline]
+    pub(crate) fn of(&self, face: FaceId) -> [WedgeId; 3] {
+        self.corners[face.index()]
     }
 
     /// The wedges at the ends of the edge in each of its faces; equal pairs once.
@@ -76,8 +84,13 @@ impl Wedges {
     }
 
     #[inline]
-    fn chart(&self, wedge: WedgeId) -> WedgeId {
+    pub(crate) fn chart(&self, wedge: WedgeId) -> WedgeId {
         self.charts[wedge.index()]
+    }
+
+    #[inline]
+    pub(crate) fn same_chart(&self, a: WedgeId, b: WedgeId) -> bool {
+        self.chart(a) == self.chart(b)
     }
 
     /// Which ends of the edge can be given up: those whose every chart meets exactly one chart of
@@ -141,30 +154,59 @@ impl Wedges {
         paired.chain(alone)
     }
 
-    /// Makes one set of wedges of the two ends'. Those that meet along the edge become one, blended
-    /// a way `t` (0 to 1) from the kept one towards the other. The rest stay with their faces and
-    /// their shading, and take their textures from the wedge that their chart became.
-    pub(crate) fn contract(&mut self, hood: &Neighbourhood, kept: usize, t: f64) {
-        let pairs = &hood.wedge_pairs;
-        if t > 0.0 {
-            for (i, pair) in pairs.iter().enumerate() {
-                // One that meets several is blended once.
-                if pairs[..i].iter().all(|before| before[kept] != pair[kept]) {
-                    let layers = self.layers.iter_mut();
-                    layers.for_each(|layer| blend(layer, pair[kept], pair[1 - kept], t));
-                }
-            }
+    /// Makes one set of wedges of the two ends', before `surface` itself changes. Those that meet
+    /// along the edge become one. The rest stay with their faces and their shading, and take their
+    /// textures from the wedge that their chart became.
+    pub(crate) fn contract(&mut self, surface: &Surface, hood: &Neighbourhood, placed: &Placed) {
+        let (pairs, kept) = (&hood.wedge_pairs, placed.kept);
+        // An end that stays where it is keeps its values to the bit.
+        if placed.position != surface.position(hood.contracted[kept]) {
+            self.take_values(&Nearby::new(self, surface, hood, placed), pairs, kept);
         }
         for spoke in &hood.spokes {
             let wedge = self.at(spoke.face, spoke.corner());
             let end = spoke.owner();
             if let Some(pair) = pairs.iter().find(|pair| pair[end] == wedge) {
                 self.set(spoke.face, spoke.corner(), pair[kept]);
-            } else if let Some(pair) =
-                pairs.iter().find(|p| self.chart(p[end]) == self.chart(wedge))
-            {
+            } else if let Some(pair) = pairs.iter().find(|p| self.same_chart(p[end], wedge)) {
                 self.follow(wedge, pair[kept]);
             }
+        }
+    }
+
+    /// Gives the wedges that become one the values of the places they stand at.
+    fn take_values(&mut self, nearby: &Nearby, pairs: &[[WedgeId; 2]], kept: usize) {
+        let mut taken: Vec<(WedgeId, Vec<f32>)> = Vec::with_capacity(pairs.len());
+        for wedge in pairs.iter().map(|pair| pair[kept]) {
+            let done = taken.iter().any(|(other, _)| *other == wedge);
+            if let (false, [Some(shading), Some(texture)]) =
+                (done, nearby.places(wedge, self.chart(wedge)))
+            {
+                let mut values = Vec::with_capacity(2 * self.width());
+                interpolate(&self.layers, &texture, &mut values);
+                if shading != texture {
+                    interpolate(&self.layers, &shading, &mut values);
+                    self.shade(&mut values);
+                }
+                taken.push((wedge, values));
+            }
+        }
+        // Only now: the values before were still wanted.
+        for (wedge, values) in taken {
+            self.restore(wedge, &values);
+        }
+    }
+
+    /// Of two sets of values, takes the shading of the second into the first.
+    fn shade(&self, values: &mut [f32]) {
+        let (first, second) = values.split_at_mut(self.width());
+        let mut start = 0;
+        for layer in &self.layers {
+            let end = start + layer.width;
+            if is_shading(layer) {
+                first[start..end].copy_from_slice(&second[start..end]);
+            }
+            start = end;
         }
     }
 
@@ -238,31 +280,4 @@ fn split_by(
         }
     }
     owner
-}
-
-/// Moves a wedge's values a way `t` towards another's, as its kind asks.
-fn blend(layer: &mut Layer, wedge: WedgeId, toward: WedgeId, t: f64) {
-    let (from, to) = (wedge.index() * layer.width, toward.index() * layer.width);
-    // Joints are names, not amounts: they and their weights come from the nearer end.
-    if matches!(layer.kind, LayerKind::Joints(_) | LayerKind::Weights(_)) {
-        if t > 0.5 {
-            layer.values.copy_within(to..to + layer.width, from);
-        }
-        return;
-    }
-    // A tangent's last value is its hand, one or minus one.
-    let blended = if layer.kind == LayerKind::Tangent { 3 } else { layer.width };
-    if blended < layer.width && t > 0.5 {
-        layer.values[from + blended] = layer.values[to + blended];
-    }
-    for i in 0..blended {
-        layer.values[from + i] += (layer.values[to + i] - layer.values[from + i]) * t as f32;
-    }
-    if matches!(layer.kind, LayerKind::Normal | LayerKind::Tangent) {
-        let direction = &mut layer.values[from..from + 3];
-        let length = direction.iter().map(|x| x * x).sum::<f32>().sqrt();
-        if length > 0.0 {
-            direction.iter_mut().for_each(|x| *x /= length);
-        }
-    }
 }

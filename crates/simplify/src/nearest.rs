@@ -1,0 +1,75 @@
+//! Where on the surface as it was a new vertex stands, wedge by wedge.
+//!
+//! The new vertex is off the old faces and off the contracted edge. Each of its wedges takes its
+//! values from the closest point of the old faces that it stands for: those of its chart for
+//! textures, those of the wedge itself for shading, so that a crease stays one.
+
+use glam::DVec3;
+use meshlod_mesh::{FaceId, WedgeId};
+use meshlod_spatial::{Triangle, closest_point};
+
+use crate::interpolate::{Place, shares};
+use crate::neighbourhood::Neighbourhood;
+use crate::surface::{Placed, Surface};
+use crate::wedges::Wedges;
+
+/// A face around, as it was.
+struct Near {
+    /// The wedge that its contracted corners become; none for one that meets no other.
+    wedge: Option<WedgeId>,
+    /// The chart that they become part of.
+    chart: WedgeId,
+    triangle: Triangle,
+    wedges: [WedgeId; 3],
+    /// Of its points the closest to the new vertex.
+    closest: DVec3,
+    distance_squared: f64,
+}
+
+/// The faces around a contraction, before the surface changes.
+pub(crate) struct Nearby(Vec<Near>);
+
+impl Nearby {
+    pub(crate) fn new(
+        wedges: &Wedges,
+        surface: &Surface,
+        hood: &Neighbourhood,
+        placed: &Placed,
+    ) -> Self {
+        let near = |face: FaceId, wedge: Option<WedgeId>, chart: WedgeId| {
+            let triangle = surface.face(face).map(|v| surface.position(v));
+            let closest = closest_point(placed.position, &triangle);
+            let distance_squared = placed.position.distance_squared(closest);
+            Near { wedge, chart, triangle, wedges: wedges.of(face), closest, distance_squared }
+        };
+        let kept = placed.kept;
+        let spokes = hood.spokes.iter().map(|spoke| {
+            let (end, own) = (spoke.owner(), wedges.at(spoke.face, spoke.corner()));
+            let becomes = hood.wedge_pairs.iter().find(|pair| pair[end] == own);
+            let follows = hood.wedge_pairs.iter().find(|pair| wedges.same_chart(pair[end], own));
+            let chart = becomes.or(follows).map_or(own, |pair| pair[kept]);
+            near(spoke.face, becomes.map(|pair| pair[kept]), wedges.chart(chart))
+        });
+        let dying = hood.dying.iter().map(|dying| {
+            let corner = surface.corner(dying.face, hood.contracted[kept]);
+            let own = wedges.at(dying.face, corner);
+            near(dying.face, Some(own), wedges.chart(own))
+        });
+        Self(spokes.chain(dying).collect())
+    }
+
+    /// Where the shading of this wedge of the new vertex comes from, and where its textures.
+    pub(crate) fn places(&self, wedge: WedgeId, chart: WedgeId) -> [Option<Place>; 2] {
+        let nearest = |counts: &dyn Fn(&Near) -> bool| {
+            let faces = self.0.iter().filter(|near| counts(near));
+            faces.min_by(|a, b| a.distance_squared.total_cmp(&b.distance_squared)).map(Near::place)
+        };
+        [nearest(&|near| near.wedge == Some(wedge)), nearest(&|near| near.chart == chart)]
+    }
+}
+
+impl Near {
+    fn place(&self) -> Place {
+        Place { wedges: self.wedges, shares: shares(self.closest, &self.triangle) }
+    }
+}
