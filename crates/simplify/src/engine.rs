@@ -12,6 +12,7 @@ use rustc_hash::FxHashMap;
 use crate::candidates::CandidateId;
 use crate::checks::CHECKS;
 use crate::contracted::{Contracted, Freedom};
+use crate::estimate::estimate;
 use crate::neighbourhood::{Neighbourhood, freedom};
 use crate::policy::{Books, Candidates, Memory, Observe, Placement, Priority, Proposal, Stop};
 use crate::queue::{Entry, Key, Queue};
@@ -144,7 +145,8 @@ where
         let Self { algorithm, surface, hood, part, .. } = self;
         let contracted = algorithm.candidates.vertices(surface, entry.id);
         hood.gather(surface, contracted)?;
-        let placed = algorithm.placement.place(surface, &algorithm.memory, hood)?;
+        let mut placed = algorithm.placement.place(surface, &algorithm.memory, hood)?;
+        placed.error_estimate = estimate(surface, hood, &placed);
         if placed.error_estimate > stop.error {
             return Err(Refusal::Error);
         }
@@ -157,6 +159,9 @@ where
             _ => follow(surface, hood, part, &placed, observer),
         }
         algorithm.memory.renew(surface, hood, &placed);
+        if M::KNOWS_RING {
+            hood.ring.iter().for_each(|r| surface.touch(r.id));
+        }
         self.error_estimate = self.error_estimate.max(placed.error_estimate);
         self.renew(&placed);
         Ok(())
@@ -280,6 +285,19 @@ where
 
     fn error_estimate(&self) -> f64 {
         self.error_estimate
+    }
+}
+
+impl<C, M, P, L> Algorithm<C, M, P, L>
+where
+    C: Candidates + 'static,
+    M: Memory + 'static,
+    P: Priority<M> + 'static,
+    L: Placement<M> + 'static,
+{
+    /// Sets it to work on a surface.
+    pub(crate) fn start(self, surface: Surface, connectivity: Connectivity) -> Box<dyn Run> {
+        Box::new(Engine::new(self, surface, connectivity))
     }
 }
 

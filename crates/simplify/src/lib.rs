@@ -20,6 +20,7 @@ mod checks;
 mod clean;
 mod contracted;
 mod engine;
+mod estimate;
 mod history;
 mod interpolate;
 mod level;

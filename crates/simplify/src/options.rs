@@ -13,19 +13,26 @@ pub enum Method {
     Qem,
     /// The same, but every vertex of the result is one of the input: half-edge contraction.
     QemEndpoint,
+    /// Memoryless, with the volume conserved exactly [LT98].
+    LindstromTurk,
+    /// Edges in the order of quadrics, with the volume conserved exactly [KJ04].
+    KimJang,
     /// Simple polygon reduction [Mel98]: length times turn, onto vertices of the input.
     Spr,
 }
 
 impl Method {
     /// Every method.
-    pub const ALL: [Self; 3] = [Self::Qem, Self::QemEndpoint, Self::Spr];
+    pub const ALL: [Self; 5] =
+        [Self::Qem, Self::QemEndpoint, Self::LindstromTurk, Self::KimJang, Self::Spr];
 
     /// Its name on the command line and in reports.
     pub fn name(self) -> &'static str {
         match self {
             Self::Qem => "qem",
             Self::QemEndpoint => "qem-endpoint",
+            Self::LindstromTurk => "lindstrom-turk",
+            Self::KimJang => "kim-jang",
             Self::Spr => "spr",
         }
     }

@@ -47,6 +47,10 @@ pub(crate) trait Books {
 
 /// What an algorithm keeps per vertex, such as quadrics. `()` for the memoryless.
 pub(crate) trait Memory: Sync {
+    /// Whether what is kept of a vertex changes with the faces around it, so that a contraction
+    /// makes costs stale all along its ring.
+    const KNOWS_RING: bool = false;
+
     /// Told of a contraction just before the surface changes.
     fn merge(&mut self, surface: &Surface, hood: &Neighbourhood, placed: &Placed) {
         let _ = (surface, hood, placed);
@@ -70,7 +74,8 @@ pub(crate) trait Priority<M>: Sync {
 
 /// The place of the new vertex.
 pub(crate) trait Placement<M>: Sync {
-    /// Where the new vertex goes, within the neighbourhood's freedom.
+    /// Where the new vertex goes, within the neighbourhood's freedom. Its error is what the method
+    /// itself says of this contraction alone; the engine adds what it sees.
     fn place(&self, surface: &Surface, memory: &M, hood: &Neighbourhood)
     -> Result<Placed, Refusal>;
 }

@@ -19,7 +19,7 @@ pub struct Placed {
     pub position: DVec3,
     /// The vertex that stays, by its place among the contracted.
     pub kept: usize,
-    /// The algorithm's own estimate of how far the surface moves here, in model units.
+    /// An estimate of how far the surface is from the input's here, in model units.
     pub error_estimate: f64,
 }
 
@@ -82,6 +82,8 @@ struct Vertex {
     gone: u32,
     version: u32,
     flags: Flags,
+    /// How far the surface is estimated to have moved here, in model units.
+    moved: f32,
 }
 
 /// What the engine must know of a vertex.
@@ -146,6 +148,7 @@ impl Surface {
                     gone: 0,
                     version: 0,
                     flags,
+                    moved: 0.0,
                 }
             })
             .collect();
@@ -266,6 +269,19 @@ impl Surface {
         self.vertices[vertex.index()].flags.0 &= !flag.0;
     }
 
+    /// The greatest estimate of how far the surface has moved at these vertices, in model units.
+    #[inline]
+    pub(crate) fn moved(&self, vertices: &[VertexId]) -> f64 {
+        vertices.iter().map(|v| self.vertices[v.index()].moved).fold(0.0, f32::max).into()
+    }
+
+    /// Makes every cost that was found at a vertex stale.
+    #[inline]
+    pub(crate) fn touch(&mut self, vertex: VertexId) {
+        let version = &mut self.vertices[vertex.index()].version;
+        *version = version.wrapping_add(1);
+    }
+
     /// A number that changes whenever a vertex among these does, and never comes back.
     #[inline]
     pub(crate) fn stamp(&self, vertices: &[VertexId]) -> u32 {
@@ -289,7 +305,7 @@ impl Surface {
             }
         }
         self.live_faces -= hood.dying.len();
-        self.join(hood, kept, placed.position);
+        self.join(hood, kept, placed);
     }
 
     /// Takes a contraction back as far as positions and faces go: stars and flags stay as they are.
@@ -313,9 +329,10 @@ impl Surface {
     }
 
     /// Gives `kept` the surviving faces, the flags and a version above all the contracted.
-    fn join(&mut self, hood: &Neighbourhood, kept: VertexId, position: DVec3) {
+    fn join(&mut self, hood: &Neighbourhood, kept: VertexId, placed: &Placed) {
         let mut joined = Vertex {
-            position,
+            position: placed.position,
+            moved: placed.error_estimate as f32,
             valence: hood.spokes.len() as u32,
             gone: 0,
             version: 1,

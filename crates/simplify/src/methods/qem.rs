@@ -12,7 +12,6 @@ use glam::DVec3;
 use meshlod_mesh::{Connectivity, FaceId, Side, Twin, VertexId};
 
 use crate::contracted::{Contracted, Freedom};
-use crate::methods::drift::Drift;
 use crate::methods::quadric::Quadric;
 use crate::neighbourhood::Neighbourhood;
 use crate::policy::{Memory, Placement, Priority};
@@ -47,11 +46,8 @@ const BOUNDARY_WEIGHT: f64 = 2.0;
 /// The weight of a seam's plane likewise.
 const SEAM_WEIGHT: f64 = 1.0;
 
-/// A quadric per vertex, and how far the surface has moved.
-pub(crate) struct Quadrics {
-    quadrics: Vec<Quadric>,
-    drift: Drift,
-}
+/// A quadric per vertex.
+pub(crate) struct Quadrics(Vec<Quadric>);
 
 impl Quadrics {
     pub(crate) fn new(surface: &Surface, connectivity: &Connectivity) -> Self {
@@ -62,16 +58,16 @@ impl Quadrics {
                 add_face(&mut quadrics, surface, face, connectivity);
             }
         }
-        Self { quadrics, drift: Drift::new(surface) }
+        Self(quadrics)
     }
 
     /// The sum of the contracted vertices' quadrics, seen from the first.
     #[inline]
     fn sum(&self, surface: &Surface, contracted: &Contracted) -> Quadric {
         let origin = surface.position(contracted[0]);
-        let mut sum = self.quadrics[contracted[0].index()];
+        let mut sum = self.0[contracted[0].index()];
         for &v in &contracted[1..] {
-            sum = sum + self.quadrics[v.index()].seen_from(origin - surface.position(v));
+            sum = sum + self.0[v.index()].seen_from(origin - surface.position(v));
         }
         sum
     }
@@ -87,9 +83,7 @@ impl Memory for Quadrics {
         if !hood.contracted().iter().any(fenced) {
             merged = merged * MEMORY + star(hood, placed.position) * (1.0 - MEMORY);
         }
-        let kept = hood.contracted()[placed.kept].index();
-        self.quadrics[kept] = merged;
-        self.drift.merge(surface, hood, placed);
+        self.0[hood.contracted()[placed.kept].index()] = merged;
     }
 }
 
@@ -225,8 +219,6 @@ impl<R: Rule> Placement<Quadrics> for R {
         let origin = surface.position(hood.contracted()[0]);
         let kept = surface.position(hood.contracted()[choice.kept]);
         let position = if choice.offset == kept - origin { kept } else { origin + choice.offset };
-        let by_planes = sum.distance(choice.cost);
-        let error_estimate = memory.drift.estimate(surface, hood, position, by_planes);
-        Ok(Placed { position, kept: choice.kept, error_estimate })
+        Ok(Placed { position, kept: choice.kept, error_estimate: sum.distance(choice.cost) })
     }
 }

@@ -7,13 +7,95 @@ use std::ops::{Add, Mul};
 
 use glam::{DMat3, DVec3};
 
+/// A symmetric 3 × 3 matrix.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Symmetric {
+    /// xx, yy, zz.
+    diagonal: DVec3,
+    /// yz, zx, xy.
+    off_diagonal: DVec3,
+}
+
+impl Add for Symmetric {
+    type Output = Self;
+
+    #[inline]
+    fn add(self, other: Self) -> Self {
+        Self {
+            diagonal: self.diagonal + other.diagonal,
+            off_diagonal: self.off_diagonal + other.off_diagonal,
+        }
+    }
+}
+
+impl Mul<f64> for Symmetric {
+    type Output = Self;
+
+    #[inline]
+    fn mul(self, factor: f64) -> Self {
+        Self { diagonal: self.diagonal * factor, off_diagonal: self.off_diagonal * factor }
+    }
+}
+
+impl Symmetric {
+    /// n n'.
+    #[inline]
+    pub(crate) fn outer(n: DVec3) -> Self {
+        Self { diagonal: n * n, off_diagonal: DVec3::new(n.y * n.z, n.z * n.x, n.x * n.y) }
+    }
+
+    /// The unit matrix, this many times.
+    #[inline]
+    pub(crate) fn scalar(factor: f64) -> Self {
+        Self { diagonal: DVec3::splat(factor), off_diagonal: DVec3::ZERO }
+    }
+
+    #[inline]
+    pub(crate) fn trace(&self) -> f64 {
+        self.diagonal.element_sum()
+    }
+
+    /// Itself times `x`.
+    #[inline]
+    pub(crate) fn apply(&self, x: DVec3) -> DVec3 {
+        let o = self.off_diagonal;
+        self.diagonal * x
+            + DVec3::new(o.z * x.y + o.y * x.z, o.z * x.x + o.x * x.z, o.y * x.x + o.x * x.y)
+    }
+
+    /// P times this times P, P the projection along the unit vector `n`.
+    #[inline]
+    pub(crate) fn within(&self, n: DVec3) -> Self {
+        let an = self.apply(n);
+        // PAP = A − n(An)' − (An)n' + (n·An) nn'.
+        let half = an - n * (0.5 * n.dot(an));
+        Self {
+            diagonal: self.diagonal - 2.0 * n * half,
+            off_diagonal: self.off_diagonal
+                - DVec3::new(
+                    n.y * half.z + n.z * half.y,
+                    n.z * half.x + n.x * half.z,
+                    n.x * half.y + n.y * half.x,
+                ),
+        }
+    }
+
+    /// The x with this times x = `right`; nothing finite where there is none.
+    #[inline]
+    pub(crate) fn solve(&self, right: DVec3) -> DVec3 {
+        let (d, o) = (self.diagonal, self.off_diagonal);
+        // Symmetric, so the rows of the adjugate are cross products of the columns.
+        let (x, y, z) =
+            (DVec3::new(d.x, o.z, o.y), DVec3::new(o.z, d.y, o.x), DVec3::new(o.y, o.x, d.z));
+        let (yz, zx, xy) = (y.cross(z), z.cross(x), x.cross(y));
+        DMat3::from_cols(yz, zx, xy) * right / x.dot(yz)
+    }
+}
+
 /// The function Q(x) = x'Ax + 2b·x + c, x an offset from the quadric's origin, and its weight.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Quadric {
-    /// A: xx, yy, zz.
-    diagonal: DVec3,
-    /// A: yz, zx, xy.
-    off_diagonal: DVec3,
+    a: Symmetric,
     b: DVec3,
     c: f64,
     /// The sum of the planes' weights: with areas as weights, Q / weight is a mean squared
@@ -27,8 +109,7 @@ impl Add for Quadric {
     #[inline]
     fn add(self, other: Self) -> Self {
         Self {
-            diagonal: self.diagonal + other.diagonal,
-            off_diagonal: self.off_diagonal + other.off_diagonal,
+            a: self.a + other.a,
             b: self.b + other.b,
             c: self.c + other.c,
             weight: self.weight + other.weight,
@@ -42,8 +123,7 @@ impl Mul<f64> for Quadric {
     #[inline]
     fn mul(self, factor: f64) -> Self {
         Self {
-            diagonal: self.diagonal * factor,
-            off_diagonal: self.off_diagonal * factor,
+            a: self.a * factor,
             b: self.b * factor,
             c: self.c * factor,
             weight: self.weight * factor,
@@ -55,13 +135,7 @@ impl Quadric {
     /// Squared distance to the plane through the origin with this unit normal, times `weight`.
     #[inline]
     pub(crate) fn plane(normal: DVec3, weight: f64) -> Self {
-        let n = normal;
-        Self {
-            diagonal: n * n * weight,
-            off_diagonal: DVec3::new(n.y * n.z, n.z * n.x, n.x * n.y) * weight,
-            weight,
-            ..Self::default()
-        }
+        Self { a: Symmetric::outer(normal) * weight, weight, ..Self::default() }
     }
 
     /// The plane of a face through the origin, given twice its area along its normal, weighted by
@@ -76,6 +150,19 @@ impl Quadric {
         }
     }
 
+    /// x'Ax − 2(Bd)·x + d'Bd: planes through the origin and planes through `d`, A the squares of
+    /// both and `bd` those of the second, times d.
+    #[inline]
+    pub(crate) fn sum_of(a: Symmetric, bd: DVec3, d: DVec3) -> Self {
+        Self { a, b: -bd, c: bd.dot(d), weight: a.trace() }
+    }
+
+    /// (x − from)'A(x − from).
+    #[inline]
+    pub(crate) fn squared(a: Symmetric, from: DVec3) -> Self {
+        Self { a, weight: a.trace(), ..Self::default() }.seen_from(-from)
+    }
+
     /// The same function with a weight that counts for nothing in the mean.
     #[inline]
     pub(crate) fn as_constraint(self) -> Self {
@@ -85,22 +172,14 @@ impl Quadric {
     /// The same function, seen from an origin moved by `offset`.
     #[inline]
     pub(crate) fn seen_from(self, offset: DVec3) -> Self {
-        let ax = self.apply(offset);
+        let ax = self.a.apply(offset);
         Self { b: self.b + ax, c: self.c + (2.0 * self.b + ax).dot(offset), ..self }
-    }
-
-    /// A times `x`.
-    #[inline]
-    fn apply(&self, x: DVec3) -> DVec3 {
-        let o = self.off_diagonal;
-        self.diagonal * x
-            + DVec3::new(o.z * x.y + o.y * x.z, o.z * x.x + o.x * x.z, o.y * x.x + o.x * x.y)
     }
 
     /// Q at an offset. Rounding can put it a little below zero; it is cut there.
     #[inline]
     pub(crate) fn at(&self, x: DVec3) -> f64 {
-        let value = (self.apply(x) + 2.0 * self.b).dot(x) + self.c;
+        let value = (self.a.apply(x) + 2.0 * self.b).dot(x) + self.c;
         if value < 0.0 { 0.0 } else { value }
     }
 
@@ -122,18 +201,51 @@ impl Quadric {
     /// keeps the system well conditioned there: no rank to guess, no special case.
     #[inline]
     pub(crate) fn optimum(&self, toward: DVec3, pull: f64) -> DVec3 {
-        let spring = pull * self.diagonal.element_sum();
+        let spring = pull * self.a.trace();
         if spring <= f64::MIN_POSITIVE {
             return toward;
         }
-        let (d, o) = (self.diagonal + spring, self.off_diagonal);
-        // Symmetric, so the rows of the adjugate are cross products of the columns.
-        let (x, y, z) =
-            (DVec3::new(d.x, o.z, o.y), DVec3::new(o.z, d.y, o.x), DVec3::new(o.y, o.x, d.z));
-        let (yz, zx, xy) = (y.cross(z), z.cross(x), x.cross(y));
-        let right = toward * spring - self.b;
-        let solution = DMat3::from_cols(yz, zx, xy) * right / x.dot(yz);
+        let solution = (self.a + Symmetric::scalar(spring)).solve(toward * spring - self.b);
         if solution.is_finite() { solution } else { toward }
+    }
+
+    /// The t where the same is least on the line `start` + t·`direction`.
+    #[inline]
+    pub(crate) fn least_along(
+        &self,
+        start: DVec3,
+        direction: DVec3,
+        toward: DVec3,
+        pull: f64,
+    ) -> f64 {
+        let spring = pull * self.a.trace();
+        let slope = self.a.apply(start) + self.b + spring * (start - toward);
+        let bend = self.a.apply(direction) + spring * direction;
+        -slope.dot(direction) / bend.dot(direction)
+    }
+
+    /// The same on the plane `normal`·x = `level`; `toward` where that is no plane.
+    ///
+    /// Across the plane the function is replaced by one that is stiff there, so that one solution
+    /// of three unknowns does for two.
+    #[inline]
+    pub(crate) fn optimum_on(&self, normal: DVec3, level: f64, toward: DVec3, pull: f64) -> DVec3 {
+        let length = normal.length();
+        let (n, trace) = (normal / length, self.a.trace());
+        let start = toward + n * (level / length - n.dot(toward));
+        if !start.is_finite() {
+            return toward;
+        }
+        let spring = pull * trace;
+        if spring <= f64::MIN_POSITIVE {
+            return start;
+        }
+        let slope = self.a.apply(start) + self.b;
+        let within = self.a.within(n) + Symmetric::outer(n) * trace + Symmetric::scalar(spring);
+        let step = within.solve(n * slope.dot(n) - slope);
+        // Rounding must not cost any of the volume.
+        let step = step - n * step.dot(n);
+        if step.is_finite() { start + step } else { start }
     }
 }
 

@@ -12,7 +12,6 @@ use glam::DVec3;
 use meshlod_mesh::{FaceId, VertexId};
 
 use crate::contracted::{Contracted, Freedom};
-use crate::methods::drift::Drift;
 use crate::neighbourhood::Neighbourhood;
 use crate::policy::{Placement, Priority};
 use crate::refusal::Refusal;
@@ -28,23 +27,17 @@ const MOST_SIDES: usize = 4;
 /// [Mel98] as priority and as placement.
 pub(crate) struct Turn;
 
-impl Priority<Drift> for Turn {
-    fn cost(&self, surface: &Surface, _: &Drift, of: &Contracted, freedom: Freedom) -> Option<f64> {
+impl Priority<()> for Turn {
+    fn cost(&self, surface: &Surface, _: &(), of: &Contracted, freedom: Freedom) -> Option<f64> {
         Some(cheaper(surface, of, freedom).1)
     }
 }
 
-impl Placement<Drift> for Turn {
-    fn place(
-        &self,
-        surface: &Surface,
-        drift: &Drift,
-        hood: &Neighbourhood,
-    ) -> Result<Placed, Refusal> {
+impl Placement<()> for Turn {
+    fn place(&self, surface: &Surface, _: &(), hood: &Neighbourhood) -> Result<Placed, Refusal> {
         let (kept, _) = cheaper(surface, hood.contracted(), hood.freedom());
         let position = surface.position(hood.contracted()[kept]);
-        let error_estimate = drift.estimate(surface, hood, position, 0.0);
-        Ok(Placed { position, kept, error_estimate })
+        Ok(Placed { position, kept, error_estimate: 0.0 })
     }
 }
 

@@ -1,42 +1,18 @@
-//! How far the surface has moved, vertex by vertex: the estimate of methods whose costs are no
-//! distances.
+//! How far a contraction takes the surface from the input: an estimate of the maximum, not a bound.
 
 use glam::DVec3;
 use meshlod_mesh::VertexId;
 use meshlod_spatial::closest_point;
 
 use crate::neighbourhood::{Neighbourhood, Spoke};
-use crate::policy::Memory;
 use crate::surface::{Placed, Surface};
 
-/// For each vertex an estimate of how far the surface has moved there, in model units.
-pub(crate) struct Drift(Vec<f32>);
-
-impl Drift {
-    pub(crate) fn new(surface: &Surface) -> Self {
-        Self(vec![0.0; surface.vertex_count()])
-    }
-
-    /// How far a contraction to `position` takes the surface from where it was at first; what is
-    /// moved now counts at least `least`.
-    ///
-    /// What was moved before and what is moved now are taken as independent.
-    pub(crate) fn estimate(
-        &self,
-        surface: &Surface,
-        hood: &Neighbourhood,
-        position: DVec3,
-        least: f64,
-    ) -> f64 {
-        let before = hood.contracted().iter().map(|v| self.0[v.index()]).fold(0.0, f32::max);
-        stand_off(surface, hood, position).max(least).hypot(before.into())
-    }
-}
-
-impl Memory for Drift {
-    fn merge(&mut self, _: &Surface, hood: &Neighbourhood, placed: &Placed) {
-        self.0[hood.contracted()[placed.kept].index()] = placed.error_estimate as f32;
-    }
+/// The larger of what the placement says of itself and how far the contracted vertices end up from
+/// the new faces, on top of what was moved there before, in model units. The two are taken as
+/// independent.
+pub(crate) fn estimate(surface: &Surface, hood: &Neighbourhood, placed: &Placed) -> f64 {
+    let now = placed.error_estimate.max(stand_off(surface, hood, placed.position));
+    now.hypot(surface.moved(hood.contracted()))
 }
 
 /// How far the contracted vertices are from the faces they had and that now meet in `position`; one

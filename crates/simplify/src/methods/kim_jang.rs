@@ -1,0 +1,44 @@
+//! Edge contraction in the order of quadrics, moved to where the volume stays [KJ04].
+
+use glam::DVec3;
+
+use crate::contracted::Freedom;
+use crate::methods::qem::{Optimal, Quadrics};
+use crate::methods::volume::{VolumePlane, is_closed};
+use crate::neighbourhood::Neighbourhood;
+use crate::policy::Placement;
+use crate::refusal::Refusal;
+use crate::surface::{Placed, Surface};
+
+/// How far, in mean spokes of its own, the optimum may be moved along the line from the middle of
+/// the ring; beyond, it goes the shortest way.
+const REACH: f64 = 0.5;
+
+/// The optimum of the quadrics, moved along the line from the middle of the ring to where it
+/// conserves the volume; by the shortest way where that line hardly leaves the surface. An open ring
+/// has no volume; there it is the optimum.
+pub(crate) struct Conserving;
+
+impl Placement<Quadrics> for Conserving {
+    fn place(
+        &self,
+        surface: &Surface,
+        memory: &Quadrics,
+        hood: &Neighbourhood,
+    ) -> Result<Placed, Refusal> {
+        let placed = Optimal.place(surface, memory, hood)?;
+        if hood.freedom() != Freedom::Free || !is_closed(surface, hood) || hood.ring().is_empty() {
+            return Ok(placed);
+        }
+        let ring = hood.ring();
+        let base = ring.iter().map(|r| r.position).sum::<DVec3>() / ring.len() as f64;
+        let spoke = ring.iter().map(|r| r.position.distance(base)).sum::<f64>() / ring.len() as f64;
+        let plane = VolumePlane::new(surface, hood, base);
+        let optimum = placed.position - base;
+        // N = E + (Vol_b / Vol_c)(C − E), E being where offsets start.
+        let along = optimum * (plane.level / plane.normal.dot(optimum));
+        let offset =
+            if along.distance(optimum) <= REACH * spoke { along } else { plane.nearest(optimum) };
+        Ok(Placed { position: base + offset, ..placed })
+    }
+}
