@@ -3,6 +3,8 @@
 use meshlod_mesh::MeshError;
 use thiserror::Error;
 
+use crate::Picture;
+
 /// Why there is no picture, or no texture.
 #[derive(Debug, Error)]
 pub enum PictureError {
@@ -18,6 +20,14 @@ pub enum PictureError {
         width: u64,
         /// The height.
         height: u64,
+    },
+    /// Two pictures that shall be compared have different sizes.
+    #[error("{0} x {1} pixels cannot be compared with {2} x {3}", a[0], a[1], b[0], b[1])]
+    DifferentSizes {
+        /// Width and height of the first.
+        a: [u32; 2],
+        /// Width and height of the second.
+        b: [u32; 2],
     },
     /// A list that goes with another has the wrong length.
     #[error("{what}: {found} entries where {expected} are needed")]
@@ -62,6 +72,15 @@ pub(crate) fn check_size(width: u64, height: u64) -> Result<(), PictureError> {
         return Ok(());
     }
     Err(PictureError::Size { width, height })
+}
+
+/// Refuses pictures of different sizes.
+pub(crate) fn check_same_size(a: &Picture, b: &Picture) -> Result<(), PictureError> {
+    let [a, b] = [a, b].map(|picture| [picture.width(), picture.height()]);
+    if a == b {
+        return Ok(());
+    }
+    Err(PictureError::DifferentSizes { a, b })
 }
 
 /// Refuses a list of another length.

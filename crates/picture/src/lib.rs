@@ -20,12 +20,15 @@
 //! through a [`ColorMap`], as in a heat map of errors. [`visibility()`] tells which face each pixel
 //! sees, without any shading.
 //!
+//! [`image_error`] is what a level looks wrong by: its pictures from twelve sides beside those of
+//! its original, compared as the eye does ([`flip()`]) and by structure ([`ssim()`]).
+//!
 //! # How it works
 //! Vertices are projected once, to fixed point. Faces are sorted into tiles; each tile finds the
 //! nearest face of every sample by integer edge functions, so that faces with a common edge neither
 //! overlap nor leave a gap; then it shades what is seen. Tiles know nothing of each other, and of
 //! equally near faces the lower id wins: order and threads leave no trace. Only + - * / and square
-//! roots are used, which are the same on all machines.
+//! roots are used, which are the same on all machines; comparing pictures also takes roots and powers of the library.
 #![forbid(unsafe_code)]
 
 mod bins;
@@ -35,16 +38,21 @@ mod color_map;
 mod decode;
 mod error;
 mod facet;
+mod flip;
+mod image_error;
+mod lab;
 mod light;
 mod normals;
 mod picture;
 mod pigment;
+mod plane;
 mod project;
 mod raster;
 mod render;
 #[cfg(test)]
 mod scenes;
 mod srgb;
+mod ssim;
 mod style;
 mod texture;
 mod trigonometry;
@@ -53,8 +61,11 @@ mod visibility;
 pub use camera::{Camera, UpAxis, View};
 pub use color_map::ColorMap;
 pub use error::{MAX_SIDE, PictureError};
+pub use flip::{PIXELS_PER_DEGREE, flip};
+pub use image_error::{ImageError, Portrait, ViewError, image_error};
 pub use picture::{Picture, beside, grid};
 pub use render::render;
+pub use ssim::ssim;
 pub use style::{
     Antialiasing, Background, Backs, Lighting, Material, Materials, Normals, Paint, Style, Values,
     Wireframe,

@@ -1,5 +1,7 @@
 //! How a picture shall look.
 
+use meshlod_mesh::{LayerKind, Mesh};
+
 use crate::{ColorMap, Texture};
 
 /// How a mesh is drawn. Colours are sRGB.
@@ -72,6 +74,32 @@ pub enum Paint<'a> {
         /// Squares per unit of uv.
         squares: u32,
     },
+}
+
+impl<'a> Paint<'a> {
+    /// The paint in which a mesh is compared with its levels: its materials where they have a
+    /// texture, else a checkerboard over its uvs, its colours, the colours of its materials, or
+    /// the default: the first of these that it has.
+    ///
+    /// `materials` has an entry for every material label of the mesh, or at least one.
+    pub fn comparison(mesh: &Mesh, materials: &'a Materials) -> Self {
+        let layers = |kind| mesh.attributes.as_ref().and_then(|all| all.layer(kind));
+        let labels = mesh.materials.as_ref().map_or(&[0][..], |labels| &labels.of_face);
+        let used = || labels.iter().filter_map(|&label| materials.materials.get(label as usize));
+        if used().any(|material| material.texture.is_some()) {
+            return Self::Materials(materials);
+        }
+        if layers(LayerKind::Uv(0)).is_some() {
+            return Self::Checker { squares: 16 };
+        }
+        if layers(LayerKind::Color(0)).is_some() {
+            return Self::Colors;
+        }
+        match used().any(|material| material.base_color != [1.0; 3]) {
+            true => Self::Materials(materials),
+            false => Self::default(),
+        }
+    }
 }
 
 impl Default for Paint<'_> {
