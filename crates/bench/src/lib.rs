@@ -5,5 +5,5 @@ mod corpus;
 pub mod peer;
 
 pub use alternate::{Ratio, alternate, one_core};
-pub use corpus::read;
+pub use corpus::{read, read_scene};
 pub use meshlod_fixtures::shared_mesh;

@@ -3,7 +3,12 @@
 // Its crate has no safe way to simplify with update.
 #![allow(unsafe_code)]
 
+mod attributes;
+
 use meshlod::mesh::{Mesh, VertexId};
+
+pub use attributes::{Settings, Update, simplify_with_attributes};
+pub use meshopt::SimplifyOptions;
 
 /// A mesh as meshoptimizer takes it.
 #[derive(Clone, Debug)]

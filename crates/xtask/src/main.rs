@@ -14,16 +14,19 @@ const USAGE: &str = "usage: cargo xtask VERB
   check    keys of references, arrows between crates, lengths of files
   doc      the documentation of all crates, warnings being errors
   results  every figure of docs/RESULTS.md
-  compare  simplification beside meshoptimizer, by turns on one core";
+  compare  simplification beside meshoptimizer, by turns on one core
+  textured [MODEL...]  image errors of levels beside meshoptimizer's";
 
 fn main() -> ExitCode {
-    let verb = std::env::args().nth(1);
+    let mut arguments = std::env::args().skip(1);
+    let verb = arguments.next();
     let project = Project::here();
     let outcome = match verb.as_deref() {
         Some("check") => check::run(&project),
         Some("doc") => doc::run(&project),
         Some("results") => results::run(&project),
         Some("compare") => results::compare(&project),
+        Some("textured") => results::textured(&arguments.collect::<Vec<_>>()),
         _ => {
             eprintln!("{USAGE}");
             return ExitCode::from(2);

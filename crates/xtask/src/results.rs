@@ -7,6 +7,7 @@ mod memory;
 mod reading;
 mod speed;
 mod table;
+mod textured;
 
 use anyhow::{Context, Result};
 
@@ -23,10 +24,11 @@ pub fn run(project: &Project) -> Result<()> {
         machine.date, machine.what
     );
     type Section = fn(&Project) -> Result<String>;
-    let sections: [(&str, Section); 4] = [
+    let sections: [(&str, Section); 5] = [
         // First, while this program is small: see there.
         ("Memory and determinism", memory::section),
         ("Accuracy", accuracy::section),
+        ("Textured", textured::section),
         ("Speed of simplification", speed::section),
         ("Reading and measuring", reading::section),
     ];
@@ -46,5 +48,11 @@ pub fn run(project: &Project) -> Result<()> {
 /// Prints the table of speeds alone.
 pub fn compare(project: &Project) -> Result<()> {
     print!("{}", speed::section(project)?);
+    Ok(())
+}
+
+/// Prints the table of image errors alone, of the models that have one of `names` in theirs.
+pub fn textured(names: &[String]) -> Result<()> {
+    print!("{}", textured::table_of(names)?);
     Ok(())
 }

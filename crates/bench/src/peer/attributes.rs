@@ -1,0 +1,219 @@
+//! meshoptimizer's simplification that minds attributes.
+
+use std::collections::HashMap;
+
+use meshlod::mesh::{Attributes, Labels, Layer, LayerKind, Mesh, VertexId, WedgeId};
+use meshopt::SimplifyOptions;
+
+/// How meshoptimizer shall mind attributes.
+#[derive(Clone, Copy, Debug)]
+pub struct Settings {
+    /// What a normal counts beside a position, where the mesh is 1 long.
+    pub normal_weight: f32,
+    /// What uvs count.
+    pub uv_weight: f32,
+    /// What else the library is told.
+    pub options: SimplifyOptions,
+    /// Whether vertices move and attributes change with them.
+    pub update: Update,
+}
+
+/// What becomes of the vertices that stay.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Update {
+    /// Nothing: simplify with attributes.
+    Nothing,
+    /// They move to the best place, and their attributes change: simplify with update.
+    All,
+}
+
+/// A mesh as a GPU has it.
+struct Torn {
+    /// The vertex, wedge and material label of each vertex of the GPU.
+    vertices: Vec<(VertexId, Option<WedgeId>, u32)>,
+    /// Their positions.
+    positions: Vec<f32>,
+    /// Their guiding attributes: normal, uv.
+    attributes: Vec<f32>,
+    /// Three to a face.
+    indices: Vec<u32>,
+}
+
+/// Attributes per vertex that guide the library: three of a normal, two of a uv.
+const WIDTH: usize = 5;
+
+/// A level of as near to `faces` as meshoptimizer comes from above, with all layers of the mesh.
+///
+/// Everything is simplified in one call, so that detail goes where it is missed least; a vertex of
+/// two materials is two to the library, as its wedges are, which keeps the border between them.
+pub fn simplify_with_attributes(mesh: &Mesh, faces: usize, settings: &Settings) -> Mesh {
+    let mut torn = Torn::new(mesh);
+    let count = torn.simplify(3 * faces, settings);
+    torn.indices.truncate(count);
+    torn.into_mesh(mesh, settings)
+}
+
+impl Torn {
+    fn new(mesh: &Mesh) -> Self {
+        let mut known = HashMap::new();
+        let mut vertices = Vec::new();
+        let mut indices = Vec::new();
+        for (i, face) in mesh.faces.iter().enumerate() {
+            let label = mesh.materials.as_ref().map_or(0, |labels| labels.of(i));
+            for (corner, &v) in face.iter().enumerate() {
+                let wedge = mesh.attributes.as_ref().map(|all| all.corners[i][corner]);
+                let vertex = (v, wedge, label);
+                indices.push(*known.entry(vertex).or_insert_with(|| {
+                    vertices.push(vertex);
+                    vertices.len() as u32 - 1
+                }));
+            }
+        }
+        let position = |&(v, ..): &(VertexId, _, _)| mesh.positions[v.index()].map(|x| x as f32);
+        let positions = vertices.iter().flat_map(position).collect();
+        let layer = |kind| mesh.attributes.as_ref().and_then(|all| all.layer(kind));
+        let mut attributes = vec![0.0; WIDTH * vertices.len()];
+        for (row, &(_, wedge, _)) in attributes.chunks_exact_mut(WIDTH).zip(&vertices) {
+            let Some(wedge) = wedge else { continue };
+            for (kind, at) in GUIDES {
+                if let Some(layer) = layer(kind) {
+                    row[at..at + layer.width].copy_from_slice(layer.of(wedge));
+                }
+            }
+        }
+        Self { vertices, positions, attributes, indices }
+    }
+
+    /// Calls the library; gives how many indices are left.
+    fn simplify(&mut self, target: usize, settings: &Settings) -> usize {
+        let Settings { normal_weight: normal, uv_weight: uv, options, update } = *settings;
+        let weights = [normal, normal, normal, uv, uv];
+        let row = size_of::<f32>();
+        let (source, mut error) = (self.indices.clone(), 0.0);
+        let (locks, bits) = (std::ptr::null(), options.bits());
+        // SAFETY: every pointer is to an array of the length given with it, indices are those of
+        // a valid mesh, and null stands for the absent locks as the library documents.
+        unsafe {
+            match update {
+                Update::Nothing => meshopt::ffi::meshopt_simplifyWithAttributes(
+                    self.indices.as_mut_ptr(),
+                    source.as_ptr(),
+                    source.len(),
+                    self.positions.as_ptr(),
+                    self.vertices.len(),
+                    3 * row,
+                    self.attributes.as_ptr(),
+                    WIDTH * row,
+                    weights.as_ptr(),
+                    WIDTH,
+                    locks,
+                    target,
+                    f32::MAX,
+                    bits,
+                    &mut error,
+                ),
+                Update::All => meshopt::ffi::meshopt_simplifyWithUpdate(
+                    self.indices.as_mut_ptr(),
+                    source.len(),
+                    self.positions.as_mut_ptr(),
+                    self.vertices.len(),
+                    3 * row,
+                    self.attributes.as_mut_ptr(),
+                    WIDTH * row,
+                    weights.as_ptr(),
+                    WIDTH,
+                    locks,
+                    target,
+                    f32::MAX,
+                    bits,
+                    &mut error,
+                ),
+            }
+        }
+    }
+
+    /// What the library left, with the mesh's own positions and values but where it changed them.
+    fn into_mesh(self, mesh: &Mesh, settings: &Settings) -> Mesh {
+        let (triples, _) = self.indices.as_chunks::<3>();
+        let corners: Vec<_> = triples.iter().map(|t| t.map(WedgeId)).collect();
+        let of = |w: WedgeId| self.vertices[w.index()];
+        let faces = corners.iter().map(|face| face.map(|w| of(w).0)).collect();
+        let mut level = Mesh::new(mesh.positions.clone(), faces);
+        if settings.update == Update::All {
+            for &w in corners.iter().flatten() {
+                let moved = [0, 1, 2].map(|axis| self.positions[3 * w.index() + axis].into());
+                level.positions[of(w).0.index()] = moved;
+            }
+        }
+        level.materials = mesh.materials.as_ref().map(|labels| Labels {
+            names: labels.names.clone(),
+            of_face: corners.iter().map(|face| of(face[0]).2).collect(),
+        });
+        let layers = mesh.attributes.iter().flat_map(|all| &all.layers);
+        let layers = layers.map(|layer| self.layer(layer, settings.update)).collect();
+        level.attributes = mesh.attributes.as_ref().map(|_| Attributes {
+            corners,
+            wedge_count: self.vertices.len(),
+            layers,
+        });
+        level.compact();
+        level
+    }
+
+    /// A layer over the vertices of the GPU.
+    fn layer(&self, layer: &Layer, update: Update) -> Layer {
+        let guide = GUIDES.into_iter().find(|(kind, _)| *kind == layer.kind);
+        let values = self.vertices.iter().enumerate().flat_map(|(i, &(_, wedge, _))| {
+            match (update, guide) {
+                (Update::All, Some((_, at))) => &self.attributes[i * WIDTH + at..][..layer.width],
+                _ => wedge.map_or(&[][..], |wedge| layer.of(wedge)),
+            }
+        });
+        Layer { values: values.copied().collect(), ..layer.clone() }
+    }
+}
+
+/// The layers that guide, and where they stand in a row of attributes.
+const GUIDES: [(LayerKind, usize); 2] = [(LayerKind::Normal, 0), (LayerKind::Uv(0), 3)];
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SETTINGS: Settings = Settings {
+        normal_weight: 0.5,
+        uv_weight: 0.5,
+        options: SimplifyOptions::None,
+        update: Update::Nothing,
+    };
+
+    #[test]
+    fn levels_keep_layers_and_have_the_size_asked_for() {
+        let mesh = meshlod::mesh::sample::fish(4_000);
+        for update in [Update::Nothing, Update::All] {
+            let settings = Settings { update, ..SETTINGS };
+            let level = simplify_with_attributes(&mesh, 1_000, &settings);
+            level.validate().unwrap();
+            assert!((900..=1_000).contains(&level.faces.len()), "{}", level.faces.len());
+            let layers = |mesh: &Mesh| mesh.attributes.as_ref().unwrap().layers.len();
+            assert_eq!(layers(&mesh), layers(&level));
+        }
+    }
+
+    #[test]
+    fn nothing_to_do_leaves_positions_and_values_as_they_are() {
+        let mesh = meshlod::mesh::sample::fish(500);
+        let level = simplify_with_attributes(&mesh, mesh.faces.len(), &SETTINGS);
+        let corners = |mesh: &Mesh| -> Vec<_> {
+            let uv =
+                mesh.attributes.as_ref().and_then(|all| Some((all, all.layer(LayerKind::Uv(0))?)));
+            let (all, uv) = uv.unwrap();
+            let values = |&(f, c): &(usize, usize)| {
+                (mesh.positions[mesh.faces[f][c].index()], uv.of(all.corners[f][c]).to_vec())
+            };
+            let corners = (0..mesh.faces.len()).flat_map(|f| (0..3).map(move |c| (f, c)));
+            corners.map(|at| values(&at)).collect()
+        };
+        assert_eq!(corners(&mesh), corners(&level));
+    }
+}

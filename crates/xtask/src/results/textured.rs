@@ -1,0 +1,84 @@
+//! How levels look with their textures, beside meshoptimizer's simplification that minds
+//! attributes.
+
+use anyhow::{Context, Result};
+use meshlod::mesh::Mesh;
+use meshlod::picture::{ImageError, Paint, Portrait};
+use meshlod::simplify::{Method, Options, Target};
+use meshlod::{Scene, materials_of, simplify_scene};
+use meshlod_bench::peer::{Settings, SimplifyOptions, Update, simplify_with_attributes};
+
+use super::table::Table;
+use crate::project::Project;
+
+const MODELS: [&str; 5] =
+    ["flight-helmet/FlightHelmet.gltf", "duck.glb", "pirate.obj", "spot.obj", "fish-bream.obj"];
+const RATIOS: [f64; 2] = [0.25, 0.1];
+
+/// The peer at its best: of the weights 0.25 to 1 for normals and 0 to 2 for uvs, those whose
+/// levels err least over the five models (docs/notes/image-error.md).
+const PEER: Settings = Settings {
+    normal_weight: 0.25,
+    uv_weight: 0.25,
+    options: SimplifyOptions::None,
+    update: Update::Nothing,
+};
+
+/// FLIP and SSIM of every model, ratio and method.
+pub fn section(_: &Project) -> Result<String> {
+    Ok(format!(
+        "Mean FLIP (0 is best) and SSIM (1 is best) of twelve views of 1024 by 1024, over the pixels \
+         that show the original or the level; with the model's textures, or a checkerboard over the \
+         uvs where it brings none. Ours have the face count of meshoptimizer's simplify with \
+         attributes. Any model again: `cargo xtask textured MODEL`.\n\n{}",
+        table(&MODELS)?
+    ))
+}
+
+/// The table of the models that have one of `names` in theirs; of all without names.
+///
+/// # Errors
+/// A name that is in none.
+pub fn table_of(names: &[String]) -> Result<String> {
+    let named = |model: &&str| names.iter().any(|name| model.contains(name.as_str()));
+    let models: Vec<&str> = MODELS.into_iter().filter(|m| names.is_empty() || named(m)).collect();
+    anyhow::ensure!(!models.is_empty(), "the models are {}", MODELS.join(", "));
+    table(&models)
+}
+
+fn table(models: &[&str]) -> Result<String> {
+    let mut table = Table::new(["model, ratio, method", "faces", "FLIP", "SSIM"]);
+    for model in models {
+        let Some(scene) = meshlod_bench::read_scene(model)? else { continue };
+        let (materials, _) = materials_of(&scene);
+        let mesh = scene.flatten();
+        let portrait = Portrait::new(&mesh, &Paint::comparison(&mesh, &materials))?;
+        for ratio in RATIOS {
+            for (method, level) in levels(&scene, &mesh, ratio)? {
+                let ImageError { flip, ssim, .. } =
+                    portrait.error_of(&level).with_context(|| model.to_string())?;
+                let what = format!("{model}, {:.0} %, {method}", ratio * 100.0);
+                let faces = level.faces.len().to_string();
+                table.row([what, faces, format!("{flip:.4}"), format!("{ssim:.4}")]);
+            }
+        }
+    }
+    Ok(table.markdown())
+}
+
+/// The levels of all methods and peers, by name.
+fn levels(scene: &Scene, mesh: &Mesh, ratio: f64) -> Result<Vec<(&'static str, Mesh)>> {
+    let faces = Target::Ratio(ratio).faces_of(mesh.faces.len());
+    let peer = simplify_with_attributes(mesh, faces, &PEER);
+    let updated = Settings { update: Update::All, ..PEER };
+    let mut levels = Vec::new();
+    for method in Method::ALL {
+        let mut scene = scene.clone();
+        let options = Options { method, ..Options::default() };
+        simplify_scene(&mut scene, Target::Faces(peer.faces.len()), &options)?;
+        levels.push((method.name(), scene.flatten()));
+    }
+    levels.push(("meshoptimizer with attributes", peer));
+    levels.push(("meshoptimizer with update", simplify_with_attributes(mesh, faces, &updated)));
+    Ok(levels)
+}
