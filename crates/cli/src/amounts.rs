@@ -42,6 +42,11 @@ impl Size {
             Self::Ratio(ratio) => Target::Ratio(ratio),
         }
     }
+
+    /// Itself in the name of a file: `10` for 10%, `500-faces`.
+    pub fn in_file_names(self) -> String {
+        self.to_string().replace('%', "").replace(' ', "-")
+    }
 }
 
 impl fmt::Display for Size {

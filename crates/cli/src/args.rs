@@ -1,11 +1,13 @@
 //! What may be written on the command line, but for the options of single verbs.
 
-use clap::{Args, Parser, Subcommand};
+use clap::{Args, Parser, Subcommand, ValueEnum};
 use meshlod::io::{Precision, Weld};
+use meshlod::picture::{UpAxis, View};
 use meshlod::{Format, ReadOptions, WriteOptions};
 
-use crate::amounts;
+use crate::amounts::{self, Look};
 use crate::answer::Answer;
+use crate::compare::Compare;
 use crate::demo::Demo;
 use crate::failure::Failure;
 use crate::session::Session;
@@ -47,6 +49,8 @@ pub enum Verb {
     Simplify(simplify::Simplify),
     /// Make a chain of coarser levels, as glTF with MSFT_lod or one file each
     Lods(lods::Lods),
+    /// Run all methods on one mesh: a table, and a page with pictures and heat maps
+    Compare(Compare),
     /// Measure how far two meshes are apart, both ways
     Measure(measure::Measure),
     /// Write a procedural mesh of any size
@@ -63,6 +67,7 @@ impl Verb {
             Self::Info(verb) => verb.run(session),
             Self::Simplify(verb) => verb.run(session),
             Self::Lods(verb) => verb.run(session),
+            Self::Compare(verb) => verb.run(session),
             Self::Measure(verb) => verb.run(session),
             Self::Sample(verb) => verb.run(session),
             Self::Render(verb) => verb.run(session),
@@ -123,6 +128,41 @@ pub struct Sampling {
 impl Sampling {
     pub fn options(&self) -> meshlod::measure::DistanceOptions {
         meshlod::measure::DistanceOptions { samples: self.samples, seed: self.seed }
+    }
+}
+
+/// Where a mesh is seen from.
+#[derive(Args)]
+pub struct Viewpoint {
+    /// Where to look from: front, back, left, right, top, bottom; or the direction to look in, x,y,z
+    #[arg(long, value_name = "DIR", value_parser = amounts::look, allow_hyphen_values = true)]
+    view: Option<Look>,
+    /// The axis that is up
+    #[arg(long, value_name = "AXIS", default_value = "y")]
+    up: Axis,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum Axis {
+    Y,
+    Z,
+}
+
+impl Viewpoint {
+    /// The direction and what is up; the rest is left as it is by default.
+    pub fn view(&self) -> View {
+        let up = match self.up {
+            Axis::Y => UpAxis::Y,
+            Axis::Z => UpAxis::Z,
+        };
+        let view = View::three_quarter(up);
+        let direction = match (self.view, up) {
+            (None, _) => view.direction,
+            (Some(Look::Along(direction) | Look::From(direction)), UpAxis::Y)
+            | (Some(Look::Along(direction)), UpAxis::Z) => direction,
+            (Some(Look::From([x, y, z])), UpAxis::Z) => [x, -z, y],
+        };
+        View { direction, ..view }
     }
 }
 

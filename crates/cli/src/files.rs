@@ -74,6 +74,24 @@ pub fn check_place(path: &Path) -> Result<(), Failure> {
     }
 }
 
+/// Makes a folder to write to, where it is not there; refuses one that nothing can be written to.
+pub fn make_folder(folder: &Path) -> Result<(), Failure> {
+    check_folder(folder)?;
+    let tried = folder.join(format!(".{}", std::process::id()));
+    fs::create_dir_all(folder)
+        .and_then(|()| fs::File::create_new(&tried))
+        .and_then(|_| fs::remove_file(&tried))
+        .map_err(|error| Failure::at(folder, error))
+}
+
+/// Refuses a folder whose place a file has.
+pub fn check_folder(folder: &Path) -> Result<(), Failure> {
+    match folder.exists() && !folder.is_dir() {
+        true => Err(Failure::at(folder, "is a file; name a folder to write to")),
+        false => Ok(()),
+    }
+}
+
 /// Writes a PNG file, or standard output.
 pub fn write_picture(path: &Path, png: &[u8]) -> Result<(), Failure> {
     if !is_pipe(path) {

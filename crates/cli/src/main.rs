@@ -7,11 +7,13 @@
 mod amounts;
 mod answer;
 mod args;
+mod compare;
 mod demo;
 mod distance;
 mod failure;
 mod files;
 mod numbers;
+mod page;
 mod progress;
 mod reduce;
 mod session;

@@ -24,6 +24,8 @@ pub struct Engine<'s> {
     simplifier: SceneSimplifier<'s>,
     session: &'s Session,
     path: &'s Path,
+    /// What it does, as the terminal says.
+    what: String,
     time: Duration,
 }
 
@@ -38,7 +40,13 @@ impl<'s> Engine<'s> {
         session.progress.stage("connecting");
         let start = Instant::now();
         let simplifier = SceneSimplifier::new(scene, options).map_err(|e| at(path, &e))?;
-        Ok(Self { simplifier, session, path, time: start.elapsed() })
+        let what = "simplifying".into();
+        Ok(Self { simplifier, session, path, what, time: start.elapsed() })
+    }
+
+    /// What the terminal says from here on.
+    pub fn call(&mut self, what: String) {
+        self.what = what;
     }
 
     /// Goes on to a target.
@@ -51,7 +59,7 @@ impl<'s> Engine<'s> {
             }
             Target::Error(_) => None,
         };
-        let mut watch = self.session.progress.contractions("simplifying", to_go);
+        let mut watch = self.session.progress.contractions(&self.what, to_go);
         let start = Instant::now();
         let report = self.simplifier.run(target, &mut watch);
         self.time += start.elapsed();

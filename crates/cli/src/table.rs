@@ -2,12 +2,17 @@
 
 /// Rows of cells as lines: the first column flush left, the others right, two spaces between.
 /// Cells that a row lacks are empty.
-pub fn aligned<const N: usize>(rows: &[[String; N]]) -> String {
-    let width = |column: usize| rows.iter().map(|row| row[column].chars().count()).max();
-    let widths: [usize; N] = std::array::from_fn(|column| width(column).unwrap_or(0));
+pub fn aligned<R: AsRef<[String]>>(rows: &[R]) -> String {
+    let mut widths = Vec::new();
+    for row in rows.iter().map(AsRef::as_ref) {
+        widths.resize(widths.len().max(row.len()), 0);
+        let wider =
+            |(width, cell): (&mut usize, &String)| *width = cell.chars().count().max(*width);
+        widths.iter_mut().zip(row).for_each(wider);
+    }
     let mut text = String::new();
-    for row in rows {
-        let cells = row.iter().zip(widths).enumerate().map(|(column, (cell, width))| {
+    for row in rows.iter().map(AsRef::as_ref) {
+        let cells = row.iter().zip(&widths).enumerate().map(|(column, (cell, width))| {
             if column == 0 { format!("{cell:<width$}") } else { format!("  {cell:>width$}") }
         });
         text.push_str(cells.collect::<String>().trim_end());
@@ -22,7 +27,8 @@ mod tests {
 
     #[test]
     fn names_stand_left_and_numbers_right() {
-        let rows = [["a", "10", "é"], ["long", "9", ""]].map(|row| row.map(String::from));
+        let rows = [&["a", "10", "é"][..], &["long", "9"]];
+        let rows = rows.map(|row| row.iter().map(|&cell| cell.into()).collect::<Vec<String>>());
         assert_eq!(aligned(&rows), "a     10  é\nlong   9\n");
     }
 }

@@ -1,101 +1,130 @@
-//! One subject with all its levels, files and pictures.
+//! One sample with all its levels, files and pictures.
 
 use std::path::Path;
 
 use meshlod::io::{gltf, write_lods};
+use meshlod::measure::DistanceOptions;
 use meshlod::{Mesh, Method, Scene, WriteOptions, write};
 
-use crate::demo::chain::{Chain, Level, Original};
-use crate::demo::counts::Counts;
-use crate::demo::main_method;
-use crate::demo::studio::{Pictures, Studio};
-use crate::demo::subjects::Subject;
+use crate::amounts::Size;
+use crate::demo::samples::Sample;
+use crate::demo::{main_method, methods};
 use crate::failure::Failure;
+use crate::page::descent::{Bench, Chain, Descent, Level, Made};
+use crate::page::studio::{Shots, Studio};
+use crate::page::subject::Subject;
+use crate::reduce;
 use crate::session::Session;
 use crate::verbs::lods::screen_coverage;
 
-/// A subject, what was made of it, and where that is.
+/// The levels of a chain, as parts of the input's faces.
+const RATIOS: [f64; 4] = [0.5, 0.25, 0.1, 0.03];
+
+/// Samples each way, beside all vertices: the mean within about 0.2 %, and a page in seconds.
+pub const SAMPLES: usize = 100_000;
+
+/// A sample, what was made of it, and where that is.
 pub struct Exhibit {
-    pub subject: &'static Subject,
-    pub input: Input,
+    pub sample: &'static Sample,
+    pub subject: Subject,
     /// One for every method.
     pub chains: Vec<Chain>,
-    pub pictures: Pictures,
-}
-
-/// The mesh that all begins with.
-pub struct Input {
-    pub mesh: Mesh,
-    pub counts: Counts,
+    /// What the scene shows at the levels of the main method.
+    pub shown: Vec<Mesh>,
+    /// Pictures of the input.
+    pub input: Shots,
+    /// Pictures of the levels of the main method.
+    pub shots: Vec<Shots>,
 }
 
 impl Exhibit {
     /// Makes, measures, writes and draws it.
     pub fn make(
-        subject: &'static Subject,
+        sample: &'static Sample,
         folder: &Path,
         session: &Session,
     ) -> Result<Self, Failure> {
-        session.progress.stage(&format!("{}: making", subject.name));
-        let mesh = subject.mesh();
-        let original = Original::new(subject.name, &mesh)?;
-        let chain = |method| original.chain(method, session);
-        let chains: Vec<Chain> =
-            Method::ALL.into_iter().map(chain).collect::<Result<_, Failure>>()?;
-        session.progress.stage(&format!("{}: drawing", subject.name));
-        let main = main_of(&chains);
-        let pictures = Studio::new(subject, &original).pictures(main)?;
-        let counts = Counts::of(&mesh);
-        let input = Input { mesh, counts };
-        let exhibit = Self { subject, input, chains, pictures };
-        session.progress.stage(&format!("{}: writing", subject.name));
-        exhibit.write(folder)?;
-        Ok(exhibit)
+        session.progress.stage(&format!("{}: making", sample.name));
+        let subject = sample.subject();
+        let original = subject.surface()?;
+        let options = DistanceOptions { samples: SAMPLES, ..DistanceOptions::default() };
+        let bench = Bench { subject: &subject, original: &original, options, session };
+        let out = Out { sample, folder };
+        out.write(&sample.input_file(), &subject.scene)?;
+        let (mut chains, mut main) = (Vec::new(), Vec::new());
+        for method in methods() {
+            let mades = out.chain(bench, method)?;
+            if method == main_method() {
+                out.write_lods(&subject.scene, &mades)?;
+                main = mades.iter().map(|made| made.shown.clone()).collect();
+            }
+            let levels = mades.into_iter().map(|made| made.level).collect();
+            chains.push(Chain { method, levels });
+        }
+        session.progress.stage(&format!("{}: drawing", sample.name));
+        let studio = Studio::new(&subject, &original);
+        let shots = main.iter().map(|mesh| studio.level(mesh, "")).collect::<Result<_, _>>()?;
+        let input = studio.input()?;
+        drop(original);
+        Ok(Self { sample, subject, chains, shown: main, input, shots })
     }
 
     /// The chain that is drawn.
     pub fn main_chain(&self) -> &Chain {
-        main_of(&self.chains)
+        let main = |chain: &&Chain| chain.method == main_method();
+        self.chains.iter().find(main).expect("the main method is one of the methods")
     }
+}
 
+impl Sample {
     /// The name of the input's file.
     pub fn input_file(&self) -> String {
-        format!("{}.ply", self.subject.name)
+        format!("{}.ply", self.name)
     }
 
     /// The name of the file with the levels of the main method, linked by `MSFT_lod`.
     pub fn lods_file(&self) -> String {
-        format!("{}.glb", self.subject.name)
+        format!("{}.glb", self.name)
     }
 
-    /// The name of a level's file.
-    pub fn level_file(&self, method: Method, level: &Level) -> String {
-        format!("{}-{}-{}.ply", self.subject.name, method.name(), 100.0 * level.ratio)
-    }
-
-    fn write(&self, folder: &Path) -> Result<(), Failure> {
-        self.write_ply(&folder.join(self.input_file()), &self.input.mesh)?;
-        for chain in &self.chains {
-            for level in &chain.levels {
-                self.write_ply(&folder.join(self.level_file(chain.method, level)), &level.mesh)?;
-            }
-        }
-        let level = |level: &Level| gltf::Level {
-            meshes: vec![level.mesh.clone()],
-            screen_coverage: screen_coverage(&level.distance),
-        };
-        let levels: Vec<_> = self.main_chain().levels.iter().map(level).collect();
-        let scene = Scene::from_mesh(self.subject.name, self.input.mesh.clone());
-        Ok(write_lods(&folder.join(self.lods_file()), &scene, &levels)?)
-    }
-
-    fn write_ply(&self, path: &Path, mesh: &Mesh) -> Result<(), Failure> {
-        let scene = Scene::from_mesh(self.subject.name, mesh.clone());
-        Ok(write(path, &scene, &WriteOptions::default())?)
+    fn level_file(&self, method: Method, size: Size) -> String {
+        format!("{}-{}-{}.ply", self.name, method.name(), size.in_file_names())
     }
 }
 
-fn main_of(chains: &[Chain]) -> &Chain {
-    let main = |chain: &&Chain| chain.method == main_method();
-    chains.iter().find(main).expect("a chain was made by every method")
+/// Where the files of a sample go.
+struct Out<'f> {
+    sample: &'static Sample,
+    folder: &'f Path,
+}
+
+impl Out<'_> {
+    /// All levels of a method, written.
+    fn chain(&self, bench: Bench<'_>, method: Method) -> Result<Vec<Made>, Failure> {
+        let what = format!("{}: {}", self.sample.name, method.name());
+        let mut descent = Descent::start(bench, method, what)?;
+        let level = |ratio| {
+            let file = self.sample.level_file(method, Size::Ratio(ratio));
+            let made = descent.go_on(Size::Ratio(ratio), file)?;
+            let mut scene = bench.subject.scene.clone();
+            reduce::replace(&mut scene, made.meshes.clone());
+            self.write(&made.level.file, &scene)?;
+            Ok(made)
+        };
+        RATIOS.into_iter().map(level).collect()
+    }
+
+    fn write(&self, file: &str, scene: &Scene) -> Result<(), Failure> {
+        Ok(write(&self.folder.join(file), scene, &WriteOptions::default())?)
+    }
+
+    fn write_lods(&self, scene: &Scene, mades: &[Made]) -> Result<(), Failure> {
+        let coverage = |level: &Level| level.measured.as_ref().map_or(1.0, screen_coverage);
+        let level = |made: &Made| gltf::Level {
+            meshes: made.meshes.clone(),
+            screen_coverage: coverage(&made.level),
+        };
+        let levels: Vec<_> = mades.iter().map(level).collect();
+        Ok(write_lods(&self.folder.join(self.sample.lods_file()), scene, &levels)?)
+    }
 }

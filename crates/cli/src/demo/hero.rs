@@ -1,15 +1,15 @@
-//! One picture for the top of the page: a subject at several levels, side by side.
+//! One picture for the top of the page: a sample at several levels, side by side.
 
 use std::path::{Path, PathBuf};
 
 use meshlod::Mesh;
 use meshlod::io::write_file;
-use meshlod::picture::{Camera, Style, View, beside, render};
+use meshlod::picture::{Background, Camera, Style, beside, render};
 
 use crate::demo::exhibit::Exhibit;
-use crate::demo::studio;
 use crate::failure::Failure;
 use crate::numbers::count;
+use crate::page::studio;
 
 /// Width and height of one of the four in it.
 const SIZE: [u32; 2] = [400, 320];
@@ -26,19 +26,12 @@ pub struct Hero {
 impl Hero {
     /// Draws the input and the levels from the second on.
     pub fn make(exhibit: &Exhibit, folder: &Path) -> Result<Self, Failure> {
-        let levels = exhibit.main_chain().levels.iter().map(|level| &level.mesh);
-        let meshes: Vec<&Mesh> =
-            std::iter::once(&exhibit.input.mesh).chain(levels.skip(1)).collect();
-        let [width, height] = SIZE.map(f64::from);
-        let view = View {
-            direction: exhibit.subject.direction,
-            fill: 0.96,
-            fov_rad: studio::FOV_RAD,
-            aspect: width / height,
-            ..View::default()
-        };
-        let camera = Camera::fit_mesh(meshes[0], &view);
-        let style = Style { size: SIZE, ..studio::wired(exhibit.subject) };
+        let subject = &exhibit.subject;
+        let levels = exhibit.shown.iter().skip(1);
+        let meshes: Vec<&Mesh> = std::iter::once(&subject.mesh).chain(levels).collect();
+        let camera = Camera::fit_mesh(meshes[0], &studio::view(&subject.look, SIZE, 0.96));
+        let style =
+            Style { size: SIZE, background: Background::Transparent, ..subject.look.wired() };
         let draw = |mesh: &&Mesh| render(mesh, &camera, &style);
         let tiles: Vec<_> =
             meshes.iter().map(draw).collect::<Result<_, _>>().map_err(Failure::new)?;
@@ -47,7 +40,7 @@ impl Hero {
         write_file(&file, &picture.png())?;
         let faces: Vec<usize> = meshes.iter().map(|mesh| mesh.faces.len()).collect();
         let counts: Vec<String> = faces.iter().map(|&faces| count(faces)).collect();
-        let alt = format!("{} with {} faces", exhibit.subject.title, counts.join(", "));
+        let alt = format!("{} with {} faces", subject.title, counts.join(", "));
         let plate = studio::Plate { uri: studio::uri(&picture), alt };
         Ok(Self { file, plate, size: [picture.width(), picture.height()], faces })
     }

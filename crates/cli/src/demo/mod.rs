@@ -1,24 +1,16 @@
 //! `demo`: the whole line on samples, as files and one page with pictures.
 //!
-//! [`subjects`] says what is shown, [`exhibit`] makes and measures it, [`studio`] draws it;
-//! [`page`] and [`summary`] tell of it, from the same figures.
+//! [`samples`] says what is shown, [`exhibit`] makes and measures it; [`page`] and [`summary`] tell
+//! of it, from the same figures.
 
-mod chain;
-mod chart;
-mod counts;
 mod exhibit;
-mod figures;
-mod heat;
 mod hero;
 mod own;
 mod page;
-mod refine;
+mod samples;
 mod section;
-mod studio;
-mod subjects;
 mod summary;
 
-use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
@@ -28,6 +20,7 @@ use meshlod::io::write_file;
 
 use crate::answer::Answer;
 use crate::failure::Failure;
+use crate::files;
 use crate::session::Session;
 use exhibit::Exhibit;
 
@@ -41,7 +34,7 @@ pub struct Demo {
 /// All that a run made.
 struct Show {
     exhibits: Vec<Exhibit>,
-    /// The first subject at several levels, side by side.
+    /// The first sample at several levels, side by side.
     hero: hero::Hero,
     page: PathBuf,
     page_bytes: usize,
@@ -57,9 +50,9 @@ impl Show {
 impl Demo {
     pub fn run(self, session: &Session) -> Result<Answer, Failure> {
         let start = Instant::now();
-        make_folder(&self.folder)?;
-        let make = |subject| Exhibit::make(subject, &self.folder, session);
-        let exhibits: Vec<Exhibit> = subjects::ALL.iter().map(make).collect::<Result<_, _>>()?;
+        files::make_folder(&self.folder)?;
+        let make = |sample| Exhibit::make(sample, &self.folder, session);
+        let exhibits: Vec<Exhibit> = samples::ALL.iter().map(make).collect::<Result<_, _>>()?;
         session.progress.stage("drawing the picture and writing the page");
         let hero = hero::Hero::make(&exhibits[0], &self.folder)?;
         let page = self.folder.join("index.html");
@@ -71,14 +64,15 @@ impl Demo {
     }
 }
 
-fn make_folder(folder: &Path) -> Result<(), Failure> {
-    if folder.exists() && !folder.is_dir() {
-        return Err(Failure::at(folder, "is a file; name a folder to write to"));
-    }
-    fs::create_dir_all(folder).map_err(|error| Failure::at(folder, error))
-}
-
 /// The method whose levels are drawn: that of `simplify` where none is named.
 fn main_method() -> Method {
     Method::default()
+}
+
+/// Methods worth a look at each other, which leave the page quick to make.
+fn methods() -> Vec<Method> {
+    ["qem", "qem-endpoint", "lindstrom-turk", "lee-jang"]
+        .into_iter()
+        .filter_map(Method::by_name)
+        .collect()
 }

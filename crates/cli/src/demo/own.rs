@@ -5,11 +5,12 @@ use maud::{Markup, html};
 use crate::demo::exhibit::Exhibit;
 
 /// A step, and the line that does it.
-const STEPS: [(&str, &str); 6] = [
+const STEPS: [(&str, &str); 7] = [
     ("Look inside", "meshlod info your.ply"),
     ("Make it coarser", "meshlod simplify your.ply small.ply --ratio 10%"),
     ("Say how far off it may be", "meshlod simplify your.ply small.ply --error 0.1% --measured"),
     ("Measure what became of it", "meshlod measure your.ply small.ply"),
+    ("See which method suits it", "meshlod compare your.ply --ratio 10% --out compared"),
     ("Put all levels in one file", "meshlod lods your.ply your.glb --levels 50%,25%,10%,3%"),
     ("Draw it, and the error on it", "meshlod render your.ply error.png --heat-against small.ply"),
 ];
@@ -42,11 +43,11 @@ pub fn files(exhibits: &[Exhibit]) -> Markup {
                     div {
                         h3 { (exhibit.subject.title) }
                         ul {
-                            (file(&exhibit.input_file(), "the input"))
-                            (file(&exhibit.lods_file(), "input and levels, linked by MSFT_lod"))
+                            (file(&exhibit.sample.input_file(), "the input"))
+                            (file(&exhibit.sample.lods_file(), "input and levels, linked by MSFT_lod"))
                             @for chain in &exhibit.chains {
                                 @for level in &chain.levels {
-                                    (file(&exhibit.level_file(chain.method, level), ""))
+                                    (file(&level.file, ""))
                                 }
                             }
                         }

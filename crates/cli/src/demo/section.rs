@@ -1,113 +1,110 @@
 //! One exhibit on the page.
 
 use maud::{Markup, html};
+use meshlod::measure::Distance;
 
-use crate::demo::chain::Level;
-use crate::demo::counts::Counts;
 use crate::demo::exhibit::Exhibit;
-use crate::demo::figures::{self, figure, percent, wanted, whole};
-use crate::demo::studio::{Plate, SIZE};
-use crate::demo::{chart, heat};
+use crate::page::chart::{Across, Chart, Series, chart};
+use crate::page::columns::{self, Column};
+use crate::page::descent::{Chain, Level};
+use crate::page::facts::{facts, shape};
+use crate::page::figures::{percent, whole};
+use crate::page::key::key;
+use crate::page::strip::{Layout, Stand, strip};
+use crate::page::table;
 
 /// What it is, how it looks, what was measured.
 pub fn section(exhibit: &Exhibit) -> Markup {
-    let subject = exhibit.subject;
     html! {
-        section id=(subject.name) {
+        section id=(exhibit.sample.name) {
             div.intro {
                 div {
-                    h2 { (subject.title) }
-                    p { (subject.about) }
+                    h2 { (exhibit.subject.title) }
+                    p { (exhibit.sample.about) }
                 }
-                (facts(exhibit))
+                (facts(&exhibit.subject.counts))
             }
-            (strip(exhibit))
+            (pictures(exhibit))
             div.measured {
-                (chart::chart(exhibit))
-                div.scroll tabindex="0" role="region" aria-label="Figures" {
-                    (figures::table(exhibit))
-                }
+                (chart(&errors(exhibit)))
+                div.scroll tabindex="0" role="region" aria-label="Figures" { (figures(exhibit)) }
             }
             p.verdict { (verdict(exhibit)) }
         }
     }
 }
 
-/// The counts of the input.
-fn facts(exhibit: &Exhibit) -> Markup {
-    let counts = &exhibit.input.counts;
-    let number = |name: &str, markup: Markup| html! { div { dt { (name) } dd { (markup) } } };
-    html! {
-        dl.facts {
-            (number("vertices", whole(counts.vertices)))
-            (number("faces", whole(counts.faces)))
-            (number("boundary edges", whole(counts.boundary_edges)))
-            (number("non-manifold edges", whole(counts.non_manifold_edges)))
-            (number("components", whole(counts.components)))
-            (number("closed", html! { @if counts.closed { "yes" } @else { "no" } }))
-            @if let Some(genus) = counts.genus { (number("tunnels (genus)", whole(genus))) }
-            (number("area", figure(counts.area, &short(counts.area))))
-            (number("volume", figure(counts.volume, &short(counts.volume))))
-        }
-    }
-}
-
-/// Pictures: a column for the input and for each level of the main chain.
-fn strip(exhibit: &Exhibit) -> Markup {
-    let pictures = &exhibit.pictures;
-    let label = format!("{}: the input and its levels", exhibit.subject.title);
-    html! {
-        div.strip tabindex="0" role="region" aria-label=(label) {
-            figure {
-                figcaption {
-                    b { "Input" }
-                    span { (whole(exhibit.input.counts.faces)) " faces" }
-                }
-                (image(&pictures.shaded[0]))
-                (image(&pictures.wired[0]))
-                (legend())
-            }
-            @for (i, level) in exhibit.main_chain().levels.iter().enumerate() {
-                figure {
-                    (caption(level))
-                    (image(&pictures.shaded[i + 1]))
-                    (image(&pictures.wired[i + 1]))
-                    (image(&pictures.heat[i]))
-                }
-            }
-        }
-    }
+/// A column for the input and for each level of the main chain.
+fn pictures(exhibit: &Exhibit) -> Markup {
+    let stands: Vec<Stand> = exhibit
+        .main_chain()
+        .levels
+        .iter()
+        .zip(&exhibit.shots)
+        .map(|(level, shots)| Stand { caption: caption(level), shots })
+        .collect();
+    strip(&exhibit.subject, &exhibit.input, &stands, Layout::Scroll)
 }
 
 fn caption(level: &Level) -> Markup {
-    let rms = level.distance.percent(level.distance.rms());
     html! {
-        figcaption {
-            b { (wanted(level)) }
-            span { (whole(level.report.output_faces)) " faces" }
-            span { "RMS " (percent(rms)) "%" }
+        b { (level.size) }
+        span { (whole(level.report.output_faces)) " faces" }
+        @if let Some(rms) = level.percent(Distance::rms) { span { "RMS " (percent(rms)) "%" } }
+    }
+}
+
+/// One line a method: faces and RMS error in percent of the diagonal.
+fn errors(exhibit: &Exhibit) -> Chart {
+    let point = |level: &Level| {
+        level.percent(Distance::rms).map(|rms| [level.report.output_faces as f64, rms])
+    };
+    let series = |chain: &Chain| Series {
+        method: chain.method,
+        points: chain.levels.iter().filter_map(point).collect(),
+    };
+    Chart {
+        alt: format!("RMS error against faces, {}: one line per method", exhibit.subject.title),
+        caption: "RMS error in percent of the diagonal, against faces.",
+        across: Across::Faces,
+        series: exhibit.chains.iter().map(series).collect(),
+    }
+}
+
+/// All figures of an exhibit's levels.
+fn figures(exhibit: &Exhibit) -> Markup {
+    let input = &exhibit.subject.counts;
+    let columns = Column::of(input, exhibit.chains.iter().flat_map(|chain| &chain.levels));
+    html! {
+        table {
+            caption { (columns::legend(input)) }
+            (table::heads("Level", &columns))
+            @for chain in &exhibit.chains {
+                tbody {
+                    tr.method {
+                        th colspan=(columns.len() + 1) scope="rowgroup" {
+                            (key(chain.method)) (chain.method.name()) (refusals(chain))
+                        }
+                    }
+                    @for level in &chain.levels {
+                        @let name = html! { a href=(level.file) { (level.size) } };
+                        (table::row(&name, level, input, &columns, &[]))
+                    }
+                }
+            }
         }
     }
 }
 
-fn image(plate: &Plate) -> Markup {
-    html! { img src=(plate.uri) alt=(plate.alt) width=(SIZE[0]) height=(SIZE[1]) loading="lazy"; }
-}
-
-/// The scale of the heat maps, in the place where the input’s would be.
-fn legend() -> Markup {
-    html! {
-        div.legend {
-            p { b { "Error" } " How far the level is from the input, in percent of the diagonal." }
-            div.bar style=(format!("background: {}", heat::gradient())) {}
-            div.ticks { @for tick in heat::ticks() { span { (tick) } } }
-        }
-    }
+/// Why contractions were refused on the way to the last level.
+fn refusals(chain: &Chain) -> Markup {
+    let last = chain.levels.last().map(|level| level.report.refusals);
+    html! { @if let Some(refusals) = last { small { "refused in all: " (refusals) } } }
 }
 
 /// Whether the levels hang together as the input does, and are as small as asked for.
 fn verdict(exhibit: &Exhibit) -> String {
-    let input = &exhibit.input.counts;
+    let input = &exhibit.subject.counts;
     let levels = || exhibit.chains.iter().flat_map(|chain| &chain.levels);
     let all = levels().count();
     let share = |part: usize| {
@@ -124,17 +121,4 @@ fn verdict(exhibit: &Exhibit) -> String {
         "{whole} are as whole as the input: {}{tunnels}. {reached} reached their size.",
         shape(input)
     )
-}
-
-fn shape(counts: &Counts) -> String {
-    let closed = if counts.closed { "closed" } else { "open" };
-    match counts.components {
-        1 => format!("{closed}, in one piece"),
-        pieces => format!("{closed}, in {pieces} pieces"),
-    }
-}
-
-/// Four places: enough to know a sample by.
-fn short(number: f64) -> String {
-    format!("{number:.4}")
 }

@@ -2,16 +2,15 @@
 
 use std::path::Path;
 
+use meshlod::measure::Distance;
 use serde_json::{Value, json};
 
 use crate::demo::Show;
-use crate::demo::chain::{Chain, Level, SAMPLES};
-use crate::demo::exhibit::Exhibit;
-use crate::demo::figures::wanted;
-use crate::distance;
+use crate::demo::exhibit::{Exhibit, SAMPLES};
 use crate::files;
 use crate::numbers::{count, percent, value};
-use crate::reduce::refusals_json;
+use crate::page::descent::{Chain, Level};
+use crate::page::level_json::level_json;
 use crate::table::aligned;
 
 /// All figures and the paths of all files.
@@ -27,12 +26,12 @@ pub fn json(show: &Show) -> Value {
 }
 
 fn of_exhibit(exhibit: &Exhibit, folder: &Path) -> Value {
-    let mut json = exhibit.input.counts.json();
-    json["sample"] = exhibit.subject.name.into();
-    json["file"] = files::name(&folder.join(exhibit.input_file())).into();
-    json["lods"] = files::name(&folder.join(exhibit.lods_file())).into();
+    let mut json = exhibit.subject.counts.json();
+    json["sample"] = exhibit.sample.name.into();
+    json["file"] = files::name(&folder.join(exhibit.sample.input_file())).into();
+    json["lods"] = files::name(&folder.join(exhibit.sample.lods_file())).into();
     let chain = |chain: &Chain| {
-        let level = |level: &Level| of_level(exhibit, chain, level, folder);
+        let level = |level: &Level| of_level(exhibit, level, folder);
         json!({
             "method": chain.method.name(),
             "levels": chain.levels.iter().map(level).collect::<Vec<_>>(),
@@ -42,25 +41,10 @@ fn of_exhibit(exhibit: &Exhibit, folder: &Path) -> Value {
     json
 }
 
-fn of_level(exhibit: &Exhibit, chain: &Chain, level: &Level, folder: &Path) -> Value {
-    let report = &level.report;
-    json!({
-        "ratio": level.ratio,
-        "faces": report.output_faces,
-        "reached": report.reached,
-        "closed": level.counts.closed,
-        "genus": level.counts.genus,
-        "components": level.counts.components,
-        "volume": level.counts.volume,
-        "volume_change_percent": level.volume_change(&exhibit.input.counts),
-        "quality_mean": level.quality.mean,
-        "quality_min": level.quality.min,
-        "error_estimate": report.error_estimate,
-        "error_measured": distance::to_json(&level.distance),
-        "simplify_seconds": level.time.as_secs_f64(),
-        "refusals": refusals_json(report),
-        "file": files::name(&folder.join(exhibit.level_file(chain.method, level))),
-    })
+fn of_level(exhibit: &Exhibit, level: &Level, folder: &Path) -> Value {
+    let mut json = level_json(level, &exhibit.subject.counts);
+    json["file"] = files::name(&folder.join(&level.file)).into();
+    json
 }
 
 /// A line a level, and the path of the page last.
@@ -68,8 +52,8 @@ pub fn text(show: &Show) -> String {
     let head = ["", "level", "faces", "RMS", "max", "seconds"].map(String::from);
     let mut rows = vec![head];
     for exhibit in &show.exhibits {
-        let faces = count(exhibit.input.counts.faces);
-        rows.push([exhibit.subject.name, "", &faces, "", "", ""].map(String::from));
+        let faces = count(exhibit.subject.counts.faces);
+        rows.push([exhibit.sample.name, "", &faces, "", "", ""].map(String::from));
         for chain in &exhibit.chains {
             rows.extend(chain.levels.iter().map(|level| row(chain, level)));
         }
@@ -84,13 +68,13 @@ pub fn text(show: &Show) -> String {
 }
 
 fn row(chain: &Chain, level: &Level) -> [String; 6] {
-    let Level { distance, report, time, .. } = level;
+    let cell = |length| level.percent(length).map_or("-".into(), percent);
     [
         format!("  {}", chain.method.name()),
-        wanted(level),
-        count(report.output_faces),
-        percent(distance.percent(distance.rms())),
-        percent(distance.percent(distance.max())),
-        value((1000.0 * time.as_secs_f64()).round() / 1000.0),
+        level.size.to_string(),
+        count(level.report.output_faces),
+        cell(Distance::rms),
+        cell(Distance::max),
+        value((1000.0 * level.time.as_secs_f64()).round() / 1000.0),
     ]
 }

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 use meshlod::Mesh;
 use meshlod::measure::{area, surface_distance, volume};
+use meshlod::mesh::Connectivity;
 
 use crate::answer::Answer;
 use crate::args::{Reading, Sampling};
@@ -44,15 +45,19 @@ impl Measure {
         let apart = surface_distance(&surfaces.0, &surfaces.1, &self.sampling.options())
             .map_err(Failure::new)?;
         let (areas, volumes) = ([area(&a), area(&b)], [volume(&a), volume(&b)]);
+        let closed = [is_closed(&a), is_closed(&b)];
 
         let mut json = distance::to_json(&apart);
-        json["area_a"] = areas[0].into();
-        json["area_b"] = areas[1].into();
-        json["volume_a"] = volumes[0].into();
-        json["volume_b"] = volumes[1].into();
+        for (i, of) in ["a", "b"].into_iter().enumerate() {
+            json[format!("area_{of}")] = areas[i].into();
+            json[format!("volume_{of}")] = volumes[i].into();
+            json[format!("closed_{of}")] = closed[i].into();
+        }
+        json["area_change"] = relative(areas).into();
+        json["volume_change"] = relative(volumes).filter(|_| closed == [true; 2]).into();
         let row = |name: &str, [a, b]: [f64; 2]| [name.into(), value(a), value(b), change(a, b)];
         let text = format!(
-            "{}diagonal {}\n\n{}",
+            "{}diagonal {}\n\n{}{}",
             distance::to_table(&apart),
             value(apart.diagonal),
             aligned(&[
@@ -60,7 +65,28 @@ impl Measure {
                 row("area", areas),
                 row("volume", volumes),
             ]),
+            open_note(closed),
         );
         Ok(Answer::new(json, text))
+    }
+}
+
+fn is_closed(mesh: &Mesh) -> bool {
+    Connectivity::new(&mesh.faces, mesh.positions.len()).is_closed()
+}
+
+/// What became of a quantity, as a part of what it was; `None` where there was none.
+fn relative([before, after]: [f64; 2]) -> Option<f64> {
+    let change = (after - before) / before.abs();
+    change.is_finite().then_some(change)
+}
+
+/// A line that says whose volume is that of no closed surface.
+fn open_note(closed: [bool; 2]) -> &'static str {
+    match closed {
+        [true, true] => "",
+        [false, true] => "A is open: its volume is of no closed surface\n",
+        [true, false] => "B is open: its volume is of no closed surface\n",
+        [false, false] => "both are open: the volumes are of no closed surface\n",
     }
 }

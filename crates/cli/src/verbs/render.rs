@@ -2,23 +2,22 @@
 
 use std::path::PathBuf;
 
-use clap::{Args, ValueEnum};
+use clap::Args;
+use meshlod::Mesh;
 use meshlod::measure::vertex_errors;
-use meshlod::mesh::LayerKind;
 use meshlod::picture::{
-    Camera, ColorMap, Lighting, Materials, Normals, Paint, Style, UpAxis, Values, View, Wireframe,
-    render,
+    Camera, ColorMap, Lighting, Normals, Paint, Style, Values, View, Wireframe, render,
 };
-use meshlod::{Mesh, Scene, materials_of};
 use serde_json::json;
 
-use crate::amounts::{self, Look};
+use crate::amounts;
 use crate::answer::Answer;
-use crate::args::Reading;
+use crate::args::{Reading, Viewpoint};
 use crate::distance;
 use crate::failure::Failure;
 use crate::files;
 use crate::numbers::{percent, value};
+use crate::page::look::{Coat, normals_of};
 use crate::session::Session;
 
 #[derive(Args)]
@@ -32,12 +31,8 @@ pub struct Render {
     /// Width and height in pixels
     #[arg(long, value_name = "WxH", default_value = "1024x1024", value_parser = amounts::pixels)]
     size: [u32; 2],
-    /// Where to look from: front, back, left, right, top, bottom; or the direction to look in, x,y,z
-    #[arg(long, value_name = "DIR", value_parser = amounts::look, allow_hyphen_values = true)]
-    view: Option<Look>,
-    /// The axis that is up
-    #[arg(long, value_name = "AXIS", default_value = "y")]
-    up: Axis,
+    #[command(flatten)]
+    viewpoint: Viewpoint,
     /// Draw the edges of all faces
     #[arg(long)]
     wireframe: bool,
@@ -54,15 +49,6 @@ pub struct Render {
     reading: Reading,
 }
 
-#[derive(Clone, Copy, ValueEnum)]
-enum Axis {
-    Y,
-    Z,
-}
-
-/// Edges that bend by more than this, in radians, are sharp where a file has no normals.
-const CREASE_RAD: f64 = 1.0;
-
 /// Squares of the checkerboard along a unit of uv.
 const SQUARES: u32 = 16;
 
@@ -77,20 +63,14 @@ impl Render {
     pub fn run(self, session: &Session) -> Result<Answer, Failure> {
         files::check_picture(&self.output, session)?;
         let scene = files::read(&self.input, &self.reading, session)?;
-        let (materials, unread) = materials_of(&scene);
-        for image in unread {
-            let reason = format_args!("image {}: {}", image.name, image.reason);
-            session.warn(Failure::at(&self.input, reason));
-        }
-        let textures = materials.textures.len();
-        let materials = has_colour(&scene, &materials).then_some(materials);
+        let coat = Coat::of(&scene, &self.input, session);
         let mesh = scene.into_mesh();
         if mesh.faces.is_empty() {
             return Err(Failure::at(&self.input, "the mesh has no faces"));
         }
         let heat = self.heat(&mesh, session)?;
         session.progress.stage("drawing");
-        let style = self.style(&mesh, materials.as_ref(), heat.as_ref());
+        let style = self.style(&mesh, &coat, heat.as_ref());
         let picture = render(&mesh, &self.camera(&mesh), &style)
             .map_err(|error| Failure::at(&self.input, error))?;
         files::write_picture(&self.output, &picture.png())?;
@@ -102,7 +82,7 @@ impl Render {
             "width": width,
             "height": height,
             "faces": mesh.faces.len(),
-            "textures": textures,
+            "textures": coat.textures(),
             "heat_max": heat.as_ref().map(|heat| heat.max),
             "heat_max_percent": heat.as_ref().map(|heat| heat.max_percent),
         });
@@ -125,32 +105,19 @@ impl Render {
         Ok(Some(Heat { values, max, max_percent: 100.0 * max / against.diagonal() }))
     }
 
-    fn style<'a>(
-        &self,
-        mesh: &Mesh,
-        materials: Option<&'a Materials>,
-        heat: Option<&'a Heat>,
-    ) -> Style<'a> {
-        let has = |kind| mesh.attributes.as_ref().is_some_and(|all| all.layer(kind).is_some());
-        let paint = match (heat, materials) {
-            (Some(Heat { values, max, .. }), _) => {
+    fn style<'a>(&self, mesh: &Mesh, coat: &'a Coat, heat: Option<&'a Heat>) -> Style<'a> {
+        let paint = match heat {
+            Some(Heat { values, max, .. }) => {
                 let range = [0.0, *max as f32];
                 Paint::VertexValues(Values { values, map: ColorMap::Heat, range })
             }
-            _ if self.checker => Paint::Checker { squares: SQUARES },
-            (None, Some(materials)) => Paint::Materials(materials),
-            _ if has(LayerKind::Color(0)) => Paint::Colors,
-            _ => Paint::default(),
-        };
-        let normals = match self.flat {
-            true => Normals::Flat,
-            false if has(LayerKind::Normal) => Normals::FromMesh,
-            false => Normals::Creased { crease_rad: CREASE_RAD },
+            None if self.checker => Paint::Checker { squares: SQUARES },
+            None => coat.paint(),
         };
         Style {
             size: self.size,
             paint,
-            normals,
+            normals: if self.flat { Normals::Flat } else { normals_of(mesh) },
             lighting: if heat.is_some() { Lighting::Soft } else { Lighting::default() },
             wireframe: self.wireframe.then(Wireframe::default),
             ..Style::default()
@@ -159,23 +126,6 @@ impl Render {
 
     fn camera(&self, mesh: &Mesh) -> Camera {
         let [width, height] = self.size.map(f64::from);
-        let up = match self.up {
-            Axis::Y => UpAxis::Y,
-            Axis::Z => UpAxis::Z,
-        };
-        let mut view = View { aspect: width / height, ..View::three_quarter(up) };
-        match (self.view, up) {
-            (None, _) => {}
-            (Some(Look::Along(direction) | Look::From(direction)), UpAxis::Y)
-            | (Some(Look::Along(direction)), UpAxis::Z) => view.direction = direction,
-            (Some(Look::From([x, y, z])), UpAxis::Z) => view.direction = [x, -z, y],
-        }
-        Camera::fit_mesh(mesh, &view)
+        Camera::fit_mesh(mesh, &View { aspect: width / height, ..self.viewpoint.view() })
     }
-}
-
-/// Whether materials say more than that everything is white.
-fn has_colour(scene: &Scene, materials: &Materials) -> bool {
-    let white = |material: &meshlod::io::Material| material.base_color[..3] == [1.0; 3];
-    !materials.textures.is_empty() || !scene.materials.iter().all(white)
 }

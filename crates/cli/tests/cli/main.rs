@@ -1,5 +1,6 @@
 //! The program as its users meet it: exit codes, streams, files.
 
+mod compare;
 mod demo;
 mod hostile;
 mod levels;

@@ -151,6 +151,28 @@ fn measure_has_both_ways_and_the_seed_counts() {
 }
 
 #[test]
+fn measure_tells_a_change_of_volume_to_the_last_bit() {
+    let run = Run::new();
+    let cube = |z: f64| {
+        format!(
+            "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nv 0 0 {z}\nv 1 0 {z}\nv 0 1 {z}\nv 1 1 {z}\n\
+            f 1 3 4 2\nf 5 6 8 7\nf 1 2 6 5\nf 3 7 8 4\nf 1 5 7 3\n"
+        )
+    };
+    let last = "f 2 4 8 6\n";
+    std::fs::write(run.path("a.obj"), cube(1.0) + last).unwrap();
+    std::fs::write(run.path("b.obj"), cube(1.0 + 4.0 * f64::EPSILON) + last).unwrap();
+    std::fs::write(run.path("open.obj"), cube(1.0)).unwrap();
+    let measured = run.json(&["measure", "a.obj", "b.obj", "--samples", "10"]);
+    assert_eq!(measured["volume_change"], 4.0 * f64::EPSILON);
+    let open = run.json(&["measure", "a.obj", "open.obj", "--samples", "10"]);
+    assert_eq!((&open["closed_a"], &open["closed_b"]), (&true.into(), &false.into()));
+    assert!(open["volume_change"].is_null() && number(&open["area_change"]) < 0.0);
+    let text = run.run(&["measure", "a.obj", "open.obj", "--samples", "10"]);
+    assert!(text.text().contains("B is open: its volume is of no closed surface"), "{text:?}");
+}
+
+#[test]
 fn render_draws_in_every_way() {
     let run = Run::new();
     run.sample("fish", 1_000, "fish.obj");

@@ -21,18 +21,19 @@ pub struct Counts {
 }
 
 impl Counts {
-    /// Of a mesh that uses all its vertices, as samples and levels do.
+    /// Of a mesh; vertices that no face uses do not count.
     pub fn of(mesh: &Mesh) -> Self {
+        let vertices = used(mesh);
         let connectivity = Connectivity::new(&mesh.faces, mesh.positions.len());
         let components = face_components(&mesh.faces, mesh.positions.len()).1;
         Self {
-            vertices: mesh.positions.len(),
+            vertices,
             faces: mesh.faces.len(),
             boundary_edges: connectivity.boundary_edges(),
             non_manifold_edges: connectivity.non_manifold_edges(),
             components,
             closed: connectivity.is_closed(),
-            genus: genus(mesh, &connectivity, components),
+            genus: genus(vertices, mesh.faces.len(), &connectivity, components),
             diagonal: mesh.bounds().diagonal(),
             area: area(mesh),
             volume: volume(mesh),
@@ -55,11 +56,21 @@ impl Counts {
     }
 }
 
+fn used(mesh: &Mesh) -> usize {
+    let mut used = vec![false; mesh.positions.len()];
+    mesh.faces.iter().flatten().for_each(|v| used[v.index()] = true);
+    used.into_iter().filter(|&used| used).count()
+}
+
 /// From Euler's formula: vertices - edges + faces = 2 components - 2 genus.
-fn genus(mesh: &Mesh, connectivity: &Connectivity, components: usize) -> Option<usize> {
+fn genus(
+    vertices: usize,
+    faces: usize,
+    connectivity: &Connectivity,
+    components: usize,
+) -> Option<usize> {
     let manifold = connectivity.is_closed() && connectivity.pinched_vertices() == 0;
-    let doubled = (2 * components + connectivity.edge_count())
-        .checked_sub(mesh.positions.len() + mesh.faces.len())?;
+    let doubled = (2 * components + connectivity.edge_count()).checked_sub(vertices + faces)?;
     manifold.then_some(doubled / 2)
 }
 
@@ -75,5 +86,14 @@ mod tests {
         assert_eq!(genus(sample::sphere(500)), Some(0));
         assert_eq!(genus(sample::torus(500)), Some(1));
         assert_eq!(genus(sample::terrain(500)), None, "it is open");
+    }
+
+    #[test]
+    fn a_vertex_that_no_face_uses_makes_no_tunnel() {
+        let mut mesh = sample::sphere(500);
+        let alone = Counts::of(&mesh).vertices;
+        mesh.positions.push([9.0; 3]);
+        let counts = Counts::of(&mesh);
+        assert_eq!((counts.genus, counts.vertices), (Some(0), alone));
     }
 }

@@ -1,0 +1,146 @@
+//! The figures of a level as columns: one list for pages and for the terminal.
+
+use meshlod::measure::Distance;
+
+use crate::numbers::count;
+use crate::page::counts::Counts;
+use crate::page::descent::Level;
+use crate::page::figures::{digits, drift, seconds};
+
+/// A figure that every level has, or may have.
+pub struct Column {
+    pub head: &'static str,
+    /// By the counts of the input; `None` where there is no such thing.
+    pub value: fn(&Counts, &Level) -> Option<f64>,
+    /// As people read it.
+    pub text: fn(f64) -> String,
+    pub best: Option<Best>,
+}
+
+/// Which value is the best of a column.
+#[derive(Clone, Copy)]
+pub enum Best {
+    Least,
+    Greatest,
+    NearestZero,
+}
+
+/// What levels are compared by.
+pub const COLUMNS: [Column; 9] = [
+    Column {
+        head: "Faces",
+        value: |_, level| Some(level.report.output_faces as f64),
+        text: whole,
+        best: None,
+    },
+    Column {
+        head: "Mean",
+        value: |_, level| level.percent(Distance::mean),
+        text: digits,
+        best: Some(Best::Least),
+    },
+    Column {
+        head: "RMS",
+        value: |_, level| level.percent(Distance::rms),
+        text: digits,
+        best: Some(Best::Least),
+    },
+    Column {
+        head: "Max",
+        value: |_, level| level.percent(Distance::max),
+        text: digits,
+        best: Some(Best::Least),
+    },
+    Column {
+        head: "Estimate",
+        value: |input, level| Some(100.0 * level.report.error_estimate / input.diagonal),
+        text: digits,
+        // The nearest to the truth would be, and that is in the column before.
+        best: None,
+    },
+    Column {
+        head: "Volume",
+        value: |input, level| level.volume_change(input),
+        text: drift,
+        best: Some(Best::NearestZero),
+    },
+    Column {
+        head: "Shape",
+        value: |_, level| level.quality.map(|quality| quality.mean),
+        text: |mean| format!("{mean:.2}"),
+        best: Some(Best::Greatest),
+    },
+    Column {
+        head: "Refused",
+        value: |_, level| Some(refused(level) as f64),
+        text: whole,
+        best: None,
+    },
+    Column {
+        head: "Time",
+        value: |_, level| Some(level.time.as_secs_f64()),
+        text: seconds,
+        best: Some(Best::Least),
+    },
+];
+
+/// What the heads mean, for all columns that are there.
+pub fn legend(input: &Counts) -> String {
+    let volume = match input.closed {
+        true => "Volume: its change in percent. ",
+        false => "The input is open and encloses no volume. ",
+    };
+    format!(
+        "Mean, RMS, max: measured both ways, in percent of the input’s diagonal. Estimate: the \
+         method’s own of the max. {volume}Shape: 1 where all triangles are equilateral."
+    )
+}
+
+impl Column {
+    /// Those that at least one of the levels has a figure for.
+    pub fn of<'l>(
+        input: &Counts,
+        levels: impl Iterator<Item = &'l Level> + Clone,
+    ) -> Vec<&'static Self> {
+        let some =
+            |column: &&Self| levels.clone().any(|level| (column.value)(input, level).is_some());
+        COLUMNS.iter().filter(some).collect()
+    }
+
+    /// What a level has here.
+    pub fn cell(&self, input: &Counts, level: &Level) -> Option<(f64, String)> {
+        (self.value)(input, level).map(|value| (value, (self.text)(value)))
+    }
+
+    /// For each of the levels, whether none has a better figure here, as far as the texts tell.
+    ///
+    /// Only levels that reached their size compete: any method is near the input where it has done
+    /// nothing. Nobody wins where all are equal.
+    pub fn winners(&self, input: &Counts, levels: &[&Level]) -> Vec<bool> {
+        let Some(best) = self.best else { return vec![false; levels.len()] };
+        let of = |level: &&Level| {
+            let value = (self.value)(input, level).filter(|_| level.report.reached)?;
+            Some(if matches!(best, Best::NearestZero) { value.abs() } else { value })
+        };
+        let values: Vec<Option<f64>> = levels.iter().map(of).collect();
+        let sought = values.iter().flatten().copied().reduce(match best {
+            Best::Greatest => f64::max,
+            Best::Least | Best::NearestZero => f64::min,
+        });
+        let text = |value: f64| (self.text)(value);
+        let Some(sought) = sought.map(text) else { return vec![false; levels.len()] };
+        let wins: Vec<bool> =
+            values.iter().map(|value| value.map(text).as_ref() == Some(&sought)).collect();
+        let contested = values.iter().zip(&wins).any(|(value, &win)| value.is_some() && !win);
+        if contested { wins } else { vec![false; levels.len()] }
+    }
+}
+
+/// How often a contraction was refused on the way to a level.
+pub fn refused(level: &Level) -> u64 {
+    level.report.refusals.iter().map(|(_, count)| count).sum()
+}
+
+fn whole(number: f64) -> String {
+    count(number as usize)
+}

@@ -1,0 +1,36 @@
+//! The figures of a level, for programs.
+
+use serde_json::{Value, json};
+
+use crate::amounts::Size;
+use crate::distance;
+use crate::page::counts::Counts;
+use crate::page::descent::Level;
+use crate::reduce::refusals_json;
+
+/// All of them; the volume's change is `null` where the input is open.
+pub fn level_json(level: &Level, input: &Counts) -> Value {
+    let report = &level.report;
+    json!({
+        "size": level.size.to_string(),
+        "ratio": match level.size {
+            Size::Ratio(ratio) => Some(ratio),
+            Size::Faces(_) => None,
+        },
+        "faces": report.output_faces,
+        "reached": report.reached,
+        "closed": level.counts.closed,
+        "genus": level.counts.genus,
+        "components": level.counts.components,
+        "area": level.counts.area,
+        "volume": level.counts.volume,
+        "volume_change_percent": level.volume_change(input),
+        "quality_mean": level.quality.map(|quality| quality.mean),
+        "quality_min": level.quality.map(|quality| quality.min),
+        "error_estimate": report.error_estimate,
+        "error_measured": level.measured.as_ref().ok().map(distance::to_json),
+        "not_measured": level.measured.as_ref().err(),
+        "simplify_seconds": level.time.as_secs_f64(),
+        "refusals": refusals_json(report),
+    })
+}
