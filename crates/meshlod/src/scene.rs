@@ -2,7 +2,9 @@
 
 use meshlod_io::Scene;
 use meshlod_mesh::Mesh;
-use meshlod_simplify::{Observe, Options, Refusals, Report, Simplifier, SimplifyError, Target};
+use meshlod_simplify::{
+    Observe, Options, Refusals, Report, Simplifier, SimplifyError, Target, VolumeLoss,
+};
 use thiserror::Error;
 
 use crate::place::length_scale;
@@ -30,6 +32,8 @@ struct Part<'s> {
     copies: usize,
     /// World units per unit of the mesh, where it is shown largest.
     scale: f64,
+    /// The same of costs.
+    cost_scale: f64,
     simplifier: Simplifier<'s>,
 }
 
@@ -93,7 +97,10 @@ impl<'s> SceneSimplifier<'s> {
             }
             let options = Options { locked: masks[index].to_vec(), ..options.clone() };
             match Simplifier::new(mesh, &options) {
-                Ok(simplifier) => this.parts.push(Part { mesh: index, copies, scale, simplifier }),
+                Ok(simplifier) => {
+                    let cost_scale = scale.powi(options.method.cost_power());
+                    this.parts.push(Part { mesh: index, copies, scale, cost_scale, simplifier });
+                }
                 Err(error @ (SimplifyError::NoFaces | SimplifyError::AllDegenerate(_))) => {
                     this.still_faces += copies * mesh.faces.len();
                     still.get_or_insert(error);
@@ -202,6 +209,7 @@ impl<'s> SceneSimplifier<'s> {
             reached: true,
             error_estimate: 0.0,
             refusals: Refusals::default(),
+            volume: VolumeLoss::default(),
         };
         for part in &mut self.parts {
             // A run to where it stands does nothing and tells all.
@@ -212,6 +220,9 @@ impl<'s> SceneSimplifier<'s> {
             whole.non_manifold_vertices += part.copies * report.non_manifold_vertices;
             whole.error_estimate = whole.error_estimate.max(part.scale * report.error_estimate);
             whole.refusals += report.refusals;
+            for place in self.scene.placements().iter().filter(|place| place.mesh == part.mesh) {
+                whole.volume.add(&report.volume, &place.transform);
+            }
         }
         Ok(whole)
     }
@@ -225,17 +236,16 @@ impl<'s> SceneSimplifier<'s> {
 }
 
 impl Part<'_> {
-    /// The cost of the next contraction in world terms: squared distance times area, to the fourth
-    /// power of the scale.
+    /// The cost of the next contraction in world terms.
     fn next_cost(&mut self) -> Option<f64> {
-        self.simplifier.next_cost().map(|cost| cost * self.scale.powi(4))
+        self.simplifier.next_cost().map(|cost| cost * self.cost_scale)
     }
 
     /// A cost in world terms in those of the mesh; at least that of the next contraction, however
     /// the division rounds, so that there is always one to try.
     fn cost_up_to(&mut self, world: f64) -> f64 {
         let own = self.simplifier.next_cost().unwrap_or(0.0);
-        own.max(world / self.scale.powi(4))
+        own.max(world / self.cost_scale)
     }
 }
 

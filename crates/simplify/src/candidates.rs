@@ -96,6 +96,19 @@ impl Candidates for FacesAndEdges {
         id.vertices(surface)
     }
 
+    fn refused(&self, id: CandidateId, books: &mut dyn Books) {
+        if id.slot() == 3 {
+            let surface = books.surface();
+            let corners = surface.face(id.face()).map(|v| surface.position(v));
+            let length = |k: usize| corners[k].distance_squared(corners[(k + 1) % 3]);
+            let shortest = (0..3).min_by(|&k, &l| length(k).total_cmp(&length(l)));
+            let side = CandidateId::side(id.face(), shortest.unwrap_or(0));
+            if !books.is_open(side) {
+                books.open(side);
+            }
+        }
+    }
+
     fn settle(&self, hood: &Neighbourhood, kept: VertexId, books: &mut dyn Books) {
         close_dying(hood, books);
         for (place, r) in hood.ring.iter().enumerate() {

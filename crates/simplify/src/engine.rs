@@ -167,6 +167,16 @@ where
         Ok(())
     }
 
+    /// Opens what may go in the place of a refused candidate.
+    fn instead(&mut self, entry: Entry) {
+        let Self { algorithm, surface, waiting, opened, .. } = self;
+        algorithm.candidates.refused(entry.id, &mut Desk { surface, opened });
+        for id in opened.drain(..) {
+            let entry = algorithm.entry(surface, id);
+            waiting.put(entry, surface);
+        }
+    }
+
     /// Brings the books up to date after a contraction, and wakes those who waited for a change.
     fn renew(&mut self, placed: &Placed) {
         let Self { algorithm, surface, hood, waiting, opened, .. } = self;
@@ -255,6 +265,7 @@ where
                     self.refusals.add(refusal);
                     let vertices = self.algorithm.candidates.vertices(&self.surface, entry.id);
                     self.waiting.park(entry, &vertices, &mut self.surface);
+                    self.instead(entry);
                     if refusal == Refusal::Error {
                         self.refused_above = self.refused_above.min(stop.error);
                     }

@@ -33,6 +33,7 @@ mod queue;
 mod refusal;
 mod simplifier;
 mod surface;
+mod volume;
 mod wedges;
 
 use meshlod_mesh::Mesh;
@@ -45,6 +46,7 @@ pub use policy::Observe;
 pub use refusal::{Refusal, Refusals};
 pub use simplifier::Simplifier;
 pub use surface::{Placed, Surface};
+pub use volume::{Unconserved, VolumeLoss};
 
 /// A coarser mesh, and what was done to get it.
 ///

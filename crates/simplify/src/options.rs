@@ -4,6 +4,7 @@ use meshlod_mesh::MeshError;
 use thiserror::Error;
 
 use crate::refusal::Refusals;
+use crate::volume::VolumeLoss;
 
 /// An algorithm by name.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -15,6 +16,12 @@ pub enum Method {
     QemEndpoint,
     /// Memoryless, with the volume conserved exactly [LT98].
     LindstromTurk,
+    /// The same of faces instead of edges.
+    LindstromTurkFaces,
+    /// Face constriction with the volume conserved exactly [LJ05].
+    LeeJang,
+    /// Face constriction to the mean of the corners [Wu01].
+    Wu,
     /// Edges in the order of quadrics, with the volume conserved exactly [KJ04].
     KimJang,
     /// Simple polygon reduction [Mel98]: length times turn, onto vertices of the input.
@@ -23,8 +30,16 @@ pub enum Method {
 
 impl Method {
     /// Every method.
-    pub const ALL: [Self; 5] =
-        [Self::Qem, Self::QemEndpoint, Self::LindstromTurk, Self::KimJang, Self::Spr];
+    pub const ALL: [Self; 8] = [
+        Self::Qem,
+        Self::QemEndpoint,
+        Self::LindstromTurk,
+        Self::LindstromTurkFaces,
+        Self::LeeJang,
+        Self::Wu,
+        Self::KimJang,
+        Self::Spr,
+    ];
 
     /// Its name on the command line and in reports.
     pub fn name(self) -> &'static str {
@@ -32,8 +47,30 @@ impl Method {
             Self::Qem => "qem",
             Self::QemEndpoint => "qem-endpoint",
             Self::LindstromTurk => "lindstrom-turk",
+            Self::LindstromTurkFaces => "lindstrom-turk-faces",
+            Self::LeeJang => "lee-jang",
+            Self::Wu => "wu",
             Self::KimJang => "kim-jang",
             Self::Spr => "spr",
+        }
+    }
+
+    /// With which power of a length its costs grow: those of quadrics are squared distances times
+    /// areas, those of swept volumes squared volumes.
+    pub fn cost_power(self) -> i32 {
+        match self {
+            Self::Qem | Self::QemEndpoint | Self::KimJang => 4,
+            Self::LindstromTurk | Self::LindstromTurkFaces => 6,
+            Self::LeeJang | Self::Wu | Self::Spr => 1,
+        }
+    }
+
+    /// Whether every contraction with a closed ring that is free to choose its place conserves the
+    /// volume.
+    pub fn conserves_volume(self) -> bool {
+        match self {
+            Self::LindstromTurk | Self::LindstromTurkFaces | Self::LeeJang | Self::KimJang => true,
+            Self::Qem | Self::QemEndpoint | Self::Wu | Self::Spr => false,
         }
     }
 
@@ -144,4 +181,6 @@ pub struct Report {
     pub error_estimate: f64,
     /// Why candidates were refused, and how often.
     pub refusals: Refusals,
+    /// What became of the volume.
+    pub volume: VolumeLoss,
 }

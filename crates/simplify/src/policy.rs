@@ -28,6 +28,11 @@ pub(crate) trait Candidates: Sync {
     /// The vertices that the candidate would make one.
     fn vertices(&self, surface: &Surface, id: CandidateId) -> Contracted;
 
+    /// After a refusal: opens what may go in its place.
+    fn refused(&self, id: CandidateId, books: &mut dyn Books) {
+        let _ = (id, books);
+    }
+
     /// After a contraction: closes the candidates that went with their faces, and sees to it that
     /// each of the others is on the books once.
     fn settle(&self, hood: &Neighbourhood, kept: VertexId, books: &mut dyn Books);

@@ -23,13 +23,15 @@ pub enum Refusal {
     LastFaces,
     /// More faces meet in its ends than are looked at.
     Valence,
+    /// No place near conserves the volume.
+    Volume,
     /// It would move the surface further than the target error.
     Error,
 }
 
 impl Refusal {
     /// Every reason, in the order of [`Refusals`].
-    pub const ALL: [Self; 9] = [
+    pub const ALL: [Self; 10] = [
         Self::NonManifold,
         Self::Boundary,
         Self::Link,
@@ -38,6 +40,7 @@ impl Refusal {
         Self::Seam,
         Self::LastFaces,
         Self::Valence,
+        Self::Volume,
         Self::Error,
     ];
 
@@ -52,6 +55,7 @@ impl Refusal {
             Self::Seam => "seam",
             Self::LastFaces => "last_faces",
             Self::Valence => "valence",
+            Self::Volume => "volume",
             Self::Error => "error",
         }
     }

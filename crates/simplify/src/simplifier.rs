@@ -9,6 +9,7 @@ use crate::methods;
 use crate::options::{Options, Report, SimplifyError, Target};
 use crate::policy::{Observe, Stop};
 use crate::surface::{Flags, Surface};
+use crate::volume::VolumeLoss;
 
 /// The diagonals that can be worked with. Costs go with the fifth power of a length, checks with the
 /// eighth; beyond, doubles would run out.
@@ -18,6 +19,7 @@ const EXTENTS: std::ops::RangeInclusive<f64> = 1e-30..=1e30;
 pub struct Simplifier<'m> {
     mesh: &'m Mesh,
     engine: Box<dyn Run>,
+    volume: VolumeLoss,
     input: Input,
 }
 
@@ -60,7 +62,8 @@ impl<'m> Simplifier<'m> {
             }
         }
         let input = Input { degenerate_faces, duplicate_faces, non_manifold_vertices };
-        Ok(Self { mesh, engine: methods::start(options.method, surface, connectivity), input })
+        let engine = methods::start(options.method, surface, connectivity);
+        Ok(Self { mesh, engine, volume: VolumeLoss::default(), input })
     }
 
     /// Contracts until the target is reached or nothing more may be contracted.
@@ -70,17 +73,18 @@ impl<'m> Simplifier<'m> {
         observer: &mut dyn Observe,
     ) -> Result<Report, SimplifyError> {
         let stop = self.stop(target)?;
-        self.engine.run(&stop, observer);
+        self.engine.run(&stop, &mut (&mut self.volume, observer));
         Ok(self.report(target, &stop))
     }
 
     /// Makes the one next contraction that costs at most `most_cost`; false when none may be made.
     pub fn step(&mut self, most_cost: f64, observer: &mut dyn Observe) -> bool {
-        self.engine.step(&Stop { cost: most_cost, ..Stop::NEVER }, observer)
+        let stop = Stop { cost: most_cost, ..Stop::NEVER };
+        self.engine.step(&stop, &mut (&mut self.volume, observer))
     }
 
-    /// The cost of the candidate that is tried next, in the method's own terms (for quadrics:
-    /// squared distance times area); `None` when no candidate is left.
+    /// The cost of the candidate that is tried next, in the method's own terms, see
+    /// [`Method::cost_power`](crate::Method::cost_power); `None` when no candidate is left.
     ///
     /// It may turn out refused: the contraction that is made next costs this or more.
     pub fn next_cost(&mut self) -> Option<f64> {
@@ -105,6 +109,7 @@ impl<'m> Simplifier<'m> {
             reached,
             error_estimate: self.engine.error_estimate(),
             refusals: self.engine.refusals(),
+            volume: self.volume,
         }
     }
 

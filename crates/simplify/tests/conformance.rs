@@ -1,12 +1,17 @@
 //! What every method must keep on every mesh.
 
-use std::collections::HashSet;
+use std::collections::{HashMap, HashSet};
 
+use glam::DVec3;
 use meshlod_fixtures as fixtures;
 use meshlod_mesh::{
-    Attributes, Connectivity, Layer, LayerKind, Mesh, VertexId, WedgeId, face_components, sample,
+    Attributes, Connectivity, FaceId, Layer, LayerKind, Mesh, VertexId, WedgeId, face_components,
+    sample,
 };
-use meshlod_simplify::{Method, Options, Report, Simplifier, Target, simplify};
+use meshlod_simplify::{
+    Method, Neighbourhood, Observe, Options, Placed, Report, Simplifier, Surface, Target,
+    Unconserved, simplify,
+};
 use proptest::prelude::*;
 
 fn meshes() -> Vec<(&'static str, Mesh)> {
@@ -103,7 +108,8 @@ fn smooth_samples_reach_their_target() {
         for method in Method::ALL {
             let (level, report) = run(&mesh, method, 0.05);
             let target = mesh.faces.len() / 20;
-            assert!(report.reached && (target - 1..=target).contains(&level.faces.len()));
+            // A face takes four with it, an edge two.
+            assert!(report.reached && (target - 3..=target).contains(&level.faces.len()));
         }
     }
 }
@@ -130,6 +136,79 @@ fn every_single_step_keeps_a_closed_surface_closed() {
     }
 }
 
+/// The normals of the faces that a step changes, before it and after.
+#[derive(Default)]
+struct Turned(HashMap<FaceId, [DVec3; 2]>);
+
+impl Observe for Turned {
+    fn before(&mut self, surface: &Surface, hood: &Neighbourhood, _: &Placed) {
+        for spoke in hood.spokes() {
+            let normal = surface.area_normal(spoke.face);
+            self.0.entry(spoke.face).or_insert([normal; 2]);
+        }
+    }
+
+    fn after(&mut self, surface: &Surface, hood: &Neighbourhood, _: &Placed) {
+        for spoke in hood.spokes() {
+            self.0.entry(spoke.face).or_default()[1] = surface.area_normal(spoke.face);
+        }
+        hood.dying().iter().for_each(|dying| drop(self.0.remove(&dying.face)));
+    }
+}
+
+#[test]
+fn no_step_turns_a_face_over() {
+    for mesh in [sample::knot(1500), sample::gyroid(1500), sample::terrain(800), sample::fish(800)]
+    {
+        for method in Method::ALL {
+            let options = Options { method, ..Options::default() };
+            let mut simplifier = Simplifier::new(&mesh, &options).unwrap();
+            loop {
+                let mut turned = Turned::default();
+                if !simplifier.step(f64::INFINITY, &mut turned) {
+                    break;
+                }
+                for (face, [before, after]) in turned.0 {
+                    assert!(before.dot(after) > 0.0, "{} turns {face}", method.name());
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn volume_is_conserved_by_those_who_say_so() {
+    for mesh in [sample::torus(1500), sample::knot(1500), sample::gyroid(1500)] {
+        let volume = |mesh: &Mesh| -> f64 {
+            let sixfold = |&face: &[VertexId; 3]| {
+                let [a, b, c] = mesh.triangle(face);
+                a.cross(b).dot(c)
+            };
+            mesh.faces.iter().map(sixfold).sum::<f64>() / 6.0
+        };
+        for method in Method::ALL {
+            let (level, report) = run(&mesh, method, 0.1);
+            let lost = (volume(&mesh) - volume(&level)) / volume(&mesh);
+            let off = report.volume.running_sum / volume(&mesh) - lost;
+            assert!(off.abs() < 1e-13, "{}: the sum is {off:e} off", method.name());
+            let conserved = lost.abs() < 1e-13;
+            assert_eq!(conserved, method.conserves_volume(), "{}: {lost:e}", method.name());
+        }
+    }
+}
+
+#[test]
+fn where_the_volume_is_not_conserved_is_told() {
+    let (_, report) = run(&sample::terrain(800), Method::LeeJang, 0.1);
+    let Unconserved { contractions, bounds } = report.volume.open;
+    assert!(contractions > 0 && bounds.diagonal() > 0.0);
+    let mesh = sample::sphere(800);
+    let locked = (0..mesh.positions.len()).map(|v| v % 9 == 0).collect();
+    let options = Options { method: Method::LindstromTurk, locked, ..Options::default() };
+    let (_, report) = simplify(&mesh, Target::Ratio(0.3), &options).unwrap();
+    assert!(report.volume.held.contractions > 0 && report.volume.running_sum.abs() > 1e-9);
+}
+
 #[test]
 fn steps_stop_where_they_would_cost_too_much() {
     let mesh = sample::knot(1000);
@@ -142,7 +221,7 @@ fn steps_stop_where_they_would_cost_too_much() {
         let (before, most_cost) = (simplifier.live_faces(), 2.0 * simplifier.next_cost().unwrap());
         while simplifier.step(most_cost, &mut ()) {}
         let stopped = simplifier.live_faces();
-        assert!((before / 2..before).contains(&stopped), "{before} {stopped}");
+        assert!((before / 4..before).contains(&stopped), "{before} {stopped}");
         assert!(simplifier.step(f64::INFINITY, &mut ()) && simplifier.live_faces() < stopped);
     }
 }

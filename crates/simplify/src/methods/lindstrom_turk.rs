@@ -6,7 +6,7 @@
 //! each face alone. Only the place itself is found from all the faces around, exactly.
 
 use glam::DVec3;
-use meshlod_mesh::FaceId;
+use meshlod_mesh::{FaceId, VertexId};
 
 use crate::contracted::{Contracted, Freedom};
 use crate::methods::outline::outlines;
@@ -95,7 +95,7 @@ impl Memory for Stars {
     }
 }
 
-/// The least swept volume, as priority and as placement.
+/// The least swept volume, as priority and as placement, of edges and of faces.
 pub(crate) struct Memoryless;
 
 impl Priority<Stars> for Memoryless {
@@ -110,22 +110,35 @@ impl Priority<Stars> for Memoryless {
         if of.iter().any(|&v| surface.flags(v).any(Flags::BOUNDARY.or(Flags::SEAM))) {
             return cost_at_outline(surface, of);
         }
-        let [s0, s1] = [of[0], of[1]].map(|v| memory.0[v.index()]);
-        let d = surface.position(of[1]) - surface.position(of[0]);
-        // The faces that both ends share count twice. To take them out would need a look at them,
+        let origin = surface.position(of[0]);
+        let offset = |v: VertexId| surface.position(v) - origin;
+        let Star { mut squares, mut normal } = memory.0[of[0].index()];
+        let (mut linear, mut constant, mut level) = (DVec3::ZERO, 0.0, 0.0);
+        // The faces that two of them share count twice. To take them out would need a look at them,
         // and was worse: mean error of horse-97k .00719, .0593 instead of .00715, .0573.
-        let squares = s0.squares + s1.squares;
-        let swept = Quadric::sum_of(squares, s1.squares.apply(d), d);
+        for &v in &of[1..] {
+            let (star, d) = (&memory.0[v.index()], offset(v));
+            let square = star.squares.apply(d);
+            squares = squares + star.squares;
+            normal += star.normal;
+            linear -= square;
+            constant += square.dot(d);
+            level += star.normal.dot(d);
+        }
+        let swept = Quadric::new(squares, linear, constant);
         let x = match freedom {
-            Freedom::At(0) => DVec3::ZERO,
-            Freedom::At(_) => d,
-            Freedom::Free => {
-                let plane = VolumePlane { normal: s0.normal + s1.normal, level: s1.normal.dot(d) };
-                swept.optimum_on(plane.normal, plane.level, 0.5 * d, PULL)
-            }
+            Freedom::At(i) => offset(of[i]),
+            Freedom::Free => swept.optimum_on(normal, level, middle(surface, of), PULL),
         };
-        Some(swept.at(x) + SHORT_FIRST * swept.mean_of(d.length_squared()))
+        Some(swept.at(x) + SHORT_FIRST * swept.mean_of(offset(of[1]).length_squared()))
     }
+}
+
+/// The mean of the contracted vertices, seen from the first.
+#[inline]
+fn middle(surface: &Surface, of: &Contracted) -> DVec3 {
+    let origin = surface.position(of[0]);
+    of.iter().map(|&v| surface.position(v) - origin).sum::<DVec3>() / of.len() as f64
 }
 
 /// The cost of an edge with an end on an outline, from all the faces around. Few edges have one.
@@ -139,17 +152,22 @@ fn cost_at_outline(surface: &Surface, of: &Contracted) -> Option<f64> {
 
 impl Placement<Stars> for Memoryless {
     fn place(&self, surface: &Surface, _: &Stars, hood: &Neighbourhood) -> Result<Placed, Refusal> {
-        let Choice { offset, swept } = choose(surface, hood);
-        let error_estimate = swept.distance(swept.at(offset));
-        Ok(match hood.freedom() {
-            Freedom::At(kept) => {
-                Placed { position: surface.position(hood.contracted()[kept]), kept, error_estimate }
-            }
-            Freedom::Free => {
-                let origin = surface.position(hood.contracted()[0]);
-                Placed { position: origin + offset, kept: 0, error_estimate }
-            }
-        })
+        Ok(place(surface, hood))
+    }
+}
+
+/// The place of any gathered contraction, from the faces around as they are.
+pub(crate) fn place(surface: &Surface, hood: &Neighbourhood) -> Placed {
+    let Choice { offset, swept } = choose(surface, hood);
+    let error_estimate = swept.distance(swept.at(offset));
+    match hood.freedom() {
+        Freedom::At(kept) => {
+            Placed { position: surface.position(hood.contracted()[kept]), kept, error_estimate }
+        }
+        Freedom::Free => {
+            let origin = surface.position(hood.contracted()[0]);
+            Placed { position: origin + offset, kept: 0, error_estimate }
+        }
     }
 }
 
@@ -160,8 +178,9 @@ struct Choice {
 }
 
 fn choose(surface: &Surface, hood: &Neighbourhood) -> Choice {
-    let ends = [0, 1].map(|i| surface.position(hood.contracted()[i]));
-    let (origin, along) = (ends[0], ends[1] - ends[0]);
+    let place = |i: usize| surface.position(hood.contracted()[i]);
+    let (origin, along) = (place(0), place(1) - place(0));
+    let middle = middle(surface, hood.contracted());
     let mut volume = VolumePlane::default();
     let mut swept = Quadric::default();
     old_faces(surface, hood, origin, |normal, corner| {
@@ -180,10 +199,10 @@ fn choose(surface: &Surface, hood: &Neighbourhood) -> Choice {
         }
     }
     let offset = match hood.freedom() {
-        Freedom::At(i) => ends[i] - origin,
+        Freedom::At(i) => place(i) - origin,
         Freedom::Free => match boundary.line() {
-            Some(line) => line.best(&volume, &swept, 0.5 * along),
-            None => swept.optimum_on(volume.normal, volume.level, 0.5 * along, PULL),
+            Some(line) => line.best(&volume, &swept, middle),
+            None => swept.optimum_on(volume.normal, volume.level, middle, PULL),
         },
     };
     Choice { offset, swept }

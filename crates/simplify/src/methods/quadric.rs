@@ -150,17 +150,16 @@ impl Quadric {
         }
     }
 
-    /// x'Ax − 2(Bd)·x + d'Bd: planes through the origin and planes through `d`, A the squares of
-    /// both and `bd` those of the second, times d.
+    /// x'Ax + 2b·x + c, weighing as much as the squares in A.
     #[inline]
-    pub(crate) fn sum_of(a: Symmetric, bd: DVec3, d: DVec3) -> Self {
-        Self { a, b: -bd, c: bd.dot(d), weight: a.trace() }
+    pub(crate) fn new(a: Symmetric, b: DVec3, c: f64) -> Self {
+        Self { a, b, c, weight: a.trace() }
     }
 
     /// (x − from)'A(x − from).
     #[inline]
     pub(crate) fn squared(a: Symmetric, from: DVec3) -> Self {
-        Self { a, weight: a.trace(), ..Self::default() }.seen_from(-from)
+        Self::new(a, DVec3::ZERO, 0.0).seen_from(-from)
     }
 
     /// The same function with a weight that counts for nothing in the mean.

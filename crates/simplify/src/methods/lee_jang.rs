@@ -1,0 +1,79 @@
+//! Face constriction that conserves the volume [LJ05].
+
+use glam::DVec3;
+
+use crate::contracted::Freedom;
+use crate::methods::creases::{Creases, Turns};
+use crate::methods::lindstrom_turk;
+use crate::methods::volume::{VolumePlane, old_faces};
+use crate::neighbourhood::Neighbourhood;
+use crate::policy::Placement;
+use crate::refusal::Refusal;
+use crate::surface::{Placed, Surface};
+
+/// How far the ratio of the volumes may be from 1; beyond, the face is postponed and its shortest
+/// edge may go. Mean error of bunny and igea at 10 %: 0.5 .0430, .0141; 0.1 .0387, .0134; 0.05 .0333,
+/// .0116; 0.02 .0268, .0092. But at 0.05 every third candidate is refused, at 0.02 most are, and what
+/// is left is a method for edges.
+const MOST_STRETCH: f64 = 0.1;
+
+/// M: weighs a vertex by its least typical edge (eq. 5), so that one whose edges are all alike, such
+/// as the tip of a pyramid, still counts.
+pub(crate) fn weight(turns: &Turns) -> f64 {
+    turns.farthest.exp()
+}
+
+/// The centroid, moved along the line from a point below the surface to where it conserves the
+/// volume (eqs. 8 to 12).
+pub(crate) struct Constriction;
+
+impl Placement<Creases> for Constriction {
+    fn place(
+        &self,
+        surface: &Surface,
+        creases: &Creases,
+        hood: &Neighbourhood,
+    ) -> Result<Placed, Refusal> {
+        match (hood.freedom(), hood.contracted().len()) {
+            (Freedom::Free, 3) => constrict(surface, creases, hood),
+            _ => Ok(lindstrom_turk::place(surface, hood)),
+        }
+    }
+}
+
+fn constrict(
+    surface: &Surface,
+    creases: &Creases,
+    hood: &Neighbourhood,
+) -> Result<Placed, Refusal> {
+    let corners = [0, 1, 2].map(|i| surface.position(hood.contracted()[i]));
+    let [a, b, c] = corners;
+    let centroid = (a + b + c) / 3.0;
+    let depth = (a.distance(b) + b.distance(c) + c.distance(a)) / 3.0;
+    let inward = direction(creases, hood, (b - a).cross(c - a).normalize_or_zero());
+    let base = centroid - depth * inward;
+    let mut volume = VolumePlane::default();
+    let mut seen = true;
+    old_faces(surface, hood, base, |normal, corner| {
+        volume.add(normal, corner);
+        seen &= normal.dot(corner) >= 0.0;
+    });
+    let k = volume.level / volume.normal.dot(depth * inward);
+    // Written so that what is no number is refused.
+    if !(seen && (k - 1.0).abs() <= MOST_STRETCH) {
+        return Err(Refusal::Volume);
+    }
+    let position = base + k * depth * inward;
+    Ok(Placed { position, kept: 0, error_estimate: 0.0 })
+}
+
+/// The mean direction out of the patch: that of the face, and of each other as much as it differs
+/// (eq. 10).
+fn direction(creases: &Creases, hood: &Neighbourhood, normal: DVec3) -> DVec3 {
+    let faces = hood.spokes().iter().map(|s| s.face).chain(hood.dying().iter().map(|d| d.face));
+    let sum = faces.fold(normal, |sum, face| {
+        let other = creases.normal(face);
+        sum + (1.0 - normal.dot(other)) * other
+    });
+    sum.try_normalize().unwrap_or(normal)
+}

@@ -1,0 +1,42 @@
+//! Face constriction as it was before volume counted [Wu01].
+
+use glam::DVec3;
+
+use crate::contracted::Freedom;
+use crate::methods::creases::{Creases, Turns};
+use crate::methods::lindstrom_turk;
+use crate::neighbourhood::Neighbourhood;
+use crate::policy::Placement;
+use crate::refusal::Refusal;
+use crate::surface::{Placed, Surface};
+
+/// VAR: weighs a vertex by how its edges differ (eq. 2 of [LJ05]). One whose edges are all alike
+/// weighs nothing, however sharp they are.
+pub(crate) fn weight(turns: &Turns) -> f64 {
+    turns.variance
+}
+
+/// The mean of the corners by their weights (eq. 13 of [LJ05]).
+pub(crate) struct WeightedMean;
+
+impl Placement<Creases> for WeightedMean {
+    fn place(
+        &self,
+        surface: &Surface,
+        creases: &Creases,
+        hood: &Neighbourhood,
+    ) -> Result<Placed, Refusal> {
+        if hood.freedom() != Freedom::Free || hood.contracted().len() == 2 {
+            return Ok(lindstrom_turk::place(surface, hood));
+        }
+        let corners =
+            || hood.contracted().iter().map(|&v| (surface.position(v), creases.weight(v)));
+        let weights: f64 = corners().map(|(_, weight)| weight).sum();
+        let position = if weights > 0.0 {
+            corners().map(|(p, weight)| p * (weight / weights)).sum()
+        } else {
+            corners().map(|(p, _)| p).sum::<DVec3>() / 3.0
+        };
+        Ok(Placed { position, kept: 0, error_estimate: 0.0 })
+    }
+}
