@@ -152,7 +152,9 @@ impl Observe for Turned {
         for spoke in hood.spokes() {
             self.0.entry(spoke.face).or_default()[1] = surface.area_normal(spoke.face);
         }
-        hood.dying().iter().for_each(|dying| drop(self.0.remove(&dying.face)));
+        for dying in hood.dying() {
+            self.0.remove(&dying.face);
+        }
     }
 }
 
