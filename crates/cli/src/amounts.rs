@@ -166,8 +166,16 @@ pub fn look(text: &str) -> Result<Look, String> {
 
 /// A method by name.
 pub fn method(text: &str) -> Result<Method, String> {
-    let known = || Method::ALL.map(Method::name).join(", ");
-    Method::by_name(text).ok_or_else(|| format!("known are {}", known()))
+    Method::by_name(text).ok_or_else(|| format!("known are {}", names()))
+}
+
+/// What help says of methods.
+pub fn methods() -> String {
+    format!("The algorithm: {}; compare shows which suits a mesh", names())
+}
+
+fn names() -> String {
+    Method::ALL.map(Method::name).join(", ")
 }
 
 /// A format by its suffix.

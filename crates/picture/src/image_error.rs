@@ -65,6 +65,16 @@ impl<'a> Portrait<'a> {
         Self::with_style(original, Style { paint: paint.clone(), ..Style::comparison() })
     }
 
+    /// The same in smaller pictures, `side` pixels wide and high: quicker, and less strict, since
+    /// what is small is not seen. Name the side beside such a figure.
+    ///
+    /// # Errors
+    /// As for [`render`].
+    pub fn of_side(original: &Mesh, paint: &Paint<'a>, side: u32) -> Result<Self, PictureError> {
+        let style = Style { paint: paint.clone(), size: [side; 2], ..Style::comparison() };
+        Self::with_style(original, style)
+    }
+
     fn with_style(original: &Mesh, style: Style<'a>) -> Result<Self, PictureError> {
         let view = |camera| {
             let (picture, shown) = draw(original, &camera, &style)?;

@@ -2,6 +2,7 @@
 
 use meshlod::Method;
 use meshlod::measure::{DistanceOptions, Surface};
+use meshlod::picture::Portrait;
 
 use crate::amounts::Size;
 use crate::compare::output::Output;
@@ -42,10 +43,20 @@ pub struct Entry {
 
 /// What a run works with beside what is to be done.
 struct Means<'c> {
-    studio: Option<Studio<'c>>,
+    drawing: Option<Drawing<'c>>,
     output: &'c Output,
     session: &'c Session,
 }
+
+/// What pictures are made with, and compared.
+struct Drawing<'c> {
+    studio: Studio<'c>,
+    portrait: Portrait<'c>,
+}
+
+/// Width and height of the pictures that are compared: a sixteenth of the protocol's pixels, so
+/// that a level costs a fraction of a second.
+pub const COMPARED_SIDE: u32 = 256;
 
 impl Contest<'_> {
     /// Makes, measures, draws and writes all levels. The geometry of a level is let go when that is
@@ -53,8 +64,8 @@ impl Contest<'_> {
     ///
     /// A method that cannot is an entry with trouble. Where none can, that is a failure.
     pub fn run(&self, output: &Output, session: &Session) -> Result<Outcome, Failure> {
-        let studio = self.pictures.then(|| Studio::new(self.subject, self.original));
-        let means = Means { studio, output, session };
+        let drawing = self.pictures.then(|| self.drawing()).transpose()?;
+        let means = Means { drawing, output, session };
         let mut entries = Vec::new();
         for (i, &method) in self.methods.iter().enumerate() {
             let what = format!("{} ({} of {})", method.name(), i + 1, self.methods.len());
@@ -68,14 +79,22 @@ impl Contest<'_> {
         {
             return Err(trouble);
         }
-        let input = means.studio.map(|studio| studio.input()).transpose()?;
+        let input = means.drawing.map(|drawing| drawing.studio.input()).transpose()?;
         Ok(Outcome { entries, input })
+    }
+
+    fn drawing(&self) -> Result<Drawing<'_>, Failure> {
+        let Self { subject, original, .. } = self;
+        let portrait = Portrait::of_side(&subject.mesh, &subject.look.coat.paint(), COMPARED_SIDE);
+        let portrait =
+            portrait.map_err(|error| Failure::new(format_args!("{}: {error}", subject.name)))?;
+        Ok(Drawing { studio: Studio::new(subject, original), portrait })
     }
 
     /// Takes a method from size to size. Fails only where a picture or a file does.
     fn descend(&self, entry: &mut Entry, what: &str, means: &Means<'_>) -> Result<(), Failure> {
         let Self { subject, original, options, .. } = *self;
-        let Means { studio, output, session } = means;
+        let Means { drawing, output, session } = means;
         let method = entry.chain.method;
         let bench = Bench { subject, original, options, session };
         let mut descent = match Descent::start(bench, method, what.into()) {
@@ -86,16 +105,18 @@ impl Contest<'_> {
             }
         };
         for &size in &self.sizes {
-            let made = match descent.go_on(size, output.file(method, size)) {
+            let mut made = match descent.go_on(size, output.file(method, size)) {
                 Ok(made) => made,
                 Err(trouble) => {
                     entry.trouble = Some(trouble);
                     return Ok(());
                 }
             };
-            if let Some(studio) = studio {
+            if let Some(Drawing { studio, portrait }) = drawing {
                 session.progress.stage(&format!("{what}: drawing"));
                 entry.shots.push(studio.level(&made.shown, method.name())?);
+                let seen = portrait.error_of(&made.shown).map_err(Failure::new)?;
+                made.level.flip = Some(seen.flip);
             }
             session.progress.stage(&format!("{what}: writing"));
             let mut scene = subject.scene.clone();

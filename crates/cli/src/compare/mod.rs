@@ -110,7 +110,7 @@ impl Compare {
         let View { direction, up, .. } = self.viewpoint.view();
         let name = files::name(&self.input);
         let title = self.input.file_name().unwrap_or_default().to_string_lossy();
-        let look = |mesh: &_| Look::new(coat, mesh, direction, up);
+        let look = |mesh: &_| Look::new(coat.or_checker(mesh), mesh, direction, up);
         Ok((Subject::new([&name, &title], scene, look), output))
     }
 

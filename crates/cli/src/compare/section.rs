@@ -85,7 +85,7 @@ fn figures(contest: &Contest<'_>, outcome: &Outcome, size: usize) -> Markup {
         columns.iter().map(|column| column.winners(input, &levels)).collect();
     html! {
         table {
-            caption { (columns::legend(input)) " The best of a column is marked." }
+            caption { (columns::legend(input, &columns)) " The best of a column is marked." }
             (table::heads("Method", &columns))
             tbody {
                 @for (i, (entry, level)) in outcome.at(size).enumerate() {

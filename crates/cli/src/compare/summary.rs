@@ -2,7 +2,7 @@
 
 use serde_json::{Value, json};
 
-use crate::compare::contest::{Contest, Entry, Outcome};
+use crate::compare::contest::{COMPARED_SIDE, Contest, Entry, Outcome};
 use crate::compare::output::Output;
 use crate::files;
 use crate::numbers;
@@ -31,6 +31,7 @@ pub fn json(contest: &Contest<'_>, outcome: &Outcome, output: &Output) -> Value 
         "counts": input.json(),
         "samples_each_way": contest.options.samples,
         "seed": contest.options.seed,
+        "flip_picture_side": contest.pictures.then_some(COMPARED_SIDE),
         "threads": rayon::current_num_threads(),
         "folder": files::name(&output.folder),
         "page": "index.html",

@@ -8,7 +8,7 @@ use meshlod::{Mesh, Method, Scene, WriteOptions, write};
 
 use crate::amounts::Size;
 use crate::demo::samples::Sample;
-use crate::demo::{main_method, methods};
+use crate::demo::{METHODS, main_method};
 use crate::failure::Failure;
 use crate::page::descent::{Bench, Chain, Descent, Level, Made};
 use crate::page::studio::{Shots, Studio};
@@ -52,7 +52,7 @@ impl Exhibit {
         let out = Out { sample, folder };
         out.write(&sample.input_file(), &subject.scene)?;
         let (mut chains, mut main) = (Vec::new(), Vec::new());
-        for method in methods() {
+        for method in METHODS {
             let mades = out.chain(bench, method)?;
             if method == main_method() {
                 out.write_lods(&subject.scene, &mades)?;

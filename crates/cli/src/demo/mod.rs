@@ -69,10 +69,5 @@ fn main_method() -> Method {
     Method::default()
 }
 
-/// Methods worth a look at each other, which leave the page quick to make.
-fn methods() -> Vec<Method> {
-    ["qem", "qem-endpoint", "lindstrom-turk", "lee-jang"]
-        .into_iter()
-        .filter_map(Method::by_name)
-        .collect()
-}
+/// Methods worth a look beside each other: by quadrics and by volume. More would make the page slow.
+const METHODS: [Method; 2] = [Method::Qem, Method::LindstromTurk];

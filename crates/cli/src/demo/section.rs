@@ -77,7 +77,7 @@ fn figures(exhibit: &Exhibit) -> Markup {
     let columns = Column::of(input, exhibit.chains.iter().flat_map(|chain| &chain.levels));
     html! {
         table {
-            caption { (columns::legend(input)) }
+            caption { (columns::legend(input, &columns)) }
             (table::heads("Level", &columns))
             @for chain in &exhibit.chains {
                 tbody {

@@ -12,6 +12,8 @@ pub struct Column {
     pub head: &'static str,
     /// By the counts of the input; `None` where there is no such thing.
     pub value: fn(&Counts, &Level) -> Option<f64>,
+    /// What it is, where the head does not say.
+    pub about: &'static str,
     /// As people read it.
     pub text: fn(f64) -> String,
     pub best: Option<Best>,
@@ -26,33 +28,38 @@ pub enum Best {
 }
 
 /// What levels are compared by.
-pub const COLUMNS: [Column; 9] = [
+pub const COLUMNS: [Column; 10] = [
     Column {
         head: "Faces",
+        about: "",
         value: |_, level| Some(level.report.output_faces as f64),
         text: whole,
         best: None,
     },
     Column {
         head: "Mean",
+        about: "Mean, RMS, max: measured both ways, in percent of the input’s diagonal.",
         value: |_, level| level.percent(Distance::mean),
         text: digits,
         best: Some(Best::Least),
     },
     Column {
         head: "RMS",
+        about: "",
         value: |_, level| level.percent(Distance::rms),
         text: digits,
         best: Some(Best::Least),
     },
     Column {
         head: "Max",
+        about: "",
         value: |_, level| level.percent(Distance::max),
         text: digits,
         best: Some(Best::Least),
     },
     Column {
         head: "Estimate",
+        about: "Estimate: the method’s own of the max.",
         value: |input, level| Some(100.0 * level.report.error_estimate / input.diagonal),
         text: digits,
         // The nearest to the truth would be, and that is in the column before.
@@ -60,40 +67,46 @@ pub const COLUMNS: [Column; 9] = [
     },
     Column {
         head: "Volume",
+        about: "Volume: its change in percent.",
         value: |input, level| level.volume_change(input),
         text: drift,
         best: Some(Best::NearestZero),
     },
     Column {
         head: "Shape",
+        about: "Shape: 1 where all triangles are equilateral.",
         value: |_, level| level.quality.map(|quality| quality.mean),
         text: |mean| format!("{mean:.2}"),
         best: Some(Best::Greatest),
     },
     Column {
+        head: "FLIP",
+        about: "FLIP: how different it looks from twelve sides, in pictures of 256 by 256; 0 for not at all.",
+        value: |_, level| level.flip,
+        text: |flip| format!("{flip:.4}"),
+        best: Some(Best::Least),
+    },
+    Column {
         head: "Refused",
+        about: "",
         value: |_, level| Some(refused(level) as f64),
         text: whole,
         best: None,
     },
     Column {
         head: "Time",
+        about: "",
         value: |_, level| Some(level.time.as_secs_f64()),
         text: seconds,
         best: Some(Best::Least),
     },
 ];
 
-/// What the heads mean, for all columns that are there.
-pub fn legend(input: &Counts) -> String {
-    let volume = match input.closed {
-        true => "Volume: its change in percent. ",
-        false => "The input is open and encloses no volume. ",
-    };
-    format!(
-        "Mean, RMS, max: measured both ways, in percent of the input’s diagonal. Estimate: the \
-         method’s own of the max. {volume}Shape: 1 where all triangles are equilateral."
-    )
+/// What the heads mean, and why one is missing.
+pub fn legend(input: &Counts, columns: &[&Column]) -> String {
+    let abouts = columns.iter().map(|column| column.about).filter(|about| !about.is_empty());
+    let open = (!input.closed).then_some("The input is open and encloses no volume.");
+    abouts.chain(open).collect::<Vec<_>>().join(" ")
 }
 
 impl Column {

@@ -39,6 +39,8 @@ pub struct Level {
     /// Its distance from the input, or why there is none.
     pub measured: Result<Distance, String>,
     pub quality: Option<Quality>,
+    /// How different it looks, where pictures were compared.
+    pub flip: Option<f64>,
     /// From the input to here: connecting and contracting, by the wall clock.
     pub time: Duration,
     /// The name of its file, in the folder of the page.
@@ -87,6 +89,7 @@ impl<'s> Descent<'s> {
             report,
             measured: self.distance_of(&shown),
             quality: quality(&shown),
+            flip: None,
             time: self.engine.time(),
             file,
         };

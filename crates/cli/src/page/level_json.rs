@@ -27,6 +27,7 @@ pub fn level_json(level: &Level, input: &Counts) -> Value {
         "volume_change_percent": level.volume_change(input),
         "quality_mean": level.quality.map(|quality| quality.mean),
         "quality_min": level.quality.map(|quality| quality.min),
+        "flip": level.flip,
         "error_estimate": report.error_estimate,
         "error_measured": level.measured.as_ref().ok().map(distance::to_json),
         "not_measured": level.measured.as_ref().err(),

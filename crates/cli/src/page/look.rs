@@ -27,10 +27,15 @@ pub enum Coat {
     /// Of vertices or faces.
     Colors,
     Materials(Materials),
+    /// Over the uvs.
+    Checker,
 }
 
+/// Squares of the checkerboard along a unit of uv.
+const SQUARES: u32 = 16;
+
 /// Edges that bend by more than this, in radians, are sharp where a file has no normals.
-pub const CREASE_RAD: f64 = 1.0;
+const CREASE_RAD: f64 = 1.0;
 
 /// Light, to see lines on.
 const CLAY: Coat = Coat::Plain([226, 208, 186]);
@@ -54,11 +59,20 @@ impl Coat {
         }
     }
 
+    /// Itself, or a checkerboard where a mesh has uvs and nothing to see them by.
+    pub fn or_checker(self, mesh: &Mesh) -> Self {
+        match self {
+            Self::Plain(_) if has(mesh, LayerKind::Uv(0)) => Self::Checker,
+            coat => coat,
+        }
+    }
+
     pub fn paint(&self) -> Paint<'_> {
         match self {
             Self::Plain(color) => Paint::Plain(*color),
             Self::Colors => Paint::Colors,
             Self::Materials(materials) => Paint::Materials(materials),
+            Self::Checker => Paint::Checker { squares: SQUARES },
         }
     }
 

@@ -49,9 +49,6 @@ pub struct Render {
     reading: Reading,
 }
 
-/// Squares of the checkerboard along a unit of uv.
-const SQUARES: u32 = 16;
-
 /// Distances of a mesh's vertices from another mesh.
 struct Heat {
     values: Vec<f32>,
@@ -111,7 +108,7 @@ impl Render {
                 let range = [0.0, *max as f32];
                 Paint::VertexValues(Values { values, map: ColorMap::Heat, range })
             }
-            None if self.checker => Paint::Checker { squares: SQUARES },
+            None if self.checker => Coat::Checker.paint(),
             None => coat.paint(),
         };
         Style {

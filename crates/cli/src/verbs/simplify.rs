@@ -60,9 +60,8 @@ struct Goal {
 /// How contractions are done.
 #[derive(Args)]
 pub struct Manner {
-    /// qem: new vertices where they fit best; qem-endpoint: only vertices of the input; spr: the
-    /// same by length and turn
-    #[arg(long, value_name = "NAME", default_value = "qem", value_parser = amounts::method)]
+    #[arg(long, value_name = "NAME", default_value = Method::default().name(),
+        value_parser = amounts::method, help = amounts::methods())]
     pub method: Method,
     /// Keep every vertex of a boundary edge where it is
     #[arg(long)]

@@ -61,6 +61,17 @@ fn every_damaged_file_is_looked_at_or_named() {
 }
 
 #[test]
+fn every_damaged_file_is_compared_or_named() {
+    for input in shared_broken() {
+        let (run, path) = (Run::new(), input.to_str().unwrap());
+        let options = ["--ratio", "50%", "--out", "out", "--samples", "100", "--no-pictures"];
+        let done =
+            check(&run, &[&["compare", path], &options[..]].concat(), &input, "out/index.html");
+        assert!(done.code == 0 || done.err.contains(path), "{done:?}");
+    }
+}
+
+#[test]
 fn a_result_that_cannot_be_kept_leaves_the_old_one() {
     let run = Run::new();
     run.sample("sphere", 100, "out.ply");
