@@ -19,6 +19,7 @@ mod reduce;
 mod session;
 mod table;
 mod verbs;
+mod volume;
 mod within;
 
 use std::process::{ExitCode, exit};

@@ -12,6 +12,7 @@ use crate::page::figures::{percent, whole};
 use crate::page::key::key;
 use crate::page::strip::{Layout, Stand, strip};
 use crate::page::table;
+use crate::volume::unconserved_text;
 
 /// Pictures, figures and refusals.
 pub fn section(contest: &Contest<'_>, outcome: &Outcome, size: usize) -> Markup {
@@ -22,6 +23,7 @@ pub fn section(contest: &Contest<'_>, outcome: &Outcome, size: usize) -> Markup 
             div.scroll tabindex="0" role="region" aria-label="Figures" {
                 (figures(contest, outcome, size))
             }
+            (unconserved(outcome, size))
             div.measured {
                 (chart(&trade(outcome, size)))
                 div.scroll tabindex="0" role="region" aria-label="Refusals" {
@@ -95,6 +97,22 @@ fn figures(contest: &Contest<'_>, outcome: &Outcome, size: usize) -> Markup {
                 @for entry in outcome.entries.iter().filter(|e| e.chain.levels.len() <= size) {
                     (failed(entry, columns.len()))
                 }
+            }
+        }
+    }
+}
+
+/// What methods that conserve the volume could not conserve, and where.
+fn unconserved(outcome: &Outcome, size: usize) -> Markup {
+    let line = |(entry, level): (&Entry, &Level)| {
+        let method = entry.chain.method;
+        Some((method, unconserved_text(method, &level.report.volume)?))
+    };
+    let lines: Vec<_> = outcome.at(size).filter_map(line).collect();
+    html! {
+        @if !lines.is_empty() {
+            ul.verdict {
+                @for (method, line) in lines { li { (key(method)) (method.name()) ": " (line) } }
             }
         }
     }

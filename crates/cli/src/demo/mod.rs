@@ -69,5 +69,6 @@ fn main_method() -> Method {
     Method::default()
 }
 
-/// Methods worth a look beside each other: by quadrics and by volume. More would make the page slow.
-const METHODS: [Method; 2] = [Method::Qem, Method::LindstromTurk];
+/// Methods worth a look beside each other: edges by quadrics, edges by volume, faces. More would make
+/// the page slow.
+const METHODS: [Method; 3] = [Method::Qem, Method::LindstromTurk, Method::LeeJang];

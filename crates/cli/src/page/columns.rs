@@ -5,7 +5,7 @@ use meshlod::measure::Distance;
 use crate::numbers::count;
 use crate::page::counts::Counts;
 use crate::page::descent::Level;
-use crate::page::figures::{digits, drift, seconds};
+use crate::page::figures::{digits, drift, power_of_ten, seconds};
 
 /// A figure that every level has, or may have.
 pub struct Column {
@@ -28,7 +28,7 @@ pub enum Best {
 }
 
 /// What levels are compared by.
-pub const COLUMNS: [Column; 10] = [
+pub const COLUMNS: [Column; 11] = [
     Column {
         head: "Faces",
         about: "",
@@ -70,6 +70,14 @@ pub const COLUMNS: [Column; 10] = [
         about: "Volume: its change in percent.",
         value: |input, level| level.volume_change(input),
         text: drift,
+        best: Some(Best::NearestZero),
+    },
+    Column {
+        head: "Sum",
+        about: "Sum: volume before less volume after, over all contractions with a closed ring, in \
+                cubic units.",
+        value: |_, level| Some(level.report.volume.running_sum),
+        text: power_of_ten,
         best: Some(Best::NearestZero),
     },
     Column {

@@ -39,11 +39,15 @@ pub fn digits(percent: f64) -> String {
 /// near tells methods that conserve from those that do not.
 pub fn drift(percent: f64) -> String {
     match percent.abs() {
-        0.0 => "0".into(),
-        size if size < 0.001 => format!("{percent:+.0e}"),
+        size if size < 0.001 => power_of_ten(percent),
         _ if percent < 0.0 => digits(percent),
         _ => format!("+{}", digits(percent)),
     }
+}
+
+/// A quantity with its sign of which only the size tells something.
+pub fn power_of_ten(number: f64) -> String {
+    if number == 0.0 { "0".into() } else { format!("{number:+.0e}") }
 }
 
 /// A time in milliseconds; from ten seconds on in seconds.

@@ -7,6 +7,7 @@ use crate::distance;
 use crate::page::counts::Counts;
 use crate::page::descent::Level;
 use crate::reduce::refusals_json;
+use crate::volume::unconserved_json;
 
 /// All of them; the volume's change is `null` where the input is open.
 pub fn level_json(level: &Level, input: &Counts) -> Value {
@@ -25,6 +26,8 @@ pub fn level_json(level: &Level, input: &Counts) -> Value {
         "area": level.counts.area,
         "volume": level.counts.volume,
         "volume_change_percent": level.volume_change(input),
+        "volume_running_sum": report.volume.running_sum,
+        "volume_not_conserved": unconserved_json(&report.volume),
         "quality_mean": level.quality.map(|quality| quality.mean),
         "quality_min": level.quality.map(|quality| quality.min),
         "flip": level.flip,

@@ -16,6 +16,7 @@ use crate::files;
 use crate::numbers::{count, faces, percent, value};
 use crate::reduce::{self, Engine, Reduced};
 use crate::session::Session;
+use crate::volume;
 use crate::within::Search;
 
 #[derive(Args)]
@@ -153,6 +154,8 @@ impl Simplify {
             json[key] = value.clone();
         }
         json["error_measured"] = done.measured.as_ref().map(distance::to_json).into();
+        json["volume_running_sum"] = report.volume.running_sum.into();
+        json["volume_not_conserved"] = volume::unconserved_json(&report.volume);
         json["simplify_seconds"] = time.as_secs_f64().into();
         json["degenerate_faces"] = report.degenerate_faces.into();
         json["duplicate_faces"] = report.duplicate_faces.into();
@@ -176,6 +179,9 @@ impl Simplify {
         text += &format!("error_estimate: {}\n", value(report.error_estimate));
         if let Some(distance) = &done.measured {
             text += &format!("error_measured:\n{}", distance::to_table(distance));
+        }
+        if let Some(line) = volume::unconserved_text(self.manner.method, &report.volume) {
+            text += &format!("{line}\n");
         }
         text + &reduce::seconds_line(time)
     }

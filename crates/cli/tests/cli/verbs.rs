@@ -151,6 +151,27 @@ fn measure_has_both_ways_and_the_seed_counts() {
 }
 
 #[test]
+fn what_became_of_the_volume_is_told() {
+    let run = Run::new();
+    run.sample("knot", 2_000, "closed.ply");
+    run.sample("terrain", 2_000, "open.ply");
+    let sum = |file, method| {
+        let report = run.json(&["simplify", file, "o.ply", "--ratio", "20%", "--method", method]);
+        let at_boundaries = &report["volume_not_conserved"]["at_boundaries"];
+        assert_eq!(at_boundaries["bounds"].is_object(), file == "open.ply", "{report}");
+        number(&report["volume_running_sum"]).abs()
+    };
+    assert!(sum("closed.ply", "lee-jang") < 1e-13 && sum("closed.ply", "qem") > 1e-5);
+    sum("open.ply", "lee-jang");
+    let says = |file, method| {
+        let done = run.run(&["simplify", file, "o.ply", "--ratio", "20%", "--method", method]);
+        done.text().contains("volume not conserved by")
+    };
+    assert_eq!([says("open.ply", "lee-jang"), says("open.ply", "qem")], [true, false]);
+    assert!(!says("closed.ply", "lee-jang"));
+}
+
+#[test]
 fn measure_tells_a_change_of_volume_to_the_last_bit() {
     let run = Run::new();
     let cube = |z: f64| {

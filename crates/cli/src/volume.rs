@@ -1,0 +1,59 @@
+//! What became of the volume on the way down: as JSON, as a line.
+
+use meshlod::Method;
+use meshlod::simplify::{Unconserved, VolumeLoss};
+use serde_json::{Value, json};
+
+use crate::numbers::{count, plural, value};
+
+/// What contractions did that could not choose their place by the volume, and where.
+pub fn unconserved_json(loss: &VolumeLoss) -> Value {
+    json!({ "at_boundaries": with_bounds(&loss.open), "held": with_bounds(&loss.held) })
+}
+
+fn with_bounds(some: &Unconserved) -> Value {
+    let bounds =
+        (some.contractions > 0).then(|| json!({ "min": some.bounds.min, "max": some.bounds.max }));
+    json!({ "contractions": some.contractions, "bounds": bounds })
+}
+
+/// What a method that conserves the volume could not conserve; nothing where there is no more to
+/// say than the method's name does.
+pub fn unconserved_text(method: Method, loss: &VolumeLoss) -> Option<String> {
+    let kinds = [(&loss.open, "at boundaries"), (&loss.held, "held by seams or locks")];
+    let some = kinds.iter().filter(|(some, _)| some.contractions > 0);
+    let texts: Vec<String> = some.map(|(some, what)| place(some, what)).collect();
+    (method.conserves_volume() && !texts.is_empty())
+        .then(|| format!("volume not conserved by {}", texts.join("; ")))
+}
+
+fn place(some: &Unconserved, what: &str) -> String {
+    let point = |point: [f64; 3]| point.map(value).join(" ");
+    format!(
+        "{} contraction{} {what}, between {} and {}",
+        count(some.contractions),
+        plural(some.contractions),
+        point(some.bounds.min),
+        point(some.bounds.max),
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use meshlod::mesh::Bounds;
+
+    use super::*;
+
+    #[test]
+    fn only_a_method_that_promises_to_conserve_says_where_it_could_not() {
+        let bounds = Bounds { min: [0.0, -1.0, 0.5], max: [1.0; 3] };
+        let loss =
+            VolumeLoss { held: Unconserved { contractions: 1, bounds }, ..VolumeLoss::default() };
+        let text = "volume not conserved by 1 contraction held by seams or locks, between 0 -1 0.5 \
+                    and 1 1 1";
+        assert_eq!(unconserved_text(Method::LeeJang, &loss).as_deref(), Some(text));
+        assert_eq!(unconserved_text(Method::Qem, &loss), None);
+        assert_eq!(unconserved_text(Method::LeeJang, &VolumeLoss::default()), None);
+        assert!(unconserved_json(&loss)["at_boundaries"]["bounds"].is_null());
+    }
+}
