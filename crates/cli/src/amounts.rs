@@ -111,6 +111,11 @@ pub fn length(text: &str) -> Result<f64, String> {
     }
 }
 
+/// What something counts, at least 0.
+pub fn weight(text: &str) -> Result<f64, String> {
+    length(text)
+}
+
 /// A whole number.
 pub fn whole(text: &str) -> Result<usize, String> {
     text.parse().map_err(|_| "it must be a whole number, at least 0".into())

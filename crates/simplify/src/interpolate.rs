@@ -90,9 +90,8 @@ pub(crate) fn interpolate(layers: &[Layer], place: &Place, out: &mut Vec<f32>) {
 fn direction(layer: &Layer, place: &Place, nearest: &[f32], out: &mut Vec<f32>) {
     let start = out.len();
     out.extend_from_slice(nearest);
-    let mut sum = [0.0; 3];
-    (0..layer.width.min(3)).for_each(|i| sum[i] = place.mean(layer, i));
-    if let Some(unit) = DVec3::from(sum).try_normalize() {
+    let sum = DVec3::from([0, 1, 2].map(|i| place.mean(layer, i)));
+    if let Some(unit) = sum.try_normalize() {
         let unit = unit.to_array();
         out[start..].iter_mut().zip(unit).for_each(|(value, x)| *value = x as f32);
     }

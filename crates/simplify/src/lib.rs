@@ -41,7 +41,7 @@ use meshlod_mesh::Mesh;
 pub use contracted::{Contracted, Freedom};
 pub use history::{Contraction, History, Rewind};
 pub use neighbourhood::{Dying, Neighbourhood, RingVertex, Spoke};
-pub use options::{Method, Options, Report, SimplifyError, Target};
+pub use options::{AttributeWeights, Method, Options, Report, SimplifyError, Target};
 pub use policy::Observe;
 pub use refusal::{Refusal, Refusals};
 pub use simplifier::Simplifier;

@@ -124,10 +124,48 @@ impl Target {
 pub struct Options {
     /// The algorithm.
     pub method: Method,
+    /// How much attributes count where the method counts them: `qem` and `qem-endpoint` do.
+    pub weights: AttributeWeights,
     /// Keep every vertex of a boundary edge where it is.
     pub lock_boundary: bool,
     /// One flag per vertex: keep it where it is. Empty for none.
     pub locked: Vec<bool>,
+}
+
+/// How much an error in an attribute counts against an error in distance; 0 not at all.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct AttributeWeights {
+    /// A normal that is off by one counts like this part of the diagonal.
+    pub normal: f64,
+    /// A texture that slides by a length counts like this part of that length.
+    pub uv: f64,
+    /// A colour that is off by one counts like this part of the diagonal.
+    pub color: f64,
+}
+
+impl Default for AttributeWeights {
+    fn default() -> Self {
+        Self::DEFAULT
+    }
+}
+
+impl AttributeWeights {
+    /// Those of [`Default`], where a constant is wanted.
+    pub const DEFAULT: Self = Self { normal: 0.01, uv: 0.3, color: 0.01 };
+
+    /// Attributes count for nothing: quadrics are those of the geometry alone.
+    pub const NONE: Self = Self { normal: 0.0, uv: 0.0, color: 0.0 };
+
+    fn all(&self) -> [f64; 3] {
+        [self.normal, self.uv, self.color]
+    }
+
+    pub(crate) fn validate(&self) -> Result<(), SimplifyError> {
+        match self.all().into_iter().find(|weight| !weight.is_finite() || *weight < 0.0) {
+            Some(weight) => Err(SimplifyError::BadWeight(weight)),
+            None => Ok(()),
+        }
+    }
 }
 
 /// Why a mesh cannot be simplified at all.
@@ -156,6 +194,9 @@ pub enum SimplifyError {
         /// The number of vertices.
         expected: usize,
     },
+    /// A weight that is no weight.
+    #[error("{0} is not a weight: give a number of at least 0")]
+    BadWeight(f64),
     /// A target that is no target.
     #[error("{0} is not a target: give a ratio between 0 and 1 or an error of at least 0")]
     BadTarget(f64),

@@ -46,6 +46,7 @@ impl<'m> Simplifier<'m> {
         if !options.locked.is_empty() && options.locked.len() != expected {
             return Err(SimplifyError::BadMask { found: options.locked.len(), expected });
         }
+        options.weights.validate()?;
         let (connectivity, duplicate_faces) = clean::connect(mesh);
         let degenerate_faces = connectivity.degenerate_faces() - duplicate_faces;
         if connectivity.edge_count() == 0 {
@@ -62,7 +63,7 @@ impl<'m> Simplifier<'m> {
             }
         }
         let input = Input { degenerate_faces, duplicate_faces, non_manifold_vertices };
-        let engine = methods::start(options.method, surface, connectivity);
+        let engine = methods::start(options, surface, connectivity);
         Ok(Self { mesh, engine, volume: VolumeLoss::default(), input })
     }
 

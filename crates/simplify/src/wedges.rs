@@ -46,6 +46,18 @@ impl Wedges {
         Some(Self { corners, layers, charts })
     }
 
+    /// The layers, of all wedges.
+    #[inline]
+    pub(crate) fn layers(&self) -> &[Layer] {
+        &self.layers
+    }
+
+    /// How many wedges there are, those that no face uses any more among them.
+    #[inline]
+    pub(crate) fn count(&self) -> usize {
+        self.charts.len()
+    }
+
     /// The wedge at a corner of a face.
     #[inline]
     pub(crate) fn at(&self, face: FaceId, corner: usize) -> WedgeId {

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 use std::time::Duration;
 
 use clap::Args;
+use meshlod::simplify::AttributeWeights;
 use meshlod::{Method, Options, Scene, Target, world_bounds};
 use serde_json::{Value, json};
 
@@ -67,11 +68,38 @@ pub struct Manner {
     /// Keep every vertex of a boundary edge where it is
     #[arg(long)]
     lock_boundary: bool,
+    #[command(flatten)]
+    weights: Weights,
+}
+
+const WEIGHTS: AttributeWeights = AttributeWeights::DEFAULT;
+
+/// What attributes count, where the method counts them: qem and qem-endpoint do.
+#[derive(Args)]
+struct Weights {
+    /// What a normal that is off by one counts, as a part of the diagonal; 0: nothing
+    #[arg(long, value_name = "W", default_value_t = WEIGHTS.normal, value_parser = amounts::weight,
+        allow_negative_numbers = true)]
+    weight_normal: f64,
+    /// What a texture that slides by a length counts, as a part of it; 0: nothing
+    #[arg(long, value_name = "W", default_value_t = WEIGHTS.uv, value_parser = amounts::weight,
+        allow_negative_numbers = true)]
+    weight_uv: f64,
+    /// What a colour that is off by one counts, as a part of the diagonal; 0: nothing
+    #[arg(long, value_name = "W", default_value_t = WEIGHTS.color, value_parser = amounts::weight,
+        allow_negative_numbers = true)]
+    weight_color: f64,
 }
 
 impl Manner {
     pub fn options(&self) -> Options {
-        Options { method: self.method, lock_boundary: self.lock_boundary, ..Options::default() }
+        let Weights { weight_normal, weight_uv, weight_color } = self.weights;
+        Options {
+            method: self.method,
+            weights: AttributeWeights { normal: weight_normal, uv: weight_uv, color: weight_color },
+            lock_boundary: self.lock_boundary,
+            ..Options::default()
+        }
     }
 }
 

@@ -1,5 +1,7 @@
 //! The methods as sets of policies: the table of the house.
 
+mod appearance;
+mod channels;
 mod creases;
 mod face_order;
 mod kim_jang;
@@ -16,35 +18,28 @@ use meshlod_mesh::Connectivity;
 
 use crate::candidates::{Edges, FacesAndEdges};
 use crate::engine::{Algorithm, Run};
+use crate::methods::appearance::{Appearance, Expectations};
+use crate::methods::channels::Channels;
 use crate::methods::creases::Creases;
 use crate::methods::face_order::FaceOrder;
 use crate::methods::kim_jang::Conserving;
 use crate::methods::lee_jang::Constriction;
 use crate::methods::lindstrom_turk::{Memoryless, Stars};
-use crate::methods::qem::{Endpoint, Optimal, Quadrics};
+use crate::methods::qem::{Endpoint, Optimal, Quadrics, Rule};
 use crate::methods::spr::Turn;
 use crate::methods::wu::WeightedMean;
-use crate::options::Method;
+use crate::options::{Method, Options};
 use crate::surface::Surface;
 
 /// Sets a method to work on a surface.
-pub(crate) fn start(method: Method, surface: Surface, connectivity: Connectivity) -> Box<dyn Run> {
-    let quadrics = || Quadrics::new(&surface, &connectivity);
-    match method {
-        Method::Qem => Algorithm {
-            candidates: Edges,
-            memory: quadrics(),
-            priority: Optimal,
-            placement: Optimal,
-        }
-        .start(surface, connectivity),
-        Method::QemEndpoint => Algorithm {
-            candidates: Edges,
-            memory: quadrics(),
-            priority: Endpoint,
-            placement: Endpoint,
-        }
-        .start(surface, connectivity),
+pub(crate) fn start(
+    options: &Options,
+    surface: Surface,
+    connectivity: Connectivity,
+) -> Box<dyn Run> {
+    match options.method {
+        Method::Qem => by_quadrics(options, Optimal, surface, connectivity),
+        Method::QemEndpoint => by_quadrics(options, Endpoint, surface, connectivity),
         Method::LindstromTurk => Algorithm {
             candidates: Edges,
             memory: Stars::new(&surface),
@@ -75,7 +70,7 @@ pub(crate) fn start(method: Method, surface: Surface, connectivity: Connectivity
         .start(surface, connectivity),
         Method::KimJang => Algorithm {
             candidates: Edges,
-            memory: quadrics(),
+            memory: Quadrics::new(&surface, &connectivity, ()),
             priority: Optimal,
             placement: Conserving,
         }
@@ -83,4 +78,32 @@ pub(crate) fn start(method: Method, surface: Surface, connectivity: Connectivity
         Method::Spr => Algorithm { candidates: Edges, memory: (), priority: Turn, placement: Turn }
             .start(surface, connectivity),
     }
+}
+
+/// Quadrics with attributes, where there are any that count.
+fn by_quadrics<R: Rule + Copy + 'static>(
+    options: &Options,
+    rule: R,
+    surface: Surface,
+    connectivity: Connectivity,
+) -> Box<dyn Run> {
+    let channels = Channels::new(&surface, &options.weights);
+    match (channels, &surface.wedges) {
+        (Some(channels), Some(wedges)) => {
+            let appearance = Expectations::new(&surface, wedges, channels);
+            with_appearance(appearance, rule, surface, connectivity)
+        }
+        _ => with_appearance((), rule, surface, connectivity),
+    }
+}
+
+fn with_appearance<A: Appearance + 'static, R: Rule + Copy + 'static>(
+    appearance: A,
+    rule: R,
+    surface: Surface,
+    connectivity: Connectivity,
+) -> Box<dyn Run> {
+    let memory = Quadrics::new(&surface, &connectivity, appearance);
+    Algorithm { candidates: Edges, memory, priority: rule, placement: rule }
+        .start(surface, connectivity)
 }

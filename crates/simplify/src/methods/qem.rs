@@ -12,6 +12,7 @@ use glam::DVec3;
 use meshlod_mesh::{Connectivity, FaceId, Side, Twin, VertexId};
 
 use crate::contracted::{Contracted, Freedom};
+use crate::methods::appearance::Appearance;
 use crate::methods::quadric::Quadric;
 use crate::neighbourhood::Neighbourhood;
 use crate::policy::{Memory, Placement, Priority};
@@ -46,11 +47,14 @@ const BOUNDARY_WEIGHT: f64 = 2.0;
 /// The weight of a seam's plane likewise.
 const SEAM_WEIGHT: f64 = 1.0;
 
-/// A quadric per vertex.
-pub(crate) struct Quadrics(Vec<Quadric>);
+/// A quadric per vertex, and what is known of attributes.
+pub(crate) struct Quadrics<A = ()> {
+    quadrics: Vec<Quadric>,
+    appearance: A,
+}
 
-impl Quadrics {
-    pub(crate) fn new(surface: &Surface, connectivity: &Connectivity) -> Self {
+impl<A> Quadrics<A> {
+    pub(crate) fn new(surface: &Surface, connectivity: &Connectivity, appearance: A) -> Self {
         let mut quadrics = vec![Quadric::default(); surface.vertex_count()];
         for f in 0..surface.face_count() {
             let face = FaceId(f as u32);
@@ -58,22 +62,22 @@ impl Quadrics {
                 add_face(&mut quadrics, surface, face, connectivity);
             }
         }
-        Self(quadrics)
+        Self { quadrics, appearance }
     }
 
     /// The sum of the contracted vertices' quadrics, seen from the first.
     #[inline]
     fn sum(&self, surface: &Surface, contracted: &Contracted) -> Quadric {
         let origin = surface.position(contracted[0]);
-        let mut sum = self.0[contracted[0].index()];
+        let mut sum = self.quadrics[contracted[0].index()];
         for &v in &contracted[1..] {
-            sum = sum + self.0[v.index()].seen_from(origin - surface.position(v));
+            sum = sum + self.quadrics[v.index()].seen_from(origin - surface.position(v));
         }
         sum
     }
 }
 
-impl Memory for Quadrics {
+impl<A: Appearance> Memory for Quadrics<A> {
     fn merge(&mut self, surface: &Surface, hood: &Neighbourhood, placed: &Placed) {
         let origin = surface.position(hood.contracted()[0]);
         let sum = self.sum(surface, hood.contracted());
@@ -83,7 +87,12 @@ impl Memory for Quadrics {
         if !hood.contracted().iter().any(fenced) {
             merged = merged * MEMORY + star(hood, placed.position) * (1.0 - MEMORY);
         }
-        self.0[hood.contracted()[placed.kept].index()] = merged;
+        self.quadrics[hood.contracted()[placed.kept].index()] = merged;
+        self.appearance.merge(surface, hood, placed);
+    }
+
+    fn renew(&mut self, surface: &Surface, hood: &Neighbourhood, placed: &Placed) {
+        self.appearance.renew(surface, hood, placed);
     }
 }
 
@@ -140,7 +149,7 @@ fn is_seam(surface: &Surface, side: Side, twin: Side) -> bool {
 }
 
 /// Where a rule of placement puts the vertex, and what that costs.
-struct Choice {
+pub(crate) struct Choice {
     /// From the first of the contracted.
     offset: DVec3,
     kept: usize,
@@ -148,77 +157,104 @@ struct Choice {
 }
 
 /// The optimum of the summed quadric, as priority and as placement.
+#[derive(Clone, Copy)]
 pub(crate) struct Optimal;
 
 /// The better end of the edge, as priority and as placement: no vertex ever moves.
+#[derive(Clone, Copy)]
 pub(crate) struct Endpoint;
 
-trait Rule: Sync {
-    fn choose(sum: &Quadric, surface: &Surface, of: &Contracted, freedom: Freedom) -> Choice;
+/// What a choice is made by.
+pub(crate) struct Sum<'a, A> {
+    /// Seen from the first of the contracted.
+    geometry: Quadric,
+    appearance: &'a A,
+    surface: &'a Surface,
+    of: &'a Contracted,
 }
 
-/// The place of one of the contracted.
-fn at(sum: &Quadric, surface: &Surface, of: &Contracted, kept: usize) -> Choice {
-    let offset = surface.position(of[kept]) - surface.position(of[0]);
-    Choice { offset, kept, cost: sum.at(offset) }
+impl<'a, A: Appearance> Sum<'a, A> {
+    #[inline]
+    fn new(memory: &'a Quadrics<A>, surface: &'a Surface, of: &'a Contracted) -> Self {
+        let geometry = memory.sum(surface, of);
+        Self { geometry, appearance: &memory.appearance, surface, of }
+    }
+
+    /// The place of one of the contracted.
+    #[inline]
+    fn at(&self, kept: usize) -> Choice {
+        let Self { geometry, surface, of, .. } = *self;
+        let offset = surface.position(of[kept]) - surface.position(of[0]);
+        let whole = self.appearance.staying(geometry, surface, of, kept);
+        Choice { offset, kept, cost: whole.at(offset) }
+    }
+}
+
+/// A rule of placement.
+pub(crate) trait Rule: Sync {
+    fn choose<A: Appearance>(sum: &Sum<'_, A>, freedom: Freedom) -> Choice;
 }
 
 impl Rule for Optimal {
     #[inline]
-    fn choose(sum: &Quadric, surface: &Surface, of: &Contracted, freedom: Freedom) -> Choice {
+    fn choose<A: Appearance>(sum: &Sum<'_, A>, freedom: Freedom) -> Choice {
         if let Freedom::At(kept) = freedom {
-            return at(sum, surface, of, kept);
+            return sum.at(kept);
         }
+        let Sum { geometry, surface, of, .. } = *sum;
         let origin = surface.position(of[0]);
         let middle =
             of.iter().map(|&v| surface.position(v) - origin).sum::<DVec3>() / of.len() as f64;
-        let offset = sum.optimum(middle, PULL);
-        Choice { offset, kept: 0, cost: sum.at(offset) }
+        let whole = sum.appearance.free(geometry, surface, of);
+        let offset = whole.optimum(middle, PULL);
+        Choice { offset, kept: 0, cost: whole.at(offset) }
     }
 }
 
 impl Rule for Endpoint {
     #[inline]
-    fn choose(sum: &Quadric, surface: &Surface, of: &Contracted, freedom: Freedom) -> Choice {
+    fn choose<A: Appearance>(sum: &Sum<'_, A>, freedom: Freedom) -> Choice {
         match freedom {
-            Freedom::At(kept) => at(sum, surface, of, kept),
-            Freedom::Free => (0..of.len())
-                .map(|kept| at(sum, surface, of, kept))
+            Freedom::At(kept) => sum.at(kept),
+            Freedom::Free => (0..sum.of.len())
+                .map(|kept| sum.at(kept))
                 .min_by(|a, b| a.cost.total_cmp(&b.cost))
                 .expect("a candidate has vertices"),
         }
     }
 }
 
-impl<R: Rule> Priority<Quadrics> for R {
+impl<R: Rule, A: Appearance> Priority<Quadrics<A>> for R {
     #[inline]
     fn cost(
         &self,
         surface: &Surface,
-        memory: &Quadrics,
+        memory: &Quadrics<A>,
         of: &Contracted,
         freedom: Freedom,
     ) -> Option<f64> {
-        let sum = memory.sum(surface, of);
+        let sum = Sum::new(memory, surface, of);
         let [from, to] = [of[0], of[of.len() - 1]].map(|v| surface.position(v));
-        let tie_break = SHORT_FIRST * sum.mean_of(from.distance_squared(to));
-        Some(R::choose(&sum, surface, of, freedom).cost + tie_break)
+        let tie_break = SHORT_FIRST * sum.geometry.mean_of(from.distance_squared(to));
+        Some(R::choose(&sum, freedom).cost + tie_break)
     }
 }
 
-impl<R: Rule> Placement<Quadrics> for R {
+impl<R: Rule, A: Appearance> Placement<Quadrics<A>> for R {
     fn place(
         &self,
         surface: &Surface,
-        memory: &Quadrics,
+        memory: &Quadrics<A>,
         hood: &Neighbourhood,
     ) -> Result<Placed, Refusal> {
-        let sum = memory.sum(surface, hood.contracted());
-        let choice = R::choose(&sum, surface, hood.contracted(), hood.freedom());
+        let sum = Sum::new(memory, surface, hood.contracted());
+        let choice = R::choose(&sum, hood.freedom());
         // An end keeps its position to the bit.
         let origin = surface.position(hood.contracted()[0]);
         let kept = surface.position(hood.contracted()[choice.kept]);
         let position = if choice.offset == kept - origin { kept } else { origin + choice.offset };
-        Ok(Placed { position, kept: choice.kept, error_estimate: sum.distance(choice.cost) })
+        // A length: attributes have no part in it.
+        let error_estimate = sum.geometry.distance(sum.geometry.at(choice.offset));
+        Ok(Placed { position, kept: choice.kept, error_estimate })
     }
 }

@@ -168,6 +168,20 @@ impl Quadric {
         Self { weight: 0.0, ..self }
     }
 
+    /// Adds the square of offset + slope·x, times `weight`, which counts for nothing in the mean.
+    #[inline]
+    pub(crate) fn add_linear(&mut self, slope: DVec3, offset: f64, weight: f64) {
+        self.a = self.a + Symmetric::outer(slope) * weight;
+        self.b += slope * (weight * offset);
+        self.c += weight * offset * offset;
+    }
+
+    /// The same function and a constant more.
+    #[inline]
+    pub(crate) fn raised(self, by: f64) -> Self {
+        Self { c: self.c + by, ..self }
+    }
+
     /// The same function, seen from an origin moved by `offset`.
     #[inline]
     pub(crate) fn seen_from(self, offset: DVec3) -> Self {

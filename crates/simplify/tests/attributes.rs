@@ -1,0 +1,224 @@
+//! What becomes of attributes.
+
+use meshlod_fixtures as fixtures;
+use meshlod_mesh::{Attributes, Layer, LayerKind, Mesh, VertexId, WedgeId, sample};
+use meshlod_simplify::{AttributeWeights, Method, Options, SimplifyError, Target, simplify};
+
+/// Gives every vertex one wedge, with these layers of its position.
+fn with_layers(mesh: Mesh, layers: &[(LayerKind, fn([f64; 3]) -> Vec<f32>)]) -> Mesh {
+    let layer = |&(kind, of): &(LayerKind, fn([f64; 3]) -> Vec<f32>)| Layer {
+        kind,
+        name: String::new(),
+        width: of([0.0; 3]).len(),
+        values: mesh.positions.iter().flat_map(|&p| of(p)).collect(),
+    };
+    let attributes = Attributes {
+        corners: mesh.faces.iter().map(|face| face.map(|v| WedgeId(v.0))).collect(),
+        wedge_count: mesh.positions.len(),
+        layers: layers.iter().map(layer).collect(),
+    };
+    Mesh { attributes: Some(attributes), ..mesh }
+}
+
+fn to(mesh: &Mesh, method: Method, ratio: f64) -> Mesh {
+    simplify(mesh, Target::Ratio(ratio), &Options { method, ..Options::default() }).unwrap().0
+}
+
+/// Every corner with its position and its values in a layer.
+fn corners(mesh: &Mesh, layer: usize) -> impl Iterator<Item = ([f64; 3], &[f32])> {
+    let attributes = mesh.attributes.as_ref().unwrap();
+    let wedges = attributes.corners.iter().flatten();
+    let positions = mesh.faces.iter().flatten().map(|v| mesh.positions[v.index()]);
+    positions.zip(wedges.map(move |&w| attributes.layers[layer].of(w)))
+}
+
+#[test]
+fn what_is_linear_on_a_flat_stays_so() {
+    let uv = |[x, y, _]: [f64; 3]| vec![(0.3 * x + 0.1 * y) as f32, (0.2 * y - 0.1 * x) as f32];
+    let other = |[x, y, _]: [f64; 3]| vec![(x - 2.0 * y + 5.0) as f32 / 16.0];
+    let flat =
+        with_layers(fixtures::grid(16), &[(LayerKind::Uv(0), uv), (LayerKind::Other, other)]);
+    for method in Method::ALL {
+        let level = to(&flat, method, 0.1);
+        assert!(level.faces.len() < 60, "{}", method.name());
+        for (layer, of) in [(0, uv as fn(_) -> _), (1, other)] {
+            for (p, found) in corners(&level, layer) {
+                let expected = of(p);
+                let off = found.iter().zip(&expected).map(|(a, b)| (a - b).abs());
+                assert!(off.fold(0.0, f32::max) < 1e-4, "{}: {p:?} {found:?}", method.name());
+            }
+        }
+    }
+}
+
+#[test]
+fn an_end_that_stays_keeps_its_values_to_the_bit() {
+    let of = |[x, y, z]: [f64; 3]| vec![(x * x).sin() as f32, (y + z * 7.0).cos() as f32];
+    let mesh = with_layers(sample::torus(1000), &[(LayerKind::Uv(0), of)]);
+    for method in [Method::QemEndpoint, Method::Spr] {
+        for (p, found) in corners(&to(&mesh, method, 0.1), 0) {
+            assert_eq!(found, of(p));
+        }
+    }
+}
+
+/// How much of a unit square's left half is dark in a mesh with grey levels, and of its right half.
+fn dark_halves(mesh: &Mesh) -> [f64; 2] {
+    let mut dark = [0.0; 2];
+    let attributes = mesh.attributes.as_ref().unwrap();
+    for (face, wedges) in mesh.faces.iter().zip(&attributes.corners) {
+        let [a, b, c] = mesh.triangle(*face);
+        let area = 0.5 * (b - a).cross(c - a).length();
+        let grey = wedges.map(|w| f64::from(attributes.layers[0].of(w)[0]));
+        let side = usize::from(a.x + b.x + c.x > 1.5);
+        dark[side] += 2.0 * area * (1.0 - grey.iter().sum::<f64>() / 3.0);
+    }
+    dark
+}
+
+#[test]
+fn an_edge_between_colours_is_kept_where_colours_count() {
+    let side = 24;
+    let mut square = fixtures::grid(side);
+    square.positions.iter_mut().flatten().for_each(|x| *x /= side as f64);
+    // Dark to the left of 0.52, across the grid's lines.
+    let of = |[x, y, _]: [f64; 3]| vec![f32::from(u8::from(x + 0.1 * y > 0.57)); 3];
+    let square = with_layers(square, &[(LayerKind::Color(0), of)]);
+    let off = |weights| {
+        let options = Options { weights, ..Options::default() };
+        let (level, report) = simplify(&square, Target::Faces(60), &options).unwrap();
+        assert!(report.reached);
+        let [before, after] = [&square, &level].map(dark_halves);
+        (before[0] - after[0]).abs() + (before[1] - after[1]).abs()
+    };
+    let (with, without) = (off(AttributeWeights::DEFAULT), off(AttributeWeights::NONE));
+    assert!(with < 0.05 && 2.5 * with < without, "{with} with colours, {without} without");
+}
+
+#[test]
+fn skin_weights_stay_one_in_all() {
+    let joints =
+        |[x, y, _]: [f64; 3]| vec![(x * 9.0).floor() as f32, (y * 7.0).floor() as f32, 98.0, 99.0];
+    let weights = |[x, y, _]: [f64; 3]| {
+        let [a, b] = [x.sin().abs() * 0.5, y.cos().abs() * 0.5].map(|w| w as f32);
+        vec![a, b, 1.0 - a - b, 0.0]
+    };
+    let mesh = with_layers(
+        sample::knot(2000),
+        &[(LayerKind::Joints(0), joints), (LayerKind::Weights(0), weights)],
+    );
+    for method in Method::ALL {
+        let level = to(&mesh, method, 0.1);
+        for (_, weights) in corners(&level, 1) {
+            assert!((weights.iter().sum::<f32>() - 1.0).abs() < 1e-5, "{weights:?}");
+        }
+        let known: Vec<f32> = corners(&mesh, 0).flat_map(|(_, joints)| joints).copied().collect();
+        assert!(corners(&level, 0).flat_map(|(_, joints)| joints).all(|j| known.contains(j)));
+    }
+}
+
+/// A tube around z whose texture goes around it once and meets itself along x = 1, y = 0.
+fn tube(around: u32, along: u32) -> Mesh {
+    let at = |i: u32, j: u32| VertexId(j * around + i % around);
+    // The last column of wedges is at the vertices of the first.
+    let wedge = |i: u32, j: u32| WedgeId(j * (around + 1) + i);
+    let mut mesh = Mesh::default();
+    let mut values = Vec::new();
+    for j in 0..=along {
+        for i in 0..=around {
+            let angle = f64::from(i % around) / f64::from(around) * std::f64::consts::TAU;
+            if i < around {
+                mesh.positions.push([angle.cos(), angle.sin(), f64::from(j) * 0.1]);
+            }
+            values.extend([i as f32 / around as f32, j as f32 / along as f32]);
+        }
+    }
+    let mut corners = Vec::new();
+    for (i, j) in (0..along).flat_map(|j| (0..around).map(move |i| (i, j))) {
+        let quad = [(i, j), (i + 1, j), (i + 1, j + 1), (i, j + 1)];
+        for triangle in [[0, 1, 2], [0, 2, 3]].map(|t| t.map(|k: usize| quad[k])) {
+            mesh.faces.push(triangle.map(|(i, j)| at(i, j)));
+            corners.push(triangle.map(|(i, j)| wedge(i, j)));
+        }
+    }
+    let wedge_count = ((around + 1) * (along + 1)) as usize;
+    let uv = Layer { kind: LayerKind::Uv(0), name: String::new(), width: 2, values };
+    mesh.attributes = Some(Attributes { corners, wedge_count, layers: vec![uv] });
+    mesh
+}
+
+#[test]
+fn a_texture_meets_itself_along_its_seam() {
+    let tube = tube(32, 20);
+    tube.validate().unwrap();
+    for method in Method::ALL {
+        let level = to(&tube, method, 0.1);
+        assert!(
+            level.faces.len() <= tube.faces.len() / 4,
+            "{}: {}",
+            method.name(),
+            level.faces.len()
+        );
+        let mut us = vec![Vec::new(); level.positions.len()];
+        let vertices = level.faces.iter().flatten();
+        for (v, (p, uv)) in vertices.zip(corners(&level, 0)) {
+            let turn = (p[1].atan2(p[0]) / std::f64::consts::TAU).rem_euclid(1.0);
+            let off = (turn - f64::from(uv[0]) + 0.5).rem_euclid(1.0) - 0.5;
+            assert!(off.abs() < 0.03, "{}: {p:?} {uv:?}", method.name());
+            us[v.index()].push(uv[0]);
+        }
+        // On the seam the texture begins and ends, and nowhere else has a vertex two places in it.
+        let seam: Vec<_> = us.iter().filter(|us| us.iter().any(|u| *u != us[0])).collect();
+        assert!(seam.len() >= 2, "{}", method.name());
+        let at_an_end = |u: &f32| *u < 0.03 || *u > 0.97;
+        assert!(seam.iter().all(|us| us.iter().all(at_an_end)), "{}: {seam:?}", method.name());
+    }
+}
+
+#[test]
+fn values_out_of_all_bounds_do_no_harm() {
+    let uv =
+        |[x, y, _]: [f64; 3]| vec![(x * 3e38) as f32, if y > 0.5 { f32::MAX } else { f32::MIN }];
+    let normal = |[x, y, _]: [f64; 3]| match () {
+        _ if x > 0.8 => vec![f32::NAN; 3],
+        _ if y > 0.8 => vec![f32::INFINITY; 3],
+        _ => vec![0.0; 3],
+    };
+    let mut mesh = sample::sphere(1000);
+    // Faces without area, and some that hardly have any.
+    for face in [3, 50, 400] {
+        let [a, b, _] = mesh.faces[face];
+        let [a, b] = [a, b].map(|v| v.index());
+        mesh.positions[b] = mesh.positions[a];
+        mesh.positions[b][2] += f64::MIN_POSITIVE;
+    }
+    let mesh = with_layers(mesh, &[(LayerKind::Uv(0), uv), (LayerKind::Normal, normal)]);
+    for method in Method::ALL {
+        let level = to(&mesh, method, 0.1);
+        level.validate().unwrap();
+        assert!(level.faces.len() < 500, "{} stops at {}", method.name(), level.faces.len());
+        assert!(corners(&level, 0).all(|(_, uv)| uv.iter().all(|x| x.is_finite())));
+    }
+}
+
+#[test]
+fn weights_are_numbers_of_at_least_0() {
+    for uv in [-1.0, f64::NAN, f64::INFINITY] {
+        let weights = AttributeWeights { uv, ..AttributeWeights::DEFAULT };
+        let options = Options { weights, ..Options::default() };
+        let refused = simplify(&sample::sphere(100), Target::Ratio(0.5), &options);
+        assert!(matches!(refused, Err(SimplifyError::BadWeight(_))));
+    }
+}
+
+#[test]
+fn attributes_that_count_for_nothing_change_no_position() {
+    let mesh = sample::fish(1000);
+    let bare = Mesh { attributes: None, ..mesh.clone() };
+    let options = Options { weights: AttributeWeights::NONE, ..Options::default() };
+    // Seams still do: compare where there are none.
+    let flat = with_layers(bare.clone(), &[(LayerKind::Color(0), |[x, ..]| vec![x as f32; 3])]);
+    let [with, without] =
+        [&flat, &bare].map(|mesh| simplify(mesh, Target::Ratio(0.1), &options).unwrap().0);
+    assert_eq!((with.positions, with.faces), (without.positions, without.faces));
+}
