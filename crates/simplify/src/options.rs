@@ -24,13 +24,15 @@ pub enum Method {
     Wu,
     /// Edges in the order of quadrics, with the volume conserved exactly [KJ04].
     KimJang,
+    /// Progressive meshes [Hop96]: the energy of samples, at its least for every contraction.
+    Pm,
     /// Simple polygon reduction [Mel98]: length times turn, onto vertices of the input.
     Spr,
 }
 
 impl Method {
     /// Every method.
-    pub const ALL: [Self; 8] = [
+    pub const ALL: [Self; 9] = [
         Self::Qem,
         Self::QemEndpoint,
         Self::LindstromTurk,
@@ -38,6 +40,7 @@ impl Method {
         Self::LeeJang,
         Self::Wu,
         Self::KimJang,
+        Self::Pm,
         Self::Spr,
     ];
 
@@ -51,16 +54,18 @@ impl Method {
             Self::LeeJang => "lee-jang",
             Self::Wu => "wu",
             Self::KimJang => "kim-jang",
+            Self::Pm => "pm",
             Self::Spr => "spr",
         }
     }
 
     /// With which power of a length its costs grow: those of quadrics are squared distances times
-    /// areas, those of swept volumes squared volumes.
+    /// areas, those of swept volumes squared volumes, those of samples squared distances.
     pub fn cost_power(self) -> i32 {
         match self {
             Self::Qem | Self::QemEndpoint | Self::KimJang => 4,
             Self::LindstromTurk | Self::LindstromTurkFaces => 6,
+            Self::Pm => 2,
             Self::LeeJang | Self::Wu | Self::Spr => 1,
         }
     }
@@ -70,7 +75,7 @@ impl Method {
     pub fn conserves_volume(self) -> bool {
         match self {
             Self::LindstromTurk | Self::LindstromTurkFaces | Self::LeeJang | Self::KimJang => true,
-            Self::Qem | Self::QemEndpoint | Self::Wu | Self::Spr => false,
+            Self::Qem | Self::QemEndpoint | Self::Wu | Self::Pm | Self::Spr => false,
         }
     }
 

@@ -4,12 +4,15 @@ mod appearance;
 mod channels;
 mod creases;
 mod face_order;
+mod fan;
 mod kim_jang;
 mod lee_jang;
 mod lindstrom_turk;
 mod outline;
+mod pm;
 mod qem;
 mod quadric;
+mod samples;
 mod spr;
 mod volume;
 mod wu;
@@ -25,7 +28,9 @@ use crate::methods::face_order::FaceOrder;
 use crate::methods::kim_jang::Conserving;
 use crate::methods::lee_jang::Constriction;
 use crate::methods::lindstrom_turk::{Memoryless, Stars};
+use crate::methods::pm::Energy;
 use crate::methods::qem::{Endpoint, Optimal, Quadrics, Rule};
+use crate::methods::samples::Samples;
 use crate::methods::spr::Turn;
 use crate::methods::wu::WeightedMean;
 use crate::options::{Method, Options};
@@ -73,6 +78,13 @@ pub(crate) fn start(
             memory: Quadrics::new(&surface, &connectivity, ()),
             priority: Optimal,
             placement: Conserving,
+        }
+        .start(surface, connectivity),
+        Method::Pm => Algorithm {
+            candidates: Edges,
+            memory: Samples::new(&surface, &connectivity),
+            priority: Energy,
+            placement: Energy,
         }
         .start(surface, connectivity),
         Method::Spr => Algorithm { candidates: Edges, memory: (), priority: Turn, placement: Turn }

@@ -135,7 +135,7 @@ fn add_face(
 }
 
 /// Whether the two faces of an edge use different charts at an end of it.
-fn is_seam(surface: &Surface, side: Side, twin: Side) -> bool {
+pub(super) fn is_seam(surface: &Surface, side: Side, twin: Side) -> bool {
     let Some(wedges) = &surface.wedges else { return false };
     let ends = |side: Side| [side.corner(), (side.corner() + 1) % 3];
     let vertex = |side: Side, k: usize| surface.face(side.face())[k];
