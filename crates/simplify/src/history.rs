@@ -1,14 +1,11 @@
 //! Every contraction written down, so that each can be undone exactly.
 
-use glam::DVec3;
-use meshlod_mesh::{FaceId, Mesh, VertexId, WedgeId};
+use meshlod_mesh::{FaceId, WedgeId};
 
 use crate::candidates::CandidateId;
 use crate::contracted::Contracted;
-use crate::level::level;
 use crate::neighbourhood::Neighbourhood;
 use crate::policy::Observe;
-use crate::simplifier::Simplifier;
 use crate::surface::{Placed, Surface};
 
 /// One contraction. Its lists run to the starts of the next one's.
@@ -31,7 +28,6 @@ pub struct Contraction {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Moved {
     pub(crate) corner: CandidateId,
-    pub(crate) vertex: VertexId,
     /// Its wedge before; any where the surface has none.
     pub(crate) wedge: WedgeId,
 }
@@ -47,6 +43,21 @@ pub struct History {
     values: Vec<f32>,
 }
 
+/// What the contractions' lists run through.
+pub(crate) struct Lists {
+    pub(crate) moved: Vec<Moved>,
+    pub(crate) died: Vec<FaceId>,
+    pub(crate) blended: Vec<WedgeId>,
+    pub(crate) values: Vec<f32>,
+}
+
+impl Contraction {
+    /// Where its moved corners, its dead faces and its blended wedges start.
+    pub(crate) fn starts(&self) -> [u32; 3] {
+        [self.moved, self.died, self.blended]
+    }
+}
+
 impl History {
     /// The contractions, first to last.
     pub fn contractions(&self) -> &[Contraction] {
@@ -57,6 +68,16 @@ impl History {
     pub fn died(&self, index: usize) -> &[FaceId] {
         let end = self.contractions.get(index + 1).map_or(self.died.len(), |c| c.died as usize);
         &self.died[self.contractions[index].died as usize..end]
+    }
+
+    /// How many faces went in all.
+    pub(crate) fn all_died(&self) -> usize {
+        self.died.len()
+    }
+
+    pub(crate) fn into_lists(self) -> Lists {
+        let Self { moved, died, blended, values, .. } = self;
+        Lists { moved, died, blended, values }
     }
 }
 
@@ -75,7 +96,6 @@ impl Observe for History {
         let moved = hood.spokes().iter().filter(|spoke| spoke.owner() != placed.kept);
         self.moved.extend(moved.map(|spoke| Moved {
             corner: CandidateId::side(spoke.face, spoke.corner()),
-            vertex: hood.contracted()[spoke.owner()],
             wedge: surface.wedges.as_ref().map_or(WedgeId(0), |w| w.at(spoke.face, spoke.corner())),
         }));
         self.died.extend(hood.dying().iter().map(|dying| dying.face));
@@ -84,101 +104,6 @@ impl Observe for History {
                 self.blended.push(wedge);
                 self.values.extend(wedges.values(wedge));
             }
-        }
-    }
-}
-
-/// A simplified mesh on its way back, one contraction at a time.
-pub struct Rewind<'m> {
-    mesh: &'m Mesh,
-    surface: Surface,
-    history: History,
-}
-
-impl<'m> Rewind<'m> {
-    /// Starts from where the simplifier is; `None` where the history has not observed all its
-    /// contractions.
-    pub fn new(simplifier: Simplifier<'m>, history: History) -> Option<Self> {
-        if simplifier.live_faces() + history.died.len() != simplifier.first_faces() {
-            return None;
-        }
-        let (mesh, surface) = simplifier.into_surface();
-        Some(Self { mesh, surface, history })
-    }
-
-    /// How many contractions are left to undo.
-    pub fn remaining(&self) -> usize {
-        self.history.contractions.len()
-    }
-
-    /// Undoes the last contraction; false when none is left.
-    pub fn undo(&mut self) -> bool {
-        let history = &mut self.history;
-        let Some(last) = history.contractions.pop() else { return false };
-        if let Some(wedges) = &mut self.surface.wedges {
-            // Backwards: a wedge that was blended twice gets its first value last.
-            for wedge in history.blended.drain(last.blended as usize..).rev() {
-                let start = history.values.len() - wedges.width();
-                wedges.restore(wedge, &history.values[start..]);
-                history.values.truncate(start);
-            }
-        }
-        let kept = last.contracted[last.kept as usize];
-        self.surface.expand(
-            (kept, DVec3::from(last.from)),
-            &history.moved[last.moved as usize..],
-            &history.died[last.died as usize..],
-        );
-        history.moved.truncate(last.moved as usize);
-        history.died.truncate(last.died as usize);
-        true
-    }
-
-    /// The mesh as it is now, as [`Simplifier::level`] gives it.
-    pub fn level(&self) -> Mesh {
-        level(self.mesh, &self.surface)
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use meshlod_mesh::sample;
-
-    use super::*;
-    use crate::{Method, Options, Target};
-
-    /// Goes down in steps, comes back, and meets every level again to the bit.
-    fn there_and_back(mesh: &Mesh, method: Method) {
-        let mut history = History::default();
-        let mut simplifier =
-            Simplifier::new(mesh, &Options { method, ..Options::default() }).unwrap();
-        let mut levels = vec![simplifier.level()];
-        for ratio in [0.8, 0.5, 0.2, 0.05] {
-            simplifier.run(Target::Ratio(ratio), &mut history).unwrap();
-            levels.push(simplifier.level());
-        }
-        let mut rewind = Rewind::new(simplifier, history).unwrap();
-        while let Some(level) = levels.pop() {
-            while rewind.level().faces.len() < level.faces.len() {
-                assert!(rewind.undo());
-            }
-            assert_eq!(rewind.level(), level);
-        }
-        assert_eq!(rewind.remaining(), 0);
-    }
-
-    #[test]
-    fn undoing_gives_every_level_back_to_the_bit() {
-        for method in Method::ALL {
-            there_and_back(&sample::torus(400), method);
-            there_and_back(&sample::terrain(400), method);
-        }
-    }
-
-    #[test]
-    fn undoing_gives_attributes_back_to_the_bit() {
-        for method in Method::ALL {
-            there_and_back(&sample::fish(500), method);
         }
     }
 }

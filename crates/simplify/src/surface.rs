@@ -8,7 +8,6 @@ use glam::DVec3;
 use meshlod_mesh::{Connectivity, FaceId, Mesh, VertexId};
 
 use crate::candidates::CandidateId;
-use crate::history::Moved;
 use crate::neighbourhood::Neighbourhood;
 use crate::wedges::Wedges;
 
@@ -306,26 +305,6 @@ impl Surface {
         }
         self.live_faces -= hood.dying.len();
         self.join(hood, kept, placed);
-    }
-
-    /// Takes a contraction back as far as positions and faces go: stars and flags stay as they are.
-    pub(crate) fn expand(
-        &mut self,
-        (kept, position): (VertexId, DVec3),
-        moved: &[Moved],
-        died: &[FaceId],
-    ) {
-        self.vertices[kept.index()].position = position;
-        for &Moved { corner, vertex, wedge } in moved {
-            self.faces[corner.face().index()].vertices[corner.slot()] = vertex;
-            if let Some(wedges) = &mut self.wedges {
-                wedges.set(corner.face(), corner.slot(), wedge);
-            }
-        }
-        for face in died {
-            self.faces[face.index()].alive = true;
-        }
-        self.live_faces += died.len();
     }
 
     /// Gives `kept` the surviving faces, the flags and a version above all the contracted.

@@ -1,0 +1,361 @@
+//! A progressive mesh as bytes: the base first, then the splits.
+//!
+//! Little-endian. `meshlodp`, version and checksum; counts; the arrays of the mesh as its base has
+//! them, with what is gone as it was last; the splits, and then their lists. Nothing is reserved that
+//! the bytes at hand do not hold, and what is read has been refined once to see that it can be.
+
+use meshlod_mesh::{
+    Attributes, FaceId, Labels, Layer, LayerKind, Mesh, MeshError, VertexId, WedgeId,
+};
+use thiserror::Error;
+
+use super::check::check;
+use super::{Progressive, Split, Splits};
+use crate::candidates::CandidateId;
+
+const MAGIC: &[u8; 8] = b"meshlodp";
+const VERSION: u32 = 1;
+/// Where the checksum is, and what it is of starts.
+const CHECKSUM: usize = 12;
+const BODY: usize = 20;
+
+/// Why bytes are not a progressive mesh.
+#[derive(Clone, Debug, Error, PartialEq)]
+pub enum ProgressiveError {
+    /// They start otherwise.
+    #[error("this is no progressive mesh: it does not start with \"meshlodp\"")]
+    Magic,
+    /// They were written by a later version.
+    #[error("version {0} of progressive meshes; this program reads version 1")]
+    Version(u32),
+    /// They are not what was written.
+    #[error("the checksum is wrong: the file is damaged")]
+    Checksum,
+    /// They end too early.
+    #[error("byte {at}: {what} would go on past the end")]
+    Truncated {
+        /// Where what is cut off starts.
+        at: usize,
+        /// What is cut off.
+        what: &'static str,
+    },
+    /// They go on.
+    #[error("byte {at}: the mesh is over, the file goes on")]
+    Rest {
+        /// Where it should end.
+        at: usize,
+    },
+    /// Something in them cannot be.
+    #[error("{what} {index} cannot be: {why}")]
+    Bad {
+        /// A split, a layer, a name.
+        what: &'static str,
+        /// Its number.
+        index: usize,
+        /// What is wrong with it.
+        why: &'static str,
+    },
+    /// The base is not a mesh.
+    #[error(transparent)]
+    Mesh(#[from] MeshError),
+}
+
+impl Progressive {
+    /// All levels as bytes, whichever is at hand: read again, it is the base.
+    pub fn to_bytes(&self) -> Vec<u8> {
+        let mut base = self.clone();
+        while base.coarsen() {}
+        let mut out = Vec::new();
+        out.extend_from_slice(MAGIC);
+        out.extend_from_slice(&VERSION.to_le_bytes());
+        out.extend_from_slice(&[0; BODY - CHECKSUM]);
+        let Self { mesh, alive, splits, .. } = &base;
+        let wedges = mesh.attributes.as_ref().map_or(0, |a| a.wedge_count + 1);
+        for count in [mesh.positions.len(), mesh.faces.len(), wedges, splits.splits.len()] {
+            put(&mut out, count as u32);
+        }
+        mesh.positions.iter().flatten().for_each(|x| out.extend_from_slice(&x.to_le_bytes()));
+        mesh.faces.iter().flatten().for_each(|v| put(&mut out, v.0));
+        out.extend(alive.iter().map(|&alive| u8::from(alive)));
+        put_attributes(&mut out, mesh.attributes.as_ref());
+        put_labels(&mut out, mesh.materials.as_ref());
+        put_labels(&mut out, mesh.objects.as_ref());
+        put_splits(&mut out, splits);
+        seal(&mut out);
+        out
+    }
+
+    /// The levels that [`Self::to_bytes`] wrote; the base is at hand.
+    ///
+    /// Takes any bytes. Every level of what is given back is a valid mesh.
+    ///
+    /// # Errors
+    /// Bytes that are something else, cut, damaged, or made to mislead.
+    pub fn from_bytes(bytes: &[u8]) -> Result<Self, ProgressiveError> {
+        if !bytes.starts_with(MAGIC) {
+            return Err(ProgressiveError::Magic);
+        }
+        let mut input = Input { bytes, at: MAGIC.len() };
+        let version = input.number("the version")?;
+        if version != VERSION {
+            return Err(ProgressiveError::Version(version));
+        }
+        let sum = u64::from_le_bytes(input.array("the checksum")?);
+        if sum != checksum(&bytes[BODY..]) {
+            return Err(ProgressiveError::Checksum);
+        }
+        let mut counts = [0; 4];
+        for count in &mut counts {
+            *count = input.number("the counts")? as usize;
+        }
+        let [vertices, faces, wedges, splits] = counts;
+        let positions = input.doubles(vertices)?;
+        let faces_of: Vec<_> = input.triples(faces, "a face")?;
+        let alive: Vec<bool> =
+            input.take(faces, "the live faces")?.iter().map(|&b| b != 0).collect();
+        let mesh = Mesh {
+            positions,
+            faces: faces_of.into_iter().map(|face| face.map(VertexId)).collect(),
+            attributes: wedges.checked_sub(1).map(|n| input.attributes(n, faces)).transpose()?,
+            materials: input.labels(faces)?,
+            objects: input.labels(faces)?,
+        };
+        let splits = input.splits(splits, mesh.attributes.as_ref())?;
+        if input.at != bytes.len() {
+            return Err(ProgressiveError::Rest { at: input.at });
+        }
+        let live_faces = alive.iter().filter(|&&alive| alive).count();
+        let coarsened = splits.splits.len();
+        let mut read = Self { mesh, alive, live_faces, splits, coarsened };
+        check(&mut read)?;
+        Ok(read)
+    }
+}
+
+/// Writes the checksum of what stands there.
+pub(super) fn seal(bytes: &mut [u8]) {
+    let sum = checksum(&bytes[BODY..]);
+    bytes[CHECKSUM..BODY].copy_from_slice(&sum.to_le_bytes());
+}
+
+/// FNV-1a, eight bytes at a time: against damage, not against malice.
+fn checksum(bytes: &[u8]) -> u64 {
+    let (words, rest) = bytes.as_chunks::<8>();
+    let words = words.iter().map(|&word| u64::from_le_bytes(word));
+    let rest = rest.iter().map(|&byte| u64::from(byte));
+    words.chain(rest).fold(0xCBF2_9CE4_8422_2325, |sum, word| {
+        (sum ^ word).wrapping_mul(0x0000_0100_0000_01B3).rotate_left(29)
+    })
+}
+
+fn put(out: &mut Vec<u8>, number: u32) {
+    out.extend_from_slice(&number.to_le_bytes());
+}
+
+fn put_text(out: &mut Vec<u8>, text: &str) {
+    put(out, text.len() as u32);
+    out.extend_from_slice(text.as_bytes());
+}
+
+fn put_floats(out: &mut Vec<u8>, values: &[f32]) {
+    values.iter().for_each(|x| out.extend_from_slice(&x.to_le_bytes()));
+}
+
+fn put_attributes(out: &mut Vec<u8>, attributes: Option<&Attributes>) {
+    let Some(attributes) = attributes else { return };
+    attributes.corners.iter().flatten().for_each(|w| put(out, w.0));
+    put(out, attributes.layers.len() as u32);
+    for layer in &attributes.layers {
+        out.extend_from_slice(&code(layer.kind));
+        put_text(out, &layer.name);
+        put(out, layer.width as u32);
+        put_floats(out, &layer.values);
+    }
+}
+
+fn put_labels(out: &mut Vec<u8>, labels: Option<&Labels>) {
+    put(out, labels.map_or(0, |labels| labels.names.len() as u32 + 1));
+    if let Some(labels) = labels {
+        labels.names.iter().for_each(|name| put_text(out, name));
+        labels.of_face.iter().for_each(|&label| put(out, label));
+    }
+}
+
+fn put_splits(out: &mut Vec<u8>, splits: &Splits) {
+    for (i, split) in splits.splits.iter().enumerate() {
+        put(out, split.kept.0);
+        put(out, split.removed.0);
+        split.position.iter().for_each(|x| out.extend_from_slice(&x.to_le_bytes()));
+        for list in [splits.moved_range(i), splits.died_range(i), splits.blended_range(i)] {
+            put(out, list.len() as u32);
+        }
+    }
+    splits.moved.iter().for_each(|corner| put(out, corner.0));
+    splits.wedges.iter().for_each(|wedge| put(out, wedge.0));
+    splits.died.iter().for_each(|face| put(out, face.0));
+    splits.blended.iter().for_each(|wedge| put(out, wedge.0));
+    put_floats(out, &splits.values);
+}
+
+/// A kind of layer, and its set.
+fn code(kind: LayerKind) -> [u8; 2] {
+    match kind {
+        LayerKind::Normal => [0, 0],
+        LayerKind::Uv(set) => [1, set],
+        LayerKind::Color(set) => [2, set],
+        LayerKind::Tangent => [3, 0],
+        LayerKind::Joints(set) => [4, set],
+        LayerKind::Weights(set) => [5, set],
+        LayerKind::Other => [6, 0],
+    }
+}
+
+fn kind([code, set]: [u8; 2]) -> Option<LayerKind> {
+    Some(match code {
+        0 => LayerKind::Normal,
+        1 => LayerKind::Uv(set),
+        2 => LayerKind::Color(set),
+        3 => LayerKind::Tangent,
+        4 => LayerKind::Joints(set),
+        5 => LayerKind::Weights(set),
+        6 => LayerKind::Other,
+        _ => return None,
+    })
+}
+
+/// Bytes and how far they are read.
+struct Input<'b> {
+    bytes: &'b [u8],
+    at: usize,
+}
+
+impl<'b> Input<'b> {
+    fn take(&mut self, count: usize, what: &'static str) -> Result<&'b [u8], ProgressiveError> {
+        let end = self.at.checked_add(count).filter(|&end| end <= self.bytes.len());
+        let end = end.ok_or(ProgressiveError::Truncated { at: self.at, what })?;
+        let taken = &self.bytes[self.at..end];
+        self.at = end;
+        Ok(taken)
+    }
+
+    fn array<const N: usize>(&mut self, what: &'static str) -> Result<[u8; N], ProgressiveError> {
+        Ok(self.arrays::<N>(1, what)?[0])
+    }
+
+    fn arrays<const N: usize>(
+        &mut self,
+        count: usize,
+        what: &'static str,
+    ) -> Result<&'b [[u8; N]], ProgressiveError> {
+        let size = count.checked_mul(N).ok_or(ProgressiveError::Truncated { at: self.at, what })?;
+        Ok(self.take(size, what)?.as_chunks().0)
+    }
+
+    fn number(&mut self, what: &'static str) -> Result<u32, ProgressiveError> {
+        Ok(u32::from_le_bytes(self.array(what)?))
+    }
+
+    fn numbers(&mut self, count: usize, what: &'static str) -> Result<Vec<u32>, ProgressiveError> {
+        Ok(self.arrays(count, what)?.iter().map(|&bytes| u32::from_le_bytes(bytes)).collect())
+    }
+
+    fn triples(
+        &mut self,
+        count: usize,
+        what: &'static str,
+    ) -> Result<Vec<[u32; 3]>, ProgressiveError> {
+        let triple = |bytes: &[u8; 12]| {
+            let parts = bytes.as_chunks::<4>().0;
+            [parts[0], parts[1], parts[2]].map(u32::from_le_bytes)
+        };
+        Ok(self.arrays(count, what)?.iter().map(triple).collect())
+    }
+
+    fn doubles(&mut self, count: usize) -> Result<Vec<[f64; 3]>, ProgressiveError> {
+        let triple = |bytes: &[u8; 24]| {
+            let parts = bytes.as_chunks::<8>().0;
+            [parts[0], parts[1], parts[2]].map(f64::from_le_bytes)
+        };
+        Ok(self.arrays(count, "a position")?.iter().map(triple).collect())
+    }
+
+    fn floats(&mut self, count: usize, what: &'static str) -> Result<Vec<f32>, ProgressiveError> {
+        Ok(self.arrays(count, what)?.iter().map(|&bytes| f32::from_le_bytes(bytes)).collect())
+    }
+
+    fn text(&mut self, index: usize) -> Result<String, ProgressiveError> {
+        let length = self.number("a name")? as usize;
+        let text = str::from_utf8(self.take(length, "a name")?);
+        let bad = |_| ProgressiveError::Bad { what: "name", index, why: "it is not UTF-8" };
+        text.map(str::to_owned).map_err(bad)
+    }
+
+    fn attributes(
+        &mut self,
+        wedge_count: usize,
+        faces: usize,
+    ) -> Result<Attributes, ProgressiveError> {
+        let corners = self.triples(faces, "the wedges of a face")?;
+        let layers = (0..self.number("the layers")? as usize).map(|i| self.layer(i, wedge_count));
+        Ok(Attributes {
+            layers: layers.collect::<Result<_, _>>()?,
+            corners: corners.into_iter().map(|face| face.map(WedgeId)).collect(),
+            wedge_count,
+        })
+    }
+
+    fn layer(&mut self, index: usize, wedges: usize) -> Result<Layer, ProgressiveError> {
+        let bad = |why| ProgressiveError::Bad { what: "layer", index, why };
+        let kind = kind(self.array("a layer")?).ok_or(bad("there is no such kind"))?;
+        let name = self.text(index)?;
+        let width = self.number("a layer")? as usize;
+        let count = width.checked_mul(wedges).ok_or(bad("it has too many values"))?;
+        Ok(Layer { kind, name, width, values: self.floats(count, "a layer's values")? })
+    }
+
+    fn labels(&mut self, faces: usize) -> Result<Option<Labels>, ProgressiveError> {
+        let Some(count) = self.number("the names")?.checked_sub(1) else { return Ok(None) };
+        let names = (0..count as usize).map(|i| self.text(i)).collect::<Result<_, _>>()?;
+        Ok(Some(Labels { names, of_face: self.numbers(faces, "the labels")? }))
+    }
+
+    fn splits(
+        &mut self,
+        count: usize,
+        attributes: Option<&Attributes>,
+    ) -> Result<Splits, ProgressiveError> {
+        let records = self.arrays::<44>(count, "a split")?;
+        let (mut splits, mut starts) = (Vec::with_capacity(count), [0u32; 3]);
+        for (index, record) in records.iter().enumerate() {
+            let mut record = Input { bytes: record, at: 0 };
+            let [kept, removed] = [record.number("a split")?, record.number("a split")?];
+            let position = record.doubles(1)?[0];
+            let [moved, died, blended] = starts;
+            splits.push(Split {
+                kept: VertexId(kept),
+                removed: VertexId(removed),
+                position,
+                moved,
+                died,
+                blended,
+            });
+            for start in &mut starts {
+                let sum = start.checked_add(record.number("a split")?);
+                let why = "its lists are too long";
+                *start = sum.ok_or(ProgressiveError::Bad { what: "split", index, why })?;
+            }
+        }
+        let [moved, died, blended] = starts.map(|end| end as usize);
+        let width = attributes.map_or(0, |a| a.layers.iter().map(|layer| layer.width).sum());
+        let own = if attributes.is_some() { moved } else { 0 };
+        let values = blended.checked_mul(width).unwrap_or(usize::MAX);
+        Ok(Splits {
+            splits,
+            moved: self.numbers(moved, "moved corners")?.into_iter().map(CandidateId).collect(),
+            wedges: self.numbers(own, "wedges of corners")?.into_iter().map(WedgeId).collect(),
+            died: self.numbers(died, "new faces")?.into_iter().map(FaceId).collect(),
+            blended: self.numbers(blended, "blended wedges")?.into_iter().map(WedgeId).collect(),
+            values: self.floats(values, "blended values")?,
+        })
+    }
+}

@@ -1,0 +1,158 @@
+//! Whether splits that were read can be made, and give meshes.
+
+use meshlod_mesh::{FaceId, MeshError, VertexId, WedgeId};
+
+use super::{Progressive, ProgressiveError};
+
+/// Refines the base to the finest level and comes back, looking at every split before it is made.
+///
+/// Cost: linear.
+pub(super) fn check(read: &mut Progressive) -> Result<(), ProgressiveError> {
+    ranges(read)?;
+    read.level().validate()?;
+    let mut homes = Homes::new(read);
+    for index in (0..read.len()).rev() {
+        fits(read, index)
+            .and_then(|()| homes.refine(read, index))
+            .map_err(|why| ProgressiveError::Bad { what: "split", index, why })?;
+    }
+    // What a face is labelled with never changes.
+    read.level().validate()?;
+    while read.coarsen() {}
+    Ok(())
+}
+
+/// Everything that is an index is one, also of what is gone; every position is finite.
+fn ranges(read: &Progressive) -> Result<(), ProgressiveError> {
+    let (mesh, splits) = (&read.mesh, &read.splits);
+    let count = mesh.positions.len();
+    if let Some(v) = mesh.positions.iter().position(|p| !p.iter().all(|x| x.is_finite())) {
+        let (vertex, position) = (VertexId::new(v), mesh.positions[v]);
+        return Err(MeshError::NotFinite { vertex, position }.into());
+    }
+    for (f, face) in mesh.faces.iter().enumerate() {
+        if let Some(&vertex) = face.iter().find(|v| v.index() >= count) {
+            return Err(MeshError::BadVertex { face: FaceId::new(f), vertex, count }.into());
+        }
+    }
+    let wedges = mesh.attributes.as_ref().map_or(0, |attributes| attributes.wedge_count);
+    let corners = mesh.attributes.iter().flat_map(|attributes| &attributes.corners);
+    for (f, corners) in corners.enumerate() {
+        if let Some(wedge) = corners.iter().find(|w| w.index() >= wedges) {
+            let (face, wedge) = (FaceId::new(f), wedge.0);
+            return Err(MeshError::BadWedge { face, wedge, count: wedges }.into());
+        }
+    }
+    let bad = |index, why| Err(ProgressiveError::Bad { what: "split", index, why });
+    for (index, split) in splits.splits.iter().enumerate() {
+        let ends = [split.kept, split.removed];
+        if ends.iter().any(|v| v.index() >= count) || split.kept == split.removed {
+            return bad(index, "its ends are no two vertices");
+        }
+        if !split.position.iter().all(|x| x.is_finite()) {
+            return bad(index, "its position is not finite");
+        }
+        let is_face = |face: FaceId| face.index() < mesh.faces.len();
+        let corners = &splits.moved[splits.moved_range(index)];
+        if !corners.iter().all(|corner| is_face(corner.face()) && corner.slot() < 3) {
+            return bad(index, "it moves a corner that is not there");
+        }
+        if !splits.died[splits.died_range(index)].iter().all(|&face| is_face(face)) {
+            return bad(index, "it has a face that is not there");
+        }
+        if splits.blended[splits.blended_range(index)].iter().any(|w| w.index() >= wedges) {
+            return bad(index, "it blends a wedge that is not there");
+        }
+    }
+    match splits.wedges.iter().position(|w| w.index() >= wedges) {
+        Some(corner) => Err(ProgressiveError::Bad {
+            what: "moved corner",
+            index: corner,
+            why: "its wedge is not there",
+        }),
+        None => Ok(()),
+    }
+}
+
+/// Whether a split's corners are at the vertex that it splits, and its faces are yet to come.
+fn fits(read: &Progressive, index: usize) -> Result<(), &'static str> {
+    let (mesh, splits) = (&read.mesh, &read.splits);
+    let kept = splits.splits[index].kept;
+    let corners = &splits.moved[splits.moved_range(index)];
+    let died = &splits.died[splits.died_range(index)];
+    if corners.len() > MOST || died.len() > MOST {
+        return Err("it is larger than any contraction");
+    }
+    for (i, corner) in corners.iter().enumerate() {
+        let face = corner.face().index();
+        if !read.alive[face] || mesh.faces[face][corner.slot()] != kept {
+            return Err("it moves a corner that is elsewhere");
+        }
+        if corners[..i].contains(corner) {
+            return Err("it moves a corner twice");
+        }
+    }
+    for (i, face) in died.iter().enumerate() {
+        if read.alive[face.index()] || died[..i].contains(face) {
+            return Err("it brings a face that is there");
+        }
+    }
+    Ok(())
+}
+
+/// More corners or faces than any contraction is allowed to look at.
+const MOST: usize = 256;
+
+/// The vertex of every wedge, and how many corners use it: a wedge belongs to one vertex.
+struct Homes(Vec<(VertexId, u32)>);
+
+impl Homes {
+    /// Those of the base, which is a valid mesh.
+    fn new(read: &Progressive) -> Self {
+        let wedges = read.mesh.attributes.as_ref().map_or(0, |a| a.wedge_count);
+        let mut this = Self(vec![(VertexId(0), 0); wedges]);
+        for face in (0..read.alive.len()).filter(|&face| read.alive[face]) {
+            for slot in 0..3 {
+                // Of a valid mesh none is refused.
+                let _ = this.enter(read, face, slot);
+            }
+        }
+        this
+    }
+
+    /// Makes a split that fits.
+    fn refine(&mut self, read: &mut Progressive, index: usize) -> Result<(), &'static str> {
+        let corners = read.splits.moved_range(index);
+        for i in corners.clone() {
+            let corner = read.splits.moved[i];
+            if let Some(wedge) = wedge(read, corner.face().index(), corner.slot()) {
+                self.0[wedge.index()].1 -= 1;
+            }
+        }
+        read.refine();
+        for i in corners {
+            let corner = read.splits.moved[i];
+            self.enter(read, corner.face().index(), corner.slot())?;
+        }
+        for i in read.splits.died_range(index) {
+            let face = read.splits.died[i].index();
+            (0..3).try_for_each(|slot| self.enter(read, face, slot))?;
+        }
+        Ok(())
+    }
+
+    fn enter(&mut self, read: &Progressive, face: usize, slot: usize) -> Result<(), &'static str> {
+        let Some(wedge) = wedge(read, face, slot) else { return Ok(()) };
+        let vertex = read.mesh.faces[face][slot];
+        let (home, uses) = &mut self.0[wedge.index()];
+        if *uses == 0 {
+            *home = vertex;
+        }
+        *uses += 1;
+        if *home == vertex { Ok(()) } else { Err("a wedge would be at two vertices") }
+    }
+}
+
+fn wedge(read: &Progressive, face: usize, slot: usize) -> Option<WedgeId> {
+    read.mesh.attributes.as_ref().map(|attributes| attributes.corners[face][slot])
+}

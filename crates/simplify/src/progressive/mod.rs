@@ -1,0 +1,251 @@
+//! A progressive mesh [Hop96]: a base mesh and the splits that refine it, up and down at will.
+//!
+//! What a contraction changed and how it was before are swapped at every step, so that one record
+//! leads both ways, and every level comes back to the bit.
+
+mod bytes;
+mod check;
+
+use meshlod_mesh::{Attributes, FaceId, Mesh, VertexId, WedgeId};
+
+pub use bytes::ProgressiveError;
+
+use crate::candidates::CandidateId;
+use crate::history::History;
+use crate::simplifier::Simplifier;
+use crate::surface::Surface;
+
+/// All levels of a run of a [`Simplifier`], by any method; one of them is at hand.
+///
+/// Its levels are those that [`Simplifier::level`] gave on the way, to the bit: positions,
+/// attributes, materials, and the order of all. The finest is the input without unused vertices and
+/// without the faces that the simplifier left out; a wedge that two materials shared is two.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Progressive {
+    /// All that the input had, as it is now; what is gone, as it was last.
+    mesh: Mesh,
+    alive: Vec<bool>,
+    live_faces: usize,
+    splits: Splits,
+    /// How many splits are undone; they are in the order of the contractions.
+    coarsened: usize,
+}
+
+/// All splits, in the order of the contractions that they undo.
+#[derive(Clone, Debug, Default, PartialEq)]
+struct Splits {
+    splits: Vec<Split>,
+    /// The face corners that go from one end to the other.
+    moved: Vec<CandidateId>,
+    /// Their wedges on the other side of the split; none without attributes.
+    wedges: Vec<WedgeId>,
+    died: Vec<FaceId>,
+    /// The wedges whose values change.
+    blended: Vec<WedgeId>,
+    /// Their values on the other side of the split, all layers of one after the other.
+    values: Vec<f32>,
+}
+
+/// One split. Its lists run to the starts of the next one's.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Split {
+    kept: VertexId,
+    removed: VertexId,
+    /// Where the kept one is on the other side of the split.
+    position: [f64; 3],
+    moved: u32,
+    died: u32,
+    blended: u32,
+}
+
+impl Progressive {
+    /// The levels from the input to where the simplifier is, which is the one at hand; `None` where
+    /// the history has not observed all its contractions.
+    pub fn new(simplifier: Simplifier<'_>, history: History) -> Option<Self> {
+        if simplifier.live_faces() + history.all_died() != simplifier.first_faces() {
+            return None;
+        }
+        let (mesh, surface) = simplifier.into_surface();
+        let attributes = mesh.attributes.is_some();
+        let splits = Splits::new(history, attributes);
+        Some(Self {
+            mesh: workspace(mesh, &surface),
+            alive: (0..mesh.faces.len()).map(|f| surface.is_alive(FaceId::new(f))).collect(),
+            live_faces: surface.live_faces(),
+            coarsened: splits.splits.len(),
+            splits,
+        })
+    }
+
+    /// How many faces the level at hand has.
+    pub fn live_faces(&self) -> usize {
+        self.live_faces
+    }
+
+    /// How many faces the finest level has.
+    pub fn full_faces(&self) -> usize {
+        let undone = &self.splits.splits[self.coarsened..];
+        let to_come = undone.first().map_or(0, |s| self.splits.died.len() - s.died as usize);
+        // Faces that died by splits not yet refined are missing; those refined are alive.
+        self.live_faces + self.splits.died.len() - to_come
+    }
+
+    /// How many splits there are in all.
+    pub fn len(&self) -> usize {
+        self.splits.splits.len()
+    }
+
+    /// Whether there is only one level.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// One split towards the finest level; false there.
+    pub fn refine(&mut self) -> bool {
+        let Some(last) = self.coarsened.checked_sub(1) else { return false };
+        self.coarsened = last;
+        let split = self.splits.splits[last];
+        self.swap(last, split.removed);
+        for &face in &self.splits.died[self.splits.died_range(last)] {
+            self.alive[face.index()] = true;
+            self.live_faces += 1;
+        }
+        true
+    }
+
+    /// One contraction towards the base; false there.
+    pub fn coarsen(&mut self) -> bool {
+        let Some(&split) = self.splits.splits.get(self.coarsened) else { return false };
+        self.swap(self.coarsened, split.kept);
+        for &face in &self.splits.died[self.splits.died_range(self.coarsened)] {
+            self.alive[face.index()] = false;
+            self.live_faces -= 1;
+        }
+        self.coarsened += 1;
+        true
+    }
+
+    /// Goes to the finest level of at most so many faces, or to the base.
+    pub fn go_to(&mut self, faces: usize) {
+        while self.live_faces > faces && self.coarsen() {}
+        while let Some(last) = self.coarsened.checked_sub(1) {
+            if self.live_faces + self.splits.died_range(last).len() > faces {
+                return;
+            }
+            self.refine();
+        }
+    }
+
+    /// The level at hand, as [`Simplifier::level`] gave it.
+    pub fn level(&self) -> Mesh {
+        let kept: Vec<u32> =
+            (0..self.alive.len() as u32).filter(|&f| self.alive[f as usize]).collect();
+        let attributes = self.mesh.attributes.as_ref().map(|all| Attributes {
+            corners: kept.iter().map(|&f| all.corners[f as usize]).collect(),
+            ..all.clone()
+        });
+        let mut level = Mesh {
+            positions: self.mesh.positions.clone(),
+            faces: kept.iter().map(|&f| self.mesh.faces[f as usize]).collect(),
+            attributes,
+            materials: self.mesh.materials.as_ref().map(|labels| labels.select(&kept)),
+            objects: self.mesh.objects.as_ref().map(|labels| labels.select(&kept)),
+        };
+        level.compact();
+        level
+    }
+
+    /// Exchanges what a split changes with its record; its corners go to `vertex`.
+    fn swap(&mut self, index: usize, vertex: VertexId) {
+        let splits = &mut self.splits;
+        let moved = splits.moved_range(index);
+        let (blended, forward) = (splits.blended_range(index), vertex == splits.splits[index].kept);
+        let split = &mut splits.splits[index];
+        std::mem::swap(&mut self.mesh.positions[split.kept.index()], &mut split.position);
+        for &corner in &splits.moved[moved.clone()] {
+            self.mesh.faces[corner.face().index()][corner.slot()] = vertex;
+        }
+        let Some(attributes) = &mut self.mesh.attributes else { return };
+        for (&corner, wedge) in splits.moved[moved.clone()].iter().zip(&mut splits.wedges[moved]) {
+            std::mem::swap(&mut attributes.corners[corner.face().index()][corner.slot()], wedge);
+        }
+        // A wedge that is there twice gets back its first value last.
+        let places = (0..blended.len()).map(|i| if forward { i } else { blended.len() - 1 - i });
+        let width: usize = attributes.layers.iter().map(|layer| layer.width).sum();
+        for place in places.map(|i| blended.start + i) {
+            let wedge = splits.blended[place];
+            let mut values = &mut splits.values[place * width..][..width];
+            for layer in &mut attributes.layers {
+                let (these, rest) = values.split_at_mut(layer.width);
+                layer.of_mut(wedge).swap_with_slice(these);
+                values = rest;
+            }
+        }
+    }
+}
+
+impl Splits {
+    fn new(history: History, attributes: bool) -> Self {
+        let splits = history.contractions().iter().map(|contraction| {
+            let kept = usize::from(contraction.kept);
+            let [moved, died, blended] = contraction.starts();
+            Split {
+                kept: contraction.contracted[kept],
+                removed: contraction.contracted[1 - kept],
+                position: contraction.from,
+                moved,
+                died,
+                blended: if attributes { blended } else { 0 },
+            }
+        });
+        let mut this = Self { splits: splits.collect(), ..Self::default() };
+        let lists = history.into_lists();
+        this.moved = lists.moved.iter().map(|moved| moved.corner).collect();
+        this.died = lists.died;
+        if attributes {
+            this.wedges = lists.moved.iter().map(|moved| moved.wedge).collect();
+            (this.blended, this.values) = (lists.blended, lists.values);
+        }
+        this
+    }
+
+    fn range(
+        &self,
+        index: usize,
+        start: impl Fn(&Split) -> u32,
+        end: usize,
+    ) -> std::ops::Range<usize> {
+        let next = self.splits.get(index + 1).map_or(end, |next| start(next) as usize);
+        start(&self.splits[index]) as usize..next
+    }
+
+    fn moved_range(&self, index: usize) -> std::ops::Range<usize> {
+        self.range(index, |split| split.moved, self.moved.len())
+    }
+
+    fn died_range(&self, index: usize) -> std::ops::Range<usize> {
+        self.range(index, |split| split.died, self.died.len())
+    }
+
+    fn blended_range(&self, index: usize) -> std::ops::Range<usize> {
+        self.range(index, |split| split.blended, self.blended.len())
+    }
+}
+
+/// Everything that the surface holds, alive or not.
+fn workspace(mesh: &Mesh, surface: &Surface) -> Mesh {
+    let all: Vec<u32> = (0..mesh.faces.len() as u32).collect();
+    let wedges = mesh.attributes.as_ref().and(surface.wedges.as_ref());
+    Mesh {
+        positions: (0..mesh.positions.len())
+            .map(|v| surface.position(VertexId::new(v)).into())
+            .collect(),
+        faces: all.iter().map(|&f| surface.face(FaceId(f))).collect(),
+        attributes: wedges.map(|wedges| wedges.select(&all)),
+        materials: mesh.materials.clone(),
+        objects: mesh.objects.clone(),
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,121 @@
+use meshlod_mesh::{Labels, Mesh, sample};
+
+use super::*;
+use crate::{Method, Options, Target};
+
+/// Goes down in steps, and meets every level again to the bit: up, down, and by its number of faces.
+fn there_and_back(mesh: &Mesh, method: Method) -> Progressive {
+    let mut history = History::default();
+    let mut simplifier = Simplifier::new(mesh, &Options { method, ..Options::default() }).unwrap();
+    let mut levels = vec![simplifier.level()];
+    for ratio in [0.8, 0.5, 0.2, 0.05] {
+        simplifier.run(Target::Ratio(ratio), &mut history).unwrap();
+        levels.push(simplifier.level());
+    }
+    let mut progressive = Progressive::new(simplifier, history).unwrap();
+    assert_eq!(progressive.full_faces(), levels[0].faces.len());
+    for level in levels.iter().rev() {
+        while progressive.live_faces() < level.faces.len() {
+            assert!(progressive.refine());
+        }
+        assert_eq!(&progressive.level(), level);
+    }
+    assert!(!progressive.refine());
+    for level in &levels {
+        while progressive.live_faces() > level.faces.len() {
+            assert!(progressive.coarsen());
+        }
+        assert_eq!(&progressive.level(), level);
+    }
+    assert!(!progressive.coarsen());
+    for i in [1, 3, 0, 4, 2] {
+        progressive.go_to(levels[i].faces.len());
+        assert_eq!(progressive.level(), levels[i]);
+        assert_eq!(progressive.full_faces(), levels[0].faces.len());
+    }
+    progressive
+}
+
+#[test]
+fn every_level_comes_back_to_the_bit() {
+    for method in Method::ALL {
+        there_and_back(&sample::torus(400), method);
+        there_and_back(&sample::terrain(400), method);
+    }
+}
+
+/// With uvs and normals of its own, two materials and two objects.
+fn dressed() -> Mesh {
+    let mut mesh = sample::fish(500);
+    let count = mesh.faces.len() as u32;
+    let labels = |part: u32| Labels {
+        names: vec!["one".into(), "two".into()],
+        of_face: (0..count).map(|f| u32::from(f > part)).collect(),
+    };
+    mesh.materials = Some(labels(count / 3));
+    mesh.objects = Some(labels(count / 2));
+    mesh
+}
+
+#[test]
+fn attributes_come_back_to_the_bit() {
+    for method in Method::ALL {
+        there_and_back(&sample::fish(500), method);
+        there_and_back(&dressed(), method);
+    }
+}
+
+#[test]
+fn a_history_with_a_gap_is_refused() {
+    let mesh = sample::torus(400);
+    let mut simplifier = Simplifier::new(&mesh, &Options::default()).unwrap();
+    simplifier.run(Target::Ratio(0.5), &mut ()).unwrap();
+    assert!(Progressive::new(simplifier, History::default()).is_none());
+}
+
+#[test]
+fn bytes_and_back_is_the_same() {
+    for mesh in [sample::torus(300), sample::terrain(300), dressed()] {
+        let mut progressive = there_and_back(&mesh, Method::Qem);
+        let bytes = progressive.to_bytes();
+        let mut again = Progressive::from_bytes(&bytes).unwrap();
+        assert_eq!(again.live_faces(), again.full_faces() - progressive.splits.died.len());
+        for faces in [0, 100, 200, 1000] {
+            progressive.go_to(faces);
+            again.go_to(faces);
+            assert_eq!(again, progressive);
+        }
+        assert_eq!(again.to_bytes(), bytes);
+    }
+}
+
+#[test]
+fn bytes_cut_anywhere_are_refused() {
+    let bytes = there_and_back(&dressed(), Method::Qem).to_bytes();
+    for end in (0..bytes.len()).step_by(397) {
+        assert!(Progressive::from_bytes(&bytes[..end]).is_err(), "{end}");
+    }
+}
+
+/// One wrong byte with a checksum that fits: refused by name, or levels that are meshes.
+#[test]
+fn a_wrong_byte_never_makes_a_wrong_mesh() {
+    let bytes = there_and_back(&dressed(), Method::Qem).to_bytes();
+    let mut refused = 0;
+    for place in (20..bytes.len()).step_by(173) {
+        let mut wrong = bytes.clone();
+        wrong[place] ^= 0x41;
+        assert!(matches!(Progressive::from_bytes(&wrong), Err(ProgressiveError::Checksum)));
+        bytes::seal(&mut wrong);
+        match Progressive::from_bytes(&wrong) {
+            Err(_) => refused += 1,
+            Ok(mut read) => loop {
+                read.level().validate().unwrap();
+                if (0..20).any(|_| !read.refine()) {
+                    break;
+                }
+            },
+        }
+    }
+    assert!(refused > 30, "{refused}");
+}
