@@ -5,6 +5,7 @@ use std::path::Path;
 use meshlod_fixtures as fixtures;
 use meshlod_io::{Precision, Scene, gltf, obj, off, ply, smf, stl};
 use meshlod_mesh::Mesh;
+use meshlod_simplify::{History, Options, Progressive, Simplifier, Target};
 
 /// Writes a target's seeds into its corpus; the fuzzer reads them after this.
 ///
@@ -26,6 +27,7 @@ fn seeds(target: &str) -> Vec<Vec<u8>> {
         "stl" => &STL,
         "off" => &OFF,
         "smf" => &SMF,
+        "progressive" => &[],
         _ => &GLTF,
     };
     let written = meshes.iter().map(|mesh| write(target, mesh));
@@ -41,6 +43,10 @@ fn write(target: &str, mesh: &Mesh) -> Vec<u8> {
         "stl" => stl::write(mesh, &mut out),
         "off" => off::write(mesh, Precision::F32, &mut out),
         "smf" => smf::write(mesh, Precision::F32, &mut out),
+        "progressive" => {
+            out = sequence(mesh);
+            Ok(())
+        }
         _ => {
             out = gltf::write_glb(&scene, &[]).expect("a fixture fits");
             Ok(())
@@ -48,6 +54,14 @@ fn write(target: &str, mesh: &Mesh) -> Vec<u8> {
     }
     .expect("memory takes all bytes");
     out
+}
+
+/// A progressive mesh of all that can be contracted.
+fn sequence(mesh: &Mesh) -> Vec<u8> {
+    let mut history = History::default();
+    let mut simplifier = Simplifier::new(mesh, &Options::default()).expect("a fixture is a mesh");
+    simplifier.run(Target::Faces(0), &mut history).expect("a target");
+    Progressive::new(simplifier, history).expect("all is taken down").to_bytes()
 }
 
 const PLY: [&str; 3] = [

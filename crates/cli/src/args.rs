@@ -11,7 +11,7 @@ use crate::compare::Compare;
 use crate::demo::Demo;
 use crate::failure::Failure;
 use crate::session::Session;
-use crate::verbs::{info, lods, measure, render, sample, simplify};
+use crate::verbs::{info, lods, measure, render, replay, sample, simplify};
 
 /// Level of detail for triangle meshes.
 ///
@@ -47,6 +47,8 @@ pub enum Verb {
     Info(info::Info),
     /// Make a mesh coarser
     Simplify(simplify::Simplify),
+    /// Give back any level that simplify --sequence has kept
+    Replay(replay::Replay),
     /// Make a chain of coarser levels, as glTF with MSFT_lod or one file each
     Lods(lods::Lods),
     /// Run all methods on one mesh: a table, and a page with pictures and heat maps
@@ -66,6 +68,7 @@ impl Verb {
         match self {
             Self::Info(verb) => verb.run(session),
             Self::Simplify(verb) => verb.run(session),
+            Self::Replay(verb) => verb.run(session),
             Self::Lods(verb) => verb.run(session),
             Self::Compare(verb) => verb.run(session),
             Self::Measure(verb) => verb.run(session),

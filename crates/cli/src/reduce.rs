@@ -4,7 +4,7 @@ use std::path::Path;
 use std::time::{Duration, Instant};
 
 use meshlod::measure::{Distance, Surface};
-use meshlod::simplify::{Refusal, SimplifyError};
+use meshlod::simplify::{History, Progressive, Refusal, SimplifyError};
 use meshlod::{Mesh, Options, Report, Scene, SceneError, SceneSimplifier, Target};
 use serde_json::{Map, Value, json};
 
@@ -27,6 +27,8 @@ pub struct Engine<'s> {
     /// What it does, as the terminal says.
     what: String,
     time: Duration,
+    /// All contractions, where they are wanted.
+    history: Option<History>,
 }
 
 impl<'s> Engine<'s> {
@@ -41,12 +43,22 @@ impl<'s> Engine<'s> {
         let start = Instant::now();
         let simplifier = SceneSimplifier::new(scene, options).map_err(|e| at(path, &e))?;
         let what = "simplifying".into();
-        Ok(Self { simplifier, session, path, what, time: start.elapsed() })
+        Ok(Self { simplifier, session, path, what, time: start.elapsed(), history: None })
     }
 
     /// What the terminal says from here on.
     pub fn call(&mut self, what: String) {
         self.what = what;
+    }
+
+    /// Takes down every contraction from now on, for [`Self::into_sequence`].
+    pub fn record(&mut self) {
+        self.history = Some(History::default());
+    }
+
+    /// All levels that were passed; `None` unless the scene has one mesh and all was taken down.
+    pub fn into_sequence(self) -> Option<Progressive> {
+        Progressive::new(self.simplifier.into_only()?, self.history?)
     }
 
     /// Goes on to a target.
@@ -61,7 +73,10 @@ impl<'s> Engine<'s> {
         };
         let mut watch = self.session.progress.contractions(&self.what, to_go);
         let start = Instant::now();
-        let report = self.simplifier.run(target, &mut watch);
+        let report = match &mut self.history {
+            Some(history) => self.simplifier.run(target, &mut (watch, history)),
+            None => self.simplifier.run(target, &mut watch),
+        };
         self.time += start.elapsed();
         report.map_err(|error| at(self.path, &error.into()))
     }

@@ -165,6 +165,12 @@ impl<'s> SceneSimplifier<'s> {
         now.collect()
     }
 
+    /// The simplifier of the only mesh, as it is now; `None` if there are several.
+    pub fn into_only(mut self) -> Option<Simplifier<'s>> {
+        let only = self.parts.pop().filter(|_| self.parts.is_empty());
+        only.filter(|_| self.scene.meshes.len() == 1).map(|part| part.simplifier)
+    }
+
     fn run_within(
         &mut self,
         error: f64,

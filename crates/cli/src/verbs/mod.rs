@@ -4,5 +4,6 @@ pub mod info;
 pub mod lods;
 pub mod measure;
 pub mod render;
+pub mod replay;
 pub mod sample;
 pub mod simplify;

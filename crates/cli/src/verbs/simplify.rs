@@ -1,9 +1,10 @@
 //! `simplify`: one coarser mesh.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use clap::Args;
+use meshlod::io::write_file;
 use meshlod::simplify::AttributeWeights;
 use meshlod::{Method, Options, Scene, Target, world_bounds};
 use serde_json::{Value, json};
@@ -35,6 +36,9 @@ pub struct Simplify {
     /// Measure the result; with --error, go on until the greatest distance measured is within
     #[arg(long)]
     measured: bool,
+    /// Keep all levels on the way in FILE, for the verb replay; of a file with one mesh
+    #[arg(long, value_name = "FILE", conflicts_with = "measured")]
+    sequence: Option<PathBuf>,
     /// Exit with 1 when the target is out of reach
     #[arg(long)]
     strict: bool,
@@ -121,6 +125,9 @@ impl Simplify {
     pub fn run(self, session: &Session) -> Result<Answer, Failure> {
         files::check_output(&self.output, session)?;
         let mut scene = files::read(&self.input, &self.reading, session)?;
+        if let Some(path) = &self.sequence {
+            self.check_sequence(path, &scene)?;
+        }
         let target = self.goal.target(&scene);
         let (Reduced { meshes, report, measured }, time) = match target {
             Target::Error(_) => self.measured_run(&scene, target, session)?,
@@ -148,9 +155,31 @@ impl Simplify {
         session: &Session,
     ) -> Result<(Reduced, Duration), Failure> {
         let mut engine = Engine::start(scene, &self.manner.options(), &self.input, session)?;
+        if self.sequence.is_some() {
+            engine.record();
+        }
         let report = engine.run(target)?;
         let reduced = Reduced { meshes: engine.level(), report, measured: None };
-        Ok((reduced, engine.time()))
+        let time = engine.time();
+        if let Some(path) = &self.sequence {
+            let sequence = engine.into_sequence();
+            let sequence = sequence.ok_or_else(|| self.several_meshes())?;
+            write_file(path, &sequence.to_bytes())?;
+        }
+        Ok((reduced, time))
+    }
+
+    /// Refuses a sequence that could not be kept, before any work is done.
+    fn check_sequence(&self, path: &Path, scene: &Scene) -> Result<(), Failure> {
+        if files::is_pipe(path) {
+            return Err(Failure::usage("--sequence: name a file"));
+        }
+        files::check_place(path)?;
+        if scene.meshes.len() == 1 { Ok(()) } else { Err(self.several_meshes()) }
+    }
+
+    fn several_meshes(&self) -> Failure {
+        Failure::at(&self.input, "has several meshes; --sequence keeps the levels of one")
     }
 
     /// A run that is measured, or led by what is measured.

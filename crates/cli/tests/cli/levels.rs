@@ -59,3 +59,33 @@ fn levels_are_nested() {
     let finer = vertices("k_LOD1.obj");
     assert!(vertices("k_LOD2.obj").iter().all(|vertex| finer.contains(vertex)));
 }
+
+#[test]
+fn a_sequence_gives_every_level_back_to_the_byte() {
+    let run = Run::new();
+    let exact = ["--precision", "f64"];
+    let simplify = |arguments: &[&str]| run.json(&[&["simplify"], arguments, &exact].concat());
+    run.json(&["sample", "fish", "in.ply", "--faces", "2000", "--precision", "f64"]);
+    simplify(&["in.ply", "base.ply", "--ratio", "5%", "--sequence", "fish.seq"]);
+    simplify(&["in.ply", "half.ply", "--ratio", "50%"]);
+    let bytes = |name: &str| std::fs::read(run.path(name)).unwrap();
+    for (ratio, level) in [("100%", "in.ply"), ("50%", "half.ply"), ("5%", "base.ply")] {
+        let done =
+            run.json(&[&["replay", "fish.seq", "back.ply", "--ratio", ratio], &exact[..]].concat());
+        assert_eq!(done["reached"], true);
+        assert!(bytes("back.ply") == bytes(level), "{level}");
+    }
+    let done = run.run(&["replay", "fish.seq", "back.ply", "--faces", "1"]);
+    assert!(done.code == 0 && done.only_line().contains("coarsest"), "{done:?}");
+}
+
+#[test]
+fn what_is_no_sequence_is_refused_in_a_line() {
+    let run = Run::new();
+    run.sample("torus", 200, "in.ply");
+    let done = run.run(&["replay", "in.ply", "out.ply", "--faces", "10"]);
+    assert!(done.code == 1 && done.only_line().contains("in.ply: "), "{done:?}");
+    let arguments = ["simplify", "in.ply", "out.ply", "--ratio", "50%", "--sequence", "-"];
+    assert_eq!(run.run(&arguments).code, 2);
+    assert_eq!(run.files(), ["in.ply"]);
+}

@@ -81,8 +81,16 @@ impl Progressive {
         put_labels(&mut out, mesh.materials.as_ref());
         put_labels(&mut out, mesh.objects.as_ref());
         put_splits(&mut out, splits);
-        seal(&mut out);
+        Self::seal(&mut out);
         out
+    }
+
+    /// Writes the checksum that fits into bytes that were changed, for tests of [`Self::from_bytes`].
+    pub fn seal(bytes: &mut [u8]) {
+        if bytes.len() >= BODY {
+            let sum = checksum(&bytes[BODY..]);
+            bytes[CHECKSUM..BODY].copy_from_slice(&sum.to_le_bytes());
+        }
     }
 
     /// The levels that [`Self::to_bytes`] wrote; the base is at hand.
@@ -130,12 +138,6 @@ impl Progressive {
         check(&mut read)?;
         Ok(read)
     }
-}
-
-/// Writes the checksum of what stands there.
-pub(super) fn seal(bytes: &mut [u8]) {
-    let sum = checksum(&bytes[BODY..]);
-    bytes[CHECKSUM..BODY].copy_from_slice(&sum.to_le_bytes());
 }
 
 /// FNV-1a, eight bytes at a time: against damage, not against malice.
@@ -348,7 +350,7 @@ impl<'b> Input<'b> {
         let [moved, died, blended] = starts.map(|end| end as usize);
         let width = attributes.map_or(0, |a| a.layers.iter().map(|layer| layer.width).sum());
         let own = if attributes.is_some() { moved } else { 0 };
-        let values = blended.checked_mul(width).unwrap_or(usize::MAX);
+        let values = blended.saturating_mul(width);
         Ok(Splits {
             splits,
             moved: self.numbers(moved, "moved corners")?.into_iter().map(CandidateId).collect(),

@@ -106,7 +106,7 @@ fn a_wrong_byte_never_makes_a_wrong_mesh() {
         let mut wrong = bytes.clone();
         wrong[place] ^= 0x41;
         assert!(matches!(Progressive::from_bytes(&wrong), Err(ProgressiveError::Checksum)));
-        bytes::seal(&mut wrong);
+        Progressive::seal(&mut wrong);
         match Progressive::from_bytes(&wrong) {
             Err(_) => refused += 1,
             Ok(mut read) => loop {
