@@ -29,8 +29,7 @@ pub enum Update {
 
 /// A mesh as a GPU has it.
 struct Torn {
-    /// The vertex, wedge and material label of each vertex of the GPU.
-    vertices: Vec<(VertexId, Option<WedgeId>, u32)>,
+    vertices: Vec<TornVertex>,
     /// Their positions.
     positions: Vec<f32>,
     /// Their guiding attributes: normal, uv.
@@ -39,8 +38,14 @@ struct Torn {
     indices: Vec<u32>,
 }
 
+/// The vertex, wedge and material label of a vertex of the GPU.
+type TornVertex = (VertexId, Option<WedgeId>, u32);
+
 /// Attributes per vertex that guide the library: three of a normal, two of a uv.
 const WIDTH: usize = 5;
+
+/// The layers that guide, and where they stand in a row of attributes.
+const GUIDES: [(LayerKind, usize); 2] = [(LayerKind::Normal, 0), (LayerKind::Uv(0), 3)];
 
 /// A level of as near to `faces` as meshoptimizer comes from above, with all layers of the mesh.
 ///
@@ -69,18 +74,9 @@ impl Torn {
                 }));
             }
         }
-        let position = |&(v, ..): &(VertexId, _, _)| mesh.positions[v.index()].map(|x| x as f32);
+        let position = |&(v, ..): &TornVertex| mesh.positions[v.index()].map(|x| x as f32);
         let positions = vertices.iter().flat_map(position).collect();
-        let layer = |kind| mesh.attributes.as_ref().and_then(|all| all.layer(kind));
-        let mut attributes = vec![0.0; WIDTH * vertices.len()];
-        for (row, &(_, wedge, _)) in attributes.chunks_exact_mut(WIDTH).zip(&vertices) {
-            let Some(wedge) = wedge else { continue };
-            for (kind, at) in GUIDES {
-                if let Some(layer) = layer(kind) {
-                    row[at..at + layer.width].copy_from_slice(layer.of(wedge));
-                }
-            }
-        }
+        let attributes = guides(mesh, &vertices);
         Self { vertices, positions, attributes, indices }
     }
 
@@ -173,8 +169,42 @@ impl Torn {
     }
 }
 
-/// The layers that guide, and where they stand in a row of attributes.
-const GUIDES: [(LayerKind, usize); 2] = [(LayerKind::Normal, 0), (LayerKind::Uv(0), 3)];
+/// Normal and uv of each vertex. Where a mesh has no normals, those that its pictures are shaded with
+/// guide as well: the library does better with them (docs/notes/image-error.md).
+fn guides(mesh: &Mesh, vertices: &[TornVertex]) -> Vec<f32> {
+    let layer = |kind| mesh.attributes.as_ref().and_then(|all| all.layer(kind));
+    let smooth = if layer(LayerKind::Normal).is_none() { smooth_normals(mesh) } else { vec![] };
+    let mut rows = vec![0.0; WIDTH * vertices.len()];
+    for (row, &(v, wedge, _)) in rows.chunks_exact_mut(WIDTH).zip(vertices) {
+        if let Some(normal) = smooth.get(v.index()) {
+            row[..3].copy_from_slice(normal);
+        }
+        for (kind, at) in GUIDES {
+            if let Some((layer, wedge)) = layer(kind).zip(wedge) {
+                row[at..at + layer.width].copy_from_slice(layer.of(wedge));
+            }
+        }
+    }
+    rows
+}
+
+/// The mean normal of the faces around each vertex, by their areas.
+fn smooth_normals(mesh: &Mesh) -> Vec<[f32; 3]> {
+    let mut sums = vec![[0.0; 3]; mesh.positions.len()];
+    for &face in &mesh.faces {
+        let [a, b, c] = mesh.triangle(face);
+        let normal = (b - a).cross(c - a).to_array();
+        for v in face {
+            let sum = &mut sums[v.index()];
+            *sum = [0, 1, 2].map(|axis| sum[axis] + normal[axis]);
+        }
+    }
+    let unit = |sum: [f64; 3]| {
+        let length = sum.iter().map(|x| x * x).sum::<f64>().sqrt().max(f64::MIN_POSITIVE);
+        sum.map(|x| (x / length) as f32)
+    };
+    sums.into_iter().map(unit).collect()
+}
 
 #[cfg(test)]
 mod tests {
