@@ -13,7 +13,7 @@ use project::Project;
 const USAGE: &str = "usage: cargo xtask VERB
   check    keys of references, arrows between crates, lengths of files
   doc      the documentation of all crates, warnings being errors
-  results  every figure of docs/RESULTS.md
+  results [SECTION...]  every figure of docs/RESULTS.md; or prints the sections with such titles
   compare  simplification beside meshoptimizer, by turns on one core
   textured [MODEL...]  image errors of levels beside meshoptimizer's";
 
@@ -24,7 +24,7 @@ fn main() -> ExitCode {
     let outcome = match verb.as_deref() {
         Some("check") => check::run(&project),
         Some("doc") => doc::run(&project),
-        Some("results") => results::run(&project),
+        Some("results") => results::run(&project, &arguments.collect::<Vec<_>>()),
         Some("compare") => results::compare(&project),
         Some("textured") => results::textured(&arguments.collect::<Vec<_>>()),
         _ => {

@@ -2,12 +2,14 @@
 
 mod accuracy;
 mod command;
+mod constriction;
 mod machine;
 mod memory;
 mod reading;
 mod speed;
 mod table;
 mod textured;
+mod volume;
 
 use anyhow::{Context, Result};
 
@@ -15,8 +17,9 @@ use crate::project::Project;
 
 /// Makes all tables, writes docs/RESULTS.md and the same as a dated record beside it.
 ///
-/// Takes some minutes. Tables whose meshes are not here say so.
-pub fn run(project: &Project) -> Result<()> {
+/// Takes some minutes. Tables whose meshes are not here say so. With `names`, only prints the
+/// sections that have one of them in their title.
+pub fn run(project: &Project, names: &[String]) -> Result<()> {
     let machine = machine::describe();
     let mut page = format!(
         "# Results\n\nMade by `cargo xtask results` on {}, {}. Distances are measured both ways with \
@@ -24,17 +27,27 @@ pub fn run(project: &Project) -> Result<()> {
         machine.date, machine.what
     );
     type Section = fn(&Project) -> Result<String>;
-    let sections: [(&str, Section); 5] = [
+    let sections: [(&str, Section); 7] = [
         // First, while this program is small: see there.
         ("Memory and determinism", memory::section),
         ("Accuracy", accuracy::section),
+        ("Volume", volume::section),
+        ("Face constriction", constriction::section),
         ("Textured", textured::section),
         ("Speed of simplification", speed::section),
         ("Reading and measuring", reading::section),
     ];
+    let named = |title: &str| names.iter().any(|name| title.to_lowercase().contains(name));
     for (title, section) in sections {
+        if !names.is_empty() && !named(title) {
+            continue;
+        }
         eprintln!("{title} …");
         page.push_str(&format!("\n## {title}\n\n{}", section(project)?));
+    }
+    if !names.is_empty() {
+        print!("{page}");
+        return Ok(());
     }
     for path in ["docs/RESULTS.md".to_owned(), format!("docs/records/{}.md", machine.date)] {
         let path = project.root().join(path);

@@ -7,15 +7,18 @@ pub struct Table {
 
 impl Table {
     /// A table with these headings.
-    pub fn new<const N: usize>(headings: [&str; N]) -> Self {
-        let rule = (0..N).map(|column| if column == 0 { "---" } else { "--:" }.to_owned());
-        Self { rows: vec![headings.map(str::to_owned).to_vec(), rule.collect()] }
+    pub fn new<'h>(headings: impl IntoIterator<Item = &'h str>) -> Self {
+        let headings: Vec<String> = headings.into_iter().map(str::to_owned).collect();
+        let rule = (0..headings.len()).map(|column| if column == 0 { "---" } else { "--:" });
+        let rule = rule.map(str::to_owned).collect();
+        Self { rows: vec![headings, rule] }
     }
 
     /// Adds a row.
-    pub fn row<const N: usize>(&mut self, cells: [String; N]) {
-        debug_assert_eq!(N, self.rows[0].len());
-        self.rows.push(cells.to_vec());
+    pub fn row(&mut self, cells: impl Into<Vec<String>>) {
+        let cells = cells.into();
+        debug_assert_eq!(cells.len(), self.rows[0].len());
+        self.rows.push(cells);
     }
 
     /// The table as Markdown, with a blank line behind.

@@ -1,0 +1,70 @@
+//! What is left of the volume in the files that are written.
+
+use anyhow::{Context, Result};
+use meshlod::io::Precision;
+use meshlod::measure::volume;
+use meshlod::mesh::{Connectivity, Mesh, sample};
+use meshlod::simplify::{Method, Options, Target, simplify};
+use meshlod::{ReadOptions, Scene, WriteOptions, read, write};
+
+use super::table::Table;
+use crate::project::Project;
+
+const MESHES: [&str; 5] =
+    ["bunny-closed.ply", "horse.ply", "feline.ply", "igea.ply", "armadillo-173k.ply"];
+const RATIOS: [f64; 3] = [0.5, 0.1, 0.01];
+const METHODS: [Method; 6] = [
+    Method::LeeJang,
+    Method::KimJang,
+    Method::LindstromTurk,
+    Method::LindstromTurkFaces,
+    Method::Wu,
+    Method::Qem,
+];
+
+/// The relative change of the volume per mesh, ratio and method.
+pub fn section(_: &Project) -> Result<String> {
+    let mut table = Table::new(
+        ["mesh, ratio"].into_iter().chain(METHODS.map(Method::name)).collect::<Vec<_>>(),
+    );
+    let folder = tempfile::tempdir()?;
+    for (name, mesh) in meshes()? {
+        let before = volume(&mesh);
+        for ratio in RATIOS {
+            let mut row = vec![format!("{name}, {:.0} %", ratio * 100.0)];
+            for method in METHODS {
+                let options = Options { method, ..Options::default() };
+                let (level, _) = simplify(&mesh, Target::Ratio(ratio), &options)?;
+                let level = through_file(level, &folder.path().join("level.ply"))?;
+                row.push(format!("{:.1e}", (volume(&level) - before).abs() / before.abs()));
+            }
+            table.row(row);
+        }
+    }
+    Ok(format!(
+        "|ΔV| / V of closed meshes, of the level as read back from PLY. Any row again: `meshlod \
+         simplify MESH out.ply --ratio R --method M --precision f64`, `meshlod measure MESH \
+         out.ply --json`.\n\n{}",
+        table.markdown()
+    ))
+}
+
+/// The closed meshes that are here, and a sample.
+fn meshes() -> Result<Vec<(String, Mesh)>> {
+    let mut meshes = vec![("gyroid (sample)".to_owned(), sample::gyroid(50_000))];
+    for file in MESHES {
+        if let Some(mesh) = meshlod_bench::read(file)? {
+            let closed = Connectivity::new(&mesh.faces, mesh.positions.len()).is_closed();
+            let note = if closed { "" } else { " (open)" };
+            meshes.push((format!("{file}{note}"), mesh));
+        }
+    }
+    Ok(meshes)
+}
+
+fn through_file(level: Mesh, path: &std::path::Path) -> Result<Mesh> {
+    let options = WriteOptions { precision: Precision::F64, ..WriteOptions::default() };
+    write(path, &Scene::from_mesh("level", level), &options)?;
+    let scene = read(path, &ReadOptions::default())?;
+    Ok(scene.meshes.into_iter().next().context("a file with a mesh")?.mesh)
+}
