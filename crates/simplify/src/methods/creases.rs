@@ -3,6 +3,8 @@
 //! The turn of an edge is D = 1 − Na·Nb of its two faces, 0 to 2 (eq. 3). A vertex has the mean of
 //! its edges' turns, and a weight made of how they differ.
 
+use std::sync::atomic::{AtomicU64, Ordering};
+
 use glam::{DVec3, Vec3};
 use meshlod_mesh::{FaceId, VertexId};
 use rayon::prelude::*;
@@ -10,11 +12,13 @@ use rayon::prelude::*;
 use crate::contracted::Contracted;
 use crate::neighbourhood::Neighbourhood;
 use crate::policy::Memory;
-use crate::surface::{Placed, Surface};
+use crate::surface::{Flags, Placed, Surface};
 
-/// Vertices of more faces keep what was found of them: a hub would be gone through again for each
-/// face of its rim.
+/// A hub is known by as many of its faces.
 const MOST_FACES: usize = 64;
+
+/// Most vertices have no more than this, and need not clear room for a hub.
+const FEW_FACES: usize = 12;
 
 /// The turns at a vertex.
 #[derive(Clone, Copy, Debug, Default)]
@@ -28,55 +32,49 @@ pub(crate) struct Turns {
 }
 
 impl Turns {
-    fn of(turns: impl Iterator<Item = f64> + Clone) -> Self {
-        let count = turns.clone().count();
-        if count == 0 {
+    fn of(turns: &[f32]) -> Self {
+        if turns.is_empty() {
             return Self::default();
         }
-        let mean = turns.clone().sum::<f64>() / count as f64;
-        let off = |turn: f64| (turn - mean).abs();
+        let mean = turns.iter().sum::<f32>() / turns.len() as f32;
+        let (mut squares, mut farthest) = (0.0, 0.0f32);
+        for turn in turns {
+            let off = (turn - mean).abs();
+            squares += off * off;
+            farthest = farthest.max(off);
+        }
         Self {
-            mean,
-            variance: turns.clone().map(|turn| off(turn).powi(2)).sum::<f64>() / count as f64,
-            farthest: turns.map(off).fold(0.0, f64::max),
+            mean: mean.into(),
+            variance: (squares / turns.len() as f32).into(),
+            farthest: farthest.into(),
         }
     }
 }
 
 /// The mean turn and the weight of a vertex.
-#[derive(Clone, Copy, Debug, Default)]
-struct Crease {
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Crease {
     mean: f32,
-    weight: f32,
+    pub(crate) weight: f32,
 }
 
-/// The creases of a surface, and the unit normals they come from.
+/// The creases of a surface, found when they are asked for: of those that a contraction changes, half
+/// change again before anybody asks.
 pub(crate) struct Creases {
-    at: Vec<Crease>,
+    found: Vec<Cached>,
     normals: Vec<Vec3>,
     weigh: fn(&Turns) -> f64,
-    around: Vec<Edge>,
-}
-
-/// An edge at a vertex, as one of its faces has it.
-#[derive(Clone, Copy)]
-struct Edge {
-    other: VertexId,
-    face: FaceId,
 }
 
 impl Creases {
     /// Of an untouched surface; `weigh` makes a vertex's weight of its turns.
     pub(crate) fn new(surface: &Surface, weigh: fn(&Turns) -> f64) -> Self {
-        let normals: Vec<Vec3> = (0..surface.face_count())
-            .into_par_iter()
-            .map(|f| unit_normal(surface, FaceId::new(f)))
-            .collect();
-        let crease = |around: &mut Vec<Edge>, v: usize| {
-            crease(surface, &normals, weigh, VertexId::new(v), around)
-        };
-        let at = (0..surface.vertex_count()).into_par_iter().map_init(Vec::new, crease).collect();
-        Self { at, normals, weigh, around: Vec::new() }
+        let normal = |f: usize| unit_normal(surface, FaceId::new(f));
+        Self {
+            found: (0..surface.vertex_count()).map(|_| Cached::default()).collect(),
+            normals: (0..surface.face_count()).into_par_iter().map(normal).collect(),
+            weigh,
+        }
     }
 
     /// The unit normal of a face; zero for one without area.
@@ -85,18 +83,26 @@ impl Creases {
         self.normals[face.index()].as_dvec3()
     }
 
+    /// The crease of a vertex.
     #[inline]
-    pub(crate) fn weight(&self, v: VertexId) -> f64 {
-        self.at[v.index()].weight.into()
+    pub(crate) fn at(&self, surface: &Surface, v: VertexId) -> Crease {
+        let cached = &self.found[v.index()];
+        cached.get().unwrap_or_else(|| {
+            let turns = match surface.valence(v) {
+                ..=FEW_FACES => turns::<FEW_FACES>(surface, &self.normals, v),
+                _ => turns::<MOST_FACES>(surface, &self.normals, v),
+            };
+            cached.set(Crease { mean: turns.mean as f32, weight: (self.weigh)(&turns) as f32 })
+        })
     }
 
     /// The mean of the vertices' mean turns by their weights (eqs. 2 and 6): 0 to 2. Where none has
     /// any weight, all weigh the same.
     #[inline]
-    pub(crate) fn turn(&self, of: &Contracted) -> f64 {
+    pub(crate) fn turn(&self, surface: &Surface, of: &Contracted) -> f64 {
         let (mut sum, mut weights, mut plain) = (0.0, 0.0, 0.0);
-        for v in of.iter() {
-            let Crease { mean, weight } = self.at[v.index()];
+        for &v in of.iter() {
+            let Crease { mean, weight } = self.at(surface, v);
             sum += f64::from(mean) * f64::from(weight);
             weights += f64::from(weight);
             plain += f64::from(mean);
@@ -114,10 +120,7 @@ impl Memory for Creases {
         }
         let kept = hood.contracted()[placed.kept];
         for v in hood.ring().iter().map(|r| r.id).chain([kept]) {
-            if surface.valence(v) <= MOST_FACES {
-                self.at[v.index()] =
-                    crease(surface, &self.normals, self.weigh, v, &mut self.around);
-            }
+            self.found[v.index()] = Cached::default();
         }
     }
 }
@@ -126,36 +129,79 @@ fn unit_normal(surface: &Surface, face: FaceId) -> Vec3 {
     surface.area_normal(face).normalize_or_zero().as_vec3()
 }
 
-fn crease(
-    surface: &Surface,
-    normals: &[Vec3],
-    weigh: fn(&Turns) -> f64,
-    v: VertexId,
-    around: &mut Vec<Edge>,
-) -> Crease {
-    around.clear();
-    for face in surface.star(v) {
-        let (corners, k) = (surface.face(face), surface.corner(face, v));
-        let edge = |k: usize| Edge { other: corners[k % 3], face };
-        around.extend([edge(k + 1), edge(k + 2)]);
+/// A crease, once somebody has asked for it. Whoever asks at the same time finds the same.
+struct Cached(AtomicU64);
+
+impl Default for Cached {
+    fn default() -> Self {
+        Self(AtomicU64::new(Self::NOTHING))
     }
-    around.sort_unstable_by_key(|edge| (edge.other, edge.face));
-    let inner = around.windows(2).filter(|pair| pair[0].other == pair[1].other).map(|pair| {
-        let [a, b] = [pair[0], pair[1]].map(|edge| normals[edge.face.index()]);
-        // 1 − a·b of unit vectors, without its cancellation.
-        f64::from(0.5 * (a - b).length_squared())
-    });
-    let turns = Turns::of(inner.chain(boundary_turn(surface, v, around)));
-    Crease { mean: turns.mean as f32, weight: weigh(&turns) as f32 }
 }
 
-/// The turn of the boundary at a vertex on it, which counts like that of an edge: its corners would
-/// otherwise be as cheap as its straights.
-fn boundary_turn(surface: &Surface, v: VertexId, around: &[Edge]) -> Option<f64> {
-    let mut ends =
-        around.chunk_by(|a, b| a.other == b.other).filter(|edges| edges.len() == 1).map(|e| e[0]);
-    let (a, b, None) = (ends.next()?, ends.next()?, ends.next()) else { return None };
-    let [a, b] =
-        [a, b].map(|e| (surface.position(e.other) - surface.position(v)).normalize_or_zero());
-    Some(1.0 + a.dot(b))
+impl Cached {
+    /// The bits of no crease: a mean is never NaN.
+    const NOTHING: u64 = u64::MAX;
+
+    #[inline]
+    fn get(&self) -> Option<Crease> {
+        let bits = self.0.load(Ordering::Relaxed);
+        let half = |shift: u32| f32::from_bits((bits >> shift) as u32);
+        (bits != Self::NOTHING).then(|| Crease { mean: half(32), weight: half(0) })
+    }
+
+    fn set(&self, crease: Crease) -> Crease {
+        let Crease { mean, weight } = crease;
+        let bits = u64::from(mean.to_bits()) << 32 | u64::from(weight.to_bits());
+        self.0.store(bits, Ordering::Relaxed);
+        crease
+    }
+}
+
+/// The turns of the edges between the first `N` faces of a vertex.
+fn turns<const N: usize>(surface: &Surface, normals: &[Vec3], v: VertexId) -> Turns {
+    // Of each face the corners after the vertex and before it, and the normal.
+    let (mut next, mut last) = ([VertexId(0); N], [VertexId(0); N]);
+    let mut normal = [Vec3::ZERO; N];
+    let mut count = 0;
+    for (face, place) in surface.star(v).zip(0..N) {
+        let [a, b, c] = surface.face(face);
+        (next[place], last[place]) = match v {
+            _ if v == a => (b, c),
+            _ if v == b => (c, a),
+            _ => (a, b),
+        };
+        normal[place] = normals[face.index()];
+        count = place + 1;
+    }
+    let (next, last, normal) = (&next[..count], &last[..count], &normal[..count]);
+    let mut turns = [0.0; N];
+    let mut found = 0;
+    for (&to, ours) in next.iter().zip(normal) {
+        // 1 − a·b of unit vectors, without its cancellation.
+        let across = last.iter().zip(normal).find(|&(&other, _)| other == to);
+        let turn = across.map(|(_, theirs)| 0.5 * (*ours - *theirs).length_squared());
+        if let Some(turn) = turn.or_else(|| boundary_turn(surface, v, to, next, last)) {
+            turns[found] = turn;
+            found += 1;
+        }
+    }
+    Turns::of(&turns[..found])
+}
+
+/// The turn of the boundary where it leaves a vertex for `to`. It counts like that of an edge: the
+/// corners of a boundary would otherwise be as cheap as its straights.
+#[cold]
+fn boundary_turn(
+    surface: &Surface,
+    v: VertexId,
+    to: VertexId,
+    next: &[VertexId],
+    last: &[VertexId],
+) -> Option<f32> {
+    if !surface.flags(v).any(Flags::BOUNDARY) {
+        return None;
+    }
+    let from = last.iter().find(|from| !next.contains(from))?;
+    let [from, at, to] = [*from, v, to].map(|v| surface.position(v));
+    Some((1.0 - (at - from).normalize_or_zero().dot((to - at).normalize_or_zero())) as f32)
 }

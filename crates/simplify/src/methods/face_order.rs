@@ -35,7 +35,7 @@ impl Priority<Creases> for FaceOrder {
         of: &Contracted,
         _: Freedom,
     ) -> Option<f64> {
-        let turn = memory.turn(of) / 2.0;
+        let turn = memory.turn(surface, of) / 2.0;
         let balance = (valence_after(surface, of) / self.most_valence).min(1.0);
         let measure = TURN_WEIGHT * turn + (1.0 - TURN_WEIGHT) * balance;
         Some(size(surface, of).sqrt() * measure)

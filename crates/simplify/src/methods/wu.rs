@@ -29,8 +29,11 @@ impl Placement<Creases> for WeightedMean {
         if hood.freedom() != Freedom::Free || hood.contracted().len() == 2 {
             return Ok(lindstrom_turk::place(surface, hood));
         }
-        let corners =
-            || hood.contracted().iter().map(|&v| (surface.position(v), creases.weight(v)));
+        let corners = || {
+            hood.contracted()
+                .iter()
+                .map(|&v| (surface.position(v), f64::from(creases.at(surface, v).weight)))
+        };
         let weights: f64 = corners().map(|(_, weight)| weight).sum();
         let position = if weights > 0.0 {
             corners().map(|(p, weight)| p * (weight / weights)).sum()
