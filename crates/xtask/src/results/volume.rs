@@ -63,7 +63,7 @@ fn meshes() -> Result<Vec<(String, Mesh)>> {
 }
 
 fn through_file(level: Mesh, path: &std::path::Path) -> Result<Mesh> {
-    let options = WriteOptions { precision: Precision::F64, ..WriteOptions::default() };
+    let options = WriteOptions { precision: Precision::F64 };
     write(path, &Scene::from_mesh("level", level), &options)?;
     let scene = read(path, &ReadOptions::default())?;
     Ok(scene.meshes.into_iter().next().context("a file with a mesh")?.mesh)
