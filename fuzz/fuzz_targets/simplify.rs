@@ -17,6 +17,7 @@ fn mesh(bytes: &[u8]) -> Option<(Mesh, Target, Options)> {
         method: Method::ALL[usize::from(method) % Method::ALL.len()],
         lock_boundary: locks & 1 != 0,
         locked: (0..count).map(|v| locks & 2 != 0 && v % 3 == 0).collect(),
+        ..Options::default()
     };
     let mesh = Mesh::new(positions.collect(), faces.collect());
     Some((mesh, Target::Ratio(f64::from(ratio) / 255.0), options))
