@@ -54,7 +54,7 @@ impl Turns {
 /// The mean turn and the weight of a vertex.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Crease {
-    mean: f32,
+    pub(crate) mean: f32,
     pub(crate) weight: f32,
 }
 

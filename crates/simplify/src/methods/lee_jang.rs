@@ -77,3 +77,43 @@ fn direction(creases: &Creases, hood: &Neighbourhood, normal: DVec3) -> DVec3 {
     });
     sum.try_normalize().unwrap_or(normal)
 }
+
+#[cfg(test)]
+mod tests {
+    use meshlod_mesh::{Connectivity, Mesh, VertexId};
+
+    use super::*;
+    use crate::contracted::Contracted;
+    use crate::methods::wu;
+
+    /// A regular pyramid without its base: the tip is vertex 0.
+    fn pyramid() -> Mesh {
+        let rim = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [-1.0, 0.0, 0.0], [0.0, -1.0, 0.0]];
+        let positions = [[0.0, 0.0, 1.0]].into_iter().chain(rim).collect();
+        let face = |i: u32| [VertexId(0), VertexId(1 + i), VertexId(1 + (i + 1) % 4)];
+        Mesh::new(positions, (0..4).map(face).collect())
+    }
+
+    #[test]
+    fn a_tip_whose_edges_are_alike_counts_here_and_not_with_wu() {
+        let mesh = pyramid();
+        let connectivity = Connectivity::new(&mesh.faces, mesh.positions.len());
+        let surface = Surface::new(&mesh, &connectivity);
+        let tip = VertexId(0);
+        let turn = |weigh| {
+            let creases = Creases::new(&surface, weigh);
+            (creases.at(&surface, tip), creases.turn(&surface, &Contracted::face(mesh.faces[0])))
+        };
+        let ((ours, with_tip), (theirs, without)) = (turn(weight), turn(wu::weight));
+        assert_eq!((ours.weight, theirs.weight), (1.0, 0.0));
+        // The sides' normals are (±1, ±1, 1)/√3: neighbours turn by 1 − 1/3.
+        assert!((f64::from(ours.mean) - 2.0 / 3.0).abs() < 1e-6);
+        let at_the_rim = |v: u32| Creases::new(&surface, wu::weight).turn(&surface, &edge(v));
+        assert!((without - at_the_rim(1)).abs() < 1e-6, "the face counts for its rim alone");
+        assert!((with_tip - without).abs() > 0.01);
+    }
+
+    fn edge(v: u32) -> Contracted {
+        Contracted::edge([VertexId(v), VertexId(v + 1)])
+    }
+}
