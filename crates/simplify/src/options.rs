@@ -156,7 +156,7 @@ impl Default for AttributeWeights {
 
 impl AttributeWeights {
     /// Those of [`Default`], where a constant is wanted.
-    pub const DEFAULT: Self = Self { normal: 0.01, uv: 0.3, color: 0.01 };
+    pub const DEFAULT: Self = Self { normal: 0.005, uv: 0.5, color: 0.005 };
 
     /// Attributes count for nothing: quadrics are those of the geometry alone.
     pub const NONE: Self = Self { normal: 0.0, uv: 0.0, color: 0.0 };

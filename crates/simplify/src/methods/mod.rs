@@ -3,6 +3,7 @@
 mod appearance;
 mod channels;
 mod creases;
+mod expectations;
 mod face_order;
 mod fan;
 mod kim_jang;
@@ -13,6 +14,7 @@ mod pm;
 mod qem;
 mod quadric;
 mod samples;
+mod slopes;
 mod spr;
 mod volume;
 mod wu;
@@ -21,9 +23,10 @@ use meshlod_mesh::Connectivity;
 
 use crate::candidates::{Edges, FacesAndEdges};
 use crate::engine::{Algorithm, Run};
-use crate::methods::appearance::{Appearance, Expectations};
+use crate::methods::appearance::Appearance;
 use crate::methods::channels::Channels;
 use crate::methods::creases::Creases;
+use crate::methods::expectations::Expectations;
 use crate::methods::face_order::FaceOrder;
 use crate::methods::kim_jang::Conserving;
 use crate::methods::lee_jang::Constriction;
