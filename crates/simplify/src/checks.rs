@@ -1,13 +1,22 @@
 //! What every contraction must respect: as manifold, closed and oriented after as before.
 
+use glam::DVec3;
 use meshlod_mesh::VertexId;
 
-use crate::policy::{Check, Proposal};
+use crate::neighbourhood::Neighbourhood;
 use crate::refusal::Refusal;
-use crate::surface::Flags;
+use crate::surface::{Flags, Surface};
 
-/// The rules, the cheapest and most often met first.
-pub(crate) const CHECKS: &[Check] = &[shape, link, closing, flip];
+/// The rules that do not ask for the new place, the cheapest and most often met first.
+const OF_TOPOLOGY: [Check; 3] = [shape, link, closing];
+
+/// A reason against a contraction, wherever its vertex goes.
+type Check = fn(&Surface, &Neighbourhood) -> Result<(), Refusal>;
+
+/// Whether what is around may become one vertex at all.
+pub(crate) fn topology(surface: &Surface, hood: &Neighbourhood) -> Result<(), Refusal> {
+    OF_TOPOLOGY.iter().try_for_each(|check| check(surface, hood))
+}
 
 /// The least cosine between a face's normal before and after; found on bunny, horse and dragon:
 /// 0 lets folds through that raise the maximum, 0.5 costs a tenth of the accuracy at 1 %.
@@ -15,22 +24,20 @@ const LEAST_COSINE: f64 = 0.2;
 
 /// An edge of at most two faces, or a face with as many neighbours as sides; not one that joins two
 /// boundaries across the surface; not the last of what hangs together.
-fn shape(proposal: &Proposal<'_>) -> Result<(), Refusal> {
-    let hood = proposal.hood;
+fn shape(surface: &Surface, hood: &Neighbourhood) -> Result<(), Refusal> {
     let inner = if hood.contracted.len() == 2 { 2 } else { 4 };
     if hood.dying.len() > inner {
         return Err(Refusal::NonManifold);
     }
-    let on_boundary = |&v: &VertexId| proposal.surface.flags(v).any(Flags::BOUNDARY);
+    let on_boundary = |&v: &VertexId| surface.flags(v).any(Flags::BOUNDARY);
     if hood.dying.len() == inner && hood.contracted.iter().all(on_boundary) {
         return Err(Refusal::Boundary);
     }
-    lasting(proposal)
+    lasting(hood)
 }
 
 /// Something is left, and every wing still hangs on it by a face.
-fn lasting(proposal: &Proposal<'_>) -> Result<(), Refusal> {
-    let hood = proposal.hood;
+fn lasting(hood: &Neighbourhood) -> Result<(), Refusal> {
     let hangs_on = |wing: usize| {
         hood.spokes.iter().any(|spoke| spoke.a as usize == wing || spoke.b as usize == wing)
     };
@@ -40,18 +47,17 @@ fn lasting(proposal: &Proposal<'_>) -> Result<(), Refusal> {
 
 /// The link condition for vertices [DEGN99]: a common neighbour of contracted vertices is the apex
 /// of a dying face on just these.
-fn link(proposal: &Proposal<'_>) -> Result<(), Refusal> {
+fn link(_: &Surface, hood: &Neighbourhood) -> Result<(), Refusal> {
     let apart = |adjacent: u8, wing: u8| adjacent.count_ones() < 2 || adjacent == wing;
-    let ok = proposal.hood.ring.iter().all(|r| {
-        apart(r.adjacent, r.wing) && (r.adjacent.count_ones() < 3 || proposal.hood.dying.len() == 1)
+    let ok = hood.ring.iter().all(|r| {
+        apart(r.adjacent, r.wing) && (r.adjacent.count_ones() < 3 || hood.dying.len() == 1)
     });
     if ok { Ok(()) } else { Err(Refusal::Link) }
 }
 
 /// The link condition for edges: no two surviving faces on the same two wings, or they would
 /// become one face twice. So does a tetrahedron end.
-fn closing(proposal: &Proposal<'_>) -> Result<(), Refusal> {
-    let hood = proposal.hood;
+fn closing(_: &Surface, hood: &Neighbourhood) -> Result<(), Refusal> {
     let shared = |place: u32| hood.ring[place as usize].adjacent.count_ones() > 1;
     let across = hood.spokes.iter().filter(|spoke| shared(spoke.a) && shared(spoke.b));
     // The two sides of a leaf have one apex: with them would go what closes the edges to it.
@@ -61,8 +67,11 @@ fn closing(proposal: &Proposal<'_>) -> Result<(), Refusal> {
 
 /// No surviving face turns over, or by more than a limit, or loses its area. One without area
 /// before may do as it likes.
-fn flip(proposal: &Proposal<'_>) -> Result<(), Refusal> {
-    let Proposal { surface, hood, position } = *proposal;
+pub(crate) fn flip(
+    surface: &Surface,
+    hood: &Neighbourhood,
+    position: DVec3,
+) -> Result<(), Refusal> {
     for spoke in &hood.spokes {
         let (a, b) = (hood.ring[spoke.a as usize].position, hood.ring[spoke.b as usize].position);
         let old = surface.position(hood.contracted[spoke.owner()]);

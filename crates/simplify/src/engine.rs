@@ -10,11 +10,11 @@ use rayon::prelude::*;
 use rustc_hash::FxHashMap;
 
 use crate::candidates::CandidateId;
-use crate::checks::CHECKS;
+use crate::checks::{flip, topology};
 use crate::contracted::{Contracted, Freedom};
 use crate::estimate::estimate;
 use crate::neighbourhood::{Neighbourhood, freedom};
-use crate::policy::{Books, Candidates, Memory, Observe, Placement, Priority, Proposal, Stop};
+use crate::policy::{Books, Candidates, Memory, Observe, Placement, Priority, Stop};
 use crate::queue::{Entry, Key, Queue};
 use crate::refusal::{Refusal, Refusals};
 use crate::surface::{Flags, Placed, State, Surface};
@@ -145,13 +145,13 @@ where
         let Self { algorithm, surface, hood, part, .. } = self;
         let contracted = algorithm.candidates.vertices(surface, entry.id);
         hood.gather(surface, contracted)?;
+        topology(surface, hood)?;
         let mut placed = algorithm.placement.place(surface, &algorithm.memory, hood)?;
         placed.error_estimate = estimate(surface, hood, &placed);
         if placed.error_estimate > stop.error {
             return Err(Refusal::Error);
         }
-        let proposal = Proposal { surface, hood, position: placed.position };
-        CHECKS.iter().try_for_each(|check| check(&proposal))?;
+        flip(surface, hood, placed.position)?;
 
         algorithm.memory.merge(surface, hood, &placed);
         match hood.contracted[..] {

@@ -1,17 +1,15 @@
-//! The six policies. An algorithm is a choice of them; the engine asks, they answer.
+//! The policies. An algorithm is a choice of them; the engine asks, they answer.
 //!
 //! | policy | answers |
 //! |---|---|
 //! | [`Candidates`] | what may be contracted, and what to ask again after a contraction |
 //! | [`Priority`] | the cost of a candidate, or "never" |
 //! | [`Placement`] | where the new vertex goes, or "cannot" |
-//! | [`Check`] | a reason against it |
 //! | [`Stop`] | enough |
 //! | [`Observe`] | hooks before and after |
 //!
 //! Priority and placement share a [`Memory`]: what the algorithm keeps per vertex.
 
-use glam::DVec3;
 use meshlod_mesh::{Connectivity, VertexId};
 
 use crate::candidates::CandidateId;
@@ -84,16 +82,6 @@ pub(crate) trait Placement<M>: Sync {
     fn place(&self, surface: &Surface, memory: &M, hood: &Neighbourhood)
     -> Result<Placed, Refusal>;
 }
-
-/// A contraction before it is allowed.
-pub(crate) struct Proposal<'a> {
-    pub(crate) surface: &'a Surface,
-    pub(crate) hood: &'a Neighbourhood,
-    pub(crate) position: DVec3,
-}
-
-/// One rule that a proposal must pass.
-pub(crate) type Check = fn(&Proposal<'_>) -> Result<(), Refusal>;
 
 /// When to stop.
 #[derive(Clone, Copy, Debug, PartialEq)]
