@@ -108,6 +108,11 @@ impl Neighbourhood {
         &self.ring
     }
 
+    /// How far the farthest vertex of the ring is from a place.
+    pub(crate) fn radius(&self, from: DVec3) -> f64 {
+        self.ring.iter().map(|r| r.position.distance_squared(from)).fold(0.0, f64::max).sqrt()
+    }
+
     /// Where the new vertex may be.
     pub fn freedom(&self) -> Freedom {
         self.freedom
@@ -195,7 +200,8 @@ pub(crate) fn freedom(
         let flags = surface.flags(v);
         seam |= flags.any(Flags::SEAM);
         if flags.any(pins) && pinned.replace(i).is_some() {
-            return Err(Refusal::Locked);
+            let locked = flags.any(Flags::PINNED);
+            return Err(if locked { Refusal::Locked } else { Refusal::Boundary });
         }
     }
     let by_pin = pinned.map_or(Freedom::Free, Freedom::At);
@@ -205,8 +211,7 @@ pub(crate) fn freedom(
             if seam { wedges.freedom(surface, [v0, v1], wedge_pairs)? } else { Freedom::Free }
         }
         (Some(wedges), corners) if seam => wedges.freedom_of_face(surface, corners, wedge_pairs)?,
-        (Some(_), _) => Freedom::Free,
-        (None, _) => Freedom::Free,
+        _ => Freedom::Free,
     };
     match (by_pin, by_seam) {
         (Freedom::Free, other) | (other, Freedom::Free) => Ok(other),

@@ -9,13 +9,13 @@ use std::ops::AddAssign;
 pub enum Refusal {
     /// The edge has three faces or more.
     NonManifold,
-    /// It would join two boundaries across the surface.
+    /// It would join two boundaries across the surface, or take a boundary off its course.
     Boundary,
     /// Its ends have a common neighbour other than its wings [DEGN99].
     Link,
     /// A face would turn over or lose its area.
     Flip,
-    /// Both ends are locked.
+    /// Two of its vertices are locked.
     Locked,
     /// Attributes on one side of a seam would have nowhere to go.
     Seam,
@@ -23,7 +23,7 @@ pub enum Refusal {
     LastFaces,
     /// More faces meet in its ends than are looked at.
     Valence,
-    /// No place near conserves the volume.
+    /// No place among the vertices around conserves the volume.
     Volume,
     /// It would move the surface further than the target error.
     Error,

@@ -11,8 +11,8 @@ use crate::policy::{Observe, Stop};
 use crate::surface::{Flags, Surface};
 use crate::volume::VolumeLoss;
 
-/// The diagonals that can be worked with. Costs go with the fifth power of a length, checks with the
-/// eighth; beyond, doubles would run out.
+/// The diagonals that can be worked with. Costs go with up to the sixth power of a length, checks with
+/// the eighth; beyond, doubles would run out.
 const EXTENTS: std::ops::RangeInclusive<f64> = 1e-30..=1e30;
 
 /// A mesh at work. Levels taken from one run are nested: each comes from the one before.

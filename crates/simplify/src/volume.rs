@@ -8,7 +8,8 @@ use crate::neighbourhood::{Neighbourhood, Spoke};
 use crate::policy::Observe;
 use crate::surface::{Flags, Placed, Surface};
 
-/// The volume that contractions lost, and those that no method can make conserve it.
+/// The volume that contractions lost, and those that no method can make conserve it. All are of edges:
+/// a face counts as the two that it is contracted as.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct VolumeLoss {
     /// The sum over all contractions with a closed ring of the volume before less the volume after,

@@ -2,7 +2,7 @@
 
 use meshlod_fixtures as fixtures;
 use meshlod_mesh::{Attributes, Connectivity, Layer, LayerKind, Mesh, VertexId, WedgeId, sample};
-use meshlod_simplify::{Options, Refusal, SimplifyError, Target, simplify};
+use meshlod_simplify::{Method, Options, Refusal, SimplifyError, Target, simplify};
 
 fn run(mesh: &Mesh, target: Target) -> (Mesh, meshlod_simplify::Report) {
     simplify(mesh, target, &Options::default()).unwrap()
@@ -32,9 +32,12 @@ fn a_flat_grows_no_hubs() {
 
 #[test]
 fn a_hub_shrinks_with_its_rim() {
-    let (level, report) = run(&cone(100_000), Target::Faces(100));
-    assert!(report.reached, "{}", report.refusals);
-    assert!((level.bounds().max[2] - 0.5).abs() < 0.01, "the tip is still there");
+    for method in Method::ALL {
+        let options = Options { method, ..Options::default() };
+        let (level, report) = simplify(&cone(20_000), Target::Faces(100), &options).unwrap();
+        assert!(report.reached, "{}: {}", method.name(), report.refusals);
+        assert!((level.bounds().max[2] - 0.5).abs() < 0.05, "{}: the tip is gone", method.name());
+    }
 }
 
 #[test]
@@ -59,18 +62,21 @@ fn a_bound_holds_where_faces_have_no_area() {
 
 #[test]
 fn scale_changes_nothing_until_it_is_refused_by_name() {
-    let scaled = |factor: f64| {
+    let scaled = |factor: f64, method| {
         let mut mesh = sample::torus(1000);
         mesh.positions.iter_mut().flatten().for_each(|x| *x *= factor);
-        simplify(&mesh, Target::Ratio(0.1), &Options::default())
+        simplify(&mesh, Target::Ratio(0.1), &Options { method, ..Options::default() })
     };
-    let faces = |factor| scaled(factor).unwrap().0.faces;
-    // Powers of two round alike.
-    for factor in [2f64.powi(-90), 2f64.powi(90)] {
-        assert_eq!(faces(factor), faces(1.0), "{factor:e}");
+    for method in Method::ALL {
+        let faces = |factor| scaled(factor, method).unwrap().0.faces;
+        // Powers of two round alike.
+        for factor in [2f64.powi(-90), 2f64.powi(90)] {
+            assert_eq!(faces(factor), faces(1.0), "{} at {factor:e}", method.name());
+        }
     }
     for factor in [1e-40, 1e40] {
-        assert!(matches!(scaled(factor), Err(SimplifyError::Extent { .. })), "{factor:e}");
+        let refused = scaled(factor, Method::default());
+        assert!(matches!(refused, Err(SimplifyError::Extent { .. })), "{factor:e}");
     }
 }
 
@@ -122,4 +128,27 @@ fn a_wedge_at_two_vertices_is_no_mesh() {
     mesh.attributes.as_mut().unwrap().corners[0].swap(0, 1);
     let error = simplify(&mesh, Target::Ratio(0.5), &Options::default()).unwrap_err();
     assert!(matches!(error, SimplifyError::Mesh(_)), "{error}");
+}
+
+/// A closed fold: two sheets so near to each other that their normals all but cancel.
+fn fold() -> Mesh {
+    let mut mesh = sample::sphere(2000);
+    mesh.positions.iter_mut().for_each(|p| p[2] *= 1e-7);
+    mesh
+}
+
+#[test]
+fn no_vertex_leaves_the_box_of_a_fold() {
+    let mesh = fold();
+    let bounds = mesh.bounds();
+    for method in Method::ALL {
+        let options = Options { method, ..Options::default() };
+        let (level, _) = simplify(&mesh, Target::Ratio(0.05), &options).unwrap();
+        for axis in 0..3 {
+            let room = 0.1 * bounds.diagonal();
+            let (least, most) = (bounds.min[axis] - room, bounds.max[axis] + room);
+            let inside = |p: &[f64; 3]| (least..most).contains(&p[axis]);
+            assert!(level.positions.iter().all(inside), "{}", method.name());
+        }
+    }
 }

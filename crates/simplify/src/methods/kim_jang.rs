@@ -39,6 +39,10 @@ impl Placement<Quadrics> for Conserving {
         let along = optimum * (plane.level / plane.normal.dot(optimum));
         let offset =
             if along.distance(optimum) <= REACH * spoke { along } else { plane.nearest(optimum) };
+        // Where the faces nearly cancel, as in folds, that plane can be anywhere.
+        if offset.length() > hood.radius(base) {
+            return Err(Refusal::Volume);
+        }
         Ok(Placed { position: base + offset, ..placed })
     }
 }

@@ -36,7 +36,7 @@ impl Placement<Creases> for Constriction {
     ) -> Result<Placed, Refusal> {
         match (hood.freedom(), hood.contracted().len()) {
             (Freedom::Free, 3) => constrict(surface, creases, hood),
-            _ => Ok(lindstrom_turk::place(surface, hood)),
+            _ => lindstrom_turk::place(surface, hood),
         }
     }
 }

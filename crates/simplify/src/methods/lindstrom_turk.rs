@@ -32,6 +32,9 @@ const OUTLINE_WEIGHT: f64 = 9.0;
 /// The least sine of the angle between a direction and a plane that may fix each other [LT98].
 const COMPATIBLE: f64 = 0.017;
 
+/// A sum of vectors whose square is less than this part of their squares' sum is rounding.
+pub(crate) const CANCELLED: f64 = 1e-12;
+
 /// What the faces around a vertex come to, seen from it.
 #[derive(Clone, Copy, Debug, Default)]
 struct Star {
@@ -152,22 +155,26 @@ fn cost_at_outline(surface: &Surface, of: &Contracted) -> Option<f64> {
 
 impl Placement<Stars> for Memoryless {
     fn place(&self, surface: &Surface, _: &Stars, hood: &Neighbourhood) -> Result<Placed, Refusal> {
-        Ok(place(surface, hood))
+        place(surface, hood)
     }
 }
 
-/// The place of any gathered contraction, from the faces around as they are.
-pub(crate) fn place(surface: &Surface, hood: &Neighbourhood) -> Placed {
+/// The place of any gathered contraction, from the faces around as they are. Where these nearly
+/// cancel, as in folds, the place that conserves the volume can be far outside of them.
+pub(crate) fn place(surface: &Surface, hood: &Neighbourhood) -> Result<Placed, Refusal> {
     let Choice { offset, swept } = choose(surface, hood);
     let error_estimate = swept.distance(swept.at(offset));
+    let origin = surface.position(hood.contracted()[0]);
+    let middle = middle(surface, hood.contracted());
     match hood.freedom() {
         Freedom::At(kept) => {
-            Placed { position: surface.position(hood.contracted()[kept]), kept, error_estimate }
+            let position = surface.position(hood.contracted()[kept]);
+            Ok(Placed { position, kept, error_estimate })
         }
-        Freedom::Free => {
-            let origin = surface.position(hood.contracted()[0]);
-            Placed { position: origin + offset, kept: 0, error_estimate }
+        Freedom::Free if offset.distance(middle) > hood.radius(origin + middle) => {
+            Err(Refusal::Volume)
         }
+        Freedom::Free => Ok(Placed { position: origin + offset, kept: 0, error_estimate }),
     }
 }
 
@@ -201,7 +208,7 @@ fn choose(surface: &Surface, hood: &Neighbourhood) -> Choice {
     let offset = match hood.freedom() {
         Freedom::At(i) => place(i) - origin,
         Freedom::Free => match boundary.line() {
-            Some(line) => line.best(&volume, &swept, middle),
+            Some(line) => line.best(&volume, &swept, middle, hood.radius(origin + middle)),
             None => swept.optimum_on(volume.normal, volume.level, middle, PULL),
         },
     };
@@ -213,6 +220,7 @@ fn choose(surface: &Surface, hood: &Neighbourhood) -> Choice {
 struct Boundary {
     directions: DVec3,
     products: DVec3,
+    squares: f64,
 }
 
 /// The places that leave the area under a boundary as it is.
@@ -225,27 +233,30 @@ impl Boundary {
     fn add(&mut self, from: DVec3, to: DVec3) {
         self.directions += to - from;
         self.products += from.cross(to);
+        self.squares += from.distance_squared(to);
     }
 
     /// Where the sum of the areas between the boundary and a vertex is least; `None` where there is
     /// no boundary, or all of a closed one.
     fn line(&self) -> Option<Line> {
-        let e = self.directions;
-        let start = e.cross(self.products) / e.length_squared();
-        start.is_finite().then_some(Line { start, direction: e })
+        let (e, squared) = (self.directions, self.directions.length_squared());
+        let start = e.cross(self.products) / squared;
+        (squared > CANCELLED * self.squares).then_some(Line { start, direction: e })
     }
 }
 
 impl Line {
-    /// The place on it that conserves the volume too, where it crosses that plane at an angle, else
-    /// the one that sweeps over least.
-    fn best(&self, volume: &VolumePlane, swept: &Quadric, toward: DVec3) -> DVec3 {
+    /// The place on it that conserves the volume too, where it crosses that plane at an angle and
+    /// within `reach` of `toward`; else the one that sweeps over least.
+    fn best(&self, volume: &VolumePlane, swept: &Quadric, toward: DVec3, reach: f64) -> DVec3 {
         let (slope, e) = (volume.normal.dot(self.direction), self.direction);
-        let t = if slope.abs() > COMPATIBLE * volume.normal.length() * e.length() {
-            volume.loss(self.start) / slope
-        } else {
-            swept.least_along(self.start, e, toward, PULL)
-        };
+        if slope.abs() > COMPATIBLE * volume.normal.length() * e.length() {
+            let crossing = self.start + e * (volume.loss(self.start) / slope);
+            if crossing.distance(toward) <= reach {
+                return crossing;
+            }
+        }
+        let t = swept.least_along(self.start, e, toward, PULL);
         if t.is_finite() { self.start + e * t } else { toward }
     }
 }

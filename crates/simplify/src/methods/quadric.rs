@@ -83,7 +83,9 @@ impl Symmetric {
     /// The x with this times x = `right`; nothing finite where there is none.
     #[inline]
     pub(crate) fn solve(&self, right: DVec3) -> DVec3 {
-        let (d, o) = (self.diagonal, self.off_diagonal);
+        // The determinant is a cube. A power of two keeps it in range and changes no digit.
+        let unit = 1.0 / f64::from_bits(self.trace().to_bits() & f64::INFINITY.to_bits());
+        let (d, o, right) = (self.diagonal * unit, self.off_diagonal * unit, right * unit);
         // Symmetric, so the rows of the adjugate are cross products of the columns.
         let (x, y, z) =
             (DVec3::new(d.x, o.z, o.y), DVec3::new(o.z, d.y, o.x), DVec3::new(o.y, o.x, d.z));
@@ -246,10 +248,10 @@ impl Quadric {
         let length = normal.length();
         let (n, trace) = (normal / length, self.a.trace());
         let start = toward + n * (level / length - n.dot(toward));
-        if !start.is_finite() {
-            return toward;
-        }
         let spring = pull * trace;
+        if !start.is_finite() {
+            return self.optimum(toward, pull);
+        }
         if spring <= f64::MIN_POSITIVE {
             return start;
         }

@@ -29,7 +29,8 @@ pub(crate) struct Turn;
 
 impl Priority<()> for Turn {
     fn cost(&self, surface: &Surface, _: &(), of: &Contracted, freedom: Freedom) -> Option<f64> {
-        Some(cheaper(surface, of, freedom).1)
+        // A hub would be gone round for each of its edges, and is refused anyway.
+        (!surface.is_crowded(of)).then(|| cheaper(surface, of, freedom).1)
     }
 }
 

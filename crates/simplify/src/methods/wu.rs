@@ -27,7 +27,7 @@ impl Placement<Creases> for WeightedMean {
         hood: &Neighbourhood,
     ) -> Result<Placed, Refusal> {
         if hood.freedom() != Freedom::Free || hood.contracted().len() == 2 {
-            return Ok(lindstrom_turk::place(surface, hood));
+            return lindstrom_turk::place(surface, hood);
         }
         let corners = || {
             hood.contracted()
