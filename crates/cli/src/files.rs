@@ -2,7 +2,7 @@
 
 use std::fs;
 use std::io::{self, BufWriter, Read, Write};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use meshlod::io::{gltf, obj, off, ply, read_bytes, smf, stl, write_file};
 use meshlod::{Format, Scene, WriteOptions};
@@ -28,11 +28,20 @@ pub fn read(path: &Path, reading: &Reading, session: &Session) -> Result<Scene, 
         return Ok(meshlod::read(path, &reading.options())?);
     }
     let format = pipe_format(session)?;
-    let mut bytes = Vec::new();
-    io::stdin().lock().read_to_end(&mut bytes).map_err(|error| Failure::at(path, error))?;
+    let bytes = read_all(path)?;
     // What a pipe names beside itself is not there.
     read_bytes(&bytes, format, &mut |_| None, &reading.options())
         .map_err(|error| Failure::at(path, error))
+}
+
+/// The bytes of a file, or of standard input.
+pub fn read_all(path: &Path) -> Result<Vec<u8>, Failure> {
+    let mut bytes = Vec::new();
+    let read = match is_pipe(path) {
+        true => io::stdin().lock().read_to_end(&mut bytes).map(|_| bytes),
+        false => fs::read(path),
+    };
+    read.map_err(|error| Failure::at(path, error))
 }
 
 /// Refuses an output that could not be written, before any work is done.
@@ -72,6 +81,25 @@ pub fn check_place(path: &Path) -> Result<(), Failure> {
         Ok(_) => Ok(()),
         Err(error) => Err(Failure::at(path, format_args!("its folder: {error}"))),
     }
+}
+
+/// Refuses an output that would overwrite another file of the same run.
+pub fn check_apart(path: &Path, others: &[&Path]) -> Result<(), Failure> {
+    let same = |other: &&&Path| !is_pipe(other) && place_of(other) == place_of(path);
+    match others.iter().find(same).filter(|_| !is_pipe(path)) {
+        Some(_) => Err(Failure::usage(format_args!("{}: is named twice", name(path)))),
+        None => Ok(()),
+    }
+}
+
+/// Where a file is or would be, by whichever way the path goes there.
+fn place_of(path: &Path) -> PathBuf {
+    fs::canonicalize(path).unwrap_or_else(|_| {
+        let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
+        let folder = fs::canonicalize(folder.unwrap_or(Path::new(".")));
+        let file = path.file_name().unwrap_or_default();
+        folder.map_or_else(|_| path.to_owned(), |folder| folder.join(file))
+    })
 }
 
 /// Makes a folder to write to, where it is not there; refuses one that nothing can be written to.

@@ -16,6 +16,7 @@ mod numbers;
 mod page;
 mod progress;
 mod reduce;
+mod sequence;
 mod session;
 mod table;
 mod verbs;

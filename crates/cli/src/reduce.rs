@@ -17,6 +17,8 @@ pub struct Reduced {
     pub meshes: Vec<Mesh>,
     pub report: Report,
     pub measured: Option<Distance>,
+    /// All levels on the way, where they are wanted.
+    pub sequence: Option<Progressive>,
 }
 
 /// A simplifier and how long it has been at work.

@@ -6,9 +6,12 @@ use serde_json::{Value, json};
 
 use crate::numbers::{count, plural, value};
 
-/// What contractions did that could not choose their place by the volume, and where.
-pub fn unconserved_json(loss: &VolumeLoss) -> Value {
-    json!({ "at_boundaries": with_bounds(&loss.open), "held": with_bounds(&loss.held) })
+/// What contractions did that could not choose their place by the volume, and where; `null` for a
+/// method that does not choose it so.
+pub fn unconserved_json(method: Method, loss: &VolumeLoss) -> Value {
+    let json =
+        || json!({ "at_boundaries": with_bounds(&loss.open), "held": with_bounds(&loss.held) });
+    method.conserves_volume().then(json).into()
 }
 
 fn with_bounds(some: &Unconserved) -> Value {
@@ -54,6 +57,9 @@ mod tests {
         assert_eq!(unconserved_text(Method::LeeJang, &loss).as_deref(), Some(text));
         assert_eq!(unconserved_text(Method::Qem, &loss), None);
         assert_eq!(unconserved_text(Method::LeeJang, &VolumeLoss::default()), None);
-        assert!(unconserved_json(&loss)["at_boundaries"]["bounds"].is_null());
+        let json = |method| unconserved_json(method, &loss);
+        assert_eq!(json(Method::LeeJang)["held"]["contractions"], 1);
+        assert!(json(Method::LeeJang)["at_boundaries"]["bounds"].is_null());
+        assert!(json(Method::Qem).is_null());
     }
 }

@@ -82,7 +82,7 @@ impl Search<'_> {
         let report = engine.run(Target::Error(estimate))?;
         let meshes = engine.level();
         let measured = measure(Some(self.original), self.scene, &meshes, self.session);
-        Ok(Reduced { meshes, report, measured })
+        Ok(Reduced { meshes, report, measured, sequence: None })
     }
 
     fn is_within(&self, level: &Reduced) -> bool {

@@ -7,22 +7,23 @@ use crate::compare::output::Output;
 use crate::files;
 use crate::numbers;
 use crate::page::columns::Column;
-use crate::page::descent::Level;
+use crate::page::descent::{Chain, Level};
 use crate::page::level_json::level_json;
 use crate::table::aligned;
 
 /// All figures; files are named by where they are in the folder.
 pub fn json(contest: &Contest<'_>, outcome: &Outcome, output: &Output) -> Value {
     let input = &contest.subject.counts;
-    let level = |level: &Level| {
-        let mut json = level_json(level, input);
+    let level = |method, level: &Level| {
+        let mut json = level_json(method, level, input);
         json["file"] = level.file.clone().into();
         json
     };
     let entry = |entry: &Entry| {
+        let Chain { method, levels } = &entry.chain;
         json!({
-            "method": entry.chain.method.name(),
-            "levels": entry.chain.levels.iter().map(level).collect::<Vec<_>>(),
+            "method": method.name(),
+            "levels": levels.iter().map(|made| level(*method, made)).collect::<Vec<_>>(),
             "failed": entry.trouble.as_ref().map(ToString::to_string),
         })
     };

@@ -31,19 +31,18 @@ fn of_exhibit(exhibit: &Exhibit, folder: &Path) -> Value {
     json["file"] = files::name(&folder.join(exhibit.sample.input_file())).into();
     json["lods"] = files::name(&folder.join(exhibit.sample.lods_file())).into();
     let chain = |chain: &Chain| {
-        let level = |level: &Level| of_level(exhibit, level, folder);
+        let method = chain.method;
+        let level = |level: &Level| {
+            let mut json = level_json(method, level, &exhibit.subject.counts);
+            json["file"] = files::name(&folder.join(&level.file)).into();
+            json
+        };
         json!({
-            "method": chain.method.name(),
+            "method": method.name(),
             "levels": chain.levels.iter().map(level).collect::<Vec<_>>(),
         })
     };
     json["chains"] = exhibit.chains.iter().map(chain).collect();
-    json
-}
-
-fn of_level(exhibit: &Exhibit, level: &Level, folder: &Path) -> Value {
-    let mut json = level_json(level, &exhibit.subject.counts);
-    json["file"] = files::name(&folder.join(&level.file)).into();
     json
 }
 

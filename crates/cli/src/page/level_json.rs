@@ -1,5 +1,6 @@
 //! The figures of a level, for programs.
 
+use meshlod::Method;
 use serde_json::{Value, json};
 
 use crate::amounts::Size;
@@ -9,8 +10,9 @@ use crate::page::descent::Level;
 use crate::reduce::refusals_json;
 use crate::volume::unconserved_json;
 
-/// All of them; the volume's change is `null` where the input is open.
-pub fn level_json(level: &Level, input: &Counts) -> Value {
+/// All of them; the volume's change is `null` where the input is open, and what a
+/// method could not conserve where it does not conserve any.
+pub fn level_json(method: Method, level: &Level, input: &Counts) -> Value {
     let report = &level.report;
     json!({
         "size": level.size.to_string(),
@@ -27,7 +29,7 @@ pub fn level_json(level: &Level, input: &Counts) -> Value {
         "volume": level.counts.volume,
         "volume_change_percent": level.volume_change(input),
         "volume_running_sum": report.volume.running_sum,
-        "volume_not_conserved": unconserved_json(&report.volume),
+        "volume_not_conserved": unconserved_json(method, &report.volume),
         "quality_mean": level.quality.map(|quality| quality.mean),
         "quality_min": level.quality.map(|quality| quality.min),
         "flip": level.flip,

@@ -104,7 +104,7 @@ impl Lods {
             let finer = chain.last().map_or(1.0, |link| link.screen_coverage);
             chain.push(Link {
                 size,
-                reduced: Reduced { meshes, report, measured },
+                reduced: Reduced { meshes, report, measured, sequence: None },
                 screen_coverage: measured.as_ref().map_or(finer, screen_coverage).min(finer),
                 file: self.file_of(i + 1),
             });

@@ -1,6 +1,5 @@
 //! `replay`: any level of a run that was kept.
 
-use std::fs;
 use std::path::PathBuf;
 
 use clap::Args;
@@ -10,15 +9,16 @@ use serde_json::json;
 
 use crate::amounts;
 use crate::answer::Answer;
-use crate::args::Writing;
+use crate::args::{Reading, Writing};
 use crate::failure::Failure;
 use crate::files;
 use crate::numbers::{count, faces};
+use crate::sequence;
 use crate::session::Session;
 
 #[derive(Args)]
 pub struct Replay {
-    /// File that simplify --sequence has written
+    /// File that simplify --sequence has written, or -
     #[arg(value_name = "FILE")]
     input: PathBuf,
     /// File to write, or -
@@ -26,6 +26,12 @@ pub struct Replay {
     output: PathBuf,
     #[command(flatten)]
     goal: Goal,
+    /// The file that was simplified, read as it was then: nodes, materials and textures are as
+    /// there; without it OUT has the geometry and its attributes alone
+    #[arg(long, value_name = "IN")]
+    scene: Option<PathBuf>,
+    #[command(flatten)]
+    reading: Reading,
     #[command(flatten)]
     writing: Writing,
 }
@@ -42,24 +48,31 @@ struct Goal {
     ratio: Option<f64>,
 }
 
+impl Goal {
+    /// The most faces that the level may have, of a finest one with `full`.
+    fn most_faces(&self, full: usize) -> usize {
+        match (self.faces, self.ratio) {
+            (Some(faces), _) => faces,
+            (None, ratio) => Target::Ratio(ratio.unwrap_or(1.0)).faces_of(full),
+        }
+    }
+}
+
 impl Replay {
     pub fn run(self, session: &Session) -> Result<Answer, Failure> {
         files::check_output(&self.output, session)?;
-        session.progress.stage(&format!("reading {}", files::name(&self.input)));
-        let at = |reason: &dyn std::fmt::Display| Failure::at(&self.input, reason);
-        let bytes = fs::read(&self.input).map_err(|error| at(&error))?;
-        let mut sequence = Progressive::from_bytes(&bytes).map_err(|error| at(&error))?;
+        self.check_paths()?;
+        let mut sequence = self.read(session)?;
         let (base, full) = (sequence.live_faces(), sequence.full_faces());
-        let target = self.goal.ratio.map_or(Target::Faces(0), Target::Ratio);
-        let wanted = self.goal.faces.unwrap_or_else(|| target.faces_of(full));
+        let wanted = self.goal.most_faces(full);
         sequence.go_to(wanted);
         let (found, splits) = (sequence.live_faces(), sequence.len());
         let reached = found <= wanted;
         if !reached {
-            session.warn(at(&format_args!("its coarsest level has {}", faces(base))));
+            let reason = format_args!("its coarsest level has {}", faces(base));
+            session.warn(Failure::at(&self.input, reason));
         }
-        let name = self.input.file_stem().map(|stem| stem.to_string_lossy().into_owned());
-        let scene = Scene::from_mesh(name.unwrap_or_default(), sequence.level());
+        let scene = self.scene_of(&sequence, session)?;
         files::write(&self.output, &scene, &self.writing, session)?;
         let json = json!({
             "full_faces": full,
@@ -72,5 +85,29 @@ impl Replay {
         let out = files::name(&self.output);
         let text = format!("{out}: {} of {} to {}\n", faces(found), count(base), count(full));
         Ok(Answer { file_on_stdout: files::is_pipe(&self.output), ..Answer::new(json, text) })
+    }
+
+    fn check_paths(&self) -> Result<(), Failure> {
+        if files::is_pipe(&self.input) && self.scene.as_deref().is_some_and(files::is_pipe) {
+            return Err(Failure::usage("-: only one of the two can come through a pipe"));
+        }
+        files::check_apart(&self.output, &[&self.input])
+    }
+
+    fn read(&self, session: &Session) -> Result<Progressive, Failure> {
+        session.progress.stage(&format!("reading {}", files::name(&self.input)));
+        let bytes = files::read_all(&self.input)?;
+        Progressive::from_bytes(&bytes).map_err(|error| Failure::at(&self.input, error))
+    }
+
+    /// The level at hand, where it belongs.
+    fn scene_of(&self, sequence: &Progressive, session: &Session) -> Result<Scene, Failure> {
+        if let Some(path) = &self.scene {
+            let mut scene = files::read(path, &self.reading, session)?;
+            sequence::put_into(&mut scene, sequence, path)?;
+            return Ok(scene);
+        }
+        let name = self.input.file_stem().map(|stem| stem.to_string_lossy().into_owned());
+        Ok(Scene::from_mesh(name.unwrap_or_default(), sequence.level()))
     }
 }

@@ -1,10 +1,9 @@
 //! `simplify`: one coarser mesh.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::time::Duration;
 
 use clap::Args;
-use meshlod::io::write_file;
 use meshlod::simplify::AttributeWeights;
 use meshlod::{Method, Options, Scene, Target, world_bounds};
 use serde_json::{Value, json};
@@ -17,6 +16,7 @@ use crate::failure::Failure;
 use crate::files;
 use crate::numbers::{count, faces, percent, value};
 use crate::reduce::{self, Engine, Reduced};
+use crate::sequence;
 use crate::session::Session;
 use crate::volume;
 use crate::within::Search;
@@ -36,7 +36,8 @@ pub struct Simplify {
     /// Measure the result; with --error, go on until the greatest distance measured is within
     #[arg(long)]
     measured: bool,
-    /// Keep all levels on the way in FILE, for the verb replay; of a file with one mesh
+    /// Keep all levels on the way in FILE, for the verb replay; of a file with one mesh, whose
+    /// nodes and materials replay takes from there
     #[arg(long, value_name = "FILE", conflicts_with = "measured")]
     sequence: Option<PathBuf>,
     /// Exit with 1 when the target is out of reach
@@ -124,26 +125,32 @@ impl Goal {
 impl Simplify {
     pub fn run(self, session: &Session) -> Result<Answer, Failure> {
         files::check_output(&self.output, session)?;
-        let mut scene = files::read(&self.input, &self.reading, session)?;
         if let Some(path) = &self.sequence {
-            self.check_sequence(path, &scene)?;
+            sequence::check(path, &self.input, &self.output)?;
+        }
+        let mut scene = files::read(&self.input, &self.reading, session)?;
+        if self.sequence.is_some() {
+            sequence::check_scene(&scene, &self.input, session)?;
         }
         let target = self.goal.target(&scene);
-        let (Reduced { meshes, report, measured }, time) = match target {
+        let (mut done, time) = match target {
             Target::Error(_) => self.measured_run(&scene, target, session)?,
             _ if self.measured => self.measured_run(&scene, target, session)?,
             _ => self.plain_run(&scene, target, session)?,
         };
-        reduce::replace(&mut scene, meshes);
-        files::write(&self.output, &scene, &self.writing, session)?;
-        if !report.reached {
-            let reason = Failure::at(&self.input, reduce::why_not_reached(&report));
+        reduce::replace(&mut scene, std::mem::take(&mut done.meshes));
+        let write = || files::write(&self.output, &scene, &self.writing, session);
+        match (&self.sequence, &done.sequence) {
+            (Some(path), Some(sequence)) => sequence::write_with(path, sequence, write)?,
+            _ => write()?,
+        }
+        if !done.report.reached {
+            let reason = Failure::at(&self.input, reduce::why_not_reached(&done.report));
             session.warn(reason);
         }
-        let done = Reduced { meshes: Vec::new(), report, measured };
         Ok(Answer {
             file_on_stdout: files::is_pipe(&self.output),
-            missed: self.strict && !report.reached,
+            missed: self.strict && !done.report.reached,
             ..Answer::new(self.json(&done, time), self.text(&done, time))
         })
     }
@@ -159,27 +166,15 @@ impl Simplify {
             engine.record();
         }
         let report = engine.run(target)?;
-        let reduced = Reduced { meshes: engine.level(), report, measured: None };
-        let time = engine.time();
-        if let Some(path) = &self.sequence {
-            let sequence = engine.into_sequence();
-            let sequence = sequence.ok_or_else(|| self.several_meshes())?;
-            write_file(path, &sequence.to_bytes())?;
-        }
-        Ok((reduced, time))
-    }
-
-    /// Refuses a sequence that could not be kept, before any work is done.
-    fn check_sequence(&self, path: &Path, scene: &Scene) -> Result<(), Failure> {
-        if files::is_pipe(path) {
-            return Err(Failure::usage("--sequence: name a file"));
-        }
-        files::check_place(path)?;
-        if scene.meshes.len() == 1 { Ok(()) } else { Err(self.several_meshes()) }
-    }
-
-    fn several_meshes(&self) -> Failure {
-        Failure::at(&self.input, "has several meshes; --sequence keeps the levels of one")
+        let (meshes, time) = (engine.level(), engine.time());
+        let sequence = match self.sequence {
+            Some(_) => {
+                let all = engine.into_sequence();
+                Some(all.ok_or_else(|| sequence::several_meshes(&self.input))?)
+            }
+            None => None,
+        };
+        Ok((Reduced { meshes, report, measured: None, sequence }, time))
     }
 
     /// A run that is measured, or led by what is measured.
@@ -212,7 +207,7 @@ impl Simplify {
         }
         json["error_measured"] = done.measured.as_ref().map(distance::to_json).into();
         json["volume_running_sum"] = report.volume.running_sum.into();
-        json["volume_not_conserved"] = volume::unconserved_json(&report.volume);
+        json["volume_not_conserved"] = volume::unconserved_json(self.manner.method, &report.volume);
         json["simplify_seconds"] = time.as_secs_f64().into();
         json["degenerate_faces"] = report.degenerate_faces.into();
         json["duplicate_faces"] = report.duplicate_faces.into();

@@ -79,6 +79,63 @@ fn a_sequence_gives_every_level_back_to_the_byte() {
     assert!(done.code == 0 && done.only_line().contains("coarsest"), "{done:?}");
 }
 
+/// A fish of a colour, at a hundredth of its size.
+fn write_small_fish(run: &Run) {
+    run.sample("fish", 1_000, "in.gltf");
+    let path = run.path("in.gltf");
+    let mut json: Value = serde_json::from_slice(&std::fs::read(&path).unwrap()).unwrap();
+    json["nodes"][0]["scale"] = serde_json::json!([0.01, 0.01, 0.01]);
+    let color = serde_json::json!({ "baseColorFactor": [0.8, 0.1, 0.1, 1.0] });
+    json["materials"] = serde_json::json!([{ "name": "red", "pbrMetallicRoughness": color }]);
+    json["meshes"][0]["primitives"][0]["material"] = 0.into();
+    std::fs::write(path, json.to_string()).unwrap();
+}
+
+#[test]
+fn a_sequence_gives_the_scene_back_that_it_was_made_of() {
+    let run = Run::new();
+    write_small_fish(&run);
+    let sequence = ["simplify", "in.gltf", "base.glb", "--ratio", "5%", "--sequence", "fish.seq"];
+    let warned = run.run(&sequence);
+    assert!(warned.code == 0 && warned.only_line().contains("--scene in.gltf"), "{warned:?}");
+    run.json(&["simplify", "in.gltf", "half.glb", "--ratio", "50%"]);
+    let bytes = |name: &str| std::fs::read(run.path(name)).unwrap();
+    for (ratio, level) in [("50%", "half.glb"), ("5%", "base.glb")] {
+        run.json(&["replay", "fish.seq", "back.glb", "--ratio", ratio, "--scene", "in.gltf"]);
+        assert!(bytes("back.glb") == bytes(level), "{level}");
+    }
+    let [whole, half] = ["in.gltf", "half.glb"].map(|file| run.json(&["info", file]));
+    assert!(whole["materials"] == half["materials"] && whole["materials"][0] == "red", "{half}");
+    let through = ["replay", "-", "-", "--ratio", "50%", "--scene", "in.gltf", "--format", "glb"];
+    assert!(run.run_with(&through, &bytes("fish.seq")).out == bytes("half.glb"));
+}
+
+#[test]
+fn a_scene_that_a_sequence_is_not_of_is_refused_in_a_line() {
+    let run = Run::new();
+    run.sample("torus", 200, "in.ply");
+    run.sample("torus", 400, "other.ply");
+    run.json(&["simplify", "in.ply", "base.ply", "--ratio", "50%", "--sequence", "torus.seq"]);
+    let replay = ["replay", "torus.seq", "out.ply", "--ratio", "50%", "--scene"];
+    let done = run.run(&[&replay[..], &["other.ply"]].concat());
+    assert!(done.code == 1 && done.only_line().contains("other.ply: is not the"), "{done:?}");
+    assert!(!run.path("out.ply").exists());
+}
+
+#[test]
+fn a_sequence_takes_no_place_of_another_file_and_comes_with_its_mesh() {
+    let run = Run::new();
+    run.sample("torus", 200, "in.ply");
+    std::fs::create_dir(run.path("folder")).unwrap();
+    let before = std::fs::read(run.path("in.ply")).unwrap();
+    for same in ["in.ply", "folder/../in.ply", "out.ply", "./out.ply"] {
+        let arguments = ["simplify", "in.ply", "out.ply", "--ratio", "50%", "--sequence", same];
+        assert_eq!(run.run(&arguments).code, 2, "{same}");
+    }
+    assert!(std::fs::read(run.path("in.ply")).unwrap() == before);
+    assert_eq!(run.files(), ["folder", "in.ply"]);
+}
+
 #[test]
 fn what_is_no_sequence_is_refused_in_a_line() {
     let run = Run::new();
