@@ -21,7 +21,7 @@ use crate::answer::Answer;
 use crate::args::{Reading, Sampling, Viewpoint};
 use crate::failure::Failure;
 use crate::files;
-use crate::page::look::{Coat, Look};
+use crate::page::look::{self, Coat, Look};
 use crate::page::subject::Subject;
 use crate::session::Session;
 use contest::Contest;
@@ -106,11 +106,11 @@ impl Compare {
     fn read(&self, session: &Session) -> Result<(Subject, Output), Failure> {
         let scene = files::read(&self.input, &self.reading, session)?;
         let output = Output::new(&self.out, &self.input, &scene, session);
-        let coat = Coat::of(&scene, &self.input, session);
+        let materials = look::materials(&scene, &self.input, session);
         let View { direction, up, .. } = self.viewpoint.view();
         let name = files::name(&self.input);
         let title = self.input.file_name().unwrap_or_default().to_string_lossy();
-        let look = |mesh: &_| Look::new(coat.or_checker(mesh), mesh, direction, up);
+        let look = |mesh: &_| Look::new(Coat::comparison(mesh, materials), mesh, direction, up);
         Ok((Subject::new([&name, &title], scene, look), output))
     }
 

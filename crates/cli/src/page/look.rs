@@ -28,11 +28,11 @@ pub enum Coat {
     Colors,
     Materials(Materials),
     /// Over the uvs.
-    Checker,
+    Checker {
+        /// Along a unit of uv.
+        squares: u32,
+    },
 }
-
-/// Squares of the checkerboard along a unit of uv.
-const SQUARES: u32 = 16;
 
 /// Edges that bend by more than this, in radians, are sharp where a file has no normals.
 const CREASE_RAD: f64 = 1.0;
@@ -41,13 +41,8 @@ const CREASE_RAD: f64 = 1.0;
 const CLAY: Coat = Coat::Plain([226, 208, 186]);
 
 impl Coat {
-    /// Of all that a scene shows; images that cannot be read are named `of` the file.
-    pub fn of(scene: &Scene, of: &std::path::Path, session: &Session) -> Self {
-        let (materials, unread) = materials_of(scene);
-        for image in unread {
-            let reason = format_args!("image {}: {}", image.name, image.reason);
-            session.warn(Failure::at(of, reason));
-        }
+    /// Of all that a scene shows, as it is meant to look; `materials` are the scene's.
+    pub fn of(scene: &Scene, materials: Materials) -> Self {
         let white = |material: &meshlod::io::Material| material.base_color[..3] == [1.0; 3];
         let colors = |mesh: &meshlod::io::SceneMesh| has(&mesh.mesh, LayerKind::Color(0));
         if !materials.textures.is_empty() || !scene.materials.iter().all(white) {
@@ -59,11 +54,16 @@ impl Coat {
         }
     }
 
-    /// Itself, or a checkerboard where a mesh has uvs and nothing to see them by.
-    pub fn or_checker(self, mesh: &Mesh) -> Self {
-        match self {
-            Self::Plain(_) if has(mesh, LayerKind::Uv(0)) => Self::Checker,
-            coat => coat,
+    /// That in which a mesh is compared with its levels, by the eye as by the image error; see
+    /// [`Paint::comparison`].
+    pub fn comparison(mesh: &Mesh, materials: Materials) -> Self {
+        match Paint::comparison(mesh, &materials) {
+            Paint::Materials(_) => Self::Materials(materials),
+            Paint::Checker { squares } => Self::Checker { squares },
+            Paint::Colors => Self::Colors,
+            Paint::Plain(color) => Self::Plain(color),
+            // Values and colours of faces are never what a file came with.
+            Paint::FaceColors(_) | Paint::FaceValues(_) | Paint::VertexValues(_) => CLAY,
         }
     }
 
@@ -72,7 +72,7 @@ impl Coat {
             Self::Plain(color) => Paint::Plain(*color),
             Self::Colors => Paint::Colors,
             Self::Materials(materials) => Paint::Materials(materials),
-            Self::Checker => Paint::Checker { squares: SQUARES },
+            Self::Checker { squares } => Paint::Checker { squares: *squares },
         }
     }
 
@@ -114,6 +114,16 @@ impl Look {
     }
 }
 
+/// The materials of a scene; images that cannot be read are named `of` the file.
+pub fn materials(scene: &Scene, of: &std::path::Path, session: &Session) -> Materials {
+    let (materials, unread) = materials_of(scene);
+    for image in unread {
+        let reason = format_args!("image {}: {}", image.name, image.reason);
+        session.warn(Failure::at(of, reason));
+    }
+    materials
+}
+
 /// The normals that came with it, or creases where it bends sharply.
 pub fn normals_of(mesh: &Mesh) -> Normals {
     match has(mesh, LayerKind::Normal) {
@@ -124,4 +134,22 @@ pub fn normals_of(mesh: &Mesh) -> Normals {
 
 fn has(mesh: &Mesh, kind: LayerKind) -> bool {
     mesh.attributes.as_ref().is_some_and(|all| all.layer(kind).is_some())
+}
+
+#[cfg(test)]
+mod tests {
+    use meshlod::mesh::sample;
+
+    use super::*;
+
+    #[test]
+    fn uvs_without_a_texture_are_compared_under_a_checker_whatever_the_colours() {
+        let mesh = sample::fish(500);
+        let mut scene = Scene::from_mesh("fish", mesh.clone());
+        let red = [1.0, 0.0, 0.0, 1.0];
+        scene.materials = vec![meshlod::io::Material { base_color: red, ..Default::default() }];
+        let materials = || materials_of(&scene).0;
+        assert!(matches!(Coat::comparison(&mesh, materials()), Coat::Checker { .. }));
+        assert!(matches!(Coat::of(&scene, materials()), Coat::Materials(_)));
+    }
 }

@@ -17,7 +17,7 @@ use crate::distance;
 use crate::failure::Failure;
 use crate::files;
 use crate::numbers::{percent, value};
-use crate::page::look::{Coat, normals_of};
+use crate::page::look::{self, Coat, normals_of};
 use crate::session::Session;
 
 #[derive(Args)]
@@ -49,6 +49,9 @@ pub struct Render {
     reading: Reading,
 }
 
+/// Of the checkerboard, along a unit of uv.
+const SQUARES: u32 = 16;
+
 /// Distances of a mesh's vertices from another mesh.
 struct Heat {
     values: Vec<f32>,
@@ -60,7 +63,7 @@ impl Render {
     pub fn run(self, session: &Session) -> Result<Answer, Failure> {
         files::check_picture(&self.output, session)?;
         let scene = files::read(&self.input, &self.reading, session)?;
-        let coat = Coat::of(&scene, &self.input, session);
+        let coat = Coat::of(&scene, look::materials(&scene, &self.input, session));
         let mesh = scene.into_mesh();
         if mesh.faces.is_empty() {
             return Err(Failure::at(&self.input, "the mesh has no faces"));
@@ -108,7 +111,7 @@ impl Render {
                 let range = [0.0, *max as f32];
                 Paint::VertexValues(Values { values, map: ColorMap::Heat, range })
             }
-            None if self.checker => Coat::Checker.paint(),
+            None if self.checker => Paint::Checker { squares: SQUARES },
             None => coat.paint(),
         };
         Style {
