@@ -12,6 +12,7 @@ use crate::page::studio::{Shots, Studio};
 use crate::page::subject::Subject;
 use crate::reduce;
 use crate::session::Session;
+use crate::volume::unconserved_text;
 
 /// What is to be done.
 pub struct Contest<'s> {
@@ -132,6 +133,15 @@ impl Outcome {
     /// The levels of one size, with the entries that have it.
     pub fn at(&self, size: usize) -> impl Iterator<Item = (&Entry, &Level)> + Clone {
         self.entries.iter().filter_map(move |entry| Some((entry, entry.chain.levels.get(size)?)))
+    }
+
+    /// Methods that conserve the volume and what they could not conserve at a size, and where.
+    pub fn unconserved(&self, size: usize) -> Vec<(Method, String)> {
+        let line = |(entry, level): (&Entry, &Level)| {
+            let method = entry.chain.method;
+            Some((method, unconserved_text(method, &level.report.volume)?))
+        };
+        self.at(size).filter_map(line).collect()
     }
 
     /// Says what did not go as wanted.

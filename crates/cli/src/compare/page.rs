@@ -79,6 +79,9 @@ fn files(contest: &Contest<'_>, outcome: &Outcome) -> Markup {
             p { a href="compare.json" { "compare.json" } " has all figures; the levels are:" }
             ul.names { @for level in levels() { li { a href=(level.file) { (level.file) } } } }
             @if let Some(level) = levels().next() {
+                @if level.file.ends_with(".glb") {
+                    p { "glTF holds 32 bits a coordinate: measured again, the last digits differ." }
+                }
                 pre { code { "meshlod measure " (contest.subject.title) " " (level.file) } }
             }
         }

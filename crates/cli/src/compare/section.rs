@@ -12,7 +12,6 @@ use crate::page::figures::{percent, whole};
 use crate::page::key::key;
 use crate::page::strip::{Layout, Stand, strip};
 use crate::page::table;
-use crate::volume::unconserved_text;
 
 /// Pictures, figures and refusals.
 pub fn section(contest: &Contest<'_>, outcome: &Outcome, size: usize) -> Markup {
@@ -20,9 +19,7 @@ pub fn section(contest: &Contest<'_>, outcome: &Outcome, size: usize) -> Markup 
         section id=(anchor(size)) {
             h2 { "At " (contest.sizes[size]) }
             (pictures(contest, outcome, size))
-            div.scroll tabindex="0" role="region" aria-label="Figures" {
-                (figures(contest, outcome, size))
-            }
+            (figures(contest, outcome, size))
             (unconserved(outcome, size))
             div.measured {
                 (chart(&trade(outcome, size)))
@@ -86,8 +83,9 @@ fn figures(contest: &Contest<'_>, outcome: &Outcome, size: usize) -> Markup {
     let wins: Vec<Vec<bool>> =
         columns.iter().map(|column| column.winners(input, &levels)).collect();
     html! {
-        table {
-            caption { (columns::legend(input, &columns)) " The best of a column is marked." }
+        // Before the table and not its caption: that would scroll with it.
+        p.about { (columns::legend(input, &columns).join(" ")) " The best of a column is marked." }
+        div.scroll tabindex="0" role="region" aria-label="Figures" { table {
             (table::heads("Method", &columns))
             tbody {
                 @for (i, (entry, level)) in outcome.at(size).enumerate() {
@@ -98,17 +96,13 @@ fn figures(contest: &Contest<'_>, outcome: &Outcome, size: usize) -> Markup {
                     (failed(entry, columns.len()))
                 }
             }
-        }
+        } }
     }
 }
 
 /// What methods that conserve the volume could not conserve, and where.
 fn unconserved(outcome: &Outcome, size: usize) -> Markup {
-    let line = |(entry, level): (&Entry, &Level)| {
-        let method = entry.chain.method;
-        Some((method, unconserved_text(method, &level.report.volume)?))
-    };
-    let lines: Vec<_> = outcome.at(size).filter_map(line).collect();
+    let lines = outcome.unconserved(size);
     html! {
         @if !lines.is_empty() {
             ul.verdict {

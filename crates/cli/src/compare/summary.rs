@@ -6,7 +6,7 @@ use crate::compare::contest::{COMPARED_SIDE, Contest, Entry, Outcome};
 use crate::compare::output::Output;
 use crate::files;
 use crate::numbers;
-use crate::page::columns::Column;
+use crate::page::columns::{Column, legend};
 use crate::page::descent::{Chain, Level};
 use crate::page::level_json::level_json;
 use crate::table::aligned;
@@ -46,10 +46,15 @@ pub fn text(contest: &Contest<'_>, outcome: &Outcome, output: &Output) -> String
     let mut text = format!("{}: {}\n", contest.subject.name, numbers::faces(input.faces));
     for (i, size) in contest.sizes.iter().enumerate() {
         text += &format!("\n{size}\n{}", table(contest, outcome, i));
+        for (method, line) in outcome.unconserved(i) {
+            text += &format!("{}: {line}\n", method.name());
+        }
     }
-    let volume =
-        if input.closed { "volume: its change in %" } else { "the mesh is open and has no volume" };
-    text += &format!("\nmean, RMS, max: measured, in % of the diagonal; {volume}\n");
+    let levels = outcome.entries.iter().flat_map(|entry| &entry.chain.levels);
+    text.push('\n');
+    for about in legend(input, &Column::of(input, levels)) {
+        text += &format!("{about}\n");
+    }
     text += "* the best of those that reached their size\n";
     text + &format!("{}\n", files::name(&output.folder.join("index.html")))
 }

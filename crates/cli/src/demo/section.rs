@@ -27,7 +27,7 @@ pub fn section(exhibit: &Exhibit) -> Markup {
             (pictures(exhibit))
             div.measured {
                 (chart(&errors(exhibit)))
-                div.scroll tabindex="0" role="region" aria-label="Figures" { (figures(exhibit)) }
+                (figures(exhibit))
             }
             p.verdict { (verdict(exhibit)) }
         }
@@ -76,22 +76,24 @@ fn figures(exhibit: &Exhibit) -> Markup {
     let input = &exhibit.subject.counts;
     let columns = Column::of(input, exhibit.chains.iter().flat_map(|chain| &chain.levels));
     html! {
-        table {
-            caption { (columns::legend(input, &columns)) }
-            (table::heads("Level", &columns))
-            @for chain in &exhibit.chains {
-                tbody {
-                    tr.method {
-                        th colspan=(columns.len() + 1) scope="rowgroup" {
-                            (key(chain.method)) (chain.method.name()) (refusals(chain))
+        div {
+            p.about { (columns::legend(input, &columns).join(" ")) }
+            div.scroll tabindex="0" role="region" aria-label="Figures" { table {
+                (table::heads("Level", &columns))
+                @for chain in &exhibit.chains {
+                    tbody {
+                        tr.method {
+                            th colspan=(columns.len() + 1) scope="rowgroup" {
+                                (key(chain.method)) (chain.method.name()) (refusals(chain))
+                            }
+                        }
+                        @for level in &chain.levels {
+                            @let name = html! { a href=(level.file) { (level.size) } };
+                            (table::row(&name, level, input, &columns, &[]))
                         }
                     }
-                    @for level in &chain.levels {
-                        @let name = html! { a href=(level.file) { (level.size) } };
-                        (table::row(&name, level, input, &columns, &[]))
-                    }
                 }
-            }
+            } }
         }
     }
 }

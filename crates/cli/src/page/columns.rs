@@ -24,8 +24,14 @@ pub struct Column {
 pub enum Best {
     Least,
     Greatest,
-    NearestZero,
+    /// Those below what rounding makes of this input are equally good.
+    NearestZero {
+        rounding: fn(&Counts) -> f64,
+    },
 }
+
+/// A part of the volume that summing up a million faces rounds away.
+const ROUNDING: f64 = 1e-12;
 
 /// What levels are compared by.
 pub const COLUMNS: [Column; 11] = [
@@ -70,15 +76,16 @@ pub const COLUMNS: [Column; 11] = [
         about: "Volume: its change in percent.",
         value: |input, level| level.volume_change(input),
         text: drift,
-        best: Some(Best::NearestZero),
+        best: Some(Best::NearestZero { rounding: |_| 100.0 * ROUNDING }),
     },
     Column {
         head: "Sum",
-        about: "Sum: volume before less volume after, over all contractions with a closed ring, in \
+        about: "Sum: volume after less volume before, over all contractions with a closed ring, in \
                 cubic units.",
-        value: |_, level| Some(level.report.volume.running_sum),
+        // Its sign is that of the column before; the report's is that of the paper.
+        value: |_, level| Some(0.0 - level.report.volume.running_sum),
         text: power_of_ten,
-        best: Some(Best::NearestZero),
+        best: Some(Best::NearestZero { rounding: |input| ROUNDING * input.volume.abs() }),
     },
     Column {
         head: "Shape",
@@ -110,11 +117,11 @@ pub const COLUMNS: [Column; 11] = [
     },
 ];
 
-/// What the heads mean, and why one is missing.
-pub fn legend(input: &Counts, columns: &[&Column]) -> String {
+/// What the heads mean, and why one is missing: a sentence each.
+pub fn legend(input: &Counts, columns: &[&Column]) -> Vec<&'static str> {
     let abouts = columns.iter().map(|column| column.about).filter(|about| !about.is_empty());
     let open = (!input.closed).then_some("The input is open and encloses no volume.");
-    abouts.chain(open).collect::<Vec<_>>().join(" ")
+    abouts.chain(open).collect()
 }
 
 impl Column {
@@ -141,12 +148,12 @@ impl Column {
         let Some(best) = self.best else { return vec![false; levels.len()] };
         let of = |level: &&Level| {
             let value = (self.value)(input, level).filter(|_| level.report.reached)?;
-            Some(if matches!(best, Best::NearestZero) { value.abs() } else { value })
+            Some(best.size(value, input))
         };
         let values: Vec<Option<f64>> = levels.iter().map(of).collect();
         let sought = values.iter().flatten().copied().reduce(match best {
             Best::Greatest => f64::max,
-            Best::Least | Best::NearestZero => f64::min,
+            Best::Least | Best::NearestZero { .. } => f64::min,
         });
         let text = |value: f64| (self.text)(value);
         let Some(sought) = sought.map(text) else { return vec![false; levels.len()] };
@@ -157,6 +164,16 @@ impl Column {
     }
 }
 
+impl Best {
+    /// What of a value counts.
+    fn size(self, value: f64, input: &Counts) -> f64 {
+        match self {
+            Self::Least | Self::Greatest => value,
+            Self::NearestZero { rounding } => value.abs().max(rounding(input)),
+        }
+    }
+}
+
 /// How often a contraction was refused on the way to a level.
 pub fn refused(level: &Level) -> u64 {
     level.report.refusals.iter().map(|(_, count)| count).sum()
@@ -164,4 +181,22 @@ pub fn refused(level: &Level) -> u64 {
 
 fn whole(number: f64) -> String {
     count(number as usize)
+}
+
+#[cfg(test)]
+mod tests {
+    use meshlod::mesh::sample;
+
+    use super::*;
+
+    #[test]
+    fn what_rounding_makes_is_no_merit() {
+        let input = Counts::of(&sample::sphere(500));
+        for head in ["Volume", "Sum"] {
+            let column = COLUMNS.iter().find(|column| column.head == head).unwrap();
+            let size = |value| column.best.unwrap().size(value, &input);
+            assert_eq!(size(1e-14), size(-3e-13), "{head}");
+            assert!(size(-1e-6) > size(1e-9), "{head}");
+        }
+    }
 }

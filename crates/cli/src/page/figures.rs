@@ -50,11 +50,12 @@ pub fn power_of_ten(number: f64) -> String {
     if number == 0.0 { "0".into() } else { format!("{number:+.0e}") }
 }
 
-/// A time in milliseconds; from ten seconds on in seconds.
+/// A time in milliseconds; from one second on in seconds.
 pub fn seconds(seconds: f64) -> String {
     match seconds {
         _ if seconds < 0.0995 => format!("{:.1} ms", 1000.0 * seconds),
-        _ if seconds < 10.0 => format!("{:.0} ms", 1000.0 * seconds),
+        _ if seconds < 0.9995 => format!("{:.0} ms", 1000.0 * seconds),
+        _ if seconds < 9.995 => format!("{seconds:.2} s"),
         _ => format!("{seconds:.1} s"),
     }
 }
@@ -83,7 +84,7 @@ mod tests {
     fn times_keep_three_digits() {
         assert_eq!(
             [0.0123, 0.456, 7.891, 12.34].map(seconds),
-            ["12.3 ms", "456 ms", "7891 ms", "12.3 s"]
+            ["12.3 ms", "456 ms", "7.89 s", "12.3 s"]
         );
     }
 }

@@ -66,6 +66,7 @@ impl Lods {
             (1..=self.levels.len()).try_for_each(|i| files::check_place(&self.file_of(i)))?;
         }
         let mut scene = files::read(&self.input, &self.reading, session)?;
+        self.manner.warn(session);
         let (mut chain, time) = self.chain(&scene, &self.manner.options(), session)?;
         let input_faces = chain.first().map_or(0, |link| link.reduced.report.input_faces);
         self.write(format, &mut scene, &mut chain, session)?;

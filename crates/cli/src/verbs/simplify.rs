@@ -79,18 +79,21 @@ pub struct Manner {
 
 const WEIGHTS: AttributeWeights = AttributeWeights::DEFAULT;
 
-/// What attributes count, where the method counts them: qem and qem-endpoint do.
+/// What attributes count, where the method counts them.
 #[derive(Args)]
 struct Weights {
-    /// What a normal that is off by one counts, as a part of the diagonal; 0: nothing
+    /// What a normal that is off by one counts, as a part of the diagonal; 0: nothing;
+    /// with qem and qem-endpoint
     #[arg(long, value_name = "W", default_value_t = WEIGHTS.normal, value_parser = amounts::weight,
         allow_negative_numbers = true)]
     weight_normal: f64,
-    /// What a texture that slides by a length counts, as a part of it; 0: nothing
+    /// What a texture that slides by a length counts, as a part of it; 0: nothing;
+    /// with qem and qem-endpoint
     #[arg(long, value_name = "W", default_value_t = WEIGHTS.uv, value_parser = amounts::weight,
         allow_negative_numbers = true)]
     weight_uv: f64,
-    /// What a colour that is off by one counts, as a part of the diagonal; 0: nothing
+    /// What a colour that is off by one counts, as a part of the diagonal; 0: nothing;
+    /// with qem and qem-endpoint
     #[arg(long, value_name = "W", default_value_t = WEIGHTS.color, value_parser = amounts::weight,
         allow_negative_numbers = true)]
     weight_color: f64,
@@ -106,6 +109,18 @@ impl Manner {
             ..Options::default()
         }
     }
+
+    /// Says which of the options have no part in what the method does.
+    pub fn warn(&self, session: &Session) {
+        if self.options().weights != WEIGHTS && !counts_attributes(self.method) {
+            let method = self.method.name();
+            session.warn(format_args!("--weight-…: {method} does not count attributes; qem does"));
+        }
+    }
+}
+
+fn counts_attributes(method: Method) -> bool {
+    matches!(method, Method::Qem | Method::QemEndpoint)
 }
 
 impl Goal {
@@ -125,6 +140,7 @@ impl Goal {
 impl Simplify {
     pub fn run(self, session: &Session) -> Result<Answer, Failure> {
         files::check_output(&self.output, session)?;
+        self.manner.warn(session);
         if let Some(path) = &self.sequence {
             sequence::check(path, &self.input, &self.output)?;
         }

@@ -120,7 +120,7 @@ fn an_open_mesh_has_no_volume_to_change() {
     assert!(levels(&json).all(|level| level["file"].as_str().unwrap().ends_with(".ply")));
     assert!(page(&run).contains("The input is open and encloses no volume"));
     let text = compare(&run, &["in.obj", "--ratio", "30%", "--no-pictures"]);
-    assert!(text.text().contains("the mesh is open") && !text.text().contains("  volume"));
+    assert!(text.text().contains("The input is open") && !text.text().contains("  volume"));
 }
 
 #[test]

@@ -151,6 +151,19 @@ fn measure_has_both_ways_and_the_seed_counts() {
 }
 
 #[test]
+fn weights_that_a_method_does_not_look_at_are_a_warning() {
+    let run = Run::new();
+    run.sample("sphere", 200, "in.ply");
+    let simplify = |method| {
+        let weighted = ["--weight-uv", "2", "--method", method];
+        run.run(&[&["simplify", "in.ply", "out.ply", "--ratio", "50%"], &weighted[..]].concat())
+    };
+    let (spr, qem) = (simplify("spr"), simplify("qem"));
+    assert!(spr.code == 0 && spr.only_line().contains("spr does not count attributes"), "{spr:?}");
+    assert!(qem.err.is_empty(), "{qem:?}");
+}
+
+#[test]
 fn what_became_of_the_volume_is_told() {
     let run = Run::new();
     run.sample("knot", 2_000, "closed.ply");
