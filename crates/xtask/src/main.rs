@@ -14,7 +14,6 @@ const USAGE: &str = "usage: cargo xtask VERB
   check    keys of references, arrows between crates, lengths of files
   doc      the documentation of all crates, warnings being errors
   results [SECTION...]  every figure of docs/RESULTS.md; or prints the sections with such titles
-  compare  simplification beside meshoptimizer, by turns on one core
   textured [MODEL...]  image errors of levels beside meshoptimizer's";
 
 fn main() -> ExitCode {
@@ -25,7 +24,6 @@ fn main() -> ExitCode {
         Some("check") => check::run(&project),
         Some("doc") => doc::run(&project),
         Some("results") => results::run(&project, &arguments.collect::<Vec<_>>()),
-        Some("compare") => results::compare(&project),
         Some("textured") => results::textured(&arguments.collect::<Vec<_>>()),
         _ => {
             eprintln!("{USAGE}");

@@ -11,35 +11,41 @@ mod table;
 mod textured;
 mod volume;
 
-use anyhow::{Context, Result};
+use anyhow::{Context, Result, bail};
 
 use crate::project::Project;
+
+type Section = fn(&Project) -> Result<String>;
+
+/// With their titles, in the order of the page.
+const SECTIONS: [(&str, Section); 7] = [
+    // First, while this program is small: see there.
+    ("Memory and determinism", memory::section),
+    ("Accuracy", accuracy::section),
+    ("Volume", volume::section),
+    ("Face constriction", constriction::section),
+    ("Textured", textured::section),
+    ("Speed of simplification", speed::section),
+    ("Reading and measuring", reading::section),
+];
 
 /// Makes all tables, writes docs/RESULTS.md and the same as a dated record beside it.
 ///
 /// Takes some minutes. Tables whose meshes are not here say so. With `names`, only prints the
 /// sections that have one of them in their title.
+///
+/// # Errors
+/// A name that no title has, before anything is made; a table that cannot be.
 pub fn run(project: &Project, names: &[String]) -> Result<()> {
+    check_names(names)?;
     let machine = machine::describe();
     let mut page = format!(
         "# Results\n\nMade by `cargo xtask results` on {}, {}. Distances are measured both ways with \
          500,000 samples each and all vertices, in % of the diagonal of the input's box.\n",
         machine.date, machine.what
     );
-    type Section = fn(&Project) -> Result<String>;
-    let sections: [(&str, Section); 7] = [
-        // First, while this program is small: see there.
-        ("Memory and determinism", memory::section),
-        ("Accuracy", accuracy::section),
-        ("Volume", volume::section),
-        ("Face constriction", constriction::section),
-        ("Textured", textured::section),
-        ("Speed of simplification", speed::section),
-        ("Reading and measuring", reading::section),
-    ];
-    let named = |title: &str| names.iter().any(|name| title.to_lowercase().contains(name));
-    for (title, section) in sections {
-        if !names.is_empty() && !named(title) {
+    for (title, section) in SECTIONS {
+        if !names.is_empty() && !names.iter().any(|name| is_named(title, name)) {
             continue;
         }
         eprintln!("{title} …");
@@ -58,10 +64,19 @@ pub fn run(project: &Project, names: &[String]) -> Result<()> {
     Ok(())
 }
 
-/// Prints the table of speeds alone.
-pub fn compare(project: &Project) -> Result<()> {
-    print!("{}", speed::section(project)?);
-    Ok(())
+fn check_names(names: &[String]) -> Result<()> {
+    let unknown = |name: &&String| !SECTIONS.iter().any(|(title, _)| is_named(title, name));
+    match names.iter().find(unknown) {
+        Some(name) => {
+            let titles = SECTIONS.map(|(title, _)| title).join(", ");
+            bail!("no section has {name:?} in its title; there are {titles}")
+        }
+        None => Ok(()),
+    }
+}
+
+fn is_named(title: &str, name: &str) -> bool {
+    title.to_lowercase().contains(&name.to_lowercase())
 }
 
 /// Prints the table of image errors alone, of the models that have one of `names` in theirs.

@@ -50,7 +50,7 @@ pub fn section(_: &Project) -> Result<String> {
     Ok(format!(
         "One core, CPU time, by turns, medians of {ROUNDS} rounds; files excluded, connectivity and the mesh \
          that comes out included. The peer is simplify with update. Again: `cargo xtask \
-         compare`.\n\n{}",
+         results speed`.\n\n{}",
         table.markdown()
     ))
 }
