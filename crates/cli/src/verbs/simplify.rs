@@ -36,8 +36,8 @@ pub struct Simplify {
     /// Measure the result; with --error, go on until the greatest distance measured is within
     #[arg(long)]
     measured: bool,
-    /// Keep all levels on the way in FILE, for the verb replay; of a file with one mesh, whose
-    /// nodes and materials replay takes from there
+    /// Keep all levels on the way in FILE, for the verb replay, which needs --scene IN to give back
+    /// nodes and materials; of a file with one mesh
     #[arg(long, value_name = "FILE", conflicts_with = "measured")]
     sequence: Option<PathBuf>,
     /// Exit with 1 when the target is out of reach
