@@ -192,7 +192,7 @@ fn choose(surface: &Surface, hood: &Neighbourhood) -> Choice {
     let mut swept = Quadric::default();
     old_faces(surface, hood, origin, |normal, corner| {
         volume.add(normal, corner);
-        swept = swept + Quadric::squared(Symmetric::outer(normal), corner);
+        swept = swept + Quadric::squared_plane(normal, normal.dot(corner));
     });
     let mut boundary = Boundary::default();
     for outline in outlines(surface, hood.contracted()) {

@@ -158,6 +158,12 @@ impl Quadric {
         Self { a, b, c, weight: a.trace() }
     }
 
+    /// (`normal`·x − `level`)².
+    #[inline]
+    pub(crate) fn squared_plane(normal: DVec3, level: f64) -> Self {
+        Self::new(Symmetric::outer(normal), -level * normal, level * level)
+    }
+
     /// (x − from)'A(x − from).
     #[inline]
     pub(crate) fn squared(a: Symmetric, from: DVec3) -> Self {
