@@ -6,7 +6,7 @@
 //! - A **wedge** is a vertex with one set of attributes (what a GPU calls a vertex). A **seam** is
 //!   an edge whose two faces use different wedges: the surface is whole there, the texture is not.
 //! - A **boundary edge** has one face, a **non-manifold edge** three or more.
-//! - A **contraction** makes one vertex of two. A **refusal** is why one may not happen.
+//! - A **contraction** makes one vertex of two or three. A **refusal** is why one may not happen.
 //! - A **level** is a mesh coarser than the input, a **chain** a list of levels.
 //! - An **error** is a length in model units. `error_estimate` is the algorithm's own word;
 //!   a measured one comes from [`measure`]. They are never mixed.

@@ -217,6 +217,9 @@ impl<'s> SceneSimplifier<'s> {
             refusals: Refusals::default(),
             volume: VolumeLoss::default(),
         };
+        let mut places = self.scene.placements();
+        places.sort_by_key(|place| place.mesh);
+        let mut places = places.into_iter().peekable();
         for part in &mut self.parts {
             // A run to where it stands does nothing and tells all.
             let here = Target::Faces(part.simplifier.live_faces());
@@ -226,8 +229,11 @@ impl<'s> SceneSimplifier<'s> {
             whole.non_manifold_vertices += part.copies * report.non_manifold_vertices;
             whole.error_estimate = whole.error_estimate.max(part.scale * report.error_estimate);
             whole.refusals += report.refusals;
-            for place in self.scene.placements().iter().filter(|place| place.mesh == part.mesh) {
-                whole.volume.add(&report.volume, &place.transform);
+            // Parts are in the order of their meshes; those between them have nothing to contract.
+            while let Some(place) = places.next_if(|place| place.mesh <= part.mesh) {
+                if place.mesh == part.mesh {
+                    whole.volume.add(&report.volume, &place.transform);
+                }
             }
         }
         Ok(whole)

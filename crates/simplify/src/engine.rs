@@ -169,8 +169,14 @@ where
 
     /// Opens what may go in the place of a refused candidate.
     fn instead(&mut self, entry: Entry) {
-        let Self { algorithm, surface, waiting, opened, .. } = self;
+        let Self { algorithm, surface, opened, .. } = self;
         algorithm.candidates.refused(entry.id, &mut Desk { surface, opened });
+        self.admit();
+    }
+
+    /// Puts the candidates that were opened in the queue.
+    fn admit(&mut self) {
+        let Self { algorithm, surface, waiting, opened, .. } = self;
         for id in opened.drain(..) {
             let entry = algorithm.entry(surface, id);
             waiting.put(entry, surface);
@@ -179,13 +185,11 @@ where
 
     /// Brings the books up to date after a contraction, and wakes those who waited for a change.
     fn renew(&mut self, placed: &Placed) {
-        let Self { algorithm, surface, hood, waiting, opened, .. } = self;
+        let Self { algorithm, surface, hood, opened, .. } = self;
         let kept = hood.contracted[placed.kept];
         algorithm.candidates.settle(hood, kept, &mut Desk { surface, opened });
-        for id in opened.drain(..) {
-            let entry = algorithm.entry(surface, id);
-            waiting.put(entry, surface);
-        }
+        self.admit();
+        let Self { surface, hood, waiting, .. } = self;
         for v in hood.contracted.iter().copied().chain(hood.ring.iter().map(|r| r.id)) {
             if surface.flags(v).any(Flags::AWAITED) {
                 surface.unflag(v, Flags::AWAITED);

@@ -113,6 +113,12 @@ impl Neighbourhood {
         self.ring.iter().map(|r| r.position.distance_squared(from)).fold(0.0, f64::max).sqrt()
     }
 
+    /// Whether the ring is closed: only then is there a volume to conserve.
+    #[inline]
+    pub(crate) fn is_closed(&self, surface: &Surface) -> bool {
+        !self.contracted.iter().any(|&v| surface.flags(v).any(Flags::BOUNDARY))
+    }
+
     /// Where the new vertex may be.
     pub fn freedom(&self) -> Freedom {
         self.freedom

@@ -70,6 +70,11 @@ impl Method {
         }
     }
 
+    /// Whether attributes count in its costs, by [`Options::weights`]. All methods place them.
+    pub fn counts_attributes(self) -> bool {
+        matches!(self, Self::Qem | Self::QemEndpoint)
+    }
+
     /// Whether every contraction with a closed ring that is free to choose its place conserves the
     /// volume.
     pub fn conserves_volume(self) -> bool {

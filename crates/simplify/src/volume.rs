@@ -1,12 +1,12 @@
 //! What contractions did to the volume, an observer.
 
 use glam::{DMat3, DMat4};
-use meshlod_mesh::{Bounds, VertexId};
+use meshlod_mesh::Bounds;
 
 use crate::contracted::Freedom;
 use crate::neighbourhood::{Neighbourhood, Spoke};
 use crate::policy::Observe;
-use crate::surface::{Flags, Placed, Surface};
+use crate::surface::{Placed, Surface};
 
 /// The volume that contractions lost, and those that no method can make conserve it. All are of edges:
 /// a face counts as the two that it is contracted as.
@@ -61,7 +61,7 @@ impl Unconserved {
 
 impl Observe for VolumeLoss {
     fn before(&mut self, surface: &Surface, hood: &Neighbourhood, placed: &Placed) {
-        if hood.contracted().iter().any(|&v: &VertexId| surface.flags(v).any(Flags::BOUNDARY)) {
+        if !hood.is_closed(surface) {
             return self.open.add(placed);
         }
         if hood.freedom() != Freedom::Free {

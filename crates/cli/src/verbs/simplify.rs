@@ -112,15 +112,11 @@ impl Manner {
 
     /// Says which of the options have no part in what the method does.
     pub fn warn(&self, session: &Session) {
-        if self.options().weights != WEIGHTS && !counts_attributes(self.method) {
+        if self.options().weights != WEIGHTS && !self.method.counts_attributes() {
             let method = self.method.name();
             session.warn(format_args!("--weight-…: {method} does not count attributes; qem does"));
         }
     }
-}
-
-fn counts_attributes(method: Method) -> bool {
-    matches!(method, Method::Qem | Method::QemEndpoint)
 }
 
 impl Goal {

@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use crate::contracted::Freedom;
 use crate::methods::qem::{Optimal, Quadrics};
-use crate::methods::volume::{VolumePlane, is_closed};
+use crate::methods::volume::VolumePlane;
 use crate::neighbourhood::Neighbourhood;
 use crate::policy::Placement;
 use crate::refusal::Refusal;
@@ -27,7 +27,7 @@ impl Placement<Quadrics> for Conserving {
         hood: &Neighbourhood,
     ) -> Result<Placed, Refusal> {
         let placed = Optimal.place(surface, memory, hood)?;
-        if hood.freedom() != Freedom::Free || !is_closed(surface, hood) || hood.ring().is_empty() {
+        if hood.freedom() != Freedom::Free || !hood.is_closed(surface) || hood.ring().is_empty() {
             return Ok(placed);
         }
         let ring = hood.ring();

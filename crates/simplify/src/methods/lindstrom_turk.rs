@@ -10,6 +10,7 @@ use meshlod_mesh::{FaceId, VertexId};
 
 use crate::contracted::{Contracted, Freedom};
 use crate::methods::outline::outlines;
+use crate::methods::qem::SHORT_FIRST;
 use crate::methods::quadric::{Quadric, Symmetric};
 use crate::methods::volume::{VolumePlane, old_faces};
 use crate::neighbourhood::Neighbourhood;
@@ -22,9 +23,6 @@ use crate::surface::{Flags, Placed, Surface};
 /// .00764, .0580. Of igea: .00437, .0307; .00437, .0308; .00443, .0310; .00486, .0317.
 const PULL: f64 = 1e-5;
 
-/// What the length of an edge counts, so that flats are coarsened evenly; as for quadrics.
-const SHORT_FIRST: f64 = 1e-9;
-
 /// What an area on an outline counts against a volume over the length of the edge: both squared, a
 /// half and a sixth of what the products of vectors give.
 const OUTLINE_WEIGHT: f64 = 9.0;
@@ -33,7 +31,7 @@ const OUTLINE_WEIGHT: f64 = 9.0;
 const COMPATIBLE: f64 = 0.017;
 
 /// A sum of vectors whose square is less than this part of their squares' sum is rounding.
-pub(crate) const CANCELLED: f64 = 1e-12;
+const CANCELLED: f64 = 1e-12;
 
 /// What the faces around a vertex come to, seen from it.
 #[derive(Clone, Copy, Debug, Default)]
@@ -162,10 +160,9 @@ impl Placement<Stars> for Memoryless {
 /// The place of any gathered contraction, from the faces around as they are. Where these nearly
 /// cancel, as in folds, the place that conserves the volume can be far outside of them.
 pub(crate) fn place(surface: &Surface, hood: &Neighbourhood) -> Result<Placed, Refusal> {
-    let Choice { offset, swept } = choose(surface, hood);
+    let Choice { offset, swept, middle } = choose(surface, hood);
     let error_estimate = swept.distance(swept.at(offset));
     let origin = surface.position(hood.contracted()[0]);
-    let middle = middle(surface, hood.contracted());
     match hood.freedom() {
         Freedom::At(kept) => {
             let position = surface.position(hood.contracted()[kept]);
@@ -182,6 +179,8 @@ pub(crate) fn place(surface: &Surface, hood: &Neighbourhood) -> Result<Placed, R
 struct Choice {
     offset: DVec3,
     swept: Quadric,
+    /// Of the contracted, from the first.
+    middle: DVec3,
 }
 
 fn choose(surface: &Surface, hood: &Neighbourhood) -> Choice {
@@ -212,7 +211,7 @@ fn choose(surface: &Surface, hood: &Neighbourhood) -> Choice {
             None => swept.optimum_on(volume.normal, volume.level, middle, PULL),
         },
     };
-    Choice { offset, swept }
+    Choice { offset, swept, middle }
 }
 
 /// The boundary edges around: sums of their directions and of the products of their ends.

@@ -1,6 +1,6 @@
 //! Edges where the surface ends, or a chart of its textures.
 
-use meshlod_mesh::{FaceId, VertexId};
+use meshlod_mesh::{FaceId, Side, VertexId};
 
 use crate::surface::{Flags, Surface};
 
@@ -22,40 +22,40 @@ pub(crate) fn outlines(surface: &Surface, vertices: &[VertexId]) -> Vec<Outline>
             continue;
         }
         let sides: Vec<_> = surface.star(v).flat_map(|face| sides_at(surface, face, v)).collect();
-        for (place, side) in sides.iter().enumerate() {
-            let same = |other: &&Side| other.other == side.other;
-            let is_first = !sides[..place].iter().any(|other| same(&other));
-            if !is_first || vertices[..i].contains(&side.other) {
+        for (place, &(other, side)) in sides.iter().enumerate() {
+            let same = |&&(vertex, _): &&(VertexId, Side)| vertex == other;
+            let is_first = !sides[..place].iter().any(|side| same(&side));
+            if !is_first || vertices[..i].contains(&other) {
                 continue;
             }
             let twin = sides[place + 1..].iter().find(same);
-            let is_seam = twin.is_some_and(|twin| is_seam(surface, side, twin, v));
+            let is_seam = twin.is_some_and(|&(_, twin)| is_seam(surface, side, twin));
             if is_seam || twin.is_none() {
-                found.push(Outline { ends: side.ends, is_seam });
+                let (face, k) = (surface.face(side.face()), side.corner());
+                found.push(Outline { ends: [face[k], face[(k + 1) % 3]], is_seam });
             }
         }
     }
     found
 }
 
-/// A side of a face at a vertex.
-struct Side {
-    face: FaceId,
-    /// Its end that is not the vertex.
-    other: VertexId,
-    ends: [VertexId; 2],
-}
-
-fn sides_at(surface: &Surface, face: FaceId, v: VertexId) -> [Side; 2] {
+/// The two sides of a face at a vertex, each with its other end.
+fn sides_at(surface: &Surface, face: FaceId, v: VertexId) -> [(VertexId, Side); 2] {
     let (corners, k) = (surface.face(face), surface.corner(face, v));
-    let (next, last) = (corners[(k + 1) % 3], corners[(k + 2) % 3]);
-    [Side { face, other: next, ends: [v, next] }, Side { face, other: last, ends: [last, v] }]
+    let (next, last) = ((k + 1) % 3, (k + 2) % 3);
+    [(corners[next], Side::new(face, k)), (corners[last], Side::new(face, last))]
 }
 
-fn is_seam(surface: &Surface, side: &Side, twin: &Side, v: VertexId) -> bool {
+/// Whether the two faces of an edge use different charts at an end of it.
+pub(super) fn is_seam(surface: &Surface, side: Side, twin: Side) -> bool {
     let Some(wedges) = &surface.wedges else { return false };
-    [v, side.other].into_iter().any(|end| {
-        let chart = |face| wedges.chart_at(face, surface.corner(face, end));
-        chart(side.face) != chart(twin.face)
+    let ends = |side: Side| [side.corner(), (side.corner() + 1) % 3];
+    let vertex = |side: Side, k: usize| surface.face(side.face())[k];
+    ends(side).into_iter().any(|k| {
+        let at: VertexId = vertex(side, k);
+        ends(twin).into_iter().any(|l| {
+            vertex(twin, l) == at
+                && wedges.chart_at(twin.face(), l) != wedges.chart_at(side.face(), k)
+        })
     })
 }

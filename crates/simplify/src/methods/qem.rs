@@ -13,6 +13,7 @@ use meshlod_mesh::{Connectivity, FaceId, Side, Twin, VertexId};
 
 use crate::contracted::{Contracted, Freedom};
 use crate::methods::appearance::Appearance;
+use crate::methods::outline::is_seam;
 use crate::methods::quadric::Quadric;
 use crate::neighbourhood::Neighbourhood;
 use crate::policy::{Memory, Placement, Priority};
@@ -26,7 +27,7 @@ const PULL: f64 = 1e-5;
 /// What the length of an edge counts against distance, both squared. Enough to take short edges first
 /// where all costs are rounding: a flat of a million faces otherwise grows hubs, and takes fifty
 /// times as long. 1e-6 already shows in the error of bunny at 1 %.
-const SHORT_FIRST: f64 = 1e-9;
+pub(super) const SHORT_FIRST: f64 = 1e-9;
 
 /// How much of the summed quadrics a new vertex remembers; the rest is its faces as they are. Mean
 /// error in % of the diagonal at 1 % of the faces:
@@ -132,20 +133,6 @@ fn add_face(
             }
         }
     }
-}
-
-/// Whether the two faces of an edge use different charts at an end of it.
-pub(super) fn is_seam(surface: &Surface, side: Side, twin: Side) -> bool {
-    let Some(wedges) = &surface.wedges else { return false };
-    let ends = |side: Side| [side.corner(), (side.corner() + 1) % 3];
-    let vertex = |side: Side, k: usize| surface.face(side.face())[k];
-    ends(side).into_iter().any(|k| {
-        let at: VertexId = vertex(side, k);
-        ends(twin).into_iter().any(|l| {
-            vertex(twin, l) == at
-                && wedges.chart_at(twin.face(), l) != wedges.chart_at(side.face(), k)
-        })
-    })
 }
 
 /// Where a rule of placement puts the vertex, and what that costs.

@@ -7,7 +7,7 @@ use glam::DVec3;
 use meshlod_mesh::{Connectivity, FaceId, Side, Twin, VertexId};
 
 use crate::methods::fan::{Fan, Rim};
-use crate::methods::qem::is_seam;
+use crate::methods::outline::is_seam;
 use crate::neighbourhood::{Neighbourhood, Spoke};
 use crate::policy::Memory;
 use crate::surface::{Placed, Surface};

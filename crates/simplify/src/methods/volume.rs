@@ -4,10 +4,9 @@
 //! the new vertex. So the places that conserve it are a plane: exactly, for any closed ring.
 
 use glam::DVec3;
-use meshlod_mesh::VertexId;
 
 use crate::neighbourhood::Neighbourhood;
-use crate::surface::{Flags, Surface};
+use crate::surface::Surface;
 
 /// The plane `normal`·x = `level`, x an offset from the origin that was given.
 #[derive(Clone, Copy, Debug, Default)]
@@ -69,10 +68,4 @@ pub(crate) fn old_faces(
         let [a, b, c] = surface.face(dying.face).map(|v| surface.position(v) - origin);
         each((b - a).cross(c - a), a);
     }
-}
-
-/// Whether a contraction has a closed ring: only then is there a volume to conserve.
-#[inline]
-pub(crate) fn is_closed(surface: &Surface, hood: &Neighbourhood) -> bool {
-    !hood.contracted().iter().any(|&v: &VertexId| surface.flags(v).any(Flags::BOUNDARY))
 }
