@@ -298,6 +298,10 @@ impl<'b> Input<'b> {
         faces: usize,
     ) -> Result<Attributes, ProgressiveError> {
         let corners = self.triples(faces, "the wedges of a face")?;
+        // Every wedge of a corner has its four bytes; without a layer nothing else shows a count.
+        if wedge_count > self.bytes.len() {
+            return Err(ProgressiveError::Truncated { at: self.at, what: "the wedges" });
+        }
         let layers = (0..self.number("the layers")? as usize).map(|i| self.layer(i, wedge_count));
         Ok(Attributes {
             layers: layers.collect::<Result<_, _>>()?,

@@ -119,3 +119,16 @@ fn a_wrong_byte_never_makes_a_wrong_mesh() {
     }
     assert!(refused > 30, "{refused}");
 }
+
+/// Found by the fuzzer: 48 bytes that claimed 800 million wedges of no layer.
+#[test]
+fn wedges_that_the_bytes_cannot_name_are_refused() {
+    let mut bytes = b"meshlodp".to_vec();
+    bytes.extend_from_slice(&[1, 0, 0, 0]);
+    bytes.extend_from_slice(&[0; 16]);
+    bytes.extend_from_slice(&0x3000_3F70_u32.to_le_bytes());
+    bytes.extend_from_slice(&[0; 16]);
+    Progressive::seal(&mut bytes);
+    let what = "the wedges";
+    assert_eq!(Progressive::from_bytes(&bytes), Err(ProgressiveError::Truncated { at: 36, what }));
+}
