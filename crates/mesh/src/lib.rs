@@ -18,6 +18,7 @@ mod components;
 mod connectivity;
 mod ids;
 mod labels;
+mod locks;
 mod mesh;
 pub mod sample;
 
@@ -27,4 +28,5 @@ pub use components::face_components;
 pub use connectivity::{Connectivity, Marks, Side, Twin};
 pub use ids::{FaceId, VertexId, WedgeId};
 pub use labels::Labels;
+pub use locks::{Lock, Locks};
 pub use mesh::{Mesh, MeshError};

@@ -113,6 +113,7 @@ mod materials;
 mod place;
 mod scene;
 
+pub use meshlod_check as check;
 pub use meshlod_io as io;
 pub use meshlod_measure as measure;
 pub use meshlod_mesh as mesh;
