@@ -1,6 +1,6 @@
 //! What a check finds: one type, a variant for each kind, with the ids and the place.
 
-use meshlod_mesh::{FaceId, VertexId};
+use meshlod_mesh::{FaceId, MeshError, VertexId};
 
 use crate::objects::ObjectId;
 
@@ -18,6 +18,11 @@ pub enum Finding {
         face: FaceId,
         /// What it names.
         vertex: VertexId,
+    },
+    /// Attributes, materials or objects do not fit the faces. Labels that do not fit name no objects.
+    BadAttributes {
+        /// The first that does not fit.
+        error: MeshError,
     },
     /// No face uses a vertex.
     UnusedVertex {
@@ -52,9 +57,12 @@ pub enum Finding {
     },
     /// A loop of edges with one face each.
     BoundaryLoop {
-        /// Its vertices in their order along the faces, the lowest id first. Where the boundary is
-        /// pinched, loops are as short as they can be.
+        /// Its vertices, in their order along the faces where these agree, the lowest id first.
+        /// None comes twice: a boundary that is pinched is several loops.
         vertices: Vec<VertexId>,
+        /// Whether the last vertex is joined to the first. It is not where a non-manifold edge ends
+        /// the boundary; then the lower end is first.
+        closed: bool,
     },
     /// An edge with three faces or more.
     NonManifoldEdge {
@@ -63,14 +71,16 @@ pub enum Finding {
         /// Its faces, lowest id first.
         faces: Vec<FaceId>,
     },
-    /// A vertex whose faces form more than one fan.
+    /// A vertex whose faces form more than one fan: through edges at it they do not all hang
+    /// together.
     NonManifoldVertex {
         /// The vertex.
         vertex: VertexId,
         /// How many fans.
         fans: usize,
     },
-    /// A closed component whose faces look inwards.
+    /// A shell, that is faces that hang together through edges, that is closed, consistently
+    /// oriented, and looks inwards.
     InsideOut {
         /// Its first face.
         face: FaceId,
@@ -138,6 +148,8 @@ pub enum Kind {
     NonFiniteVertex,
     /// [`Finding::BadIndex`]
     BadIndex,
+    /// [`Finding::BadAttributes`]
+    BadAttributes,
     /// [`Finding::UnusedVertex`]
     UnusedVertex,
     /// [`Finding::CoincidentVertices`]
@@ -173,9 +185,10 @@ pub enum Severity {
 
 impl Kind {
     /// Every kind, in the order in which they are found.
-    pub const ALL: [Self; 13] = [
+    pub const ALL: [Self; 14] = [
         Self::NonFiniteVertex,
         Self::BadIndex,
+        Self::BadAttributes,
         Self::UnusedVertex,
         Self::CoincidentVertices,
         Self::DegenerateFace,
@@ -194,6 +207,7 @@ impl Kind {
         match self {
             Self::NonFiniteVertex => "non-finite-vertex",
             Self::BadIndex => "bad-index",
+            Self::BadAttributes => "bad-attributes",
             Self::UnusedVertex => "unused-vertex",
             Self::CoincidentVertices => "coincident-vertices",
             Self::DegenerateFace => "degenerate-face",
@@ -213,6 +227,7 @@ impl Kind {
         match self {
             Self::NonFiniteVertex
             | Self::BadIndex
+            | Self::BadAttributes
             | Self::DegenerateFace
             | Self::DuplicateFace
             | Self::InconsistentEdge
@@ -234,6 +249,7 @@ impl Finding {
         match self {
             Self::NonFiniteVertex { .. } => Kind::NonFiniteVertex,
             Self::BadIndex { .. } => Kind::BadIndex,
+            Self::BadAttributes { .. } => Kind::BadAttributes,
             Self::UnusedVertex { .. } => Kind::UnusedVertex,
             Self::CoincidentVertices { .. } => Kind::CoincidentVertices,
             Self::DegenerateFace { .. } => Kind::DegenerateFace,

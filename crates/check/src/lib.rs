@@ -1,10 +1,17 @@
 //! What is wrong with a mesh, where its objects touch, what can be mended, what must not move.
 #![forbid(unsafe_code)]
 
+mod check;
 mod finding;
+mod kinds;
 mod objects;
 mod places;
+mod summary;
+mod zero_area;
 
+pub use check::{CheckOptions, check, findings, first, is_clean};
 pub use finding::{Degeneracy, Finding, Kind, Severity, Touch, TouchKind};
+pub use kinds::Kinds;
 pub use objects::{ObjectId, Objects, ObjectsBy};
 pub use places::Places;
+pub use summary::Summary;

@@ -1,6 +1,6 @@
 //! Which faces belong together: the named objects of the file, or its connected components.
 
-use meshlod_mesh::{Mesh, face_components};
+use meshlod_mesh::{Labels, Mesh, VertexId, face_components};
 
 /// An object of a mesh.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -33,10 +33,11 @@ pub struct Objects {
 }
 
 impl Objects {
-    /// The objects of a mesh whose indices are in range.
+    /// The objects of any mesh. Names that do not fit the faces are no names; faces that name
+    /// vertices that are not there are one component.
     pub fn of(mesh: &Mesh, by: ObjectsBy) -> Self {
-        let (component_of_face, components) = face_components(&mesh.faces, mesh.positions.len());
-        let labels = mesh.objects.as_ref().filter(|labels| match by {
+        let (component_of_face, components) = components(mesh);
+        let labels = labels(mesh).filter(|labels| match by {
             ObjectsBy::Auto => used_names(&labels.of_face) > 1,
             ObjectsBy::Names => true,
             ObjectsBy::Components => false,
@@ -51,6 +52,30 @@ impl Objects {
     }
 }
 
+/// The components, as far as indices are in range.
+fn components(mesh: &Mesh) -> (Vec<u32>, usize) {
+    let count = mesh.positions.len();
+    let sound = |face: &[VertexId; 3]| face.iter().all(|v| v.index() < count);
+    if mesh.faces.iter().all(sound) {
+        return face_components(&mesh.faces, count);
+    }
+    // All others are at one more vertex.
+    let elsewhere = [VertexId::new(count); 3];
+    let faces: Vec<_> =
+        mesh.faces.iter().map(|face| if sound(face) { *face } else { elsewhere }).collect();
+    face_components(&faces, count + 1)
+}
+
+/// The names of objects, where every face has one.
+fn labels(mesh: &Mesh) -> Option<&Labels> {
+    let fits = |labels: &&Labels| {
+        let count = labels.names.len();
+        labels.of_face.len() == mesh.faces.len()
+            && labels.of_face.iter().all(|&name| (name as usize) < count)
+    };
+    mesh.objects.as_ref().filter(fits)
+}
+
 /// How many different names faces have, as far as it matters: none, one, or two for more.
 fn used_names(of_face: &[u32]) -> usize {
     let Some(first) = of_face.first() else { return 0 };
@@ -59,10 +84,11 @@ fn used_names(of_face: &[u32]) -> usize {
 
 /// A name for every component.
 fn component_names(mesh: &Mesh, component_of_face: &[u32]) -> Vec<String> {
+    let labels = labels(mesh);
     let mut names = Vec::new();
     for (face, &component) in component_of_face.iter().enumerate() {
         if component as usize == names.len() {
-            let owner = mesh.objects.as_ref().map(|labels| &labels.names[labels.of(face) as usize]);
+            let owner = labels.map(|labels| &labels.names[labels.of(face) as usize]);
             names.push(match owner.filter(|name| !name.is_empty()) {
                 Some(owner) => format!("{owner}, component {component}"),
                 None => format!("component {component}"),

@@ -125,6 +125,12 @@ impl Connectivity {
         connectivity
     }
 
+    /// How many vertices there are, also those that no face uses.
+    #[inline]
+    pub fn vertex_count(&self) -> usize {
+        self.marks.len()
+    }
+
     /// The faces around a vertex, lowest id first.
     #[inline]
     pub fn star(&self, vertex: VertexId) -> &[FaceId] {

@@ -127,12 +127,18 @@ impl Mesh {
                 return Err(MeshError::BadVertex { face: FaceId::new(i), vertex, count });
             }
         }
-        self.validate_attributes()?;
+        self.validate_attributes()
+    }
+
+    /// The part of [`Mesh::validate`] that is about what hangs on faces: attributes, materials and
+    /// objects, whatever the faces are.
+    pub fn validate_attributes(&self) -> Result<(), MeshError> {
+        self.validate_corners()?;
         self.validate_labels("material", self.materials.as_ref())?;
         self.validate_labels("object", self.objects.as_ref())
     }
 
-    fn validate_attributes(&self) -> Result<(), MeshError> {
+    fn validate_corners(&self) -> Result<(), MeshError> {
         let Some(attributes) = &self.attributes else { return Ok(()) };
         let count = attributes.wedge_count;
         same_length("attribute corners", attributes.corners.len(), self.faces.len())?;
@@ -144,7 +150,7 @@ impl Mesh {
         self.validate_wedges(attributes)?;
         for layer in &attributes.layers {
             let what = format!("attribute layer \"{}\"", layer.name);
-            same_length(&what, layer.values.len(), count * layer.width)?;
+            same_length(&what, layer.values.len(), count.saturating_mul(layer.width))?;
             if let Some(width) = fixed_width(layer.kind) {
                 same_length(&format!("a wedge of {what}"), layer.width, width)?;
             }
@@ -154,7 +160,9 @@ impl Mesh {
 
     /// Every wedge belongs to one vertex.
     fn validate_wedges(&self, attributes: &Attributes) -> Result<(), MeshError> {
-        let mut home = vec![None; attributes.wedge_count];
+        // As many as corners name: nothing else here is as long as the count says.
+        let named = attributes.corners.iter().flatten().max().map_or(0, |w| w.index() + 1);
+        let mut home = vec![None; named];
         for (i, (face, corners)) in self.faces.iter().zip(&attributes.corners).enumerate() {
             for (&vertex, wedge) in face.iter().zip(corners) {
                 if *home[wedge.index()].get_or_insert(vertex) != vertex {

@@ -1,0 +1,77 @@
+//! Sets of kinds: what to look for.
+
+use crate::finding::{Kind, Severity};
+
+/// A set of kinds of findings.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Kinds(u16);
+
+impl Kinds {
+    /// Every kind.
+    pub const ALL: Self = Self((1 << Kind::ALL.len()) - 1);
+    /// None.
+    pub const NONE: Self = Self(0);
+
+    /// The kinds that most programs cannot live with.
+    pub fn errors() -> Self {
+        Kind::ALL.into_iter().filter(|kind| kind.severity() == Severity::Error).collect()
+    }
+
+    /// These and one more.
+    #[must_use]
+    pub fn with(self, kind: Kind) -> Self {
+        Self(self.0 | Self::bit(kind))
+    }
+
+    /// These but one.
+    #[must_use]
+    pub fn without(self, kind: Kind) -> Self {
+        Self(self.0 & !Self::bit(kind))
+    }
+
+    /// Whether it is among them.
+    pub fn contains(self, kind: Kind) -> bool {
+        self.0 & Self::bit(kind) != 0
+    }
+
+    /// Whether any of these is among them.
+    pub fn any_of(self, kinds: &[Kind]) -> bool {
+        kinds.iter().any(|&kind| self.contains(kind))
+    }
+
+    fn bit(kind: Kind) -> u16 {
+        1 << kind as u16
+    }
+}
+
+impl Default for Kinds {
+    fn default() -> Self {
+        Self::ALL
+    }
+}
+
+impl FromIterator<Kind> for Kinds {
+    fn from_iter<I: IntoIterator<Item = Kind>>(kinds: I) -> Self {
+        kinds.into_iter().fold(Self::NONE, Self::with)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn all_are_all_and_each_can_be_left_out() {
+        assert_eq!(Kind::ALL.into_iter().collect::<Kinds>(), Kinds::ALL);
+        for kind in Kind::ALL {
+            let others = Kinds::ALL.without(kind);
+            assert!(!others.contains(kind) && others.with(kind) == Kinds::ALL);
+        }
+    }
+
+    #[test]
+    fn errors_are_what_severity_says() {
+        assert!(Kinds::errors().contains(Kind::NonManifoldEdge));
+        assert!(!Kinds::errors().any_of(&[Kind::BoundaryLoop, Kind::Contact]));
+    }
+}

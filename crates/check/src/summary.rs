@@ -1,0 +1,85 @@
+//! How many findings of each kind there are.
+
+use crate::finding::{Finding, Kind, Severity};
+
+/// Findings counted by kind; grows by visiting.
+///
+/// ```
+/// use std::ops::ControlFlow;
+/// use meshlod_check::{CheckOptions, Kind, Summary, check};
+/// use meshlod_mesh::sample;
+///
+/// let mut summary = Summary::default();
+/// let _ = check(&sample::terrain(1000), &CheckOptions::default(), &mut |finding| {
+///     summary.add(finding);
+///     ControlFlow::Continue(())
+/// });
+/// assert_eq!((summary.count(Kind::BoundaryLoop), summary.total()), (1, 1));
+/// ```
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Summary {
+    counts: [usize; Kind::ALL.len()],
+}
+
+impl Summary {
+    /// Counts one more.
+    pub fn add(&mut self, finding: &Finding) {
+        self.counts[finding.kind() as usize] += 1;
+    }
+
+    /// How many there are of a kind.
+    pub fn count(&self, kind: Kind) -> usize {
+        self.counts[kind as usize]
+    }
+
+    /// How many there are of a severity.
+    pub fn of(&self, severity: Severity) -> usize {
+        self.found().filter(|(kind, _)| kind.severity() == severity).map(|(_, count)| count).sum()
+    }
+
+    /// How many there are.
+    pub fn total(&self) -> usize {
+        self.counts.iter().sum()
+    }
+
+    /// The worst of all; `None` where nothing was found.
+    pub fn worst(&self) -> Option<Severity> {
+        self.found().map(|(kind, _)| kind.severity()).max()
+    }
+
+    /// The kinds that were found, in the order of [`Kind::ALL`], and how many of each.
+    pub fn found(&self) -> impl Iterator<Item = (Kind, usize)> + '_ {
+        Kind::ALL.into_iter().map(|kind| (kind, self.count(kind))).filter(|&(_, count)| count > 0)
+    }
+}
+
+impl<'a> FromIterator<&'a Finding> for Summary {
+    fn from_iter<I: IntoIterator<Item = &'a Finding>>(findings: I) -> Self {
+        let mut summary = Self::default();
+        findings.into_iter().for_each(|finding| summary.add(finding));
+        summary
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use meshlod_mesh::VertexId;
+
+    use super::*;
+
+    #[test]
+    fn one_error_outweighs_warnings() {
+        let unused = Finding::UnusedVertex { vertex: VertexId(1) };
+        let mut summary: Summary = [&unused, &unused].into_iter().collect();
+        assert_eq!((summary.worst(), summary.of(Severity::Error)), (Some(Severity::Warning), 0));
+        summary.add(&Finding::NonFiniteVertex { vertex: VertexId(0) });
+        assert_eq!((summary.worst(), summary.of(Severity::Error)), (Some(Severity::Error), 1));
+        let found = [(Kind::NonFiniteVertex, 1), (Kind::UnusedVertex, 2)];
+        assert!(summary.found().eq(found) && summary.total() == 3);
+    }
+
+    #[test]
+    fn nothing_has_no_severity() {
+        assert_eq!(Summary::default().worst(), None);
+    }
+}
