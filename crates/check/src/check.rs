@@ -4,6 +4,7 @@ mod boundary;
 mod edges;
 mod faces;
 mod fans;
+mod meets;
 mod shells;
 mod sound;
 mod subject;
@@ -14,6 +15,7 @@ use std::ops::ControlFlow;
 use meshlod_mesh::Mesh;
 
 use crate::finding::{Finding, Kind};
+use crate::intersect::Net;
 use crate::kinds::Kinds;
 use crate::objects::ObjectsBy;
 use subject::Subject;
@@ -25,6 +27,8 @@ pub struct CheckOptions {
     pub kinds: Kinds,
     /// What an object is, where contacts are told from self-intersections.
     pub objects: ObjectsBy,
+    /// What finds the faces that may meet; the findings are the same.
+    pub net: Net,
 }
 
 /// What is told of findings, one at a time; it may end the check.
@@ -43,7 +47,7 @@ pub fn check(
     options: &CheckOptions,
     visit: &mut dyn FnMut(&Finding) -> ControlFlow<()>,
 ) -> ControlFlow<()> {
-    let subject = Subject::of(mesh);
+    let subject = Subject::of(mesh, options);
     for kind in Kind::ALL.into_iter().filter(|&kind| options.kinds.contains(kind)) {
         find(kind, &subject, visit)?;
     }
@@ -92,7 +96,8 @@ fn find(kind: Kind, subject: &Subject, visit: &mut Visit) -> ControlFlow<()> {
         Kind::NonManifoldEdge => edges::non_manifold(subject, visit),
         Kind::NonManifoldVertex => fans::non_manifold_vertices(subject, visit),
         Kind::InsideOut => shells::inside_out(subject, visit),
-        Kind::SelfIntersection | Kind::Contact => ControlFlow::Continue(()),
+        Kind::SelfIntersection => meets::self_intersections(subject, visit),
+        Kind::Contact => meets::contacts(subject, visit),
     }
 }
 

@@ -3,6 +3,7 @@
 
 mod check;
 mod finding;
+mod intersect;
 mod kinds;
 mod objects;
 mod places;
@@ -11,6 +12,7 @@ mod zero_area;
 
 pub use check::{CheckOptions, check, findings, first, is_clean};
 pub use finding::{Degeneracy, Finding, Kind, Severity, Touch, TouchKind};
+pub use intersect::Net;
 pub use kinds::Kinds;
 pub use objects::{ObjectId, Objects, ObjectsBy};
 pub use places::Places;

@@ -34,12 +34,17 @@ impl Places {
         self.first[vertex.index()]
     }
 
+    /// The vertices whose place an earlier one has, lowest id first.
+    pub fn doubles(&self) -> impl Iterator<Item = VertexId> + '_ {
+        (0..self.first.len()).map(VertexId::new).filter(|&v| self.first(v) != v)
+    }
+
     /// The places with two vertices or more among those that `counts`, by their lowest vertex;
     /// the vertices of each lowest id first.
     pub fn shared(&self, counts: impl Fn(VertexId) -> bool) -> Vec<Vec<VertexId>> {
         let mut groups: HashMap<VertexId, Vec<VertexId>, FxBuildHasher> = HashMap::default();
         // Only places that a second vertex names can have two that count.
-        for v in (0..self.first.len()).map(VertexId::new).filter(|&v| self.first(v) != v) {
+        for v in self.doubles() {
             groups.entry(self.first(v)).or_default().push(v);
         }
         let mut shared: Vec<Vec<VertexId>> = groups

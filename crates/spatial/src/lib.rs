@@ -17,14 +17,17 @@
 //! ```
 #![forbid(unsafe_code)]
 
+mod blocks;
 mod build;
 mod bvh;
 mod closest;
+mod curve;
 mod frame;
 #[cfg(test)]
 mod tests;
 mod triangle;
 
+pub use blocks::{BoxBlocks, Corners, LANES, Row, lanes};
 pub use bvh::{Bvh, BvhError};
 pub use closest::Closest;
 pub use frame::Frame;

@@ -5,11 +5,15 @@ use std::cell::OnceCell;
 
 use meshlod_mesh::{Connectivity, FaceId, Mesh, VertexId};
 
+use super::CheckOptions;
+use crate::intersect::{Ground, Meetings};
+use crate::objects::Objects;
 use crate::places::Places;
 
 /// A mesh under check. What is derived is made when the first kind asks for it.
 pub struct Subject<'a> {
     pub mesh: &'a Mesh,
+    options: &'a CheckOptions,
     /// The faces that take part. Those that cannot stand here as [`LEFT_OUT`], so that ids stay.
     pub faces: Cow<'a, [[VertexId; 3]]>,
     /// Whether all faces take part.
@@ -17,6 +21,8 @@ pub struct Subject<'a> {
     connectivity: OnceCell<Connectivity>,
     places: OnceCell<Places>,
     used: OnceCell<Vec<bool>>,
+    objects: OnceCell<Objects>,
+    meetings: OnceCell<Meetings>,
 }
 
 /// What stands for a face that takes no part: it repeats a vertex, so that [`Connectivity`] leaves
@@ -24,15 +30,18 @@ pub struct Subject<'a> {
 pub const LEFT_OUT: [VertexId; 3] = [VertexId(u32::MAX); 3];
 
 impl<'a> Subject<'a> {
-    pub fn of(mesh: &'a Mesh) -> Self {
+    pub fn of(mesh: &'a Mesh, options: &'a CheckOptions) -> Self {
         let faces = sound_faces(mesh);
         Self {
             mesh,
+            options,
             all_sound: matches!(faces, Cow::Borrowed(_)),
             faces,
             connectivity: OnceCell::new(),
             places: OnceCell::new(),
             used: OnceCell::new(),
+            objects: OnceCell::new(),
+            meetings: OnceCell::new(),
         }
     }
 
@@ -42,6 +51,23 @@ impl<'a> Subject<'a> {
 
     pub fn places(&self) -> &Places {
         self.places.get_or_init(|| Places::of(&self.mesh.positions))
+    }
+
+    pub fn objects(&self) -> &Objects {
+        self.objects.get_or_init(|| Objects::of(self.mesh, self.options.objects))
+    }
+
+    pub fn meetings(&self) -> &Meetings {
+        self.meetings.get_or_init(|| {
+            let ground = Ground {
+                positions: &self.mesh.positions,
+                faces: &self.faces,
+                connectivity: self.connectivity(),
+                places: self.places(),
+                objects: self.objects(),
+            };
+            Meetings::of(&ground, self.options.net)
+        })
     }
 
     /// One flag per vertex: does any face name it, also one that takes no part?

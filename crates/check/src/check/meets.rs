@@ -1,0 +1,43 @@
+//! Faces that meet beyond what they share.
+
+use std::ops::ControlFlow;
+
+use meshlod_mesh::FaceId;
+
+use super::Visit;
+use super::subject::Subject;
+use crate::finding::Finding;
+use crate::objects::ObjectId;
+
+pub fn self_intersections(subject: &Subject, visit: &mut Visit) -> ControlFlow<()> {
+    for (faces, [object, other]) in pairs(subject) {
+        if object == other
+            && let Some(touch) = subject.meetings().touch(subject.mesh, faces)
+        {
+            visit(&Finding::SelfIntersection { object, faces, touch })?;
+        }
+    }
+    ControlFlow::Continue(())
+}
+
+pub fn contacts(subject: &Subject, visit: &mut Visit) -> ControlFlow<()> {
+    for (mut faces, mut objects) in pairs(subject) {
+        if objects[0] > objects[1] {
+            faces.reverse();
+            objects.reverse();
+        }
+        if objects[0] < objects[1]
+            && let Some(touch) = subject.meetings().touch(subject.mesh, faces)
+        {
+            visit(&Finding::Contact { objects, faces, touch })?;
+        }
+    }
+    ControlFlow::Continue(())
+}
+
+/// The pairs of faces that meet, and their objects.
+fn pairs<'a>(subject: &'a Subject) -> impl Iterator<Item = ([FaceId; 2], [ObjectId; 2])> + 'a {
+    let of_face = &subject.objects().of_face;
+    let pairs = subject.meetings().pairs().iter();
+    pairs.map(|&faces| (faces, faces.map(|face| of_face[face.index()])))
+}

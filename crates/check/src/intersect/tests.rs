@@ -1,0 +1,128 @@
+//! The search against all pairs.
+
+use std::collections::BTreeSet;
+
+use meshlod_mesh::{Labels, Mesh, sample};
+
+use super::*;
+use crate::{CheckOptions, Finding, Kind, Kinds, findings};
+
+/// Random numbers, the same on every run [SLF14].
+pub(super) struct Random(pub(super) u64);
+
+impl Random {
+    pub(super) fn below(&mut self, n: u64) -> u64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = self.0;
+        z = (z ^ z >> 30).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ z >> 27).wrapping_mul(0x94d0_49bb_1331_11eb);
+        (z ^ z >> 31) % n
+    }
+}
+
+/// The pairs that the check finds.
+fn found(mesh: &Mesh, net: Net) -> BTreeSet<[FaceId; 2]> {
+    let kinds = Kinds::NONE.with(Kind::SelfIntersection).with(Kind::Contact);
+    let options = CheckOptions { kinds, net, ..CheckOptions::default() };
+    let faces = |finding: Finding| match finding {
+        Finding::SelfIntersection { mut faces, .. } | Finding::Contact { mut faces, .. } => {
+            faces.sort_unstable();
+            faces
+        }
+        other => panic!("not asked for: {other:?}"),
+    };
+    findings(mesh, &options).into_iter().map(faces).collect()
+}
+
+/// Two faces of a mesh without regard to others: the places they share, and what they have in common.
+fn seen_alone(mesh: &Mesh, [f, g]: [usize; 2]) -> (usize, Option<TouchKind>) {
+    let [a, b] = [f, g].map(|f| mesh.triangle(mesh.faces[f]));
+    let shared = a.iter().filter(|p| b.contains(p)).count();
+    (shared, meet(&a, &b).map(|touch| touch.kind))
+}
+
+/// Compares with all pairs of faces, none of which may be double.
+fn compare(mesh: &Mesh) {
+    let found = found(mesh, Net::Tree);
+    let objects = crate::Objects::of(mesh, crate::ObjectsBy::Auto).of_face;
+    let mut expected_objects = BTreeSet::new();
+    for f in 0..mesh.faces.len() {
+        for g in f + 1..mesh.faces.len() {
+            let pair = [f, g].map(FaceId::new);
+            let (shared, kind) = seen_alone(mesh, [f, g]);
+            let more = match shared {
+                0 => kind.is_some(),
+                1 => kind > Some(TouchKind::Vertex),
+                _ => kind > Some(TouchKind::Edge),
+            };
+            let apart = objects[f] == objects[g];
+            if more || (apart && found.contains(&pair)) {
+                assert!(more && found.contains(&pair), "{pair:?}: {shared} shared, {kind:?}");
+            }
+            if kind.is_some() {
+                expected_objects.insert([objects[f].min(objects[g]), objects[f].max(objects[g])]);
+            } else {
+                assert!(!found.contains(&pair), "{pair:?}");
+            }
+        }
+    }
+    let mut met = BTreeSet::new();
+    for pair in found {
+        let [a, b] = pair.map(|f| objects[f.index()]);
+        met.insert([a.min(b), a.max(b)]);
+    }
+    expected_objects.retain(|[a, b]| a != b);
+    met.retain(|[a, b]| a != b);
+    assert_eq!(met, expected_objects);
+}
+
+/// Faces without order on points of a grid; `spread` vertices at random of its points.
+fn soup(seed: u64, faces: usize, grid: u64, spread: usize) -> Mesh {
+    let mut random = Random(seed);
+    let positions: Vec<[f64; 3]> =
+        (0..spread).map(|_| [(); 3].map(|()| random.below(grid) as f64 / 8.0)).collect();
+    let mut seen = BTreeSet::new();
+    let mut kept = Vec::new();
+    while kept.len() < faces {
+        let face = [(); 3].map(|()| VertexId(random.below(spread as u64) as u32));
+        let mut at = face.map(|v| positions[v.index()].map(f64::to_bits));
+        at.sort_unstable();
+        if seen.insert(at) {
+            kept.push(face);
+        }
+    }
+    let mut mesh = Mesh::new(positions, kept);
+    if random.below(2) == 0 {
+        let of_face = (0..faces).map(|_| random.below(3) as u32).collect();
+        mesh.objects = Some(Labels { names: ["a", "b", "c"].map(String::from).to_vec(), of_face });
+    }
+    mesh
+}
+
+#[test]
+fn soups_are_searched_as_all_pairs_would_be() {
+    for seed in 0..120 {
+        let (faces, grid, spread) = [(40, 4, 30), (100, 12, 200), (60, 40, 40)][seed as usize % 3];
+        compare(&soup(seed, faces, grid, spread));
+    }
+}
+
+#[test]
+fn rough_surfaces_are_searched_as_all_pairs_would_be() {
+    for (seed, size) in [(0, 0.0), (1, 0.02), (2, 0.1), (3, 0.3)] {
+        let mut random = Random(seed);
+        let mut mesh = sample::torus(500);
+        for x in mesh.positions.iter_mut().flatten() {
+            *x += (random.below(1000) as f64 / 1000.0 - 0.5) * size;
+        }
+        compare(&mesh);
+    }
+}
+
+#[test]
+fn samples_do_not_meet_themselves() {
+    for (name, faces) in [("sphere", 3000), ("torus", 3000), ("knot", 6000), ("gyroid", 9000)] {
+        let mesh = sample::by_name(name, Some(faces)).unwrap();
+        assert!(found(&mesh, Net::Tree).is_empty(), "{name}");
+    }
+}

@@ -1,0 +1,140 @@
+//! An order of boxes along a curve that fills space.
+
+use glam::DVec3;
+
+use crate::blocks::Corners;
+
+/// Bits of a key per axis; three passes of a radix sort of 10 bits each.
+const BITS: u32 = 10;
+const CELLS: f64 = (1u32 << BITS) as f64;
+/// Runs with one key at least this long are ordered again by themselves.
+const CROWD: usize = 32;
+
+/// The items 0 to `count` so that those with near centres are near in the order.
+///
+/// Items in one cell are ordered again in the box of their own centres, so neither far-off items nor
+/// crowds spoil the order; those at one point stay in the order of their ids.
+pub(crate) fn order(count: usize, corners: &impl Fn(u32) -> Corners) -> Vec<u32> {
+    let mut keyed: Vec<Keyed> = (0..count as u32).map(|item| Keyed { key: 0, item }).collect();
+    let mut scratch = Vec::new();
+    sort(&mut keyed, &mut scratch, corners);
+    keyed.into_iter().map(|keyed| keyed.item).collect()
+}
+
+#[derive(Clone, Copy)]
+struct Keyed {
+    key: u32,
+    item: u32,
+}
+
+/// Twice the centre, halved first: no box is too large for it.
+fn center([lo, hi]: Corners) -> DVec3 {
+    lo * 0.5 + hi * 0.5
+}
+
+fn sort(run: &mut [Keyed], scratch: &mut Vec<Keyed>, corners: &impl Fn(u32) -> Corners) {
+    let empty = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+    let (lo, hi) = run
+        .iter()
+        .map(|k| center(corners(k.item)))
+        .fold(empty, |(lo, hi), p| (lo.min(p), hi.max(p)));
+    // Halved, so that no extent overflows.
+    let extent = (hi * 0.5 - lo * 0.5).max_element();
+    if extent <= 0.0 || extent.is_nan() {
+        return;
+    }
+    for keyed in run.iter_mut() {
+        let at = (center(corners(keyed.item)) * 0.5 - lo * 0.5) / extent;
+        keyed.key = curve_key((at * CELLS).min(DVec3::splat(CELLS - 1.0)));
+    }
+    radix_sort(run, scratch);
+    let whole = run.len();
+    for crowd in run.chunk_by_mut(|a, b| a.key == b.key) {
+        if crowd.len() >= CROWD && crowd.len() < whole {
+            sort(crowd, scratch, corners);
+        }
+    }
+}
+
+fn curve_key(cell: DVec3) -> u32 {
+    let spread = |x: f64| {
+        let mut x = x as u32;
+        x = (x | x << 16) & 0x0300_00ff;
+        x = (x | x << 8) & 0x0300_f00f;
+        x = (x | x << 4) & 0x030c_30c3;
+        (x | x << 2) & 0x0924_9249
+    };
+    spread(cell.x) | spread(cell.y) << 1 | spread(cell.z) << 2
+}
+
+/// Sorts by key; equal keys keep their order.
+fn radix_sort(run: &mut [Keyed], scratch: &mut Vec<Keyed>) {
+    if run.len() < 256 {
+        run.sort_by_key(|keyed| keyed.key);
+        return;
+    }
+    const DIGITS: usize = 1 << BITS;
+    let mut starts = [[0u32; DIGITS]; 3];
+    for keyed in run.iter() {
+        for (pass, starts) in starts.iter_mut().enumerate() {
+            starts[keyed.key as usize >> (pass as u32 * BITS) & (DIGITS - 1)] += 1;
+        }
+    }
+    scratch.clear();
+    scratch.resize(run.len(), Keyed { key: 0, item: 0 });
+    for (pass, starts) in starts.iter_mut().enumerate() {
+        let mut sum = 0;
+        for start in starts.iter_mut() {
+            sum += std::mem::replace(start, sum);
+        }
+        for &keyed in run.iter() {
+            let slot = &mut starts[keyed.key as usize >> (pass as u32 * BITS) & (DIGITS - 1)];
+            scratch[*slot as usize] = keyed;
+            *slot += 1;
+        }
+        run.copy_from_slice(scratch);
+    }
+}
+
+/// About where most of the boxes are, and how large all are: coordinates that fit an `f32`.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Middle {
+    origin: DVec3,
+    scale: f64,
+}
+
+impl Middle {
+    /// Boxes asked for the middle; far more than make a median steady.
+    const SAMPLES: usize = 101;
+
+    pub(crate) fn of(count: usize, corners: &impl Fn(u32) -> Corners) -> Self {
+        if count == 0 {
+            return Self { origin: DVec3::ZERO, scale: 1.0 };
+        }
+        let samples = Self::SAMPLES.min(count);
+        let centers: Vec<DVec3> =
+            (0..samples).map(|i| center(corners((i * count / samples) as u32))).collect();
+        let median = |axis: usize| {
+            let mut along: Vec<f64> = centers.iter().map(|p| p[axis]).collect();
+            along.sort_unstable_by(f64::total_cmp);
+            along[samples / 2]
+        };
+        let origin = DVec3::new(median(0), median(1), median(2));
+        let far = (0..count as u32)
+            .flat_map(corners)
+            .map(|p| (p * 0.5 - origin * 0.5).abs().max_element())
+            .fold(0.0, f64::max);
+        // A power of two rounds nothing.
+        let scale = if far > 0.0 {
+            2f64.powi(-far.log2().floor().clamp(-1000.0, 1000.0) as i32)
+        } else {
+            1.0
+        };
+        Self { origin, scale }
+    }
+
+    #[inline]
+    pub(crate) fn local(&self, p: DVec3) -> DVec3 {
+        (p - self.origin) * self.scale
+    }
+}
