@@ -2,11 +2,13 @@
 //!
 //! `cargo fuzz run -s none ply` runs one of them.
 
+mod kept;
 mod seeds;
 
 use meshlod_io::Scene;
 use meshlod_mesh::Mesh;
 
+pub use kept::keep;
 pub use seeds::plant;
 
 /// Checks a mesh that a reader gave.

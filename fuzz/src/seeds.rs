@@ -1,20 +1,21 @@
 //! Files to start from, made by our writers and by hand, so that mutations begin near the grammar.
 
-use std::path::Path;
-
 use meshlod_fixtures as fixtures;
 use meshlod_io::{Precision, Scene, gltf, obj, off, ply, smf, stl};
 use meshlod_mesh::Mesh;
 use meshlod_simplify::{History, Options, Progressive, Simplifier, Target};
 
-/// Writes a target's seeds into its corpus; the fuzzer reads them after this.
+use crate::kept::{corpus, kept};
+
+/// Writes a target's seeds, and what is kept for it, into its corpus; the fuzzer reads them after
+/// this.
 ///
 /// # Panics
 /// When the corpus cannot be written.
 pub fn plant(target: &str) {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("corpus").join(target);
+    let folder = corpus(target);
     std::fs::create_dir_all(&folder).expect("a folder for the corpus");
-    for (i, seed) in seeds(target).into_iter().enumerate() {
+    for (i, seed) in seeds(target).into_iter().chain(kept(target)).enumerate() {
         std::fs::write(folder.join(format!("seed-{i}")), seed).expect("a seed");
     }
 }
