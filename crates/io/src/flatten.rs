@@ -19,6 +19,19 @@ pub struct Placement {
     pub transform: [[f64; 4]; 4],
 }
 
+impl Placement {
+    /// The transform without its translation. A last row, which only a perspective has, counts for
+    /// nothing.
+    fn linear(&self) -> DMat3 {
+        DMat3::from_mat4(DMat4::from_cols_array_2d(&self.transform))
+    }
+
+    /// Whether it turns faces over.
+    fn mirrors(&self) -> bool {
+        self.linear().determinant() < 0.0
+    }
+}
+
 impl Scene {
     /// The meshes that the scene shows, depth first from the roots. One that several nodes show
     /// comes several times.
@@ -109,7 +122,7 @@ impl Scene {
             let moved = mesh.positions.iter().map(|&p| world.transform_point3(p.into()).to_array());
             flat.positions.extend(moved);
         }
-        let mirrored = world.determinant() < 0.0;
+        let mirrored = placement.mirrors();
         flat.faces.extend(mesh.faces.iter().map(|face| {
             let [a, b, c] = face.map(|v| VertexId::new(base + v.index()));
             if mirrored { [a, c, b] } else { [a, b, c] }
@@ -193,8 +206,7 @@ fn same_meaning(a: &Layer, b: &Layer) -> bool {
 
 fn append_attributes(flat: &mut Attributes, mesh: &Mesh, placement: &Placement) {
     let base = flat.wedge_count;
-    let linear = DMat3::from_mat4(DMat4::from_cols_array_2d(&placement.transform));
-    let mirrored = linear.determinant() < 0.0;
+    let mirrored = placement.mirrors();
     let mut push = |[a, b, c]: [usize; 3]| {
         let corners = if mirrored { [a, c, b] } else { [a, b, c] };
         flat.corners.push(corners.map(|w| WedgeId::new(base + w)));
@@ -212,7 +224,7 @@ fn append_attributes(flat: &mut Attributes, mesh: &Mesh, placement: &Placement) 
     };
     flat.wedge_count += wedges;
     let own = mesh.attributes.as_ref().map_or(&[][..], |attributes| &attributes.layers);
-    let moved = (placement.transform != IDENTITY).then(|| Directions::new(linear));
+    let moved = (placement.transform != IDENTITY).then(|| Directions::new(placement.linear()));
     for layer in &mut flat.layers {
         let from = layer.values.len();
         if let Some(own) = own.iter().find(|own| same_meaning(own, layer)) {
@@ -312,6 +324,18 @@ mod tests {
         let of = |kind| attributes.layer(kind).unwrap().of(attributes.corners[0][0]).to_vec();
         assert_eq!(of(LayerKind::Normal), [0.0, 0.0, 1.0]);
         assert_eq!(of(LayerKind::Tangent), [-1.0, 0.0, 0.0, -1.0]);
+    }
+
+    /// Found by the fuzzer: a matrix that only its last row turns over flipped faces, but not wedges.
+    #[test]
+    fn a_perspective_row_does_not_mirror() {
+        let mut scene = Scene::from_mesh("t", triangle([0.0, 0.0, 1.0]));
+        scene.nodes[0].transform[1][3] = 1.0;
+        scene.nodes[0].transform[3][1] = 10.0;
+        let flat = scene.flatten();
+        flat.validate().unwrap();
+        assert_eq!(flat.faces, [[0, 1, 2].map(VertexId)]);
+        assert_eq!(flat.attributes.unwrap().corners, [[0, 1, 2].map(WedgeId)]);
     }
 
     #[test]
