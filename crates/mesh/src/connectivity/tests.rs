@@ -87,7 +87,42 @@ fn oracle(raw: &[[u32; 3]]) -> (usize, usize, usize) {
     (edges.len(), count(|n| n == 1), count(|n| n > 2))
 }
 
+/// Every vertex by the way that takes any star.
+fn plainly(faces: &[[VertexId; 3]], vertex_count: usize) -> Connectivity {
+    let mut connectivity = Connectivity::stars_only(faces, vertex_count);
+    let mut scratch = Scratch::default();
+    for v in 0..vertex_count {
+        connectivity.connect(faces, VertexId(v as u32), &mut scratch);
+    }
+    connectivity
+}
+
+/// A closed mesh with some faces turned, dropped, doubled or led astray.
+fn spoilt(harm: &[(usize, u8, u32)]) -> Vec<[VertexId; 3]> {
+    let mut faces = crate::sample::torus(120).faces;
+    for &(at, what, v) in harm {
+        let at = at % faces.len();
+        match what {
+            0 => faces[at].swap(0, 1),
+            1 => faces.push(faces[at]),
+            2 => faces[at][0] = VertexId(v),
+            _ => drop(faces.remove(at)),
+        }
+    }
+    faces
+}
+
 proptest! {
+    #[test]
+    fn closed_fans_are_connected_as_any_others(
+        harm in prop::collection::vec((0..usize::MAX, 0u8..4, 0u32..60), 0..6),
+    ) {
+        let faces = spoilt(&harm);
+        let (quick, plain) = (Connectivity::new(&faces, 64), plainly(&faces, 64));
+        prop_assert_eq!(&quick.twins, &plain.twins);
+        prop_assert_eq!((&quick.marks, quick.edges), (&plain.marks, plain.edges));
+    }
+
     #[test]
     fn any_faces_give_the_oracle_s_counts(
         raw in prop::collection::vec(prop::array::uniform3(0u32..9), 0..40),
