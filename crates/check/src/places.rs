@@ -1,6 +1,7 @@
 //! Which vertices are at one place.
 
 use std::collections::HashMap;
+use std::hash::{BuildHasher, RandomState};
 
 use meshlod_mesh::VertexId;
 use rustc_hash::FxBuildHasher;
@@ -17,15 +18,8 @@ impl Places {
     ///
     /// Cost: linear.
     pub fn of(positions: &[[f64; 3]]) -> Self {
-        let mut seen = HashMap::with_capacity_and_hasher(positions.len(), FxBuildHasher);
-        let first = positions.iter().enumerate().map(|(v, position)| {
-            let vertex = VertexId::new(v);
-            if position.iter().any(|x| x.is_nan()) {
-                return vertex;
-            }
-            *seen.entry(position.map(|x| (x + 0.0).to_bits())).or_insert(vertex)
-        });
-        Self { first: first.collect() }
+        let mut seen = Seen::new(positions);
+        Self { first: (0..positions.len()).map(|v| seen.first(VertexId::new(v))).collect() }
     }
 
     /// The lowest vertex at the place of `vertex`, maybe itself.
@@ -54,6 +48,66 @@ impl Places {
             .collect();
         shared.sort_unstable();
         shared
+    }
+}
+
+/// The vertices seen so far, by their places: a table of vertices, searched from where the hash
+/// points to.
+struct Seen<'a> {
+    positions: &'a [[f64; 3]],
+    /// The upper half of the hash, and one more than the vertex; 0 where it is empty. Half of the
+    /// table is, so that searches are short.
+    table: Vec<u64>,
+    keys: [u64; 3],
+}
+
+impl<'a> Seen<'a> {
+    fn new(positions: &'a [[f64; 3]]) -> Self {
+        // Drawn anew, so that nobody can choose positions that all point to one entry. What is found
+        // does not depend on them.
+        let keys = std::array::from_fn(|i| RandomState::new().hash_one(i));
+        Self { positions, table: vec![0; (2 * positions.len()).next_power_of_two()], keys }
+    }
+
+    /// The first vertex seen at the place of `vertex`, which is seen now.
+    #[inline]
+    fn first(&mut self, vertex: VertexId) -> VertexId {
+        let place = self.place(vertex);
+        if place.iter().any(|&x| f64::from_bits(x).is_nan()) {
+            return vertex;
+        }
+        let hash = self.hash(place);
+        let last = self.table.len() - 1;
+        let mut at = hash as usize & last;
+        loop {
+            let entry = self.table[at];
+            let other = VertexId((entry as u32).wrapping_sub(1));
+            if entry == 0 {
+                self.table[at] = hash >> 32 << 32 | u64::from(vertex.0 + 1);
+                return vertex;
+            }
+            if entry >> 32 == hash >> 32 && self.place(other) == place {
+                return other;
+            }
+            at = (at + 1) & last;
+        }
+    }
+
+    /// The bits of a position; 0 for -0.
+    #[inline]
+    fn place(&self, vertex: VertexId) -> [u64; 3] {
+        self.positions[vertex.index()].map(|x| (x + 0.0).to_bits())
+    }
+
+    /// Products of 128 bits, folded: every bit of the place has a say in every bit.
+    #[inline]
+    fn hash(&self, [x, y, z]: [u64; 3]) -> u64 {
+        let fold = |a: u64, b: u64| {
+            let product = u128::from(a) * u128::from(b);
+            product as u64 ^ (product >> 64) as u64
+        };
+        let [kx, ky, kz] = self.keys;
+        fold(fold(x ^ kx, y ^ ky) ^ z, kz | 1)
     }
 }
 
