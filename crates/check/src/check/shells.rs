@@ -1,5 +1,6 @@
 //! Closed shells that look inwards.
 
+use std::borrow::Cow;
 use std::ops::ControlFlow;
 
 use glam::DVec3;
@@ -14,87 +15,101 @@ use crate::finding::Finding;
 const ROUNDING: f64 = 1e-12;
 
 pub fn inside_out(subject: &Subject, visit: &mut Visit) -> ControlFlow<()> {
-    let mut shells = Shells::of(subject);
-    while let Some(shell) = shells.next() {
-        if let Some(volume) = shell.volume.filter(|&volume| volume < 0.0) {
-            visit(&Finding::InsideOut { face: shell.first, volume })?;
+    for (face, volume) in volumes(subject) {
+        if volume < 0.0 {
+            visit(&Finding::InsideOut { face, volume })?;
         }
     }
     ControlFlow::Continue(())
 }
 
-/// Faces that hang together through edges.
+/// The first face and the volume of every closed shell whose faces agree, as far as that is clearly
+/// not 0.
+fn volumes(subject: &Subject) -> impl Iterator<Item = (FaceId, f64)> {
+    let connectivity = subject.connectivity();
+    let all_agree = connectivity.inconsistent_edges() == 0;
+    let mut shells: Vec<Shell> = Vec::new();
+    let labels = labels(subject);
+    for (f, (&label, &face)) in labels.iter().zip(subject.faces.iter()).enumerate() {
+        if label == NONE {
+            continue;
+        }
+        let sides = [0, 1, 2].map(|k| Side::new(FaceId(f as u32), k));
+        let closed = sides.iter().all(|&side| match connectivity.twin(side) {
+            Twin::Side(twin) => all_agree || side.ends(&subject.faces) != twin.ends(&subject.faces),
+            _ => false,
+        });
+        let corners = subject.mesh.triangle(face);
+        if label as usize == shells.len() {
+            shells.push(Shell::from(FaceId(f as u32), corners[0]));
+        }
+        shells[label as usize].add(corners, closed);
+    }
+    shells.into_iter().filter_map(|shell| Some((shell.first, shell.volume()?)))
+}
+
+/// A shell on the way to its volume.
 struct Shell {
     first: FaceId,
-    /// What it encloses, where it is closed and consistently oriented and that is clearly not 0.
-    volume: Option<f64>,
+    /// A vertex of it, since far from the origin of coordinates the terms would drown the sum.
+    origin: DVec3,
+    closed: bool,
+    sum: f64,
+    magnitude: f64,
 }
 
-/// Walks shell after shell, by their first faces.
-struct Shells<'a> {
-    subject: &'a Subject<'a>,
-    seen: Vec<bool>,
-    next: usize,
-    /// The faces of the shell in hand; those from `done` on still have neighbours to see.
-    faces: Vec<FaceId>,
-}
-
-impl<'a> Shells<'a> {
-    fn of(subject: &'a Subject<'a>) -> Self {
-        Self { subject, seen: vec![false; subject.faces.len()], next: 0, faces: Vec::new() }
+impl Shell {
+    fn from(first: FaceId, origin: DVec3) -> Self {
+        Self { first, origin, closed: true, sum: 0.0, magnitude: 0.0 }
     }
 
-    fn next(&mut self) -> Option<Shell> {
-        let connectivity = self.subject.connectivity();
-        while *self.seen.get(self.next)?
-            || connectivity.twin(Side::new(FaceId(self.next as u32), 0)) == Twin::Degenerate
-        {
-            self.next += 1;
+    #[inline]
+    fn add(&mut self, corners: [DVec3; 3], closed: bool) {
+        let [a, b, c] = corners.map(|p| p - self.origin);
+        let six = a.dot(b.cross(c));
+        self.sum += six;
+        self.magnitude += six.abs();
+        self.closed &= closed;
+    }
+
+    /// `None` where it is open, or rounding may have made the sign.
+    fn volume(&self) -> Option<f64> {
+        let clear = self.sum.abs() > self.magnitude * ROUNDING;
+        (self.closed && clear).then_some(self.sum / 6.0)
+    }
+}
+
+/// The shell of a face that has none: it repeats a vertex, or takes no part.
+const NONE: u32 = u32::MAX;
+
+/// The shell of every face, numbered by their first faces.
+fn labels<'s>(subject: &'s Subject) -> Cow<'s, [u32]> {
+    let connectivity = subject.connectivity();
+    if connectivity.degenerate_faces() == 0 && connectivity.pinched_vertices() == 0 {
+        // Where every vertex has one fan, what shares vertices shares edges.
+        return Cow::Borrowed(&subject.objects().component_of_face);
+    }
+    let mut labels = vec![NONE; subject.faces.len()];
+    let mut count = 0;
+    let mut front = Vec::new();
+    for first in (0..labels.len()).map(|f| FaceId(f as u32)) {
+        let takes_part = connectivity.twin(Side::new(first, 0)) != Twin::Degenerate;
+        if labels[first.index()] != NONE || !takes_part {
+            continue;
         }
-        let first = FaceId(self.next as u32);
-        let sound = self.flood(first);
-        Some(Shell { first, volume: sound.then(|| self.volume()).flatten() })
-    }
-
-    /// Gathers the faces that hang together with `first`, and says whether they are closed and
-    /// consistently oriented.
-    fn flood(&mut self, first: FaceId) -> bool {
-        let connectivity = self.subject.connectivity();
-        let faces = &self.subject.faces;
-        let all_agree = connectivity.inconsistent_edges() == 0;
-        let mut sound = true;
-        self.faces.clear();
-        self.faces.push(first);
-        self.seen[first.index()] = true;
-        let mut done = 0;
-        while let Some(&face) = self.faces.get(done) {
-            done += 1;
+        labels[first.index()] = count;
+        front.push(first);
+        while let Some(face) = front.pop() {
             for side in [0, 1, 2].map(|k| Side::new(face, k)) {
-                let Twin::Side(twin) = connectivity.twin(side) else {
-                    sound = false;
-                    continue;
-                };
-                sound &= all_agree || side.ends(faces) != twin.ends(faces);
-                if !std::mem::replace(&mut self.seen[twin.face().index()], true) {
-                    self.faces.push(twin.face());
+                let Twin::Side(twin) = connectivity.twin(side) else { continue };
+                let label = &mut labels[twin.face().index()];
+                if *label == NONE {
+                    *label = count;
+                    front.push(twin.face());
                 }
             }
         }
-        sound
+        count += 1;
     }
-
-    /// The volume of the gathered faces, `None` where rounding may have made its sign.
-    fn volume(&self) -> Option<f64> {
-        let mesh = self.subject.mesh;
-        // From a vertex of the shell, since far from the origin the terms would drown the sum.
-        let origin = mesh.triangle(mesh.faces[self.faces[0].index()])[0];
-        let (mut sum, mut magnitude) = (0.0, 0.0);
-        for face in &self.faces {
-            let [a, b, c]: [DVec3; 3] = mesh.triangle(mesh.faces[face.index()]).map(|p| p - origin);
-            let six = a.dot(b.cross(c));
-            sum += six;
-            magnitude += six.abs();
-        }
-        (sum.abs() > magnitude * ROUNDING).then_some(sum / 6.0)
-    }
+    Cow::Owned(labels)
 }
