@@ -1,6 +1,6 @@
 #![no_main]
 
-use meshlod_mesh::{Connectivity, Mesh, VertexId};
+use meshlod_mesh::{Connectivity, Lock, Locks, Mesh, VertexId};
 use meshlod_simplify::{Method, Options, Target, simplify};
 
 /// Faces over few vertices, where nearly every edge is a special case: bytes 0 to 3 choose the
@@ -11,16 +11,34 @@ fn mesh(bytes: &[u8]) -> Option<(Mesh, Target, Options)> {
     let (coordinates, faces) = rest.split_at_checked(count * 3)?;
     let (points, _) = coordinates.as_chunks::<3>();
     let (triples, _) = faces.as_chunks::<3>();
-    let positions = points.iter().map(|p| p.map(|x| f64::from(x as i8)));
+    let positions: Vec<_> = points.iter().map(|p| p.map(|x| f64::from(x as i8))).collect();
     let faces = triples.iter().map(|t| t.map(|v| VertexId(u32::from(v) % count as u32)));
     let options = Options {
         method: Method::ALL[usize::from(method) % Method::ALL.len()],
         lock_boundary: locks & 1 != 0,
-        locked: (0..count).map(|v| locks & 2 != 0 && v % 3 == 0).collect(),
+        locks: locks_of(locks, &positions),
         ..Options::default()
     };
-    let mesh = Mesh::new(positions.collect(), faces.collect());
+    let mesh = Mesh::new(positions, faces.collect());
     Some((mesh, Target::Ratio(f64::from(ratio) / 255.0), options))
+}
+
+/// Every third vertex locked, every fifth protected, all at one place tied, as the bits say.
+fn locks_of(bits: u8, positions: &[[f64; 3]]) -> Locks {
+    let lock = |v: usize| match () {
+        _ if bits & 2 != 0 && v.is_multiple_of(3) => Lock::Locked,
+        _ if bits & 4 != 0 && v.is_multiple_of(5) => Lock::Protected,
+        _ => Lock::Free,
+    };
+    let mut ties: Vec<Vec<VertexId>> = Vec::new();
+    for v in (0..positions.len()).filter(|_| bits & 8 != 0) {
+        let here = |tie: &&mut Vec<VertexId>| positions[tie[0].index()] == positions[v];
+        match ties.iter_mut().find(here) {
+            Some(tie) => tie.push(VertexId::new(v)),
+            None => ties.push(vec![VertexId::new(v)]),
+        }
+    }
+    Locks { of_vertex: (0..positions.len()).map(lock).collect(), ties }
 }
 
 /// Open and non-manifold edges.

@@ -3,10 +3,11 @@
 use meshlod_io::Scene;
 use meshlod_mesh::Mesh;
 use meshlod_simplify::{
-    Observe, Options, Refusals, Report, Simplifier, SimplifyError, Target, VolumeLoss,
+    Held, Observe, Options, Refusals, Report, Simplifier, SimplifyError, Target, VolumeLoss,
 };
 use thiserror::Error;
 
+use crate::locks;
 use crate::place::length_scale;
 
 /// The meshes of a scene at work under one target: each detail goes where the world misses it
@@ -79,23 +80,23 @@ pub fn simplify_scene(
 impl<'s> SceneSimplifier<'s> {
     /// Connects every mesh that the scene shows; nothing is contracted yet.
     ///
-    /// `options.locked` has one flag per vertex of all meshes of the scene, mesh after mesh; empty
-    /// for none.
+    /// `options.locks` count vertices through all meshes of the scene, mesh after mesh, see
+    /// [`join_locks`]. Meshes move apart: what is tied across two of them is locked.
     ///
     /// Cost: O(n log n), n = faces.
     /// # Errors
     /// A mesh that breaks a rule of meshes; a lock mask of another length; when no mesh has a face
     /// to work on.
     pub fn new(scene: &'s Scene, options: &Options) -> Result<Self, SceneError> {
-        let masks = lock_masks(scene, options)?;
+        let locks = locks::split(scene, &options.locks)?;
         let mut this = Self { scene, parts: Vec::new(), still_faces: 0 };
         let mut still = None;
-        for (index, (copies, scale)) in shown(scene).into_iter().enumerate() {
+        for ((index, (copies, scale)), locks) in shown(scene).into_iter().enumerate().zip(locks) {
             let mesh = &scene.meshes[index].mesh;
             if copies == 0 {
                 continue;
             }
-            let options = Options { locked: masks[index].to_vec(), ..options.clone() };
+            let options = Options { locks, ..*options };
             match Simplifier::new(mesh, &options) {
                 Ok(simplifier) => {
                     let cost_scale = scale.powi(options.method.cost_power());
@@ -211,6 +212,7 @@ impl<'s> SceneSimplifier<'s> {
             degenerate_faces: 0,
             duplicate_faces: 0,
             non_manifold_vertices: 0,
+            held: Held::default(),
             output_faces: self.live_faces(),
             reached: true,
             error_estimate: 0.0,
@@ -227,6 +229,7 @@ impl<'s> SceneSimplifier<'s> {
             whole.degenerate_faces += part.copies * report.degenerate_faces;
             whole.duplicate_faces += part.copies * report.duplicate_faces;
             whole.non_manifold_vertices += part.copies * report.non_manifold_vertices;
+            whole.held.add(&report.held, part.copies);
             whole.error_estimate = whole.error_estimate.max(part.scale * report.error_estimate);
             whole.refusals += report.refusals;
             // Parts are in the order of their meshes; those between them have nothing to contract.
@@ -259,25 +262,6 @@ impl Part<'_> {
         let own = self.simplifier.next_cost().unwrap_or(0.0);
         own.max(world / self.cost_scale)
     }
-}
-
-/// The flags of each mesh among those of all, or an empty slice for each.
-fn lock_masks<'o>(scene: &Scene, options: &'o Options) -> Result<Vec<&'o [bool]>, SceneError> {
-    let mut rest = &options.locked[..];
-    if rest.is_empty() {
-        return Ok(vec![rest; scene.meshes.len()]);
-    }
-    let vertices = |mesh: &meshlod_io::SceneMesh| mesh.mesh.positions.len();
-    let expected = scene.meshes.iter().map(vertices).sum();
-    if rest.len() != expected {
-        return Err(SimplifyError::BadMask { found: rest.len(), expected }.into());
-    }
-    let mut take = |mesh| {
-        let (own, others) = rest.split_at(vertices(mesh));
-        rest = others;
-        own
-    };
-    Ok(scene.meshes.iter().map(&mut take).collect())
 }
 
 /// For each mesh how many nodes show it, and the greatest length scale of those.

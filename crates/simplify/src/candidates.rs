@@ -122,7 +122,7 @@ impl Candidates for FacesAndEdges {
 /// Whether a vertex cannot simply be merged into a face's middle.
 #[inline]
 fn special(surface: &Surface, v: VertexId) -> bool {
-    surface.flags(v).any(Flags::BOUNDARY.or(Flags::PINNED).or(Flags::SEAM))
+    surface.flags(v).any(Flags::BOUNDARY.or(Flags::PINNED).or(Flags::SEAM).or(Flags::TIED))
 }
 
 fn close_dying(hood: &Neighbourhood, books: &mut dyn Books) {

@@ -43,3 +43,14 @@ pub enum Freedom {
     /// Only where this one of the contracted is.
     At(usize),
 }
+
+impl Freedom {
+    /// What is left by both; nothing where each leaves another place.
+    #[inline]
+    pub(crate) fn and(self, other: Self) -> Option<Self> {
+        match (self, other) {
+            (Self::Free, only) | (only, Self::Free) => Some(only),
+            (a, b) => (a == b).then_some(a),
+        }
+    }
+}

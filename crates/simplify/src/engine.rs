@@ -5,17 +5,20 @@
 //! of eager renewal, at about half the evaluations.
 //! A refused candidate waits until the neighbourhood of one of its vertices changes.
 
+mod together;
+mod waiting;
+
 use meshlod_mesh::{Connectivity, VertexId};
 use rayon::prelude::*;
-use rustc_hash::FxHashMap;
 
+use self::waiting::{Desk, Waiting};
 use crate::candidates::CandidateId;
 use crate::checks::{flip, topology};
 use crate::contracted::{Contracted, Freedom};
 use crate::estimate::estimate;
 use crate::neighbourhood::{Neighbourhood, freedom};
-use crate::policy::{Books, Candidates, Memory, Observe, Placement, Priority, Stop};
-use crate::queue::{Entry, Key, Queue};
+use crate::policy::{Candidates, Memory, Observe, Placement, Priority, Stop};
+use crate::queue::{Entry, Key};
 use crate::refusal::{Refusal, Refusals};
 use crate::surface::{Flags, Placed, State, Surface};
 
@@ -34,6 +37,8 @@ pub(crate) struct Engine<C, M, P, L> {
     hood: Neighbourhood,
     /// Room for one of the edges that a face goes by.
     part: Neighbourhood,
+    /// Room for those that ties make go with one.
+    mates: Vec<Neighbourhood>,
     waiting: Waiting,
     /// Room for the candidates that a contraction opens.
     opened: Vec<CandidateId>,
@@ -68,6 +73,7 @@ where
             surface,
             hood: Neighbourhood::default(),
             part: Neighbourhood::default(),
+            mates: Vec::new(),
             waiting,
             opened: Vec::new(),
             taken: Vec::new(),
@@ -142,29 +148,37 @@ where
         stop: &Stop,
         observer: &mut dyn Observe,
     ) -> Result<(), Refusal> {
-        let Self { algorithm, surface, hood, part, .. } = self;
+        let Self { algorithm, surface, hood, .. } = self;
         let contracted = algorithm.candidates.vertices(surface, entry.id);
         hood.gather(surface, contracted)?;
         topology(surface, hood)?;
+        if !hood.partners.is_empty() {
+            return self.contract_together(stop, observer);
+        }
         let mut placed = algorithm.placement.place(surface, &algorithm.memory, hood)?;
         placed.error_estimate = estimate(surface, hood, &placed);
         if placed.error_estimate > stop.error {
             return Err(Refusal::Error);
         }
         flip(surface, hood, placed.position)?;
+        self.carry_out(&placed, observer);
+        Ok(())
+    }
 
-        algorithm.memory.merge(surface, hood, &placed);
+    /// Contracts what is gathered, and brings all that is kept up to date.
+    fn carry_out(&mut self, placed: &Placed, observer: &mut dyn Observe) {
+        let Self { algorithm, surface, hood, part, .. } = self;
+        algorithm.memory.merge(surface, hood, placed);
         match hood.contracted[..] {
-            [_, _] => change(surface, hood, &placed, observer),
-            _ => follow(surface, hood, part, &placed, observer),
+            [_, _] => change(surface, hood, placed, observer),
+            _ => follow(surface, hood, part, placed, observer),
         }
-        algorithm.memory.renew(surface, hood, &placed);
+        algorithm.memory.renew(surface, hood, placed);
         if M::KNOWS_RING {
             hood.ring.iter().for_each(|r| surface.touch(r.id));
         }
         self.error_estimate = self.error_estimate.max(placed.error_estimate);
-        self.renew(&placed);
-        Ok(())
+        self.renew(placed);
     }
 
     /// Opens what may go in the place of a refused candidate.
@@ -191,9 +205,12 @@ where
         self.admit();
         let Self { surface, hood, waiting, .. } = self;
         for v in hood.contracted.iter().copied().chain(hood.ring.iter().map(|r| r.id)) {
-            if surface.flags(v).any(Flags::AWAITED) {
-                surface.unflag(v, Flags::AWAITED);
+            let flags = surface.flags(v);
+            if flags.any(Flags::AWAITED) {
                 waiting.wake(v, surface);
+            }
+            if flags.any(Flags::TIED) {
+                waiting.wake_tied(v, surface);
             }
         }
         // The kept vertex has the flags of all the contracted; those who waited are awake.
@@ -327,91 +344,35 @@ impl<C: Candidates, M, P: Priority<M>, L> Algorithm<C, M, P, L> {
 
     #[inline]
     fn cost(&self, surface: &Surface, contracted: &Contracted) -> Option<f64> {
-        let special = |&v: &VertexId| surface.flags(v).any(Flags::PINNED.or(Flags::SEAM));
-        let freedom = if contracted.iter().any(special) {
-            if surface.is_crowded(contracted) {
-                return None;
-            }
-            freedom(surface, contracted, &mut Vec::new()).ok()?
-        } else {
-            Freedom::Free
-        };
-        self.priority.cost(surface, &self.memory, contracted, freedom)
+        let special = |&v: &VertexId| surface.flags(v).any(SPECIAL);
+        if contracted.iter().any(special) {
+            return self.special_cost(surface, contracted);
+        }
+        self.priority.cost(surface, &self.memory, contracted, Freedom::Free)
+    }
+
+    /// The cost where a vertex is not free, or others have to go with it: of all that go.
+    fn special_cost(&self, surface: &Surface, contracted: &Contracted) -> Option<f64> {
+        if surface.is_crowded(contracted) {
+            return None;
+        }
+        let mut partners = Vec::new();
+        let mut freedom = freedom(surface, contracted, &mut Vec::new(), &mut partners).ok()?;
+        for &edge in &partners {
+            freedom = freedom.and(freedom_of_partner(surface, edge)?)?;
+        }
+        let cost = |of: &Contracted| self.priority.cost(surface, &self.memory, of, freedom);
+        let add = |sum: f64, &edge: &[VertexId; 2]| Some(sum + cost(&Contracted::edge(edge))?);
+        let cost = partners.iter().try_fold(cost(contracted)?, add)?;
+        let is_protected = |&v: &VertexId| surface.flags(v).any(Flags::PROTECTED);
+        let protected = contracted.iter().chain(partners.iter().flatten()).any(is_protected);
+        Some(if protected { cost * surface.protection } else { cost })
     }
 }
 
-/// The candidates that wait: in the queue, or parked until their neighbourhood changes.
-struct Waiting {
-    queue: Queue,
-    parked: FxHashMap<VertexId, Vec<Entry>>,
-}
+/// What makes a cost more than the method's own of a free contraction.
+const SPECIAL: Flags = Flags::PINNED.or(Flags::SEAM).or(Flags::TIED).or(Flags::PROTECTED);
 
-impl Waiting {
-    fn new(entries: &[Entry], surface: &mut Surface) -> Self {
-        for entry in entries {
-            surface.set_state(entry.id, State::Queued);
-        }
-        Self { queue: Queue::new(entries), parked: FxHashMap::default() }
-    }
-
-    #[inline]
-    fn put(&mut self, entry: Entry, surface: &mut Surface) {
-        surface.set_state(entry.id, State::Queued);
-        self.queue.push(entry);
-    }
-
-    fn park(&mut self, entry: Entry, vertices: &[VertexId], surface: &mut Surface) {
-        surface.set_state(entry.id, State::Parked);
-        for &v in vertices {
-            surface.flag(v, Flags::AWAITED);
-            self.parked.entry(v).or_default().push(entry);
-        }
-    }
-
-    fn wake(&mut self, vertex: VertexId, surface: &mut Surface) {
-        for entry in self.parked.remove(&vertex).into_iter().flatten() {
-            self.unpark(entry, surface);
-        }
-    }
-
-    fn wake_all(&mut self, surface: &mut Surface) {
-        for entry in std::mem::take(&mut self.parked).into_values().flatten() {
-            self.unpark(entry, surface);
-        }
-    }
-
-    /// Puts a parked candidate in the queue; one that went another way since stays there.
-    fn unpark(&mut self, entry: Entry, surface: &mut Surface) {
-        if surface.state(entry.id) == State::Parked {
-            self.put(entry, surface);
-        }
-    }
-}
-
-/// The books, as a candidates policy sees them after a contraction.
-struct Desk<'a> {
-    surface: &'a mut Surface,
-    opened: &'a mut Vec<CandidateId>,
-}
-
-impl Books for Desk<'_> {
-    fn surface(&self) -> &Surface {
-        self.surface
-    }
-
-    fn is_open(&self, id: CandidateId) -> bool {
-        matches!(self.surface.state(id), State::Queued | State::Parked)
-    }
-
-    fn open(&mut self, id: CandidateId) {
-        self.opened.push(id);
-    }
-
-    fn close(&mut self, id: CandidateId) {
-        let state = match self.surface.state(id) {
-            State::Queued | State::Ghost => State::Ghost,
-            State::Parked | State::Closed => State::Closed,
-        };
-        self.surface.set_state(id, state);
-    }
+fn freedom_of_partner(surface: &Surface, edge: [VertexId; 2]) -> Option<Freedom> {
+    freedom(surface, &Contracted::edge(edge), &mut Vec::new(), &mut Vec::new()).ok()
 }

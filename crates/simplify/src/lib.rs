@@ -24,6 +24,7 @@ mod estimate;
 mod history;
 mod interpolate;
 mod level;
+mod locks;
 mod methods;
 mod nearest;
 mod neighbourhood;
@@ -34,6 +35,7 @@ mod queue;
 mod refusal;
 mod simplifier;
 mod surface;
+mod ties;
 mod volume;
 mod wedges;
 
@@ -41,6 +43,7 @@ use meshlod_mesh::Mesh;
 
 pub use contracted::{Contracted, Freedom};
 pub use history::{Contraction, History};
+pub use locks::Held;
 pub use neighbourhood::{Dying, Neighbourhood, RingVertex, Spoke};
 pub use options::{AttributeWeights, Method, Options, Report, SimplifyError, Target};
 pub use policy::Observe;

@@ -14,6 +14,7 @@ use meshlod_mesh::{FaceId, VertexId, WedgeId};
 use crate::contracted::{Contracted, Freedom};
 use crate::refusal::Refusal;
 use crate::surface::{Flags, Surface, corner_of};
+use crate::ties;
 
 /// A face that survives the contraction: one corner is contracted, two are on the ring.
 #[derive(Clone, Copy, Debug)]
@@ -83,6 +84,8 @@ pub struct Neighbourhood {
     pub(crate) ring: Vec<RingVertex>,
     /// Wedges that meet along an edge: at its first end and at its second.
     pub(crate) wedge_pairs: Vec<[WedgeId; 2]>,
+    /// The edges that have to go with this one, for ties.
+    pub(crate) partners: Vec<[VertexId; 2]>,
     /// Room for the faces around, with the contracted vertex they were met at and their vertices.
     star: Vec<(FaceId, u8, [VertexId; 3])>,
 }
@@ -137,7 +140,8 @@ impl Neighbourhood {
         if surface.is_crowded(&contracted) {
             return Err(Refusal::Valence);
         }
-        self.freedom = freedom(surface, &contracted, &mut self.wedge_pairs)?;
+        let Self { wedge_pairs, partners, .. } = self;
+        self.freedom = freedom(surface, &contracted, wedge_pairs, partners)?;
         // Short loops of loads that do not wait for each other: most of the time here is memory's.
         self.star.clear();
         for (owner, &v) in contracted.iter().enumerate() {
@@ -190,27 +194,38 @@ impl Neighbourhood {
     }
 }
 
-/// How free the contraction of these vertices is, and which wedges of an edge's ends meet along it.
+/// How free the contraction of these vertices is, which wedges of an edge's ends meet along it, and
+/// which other edges have to go with it.
 pub(crate) fn freedom(
     surface: &Surface,
     contracted: &Contracted,
     wedge_pairs: &mut Vec<[WedgeId; 2]>,
+    partners: &mut Vec<[VertexId; 2]>,
 ) -> Result<Freedom, Refusal> {
     wedge_pairs.clear();
+    partners.clear();
     let mut pinned = None;
     let mut seam = false;
-    // A face has no edge to slide along the boundary: its corner there is where it goes.
-    let pins =
-        if contracted.len() == 2 { Flags::PINNED } else { Flags::PINNED.or(Flags::BOUNDARY) };
+    let mut tied = false;
+    // A face has no edge to slide along a boundary or a tie: its corner there is where it goes.
+    let pins = if contracted.len() == 2 { Flags::PINNED } else { PINS_OF_FACE };
     for (i, &v) in contracted.iter().enumerate() {
         let flags = surface.flags(v);
         seam |= flags.any(Flags::SEAM);
+        tied |= flags.any(Flags::TIED);
         if flags.any(pins) && pinned.replace(i).is_some() {
-            let locked = flags.any(Flags::PINNED);
-            return Err(if locked { Refusal::Locked } else { Refusal::Boundary });
+            return Err(match flags {
+                _ if flags.any(Flags::PINNED) => Refusal::Locked,
+                _ if flags.any(Flags::TIED) => Refusal::Tied,
+                _ => Refusal::Boundary,
+            });
         }
     }
     let by_pin = pinned.map_or(Freedom::Free, Freedom::At);
+    let by_tie = match contracted[..] {
+        [v0, v1] if tied => ties::partners(surface, [v0, v1], partners)?,
+        _ => Freedom::Free,
+    };
     let by_seam = match (&surface.wedges, &contracted[..]) {
         (Some(wedges), &[v0, v1]) => {
             wedges.pair(surface, [v0, v1], wedge_pairs);
@@ -219,9 +234,8 @@ pub(crate) fn freedom(
         (Some(wedges), corners) if seam => wedges.freedom_of_face(surface, corners, wedge_pairs)?,
         _ => Freedom::Free,
     };
-    match (by_pin, by_seam) {
-        (Freedom::Free, other) | (other, Freedom::Free) => Ok(other),
-        (a, b) if a == b => Ok(a),
-        _ => Err(Refusal::Seam),
-    }
+    by_pin.and(by_tie).ok_or(Refusal::Tied)?.and(by_seam).ok_or(Refusal::Seam)
 }
+
+/// What a face with such a corner goes to.
+const PINS_OF_FACE: Flags = Flags::PINNED.or(Flags::BOUNDARY).or(Flags::TIED);

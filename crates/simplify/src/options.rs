@@ -1,8 +1,9 @@
 //! What a user may ask for, and what comes back beside the mesh.
 
-use meshlod_mesh::MeshError;
+use meshlod_mesh::{Locks, MeshError, VertexId};
 use thiserror::Error;
 
+use crate::locks::Held;
 use crate::refusal::Refusals;
 use crate::volume::VolumeLoss;
 
@@ -138,8 +139,9 @@ pub struct Options {
     pub weights: AttributeWeights,
     /// Keep every vertex of a boundary edge where it is.
     pub lock_boundary: bool,
-    /// One flag per vertex: keep it where it is. Empty for none.
-    pub locked: Vec<bool>,
+    /// What must stay, or move together. Where vertices of a tie do not find edges to move along
+    /// together, they stay.
+    pub locks: Locks,
 }
 
 /// How much an error in an attribute counts against an error in distance; 0 not at all.
@@ -196,13 +198,39 @@ pub enum SimplifyError {
         /// Of its box.
         diagonal: f64,
     },
-    /// The lock mask is for another mesh.
-    #[error("the lock mask has {found} flags for {expected} vertices")]
+    /// The locks are for another mesh.
+    #[error("the locks are of {found} vertices, the mesh has {expected}")]
     BadMask {
         /// Its length.
         found: usize,
         /// The number of vertices.
         expected: usize,
+    },
+    /// A tie names a vertex that is not there.
+    #[error("tie {tie} names vertex {vertex} of {count}")]
+    BadTie {
+        /// The tie.
+        tie: usize,
+        /// What it names.
+        vertex: VertexId,
+        /// The number of vertices.
+        count: usize,
+    },
+    /// A vertex is tied and tied again.
+    #[error("tie {tie} names vertex {vertex}, which has been tied before")]
+    TiedTwice {
+        /// The second tie, or the one that names it twice.
+        tie: usize,
+        /// The vertex.
+        vertex: VertexId,
+    },
+    /// What a tie holds together is apart.
+    #[error("tie {tie} is torn: vertices {} and {} are at two places", vertices[0], vertices[1])]
+    TornTie {
+        /// The tie.
+        tie: usize,
+        /// Two of its vertices.
+        vertices: [VertexId; 2],
     },
     /// A weight that is no weight.
     #[error("{0} is not a weight: give a number of at least 0")]
@@ -223,6 +251,8 @@ pub struct Report {
     pub duplicate_faces: usize,
     /// Vertices of the input that are kept in place because the surface is not manifold there.
     pub non_manifold_vertices: usize,
+    /// Vertices of the input that locks hold.
+    pub held: Held,
     /// Faces that are left.
     pub output_faces: usize,
     /// Whether the target was reached.

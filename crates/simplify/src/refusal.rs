@@ -17,6 +17,8 @@ pub enum Refusal {
     Flip,
     /// Two of its vertices are locked.
     Locked,
+    /// Vertices that are tied to its own cannot go with them.
+    Tied,
     /// Attributes on one side of a seam would have nowhere to go.
     Seam,
     /// It would remove the last faces of a component.
@@ -31,12 +33,13 @@ pub enum Refusal {
 
 impl Refusal {
     /// Every reason, in the order of [`Refusals`].
-    pub const ALL: [Self; 10] = [
+    pub const ALL: [Self; 11] = [
         Self::NonManifold,
         Self::Boundary,
         Self::Link,
         Self::Flip,
         Self::Locked,
+        Self::Tied,
         Self::Seam,
         Self::LastFaces,
         Self::Valence,
@@ -52,6 +55,7 @@ impl Refusal {
             Self::Link => "link",
             Self::Flip => "flip",
             Self::Locked => "locked",
+            Self::Tied => "tied",
             Self::Seam => "seam",
             Self::LastFaces => "last_faces",
             Self::Valence => "valence",

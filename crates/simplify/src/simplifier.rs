@@ -5,10 +5,11 @@ use meshlod_mesh::{Mesh, VertexId};
 use crate::clean;
 use crate::engine::Run;
 use crate::level::level;
+use crate::locks::{self, Held};
 use crate::methods;
 use crate::options::{Options, Report, SimplifyError, Target};
 use crate::policy::{Observe, Stop};
-use crate::surface::{Flags, Surface};
+use crate::surface::Surface;
 use crate::volume::VolumeLoss;
 
 /// The diagonals that can be worked with. Costs go with up to the sixth power of a length, checks with
@@ -29,6 +30,7 @@ struct Input {
     degenerate_faces: usize,
     duplicate_faces: usize,
     non_manifold_vertices: usize,
+    held: Held,
 }
 
 impl<'m> Simplifier<'m> {
@@ -42,27 +44,19 @@ impl<'m> Simplifier<'m> {
         if diagonal > 0.0 && !EXTENTS.contains(&diagonal) {
             return Err(SimplifyError::Extent { diagonal });
         }
-        let expected = mesh.positions.len();
-        if !options.locked.is_empty() && options.locked.len() != expected {
-            return Err(SimplifyError::BadMask { found: options.locked.len(), expected });
-        }
+        locks::validate(&options.locks, mesh)?;
         options.weights.validate()?;
         let (connectivity, duplicate_faces) = clean::connect(mesh);
         let degenerate_faces = connectivity.degenerate_faces() - duplicate_faces;
         if connectivity.edge_count() == 0 {
             return Err(SimplifyError::AllDegenerate(mesh.faces.len()));
         }
-        let vertices = || (0..expected).map(VertexId::new);
-        let non_manifold_vertices =
-            vertices().filter(|&v| connectivity.marks(v).non_manifold()).count();
+        let non_manifold_vertices = (0..mesh.positions.len())
+            .filter(|&v| connectivity.marks(VertexId::new(v)).non_manifold())
+            .count();
         let mut surface = Surface::new(mesh, &connectivity);
-        for v in vertices() {
-            let locked = options.locked.get(v.index()).is_some_and(|&locked| locked);
-            if locked || (options.lock_boundary && connectivity.marks(v).boundary()) {
-                surface.flag(v, Flags::PINNED);
-            }
-        }
-        let input = Input { degenerate_faces, duplicate_faces, non_manifold_vertices };
+        let held = locks::apply(options, &connectivity, &mut surface);
+        let input = Input { degenerate_faces, duplicate_faces, non_manifold_vertices, held };
         let engine = methods::start(options, surface, connectivity);
         Ok(Self { mesh, engine, volume: VolumeLoss::default(), input })
     }
@@ -106,6 +100,7 @@ impl<'m> Simplifier<'m> {
             degenerate_faces: self.input.degenerate_faces,
             duplicate_faces: self.input.duplicate_faces,
             non_manifold_vertices: self.input.non_manifold_vertices,
+            held: self.input.held,
             output_faces,
             reached,
             error_estimate: self.engine.error_estimate(),

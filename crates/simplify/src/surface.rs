@@ -9,6 +9,7 @@ use meshlod_mesh::{Connectivity, FaceId, Mesh, VertexId};
 
 use crate::candidates::CandidateId;
 use crate::neighbourhood::Neighbourhood;
+use crate::ties::Ties;
 use crate::wedges::Wedges;
 
 /// Where a contraction puts its vertex, and which of the contracted lives on as it.
@@ -98,6 +99,10 @@ impl Flags {
     pub(crate) const SEAM: Self = Self(4);
     /// A refused candidate waits for its neighbourhood to change.
     pub(crate) const AWAITED: Self = Self(8);
+    /// It is in a tie, see [`Ties`].
+    pub(crate) const TIED: Self = Self(16);
+    /// Its contractions cost more.
+    pub(crate) const PROTECTED: Self = Self(32);
 
     #[inline]
     pub(crate) fn any(self, of: Self) -> bool {
@@ -105,7 +110,7 @@ impl Flags {
     }
 
     #[inline]
-    pub(crate) fn or(self, other: Self) -> Self {
+    pub(crate) const fn or(self, other: Self) -> Self {
         Self(self.0 | other.0)
     }
 }
@@ -117,6 +122,9 @@ pub struct Surface {
     stars: Vec<FaceId>,
     live_faces: usize,
     pub(crate) wedges: Option<Wedges>,
+    pub(crate) ties: Ties,
+    /// What the cost of a contraction is multiplied by where a vertex is protected.
+    pub(crate) protection: f64,
 }
 
 impl Surface {
@@ -152,7 +160,9 @@ impl Surface {
             })
             .collect();
         let live_faces = faces.iter().filter(|face| face.alive).count();
-        let mut surface = Self { vertices, faces, stars, live_faces, wedges: Wedges::new(mesh) };
+        let (wedges, ties) = (Wedges::new(mesh), Ties::default());
+        let mut surface =
+            Self { vertices, faces, stars, live_faces, wedges, ties, protection: 1.0 };
         surface.flag_seams();
         surface
     }
@@ -304,6 +314,11 @@ impl Surface {
             }
         }
         self.live_faces -= hood.dying.len();
+        for &gone in hood.contracted.iter().filter(|&&v| v != kept) {
+            if self.flags(gone).any(Flags::TIED) {
+                self.ties.leave(gone);
+            }
+        }
         self.join(hood, kept, placed);
     }
 

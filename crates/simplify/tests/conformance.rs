@@ -5,8 +5,8 @@ use std::collections::{HashMap, HashSet};
 use glam::DVec3;
 use meshlod_fixtures as fixtures;
 use meshlod_mesh::{
-    Attributes, Connectivity, FaceId, Layer, LayerKind, Mesh, VertexId, WedgeId, face_components,
-    sample,
+    Attributes, Connectivity, FaceId, Layer, LayerKind, Lock, Locks, Mesh, VertexId, WedgeId,
+    face_components, sample,
 };
 use meshlod_simplify::{
     Method, Neighbourhood, Observe, Options, Placed, Report, Simplifier, Surface, Target,
@@ -54,6 +54,12 @@ fn topology(mesh: &Mesh) -> Topology {
         non_manifold_edges: c.non_manifold_edges(),
         inconsistent_edges: c.inconsistent_edges(),
     }
+}
+
+/// Locks for every nth vertex.
+fn every_nth(mesh: &Mesh, n: usize, lock: Lock) -> Locks {
+    let of = |v: usize| if v.is_multiple_of(n) { lock } else { Lock::Free };
+    Locks { of_vertex: (0..mesh.positions.len()).map(of).collect(), ties: Vec::new() }
 }
 
 fn run(mesh: &Mesh, method: Method, ratio: f64) -> (Mesh, Report) {
@@ -205,8 +211,8 @@ fn where_the_volume_is_not_conserved_is_told() {
     let Unconserved { contractions, bounds } = report.volume.open;
     assert!(contractions > 0 && bounds.diagonal() > 0.0);
     let mesh = sample::sphere(800);
-    let locked = (0..mesh.positions.len()).map(|v| v % 9 == 0).collect();
-    let options = Options { method: Method::LindstromTurk, locked, ..Options::default() };
+    let locks = every_nth(&mesh, 9, Lock::Locked);
+    let options = Options { method: Method::LindstromTurk, locks, ..Options::default() };
     let (_, report) = simplify(&mesh, Target::Ratio(0.3), &options).unwrap();
     assert!(report.volume.held.contractions > 0 && report.volume.running_sum.abs() > 1e-9);
 }
@@ -244,12 +250,12 @@ fn the_same_bytes_for_any_number_of_threads() {
 #[test]
 fn locked_vertices_stay_where_they_are() {
     let mesh = sample::sphere(1000);
-    let locked: Vec<bool> = (0..mesh.positions.len()).map(|v| v % 7 == 0).collect();
+    let locks = every_nth(&mesh, 7, Lock::Locked);
     for method in Method::ALL {
-        let options = Options { method, locked: locked.clone(), ..Options::default() };
+        let options = Options { method, locks: locks.clone(), ..Options::default() };
         let (level, _) = simplify(&mesh, Target::Faces(0), &options).unwrap();
         let places: HashSet<_> = level.positions.iter().map(|p| p.map(f64::to_bits)).collect();
-        for (v, position) in mesh.positions.iter().enumerate().filter(|(v, _)| locked[*v]) {
+        for (v, position) in mesh.positions.iter().enumerate().step_by(7) {
             assert!(places.contains(&position.map(f64::to_bits)), "{}", VertexId::new(v));
         }
     }

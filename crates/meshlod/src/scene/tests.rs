@@ -1,7 +1,7 @@
 use meshlod_fixtures::{fan, shared_mesh};
 use meshlod_io::{Node, ReadOptions, SceneMesh, read};
 use meshlod_measure::{DistanceOptions, distance};
-use meshlod_mesh::sample;
+use meshlod_mesh::{Lock, Locks, sample};
 
 use super::*;
 
@@ -127,14 +127,15 @@ fn lock_masks_run_over_all_meshes() {
     let pair =
         scene(vec![sample::sphere(300), sample::sphere(300)], vec![node(0, 1.0), node(1, 1.0)]);
     let count = pair.meshes[0].mesh.positions.len();
-    let locked = (0..2 * count).map(|v| v < count).collect();
-    let options = Options { locked, ..Options::default() };
+    let locks = |of_vertex: Vec<Lock>| Locks { of_vertex, ties: Vec::new() };
+    let first = [vec![Lock::Locked; count], vec![Lock::Free; count]].concat();
+    let options = Options { locks: locks(first), ..Options::default() };
     let mut simplifier = SceneSimplifier::new(&pair, &options).unwrap();
     simplifier.run(Target::Faces(0), &mut ()).unwrap();
     let level = simplifier.level();
     assert_eq!(level[0], pair.meshes[0].mesh);
     assert!(level[1].faces.len() < 10);
-    let short = Options { locked: vec![true; count], ..Options::default() };
+    let short = Options { locks: locks(vec![Lock::Locked; count]), ..Options::default() };
     assert!(SceneSimplifier::new(&pair, &short).is_err());
 }
 

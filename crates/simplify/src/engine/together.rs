@@ -1,0 +1,101 @@
+//! Edges between the same two ties: contracted in one step, to one place, or not at all.
+
+use crate::checks::{flip, topology};
+use crate::contracted::{Contracted, Freedom};
+use crate::engine::Engine;
+use crate::estimate::estimate;
+use crate::neighbourhood::Neighbourhood;
+use crate::policy::{Candidates, Memory, Observe, Placement, Priority, Stop};
+use crate::refusal::Refusal;
+use crate::surface::Placed;
+
+impl<C, M, P, L> Engine<C, M, P, L>
+where
+    C: Candidates,
+    M: Memory,
+    P: Priority<M>,
+    L: Placement<M>,
+{
+    /// Contracts the gathered edge and its partners: all checks of all of them come first.
+    ///
+    /// For the history these are as many contractions, one after the other.
+    pub(super) fn contract_together(
+        &mut self,
+        stop: &Stop,
+        observer: &mut dyn Observe,
+    ) -> Result<(), Refusal> {
+        self.gather_mates()?;
+        let count = self.hood.partners.len();
+        let placed = self.place_together(count)?;
+        let Self { surface, hood, mates, .. } = self;
+        let all = || std::iter::once(&*hood).chain(&mates[..count]);
+        let errors: Vec<f64> = all().map(|hood| estimate(surface, hood, &placed)).collect();
+        if errors.iter().any(|&error| error > stop.error) {
+            return Err(Refusal::Error);
+        }
+        all().try_for_each(|hood| flip(surface, hood, placed.position))?;
+        // Each is as it was gathered, since no face is around two of them.
+        for (i, error_estimate) in errors.into_iter().enumerate() {
+            if let Some(mate) = i.checked_sub(1) {
+                std::mem::swap(&mut self.hood, &mut self.mates[mate]);
+                // Its place is not its own choice.
+                self.hood.freedom = Freedom::At(placed.kept);
+            }
+            self.carry_out(&Placed { error_estimate, ..placed }, observer);
+        }
+        Ok(())
+    }
+
+    /// Gathers what is around the partners, and leaves all of them the freedom that each has.
+    fn gather_mates(&mut self) -> Result<(), Refusal> {
+        let Self { surface, hood, mates, .. } = self;
+        let partners = std::mem::take(&mut hood.partners);
+        if mates.len() < partners.len() {
+            mates.resize_with(partners.len(), Neighbourhood::default);
+        }
+        let mates = &mut mates[..partners.len()];
+        let mut freedom = hood.freedom;
+        for (mate, &edge) in mates.iter_mut().zip(&partners) {
+            mate.gather(surface, Contracted::edge(edge))?;
+            topology(surface, mate)?;
+            freedom = freedom.and(mate.freedom).ok_or(Refusal::Tied)?;
+        }
+        hood.partners = partners;
+        if !are_apart(hood, mates) {
+            return Err(Refusal::Tied);
+        }
+        hood.freedom = freedom;
+        mates.iter_mut().for_each(|mate| mate.freedom = freedom);
+        Ok(())
+    }
+
+    /// Of the places that the method finds for each edge the one from which no surface is far.
+    ///
+    /// The error of it is the greatest that the method finds anywhere.
+    fn place_together(&self, count: usize) -> Result<Placed, Refusal> {
+        let Self { algorithm, surface, hood, mates, .. } = self;
+        let all = || std::iter::once(hood).chain(&mates[..count]);
+        let place = |hood| algorithm.placement.place(surface, &algorithm.memory, hood);
+        let places = all().map(place).collect::<Result<Vec<Placed>, _>>()?;
+        let error_estimate = places.iter().map(|p| p.error_estimate).fold(0.0, f64::max);
+        let farthest =
+            |placed: &Placed| all().map(|hood| estimate(surface, hood, placed)).fold(0.0, f64::max);
+        let scored = places.into_iter().map(|placed| {
+            let placed = Placed { error_estimate: 0.0, ..placed };
+            (farthest(&placed), placed)
+        });
+        let best = scored.min_by(|a, b| a.0.total_cmp(&b.0));
+        best.map(|(_, placed)| Placed { error_estimate, ..placed }).ok_or(Refusal::Tied)
+    }
+}
+
+/// Whether no face is around two of the edges.
+fn are_apart(hood: &Neighbourhood, mates: &[Neighbourhood]) -> bool {
+    let all = || std::iter::once(hood).chain(mates);
+    let at = |hood: &Neighbourhood, other: &Neighbourhood| {
+        hood.ring.iter().any(|r| other.contracted.contains(&r.id))
+    };
+    all()
+        .enumerate()
+        .all(|(i, hood)| all().enumerate().all(|(j, other)| i == j || !at(hood, other)))
+}

@@ -1,0 +1,88 @@
+//! Locks as the engine obeys them: flags of vertices, and ties.
+
+use meshlod_mesh::{Connectivity, Lock, Locks, Mesh, VertexId};
+
+use crate::options::{Options, SimplifyError};
+use crate::surface::{Flags, Surface};
+use crate::ties::{MOST_MEMBERS, Ties};
+
+/// How many vertices of the input are held, and how.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Held {
+    /// Locked, by the mask or as part of a boundary.
+    pub locked: usize,
+    /// Protected and not locked.
+    pub protected: usize,
+    /// In a tie, locked or not.
+    pub tied: usize,
+}
+
+impl Held {
+    /// Counts another mesh in, `copies` times.
+    pub fn add(&mut self, other: &Self, copies: usize) {
+        self.locked += copies * other.locked;
+        self.protected += copies * other.protected;
+        self.tied += copies * other.tied;
+    }
+}
+
+/// A protected vertex that moves counts as one that moves so many times as far.
+const PROTECTION: f64 = 10.0;
+
+/// Refuses locks that are not for this mesh.
+pub(crate) fn validate(locks: &Locks, mesh: &Mesh) -> Result<(), SimplifyError> {
+    let (found, expected) = (locks.of_vertex.len(), mesh.positions.len());
+    if found != 0 && found != expected {
+        return Err(SimplifyError::BadMask { found, expected });
+    }
+    let mut seen = vec![false; if locks.ties.is_empty() { 0 } else { expected }];
+    for (tie, members) in locks.ties.iter().enumerate() {
+        for &vertex in members {
+            match seen.get_mut(vertex.index()) {
+                None => return Err(SimplifyError::BadTie { tie, vertex, count: expected }),
+                Some(true) => return Err(SimplifyError::TiedTwice { tie, vertex }),
+                Some(seen) => *seen = true,
+            }
+        }
+        let place = |vertex: VertexId| mesh.positions[vertex.index()];
+        let apart = members.iter().find(|&&vertex| place(vertex) != place(members[0]));
+        if let Some(&vertex) = apart {
+            return Err(SimplifyError::TornTie { tie, vertices: [members[0], vertex] });
+        }
+    }
+    Ok(())
+}
+
+/// Flags what locks hold, and ties what they tie.
+pub(crate) fn apply(options: &Options, connectivity: &Connectivity, surface: &mut Surface) -> Held {
+    let Options { locks, lock_boundary, .. } = options;
+    let mut held = Held::default();
+    for v in (0..surface.vertex_count()).map(VertexId::new) {
+        let on_boundary = *lock_boundary && connectivity.marks(v).boundary();
+        let lock = locks.of_vertex.get(v.index()).copied().unwrap_or_default();
+        match if on_boundary { Lock::Locked } else { lock } {
+            Lock::Free => {}
+            Lock::Protected => {
+                surface.flag(v, Flags::PROTECTED);
+                held.protected += 1;
+            }
+            Lock::Locked => {
+                surface.flag(v, Flags::PINNED);
+                held.locked += 1;
+            }
+        }
+    }
+    let mut ties = Vec::new();
+    for tie in locks.ties.iter().filter(|tie| tie.len() > 1) {
+        let few = tie.len() <= MOST_MEMBERS;
+        let flag = if few { Flags::TIED } else { Flags::PINNED };
+        tie.iter().for_each(|&v| surface.flag(v, flag));
+        held.tied += tie.len();
+        if few {
+            ties.push(tie.clone());
+        }
+    }
+    surface.ties = Ties::new(ties);
+    surface.protection = PROTECTION.powi(options.method.cost_power());
+    held
+}

@@ -1,0 +1,372 @@
+//! What locks, protection and ties hold.
+
+use std::collections::HashMap;
+
+use meshlod_mesh::{Connectivity, Lock, Locks, Mesh, VertexId, face_components, sample};
+use meshlod_simplify::{
+    History, Method, Neighbourhood, Observe, Options, Placed, Progressive, Simplifier,
+    SimplifyError, Surface, Target, simplify,
+};
+use proptest::prelude::*;
+
+/// A box of `n` unit squares a side from `start` on, closed.
+fn boxed(n: [i32; 3], start: [i32; 3]) -> Mesh {
+    let mut ids = HashMap::new();
+    let mut mesh = Mesh::default();
+    for side in 0..6usize {
+        let axis = side / 2;
+        // Two axes across, in the order that makes the side look out.
+        let [u, v] = [[1, 2], [2, 1]][side % 2].map(|step| (axis + step) % 3);
+        let mut at = |i: i32, j: i32| {
+            let mut p = start;
+            p[axis] += if side.is_multiple_of(2) { n[axis] } else { 0 };
+            (p[u], p[v]) = (p[u] + i, p[v] + j);
+            *ids.entry(p).or_insert_with(|| {
+                mesh.positions.push(p.map(f64::from));
+                VertexId::new(mesh.positions.len() - 1)
+            })
+        };
+        for (i, j) in (0..n[u]).flat_map(|i| (0..n[v]).map(move |j| (i, j))) {
+            let [a, b, c, d] = [at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)];
+            mesh.faces.extend([[a, b, c], [a, c, d]]);
+        }
+    }
+    mesh
+}
+
+/// Several meshes as one, their vertices apart.
+fn beside(meshes: &[Mesh]) -> Mesh {
+    let mut all = Mesh::default();
+    for mesh in meshes {
+        let start = all.positions.len() as u32;
+        all.positions.extend(&mesh.positions);
+        all.faces.extend(mesh.faces.iter().map(|face| face.map(|v| VertexId(v.0 + start))));
+    }
+    all
+}
+
+/// Ties of all vertices that are at one place.
+fn ties(mesh: &Mesh) -> Locks {
+    let mut places: HashMap<_, Vec<VertexId>> = HashMap::new();
+    for (v, position) in mesh.positions.iter().enumerate() {
+        places.entry(position.map(f64::to_bits)).or_default().push(VertexId::new(v));
+    }
+    let mut ties: Vec<_> = places.into_values().filter(|tie| tie.len() > 1).collect();
+    ties.sort();
+    Locks { ties, ..Locks::default() }
+}
+
+/// Two boxes that touch in a side, and a smaller one on top of both.
+fn three_boxes(n: i32) -> Mesh {
+    beside(&[
+        boxed([n; 3], [0; 3]),
+        boxed([n; 3], [n, 0, 0]),
+        boxed([n, n / 2, n / 2], [n / 2, 0, n]),
+    ])
+}
+
+/// Two tiles of hilly ground that share a border.
+fn two_tiles(n: u32) -> Mesh {
+    let tile = |start: u32| {
+        let at = |x: u32, y: u32| VertexId(y * (n + 1) + x);
+        let height = |x: f64, y: f64| (0.9 * x).sin() * (0.7 * y).cos() + 0.3 * (2.3 * x + y).sin();
+        let positions = (0..(n + 1) * (n + 1)).map(|i| {
+            let [x, y] = [start + i % (n + 1), i / (n + 1)].map(|x| f64::from(x) * 0.4);
+            [x, y, height(x, y)]
+        });
+        let squares = (0..n * n).map(|i| (i % n, i / n));
+        let faces = squares.flat_map(|(x, y)| {
+            let [a, b, c, d] = [at(x, y), at(x + 1, y), at(x + 1, y + 1), at(x, y + 1)];
+            [[a, b, c], [a, c, d]]
+        });
+        Mesh::new(positions.collect(), faces.collect())
+    };
+    beside(&[tile(0), tile(n)])
+}
+
+/// Where every vertex went, and where that is.
+struct Trace {
+    into: HashMap<VertexId, VertexId>,
+    at: Vec<[f64; 3]>,
+}
+
+impl Trace {
+    fn new(mesh: &Mesh) -> Self {
+        Self { into: HashMap::new(), at: mesh.positions.clone() }
+    }
+
+    fn end(&self, mut v: VertexId) -> [f64; 3] {
+        while let Some(&next) = self.into.get(&v) {
+            v = next;
+        }
+        self.at[v.index()]
+    }
+
+    /// The ties that are torn.
+    fn torn<'l>(&self, locks: &'l Locks) -> Option<&'l Vec<VertexId>> {
+        let at = |v: &VertexId| self.end(*v).map(f64::to_bits);
+        locks.ties.iter().find(|tie| tie.iter().any(|v| at(v) != at(&tie[0])))
+    }
+}
+
+impl Observe for Trace {
+    fn before(&mut self, _: &Surface, hood: &Neighbourhood, placed: &Placed) {
+        let kept = hood.contracted()[placed.kept];
+        let gone = hood.contracted().iter().filter(|&&v| v != kept);
+        self.into.extend(gone.map(|&v| (v, kept)));
+        self.at[kept.index()] = placed.position.into();
+    }
+}
+
+fn defects(mesh: &Mesh) -> [usize; 3] {
+    let c = Connectivity::new(&mesh.faces, mesh.positions.len());
+    let components = face_components(&mesh.faces, mesh.positions.len()).1;
+    [c.boundary_edges(), c.non_manifold_edges(), components]
+}
+
+/// Runs with all ties, sees that they hold, and gives the level.
+fn tied_run(mesh: &Mesh, method: Method, ratio: f64) -> Mesh {
+    let locks = ties(mesh);
+    let options = Options { method, locks: locks.clone(), ..Options::default() };
+    let mut simplifier = Simplifier::new(mesh, &options).unwrap();
+    let mut trace = Trace::new(mesh);
+    let report = simplifier.run(Target::Ratio(ratio), &mut trace).unwrap();
+    assert_eq!(report.held.tied, locks.ties.iter().map(Vec::len).sum::<usize>());
+    assert_eq!(trace.torn(&locks), None, "{} to {ratio}", method.name());
+    simplifier.level()
+}
+
+#[test]
+fn touching_boxes_stay_touching() {
+    let mesh = three_boxes(8);
+    for method in Method::ALL {
+        for ratio in [0.5, 0.1, 0.0] {
+            let level = tied_run(&mesh, method, ratio);
+            assert_eq!(defects(&level), defects(&mesh), "{}", method.name());
+            let most = (mesh.faces.len() as f64 * ratio).max(20.0);
+            assert!(level.faces.len() as f64 <= most, "{} stays", method.name());
+        }
+    }
+}
+
+/// The boundary edges inside the ground, by their ends, with how often each is there.
+fn seams_inside(level: &Mesh, border: f64) -> HashMap<[[u64; 3]; 2], usize> {
+    let mut count = HashMap::new();
+    let mut edges: HashMap<[VertexId; 2], usize> = HashMap::new();
+    for face in &level.faces {
+        for k in 0..3 {
+            let mut edge = [face[k], face[(k + 1) % 3]];
+            edge.sort();
+            *edges.entry(edge).or_default() += 1;
+        }
+    }
+    for (edge, _) in edges.into_iter().filter(|&(_, faces)| faces == 1) {
+        let ends = edge.map(|v| level.positions[v.index()]);
+        if ends.iter().all(|p| (p[0] - border).abs() < 0.2) {
+            let mut ends = ends.map(|p| p.map(f64::to_bits));
+            ends.sort();
+            *count.entry(ends).or_default() += 1;
+        }
+    }
+    count
+}
+
+#[test]
+fn tiles_show_no_crack() {
+    let n = 24;
+    let mesh = two_tiles(n);
+    let border = f64::from(n) * 0.4;
+    for method in Method::ALL {
+        for ratio in [0.5, 0.1, 0.03] {
+            let level = tied_run(&mesh, method, ratio);
+            let seams = seams_inside(&level, border);
+            assert!(seams.values().all(|&count| count == 2), "{}: {seams:?}", method.name());
+            // It is coarser than it was, and still there.
+            assert!((1..n as usize).contains(&seams.len()), "{}: {}", method.name(), seams.len());
+        }
+    }
+}
+
+proptest! {
+    /// Boxes anywhere, touching, in each other, the same twice; and what is tied may be locked too.
+    #[test]
+    fn whatever_is_tied_stays_together(
+        boxes in prop::collection::vec(
+            (prop::array::uniform3(1i32..5), prop::array::uniform3(0i32..4)), 2..5),
+        locks in prop::collection::vec(0u8..8, 400),
+        method in prop::sample::select(&Method::ALL[..]),
+        ratio in 0.0..0.8f64,
+    ) {
+        let boxes: Vec<_> = boxes.into_iter().map(|(n, start)| boxed(n, start)).collect();
+        let mesh = beside(&boxes);
+        let lock = |v: usize| match locks[v % locks.len()] {
+            0 => Lock::Locked,
+            1 => Lock::Protected,
+            _ => Lock::Free,
+        };
+        let of_vertex = (0..mesh.positions.len()).map(lock).collect();
+        let locks = Locks { of_vertex, ..ties(&mesh) };
+        let options = Options { method, locks: locks.clone(), ..Options::default() };
+        let mut simplifier = Simplifier::new(&mesh, &options).unwrap();
+        let mut trace = Trace::new(&mesh);
+        simplifier.run(Target::Ratio(ratio), &mut trace).unwrap();
+        prop_assert_eq!(trace.torn(&locks), None);
+        for (v, _) in locks.of_vertex.iter().enumerate().filter(|&(_, &lock)| lock == Lock::Locked) {
+            prop_assert!(!trace.into.contains_key(&VertexId::new(v)));
+            prop_assert_eq!(trace.at[v], mesh.positions[v]);
+        }
+        let level = simplifier.level();
+        level.validate().unwrap();
+        prop_assert_eq!(defects(&level), defects(&mesh));
+    }
+}
+
+#[test]
+fn what_was_contracted_together_comes_back_to_the_bit() {
+    let mesh = three_boxes(6);
+    for method in Method::ALL {
+        let options = Options { method, locks: ties(&mesh), ..Options::default() };
+        let mut simplifier = Simplifier::new(&mesh, &options).unwrap();
+        let mut history = History::default();
+        let mut levels = vec![simplifier.level()];
+        for ratio in [0.6, 0.3, 0.05] {
+            simplifier.run(Target::Ratio(ratio), &mut history).unwrap();
+            levels.push(simplifier.level());
+        }
+        let bytes = Progressive::new(simplifier, history).unwrap().to_bytes();
+        let mut progressive = Progressive::from_bytes(&bytes).unwrap();
+        for level in levels.iter().rev() {
+            progressive.go_to(level.faces.len());
+            assert_eq!(&progressive.level(), level, "{}", method.name());
+        }
+    }
+}
+
+#[test]
+fn a_third_object_that_cannot_follow_stays_where_it_touches() {
+    // The corner of the third box is in the middle of the side that the other two share.
+    let mesh = beside(&[boxed([4; 3], [0; 3]), boxed([4; 3], [4, 0, 0]), boxed([1; 3], [4, 4, 2])]);
+    for method in Method::ALL {
+        let level = tied_run(&mesh, method, 0.0);
+        let components = face_components(&level.faces, level.positions.len()).0;
+        let mut at_place: HashMap<_, Vec<u32>> = HashMap::new();
+        for (face, &component) in level.faces.iter().zip(&components) {
+            for v in face {
+                at_place
+                    .entry(level.positions[v.index()].map(f64::to_bits))
+                    .or_default()
+                    .push(component);
+            }
+        }
+        let all_three = at_place.values().any(|of| (0..3).all(|component| of.contains(&component)));
+        assert!(all_three, "{}", method.name());
+    }
+}
+
+#[test]
+fn surfaces_that_are_cut_otherwise_stay_together() {
+    // The diagonals of the second sheet run the other way.
+    let sheet = |turn: bool| {
+        let at = |x: u32, y: u32| VertexId(y * 5 + x);
+        let positions = (0..25).map(|i| [f64::from(i % 5), f64::from(i / 5), 0.0]);
+        let faces = (0..16).map(|i| (i % 4, i / 4)).flat_map(|(x, y)| {
+            let [a, b, c, d] = [at(x, y), at(x + 1, y), at(x + 1, y + 1), at(x, y + 1)];
+            if turn { [[a, b, c], [a, c, d]] } else { [[a, b, d], [b, c, d]] }
+        });
+        Mesh::new(positions.collect(), faces.collect())
+    };
+    let mesh = beside(&[sheet(false), sheet(true)]);
+    for method in Method::ALL {
+        let level = tied_run(&mesh, method, 0.0);
+        assert!(level.faces.len() < mesh.faces.len(), "{} stays", method.name());
+    }
+}
+
+/// A torus with half of it locked in some way.
+fn halved(lock: Lock) -> (Mesh, Locks) {
+    let mesh = sample::torus(2000);
+    let of = |p: &[f64; 3]| if p[0] > 0.0 { lock } else { Lock::Free };
+    let locks = Locks { of_vertex: mesh.positions.iter().map(of).collect(), ties: Vec::new() };
+    (mesh, locks)
+}
+
+#[test]
+fn what_is_protected_goes_last_and_is_not_safe() {
+    let (mesh, locks) = halved(Lock::Protected);
+    for method in Method::ALL {
+        let share = |locks: &Locks, ratio| {
+            let options = Options { method, locks: locks.clone(), ..Options::default() };
+            let (level, report) = simplify(&mesh, Target::Ratio(ratio), &options).unwrap();
+            assert!(report.reached);
+            let there = level.positions.iter().filter(|p| p[0] > 0.01).count();
+            there as f64 / level.positions.len() as f64
+        };
+        let (with, without) = (share(&locks, 0.6), share(&Locks::default(), 0.6));
+        assert!(with > without + 0.15, "{}: {with} {without}", method.name());
+        // There is nothing else to take at the end.
+        assert!(share(&locks, 0.02) < 1.0);
+    }
+}
+
+#[test]
+fn a_bound_is_of_the_error_and_not_of_its_cost() {
+    let (mesh, locks) = halved(Lock::Protected);
+    for method in Method::ALL {
+        let faces = |locks: &Locks| {
+            let options = Options { method, locks: locks.clone(), ..Options::default() };
+            let (level, report) = simplify(&mesh, Target::Error(0.02), &options).unwrap();
+            assert!(report.error_estimate <= 0.02);
+            level.faces.len() as f64
+        };
+        let ratio = faces(&locks) / faces(&Locks::default());
+        assert!((0.9..1.2).contains(&ratio), "{}: {ratio}", method.name());
+    }
+}
+
+#[test]
+fn locks_of_another_mesh_are_refused_by_name() {
+    let mesh = boxed([1; 3], [0; 3]);
+    let refused = |of_vertex: Vec<Lock>, ties: &[&[u32]]| {
+        let ties = ties.iter().map(|tie| tie.iter().copied().map(VertexId).collect()).collect();
+        let options = Options { locks: Locks { of_vertex, ties }, ..Options::default() };
+        simplify(&mesh, Target::Ratio(0.5), &options).err()
+    };
+    let [v0, v1, v8] = [0, 1, 8].map(VertexId);
+    assert_eq!(
+        refused(vec![Lock::Locked; 7], &[]),
+        Some(SimplifyError::BadMask { found: 7, expected: 8 })
+    );
+    assert_eq!(
+        refused(vec![], &[&[], &[0, 8]]),
+        Some(SimplifyError::BadTie { tie: 1, vertex: v8, count: 8 })
+    );
+    assert_eq!(refused(vec![], &[&[0, 0]]), Some(SimplifyError::TiedTwice { tie: 0, vertex: v0 }));
+    assert_eq!(
+        refused(vec![], &[&[1], &[1]]),
+        Some(SimplifyError::TiedTwice { tie: 1, vertex: v1 })
+    );
+    assert_eq!(
+        refused(vec![], &[&[0, 1]]),
+        Some(SimplifyError::TornTie { tie: 0, vertices: [v0, v1] })
+    );
+    assert_eq!(refused(vec![], &[&[], &[3]]), None);
+}
+
+#[test]
+fn a_crowd_at_one_place_stays_there() {
+    // Many needles with their tips at one place.
+    let needle = |i: u32| {
+        let (y, x) = (f64::from(i) * 0.1).sin_cos();
+        let base = [[x, y, 1.0], [x, y, 1.2], [x * 1.1, y * 1.1, 1.1]];
+        let positions = [[0.0; 3]].into_iter().chain(base).collect();
+        let faces = [[0, 1, 2], [0, 2, 3], [0, 3, 1], [1, 3, 2]];
+        Mesh::new(positions, faces.map(|face| face.map(VertexId)).to_vec())
+    };
+    let mesh = beside(&(0..3000).map(needle).collect::<Vec<_>>());
+    let tips = (0..3000).map(|i| VertexId(4 * i)).collect();
+    let options =
+        Options { locks: Locks { ties: vec![tips], ..Locks::default() }, ..Options::default() };
+    let (level, report) = simplify(&mesh, Target::Faces(0), &options).unwrap();
+    assert_eq!(report.held.tied, 3000);
+    assert_eq!(level.positions.iter().filter(|p| **p == [0.0; 3]).count(), 3000);
+}
