@@ -97,14 +97,24 @@ impl Camera {
     ///
     /// Use the cameras of the reference mesh for both pictures.
     pub fn icosahedron_views(mesh: &Mesh) -> [Self; 12] {
-        let golden = (1.0 + 5f64.sqrt()) / 2.0;
+        Self::cyclic_views(mesh, [1.0, GOLDEN])
+    }
+
+    /// Twelve more, from the corners of the icosahedron that is the first one turned by a right
+    /// angle: together they look from 24 sides.
+    pub fn other_icosahedron_views(mesh: &Mesh) -> [Self; 12] {
+        Self::cyclic_views(mesh, [GOLDEN, 1.0])
+    }
+
+    /// Views from (0, ±a, ±b) and its turns of the coordinates.
+    fn cyclic_views(mesh: &Mesh, [a, b]: [f64; 2]) -> [Self; 12] {
         std::array::from_fn(|i| {
-            let short = if i & 1 == 0 { 1.0 } else { -1.0 };
-            let long = if i & 2 == 0 { golden } else { -golden };
+            let a = if i & 1 == 0 { a } else { -a };
+            let b = if i & 2 == 0 { b } else { -b };
             let direction = match i / 4 {
-                0 => [0.0, short, long],
-                1 => [short, long, 0.0],
-                _ => [long, 0.0, short],
+                0 => [0.0, a, b],
+                1 => [a, b, 0.0],
+                _ => [b, 0.0, a],
             };
             Self::fit_mesh(mesh, &View { direction, ..View::default() })
         })
@@ -164,6 +174,9 @@ impl Camera {
         Lens { camera: *self, middle, focal }
     }
 }
+
+/// The golden ratio, (1 + √5) / 2.
+const GOLDEN: f64 = 1.618033988749895;
 
 /// How far the eye stays before what it fits into the frame, by how deep that is: a needle that
 /// points at the eye would else touch it.

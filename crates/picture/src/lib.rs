@@ -21,7 +21,8 @@
 //! sees, without any shading.
 //!
 //! [`image_error`] is what a level looks wrong by: its pictures from twelve sides beside those of
-//! its original, compared as the eye does ([`flip()`]) and by structure ([`ssim()`]).
+//! its original, compared as the eye does ([`flip()`]) and by structure ([`ssim()`]). A [`Cover`]
+//! finds the pixels where a level shows what its original hides.
 //!
 //! # How it works
 //! Vertices are projected once, to fixed point. Faces are sorted into tiles; each tile finds the
@@ -32,6 +33,7 @@
 #![forbid(unsafe_code)]
 
 mod bins;
+mod breach;
 mod camera;
 mod clip;
 mod color_map;
@@ -58,6 +60,7 @@ mod texture;
 mod trigonometry;
 mod visibility;
 
+pub use breach::{Breach, BreachOptions, Breaches, Cover, Parted};
 pub use camera::{Camera, UpAxis, View};
 pub use color_map::ColorMap;
 pub use error::{MAX_SIDE, PictureError};

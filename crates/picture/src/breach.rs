@@ -1,0 +1,272 @@
+//! Spots where a level lets through what its original hides: the background through a crack, an
+//! inner part through an outer one.
+
+use meshlod_mesh::{FaceId, Mesh};
+use rayon::prelude::*;
+
+use crate::error::check_length;
+use crate::{Camera, PictureError, visibility};
+
+/// A mesh whose faces are told apart: by component, object or what else is seen as a whole.
+#[derive(Clone, Copy, Debug)]
+pub struct Parted<'a> {
+    /// The mesh.
+    pub mesh: &'a Mesh,
+    /// The part that each face belongs to.
+    pub part_of_face: &'a [u32],
+}
+
+/// How breaches are looked for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct BreachOptions {
+    /// Width and height of a view, in pixels.
+    pub side: u32,
+    /// What the original shows within so many pixels of a spot may be seen at the spot.
+    pub radius: u32,
+    /// Outlines before the background may move by so many pixels.
+    pub outline: u32,
+}
+
+impl Default for BreachOptions {
+    fn default() -> Self {
+        Self { side: 1024, radius: 4, outline: 32 }
+    }
+}
+
+/// How much of a level is breached.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Breaches {
+    /// Pixels that show the original.
+    pub shown: usize,
+    /// Those of them where the level lets the background through.
+    pub background: usize,
+    /// Those of them where the level lets a hidden part through.
+    pub hidden: usize,
+}
+
+/// What a level shows at a pixel that its original hides.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Breach {
+    /// Nothing at all.
+    Background,
+    /// This part.
+    Hidden(u32),
+}
+
+/// An original from 24 sides.
+///
+/// A pixel is a breach where the level lets a part or the background through that the original does
+/// not show nearby ([`BreachOptions::radius`]). Outlines shift in any level: background is none where
+/// the original has it right beyond the nearest border of what is shown at the pixel
+/// ([`BreachOptions::outline`]). So a gap between parts that touched is a breach, a hole within a part
+/// is, and an inner part that pokes through an outer one; a fin that gets shorter is none.
+///
+/// Memory: 4 bytes a pixel: 100 MB by the default.
+pub struct Cover {
+    frame: Frame,
+    views: Vec<View>,
+}
+
+/// How pixels lie in a view, and which are near.
+struct Frame {
+    side: usize,
+    /// Pixels beside each side of a view that show nothing, so that no step leads out of it.
+    margin: usize,
+    /// Steps to the pixels around a pixel, nearest first.
+    steps: Vec<isize>,
+    /// How many of them are within the radius.
+    within: usize,
+}
+
+/// The part that each pixel shows, with the margin.
+struct View {
+    camera: Camera,
+    parts: Vec<u32>,
+}
+
+/// No part.
+const BACKGROUND: u32 = u32::MAX;
+/// What the margin shows.
+const OUTSIDE: u32 = u32::MAX - 1;
+
+impl Cover {
+    /// Looks at the original from the corners of two icosahedra, by [`Camera::icosahedron_views`]
+    /// and [`Camera::other_icosahedron_views`].
+    ///
+    /// # Errors
+    /// As for [`visibility()`], and labels for another number of faces.
+    pub fn new(original: Parted<'_>, options: BreachOptions) -> Result<Self, PictureError> {
+        let first = Camera::icosahedron_views(original.mesh);
+        let cameras = first.into_iter().chain(Camera::other_icosahedron_views(original.mesh));
+        let frame = Frame::new(options);
+        let view = |camera| {
+            let mut padded = vec![OUTSIDE; frame.pixels()];
+            for (at, part) in parts(original, &camera, options.side)?.into_iter().enumerate() {
+                padded[frame.padded(at)] = part;
+            }
+            Ok(View { camera, parts: padded })
+        };
+        let views = cameras.map(view).collect::<Result<_, PictureError>>()?;
+        Ok(Self { frame, views })
+    }
+
+    /// How often a level shows what the original hides, over all views.
+    ///
+    /// # Errors
+    /// As for [`Cover::new`].
+    pub fn breaches(&self, level: Parted<'_>) -> Result<Breaches, PictureError> {
+        let mut sum = Breaches::default();
+        for (view, original) in self.views.iter().enumerate() {
+            sum.shown += original.parts.iter().filter(|&&part| part < OUTSIDE).count();
+            for breach in self.breaches_in(view, level)?.into_iter().flatten() {
+                match breach {
+                    Breach::Background => sum.background += 1,
+                    Breach::Hidden(_) => sum.hidden += 1,
+                }
+            }
+        }
+        Ok(sum)
+    }
+
+    /// The same of one view, pixel by pixel, row after row from the top.
+    ///
+    /// # Errors
+    /// As for [`Cover::new`].
+    pub fn breaches_in(
+        &self,
+        view: usize,
+        level: Parted<'_>,
+    ) -> Result<Vec<Option<Breach>>, PictureError> {
+        let view = &self.views[view];
+        let level = parts(level, &view.camera, self.frame.side as u32)?;
+        let of = |at: usize| self.frame.breach(&view.parts, self.frame.padded(at), level[at]);
+        Ok((0..level.len()).into_par_iter().map(of).collect())
+    }
+
+    /// Where the views are taken from.
+    pub fn cameras(&self) -> impl ExactSizeIterator<Item = Camera> + '_ {
+        self.views.iter().map(|view| view.camera)
+    }
+}
+
+impl Frame {
+    fn new(BreachOptions { side, radius, outline }: BreachOptions) -> Self {
+        let square = |[right, down]: [isize; 2]| right * right + down * down;
+        let [radius, reach] = [radius, outline.max(radius)].map(|r| r as isize);
+        let margin = reach as usize;
+        let row = (side as usize + 2 * margin) as isize;
+        let all = (-reach..=reach).flat_map(|y| (-reach..=reach).map(move |x| [x, y]));
+        let mut steps: Vec<_> = all.filter(|&step| square(step) <= reach * reach).collect();
+        steps.sort_by_key(|&step| square(step));
+        let within = steps.partition_point(|&step| square(step) <= radius * radius);
+        let steps = steps.into_iter().map(|[right, down]| down * row + right).collect();
+        Self { side: side as usize, margin, steps, within }
+    }
+
+    fn pixels(&self) -> usize {
+        (self.side + 2 * self.margin).pow(2)
+    }
+
+    /// Where a pixel of the picture is in a view with its margin.
+    fn padded(&self, at: usize) -> usize {
+        let [x, y] = [at % self.side, at / self.side].map(|i| i + self.margin);
+        y * (self.side + 2 * self.margin) + x
+    }
+
+    /// What is wrong where the original shows `parts[at]` and the level `shown`.
+    fn breach(&self, parts: &[u32], at: usize, shown: u32) -> Option<Breach> {
+        let part = parts[at];
+        if part == shown || part == BACKGROUND {
+            return None;
+        }
+        let mut around = self.steps.iter().map(|&step| parts[at.wrapping_add_signed(step)]);
+        if around.clone().take(self.within).any(|near| near == shown) {
+            return None;
+        }
+        if shown != BACKGROUND {
+            return Some(Breach::Hidden(shown));
+        }
+        let border = around.find(|&near| near != part && near != OUTSIDE);
+        (border != Some(BACKGROUND)).then_some(Breach::Background)
+    }
+}
+
+/// The part that each pixel's middle sees.
+fn parts(of: Parted<'_>, camera: &Camera, side: u32) -> Result<Vec<u32>, PictureError> {
+    check_length("parts of faces", of.part_of_face.len(), of.mesh.faces.len())?;
+    let seen = visibility(of.mesh, camera, [side; 2])?;
+    let part = |face: Option<FaceId>| match face {
+        Some(face) => of.part_of_face[face.index()],
+        None => BACKGROUND,
+    };
+    Ok(seen.faces().map(part).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scenes::{ball, sheet};
+
+    const OPTIONS: BreachOptions = BreachOptions { side: 128, radius: 3, outline: 8 };
+
+    /// A ball of part 0 with a smaller one of part 1 in it, and what to do with both.
+    fn balls(outer: f64, inner: f64) -> (Mesh, Vec<u32>) {
+        let (mut mesh, small) = (ball(3), ball(2));
+        mesh.positions.iter_mut().flatten().for_each(|x| *x *= outer);
+        let (vertices, faces) = (mesh.positions.len(), mesh.faces.len());
+        mesh.positions.extend(small.positions.iter().map(|p| p.map(|x| x * inner)));
+        let moved = |v: meshlod_mesh::VertexId| meshlod_mesh::VertexId::new(vertices + v.index());
+        mesh.faces.extend(small.faces.iter().map(|face| face.map(moved)));
+        let parts = (0..mesh.faces.len()).map(|face| u32::from(face >= faces)).collect();
+        (mesh, parts)
+    }
+
+    fn breaches(original: &(Mesh, Vec<u32>), level: &(Mesh, Vec<u32>)) -> Breaches {
+        let parted = |of: &'_ (Mesh, Vec<u32>)| (of.0.clone(), of.1.clone());
+        let (original, level) = (parted(original), parted(level));
+        Cover::new(Parted { mesh: &original.0, part_of_face: &original.1 }, OPTIONS)
+            .unwrap()
+            .breaches(Parted { mesh: &level.0, part_of_face: &level.1 })
+            .unwrap()
+    }
+
+    #[test]
+    fn an_original_is_not_breached_and_outlines_may_move() {
+        let original = balls(1.0, 0.8);
+        for outer in [1.0, 0.98, 0.9] {
+            let level = breaches(&original, &balls(outer, 0.8));
+            assert_eq!((level.background, level.hidden), (0, 0), "{outer}");
+            assert!(level.shown > 24 * 8_000, "{level:?}");
+        }
+    }
+
+    #[test]
+    fn an_outline_that_goes_far_is_a_breach() {
+        assert!(breaches(&balls(1.0, 0.5), &balls(0.7, 0.5)).background > 24 * 1000);
+    }
+
+    #[test]
+    fn an_inner_part_that_comes_through_is_a_breach() {
+        let through = breaches(&balls(1.0, 0.9), &balls(1.0, 1.05));
+        assert_eq!(through.background, 0);
+        assert!(through.hidden * 10 > through.shown * 7, "{through:?}");
+    }
+
+    #[test]
+    fn parts_that_part_are_breached_and_their_outlines_are_not() {
+        let whole = sheet(16);
+        // The left and the right half are two parts; all of the last column of the left goes.
+        let column = |face: usize| face / 2 % 16;
+        let parts = |keep: fn(usize) -> bool| {
+            let faces = (0..512).filter(|&face| keep(column(face)));
+            let mut mesh = whole.clone();
+            mesh.faces = faces.clone().map(|face| whole.faces[face]).collect();
+            (mesh, faces.map(|face| u32::from(column(face) > 7)).collect::<Vec<_>>())
+        };
+        let original = parts(|_| true);
+        let parted = breaches(&original, &parts(|column| column != 7));
+        let trimmed = breaches(&original, &parts(|column| column != 0));
+        assert!(parted.background > 10 * trimmed.background, "{parted:?} {trimmed:?}");
+        assert!(parted.background * 20 > parted.shown, "{parted:?}");
+    }
+}
