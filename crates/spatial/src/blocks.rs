@@ -4,7 +4,8 @@ use std::ops::ControlFlow;
 
 use glam::{DVec3, Vec3, Vec4};
 
-use crate::curve;
+use crate::box3::Box3;
+use crate::curve::{self, Middle};
 
 /// Boxes a block holds, and children a node has.
 pub const LANES: usize = 8;
@@ -25,15 +26,8 @@ pub struct BoxBlocks {
 #[derive(Clone, Copy, Debug)]
 #[repr(align(64))]
 struct Block {
-    lo: [[Vec4; 2]; 3],
-    hi: [[Vec4; 2]; 3],
-}
-
-/// One box, rounded.
-#[derive(Clone, Copy, Debug)]
-struct Box3 {
-    lo: Vec3,
-    hi: Vec3,
+    lo: [[f32; LANES]; 3],
+    hi: [[f32; LANES]; 3],
 }
 
 /// Boxes of one block that overlap one box.
@@ -56,21 +50,17 @@ impl BoxBlocks {
     /// Boxes are finite. Cost: linear, but for items whose centres crowd together within 2^-20 of
     /// the size of all: sorting these again costs as much as they are deep.
     pub fn new(count: usize, corners: impl Fn(u32) -> Corners) -> Self {
-        let mut items = curve::order(count, &corners);
-        let frame = curve::Middle::of(count, &corners);
+        let frame = Middle::of(count, &corners);
+        let boxes: Vec<Box3> = (0..count as u32).map(|i| frame.rounded(corners(i))).collect();
+        let mut items = curve::order(&boxes);
         items.resize(count.next_multiple_of(LANES), u32::MAX);
         let leaves = items.chunks_exact(LANES).map(|chunk| {
-            Block::of(|lane| match chunk[lane] {
-                u32::MAX => Box3::EMPTY,
-                item => frame.rounded(corners(item)),
-            })
+            Block::of(chunk.iter().map_while(|&item| boxes.get(item as usize).copied()))
         });
         let mut levels = vec![leaves.collect::<Vec<_>>()];
         while levels[levels.len() - 1].len() > 1 {
             let below = &levels[levels.len() - 1];
-            let over = below
-                .chunks(LANES)
-                .map(|chunk| Block::of(|lane| chunk.get(lane).map_or(Box3::EMPTY, Block::around)));
+            let over = below.chunks(LANES).map(|chunk| Block::of(chunk.iter().map(Block::around)));
             levels.push(over.collect());
         }
         Self { items, levels }
@@ -103,42 +93,48 @@ impl BoxBlocks {
     ) -> ControlFlow<B> {
         let block = &self.levels[level][index];
         for lane in 0..LANES {
-            let after = block.overlapping(&block.lane(lane)) & (0xfe << lane) as u8;
-            let one = index * LANES + lane;
+            let one = block.lane(lane);
+            let after = block.overlapping(&one) & (0xfe << lane) as u8;
+            let place = index * LANES + lane;
             if level == 0 {
-                self.show(one, index, after, visit)?;
+                self.show(place, index, after, visit)?;
                 continue;
             }
-            if one < self.levels[level - 1].len() {
-                self.within(level - 1, one, visit)?;
+            if place < self.levels[level - 1].len() {
+                self.within(level - 1, place, visit)?;
             }
             for other in lanes(after) {
-                self.between(level - 1, one, index * LANES + other, visit)?;
+                let boxes = [one, block.lane(other)];
+                self.between(level - 1, [place, index * LANES + other], boxes, visit)?;
             }
         }
         ControlFlow::Continue(())
     }
 
-    /// Pairs of a box below block `a` and one below block `b`.
+    /// Pairs of a box below one block and a box below another; the boxes around both are given.
     fn between<B>(
         &self,
         level: usize,
-        a: usize,
-        b: usize,
+        [a, b]: [usize; 2],
+        [around_a, around_b]: [Box3; 2],
         visit: &mut impl FnMut(Row) -> ControlFlow<B>,
     ) -> ControlFlow<B> {
         let [block_a, block_b] = [a, b].map(|i| &self.levels[level][i]);
-        let near_b = block_a.overlapping(&block_b.around());
-        let near_a = block_b.overlapping(&block_a.around());
-        for lane in lanes(near_b) {
-            let with = block_b.overlapping(&block_a.lane(lane)) & near_a;
-            let one = a * LANES + lane;
+        let near_a = block_b.overlapping(&around_a);
+        if near_a == 0 {
+            return ControlFlow::Continue(());
+        }
+        for lane in lanes(block_a.overlapping(&around_b)) {
+            let one = block_a.lane(lane);
+            let with = block_b.overlapping(&one) & near_a;
+            let place = a * LANES + lane;
             if level == 0 {
-                self.show(one, b, with, visit)?;
+                self.show(place, b, with, visit)?;
                 continue;
             }
             for other in lanes(with) {
-                self.between(level - 1, one, b * LANES + other, visit)?;
+                let boxes = [one, block_b.lane(other)];
+                self.between(level - 1, [place, b * LANES + other], boxes, visit)?;
             }
         }
         ControlFlow::Continue(())
@@ -170,13 +166,14 @@ pub fn lanes(mut bits: u8) -> impl Iterator<Item = usize> {
 }
 
 impl Block {
-    fn of(one: impl Fn(usize) -> Box3) -> Self {
-        let mut block = Self { lo: [[Vec4::ZERO; 2]; 3], hi: [[Vec4::ZERO; 2]; 3] };
-        for lane in 0..LANES {
-            let one = one(lane);
+    /// A block of up to eight boxes.
+    fn of(boxes: impl Iterator<Item = Box3>) -> Self {
+        let mut block =
+            Self { lo: [[f32::INFINITY; LANES]; 3], hi: [[f32::NEG_INFINITY; LANES]; 3] };
+        for (lane, one) in boxes.enumerate() {
             for axis in 0..3 {
-                block.lo[axis][lane / 4][lane % 4] = one.lo[axis];
-                block.hi[axis][lane / 4][lane % 4] = one.hi[axis];
+                block.lo[axis][lane] = one.lo[axis];
+                block.hi[axis][lane] = one.hi[axis];
             }
         }
         block
@@ -184,16 +181,13 @@ impl Block {
 
     #[inline]
     fn lane(&self, lane: usize) -> Box3 {
-        let pick = |sides: &[[Vec4; 2]; 3]| {
-            Vec3::from_array(std::array::from_fn(|axis| sides[axis][lane / 4][lane % 4]))
-        };
+        let pick = |[x, y, z]: &[[f32; LANES]; 3]| Vec3::new(x[lane], y[lane], z[lane]);
         Box3 { lo: pick(&self.lo), hi: pick(&self.hi) }
     }
 
-    #[inline]
     fn around(&self) -> Box3 {
-        let least = |sides: [Vec4; 2]| sides[0].min(sides[1]).min_element();
-        let greatest = |sides: [Vec4; 2]| sides[0].max(sides[1]).max_element();
+        let least = |lanes: [f32; LANES]| lanes.into_iter().fold(f32::INFINITY, f32::min);
+        let greatest = |lanes: [f32; LANES]| lanes.into_iter().fold(f32::NEG_INFINITY, f32::max);
         Box3 {
             lo: Vec3::from_array(self.lo.map(least)),
             hi: Vec3::from_array(self.hi.map(greatest)),
@@ -203,28 +197,14 @@ impl Block {
     /// A bit for each lane whose box overlaps.
     #[inline]
     fn overlapping(&self, other: &Box3) -> u8 {
-        let half = |h: usize| {
-            let mut all = self.lo[0][h].cmple(Vec4::splat(other.hi.x))
-                & self.hi[0][h].cmpge(Vec4::splat(other.lo.x));
-            for axis in 1..3 {
-                all &= self.lo[axis][h].cmple(Vec4::splat(other.hi[axis]))
-                    & self.hi[axis][h].cmpge(Vec4::splat(other.lo[axis]));
-            }
-            all.bitmask()
+        let half = |from: usize| {
+            let lanes = |sides: &[f32; LANES]| Vec4::from_slice(&sides[from..from + 4]);
+            let along = |axis: usize| {
+                lanes(&self.lo[axis]).cmple(Vec4::splat(other.hi[axis]))
+                    & lanes(&self.hi[axis]).cmpge(Vec4::splat(other.lo[axis]))
+            };
+            (along(0) & along(1) & along(2)).bitmask()
         };
-        (half(0) | half(1) << 4) as u8
-    }
-}
-
-impl Box3 {
-    const EMPTY: Self = Self { lo: Vec3::INFINITY, hi: Vec3::NEG_INFINITY };
-}
-
-impl curve::Middle {
-    /// The box in `f32`, about the middle. Rounding keeps the order of numbers, so boxes that
-    /// overlap still do.
-    #[inline]
-    fn rounded(&self, [lo, hi]: Corners) -> Box3 {
-        Box3 { lo: self.local(lo).as_vec3(), hi: self.local(hi).as_vec3() }
+        (half(0) | half(4) << 4) as u8
     }
 }

@@ -4,6 +4,7 @@ use glam::{Vec3, Vec4};
 use meshlod_mesh::FaceId;
 use rayon::prelude::*;
 
+use crate::box3::Box3;
 use crate::bvh::{INNER, Node};
 use crate::triangle::Triangle;
 
@@ -26,12 +27,6 @@ struct Item {
     face: FaceId,
 }
 
-#[derive(Clone, Copy)]
-struct Box3 {
-    lo: Vec3,
-    hi: Vec3,
-}
-
 /// A run of items that becomes one child of a node.
 struct Run<'a> {
     items: &'a mut [Item],
@@ -52,7 +47,7 @@ pub(crate) fn build(
             Item { bounds: Box3::around(&triangle(face)), face }
         })
         .collect();
-    let bounds = Box3::union(&items);
+    let bounds = union(&items);
     let nodes = build_nodes(Run { items: &mut items, first: 0, bounds }, 0);
     (nodes, items.iter().map(|item| item.face).collect())
 }
@@ -145,7 +140,7 @@ fn halve(items: &mut [Item]) -> Cut {
         x_at.total_cmp(&y_at).then(x.face.cmp(&y.face))
     });
     let (left, right) = items.split_at(middle);
-    Cut { middle, left: Box3::union(left), right: Box3::union(right) }
+    Cut { middle, left: union(left), right: union(right) }
 }
 
 /// Equal bins along the longest axis of a box, by the centres of boxes in it.
@@ -233,48 +228,9 @@ fn partition(items: &mut [Item], left: impl Fn(&Item) -> bool) {
     }
 }
 
-impl Box3 {
-    const EMPTY: Self = Self { lo: Vec3::INFINITY, hi: Vec3::NEG_INFINITY };
-
-    /// The least `f32` box that holds a triangle.
-    fn around(&[a, b, c]: &Triangle) -> Self {
-        let (lo, hi) = (a.min(b).min(c), a.max(b).max(c));
-        Self {
-            lo: Vec3::from_array(lo.to_array().map(round_down)),
-            hi: Vec3::from_array(hi.to_array().map(round_up)),
-        }
-    }
-
-    fn union(items: &[Item]) -> Self {
-        items.iter().fold(Self::EMPTY, |all, item| all.merged(&item.bounds))
-    }
-
-    fn merged(&self, other: &Self) -> Self {
-        Self { lo: self.lo.min(other.lo), hi: self.hi.max(other.hi) }
-    }
-
-    /// Twice the centre: enough to compare.
-    fn center(&self) -> Vec3 {
-        self.lo + self.hi
-    }
-
-    /// Half the surface area; 0 for the empty box.
-    fn area(&self) -> f32 {
-        let size = (self.hi - self.lo).max(Vec3::ZERO);
-        size.x * (size.y + size.z) + size.y * size.z
-    }
-}
-
-/// The greatest `f32` not above `x`.
-pub(crate) fn round_down(x: f64) -> f32 {
-    let nearest = x as f32;
-    if f64::from(nearest) > x { nearest.next_down() } else { nearest }
-}
-
-/// The least `f32` not below `x`.
-pub(crate) fn round_up(x: f64) -> f32 {
-    let nearest = x as f32;
-    if f64::from(nearest) < x { nearest.next_up() } else { nearest }
+/// The box around all items.
+fn union(items: &[Item]) -> Box3 {
+    items.iter().fold(Box3::EMPTY, |all, item| all.merged(&item.bounds))
 }
 
 impl Node {

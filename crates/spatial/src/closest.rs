@@ -4,7 +4,8 @@ use glam::{DVec3, Vec4};
 use meshlod_mesh::FaceId;
 
 use crate::Bvh;
-use crate::build::{MAX_DEPTH, round_down, round_up};
+use crate::box3::{round_down, round_up};
+use crate::build::MAX_DEPTH;
 use crate::bvh::{INNER, Node};
 use crate::triangle::closest_point;
 

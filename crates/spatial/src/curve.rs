@@ -1,23 +1,24 @@
 //! An order of boxes along a curve that fills space.
 
-use glam::DVec3;
+use glam::{DVec3, Vec3};
 
 use crate::blocks::Corners;
+use crate::box3::Box3;
 
 /// Bits of a key per axis; three passes of a radix sort of 10 bits each.
 const BITS: u32 = 10;
-const CELLS: f64 = (1u32 << BITS) as f64;
+const CELLS: f32 = (1u32 << BITS) as f32;
 /// Runs with one key at least this long are ordered again by themselves.
 const CROWD: usize = 32;
 
-/// The items 0 to `count` so that those with near centres are near in the order.
+/// The boxes, by their indices, so that those with near centres are near in the order.
 ///
-/// Items in one cell are ordered again in the box of their own centres, so neither far-off items nor
-/// crowds spoil the order; those at one point stay in the order of their ids.
-pub(crate) fn order(count: usize, corners: &impl Fn(u32) -> Corners) -> Vec<u32> {
-    let mut keyed: Vec<Keyed> = (0..count as u32).map(|item| Keyed { key: 0, item }).collect();
-    let mut scratch = Vec::new();
-    sort(&mut keyed, &mut scratch, corners);
+/// Boxes in one cell are ordered again in the box of their own centres, so neither far-off boxes nor
+/// crowds spoil the order; those with one centre stay in their order.
+pub(crate) fn order(boxes: &[Box3]) -> Vec<u32> {
+    let mut keyed: Vec<Keyed> =
+        (0..boxes.len() as u32).map(|item| Keyed { key: 0, item }).collect();
+    sort(&mut keyed, boxes, &mut Vec::new());
     keyed.into_iter().map(|keyed| keyed.item).collect()
 }
 
@@ -27,37 +28,29 @@ struct Keyed {
     item: u32,
 }
 
-/// Twice the centre, halved first: no box is too large for it.
-fn center([lo, hi]: Corners) -> DVec3 {
-    lo * 0.5 + hi * 0.5
-}
-
-fn sort(run: &mut [Keyed], scratch: &mut Vec<Keyed>, corners: &impl Fn(u32) -> Corners) {
-    let empty = (DVec3::INFINITY, DVec3::NEG_INFINITY);
-    let (lo, hi) = run
-        .iter()
-        .map(|k| center(corners(k.item)))
-        .fold(empty, |(lo, hi), p| (lo.min(p), hi.max(p)));
-    // Halved, so that no extent overflows.
-    let extent = (hi * 0.5 - lo * 0.5).max_element();
+fn sort(run: &mut [Keyed], boxes: &[Box3], scratch: &mut Vec<Keyed>) {
+    let center = |keyed: &Keyed| boxes[keyed.item as usize].center();
+    let empty = (Vec3::INFINITY, Vec3::NEG_INFINITY);
+    let (lo, hi) = run.iter().map(center).fold(empty, |(lo, hi), p| (lo.min(p), hi.max(p)));
+    let extent = (hi - lo).max_element();
     if extent <= 0.0 || extent.is_nan() {
         return;
     }
+    let scale = CELLS / extent;
     for keyed in run.iter_mut() {
-        let at = (center(corners(keyed.item)) * 0.5 - lo * 0.5) / extent;
-        keyed.key = curve_key((at * CELLS).min(DVec3::splat(CELLS - 1.0)));
+        keyed.key = curve_key(((center(keyed) - lo) * scale).min(Vec3::splat(CELLS - 1.0)));
     }
     radix_sort(run, scratch);
     let whole = run.len();
     for crowd in run.chunk_by_mut(|a, b| a.key == b.key) {
         if crowd.len() >= CROWD && crowd.len() < whole {
-            sort(crowd, scratch, corners);
+            sort(crowd, boxes, scratch);
         }
     }
 }
 
-fn curve_key(cell: DVec3) -> u32 {
-    let spread = |x: f64| {
+fn curve_key(cell: Vec3) -> u32 {
+    let spread = |x: f32| {
         let mut x = x as u32;
         x = (x | x << 16) & 0x0300_00ff;
         x = (x | x << 8) & 0x0300_f00f;
@@ -96,12 +89,20 @@ fn radix_sort(run: &mut [Keyed], scratch: &mut Vec<Keyed>) {
     }
 }
 
-/// About where most of the boxes are, and how large all are: coordinates that fit an `f32`.
+/// About where most of the boxes are, and how far they reach: coordinates that fit an `f32`.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Middle {
     origin: DVec3,
     scale: f64,
 }
+
+/// The centre of a box; no box is too large for it.
+fn middle([lo, hi]: Corners) -> DVec3 {
+    lo * 0.5 + hi * 0.5
+}
+
+/// What is farther is as good as there: sums of such coordinates still fit an `f32`.
+const FARTHEST: f64 = 1e30;
 
 impl Middle {
     /// Boxes asked for the middle; far more than make a median steady.
@@ -113,28 +114,32 @@ impl Middle {
         }
         let samples = Self::SAMPLES.min(count);
         let centers: Vec<DVec3> =
-            (0..samples).map(|i| center(corners((i * count / samples) as u32))).collect();
+            (0..samples).map(|i| middle(corners((i * count / samples) as u32))).collect();
         let median = |axis: usize| {
             let mut along: Vec<f64> = centers.iter().map(|p| p[axis]).collect();
             along.sort_unstable_by(f64::total_cmp);
             along[samples / 2]
         };
         let origin = DVec3::new(median(0), median(1), median(2));
-        let far = (0..count as u32)
-            .flat_map(corners)
-            .map(|p| (p * 0.5 - origin * 0.5).abs().max_element())
-            .fold(0.0, f64::max);
+        let size = |p: DVec3| (p * 0.5 - origin * 0.5).abs().max_element();
+        let mut far = centers.into_iter().map(size).fold(0.0, f64::max);
+        if far == 0.0 {
+            far = (0..count as u32).flat_map(corners).map(size).fold(0.0, f64::max);
+        }
+        let exponent = if far > 0.0 { -far.log2().floor() } else { 0.0 };
         // A power of two rounds nothing.
-        let scale = if far > 0.0 {
-            2f64.powi(-far.log2().floor().clamp(-1000.0, 1000.0) as i32)
-        } else {
-            1.0
-        };
-        Self { origin, scale }
+        Self { origin, scale: 2f64.powi(exponent.clamp(-1000.0, 1000.0) as i32) }
+    }
+
+    /// The box in `f32`, about the middle. Rounding keeps the order of numbers, so boxes that
+    /// overlap still do.
+    #[inline]
+    pub(crate) fn rounded(&self, [lo, hi]: Corners) -> Box3 {
+        Box3 { lo: self.local(lo).as_vec3(), hi: self.local(hi).as_vec3() }
     }
 
     #[inline]
-    pub(crate) fn local(&self, p: DVec3) -> DVec3 {
-        (p - self.origin) * self.scale
+    fn local(&self, p: DVec3) -> DVec3 {
+        ((p - self.origin) * self.scale).clamp(DVec3::splat(-FARTHEST), DVec3::splat(FARTHEST))
     }
 }

@@ -18,6 +18,7 @@
 #![forbid(unsafe_code)]
 
 mod blocks;
+mod box3;
 mod build;
 mod bvh;
 mod closest;

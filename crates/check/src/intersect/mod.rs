@@ -9,19 +9,18 @@ mod coplanar;
 mod exact;
 mod filter;
 mod meet;
+mod net;
 mod rings;
 mod shares;
 mod soup;
 #[cfg(test)]
 mod tests;
 
-use std::ops::ControlFlow;
-
 use meshlod_mesh::{FaceId, Mesh, VertexId};
-use meshlod_spatial::{BoxBlocks, LANES, lanes};
 use rustc_hash::FxHashMap;
 
 use crate::{Touch, TouchKind};
+use filter::{Pair, surely_only_share};
 use meet::meet;
 use rings::{Certified, pairs_at};
 use soup::{Points, Soup, whole};
@@ -57,8 +56,8 @@ impl Meetings {
         let mut search = Search { ground, soup: &soup, certified: &certified, found: Vec::new() };
         let left_out = search.left_out();
         let counts = |f: FaceId| !left_out[f.index()];
-        search.around_places(counts);
-        search.apart(counts);
+        search.around_places(|f| counts(f));
+        search.apart(|f| counts(f));
         let mut pairs = search.found;
         for pair in &mut pairs {
             pair.sort_unstable();
@@ -121,9 +120,9 @@ impl Search<'_> {
 
     /// Tests the faces that share places, and adds what objects share.
     fn around_places(&mut self, counts: impl Fn(FaceId) -> bool) {
-        let one_object = self.ground.objects.names.len() < 2;
-        let mut doubles: Vec<_> =
-            self.ground.places.doubles().map(|v| (self.ground.places.first(v), v)).collect();
+        let places = self.ground.places;
+        let joined = self.objects_join();
+        let mut doubles: Vec<_> = places.doubles().map(|v| (places.first(v), v)).collect();
         doubles.sort_unstable();
         let mut doubles = doubles.as_slice();
         let mut star = Vec::new();
@@ -131,65 +130,60 @@ impl Search<'_> {
             let here = doubles.iter().take_while(|(first, _)| *first == place).count();
             let (doubles_here, later) = doubles.split_at(here);
             doubles = later;
-            if self.certified.holds(place) && one_object {
+            let certified = self.certified.holds(place);
+            let may_be_shared = joined || here > 0;
+            if places.first(place) != place || (certified && !may_be_shared) {
                 continue;
             }
-            let vertices = [place].into_iter().chain(doubles_here.iter().map(|&(_, v)| v));
             star.clear();
-            for v in vertices.filter(|&v| self.ground.places.first(v) == place) {
+            for v in [place].into_iter().chain(doubles_here.iter().map(|&(_, v)| v)) {
                 let faces = self.ground.connectivity.star(v).iter().copied();
                 star.extend(faces.filter(|&f| whole(&self.soup.corners[f.index()]) && counts(f)));
             }
             star.sort_unstable();
-            self.add_sharing(&star, place);
-            if !self.certified.holds(place) {
+            if may_be_shared {
+                self.add_sharing(&star, place);
+            }
+            if !certified {
                 for [f, g] in pairs_at(self.soup, self.certified, &star, place) {
-                    self.test(f, g);
+                    self.test_sharing(f, g);
                 }
             }
         }
     }
 
-    /// Tests all pairs of faces that share no place and may meet.
-    fn apart(&mut self, counts: impl Fn(FaceId) -> bool) {
-        let soup = self.soup;
-        let faces: Vec<FaceId> =
-            (0..soup.corners.len()).map(FaceId::new).filter(|&f| counts(f)).collect();
-        let blocks = BoxBlocks::new(faces.len(), |i| {
-            let [a, b, c] = soup.triangle(faces[i as usize]);
-            [a.min(b).min(c), a.max(b).max(c)]
-        });
-        let items = blocks.items();
-        let _ = blocks.pairs(&mut |row| {
-            let one = faces[items[row.one as usize] as usize];
-            let corners = soup.corners[one.index()];
-            for lane in lanes(row.lanes) {
-                let other = faces[items[row.block as usize * LANES + lane] as usize];
-                let others = soup.corners[other.index()];
-                if !corners.iter().any(|v| others.contains(v)) {
-                    self.test(one, other);
-                }
-            }
-            ControlFlow::<()>::Continue(())
-        });
+    /// Whether a component is in two objects, so that any vertex may be.
+    fn objects_join(&self) -> bool {
+        let objects = self.ground.objects;
+        let mut of_component = vec![None; objects.components];
+        let mut faces = objects.component_of_face.iter().zip(&objects.of_face);
+        faces.any(|(&component, &object)| {
+            *of_component[component as usize].get_or_insert(object) != object
+        })
     }
 
-    /// Adds a pair of faces if they have more in common than they share.
-    fn test(&mut self, f: FaceId, g: FaceId) {
-        let [corners_f, corners_g] = [f, g].map(|face| self.soup.corners[face.index()]);
-        let shared = corners_f.iter().filter(|v| corners_g.contains(v)).count();
-        let [a, b] = [f, g].map(|face| self.soup.triangle(face));
-        if shared == 0 && filter::surely_apart(&a, &b) {
-            return;
-        }
-        let Some(touch) = meet(&a, &b) else { return };
+    /// Whether faces that share no place meet.
+    #[inline]
+    fn meet_apart(&self, corners: [[VertexId; 3]; 2]) -> bool {
+        let triangles = corners.map(|face| face.map(|v| self.soup.points.at(v)));
+        let pair = Pair { triangles, alone: [[true; 3]; 2] };
+        !surely_only_share(&pair) && meet(&triangles[0], &triangles[1]).is_some()
+    }
+
+    /// Adds a pair of faces that share places if they have more in common.
+    fn test_sharing(&mut self, f: FaceId, g: FaceId) {
+        let triangles = [f, g].map(|face| self.soup.triangle(face));
+        let [f_at, g_at] = [f, g].map(|face| self.soup.corners[face.index()]);
+        let alone = [f_at.map(|v| !g_at.contains(&v)), g_at.map(|v| !f_at.contains(&v))];
+        let pair = Pair { triangles, alone };
         // A shared corner is a point in common, a shared edge a segment, and no more.
-        let more = match shared {
-            0 => true,
-            1 => touch.kind > TouchKind::Vertex,
-            _ => touch.kind > TouchKind::Edge,
+        let more = match alone[0].iter().filter(|alone| **alone).count() {
+            2 => TouchKind::Edge,
+            _ => TouchKind::Crossing,
         };
-        if more {
+        if !surely_only_share(&pair)
+            && meet(&triangles[0], &triangles[1]).is_some_and(|touch| touch.kind >= more)
+        {
             self.found.push([f, g]);
         }
     }

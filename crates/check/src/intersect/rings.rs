@@ -12,9 +12,7 @@ use super::soup::{Ground, Soup, whole};
 /// only meet in the vertex or their common edge. The turns are the signs of the components of the
 /// normals; how often the faces go round is how often the rim rises through the height of the vertex.
 /// All of it is done for all rings at once in one pass over the faces.
-pub(crate) struct Certified {
-    rings: Vec<Ring>,
-}
+pub(crate) struct Certified(Vec<bool>);
 
 /// What is known of a ring: the signs that all its normals have, and rises of its rim.
 #[derive(Clone, Copy)]
@@ -64,18 +62,22 @@ impl Certified {
                 }
             }
         }
-        Self { rings }
+        Self(rings.into_iter().map(Ring::certified).collect())
     }
 
     /// Whether the faces around a place are known to meet only where they share corners.
     #[inline]
     pub(crate) fn holds(&self, place: VertexId) -> bool {
-        let ring = self.rings[place.index()];
-        let along = |axis: usize| ring.signs >> (2 * axis) & (UP | DOWN) != 0;
+        self.0[place.index()]
+    }
+}
+
+impl Ring {
+    fn certified(self) -> bool {
+        let along = |axis: usize| self.signs >> (2 * axis) & (UP | DOWN) != 0;
         // Along x and z the rim is seen to rise in y, along y in x.
-        let once =
-            ((along(0) || along(2)) && ring.rises[1] == 1) || (along(1) && ring.rises[0] == 1);
-        ring.closed && once
+        let [in_x, in_y] = self.rises.map(|rises| rises == 1);
+        self.closed && (((along(0) || along(2)) && in_y) || (along(1) && in_x))
     }
 }
 

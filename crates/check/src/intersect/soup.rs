@@ -33,8 +33,7 @@ impl<'a> Soup<'a> {
             None => Cow::Borrowed(ground.faces),
             Some(_) => ground.faces.iter().map(|face| at_places(face, ground.places)).collect(),
         };
-        let used = corners.iter().filter(|face| whole(face)).flatten();
-        let points = Points::of(ground.positions, used.copied());
+        let points = Points::of(ground.positions, &corners);
         Self { corners, points }
     }
 
@@ -74,11 +73,16 @@ pub(crate) struct Points<'a> {
 const GREATEST: f64 = 1.6e60;
 
 impl<'a> Points<'a> {
-    fn of(positions: &'a [[f64; 3]], used: impl Iterator<Item = VertexId>) -> Self {
-        let greatest =
-            used.map(|v| DVec3::from(positions[v.index()]).abs().max_element()).fold(0.0, f64::max);
-        let fits = greatest == 0.0 || (1.0 / GREATEST..GREATEST).contains(&greatest);
-        let exponent = if fits { 0.0 } else { -greatest.log2().floor() };
+    fn of(positions: &'a [[f64; 3]], corners: &[[VertexId; 3]]) -> Self {
+        let size = |p: &[f64; 3]| DVec3::from(*p).abs().max_element();
+        let fits = |size: f64| size == 0.0 || (1.0 / GREATEST..GREATEST).contains(&size);
+        if fits(positions.iter().map(size).fold(0.0, f64::max)) {
+            return Self { positions, scale: 1.0 };
+        }
+        // Only vertices of faces count; the others may be anywhere.
+        let used = corners.iter().filter(|face| whole(face)).flatten();
+        let greatest = used.map(|v| size(&positions[v.index()])).fold(0.0, f64::max);
+        let exponent = if fits(greatest) { 0.0 } else { -greatest.log2().floor() };
         Self { positions, scale: 2f64.powi(exponent.clamp(-1022.0, 1022.0) as i32) }
     }
 

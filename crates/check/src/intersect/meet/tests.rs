@@ -5,7 +5,7 @@ use glam::DVec3;
 use super::{Triangle, meet};
 use crate::TouchKind;
 use crate::intersect::exact::open_axis;
-use crate::intersect::filter::surely_apart;
+use crate::intersect::filter::{Pair, surely_only_share};
 use crate::intersect::tests::Random;
 
 /// A point with a common denominator, above 0.
@@ -150,7 +150,16 @@ fn compare(a: &Whole, b: &Whole) {
     if let (Some(touch), Some((kind, points))) = (found, expected) {
         assert!(in_box(touch.place.into(), &points), "{a:?} and {b:?} at {:?}", touch.place);
         assert_eq!(touch.depth > 0.0, kind == TouchKind::Crossing, "{a:?} and {b:?}");
-        assert!(!surely_apart(&float(a), &float(b)), "{a:?} and {b:?}");
+    }
+    let alone = [a.map(|p| !b.contains(&p)), b.map(|p| !a.contains(&p))];
+    let pair = Pair { triangles: [float(a), float(b)], alone };
+    if surely_only_share(&pair) {
+        let most = match alone[0].iter().filter(|alone| **alone).count() {
+            3 => None,
+            2 => Some(TouchKind::Vertex),
+            _ => Some(TouchKind::Edge),
+        };
+        assert!(kind <= most, "{a:?} and {b:?}");
     }
 }
 
