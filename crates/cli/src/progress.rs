@@ -4,6 +4,7 @@ use std::io::IsTerminal;
 use std::time::Duration;
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use meshlod::mesh::FaceId;
 use meshlod::simplify::{Neighbourhood, Observe, Placed, Surface};
 
 /// A line on standard error that says what is being done.
@@ -73,5 +74,9 @@ impl Observe for Watch<'_> {
         if self.calls.is_multiple_of(CALLS_A_LOOK) {
             self.bar.set_position(self.gone);
         }
+    }
+
+    fn vanish(&mut self, _: &Surface, faces: &[FaceId]) {
+        self.gone += faces.len() as u64;
     }
 }

@@ -81,7 +81,8 @@ impl<'s> SceneSimplifier<'s> {
     /// Connects every mesh that the scene shows; nothing is contracted yet.
     ///
     /// `options.locks` count vertices through all meshes of the scene, mesh after mesh, see
-    /// [`join_locks`]. Meshes move apart: what is tied across two of them is locked.
+    /// [`join_locks`](crate::join_locks). Meshes move apart: what is tied across two of them is
+    /// locked. `options.vanish_below` is in world units; something of every mesh stays.
     ///
     /// Cost: O(n log n), n = faces.
     /// # Errors
@@ -96,7 +97,10 @@ impl<'s> SceneSimplifier<'s> {
             if copies == 0 {
                 continue;
             }
-            let options = Options { locks, ..*options };
+            // What the world squeezes to a point is smaller than anything.
+            let vanish_below = options.vanish_below.map(|size| size / scale);
+            let vanish_below = vanish_below.map(|size| if size.is_nan() { 0.0 } else { size });
+            let options = Options { locks, vanish_below, ..*options };
             match Simplifier::new(mesh, &options) {
                 Ok(simplifier) => {
                     let cost_scale = scale.powi(options.method.cost_power());
@@ -214,6 +218,7 @@ impl<'s> SceneSimplifier<'s> {
             non_manifold_vertices: 0,
             held: Held::default(),
             output_faces: self.live_faces(),
+            vanished: 0,
             reached: true,
             error_estimate: 0.0,
             refusals: Refusals::default(),
@@ -229,6 +234,7 @@ impl<'s> SceneSimplifier<'s> {
             whole.degenerate_faces += part.copies * report.degenerate_faces;
             whole.duplicate_faces += part.copies * report.duplicate_faces;
             whole.non_manifold_vertices += part.copies * report.non_manifold_vertices;
+            whole.vanished += part.copies * report.vanished;
             whole.held.add(&report.held, part.copies);
             whole.error_estimate = whole.error_estimate.max(part.scale * report.error_estimate);
             whole.refusals += report.refusals;

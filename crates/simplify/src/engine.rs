@@ -6,6 +6,7 @@
 //! A refused candidate waits until the neighbourhood of one of its vertices changes.
 
 mod together;
+mod vanish;
 mod waiting;
 
 use meshlod_mesh::{Connectivity, VertexId};
@@ -21,6 +22,7 @@ use crate::policy::{Candidates, Memory, Observe, Placement, Priority, Stop};
 use crate::queue::{Entry, Key};
 use crate::refusal::{Refusal, Refusals};
 use crate::surface::{Flags, Placed, State, Surface};
+use crate::vanishing::Vanishing;
 
 /// An algorithm: a choice of policies. What stops it and who observes come with each run.
 pub(crate) struct Algorithm<C, M, P, L> {
@@ -40,6 +42,9 @@ pub(crate) struct Engine<C, M, P, L> {
     /// Room for those that ties make go with one.
     mates: Vec<Neighbourhood>,
     waiting: Waiting,
+    vanishing: Vanishing,
+    /// How many components have vanished.
+    vanished: usize,
     /// Room for the candidates that a contraction opens.
     opened: Vec<CandidateId>,
     /// Room for the entries of a bucket.
@@ -75,6 +80,8 @@ where
             part: Neighbourhood::default(),
             mates: Vec::new(),
             waiting,
+            vanishing: Vanishing::default(),
+            vanished: 0,
             opened: Vec::new(),
             taken: Vec::new(),
             refusals: Refusals::default(),
@@ -89,6 +96,7 @@ where
         if error > self.refused_above {
             self.refused_above = f64::INFINITY;
             self.waiting.wake_all(&mut self.surface);
+            self.vanishing.wake_all();
         }
     }
 
@@ -253,7 +261,11 @@ pub(crate) trait Run {
     fn run(&mut self, stop: &Stop, observer: &mut dyn Observe);
     /// One contraction; false when no candidate is left that may, at the cost allowed.
     fn step(&mut self, stop: &Stop, observer: &mut dyn Observe) -> bool;
-    /// The cost of the contraction that is next, before any check.
+    /// Lets these components vanish when they are the cheapest.
+    fn let_vanish(&mut self, vanishing: Vanishing);
+    /// How many components have vanished.
+    fn vanished(&self) -> usize;
+    /// The cost of what is next, before any check.
     fn next_cost(&mut self) -> Option<f64>;
     fn surface(&self) -> &Surface;
     fn into_surface(self: Box<Self>) -> Surface;
@@ -275,7 +287,17 @@ where
 
     fn step(&mut self, stop: &Stop, observer: &mut dyn Observe) -> bool {
         self.try_again_within(stop.error);
-        while let Some(entry) = self.next_fresh() {
+        loop {
+            let next = self.next_fresh();
+            let most = next.map_or(f64::INFINITY, |entry| entry.key.cost()).min(stop.cost);
+            if let Some(component) = self.vanishing.take_up_to(most) {
+                next.into_iter().for_each(|entry| self.waiting.put(entry, &mut self.surface));
+                if self.vanish(component, stop, observer) {
+                    return true;
+                }
+                continue;
+            }
+            let Some(entry) = next else { return false };
             if entry.key.cost() > stop.cost {
                 self.waiting.put(entry, &mut self.surface);
                 return false;
@@ -293,14 +315,23 @@ where
                 }
             }
         }
-        false
+    }
+
+    fn let_vanish(&mut self, vanishing: Vanishing) {
+        self.vanishing = vanishing;
+    }
+
+    fn vanished(&self) -> usize {
+        self.vanished
     }
 
     fn next_cost(&mut self) -> Option<f64> {
         self.try_again_within(f64::INFINITY);
-        let entry = self.next_fresh()?;
-        self.waiting.put(entry, &mut self.surface);
-        Some(entry.key.cost())
+        let next = self.next_fresh();
+        next.into_iter().for_each(|entry| self.waiting.put(entry, &mut self.surface));
+        let costs =
+            next.map(|entry| entry.key.cost()).into_iter().chain(self.vanishing.next_cost());
+        costs.min_by(f64::total_cmp)
     }
 
     fn surface(&self) -> &Surface {

@@ -106,4 +106,21 @@ impl Observe for History {
             }
         }
     }
+
+    /// Written down as the contraction of an edge with all faces, after which nothing has moved.
+    fn vanish(&mut self, surface: &Surface, faces: &[FaceId]) {
+        let Some(&first) = faces.first() else { return };
+        let [v0, v1, _] = surface.face(first);
+        let place = surface.position(v0).into();
+        self.contractions.push(Contraction {
+            contracted: Contracted::edge([v0, v1]),
+            kept: 0,
+            from: place,
+            to: place,
+            moved: self.moved.len() as u32,
+            died: self.died.len() as u32,
+            blended: self.blended.len() as u32,
+        });
+        self.died.extend_from_slice(faces);
+    }
 }

@@ -36,6 +36,7 @@ mod refusal;
 mod simplifier;
 mod surface;
 mod ties;
+mod vanishing;
 mod volume;
 mod wedges;
 

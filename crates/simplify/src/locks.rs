@@ -67,7 +67,7 @@ pub(crate) fn apply(options: &Options, connectivity: &Connectivity, surface: &mu
                 held.protected += 1;
             }
             Lock::Locked => {
-                surface.flag(v, Flags::PINNED);
+                surface.flag(v, Flags::PINNED.or(Flags::HELD));
                 held.locked += 1;
             }
         }
@@ -76,7 +76,7 @@ pub(crate) fn apply(options: &Options, connectivity: &Connectivity, surface: &mu
     for tie in locks.ties.iter().filter(|tie| tie.len() > 1) {
         let few = tie.len() <= MOST_MEMBERS;
         let flag = if few { Flags::TIED } else { Flags::PINNED };
-        tie.iter().for_each(|&v| surface.flag(v, flag));
+        tie.iter().for_each(|&v| surface.flag(v, flag.or(Flags::HELD)));
         held.tied += tie.len();
         if few {
             ties.push(tie.clone());

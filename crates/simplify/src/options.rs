@@ -142,6 +142,10 @@ pub struct Options {
     /// What must stay, or move together. Where vertices of a tie do not find edges to move along
     /// together, they stay.
     pub locks: Locks,
+    /// A connected component whose box has a shorter diagonal than this, in model units, may vanish
+    /// as a whole, where nothing of it can be spared for less; not one with a vertex that a lock or a
+    /// tie holds, and not the last. Its size then counts as an error. `None`: none ever vanishes.
+    pub vanish_below: Option<f64>,
 }
 
 /// How much an error in an attribute counts against an error in distance; 0 not at all.
@@ -235,6 +239,9 @@ pub enum SimplifyError {
     /// A weight that is no weight.
     #[error("{0} is not a weight: give a number of at least 0")]
     BadWeight(f64),
+    /// A size below which components may vanish that is no size.
+    #[error("{0} is not a size: give a length of at least 0")]
+    BadSize(f64),
     /// A target that is no target.
     #[error("{0} is not a target: give a ratio between 0 and 1 or an error of at least 0")]
     BadTarget(f64),
@@ -255,10 +262,13 @@ pub struct Report {
     pub held: Held,
     /// Faces that are left.
     pub output_faces: usize,
+    /// Components that have vanished.
+    pub vanished: usize,
     /// Whether the target was reached.
     pub reached: bool,
     /// The greatest distance that the algorithm estimates for any contraction, in model units: an
-    /// estimate of the maximum that `measure` finds, not a bound of it.
+    /// estimate of the maximum that `measure` finds, not a bound of it. A component that has
+    /// vanished counts with its size; how far it was from what is left is not looked at.
     pub error_estimate: f64,
     /// Why candidates were refused, and how often.
     pub refusals: Refusals,

@@ -10,7 +10,7 @@
 //!
 //! Priority and placement share a [`Memory`]: what the algorithm keeps per vertex.
 
-use meshlod_mesh::{Connectivity, VertexId};
+use meshlod_mesh::{Connectivity, FaceId, VertexId};
 
 use crate::candidates::CandidateId;
 use crate::contracted::{Contracted, Freedom};
@@ -112,6 +112,11 @@ pub trait Observe {
     fn after(&mut self, surface: &Surface, hood: &Neighbourhood, placed: &Placed) {
         let _ = (surface, hood, placed);
     }
+
+    /// A component is about to vanish as a whole: these are the faces that are left of it.
+    fn vanish(&mut self, surface: &Surface, faces: &[FaceId]) {
+        let _ = (surface, faces);
+    }
 }
 
 impl Observe for () {}
@@ -126,6 +131,11 @@ impl<A: Observe, B: Observe> Observe for (A, B) {
         self.0.after(surface, hood, placed);
         self.1.after(surface, hood, placed);
     }
+
+    fn vanish(&mut self, surface: &Surface, faces: &[FaceId]) {
+        self.0.vanish(surface, faces);
+        self.1.vanish(surface, faces);
+    }
 }
 
 impl<O: Observe + ?Sized> Observe for &mut O {
@@ -135,5 +145,9 @@ impl<O: Observe + ?Sized> Observe for &mut O {
 
     fn after(&mut self, surface: &Surface, hood: &Neighbourhood, placed: &Placed) {
         (**self).after(surface, hood, placed);
+    }
+
+    fn vanish(&mut self, surface: &Surface, faces: &[FaceId]) {
+        (**self).vanish(surface, faces);
     }
 }

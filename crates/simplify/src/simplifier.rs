@@ -10,6 +10,7 @@ use crate::methods;
 use crate::options::{Options, Report, SimplifyError, Target};
 use crate::policy::{Observe, Stop};
 use crate::surface::Surface;
+use crate::vanishing::Vanishing;
 use crate::volume::VolumeLoss;
 
 /// The diagonals that can be worked with. Costs go with up to the sixth power of a length, checks with
@@ -46,6 +47,9 @@ impl<'m> Simplifier<'m> {
         }
         locks::validate(&options.locks, mesh)?;
         options.weights.validate()?;
+        if let Some(size) = options.vanish_below.filter(|size| size.is_nan() || *size < 0.0) {
+            return Err(SimplifyError::BadSize(size));
+        }
         let (connectivity, duplicate_faces) = clean::connect(mesh);
         let degenerate_faces = connectivity.degenerate_faces() - duplicate_faces;
         if connectivity.edge_count() == 0 {
@@ -57,7 +61,9 @@ impl<'m> Simplifier<'m> {
         let mut surface = Surface::new(mesh, &connectivity);
         let held = locks::apply(options, &connectivity, &mut surface);
         let input = Input { degenerate_faces, duplicate_faces, non_manifold_vertices, held };
-        let engine = methods::start(options, surface, connectivity);
+        let vanishing = Vanishing::new(&surface, options);
+        let mut engine = methods::start(options, surface, connectivity);
+        engine.let_vanish(vanishing);
         Ok(Self { mesh, engine, volume: VolumeLoss::default(), input })
     }
 
@@ -102,6 +108,7 @@ impl<'m> Simplifier<'m> {
             non_manifold_vertices: self.input.non_manifold_vertices,
             held: self.input.held,
             output_faces,
+            vanished: self.engine.vanished(),
             reached,
             error_estimate: self.engine.error_estimate(),
             refusals: self.engine.refusals(),

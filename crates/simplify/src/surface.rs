@@ -103,6 +103,8 @@ impl Flags {
     pub(crate) const TIED: Self = Self(16);
     /// Its contractions cost more.
     pub(crate) const PROTECTED: Self = Self(32);
+    /// A lock or a tie holds it: what it is part of stays.
+    pub(crate) const HELD: Self = Self(64);
 
     #[inline]
     pub(crate) fn any(self, of: Self) -> bool {
@@ -320,6 +322,25 @@ impl Surface {
             }
         }
         self.join(hood, kept, placed);
+    }
+
+    /// Ends all of a component at once: these are its faces, those that are gone among them.
+    pub(crate) fn take_out(&mut self, component: &[FaceId]) {
+        for &id in component {
+            let face = &mut self.faces[id.index()];
+            self.live_faces -= usize::from(std::mem::take(&mut face.alive));
+            for slot in 0..4 {
+                let state = match face.states.get(slot) {
+                    State::Queued | State::Ghost => State::Ghost,
+                    State::Parked | State::Closed => State::Closed,
+                };
+                face.states.set(slot, state);
+            }
+            for v in face.vertices {
+                let vertex = &mut self.vertices[v.index()];
+                (vertex.valence, vertex.gone) = (0, 0);
+            }
+        }
     }
 
     /// Gives `kept` the surviving faces, the flags and a version above all the contracted.

@@ -1,12 +1,12 @@
 //! What contractions did to the volume, an observer.
 
-use glam::{DMat3, DMat4};
-use meshlod_mesh::Bounds;
+use glam::{DMat3, DMat4, DVec3};
+use meshlod_mesh::{Bounds, FaceId};
 
 use crate::contracted::Freedom;
 use crate::neighbourhood::{Neighbourhood, Spoke};
 use crate::policy::Observe;
-use crate::surface::{Placed, Surface};
+use crate::surface::{Flags, Placed, Surface};
 
 /// The volume that contractions lost, and those that no method can make conserve it. All are of edges:
 /// a face counts as the two that it is contracted as.
@@ -15,9 +15,11 @@ pub struct VolumeLoss {
     /// The sum over all contractions with a closed ring of the volume before less the volume after,
     /// in model units cubed: table 2 of [LJ05].
     pub running_sum: f64,
-    /// Contractions with a vertex on the boundary: there is no volume, and they are not in the sum.
+    /// Contractions with a vertex on the boundary, and open components that vanished: there is no
+    /// volume, and they are not in the sum.
     pub open: Unconserved,
-    /// Contractions that a lock or a seam held to one place. They are in the sum.
+    /// Contractions that a lock, a tie or a seam held to one place, and closed components that
+    /// vanished, each as one. They are in the sum.
     pub held: Unconserved,
 }
 
@@ -53,19 +55,19 @@ impl Unconserved {
         }
     }
 
-    fn add(&mut self, placed: &Placed) {
+    fn add(&mut self, position: DVec3) {
         self.contractions += 1;
-        self.bounds.add(placed.position.into());
+        self.bounds.add(position.into());
     }
 }
 
 impl Observe for VolumeLoss {
     fn before(&mut self, surface: &Surface, hood: &Neighbourhood, placed: &Placed) {
         if !hood.is_closed(surface) {
-            return self.open.add(placed);
+            return self.open.add(placed.position);
         }
         if hood.freedom() != Freedom::Free {
-            self.held.add(placed);
+            self.held.add(placed.position);
         }
         // Seen from the kept vertex, which is a corner of nearly all the faces before.
         let kept = surface.position(hood.contracted()[placed.kept]);
@@ -76,5 +78,26 @@ impl Observe for VolumeLoss {
             a.cross(b).dot(from - to)
         };
         self.running_sum += hood.spokes().iter().map(sixfold).sum::<f64>() / 6.0;
+    }
+
+    fn vanish(&mut self, surface: &Surface, faces: &[FaceId]) {
+        let corners = |&face: &FaceId| surface.face(face).map(|v| surface.position(v));
+        let origin = faces.first().map_or(DVec3::ZERO, |face| corners(face)[0]);
+        let ends_open = |face: &FaceId| {
+            surface.face(*face).iter().any(|&v| surface.flags(v).any(Flags::BOUNDARY))
+        };
+        let kind = match faces.iter().any(ends_open) {
+            true => &mut self.open,
+            false => {
+                let sixfold = |face: &FaceId| {
+                    let [a, b, c] = corners(face).map(|corner| corner - origin);
+                    a.cross(b).dot(c)
+                };
+                self.running_sum += faces.iter().map(sixfold).sum::<f64>() / 6.0;
+                &mut self.held
+            }
+        };
+        kind.add(origin);
+        faces.iter().flat_map(corners).for_each(|corner| kind.bounds.add(corner.into()));
     }
 }

@@ -1,0 +1,41 @@
+//! Components that vanish as a whole.
+
+use crate::engine::Engine;
+use crate::policy::{Candidates, Memory, Observe, Placement, Priority, Stop};
+use crate::refusal::Refusal;
+use crate::vanishing::Component;
+
+impl<C, M, P, L> Engine<C, M, P, L>
+where
+    C: Candidates,
+    M: Memory,
+    P: Priority<M>,
+    L: Placement<M>,
+{
+    /// Takes a component out, unless it is all that is left or larger than the bound of the error.
+    pub(super) fn vanish(
+        &mut self,
+        component: Component,
+        stop: &Stop,
+        observer: &mut dyn Observe,
+    ) -> bool {
+        let surface = &mut self.surface;
+        let left = component.faces.iter().copied().filter(|&face| surface.is_alive(face));
+        let left: Vec<_> = left.collect();
+        if left.len() == surface.live_faces() {
+            self.refusals.add(Refusal::LastFaces);
+            return false;
+        }
+        if component.size > stop.error {
+            self.refusals.add(Refusal::Error);
+            self.refused_above = self.refused_above.min(stop.error);
+            self.vanishing.refuse(component);
+            return false;
+        }
+        observer.vanish(surface, &left);
+        surface.take_out(&component.faces);
+        self.error_estimate = self.error_estimate.max(component.size);
+        self.vanished += 1;
+        true
+    }
+}

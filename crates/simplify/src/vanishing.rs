@@ -1,0 +1,109 @@
+//! Small components, which may vanish as a whole where nothing of them can be spared for less.
+
+use meshlod_mesh::{Bounds, FaceId, face_components};
+
+use crate::options::{Method, Options};
+use crate::surface::{Flags, Surface};
+
+/// A component that may vanish.
+pub(crate) struct Component {
+    /// What it costs, in the terms of contractions.
+    pub(crate) cost: f64,
+    /// The diagonal of its box in the input, in model units: that far the surface is moved, as if it
+    /// shrank to a point of its own.
+    pub(crate) size: f64,
+    /// The faces of the input that are of it.
+    pub(crate) faces: Vec<FaceId>,
+}
+
+/// The components that may vanish, and have not.
+#[derive(Default)]
+pub(crate) struct Vanishing {
+    /// The cheapest last.
+    waiting: Vec<Component>,
+    /// Those too large for the bound of the error.
+    refused: Vec<Component>,
+}
+
+impl Vanishing {
+    /// The components of an untouched surface that are small enough, and that no lock holds.
+    ///
+    /// Cost: linear, and n log n of those that may vanish.
+    pub(crate) fn new(surface: &Surface, options: &Options) -> Self {
+        let Some(below) = options.vanish_below else { return Self::default() };
+        let alive = (0..surface.face_count()).map(FaceId::new).filter(|&f| surface.is_alive(f));
+        let alive: Vec<FaceId> = alive.collect();
+        let corners: Vec<_> = alive.iter().map(|&face| surface.face(face)).collect();
+        let (of_face, count) = face_components(&corners, surface.vertex_count());
+        let mut boxes = vec![(Bounds::EMPTY, false); count];
+        for (corners, &component) in corners.iter().zip(&of_face) {
+            let (bounds, is_held) = &mut boxes[component as usize];
+            corners.iter().for_each(|&v| bounds.add(surface.position(v).into()));
+            *is_held |= corners.iter().any(|&v| surface.flags(v).any(Flags::HELD));
+        }
+        let small = |(bounds, is_held): (Bounds, bool)| {
+            let size = bounds.diagonal();
+            let component = Component { cost: 0.0, size, faces: Vec::new() };
+            (size < below && !is_held).then_some(component)
+        };
+        let mut waiting: Vec<Option<Component>> = boxes.into_iter().map(small).collect();
+        for (face, component) in alive.into_iter().zip(of_face) {
+            if let Some(component) = &mut waiting[component as usize] {
+                component.faces.push(face);
+            }
+        }
+        let mut this = Self { waiting: waiting.into_iter().flatten().collect(), ..Self::default() };
+        for component in &mut this.waiting {
+            component.cost = cost(surface, options.method, component);
+        }
+        this.sort();
+        this
+    }
+
+    /// The cheapest, taken out, if it costs no more than this.
+    #[inline]
+    pub(crate) fn take_up_to(&mut self, cost: f64) -> Option<Component> {
+        self.waiting.pop_if(|component| component.cost <= cost)
+    }
+
+    /// The cost of the cheapest.
+    #[inline]
+    pub(crate) fn next_cost(&self) -> Option<f64> {
+        self.waiting.last().map(|component| component.cost)
+    }
+
+    /// Puts one aside until the bound of the error is wider.
+    pub(crate) fn refuse(&mut self, component: Component) {
+        self.refused.push(component);
+    }
+
+    /// Lets those try again that were refused.
+    pub(crate) fn wake_all(&mut self) {
+        if !self.refused.is_empty() {
+            self.waiting.append(&mut self.refused);
+            self.sort();
+        }
+    }
+
+    fn sort(&mut self) {
+        let first = |component: &Component| component.faces.first().copied();
+        self.waiting
+            .sort_by(|a, b| b.cost.total_cmp(&a.cost).then_with(|| first(b).cmp(&first(a))));
+    }
+}
+
+/// What it costs that a component goes, in the terms of a method: as if all of it moved by its size.
+fn cost(surface: &Surface, method: Method, component: &Component) -> f64 {
+    let Component { size, faces, .. } = component;
+    let area = || 0.5 * faces.iter().map(|&f| surface.area_normal(f).length()).sum::<f64>();
+    let cost = match method {
+        Method::Qem | Method::QemEndpoint | Method::KimJang => area() * size * size,
+        Method::LindstromTurk | Method::LindstromTurkFaces => (area() * size).powi(2),
+        // A sample a face, nearly.
+        Method::Pm => faces.len() as f64 * size * size,
+        Method::LeeJang | Method::Wu | Method::Spr => *size,
+    };
+    let is_protected =
+        |f: &FaceId| surface.face(*f).iter().any(|&v| surface.flags(v).any(Flags::PROTECTED));
+    if faces.iter().any(is_protected) { cost * surface.protection } else { cost }
+}

@@ -1,0 +1,174 @@
+//! Small components may vanish, and only they.
+
+use std::collections::HashSet;
+
+use meshlod_fixtures as fixtures;
+use meshlod_mesh::{Lock, Locks, Mesh, VertexId, face_components, sample};
+use meshlod_simplify::{
+    History, Method, Options, Progressive, Report, Simplifier, SimplifyError, Target, simplify,
+};
+
+/// The diagonal of a ball of diameter 2.
+const DIAGONAL: f64 = 3.47;
+
+/// A ball, and smaller ones beside it.
+fn balls(sizes: &[f64]) -> Mesh {
+    let mut all = Mesh::default();
+    for (i, &size) in [1.0].iter().chain(sizes).enumerate() {
+        let mesh = sample::sphere(400);
+        let start = all.positions.len() as u32;
+        let moved =
+            mesh.positions.iter().map(|p| [p[0] * size + 3.0 * i as f64, p[1] * size, p[2] * size]);
+        all.positions.extend(moved);
+        all.faces.extend(mesh.faces.iter().map(|face| face.map(|v| VertexId(v.0 + start))));
+    }
+    all
+}
+
+fn run(mesh: &Mesh, options: &Options, target: Target) -> (Mesh, Report) {
+    simplify(mesh, target, options).unwrap()
+}
+
+/// How many faces each component of the input has left.
+fn left(mesh: &Mesh, method: Method, vanish_below: Option<f64>, faces: usize) -> Vec<usize> {
+    let options = Options { method, vanish_below, ..Options::default() };
+    let (level, report) = run(mesh, &options, Target::Faces(faces));
+    let mut left = vec![0; 1 + mesh.positions.len() / sample::sphere(400).positions.len()];
+    for face in &level.faces {
+        let x = face.iter().map(|v| level.positions[v.index()][0]).sum::<f64>() / 3.0;
+        left[(x / 3.0).round() as usize] += 1;
+    }
+    left.pop();
+    assert_eq!(report.vanished, left.iter().filter(|&&faces| faces == 0).count());
+    left
+}
+
+#[test]
+fn what_is_small_vanishes_and_what_is_large_stays() {
+    let mesh = balls(&[0.1, 0.5, 0.2]);
+    for method in Method::ALL {
+        let none = left(&mesh, method, None, 0);
+        assert!(none.iter().all(|&faces| faces >= 4), "{}: {none:?}", method.name());
+        let [large, tiny, half, fifth] = left(&mesh, method, Some(0.3 * DIAGONAL), 0)[..] else {
+            panic!("four balls")
+        };
+        assert!(large >= 4 && half >= 4 && tiny + fifth == 0, "{}", method.name());
+        assert_eq!(left(&mesh, method, Some(0.0), 0), none, "{}", method.name());
+    }
+}
+
+#[test]
+fn it_vanishes_when_it_is_coarse() {
+    let mesh = balls(&[0.1, 0.1]);
+    for method in Method::ALL {
+        let options = Options { method, vanish_below: Some(1.0), ..Options::default() };
+        let mut simplifier = Simplifier::new(&mesh, &options).unwrap();
+        let mut before = mesh.faces.len();
+        while simplifier.step(f64::INFINITY, &mut ()) {
+            let now = simplifier.live_faces();
+            assert!(before - now <= 64, "{}: {} at once", method.name(), before - now);
+            before = now;
+        }
+    }
+}
+
+#[test]
+fn the_last_one_stays() {
+    let mesh = balls(&[0.4, 0.3]);
+    for method in Method::ALL {
+        let left = left(&mesh, method, Some(1e9), 0);
+        assert!(left[0] >= 4 && left[1] + left[2] == 0, "{}: {left:?}", method.name());
+    }
+}
+
+#[test]
+fn what_a_lock_holds_stays() {
+    let mesh = balls(&[0.1, 0.1]);
+    let of_ball = mesh.positions.len() / 3;
+    let mut of_vertex = vec![Lock::Free; mesh.positions.len()];
+    of_vertex[of_ball + 7] = Lock::Locked;
+    let locks = Locks { of_vertex, ties: Vec::new() };
+    let options = Options { locks, vanish_below: Some(1.0), ..Options::default() };
+    let (level, report) = run(&mesh, &options, Target::Faces(0));
+    assert_eq!(report.vanished, 1);
+    assert_eq!(face_components(&level.faces, level.positions.len()).1, 2);
+}
+
+#[test]
+fn a_size_is_an_error() {
+    let mesh = balls(&[0.1]);
+    let options = Options { vanish_below: Some(1.0), ..Options::default() };
+    let mut simplifier = Simplifier::new(&mesh, &options).unwrap();
+    let size = 0.1 * DIAGONAL;
+    let narrow = simplifier.run(Target::Error(0.9 * size), &mut ()).unwrap();
+    assert_eq!(narrow.vanished, 0);
+    let wide = simplifier.run(Target::Error(1.1 * size), &mut ()).unwrap();
+    assert!(wide.vanished == 1 && wide.error_estimate > 0.9 * size);
+}
+
+#[test]
+fn what_vanished_comes_back_to_the_bit() {
+    // One of the small ones is open, and one so stubborn that many faces go at once.
+    let mut mesh = balls(&[0.1, 0.2]);
+    mesh.faces.pop();
+    for method in Method::ALL {
+        let options = Options { method, vanish_below: Some(1.0), ..Options::default() };
+        let mut simplifier = Simplifier::new(&mesh, &options).unwrap();
+        let mut history = History::default();
+        let mut levels = vec![simplifier.level()];
+        for ratio in [0.6, 0.3, 0.1, 0.0] {
+            simplifier.run(Target::Ratio(ratio), &mut history).unwrap();
+            levels.push(simplifier.level());
+        }
+        let bytes = Progressive::new(simplifier, history).unwrap().to_bytes();
+        let mut progressive = Progressive::from_bytes(&bytes).unwrap();
+        for level in levels.iter().rev() {
+            progressive.go_to(level.faces.len());
+            assert_eq!(&progressive.level(), level, "{}", method.name());
+        }
+    }
+}
+
+#[test]
+fn the_volume_that_vanished_is_told() {
+    let mesh = balls(&[0.3]);
+    let volume = |mesh: &Mesh| -> f64 {
+        let sixfold = |&face: &[VertexId; 3]| {
+            let [a, b, c] = mesh.triangle(face);
+            a.cross(b).dot(c)
+        };
+        mesh.faces.iter().map(sixfold).sum::<f64>() / 6.0
+    };
+    for method in Method::ALL {
+        let options = Options { method, vanish_below: Some(2.0), ..Options::default() };
+        let (level, report) = run(&mesh, &options, Target::Faces(4));
+        assert_eq!(report.vanished, 1);
+        let lost = volume(&mesh) - volume(&level);
+        assert!((report.volume.running_sum - lost).abs() < 1e-12, "{}", method.name());
+    }
+}
+
+#[test]
+fn faces_that_are_left_out_join_nothing() {
+    // A face that repeats a vertex names both cubes, and is none of either.
+    let mut mesh = fixtures::cube();
+    let count = mesh.positions.len() as u32;
+    let second = fixtures::cube();
+    mesh.positions.extend(second.positions.iter().map(|p| p.map(|x| 0.1 * x + 9.0)));
+    mesh.faces.extend(second.faces.iter().map(|face| face.map(|v| VertexId(v.0 + count))));
+    mesh.faces.push([VertexId(0), VertexId(0), VertexId(count)]);
+    let options = Options { vanish_below: Some(1.0), ..Options::default() };
+    let (level, report) = run(&mesh, &options, Target::Faces(0));
+    assert_eq!((report.vanished, report.degenerate_faces), (1, 1));
+    let far: HashSet<_> = level.positions.iter().map(|p| p[0] > 5.0).collect();
+    assert_eq!(far, HashSet::from([false]));
+}
+
+#[test]
+fn what_is_no_size_is_refused() {
+    for size in [-1.0, f64::NAN] {
+        let options = Options { vanish_below: Some(size), ..Options::default() };
+        let refused = simplify(&balls(&[]), Target::Ratio(0.5), &options);
+        assert!(matches!(refused, Err(SimplifyError::BadSize(_))));
+    }
+}
