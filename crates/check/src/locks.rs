@@ -1,0 +1,222 @@
+//! What must stay when a mesh is coarsened: where components meet, and where the surface ends.
+
+use std::ops::ControlFlow;
+
+use glam::DVec3;
+use meshlod_mesh::{Connectivity, FaceId, Lock, Locks, Mesh, Side, Twin, VertexId};
+use robust::{Coord3D, orient3d};
+
+use crate::check::{CheckOptions, check};
+use crate::finding::{Finding, Kind, Touch, TouchKind};
+use crate::kinds::Kinds;
+use crate::objects::ObjectsBy;
+use crate::places::Places;
+
+/// What shall stay.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct LockOptions {
+    /// Where components meet, of one object or of two: components are what moves apart.
+    pub contacts: bool,
+    /// What the vertices of boundary edges are; [`Lock::Free`] for nothing of their own.
+    pub boundary: Lock,
+}
+
+/// Why a vertex is not free.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum LockReason {
+    /// A face at it passes through one of another component: locked.
+    Crossing,
+    /// A face at it lies in one plane with one of another component, over it: locked.
+    Overlap,
+    /// It, or a face at it, touches another component elsewhere than at its vertices: locked.
+    Touching,
+    /// It is at the place of other vertices: tied to them, or locked where one of them is.
+    SharedPlace,
+    /// It is at a boundary edge: what [`LockOptions::boundary`] says.
+    Boundary,
+    /// A face at it has a vertex at a crossing: protected.
+    BesideCrossing,
+}
+
+impl LockReason {
+    /// Every reason, the stronger first.
+    pub const ALL: [Self; 6] = [
+        Self::Crossing,
+        Self::Overlap,
+        Self::Touching,
+        Self::SharedPlace,
+        Self::Boundary,
+        Self::BesideCrossing,
+    ];
+
+    /// Its name in reports.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Crossing => "crossing",
+            Self::Overlap => "overlap",
+            Self::Touching => "touching",
+            Self::SharedPlace => "shared-place",
+            Self::Boundary => "boundary",
+            Self::BesideCrossing => "beside-crossing",
+        }
+    }
+}
+
+/// What must stay, and why.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Locking {
+    /// For the simplifier.
+    pub locks: Locks,
+    /// The strongest reason of every vertex that is not free.
+    pub reasons: Vec<Option<LockReason>>,
+}
+
+impl Locking {
+    /// How many vertices are not free for this reason before all others.
+    pub fn count(&self, reason: LockReason) -> usize {
+        self.reasons.iter().filter(|of| **of == Some(reason)).count()
+    }
+}
+
+/// What must stay of a mesh that has passed [`Mesh::validate`].
+///
+/// Faces that pass through faces of another component, or lie over them in one plane, keep their
+/// vertices, so that the line where they meet stays what it is; vertices around them are protected.
+/// Vertices at one place are tied, of two components or of one. A vertex that touches another
+/// component elsewhere is locked, and so is what it touches.
+///
+/// Cost: that of [`check`] for what meets, with contacts; else linear.
+pub fn locks(mesh: &Mesh, options: &LockOptions) -> Locking {
+    let mut hold = Hold { mesh, reasons: vec![None; mesh.positions.len()] };
+    let mut ties = Vec::new();
+    if options.contacts {
+        let places = Places::of(&mesh.positions);
+        hold.contacts(&places);
+        ties = hold.shared_places(&places);
+    }
+    if options.boundary != Lock::Free {
+        hold.boundary();
+    }
+    if options.contacts {
+        hold.beside_crossings();
+    }
+    let mut of_vertex: Vec<Lock> = hold.reasons.iter().map(|r| lock_of(*r, options)).collect();
+    ties.retain(|tie: &Vec<VertexId>| {
+        let worst = tie.iter().map(|v| of_vertex[v.index()]).max().unwrap_or_default();
+        tie.iter().for_each(|v| of_vertex[v.index()] = worst);
+        worst != Lock::Locked
+    });
+    Locking { locks: Locks { of_vertex, ties }, reasons: hold.reasons }
+}
+
+/// A vertex that is only tied is as free as its tie.
+fn lock_of(reason: Option<LockReason>, options: &LockOptions) -> Lock {
+    match reason {
+        None | Some(LockReason::SharedPlace) => Lock::Free,
+        Some(LockReason::Crossing | LockReason::Overlap | LockReason::Touching) => Lock::Locked,
+        Some(LockReason::Boundary) => options.boundary,
+        Some(LockReason::BesideCrossing) => Lock::Protected,
+    }
+}
+
+/// Reasons as they are found.
+struct Hold<'m> {
+    mesh: &'m Mesh,
+    reasons: Vec<Option<LockReason>>,
+}
+
+impl Hold<'_> {
+    /// Gives a vertex a reason, unless it has a stronger one.
+    fn hold(&mut self, vertex: VertexId, reason: LockReason) {
+        let of = &mut self.reasons[vertex.index()];
+        *of = Some(of.map_or(reason, |known| known.min(reason)));
+    }
+
+    fn contacts(&mut self, places: &Places) {
+        let options = CheckOptions {
+            kinds: Kinds::NONE.with(Kind::Contact),
+            objects: ObjectsBy::Components,
+            ..CheckOptions::default()
+        };
+        let mesh = self.mesh;
+        let _ = check(mesh, &options, &mut |finding| {
+            if let Finding::Contact { faces, touch, .. } = finding {
+                self.contact(*faces, touch, places);
+            }
+            ControlFlow::Continue(())
+        });
+    }
+
+    fn contact(&mut self, faces: [FaceId; 2], touch: &Touch, places: &Places) {
+        let corners = faces.map(|face| self.mesh.faces[face.index()]);
+        let [a, b] = corners.map(|face| face.map(|v| places.first(v)));
+        let shared = a.iter().filter(|v| b.contains(v)).count();
+        let reason = match touch.kind {
+            TouchKind::Crossing => LockReason::Crossing,
+            TouchKind::Overlap if shared == 3 => return,
+            TouchKind::Overlap => LockReason::Overlap,
+            // What is shared at vertices, ties keep.
+            TouchKind::Vertex if shared == 1 => return,
+            TouchKind::Edge if shared == 2 => return,
+            TouchKind::Vertex | TouchKind::Edge => {
+                self.touch(corners, DVec3::from(touch.place));
+                return;
+            }
+        };
+        corners.into_iter().flatten().for_each(|v| self.hold(v, reason));
+    }
+
+    /// The corners of each face with which it touches the other; all three where it is the inside
+    /// of a face or an edge that is touched.
+    fn touch(&mut self, [a, b]: [[VertexId; 3]; 2], place: DVec3) {
+        for (one, other) in [(a, b), (b, a)] {
+            let at = |v: VertexId| DVec3::from(self.mesh.positions[v.index()]);
+            let plane = other.map(at);
+            let touching: Vec<_> = one.into_iter().filter(|&v| in_plane(&plane, at(v))).collect();
+            let by_corners = match touching[..] {
+                [] => false,
+                [only] => at(only) == place,
+                _ => true,
+            };
+            let held = if by_corners { &touching[..] } else { &one };
+            held.iter().for_each(|&v| self.hold(v, LockReason::Touching));
+        }
+    }
+
+    /// The vertices at each place with more than one that faces use.
+    fn shared_places(&mut self, places: &Places) -> Vec<Vec<VertexId>> {
+        let used = self.mesh.used_vertices();
+        let shared = places.shared(|v| used[v.index()]);
+        for &v in shared.iter().flatten() {
+            self.hold(v, LockReason::SharedPlace);
+        }
+        shared
+    }
+
+    fn boundary(&mut self) {
+        let faces = &self.mesh.faces;
+        let connectivity = Connectivity::new(faces, self.mesh.positions.len());
+        for side in (0..faces.len()).flat_map(|f| (0..3).map(move |k| Side::new(FaceId::new(f), k)))
+        {
+            if connectivity.twin(side) == Twin::Boundary {
+                side.ends(faces).into_iter().for_each(|v| self.hold(v, LockReason::Boundary));
+            }
+        }
+    }
+
+    fn beside_crossings(&mut self) {
+        let crossing: Vec<bool> =
+            self.reasons.iter().map(|reason| *reason == Some(LockReason::Crossing)).collect();
+        for face in &self.mesh.faces {
+            if face.iter().any(|v| crossing[v.index()]) {
+                face.iter().for_each(|&v| self.hold(v, LockReason::BesideCrossing));
+            }
+        }
+    }
+}
+
+/// Whether a point is in the plane of a triangle, exactly.
+fn in_plane(&[a, b, c]: &[DVec3; 3], p: DVec3) -> bool {
+    let coord = |p: DVec3| Coord3D { x: p.x, y: p.y, z: p.z };
+    orient3d(coord(a), coord(b), coord(c), coord(p)) == 0.0
+}
