@@ -76,6 +76,27 @@ impl Locking {
     pub fn count(&self, reason: LockReason) -> usize {
         self.reasons.iter().filter(|of| **of == Some(reason)).count()
     }
+
+    /// Holds a vertex at least as much as this, and keeps the stronger reason.
+    pub fn hold(&mut self, vertex: VertexId, lock: Lock, reason: Option<LockReason>) {
+        let of = &mut self.locks.of_vertex[vertex.index()];
+        *of = lock.max(*of);
+        let known = &mut self.reasons[vertex.index()];
+        *known = [*known, reason].into_iter().flatten().min();
+    }
+
+    /// Makes the vertices of a tie as little free as the least free of them, drops the ties of what
+    /// is locked, and those that are there twice.
+    pub fn settle_ties(&mut self) {
+        let of_vertex = &mut self.locks.of_vertex;
+        self.locks.ties.retain(|tie| {
+            let worst = tie.iter().map(|v| of_vertex[v.index()]).max().unwrap_or_default();
+            tie.iter().for_each(|v| of_vertex[v.index()] = worst);
+            worst != Lock::Locked
+        });
+        self.locks.ties.sort_unstable();
+        self.locks.ties.dedup();
+    }
 }
 
 /// What must stay of a mesh that has passed [`Mesh::validate`].
@@ -100,13 +121,10 @@ pub fn locks(mesh: &Mesh, options: &LockOptions) -> Locking {
     if options.contacts {
         hold.beside_crossings();
     }
-    let mut of_vertex: Vec<Lock> = hold.reasons.iter().map(|r| lock_of(*r, options)).collect();
-    ties.retain(|tie: &Vec<VertexId>| {
-        let worst = tie.iter().map(|v| of_vertex[v.index()]).max().unwrap_or_default();
-        tie.iter().for_each(|v| of_vertex[v.index()] = worst);
-        worst != Lock::Locked
-    });
-    Locking { locks: Locks { of_vertex, ties }, reasons: hold.reasons }
+    let of_vertex = hold.reasons.iter().map(|reason| lock_of(*reason, options)).collect();
+    let mut locking = Locking { locks: Locks { of_vertex, ties }, reasons: hold.reasons };
+    locking.settle_ties();
+    locking
 }
 
 /// A vertex that is only tied is as free as its tie.
@@ -220,3 +238,6 @@ fn in_plane(&[a, b, c]: &[DVec3; 3], p: DVec3) -> bool {
     let coord = |p: DVec3| Coord3D { x: p.x, y: p.y, z: p.z };
     orient3d(coord(a), coord(b), coord(c), coord(p)) == 0.0
 }
+
+#[cfg(test)]
+mod tests;

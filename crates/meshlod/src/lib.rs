@@ -109,6 +109,7 @@
 //! all.
 #![forbid(unsafe_code)]
 
+mod contacts;
 mod locks;
 mod materials;
 mod place;
@@ -123,6 +124,7 @@ pub use meshlod_picture as picture;
 pub use meshlod_simplify as simplify;
 pub use meshlod_spatial as spatial;
 
+pub use contacts::scene_locks;
 pub use locks::join_locks;
 pub use materials::{UnreadImage, materials_of};
 pub use meshlod_io::{Format, IoError, ReadOptions, Scene, WriteOptions, read, write};
