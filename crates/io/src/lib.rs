@@ -14,7 +14,6 @@
 //! ```
 #![forbid(unsafe_code)]
 
-mod buckets;
 mod error;
 mod files;
 mod flatten;
@@ -31,15 +30,14 @@ pub mod smf;
 pub mod stl;
 mod text;
 mod torn;
-mod weld;
 
 pub use error::{IoError, ParseError, Place, Unfit};
 pub use files::{ReadOptions, Resolve, Weld, WriteOptions, read, read_bytes, write, write_lods};
 pub use flatten::Placement;
 pub use format::Format;
+pub use meshlod_mesh::{merge_equal_wedges, weld};
 pub use replace::{abandon_files, write_file};
 pub use scene::{Image, Material, Node, Scene, SceneMesh};
-pub use weld::{merge_equal_wedges, weld};
 
 /// How coordinates are written.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

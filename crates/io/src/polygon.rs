@@ -3,8 +3,7 @@
 use std::ops::RangeInclusive;
 
 use glam::{DVec2, DVec3};
-
-use crate::buckets::Buckets;
+use meshlod_mesh::Buckets;
 
 /// Tips, cells and points that may be looked at, per corner of the polygon, before the rest becomes
 /// a fan. Only a polygon made to be slow meets the limit; 10^5 such corners then take about 0.5 s.

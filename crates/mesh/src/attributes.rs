@@ -21,6 +21,18 @@ pub enum LayerKind {
     Other,
 }
 
+impl LayerKind {
+    /// The width that a layer of this kind must have, where it has only one.
+    pub fn width(self) -> Option<usize> {
+        match self {
+            Self::Normal => Some(3),
+            Self::Uv(_) => Some(2),
+            Self::Tangent | Self::Joints(_) | Self::Weights(_) => Some(4),
+            Self::Color(_) | Self::Other => None,
+        }
+    }
+}
+
 /// One attribute over all wedges.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Layer {

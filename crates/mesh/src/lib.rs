@@ -14,6 +14,7 @@
 
 mod attributes;
 mod bounds;
+mod buckets;
 mod components;
 mod connectivity;
 mod ids;
@@ -21,12 +22,15 @@ mod labels;
 mod locks;
 mod mesh;
 pub mod sample;
+mod weld;
 
 pub use attributes::{Attributes, Layer, LayerKind};
 pub use bounds::Bounds;
+pub use buckets::Buckets;
 pub use components::face_components;
 pub use connectivity::{Connectivity, Marks, Side, Twin};
 pub use ids::{FaceId, VertexId, WedgeId};
 pub use labels::Labels;
 pub use locks::{Lock, Locks};
 pub use mesh::{Mesh, MeshError};
+pub use weld::{first_near, merge_equal_wedges, weld};

@@ -3,7 +3,7 @@
 use glam::DVec3;
 use thiserror::Error;
 
-use crate::{Attributes, Bounds, FaceId, Labels, LayerKind, VertexId};
+use crate::{Attributes, Bounds, FaceId, Labels, VertexId};
 
 /// A triangle mesh: positions, faces, and what hangs on them.
 ///
@@ -151,7 +151,7 @@ impl Mesh {
         for layer in &attributes.layers {
             let what = format!("attribute layer \"{}\"", layer.name);
             same_length(&what, layer.values.len(), count.saturating_mul(layer.width))?;
-            if let Some(width) = fixed_width(layer.kind) {
+            if let Some(width) = layer.kind.width() {
                 same_length(&format!("a wedge of {what}"), layer.width, width)?;
             }
         }
@@ -240,16 +240,6 @@ fn dense_map(count: usize, used: impl Iterator<Item = u32>) -> (Vec<u32>, Vec<u3
         }
     }
     (map, kept)
-}
-
-/// The width that a kind of layer must have, where it has only one.
-fn fixed_width(kind: LayerKind) -> Option<usize> {
-    match kind {
-        LayerKind::Normal => Some(3),
-        LayerKind::Uv(_) => Some(2),
-        LayerKind::Tangent | LayerKind::Joints(_) | LayerKind::Weights(_) => Some(4),
-        LayerKind::Color(_) | LayerKind::Other => None,
-    }
 }
 
 fn same_length(what: &str, found: usize, expected: usize) -> Result<(), MeshError> {

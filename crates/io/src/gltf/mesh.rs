@@ -1,12 +1,11 @@
 //! A mesh of a document: its primitives as one surface.
 
-use meshlod_mesh::{Attributes, Labels, Layer, LayerKind, Mesh, VertexId, WedgeId};
+use meshlod_mesh::{Attributes, Labels, Layer, LayerKind, Mesh, VertexId, WedgeId, weld};
 use rustc_hash::FxHashMap;
 
 use super::accessor::Values;
 use super::document::{Document, compressed};
 use super::schema::Primitive;
-use crate::weld::weld;
 use crate::{ParseError, Weld};
 
 /// Reads mesh `index`: all its triangle primitives as one mesh, whose material labels say which

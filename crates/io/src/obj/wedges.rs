@@ -2,9 +2,8 @@
 
 use std::num::NonZeroU32;
 
-use meshlod_mesh::{Attributes, Layer, LayerKind, VertexId, WedgeId};
+use meshlod_mesh::{Attributes, Buckets, Layer, LayerKind, VertexId, WedgeId};
 
-use crate::buckets::Buckets;
 use crate::torn::{layer, of_vertices, to_unit};
 
 /// What a corner names beside its vertex; ids counted from 1.

@@ -1,13 +1,12 @@
 //! SMF in.
 
-use meshlod_mesh::{Attributes, Layer, LayerKind, Mesh, VertexId, WedgeId};
+use meshlod_mesh::{Attributes, Layer, LayerKind, Mesh, VertexId, WedgeId, merge_equal_wedges};
 
 use super::scope::Scopes;
 use crate::ParseError;
 use crate::polygon::triangulate;
 use crate::text::{Text, quoted};
 use crate::torn::{layer, of_vertices, to_unit};
-use crate::weld::merge_equal_wedges;
 
 /// Reads an SMF file: `v`, `f` and `t`, the properties `c`, `n` and `r` as `bind` says, and scopes
 /// with `trans`, `scale`, `rot`, `t_trans`, `t_scale` and `set vertex_correction`.

@@ -4,10 +4,8 @@ use std::cmp::Ordering;
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
 
+use crate::{Attributes, Buckets, Mesh, VertexId, WedgeId};
 use glam::DVec3;
-use meshlod_mesh::{Attributes, Mesh, VertexId, WedgeId};
-
-use crate::buckets::Buckets;
 
 /// Joins the vertices of `mesh` that stand at the same place, and says how many went away.
 ///
@@ -19,16 +17,20 @@ use crate::buckets::Buckets;
 ///
 /// Cost: O(n), n = vertices.
 pub fn weld(mesh: &mut Mesh, epsilon: f64) -> usize {
-    let joined = if epsilon > 0.0 {
-        first_within(&mesh.positions, epsilon)
-    } else {
-        first_equal(&mesh.positions)
-    };
+    let joined = first_near(&mesh.positions, epsilon);
     let removed = join(mesh, joined);
     if removed > 0 {
         merge_equal_wedges(mesh);
     }
     removed
+}
+
+/// For each point the first that is kept within `epsilon` of it, as [`weld`] keeps them: itself, or
+/// one before it.
+///
+/// Cost: O(n), n = points.
+pub fn first_near(points: &[[f64; 3]], epsilon: f64) -> Vec<u32> {
+    if epsilon > 0.0 { first_within(points, epsilon) } else { first_equal(points) }
 }
 
 /// Makes one wedge of those that a vertex has with equal values, and drops unused ones.
@@ -169,10 +171,10 @@ fn join(mesh: &mut Mesh, joined: Vec<u32>) -> usize {
 
 #[cfg(test)]
 mod tests {
-    use meshlod_mesh::{Layer, LayerKind};
     use proptest::prelude::*;
 
     use super::*;
+    use crate::{Layer, LayerKind};
 
     /// Two triangles that share an edge by place only, with a uv for each corner.
     fn torn(uvs: [[f32; 2]; 6]) -> Mesh {

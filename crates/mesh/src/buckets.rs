@@ -1,7 +1,8 @@
 //! Things by a small whole number, in two arrays.
 
 /// The numbers `0..n` sorted into buckets; each bucket keeps their order.
-pub(crate) struct Buckets {
+#[derive(Clone, Debug)]
+pub struct Buckets {
     /// Where each bucket starts in `members`; one more entry than buckets.
     starts: Vec<u32>,
     members: Vec<u32>,
@@ -11,7 +12,7 @@ impl Buckets {
     /// Puts `i` into the bucket that the `i`-th of `of_members` names, of `count` buckets.
     ///
     /// Cost: O(count + members).
-    pub(crate) fn new(
+    pub fn new(
         count: usize,
         of_members: impl DoubleEndedIterator<Item = usize> + ExactSizeIterator + Clone,
     ) -> Self {
@@ -35,7 +36,7 @@ impl Buckets {
 
     /// The members of a bucket, in order.
     #[inline]
-    pub(crate) fn of(&self, bucket: usize) -> &[u32] {
+    pub fn of(&self, bucket: usize) -> &[u32] {
         &self.members[self.starts[bucket] as usize..self.starts[bucket + 1] as usize]
     }
 }
