@@ -1,13 +1,13 @@
 //! The check: every kind of finding in turn, told to a visitor.
 
-mod boundary;
+pub(crate) mod boundary;
 mod edges;
-mod faces;
+pub(crate) mod faces;
 mod fans;
 mod meets;
-mod shells;
+pub(crate) mod shells;
 mod sound;
-mod subject;
+pub(crate) mod subject;
 mod vertices;
 
 use std::ops::ControlFlow;

@@ -4,10 +4,12 @@
 mod check;
 mod finding;
 mod intersect;
+mod joined;
 mod kinds;
 mod locks;
 mod objects;
 mod places;
+mod repair;
 mod summary;
 mod zero_area;
 
@@ -18,4 +20,5 @@ pub use kinds::Kinds;
 pub use locks::{LockOptions, LockReason, Locking, locks};
 pub use objects::{ObjectId, Objects, ObjectsBy};
 pub use places::Places;
+pub use repair::{HoleLimits, RepairOptions, RepairReport, RepairStep, repair};
 pub use summary::Summary;

@@ -7,6 +7,7 @@ use meshlod_mesh::VertexId;
 use super::Visit;
 use super::subject::Subject;
 use crate::finding::Finding;
+use crate::joined::Joined;
 
 pub fn non_manifold_vertices(subject: &Subject, visit: &mut Visit) -> ControlFlow<()> {
     let mut fans = Fans::default();
@@ -28,7 +29,7 @@ pub fn non_manifold_vertices(subject: &Subject, visit: &mut Visit) -> ControlFlo
 struct Fans {
     /// Two for each face of the star: a neighbour, and the place of the face in the star.
     spokes: Vec<(VertexId, u32)>,
-    parents: Vec<u32>,
+    joined: Joined,
 }
 
 impl Fans {
@@ -36,33 +37,17 @@ impl Fans {
     fn count(&mut self, subject: &Subject, vertex: VertexId) -> usize {
         let star = subject.connectivity().star(vertex);
         self.spokes.clear();
-        self.parents.clear();
+        self.joined.reset(star.len());
         for (place, face) in (0..).zip(star) {
             let others = subject.faces[face.index()].into_iter().filter(|&v| v != vertex);
             self.spokes.extend(others.map(|v| (v, place)));
-            self.parents.push(place);
         }
         self.spokes.sort_unstable();
         let mut count = star.len();
         for i in 1..self.spokes.len() {
             let (a, b) = (self.spokes[i - 1], self.spokes[i]);
-            count -= usize::from(a.0 == b.0 && self.join(a.1, b.1));
+            count -= usize::from(a.0 == b.0 && self.joined.join(a.1, b.1));
         }
         count
-    }
-
-    /// False where they are one already.
-    fn join(&mut self, a: u32, b: u32) -> bool {
-        let (a, b) = (self.root(a), self.root(b));
-        self.parents[a.max(b) as usize] = a.min(b);
-        a != b
-    }
-
-    fn root(&mut self, mut i: u32) -> u32 {
-        while self.parents[i as usize] != i {
-            self.parents[i as usize] = self.parents[self.parents[i as usize] as usize];
-            i = self.parents[i as usize];
-        }
-        i
     }
 }

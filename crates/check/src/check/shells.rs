@@ -4,53 +4,39 @@ use std::borrow::Cow;
 use std::ops::ControlFlow;
 
 use glam::DVec3;
-use meshlod_mesh::{FaceId, Side, Twin};
+use meshlod_mesh::{Connectivity, FaceId, Mesh, Side, Twin, VertexId};
 
 use super::Visit;
 use super::subject::Subject;
 use crate::finding::Finding;
 
-/// A volume below this part of the sum of its terms' magnitudes is rounding: 2^-52 for each of a
-/// million terms added in line would be 2e-10; errors of random sign stay far below.
-const ROUNDING: f64 = 1e-12;
-
 pub fn inside_out(subject: &Subject, visit: &mut Visit) -> ControlFlow<()> {
-    for (face, volume) in volumes(subject) {
-        if volume < 0.0 {
-            visit(&Finding::InsideOut { face, volume })?;
+    let connectivity = subject.connectivity();
+    let labels = if hangs_by_vertices(connectivity) {
+        Cow::Borrowed(&subject.objects().component_of_face[..])
+    } else {
+        Cow::Owned(labels(connectivity, subject.faces.len()))
+    };
+    for shell in Shells::new(subject.mesh, &subject.faces, connectivity, labels).all {
+        if let Some(volume) = shell.volume().filter(|&volume| volume < 0.0) {
+            visit(&Finding::InsideOut { face: shell.first, volume })?;
         }
     }
     ControlFlow::Continue(())
 }
 
-/// The first face and the volume of every closed shell whose faces agree, as far as that is clearly
-/// not 0.
-fn volumes(subject: &Subject) -> impl Iterator<Item = (FaceId, f64)> {
-    let connectivity = subject.connectivity();
-    let all_agree = connectivity.inconsistent_edges() == 0;
-    let mut shells: Vec<Shell> = Vec::new();
-    let labels = labels(subject);
-    for (f, (&label, &face)) in labels.iter().zip(subject.faces.iter()).enumerate() {
-        if label == NONE {
-            continue;
-        }
-        let sides = [0, 1, 2].map(|k| Side::new(FaceId(f as u32), k));
-        let closed = sides.iter().all(|&side| match connectivity.twin(side) {
-            Twin::Side(twin) => all_agree || side.ends(&subject.faces) != twin.ends(&subject.faces),
-            _ => false,
-        });
-        let corners = subject.mesh.triangle(face);
-        if label as usize == shells.len() {
-            shells.push(Shell::from(FaceId(f as u32), corners[0]));
-        }
-        shells[label as usize].add(corners, closed);
-    }
-    shells.into_iter().filter_map(|shell| Some((shell.first, shell.volume()?)))
+/// The shells of a mesh: faces that hang together through edges of two faces.
+pub(crate) struct Shells<'a> {
+    /// The shell of every face, by its place in `all`; beyond its end where a face repeats a vertex.
+    pub of_face: Cow<'a, [u32]>,
+    /// By their first faces.
+    pub all: Vec<Shell>,
 }
 
-/// A shell on the way to its volume.
-struct Shell {
-    first: FaceId,
+/// A shell, and what it takes to know its volume.
+pub(crate) struct Shell {
+    /// Its first face.
+    pub first: FaceId,
     /// A vertex of it, since far from the origin of coordinates the terms would drown the sum.
     origin: DVec3,
     closed: bool,
@@ -58,7 +44,48 @@ struct Shell {
     magnitude: f64,
 }
 
+impl Shells<'static> {
+    /// The shells of a mesh whose indices are in range.
+    pub fn of_mesh(mesh: &Mesh) -> Self {
+        let connectivity = Connectivity::new(&mesh.faces, mesh.positions.len());
+        let labels = Cow::Owned(labels(&connectivity, mesh.faces.len()));
+        Shells::new(mesh, &mesh.faces, &connectivity, labels)
+    }
+}
+
+impl<'a> Shells<'a> {
+    fn new(
+        mesh: &Mesh,
+        faces: &[[VertexId; 3]],
+        connectivity: &Connectivity,
+        of_face: Cow<'a, [u32]>,
+    ) -> Self {
+        let all_agree = connectivity.inconsistent_edges() == 0;
+        let mut all: Vec<Shell> = Vec::new();
+        for (f, (&label, &face)) in of_face.iter().zip(faces).enumerate() {
+            if label == NONE {
+                continue;
+            }
+            let sides = [0, 1, 2].map(|k| Side::new(FaceId(f as u32), k));
+            let closed = sides.iter().all(|&side| match connectivity.twin(side) {
+                Twin::Side(twin) => all_agree || side.ends(faces) != twin.ends(faces),
+                _ => false,
+            });
+            let corners = mesh.triangle(face);
+            if label as usize == all.len() {
+                all.push(Shell::from(FaceId(f as u32), corners[0]));
+            }
+            all[label as usize].add(corners, closed);
+        }
+        Self { of_face, all }
+    }
+}
+
 impl Shell {
+    /// A volume below this part of the sum of its terms' magnitudes is rounding: 2^-52 for each of
+    /// a million terms added in line would be 2e-10; errors of random sign stay far below.
+    const ROUNDING: f64 = 1e-12;
+
     fn from(first: FaceId, origin: DVec3) -> Self {
         Self { first, origin, closed: true, sum: 0.0, magnitude: 0.0 }
     }
@@ -72,27 +99,28 @@ impl Shell {
         self.closed &= closed;
     }
 
-    /// `None` where it is open, or rounding may have made the sign.
-    fn volume(&self) -> Option<f64> {
-        let clear = self.sum.abs() > self.magnitude * ROUNDING;
+    /// What it encloses, in cubed model units. `None` where it is open, its faces disagree, or
+    /// rounding may have made the sign.
+    pub fn volume(&self) -> Option<f64> {
+        let clear = self.sum.abs() > self.magnitude * Self::ROUNDING;
         (self.closed && clear).then_some(self.sum / 6.0)
     }
 }
 
-/// The shell of a face that has none: it repeats a vertex, or takes no part.
+/// The shell of a face that has none.
 const NONE: u32 = u32::MAX;
 
+/// Whether faces that share vertices are one shell: where every vertex has one fan, they are.
+fn hangs_by_vertices(connectivity: &Connectivity) -> bool {
+    connectivity.degenerate_faces() == 0 && connectivity.pinched_vertices() == 0
+}
+
 /// The shell of every face, numbered by their first faces.
-fn labels<'s>(subject: &'s Subject) -> Cow<'s, [u32]> {
-    let connectivity = subject.connectivity();
-    if connectivity.degenerate_faces() == 0 && connectivity.pinched_vertices() == 0 {
-        // Where every vertex has one fan, what shares vertices shares edges.
-        return Cow::Borrowed(&subject.objects().component_of_face);
-    }
-    let mut labels = vec![NONE; subject.faces.len()];
+fn labels(connectivity: &Connectivity, faces: usize) -> Vec<u32> {
+    let mut labels = vec![NONE; faces];
     let mut count = 0;
     let mut front = Vec::new();
-    for first in (0..labels.len()).map(|f| FaceId(f as u32)) {
+    for first in (0..faces).map(|f| FaceId(f as u32)) {
         let takes_part = connectivity.twin(Side::new(first, 0)) != Twin::Degenerate;
         if labels[first.index()] != NONE || !takes_part {
             continue;
@@ -111,5 +139,5 @@ fn labels<'s>(subject: &'s Subject) -> Cow<'s, [u32]> {
         }
         count += 1;
     }
-    Cow::Owned(labels)
+    labels
 }

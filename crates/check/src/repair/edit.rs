@@ -1,0 +1,67 @@
+//! What steps do to a mesh and all that hangs on it.
+
+use meshlod_mesh::{Labels, Mesh, VertexId, WedgeId};
+use rustc_hash::FxHashMap;
+
+/// Leaves out the faces that are not kept, with their corners and labels; says how many.
+pub fn retain_faces(mesh: &mut Mesh, keeps: impl Fn(usize) -> bool) -> usize {
+    let before = mesh.faces.len();
+    if (0..before).all(&keeps) {
+        return 0;
+    }
+    retain(&mut mesh.faces, &keeps);
+    if let Some(attributes) = &mut mesh.attributes {
+        retain(&mut attributes.corners, &keeps);
+    }
+    for labels in labels(mesh) {
+        retain(&mut labels.of_face, &keeps);
+    }
+    before - mesh.faces.len()
+}
+
+fn retain<T>(items: &mut Vec<T>, keeps: impl Fn(usize) -> bool) {
+    let mut index = 0;
+    items.retain(|_| {
+        index += 1;
+        keeps(index - 1)
+    });
+}
+
+/// Materials and objects, where there are some.
+pub fn labels(mesh: &mut Mesh) -> impl Iterator<Item = &mut Labels> {
+    mesh.materials.iter_mut().chain(mesh.objects.iter_mut())
+}
+
+/// Gives every vertex that a wedge stands at a wedge of its own with the same values, and says how
+/// many are new. The first vertex in the order of faces keeps the wedge.
+pub fn own_wedges(mesh: &mut Mesh) -> usize {
+    let Some(attributes) = &mut mesh.attributes else { return 0 };
+    let before = attributes.wedge_count;
+    let mut home: Vec<Option<VertexId>> = vec![None; before];
+    let mut others: FxHashMap<(WedgeId, VertexId), WedgeId> = FxHashMap::default();
+    let mut copied: Vec<WedgeId> = Vec::new();
+    let faces = mesh.faces.as_flattened().iter();
+    for (wedge, &vertex) in attributes.corners.as_flattened_mut().iter_mut().zip(faces) {
+        if *home[wedge.index()].get_or_insert(vertex) != vertex {
+            *wedge = *others.entry((*wedge, vertex)).or_insert_with(|| {
+                copied.push(*wedge);
+                WedgeId::new(before + copied.len() - 1)
+            });
+        }
+    }
+    for layer in &mut attributes.layers {
+        for wedge in &copied {
+            let start = wedge.index() * layer.width;
+            layer.values.extend_from_within(start..start + layer.width);
+        }
+    }
+    attributes.wedge_count += copied.len();
+    copied.len()
+}
+
+/// Leaves out vertices and wedges that no face uses; says how many vertices.
+pub fn drop_unused(mesh: &mut Mesh) -> usize {
+    let before = mesh.positions.len();
+    mesh.compact();
+    before - mesh.positions.len()
+}
