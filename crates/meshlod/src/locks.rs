@@ -7,29 +7,39 @@ use meshlod_simplify::SimplifyError;
 /// The locks of all meshes of a scene as [`SceneSimplifier`](crate::SceneSimplifier) takes them, of
 /// those of each. Meshes at the end may be left out: nothing of them is locked.
 ///
-/// Where locks of a mesh have fewer vertices than it has, the rest are free. What is tied but apart
-/// is locked: a transform can bring together in the world what is not at one place in its mesh.
-pub fn join_locks(scene: &Scene, of_meshes: &[Locks]) -> Locks {
+/// What is tied but apart is locked: a transform can bring together in the world what is not at one
+/// place in its mesh.
+///
+/// # Errors
+/// Locks that are not for their mesh.
+pub fn join_locks(scene: &Scene, of_meshes: &[Locks]) -> Result<Locks, SimplifyError> {
     let mut all = Locks::default();
     if of_meshes.iter().all(|own| *own == Locks::default()) {
-        return all;
+        return Ok(all);
     }
     for (i, mesh) in scene.meshes.iter().enumerate() {
         let (start, positions) = (all.of_vertex.len(), &mesh.mesh.positions);
-        let own = of_meshes.get(i);
-        all.of_vertex.extend(own.into_iter().flat_map(|own| &own.of_vertex));
         all.of_vertex.resize(start + positions.len(), Lock::Free);
-        for tie in own.into_iter().flat_map(|own| &own.ties) {
-            let place = |v: VertexId| positions.get(v.index());
-            let moved = tie.iter().map(|v| VertexId::new(start + v.index()));
-            if tie.iter().all(|&v| place(v) == place(tie[0])) {
+        let Some(own) = of_meshes.get(i) else { continue };
+        let (found, expected) = (own.of_vertex.len(), positions.len());
+        if found != 0 && found != expected {
+            return Err(SimplifyError::BadMask { found, expected });
+        }
+        all.of_vertex[start..start + found].copy_from_slice(&own.of_vertex);
+        for (tie, members) in own.ties.iter().enumerate() {
+            if let Some(&vertex) = members.iter().find(|v| v.index() >= expected) {
+                return Err(SimplifyError::BadTie { tie, vertex, count: expected });
+            }
+            let place = |v: VertexId| positions[v.index()];
+            let moved = members.iter().map(|v| VertexId::new(start + v.index()));
+            if members.iter().all(|&v| place(v) == place(members[0])) {
                 all.ties.push(moved.collect());
             } else {
                 moved.for_each(|v| all.of_vertex[v.index()] = Lock::Locked);
             }
         }
     }
-    all
+    Ok(all)
 }
 
 /// The locks of each mesh among those of all.
@@ -99,21 +109,23 @@ mod tests {
         let count = |mesh: usize| scene.meshes[mesh].mesh.positions.len();
         let first = Locks { of_vertex: vec![Lock::Protected; count(0)], ties: Vec::new() };
         let last = Locks { of_vertex: Vec::new(), ties: vec![[3, 5].map(VertexId).to_vec()] };
-        let all = join_locks(&scene, &[first.clone(), Locks::default(), last.clone()]);
+        let all = join_locks(&scene, &[first.clone(), Locks::default(), last.clone()]).unwrap();
         assert_eq!(all.of_vertex.len(), count(0) + count(2));
         let split = split(&scene, &all).unwrap();
         assert_eq!((&split[0], &split[2].ties), (&first, &last.ties));
         assert_eq!(split[2].of_vertex, vec![Lock::Free; count(2)]);
-        assert_eq!(join_locks(&scene, &split), all);
-        assert_eq!(join_locks(&scene, &[Locks::default()]), Locks::default());
+        assert_eq!(join_locks(&scene, &split), Ok(all));
+        assert_eq!(join_locks(&scene, &[Locks::default()]), Ok(Locks::default()));
     }
 
     #[test]
     fn what_is_apart_in_its_mesh_is_not_tied() {
         let scene = scene();
         let ties = vec![[1, 2].map(VertexId).to_vec()];
-        let all = join_locks(&scene, &[Locks { ties, ..Locks::default() }]);
-        assert!(all.ties.is_empty() && all.of_vertex[..4] == [0, 1, 1, 0].map(|i| [Lock::Free, Lock::Locked][i]));
+        let all = join_locks(&scene, &[Locks { ties, ..Locks::default() }]).unwrap();
+        assert!(all.ties.is_empty());
+        let [free, locked] = [Lock::Free, Lock::Locked];
+        assert_eq!(all.of_vertex[..4], [free, locked, locked, free]);
     }
 
     #[test]
@@ -130,8 +142,8 @@ mod tests {
     fn locks_of_another_scene_are_refused() {
         let scene = scene();
         let wrong = Locks { of_vertex: vec![Lock::Free; 3], ..Locks::default() };
-        assert!(split(&scene, &wrong).is_err());
+        assert!(split(&scene, &wrong).is_err() && join_locks(&scene, &[wrong]).is_err());
         let wrong = Locks { ties: vec![vec![VertexId(9999)]], ..Locks::default() };
-        assert!(split(&scene, &wrong).is_err());
+        assert!(split(&scene, &wrong).is_err() && join_locks(&scene, &[wrong]).is_err());
     }
 }
