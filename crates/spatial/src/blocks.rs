@@ -26,9 +26,12 @@ pub struct BoxBlocks {
 #[derive(Clone, Copy, Debug)]
 #[repr(align(64))]
 struct Block {
-    lo: [[f32; LANES]; 3],
-    hi: [[f32; LANES]; 3],
+    lo: [Lanes; 3],
+    hi: [Lanes; 3],
 }
+
+/// Four lanes twice: what one instruction compares.
+type Lanes = [[f32; LANES / 2]; 2];
 
 /// Boxes of one block that overlap one box.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -155,25 +158,40 @@ impl BoxBlocks {
     }
 }
 
-/// The set bits.
+/// The set bits, lowest first.
 #[inline]
-pub fn lanes(mut bits: u8) -> impl Iterator<Item = usize> {
-    std::iter::from_fn(move || {
-        let lane = (bits != 0).then(|| bits.trailing_zeros() as usize);
-        bits &= bits.wrapping_sub(1);
-        lane
-    })
+pub fn lanes(bits: u8) -> Bits {
+    Bits(u32::from(bits))
+}
+
+/// See [`lanes`].
+#[derive(Clone, Copy, Debug)]
+pub struct Bits(u32);
+
+impl Iterator for Bits {
+    type Item = usize;
+
+    #[inline]
+    fn next(&mut self) -> Option<usize> {
+        if self.0 == 0 {
+            return None;
+        }
+        let lane = self.0.trailing_zeros() as usize;
+        self.0 &= self.0 - 1;
+        Some(lane)
+    }
 }
 
 impl Block {
     /// A block of up to eight boxes.
     fn of(boxes: impl Iterator<Item = Box3>) -> Self {
-        let mut block =
-            Self { lo: [[f32::INFINITY; LANES]; 3], hi: [[f32::NEG_INFINITY; LANES]; 3] };
+        let empty = [[Box3::EMPTY.lo.x; LANES / 2]; 2];
+        let mut block = Self { lo: [empty; 3], hi: [empty.map(|half| half.map(|x| -x)); 3] };
         for (lane, one) in boxes.enumerate() {
+            let (half, lane) = (lane / 4, lane % 4);
             for axis in 0..3 {
-                block.lo[axis][lane] = one.lo[axis];
-                block.hi[axis][lane] = one.hi[axis];
+                block.lo[axis][half][lane] = one.lo[axis];
+                block.hi[axis][half][lane] = one.hi[axis];
             }
         }
         block
@@ -181,30 +199,31 @@ impl Block {
 
     #[inline]
     fn lane(&self, lane: usize) -> Box3 {
-        let pick = |[x, y, z]: &[[f32; LANES]; 3]| Vec3::new(x[lane], y[lane], z[lane]);
+        let pick = |[x, y, z]: &[Lanes; 3]| {
+            let (half, lane) = (lane / 4 % 2, lane % 4);
+            Vec3::new(x[half][lane], y[half][lane], z[half][lane])
+        };
         Box3 { lo: pick(&self.lo), hi: pick(&self.hi) }
     }
 
     fn around(&self) -> Box3 {
-        let least = |lanes: [f32; LANES]| lanes.into_iter().fold(f32::INFINITY, f32::min);
-        let greatest = |lanes: [f32; LANES]| lanes.into_iter().fold(f32::NEG_INFINITY, f32::max);
-        Box3 {
-            lo: Vec3::from_array(self.lo.map(least)),
-            hi: Vec3::from_array(self.hi.map(greatest)),
-        }
+        let least = |lanes: &Lanes| Vec4::from(lanes[0]).min(lanes[1].into()).min_element();
+        let greatest = |lanes: &Lanes| Vec4::from(lanes[0]).max(lanes[1].into()).max_element();
+        let [lo, hi] = [self.lo.each_ref().map(least), self.hi.each_ref().map(greatest)];
+        Box3 { lo: lo.into(), hi: hi.into() }
     }
 
     /// A bit for each lane whose box overlaps.
     #[inline]
     fn overlapping(&self, other: &Box3) -> u8 {
-        let half = |from: usize| {
-            let lanes = |sides: &[f32; LANES]| Vec4::from_slice(&sides[from..from + 4]);
+        let half = |half: usize| {
             let along = |axis: usize| {
-                lanes(&self.lo[axis]).cmple(Vec4::splat(other.hi[axis]))
-                    & lanes(&self.hi[axis]).cmpge(Vec4::splat(other.lo[axis]))
+                let lo = Vec4::from_array(self.lo[axis][half]);
+                let hi = Vec4::from_array(self.hi[axis][half]);
+                lo.cmple(Vec4::splat(other.hi[axis])) & hi.cmpge(Vec4::splat(other.lo[axis]))
             };
             (along(0) & along(1) & along(2)).bitmask()
         };
-        (half(0) | half(4) << 4) as u8
+        (half(0) | half(1) << 4) as u8
     }
 }

@@ -5,7 +5,8 @@ use glam::{DVec3, Vec3};
 use crate::blocks::Corners;
 use crate::box3::Box3;
 
-/// Bits of a key per axis; three passes of a radix sort of 10 bits each.
+/// Bits of a key per axis, and of a digit: three passes over a key. With two passes of 15 bits,
+/// sorting a million takes 1.4 times as long.
 const BITS: u32 = 10;
 const CELLS: f32 = (1u32 << BITS) as f32;
 /// Runs with one key at least this long are ordered again by themselves.
@@ -49,15 +50,81 @@ fn sort(run: &mut [Keyed], boxes: &[Box3], scratch: &mut Vec<Keyed>) {
     }
 }
 
+/// The place of a cell along Hilbert's curve through all cells.
+///
+/// Against the order of Morton keys, a block of eight boxes meets a fifth less of the others.
+/// # References
+/// [HRC08] algorithm 2, its steps in a table.
 fn curve_key(cell: Vec3) -> u32 {
-    let spread = |x: f32| {
-        let mut x = x as u32;
-        x = (x | x << 16) & 0x0300_00ff;
-        x = (x | x << 8) & 0x0300_f00f;
-        x = (x | x << 4) & 0x030c_30c3;
-        (x | x << 2) & 0x0924_9249
-    };
-    spread(cell.x) | spread(cell.y) << 1 | spread(cell.z) << 2
+    let interleaved = spread(cell.x) << 2 | spread(cell.y) << 1 | spread(cell.z);
+    let (mut key, mut state) = (0, 0);
+    for level in (0..BITS).rev() {
+        let octant = interleaved >> (3 * level) & 7;
+        let step = STEPS[state][octant as usize];
+        key = key << 3 | u32::from(step.rank);
+        state = usize::from(step.state);
+    }
+    key
+}
+
+/// The bits of a coordinate, two zeros between them.
+fn spread(coordinate: f32) -> u32 {
+    let mut bits = coordinate as u32;
+    bits = (bits | bits << 16) & 0x0300_00ff;
+    bits = (bits | bits << 8) & 0x0300_f00f;
+    bits = (bits | bits << 4) & 0x030c_30c3;
+    (bits | bits << 2) & 0x0924_9249
+}
+
+/// What an octant is to the curve: when it comes there, and in which state the curve runs through it.
+#[derive(Clone, Copy)]
+struct Step {
+    rank: u8,
+    state: u8,
+}
+
+/// A state is the corner where the curve enters a cube, times three, and the axis along which it
+/// leaves.
+const STATES: usize = 24;
+const STEPS: [[Step; 8]; STATES] = steps();
+
+const fn steps() -> [[Step; 8]; STATES] {
+    let mut steps = [[Step { rank: 0, state: 0 }; 8]; STATES];
+    let mut state = 0;
+    while state < STATES {
+        let (entry, axis) = (state / 3, state % 3);
+        let mut rank = 0;
+        while rank < 8 {
+            let octant = rotate(gray(rank), axis + 1) ^ entry;
+            let next_entry = entry ^ rotate(first_corner(rank), axis + 1);
+            let next_axis = (axis + first_axis(rank) + 1) % 3;
+            steps[state][octant] =
+                Step { rank: rank as u8, state: (3 * next_entry + next_axis) as u8 };
+            rank += 1;
+        }
+        state += 1;
+    }
+    steps
+}
+
+/// Three bits turned to the left.
+const fn rotate(bits: usize, by: usize) -> usize {
+    (bits << (by % 3) | bits >> (3 - by % 3)) & 7
+}
+
+const fn gray(rank: usize) -> usize {
+    rank ^ rank >> 1
+}
+
+/// Where the curve enters the octant that is the `rank`th in a cube entered at corner 0.
+const fn first_corner(rank: usize) -> usize {
+    if rank == 0 { 0 } else { gray((rank - 1) / 2 * 2) }
+}
+
+/// The axis along which it runs in that octant.
+const fn first_axis(rank: usize) -> usize {
+    let odd = if rank == 0 { return 0 } else { rank - (rank + 1) % 2 };
+    odd.trailing_ones() as usize % 3
 }
 
 /// Sorts by key; equal keys keep their order.
@@ -67,26 +134,31 @@ fn radix_sort(run: &mut [Keyed], scratch: &mut Vec<Keyed>) {
         return;
     }
     const DIGITS: usize = 1 << BITS;
+    let digit = |keyed: Keyed, pass: u32| keyed.key as usize >> (pass * BITS) & (DIGITS - 1);
     let mut starts = [[0u32; DIGITS]; 3];
-    for keyed in run.iter() {
-        for (pass, starts) in starts.iter_mut().enumerate() {
-            starts[keyed.key as usize >> (pass as u32 * BITS) & (DIGITS - 1)] += 1;
+    for &keyed in run.iter() {
+        for pass in 0..3 {
+            starts[pass][digit(keyed, pass as u32)] += 1;
         }
     }
     scratch.clear();
     scratch.resize(run.len(), Keyed { key: 0, item: 0 });
-    for (pass, starts) in starts.iter_mut().enumerate() {
+    let mut pass = |pass: u32, from: &[Keyed], to: &mut [Keyed]| {
+        let starts = &mut starts[pass as usize];
         let mut sum = 0;
         for start in starts.iter_mut() {
             sum += std::mem::replace(start, sum);
         }
-        for &keyed in run.iter() {
-            let slot = &mut starts[keyed.key as usize >> (pass as u32 * BITS) & (DIGITS - 1)];
-            scratch[*slot as usize] = keyed;
+        for &keyed in from {
+            let slot = &mut starts[digit(keyed, pass)];
+            to[*slot as usize] = keyed;
             *slot += 1;
         }
-        run.copy_from_slice(scratch);
-    }
+    };
+    pass(0, run, scratch);
+    pass(1, scratch, run);
+    pass(2, run, scratch);
+    run.copy_from_slice(scratch);
 }
 
 /// About where most of the boxes are, and how far they reach: coordinates that fit an `f32`.

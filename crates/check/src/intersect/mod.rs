@@ -56,8 +56,8 @@ impl Meetings {
         let mut search = Search { ground, soup: &soup, certified: &certified, found: Vec::new() };
         let left_out = search.left_out();
         let counts = |f: FaceId| !left_out[f.index()];
-        search.around_places(|f| counts(f));
-        search.apart(|f| counts(f));
+        search.around_places(counts);
+        search.apart(counts);
         let mut pairs = search.found;
         for pair in &mut pairs {
             pair.sort_unstable();

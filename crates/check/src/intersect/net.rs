@@ -2,6 +2,7 @@
 
 use std::ops::ControlFlow;
 
+use glam::Vec4;
 use meshlod_mesh::{FaceId, VertexId};
 use meshlod_spatial::{BoxBlocks, LANES, lanes};
 
@@ -32,14 +33,25 @@ impl CornerBlock {
     /// A bit for each face that has one of three corners.
     #[inline]
     fn sharing(&self, [VertexId(a), VertexId(b), VertexId(c)]: [VertexId; 3]) -> u8 {
-        let mut shares = [0u32; LANES];
+        let mut shares = [0; LANES];
         for corners in &self.0 {
             for (share, &v) in shares.iter_mut().zip(corners) {
-                *share |= u32::from(v == a) | u32::from(v == b) | u32::from(v == c);
+                *share |= ones_if(v == a) | ones_if(v == b) | ones_if(v == c);
             }
         }
-        (0..LANES).fold(0, |bits, lane| bits | (shares[lane] as u8) << lane)
+        // The sign bits of four numbers are one instruction away.
+        let half = |from: usize| {
+            let signs = std::array::from_fn(|lane| f32::from_bits(shares[from + lane]));
+            Vec4::from_array(signs).is_negative_bitmask()
+        };
+        (half(0) | half(4) << 4) as u8
     }
+}
+
+/// What a comparison of lanes gives.
+#[inline]
+fn ones_if(condition: bool) -> u32 {
+    if condition { u32::MAX } else { 0 }
 }
 
 impl Search<'_> {
