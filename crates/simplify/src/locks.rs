@@ -26,8 +26,11 @@ impl Held {
     }
 }
 
-/// A protected vertex that moves counts as one that moves so many times as far.
-const PROTECTION: f64 = 10.0;
+/// A protected vertex that moves counts as one that moves so many times as far. fish-clown at 35 %,
+/// 323 of its vertices protected and 434 locked: mean error in % of the diagonal by `qem` and by
+/// `lindstrom-turk`: 1 .116, .104; 3 .213, .209; 10 .528, .255; from there on nothing changes, all
+/// others have gone before them.
+const PROTECTION: f64 = 3.0;
 
 /// Refuses locks that are not for this mesh.
 pub(crate) fn validate(locks: &Locks, mesh: &Mesh) -> Result<(), SimplifyError> {

@@ -92,7 +92,13 @@ impl Vanishing {
     }
 }
 
-/// What it costs that a component goes, in the terms of a method: as if all of it moved by its size.
+/// How far a component is taken to move that vanishes, as a part of its size: about the mean distance
+/// from its middle. Mean error in % of the diagonal, of sponza at 25 % by `qem` and `lindstrom-turk`,
+/// what is below 5 % of it free to go: 0.1 .0022, .0071; 0.3 .0023, .0020; 1 .0033, .0023; 3 .0041,
+/// .0037. The maximum of `qem`: .99, .73, .42, .58.
+const SHRINKAGE: f64 = 0.3;
+
+/// What it costs that a component goes, in the terms of a method: as if all of it moved so far.
 fn cost(surface: &Surface, method: Method, component: &Component) -> f64 {
     let Component { size, faces, .. } = component;
     let area = || 0.5 * faces.iter().map(|&f| surface.area_normal(f).length()).sum::<f64>();
@@ -103,6 +109,7 @@ fn cost(surface: &Surface, method: Method, component: &Component) -> f64 {
         Method::Pm => faces.len() as f64 * size * size,
         Method::LeeJang | Method::Wu | Method::Spr => *size,
     };
+    let cost = cost * SHRINKAGE.powi(method.cost_power());
     let is_protected =
         |f: &FaceId| surface.face(*f).iter().any(|&v| surface.flags(v).any(Flags::PROTECTED));
     if faces.iter().any(is_protected) { cost * surface.protection } else { cost }
