@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 use meshlod_check::{CheckOptions, Finding, Kind, Kinds, Net, ObjectId, TouchKind, findings};
 use meshlod_mesh::{Labels, Mesh, VertexId};
 
-const NETS: [Net; 1] = [Net::Tree];
+const NETS: [Net; 2] = [Net::Tree, Net::Cubes];
 const SCENES: u64 = 200;
 /// How far near misses are apart: 1e-9 of solids about one wide.
 const GAP: f64 = 1.0 / (1 << 30) as f64;

@@ -24,6 +24,7 @@ mod bvh;
 mod closest;
 mod curve;
 mod frame;
+mod octree;
 #[cfg(test)]
 mod tests;
 mod triangle;
@@ -32,4 +33,5 @@ pub use blocks::{BoxBlocks, Corners, LANES, Row, lanes};
 pub use bvh::{Bvh, BvhError};
 pub use closest::Closest;
 pub use frame::Frame;
+pub use octree::{Cube, Octree};
 pub use triangle::{Triangle, closest_point};
