@@ -12,6 +12,7 @@ mod plain;
 mod pool;
 mod primitives;
 mod read;
+mod rows;
 mod schema;
 #[cfg(test)]
 mod tests;
@@ -20,4 +21,5 @@ mod write;
 
 pub use lod::Level;
 pub use read::{Source, read};
+pub use rows::PrimitiveRows;
 pub use write::{Written, write, write_glb};

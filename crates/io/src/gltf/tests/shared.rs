@@ -56,6 +56,26 @@ fn counts_are_those_of_the_file() {
 }
 
 #[test]
+fn rows_of_primitives_are_the_vertices_that_were_not_welded() {
+    for_each_shared(|path, _, _| {
+        let scene = read(path, Weld::Off);
+        let source = scene.source.as_ref().unwrap();
+        for (i, mesh) in scene.meshes.iter().enumerate() {
+            let mesh = &mesh.mesh;
+            let rows = source.primitive_rows(i);
+            let end = rows.iter().flatten().map(|rows| rows.vertices.end).max();
+            assert_eq!(end, Some(mesh.positions.len()), "{}, mesh {i}", path.display());
+            let labels = mesh.materials.as_ref().unwrap();
+            for (face, &label) in mesh.faces.iter().zip(&labels.of_face) {
+                let rows = rows[label as usize].as_ref().unwrap();
+                assert!(face.iter().all(|v| rows.vertices.contains(&v.index())));
+            }
+        }
+        assert!(source.primitive_rows(scene.meshes.len()).is_empty());
+    });
+}
+
+#[test]
 fn unchanged_scenes_come_back_the_same_through_both_forms() {
     for_each_shared(|path, _, _| {
         let folder = tempfile::tempdir().unwrap();
