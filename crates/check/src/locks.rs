@@ -72,6 +72,12 @@ pub struct Locking {
 }
 
 impl Locking {
+    /// So many vertices, all free.
+    pub fn free(vertices: usize) -> Self {
+        let locks = Locks { of_vertex: vec![Lock::Free; vertices], ties: Vec::new() };
+        Self { locks, reasons: vec![None; vertices] }
+    }
+
     /// How many vertices are not free for this reason before all others.
     pub fn count(&self, reason: LockReason) -> usize {
         self.reasons.iter().filter(|of| **of == Some(reason)).count()
@@ -108,46 +114,31 @@ impl Locking {
 ///
 /// Cost: that of [`check`] for what meets, with contacts; else linear.
 pub fn locks(mesh: &Mesh, options: &LockOptions) -> Locking {
-    let mut hold = Hold { mesh, reasons: vec![None; mesh.positions.len()] };
-    let mut ties = Vec::new();
+    let mut hold = Hold { mesh, locking: Locking::free(mesh.positions.len()) };
     if options.contacts {
         let places = Places::of(&mesh.positions);
         hold.contacts(&places);
-        ties = hold.shared_places(&places);
+        hold.shared_places(&places);
     }
     if options.boundary != Lock::Free {
-        hold.boundary();
+        hold.boundary(options.boundary);
     }
     if options.contacts {
         hold.beside_crossings();
     }
-    let of_vertex = hold.reasons.iter().map(|reason| lock_of(*reason, options)).collect();
-    let mut locking = Locking { locks: Locks { of_vertex, ties }, reasons: hold.reasons };
-    locking.settle_ties();
-    locking
+    hold.locking.settle_ties();
+    hold.locking
 }
 
-/// A vertex that is only tied is as free as its tie.
-fn lock_of(reason: Option<LockReason>, options: &LockOptions) -> Lock {
-    match reason {
-        None | Some(LockReason::SharedPlace) => Lock::Free,
-        Some(LockReason::Crossing | LockReason::Overlap | LockReason::Touching) => Lock::Locked,
-        Some(LockReason::Boundary) => options.boundary,
-        Some(LockReason::BesideCrossing) => Lock::Protected,
-    }
-}
-
-/// Reasons as they are found.
+/// Locks as they are found.
 struct Hold<'m> {
     mesh: &'m Mesh,
-    reasons: Vec<Option<LockReason>>,
+    locking: Locking,
 }
 
 impl Hold<'_> {
-    /// Gives a vertex a reason, unless it has a stronger one.
-    fn hold(&mut self, vertex: VertexId, reason: LockReason) {
-        let of = &mut self.reasons[vertex.index()];
-        *of = Some(of.map_or(reason, |known| known.min(reason)));
+    fn hold(&mut self, vertex: VertexId, reason: LockReason, lock: Lock) {
+        self.locking.hold(vertex, lock, Some(reason));
     }
 
     fn contacts(&mut self, places: &Places) {
@@ -181,7 +172,7 @@ impl Hold<'_> {
                 return;
             }
         };
-        corners.into_iter().flatten().for_each(|v| self.hold(v, reason));
+        corners.into_iter().flatten().for_each(|v| self.hold(v, reason, Lock::Locked));
     }
 
     /// The corners of each face with which it touches the other; all three where it is the inside
@@ -197,37 +188,43 @@ impl Hold<'_> {
                 _ => true,
             };
             let held = if by_corners { &touching[..] } else { &one };
-            held.iter().for_each(|&v| self.hold(v, LockReason::Touching));
+            held.iter().for_each(|&v| self.hold(v, LockReason::Touching, Lock::Locked));
         }
     }
 
-    /// The vertices at each place with more than one that faces use.
-    fn shared_places(&mut self, places: &Places) -> Vec<Vec<VertexId>> {
+    /// Ties the vertices at each place with more than one that faces use.
+    fn shared_places(&mut self, places: &Places) {
         let used = self.mesh.used_vertices();
-        let shared = places.shared(|v| used[v.index()]);
-        for &v in shared.iter().flatten() {
-            self.hold(v, LockReason::SharedPlace);
+        let ties = places.shared(|v| used[v.index()]);
+        for &v in ties.iter().flatten() {
+            // As free as its tie will be.
+            self.hold(v, LockReason::SharedPlace, Lock::Free);
         }
-        shared
+        self.locking.locks.ties = ties;
     }
 
-    fn boundary(&mut self) {
+    fn boundary(&mut self, lock: Lock) {
         let faces = &self.mesh.faces;
         let connectivity = Connectivity::new(faces, self.mesh.positions.len());
         for side in (0..faces.len()).flat_map(|f| (0..3).map(move |k| Side::new(FaceId::new(f), k)))
         {
             if connectivity.twin(side) == Twin::Boundary {
-                side.ends(faces).into_iter().for_each(|v| self.hold(v, LockReason::Boundary));
+                side.ends(faces).into_iter().for_each(|v| self.hold(v, LockReason::Boundary, lock));
             }
         }
     }
 
     fn beside_crossings(&mut self) {
-        let crossing: Vec<bool> =
-            self.reasons.iter().map(|reason| *reason == Some(LockReason::Crossing)).collect();
+        let crossing: Vec<bool> = self
+            .locking
+            .reasons
+            .iter()
+            .map(|reason| *reason == Some(LockReason::Crossing))
+            .collect();
         for face in &self.mesh.faces {
             if face.iter().any(|v| crossing[v.index()]) {
-                face.iter().for_each(|&v| self.hold(v, LockReason::BesideCrossing));
+                face.iter()
+                    .for_each(|&v| self.hold(v, LockReason::BesideCrossing, Lock::Protected));
             }
         }
     }

@@ -1,8 +1,8 @@
 //! Locks of what a scene shows, for the meshes that it is made of.
 
 use meshlod_check::{LockOptions, LockReason, Locking, locks};
-use meshlod_io::Scene;
-use meshlod_mesh::{Lock, Locks, VertexId};
+use meshlod_io::{Scene, SceneMesh};
+use meshlod_mesh::{Lock, VertexId};
 
 /// What must stay of each mesh of a scene, by where its meshes meet in the world.
 ///
@@ -12,7 +12,9 @@ use meshlod_mesh::{Lock, Locks, VertexId};
 ///
 /// Cost: that of [`locks`] for [`Scene::flatten`].
 pub fn scene_locks(scene: &Scene, options: &LockOptions) -> Vec<Locking> {
-    let mut of_meshes: Vec<Locking> = scene.meshes.iter().map(|mesh| free(&mesh.mesh)).collect();
+    let vertices = |mesh: &SceneMesh| mesh.mesh.positions.len();
+    let mut of_meshes: Vec<Locking> =
+        scene.meshes.iter().map(|mesh| Locking::free(vertices(mesh))).collect();
     let flat = locks(&scene.flatten(), options);
     let mut home = Vec::with_capacity(flat.reasons.len());
     for placement in scene.placements() {
@@ -39,15 +41,9 @@ pub fn scene_locks(scene: &Scene, options: &LockOptions) -> Vec<Locking> {
     of_meshes
 }
 
-fn free(mesh: &meshlod_mesh::Mesh) -> Locking {
-    let count = mesh.positions.len();
-    let locks = Locks { of_vertex: vec![Lock::Free; count], ties: Vec::new() };
-    Locking { locks, reasons: vec![None; count] }
-}
-
 #[cfg(test)]
 mod tests {
-    use meshlod_io::{Node, SceneMesh};
+    use meshlod_io::Node;
     use meshlod_mesh::{Mesh, sample};
 
     use super::*;

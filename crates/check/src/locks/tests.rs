@@ -110,3 +110,14 @@ fn boundaries_are_what_is_asked_for() {
         }
     }
 }
+
+#[test]
+fn a_tie_at_the_boundary_is_what_the_boundary_is() {
+    let squares = both(square(0.0, 1.0, 0.0), &square(1.0, 1.0, 0.0));
+    let locking = locks(&squares, &LockOptions { contacts: true, boundary: Lock::Locked });
+    assert_eq!(locking.locks.of_vertex, [Lock::Locked; 8]);
+    assert!(locking.locks.ties.is_empty());
+    let locking = locks(&squares, &LockOptions { contacts: true, boundary: Lock::Protected });
+    assert_eq!(locking.locks.of_vertex, [Lock::Protected; 8]);
+    assert_eq!(locking.locks.ties.len(), 2);
+}
