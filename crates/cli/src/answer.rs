@@ -15,7 +15,8 @@ pub struct Answer {
     pub text: String,
     /// Whether standard output holds a mesh or a picture, so that text has to go elsewhere.
     pub file_on_stdout: bool,
-    /// Whether the user was strict about a target that was not reached.
+    /// Whether the exit code tells of a failure though there is an answer: the user was strict about
+    /// a target that was not reached, or a check found errors.
     pub missed: bool,
 }
 

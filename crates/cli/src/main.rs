@@ -7,12 +7,12 @@
 mod amounts;
 mod answer;
 mod args;
+mod check;
 mod compare;
 mod demo;
 mod distance;
 mod failure;
 mod files;
-mod holding;
 mod numbers;
 mod page;
 mod progress;

@@ -111,6 +111,14 @@ pub fn view(look: &Look, size: [u32; 2], fill: f64) -> View {
     View { direction: look.direction, up: look.up, fov_rad: FOV_RAD, fill, aspect: width / height }
 }
 
+/// The same in a direction, y up.
+pub fn view_from(direction: [f64; 3], size: [u32; 2]) -> View {
+    let [width, height] = size.map(f64::from);
+    let view = View { direction, fov_rad: FOV_RAD, fill: 0.94, ..View::default() };
+    View { aspect: width / height, ..view }
+}
+
+/// A picture as part of a page.
 pub fn uri(picture: &Picture) -> String {
     format!("data:image/png;base64,{}", STANDARD.encode(picture.png()))
 }

@@ -1,10 +1,10 @@
 //! The verbs, one a file: arguments, work, answer.
 
+pub mod check;
 pub mod info;
 pub mod lods;
 pub mod measure;
 pub mod render;
-pub mod repair;
 pub mod replay;
 pub mod sample;
 pub mod simplify;

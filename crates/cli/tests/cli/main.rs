@@ -1,11 +1,11 @@
 //! The program as its users meet it: exit codes, streams, files.
 
+mod check;
 mod compare;
 mod demo;
 mod hostile;
 mod levels;
 mod pipes;
-mod repair;
 mod run;
 mod usage;
 mod verbs;

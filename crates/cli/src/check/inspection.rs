@@ -1,0 +1,127 @@
+//! What is kept of a check.
+
+use std::ops::ControlFlow;
+
+use meshlod::Mesh;
+use meshlod::check::{
+    CheckOptions, Finding, Kind, Kinds, Objects, Severity, Summary, Touch, check,
+};
+
+use crate::check::contacts::Contacts;
+use crate::check::marks::Marks;
+
+/// A mesh, and what a check has found in it.
+pub struct Inspection {
+    pub mesh: Mesh,
+    pub objects: Objects,
+    pub summary: Summary,
+    /// The first findings of each kind, as many as were asked for and at least one.
+    pub findings: Vec<Finding>,
+    /// How many findings of each kind that were found may be listed.
+    pub limit: usize,
+    pub contacts: Contacts,
+    /// What a page shows of the findings, if there shall be one.
+    pub marks: Option<Marks>,
+    pub kinds: Kinds,
+}
+
+/// How a mesh is inspected.
+pub struct Order {
+    pub options: CheckOptions,
+    /// Findings of each kind that are listed.
+    pub limit: usize,
+    /// Whether there will be a page.
+    pub marks: bool,
+}
+
+impl Inspection {
+    pub fn of(mesh: Mesh, order: Order) -> Self {
+        let Order { options, limit, marks } = order;
+        let mut this = Self {
+            objects: Objects::of(&mesh, options.objects),
+            summary: Summary::default(),
+            findings: Vec::new(),
+            limit,
+            contacts: Contacts::default(),
+            marks: marks.then(|| Marks::new(&mesh)),
+            kinds: options.kinds,
+            mesh: Mesh::default(),
+        };
+        let _ = check(&mesh, &options, &mut |finding| {
+            this.add(&mesh, finding);
+            ControlFlow::Continue(())
+        });
+        Self { mesh, ..this }
+    }
+
+    fn add(&mut self, mesh: &Mesh, finding: &Finding) {
+        self.summary.add(finding);
+        if self.summary.count(finding.kind()) <= self.limit.max(1) {
+            self.findings.push(finding.clone());
+        }
+        if let &Finding::Contact { objects, faces, touch } = finding {
+            self.contacts.add(objects, faces, touch);
+        }
+        if let Some(marks) = &mut self.marks {
+            marks.add(mesh, &self.objects, finding);
+        }
+    }
+
+    /// The first of a kind.
+    pub fn first(&self, kind: Kind) -> Option<&Finding> {
+        self.findings.iter().find(|finding| finding.kind() == kind)
+    }
+
+    /// The findings that are listed.
+    pub fn listed(&self) -> impl Iterator<Item = &Finding> {
+        self.findings.iter().filter(|_| self.limit > 0)
+    }
+
+    /// How many of a kind are found and not listed.
+    pub fn left_out(&self, kind: Kind) -> usize {
+        self.summary.count(kind).saturating_sub(self.limit)
+    }
+
+    pub fn errors(&self) -> usize {
+        self.summary.of(Severity::Error)
+    }
+
+    pub fn warnings(&self) -> usize {
+        self.summary.of(Severity::Warning)
+    }
+
+    /// The mesh's own name of an object.
+    pub fn name(&self, object: meshlod::check::ObjectId) -> &str {
+        self.objects.names.get(object.0 as usize).map_or("", String::as_str)
+    }
+}
+
+/// Where a finding is, in the world; `None` for one that is at no place.
+pub fn place(mesh: &Mesh, finding: &Finding) -> Option<[f64; 3]> {
+    let vertex = |v: meshlod::mesh::VertexId| mesh.positions.get(v.index()).copied();
+    let face = |f: meshlod::mesh::FaceId| {
+        let corners = mesh.faces.get(f.index())?.map(vertex);
+        let [a, b, c] = [corners[0]?, corners[1]?, corners[2]?];
+        Some([0, 1, 2].map(|axis| (a[axis] + b[axis] + c[axis]) / 3.0))
+    };
+    match finding {
+        Finding::NonFiniteVertex { vertex: v }
+        | Finding::UnusedVertex { vertex: v }
+        | Finding::NonManifoldVertex { vertex: v, .. } => vertex(*v),
+        Finding::CoincidentVertices { vertices } | Finding::BoundaryLoop { vertices, .. } => {
+            vertex(*vertices.first()?)
+        }
+        Finding::InconsistentEdge { edge: [a, b], .. }
+        | Finding::NonManifoldEdge { edge: [a, b], .. } => {
+            let (a, b) = (vertex(*a)?, vertex(*b)?);
+            Some([0, 1, 2].map(|axis| (a[axis] + b[axis]) / 2.0))
+        }
+        Finding::BadIndex { face: f, .. }
+        | Finding::DegenerateFace { face: f, .. }
+        | Finding::DuplicateFace { face: f, .. }
+        | Finding::InsideOut { face: f, .. } => face(*f),
+        Finding::SelfIntersection { touch: Touch { place, .. }, .. }
+        | Finding::Contact { touch: Touch { place, .. }, .. } => Some(*place),
+        Finding::BadAttributes { .. } => None,
+    }
+}

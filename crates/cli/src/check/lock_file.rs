@@ -1,0 +1,123 @@
+//! Locks as a file: flags of vertices in the order of the input file, and ties.
+//!
+//! The form is told in docs/notes/check.md.
+
+use std::path::Path;
+
+use meshlod::check::{LockReason, Locking};
+use meshlod::io::Weld;
+use meshlod::mesh::{Lock, VertexId};
+use meshlod::{Format, ReadOptions, Scene};
+use serde_json::{Value, json};
+
+use crate::failure::Failure;
+
+const FORMAT: &str = "meshlod-locks";
+const VERSION: u64 = 1;
+
+/// Lock flags as meshoptimizer's `vertex_lock` has them.
+const FLAGS: [(Lock, u8, &str); 3] =
+    [(Lock::Free, 0, "free"), (Lock::Locked, 1, "lock"), (Lock::Protected, 2, "protect")];
+
+/// The vertices of a file's own numbering: for each mesh of a scene, its vertex at every row.
+pub struct Rows {
+    of_meshes: Vec<Vec<VertexId>>,
+    /// The file as it is, where reading joins vertices of it.
+    torn: Option<Scene>,
+}
+
+impl Rows {
+    /// The rows of the file that a scene was read from, with the joining of `weld`.
+    ///
+    /// # Errors
+    /// Vertices joined within a distance, which leaves no rows to speak of.
+    pub fn of(path: &Path, scene: &Scene, weld: Weld) -> Result<Self, Failure> {
+        let format = Format::of_path(path).map_err(Failure::usage)?;
+        let torn = match (weld, format) {
+            (Weld::Within(_), _) => {
+                return Err(Failure::usage(
+                    "locks are of the vertices of the file: they do not go with --weld",
+                ));
+            }
+            (Weld::Exact, Format::Glb | Format::Gltf | Format::Stl) => {
+                Some(meshlod::read(path, &ReadOptions { weld: Weld::Off })?)
+            }
+            (Weld::Exact | Weld::Off, _) => None,
+        };
+        let meshes = || scene.meshes.iter().map(|mesh| &mesh.mesh.positions[..]);
+        let of_meshes = match &torn {
+            Some(torn) => {
+                let rows = torn.meshes.iter().map(|mesh| &mesh.mesh.positions[..]);
+                rows.zip(meshes()).map(|(rows, welded)| at_places(rows, welded)).collect()
+            }
+            None => meshes().map(|own| (0..own.len()).map(VertexId::new).collect()).collect(),
+        };
+        Ok(Self { of_meshes, torn })
+    }
+}
+
+/// The vertex at the place of each row.
+fn at_places(rows: &[[f64; 3]], welded: &[[f64; 3]]) -> Vec<VertexId> {
+    let bits = |p: &[f64; 3]| p.map(|x| (x + 0.0).to_bits());
+    let places: std::collections::HashMap<_, _> =
+        welded.iter().enumerate().map(|(v, p)| (bits(p), VertexId::new(v))).collect();
+    rows.iter().filter_map(|row| places.get(&bits(row)).copied()).collect()
+}
+
+/// The locks of all meshes of a scene as a file.
+pub fn to_json(path: &Path, scene: &Scene, rows: &Rows, lockings: &[Locking]) -> Value {
+    let file = path.file_name().map(|name| name.to_string_lossy().into_owned());
+    let source = rows.torn.as_ref().unwrap_or(scene).source.as_ref();
+    let meshes = scene.meshes.iter().zip(&rows.of_meshes).zip(lockings).enumerate();
+    let meshes = meshes.map(|(index, ((mesh, rows), locking))| {
+        let mut json = mesh_json(rows, locking);
+        json["name"] = mesh.name.clone().into();
+        if let Some(source) = source {
+            let primitive = |rows: &meshlod::io::gltf::PrimitiveRows| {
+                let (first, count) = (rows.vertices.start, rows.vertices.len());
+                json!({ "accessor": rows.accessor, "first": first, "count": count })
+            };
+            let primitives = source.primitive_rows(index);
+            json["primitives"] =
+                primitives.iter().map(|rows| rows.as_ref().map(primitive)).collect();
+        }
+        json
+    });
+    json!({
+        "format": FORMAT,
+        "version": VERSION,
+        "file": file,
+        "flags": Value::Object(FLAGS.map(|(_, flag, name)| (name.to_owned(), flag.into())).into_iter().collect()),
+        "meshes": meshes.collect::<Vec<_>>(),
+    })
+}
+
+fn mesh_json(rows: &[VertexId], Locking { locks, reasons }: &Locking) -> Value {
+    let lock = |v: &VertexId| locks.of_vertex.get(v.index()).copied().unwrap_or_default();
+    let flag = |lock| FLAGS.iter().find(|(of, ..)| *of == lock).map_or(0, |&(_, flag, _)| flag);
+    let flags: Vec<u8> = rows.iter().map(|v| flag(lock(v))).collect();
+    let counts = FLAGS.map(|(_, flag, name)| {
+        (name.to_owned(), flags.iter().filter(|&&of| of == flag).count().into())
+    });
+    let mut rows_of = vec![Vec::new(); locks.of_vertex.len()];
+    for (row, v) in rows.iter().enumerate() {
+        rows_of[v.index()].push(row);
+    }
+    let tie = |tie: &Vec<VertexId>| -> Vec<usize> {
+        let mut rows: Vec<usize> =
+            tie.iter().flat_map(|v| rows_of[v.index()].iter().copied()).collect();
+        rows.sort_unstable();
+        rows
+    };
+    let because = LockReason::ALL.map(|reason| {
+        let rows = rows.iter().filter(|v| reasons[v.index()] == Some(reason)).count();
+        (reason.name().to_owned(), rows.into())
+    });
+    json!({
+        "vertices": rows.len(),
+        "counts": Value::Object(counts.into_iter().collect()),
+        "reasons": Value::Object(because.into_iter().collect()),
+        "flags": flags,
+        "ties": locks.ties.iter().map(tie).collect::<Vec<_>>(),
+    })
+}

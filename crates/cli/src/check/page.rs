@@ -1,0 +1,181 @@
+//! The page of a check.
+
+use std::path::Path;
+
+use maud::{Markup, html};
+use meshlod::Mesh;
+use meshlod::io::write_file;
+use meshlod::picture::{Camera, Picture};
+
+use crate::check::contacts::KINDS;
+use crate::check::drawing::{Drawing, Part, SIZE, views};
+use crate::check::inspection::Inspection;
+use crate::check::marks::{Mark, Marks};
+use crate::check::report::severity;
+use crate::check::sites::Sites;
+use crate::check::text;
+use crate::failure::Failure;
+use crate::files;
+use crate::numbers::{count, plural};
+use crate::page::counts::Counts;
+use crate::page::document::{Document, document};
+use crate::page::facts::facts;
+use crate::page::figures::{figure, whole};
+use crate::page::studio::{uri, view_from};
+
+/// Pairs of objects in the table; JSON has more.
+const MOST_PAIRS: usize = 60;
+
+/// Writes the page to a folder that is there, and gives its path.
+pub fn write(
+    folder: &Path,
+    name: &str,
+    inspection: &Inspection,
+    sites: &Sites,
+) -> Result<String, Failure> {
+    let path = folder.join("index.html");
+    let page = page(name, inspection, sites)?.into_string();
+    write_file(&path, page.as_bytes())?;
+    Ok(files::name(&path))
+}
+
+fn page(name: &str, inspection: &Inspection, sites: &Sites) -> Result<Markup, Failure> {
+    let title = Path::new(name).file_name().map(|name| name.to_string_lossy().into_owned());
+    let title = title.unwrap_or_else(|| name.to_owned());
+    let pictures = match &inspection.marks {
+        Some(marks) if !inspection.mesh.faces.is_empty() => {
+            pictures(&title, &inspection.mesh, marks)?
+        }
+        _ => html! {},
+    };
+    let contacts = inspection.contacts.len() > 0;
+    let links = [("findings", "Findings"), ("contacts", "Contacts")];
+    let links = links.into_iter().filter(|(id, _)| contacts || *id != "contacts");
+    Ok(document(Document {
+        title: &format!("meshlod check: {title}"),
+        links: links.map(|(id, name)| (id.to_owned(), name.to_owned())).collect(),
+        header: html! {
+            h1 id="top" { (title) }
+            p.lead { (lead(inspection)) }
+        },
+        main: html! {
+            (pictures)
+            (findings(inspection, sites))
+            @if contacts { (contact_table(inspection)) }
+        },
+    }))
+}
+
+fn lead(inspection: &Inspection) -> String {
+    let objects = inspection.objects.names.len();
+    let of = format!("{} object{}", count(objects), plural(objects));
+    match inspection.summary.total() {
+        0 => format!("Nothing was found in {of}."),
+        _ => format!("{} in {of}.", text::verdict(inspection)),
+    }
+}
+
+/// The mesh from all sides, and below it what is marked alone.
+fn pictures(title: &str, mesh: &Mesh, marks: &Marks) -> Result<Markup, Failure> {
+    let used = marks.used();
+    let parts: &[(Part, &str)] = match used[..] {
+        [] => &[(Part::Whole, "as it is")],
+        _ => &[(Part::Whole, "as it is"), (Part::Marked, "what is marked alone")],
+    };
+    let drawings: Vec<(Drawing, &str)> =
+        parts.iter().map(|&(part, about)| (Drawing::new(mesh, marks, part), about)).collect();
+    let mut figures = Vec::new();
+    for (side, direction) in views() {
+        let camera = Camera::fit_mesh(mesh, &view_from(direction, SIZE));
+        let images = drawings.iter().map(|(drawing, about)| {
+            let picture = drawing.picture(&camera).map_err(Failure::new)?;
+            Ok(image(&picture, &format!("{title} {side}, {about}")))
+        });
+        figures.push((side, images.collect::<Result<Vec<_>, Failure>>()?));
+    }
+    Ok(html! {
+        section id="pictures" {
+            h2 { "Where" }
+            @if parts.len() > 1 {
+                p { "Above as it is; below, what is marked alone, so that what is inside is seen." }
+            }
+            (legend(&used))
+            div.strip.wrap style="--columns: 4" tabindex="0" role="region" aria-label=(title) {
+                @for (side, images) in figures {
+                    figure {
+                        figcaption { b { (side) } }
+                        @for image in images { (image) }
+                    }
+                }
+            }
+        }
+    })
+}
+
+fn image(picture: &Picture, alt: &str) -> Markup {
+    html! { img src=(uri(picture)) alt=(alt) width=(SIZE[0]) height=(SIZE[1]) loading="lazy"; }
+}
+
+fn legend(used: &[Mark]) -> Markup {
+    html! {
+        ul.swatches {
+            @for mark in used {
+                @let [r, g, b] = mark.color();
+                li { span style=(format!("background: rgb({r} {g} {b})")) {} (mark.about()) }
+            }
+        }
+    }
+}
+
+fn findings(inspection: &Inspection, sites: &Sites) -> Markup {
+    let first = |kind| inspection.first(kind).map(|f| text::first(inspection, sites, f));
+    html! {
+        section id="findings" {
+            h2 { "Findings" }
+            div.intro { (facts(&Counts::of(&inspection.mesh))) }
+            div.scroll tabindex="0" role="region" aria-label="Findings" { table {
+                thead { tr {
+                    th scope="col" { "Kind" } th scope="col" { "Severity" }
+                    th scope="col" { "Count" } th scope="col" { "Where" }
+                } }
+                tbody { @for (kind, number) in inspection.summary.found() { tr {
+                    th scope="row" { (kind.name()) }
+                    td { (severity(kind)) }
+                    td { (whole(number)) }
+                    td { (first(kind).unwrap_or_default()) }
+                } } }
+            } }
+        }
+    }
+}
+
+fn contact_table(inspection: &Inspection) -> Markup {
+    let pairs = inspection.contacts.by_size();
+    let more = pairs.len().saturating_sub(MOST_PAIRS);
+    let number = |number: usize| html! { @if number > 0 { (whole(number)) } @else { "–" } };
+    html! {
+        section id="contacts" {
+            h2 { "Contacts" }
+            p {
+                (count(pairs.len())) " pair" (plural(pairs.len())) " of objects meet. Depth is how far a face "
+                "would have to move until it only touches, at least, in model units."
+            }
+            div.scroll tabindex="0" role="region" aria-label="Contacts" { table {
+                thead { tr {
+                    th scope="col" { "Objects" } th scope="col" { "face pairs" }
+                    @for (_, name) in KINDS { th scope="col" { (name) } }
+                    th scope="col" { "deepest" }
+                } }
+                tbody { @for (objects, pair) in pairs.iter().take(MOST_PAIRS) { tr {
+                    th scope="row" {
+                        (inspection.name(objects[0])) " – " (inspection.name(objects[1]))
+                    }
+                    td { (number(pair.faces())) }
+                    @for touches in pair.counts { td { (number(touches)) } }
+                    td { (figure(pair.deepest.depth, &crate::numbers::value(pair.deepest.depth))) }
+                } } }
+            } }
+            @if more > 0 { p.about { "And " (count(more)) " more." } }
+        }
+    }
+}

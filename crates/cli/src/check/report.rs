@@ -1,0 +1,111 @@
+//! A check for programs.
+
+use meshlod::check::{Degeneracy, Finding, Kind, ObjectId, Severity, Touch};
+use serde_json::{Value, json};
+
+use crate::check::contacts::KINDS;
+use crate::check::inspection::{Inspection, place};
+use crate::check::sites::Sites;
+
+/// One object: counts by kind, what is listed, contacts by pair of objects.
+pub fn json(inspection: &Inspection, sites: &Sites) -> Value {
+    let Inspection { mesh, objects, summary, limit, .. } = inspection;
+    let looked_for = || Kind::ALL.into_iter().filter(|&kind| inspection.kinds.contains(kind));
+    let counts = looked_for().map(|kind| (kind.name().to_owned(), summary.count(kind).into()));
+    let left_out = looked_for().map(|kind| (kind, inspection.left_out(kind)));
+    let left_out = left_out.filter(|&(_, count)| count > 0);
+    let pairs = inspection.contacts.by_size();
+    json!({
+        "vertices": mesh.positions.len(),
+        "faces": mesh.faces.len(),
+        "objects": objects.names.len(),
+        "components": objects.components,
+        "clean": summary.total() == 0,
+        "errors": inspection.errors(),
+        "warnings": inspection.warnings(),
+        "counts": Value::Object(counts.collect()),
+        "findings": inspection.listed().map(|finding| of(inspection, finding)).collect::<Vec<_>>(),
+        "findings_left_out": Value::Object(
+            left_out.map(|(kind, count)| (kind.name().to_owned(), count.into())).collect()
+        ),
+        "contacts": pairs.iter().take(*limit).map(|(objects, pair)| {
+            let mut json = json!({
+                "objects": objects.map(|object| object.0),
+                "names": objects.map(|object| inspection.name(object)),
+                "face_pairs": pair.faces(),
+                "deepest": touch(&pair.deepest),
+                "deepest_faces": pair.faces.map(|face| face.0),
+            });
+            for ((_, name), count) in KINDS.into_iter().zip(pair.counts) {
+                json[name] = count.into();
+            }
+            json
+        }).collect::<Vec<_>>(),
+        "contacts_left_out": pairs.len().saturating_sub(*limit),
+        "sites": sites.json(),
+    })
+}
+
+/// A finding with its kind, its place and its ids.
+fn of(inspection: &Inspection, finding: &Finding) -> Value {
+    let mut json = ids(inspection, finding);
+    json["kind"] = finding.kind().name().into();
+    json["severity"] = severity(finding.kind()).into();
+    json["place"] = json!(place(&inspection.mesh, finding));
+    json
+}
+
+pub fn severity(kind: Kind) -> &'static str {
+    match kind.severity() {
+        Severity::Error => "error",
+        Severity::Warning => "warning",
+    }
+}
+
+fn ids(inspection: &Inspection, finding: &Finding) -> Value {
+    match finding {
+        Finding::NonFiniteVertex { vertex } | Finding::UnusedVertex { vertex } => {
+            json!({ "vertices": [vertex.0] })
+        }
+        Finding::BadIndex { face, vertex } => json!({ "faces": [face.0], "vertices": [vertex.0] }),
+        Finding::BadAttributes { error } => json!({ "reason": error.to_string() }),
+        Finding::CoincidentVertices { vertices } => {
+            json!({ "vertices": vertices.iter().map(|v| v.0).collect::<Vec<_>>() })
+        }
+        Finding::DegenerateFace { face, shape } => {
+            let shape = match shape {
+                Degeneracy::RepeatedVertex => "repeated-vertex",
+                Degeneracy::ZeroArea => "zero-area",
+            };
+            json!({ "faces": [face.0], "shape": shape })
+        }
+        Finding::DuplicateFace { face, of } => json!({ "faces": [face.0, of.0] }),
+        Finding::InconsistentEdge { edge, faces } => {
+            json!({ "vertices": edge.map(|v| v.0), "faces": faces.map(|f| f.0) })
+        }
+        Finding::BoundaryLoop { vertices, closed } => {
+            json!({ "vertices": vertices.iter().map(|v| v.0).collect::<Vec<_>>(), "closed": closed })
+        }
+        Finding::NonManifoldEdge { edge, faces } => json!({
+            "vertices": edge.map(|v| v.0), "faces": faces.iter().map(|f| f.0).collect::<Vec<_>>(),
+        }),
+        Finding::NonManifoldVertex { vertex, fans } => {
+            json!({ "vertices": [vertex.0], "fans": fans })
+        }
+        Finding::InsideOut { face, volume } => json!({ "faces": [face.0], "volume": volume }),
+        Finding::SelfIntersection { object, faces, touch: how } => json!({
+            "objects": [object.0], "names": [inspection.name(*object)],
+            "faces": faces.map(|f| f.0), "touch": touch(how),
+        }),
+        Finding::Contact { objects, faces, touch: how } => json!({
+            "objects": objects.map(|ObjectId(object)| object),
+            "names": objects.map(|object| inspection.name(object)),
+            "faces": faces.map(|f| f.0), "touch": touch(how),
+        }),
+    }
+}
+
+fn touch(touch: &Touch) -> Value {
+    let name = KINDS.iter().find(|(kind, _)| *kind == touch.kind).map(|(_, name)| name);
+    json!({ "kind": name, "depth": touch.depth, "place": touch.place })
+}

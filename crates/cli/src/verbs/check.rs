@@ -1,0 +1,127 @@
+//! `check`: what is wrong with a mesh, and where its objects meet.
+
+use std::path::{Path, PathBuf};
+
+use clap::{Args, ValueEnum};
+use meshlod::check::{CheckOptions, Kind, Kinds, LockOptions, ObjectsBy};
+use meshlod::io::write_file;
+use meshlod::mesh::Lock;
+use meshlod::{Scene, scene_locks};
+
+use crate::amounts;
+use crate::answer::Answer;
+use crate::args::Reading;
+use crate::check::inspection::{Inspection, Order};
+use crate::check::lock_file::{self, Rows};
+use crate::check::sites::Sites;
+use crate::check::{page, report, text};
+use crate::failure::Failure;
+use crate::files;
+use crate::session::Session;
+
+#[derive(Args)]
+pub struct Check {
+    /// File to read, or -
+    #[arg(value_name = "IN")]
+    input: PathBuf,
+    /// What an object is; auto takes the names of the file where it has two or more
+    #[arg(long, value_name = "BY", default_value = "auto")]
+    objects: By,
+    /// Exit with 1 for these too
+    #[arg(long, value_name = "WHAT")]
+    deny: Option<Deny>,
+    /// How many findings of each kind, and pairs of objects, are listed
+    #[arg(long, value_name = "N", default_value_t = 100, value_parser = amounts::whole,
+        allow_negative_numbers = true)]
+    limit: usize,
+    /// Do not look for faces that meet
+    #[arg(long, conflicts_with = "locks")]
+    no_intersections: bool,
+    /// Write what must stay where components meet: for simplify --locks, and for other programs
+    #[arg(long, value_name = "FILE.json")]
+    locks: Option<PathBuf>,
+    /// Have the boundary locked in that file too
+    #[arg(long, requires = "locks")]
+    lock_boundary: bool,
+    /// Folder for a page with pictures; made where it is not there
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    #[command(flatten)]
+    reading: Reading,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum By {
+    Auto,
+    Names,
+    Components,
+}
+
+#[derive(Clone, Copy, PartialEq, ValueEnum)]
+enum Deny {
+    Warnings,
+}
+
+impl Check {
+    pub fn run(self, session: &Session) -> Result<Answer, Failure> {
+        self.refuse_early()?;
+        let scene = files::read(&self.input, &self.reading, session)?;
+        let mut written = Vec::new();
+        if let Some(path) = &self.locks {
+            session.progress.stage("finding locks");
+            written.push(self.write_locks(path, &scene)?);
+        }
+        session.progress.stage("checking");
+        let sites = Sites::of(&scene);
+        let order = Order { options: self.options(), limit: self.limit, marks: self.out.is_some() };
+        let inspection = Inspection::of(scene.into_mesh(), order);
+        if let Some(folder) = &self.out {
+            session.progress.stage("drawing the page");
+            written.push(page::write(folder, &files::name(&self.input), &inspection, &sites)?);
+        }
+        let mut json = report::json(&inspection, &sites);
+        json["file"] = files::name(&self.input).into();
+        json["written"] = written.clone().into();
+        let mut text = format!("{}: {}", files::name(&self.input), text::text(&inspection, &sites));
+        for file in written {
+            text += &format!("{file}\n");
+        }
+        let denied = self.deny == Some(Deny::Warnings) && inspection.warnings() > 0;
+        let missed = inspection.errors() > 0 || denied;
+        Ok(Answer { missed, ..Answer::new(json, text) })
+    }
+
+    /// What cannot be written is told before any work is done.
+    fn refuse_early(&self) -> Result<(), Failure> {
+        if let Some(path) = &self.locks {
+            if files::is_pipe(&self.input) || files::is_pipe(path) {
+                return Err(Failure::usage("--locks: name two files; no pipe will do"));
+            }
+            files::check_place(path)?;
+            files::check_apart(path, &[&self.input])?;
+        }
+        self.out.as_deref().map_or(Ok(()), files::make_folder)
+    }
+
+    fn options(&self) -> CheckOptions {
+        let kinds = match self.no_intersections {
+            true => Kinds::ALL.without(Kind::SelfIntersection).without(Kind::Contact),
+            false => Kinds::ALL,
+        };
+        let objects = match self.objects {
+            By::Auto => ObjectsBy::Auto,
+            By::Names => ObjectsBy::Names,
+            By::Components => ObjectsBy::Components,
+        };
+        CheckOptions { kinds, objects, ..CheckOptions::default() }
+    }
+
+    fn write_locks(&self, path: &Path, scene: &Scene) -> Result<String, Failure> {
+        let rows = Rows::of(&self.input, scene, self.reading.options().weld)?;
+        let boundary = if self.lock_boundary { Lock::Locked } else { Lock::Free };
+        let lockings = scene_locks(scene, &LockOptions { contacts: true, boundary });
+        let json = lock_file::to_json(&self.input, scene, &rows, &lockings);
+        write_file(path, format!("{json}\n").as_bytes())?;
+        Ok(files::name(path))
+    }
+}

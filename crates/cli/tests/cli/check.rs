@@ -1,0 +1,221 @@
+//! What a check says, its exit codes, its page, its locks.
+
+use meshlod_fixtures::{shared_broken, shared_mesh};
+use serde_json::{Value, json};
+
+use crate::run::{Done, Run};
+
+/// Three faces on one edge.
+const BOOK: &str = "v 0 0 0\nv 0 0 1\nv 1 0 0\nv 0 1 0\nv -1 0 0\nf 1 2 3\nf 1 2 4\nf 2 1 5\n";
+
+/// A square that lies, and a triangle that stands through it; a vertex that no face uses first.
+const CROSSING: &str = "v 9 9 9\no floor\nv 0 0 0\nv 4 0 0\nv 4 4 0\nv 0 4 0\nf 2 3 4\nf 2 4 5\n\
+    o blade\nv 2 1 -1\nv 3 1 -1\nv 2.5 1 1\nf 6 7 8\n";
+
+fn write(run: &Run, name: &str, text: &str) {
+    std::fs::write(run.path(name), text).unwrap();
+}
+
+fn check(run: &Run, arguments: &[&str]) -> Done {
+    run.run(&[&["check"], arguments].concat())
+}
+
+fn read_json(run: &Run, name: &str) -> Value {
+    serde_json::from_slice(&std::fs::read(run.path(name)).unwrap()).unwrap()
+}
+
+#[test]
+fn a_sound_mesh_is_clean() {
+    let run = Run::new();
+    run.sample("sphere", 500, "in.ply");
+    let done = check(&run, &["in.ply", "--deny", "warnings"]);
+    assert_eq!((done.code, &done.err[..]), (0, ""), "{done:?}");
+    assert!(done.text().ends_with("\nclean\n"), "{done:?}");
+    let json = run.json(&["check", "in.ply"]);
+    assert_eq!((&json["clean"], &json["findings"]), (&json!(true), &json!([])));
+    assert!(json["counts"].as_object().unwrap().values().all(|count| *count == 0));
+}
+
+#[test]
+fn errors_are_told_and_are_1() {
+    let run = Run::new();
+    write(&run, "book.obj", BOOK);
+    let done = check(&run, &["book.obj"]);
+    assert_eq!((done.code, &done.err[..]), (1, ""));
+    let line = "  error    non-manifold-edge  1  first: v0 to v1 at 0 0 0.5\n";
+    assert!(done.text().contains(line), "{}", done.text());
+    assert!(done.text().ends_with("\n1 error, 2 warnings\n"), "{}", done.text());
+    let json = check(&run, &["book.obj", "--json"]);
+    assert_eq!(json.code, 1);
+    let json = json.json();
+    let edge = json["findings"].as_array().unwrap().iter();
+    let edge = edge.clone().find(|finding| finding["kind"] == "non-manifold-edge");
+    assert_eq!(
+        *edge.unwrap(),
+        json!({
+            "vertices": [0, 1], "faces": [0, 1, 2], "kind": "non-manifold-edge",
+            "severity": "error", "place": [0.0, 0.0, 0.5],
+        })
+    );
+}
+
+#[test]
+fn warnings_are_0_unless_they_are_denied() {
+    let run = Run::new();
+    run.sample("terrain", 200, "in.ply");
+    assert_eq!(check(&run, &["in.ply"]).code, 0);
+    let denied = check(&run, &["in.ply", "--deny", "warnings"]);
+    assert_eq!((denied.code, &denied.err[..]), (1, ""));
+    assert!(denied.text().contains("boundary-loop  1"), "{}", denied.text());
+}
+
+#[test]
+fn contacts_are_told_by_the_names_of_objects() {
+    let run = Run::new();
+    write(&run, "in.obj", CROSSING);
+    let json = run.json(&["check", "in.obj"]);
+    assert_eq!((&json["objects"], &json["components"]), (&json!(2), &json!(2)));
+    let contact = &json["contacts"][0];
+    assert_eq!(contact["names"], json!(["floor", "blade"]));
+    assert_eq!((&contact["face_pairs"], &contact["crossing"]), (&json!(1), &json!(1)));
+    assert_eq!(
+        (&contact["deepest"]["depth"], &contact["deepest_faces"]),
+        (&json!(1.0), &json!([0, 2]))
+    );
+    let text = check(&run, &["in.obj"]);
+    assert!(text.text().contains("floor – blade"), "{}", text.text());
+    let none = run.json(&["check", "in.obj", "--no-intersections"]);
+    assert_eq!((&none["counts"]["contact"], &none["contacts"]), (&Value::Null, &json!([])));
+}
+
+#[test]
+fn what_is_left_out_is_counted() {
+    let run = Run::new();
+    let points: String = (0..7).map(|i| format!("v {i} {i} 9\n")).collect();
+    write(&run, "in.obj", &(CROSSING.to_owned() + &points));
+    let json = run.json(&["check", "in.obj", "--limit", "3"]);
+    let unused = |json: &Value| {
+        let findings = json["findings"].as_array().unwrap().iter();
+        findings.filter(|finding| finding["kind"] == "unused-vertex").count()
+    };
+    assert_eq!((unused(&json), &json["findings_left_out"]), (3, &json!({ "unused-vertex": 5 })));
+    let none = run.json(&["check", "in.obj", "--limit", "0"]);
+    assert_eq!((&none["findings"], &none["contacts_left_out"]), (&json!([]), &json!(1)));
+}
+
+#[test]
+fn locks_are_in_the_order_of_the_file() {
+    let run = Run::new();
+    write(&run, "in.obj", CROSSING);
+    let json = run.json(&["check", "in.obj", "--locks", "locks.json"]);
+    assert_eq!(json["written"], json!(["locks.json"]));
+    let locks = read_json(&run, "locks.json");
+    assert_eq!((&locks["format"], &locks["version"]), (&json!("meshlod-locks"), &json!(1)));
+    let mesh = &locks["meshes"][0];
+    // The first vertex of the file is in no face; the far corner of the floor is beside the face
+    // that is crossed.
+    assert_eq!(mesh["flags"], json!([0, 1, 1, 1, 2, 1, 1, 1]));
+    assert_eq!(mesh["counts"], json!({ "free": 1, "lock": 6, "protect": 1 }));
+    assert_eq!(mesh["ties"], json!([]));
+}
+
+#[test]
+fn locks_of_stl_are_by_corner_and_tie_rows() {
+    let run = Run::new();
+    // Two squares side by side, with corners of their own.
+    let squares = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 1 0 0\nv 2 0 0\nv 2 1 0\nv 1 1 0\n\
+        f 1 2 3\nf 1 3 4\nf 5 6 7\nf 5 7 8\n";
+    write(&run, "in.obj", squares);
+    run.json(&["check", "in.obj", "--locks", "obj.json", "--lock-boundary"]);
+    let flags = |name| read_json(&run, name)["meshes"][0]["flags"].clone();
+    assert_eq!(flags("obj.json"), json!([1, 1, 1, 1, 1, 1, 1, 1]), "all are at the boundary");
+    run.json(&["check", "in.obj", "--locks", "obj.json"]);
+    assert_eq!(read_json(&run, "obj.json")["meshes"][0]["ties"], json!([[1, 4], [2, 7]]));
+    // What is one vertex to STL is one component: nothing meets.
+    let done = run.run(&["simplify", "in.obj", "in.stl", "--ratio", "100%"]);
+    assert_eq!(done.code, 0, "{done:?}");
+    run.json(&["check", "in.stl", "--locks", "stl.json"]);
+    assert_eq!(flags("stl.json"), json!(vec![0; 12]));
+    assert_eq!(read_json(&run, "stl.json")["meshes"][0]["ties"], json!([]));
+}
+
+#[test]
+fn locks_of_gltf_say_which_rows_are_of_which_primitive() {
+    let Some(path) = shared_mesh("cesium-milk-truck.glb") else {
+        println!("skipped: the truck is not there");
+        return;
+    };
+    let run = Run::new();
+    check(&run, &[path.to_str().unwrap(), "--locks", "locks.json"]);
+    let locks = read_json(&run, "locks.json");
+    let meshes = locks["meshes"].as_array().unwrap();
+    let mut vertices = 0;
+    for mesh in meshes {
+        let count = mesh["flags"].as_array().unwrap().len();
+        assert_eq!(mesh["vertices"], json!(count));
+        let last = mesh["primitives"].as_array().unwrap().last().unwrap();
+        assert_eq!(last["first"].as_u64().unwrap() + last["count"].as_u64().unwrap(), count as u64);
+        vertices += count;
+    }
+    assert_eq!(vertices, 2978, "all rows of all accessors");
+    let locked = |mesh: &&Value| mesh["counts"]["lock"].as_u64() > Some(0);
+    assert_eq!(meshes.iter().filter(locked).count(), 2, "the wheels, and the truck around them");
+}
+
+#[test]
+fn locks_need_files_and_their_own_vertices() {
+    let run = Run::new();
+    write(&run, "in.obj", CROSSING);
+    for arguments in [
+        &["in.obj", "--locks", "l.json", "--weld", "0.1"][..],
+        &["in.obj", "--locks", "in.obj"],
+        &["in.obj", "--locks", "-"],
+        &["-", "--format", "obj", "--locks", "l.json"],
+        &["in.obj", "--lock-boundary"],
+        &["in.obj", "--locks", "l.json", "--no-intersections"],
+    ] {
+        let done = check(&run, arguments);
+        assert_eq!((done.code, &done.out[..]), (2, &b""[..]), "{arguments:?}: {done:?}");
+        assert_eq!(run.files(), ["in.obj"], "{arguments:?}");
+    }
+}
+
+#[test]
+fn the_page_has_pictures_a_legend_and_the_tables() {
+    let run = Run::new();
+    write(&run, "in.obj", CROSSING);
+    let json = run.json(&["check", "in.obj", "--out", "out/page"]);
+    assert_eq!(json["written"], json!(["out/page/index.html"]));
+    let page = std::fs::read_to_string(run.path("out/page/index.html")).unwrap();
+    assert_eq!(page.matches("data:image/png").count(), 8, "four sides, whole and marked");
+    for words in ["crosses or overlaps another object", "boundary-loop", "floor – blade"] {
+        assert!(page.contains(words), "{words}");
+    }
+    run.sample("sphere", 100, "ball.ply");
+    run.json(&["check", "ball.ply", "--out", "out"]);
+    let page = std::fs::read_to_string(run.path("out/index.html")).unwrap();
+    assert_eq!(page.matches("data:image/png").count(), 4, "there is nothing to mark");
+    assert!(page.contains("Nothing was found"));
+}
+
+#[test]
+fn every_file_is_checked_or_named() {
+    let run = Run::new();
+    let mut files = shared_broken();
+    let whole = ["fish-clown.obj", "city.glb", "suzanne.obj", "pig.stl", "slope.smf", "bunny.ply"];
+    files.extend(whole.into_iter().filter_map(shared_mesh));
+    for file in files {
+        let done = check(&run, &[file.to_str().unwrap(), "--json", "--out", "page"]);
+        assert!(matches!(done.code, 0 | 1), "{}: {done:?}", file.display());
+        if done.out.is_empty() {
+            assert!(
+                done.code == 1 && done.only_line().contains(file.to_str().unwrap()),
+                "{done:?}"
+            );
+            continue;
+        }
+        let json = done.json();
+        let failed = json["errors"].as_u64() > Some(0);
+        assert_eq!((done.code, &done.err[..]), (failed.into(), ""), "{}", file.display());
+    }
+}
