@@ -2,6 +2,7 @@
 #![forbid(unsafe_code)]
 
 mod check;
+mod cubes;
 mod finding;
 mod intersect;
 mod joined;
@@ -14,6 +15,7 @@ mod summary;
 mod zero_area;
 
 pub use check::{CheckOptions, check, findings, first, is_clean};
+pub use cubes::{Cubes, MarkedCube};
 pub use finding::{Degeneracy, Finding, Kind, Severity, Touch, TouchKind};
 pub use intersect::Net;
 pub use kinds::Kinds;

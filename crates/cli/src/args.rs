@@ -11,7 +11,7 @@ use crate::compare::Compare;
 use crate::demo::Demo;
 use crate::failure::Failure;
 use crate::session::Session;
-use crate::verbs::{check, info, lods, measure, render, replay, sample, simplify};
+use crate::verbs::{check, info, lods, measure, render, repair, replay, sample, simplify};
 
 /// Level of detail for triangle meshes.
 ///
@@ -47,6 +47,8 @@ pub enum Verb {
     Info(info::Info),
     /// Say what is wrong with a mesh and where its objects meet; exit 1 for errors
     Check(check::Check),
+    /// Mend what can be mended safely, and say what was done
+    Repair(repair::Repair),
     /// Make a mesh coarser
     Simplify(simplify::Simplify),
     /// Give back any level that simplify --sequence has kept
@@ -70,6 +72,7 @@ impl Verb {
         match self {
             Self::Info(verb) => verb.run(session),
             Self::Check(verb) => verb.run(session),
+            Self::Repair(verb) => verb.run(session),
             Self::Simplify(verb) => verb.run(session),
             Self::Replay(verb) => verb.run(session),
             Self::Lods(verb) => verb.run(session),
@@ -102,6 +105,11 @@ impl Reading {
             None => Weld::Exact,
         };
         ReadOptions { weld }
+    }
+
+    /// The distance of --weld, for a verb that welds by itself: what is read then is not welded so.
+    pub fn take_weld(&mut self) -> Option<f64> {
+        self.weld.take()
     }
 }
 

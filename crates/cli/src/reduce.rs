@@ -158,6 +158,11 @@ pub fn oddities(report: &Report) -> String {
     let faces = plural(report.duplicate_faces);
     line(report.duplicate_faces, &format!("duplicate face{faces} left out"));
     line(report.non_manifold_vertices, "vertices kept in place: not manifold there");
+    line(report.held.locked, "vertices locked");
+    line(report.held.protected, "vertices protected");
+    line(report.held.tied, "vertices tied to others");
+    let components = plural(report.vanished);
+    line(report.vanished, &format!("small component{components} removed"));
     text
 }
 

@@ -113,6 +113,7 @@ mod contacts;
 mod locks;
 mod materials;
 mod place;
+mod repair;
 mod scene;
 
 pub use meshlod_check as check;
@@ -131,4 +132,5 @@ pub use meshlod_io::{Format, IoError, ReadOptions, Scene, WriteOptions, read, wr
 pub use meshlod_mesh::Mesh;
 pub use meshlod_simplify::{Method, Options, Report, SimplifyError, Target, simplify};
 pub use place::world_bounds;
+pub use repair::repair_scene;
 pub use scene::{SceneError, SceneSimplifier, simplify_scene};

@@ -7,59 +7,143 @@ use meshlod_simplify::SimplifyError;
 /// The locks of all meshes of a scene as [`SceneSimplifier`](crate::SceneSimplifier) takes them, of
 /// those of each. Meshes at the end may be left out: nothing of them is locked.
 ///
-/// Where locks of a mesh have fewer vertices than it has, the rest are free.
-pub fn join_locks(scene: &Scene, of_meshes: &[Locks]) -> Locks {
+/// What is tied but apart is locked: a transform can bring together in the world what is not at one
+/// place in its mesh.
+///
+/// # Errors
+/// Locks that are not for their mesh.
+pub fn join_locks(scene: &Scene, of_meshes: &[Locks]) -> Result<Locks, SimplifyError> {
     let mut all = Locks::default();
     if of_meshes.iter().all(|own| *own == Locks::default()) {
-        return all;
+        return Ok(all);
     }
     for (i, mesh) in scene.meshes.iter().enumerate() {
-        let start = all.of_vertex.len();
-        if let Some(own) = of_meshes.get(i) {
-            all.of_vertex.extend(&own.of_vertex);
-            let moved = |v: &VertexId| VertexId::new(start + v.index());
-            all.ties.extend(own.ties.iter().map(|tie| tie.iter().map(moved).collect::<Vec<_>>()));
+        let (start, positions) = (all.of_vertex.len(), &mesh.mesh.positions);
+        all.of_vertex.resize(start + positions.len(), Lock::Free);
+        let Some(own) = of_meshes.get(i) else { continue };
+        let (found, expected) = (own.of_vertex.len(), positions.len());
+        if found != 0 && found != expected {
+            return Err(SimplifyError::BadMask { found, expected });
         }
-        all.of_vertex.resize(start + mesh.mesh.positions.len(), Lock::Free);
+        all.of_vertex[start..start + found].copy_from_slice(&own.of_vertex);
+        for (tie, members) in own.ties.iter().enumerate() {
+            if let Some(&vertex) = members.iter().find(|v| v.index() >= expected) {
+                return Err(SimplifyError::BadTie { tie, vertex, count: expected });
+            }
+            let place = |v: VertexId| positions[v.index()];
+            let moved = members.iter().map(|v| VertexId::new(start + v.index()));
+            if members.iter().all(|&v| place(v) == place(members[0])) {
+                all.ties.push(moved.collect());
+            } else {
+                moved.for_each(|v| all.of_vertex[v.index()] = Lock::Locked);
+            }
+        }
     }
-    all
+    Ok(all)
 }
 
 /// The locks of each mesh among those of all.
 pub(crate) fn split(scene: &Scene, all: &Locks) -> Result<Vec<Locks>, SimplifyError> {
-    let counts = scene.meshes.iter().map(|mesh| mesh.mesh.positions.len());
-    let starts: Vec<usize> = counts
-        .scan(0, |end, count| {
-            *end += count;
-            Some(*end - count)
-        })
-        .collect();
-    let expected = scene.meshes.iter().map(|mesh| mesh.mesh.positions.len()).sum();
-    let mut of_vertex = all.of_vertex.clone();
-    if of_vertex.is_empty() && !all.ties.is_empty() {
-        of_vertex.resize(expected, Lock::Free);
-    }
-    if !of_vertex.is_empty() && of_vertex.len() != expected {
-        return Err(SimplifyError::BadMask { found: of_vertex.len(), expected });
+    let starts = starts(scene.meshes.iter().map(|mesh| mesh.mesh.positions.len()));
+    let (found, expected) = (all.of_vertex.len(), starts[scene.meshes.len()]);
+    if found != 0 && found != expected {
+        return Err(SimplifyError::BadMask { found, expected });
     }
     let mut of_meshes = vec![Locks::default(); scene.meshes.len()];
+    if *all == Locks::default() {
+        return Ok(of_meshes);
+    }
+    let mut of_vertex = all.of_vertex.clone();
+    of_vertex.resize(expected, Lock::Free);
     for (tie, members) in all.ties.iter().enumerate() {
         if let Some(&vertex) = members.iter().find(|v| v.index() >= expected) {
             return Err(SimplifyError::BadTie { tie, vertex, count: expected });
         }
-        let mesh_of = |v: &VertexId| starts.partition_point(|&start| start <= v.index()) - 1;
-        let Some(mesh) = members.first().map(mesh_of) else { continue };
-        if members.iter().all(|v| mesh_of(v) == mesh) {
+        let Some(mesh) = members.first().map(|&v| owner(&starts, v)) else { continue };
+        if members.iter().all(|&v| owner(&starts, v) == mesh) {
             let own = |v: &VertexId| VertexId::new(v.index() - starts[mesh]);
             of_meshes[mesh].ties.push(members.iter().map(own).collect());
         } else {
             members.iter().for_each(|v| of_vertex[v.index()] = Lock::Locked);
         }
     }
-    if of_vertex.contains(&Lock::Locked) || of_vertex.contains(&Lock::Protected) {
-        for ((mesh, own), &start) in scene.meshes.iter().zip(&mut of_meshes).zip(&starts) {
-            own.of_vertex = of_vertex[start..start + mesh.mesh.positions.len()].to_vec();
-        }
+    for (own, range) in of_meshes.iter_mut().zip(starts.windows(2)) {
+        own.of_vertex = of_vertex[range[0]..range[1]].to_vec();
     }
     Ok(of_meshes)
+}
+
+/// Where each of some runs starts, and where the last ends.
+fn starts(counts: impl Iterator<Item = usize>) -> Vec<usize> {
+    let ends = counts.scan(0, |end, count| {
+        *end += count;
+        Some(*end)
+    });
+    std::iter::once(0).chain(ends).collect()
+}
+
+/// The run that a vertex is in.
+fn owner(starts: &[usize], v: VertexId) -> usize {
+    starts.partition_point(|&start| start <= v.index()) - 1
+}
+
+#[cfg(test)]
+mod tests {
+    use meshlod_io::SceneMesh;
+    use meshlod_mesh::{Mesh, sample};
+
+    use super::*;
+
+    /// A scene of two meshes and a bare one between them; two vertices of the last are at one place.
+    fn scene() -> Scene {
+        let mut pinched = sample::sphere(100);
+        pinched.positions[5] = pinched.positions[3];
+        let meshes = [sample::torus(100), Mesh::default(), pinched];
+        let meshes = meshes.map(|mesh| SceneMesh { mesh, ..SceneMesh::default() }).to_vec();
+        Scene { meshes, ..Scene::default() }
+    }
+
+    #[test]
+    fn locks_joined_and_split_are_what_they_were() {
+        let scene = scene();
+        let count = |mesh: usize| scene.meshes[mesh].mesh.positions.len();
+        let first = Locks { of_vertex: vec![Lock::Protected; count(0)], ties: Vec::new() };
+        let last = Locks { of_vertex: Vec::new(), ties: vec![[3, 5].map(VertexId).to_vec()] };
+        let all = join_locks(&scene, &[first.clone(), Locks::default(), last.clone()]).unwrap();
+        assert_eq!(all.of_vertex.len(), count(0) + count(2));
+        let split = split(&scene, &all).unwrap();
+        assert_eq!((&split[0], &split[2].ties), (&first, &last.ties));
+        assert_eq!(split[2].of_vertex, vec![Lock::Free; count(2)]);
+        assert_eq!(join_locks(&scene, &split), Ok(all));
+        assert_eq!(join_locks(&scene, &[Locks::default()]), Ok(Locks::default()));
+    }
+
+    #[test]
+    fn what_is_apart_in_its_mesh_is_not_tied() {
+        let scene = scene();
+        let ties = vec![[1, 2].map(VertexId).to_vec()];
+        let all = join_locks(&scene, &[Locks { ties, ..Locks::default() }]).unwrap();
+        assert!(all.ties.is_empty());
+        let [free, locked] = [Lock::Free, Lock::Locked];
+        assert_eq!(all.of_vertex[..4], [free, locked, locked, free]);
+    }
+
+    #[test]
+    fn ties_across_meshes_are_locks() {
+        let scene = scene();
+        let torus = scene.meshes[0].mesh.positions.len();
+        let ties = vec![[4, torus + 6].map(VertexId::new).to_vec()];
+        let split = split(&scene, &Locks { ties, ..Locks::default() }).unwrap();
+        assert_eq!((split[0].of_vertex[4], split[2].of_vertex[6]), (Lock::Locked, Lock::Locked));
+        assert!(split.iter().all(|own| own.ties.is_empty()));
+    }
+
+    #[test]
+    fn locks_of_another_scene_are_refused() {
+        let scene = scene();
+        let wrong = Locks { of_vertex: vec![Lock::Free; 3], ..Locks::default() };
+        assert!(split(&scene, &wrong).is_err() && join_locks(&scene, &[wrong]).is_err());
+        let wrong = Locks { ties: vec![vec![VertexId(9999)]], ..Locks::default() };
+        assert!(split(&scene, &wrong).is_err() && join_locks(&scene, &[wrong]).is_err());
+    }
 }

@@ -33,6 +33,8 @@ pub enum Net {
     /// A hierarchy of boxes, against itself: fast.
     #[default]
     Tree,
+    /// An octree of cubes, and the pairs that pass through a cube: as [`crate::Cubes`] shows it.
+    Cubes,
 }
 
 /// The pairs of faces that meet beyond what they share.
@@ -50,14 +52,14 @@ impl Meetings {
     /// meeting too: one for each edge that they share, and one for each place at which they share
     /// no edge. Faces without area have no part, nor has one at the places of an earlier one of its
     /// object, beyond the meeting of these two when their vertices are others.
-    pub(crate) fn of(ground: &Ground<'_>, _net: Net) -> Self {
+    pub(crate) fn of(ground: &Ground<'_>, net: Net) -> Self {
         let soup = Soup::of(ground);
         let certified = Certified::of(ground, &soup);
         let mut search = Search { ground, soup: &soup, certified: &certified, found: Vec::new() };
         let left_out = search.left_out();
         let counts = |f: FaceId| !left_out[f.index()];
-        search.around_places(|f| counts(f));
-        search.apart(|f| counts(f));
+        search.around_places(counts);
+        search.apart(net, counts);
         let mut pairs = search.found;
         for pair in &mut pairs {
             pair.sort_unstable();

@@ -1,11 +1,12 @@
-//! Faces that share nothing, by a hierarchy of boxes against itself.
+//! Faces that share nothing: by a hierarchy of boxes against itself, or by an octree of cubes.
 
 use std::ops::ControlFlow;
 
+use glam::Vec4;
 use meshlod_mesh::{FaceId, VertexId};
-use meshlod_spatial::{BoxBlocks, LANES, lanes};
+use meshlod_spatial::{BoxBlocks, LANES, Octree, lanes};
 
-use super::Search;
+use super::{Net, Search};
 
 /// The corners of eight faces, one lane a face: so that all eight are asked at once whether they
 /// share a corner with another. Nearly all faces whose boxes overlap do.
@@ -32,22 +33,44 @@ impl CornerBlock {
     /// A bit for each face that has one of three corners.
     #[inline]
     fn sharing(&self, [VertexId(a), VertexId(b), VertexId(c)]: [VertexId; 3]) -> u8 {
-        let mut shares = [0u32; LANES];
+        let mut shares = [0; LANES];
         for corners in &self.0 {
             for (share, &v) in shares.iter_mut().zip(corners) {
-                *share |= u32::from(v == a) | u32::from(v == b) | u32::from(v == c);
+                *share |= ones_if(v == a) | ones_if(v == b) | ones_if(v == c);
             }
         }
-        (0..LANES).fold(0, |bits, lane| bits | (shares[lane] as u8) << lane)
+        // The sign bits of four numbers are one instruction away.
+        let half = |from: usize| {
+            let signs = std::array::from_fn(|lane| f32::from_bits(shares[from + lane]));
+            Vec4::from_array(signs).is_negative_bitmask()
+        };
+        (half(0) | half(4) << 4) as u8
     }
 }
 
+/// What a comparison of lanes gives.
+#[inline]
+fn ones_if(condition: bool) -> u32 {
+    if condition { u32::MAX } else { 0 }
+}
+
+/// Cubes with more faces are searched by a tree of their own.
+const CROWD: usize = 64;
+
 impl Search<'_> {
     /// Tests all pairs of faces that share no place and may meet.
-    pub(super) fn apart(&mut self, counts: impl Fn(FaceId) -> bool) {
-        let soup = self.soup;
+    pub(super) fn apart(&mut self, net: Net, counts: impl Fn(FaceId) -> bool) {
         let faces: Vec<FaceId> =
-            (0..soup.corners.len()).map(FaceId::new).filter(|&f| counts(f)).collect();
+            (0..self.soup.corners.len()).map(FaceId::new).filter(|&f| counts(f)).collect();
+        match net {
+            Net::Tree => self.by_tree(&faces),
+            Net::Cubes => self.by_cubes(&faces),
+        }
+    }
+
+    /// Tests the pairs whose boxes overlap.
+    fn by_tree(&mut self, faces: &[FaceId]) {
+        let soup = self.soup;
         let blocks = BoxBlocks::new(faces.len(), |i| {
             let [a, b, c] = soup.triangle(faces[i as usize]);
             [a.min(b).min(c), a.max(b).max(c)]
@@ -72,5 +95,27 @@ impl Search<'_> {
             }
             ControlFlow::<()>::Continue(())
         });
+    }
+
+    /// Tests the pairs that pass through one cube.
+    fn by_cubes(&mut self, faces: &[FaceId]) {
+        let soup = self.soup;
+        let octree = Octree::new(faces.len(), |i| soup.triangle(faces[i as usize]));
+        for cube in octree.cubes() {
+            let inside: Vec<FaceId> = cube.triangles.iter().map(|&i| faces[i as usize]).collect();
+            if inside.len() > CROWD {
+                self.by_tree(&inside);
+                continue;
+            }
+            for (i, &f) in inside.iter().enumerate() {
+                for &g in &inside[i + 1..] {
+                    let corners = [f, g].map(|face| soup.corners[face.index()]);
+                    let share = corners[0].iter().any(|v| corners[1].contains(v));
+                    if !share && self.meet_apart(corners) {
+                        self.found.push([f, g]);
+                    }
+                }
+            }
+        }
     }
 }

@@ -44,6 +44,7 @@ fn seen_alone(mesh: &Mesh, [f, g]: [usize; 2]) -> (usize, Option<TouchKind>) {
 /// Compares with all pairs of faces, none of which may be double.
 fn compare(mesh: &Mesh) {
     let found = found(mesh, Net::Tree);
+    assert_eq!(found, self::found(mesh, Net::Cubes));
     let objects = crate::Objects::of(mesh, crate::ObjectsBy::Auto).of_face;
     let mut expected_objects = BTreeSet::new();
     for f in 0..mesh.faces.len() {
@@ -116,6 +117,16 @@ fn rough_surfaces_are_searched_as_all_pairs_would_be() {
             *x += (random.below(1000) as f64 / 1000.0 - 0.5) * size;
         }
         compare(&mesh);
+    }
+}
+
+#[test]
+fn real_meshes_are_searched_alike_by_both_nets() {
+    for name in ["fish-clown.obj", "skyscraper.obj", "squirrel-20k.obj", "cow-2903.obj", "city.glb"]
+    {
+        let Some(path) = meshlod_fixtures::shared_mesh(name) else { continue };
+        let mesh = meshlod_io::read(&path, &Default::default()).unwrap().flatten();
+        assert_eq!(found(&mesh, Net::Tree), found(&mesh, Net::Cubes), "{name}");
     }
 }
 

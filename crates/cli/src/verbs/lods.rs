@@ -16,6 +16,7 @@ use crate::args::{Reading, Writing};
 use crate::distance;
 use crate::failure::Failure;
 use crate::files;
+use crate::holding;
 use crate::numbers::{count, percent, value};
 use crate::reduce::{self, Engine, Reduced};
 use crate::session::Session;
@@ -67,7 +68,8 @@ impl Lods {
         }
         let mut scene = files::read(&self.input, &self.reading, session)?;
         self.manner.warn(session);
-        let (mut chain, time) = self.chain(&scene, &self.manner.options(), session)?;
+        let options = self.manner.options(&scene, session)?;
+        let (mut chain, time) = self.chain(&scene, &options, session)?;
         let input_faces = chain.first().map_or(0, |link| link.reduced.report.input_faces);
         self.write(format, &mut scene, &mut chain, session)?;
         for link in chain.iter().filter(|link| !link.reduced.report.reached) {
@@ -169,6 +171,8 @@ impl Lods {
             "degenerate_faces": report.map(|report| report.degenerate_faces),
             "duplicate_faces": report.map(|report| report.duplicate_faces),
             "non_manifold_vertices": report.map(|report| report.non_manifold_vertices),
+            "held": report.map(holding::to_json),
+            "vanished": report.map(|report| report.vanished),
             "refusals": report.map(reduce::refusals_json),
         })
     }

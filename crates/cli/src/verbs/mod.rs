@@ -5,6 +5,7 @@ pub mod info;
 pub mod lods;
 pub mod measure;
 pub mod render;
+pub mod repair;
 pub mod replay;
 pub mod sample;
 pub mod simplify;

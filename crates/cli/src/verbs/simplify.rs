@@ -14,6 +14,7 @@ use crate::args::{Reading, Writing};
 use crate::distance;
 use crate::failure::Failure;
 use crate::files;
+use crate::holding::{self, Holding};
 use crate::numbers::{count, faces, percent, value};
 use crate::reduce::{self, Engine, Reduced};
 use crate::sequence;
@@ -70,9 +71,8 @@ pub struct Manner {
     #[arg(long, value_name = "NAME", default_value = Method::default().name(),
         value_parser = amounts::method, help = amounts::methods())]
     pub method: Method,
-    /// Keep every vertex of a boundary edge where it is
-    #[arg(long)]
-    lock_boundary: bool,
+    #[command(flatten)]
+    holding: Holding,
     #[command(flatten)]
     weights: Weights,
 }
@@ -100,19 +100,21 @@ struct Weights {
 }
 
 impl Manner {
-    pub fn options(&self) -> Options {
+    /// The options for a scene.
+    pub fn options(&self, scene: &Scene, session: &Session) -> Result<Options, Failure> {
+        let options =
+            Options { method: self.method, weights: self.weights(), ..Options::default() };
+        self.holding.hold(options, scene, session)
+    }
+
+    fn weights(&self) -> AttributeWeights {
         let Weights { weight_normal, weight_uv, weight_color } = self.weights;
-        Options {
-            method: self.method,
-            weights: AttributeWeights { normal: weight_normal, uv: weight_uv, color: weight_color },
-            lock_boundary: self.lock_boundary,
-            ..Options::default()
-        }
+        AttributeWeights { normal: weight_normal, uv: weight_uv, color: weight_color }
     }
 
     /// Says which of the options have no part in what the method does.
     pub fn warn(&self, session: &Session) {
-        if self.options().weights != WEIGHTS && !self.method.counts_attributes() {
+        if self.weights() != WEIGHTS && !self.method.counts_attributes() {
             let method = self.method.name();
             session.warn(format_args!("--weight-…: {method} does not count attributes; qem does"));
         }
@@ -133,6 +135,13 @@ impl Goal {
     }
 }
 
+/// What is to be done.
+struct Task<'s> {
+    scene: &'s Scene,
+    target: Target,
+    options: Options,
+}
+
 impl Simplify {
     pub fn run(self, session: &Session) -> Result<Answer, Failure> {
         files::check_output(&self.output, session)?;
@@ -145,10 +154,11 @@ impl Simplify {
             sequence::check_scene(&scene, &self.input, session)?;
         }
         let target = self.goal.target(&scene);
+        let task = Task { scene: &scene, target, options: self.manner.options(&scene, session)? };
         let (mut done, time) = match target {
-            Target::Error(_) => self.measured_run(&scene, target, session)?,
-            _ if self.measured => self.measured_run(&scene, target, session)?,
-            _ => self.plain_run(&scene, target, session)?,
+            Target::Error(_) => self.measured_run(&task, session)?,
+            _ if self.measured => self.measured_run(&task, session)?,
+            _ => self.plain_run(&task, session)?,
         };
         reduce::replace(&mut scene, std::mem::take(&mut done.meshes));
         let write = || files::write(&self.output, &scene, &self.writing, session);
@@ -169,15 +179,14 @@ impl Simplify {
 
     fn plain_run(
         &self,
-        scene: &Scene,
-        target: Target,
+        task: &Task<'_>,
         session: &Session,
     ) -> Result<(Reduced, Duration), Failure> {
-        let mut engine = Engine::start(scene, &self.manner.options(), &self.input, session)?;
+        let mut engine = Engine::start(task.scene, &task.options, &self.input, session)?;
         if self.sequence.is_some() {
             engine.record();
         }
-        let report = engine.run(target)?;
+        let report = engine.run(task.target)?;
         let (meshes, time) = (engine.level(), engine.time());
         let sequence = match self.sequence {
             Some(_) => {
@@ -192,10 +201,10 @@ impl Simplify {
     /// A run that is measured, or led by what is measured.
     fn measured_run(
         &self,
-        scene: &Scene,
-        target: Target,
+        task: &Task<'_>,
         session: &Session,
     ) -> Result<(Reduced, Duration), Failure> {
+        let &Task { scene, target, ref options } = task;
         let original = distance::surface_of(scene, distance::meshes(scene));
         let surface = match distance::ready(&original, &self.input) {
             Ok(surface) => Some(surface),
@@ -203,10 +212,10 @@ impl Simplify {
             Err(_) => None,
         };
         if let (Target::Error(bound), Some(original), true) = (target, &surface, self.measured) {
-            let (options, path) = (&self.manner.options(), &self.input);
+            let path = &self.input;
             return Search { scene, options, original, bound, path, session }.run();
         }
-        let (reduced, time) = self.plain_run(scene, target, session)?;
+        let (reduced, time) = self.plain_run(task, session)?;
         let measured = reduce::measure(surface.as_ref(), scene, &reduced.meshes, session);
         Ok((Reduced { measured, ..reduced }, time))
     }
@@ -224,6 +233,8 @@ impl Simplify {
         json["degenerate_faces"] = report.degenerate_faces.into();
         json["duplicate_faces"] = report.duplicate_faces.into();
         json["non_manifold_vertices"] = report.non_manifold_vertices.into();
+        json["held"] = holding::to_json(report);
+        json["vanished"] = report.vanished.into();
         json["refusals"] = reduce::refusals_json(report);
         json["file"] = files::name(&self.output).into();
         json

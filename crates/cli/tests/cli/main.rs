@@ -6,6 +6,7 @@ mod demo;
 mod hostile;
 mod levels;
 mod pipes;
+mod repair;
 mod run;
 mod usage;
 mod verbs;

@@ -225,3 +225,68 @@ fn render_draws_in_every_way() {
         assert!(std::fs::read(run.path("out.png")).unwrap().starts_with(b"\x89PNG"));
     }
 }
+
+/// A box of eight squares a side and a smaller one on it, as OBJ.
+fn two_boxes() -> String {
+    let mut text = String::new();
+    let mut start = 1;
+    for (n, z) in [(8, 0.0), (4, 8.0)] {
+        let mut ids = std::collections::HashMap::new();
+        for side in 0..6usize {
+            let axis = side / 2;
+            let [u, v] = [[1, 2], [2, 1]][side % 2].map(|step| (axis + step) % 3);
+            let mut at = |i: i32, j: i32| {
+                let mut p = [if side % 2 == 0 { n } else { 0 }; 3];
+                (p[u], p[v]) = (i, j);
+                let next = start + ids.len();
+                *ids.entry(p).or_insert_with(|| {
+                    let [x, y, up] = p.map(f64::from);
+                    text += &format!("v {x} {y} {}\n", up + z);
+                    next
+                })
+            };
+            let mut faces = String::new();
+            for (i, j) in (0..n).flat_map(|i| (0..n).map(move |j| (i, j))) {
+                let [a, b, c, d] = [at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)];
+                faces += &format!("f {a} {b} {c}\nf {a} {c} {d}\n");
+            }
+            text += &faces;
+        }
+        start += ids.len();
+    }
+    text
+}
+
+#[test]
+fn what_touches_is_held_where_contacts_are_locked() {
+    let run = Run::new();
+    std::fs::write(run.path("boxes.obj"), two_boxes()).unwrap();
+    let plain = run.json(&["simplify", "boxes.obj", "a.obj", "--ratio", "10%"]);
+    assert_eq!(number(&plain["held"]["tied"]) + number(&plain["held"]["locked"]), 0.0);
+    let held = run.json(&["simplify", "boxes.obj", "b.obj", "--ratio", "10%", "--lock-contacts"]);
+    assert!(number(&held["held"]["tied"]) + number(&held["held"]["locked"]) >= 50.0, "{held}");
+    let text = run.run(&["simplify", "boxes.obj", "b.obj", "--ratio", "10%", "--lock-contacts"]);
+    let text = String::from_utf8(text.out).unwrap();
+    assert!(text.contains("vertices tied to others") || text.contains("vertices locked"), "{text}");
+}
+
+#[test]
+fn small_objects_go_where_that_is_allowed() {
+    let run = Run::new();
+    std::fs::write(run.path("boxes.obj"), two_boxes()).unwrap();
+    let vanished = |options: &[&str]| {
+        let all = [&["simplify", "boxes.obj", "a.obj", "--faces", "4"], options].concat();
+        number(&run.json(&all)["vanished"])
+    };
+    assert_eq!(vanished(&[]), 0.0);
+    assert_eq!(vanished(&["--keep-objects"]), 0.0);
+    assert_eq!(vanished(&["--keep-objects", "6.9"]), 0.0);
+    assert_eq!(vanished(&["--keep-objects", "7"]), 1.0);
+    assert_eq!(vanished(&["--keep-objects", "50%"]), 1.0);
+    assert_eq!(vanished(&["--keep-objects", "50%", "--lock-contacts"]), 0.0);
+    for bad in ["-1", "nan", "-3%", "big"] {
+        let done =
+            run.run(&["simplify", "boxes.obj", "a.obj", "--faces", "4", "--keep-objects", bad]);
+        assert_eq!(done.code, 2, "{bad}: {done:?}");
+    }
+}

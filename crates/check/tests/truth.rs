@@ -1,0 +1,271 @@
+//! Two hundred scenes whose contacts are known by how they were made: all are found, none invented.
+//!
+//! Coordinates are small multiples of 2^-30, and are turned by whole-number matrices and scaled by
+//! powers of two, so that what touches touches to the last bit wherever it stands.
+
+use std::collections::BTreeMap;
+
+use meshlod_check::{CheckOptions, Finding, Kind, Kinds, Net, ObjectId, TouchKind, findings};
+use meshlod_mesh::{Labels, Mesh, VertexId};
+
+const NETS: [Net; 2] = [Net::Tree, Net::Cubes];
+const SCENES: u64 = 200;
+/// How far near misses are apart: 1e-9 of solids about one wide.
+const GAP: f64 = 1.0 / (1 << 30) as f64;
+
+/// A closed solid.
+#[derive(Clone)]
+struct Solid {
+    points: Vec<[f64; 3]>,
+    faces: Vec<[u32; 3]>,
+}
+
+/// What two solids have in common, and how many findings of each kind say so.
+struct Recipe {
+    name: &'static str,
+    solids: [Solid; 2],
+    expected: &'static [(TouchKind, usize)],
+}
+
+impl Solid {
+    fn new<const N: usize>(points: [[f64; 3]; N], faces: &[[u32; 3]]) -> Self {
+        Self { points: points.to_vec(), faces: faces.to_vec() }
+    }
+
+    /// Four corners; outwards where the first three turn left seen from off the fourth.
+    fn tetrahedron(points: [[f64; 3]; 4]) -> Self {
+        Self::new(points, &[[0, 1, 2], [0, 3, 1], [1, 3, 2], [2, 3, 0]])
+    }
+
+    fn cuboid([x, y, z]: [f64; 3], [u, v, w]: [f64; 3]) -> Self {
+        let below = [[x, y, z], [u, y, z], [u, v, z], [x, v, z]];
+        let above = below.map(|[x, y, _]| [x, y, w]);
+        let [a, b, c, d] = below;
+        let [e, f, g, h] = above;
+        let sides = [[0, 1, 5, 4], [1, 2, 6, 5], [2, 3, 7, 6], [3, 0, 4, 7]];
+        let quads = [[0, 3, 2, 1], [4, 5, 6, 7]].into_iter().chain(sides);
+        let faces: Vec<[u32; 3]> = quads.flat_map(|[a, b, c, d]| [[a, b, c], [a, c, d]]).collect();
+        Self::new([a, b, c, d, e, f, g, h], &faces)
+    }
+
+    /// Six points about a centre, `radius` along the axes.
+    fn octahedron([x, y, z]: [f64; 3], radius: f64) -> Self {
+        let [l, r] = [[x - radius, y, z], [x + radius, y, z]];
+        let [n, s] = [[x, y - radius, z], [x, y + radius, z]];
+        let [b, t] = [[x, y, z - radius], [x, y, z + radius]];
+        let upper = [[1, 3, 5], [3, 0, 5], [0, 2, 5], [2, 1, 5]];
+        let lower = upper.map(|[a, b, _]| [b, a, 4]);
+        Self::new([l, r, n, s, b, t], &[upper, lower].concat())
+    }
+
+    fn moved(mut self, by: [f64; 3]) -> Self {
+        for point in &mut self.points {
+            for (x, d) in point.iter_mut().zip(by) {
+                *x += d;
+            }
+        }
+        self
+    }
+}
+
+/// A table to stand on: its upper side is two large triangles at z = 0, parted by x = y.
+fn table() -> Solid {
+    Solid::cuboid([-1.0, -1.0, -0.5], [1.0, 1.0, 0.0])
+}
+
+/// A tetrahedron with its tip at the origin and three corners above, over the triangle below x = y.
+fn tip() -> Solid {
+    let above = [[0.25, -0.5, 0.5], [0.75, -0.5, 0.5], [0.5, -0.25, 0.5]];
+    let [a, b, c] = above;
+    Solid::tetrahedron([a, c, b, [0.5, -0.4375, 0.0]])
+}
+
+/// A roof upside down: its ridge lies along x at z = 0, over the triangle below x = y.
+fn ridge() -> Solid {
+    let [y, z] = [-0.5, 0.25];
+    Solid::new(
+        [
+            [0.25, y, 0.0],
+            [0.625, y, 0.0],
+            [0.25, y - 0.125, z],
+            [0.625, y - 0.125, z],
+            [0.25, y + 0.125, z],
+            [0.625, y + 0.125, z],
+        ],
+        &[[0, 2, 3], [0, 3, 1], [0, 5, 4], [0, 1, 5], [2, 4, 5], [2, 5, 3], [0, 4, 2], [1, 3, 5]],
+    )
+}
+
+/// A roof whose ridge lies along y at z = 0, below.
+fn ridge_across() -> Solid {
+    let x = 0.5;
+    Solid::new(
+        [
+            [x, -0.75, 0.0],
+            [x, -0.25, 0.0],
+            [x - 0.125, -0.75, -0.25],
+            [x - 0.125, -0.25, -0.25],
+            [x + 0.125, -0.75, -0.25],
+            [x + 0.125, -0.25, -0.25],
+        ],
+        &[[0, 1, 3], [0, 3, 2], [0, 4, 5], [0, 5, 1], [2, 3, 5], [2, 5, 4], [0, 2, 4], [1, 5, 3]],
+    )
+}
+
+fn recipes() -> Vec<Recipe> {
+    use TouchKind::{Crossing, Edge, Overlap, Vertex};
+    let up = [0.0, 0.0, GAP];
+    let cube = Solid::cuboid([0.0; 3], [1.0; 3]);
+    let beside = Solid::cuboid([1.0, 1.0, 0.0], [2.0, 2.0, 1.0]);
+    let tips = || Solid::octahedron([0.0, 0.0, 1.0], 1.0);
+    // Its lower side is in one triangle of the table.
+    let brick = Solid::cuboid([0.25, -0.75, 0.0], [0.5, -0.5, 0.5]);
+    let recipe = |name, a: &Solid, b: &Solid, expected| Recipe {
+        name,
+        solids: [a.clone(), b.clone()],
+        expected,
+    };
+    vec![
+        recipe(
+            "tips at one place",
+            &Solid::octahedron([0.0, 0.0, -1.0], 1.0),
+            &tips(),
+            &[(Vertex, 1)],
+        ),
+        recipe("an edge at one place", &cube, &beside, &[(Edge, 1)]),
+        recipe("a tip on a face", &table(), &tip(), &[(Vertex, 3)]),
+        recipe("a ridge on a face", &table(), &ridge(), &[(Vertex, 4), (Edge, 2)]),
+        recipe("ridges that cross", &ridge_across(), &ridge(), &[(Vertex, 4)]),
+        recipe(
+            "a tip through a face",
+            &table(),
+            &tip().moved([0.0, 0.0, -0.125]),
+            &[(Crossing, 3)],
+        ),
+        recipe("a tip just through", &table(), &tip().moved([0.0, 0.0, -GAP]), &[(Crossing, 3)]),
+        recipe("a side on a side", &table(), &brick, &[(Vertex, 4), (Edge, 4), (Overlap, 2)]),
+        recipe("a tip just off a face", &table(), &tip().moved(up), &[]),
+        recipe("a ridge just off a face", &table(), &ridge().moved(up), &[]),
+        recipe("ridges just apart", &ridge_across(), &ridge().moved(up), &[]),
+        recipe("a side just off a side", &table(), &brick.clone().moved(up), &[]),
+        recipe(
+            "tips just apart",
+            &Solid::octahedron([0.0, 0.0, -1.0], 1.0),
+            &tips().moved(up),
+            &[],
+        ),
+        recipe("edges just apart", &cube, &beside.moved([GAP, 0.0, 0.0]), &[]),
+        recipe("one in the other", &cube, &Solid::octahedron([0.5; 3], 0.25), &[]),
+    ]
+}
+
+/// A stream of numbers that is the same everywhere: splitmix64.
+struct Random(u64);
+
+impl Random {
+    fn below(&mut self, bound: usize) -> usize {
+        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
+        let z = (self.0 ^ self.0 >> 30).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+        let z = (z ^ z >> 27).wrapping_mul(0x94D0_49BB_1331_11EB);
+        ((z ^ z >> 31) % bound as u64) as usize
+    }
+}
+
+/// Three times a rotation, or once, with its axes and signs exchanged at random.
+fn turn(random: &mut Random) -> [[f64; 3]; 3] {
+    let rows = [
+        [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
+        [[2.0, -2.0, 1.0], [1.0, 2.0, 2.0], [2.0, 1.0, -2.0]],
+        [[-1.0, 2.0, 2.0], [2.0, -1.0, 2.0], [2.0, 2.0, -1.0]],
+    ][random.below(3)];
+    let first = random.below(3);
+    let rows = [0, 1, 2].map(|i| rows[(first + i) % 3]);
+    let signs = [0; 3].map(|_| if random.below(2) == 0 { 1.0 } else { -1.0 });
+    rows.map(|row| [0, 1, 2].map(|i| signs[i] * row[i]))
+}
+
+/// How many findings there are of two objects, by how they meet.
+type Counts = BTreeMap<([u32; 2], TouchKind), usize>;
+
+/// Five recipes side by side, faces in any order, and what is to be found.
+fn scene(seed: u64) -> (Mesh, Counts) {
+    let (mut random, recipes) = (Random(seed), recipes());
+    let scale = 2.0_f64.powi(random.below(40) as i32 - 20);
+    let (mut points, mut faces, mut expected) = (Vec::new(), Vec::new(), Counts::new());
+    for stand in 0..5 {
+        // Every recipe comes up, whatever the seeds.
+        let recipe = &recipes[(5 * seed as usize + stand) % recipes.len()];
+        let turn = turn(&mut random);
+        let at = [64 * stand, random.below(64), random.below(64)].map(|x| x as f64);
+        for (i, solid) in recipe.solids.iter().enumerate() {
+            let base = points.len() as u32;
+            let along =
+                |row: [f64; 3], p: &[f64; 3]| row.iter().zip(p).map(|(r, x)| r * x).sum::<f64>();
+            let place = |p: &[f64; 3]| [0, 1, 2].map(|k| scale * (along(turn[k], p) + at[k]));
+            points.extend(solid.points.iter().map(place));
+            let object = (2 * stand + i) as u32;
+            faces.extend(solid.faces.iter().map(|face| (face.map(|v| VertexId(base + v)), object)));
+        }
+        let objects = [2 * stand as u32, 2 * stand as u32 + 1];
+        expected.extend(recipe.expected.iter().map(|&(kind, count)| ((objects, kind), count)));
+    }
+    for i in (1..faces.len()).rev() {
+        faces.swap(i, random.below(i + 1));
+        faces[i].0.rotate_left(random.below(3));
+    }
+    let (faces, of_face) = faces.into_iter().unzip();
+    let names = (0..10).map(|object| format!("solid {object}")).collect();
+    let objects = Some(Labels { names, of_face });
+    (Mesh { objects, ..Mesh::new(points, faces) }, expected)
+}
+
+/// What is found, counted; every finding is of the faces of its objects.
+fn counted(mesh: &Mesh, net: Net) -> Counts {
+    let kinds = Kinds::NONE.with(Kind::Contact).with(Kind::SelfIntersection);
+    let labels = &mesh.objects.as_ref().unwrap().of_face;
+    let mut counts = Counts::new();
+    for finding in findings(mesh, &CheckOptions { kinds, net, ..CheckOptions::default() }) {
+        let (objects, faces, touch) = match finding {
+            Finding::Contact { objects, faces, touch } => (objects, faces, touch),
+            Finding::SelfIntersection { object, faces, touch } => ([object; 2], faces, touch),
+            other => panic!("{other:?} was not asked for"),
+        };
+        assert_eq!(faces.map(|face| ObjectId(labels[face.index()])), objects);
+        assert!(touch.place.iter().all(|x| x.is_finite()) && touch.depth >= 0.0, "{touch:?}");
+        *counts.entry((objects.map(|object| object.0), touch.kind)).or_default() += 1;
+    }
+    counts
+}
+
+#[test]
+fn every_contact_is_found_and_none_invented() {
+    for (seed, net) in (0..SCENES).flat_map(|seed| NETS.map(|net| (seed, net))) {
+        let (mesh, expected) = scene(seed);
+        let first = 5 * seed as usize;
+        let names: Vec<_> = (0..5).map(|i| recipes()[(first + i) % recipes().len()].name).collect();
+        assert_eq!(counted(&mesh, net), expected, "{net:?}, scene {seed}: {names:?}");
+    }
+}
+
+/// The same faces as one object: what crosses or lies over is a self-intersection, what is shared by
+/// place is not.
+#[test]
+fn within_one_object_what_is_shared_by_place_is_no_finding() {
+    for seed in 0..20 {
+        let (mut mesh, mut expected) = scene(seed);
+        let recipes = recipes();
+        for stand in 0..5u32 {
+            let recipe = &recipes[(5 * seed as usize + stand as usize) % recipes.len()];
+            if recipe.name.ends_with("at one place") {
+                expected.retain(|(objects, _), _| objects[0] != 2 * stand);
+            }
+        }
+        let labels = mesh.objects.as_mut().unwrap();
+        labels.of_face.iter_mut().for_each(|object| *object /= 2);
+        let expected =
+            expected.into_iter().map(|((o, kind), n)| (([o[0] / 2; 2], kind), n)).collect();
+        for net in NETS {
+            assert_eq!(counted(&mesh, net), expected, "{net:?}, scene {seed}");
+        }
+    }
+}

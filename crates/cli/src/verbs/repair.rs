@@ -1,0 +1,185 @@
+//! `repair`: what can be mended safely.
+
+use std::path::PathBuf;
+use std::time::{Duration, Instant};
+
+use clap::Args;
+use meshlod::check::{HoleLimits, RepairOptions, RepairReport, RepairStep};
+use meshlod::{Format, Scene, repair_scene};
+use serde_json::{Map, Value, json};
+
+use crate::amounts;
+use crate::answer::Answer;
+use crate::args::{Reading, Writing};
+use crate::failure::Failure;
+use crate::files;
+use crate::numbers::{count, faces, value};
+use crate::session::Session;
+use crate::table::aligned;
+
+/// Mend what can be mended safely, and say what was done.
+///
+/// Steps, in this order: drop what cannot be; --weld; drop doubles; drop faces without area; split what
+/// is not manifold; turn faces until they agree; stitch borders; --holes; turn closed shells outwards;
+/// drop unused vertices.
+#[derive(Args)]
+pub struct Repair {
+    /// File to read, or -
+    #[arg(value_name = "IN")]
+    input: PathBuf,
+    /// File to write, or -
+    #[arg(value_name = "OUT")]
+    output: PathBuf,
+    #[command(flatten)]
+    steps: Steps,
+    #[command(flatten)]
+    reading: Reading,
+    #[command(flatten)]
+    writing: Writing,
+}
+
+/// What is mended beside, and what is not.
+#[derive(Args)]
+struct Steps {
+    /// Join borders that lie within EPS of each other, in model units
+    #[arg(long, value_name = "EPS", default_value_t = 0.0, value_parser = amounts::length,
+        allow_negative_numbers = true)]
+    stitch: f64,
+    /// Close holes of at most N edges, 256 at most
+    #[arg(long, value_name = "N", value_parser = amounts::whole, allow_negative_numbers = true)]
+    holes: Option<usize>,
+    /// Close holes of at most this length around, in model units
+    #[arg(long, value_name = "LENGTH", value_parser = amounts::length, requires = "holes",
+        allow_negative_numbers = true)]
+    hole_length: Option<f64>,
+    /// Keep faces that are there twice
+    #[arg(long)]
+    no_duplicates: bool,
+    /// Keep faces without area
+    #[arg(long)]
+    no_degenerate: bool,
+    /// Leave edges of three faces or more, and vertices of several fans
+    #[arg(long)]
+    no_split: bool,
+    /// Turn no face over
+    #[arg(long)]
+    no_orient: bool,
+    /// Join no borders
+    #[arg(long, conflicts_with = "stitch")]
+    no_stitch: bool,
+    /// Keep vertices that no face uses
+    #[arg(long)]
+    no_unused: bool,
+}
+
+impl Steps {
+    fn options(&self, weld: Option<f64>) -> RepairOptions {
+        let length = self.hole_length.unwrap_or(f64::INFINITY);
+        RepairOptions {
+            weld,
+            duplicates: !self.no_duplicates,
+            degenerate: !self.no_degenerate,
+            split: !self.no_split,
+            stitch: (!self.no_stitch).then_some(self.stitch),
+            orient: !self.no_orient,
+            holes: self.holes.map(|edges| HoleLimits { edges, length }),
+            unused: !self.no_unused,
+        }
+    }
+}
+
+impl Repair {
+    pub fn run(mut self, session: &Session) -> Result<Answer, Failure> {
+        let format = files::check_output(&self.output, session)?;
+        let options = self.steps.options(self.reading.take_weld());
+        let mut scene = files::read(&self.input, &self.reading, session)?;
+        let before = Size::of(&scene);
+        session.progress.stage("repairing");
+        let start = Instant::now();
+        let report = repair_scene(&mut scene, &options);
+        let time = start.elapsed();
+        let after = Size::of(&scene);
+        if after.faces == 0 {
+            return Err(Failure::at(&self.input, "no face is left that has an area"));
+        }
+        files::write(&self.output, &scene, &self.writing, session)?;
+        self.warn(format, &report, session);
+        let done = Done { report, before, after, time };
+        Ok(Answer {
+            file_on_stdout: files::is_pipe(&self.output),
+            ..Answer::new(self.json(&done), self.text(&done))
+        })
+    }
+
+    /// Says what is left, and what the format will not keep.
+    fn warn(&self, format: Format, report: &RepairReport, session: &Session) {
+        let shells = report.count(RepairStep::NotOrientable);
+        if shells > 0 {
+            let reason = format!("shells that have one side only, left as they are: {shells}");
+            session.warn(Failure::at(&self.input, reason));
+        }
+        let welds = matches!(format, Format::Glb | Format::Gltf | Format::Stl);
+        if welds && report.count(RepairStep::SplitVertices) > 0 {
+            let reason = "what was split is one again when this format is read, but for --no-weld";
+            session.warn(Failure::at(&self.output, reason));
+        }
+    }
+
+    fn json(&self, done: &Done) -> Value {
+        let all = RepairStep::ALL.into_iter();
+        let steps: Map<String, Value> =
+            all.map(|step| (step.name().into(), done.report.count(step).into())).collect();
+        json!({
+            "file": files::name(&self.output),
+            "changed": !done.report.is_nothing(),
+            "input_faces": done.before.faces,
+            "input_vertices": done.before.vertices,
+            "output_faces": done.after.faces,
+            "output_vertices": done.after.vertices,
+            "steps": steps,
+            "repair_seconds": done.time.as_secs_f64(),
+        })
+    }
+
+    fn text(&self, done: &Done) -> String {
+        let Done { report, before, after, time } = done;
+        let steps: Vec<[String; 2]> = report
+            .told()
+            .map(|(step, number)| [format!("  {}", step.name()), count(number)])
+            .collect();
+        let nothing = if report.is_nothing() { "  nothing to mend\n" } else { "" };
+        format!(
+            "{}: {} to {}, {} vertices to {}\n{nothing}{}repair_seconds: {}\n",
+            files::name(&self.output),
+            faces(before.faces),
+            count(after.faces),
+            count(before.vertices),
+            count(after.vertices),
+            aligned(&steps),
+            value(time.as_secs_f64()),
+        )
+    }
+}
+
+struct Done {
+    report: RepairReport,
+    before: Size,
+    after: Size,
+    time: Duration,
+}
+
+/// How large all meshes are.
+struct Size {
+    vertices: usize,
+    faces: usize,
+}
+
+impl Size {
+    fn of(scene: &Scene) -> Self {
+        let meshes = || scene.meshes.iter().map(|mesh| &mesh.mesh);
+        Self {
+            vertices: meshes().map(|mesh| mesh.positions.len()).sum(),
+            faces: meshes().map(|mesh| mesh.faces.len()).sum(),
+        }
+    }
+}
