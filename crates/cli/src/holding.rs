@@ -1,5 +1,7 @@
 //! What must stay: the options that say it, and what comes of them.
 
+use std::path::{Path, PathBuf};
+
 use clap::Args;
 use meshlod::check::LockOptions;
 use meshlod::mesh::{Lock, Locks};
@@ -7,6 +9,8 @@ use meshlod::{Options, Report, Scene, join_locks, scene_locks, world_bounds};
 use serde_json::{Value, json};
 
 use crate::amounts::{self, Bound};
+use crate::args::Reading;
+use crate::check::lock_file::{self, Rows};
 use crate::failure::Failure;
 use crate::session::Session;
 
@@ -19,6 +23,9 @@ pub struct Holding {
     /// Keep objects together where they meet: what crosses stays, what touches moves together
     #[arg(long)]
     lock_contacts: bool,
+    /// Keep what a file says, as check --locks writes it
+    #[arg(long, value_name = "FILE.json", conflicts_with = "lock_contacts")]
+    locks: Option<PathBuf>,
     /// Objects at least this large are never removed, in model units or 5% of the diagonal; smaller
     /// ones go as a whole where that costs least. Without a size, as without the option: none goes
     #[arg(long, value_name = "SIZE", num_args = 0..=1, default_missing_value = "0",
@@ -26,31 +33,45 @@ pub struct Holding {
     keep_objects: Option<Bound>,
 }
 
+/// A scene and where it came from.
+pub struct Origin<'o> {
+    pub scene: &'o Scene,
+    pub path: &'o Path,
+    pub reading: &'o Reading,
+}
+
 impl Holding {
     /// Puts what must stay of a scene into options.
     pub fn hold(
         &self,
         options: Options,
-        scene: &Scene,
+        origin: &Origin<'_>,
         session: &Session,
     ) -> Result<Options, Failure> {
-        let size = |size: Bound| size.length(world_bounds(scene).diagonal());
+        let size = |size: Bound| size.length(world_bounds(origin.scene).diagonal());
         Ok(Options {
             lock_boundary: self.lock_boundary,
-            locks: self.locks(scene, session)?,
+            locks: self.locks(origin, session)?,
             vanish_below: self.keep_objects.map(size),
             ..options
         })
     }
 
-    fn locks(&self, scene: &Scene, session: &Session) -> Result<Locks, Failure> {
-        if !self.lock_contacts {
-            return Ok(Locks::default());
-        }
-        session.progress.stage("looking for contacts");
-        let contacts = LockOptions { contacts: true, boundary: Lock::Free };
-        let of_meshes = scene_locks(scene, &contacts).into_iter().map(|locking| locking.locks);
-        join_locks(scene, &of_meshes.collect::<Vec<_>>()).map_err(Failure::new)
+    fn locks(&self, origin: &Origin<'_>, session: &Session) -> Result<Locks, Failure> {
+        let of_meshes = match &self.locks {
+            Some(path) => {
+                let rows = Rows::of(origin.path, origin.scene, origin.reading.options().weld)?;
+                lock_file::read(path, origin.scene, &rows)?
+            }
+            None if self.lock_contacts => {
+                session.progress.stage("looking for contacts");
+                let contacts = LockOptions { contacts: true, boundary: Lock::Free };
+                let lockings = scene_locks(origin.scene, &contacts);
+                lockings.into_iter().map(|locking| locking.locks).collect()
+            }
+            None => return Ok(Locks::default()),
+        };
+        join_locks(origin.scene, &of_meshes).map_err(Failure::new)
     }
 }
 

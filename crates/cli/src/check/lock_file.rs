@@ -6,11 +6,12 @@ use std::path::Path;
 
 use meshlod::check::{LockReason, Locking};
 use meshlod::io::Weld;
-use meshlod::mesh::{Lock, VertexId};
+use meshlod::mesh::{Lock, Locks, VertexId};
 use meshlod::{Format, ReadOptions, Scene};
 use serde_json::{Value, json};
 
 use crate::failure::Failure;
+use crate::files;
 
 const FORMAT: &str = "meshlod-locks";
 const VERSION: u64 = 1;
@@ -32,6 +33,9 @@ impl Rows {
     /// # Errors
     /// Vertices joined within a distance, which leaves no rows to speak of.
     pub fn of(path: &Path, scene: &Scene, weld: Weld) -> Result<Self, Failure> {
+        if files::is_pipe(path) {
+            return Err(Failure::usage("locks are of a file: no pipe will do"));
+        }
         let format = Format::of_path(path).map_err(Failure::usage)?;
         let torn = match (weld, format) {
             (Weld::Within(_), _) => {
@@ -120,4 +124,64 @@ fn mesh_json(rows: &[VertexId], Locking { locks, reasons }: &Locking) -> Value {
         "flags": flags,
         "ties": locks.ties.iter().map(tie).collect::<Vec<_>>(),
     })
+}
+
+/// The locks in a file, for the meshes of the scene that they were made of.
+///
+/// # Errors
+/// One line that names the file and the mesh: no file of this form, one of another mesh.
+pub fn read(path: &Path, scene: &Scene, rows: &Rows) -> Result<Vec<Locks>, Failure> {
+    let wrong = |reason: String| Failure::at(path, reason);
+    let bytes = files::read_all(path)?;
+    let json: Value = serde_json::from_slice(&bytes).map_err(|error| wrong(error.to_string()))?;
+    if json["format"] != FORMAT {
+        return Err(wrong("is no file of locks; meshlod check IN --locks FILE makes one".into()));
+    }
+    if json["version"] != VERSION {
+        let version = &json["version"];
+        return Err(wrong(format!("is of version {version}; this program reads {VERSION}")));
+    }
+    let meshes = json["meshes"].as_array().map_or(&[][..], Vec::as_slice);
+    if meshes.len() != scene.meshes.len() {
+        let (found, expected) = (meshes.len(), scene.meshes.len());
+        return Err(wrong(format!("has locks of {found} meshes where {expected} are needed")));
+    }
+    let locks = meshes.iter().zip(&rows.of_meshes).zip(&scene.meshes).enumerate();
+    let locks = locks.map(|(i, ((json, rows), mesh))| {
+        mesh_locks(json, rows, mesh.mesh.positions.len())
+            .map_err(|reason| wrong(format!("mesh {i}: {reason}")))
+    });
+    locks.collect()
+}
+
+fn mesh_locks(json: &Value, rows: &[VertexId], vertices: usize) -> Result<Locks, String> {
+    let flags = json["flags"].as_array().ok_or("has no flags")?;
+    if flags.len() != rows.len() {
+        let (found, expected) = (flags.len(), rows.len());
+        return Err(format!("has flags of {found} vertices where the input has {expected}"));
+    }
+    let mut of_vertex = vec![Lock::Free; vertices];
+    for (row, (flag, v)) in flags.iter().zip(rows).enumerate() {
+        let known = FLAGS.iter().find(|(_, known, _)| flag.as_u64() == Some((*known).into()));
+        let &(lock, ..) =
+            known.ok_or_else(|| format!("flag {row} is {flag}; 0, 1 and 2 are known"))?;
+        of_vertex[v.index()] = lock.max(of_vertex[v.index()]);
+    }
+    let ties = json["ties"].as_array().map_or(&[][..], Vec::as_slice).iter().enumerate();
+    let tie = |(i, tie): (usize, &Value)| {
+        let members = tie.as_array().ok_or_else(|| format!("tie {i} is no list"))?;
+        let vertex = |row: &Value| {
+            let index = row.as_u64().and_then(|row| usize::try_from(row).ok());
+            index.and_then(|index| rows.get(index).copied())
+        };
+        let known =
+            |row| vertex(row).ok_or_else(|| format!("tie {i} names {row}, which is not there"));
+        let mut tie: Vec<VertexId> = members.iter().map(known).collect::<Result<_, _>>()?;
+        tie.sort_unstable();
+        tie.dedup();
+        Ok(tie)
+    };
+    let ties: Vec<Vec<VertexId>> = ties.map(tie).collect::<Result<_, String>>()?;
+    let ties = ties.into_iter().filter(|tie| tie.len() > 1).collect();
+    Ok(Locks { of_vertex, ties })
 }

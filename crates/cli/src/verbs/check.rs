@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
-use meshlod::check::{CheckOptions, Kind, Kinds, LockOptions, ObjectsBy};
+use meshlod::check::{CheckOptions, Kind, Kinds, LockOptions, Net, ObjectsBy};
 use meshlod::io::write_file;
 use meshlod::mesh::Lock;
 use meshlod::{Scene, scene_locks};
@@ -34,6 +34,9 @@ pub struct Check {
     #[arg(long, value_name = "N", default_value_t = 100, value_parser = amounts::whole,
         allow_negative_numbers = true)]
     limit: usize,
+    /// What finds the faces that may meet; the findings are the same
+    #[arg(long, value_name = "NET", default_value = "tree")]
+    net: Search,
     /// Do not look for faces that meet
     #[arg(long, conflicts_with = "locks")]
     no_intersections: bool,
@@ -55,6 +58,14 @@ enum By {
     Auto,
     Names,
     Components,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum Search {
+    /// A hierarchy of boxes: fast
+    Tree,
+    /// An octree of cubes
+    Cubes,
 }
 
 #[derive(Clone, Copy, PartialEq, ValueEnum)]
@@ -113,7 +124,11 @@ impl Check {
             By::Names => ObjectsBy::Names,
             By::Components => ObjectsBy::Components,
         };
-        CheckOptions { kinds, objects, ..CheckOptions::default() }
+        let net = match self.net {
+            Search::Tree => Net::Tree,
+            Search::Cubes => Net::Cubes,
+        };
+        CheckOptions { kinds, objects, net }
     }
 
     fn write_locks(&self, path: &Path, scene: &Scene) -> Result<String, Failure> {

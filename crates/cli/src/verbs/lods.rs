@@ -16,7 +16,7 @@ use crate::args::{Reading, Writing};
 use crate::distance;
 use crate::failure::Failure;
 use crate::files;
-use crate::holding;
+use crate::holding::{self, Origin};
 use crate::numbers::{count, percent, value};
 use crate::reduce::{self, Engine, Reduced};
 use crate::session::Session;
@@ -68,7 +68,8 @@ impl Lods {
         }
         let mut scene = files::read(&self.input, &self.reading, session)?;
         self.manner.warn(session);
-        let options = self.manner.options(&scene, session)?;
+        let origin = Origin { scene: &scene, path: &self.input, reading: &self.reading };
+        let options = self.manner.options(&origin, session)?;
         let (mut chain, time) = self.chain(&scene, &options, session)?;
         let input_faces = chain.first().map_or(0, |link| link.reduced.report.input_faces);
         self.write(format, &mut scene, &mut chain, session)?;

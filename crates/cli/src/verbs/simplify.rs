@@ -14,7 +14,7 @@ use crate::args::{Reading, Writing};
 use crate::distance;
 use crate::failure::Failure;
 use crate::files;
-use crate::holding::{self, Holding};
+use crate::holding::{self, Holding, Origin};
 use crate::numbers::{count, faces, percent, value};
 use crate::reduce::{self, Engine, Reduced};
 use crate::sequence;
@@ -101,10 +101,10 @@ struct Weights {
 
 impl Manner {
     /// The options for a scene.
-    pub fn options(&self, scene: &Scene, session: &Session) -> Result<Options, Failure> {
+    pub fn options(&self, origin: &Origin<'_>, session: &Session) -> Result<Options, Failure> {
         let options =
             Options { method: self.method, weights: self.weights(), ..Options::default() };
-        self.holding.hold(options, scene, session)
+        self.holding.hold(options, origin, session)
     }
 
     fn weights(&self) -> AttributeWeights {
@@ -154,7 +154,9 @@ impl Simplify {
             sequence::check_scene(&scene, &self.input, session)?;
         }
         let target = self.goal.target(&scene);
-        let task = Task { scene: &scene, target, options: self.manner.options(&scene, session)? };
+        let origin = Origin { scene: &scene, path: &self.input, reading: &self.reading };
+        let options = self.manner.options(&origin, session)?;
+        let task = Task { scene: &scene, target, options };
         let (mut done, time) = match target {
             Target::Error(_) => self.measured_run(&task, session)?,
             _ if self.measured => self.measured_run(&task, session)?,

@@ -181,6 +181,65 @@ fn locks_need_files_and_their_own_vertices() {
 }
 
 #[test]
+fn locks_from_a_file_are_those_of_the_mesh() {
+    let run = Run::new();
+    write(&run, "in.obj", CROSSING);
+    run.json(&["check", "in.obj", "--locks", "l.json"]);
+    let simplify = |options: &[&str]| {
+        run.json(&[&["simplify", "in.obj", "out.obj", "--ratio", "10%"], options].concat())
+    };
+    let [by_file, by_contacts] = [&["--locks", "l.json"][..], &["--lock-contacts"]].map(simplify);
+    assert_eq!(by_file["held"], json!({ "locked": 6, "protected": 1, "tied": 0 }));
+    for field in ["held", "output_faces", "refusals"] {
+        assert_eq!(by_file[field], by_contacts[field], "{field}");
+    }
+}
+
+#[test]
+fn locks_of_another_mesh_are_refused() {
+    let run = Run::new();
+    write(&run, "in.obj", CROSSING);
+    run.sample("sphere", 100, "ball.ply");
+    run.json(&["check", "ball.ply", "--locks", "ball.json"]);
+    write(&run, "list.json", "[]");
+    write(&run, "cut.json", "{\"format\": \"meshlod-locks\"");
+    let file = |version: u32, mesh: &str| {
+        format!("{{\"format\":\"meshlod-locks\",\"version\":{version},\"meshes\":[{mesh}]}}")
+    };
+    write(&run, "new.json", &file(2, ""));
+    write(&run, "none.json", &file(1, ""));
+    write(&run, "flag.json", &file(1, "{\"flags\":[0,0,7,0,0,0,0,0]}"));
+    write(&run, "tie.json", &file(1, "{\"flags\":[0,0,0,0,0,0,0,0],\"ties\":[[1,99]]}"));
+    write(&run, "torn.json", &file(1, "{\"flags\":[0,0,0,0,0,0,0,0],\"ties\":[[1,2]]}"));
+    for (name, reason) in [
+        ("ball.json", "vertices where the input has 8"),
+        ("list.json", "is no file of locks"),
+        ("cut.json", "EOF"),
+        ("new.json", "version 2"),
+        ("none.json", "has locks of 0 meshes where 1 are needed"),
+        ("flag.json", "flag 2 is 7"),
+        ("tie.json", "tie 0 names 99"),
+        ("torn.json", "torn"),
+    ] {
+        let arguments = ["simplify", "in.obj", "out.obj", "--ratio", "50%", "--locks", name];
+        let done = run.run(&arguments);
+        assert!(done.code == 1 && done.only_line().contains(reason), "{name}: {done:?}");
+        assert!(!run.path("out.obj").exists());
+    }
+}
+
+#[test]
+fn both_nets_say_the_same() {
+    let run = Run::new();
+    let Some(fish) = shared_mesh("fish-clown.obj") else {
+        println!("skipped: the fish is not there");
+        return;
+    };
+    let with = |net| run.json(&["check", fish.to_str().unwrap(), "--net", net, "--limit", "9999"]);
+    assert_eq!(with("tree"), with("cubes"));
+}
+
+#[test]
 fn the_page_has_pictures_a_legend_and_the_tables() {
     let run = Run::new();
     write(&run, "in.obj", CROSSING);
