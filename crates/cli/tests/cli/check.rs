@@ -210,7 +210,6 @@ fn locks_of_another_mesh_are_refused() {
     write(&run, "none.json", &file(1, ""));
     write(&run, "flag.json", &file(1, "{\"flags\":[0,0,7,0,0,0,0,0]}"));
     write(&run, "tie.json", &file(1, "{\"flags\":[0,0,0,0,0,0,0,0],\"ties\":[[1,99]]}"));
-    write(&run, "torn.json", &file(1, "{\"flags\":[0,0,0,0,0,0,0,0],\"ties\":[[1,2]]}"));
     for (name, reason) in [
         ("ball.json", "vertices where the input has 8"),
         ("list.json", "is no file of locks"),
@@ -219,7 +218,6 @@ fn locks_of_another_mesh_are_refused() {
         ("none.json", "has locks of 0 meshes where 1 are needed"),
         ("flag.json", "flag 2 is 7"),
         ("tie.json", "tie 0 names 99"),
-        ("torn.json", "torn"),
     ] {
         let arguments = ["simplify", "in.obj", "out.obj", "--ratio", "50%", "--locks", name];
         let done = run.run(&arguments);
