@@ -221,6 +221,37 @@ proptest! {
     }
 }
 
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(2000))]
+    /// Soups of few places, where a surface touches itself at nearly every vertex.
+    #[test]
+    fn what_touches_itself_gets_no_worse(
+        positions in prop::collection::vec(prop::array::uniform3(0i8..3), 6..24),
+        raw in prop::collection::vec(prop::array::uniform3(0u32..24), 4..50),
+        method in prop::sample::select(&Method::ALL[..]),
+    ) {
+        let count = positions.len() as u32;
+        let mesh = Mesh::new(
+            positions.iter().map(|p| p.map(f64::from)).collect(),
+            raw.iter().map(|face| face.map(|v| VertexId(v % count))).collect(),
+        );
+        let locks = ties(&mesh);
+        let options = Options { method, locks: locks.clone(), ..Options::default() };
+        // All is degenerate, then there is nothing to keep.
+        if let Ok(mut simplifier) = Simplifier::new(&mesh, &options) {
+            let before = defects(&simplifier.level());
+            let mut trace = Trace::new(&mesh);
+            simplifier.run(Target::Faces(0), &mut trace).unwrap();
+            prop_assert_eq!(trace.torn(&locks), None);
+            let level = simplifier.level();
+            level.validate().unwrap();
+            let after = defects(&level);
+            prop_assert!(after[0] <= before[0] && after[1] <= before[1], "{before:?} {after:?}");
+            prop_assert_eq!(after[2], before[2]);
+        }
+    }
+}
+
 #[test]
 fn what_was_contracted_together_comes_back_to_the_bit() {
     let mesh = three_boxes(6);

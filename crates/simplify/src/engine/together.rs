@@ -99,3 +99,30 @@ fn are_apart(hood: &Neighbourhood, mates: &[Neighbourhood]) -> bool {
         .enumerate()
         .all(|(i, hood)| all().enumerate().all(|(j, other)| i == j || !at(hood, other)))
 }
+
+#[cfg(test)]
+mod tests {
+    use meshlod_fixtures::grid;
+    use meshlod_mesh::{Connectivity, VertexId};
+
+    use super::*;
+    use crate::surface::Surface;
+
+    #[test]
+    fn edges_with_a_face_around_both_are_not_apart() {
+        // Vertex x + 7y is at (x, y).
+        let mesh = grid(6);
+        let connectivity = Connectivity::new(&mesh.faces, mesh.positions.len());
+        let surface = Surface::new(&mesh, &connectivity);
+        let around = |edge: [u32; 2]| {
+            let mut hood = Neighbourhood::default();
+            hood.gather(&surface, Contracted::edge(edge.map(VertexId))).unwrap();
+            hood
+        };
+        let hood = around([8, 9]);
+        // One row up, and two, where only the rings meet.
+        assert!(!are_apart(&hood, &[around([15, 16])]));
+        assert!(are_apart(&hood, &[around([22, 23])]));
+        assert!(!are_apart(&hood, &[around([29, 30]), around([22, 23])]));
+    }
+}
