@@ -22,6 +22,9 @@ pub fn plant(target: &str) {
 
 fn seeds(target: &str) -> Vec<Vec<u8>> {
     let meshes = [fixtures::cube(), fixtures::seam_strip(), fixtures::two_objects()];
+    if target == "check" {
+        return few_faces();
+    }
     let by_hand: &[&str] = match target {
         "ply" => &PLY,
         "obj" => &OBJ,
@@ -63,6 +66,26 @@ fn sequence(mesh: &Mesh) -> Vec<u8> {
     let mut simplifier = Simplifier::new(mesh, &Options::default()).expect("a fixture is a mesh");
     simplifier.run(Target::Faces(0), &mut history).expect("a target");
     Progressive::new(simplifier, history).expect("all is taken down").to_bytes()
+}
+
+/// Small meshes as the target `check` reads them, with what it asks of attributes and holes.
+fn few_faces() -> Vec<Vec<u8>> {
+    let meshes = [
+        fixtures::cube(),
+        fixtures::fan(),
+        fixtures::grid(2),
+        fixtures::hourglass(),
+        fixtures::moebius(4),
+        fixtures::two_objects(),
+    ];
+    let bytes = |mesh: &Mesh, extras: u8| {
+        let coordinates = mesh.positions.as_flattened().iter().map(|&x| (x * 4.0) as i8 as u8);
+        let corners = mesh.faces.as_flattened().iter().map(|v| v.0 as u8);
+        let header = [mesh.positions.len() as u8 - 3, extras];
+        header.into_iter().chain(coordinates).chain(corners).collect()
+    };
+    let extras = [0, 1, 4, 5, 0x1f, 0xff];
+    meshes.iter().flat_map(|mesh| extras.map(|extras| bytes(mesh, extras))).collect()
 }
 
 const PLY: [&str; 3] = [
