@@ -5,6 +5,9 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
+/// The longest input that is kept, in bytes: longer ones are few, and most of the size.
+const LONGEST: usize = 512;
+
 /// The inputs kept for a target; none where there is no file.
 ///
 /// # Panics
@@ -20,13 +23,15 @@ pub fn kept(target: &str) -> Vec<Vec<u8>> {
     inputs
 }
 
-/// Keeps what a target's corpus holds now, in the order of length and bytes; gives how many.
+/// Keeps the short inputs that a target's corpus holds now, in the order of length and bytes; gives
+/// how many.
 ///
 /// # Errors
 /// The corpus cannot be read, the file cannot be written.
 pub fn keep(target: &str) -> std::io::Result<usize> {
     let files = fs::read_dir(corpus(target))?;
     let mut inputs = files.map(|file| fs::read(file?.path())).collect::<Result<Vec<_>, _>>()?;
+    inputs.retain(|input| input.len() <= LONGEST);
     inputs.sort_by(|a, b| a.len().cmp(&b.len()).then(a.cmp(b)));
     let packed: Vec<u8> = inputs
         .iter()
