@@ -17,6 +17,7 @@ fn mesh(bytes: &[u8]) -> Option<(Mesh, Target, Options)> {
         method: Method::ALL[usize::from(method) % Method::ALL.len()],
         lock_boundary: locks & 1 != 0,
         locks: locks_of(locks, &positions),
+        vanish_below: (locks & 16 != 0).then_some(100.0),
         ..Options::default()
     };
     let mesh = Mesh::new(positions, faces.collect());
