@@ -3,7 +3,7 @@
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use meshlod::io::{Precision, Weld};
 use meshlod::picture::{UpAxis, View};
-use meshlod::{Format, ReadOptions, WriteOptions};
+use meshlod::{Format, ReadOptions, Scene, WriteOptions};
 
 use crate::amounts::{self, Look};
 use crate::answer::Answer;
@@ -116,14 +116,24 @@ impl Reading {
 /// Options of every verb that writes meshes.
 #[derive(Args)]
 pub struct Writing {
-    /// Of coordinates in PLY, OBJ, OFF and SMF: f32 or f64
-    #[arg(long, value_name = "TYPE", default_value = "f32", value_parser = amounts::precision)]
-    precision: Precision,
+    /// Of coordinates in PLY, OBJ, OFF and SMF: f32 or f64; f32 if not said, and for repair what
+    /// they need
+    #[arg(long, value_name = "TYPE", value_parser = amounts::precision)]
+    precision: Option<Precision>,
 }
 
 impl Writing {
     pub fn options(&self) -> WriteOptions {
-        WriteOptions { precision: self.precision }
+        WriteOptions { precision: self.precision.unwrap_or(Precision::F32) }
+    }
+
+    /// The same, but where nothing is said as precise as it takes for no position to change.
+    pub fn lossless(mut self, scene: &Scene) -> Self {
+        let mut positions = scene.meshes.iter().flat_map(|mesh| mesh.mesh.positions.as_flattened());
+        let is_short = |x: &f64| f64::from(*x as f32) == *x;
+        let needed = if positions.all(is_short) { Precision::F32 } else { Precision::F64 };
+        self.precision.get_or_insert(needed);
+        self
     }
 }
 

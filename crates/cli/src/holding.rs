@@ -26,8 +26,9 @@ pub struct Holding {
     /// Keep what a file says, as check --locks writes it
     #[arg(long, value_name = "FILE.json", conflicts_with = "lock_contacts")]
     locks: Option<PathBuf>,
-    /// Objects at least this large are never removed, in model units or 5% of the diagonal; smaller
-    /// ones go as a whole where that costs least. Without a size, as without the option: none goes
+    /// Connected pieces at least this large are never removed, in model units or 5% of the diagonal;
+    /// smaller ones go as a whole where that costs least. Without a size, as without the option:
+    /// none goes
     #[arg(long, value_name = "SIZE", num_args = 0..=1, default_missing_value = "0",
         value_parser = amounts::bound, allow_negative_numbers = true)]
     keep_objects: Option<Bound>,

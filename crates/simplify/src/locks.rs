@@ -79,10 +79,12 @@ pub(crate) fn apply(options: &Options, connectivity: &Connectivity, surface: &mu
     for tie in locks.ties.iter().filter(|tie| tie.len() > 1) {
         let few = tie.len() <= MOST_MEMBERS;
         let flag = if few { Flags::TIED } else { Flags::PINNED };
-        tie.iter().for_each(|&v| surface.flag(v, flag.or(Flags::HELD)));
-        held.tied += tie.len();
+        tie.iter().for_each(|&v| surface.flag(v, flag));
         if few {
+            held.tied += tie.len();
             ties.push(tie.clone());
+        } else {
+            held.locked += tie.len();
         }
     }
     surface.ties = Ties::new(ties);

@@ -1,6 +1,10 @@
 //! Small components, which may vanish as a whole where nothing of them can be spared for less.
+//!
+//! Components that share a place are one here: what is seen as one surface goes or stays as one,
+//! however its vertices are torn.
 
-use meshlod_mesh::{Bounds, FaceId, face_components};
+use meshlod_mesh::{Bounds, FaceId, VertexId, face_components};
+use rustc_hash::FxHashMap;
 
 use crate::options::{Method, Options};
 use crate::surface::{Flags, Surface};
@@ -34,7 +38,7 @@ impl Vanishing {
         let alive = (0..surface.face_count()).map(FaceId::new).filter(|&f| surface.is_alive(f));
         let alive: Vec<FaceId> = alive.collect();
         let corners: Vec<_> = alive.iter().map(|&face| surface.face(face)).collect();
-        let (of_face, count) = face_components(&corners, surface.vertex_count());
+        let (of_face, count) = components(surface, &corners);
         let mut boxes = vec![(Bounds::EMPTY, false); count];
         for (corners, &component) in corners.iter().zip(&of_face) {
             let (bounds, is_held) = &mut boxes[component as usize];
@@ -90,6 +94,17 @@ impl Vanishing {
         self.waiting
             .sort_by(|a, b| b.cost.total_cmp(&a.cost).then_with(|| first(b).cmp(&first(a))));
     }
+}
+
+/// The component of every face, by the places of its corners, and how many there are.
+fn components(surface: &Surface, corners: &[[VertexId; 3]]) -> (Vec<u32>, usize) {
+    let mut first = FxHashMap::default();
+    let mut at_place = |v: VertexId| {
+        let bits = surface.position(v).to_array().map(|x| (x + 0.0).to_bits());
+        *first.entry(bits).or_insert(v)
+    };
+    let corners: Vec<_> = corners.iter().map(|face| face.map(&mut at_place)).collect();
+    face_components(&corners, surface.vertex_count())
 }
 
 /// How far a component is taken to move that vanishes, as a part of its size: about the mean distance

@@ -1,6 +1,6 @@
 //! Closing holes.
 
-use meshlod_mesh::{Connectivity, FaceId, Mesh, Side, Twin, VertexId, WedgeId};
+use meshlod_mesh::{Connectivity, FaceId, Mesh, Side, Twin, VertexId, WedgeId, face_components};
 use rustc_hash::FxHashSet;
 
 use super::edit::{labels, retain_faces};
@@ -39,12 +39,14 @@ pub struct Filled {
 /// Closes the holes within `limits`, each with the faces between its own vertices that bend least
 /// ([`patch`]).
 ///
-/// A hole is left where its faces do not agree, where no filling keeps every edge to two faces and
+/// A hole is left where it is the outline of a sheet, so that its filling would be as large as all
+/// that it is the border of; where its faces do not agree, where no filling keeps every edge to two faces and
 /// every face to an area, or where the filling would meet other faces. Corners get the wedges that
 /// the border has there, faces the labels of the border's first.
 pub fn fill(mesh: &mut Mesh, limits: &HoleLimits) -> Filled {
     let connectivity = Connectivity::new(&mesh.faces, mesh.positions.len());
     let boundary = Boundary::of(&mesh.faces, &connectivity);
+    let areas = ComponentAreas::of(mesh);
     let mut filled = Filled::default();
     let mut drawn = FxHashSet::default();
     let before = mesh.faces.len();
@@ -58,6 +60,7 @@ pub fn fill(mesh: &mut Mesh, limits: &HoleLimits) -> Filled {
         let hole = Hole::of(mesh, &connectivity, vertices);
         match hole
             .and_then(|hole| hole.faces(mesh, &connectivity, &drawn).map(|faces| (hole, faces)))
+            .filter(|(hole, faces)| hole.area(mesh, faces) < SHEET * areas.around(hole.face))
         {
             Some((hole, faces)) => {
                 hole_of.extend(faces.iter().map(|_| filled.holes));
@@ -72,6 +75,36 @@ pub fn fill(mesh: &mut Mesh, limits: &HoleLimits) -> Filled {
     filled.left += undone;
     filled.faces = mesh.faces.len() - before;
     filled
+}
+
+/// The part of a component's area from which on a filling makes it a sheet with two sides. The lid
+/// of a half sphere has half its area.
+const SHEET: f64 = 0.9;
+
+/// How large the components are.
+struct ComponentAreas {
+    of_face: Vec<u32>,
+    areas: Vec<f64>,
+}
+
+impl ComponentAreas {
+    fn of(mesh: &Mesh) -> Self {
+        let (of_face, count) = face_components(&mesh.faces, mesh.positions.len());
+        let mut areas = vec![0.0; count];
+        for (face, &component) in mesh.faces.iter().zip(&of_face) {
+            areas[component as usize] += area(mesh, *face);
+        }
+        Self { of_face, areas }
+    }
+
+    fn around(&self, face: FaceId) -> f64 {
+        self.areas[self.of_face[face.index()] as usize]
+    }
+}
+
+fn area(mesh: &Mesh, face: [VertexId; 3]) -> f64 {
+    let [a, b, c] = mesh.triangle(face);
+    0.5 * (b - a).cross(c - a).length()
 }
 
 fn is_within(mesh: &Mesh, vertices: &[VertexId], limits: &HoleLimits) -> bool {
@@ -131,6 +164,11 @@ impl Hole {
     }
 
     /// The faces that close it, as places around it; `None` where there are none that fit.
+    /// The area of faces between its vertices.
+    fn area(&self, mesh: &Mesh, faces: &[[usize; 3]]) -> f64 {
+        faces.iter().map(|face| area(mesh, face.map(|i| self.vertices[i]))).sum()
+    }
+
     fn faces(
         &self,
         mesh: &Mesh,

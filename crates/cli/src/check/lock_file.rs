@@ -167,7 +167,11 @@ fn mesh_locks(json: &Value, rows: &[VertexId], vertices: usize) -> Result<Locks,
             known.ok_or_else(|| format!("flag {row} is {flag}; 0, 1 and 2 are known"))?;
         of_vertex[v.index()] = lock.max(of_vertex[v.index()]);
     }
-    let ties = json["ties"].as_array().map_or(&[][..], Vec::as_slice).iter().enumerate();
+    let ties = match json.get("ties") {
+        None => &[],
+        Some(ties) => ties.as_array().ok_or("\"ties\" is no list")?.as_slice(),
+    };
+    let ties = ties.iter().enumerate();
     let tie = |(i, tie): (usize, &Value)| {
         let members = tie.as_array().ok_or_else(|| format!("tie {i} is no list"))?;
         let vertex = |row: &Value| {

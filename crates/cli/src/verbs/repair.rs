@@ -102,6 +102,8 @@ impl Repair {
         if after.faces == 0 {
             return Err(Failure::at(&self.input, "no face is left that has an area"));
         }
+        // Rounding could undo what was mended.
+        self.writing = self.writing.lossless(&scene);
         files::write(&self.output, &scene, &self.writing, session)?;
         self.warn(format, &report, session);
         let done = Done { report, before, after, time };
