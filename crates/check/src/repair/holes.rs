@@ -163,12 +163,12 @@ impl Hole {
         Some(Self { vertices: around, wedges, tips, face: sides[0].face() })
     }
 
-    /// The faces that close it, as places around it; `None` where there are none that fit.
     /// The area of faces between its vertices.
     fn area(&self, mesh: &Mesh, faces: &[[usize; 3]]) -> f64 {
         faces.iter().map(|face| area(mesh, face.map(|i| self.vertices[i]))).sum()
     }
 
+    /// The faces that close it, as places around it; `None` where there are none that fit.
     fn faces(
         &self,
         mesh: &Mesh,
