@@ -98,6 +98,7 @@ fn find(kind: Kind, subject: &Subject, visit: &mut Visit) -> ControlFlow<()> {
         Kind::InsideOut => shells::inside_out(subject, visit),
         Kind::SelfIntersection => meets::self_intersections(subject, visit),
         Kind::Contact => meets::contacts(subject, visit),
+        Kind::Crowded => meets::crowded(subject, visit),
     }
 }
 

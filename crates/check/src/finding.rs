@@ -105,6 +105,12 @@ pub enum Finding {
         /// How they meet.
         touch: Touch,
     },
+    /// So many faces are close to so many others that the search for what meets was given up: there
+    /// may be more self-intersections and contacts than are told.
+    Crowded {
+        /// How many pairs of faces were found until then.
+        found: usize,
+    },
 }
 
 /// How a face has no inside.
@@ -123,8 +129,8 @@ pub struct Touch {
     pub kind: TouchKind,
     /// A point of it, in model units.
     pub place: [f64; 3],
-    /// How far one of the faces would have to move along the normal of the other until it only
-    /// touches, at least, in model units; 0 for those that only touch.
+    /// How far one of the faces would have to move along the normal of the other until it is on one
+    /// side of it, at least, in model units; 0 for those that only touch, or lie in one plane.
     pub depth: f64,
 }
 
@@ -172,6 +178,8 @@ pub enum Kind {
     SelfIntersection,
     /// [`Finding::Contact`]
     Contact,
+    /// [`Finding::Crowded`]
+    Crowded,
 }
 
 /// How bad a kind of finding is.
@@ -185,7 +193,7 @@ pub enum Severity {
 
 impl Kind {
     /// Every kind, in the order in which they are found.
-    pub const ALL: [Self; 14] = [
+    pub const ALL: [Self; 15] = [
         Self::NonFiniteVertex,
         Self::BadIndex,
         Self::BadAttributes,
@@ -200,6 +208,7 @@ impl Kind {
         Self::InsideOut,
         Self::SelfIntersection,
         Self::Contact,
+        Self::Crowded,
     ];
 
     /// Its name in reports.
@@ -219,6 +228,7 @@ impl Kind {
             Self::InsideOut => "inside-out",
             Self::SelfIntersection => "self-intersection",
             Self::Contact => "contact",
+            Self::Crowded => "crowded",
         }
     }
 
@@ -238,7 +248,8 @@ impl Kind {
             | Self::BoundaryLoop
             | Self::InsideOut
             | Self::SelfIntersection
-            | Self::Contact => Severity::Warning,
+            | Self::Contact
+            | Self::Crowded => Severity::Warning,
         }
     }
 }
@@ -261,6 +272,7 @@ impl Finding {
             Self::InsideOut { .. } => Kind::InsideOut,
             Self::SelfIntersection { .. } => Kind::SelfIntersection,
             Self::Contact { .. } => Kind::Contact,
+            Self::Crowded { .. } => Kind::Crowded,
         }
     }
 }

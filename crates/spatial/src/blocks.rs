@@ -20,7 +20,12 @@ pub struct BoxBlocks {
     items: Vec<u32>,
     /// The blocks of items, then the blocks of these blocks, and so on; one on top.
     levels: Vec<Vec<Block>>,
+    /// The group of each block of each level, [`MIXED`] for several; no levels where all are alone.
+    groups: Vec<Vec<u32>>,
 }
+
+/// The group of what is in no group, or in several.
+const MIXED: u32 = u32::MAX;
 
 /// Eight boxes, axis by axis, one lane a box. A lane without a box overlaps nothing.
 #[derive(Clone, Copy, Debug)]
@@ -50,13 +55,44 @@ pub type Corners = [DVec3; 2];
 impl BoxBlocks {
     /// The hierarchy over the boxes of `count` items.
     ///
-    /// Boxes are finite. Cost: linear, but for items whose centres crowd together within 2^-20 of
-    /// the size of all: sorting these again costs as much as they are deep.
+    /// Boxes are finite. Cost: linear, but where many centres crowd in 2^-10 of the size of all, and
+    /// again in 2^-10 of that: each time, these are sorted again.
     pub fn new(count: usize, corners: impl Fn(u32) -> Corners) -> Self {
-        let frame = Middle::of(count, &corners);
-        let boxes: Vec<Box3> = (0..count as u32).map(|i| frame.rounded(corners(i))).collect();
+        let boxes = rounded(count, corners);
+        Self::over(curve::order(&boxes), &boxes)
+    }
+
+    /// The same, for items of which some are in groups: pairs in one group are left out, all but a
+    /// few where groups adjoin in the order.
+    ///
+    /// Nothing is to be found among a hundred thousand faces round one vertex, whose boxes all
+    /// overlap there.
+    pub fn grouped(
+        count: usize,
+        corners: impl Fn(u32) -> Corners,
+        group: impl Fn(u32) -> Option<u32>,
+    ) -> Self {
+        let boxes = rounded(count, corners);
+        let group = |item: u32| group(item).unwrap_or(MIXED);
         let mut items = curve::order(&boxes);
-        items.resize(count.next_multiple_of(LANES), u32::MAX);
+        items.sort_by_key(|&item| group(item));
+        let mut blocks = Self::over(items, &boxes);
+        let mut of_places: Vec<u32> =
+            blocks.items[..count].iter().map(|&item| group(item)).collect();
+        for _ in 0..blocks.levels.len() {
+            let same = |chunk: &[u32]| {
+                let first = chunk[0];
+                if chunk.iter().all(|&group| group == first) { first } else { MIXED }
+            };
+            of_places = of_places.chunks(LANES).map(same).collect();
+            blocks.groups.push(of_places.clone());
+        }
+        blocks
+    }
+
+    /// The hierarchy over items in their order.
+    fn over(mut items: Vec<u32>, boxes: &[Box3]) -> Self {
+        items.resize(items.len().next_multiple_of(LANES), u32::MAX);
         let leaves = items.chunks_exact(LANES).map(|chunk| {
             Block::of(chunk.iter().map_while(|&item| boxes.get(item as usize).copied()))
         });
@@ -66,7 +102,14 @@ impl BoxBlocks {
             let over = below.chunks(LANES).map(|chunk| Block::of(chunk.iter().map(Block::around)));
             levels.push(over.collect());
         }
-        Self { items, levels }
+        Self { items, levels, groups: Vec::new() }
+    }
+
+    /// Whether two blocks are of one group, so that there is nothing between them.
+    #[inline]
+    fn one_group(&self, level: usize, a: usize, b: usize) -> bool {
+        let group = |of: &Vec<u32>| of[a] == of[b] && of[a] != MIXED;
+        self.groups.get(level).is_some_and(group)
     }
 
     /// The item at each place of the order, `u32::MAX` where there is none.
@@ -94,6 +137,9 @@ impl BoxBlocks {
         index: usize,
         visit: &mut impl FnMut(Row) -> ControlFlow<B>,
     ) -> ControlFlow<B> {
+        if self.one_group(level, index, index) {
+            return ControlFlow::Continue(());
+        }
         let block = &self.levels[level][index];
         for lane in 0..LANES {
             let one = block.lane(lane);
@@ -123,13 +169,12 @@ impl BoxBlocks {
         visit: &mut impl FnMut(Row) -> ControlFlow<B>,
     ) -> ControlFlow<B> {
         let [block_a, block_b] = [a, b].map(|i| &self.levels[level][i]);
-        let near_a = block_b.overlapping(&around_a);
-        if near_a == 0 {
+        if self.one_group(level, a, b) || block_b.overlapping(&around_a) == 0 {
             return ControlFlow::Continue(());
         }
         for lane in lanes(block_a.overlapping(&around_b)) {
             let one = block_a.lane(lane);
-            let with = block_b.overlapping(&one) & near_a;
+            let with = block_b.overlapping(&one);
             let place = a * LANES + lane;
             if level == 0 {
                 self.show(place, b, with, visit)?;
@@ -156,6 +201,12 @@ impl BoxBlocks {
             lanes => visit(Row { one: one as u32, block: block as u32, lanes }),
         }
     }
+}
+
+/// The boxes in `f32`.
+fn rounded(count: usize, corners: impl Fn(u32) -> Corners) -> Vec<Box3> {
+    let frame = Middle::of(count, &corners);
+    (0..count as u32).map(|i| frame.rounded(corners(i))).collect()
 }
 
 /// The set bits, lowest first.
@@ -227,3 +278,6 @@ impl Block {
         (half(0) | half(1) << 4) as u8
     }
 }
+
+#[cfg(test)]
+mod tests;

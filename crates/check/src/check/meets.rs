@@ -35,6 +35,13 @@ pub fn contacts(subject: &Subject, visit: &mut Visit) -> ControlFlow<()> {
     ControlFlow::Continue(())
 }
 
+pub fn crowded(subject: &Subject, visit: &mut Visit) -> ControlFlow<()> {
+    match subject.meetings().complete() {
+        true => ControlFlow::Continue(()),
+        false => visit(&Finding::Crowded { found: subject.meetings().pairs().len() }),
+    }
+}
+
 /// The pairs of faces that meet, and their objects.
 fn pairs<'a>(subject: &'a Subject) -> impl Iterator<Item = ([FaceId; 2], [ObjectId; 2])> + 'a {
     let of_face = &subject.objects().of_face;

@@ -9,7 +9,8 @@ use crate::summary::Summary;
 
 /// All findings beside what meets, which has its own tests.
 fn found(mesh: &Mesh) -> Vec<Finding> {
-    let kinds = Kinds::ALL.without(Kind::SelfIntersection).without(Kind::Contact);
+    let meeting = [Kind::SelfIntersection, Kind::Contact, Kind::Crowded];
+    let kinds = meeting.into_iter().fold(Kinds::ALL, Kinds::without);
     findings(mesh, &CheckOptions { kinds, ..CheckOptions::default() })
 }
 

@@ -8,6 +8,7 @@
 mod coplanar;
 mod exact;
 mod filter;
+mod hub;
 mod meet;
 mod net;
 mod rings;
@@ -16,13 +17,15 @@ mod soup;
 #[cfg(test)]
 mod tests;
 
+use std::ops::ControlFlow;
+
 use meshlod_mesh::{FaceId, Mesh, VertexId};
 use rustc_hash::FxHashMap;
 
 use crate::{Touch, TouchKind};
 use filter::{Pair, surely_only_share};
 use meet::meet;
-use rings::{Certified, pairs_at};
+use rings::Certified;
 use soup::{Points, Soup, whole};
 
 pub(crate) use soup::Ground;
@@ -41,8 +44,24 @@ pub enum Net {
 #[derive(Debug)]
 pub(crate) struct Meetings {
     pairs: Vec<[FaceId; 2]>,
+    complete: bool,
     /// What positions are scaled with.
     scale: f64,
+}
+
+/// What a search may cost. Real meshes need a hundredth of it: a few pairs to the face are close.
+#[derive(Clone, Copy, Debug)]
+struct Limits {
+    /// Pairs of faces, and of a face and a block, that may be looked at.
+    looks: usize,
+    /// Pairs that may be kept.
+    kept: usize,
+}
+
+impl Limits {
+    fn of(faces: usize) -> Self {
+        Self { looks: 1000 * faces + (1 << 24), kept: 32 * faces + (1 << 20) }
+    }
 }
 
 impl Meetings {
@@ -52,21 +71,29 @@ impl Meetings {
     /// meeting too: one for each edge that they share, and one for each place at which they share
     /// no edge. Faces without area have no part, nor has one at the places of an earlier one of its
     /// object, beyond the meeting of these two when their vertices are others.
+    ///
+    /// Gives up where all faces are close to all others, and then is not complete: after looking at
+    /// 1,000 pairs for each face and 17 million, or keeping 32 for each face and a million.
     pub(crate) fn of(ground: &Ground<'_>, net: Net) -> Self {
+        Self::within(ground, net, Limits::of(ground.faces.len()))
+    }
+
+    fn within(ground: &Ground<'_>, net: Net, limits: Limits) -> Self {
         let soup = Soup::of(ground);
         let certified = Certified::of(ground, &soup);
-        let mut search = Search { ground, soup: &soup, certified: &certified, found: Vec::new() };
+        let mut search =
+            Search { ground, soup: &soup, certified: &certified, limits, found: Vec::new() };
         let left_out = search.left_out();
         let counts = |f: FaceId| !left_out[f.index()];
-        search.around_places(counts);
-        search.apart(net, counts);
-        let mut pairs = search.found;
-        for pair in &mut pairs {
-            pair.sort_unstable();
-        }
-        pairs.sort_unstable();
-        pairs.dedup();
-        Self { pairs, scale: soup.points.scale() }
+        let around = search.around_places(counts);
+        let complete = around.is_continue() && search.apart(net, counts).is_continue();
+        search.merge_found();
+        Self { pairs: search.found, complete, scale: soup.points.scale() }
+    }
+
+    /// Whether all were found.
+    pub(crate) fn complete(&self) -> bool {
+        self.complete
     }
 
     /// The lower face of each first; lowest first.
@@ -90,8 +117,13 @@ struct Search<'a> {
     ground: &'a Ground<'a>,
     soup: &'a Soup<'a>,
     certified: &'a Certified,
+    /// What is left of them.
+    limits: Limits,
     found: Vec<[FaceId; 2]>,
 }
+
+/// A search goes on until it has cost too much.
+type Step = ControlFlow<()>;
 
 impl Search<'_> {
     /// The faces that have no part: without area, or at the places of an earlier one.
@@ -121,7 +153,7 @@ impl Search<'_> {
     }
 
     /// Tests the faces that share places, and adds what objects share.
-    fn around_places(&mut self, counts: impl Fn(FaceId) -> bool) {
+    fn around_places(&mut self, counts: impl Fn(FaceId) -> bool) -> Step {
         let places = self.ground.places;
         let joined = self.objects_join();
         let mut doubles: Vec<_> = places.doubles().map(|v| (places.first(v), v)).collect();
@@ -144,14 +176,13 @@ impl Search<'_> {
             }
             star.sort_unstable();
             if may_be_shared {
-                self.add_sharing(&star, place);
+                self.add_sharing(&star, place)?;
             }
             if !certified {
-                for [f, g] in pairs_at(self.soup, self.certified, &star, place) {
-                    self.test_sharing(f, g);
-                }
+                self.test_ring(&star, place)?;
             }
         }
+        ControlFlow::Continue(())
     }
 
     /// Whether a component is in two objects, so that any vertex may be.
@@ -173,7 +204,7 @@ impl Search<'_> {
     }
 
     /// Adds a pair of faces that share places if they have more in common.
-    fn test_sharing(&mut self, f: FaceId, g: FaceId) {
+    fn test_sharing(&mut self, f: FaceId, g: FaceId) -> Step {
         let triangles = [f, g].map(|face| self.soup.triangle(face));
         let [f_at, g_at] = [f, g].map(|face| self.soup.corners[face.index()]);
         let alone = [f_at.map(|v| !g_at.contains(&v)), g_at.map(|v| !f_at.contains(&v))];
@@ -186,8 +217,41 @@ impl Search<'_> {
         if !surely_only_share(&pair)
             && meet(&triangles[0], &triangles[1]).is_some_and(|touch| touch.kind >= more)
         {
-            self.found.push([f, g]);
+            self.keep([f, g])?;
         }
+        ControlFlow::Continue(())
+    }
+
+    /// Counts one more pair that is looked at.
+    #[inline]
+    fn look(&mut self) -> Step {
+        if self.limits.looks == 0 {
+            return ControlFlow::Break(());
+        }
+        self.limits.looks -= 1;
+        ControlFlow::Continue(())
+    }
+
+    /// Adds a pair.
+    fn keep(&mut self, pair: [FaceId; 2]) -> Step {
+        if self.found.len() >= self.limits.kept {
+            // Cubes and shared places find pairs several times.
+            self.merge_found();
+            if self.found.len() > self.limits.kept / 2 {
+                return ControlFlow::Break(());
+            }
+        }
+        self.found.push(pair);
+        ControlFlow::Continue(())
+    }
+
+    /// Brings the pairs in their order, each once.
+    fn merge_found(&mut self) {
+        for pair in &mut self.found {
+            pair.sort_unstable();
+        }
+        self.found.sort_unstable();
+        self.found.dedup();
     }
 }
 

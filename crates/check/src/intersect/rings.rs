@@ -1,6 +1,6 @@
 //! Faces around one place: certified as a whole where that is possible.
 
-use meshlod_mesh::{FaceId, VertexId};
+use meshlod_mesh::VertexId;
 
 use super::exact::without;
 use super::soup::{Ground, Soup, whole};
@@ -100,22 +100,4 @@ fn signs(triangle: &[glam::DVec3; 3]) -> u8 {
         signs |= sign << (2 * axis);
     }
     signs
-}
-
-/// The pairs of faces at one place that no other place answers for: a certified one, or an earlier
-/// one that is not.
-pub(crate) fn pairs_at<'a>(
-    soup: &'a Soup<'_>,
-    certified: &'a Certified,
-    star: &'a [FaceId],
-    place: VertexId,
-) -> impl Iterator<Item = [FaceId; 2]> + 'a {
-    let elsewhere = move |f: FaceId, g: FaceId| {
-        let [f, g] = [f, g].map(|face| soup.corners[face.index()]);
-        f.iter().any(|&v| v != place && g.contains(&v) && (v < place || certified.holds(v)))
-    };
-    star.iter()
-        .enumerate()
-        .flat_map(move |(i, &f)| star[i + 1..].iter().map(move |&g| [f, g]))
-        .filter(move |&[f, g]| !elsewhere(f, g))
 }

@@ -1,8 +1,10 @@
 //! Places and edges that objects share.
 
+use std::ops::ControlFlow;
+
 use meshlod_mesh::{FaceId, VertexId};
 
-use super::Search;
+use super::{Search, Step};
 use crate::ObjectId;
 
 /// With more objects at one place or edge, each is shown with the first of them only.
@@ -19,11 +21,11 @@ struct Spoke {
 impl Search<'_> {
     /// Adds pairs of faces of the objects that share a place: the lowest at each edge there whose
     /// other end is a later place, and the lowest of those that share no edge there.
-    pub(super) fn add_sharing(&mut self, star: &[FaceId], place: VertexId) {
+    pub(super) fn add_sharing(&mut self, star: &[FaceId], place: VertexId) -> Step {
         let object = |f: FaceId| self.ground.objects.of_face[f.index()];
-        let Some(&first) = star.first() else { return };
+        let Some(&first) = star.first() else { return ControlFlow::Continue(()) };
         if star.iter().all(|&f| object(f) == object(first)) {
-            return;
+            return ControlFlow::Continue(());
         }
         let mut spokes: Vec<Spoke> = Vec::with_capacity(2 * star.len());
         for &face in star {
@@ -37,7 +39,7 @@ impl Search<'_> {
             for [a, b] in pairs(edge) {
                 joined.push((a.object, b.object));
                 if place < a.to {
-                    self.found.push([a.face, b.face]);
+                    self.keep([a.face, b.face])?;
                 }
             }
         }
@@ -45,7 +47,7 @@ impl Search<'_> {
         spokes.sort_unstable_by_key(|spoke| (spoke.object, spoke.face));
         spokes.dedup_by_key(|spoke| spoke.object);
         let apart = |[a, b]: &[Spoke; 2]| joined.binary_search(&(a.object, b.object)).is_err();
-        self.found.extend(pairs(&spokes).filter(apart).map(|spokes| spokes.map(|s| s.face)));
+        pairs(&spokes).filter(apart).try_for_each(|[a, b]| self.keep([a.face, b.face]))
     }
 }
 

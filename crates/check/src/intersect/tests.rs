@@ -2,10 +2,10 @@
 
 use std::collections::BTreeSet;
 
-use meshlod_mesh::{Labels, Mesh, sample};
+use meshlod_mesh::{Connectivity, Labels, Mesh, sample};
 
 use super::*;
-use crate::{CheckOptions, Finding, Kind, Kinds, findings};
+use crate::{CheckOptions, Finding, Kind, Kinds, Places, findings};
 
 /// Random numbers, the same on every run [SLF14].
 pub(super) struct Random(pub(super) u64);
@@ -135,5 +135,71 @@ fn samples_do_not_meet_themselves() {
     for (name, faces) in [("sphere", 3000), ("torus", 3000), ("knot", 6000), ("gyroid", 9000)] {
         let mesh = sample::by_name(name, Some(faces)).unwrap();
         assert!(found(&mesh, Net::Tree).is_empty(), "{name}");
+    }
+}
+
+/// `count` faces with one corner at the origin, each with two vertices of its own, at most `width` apart.
+fn star(seed: u64, count: u32, width: f64) -> Mesh {
+    let mut random = Random(seed);
+    let mut number = || random.below(1 << 20) as f64 / f64::from(1 << 19) - 1.0;
+    let mut positions = vec![[0.0; 3]];
+    for _ in 0..count {
+        let at = [(); 3].map(|()| number());
+        positions.push(at);
+        positions.push(at.map(|x| x + width * number()));
+    }
+    let face = |i| [0, 2 * i + 1, 2 * i + 2].map(VertexId);
+    Mesh::new(positions, (0..count).map(face).collect())
+}
+
+#[test]
+fn many_faces_at_one_place_are_searched_as_all_pairs_would_be() {
+    for (seed, width, least) in [(1, 1e-3, 0), (2, 0.3, 100), (3, 2.0, 1000)] {
+        let mesh = star(seed, 300, width);
+        compare(&mesh);
+        assert!(found(&mesh, Net::Tree).len() >= least);
+    }
+}
+
+/// What is found within some limits, and whether that is all.
+fn searched(mesh: &Mesh, limits: Limits) -> (Vec<[FaceId; 2]>, bool) {
+    let objects = crate::Objects::of(mesh, crate::ObjectsBy::Auto);
+    let ground = Ground {
+        positions: &mesh.positions,
+        faces: &mesh.faces,
+        connectivity: &Connectivity::new(&mesh.faces, mesh.positions.len()),
+        places: &Places::of(&mesh.positions),
+        objects: &objects,
+    };
+    let meetings = Meetings::within(&ground, Net::Tree, limits);
+    (meetings.pairs().to_vec(), meetings.complete())
+}
+
+#[test]
+fn a_hub_of_many_faces_costs_little() {
+    let few = Limits { looks: 3_000_000, kept: 100_000 };
+    // Round a cone, and in all directions: one ring is certified, the other is not.
+    let count = 60_000;
+    let turn = |i: u32| std::f64::consts::TAU * f64::from(i) / f64::from(count);
+    let rim = (0..count).map(|i| [turn(i).cos(), turn(i).sin(), -0.5]);
+    let positions: Vec<[f64; 3]> = [[0.0; 3]].into_iter().chain(rim).collect();
+    let face = |i: u32| [0, 1 + i, 1 + (i + 1) % count].map(VertexId);
+    let cone = Mesh::new(positions, (0..count).map(face).collect());
+    assert_eq!(searched(&cone, few), (vec![], true));
+    let (pairs, complete) = searched(&star(4, count, 1e-3), few);
+    assert!(complete && pairs.len() < 5000);
+}
+
+#[test]
+fn where_all_cross_all_the_search_gives_up_and_says_so() {
+    // Long faces through one ball.
+    let mut mesh = soup(7, 2000, 1000, 6000);
+    mesh.objects = None;
+    let (all, complete) = searched(&mesh, Limits::of(2000));
+    assert!(complete && all.len() > 50_000);
+    for limits in [Limits { looks: 1000, kept: 1 << 20 }, Limits { looks: 1 << 40, kept: 2000 }] {
+        let (some, complete) = searched(&mesh, limits);
+        assert!(!complete && !some.is_empty() && some.len() <= 2000);
+        assert!(some.iter().all(|pair| all.binary_search(pair).is_ok()));
     }
 }

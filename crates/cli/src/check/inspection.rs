@@ -122,6 +122,6 @@ pub fn place(mesh: &Mesh, finding: &Finding) -> Option<[f64; 3]> {
         | Finding::InsideOut { face: f, .. } => face(*f),
         Finding::SelfIntersection { touch: Touch { place, .. }, .. }
         | Finding::Contact { touch: Touch { place, .. }, .. } => Some(*place),
-        Finding::BadAttributes { .. } => None,
+        Finding::BadAttributes { .. } | Finding::Crowded { .. } => None,
     }
 }

@@ -112,7 +112,8 @@ impl Marks {
             | Finding::BadIndex { .. }
             | Finding::BadAttributes { .. }
             | Finding::UnusedVertex { .. }
-            | Finding::CoincidentVertices { .. } => {}
+            | Finding::CoincidentVertices { .. }
+            | Finding::Crowded { .. } => {}
         }
     }
 

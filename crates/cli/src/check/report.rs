@@ -102,6 +102,7 @@ fn ids(inspection: &Inspection, finding: &Finding) -> Value {
             "names": objects.map(|object| inspection.name(object)),
             "faces": faces.map(|f| f.0), "touch": touch(how),
         }),
+        Finding::Crowded { found } => json!({ "found": found }),
     }
 }
 

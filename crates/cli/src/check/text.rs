@@ -65,6 +65,9 @@ fn kinds(inspection: &Inspection, sites: &Sites) -> String {
 pub fn first(inspection: &Inspection, sites: &Sites, finding: &Finding) -> String {
     let ids = match finding {
         Finding::BadAttributes { error } => return error.to_string(),
+        Finding::Crowded { found } => {
+            return format!("given up after {} pairs that meet", count(*found));
+        }
         Finding::NonFiniteVertex { vertex }
         | Finding::UnusedVertex { vertex }
         | Finding::NonManifoldVertex { vertex, .. } => sites.vertex(*vertex),

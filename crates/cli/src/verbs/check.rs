@@ -116,7 +116,9 @@ impl Check {
 
     fn options(&self) -> CheckOptions {
         let kinds = match self.no_intersections {
-            true => Kinds::ALL.without(Kind::SelfIntersection).without(Kind::Contact),
+            true => [Kind::SelfIntersection, Kind::Contact, Kind::Crowded]
+                .into_iter()
+                .fold(Kinds::ALL, Kinds::without),
             false => Kinds::ALL,
         };
         let objects = match self.objects {
