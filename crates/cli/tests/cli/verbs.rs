@@ -274,16 +274,21 @@ fn what_touches_is_held_where_contacts_are_locked() {
 fn small_objects_go_where_that_is_allowed() {
     let run = Run::new();
     std::fs::write(run.path("boxes.obj"), two_boxes()).unwrap();
-    let vanished = |options: &[&str]| {
-        let all = [&["simplify", "boxes.obj", "a.obj", "--faces", "4"], options].concat();
+    // A corner of ten, and one of one, 25.3 from end to end.
+    let apart = "v 0 0 0\nv 10 0 0\nv 0 10 0\nv 0 0 10\nv 20 0 0\nv 21 0 0\nv 20 1 0\nv 20 0 1\n\
+        f 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\nf 5 7 6\nf 5 6 8\nf 5 8 7\nf 6 7 8\n";
+    std::fs::write(run.path("apart.obj"), apart).unwrap();
+    let vanished = |file: &str, options: &[&str]| {
+        let all = [&["simplify", file, "a.obj", "--faces", "4"], options].concat();
         number(&run.json(&all)["vanished"])
     };
-    assert_eq!(vanished(&[]), 0.0);
-    assert_eq!(vanished(&["--keep-objects"]), 0.0);
-    assert_eq!(vanished(&["--keep-objects", "6.9"]), 0.0);
-    assert_eq!(vanished(&["--keep-objects", "7"]), 1.0);
-    assert_eq!(vanished(&["--keep-objects", "50%"]), 1.0);
-    assert_eq!(vanished(&["--keep-objects", "50%", "--lock-contacts"]), 0.0);
+    assert_eq!(vanished("apart.obj", &[]), 0.0);
+    assert_eq!(vanished("apart.obj", &["--keep-objects"]), 0.0);
+    assert_eq!(vanished("apart.obj", &["--keep-objects", "1.7"]), 0.0);
+    assert_eq!(vanished("apart.obj", &["--keep-objects", "1.8"]), 1.0);
+    assert_eq!(vanished("apart.obj", &["--keep-objects", "50%"]), 1.0);
+    // What touches is one piece, and larger than that.
+    assert_eq!(vanished("boxes.obj", &["--keep-objects", "7"]), 0.0);
     for bad in ["-1", "nan", "-3%", "big"] {
         let done =
             run.run(&["simplify", "boxes.obj", "a.obj", "--faces", "4", "--keep-objects", bad]);
