@@ -1,6 +1,7 @@
 //! The faces as the search sees them: corners by place, coordinates that cannot overflow.
 
 use std::borrow::Cow;
+use std::ops::Range;
 
 use glam::DVec3;
 use meshlod_mesh::{Connectivity, FaceId, VertexId};
@@ -60,22 +61,23 @@ fn at_places(face: &[VertexId; 3], places: &Places) -> [VertexId; 3] {
 
 /// Positions, scaled by a power of two where their products would leave the range of `f64`.
 ///
-/// The greatest coordinate is then below 2^200. Determinants are exact as long as no coordinate
-/// other than 0 is below 2^-200 as well; smaller ones are a risk only in a mesh of which some
-/// are 10^60 times as large as others, or more.
+/// Determinants of them are exact as long as no coordinate other than 0 is less than 1e-88 of the
+/// greatest: coordinates are then multiples of 2^-358, and products of three of 2^-1074, the least
+/// number there is.
 #[derive(Clone, Copy)]
 pub(crate) struct Points<'a> {
     positions: &'a [[f64; 3]],
     scale: f64,
 }
 
-/// No coordinate is larger: products of four are far from overflowing.
-const GREATEST: f64 = 1.6e60;
+/// Where the greatest coordinate needs no scaling: products of three do not overflow, nor do those
+/// of what is 1e-88 of it underflow.
+const FITTING: Range<f64> = 1e-3..1e60;
 
 impl<'a> Points<'a> {
     fn of(positions: &'a [[f64; 3]], corners: &[[VertexId; 3]]) -> Self {
         let size = |p: &[f64; 3]| DVec3::from(*p).abs().max_element();
-        let fits = |size: f64| size == 0.0 || (1.0 / GREATEST..GREATEST).contains(&size);
+        let fits = |size: f64| size == 0.0 || FITTING.contains(&size);
         if fits(positions.iter().map(size).fold(0.0, f64::max)) {
             return Self { positions, scale: 1.0 };
         }

@@ -203,3 +203,18 @@ fn where_all_cross_all_the_search_gives_up_and_says_so() {
         assert!(some.iter().all(|pair| all.binary_search(pair).is_ok()));
     }
 }
+
+#[test]
+fn size_does_not_matter() {
+    let mesh = soup(11, 100, 12, 200);
+    let pairs = found(&mesh, Net::Tree);
+    assert!(pairs.len() > 10);
+    for exponent in [-1000, -500, -200, 200, 500, 1000] {
+        let mut scaled = mesh.clone();
+        for x in scaled.positions.iter_mut().flatten() {
+            *x *= 2f64.powi(exponent);
+        }
+        assert_eq!(found(&scaled, Net::Tree), pairs, "2^{exponent}");
+        assert_eq!(found(&scaled, Net::Cubes), pairs, "2^{exponent}");
+    }
+}

@@ -1,0 +1,25 @@
+//! What checking takes: all kinds, what meets, and the net by which it is found.
+
+use criterion::{Criterion, Throughput, criterion_group, criterion_main};
+use meshlod_check::{CheckOptions, Kind, Kinds, Net, findings};
+use meshlod_mesh::sample;
+
+fn check(criterion: &mut Criterion) {
+    let mesh = sample::knot(100_000);
+    let mut group = criterion.benchmark_group("a knot of 100,000 faces");
+    group.throughput(Throughput::Elements(mesh.faces.len() as u64));
+    group.sample_size(10);
+    let meeting = Kinds::NONE.with(Kind::SelfIntersection).with(Kind::Contact);
+    for (name, kinds, net) in [
+        ("all kinds", Kinds::ALL, Net::Tree),
+        ("what meets", meeting, Net::Tree),
+        ("what meets, by cubes", meeting, Net::Cubes),
+    ] {
+        let options = CheckOptions { kinds, net, ..CheckOptions::default() };
+        group.bench_function(name, |bencher| bencher.iter(|| findings(&mesh, &options)));
+    }
+    group.finish();
+}
+
+criterion_group!(benches, check);
+criterion_main!(benches);
