@@ -5,6 +5,7 @@ mod degenerate;
 mod duplicate;
 mod edit;
 mod holes;
+mod meeting;
 mod orient;
 mod outward;
 mod patch;
@@ -107,10 +108,12 @@ pub fn repair(mesh: &Mesh, options: &RepairOptions) -> (Mesh, RepairReport) {
         add(RepairStep::Stitched, stitch::stitch(&mut mesh, epsilon));
     }
     if let Some(limits) = &options.holes {
-        let holes::Filled { holes, faces, left } = holes::fill(&mut mesh, limits);
+        let holes::Filled { holes, faces, left, untried } =
+            holes::fill(&mut mesh, limits, HoleLimits::MOST_WEIGHED);
         add(RepairStep::FilledHoles, holes);
         add(RepairStep::FillingFaces, faces);
         add(RepairStep::HolesLeft, left);
+        add(RepairStep::HolesUntried, untried);
     }
     if options.orient {
         add(RepairStep::TurnedShells, outward::turn_outward(&mut mesh));

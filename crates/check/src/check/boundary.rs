@@ -34,6 +34,13 @@ pub(crate) struct Line {
     pub closed: bool,
 }
 
+impl Line {
+    /// How many vertices it has.
+    pub fn len(self) -> usize {
+        self.len as usize
+    }
+}
+
 impl Boundary {
     /// Takes the boundary of `faces` apart. Cost: linear, however many loops meet in a vertex.
     pub fn of(faces: &[[VertexId; 3]], connectivity: &Connectivity) -> Self {

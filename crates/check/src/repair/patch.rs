@@ -27,7 +27,7 @@ struct Cost {
 /// No edge between points that are not next to each other is one of which `is_edge` says that it is
 /// there already, and no triangle is without area. `None` where there is no such way.
 ///
-/// Cost: O(n³), by going from short spans of the ring to long ones [BS95].
+/// Cost: O(n³), by going from short spans of the ring to long ones [BS95]; see [`triangles_weighed`].
 pub fn patch(ring: &Ring, is_edge: impl Fn(usize, usize) -> bool) -> Option<Vec<[usize; 3]>> {
     let n = ring.points.len();
     if n < 3 {
@@ -47,12 +47,27 @@ pub fn patch(ring: &Ring, is_edge: impl Fn(usize, usize) -> bool) -> Option<Vec<
     spans.triangles()
 }
 
+/// How many triangles [`patch`] weighs for a ring of so many points: what its time grows with.
+pub fn triangles_weighed(points: usize) -> usize {
+    points * points.saturating_sub(1) * points.saturating_sub(2) / 6
+}
+
 /// For each span of the ring, from one place to a later one, the best triangles between its points.
 struct Spans<'a> {
     ring: &'a Ring,
     n: usize,
-    /// Their cost, and the place of the third corner of the one at the edge that closes the span.
-    best: Vec<Option<(Cost, usize)>>,
+    /// By both ends, either first: so that those from one place, and those to one, lie side by side.
+    best: Vec<Option<Span>>,
+}
+
+/// The best triangles between the points of a span.
+#[derive(Clone, Copy)]
+struct Span {
+    cost: Cost,
+    /// The third corner of the triangle at the edge that closes the span.
+    middle: u32,
+    /// Its normal.
+    normal: DVec3,
 }
 
 impl Spans<'_> {
@@ -61,50 +76,58 @@ impl Spans<'_> {
     }
 
     fn choose(&mut self, from: usize, to: usize) {
-        let mut best: Option<(Cost, usize)> = None;
+        let mut best: Option<Span> = None;
         for middle in from + 1..to {
-            let Some(cost) = self.cost(from, middle, to) else { continue };
-            if best.is_none_or(|(least, _)| cost < least) {
-                best = Some((cost, middle));
+            if let Some(span) = self.span([from, middle, to], best.map(|best| best.cost)) {
+                best = Some(span);
             }
         }
         self.best[from * self.n + to] = best;
+        self.best[to * self.n + from] = best;
     }
 
-    /// What a triangle and the best of both spans beside it cost.
-    fn cost(&self, from: usize, middle: usize, to: usize) -> Option<Cost> {
-        let [before, after] = [self.of(from, middle)?, self.of(middle, to)?];
+    /// A triangle and the best of both spans beside it, if that costs less than `least`.
+    fn span(&self, [from, middle, to]: [usize; 3], least: Option<Cost>) -> Option<Span> {
+        let is_less = |cost: Cost| least.is_none_or(|least| cost < least);
+        let [before, after] = [self.cost(from, middle)?, self.cost(to, middle)?];
+        // Of most, the sides alone cost too much; of what is flat, the area.
+        let sides = Cost { bend: before.bend.max(after.bend), area: before.area + after.area };
+        if !is_less(sides) {
+            return None;
+        }
         let corners = [from, middle, to].map(|place| self.at(place));
         let cross = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
-        let area = 0.5 * cross.length();
-        if !area.is_finite() || has_zero_area(corners.map(Into::into)) {
+        let area = sides.area + 0.5 * cross.length();
+        if !area.is_finite() || !is_less(Cost { bend: sides.bend, area }) {
             return None;
         }
         let normal = cross.normalize_or_zero();
-        let mut bend = before.bend.max(after.bend);
-        bend = bend.max(self.bend(normal, from, middle)).max(self.bend(normal, middle, to));
+        let bends = [self.bend(normal, from, middle), self.bend(normal, middle, to)];
+        let mut bend = sides.bend.max(bends[0]).max(bends[1]);
         if to - from == self.n - 1 {
-            bend =
-                bend.max(bend_at(normal, [self.at(to), self.at(from)], self.ring.tips[to].into()));
+            let across = normal_across([self.at(to), self.at(from)], self.ring.tips[to].into());
+            bend = bend.max(1.0 - normal.dot(across));
         }
-        Some(Cost { bend, area: before.area + after.area + area })
+        let cost = Cost { bend, area };
+        let fits = is_less(cost) && !has_zero_area(corners.map(Into::into));
+        fits.then_some(Span { cost, middle: middle as u32, normal })
     }
 
-    /// The cost of a span; an edge of the ring costs nothing.
-    fn of(&self, from: usize, to: usize) -> Option<Cost> {
-        if to == from + 1 {
+    /// The cost of the span between two places; an edge of the ring costs nothing.
+    fn cost(&self, one: usize, other: usize) -> Option<Cost> {
+        if one.abs_diff(other) == 1 {
             return Some(Cost { bend: 0.0, area: 0.0 });
         }
-        self.best[from * self.n + to].map(|(cost, _)| cost)
+        self.best[one * self.n + other].map(|span| span.cost)
     }
 
     /// The bend between a triangle and what lies across its edge from one place to a later one.
     fn bend(&self, normal: DVec3, from: usize, to: usize) -> f64 {
-        let tip = match self.best[from * self.n + to] {
-            Some((_, middle)) => self.at(middle),
-            None => self.ring.tips[from].into(),
+        let across = match self.best[from * self.n + to] {
+            Some(span) => span.normal,
+            None => normal_across([self.at(from), self.at(to)], self.ring.tips[from].into()),
         };
-        bend_at(normal, [self.at(from), self.at(to)], tip)
+        1.0 - normal.dot(across)
     }
 
     fn triangles(&self) -> Option<Vec<[usize; 3]>> {
@@ -112,7 +135,8 @@ impl Spans<'_> {
         let mut triangles = Vec::with_capacity(self.n - 2);
         let mut open = vec![(0, self.n - 1)];
         while let Some((from, to)) = open.pop() {
-            let Some((_, middle)) = self.best[from * self.n + to] else { continue };
+            let Some(span) = self.best[from * self.n + to] else { continue };
+            let middle = span.middle as usize;
             triangles.push([from, middle, to]);
             open.extend([(from, middle), (middle, to)]);
         }
@@ -120,8 +144,7 @@ impl Spans<'_> {
     }
 }
 
-/// The bend between a triangle of a normal and the one across its edge, which goes the other way.
-fn bend_at(normal: DVec3, [from, to]: [DVec3; 2], tip: DVec3) -> f64 {
-    let across = (from - to).cross(tip - to).normalize_or_zero();
-    1.0 - normal.dot(across)
+/// The normal of the triangle across an edge, which it runs along the other way.
+fn normal_across([from, to]: [DVec3; 2], tip: DVec3) -> DVec3 {
+    (from - to).cross(tip - to).normalize_or_zero()
 }

@@ -33,6 +33,8 @@ pub enum RepairStep {
     FillingFaces,
     /// Holes within the limits left open, since no filling fits.
     HolesLeft,
+    /// Holes within the limits left open, since there are so many: the largest.
+    HolesUntried,
     /// Closed shells turned to look outwards.
     TurnedShells,
     /// Vertices left out that no face uses.
@@ -41,7 +43,7 @@ pub enum RepairStep {
 
 impl RepairStep {
     /// Every step, in the order in which they are done.
-    pub const ALL: [Self; 17] = [
+    pub const ALL: [Self; 18] = [
         Self::BadAttributes,
         Self::BadFaces,
         Self::BadVertices,
@@ -57,6 +59,7 @@ impl RepairStep {
         Self::FilledHoles,
         Self::FillingFaces,
         Self::HolesLeft,
+        Self::HolesUntried,
         Self::TurnedShells,
         Self::Unused,
     ];
@@ -79,6 +82,7 @@ impl RepairStep {
             Self::FilledHoles => "filled-holes",
             Self::FillingFaces => "filling-faces",
             Self::HolesLeft => "holes-left",
+            Self::HolesUntried => "holes-untried",
             Self::TurnedShells => "turned-shells",
             Self::Unused => "unused-vertices",
         }
@@ -86,7 +90,7 @@ impl RepairStep {
 
     /// Whether it counts what was left as it was, rather than what was done.
     pub fn is_left(self) -> bool {
-        matches!(self, Self::NotOrientable | Self::HolesLeft)
+        matches!(self, Self::NotOrientable | Self::HolesLeft | Self::HolesUntried)
     }
 }
 

@@ -9,6 +9,10 @@ use crate::joined::Joined;
 use crate::places::Places;
 use crate::zero_area::has_zero_area;
 
+/// Rounds after which joining within a distance is given up. Where vertices stay in place, the second
+/// finds nothing more to undo; a border of a hundred edges that comes off one by one still settles.
+const ROUNDS: usize = 64;
+
 /// Joins the border edges that run opposite ways between the same two places, and says how many
 /// pairs.
 ///
@@ -16,10 +20,32 @@ use crate::zero_area::has_zero_area;
 /// Edges are joined only where exactly two sides lie there, of one object, and only where that leaves
 /// every edge with two faces, every face with three vertices and an area, and no two with the same:
 /// what would not is left open all around.
+///
+/// A vertex that stays apart after all may take the area of a face whose other corners have moved,
+/// so that more have to stay. Where that does not end, only edges at one place are joined.
 pub fn stitch(mesh: &mut Mesh, epsilon: f64) -> usize {
     let connectivity = Connectivity::new(&mesh.faces, mesh.positions.len());
-    let mut seams = candidates(mesh, &connectivity, epsilon);
-    let count = loop {
+    let near = candidates(mesh, &connectivity, epsilon);
+    let (count, joined) = settle(mesh, &connectivity, near).unwrap_or_else(|| {
+        let at_one_place = candidates(mesh, &connectivity, 0.0);
+        settle(mesh, &connectivity, at_one_place).unwrap_or_default()
+    });
+    if count > 0 {
+        mesh.faces.as_flattened_mut().iter_mut().for_each(|v| *v = joined[v.index()]);
+        own_wedges(mesh);
+        merge_equal_wedges(mesh);
+    }
+    count
+}
+
+/// Leaves out seams until none spoils anything: how many are left, and the vertex that each becomes.
+/// `None` where that does not end soon.
+fn settle(
+    mesh: &Mesh,
+    connectivity: &Connectivity,
+    mut seams: Vec<[Side; 2]>,
+) -> Option<(usize, Vec<VertexId>)> {
+    for _ in 0..ROUNDS {
         let mut vertices = Joined::new(mesh.positions.len());
         for [a, b] in &seams {
             for [v, w] in meeting_ends(mesh, *a, *b) {
@@ -28,21 +54,16 @@ pub fn stitch(mesh: &mut Mesh, epsilon: f64) -> usize {
         }
         let joined: Vec<VertexId> =
             (0..mesh.positions.len()).map(|v| VertexId(vertices.least(v as u32))).collect();
-        let spoilt = spoilt(mesh, &connectivity, &joined, &seams);
+        let spoilt = spoilt(mesh, connectivity, &joined, &seams);
         let before = seams.len();
         seams.retain(|[side, _]| {
             side.ends(&mesh.faces).iter().all(|v| !spoilt[joined[v.index()].index()])
         });
         if seams.len() == before {
-            mesh.faces.as_flattened_mut().iter_mut().for_each(|v| *v = joined[v.index()]);
-            break before;
+            return Some((before, joined));
         }
-    };
-    if count > 0 {
-        own_wedges(mesh);
-        merge_equal_wedges(mesh);
     }
-    count
+    None
 }
 
 /// Pairs of border sides that lie on each other, and on no other side, in order.

@@ -1,11 +1,15 @@
 //! Every step on the least mesh that needs it, and all of them on soups.
 
+use std::collections::BTreeSet;
+
 use meshlod_fixtures::{cube, fan, grid, hourglass, mesh, moebius, seam_strip, tetrahedron};
-use meshlod_mesh::{Attributes, Connectivity, Labels, Layer, LayerKind, VertexId, WedgeId, sample};
+use meshlod_mesh::{
+    Attributes, Connectivity, FaceId, Labels, Layer, LayerKind, VertexId, WedgeId, sample,
+};
 use proptest::prelude::*;
 
 use super::*;
-use crate::{CheckOptions, Finding, Kind, Kinds, findings, is_clean};
+use crate::{CheckOptions, Finding, Kind, Kinds, ObjectsBy, findings, is_clean};
 
 const ERRORS: fn() -> CheckOptions =
     || CheckOptions { kinds: Kinds::errors(), ..CheckOptions::default() };
@@ -227,6 +231,46 @@ fn borders_within_the_tolerance_are_stitched() {
     assert!(Connectivity::new(&stitched.faces, stitched.positions.len()).is_closed());
 }
 
+/// Two rows of faces whose borders lie 1 apart. The last vertex of the second row stays where it is;
+/// then the face before it has no area, so that its other vertex must stay as well, and so on.
+fn unravelling(faces: u32) -> Mesh {
+    let places = (0..faces).map(f64::from);
+    let above = (0..faces).map(|i| [10.0 * f64::from(i), 1.0, 0.0]);
+    let below = (0..=faces).map(|i| [10.0 * f64::from(i), 0.0, 0.0]);
+    let tips = places.clone().map(|i| [10.0 * i + 5.0, 50.0, 0.0]);
+    // In one line with the vertex above and the next below.
+    let ends = places.map(|i| [10.0 * i + 15.0, -0.5, 0.0]);
+    let positions = above.chain(below).chain(tips).chain(ends).collect();
+    let [v, w, tip, end] =
+        [0, faces, 2 * faces + 1, 3 * faces + 1].map(|first| move |i| VertexId(first + i));
+    let upper = (0..faces - 1).map(|i| [v(i + 1), v(i), tip(i)]);
+    let lower = (0..faces).map(|i| [w(i), w(i + 1), end(i)]);
+    Mesh::new(positions, upper.chain(lower).collect())
+}
+
+/// Two faces of which the second begins so high over the edge of the first.
+fn pair_of_faces(height: f64) -> Mesh {
+    let first = [[-90.0, 0.0, 0.0], [-80.0, 0.0, 0.0], [-85.0, 9.0, 0.0]];
+    let second = [[-90.0, 0.0, height], [-80.0, 0.0, height], [-85.0, -9.0, 0.0]];
+    mesh(&[first, second].concat(), &[[0, 1, 2], [4, 3, 5]])
+}
+
+#[test]
+fn stitching_that_unravels_step_by_step_is_given_up() {
+    // What goes back to edges at one place leaves apart what is only near.
+    for (faces, height, expected) in [(40, 1.0, 1), (400, 1.0, 0), (400, 0.0, 1)] {
+        let mut mesh = unravelling(faces);
+        append(&mut mesh, &pair_of_faces(height));
+        assert_eq!(stitch::stitch(&mut mesh, 1.5), expected, "{faces} faces, {height} apart");
+    }
+}
+
+fn append(mesh: &mut Mesh, other: &Mesh) {
+    let first = mesh.positions.len() as u32;
+    mesh.faces.extend(other.faces.iter().map(|face| face.map(|v| VertexId(first + v.0))));
+    mesh.positions.extend_from_slice(&other.positions);
+}
+
 #[test]
 fn seams_stay_where_values_differ_and_go_where_they_do_not() {
     let strip = seam_strip();
@@ -340,6 +384,59 @@ fn a_lone_face_has_no_hole_behind_it() {
     assert_eq!((same, report.count(RepairStep::HolesLeft)), (lone, 1));
 }
 
+/// Tall cones in a row, each of so many faces and open below.
+fn cones(edges: &[u32]) -> Mesh {
+    let mut cones = Mesh::default();
+    for (i, &edges) in edges.iter().enumerate() {
+        let first = cones.positions.len() as u32;
+        let x = 3.0 * i as f64;
+        cones.positions.push([x, 0.0, 4.0]);
+        cones.positions.extend((0..edges).map(|k| {
+            let (sin, cos) = (f64::from(k) / f64::from(edges) * std::f64::consts::TAU).sin_cos();
+            [x + cos, sin, 0.0]
+        }));
+        let rim = |k: u32| VertexId(first + 1 + k % edges);
+        cones.faces.extend((0..edges).map(|k| [VertexId(first), rim(k), rim(k + 1)]));
+    }
+    cones
+}
+
+#[test]
+fn where_time_is_short_the_largest_holes_wait() {
+    let edges = [9, 5, 9, 4, 9];
+    let filled = |most_weighed| {
+        let mut mesh = cones(&edges);
+        let limits = HoleLimits { edges: 10, length: f64::INFINITY };
+        let filled = holes::fill(&mut mesh, &limits, most_weighed);
+        assert_eq!(filled.left, 0);
+        let open = findings(
+            &mesh,
+            &CheckOptions {
+                kinds: Kinds::NONE.with(Kind::BoundaryLoop),
+                ..CheckOptions::default()
+            },
+        );
+        let first = |found: &Finding| match found {
+            Finding::BoundaryLoop { vertices, .. } => vertices[0].0,
+            _ => unreachable!(),
+        };
+        (filled.untried, open.iter().map(first).collect::<Vec<_>>())
+    };
+    let weighed = |edges: &[usize]| edges.iter().map(|&n| patch::triangles_weighed(n)).sum();
+    // The first vertices of the rims: 1, 11, 17, 27, 32.
+    assert_eq!(filled(weighed(&[9, 5, 9, 4, 9])), (0, vec![]));
+    assert_eq!(filled(weighed(&[9, 5, 9, 4, 9]) - 1), (1, vec![32]));
+    assert_eq!(filled(weighed(&[4, 5, 9])), (2, vec![17, 32]));
+    assert_eq!(filled(weighed(&[4])), (4, vec![1, 11, 17, 32]));
+}
+
+#[test]
+fn holes_that_wait_are_told_as_left() {
+    let mut report = RepairReport::default();
+    report.add(RepairStep::HolesUntried, 3);
+    assert!(report.is_nothing());
+}
+
 #[test]
 fn welding_is_asked_for() {
     let mut near = tetrahedron();
@@ -376,5 +473,19 @@ proptest! {
         prop_assert_eq!(closed.validate(), Ok(()));
         let left = findings(&closed, &ERRORS());
         prop_assert!(left.iter().all(excused), "with holes closed: {left:?}");
+    }
+
+    #[test]
+    fn what_meets_the_last_faces_is_found_as_among_all(soup in soup(), old in 0..40_usize) {
+        let first = old.min(soup.faces.len());
+        let found: BTreeSet<FaceId> = meeting::meeting(&soup, first).unwrap().into_iter().collect();
+        let kinds = Kinds::NONE.with(Kind::SelfIntersection).with(Kind::Contact);
+        let by_components = CheckOptions { kinds, objects: ObjectsBy::Components, ..CheckOptions::default() };
+        let pairs = findings(&soup, &by_components).into_iter().map(|found| match found {
+            Finding::SelfIntersection { faces, .. } | Finding::Contact { faces, .. } => faces,
+            _ => unreachable!(),
+        });
+        let all: BTreeSet<FaceId> = pairs.flatten().filter(|face| face.index() >= first).collect();
+        prop_assert_eq!(found, all);
     }
 }
