@@ -1,44 +1,115 @@
 //! Locks of what a scene shows, for the meshes that it is made of.
 
+use glam::{DMat3, DMat4};
 use meshlod_check::{LockOptions, LockReason, Locking, locks};
-use meshlod_io::{Scene, SceneMesh};
-use meshlod_mesh::{Lock, VertexId};
+use meshlod_io::{Placement, Scene, SceneMesh};
+use meshlod_mesh::{Lock, Mesh, VertexId, first_near};
 
 /// What must stay of each mesh of a scene, by where its meshes meet in the world.
 ///
-/// A mesh that several nodes show is as little free as in any of its places. Vertices of two meshes
-/// at one place are locked, since meshes move apart; those of one are tied. Meshes that no node shows
-/// are free.
+/// A mesh that several nodes show is as little free as in any of its places. Vertices of two nodes
+/// at one place are locked, since meshes move apart; so are those that rounding to 32 bits may have
+/// parted, within 2^-22 of the largest coordinate. Those of one mesh at one place are tied.
+///
+/// Meshes that no node shows are free, and so is what the world squeezes to a plane, a line or a
+/// point, as a scale of 0 does: there all of it meets itself.
 ///
 /// Cost: that of [`locks`] for [`Scene::flatten`].
 pub fn scene_locks(scene: &Scene, options: &LockOptions) -> Vec<Locking> {
     let vertices = |mesh: &SceneMesh| mesh.mesh.positions.len();
     let mut of_meshes: Vec<Locking> =
         scene.meshes.iter().map(|mesh| Locking::free(vertices(mesh))).collect();
-    let flat = locks(&scene.flatten(), options);
-    let mut home = Vec::with_capacity(flat.reasons.len());
-    for placement in scene.placements() {
-        let count = of_meshes[placement.mesh].reasons.len();
-        home.extend((0..count).map(|v| (placement.node, placement.mesh, VertexId::new(v))));
-    }
-    for (i, &(_, mesh, v)) in home.iter().enumerate() {
-        let own = &mut of_meshes[mesh];
-        own.hold(v, flat.locks.of_vertex[i], flat.reasons[i]);
+    let world = World::of(scene);
+    let flat = locks(&world.mesh, options);
+    for (i, home) in world.homes.iter().enumerate() {
+        of_meshes[home.mesh].hold(home.vertex, flat.locks.of_vertex[i], flat.reasons[i]);
     }
     for tie in &flat.locks.ties {
-        let (node, mesh, _) = home[tie[0].index()];
-        let members: Vec<_> = tie.iter().map(|v| home[v.index()]).collect();
-        let own = &mut of_meshes[mesh].locks.ties;
-        if members.iter().all(|member| member.0 == node) {
-            own.push(members.iter().map(|member| member.2).collect());
-            continue;
+        let members: Vec<Home> = tie.iter().map(|v| world.homes[v.index()]).collect();
+        let own = |home: &Home| scene.meshes[home.mesh].mesh.positions[home.vertex.index()];
+        // Rounding in the world may bring together what is apart in its mesh.
+        let is_one = |home: &Home| home.node == members[0].node && own(home) == own(&members[0]);
+        if members.iter().all(is_one) {
+            let tie = members.iter().map(|home| home.vertex).collect();
+            of_meshes[members[0].mesh].locks.ties.push(tie);
+        } else {
+            members.iter().for_each(|home| lock(&mut of_meshes, home));
         }
-        for (_, mesh, v) in members {
-            of_meshes[mesh].hold(v, Lock::Locked, Some(LockReason::SharedPlace));
-        }
+    }
+    if options.contacts {
+        world.near_across_nodes().iter().for_each(|home| lock(&mut of_meshes, home));
     }
     of_meshes.iter_mut().for_each(Locking::settle_ties);
     of_meshes
+}
+
+fn lock(of_meshes: &mut [Locking], home: &Home) {
+    of_meshes[home.mesh].hold(home.vertex, Lock::Locked, Some(LockReason::SharedPlace));
+}
+
+/// All that a scene shows, without what is squeezed.
+struct World {
+    mesh: Mesh,
+    /// Where each vertex comes from.
+    homes: Vec<Home>,
+}
+
+/// A vertex of a mesh where a node shows it.
+#[derive(Clone, Copy)]
+struct Home {
+    node: usize,
+    mesh: usize,
+    vertex: VertexId,
+}
+
+/// Two coordinates that were the same are one unit in the last place of 32 bits apart at most, half
+/// for the rounding of each: 2^-23 of the largest. In space that is up to 1.74 times as far.
+const ROUNDING: f64 = 1.0 / (1 << 22) as f64;
+
+impl World {
+    fn of(scene: &Scene) -> Self {
+        let mut this = Self { mesh: Mesh::default(), homes: Vec::new() };
+        for Placement { node, mesh, transform } in scene.placements() {
+            let transform = DMat4::from_cols_array_2d(&transform);
+            if squeezes(&DMat3::from_mat4(transform)) {
+                continue;
+            }
+            let own = &scene.meshes[mesh].mesh;
+            let first = this.homes.len();
+            let moved =
+                own.positions.iter().map(|&p| transform.transform_point3(p.into()).to_array());
+            this.mesh.positions.extend(moved);
+            let placed = |face: &[VertexId; 3]| face.map(|v| VertexId::new(first + v.index()));
+            this.mesh.faces.extend(own.faces.iter().map(placed));
+            let vertices = (0..own.positions.len()).map(VertexId::new);
+            this.homes.extend(vertices.map(|vertex| Home { node, mesh, vertex }));
+        }
+        this
+    }
+
+    /// The vertices that are as good as at one place with one of another node.
+    fn near_across_nodes(&self) -> Vec<Home> {
+        let largest =
+            self.mesh.positions.iter().flatten().fold(0.0, |most: f64, x| most.max(x.abs()));
+        let near = first_near(&self.mesh.positions, ROUNDING * largest);
+        let used = self.mesh.used_vertices();
+        let node = |v: usize| self.homes[v].node;
+        let mut first_node = vec![None; near.len()];
+        let mut across = vec![false; near.len()];
+        for (v, &place) in near.iter().enumerate().filter(|&(v, _)| used[v]) {
+            across[place as usize] |= *first_node[place as usize].get_or_insert(node(v)) != node(v);
+        }
+        let vertices = (0..near.len()).filter(|&v| used[v] && across[near[v] as usize]);
+        vertices.map(|v| self.homes[v]).collect()
+    }
+}
+
+/// Whether a transform takes volumes to nothing, but for rounding; how long its axes are does not matter.
+fn squeezes(linear: &DMat3) -> bool {
+    let axes = [linear.x_axis, linear.y_axis, linear.z_axis].map(|axis| axis.normalize_or_zero());
+    let [x, y, z] = axes;
+    let volume = x.dot(y.cross(z)).abs();
+    !linear.is_finite() || volume < 1e-12
 }
 
 #[cfg(test)]
@@ -98,5 +169,52 @@ mod tests {
         let held = scene_locks(&scene(vec![mesh], vec![at(5.0, 0)]), &CONTACTS);
         assert_eq!(held[0].locks.ties, [[1, 4], [2, 7]].map(|tie| tie.map(VertexId)));
         assert_eq!(held[0].locks.of_vertex, [Lock::Free; 8]);
+    }
+
+    #[test]
+    fn what_the_world_squeezes_is_free() {
+        let ball = || scene(vec![sample::sphere(500)], vec![at(0.0, 0), at(9.0, 0)]);
+        for scale in [[1.0, 1.0, 0.0], [0.0, 0.0, 0.0], [1e-30, 0.0, 1.0]] {
+            let mut squeezed = ball();
+            let turn = glam::DQuat::from_xyzw(0.1, 0.7, -0.3, 0.5).normalize();
+            let flat = DMat4::from_scale(scale.into()) * DMat4::from_quat(turn);
+            squeezed.nodes[1].transform = flat.to_cols_array_2d();
+            assert_eq!(scene_locks(&squeezed, &CONTACTS), scene_locks(&ball(), &CONTACTS));
+        }
+        // What is only thin is there.
+        let mut thin = scene(vec![sample::sphere(500)], vec![at(0.0, 0), at(0.5, 0)]);
+        thin.nodes[1].transform[0][0] = 1e-6;
+        thin.nodes[1].transform[1][1] = 1e-6;
+        assert!(scene_locks(&thin, &CONTACTS)[0].locks.of_vertex.contains(&Lock::Locked));
+    }
+
+    #[test]
+    fn borders_that_rounding_has_parted_are_locked() {
+        let held = |gap: f64| {
+            let mut right = square();
+            right.positions.iter_mut().for_each(|p| p[0] += gap);
+            let far = [100.0, 101.0];
+            let held = scene_locks(
+                &scene(vec![square(), right], vec![at(far[0], 0), at(far[1], 1)]),
+                &CONTACTS,
+            );
+            held.iter().map(|of| of.count(LockReason::SharedPlace)).collect::<Vec<_>>()
+        };
+        let ulp = f64::from(f32::EPSILON) * 64.0;
+        assert_eq!(held(ulp), [2, 2]);
+        assert_eq!(held(8.0 * ulp), [0, 0]);
+    }
+
+    #[test]
+    fn what_only_the_world_brings_together_is_locked() {
+        // Far away the two sides of the gap are one number.
+        let mut mesh = square();
+        let mut other = square();
+        other.positions.iter_mut().for_each(|p| p[0] += 1.0 + 1e-9);
+        mesh.faces.extend(other.faces.iter().map(|face| face.map(|v| VertexId(v.0 + 4))));
+        mesh.positions.extend(other.positions);
+        let held = &scene_locks(&scene(vec![mesh], vec![at(1e9, 0)]), &CONTACTS)[0];
+        assert!(held.locks.ties.is_empty());
+        assert_eq!(held.count(LockReason::SharedPlace), 4);
     }
 }
