@@ -5,7 +5,7 @@ use std::io::{self, BufWriter, Read, Write};
 use std::path::{Path, PathBuf};
 
 use meshlod::io::{gltf, obj, off, ply, read_bytes, smf, stl, write_file};
-use meshlod::{Format, Scene, WriteOptions};
+use meshlod::{Format, ReadOptions, Scene, WriteOptions};
 
 use crate::args::{Reading, Writing};
 use crate::failure::Failure;
@@ -144,6 +144,24 @@ pub fn write(
     let mut out = BufWriter::new(io::stdout().lock());
     write_pipe(format, scene, writing.options(), &mut out)?;
     out.flush().map_err(|error| Failure::at(path, error))
+}
+
+/// What anybody will read of a file that was just written with [`write`].
+pub fn read_again(
+    path: &Path,
+    scene: &Scene,
+    writing: &Writing,
+    session: &Session,
+) -> Result<Scene, Failure> {
+    session.progress.stage(&format!("reading {} again", name(path)));
+    let options = ReadOptions::default();
+    if !is_pipe(path) {
+        return Ok(meshlod::read(path, &options)?);
+    }
+    let format = pipe_format(session)?;
+    let mut bytes = Vec::new();
+    write_pipe(format, scene, writing.options(), &mut bytes)?;
+    read_bytes(&bytes, format, &mut |_| None, &options).map_err(|error| Failure::at(path, error))
 }
 
 fn write_pipe(

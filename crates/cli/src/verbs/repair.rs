@@ -1,10 +1,13 @@
 //! `repair`: what can be mended safely.
 
+use std::ops::ControlFlow;
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
 use clap::Args;
-use meshlod::check::{HoleLimits, RepairOptions, RepairReport, RepairStep};
+use meshlod::check::{
+    CheckOptions, HoleLimits, Kinds, RepairOptions, RepairReport, RepairStep, Summary, check,
+};
 use meshlod::{Format, Scene, repair_scene};
 use serde_json::{Map, Value, json};
 
@@ -13,7 +16,7 @@ use crate::answer::Answer;
 use crate::args::{Reading, Writing};
 use crate::failure::Failure;
 use crate::files;
-use crate::numbers::{count, faces, value};
+use crate::numbers::{count, faces, plural, value};
 use crate::session::Session;
 use crate::table::aligned;
 
@@ -21,7 +24,7 @@ use crate::table::aligned;
 ///
 /// Steps, in this order: drop what cannot be; --weld; drop doubles; drop faces without area; split what
 /// is not manifold; turn faces until they agree; stitch borders; --holes; turn closed shells outwards;
-/// drop unused vertices.
+/// drop unused vertices. Then OUT is read again, and the errors that check finds in it are told.
 #[derive(Args)]
 pub struct Repair {
     /// File to read, or -
@@ -45,7 +48,8 @@ struct Steps {
     #[arg(long, value_name = "EPS", default_value_t = 0.0, value_parser = amounts::length,
         allow_negative_numbers = true)]
     stitch: f64,
-    /// Close holes of at most N edges, 256 at most
+    /// Close holes of at most N edges, 256 at most; where there are too many large ones, the
+    /// smallest first, and a second run goes on
     #[arg(long, value_name = "N", value_parser = amounts::whole, allow_negative_numbers = true)]
     holes: Option<usize>,
     /// Close holes of at most this length around, in model units
@@ -105,24 +109,36 @@ impl Repair {
         // Rounding could undo what was mended.
         self.writing = self.writing.lossless(&scene);
         files::write(&self.output, &scene, &self.writing, session)?;
-        self.warn(format, &report, session);
-        let done = Done { report, before, after, time };
+        let left = errors(files::read_again(&self.output, &scene, &self.writing, session)?);
+        let done = Done { report, left, before, after, time };
+        self.warn(format, &done, session);
         Ok(Answer {
             file_on_stdout: files::is_pipe(&self.output),
             ..Answer::new(self.json(&done), self.text(&done))
         })
     }
 
-    /// Says what is left, and what the format will not keep.
-    fn warn(&self, format: Format, report: &RepairReport, session: &Session) {
-        let shells = report.count(RepairStep::NotOrientable);
+    /// Says what is left.
+    fn warn(&self, format: Format, done: &Done, session: &Session) {
+        let shells = done.report.count(RepairStep::NotOrientable);
         if shells > 0 {
             let reason = format!("shells that have one side only, left as they are: {shells}");
             session.warn(Failure::at(&self.input, reason));
         }
-        let welds = matches!(format, Format::Glb | Format::Gltf | Format::Stl);
-        if welds && report.count(RepairStep::SplitVertices) > 0 {
-            let reason = "what was split is one again when this format is read, but for --no-weld";
+        let untried = done.report.count(RepairStep::HolesUntried);
+        if untried > 0 {
+            let reason = format!("too many large holes for one run; left for the next: {untried}");
+            session.warn(Failure::at(&self.input, reason));
+        }
+        if done.left.total() > 0 {
+            let joins = matches!(format, Format::Glb | Format::Gltf | Format::Stl)
+                && done.report.count(RepairStep::SplitVertices) > 0;
+            let how = match joins {
+                true => "; what was split is one again when this format is read, but for --no-weld",
+                false => "",
+            };
+            let (errors, s) = (count(done.left.total()), plural(done.left.total()));
+            let reason = format!("read again, it has {errors} error{s}{how}");
             session.warn(Failure::at(&self.output, reason));
         }
     }
@@ -131,6 +147,7 @@ impl Repair {
         let all = RepairStep::ALL.into_iter();
         let steps: Map<String, Value> =
             all.map(|step| (step.name().into(), done.report.count(step).into())).collect();
+        let left = done.left.found().map(|(kind, count)| (kind.name().into(), count.into()));
         json!({
             "file": files::name(&self.output),
             "changed": !done.report.is_nothing(),
@@ -139,32 +156,56 @@ impl Repair {
             "output_faces": done.after.faces,
             "output_vertices": done.after.vertices,
             "steps": steps,
+            "errors_left": done.left.total(),
+            "errors_left_by_kind": Value::Object(left.collect()),
             "repair_seconds": done.time.as_secs_f64(),
         })
     }
 
     fn text(&self, done: &Done) -> String {
-        let Done { report, before, after, time } = done;
+        let Done { report, left, before, after, time } = done;
         let steps: Vec<[String; 2]> = report
             .told()
             .map(|(step, number)| [format!("  {}", step.name()), count(number)])
             .collect();
-        let nothing = if report.is_nothing() { "  nothing to mend\n" } else { "" };
+        let nothing = match (report.is_nothing(), left.total()) {
+            (false, _) => "",
+            (true, 0) => "  nothing to mend\n",
+            (true, _) => "  nothing mended\n",
+        };
+        let left: Vec<[String; 2]> = left
+            .found()
+            .map(|(kind, number)| [format!("  left: {}", kind.name()), count(number)])
+            .collect();
         format!(
-            "{}: {} to {}, {} vertices to {}\n{nothing}{}repair_seconds: {}\n",
+            "{}: {} to {}, {} vertices to {}\n{nothing}{}{}repair_seconds: {}\n",
             files::name(&self.output),
             faces(before.faces),
             count(after.faces),
             count(before.vertices),
             count(after.vertices),
             aligned(&steps),
+            aligned(&left),
             value(time.as_secs_f64()),
         )
     }
 }
 
+/// The errors of a scene.
+fn errors(scene: Scene) -> Summary {
+    let options = CheckOptions { kinds: Kinds::errors(), ..CheckOptions::default() };
+    let mut errors = Summary::default();
+    let _ = check(&scene.into_mesh(), &options, &mut |finding| {
+        errors.add(finding);
+        ControlFlow::Continue(())
+    });
+    errors
+}
+
 struct Done {
     report: RepairReport,
+    /// The errors in what was written.
+    left: Summary,
     before: Size,
     after: Size,
     time: Duration,

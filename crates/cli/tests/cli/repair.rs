@@ -46,6 +46,42 @@ fn holes_are_closed_when_asked_for() {
     assert!(run.run(&["repair", "out.obj", "again.obj"]).text().contains("nothing to mend"));
 }
 
+/// Two tetrahedra that share an edge.
+const HINGE: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nv 0 -1 0\nv 0 0 -1\n\
+    f 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\nf 1 5 2\nf 1 2 6\nf 1 6 5\nf 2 5 6\n";
+
+#[test]
+fn errors_that_come_back_with_the_format_are_told() {
+    let run = Run::new();
+    std::fs::write(run.path("in.obj"), HINGE).unwrap();
+    let obj = run.json(&["repair", "in.obj", "out.obj"]);
+    assert_eq!((&obj["steps"]["split-edges"], &obj["errors_left"]), (&1.into(), &0.into()));
+    for out in ["out.glb", "out.gltf", "out.stl"] {
+        let report = run.json(&["repair", "in.obj", out]);
+        let left = &report["errors_left_by_kind"];
+        assert_eq!(left, &serde_json::json!({ "non-manifold-edge": 1 }), "{out}");
+        let check = run.run(&["check", out, "--json"]);
+        assert_eq!((&check.json()["errors"], check.code), (&report["errors_left"], 1), "{out}");
+        let done = run.run(&["repair", "in.obj", out]);
+        assert!(done.text().contains("  left: non-manifold-edge  1\n"), "{done:?}");
+        assert!(done.err.contains("it has 1 error; what was split is one again"), "{done:?}");
+        assert_eq!(run.run(&["check", out, "--no-weld"]).code, 0, "{out}");
+    }
+    let piped = run.run(&["repair", "in.obj", "-", "--format", "glb"]);
+    assert!(piped.err.contains("  left: non-manifold-edge  1\n"), "{piped:?}");
+}
+
+#[test]
+fn what_is_left_is_told_though_nothing_was_done() {
+    let run = Run::new();
+    std::fs::write(run.path("in.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 2 0 0\nf 1 2 3\nf 1 2 4\n")
+        .unwrap();
+    let steps = ["--no-degenerate", "--no-orient", "--no-split", "--no-stitch"];
+    let done = run.run(&[&["repair", "in.obj", "out.obj"][..], &steps].concat());
+    assert!(done.text().contains("  nothing mended\n  left: degenerate-face"), "{done:?}");
+    assert_eq!(done.code, 0);
+}
+
 #[test]
 fn steps_can_be_left_out() {
     let run = Run::new();
@@ -102,7 +138,10 @@ fn a_scene_stays_a_scene() {
 fn a_scan_that_is_not_manifold_comes_apart_where_it_must() {
     let Some(squirrel) = shared_mesh("squirrel-20k.obj") else { return };
     let run = Run::new();
-    let steps = run.json(&["repair", squirrel.to_str().unwrap(), "out.ply"])["steps"].clone();
+    let squirrel = squirrel.to_str().unwrap();
+    assert_eq!(run.run(&["check", squirrel]).code, 1);
+    let steps = run.json(&["repair", squirrel, "out.ply"])["steps"].clone();
+    assert_eq!(run.run(&["check", "out.ply"]).code, 0);
     assert_eq!((&steps["split-edges"], &steps["split-vertices"]), (&4.into(), &8.into()));
     let info = run.json(&["info", "out.ply"]);
     assert_eq!((&info["closed"], &info["pinched_vertices"]), (&true.into(), &0.into()));
