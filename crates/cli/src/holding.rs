@@ -28,9 +28,9 @@ pub struct Holding {
     locks: Option<PathBuf>,
     /// Connected pieces at least this large are never removed, in model units or 5% of the diagonal;
     /// smaller ones go as a whole where that costs least. Without a size, as without the option:
-    /// none goes
+    /// none goes. The size of what goes counts as its error: with --error none above that goes
     #[arg(long, value_name = "SIZE", num_args = 0..=1, default_missing_value = "0",
-        value_parser = amounts::bound, allow_negative_numbers = true)]
+        require_equals = true, value_parser = amounts::bound, allow_negative_numbers = true)]
     keep_objects: Option<Bound>,
 }
 

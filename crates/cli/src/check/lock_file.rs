@@ -1,6 +1,6 @@
 //! Locks as a file: flags of vertices in the order of the input file, and ties.
 //!
-//! The form is told in docs/notes/check.md.
+//! The form is told in docs/notes/locks.md.
 
 use std::path::Path;
 
@@ -48,34 +48,66 @@ impl Rows {
             }
             (Weld::Exact | Weld::Off, _) => None,
         };
-        let meshes = || scene.meshes.iter().map(|mesh| &mesh.mesh.positions[..]);
         let of_meshes = match &torn {
             Some(torn) => {
-                let rows = torn.meshes.iter().map(|mesh| &mesh.mesh.positions[..]);
-                rows.zip(meshes()).map(|(rows, welded)| at_places(rows, welded)).collect()
+                let rows = of_scene(torn, scene);
+                rows.ok_or_else(|| Failure::at(path, "has changed while it was read"))?
             }
-            None => meshes().map(|own| (0..own.len()).map(VertexId::new).collect()).collect(),
+            None => {
+                let own = scene.meshes.iter().map(|mesh| mesh.mesh.positions.len());
+                own.map(|count| (0..count).map(VertexId::new).collect()).collect()
+            }
         };
         Ok(Self { of_meshes, torn })
     }
+
+    /// A [`mark`] of the rows of each mesh.
+    fn marks(&self, scene: &Scene) -> Vec<String> {
+        let meshes = &self.torn.as_ref().unwrap_or(scene).meshes;
+        meshes.iter().map(|mesh| mark(&mesh.mesh.positions)).collect()
+    }
+}
+
+/// For each mesh the vertex at the place of each row of its torn twin; `None` where one has none.
+fn of_scene(torn: &Scene, scene: &Scene) -> Option<Vec<Vec<VertexId>>> {
+    let positions = |mesh: usize| Some(&scene.meshes.get(mesh)?.mesh.positions[..]);
+    let meshes = torn.meshes.iter().enumerate();
+    let rows = meshes.map(|(i, rows)| at_places(&rows.mesh.positions, positions(i)?));
+    rows.collect::<Option<Vec<_>>>().filter(|rows| rows.len() == scene.meshes.len())
 }
 
 /// The vertex at the place of each row.
-fn at_places(rows: &[[f64; 3]], welded: &[[f64; 3]]) -> Vec<VertexId> {
-    let bits = |p: &[f64; 3]| p.map(|x| (x + 0.0).to_bits());
+fn at_places(rows: &[[f64; 3]], welded: &[[f64; 3]]) -> Option<Vec<VertexId>> {
     let places: std::collections::HashMap<_, _> =
         welded.iter().enumerate().map(|(v, p)| (bits(p), VertexId::new(v))).collect();
-    rows.iter().filter_map(|row| places.get(&bits(row)).copied()).collect()
+    rows.iter().map(|row| places.get(&bits(row)).copied()).collect()
+}
+
+/// What is equal where positions are at one place: -0 is 0.
+fn bits(position: &[f64; 3]) -> [u64; 3] {
+    position.map(|x| (x + 0.0).to_bits())
+}
+
+/// A mark of positions in their order, by which a file of locks knows its mesh: the 64-bit hash
+/// FNV-1a of the coordinates' bytes, least first.
+fn mark(positions: &[[f64; 3]]) -> String {
+    let bytes = positions.iter().flat_map(bits).flat_map(u64::to_le_bytes);
+    let hash = bytes.fold(0xcbf2_9ce4_8422_2325_u64, |hash, byte| {
+        (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3)
+    });
+    format!("{hash:016x}")
 }
 
 /// The locks of all meshes of a scene as a file.
 pub fn to_json(path: &Path, scene: &Scene, rows: &Rows, lockings: &[Locking]) -> Value {
     let file = path.file_name().map(|name| name.to_string_lossy().into_owned());
     let source = rows.torn.as_ref().unwrap_or(scene).source.as_ref();
+    let marks = rows.marks(scene);
     let meshes = scene.meshes.iter().zip(&rows.of_meshes).zip(lockings).enumerate();
     let meshes = meshes.map(|(index, ((mesh, rows), locking))| {
         let mut json = mesh_json(rows, locking);
         json["name"] = mesh.name.clone().into();
+        json["positions"] = marks[index].clone().into();
         if let Some(source) = source {
             let primitive = |rows: &meshlod::io::gltf::PrimitiveRows| {
                 let (first, count) = (rows.vertices.start, rows.vertices.len());
@@ -146,46 +178,79 @@ pub fn read(path: &Path, scene: &Scene, rows: &Rows) -> Result<Vec<Locks>, Failu
         let (found, expected) = (meshes.len(), scene.meshes.len());
         return Err(wrong(format!("has locks of {found} meshes where {expected} are needed")));
     }
-    let locks = meshes.iter().zip(&rows.of_meshes).zip(&scene.meshes).enumerate();
-    let locks = locks.map(|(i, ((json, rows), mesh))| {
-        mesh_locks(json, rows, mesh.mesh.positions.len())
-            .map_err(|reason| wrong(format!("mesh {i}: {reason}")))
+    let marks = rows.marks(scene);
+    let locks = meshes.iter().zip(&rows.of_meshes).zip(&scene.meshes).zip(&marks).enumerate();
+    let locks = locks.map(|(i, (((json, rows), mesh), mark))| {
+        let twin = Twin { rows, positions: &mesh.mesh.positions, mark };
+        twin.locks(json).map_err(|reason| wrong(format!("mesh {i}: {reason}")))
     });
     locks.collect()
 }
 
-fn mesh_locks(json: &Value, rows: &[VertexId], vertices: usize) -> Result<Locks, String> {
-    let flags = json["flags"].as_array().ok_or("has no flags")?;
-    if flags.len() != rows.len() {
-        let (found, expected) = (flags.len(), rows.len());
-        return Err(format!("has flags of {found} vertices where the input has {expected}"));
+/// The mesh that locks are read for.
+struct Twin<'a> {
+    rows: &'a [VertexId],
+    positions: &'a [[f64; 3]],
+    mark: &'a str,
+}
+
+impl Twin<'_> {
+    fn locks(&self, json: &Value) -> Result<Locks, String> {
+        let ties = match json.get("ties") {
+            None => &[],
+            Some(ties) => ties.as_array().ok_or("\"ties\" is no list")?.as_slice(),
+        };
+        let of_vertex = self.flags(json)?;
+        match json.get("positions") {
+            // Those who write flags of their own need no mark.
+            None => (),
+            Some(mark) if *mark == self.mark => (),
+            Some(_) => return Err("is of vertices at other places; make the locks anew".into()),
+        }
+        let ties = ties.iter().enumerate().map(|(i, tie)| self.tie(i, tie));
+        let ties: Vec<Vec<VertexId>> = ties.collect::<Result<_, _>>()?;
+        // Rows that are one vertex need no tie.
+        let ties = ties.into_iter().filter(|tie| tie.len() > 1).collect();
+        Ok(Locks { of_vertex, ties })
     }
-    let mut of_vertex = vec![Lock::Free; vertices];
-    for (row, (flag, v)) in flags.iter().zip(rows).enumerate() {
-        let known = FLAGS.iter().find(|(_, known, _)| flag.as_u64() == Some((*known).into()));
-        let &(lock, ..) =
-            known.ok_or_else(|| format!("flag {row} is {flag}; 0, 1 and 2 are known"))?;
-        of_vertex[v.index()] = lock.max(of_vertex[v.index()]);
+
+    fn flags(&self, json: &Value) -> Result<Vec<Lock>, String> {
+        let flags = json["flags"].as_array().ok_or("has no flags")?;
+        if flags.len() != self.rows.len() {
+            let (found, expected) = (flags.len(), self.rows.len());
+            return Err(format!("has flags of {found} vertices where the input has {expected}"));
+        }
+        let mut of_vertex = vec![Lock::Free; self.positions.len()];
+        for (row, (flag, v)) in flags.iter().zip(self.rows).enumerate() {
+            let known = FLAGS.iter().find(|(_, known, _)| flag.as_u64() == Some((*known).into()));
+            let &(lock, ..) =
+                known.ok_or_else(|| format!("flag {row} is {flag}; 0, 1 and 2 are known"))?;
+            of_vertex[v.index()] = lock.max(of_vertex[v.index()]);
+        }
+        Ok(of_vertex)
     }
-    let ties = match json.get("ties") {
-        None => &[],
-        Some(ties) => ties.as_array().ok_or("\"ties\" is no list")?.as_slice(),
-    };
-    let ties = ties.iter().enumerate();
-    let tie = |(i, tie): (usize, &Value)| {
+
+    /// The vertices of a tie, each once.
+    fn tie(&self, i: usize, tie: &Value) -> Result<Vec<VertexId>, String> {
         let members = tie.as_array().ok_or_else(|| format!("tie {i} is no list"))?;
+        if members.len() < 2 {
+            return Err(format!("tie {i} is of {} vertices; two are the least", members.len()));
+        }
         let vertex = |row: &Value| {
             let index = row.as_u64().and_then(|row| usize::try_from(row).ok());
-            index.and_then(|index| rows.get(index).copied())
+            let vertex = index.and_then(|index| self.rows.get(index).copied());
+            vertex.ok_or_else(|| format!("tie {i} names {row}, which is not there"))
         };
-        let known =
-            |row| vertex(row).ok_or_else(|| format!("tie {i} names {row}, which is not there"));
-        let mut tie: Vec<VertexId> = members.iter().map(known).collect::<Result<_, _>>()?;
+        let mut tie: Vec<VertexId> = members.iter().map(vertex).collect::<Result<_, _>>()?;
+        let place = |v: VertexId| bits(&self.positions[v.index()]);
+        if let Some(apart) = tie.iter().position(|&v| place(v) != place(tie[0])) {
+            let [first, apart] = [&members[0], &members[apart]];
+            return Err(format!(
+                "tie {i} is of vertices at one place; {first} and {apart} are apart"
+            ));
+        }
         tie.sort_unstable();
         tie.dedup();
         Ok(tie)
-    };
-    let ties: Vec<Vec<VertexId>> = ties.map(tie).collect::<Result<_, String>>()?;
-    let ties = ties.into_iter().filter(|tie| tie.len() > 1).collect();
-    Ok(Locks { of_vertex, ties })
+    }
 }

@@ -37,7 +37,7 @@ pub struct Check {
     /// What finds the faces that may meet; the findings are the same
     #[arg(long, value_name = "NET", default_value = "tree")]
     net: Search,
-    /// Do not look for faces that meet
+    /// Do not look for faces that meet; --locks has to
     #[arg(long, conflicts_with = "locks")]
     no_intersections: bool,
     /// Write what must stay where components meet: for simplify --locks, and for other programs
@@ -109,7 +109,10 @@ impl Check {
                 return Err(Failure::usage("--locks: name two files; no pipe will do"));
             }
             files::check_place(path)?;
-            files::check_apart(path, &[&self.input])?;
+            let page = self.out.as_ref().map(|folder| folder.join("index.html"));
+            let others = [Some(&self.input), self.out.as_ref(), page.as_ref()];
+            let others: Vec<&Path> = others.into_iter().flatten().map(PathBuf::as_path).collect();
+            files::check_apart(path, &others)?;
         }
         self.out.as_deref().map_or(Ok(()), files::make_folder)
     }

@@ -1,5 +1,7 @@
 //! What a check says, its exit codes, its page, its locks.
 
+use std::path::Path;
+
 use meshlod_fixtures::{shared_broken, shared_mesh};
 use serde_json::{Value, json};
 
@@ -173,6 +175,8 @@ fn locks_need_files_and_their_own_vertices() {
         &["-", "--format", "obj", "--locks", "l.json"],
         &["in.obj", "--lock-boundary"],
         &["in.obj", "--locks", "l.json", "--no-intersections"],
+        &["in.obj", "--locks", "one", "--out", "one"],
+        &["in.obj", "--locks", "index.html", "--out", "."],
     ] {
         let done = check(&run, arguments);
         assert_eq!((done.code, &done.out[..]), (2, &b""[..]), "{arguments:?}: {done:?}");
@@ -209,7 +213,13 @@ fn locks_of_another_mesh_are_refused() {
     write(&run, "new.json", &file(2, ""));
     write(&run, "none.json", &file(1, ""));
     write(&run, "flag.json", &file(1, "{\"flags\":[0,0,7,0,0,0,0,0]}"));
-    write(&run, "tie.json", &file(1, "{\"flags\":[0,0,0,0,0,0,0,0],\"ties\":[[1,99]]}"));
+    let ties = |ties: &str| file(1, &format!("{{\"flags\":[0,0,0,0,0,0,0,0],\"ties\":[{ties}]}}"));
+    write(&run, "tie.json", &ties("[1,99]"));
+    write(&run, "one.json", &ties("[1,1],[99]"));
+    write(&run, "torn.json", &ties("[2,2],[3,3,5]"));
+    // As many vertices at other places.
+    write(&run, "moved.obj", &CROSSING.replace("v 4 0 0", "v 4 0 1"));
+    run.json(&["check", "moved.obj", "--locks", "moved.json"]);
     for (name, reason) in [
         ("ball.json", "vertices where the input has 8"),
         ("list.json", "is no file of locks"),
@@ -218,12 +228,44 @@ fn locks_of_another_mesh_are_refused() {
         ("none.json", "has locks of 0 meshes where 1 are needed"),
         ("flag.json", "flag 2 is 7"),
         ("tie.json", "tie 0 names 99"),
+        ("one.json", "tie 1 is of 1 vertices"),
+        ("torn.json", "tie 1 is of vertices at one place; 3 and 5 are apart"),
+        ("moved.json", "mesh 0: is of vertices at other places"),
     ] {
         let arguments = ["simplify", "in.obj", "out.obj", "--ratio", "50%", "--locks", name];
         let done = run.run(&arguments);
         assert!(done.code == 1 && done.only_line().contains(reason), "{name}: {done:?}");
         assert!(!run.path("out.obj").exists());
     }
+}
+
+#[test]
+fn locks_without_a_mark_of_positions_are_taken() {
+    let run = Run::new();
+    write(&run, "in.obj", CROSSING);
+    let flags =
+        "{\"format\":\"meshlod-locks\",\"version\":1,\"meshes\":[{\"flags\":[0,1,0,0,0,0,0,0]}]}";
+    write(&run, "own.json", flags);
+    let report =
+        run.json(&["simplify", "in.obj", "out.obj", "--ratio", "90%", "--locks", "own.json"]);
+    assert_eq!(report["held"]["locked"], 1);
+}
+
+#[test]
+fn a_real_model_is_checked_and_held_together() {
+    let Some(fish) = shared_mesh("fish-clown.obj") else {
+        println!("skipped: the fish is not there");
+        return;
+    };
+    let run = Run::new();
+    let fish = fish.to_str().unwrap();
+    let found = run.json(&["check", fish]);
+    assert_eq!((&found["components"], &found["errors"]), (&json!(10), &json!(0)));
+    // PLY would tear the seams.
+    let held = run.json(&["simplify", fish, "f.obj", "--ratio", "10%", "--lock-contacts"]);
+    assert!(held["held"]["locked"].as_u64() > Some(0), "{held}");
+    let info = run.json(&["info", "f.obj"]);
+    assert_eq!((&info["closed"], &info["components"]), (&json!(true), &json!(10)));
 }
 
 #[test]
@@ -274,5 +316,20 @@ fn every_file_is_checked_or_named() {
         let json = done.json();
         let failed = json["errors"].as_u64() > Some(0);
         assert_eq!((done.code, &done.err[..]), (failed.into(), ""), "{}", file.display());
+    }
+}
+
+#[test]
+fn every_shared_file_is_0_or_1() {
+    let Some(folder) =
+        shared_mesh("bunny.ply").and_then(|bunny| bunny.parent().map(Path::to_owned))
+    else {
+        return;
+    };
+    let run = Run::new();
+    let files = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
+    for file in files.filter(|path| path.is_file()) {
+        let done = check(&run, &[file.to_str().unwrap(), "--json"]);
+        assert!(matches!(done.code, 0 | 1), "{}: {done:?}", file.display());
     }
 }

@@ -284,14 +284,31 @@ fn small_objects_go_where_that_is_allowed() {
     };
     assert_eq!(vanished("apart.obj", &[]), 0.0);
     assert_eq!(vanished("apart.obj", &["--keep-objects"]), 0.0);
-    assert_eq!(vanished("apart.obj", &["--keep-objects", "1.7"]), 0.0);
-    assert_eq!(vanished("apart.obj", &["--keep-objects", "1.8"]), 1.0);
-    assert_eq!(vanished("apart.obj", &["--keep-objects", "50%"]), 1.0);
+    assert_eq!(vanished("apart.obj", &["--keep-objects=1.7"]), 0.0);
+    assert_eq!(vanished("apart.obj", &["--keep-objects=1.8"]), 1.0);
+    assert_eq!(vanished("apart.obj", &["--keep-objects=50%"]), 1.0);
     // What touches is one piece, and larger than that.
-    assert_eq!(vanished("boxes.obj", &["--keep-objects", "7"]), 0.0);
+    assert_eq!(vanished("boxes.obj", &["--keep-objects=7"]), 0.0);
+    // An error bounds what goes, beside the size.
+    let within = |error: &str| {
+        let options = ["simplify", "apart.obj", "a.obj", "--error", error, "--keep-objects=50%"];
+        let report = run.json(&options);
+        (number(&report["vanished"]), number(&report["error_estimate"]) <= error.parse().unwrap())
+    };
+    assert_eq!((within("1.7"), within("1.8")), ((0.0, true), (1.0, true)));
     for bad in ["-1", "nan", "-3%", "big"] {
-        let done =
-            run.run(&["simplify", "boxes.obj", "a.obj", "--faces", "4", "--keep-objects", bad]);
+        let size = format!("--keep-objects={bad}");
+        let done = run.run(&["simplify", "boxes.obj", "a.obj", "--faces", "4", &size]);
         assert_eq!(done.code, 2, "{bad}: {done:?}");
     }
+}
+
+#[test]
+fn a_size_that_may_be_left_out_takes_no_file_for_it() {
+    let run = Run::new();
+    run.sample("torus", 200, "in.ply");
+    let before = ["simplify", "--keep-objects", "in.ply", "out.ply", "--faces", "100"];
+    assert_eq!(run.json(&before)["vanished"], 0);
+    let apart = ["simplify", "in.ply", "out.ply", "--faces", "100", "--keep-objects", "5%"];
+    assert_eq!(run.run(&apart).code, 2);
 }
