@@ -1,5 +1,7 @@
 //! Locks of what a scene shows, for the meshes that it is made of.
 
+use std::collections::BTreeMap;
+
 use glam::{DMat3, DMat4};
 use meshlod_check::{LockOptions, LockReason, Locking, locks};
 use meshlod_io::{Placement, Scene, SceneMesh};
@@ -9,10 +11,10 @@ use meshlod_mesh::{Lock, Mesh, VertexId, first_near};
 ///
 /// A mesh that several nodes show is as little free as in any of its places. Vertices of two nodes
 /// at one place are locked, since meshes move apart; so are those that rounding to 32 bits may have
-/// parted, within 2^-22 of the largest coordinate. Those of one mesh at one place are tied.
+/// parted, within 2^-22 of their largest coordinate. Those of one mesh at one place are tied.
 ///
 /// Meshes that no node shows are free, and so is what the world squeezes to a plane, a line or a
-/// point, as a scale of 0 does: there all of it meets itself.
+/// point, as a scale of 0 does: there all of it meets itself. So is what it takes beyond all numbers.
 ///
 /// Cost: that of [`locks`] for [`Scene::flatten`].
 pub fn scene_locks(scene: &Scene, options: &LockOptions) -> Vec<Locking> {
@@ -76,8 +78,11 @@ impl World {
             }
             let own = &scene.meshes[mesh].mesh;
             let first = this.homes.len();
-            let moved =
-                own.positions.iter().map(|&p| transform.transform_point3(p.into()).to_array());
+            let moved = own.positions.iter().map(|&p| transform.transform_point3(p.into()));
+            let moved: Vec<[f64; 3]> = moved.map(Into::into).collect();
+            if !moved.iter().flatten().all(|x| x.is_finite()) {
+                continue;
+            }
             this.mesh.positions.extend(moved);
             let placed = |face: &[VertexId; 3]| face.map(|v| VertexId::new(first + v.index()));
             this.mesh.faces.extend(own.faces.iter().map(placed));
@@ -89,18 +94,41 @@ impl World {
 
     /// The vertices that are as good as at one place with one of another node.
     fn near_across_nodes(&self) -> Vec<Home> {
-        let largest =
-            self.mesh.positions.iter().flatten().fold(0.0, |most: f64, x| most.max(x.abs()));
-        let near = first_near(&self.mesh.positions, ROUNDING * largest);
-        let used = self.mesh.used_vertices();
-        let node = |v: usize| self.homes[v].node;
-        let mut first_node = vec![None; near.len()];
-        let mut across = vec![false; near.len()];
-        for (v, &place) in near.iter().enumerate().filter(|&(v, _)| used[v]) {
-            across[place as usize] |= *first_node[place as usize].get_or_insert(node(v)) != node(v);
+        let mut across = Vec::new();
+        let ends = [self.homes.first(), self.homes.last()].map(|home| home.map(|home| home.node));
+        if ends[0] == ends[1] {
+            return across;
         }
-        let vertices = (0..near.len()).filter(|&v| used[v] && across[near[v] as usize]);
-        vertices.map(|v| self.homes[v]).collect()
+        for (octave, homes) in self.by_octave() {
+            let at = |&v: &usize| self.mesh.positions[v];
+            let points: Vec<[f64; 3]> = homes.iter().map(at).collect();
+            let near = first_near(&points, ROUNDING * f64::from_bits((octave + 1) << 52));
+            let mut nodes: Vec<Option<usize>> = vec![None; homes.len()];
+            let mut is_across = vec![false; homes.len()];
+            for (&v, &place) in homes.iter().zip(&near) {
+                let node = self.homes[v].node;
+                is_across[place as usize] |= *nodes[place as usize].get_or_insert(node) != node;
+            }
+            let held = homes.iter().zip(&near).filter(|(_, place)| is_across[**place as usize]);
+            across.extend(held.map(|(&v, _)| self.homes[v]));
+        }
+        across
+    }
+
+    /// The vertices that faces use, by the exponent of the largest coordinate: rounding is as fine as
+    /// that. What is only just in one octave is in the one below too.
+    fn by_octave(&self) -> BTreeMap<u64, Vec<usize>> {
+        let used = self.mesh.used_vertices();
+        let mut octaves: BTreeMap<u64, Vec<usize>> = BTreeMap::new();
+        for (v, position) in self.mesh.positions.iter().enumerate().filter(|&(v, _)| used[v]) {
+            let size = position.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
+            let [own, below] = [size, size * (1.0 - 2.0 * ROUNDING)].map(|x| x.to_bits() >> 52);
+            octaves.entry(own).or_default().push(v);
+            if below != own {
+                octaves.entry(below).or_default().push(v);
+            }
+        }
+        octaves
     }
 }
 
@@ -190,19 +218,32 @@ mod tests {
 
     #[test]
     fn borders_that_rounding_has_parted_are_locked() {
-        let held = |gap: f64| {
+        let held = |x: f64, gap: f64| {
             let mut right = square();
             right.positions.iter_mut().for_each(|p| p[0] += gap);
-            let far = [100.0, 101.0];
-            let held = scene_locks(
-                &scene(vec![square(), right], vec![at(far[0], 0), at(far[1], 1)]),
-                &CONTACTS,
-            );
+            // Far away rounding is coarser; that is no matter here.
+            let mut far = square();
+            far.positions.iter_mut().for_each(|p| p[2] += 1e6);
+            let nodes = vec![at(x, 0), at(x + 1.0, 1), at(0.0, 2)];
+            let held = scene_locks(&scene(vec![square(), right, far], nodes), &CONTACTS);
             held.iter().map(|of| of.count(LockReason::SharedPlace)).collect::<Vec<_>>()
         };
-        let ulp = f64::from(f32::EPSILON) * 64.0;
-        assert_eq!(held(ulp), [2, 2]);
-        assert_eq!(held(8.0 * ulp), [0, 0]);
+        let ulp = f64::from(f32::EPSILON);
+        assert_eq!(held(100.0, 64.0 * ulp), [2, 2, 0]);
+        assert_eq!(held(100.0, 512.0 * ulp), [0, 0, 0]);
+        // Of two octaves: the border is at 128, a little less and a little more.
+        assert_eq!(held(127.0 - 32.0 * ulp, 64.0 * ulp), [2, 2, 0]);
+        assert_eq!(held(1.0, ulp), [2, 2, 0]);
+        assert_eq!(held(1.0, 64.0 * ulp), [0, 0, 0]);
+    }
+
+    #[test]
+    fn what_goes_beyond_numbers_is_free() {
+        let mut huge = scene(vec![square(), square()], vec![at(0.0, 0), at(0.0, 1)]);
+        huge.nodes[1].transform[0][0] = f64::MAX;
+        huge.nodes[1].transform[3][0] = f64::MAX;
+        let held = scene_locks(&huge, &CONTACTS);
+        assert!(held.iter().all(|of| of.locks.of_vertex == [Lock::Free; 4]));
     }
 
     #[test]
