@@ -19,7 +19,16 @@ impl Places {
     /// Cost: linear.
     pub fn of(positions: &[[f64; 3]]) -> Self {
         let mut seen = Seen::new(positions);
-        Self { first: (0..positions.len()).map(|v| seen.first(VertexId::new(v))).collect() }
+        let mut first = Vec::with_capacity(positions.len());
+        for start in (0..positions.len()).step_by(TOGETHER) {
+            let vertices = (start..positions.len().min(start + TOGETHER)).map(VertexId::new);
+            let mut asked = [Asked::default(); TOGETHER];
+            for (asked, vertex) in asked.iter_mut().zip(vertices.clone()) {
+                *asked = seen.ask(vertex);
+            }
+            first.extend(vertices.zip(asked).map(|(vertex, asked)| seen.first(vertex, asked)));
+        }
+        Self { first }
     }
 
     /// The lowest vertex at the place of `vertex`, maybe itself.
@@ -51,14 +60,26 @@ impl Places {
     }
 }
 
+/// Places asked for at a time, so that memory answers together: a table of millions is in no cache.
+/// One by one, a mesh of 4.3 million faces takes 2.3 times as long as with 16 or 64 together, one of
+/// 0.27 million 2.4 times as long as with 16, three times as long as with 64.
+const TOGETHER: usize = 64;
+
 /// The vertices seen so far, by their places: a table of vertices, searched from where the hash
 /// points to.
 struct Seen<'a> {
     positions: &'a [[f64; 3]],
-    /// The upper half of the hash, and one more than the vertex; 0 where it is empty. Half of the
-    /// table is, so that searches are short.
+    /// The upper half of the hash, and one more than the vertex; 0 where it is empty. A third of the
+    /// table is, at least, so that searches are short.
     table: Vec<u64>,
     keys: [u64; 3],
+}
+
+/// Where a place is to be looked for, and what is there so far.
+#[derive(Clone, Copy, Default)]
+struct Asked {
+    hash: u64,
+    entry: u64,
 }
 
 impl<'a> Seen<'a> {
@@ -66,21 +87,31 @@ impl<'a> Seen<'a> {
         // Drawn anew, so that nobody can choose positions that all point to one entry. What is found
         // does not depend on them.
         let keys = std::array::from_fn(|i| RandomState::new().hash_one(i));
-        Self { positions, table: vec![0; (2 * positions.len()).next_power_of_two()], keys }
+        Self {
+            positions,
+            table: vec![0; (positions.len() + positions.len() / 2).next_power_of_two()],
+            keys,
+        }
+    }
+
+    #[inline]
+    fn ask(&self, vertex: VertexId) -> Asked {
+        let hash = self.hash(self.place(vertex));
+        Asked { hash, entry: self.table[hash as usize & (self.table.len() - 1)] }
     }
 
     /// The first vertex seen at the place of `vertex`, which is seen now.
     #[inline]
-    fn first(&mut self, vertex: VertexId) -> VertexId {
+    fn first(&mut self, vertex: VertexId, Asked { hash, entry }: Asked) -> VertexId {
         let place = self.place(vertex);
         if place.iter().any(|&x| f64::from_bits(x).is_nan()) {
             return vertex;
         }
-        let hash = self.hash(place);
         let last = self.table.len() - 1;
         let mut at = hash as usize & last;
+        // What is there stays; what was not may have come since.
+        let mut entry = if entry == 0 { self.table[at] } else { entry };
         loop {
-            let entry = self.table[at];
             let other = VertexId((entry as u32).wrapping_sub(1));
             if entry == 0 {
                 self.table[at] = hash >> 32 << 32 | u64::from(vertex.0 + 1);
@@ -90,6 +121,7 @@ impl<'a> Seen<'a> {
                 return other;
             }
             at = (at + 1) & last;
+            entry = self.table[at];
         }
     }
 

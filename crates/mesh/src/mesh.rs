@@ -95,8 +95,9 @@ impl Mesh {
 
     /// The three corner positions of a face.
     #[inline]
-    pub fn triangle(&self, face: [VertexId; 3]) -> [DVec3; 3] {
-        face.map(|v| DVec3::from(self.positions[v.index()]))
+    pub fn triangle(&self, [a, b, c]: [VertexId; 3]) -> [DVec3; 3] {
+        let at = |v: VertexId| DVec3::from(self.positions[v.index()]);
+        [at(a), at(b), at(c)]
     }
 
     /// The box around the vertices that faces use; unused vertices do not count.

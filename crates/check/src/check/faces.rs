@@ -11,9 +11,10 @@ use crate::zero_area::has_zero_area;
 
 pub fn degenerate(subject: &Subject, visit: &mut Visit) -> ControlFlow<()> {
     for (face, [a, b, c]) in subject.sound() {
+        let at = |v: VertexId| subject.mesh.positions[v.index()];
         let shape = if a == b || b == c || c == a {
             Degeneracy::RepeatedVertex
-        } else if has_zero_area([a, b, c].map(|v| subject.mesh.positions[v.index()])) {
+        } else if has_zero_area([at(a), at(b), at(c)]) {
             Degeneracy::ZeroArea
         } else {
             continue;

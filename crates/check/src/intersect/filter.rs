@@ -6,8 +6,8 @@ use super::exact::without;
 use super::meet::Triangle;
 
 /// Two triangles, and which corners each has alone.
-pub(super) struct Pair {
-    pub(super) triangles: [Triangle; 2],
+pub(super) struct Pair<'a> {
+    pub(super) triangles: &'a [Triangle; 2],
     pub(super) alone: [[bool; 3]; 2],
 }
 
@@ -17,7 +17,7 @@ pub(super) struct Pair {
 /// `false` says nothing.
 #[inline]
 pub(super) fn surely_only_share(pair: &Pair) -> bool {
-    let [a, b] = &pair.triangles;
+    let [a, b] = pair.triangles;
     let [alone_a, alone_b] = &pair.alone;
     beyond_plane(a, b, alone_b) || beyond_plane(b, a, alone_a) || beyond_line(pair)
 }
@@ -42,7 +42,7 @@ fn beyond_plane(a: &Triangle, b: &Triangle, alone: &[bool; 3]) -> bool {
 /// other has alone, and its own third corner not.
 #[cold]
 fn beyond_line(pair: &Pair) -> bool {
-    let [a, b] = &pair.triangles;
+    let [a, b] = pair.triangles;
     let normal = (a[1] - a[0]).cross(a[2] - a[0]);
     let axis = normal.abs().max_position();
     let seen = [a, b].map(|triangle| triangle.map(|p| without(axis, p)));

@@ -105,7 +105,7 @@ impl Meetings {
     /// for exact signs.
     pub(crate) fn touch(&self, mesh: &Mesh, pair: [FaceId; 2]) -> Option<Touch> {
         let points = Points::new(&mesh.positions, self.scale);
-        let [a, b] = pair.map(|f| mesh.faces[f.index()].map(|v| points.at(v)));
+        let [a, b] = pair.map(|f| points.triangle(mesh.faces[f.index()]));
         let touch = meet(&a, &b)?;
         let (place, depth) = (points.place(touch.place), points.length(touch.depth));
         Some(Touch { place, depth, ..touch })
@@ -197,18 +197,18 @@ impl Search<'_> {
 
     /// Whether faces that share no place meet.
     #[inline]
-    fn meet_apart(&self, corners: [[VertexId; 3]; 2]) -> bool {
-        let triangles = corners.map(|face| face.map(|v| self.soup.points.at(v)));
-        let pair = Pair { triangles, alone: [[true; 3]; 2] };
+    fn meet_apart(&self, [f, g]: [[VertexId; 3]; 2]) -> bool {
+        let triangles = [self.soup.points.triangle(f), self.soup.points.triangle(g)];
+        let pair = Pair { triangles: &triangles, alone: [[true; 3]; 2] };
         !surely_only_share(&pair) && meet(&triangles[0], &triangles[1]).is_some()
     }
 
     /// Adds a pair of faces that share places if they have more in common.
     fn test_sharing(&mut self, f: FaceId, g: FaceId) -> Step {
-        let triangles = [f, g].map(|face| self.soup.triangle(face));
+        let triangles = [self.soup.triangle(f), self.soup.triangle(g)];
         let [f_at, g_at] = [f, g].map(|face| self.soup.corners[face.index()]);
         let alone = [f_at.map(|v| !g_at.contains(&v)), g_at.map(|v| !f_at.contains(&v))];
-        let pair = Pair { triangles, alone };
+        let pair = Pair { triangles: &triangles, alone };
         // A shared corner is a point in common, a shared edge a segment, and no more.
         let more = match alone[0].iter().filter(|alone| **alone).count() {
             2 => TouchKind::Edge,

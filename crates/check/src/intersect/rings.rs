@@ -50,7 +50,7 @@ impl Certified {
             rings[ground.places.first(double).index()].closed = false;
         }
         for face in soup.corners.iter().filter(|face| whole(face)) {
-            let points = face.map(|v| soup.points.at(v));
+            let points = soup.points.triangle(*face);
             let signs = signs(&points);
             for (k, &v) in face.iter().enumerate() {
                 let [p, a, b] = [points[k], points[(k + 1) % 3], points[(k + 2) % 3]];

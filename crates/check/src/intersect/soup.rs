@@ -40,7 +40,7 @@ impl<'a> Soup<'a> {
 
     #[inline]
     pub(crate) fn triangle(&self, face: FaceId) -> Triangle {
-        self.corners[face.index()].map(|v| self.points.at(v))
+        self.points.triangle(self.corners[face.index()])
     }
 
     /// Whether a face has a part: three places, and some area.
@@ -100,6 +100,11 @@ impl<'a> Points<'a> {
     #[inline]
     pub(crate) fn at(&self, vertex: VertexId) -> DVec3 {
         DVec3::from(self.positions[vertex.index()]) * self.scale
+    }
+
+    #[inline]
+    pub(crate) fn triangle(&self, [a, b, c]: [VertexId; 3]) -> Triangle {
+        [self.at(a), self.at(b), self.at(c)]
     }
 
     /// A place found among these points, in model units.

@@ -152,7 +152,7 @@ fn compare(a: &Whole, b: &Whole) {
         assert_eq!(touch.depth > 0.0, kind == TouchKind::Crossing, "{a:?} and {b:?}");
     }
     let alone = [a.map(|p| !b.contains(&p)), b.map(|p| !a.contains(&p))];
-    let pair = Pair { triangles: [float(a), float(b)], alone };
+    let pair = Pair { triangles: &[float(a), float(b)], alone };
     if surely_only_share(&pair) {
         let most = match alone[0].iter().filter(|alone| **alone).count() {
             3 => None,
