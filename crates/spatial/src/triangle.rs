@@ -97,7 +97,10 @@ mod tests {
     fn off(q: DVec3, triangle: &Triangle) -> f64 {
         let apart = |from: DVec3, to: DVec3| closest_on_segment(q, from, to).distance(q);
         let [a, b, c] = *triangle;
-        let normal = (b - a).cross(c - a).normalize_or_zero();
+        // Of two long sides of a narrow triangle, rounding would turn the normal.
+        let mut sides = [b - a, c - b, a - c];
+        sides.sort_by(|u, v| u.length_squared().total_cmp(&v.length_squared()));
+        let normal = sides[0].cross(sides[1]).normalize_or_zero();
         let edges = apart(a, b).min(apart(b, c)).min(apart(c, a));
         (q - a).dot(normal).abs().min(edges)
     }
