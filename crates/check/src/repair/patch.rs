@@ -148,3 +148,74 @@ impl Spans<'_> {
 fn normal_across([from, to]: [DVec3; 2], tip: DVec3) -> DVec3 {
     (from - to).cross(tip - to).normalize_or_zero()
 }
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    /// The best of a span by trying all, each as [`Spans`] does: the cost, and the triangles, the one
+    /// at the closing edge last.
+    fn by_trying(ring: &Ring, from: usize, to: usize) -> Option<(Cost, Vec<[usize; 3]>)> {
+        if to == from + 1 {
+            return Some((Cost { bend: 0.0, area: 0.0 }, Vec::new()));
+        }
+        let at = |place: usize| DVec3::from(ring.points[place]);
+        let cross = |[a, b, c]: [DVec3; 3]| (b - a).cross(c - a);
+        let normal = |corners| cross(corners).normalize_or_zero();
+        let mut best: Option<(Cost, Vec<[usize; 3]>)> = None;
+        for middle in from + 1..to {
+            let sides = [[from, middle], [middle, to]].map(|[a, b]| by_trying(ring, a, b));
+            let [Some(before), Some(after)] = sides else { continue };
+            let corners = [from, middle, to].map(at);
+            if has_zero_area(corners.map(Into::into)) {
+                continue;
+            }
+            let mut bend = before.0.bend.max(after.0.bend);
+            for ((_, triangles), [a, b]) in [(&before, [from, middle]), (&after, [middle, to])] {
+                let across = match triangles.last() {
+                    Some(triangle) => normal(triangle.map(at)),
+                    None => normal([at(b), at(a), ring.tips[a].into()]),
+                };
+                bend = bend.max(1.0 - normal(corners).dot(across));
+            }
+            if to - from == ring.points.len() - 1 {
+                let across = normal([at(from), at(to), ring.tips[to].into()]);
+                bend = bend.max(1.0 - normal(corners).dot(across));
+            }
+            let area = before.0.area + after.0.area + 0.5 * cross(corners).length();
+            let cost = Cost { bend, area };
+            if best.as_ref().is_none_or(|(least, _)| cost < *least) {
+                best = Some((cost, [before.1, after.1, vec![[from, middle, to]]].concat()));
+            }
+        }
+        best
+    }
+
+    proptest! {
+        /// On a small lattice, where many triangles are as good or have no area, and off it.
+        #[test]
+        fn the_triangles_are_those_found_by_trying_all(
+            points in prop::collection::vec(prop::array::uniform3(-2..3_i8), 3..9),
+            tips in prop::collection::vec(prop::array::uniform3(-2..3_i8), 9),
+            shift in prop::array::uniform9(0.0..1.0),
+            shifts in any::<bool>(),
+        ) {
+            let place = |(i, p): (usize, &[i8; 3])| {
+                let shift = if shifts { shift[i] } else { 0.0 };
+                p.map(|x| f64::from(x) + shift * f64::from(x).sin())
+            };
+            let ring = Ring {
+                points: points.iter().enumerate().map(place).collect(),
+                tips: tips.iter().enumerate().map(place).take(points.len()).collect(),
+            };
+            let sorted = |mut triangles: Vec<[usize; 3]>| {
+                triangles.sort_unstable();
+                triangles
+            };
+            let found = patch(&ring, |_, _| false).map(sorted);
+            prop_assert_eq!(found, by_trying(&ring, 0, points.len() - 1).map(|(_, all)| sorted(all)));
+        }
+    }
+}

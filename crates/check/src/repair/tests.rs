@@ -431,6 +431,23 @@ fn where_time_is_short_the_largest_holes_wait() {
 }
 
 #[test]
+fn what_hangs_together_far_away_may_touch_a_filling() {
+    let mut cone = cones(&[4]);
+    // A face below, with vertices of its own at both ends of the edge that halves the hole.
+    let below = [cone.positions[1], cone.positions[3], [0.0, 0.0, -1.0]];
+    cone.positions.extend(below);
+    cone.faces.push([5, 6, 7].map(VertexId));
+    let limits = HoleLimits { edges: 4, length: f64::INFINITY };
+    let filled = |mesh: &Mesh| holes::fill(&mut mesh.clone(), &limits, usize::MAX).holes;
+    assert_eq!(filled(&cone), 0, "another component");
+    let around =
+        [[9.0, 9.0, -2.0], [9.0, -9.0, -2.0], [9.0, 9.0, 9.0], [9.0, 8.0, 9.0], [0.0, 5.0, 9.0]];
+    cone.positions.extend(around);
+    cone.faces.extend([[7, 8, 9], [8, 10, 11], [10, 0, 12]].map(|face| face.map(VertexId)));
+    assert_eq!(filled(&cone), 1, "the same, by way of faces that are not near");
+}
+
+#[test]
 fn holes_that_wait_are_told_as_left() {
     let mut report = RepairReport::default();
     report.add(RepairStep::HolesUntried, 3);
