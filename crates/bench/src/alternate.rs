@@ -33,6 +33,13 @@ pub fn alternate<A, B>(
     Ratio { ours: median(a), theirs: median(b), ratio: median(ratios) }
 }
 
+/// The least seconds that the work takes, of all its threads, in some rounds.
+///
+/// Infinite without rounds.
+pub fn least_seconds<T>(rounds: usize, mut work: impl FnMut() -> T) -> f64 {
+    (0..rounds).map(|_| seconds(&mut work)).fold(f64::INFINITY, f64::min)
+}
+
 /// Does the work on one core: rayon's threads are one while it runs.
 pub fn one_core<T: Send>(work: impl FnOnce() -> T + Send) -> T {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build();

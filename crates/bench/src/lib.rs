@@ -4,6 +4,6 @@ mod alternate;
 mod corpus;
 pub mod peer;
 
-pub use alternate::{Ratio, alternate, one_core};
+pub use alternate::{Ratio, alternate, least_seconds, one_core};
 pub use corpus::{read, read_scene};
 pub use meshlod_fixtures::shared_mesh;

@@ -1,6 +1,7 @@
 //! `cargo xtask results`: every figure of docs/RESULTS.md, made anew.
 
 mod accuracy;
+mod check;
 mod command;
 mod constriction;
 mod machine;
@@ -18,7 +19,7 @@ use crate::project::Project;
 type Section = fn(&Project) -> Result<String>;
 
 /// With their titles, in the order of the page.
-const SECTIONS: [(&str, Section); 7] = [
+const SECTIONS: [(&str, Section); 8] = [
     // First, while this program is small: see there.
     ("Memory and determinism", memory::section),
     ("Accuracy", accuracy::section),
@@ -26,6 +27,7 @@ const SECTIONS: [(&str, Section); 7] = [
     ("Face constriction", constriction::section),
     ("Textured", textured::section),
     ("Speed of simplification", speed::section),
+    ("Check", check::section),
     ("Reading and measuring", reading::section),
 ];
 

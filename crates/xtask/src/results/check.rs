@@ -1,0 +1,96 @@
+//! What checking takes, from a hundred thousand faces to four million.
+
+use anyhow::Result;
+use meshlod::check::{CheckOptions, Kind, Kinds, Net, findings};
+use meshlod::mesh::{Connectivity, FaceId, Mesh, Side, Twin, VertexId};
+use meshlod_bench::{least_seconds, one_core};
+
+use super::table::Table;
+use crate::project::Project;
+
+const ROUNDS: usize = 5;
+/// File, and how often every face is parted in four.
+const MESHES: [(&str, usize); 5] =
+    [("horse-97k.ply", 0), ("igea.ply", 0), ("dragon.ply", 0), ("igea.ply", 1), ("igea.ply", 2)];
+
+/// Seconds for a million faces, by what is asked for.
+pub fn section(_: &Project) -> Result<String> {
+    let of_pairs = [Kind::SelfIntersection, Kind::Contact, Kind::Crowded];
+    let meeting = of_pairs.into_iter().fold(Kinds::NONE, Kinds::with);
+    let other = of_pairs.into_iter().fold(Kinds::ALL, Kinds::without);
+    let columns =
+        [(Kinds::ALL, Net::Tree), (other, Net::Tree), (meeting, Net::Tree), (meeting, Net::Cubes)];
+    let mut table = Table::new([
+        "mesh, s for a million faces",
+        "faces",
+        "all kinds",
+        "all but what meets",
+        "what meets, by tree",
+        "what meets, by cubes",
+    ]);
+    for (file, times) in MESHES {
+        let Some(mut mesh) = meshlod_bench::read(file)? else { continue };
+        for _ in 0..times {
+            mesh = in_four(&mesh);
+        }
+        let faces = mesh.faces.len();
+        let name =
+            if times == 0 { file.to_owned() } else { format!("{file} in {}", 1 << (2 * times)) };
+        let mut row = vec![name, faces.to_string()];
+        for (kinds, net) in columns {
+            let options = CheckOptions { kinds, net, ..CheckOptions::default() };
+            // Cubes take nine times as long: one round tells.
+            let rounds = if net == Net::Cubes { 1 } else { ROUNDS };
+            let seconds = one_core(|| least_seconds(rounds, || findings(&mesh, &options)));
+            row.push(format!("{:.3}", seconds / faces as f64 * 1e6));
+        }
+        table.row(row);
+    }
+    Ok(format!(
+        "One core, CPU time, the least of {ROUNDS} rounds, by cubes of one; files excluded, all that is derived \
+         from the faces included. As recorded and not run here: CGAL's self-intersections take \
+         1.72 s for a million faces (CGAL/cgal pull request 4344, 2019). Again: `cargo xtask results \
+         check`.\n\n{}",
+        table.markdown()
+    ))
+}
+
+/// The mesh with each face parted in four at the middles of its edges, in the order of the faces.
+fn in_four(mesh: &Mesh) -> Mesh {
+    let connectivity = Connectivity::new(&mesh.faces, mesh.positions.len());
+    let mut positions = mesh.positions.clone();
+    let mut middles = vec![None; 3 * mesh.faces.len()];
+    let mut faces = Vec::with_capacity(4 * mesh.faces.len());
+    for (f, &[a, b, c]) in mesh.faces.iter().enumerate() {
+        let [ab, bc, ca] = std::array::from_fn(|k| {
+            let side = Side::new(FaceId::new(f), k);
+            let middle = *middles[3 * f + k].get_or_insert_with(|| {
+                let [p, q] = side.ends(&mesh.faces).map(|v| mesh.positions[v.index()]);
+                positions.push(std::array::from_fn(|axis| (p[axis] + q[axis]) / 2.0));
+                VertexId::new(positions.len() - 1)
+            });
+            if let Twin::Side(twin) = connectivity.twin(side) {
+                middles[3 * twin.face().index() + twin.corner()] = Some(middle);
+            }
+            middle
+        });
+        faces.extend([[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]]);
+    }
+    Mesh::new(positions, faces)
+}
+
+#[cfg(test)]
+mod tests {
+    use meshlod::mesh::sample;
+
+    use super::*;
+
+    #[test]
+    fn a_closed_mesh_in_four_is_closed_and_as_connected() {
+        let mesh = in_four(&sample::torus(200));
+        let connectivity = Connectivity::new(&mesh.faces, mesh.positions.len());
+        assert_eq!(mesh.faces.len(), 4 * sample::torus(200).faces.len());
+        assert!(connectivity.is_closed() && connectivity.inconsistent_edges() == 0);
+        assert_eq!(mesh.positions.len() + mesh.faces.len(), connectivity.edge_count());
+    }
+}
