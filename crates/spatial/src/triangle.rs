@@ -16,6 +16,9 @@ const SLIVER: f64 = 1e-12;
 /// one of the edges that `p` lies beyond. Slivers, whose normal is uncertain, and degenerate
 /// triangles are also asked edge by edge, so the answer is always a point of the triangle. A corner
 /// is given back bit for bit.
+///
+/// Where the least sine of the corners is s, rounding may cost 2e-16 / s of the triangle's size,
+/// and 1e-8 at most: there may be a point nearer by that.
 /// # References
 /// [Eri05] section 5.1.5; differs: weights from the normal, which keep their digits in narrow
 /// triangles, and edges where these leave doubt.
@@ -98,11 +101,25 @@ mod tests {
         let apart = |from: DVec3, to: DVec3| closest_on_segment(q, from, to).distance(q);
         let [a, b, c] = *triangle;
         // Of two long sides of a narrow triangle, rounding would turn the normal.
-        let mut sides = [b - a, c - b, a - c];
-        sides.sort_by(|u, v| u.length_squared().total_cmp(&v.length_squared()));
-        let normal = sides[0].cross(sides[1]).normalize_or_zero();
+        let [short, middle, _] = sides(triangle);
+        let normal = short.cross(middle).normalize_or_zero();
         let edges = apart(a, b).min(apart(b, c)).min(apart(c, a));
         (q - a).dot(normal).abs().min(edges)
+    }
+
+    /// The sides, shortest first.
+    fn sides(&[a, b, c]: &Triangle) -> [DVec3; 3] {
+        let mut sides = [b - a, c - b, a - c];
+        sides.sort_by(|u, v| u.length_squared().total_cmp(&v.length_squared()));
+        sides
+    }
+
+    /// How much farther than the nearest a point may be: the narrower the triangle, the more digits
+    /// the cancelling of its long sides takes. In one without area, an edge answers.
+    fn allowance(triangle: &Triangle) -> f64 {
+        let [short, middle, long] = sides(triangle);
+        let sine = short.cross(middle).length() / (middle.length() * long.length());
+        1e-14 + if sine > 0.0 { (f64::EPSILON / sine).min(1e-8) } else { 0.0 }
     }
 
     fn coordinate() -> impl Strategy<Value = f64> {
@@ -121,7 +138,8 @@ mod tests {
             let q = closest_point(p, &triangle);
             prop_assert!(off(q, &triangle) < 1e-14, "{q} is not on it");
             let (found, searched) = (p.distance(q), searched(p, &triangle));
-            prop_assert!(found <= searched + 1e-14, "{found} where {searched} can be had");
+            let most = searched + allowance(&triangle);
+            prop_assert!(found <= most, "{found} where {searched} can be had");
         }
 
         #[test]
