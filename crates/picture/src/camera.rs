@@ -140,6 +140,11 @@ impl Camera {
         Self { near: near.max(f64::MIN_POSITIVE), ..self }
     }
 
+    /// The width of a pixel at a depth of 1, in a picture of that shorter side.
+    pub(crate) fn pixel_width(&self, side: u32) -> f64 {
+        2.0 * self.tan_half_fov / f64::from(side)
+    }
+
     /// Every side of the frame bounds the eye by one linear inequality per point, so that four
     /// maxima give the closest eye, in the middle of what is left free.
     fn fit_points(points: impl Iterator<Item = DVec3>, view: &View) -> Self {
