@@ -106,6 +106,9 @@ impl Flags {
     /// A lock or a tie holds it: what it is part of stays.
     pub(crate) const HELD: Self = Self(64);
 
+    /// It may be on a line that is seen: a boundary, a seam, a contact.
+    pub(crate) const LINED: Self = Self::BOUNDARY.or(Self::SEAM).or(Self::TIED);
+
     #[inline]
     pub(crate) fn any(self, of: Self) -> bool {
         self.0 & of.0 != 0

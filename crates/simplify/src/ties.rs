@@ -86,6 +86,16 @@ pub(crate) fn partners(
     }
 }
 
+/// Whether an edge between two ties has others with it.
+pub(crate) fn is_contact(surface: &Surface, edge: [VertexId; 2]) -> bool {
+    if !edge.iter().all(|&v| surface.flags(v).any(Flags::TIED)) {
+        return false;
+    }
+    let [firsts, seconds] = edge.map(|v| surface.ties.with(v));
+    let joined = |a: VertexId| seconds.iter().any(|&b| b != edge[1] && are_joined(surface, a, b));
+    firsts.iter().any(|&a| a != edge[0] && joined(a))
+}
+
 /// Whether there is an edge between two vertices.
 fn are_joined(surface: &Surface, a: VertexId, b: VertexId) -> bool {
     let [fewer, other] = if surface.valence(a) <= surface.valence(b) { [a, b] } else { [b, a] };

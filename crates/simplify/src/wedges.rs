@@ -4,7 +4,7 @@
 //! surface had next to the new place. A chart of the removed end that meets none has nowhere to go; so a seam can only be contracted
 //! along itself, or by an end that has no seam onto one that has.
 
-use meshlod_mesh::{Attributes, FaceId, Layer, Mesh, VertexId, WedgeId};
+use meshlod_mesh::{Attributes, FaceId, Labels, Layer, Mesh, VertexId, WedgeId};
 use rustc_hash::FxHashMap;
 
 use crate::charts::{charts, is_shading};
@@ -15,8 +15,8 @@ use crate::neighbourhood::Neighbourhood;
 use crate::refusal::Refusal;
 use crate::surface::{Flags, Placed, Surface};
 
-/// The wedges of a surface: those of its mesh, split further where the material changes, so that
-/// the borders of materials are seams like any other.
+/// The wedges of a surface: those of its mesh, split further where the material changes or the
+/// object, so that these borders are seams like any other.
 pub(crate) struct Wedges {
     corners: Vec<[WedgeId; 3]>,
     layers: Vec<Layer>,
@@ -24,10 +24,10 @@ pub(crate) struct Wedges {
 }
 
 impl Wedges {
-    /// The wedges of a mesh that has attributes or materials.
+    /// The wedges of a mesh that has attributes, materials or objects.
     pub(crate) fn new(mesh: &Mesh) -> Option<Self> {
-        let several_materials = mesh.materials.as_ref().filter(|m| m.names.len() > 1);
-        let (mut corners, mut layers, mut count) = match (&mesh.attributes, several_materials) {
+        let labels = labels(mesh);
+        let (mut corners, mut layers, count) = match (&mesh.attributes, &labels) {
             (Some(a), _) => (a.corners.clone(), a.layers.clone(), a.wedge_count),
             (None, Some(_)) => {
                 let corners = mesh.faces.iter().map(|face| face.map(|v| WedgeId(v.0))).collect();
@@ -35,11 +35,9 @@ impl Wedges {
             }
             (None, None) => return None,
         };
-        let labels = several_materials.map_or(Vec::new(), |materials| {
-            let labels = split_by(&materials.of_face, &mut corners, &mut layers, count);
-            count = labels.len();
-            labels
-        });
+        let labels = labels.map(|of_face| split_by(&of_face, &mut corners, &mut layers, count));
+        let labels = labels.unwrap_or_default();
+        let count = count.max(labels.len());
         let of_corners =
             mesh.faces.iter().flatten().copied().zip(corners.iter().flatten().copied());
         let charts = charts(&layers, &labels, count, of_corners);
@@ -262,6 +260,23 @@ impl Wedges {
             layers: self.layers.clone(),
         }
     }
+}
+
+/// The material and object of every face as one number, where there are several.
+fn labels(mesh: &Mesh) -> Option<Vec<u32>> {
+    let several = |labels: &&Labels| labels.names.len() > 1;
+    let [materials, objects] =
+        [&mesh.materials, &mesh.objects].map(|labels| labels.as_ref().filter(several));
+    let (Some(materials), Some(objects)) = (materials, objects) else {
+        return materials.or(objects).map(|labels| labels.of_face.clone());
+    };
+    let mut numbers = FxHashMap::default();
+    let pairs = materials.of_face.iter().zip(&objects.of_face);
+    let number = |pair| {
+        let next = numbers.len() as u32;
+        *numbers.entry(pair).or_insert(next)
+    };
+    Some(pairs.map(number).collect())
 }
 
 /// Gives each label wedges of its own; the first label to use one keeps it. The label of each wedge.

@@ -108,7 +108,7 @@ impl Priority<Stars> for Memoryless {
         of: &Contracted,
         freedom: Freedom,
     ) -> Option<f64> {
-        if of.iter().any(|&v| surface.flags(v).any(Flags::BOUNDARY.or(Flags::SEAM))) {
+        if of.iter().any(|&v| surface.flags(v).any(Flags::LINED)) {
             return cost_at_outline(surface, of);
         }
         let origin = surface.position(of[0]);
@@ -200,7 +200,7 @@ fn choose(surface: &Surface, hood: &Neighbourhood) -> Choice {
         let across = Symmetric::scalar(edge.length_squared()) + Symmetric::outer(edge) * -1.0;
         let weight = OUTLINE_WEIGHT * along.length_squared();
         swept = swept + Quadric::squared(across * weight, from).as_constraint();
-        if !outline.is_seam {
+        if outline.is_boundary {
             boundary.add(from, to);
         }
     }

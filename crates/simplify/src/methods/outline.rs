@@ -1,24 +1,25 @@
-//! Edges where the surface ends, or a chart of its textures.
+//! Edges where the surface ends, or a chart of its textures, or where it meets another.
 
 use meshlod_mesh::{FaceId, Side, VertexId};
 
 use crate::surface::{Flags, Surface};
+use crate::ties::is_contact;
 
-/// An edge that is seen in silhouettes or textures wherever it goes.
+/// An edge that is seen in silhouettes, textures or contacts wherever it goes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Outline {
-    /// Its ends, as its face goes round; of a seam, one of its two faces.
+    /// Its ends, as its face goes round; of a line within the surface, one of its two faces.
     pub(crate) ends: [VertexId; 2],
-    pub(crate) is_seam: bool,
+    pub(crate) is_boundary: bool,
 }
 
-/// The boundary edges and seams at some vertices, each once.
+/// The boundary edges and lines at some vertices, each once.
 ///
 /// Cost: the square of a vertex's faces, but only of those that are on one.
 pub(crate) fn outlines(surface: &Surface, vertices: &[VertexId]) -> Vec<Outline> {
     let mut found = Vec::new();
     for (i, &v) in vertices.iter().enumerate() {
-        if !surface.flags(v).any(Flags::BOUNDARY.or(Flags::SEAM)) {
+        if !surface.flags(v).any(Flags::LINED) {
             continue;
         }
         let sides: Vec<_> = surface.star(v).flat_map(|face| sides_at(surface, face, v)).collect();
@@ -29,10 +30,9 @@ pub(crate) fn outlines(surface: &Surface, vertices: &[VertexId]) -> Vec<Outline>
                 continue;
             }
             let twin = sides[place + 1..].iter().find(same);
-            let is_seam = twin.is_some_and(|&(_, twin)| is_seam(surface, side, twin));
-            if is_seam || twin.is_none() {
-                let (face, k) = (surface.face(side.face()), side.corner());
-                found.push(Outline { ends: [face[k], face[(k + 1) % 3]], is_seam });
+            if twin.is_none_or(|&(_, twin)| is_line(surface, side, twin)) {
+                let is_boundary = twin.is_none();
+                found.push(Outline { ends: ends(surface, side), is_boundary });
             }
         }
     }
@@ -46,8 +46,19 @@ fn sides_at(surface: &Surface, face: FaceId, v: VertexId) -> [(VertexId, Side); 
     [(corners[next], Side::new(face, k)), (corners[last], Side::new(face, last))]
 }
 
+/// Whether an edge with two faces is seen as a line: a seam, or where a tied surface has it too.
+#[inline]
+pub(super) fn is_line(surface: &Surface, side: Side, twin: Side) -> bool {
+    is_seam(surface, side, twin) || is_contact(surface, ends(surface, side))
+}
+
+fn ends(surface: &Surface, side: Side) -> [VertexId; 2] {
+    let (face, k) = (surface.face(side.face()), side.corner());
+    [face[k], face[(k + 1) % 3]]
+}
+
 /// Whether the two faces of an edge use different charts at an end of it.
-pub(super) fn is_seam(surface: &Surface, side: Side, twin: Side) -> bool {
+fn is_seam(surface: &Surface, side: Side, twin: Side) -> bool {
     let Some(wedges) = &surface.wedges else { return false };
     let ends = |side: Side| [side.corner(), (side.corner() + 1) % 3];
     let vertex = |side: Side, k: usize| surface.face(side.face())[k];

@@ -1,7 +1,7 @@
 //! Quadric error metrics [GH97]: an edge costs what its best place costs by the planes of all the
 //! faces that have gone into its ends.
 //!
-//! Our choices: planes weigh by area; boundary edges and seams stand as planes at right angles to
+//! Our choices: planes weigh by area; boundary edges, seams and contacts stand as planes at right angles to
 //! their faces; quadrics are kept relative to their vertices, and the optimum is pulled a little
 //! towards the middle of the edge, so that flats and straight edges need no special case. And memory
 //! fades: what counts at a vertex is mostly the surface as it is, a little of what it was. Memory is
@@ -13,7 +13,7 @@ use meshlod_mesh::{Connectivity, FaceId, Side, Twin, VertexId};
 
 use crate::contracted::{Contracted, Freedom};
 use crate::methods::appearance::Appearance;
-use crate::methods::outline::is_seam;
+use crate::methods::outline::is_line;
 use crate::methods::quadric::Quadric;
 use crate::neighbourhood::Neighbourhood;
 use crate::policy::{Memory, Placement, Priority};
@@ -45,8 +45,8 @@ const MEMORY: f64 = 0.1;
 /// The weight of a boundary edge's plane, against the square of its length as an area.
 const BOUNDARY_WEIGHT: f64 = 2.0;
 
-/// The weight of a seam's plane likewise.
-const SEAM_WEIGHT: f64 = 1.0;
+/// The weight of the plane of a seam or a contact likewise.
+const LINE_WEIGHT: f64 = 1.0;
 
 /// A quadric per vertex, and what is known of attributes.
 pub(crate) struct Quadrics<A = ()> {
@@ -84,7 +84,7 @@ impl<A: Appearance> Memory for Quadrics<A> {
         let sum = self.sum(surface, hood.contracted());
         let mut merged = sum.seen_from(placed.position - origin);
         // Fences are not in the faces around: where one stands, all is remembered.
-        let fenced = |&v: &VertexId| surface.flags(v).any(Flags::BOUNDARY.or(Flags::SEAM));
+        let fenced = |&v: &VertexId| surface.flags(v).any(Flags::LINED);
         if !hood.contracted().iter().any(fenced) {
             merged = merged * MEMORY + star(hood, placed.position) * (1.0 - MEMORY);
         }
@@ -121,7 +121,7 @@ fn add_face(
     for k in 0..3 {
         let weight = match connectivity.twin(Side::new(face, k)) {
             Twin::Boundary => BOUNDARY_WEIGHT,
-            Twin::Side(twin) if is_seam(surface, Side::new(face, k), twin) => SEAM_WEIGHT,
+            Twin::Side(twin) if is_line(surface, Side::new(face, k), twin) => LINE_WEIGHT,
             _ => continue,
         };
         let ends = [corners[k], corners[(k + 1) % 3]];

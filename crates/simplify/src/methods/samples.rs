@@ -7,7 +7,7 @@ use glam::DVec3;
 use meshlod_mesh::{Connectivity, FaceId, Side, Twin, VertexId};
 
 use crate::methods::fan::{Fan, Rim};
-use crate::methods::outline::is_seam;
+use crate::methods::outline::is_line;
 use crate::neighbourhood::{Neighbourhood, Spoke};
 use crate::policy::Memory;
 use crate::surface::{Placed, Surface};
@@ -86,7 +86,7 @@ impl Samples {
             let side = Side::new(face, k);
             let is_rim = match connectivity.twin(side) {
                 Twin::Boundary => true,
-                Twin::Side(twin) => is_seam(surface, side, twin),
+                Twin::Side(twin) => is_line(surface, side, twin),
                 _ => false,
             };
             if is_rim {
