@@ -4,6 +4,8 @@
 mod check;
 mod cubes;
 mod finding;
+mod fuse;
+mod imprint;
 mod intersect;
 mod joined;
 mod kinds;
@@ -17,6 +19,8 @@ mod zero_area;
 pub use check::{CheckOptions, check, findings, first, is_clean};
 pub use cubes::{Cubes, MarkedCube};
 pub use finding::{Degeneracy, Finding, Kind, Severity, Touch, TouchKind};
+pub use fuse::{Fused, fuse};
+pub use imprint::{Imprint, imprint};
 pub use intersect::Net;
 pub use kinds::Kinds;
 pub use locks::{LockOptions, LockReason, Locking, locks};

@@ -24,18 +24,18 @@ pub struct LockOptions {
 /// Why a vertex is not free.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum LockReason {
-    /// A face at it passes through one of another component: locked.
+    /// A face at it passes through one of another component: protected.
     Crossing,
-    /// A face at it lies in one plane with one of another component, over it: locked.
+    /// A face at it lies in one plane with one of another component, over it: protected.
     Overlap,
-    /// It, or a face at it, touches another component elsewhere than at its vertices: locked.
+    /// It, or a face at it, touches another component elsewhere than at its vertices: protected.
     Touching,
-    /// It is at the place of other vertices: tied to them, or locked where one of them is.
+    /// Faces of two objects share it: protected.
+    SharedVertex,
+    /// It is at the place of other vertices: tied to them.
     SharedPlace,
     /// It is at a boundary edge: what [`LockOptions::boundary`] says.
     Boundary,
-    /// A face at it has a vertex at a crossing: protected.
-    BesideCrossing,
 }
 
 impl LockReason {
@@ -44,9 +44,9 @@ impl LockReason {
         Self::Crossing,
         Self::Overlap,
         Self::Touching,
+        Self::SharedVertex,
         Self::SharedPlace,
         Self::Boundary,
-        Self::BesideCrossing,
     ];
 
     /// Its name in reports.
@@ -55,9 +55,9 @@ impl LockReason {
             Self::Crossing => "crossing",
             Self::Overlap => "overlap",
             Self::Touching => "touching",
+            Self::SharedVertex => "shared-vertex",
             Self::SharedPlace => "shared-place",
             Self::Boundary => "boundary",
-            Self::BesideCrossing => "beside-crossing",
         }
     }
 }
@@ -107,10 +107,11 @@ impl Locking {
 
 /// What must stay of a mesh that has passed [`Mesh::validate`].
 ///
-/// Faces that pass through faces of another component, or lie over them in one plane, keep their
-/// vertices, so that the line where they meet stays what it is; vertices around them are protected.
-/// Vertices at one place are tied, of two components or of one. A vertex that touches another
-/// component elsewhere is locked, and so is what it touches.
+/// Vertices at one place are tied, of two components or of one. Vertices that named objects share and those of faces that pass
+/// through those of another component, or lie over them in one plane, are protected, so that the line
+/// where they meet moves late and little; so is a vertex that touches another component elsewhere, and
+/// what it touches. None of these is locked: where a target is tight, what is locked is
+/// paid for by all else, and more comes through there than locks save.
 ///
 /// Cost: that of [`check`] for what meets, with contacts; else linear.
 pub fn locks(mesh: &Mesh, options: &LockOptions) -> Locking {
@@ -118,13 +119,11 @@ pub fn locks(mesh: &Mesh, options: &LockOptions) -> Locking {
     if options.contacts {
         let places = Places::of(&mesh.positions);
         hold.contacts(&places);
+        hold.shared_vertices();
         hold.shared_places(&places);
     }
     if options.boundary != Lock::Free {
         hold.boundary(options.boundary);
-    }
-    if options.contacts {
-        hold.beside_crossings();
     }
     hold.locking.settle_ties();
     hold.locking
@@ -172,7 +171,7 @@ impl Hold<'_> {
                 return;
             }
         };
-        corners.into_iter().flatten().for_each(|v| self.hold(v, reason, Lock::Locked));
+        corners.into_iter().flatten().for_each(|v| self.hold(v, reason, Lock::Protected));
     }
 
     /// The corners of each face with which it touches the other; all three where it is the inside
@@ -188,7 +187,20 @@ impl Hold<'_> {
                 _ => true,
             };
             let held = if by_corners { &touching[..] } else { &one };
-            held.iter().for_each(|&v| self.hold(v, LockReason::Touching, Lock::Locked));
+            held.iter().for_each(|&v| self.hold(v, LockReason::Touching, Lock::Protected));
+        }
+    }
+
+    /// Protects the vertices that faces of two named objects use.
+    fn shared_vertices(&mut self) {
+        let Some(objects) = &self.mesh.objects else { return };
+        let mut of_vertex = vec![None; self.mesh.positions.len()];
+        for (face, &object) in self.mesh.faces.iter().zip(&objects.of_face) {
+            for &v in face {
+                if *of_vertex[v.index()].get_or_insert(object) != object {
+                    self.locking.hold(v, Lock::Protected, Some(LockReason::SharedVertex));
+                }
+            }
         }
     }
 
@@ -210,21 +222,6 @@ impl Hold<'_> {
         {
             if connectivity.twin(side) == Twin::Boundary {
                 side.ends(faces).into_iter().for_each(|v| self.hold(v, LockReason::Boundary, lock));
-            }
-        }
-    }
-
-    fn beside_crossings(&mut self) {
-        let crossing: Vec<bool> = self
-            .locking
-            .reasons
-            .iter()
-            .map(|reason| *reason == Some(LockReason::Crossing))
-            .collect();
-        for face in &self.mesh.faces {
-            if face.iter().any(|v| crossing[v.index()]) {
-                face.iter()
-                    .for_each(|&v| self.hold(v, LockReason::BesideCrossing, Lock::Protected));
             }
         }
     }

@@ -18,8 +18,10 @@ mod turn;
 
 use meshlod_mesh::{Mesh, weld};
 
+pub(crate) use edit::{drop_unused, labels, retain_faces};
 pub use holes::HoleLimits;
 pub use report::{RepairReport, RepairStep};
+pub(crate) use stitch::stitch;
 
 /// What is mended.
 ///

@@ -6,6 +6,7 @@ use std::cmp::Ordering;
 use glam::DVec3;
 
 use super::coplanar;
+use super::ends::{End, On};
 use super::exact::side;
 use crate::{Touch, TouchKind};
 
@@ -44,6 +45,34 @@ pub(crate) fn meet(a: &Triangle, b: &Triangle) -> Option<Touch> {
     }
 }
 
+/// The ends of what two triangles in different planes have in common; one point twice where that is
+/// all. `None` where they are apart, or in one plane.
+///
+/// What the ends are on is exact, as [`meet`] is.
+pub(crate) fn ends(a: &Triangle, b: &Triangle) -> Option<[End; 2]> {
+    let (heights_a, heights_b) = (a.map(|p| side(b, p)), b.map(|p| side(a, p)));
+    let apart = same_side(&heights_a) || same_side(&heights_b);
+    if apart || heights_a == [0.0; 3] || heights_b == [0.0; 3] {
+        return None;
+    }
+    let (chord_a, chord_b) = (Chord::of(a, heights_a), Chord::of(b, heights_b).reversed());
+    if order(chord_a.end, chord_b.start).is_lt() || order(chord_a.start, chord_b.end).is_gt() {
+        return None;
+    }
+    let end = |of_a: Crossing, of_b: Crossing, inner: Ordering| {
+        let on = match order(of_a, of_b) {
+            Ordering::Equal => [of_a.on, of_b.on],
+            by if by == inner => [of_a.on, chord_b.on(|of_b| order(of_a, of_b))],
+            _ => [chord_a.on(|of_a| order(of_a, of_b)), of_b.on],
+        };
+        End::new(on, [a, b])
+    };
+    Some([
+        end(chord_a.start, chord_b.start, Ordering::Greater),
+        end(chord_a.end, chord_b.end, Ordering::Less),
+    ])
+}
+
 /// Where the boundary of a triangle crosses the plane of another: between two corners, not both in
 /// that plane.
 #[derive(Clone, Copy)]
@@ -52,6 +81,7 @@ struct Crossing {
     below: DVec3,
     /// The part of the way from `above` to `below`; 0 or 1 exactly where one of them is in the plane.
     at: f64,
+    on: On,
 }
 
 /// What a triangle has in common with the plane of another: a segment, or a point when both ends are.
@@ -75,7 +105,12 @@ impl Chord {
         let crossing = |from: usize, to: usize| {
             let (i, j) = if below(from) { (to, from) } else { (from, to) };
             let at = heights[i] / (heights[i] - heights[j]);
-            Crossing { above: triangle[i], below: triangle[j], at }
+            let on = match [heights[i] == 0.0, heights[j] == 0.0] {
+                [true, _] => On::Corner(i),
+                [_, true] => On::Corner(j),
+                _ => On::edge(i, j),
+            };
+            Crossing { above: triangle[i], below: triangle[j], at, on }
         };
         let step = |rises: bool| {
             (0..3).map(|i| (i, (i + 1) % 3)).find(|&(i, j)| below(i) == rises && below(j) != rises)
@@ -93,6 +128,16 @@ impl Chord {
 
     fn reversed(self) -> Self {
         Self { start: self.end, end: self.start, ..self }
+    }
+
+    /// What a point of the chord is on, by how its ends are to the point.
+    fn on(&self, to_point: impl Fn(Crossing) -> Ordering) -> On {
+        let at_end = [self.start, self.end].into_iter().find(|&end| to_point(end).is_eq());
+        match (at_end, self.start.on, self.end.on) {
+            (Some(end), ..) => end.on,
+            (None, On::Corner(i), On::Corner(j)) => On::edge(i, j),
+            _ => On::Inside,
+        }
     }
 }
 

@@ -6,6 +6,7 @@
 //! ([`meet`]).
 
 mod coplanar;
+mod ends;
 mod exact;
 mod filter;
 mod hub;
@@ -28,6 +29,8 @@ use meet::meet;
 use rings::Certified;
 use soup::{Points, Soup, whole};
 
+pub(crate) use ends::{End, On};
+pub(crate) use exact::{open_axis, turn, without};
 pub(crate) use soup::Ground;
 
 /// What finds the pairs of faces that may meet. The findings are the same with either.
@@ -109,6 +112,14 @@ impl Meetings {
         let touch = meet(&a, &b)?;
         let (place, depth) = (points.place(touch.place), points.length(touch.depth));
         Some(Touch { place, depth, ..touch })
+    }
+
+    /// Where what two triangles in different planes have in common ends; see [`meet::ends`].
+    pub(crate) fn ends(&self, mesh: &Mesh, corners: [[VertexId; 3]; 2]) -> Option<[End; 2]> {
+        let points = Points::new(&mesh.positions, self.scale);
+        let [a, b] = corners.map(|corners| corners.map(|v| points.at(v)));
+        let place = |end: End| End { place: points.place(end.place.into()).into(), ..end };
+        Some(meet::ends(&a, &b)?.map(place))
     }
 }
 

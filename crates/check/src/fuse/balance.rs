@@ -1,0 +1,86 @@
+//! Whether what is left of closed components is closed.
+
+use glam::{DMat3, DVec3};
+use meshlod_mesh::{Mesh, VertexId};
+use rustc_hash::FxHashMap;
+
+use crate::joined::Joined;
+use crate::places::Places;
+
+/// Groups of solid components that have places in common.
+pub struct Groups {
+    /// Of each face; none of components that are not solid.
+    of_face: Vec<Option<u32>>,
+    count: usize,
+}
+
+/// Sums over faces that tell a closed surface by the theorem of divergence: its normals, each as long as its
+/// face is large, sum to nothing, and their products with the faces' middles to the volume, the
+/// same along every axis, and nothing across. Where edges of one face end within those of another, sides
+/// could not be counted.
+#[derive(Clone, Copy, Default)]
+struct Balance {
+    origin: DVec3,
+    normals: DVec3,
+    products: DMat3,
+    area: f64,
+    reach: f64,
+}
+
+/// What rounding may leave, as part of areas and lengths.
+const ROUNDING: f64 = 1e-9;
+
+impl Groups {
+    /// `is_solid` has a flag per component.
+    pub fn of(mesh: &Mesh, component: &[u32], is_solid: &[bool]) -> Self {
+        let places = Places::of(&mesh.positions);
+        let solid = component.iter().map(|&own| Some(own).filter(|_| is_solid[own as usize]));
+        let mut of_face: Vec<Option<u32>> = solid.collect();
+        let mut joined = Joined::new(is_solid.len());
+        let mut first: FxHashMap<VertexId, u32> = FxHashMap::default();
+        for (face, component) in mesh.faces.iter().zip(&of_face) {
+            let Some(component) = *component else { continue };
+            for &v in face {
+                joined.join(*first.entry(places.first(v)).or_insert(component), component);
+            }
+        }
+        of_face.iter_mut().flatten().for_each(|group| *group = joined.least(*group));
+        Self { of_face, count: is_solid.len() }
+    }
+
+    pub fn of_face(&self, face: usize) -> Option<usize> {
+        self.of_face[face].map(|group| group as usize)
+    }
+
+    /// Which groups are closed if only some faces are kept.
+    pub fn closed(&self, mesh: &Mesh, keeps: impl Fn(usize) -> bool) -> Vec<bool> {
+        let mut sums: Vec<Option<Balance>> = vec![None; self.count];
+        for (f, &face) in mesh.faces.iter().enumerate().filter(|(f, _)| keeps(*f)) {
+            let Some(group) = self.of_face(f) else { continue };
+            let triangle = mesh.triangle(face);
+            let start = || Balance { origin: triangle[0], ..Balance::default() };
+            sums[group].get_or_insert_with(start).add(&triangle);
+        }
+        sums.into_iter().map(|sum| sum.is_none_or(|sum| sum.is_closed())).collect()
+    }
+}
+
+impl Balance {
+    fn add(&mut self, triangle: &[DVec3; 3]) {
+        let [a, b, c] = triangle.map(|corner| corner - self.origin);
+        let normal = (b - a).cross(c - a);
+        let middle = (a + b + c) / 3.0;
+        self.normals += normal;
+        self.products += DMat3::from_cols(normal * middle.x, normal * middle.y, normal * middle.z);
+        self.area += normal.length();
+        self.reach = self.reach.max(middle.length());
+    }
+
+    fn is_closed(&self) -> bool {
+        let volume = self.products.x_axis.x;
+        let uneven = (self.products - DMat3::from_diagonal(DVec3::splat(volume))).to_cols_array();
+        let rounding = ROUNDING * self.area;
+        self.normals.length() <= rounding
+            && uneven.iter().all(|product| product.abs() <= rounding * self.reach)
+    }
+}

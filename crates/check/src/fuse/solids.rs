@@ -1,0 +1,135 @@
+//! What is inside closed shells.
+
+use std::f64::consts::TAU;
+
+use glam::DVec3;
+use meshlod_mesh::{Bounds, FaceId, Mesh};
+
+use super::patches::Patch;
+use crate::check::shells::Shells;
+
+/// The closed shells of a mesh that cannot be seen through.
+pub struct Solids {
+    solids: Vec<Solid>,
+    /// Faces that may still be looked at.
+    budget: usize,
+}
+
+struct Solid {
+    component: u32,
+    bounds: Bounds,
+    triangles: Vec<[DVec3; 3]>,
+}
+
+/// A point of a face, and its normal.
+#[derive(Clone, Copy)]
+struct Sample {
+    point: DVec3,
+    normal: DVec3,
+}
+
+/// How many of the largest faces of a patch must agree, and how many of the others.
+const SAMPLES: [usize; 2] = [16, 48];
+
+/// How far before and behind a face is looked, against the size of the solid.
+const ASIDE: f64 = 1e-7;
+
+impl Solids {
+    pub fn of(mesh: &Mesh, component: &[u32], solid: impl Fn(FaceId) -> bool) -> Self {
+        let shells = Shells::of_mesh(mesh);
+        let closed = shells.all.iter().map(|shell| {
+            let component = component[shell.first.index()];
+            let empty = Solid { component, bounds: Bounds::EMPTY, triangles: Vec::new() };
+            shell.volume().map(|_| empty)
+        });
+        let mut slots: Vec<Option<Solid>> = closed.collect();
+        for (f, &shell) in shells.of_face.iter().enumerate() {
+            let Some(slot) = slots.get_mut(shell as usize) else { continue };
+            if !solid(FaceId::new(f)) {
+                *slot = None;
+            } else if let Some(solid) = slot {
+                mesh.faces[f].iter().for_each(|v| solid.bounds.add(mesh.positions[v.index()]));
+                solid.triangles.push(mesh.triangle(mesh.faces[f]));
+            }
+        }
+        Self { solids: slots.into_iter().flatten().collect(), budget: 1 << 30 }
+    }
+
+    /// A flag per component: whether all of it is solid.
+    pub fn components(&self, component: &[u32]) -> Vec<bool> {
+        let count = component.iter().max().map_or(0, |&most| most as usize + 1);
+        let mut faces = vec![0; count];
+        component.iter().for_each(|&own| faces[own as usize] += 1);
+        for solid in &self.solids {
+            faces[solid.component as usize] -= solid.triangles.len();
+        }
+        faces.iter().map(|&others| others == 0).collect()
+    }
+
+    /// Whether one of another component hides a patch of a component, as far as that can be told.
+    pub fn hide(&mut self, mesh: &Mesh, patch: &Patch, component: u32) -> bool {
+        let samples = samples(mesh, patch);
+        let Self { solids, budget } = self;
+        solids
+            .iter()
+            .filter(|solid| solid.component != component)
+            .any(|solid| samples.iter().all(|sample| solid.hides(sample, component, budget)))
+    }
+}
+
+impl Solid {
+    /// Whether a face of another component at this point is inside or lies on the surface: there the
+    /// two may look one way, and the first component's is seen, or against each other, and none is.
+    fn hides(&self, sample: &Sample, component: u32, budget: &mut usize) -> bool {
+        let looks = 2 * self.triangles.len();
+        if !holds(&self.bounds, sample.point) || *budget < looks {
+            return false;
+        }
+        *budget -= looks;
+        let aside = sample.normal * (ASIDE * self.bounds.diagonal());
+        let is_inside = |point: DVec3| self.winding(point).abs() > 0.5;
+        match [sample.point + aside, sample.point - aside].map(is_inside) {
+            [true, _] => true,
+            [false, true] => self.component < component,
+            [false, false] => false,
+        }
+    }
+
+    /// How often the surface goes around a point.
+    ///
+    /// # References
+    /// [VOS83]: the solid angle of a triangle by one arc tangent.
+    fn winding(&self, point: DVec3) -> f64 {
+        let angle = |triangle: &[DVec3; 3]| {
+            let [a, b, c] = triangle.map(|corner| corner - point);
+            let [x, y, z] = [a, b, c].map(|way| way.length());
+            let below = x * y * z + a.dot(b) * z + b.dot(c) * x + c.dot(a) * y;
+            a.dot(b.cross(c)).atan2(below)
+        };
+        self.triangles.iter().map(angle).sum::<f64>() / TAU
+    }
+}
+
+/// The middles of the largest faces of a patch, and of others from all over it.
+fn samples(mesh: &Mesh, patch: &Patch) -> Vec<Sample> {
+    let mut faces: Vec<(Sample, f64)> = patch
+        .faces
+        .iter()
+        .filter_map(|face| {
+            let [a, b, c] = mesh.triangle(mesh.faces[face.index()]);
+            let across = (b - a).cross(c - a);
+            let sample = Sample { point: (a + b + c) / 3.0, normal: across.try_normalize()? };
+            Some((sample, across.length_squared()))
+        })
+        .collect();
+    faces.sort_by(|a, b| b.1.total_cmp(&a.1));
+    let [largest, others] = SAMPLES;
+    let step = faces.len().div_ceil(others).max(1);
+    let chosen = faces.iter().enumerate().filter(|(i, _)| *i < largest || i % step == 0);
+    chosen.map(|(_, (sample, _))| *sample).collect()
+}
+
+fn holds(bounds: &Bounds, point: DVec3) -> bool {
+    let [min, max] = [bounds.min, bounds.max].map(DVec3::from);
+    point.cmpge(min).all() && point.cmple(max).all()
+}

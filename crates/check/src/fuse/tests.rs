@@ -1,0 +1,165 @@
+use std::collections::BTreeSet;
+
+use glam::{DQuat, DVec3};
+use meshlod_mesh::{Connectivity, VertexId};
+
+use super::*;
+
+/// A closed box from one corner to another, as 12 faces that look outwards.
+fn block(from: [f64; 3], to: [f64; 3]) -> Mesh {
+    let corner = |i: usize| {
+        std::array::from_fn(|axis| if i >> axis & 1 == 0 { from[axis] } else { to[axis] })
+    };
+    let sides =
+        [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+    let faces = sides.iter().flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]);
+    Mesh::new((0..8).map(corner).collect(), faces.map(|face| face.map(VertexId)).collect())
+}
+
+fn together(meshes: impl IntoIterator<Item = Mesh>) -> Mesh {
+    let mut all = Mesh::default();
+    for mesh in meshes {
+        let base = all.positions.len();
+        all.positions.extend(mesh.positions);
+        all.faces
+            .extend(mesh.faces.iter().map(|face| face.map(|v| VertexId::new(base + v.index()))));
+    }
+    all
+}
+
+fn volume(mesh: &Mesh) -> f64 {
+    let six = |&face: &[VertexId; 3]| {
+        let [a, b, c] = mesh.triangle(face);
+        a.dot(b.cross(c))
+    };
+    mesh.faces.iter().map(six).sum::<f64>() / 6.0
+}
+
+fn area(mesh: &Mesh) -> f64 {
+    let twice = |&face: &[VertexId; 3]| {
+        let [a, b, c] = mesh.triangle(face);
+        (b - a).cross(c - a).length()
+    };
+    mesh.faces.iter().map(twice).sum::<f64>() / 2.0
+}
+
+fn is_closed(mesh: &Mesh) -> bool {
+    let connectivity = Connectivity::new(&mesh.faces, mesh.positions.len());
+    connectivity.boundary_edges() == 0 && connectivity.non_manifold_edges() == 0
+}
+
+#[test]
+fn two_blocks_become_one() {
+    let blocks = together([block([0.0; 3], [2.0; 3]), block([1.0; 3], [3.0, 4.0, 2.5])]);
+    let (fused, report) = fuse(&blocks, |_| true);
+    assert_eq!(fused.validate(), Ok(()));
+    assert!(is_closed(&fused));
+    assert!((volume(&fused) - (8.0 + 9.0 - 1.0)).abs() < 1e-12);
+    let labels = fused.objects.as_ref().unwrap();
+    assert_eq!(labels.names.len(), 2);
+    assert!(labels.of_face.contains(&0) && labels.of_face.contains(&1));
+    assert!(report.buried > 0 && report.joined > 0);
+}
+
+#[test]
+fn what_meets_nothing_stays() {
+    let apart = together([block([0.0; 3], [4.0; 3]), block([1.0; 3], [2.0; 3])]);
+    assert_eq!(fuse(&apart, |_| true), (apart.clone(), Fused::default()));
+}
+
+#[test]
+fn glass_hides_nothing() {
+    let blocks = together([block([0.0; 3], [2.0; 3]), block([1.0; 3], [3.0; 3])]);
+    let (fused, report) = fuse(&blocks, |face| face.index() >= 12);
+    // What is left is the glass without what is in the other, and all of the other.
+    assert!(report.buried > 0);
+    assert!((area(&fused) - (24.0 - 3.0 + 24.0)).abs() < 1e-12);
+    let (fused, report) = fuse(&blocks, |_| false);
+    assert_eq!((report.buried, report.joined), (0, 0));
+    assert!((area(&fused) - 48.0).abs() < 1e-12);
+}
+
+/// Numbers that look random, the same for the same seed.
+struct Random(u64);
+
+impl Random {
+    fn below(&mut self, n: u64) -> u64 {
+        self.0 = self.0.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+        (self.0 >> 33) % n
+    }
+}
+
+/// Some blocks with corners at whole places, and the cells that they cover.
+fn blocks_on_a_grid(seed: u64) -> (Mesh, BTreeSet<[u64; 3]>) {
+    let mut random = Random(seed);
+    let count = 2 + random.below(4);
+    let mut cells = BTreeSet::new();
+    let blocks = (0..count).map(|_| {
+        let from: [u64; 3] = std::array::from_fn(|_| random.below(4));
+        let to = from.map(|x| x + 1 + random.below(3));
+        for x in from[0]..to[0] {
+            for y in from[1]..to[1] {
+                cells.extend((from[2]..to[2]).map(|z| [x, y, z]));
+            }
+        }
+        block(from.map(|x| x as f64), to.map(|x| x as f64))
+    });
+    (together(blocks.collect::<Vec<_>>()), cells)
+}
+
+/// How many sides of cells have no cell beyond.
+fn open_sides(cells: &BTreeSet<[u64; 3]>) -> usize {
+    let beside = |cell: &[u64; 3], axis: usize, step: i64| {
+        let mut beside = *cell;
+        beside[axis] = cell[axis].wrapping_add_signed(step);
+        beside
+    };
+    let sides = cells
+        .iter()
+        .flat_map(|cell| (0..3).flat_map(move |axis| [-1, 1].map(|step| beside(cell, axis, step))));
+    sides.filter(|beside| !cells.contains(beside)).count()
+}
+
+#[test]
+fn blocks_on_a_grid_fuse_to_the_cells_that_they_cover() {
+    // Most corners lie in faces and on edges of others, and many sides in one plane.
+    for seed in 0..200 {
+        let (blocks, cells) = blocks_on_a_grid(seed);
+        let (fused, _) = fuse(&blocks, |_| true);
+        assert_eq!(fused.validate(), Ok(()), "seed {seed}");
+        assert!((volume(&fused) - cells.len() as f64).abs() < 1e-9, "seed {seed}");
+        assert!((area(&fused) - open_sides(&cells) as f64).abs() < 1e-9, "seed {seed}");
+    }
+}
+
+/// The same blocks, each turned by its own angle, or all by one.
+fn turned(blocks: &Mesh, angle: impl Fn(usize) -> f64) -> Mesh {
+    let mut turned = blocks.clone();
+    for (v, p) in turned.positions.iter_mut().enumerate() {
+        let turn = DQuat::from_rotation_z(angle(v / 8)) * DQuat::from_rotation_x(0.7);
+        *p = (turn * DVec3::from(*p)).into();
+    }
+    turned
+}
+
+#[test]
+fn blocks_turned_apart_stay_closed() {
+    for seed in 0..100 {
+        let (blocks, _) = blocks_on_a_grid(seed);
+        let blocks = turned(&blocks, |block| 0.3 + 0.1 * block as f64);
+        let (imprinted, _) = crate::imprint(&blocks);
+        assert!((area(&imprinted) - area(&blocks)).abs() < 1e-9, "seed {seed}");
+        let (fused, report) = fuse(&blocks, |_| true);
+        assert!(is_closed(&fused), "seed {seed}");
+        assert!(report.imprint.pairs == 0 || volume(&fused) < volume(&blocks), "seed {seed}");
+    }
+}
+
+#[test]
+fn where_planes_are_one_but_for_rounding_nothing_seen_is_lost() {
+    for seed in 0..100 {
+        let (blocks, cells) = blocks_on_a_grid(seed);
+        let (fused, _) = fuse(&turned(&blocks, |_| 0.3), |_| true);
+        assert!(volume(&fused) > cells.len() as f64 - 1e-9, "seed {seed}: {}", volume(&fused));
+    }
+}
