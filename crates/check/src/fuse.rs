@@ -26,6 +26,17 @@ pub struct Fused {
     pub joined: usize,
 }
 
+impl Fused {
+    /// Counts another mesh in.
+    pub fn add(&mut self, other: &Self) {
+        self.imprint.pairs += other.imprint.pairs;
+        self.imprint.faces += other.imprint.faces;
+        self.imprint.vertices += other.imprint.vertices;
+        self.buried += other.buried;
+        self.joined += other.joined;
+    }
+}
+
 /// Makes one surface of closed components that pass through each other: cuts them along the lines
 /// where they meet, as [`imprint`](crate::imprint()) does, leaves out what is inside, and joins what is left.
 ///
@@ -35,8 +46,8 @@ pub struct Fused {
 /// hides nothing. Open components hide nothing either; they are cut, lose what is inside closed ones, and are
 /// not joined to them.
 ///
-/// Labels of objects tell afterwards which face is of what; where there are none, they are named by
-/// component. Where nothing meets, the mesh is what it was.
+/// Labels of objects tell afterwards which face is of what; where there are less than two, they are
+/// named by component. Where nothing meets, the mesh is what it was.
 ///
 /// Closed components that meet are closed together afterwards; where that would not be so, since faces lie in one plane only
 /// up to rounding, they are only cut.
@@ -67,8 +78,7 @@ pub fn fuse(mesh: &Mesh, solid: impl Fn(FaceId) -> bool) -> (Mesh, Fused) {
     let groups = Groups::of(&fused, &component, &is_solid);
     keep_closed(&fused, &groups, &mut is_buried);
     let of_face = parents.iter().map(|parent| objects.of_face[parent.index()].0).collect();
-    let own = Labels { names: objects.names, of_face };
-    fused.objects.get_or_insert(own);
+    fused.objects = Some(Labels { names: objects.names, of_face });
     let buried = retain_faces(&mut fused, |face| !is_buried[face]);
     // What is left of several objects is joined, too.
     let labels = fused.objects.take();

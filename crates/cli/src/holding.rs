@@ -20,11 +20,11 @@ pub struct Holding {
     /// Keep every vertex of a boundary edge where it is
     #[arg(long)]
     lock_boundary: bool,
-    /// Keep objects together where they meet: what crosses stays, what touches moves together
+    /// Keep objects together where they meet: what touches moves together, what crosses goes late
     #[arg(long)]
     lock_contacts: bool,
     /// Keep what a file says, as check --locks writes it
-    #[arg(long, value_name = "FILE.json", conflicts_with = "lock_contacts")]
+    #[arg(long, value_name = "FILE.json", conflicts_with_all = ["lock_contacts", "fuse"])]
     locks: Option<PathBuf>,
     /// Connected pieces at least this large are never removed, in model units or 5% of the diagonal;
     /// smaller ones go as a whole where that costs least. Without a size, as without the option:

@@ -13,6 +13,7 @@ mod demo;
 mod distance;
 mod failure;
 mod files;
+mod fusing;
 mod holding;
 mod numbers;
 mod page;

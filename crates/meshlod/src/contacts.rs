@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use glam::{DMat3, DMat4};
 use meshlod_check::{LockOptions, LockReason, Locking, locks};
 use meshlod_io::{Placement, Scene, SceneMesh};
-use meshlod_mesh::{Lock, Mesh, VertexId, first_near};
+use meshlod_mesh::{Labels, Lock, Mesh, VertexId, first_near};
 
 /// What must stay of each mesh of a scene, by where its meshes meet in the world.
 ///
@@ -71,6 +71,7 @@ const ROUNDING: f64 = 1.0 / (1 << 22) as f64;
 impl World {
     fn of(scene: &Scene) -> Self {
         let mut this = Self { mesh: Mesh::default(), homes: Vec::new() };
+        let mut objects = Labels::default();
         for Placement { node, mesh, transform } in scene.placements() {
             let transform = DMat4::from_cols_array_2d(&transform);
             if squeezes(&DMat3::from_mat4(transform)) {
@@ -86,9 +87,21 @@ impl World {
             this.mesh.positions.extend(moved);
             let placed = |face: &[VertexId; 3]| face.map(|v| VertexId::new(first + v.index()));
             this.mesh.faces.extend(own.faces.iter().map(placed));
+            let base = objects.names.len() as u32;
+            match &own.objects {
+                Some(labels) => {
+                    objects.names.extend_from_slice(&labels.names);
+                    objects.of_face.extend(labels.of_face.iter().map(|label| base + label));
+                }
+                None => {
+                    objects.names.push(String::new());
+                    objects.of_face.resize(this.mesh.faces.len(), base);
+                }
+            }
             let vertices = (0..own.positions.len()).map(VertexId::new);
             this.homes.extend(vertices.map(|vertex| Home { node, mesh, vertex }));
         }
+        this.mesh.objects = Some(objects);
         this
     }
 
@@ -168,14 +181,14 @@ mod tests {
     }
 
     #[test]
-    fn meshes_that_cross_in_the_world_are_locked_there() {
+    fn meshes_that_cross_in_the_world_are_protected_there() {
         let balls = |x| {
             let meshes = vec![sample::sphere(500); 3];
             scene_locks(&scene(meshes, vec![at(0.0, 0), at(x, 1)]), &CONTACTS)
         };
-        let locked = |of: &Locking| of.locks.of_vertex.contains(&Lock::Locked);
-        assert_eq!(balls(1.5).iter().map(locked).collect::<Vec<_>>(), [true, true, false]);
-        assert_eq!(balls(2.5).iter().map(locked).collect::<Vec<_>>(), [false; 3]);
+        let held = |of: &Locking| of.locks.of_vertex.contains(&Lock::Protected);
+        assert_eq!(balls(1.5).iter().map(held).collect::<Vec<_>>(), [true, true, false]);
+        assert_eq!(balls(2.5).iter().map(held).collect::<Vec<_>>(), [false; 3]);
     }
 
     #[test]
@@ -213,7 +226,7 @@ mod tests {
         let mut thin = scene(vec![sample::sphere(500)], vec![at(0.0, 0), at(0.5, 0)]);
         thin.nodes[1].transform[0][0] = 1e-6;
         thin.nodes[1].transform[1][1] = 1e-6;
-        assert!(scene_locks(&thin, &CONTACTS)[0].locks.of_vertex.contains(&Lock::Locked));
+        assert!(scene_locks(&thin, &CONTACTS)[0].locks.of_vertex.contains(&Lock::Protected));
     }
 
     #[test]

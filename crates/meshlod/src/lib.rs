@@ -110,6 +110,7 @@
 #![forbid(unsafe_code)]
 
 mod contacts;
+mod fuse;
 mod locks;
 mod materials;
 mod place;
@@ -126,6 +127,7 @@ pub use meshlod_simplify as simplify;
 pub use meshlod_spatial as spatial;
 
 pub use contacts::scene_locks;
+pub use fuse::fuse_scene;
 pub use locks::join_locks;
 pub use materials::{UnreadImage, materials_of};
 pub use meshlod_io::{Format, IoError, ReadOptions, Scene, WriteOptions, read, write};

@@ -16,6 +16,7 @@ use crate::args::{Reading, Writing};
 use crate::distance;
 use crate::failure::Failure;
 use crate::files;
+use crate::fusing;
 use crate::holding::{self, Origin};
 use crate::numbers::{count, percent, value};
 use crate::reduce::{self, Engine, Reduced};
@@ -68,9 +69,10 @@ impl Lods {
         }
         let mut scene = files::read(&self.input, &self.reading, session)?;
         self.manner.warn(session);
+        let fused = self.manner.fusing.apply(&mut scene, session);
         let origin = Origin { scene: &scene, path: &self.input, reading: &self.reading };
         let options = self.manner.options(&origin, session)?;
-        let (mut chain, time) = self.chain(&scene, &options, session)?;
+        let (mut chain, time) = self.chain(&scene, fused.as_ref(), &options, session)?;
         let input_faces = chain.first().map_or(0, |link| link.reduced.report.input_faces);
         self.write(format, &mut scene, &mut chain, session)?;
         for link in chain.iter().filter(|link| !link.reduced.report.reached) {
@@ -91,6 +93,7 @@ impl Lods {
     fn chain(
         &self,
         scene: &Scene,
+        fused: Option<&fusing::Done>,
         options: &Options,
         session: &Session,
     ) -> Result<(Vec<Link>, Duration), Failure> {
@@ -102,7 +105,8 @@ impl Lods {
         check_order(&self.levels, engine.input_faces())?;
         let mut chain: Vec<Link> = Vec::new();
         for (i, &size) in self.levels.iter().enumerate() {
-            let report = engine.run(size.target())?;
+            let target = size.target();
+            let report = engine.run(fused.map_or(target, |fused| fused.target(target)))?;
             let meshes = engine.level();
             let measured = reduce::measure(surface.as_ref(), scene, &meshes, session);
             let finer = chain.last().map_or(1.0, |link| link.screen_coverage);

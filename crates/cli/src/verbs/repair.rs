@@ -16,6 +16,7 @@ use crate::answer::Answer;
 use crate::args::{Reading, Writing};
 use crate::failure::Failure;
 use crate::files;
+use crate::fusing::{self, Fusing};
 use crate::numbers::{count, faces, plural, value};
 use crate::session::Session;
 use crate::table::aligned;
@@ -24,7 +25,7 @@ use crate::table::aligned;
 ///
 /// Steps, in this order: drop what cannot be; --weld; drop doubles; drop faces without area; split what
 /// is not manifold; turn faces until they agree; stitch borders; --holes; turn closed shells outwards;
-/// drop unused vertices. Then OUT is read again, and the errors that check finds in it are told.
+/// drop unused vertices; --fuse. Then OUT is read again, and the errors that check finds in it are told.
 #[derive(Args)]
 pub struct Repair {
     /// File to read, or -
@@ -35,6 +36,8 @@ pub struct Repair {
     output: PathBuf,
     #[command(flatten)]
     steps: Steps,
+    #[command(flatten)]
+    fusing: Fusing,
     #[command(flatten)]
     reading: Reading,
     #[command(flatten)]
@@ -101,6 +104,7 @@ impl Repair {
         session.progress.stage("repairing");
         let start = Instant::now();
         let report = repair_scene(&mut scene, &options);
+        let fused = self.fusing.apply(&mut scene, session);
         let time = start.elapsed();
         let after = Size::of(&scene);
         if after.faces == 0 {
@@ -110,7 +114,7 @@ impl Repair {
         self.writing = self.writing.lossless(&scene);
         files::write(&self.output, &scene, &self.writing, session)?;
         let left = errors(files::read_again(&self.output, &scene, &self.writing, session)?);
-        let done = Done { report, left, before, after, time };
+        let done = Done { report, fused, left, before, after, time };
         self.warn(format, &done, session);
         Ok(Answer {
             file_on_stdout: files::is_pipe(&self.output),
@@ -150,12 +154,13 @@ impl Repair {
         let left = done.left.found().map(|(kind, count)| (kind.name().into(), count.into()));
         json!({
             "file": files::name(&self.output),
-            "changed": !done.report.is_nothing(),
+            "changed": !done.report.is_nothing() || done.before.faces != done.after.faces,
             "input_faces": done.before.faces,
             "input_vertices": done.before.vertices,
             "output_faces": done.after.faces,
             "output_vertices": done.after.vertices,
             "steps": steps,
+            "fused": fusing::to_json(done.fused.as_ref()),
             "errors_left": done.left.total(),
             "errors_left_by_kind": Value::Object(left.collect()),
             "repair_seconds": done.time.as_secs_f64(),
@@ -163,7 +168,7 @@ impl Repair {
     }
 
     fn text(&self, done: &Done) -> String {
-        let Done { report, left, before, after, time } = done;
+        let Done { report, fused, left, before, after, time } = done;
         let steps: Vec<[String; 2]> = report
             .told()
             .map(|(step, number)| [format!("  {}", step.name()), count(number)])
@@ -178,13 +183,14 @@ impl Repair {
             .map(|(kind, number)| [format!("  left: {}", kind.name()), count(number)])
             .collect();
         format!(
-            "{}: {} to {}, {} vertices to {}\n{nothing}{}{}repair_seconds: {}\n",
+            "{}: {} to {}, {} vertices to {}\n{nothing}{}{}{}repair_seconds: {}\n",
             files::name(&self.output),
             faces(before.faces),
             count(after.faces),
             count(before.vertices),
             count(after.vertices),
             aligned(&steps),
+            fusing::to_text(fused.as_ref()),
             aligned(&left),
             value(time.as_secs_f64()),
         )
@@ -204,6 +210,7 @@ fn errors(scene: Scene) -> Summary {
 
 struct Done {
     report: RepairReport,
+    fused: Option<fusing::Done>,
     /// The errors in what was written.
     left: Summary,
     before: Size,

@@ -14,6 +14,7 @@ use crate::args::{Reading, Writing};
 use crate::distance;
 use crate::failure::Failure;
 use crate::files;
+use crate::fusing::{self, Fusing};
 use crate::holding::{self, Holding, Origin};
 use crate::numbers::{count, faces, percent, value};
 use crate::reduce::{self, Engine, Reduced};
@@ -39,7 +40,7 @@ pub struct Simplify {
     measured: bool,
     /// Keep all levels on the way in FILE, for the verb replay, which needs --scene IN to give back
     /// nodes and materials; of a file with one mesh
-    #[arg(long, value_name = "FILE", conflicts_with = "measured")]
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["measured", "fuse"])]
     sequence: Option<PathBuf>,
     /// Exit with 1 when the target is out of reach
     #[arg(long)]
@@ -71,6 +72,8 @@ pub struct Manner {
     #[arg(long, value_name = "NAME", default_value = Method::default().name(),
         value_parser = amounts::method, help = amounts::methods())]
     pub method: Method,
+    #[command(flatten)]
+    pub fusing: Fusing,
     #[command(flatten)]
     holding: Holding,
     #[command(flatten)]
@@ -153,7 +156,9 @@ impl Simplify {
         if self.sequence.is_some() {
             sequence::check_scene(&scene, &self.input, session)?;
         }
+        let fused = self.manner.fusing.apply(&mut scene, session);
         let target = self.goal.target(&scene);
+        let target = fused.as_ref().map_or(target, |fused| fused.target(target));
         let origin = Origin { scene: &scene, path: &self.input, reading: &self.reading };
         let options = self.manner.options(&origin, session)?;
         let task = Task { scene: &scene, target, options };
@@ -175,7 +180,10 @@ impl Simplify {
         Ok(Answer {
             file_on_stdout: files::is_pipe(&self.output),
             missed: self.strict && !done.report.reached,
-            ..Answer::new(self.json(&done, time), self.text(&done, time))
+            ..Answer::new(
+                self.json(&done, fused.as_ref(), time),
+                self.text(&done, fused.as_ref(), time),
+            )
         })
     }
 
@@ -222,7 +230,7 @@ impl Simplify {
         Ok((Reduced { measured, ..reduced }, time))
     }
 
-    fn json(&self, done: &Reduced, time: Duration) -> Value {
+    fn json(&self, done: &Reduced, fused: Option<&fusing::Done>, time: Duration) -> Value {
         let report = &done.report;
         let mut json = json!({ "method": self.manner.method.name() });
         for (key, value) in reduce::report_json(report).as_object().into_iter().flatten() {
@@ -235,6 +243,7 @@ impl Simplify {
         json["degenerate_faces"] = report.degenerate_faces.into();
         json["duplicate_faces"] = report.duplicate_faces.into();
         json["non_manifold_vertices"] = report.non_manifold_vertices.into();
+        json["fused"] = fusing::to_json(fused);
         json["held"] = holding::to_json(report);
         json["vanished"] = report.vanished.into();
         json["refusals"] = reduce::refusals_json(report);
@@ -242,11 +251,12 @@ impl Simplify {
         json
     }
 
-    fn text(&self, done: &Reduced, time: Duration) -> String {
+    fn text(&self, done: &Reduced, fused: Option<&fusing::Done>, time: Duration) -> String {
         let report = &done.report;
         let part = 100.0 * report.output_faces as f64 / report.input_faces as f64;
         let mut text = format!(
-            "{}: {} to {} ({})\n{}",
+            "{}{}: {} to {} ({})\n{}",
+            fusing::to_text(fused),
             files::name(&self.output),
             faces(report.input_faces),
             count(report.output_faces),

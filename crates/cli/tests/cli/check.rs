@@ -263,7 +263,7 @@ fn a_real_model_is_checked_and_held_together() {
     assert_eq!((&found["components"], &found["errors"]), (&json!(10), &json!(0)));
     // PLY would tear the seams.
     let held = run.json(&["simplify", fish, "f.obj", "--ratio", "10%", "--lock-contacts"]);
-    assert!(held["held"]["locked"].as_u64() > Some(0), "{held}");
+    assert!(held["held"]["protected"].as_u64() > Some(0), "{held}");
     let info = run.json(&["info", "f.obj"]);
     assert_eq!((&info["closed"], &info["components"]), (&json!(true), &json!(10)));
 }

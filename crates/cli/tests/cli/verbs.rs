@@ -258,6 +258,48 @@ fn two_boxes() -> String {
 }
 
 #[test]
+fn objects_that_cross_are_fused_and_keep_their_names() {
+    let run = Run::new();
+    run.sample("sphere", 500, "ball.obj");
+    let text = std::fs::read_to_string(run.path("ball.obj")).unwrap();
+    let numbers = |of: &str| -> Vec<f64> {
+        of.split(' ').map(|x| x.split('/').next().unwrap().parse().unwrap()).collect()
+    };
+    let places: Vec<_> = text.lines().filter_map(|line| line.strip_prefix("v ")).collect();
+    let faces: Vec<_> = text.lines().filter_map(|line| line.strip_prefix("f ")).collect();
+    let mut balls = String::new();
+    for (name, x, base) in [("first", 0.0, 0), ("second", 1.0, places.len())] {
+        balls += &format!("o {name}\n");
+        for at in places.iter().map(|at| numbers(at)) {
+            balls += &format!("v {} {} {}\n", at[0] + x, at[1] + x / 10.0, at[2]);
+        }
+        for face in faces.iter().map(|face| numbers(face)) {
+            let [a, b, c] = [0, 1, 2].map(|k| face[k] as usize + base);
+            balls += &format!("f {a} {b} {c}\n");
+        }
+    }
+    std::fs::write(run.path("balls.obj"), balls).unwrap();
+    let before = run.json(&["info", "balls.obj"]);
+    assert_eq!((&before["components"], &before["closed"]), (&json!(2), &json!(true)));
+    let fused = run.json(&["repair", "balls.obj", "one.obj", "--fuse"]);
+    assert!(fused["fused"]["buried_faces"].as_u64() > Some(100), "{fused}");
+    assert_eq!(fused["errors_left"], json!(0));
+    let after = run.json(&["info", "one.obj"]);
+    assert_eq!((&after["components"], &after["closed"]), (&json!(1), &json!(true)));
+    assert!(after["volume"].as_f64() < before["volume"].as_f64());
+    // A part of the faces before; and both are still there.
+    let level =
+        ["simplify", "balls.obj", "level.obj", "--ratio", "20%", "--fuse", "--lock-contacts"];
+    let level = run.json(&level);
+    let most = before["faces"].as_u64().unwrap() / 5;
+    assert!(level["output_faces"].as_u64().is_some_and(|faces| faces <= most && faces + 4 > most));
+    let text = std::fs::read_to_string(run.path("level.obj")).unwrap();
+    assert!(text.contains("first") && text.contains("second"));
+    let plain = run.json(&["simplify", "balls.obj", "plain.obj", "--ratio", "20%"]);
+    assert_eq!(plain["fused"], Value::Null);
+}
+
+#[test]
 fn what_touches_is_held_where_contacts_are_locked() {
     let run = Run::new();
     std::fs::write(run.path("boxes.obj"), two_boxes()).unwrap();

@@ -1,0 +1,74 @@
+//! Scenes fused as a whole.
+
+use meshlod_check::{Fused, fuse};
+use meshlod_io::Scene;
+use meshlod_mesh::FaceId;
+
+/// Fuses every mesh of a scene in its own space; see [`fuse`]. Meshes are not fused with each other.
+///
+/// A material whose base colour is not opaque can be seen through. Whether a texture is, is not known.
+pub fn fuse_scene(scene: &mut Scene) -> Fused {
+    let mut all = Fused::default();
+    for own in &mut scene.meshes {
+        let is_clear = |label: u32| {
+            let material = own.materials.get(label as usize).copied().flatten();
+            let material = material.and_then(|index| scene.materials.get(index));
+            material.is_some_and(|material| material.base_color[3] < 1.0)
+        };
+        let labels = own.mesh.materials.as_ref();
+        let is_solid =
+            |face: FaceId| !labels.is_some_and(|labels| is_clear(labels.of(face.index())));
+        let (mesh, fused) = fuse(&own.mesh, is_solid);
+        own.mesh = mesh;
+        all.add(&fused);
+    }
+    all
+}
+
+#[cfg(test)]
+mod tests {
+    use meshlod_io::{Material, SceneMesh};
+    use meshlod_mesh::{Labels, Mesh, VertexId, sample};
+
+    use super::*;
+
+    /// Two balls that cross, the second of another material.
+    fn balls(alpha: f32) -> Scene {
+        let mut mesh = sample::sphere(500);
+        let (vertices, faces) = (mesh.positions.len(), mesh.faces.len());
+        let moved: Vec<_> = mesh.positions.iter().map(|[x, y, z]| [x + 1.0, y + 0.1, *z]).collect();
+        mesh.positions.extend(moved);
+        let second: Vec<_> =
+            mesh.faces.iter().map(|f| f.map(|v| VertexId::new(vertices + v.index()))).collect();
+        mesh.faces.extend(second);
+        let of_face = (0..2 * faces).map(|face| u32::from(face >= faces)).collect();
+        mesh.materials = Some(Labels { names: ["a", "b"].map(str::to_owned).into(), of_face });
+        let material =
+            |alpha| Material { base_color: [1.0, 1.0, 1.0, alpha], ..Material::default() };
+        Scene {
+            materials: vec![material(1.0), material(alpha)],
+            meshes: vec![SceneMesh {
+                mesh,
+                materials: vec![Some(0), Some(1)],
+                ..SceneMesh::default()
+            }],
+            ..Scene::default()
+        }
+    }
+
+    fn of_second(mesh: &Mesh) -> usize {
+        mesh.materials.as_ref().unwrap().of_face.iter().filter(|&&label| label == 1).count()
+    }
+
+    #[test]
+    fn what_is_seen_through_glass_stays() {
+        let [mut opaque, mut glass] = [balls(1.0), balls(0.5)];
+        let [of_opaque, of_glass] = [&mut opaque, &mut glass].map(fuse_scene);
+        assert_eq!(of_opaque.imprint, of_glass.imprint);
+        assert!(of_opaque.buried > of_glass.buried && of_glass.buried > 0);
+        let [opaque, glass] = [&opaque, &glass].map(|scene| &scene.meshes[0].mesh);
+        // Of the glass goes what is in the other, of the other nothing.
+        assert_eq!(of_second(opaque), of_second(glass));
+        assert!(opaque.faces.len() < glass.faces.len());
+    }
+}
