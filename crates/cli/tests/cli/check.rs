@@ -114,10 +114,10 @@ fn locks_are_in_the_order_of_the_file() {
     let locks = read_json(&run, "locks.json");
     assert_eq!((&locks["format"], &locks["version"]), (&json!("meshlod-locks"), &json!(1)));
     let mesh = &locks["meshes"][0];
-    // The first vertex of the file is in no face; the far corner of the floor is beside the face
-    // that is crossed.
-    assert_eq!(mesh["flags"], json!([0, 1, 1, 1, 2, 1, 1, 1]));
-    assert_eq!(mesh["counts"], json!({ "free": 1, "lock": 6, "protect": 1 }));
+    // The first vertex of the file is in no face, the far corner of the floor not in the face that is
+    // crossed.
+    assert_eq!(mesh["flags"], json!([0, 2, 2, 2, 0, 2, 2, 2]));
+    assert_eq!(mesh["counts"], json!({ "free": 2, "lock": 0, "protect": 6 }));
     assert_eq!(mesh["ties"], json!([]));
 }
 
@@ -160,8 +160,8 @@ fn locks_of_gltf_say_which_rows_are_of_which_primitive() {
         vertices += count;
     }
     assert_eq!(vertices, 2978, "all rows of all accessors");
-    let locked = |mesh: &&Value| mesh["counts"]["lock"].as_u64() > Some(0);
-    assert_eq!(meshes.iter().filter(locked).count(), 2, "the wheels, and the truck around them");
+    let held = |mesh: &&Value| mesh["counts"]["protect"].as_u64() > Some(0);
+    assert_eq!(meshes.iter().filter(held).count(), 2, "the wheels, and the truck around them");
 }
 
 #[test]
@@ -193,7 +193,7 @@ fn locks_from_a_file_are_those_of_the_mesh() {
         run.json(&[&["simplify", "in.obj", "out.obj", "--ratio", "10%"], options].concat())
     };
     let [by_file, by_contacts] = [&["--locks", "l.json"][..], &["--lock-contacts"]].map(simplify);
-    assert_eq!(by_file["held"], json!({ "locked": 6, "protected": 1, "tied": 0 }));
+    assert_eq!(by_file["held"], json!({ "locked": 0, "protected": 6, "tied": 0 }));
     for field in ["held", "output_faces", "refusals"] {
         assert_eq!(by_file[field], by_contacts[field], "{field}");
     }
