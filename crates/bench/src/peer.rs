@@ -4,10 +4,12 @@
 #![allow(unsafe_code)]
 
 mod attributes;
+mod border;
 
 use meshlod::mesh::{Mesh, VertexId};
 
 pub use attributes::{Settings, Update, simplify_with_attributes};
+pub use border::simplify_with_border_lock;
 pub use meshopt::SimplifyOptions;
 
 /// A mesh as meshoptimizer takes it.

@@ -4,6 +4,7 @@ mod accuracy;
 mod check;
 mod command;
 mod constriction;
+mod contacts;
 mod machine;
 mod memory;
 mod reading;
@@ -19,7 +20,7 @@ use crate::project::Project;
 type Section = fn(&Project) -> Result<String>;
 
 /// With their titles, in the order of the page.
-const SECTIONS: [(&str, Section); 8] = [
+const SECTIONS: [(&str, Section); 9] = [
     // First, while this program is small: see there.
     ("Memory and determinism", memory::section),
     ("Accuracy", accuracy::section),
@@ -28,6 +29,7 @@ const SECTIONS: [(&str, Section); 8] = [
     ("Textured", textured::section),
     ("Speed of simplification", speed::section),
     ("Check", check::section),
+    ("Contacts", contacts::section),
     ("Reading and measuring", reading::section),
 ];
 

@@ -1,0 +1,138 @@
+//! Ways to coarsen a mesh of many components, from fine to coarse.
+
+use anyhow::Result;
+use meshlod::check::{LockOptions, fuse, locks};
+use meshlod::mesh::{Labels, Lock, Locks, Mesh, VertexId, face_components};
+use meshlod::simplify::{History, Options, Simplifier, Target};
+use meshlod_bench::peer::simplify_with_border_lock;
+
+use super::open::{lying_on, newly_open, open_sides, positions_after};
+
+/// How a mesh is coarsened.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Way {
+    /// By `qem`.
+    Plain(Values),
+    /// By meshoptimizer's simplify with its border lock, which sees positions only.
+    Peer,
+    /// By `qem` with contacts locked.
+    Locked(Values),
+    /// By `qem` with contacts locked, after components that cross were made one.
+    Fused(Values),
+}
+
+/// What hangs on the faces.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Values {
+    /// Attributes and materials as they are.
+    Kept,
+    /// None.
+    Dropped,
+}
+
+/// A level by some way.
+pub struct Level {
+    /// Its objects are the components of the input.
+    pub mesh: Mesh,
+    /// Whether it has no more faces than asked for.
+    pub reached: bool,
+    /// Its open edges that were not open.
+    pub newly_open: usize,
+}
+
+impl Way {
+    /// All, in the order of the table.
+    pub const ALL: [Self; 7] = [
+        Self::Plain(Values::Kept),
+        Self::Plain(Values::Dropped),
+        Self::Peer,
+        Self::Locked(Values::Kept),
+        Self::Locked(Values::Dropped),
+        Self::Fused(Values::Kept),
+        Self::Fused(Values::Dropped),
+    ];
+
+    /// What ours has hanging on its faces; the peer sees nothing.
+    pub fn values(self) -> Values {
+        match self {
+            Self::Plain(values) | Self::Locked(values) | Self::Fused(values) => values,
+            Self::Peer => Values::Dropped,
+        }
+    }
+
+    /// As the table calls it.
+    pub fn name(self) -> String {
+        let name = match self {
+            Self::Plain(_) => "`qem`",
+            Self::Peer => return "meshoptimizer".to_owned(),
+            Self::Locked(_) => "locked",
+            Self::Fused(_) => "fused and locked",
+        };
+        let bare = if self.values() == Values::Dropped { ", bare" } else { "" };
+        format!("{name}{bare}")
+    }
+
+    /// The levels of so many faces, the finest first, of a mesh whose objects are its components.
+    pub fn levels(self, mesh: &Mesh, targets: &[usize]) -> Result<Vec<Level>> {
+        match self {
+            Self::Plain(values) => ours(mesh, values, Locks::default(), open_sides(mesh), targets),
+            Self::Peer => Ok(targets.iter().map(|&faces| theirs(mesh, faces)).collect()),
+            Self::Locked(values) => ours(mesh, values, contacts(mesh), open_sides(mesh), targets),
+            Self::Fused(values) => {
+                let known: Vec<_> = ends(&open_sides(mesh), &mesh.positions).collect();
+                let (fused, _) = fuse(mesh, |_| true);
+                let open = lying_on(open_sides(&fused), &fused, &known);
+                ours(&fused, values, contacts(&fused), open, targets)
+            }
+        }
+    }
+}
+
+/// The same mesh with its components as its objects.
+pub fn by_component(mut mesh: Mesh) -> Mesh {
+    let (of_face, count) = face_components(&mesh.faces, mesh.positions.len());
+    let names = (0..count).map(|component| component.to_string()).collect();
+    mesh.objects = Some(Labels { names, of_face });
+    mesh
+}
+
+fn contacts(mesh: &Mesh) -> Locks {
+    locks(mesh, &LockOptions { contacts: true, boundary: Lock::Free }).locks
+}
+
+/// Levels of one run; the sides of `open` may stay open.
+fn ours(
+    mesh: &Mesh,
+    values: Values,
+    locks: Locks,
+    open: Vec<[VertexId; 2]>,
+    targets: &[usize],
+) -> Result<Vec<Level>> {
+    let mut mesh = mesh.clone();
+    if values == Values::Dropped {
+        mesh.attributes = None;
+        mesh.materials = None;
+    }
+    let options = Options { locks, ..Options::default() };
+    let mut simplifier = Simplifier::new(&mesh, &options)?;
+    let mut history = History::default();
+    let mut level = |&faces: &usize| {
+        let report = simplifier.run(Target::Faces(faces), &mut history)?;
+        let level = simplifier.level();
+        let now = positions_after(&mesh, &history);
+        let newly_open = newly_open(&level, ends(&open, &now));
+        Ok(Level { mesh: level, reached: report.reached, newly_open })
+    };
+    targets.iter().map(&mut level).collect()
+}
+
+fn theirs(mesh: &Mesh, faces: usize) -> Level {
+    let level = simplify_with_border_lock(mesh, faces);
+    // What is open is locked: it stays where it was.
+    let newly_open = newly_open(&level, ends(&open_sides(mesh), &mesh.positions));
+    Level { reached: level.faces.len() <= faces, mesh: level, newly_open }
+}
+
+fn ends(sides: &[[VertexId; 2]], positions: &[[f64; 3]]) -> impl Iterator<Item = [[f64; 3]; 2]> {
+    sides.iter().map(|side| side.map(|v| positions[v.index()]))
+}
