@@ -8,7 +8,7 @@ mod tests;
 
 use meshlod_mesh::{FaceId, Labels, Mesh};
 
-use crate::imprint::{Imprint, Imprinted, imprinted};
+use crate::imprint::{Imprint, Imprinted, at_fitting_size, imprinted};
 use crate::objects::{Objects, ObjectsBy};
 use crate::repair::{drop_unused, retain_faces, stitch};
 use balance::Groups;
@@ -40,24 +40,29 @@ impl Fused {
 /// Makes one surface of closed components that pass through each other: cuts them along the lines
 /// where they meet, as [`imprint`](crate::imprint()) does, leaves out what is inside, and joins what is left.
 ///
-/// A patch between lines goes if a closed shell of another component has it inside, or on its surface: of two
-/// that lie on each other and look one way, the first stays; of two that look against each other, none. What meets nothing
-/// stays, also inside. `solid` tells of the faces of `mesh` that they cannot be seen through; a shell with another
-/// hides nothing. Open components hide nothing either; they are cut, lose what is inside closed ones, and are
-/// not joined to them.
+/// A patch between lines goes if a closed shell of another component has it inside, or on its surface:
+/// of two that lie on each other and look one way, the first stays; of two that look against each
+/// other, none. What meets nothing stays, also inside. `solid` tells of the faces of `mesh` that they
+/// cannot be seen through; a shell with another hides nothing, nor does one that is inside out. Open
+/// components hide nothing either; they are cut, lose what is inside closed ones, and are not joined
+/// to them.
 ///
 /// Labels of objects tell afterwards which face is of what; where there are less than two, they are
 /// named by component. Where nothing meets, the mesh is what it was.
 ///
-/// Closed components that meet are closed together afterwards; where that would not be so, since faces lie in one plane only
-/// up to rounding, they are only cut.
+/// Closed components that meet are closed together afterwards; where that would not be so, since
+/// faces lie in one plane only up to rounding, they are only cut.
 ///
 /// Takes a mesh that has passed [`Mesh::validate`]. Cost: that of [`imprint`](crate::imprint()), and
-/// for each patch up to 128 times the faces of each shell in whose box it is, up to 2^30 in all; what is beyond that
-/// stays.
+/// for each patch up to 128 times the faces of each shell in whose box it is, up to 2^30 in all; what
+/// is beyond that stays.
 /// # References
 /// [JKSH13]: winding numbers tell what is inside; here of closed shells, beside each face.
 pub fn fuse(mesh: &Mesh, solid: impl Fn(FaceId) -> bool) -> (Mesh, Fused) {
+    at_fitting_size(mesh, |mesh| fuse_fitting(mesh, solid))
+}
+
+fn fuse_fitting(mesh: &Mesh, solid: impl Fn(FaceId) -> bool) -> (Mesh, Fused) {
     let Imprinted { mesh: mut fused, imprint, parents, lines } = imprinted(mesh);
     let objects = Objects::of(mesh, ObjectsBy::Auto);
     let component: Vec<u32> =

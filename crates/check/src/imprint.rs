@@ -12,6 +12,7 @@ use rustc_hash::FxHashSet;
 
 use crate::check::CheckOptions;
 use crate::check::subject::Subject;
+use crate::intersect::Points;
 use crate::objects::ObjectsBy;
 use pieces::Pieces;
 use spots::Spots;
@@ -32,15 +33,38 @@ pub struct Imprint {
 ///
 /// Afterwards both have vertices at the same places along such a line, to the bit, and edges between
 /// them, but where lines of three components cross each other in a face. Vertices keep their ids;
-/// the pieces of a face stand where it stood. Attributes are interpolated, labels are those of the
-/// face. Faces that overlap in one plane are cut only where others pass through them; no component
+/// the pieces of a face stand where it stood. Attributes are interpolated, but joints and their
+/// weights are those of the nearest corner; labels are those of the face. Faces that overlap in one plane are cut only where others pass through them; no component
 /// is cut by itself.
 ///
 /// Cost: that of [`check`](crate::check()) for what meets, and for each face that is cut its
 /// points times their logarithm.
 pub fn imprint(mesh: &Mesh) -> (Mesh, Imprint) {
-    let Imprinted { mesh, imprint, .. } = imprinted(mesh);
-    (mesh, imprint)
+    let (mut done, imprint) = at_fitting_size(mesh, |mesh| {
+        let Imprinted { mesh, imprint, .. } = imprinted(mesh);
+        (mesh, imprint)
+    });
+    done.positions[..mesh.positions.len()].copy_from_slice(&mesh.positions);
+    (done, imprint)
+}
+
+/// Does something with a mesh whose coordinates have a size at which their powers stay in range.
+pub(crate) fn at_fitting_size<T>(mesh: &Mesh, act: impl FnOnce(&Mesh) -> (Mesh, T)) -> (Mesh, T) {
+    let scale = Points::of(&mesh.positions, &mesh.faces).scale();
+    if scale == 1.0 {
+        return act(mesh);
+    }
+    let mut fitting = mesh.clone();
+    // What no face uses may be anywhere.
+    let most = f64::MAX.sqrt();
+    fitting
+        .positions
+        .as_flattened_mut()
+        .iter_mut()
+        .for_each(|x| *x = (*x * scale).clamp(-most, most));
+    let (mut done, report) = act(&fitting);
+    done.positions.as_flattened_mut().iter_mut().for_each(|x| *x /= scale);
+    (done, report)
 }
 
 /// A mesh with its faces in pieces.

@@ -107,11 +107,11 @@ impl Locking {
 
 /// What must stay of a mesh that has passed [`Mesh::validate`].
 ///
-/// Vertices at one place are tied, of two components or of one. Vertices that named objects share and those of faces that pass
-/// through those of another component, or lie over them in one plane, are protected, so that the line
-/// where they meet moves late and little; so is a vertex that touches another component elsewhere, and
-/// what it touches. None of these is locked: where a target is tight, what is locked is
-/// paid for by all else, and more comes through there than locks save.
+/// Vertices at one place are tied, of two components or of one. Vertices that named objects share and
+/// those of faces that pass through those of another component, or lie over them in one plane, are
+/// protected, so that the line where they meet moves late and little; so is a vertex that touches
+/// another component elsewhere, and what it touches. None of these is locked: where a target is tight,
+/// what is locked is paid for by all else, and more comes through there than locks save.
 ///
 /// Cost: that of [`check`] for what meets, with contacts; else linear.
 pub fn locks(mesh: &Mesh, options: &LockOptions) -> Locking {

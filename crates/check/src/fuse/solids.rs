@@ -40,7 +40,8 @@ impl Solids {
         let closed = shells.all.iter().map(|shell| {
             let component = component[shell.first.index()];
             let empty = Solid { component, bounds: Bounds::EMPTY, triangles: Vec::new() };
-            shell.volume().map(|_| empty)
+            // What is inside out does not tell where its inside is.
+            shell.volume().filter(|&volume| volume > 0.0).map(|_| empty)
         });
         let mut slots: Vec<Option<Solid>> = closed.collect();
         for (f, &shell) in shells.of_face.iter().enumerate() {
@@ -88,11 +89,8 @@ impl Solid {
         *budget -= looks;
         let aside = sample.normal * (ASIDE * self.bounds.diagonal());
         let is_inside = |point: DVec3| self.winding(point).abs() > 0.5;
-        match [sample.point + aside, sample.point - aside].map(is_inside) {
-            [true, _] => true,
-            [false, true] => self.component < component,
-            [false, false] => false,
-        }
+        let before = self.component < component;
+        is_inside(sample.point + aside) || (before && is_inside(sample.point - aside))
     }
 
     /// How often the surface goes around a point.

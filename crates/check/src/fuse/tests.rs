@@ -159,7 +159,52 @@ fn blocks_turned_apart_stay_closed() {
 fn where_planes_are_one_but_for_rounding_nothing_seen_is_lost() {
     for seed in 0..100 {
         let (blocks, cells) = blocks_on_a_grid(seed);
-        let (fused, _) = fuse(&turned(&blocks, |_| 0.3), |_| true);
+        let blocks = turned(&blocks, |_| 0.3);
+        let (imprinted, _) = crate::imprint(&blocks);
+        assert!((area(&imprinted) - area(&blocks)).abs() < 1e-9, "seed {seed}");
+        let (fused, _) = fuse(&blocks, |_| true);
         assert!(volume(&fused) > cells.len() as f64 - 1e-9, "seed {seed}: {}", volume(&fused));
     }
+}
+
+#[test]
+fn of_a_block_and_the_same_inside_out_one_stays() {
+    for inner in [0, 1] {
+        let mut blocks = [block([0.0; 3], [1.0; 3]), block([0.0; 3], [1.0; 3])];
+        blocks[inner].faces.iter_mut().for_each(|face| face.reverse());
+        let (fused, _) = fuse(&together(blocks), |_| true);
+        assert!(is_closed(&fused) && (volume(&fused) - 1.0).abs() < 1e-12, "{inner}");
+    }
+}
+
+#[test]
+fn size_does_not_matter() {
+    let blocks = together([block([0.0; 3], [2.0; 3]), block([1.0; 3], [3.0, 4.0, 2.5])]);
+    let blocks = turned(&blocks, |block| 0.2 * block as f64);
+    let (fused, report) = fuse(&blocks, |_| true);
+    assert!(report.buried > 0);
+    for exponent in [-1000, -500, -260, 260, 500, 1000] {
+        let sized = |mesh: &Mesh| {
+            let mut sized = mesh.clone();
+            let size = 2f64.powi(exponent);
+            sized.positions.as_flattened_mut().iter_mut().for_each(|x| *x *= size);
+            sized
+        };
+        let (imprinted, found) = crate::imprint(&sized(&blocks));
+        assert_eq!(found, report.imprint);
+        assert_eq!(imprinted.positions[..16], sized(&blocks).positions);
+        let (large, found) = fuse(&sized(&blocks), |_| true);
+        assert_eq!((large.faces.len(), found), (fused.faces.len(), report), "2^{exponent}");
+    }
+}
+
+#[test]
+fn what_is_far_away_moves_nothing() {
+    let mut blocks = together([block([0.0; 3], [2.0; 3]), block([1.0; 3], [3.0, 4.0, 2.5])]);
+    blocks = turned(&blocks, |block| 0.2 * block as f64);
+    let (alone, _) = crate::imprint(&blocks);
+    blocks.positions.extend([[1e16, 0.0, 0.0], [1e16, 1.0, 0.0], [1e16, 1.0, 1.0]]);
+    blocks.faces.push([16, 17, 18].map(VertexId));
+    let (imprinted, _) = crate::imprint(&blocks);
+    assert_eq!(imprinted.positions[19..], alone.positions[16..]);
 }

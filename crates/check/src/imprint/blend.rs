@@ -7,7 +7,8 @@ pub fn blend(attributes: &mut Attributes, corners: [WedgeId; 3], parts: [f64; 3]
     let nearest = (0..3).max_by(|&i, &j| parts[i].total_cmp(&parts[j])).expect("three parts");
     for layer in &mut attributes.layers {
         let mut values = layer.of(corners[nearest]).to_vec();
-        if !matches!(layer.kind, LayerKind::Joints(_)) {
+        // Weights are those of the joints beside them.
+        if !matches!(layer.kind, LayerKind::Joints(_) | LayerKind::Weights(_)) {
             // The hand of a tangent is not blended.
             let width = if layer.kind == LayerKind::Tangent { 3 } else { layer.width };
             for (k, value) in values.iter_mut().enumerate().take(width) {

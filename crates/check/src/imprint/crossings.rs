@@ -4,8 +4,12 @@ use glam::{DVec2, DVec3};
 use meshlod_mesh::{FaceId, Mesh};
 use rustc_hash::FxHashMap;
 
-use super::spots::{Line, Mark, SpotId, Spots};
+use super::spots::{Line, Mark, SpotId, Spots, rounding};
 use crate::intersect::{open_axis, turn, without};
+
+/// How many times as far as rounding may a crossing be where another face has it: lines that cross at
+/// narrow angles spread what rounding makes of their ends.
+const SPREAD: f64 = 1e4;
 
 /// Cuts lines where they cross in a face. Three faces that meet at a point have one spot there, whichever
 /// of them is looked at.
@@ -21,16 +25,22 @@ pub fn cross_lines(spots: &mut Spots, mesh: &Mesh) {
         };
         let segments: Vec<_> = lines.iter().map(ends).collect();
         let mut on_lines: Vec<Vec<(f64, SpotId)>> = vec![Vec::new(); lines.len()];
-        for Crossing { pair, along, place } in
-            crossings(&mesh.triangle(mesh.faces[face.index()]), &segments)
-        {
+        let triangle = mesh.triangle(mesh.faces[face.index()]);
+        let rounding = rounding(&triangle);
+        for Crossing { pair, along, place } in crossings(&triangle, &segments) {
             let [a, b] = pair.map(|line| &lines[line]);
             if a.other == b.other || a.ends.iter().any(|end| b.ends.contains(end)) {
                 continue;
             }
             let mut three = [face, a.other, b.other];
             three.sort_unstable();
-            let spot = *known.entry(three).or_insert_with(|| spots.add(place));
+            // Where two of the faces are in one plane but for rounding, it may be anywhere else.
+            let is_here = |spot: &SpotId| spots.place(*spot).distance(place) <= SPREAD * rounding;
+            let spot = match known.get(&three).copied().filter(is_here) {
+                Some(spot) => spot,
+                None => spots.add(place, rounding),
+            };
+            known.insert(three, spot);
             spots.inside_mut(face).spots.push(spot);
             pair.iter().zip(along).for_each(|(&line, t)| on_lines[line].push((t, spot)));
         }

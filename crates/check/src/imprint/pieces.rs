@@ -6,7 +6,7 @@ use rustc_hash::{FxHashMap, FxHashSet};
 
 use super::blend::blend;
 use super::cut::{Cut, Cuts, cut};
-use super::spots::{Inside, Mark, SpotId, Spots, lowest_first};
+use super::spots::{Inside, Mark, SpotId, Spots, lowest_first, rounding};
 use crate::places::Places;
 use crate::repair::labels;
 
@@ -66,7 +66,8 @@ impl Sketch {
 
     /// A line in pieces, between the points that are on it but for rounding: lines of several
     /// components may run along each other.
-    fn pieces_of(&self, [from, to]: [usize; 2], rounding: f64) -> Vec<[usize; 2]> {
+    fn pieces_of(&self, [from, to]: [usize; 2]) -> Vec<[usize; 2]> {
+        let rounding = rounding(&self.triangle);
         let start = self.points[from].place;
         let way = self.points[to].place - start;
         let along = |place: DVec3| (place - start).dot(way) / way.length_squared();
@@ -83,9 +84,9 @@ impl Sketch {
         stops.windows(2).map(|ends| [ends[0], ends[1]]).collect()
     }
 
-    /// Whether a spot is a corner, to the bit; then it is no point of its own.
-    fn is_corner(&mut self, spot: SpotId, place: DVec3) -> bool {
-        let corner = self.triangle.iter().position(|&corner| corner == place);
+    /// Whether a spot is one of these corners, to the bit; then it is no point of its own.
+    fn is_corner(&mut self, spot: SpotId, place: DVec3, of: &[usize]) -> bool {
+        let corner = of.iter().copied().find(|&corner| self.triangle[corner] == place);
         corner.map(|corner| self.numbers.insert(spot, corner)).is_some()
     }
 }
@@ -154,10 +155,11 @@ impl<'a> Pieces<'a> {
 
     fn add_on_edge(&mut self, sketch: &mut Sketch, edge: usize, spot: SpotId) {
         let place = self.spots.place(spot);
-        if sketch.is_corner(spot, place) {
+        let ends = [edge, (edge + 1) % 3];
+        // Not the third: the face beyond the edge has another.
+        if sketch.is_corner(spot, place, &ends) {
             return;
         }
-        let ends = [edge, (edge + 1) % 3];
         let [from, to] = ends.map(|k| sketch.triangle[k]);
         let t = ((place - from).dot(to - from) / (to - from).length_squared()).clamp(0.0, 1.0);
         let mut parts = [0.0; 3];
@@ -171,7 +173,7 @@ impl<'a> Pieces<'a> {
 
     fn add_inside(&mut self, sketch: &mut Sketch, spot: SpotId) {
         let place = self.spots.place(spot);
-        if sketch.numbers.contains_key(&spot) || sketch.is_corner(spot, place) {
+        if sketch.numbers.contains_key(&spot) || sketch.is_corner(spot, place, &[0, 1, 2]) {
             return;
         }
         let parts = parts(&sketch.triangle, place);
@@ -196,7 +198,7 @@ impl<'a> Pieces<'a> {
         if lines.len() * sketch.points.len() > MOST_LOOKS {
             return lines;
         }
-        lines.iter().flat_map(|&line| sketch.pieces_of(line, self.spots.rounding)).collect()
+        lines.iter().flat_map(|&line| sketch.pieces_of(line)).collect()
     }
 
     /// The wedges of points, new ones but for the corners.

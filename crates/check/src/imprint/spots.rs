@@ -18,11 +18,11 @@ pub struct Spots {
     /// How many pairs of faces meet.
     pub pairs: usize,
     places: Vec<DVec3>,
+    /// How far rounding may have moved each.
+    rounding: Vec<f64>,
     /// In the order from the lower vertex to the other.
     of_edge: FxHashMap<[VertexId; 2], Vec<SpotId>>,
     in_face: FxHashMap<FaceId, Inside>,
-    /// Places nearer than this are one, in model units.
-    pub rounding: f64,
 }
 
 /// What there is inside a face.
@@ -55,9 +55,9 @@ enum Part {
     Face(FaceId),
 }
 
-/// Places nearer than this part of the diagonal are one: what the rounding of a few operations makes
-/// of coordinates of that size.
-const ROUNDING: f64 = 1e-14;
+/// Places nearer than this part of coordinates are one: what the rounding of a few operations makes
+/// of them.
+const ROUNDING: f64 = 4e-14;
 
 /// The spots known by the two parts that meet there.
 type Known = FxHashMap<[Part; 2], SpotId>;
@@ -65,8 +65,7 @@ type Known = FxHashMap<[Part; 2], SpotId>;
 impl Spots {
     /// Where faces of different objects meet.
     pub fn of(subject: &Subject) -> Self {
-        let rounding = ROUNDING * subject.mesh.bounds().diagonal();
-        let mut spots = Self { rounding, ..Self::default() };
+        let mut spots = Self::default();
         let mut known = Known::default();
         let objects = &subject.objects().of_face;
         for &faces in subject.meetings().pairs() {
@@ -109,8 +108,9 @@ impl Spots {
         self.in_face.entry(face).or_default()
     }
 
-    pub(super) fn add(&mut self, place: DVec3) -> SpotId {
+    pub(super) fn add(&mut self, place: DVec3, rounding: f64) -> SpotId {
         self.places.push(place);
+        self.rounding.push(rounding);
         SpotId(self.places.len() as u32 - 1)
     }
 
@@ -119,9 +119,11 @@ impl Spots {
         let places = subject.places();
         let corners = faces.map(|face| subject.mesh.faces[face.index()].map(|v| places.first(v)));
         let Some(ends) = subject.meetings().ends(subject.mesh, corners) else { return false };
+        let triangles = faces.map(|face| subject.mesh.triangle(subject.mesh.faces[face.index()]));
+        let rounding = rounding(triangles.as_flattened());
         let marks = ends.map(|End { on, place }| {
             let parts = [0, 1].map(|i| Part::of(on[i], faces[i], &corners[i]));
-            self.mark(parts, place, known)
+            self.mark(parts, (place, rounding), known)
         });
         for i in [0, 1] {
             let ends = marks.map(|mark| mark[i]);
@@ -133,14 +135,19 @@ impl Spots {
     }
 
     /// The spot on two parts, as each of their meshes has it.
-    fn mark(&mut self, parts: [Part; 2], place: DVec3, known: &mut Known) -> [Mark; 2] {
+    fn mark(
+        &mut self,
+        parts: [Part; 2],
+        (place, rounding): (DVec3, f64),
+        known: &mut Known,
+    ) -> [Mark; 2] {
         if let [Part::Vertex(a), Part::Vertex(b)] = parts {
             return [a, b].map(Mark::Corner);
         }
         let mut key = parts;
         key.sort_unstable();
         let spot = *known.entry(key).or_insert_with(|| {
-            let spot = self.add(place);
+            let spot = self.add(place, rounding);
             for part in parts {
                 match part {
                     Part::Vertex(_) => {}
@@ -162,11 +169,15 @@ impl Spots {
         let count = mesh.positions.len();
         let mut all = mesh.positions.clone();
         all.extend(self.places.iter().map(|place| place.to_array()));
-        let near = first_near(&all, self.rounding);
+        let near = first_near(&all, self.rounding.iter().copied().fold(0.0, f64::max));
         let mut firsts = FxHashMap::default();
         let united: Vec<SpotId> = (0..self.places.len())
             .map(|spot| {
                 let first = near[count + spot];
+                let place = DVec3::from(all[first as usize]);
+                // What is large rounds farther than what is small.
+                let is_near = place.distance(self.places[spot]) <= self.rounding[spot];
+                let first = if is_near { first } else { (count + spot) as u32 };
                 self.places[spot] = all[first as usize].into();
                 *firsts.entry(first).or_insert(SpotId(spot as u32))
             })
@@ -203,6 +214,11 @@ impl Part {
             On::Inside => Self::Face(face),
         }
     }
+}
+
+/// How far rounding may move what is computed from these.
+pub fn rounding(places: &[DVec3]) -> f64 {
+    ROUNDING * places.iter().map(|place| place.abs().max_element()).fold(0.0, f64::max)
 }
 
 pub fn lowest_first([a, b]: [VertexId; 2]) -> [VertexId; 2] {

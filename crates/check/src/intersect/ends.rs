@@ -1,8 +1,8 @@
 //! Where what two triangles have in common ends.
 
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 
-use super::exact::side;
+use super::exact::{open_axis, side, turn, without};
 use super::meet::Triangle;
 
 /// The least part of a triangle that a point is on.
@@ -43,8 +43,28 @@ impl End {
 fn passing(of: &Triangle, edge: usize, plane: &Triangle) -> Option<DVec3> {
     let [from, to] = [of[edge], of[(edge + 1) % 3]];
     let [up, down] = [from, to].map(|p| side(plane, p));
-    (up != down).then(|| from + (to - from) * (up / (up - down)).clamp(0.0, 1.0))
+    (up != down).then(|| {
+        let t = within(plane, [from, to], (up / (up - down)).clamp(0.0, 1.0));
+        from + (to - from) * t
+    })
 }
+
+/// How far along an edge is at a triangle, if not so far as it seems: of heights only the signs are
+/// exact, so along an edge that almost lies in its plane they may point anywhere.
+fn within(triangle: &Triangle, [from, to]: [DVec3; 2], seems: f64) -> f64 {
+    let Some((axis, area)) = open_axis(triangle) else { return seems };
+    let [from, to] = [from, to].map(|p| without(axis, p));
+    let corners = triangle.map(|p| without(axis, p));
+    (0..3).fold(seems, |t, k| {
+        let part = |p: DVec2| turn(corners[k], corners[(k + 1) % 3], p) / area;
+        let outside = part(from + (to - from) * t) < -OUTSIDE;
+        let [start, end] = [from, to].map(part);
+        if outside && start != end { (start / (start - end)).clamp(0.0, 1.0) } else { t }
+    })
+}
+
+/// What is outside a triangle by less of its height may be so by rounding.
+const OUTSIDE: f64 = 1e-9;
 
 /// The same of an edge that is known to pass; its middle where rounding hides how.
 fn crossing(of: &Triangle, edge: usize, plane: &Triangle) -> DVec3 {

@@ -27,11 +27,11 @@ use crate::{Touch, TouchKind};
 use filter::{Pair, surely_only_share};
 use meet::meet;
 use rings::Certified;
-use soup::{Points, Soup, whole};
+use soup::{Soup, whole};
 
 pub(crate) use ends::{End, On};
 pub(crate) use exact::{open_axis, turn, without};
-pub(crate) use soup::Ground;
+pub(crate) use soup::{Ground, Points};
 
 /// What finds the pairs of faces that may meet. The findings are the same with either.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]

@@ -75,7 +75,7 @@ pub(crate) struct Points<'a> {
 const FITTING: Range<f64> = 1e-3..1e60;
 
 impl<'a> Points<'a> {
-    fn of(positions: &'a [[f64; 3]], corners: &[[VertexId; 3]]) -> Self {
+    pub(crate) fn of(positions: &'a [[f64; 3]], corners: &[[VertexId; 3]]) -> Self {
         let size = |p: &[f64; 3]| DVec3::from(*p).abs().max_element();
         let fits = |size: f64| size == 0.0 || FITTING.contains(&size);
         if fits(positions.iter().map(size).fold(0.0, f64::max)) {
