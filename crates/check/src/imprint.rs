@@ -34,8 +34,8 @@ pub struct Imprint {
 /// Afterwards both have vertices at the same places along such a line, to the bit, and edges between
 /// them, but where lines of three components cross each other in a face. Vertices keep their ids;
 /// the pieces of a face stand where it stood. Attributes are interpolated, but joints and their
-/// weights are those of the nearest corner; labels are those of the face. Faces that overlap in one plane are cut only where others pass through them; no component
-/// is cut by itself.
+/// weights are those of the nearest corner; labels are those of the face. Faces that overlap in one
+/// plane are cut only where others pass through them; no component is cut by itself.
 ///
 /// Cost: that of [`check`](crate::check()) for what meets, and for each face that is cut its
 /// points times their logarithm.
