@@ -248,6 +248,7 @@ fn follow(
     observer: &mut dyn Observe,
 ) {
     let kept = hood.contracted[placed.kept];
+    observer.face();
     for &gone in hood.contracted.iter().filter(|&&v| v != kept) {
         part.gather(surface, Contracted::edge([kept, gone]))
             .expect("what may be contracted as a face may be as its edges");

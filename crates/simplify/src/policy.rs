@@ -103,6 +103,9 @@ impl Stop {
 ///
 /// They see edges only: a face is contracted as two edges, the second through the first's vertex.
 pub trait Observe {
+    /// A face is about to be contracted: the next two contractions are its edges, to one place.
+    fn face(&mut self) {}
+
     /// A contraction is about to change `surface`.
     fn before(&mut self, surface: &Surface, hood: &Neighbourhood, placed: &Placed) {
         let _ = (surface, hood, placed);
@@ -122,6 +125,11 @@ pub trait Observe {
 impl Observe for () {}
 
 impl<A: Observe, B: Observe> Observe for (A, B) {
+    fn face(&mut self) {
+        self.0.face();
+        self.1.face();
+    }
+
     fn before(&mut self, surface: &Surface, hood: &Neighbourhood, placed: &Placed) {
         self.0.before(surface, hood, placed);
         self.1.before(surface, hood, placed);
@@ -139,6 +147,10 @@ impl<A: Observe, B: Observe> Observe for (A, B) {
 }
 
 impl<O: Observe + ?Sized> Observe for &mut O {
+    fn face(&mut self) {
+        (**self).face();
+    }
+
     fn before(&mut self, surface: &Surface, hood: &Neighbourhood, placed: &Placed) {
         (**self).before(surface, hood, placed);
     }

@@ -92,6 +92,11 @@ impl<'m> Simplifier<'m> {
         self.engine.next_cost()
     }
 
+    /// The surface as it is now, in the ids of the input.
+    pub fn surface(&self) -> &Surface {
+        self.engine.surface()
+    }
+
     /// How many faces are left.
     pub fn live_faces(&self) -> usize {
         self.engine.surface().live_faces()
