@@ -1,0 +1,229 @@
+//! The surface of a cut: splits and merges, each with the rule that it must obey.
+
+use super::star::{Spoke, Triangles};
+use crate::forest::NONE;
+use crate::implicit::Implicit;
+
+/// A vertex that is not there.
+const ABSENT: u32 = NONE - 1;
+
+/// The active vertices and the triangles between them.
+#[derive(Clone, Debug)]
+pub(super) struct Front<'m> {
+    pub(super) mt: &'m Implicit,
+    /// By node.
+    vertices: Vec<Vertex>,
+    pub(super) triangles: Triangles,
+    /// How many vertices are there.
+    active: usize,
+    /// Room for what is around a vertex.
+    star: Vec<Spoke>,
+    /// Room for the nodes around, each once and in order.
+    ring: Vec<u32>,
+}
+
+/// What is wanted of the vertices around a split or a merge, beside the list of its corners.
+#[derive(Clone, Copy, Debug)]
+struct Vertex {
+    /// Its first corner, or [`ABSENT`].
+    corner: u32,
+    /// The level of the update that splits it; 0 for a leaf.
+    level: u16,
+    /// The level of the update that made it; the highest for a root.
+    above: u16,
+}
+
+/// Why a split must wait: for this update.
+pub(super) struct Needs(pub(super) u32);
+
+impl<'m> Front<'m> {
+    /// The base mesh.
+    pub(super) fn new(mt: &'m Implicit) -> Self {
+        let absent = Vertex { corner: ABSENT, level: 0, above: 0 };
+        let mut this = Self {
+            mt,
+            vertices: vec![absent; mt.node_count()],
+            triangles: Triangles::default(),
+            active: 0,
+            star: Vec::new(),
+            ring: Vec::new(),
+        };
+        for (root, _) in mt.roots() {
+            this.enter(root, u16::MAX);
+        }
+        for &face in mt.base() {
+            this.add(face);
+        }
+        this
+    }
+
+    /// How many vertices there are.
+    pub(super) fn vertex_count(&self) -> usize {
+        self.active
+    }
+
+    #[inline]
+    pub(super) fn is_active(&self, node: u32) -> bool {
+        self.vertices[node as usize].corner != ABSENT
+    }
+
+    /// Splits an update's node, which must be there, if all around it is coarse enough.
+    /// # Errors
+    /// Another update that must come first.
+    pub(super) fn split(&mut self, update: u32) -> Result<(), Needs> {
+        let node = self.mt.parent(update);
+        let level = self.mt.level(update);
+        self.star.clear();
+        self.triangles.gather(self.vertices[node as usize].corner, &mut self.star);
+        let around = self.star.iter().flat_map(|spoke| [spoke.a, spoke.b]);
+        if let Some(finer) = around.into_iter().find(|&n| self.vertices[n as usize].level > level) {
+            return Err(Needs(self.mt.update_of(finer).expect("a leaf's level is 0")));
+        }
+        let [first, second] = self.mt.children(update);
+        self.vertices[node as usize].corner = ABSENT;
+        self.active -= 1;
+        self.enter(first, level);
+        self.enter(second, level);
+        let (run, brought) = self.part(update);
+        for i in 0..self.star.len() {
+            let child = if i < run { second } else { first };
+            let Vertex { corner, .. } = &mut self.vertices[child as usize];
+            self.triangles.give(self.star[i].corner, child, corner);
+        }
+        brought.into_iter().flatten().for_each(|face| self.add(face));
+        if let Some(odd) = self.mt.odd(update) {
+            odd.brought.iter().for_each(|&face| self.add(face));
+        }
+        Ok(())
+    }
+
+    /// Moves the triangles of the second child to the front of the star; how many those are, and the
+    /// triangles that wings bring.
+    fn part(&mut self, update: u32) -> (usize, [Option<[u32; 3]>; 2]) {
+        let Self { mt, star, ring, .. } = self;
+        let mut run = 0;
+        if let Some(odd) = mt.odd(update) {
+            for i in 0..star.len() {
+                if odd.second.contains(&[star[i].a, star[i].b]) {
+                    star.swap(run, i);
+                    run += 1;
+                }
+            }
+            return (run, [None; 2]);
+        }
+        let wings = mt.wings(update);
+        let [start, end] = by_rank(star, ring, wings);
+        let (mut at, stop, backwards) = match (start, end) {
+            (Some(start), end) => (start, end, false),
+            (None, end) => (end.unwrap_or(NONE), None, true),
+        };
+        while Some(at) != stop {
+            let from = |s: &Spoke| (if backwards { s.b } else { s.a }) == at;
+            let Some(found) = star[run..].iter().position(from) else { break };
+            star.swap(run, run + found);
+            at = if backwards { star[run].a } else { star[run].b };
+            run += 1;
+        }
+        let [first, second] = mt.children(update);
+        let brought = [start.map(|w| [first, w, second]), end.map(|w| [second, w, first])];
+        (run, brought)
+    }
+
+    /// Undoes a split if nothing depends on it: all around is as it was recorded; false else.
+    ///
+    /// An update that is glued goes back whole.
+    pub(super) fn merge(&mut self, update: u32) -> bool {
+        let glued = self.mt.is_glued(update);
+        let [first, second] = self.mt.children(update);
+        let inner = if glued { self.mt.children(update + 1) } else { [first; 2] };
+        let parts = [second, inner[0], inner[1]];
+        if !parts.iter().all(|&child| self.is_active(child)) {
+            return false;
+        }
+        let level = self.mt.level(update);
+        self.star.clear();
+        for child in if glued { &parts[..] } else { &parts[..2] } {
+            self.triangles.gather(self.vertices[*child as usize].corner, &mut self.star);
+        }
+        let around = || self.star.iter().flat_map(|spoke| [spoke.a, spoke.b]);
+        let is_needed = |n: u32| !parts.contains(&n) && self.vertices[n as usize].above <= level;
+        if around().any(is_needed) {
+            return false;
+        }
+        if glued {
+            self.join(update + 1);
+        }
+        self.join(update);
+        true
+    }
+
+    /// Makes one of an update's children again.
+    fn join(&mut self, update: u32) {
+        let node = self.mt.parent(update);
+        let [first, second] = self.mt.children(update);
+        let above = self.mt.family(node).map_or(u16::MAX, |up| self.mt.level(up));
+        self.star.clear();
+        for child in [first, second] {
+            self.triangles.gather(self.vertices[child as usize].corner, &mut self.star);
+            self.vertices[child as usize].corner = ABSENT;
+        }
+        self.active -= 2;
+        self.enter(node, above);
+        for i in 0..self.star.len() {
+            let Spoke { corner, a, b } = self.star[i];
+            let mut others = [a, b].into_iter().filter(|&n| n != first && n != second);
+            match (others.next(), others.next()) {
+                (Some(_), Some(_)) => {
+                    let Vertex { corner: list, .. } = &mut self.vertices[node as usize];
+                    self.triangles.give(corner, node, list);
+                }
+                // It is met from both ends and goes with the first.
+                (Some(wing), None) if self.is_first(i) => {
+                    let Vertex { corner: list, .. } = &mut self.vertices[wing as usize];
+                    self.triangles.unlink(corner / 3, list);
+                    self.triangles.remove(corner / 3);
+                }
+                _ => {}
+            }
+        }
+    }
+
+    /// Whether a triangle of the star has not been met before.
+    fn is_first(&self, place: usize) -> bool {
+        let t = self.star[place].corner / 3;
+        self.star[..place].iter().all(|spoke| spoke.corner / 3 != t)
+    }
+
+    /// The nodes around a vertex, each once or twice.
+    pub(super) fn around(&mut self, node: u32) -> &[u32] {
+        let Self { star, ring, triangles, vertices, .. } = self;
+        star.clear();
+        triangles.gather(vertices[node as usize].corner, star);
+        ring.clear();
+        ring.extend(star.iter().flat_map(|spoke| [spoke.a, spoke.b]));
+        ring
+    }
+
+    fn enter(&mut self, node: u32, above: u16) {
+        let level = self.mt.update_of(node).map_or(0, |update| self.mt.level(update));
+        self.vertices[node as usize] = Vertex { corner: NONE, level, above };
+        self.active += 1;
+    }
+
+    fn add(&mut self, face: [u32; 3]) {
+        let t = self.triangles.add();
+        for (k, &node) in face.iter().enumerate() {
+            let Vertex { corner, .. } = &mut self.vertices[node as usize];
+            self.triangles.give(3 * t + k as u32, node, corner);
+        }
+    }
+}
+
+/// The nodes of those ranks around a star.
+fn by_rank(star: &[Spoke], ring: &mut Vec<u32>, ranks: [Option<usize>; 2]) -> [Option<u32>; 2] {
+    ring.clear();
+    ring.extend(star.iter().flat_map(|spoke| [spoke.a, spoke.b]));
+    ring.sort_unstable();
+    ring.dedup();
+    ranks.map(|rank| rank.map(|rank| ring[rank]))
+}

@@ -1,0 +1,330 @@
+//! A cut that follows its query: refined and coarsened where the query has moved, and nowhere else.
+
+mod front;
+mod schedule;
+mod star;
+
+use std::time::{Duration, Instant};
+
+use self::front::{Front, Needs};
+use self::schedule::Schedule;
+use crate::implicit::Implicit;
+use crate::level::Level;
+use crate::need::Need;
+use crate::query::{Query, QueryError};
+
+/// A mesh out of an [`Implicit`] MT, which the next query changes.
+///
+/// Whatever stops it and whenever, it is one of the MT's meshes: no cracks, no folds but the input's.
+#[derive(Clone, Debug)]
+pub struct Cut<'m> {
+    front: Front<'m>,
+    /// By update.
+    states: Vec<State>,
+    schedule: Schedule,
+    /// Updates whose vertices are to be looked at.
+    fresh: Vec<u32>,
+    /// Updates that may be taken back.
+    loose: Vec<u32>,
+    hysteresis: f64,
+}
+
+/// How an update stands.
+#[derive(Clone, Copy, Debug, Default)]
+struct State {
+    applied: bool,
+    scheduled: bool,
+}
+
+/// How much a [`Cut`] may do at once.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Effort {
+    /// At most so many splits and merges; `None`: as many as it takes.
+    pub changes: Option<usize>,
+    /// Nothing is begun after so long.
+    pub time: Option<Duration>,
+}
+
+/// What a query did to a [`Cut`].
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Change {
+    /// Vertices that were split.
+    pub splits: usize,
+    /// Vertices that were merged again.
+    pub merges: usize,
+    /// Updates that were looked at.
+    pub looks: usize,
+    /// Whether the cut answers the query now; else there was no time.
+    pub done: bool,
+}
+
+/// A place in the list of triangles whose content changed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Patch {
+    /// The place.
+    pub place: u32,
+    /// The triangle that was there, by its nodes.
+    pub out: Option<[u32; 3]>,
+    /// The triangle that is there now.
+    pub into: Option<[u32; 3]>,
+}
+
+impl<'m> Cut<'m> {
+    /// The base mesh.
+    pub fn new(mt: &'m Implicit) -> Self {
+        let mut this = Self {
+            front: Front::new(mt),
+            states: vec![State::default(); mt.update_count()],
+            schedule: Schedule::default(),
+            fresh: Vec::new(),
+            loose: Vec::new(),
+            hysteresis: 0.0,
+        };
+        this.front.triangles.mark();
+        this
+    }
+
+    /// The answer to a query, from the base.
+    pub fn at(mt: &'m Implicit, query: &Query<'_>) -> Result<Self, QueryError> {
+        let mut cut = Self::new(mt);
+        cut.update(query, &Effort::default())?;
+        Ok(cut)
+    }
+
+    /// Lets what is there stay until the tolerance is larger by this part of it, so that a query that
+    /// trembles changes nothing. 0 to begin with: then the answer does not depend on the way to it.
+    ///
+    /// # Errors
+    /// What is below 0 or not finite.
+    pub fn set_hysteresis(&mut self, part: f64) -> Result<(), QueryError> {
+        if !(part >= 0.0 && part.is_finite()) {
+            return Err(QueryError::BadLength { what: "a hysteresis", value: part });
+        }
+        self.hysteresis = part;
+        self.schedule.forget();
+        Ok(())
+    }
+
+    /// Goes from the answer of the last query to that of this one.
+    ///
+    /// The result is the smallest cut that meets the query. Cost: of what changes, where only the eye of a camera has moved
+    /// that looks at everything; else a look at every vertex besides.
+    pub fn update(&mut self, query: &Query<'_>, effort: &Effort) -> Result<Change, QueryError> {
+        let needs = Needed::new(query, self.front.mt, self.hysteresis)?;
+        self.front.triangles.mark();
+        let mut work = Work::new(effort);
+        if !self.schedule.follow(needs.least.eye()) {
+            self.look_at_all();
+        }
+        let mut due = std::mem::take(&mut self.schedule.due);
+        work.change.looks += due.len();
+        for update in due.drain(..) {
+            self.states[update as usize].scheduled = false;
+            self.look(update, &needs);
+        }
+        self.schedule.due = due;
+        self.refine(&needs, &mut work);
+        self.coarsen(&needs, &mut work);
+        work.change.done = self.fresh.is_empty() && self.loose.is_empty();
+        Ok(work.change)
+    }
+
+    /// How many faces there are.
+    pub fn face_count(&self) -> usize {
+        self.front.triangles.len()
+    }
+
+    /// How many vertices there are.
+    pub fn vertex_count(&self) -> usize {
+        self.front.vertex_count()
+    }
+
+    /// How long a list of triangles by [`Patch::place`] has to be.
+    pub fn places(&self) -> usize {
+        self.front.triangles.places()
+    }
+
+    /// What the last update changed, in no order.
+    pub fn patches(&self) -> impl Iterator<Item = Patch> + '_ {
+        self.front.triangles.changes().map(|(place, out, into)| Patch { place, out, into })
+    }
+
+    /// The mesh.
+    pub fn level(&self) -> Level {
+        let mt = self.front.mt;
+        Level::of_nodes(*mt.frame(), mt.positions(), self.front.triangles.iter().collect())
+    }
+
+    /// Puts every update of a vertex and above one on the lists.
+    fn look_at_all(&mut self) {
+        self.schedule.clear();
+        (self.fresh.clear(), self.loose.clear());
+        let mt = self.front.mt;
+        let mut stack: Vec<u32> = mt.roots().filter_map(|(root, _)| mt.update_of(root)).collect();
+        while let Some(update) = stack.pop() {
+            self.states[update as usize].scheduled = false;
+            if !mt.is_inner(update) {
+                self.schedule.due.push(update);
+            }
+            if self.states[update as usize].applied {
+                stack.extend(mt.children(update).into_iter().filter_map(|c| mt.update_of(c)));
+            }
+        }
+    }
+
+    /// Whether the need of an update has turned; and when to look again.
+    fn look(&mut self, update: u32, needs: &Needed<'_>) {
+        let ball = self.front.mt.ball(update);
+        if self.states[update as usize].applied {
+            if !needs.most.wants(&ball) {
+                self.loose.push(update);
+            }
+        } else if self.front.is_active(self.front.mt.parent(update)) {
+            if needs.least.wants(&ball) {
+                self.fresh.push(update);
+            }
+        } else {
+            return;
+        }
+        self.states[update as usize].scheduled = true;
+        self.schedule.add(update, &ball, self.hysteresis);
+    }
+
+    /// Splits what is wanted, and what must be split for it.
+    fn refine(&mut self, needs: &Needed<'_>, work: &mut Work) {
+        let mut stack = Vec::new();
+        while let Some(update) = self.fresh.pop() {
+            // It may have been forced, merged with all around it, or be no longer wanted.
+            let is_here = self.front.is_active(self.front.mt.parent(update));
+            if !is_here || !needs.least.wants(&self.front.mt.ball(update)) {
+                continue;
+            }
+            stack.push(update);
+            while let Some(&next) = stack.last() {
+                if !work.may_go_on() {
+                    self.fresh.push(update);
+                    return;
+                }
+                if self.advance(next, needs, &mut stack) {
+                    work.change.splits += 1;
+                }
+            }
+        }
+    }
+
+    /// Splits the last update of a chain, or finds what must come before it; whether it has split.
+    fn advance(&mut self, update: u32, needs: &Needed<'_>, stack: &mut Vec<u32>) -> bool {
+        let mt = self.front.mt;
+        if self.states[update as usize].applied {
+            stack.pop();
+            return false;
+        }
+        let node = mt.parent(update);
+        if !self.front.is_active(node) {
+            stack.push(mt.family(node).expect("roots are active until they are split"));
+            return false;
+        }
+        if let Err(Needs(first)) = self.front.split(update) {
+            stack.push(first);
+            return false;
+        }
+        stack.pop();
+        self.states[update as usize].applied = true;
+        // Forced without a need, it may go as soon as nothing holds it.
+        if !needs.most.wants(&mt.ball(update)) {
+            self.loose.push(update);
+        }
+        if mt.is_glued(update) {
+            let inner = self.front.split(update + 1);
+            assert!(inner.is_ok(), "what is around the whole is around its part");
+            self.states[update as usize + 1].applied = true;
+            self.arrive(update + 1, needs);
+        }
+        self.arrive(update, needs);
+        true
+    }
+
+    /// Looks at the children of a split for the first time.
+    fn arrive(&mut self, update: u32, needs: &Needed<'_>) {
+        let mt = self.front.mt;
+        for (k, child) in mt.children(update).into_iter().enumerate() {
+            if k == 0 && mt.is_glued(update) {
+                continue;
+            }
+            if let Some(below) = mt.update_of(child) {
+                if self.states[below as usize].scheduled {
+                    if needs.least.wants(&mt.ball(below)) {
+                        self.fresh.push(below);
+                    }
+                } else {
+                    self.look(below, needs);
+                }
+            }
+        }
+    }
+
+    /// Merges what is not wanted and not needed, and what that frees.
+    fn coarsen(&mut self, needs: &Needed<'_>, work: &mut Work) {
+        while work.may_go_on() {
+            let Some(update) = self.loose.pop() else { return };
+            let mt = self.front.mt;
+            if !self.states[update as usize].applied
+                || needs.most.wants(&mt.ball(update))
+                || !self.front.merge(update)
+            {
+                continue;
+            }
+            self.states[update as usize].applied = false;
+            if mt.is_glued(update) {
+                self.states[update as usize + 1].applied = false;
+            }
+            work.change.merges += 1;
+            let node = mt.parent(update);
+            let Self { front, loose, .. } = self;
+            loose.extend(mt.family(node).map(|up| outer(mt, up)));
+            let around = front.around(node).iter().filter_map(|&other| mt.family(other));
+            loose.extend(around.map(|up| outer(mt, up)));
+        }
+    }
+}
+
+/// The update that is glued to this one and goes first, or itself.
+fn outer(mt: &Implicit, update: u32) -> u32 {
+    if mt.is_inner(update) { update - 1 } else { update }
+}
+
+/// A query and the looser one by which what is there may stay.
+struct Needed<'f> {
+    least: Need<'f>,
+    most: Need<'f>,
+}
+
+impl<'f> Needed<'f> {
+    fn new(query: &Query<'f>, mt: &Implicit, hysteresis: f64) -> Result<Self, QueryError> {
+        let least = Need::new(query, mt.frame())?;
+        let most = Need::new(query, mt.frame())?.tightened(1.0 / (1.0 + hysteresis));
+        Ok(Self { least, most })
+    }
+}
+
+/// Counts what is done, and says when it is enough.
+struct Work {
+    change: Change,
+    most: usize,
+    until: Option<Instant>,
+}
+
+impl Work {
+    fn new(effort: &Effort) -> Self {
+        Self {
+            change: Change::default(),
+            most: effort.changes.unwrap_or(usize::MAX),
+            until: effort.time.and_then(|time| Instant::now().checked_add(time)),
+        }
+    }
+
+    fn may_go_on(&self) -> bool {
+        self.change.splits + self.change.merges < self.most
+            && self.until.is_none_or(|until| Instant::now() < until)
+    }
+}

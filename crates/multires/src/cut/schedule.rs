@@ -1,0 +1,149 @@
+//! When to look at an update again: after the eye has travelled as far as it must before its need can
+//! turn.
+//!
+//! A need turns where the eye crosses a sphere about the ball. Until then nothing has to be looked at,
+//! so a frame costs what is close to turning and not what is there.
+
+use crate::need::{Ball, Eye};
+
+/// The finest step of the way, in stored units.
+const FINEST: f64 = 1.0 / (1u64 << 30) as f64;
+/// How many octaves of leeway are told apart; what has more is looked at when that is used up.
+const OCTAVES: usize = 48;
+/// Into how many steps an octave of leeway is parted: an entry is early by one of 16 to 32 at most.
+const STEPS: i64 = 16;
+/// An octave's entries are up to 32 steps ahead.
+const RING: usize = 64;
+
+/// Updates by the way of the eye at which they are due.
+///
+/// An octave of leeway has steps of a length of its own, and a ring of lists, one for each step.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Schedule {
+    eye: Option<Eye>,
+    /// How far the eye has come.
+    way: f64,
+    rings: Vec<Vec<u32>>,
+    /// What is due now.
+    pub(super) due: Vec<u32>,
+}
+
+impl Schedule {
+    /// Goes where the eye is now and collects what is due; false where it is another eye, or where it
+    /// is not the eye that matters: then all must be looked at.
+    pub(super) fn follow(&mut self, eye: Option<Eye>) -> bool {
+        let last = std::mem::replace(&mut self.eye, eye);
+        let (Some(last), Some(eye)) = (last, eye) else { return false };
+        if last.slope != eye.slope {
+            return false;
+        }
+        let from = self.way;
+        self.way += last.at.distance(eye.at);
+        if !self.way.is_finite() || self.way / FINEST > 1e15 {
+            return false;
+        }
+        for octave in 0..OCTAVES {
+            self.collect(octave, from);
+        }
+        true
+    }
+
+    /// Makes the next query look at everything.
+    pub(super) fn forget(&mut self) {
+        self.eye = None;
+    }
+
+    /// Takes out everything.
+    pub(super) fn clear(&mut self) {
+        self.way = 0.0;
+        self.due.clear();
+        self.rings.iter_mut().for_each(Vec::clear);
+    }
+
+    /// Enters an update that has just been looked at.
+    pub(super) fn add(&mut self, update: u32, ball: &Ball, hysteresis: f64) {
+        let Some(eye) = self.eye else { return };
+        let stays = Eye { slope: eye.slope / (1.0 + hysteresis), ..eye };
+        // A little less, for rounding.
+        let leeway = eye.leeway(ball).min(stays.leeway(ball)) * (1.0 - 1e-9);
+        if leeway == f64::INFINITY {
+            return;
+        }
+        self.rings.resize_with(OCTAVES * RING, Vec::new);
+        let steps = leeway / FINEST / STEPS as f64;
+        let octave = (steps.max(1.0).log2() as usize).min(OCTAVES - 1);
+        let most = (2 * STEPS) as f64 * length(octave);
+        let at = step(self.way + leeway.min(most), octave);
+        self.rings[slot(octave, at)].push(update);
+    }
+
+    /// Collects what became due on the way to here.
+    fn collect(&mut self, octave: usize, from: f64) {
+        let (from, to) = (step(from, octave), step(self.way, octave));
+        // Only the finest steps are so long that an entry may be in the one that it was made in.
+        let from = if octave == 0 { from } else { from + 1 };
+        for at in from.max(to - RING as i64 + 1)..=to {
+            if let Some(list) = self.rings.get_mut(slot(octave, at)) {
+                self.due.append(list);
+            }
+        }
+    }
+}
+
+fn length(octave: usize) -> f64 {
+    FINEST * (1u64 << octave) as f64
+}
+
+fn step(way: f64, octave: usize) -> i64 {
+    (way / length(octave)) as i64
+}
+
+fn slot(octave: usize, step: i64) -> usize {
+    octave * RING + step as usize % RING
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::DVec3;
+
+    use super::*;
+
+    #[test]
+    fn nobody_is_late_and_few_are_early() {
+        let eye = |x: f64| Some(Eye { at: DVec3::new(x, 0.0, 0.0), slope: 0.01 });
+        let mut schedule = Schedule::default();
+        assert!(!schedule.follow(eye(0.0)), "the first look is at everything");
+        schedule.clear();
+        // The need of ball i turns when the eye has come to x = i³ / 1000.
+        let at = |i: u32| f64::from(i).powi(3) / 1000.0;
+        let ball = |i| Ball { center: DVec3::new(at(i) + 1.0, 0.0, 0.0), radius: 0.5, error: 0.005 };
+        (0..60).for_each(|i| schedule.add(i, &ball(i), 0.0));
+        let mut looks = 0;
+        let mut x = 0.0;
+        for frame in 0..200 {
+            x += 0.001 * f64::from(frame);
+            assert!(schedule.follow(eye(x)));
+            for update in std::mem::take(&mut schedule.due) {
+                looks += 1;
+                if at(update) <= x {
+                    continue;
+                }
+                assert!(eye(x).unwrap().leeway(&ball(update)) > 0.0);
+                schedule.add(update, &ball(update), 0.0);
+            }
+            let all: Vec<u32> = schedule.rings.iter().flatten().copied().collect();
+            assert!(all.iter().all(|&update| at(update) > x), "late at {x}");
+        }
+        // Each about as often as its leeway has sixteenths to be early by, again and again.
+        assert!(looks < 60 * 12, "{looks}");
+    }
+
+    #[test]
+    fn another_slope_is_another_question() {
+        let mut schedule = Schedule::default();
+        let eye = Eye { at: DVec3::ZERO, slope: 0.01 };
+        assert!(!schedule.follow(Some(eye)) && schedule.follow(Some(eye)));
+        assert!(!schedule.follow(Some(Eye { slope: 0.02, ..eye })));
+        assert!(!schedule.follow(None) && !schedule.follow(Some(eye)));
+    }
+}

@@ -1,0 +1,77 @@
+//! Contracts again, and keeps every triangle.
+
+use super::{Explicit, ExplicitUpdate, Triangle};
+use crate::forest::Forest;
+
+impl Explicit {
+    /// All triangles that a simplification had at any time.
+    ///
+    /// Cost: linear, but for the stars of the vertices.
+    pub fn new(forest: &Forest) -> Self {
+        let mut stars = vec![Vec::new(); forest.positions.len()];
+        let mut this = Self {
+            frame: forest.frame,
+            positions: forest.positions.clone(),
+            updates: Vec::new(),
+            triangles: Vec::new(),
+            splits: vec![None; forest.positions.len()],
+        };
+        for &nodes in &forest.faces {
+            this.add(nodes, None, &mut stars);
+        }
+        let is_inner = |u: usize| forest.updates.get(u + 1).is_some_and(|next| next.glued);
+        for u in (0..forest.updates.len()).filter(|&u| !is_inner(u)) {
+            let [first, second] = forest.updates[u].children;
+            let mut children = vec![first, second];
+            if forest.updates[u].glued {
+                children.splice(..1, forest.updates[u - 1].children);
+            }
+            this.contract(forest, u, &children, &mut stars);
+        }
+        this.link();
+        this
+    }
+
+    /// A triangle that a contraction makes, and its update refines.
+    fn add(&mut self, nodes: [u32; 3], refiner: Option<u32>, stars: &mut [Vec<u32>]) -> u32 {
+        let id = self.triangles.len() as u32;
+        self.triangles.push(Triangle { nodes, maker: None, refiner });
+        nodes.iter().for_each(|&node| stars[node as usize].push(id));
+        id
+    }
+
+    /// Makes a forest's update of the triangles around its children.
+    fn contract(&mut self, forest: &Forest, of: usize, children: &[u32], stars: &mut [Vec<u32>]) {
+        let id = self.updates.len() as u32;
+        let node = forest.node(of) as u32;
+        let mut fine: Vec<u32> =
+            children.iter().flat_map(|&c| std::mem::take(&mut stars[c as usize])).collect();
+        fine.sort_unstable();
+        fine.dedup();
+        let mut coarse = Vec::new();
+        for &triangle in &fine {
+            let nodes = self.triangles[triangle as usize].nodes;
+            self.triangles[triangle as usize].maker = Some(id);
+            for &other in nodes.iter().filter(|other| !children.contains(other)) {
+                stars[other as usize].retain(|&t| t != triangle);
+            }
+            if nodes.iter().filter(|other| children.contains(other)).count() == 1 {
+                let nodes = nodes.map(|other| if children.contains(&other) { node } else { other });
+                coarse.push(self.add(nodes, Some(id), stars));
+            }
+        }
+        self.splits[node as usize] = Some(id);
+        let ball = forest.ball(of);
+        self.updates.push(ExplicitUpdate { coarse, fine, needs: Vec::new(), ball });
+    }
+
+    /// Finds what each update needs, from the triangles on its arcs.
+    fn link(&mut self) {
+        for update in &mut self.updates {
+            let makers = update.coarse.iter().filter_map(|&t| self.triangles[t as usize].maker);
+            update.needs = makers.collect();
+            update.needs.sort_unstable();
+            update.needs.dedup();
+        }
+    }
+}

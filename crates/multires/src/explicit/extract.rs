@@ -1,0 +1,111 @@
+//! The two algorithms of extraction, as they were published.
+
+use std::collections::{BTreeSet, VecDeque};
+
+use super::Explicit;
+use crate::level::Level;
+use crate::need::Need;
+use crate::query::{Query, QueryError};
+
+/// A mesh out of an [`Explicit`] MT, which the next query changes.
+#[derive(Clone, Debug)]
+pub struct ExplicitCut<'m> {
+    mt: &'m Explicit,
+    /// Which updates have been made.
+    applied: Vec<bool>,
+    /// The triangles there are.
+    present: BTreeSet<u32>,
+}
+
+impl Explicit {
+    /// The smallest mesh in which every triangle that meets the focus is good enough.
+    pub fn extract(&self, query: &Query<'_>) -> Result<Level, QueryError> {
+        let mut cut = ExplicitCut::new(self);
+        cut.refine(&Need::new(query, &self.frame)?);
+        Ok(cut.level())
+    }
+}
+
+impl<'m> ExplicitCut<'m> {
+    /// The base mesh.
+    pub fn new(mt: &'m Explicit) -> Self {
+        let is_base = |&t: &u32| mt.triangles[t as usize].maker.is_none();
+        // What is never made and never refined is of all levels.
+        let present = (0..mt.triangles.len() as u32).filter(is_base).collect();
+        Self { mt, applied: vec![false; mt.updates.len()], present }
+    }
+
+    /// Goes to the answer of another query from here.
+    pub fn update(&mut self, query: &Query<'_>) -> Result<(), QueryError> {
+        let need = Need::new(query, &self.mt.frame)?;
+        self.refine(&need);
+        self.coarsen(&need);
+        Ok(())
+    }
+
+    /// The mesh.
+    pub fn level(&self) -> Level {
+        let faces = self.present.iter().map(|&t| self.mt.triangles[t as usize].nodes);
+        Level::of_nodes(self.mt.frame, &self.mt.positions, faces.collect())
+    }
+
+    /// Makes a single update with all that it needs.
+    #[cfg(test)]
+    pub(crate) fn force(&mut self, update: u32) {
+        self.apply(update);
+    }
+
+    /// Static extraction: breadth first over triangles, from those there are.
+    fn refine(&mut self, need: &Need<'_>) {
+        let mut queue: VecDeque<u32> = self.present.iter().copied().collect();
+        while let Some(triangle) = queue.pop_front() {
+            if !self.present.contains(&triangle) || self.mt.is_valid(need, triangle) {
+                continue;
+            }
+            if let Some(refiner) = self.mt.triangles[triangle as usize].refiner {
+                queue.extend(self.apply(refiner));
+            }
+        }
+    }
+
+    /// Makes an update after those that it needs; the triangles that all of them made.
+    fn apply(&mut self, update: u32) -> Vec<u32> {
+        let mut made = Vec::new();
+        let mut stack = vec![update];
+        while let Some(&next) = stack.last() {
+            let missing = |&&need: &&u32| !self.applied[need as usize];
+            let update = &self.mt.updates[next as usize];
+            if let Some(&first) = update.needs.iter().find(missing) {
+                stack.push(first);
+                continue;
+            }
+            stack.pop();
+            if !std::mem::replace(&mut self.applied[next as usize], true) {
+                for triangle in &update.coarse {
+                    assert!(self.present.remove(triangle), "what it needs makes it");
+                }
+                self.present.extend(&update.fine);
+                made.extend(&update.fine);
+            }
+        }
+        made
+    }
+
+    /// Takes back every update that nobody needs and without which the mesh is good enough still.
+    fn coarsen(&mut self, need: &Need<'_>) {
+        let mut leaves: Vec<u32> = (0..self.applied.len() as u32).collect();
+        while let Some(leaf) = leaves.pop() {
+            let update = &self.mt.updates[leaf as usize];
+            let is_leaf = || update.fine.iter().all(|t| self.present.contains(t));
+            if self.applied[leaf as usize]
+                && is_leaf()
+                && update.coarse.iter().all(|&t| self.mt.is_valid(need, t))
+            {
+                update.fine.iter().for_each(|t| assert!(self.present.remove(t)));
+                self.present.extend(&update.coarse);
+                self.applied[leaf as usize] = false;
+                leaves.extend(&update.needs);
+            }
+        }
+    }
+}

@@ -1,0 +1,147 @@
+//! What a simplification did, as a forest: the source that both encodings are made of.
+
+use std::collections::BTreeMap;
+
+use meshlod_mesh::Mesh;
+use meshlod_simplify::{Options, SimplifyError, Simplifier, Target};
+use thiserror::Error;
+
+use crate::frame::{Frame, Length16};
+use crate::need::Ball;
+use crate::record::Recorder;
+
+/// No node, or no update.
+pub(crate) const NONE: u32 = u32::MAX;
+
+/// All contractions of a simplification, first to last.
+///
+/// Nodes are the vertices of all levels: the input's are the leaves, numbered as there; update `u`
+/// makes node `vertices + u` of its children. Refining undoes updates, last to first.
+#[derive(Clone, Debug)]
+pub struct Forest {
+    pub(crate) frame: Frame,
+    /// How many leaves, also those that no face uses.
+    pub(crate) vertices: usize,
+    /// Of every node, in stored units.
+    pub(crate) positions: Vec<[f32; 3]>,
+    pub(crate) updates: Vec<Update>,
+    /// The nodes around each update's node just after its contraction, one update after the other.
+    pub(crate) rings: Vec<u32>,
+    /// The faces that the simplification began with, by leaves.
+    pub(crate) faces: Vec<[u32; 3]>,
+    /// The update that brings each face back; [`NONE`] for those of the base.
+    pub(crate) brought: Vec<u32>,
+    /// What wings cannot tell, by update.
+    pub(crate) odd: BTreeMap<u32, Odd>,
+}
+
+/// An update whose faces do not part at wings: the surface is not manifold there, or not oriented.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Odd {
+    /// The two other nodes of each face that its second child takes, as they follow it.
+    pub(crate) second: Vec<[u32; 2]>,
+    /// The faces that it brings.
+    pub(crate) brought: Vec<[u32; 3]>,
+}
+
+/// A contraction of an edge; see the notes for what its numbers promise.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Update {
+    /// The nodes that become one. The second's faces are one run of the fan around the new node.
+    pub(crate) children: [u32; 2],
+    /// The nodes where that run starts and where it ends, counter-clockwise; [`NONE`] for an end on
+    /// the boundary. Both are `NONE` where an [`Odd`] tells instead.
+    pub(crate) wings: [u32; 2],
+    /// Where its ring starts.
+    pub(crate) ring: u32,
+    /// Above those of its children and of all around.
+    pub(crate) level: u16,
+    /// Of its coarse side, never less than that of an update that needs it.
+    pub(crate) error: Length16,
+    /// Of a ball about its node, around both its sides and the balls of its children.
+    pub(crate) radius: Length16,
+    /// It and the update of its first child are one, the contraction of a face.
+    pub(crate) glued: bool,
+}
+
+/// Why there is no multiresolution model of a mesh.
+#[derive(Clone, Debug, Error, PartialEq)]
+pub enum BuildError {
+    /// It cannot be simplified.
+    #[error(transparent)]
+    Simplify(#[from] SimplifyError),
+    /// A chain of updates that need each other is too long.
+    #[error("some update needs a chain of more than {} others", u16::MAX)]
+    TooDeep,
+    /// More vertices than are numbered.
+    #[error("the mesh has more than 2^30 vertices")]
+    TooLarge,
+    /// Components vanished: nothing would bring them back.
+    #[error("components vanished; build without letting them")]
+    Vanished,
+    /// Some surface was contracted before the recorder was there.
+    #[error("the simplification was not recorded from its start")]
+    NotFromStart,
+}
+
+impl Forest {
+    /// Simplifies a mesh as far as its method goes and records how.
+    ///
+    /// Positions only: attributes are left behind. Components do not vanish, whatever the options say.
+    /// # Errors
+    /// A mesh that simplification does not take.
+    pub fn new(mesh: &Mesh, options: &Options) -> Result<Self, BuildError> {
+        let options = Options { vanish_below: None, ..options.clone() };
+        let mut simplifier = Simplifier::new(mesh, &options)?;
+        let mut recorder = Recorder::new(&simplifier);
+        simplifier.run(Target::Faces(0), &mut recorder)?;
+        recorder.into_forest()
+    }
+
+    /// How many faces the finest level has.
+    pub fn full_faces(&self) -> usize {
+        self.faces.len()
+    }
+
+    /// How many contractions of an edge there were; that of a face counts as two.
+    pub fn update_count(&self) -> usize {
+        self.updates.len()
+    }
+
+    /// The node that an update makes.
+    #[inline]
+    pub(crate) fn node(&self, update: usize) -> usize {
+        self.vertices + update
+    }
+
+    /// The update that made a node; none for a leaf.
+    #[inline]
+    pub(crate) fn update_of(&self, node: u32) -> Option<usize> {
+        (node as usize).checked_sub(self.vertices)
+    }
+
+    /// The nodes around an update's node just after its contraction.
+    pub(crate) fn ring(&self, update: usize) -> &[u32] {
+        let end = self.updates.get(update + 1).map_or(self.rings.len(), |next| next.ring as usize);
+        &self.rings[self.updates[update].ring as usize..end]
+    }
+
+    /// What an update's need is judged by.
+    pub(crate) fn ball(&self, update: usize) -> Ball {
+        let Update { radius, error, .. } = self.updates[update];
+        Ball {
+            center: glam::Vec3::from(self.positions[self.node(update)]).as_dvec3(),
+            radius: radius.get(),
+            error: error.get(),
+        }
+    }
+
+    /// The update that contracts each node; [`NONE`] for roots.
+    pub(crate) fn parents(&self) -> Vec<u32> {
+        let mut parents = vec![NONE; self.positions.len()];
+        for (u, update) in self.updates.iter().enumerate() {
+            update.children.iter().for_each(|&child| parents[child as usize] = u as u32);
+        }
+        parents
+    }
+}

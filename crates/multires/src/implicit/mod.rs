@@ -1,0 +1,217 @@
+//! The implicit MT: the contractions alone, packed. No triangle is stored but those of the base.
+//!
+//! A split is told by two wings, each by its rank among the vertices around: where the run of faces
+//! starts that go to the second child, and where it ends. What a split needs first is told by levels
+//! (see the notes): a vertex may be split when all around it are of lower levels, and then exactly the
+//! recorded ones are around it. That is also what makes ranks enough for wings.
+//!
+//! | bytes an update | |
+//! |---|---|
+//! | 24 | positions of its two children |
+//! | 8 | `Down`: where the updates of the second child start, radius, error |
+//! | 8 | `Across`: the node it splits, its level, wings |
+
+mod order;
+mod pack;
+
+use std::collections::BTreeMap;
+
+use glam::Vec3;
+
+use crate::forest::Odd;
+use crate::frame::{Frame, Length16};
+use crate::need::Ball;
+
+pub(crate) use order::Order;
+
+/// All levels of a mesh, in 40 bytes a vertex.
+///
+/// Nodes are the vertices of all levels: first the roots, then the children of update 0, of update 1…
+#[derive(Clone, Debug)]
+pub struct Implicit {
+    frame: Frame,
+    roots: u32,
+    /// Where the updates below each root start, and the last of them end.
+    trees: Vec<u32>,
+    positions: Vec<[f32; 3]>,
+    down: Vec<Down>,
+    across: Vec<Across>,
+    /// The coarsest faces, by roots.
+    base: Vec<[u32; 3]>,
+    /// What wings cannot tell, by update, in nodes of this model.
+    odd: BTreeMap<u32, Odd>,
+    full_faces: usize,
+}
+
+/// What a walk down the forest reads of an update.
+#[derive(Clone, Copy, Debug)]
+struct Down {
+    /// The update behind those of the first child; its highest bit is set where it is the second
+    /// child's.
+    second: u32,
+    radius: Length16,
+    error: Length16,
+}
+
+/// What a split reads of an update.
+#[derive(Clone, Copy, Debug)]
+struct Across {
+    /// The node; its highest bit is set where the first child is split in the same go.
+    parent: u32,
+    level: u16,
+    wings: [u8; 2],
+}
+
+const FLAG: u32 = 1 << 31;
+/// No wing: the run starts or ends on the boundary.
+const NO_WING: u8 = u8::MAX;
+
+impl Implicit {
+    /// How many updates there are.
+    pub fn update_count(&self) -> usize {
+        self.down.len()
+    }
+
+    /// How many vertices the coarsest mesh has.
+    pub fn root_count(&self) -> usize {
+        self.roots as usize
+    }
+
+    /// How many faces the coarsest mesh has.
+    pub fn base_faces(&self) -> usize {
+        self.base.len()
+    }
+
+    /// How many faces the finest mesh has.
+    pub fn full_faces(&self) -> usize {
+        self.full_faces
+    }
+
+    /// What it takes in memory.
+    pub fn bytes(&self) -> usize {
+        let odd = |o: &Odd| size_of::<Odd>() + size_of_val(&o.second[..]) + size_of_val(&o.brought[..]);
+        size_of_val(&self.trees[..])
+            + size_of_val(&self.positions[..])
+            + size_of_val(&self.down[..])
+            + size_of_val(&self.across[..])
+            + size_of_val(&self.base[..])
+            + self.odd.values().map(odd).sum::<usize>()
+    }
+
+    pub(crate) fn frame(&self) -> &Frame {
+        &self.frame
+    }
+
+    pub(crate) fn positions(&self) -> &[[f32; 3]] {
+        &self.positions
+    }
+
+    pub(crate) fn base(&self) -> &[[u32; 3]] {
+        &self.base
+    }
+
+    /// Nodes are numbered from 0 below this.
+    pub(crate) fn node_count(&self) -> usize {
+        self.positions.len()
+    }
+
+    /// The nodes that an update splits its node into.
+    #[inline]
+    pub(crate) fn children(&self, update: u32) -> [u32; 2] {
+        let first = self.roots + 2 * update;
+        [first, first + 1]
+    }
+
+    /// The update that a node is a child of; `None` for roots.
+    #[inline]
+    pub(crate) fn family(&self, node: u32) -> Option<u32> {
+        node.checked_sub(self.roots).map(|child| child / 2)
+    }
+
+    /// The update that splits a node; `None` for leaves.
+    #[inline]
+    pub(crate) fn update_of(&self, node: u32) -> Option<u32> {
+        let Some(child) = node.checked_sub(self.roots) else {
+            let start = self.trees[node as usize];
+            return (start < self.trees[node as usize + 1]).then_some(start);
+        };
+        let family = child / 2;
+        let second = self.down[family as usize].second;
+        let (at, is_there) = match child % 2 {
+            0 => (family + 1, family + 1 < second & !FLAG),
+            _ => (second & !FLAG, second & FLAG != 0),
+        };
+        is_there.then_some(at)
+    }
+
+    /// The node that an update splits.
+    #[inline]
+    pub(crate) fn parent(&self, update: u32) -> u32 {
+        self.across[update as usize].parent & !FLAG
+    }
+
+    /// Whether the first child is split in the same go, by the next update.
+    #[inline]
+    pub(crate) fn is_glued(&self, update: u32) -> bool {
+        self.across[update as usize].parent & FLAG != 0
+    }
+
+    /// Whether an update goes in the same go as the one before it, which splits its node's parent.
+    #[inline]
+    pub(crate) fn is_inner(&self, update: u32) -> bool {
+        let node = self.parent(update);
+        self.family(node).is_some_and(|up| self.is_glued(up) && self.children(up)[0] == node)
+    }
+
+    /// Above those of all that it needs first.
+    #[inline]
+    pub(crate) fn level(&self, update: u32) -> u16 {
+        self.across[update as usize].level
+    }
+
+    /// The error of an update's coarse side.
+    #[inline]
+    pub(crate) fn error(&self, update: u32) -> Length16 {
+        self.down[update as usize].error
+    }
+
+    /// What an update's need is judged by.
+    #[inline]
+    pub(crate) fn ball(&self, update: u32) -> Ball {
+        self.ball_at(update, self.parent(update))
+    }
+
+    /// The same where the node is known.
+    #[inline]
+    pub(crate) fn ball_at(&self, update: u32, node: u32) -> Ball {
+        let Down { radius, error, .. } = self.down[update as usize];
+        Ball {
+            center: Vec3::from(self.positions[node as usize]).as_dvec3(),
+            radius: radius.get(),
+            error: error.get(),
+        }
+    }
+
+    /// The ranks of an update's wings.
+    #[inline]
+    pub(crate) fn wings(&self, update: u32) -> [Option<usize>; 2] {
+        let wings = self.across[update as usize].wings;
+        wings.map(|rank| (rank != NO_WING).then_some(rank.into()))
+    }
+
+    /// What the wings of an update cannot tell.
+    pub(crate) fn odd(&self, update: u32) -> Option<&Odd> {
+        self.odd.get(&update)
+    }
+
+    /// Each root, and the run of updates below it.
+    pub(crate) fn roots(&self) -> impl Iterator<Item = (u32, [u32; 2])> + '_ {
+        (0..self.roots).map(|root| (root, [self.trees[root as usize], self.trees[root as usize + 1]]))
+    }
+
+    /// Where the run of updates below a first child ends and that of the second starts.
+    #[inline]
+    pub(crate) fn second(&self, update: u32) -> u32 {
+        self.down[update as usize].second & !FLAG
+    }
+}

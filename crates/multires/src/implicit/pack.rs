@@ -1,0 +1,95 @@
+//! Packs a forest.
+
+use super::{Across, Down, FLAG, Implicit, NO_WING, Order};
+use crate::forest::{BuildError, Forest, NONE, Odd, Update};
+
+impl Implicit {
+    /// All levels of a simplification.
+    ///
+    /// Cost: linear.
+    /// # Errors
+    /// More than 2³⁰ vertices.
+    pub fn new(forest: &Forest) -> Result<Self, BuildError> {
+        Self::in_order(forest, &Order::new(forest))
+    }
+
+    /// The same in an order that others share.
+    pub(crate) fn in_order(forest: &Forest, order: &Order) -> Result<Self, BuildError> {
+        if order.nodes.len() >= FLAG as usize {
+            return Err(BuildError::TooLarge);
+        }
+        let mut this = Self {
+            frame: forest.frame,
+            roots: order.trees.len() as u32 - 1,
+            trees: order.trees.clone(),
+            positions: order.nodes.iter().map(|&n| forest.positions[n as usize]).collect(),
+            down: Vec::with_capacity(order.updates.len()),
+            across: Vec::with_capacity(order.updates.len()),
+            base: base(forest, order),
+            odd: Default::default(),
+            full_faces: forest.faces.len(),
+        };
+        for at in 0..order.updates.len() {
+            let update = order.updates[at] as usize;
+            let (node, of) = (order.place[forest.node(update)], forest.updates[update]);
+            this.down.push(Down {
+                second: second(forest, order, &of, at),
+                radius: of.radius,
+                error: of.error,
+            });
+            let glued = if of.glued { FLAG } else { 0 };
+            this.across.push(Across {
+                parent: node | glued,
+                level: of.level,
+                wings: of.wings.map(|wing| rank(forest, order, update, wing)),
+            });
+            if of.wings == [NONE; 2] {
+                this.odd.insert(at as u32, odd(forest, order, update));
+            }
+        }
+        Ok(this)
+    }
+}
+
+/// The faces that no update brings.
+fn base(forest: &Forest, order: &Order) -> Vec<[u32; 3]> {
+    // Up from the leaves, an update after its children's.
+    let mut root: Vec<u32> = (0..forest.positions.len() as u32).collect();
+    for (u, update) in forest.updates.iter().enumerate().rev() {
+        let above = root[forest.node(u)];
+        update.children.iter().for_each(|&child| root[child as usize] = above);
+    }
+    let faces = forest.faces.iter().zip(&forest.brought).filter(|(_, by)| **by == NONE);
+    faces.map(|(face, _)| face.map(|leaf| order.place[root[leaf as usize] as usize])).collect()
+}
+
+/// Where the updates below the second child start, and whether there are any.
+fn second(forest: &Forest, order: &Order, update: &Update, at: usize) -> u32 {
+    let place = |child| forest.update_of(child).map(|u| order.place_of_update[u]);
+    let [first, second] = update.children.map(place);
+    match (first, second) {
+        (_, Some(second)) => second | FLAG,
+        (Some(first), None) => order.ends[first as usize],
+        (None, None) => at as u32 + 1,
+    }
+}
+
+/// The rank of a wing among the nodes around.
+fn rank(forest: &Forest, order: &Order, update: usize, wing: u32) -> u8 {
+    if wing == NONE {
+        return NO_WING;
+    }
+    let place = order.place[wing as usize];
+    let ring = forest.ring(update);
+    // Below 255, or the recorder would have written the faces out.
+    ring.iter().filter(|&&other| order.place[other as usize] < place).count() as u8
+}
+
+fn odd(forest: &Forest, order: &Order, update: usize) -> Odd {
+    let place = |node: u32| order.place[node as usize];
+    let odd = forest.odd.get(&(update as u32)).cloned().unwrap_or_default();
+    Odd {
+        second: odd.second.into_iter().map(|pair| pair.map(place)).collect(),
+        brought: odd.brought.into_iter().map(|face| face.map(place)).collect(),
+    }
+}

@@ -1,0 +1,253 @@
+//! Whether a query needs an update: the one question that every algorithm here asks.
+
+use glam::DVec3;
+
+use crate::frame::Frame;
+use crate::query::{Camera, Focus, Query, QueryError, Tolerance};
+
+/// What an update is judged by, in stored units: a ball around both its sides and the error of the
+/// coarse one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Ball {
+    pub(crate) center: DVec3,
+    pub(crate) radius: f64,
+    pub(crate) error: f64,
+}
+
+/// A query in stored units.
+///
+/// It is monotone: what it wants of a ball it wants of every ball around that with at least its error.
+pub(crate) struct Need<'f> {
+    place: Place,
+    most: Most<'f>,
+}
+
+enum Place {
+    Everything,
+    Segment([DVec3; 2]),
+    Box([DVec3; 2]),
+    Sphere(DVec3, f64),
+    /// Planes with the inside where `normal · x` is at least the number.
+    Planes([(DVec3, f64); 5]),
+}
+
+enum Most<'f> {
+    Everywhere(f64),
+    /// So much of the distance from the eye.
+    OfDistance(Eye),
+    /// A part of the field.
+    Field { field: &'f dyn Fn([f64; 3], f64) -> f64, part: f64, frame: Frame },
+}
+
+/// A camera, as far as it matters how large it sees an error.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Eye {
+    pub(crate) at: DVec3,
+    /// The tolerance a unit of distance.
+    pub(crate) slope: f64,
+}
+
+impl<'f> Need<'f> {
+    pub(crate) fn new(query: &Query<'f>, frame: &Frame) -> Result<Self, QueryError> {
+        query.validate()?;
+        let point = |p: [f64; 3]| frame.point(p.into());
+        let place = match &query.focus {
+            Focus::Everything => Place::Everything,
+            Focus::Point(at) => Place::Sphere(point(*at), 0.0),
+            Focus::Segment(ends) => Place::Segment(ends.map(point)),
+            Focus::Box(corners) => Place::Box(corners.map(point)),
+            Focus::Sphere { center, radius } => {
+                Place::Sphere(point(*center), frame.length(*radius))
+            }
+            Focus::Frustum(camera) => Place::Planes(planes(camera, point(camera.eye))),
+        };
+        let most = match query.tolerance {
+            Tolerance::Uniform(most) => Most::Everywhere(frame.length(most)),
+            Tolerance::Pixels { camera, most } => {
+                Most::OfDistance(Eye { at: point(camera.eye), slope: most * camera.pixel() })
+            }
+            Tolerance::Field(field) => Most::Field { field, part: 1.0, frame: *frame },
+        };
+        Ok(Self { place, most })
+    }
+
+    /// Whether the ball meets the focus with more than the least tolerance in it.
+    #[inline]
+    pub(crate) fn wants(&self, ball: &Ball) -> bool {
+        self.exceeds(ball) && self.meets(ball)
+    }
+
+    #[inline]
+    fn exceeds(&self, ball: &Ball) -> bool {
+        match &self.most {
+            Most::Everywhere(most) => ball.error > *most,
+            Most::OfDistance(eye) => eye.exceeded_by(ball),
+            Most::Field { field, part, frame } => {
+                let center = frame.model(ball.center.as_vec3().into());
+                let most = part * field(center, frame.length_of_model(ball.radius));
+                frame.length_of_model(ball.error) > most
+            }
+        }
+    }
+
+    #[inline]
+    fn meets(&self, ball: &Ball) -> bool {
+        let Ball { center, radius, .. } = *ball;
+        let squared = match &self.place {
+            Place::Everything => return true,
+            Place::Segment(ends) => center.distance_squared(closest(center, *ends)),
+            Place::Box([min, max]) => center.distance_squared(center.clamp(*min, *max)),
+            Place::Sphere(middle, reach) => {
+                return center.distance_squared(*middle) <= (reach + radius) * (reach + radius);
+            }
+            Place::Planes(planes) => {
+                return planes.iter().all(|&(normal, least)| normal.dot(center) + radius >= least);
+            }
+        };
+        squared <= radius * radius
+    }
+
+    /// The same with a part of the tolerance.
+    pub(crate) fn tightened(mut self, by: f64) -> Self {
+        match &mut self.most {
+            Most::Everywhere(most) => *most *= by,
+            Most::OfDistance(eye) => eye.slope *= by,
+            Most::Field { part, .. } => *part *= by,
+        }
+        self
+    }
+
+    /// The eye, where it is all that the need depends on.
+    pub(crate) fn eye(&self) -> Option<Eye> {
+        match (&self.place, &self.most) {
+            (Place::Everything, Most::OfDistance(eye)) => Some(*eye),
+            _ => None,
+        }
+    }
+}
+
+impl Eye {
+    #[inline]
+    fn exceeded_by(&self, ball: &Ball) -> bool {
+        // Most error a unit of distance, at the ball's closest place.
+        let reach = ball.error + self.slope * ball.radius;
+        let squared = self.slope * self.slope * self.at.distance_squared(ball.center);
+        ball.error > 0.0 && (squared < reach * reach || self.slope == 0.0)
+    }
+
+    /// How far the eye may move before it may want something else of the ball.
+    pub(crate) fn leeway(&self, ball: &Ball) -> f64 {
+        if ball.error <= 0.0 || self.slope == 0.0 {
+            return f64::INFINITY;
+        }
+        (self.at.distance(ball.center) - (ball.radius + ball.error / self.slope)).abs()
+    }
+}
+
+fn closest(to: DVec3, [a, b]: [DVec3; 2]) -> DVec3 {
+    let along = b - a;
+    let squared = along.length_squared();
+    let t = if squared > 0.0 { ((to - a).dot(along) / squared).clamp(0.0, 1.0) } else { 0.0 };
+    a + t * along
+}
+
+/// In front of the eye, and within the four sides of the picture.
+fn planes(camera: &Camera, eye: DVec3) -> [(DVec3, f64); 5] {
+    let [forward, right, up] = camera.axes();
+    let [width, height] = camera.viewport.map(f64::from);
+    let high = (0.5 * camera.fov_rad).tan();
+    let wide = high * width / height;
+    let inside = |normal: DVec3| {
+        let normal = normal.normalize_or_zero();
+        (normal, normal.dot(eye))
+    };
+    [
+        inside(forward),
+        inside(wide * forward + right),
+        inside(wide * forward - right),
+        inside(high * forward + up),
+        inside(high * forward - up),
+    ]
+}
+
+#[cfg(test)]
+mod tests {
+    use meshlod_mesh::Bounds;
+
+    use super::*;
+
+    fn need(focus: Focus, tolerance: Tolerance<'_>) -> Need<'_> {
+        let frame = Frame::new(&Bounds { min: [-1.0; 3], max: [1.0; 3] });
+        Need::new(&Query { focus, tolerance }, &frame).unwrap()
+    }
+
+    /// A ball in model units of a frame of unit 4.
+    fn ball(center: [f64; 3], radius: f64, error: f64) -> Ball {
+        Ball { center: DVec3::from(center) / 4.0, radius: radius / 4.0, error: error / 4.0 }
+    }
+
+    fn camera() -> Camera {
+        Camera {
+            eye: [0.0, 0.0, 5.0],
+            look: [0.0; 3],
+            up: [0.0, 1.0, 0.0],
+            fov_rad: std::f64::consts::FRAC_PI_2,
+            viewport: [200, 100],
+        }
+    }
+
+    #[test]
+    fn a_focus_is_met_by_balls_that_reach_it() {
+        let reached = |focus: Focus, center| {
+            let need = need(focus, Tolerance::Uniform(0.0));
+            [0.9, 1.1].map(|radius| need.wants(&ball(center, radius, 1.0)))
+        };
+        let at = [2.0, 0.0, 0.0];
+        assert_eq!(reached(Focus::Everything, at), [true, true]);
+        assert_eq!(reached(Focus::Point([1.0, 0.0, 0.0]), at), [false, true]);
+        assert_eq!(reached(Focus::Segment([[1.0, -3.0, 0.0], [1.0, 3.0, 0.0]]), at), [false, true]);
+        assert_eq!(reached(Focus::Segment([[1.0, 0.0, 0.0]; 2]), at), [false, true]);
+        assert_eq!(reached(Focus::Box([[-1.0; 3], [1.0; 3]]), at), [false, true]);
+        assert_eq!(reached(Focus::Sphere { center: [0.0; 3], radius: 1.0 }, at), [false, true]);
+        // The picture is twice as wide as high: its upper side rises by one a unit of distance.
+        let above = [0.0, 5.0 + 2f64.sqrt(), 0.0];
+        assert_eq!(reached(Focus::Frustum(camera()), above), [false, true]);
+        assert_eq!(reached(Focus::Frustum(camera()), [9.0, 0.0, 0.0]), [true, true]);
+        assert_eq!(reached(Focus::Frustum(camera()), [0.0, 0.0, 6.0]), [false, true]);
+    }
+
+    #[test]
+    fn pixels_grow_with_the_distance() {
+        // A pixel spans a fiftieth of the distance: 0.1 at distance 5.
+        let need = need(Focus::Everything, Tolerance::Pixels { camera: camera(), most: 1.0 });
+        assert!(!need.wants(&ball([0.0; 3], 0.0, 0.099)) && need.wants(&ball([0.0; 3], 0.0, 0.101)));
+        // What reaches half the way is seen from there.
+        assert!(need.wants(&ball([0.0; 3], 2.5, 0.051)) && !need.wants(&ball([0.0; 3], 2.5, 0.049)));
+        assert!(!need.wants(&ball([0.0; 3], 9.0, 0.0)), "what is exact is fine enough");
+        let leeway = need.eye().unwrap().leeway(&ball([0.0; 3], 2.0, 0.02));
+        assert!((4.0 * leeway - 2.0).abs() < 1e-12, "reach 2 + 1 from distance 5: {leeway}");
+    }
+
+    #[test]
+    fn a_field_is_asked_in_model_units() {
+        let field = |center: [f64; 3], radius: f64| (center[0].abs() - radius).max(0.0);
+        let need = need(Focus::Everything, Tolerance::Field(&field));
+        assert!(need.wants(&ball([1.0, 0.0, 0.0], 0.5, 0.6)));
+        assert!(!need.wants(&ball([1.0, 0.0, 0.0], 0.5, 0.4)));
+    }
+
+    #[test]
+    fn questions_that_are_none_are_refused() {
+        let frame = Frame::new(&Bounds { min: [-1.0; 3], max: [1.0; 3] });
+        let ask = |focus, tolerance| Need::new(&Query { focus, tolerance }, &frame).err();
+        let fine = || Tolerance::Uniform(0.1);
+        assert!(ask(Focus::Everything, Tolerance::Uniform(f64::NAN)).is_some());
+        assert!(ask(Focus::Everything, Tolerance::Uniform(-1.0)).is_some());
+        assert!(ask(Focus::Point([f64::INFINITY, 0.0, 0.0]), fine()).is_some());
+        assert_eq!(ask(Focus::Box([[1.0; 3], [0.0; 3]]), fine()), Some(QueryError::InsideOut));
+        let along_up = Camera { up: [0.0, 0.0, 1.0], ..camera() };
+        assert!(ask(Focus::Frustum(along_up), fine()).is_some());
+        let without = Camera { viewport: [0, 10], ..camera() };
+        assert!(ask(Focus::Everything, Tolerance::Pixels { camera: without, most: 1.0 }).is_some());
+    }
+}

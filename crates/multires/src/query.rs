@@ -1,0 +1,181 @@
+//! What is asked: where, and how fine.
+
+use glam::DVec3;
+use thiserror::Error;
+
+/// A question: within the focus no triangle may be further from the surface than the tolerance.
+#[derive(Clone, Debug)]
+pub struct Query<'f> {
+    /// Where the tolerance must hold; elsewhere the mesh is as coarse as it can be.
+    pub focus: Focus,
+    /// How far off triangles may be.
+    pub tolerance: Tolerance<'f>,
+}
+
+/// A set in space, in model units.
+#[derive(Clone, Debug, Default)]
+pub enum Focus {
+    /// All of it.
+    #[default]
+    Everything,
+    /// One place.
+    Point([f64; 3]),
+    /// Between two places.
+    Segment([[f64; 3]; 2]),
+    /// From the least corner to the greatest.
+    Box([[f64; 3]; 2]),
+    /// All within a distance.
+    Sphere {
+        /// Its middle.
+        center: [f64; 3],
+        /// The distance.
+        radius: f64,
+    },
+    /// What a camera sees, however far.
+    Frustum(Camera),
+}
+
+/// How far off a triangle may be.
+#[derive(Clone)]
+pub enum Tolerance<'f> {
+    /// The same everywhere, in model units.
+    Uniform(f64),
+    /// What a camera cannot tell.
+    Pixels {
+        /// The camera.
+        camera: Camera,
+        /// How many of its pixels the error may span where it is closest to the camera.
+        most: f64,
+    },
+    /// The least tolerance in a ball, by its center and its radius in model units. Of a ball within
+    /// another it must not be less than of that.
+    Field(&'f dyn Fn([f64; 3], f64) -> f64),
+}
+
+/// A perspective camera.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Camera {
+    /// Where it is.
+    pub eye: [f64; 3],
+    /// What it looks at.
+    pub look: [f64; 3],
+    /// A direction that is up in the picture.
+    pub up: [f64; 3],
+    /// From the lower edge of the picture to the upper one.
+    pub fov_rad: f64,
+    /// Width and height of the picture in pixels.
+    pub viewport: [u32; 2],
+}
+
+/// Why a question cannot be asked.
+#[derive(Clone, Debug, Error, PartialEq)]
+pub enum QueryError {
+    /// A coordinate of the focus or the camera is not a number.
+    #[error("the {0} has a coordinate that is not finite")]
+    NotFinite(&'static str),
+    /// A length below zero, or none at all.
+    #[error("{what} of {value} is none: give at least 0")]
+    BadLength {
+        /// What it is of.
+        what: &'static str,
+        /// The value.
+        value: f64,
+    },
+    /// A box from a corner to a lesser one.
+    #[error("the box is inside out: its first corner must be the least")]
+    InsideOut,
+    /// A camera without a picture.
+    #[error("the camera sees nothing: {0}")]
+    Blind(&'static str),
+}
+
+impl Query<'static> {
+    /// The whole surface to a tolerance in model units.
+    pub fn uniform(tolerance: f64) -> Self {
+        Self { focus: Focus::Everything, tolerance: Tolerance::Uniform(tolerance) }
+    }
+
+    /// The whole surface as a camera needs it.
+    pub fn pixels(camera: Camera, most: f64) -> Self {
+        Self { focus: Focus::Everything, tolerance: Tolerance::Pixels { camera, most } }
+    }
+}
+
+impl Query<'_> {
+    /// Whether it can be asked.
+    pub(crate) fn validate(&self) -> Result<(), QueryError> {
+        match &self.focus {
+            Focus::Everything => {}
+            Focus::Point(point) => finite("point", &[*point])?,
+            Focus::Segment(ends) => finite("segment", ends)?,
+            Focus::Box(corners) => {
+                finite("box", corners)?;
+                if (0..3).any(|k| corners[0][k] > corners[1][k]) {
+                    return Err(QueryError::InsideOut);
+                }
+            }
+            Focus::Sphere { center, radius } => {
+                finite("sphere", &[*center])?;
+                length("a radius", *radius)?;
+            }
+            Focus::Frustum(camera) => camera.validate()?,
+        }
+        match &self.tolerance {
+            Tolerance::Uniform(most) => length("a tolerance", *most),
+            Tolerance::Pixels { camera, most } => {
+                camera.validate()?;
+                length("a tolerance", *most)
+            }
+            Tolerance::Field(_) => Ok(()),
+        }
+    }
+}
+
+impl Camera {
+    /// How much of the distance a pixel spans.
+    pub fn pixel(&self) -> f64 {
+        2.0 * (0.5 * self.fov_rad).tan() / f64::from(self.viewport[1])
+    }
+
+    /// Forward, right and up, at right angles and of length one.
+    pub(crate) fn axes(&self) -> [DVec3; 3] {
+        let forward = (DVec3::from(self.look) - DVec3::from(self.eye)).normalize_or_zero();
+        let right = forward.cross(self.up.into()).normalize_or_zero();
+        [forward, right, right.cross(forward)]
+    }
+
+    fn validate(&self) -> Result<(), QueryError> {
+        finite("camera", &[self.eye, self.look, self.up])?;
+        if !(self.fov_rad > 0.0 && self.fov_rad < std::f64::consts::PI) {
+            return Err(QueryError::Blind("its field of view is not between 0 and 180 degrees"));
+        }
+        if self.viewport.contains(&0) {
+            return Err(QueryError::Blind("its picture has no pixels"));
+        }
+        if self.axes().contains(&DVec3::ZERO) {
+            return Err(QueryError::Blind("it looks at itself, or along its up"));
+        }
+        Ok(())
+    }
+}
+
+impl std::fmt::Debug for Tolerance<'_> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Uniform(most) => f.debug_tuple("Uniform").field(most).finish(),
+            Self::Pixels { camera, most } => {
+                f.debug_struct("Pixels").field("camera", camera).field("most", most).finish()
+            }
+            Self::Field(_) => f.write_str("Field"),
+        }
+    }
+}
+
+fn finite(what: &'static str, points: &[[f64; 3]]) -> Result<(), QueryError> {
+    let ok = points.iter().flatten().all(|x| x.is_finite());
+    if ok { Ok(()) } else { Err(QueryError::NotFinite(what)) }
+}
+
+fn length(what: &'static str, value: f64) -> Result<(), QueryError> {
+    if value >= 0.0 { Ok(()) } else { Err(QueryError::BadLength { what, value }) }
+}

@@ -1,0 +1,269 @@
+//! Writes the forest down while the engine contracts.
+//!
+//! What must hold along every dependency is made to hold here, on the way up, in constant time a
+//! neighbour: an update comes after all that need it, so each vertex carries what those around it
+//! ask of the update that will contract it.
+
+use std::collections::BTreeMap;
+
+use glam::{DVec3, Vec3};
+use meshlod_mesh::{Bounds, FaceId, VertexId};
+use meshlod_simplify::{Neighbourhood, Observe, Placed, Simplifier, Spoke, Surface};
+
+use crate::forest::{BuildError, Forest, NONE, Odd, Update};
+use crate::frame::{Frame, Length16};
+
+/// An observer of a [`Simplifier`], there from its first contraction on.
+#[derive(Debug)]
+pub struct Recorder {
+    forest: Forest,
+    /// By vertex of the input: what stands there now.
+    now: Vec<Standing>,
+    /// By face of the input: its place among the forest's faces, or [`NONE`].
+    place: Vec<u32>,
+    /// How many faces are left.
+    live_faces: usize,
+    /// The next edges are those of a face: how many are to come.
+    of_face: u8,
+    trouble: Option<BuildError>,
+}
+
+/// A node that stands, and what is asked of the update that will contract it.
+#[derive(Clone, Copy, Debug)]
+struct Standing {
+    node: u32,
+    /// Its update's; 0 for a leaf.
+    level: u16,
+    /// The greatest error of the updates that will need it to be split.
+    error: Length16,
+    radius: Length16,
+}
+
+/// By how much a ball is drawn larger than it has to be, so that rounding in a query cannot make it
+/// miss what a ball within it meets.
+const SLACK: f64 = 1.0 + 1e-6;
+
+/// Wings are stored as ranks among so many at most.
+const MOST_RANKED: usize = 255;
+
+impl Recorder {
+    /// Ready to observe; nothing must have been contracted yet.
+    pub fn new(simplifier: &Simplifier<'_>) -> Self {
+        let surface = simplifier.surface();
+        let vertices = surface.vertex_count();
+        let ids = (0..surface.face_count()).map(FaceId::new);
+        let alive: Vec<FaceId> = ids.filter(|&face| surface.is_alive(face)).collect();
+        let mut place = vec![NONE; surface.face_count()];
+        alive.iter().enumerate().for_each(|(i, face)| place[face.index()] = i as u32);
+        let faces: Vec<_> = alive.iter().map(|&face| surface.face(face).map(|v| v.0)).collect();
+        let corners = faces.iter().flatten().map(|&v| surface.position(VertexId(v)).to_array());
+        let frame = Frame::new(&Bounds::of(&corners.collect::<Vec<_>>()));
+        let at = |v: usize| frame.store(surface.position(VertexId::new(v))).to_array();
+        let standing = |node: usize| Standing {
+            node: node as u32,
+            level: 0,
+            error: Length16(0),
+            radius: Length16(0),
+        };
+        let mut positions = Vec::with_capacity(2 * vertices);
+        positions.extend((0..vertices).map(at));
+        Self {
+            now: (0..vertices).map(standing).collect(),
+            place,
+            live_faces: faces.len(),
+            of_face: 0,
+            trouble: None,
+            forest: Forest {
+                frame,
+                vertices,
+                positions,
+                updates: Vec::with_capacity(vertices),
+                rings: Vec::with_capacity(7 * vertices),
+                brought: vec![NONE; faces.len()],
+                faces,
+                odd: BTreeMap::new(),
+            },
+        }
+    }
+
+    /// What was recorded.
+    /// # Errors
+    /// What has made it useless on the way.
+    pub fn into_forest(self) -> Result<Forest, BuildError> {
+        self.trouble.map_or(Ok(self.forest), Err)
+    }
+
+    fn is_in_step(&mut self, surface: &Surface) -> bool {
+        if surface.live_faces() != self.live_faces {
+            self.trouble.get_or_insert(BuildError::NotFromStart);
+        }
+        self.trouble.is_none()
+    }
+
+    /// The numbers of an update, and what it asks of those around.
+    fn record(&mut self, hood: &Neighbourhood, placed: &Placed, run: Option<&Run>) {
+        let owner = run.map_or(1 - placed.kept, |run| run.owner);
+        let [first, second] = [1 - owner, owner].map(|i| hood.contracted()[i]);
+        let both = [self.now[first.index()], self.now[second.index()]];
+        let ring = || hood.ring().iter().map(|r| r.id);
+        let below = ring().map(|v| self.now[v.index()].level).max().unwrap_or(0);
+        let Some(level) = below.max(both[0].level).max(both[1].level).checked_add(1) else {
+            self.trouble = Some(BuildError::TooDeep);
+            return;
+        };
+        let Self { forest, now, .. } = self;
+        let position = forest.frame.store(placed.position);
+        let own = Length16::up(forest.frame.length(placed.error_estimate));
+        let error = own.max(both[0].error).max(both[1].error);
+        let radius = radius(&forest.frame, hood, position, &both, &forest.positions);
+        let start = forest.rings.len() as u32;
+        forest.rings.extend(ring().map(|v| now[v.index()].node));
+        let wing = |place: Option<usize>| {
+            place.map_or(NONE, |place| now[hood.ring()[place].id.index()].node)
+        };
+        let update = Update {
+            children: both.map(|s| s.node),
+            wings: run.map_or([NONE; 2], |run| run.wings.map(wing)),
+            ring: start,
+            level,
+            error,
+            radius,
+            glued: self.of_face == 1 && both[0].node as usize + 1 == forest.positions.len(),
+        };
+        let node = forest.positions.len() as u32;
+        forest.updates.push(update);
+        forest.positions.push(position.into());
+        if update.glued {
+            // One update of two contractions is needed as a whole.
+            let inner = forest.updates.len() - 2;
+            (forest.updates[inner].error, forest.updates[inner].radius) = (error, radius);
+        }
+        for v in ring() {
+            let standing = &mut now[v.index()];
+            standing.error = standing.error.max(error);
+        }
+        let kept = hood.contracted()[placed.kept];
+        now[kept.index()] = Standing { node, level, error, radius };
+        for dying in hood.dying() {
+            forest.brought[self.place[dying.face.index()] as usize] = node - forest.vertices as u32;
+        }
+    }
+
+    /// Keeps what wings cannot tell.
+    fn write_out(&mut self, surface: &Surface, hood: &Neighbourhood, owner: usize) {
+        let Self { forest, now, .. } = self;
+        let node = |v: VertexId| now[v.index()].node;
+        let own = hood.spokes().iter().filter(|spoke| spoke.owner() == owner);
+        let around = own.map(|spoke| [spoke.a, spoke.b].map(|at| node(hood.ring()[at as usize].id)));
+        let odd = Odd {
+            second: around.collect(),
+            brought: hood.dying().iter().map(|d| surface.face(d.face).map(node)).collect(),
+        };
+        forest.odd.insert(forest.updates.len() as u32, odd);
+    }
+}
+
+impl Observe for Recorder {
+    fn face(&mut self) {
+        self.of_face = 2;
+    }
+
+    fn before(&mut self, surface: &Surface, hood: &Neighbourhood, placed: &Placed) {
+        if !self.is_in_step(surface) {
+            return;
+        }
+        self.live_faces -= hood.dying().len();
+        let has_ranks = hood.ring().len() <= MOST_RANKED;
+        let run = Run::of(surface, hood, placed.kept).filter(|_| has_ranks);
+        if run.is_none() {
+            self.write_out(surface, hood, 1 - placed.kept);
+        }
+        self.record(hood, placed, run.as_ref());
+        self.of_face = self.of_face.saturating_sub(1);
+    }
+
+    fn vanish(&mut self, _: &Surface, _: &[FaceId]) {
+        self.trouble.get_or_insert(BuildError::Vanished);
+    }
+}
+
+/// Of a ball about the new node, around its ring and what became one, with the balls of that.
+fn radius(
+    frame: &Frame,
+    hood: &Neighbourhood,
+    position: Vec3,
+    both: &[Standing; 2],
+    positions: &[[f32; 3]],
+) -> Length16 {
+    let center = position.as_dvec3();
+    let reach = |to: DVec3| center.distance_squared(to);
+    let ring = hood.ring().iter().map(|r| reach(frame.store(r.position).as_dvec3()));
+    let ring = ring.fold(0.0, f64::max).sqrt();
+    let balls = both.iter().map(|s| {
+        reach(Vec3::from(positions[s.node as usize]).as_dvec3()).sqrt() + s.radius.get()
+    });
+    Length16::up(balls.fold(ring, f64::max) * SLACK)
+}
+
+/// Which of the two ends of an edge has its faces in one run of the new fan, and between which places
+/// of the ring.
+struct Run {
+    owner: usize,
+    /// Its start and its end, counter-clockwise; none where it starts or ends on the boundary.
+    wings: [Option<usize>; 2],
+}
+
+impl Run {
+    /// Preferably the end that goes. None where neither has, as next to an edge of three faces or
+    /// where faces look to different sides.
+    fn of(surface: &Surface, hood: &Neighbourhood, kept: usize) -> Option<Self> {
+        let &[v0, v1] = &hood.contracted()[..] else { return None };
+        [1 - kept, kept].into_iter().find_map(|owner| {
+            let ends = if owner == 1 { [v0, v1] } else { [v1, v0] };
+            let run = Self { owner, wings: wings(surface, hood, ends)? };
+            let own = hood.spokes().iter().filter(|spoke| spoke.owner() == owner).count();
+            (run.length(hood)? == own).then_some(run)
+        })
+    }
+
+    /// How many faces a walk along the run meets before it ends; none where it meets others.
+    fn length(&self, hood: &Neighbourhood) -> Option<usize> {
+        let [start, end] = self.wings;
+        let (mut at, stop, backwards) = match (start, end) {
+            (Some(start), end) => (start, end, false),
+            (None, Some(end)) => (end, None, true),
+            (None, None) => return None,
+        };
+        let mut length = 0;
+        while Some(at) != stop {
+            let from = |s: &&Spoke| (if backwards { s.b } else { s.a }) as usize == at;
+            let mut found = hood.spokes().iter().filter(from);
+            let Some(next) = found.next() else { break };
+            if found.next().is_some() || next.owner() != self.owner || length > hood.spokes().len()
+            {
+                return None;
+            }
+            at = (if backwards { next.a } else { next.b }) as usize;
+            length += 1;
+        }
+        Some(length)
+    }
+}
+
+/// Where the faces of the second end start and end, by the turn of the faces that go.
+fn wings(
+    surface: &Surface,
+    hood: &Neighbourhood,
+    [first, second]: [VertexId; 2],
+) -> Option<[Option<usize>; 2]> {
+    let mut wings = [None; 2];
+    for dying in hood.dying() {
+        let [a, b, c] = surface.face(dying.face);
+        let is = |from, to| [(a, b), (b, c), (c, a)].contains(&(from, to));
+        let wing = &mut wings[usize::from(!is(second, first))];
+        if wing.replace(dying.apex()?).is_some() {
+            return None;
+        }
+    }
+    Some(wings)
+}

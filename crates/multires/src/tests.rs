@@ -1,0 +1,3 @@
+//! What every encoding must hold, on random walks through queries.
+
+mod walks;

@@ -1,0 +1,153 @@
+//! Queries that wander, and what their answers must be.
+
+use meshlod_fixtures as fixtures;
+use meshlod_mesh::{Connectivity, Mesh, sample};
+use meshlod_simplify::{Method, Options};
+
+use crate::implicit::Order;
+use crate::{
+    Camera, Cut, Effort, Explicit, ExplicitCut, Focus, Forest, Implicit, Level, Query, Tolerance,
+};
+
+const METHODS: [Method; 5] = [
+    Method::Qem,
+    Method::LindstromTurk,
+    Method::QemEndpoint,
+    Method::LeeJang,
+    Method::LindstromTurkFaces,
+];
+
+fn meshes() -> Vec<(&'static str, Mesh)> {
+    vec![
+        ("sphere", sample::sphere(600)),
+        ("torus", sample::torus(500)),
+        ("terrain", sample::terrain(600)),
+        ("gyroid", sample::gyroid(900)),
+        ("grid", fixtures::grid(10)),
+        ("fan", fixtures::fan()),
+        ("hourglass", fixtures::hourglass()),
+        ("two objects", fixtures::two_objects()),
+    ]
+}
+
+pub(crate) fn forest(mesh: &Mesh, method: Method) -> Forest {
+    Forest::new(mesh, &Options { method, ..Options::default() }).unwrap()
+}
+
+fn each(check: impl Fn(&str, &Mesh, &Forest)) {
+    for (name, mesh) in meshes() {
+        for method in METHODS {
+            check(&format!("{name} by {}", method.name()), &mesh, &forest(&mesh, method));
+        }
+    }
+}
+
+/// Numbers from a seed.
+pub(crate) struct Dice(pub(crate) u64);
+
+impl Dice {
+    /// From 0 to 1.
+    pub(crate) fn roll(&mut self) -> f64 {
+        // A linear congruence; its high bits are good enough for this.
+        self.0 = self.0.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+        (self.0 >> 40) as f64 / (1u64 << 24) as f64
+    }
+
+    fn place(&mut self, mesh: &Mesh) -> [f64; 3] {
+        let v = (self.roll() * mesh.positions.len() as f64) as usize;
+        mesh.positions[v]
+    }
+}
+
+/// A query like others and then again not.
+pub(crate) fn query(dice: &mut Dice, mesh: &Mesh) -> Query<'static> {
+    let diagonal = mesh.bounds().diagonal();
+    let camera = Camera {
+        eye: dice.place(mesh).map(|x| x + diagonal * (0.1 + dice.roll())),
+        look: mesh.bounds().center(),
+        up: [0.0, 0.3, 1.0],
+        fov_rad: 0.8,
+        viewport: [640, 480],
+    };
+    let focus = match (dice.roll() * 8.0) as usize {
+        0..3 => Focus::Everything,
+        3 => Focus::Point(dice.place(mesh)),
+        4 => Focus::Segment([dice.place(mesh), dice.place(mesh)]),
+        5 => {
+            let (a, b) = (dice.place(mesh), dice.place(mesh));
+            Focus::Box([[0, 1, 2].map(|k| a[k].min(b[k])), [0, 1, 2].map(|k| a[k].max(b[k]))])
+        }
+        6 => Focus::Sphere { center: dice.place(mesh), radius: 0.2 * diagonal * dice.roll() },
+        _ => Focus::Frustum(camera),
+    };
+    let tolerance = match (dice.roll() * 4.0) as usize {
+        0 => Tolerance::Uniform(0.0),
+        1 => Tolerance::Uniform(diagonal * (-4.0 - 10.0 * dice.roll()).exp2()),
+        _ => Tolerance::Pixels { camera, most: (6.0 * dice.roll() - 2.0).exp2() },
+    };
+    Query { focus, tolerance }
+}
+
+/// What no cut may change or make worse.
+#[derive(Debug, PartialEq)]
+pub(crate) struct Topology {
+    euler: i64,
+    non_manifold_edges: usize,
+    inconsistent_edges: usize,
+    pinched: usize,
+    boundary_loops: bool,
+}
+
+pub(crate) fn topology(mesh: &Mesh) -> Topology {
+    let c = Connectivity::new(&mesh.faces, mesh.positions.len());
+    let used = mesh.used_vertices().iter().filter(|&&used| used).count();
+    Topology {
+        euler: used as i64 - c.edge_count() as i64 + mesh.faces.len() as i64,
+        non_manifold_edges: c.non_manifold_edges(),
+        inconsistent_edges: c.inconsistent_edges(),
+        pinched: c.pinched_vertices(),
+        boundary_loops: c.is_closed(),
+    }
+}
+
+/// The faces of a level by the forest's nodes.
+fn in_forest(level: &Level, order: &Order) -> Vec<[u32; 3]> {
+    let mut level = level.clone();
+    level.nodes.iter_mut().for_each(|node| *node = order.nodes[*node as usize]);
+    level.canonical()
+}
+
+#[test]
+fn the_finest_cut_is_the_input() {
+    each(|what, mesh, forest| {
+        let mt = Explicit::new(forest);
+        let mut all = ExplicitCut::new(&mt);
+        (0..mt.update_count()).for_each(|u| all.force(u as u32));
+        let mut input = ExplicitCut::new(&mt).level();
+        input.nodes = (0..mesh.positions.len() as u32).collect();
+        input.faces = mesh.faces.iter().map(|face| face.map(|v| v.0)).collect();
+        assert_eq!(all.level().canonical(), input.canonical(), "{what}");
+    });
+}
+
+#[test]
+fn every_encoding_gives_the_same_cuts_by_any_way() {
+    each(|what, mesh, forest| {
+        let order = Order::new(forest);
+        let explicit = Explicit::new(forest);
+        let implicit = Implicit::in_order(forest, &order).unwrap();
+        let (mut oracle, mut cut) = (ExplicitCut::new(&explicit), Cut::new(&implicit));
+        let mut dice = Dice(7);
+        for _ in 0..30 {
+            let query = query(&mut dice, mesh);
+            let level = explicit.extract(&query).unwrap();
+            assert_eq!(topology(&level.mesh()), topology(mesh), "{what} {query:?}");
+            oracle.update(&query).unwrap();
+            assert_eq!(oracle.level().canonical(), level.canonical(), "{what} {query:?}");
+            let change = cut.update(&query, &Effort::default()).unwrap();
+            assert!(change.done);
+            let found = in_forest(&cut.level(), &order);
+            assert_eq!(found, level.canonical(), "{what} {query:?}");
+        }
+    });
+}
