@@ -10,6 +10,9 @@ use crate::frame::{Frame, Length16};
 use crate::need::Ball;
 use crate::record::Recorder;
 
+/// Levels stay below this.
+pub(crate) const MOST_LEVELS: u16 = 1 << 15;
+
 /// No node, or no update.
 pub(crate) const NONE: u32 = u32::MAX;
 
@@ -25,7 +28,8 @@ pub struct Forest {
     /// Of every node, in stored units.
     pub(crate) positions: Vec<[f32; 3]>,
     pub(crate) updates: Vec<Update>,
-    /// The nodes around each update's node just after its contraction, one update after the other.
+    /// The nodes around each update's node just after its contraction, one update after the other;
+    /// where the fan is open, its last node is the last.
     pub(crate) rings: Vec<u32>,
     /// The faces that the simplification began with, by leaves.
     pub(crate) faces: Vec<[u32; 3]>,
@@ -54,12 +58,14 @@ pub(crate) struct Update {
     pub(crate) wings: [u32; 2],
     /// Where its ring starts.
     pub(crate) ring: u32,
-    /// Above those of its children and of all around.
+    /// Above those of its children and of all around; below 2¹⁵.
     pub(crate) level: u16,
     /// Of its coarse side, never less than that of an update that needs it.
     pub(crate) error: Length16,
     /// Of a ball about its node, around both its sides and the balls of its children.
     pub(crate) radius: Length16,
+    /// Its fan is open: it has a last node with no face behind.
+    pub(crate) is_open: bool,
     /// It and the update of its first child are one, the contraction of a face.
     pub(crate) glued: bool,
 }
@@ -71,7 +77,7 @@ pub enum BuildError {
     #[error(transparent)]
     Simplify(#[from] SimplifyError),
     /// A chain of updates that need each other is too long.
-    #[error("some update needs a chain of more than {} others", u16::MAX)]
+    #[error("some update needs a chain of more than {MOST_LEVELS} others")]
     TooDeep,
     /// More vertices than are numbered.
     #[error("the mesh has more than 2^30 vertices")]

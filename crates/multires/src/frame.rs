@@ -9,17 +9,18 @@ use meshlod_mesh::Bounds;
 pub struct Frame {
     origin: DVec3,
     unit: f64,
+    per_unit: f64,
 }
 
 impl Frame {
     /// The frame of what lies in these bounds.
     pub(crate) fn new(bounds: &Bounds) -> Self {
         if bounds.is_empty() {
-            return Self { origin: DVec3::ZERO, unit: 1.0 };
+            return Self { origin: DVec3::ZERO, unit: 1.0, per_unit: 1.0 };
         }
         let diagonal = bounds.diagonal();
         let unit = if diagonal > 0.0 { diagonal.log2().ceil().exp2() } else { 1.0 };
-        Self { origin: bounds.center().into(), unit }
+        Self { origin: bounds.center().into(), unit, per_unit: 1.0 / unit }
     }
 
     /// A point of the model as it is stored.
@@ -31,13 +32,14 @@ impl Frame {
     /// A point of the model in stored units, not yet rounded.
     #[inline]
     pub(crate) fn point(&self, point: DVec3) -> DVec3 {
-        (point - self.origin) / self.unit
+        // Exact: the unit is a power of two.
+        (point - self.origin) * self.per_unit
     }
 
     /// A length of the model in stored units.
     #[inline]
     pub(crate) fn length(&self, length: f64) -> f64 {
-        length / self.unit
+        length * self.per_unit
     }
 
     /// A stored length in model units.

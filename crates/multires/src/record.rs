@@ -10,7 +10,7 @@ use glam::{DVec3, Vec3};
 use meshlod_mesh::{Bounds, FaceId, VertexId};
 use meshlod_simplify::{Neighbourhood, Observe, Placed, Simplifier, Spoke, Surface};
 
-use crate::forest::{BuildError, Forest, NONE, Odd, Update};
+use crate::forest::{BuildError, Forest, MOST_LEVELS, NONE, Odd, Update};
 use crate::frame::{Frame, Length16};
 
 /// An observer of a [`Simplifier`], there from its first contraction on.
@@ -44,7 +44,7 @@ struct Standing {
 const SLACK: f64 = 1.0 + 1e-6;
 
 /// Wings are stored as ranks among so many at most.
-const MOST_RANKED: usize = 255;
+const MOST_RANKED: usize = 250;
 
 impl Recorder {
     /// Ready to observe; nothing must have been contracted yet.
@@ -101,16 +101,23 @@ impl Recorder {
     }
 
     /// The numbers of an update, and what it asks of those around.
-    fn record(&mut self, hood: &Neighbourhood, placed: &Placed, run: Option<&Run>) {
+    fn record(
+        &mut self,
+        hood: &Neighbourhood,
+        placed: &Placed,
+        run: Option<&Run>,
+        open_end: Option<usize>,
+    ) {
         let owner = run.map_or(1 - placed.kept, |run| run.owner);
         let [first, second] = [1 - owner, owner].map(|i| hood.contracted()[i]);
         let both = [self.now[first.index()], self.now[second.index()]];
         let ring = || hood.ring().iter().map(|r| r.id);
         let below = ring().map(|v| self.now[v.index()].level).max().unwrap_or(0);
-        let Some(level) = below.max(both[0].level).max(both[1].level).checked_add(1) else {
+        let level = below.max(both[0].level).max(both[1].level) + 1;
+        if level == MOST_LEVELS {
             self.trouble = Some(BuildError::TooDeep);
             return;
-        };
+        }
         let Self { forest, now, .. } = self;
         let position = forest.frame.store(placed.position);
         let own = Length16::up(forest.frame.length(placed.error_estimate));
@@ -118,6 +125,9 @@ impl Recorder {
         let radius = radius(&forest.frame, hood, position, &both, &forest.positions);
         let start = forest.rings.len() as u32;
         forest.rings.extend(ring().map(|v| now[v.index()].node));
+        if let Some(end) = open_end {
+            forest.rings[start as usize..].swap(end, hood.ring().len() - 1);
+        }
         let wing = |place: Option<usize>| {
             place.map_or(NONE, |place| now[hood.ring()[place].id.index()].node)
         };
@@ -128,6 +138,7 @@ impl Recorder {
             level,
             error,
             radius,
+            is_open: open_end.is_some(),
             glued: self.of_face == 1 && both[0].node as usize + 1 == forest.positions.len(),
         };
         let node = forest.positions.len() as u32;
@@ -173,12 +184,12 @@ impl Observe for Recorder {
             return;
         }
         self.live_faces -= hood.dying().len();
-        let has_ranks = hood.ring().len() <= MOST_RANKED;
-        let run = Run::of(surface, hood, placed.kept).filter(|_| has_ranks);
+        let fan = open_end(hood);
+        let run = fan.and_then(|_| Run::of(surface, hood, placed.kept));
         if run.is_none() {
             self.write_out(surface, hood, 1 - placed.kept);
         }
-        self.record(hood, placed, run.as_ref());
+        self.record(hood, placed, run.as_ref(), fan.flatten());
         self.of_face = self.of_face.saturating_sub(1);
     }
 
@@ -203,6 +214,22 @@ fn radius(
         reach(Vec3::from(positions[s.node as usize]).as_dvec3()).sqrt() + s.radius.get()
     });
     Length16::up(balls.fold(ring, f64::max) * SLACK)
+}
+
+/// The place in the ring of the one node behind which no face follows, if there is one: the fan is
+/// open there. `None` where that does not describe the faces that are left, or they are too many.
+fn open_end(hood: &Neighbourhood) -> Option<Option<usize>> {
+    let around = hood.ring().len();
+    if around > MOST_RANKED || around > hood.spokes().len() + 1 {
+        return None;
+    }
+    let mut followed = [false; MOST_RANKED];
+    for spoke in hood.spokes() {
+        if std::mem::replace(&mut followed[spoke.a as usize], true) {
+            return None;
+        }
+    }
+    Some(followed[..around].iter().position(|&followed| !followed))
 }
 
 /// Which of the two ends of an edge has its faces in one run of the new fan, and between which places

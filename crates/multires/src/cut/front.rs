@@ -1,11 +1,13 @@
 //! The surface of a cut: splits and merges, each with the rule that it must obey.
 
 use super::star::{Spoke, Triangles};
-use crate::forest::NONE;
-use crate::implicit::Implicit;
+use crate::forest::{MOST_LEVELS, NONE};
+use crate::implicit::{Implicit, Wing};
 
-/// A vertex that is not there.
+/// The corner of a vertex that is not there yet.
 const ABSENT: u32 = NONE - 1;
+/// That of one that has been split.
+const SPLIT: u32 = NONE - 2;
 
 /// The active vertices and the triangles between them.
 #[derive(Clone, Debug)]
@@ -25,12 +27,26 @@ pub(super) struct Front<'m> {
 /// What is wanted of the vertices around a split or a merge, beside the list of its corners.
 #[derive(Clone, Copy, Debug)]
 struct Vertex {
-    /// Its first corner, or [`ABSENT`].
+    /// Its first corner; [`ABSENT`] or [`SPLIT`] where it is not there.
     corner: u32,
-    /// The level of the update that splits it; 0 for a leaf.
+    /// The level of the update that splits it; 0 for a leaf. In the highest bit whether that update
+    /// is on the schedule, which outlives the vertex.
     level: u16,
     /// The level of the update that made it; the highest for a root.
     above: u16,
+}
+
+const SCHEDULED: u16 = MOST_LEVELS;
+
+/// How a vertex stands.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Standing {
+    /// Not there: above it some vertex has not been split.
+    Absent,
+    /// There.
+    Active,
+    /// Not there: it has been split.
+    Split,
 }
 
 /// Why a split must wait: for this update.
@@ -63,8 +79,23 @@ impl<'m> Front<'m> {
     }
 
     #[inline]
-    pub(super) fn is_active(&self, node: u32) -> bool {
-        self.vertices[node as usize].corner != ABSENT
+    pub(super) fn standing(&self, node: u32) -> Standing {
+        match self.vertices[node as usize].corner {
+            ABSENT => Standing::Absent,
+            SPLIT => Standing::Split,
+            _ => Standing::Active,
+        }
+    }
+
+    #[inline]
+    pub(super) fn is_scheduled(&self, node: u32) -> bool {
+        self.vertices[node as usize].level & SCHEDULED != 0
+    }
+
+    #[inline]
+    pub(super) fn set_scheduled(&mut self, node: u32, is_scheduled: bool) {
+        let level = &mut self.vertices[node as usize].level;
+        *level = *level & !SCHEDULED | if is_scheduled { SCHEDULED } else { 0 };
     }
 
     /// Splits an update's node, which must be there, if all around it is coarse enough.
@@ -75,12 +106,12 @@ impl<'m> Front<'m> {
         let level = self.mt.level(update);
         self.star.clear();
         self.triangles.gather(self.vertices[node as usize].corner, &mut self.star);
-        let around = self.star.iter().flat_map(|spoke| [spoke.a, spoke.b]);
-        if let Some(finer) = around.into_iter().find(|&n| self.vertices[n as usize].level > level) {
+        let mut around = self.star.iter().flat_map(|spoke| [spoke.a, spoke.b]);
+        if let Some(finer) = around.find(|&n| self.vertices[n as usize].level & !SCHEDULED > level) {
             return Err(Needs(self.mt.update_of(finer).expect("a leaf's level is 0")));
         }
         let [first, second] = self.mt.children(update);
-        self.vertices[node as usize].corner = ABSENT;
+        self.vertices[node as usize].corner = SPLIT;
         self.active -= 1;
         self.enter(first, level);
         self.enter(second, level);
@@ -100,7 +131,7 @@ impl<'m> Front<'m> {
     /// Moves the triangles of the second child to the front of the star; how many those are, and the
     /// triangles that wings bring.
     fn part(&mut self, update: u32) -> (usize, [Option<[u32; 3]>; 2]) {
-        let Self { mt, star, ring, .. } = self;
+        let Self { mt, star, .. } = self;
         let mut run = 0;
         if let Some(odd) = mt.odd(update) {
             for i in 0..star.len() {
@@ -111,8 +142,7 @@ impl<'m> Front<'m> {
             }
             return (run, [None; 2]);
         }
-        let wings = mt.wings(update);
-        let [start, end] = by_rank(star, ring, wings);
+        let [start, end] = mt.wings(update).map(|wing| find(star, wing));
         let (mut at, stop, backwards) = match (start, end) {
             (Some(start), end) => (start, end, false),
             (None, end) => (end.unwrap_or(NONE), None, true),
@@ -137,7 +167,7 @@ impl<'m> Front<'m> {
         let [first, second] = self.mt.children(update);
         let inner = if glued { self.mt.children(update + 1) } else { [first; 2] };
         let parts = [second, inner[0], inner[1]];
-        if !parts.iter().all(|&child| self.is_active(child)) {
+        if parts.iter().any(|&child| self.standing(child) != Standing::Active) {
             return false;
         }
         let level = self.mt.level(update);
@@ -206,7 +236,8 @@ impl<'m> Front<'m> {
 
     fn enter(&mut self, node: u32, above: u16) {
         let level = self.mt.update_of(node).map_or(0, |update| self.mt.level(update));
-        self.vertices[node as usize] = Vertex { corner: NONE, level, above };
+        let vertex = &mut self.vertices[node as usize];
+        *vertex = Vertex { corner: NONE, level: vertex.level & SCHEDULED | level, above };
         self.active += 1;
     }
 
@@ -219,11 +250,14 @@ impl<'m> Front<'m> {
     }
 }
 
-/// The nodes of those ranks around a star.
-fn by_rank(star: &[Spoke], ring: &mut Vec<u32>, ranks: [Option<usize>; 2]) -> [Option<u32>; 2] {
-    ring.clear();
-    ring.extend(star.iter().flat_map(|spoke| [spoke.a, spoke.b]));
-    ring.sort_unstable();
-    ring.dedup();
-    ranks.map(|rank| rank.map(|rank| ring[rank]))
+/// The node around a star that a wing is.
+#[inline]
+fn find(star: &[Spoke], wing: Wing) -> Option<u32> {
+    let is_followed = |n: u32| star.iter().any(|spoke| spoke.a == n);
+    let below = |n: u32| star.iter().map(|spoke| u32::from(spoke.a < n)).sum::<u32>();
+    match wing {
+        Wing::None => None,
+        Wing::Rank(rank) => star.iter().map(|s| s.a).find(|&n| below(n) == rank.into()),
+        Wing::Last => star.iter().map(|s| s.b).find(|&n| !is_followed(n)),
+    }
 }

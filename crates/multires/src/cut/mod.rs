@@ -6,8 +6,8 @@ mod star;
 
 use std::time::{Duration, Instant};
 
-use self::front::{Front, Needs};
-use self::schedule::Schedule;
+use self::front::{Front, Needs, Standing};
+use self::schedule::{Entry, Schedule};
 use crate::implicit::Implicit;
 use crate::level::Level;
 use crate::need::Need;
@@ -19,21 +19,12 @@ use crate::query::{Query, QueryError};
 #[derive(Clone, Debug)]
 pub struct Cut<'m> {
     front: Front<'m>,
-    /// By update.
-    states: Vec<State>,
     schedule: Schedule,
     /// Updates whose vertices are to be looked at.
     fresh: Vec<u32>,
     /// Updates that may be taken back.
     loose: Vec<u32>,
     hysteresis: f64,
-}
-
-/// How an update stands.
-#[derive(Clone, Copy, Debug, Default)]
-struct State {
-    applied: bool,
-    scheduled: bool,
 }
 
 /// How much a [`Cut`] may do at once.
@@ -74,7 +65,6 @@ impl<'m> Cut<'m> {
     pub fn new(mt: &'m Implicit) -> Self {
         let mut this = Self {
             front: Front::new(mt),
-            states: vec![State::default(); mt.update_count()],
             schedule: Schedule::default(),
             fresh: Vec::new(),
             loose: Vec::new(),
@@ -116,11 +106,12 @@ impl<'m> Cut<'m> {
         if !self.schedule.follow(needs.least.eye()) {
             self.look_at_all();
         }
+        self.fresh.retain(|&update| needs.least.wants(&self.front.mt.ball(update)));
         let mut due = std::mem::take(&mut self.schedule.due);
         work.change.looks += due.len();
-        for update in due.drain(..) {
-            self.states[update as usize].scheduled = false;
-            self.look(update, &needs);
+        for entry in due.drain(..) {
+            self.front.set_scheduled(entry.node, false);
+            self.look(entry, &needs);
         }
         self.schedule.due = due;
         self.refine(&needs, &mut work);
@@ -155,48 +146,44 @@ impl<'m> Cut<'m> {
         Level::of_nodes(*mt.frame(), mt.positions(), self.front.triangles.iter().collect())
     }
 
-    /// Puts every update of a vertex and above one on the lists.
+    /// Makes every update due whose vertex is there, or was and has been split.
     fn look_at_all(&mut self) {
         self.schedule.clear();
         (self.fresh.clear(), self.loose.clear());
         let mt = self.front.mt;
-        let mut stack: Vec<u32> = mt.roots().filter_map(|(root, _)| mt.update_of(root)).collect();
-        while let Some(update) = stack.pop() {
-            self.states[update as usize].scheduled = false;
+        let mut stack: Vec<u32> = mt.roots().map(|(root, _)| root).collect();
+        while let Some(node) = stack.pop() {
+            let Some(update) = mt.update_of(node) else { continue };
             if !mt.is_inner(update) {
-                self.schedule.due.push(update);
+                self.schedule.due.push(Entry { update, node });
             }
-            if self.states[update as usize].applied {
-                stack.extend(mt.children(update).into_iter().filter_map(|c| mt.update_of(c)));
+            if self.front.standing(node) == Standing::Split {
+                stack.extend(mt.children(update));
             }
         }
     }
 
     /// Whether the need of an update has turned; and when to look again.
-    fn look(&mut self, update: u32, needs: &Needed<'_>) {
-        let ball = self.front.mt.ball(update);
-        if self.states[update as usize].applied {
-            if !needs.most.wants(&ball) {
-                self.loose.push(update);
-            }
-        } else if self.front.is_active(self.front.mt.parent(update)) {
-            if needs.least.wants(&ball) {
-                self.fresh.push(update);
-            }
-        } else {
-            return;
+    #[inline]
+    fn look(&mut self, entry: Entry, needs: &Needed<'_>) {
+        let Entry { update, node } = entry;
+        let ball = self.front.mt.ball_at(update, node);
+        match self.front.standing(node) {
+            Standing::Split if !needs.most.wants(&ball) => self.loose.push(update),
+            Standing::Active if needs.least.wants(&ball) => self.fresh.push(update),
+            Standing::Split | Standing::Active => {}
+            Standing::Absent => return,
         }
-        self.states[update as usize].scheduled = true;
-        self.schedule.add(update, &ball, self.hysteresis);
+        self.front.set_scheduled(node, true);
+        self.schedule.add(entry, &ball, self.hysteresis);
     }
 
     /// Splits what is wanted, and what must be split for it.
     fn refine(&mut self, needs: &Needed<'_>, work: &mut Work) {
         let mut stack = Vec::new();
         while let Some(update) = self.fresh.pop() {
-            // It may have been forced, merged with all around it, or be no longer wanted.
-            let is_here = self.front.is_active(self.front.mt.parent(update));
-            if !is_here || !needs.least.wants(&self.front.mt.ball(update)) {
+            // It may have been forced, or merged with all around it.
+            if self.front.standing(self.front.mt.parent(update)) != Standing::Active {
                 continue;
             }
             stack.push(update);
@@ -205,60 +192,56 @@ impl<'m> Cut<'m> {
                     self.fresh.push(update);
                     return;
                 }
-                if self.advance(next, needs, &mut stack) {
-                    work.change.splits += 1;
-                }
+                self.advance(next, needs, &mut stack, work);
             }
         }
     }
 
-    /// Splits the last update of a chain, or finds what must come before it; whether it has split.
-    fn advance(&mut self, update: u32, needs: &Needed<'_>, stack: &mut Vec<u32>) -> bool {
+    /// Splits the last update of a chain, or finds what must come before it.
+    fn advance(&mut self, next: u32, needs: &Needed<'_>, stack: &mut Vec<u32>, work: &mut Work) {
         let mt = self.front.mt;
-        if self.states[update as usize].applied {
-            stack.pop();
-            return false;
+        let node = mt.parent(next);
+        match self.front.standing(node) {
+            Standing::Absent => {
+                stack.push(mt.family(node).expect("roots are there until they are split"));
+                return;
+            }
+            Standing::Split => {
+                stack.pop();
+                return;
+            }
+            Standing::Active => {}
         }
-        let node = mt.parent(update);
-        if !self.front.is_active(node) {
-            stack.push(mt.family(node).expect("roots are active until they are split"));
-            return false;
-        }
-        if let Err(Needs(first)) = self.front.split(update) {
+        if let Err(Needs(first)) = self.front.split(next) {
             stack.push(first);
-            return false;
+            return;
         }
         stack.pop();
-        self.states[update as usize].applied = true;
-        // Forced without a need, it may go as soon as nothing holds it.
-        if !needs.most.wants(&mt.ball(update)) {
-            self.loose.push(update);
+        work.change.splits += 1;
+        if stack.is_empty() {
+            // It is what was wanted.
+        } else if !needs.most.wants(&mt.ball_at(next, node)) {
+            // Forced without a need, it may go as soon as nothing holds it.
+            self.loose.push(next);
         }
-        if mt.is_glued(update) {
-            let inner = self.front.split(update + 1);
+        if mt.is_glued(next) {
+            let inner = self.front.split(next + 1);
             assert!(inner.is_ok(), "what is around the whole is around its part");
-            self.states[update as usize + 1].applied = true;
-            self.arrive(update + 1, needs);
+            self.arrive(next + 1, needs);
         }
-        self.arrive(update, needs);
-        true
+        self.arrive(next, needs);
     }
 
     /// Looks at the children of a split for the first time.
     fn arrive(&mut self, update: u32, needs: &Needed<'_>) {
         let mt = self.front.mt;
-        for (k, child) in mt.children(update).into_iter().enumerate() {
-            if k == 0 && mt.is_glued(update) {
-                continue;
-            }
-            if let Some(below) = mt.update_of(child) {
-                if self.states[below as usize].scheduled {
-                    if needs.least.wants(&mt.ball(below)) {
-                        self.fresh.push(below);
-                    }
-                } else {
-                    self.look(below, needs);
-                }
+        let first_is_gone = usize::from(mt.is_glued(update));
+        for node in mt.children(update).into_iter().skip(first_is_gone) {
+            let Some(update) = mt.update_of(node) else { continue };
+            if !self.front.is_scheduled(node) {
+                self.look(Entry { update, node }, needs);
+            } else if needs.least.wants(&mt.ball_at(update, node)) {
+                self.fresh.push(update);
             }
         }
     }
@@ -268,18 +251,14 @@ impl<'m> Cut<'m> {
         while work.may_go_on() {
             let Some(update) = self.loose.pop() else { return };
             let mt = self.front.mt;
-            if !self.states[update as usize].applied
-                || needs.most.wants(&mt.ball(update))
+            let node = mt.parent(update);
+            if self.front.standing(node) != Standing::Split
+                || needs.most.wants(&mt.ball_at(update, node))
                 || !self.front.merge(update)
             {
                 continue;
             }
-            self.states[update as usize].applied = false;
-            if mt.is_glued(update) {
-                self.states[update as usize + 1].applied = false;
-            }
             work.change.merges += 1;
-            let node = mt.parent(update);
             let Self { front, loose, .. } = self;
             loose.extend(mt.family(node).map(|up| outer(mt, up)));
             let around = front.around(node).iter().filter_map(|&other| mt.family(other));

@@ -15,17 +15,33 @@ const STEPS: i64 = 16;
 /// An octave's entries are up to 32 steps ahead.
 const RING: usize = 64;
 
+/// An update and the node that it splits.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Entry {
+    pub(super) update: u32,
+    pub(super) node: u32,
+}
+
 /// Updates by the way of the eye at which they are due.
 ///
 /// An octave of leeway has steps of a length of its own, and a ring of lists, one for each step.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub(super) struct Schedule {
     eye: Option<Eye>,
     /// How far the eye has come.
     way: f64,
-    rings: Vec<Vec<u32>>,
+    rings: Vec<Vec<Entry>>,
+    /// How many entries each octave has.
+    counts: [usize; OCTAVES],
     /// What is due now.
-    pub(super) due: Vec<u32>,
+    pub(super) due: Vec<Entry>,
+}
+
+impl Default for Schedule {
+    fn default() -> Self {
+        let rings = vec![Vec::new(); OCTAVES * RING];
+        Self { eye: None, way: 0.0, rings, counts: [0; OCTAVES], due: Vec::new() }
+    }
 }
 
 impl Schedule {
@@ -43,7 +59,9 @@ impl Schedule {
             return false;
         }
         for octave in 0..OCTAVES {
-            self.collect(octave, from);
+            if self.counts[octave] > 0 {
+                self.collect(octave, from);
+            }
         }
         true
     }
@@ -57,11 +75,13 @@ impl Schedule {
     pub(super) fn clear(&mut self) {
         self.way = 0.0;
         self.due.clear();
+        self.counts = [0; OCTAVES];
         self.rings.iter_mut().for_each(Vec::clear);
     }
 
     /// Enters an update that has just been looked at.
-    pub(super) fn add(&mut self, update: u32, ball: &Ball, hysteresis: f64) {
+    #[inline]
+    pub(super) fn add(&mut self, entry: Entry, ball: &Ball, hysteresis: f64) {
         let Some(eye) = self.eye else { return };
         let stays = Eye { slope: eye.slope / (1.0 + hysteresis), ..eye };
         // A little less, for rounding.
@@ -69,12 +89,12 @@ impl Schedule {
         if leeway == f64::INFINITY {
             return;
         }
-        self.rings.resize_with(OCTAVES * RING, Vec::new);
         let steps = leeway / FINEST / STEPS as f64;
-        let octave = (steps.max(1.0).log2() as usize).min(OCTAVES - 1);
+        let octave = ((steps as u64).max(1).ilog2() as usize).min(OCTAVES - 1);
         let most = (2 * STEPS) as f64 * length(octave);
         let at = step(self.way + leeway.min(most), octave);
-        self.rings[slot(octave, at)].push(update);
+        self.rings[slot(octave, at)].push(entry);
+        self.counts[octave] += 1;
     }
 
     /// Collects what became due on the way to here.
@@ -83,9 +103,9 @@ impl Schedule {
         // Only the finest steps are so long that an entry may be in the one that it was made in.
         let from = if octave == 0 { from } else { from + 1 };
         for at in from.max(to - RING as i64 + 1)..=to {
-            if let Some(list) = self.rings.get_mut(slot(octave, at)) {
-                self.due.append(list);
-            }
+            let list = &mut self.rings[slot(octave, at)];
+            self.counts[octave] -= list.len();
+            self.due.append(list);
         }
     }
 }
@@ -117,22 +137,22 @@ mod tests {
         // The need of ball i turns when the eye has come to x = i³ / 1000.
         let at = |i: u32| f64::from(i).powi(3) / 1000.0;
         let ball = |i| Ball { center: DVec3::new(at(i) + 1.0, 0.0, 0.0), radius: 0.5, error: 0.005 };
-        (0..60).for_each(|i| schedule.add(i, &ball(i), 0.0));
+        let entry = |update| Entry { update, node: update };
+        (0..60).for_each(|i| schedule.add(entry(i), &ball(i), 0.0));
         let mut looks = 0;
         let mut x = 0.0;
         for frame in 0..200 {
             x += 0.001 * f64::from(frame);
             assert!(schedule.follow(eye(x)));
-            for update in std::mem::take(&mut schedule.due) {
+            for Entry { update, .. } in std::mem::take(&mut schedule.due) {
                 looks += 1;
                 if at(update) <= x {
                     continue;
                 }
                 assert!(eye(x).unwrap().leeway(&ball(update)) > 0.0);
-                schedule.add(update, &ball(update), 0.0);
+                schedule.add(entry(update), &ball(update), 0.0);
             }
-            let all: Vec<u32> = schedule.rings.iter().flatten().copied().collect();
-            assert!(all.iter().all(|&update| at(update) > x), "late at {x}");
+            assert!(schedule.rings.iter().flatten().all(|e| at(e.update) > x), "late at {x}");
         }
         // Each about as often as its leeway has sixteenths to be early by, again and again.
         assert!(looks < 60 * 12, "{looks}");

@@ -6,10 +6,11 @@
 //! recorded ones are around it. That is also what makes ranks enough for wings.
 //!
 //! | bytes an update | |
-//! |---|---|
+//! |--:|---|
 //! | 24 | positions of its two children |
-//! | 8 | `Down`: where the updates of the second child start, radius, error |
-//! | 8 | `Across`: the node it splits, its level, wings |
+//! | 8 | the node it splits, and where the updates of the second child start |
+//! | 4 | radius and error |
+//! | 4 | level and wings |
 
 mod order;
 mod pack;
@@ -34,8 +35,7 @@ pub struct Implicit {
     /// Where the updates below each root start, and the last of them end.
     trees: Vec<u32>,
     positions: Vec<[f32; 3]>,
-    down: Vec<Down>,
-    across: Vec<Across>,
+    splits: Vec<Split>,
     /// The coarsest faces, by roots.
     base: Vec<[u32; 3]>,
     /// What wings cannot tell, by update, in nodes of this model.
@@ -43,33 +43,39 @@ pub struct Implicit {
     full_faces: usize,
 }
 
-/// What a walk down the forest reads of an update.
+/// An update, from its coarse side.
 #[derive(Clone, Copy, Debug)]
-struct Down {
+struct Split {
+    /// The node; its highest bit is set where the first child is split in the same go.
+    parent: u32,
     /// The update behind those of the first child; its highest bit is set where it is the second
     /// child's.
     second: u32,
     radius: Length16,
     error: Length16,
-}
-
-/// What a split reads of an update.
-#[derive(Clone, Copy, Debug)]
-struct Across {
-    /// The node; its highest bit is set where the first child is split in the same go.
-    parent: u32,
     level: u16,
     wings: [u8; 2],
 }
 
+/// A vertex around another, as an update stores it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Wing {
+    /// There is none: the run of faces starts or ends on the boundary.
+    None,
+    /// Its rank among the nodes around that a face follows, counter-clockwise.
+    Rank(u8),
+    /// The one node around that no face follows.
+    Last,
+}
+
 const FLAG: u32 = 1 << 31;
-/// No wing: the run starts or ends on the boundary.
 const NO_WING: u8 = u8::MAX;
+const LAST_WING: u8 = u8::MAX - 1;
 
 impl Implicit {
     /// How many updates there are.
     pub fn update_count(&self) -> usize {
-        self.down.len()
+        self.splits.len()
     }
 
     /// How many vertices the coarsest mesh has.
@@ -92,8 +98,7 @@ impl Implicit {
         let odd = |o: &Odd| size_of::<Odd>() + size_of_val(&o.second[..]) + size_of_val(&o.brought[..]);
         size_of_val(&self.trees[..])
             + size_of_val(&self.positions[..])
-            + size_of_val(&self.down[..])
-            + size_of_val(&self.across[..])
+            + size_of_val(&self.splits[..])
             + size_of_val(&self.base[..])
             + self.odd.values().map(odd).sum::<usize>()
     }
@@ -136,7 +141,7 @@ impl Implicit {
             return (start < self.trees[node as usize + 1]).then_some(start);
         };
         let family = child / 2;
-        let second = self.down[family as usize].second;
+        let second = self.splits[family as usize].second;
         let (at, is_there) = match child % 2 {
             0 => (family + 1, family + 1 < second & !FLAG),
             _ => (second & !FLAG, second & FLAG != 0),
@@ -147,13 +152,13 @@ impl Implicit {
     /// The node that an update splits.
     #[inline]
     pub(crate) fn parent(&self, update: u32) -> u32 {
-        self.across[update as usize].parent & !FLAG
+        self.splits[update as usize].parent & !FLAG
     }
 
     /// Whether the first child is split in the same go, by the next update.
     #[inline]
     pub(crate) fn is_glued(&self, update: u32) -> bool {
-        self.across[update as usize].parent & FLAG != 0
+        self.splits[update as usize].parent & FLAG != 0
     }
 
     /// Whether an update goes in the same go as the one before it, which splits its node's parent.
@@ -166,13 +171,13 @@ impl Implicit {
     /// Above those of all that it needs first.
     #[inline]
     pub(crate) fn level(&self, update: u32) -> u16 {
-        self.across[update as usize].level
+        self.splits[update as usize].level
     }
 
     /// The error of an update's coarse side.
     #[inline]
     pub(crate) fn error(&self, update: u32) -> Length16 {
-        self.down[update as usize].error
+        self.splits[update as usize].error
     }
 
     /// What an update's need is judged by.
@@ -184,7 +189,7 @@ impl Implicit {
     /// The same where the node is known.
     #[inline]
     pub(crate) fn ball_at(&self, update: u32, node: u32) -> Ball {
-        let Down { radius, error, .. } = self.down[update as usize];
+        let Split { radius, error, .. } = self.splits[update as usize];
         Ball {
             center: Vec3::from(self.positions[node as usize]).as_dvec3(),
             radius: radius.get(),
@@ -192,11 +197,14 @@ impl Implicit {
         }
     }
 
-    /// The ranks of an update's wings.
+    /// The wings of an update.
     #[inline]
-    pub(crate) fn wings(&self, update: u32) -> [Option<usize>; 2] {
-        let wings = self.across[update as usize].wings;
-        wings.map(|rank| (rank != NO_WING).then_some(rank.into()))
+    pub(crate) fn wings(&self, update: u32) -> [Wing; 2] {
+        self.splits[update as usize].wings.map(|wing| match wing {
+            NO_WING => Wing::None,
+            LAST_WING => Wing::Last,
+            rank => Wing::Rank(rank),
+        })
     }
 
     /// What the wings of an update cannot tell.
@@ -212,6 +220,6 @@ impl Implicit {
     /// Where the run of updates below a first child ends and that of the second starts.
     #[inline]
     pub(crate) fn second(&self, update: u32) -> u32 {
-        self.down[update as usize].second & !FLAG
+        self.splits[update as usize].second & !FLAG
     }
 }

@@ -1,6 +1,6 @@
 //! Packs a forest.
 
-use super::{Across, Down, FLAG, Implicit, NO_WING, Order};
+use super::{FLAG, Implicit, LAST_WING, NO_WING, Order, Split};
 use crate::forest::{BuildError, Forest, NONE, Odd, Update};
 
 impl Implicit {
@@ -23,8 +23,7 @@ impl Implicit {
             roots: order.trees.len() as u32 - 1,
             trees: order.trees.clone(),
             positions: order.nodes.iter().map(|&n| forest.positions[n as usize]).collect(),
-            down: Vec::with_capacity(order.updates.len()),
-            across: Vec::with_capacity(order.updates.len()),
+            splits: Vec::with_capacity(order.updates.len()),
             base: base(forest, order),
             odd: Default::default(),
             full_faces: forest.faces.len(),
@@ -32,14 +31,11 @@ impl Implicit {
         for at in 0..order.updates.len() {
             let update = order.updates[at] as usize;
             let (node, of) = (order.place[forest.node(update)], forest.updates[update]);
-            this.down.push(Down {
+            this.splits.push(Split {
+                parent: node | if of.glued { FLAG } else { 0 },
                 second: second(forest, order, &of, at),
                 radius: of.radius,
                 error: of.error,
-            });
-            let glued = if of.glued { FLAG } else { 0 };
-            this.across.push(Across {
-                parent: node | glued,
                 level: of.level,
                 wings: of.wings.map(|wing| rank(forest, order, update, wing)),
             });
@@ -74,15 +70,23 @@ fn second(forest: &Forest, order: &Order, update: &Update, at: usize) -> u32 {
     }
 }
 
-/// The rank of a wing among the nodes around.
+/// The rank of a wing among the nodes around that a face follows.
 fn rank(forest: &Forest, order: &Order, update: usize, wing: u32) -> u8 {
     if wing == NONE {
         return NO_WING;
     }
+    let mut followed = forest.ring(update);
+    if forest.updates[update].is_open
+        && let Some((&last, rest)) = followed.split_last()
+    {
+        if wing == last {
+            return LAST_WING;
+        }
+        followed = rest;
+    }
     let place = order.place[wing as usize];
-    let ring = forest.ring(update);
-    // Below 255, or the recorder would have written the faces out.
-    ring.iter().filter(|&&other| order.place[other as usize] < place).count() as u8
+    // Fewer than both codes, or the recorder would have written the faces out.
+    followed.iter().filter(|&&other| order.place[other as usize] < place).count() as u8
 }
 
 fn odd(forest: &Forest, order: &Order, update: usize) -> Odd {
