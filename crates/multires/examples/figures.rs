@@ -7,7 +7,10 @@ use std::error::Error;
 
 use cpu_time::ThreadTime;
 use meshlod_mesh::{Bounds, Mesh};
-use meshlod_multires::{Camera, Cut, Effort, Forest, Implicit, Query, Recorder};
+use meshlod_multires::{
+    Camera, Cut, Effort, Extractor, Faces, Forest, Implicit, Links, Query, Recorder, Rule,
+    Saturated,
+};
 use meshlod_simplify::{Method, Options, Simplifier, Target};
 
 type Failure = Box<dyn Error + Send + Sync>;
@@ -26,6 +29,7 @@ fn main() -> Result<(), Failure> {
     let implicit = pack(&forest, mesh.positions.len())?;
     let bounds = mesh.bounds();
     exact(&implicit, &bounds)?;
+    listed(&forest, &implicit, &bounds)?;
     motions(&implicit, &bounds)?;
     Ok(())
 }
@@ -78,7 +82,8 @@ fn camera(bounds: &Bounds, angle: f64, distance: f64) -> Camera {
     let center = bounds.center();
     let diagonal = bounds.diagonal();
     let (sin, cos) = angle.sin_cos();
-    let eye = [center[0] + diagonal * distance * sin, center[1], center[2] + diagonal * distance * cos];
+    let eye =
+        [center[0] + diagonal * distance * sin, center[1], center[2] + diagonal * distance * cos];
     Camera { eye, look: center, up: [0.0, 1.0, 0.0], fov_rad: 0.8, viewport: [1920, 1080] }
 }
 
@@ -95,6 +100,49 @@ fn exact(implicit: &Implicit, bounds: &Bounds) -> Result<(), Failure> {
     Ok(())
 }
 
+/// By the face list, without looking at neighbours.
+fn listed(forest: &Forest, implicit: &Implicit, bounds: &Bounds) -> Result<(), Failure> {
+    let (seconds, faces) = best(2, || Faces::new(forest));
+    let per_update = |bytes: usize| bytes as f64 / implicit.update_count() as f64;
+    println!("face list in {seconds:.3} s, {:.1} bytes an update", per_update(faces.bytes()));
+    let mut links = Vec::new();
+    for rule in [Rule::Strict, Rule::Wings] {
+        let (seconds, of) = timed(|| Links::new(forest, rule));
+        println!("links {rule:?} in {seconds:.3} s, {:.1} bytes an update", per_update(of.bytes()));
+        links.push((rule, of));
+    }
+    let mut extractor = Extractor::new(implicit, &faces);
+    for pixels in [1.0, 0.5, 0.25, 0.1, 0.02] {
+        let camera = camera(bounds, 0.0, 1.2);
+        let slope = pixels * camera.pixel();
+        let (built, saturated) = timed(|| Saturated::new(forest, [slope / 2.0, slope * 2.0]));
+        let saturated = saturated?;
+        let query = Query::pixels(camera, pixels);
+        let strict = Cut::at(implicit, &query)?.face_count();
+        for (rule, links) in &links {
+            let (seconds, faces) =
+                best(5, || extractor.exact(links, &query).map(|level| level.faces.len()));
+            report(&format!("{rule:?}, {pixels} px"), seconds, faces?);
+        }
+        let (seconds, more) =
+            best(5, || extractor.saturated(&saturated, &query).map(|level| level.faces.len()));
+        let more = more?;
+        report(&format!("saturated, {pixels} px (nested in {built:.2} s)"), seconds, more);
+        println!("    {:+.1} % faces", 100.0 * (more as f64 / strict as f64 - 1.0));
+        let links = &links[0].1;
+        let (seconds, faces) =
+            best(3, || extractor.at_most(more, links, &query).map(|level| level.faces.len()));
+        report(&format!("at most {more}"), seconds, faces?);
+    }
+    for part in [1e-1, 1e-2, 3e-3, 1e-3, 3e-4, 1e-4, 3e-5, 0.0] {
+        let tolerance = part * bounds.diagonal();
+        let (seconds, faces) =
+            best(5, || extractor.uniform(tolerance).map(|level| level.faces.len()));
+        report(&format!("uniform, {part:e} of the diagonal"), seconds, faces?);
+    }
+    Ok(())
+}
+
 fn report(what: &str, seconds: f64, faces: usize) {
     let rate = faces as f64 / seconds * 1e-6;
     println!("  {what}: {faces} faces in {:.2} ms, {rate:.1} M/s", seconds * 1e3);
@@ -103,9 +151,11 @@ fn report(what: &str, seconds: f64, faces: usize) {
 /// Frames of an orbit and of a dolly.
 fn motions(implicit: &Implicit, bounds: &Bounds) -> Result<(), Failure> {
     for pixels in [1.0, 0.2, 0.02] {
-        for (name, turn, zoom) in
-            [("orbit 0.1°", 0.1f64.to_radians(), 1.0), ("orbit 1°", 1f64.to_radians(), 1.0), ("dolly", 0.0, 0.995)]
-        {
+        for (name, turn, zoom) in [
+            ("orbit 0.1°", 0.1f64.to_radians(), 1.0),
+            ("orbit 1°", 1f64.to_radians(), 1.0),
+            ("dolly", 0.0, 0.995),
+        ] {
             let at = |frame: i32| {
                 let distance = 1.2 * f64::powi(zoom, frame);
                 Query::pixels(camera(bounds, turn * f64::from(frame), distance), pixels)

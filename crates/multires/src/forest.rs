@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use meshlod_mesh::Mesh;
-use meshlod_simplify::{Options, SimplifyError, Simplifier, Target};
+use meshlod_simplify::{Options, Simplifier, SimplifyError, Target};
 use thiserror::Error;
 
 use crate::frame::{Frame, Length16};

@@ -21,6 +21,13 @@ impl Level {
         Self { frame, nodes: Vec::new(), positions: Vec::new(), faces: Vec::new() }
     }
 
+    /// Forgets the mesh and keeps the room.
+    pub(crate) fn clear(&mut self) {
+        self.nodes.clear();
+        self.positions.clear();
+        self.faces.clear();
+    }
+
     /// Of faces by nodes, whose places are in a table.
     pub(crate) fn of_nodes(frame: Frame, places: &[[f32; 3]], mut faces: Vec<[u32; 3]>) -> Self {
         let mut nodes: Vec<u32> = faces.iter().flatten().copied().collect();
@@ -44,7 +51,8 @@ impl Level {
     /// The faces by what their vertices are in the model, each from its least, in order: equal for
     /// equal meshes.
     pub fn canonical(&self) -> Vec<[u32; 3]> {
-        let mut faces: Vec<_> = self.faces.iter().map(|f| f.map(|v| self.nodes[v as usize])).collect();
+        let mut faces: Vec<_> =
+            self.faces.iter().map(|f| f.map(|v| self.nodes[v as usize])).collect();
         for face in &mut faces {
             let least = (0..3).min_by_key(|&k| face[k]).unwrap_or(0);
             face.rotate_left(least);

@@ -18,7 +18,7 @@ pub use cut::{Change, Cut, Effort, Patch};
 pub use explicit::{Explicit, ExplicitCut};
 pub use forest::{BuildError, Forest};
 pub use frame::Frame;
-pub use implicit::Implicit;
+pub use implicit::{Extractor, Faces, Implicit, Links, Rule, Saturated};
 pub use level::Level;
 pub use query::{Camera, Focus, Query, QueryError, Tolerance};
 pub use record::Recorder;

@@ -36,7 +36,11 @@ enum Most<'f> {
     /// So much of the distance from the eye.
     OfDistance(Eye),
     /// A part of the field.
-    Field { field: &'f dyn Fn([f64; 3], f64) -> f64, part: f64, frame: Frame },
+    Field {
+        field: &'f dyn Fn([f64; 3], f64) -> f64,
+        part: f64,
+        frame: Frame,
+    },
 }
 
 /// A camera, as far as it matters how large it sees an error.
@@ -75,6 +79,27 @@ impl<'f> Need<'f> {
     #[inline]
     pub(crate) fn wants(&self, ball: &Ball) -> bool {
         self.exceeds(ball) && self.meets(ball)
+    }
+
+    /// How many times the least tolerance in the ball its error is; 0 where the focus is not met or
+    /// the ball has none. It is monotone too.
+    pub(crate) fn urgency(&self, ball: &Ball) -> f32 {
+        if ball.error <= 0.0 || !self.meets(ball) {
+            return 0.0;
+        }
+        let most = match &self.most {
+            Most::Everywhere(most) => *most,
+            Most::OfDistance(eye) => {
+                eye.slope * (eye.at.distance(ball.center) - ball.radius).max(0.0)
+            }
+            Most::Field { field, part, frame } => {
+                let center = frame.model(ball.center.as_vec3().into());
+                frame.length(part * field(center, frame.length_of_model(ball.radius)))
+            }
+        };
+        // A tolerance of nothing makes everything as urgent as its error.
+        let most = if most > 0.0 { most } else { f64::from(f32::MIN_POSITIVE) };
+        (ball.error / most).min(f32::MAX.into()) as f32
     }
 
     #[inline]
@@ -220,9 +245,13 @@ mod tests {
     fn pixels_grow_with_the_distance() {
         // A pixel spans a fiftieth of the distance: 0.1 at distance 5.
         let need = need(Focus::Everything, Tolerance::Pixels { camera: camera(), most: 1.0 });
-        assert!(!need.wants(&ball([0.0; 3], 0.0, 0.099)) && need.wants(&ball([0.0; 3], 0.0, 0.101)));
+        assert!(
+            !need.wants(&ball([0.0; 3], 0.0, 0.099)) && need.wants(&ball([0.0; 3], 0.0, 0.101))
+        );
         // What reaches half the way is seen from there.
-        assert!(need.wants(&ball([0.0; 3], 2.5, 0.051)) && !need.wants(&ball([0.0; 3], 2.5, 0.049)));
+        assert!(
+            need.wants(&ball([0.0; 3], 2.5, 0.051)) && !need.wants(&ball([0.0; 3], 2.5, 0.049))
+        );
         assert!(!need.wants(&ball([0.0; 3], 9.0, 0.0)), "what is exact is fine enough");
         let leeway = need.eye().unwrap().leeway(&ball([0.0; 3], 2.0, 0.02));
         assert!((4.0 * leeway - 2.0).abs() < 1e-12, "reach 2 + 1 from distance 5: {leeway}");

@@ -84,6 +84,9 @@ pub enum QueryError {
     /// A box from a corner to a lesser one.
     #[error("the box is inside out: its first corner must be the least")]
     InsideOut,
+    /// A query that balls were not nested for.
+    #[error("the balls nest for cameras that look at everything, within a range of tolerances")]
+    NotSaturated,
     /// A camera without a picture.
     #[error("the camera sees nothing: {0}")]
     Blind(&'static str),

@@ -165,7 +165,8 @@ impl Recorder {
         let Self { forest, now, .. } = self;
         let node = |v: VertexId| now[v.index()].node;
         let own = hood.spokes().iter().filter(|spoke| spoke.owner() == owner);
-        let around = own.map(|spoke| [spoke.a, spoke.b].map(|at| node(hood.ring()[at as usize].id)));
+        let around =
+            own.map(|spoke| [spoke.a, spoke.b].map(|at| node(hood.ring()[at as usize].id)));
         let odd = Odd {
             second: around.collect(),
             brought: hood.dying().iter().map(|d| surface.face(d.face).map(node)).collect(),
@@ -210,9 +211,9 @@ fn radius(
     let reach = |to: DVec3| center.distance_squared(to);
     let ring = hood.ring().iter().map(|r| reach(frame.store(r.position).as_dvec3()));
     let ring = ring.fold(0.0, f64::max).sqrt();
-    let balls = both.iter().map(|s| {
-        reach(Vec3::from(positions[s.node as usize]).as_dvec3()).sqrt() + s.radius.get()
-    });
+    let balls = both
+        .iter()
+        .map(|s| reach(Vec3::from(positions[s.node as usize]).as_dvec3()).sqrt() + s.radius.get());
     Length16::up(balls.fold(ring, f64::max) * SLACK)
 }
 

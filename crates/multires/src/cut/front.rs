@@ -107,7 +107,8 @@ impl<'m> Front<'m> {
         self.star.clear();
         self.triangles.gather(self.vertices[node as usize].corner, &mut self.star);
         let mut around = self.star.iter().flat_map(|spoke| [spoke.a, spoke.b]);
-        if let Some(finer) = around.find(|&n| self.vertices[n as usize].level & !SCHEDULED > level) {
+        if let Some(finer) = around.find(|&n| self.vertices[n as usize].level & !SCHEDULED > level)
+        {
             return Err(Needs(self.mt.update_of(finer).expect("a leaf's level is 0")));
         }
         let [first, second] = self.mt.children(update);
@@ -122,7 +123,9 @@ impl<'m> Front<'m> {
             self.triangles.give(self.star[i].corner, child, corner);
         }
         brought.into_iter().flatten().for_each(|face| self.add(face));
-        if let Some(odd) = self.mt.odd(update) {
+        if brought == [None; 2]
+            && let Some(odd) = self.mt.odd(update)
+        {
             odd.brought.iter().for_each(|&face| self.add(face));
         }
         Ok(())
@@ -133,7 +136,10 @@ impl<'m> Front<'m> {
     fn part(&mut self, update: u32) -> (usize, [Option<[u32; 3]>; 2]) {
         let Self { mt, star, .. } = self;
         let mut run = 0;
-        if let Some(odd) = mt.odd(update) {
+        let wings = mt.wings(update);
+        if wings == [Wing::None; 2]
+            && let Some(odd) = mt.odd(update)
+        {
             for i in 0..star.len() {
                 if odd.second.contains(&[star[i].a, star[i].b]) {
                     star.swap(run, i);
@@ -142,7 +148,7 @@ impl<'m> Front<'m> {
             }
             return (run, [None; 2]);
         }
-        let [start, end] = mt.wings(update).map(|wing| find(star, wing));
+        let [start, end] = wings.map(|wing| find(star, wing));
         let (mut at, stop, backwards) = match (start, end) {
             (Some(start), end) => (start, end, false),
             (None, end) => (end.unwrap_or(NONE), None, true),

@@ -136,7 +136,8 @@ mod tests {
         schedule.clear();
         // The need of ball i turns when the eye has come to x = i³ / 1000.
         let at = |i: u32| f64::from(i).powi(3) / 1000.0;
-        let ball = |i| Ball { center: DVec3::new(at(i) + 1.0, 0.0, 0.0), radius: 0.5, error: 0.005 };
+        let ball =
+            |i| Ball { center: DVec3::new(at(i) + 1.0, 0.0, 0.0), radius: 0.5, error: 0.005 };
         let entry = |update| Entry { update, node: update };
         (0..60).for_each(|i| schedule.add(entry(i), &ball(i), 0.0));
         let mut looks = 0;

@@ -1,7 +1,7 @@
 //! The triangles of a cut, and those around each vertex.
 //!
-//! A corner links to the next corner at the same vertex, so a triangle is 24 bytes and a change
-//! moves nothing. What changed since a mark is known: that is what a renderer is told.
+//! A corner links to the next corner at the same vertex, so a change moves nothing. What changed since
+//! a mark is known: that is what a renderer is told.
 
 use crate::forest::NONE;
 
@@ -11,14 +11,22 @@ const HOLE: [u32; 3] = [NONE; 3];
 /// Triangles by corners: corner `3 t + k` is the `k`-th of triangle `t`.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Triangles {
-    nodes: Vec<[u32; 3]>,
-    next: Vec<[u32; 3]>,
+    all: Vec<Triangle>,
     holes: Vec<u32>,
-    /// The mark at which each was last changed.
-    changed_at: Vec<u32>,
     mark: u32,
     /// What was changed since the mark, as it was then.
     changed: Vec<(u32, [u32; 3])>,
+}
+
+/// On one line of cache: whoever meets one wants all of it.
+#[derive(Clone, Copy, Debug)]
+#[repr(align(32))]
+struct Triangle {
+    nodes: [u32; 3],
+    /// The next corner at each of the nodes.
+    next: [u32; 3],
+    /// The mark at which it was last changed.
+    changed_at: u32,
 }
 
 /// A triangle at a vertex: the corner there, and the two nodes that follow.
@@ -32,17 +40,17 @@ pub(super) struct Spoke {
 impl Triangles {
     /// How many there are.
     pub(super) fn len(&self) -> usize {
-        self.nodes.len() - self.holes.len()
+        self.all.len() - self.holes.len()
     }
 
     /// Those there are, by their nodes.
     pub(super) fn iter(&self) -> impl Iterator<Item = [u32; 3]> + '_ {
-        self.nodes.iter().copied().filter(|&nodes| nodes != HOLE)
+        self.all.iter().map(|t| t.nodes).filter(|&nodes| nodes != HOLE)
     }
 
     /// All places, also those without a triangle.
     pub(super) fn places(&self) -> usize {
-        self.nodes.len()
+        self.all.len()
     }
 
     /// Forgets what changed until now.
@@ -52,9 +60,11 @@ impl Triangles {
     }
 
     /// What changed since the mark: the place, what was there, and what is there now.
-    pub(super) fn changes(&self) -> impl Iterator<Item = (u32, Option<[u32; 3]>, Option<[u32; 3]>)> {
+    pub(super) fn changes(
+        &self,
+    ) -> impl Iterator<Item = (u32, Option<[u32; 3]>, Option<[u32; 3]>)> {
         let real = |nodes: [u32; 3]| (nodes != HOLE).then_some(nodes);
-        let all = self.changed.iter().map(|&(t, was)| (t, was, self.nodes[t as usize]));
+        let all = self.changed.iter().map(|&(t, was)| (t, was, self.all[t as usize].nodes));
         all.filter(|(_, was, is)| was != is).map(move |(t, was, is)| (t, real(was), real(is)))
     }
 
@@ -64,19 +74,18 @@ impl Triangles {
         let mut corner = first;
         while corner != NONE {
             let (t, k) = (corner as usize / 3, corner as usize % 3);
-            let nodes = self.nodes[t];
+            let Triangle { nodes, next, .. } = self.all[t];
             star.push(Spoke { corner, a: nodes[NEXT[k]], b: nodes[LAST[k]] });
-            corner = self.next[t][k];
+            corner = next[k];
         }
     }
 
     /// Gives a corner to a vertex, whose first corner it becomes.
     #[inline]
     pub(super) fn give(&mut self, corner: u32, node: u32, first: &mut u32) {
-        let t = corner / 3;
-        self.touch(t);
-        self.nodes[t as usize][corner as usize % 3] = node;
-        self.next[t as usize][corner as usize % 3] = std::mem::replace(first, corner);
+        let triangle = self.touch(corner / 3);
+        triangle.nodes[corner as usize % 3] = node;
+        triangle.next[corner as usize % 3] = std::mem::replace(first, corner);
     }
 
     /// A place for a triangle whose corners are all to be given.
@@ -84,40 +93,41 @@ impl Triangles {
         if let Some(t) = self.holes.pop() {
             return t;
         }
-        self.nodes.push(HOLE);
-        self.next.push(HOLE);
-        self.changed_at.push(self.mark.wrapping_sub(1));
-        self.nodes.len() as u32 - 1
+        let changed_at = self.mark.wrapping_sub(1);
+        self.all.push(Triangle { nodes: HOLE, next: HOLE, changed_at });
+        self.all.len() as u32 - 1
     }
 
     /// Takes a triangle away; its corners must be in nobody's list any more.
     pub(super) fn remove(&mut self, t: u32) {
-        self.touch(t);
-        self.nodes[t as usize] = HOLE;
+        self.touch(t).nodes = HOLE;
         self.holes.push(t);
     }
 
     /// Takes a triangle's corner out of the list of another vertex that it is at.
     pub(super) fn unlink(&mut self, t: u32, first: &mut u32) {
+        let after = |corner: u32| self.all[corner as usize / 3].next[corner as usize % 3];
         if *first / 3 == t {
-            *first = self.next[t as usize][*first as usize % 3];
+            *first = after(*first);
             return;
         }
-        let mut at = *first as usize;
-        while self.next[at / 3][at % 3] / 3 != t {
-            at = self.next[at / 3][at % 3] as usize;
+        let mut at = *first;
+        while after(at) / 3 != t {
+            at = after(at);
         }
-        let gone = self.next[at / 3][at % 3] as usize;
-        self.next[at / 3][at % 3] = self.next[gone / 3][gone % 3];
+        let next = after(after(at));
+        self.all[at as usize / 3].next[at as usize % 3] = next;
     }
 
+    /// A triangle that is about to change.
     #[inline]
-    fn touch(&mut self, t: u32) {
-        let at = &mut self.changed_at[t as usize];
-        if *at != self.mark {
-            *at = self.mark;
-            self.changed.push((t, self.nodes[t as usize]));
+    fn touch(&mut self, t: u32) -> &mut Triangle {
+        let triangle = &mut self.all[t as usize];
+        if triangle.changed_at != self.mark {
+            triangle.changed_at = self.mark;
+            self.changed.push((t, triangle.nodes));
         }
+        triangle
     }
 }
 

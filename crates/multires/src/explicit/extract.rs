@@ -26,6 +26,19 @@ impl Explicit {
     }
 }
 
+#[cfg(test)]
+impl Explicit {
+    /// The mesh where exactly these nodes are split, if that is a cut.
+    pub(crate) fn cut_of(&self, split: &BTreeSet<u32>) -> Option<Level> {
+        let mut cut = ExplicitCut::new(self);
+        let updates: Vec<u32> =
+            split.iter().filter_map(|&node| self.splits[node as usize]).collect();
+        updates.iter().for_each(|&update| cut.force(update));
+        let made = cut.applied.iter().filter(|&&applied| applied).count();
+        (made == updates.len()).then(|| cut.level())
+    }
+}
+
 impl<'m> ExplicitCut<'m> {
     /// The base mesh.
     pub fn new(mt: &'m Explicit) -> Self {

@@ -12,8 +12,13 @@
 //! | 4 | radius and error |
 //! | 4 | level and wings |
 
+mod budget;
+mod extractor;
+mod faces;
+mod links;
 mod order;
 mod pack;
+mod saturated;
 
 use std::collections::BTreeMap;
 
@@ -23,7 +28,11 @@ use crate::forest::Odd;
 use crate::frame::{Frame, Length16};
 use crate::need::Ball;
 
+pub use extractor::Extractor;
+pub use faces::Faces;
+pub use links::{Links, Rule};
 pub(crate) use order::Order;
+pub use saturated::Saturated;
 
 /// All levels of a mesh, in 40 bytes a vertex.
 ///
@@ -95,7 +104,8 @@ impl Implicit {
 
     /// What it takes in memory.
     pub fn bytes(&self) -> usize {
-        let odd = |o: &Odd| size_of::<Odd>() + size_of_val(&o.second[..]) + size_of_val(&o.brought[..]);
+        let odd =
+            |o: &Odd| size_of::<Odd>() + size_of_val(&o.second[..]) + size_of_val(&o.brought[..]);
         size_of_val(&self.trees[..])
             + size_of_val(&self.positions[..])
             + size_of_val(&self.splits[..])
@@ -214,12 +224,31 @@ impl Implicit {
 
     /// Each root, and the run of updates below it.
     pub(crate) fn roots(&self) -> impl Iterator<Item = (u32, [u32; 2])> + '_ {
-        (0..self.roots).map(|root| (root, [self.trees[root as usize], self.trees[root as usize + 1]]))
+        (0..self.roots)
+            .map(|root| (root, [self.trees[root as usize], self.trees[root as usize + 1]]))
     }
 
-    /// Where the run of updates below a first child ends and that of the second starts.
+    /// The children of a node that is split, the second one first.
     #[inline]
-    pub(crate) fn second(&self, update: u32) -> u32 {
-        self.splits[update as usize].second & !FLAG
+    fn below(&self, Below { start, end, leaf, .. }: Below) -> [Below; 2] {
+        let [first, second] = self.children(start);
+        let middle = self.splits[start as usize].second & !FLAG;
+        // There is a leaf more than updates below the first child.
+        let next = leaf + middle - start;
+        [
+            Below { node: second, start: middle, end, leaf: next },
+            Below { node: first, start: start + 1, end: middle, leaf },
+        ]
     }
+}
+
+/// A node to go down from.
+#[derive(Clone, Copy, Debug, Default)]
+struct Below {
+    node: u32,
+    /// The run of updates below it, of which the first splits it.
+    start: u32,
+    end: u32,
+    /// Its first leaf.
+    leaf: u32,
 }

@@ -1,12 +1,15 @@
 //! Queries that wander, and what their answers must be.
 
+use std::collections::BTreeSet;
+
 use meshlod_fixtures as fixtures;
 use meshlod_mesh::{Connectivity, Mesh, sample};
 use meshlod_simplify::{Method, Options};
 
 use crate::implicit::Order;
 use crate::{
-    Camera, Cut, Effort, Explicit, ExplicitCut, Focus, Forest, Implicit, Level, Query, Tolerance,
+    Camera, Cut, Effort, Explicit, ExplicitCut, Extractor, Faces, Focus, Forest, Implicit, Level,
+    Links, Query, Rule, Saturated, Tolerance,
 };
 
 const METHODS: [Method; 5] = [
@@ -117,6 +120,21 @@ fn in_forest(level: &Level, order: &Order) -> Vec<[u32; 3]> {
     level.canonical()
 }
 
+/// The forest's nodes above those of a level.
+fn split_nodes(level: &Level, mt: &Implicit, order: &Order) -> BTreeSet<u32> {
+    let mut above = BTreeSet::new();
+    for &node in &level.nodes {
+        let mut node = node;
+        while let Some(up) = mt.family(node) {
+            node = mt.parent(up);
+            if !above.insert(order.nodes[node as usize]) {
+                break;
+            }
+        }
+    }
+    above
+}
+
 #[test]
 fn the_finest_cut_is_the_input() {
     each(|what, mesh, forest| {
@@ -136,6 +154,10 @@ fn every_encoding_gives_the_same_cuts_by_any_way() {
         let order = Order::new(forest);
         let explicit = Explicit::new(forest);
         let implicit = Implicit::in_order(forest, &order).unwrap();
+        let faces = Faces::in_order(forest, &order);
+        let mut extractor = Extractor::new(&implicit, &faces);
+        let [strict, loose] =
+            [Rule::Strict, Rule::Wings].map(|rule| Links::in_order(forest, &order, rule));
         let (mut oracle, mut cut) = (ExplicitCut::new(&explicit), Cut::new(&implicit));
         let mut dice = Dice(7);
         for _ in 0..30 {
@@ -148,6 +170,32 @@ fn every_encoding_gives_the_same_cuts_by_any_way() {
             assert!(change.done);
             let found = in_forest(&cut.level(), &order);
             assert_eq!(found, level.canonical(), "{what} {query:?}");
+            let exact = in_forest(extractor.exact(&strict, &query).unwrap(), &order);
+            assert_eq!(exact, level.canonical(), "{what} {query:?}");
+            let smaller = extractor.exact(&loose, &query).unwrap();
+            assert!(smaller.faces.len() <= level.faces.len(), "{what} {query:?}");
+            assert_eq!(topology(&smaller.mesh()), topology(mesh), "{what} {query:?}");
+            let most = (dice.roll() * mesh.faces.len() as f64) as usize;
+            let best = extractor.at_most(most, &strict, &query).unwrap();
+            assert!(best.faces.len() <= most.max(implicit.base_faces()), "{what} {query:?}");
+            assert!(explicit.cut_of(&split_nodes(best, &implicit, &order)).is_some(), "{what}");
+            if let (Focus::Everything, Tolerance::Pixels { camera, most }) =
+                (&query.focus, &query.tolerance)
+            {
+                let slope = most * camera.pixel();
+                let range = [slope / (1.0 + dice.roll()), slope * (1.0 + dice.roll())];
+                let saturated = Saturated::in_order(forest, &order, range).unwrap();
+                let larger = extractor.saturated(&saturated, &query).unwrap();
+                assert!(larger.faces.len() >= level.faces.len(), "{what} {query:?}");
+                let cut = explicit.cut_of(&split_nodes(larger, &implicit, &order));
+                let cut = cut.unwrap_or_else(|| panic!("{what} {query:?} gives no cut"));
+                assert_eq!(in_forest(larger, &order), cut.canonical(), "{what} {query:?}");
+            }
+            if let (Focus::Everything, Tolerance::Uniform(most)) = (&query.focus, &query.tolerance)
+            {
+                let fast = extractor.uniform(*most).unwrap();
+                assert_eq!(in_forest(fast, &order), level.canonical(), "{what} {query:?}");
+            }
         }
     });
 }
