@@ -14,7 +14,7 @@ mod record;
 #[cfg(test)]
 mod tests;
 
-pub use cut::{Change, Cut, Effort, Patch};
+pub use cut::{Certificate, Change, Cut, Effort, Patch, Unsound};
 pub use explicit::{Explicit, ExplicitCut};
 pub use forest::{BuildError, Forest};
 pub use frame::Frame;

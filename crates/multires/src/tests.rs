@@ -1,3 +1,5 @@
 //! What every encoding must hold, on random walks through queries.
 
+mod certificates;
+mod motions;
 mod walks;

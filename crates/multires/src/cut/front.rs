@@ -98,19 +98,26 @@ impl<'m> Front<'m> {
         *level = *level & !SCHEDULED | if is_scheduled { SCHEDULED } else { 0 };
     }
 
+    /// Whether all around an update's node, which must be there, is coarse enough to split it.
+    /// # Errors
+    /// Another update that must come first.
+    pub(super) fn may_split(&mut self, update: u32) -> Result<(), Needs> {
+        let (node, level) = (self.mt.parent(update), self.mt.level(update));
+        self.star.clear();
+        self.triangles.gather(self.vertices[node as usize].corner, &mut self.star);
+        let mut around = self.star.iter().flat_map(|spoke| [spoke.a, spoke.b]);
+        match around.find(|&n| self.vertices[n as usize].level & !SCHEDULED > level) {
+            Some(finer) => Err(Needs(self.mt.update_of(finer).expect("a leaf's level is 0"))),
+            None => Ok(()),
+        }
+    }
+
     /// Splits an update's node, which must be there, if all around it is coarse enough.
     /// # Errors
     /// Another update that must come first.
     pub(super) fn split(&mut self, update: u32) -> Result<(), Needs> {
-        let node = self.mt.parent(update);
-        let level = self.mt.level(update);
-        self.star.clear();
-        self.triangles.gather(self.vertices[node as usize].corner, &mut self.star);
-        let mut around = self.star.iter().flat_map(|spoke| [spoke.a, spoke.b]);
-        if let Some(finer) = around.find(|&n| self.vertices[n as usize].level & !SCHEDULED > level)
-        {
-            return Err(Needs(self.mt.update_of(finer).expect("a leaf's level is 0")));
-        }
+        self.may_split(update)?;
+        let (node, level) = (self.mt.parent(update), self.mt.level(update));
         let [first, second] = self.mt.children(update);
         self.vertices[node as usize].corner = SPLIT;
         self.active -= 1;
@@ -228,6 +235,23 @@ impl<'m> Front<'m> {
     fn is_first(&self, place: usize) -> bool {
         let t = self.star[place].corner / 3;
         self.star[..place].iter().all(|spoke| spoke.corner / 3 != t)
+    }
+
+    /// Whether a vertex is there.
+    pub(super) fn is_there(&self, node: u32) -> bool {
+        self.standing(node) == Standing::Active
+    }
+
+    /// The triangles at some vertices, each once.
+    pub(super) fn triangles_at(&mut self, nodes: &[u32]) -> Vec<[u32; 3]> {
+        self.star.clear();
+        for &node in nodes {
+            self.triangles.gather(self.vertices[node as usize].corner, &mut self.star);
+        }
+        let mut all: Vec<u32> = self.star.iter().map(|spoke| spoke.corner / 3).collect();
+        all.sort_unstable();
+        all.dedup();
+        all.into_iter().map(|t| self.triangles.nodes(t)).collect()
     }
 
     /// The nodes around a vertex, each once or twice.

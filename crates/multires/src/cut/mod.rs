@@ -1,8 +1,11 @@
 //! A cut that follows its query: refined and coarsened where the query has moved, and nowhere else.
 
+mod certificate;
 mod front;
 mod schedule;
 mod star;
+
+pub use certificate::{Certificate, Unsound};
 
 use std::time::{Duration, Instant};
 
@@ -135,6 +138,11 @@ impl<'m> Cut<'m> {
         self.front.triangles.places()
     }
 
+    /// The triangles by place and nodes.
+    pub fn triangles(&self) -> impl Iterator<Item = (u32, [u32; 3])> + '_ {
+        self.front.triangles.iter()
+    }
+
     /// What the last update changed, in no order.
     pub fn patches(&self) -> impl Iterator<Item = Patch> + '_ {
         self.front.triangles.changes().map(|(place, out, into)| Patch { place, out, into })
@@ -143,7 +151,11 @@ impl<'m> Cut<'m> {
     /// The mesh.
     pub fn level(&self) -> Level {
         let mt = self.front.mt;
-        Level::of_nodes(*mt.frame(), mt.positions(), self.front.triangles.iter().collect())
+        Level::of_nodes(
+            *mt.frame(),
+            mt.positions(),
+            self.front.triangles.iter().map(|(_, nodes)| nodes).collect(),
+        )
     }
 
     /// Makes every update due whose vertex is there, or was and has been split.

@@ -43,9 +43,15 @@ impl Triangles {
         self.all.len() - self.holes.len()
     }
 
-    /// Those there are, by their nodes.
-    pub(super) fn iter(&self) -> impl Iterator<Item = [u32; 3]> + '_ {
-        self.all.iter().map(|t| t.nodes).filter(|&nodes| nodes != HOLE)
+    /// A triangle by its nodes.
+    pub(super) fn nodes(&self, t: u32) -> [u32; 3] {
+        self.all[t as usize].nodes
+    }
+
+    /// Those there are, by their places and nodes.
+    pub(super) fn iter(&self) -> impl Iterator<Item = (u32, [u32; 3])> + '_ {
+        let all = self.all.iter().enumerate().map(|(t, triangle)| (t as u32, triangle.nodes));
+        all.filter(|&(_, nodes)| nodes != HOLE)
     }
 
     /// All places, also those without a triangle.

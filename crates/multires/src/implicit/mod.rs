@@ -242,6 +242,28 @@ impl Implicit {
     }
 }
 
+#[cfg(test)]
+impl Implicit {
+    /// Copies with something of an update changed.
+    pub(crate) fn spoiled(&self, update: u32) -> Vec<Self> {
+        let spoil = |change: &dyn Fn(&mut Split)| {
+            let mut wrong = self.clone();
+            change(&mut wrong.splits[update as usize]);
+            wrong
+        };
+        vec![
+            spoil(&|split| split.level = 0),
+            spoil(&|split| split.level = split.level.saturating_sub(1)),
+            spoil(&|split| split.level += 1),
+            spoil(&|split| split.level = u16::MAX >> 1),
+            spoil(&|split| split.wings[1] = split.wings[0]),
+            spoil(&|split| split.wings.reverse()),
+            spoil(&|split| split.wings[0] = NO_WING),
+            spoil(&|split| split.wings[1] = 0),
+        ]
+    }
+}
+
 /// A node to go down from.
 #[derive(Clone, Copy, Debug, Default)]
 struct Below {

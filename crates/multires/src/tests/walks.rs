@@ -37,7 +37,7 @@ pub(crate) fn forest(mesh: &Mesh, method: Method) -> Forest {
     Forest::new(mesh, &Options { method, ..Options::default() }).unwrap()
 }
 
-fn each(check: impl Fn(&str, &Mesh, &Forest)) {
+pub(crate) fn each(check: impl Fn(&str, &Mesh, &Forest)) {
     for (name, mesh) in meshes() {
         for method in METHODS {
             check(&format!("{name} by {}", method.name()), &mesh, &forest(&mesh, method));

@@ -1,0 +1,60 @@
+//! Certificates: what has one is sound, and what is not has none.
+
+use std::collections::BTreeSet;
+
+use meshlod_fixtures as fixtures;
+use meshlod_mesh::{Mesh, sample};
+use meshlod_simplify::Method;
+
+use super::walks::{Dice, each, forest, query, topology};
+use crate::{Certificate, Cut, Implicit};
+
+#[test]
+fn what_is_built_has_a_certificate() {
+    each(|what, _, forest| {
+        let mt = Implicit::new(forest).unwrap();
+        let certificate = mt.certify().unwrap_or_else(|why| panic!("{what}: {why}"));
+        assert_eq!(certificate.sound + certificate.odd, mt.update_count(), "{what}");
+    });
+}
+
+#[test]
+fn only_what_is_not_manifold_is_odd() {
+    let certify = |mesh: &Mesh, method| Implicit::new(&forest(mesh, method)).unwrap().certify();
+    for method in [Method::Qem, Method::LeeJang] {
+        let sound = certify(&sample::terrain(600), method).unwrap();
+        assert!(sound.sound > 200 && sound.odd == 0, "{sound:?}");
+    }
+    let turned = certify(&fixtures::moebius(40), Method::Qem).unwrap();
+    assert!(turned.odd > 0, "a strip of one side is not oriented somewhere: {turned:?}");
+}
+
+/// Changes one field of one update at a time. Whatever passes must give only sound cuts: another level
+/// may do as well, and wings the other way round are another surface without a crack.
+#[test]
+fn what_has_a_certificate_is_sound() {
+    let mesh = sample::terrain(160);
+    let expected = topology(&mesh);
+    let mut dice = Dice(3);
+    let mut reasons = BTreeSet::new();
+    let (mut passed, mut refused) = (0, 0);
+    for method in [Method::Qem, Method::LeeJang] {
+        let mt = Implicit::new(&forest(&mesh, method)).unwrap();
+        assert_eq!(mt.certify(), Ok(Certificate { sound: mt.update_count(), odd: 0 }));
+        for changed in (0..mt.update_count() as u32).flat_map(|update| mt.spoiled(update)) {
+            if let Err(unsound) = changed.certify() {
+                reasons.insert(unsound.why);
+                refused += 1;
+                continue;
+            }
+            passed += 1;
+            for _ in 0..3 {
+                let query = query(&mut dice, &mesh);
+                let level = Cut::at(&changed, &query).unwrap().level();
+                assert_eq!(topology(&level.mesh()), expected, "{query:?}");
+            }
+        }
+    }
+    assert!(passed > 100 && refused > 100, "{passed} passed, {refused} were refused");
+    assert!(reasons.len() >= 5, "{reasons:?}");
+}

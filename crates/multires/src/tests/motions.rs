@@ -1,0 +1,139 @@
+//! Cuts that follow a moving eye, within their means, and tell what they change.
+
+use meshlod_mesh::{Mesh, sample};
+use meshlod_simplify::Method;
+
+use super::walks::{Dice, forest, topology};
+use crate::{Camera, Cut, Effort, Implicit, Query, Tolerance};
+
+/// The view of an eye that wanders around a mesh, in steps of very different lengths.
+struct Wanderer {
+    dice: Dice,
+    eye: [f64; 3],
+}
+
+impl Wanderer {
+    fn new() -> Self {
+        Self { dice: Dice(11), eye: [2.0, 1.5, 1.0] }
+    }
+
+    fn next(&mut self, pixels: f64) -> Query<'static> {
+        let step = (-9.0 * self.dice.roll()).exp2();
+        // Drawn home from afar.
+        self.eye = self.eye.map(|x| 0.97 * x + step * (self.dice.roll() - 0.5));
+        let camera = Camera {
+            eye: self.eye,
+            look: self.eye.map(|x| x + 1.0),
+            up: [0.0, 0.0, 1.0],
+            fov_rad: 0.8,
+            viewport: [640, 480],
+        };
+        Query::pixels(camera, pixels)
+    }
+}
+
+fn model(mesh: &Mesh, method: Method) -> Implicit {
+    Implicit::new(&forest(mesh, method)).unwrap()
+}
+
+#[test]
+fn a_thousand_steps_later_it_is_the_static_answer() {
+    for method in [Method::Qem, Method::LeeJang] {
+        let mt = model(&sample::torus(3000), method);
+        let (mut cut, mut wanderer) = (Cut::new(&mt), Wanderer::new());
+        let (mut looks, mut changes) = (0, 0);
+        for step in 0..1000 {
+            let query = wanderer.next(1.0);
+            let change = cut.update(&query, &Effort::default()).unwrap();
+            assert!(change.done);
+            looks += change.looks;
+            changes += change.splits + change.merges;
+            if step % 7 == 0 {
+                let fresh = Cut::at(&mt, &query).unwrap().level();
+                assert_eq!(cut.level().canonical(), fresh.canonical(), "step {step}");
+            }
+        }
+        assert!(changes > 500, "{changes}");
+        // Looking at all that is there would be some hundred thousands.
+        assert!(looks < 200_000, "{looks}");
+    }
+}
+
+#[test]
+fn patches_lead_from_frame_to_frame() {
+    let mt = model(&sample::gyroid(2000), Method::LindstromTurk);
+    let (mut cut, mut wanderer) = (Cut::new(&mt), Wanderer::new());
+    cut.update(&wanderer.next(1.0), &Effort::default()).unwrap();
+    let mut known = Mirror::of(&cut);
+    for _ in 0..300 {
+        cut.update(&wanderer.next(1.0), &Effort::default()).unwrap();
+        for patch in cut.patches() {
+            assert_ne!(patch.out, patch.into);
+            known.patch(patch.place, patch.out, patch.into);
+        }
+        assert_eq!(known.canonical(), Mirror::of(&cut).canonical());
+    }
+}
+
+/// A renderer's list of triangles.
+struct Mirror(std::collections::BTreeMap<u32, [u32; 3]>);
+
+impl Mirror {
+    fn of(cut: &Cut<'_>) -> Self {
+        Self(cut.triangles().collect())
+    }
+
+    fn patch(&mut self, place: u32, out: Option<[u32; 3]>, into: Option<[u32; 3]>) {
+        assert_eq!(self.0.remove(&place), out);
+        into.into_iter().for_each(|triangle| _ = self.0.insert(place, triangle));
+    }
+
+    fn canonical(&self) -> Vec<(u32, [u32; 3])> {
+        self.0.iter().map(|(&place, &triangle)| (place, triangle)).collect()
+    }
+}
+
+#[test]
+fn interrupted_anywhere_it_is_a_mesh_and_gets_there_in_the_end() {
+    for method in [Method::QemEndpoint, Method::LeeJang] {
+        let mesh = sample::terrain(800);
+        let mt = model(&mesh, method);
+        let expected = topology(&mesh);
+        let (mut cut, mut wanderer) = (Cut::new(&mt), Wanderer::new());
+        let mut query = wanderer.next(0.5);
+        for step in 1..400 {
+            if step % 20 == 0 {
+                query = wanderer.next(0.5);
+            }
+            let few = Effort { changes: Some(step % 7), time: None };
+            let change = cut.update(&query, &few).unwrap();
+            assert!(change.splits + change.merges <= step % 7);
+            assert_eq!(topology(&cut.level().mesh()), expected, "step {step}");
+        }
+        assert!(cut.update(&query, &Effort::default()).unwrap().done);
+        let fresh = Cut::at(&mt, &query).unwrap().level();
+        assert_eq!(cut.level().canonical(), fresh.canonical());
+    }
+}
+
+#[test]
+fn with_hysteresis_it_lies_between_two_answers() {
+    let mt = model(&sample::knot(3000), Method::Qem);
+    let (mut cut, mut still) = (Cut::new(&mt), Cut::new(&mt));
+    cut.set_hysteresis(0.5).unwrap();
+    assert!(cut.set_hysteresis(-1.0).is_err() && cut.set_hysteresis(f64::NAN).is_err());
+    let mut wanderer = Wanderer::new();
+    let (mut trembling, mut calm) = (0, 0);
+    for _ in 0..300 {
+        let query = wanderer.next(1.0);
+        let Tolerance::Pixels { camera, most } = query.tolerance else { unreachable!() };
+        let finer = Query::pixels(camera, most / 1.5);
+        let change = cut.update(&query, &Effort::default()).unwrap();
+        let least = still.update(&query, &Effort::default()).unwrap();
+        calm += change.splits + change.merges;
+        trembling += least.splits + least.merges;
+        let most = Cut::at(&mt, &finer).unwrap();
+        assert!(still.face_count() <= cut.face_count() && cut.face_count() <= most.face_count());
+    }
+    assert!(calm < trembling, "{calm} changes with, {trembling} without");
+}
