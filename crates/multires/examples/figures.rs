@@ -8,8 +8,8 @@ use std::error::Error;
 use cpu_time::ThreadTime;
 use meshlod_mesh::{Bounds, Mesh};
 use meshlod_multires::{
-    Camera, Cut, Effort, Extractor, Faces, Forest, Implicit, Links, Query, Recorder, Rule,
-    Saturated,
+    Camera, Cut, Effort, Explicit, Extractor, Faces, Forest, Implicit, Links, Query, Recorder,
+    Rule, Saturated,
 };
 use meshlod_simplify::{Method, Options, Simplifier, Target};
 
@@ -81,6 +81,14 @@ fn pack(forest: &Forest, vertices: usize) -> Result<Implicit, Failure> {
         implicit.bytes() as f64 / vertices as f64,
         implicit.base_faces(),
     );
+    let (seconds, certificate) = timed(|| implicit.certify());
+    println!("certificate in {seconds:.2} s: {:?}", certificate?);
+    let (seconds, explicit) = timed(|| Explicit::new(forest));
+    println!(
+        "explicit in {seconds:.2} s: {} triangles, {:.0} bytes a vertex",
+        explicit.triangle_count(),
+        explicit.bytes() as f64 / vertices as f64,
+    );
     Ok(implicit)
 }
 
@@ -128,7 +136,8 @@ fn listed(forest: &Forest, implicit: &Implicit, bounds: &Bounds) -> Result<(), F
         for (rule, links) in &links {
             let (seconds, faces) =
                 best(|| extractor.exact(links, &query).map(|level| level.faces.len()));
-            report(&format!("{rule:?}, {pixels} px"), seconds, faces?);
+            let folds = extractor.exact(links, &query)?.folds();
+            report(&format!("{rule:?}, {pixels} px ({folds} folds)"), seconds, faces?);
         }
         let (seconds, more) =
             best(|| extractor.saturated(&saturated, &query).map(|level| level.faces.len()));

@@ -1,8 +1,12 @@
 //! What an extraction gives.
 
+use glam::Vec3;
 use meshlod_mesh::{Mesh, VertexId};
 
 use crate::frame::Frame;
+
+/// The cosine between two normals below which an edge is a fold.
+const FOLD: f64 = -0.7;
 
 /// A mesh out of a multiresolution model.
 #[derive(Clone, Debug, PartialEq)]
@@ -48,6 +52,30 @@ impl Level {
         )
     }
 
+    /// How many edges have two faces that turn back on each other: whose normals are more than 134°
+    /// apart.
+    ///
+    /// Cost: n log n.
+    pub fn folds(&self) -> usize {
+        let corner = |v: u32| Vec3::from(self.positions[v as usize]).as_dvec3();
+        let normal = |face: &[u32; 3]| {
+            let [a, b, c] = face.map(corner);
+            (b - a).cross(c - a).normalize_or_zero()
+        };
+        let normals: Vec<_> = self.faces.iter().map(normal).collect();
+        let mut sides: Vec<([u32; 2], u32)> = Vec::with_capacity(3 * self.faces.len());
+        for (f, &[a, b, c]) in self.faces.iter().enumerate() {
+            let ends = [[a, b], [b, c], [c, a]].map(|[a, b]| [a.min(b), a.max(b)]);
+            sides.extend(ends.map(|ends| (ends, f as u32)));
+        }
+        sides.sort_unstable();
+        let faces = sides.chunk_by(|a, b| a.0 == b.0).filter(|side| side.len() == 2);
+        let fold = |side: &&[([u32; 2], u32)]| {
+            normals[side[0].1 as usize].dot(normals[side[1].1 as usize]) < FOLD
+        };
+        faces.filter(fold).count()
+    }
+
     /// The faces by what their vertices are in the model, each from its least, in order: equal for
     /// equal meshes.
     pub fn canonical(&self) -> Vec<[u32; 3]> {
@@ -59,5 +87,25 @@ impl Level {
         }
         faces.sort_unstable();
         faces
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::DVec3;
+    use meshlod_mesh::Bounds;
+
+    use super::*;
+
+    #[test]
+    fn an_edge_that_turns_back_is_a_fold() {
+        let frame = Frame::new(&Bounds { min: [0.0; 3], max: [1.0; 3] });
+        let level = |height: f64| {
+            let corners = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.5, 1.0, 0.0], [0.5, 0.9, height]];
+            let places: Vec<_> =
+                corners.iter().map(|&c| frame.store(DVec3::from(c)).to_array()).collect();
+            Level::of_nodes(frame, &places, vec![[0, 1, 2], [0, 3, 1]])
+        };
+        assert_eq!((level(0.1).folds(), level(2.0).folds()), (1, 0));
     }
 }

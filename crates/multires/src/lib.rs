@@ -1,4 +1,58 @@
-#![doc = "stub"]
+//! Every level of a triangle mesh in one structure, asked where it matters.
+//!
+//! An **update** is a local change between a coarse side and a fine side with the same boundary. Updates
+//! need each other: what takes a triangle away comes after what makes it. A set of updates that has with
+//! each all that it needs is a **cut**, and gives one mesh without a crack. That partial order is the MT
+//! ([`Explicit`] stores it as it is, triangles and all).
+//!
+//! A simplification is such an order read backwards: its contractions are the updates. [`Forest`] is the
+//! record of one; [`Implicit`] packs it into 40 bytes a vertex and stores no triangle but the coarsest.
+//! Asked with a [`Query`], it answers in several ways:
+//!
+//! | | gives | for |
+//! |---|---|---|
+//! | [`Cut`] | the smallest cut, changed by the next query | what moves; what has no room for more |
+//! | [`Extractor::exact`] | the smallest cut | any query, fast, with [`Faces`] and [`Links`] |
+//! | [`Extractor::saturated`] | a cut a few percent larger | cameras, faster: no update asks for others |
+//! | [`Extractor::uniform`] | the smallest cut | one tolerance everywhere: only errors are looked at |
+//! | [`Extractor::at_most`] | the best cut of so many faces | budgets |
+//!
+//! ```
+//! use meshlod_mesh::sample;
+//! use meshlod_multires::{Camera, Cut, Effort, Extractor, Faces, Forest, Implicit, Query};
+//! use meshlod_simplify::Options;
+//!
+//! let mesh = sample::torus(5000);
+//! let forest = Forest::new(&mesh, &Options::default())?;
+//! let model = Implicit::new(&forest)?;
+//! assert_eq!(model.certify()?.sound, model.update_count());
+//!
+//! // Near the camera fine, far from it coarse.
+//! let near = Camera {
+//!     eye: [2.0, 0.0, 1.0],
+//!     look: [0.0; 3],
+//!     up: [0.0, 0.0, 1.0],
+//!     fov_rad: 0.8,
+//!     viewport: [1920, 1080],
+//! };
+//! let mut cut = Cut::new(&model);
+//! cut.update(&Query::pixels(near, 1.0), &Effort::default())?;
+//! let faces = cut.face_count();
+//!
+//! // A step back: what changes is told triangle by triangle.
+//! let far = Camera { eye: [4.0, 0.0, 2.0], ..near };
+//! cut.update(&Query::pixels(far, 1.0), &Effort::default())?;
+//! assert!(cut.face_count() < faces && cut.patches().count() > 0);
+//!
+//! // The same mesh at once, by the face list.
+//! let list = Faces::new(&forest);
+//! let level = Extractor::new(&model, &list).uniform(0.01)?.mesh();
+//! assert!(level.faces.len() < mesh.faces.len());
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! Positions are kept as `f32` about the middle of the mesh, errors are the simplification's estimates,
+//! made monotone. docs/notes/multires.md has the rules, and why they suffice.
 #![forbid(unsafe_code)]
 
 mod cut;

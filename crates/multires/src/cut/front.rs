@@ -103,11 +103,17 @@ impl<'m> Front<'m> {
     /// Another update that must come first.
     pub(super) fn may_split(&mut self, update: u32) -> Result<(), Needs> {
         let (node, level) = (self.mt.parent(update), self.mt.level(update));
-        self.star.clear();
-        self.triangles.gather(self.vertices[node as usize].corner, &mut self.star);
-        let mut around = self.star.iter().flat_map(|spoke| [spoke.a, spoke.b]);
-        match around.find(|&n| self.vertices[n as usize].level & !SCHEDULED > level) {
-            Some(finer) => Err(Needs(self.mt.update_of(finer).expect("a leaf's level is 0"))),
+        let Self { mt, vertices, star, .. } = self;
+        star.clear();
+        self.triangles.gather(vertices[node as usize].corner, star);
+        let is_finer = |&n: &u32| vertices[n as usize].level & !SCHEDULED > level;
+        let mut finer = star.iter().map(|spoke| spoke.a).find(is_finer);
+        if mt.is_open(update) {
+            // Somebody is around whom no face follows.
+            finer = finer.or_else(|| star.iter().map(|spoke| spoke.b).find(is_finer));
+        }
+        match finer {
+            Some(finer) => Err(Needs(mt.update_of(finer).expect("a leaf's level is 0"))),
             None => Ok(()),
         }
     }
@@ -155,7 +161,7 @@ impl<'m> Front<'m> {
             }
             return (run, [None; 2]);
         }
-        let [start, end] = wings.map(|wing| find(star, wing));
+        let [start, end] = find(star, wings);
         let (mut at, stop, backwards) = match (start, end) {
             (Some(start), end) => (start, end, false),
             (None, end) => (end.unwrap_or(NONE), None, true),
@@ -280,14 +286,23 @@ impl<'m> Front<'m> {
     }
 }
 
-/// The node around a star that a wing is.
+/// The nodes around a star that wings are.
 #[inline]
-fn find(star: &[Spoke], wing: Wing) -> Option<u32> {
-    let is_followed = |n: u32| star.iter().any(|spoke| spoke.a == n);
-    let below = |n: u32| star.iter().map(|spoke| u32::from(spoke.a < n)).sum::<u32>();
-    match wing {
-        Wing::None => None,
-        Wing::Rank(rank) => star.iter().map(|s| s.a).find(|&n| below(n) == rank.into()),
-        Wing::Last => star.iter().map(|s| s.b).find(|&n| !is_followed(n)),
+fn find(star: &[Spoke], wings: [Wing; 2]) -> [Option<u32>; 2] {
+    let ranks = wings.map(|wing| if let Wing::Rank(rank) = wing { rank.into() } else { NONE });
+    let mut found = [None; 2];
+    // Counting all is quicker than sorting these few, or than stopping early.
+    for spoke in star {
+        let below: u32 = star.iter().map(|other| u32::from(other.a < spoke.a)).sum();
+        for (found, rank) in found.iter_mut().zip(ranks) {
+            if below == rank {
+                *found = Some(spoke.a);
+            }
+        }
     }
+    for (found, _) in found.iter_mut().zip(wings).filter(|(_, wing)| *wing == Wing::Last) {
+        let is_followed = |n: u32| star.iter().any(|spoke| spoke.a == n);
+        *found = star.iter().map(|spoke| spoke.b).find(|&n| !is_followed(n));
+    }
+    found
 }

@@ -24,7 +24,7 @@ use std::collections::BTreeMap;
 
 use glam::Vec3;
 
-use crate::forest::Odd;
+use crate::forest::{MOST_LEVELS, Odd};
 use crate::frame::{Frame, Length16};
 use crate::need::Ball;
 
@@ -62,6 +62,7 @@ struct Split {
     second: u32,
     radius: Length16,
     error: Length16,
+    /// Its highest bit is set where around the vertex is one whom no face follows.
     level: u16,
     wings: [u8; 2],
 }
@@ -78,6 +79,7 @@ pub(crate) enum Wing {
 }
 
 const FLAG: u32 = 1 << 31;
+const OPEN: u16 = MOST_LEVELS;
 const NO_WING: u8 = u8::MAX;
 const LAST_WING: u8 = u8::MAX - 1;
 
@@ -181,7 +183,13 @@ impl Implicit {
     /// Above those of all that it needs first.
     #[inline]
     pub(crate) fn level(&self, update: u32) -> u16 {
-        self.splits[update as usize].level
+        self.splits[update as usize].level & !OPEN
+    }
+
+    /// Whether around an update's vertex may be one whom no face follows.
+    #[inline]
+    pub(crate) fn is_open(&self, update: u32) -> bool {
+        self.splits[update as usize].level & OPEN != 0
     }
 
     /// The error of an update's coarse side.
@@ -253,7 +261,7 @@ impl Implicit {
         };
         vec![
             spoil(&|split| split.level = 0),
-            spoil(&|split| split.level = split.level.saturating_sub(1)),
+            spoil(&|split| split.level = (split.level - 1).min(split.level)),
             spoil(&|split| split.level += 1),
             spoil(&|split| split.level = u16::MAX >> 1),
             spoil(&|split| split.wings[1] = split.wings[0]),

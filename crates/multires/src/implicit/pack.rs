@@ -1,6 +1,6 @@
 //! Packs a forest.
 
-use super::{FLAG, Implicit, LAST_WING, NO_WING, Order, Split};
+use super::{FLAG, Implicit, LAST_WING, NO_WING, OPEN, Order, Split};
 use crate::forest::{BuildError, Forest, NONE, Odd, Update};
 
 impl Implicit {
@@ -36,7 +36,7 @@ impl Implicit {
                 second: second(forest, order, &of, at),
                 radius: of.radius,
                 error: of.error,
-                level: of.level,
+                level: of.level | if of.is_open || of.wings == [NONE; 2] { OPEN } else { 0 },
                 wings: of.wings.map(|wing| rank(forest, order, update, wing)),
             });
             if of.wings == [NONE; 2] {
