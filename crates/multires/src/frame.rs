@@ -85,7 +85,7 @@ impl Length16 {
         let shifted = (length + f64::from(f32::from_bits(Self::LEAST))) as f32;
         let steps = shifted.to_bits().saturating_sub(Self::LEAST) >> 12;
         let mut code = Self(u16::try_from(steps).unwrap_or(u16::MAX));
-        while code < Self::INFINITE && !(code.get() >= length) {
+        while code < Self::INFINITE && code.get() < length {
             code.0 += 1;
         }
         code

@@ -72,12 +72,12 @@ fn check(front: &mut Front<'_>, update: u32) -> Result<bool, &'static str> {
     }
     let coarse = front.triangles_at(&[node]);
     let children = mt.children(update);
-    if front.split(update).is_err() {
+    if !front.split(update, &mut Vec::new()) {
         return Err("something around it is split by an update of a higher level");
     }
     if mt.is_glued(update) {
         let is_next = mt.update_of(mt.children(update)[0]) == Some(update + 1);
-        if !is_next || front.may_split(update + 1).is_err() {
+        if !is_next || !front.may_split(update + 1, &mut Vec::new()) {
             return Err("what should be split in the same go cannot be");
         }
     }

@@ -49,9 +49,6 @@ pub(super) enum Standing {
     Split,
 }
 
-/// Why a split must wait: for this update.
-pub(super) struct Needs(pub(super) u32);
-
 impl<'m> Front<'m> {
     /// The base mesh.
     pub(super) fn new(mt: &'m Implicit) -> Self {
@@ -98,31 +95,33 @@ impl<'m> Front<'m> {
         *level = *level & !SCHEDULED | if is_scheduled { SCHEDULED } else { 0 };
     }
 
-    /// Whether all around an update's node, which must be there, is coarse enough to split it.
-    /// # Errors
-    /// Another update that must come first.
-    pub(super) fn may_split(&mut self, update: u32) -> Result<(), Needs> {
+    /// Whether all around an update's node, which must be there, is coarse enough to split it; adds to
+    /// `first` the updates that must come first.
+    pub(super) fn may_split(&mut self, update: u32, first: &mut Vec<u32>) -> bool {
         let (node, level) = (self.mt.parent(update), self.mt.level(update));
         let Self { mt, vertices, star, .. } = self;
         star.clear();
         self.triangles.gather(vertices[node as usize].corner, star);
-        let is_finer = |&n: &u32| vertices[n as usize].level & !SCHEDULED > level;
-        let mut finer = star.iter().map(|spoke| spoke.a).find(is_finer);
+        let waiting = first.len();
+        let mut look = |n: u32| {
+            if vertices[n as usize].level & !SCHEDULED > level {
+                first.push(mt.update_of(n).expect("a leaf's level is 0"));
+            }
+        };
+        star.iter().for_each(|spoke| look(spoke.a));
         if mt.is_open(update) {
             // Somebody is around whom no face follows.
-            finer = finer.or_else(|| star.iter().map(|spoke| spoke.b).find(is_finer));
+            star.iter().for_each(|spoke| look(spoke.b));
         }
-        match finer {
-            Some(finer) => Err(Needs(mt.update_of(finer).expect("a leaf's level is 0"))),
-            None => Ok(()),
-        }
+        first.len() == waiting
     }
 
-    /// Splits an update's node, which must be there, if all around it is coarse enough.
-    /// # Errors
-    /// Another update that must come first.
-    pub(super) fn split(&mut self, update: u32) -> Result<(), Needs> {
-        self.may_split(update)?;
+    /// Splits an update's node, which must be there, if all around it is coarse enough; else adds to
+    /// `first` the updates that must come first.
+    pub(super) fn split(&mut self, update: u32, first: &mut Vec<u32>) -> bool {
+        if !self.may_split(update, first) {
+            return false;
+        }
         let (node, level) = (self.mt.parent(update), self.mt.level(update));
         let [first, second] = self.mt.children(update);
         self.vertices[node as usize].corner = SPLIT;
@@ -141,7 +140,7 @@ impl<'m> Front<'m> {
         {
             odd.brought.iter().for_each(|&face| self.add(face));
         }
-        Ok(())
+        true
     }
 
     /// Moves the triangles of the second child to the front of the star; how many those are, and the

@@ -9,7 +9,7 @@ pub use certificate::{Certificate, Unsound};
 
 use std::time::{Duration, Instant};
 
-use self::front::{Front, Needs, Standing};
+use self::front::{Front, Standing};
 use self::schedule::{Entry, Schedule};
 use crate::implicit::Implicit;
 use crate::level::Level;
@@ -161,7 +161,8 @@ impl<'m> Cut<'m> {
     /// Makes every update due whose vertex is there, or was and has been split.
     fn look_at_all(&mut self) {
         self.schedule.clear();
-        (self.fresh.clear(), self.loose.clear());
+        self.fresh.clear();
+        self.loose.clear();
         let mt = self.front.mt;
         let mut stack: Vec<u32> = mt.roots().map(|(root, _)| root).collect();
         while let Some(node) = stack.pop() {
@@ -224,8 +225,7 @@ impl<'m> Cut<'m> {
             }
             Standing::Active => {}
         }
-        if let Err(Needs(first)) = self.front.split(next) {
-            stack.push(first);
+        if !self.front.split(next, stack) {
             return;
         }
         stack.pop();
@@ -237,8 +237,8 @@ impl<'m> Cut<'m> {
             self.loose.push(next);
         }
         if mt.is_glued(next) {
-            let inner = self.front.split(next + 1);
-            assert!(inner.is_ok(), "what is around the whole is around its part");
+            let is_split = self.front.split(next + 1, stack);
+            assert!(is_split, "what is around the whole is around its part");
             self.arrive(next + 1, needs);
         }
         self.arrive(next, needs);
