@@ -80,9 +80,9 @@ impl Triangles {
         let mut corner = first;
         while corner != NONE {
             let (t, k) = (corner as usize / 3, corner as usize % 3);
-            let Triangle { nodes, next, .. } = self.all[t];
-            star.push(Spoke { corner, a: nodes[NEXT[k]], b: nodes[LAST[k]] });
-            corner = next[k];
+            let triangle = &self.all[t];
+            star.push(Spoke { corner, a: triangle.nodes[NEXT[k]], b: triangle.nodes[LAST[k]] });
+            corner = triangle.next[k];
         }
     }
 

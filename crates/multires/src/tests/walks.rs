@@ -199,3 +199,44 @@ fn every_encoding_gives_the_same_cuts_by_any_way() {
         }
     });
 }
+
+/// What wings cannot tell: edges of three faces, faces turned against each other, and hubs.
+#[test]
+fn odd_places_are_told_face_by_face() {
+    let around = 400;
+    let rim = (0..around).map(|i| {
+        let (sin, cos) = (f64::from(i) / f64::from(around) * std::f64::consts::TAU).sin_cos();
+        [cos, sin, 0.0]
+    });
+    let positions: Vec<_> = rim.chain([[0.0, 0.0, 0.5]]).collect();
+    let sides: Vec<_> = (0..around).map(|i| [i, (i + 1) % around, around]).collect();
+    let cone = fixtures::mesh(&positions, &sides);
+    let soups = (0..30).map(soup);
+    for mesh in [cone, fixtures::moebius(60)].into_iter().chain(soups) {
+        for method in METHODS {
+            let forest = forest(&mesh, method);
+            let order = Order::new(&forest);
+            let explicit = Explicit::new(&forest);
+            let implicit = Implicit::in_order(&forest, &order).unwrap();
+            implicit.certify().unwrap();
+            let mut cut = Cut::new(&implicit);
+            let mut dice = Dice(5);
+            for _ in 0..10 {
+                let query = query(&mut dice, &mesh);
+                cut.update(&query, &Effort::default()).unwrap();
+                let level = explicit.extract(&query).unwrap();
+                assert_eq!(in_forest(&cut.level(), &order), level.canonical(), "{query:?}");
+            }
+        }
+    }
+}
+
+/// Faces between any three of a few points.
+fn soup(seed: u64) -> Mesh {
+    let mut dice = Dice(seed);
+    let points = 8 + seed % 20;
+    let positions: Vec<_> = (0..points).map(|_| [0; 3].map(|_| dice.roll())).collect();
+    let mut corner = || (dice.roll() * points as f64) as u32;
+    let faces: Vec<_> = (0..3 * points).map(|_| [corner(), corner(), corner()]).collect();
+    fixtures::mesh(&positions, &faces)
+}
