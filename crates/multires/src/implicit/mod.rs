@@ -176,8 +176,7 @@ impl Implicit {
     /// Whether an update goes in the same go as the one before it, which splits its node's parent.
     #[inline]
     pub(crate) fn is_inner(&self, update: u32) -> bool {
-        let node = self.parent(update);
-        self.family(node).is_some_and(|up| self.is_glued(up) && self.children(up)[0] == node)
+        update.checked_sub(1).is_some_and(|before| self.is_glued(before))
     }
 
     /// Above those of all that it needs first.
