@@ -80,7 +80,7 @@ pub enum BuildError {
     #[error("some update needs a chain of more than {MOST_LEVELS} others")]
     TooDeep,
     /// More vertices than are numbered.
-    #[error("the mesh has more than 2^30 vertices")]
+    #[error("the mesh has too many vertices: about 2^29 can be numbered")]
     TooLarge,
     /// Components vanished: nothing would bring them back.
     #[error("components vanished; build without letting them")]

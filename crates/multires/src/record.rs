@@ -118,12 +118,15 @@ impl Recorder {
             self.trouble = Some(BuildError::TooDeep);
             return;
         }
+        let Ok(start) = u32::try_from(self.forest.rings.len()) else {
+            self.trouble = Some(BuildError::TooLarge);
+            return;
+        };
         let Self { forest, now, .. } = self;
         let position = forest.frame.store(placed.position);
         let own = Length16::up(forest.frame.length(placed.error_estimate));
         let error = own.max(both[0].error).max(both[1].error);
         let radius = radius(&forest.frame, hood, position, &both, &forest.positions);
-        let start = forest.rings.len() as u32;
         forest.rings.extend(ring().map(|v| now[v.index()].node));
         if let Some(end) = open_end {
             forest.rings[start as usize..].swap(end, hood.ring().len() - 1);

@@ -100,8 +100,13 @@ impl<'m> Cut<'m> {
 
     /// Goes from the answer of the last query to that of this one.
     ///
-    /// The result is the smallest cut that meets the query. Cost: of what changes, where only the eye of a camera has moved
-    /// that looks at everything; else a look at every vertex besides.
+    /// The result is the smallest cut that meets the query, or one on the way there if there was not
+    /// enough time; the next call goes on.
+    ///
+    /// Cost: of what changes, where only the eye has moved of a camera that looks at everything; else
+    /// of a look at every vertex besides.
+    /// # Errors
+    /// A query that is none; the cut is as it was.
     pub fn update(&mut self, query: &Query<'_>, effort: &Effort) -> Result<Change, QueryError> {
         let needs = Needed::new(query, self.front.mt, self.hysteresis)?;
         self.front.triangles.mark();
@@ -230,10 +235,9 @@ impl<'m> Cut<'m> {
         }
         stack.pop();
         work.change.splits += 1;
-        if stack.is_empty() {
-            // It is what was wanted.
-        } else if !needs.most.wants(&mt.ball_at(next, node)) {
-            // Forced without a need, it may go as soon as nothing holds it.
+        let is_forced = !stack.is_empty();
+        if is_forced && !needs.most.wants(&mt.ball_at(next, node)) {
+            // It may go as soon as nothing holds it.
             self.loose.push(next);
         }
         if mt.is_glued(next) {

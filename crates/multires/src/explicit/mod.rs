@@ -1,8 +1,8 @@
 //! The explicit MT: triangles stored, dependencies stored. The oracle for everything else.
 //!
-//! Every triangle of every level is there once. The update that makes it takes it out of the next
-//! coarser mesh's place, the update that refines it takes it away: that pair is the arc the triangle
-//! lies on. Nothing is clever here, and nothing is fast.
+//! Every triangle of every level is there once, between two updates: the one that makes it and the one
+//! that takes it away for finer ones. That pair is the arc that it lies on. Nothing is clever here, and
+//! nothing is fast.
 
 mod build;
 mod extract;

@@ -8,7 +8,7 @@ impl Implicit {
     ///
     /// Cost: linear.
     /// # Errors
-    /// More than 2³⁰ vertices.
+    /// More than 2³¹ nodes: half as many vertices.
     pub fn new(forest: &Forest) -> Result<Self, BuildError> {
         Self::in_order(forest, &Order::new(forest))
     }
