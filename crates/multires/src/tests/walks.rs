@@ -2,6 +2,7 @@
 
 use std::collections::BTreeSet;
 
+use glam::DVec3;
 use meshlod_fixtures as fixtures;
 use meshlod_mesh::{Connectivity, Mesh, sample};
 use meshlod_simplify::{Method, Options};
@@ -198,6 +199,38 @@ fn every_encoding_gives_the_same_cuts_by_any_way() {
             }
         }
     });
+}
+
+/// A closed chain of the right Euler number may still lie folded in itself: areas and volumes tell.
+#[test]
+fn cuts_cover_the_surface_once() {
+    let mesh = sample::torus(4000);
+    let measure = |mesh: &Mesh| {
+        let parts = mesh.faces.iter().map(|&face| {
+            let [a, b, c] = mesh.triangle(face);
+            [(b - a).cross(c - a).length() / 2.0, a.dot(b.cross(c)) / 6.0]
+        });
+        parts.fold([0.0; 2], |sum, part| [sum[0] + part[0], sum[1] + part[1]])
+    };
+    let [area, volume] = measure(&mesh);
+    for method in METHODS {
+        let mt = Implicit::new(&forest(&mesh, method)).unwrap();
+        let (mut cut, mut dice) = (Cut::new(&mt), Dice(23));
+        for _ in 0..40 {
+            let near = DVec3::from(dice.place(&mesh));
+            let field = |at: [f64; 3], radius: f64| {
+                (0.05 * (near.distance(at.into()) - radius)).clamp(1e-4, 0.03)
+            };
+            let query = Query { focus: Focus::Everything, tolerance: Tolerance::Field(&field) };
+            cut.update(&query, &Effort::default()).unwrap();
+            assert!(cut.face_count() < mt.full_faces() * 9 / 10, "{}", cut.face_count());
+            let level = cut.level();
+            let [found, enclosed] = measure(&level.mesh());
+            assert!((found / area - 1.0).abs() < 0.05, "{}: area {found} of {area}", method.name());
+            assert!((enclosed / volume - 1.0).abs() < 0.05, "{}: {enclosed}", method.name());
+            assert_eq!(level.folds(), 0, "{}", method.name());
+        }
+    }
 }
 
 /// What wings cannot tell: edges of three faces, faces turned against each other, and hubs.
