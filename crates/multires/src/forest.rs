@@ -7,7 +7,7 @@ use meshlod_simplify::{Options, Simplifier, SimplifyError, Target};
 use thiserror::Error;
 
 use crate::frame::{Frame, Length16};
-use crate::need::Ball;
+use crate::need::{Ball, PackedBall};
 use crate::record::Recorder;
 
 /// Levels stay below this.
@@ -135,11 +135,7 @@ impl Forest {
     /// What an update's need is judged by.
     pub(crate) fn ball(&self, update: usize) -> Ball {
         let Update { radius, error, .. } = self.updates[update];
-        Ball {
-            center: glam::Vec3::from(self.positions[self.node(update)]).as_dvec3(),
-            radius: radius.get(),
-            error: error.get(),
-        }
+        PackedBall { center: self.positions[self.node(update)], radius, error }.unpack()
     }
 
     /// The update that contracts each node; [`NONE`] for roots.

@@ -1,8 +1,8 @@
 //! Whether a query needs an update: the one question that every algorithm here asks.
 
-use glam::DVec3;
+use glam::{DVec3, Vec3};
 
-use crate::frame::Frame;
+use crate::frame::{Frame, Length16};
 use crate::query::{Camera, Focus, Query, QueryError, Tolerance};
 
 /// What an update is judged by, in stored units: a ball around both its sides and the error of the
@@ -12,6 +12,25 @@ pub(crate) struct Ball {
     pub(crate) center: DVec3,
     pub(crate) radius: f64,
     pub(crate) error: f64,
+}
+
+/// A ball as the packed model stores it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct PackedBall {
+    pub(crate) center: [f32; 3],
+    pub(crate) radius: Length16,
+    pub(crate) error: Length16,
+}
+
+impl PackedBall {
+    #[inline]
+    pub(crate) fn unpack(&self) -> Ball {
+        Ball {
+            center: Vec3::from(self.center).as_dvec3(),
+            radius: self.radius.get(),
+            error: self.error.get(),
+        }
+    }
 }
 
 /// A query in stored units.

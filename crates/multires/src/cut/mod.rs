@@ -13,7 +13,7 @@ use self::front::{Front, Standing};
 use self::schedule::{Entry, Schedule};
 use crate::implicit::Implicit;
 use crate::level::Level;
-use crate::need::Need;
+use crate::need::{Ball, Need};
 use crate::query::{Query, QueryError};
 
 /// A mesh out of an [`Implicit`] MT, which the next query changes.
@@ -111,17 +111,12 @@ impl<'m> Cut<'m> {
         let needs = Needed::new(query, self.front.mt, self.hysteresis)?;
         self.front.triangles.mark();
         let mut work = Work::new(effort);
-        if !self.schedule.follow(needs.least.eye()) {
-            self.look_at_all();
-        }
         self.fresh.retain(|&update| needs.least.wants(&self.front.mt.ball(update)));
-        let mut due = std::mem::take(&mut self.schedule.due);
-        work.change.looks += due.len();
-        for entry in due.drain(..) {
-            self.front.set_scheduled(entry.node, false);
-            self.look(entry, &needs);
-        }
-        self.schedule.due = due;
+        work.change.looks = if self.schedule.follow(needs.least.eye()) {
+            self.look_at_due(&needs)
+        } else {
+            self.look_at_all(&needs)
+        };
         self.refine(&needs, &mut work);
         self.coarsen(&needs, &mut work);
         work.change.done = self.fresh.is_empty() && self.loose.is_empty();
@@ -163,37 +158,58 @@ impl<'m> Cut<'m> {
         )
     }
 
-    /// Makes every update due whose vertex is there, or was and has been split.
-    fn look_at_all(&mut self) {
+    /// Looks at the updates that are due; how many those are.
+    fn look_at_due(&mut self, needs: &Needed<'_>) -> usize {
+        let mut due = std::mem::take(&mut self.schedule.due);
+        let looks = due.len();
+        for entry in due.drain(..) {
+            let ball = entry.ball.unpack();
+            if needs.wanted(&ball) == entry.wanted {
+                self.schedule.add(entry, &ball, self.hysteresis);
+            } else {
+                self.front.set_scheduled(entry.node, false);
+                self.look(entry.update, entry.node, needs);
+            }
+        }
+        self.schedule.due = due;
+        looks
+    }
+
+    /// Looks at every update whose vertex is there, or was and has been split; how many those are.
+    fn look_at_all(&mut self, needs: &Needed<'_>) -> usize {
         self.schedule.clear();
         self.fresh.clear();
         self.loose.clear();
         let mt = self.front.mt;
+        let mut looks = 0;
         let mut stack: Vec<u32> = mt.roots().map(|(root, _)| root).collect();
         while let Some(node) = stack.pop() {
             let Some(update) = mt.update_of(node) else { continue };
-            if !mt.is_inner(update) {
-                self.schedule.due.push(Entry { update, node });
-            }
             if self.front.standing(node) == Standing::Split {
                 stack.extend(mt.children(update));
             }
+            if !mt.is_inner(update) {
+                self.look(update, node, needs);
+                looks += 1;
+            }
         }
+        looks
     }
 
-    /// Whether the need of an update has turned; and when to look again.
+    /// Puts an update on the list that its need asks for; and looks again when that may have turned.
     #[inline]
-    fn look(&mut self, entry: Entry, needs: &Needed<'_>) {
-        let Entry { update, node } = entry;
-        let ball = self.front.mt.ball_at(update, node);
-        match self.front.standing(node) {
-            Standing::Split if !needs.most.wants(&ball) => self.loose.push(update),
-            Standing::Active if needs.least.wants(&ball) => self.fresh.push(update),
-            Standing::Split | Standing::Active => {}
-            Standing::Absent => return,
+    fn look(&mut self, update: u32, node: u32, needs: &Needed<'_>) {
+        let packed = self.front.mt.packed_ball(update, node);
+        let ball = packed.unpack();
+        let wanted = needs.wanted(&ball);
+        match (self.front.standing(node), wanted) {
+            (Standing::Split, [_, false]) => self.loose.push(update),
+            (Standing::Active, [true, _]) => self.fresh.push(update),
+            (Standing::Split | Standing::Active, _) => {}
+            (Standing::Absent, _) => return,
         }
         self.front.set_scheduled(node, true);
-        self.schedule.add(entry, &ball, self.hysteresis);
+        self.schedule.add(Entry { update, node, ball: packed, wanted }, &ball, self.hysteresis);
     }
 
     /// Splits what is wanted, and what must be split for it.
@@ -255,7 +271,7 @@ impl<'m> Cut<'m> {
         for node in mt.children(update).into_iter().skip(first_is_gone) {
             let Some(update) = mt.update_of(node) else { continue };
             if !self.front.is_scheduled(node) {
-                self.look(Entry { update, node }, needs);
+                self.look(update, node, needs);
             } else if needs.least.wants(&mt.ball_at(update, node)) {
                 self.fresh.push(update);
             }
@@ -299,6 +315,12 @@ impl<'f> Needed<'f> {
         let least = Need::new(query, mt.frame())?;
         let most = Need::new(query, mt.frame())?.tightened(1.0 / (1.0 + hysteresis));
         Ok(Self { least, most })
+    }
+
+    /// Whether an update is wanted, and whether it may stay.
+    #[inline]
+    fn wanted(&self, ball: &Ball) -> [bool; 2] {
+        [self.least.wants(ball), self.most.wants(ball)]
     }
 }
 

@@ -4,7 +4,7 @@
 //! A need turns where the eye crosses a sphere about the ball. Until then nothing has to be looked at,
 //! so a frame costs what is close to turning and not what is there.
 
-use crate::need::{Ball, Eye};
+use crate::need::{Ball, Eye, PackedBall};
 
 /// The finest step of the way, in stored units.
 const FINEST: f64 = 1.0 / (1u64 << 30) as f64;
@@ -15,11 +15,16 @@ const STEPS: i64 = 16;
 /// An octave's entries are up to 32 steps ahead.
 const RING: usize = 64;
 
-/// An update and the node that it splits.
+/// An update as it was when it was looked at last, with all that it takes to see that nothing has
+/// turned: most looks end there, and go nowhere else in memory.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Entry {
     pub(super) update: u32,
+    /// The node that it splits.
     pub(super) node: u32,
+    pub(super) ball: PackedBall,
+    /// Whether it was wanted, and whether it might stay.
+    pub(super) wanted: [bool; 2],
 }
 
 /// Updates by the way of the eye at which they are due.
@@ -127,6 +132,7 @@ mod tests {
     use glam::DVec3;
 
     use super::*;
+    use crate::frame::Length16;
 
     #[test]
     fn nobody_is_late_and_few_are_early() {
@@ -138,7 +144,8 @@ mod tests {
         let at = |i: u32| f64::from(i).powi(3) / 1000.0;
         let ball =
             |i| Ball { center: DVec3::new(at(i) + 1.0, 0.0, 0.0), radius: 0.5, error: 0.005 };
-        let entry = |update| Entry { update, node: update };
+        let packed = PackedBall { center: [0.0; 3], radius: Length16(0), error: Length16(0) };
+        let entry = |update| Entry { update, node: update, ball: packed, wanted: [false; 2] };
         (0..60).for_each(|i| schedule.add(entry(i), &ball(i), 0.0));
         let mut looks = 0;
         let mut x = 0.0;

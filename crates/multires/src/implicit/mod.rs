@@ -22,11 +22,9 @@ mod saturated;
 
 use std::collections::BTreeMap;
 
-use glam::Vec3;
-
 use crate::forest::{MOST_LEVELS, Odd};
 use crate::frame::{Frame, Length16};
-use crate::need::Ball;
+use crate::need::{Ball, PackedBall};
 
 pub use extractor::Extractor;
 pub use faces::Faces;
@@ -206,12 +204,14 @@ impl Implicit {
     /// The same where the node is known.
     #[inline]
     pub(crate) fn ball_at(&self, update: u32, node: u32) -> Ball {
+        self.packed_ball(update, node).unpack()
+    }
+
+    /// The same as it is stored.
+    #[inline]
+    pub(crate) fn packed_ball(&self, update: u32, node: u32) -> PackedBall {
         let Split { radius, error, .. } = self.splits[update as usize];
-        Ball {
-            center: Vec3::from(self.positions[node as usize]).as_dvec3(),
-            radius: radius.get(),
-            error: error.get(),
-        }
+        PackedBall { center: self.positions[node as usize], radius, error }
     }
 
     /// The wings of an update.
