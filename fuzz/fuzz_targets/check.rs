@@ -4,7 +4,7 @@ use std::ops::ControlFlow;
 
 use meshlod_check::{
     CheckOptions, Finding, HoleLimits, Kind, Kinds, RepairOptions, RepairStep, Summary, check,
-    findings, repair,
+    findings, fuse, repair,
 };
 use meshlod_mesh::{Attributes, Labels, Layer, LayerKind, Mesh, VertexId, WedgeId};
 
@@ -85,6 +85,8 @@ libfuzzer_sys::fuzz_target!(init: meshlod_fuzz::plant("check"), |bytes: &[u8]| {
     meshlod_fuzz::accept(&mended);
     let left = untold(&mended, report.count(RepairStep::NotOrientable));
     assert!(left.is_empty(), "{left:?} is left of {summary:?} after {report:?}");
+    let (fused, _) = fuse(&mended, |face| face.index() % 5 != 4);
+    meshlod_fuzz::accept(&fused);
     // What was split is at one place, and welding joins it anew; borders that were in each other's
     // way can be stitched once the hole behind one of them is closed.
     if options.weld.is_none() && options.holes.is_none() {

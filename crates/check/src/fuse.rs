@@ -54,7 +54,7 @@ impl Fused {
 /// faces lie in one plane only up to rounding, they are only cut.
 ///
 /// Takes a mesh that has passed [`Mesh::validate`]. Cost: that of [`imprint`](crate::imprint()), and
-/// for each patch up to 128 times the faces of each shell in whose box it is, up to 2^30 in all; what
+/// for each patch up to 128 times the faces of each shell in whose box it is, up to 2^28 in all; what
 /// is beyond that stays.
 /// # References
 /// [JKSH13]: winding numbers tell what is inside; here of closed shells, beside each face.

@@ -53,7 +53,7 @@ impl Solids {
                 solid.triangles.push(mesh.triangle(mesh.faces[f]));
             }
         }
-        Self { solids: slots.into_iter().flatten().collect(), budget: 1 << 30 }
+        Self { solids: slots.into_iter().flatten().collect(), budget: 1 << 28 }
     }
 
     /// A flag per component: whether all of it is solid.

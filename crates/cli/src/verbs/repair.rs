@@ -25,7 +25,7 @@ use crate::table::aligned;
 ///
 /// Steps, in this order: drop what cannot be; --weld; drop doubles; drop faces without area; split what
 /// is not manifold; turn faces until they agree; stitch borders; --holes; turn closed shells outwards;
-/// drop unused vertices; --fuse. Then OUT is read again, and the errors that check finds in it are told.
+/// drop unused vertices. --fuse comes next, and these steps once more. Then OUT is read again, and the errors that check finds in it are told.
 #[derive(Args)]
 pub struct Repair {
     /// File to read, or -
@@ -103,8 +103,16 @@ impl Repair {
         let before = Size::of(&scene);
         session.progress.stage("repairing");
         let start = Instant::now();
-        let report = repair_scene(&mut scene, &options);
+        let mut report = repair_scene(&mut scene, &options);
         let fused = self.fusing.apply(&mut scene, session);
+        if fused.is_some() {
+            // Where cuts are close, rounding leaves faces without area.
+            let again = repair_scene(&mut scene, &options);
+            again
+                .told()
+                .filter(|(step, _)| !step.is_left())
+                .for_each(|(step, n)| report.add(step, n));
+        }
         let time = start.elapsed();
         let after = Size::of(&scene);
         if after.faces == 0 {
