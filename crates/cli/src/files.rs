@@ -146,7 +146,7 @@ pub fn write(
     out.flush().map_err(|error| Failure::at(path, error))
 }
 
-/// What anybody will read of a file that was just written with [`write`].
+/// What anybody will read of a file that was just written with [`write()`].
 pub fn read_again(
     path: &Path,
     scene: &Scene,
