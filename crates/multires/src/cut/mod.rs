@@ -18,7 +18,7 @@ use crate::query::{Query, QueryError};
 
 /// A mesh out of an [`Implicit`] MT, which the next query changes.
 ///
-/// Whatever stops it and whenever, it is one of the MT's meshes: no cracks, no folds but the input's.
+/// Whatever stops it and whenever, it is one of the MT's meshes: no cracks, as manifold as the input.
 #[derive(Clone, Debug)]
 pub struct Cut<'m> {
     front: Front<'m>,
@@ -165,7 +165,8 @@ impl<'m> Cut<'m> {
         for entry in due.drain(..) {
             let ball = entry.ball.unpack();
             if needs.wanted(&ball) == entry.wanted {
-                self.schedule.add(entry, &ball, self.hysteresis);
+                let is_entered = self.schedule.add(entry, &ball, self.hysteresis);
+                self.front.set_scheduled(entry.node, is_entered);
             } else {
                 self.front.set_scheduled(entry.node, false);
                 self.look(entry.update, entry.node, needs);
@@ -177,7 +178,8 @@ impl<'m> Cut<'m> {
 
     /// Looks at every update whose vertex is there, or was and has been split; how many those are.
     fn look_at_all(&mut self, needs: &Needed<'_>) -> usize {
-        self.schedule.clear();
+        // Also what is not there: it may come back.
+        self.schedule.clear(|node| self.front.set_scheduled(node, false));
         self.fresh.clear();
         self.loose.clear();
         let mt = self.front.mt;
@@ -208,8 +210,9 @@ impl<'m> Cut<'m> {
             (Standing::Split | Standing::Active, _) => {}
             (Standing::Absent, _) => return,
         }
-        self.front.set_scheduled(node, true);
-        self.schedule.add(Entry { update, node, ball: packed, wanted }, &ball, self.hysteresis);
+        let entry = Entry { update, node, ball: packed, wanted };
+        let is_entered = self.schedule.add(entry, &ball, self.hysteresis);
+        self.front.set_scheduled(node, is_entered);
     }
 
     /// Splits what is wanted, and what must be split for it.

@@ -76,23 +76,24 @@ impl Schedule {
         self.eye = None;
     }
 
-    /// Takes out everything.
-    pub(super) fn clear(&mut self) {
+    /// Takes out everything, and tells the nodes.
+    pub(super) fn clear(&mut self, mut out: impl FnMut(u32)) {
         self.way = 0.0;
-        self.due.clear();
         self.counts = [0; OCTAVES];
-        self.rings.iter_mut().for_each(Vec::clear);
+        let all = self.rings.iter_mut().chain([&mut self.due]);
+        all.flat_map(|list| list.drain(..)).for_each(|entry| out(entry.node));
     }
 
-    /// Enters an update that has just been looked at.
+    /// Enters an update that has just been looked at; false where its need never turns, or nobody
+    /// knows when.
     #[inline]
-    pub(super) fn add(&mut self, entry: Entry, ball: &Ball, hysteresis: f64) {
-        let Some(eye) = self.eye else { return };
+    pub(super) fn add(&mut self, entry: Entry, ball: &Ball, hysteresis: f64) -> bool {
+        let Some(eye) = self.eye else { return false };
         let stays = Eye { slope: eye.slope / (1.0 + hysteresis), ..eye };
         // A little less, for rounding.
         let leeway = eye.leeway(ball).min(stays.leeway(ball)) * (1.0 - 1e-9);
         if leeway == f64::INFINITY {
-            return;
+            return false;
         }
         let steps = leeway / FINEST / STEPS as f64;
         let octave = ((steps as u64).max(1).ilog2() as usize).min(OCTAVES - 1);
@@ -100,6 +101,7 @@ impl Schedule {
         let at = step(self.way + leeway.min(most), octave);
         self.rings[slot(octave, at)].push(entry);
         self.counts[octave] += 1;
+        true
     }
 
     /// Collects what became due on the way to here.
@@ -139,14 +141,14 @@ mod tests {
         let eye = |x: f64| Some(Eye { at: DVec3::new(x, 0.0, 0.0), slope: 0.01 });
         let mut schedule = Schedule::default();
         assert!(!schedule.follow(eye(0.0)), "the first look is at everything");
-        schedule.clear();
+        schedule.clear(|_| {});
         // The need of ball i turns when the eye has come to x = i³ / 1000.
         let at = |i: u32| f64::from(i).powi(3) / 1000.0;
         let ball =
             |i| Ball { center: DVec3::new(at(i) + 1.0, 0.0, 0.0), radius: 0.5, error: 0.005 };
         let packed = PackedBall { center: [0.0; 3], radius: Length16(0), error: Length16(0) };
         let entry = |update| Entry { update, node: update, ball: packed, wanted: [false; 2] };
-        (0..60).for_each(|i| schedule.add(entry(i), &ball(i), 0.0));
+        (0..60).for_each(|i| assert!(schedule.add(entry(i), &ball(i), 0.0)));
         let mut looks = 0;
         let mut x = 0.0;
         for frame in 0..200 {

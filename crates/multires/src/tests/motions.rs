@@ -60,6 +60,18 @@ fn a_thousand_steps_later_it_is_the_static_answer() {
 }
 
 #[test]
+fn what_went_under_another_question_is_looked_at_when_it_comes_back() {
+    let mt = model(&sample::torus(3000), Method::Qem);
+    let (mut cut, mut wanderer) = (Cut::new(&mt), Wanderer::new());
+    for step in 0..600 {
+        let query = wanderer.next([1.0, 4.0, 0.5][step / 20 % 3]);
+        cut.update(&query, &Effort::default()).unwrap();
+        let fresh = Cut::at(&mt, &query).unwrap().level();
+        assert_eq!(cut.level().canonical(), fresh.canonical(), "step {step}");
+    }
+}
+
+#[test]
 fn patches_lead_from_frame_to_frame() {
     let mt = model(&sample::gyroid(2000), Method::LindstromTurk);
     let (mut cut, mut wanderer) = (Cut::new(&mt), Wanderer::new());
