@@ -20,7 +20,7 @@ pub struct Fusing {
 
 /// What fusing a scene did, and to how many faces that it shows.
 pub struct Done {
-    before: usize,
+    pub before: usize,
     after: usize,
     fused: Fused,
 }
@@ -38,6 +38,11 @@ impl Fusing {
 }
 
 impl Done {
+    /// Whether anything met.
+    pub fn is_change(&self) -> bool {
+        self.fused != Fused::default()
+    }
+
     /// The target with parts of the faces that there were before.
     pub fn target(&self, target: Target) -> Target {
         match target {

@@ -20,7 +20,8 @@ pub struct Holding {
     /// Keep every vertex of a boundary edge where it is
     #[arg(long)]
     lock_boundary: bool,
-    /// Keep objects together where they meet: what touches moves together, what crosses goes late
+    /// Keep objects together where they meet: what shares a place moves together, what crosses or only
+    /// touches goes late
     #[arg(long)]
     lock_contacts: bool,
     /// Keep what a file says, as check --locks writes it

@@ -106,6 +106,17 @@ impl RepairReport {
         self.counts[step as usize] += count;
     }
 
+    /// This and then another: what was done is summed, what is left is what the other left.
+    pub fn then(mut self, other: &Self) -> Self {
+        for step in RepairStep::ALL {
+            match step.is_left() {
+                true => self.counts[step as usize] = other.count(step),
+                false => self.add(step, other.count(step)),
+            }
+        }
+        self
+    }
+
     /// The count of a step.
     pub fn count(&self, step: RepairStep) -> usize {
         self.counts[step as usize]

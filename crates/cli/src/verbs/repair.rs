@@ -107,11 +107,7 @@ impl Repair {
         let fused = self.fusing.apply(&mut scene, session);
         if fused.is_some() {
             // Where cuts are close, rounding leaves faces without area.
-            let again = repair_scene(&mut scene, &options);
-            again
-                .told()
-                .filter(|(step, _)| !step.is_left())
-                .for_each(|(step, n)| report.add(step, n));
+            report = report.then(&repair_scene(&mut scene, &options));
         }
         let time = start.elapsed();
         let after = Size::of(&scene);
@@ -162,7 +158,7 @@ impl Repair {
         let left = done.left.found().map(|(kind, count)| (kind.name().into(), count.into()));
         json!({
             "file": files::name(&self.output),
-            "changed": !done.report.is_nothing() || done.before.faces != done.after.faces,
+            "changed": !done.report.is_nothing() || done.fused.as_ref().is_some_and(|f| f.is_change()),
             "input_faces": done.before.faces,
             "input_vertices": done.before.vertices,
             "output_faces": done.after.faces,

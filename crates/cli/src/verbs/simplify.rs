@@ -253,12 +253,13 @@ impl Simplify {
 
     fn text(&self, done: &Reduced, fused: Option<&fusing::Done>, time: Duration) -> String {
         let report = &done.report;
-        let part = 100.0 * report.output_faces as f64 / report.input_faces as f64;
+        let input_faces = fused.map_or(report.input_faces, |fused| fused.before);
+        let part = 100.0 * report.output_faces as f64 / input_faces as f64;
         let mut text = format!(
             "{}{}: {} to {} ({})\n{}",
             fusing::to_text(fused),
             files::name(&self.output),
-            faces(report.input_faces),
+            faces(input_faces),
             count(report.output_faces),
             percent(part),
             reduce::oddities(report),
