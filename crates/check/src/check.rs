@@ -1,7 +1,7 @@
 //! The check: every kind of finding in turn, told to a visitor.
 
 pub(crate) mod boundary;
-mod edges;
+pub(crate) mod edges;
 pub(crate) mod faces;
 mod fans;
 mod meets;

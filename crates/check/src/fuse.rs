@@ -38,7 +38,8 @@ impl Fused {
 }
 
 /// Makes one surface of closed components that pass through each other: cuts them along the lines
-/// where they meet, as [`imprint`](crate::imprint()) does, leaves out what is inside, and joins what is left.
+/// where they meet, as [`imprint`](crate::imprint()) does, leaves out what is inside, and joins what is
+/// left.
 ///
 /// A patch between lines goes if a closed shell of another component has it inside, or on its surface:
 /// of two that lie on each other and look one way, the first stays; of two that look against each
@@ -67,12 +68,12 @@ fn fuse_fitting(mesh: &Mesh, solid: impl Fn(FaceId) -> bool) -> (Mesh, Fused) {
     let objects = Objects::of(mesh, ObjectsBy::Auto);
     let component: Vec<u32> =
         parents.iter().map(|parent| objects.component_of_face[parent.index()]).collect();
-    let mut solids = Solids::of(mesh, &objects.component_of_face, solid);
-    let mut is_buried = vec![false; fused.faces.len()];
     let patches = patches(&fused, &component, &lines);
     if patches.is_empty() {
         return (fused, Fused { imprint, ..Fused::default() });
     }
+    let mut solids = Solids::of(mesh, &objects.component_of_face, solid);
+    let mut is_buried = vec![false; fused.faces.len()];
     for patch in patches {
         let own = component[patch.faces[0].index()];
         if solids.hide(&fused, &patch, own) {
@@ -93,8 +94,8 @@ fn fuse_fitting(mesh: &Mesh, solid: impl Fn(FaceId) -> bool) -> (Mesh, Fused) {
     (fused, Fused { imprint, buried, joined })
 }
 
-/// Leaves solid components alone that would not be closed together: where faces lie in one plane but for
-/// rounding, it cannot be told what is inside.
+/// Leaves solid components alone that would not be closed together: where faces lie in one plane but
+/// for rounding, it cannot be told what is inside.
 fn keep_closed(mesh: &Mesh, groups: &Groups, is_buried: &mut [bool]) {
     let closed = groups.closed(mesh, |face| !is_buried[face]);
     for (face, is_buried) in is_buried.iter_mut().enumerate() {

@@ -1,7 +1,7 @@
 //! Imprinting: faces that meet those of another component are cut along the line where they do, so
 //! that both have it as edges. Nothing moves.
 
-mod blend;
+pub(crate) mod blend;
 mod crossings;
 mod cut;
 mod pieces;
@@ -32,8 +32,9 @@ pub struct Imprint {
 /// of other components.
 ///
 /// Afterwards both have vertices at the same places along such a line, to the bit, and edges between
-/// them, but where lines of three components cross each other in a face. Vertices keep their ids;
-/// the pieces of a face stand where it stood. Attributes are interpolated, but joints and their
+/// them, also where lines of several components cross in a face. In a face with thousands of lines
+/// some may be left out: 2^24 pairs of them are looked at. Vertices keep their ids; the pieces of a
+/// face stand where it stood. Attributes are interpolated, but joints and their
 /// weights are those of the nearest corner; labels are those of the face. Faces that overlap in one
 /// plane are cut only where others pass through them; no component is cut by itself.
 ///

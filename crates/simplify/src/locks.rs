@@ -27,8 +27,8 @@ impl Held {
 }
 
 /// A protected vertex that moves counts as one that moves so many times as far. Pixels over 24 views
-/// that show what the original hides, by `qem`, fish-clown.obj with its crossings protected, at 25 and 10 %, and fused
-/// with its lines protected; suzanne.obj at 50 %:
+/// that show what the original hides, by `qem`: fish-clown.obj with its crossings protected, at 25 and
+/// 10 %, and fused with its lines protected; suzanne.obj at 50 %:
 ///
 /// | factor | 25 % | 10 % | fused 25 % | fused 10 % | suzanne |
 /// |---|--:|--:|--:|--:|--:|

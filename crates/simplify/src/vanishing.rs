@@ -3,8 +3,7 @@
 //! Components that share a place are one here: what is seen as one surface goes or stays as one,
 //! however its vertices are torn.
 
-use meshlod_mesh::{Bounds, FaceId, VertexId, face_components};
-use rustc_hash::FxHashMap;
+use meshlod_mesh::{Bounds, FaceId, VertexId, face_components, first_near};
 
 use crate::options::{Method, Options};
 use crate::surface::{Flags, Surface};
@@ -98,13 +97,12 @@ impl Vanishing {
 
 /// The component of every face, by the places of its corners, and how many there are.
 fn components(surface: &Surface, corners: &[[VertexId; 3]]) -> (Vec<u32>, usize) {
-    let mut first = FxHashMap::default();
-    let mut at_place = |v: VertexId| {
-        let bits = surface.position(v).to_array().map(|x| (x + 0.0).to_bits());
-        *first.entry(bits).or_insert(v)
-    };
-    let corners: Vec<_> = corners.iter().map(|face| face.map(&mut at_place)).collect();
-    face_components(&corners, surface.vertex_count())
+    let vertices = (0..surface.vertex_count()).map(VertexId::new);
+    let places: Vec<[f64; 3]> = vertices.map(|v| surface.position(v).to_array()).collect();
+    let first = first_near(&places, 0.0);
+    let at_place = |v: VertexId| VertexId(first[v.index()]);
+    let corners: Vec<_> = corners.iter().map(|face| face.map(at_place)).collect();
+    face_components(&corners, places.len())
 }
 
 /// How far a component is taken to move that vanishes, as a part of its size: about the mean distance

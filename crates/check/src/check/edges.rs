@@ -47,6 +47,7 @@ pub fn non_manifold(subject: &Subject, visit: &mut Visit) -> ControlFlow<()> {
     ControlFlow::Continue(())
 }
 
-fn lowest_first<T: Ord>([a, b]: [T; 2]) -> [T; 2] {
+/// Both, the lower first.
+pub(crate) fn lowest_first<T: Ord>([a, b]: [T; 2]) -> [T; 2] {
     if a <= b { [a, b] } else { [b, a] }
 }

@@ -14,10 +14,10 @@ pub struct Groups {
     count: usize,
 }
 
-/// Sums over faces that tell a closed surface by the theorem of divergence: its normals, each as long as its
-/// face is large, sum to nothing, and their products with the faces' middles to the volume, the
-/// same along every axis, and nothing across. Where edges of one face end within those of another, sides
-/// could not be counted.
+/// Sums over faces that tell a closed surface by the theorem of divergence: its normals, each as long
+/// as its face is large, sum to nothing, and their products with the faces' middles to the volume,
+/// the same along every axis, and nothing across. Where edges of one face end within those of
+/// another, sides could not be counted.
 #[derive(Clone, Copy, Default)]
 struct Balance {
     origin: DVec3,

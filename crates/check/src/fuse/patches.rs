@@ -3,6 +3,7 @@
 use meshlod_mesh::{Connectivity, FaceId, Mesh, Side, Twin, VertexId};
 use rustc_hash::{FxHashMap, FxHashSet};
 
+use crate::check::edges::lowest_first;
 use crate::places::Places;
 
 /// Faces that hang together without crossing a line, and are bounded by one; at least one face.
@@ -10,14 +11,13 @@ pub struct Patch {
     pub faces: Vec<FaceId>,
 }
 
-/// The patches of a mesh between lines, by their first faces; what no line bounds is none. An edge that
-/// two components have at the same two places is a line too.
+/// The patches of a mesh between lines, by their first faces; what no line bounds is none. An edge
+/// that two components have at the same two places is a line too.
 pub fn patches(mesh: &Mesh, component: &[u32], lines: &FxHashSet<[VertexId; 2]>) -> Vec<Patch> {
     let shared = SharedEdges::of(mesh, component);
     let connectivity = Connectivity::new(&mesh.faces, mesh.positions.len());
     let on_line = |side: Side| {
-        let [a, b] = side.ends(&mesh.faces);
-        lines.contains(&[a.min(b), a.max(b)]) || shared.hold(mesh, side)
+        lines.contains(&lowest_first(side.ends(&mesh.faces))) || shared.hold(mesh, side)
     };
     let mut seen = vec![false; mesh.faces.len()];
     let mut patches = Vec::new();
@@ -63,9 +63,7 @@ impl SharedEdges {
                 let ends = [face[k], face[(k + 1) % 3]].map(|v| places.first(v));
                 // Only between places of several vertices.
                 if ends.iter().all(|v| doubled[v.index()]) {
-                    let first = of
-                        .entry([ends[0].min(ends[1]), ends[0].max(ends[1])])
-                        .or_insert(Some(component));
+                    let first = of.entry(lowest_first(ends)).or_insert(Some(component));
                     *first = first.filter(|first| *first == component);
                 }
             }
@@ -74,7 +72,7 @@ impl SharedEdges {
     }
 
     fn hold(&self, mesh: &Mesh, side: Side) -> bool {
-        let [a, b] = side.ends(&mesh.faces).map(|v| self.places.first(v));
-        self.of.get(&[a.min(b), a.max(b)]).is_some_and(Option::is_none)
+        let ends = side.ends(&mesh.faces).map(|v| self.places.first(v));
+        self.of.get(&lowest_first(ends)).is_some_and(Option::is_none)
     }
 }

@@ -25,7 +25,8 @@ pub fn blend(attributes: &mut Attributes, corners: [WedgeId; 3], parts: [f64; 3]
     WedgeId::new(attributes.wedge_count - 1)
 }
 
-fn to_unit_length(values: &mut [f32]) {
+/// Makes a direction of values, unless they are all 0.
+pub fn to_unit_length(values: &mut [f32]) {
     let length = values.iter().map(|x| x * x).sum::<f32>().sqrt();
     if length > 0.0 {
         values.iter_mut().for_each(|x| *x /= length);

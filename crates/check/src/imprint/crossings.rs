@@ -11,8 +11,8 @@ use crate::intersect::{open_axis, turn, without};
 /// narrow angles spread what rounding makes of their ends.
 const SPREAD: f64 = 1e4;
 
-/// Cuts lines where they cross in a face. Three faces that meet at a point have one spot there, whichever
-/// of them is looked at.
+/// Cuts lines where they cross in a face. Three faces that meet at a point have one spot there,
+/// whichever of them is looked at.
 pub fn cross_lines(spots: &mut Spots, mesh: &Mesh) {
     let mut known: FxHashMap<[FaceId; 3], SpotId> = FxHashMap::default();
     for face in spots.faces() {

@@ -5,6 +5,8 @@ use std::collections::BTreeSet;
 use spade::handles::{FixedVertexHandle, VertexHandle};
 use spade::{ConstrainedDelaunayTriangulation, HierarchyHintGenerator, Point2, Triangulation};
 
+use crate::check::edges::lowest_first;
+
 /// Finds where a point is in a time that hardly grows.
 type Triangles =
     ConstrainedDelaunayTriangulation<Point2<f64>, (), (), (), HierarchyHintGenerator<f64>>;
@@ -56,7 +58,7 @@ pub fn cut(cuts: &Cuts) -> Cut {
     let point = |vertex: VertexHandle<'_, _, _, _, _>| order[vertex.index()];
     let triangles = triangulation.inner_faces().map(|face| face.vertices().map(point)).collect();
     let lines = triangulation.undirected_edges().filter(|edge| edge.is_constraint_edge());
-    let lines = lines.map(|edge| edge.vertices().map(point)).map(|[a, b]| [a.min(b), a.max(b)]);
+    let lines = lines.map(|edge| lowest_first(edge.vertices().map(point)));
     Cut { triangles, lines: lines.collect() }
 }
 

@@ -6,7 +6,8 @@ use rustc_hash::{FxHashMap, FxHashSet};
 
 use super::blend::blend;
 use super::cut::{Cut, Cuts, cut};
-use super::spots::{Inside, Mark, SpotId, Spots, lowest_first, rounding};
+use super::spots::{Inside, Mark, SpotId, Spots, rounding};
+use crate::check::edges::lowest_first;
 use crate::places::Places;
 use crate::repair::labels;
 
@@ -208,8 +209,7 @@ impl<'a> Pieces<'a> {
         let new = points[3..].iter().map(|point| match point.on_edge {
             None => blend(attributes, corners, point.parts),
             Some((spot, k)) => {
-                let [a, b] = [corners[k], corners[(k + 1) % 3]];
-                let key = (spot, [a.min(b), a.max(b)]);
+                let key = (spot, lowest_first([corners[k], corners[(k + 1) % 3]]));
                 *known.entry(key).or_insert_with(|| blend(attributes, corners, point.parts))
             }
         });

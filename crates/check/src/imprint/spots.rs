@@ -5,6 +5,7 @@ use meshlod_mesh::{FaceId, Mesh, VertexId, first_near};
 use rustc_hash::FxHashMap;
 
 use super::crossings::cross_lines;
+use crate::check::edges::lowest_first;
 use crate::check::subject::Subject;
 use crate::intersect::{End, On};
 
@@ -219,8 +220,4 @@ impl Part {
 /// How far rounding may move what is computed from these.
 pub fn rounding(places: &[DVec3]) -> f64 {
     ROUNDING * places.iter().map(|place| place.abs().max_element()).fold(0.0, f64::max)
-}
-
-pub fn lowest_first([a, b]: [VertexId; 2]) -> [VertexId; 2] {
-    [a.min(b), a.max(b)]
 }

@@ -5,6 +5,7 @@ use meshlod_mesh::{Connectivity, FaceId, LayerKind, Mesh, Side, Twin, VertexId, 
 use rustc_hash::FxHashSet;
 
 use super::edit::{labels, retain_faces};
+use crate::imprint::blend::to_unit_length;
 use crate::zero_area::has_zero_area;
 
 /// How often flipping starts anew: each round takes one face of a row of slivers that lie on each
@@ -177,10 +178,7 @@ fn between(kind: LayerKind, a: &[f32], b: &[f32], part: f32) -> Vec<f32> {
     }
     let mut values: Vec<f32> = a.iter().zip(b).map(|(a, b)| a + (b - a) * part).collect();
     if let LayerKind::Normal | LayerKind::Tangent = kind {
-        let length = values[..3].iter().map(|x| x * x).sum::<f32>().sqrt();
-        if length > 0.0 {
-            values[..3].iter_mut().for_each(|x| *x /= length);
-        }
+        to_unit_length(&mut values[..3]);
         values[3..].copy_from_slice(&a[3..]);
     }
     values

@@ -2,7 +2,6 @@
 
 use std::ops::ControlFlow;
 
-use glam::DVec3;
 use meshlod_mesh::{Connectivity, FaceId, Mesh, VertexId};
 use meshlod_spatial::{BoxBlocks, LANES, lanes};
 
@@ -39,7 +38,7 @@ const MOST_ROWS: usize = 64;
 /// For every face, whether it is one of those from `first` on, or its box overlaps one of theirs.
 fn near(mesh: &Mesh, first: usize) -> Vec<bool> {
     let box_of = |face: u32| {
-        let [a, b, c] = mesh.faces[face as usize].map(|v| DVec3::from(mesh.positions[v.index()]));
+        let [a, b, c] = mesh.triangle(mesh.faces[face as usize]);
         [a.min(b).min(c), a.max(b).max(c)]
     };
     let count = mesh.faces.len();

@@ -4,6 +4,7 @@ use meshlod_mesh::{Connectivity, FaceId, Mesh, Side, Twin, VertexId};
 
 use super::edit::own_wedges;
 use super::split_pairs::pair_up;
+use crate::check::edges::lowest_first;
 use crate::check::faces::duplicates;
 use crate::joined::Joined;
 
@@ -51,10 +52,6 @@ fn non_manifold_edges(faces: &[[VertexId; 3]], connectivity: &Connectivity) -> V
     sides.sort_unstable();
     let edges = sides.chunk_by(|a, b| a.0 == b.0);
     edges.map(|edge| edge.iter().map(|&(_, side)| side).collect()).collect()
-}
-
-fn lowest_first([a, b]: [VertexId; 2]) -> [VertexId; 2] {
-    [a.min(b), a.max(b)]
 }
 
 /// Which side goes with which. A side without a partner is a border.

@@ -25,7 +25,8 @@ use crate::table::aligned;
 ///
 /// Steps, in this order: drop what cannot be; --weld; drop doubles; drop faces without area; split what
 /// is not manifold; turn faces until they agree; stitch borders; --holes; turn closed shells outwards;
-/// drop unused vertices. --fuse comes next, and these steps once more. Then OUT is read again, and the errors that check finds in it are told.
+/// drop unused vertices. --fuse comes next, and these steps once more. Then OUT is read again, and the
+/// errors that check finds in it are told.
 #[derive(Args)]
 pub struct Repair {
     /// File to read, or -

@@ -34,7 +34,8 @@ pub struct Unsound {
 type Edge = [u32; 2];
 
 impl Implicit {
-    /// Proves that no cut has a crack and that each is as manifold as the input.
+    /// Proves that no cut has a crack and that each is as manifold as the input, but beside what is
+    /// [`odd`](Certificate::odd).
     ///
     /// Cost: linear.
     /// # Errors
@@ -96,8 +97,8 @@ fn check(front: &mut Front<'_>, update: u32) -> Result<bool, &'static str> {
     Ok(true)
 }
 
-/// Whether the fine side has the boundary of the coarse one: the same edges around, and at the vertex the same open ends,
-/// between which only the edge of the children may have come.
+/// Whether the fine side has the boundary of the coarse one: the same edges around, and at the vertex
+/// the same open ends, between which only the edge of the children may have come.
 fn compare(
     mut before: Vec<Edge>,
     fine: &[[u32; 3]],

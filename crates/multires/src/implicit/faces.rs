@@ -37,7 +37,9 @@ impl Faces {
 
     /// The same in an order that others share.
     pub(crate) fn in_order(forest: &Forest, order: &Order) -> Self {
-        let (leaf_of, leaves) = number_leaves(forest, order);
+        let mut leaf_of = vec![NONE; forest.vertices];
+        let leaves = order.leaves.len() as u32;
+        (0..).zip(&order.leaves).for_each(|(number, &leaf)| leaf_of[leaf as usize] = number);
         let mut base = Vec::new();
         let mut brought = vec![[[NONE; 3]; 2]; order.updates.len()];
         for (face, &by) in forest.faces.iter().zip(&forest.brought) {
@@ -111,29 +113,6 @@ impl Faces {
     pub(super) fn leaves(&self) -> usize {
         self.leaves as usize
     }
-}
-
-/// The number of each of the forest's leaves as a walk down meets them, and how many there are.
-fn number_leaves(forest: &Forest, order: &Order) -> (Vec<u32>, u32) {
-    let mut numbers = vec![NONE; forest.vertices];
-    let mut count = 0;
-    let mut stack = Vec::new();
-    for &root in &order.nodes[..order.trees.len() - 1] {
-        stack.push(root);
-        while let Some(node) = stack.pop() {
-            match forest.update_of(node) {
-                None => {
-                    numbers[node as usize] = count;
-                    count += 1;
-                }
-                Some(update) => {
-                    let [first, second] = forest.updates[update].children;
-                    stack.extend([second, first]);
-                }
-            }
-        }
-    }
-    (numbers, count)
 }
 
 fn pack(face: [u32; 3]) -> u64 {

@@ -10,6 +10,8 @@ pub(crate) struct Order {
     pub(crate) nodes: Vec<u32>,
     /// The place of each of the forest's nodes; [`NONE`] for a vertex without faces.
     pub(crate) place: Vec<u32>,
+    /// The forest's leaves that are below roots, as a walk meets them.
+    pub(crate) leaves: Vec<u32>,
     /// The forest's update of each.
     pub(crate) updates: Vec<u32>,
     /// The place of each of the forest's updates.
@@ -26,6 +28,7 @@ impl Order {
         let mut this = Self {
             nodes: roots.clone(),
             place: vec![NONE; forest.positions.len()],
+            leaves: Vec::with_capacity(forest.vertices),
             updates: Vec::with_capacity(forest.updates.len()),
             place_of_update: vec![NONE; forest.updates.len()],
             trees: Vec::with_capacity(roots.len() + 1),
@@ -44,15 +47,17 @@ impl Order {
         this
     }
 
-    /// Numbers the updates below a node.
+    /// Numbers the updates below a node, and the leaves.
     fn walk(&mut self, forest: &Forest, root: u32) {
         let mut stack = vec![root];
         while let Some(node) = stack.pop() {
-            if let Some(update) = forest.update_of(node) {
-                self.updates.push(update as u32);
-                let [first, second] = forest.updates[update].children;
-                stack.extend([second, first]);
-            }
+            let Some(update) = forest.update_of(node) else {
+                self.leaves.push(node);
+                continue;
+            };
+            self.updates.push(update as u32);
+            let [first, second] = forest.updates[update].children;
+            stack.extend([second, first]);
         }
     }
 

@@ -63,11 +63,8 @@ fn base(forest: &Forest, order: &Order) -> Vec<[u32; 3]> {
 fn second(forest: &Forest, order: &Order, update: &Update, at: usize) -> u32 {
     let place = |child| forest.update_of(child).map(|u| order.place_of_update[u]);
     let [first, second] = update.children.map(place);
-    match (first, second) {
-        (_, Some(second)) => second | FLAG,
-        (Some(first), None) => order.ends[first as usize],
-        (None, None) => at as u32 + 1,
-    }
+    let start = first.map_or(at as u32 + 1, |first| order.ends[first as usize]);
+    start | if second.is_some() { FLAG } else { 0 }
 }
 
 /// The rank of a wing among the nodes around that a face follows.
