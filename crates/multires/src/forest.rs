@@ -6,6 +6,7 @@ use meshlod_mesh::Mesh;
 use meshlod_simplify::{Options, Simplifier, SimplifyError, Target};
 use thiserror::Error;
 
+use crate::bounds::ErrorKind;
 use crate::frame::{Frame, Length16};
 use crate::need::{Ball, PackedBall};
 use crate::record::Recorder;
@@ -23,6 +24,8 @@ pub(crate) const NONE: u32 = u32::MAX;
 #[derive(Clone, Debug)]
 pub struct Forest {
     pub(crate) frame: Frame,
+    /// What the updates' errors are.
+    pub(crate) error_kind: ErrorKind,
     /// How many leaves, also those that no face uses.
     pub(crate) vertices: usize,
     /// Of every node, in stored units.
@@ -112,6 +115,11 @@ impl Forest {
     /// How many contractions of an edge there were; that of a face counts as two.
     pub fn update_count(&self) -> usize {
         self.updates.len()
+    }
+
+    /// What the errors of its updates are.
+    pub fn error_kind(&self) -> ErrorKind {
+        self.error_kind
     }
 
     /// The node that an update makes.

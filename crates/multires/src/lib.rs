@@ -55,6 +55,7 @@
 //! made monotone. docs/notes/multires.md has the rules, and why they suffice.
 #![forbid(unsafe_code)]
 
+mod bounds;
 mod cut;
 mod explicit;
 mod forest;
@@ -68,6 +69,7 @@ mod record;
 #[cfg(test)]
 mod tests;
 
+pub use bounds::ErrorKind;
 pub use cut::{Certificate, Change, Cut, Effort, Patch, Unsound};
 pub use explicit::{Explicit, ExplicitCut};
 pub use forest::{BuildError, Forest};

@@ -10,6 +10,7 @@ use glam::{DVec3, Vec3};
 use meshlod_mesh::{Bounds, FaceId, VertexId};
 use meshlod_simplify::{Neighbourhood, Observe, Placed, Simplifier, Spoke, Surface};
 
+use crate::bounds::ErrorKind;
 use crate::forest::{BuildError, Forest, MOST_LEVELS, NONE, Odd, Update};
 use crate::frame::{Frame, Length16};
 
@@ -75,6 +76,7 @@ impl Recorder {
             trouble: None,
             forest: Forest {
                 frame,
+                error_kind: ErrorKind::Estimate,
                 vertices,
                 positions,
                 updates: Vec::with_capacity(vertices),

@@ -22,6 +22,7 @@ mod saturated;
 
 use std::collections::BTreeMap;
 
+use crate::bounds::ErrorKind;
 use crate::forest::{MOST_LEVELS, Odd};
 use crate::frame::{Frame, Length16};
 use crate::need::{Ball, PackedBall};
@@ -38,6 +39,7 @@ pub use saturated::Saturated;
 #[derive(Clone, Debug)]
 pub struct Implicit {
     frame: Frame,
+    error_kind: ErrorKind,
     roots: u32,
     /// Where the updates below each root start, and the last of them end.
     trees: Vec<u32>,
@@ -100,6 +102,11 @@ impl Implicit {
     /// How many faces the finest mesh has.
     pub fn full_faces(&self) -> usize {
         self.full_faces
+    }
+
+    /// What the errors of its updates are.
+    pub fn error_kind(&self) -> ErrorKind {
+        self.error_kind
     }
 
     /// What it takes in memory.

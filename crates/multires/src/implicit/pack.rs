@@ -20,6 +20,7 @@ impl Implicit {
         }
         let mut this = Self {
             frame: forest.frame,
+            error_kind: forest.error_kind,
             roots: order.trees.len() as u32 - 1,
             trees: order.trees.clone(),
             positions: order.nodes.iter().map(|&n| forest.positions[n as usize]).collect(),
