@@ -8,10 +8,12 @@ use std::error::Error;
 use cpu_time::ThreadTime;
 use meshlod_mesh::{Bounds, Mesh};
 use meshlod_multires::{
-    Camera, Cut, Effort, Explicit, Extractor, Faces, Forest, Implicit, Links, Query, Recorder,
-    Rule, Saturated,
+    Camera, Cut, Effort, Explicit, Forest, Implicit, Model, Query, Recorder, Rule,
 };
 use meshlod_simplify::{Method, Options, Simplifier, Target};
+
+/// The tolerances that are asked for.
+const PIXELS: [f64; 5] = [1.0, 0.5, 0.25, 0.1, 0.02];
 
 type Failure = Box<dyn Error + Send + Sync>;
 
@@ -116,39 +118,44 @@ fn exact(implicit: &Implicit, bounds: &Bounds) -> Result<(), Failure> {
 
 /// By the face list, without looking at neighbours.
 fn listed(forest: &Forest, implicit: &Implicit, bounds: &Bounds) -> Result<(), Failure> {
-    let (seconds, faces) = best(|| Faces::new(forest));
+    let (seconds, model) = timed(|| Model::new(forest));
+    let mut model = model?;
     let per_update = |bytes: usize| bytes as f64 / implicit.update_count() as f64;
-    println!("face list in {seconds:.3} s, {:.1} bytes an update", per_update(faces.bytes()));
-    let mut links = Vec::new();
-    for rule in [Rule::Strict, Rule::Wings] {
-        let (seconds, of) = timed(|| Links::new(forest, rule));
-        println!("links {rule:?} in {seconds:.3} s, {:.1} bytes an update", per_update(of.bytes()));
-        links.push((rule, of));
+    println!("all lists in {seconds:.3} s, bytes: {:?}", model.bytes());
+    println!(
+        "{:.1} bytes an update for faces, {:.1} for links",
+        per_update(model.bytes().faces),
+        per_update(model.bytes().links)
+    );
+    let weaker = Model::with_rule(forest, Rule::Wings)?;
+    let of_links = per_update(weaker.bytes().links);
+    println!("{of_links:.1} bytes an update for links by wings");
+    for pixels in PIXELS {
+        let slope = pixels * camera(bounds, 0.0, 1.2).pixel();
+        let (seconds, done) = timed(|| model.saturate([slope / 2.0, slope * 2.0]));
+        done?;
+        println!("nested in {seconds:.2} s for {pixels} px");
     }
-    let mut extractor = Extractor::new(implicit, &faces);
-    for pixels in [1.0, 0.5, 0.25, 0.1, 0.02] {
-        let camera = camera(bounds, 0.0, 1.2);
-        let slope = pixels * camera.pixel();
-        let (built, saturated) = timed(|| Saturated::new(forest, [slope / 2.0, slope * 2.0]));
-        let saturated = saturated?;
-        let query = Query::pixels(camera, pixels);
+    let mut extractor = model.extractor();
+    for pixels in PIXELS {
+        let query = Query::pixels(camera(bounds, 0.0, 1.2), pixels);
         let strict = Cut::at(implicit, &query)?.face_count();
-        for (rule, links) in &links {
-            let (seconds, faces) =
-                best(|| extractor.exact(links, &query).map(|level| level.faces.len()));
-            let folds = extractor.exact(links, &query)?.folds();
+        for (rule, model) in [(Rule::Strict, &model), (Rule::Wings, &weaker)] {
+            let mut extractor = model.extractor();
+            let (seconds, faces) = best(|| extractor.exact(&query).map(|level| level.faces.len()));
+            let folds = extractor.exact(&query)?.folds();
             report(&format!("{rule:?}, {pixels} px ({folds} folds)"), seconds, faces?);
         }
-        let (seconds, more) =
-            best(|| extractor.saturated(&saturated, &query).map(|level| level.faces.len()));
+        let (seconds, more) = best(|| extractor.saturated(&query).map(|level| level.faces.len()));
         let more = more?;
-        report(&format!("saturated, {pixels} px (nested in {built:.2} s)"), seconds, more);
+        report(&format!("saturated, {pixels} px"), seconds, more);
         println!("    {:+.1} % faces", 100.0 * (more as f64 / strict as f64 - 1.0));
-        let links = &links[0].1;
-        let (seconds, faces) =
-            best(|| extractor.at_most(more, links, &query).map(|level| level.faces.len()));
+        let (seconds, faces) = best(|| extractor.at_most(more, &query).map(|l| l.faces.len()));
         report(&format!("at most {more}"), seconds, faces?);
     }
+    let uniform = Query::uniform(0.0);
+    let (seconds, faces) = best(|| extractor.at_most(500_000, &uniform).map(|l| l.faces.len()));
+    report("at most 500000 of one tolerance", seconds, faces?);
     for part in [1e-1, 1e-2, 3e-3, 1e-3, 3e-4, 1e-4, 3e-5, 0.0] {
         let tolerance = part * bounds.diagonal();
         let (seconds, faces) = best(|| extractor.uniform(tolerance).map(|level| level.faces.len()));

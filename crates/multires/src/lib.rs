@@ -6,26 +6,26 @@
 //! ([`Explicit`] stores it as it is, triangles and all).
 //!
 //! A simplification is such an order read backwards: its contractions are the updates. [`Forest`] is the
-//! record of one; [`Implicit`] packs it into 40 bytes a vertex and stores no triangle but the coarsest.
-//! Asked with a [`Query`], it answers in several ways:
+//! record of one; [`Implicit`] packs it into 40 bytes a vertex and stores no triangle but the coarsest;
+//! [`Model`] adds the lists that make extraction fast. Asked with a [`Query`], it answers in several ways:
 //!
 //! | | gives | for |
 //! |---|---|---|
 //! | [`Cut`] | the smallest cut, changed by the next query | what moves; what has no room for more |
-//! | [`Extractor::exact`] | the smallest cut | any query, fast, with [`Faces`] and [`Links`] |
+//! | [`Extractor::exact`] | the smallest cut | any query, from scratch |
 //! | [`Extractor::saturated`] | a cut a few percent larger | cameras, faster: no update asks for others |
 //! | [`Extractor::uniform`] | the smallest cut | one tolerance everywhere: only errors are looked at |
 //! | [`Extractor::at_most`] | the best cut of so many faces | budgets |
 //!
 //! ```
 //! use meshlod_mesh::sample;
-//! use meshlod_multires::{Camera, Cut, Effort, Extractor, Faces, Forest, Implicit, Query};
+//! use meshlod_multires::{Camera, Effort, Forest, Model, Query};
 //! use meshlod_simplify::Options;
 //!
 //! let mesh = sample::torus(5000);
 //! let forest = Forest::new(&mesh, &Options::default())?;
-//! let model = Implicit::new(&forest)?;
-//! assert_eq!(model.certify()?.sound, model.update_count());
+//! let model = Model::new(&forest)?;
+//! assert_eq!(model.implicit().certify()?.sound, forest.update_count());
 //!
 //! // Near the camera fine, far from it coarse.
 //! let near = Camera {
@@ -35,7 +35,7 @@
 //!     fov_rad: 0.8,
 //!     viewport: [1920, 1080],
 //! };
-//! let mut cut = Cut::new(&model);
+//! let mut cut = model.cut();
 //! cut.update(&Query::pixels(near, 1.0), &Effort::default())?;
 //! let faces = cut.face_count();
 //!
@@ -45,8 +45,7 @@
 //! assert!(cut.face_count() < faces && cut.patches().count() > 0);
 //!
 //! // The same mesh at once, by the face list.
-//! let list = Faces::new(&forest);
-//! let level = Extractor::new(&model, &list).uniform(0.01)?.mesh();
+//! let level = model.extractor().uniform(0.01)?.mesh();
 //! assert!(level.faces.len() < mesh.faces.len());
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
@@ -62,6 +61,7 @@ mod forest;
 mod frame;
 mod implicit;
 mod level;
+mod model;
 mod need;
 mod query;
 mod record;
@@ -74,7 +74,8 @@ pub use cut::{Certificate, Change, Cut, Effort, Patch, Unsound};
 pub use explicit::{Explicit, ExplicitCut};
 pub use forest::{BuildError, Forest};
 pub use frame::Frame;
-pub use implicit::{Extractor, Faces, Implicit, Links, Rule, Saturated};
+pub use implicit::{Extractor, Implicit, Rule};
 pub use level::Level;
+pub use model::{Model, ModelBytes};
 pub use query::{Camera, Focus, Query, QueryError, Tolerance};
 pub use record::Recorder;

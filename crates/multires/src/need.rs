@@ -100,25 +100,37 @@ impl<'f> Need<'f> {
         self.exceeds(ball) && self.meets(ball)
     }
 
-    /// How many times the least tolerance in the ball its error is; 0 where the focus is not met or
+    /// How many times the least tolerance in each ball its error is; 0 where the focus is not met or
     /// the ball has none. It is monotone too.
-    pub(crate) fn urgency(&self, ball: &Ball) -> f32 {
-        if ball.error <= 0.0 || !self.meets(ball) {
-            return 0.0;
-        }
-        let most = match &self.most {
-            Most::Everywhere(most) => *most,
-            Most::OfDistance(eye) => {
-                eye.slope * (eye.at.distance(ball.center) - ball.radius).max(0.0)
+    pub(crate) fn urgencies(&self, balls: impl Iterator<Item = Ball>) -> Vec<f32> {
+        match (&self.place, &self.most) {
+            // The common ones, with nothing to decide in the loop.
+            (Place::Everything, Most::Everywhere(most)) => {
+                balls.map(|ball| times(ball.error, *most)).collect()
             }
+            (Place::Everything, Most::OfDistance(eye)) => {
+                balls.map(|ball| times(ball.error, eye.least(&ball))).collect()
+            }
+            _ => balls
+                .map(
+                    |ball| {
+                        if self.meets(&ball) { times(ball.error, self.least(&ball)) } else { 0.0 }
+                    },
+                )
+                .collect(),
+        }
+    }
+
+    /// The least tolerance in a ball.
+    fn least(&self, ball: &Ball) -> f64 {
+        match &self.most {
+            Most::Everywhere(most) => *most,
+            Most::OfDistance(eye) => eye.least(ball),
             Most::Field { field, part, frame } => {
                 let center = frame.model(ball.center.as_vec3().into());
                 frame.length(part * field(center, frame.length_of_model(ball.radius)))
             }
-        };
-        // A tolerance of nothing makes everything as urgent as its error.
-        let most = if most > 0.0 { most } else { f64::from(f32::MIN_POSITIVE) };
-        (ball.error / most).min(f32::MAX.into()) as f32
+        }
     }
 
     #[inline]
@@ -161,6 +173,11 @@ impl<'f> Need<'f> {
         self
     }
 
+    /// Whether it is one tolerance everywhere.
+    pub(crate) fn is_uniform(&self) -> bool {
+        matches!((&self.place, &self.most), (Place::Everything, Most::Everywhere(_)))
+    }
+
     /// The eye, where it is all that the need depends on.
     pub(crate) fn eye(&self) -> Option<Eye> {
         match (&self.place, &self.most) {
@@ -171,6 +188,12 @@ impl<'f> Need<'f> {
 }
 
 impl Eye {
+    /// The least tolerance in a ball.
+    #[inline]
+    fn least(&self, ball: &Ball) -> f64 {
+        self.slope * (self.at.distance(ball.center) - ball.radius)
+    }
+
     #[inline]
     fn exceeded_by(&self, ball: &Ball) -> bool {
         // Most error a unit of distance, at the ball's closest place.
@@ -186,6 +209,13 @@ impl Eye {
         }
         (self.at.distance(ball.center) - (ball.radius + ball.error / self.slope)).abs()
     }
+}
+
+/// How many times a tolerance an error is; one of nothing makes everything as urgent as its error.
+#[inline]
+fn times(error: f64, most: f64) -> f32 {
+    let least = f64::from(f32::MIN_POSITIVE);
+    (error / if most > least { most } else { least }).min(f32::MAX.into()) as f32
 }
 
 fn closest(to: DVec3, [a, b]: [DVec3; 2]) -> DVec3 {

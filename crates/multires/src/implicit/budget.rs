@@ -1,91 +1,142 @@
 //! The best cut of at most so many faces.
 //!
 //! Every update has an urgency: by how much its error exceeds the tolerance, and no less than that of
-//! an update that needs it. Making the most urgent first is making cuts all the way.
+//! an update that needs it. Making the most urgent first is making cuts all the way, so choosing is
+//! finding where to stop.
 
 use std::cmp::Reverse;
 
-use super::{Extractor, Links};
+use super::{Extractor, Faces, Implicit};
 use crate::level::Level;
+use crate::model::Model;
 use crate::need::Need;
 use crate::query::{Query, QueryError};
 
 /// Urgencies of one bucket differ in these bits only: by a hundredth at most.
 const LOW_BITS: u32 = 16;
+/// Their highest bit is a sign, and none has it.
+const BUCKETS: usize = 1 << (u32::BITS - 1 - LOW_BITS);
+
+/// The urgency of each update, as bits: those are in the order of the numbers.
+struct Urgencies<'m> {
+    model: &'m Model,
+    of: Vec<u32>,
+}
+
+/// Where the most urgent updates end that bring at most so many faces.
+#[derive(Clone, Copy)]
+struct Limit {
+    /// All of this bucket and those above it fit, and of the one below a part.
+    bucket: usize,
+    /// How many faces may come of that part.
+    room: usize,
+}
+
+/// How many faces an update brings, with the one that goes with it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Weight(u8);
 
 impl Extractor<'_> {
     /// The answer to the query whose tolerance is, everywhere, so many times as large that there are
     /// at most so many faces, or so many times smaller that there are no fewer than need be. What the
-    /// query does not focus on stays as coarse as it can be; the base is there in any case.
+    /// query does not focus on stays as coarse as it can be, and so does what is exact when coarse; the
+    /// base is there in any case.
     ///
-    /// Cost: linear in the updates, not in the faces asked for.
+    /// Cost: of choosing, linear in the updates however many faces are asked for; and of extraction.
     /// # Errors
     /// A query that is none.
-    pub fn at_most(
-        &mut self,
-        faces: usize,
-        links: &Links,
-        query: &Query<'_>,
-    ) -> Result<&Level, QueryError> {
-        let need = Need::new(query, self.mt.frame())?;
-        let urgencies = self.urgencies(&need, links);
-        self.choose_most_urgent(&urgencies, faces.saturating_sub(self.faces.base_faces()));
+    pub fn at_most(&mut self, faces: usize, query: &Query<'_>) -> Result<&Level, QueryError> {
+        let need = Need::new(query, self.model.implicit().frame())?;
+        let room = faces.saturating_sub(self.model.faces().base_faces());
+        let mut urgencies = Urgencies::new(self.model, &need);
+        if !need.is_uniform() {
+            self.model.links().raise(&mut urgencies.of);
+        }
+        urgencies.choose(room, &mut self.chosen);
         Ok(self.write_chosen())
     }
+}
 
-    /// The urgency of each update, as bits: those are in the order of the numbers.
-    fn urgencies(&self, need: &Need<'_>, links: &Links) -> Vec<u32> {
-        let mt = self.mt;
-        let urgency = |update| need.urgency(&mt.ball(update)).to_bits();
-        let mut urgencies: Vec<u32> = (0..mt.update_count() as u32).map(urgency).collect();
-        for &update in links.in_order_of_need() {
-            let own = urgencies[update as usize];
-            let above = mt.family(mt.parent(update));
-            for &up in links.of(update).iter().chain(&above) {
-                urgencies[up as usize] = urgencies[up as usize].max(own);
-            }
-        }
-        urgencies
+impl Weight {
+    /// It goes with the one before it.
+    const INNER: Self = Self(u8::MAX);
+
+    pub(crate) fn all(mt: &Implicit, faces: &Faces) -> Vec<Self> {
+        let weight = |update: u32| match mt.is_glued(update) {
+            _ if mt.is_inner(update) => Self::INNER,
+            true => Self((faces.brought(update) + faces.brought(update + 1)) as u8),
+            false => Self(faces.brought(update) as u8),
+        };
+        (0..mt.update_count() as u32).map(weight).collect()
     }
 
-    /// Chooses the most urgent updates that bring at most so many faces; none that is not urgent.
-    ///
-    /// Urgencies are sorted into buckets by their leading bits. All of some buckets fit, none of
-    /// others, and one has to be sorted.
-    fn choose_most_urgent(&mut self, urgencies: &[u32], room: usize) {
-        let Self { mt, faces, chosen, .. } = self;
-        let weight = |update: u32| match mt.is_glued(update) {
-            true => faces.brought(update) + faces.brought(update + 1),
-            false => faces.brought(update),
-        };
-        let bucket = |update: u32| (urgencies[update as usize] >> LOW_BITS) as usize;
-        let urgent = || {
-            let all = 0..urgencies.len() as u32;
-            all.filter(|&update| urgencies[update as usize] > 0 && !mt.is_inner(update))
-        };
-        let mut weights = vec![0usize; 1 << (u32::BITS - LOW_BITS)];
-        urgent().for_each(|update| weights[bucket(update)] += weight(update));
-        let (mut left, mut last) = (room, weights.len());
-        while last > 0 && weights[last - 1] <= left {
-            last -= 1;
-            left -= weights[last];
+    #[inline]
+    fn faces(self) -> u32 {
+        if self == Self::INNER { 0 } else { self.0.into() }
+    }
+}
+
+impl<'m> Urgencies<'m> {
+    /// As the updates' own balls have them.
+    fn new(model: &'m Model, need: &Need<'_>) -> Self {
+        let mt = model.implicit();
+        let balls = (0..mt.update_count() as u32).map(|update| mt.ball(update));
+        Self { model, of: need.urgencies(balls).into_iter().map(f32::to_bits).collect() }
+    }
+
+    /// Where those end that bring so many faces.
+    fn limit(&self, room: usize) -> Limit {
+        let mut buckets = vec![0u32; BUCKETS];
+        for (&urgency, weight) in self.of.iter().zip(self.model.weights()) {
+            buckets[bucket(urgency)] += weight.faces();
         }
-        let mut tight: Vec<u32> = urgent().filter(|&update| bucket(update) + 1 == last).collect();
-        // What is needed is of a higher level, and no less urgent.
-        let key = |update: u32| Reverse((urgencies[update as usize], mt.level(update)));
-        tight.sort_unstable_by_key(|&update| (key(update), update));
-        let fit = tight.into_iter().take_while(|&update| {
-            let rest = left.checked_sub(weight(update));
-            left = rest.unwrap_or(0);
-            rest.is_some()
-        });
+        let mut limit = Limit { bucket: BUCKETS, room };
+        // The lowest holds what is not urgent at all.
+        while limit.bucket > 1 && buckets[limit.bucket - 1] as usize <= limit.room {
+            limit.bucket -= 1;
+            limit.room -= buckets[limit.bucket] as usize;
+        }
+        limit
+    }
+
+    /// Chooses the most urgent that bring at most so many faces; none that is not urgent.
+    ///
+    /// All of some buckets fit, none of others, and one has to be sorted.
+    fn choose(&self, room: usize, chosen: &mut Vec<bool>) {
+        let (mt, weights) = (self.model.implicit(), self.model.weights());
+        let mut limit = self.limit(room);
+        let least = (limit.bucket << LOW_BITS) as u32;
         chosen.clear();
-        chosen.resize(urgencies.len(), false);
-        for update in urgent().filter(|&update| bucket(update) >= last).chain(fit) {
+        chosen.extend(self.of.iter().map(|&urgency| urgency >= least));
+        let mut tight = Vec::new();
+        let next = ((limit.bucket - 1) << LOW_BITS).max(1) as u32..least;
+        for (update, urgency) in self.of.iter().enumerate() {
+            if next.contains(urgency) && weights[update] != Weight::INNER {
+                tight.push(update as u32);
+            }
+        }
+        for update in 1..chosen.len() {
+            if weights[update] == Weight::INNER {
+                chosen[update] = chosen[update - 1];
+            }
+        }
+        // What is needed is of a higher level, and no less urgent.
+        let key = |update: u32| Reverse((self.of[update as usize], mt.level(update)));
+        tight.sort_unstable_by_key(|&update| (key(update), update));
+        for update in tight {
+            let Some(rest) = limit.room.checked_sub(weights[update as usize].faces() as usize)
+            else {
+                break;
+            };
+            limit.room = rest;
             chosen[update as usize] = true;
             if mt.is_glued(update) {
                 chosen[update as usize + 1] = true;
             }
         }
     }
+}
+
+fn bucket(urgency: u32) -> usize {
+    (urgency >> LOW_BITS) as usize
 }

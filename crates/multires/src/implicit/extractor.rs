@@ -1,16 +1,16 @@
 //! Static extraction by the face list.
 
-use super::{Below, Faces, Implicit, Links, Saturated};
+use super::Below;
 use crate::frame::Length16;
 use crate::level::Level;
+use crate::model::Model;
 use crate::need::Need;
 use crate::query::{Query, QueryError};
 
-/// Meshes out of an [`Implicit`] model and its [`Faces`], one after the other in the same room.
+/// Meshes out of a [`Model`] by its face list, one after the other in the same room.
 #[derive(Clone, Debug)]
 pub struct Extractor<'m> {
-    pub(super) mt: &'m Implicit,
-    pub(super) faces: &'m Faces,
+    pub(super) model: &'m Model,
     level: Level,
     /// What stands above each leaf, as the level numbers it.
     above: Vec<u32>,
@@ -28,13 +28,11 @@ pub struct Extractor<'m> {
 const AT_ONCE: usize = 16;
 
 impl<'m> Extractor<'m> {
-    /// Both must be of one forest.
-    pub fn new(mt: &'m Implicit, faces: &'m Faces) -> Self {
+    pub(crate) fn new(model: &'m Model) -> Self {
         Self {
-            mt,
-            faces,
-            level: Level::new(*mt.frame()),
-            above: vec![0; faces.leaves()],
+            model,
+            level: Level::new(*model.implicit().frame()),
+            above: vec![0; model.faces().leaves()],
             made: Vec::new(),
             stack: Vec::new(),
             chosen: Vec::new(),
@@ -49,11 +47,11 @@ impl<'m> Extractor<'m> {
     /// What is below 0 or no number.
     pub fn uniform(&mut self, tolerance: f64) -> Result<&Level, QueryError> {
         Query::uniform(tolerance).validate()?;
-        let most = self.mt.frame().length(tolerance);
+        let mt = self.model.implicit();
+        let most = mt.frame().length(tolerance);
         // The greatest code that is within: codes are in the order of lengths.
         let within = Length16::up(most);
         let within = if within.get() > most { within.0.checked_sub(1) } else { Some(within.0) };
-        let mt = self.mt;
         Ok(self.write(|update, _| Some(mt.error(update).0) > within))
     }
 
@@ -61,27 +59,23 @@ impl<'m> Extractor<'m> {
     ///
     /// It is not the smallest: the notes say by how much.
     /// # Errors
-    /// A query that is none, or that the balls do not nest for.
-    pub fn saturated(
-        &mut self,
-        saturated: &Saturated,
-        query: &Query<'_>,
-    ) -> Result<&Level, QueryError> {
-        let need = Need::new(query, self.mt.frame())?;
-        if !saturated.serves(&need) {
-            return Err(QueryError::NotSaturated);
-        }
-        let mt = self.mt;
-        Ok(self.write(|update, node| need.wants(&saturated.ball(mt, update, node))))
+    /// A query that is none, or that the model was not [saturated](Model::saturate) for.
+    pub fn saturated(&mut self, query: &Query<'_>) -> Result<&Level, QueryError> {
+        let mt = self.model.implicit();
+        let need = Need::new(query, mt.frame())?;
+        let balls = need.eye().and_then(|eye| self.model.saturated_at(eye.slope));
+        let balls = balls.ok_or(QueryError::NotSaturated)?;
+        Ok(self
+            .write(|update, node| mt.is_inner(update) || need.wants(&balls.ball(mt, update, node))))
     }
 
     /// The smallest cut that meets the query, by what updates need of each other.
     /// # Errors
     /// A query that is none.
-    pub fn exact(&mut self, links: &Links, query: &Query<'_>) -> Result<&Level, QueryError> {
-        let need = Need::new(query, self.mt.frame())?;
+    pub fn exact(&mut self, query: &Query<'_>) -> Result<&Level, QueryError> {
+        let need = Need::new(query, self.model.implicit().frame())?;
         self.choose_wanted(&need);
-        links.close(self.mt, &mut self.chosen);
+        self.model.links().close(self.model.implicit(), &mut self.chosen);
         Ok(self.write_chosen())
     }
 
@@ -95,11 +89,11 @@ impl<'m> Extractor<'m> {
 
     /// Chooses what the need wants: the balls nest down the forest.
     fn choose_wanted(&mut self, need: &Need<'_>) {
-        self.chosen.clear();
-        self.chosen.resize(self.mt.update_count(), false);
-        let mt = self.mt;
+        let mt = self.model.implicit();
         let mut chosen = std::mem::take(&mut self.chosen);
-        let wants = |update, node| need.wants(&mt.ball_at(update, node));
+        chosen.clear();
+        chosen.resize(mt.update_count(), false);
+        let wants = |update, node| mt.is_inner(update) || need.wants(&mt.ball_at(update, node));
         self.descend(wants, |below, is_wanted| {
             if is_wanted {
                 chosen[below.start as usize] = true;
@@ -111,7 +105,7 @@ impl<'m> Extractor<'m> {
     /// The mesh after the updates of which `is_made` says so. It is asked about an update and its node
     /// where those above are made.
     fn write(&mut self, is_made: impl FnMut(u32, u32) -> bool) -> &Level {
-        let (mt, faces) = (self.mt, self.faces);
+        let mt = self.model.implicit();
         let (mut level, mut above, mut made) = (
             std::mem::replace(&mut self.level, Level::new(*mt.frame())),
             std::mem::take(&mut self.above),
@@ -129,7 +123,7 @@ impl<'m> Extractor<'m> {
             level.nodes.push(below.node);
             level.positions.push(mt.positions()[below.node as usize]);
         });
-        faces.write(&made, &above, &mut level.faces);
+        self.model.faces().write(&made, &above, &mut level.faces);
         (self.level, self.above, self.made) = (level, above, made);
         &self.level
     }
@@ -140,7 +134,8 @@ impl<'m> Extractor<'m> {
         mut is_made: impl FnMut(u32, u32) -> bool,
         mut visit: impl FnMut(Below, bool),
     ) {
-        let Self { mt, stack, .. } = self;
+        let Self { model, stack, .. } = self;
+        let mt = model.implicit();
         let mut leaf = 0;
         for (node, [start, end]) in mt.roots() {
             stack.push(Below { node, start, end, leaf });

@@ -9,7 +9,7 @@ use crate::forest::{Forest, NONE};
 
 /// The faces of the finest mesh, in 16 bytes an update up to two million vertices, in 24 beyond.
 #[derive(Clone, Debug)]
-pub struct Faces {
+pub(crate) struct Faces {
     leaves: u32,
     /// The faces that are always there.
     base: Vec<[u32; 3]>,
@@ -30,12 +30,7 @@ const SMALL: u32 = 1 << BITS;
 const NO_FACE: u64 = 1 << 63;
 
 impl Faces {
-    /// Those of the forest that the model was made of.
-    pub fn new(forest: &Forest) -> Self {
-        Self::in_order(forest, &Order::new(forest))
-    }
-
-    /// The same in an order that others share.
+    /// Those of the forest, in the order of the model.
     pub(crate) fn in_order(forest: &Forest, order: &Order) -> Self {
         let mut leaf_of = vec![NONE; forest.vertices];
         let leaves = order.leaves.len() as u32;
@@ -61,7 +56,7 @@ impl Faces {
     }
 
     /// What it takes in memory.
-    pub fn bytes(&self) -> usize {
+    pub(crate) fn bytes(&self) -> usize {
         size_of_val(&self.base[..])
             + match &self.brought {
                 Brought::Small(faces) => size_of_val(&faces[..]),

@@ -14,107 +14,146 @@ pub enum Rule {
     Wings,
 }
 
-/// For each update those that it needs beside the ones above it, as far as they do not need each other
-/// anyway.
+/// For each update the one that makes its node, and those that it needs beside the ones above it, as
+/// far as they do not need each other anyway.
 #[derive(Clone, Debug)]
-pub struct Links {
+pub(crate) struct Links {
+    /// All updates, each before those that it needs, as [`HEAD`]s with what they need behind them.
+    lists: Vec<u32>,
+    /// Where in the lists each update's needs start.
     starts: Vec<u32>,
-    needs: Vec<u32>,
-    /// All updates, each before those that it needs.
-    order: Vec<u32>,
 }
 
-impl Links {
-    /// Those of the forest that the model was made of.
-    pub fn new(forest: &Forest, rule: Rule) -> Self {
-        Self::in_order(forest, &Order::new(forest), rule)
-    }
+/// Set where a list begins: there are no more than half of 2³¹ updates.
+const HEAD: u32 = 1 << 31;
 
-    /// The same in an order that others share.
+impl Links {
+    /// Those of the forest, in the order of the model.
     pub(crate) fn in_order(forest: &Forest, order: &Order, rule: Rule) -> Self {
         let parents = forest.parents();
-        let mut this = Self {
-            starts: Vec::with_capacity(order.updates.len() + 1),
-            needs: vec![],
-            order: by_level(forest, order),
-        };
-        let mut found = Vec::new();
-        for (at, &update) in order.updates.iter().enumerate() {
-            this.starts.push(this.needs.len() as u32);
-            let of = &forest.updates[update as usize];
+        let mut this = Self { lists: vec![], starts: vec![NONE; order.updates.len()] };
+        let (mut found, mut finder) = (Vec::new(), Finder::new(forest, &parents));
+        for at in by_level(forest, order) {
+            let update = order.updates[at as usize] as usize;
+            let of = &forest.updates[update];
             found.clear();
             if rule == Rule::Strict || of.wings == [NONE; 2] {
-                let needed = |&node: &u32| parents[node as usize];
-                let ring = forest.ring(update as usize).iter().map(needed);
-                found.extend(ring.filter(|&up| up != NONE));
+                finder.around(update, &mut found);
             } else if !of.wings.contains(&NONE) {
                 found.extend(lowest_common(forest, &parents, of.wings));
             }
             found.iter_mut().for_each(|up| *up = order.place_of_update[*up as usize]);
-            this.add(order, at as u32, &mut found);
+            let family = Some(parents[forest.node(update)]).filter(|&up| up != NONE);
+            let family = family.map(|up| order.place_of_update[up as usize]);
+            this.add(order, at, family, &mut found);
         }
-        this.starts.push(this.needs.len() as u32);
         this
     }
 
-    /// Adds what an update needs, without what is above it or above another of them.
-    fn add(&mut self, order: &Order, update: u32, found: &mut Vec<u32>) {
+    /// Adds what an update needs, without what is above it or above another of them, but for its
+    /// family.
+    fn add(&mut self, order: &Order, update: u32, family: Option<u32>, found: &mut Vec<u32>) {
         found.sort_unstable();
         found.dedup();
+        self.lists.push(update | HEAD);
+        self.starts[update as usize] = self.lists.len() as u32;
+        self.lists.extend(family);
         let is_above = |up: u32, down: u32| up < down && down < order.ends[up as usize];
         for (i, &up) in found.iter().enumerate() {
             // Those under it come right behind it.
             let next = found.get(i + 1);
             if !is_above(up, update) && !next.is_some_and(|&next| is_above(up, next)) {
-                self.needs.push(up);
+                self.lists.push(up);
             }
         }
     }
 
     /// What it takes in memory.
-    pub fn bytes(&self) -> usize {
-        4 * (self.starts.len() + self.needs.len() + self.order.len())
+    pub(crate) fn bytes(&self) -> usize {
+        4 * (self.starts.len() + self.lists.len())
     }
 
-    /// What an update needs beside those above it.
+    /// What an update needs, but for what that needs in turn.
     #[inline]
-    pub(crate) fn of(&self, update: u32) -> &[u32] {
-        let update = update as usize;
-        &self.needs[self.starts[update] as usize..self.starts[update + 1] as usize]
+    pub(crate) fn of(&self, update: u32) -> impl Iterator<Item = u32> + '_ {
+        let behind = &self.lists[self.starts[update as usize] as usize..];
+        behind.iter().copied().take_while(|need| need & HEAD == 0)
     }
 
     /// All updates, each before those that it needs.
-    pub(crate) fn in_order_of_need(&self) -> &[u32] {
-        &self.order
+    pub(crate) fn in_order_of_need(&self) -> impl Iterator<Item = u32> + '_ {
+        self.lists.iter().filter(|entry| **entry & HEAD != 0).map(|entry| entry & !HEAD)
+    }
+
+    /// Makes the number of each update at least as great as those of the updates that need it.
+    pub(crate) fn raise(&self, numbers: &mut [u32]) {
+        let mut own = 0;
+        for &entry in &self.lists {
+            let number = &mut numbers[(entry & !HEAD) as usize];
+            // A list has two or three entries: to choose is quicker than to jump.
+            own = if entry & HEAD != 0 { *number } else { own };
+            *number = own.max(*number);
+        }
     }
 
     /// Chooses all that the chosen updates need.
     pub(crate) fn close(&self, mt: &Implicit, chosen: &mut [bool]) {
         let mut waiting: Vec<u32> = Vec::new();
         for update in 0..chosen.len() as u32 {
-            if !chosen[update as usize] {
-                continue;
+            if chosen[update as usize] {
+                waiting.push(update);
             }
-            waiting.push(update);
             while let Some(update) = waiting.pop() {
-                for &need in self.of(update) {
-                    choose(mt, need, chosen, &mut waiting);
+                for need in self.of(update) {
+                    if std::mem::replace(&mut chosen[need as usize], true) {
+                        continue;
+                    }
+                    waiting.push(need);
+                    if mt.is_glued(need) && !std::mem::replace(&mut chosen[need as usize + 1], true)
+                    {
+                        waiting.push(need + 1);
+                    }
                 }
             }
         }
     }
 }
 
-/// Chooses an update with those above it; those that are new wait for what they need.
-fn choose(mt: &Implicit, update: u32, chosen: &mut [bool], waiting: &mut Vec<u32>) {
-    let mut next = Some(update);
-    while let Some(update) = next.filter(|&update| !chosen[update as usize]) {
-        chosen[update as usize] = true;
-        waiting.push(update);
-        if mt.is_glued(update) && !std::mem::replace(&mut chosen[update as usize + 1], true) {
-            waiting.push(update + 1);
+/// Finds what updates need for the sake of their rings.
+struct Finder<'f> {
+    forest: &'f Forest,
+    parents: &'f [u32],
+    /// By update: the last that was found to need it.
+    needed_by: Vec<u32>,
+}
+
+/// Longer rings are not searched for what their updates need: a hub is in the rings of all around it.
+const MOST_SEARCHED: usize = 64;
+
+impl<'f> Finder<'f> {
+    fn new(forest: &'f Forest, parents: &'f [u32]) -> Self {
+        Self { forest, parents, needed_by: vec![NONE; forest.updates.len()] }
+    }
+
+    /// The updates that make the ring of another, without those that others of them need: of two
+    /// neighbours in the ring the one that was contracted first had the other around it. A third is
+    /// left.
+    fn around(&mut self, update: usize, found: &mut Vec<u32>) {
+        let Self { forest, parents, needed_by } = self;
+        let makers = |update: usize| {
+            let up = forest.ring(update).iter().map(|&node| parents[node as usize]);
+            up.filter(|&up| up != NONE)
+        };
+        let by = update as u32;
+        for up in makers(update) {
+            if std::mem::replace(&mut needed_by[up as usize], by) != by {
+                found.push(up);
+            }
         }
-        next = mt.family(mt.parent(update));
+        for &up in found.iter().filter(|&&up| forest.ring(up as usize).len() <= MOST_SEARCHED) {
+            makers(up as usize).for_each(|up| needed_by[up as usize] = NONE);
+        }
+        found.retain(|&up| needed_by[up as usize] == by);
     }
 }
 

@@ -27,11 +27,13 @@ use crate::forest::{MOST_LEVELS, Odd};
 use crate::frame::{Frame, Length16};
 use crate::need::{Ball, PackedBall};
 
+pub(crate) use budget::Weight;
 pub use extractor::Extractor;
-pub use faces::Faces;
-pub use links::{Links, Rule};
+pub(crate) use faces::Faces;
+pub(crate) use links::Links;
+pub use links::Rule;
 pub(crate) use order::Order;
-pub use saturated::Saturated;
+pub(crate) use saturated::Saturated;
 
 /// All levels of a mesh, in 40 bytes a vertex.
 ///
@@ -109,6 +111,20 @@ impl Implicit {
         self.error_kind
     }
 
+    /// Where a node is, in model units; [`Patch`](crate::Patch) and [`Level`](crate::Level) tell of
+    /// vertices by their nodes.
+    ///
+    /// # Panics
+    /// Nodes are numbered below [`node_count`](Self::node_count).
+    pub fn position(&self, node: u32) -> [f64; 3] {
+        self.frame.model(self.positions[node as usize])
+    }
+
+    /// How many nodes there are, the vertices of all levels.
+    pub fn node_count(&self) -> usize {
+        self.positions.len()
+    }
+
     /// What it takes in memory.
     pub fn bytes(&self) -> usize {
         let odd =
@@ -130,11 +146,6 @@ impl Implicit {
 
     pub(crate) fn base(&self) -> &[[u32; 3]] {
         &self.base
-    }
-
-    /// Nodes are numbered from 0 below this.
-    pub(crate) fn node_count(&self) -> usize {
-        self.positions.len()
     }
 
     /// The nodes that an update splits its node into.

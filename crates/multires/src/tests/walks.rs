@@ -9,8 +9,8 @@ use meshlod_simplify::{Method, Options};
 
 use crate::implicit::Order;
 use crate::{
-    Camera, Cut, Effort, Explicit, ExplicitCut, Extractor, Faces, Focus, Forest, Implicit, Level,
-    Links, Query, Rule, Saturated, Tolerance,
+    Camera, Cut, Effort, Explicit, ExplicitCut, Focus, Forest, Implicit, Level, Model, Query, Rule,
+    Tolerance,
 };
 
 const METHODS: [Method; 5] = [
@@ -154,12 +154,11 @@ fn every_encoding_gives_the_same_cuts_by_any_way() {
     each(|what, mesh, forest| {
         let order = Order::new(forest);
         let explicit = Explicit::new(forest);
-        let implicit = Implicit::in_order(forest, &order).unwrap();
-        let faces = Faces::in_order(forest, &order);
-        let mut extractor = Extractor::new(&implicit, &faces);
         let [strict, loose] =
-            [Rule::Strict, Rule::Wings].map(|rule| Links::in_order(forest, &order, rule));
-        let (mut oracle, mut cut) = (ExplicitCut::new(&explicit), Cut::new(&implicit));
+            [Rule::Strict, Rule::Wings].map(|rule| Model::with_rule(forest, rule).unwrap());
+        let implicit = strict.implicit();
+        let [mut extractor, mut weaker] = [&strict, &loose].map(Model::extractor);
+        let (mut oracle, mut cut) = (ExplicitCut::new(&explicit), strict.cut());
         let mut dice = Dice(7);
         for _ in 0..30 {
             let query = query(&mut dice, mesh);
@@ -171,24 +170,32 @@ fn every_encoding_gives_the_same_cuts_by_any_way() {
             assert!(change.done);
             let found = in_forest(&cut.level(), &order);
             assert_eq!(found, level.canonical(), "{what} {query:?}");
-            let exact = in_forest(extractor.exact(&strict, &query).unwrap(), &order);
+            let exact = in_forest(extractor.exact(&query).unwrap(), &order);
             assert_eq!(exact, level.canonical(), "{what} {query:?}");
-            let smaller = extractor.exact(&loose, &query).unwrap();
+            let smaller = weaker.exact(&query).unwrap();
             assert!(smaller.faces.len() <= level.faces.len(), "{what} {query:?}");
             assert_eq!(topology(&smaller.mesh()), topology(mesh), "{what} {query:?}");
+            // Asked for as many faces as the answer has, the best are the answer.
+            let best = extractor.at_most(level.faces.len(), &query).unwrap();
+            assert_eq!(in_forest(best, &order), level.canonical(), "{what} {query:?}");
+            let all = extractor.at_most(usize::MAX, &query).unwrap().faces.len();
             let most = (dice.roll() * mesh.faces.len() as f64) as usize;
-            let best = extractor.at_most(most, &strict, &query).unwrap();
+            let best = extractor.at_most(most, &query).unwrap();
             assert!(best.faces.len() <= most.max(implicit.base_faces()), "{what} {query:?}");
-            assert!(explicit.cut_of(&split_nodes(best, &implicit, &order)).is_some(), "{what}");
+            // The next update would be too much: that of a face brings up to four.
+            assert!(best.faces.len() == all || best.faces.len() + 4 > most, "{what} {query:?}");
+            assert!(explicit.cut_of(&split_nodes(best, implicit, &order)).is_some(), "{what}");
             if let (Focus::Everything, Tolerance::Pixels { camera, most }) =
                 (&query.focus, &query.tolerance)
             {
                 let slope = most * camera.pixel();
                 let range = [slope / (1.0 + dice.roll()), slope * (1.0 + dice.roll())];
-                let saturated = Saturated::in_order(forest, &order, range).unwrap();
-                let larger = extractor.saturated(&saturated, &query).unwrap();
+                let mut saturated = strict.clone();
+                saturated.saturate(range).unwrap();
+                let mut saturated = saturated.extractor();
+                let larger = saturated.saturated(&query).unwrap();
                 assert!(larger.faces.len() >= level.faces.len(), "{what} {query:?}");
-                let cut = explicit.cut_of(&split_nodes(larger, &implicit, &order));
+                let cut = explicit.cut_of(&split_nodes(larger, implicit, &order));
                 let cut = cut.unwrap_or_else(|| panic!("{what} {query:?} gives no cut"));
                 assert_eq!(in_forest(larger, &order), cut.canonical(), "{what} {query:?}");
             }
