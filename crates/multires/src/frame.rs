@@ -12,14 +12,19 @@ pub struct Frame {
     per_unit: f64,
 }
 
+/// The smallest unit, 2⁻¹⁰⁰⁰; the largest is its reciprocal.
+const SMALLEST: f64 = f64::from_bits((1023 - 1000) << 52);
+
 impl Frame {
     /// The frame of what lies in these bounds.
     pub(crate) fn new(bounds: &Bounds) -> Self {
         if bounds.is_empty() {
             return Self { origin: DVec3::ZERO, unit: 1.0, per_unit: 1.0 };
         }
-        let diagonal = bounds.diagonal();
+        let diagonal = diagonal(bounds);
         let unit = if diagonal > 0.0 { diagonal.log2().ceil().exp2() } else { 1.0 };
+        // Both ways must be finite. What is smaller or larger still is stored all the same.
+        let unit = unit.clamp(SMALLEST, 1.0 / SMALLEST);
         Self { origin: bounds.center().into(), unit, per_unit: 1.0 / unit }
     }
 
@@ -53,6 +58,13 @@ impl Frame {
     pub fn model(&self, point: [f32; 3]) -> [f64; 3] {
         (Vec3::from(point).as_dvec3() * self.unit + self.origin).into()
     }
+}
+
+/// That of bounds, also where its square is too large or too small for a number.
+fn diagonal(bounds: &Bounds) -> f64 {
+    let sides = 0.5 * DVec3::from(bounds.max) - 0.5 * DVec3::from(bounds.min);
+    let longest = sides.max_element();
+    if longest > 0.0 { 2.0 * longest * (sides / longest).length() } else { 0.0 }
 }
 
 /// A length in sixteen bits, rounded up: five of exponent, eleven of mantissa, as `f32` has them.
@@ -119,6 +131,17 @@ mod tests {
         for code in 0..u16::MAX - 1 {
             assert!(Length16(code).get() < Length16(code + 1).get());
             assert_eq!(Length16::up(Length16(code).get()).0, code);
+        }
+    }
+
+    #[test]
+    fn a_frame_has_the_scale_of_what_is_in_it() {
+        for scale in [1e-320, 1e-307, 1e-200, 1e-162, 1.0, 1e154, 1e200, 1e307] {
+            let frame = Frame::new(&Bounds { min: [-scale; 3], max: [scale; 3] });
+            let stored = frame.store(DVec3::splat(scale));
+            assert!(stored.x > 0.0 && stored.x.is_finite(), "{scale}: {stored}");
+            let back = frame.model(stored.into())[0];
+            assert!((back / scale - 1.0).abs() < 1e-3, "{scale}: {back}");
         }
     }
 

@@ -8,6 +8,10 @@ use crate::frame::Frame;
 /// The cosine between two normals below which an edge is a fold.
 const FOLD: f64 = -0.7;
 
+/// Where fewer than one node in so many is there, they are searched for: a table of all would cost
+/// more than the level.
+const SPARSE: usize = 64;
+
 /// A mesh out of a multiresolution model.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Level {
@@ -37,9 +41,14 @@ impl Level {
         let mut nodes: Vec<u32> = faces.iter().flatten().copied().collect();
         nodes.sort_unstable();
         nodes.dedup();
-        let mut number = vec![0; places.len()];
-        nodes.iter().enumerate().for_each(|(i, &node)| number[node as usize] = i as u32);
-        faces.iter_mut().flatten().for_each(|node| *node = number[*node as usize]);
+        if nodes.len() < places.len() / SPARSE {
+            let number = |node: u32| nodes.binary_search(&node).unwrap_or_default() as u32;
+            faces.iter_mut().flatten().for_each(|node| *node = number(*node));
+        } else {
+            let mut number = vec![0; places.len()];
+            (0..).zip(&nodes).for_each(|(i, &node)| number[node as usize] = i);
+            faces.iter_mut().flatten().for_each(|node| *node = number[*node as usize]);
+        }
         let positions = nodes.iter().map(|&node| places[node as usize]).collect();
         Self { frame, nodes, positions, faces }
     }

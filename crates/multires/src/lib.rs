@@ -70,7 +70,7 @@ mod record;
 mod tests;
 
 pub use bounds::ErrorKind;
-pub use cut::{Certificate, Change, Cut, Effort, Patch, Unsound};
+pub use cut::{Certificate, Change, Cut, Effort, Flaw, Patch, Unsound};
 pub use explicit::{Explicit, ExplicitCut};
 pub use forest::{BuildError, Forest};
 pub use frame::Frame;

@@ -41,6 +41,7 @@ pub(crate) struct Need<'f> {
     most: Most<'f>,
 }
 
+#[derive(Clone, Debug, PartialEq)]
 enum Place {
     Everything,
     Segment([DVec3; 2]),
@@ -68,6 +69,17 @@ pub(crate) struct Eye {
     pub(crate) at: DVec3,
     /// The tolerance a unit of distance.
     pub(crate) slope: f64,
+}
+
+/// Of two lengths that are compared.
+const ROUNDING: f64 = 1e-12;
+
+/// A need that can be told from others: of any but a field.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Asked {
+    place: Place,
+    everywhere: Option<f64>,
+    eye: Option<Eye>,
 }
 
 impl<'f> Need<'f> {
@@ -128,7 +140,9 @@ impl<'f> Need<'f> {
             Most::OfDistance(eye) => eye.least(ball),
             Most::Field { field, part, frame } => {
                 let center = frame.model(ball.center.as_vec3().into());
-                frame.length(part * field(center, frame.length_of_model(ball.radius)))
+                let most = field(center, frame.length_of_model(ball.radius));
+                // What is no tolerance tolerates nothing: `max` prefers a number.
+                frame.length(part * most.max(0.0))
             }
         }
     }
@@ -138,11 +152,7 @@ impl<'f> Need<'f> {
         match &self.most {
             Most::Everywhere(most) => ball.error > *most,
             Most::OfDistance(eye) => eye.exceeded_by(ball),
-            Most::Field { field, part, frame } => {
-                let center = frame.model(ball.center.as_vec3().into());
-                let most = part * field(center, frame.length_of_model(ball.radius));
-                frame.length_of_model(ball.error) > most
-            }
+            Most::Field { .. } => ball.error > self.least(ball),
         }
     }
 
@@ -171,6 +181,16 @@ impl<'f> Need<'f> {
             Most::Field { part, .. } => *part *= by,
         }
         self
+    }
+
+    /// What it is known by; a field is not known.
+    pub(crate) fn asked(&self) -> Option<Asked> {
+        let (everywhere, eye) = match self.most {
+            Most::Everywhere(most) => (Some(most), None),
+            Most::OfDistance(eye) => (None, Some(eye)),
+            Most::Field { .. } => return None,
+        };
+        Some(Asked { place: self.place.clone(), everywhere, eye })
     }
 
     /// Whether it is one tolerance everywhere.
@@ -202,12 +222,16 @@ impl Eye {
         ball.error > 0.0 && (squared < reach * reach || self.slope == 0.0)
     }
 
-    /// How far the eye may move before it may want something else of the ball.
+    /// How far the eye may move before it may want something else of the ball: a little less than it
+    /// is, and never too much by rounding.
+    #[inline]
     pub(crate) fn leeway(&self, ball: &Ball) -> f64 {
-        if ball.error <= 0.0 || self.slope == 0.0 {
+        let reach = ball.radius + ball.error / self.slope;
+        if ball.error <= 0.0 || reach == f64::INFINITY {
             return f64::INFINITY;
         }
-        (self.at.distance(ball.center) - (ball.radius + ball.error / self.slope)).abs()
+        let distance = self.at.distance(ball.center);
+        ((distance - reach).abs() - ROUNDING * (distance + reach)).max(0.0)
     }
 }
 
@@ -303,7 +327,7 @@ mod tests {
         );
         assert!(!need.wants(&ball([0.0; 3], 9.0, 0.0)), "what is exact is fine enough");
         let leeway = need.eye().unwrap().leeway(&ball([0.0; 3], 2.0, 0.02));
-        assert!((4.0 * leeway - 2.0).abs() < 1e-12, "reach 2 + 1 from distance 5: {leeway}");
+        assert!((4.0 * leeway - 2.0).abs() < 1e-10, "reach 2 + 1 from distance 5: {leeway}");
     }
 
     #[test]
@@ -312,6 +336,18 @@ mod tests {
         let need = need(Focus::Everything, Tolerance::Field(&field));
         assert!(need.wants(&ball([1.0, 0.0, 0.0], 0.5, 0.6)));
         assert!(!need.wants(&ball([1.0, 0.0, 0.0], 0.5, 0.4)));
+    }
+
+    #[test]
+    fn a_field_without_a_tolerance_tolerates_nothing() {
+        for none in [f64::NAN, -1.0, f64::NEG_INFINITY] {
+            let field = |_: [f64; 3], _: f64| none;
+            let need = need(Focus::Everything, Tolerance::Field(&field));
+            assert!(need.wants(&ball([0.0; 3], 0.1, 1e-6)), "{none}");
+            assert!(!need.wants(&ball([0.0; 3], 0.1, 0.0)), "what is exact is fine enough");
+            let urgencies = need.urgencies([ball([0.0; 3], 0.1, 1e-6)].into_iter());
+            assert!(urgencies[0] > 1e20, "{none}: {urgencies:?}");
+        }
     }
 
     #[test]

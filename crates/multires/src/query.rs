@@ -44,11 +44,14 @@ pub enum Tolerance<'f> {
     Pixels {
         /// The camera.
         camera: Camera,
-        /// How many of its pixels the error may span where it is closest to the camera.
+        /// How many of its pixels the error may span where it is closest to the camera: pixels as
+        /// they are in the middle of the picture, so that it does not matter where the camera looks.
+        /// Away from the middle as much as [`Camera::stretch`] times as many.
         most: f64,
     },
     /// The least tolerance in a ball, by its center and its radius in model units. Of a ball within
-    /// another it must not be less than of that.
+    /// another it must not be less than of that. What is below 0 or no number is as 0: as fine as can
+    /// be.
     Field(&'f dyn Fn([f64; 3], f64) -> f64),
 }
 
@@ -135,9 +138,20 @@ impl Query<'_> {
 }
 
 impl Camera {
-    /// How much of the distance a pixel spans.
+    /// How much of the distance a pixel spans in the middle of the picture.
     pub fn pixel(&self) -> f64 {
         2.0 * (0.5 * self.fov_rad).tan() / f64::from(self.viewport[1])
+    }
+
+    /// How many times as many pixels the same error may span in a corner of the picture: for pixels
+    /// that hold everywhere, divide by this. 1.7 for a wide picture 45° high.
+    ///
+    /// A picture is flat: at an angle from its middle it is further away, and the line of sight meets
+    /// it at that angle. Both stretch what is seen by the inverse of its cosine.
+    pub fn stretch(&self) -> f64 {
+        let [width, height] = self.viewport.map(f64::from);
+        let high = (0.5 * self.fov_rad).tan();
+        1.0 + high * high * (1.0 + (width / height) * (width / height))
     }
 
     /// Forward, right and up, at right angles and of length one.
@@ -181,4 +195,42 @@ fn finite(what: &'static str, points: &[[f64; 3]]) -> Result<(), QueryError> {
 
 fn length(what: &'static str, value: f64) -> Result<(), QueryError> {
     if value >= 0.0 { Ok(()) } else { Err(QueryError::BadLength { what, value }) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Errors of one pixel's length are turned into every direction at places all over the picture.
+    #[test]
+    fn errors_are_stretched_away_from_the_middle_and_no_more() {
+        let camera = Camera {
+            eye: [1.0, 2.0, 3.0],
+            look: [4.0, 3.0, 1.0],
+            up: [0.0, 0.0, 1.0],
+            fov_rad: 0.8,
+            viewport: [1920, 1080],
+        };
+        let [forward, right, up] = camera.axes();
+        let eye = DVec3::from(camera.eye);
+        let pixels = |place: DVec3| {
+            let from = place - eye;
+            let at = glam::DVec2::new(from.dot(right), from.dot(up)) / from.dot(forward);
+            at / camera.pixel()
+        };
+        let spanned = |x: f64, y: f64| {
+            let place = eye + 100.0 * (forward + camera.pixel() * (x * right + y * up));
+            let error = 1e-3 * camera.pixel() * place.distance(eye);
+            let turned = (0..2000).map(|i| {
+                let (a, z) = (2.4 * f64::from(i), 1.0 - f64::from(i) / 1000.0);
+                let around = (1.0 - z * z).max(0.0).sqrt();
+                let to = DVec3::new(around * a.cos(), around * a.sin(), z);
+                pixels(place + error * to).distance(pixels(place)) / 1e-3
+            });
+            turned.fold(0.0, f64::max)
+        };
+        assert!((spanned(0.0, 0.0) - 1.0).abs() < 0.01);
+        assert!((spanned(960.0, 540.0) / camera.stretch() - 1.0).abs() < 0.01);
+        assert!(spanned(960.0, 0.0) < camera.stretch() && camera.stretch() > 1.7);
+    }
 }

@@ -1,19 +1,22 @@
 //! A cut that follows its query: refined and coarsened where the query has moved, and nowhere else.
 
 mod certificate;
+mod change;
 mod front;
+mod look;
 mod schedule;
 mod star;
 
-pub use certificate::{Certificate, Unsound};
+pub use certificate::{Certificate, Flaw, Unsound};
 
+use std::collections::VecDeque;
 use std::time::{Duration, Instant};
 
-use self::front::{Front, Standing};
-use self::schedule::{Entry, Schedule};
+use self::front::Front;
+use self::schedule::Schedule;
 use crate::implicit::Implicit;
 use crate::level::Level;
-use crate::need::{Ball, Need};
+use crate::need::{Asked, Ball, Need};
 use crate::query::{Query, QueryError};
 
 /// A mesh out of an [`Implicit`] MT, which the next query changes.
@@ -23,19 +26,27 @@ use crate::query::{Query, QueryError};
 pub struct Cut<'m> {
     front: Front<'m>,
     schedule: Schedule,
-    /// Updates whose vertices are to be looked at.
+    /// What was asked last, where it can be told whether it is asked again.
+    asked: Option<Asked>,
+    /// Nodes whose updates, and all below, are yet to be looked at.
+    unseen: VecDeque<u32>,
+    /// Updates that are wanted.
     fresh: Vec<u32>,
     /// Updates that may be taken back.
     loose: Vec<u32>,
-    hysteresis: f64,
+    hysteresis: Option<f64>,
 }
+
+/// The clock is read after so many looks, of some dozen nanoseconds each.
+const LOOKS_AT_ONCE: usize = 256;
 
 /// How much a [`Cut`] may do at once.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Effort {
     /// At most so many splits and merges; `None`: as many as it takes.
     pub changes: Option<usize>,
-    /// Nothing is begun after so long.
+    /// Nothing is begun after so long, and nothing is looked at after half of that. A question of
+    /// another kind forgets the schedule of the last one first: some nanoseconds a vertex that is there.
     pub time: Option<Duration>,
 }
 
@@ -69,9 +80,11 @@ impl<'m> Cut<'m> {
         let mut this = Self {
             front: Front::new(mt),
             schedule: Schedule::default(),
+            asked: None,
+            unseen: VecDeque::new(),
             fresh: Vec::new(),
             loose: Vec::new(),
-            hysteresis: 0.0,
+            hysteresis: None,
         };
         this.front.triangles.mark();
         this
@@ -85,16 +98,17 @@ impl<'m> Cut<'m> {
     }
 
     /// Lets what is there stay until the tolerance is larger by this part of it, so that a query that
-    /// trembles changes nothing. 0 to begin with: then the answer does not depend on the way to it.
+    /// trembles changes nothing. None to begin with: then the answer does not depend on the way to it.
     ///
     /// # Errors
     /// What is below 0 or not finite.
-    pub fn set_hysteresis(&mut self, part: f64) -> Result<(), QueryError> {
-        if !(part >= 0.0 && part.is_finite()) {
-            return Err(QueryError::BadLength { what: "a hysteresis", value: part });
+    pub fn set_hysteresis(&mut self, part: Option<f64>) -> Result<(), QueryError> {
+        if let Some(value) = part.filter(|part| !(*part >= 0.0 && part.is_finite())) {
+            return Err(QueryError::BadLength { what: "a hysteresis", value });
         }
         self.hysteresis = part;
         self.schedule.forget();
+        self.asked = None;
         Ok(())
     }
 
@@ -103,23 +117,27 @@ impl<'m> Cut<'m> {
     /// The result is the smallest cut that meets the query, or one on the way there if there was not
     /// enough time; the next call goes on.
     ///
-    /// Cost: of what changes, where only the eye has moved of a camera that looks at everything; else
-    /// of a look at every vertex besides.
+    /// Cost: of what changes, where only the eye has moved of a camera that looks at everything, or
+    /// where the query is the last one; else of a look at every vertex besides.
     /// # Errors
     /// A query that is none; the cut is as it was.
     pub fn update(&mut self, query: &Query<'_>, effort: &Effort) -> Result<Change, QueryError> {
         let needs = Needed::new(query, self.front.mt, self.hysteresis)?;
         self.front.triangles.mark();
         let mut work = Work::new(effort);
-        self.fresh.retain(|&update| needs.least.wants(&self.front.mt.ball(update)));
-        work.change.looks = if self.schedule.follow(needs.least.eye()) {
-            self.look_at_due(&needs)
+        let asked = needs.least.asked();
+        let is_same = asked.is_some() && asked == self.asked;
+        self.asked = asked;
+        if self.schedule.follow(needs.least.eye()) || is_same {
+            self.fresh.retain(|&update| needs.least.wants(&self.front.mt.ball(update)));
         } else {
-            self.look_at_all(&needs)
-        };
+            self.start_over();
+        }
+        self.look_around(&needs, &mut work);
         self.refine(&needs, &mut work);
         self.coarsen(&needs, &mut work);
-        work.change.done = self.fresh.is_empty() && self.loose.is_empty();
+        let waiting = [self.fresh.len(), self.loose.len(), self.unseen.len()];
+        work.change.done = waiting == [0; 3] && self.schedule.due.is_empty();
         Ok(work.change)
     }
 
@@ -157,173 +175,32 @@ impl<'m> Cut<'m> {
             self.front.triangles.iter().map(|(_, nodes)| nodes).collect(),
         )
     }
-
-    /// Looks at the updates that are due; how many those are.
-    fn look_at_due(&mut self, needs: &Needed<'_>) -> usize {
-        let mut due = std::mem::take(&mut self.schedule.due);
-        let looks = due.len();
-        for entry in due.drain(..) {
-            let ball = entry.ball.unpack();
-            if needs.wanted(&ball) == entry.wanted {
-                let is_entered = self.schedule.add(entry, &ball, self.hysteresis);
-                self.front.set_scheduled(entry.node, is_entered);
-            } else {
-                self.front.set_scheduled(entry.node, false);
-                self.look(entry.update, entry.node, needs);
-            }
-        }
-        self.schedule.due = due;
-        looks
-    }
-
-    /// Looks at every update whose vertex is there, or was and has been split; how many those are.
-    fn look_at_all(&mut self, needs: &Needed<'_>) -> usize {
-        // Also what is not there: it may come back.
-        self.schedule.clear(|node| self.front.set_scheduled(node, false));
-        self.fresh.clear();
-        self.loose.clear();
-        let mt = self.front.mt;
-        let mut looks = 0;
-        let mut stack: Vec<u32> = mt.roots().map(|(root, _)| root).collect();
-        while let Some(node) = stack.pop() {
-            let Some(update) = mt.update_of(node) else { continue };
-            if self.front.standing(node) == Standing::Split {
-                stack.extend(mt.children(update));
-            }
-            if !mt.is_inner(update) {
-                self.look(update, node, needs);
-                looks += 1;
-            }
-        }
-        looks
-    }
-
-    /// Puts an update on the list that its need asks for; and looks again when that may have turned.
-    #[inline]
-    fn look(&mut self, update: u32, node: u32, needs: &Needed<'_>) {
-        let packed = self.front.mt.packed_ball(update, node);
-        let ball = packed.unpack();
-        let wanted = needs.wanted(&ball);
-        match (self.front.standing(node), wanted) {
-            (Standing::Split, [_, false]) => self.loose.push(update),
-            (Standing::Active, [true, _]) => self.fresh.push(update),
-            (Standing::Split | Standing::Active, _) => {}
-            (Standing::Absent, _) => return,
-        }
-        let entry = Entry { update, node, ball: packed, wanted };
-        let is_entered = self.schedule.add(entry, &ball, self.hysteresis);
-        self.front.set_scheduled(node, is_entered);
-    }
-
-    /// Splits what is wanted, and what must be split for it.
-    fn refine(&mut self, needs: &Needed<'_>, work: &mut Work) {
-        let mut stack = Vec::new();
-        while let Some(update) = self.fresh.pop() {
-            // It may have been forced, or merged with all around it.
-            if self.front.standing(self.front.mt.parent(update)) != Standing::Active {
-                continue;
-            }
-            stack.push(update);
-            while let Some(&next) = stack.last() {
-                if !work.may_go_on() {
-                    self.fresh.push(update);
-                    return;
-                }
-                self.advance(next, needs, &mut stack, work);
-            }
-        }
-    }
-
-    /// Splits the last update of a chain, or finds what must come before it.
-    fn advance(&mut self, next: u32, needs: &Needed<'_>, stack: &mut Vec<u32>, work: &mut Work) {
-        let mt = self.front.mt;
-        let node = mt.parent(next);
-        match self.front.standing(node) {
-            Standing::Absent => {
-                stack.push(mt.family(node).expect("roots are there until they are split"));
-                return;
-            }
-            Standing::Split => {
-                stack.pop();
-                return;
-            }
-            Standing::Active => {}
-        }
-        if !self.front.split(next, stack) {
-            return;
-        }
-        stack.pop();
-        work.change.splits += 1;
-        let is_forced = !stack.is_empty();
-        if is_forced && !needs.most.wants(&mt.ball_at(next, node)) {
-            // It may go as soon as nothing holds it.
-            self.loose.push(next);
-        }
-        if mt.is_glued(next) {
-            let is_split = self.front.split(next + 1, stack);
-            assert!(is_split, "what is around the whole is around its part");
-            self.arrive(next + 1, needs);
-        }
-        self.arrive(next, needs);
-    }
-
-    /// Looks at the children of a split for the first time.
-    fn arrive(&mut self, update: u32, needs: &Needed<'_>) {
-        let mt = self.front.mt;
-        let first_is_gone = usize::from(mt.is_glued(update));
-        for node in mt.children(update).into_iter().skip(first_is_gone) {
-            let Some(update) = mt.update_of(node) else { continue };
-            if !self.front.is_scheduled(node) {
-                self.look(update, node, needs);
-            } else if needs.least.wants(&mt.ball_at(update, node)) {
-                self.fresh.push(update);
-            }
-        }
-    }
-
-    /// Merges what is not wanted and not needed, and what that frees.
-    fn coarsen(&mut self, needs: &Needed<'_>, work: &mut Work) {
-        while work.may_go_on() {
-            let Some(update) = self.loose.pop() else { return };
-            let mt = self.front.mt;
-            let node = mt.parent(update);
-            if self.front.standing(node) != Standing::Split
-                || needs.most.wants(&mt.ball_at(update, node))
-                || !self.front.merge(update)
-            {
-                continue;
-            }
-            work.change.merges += 1;
-            let Self { front, loose, .. } = self;
-            loose.extend(mt.family(node).map(|up| outer(mt, up)));
-            let around = front.around(node).iter().filter_map(|&other| mt.family(other));
-            loose.extend(around.map(|up| outer(mt, up)));
-        }
-    }
 }
 
-/// The update that is glued to this one and goes first, or itself.
-fn outer(mt: &Implicit, update: u32) -> u32 {
-    if mt.is_inner(update) { update - 1 } else { update }
-}
-
-/// A query and the looser one by which what is there may stay.
+/// A query, and the tighter one by which what is there may stay.
 struct Needed<'f> {
     least: Need<'f>,
-    most: Need<'f>,
+    most: Option<Need<'f>>,
 }
 
 impl<'f> Needed<'f> {
-    fn new(query: &Query<'f>, mt: &Implicit, hysteresis: f64) -> Result<Self, QueryError> {
+    fn new(query: &Query<'f>, mt: &Implicit, hysteresis: Option<f64>) -> Result<Self, QueryError> {
         let least = Need::new(query, mt.frame())?;
-        let most = Need::new(query, mt.frame())?.tightened(1.0 / (1.0 + hysteresis));
+        let tighter = |part| Need::new(query, mt.frame()).map(|need| need.tightened(part));
+        let most = hysteresis.map(|part| tighter(1.0 / (1.0 + part))).transpose()?;
         Ok(Self { least, most })
     }
 
     /// Whether an update is wanted, and whether it may stay.
     #[inline]
     fn wanted(&self, ball: &Ball) -> [bool; 2] {
-        [self.least.wants(ball), self.most.wants(ball)]
+        let is_wanted = self.least.wants(ball);
+        [is_wanted, is_wanted || self.most.as_ref().is_some_and(|most| most.wants(ball))]
+    }
+
+    /// Whether an update may stay.
+    fn may_stay(&self, ball: &Ball) -> bool {
+        self.most.as_ref().unwrap_or(&self.least).wants(ball)
     }
 }
 
@@ -331,20 +208,31 @@ impl<'f> Needed<'f> {
 struct Work {
     change: Change,
     most: usize,
-    until: Option<Instant>,
+    /// When to stop, and before that when to stop looking.
+    until: Option<[Instant; 2]>,
 }
 
 impl Work {
     fn new(effort: &Effort) -> Self {
+        let now = Instant::now();
+        let until = effort.time.map(|time| [time, time / 2].map(|part| now.checked_add(part)));
         Self {
             change: Change::default(),
             most: effort.changes.unwrap_or(usize::MAX),
-            until: effort.time.and_then(|time| Instant::now().checked_add(time)),
+            until: until.and_then(|[all, looking]| Some([all?, looking?])),
         }
     }
 
     fn may_go_on(&self) -> bool {
         self.change.splits + self.change.merges < self.most
-            && self.until.is_none_or(|until| Instant::now() < until)
+            && self.until.is_none_or(|[until, _]| Instant::now() < until)
+    }
+
+    /// Counts a look; whether there may be another.
+    #[inline]
+    fn may_look_on(&mut self) -> bool {
+        self.change.looks += 1;
+        !self.change.looks.is_multiple_of(LOOKS_AT_ONCE)
+            || self.until.is_none_or(|[_, until]| Instant::now() < until)
     }
 }

@@ -14,6 +14,10 @@ const OCTAVES: usize = 48;
 const STEPS: i64 = 16;
 /// An octave's entries are up to 32 steps ahead.
 const RING: usize = 64;
+/// A longer way begins anew, in stored units: then what is added to it is not lost in it.
+const LONGEST: f64 = 1e3;
+/// Of the way: an entry is early by so much, for rounding.
+const SLACK: f64 = 1e-12;
 
 /// An update as it was when it was looked at last, with all that it takes to see that nothing has
 /// turned: most looks end there, and go nowhere else in memory.
@@ -59,8 +63,12 @@ impl Schedule {
             return false;
         }
         let from = self.way;
-        self.way += last.at.distance(eye.at);
-        if !self.way.is_finite() || self.way / FINEST > 1e15 {
+        let step = last.at.distance(eye.at);
+        if step > 0.0 {
+            // Rather too far than not far enough, however many and short the steps are.
+            self.way = (self.way + step * (1.0 + SLACK)).next_up();
+        }
+        if self.way.is_nan() || self.way > LONGEST {
             return false;
         }
         for octave in 0..OCTAVES {
@@ -87,14 +95,17 @@ impl Schedule {
     /// Enters an update that has just been looked at; false where its need never turns, or nobody
     /// knows when.
     #[inline]
-    pub(super) fn add(&mut self, entry: Entry, ball: &Ball, hysteresis: f64) -> bool {
+    pub(super) fn add(&mut self, entry: Entry, ball: &Ball, hysteresis: Option<f64>) -> bool {
         let Some(eye) = self.eye else { return false };
-        let stays = Eye { slope: eye.slope / (1.0 + hysteresis), ..eye };
-        // A little less, for rounding.
-        let leeway = eye.leeway(ball).min(stays.leeway(ball)) * (1.0 - 1e-9);
+        let mut leeway = eye.leeway(ball);
+        if let Some(part) = hysteresis {
+            let stays = Eye { slope: eye.slope / (1.0 + part), ..eye };
+            leeway = leeway.min(stays.leeway(ball));
+        }
         if leeway == f64::INFINITY {
             return false;
         }
+        let leeway = (leeway - SLACK * self.way).max(0.0);
         let steps = leeway / FINEST / STEPS as f64;
         let octave = ((steps as u64).max(1).ilog2() as usize).min(OCTAVES - 1);
         let most = (2 * STEPS) as f64 * length(octave);
@@ -148,7 +159,7 @@ mod tests {
             |i| Ball { center: DVec3::new(at(i) + 1.0, 0.0, 0.0), radius: 0.5, error: 0.005 };
         let packed = PackedBall { center: [0.0; 3], radius: Length16(0), error: Length16(0) };
         let entry = |update| Entry { update, node: update, ball: packed, wanted: [false; 2] };
-        (0..60).for_each(|i| assert!(schedule.add(entry(i), &ball(i), 0.0)));
+        (0..60).for_each(|i| assert!(schedule.add(entry(i), &ball(i), None)));
         let mut looks = 0;
         let mut x = 0.0;
         for frame in 0..200 {
@@ -160,12 +171,41 @@ mod tests {
                     continue;
                 }
                 assert!(eye(x).unwrap().leeway(&ball(update)) > 0.0);
-                schedule.add(entry(update), &ball(update), 0.0);
+                schedule.add(entry(update), &ball(update), None);
             }
             assert!(schedule.rings.iter().flatten().all(|e| at(e.update) > x), "late at {x}");
         }
         // Each about as often as its leeway has sixteenths to be early by, again and again.
         assert!(looks < 60 * 12, "{looks}");
+    }
+
+    #[test]
+    fn a_long_way_swallows_no_short_steps() {
+        let eye = |x: f64| Some(Eye { at: DVec3::new(x, 0.0, 0.0), slope: 0.01 });
+        let mut schedule = Schedule::default();
+        schedule.follow(eye(0.0));
+        schedule.clear(|_| {});
+        assert!(schedule.follow(eye(499.0)) && schedule.follow(eye(0.0)));
+        let ball = Ball { center: DVec3::new(1.0 + 1e-8, 0.0, 0.0), radius: 0.5, error: 0.005 };
+        let packed = PackedBall { center: [0.0; 3], radius: Length16(0), error: Length16(0) };
+        let entry = Entry { update: 0, node: 0, ball: packed, wanted: [false; 2] };
+        assert!(schedule.add(entry, &ball, None));
+        // Each is less than half of what can be added to so long a way.
+        let steps = (0..).take_while(|&i| {
+            assert!(schedule.follow(eye(5e-14 * f64::from(i))));
+            schedule.due.is_empty()
+        });
+        assert!(steps.count() <= 200_000);
+    }
+
+    #[test]
+    fn a_way_that_is_too_long_begins_anew() {
+        let eye = |x: f64| Some(Eye { at: DVec3::new(x, 0.0, 0.0), slope: 0.01 });
+        let mut schedule = Schedule::default();
+        schedule.follow(eye(0.0));
+        assert!(schedule.follow(eye(0.5 * LONGEST)) && !schedule.follow(eye(2.0 * LONGEST)));
+        schedule.clear(|_| {});
+        assert!(schedule.follow(eye(2.5 * LONGEST)));
     }
 
     #[test]

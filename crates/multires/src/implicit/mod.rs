@@ -287,6 +287,19 @@ impl Implicit {
             spoil(&|split| split.wings[1] = 0),
         ]
     }
+
+    /// Copies in which an odd update brings a face to another place.
+    pub(crate) fn spoiled_odd(&self) -> impl Iterator<Item = Self> + '_ {
+        self.odd.iter().filter_map(|(&update, odd)| {
+            let children = self.children(update);
+            let face = odd.brought.first()?;
+            let corner = face.iter().position(|node| children.contains(node))?;
+            let other = *odd.second.iter().flatten().find(|node| !face.contains(node))?;
+            let mut wrong = self.clone();
+            wrong.odd.get_mut(&update)?.brought[0][corner] = other;
+            Some(wrong)
+        })
+    }
 }
 
 /// A node to go down from.

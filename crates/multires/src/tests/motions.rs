@@ -1,5 +1,7 @@
 //! Cuts that follow a moving eye, within their means, and tell what they change.
 
+use std::time::Duration;
+
 use meshlod_mesh::{Mesh, sample};
 use meshlod_simplify::Method;
 
@@ -129,11 +131,40 @@ fn interrupted_anywhere_it_is_a_mesh_and_gets_there_in_the_end() {
 }
 
 #[test]
+fn without_time_it_gets_there_piece_by_piece() {
+    let mesh = sample::terrain(3000);
+    let mt = model(&mesh, Method::Qem);
+    let expected = topology(&mesh);
+    let mut wanderer = Wanderer::new();
+    let none = Effort { changes: None, time: Some(Duration::ZERO) };
+    for step in 0..20 {
+        let mut cut = Cut::at(&mt, &Query::uniform(1e-4)).unwrap();
+        let (fine, mut looks) = (cut.face_count(), 0);
+        let mut query = wanderer.next(2.0);
+        for _ in 0..step {
+            // Half of the eyes stand still.
+            if step % 2 == 0 {
+                query = wanderer.next(2.0);
+            }
+            let change = cut.update(&query, &none).unwrap();
+            assert!(change.looks <= 256 && change.splits + change.merges == 0);
+            looks += change.looks;
+        }
+        assert_eq!((cut.face_count(), topology(&cut.level().mesh())), (fine, expected));
+        let change = cut.update(&query, &Effort::default()).unwrap();
+        let fresh = Cut::at(&mt, &query).unwrap().level();
+        assert!(change.done && cut.level().canonical() == fresh.canonical(), "step {step}");
+        assert!(step < 2 || looks > 300, "it goes on where it stopped: {looks}");
+    }
+}
+
+#[test]
 fn with_hysteresis_it_lies_between_two_answers() {
     let mt = model(&sample::knot(3000), Method::Qem);
     let (mut cut, mut still) = (Cut::new(&mt), Cut::new(&mt));
-    cut.set_hysteresis(0.5).unwrap();
-    assert!(cut.set_hysteresis(-1.0).is_err() && cut.set_hysteresis(f64::NAN).is_err());
+    cut.set_hysteresis(Some(0.5)).unwrap();
+    assert!(cut.set_hysteresis(Some(-1.0)).is_err());
+    assert!(cut.set_hysteresis(Some(f64::NAN)).is_err());
     let mut wanderer = Wanderer::new();
     let (mut trembling, mut calm) = (0, 0);
     for _ in 0..300 {

@@ -93,7 +93,7 @@ pub(crate) fn query(dice: &mut Dice, mesh: &Mesh) -> Query<'static> {
 }
 
 /// What no cut may change or make worse.
-#[derive(Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Topology {
     euler: i64,
     non_manifold_edges: usize,
