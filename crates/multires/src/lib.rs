@@ -65,6 +65,7 @@ mod model;
 mod need;
 mod query;
 mod record;
+mod right;
 
 #[cfg(test)]
 mod tests;
@@ -79,3 +80,7 @@ pub use level::Level;
 pub use model::{Model, ModelBytes};
 pub use query::{Camera, Focus, Query, QueryError, Tolerance};
 pub use record::Recorder;
+pub use right::{
+    FieldBytesError, Fit, HeightField, HeightFieldError, HeightPrecision, RightExtractor,
+    RightTriangles,
+};

@@ -2,4 +2,4 @@
 
 mod certificates;
 mod motions;
-mod walks;
+pub(crate) mod walks;

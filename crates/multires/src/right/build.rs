@@ -1,0 +1,145 @@
+//! Errors and radii: the finest vertices first, each handing on to those that it needs.
+
+use super::field::{HeightField, Plan};
+use super::places::{Extent, Grid, Place, Triangle};
+use super::{RightTriangles, Vertex};
+use crate::frame::{Frame, Length16};
+
+/// By how much a ball is drawn larger than it has to be, so that rounding in a query cannot make it
+/// miss what a ball within it meets.
+pub(super) const SLACK: f64 = 1.0 + 1e-6;
+
+impl RightTriangles {
+    /// Measures all triangles of all levels at all vertices under them.
+    ///
+    /// Cost: n log n.
+    pub fn new(field: &HeightField) -> Self {
+        let mut this = Self::without_errors(field);
+        for depth in (0..this.grid.depth()).rev() {
+            for place in this.grid.inserted_at(depth) {
+                this.finish(place);
+            }
+        }
+        this
+    }
+
+    fn without_errors(field: &HeightField) -> Self {
+        let frame = Frame::new(&field.bounds());
+        let Plan { step, up, .. } = field.plan;
+        let [across, along, up] = Plan::axes(up);
+        let first = frame.point(field.plan.point(Place::default(), 0.0));
+        let plan = Plan {
+            origin: [first[across], first[along]],
+            step: step.map(|length| frame.length(length)),
+            ..field.plan
+        };
+        let stored = |&height: &f64| {
+            let height = frame.point(field.plan.point(Place::default(), height))[up] as f32;
+            Vertex { height, ..Vertex::default() }
+        };
+        let mut vertices: Vec<_> = field.heights.iter().map(stored).collect();
+        let lost = field.heights.iter().zip(&vertices).map(|(height, vertex)| {
+            let mut point = [0.0; 3];
+            point[up] = vertex.height;
+            (frame.model(point)[up] - height).abs()
+        });
+        let mut fit = field.fit;
+        fit.rounded += lost.fold(0.0, f64::max);
+        // Nothing inserts the corners of the square.
+        for corner in field.grid.roots().iter().flat_map(Triangle::corners) {
+            if field.grid.holds(corner) {
+                vertices[field.grid.index(corner)].error = Length16::INFINITE;
+            }
+        }
+        Self { frame, grid: field.grid, plan, vertices, fit }
+    }
+
+    /// Of a vertex of which all that need it have told what they ask of it.
+    fn finish(&mut self, place: Place) {
+        let index = self.grid.index(place);
+        let asked = self.vertices[index];
+        let own = self.own_error(place);
+        let error = own.max(asked.error);
+        let radius = asked.radius.max(Length16::up(self.own_ball(place).radius));
+        self.vertices[index] = Vertex { error, radius, ..asked };
+        let ball = self.nested_ball(place);
+        for parent in self.grid.parents(place) {
+            let center = self.nested_ball(parent).center;
+            let around = (center.distance(ball.center) + ball.radius) * SLACK;
+            let vertex = &mut self.vertices[self.grid.index(parent)];
+            vertex.error = vertex.error.max(error);
+            vertex.radius = vertex.radius.max(Length16::up(around));
+        }
+    }
+
+    /// Of the triangles that a vertex takes away; infinite if one lies across the border.
+    pub(super) fn own_error(&self, place: Place) -> Length16 {
+        let Some(diamond) = self.grid.diamond(place) else { return Length16(0) };
+        let mut most = 0.0;
+        for triangle in diamond.coarse() {
+            match self.grid.extent(&triangle) {
+                Extent::Outside => {}
+                Extent::Across => return Length16::INFINITE,
+                Extent::Inside => most = self.deviation(&triangle).max(most),
+            }
+        }
+        Length16::up(most)
+    }
+
+    /// How far a triangle is from the vertices under it, at most, along the axis.
+    fn deviation(&self, triangle: &Triangle) -> f64 {
+        let Self { grid, vertices, .. } = self;
+        let plane = Plane::of(grid, vertices, triangle);
+        let rows = triangle.corners().map(|p| p.row);
+        let [low, high] =
+            [rows.into_iter().min(), rows.into_iter().max()].map(Option::unwrap_or_default);
+        let mut most = 0f64;
+        for row in low..=high {
+            let [first, last] = triangle.columns(row);
+            let start = Place { column: first, row };
+            let mut expected = plane.at(start);
+            let index = grid.index(start);
+            for vertex in &vertices[index..=index + (last - first) as usize] {
+                most = most.max((f64::from(vertex.height) - expected).abs());
+                expected += plane.across;
+            }
+        }
+        most
+    }
+}
+
+/// The heights of a triangle, and of its plane.
+struct Plane {
+    from: Place,
+    height: f64,
+    /// From a column to the next.
+    across: f64,
+    /// From a row to the next.
+    along: f64,
+}
+
+impl Plane {
+    fn of(grid: &Grid, vertices: &[Vertex], triangle: &Triangle) -> Self {
+        let height = |p: Place| f64::from(vertices[grid.index(p)].height);
+        let from = triangle.apex;
+        let base = height(from);
+        let [[ax, ay, az], [bx, by, bz]] = triangle.ends.map(|end| {
+            let along = |to: u32, from: u32| f64::from(to) - f64::from(from);
+            [along(end.column, from.column), along(end.row, from.row), height(end) - base]
+        });
+        let area = ax * by - ay * bx;
+        Self {
+            from,
+            height: base,
+            across: (az * by - bz * ay) / area,
+            along: (bz * ax - az * bx) / area,
+        }
+    }
+
+    fn at(&self, place: Place) -> f64 {
+        let steps = |to: u32, from: u32| f64::from(to) - f64::from(from);
+        self.height
+            + steps(place.column, self.from.column) * self.across
+            + steps(place.row, self.from.row) * self.along
+    }
+}

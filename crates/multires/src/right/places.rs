@@ -1,0 +1,230 @@
+//! Which vertices and triangles there are and what needs what, by arithmetic of places alone.
+//!
+//! The field lies in the corner of a square with 2ᵏ cells a side. Two triangles halve the square, and
+//! each triangle is halved from its right angle to the middle of its hypotenuse, down to half cells.
+
+/// A place on the grid.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) struct Place {
+    pub(crate) column: u32,
+    pub(crate) row: u32,
+}
+
+/// Half of a square, counter-clockwise where columns go to the right and rows up.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Triangle {
+    /// At the right angle. Its insertion made the triangle.
+    pub(crate) apex: Place,
+    /// The hypotenuse. What is inserted at its middle takes the triangle away.
+    pub(crate) ends: [Place; 2],
+}
+
+/// What lies around a vertex when it is inserted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Diamond {
+    /// Of the hypotenuse in whose middle it is.
+    pub(crate) ends: [Place; 2],
+    /// Of the triangles on both sides of that; one on the side of the square.
+    pub(crate) apexes: [Option<Place>; 2],
+}
+
+/// How much of a triangle lies in the field.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Extent {
+    Inside,
+    Across,
+    Outside,
+}
+
+/// A field of so many vertices, at least two each way and less than 2³¹ in all.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Grid {
+    pub(crate) columns: u32,
+    pub(crate) rows: u32,
+}
+
+impl Grid {
+    /// None for more or fewer vertices than can be numbered.
+    pub(crate) fn new(columns: u32, rows: u32) -> Option<Self> {
+        let count = columns.checked_mul(rows)?;
+        (columns >= 2 && rows >= 2 && count < 1 << 31).then_some(Self { columns, rows })
+    }
+
+    pub(crate) fn count(&self) -> usize {
+        self.columns as usize * self.rows as usize
+    }
+
+    #[inline]
+    pub(crate) fn holds(&self, Place { column, row }: Place) -> bool {
+        column < self.columns && row < self.rows
+    }
+
+    #[inline]
+    pub(crate) fn index(&self, Place { column, row }: Place) -> usize {
+        row as usize * self.columns as usize + column as usize
+    }
+
+    pub(crate) fn place(&self, index: usize) -> Place {
+        let index = index as u32;
+        Place { column: index % self.columns, row: index / self.columns }
+    }
+
+    /// The number of cells along a side of the square.
+    pub(crate) fn side(&self) -> u32 {
+        (self.columns.max(self.rows) - 1).next_power_of_two()
+    }
+
+    /// How often the halves of the square are halved until they are half cells.
+    pub(crate) fn depth(&self) -> u32 {
+        2 * self.side().ilog2()
+    }
+
+    /// The halves of the square.
+    pub(crate) fn roots(&self) -> [Triangle; 2] {
+        let side = self.side();
+        let at = |column, row| Place { column, row };
+        let ends = [at(side, side), at(0, 0)];
+        [
+            Triangle { apex: at(side, 0), ends },
+            Triangle { apex: at(0, side), ends: [ends[1], ends[0]] },
+        ]
+    }
+
+    /// What lies around a vertex when it is inserted; none at the corners of the square.
+    #[inline]
+    pub(crate) fn diamond(&self, place: Place) -> Option<Diamond> {
+        let Place { column, row } = place;
+        let side = self.side();
+        let any = column | row;
+        let step = any & any.wrapping_neg();
+        if any == 0 || step == side {
+            return None;
+        }
+        let at = |column, row| Place { column, row };
+        if column & row & step != 0 {
+            // In the middle of a cell of twice the step. Those halved along the rising diagonal and
+            // along the falling one take turns, as on a chessboard.
+            let rising = [at(column - step, row - step), at(column + step, row + step)];
+            let falling = [at(column + step, row - step), at(column - step, row + step)];
+            let is_rising = (column ^ row) & (2 * step) == 0;
+            let (ends, apexes) = if is_rising { (rising, falling) } else { (falling, rising) };
+            return Some(Diamond { ends, apexes: apexes.map(Some) });
+        }
+        let before = |x: u32| x.checked_sub(step);
+        let after = |x: u32| (x < side).then_some(x + step);
+        Some(if column & step != 0 {
+            let apexes = [before(row), after(row)].map(|row| row.map(|row| at(column, row)));
+            Diamond { ends: [at(column - step, row), at(column + step, row)], apexes }
+        } else {
+            let apexes = [before(column), after(column)].map(|c| c.map(|column| at(column, row)));
+            Diamond { ends: [at(column, row - step), at(column, row + step)], apexes }
+        })
+    }
+
+    /// The vertices of the field that a vertex needs.
+    #[inline]
+    pub(crate) fn parents(&self, place: Place) -> impl Iterator<Item = Place> + use<> {
+        let grid = *self;
+        let apexes = self.diamond(place).map_or([None; 2], |diamond| diamond.apexes);
+        apexes.into_iter().flatten().filter(move |&apex| grid.holds(apex))
+    }
+
+    /// How much of a triangle lies in the field.
+    #[inline]
+    pub(crate) fn extent(&self, triangle: &Triangle) -> Extent {
+        let corners = triangle.corners();
+        let [right, top] = [self.columns - 1, self.rows - 1];
+        if corners.iter().all(|p| p.column <= right && p.row <= top) {
+            return Extent::Inside;
+        }
+        // Between two convex sets that do not overlap is a side of one of them: here one of the field's,
+        // or a falling hypotenuse.
+        let is_outside = corners.iter().all(|p| p.column >= right)
+            || corners.iter().all(|p| p.row >= top)
+            || corners.iter().all(|p| p.column + p.row >= right + top);
+        if is_outside { Extent::Outside } else { Extent::Across }
+    }
+
+    /// The vertices of the field that are inserted after so many halvings, row by row: middles of
+    /// cells for even numbers, of their sides for odd ones.
+    pub(crate) fn inserted_at(&self, depth: u32) -> impl Iterator<Item = Place> + use<> {
+        let step = self.side() >> (depth / 2 + 1);
+        let is_side = depth % 2 == 1;
+        let Self { columns, rows } = *self;
+        let first_row = if is_side { 0 } else { step };
+        let between_rows = if is_side { step } else { 2 * step };
+        (first_row..rows).step_by(between_rows as usize).flat_map(move |row| {
+            let first = if is_side && row & step != 0 { 0 } else { step };
+            let along = (first..columns).step_by(2 * step as usize);
+            along.map(move |column| Place { column, row })
+        })
+    }
+}
+
+impl Diamond {
+    /// The triangles that an insertion takes away.
+    pub(crate) fn coarse(&self) -> impl Iterator<Item = Triangle> + use<> {
+        let [a, b] = self.ends;
+        self.apexes.into_iter().flatten().map(move |apex| {
+            let is_left = Triangle { apex, ends: [a, b] }.turn() > 0;
+            Triangle { apex, ends: if is_left { [a, b] } else { [b, a] } }
+        })
+    }
+
+    /// All its corners that are there.
+    pub(crate) fn corners(&self) -> impl Iterator<Item = Place> + use<> {
+        self.ends.into_iter().chain(self.apexes.into_iter().flatten())
+    }
+}
+
+impl Triangle {
+    /// The right angle first.
+    #[inline]
+    pub(crate) fn corners(&self) -> [Place; 3] {
+        [self.apex, self.ends[0], self.ends[1]]
+    }
+
+    /// Twice its area, in cells.
+    pub(crate) fn turn(&self) -> i64 {
+        let from = |p: Place| {
+            let [column, row] = [p.column, p.row].map(i64::from);
+            [column - i64::from(self.apex.column), row - i64::from(self.apex.row)]
+        };
+        let [[ax, ay], [bx, by]] = self.ends.map(from);
+        ax * by - ay * bx
+    }
+
+    /// The first and the last of its columns in a row, which must meet it.
+    #[inline]
+    pub(crate) fn columns(&self, row: u32) -> [u32; 2] {
+        let [a, b, c] = self.corners();
+        let (mut first, mut last) = (u32::MAX, 0);
+        for [from, to] in [[a, b], [b, c], [c, a]] {
+            let [low, high] = if from.row <= to.row { [from, to] } else { [to, from] };
+            if row < low.row || row > high.row {
+                continue;
+            }
+            // All sides are along rows, columns or diagonals.
+            let up = row - low.row;
+            let at = match low.column.cmp(&high.column) {
+                _ if low.row == high.row => {
+                    last = last.max(high.column);
+                    first = first.min(high.column);
+                    low.column
+                }
+                std::cmp::Ordering::Less => low.column + up,
+                std::cmp::Ordering::Equal => low.column,
+                std::cmp::Ordering::Greater => low.column - up,
+            };
+            first = first.min(at);
+            last = last.max(at);
+        }
+        [first, last]
+    }
+}
+
+/// Half the way.
+#[inline]
+pub(crate) fn middle([a, b]: [Place; 2]) -> Place {
+    Place { column: (a.column + b.column) / 2, row: (a.row + b.row) / 2 }
+}
