@@ -1,24 +1,28 @@
 //! The best level of at most so many faces.
 //!
 //! Every vertex has an urgency: by how much its error exceeds the tolerance, and no less than that of a
-//! vertex that needs it. Inserting the most urgent first is making cuts all the way.
+//! vertex that needs it. Inserting the most urgent first is making cuts all the way, so choosing is
+//! finding where to stop.
+
+use std::cmp::Reverse;
 
 use super::RightTriangles;
 use super::extract::RightExtractor;
-use super::places::{Extent, Place};
 use crate::level::Level;
 use crate::need::Need;
 use crate::query::{Query, QueryError};
 
 /// Urgencies of one bucket differ in these bits only: by a hundredth at most.
 const LOW_BITS: u32 = 16;
+/// Their highest bit is a sign, and none has it.
+const BUCKETS: usize = 1 << (u32::BITS - 1 - LOW_BITS);
 
 impl RightExtractor<'_> {
     /// The answer to the query whose tolerance is, everywhere, so many times as large that there are
     /// at most so many faces, or so many times smaller that there are no fewer than need be. What the
     /// query does not focus on stays as coarse as it can be; the coarsest level is there in any case.
     ///
-    /// Cost: linear in the field, not in the faces asked for.
+    /// Cost: of choosing, linear in the field however many faces are asked for; and of extraction.
     /// # Errors
     /// A query that is none.
     pub fn at_most(&mut self, faces: usize, query: &Query<'_>) -> Result<&Level, QueryError> {
@@ -34,60 +38,64 @@ impl RightExtractor<'_> {
     ///
     /// Urgencies are sorted into buckets by their leading bits. All of some buckets fit, none of
     /// others, and one has to be sorted.
-    fn choose_most_urgent(&mut self, urgencies: &[u32], room: usize) {
-        let Self { model, chosen, all_chosen, .. } = self;
-        let bucket = |index: usize| (urgencies[index] >> LOW_BITS) as usize;
-        let mut weights = vec![0usize; 1 << (u32::BITS - LOW_BITS)];
-        let urgent = || model.inserted().filter(|&(_, index)| urgencies[index] > 0);
-        urgent().for_each(|(place, index)| weights[bucket(index)] += model.brings(place));
-        let (mut left, mut last) = (room, weights.len());
-        while last > 0 && weights[last - 1] <= left {
-            last -= 1;
-            left -= weights[last];
+    fn choose_most_urgent(&mut self, urgencies: &[u32], mut room: usize) {
+        let grid = &self.model.grid;
+        let mut weights = vec![0usize; BUCKETS];
+        for (index, urgency) in urgencies.iter().enumerate() {
+            weights[(urgency >> LOW_BITS) as usize] += grid.brings(grid.place(index));
         }
-        let mut tight: Vec<_> = urgent().filter(|&(_, index)| bucket(index) + 1 == last).collect();
-        // Stable: what is needed is inserted earlier, and no less urgent.
-        tight.sort_by_key(|&(_, index)| std::cmp::Reverse(urgencies[index]));
-        let fit = tight.into_iter().take_while(|&(place, _)| {
-            let rest = left.checked_sub(model.brings(place));
-            left = rest.unwrap_or(0);
-            rest.is_some()
-        });
-        for (_, index) in urgent().filter(|&(_, index)| bucket(index) >= last).chain(fit) {
-            chosen[index] = true;
-            all_chosen.push(index as u32);
+        let mut last = BUCKETS;
+        // The lowest holds what is not urgent at all.
+        while last > 1 && weights[last - 1] <= room {
+            last -= 1;
+            room -= weights[last];
+        }
+        let least = (last << LOW_BITS) as u32;
+        let next = ((last - 1) << LOW_BITS).max(1) as u32..least;
+        let mut tight = Vec::new();
+        for (index, urgency) in urgencies.iter().enumerate() {
+            if *urgency >= least {
+                self.chosen[index] = true;
+                self.all_chosen.push(index as u32);
+            } else if next.contains(urgency) {
+                tight.push(index);
+            }
+        }
+        // What is needed is inserted earlier, and no less urgent.
+        let key = |index: usize| (Reverse(urgencies[index]), grid.depth_of(grid.place(index)));
+        tight.sort_unstable_by_key(|&index| (key(index), index));
+        for index in tight {
+            let Some(rest) = room.checked_sub(grid.brings(grid.place(index))) else { break };
+            room = rest;
+            self.chosen[index] = true;
+            self.all_chosen.push(index as u32);
         }
     }
 }
 
 impl RightTriangles {
-    /// All vertices that not every level has, with their indices, those that are needed first.
-    fn inserted(&self) -> impl Iterator<Item = (Place, usize)> {
-        let all = (0..self.grid.depth()).flat_map(|depth| self.grid.inserted_at(depth));
-        let all = all.map(|place| (place, self.grid.index(place)));
-        all.filter(|&(_, index)| !self.vertices[index].is_forced())
-    }
-
-    /// How many triangles more there are with a vertex.
-    fn brings(&self, place: Place) -> usize {
-        let coarse = self.grid.diamond(place).into_iter().flat_map(|d| d.coarse());
-        coarse.filter(|triangle| self.grid.extent(triangle) != Extent::Outside).count()
-    }
-
-    /// The urgency of each vertex, as bits: those are in the order of the numbers.
+    /// The urgency of each vertex, as bits: those are in the order of the numbers. What is in every
+    /// level has none.
     fn urgencies(&self, need: &Need<'_>) -> Vec<u32> {
-        let mut urgencies = vec![0u32; self.vertices.len()];
+        let all = self.vertices.iter().zip(&self.radii).enumerate();
+        let balls =
+            all.map(|(index, (vertex, &radius))| self.ball(self.grid.place(index), vertex, radius));
+        let mut urgencies: Vec<u32> = need.urgencies(balls).into_iter().map(f32::to_bits).collect();
+        for (urgency, vertex) in urgencies.iter_mut().zip(&self.vertices) {
+            *urgency *= u32::from(!vertex.is_forced());
+        }
+        // Errors are monotone as they are.
+        if need.is_uniform() {
+            return urgencies;
+        }
         for depth in (0..self.grid.depth()).rev() {
             for place in self.grid.inserted_at(depth) {
-                let index = self.grid.index(place);
-                if self.vertices[index].is_forced() {
-                    continue;
-                }
-                let own = need.urgency(&self.own_ball(place)).to_bits().max(urgencies[index]);
-                urgencies[index] = own;
+                let own = urgencies[self.grid.index(place)];
                 for parent in self.grid.parents(place) {
-                    let above = &mut urgencies[self.grid.index(parent)];
-                    *above = own.max(*above);
+                    let above = self.grid.index(parent);
+                    if urgencies[above] < own && !self.vertices[above].is_forced() {
+                        urgencies[above] = own;
+                    }
                 }
             }
         }

@@ -51,7 +51,8 @@ impl RightTriangles {
                 vertices[field.grid.index(corner)].error = Length16::INFINITE;
             }
         }
-        Self { frame, grid: field.grid, plan, vertices, fit }
+        let radii = vec![Length16(0); vertices.len()];
+        Self { frame, grid: field.grid, plan, vertices, radii, fit }
     }
 
     /// Of a vertex of which all that need it have told what they ask of it.
@@ -60,7 +61,8 @@ impl RightTriangles {
         let asked = self.vertices[index];
         let own = self.own_error(place);
         let error = own.max(asked.error);
-        let radius = asked.radius.max(Length16::up(self.own_ball(place).radius));
+        self.radii[index] = self.own_radius(place);
+        let radius = asked.radius.max(self.radii[index]);
         self.vertices[index] = Vertex { error, radius, ..asked };
         let ball = self.nested_ball(place);
         for parent in self.grid.parents(place) {
@@ -70,6 +72,15 @@ impl RightTriangles {
             vertex.error = vertex.error.max(error);
             vertex.radius = vertex.radius.max(Length16::up(around));
         }
+    }
+
+    /// Around the triangles that a vertex takes away.
+    pub(super) fn own_radius(&self, place: Place) -> Length16 {
+        let center = self.nested_ball(place).center;
+        let around = self.grid.diamond(place).into_iter().flat_map(|d| d.corners());
+        let there = around.filter(|&corner| self.grid.holds(corner));
+        let squared = there.map(|p| center.distance_squared(self.nested_ball(p).center));
+        Length16::up(squared.fold(0.0, f64::max).sqrt() * SLACK)
     }
 
     /// Of the triangles that a vertex takes away; infinite if one lies across the border.

@@ -37,7 +37,8 @@ impl RightTriangles {
             _ => {}
         }
         let ball = self.nested_ball(place);
-        if !is_around(&ball, &Ball { error: ball.error, ..self.own_ball(place) }) {
+        let own = self.own_ball(place).radius;
+        if own < self.own_radius(place).get() || ball.radius < own {
             return Err("its ball is not around what it takes away");
         }
         let is_nested = |parent: Place| is_around(&self.nested_ball(parent), &ball);

@@ -40,6 +40,9 @@ impl<'m> RightExtractor<'m> {
     /// A query that is none.
     pub fn exact(&mut self, query: &Query<'_>) -> Result<&Level, QueryError> {
         let need = Need::new(query, &self.model.frame)?;
+        if need.is_uniform() {
+            return self.saturated(query);
+        }
         self.forget_chosen();
         let Self { model, chosen, all_chosen, .. } = self;
         // What is wanted is wanted also by nested balls, and those make a cut: it lies above that.

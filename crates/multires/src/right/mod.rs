@@ -2,7 +2,7 @@
 //!
 //! An update inserts one vertex of the grid in the middle of a hypotenuse and so halves the one or two
 //! triangles that share it. What it needs are the vertices at their right angles. All that is arithmetic;
-//! stored is what no arithmetic knows: a height, an error and a radius, eight bytes a vertex.
+//! stored is what no arithmetic knows: a height, an error and two radii, ten bytes a vertex.
 
 mod budget;
 mod build;
@@ -45,6 +45,8 @@ pub struct RightTriangles {
     /// In stored units.
     plan: Plan,
     vertices: Vec<Vertex>,
+    /// Of a ball about each vertex, around the triangles that its insertion takes away and no more.
+    radii: Vec<Length16>,
     fit: Fit,
 }
 
@@ -101,29 +103,26 @@ impl RightTriangles {
 
     /// What it takes in memory: its vectors, as they are.
     pub fn bytes(&self) -> usize {
-        size_of_val(&self.vertices[..])
+        size_of_val(&self.vertices[..]) + size_of_val(&self.radii[..])
     }
 
     /// About a vertex, around the triangles that it takes away and the balls of those that need it.
     #[inline]
     fn nested_ball(&self, place: Place) -> Ball {
-        let Vertex { height, error, radius } = self.vertices[self.grid.index(place)];
-        let center = self.plan.point(place, height.into());
-        Ball { center, radius: radius.get(), error: error.get() }
+        let vertex = &self.vertices[self.grid.index(place)];
+        self.ball(place, vertex, vertex.radius)
     }
 
     /// About a vertex, around the triangles that it takes away and no more.
     #[inline]
     fn own_ball(&self, place: Place) -> Ball {
-        let Vertex { height, error, .. } = self.vertices[self.grid.index(place)];
-        let center = self.plan.point(place, height.into());
-        let reach = |corner: Place| {
-            let height = self.vertices[self.grid.index(corner)].height;
-            center.distance_squared(self.plan.point(corner, height.into()))
-        };
-        let around = self.grid.diamond(place);
-        let around = around.iter().flat_map(|d| d.corners()).filter(|&p| self.grid.holds(p));
-        let squared = around.map(reach).fold(0.0, f64::max);
-        Ball { center, radius: squared.sqrt() * build::SLACK, error: error.get() }
+        let index = self.grid.index(place);
+        self.ball(place, &self.vertices[index], self.radii[index])
+    }
+
+    #[inline]
+    fn ball(&self, place: Place, vertex: &Vertex, radius: Length16) -> Ball {
+        let center = self.plan.point(place, vertex.height.into());
+        Ball { center, radius: radius.get(), error: vertex.error.get() }
     }
 }

@@ -129,6 +129,21 @@ impl Grid {
         apexes.into_iter().flatten().filter(move |&apex| grid.holds(apex))
     }
 
+    /// How many halvings come before a vertex is inserted, which must not be a corner of the square.
+    pub(crate) fn depth_of(&self, Place { column, row }: Place) -> u32 {
+        let finer = (column | row).trailing_zeros();
+        let is_side = (column & row) >> finer & 1 == 0;
+        self.depth() - 2 * (finer + 1) + u32::from(is_side)
+    }
+
+    /// How many triangles more there are with a vertex that nothing across the border is at.
+    #[inline]
+    pub(crate) fn brings(&self, Place { column, row }: Place) -> usize {
+        let is_border =
+            column == 0 || row == 0 || column + 1 == self.columns || row + 1 == self.rows;
+        if is_border { 1 } else { 2 }
+    }
+
     /// How much of a triangle lies in the field.
     #[inline]
     pub(crate) fn extent(&self, triangle: &Triangle) -> Extent {

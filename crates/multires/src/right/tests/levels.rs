@@ -174,6 +174,9 @@ fn a_certificate_misses_no_lesser_error_and_no_lesser_radius() {
             let mut other = model.clone();
             other.vertices[index].radius.0 -= 30;
             assert!(other.certify().is_err(), "the radius of {index}");
+            let mut other = model.clone();
+            other.radii[index].0 -= 1;
+            assert!(other.certify().is_err(), "the own radius of {index}");
         }
     }
 }

@@ -170,6 +170,7 @@ fn arithmetic_is_that_of_halved_triangles() {
                 assert_eq!(grid.extent(&triangle), extent, "{triangle:?} of {size:?}");
             }
             if grid.holds(at) {
+                assert_eq!(grid.depth_of(at), update.depth);
                 let mut parents: Vec<Place> = grid.parents(at).collect();
                 let mut needs = oracle.needs(update);
                 // The corners of the square are made by nothing.
