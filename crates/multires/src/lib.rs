@@ -82,5 +82,5 @@ pub use query::{Camera, Focus, Query, QueryError, Tolerance};
 pub use record::Recorder;
 pub use right::{
     FieldBytesError, Fit, HeightField, HeightFieldError, HeightPrecision, RightExtractor,
-    RightTriangles,
+    RightFlaw, RightTriangles, RightUnsound,
 };

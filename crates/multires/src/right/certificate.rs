@@ -1,10 +1,40 @@
 //! Holds everything stored against what it promises.
 
+use thiserror::Error;
+
 use super::RightTriangles;
 use super::places::Place;
-use crate::cut::Unsound;
 use crate::frame::Length16;
 use crate::need::Ball;
+
+/// Why right triangles may be further off than their levels promise.
+#[derive(Clone, Copy, Debug, Error, PartialEq, Eq)]
+#[error("the vertex at column {column}, row {row} is not sound: {why}")]
+pub struct RightUnsound {
+    /// Its column.
+    pub column: u32,
+    /// Its row.
+    pub row: u32,
+    /// What does not hold.
+    pub why: RightFlaw,
+}
+
+/// What does not hold of a vertex.
+#[derive(Clone, Copy, Debug, Error, PartialEq, Eq, PartialOrd, Ord)]
+pub enum RightFlaw {
+    /// A level without it would go beyond the border.
+    #[error("what it takes away lies across the border, and it is not in every level")]
+    NotForced,
+    /// A triangle is further off.
+    #[error("its error is less than what it takes away is off by")]
+    NoBound,
+    /// It might not be looked for where it counts.
+    #[error("its ball is not around what it takes away")]
+    SmallBall,
+    /// A level might have it without what it needs.
+    #[error("the ball or the error of what it needs is less than its own")]
+    NotNested,
+}
 
 impl RightTriangles {
     /// Proves that errors bound, that errors and balls nest along needs, and that what lies across the
@@ -15,35 +45,33 @@ impl RightTriangles {
     /// Cost: n log n.
     /// # Errors
     /// The first vertex of which that cannot be said.
-    pub fn certify(&self) -> Result<usize, Unsound> {
+    pub fn certify(&self) -> Result<usize, RightUnsound> {
         let mut sound = 0;
         for depth in 0..self.grid.depth() {
             for place in self.grid.inserted_at(depth) {
-                let update = self.grid.index(place) as u32;
-                self.check(place).map_err(|why| Unsound { update, why })?;
+                let Place { column, row } = place;
+                self.check(place).map_err(|why| RightUnsound { column, row, why })?;
                 sound += 1;
             }
         }
         Ok(sound)
     }
 
-    fn check(&self, place: Place) -> Result<(), &'static str> {
+    fn check(&self, place: Place) -> Result<(), RightFlaw> {
         let error = self.vertices[self.grid.index(place)].error;
         match self.own_error(place) {
-            Length16::INFINITE if error < Length16::INFINITE => {
-                return Err("what it takes away lies across the border");
-            }
-            own if own > error => return Err("its error is no bound"),
+            Length16::INFINITE if error < Length16::INFINITE => return Err(RightFlaw::NotForced),
+            own if own > error => return Err(RightFlaw::NoBound),
             _ => {}
         }
         let ball = self.nested_ball(place);
         let own = self.own_ball(place).radius;
         if own < self.own_radius(place).get() || ball.radius < own {
-            return Err("its ball is not around what it takes away");
+            return Err(RightFlaw::SmallBall);
         }
         let is_nested = |parent: Place| is_around(&self.nested_ball(parent), &ball);
         if !self.grid.parents(place).all(is_nested) {
-            return Err("the ball or the error of what it needs is less than its own");
+            return Err(RightFlaw::NotNested);
         }
         Ok(())
     }

@@ -25,6 +25,7 @@ use self::field::Plan;
 use self::places::{Grid, Place};
 
 pub use self::bytes::{FieldBytesError, HeightPrecision};
+pub use self::certificate::{RightFlaw, RightUnsound};
 pub use self::extract::RightExtractor;
 pub use self::field::{Fit, HeightField};
 pub use self::recognise::HeightFieldError;
