@@ -56,7 +56,13 @@ impl Frame {
     /// A stored point in model units.
     #[inline]
     pub fn model(&self, point: [f32; 3]) -> [f64; 3] {
-        (Vec3::from(point).as_dvec3() * self.unit + self.origin).into()
+        self.model_point(Vec3::from(point).as_dvec3())
+    }
+
+    /// A point in stored units in model units.
+    #[inline]
+    pub(crate) fn model_point(&self, point: DVec3) -> [f64; 3] {
+        (point * self.unit + self.origin).into()
     }
 }
 

@@ -4,6 +4,8 @@ use glam::Vec3;
 use meshlod_mesh::{Mesh, VertexId};
 
 use crate::frame::Frame;
+use crate::place::Place;
+use crate::query::{Focus, QueryError};
 
 /// The cosine between two normals below which an edge is a fold.
 const FOLD: f64 = -0.7;
@@ -51,6 +53,23 @@ impl Level {
         }
         let positions = nodes.iter().map(|&node| places[node as usize]).collect();
         Self { frame, nodes, positions, faces }
+    }
+
+    /// The faces that meet a focus, with their vertices: those that have a point in it, up to the
+    /// rounding of positions; for a segment and a frustum maybe some that only come close.
+    ///
+    /// Cost: linear. [`Cut::level_within`](crate::Cut::level_within) looks at what is there only.
+    /// # Errors
+    /// A focus that is none.
+    pub fn within(&self, focus: &Focus) -> Result<Self, QueryError> {
+        focus.validate()?;
+        let place = Place::new(focus, &self.frame);
+        let corner = |v: u32| Vec3::from(self.positions[v as usize]).as_dvec3();
+        let faces = self.faces.iter().filter(|face| place.meets_triangle(face.map(corner)));
+        let mut level = Self::of_nodes(self.frame, &self.positions, faces.copied().collect());
+        // They were told by their places here.
+        level.nodes.iter_mut().for_each(|node| *node = self.nodes[*node as usize]);
+        Ok(level)
     }
 
     /// In model units.

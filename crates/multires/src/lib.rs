@@ -17,6 +17,8 @@
 //! | [`Extractor::uniform`] | the smallest cut | one tolerance everywhere: only errors are looked at |
 //! | [`Extractor::at_most`] | the best cut of so many faces | budgets |
 //!
+//! What a [`Cut`] has at a place, [`Cut::level_within`] and [`Cut::locate`] find.
+//!
 //! ```
 //! use meshlod_mesh::sample;
 //! use meshlod_multires::{Camera, Effort, Forest, Model, Query};
@@ -63,6 +65,7 @@ mod implicit;
 mod level;
 mod model;
 mod need;
+mod place;
 mod query;
 mod record;
 mod right;
@@ -71,7 +74,7 @@ mod right;
 mod tests;
 
 pub use bounds::ErrorKind;
-pub use cut::{Certificate, Change, Cut, Effort, Flaw, Patch, Unsound};
+pub use cut::{Certificate, Change, Cut, Effort, Flaw, Located, Patch, Unsound};
 pub use explicit::{Explicit, ExplicitCut};
 pub use forest::{BuildError, Forest};
 pub use frame::Frame;

@@ -3,7 +3,8 @@
 use glam::{DVec3, Vec3};
 
 use crate::frame::{Frame, Length16};
-use crate::query::{Camera, Focus, Query, QueryError, Tolerance};
+use crate::place::Place;
+use crate::query::{Query, QueryError, Tolerance};
 
 /// What an update is judged by, in stored units: a ball around both its sides and the error of the
 /// coarse one.
@@ -41,16 +42,6 @@ pub(crate) struct Need<'f> {
     most: Most<'f>,
 }
 
-#[derive(Clone, Debug, PartialEq)]
-enum Place {
-    Everything,
-    Segment([DVec3; 2]),
-    Box([DVec3; 2]),
-    Sphere(DVec3, f64),
-    /// Planes with the inside where `normal · x` is at least the number.
-    Planes([(DVec3, f64); 5]),
-}
-
 enum Most<'f> {
     Everywhere(f64),
     /// So much of the distance from the eye.
@@ -85,22 +76,13 @@ pub(crate) struct Asked {
 impl<'f> Need<'f> {
     pub(crate) fn new(query: &Query<'f>, frame: &Frame) -> Result<Self, QueryError> {
         query.validate()?;
-        let point = |p: [f64; 3]| frame.point(p.into());
-        let place = match &query.focus {
-            Focus::Everything => Place::Everything,
-            Focus::Point(at) => Place::Sphere(point(*at), 0.0),
-            Focus::Segment(ends) => Place::Segment(ends.map(point)),
-            Focus::Box(corners) => Place::Box(corners.map(point)),
-            Focus::Sphere { center, radius } => {
-                Place::Sphere(point(*center), frame.length(*radius))
-            }
-            Focus::Frustum(camera) => Place::Planes(planes(camera, point(camera.eye))),
-        };
+        let place = Place::new(&query.focus, frame);
         let most = match query.tolerance {
             Tolerance::Uniform(most) => Most::Everywhere(frame.length(most)),
-            Tolerance::Pixels { camera, most } => {
-                Most::OfDistance(Eye { at: point(camera.eye), slope: most * camera.pixel() })
-            }
+            Tolerance::Pixels { camera, most } => Most::OfDistance(Eye {
+                at: frame.point(camera.eye.into()),
+                slope: most * camera.pixel(),
+            }),
             Tolerance::Field(field) => Most::Field { field, part: 1.0, frame: *frame },
         };
         Ok(Self { place, most })
@@ -123,14 +105,12 @@ impl<'f> Need<'f> {
             (Place::Everything, Most::OfDistance(eye)) => {
                 balls.map(|ball| times(ball.error, eye.least(&ball))).collect()
             }
-            _ => balls
-                .map(
-                    |ball| {
-                        if self.meets(&ball) { times(ball.error, self.least(&ball)) } else { 0.0 }
-                    },
-                )
-                .collect(),
+            _ => balls.map(|ball| self.urgency(&ball)).collect(),
         }
+    }
+
+    fn urgency(&self, ball: &Ball) -> f32 {
+        if self.meets(ball) { times(ball.error, self.least(ball)) } else { 0.0 }
     }
 
     /// The least tolerance in a ball.
@@ -158,19 +138,7 @@ impl<'f> Need<'f> {
 
     #[inline]
     fn meets(&self, ball: &Ball) -> bool {
-        let Ball { center, radius, .. } = *ball;
-        let squared = match &self.place {
-            Place::Everything => return true,
-            Place::Segment(ends) => center.distance_squared(closest(center, *ends)),
-            Place::Box([min, max]) => center.distance_squared(center.clamp(*min, *max)),
-            Place::Sphere(middle, reach) => {
-                return center.distance_squared(*middle) <= (reach + radius) * (reach + radius);
-            }
-            Place::Planes(planes) => {
-                return planes.iter().all(|&(normal, least)| normal.dot(center) + radius >= least);
-            }
-        };
-        squared <= radius * radius
+        self.place.meets_ball(ball.center, ball.radius)
     }
 
     /// The same with a part of the tolerance.
@@ -242,37 +210,12 @@ fn times(error: f64, most: f64) -> f32 {
     (error / if most > least { most } else { least }).min(f32::MAX.into()) as f32
 }
 
-fn closest(to: DVec3, [a, b]: [DVec3; 2]) -> DVec3 {
-    let along = b - a;
-    let squared = along.length_squared();
-    let t = if squared > 0.0 { ((to - a).dot(along) / squared).clamp(0.0, 1.0) } else { 0.0 };
-    a + t * along
-}
-
-/// In front of the eye, and within the four sides of the picture.
-fn planes(camera: &Camera, eye: DVec3) -> [(DVec3, f64); 5] {
-    let [forward, right, up] = camera.axes();
-    let [width, height] = camera.viewport.map(f64::from);
-    let high = (0.5 * camera.fov_rad).tan();
-    let wide = high * width / height;
-    let inside = |normal: DVec3| {
-        let normal = normal.normalize_or_zero();
-        (normal, normal.dot(eye))
-    };
-    [
-        inside(forward),
-        inside(wide * forward + right),
-        inside(wide * forward - right),
-        inside(high * forward + up),
-        inside(high * forward - up),
-    ]
-}
-
 #[cfg(test)]
 mod tests {
     use meshlod_mesh::Bounds;
 
     use super::*;
+    use crate::query::{Camera, Focus};
 
     fn need(focus: Focus, tolerance: Tolerance<'_>) -> Need<'_> {
         let frame = Frame::new(&Bounds { min: [-1.0; 3], max: [1.0; 3] });

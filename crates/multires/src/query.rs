@@ -110,22 +110,7 @@ impl Query<'static> {
 impl Query<'_> {
     /// Whether it can be asked.
     pub(crate) fn validate(&self) -> Result<(), QueryError> {
-        match &self.focus {
-            Focus::Everything => {}
-            Focus::Point(point) => finite("point", &[*point])?,
-            Focus::Segment(ends) => finite("segment", ends)?,
-            Focus::Box(corners) => {
-                finite("box", corners)?;
-                if (0..3).any(|k| corners[0][k] > corners[1][k]) {
-                    return Err(QueryError::InsideOut);
-                }
-            }
-            Focus::Sphere { center, radius } => {
-                finite("sphere", &[*center])?;
-                length("a radius", *radius)?;
-            }
-            Focus::Frustum(camera) => camera.validate()?,
-        }
+        self.focus.validate()?;
         match &self.tolerance {
             Tolerance::Uniform(most) => length("a tolerance", *most),
             Tolerance::Pixels { camera, most } => {
@@ -133,6 +118,27 @@ impl Query<'_> {
                 length("a tolerance", *most)
             }
             Tolerance::Field(_) => Ok(()),
+        }
+    }
+}
+
+impl Focus {
+    /// Whether it is one.
+    pub(crate) fn validate(&self) -> Result<(), QueryError> {
+        match self {
+            Self::Everything => Ok(()),
+            Self::Point(point) => finite("point", &[*point]),
+            Self::Segment(ends) => finite("segment", ends),
+            Self::Box(corners) => {
+                finite("box", corners)?;
+                let is_turned = (0..3).any(|k| corners[0][k] > corners[1][k]);
+                if is_turned { Err(QueryError::InsideOut) } else { Ok(()) }
+            }
+            Self::Sphere { center, radius } => {
+                finite("sphere", &[*center])?;
+                length("a radius", *radius)
+            }
+            Self::Frustum(camera) => camera.validate(),
         }
     }
 }

@@ -2,4 +2,5 @@
 
 mod certificates;
 mod motions;
+mod near;
 pub(crate) mod walks;

@@ -259,6 +259,11 @@ impl<'m> Front<'m> {
         all.into_iter().map(|t| self.triangles.nodes(t)).collect()
     }
 
+    /// Appends the triangles around a vertex, which must be there, to `star`.
+    pub(super) fn gather(&self, node: u32, star: &mut Vec<Spoke>) {
+        self.triangles.gather(self.vertices[node as usize].corner, star);
+    }
+
     /// The nodes around a vertex, each once or twice.
     pub(super) fn around(&mut self, node: u32) -> &[u32] {
         let Self { star, ring, triangles, vertices, .. } = self;

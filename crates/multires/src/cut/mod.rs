@@ -4,10 +4,12 @@ mod certificate;
 mod change;
 mod front;
 mod look;
+mod near;
 mod schedule;
 mod star;
 
 pub use certificate::{Certificate, Flaw, Unsound};
+pub use near::Located;
 
 use std::collections::VecDeque;
 use std::time::{Duration, Instant};

@@ -37,6 +37,14 @@ pub(super) struct Spoke {
     pub(super) b: u32,
 }
 
+impl Spoke {
+    /// The triangle.
+    #[inline]
+    pub(super) fn triangle(&self) -> u32 {
+        self.corner / 3
+    }
+}
+
 impl Triangles {
     /// How many there are.
     pub(super) fn len(&self) -> usize {

@@ -57,7 +57,7 @@ impl Dice {
         (self.0 >> 40) as f64 / (1u64 << 24) as f64
     }
 
-    fn place(&mut self, mesh: &Mesh) -> [f64; 3] {
+    pub(crate) fn place(&mut self, mesh: &Mesh) -> [f64; 3] {
         let v = (self.roll() * mesh.positions.len() as f64) as usize;
         mesh.positions[v]
     }
