@@ -69,6 +69,8 @@ pub(crate) struct Update {
     pub(crate) radius: Length16,
     /// Its fan is open: it has a last node with no face behind.
     pub(crate) is_open: bool,
+    /// The first child's faces are one run too: the two could change places.
+    pub(crate) either: bool,
     /// It and the update of its first child are one, the contraction of a face.
     pub(crate) glued: bool,
 }

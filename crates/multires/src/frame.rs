@@ -28,6 +28,14 @@ impl Frame {
         Self { origin: bounds.center().into(), unit, per_unit: 1.0 / unit }
     }
 
+    /// A frame that was written down; none where it cannot have been one.
+    pub(crate) fn from_parts(origin: [f64; 3], unit: f64) -> Option<Self> {
+        let is_unit = unit.is_normal() && unit > 0.0 && unit.log2().fract() == 0.0;
+        let origin = DVec3::from(origin);
+        let is_frame = is_unit && (1.0 / unit).is_normal() && origin.is_finite();
+        is_frame.then(|| Self { origin, unit, per_unit: 1.0 / unit })
+    }
+
     /// A point of the model as it is stored.
     #[inline]
     pub(crate) fn store(&self, point: DVec3) -> Vec3 {

@@ -59,6 +59,7 @@
 mod bounds;
 mod cut;
 mod explicit;
+mod file;
 mod forest;
 mod frame;
 mod implicit;
@@ -76,6 +77,7 @@ mod tests;
 pub use bounds::ErrorKind;
 pub use cut::{Certificate, Change, Cut, Effort, Flaw, Located, Patch, Unsound};
 pub use explicit::{Explicit, ExplicitCut};
+pub use file::{Archive, Extract, FileError, Source, Storage};
 pub use forest::{BuildError, Forest};
 pub use frame::Frame;
 pub use implicit::{Extractor, Implicit, Rule};

@@ -2,7 +2,7 @@
 
 use std::sync::OnceLock;
 
-use crate::cut::Cut;
+use crate::cut::{Cut, Unsound};
 use crate::forest::{BuildError, Forest};
 use crate::implicit::{Extractor, Faces, Implicit, Links, Order, Rule, Saturated, Weight};
 use crate::query::QueryError;
@@ -44,6 +44,16 @@ impl Model {
     /// More than 2³¹ nodes: half as many vertices.
     pub fn new(forest: &Forest) -> Result<Self, BuildError> {
         Self::with_rule(forest, Rule::default())
+    }
+
+    /// All levels of a model that was read from a file.
+    ///
+    /// Cost: linear; every update is made once.
+    /// # Errors
+    /// One that has no certificate.
+    pub fn of(implicit: &Implicit) -> Result<Self, Unsound> {
+        implicit.certify()?;
+        Ok(Self::new(&Forest::of(implicit)).expect("its nodes were numbered before"))
     }
 
     /// The same, whose [`Extractor`] obeys another rule. A [`Cut`] obeys the strict one in any case.

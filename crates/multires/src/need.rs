@@ -15,6 +15,27 @@ pub(crate) struct Ball {
     pub(crate) error: f64,
 }
 
+/// A box around many updates, with the greatest of their errors, in stored units.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Area {
+    pub(crate) min: DVec3,
+    pub(crate) max: DVec3,
+    pub(crate) error: f64,
+}
+
+impl Area {
+    /// Around nothing.
+    pub(crate) const EMPTY: Self =
+        Self { min: DVec3::INFINITY, max: DVec3::NEG_INFINITY, error: 0.0 };
+
+    /// Grows around another.
+    pub(crate) fn join(&mut self, other: &Self) {
+        self.min = self.min.min(other.min);
+        self.max = self.max.max(other.max);
+        self.error = self.error.max(other.error);
+    }
+}
+
 /// A ball as the packed model stores it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct PackedBall {
@@ -125,6 +146,24 @@ impl<'f> Need<'f> {
                 frame.length(part * most.max(0.0))
             }
         }
+    }
+
+    /// Whether it may want something with this error that lies in the box.
+    pub(crate) fn wants_in(&self, area: &Area) -> bool {
+        let Area { min, max, error } = *area;
+        let ball = Ball { center: 0.5 * (min + max), radius: 0.5 * min.distance(max), error };
+        let squared = |from: DVec3| from.distance_squared(from.clamp(min, max));
+        let exceeds = match &self.most {
+            Most::OfDistance(eye) => eye.slope * eye.slope * squared(eye.at) < error * error,
+            Most::Everywhere(_) | Most::Field { .. } => self.exceeds(&ball),
+        };
+        exceeds
+            && self.meets(&ball)
+            && match &self.place {
+                Place::Box([low, high]) => low.cmple(max).all() && high.cmpge(min).all(),
+                Place::Sphere(middle, reach) => squared(*middle) <= reach * reach,
+                Place::Everything | Place::Segment(_) | Place::Planes(_) => true,
+            }
     }
 
     #[inline]

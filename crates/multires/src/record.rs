@@ -45,7 +45,7 @@ struct Standing {
 const SLACK: f64 = 1.0 + 1e-6;
 
 /// Wings are stored as ranks among so many at most.
-const MOST_RANKED: usize = 250;
+pub(crate) const MOST_RANKED: usize = 250;
 
 impl Recorder {
     /// Ready to observe; nothing must have been contracted yet.
@@ -144,6 +144,7 @@ impl Recorder {
             error,
             radius,
             is_open: open_end.is_some(),
+            either: run.is_some_and(|run| run.turned().takes_all(hood)),
             glued: self.of_face == 1 && both[0].node as usize + 1 == forest.positions.len(),
         };
         let node = forest.positions.len() as u32;
@@ -254,9 +255,19 @@ impl Run {
         [1 - kept, kept].into_iter().find_map(|owner| {
             let ends = if owner == 1 { [v0, v1] } else { [v1, v0] };
             let run = Self { owner, wings: wings(surface, hood, ends)? };
-            let own = hood.spokes().iter().filter(|spoke| spoke.owner() == owner).count();
-            (run.length(hood)? == own).then_some(run)
+            run.takes_all(hood).then_some(run)
         })
+    }
+
+    /// The other end's, if its faces are one run too.
+    fn turned(&self) -> Self {
+        Self { owner: 1 - self.owner, wings: [self.wings[1], self.wings[0]] }
+    }
+
+    /// Whether its end's faces are the run, and no others.
+    fn takes_all(&self, hood: &Neighbourhood) -> bool {
+        let own = hood.spokes().iter().filter(|spoke| spoke.owner() == self.owner).count();
+        self.length(hood) == Some(own)
     }
 
     /// How many faces a walk along the run meets before it ends; none where it meets others.

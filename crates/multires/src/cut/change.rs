@@ -49,9 +49,8 @@ impl Cut<'_> {
             // It may go as soon as nothing holds it.
             self.loose.push(next);
         }
-        if mt.is_glued(next) {
-            let is_split = self.front.split(next + 1, stack);
-            assert!(is_split, "what is around the whole is around its part");
+        // What is around the whole is around its part, if the model has a certificate.
+        if mt.is_glued(next) && self.front.split(next + 1, stack) {
             self.arrive(next + 1, needs);
         }
         self.arrive(next, needs);

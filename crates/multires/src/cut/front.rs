@@ -242,6 +242,11 @@ impl<'m> Front<'m> {
         self.star[..place].iter().all(|spoke| spoke.corner / 3 != t)
     }
 
+    /// What was around the vertex that was split last.
+    pub(super) fn last_star(&self) -> &[Spoke] {
+        &self.star
+    }
+
     /// Whether a vertex is there.
     pub(super) fn is_there(&self, node: u32) -> bool {
         self.standing(node) == Standing::Active
@@ -292,7 +297,7 @@ impl<'m> Front<'m> {
 
 /// The nodes around a star that wings are.
 #[inline]
-fn find(star: &[Spoke], wings: [Wing; 2]) -> [Option<u32>; 2] {
+pub(super) fn find(star: &[Spoke], wings: [Wing; 2]) -> [Option<u32>; 2] {
     let ranks = wings.map(|wing| if let Wing::Rank(rank) = wing { rank.into() } else { NONE });
     let mut found = [None; 2];
     // Counting all is quicker than sorting these few, or than stopping early.

@@ -12,6 +12,7 @@
 //! | 4 | radius and error |
 //! | 4 | level and wings |
 
+mod assemble;
 mod budget;
 mod extractor;
 mod faces;
@@ -27,6 +28,7 @@ use crate::forest::{MOST_LEVELS, Odd};
 use crate::frame::{Frame, Length16};
 use crate::need::{Ball, PackedBall};
 
+pub(crate) use assemble::{About, Base, Loose};
 pub(crate) use budget::Weight;
 pub use extractor::Extractor;
 pub(crate) use faces::Faces;

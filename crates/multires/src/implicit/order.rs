@@ -24,51 +24,78 @@ pub(crate) struct Order {
 
 impl Order {
     pub(crate) fn new(forest: &Forest) -> Self {
-        let roots = roots(forest);
+        let children =
+            |node: u32| forest.update_of(node).map(|u| (u as u32, forest.updates[u].children));
+        Self::of(roots(forest), forest.positions.len(), forest.updates.len(), children)
+    }
+
+    /// That of the trees below some roots, by the update that splits a node and its children.
+    pub(crate) fn of(
+        roots: Vec<u32>,
+        nodes: usize,
+        updates: usize,
+        children: impl Fn(u32) -> Option<(u32, [u32; 2])>,
+    ) -> Self {
         let mut this = Self {
-            nodes: roots.clone(),
-            place: vec![NONE; forest.positions.len()],
-            leaves: Vec::with_capacity(forest.vertices),
-            updates: Vec::with_capacity(forest.updates.len()),
-            place_of_update: vec![NONE; forest.updates.len()],
+            nodes: Vec::with_capacity(nodes),
+            place: vec![NONE; nodes],
+            leaves: Vec::with_capacity(nodes - updates),
+            updates: Vec::with_capacity(updates),
+            place_of_update: vec![NONE; updates],
             trees: Vec::with_capacity(roots.len() + 1),
             ends: Vec::new(),
         };
         this.trees.push(0);
+        this.nodes.extend(&roots);
+        let mut pairs = Vec::with_capacity(updates);
         for &root in &roots {
-            this.walk(forest, root);
+            this.walk(root, &children, &mut pairs);
             this.trees.push(this.updates.len() as u32);
         }
-        this.nodes.extend(this.updates.iter().flat_map(|&u| forest.updates[u as usize].children));
+        this.find_ends(&pairs, &children);
+        this.nodes.extend(pairs.into_iter().flatten());
         this.nodes.iter().enumerate().for_each(|(i, &n)| this.place[n as usize] = i as u32);
-        let updates = this.updates.iter().enumerate();
-        updates.for_each(|(i, &u)| this.place_of_update[u as usize] = i as u32);
-        this.find_ends(forest);
         this
     }
 
     /// Numbers the updates below a node, and the leaves.
-    fn walk(&mut self, forest: &Forest, root: u32) {
+    fn walk(
+        &mut self,
+        root: u32,
+        children: &impl Fn(u32) -> Option<(u32, [u32; 2])>,
+        pairs: &mut Vec<[u32; 2]>,
+    ) {
         let mut stack = vec![root];
         while let Some(node) = stack.pop() {
-            let Some(update) = forest.update_of(node) else {
+            let Some((update, [first, second])) = children(node) else {
                 self.leaves.push(node);
                 continue;
             };
-            self.updates.push(update as u32);
-            let [first, second] = forest.updates[update].children;
+            self.place_of_update[update as usize] = self.updates.len() as u32;
+            self.updates.push(update);
+            pairs.push([first, second]);
             stack.extend([second, first]);
         }
     }
 
-    fn find_ends(&mut self, forest: &Forest) {
-        self.ends = vec![0; self.updates.len()];
-        for at in (0..self.updates.len()).rev() {
-            let [first, second] = forest.updates[self.updates[at] as usize].children;
-            let end = |child| forest.update_of(child).map(|u| self.place_of_update[u] as usize);
-            let last = end(second).or(end(first));
-            self.ends[at] = last.map_or(at as u32 + 1, |last| self.ends[last]);
+    fn find_ends(
+        &mut self,
+        pairs: &[[u32; 2]],
+        children: &impl Fn(u32) -> Option<(u32, [u32; 2])>,
+    ) {
+        self.ends = vec![0; pairs.len()];
+        for (at, &[first, second]) in pairs.iter().enumerate().rev() {
+            let place = |child| children(child).map(|(u, _)| self.place_of_update[u as usize]);
+            let last = place(second).or(place(first));
+            self.ends[at] = last.map_or(at as u32 + 1, |last| self.ends[last as usize]);
         }
+    }
+
+    /// Where the updates below the second child of an update start, and whether there are any, by
+    /// the updates of its children.
+    pub(super) fn second(&self, at: usize, [first, second]: [Option<u32>; 2]) -> u32 {
+        let start = first.map_or(at as u32 + 1, |first| self.ends[first as usize]);
+        start | if second.is_some() { super::FLAG } else { 0 }
     }
 }
 

@@ -1,7 +1,7 @@
 //! Packs a forest.
 
 use super::{FLAG, Implicit, LAST_WING, NO_WING, OPEN, Order, Split};
-use crate::forest::{BuildError, Forest, NONE, Odd, Update};
+use crate::forest::{BuildError, Forest, NONE, Odd};
 
 impl Implicit {
     /// All levels of a simplification.
@@ -34,7 +34,11 @@ impl Implicit {
             let (node, of) = (order.place[forest.node(update)], forest.updates[update]);
             this.splits.push(Split {
                 parent: node | if of.glued { FLAG } else { 0 },
-                second: second(forest, order, &of, at),
+                second: order.second(
+                    at,
+                    of.children
+                        .map(|child| forest.update_of(child).map(|u| order.place_of_update[u])),
+                ),
                 radius: of.radius,
                 error: of.error,
                 level: of.level | if of.is_open || of.wings == [NONE; 2] { OPEN } else { 0 },
@@ -60,14 +64,6 @@ fn base(forest: &Forest, order: &Order) -> Vec<[u32; 3]> {
     faces.map(|(face, _)| face.map(|leaf| order.place[root[leaf as usize] as usize])).collect()
 }
 
-/// Where the updates below the second child start, and whether there are any.
-fn second(forest: &Forest, order: &Order, update: &Update, at: usize) -> u32 {
-    let place = |child| forest.update_of(child).map(|u| order.place_of_update[u]);
-    let [first, second] = update.children.map(place);
-    let start = first.map_or(at as u32 + 1, |first| order.ends[first as usize]);
-    start | if second.is_some() { FLAG } else { 0 }
-}
-
 /// The rank of a wing among the nodes around that a face follows.
 fn rank(forest: &Forest, order: &Order, update: usize, wing: u32) -> u8 {
     if wing == NONE {
@@ -88,10 +84,6 @@ fn rank(forest: &Forest, order: &Order, update: usize, wing: u32) -> u8 {
 }
 
 fn odd(forest: &Forest, order: &Order, update: usize) -> Odd {
-    let place = |node: u32| order.place[node as usize];
-    let odd = forest.odd.get(&(update as u32)).cloned().unwrap_or_default();
-    Odd {
-        second: odd.second.into_iter().map(|pair| pair.map(place)).collect(),
-        brought: odd.brought.into_iter().map(|face| face.map(place)).collect(),
-    }
+    let odd = forest.odd.get(&(update as u32));
+    odd.map_or_else(Odd::default, |odd| odd.renumbered(|node| order.place[node as usize]))
 }

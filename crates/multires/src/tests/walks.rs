@@ -38,7 +38,7 @@ pub(crate) fn forest(mesh: &Mesh, method: Method) -> Forest {
     Forest::new(mesh, &Options { method, ..Options::default() }).unwrap()
 }
 
-pub(crate) fn each(check: impl Fn(&str, &Mesh, &Forest)) {
+pub(crate) fn each(mut check: impl FnMut(&str, &Mesh, &Forest)) {
     for (name, mesh) in meshes() {
         for method in METHODS {
             check(&format!("{name} by {}", method.name()), &mesh, &forest(&mesh, method));
@@ -100,6 +100,13 @@ pub(crate) struct Topology {
     inconsistent_edges: usize,
     pinched: usize,
     boundary_loops: bool,
+}
+
+impl Topology {
+    /// Whether it has fewer places that are not manifold: those are contracted too.
+    pub(crate) fn is_simpler_than(&self, other: &Self) -> bool {
+        self.non_manifold_edges < other.non_manifold_edges || self.pinched < other.pinched
+    }
 }
 
 pub(crate) fn topology(mesh: &Mesh) -> Topology {

@@ -1,0 +1,233 @@
+//! Reads a file: all of it, its first part, or what a query needs.
+
+use super::header::{self, FIXED, Header, Stored};
+use super::known::Known;
+use super::source::Source;
+use super::streams::Unpacker;
+use super::{FileError, Storage, chunk, write};
+use crate::bounds::ErrorKind;
+use crate::cut::{Certificate, Cut};
+use crate::forest::Forest;
+use crate::implicit::{Base, Implicit};
+use crate::level::Level;
+use crate::need::Need;
+use crate::query::Query;
+
+/// A `.mlod` file: all levels of a mesh, the coarsest first.
+#[derive(Debug)]
+pub struct Archive<S> {
+    source: S,
+    header: Header,
+    /// How many of its chunks are there as a whole.
+    whole: usize,
+}
+
+/// What a query reads of a file.
+#[derive(Clone, Debug)]
+pub struct Extract {
+    /// The answer.
+    pub level: Level,
+    /// How many chunks were read for it.
+    pub chunks: usize,
+    /// How many updates those have.
+    pub updates: usize,
+    /// How many bytes of the file were read.
+    pub bytes: u64,
+}
+
+impl Archive<Vec<u8>> {
+    /// The bytes of a `.mlod` file with all levels, and the proof that none of them has a crack.
+    ///
+    /// Vertices are moved to a lattice; errors are rounded up, by a sixteenth at most. Cost: linear.
+    /// # Errors
+    /// More vertices than are numbered. What has no certificate is not written.
+    pub fn write(forest: &Forest, storage: &Storage) -> Result<(Vec<u8>, Certificate), FileError> {
+        write::write(forest, storage)
+    }
+
+    /// Writes the checksums that fit into bytes that were changed, for tests of [`Archive::read`].
+    pub fn seal(bytes: &mut [u8]) {
+        header::seal(bytes);
+    }
+}
+
+impl<S: Source> Archive<S> {
+    /// Reads what a file starts with.
+    /// # Errors
+    /// One that is something else, damaged, or ends before its coarsest mesh does.
+    pub fn open(source: S) -> Result<Self, FileError> {
+        let length = source.length()?;
+        let start = piece(&source, 0, FIXED as u64, "the header")?;
+        let header = Header::length(&start)? as u64;
+        let header = Header::from_bytes(&piece(&source, 0, header, "the index")?)?;
+        let mut this = Self { source, header, whole: 0 };
+        let there = this.ends().take_while(|&end| end <= length).count();
+        let truncated = FileError::Truncated { at: length, what: "the coarsest mesh" };
+        this.whole = there.checked_sub(1).ok_or(truncated)?;
+        match this.ends().last() {
+            Some(at) if at < length => Err(FileError::Rest { at }),
+            _ => Ok(this),
+        }
+    }
+
+    /// How many chunks of updates the file is to have.
+    pub fn chunk_count(&self) -> usize {
+        self.header.chunks.len()
+    }
+
+    /// How many of its chunks are there; the rest is cut off, and only missing.
+    pub fn whole_chunks(&self) -> usize {
+        self.whole
+    }
+
+    /// Where the coarsest mesh ends, and each chunk.
+    pub fn ends(&self) -> impl Iterator<Item = u64> + '_ {
+        let base = self.header.len() + u64::from(self.header.base.bytes);
+        let sizes = self.header.chunks.iter().map(|chunk| u64::from(chunk.stored.bytes));
+        let ends = sizes.scan(base, |end, size| {
+            *end += size;
+            Some(*end)
+        });
+        std::iter::once(base).chain(ends)
+    }
+
+    /// How many updates the file is to have.
+    pub fn update_count(&self) -> usize {
+        self.header.updates()
+    }
+
+    /// What the errors of its updates are.
+    pub fn error_kind(&self) -> ErrorKind {
+        self.header.about.error_kind
+    }
+
+    /// By how much vertices may have been moved to the file's lattice, in model units.
+    pub fn rounding(&self) -> f64 {
+        self.header.about.frame.length_of_model(self.header.lattice.rounding())
+    }
+
+    /// All levels, and the proof that none has a crack.
+    /// # Errors
+    /// A file that is damaged, or made to mislead.
+    pub fn read(&self) -> Result<(Implicit, Certificate), FileError> {
+        self.read_chunks(self.whole)
+    }
+
+    /// The levels up to so many faces or the next chunk's end, and the proof that none has a crack: all
+    /// that the best uniform cut of so many faces takes.
+    /// # Errors
+    /// A file that is damaged, or made to mislead.
+    pub fn read_up_to(&self, faces: usize) -> Result<(Implicit, Certificate), FileError> {
+        let mut all = self.header.base_faces as usize;
+        let chunks = self.header.chunks[..self.whole].iter();
+        let count = chunks.take_while(|chunk| {
+            let is_needed = all < faces;
+            all = all.saturating_add(chunk.faces as usize);
+            is_needed
+        });
+        self.read_chunks(count.count())
+    }
+
+    /// The answer to a query. Reads only what it takes: chunks whose area the query wants.
+    /// # Errors
+    /// A query that is none; a file that is damaged, or made to mislead.
+    pub fn extract(&self, query: &Query<'_>) -> Result<Extract, FileError> {
+        let need = Need::new(query, &self.header.about.frame)?;
+        let wanted = |&chunk: &usize| need.wants_in(&self.header.chunks[chunk].area);
+        let chunks: Vec<usize> = (0..self.whole).filter(wanted).collect();
+        let known = self.load(&chunks)?;
+        let stored = chunks.iter().map(|&chunk| u64::from(self.header.chunks[chunk].stored.bytes));
+        let bytes = self.ends().next().unwrap_or(0) + stored.sum::<u64>();
+        let updates = known.updates.len();
+        let model = Implicit::assemble(self.header.about, known.base, &known.updates);
+        let level = Cut::at(&model, query)?.level();
+        Ok(Extract { level, chunks: chunks.len(), updates, bytes })
+    }
+
+    fn read_chunks(&self, count: usize) -> Result<(Implicit, Certificate), FileError> {
+        let known = self.load(&(0..count).collect::<Vec<_>>())?;
+        let updates = known.updates.len();
+        let model = Implicit::assemble(self.header.about, known.base, &known.updates);
+        if model.update_count() != updates {
+            return Err(FileError::Piece {
+                piece: "the updates".into(),
+                why: "some split what another splits".into(),
+            });
+        }
+        let certificate = model.certify()?;
+        Ok((model, certificate))
+    }
+
+    /// The base and some chunks, by rising numbers.
+    fn load(&self, chunks: &[usize]) -> Result<Known, FileError> {
+        let mut known = Known::new(self.header.lattice, self.read_base()?);
+        let (mut first, mut wanted) = (0, chunks.iter().peekable());
+        for (at, (entry, offset)) in self.header.chunks.iter().zip(self.ends()).enumerate() {
+            if wanted.next_if(|&&chunk| chunk == at).is_some() {
+                let name = || format!("chunk {at}");
+                let bytes = self.stored(offset, entry.stored, name)?;
+                let read = chunk::read(&mut known, &bytes, first, entry.updates as usize);
+                read.map_err(|why| FileError::Piece { piece: name(), why: why.to_string() })?;
+            }
+            first += entry.updates;
+        }
+        Ok(known)
+    }
+
+    fn read_base(&self) -> Result<Base, FileError> {
+        let name = || "the coarsest mesh".to_owned();
+        let bytes = self.stored(self.header.len(), self.header.base, name)?;
+        let bad = |why: &str| FileError::Piece { piece: name(), why: why.into() };
+        let (roots, faces) = (self.header.roots as usize, self.header.base_faces as usize);
+        let numbers = unpack_base(&bytes, roots, faces);
+        let [x, y, z, a, b, c] = numbers.map_err(|why| bad(&why.to_string()))?;
+        let place = |i: usize| self.header.lattice.place([x[i], y[i], z[i]]);
+        let places: Option<Vec<_>> = (0..roots).map(place).collect();
+        let positions = places.ok_or(bad("a vertex is out of reach"))?;
+        let corner = |v: i64| u32::try_from(v).ok().filter(|&v| (v as usize) < roots);
+        let face = |i: usize| Some([corner(a[i])?, corner(b[i])?, corner(c[i])?]);
+        let faces: Option<Vec<_>> = (0..faces).map(face).collect();
+        Ok(Base { positions, faces: faces.ok_or(bad("a face has a vertex that is not there"))? })
+    }
+
+    /// A piece of the file that is what was written.
+    fn stored(
+        &self,
+        offset: u64,
+        stored: Stored,
+        name: impl Fn() -> String,
+    ) -> Result<Vec<u8>, FileError> {
+        let bytes = piece(&self.source, offset, u64::from(stored.bytes), "a chunk")?;
+        if Stored::of(&bytes) == stored { Ok(bytes) } else { Err(FileError::Checksum(name())) }
+    }
+}
+
+/// Places and corners, by axis, each told by the one before.
+fn unpack_base(bytes: &[u8], roots: usize, faces: usize) -> std::io::Result<[Vec<i64>; 6]> {
+    let mut input = Unpacker::new(bytes)?;
+    let mut all: [Vec<i64>; 6] = Default::default();
+    for (k, numbers) in all.iter_mut().enumerate() {
+        let steps = input.signed(if k < 3 { roots } else { faces })?;
+        numbers.extend(steps.into_iter().scan(0i64, |at, step| {
+            *at += i64::from(step);
+            Some(*at)
+        }));
+    }
+    Ok(all)
+}
+
+/// So many bytes, which are not asked for before they are known to be there.
+fn piece(
+    source: &impl Source,
+    at: u64,
+    count: u64,
+    what: &'static str,
+) -> Result<Vec<u8>, FileError> {
+    let length = source.length()?;
+    if at.checked_add(count).is_none_or(|end| end > length) {
+        return Err(FileError::Truncated { at: length, what });
+    }
+    let mut bytes = vec![0; count as usize];
+    source.read_at(at, &mut bytes)?;
+    Ok(bytes)
+}

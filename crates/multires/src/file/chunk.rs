@@ -1,0 +1,252 @@
+//! A chunk of updates as bytes: a stream for each of their fields.
+//!
+//! Numbers are told by what is known when they are read: a node by the one before, a radius by how far
+//! apart the children are, and the children's places by their difference and by how far their middle is
+//! from their parent.
+
+use std::io;
+use std::ops::Range;
+
+use glam::Vec3;
+use thiserror::Error;
+
+use super::known::Known;
+use super::lattice::{Lattice, error9, error16, radius8, radius16};
+use super::streams::{Packer, Unpacker};
+use crate::forest::{NONE, Odd};
+use crate::frame::Length16;
+use crate::implicit::Loose;
+
+/// Why a chunk is none.
+#[derive(Debug, Error)]
+pub(super) enum ChunkError {
+    /// It cannot be unpacked, or ends too early.
+    #[error("it cannot be unpacked")]
+    Packed(#[from] io::Error),
+    /// An update of it cannot be.
+    #[error("its update {update}: {why}")]
+    Update { update: usize, why: &'static str },
+    #[error("it goes on behind its last update")]
+    Rest,
+}
+
+/// Bits of an update's flags.
+const OPEN: u8 = 1;
+const GLUED: u8 = 2;
+const ODD: u8 = 4;
+
+/// A run of what is known as bytes. All before it must be known.
+pub(super) fn write(known: &Known, run: Range<usize>) -> io::Result<Vec<u8>> {
+    let updates = &known.updates[run];
+    let mut packer = Packer::new()?;
+    let parents = updates.iter().scan(0, |next, u| {
+        let gap = u.parent - *next;
+        *next = u.parent + 1;
+        Some(gap)
+    });
+    packer.numbers(&parents.collect::<Vec<_>>())?;
+    let flags = |u: &Loose| {
+        OPEN * u8::from(u.is_open) + GLUED * u8::from(u.glued) + ODD * u8::from(u.odd.is_some())
+    };
+    packer.bytes(&updates.iter().map(flags).collect::<Vec<_>>())?;
+    for side in [0, 1] {
+        packer.bytes(&updates.iter().map(|u| u.wings[side]).collect::<Vec<_>>())?;
+    }
+    write_errors(updates, &mut packer)?;
+    write_places(known, updates, &mut packer)?;
+    for odd in updates.iter().filter_map(|u| u.odd.as_deref()) {
+        write_odd(odd, &mut packer)?;
+    }
+    packer.finish()
+}
+
+/// Errors above the least, and levels above the least of those with the same error.
+fn write_errors(updates: &[Loose], packer: &mut Packer) -> io::Result<()> {
+    let errors = || updates.iter().map(|u| error9(u.error));
+    let least = errors().min().unwrap_or(0);
+    let steps: Vec<u32> = errors().map(|error| error - least).collect();
+    let count = steps.iter().max().map_or(0, |&most| most as usize + 1);
+    let mut levels = vec![u32::MAX; count];
+    for (u, &step) in updates.iter().zip(&steps) {
+        levels[step as usize] = levels[step as usize].min(u.level.into());
+    }
+    let above = updates.iter().zip(&steps);
+    let above = above.map(|(u, &step)| u32::from(u.level) - levels[step as usize]);
+    let above: Vec<u32> = above.collect();
+    levels.iter_mut().filter(|level| **level == u32::MAX).for_each(|level| *level = 0);
+    packer.numbers(&[least, count as u32])?;
+    packer.numbers(&levels)?;
+    packer.numbers(&steps)?;
+    packer.numbers(&above)
+}
+
+fn write_places(known: &Known, updates: &[Loose], packer: &mut Packer) -> io::Result<()> {
+    let family = |u: &Loose| Family::of(known.lattice, known.place(u.parent), u.children);
+    let families: Vec<_> = updates.iter().map(family).collect();
+    for k in 0..3 {
+        packer.signed(families.iter().map(|family| family.apart[k]))?;
+        packer.signed(families.iter().map(|family| family.middle[k]))?;
+    }
+    let radii = updates.iter().zip(&families);
+    packer.signed(
+        radii.map(|(u, family)| {
+            i32::from(radius8(u.radius)) - i32::from(family.radius8(known.lattice))
+        }),
+    )
+}
+
+fn write_odd(odd: &Odd, packer: &mut Packer) -> io::Result<()> {
+    packer.numbers(&[odd.second.len() as u32])?;
+    packer.numbers(odd.second.as_flattened())?;
+    packer.numbers(&[odd.brought.len() as u32])?;
+    packer.numbers(odd.brought.as_flattened())
+}
+
+/// Adds a chunk of so many updates, the first of which has this number in the file. Those whose node
+/// is not known come without it.
+pub(super) fn read(
+    known: &mut Known,
+    bytes: &[u8],
+    first: u32,
+    count: usize,
+) -> Result<(), ChunkError> {
+    known.go_to(first);
+    let mut input = Unpacker::new(bytes)?;
+    let gaps = input.numbers(count)?;
+    let flags = input.bytes(count)?;
+    let wings = [input.bytes(count)?, input.bytes(count)?];
+    let (errors, levels) = read_errors(&mut input, count)?;
+    let places = Places::read(&mut input, count)?;
+    let mut next = 0;
+    for at in 0..count {
+        let bad = |why| ChunkError::Update { update: at, why };
+        let made = known.roots() + 2 * (first + at as u32);
+        let parent = gaps[at].checked_add(next).filter(|&parent| parent < made);
+        let parent = parent.ok_or(bad("it splits a node that is not there yet"))?;
+        next = parent + 1;
+        let parent = match known.node(parent) {
+            // What is below something unknown is unknown.
+            node if node != NONE && known.above(node).is_none_or(|up| up.parent != NONE) => node,
+            _ => NONE,
+        };
+        let mut update = Loose {
+            parent,
+            level: u16::try_from(levels[at]).map_err(|_| bad("its level is too high"))?,
+            wings: [wings[0][at], wings[1][at]],
+            radius: Length16::default(),
+            error: error16(errors[at]).ok_or(bad("its error is no length"))?,
+            is_open: flags[at] & OPEN != 0,
+            glued: flags[at] & GLUED != 0,
+            odd: None,
+            children: [Vec3::ZERO; 2],
+        };
+        if parent != NONE {
+            let family = places.family(at);
+            let children = family.children(known.lattice, known.place(parent));
+            update.children = children.ok_or(bad("its children are out of reach"))?;
+            let radius = i64::from(family.radius8(known.lattice)) + i64::from(places.radii[at]);
+            let radius = u8::try_from(radius).map_err(|_| bad("its radius is no length"))?;
+            update.radius = radius16(radius);
+            update.trouble(known.above(parent)).map_or(Ok(()), |why| Err(bad(why)))?;
+        }
+        known.updates.push(update);
+    }
+    let nodes = known.roots() + 2 * (first + count as u32);
+    let start = known.updates.len() - count;
+    for at in (0..count).filter(|&at| flags[at] & ODD != 0) {
+        let bad = ChunkError::Update { update: at, why: "a face that it brings has no vertices" };
+        let odd = read_odd(&mut input, nodes)?.ok_or(bad)?.renumbered(|node| known.node(node));
+        known.updates[start + at].odd = Some(Box::new(odd));
+    }
+    if input.is_over()? { Ok(()) } else { Err(ChunkError::Rest) }
+}
+
+/// Errors and levels, as large as they may be told.
+fn read_errors(input: &mut Unpacker<'_>, count: usize) -> io::Result<(Vec<u32>, Vec<u32>)> {
+    let [least, steps] = input.numbers(2)?[..] else { unreachable!("two are two") };
+    let least_levels = input.numbers(steps as usize)?;
+    let mut errors = input.numbers(count)?;
+    let mut levels = input.numbers(count)?;
+    for (error, level) in errors.iter_mut().zip(&mut levels) {
+        let least_level = least_levels.get(*error as usize).ok_or(io::ErrorKind::InvalidData)?;
+        *level = level.saturating_add(*least_level);
+        *error = error.saturating_add(least);
+    }
+    Ok((errors, levels))
+}
+
+/// What wings cannot tell, by nodes of the file: so many are made up to this chunk's end.
+fn read_odd(input: &mut Unpacker<'_>, nodes: u32) -> Result<Option<Odd>, io::Error> {
+    let mut list = |size: usize| -> io::Result<Vec<u32>> {
+        let count = input.numbers(1)?[0] as usize;
+        input.numbers(size * count)
+    };
+    let (second, brought) = (list(2)?, list(3)?);
+    let are_made = second.iter().chain(&brought).all(|&node| node < nodes);
+    Ok(are_made.then(|| Odd {
+        second: second.as_chunks().0.to_vec(),
+        brought: brought.as_chunks().0.to_vec(),
+    }))
+}
+
+/// Where the two children of a node are.
+struct Family {
+    /// From the first to the second.
+    apart: [i32; 3],
+    /// From the parent to their middle, without what `apart` tells.
+    middle: [i32; 3],
+}
+
+struct Places {
+    apart: [Vec<i32>; 3],
+    middle: [Vec<i32>; 3],
+    radii: Vec<i32>,
+}
+
+impl Places {
+    fn read(input: &mut Unpacker<'_>, count: usize) -> io::Result<Self> {
+        let (mut apart, mut middle) = <([Vec<i32>; 3], [Vec<i32>; 3])>::default();
+        for k in 0..3 {
+            apart[k] = input.signed(count)?;
+            middle[k] = input.signed(count)?;
+        }
+        Ok(Self { apart, middle, radii: input.signed(count)? })
+    }
+
+    fn family(&self, at: usize) -> Family {
+        Family {
+            apart: [0, 1, 2].map(|k| self.apart[k][at]),
+            middle: [0, 1, 2].map(|k| self.middle[k][at]),
+        }
+    }
+}
+
+impl Family {
+    fn of(lattice: Lattice, parent: Vec3, children: [Vec3; 2]) -> Self {
+        let parent = lattice.round(parent);
+        let [a, b] = children.map(|child| lattice.round(child));
+        let apart = [0, 1, 2].map(|k| b[k] - a[k]);
+        // Their sum is odd where their difference is.
+        let middle = [0, 1, 2].map(|k| (a[k] + b[k] - 2 * parent[k] - (apart[k] & 1)) / 2);
+        Self { apart, middle }
+    }
+
+    /// None where they would be out of reach.
+    fn children(&self, lattice: Lattice, parent: Vec3) -> Option<[Vec3; 2]> {
+        let parent = lattice.round(parent);
+        let ends = [-1, 1].map(|side| {
+            lattice.place([0, 1, 2].map(|k| {
+                let apart = i64::from(self.apart[k]);
+                let sum = 2 * (i64::from(self.middle[k]) + i64::from(parent[k])) + (apart & 1);
+                (sum + side * apart) / 2
+            }))
+        });
+        Some([ends[0]?, ends[1]?])
+    }
+
+    /// What a ball around them would take at least, about.
+    fn radius8(&self, lattice: Lattice) -> u8 {
+        let squared: f64 = self.apart.iter().map(|&x| f64::from(x) * f64::from(x)).sum();
+        radius8(Length16::up(squared.sqrt() * lattice.cell()))
+    }
+}

@@ -1,0 +1,189 @@
+//! What a file starts with: what it holds, and where.
+
+use glam::{DVec3, Vec3};
+
+use super::lattice::Lattice;
+use super::{FileError, MAGIC, VERSION};
+use crate::bounds::ErrorKind;
+use crate::frame::Frame;
+use crate::implicit::About;
+use crate::need::Area;
+
+/// What a file holds, without the updates.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Header {
+    pub(super) about: About,
+    pub(super) lattice: Lattice,
+    pub(super) roots: u32,
+    pub(super) base_faces: u32,
+    pub(super) base: Stored,
+    pub(super) chunks: Vec<Entry>,
+}
+
+/// A piece of a file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Stored {
+    pub(super) bytes: u32,
+    pub(super) checksum: u32,
+}
+
+/// A chunk as the index has it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Entry {
+    pub(super) stored: Stored,
+    pub(super) updates: u32,
+    /// How many faces its updates bring.
+    pub(super) faces: u32,
+    /// Around all of its updates and all that need any of them; the greatest error.
+    pub(super) area: Area,
+}
+
+/// Up to where the size of everything is known.
+pub(super) const FIXED: usize = 80;
+const ENTRY: usize = 44;
+/// Where the checksum is, and what it is of starts.
+const CHECKSUM: usize = 12;
+const BODY: usize = 16;
+
+impl Stored {
+    pub(super) fn of(bytes: &[u8]) -> Self {
+        Self { bytes: bytes.len() as u32, checksum: crc32fast::hash(bytes) }
+    }
+}
+
+impl Header {
+    /// How many bytes it takes itself.
+    pub(super) fn len(&self) -> u64 {
+        (FIXED + ENTRY * self.chunks.len()) as u64
+    }
+
+    /// How many updates all chunks have.
+    pub(super) fn updates(&self) -> usize {
+        self.chunks.iter().map(|chunk| chunk.updates as usize).sum()
+    }
+
+    pub(super) fn to_bytes(&self) -> Vec<u8> {
+        let mut out = Vec::with_capacity(self.len() as usize);
+        out.extend(MAGIC);
+        out.extend(VERSION.to_le_bytes());
+        out.extend([0; BODY - CHECKSUM]);
+        let kind = self.about.error_kind;
+        out.extend([self.lattice.bits(), u8::from(kind == ErrorKind::Bound), 0, 0]);
+        let words = [self.roots, self.base_faces, self.base.bytes, self.base.checksum];
+        out.extend(words.iter().flat_map(|word| word.to_le_bytes()));
+        out.extend((self.chunks.len() as u32).to_le_bytes());
+        let origin = self.about.frame.model([0.0; 3]);
+        out.extend(origin.iter().flat_map(|x| x.to_le_bytes()));
+        out.extend(self.about.frame.length_of_model(1.0).to_le_bytes());
+        out.resize(FIXED, 0);
+        for Entry { stored, updates, faces, area } in &self.chunks {
+            let words = [stored.bytes, stored.checksum, *updates, *faces];
+            out.extend(words.iter().flat_map(|word| word.to_le_bytes()));
+            let numbers = [-up(-area.min), up(area.max)].map(|corner| corner.to_array());
+            out.extend(numbers.as_flattened().iter().flat_map(|x| x.to_le_bytes()));
+            out.extend(up(DVec3::splat(area.error)).x.to_le_bytes());
+        }
+        let checksum = crc32fast::hash(&out[BODY..]);
+        out[CHECKSUM..BODY].copy_from_slice(&checksum.to_le_bytes());
+        out
+    }
+
+    /// How long the header is that starts like this, at least [`FIXED`] bytes.
+    pub(super) fn length(start: &[u8]) -> Result<usize, FileError> {
+        if !start.starts_with(MAGIC) {
+            return Err(FileError::Magic);
+        }
+        let version = word(start, MAGIC.len());
+        if version != VERSION {
+            return Err(FileError::Version(version));
+        }
+        Ok(FIXED + ENTRY * word(start, 36) as usize)
+    }
+
+    /// Of as many bytes as [`Header::length`] says.
+    pub(super) fn from_bytes(bytes: &[u8]) -> Result<Self, FileError> {
+        if crc32fast::hash(&bytes[BODY..]) != word(bytes, CHECKSUM) {
+            return Err(FileError::Checksum("the header".into()));
+        }
+        let origin = [0, 1, 2].map(|k| double(bytes, 40 + 8 * k));
+        let frame = Frame::from_parts(origin, double(bytes, 64));
+        let bad = |why| FileError::Header(why);
+        let this = Self {
+            about: About {
+                frame: frame.ok_or(bad("its frame is no place"))?,
+                error_kind: match bytes[BODY + 1] {
+                    0 => ErrorKind::Estimate,
+                    1 => ErrorKind::Bound,
+                    _ => return Err(bad("its errors are of no kind")),
+                },
+            },
+            lattice: Lattice::of_bits(bytes[BODY]).ok_or(bad("its lattice is too fine"))?,
+            roots: word(bytes, 20),
+            base_faces: word(bytes, 24),
+            base: Stored { bytes: word(bytes, 28), checksum: word(bytes, 32) },
+            chunks: bytes[FIXED..].chunks_exact(ENTRY).map(Entry::from_bytes).collect(),
+        };
+        if this.updates() > MOST_UPDATES || this.roots as usize > MOST_UPDATES {
+            return Err(bad("it has more updates than can be numbered"));
+        }
+        let is_area = |a: &Area| a.min.is_finite() && a.max.is_finite() && a.error >= 0.0;
+        if !this.chunks.iter().all(|chunk| is_area(&chunk.area)) {
+            return Err(bad("a chunk is nowhere"));
+        }
+        Ok(this)
+    }
+}
+
+/// Nodes are numbered up to 2³¹: roots, and two an update.
+const MOST_UPDATES: usize = 1 << 29;
+
+impl Entry {
+    fn from_bytes(bytes: &[u8]) -> Self {
+        let number = |at| f64::from(f32::from_bits(word(bytes, at)));
+        Self {
+            stored: Stored { bytes: word(bytes, 0), checksum: word(bytes, 4) },
+            updates: word(bytes, 8),
+            faces: word(bytes, 12),
+            area: Area {
+                min: DVec3::new(number(16), number(20), number(24)),
+                max: DVec3::new(number(28), number(32), number(36)),
+                error: number(40),
+            },
+        }
+    }
+}
+
+/// Writes the checksums that fit.
+pub(super) fn seal(bytes: &mut [u8]) {
+    let Some(index) = bytes.get(..FIXED).and_then(|start| Header::length(start).ok()) else {
+        return;
+    };
+    if bytes.len() < index {
+        return;
+    }
+    // Of the base, whose size and checksum are in the header, and of each chunk.
+    let mut from = index;
+    for at in std::iter::once(28).chain((FIXED..index).step_by(ENTRY)) {
+        let size = word(bytes, at) as usize;
+        let Some(piece) = bytes.get(from..).and_then(|rest| rest.get(..size)) else { break };
+        let checksum = crc32fast::hash(piece);
+        bytes[at + 4..at + 8].copy_from_slice(&checksum.to_le_bytes());
+        from += size;
+    }
+    let checksum = crc32fast::hash(&bytes[BODY..index]);
+    bytes[CHECKSUM..BODY].copy_from_slice(&checksum.to_le_bytes());
+}
+
+fn word(bytes: &[u8], at: usize) -> u32 {
+    u32::from_le_bytes(std::array::from_fn(|k| bytes[at + k]))
+}
+
+fn double(bytes: &[u8], at: usize) -> f64 {
+    f64::from_le_bytes(std::array::from_fn(|k| bytes[at + k]))
+}
+
+/// The least of `f32` that are no less.
+fn up(x: DVec3) -> Vec3 {
+    let near = x.as_vec3();
+    Vec3::select(near.as_dvec3().cmplt(x), near.map(f32::next_up), near)
+}

@@ -1,0 +1,85 @@
+//! What a file keeps of a forest: the same cuts, in numbers that take less room.
+
+use super::lattice::{ERRORS, Lattice, error9, error16, radius8, radius16};
+use crate::forest::{Forest, MOST_LEVELS};
+use crate::frame::Length16;
+
+/// As the recorder draws its balls.
+const SLACK: f64 = 1.0 + 1e-6;
+
+impl Forest {
+    /// With places on the lattice, balls around that and errors in fewer steps, rounded up and nested
+    /// again; with levels that tell little beside the error; with siblings in the order of `x`.
+    pub(super) fn kept(&self, lattice: Lattice) -> Self {
+        let mut this = self.clone();
+        for place in &mut this.positions {
+            *place = lattice.put(lattice.round((*place).into())).into();
+        }
+        for u in 0..this.updates.len() {
+            let update = &this.updates[u];
+            let center = this.ball(u).center;
+            // Its own place may have moved, and what is around.
+            let own = update.radius.get() + 2.0 * lattice.rounding();
+            let below = update.children.iter().filter_map(|&child| this.update_of(child));
+            let balls = below.map(|below| this.ball(below));
+            let reach = balls.map(|ball| ball.center.distance(center) + ball.radius);
+            let radius = Length16::up(reach.fold(own, f64::max) * SLACK);
+            let radius = radius16(radius8(radius));
+            let error = error16(error9(update.error)).unwrap_or(Length16::INFINITE);
+            (this.updates[u].radius, this.updates[u].error) = (radius, error);
+            if this.updates[u].glued {
+                (this.updates[u - 1].radius, this.updates[u - 1].error) = (radius, error);
+            }
+        }
+        this.turn_siblings();
+        this.level_by_error();
+        this
+    }
+
+    /// Lets the second of two siblings be the one with the greater `x`, where that is free.
+    fn turn_siblings(&mut self) {
+        for u in 0..self.updates.len() {
+            let update = &mut self.updates[u];
+            let [first, second] = update.children.map(|child| self.positions[child as usize][0]);
+            if first > second && update.either && !update.glued {
+                update.children.reverse();
+                update.wings.reverse();
+            }
+        }
+    }
+
+    /// Counts levels within each step of the error, and the steps one above the other: what needs
+    /// something has no greater error. Leaves them as they are if that takes too many.
+    fn level_by_error(&mut self) {
+        let step = |update: usize| error9(self.updates[update].error) as usize;
+        let mut heights: Vec<u16> = Vec::with_capacity(self.updates.len());
+        let mut tops = [0u16; ERRORS];
+        for u in 0..self.updates.len() {
+            let below = self.ring(u).iter().chain(&self.updates[u].children);
+            let below = below.filter_map(|&node| self.update_of(node));
+            let below = below.filter(|&below| step(below) == step(u));
+            let height = 1 + below.map(|below| heights[below]).max().unwrap_or(0);
+            tops[step(u)] = tops[step(u)].max(height);
+            heights.push(height);
+        }
+        let mut all = 0;
+        let bottoms = tops.map(|top| {
+            all += usize::from(top);
+            all - usize::from(top)
+        });
+        if all >= usize::from(MOST_LEVELS) {
+            return;
+        }
+        for (u, height) in heights.into_iter().enumerate() {
+            self.updates[u].level = bottoms[error9(self.updates[u].error) as usize] as u16 + height;
+        }
+    }
+}
+
+/// How many octaves there are.
+pub(super) const OCTAVES: usize = 32;
+
+/// The power of two that an error is in.
+pub(super) fn octave(error: Length16) -> usize {
+    (usize::from(error.0) * OCTAVES) >> u16::BITS
+}

@@ -1,0 +1,55 @@
+//! What is known of a file while it is read or written: nodes, and the updates that make them.
+
+use glam::Vec3;
+
+use super::lattice::Lattice;
+use crate::forest::NONE;
+use crate::implicit::{Base, Loose};
+
+/// The base and some runs of updates. Those of a file that was read in part are numbered without gaps.
+pub(super) struct Known {
+    pub(super) lattice: Lattice,
+    pub(super) base: Base,
+    pub(super) updates: Vec<Loose>,
+    /// By run of updates: its first in the file, and its first here.
+    runs: Vec<[u32; 2]>,
+}
+
+impl Known {
+    pub(super) fn new(lattice: Lattice, base: Base) -> Self {
+        Self { lattice, base, updates: Vec::new(), runs: Vec::new() }
+    }
+
+    /// What comes next are the updates of the file from this one on.
+    pub(super) fn go_to(&mut self, update: u32) {
+        self.runs.push([update, self.updates.len() as u32]);
+    }
+
+    /// The number here of a node of the file; [`NONE`] if it is not here.
+    pub(super) fn node(&self, node: u32) -> u32 {
+        let roots = self.roots();
+        let Some(child) = node.checked_sub(roots) else { return node };
+        let next = self.runs.partition_point(|run| run[0] <= child / 2);
+        let Some(last) = next.checked_sub(1) else { return NONE };
+        let [first, here] = self.runs[last];
+        let end = self.runs.get(next).map_or(self.updates.len() as u32, |run| run[1]);
+        let update = here + (child / 2 - first);
+        if update < end { roots + 2 * update + child % 2 } else { NONE }
+    }
+
+    /// The update that makes a node; none for a root.
+    pub(super) fn above(&self, node: u32) -> Option<&Loose> {
+        let child = node.checked_sub(self.roots());
+        child.map(|child| &self.updates[child as usize / 2])
+    }
+
+    /// Where a node is.
+    pub(super) fn place(&self, node: u32) -> Vec3 {
+        let side = node.wrapping_sub(self.roots()) as usize % 2;
+        self.above(node).map_or_else(|| self.base.positions[node as usize], |u| u.children[side])
+    }
+
+    pub(super) fn roots(&self) -> u32 {
+        self.base.positions.len() as u32
+    }
+}

@@ -1,0 +1,84 @@
+//! The `.mlod` file: a base mesh, and then all updates, the ones that matter most first.
+//!
+//! Updates stand in chunks. All chunks up to any one are a cut: so a file is good from its start on, and
+//! what has not come yet is only missing. An index near the front tells of each chunk where it is and how
+//! coarse things are without it: a query reads what it needs. docs/formats/mlod.md has the bytes.
+
+mod archive;
+mod chunk;
+mod header;
+mod keep;
+mod known;
+mod lattice;
+mod plan;
+mod source;
+mod streams;
+#[cfg(test)]
+mod tests;
+mod write;
+
+use std::io;
+
+use thiserror::Error;
+
+pub use archive::{Archive, Extract};
+pub use source::Source;
+pub use write::Storage;
+
+use crate::cut::Unsound;
+use crate::forest::BuildError;
+use crate::query::QueryError;
+
+const MAGIC: &[u8; 8] = b"meshlodm";
+const VERSION: u32 = 1;
+
+/// Why a file gives no model.
+#[derive(Debug, Error)]
+pub enum FileError {
+    /// It cannot be read.
+    #[error(transparent)]
+    Io(#[from] io::Error),
+    /// It starts otherwise.
+    #[error("this is no multiresolution file: it does not start with \"meshlodm\"")]
+    Magic,
+    /// It was written by a later version.
+    #[error("version {0} of multiresolution files; this program reads version {VERSION}")]
+    Version(u32),
+    /// It ends before its coarsest mesh does.
+    #[error("the file is cut off at byte {at}, before the end of {what}")]
+    Truncated {
+        /// How long it is.
+        at: u64,
+        /// What is not there as a whole.
+        what: &'static str,
+    },
+    /// It is not what was written.
+    #[error("the checksum of {0} is wrong: the file is damaged")]
+    Checksum(String),
+    /// It goes on.
+    #[error("byte {at}: the last chunk is over, the file goes on")]
+    Rest {
+        /// Where it should end.
+        at: u64,
+    },
+    /// Its header cannot be.
+    #[error("the header: {0}")]
+    Header(&'static str),
+    /// A piece of it cannot be.
+    #[error("{piece}: {why}")]
+    Piece {
+        /// Which.
+        piece: String,
+        /// What is wrong with it.
+        why: String,
+    },
+    /// Its meshes would have cracks.
+    #[error(transparent)]
+    Unsound(#[from] Unsound),
+    /// There is no model to write.
+    #[error(transparent)]
+    Build(#[from] BuildError),
+    /// Not the file is wrong but the question.
+    #[error(transparent)]
+    Query(#[from] QueryError),
+}

@@ -1,0 +1,41 @@
+//! Where the bytes of a file are.
+
+use std::fs::File;
+use std::io::{self, Read, Seek, SeekFrom};
+
+/// Bytes that can be read from any place on: a file, a piece of memory, a range request.
+pub trait Source {
+    /// How many there are.
+    /// # Errors
+    /// Of the place where they are.
+    fn length(&self) -> io::Result<u64>;
+
+    /// Fills `bytes` with those from `at` on.
+    /// # Errors
+    /// Fewer bytes, or of the place where they are.
+    fn read_at(&self, at: u64, bytes: &mut [u8]) -> io::Result<()>;
+}
+
+impl Source for File {
+    fn length(&self) -> io::Result<u64> {
+        Ok(self.metadata()?.len())
+    }
+
+    fn read_at(&self, at: u64, bytes: &mut [u8]) -> io::Result<()> {
+        let mut file = self;
+        file.seek(SeekFrom::Start(at))?;
+        file.read_exact(bytes)
+    }
+}
+
+impl Source for Vec<u8> {
+    fn length(&self) -> io::Result<u64> {
+        Ok(self.len() as u64)
+    }
+
+    fn read_at(&self, at: u64, bytes: &mut [u8]) -> io::Result<()> {
+        let from = usize::try_from(at).ok().and_then(|at| self.get(at..));
+        let mut rest = from.ok_or(io::ErrorKind::UnexpectedEof)?;
+        rest.read_exact(bytes)
+    }
+}

@@ -1,0 +1,157 @@
+//! Numbers as streams of bytes that compress well: like with like.
+
+use std::io::{self, Read, Write};
+
+/// How hard to press: beyond this the dragon takes twice the time for half a percent.
+const EFFORT: i32 = 9;
+/// At most so many numbers are read from a byte, so that a short file cannot fill the memory; real ones
+/// have up to 20.
+const NUMBERS_A_BYTE: usize = 256;
+/// What a file may take that has more: a frame without content, and how long that is.
+const SKIPPED: [u8; 4] = 0x184D_2A50u32.to_le_bytes();
+
+/// Streams one after the other, each in blocks of its own, so that each has its own code.
+pub(super) struct Packer {
+    encoder: zstd::Encoder<'static, Vec<u8>>,
+    numbers: usize,
+}
+
+impl Packer {
+    pub(super) fn new() -> io::Result<Self> {
+        let mut encoder = zstd::Encoder::new(Vec::new(), EFFORT)?;
+        encoder.include_contentsize(false)?;
+        Ok(Self { encoder, numbers: 0 })
+    }
+
+    /// A stream of bytes, whose number the reader must know.
+    pub(super) fn bytes(&mut self, bytes: &[u8]) -> io::Result<()> {
+        self.numbers += bytes.len();
+        self.encoder.write_all(bytes)?;
+        self.encoder.flush()
+    }
+
+    /// A stream of numbers: all least bytes, then all next ones. Ahead stands how many bytes the
+    /// greatest takes.
+    pub(super) fn numbers(&mut self, numbers: &[u32]) -> io::Result<()> {
+        let most = numbers.iter().copied().max().unwrap_or(0);
+        let planes = (u32::BITS - most.leading_zeros()).div_ceil(8);
+        self.numbers += 1 + if planes > 0 { 0 } else { numbers.len() };
+        self.encoder.write_all(&[planes as u8])?;
+        for plane in 0..planes {
+            let bytes: Vec<u8> = numbers.iter().map(|n| (n >> (8 * plane)) as u8).collect();
+            self.bytes(&bytes)?;
+        }
+        Ok(())
+    }
+
+    /// The same of numbers with a sign.
+    pub(super) fn signed(&mut self, numbers: impl Iterator<Item = i32>) -> io::Result<()> {
+        let folded: Vec<u32> = numbers.map(|n| ((n << 1) ^ (n >> 31)) as u32).collect();
+        self.numbers(&folded)
+    }
+
+    pub(super) fn finish(self) -> io::Result<Vec<u8>> {
+        let mut bytes = self.encoder.finish()?;
+        let least = self.numbers / NUMBERS_A_BYTE;
+        if bytes.len() < least {
+            let rest = least - bytes.len();
+            bytes.extend(SKIPPED);
+            bytes.extend((rest as u32).to_le_bytes());
+            bytes.resize(bytes.len() + rest, 0);
+        }
+        Ok(bytes)
+    }
+}
+
+/// Reads what a [`Packer`] wrote. What it gives is never larger than was asked for.
+pub(super) struct Unpacker<'b> {
+    decoder: zstd::Decoder<'static, &'b [u8]>,
+    /// How many more numbers there may be.
+    left: usize,
+}
+
+impl<'b> Unpacker<'b> {
+    pub(super) fn new(bytes: &'b [u8]) -> io::Result<Self> {
+        let left = (bytes.len() + 1).saturating_mul(NUMBERS_A_BYTE);
+        Ok(Self { decoder: zstd::Decoder::with_buffer(bytes)?, left })
+    }
+
+    pub(super) fn bytes(&mut self, count: usize) -> io::Result<Vec<u8>> {
+        self.spend(count)?;
+        let mut bytes = vec![0; count];
+        self.decoder.read_exact(&mut bytes)?;
+        Ok(bytes)
+    }
+
+    fn spend(&mut self, count: usize) -> io::Result<()> {
+        let left = self.left.checked_sub(count).ok_or(io::ErrorKind::InvalidData)?;
+        self.left = left;
+        Ok(())
+    }
+
+    pub(super) fn numbers(&mut self, count: usize) -> io::Result<Vec<u32>> {
+        let planes = u32::from(self.bytes(1)?[0]);
+        if planes > 4 {
+            return Err(io::ErrorKind::InvalidData.into());
+        }
+        if planes == 0 {
+            self.spend(count)?;
+            return Ok(vec![0; count]);
+        }
+        let mut numbers: Vec<u32> = self.bytes(count)?.into_iter().map(u32::from).collect();
+        for plane in 1..planes {
+            let bytes = self.bytes(count)?;
+            let parts = numbers.iter_mut().zip(bytes);
+            parts.for_each(|(number, byte)| *number |= u32::from(byte) << (8 * plane));
+        }
+        Ok(numbers)
+    }
+
+    pub(super) fn signed(&mut self, count: usize) -> io::Result<Vec<i32>> {
+        let unfold = |n: u32| (n >> 1) as i32 ^ -((n & 1) as i32);
+        Ok(self.numbers(count)?.into_iter().map(unfold).collect())
+    }
+
+    /// Whether there is nothing more.
+    pub(super) fn is_over(&mut self) -> io::Result<bool> {
+        Ok(self.decoder.read(&mut [0])? == 0)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_come_back() {
+        let numbers = [0, 1, 255, 256, u32::MAX, 70_000];
+        let signed = [0, -1, i32::MIN, i32::MAX, 300, -300];
+        let mut packer = Packer::new().unwrap();
+        packer.numbers(&numbers).unwrap();
+        packer.signed(signed.into_iter()).unwrap();
+        packer.numbers(&[0; 3]).unwrap();
+        packer.bytes(b"end").unwrap();
+        let bytes = packer.finish().unwrap();
+        let mut unpacker = Unpacker::new(&bytes).unwrap();
+        assert_eq!(unpacker.numbers(6).unwrap(), numbers);
+        assert_eq!(unpacker.signed(6).unwrap(), signed);
+        assert_eq!(unpacker.numbers(3).unwrap(), [0; 3]);
+        assert_eq!(unpacker.bytes(3).unwrap(), b"end");
+        assert!(unpacker.is_over().unwrap());
+        assert!(unpacker.bytes(1).is_err());
+    }
+
+    #[test]
+    fn what_is_cut_off_is_an_error() {
+        let mut packer = Packer::new().unwrap();
+        packer.numbers(&(0..1000).map(|i| i * i).collect::<Vec<_>>()).unwrap();
+        let bytes = packer.finish().unwrap();
+        for end in 0..bytes.len() {
+            let read = Unpacker::new(&bytes[..end]).and_then(|mut u| {
+                u.numbers(1000)?;
+                u.is_over()
+            });
+            assert!(read.is_err() || end + 3 >= bytes.len(), "{end} of {}", bytes.len());
+        }
+    }
+}

@@ -1,0 +1,191 @@
+//! What comes back of a file: of a whole one, of its start, of what a query needs, and of a damaged one.
+
+use meshlod_mesh::{Mesh, sample};
+use meshlod_simplify::Method;
+
+use super::write::lattice;
+use super::*;
+use crate::tests::walks::{Dice, each, forest, query, topology};
+use crate::{Cut, Forest, Implicit, Level, Model, Query};
+
+/// With chunks so small that a little mesh has many.
+fn small() -> Storage {
+    Storage { in_chunk: 20, ..Storage::default() }
+}
+
+fn bytes(forest: &Forest) -> Vec<u8> {
+    Archive::write(forest, &small()).unwrap().0
+}
+
+/// A mesh by where its corners are, whatever their numbers.
+fn by_place(level: &Level) -> Vec<[[u32; 3]; 3]> {
+    let corner = |v: u32| level.positions[v as usize].map(f32::to_bits);
+    let mut faces: Vec<_> = level.faces.iter().map(|face| face.map(corner)).collect();
+    for face in &mut faces {
+        let least = (0..3).min_by_key(|&k| face[k]).unwrap();
+        face.rotate_left(least);
+    }
+    faces.sort_unstable();
+    faces
+}
+
+#[test]
+fn a_file_gives_back_the_model() {
+    each(|what, mesh, forest| {
+        let rounded = Implicit::new(&forest.kept(lattice(forest, &small()))).unwrap();
+        let (read, certificate) = Archive::open(bytes(forest)).unwrap().read().unwrap();
+        assert_eq!(certificate, rounded.certify().unwrap(), "{what}");
+        assert_eq!(read.bytes(), rounded.bytes(), "{what}");
+        let mut dice = Dice(11);
+        for _ in 0..8 {
+            let query = query(&mut dice, mesh);
+            let [was, is] = [&rounded, &read].map(|mt| Cut::at(mt, &query).unwrap().level());
+            assert_eq!(is.canonical(), was.canonical(), "{what}: {query:?}");
+            assert_eq!(by_place(&is), by_place(&was), "{what}: {query:?}");
+        }
+    });
+}
+
+#[test]
+fn what_was_read_makes_a_model_again() {
+    each(|what, mesh, forest| {
+        let read = Archive::open(bytes(forest)).unwrap().read().unwrap().0;
+        let model = Model::of(&read).unwrap();
+        assert_eq!(model.implicit().certify(), read.certify(), "{what}");
+        let mut extractor = model.extractor();
+        let mut dice = Dice(11);
+        for _ in 0..8 {
+            let query = query(&mut dice, mesh);
+            let expected = by_place(&Cut::at(&read, &query).unwrap().level());
+            assert_eq!(
+                by_place(&Cut::at(model.implicit(), &query).unwrap().level()),
+                expected,
+                "{what}: {query:?}"
+            );
+            assert_eq!(by_place(extractor.exact(&query).unwrap()), expected, "{what}: {query:?}");
+        }
+    });
+}
+
+#[test]
+fn a_query_reads_what_it_needs() {
+    let mut spared = 0;
+    each(|what, mesh, forest| {
+        let archive = Archive::open(bytes(forest)).unwrap();
+        let model = archive.read().unwrap().0;
+        let mut dice = Dice(5);
+        for _ in 0..12 {
+            let query = query(&mut dice, mesh);
+            let part = archive.extract(&query).unwrap();
+            let whole = Cut::at(&model, &query).unwrap().level();
+            assert_eq!(by_place(&part.level), by_place(&whole), "{what}: {query:?}");
+            spared += archive.update_count() - part.updates;
+        }
+    });
+    assert!(spared > 10_000, "{spared}");
+}
+
+#[test]
+fn every_start_of_a_file_is_a_cut() {
+    each(|what, mesh, forest| {
+        let bytes = bytes(forest);
+        let archive = Archive::open(bytes.clone()).unwrap();
+        let mut faces = 0;
+        for (count, end) in archive.ends().enumerate() {
+            let cut_off = Archive::open(bytes[..end as usize].to_vec()).unwrap();
+            assert_eq!(
+                (cut_off.whole_chunks(), cut_off.chunk_count()),
+                (count, archive.chunk_count())
+            );
+            let (model, _) = cut_off.read().unwrap_or_else(|why| panic!("{what}, {count}: {why}"));
+            let finest = Cut::at(&model, &Query::uniform(0.0)).unwrap().level().mesh();
+            let (is, was) = (topology(&finest), topology(mesh));
+            assert!(is == was || is.is_simpler_than(&was), "{what}, {count} chunks: {is:?}");
+            assert!(model.full_faces() >= faces);
+            faces = model.full_faces();
+            if let Some(&byte) = bytes.get(end as usize) {
+                let more = Archive::open([&bytes[..end as usize], &[byte]].concat()).unwrap();
+                assert_eq!(more.whole_chunks(), count, "an unfinished chunk is not there yet");
+            }
+        }
+        assert_eq!(faces, forest.full_faces());
+    });
+}
+
+#[test]
+fn as_much_is_read_as_it_takes() {
+    let forest = forest(&sample::torus(3000), Method::Qem);
+    let archive = Archive::open(bytes(&forest)).unwrap();
+    let half = archive.read_up_to(1500).unwrap().0;
+    assert!((1500..1700).contains(&half.full_faces()), "{}", half.full_faces());
+    assert_eq!(archive.read_up_to(0).unwrap().0.update_count(), 0);
+    assert_eq!(archive.read_up_to(usize::MAX).unwrap().0.full_faces(), forest.full_faces());
+}
+
+#[test]
+fn vertices_move_as_little_as_asked() {
+    let mesh = sample::torus(800);
+    let forest = forest(&mesh, Method::Qem);
+    for rounding in [1e-2, 1e-5] {
+        let storage = Storage { rounding: Some(rounding), ..small() };
+        let archive = Archive::open(Archive::write(&forest, &storage).unwrap().0).unwrap();
+        assert!(archive.rounding() <= rounding && archive.rounding() > 0.3 * rounding);
+        let level = archive.extract(&Query::uniform(0.0)).unwrap().level.mesh();
+        let nearest = |p: &[f64; 3]| {
+            let squared = |q: &[f64; 3]| (0..3).map(|k| (p[k] - q[k]).powi(2)).sum::<f64>();
+            mesh.positions.iter().map(squared).fold(f64::INFINITY, f64::min).sqrt()
+        };
+        let most = level.positions.iter().map(nearest).fold(0.0, f64::max);
+        assert!(most <= rounding, "{most} of {rounding}");
+    }
+}
+
+#[test]
+fn what_is_damaged_is_refused() {
+    let forest = forest(&sample::torus(300), Method::LeeJang);
+    let bytes = bytes(&forest);
+    let open = |bytes: &[u8]| Archive::open(bytes.to_vec()).and_then(|archive| archive.read());
+    assert!(open(&bytes).is_ok());
+    for at in 0..bytes.len() {
+        let mut wrong = bytes.clone();
+        wrong[at] ^= 1 << (at % 8);
+        assert!(open(&wrong).is_err(), "byte {at} may be another");
+    }
+    let mut longer = bytes.clone();
+    longer.push(0);
+    assert!(matches!(open(&longer), Err(FileError::Rest { .. })));
+    let base = Archive::open(bytes.clone()).unwrap().ends().next().unwrap() as usize;
+    for end in 0..base {
+        assert!(matches!(open(&bytes[..end]), Err(FileError::Truncated { .. } | FileError::Magic)));
+    }
+}
+
+/// What has the right checksums and cannot be is refused too, or gives sound meshes.
+#[test]
+fn what_is_made_to_mislead_does_no_harm() {
+    let mesh: Mesh = sample::terrain(200);
+    let (mut refused, mut passed) = (0, 0);
+    for method in [Method::Qem, Method::LeeJang] {
+        let bytes = bytes(&forest(&mesh, method));
+        let mut dice = Dice(23);
+        for at in 0..bytes.len() {
+            let mut wrong = bytes.clone();
+            wrong[at] = (256.0 * dice.roll()) as u8;
+            Archive::seal(&mut wrong);
+            let Ok(archive) = Archive::open(wrong) else {
+                refused += 1;
+                continue;
+            };
+            let _ = archive.extract(&query(&mut dice, &mesh));
+            match archive.read() {
+                Ok((model, _)) => {
+                    passed += 1;
+                    let level = Cut::at(&model, &query(&mut dice, &mesh)).unwrap().level();
+                    assert!(level.positions.iter().flatten().all(|x| x.is_finite()));
+                }
+                Err(_) => refused += 1,
+            }
+        }
+    }
+    assert!(refused > 500 && passed > 100, "{refused} refused, {passed} passed");
+}

@@ -1,0 +1,108 @@
+//! Writes a model as a file.
+
+use std::io;
+
+use meshlod_mesh::Bounds;
+
+use super::FileError;
+use super::chunk;
+use super::header::{Entry, Header, Stored};
+use super::known::Known;
+use super::lattice::Lattice;
+use super::plan::{number, plan};
+use super::streams::Packer;
+use crate::cut::Certificate;
+use crate::forest::Forest;
+use crate::implicit::{About, Base, Implicit, Links, Loose, Order, Rule};
+
+/// How a model is stored.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Storage {
+    /// By how much a vertex may be moved, in model units; 0.005 % of the diagonal if nothing is said.
+    pub rounding: Option<f64>,
+    /// About how many updates a chunk has: more are a little smaller on disk, fewer are read in smaller
+    /// parts. At least 1.
+    pub in_chunk: usize,
+}
+
+impl Default for Storage {
+    fn default() -> Self {
+        Self { rounding: None, in_chunk: 1 << 12 }
+    }
+}
+
+/// Of the diagonal.
+const ROUNDING: f64 = 5e-5;
+
+/// The bytes of a `.mlod` file with all levels, and the proof that none of them has a crack.
+///
+/// Vertices are moved to a lattice; errors are rounded up, by a sixteenth at most. Cost: linear.
+/// # Errors
+/// More vertices than are numbered. What has no certificate is not written.
+pub(super) fn write(
+    forest: &Forest,
+    storage: &Storage,
+) -> Result<(Vec<u8>, Certificate), FileError> {
+    let lattice = lattice(forest, storage);
+    let forest = forest.kept(lattice);
+    let order = Order::new(&forest);
+    let mt = Implicit::in_order(&forest, &order)?;
+    let certificate = mt.certify()?;
+    let links = Links::in_order(&forest, &order, Rule::Strict);
+    let plan = plan(&mt, &links, storage.in_chunk.max(1));
+    let mut known = Known::new(lattice, mt.loose_base());
+    known.go_to(0);
+    known.updates.extend(plan.order.iter().map(|&update| {
+        let loose = mt.loose(update);
+        let number = |node| number(&mt, &plan.place, node);
+        let odd = loose.odd.map(|odd| Box::new(odd.renumbered(number)));
+        Loose { parent: number(loose.parent), odd, ..loose }
+    }));
+    let base = write_base(&known)?;
+    let (mut from, mut bodies, mut chunks) = (0, Vec::new(), Vec::new());
+    for planned in &plan.chunks {
+        let updates = from..planned.end;
+        let body = chunk::write(&known, updates.clone())?;
+        let faces = known.updates[updates.clone()].iter().map(Loose::brought).sum::<usize>();
+        chunks.push(Entry {
+            stored: Stored::of(&body),
+            updates: updates.len() as u32,
+            faces: faces as u32,
+            area: planned.area,
+        });
+        bodies.extend(body);
+        from = planned.end;
+    }
+    let header = Header {
+        about: About { frame: forest.frame, error_kind: forest.error_kind },
+        lattice,
+        roots: known.roots(),
+        base_faces: known.base.faces.len() as u32,
+        base: Stored::of(&base),
+        chunks,
+    };
+    Ok(([header.to_bytes(), base, bodies].concat(), certificate))
+}
+
+/// The coarsest that is fine enough.
+pub(super) fn lattice(forest: &Forest, storage: &Storage) -> Lattice {
+    let leaves = forest.faces.iter().flatten().map(|&leaf| forest.positions[leaf as usize]);
+    let places: Vec<_> = leaves.map(|p| p.map(f64::from)).collect();
+    let most = storage.rounding.map(|most| forest.frame.length(most));
+    Lattice::within(most.unwrap_or_else(|| ROUNDING * Bounds::of(&places).diagonal()))
+}
+
+/// Its vertices and faces, each told by the one before.
+fn write_base(known: &Known) -> io::Result<Vec<u8>> {
+    let Base { positions, faces } = &known.base;
+    let mut packer = Packer::new()?;
+    for k in 0..3 {
+        let places = positions.iter().map(|&p| known.lattice.round(p)[k]);
+        packer.signed(places.scan(0, |last, x| Some(x - std::mem::replace(last, x))))?;
+    }
+    for k in 0..3 {
+        let corners = faces.iter().map(|face| face[k] as i32);
+        packer.signed(corners.scan(0, |last, v| Some(v - std::mem::replace(last, v))))?;
+    }
+    packer.finish()
+}
