@@ -53,7 +53,8 @@
 //! ```
 //!
 //! Positions are kept as `f32` about the middle of the mesh, errors are the simplification's estimates,
-//! made monotone. docs/notes/multires.md has the rules, and why they suffice.
+//! made monotone, or proven bounds ([`Forest::measure_bounds`]). docs/notes/multires.md has the rules,
+//! and why they suffice.
 #![forbid(unsafe_code)]
 
 mod bounds;

@@ -279,7 +279,7 @@ fn odd_places_are_told_face_by_face() {
 }
 
 /// Faces between any three of a few points.
-fn soup(seed: u64) -> Mesh {
+pub(crate) fn soup(seed: u64) -> Mesh {
     let mut dice = Dice(seed);
     let points = 8 + seed % 20;
     let positions: Vec<_> = (0..points).map(|_| [0; 3].map(|_| dice.roll())).collect();

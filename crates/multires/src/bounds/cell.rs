@@ -1,0 +1,142 @@
+//! Triangles laid into a plane, with shadows on them, and what two of them share.
+
+use glam::{DVec2, DVec3};
+
+use super::shadow::Shadow;
+
+/// A triangle laid into the plane.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Cell {
+    pub(super) corners: [Corner; 3],
+    /// The weight of each corner at a place is linear: a slope, and what is there at the origin.
+    pub(super) weights: [(DVec2, f64); 3],
+    /// It is no triangle of the mesh: all of it stands for one open edge.
+    pub(super) is_outside: bool,
+}
+
+/// Where a vertex is laid, and what of its shadow is known.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Corner {
+    pub(super) node: u32,
+    pub(super) at: DVec2,
+    /// The shadow, about the new vertex's place.
+    pub(super) center: DVec3,
+    pub(super) radius: f64,
+    /// Of the new vertex's shadow, which is not yet known: all or nothing.
+    pub(super) share: f64,
+}
+
+/// What must hold at a corner of a piece: the shadow on the fine side is in that on the coarse side.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Demand {
+    /// The shadow on the fine side without what the ring gives to that on the coarse side.
+    pub(super) ball: Shadow,
+    /// How much the new vertex's shadow counts there.
+    pub(super) share: f64,
+    /// The triangle on the coarse side.
+    pub(super) coarse: usize,
+}
+
+/// Triangles must be wider than this part of their length in the plane. Then rounding moves nothing by
+/// more than 2⁻³² of the sides.
+const THIN: f64 = 1.0 / 65536.0;
+
+impl Corner {
+    /// The middle of one or two others, laid elsewhere.
+    pub(super) fn between(others: impl Iterator<Item = Self> + Clone, at: DVec2) -> Self {
+        let part = 1.0 / others.clone().count() as f64;
+        let start = Self { at, ..Self::default() };
+        others.fold(start, |sum, other| Self {
+            node: other.node,
+            center: sum.center + part * other.center,
+            radius: sum.radius + part * other.radius,
+            share: sum.share + part * other.share,
+            ..sum
+        })
+    }
+}
+
+impl Cell {
+    /// None where it is thin or turned over.
+    pub(super) fn new(corners: [Corner; 3], is_outside: bool) -> Option<Self> {
+        let [a, b, c] = corners.map(|corner| corner.at);
+        let longest =
+            [b - a, c - b, a - c].map(DVec2::length_squared).into_iter().fold(0.0, f64::max);
+        let twice_area = (b - a).perp_dot(c - a);
+        if twice_area.is_nan() || twice_area <= THIN * longest {
+            return None;
+        }
+        // One at a corner, none at the two others.
+        let weight = |from: DVec2, to: DVec2| {
+            let slope = (to - from).perp() / twice_area;
+            (slope, -slope.dot(from))
+        };
+        Some(Self { corners, weights: [weight(b, c), weight(c, a), weight(a, b)], is_outside })
+    }
+
+    /// The shadow at a place, as far as it is known, and how much the unknown one counts.
+    pub(super) fn at(&self, place: DVec2) -> (DVec3, f64, f64) {
+        let mut sum = (DVec3::ZERO, 0.0, 0.0);
+        for (corner, (slope, rest)) in self.corners.iter().zip(&self.weights) {
+            let weight = slope.dot(place) + rest;
+            sum.0 += weight * corner.center;
+            sum.1 += weight * corner.radius;
+            sum.2 += weight * corner.share;
+        }
+        sum
+    }
+
+    /// Whether another lies behind one of its edges.
+    fn is_apart(&self, other: &Self) -> bool {
+        self.weights.iter().any(|(slope, rest)| {
+            other.corners.iter().all(|corner| slope.dot(corner.at) + rest <= TOUCH)
+        })
+    }
+}
+
+/// What overlaps by less than this part of a triangle's width touches it only.
+const TOUCH: f64 = 1e-12;
+
+/// Three cuts make six corners of three; nine, were each corner by rounding on the other side than both
+/// its neighbours.
+const MOST_CORNERS: usize = 9;
+
+/// What the corners of the piece that two triangles have in common ask for. On the piece everything is
+/// linear but a distance, which is convex, so it holds all over where it holds there.
+pub(super) fn demand(fine: &Cell, coarse: &Cell, number: usize, demands: &mut Vec<Demand>) {
+    if coarse.is_apart(fine) || fine.is_apart(coarse) {
+        return;
+    }
+    let mut piece = [DVec2::ZERO; MOST_CORNERS];
+    let mut count = 3;
+    (0..3).for_each(|k| piece[k] = fine.corners[k].at);
+    for line in &coarse.weights {
+        (piece, count) = cut(&piece[..count], line);
+    }
+    for &place in &piece[..count] {
+        let (center, radius, _) = fine.at(place);
+        let (others, radius_of_others, share) = coarse.at(place);
+        let ball = Shadow { center: center - others, radius: radius - radius_of_others };
+        demands.push(Demand { ball, share, coarse: number });
+    }
+}
+
+/// What of a convex polygon lies where a weight is positive.
+fn cut(polygon: &[DVec2], (slope, rest): &(DVec2, f64)) -> ([DVec2; MOST_CORNERS], usize) {
+    let (mut left, mut count) = ([DVec2::ZERO; MOST_CORNERS], 0);
+    let mut keep = |corner: DVec2| {
+        left[count] = corner;
+        count += 1;
+    };
+    for (i, &from) in polygon.iter().enumerate() {
+        let to = polygon[(i + 1) % polygon.len()];
+        let [at_from, at_to] = [from, to].map(|place| slope.dot(place) + rest);
+        if at_from >= 0.0 {
+            keep(from);
+        }
+        if at_from * at_to < 0.0 {
+            keep(from + (to - from) * (at_from / (at_from - at_to)));
+        }
+    }
+    (left, count)
+}
