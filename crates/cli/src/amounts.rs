@@ -205,7 +205,8 @@ fn at_most(most: usize, text: &str) -> Result<usize, String> {
     }
 }
 
-fn number(text: &str) -> Result<f64, String> {
+/// A number that is finite.
+pub fn number(text: &str) -> Result<f64, String> {
     match text.trim().parse::<f64>() {
         Ok(number) if number.is_finite() => Ok(number),
         _ => Err(format!("{text:?} is not a number")),

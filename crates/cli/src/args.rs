@@ -11,7 +11,9 @@ use crate::compare::Compare;
 use crate::demo::Demo;
 use crate::failure::Failure;
 use crate::session::Session;
-use crate::verbs::{check, info, lods, measure, render, repair, replay, sample, simplify};
+use crate::verbs::{
+    build, check, extract, info, lods, measure, render, repair, replay, sample, simplify,
+};
 
 /// Level of detail for triangle meshes.
 ///
@@ -55,6 +57,10 @@ pub enum Verb {
     Replay(replay::Replay),
     /// Make a chain of coarser levels, as glTF with MSFT_lod or one file each
     Lods(lods::Lods),
+    /// Write all levels of a mesh into one multiresolution file
+    Build(build::Build),
+    /// Take one mesh out of a multiresolution file: fine where it is looked at, coarse elsewhere
+    Extract(extract::Extract),
     /// Run all methods on one mesh: a table, and a page with pictures and heat maps
     Compare(Compare),
     /// Measure how far two meshes are apart, both ways
@@ -76,6 +82,8 @@ impl Verb {
             Self::Simplify(verb) => verb.run(session),
             Self::Replay(verb) => verb.run(session),
             Self::Lods(verb) => verb.run(session),
+            Self::Build(verb) => verb.run(session),
+            Self::Extract(verb) => verb.run(session),
             Self::Compare(verb) => verb.run(session),
             Self::Measure(verb) => verb.run(session),
             Self::Sample(verb) => verb.run(session),

@@ -121,6 +121,7 @@ pub use meshlod_check as check;
 pub use meshlod_io as io;
 pub use meshlod_measure as measure;
 pub use meshlod_mesh as mesh;
+pub use meshlod_multires as multires;
 pub use meshlod_picture as picture;
 #[doc(inline)]
 pub use meshlod_simplify as simplify;

@@ -78,7 +78,7 @@ mod tests;
 pub use bounds::ErrorKind;
 pub use cut::{Certificate, Change, Cut, Effort, Flaw, Located, Patch, Unsound};
 pub use explicit::{Explicit, ExplicitCut};
-pub use file::{Archive, Extract, FileError, Source, Storage};
+pub use file::{Archive, Extract, FileError, ModelFile, Source, Storage};
 pub use forest::{BuildError, Forest};
 pub use frame::Frame;
 pub use implicit::{Extractor, Implicit, Rule};

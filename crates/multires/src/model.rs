@@ -53,7 +53,12 @@ impl Model {
     /// One that has no certificate.
     pub fn of(implicit: &Implicit) -> Result<Self, Unsound> {
         implicit.certify()?;
-        Ok(Self::new(&Forest::of(implicit)).expect("its nodes were numbered before"))
+        Ok(Self::proved(implicit))
+    }
+
+    /// The same of one that has a certificate.
+    pub(crate) fn proved(implicit: &Implicit) -> Self {
+        Self::new(&Forest::of(implicit)).expect("its nodes were numbered before")
     }
 
     /// The same, whose [`Extractor`] obeys another rule. A [`Cut`] obeys the strict one in any case.

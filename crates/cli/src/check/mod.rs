@@ -10,6 +10,7 @@ pub mod inspection;
 pub mod lock_file;
 mod marks;
 pub mod page;
+pub mod proof;
 pub mod report;
 pub mod sites;
 pub mod text;

@@ -14,14 +14,15 @@ use crate::args::Reading;
 use crate::check::inspection::{Inspection, Order};
 use crate::check::lock_file::{self, Rows};
 use crate::check::sites::Sites;
-use crate::check::{page, report, text};
+use crate::check::{page, proof, report, text};
 use crate::failure::Failure;
 use crate::files;
+use crate::model_file;
 use crate::session::Session;
 
 #[derive(Args)]
 pub struct Check {
-    /// File to read, or -
+    /// File to read, or -; of a .mlod file it is proved that no cut has a crack
     #[arg(value_name = "IN")]
     input: PathBuf,
     /// What an object is; auto takes the names of the file where it has two or more
@@ -75,6 +76,9 @@ enum Deny {
 
 impl Check {
     pub fn run(self, session: &Session) -> Result<Answer, Failure> {
+        if model_file::is_model(&self.input) {
+            return proof::prove(&self.input, session);
+        }
         self.refuse_early()?;
         let scene = files::read(&self.input, &self.reading, session)?;
         let mut written = Vec::new();

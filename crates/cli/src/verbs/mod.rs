@@ -1,6 +1,8 @@
 //! The verbs, one a file: arguments, work, answer.
 
+pub mod build;
 pub mod check;
+pub mod extract;
 pub mod info;
 pub mod lods;
 pub mod measure;

@@ -2,7 +2,7 @@
 
 use super::header::{self, FIXED, Header, Stored};
 use super::known::Known;
-use super::source::Source;
+use super::source::{Source, piece};
 use super::streams::Unpacker;
 use super::{FileError, Storage, chunk, write};
 use crate::bounds::ErrorKind;
@@ -10,6 +10,7 @@ use crate::cut::{Certificate, Cut};
 use crate::forest::Forest;
 use crate::implicit::{Base, Implicit};
 use crate::level::Level;
+use crate::model::Model;
 use crate::need::Need;
 use crate::query::Query;
 
@@ -101,6 +102,21 @@ impl<S: Source> Archive<S> {
         self.header.about.error_kind
     }
 
+    /// How many faces the coarsest mesh has.
+    pub fn base_faces(&self) -> usize {
+        self.header.base_faces as usize
+    }
+
+    /// Where its bytes are.
+    pub fn into_source(self) -> S {
+        self.source
+    }
+
+    /// The diagonal of the finest mesh, in model units.
+    pub fn diagonal(&self) -> f64 {
+        self.header.diagonal
+    }
+
     /// By how much vertices may have been moved to the file's lattice, in model units.
     pub fn rounding(&self) -> f64 {
         self.header.about.frame.length_of_model(self.header.lattice.rounding())
@@ -113,19 +129,50 @@ impl<S: Source> Archive<S> {
         self.read_chunks(self.whole)
     }
 
-    /// The levels up to so many faces or the next chunk's end, and the proof that none has a crack: all
-    /// that the best uniform cut of so many faces takes.
-    /// # Errors
-    /// A file that is damaged, or made to mislead.
-    pub fn read_up_to(&self, faces: usize) -> Result<(Implicit, Certificate), FileError> {
+    /// How many chunks hold the best uniform cut of so many faces: those up to so many faces.
+    pub fn chunks_up_to(&self, faces: usize) -> usize {
         let mut all = self.header.base_faces as usize;
         let chunks = self.header.chunks[..self.whole].iter();
-        let count = chunks.take_while(|chunk| {
+        let needed = chunks.take_while(|chunk| {
             let is_needed = all < faces;
             all = all.saturating_add(chunk.faces as usize);
             is_needed
         });
-        self.read_chunks(count.count())
+        needed.count()
+    }
+
+    /// The levels of so many chunks from the start, and the proof that none has a crack.
+    /// # Errors
+    /// A file that is damaged, or made to mislead.
+    pub fn read_chunks(&self, count: usize) -> Result<(Implicit, Certificate), FileError> {
+        let known = self.load(&(0..count.min(self.whole)).collect::<Vec<_>>())?;
+        let updates = known.updates.len();
+        let model = Implicit::assemble(self.header.about, known.base, &known.updates);
+        if model.update_count() != updates {
+            return Err(FileError::Piece {
+                piece: "the updates".into(),
+                why: "some split what another splits".into(),
+            });
+        }
+        let certificate = model.certify()?;
+        Ok((model, certificate))
+    }
+
+    /// The best cut with at most so many faces among those of so many chunks from the start, as
+    /// [`Extractor::at_most`](crate::Extractor::at_most).
+    /// # Errors
+    /// A query that is none; a file that is damaged, or made to mislead.
+    pub fn extract_at_most(
+        &self,
+        faces: usize,
+        query: &Query<'_>,
+        chunks: usize,
+    ) -> Result<Extract, FileError> {
+        let model = Model::proved(&self.read_chunks(chunks)?.0);
+        let level = model.extractor().at_most(faces, query)?.clone();
+        let chunks = chunks.min(self.whole);
+        let bytes = self.ends().nth(chunks).unwrap_or(0);
+        Ok(Extract { level, chunks, updates: model.implicit().update_count(), bytes })
     }
 
     /// The answer to a query. Reads only what it takes: chunks whose area the query wants.
@@ -142,20 +189,6 @@ impl<S: Source> Archive<S> {
         let model = Implicit::assemble(self.header.about, known.base, &known.updates);
         let level = Cut::at(&model, query)?.level();
         Ok(Extract { level, chunks: chunks.len(), updates, bytes })
-    }
-
-    fn read_chunks(&self, count: usize) -> Result<(Implicit, Certificate), FileError> {
-        let known = self.load(&(0..count).collect::<Vec<_>>())?;
-        let updates = known.updates.len();
-        let model = Implicit::assemble(self.header.about, known.base, &known.updates);
-        if model.update_count() != updates {
-            return Err(FileError::Piece {
-                piece: "the updates".into(),
-                why: "some split what another splits".into(),
-            });
-        }
-        let certificate = model.certify()?;
-        Ok((model, certificate))
     }
 
     /// The base and some chunks, by rising numbers.
@@ -214,20 +247,4 @@ fn unpack_base(bytes: &[u8], roots: usize, faces: usize) -> std::io::Result<[Vec
         }));
     }
     Ok(all)
-}
-
-/// So many bytes, which are not asked for before they are known to be there.
-fn piece(
-    source: &impl Source,
-    at: u64,
-    count: u64,
-    what: &'static str,
-) -> Result<Vec<u8>, FileError> {
-    let length = source.length()?;
-    if at.checked_add(count).is_none_or(|end| end > length) {
-        return Err(FileError::Truncated { at: length, what });
-    }
-    let mut bytes = vec![0; count as usize];
-    source.read_at(at, &mut bytes)?;
-    Ok(bytes)
 }

@@ -6,6 +6,7 @@
 
 mod archive;
 mod chunk;
+mod container;
 mod header;
 mod keep;
 mod known;
@@ -22,12 +23,14 @@ use std::io;
 use thiserror::Error;
 
 pub use archive::{Archive, Extract};
+pub use container::ModelFile;
 pub use source::Source;
 pub use write::Storage;
 
 use crate::cut::Unsound;
 use crate::forest::BuildError;
 use crate::query::QueryError;
+use crate::right::FieldBytesError;
 
 const MAGIC: &[u8; 8] = b"meshlodm";
 const VERSION: u32 = 1;
@@ -78,6 +81,9 @@ pub enum FileError {
     /// There is no model to write.
     #[error(transparent)]
     Build(#[from] BuildError),
+    /// A height field that cannot be written, or is none.
+    #[error(transparent)]
+    Field(#[from] FieldBytesError),
     /// Not the file is wrong but the question.
     #[error(transparent)]
     Query(#[from] QueryError),

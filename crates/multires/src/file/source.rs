@@ -3,6 +3,8 @@
 use std::fs::File;
 use std::io::{self, Read, Seek, SeekFrom};
 
+use super::FileError;
+
 /// Bytes that can be read from any place on: a file, a piece of memory, a range request.
 pub trait Source {
     /// How many there are.
@@ -38,4 +40,20 @@ impl Source for Vec<u8> {
         let mut rest = from.ok_or(io::ErrorKind::UnexpectedEof)?;
         rest.read_exact(bytes)
     }
+}
+
+/// So many bytes, which are not asked for before they are known to be there.
+pub(super) fn piece(
+    source: &impl Source,
+    at: u64,
+    count: u64,
+    what: &'static str,
+) -> Result<Vec<u8>, FileError> {
+    let length = source.length()?;
+    if at.checked_add(count).is_none_or(|end| end > length) {
+        return Err(FileError::Truncated { at: length, what });
+    }
+    let mut bytes = vec![0; count as usize];
+    source.read_at(at, &mut bytes)?;
+    Ok(bytes)
 }

@@ -116,10 +116,16 @@ fn every_start_of_a_file_is_a_cut() {
 fn as_much_is_read_as_it_takes() {
     let forest = forest(&sample::torus(3000), Method::Qem);
     let archive = Archive::open(bytes(&forest)).unwrap();
-    let half = archive.read_up_to(1500).unwrap().0;
+    let all = archive.chunks_up_to(usize::MAX);
+    assert_eq!((archive.chunks_up_to(0), all), (0, archive.chunk_count()));
+    let chunks = archive.chunks_up_to(1500);
+    let half = archive.read_chunks(chunks).unwrap().0;
     assert!((1500..1700).contains(&half.full_faces()), "{}", half.full_faces());
-    assert_eq!(archive.read_up_to(0).unwrap().0.update_count(), 0);
-    assert_eq!(archive.read_up_to(usize::MAX).unwrap().0.full_faces(), forest.full_faces());
+    let query = Query::uniform(1.0);
+    let [part, whole] =
+        [chunks, all].map(|chunks| archive.extract_at_most(1500, &query, chunks).unwrap());
+    assert_eq!(by_place(&part.level), by_place(&whole.level));
+    assert!((1490..=1500).contains(&part.level.faces.len()) && part.bytes < whole.bytes);
 }
 
 #[test]

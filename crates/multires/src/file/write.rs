@@ -43,6 +43,7 @@ pub(super) fn write(
     forest: &Forest,
     storage: &Storage,
 ) -> Result<(Vec<u8>, Certificate), FileError> {
+    let diagonal = diagonal(forest);
     let lattice = lattice(forest, storage);
     let forest = forest.kept(lattice);
     let order = Order::new(&forest);
@@ -76,6 +77,7 @@ pub(super) fn write(
     let header = Header {
         about: About { frame: forest.frame, error_kind: forest.error_kind },
         lattice,
+        diagonal,
         roots: known.roots(),
         base_faces: known.base.faces.len() as u32,
         base: Stored::of(&base),
@@ -86,10 +88,16 @@ pub(super) fn write(
 
 /// The coarsest that is fine enough.
 pub(super) fn lattice(forest: &Forest, storage: &Storage) -> Lattice {
+    let most = storage.rounding.unwrap_or_else(|| ROUNDING * diagonal(forest));
+    Lattice::within(forest.frame.length(most))
+}
+
+/// Of the finest mesh, in model units.
+fn diagonal(forest: &Forest) -> f64 {
     let leaves = forest.faces.iter().flatten().map(|&leaf| forest.positions[leaf as usize]);
     let places: Vec<_> = leaves.map(|p| p.map(f64::from)).collect();
-    let most = storage.rounding.map(|most| forest.frame.length(most));
-    Lattice::within(most.unwrap_or_else(|| ROUNDING * Bounds::of(&places).diagonal()))
+    let bounds = Bounds::of(&places);
+    if bounds.is_empty() { 0.0 } else { forest.frame.length_of_model(bounds.diagonal()) }
 }
 
 /// Its vertices and faces, each told by the one before.

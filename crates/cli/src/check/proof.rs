@@ -1,0 +1,77 @@
+//! What is proved of a multiresolution file.
+
+use std::fs::File;
+use std::path::Path;
+
+use meshlod::multires::{Archive, HeightField, ModelFile, RightTriangles};
+use serde_json::json;
+
+use crate::answer::Answer;
+use crate::failure::Failure;
+use crate::files;
+use crate::model_file;
+use crate::numbers::{count, faces};
+use crate::session::Session;
+
+/// Proves that no cut of a file has a crack, or says why not.
+pub fn prove(path: &Path, session: &Session) -> Result<Answer, Failure> {
+    match model_file::open(path, session)? {
+        ModelFile::Contractions(archive) => prove_contractions(path, &archive, session),
+        ModelFile::HeightField(field) => prove_field(path, &field, session),
+    }
+}
+
+fn prove_contractions(
+    path: &Path,
+    archive: &Archive<File>,
+    session: &Session,
+) -> Result<Answer, Failure> {
+    session.progress.stage("proving");
+    let proved = archive.read_chunks(archive.chunk_count());
+    let (model, certificate) = proved.map_err(|error| Failure::at(path, error))?;
+    let [there, chunks] = [archive.whole_chunks(), archive.chunk_count()];
+    let kind = model_file::error_kind(archive);
+    let json = json!({
+        "file": files::name(path),
+        "model": "contractions",
+        "error_kind": kind,
+        "rounding": archive.rounding(),
+        "chunks": chunks,
+        "chunks_there": there,
+        "updates": model.update_count(),
+        "base_faces": model.base_faces(),
+        "faces": model.full_faces(),
+        "certificate": model_file::certificate_json(&certificate),
+    });
+    let text = format!(
+        "{}: {} to {}, {there} of {chunks} chunks, {kind}s of errors\n{}\n",
+        files::name(path),
+        count(model.base_faces()),
+        faces(model.full_faces()),
+        model_file::certificate_text(&certificate),
+    );
+    Ok(Answer::new(json, text))
+}
+
+fn prove_field(path: &Path, field: &HeightField, session: &Session) -> Result<Answer, Failure> {
+    session.progress.stage("proving");
+    let model = RightTriangles::new(field);
+    let sound = model.certify().map_err(|error| Failure::at(path, error))?;
+    let [columns, rows] = field.size();
+    let json = json!({
+        "file": files::name(path),
+        "model": "right-triangles",
+        "error_kind": "bound",
+        "grid": [columns, rows],
+        "faces": model.full_faces(),
+        "certificate": { "sound": sound },
+    });
+    let text = format!(
+        "{}: right triangles of {columns} x {rows} heights, up to {}, bounds of errors\nproved: no cut \
+         of {} updates has a crack\n",
+        files::name(path),
+        faces(model.full_faces()),
+        count(sound),
+    );
+    Ok(Answer::new(json, text))
+}

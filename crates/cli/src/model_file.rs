@@ -1,0 +1,64 @@
+//! Multiresolution files, by path.
+
+use std::fs::File;
+use std::path::Path;
+
+use meshlod::multires::{Archive, Certificate, ErrorKind, ModelFile};
+use serde_json::{Value, json};
+
+use crate::failure::Failure;
+use crate::files;
+use crate::numbers::{count, plural};
+use crate::session::Session;
+
+/// What such files end with.
+pub const SUFFIX: &str = "mlod";
+
+pub fn is_model(path: &Path) -> bool {
+    path.extension().is_some_and(|suffix| suffix.eq_ignore_ascii_case(SUFFIX))
+}
+
+/// Refuses an output that could not be written, before any work is done.
+pub fn check_output(path: &Path) -> Result<(), Failure> {
+    if !is_model(path) {
+        return Err(Failure::usage(format_args!("{}: name it .{SUFFIX}", files::name(path))));
+    }
+    files::check_place(path)
+}
+
+/// Opens a file, and says if it is cut off.
+pub fn open(path: &Path, session: &Session) -> Result<ModelFile<File>, Failure> {
+    session.progress.stage(&format!("reading {}", files::name(path)));
+    let file = File::open(path).map_err(|error| Failure::at(path, error))?;
+    let model = ModelFile::open(file).map_err(|error| Failure::at(path, error))?;
+    if let ModelFile::Contractions(archive) = &model
+        && archive.whole_chunks() < archive.chunk_count()
+    {
+        let (there, all) = (archive.whole_chunks(), archive.chunk_count());
+        let reason = format_args!("the file is cut off: {there} of its {all} chunks are there");
+        session.warn(Failure::at(path, reason));
+    }
+    Ok(model)
+}
+
+pub fn certificate_json(certificate: &Certificate) -> Value {
+    json!({ "sound": certificate.sound, "odd": certificate.odd })
+}
+
+pub fn certificate_text(certificate: &Certificate) -> String {
+    let Certificate { sound, odd } = *certificate;
+    let mut text =
+        format!("proved: no cut of {} update{} has a crack", count(sound), plural(sound));
+    if odd > 0 {
+        text += &format!("; {} beside what is not manifold in the input", count(odd));
+    }
+    text
+}
+
+/// What the errors of a file are.
+pub fn error_kind(archive: &Archive<File>) -> &'static str {
+    match archive.error_kind() {
+        ErrorKind::Estimate => "estimate",
+        ErrorKind::Bound => "bound",
+    }
+}

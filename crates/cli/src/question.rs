@@ -1,0 +1,139 @@
+//! Where to look, and how fine: words of the command line that become queries.
+
+use meshlod::multires::{Camera, Focus, Query, Tolerance};
+
+use crate::amounts::{self, Bound};
+use crate::failure::Failure;
+
+/// How far off triangles may be.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Allowed {
+    Length(Bound),
+    /// As the camera sees it.
+    Pixels(f64),
+}
+
+/// Where the answer has to be good.
+#[derive(Clone, Debug)]
+pub enum Where {
+    Here(Focus),
+    /// In what the camera sees.
+    InSight,
+}
+
+/// A question as it was asked.
+#[derive(Clone, Debug)]
+pub struct Question {
+    pub allowed: Allowed,
+    pub focus: Option<Where>,
+    pub camera: Option<Camera>,
+}
+
+impl Question {
+    /// The query, of a model with this diagonal.
+    pub fn query(&self, diagonal: f64) -> Result<Query<'static>, Failure> {
+        let camera =
+            || self.camera.ok_or_else(|| Failure::usage("pixels and frustum: give --camera"));
+        let focus = match &self.focus {
+            None => Focus::Everything,
+            Some(Where::Here(focus)) => focus.clone(),
+            Some(Where::InSight) => Focus::Frustum(camera()?),
+        };
+        let tolerance = match self.allowed {
+            Allowed::Length(bound) => Tolerance::Uniform(bound.length(diagonal)),
+            Allowed::Pixels(most) => Tolerance::Pixels { camera: camera()?, most },
+        };
+        Ok(Query { focus, tolerance })
+    }
+}
+
+/// `1px`, `0.1%` or `0.5`.
+pub fn allowed(text: &str) -> Result<Allowed, String> {
+    match text.strip_suffix("px") {
+        Some(pixels) => amounts::length(pixels).map(Allowed::Pixels),
+        None => amounts::bound(text).map(Allowed::Length),
+    }
+}
+
+/// `box=x0,y0,z0,x1,y1,z1` and others.
+pub fn focus(text: &str) -> Result<Where, String> {
+    let (name, rest) = text.split_once('=').unwrap_or((text, ""));
+    let numbers = || rest.split(',').map(amounts::number).collect::<Result<Vec<_>, _>>();
+    let focus = match (name, numbers().as_deref()) {
+        ("frustum", _) if rest.is_empty() => return Ok(Where::InSight),
+        ("point", Ok(&[x, y, z])) => Focus::Point([x, y, z]),
+        ("segment", Ok(&[a, b, c, x, y, z])) => Focus::Segment([[a, b, c], [x, y, z]]),
+        ("box", Ok(&[a, b, c, x, y, z])) => Focus::Box([[a, b, c], [x, y, z]]),
+        ("sphere", Ok(&[x, y, z, radius])) => Focus::Sphere { center: [x, y, z], radius },
+        _ => {
+            return Err("write point=x,y,z, segment=x,y,z,x,y,z, box=x,y,z,x,y,z with the least \
+                        corner first, sphere=x,y,z,r or frustum"
+                .into());
+        }
+    };
+    Ok(Where::Here(focus))
+}
+
+/// `eye=x,y,z look=x,y,z fov=45 1920x1080`, and maybe `up=x,y,z`.
+pub fn camera(text: &str) -> Result<Camera, String> {
+    const FORM: &str = "write \"eye=x,y,z look=x,y,z fov=45 1920x1080\", with degrees from the lower \
+                        edge to the upper one, and up=x,y,z if it is not y";
+    let (mut eye, mut look, mut up, mut fov, mut viewport) = (None, None, None, None, None);
+    for word in text.split_whitespace() {
+        match word.split_once('=') {
+            Some(("eye", place)) => eye = Some(triple(place)?),
+            Some(("look", place)) => look = Some(triple(place)?),
+            Some(("up", direction)) => up = Some(triple(direction)?),
+            Some(("fov", degrees)) => fov = Some(amounts::number(degrees)?.to_radians()),
+            None => viewport = Some(amounts::pixels(word)?),
+            Some(_) => return Err(FORM.into()),
+        }
+    }
+    match (eye, look, fov, viewport) {
+        (Some(eye), Some(look), Some(fov_rad), Some(viewport)) => {
+            Ok(Camera { eye, look, up: up.unwrap_or([0.0, 1.0, 0.0]), fov_rad, viewport })
+        }
+        _ => Err(FORM.into()),
+    }
+}
+
+fn triple(text: &str) -> Result<[f64; 3], String> {
+    let numbers: Vec<f64> = text.split(',').map(amounts::number).collect::<Result<_, _>>()?;
+    numbers.try_into().map_err(|_| format!("{text:?} is not three numbers with commas"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn cameras_are_written_in_words() {
+        let camera = camera("eye=0,0.1,0.3 look=0,0.1,0 fov=90 1920x1080").unwrap();
+        assert_eq!((camera.eye, camera.viewport), ([0.0, 0.1, 0.3], [1920, 1080]));
+        assert_eq!((camera.fov_rad, camera.up), (std::f64::consts::FRAC_PI_2, [0.0, 1.0, 0.0]));
+        let all = "eye=0,0,1 look=0,0,0 fov=45 640x480";
+        for word in all.split(' ') {
+            assert!(super::camera(&all.replace(word, "")).is_err(), "without {word}");
+        }
+        assert!(super::camera(&format!("{all} nose=1,2,3")).is_err());
+        assert!(super::camera(&all.replace("0,0,1", "0,0")).is_err());
+    }
+
+    #[test]
+    fn a_focus_has_a_shape() {
+        assert!(matches!(focus("frustum"), Ok(Where::InSight)));
+        assert!(matches!(focus("point=1,2,3"), Ok(Where::Here(Focus::Point([1.0, 2.0, 3.0])))));
+        assert!(matches!(focus("sphere=1,2,3,4"), Ok(Where::Here(Focus::Sphere { .. }))));
+        for bad in ["box=1,2,3", "ball=1,2,3,4", "", "point=1,2,x", "frustum=1"] {
+            assert!(focus(bad).is_err(), "{bad}");
+        }
+    }
+
+    #[test]
+    fn errors_are_pixels_parts_or_lengths() {
+        assert_eq!(allowed("1px"), Ok(Allowed::Pixels(1.0)));
+        assert_eq!(allowed("0.01%"), Ok(Allowed::Length(Bound::OfDiagonal(0.0001))));
+        assert_eq!(allowed("0"), Ok(Allowed::Length(Bound::Length(0.0))));
+        assert!(allowed("-1px").is_err() && allowed("px").is_err());
+    }
+}

@@ -1,0 +1,194 @@
+//! `build`: all levels of a mesh in one file.
+
+use std::path::PathBuf;
+use std::time::{Duration, Instant};
+
+use clap::{Args, ValueEnum};
+use meshlod::io::write_file;
+use meshlod::multires::{
+    Archive, BuildError, Certificate, Forest, HeightField, HeightPrecision, Recorder, Storage,
+};
+use meshlod::simplify::Simplifier;
+use meshlod::{Mesh, Method, Options, Target};
+use serde_json::{Value, json};
+
+use crate::amounts::{self, Bound};
+use crate::answer::Answer;
+use crate::args::Reading;
+use crate::failure::Failure;
+use crate::files;
+use crate::model_file;
+use crate::numbers::{count, faces, percent, value};
+use crate::session::Session;
+
+#[derive(Args)]
+pub struct Build {
+    /// File to read, or -
+    #[arg(value_name = "IN")]
+    input: PathBuf,
+    /// File to write
+    #[arg(value_name = "OUT.mlod")]
+    output: PathBuf,
+    /// What the levels are made by
+    #[arg(long, value_name = "MODEL", default_value = "contractions")]
+    model: Model,
+    #[arg(long, value_name = "NAME", default_value = Method::default().name(),
+        value_parser = amounts::method, help = amounts::methods())]
+    method: Method,
+    /// By how much a vertex may be moved to take less room: 0.001 in model units, 0.005% of the
+    /// diagonal
+    #[arg(long, value_name = "BOUND", value_parser = amounts::bound, default_value = "0.005%",
+        allow_hyphen_values = true)]
+    rounding: Bound,
+    /// About how many vertices are read at once: fewer make a larger file, of which queries read less
+    #[arg(long, value_name = "N", value_parser = amounts::positive, default_value_t = 4096,
+        allow_negative_numbers = true)]
+    in_chunk: usize,
+    #[command(flatten)]
+    reading: Reading,
+}
+
+#[derive(Clone, Copy, PartialEq, ValueEnum)]
+enum Model {
+    /// Contractions of any mesh
+    Contractions,
+    /// Right triangles of a height field on a regular grid
+    RightTriangles,
+}
+
+/// A file, and what is to be said of it.
+struct Built {
+    bytes: Vec<u8>,
+    rounding: f64,
+    levels: Levels,
+}
+
+enum Levels {
+    Contractions { updates: usize, base_faces: usize, certificate: Certificate },
+    RightTriangles { size: [u32; 2] },
+}
+
+impl Build {
+    pub fn run(self, session: &Session) -> Result<Answer, Failure> {
+        model_file::check_output(&self.output)?;
+        let scene = files::read(&self.input, &self.reading, session)?;
+        let mesh = bare(scene.into_mesh(), session);
+        if mesh.faces.is_empty() {
+            return Err(Failure::at(&self.input, "the mesh has no faces"));
+        }
+        let start = Instant::now();
+        let built = match self.model {
+            Model::Contractions => self.contractions(&mesh, session)?,
+            Model::RightTriangles => self.right_triangles(&mesh)?,
+        };
+        session.progress.stage(&format!("writing {}", files::name(&self.output)));
+        write_file(&self.output, &built.bytes)?;
+        let time = start.elapsed();
+        Ok(Answer::new(self.json(&mesh, &built, time), self.text(&mesh, &built, time)))
+    }
+
+    fn contractions(&self, mesh: &Mesh, session: &Session) -> Result<Built, Failure> {
+        let failed = |error: BuildError| Failure::at(&self.input, error);
+        let options = Options { method: self.method, vanish_below: None, ..Options::default() };
+        let mut simplifier =
+            Simplifier::new(mesh, &options).map_err(|error| failed(error.into()))?;
+        let watch = session.progress.contractions("contracting", Some(mesh.faces.len()));
+        let mut both = (Recorder::new(&simplifier), watch);
+        simplifier.run(Target::Faces(0), &mut both).map_err(|error| failed(error.into()))?;
+        session.progress.stage("proving and packing");
+        let forest: Forest = both.0.into_forest().map_err(failed)?;
+        let storage = Storage { rounding: Some(self.rounding(mesh)), in_chunk: self.in_chunk };
+        let written = Archive::write(&forest, &storage);
+        let (bytes, certificate) = written.map_err(|error| Failure::at(&self.input, error))?;
+        let archive = Archive::open(bytes).map_err(|error| Failure::at(&self.output, error))?;
+        let levels = Levels::Contractions {
+            updates: archive.update_count(),
+            base_faces: archive.base_faces(),
+            certificate,
+        };
+        Ok(Built { rounding: archive.rounding(), bytes: archive.into_source(), levels })
+    }
+
+    fn right_triangles(&self, mesh: &Mesh) -> Result<Built, Failure> {
+        let failed = |error: &dyn std::fmt::Display| Failure::at(&self.input, error);
+        let field = HeightField::of_mesh(mesh).map_err(|error| failed(&error))?;
+        let precision = match self.rounding(mesh) {
+            0.0 => HeightPrecision::Exact,
+            rounding => HeightPrecision::Within(rounding),
+        };
+        let bytes = field.to_file(precision).map_err(|error| failed(&error))?;
+        let rounding = self.rounding(mesh);
+        Ok(Built { bytes, rounding, levels: Levels::RightTriangles { size: field.size() } })
+    }
+
+    fn rounding(&self, mesh: &Mesh) -> f64 {
+        self.rounding.length(mesh.bounds().diagonal())
+    }
+
+    fn json(&self, mesh: &Mesh, built: &Built, time: Duration) -> Value {
+        let vertices = vertex_count(mesh);
+        let mut json = json!({
+            "file": files::name(&self.output),
+            "input_vertices": vertices,
+            "input_faces": mesh.faces.len(),
+            "bytes": built.bytes.len(),
+            "bytes_per_vertex": built.bytes.len() as f64 / vertices as f64,
+            "rounding": built.rounding,
+            "build_seconds": time.as_secs_f64(),
+        });
+        match &built.levels {
+            Levels::Contractions { updates, base_faces, certificate } => {
+                json["model"] = "contractions".into();
+                json["method"] = self.method.name().into();
+                json["updates"] = (*updates).into();
+                json["base_faces"] = (*base_faces).into();
+                json["certificate"] = model_file::certificate_json(certificate);
+            }
+            Levels::RightTriangles { size } => {
+                json["model"] = "right-triangles".into();
+                json["grid"] = json!(size);
+            }
+        }
+        json
+    }
+
+    fn text(&self, mesh: &Mesh, built: &Built, time: Duration) -> String {
+        let vertices = vertex_count(mesh);
+        let part = 100.0 * built.rounding / mesh.bounds().diagonal();
+        let mut text = format!(
+            "{}: all levels of {} in {} bytes, {:.2} a vertex; vertices moved by up to {} ({})\n",
+            files::name(&self.output),
+            faces(mesh.faces.len()),
+            count(built.bytes.len()),
+            built.bytes.len() as f64 / vertices as f64,
+            value(built.rounding),
+            percent(part),
+        );
+        text += &match &built.levels {
+            Levels::Contractions { updates, base_faces, certificate } => format!(
+                "{} updates by {} down to {}; {}\n",
+                count(*updates),
+                self.method.name(),
+                faces(*base_faces),
+                model_file::certificate_text(certificate),
+            ),
+            Levels::RightTriangles { size: [columns, rows] } => {
+                format!("right triangles of {columns} x {rows} heights\n")
+            }
+        };
+        text + &format!("build_seconds: {}\n", value(time.as_secs_f64()))
+    }
+}
+
+/// The mesh with nothing that a model leaves behind.
+fn bare(mesh: Mesh, session: &Session) -> Mesh {
+    if mesh.attributes.is_some() || mesh.materials.is_some() {
+        session.warn("attributes and materials are left behind: the file holds the surface alone");
+    }
+    Mesh::new(mesh.positions, mesh.faces)
+}
+
+/// Those that faces use.
+fn vertex_count(mesh: &Mesh) -> usize {
+    mesh.used_vertices().iter().filter(|&&used| used).count()
+}

@@ -1,0 +1,173 @@
+//! `extract`: one mesh out of a multiresolution file.
+
+use std::fs::File;
+use std::path::PathBuf;
+use std::time::{Duration, Instant};
+
+use clap::Args;
+use meshlod::Scene;
+use meshlod::multires::{
+    Archive, Camera, HeightField, Level, ModelFile, Query, RightExtractor, RightTriangles,
+};
+use serde_json::{Value, json};
+
+use crate::amounts::{self, Bound};
+use crate::answer::Answer;
+use crate::args::Writing;
+use crate::failure::Failure;
+use crate::files;
+use crate::model_file;
+use crate::numbers::{count, faces, plural, value};
+use crate::question::{self, Allowed, Question, Where};
+use crate::session::Session;
+
+#[derive(Args)]
+pub struct Extract {
+    /// File to read
+    #[arg(value_name = "IN.mlod")]
+    input: PathBuf,
+    /// File to write, or -
+    #[arg(value_name = "OUT")]
+    output: PathBuf,
+    #[command(flatten)]
+    goal: Goal,
+    /// The camera that pixels are of: "eye=x,y,z look=x,y,z fov=45 1920x1080", and up=x,y,z if it is
+    /// not y
+    #[arg(long, value_name = "CAMERA", value_parser = question::camera)]
+    camera: Option<Camera>,
+    /// Where it has to be so good, coarse elsewhere: point=x,y,z, segment=x,y,z,x,y,z,
+    /// box=x,y,z,x,y,z, sphere=x,y,z,r, or frustum: what the camera sees
+    #[arg(long, value_name = "FOCUS", value_parser = question::focus, allow_hyphen_values = true)]
+    focus: Option<Where>,
+    /// Leave out the faces that do not meet the focus
+    #[arg(long, requires = "focus")]
+    only: bool,
+    #[command(flatten)]
+    writing: Writing,
+}
+
+/// How fine.
+#[derive(Args)]
+#[group(required = true, multiple = false)]
+struct Goal {
+    /// No face further off than this: 1px of the camera, 0.01% of the diagonal, 0.5 in model units
+    #[arg(long, value_name = "BOUND", value_parser = question::allowed, allow_hyphen_values = true)]
+    error: Option<Allowed>,
+    /// The best with at most so many faces: for the camera if there is one, or for all sides
+    #[arg(long, value_name = "N", value_parser = amounts::whole, allow_negative_numbers = true)]
+    faces: Option<usize>,
+}
+
+/// A mesh, and what was read for it.
+struct Taken {
+    level: Level,
+    error_kind: &'static str,
+    chunks: [usize; 2],
+    updates: usize,
+    bytes: u64,
+}
+
+impl Extract {
+    pub fn run(self, session: &Session) -> Result<Answer, Failure> {
+        files::check_output(&self.output, session)?;
+        files::check_apart(&self.output, &[&self.input])?;
+        let start = Instant::now();
+        let taken = match model_file::open(&self.input, session)? {
+            ModelFile::Contractions(archive) => self.from_contractions(&archive)?,
+            ModelFile::HeightField(field) => self.from_field(&field)?,
+        };
+        let time = start.elapsed();
+        let mesh = taken.level.mesh();
+        if mesh.faces.is_empty() {
+            return Err(Failure::at(&self.input, "no face meets the focus"));
+        }
+        let counts = [mesh.positions.len(), mesh.faces.len()];
+        let scene = Scene::from_mesh(&name(&self.input), mesh);
+        files::write(&self.output, &scene, &self.writing, session)?;
+        let (json, text) = (self.json(&taken, counts, time), self.text(&taken, counts, time));
+        Ok(Answer { file_on_stdout: files::is_pipe(&self.output), ..Answer::new(json, text) })
+    }
+
+    fn from_contractions(&self, archive: &Archive<File>) -> Result<Taken, Failure> {
+        let query = self.query(archive.diagonal())?;
+        let taken = match self.goal.faces {
+            None => archive.extract(&query),
+            // Whoever asks for all sides alike needs the coarsest chunks only.
+            Some(faces) if self.camera.is_none() && self.focus.is_none() => {
+                archive.extract_at_most(faces, &query, archive.chunks_up_to(faces))
+            }
+            Some(faces) => archive.extract_at_most(faces, &query, archive.whole_chunks()),
+        };
+        let taken = taken.map_err(|error| Failure::at(&self.input, error))?;
+        Ok(Taken {
+            level: self.cut_out(taken.level, &query)?,
+            error_kind: model_file::error_kind(archive),
+            chunks: [taken.chunks, archive.chunk_count()],
+            updates: taken.updates,
+            bytes: taken.bytes,
+        })
+    }
+
+    fn from_field(&self, field: &HeightField) -> Result<Taken, Failure> {
+        let query = self.query(field.bounds().diagonal())?;
+        let model = RightTriangles::new(field);
+        let level = match self.goal.faces {
+            None => model.level(&query),
+            Some(faces) => RightExtractor::new(&model).at_most(faces, &query).cloned(),
+        };
+        let level = level.map_err(|error| Failure::usage(error))?;
+        let bytes = std::fs::metadata(&self.input).map_or(0, |data| data.len());
+        let updates = field.heights().len();
+        let level = self.cut_out(level, &query)?;
+        Ok(Taken { level, error_kind: "bound", chunks: [1, 1], updates, bytes })
+    }
+
+    fn query(&self, diagonal: f64) -> Result<Query<'static>, Failure> {
+        // A number of faces is shared out as for one pixel, or alike.
+        let alike = match self.camera {
+            Some(_) => Allowed::Pixels(1.0),
+            None => Allowed::Length(Bound::OfDiagonal(1.0)),
+        };
+        let allowed = self.goal.error.unwrap_or(alike);
+        Question { allowed, focus: self.focus.clone(), camera: self.camera }.query(diagonal)
+    }
+
+    fn cut_out(&self, level: Level, query: &Query<'_>) -> Result<Level, Failure> {
+        match self.only {
+            true => level.within(&query.focus).map_err(Failure::usage),
+            false => Ok(level),
+        }
+    }
+
+    fn json(&self, taken: &Taken, [vertices, faces]: [usize; 2], time: Duration) -> Value {
+        json!({
+            "file": files::name(&self.output),
+            "vertices": vertices,
+            "faces": faces,
+            "error_kind": taken.error_kind,
+            "chunks": taken.chunks[1],
+            "chunks_read": taken.chunks[0],
+            "updates_read": taken.updates,
+            "bytes_read": taken.bytes,
+            "extract_seconds": time.as_secs_f64(),
+        })
+    }
+
+    fn text(&self, taken: &Taken, [vertices, all]: [usize; 2], time: Duration) -> String {
+        let [read, chunks] = taken.chunks;
+        format!(
+            "{}: {} vertices, {}\nread {read} of {chunks} chunk{}, {} bytes\nextract_seconds: {}\n",
+            files::name(&self.output),
+            count(vertices),
+            faces(all),
+            plural(chunks),
+            count(taken.bytes as usize),
+            value(time.as_secs_f64()),
+        )
+    }
+}
+
+/// What a file is called without its suffix.
+fn name(path: &std::path::Path) -> String {
+    path.file_stem().unwrap_or_default().to_string_lossy().into_owned()
+}
