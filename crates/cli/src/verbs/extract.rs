@@ -73,8 +73,8 @@ impl Extract {
         files::check_apart(&self.output, &[&self.input])?;
         let start = Instant::now();
         let taken = match model_file::open(&self.input, session)? {
-            ModelFile::Contractions(archive) => self.from_contractions(&archive)?,
-            ModelFile::HeightField(field) => self.from_field(&field)?,
+            ModelFile::Contractions(archive) => self.take_contractions(&archive)?,
+            ModelFile::HeightField(field) => self.take_field(&field)?,
         };
         let time = start.elapsed();
         let mesh = taken.level.mesh();
@@ -82,13 +82,13 @@ impl Extract {
             return Err(Failure::at(&self.input, "no face meets the focus"));
         }
         let counts = [mesh.positions.len(), mesh.faces.len()];
-        let scene = Scene::from_mesh(&name(&self.input), mesh);
+        let scene = Scene::from_mesh(name(&self.input), mesh);
         files::write(&self.output, &scene, &self.writing, session)?;
         let (json, text) = (self.json(&taken, counts, time), self.text(&taken, counts, time));
         Ok(Answer { file_on_stdout: files::is_pipe(&self.output), ..Answer::new(json, text) })
     }
 
-    fn from_contractions(&self, archive: &Archive<File>) -> Result<Taken, Failure> {
+    fn take_contractions(&self, archive: &Archive<File>) -> Result<Taken, Failure> {
         let query = self.query(archive.diagonal())?;
         let taken = match self.goal.faces {
             None => archive.extract(&query),
@@ -108,14 +108,14 @@ impl Extract {
         })
     }
 
-    fn from_field(&self, field: &HeightField) -> Result<Taken, Failure> {
+    fn take_field(&self, field: &HeightField) -> Result<Taken, Failure> {
         let query = self.query(field.bounds().diagonal())?;
         let model = RightTriangles::new(field);
         let level = match self.goal.faces {
             None => model.level(&query),
             Some(faces) => RightExtractor::new(&model).at_most(faces, &query).cloned(),
         };
-        let level = level.map_err(|error| Failure::usage(error))?;
+        let level = level.map_err(Failure::usage)?;
         let bytes = std::fs::metadata(&self.input).map_or(0, |data| data.len());
         let updates = field.heights().len();
         let level = self.cut_out(level, &query)?;
