@@ -7,6 +7,7 @@ mod look;
 mod near;
 mod schedule;
 mod star;
+mod triangles;
 mod unpack;
 
 pub use certificate::{Certificate, Flaw, Unsound};

@@ -117,9 +117,9 @@ impl<S: Source> Archive<S> {
         self.header.diagonal
     }
 
-    /// By how much vertices may have been moved to the file's lattice, in model units.
+    /// By how much a vertex was moved to the file's lattice at most, in model units.
     pub fn rounding(&self) -> f64 {
-        self.header.about.frame.length_of_model(self.header.lattice.rounding())
+        self.header.rounding
     }
 
     /// All levels, and the proof that none has a crack.

@@ -16,6 +16,8 @@ pub(super) struct Header {
     pub(super) lattice: Lattice,
     /// Of the finest mesh, in model units.
     pub(super) diagonal: f64,
+    /// By how much a vertex was moved at most, in model units.
+    pub(super) rounding: f64,
     pub(super) roots: u32,
     pub(super) base_faces: u32,
     pub(super) base: Stored,
@@ -41,7 +43,7 @@ pub(super) struct Entry {
 }
 
 /// Up to where the size of everything is known.
-pub(super) const FIXED: usize = 80;
+pub(super) const FIXED: usize = 88;
 const ENTRY: usize = 44;
 /// Where the checksum is, and what it is of starts.
 const CHECKSUM: usize = 12;
@@ -77,7 +79,7 @@ impl Header {
         let origin = self.about.frame.model([0.0; 3]);
         out.extend(origin.iter().flat_map(|x| x.to_le_bytes()));
         out.extend(self.about.frame.length_of_model(1.0).to_le_bytes());
-        out.extend(self.diagonal.to_le_bytes());
+        out.extend([self.diagonal, self.rounding].iter().flat_map(|x| x.to_le_bytes()));
         for Entry { stored, updates, faces, area } in &self.chunks {
             let words = [stored.bytes, stored.checksum, *updates, *faces];
             out.extend(words.iter().flat_map(|word| word.to_le_bytes()));
@@ -121,6 +123,7 @@ impl Header {
             },
             lattice: Lattice::of_bits(bytes[BODY]).ok_or(bad("its lattice is too fine"))?,
             diagonal: double(bytes, 72),
+            rounding: double(bytes, 80),
             roots: word(bytes, 20),
             base_faces: word(bytes, 24),
             base: Stored { bytes: word(bytes, 28), checksum: word(bytes, 32) },
@@ -129,8 +132,9 @@ impl Header {
         if this.updates() > MOST_UPDATES || this.roots as usize > MOST_UPDATES {
             return Err(bad("it has more updates than can be numbered"));
         }
-        if !(this.diagonal >= 0.0 && this.diagonal.is_finite()) {
-            return Err(bad("its diagonal is no length"));
+        let is_length = |length: f64| length >= 0.0 && length.is_finite();
+        if !is_length(this.diagonal) || !is_length(this.rounding) {
+            return Err(bad("its diagonal or its rounding is no length"));
         }
         let is_area = |a: &Area| a.min.is_finite() && a.max.is_finite() && a.error >= 0.0;
         if !this.chunks.iter().all(|chunk| is_area(&chunk.area)) {

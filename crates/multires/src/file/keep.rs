@@ -1,31 +1,45 @@
 //! What a file keeps of a forest: the same cuts, in numbers that take less room.
 
+use glam::Vec3;
+
 use super::lattice::{ERRORS, Lattice, error9, error16, radius8, radius16};
-use crate::forest::{Forest, MOST_LEVELS};
+use super::spread::spread;
+use crate::bounds::ErrorKind;
+use crate::forest::{BuildError, Forest, MOST_LEVELS};
 use crate::frame::Length16;
+use crate::implicit::{Implicit, Order};
 
 /// As the recorder draws its balls.
 const SLACK: f64 = 1.0 + 1e-6;
 
+/// A forest as a file keeps it.
+pub(super) struct Kept {
+    pub(super) forest: Forest,
+    /// By how much a node was moved at most, in stored units.
+    pub(super) moved: f64,
+}
+
 impl Forest {
     /// With places on the lattice, balls around that and errors in fewer steps, rounded up and nested
     /// again; with levels that tell little beside the error; with siblings in the order of `x`.
-    pub(super) fn kept(&self, lattice: Lattice) -> Self {
+    /// # Errors
+    /// More nodes than are numbered.
+    pub(super) fn kept(&self, lattice: Lattice) -> Result<Kept, BuildError> {
         let mut this = self.clone();
-        for place in &mut this.positions {
-            *place = lattice.put(lattice.round((*place).into())).into();
-        }
+        let moved = this.move_to(lattice)?;
         for u in 0..this.updates.len() {
             let update = &this.updates[u];
-            let center = this.ball(u).center;
+            let ball = this.ball(u);
             // Its own place may have moved, and what is around.
-            let own = update.radius.get() + 2.0 * lattice.rounding();
+            let own = ball.radius + 2.0 * moved;
             let below = update.children.iter().filter_map(|&child| this.update_of(child));
             let balls = below.map(|below| this.ball(below));
-            let reach = balls.map(|ball| ball.center.distance(center) + ball.radius);
+            let reach = balls.map(|below| below.center.distance(ball.center) + below.radius);
             let radius = Length16::up(reach.fold(own, f64::max) * SLACK);
+            // A bound holds for where things are now.
+            let bound = ball.error + if self.error_kind == ErrorKind::Bound { moved } else { 0.0 };
+            let error = error16(error9(Length16::up(bound))).unwrap_or(Length16::INFINITE);
             let radius = radius16(radius8(radius));
-            let error = error16(error9(update.error)).unwrap_or(Length16::INFINITE);
             (this.updates[u].radius, this.updates[u].error) = (radius, error);
             if this.updates[u].glued {
                 (this.updates[u - 1].radius, this.updates[u - 1].error) = (radius, error);
@@ -33,7 +47,23 @@ impl Forest {
         }
         this.turn_siblings();
         this.level_by_error();
-        this
+        Ok(Kept { forest: this, moved })
+    }
+
+    /// Puts all nodes on the lattice, and says how far one was moved at most.
+    fn move_to(&mut self, lattice: Lattice) -> Result<f64, BuildError> {
+        let order = Order::new(self);
+        let mt = Implicit::in_order(self, &order)?;
+        let place = |node: u32| Vec3::from(mt.positions()[node as usize]);
+        let cells: Vec<_> = mt.positions().iter().map(|&p| lattice.round(p.into())).collect();
+        let spread = spread(&mt, &cells, |nodes| has_area(nodes.map(place)));
+        let mut moved = 0.0f64;
+        for (node, cell) in cells.into_iter().enumerate() {
+            let to = lattice.put(spread.get(&(node as u32)).copied().unwrap_or(cell));
+            moved = moved.max(to.as_dvec3().distance(place(node as u32).as_dvec3()));
+            self.positions[order.nodes[node] as usize] = to.into();
+        }
+        Ok(moved)
     }
 
     /// Lets the second of two siblings be the one with the greater `x`, where that is free.
@@ -74,6 +104,11 @@ impl Forest {
             self.updates[u].level = bottoms[error9(self.updates[u].error) as usize] as u16 + height;
         }
     }
+}
+
+fn has_area(corners: [Vec3; 3]) -> bool {
+    let [a, b, c] = corners.map(Vec3::as_dvec3);
+    (b - a).cross(c - a).length_squared() > 0.0
 }
 
 /// How many octaves there are.

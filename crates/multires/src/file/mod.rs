@@ -13,6 +13,7 @@ mod known;
 mod lattice;
 mod plan;
 mod source;
+mod spread;
 mod streams;
 #[cfg(test)]
 mod tests;

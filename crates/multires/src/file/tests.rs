@@ -32,7 +32,8 @@ fn by_place(level: &Level) -> Vec<[[u32; 3]; 3]> {
 #[test]
 fn a_file_gives_back_the_model() {
     each(|what, mesh, forest| {
-        let rounded = Implicit::new(&forest.kept(lattice(forest, &small()))).unwrap();
+        let rounded =
+            Implicit::new(&forest.kept(lattice(forest, &small())).unwrap().forest).unwrap();
         let (read, certificate) = Archive::open(bytes(forest)).unwrap().read().unwrap();
         assert_eq!(certificate, rounded.certify().unwrap(), "{what}");
         assert_eq!(read.bytes(), rounded.bytes(), "{what}");
@@ -40,8 +41,8 @@ fn a_file_gives_back_the_model() {
         for _ in 0..8 {
             let query = query(&mut dice, mesh);
             let [was, is] = [&rounded, &read].map(|mt| Cut::at(mt, &query).unwrap().level());
-            assert_eq!(is.canonical(), was.canonical(), "{what}: {query:?}");
-            assert_eq!(by_place(&is), by_place(&was), "{what}: {query:?}");
+            assert!(is.canonical() == was.canonical(), "{what}: {query:?}");
+            assert!(by_place(&is) == by_place(&was), "{what}: {query:?}");
         }
     });
 }
@@ -57,12 +58,9 @@ fn what_was_read_makes_a_model_again() {
         for _ in 0..8 {
             let query = query(&mut dice, mesh);
             let expected = by_place(&Cut::at(&read, &query).unwrap().level());
-            assert_eq!(
-                by_place(&Cut::at(model.implicit(), &query).unwrap().level()),
-                expected,
-                "{what}: {query:?}"
-            );
-            assert_eq!(by_place(extractor.exact(&query).unwrap()), expected, "{what}: {query:?}");
+            let cut = Cut::at(model.implicit(), &query).unwrap().level();
+            assert!(by_place(&cut) == expected, "{what}: {query:?}");
+            assert!(by_place(extractor.exact(&query).unwrap()) == expected, "{what}: {query:?}");
         }
     });
 }
@@ -78,7 +76,7 @@ fn a_query_reads_what_it_needs() {
             let query = query(&mut dice, mesh);
             let part = archive.extract(&query).unwrap();
             let whole = Cut::at(&model, &query).unwrap().level();
-            assert_eq!(by_place(&part.level), by_place(&whole), "{what}: {query:?}");
+            assert!(by_place(&part.level) == by_place(&whole), "{what}: {query:?}");
             spared += archive.update_count() - part.updates;
         }
     });
@@ -124,7 +122,8 @@ fn as_much_is_read_as_it_takes() {
     let query = Query::uniform(1.0);
     let [part, whole] =
         [chunks, all].map(|chunks| archive.extract_at_most(1500, &query, chunks).unwrap());
-    assert_eq!(by_place(&part.level), by_place(&whole.level));
+    // Which of those with equal errors are made is open.
+    assert_eq!(part.level.faces.len(), whole.level.faces.len());
     assert!((1490..=1500).contains(&part.level.faces.len()) && part.bytes < whole.bytes);
 }
 
@@ -194,4 +193,24 @@ fn what_is_made_to_mislead_does_no_harm() {
         }
     }
     assert!(refused > 500 && passed > 100, "{refused} refused, {passed} passed");
+}
+
+/// On a lattice so coarse that half the triangles would have none.
+#[test]
+fn no_triangle_loses_its_area() {
+    let mesh = sample::knot(4000);
+    for method in [Method::Qem, Method::LeeJang] {
+        let forest = forest(&mesh, method);
+        for part in [1e-4, 1e-3, 3e-3] {
+            let storage = Storage { rounding: Some(part * mesh.bounds().diagonal()), ..small() };
+            let archive = Archive::open(Archive::write(&forest, &storage).unwrap().0).unwrap();
+            let model = archive.read().unwrap().0;
+            let mut flat = 0;
+            model.each_triangle(|nodes| {
+                let [a, b, c] = nodes.map(|n| glam::DVec3::from(model.position(n)));
+                flat += usize::from((b - a).cross(c - a).length_squared() == 0.0);
+            });
+            assert_eq!(flat, 0, "{part}");
+        }
+    }
 }

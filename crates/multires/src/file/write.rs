@@ -7,6 +7,7 @@ use meshlod_mesh::Bounds;
 use super::FileError;
 use super::chunk;
 use super::header::{Entry, Header, Stored};
+use super::keep::Kept;
 use super::known::Known;
 use super::lattice::Lattice;
 use super::plan::{number, plan};
@@ -45,7 +46,7 @@ pub(super) fn write(
 ) -> Result<(Vec<u8>, Certificate), FileError> {
     let diagonal = diagonal(forest);
     let lattice = lattice(forest, storage);
-    let forest = forest.kept(lattice);
+    let Kept { forest, moved } = forest.kept(lattice)?;
     let order = Order::new(&forest);
     let mt = Implicit::in_order(&forest, &order)?;
     let certificate = mt.certify()?;
@@ -78,6 +79,7 @@ pub(super) fn write(
         about: About { frame: forest.frame, error_kind: forest.error_kind },
         lattice,
         diagonal,
+        rounding: forest.frame.length_of_model(moved),
         roots: known.roots(),
         base_faces: known.base.faces.len() as u32,
         base: Stored::of(&base),

@@ -1,0 +1,31 @@
+//! The triangles of all cuts.
+
+use super::front::Front;
+use crate::implicit::Implicit;
+
+impl Implicit {
+    /// Calls `visit` with each triangle that some cut has, by its nodes: those of the base, and those
+    /// that an update makes. As far as a model without a certificate lets it.
+    ///
+    /// Cost: linear.
+    pub(crate) fn each_triangle(&self, mut visit: impl FnMut([u32; 3])) {
+        let mut front = Front::new(self);
+        self.base().iter().for_each(|&face| visit(face));
+        let mut order: Vec<u32> = (0..self.update_count() as u32).collect();
+        // The parts of one that is glued stay together.
+        order.sort_by_key(|&update| {
+            let outer = if self.is_inner(update) { update - 1 } else { update };
+            std::cmp::Reverse(self.level(outer))
+        });
+        let mut waiting = Vec::new();
+        for update in order {
+            let before = front.triangles.places() as u32;
+            if !front.is_there(self.parent(update)) || !front.split(update, &mut waiting) {
+                return;
+            }
+            let around = front.last_star().iter().map(|spoke| spoke.corner / 3);
+            let brought = before..front.triangles.places() as u32;
+            around.chain(brought).for_each(|t| visit(front.triangles.nodes(t)));
+        }
+    }
+}
