@@ -83,9 +83,6 @@ pub(crate) struct Eye {
     pub(crate) slope: f64,
 }
 
-/// Of two lengths that are compared.
-const ROUNDING: f64 = 1e-12;
-
 /// A need that can be told from others: of any but a field.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Asked {
@@ -229,16 +226,10 @@ impl Eye {
         ball.error > 0.0 && (squared < reach * reach || self.slope == 0.0)
     }
 
-    /// How far the eye may move before it may want something else of the ball: a little less than it
-    /// is, and never too much by rounding.
-    #[inline]
-    pub(crate) fn leeway(&self, ball: &Ball) -> f64 {
+    /// How close the eye must be to want an update; `None` where it never turns.
+    pub(crate) fn reach(&self, ball: &Ball) -> Option<f64> {
         let reach = ball.radius + ball.error / self.slope;
-        if ball.error <= 0.0 || reach == f64::INFINITY {
-            return f64::INFINITY;
-        }
-        let distance = self.at.distance(ball.center);
-        ((distance - reach).abs() - ROUNDING * (distance + reach)).max(0.0)
+        (ball.error > 0.0 && reach.is_finite()).then_some(reach)
     }
 }
 
@@ -308,8 +299,8 @@ mod tests {
             need.wants(&ball([0.0; 3], 2.5, 0.051)) && !need.wants(&ball([0.0; 3], 2.5, 0.049))
         );
         assert!(!need.wants(&ball([0.0; 3], 9.0, 0.0)), "what is exact is fine enough");
-        let leeway = need.eye().unwrap().leeway(&ball([0.0; 3], 2.0, 0.02));
-        assert!((4.0 * leeway - 2.0).abs() < 1e-10, "reach 2 + 1 from distance 5: {leeway}");
+        let reach = need.eye().unwrap().reach(&ball([0.0; 3], 2.0, 0.02)).unwrap();
+        assert!((4.0 * reach - 3.0).abs() < 1e-12, "2 + 1: {reach}");
     }
 
     #[test]

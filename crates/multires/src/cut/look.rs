@@ -45,20 +45,15 @@ impl Cut<'_> {
     /// Looks at what is due.
     #[inline]
     fn look_again(&mut self, entry: Entry, needs: &Needed<'_>) {
-        let ball = entry.ball.unpack();
-        if needs.wanted(&ball) != entry.wanted {
+        if !self.schedule.add_again(entry) {
             self.front.set_scheduled(entry.node, false);
             self.look(entry.update, entry.node, needs);
-        } else if !self.schedule.add(entry, &ball, self.hysteresis) {
-            self.front.set_scheduled(entry.node, false);
         }
     }
 
     /// Puts an update on the list that its need asks for; and looks again when that may have turned.
-    #[inline]
     fn look(&mut self, update: u32, node: u32, needs: &Needed<'_>) {
-        let packed = self.front.mt.packed_ball(update, node);
-        let ball = packed.unpack();
+        let ball = self.front.mt.ball_at(update, node);
         let wanted = needs.wanted(&ball);
         match (self.front.standing(node), wanted) {
             (Standing::Split, [_, false]) => self.loose.push(update),
@@ -66,8 +61,9 @@ impl Cut<'_> {
             (Standing::Split | Standing::Active, _) => {}
             (Standing::Absent, _) => return,
         }
-        let entry = Entry { update, node, ball: packed, wanted };
-        if self.schedule.add(entry, &ball, self.hysteresis) {
+        let center = self.front.mt.positions()[node as usize];
+        let entry = Entry { update, node, center, span: needs.span(&ball, wanted) };
+        if self.schedule.add(entry) {
             self.front.set_scheduled(node, true);
         }
     }

@@ -17,7 +17,7 @@ use std::collections::VecDeque;
 use std::time::{Duration, Instant};
 
 use self::front::Front;
-use self::schedule::Schedule;
+use self::schedule::{Schedule, Span};
 use crate::implicit::Implicit;
 use crate::level::Level;
 use crate::need::{Asked, Ball, Need};
@@ -200,6 +200,18 @@ impl<'f> Needed<'f> {
     fn wanted(&self, ball: &Ball) -> [bool; 2] {
         let is_wanted = self.least.wants(ball);
         [is_wanted, is_wanted || self.most.as_ref().is_some_and(|most| most.wants(ball))]
+    }
+
+    /// From how far away an update is wanted as it is, or not.
+    fn span(&self, ball: &Ball, wanted: [bool; 2]) -> Span {
+        let reach = |need: &Need<'f>| need.eye().and_then(|eye| eye.reach(ball));
+        let Some(least) = reach(&self.least) else { return Span::NEVER_TURNS };
+        let most = self.most.as_ref().and_then(reach).unwrap_or(least);
+        match wanted {
+            [true, _] => Span::below(least),
+            [false, true] => Span::above(least).and_below(most),
+            [false, false] => Span::above(most),
+        }
     }
 
     /// Whether an update may stay.

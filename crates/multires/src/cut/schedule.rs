@@ -4,10 +4,13 @@
 //! A need turns where the eye crosses a sphere about the ball. Until then nothing has to be looked at,
 //! so a frame costs what is close to turning and not what is there.
 
-use crate::need::{Ball, Eye, PackedBall};
+use glam::Vec3;
 
-/// The finest step of the way, in stored units.
-const FINEST: f64 = 1.0 / (1u64 << 30) as f64;
+use crate::need::Eye;
+
+/// A unit of the way has 2³⁰ of the finest steps.
+const FINEST_EXPONENT: u64 = 30;
+const PER_FINEST: f64 = (1u64 << FINEST_EXPONENT) as f64;
 /// How many octaves of leeway are told apart; what has more is looked at when that is used up.
 const OCTAVES: usize = 48;
 /// Into how many steps an octave of leeway is parted: an entry is early by one of 16 to 32 at most.
@@ -16,19 +19,44 @@ const STEPS: i64 = 16;
 const RING: usize = 64;
 /// A longer way begins anew, in stored units: then what is added to it is not lost in it.
 const LONGEST: f64 = 1e3;
-/// Of the way: an entry is early by so much, for rounding.
+/// Of the way and the distance: an entry is early by so much, for rounding.
 const SLACK: f64 = 1e-12;
 
-/// An update as it was when it was looked at last, with all that it takes to see that nothing has
-/// turned: most looks end there, and go nowhere else in memory.
+/// An update that was looked at, with all that it takes to see that nothing has turned: most looks end
+/// there, and go nowhere else in memory.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Entry {
     pub(super) update: u32,
     /// The node that it splits.
     pub(super) node: u32,
-    pub(super) ball: PackedBall,
-    /// Whether it was wanted, and whether it might stay.
-    pub(super) wanted: [bool; 2],
+    pub(super) center: [f32; 3],
+    /// Between which distances the eye sees nothing turn.
+    pub(super) span: Span,
+}
+
+/// More than the first and less than the second, rounded inwards.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Span(f32, f32);
+
+impl Span {
+    pub(super) const NEVER_TURNS: Self = Self(f32::NEG_INFINITY, f32::INFINITY);
+
+    /// While the eye is closer.
+    pub(super) fn below(distance: f64) -> Self {
+        Self::NEVER_TURNS.and_below(distance)
+    }
+
+    /// While the eye is further away.
+    pub(super) fn above(distance: f64) -> Self {
+        // Infinity does not get larger.
+        Self((distance as f32).next_up(), f32::INFINITY)
+    }
+
+    /// And closer than this.
+    pub(super) fn and_below(self, distance: f64) -> Self {
+        let most = if distance.is_finite() { (distance as f32).next_down() } else { f32::INFINITY };
+        Self(self.0, most)
+    }
 }
 
 /// Updates by the way of the eye at which they are due.
@@ -92,27 +120,42 @@ impl Schedule {
         all.flat_map(|list| list.drain(..)).for_each(|entry| out(entry.node));
     }
 
-    /// Enters an update that has just been looked at; false where its need never turns, or nobody
-    /// knows when.
+    /// Enters an update that has just been looked at, if it may turn.
+    pub(super) fn add(&mut self, entry: Entry) -> bool {
+        let Some(leeway) = self.leeway(&entry) else { return false };
+        if leeway < f64::INFINITY {
+            self.enter(entry, leeway.max(0.0));
+        }
+        leeway < f64::INFINITY
+    }
+
+    /// Enters an update again if it cannot have turned.
     #[inline]
-    pub(super) fn add(&mut self, entry: Entry, ball: &Ball, hysteresis: Option<f64>) -> bool {
-        let Some(eye) = self.eye else { return false };
-        let mut leeway = eye.leeway(ball);
-        if let Some(part) = hysteresis {
-            let stays = Eye { slope: eye.slope / (1.0 + part), ..eye };
-            leeway = leeway.min(stays.leeway(ball));
+    pub(super) fn add_again(&mut self, entry: Entry) -> bool {
+        let leeway = self.leeway(&entry).filter(|leeway| *leeway > 0.0);
+        if let Some(leeway) = leeway {
+            self.enter(entry, leeway);
         }
-        if leeway == f64::INFINITY {
-            return false;
-        }
-        let leeway = (leeway - SLACK * self.way).max(0.0);
-        let steps = leeway / FINEST / STEPS as f64;
-        let octave = ((steps as u64).max(1).ilog2() as usize).min(OCTAVES - 1);
-        let most = (2 * STEPS) as f64 * length(octave);
+        leeway.is_some()
+    }
+
+    /// How far the eye may move before an update may turn.
+    #[inline]
+    fn leeway(&self, entry: &Entry) -> Option<f64> {
+        let distance = self.eye?.at.distance(Vec3::from(entry.center).as_dvec3());
+        let Span(least, most) = entry.span;
+        let leeway = (distance - f64::from(least)).min(f64::from(most) - distance);
+        Some(leeway - SLACK * (distance + self.way))
+    }
+
+    #[inline]
+    fn enter(&mut self, entry: Entry, leeway: f64) {
+        let steps = leeway * (PER_FINEST / STEPS as f64);
+        let octave = ((steps as i64).max(1).ilog2() as usize).min(OCTAVES - 1);
+        let most = (2 * STEPS) as f64 / per_length(octave);
         let at = step(self.way + leeway.min(most), octave);
         self.rings[slot(octave, at)].push(entry);
         self.counts[octave] += 1;
-        true
     }
 
     /// Collects what became due on the way to here.
@@ -128,14 +171,18 @@ impl Schedule {
     }
 }
 
-fn length(octave: usize) -> f64 {
-    FINEST * (1u64 << octave) as f64
+/// How many of an octave's steps a unit of the way has: a power of two.
+#[inline]
+fn per_length(octave: usize) -> f64 {
+    f64::from_bits((1023 + FINEST_EXPONENT - octave as u64) << 52)
 }
 
+#[inline]
 fn step(way: f64, octave: usize) -> i64 {
-    (way / length(octave)) as i64
+    (way * per_length(octave)) as i64
 }
 
+#[inline]
 fn slot(octave: usize, step: i64) -> usize {
     octave * RING + step as usize % RING
 }
@@ -145,7 +192,6 @@ mod tests {
     use glam::DVec3;
 
     use super::*;
-    use crate::frame::Length16;
 
     #[test]
     fn nobody_is_late_and_few_are_early() {
@@ -153,13 +199,11 @@ mod tests {
         let mut schedule = Schedule::default();
         assert!(!schedule.follow(eye(0.0)), "the first look is at everything");
         schedule.clear(|_| {});
-        // The need of ball i turns when the eye has come to x = i³ / 1000.
-        let at = |i: u32| f64::from(i).powi(3) / 1000.0;
-        let ball =
-            |i| Ball { center: DVec3::new(at(i) + 1.0, 0.0, 0.0), radius: 0.5, error: 0.005 };
-        let packed = PackedBall { center: [0.0; 3], radius: Length16(0), error: Length16(0) };
-        let entry = |update| Entry { update, node: update, ball: packed, wanted: [false; 2] };
-        (0..60).for_each(|i| assert!(schedule.add(entry(i), &ball(i), None)));
+        // Update i turns when the eye has come to about x = i³ / 1000.
+        let center = |i: u32| [(f64::from(i).powi(3) / 1000.0 + 1.0) as f32, 0.0, 0.0];
+        let at = |i: u32| f64::from(center(i)[0]) - 1.0;
+        let entry = |i| Entry { update: i, node: i, center: center(i), span: Span::above(1.0) };
+        (0..60).for_each(|i| assert!(schedule.add(entry(i))));
         let mut looks = 0;
         let mut x = 0.0;
         for frame in 0..200 {
@@ -170,8 +214,7 @@ mod tests {
                 if at(update) <= x {
                     continue;
                 }
-                assert!(eye(x).unwrap().leeway(&ball(update)) > 0.0);
-                schedule.add(entry(update), &ball(update), None);
+                schedule.add(entry(update));
             }
             assert!(schedule.rings.iter().flatten().all(|e| at(e.update) > x), "late at {x}");
         }
@@ -185,17 +228,20 @@ mod tests {
         let mut schedule = Schedule::default();
         schedule.follow(eye(0.0));
         schedule.clear(|_| {});
-        assert!(schedule.follow(eye(499.0)) && schedule.follow(eye(0.0)));
-        let ball = Ball { center: DVec3::new(1.0 + 1e-8, 0.0, 0.0), radius: 0.5, error: 0.005 };
-        let packed = PackedBall { center: [0.0; 3], radius: Length16(0), error: Length16(0) };
-        let entry = Entry { update: 0, node: 0, ball: packed, wanted: [false; 2] };
-        assert!(schedule.add(entry, &ball, None));
-        // Each is less than half of what can be added to so long a way.
-        let steps = (0..).take_while(|&i| {
-            assert!(schedule.follow(eye(5e-14 * f64::from(i))));
+        let start = 1.1e-7;
+        assert!(schedule.follow(eye(499.0)) && schedule.follow(eye(start)));
+        let [from, to] = [Span::above(1.0), Span::below(1.0)].map(|span| [span.0, span.1]);
+        assert!(from[0] > 1.0 && to[1] < 1.0, "rounded inwards");
+        let center = [1.0 + 2.0 * f32::EPSILON, 0.0, 0.0];
+        let entry = Entry { update: 0, node: 0, center, span: Span::above(1.0) };
+        assert!(schedule.add(entry));
+        // A leeway of 9e-9, in steps of which each is lost when it is added to so long a way.
+        let steps = (0..400_000).take_while(|&i| {
+            assert!(schedule.follow(eye(start + 5e-14 * f64::from(i))));
             schedule.due.is_empty()
         });
-        assert!(steps.count() <= 200_000);
+        let steps = steps.count();
+        assert!((1000..=200_000).contains(&steps), "{steps}");
     }
 
     #[test]
