@@ -136,7 +136,7 @@ impl Grid {
     /// The corners of the square in part 0, then what is inserted after so many halvings and one.
     fn part(&self, part: u32) -> impl Iterator<Item = Place> + use<> {
         let grid = *self;
-        let side = self.side();
+        let side = self.side;
         let corners = [[0, 0], [side, 0], [0, side], [side, side]];
         let corners = corners.map(|[column, row]| Place { column, row });
         let corners = corners.into_iter().filter(move |&p| part == 0 && grid.holds(p));

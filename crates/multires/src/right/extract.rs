@@ -88,8 +88,8 @@ impl<'m> RightExtractor<'m> {
 
 /// What is to be done on a walk over the triangles.
 trait Visit {
-    /// Of a vertex that is in the cut, its number in the level.
-    fn number(&mut self, place: Place) -> Option<u32>;
+    /// Of a vertex that is in the cut, its number in the level; `apex` is one of those that it needs.
+    fn number(&mut self, place: Place, apex: Place) -> Option<u32>;
 
     /// A triangle of the level.
     fn show(&mut self, corners: [u32; 3]);
@@ -107,14 +107,14 @@ impl Grid {
     /// Halves triangles while their vertex has a number, and shows the others.
     fn walk(&self, visit: &mut impl Visit) {
         for triangle in self.roots() {
-            let numbers = triangle.corners().map(|p| self.number(p, visit).unwrap_or(NONE));
+            let numbers = triangle.corners().map(|p| self.number(p, p, visit).unwrap_or(NONE));
             self.halve(Numbered { triangle, numbers }, self.depth(), false, visit);
         }
     }
 
     /// Of a place outside the field, nothing.
-    fn number(&self, place: Place, visit: &mut impl Visit) -> Option<u32> {
-        if self.holds(place) { visit.number(place) } else { Some(NONE) }
+    fn number(&self, place: Place, apex: Place, visit: &mut impl Visit) -> Option<u32> {
+        if self.holds(place) { visit.number(place, apex) } else { Some(NONE) }
     }
 
     fn halve(&self, of: Numbered, depth: u32, is_inside: bool, visit: &mut impl Visit) {
@@ -129,7 +129,10 @@ impl Grid {
             return visit.show(of.numbers);
         }
         let at = middle(triangle.ends);
-        let number = if is_inside { visit.number(at) } else { self.number(at, visit) };
+        let number = match is_inside {
+            true => visit.number(at, triangle.apex),
+            false => self.number(at, triangle.apex, visit),
+        };
         let Some(number) = number else { return visit.show(of.numbers) };
         let [start, end] = triangle.ends;
         let halves = [
@@ -150,8 +153,8 @@ struct Writer<'a, F> {
 }
 
 impl<F: FnMut(Place, usize) -> bool> Visit for Writer<'_, F> {
-    #[inline]
-    fn number(&mut self, place: Place) -> Option<u32> {
+    #[inline(always)]
+    fn number(&mut self, place: Place, _: Place) -> Option<u32> {
         let Self { model, level, .. } = self;
         let index = model.grid.index(place);
         let number = self.numbers[index];
@@ -186,33 +189,48 @@ struct Chooser<'a, 'f> {
 }
 
 impl Chooser<'_, '_> {
+    /// Whether it is in the cut so far.
+    #[inline]
+    fn has(&self, index: usize) -> bool {
+        self.chosen[index] || self.model.vertices[index].is_forced()
+    }
+
+    #[inline]
+    fn add(&mut self, index: usize) {
+        self.chosen[index] = true;
+        self.all_chosen.push(index as u32);
+    }
+
     /// And what it needs; that of what is in every level is, too.
     fn choose(&mut self, place: Place) {
         let index = self.model.grid.index(place);
-        if self.chosen[index] || self.model.vertices[index].is_forced() {
-            return;
-        }
-        self.chosen[index] = true;
-        self.all_chosen.push(index as u32);
-        for parent in self.model.grid.parents(place) {
-            self.choose(parent);
+        if !self.has(index) {
+            self.add(index);
+            self.model.grid.parents(place).for_each(|parent| self.choose(parent));
         }
     }
 }
 
 impl Visit for Chooser<'_, '_> {
-    #[inline]
-    fn number(&mut self, place: Place) -> Option<u32> {
-        let Self { model, need, .. } = self;
+    /// The walk meets each vertex once with each of those that it needs.
+    #[inline(always)]
+    fn number(&mut self, place: Place, apex: Place) -> Option<u32> {
+        let (model, need) = (self.model, self.need);
         let index = model.grid.index(place);
-        if self.chosen[index] || model.vertices[index].is_forced() {
+        if model.vertices[index].is_forced() {
             return Some(NONE);
         }
-        if !need.wants(&model.nested_ball(place)) {
-            return None;
+        if !self.chosen[index] {
+            if !need.wants(&model.nested_ball(place)) {
+                return None;
+            }
+            if !need.wants(&model.own_ball(place)) {
+                return Some(NONE);
+            }
+            self.add(index);
         }
-        if need.wants(&model.own_ball(place)) {
-            self.choose(place);
+        if !self.has(model.grid.index(apex)) {
+            self.choose(apex);
         }
         Some(NONE)
     }

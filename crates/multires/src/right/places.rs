@@ -41,13 +41,16 @@ pub(crate) enum Extent {
 pub(crate) struct Grid {
     pub(crate) columns: u32,
     pub(crate) rows: u32,
+    /// The number of cells along a side of the square.
+    pub(crate) side: u32,
 }
 
 impl Grid {
     /// None for more or fewer vertices than can be numbered.
     pub(crate) fn new(columns: u32, rows: u32) -> Option<Self> {
         let count = columns.checked_mul(rows)?;
-        (columns >= 2 && rows >= 2 && count < 1 << 31).then_some(Self { columns, rows })
+        let fits = columns >= 2 && rows >= 2 && count < 1 << 31;
+        fits.then(|| Self { columns, rows, side: (columns.max(rows) - 1).next_power_of_two() })
     }
 
     pub(crate) fn count(&self) -> usize {
@@ -69,19 +72,14 @@ impl Grid {
         Place { column: index % self.columns, row: index / self.columns }
     }
 
-    /// The number of cells along a side of the square.
-    pub(crate) fn side(&self) -> u32 {
-        (self.columns.max(self.rows) - 1).next_power_of_two()
-    }
-
     /// How often the halves of the square are halved until they are half cells.
     pub(crate) fn depth(&self) -> u32 {
-        2 * self.side().ilog2()
+        2 * self.side.ilog2()
     }
 
     /// The halves of the square.
     pub(crate) fn roots(&self) -> [Triangle; 2] {
-        let side = self.side();
+        let side = self.side;
         let at = |column, row| Place { column, row };
         let ends = [at(side, side), at(0, 0)];
         [
@@ -94,10 +92,9 @@ impl Grid {
     #[inline]
     pub(crate) fn diamond(&self, place: Place) -> Option<Diamond> {
         let Place { column, row } = place;
-        let side = self.side();
         let any = column | row;
         let step = any & any.wrapping_neg();
-        if any == 0 || step == side {
+        if any == 0 || step == self.side {
             return None;
         }
         let at = |column, row| Place { column, row };
@@ -110,14 +107,15 @@ impl Grid {
             let (ends, apexes) = if is_rising { (rising, falling) } else { (falling, rising) };
             return Some(Diamond { ends, apexes: apexes.map(Some) });
         }
-        let before = |x: u32| x.checked_sub(step);
-        let after = |x: u32| (x < side).then_some(x + step);
-        Some(if column & step != 0 {
-            let apexes = [before(row), after(row)].map(|row| row.map(|row| at(column, row)));
-            Diamond { ends: [at(column - step, row), at(column + step, row)], apexes }
-        } else {
-            let apexes = [before(column), after(column)].map(|c| c.map(|column| at(column, row)));
-            Diamond { ends: [at(column, row - step), at(column, row + step)], apexes }
+        // In the middle of a side, between two cells or at the side of the square.
+        let (across, along) = if column & step != 0 { (step, 0) } else { (0, step) };
+        // Where the apexes differ.
+        let beside = if column & step != 0 { row } else { column };
+        let before = at(column.wrapping_sub(along), row.wrapping_sub(across));
+        let after = at(column + along, row + across);
+        Some(Diamond {
+            ends: [at(column - across, row - along), at(column + across, row + along)],
+            apexes: [(beside > 0).then_some(before), (beside < self.side).then_some(after)],
         })
     }
 
@@ -163,9 +161,9 @@ impl Grid {
     /// The vertices of the field that are inserted after so many halvings, row by row: middles of
     /// cells for even numbers, of their sides for odd ones.
     pub(crate) fn inserted_at(&self, depth: u32) -> impl Iterator<Item = Place> + use<> {
-        let step = self.side() >> (depth / 2 + 1);
+        let step = self.side >> (depth / 2 + 1);
         let is_side = depth % 2 == 1;
-        let Self { columns, rows } = *self;
+        let Self { columns, rows, .. } = *self;
         let first_row = if is_side { 0 } else { step };
         let between_rows = if is_side { step } else { 2 * step };
         (first_row..rows).step_by(between_rows as usize).flat_map(move |row| {
