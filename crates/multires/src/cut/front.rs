@@ -1,6 +1,6 @@
 //! The surface of a cut: splits and merges, each with the rule that it must obey.
 
-use super::star::{Spoke, Triangles};
+use super::star::{MOST_SEARCHED, NEXT, Spoke, Triangles};
 use crate::forest::{MOST_LEVELS, NONE};
 use crate::implicit::{Implicit, Wing};
 
@@ -189,13 +189,13 @@ impl<'m> Front<'m> {
             return false;
         }
         let level = self.mt.level(update);
-        self.star.clear();
-        for child in if glued { &parts[..] } else { &parts[..2] } {
-            self.triangles.gather(self.vertices[*child as usize].corner, &mut self.star);
-        }
-        let around = || self.star.iter().flat_map(|spoke| [spoke.a, spoke.b]);
         let is_needed = |n: u32| !parts.contains(&n) && self.vertices[n as usize].above <= level;
-        if around().any(is_needed) {
+        // Most that are held are held by one of the first few.
+        let is_held = |&child: &u32| {
+            let mut around = self.triangles.around(self.vertices[child as usize].corner);
+            around.any(|spoke| is_needed(spoke.a) || is_needed(spoke.b))
+        };
+        if parts[..if glued { 3 } else { 2 }].iter().any(is_held) {
             return false;
         }
         if glued {
@@ -227,13 +227,39 @@ impl<'m> Front<'m> {
                 }
                 // It is met from both ends and goes with the first.
                 (Some(wing), None) if self.is_first(i) => {
-                    let Vertex { corner: list, .. } = &mut self.vertices[wing as usize];
-                    self.triangles.unlink(corner / 3, list);
-                    self.triangles.remove(corner / 3);
+                    self.remove(corner / 3, wing, [first, second, node]);
                 }
                 _ => {}
             }
         }
+    }
+
+    /// Takes away a triangle that is at no vertex any more but one. `joined` are those whose lists are
+    /// not what they should be just now.
+    fn remove(&mut self, t: u32, wing: u32, joined: [u32; 3]) {
+        let Self { triangles, vertices, .. } = self;
+        let list = &mut vertices[wing as usize].corner;
+        if triangles.unlink(t, list, MOST_SEARCHED) {
+            triangles.remove(t);
+            return;
+        }
+        // At a hub, to search the whole list for each would take time by the square of its length. But
+        // one from its start may go where the triangle was, for the other two lists that it is in are
+        // short.
+        let Some(other) = triangles.take(list, joined) else {
+            triangles.unlink(t, list, usize::MAX);
+            triangles.remove(t);
+            return;
+        };
+        let at = triangles.nodes(t).iter().position(|&node| node == wing);
+        let (mut to, mut from) = (at.expect("a wing is a corner"), other as usize % 3);
+        for _ in 0..2 {
+            (to, from) = (NEXT[to], NEXT[from]);
+            let node = triangles.nodes(other / 3)[from];
+            let [corner, by] = [other / 3 * 3 + from as u32, 3 * t + to as u32];
+            triangles.replace(corner, by, node, &mut vertices[node as usize].corner);
+        }
+        triangles.remove(other / 3);
     }
 
     /// Whether a triangle of the star has not been met before.

@@ -8,6 +8,9 @@ use crate::forest::NONE;
 /// A triangle that is not there.
 const HOLE: [u32; 3] = [NONE; 3];
 
+/// So far lists are searched for a triangle: only hubs have longer ones.
+pub(super) const MOST_SEARCHED: usize = 128;
+
 /// Triangles by corners: corner `3 t + k` is the `k`-th of triangle `t`.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Triangles {
@@ -85,13 +88,20 @@ impl Triangles {
     /// Appends what is around a vertex to `star`; `first` is its first corner.
     #[inline]
     pub(super) fn gather(&self, first: u32, star: &mut Vec<Spoke>) {
+        star.extend(self.around(first));
+    }
+
+    /// What is around a vertex, by its first corner.
+    #[inline]
+    pub(super) fn around(&self, first: u32) -> impl Iterator<Item = Spoke> + '_ {
         let mut corner = first;
-        while corner != NONE {
-            let (t, k) = (corner as usize / 3, corner as usize % 3);
-            let triangle = &self.all[t];
-            star.push(Spoke { corner, a: triangle.nodes[NEXT[k]], b: triangle.nodes[LAST[k]] });
+        std::iter::from_fn(move || {
+            let triangle = self.all.get(corner as usize / 3)?;
+            let k = corner as usize % 3;
+            let spoke = Spoke { corner, a: triangle.nodes[NEXT[k]], b: triangle.nodes[LAST[k]] };
             corner = triangle.next[k];
-        }
+            Some(spoke)
+        })
     }
 
     /// Gives a corner to a vertex, whose first corner it becomes.
@@ -118,19 +128,66 @@ impl Triangles {
         self.holes.push(t);
     }
 
-    /// Takes a triangle's corner out of the list of another vertex that it is at.
-    pub(super) fn unlink(&mut self, t: u32, first: &mut u32) {
-        let after = |corner: u32| self.all[corner as usize / 3].next[corner as usize % 3];
+    /// Takes a triangle's corner out of the list of another vertex that it is at; false where it is not
+    /// among so many.
+    pub(super) fn unlink(&mut self, t: u32, first: &mut u32, among: usize) -> bool {
         if *first / 3 == t {
-            *first = after(*first);
-            return;
+            *first = self.after(*first);
+            return true;
         }
         let mut at = *first;
-        while after(at) / 3 != t {
-            at = after(at);
+        for _ in 0..among {
+            let next = self.after(at);
+            if next / 3 == t {
+                *self.after_mut(at) = self.after(next);
+                return true;
+            }
+            at = next;
         }
-        let next = after(after(at));
-        self.all[at as usize / 3].next[at as usize % 3] = next;
+        false
+    }
+
+    /// Takes out of the list of a vertex a corner near its start, of a triangle without any of some
+    /// nodes.
+    pub(super) fn take(&mut self, first: &mut u32, without: [u32; 3]) -> Option<u32> {
+        let (mut before, mut at) = (NONE, *first);
+        for _ in 0..MOST_SEARCHED {
+            if self.nodes(at / 3).iter().all(|node| !without.contains(node)) {
+                let next = self.after(at);
+                *(if before == NONE { first } else { self.after_mut(before) }) = next;
+                return Some(at);
+            }
+            (before, at) = (at, self.after(at));
+        }
+        None
+    }
+
+    /// Puts another corner in the stead of one in the list of its vertex.
+    pub(super) fn replace(&mut self, corner: u32, by: u32, node: u32, first: &mut u32) {
+        let next = self.after(corner);
+        if *first == corner {
+            *first = by;
+        } else {
+            let mut at = *first;
+            while self.after(at) != corner {
+                at = self.after(at);
+            }
+            *self.after_mut(at) = by;
+        }
+        let triangle = self.touch(by / 3);
+        triangle.nodes[by as usize % 3] = node;
+        triangle.next[by as usize % 3] = next;
+    }
+
+    /// The next corner at the same vertex.
+    #[inline]
+    fn after(&self, corner: u32) -> u32 {
+        self.all[corner as usize / 3].next[corner as usize % 3]
+    }
+
+    #[inline]
+    fn after_mut(&mut self, corner: u32) -> &mut u32 {
+        &mut self.all[corner as usize / 3].next[corner as usize % 3]
     }
 
     /// A triangle that is about to change.
@@ -145,5 +202,5 @@ impl Triangles {
     }
 }
 
-const NEXT: [usize; 3] = [1, 2, 0];
+pub(super) const NEXT: [usize; 3] = [1, 2, 0];
 const LAST: [usize; 3] = [2, 0, 1];

@@ -5,7 +5,7 @@ use std::time::Duration;
 use meshlod_mesh::{Mesh, sample};
 use meshlod_simplify::Method;
 
-use super::walks::{Dice, forest, topology};
+use super::walks::{Dice, cone, forest, topology};
 use crate::{Camera, Cut, Effort, Implicit, Query, Tolerance};
 
 /// The view of an eye that wanders around a mesh, in steps of very different lengths.
@@ -75,17 +75,22 @@ fn what_went_under_another_question_is_looked_at_when_it_comes_back() {
 
 #[test]
 fn patches_lead_from_frame_to_frame() {
-    let mt = model(&sample::gyroid(2000), Method::LindstromTurk);
-    let (mut cut, mut wanderer) = (Cut::new(&mt), Wanderer::new());
-    cut.update(&wanderer.next(1.0), &Effort::default()).unwrap();
-    let mut known = Mirror::of(&cut);
-    for _ in 0..300 {
+    for mesh in [sample::gyroid(2000), cone(1500)] {
+        let mt = model(&mesh, Method::LindstromTurk);
+        let (mut cut, mut wanderer) = (Cut::new(&mt), Wanderer::new());
         cut.update(&wanderer.next(1.0), &Effort::default()).unwrap();
-        for patch in cut.patches() {
-            assert_ne!(patch.out, patch.into);
-            known.patch(patch.place, patch.out, patch.into);
+        let mut known = Mirror::of(&cut);
+        for _ in 0..300 {
+            let query = wanderer.next(1.0);
+            cut.update(&query, &Effort::default()).unwrap();
+            for patch in cut.patches() {
+                assert_ne!(patch.out, patch.into);
+                known.patch(patch.place, patch.out, patch.into);
+            }
+            assert_eq!(known.canonical(), Mirror::of(&cut).canonical());
+            let fresh = Cut::at(&mt, &query).unwrap().level();
+            assert_eq!(cut.level().canonical(), fresh.canonical());
         }
-        assert_eq!(known.canonical(), Mirror::of(&cut).canonical());
     }
 }
 

@@ -13,7 +13,7 @@ use crate::{
     Tolerance,
 };
 
-const METHODS: [Method; 5] = [
+pub(crate) const METHODS: [Method; 5] = [
     Method::Qem,
     Method::LindstromTurk,
     Method::QemEndpoint,
@@ -122,7 +122,7 @@ pub(crate) fn topology(mesh: &Mesh) -> Topology {
 }
 
 /// The faces of a level by the forest's nodes.
-fn in_forest(level: &Level, order: &Order) -> Vec<[u32; 3]> {
+pub(crate) fn in_forest(level: &Level, order: &Order) -> Vec<[u32; 3]> {
     let mut level = level.clone();
     level.nodes.iter_mut().for_each(|node| *node = order.nodes[*node as usize]);
     level.canonical()
@@ -250,16 +250,8 @@ fn cuts_cover_the_surface_once() {
 /// What wings cannot tell: edges of three faces, faces turned against each other, and hubs.
 #[test]
 fn odd_places_are_told_face_by_face() {
-    let around = 400;
-    let rim = (0..around).map(|i| {
-        let (sin, cos) = (f64::from(i) / f64::from(around) * std::f64::consts::TAU).sin_cos();
-        [cos, sin, 0.0]
-    });
-    let positions: Vec<_> = rim.chain([[0.0, 0.0, 0.5]]).collect();
-    let sides: Vec<_> = (0..around).map(|i| [i, (i + 1) % around, around]).collect();
-    let cone = fixtures::mesh(&positions, &sides);
     let soups = (0..30).map(soup);
-    for mesh in [cone, fixtures::moebius(60)].into_iter().chain(soups) {
+    for mesh in [cone(400), fixtures::moebius(60)].into_iter().chain(soups) {
         for method in METHODS {
             let forest = forest(&mesh, method);
             let order = Order::new(&forest);
@@ -276,6 +268,17 @@ fn odd_places_are_told_face_by_face() {
             }
         }
     }
+}
+
+/// A vertex with many others around.
+pub(crate) fn cone(around: u32) -> Mesh {
+    let rim = (0..around).map(|i| {
+        let (sin, cos) = (f64::from(i) / f64::from(around) * std::f64::consts::TAU).sin_cos();
+        [cos, sin, 0.0]
+    });
+    let positions: Vec<_> = rim.chain([[0.0, 0.0, 0.5]]).collect();
+    let sides: Vec<_> = (0..around).map(|i| [i, (i + 1) % around, around]).collect();
+    fixtures::mesh(&positions, &sides)
 }
 
 /// Faces between any three of a few points.
