@@ -55,7 +55,8 @@ const HEADER: usize = 72;
 /// A field has a byte at least for so many heights, if need be of padding. So the header of a short
 /// file cannot ask for much room, and flat fields of millions of heights take kilobytes.
 const MOST_PER_BYTE: usize = 256;
-/// Zstandard's. On the shared terrain 3, 9, 15 and 19 give the same size to two percent.
+/// Zstandard's. The exact heights of the shared terrain take the same at 3, 9, 15 and 19, to a third of
+/// a percent; in cells of 4 m they take 2 % more at 3 and 7 % less at 19.
 const EFFORT: i32 = 9;
 /// Multiples of the cell up to this are exact in `f64`.
 const MOST_CELLS: f64 = (1u64 << 52) as f64;
