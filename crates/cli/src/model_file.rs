@@ -3,7 +3,7 @@
 use std::fs::File;
 use std::path::Path;
 
-use meshlod::multires::{Archive, Certificate, ErrorKind, ModelFile};
+use meshlod::multires::{Archive, Certificate, ErrorKind, ModelFile, Source};
 use serde_json::{Value, json};
 
 use crate::failure::Failure;
@@ -56,7 +56,7 @@ pub fn certificate_text(certificate: &Certificate) -> String {
 }
 
 /// What the errors of a file are.
-pub fn error_kind(archive: &Archive<File>) -> &'static str {
+pub fn error_kind<S: Source>(archive: &Archive<S>) -> &'static str {
     match archive.error_kind() {
         ErrorKind::Estimate => "estimate",
         ErrorKind::Bound => "bound",

@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 use clap::{Args, ValueEnum};
 use meshlod::io::write_file;
 use meshlod::multires::{
-    Archive, BuildError, Certificate, Forest, HeightField, HeightPrecision, Recorder, Storage,
+    Archive, BuildError, Certificate, HeightField, HeightPrecision, Recorder, Storage,
 };
 use meshlod::simplify::Simplifier;
 use meshlod::{Mesh, Method, Options, Target};
@@ -35,6 +35,10 @@ pub struct Build {
     #[arg(long, value_name = "NAME", default_value = Method::default().name(),
         value_parser = amounts::method, help = amounts::methods())]
     method: Method,
+    /// Prove bounds of the errors, in place of the method's estimates; takes some times as long. Those
+    /// of right triangles are bounds in any case
+    #[arg(long)]
+    bounds: bool,
     /// By how much a vertex may be moved to take less room: 0.001 in model units, 0.005% of the
     /// diagonal
     #[arg(long, value_name = "BOUND", value_parser = amounts::bound, default_value = "0.005%",
@@ -64,8 +68,15 @@ struct Built {
 }
 
 enum Levels {
-    Contractions { updates: usize, base_faces: usize, certificate: Certificate },
-    RightTriangles { size: [u32; 2] },
+    Contractions {
+        updates: usize,
+        base_faces: usize,
+        certificate: Certificate,
+        error_kind: &'static str,
+    },
+    RightTriangles {
+        size: [u32; 2],
+    },
 }
 
 impl Build {
@@ -95,8 +106,12 @@ impl Build {
         let watch = session.progress.contractions("contracting", Some(mesh.faces.len()));
         let mut both = (Recorder::new(&simplifier), watch);
         simplifier.run(Target::Faces(0), &mut both).map_err(|error| failed(error.into()))?;
+        let mut forest = both.0.into_forest().map_err(failed)?;
+        if self.bounds {
+            session.progress.stage("measuring bounds");
+            forest.measure_bounds();
+        }
         session.progress.stage("proving and packing");
-        let forest: Forest = both.0.into_forest().map_err(failed)?;
         let storage = Storage { rounding: Some(self.rounding(mesh)), in_chunk: self.in_chunk };
         let written = Archive::write(&forest, &storage);
         let (bytes, certificate) = written.map_err(|error| Failure::at(&self.input, error))?;
@@ -105,6 +120,7 @@ impl Build {
             updates: archive.update_count(),
             base_faces: archive.base_faces(),
             certificate,
+            error_kind: model_file::error_kind(&archive),
         };
         Ok(Built { rounding: archive.rounding(), bytes: archive.into_source(), levels })
     }
@@ -137,7 +153,8 @@ impl Build {
             "build_seconds": time.as_secs_f64(),
         });
         match &built.levels {
-            Levels::Contractions { updates, base_faces, certificate } => {
+            Levels::Contractions { updates, base_faces, certificate, error_kind } => {
+                json["error_kind"] = (*error_kind).into();
                 json["model"] = "contractions".into();
                 json["method"] = self.method.name().into();
                 json["updates"] = (*updates).into();
@@ -165,8 +182,8 @@ impl Build {
             percent(part),
         );
         text += &match &built.levels {
-            Levels::Contractions { updates, base_faces, certificate } => format!(
-                "{} updates by {} down to {}; {}\n",
+            Levels::Contractions { updates, base_faces, certificate, error_kind } => format!(
+                "{} updates by {} down to {}, with {error_kind}s of errors; {}\n",
                 count(*updates),
                 self.method.name(),
                 faces(*base_faces),

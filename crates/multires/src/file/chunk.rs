@@ -12,6 +12,7 @@ use thiserror::Error;
 
 use super::known::Known;
 use super::lattice::{Lattice, error9, error16, radius8, radius16};
+use super::slant::Slant;
 use super::streams::{Packer, Unpacker};
 use crate::forest::{NONE, Odd};
 use crate::frame::Length16;
@@ -81,18 +82,17 @@ fn write_errors(updates: &[Loose], packer: &mut Packer) -> io::Result<()> {
 }
 
 fn write_places(known: &Known, updates: &[Loose], packer: &mut Packer) -> io::Result<()> {
-    let family = |u: &Loose| Family::of(known.lattice, known.place(u.parent), u.children);
-    let families: Vec<_> = updates.iter().map(family).collect();
+    let lattice = known.lattice;
+    let families: Vec<_> =
+        updates.iter().map(|u| Family::of(lattice, known.place(u.parent), u.children)).collect();
+    let folded: Vec<_> =
+        updates.iter().zip(&families).map(|(u, f)| f.folded(&known.slant(u.parent))).collect();
     for k in 0..3 {
-        packer.signed(families.iter().map(|family| family.apart[k]))?;
-        packer.signed(families.iter().map(|family| family.middle[k]))?;
+        packer.signed(folded.iter().map(|family| family.apart[k]))?;
+        packer.signed(folded.iter().map(|family| family.middle[k]))?;
     }
     let radii = updates.iter().zip(&families);
-    packer.signed(
-        radii.map(|(u, family)| {
-            i32::from(radius8(u.radius)) - i32::from(family.radius8(known.lattice))
-        }),
-    )
+    packer.signed(radii.map(|(u, f)| i32::from(radius8(u.radius)) - i32::from(f.radius8(lattice))))
 }
 
 fn write_odd(odd: &Odd, packer: &mut Packer) -> io::Result<()> {
@@ -141,7 +141,7 @@ pub(super) fn read(
             children: [Vec3::ZERO; 2],
         };
         if parent != NONE {
-            let family = places.family(at);
+            let family = places.family(at).unfolded(&known.slant(parent));
             let children = family.children(known.lattice, known.place(parent));
             update.children = children.ok_or(bad("its children are out of reach"))?;
             let radius = i64::from(family.radius8(known.lattice)) + i64::from(places.radii[at]);
@@ -229,6 +229,14 @@ impl Family {
         // Their sum is odd where their difference is.
         let middle = [0, 1, 2].map(|k| (a[k] + b[k] - 2 * parent[k] - (apart[k] & 1)) / 2);
         Self { apart, middle }
+    }
+
+    fn folded(&self, slant: &Slant) -> Self {
+        Self { apart: slant.fold(self.apart), middle: slant.fold(self.middle) }
+    }
+
+    fn unfolded(&self, slant: &Slant) -> Self {
+        Self { apart: slant.unfold(self.apart), middle: slant.unfold(self.middle) }
     }
 
     /// None where they would be out of reach.

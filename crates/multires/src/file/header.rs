@@ -72,7 +72,8 @@ impl Header {
         out.extend(VERSION.to_le_bytes());
         out.extend([0; BODY - CHECKSUM]);
         let kind = self.about.error_kind;
-        out.extend([self.lattice.bits(), u8::from(kind == ErrorKind::Bound), 0, 0]);
+        out.extend(self.lattice.to_bytes());
+        out.extend([u8::from(kind == ErrorKind::Bound), 0]);
         let words = [self.roots, self.base_faces, self.base.bytes, self.base.checksum];
         out.extend(words.iter().flat_map(|word| word.to_le_bytes()));
         out.extend((self.chunks.len() as u32).to_le_bytes());
@@ -111,17 +112,18 @@ impl Header {
         }
         let origin = [0, 1, 2].map(|k| double(bytes, 40 + 8 * k));
         let frame = Frame::from_parts(origin, double(bytes, 64));
+        let lattice = Lattice::from_bytes([bytes[BODY], bytes[BODY + 1]]);
         let bad = |why| FileError::Header(why);
         let this = Self {
             about: About {
                 frame: frame.ok_or(bad("its frame is no place"))?,
-                error_kind: match bytes[BODY + 1] {
+                error_kind: match bytes[BODY + 2] {
                     0 => ErrorKind::Estimate,
                     1 => ErrorKind::Bound,
                     _ => return Err(bad("its errors are of no kind")),
                 },
             },
-            lattice: Lattice::of_bits(bytes[BODY]).ok_or(bad("its lattice is too fine"))?,
+            lattice: lattice.ok_or(bad("its lattice is none"))?,
             diagonal: double(bytes, 72),
             rounding: double(bytes, 80),
             roots: word(bytes, 20),

@@ -3,9 +3,10 @@
 use glam::Vec3;
 
 use super::lattice::{ERRORS, Lattice, error9, error16, radius8, radius16};
+use super::slant::Slant;
 use super::spread::spread;
 use crate::bounds::ErrorKind;
-use crate::forest::{BuildError, Forest, MOST_LEVELS};
+use crate::forest::{BuildError, Forest, MOST_LEVELS, NONE};
 use crate::frame::Length16;
 use crate::implicit::{Implicit, Order};
 
@@ -21,7 +22,7 @@ pub(super) struct Kept {
 
 impl Forest {
     /// With places on the lattice, balls around that and errors in fewer steps, rounded up and nested
-    /// again; with levels that tell little beside the error; with siblings in the order of `x`.
+    /// again; with levels that tell little beside the error; with siblings in an order that tells little.
     /// # Errors
     /// More nodes than are numbered.
     pub(super) fn kept(&self, lattice: Lattice) -> Result<Kept, BuildError> {
@@ -66,16 +67,30 @@ impl Forest {
         Ok(moved)
     }
 
-    /// Lets the second of two siblings be the one with the greater `x`, where that is free.
+    /// Lets the second of two siblings be the one that is further along, where that is free: then a
+    /// sign less is to be told.
     fn turn_siblings(&mut self) {
+        let parents = self.parents();
         for u in 0..self.updates.len() {
+            let family = self.family(u);
+            let mut at = self.node(u);
+            let slant = Slant::of(std::array::from_fn(|_| {
+                let above = Some(parents[at]).filter(|&up| up != NONE)? as usize;
+                at = self.node(above);
+                Some(self.family(above))
+            }));
             let update = &mut self.updates[u];
-            let [first, second] = update.children.map(|child| self.positions[child as usize][0]);
-            if first > second && update.either && !update.glued {
+            let apart = family[1].as_dvec3() - family[0].as_dvec3();
+            if slant.is_backwards(apart) && update.either && !update.glued {
                 update.children.reverse();
                 update.wings.reverse();
             }
         }
+    }
+
+    /// Where the children of an update are.
+    fn family(&self, update: usize) -> [Vec3; 2] {
+        self.updates[update].children.map(|child| self.positions[child as usize].into())
     }
 
     /// Counts levels within each step of the error, and the steps one above the other: what needs

@@ -3,6 +3,7 @@
 use glam::Vec3;
 
 use super::lattice::Lattice;
+use super::slant::Slant;
 use crate::forest::NONE;
 use crate::implicit::{Base, Loose};
 
@@ -47,6 +48,16 @@ impl Known {
     pub(super) fn place(&self, node: u32) -> Vec3 {
         let side = node.wrapping_sub(self.roots()) as usize % 2;
         self.above(node).map_or_else(|| self.base.positions[node as usize], |u| u.children[side])
+    }
+
+    /// How the surface leans at a node.
+    pub(super) fn slant(&self, node: u32) -> Slant {
+        let mut node = Some(node);
+        Slant::of(std::array::from_fn(|_| {
+            let above = self.above(node?)?;
+            node = Some(above.parent);
+            Some(above.children)
+        }))
     }
 
     pub(super) fn roots(&self) -> u32 {

@@ -4,17 +4,22 @@ use glam::{DVec3, IVec3, Vec3};
 
 use crate::frame::Length16;
 
-/// A cubic lattice about the middle of the frame, with cells of a power of two.
+/// A cubic lattice about the middle of the frame, with cells of a few times a power of two.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Lattice {
-    /// So many cells a stored unit, as a power of two.
+    /// A cell is so many steps.
+    steps: u8,
+    /// A stored unit has so many steps, as a power of two.
     bits: u8,
 }
 
-/// `f32` holds every place of a finer lattice about the middle too.
+/// `f32` holds every multiple of a step within a unit or two of the middle, where everything is that was
+/// recorded.
 const MOST_BITS: u8 = 23;
-/// How far from the middle places may be: everything that was recorded is within a unit or two.
+/// How far from the middle places may be, in steps.
 const FARTHEST: i32 = 1 << (MOST_BITS + 1);
+/// Cells have four to seven steps: no more than a quarter finer than asked.
+const STEPS: std::ops::RangeInclusive<u8> = 4..=7;
 
 /// Steps an octave of a radius, as a power of two: 3 bits of mantissa.
 const RADIUS: u32 = 8;
@@ -25,23 +30,25 @@ const ERROR: u32 = 7;
 pub(super) const ERRORS: usize = 1 << (u16::BITS - ERROR);
 
 impl Lattice {
-    /// The coarsest that moves no place by more than `most`, in stored units.
+    /// The coarsest that moves no place by more than `most`, in stored units; or the finest.
     pub(super) fn within(most: f64) -> Self {
-        let fits = |&bits: &u8| Self { bits }.rounding() <= most;
-        Self { bits: (0..MOST_BITS).find(fits).unwrap_or(MOST_BITS) }
+        let of = |bits| STEPS.rev().map(move |steps| Self { steps, bits });
+        let fits = |lattice: &Self| lattice.rounding() <= most;
+        let finest = Self { steps: 1, bits: MOST_BITS };
+        (0..=MOST_BITS).flat_map(of).find(fits).unwrap_or(finest)
     }
 
-    pub(super) fn of_bits(bits: u8) -> Option<Self> {
-        (bits <= MOST_BITS).then_some(Self { bits })
+    pub(super) fn from_bytes([bits, steps]: [u8; 2]) -> Option<Self> {
+        (bits <= MOST_BITS && (1..=*STEPS.end()).contains(&steps)).then_some(Self { steps, bits })
     }
 
-    pub(super) fn bits(self) -> u8 {
-        self.bits
+    pub(super) fn to_bytes(self) -> [u8; 2] {
+        [self.bits, self.steps]
     }
 
     /// A cell in stored units.
     pub(super) fn cell(self) -> f64 {
-        (-f64::from(self.bits)).exp2()
+        f64::from(self.steps) * (-f64::from(self.bits)).exp2()
     }
 
     /// By how much a place is moved at most, in stored units: half the diagonal of a cell.
@@ -50,13 +57,15 @@ impl Lattice {
     }
 
     pub(super) fn round(self, place: Vec3) -> [i32; 3] {
+        let farthest = IVec3::splat(FARTHEST / i32::from(self.steps));
         let at = (place.as_dvec3() / self.cell()).round().as_ivec3();
-        at.clamp(IVec3::splat(-FARTHEST), IVec3::splat(FARTHEST)).into()
+        at.clamp(-farthest, farthest).into()
     }
 
     /// None where nothing can be.
     pub(super) fn place(self, at: [i64; 3]) -> Option<Vec3> {
-        let near = i64::from(-FARTHEST)..=i64::from(FARTHEST);
+        let farthest = i64::from(FARTHEST / i32::from(self.steps));
+        let near = -farthest..=farthest;
         at.iter().all(|x| near.contains(x)).then(|| self.put(at.map(|x| x as i32)))
     }
 
@@ -117,14 +126,28 @@ mod tests {
     }
 
     #[test]
+    fn places_are_exact() {
+        for lattice in [Lattice::within(0.0), Lattice::within(1e-6), Lattice::within(3e-5)] {
+            for at in [[1, 2, 3], [-12_345, 99_999, 0], [7, -2_396_745, 2_396_745]] {
+                let place = lattice.put(at);
+                let exact = DVec3::from(at.map(f64::from)) * lattice.cell();
+                assert_eq!(place.as_dvec3(), exact, "{lattice:?}");
+                assert_eq!(lattice.round(place), at, "{lattice:?}");
+            }
+        }
+    }
+
+    #[test]
     fn a_lattice_is_as_fine_as_asked() {
         let lattice = Lattice::within(1e-4);
-        assert!(lattice.rounding() <= 1e-4 && 2.0 * lattice.rounding() > 1e-4);
+        assert!(lattice.rounding() <= 1e-4 && 1.25 * lattice.rounding() > 1e-4);
         let place = Vec3::new(0.3, -0.49, 0.0001);
         let kept = lattice.place(lattice.round(place).map(i64::from)).unwrap();
         assert!(f64::from(place.distance(kept)) <= 1e-4);
         assert_eq!(lattice.put(lattice.round(kept)), kept);
-        assert_eq!(Lattice::within(0.0).bits(), MOST_BITS);
+        assert_eq!(Lattice::within(0.0).to_bytes(), [MOST_BITS, 1]);
+        assert_eq!(Lattice::from_bytes(lattice.to_bytes()), Some(lattice));
+        assert_eq!((Lattice::from_bytes([24, 4]), Lattice::from_bytes([3, 0])), (None, None));
         assert_eq!(lattice.place([i64::from(i32::MIN); 3]), None);
     }
 }

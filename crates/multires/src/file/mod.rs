@@ -12,6 +12,7 @@ mod keep;
 mod known;
 mod lattice;
 mod plan;
+mod slant;
 mod source;
 mod spread;
 mod streams;
