@@ -62,6 +62,7 @@
 
 mod bounds;
 mod cut;
+mod even;
 mod explicit;
 mod file;
 mod forest;

@@ -79,7 +79,17 @@ impl<'m> Extractor<'m> {
         Ok(self.write_chosen())
     }
 
-    /// The mesh of the chosen updates, which must be a cut.
+    /// What the wanted updates give alone, without what they need: how small a cut could be at best. It
+    /// is there to measure rules by; faces of it may meet in edges of four or lie on each other.
+    /// # Errors
+    /// A query that is none.
+    pub fn wanted(&mut self, query: &Query<'_>) -> Result<&Level, QueryError> {
+        let need = Need::new(query, self.model.implicit().frame())?;
+        self.choose_wanted(&need);
+        Ok(self.write_chosen())
+    }
+
+    /// The mesh of the chosen updates, which must hold all above each of them.
     pub(super) fn write_chosen(&mut self) -> &Level {
         let chosen = std::mem::take(&mut self.chosen);
         self.write(|update, _| chosen[update as usize]);
