@@ -5,6 +5,7 @@ mod check;
 mod command;
 mod constriction;
 mod contacts;
+mod levels;
 mod machine;
 mod memory;
 mod reading;
@@ -20,7 +21,7 @@ use crate::project::Project;
 type Section = fn(&Project) -> Result<String>;
 
 /// With their titles, in the order of the page.
-const SECTIONS: [(&str, Section); 9] = [
+const SECTIONS: [(&str, Section); 10] = [
     // First, while this program is small: see there.
     ("Memory and determinism", memory::section),
     ("Accuracy", accuracy::section),
@@ -30,6 +31,7 @@ const SECTIONS: [(&str, Section); 9] = [
     ("Speed of simplification", speed::section),
     ("Check", check::section),
     ("Contacts", contacts::section),
+    ("All levels", levels::section),
     ("Reading and measuring", reading::section),
 ];
 

@@ -5,12 +5,17 @@ use meshlod_simplify::Method;
 
 use super::write::lattice;
 use super::*;
-use crate::tests::walks::{Dice, each, forest, query, topology};
+use crate::tests::walks::{Dice, each_by, forest, query, topology};
 use crate::{Cut, Forest, Implicit, Level, Model, Query};
 
 /// With chunks so small that a little mesh has many.
 fn small() -> Storage {
     Storage { in_chunk: 20, ..Storage::default() }
+}
+
+/// Contractions of edges, and of faces.
+fn each(check: impl FnMut(&str, &Mesh, &Forest)) {
+    each_by(&[Method::Qem, Method::LeeJang], check);
 }
 
 fn bytes(forest: &Forest) -> Vec<u8> {

@@ -38,9 +38,13 @@ pub(crate) fn forest(mesh: &Mesh, method: Method) -> Forest {
     Forest::new(mesh, &Options { method, ..Options::default() }).unwrap()
 }
 
-pub(crate) fn each(mut check: impl FnMut(&str, &Mesh, &Forest)) {
+pub(crate) fn each(check: impl FnMut(&str, &Mesh, &Forest)) {
+    each_by(&METHODS, check);
+}
+
+pub(crate) fn each_by(methods: &[Method], mut check: impl FnMut(&str, &Mesh, &Forest)) {
     for (name, mesh) in meshes() {
-        for method in METHODS {
+        for &method in methods {
             check(&format!("{name} by {}", method.name()), &mesh, &forest(&mesh, method));
         }
     }
