@@ -35,8 +35,8 @@ pub struct Build {
     #[arg(long, value_name = "NAME", default_value = Method::default().name(),
         value_parser = amounts::method, help = amounts::methods())]
     method: Method,
-    /// Prove bounds of the errors, in place of the method's estimates; takes some times as long. Those
-    /// of right triangles are bounds in any case
+    /// Prove bounds of the errors, in place of the method's estimates, which are evened out; takes some
+    /// times as long. Errors of right triangles are bounds in any case
     #[arg(long)]
     bounds: bool,
     /// By how much a vertex may be moved to take less room: 0.001 in model units, 0.005% of the
@@ -107,9 +107,11 @@ impl Build {
         let mut both = (Recorder::new(&simplifier), watch);
         simplifier.run(Target::Faces(0), &mut both).map_err(|error| failed(error.into()))?;
         let mut forest = both.0.into_forest().map_err(failed)?;
-        if self.bounds {
-            session.progress.stage("measuring bounds");
-            forest.measure_bounds();
+        session.progress.stage("measuring errors");
+        match self.bounds {
+            true => forest.measure_bounds(),
+            // The greatest errors alone would keep cuts from being good on the whole.
+            false => forest.even_out(),
         }
         session.progress.stage("proving and packing");
         let storage = Storage { rounding: Some(self.rounding(mesh)), in_chunk: self.in_chunk };
