@@ -61,7 +61,7 @@ pub enum Flaw {
     #[error("it makes a triangle without area")]
     NoArea,
     /// A wing is not around its vertex.
-    #[error("it brings fewer faces than it has wings, or loses some")]
+    #[error("it brings fewer faces than it says, or loses some")]
     NoWing,
     /// Three faces at an edge, or two that are turned against each other.
     #[error("it makes an edge with two faces on one side")]
@@ -119,25 +119,33 @@ fn check(front: &mut Front<'_>, update: u32) -> Result<bool, Flaw> {
     }
     if mt.is_glued(update) {
         let is_next = mt.update_of(mt.children(update)[0]) == Some(update + 1);
-        if !is_next || !front.may_split(update + 1, &mut Vec::new()) {
+        let are_two = !mt.is_inner(update) && !mt.is_glued(update + 1);
+        if !is_next || !are_two || !front.may_split(update + 1, &mut Vec::new()) {
             return Err(Flaw::Torn);
         }
     }
     let fine = front.triangles_at(&children);
+    if fine.iter().any(|t| t[0] == t[1] || t[1] == t[2] || t[2] == t[0]) {
+        return Err(Flaw::NoArea);
+    }
+    let has_both = |t: &&[u32; 3]| children.iter().all(|child| t.contains(child));
+    let (between, brought) = (fine.iter().filter(has_both).count(), brought(mt, update));
+    if fine.len() != coarse.len() + brought || between != brought {
+        return Err(Flaw::NoWing);
+    }
     let Some(before) = open_edges(&coarse).filter(|_| mt.odd(update).is_none()) else {
         let up = |end: u32| if children.contains(&end) { node } else { end };
         let is_same = odd_edges(&coarse, up) == odd_edges(&fine, up);
         return if is_same { Ok(false) } else { Err(Flaw::Boundary) };
     };
-    if fine.iter().any(|t| t[0] == t[1] || t[1] == t[2] || t[2] == t[0]) {
-        return Err(Flaw::NoArea);
-    }
-    let wings = mt.wings(update).iter().filter(|&&wing| wing != Wing::None).count();
-    if fine.len() != coarse.len() + wings {
-        return Err(Flaw::NoWing);
-    }
     compare(before, &fine, node, children)?;
     Ok(true)
+}
+
+/// How many faces an update brings.
+fn brought(mt: &Implicit, update: u32) -> usize {
+    let wings = || mt.wings(update).iter().filter(|&&wing| wing != Wing::None).count();
+    mt.odd(update).map_or_else(wings, |odd| odd.brought.len())
 }
 
 /// Whether the fine side has the boundary of the coarse one: the same edges around, and at the vertex

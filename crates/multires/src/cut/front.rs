@@ -3,6 +3,7 @@
 use super::star::{MOST_SEARCHED, NEXT, Spoke, Triangles};
 use crate::forest::{MOST_LEVELS, NONE};
 use crate::implicit::{Implicit, Wing};
+use crate::record::MOST_RANKED;
 
 /// The corner of a vertex that is not there yet.
 const ABSENT: u32 = NONE - 1;
@@ -138,7 +139,12 @@ impl<'m> Front<'m> {
         if brought == [None; 2]
             && let Some(odd) = self.mt.odd(update)
         {
-            odd.brought.iter().for_each(|&face| self.add(face));
+            for &face in &odd.brought {
+                // Of a file that nobody has proved it may be anything.
+                if face.iter().all(|&node| self.is_there(node)) {
+                    self.add(face);
+                }
+            }
         }
         true
     }
@@ -321,11 +327,14 @@ impl<'m> Front<'m> {
     }
 }
 
-/// The nodes around a star that wings are.
+/// The nodes around a star that wings are; none where so many are around that there are no ranks.
 #[inline]
 pub(super) fn find(star: &[Spoke], wings: [Wing; 2]) -> [Option<u32>; 2] {
     let ranks = wings.map(|wing| if let Wing::Rank(rank) = wing { rank.into() } else { NONE });
     let mut found = [None; 2];
+    if star.len() > MOST_RANKED {
+        return found;
+    }
     // Counting all is quicker than sorting these few, or than stopping early.
     for spoke in star {
         let below: u32 = star.iter().map(|other| u32::from(other.a < spoke.a)).sum();

@@ -4,7 +4,7 @@ use super::header::{self, FIXED, Header, Stored};
 use super::known::Known;
 use super::source::{Source, piece};
 use super::streams::Unpacker;
-use super::{FileError, Storage, chunk, write};
+use super::{FileError, Storage, chunk, has_three_corners, write};
 use crate::bounds::ErrorKind;
 use crate::cut::{Certificate, Cut};
 use crate::forest::Forest;
@@ -220,7 +220,11 @@ impl<S: Source> Archive<S> {
         let corner = |v: i64| u32::try_from(v).ok().filter(|&v| (v as usize) < roots);
         let face = |i: usize| Some([corner(a[i])?, corner(b[i])?, corner(c[i])?]);
         let faces: Option<Vec<_>> = (0..faces).map(face).collect();
-        Ok(Base { positions, faces: faces.ok_or(bad("a face has a vertex that is not there"))? })
+        let faces = faces.ok_or(bad("a face has a vertex that is not there"))?;
+        if !faces.iter().all(has_three_corners) {
+            return Err(bad("a face has a vertex twice"));
+        }
+        Ok(Base { positions, faces })
     }
 
     /// A piece of the file that is what was written.

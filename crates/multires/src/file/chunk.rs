@@ -10,6 +10,7 @@ use std::ops::Range;
 use glam::Vec3;
 use thiserror::Error;
 
+use super::has_three_corners;
 use super::known::Known;
 use super::lattice::{Lattice, error9, error16, radius8, radius16};
 use super::slant::Slant;
@@ -154,7 +155,7 @@ pub(super) fn read(
     let nodes = known.roots() + 2 * (first + count as u32);
     let start = known.updates.len() - count;
     for at in (0..count).filter(|&at| flags[at] & ODD != 0) {
-        let bad = ChunkError::Update { update: at, why: "a face that it brings has no vertices" };
+        let bad = ChunkError::Update { update: at, why: "it brings what is no face, or too many" };
         let odd = read_odd(&mut input, nodes)?.ok_or(bad)?.renumbered(|node| known.node(node));
         known.updates[start + at].odd = Some(Box::new(odd));
     }
@@ -183,10 +184,10 @@ fn read_odd(input: &mut Unpacker<'_>, nodes: u32) -> Result<Option<Odd>, io::Err
     };
     let (second, brought) = (list(2)?, list(3)?);
     let are_made = second.iter().chain(&brought).all(|&node| node < nodes);
-    Ok(are_made.then(|| Odd {
-        second: second.as_chunks().0.to_vec(),
-        brought: brought.as_chunks().0.to_vec(),
-    }))
+    let (second, brought) = (second.as_chunks().0.to_vec(), brought.as_chunks().0.to_vec());
+    // No edge with more than two faces is contracted.
+    let are_faces = brought.len() <= 2 && brought.iter().all(has_three_corners);
+    Ok((are_made && are_faces).then_some(Odd { second, brought }))
 }
 
 /// Where the two children of a node are.

@@ -290,17 +290,24 @@ impl Implicit {
         ]
     }
 
-    /// Copies in which an odd update brings a face to another place.
-    pub(crate) fn spoiled_odd(&self) -> impl Iterator<Item = Self> + '_ {
-        self.odd.iter().filter_map(|(&update, odd)| {
+    /// Copies in which an odd update brings a face to another place: with a child's corner at a node
+    /// that is around, or at one that is mostly not there yet.
+    pub(crate) fn spoiled_odd(&self) -> Vec<Self> {
+        let mut all = Vec::new();
+        for (&update, odd) in &self.odd {
             let children = self.children(update);
-            let face = odd.brought.first()?;
-            let corner = face.iter().position(|node| children.contains(node))?;
-            let other = *odd.second.iter().flatten().find(|node| !face.contains(node))?;
-            let mut wrong = self.clone();
-            wrong.odd.get_mut(&update)?.brought[0][corner] = other;
-            Some(wrong)
-        })
+            let Some(face) = odd.brought.first() else { continue };
+            let Some(corner) = face.iter().position(|node| children.contains(node)) else {
+                continue;
+            };
+            let others = odd.second.iter().flatten().copied().chain([self.node_count() as u32 - 1]);
+            for other in others.filter(|node| !face.contains(node)) {
+                let mut wrong = self.clone();
+                wrong.odd.get_mut(&update).expect("a copy").brought[0][corner] = other;
+                all.push(wrong);
+            }
+        }
+        all
     }
 }
 
