@@ -28,6 +28,9 @@ pub fn check_output(path: &Path) -> Result<(), Failure> {
 
 /// Opens a file, and says if it is cut off.
 pub fn open(path: &Path, session: &Session) -> Result<ModelFile<File>, Failure> {
+    if files::is_pipe(path) {
+        return Err(Failure::usage("-: of such a file only parts are read; name it"));
+    }
     session.progress.stage(&format!("reading {}", files::name(path)));
     let file = File::open(path).map_err(|error| Failure::at(path, error))?;
     let model = ModelFile::open(file).map_err(|error| Failure::at(path, error))?;

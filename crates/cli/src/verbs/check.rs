@@ -77,6 +77,9 @@ enum Deny {
 impl Check {
     pub fn run(self, session: &Session) -> Result<Answer, Failure> {
         if model_file::is_model(&self.input) {
+            if self.locks.is_some() || self.out.is_some() {
+                return Err(Failure::usage("--locks and --out: of a mesh, not of a .mlod file"));
+            }
             return proof::prove(&self.input, session);
         }
         self.refuse_early()?;

@@ -7,7 +7,8 @@ use std::time::{Duration, Instant};
 use clap::Args;
 use meshlod::Scene;
 use meshlod::multires::{
-    Archive, Camera, HeightField, Level, ModelFile, Query, RightExtractor, RightTriangles,
+    Archive, Camera, FileError, HeightField, Level, ModelFile, Query, RightExtractor,
+    RightTriangles,
 };
 use serde_json::{Value, json};
 
@@ -82,6 +83,10 @@ impl Extract {
             return Err(Failure::at(&self.input, "no face meets the focus"));
         }
         let counts = [mesh.positions.len(), mesh.faces.len()];
+        if self.goal.faces.is_some_and(|most| taken.level.faces.len() > most) {
+            let reason = format_args!("its coarsest level has {}", faces(counts[1]));
+            session.warn(Failure::at(&self.input, reason));
+        }
         let scene = Scene::from_mesh(name(&self.input), mesh);
         files::write(&self.output, &scene, &self.writing, session)?;
         let (json, text) = (self.json(&taken, counts, time), self.text(&taken, counts, time));
@@ -98,7 +103,10 @@ impl Extract {
             }
             Some(faces) => archive.extract_at_most(faces, &query, archive.whole_chunks()),
         };
-        let taken = taken.map_err(|error| Failure::at(&self.input, error))?;
+        let taken = taken.map_err(|error| match error {
+            FileError::Query(error) => Failure::usage(error),
+            error => Failure::at(&self.input, error),
+        })?;
         Ok(Taken {
             level: self.cut_out(taken.level, &query)?,
             error_kind: model_file::error_kind(archive),

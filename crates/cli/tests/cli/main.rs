@@ -5,6 +5,7 @@ mod compare;
 mod demo;
 mod hostile;
 mod levels;
+mod models;
 mod pipes;
 mod repair;
 mod run;

@@ -1,0 +1,476 @@
+//! Multiresolution files: built, proved, and asked for meshes.
+
+use std::ops::Range;
+
+use serde_json::Value;
+
+use crate::run::{Done, Run};
+
+/// A camera that sees a sample from the side.
+const CAMERA: &str = "eye=3,0.5,0.4 look=0,0,0 up=0,0,1 fov=40 640x480";
+
+/// A square of four faces with a vertex in its middle, with texture coordinates.
+const TEXTURED: &str = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0.5 0.5 0\nvt 0 0\nvt 1 1\n\
+    f 1/1 2/2 5/1\nf 2/1 3/2 5/1\nf 3/1 4/2 5/1\nf 4/1 1/2 5/1\n";
+
+/// How many faces a torus of about 2000 has.
+const TORUS: u64 = 2_016;
+
+/// A torus in chunks of 64 updates.
+fn torus(run: &Run) {
+    run.sample("torus", 2_000, "torus.ply");
+    run.json(&["build", "torus.ply", "torus.mlod", "--in-chunk", "64"]);
+}
+
+/// A height field of so many faces as right triangles.
+fn terrain(run: &Run, faces: usize) {
+    run.sample("terrain", faces, "terrain.ply");
+    run.json(&["build", "terrain.ply", "terrain.mlod", "--model", "right-triangles"]);
+}
+
+fn extract(run: &Run, input: &str, out: &str, arguments: &[&str]) -> Value {
+    run.json(&[&["extract", input, out], arguments].concat())
+}
+
+fn number(value: &Value) -> u64 {
+    value.as_u64().unwrap_or_else(|| panic!("{value} is not a whole number"))
+}
+
+fn bytes(run: &Run, name: &str) -> Vec<u8> {
+    std::fs::read(run.path(name)).unwrap()
+}
+
+fn write(run: &Run, name: &str, bytes: &[u8]) {
+    std::fs::write(run.path(name), bytes).unwrap();
+}
+
+fn word(bytes: &[u8], at: usize) -> usize {
+    u32::from_le_bytes(bytes[at..at + 4].try_into().unwrap()) as usize
+}
+
+/// Where a file of contractions (docs/formats/mlod.md) has its index, its coarsest mesh, and each chunk.
+fn pieces(bytes: &[u8]) -> Vec<Range<usize>> {
+    let index = 88 + 44 * word(bytes, 36);
+    let sizes = std::iter::once(28).chain((88..index).step_by(44)).map(|at| word(bytes, at));
+    let ends = sizes.scan(0..index, |at, size| {
+        *at = at.end..at.end + size;
+        Some(at.clone())
+    });
+    std::iter::once(0..index).chain(ends).collect()
+}
+
+/// A run that could not: one line, nothing on standard output, nothing written.
+fn refused(run: &Run, arguments: &[&str], code: i32) -> Done {
+    let before = run.files();
+    let done = run.run(arguments);
+    assert_eq!((done.code, &done.out[..]), (code, &b""[..]), "{arguments:?}: {done:?}");
+    assert!(!done.err.contains("panicked"), "{done:?}");
+    assert_eq!(run.files(), before, "{arguments:?}");
+    done
+}
+
+#[test]
+fn all_levels_of_a_mesh_are_in_one_file() {
+    let run = Run::new();
+    run.sample("torus", 2_000, "in.ply");
+    let built = run.json(&["build", "in.ply", "out.mlod", "--in-chunk", "100"]);
+    assert_eq!((&built["model"], &built["file"]), (&"contractions".into(), &"out.mlod".into()));
+    assert_eq!(built["bytes"], bytes(&run, "out.mlod").len());
+    assert_eq!(built["certificate"]["sound"], built["updates"], "{built}");
+    assert_eq!(number(&built["updates"]) * 2 + number(&built["base_faces"]), TORUS);
+    assert!(built["rounding"].as_f64().unwrap() > 0.0);
+    assert!(built["bytes_per_vertex"].as_f64().is_some_and(|size| size < 20.0), "{built}");
+
+    let proved = run.json(&["check", "out.mlod"]);
+    for field in ["model", "updates", "base_faces", "certificate", "rounding"] {
+        assert_eq!(proved[field], built[field], "{field}");
+    }
+    assert_eq!((&proved["faces"], &proved["chunks"]), (&TORUS.into(), &proved["chunks_there"]));
+    assert!(number(&proved["chunks"]) > 5, "{proved}");
+
+    let finest = extract(&run, "out.mlod", "back.ply", &["--error", "0"]);
+    assert_eq!((&finest["faces"], &finest["chunks_read"]), (&TORUS.into(), &finest["chunks"]));
+    assert_eq!(finest["bytes_read"], built["bytes"]);
+    let far = run.json(&["measure", "in.ply", "back.ply"])["symmetric"]["max"].as_f64();
+    assert!(far <= built["rounding"].as_f64(), "{far:?}");
+}
+
+#[test]
+fn words_say_what_json_says() {
+    let run = Run::new();
+    run.sample("torus", 500, "in.ply");
+    let built = run.run(&["build", "in.ply", "out.mlod"]);
+    assert!(built.code == 0 && built.err.is_empty(), "{built:?}");
+    assert!(
+        built.text().contains("all levels of 500 faces in ") && built.text().contains("proved")
+    );
+    let proved = run.run(&["check", "out.mlod"]);
+    assert!(proved.code == 0 && proved.text().contains("no cut of "), "{proved:?}");
+    let taken = run.run(&["extract", "out.mlod", "a.ply", "--error", "0"]);
+    assert!(taken.code == 0 && taken.text().contains("500 faces"), "{taken:?}");
+    assert!(taken.text().contains("read 1 of 1 chunk, "), "{taken:?}");
+}
+
+#[test]
+fn a_height_field_comes_back_as_right_triangles() {
+    let run = Run::new();
+    run.sample("terrain", 800, "in.ply");
+    let build = ["build", "in.ply", "out.mlod", "--model", "right-triangles", "--rounding", "0"];
+    let built = run.json(&build);
+    let grid = [0, 1].map(|k| number(&built["grid"][k]));
+    assert_eq!(grid[0] * grid[1], number(&built["input_vertices"]), "{built}");
+    let proved = run.json(&["check", "out.mlod"]);
+    assert_eq!((&proved["model"], &proved["grid"]), (&built["model"], &built["grid"]));
+    assert!(number(&proved["certificate"]["sound"]) > 0);
+    let finest = extract(&run, "out.mlod", "back.ply", &["--error", "0"]);
+    assert_eq!(
+        (&finest["vertices"], &finest["error_kind"]),
+        (&built["input_vertices"], &"bound".into())
+    );
+    let few = extract(&run, "out.mlod", "few.ply", &["--faces", "100"]);
+    assert!((50..=100).contains(&number(&few["faces"])), "{few}");
+    let done = refused(&run, &["build", "in.ply", "no/out.mlod"], 1);
+    assert!(done.only_line().contains("no/out.mlod: its folder"), "{done:?}");
+    run.sample("torus", 100, "torus.ply");
+    let done = refused(&run, &["build", "torus.ply", "t.mlod", "--model", "right-triangles"], 1);
+    assert!(done.only_line().starts_with("meshlod: torus.ply: "), "{done:?}");
+}
+
+#[test]
+fn what_a_file_has_no_room_for_is_told() {
+    let run = Run::new();
+    write(&run, "in.obj", TEXTURED.as_bytes());
+    let done = run.run(&["build", "in.obj", "out.mlod", "--json"]);
+    assert!(done.code == 0 && done.only_line().contains("warning: attributes"), "{done:?}");
+    assert_eq!(done.json()["input_faces"], 4);
+    assert_eq!(extract(&run, "out.mlod", "back.obj", &["--error", "0"])["faces"], 4);
+    write(&run, "none.gltf", br#"{"asset":{"version":"2.0"},"scene":0,"scenes":[{}]}"#);
+    let done = refused(&run, &["build", "none.gltf", "none.mlod"], 1);
+    assert!(done.only_line().contains("none.gltf: the mesh has no faces"), "{done:?}");
+}
+
+#[test]
+fn a_larger_error_takes_fewer_faces() {
+    let run = Run::new();
+    torus(&run);
+    for step in [["0", "0.05%", "1%", "100%"], ["0", "0.002", "0.03", "3"]] {
+        let taken = step.map(|error| extract(&run, "torus.mlod", "out.ply", &["--error", error]));
+        let of = |field: &str| taken.iter().map(|t| number(&t[field])).collect::<Vec<_>>();
+        assert!(of("faces").is_sorted_by(|a, b| a > b), "{:?}", of("faces"));
+        assert!(of("bytes_read").is_sorted_by(|a, b| a >= b) && of("chunks_read")[3] == 0);
+        assert_eq!(run.json(&["info", "out.ply"])["closed"], true);
+    }
+    let pixels = ["16px", "4px", "0.5px"].map(|error| {
+        number(&extract(&run, "torus.mlod", "out.ply", &["--error", error, "--camera", CAMERA])["faces"])
+    });
+    assert!(pixels.is_sorted_by(|a, b| a < b), "{pixels:?}");
+}
+
+#[test]
+fn a_focus_is_fine_and_the_rest_coarse() {
+    let run = Run::new();
+    torus(&run);
+    terrain(&run, 2_000);
+    for file in ["torus.mlod", "terrain.mlod"] {
+        let all = number(&extract(&run, file, "all.ply", &["--error", "0"])["faces"]);
+        let info = run.json(&["info", "all.ply"]);
+        let at = |corner: &str| [0, 1, 2].map(|k| info["bounds"][corner][k].as_f64().unwrap());
+        let (low, high) = (at("min"), at("max"));
+        let list = |place: [f64; 3]| place.map(|x| x.to_string()).join(",");
+        let middle = [0, 1, 2].map(|k| 0.5 * (low[k] + high[k]));
+        let one = [high[0], middle[1], middle[2]];
+        let focuses = [
+            format!("point={}", list(one)),
+            format!("segment={},{}", list(middle), list(high)),
+            format!("box={},{}", list(middle), list(high)),
+            format!("sphere={},{}", list(one), 0.4 * (high[0] - low[0])),
+            "frustum".into(),
+        ];
+        let far = "eye=9,0.3,0.2 look=0.6,0.3,0 up=0,0,1 fov=5 640x480";
+        for focus in &focuses {
+            let arguments = ["--error", "0", "--focus", focus, "--camera", far];
+            let some = number(&extract(&run, file, "some.ply", &arguments)["faces"]);
+            assert!(some < all && some > 4, "{file} {focus}: {some} of {all}");
+            let arguments = [&arguments[..], &["--only"]].concat();
+            let done =
+                run.run(&[&["extract", file, "only.ply", "--json"], &arguments[..]].concat());
+            if focus.starts_with("point") || focus.starts_with("segment") {
+                // There may be no face in so small a place.
+                assert!(done.code == 0 || done.only_line().contains("no face meets"), "{done:?}");
+                continue;
+            }
+            let only = number(&done.json()["faces"]);
+            assert!(only > 0 && only < some, "{file} {focus}: {only} of {some}");
+        }
+    }
+}
+
+#[test]
+fn so_many_faces_are_the_most() {
+    let run = Run::new();
+    torus(&run);
+    for most in ["300", "301", "1999"] {
+        let all_sides = number(&extract(&run, "torus.mlod", "a.ply", &["--faces", most])["faces"]);
+        let arguments = ["--faces", most, "--camera", CAMERA];
+        let seen = number(&extract(&run, "torus.mlod", "b.ply", &arguments)["faces"]);
+        let most: u64 = most.parse().unwrap();
+        assert!((most - 4..=most).contains(&all_sides), "{all_sides} of {most}");
+        assert!((most - 4..=most).contains(&seen), "{seen} of {most}");
+        assert_ne!(bytes(&run, "a.ply"), bytes(&run, "b.ply"));
+    }
+    let few = extract(&run, "torus.mlod", "a.ply", &["--faces", "300"]);
+    assert!(number(&few["chunks_read"]) < number(&few["chunks"]), "{few}");
+    let near = ["--faces", "500", "--focus", "box=0,0,-9,9,9,9"];
+    assert!(number(&extract(&run, "torus.mlod", "a.ply", &near)["faces"]) <= 500);
+    let all = extract(&run, "torus.mlod", "a.ply", &["--faces", "1000000"]);
+    assert_eq!(all["faces"], TORUS);
+}
+
+#[test]
+fn no_level_is_coarser_than_the_coarsest() {
+    let run = Run::new();
+    torus(&run);
+    let base = run.json(&["check", "torus.mlod"])["base_faces"].clone();
+    for arguments in [&["--faces", "1"][..], &["--faces", "0", "--camera", CAMERA]] {
+        let extract = [&["extract", "torus.mlod", "a.ply", "--json"], arguments].concat();
+        let done = run.run(&extract);
+        assert_eq!((done.code, &done.json()["faces"]), (0, &base), "{done:?}");
+        assert!(done.only_line().contains("torus.mlod: its coarsest level has "), "{done:?}");
+    }
+}
+
+#[test]
+fn a_mesh_comes_out_of_a_file_through_a_pipe() {
+    let run = Run::new();
+    torus(&run);
+    let extract = ["extract", "torus.mlod", "-", "--format", "ply", "--error", "0"];
+    let taken = run.run(&extract);
+    assert!(taken.code == 0 && taken.err.contains("2,016 faces"));
+    let info = run.run_with(&["info", "-", "--format", "ply", "--json"], &taken.out).json();
+    assert_eq!(info["faces"], TORUS);
+    let mesh = bytes(&run, "torus.ply");
+    let built = run.run_with(&["build", "-", "again.mlod", "--format", "ply", "--json"], &mesh);
+    assert_eq!((built.code, &built.json()["input_faces"]), (0, &TORUS.into()));
+}
+
+#[test]
+fn wrong_questions_are_2_and_write_nothing() {
+    let run = Run::new();
+    torus(&run);
+    terrain(&run, 200);
+    let short = "eye=1,2 look=0,0,0 fov=40 640x480";
+    let blind = "eye=1,2,3 look=1,2,3 fov=40 640x480";
+    let wide = "eye=1,2,3 look=0,0,0 fov=180 640x480";
+    let questions: &[&[&str]] = &[
+        &[],
+        &["--error", "1px"],
+        &["--error", "-1"],
+        &["--error", "nan"],
+        &["--error", "1pixel"],
+        &["--error", "0", "--faces", "10"],
+        &["--faces", "-1"],
+        &["--faces", "1.5"],
+        &["--error", "0", "--focus", "frustum"],
+        &["--error", "0", "--focus", "everywhere"],
+        &["--error", "0", "--focus", "box=0,0,0,1,1"],
+        &["--error", "0", "--focus", "box=1,1,1,0,0,0"],
+        &["--error", "0", "--focus", "sphere=0,0,0,-1"],
+        &["--error", "0", "--focus", "point=0,0,inf"],
+        &["--error", "0", "--only"],
+        &["--error", "1px", "--camera", "here"],
+        &["--error", "1px", "--camera", short],
+        &["--error", "1px", "--camera", blind],
+        &["--error", "1px", "--camera", wide],
+        &["--faces", "10", "--camera", blind],
+        &["--error", "0", "--precision", "f16"],
+    ];
+    for input in ["torus.mlod", "terrain.mlod"] {
+        for question in questions {
+            refused(&run, &[&["extract", input, "out.ply"], *question].concat(), 2);
+        }
+        for out in ["out", "out.mlod", "out.xyz", input, "-"] {
+            refused(&run, &["extract", input, out, "--error", "0"], 2);
+        }
+    }
+    refused(&run, &["extract", "torus.mlod", "-", "--format", "ply", "--error", "0", "--json"], 2);
+    refused(&run, &["extract", "-", "out.ply", "--format", "ply", "--error", "0"], 2);
+    refused(&run, &["check", "torus.mlod", "--locks", "a.json"], 2);
+    refused(&run, &["check", "torus.mlod", "--out", "page"], 2);
+}
+
+#[test]
+fn wrong_builds_are_2_and_write_nothing() {
+    let run = Run::new();
+    run.sample("torus", 100, "in.ply");
+    let builds: &[&[&str]] = &[
+        &["in.ply"],
+        &["in.ply", "out.ply"],
+        &["in.ply", "out"],
+        &["in.ply", "-"],
+        &["-", "out.mlod"],
+        &["in.ply", "out.mlod", "--method", "magic"],
+        &["in.ply", "out.mlod", "--model", "left-triangles"],
+        &["in.ply", "out.mlod", "--rounding", "-1"],
+        &["in.ply", "out.mlod", "--rounding", "much"],
+        &["in.ply", "out.mlod", "--in-chunk", "0"],
+        &["in.ply", "out.mlod", "--in-chunk", "-5"],
+    ];
+    for arguments in builds {
+        refused(&run, &[&["build"], *arguments].concat(), 2);
+    }
+    std::fs::create_dir(run.path("folder.mlod")).unwrap();
+    let done = refused(&run, &["build", "in.ply", "folder.mlod"], 1);
+    assert!(done.only_line().contains("folder.mlod: is a folder"), "{done:?}");
+}
+
+/// Asks every verb that reads such files; none may take it.
+fn refused_by_all(run: &Run, input: &str) -> Vec<String> {
+    let verbs: [&[&str]; 3] = [
+        &["check", input],
+        &["extract", input, "out.ply", "--error", "0"],
+        &["extract", input, "out.ply", "--faces", "500", "--camera", CAMERA],
+    ];
+    let lines = verbs.map(|arguments| {
+        let done = refused(run, arguments, 1);
+        assert!(done.only_line().starts_with(&format!("meshlod: {input}: ")), "{done:?}");
+        done.only_line().to_owned()
+    });
+    lines.to_vec()
+}
+
+#[test]
+fn a_file_that_is_none_is_1_and_one_line() {
+    let run = Run::new();
+    run.sample("torus", 100, "in.ply");
+    let mesh = bytes(&run, "in.ply");
+    write(&run, "mesh.mlod", &mesh);
+    write(&run, "empty.mlod", b"");
+    write(&run, "magic.mlod", b"meshlodm");
+    write(&run, "field.mlod", b"meshlodh");
+    write(&run, "zeros.mlod", &[0; 4096]);
+    std::fs::create_dir(run.path("folder.mlod")).unwrap();
+    for name in ["mesh.mlod", "empty.mlod", "magic.mlod", "field.mlod", "zeros.mlod", "folder.mlod"]
+    {
+        refused_by_all(&run, name);
+    }
+    refused_by_all(&run, "absent.mlod");
+    // Whoever names it otherwise is told by what is in it.
+    write(&run, "mesh.ply", &mesh);
+    refused(&run, &["extract", "mesh.ply", "out.ply", "--error", "0"], 1);
+}
+
+#[test]
+fn a_file_of_another_version_says_so() {
+    let run = Run::new();
+    torus(&run);
+    terrain(&run, 200);
+    for name in ["torus.mlod", "terrain.mlod"] {
+        let mut later = bytes(&run, name);
+        later[8] = 77;
+        write(&run, "later.mlod", &later);
+        let lines = refused_by_all(&run, "later.mlod");
+        assert!(lines.iter().all(|line| line.contains("version 77")), "{lines:?}");
+    }
+}
+
+#[test]
+fn a_file_without_its_coarsest_mesh_is_refused() {
+    let run = Run::new();
+    torus(&run);
+    let whole = bytes(&run, "torus.mlod");
+    let pieces = pieces(&whole);
+    for end in [9, 40, 87, 89, pieces[0].end, pieces[1].end - 1] {
+        write(&run, "short.mlod", &whole[..end]);
+        let lines = refused_by_all(&run, "short.mlod");
+        assert!(lines[0].contains(&format!("cut off at byte {end}")), "{lines:?}");
+    }
+}
+
+#[test]
+fn what_is_there_of_a_file_is_a_mesh() {
+    let run = Run::new();
+    torus(&run);
+    let whole = bytes(&run, "torus.mlod");
+    let pieces = pieces(&whole);
+    let last = pieces.len() - 1;
+    let mut faces = 0;
+    for end in [pieces[1].end, pieces[2].end, pieces[3].end + 9, pieces[last].end - 1] {
+        write(&run, "part.mlod", &whole[..end]);
+        let whole_chunks = pieces[2..].iter().filter(|piece| piece.end <= end).count();
+        let told = format!("{whole_chunks} of its {} chunks are there", last - 1);
+        for arguments in [&["--error", "0"][..], &["--faces", "100000", "--camera", CAMERA]] {
+            let done = run.run(&[&["extract", "part.mlod", "a.ply", "--json"], arguments].concat());
+            assert!(done.code == 0 && done.only_line().contains(&told), "{done:?}");
+            assert_eq!(run.json(&["info", "a.ply"])["closed"], true);
+            let found = number(&done.json()["faces"]);
+            assert!(found >= faces, "{found} after {faces}");
+            faces = found;
+        }
+        let done = run.run(&["check", "part.mlod", "--json"]);
+        assert!(done.code == 0 && done.only_line().contains(&told), "{done:?}");
+        assert_eq!(
+            (&done.json()["faces"], &done.json()["chunks_there"]),
+            (&faces.into(), &whole_chunks.into())
+        );
+    }
+    assert!(faces < TORUS);
+    write(&run, "longer.mlod", &[&whole[..], b"!"].concat());
+    let lines = refused_by_all(&run, "longer.mlod");
+    assert!(lines[0].contains("the file goes on"), "{lines:?}");
+}
+
+#[test]
+fn a_damaged_piece_is_named() {
+    let run = Run::new();
+    torus(&run);
+    let whole = bytes(&run, "torus.mlod");
+    for (i, piece) in pieces(&whole).into_iter().enumerate() {
+        let mut wrong = whole.clone();
+        // Not in the first words, which have errors of their own.
+        let at = if i == 0 { piece.end - 10 } else { (piece.start + piece.end) / 2 };
+        wrong[at] ^= 0x10;
+        write(&run, "wrong.mlod", &wrong);
+        let what = match i {
+            0 => "the header".to_owned(),
+            1 => "the coarsest mesh".to_owned(),
+            chunk => format!("chunk {}", chunk - 2),
+        };
+        let lines = refused_by_all(&run, "wrong.mlod");
+        let told = format!("the checksum of {what} is wrong");
+        assert!(lines.iter().all(|line| line.contains(&told)), "{lines:?}");
+    }
+    // What is not read is not missed.
+    let mut wrong = whole.clone();
+    *wrong.last_mut().unwrap() ^= 1;
+    write(&run, "wrong.mlod", &wrong);
+    assert!(number(&extract(&run, "wrong.mlod", "a.ply", &["--error", "100%"])["faces"]) > 0);
+}
+
+#[test]
+fn a_height_field_that_is_damaged_is_refused() {
+    let run = Run::new();
+    terrain(&run, 200);
+    let whole = bytes(&run, "terrain.mlod");
+    for at in [0, 9, 13, 17, 30, 60, 90, whole.len() - 1] {
+        let mut wrong = whole.clone();
+        wrong[at] ^= 0x40;
+        write(&run, "wrong.mlod", &wrong);
+        refused_by_all(&run, "wrong.mlod");
+    }
+    for end in [9, 16, 50, 90, whole.len() - 1] {
+        write(&run, "short.mlod", &whole[..end]);
+        refused_by_all(&run, "short.mlod");
+    }
+}
+
+#[test]
+fn a_mesh_that_could_not_be_taken_leaves_the_old_one() {
+    let run = Run::new();
+    torus(&run);
+    let before = bytes(&run, "torus.ply");
+    let mut wrong = bytes(&run, "torus.mlod");
+    *wrong.last_mut().unwrap() ^= 1;
+    write(&run, "wrong.mlod", &wrong);
+    refused(&run, &["extract", "wrong.mlod", "torus.ply", "--error", "0"], 1);
+    assert_eq!(bytes(&run, "torus.ply"), before);
+}
