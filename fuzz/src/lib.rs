@@ -3,6 +3,7 @@
 //! `cargo fuzz run -s none ply` runs one of them.
 
 mod kept;
+pub mod models;
 mod seeds;
 
 use meshlod_io::Scene;

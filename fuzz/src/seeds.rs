@@ -6,6 +6,7 @@ use meshlod_mesh::Mesh;
 use meshlod_simplify::{History, Options, Progressive, Simplifier, Target};
 
 use crate::kept::{corpus, kept};
+use crate::models;
 
 /// Writes a target's seeds, and what is kept for it, into its corpus; the fuzzer reads them after
 /// this.
@@ -22,8 +23,10 @@ pub fn plant(target: &str) {
 
 fn seeds(target: &str) -> Vec<Vec<u8>> {
     let meshes = [fixtures::cube(), fixtures::seam_strip(), fixtures::two_objects()];
-    if target == "check" {
-        return few_faces();
+    match target {
+        "check" => return few_faces(),
+        "mlod" => return models::seeds(),
+        _ => {}
     }
     let by_hand: &[&str] = match target {
         "ply" => &PLY,

@@ -1,0 +1,93 @@
+#![no_main]
+
+use meshlod_fuzz::models;
+use meshlod_multires::{
+    Archive, Camera, Cut, Effort, Focus, HeightField, Implicit, Level, Model, ModelFile, Query,
+    RightExtractor, RightTriangles, Tolerance,
+};
+
+libfuzzer_sys::fuzz_target!(init: meshlod_fuzz::plant("mlod"), |bytes: &[u8]| {
+    // A mutation with the right checksums is what gets past the door.
+    let mut bytes = bytes.to_vec();
+    models::seal(&mut bytes);
+    match ModelFile::open(bytes) {
+        Ok(ModelFile::Contractions(archive)) => take_parts(&archive),
+        Ok(ModelFile::HeightField(field)) => walk_field(&field),
+        Err(_) => {}
+    }
+});
+
+/// What a query takes of a file without a proof, and all that is proved of it.
+fn take_parts(archive: &Archive<Vec<u8>>) {
+    let queries = queries(archive.diagonal());
+    for query in &queries {
+        if let Ok(taken) = archive.extract(query) {
+            accept(&taken.level);
+        }
+    }
+    for chunks in [archive.chunk_count() / 2, archive.chunk_count()] {
+        if let Ok((model, _)) = archive.read_chunks(chunks) {
+            walk(&model, &queries);
+        }
+    }
+}
+
+/// Follows the queries there and back.
+fn walk(implicit: &Implicit, queries: &[Query<'_>]) {
+    let mut cut = Cut::new(implicit);
+    for query in queries.iter().chain(queries.iter().rev()) {
+        let change = cut.update(query, &Effort::default()).expect("it was asked before");
+        assert!(change.done, "there is all the time");
+        accept(&cut.level());
+    }
+    let model = Model::of(implicit).expect("it has a certificate");
+    let mut extractor = model.extractor();
+    for query in queries {
+        accept(extractor.exact(query).expect("a query"));
+        for faces in [0, 1 + implicit.full_faces() / 2, usize::MAX] {
+            accept(extractor.at_most(faces, query).expect("a query"));
+        }
+    }
+}
+
+fn walk_field(field: &HeightField) {
+    let model = RightTriangles::new(field);
+    let is_sound = model.certify().is_ok();
+    let mut extractor = RightExtractor::new(&model);
+    for query in &queries(field.bounds().diagonal()) {
+        if let Ok(level) = model.level(query) {
+            accept(&level);
+        }
+        if let Ok(level) = extractor.at_most(100, query) {
+            accept(level);
+        }
+    }
+    assert!(is_sound, "right triangles have no cracks, whatever the heights");
+}
+
+fn accept(level: &Level) {
+    meshlod_fuzz::accept(&level.mesh());
+}
+
+/// Of all kinds, in the scale of the file.
+fn queries(diagonal: f64) -> Vec<Query<'static>> {
+    // At other scales directions have no length.
+    let side = if (1e-100..1e100).contains(&diagonal) { diagonal } else { 1.0 };
+    let camera = Camera {
+        eye: [side, 0.5 * side, 0.1 * side],
+        look: [0.0; 3],
+        up: [0.0, 0.0, 1.0],
+        fov_rad: 0.8,
+        viewport: [640, 480],
+    };
+    let near = |focus| Query { focus, tolerance: Tolerance::Uniform(0.0) };
+    vec![
+        Query::uniform(0.1 * side),
+        near(Focus::Sphere { center: [0.0; 3], radius: 0.1 * side }),
+        Query::pixels(camera, 1.0),
+        near(Focus::Frustum(camera)),
+        near(Focus::Point([0.5, 0.5, 0.5])),
+        Query::uniform(0.0),
+        Query::uniform(f64::MAX),
+    ]
+}

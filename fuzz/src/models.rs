@@ -1,0 +1,113 @@
+//! Multiresolution files that say plainly what they hold: packed, but not pressed, so that mutations
+//! meet the numbers and not a code of them.
+
+use meshlod_fixtures as fixtures;
+use meshlod_mesh::{Mesh, sample};
+use meshlod_multires::{Archive, Forest, HeightField, HeightPrecision, Storage};
+use meshlod_simplify::{Method, Options};
+
+/// Where a file of contractions (docs/formats/mlod.md) has how many chunks there are, and where that table starts.
+const CHUNKS: usize = 36;
+const TABLE: usize = 88;
+/// How long an entry of the table is.
+const ENTRY: usize = 44;
+/// Where the size of the coarsest mesh is, before its checksum.
+const BASE: usize = 28;
+/// How a height field starts, where its checksum is, what that is of, and where the heights are.
+const FIELD: &[u8] = b"meshlodh";
+const FIELD_CHECKSUM: usize = 12;
+const FIELD_BODY: usize = 16;
+const HEIGHTS: usize = FIELD_BODY + 72;
+
+/// Writes the checksums that fit, for both kinds of files.
+pub fn seal(bytes: &mut [u8]) {
+    if bytes.starts_with(FIELD) && bytes.len() >= FIELD_BODY {
+        let checksum = crc32fast::hash(&bytes[FIELD_BODY..]);
+        bytes[FIELD_CHECKSUM..FIELD_BODY].copy_from_slice(&checksum.to_le_bytes());
+    } else {
+        Archive::seal(bytes);
+    }
+}
+
+/// Small files of all kinds.
+pub(crate) fn seeds() -> Vec<Vec<u8>> {
+    let meshes = [
+        fixtures::tetrahedron(),
+        fixtures::cube(),
+        fixtures::fan(),
+        fixtures::grid(4),
+        fixtures::hourglass(),
+        fixtures::moebius(5),
+        fixtures::two_objects(),
+        sample::torus(80),
+    ];
+    let methods = [Method::Qem, Method::LeeJang, Method::LindstromTurkFaces];
+    let files = meshes.iter().flat_map(|mesh| methods.map(|method| contractions(mesh, method)));
+    let fields = [fixtures::grid(4), sample::terrain(100)];
+    let precisions = [HeightPrecision::Exact, HeightPrecision::Within(0.01)];
+    let fields = fields.iter().filter_map(|mesh| HeightField::of_mesh(mesh).ok());
+    let fields = fields.flat_map(|field| {
+        precisions.map(|precision| plain_field(&field.to_file(precision).expect("a precision")))
+    });
+    files.chain(fields).collect()
+}
+
+/// With chunks so small that there are some.
+fn contractions(mesh: &Mesh, method: Method) -> Vec<u8> {
+    let forest = Forest::new(mesh, &Options { method, ..Options::default() }).expect("a mesh");
+    let storage = Storage { in_chunk: 8, ..Storage::default() };
+    plain(&Archive::write(&forest, &storage).expect("a proof").0)
+}
+
+/// The same file of contractions, not pressed.
+fn plain(bytes: &[u8]) -> Vec<u8> {
+    let index = TABLE + ENTRY * word(bytes, CHUNKS);
+    let (mut head, mut pieces, mut from) = (bytes[..index].to_vec(), Vec::new(), index);
+    for at in std::iter::once(BASE).chain((TABLE..index).step_by(ENTRY)) {
+        let end = from + word(bytes, at);
+        let piece = unpressed(&bytes[from..end]);
+        head[at..at + 4].copy_from_slice(&(piece.len() as u32).to_le_bytes());
+        pieces.extend(piece);
+        from = end;
+    }
+    head.extend(pieces);
+    seal(&mut head);
+    head
+}
+
+/// The same height field, not pressed.
+fn plain_field(bytes: &[u8]) -> Vec<u8> {
+    let (mut out, mut rest) = (bytes[..HEIGHTS].to_vec(), &bytes[HEIGHTS..]);
+    // Each part has a byte for how wide its numbers are, and how long it is.
+    while rest.len() >= 5 {
+        let (part, after) = rest.split_at(5 + word(rest, 1));
+        let packed = if part.len() > 5 { unpressed(&part[5..]) } else { Vec::new() };
+        out.push(part[0]);
+        out.extend((packed.len() as u32).to_le_bytes());
+        out.extend(packed);
+        rest = after;
+    }
+    out.extend(rest);
+    seal(&mut out);
+    out
+}
+
+/// A frame of Zstandard (RFC 8878) with the same content in raw blocks.
+fn unpressed(frame: &[u8]) -> Vec<u8> {
+    const WINDOW: u8 = 0x70;
+    const LONGEST: usize = 1 << 16;
+    let content = zstd::decode_all(frame).expect("a frame");
+    let mut out = [&0xFD2F_B528u32.to_le_bytes()[..], &[0, WINDOW]].concat();
+    let count = content.len().div_ceil(LONGEST).max(1);
+    for i in 0..count {
+        let block = &content[LONGEST * i..content.len().min(LONGEST * (i + 1))];
+        let header = (block.len() as u32) << 3 | u32::from(i + 1 == count);
+        out.extend(&header.to_le_bytes()[..3]);
+        out.extend(block);
+    }
+    out
+}
+
+fn word(bytes: &[u8], at: usize) -> usize {
+    u32::from_le_bytes(std::array::from_fn(|k| bytes[at + k])) as usize
+}
