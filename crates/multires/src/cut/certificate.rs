@@ -6,7 +6,10 @@
 
 use thiserror::Error;
 
+use super::by_level::by_level;
 use super::front::Front;
+use super::star::Spoke;
+use crate::forest::MOST_LEVELS;
 use crate::implicit::{Implicit, Wing};
 
 /// What was proved of every cut of a model, whatever is asked of it.
@@ -71,9 +74,6 @@ pub enum Flaw {
     Boundary,
 }
 
-/// A directed edge, by nodes.
-type Edge = [u32; 2];
-
 impl Implicit {
     /// Proves that no cut has a crack and that each is as manifold as the input, but beside what is
     /// [`odd`](Certificate::odd).
@@ -82,18 +82,16 @@ impl Implicit {
     /// # Errors
     /// The first update of which that cannot be said.
     pub fn certify(&self) -> Result<Certificate, Unsound> {
-        let mut front = Front::new(self);
+        let mut proof = Proof::new(self);
         let mut certificate = Certificate::default();
-        let mut order: Vec<u32> = (0..self.update_count() as u32).collect();
-        order.sort_by_key(|&update| std::cmp::Reverse(self.level(update)));
-        for update in order {
-            match check(&mut front, update) {
+        for update in by_level(self, |update| MOST_LEVELS - self.level(update)) {
+            match proof.check(update) {
                 Ok(true) => certificate.sound += 1,
                 Ok(false) => certificate.odd += 1,
                 Err(why) => return Err(Unsound::Update { update, why }),
             }
         }
-        let (found, expected) = (front.triangles.len(), self.full_faces());
+        let (found, expected) = (proof.front.triangles.len(), self.full_faces());
         if found != expected {
             return Err(Unsound::FullFaces { found, expected });
         }
@@ -101,45 +99,108 @@ impl Implicit {
     }
 }
 
-/// Makes an update and says whether it is an ordinary one.
-fn check(front: &mut Front<'_>, update: u32) -> Result<bool, Flaw> {
-    let mt = front.mt;
-    let (node, level) = (mt.parent(update), mt.level(update));
-    if !front.is_there(node) {
-        return Err(Flaw::VertexLater);
-    }
-    let is_later = |node: u32| mt.family(node).is_some_and(|up| mt.level(up) <= level);
-    if is_later(node) || front.around(node).iter().any(|&other| is_later(other)) {
-        return Err(Flaw::NeighbourLater);
-    }
-    let coarse = front.triangles_at(&[node]);
-    let children = mt.children(update);
-    if !front.split(update, &mut Vec::new()) {
-        return Err(Flaw::NeighbourEarlier);
-    }
-    if mt.is_glued(update) {
-        let is_next = mt.update_of(mt.children(update)[0]) == Some(update + 1);
-        let are_two = !mt.is_inner(update) && !mt.is_glued(update + 1);
-        if !is_next || !are_two || !front.may_split(update + 1, &mut Vec::new()) {
-            return Err(Flaw::Torn);
+/// A cut that is refined, and room for the two sides of the update made last.
+struct Proof<'m> {
+    front: Front<'m>,
+    coarse: Side,
+    fine: Side,
+    /// The places of the coarse side's triangles.
+    around: Vec<u32>,
+    /// What should have been made first: nothing.
+    first: Vec<u32>,
+}
+
+impl<'m> Proof<'m> {
+    fn new(mt: &'m Implicit) -> Self {
+        Self {
+            front: Front::new(mt),
+            coarse: Side::default(),
+            fine: Side::default(),
+            around: Vec::new(),
+            first: Vec::new(),
         }
     }
-    let fine = front.triangles_at(&children);
-    if fine.iter().any(|t| t[0] == t[1] || t[1] == t[2] || t[2] == t[0]) {
-        return Err(Flaw::NoArea);
-    }
-    let has_both = |t: &&[u32; 3]| children.iter().all(|child| t.contains(child));
-    let (between, brought) = (fine.iter().filter(has_both).count(), brought(mt, update));
-    if fine.len() != coarse.len() + brought || between != brought {
-        return Err(Flaw::NoWing);
-    }
-    let Some(before) = open_edges(&coarse).filter(|_| mt.odd(update).is_none()) else {
+
+    /// Makes an update and says whether it is an ordinary one.
+    fn check(&mut self, update: u32) -> Result<bool, Flaw> {
+        self.make(update)?;
+        let Self { front, coarse, fine, .. } = self;
+        let mt = front.mt;
+        let (node, children) = (mt.parent(update), mt.children(update));
+        if fine.triangles.iter().any(|t| t[0] == t[1] || t[1] == t[2] || t[2] == t[0]) {
+            return Err(Flaw::NoArea);
+        }
+        let has_both = |t: &&[u32; 3]| children.iter().all(|child| t.contains(child));
+        let between = fine.triangles.iter().filter(has_both).count();
+        let brought = brought(mt, update);
+        if fine.triangles.len() != coarse.triangles.len() + brought || between != brought {
+            return Err(Flaw::NoWing);
+        }
         let up = |end: u32| if children.contains(&end) { node } else { end };
-        let is_same = odd_edges(&coarse, up) == odd_edges(&fine, up);
-        return if is_same { Ok(false) } else { Err(Flaw::Boundary) };
-    };
-    compare(before, &fine, node, children)?;
-    Ok(true)
+        if mt.odd(update).is_some() || !coarse.find_open() {
+            coarse.find_odd(up);
+            fine.find_odd(up);
+            return if coarse.edges == fine.edges { Ok(false) } else { Err(Flaw::Boundary) };
+        }
+        if !fine.find_open() {
+            return Err(Flaw::TwoOnOneSide);
+        }
+        // The same edges around, and at the vertex the same open ends, between which only the edge of
+        // the children may have come.
+        let is_open = coarse.edges.iter().any(|edge| edge.ends().contains(&node));
+        let all = fine.edges.len();
+        fine.edges.retain_mut(|edge| {
+            let [from, to] = edge.ends();
+            *edge = Edge::new(up(from), up(to));
+            !(children.contains(&from) && children.contains(&to))
+        });
+        let between = all - fine.edges.len();
+        fine.edges.sort_unstable();
+        if coarse.edges != fine.edges || between > usize::from(is_open) {
+            return Err(Flaw::Boundary);
+        }
+        Ok(true)
+    }
+
+    /// Makes an update, if it may be made, and keeps the triangles of its two sides.
+    fn make(&mut self, update: u32) -> Result<(), Flaw> {
+        let Self { front, coarse, fine, around, first } = self;
+        let mt = front.mt;
+        let (node, level) = (mt.parent(update), mt.level(update));
+        if !front.is_there(node) {
+            return Err(Flaw::VertexLater);
+        }
+        first.clear();
+        let may_split = front.may_split(update, first);
+        let is_later = |node: u32| !front.is_made_above(node, level);
+        let star = front.last_star();
+        if is_later(node) || star.iter().any(|spoke| is_later(spoke.a) || is_later(spoke.b)) {
+            return Err(Flaw::NeighbourLater);
+        }
+        if !may_split {
+            return Err(Flaw::NeighbourEarlier);
+        }
+        around.clear();
+        // What has two corners at the vertex is met at both.
+        let is_first = |spoke: &&Spoke| {
+            let (t, k) = (spoke.triangle(), spoke.corner as usize % 3);
+            !front.triangles.nodes(t)[..k].contains(&node)
+        };
+        around.extend(star.iter().filter(is_first).map(Spoke::triangle));
+        coarse.take(front, around.iter().copied());
+        let brought = front.triangles.places() as u32;
+        front.make(update);
+        let brought = brought..front.triangles.places() as u32;
+        fine.take(front, around.iter().copied().chain(brought));
+        if mt.is_glued(update) {
+            let is_next = mt.update_of(mt.children(update)[0]) == Some(update + 1);
+            let are_two = !mt.is_inner(update) && !mt.is_glued(update + 1);
+            if !is_next || !are_two || !front.may_split(update + 1, first) {
+                return Err(Flaw::Torn);
+            }
+        }
+        Ok(())
+    }
 }
 
 /// How many faces an update brings.
@@ -148,48 +209,90 @@ fn brought(mt: &Implicit, update: u32) -> usize {
     mt.odd(update).map_or_else(wings, |odd| odd.brought.len())
 }
 
-/// Whether the fine side has the boundary of the coarse one: the same edges around, and at the vertex
-/// the same open ends, between which only the edge of the children may have come.
-fn compare(
-    mut before: Vec<Edge>,
-    fine: &[[u32; 3]],
-    node: u32,
-    children: Edge,
-) -> Result<(), Flaw> {
-    let after = open_edges(fine).ok_or(Flaw::TwoOnOneSide)?;
-    let is_between = |edge: &&Edge| edge.iter().all(|end| children.contains(end));
-    let between = after.iter().filter(is_between).count();
-    let is_open = before.iter().any(|edge| edge.contains(&node));
-    let up = |end: u32| if children.contains(&end) { node } else { end };
-    let outer = after.iter().filter(|edge| !is_between(edge));
-    let mut outer: Vec<Edge> = outer.map(|edge| edge.map(up)).collect();
-    before.sort_unstable();
-    outer.sort_unstable();
-    if before != outer || between > usize::from(is_open) {
-        return Err(Flaw::Boundary);
-    }
-    Ok(())
+/// One side of an update.
+#[derive(Default)]
+struct Side {
+    triangles: Vec<[u32; 3]>,
+    /// Those of its edges that are looked for, in order.
+    edges: Vec<Edge>,
+    /// Room for all of them.
+    all: Vec<Edge>,
 }
 
-/// The directed edges without an opposite one; `None` where one is there twice.
-fn open_edges(triangles: &[[u32; 3]]) -> Option<Vec<Edge>> {
-    let sides = |&[a, b, c]: &[u32; 3]| [[a, b], [b, c], [c, a]];
-    let mut edges: Vec<Edge> = triangles.iter().flat_map(sides).collect();
-    edges.sort_unstable();
-    if edges.windows(2).any(|pair| pair[0] == pair[1]) {
-        return None;
+impl Side {
+    fn take(&mut self, front: &Front<'_>, places: impl Iterator<Item = u32>) {
+        self.triangles.clear();
+        self.triangles.extend(places.map(|t| front.triangles.nodes(t)));
     }
-    let is_open = |&&[a, b]: &&Edge| edges.binary_search(&[b, a]).is_err();
-    Some(edges.iter().filter(is_open).copied().collect())
+
+    /// Finds the directed edges without an opposite one; false where one is there twice.
+    fn find_open(&mut self) -> bool {
+        self.sort(|end| end);
+        self.edges.clear();
+        let mut all = self.all.as_slice();
+        // An edge and its opposite stand side by side.
+        while let [edge, rest @ ..] = all {
+            all = match rest {
+                [next, ..] if next == edge => return false,
+                [next, rest @ ..] if edge.is_beside(*next) => rest,
+                _ => {
+                    self.edges.extend((!edge.is_loop()).then_some(*edge));
+                    rest
+                }
+            };
+        }
+        true
+    }
+
+    /// Finds the edges with an odd number of faces after moving up; what is within one vertex then is
+    /// none.
+    fn find_odd(&mut self, up: impl Fn(u32) -> u32) {
+        self.sort(up);
+        self.edges.clear();
+        let odd = self.all.chunk_by(|a, b| a.is_beside(*b)).filter(|same| same.len() % 2 == 1);
+        self.edges.extend(odd.map(|same| same[0].undirected()).filter(|edge| !edge.is_loop()));
+    }
+
+    fn sort(&mut self, up: impl Fn(u32) -> u32) {
+        self.all.clear();
+        for &[a, b, c] in &self.triangles {
+            let (a, b, c) = (up(a), up(b), up(c));
+            self.all.extend([Edge::new(a, b), Edge::new(b, c), Edge::new(c, a)]);
+        }
+        self.all.sort_unstable();
+    }
 }
 
-/// The edges with an odd number of faces after moving up; what is within one vertex then is none.
-fn odd_edges(triangles: &[[u32; 3]], up: impl Fn(u32) -> u32) -> Vec<Edge> {
-    let sides = |&[a, b, c]: &[u32; 3]| [[a, b], [b, c], [c, a]];
-    let edges = triangles.iter().flat_map(sides).map(|edge| edge.map(&up));
-    let mut edges: Vec<Edge> = edges.map(|[a, b]| [a.min(b), a.max(b)]).collect();
-    edges.retain(|[a, b]| a != b);
-    edges.sort_unstable();
-    let odd = edges.chunk_by(|a, b| a == b).filter(|same| same.len() % 2 == 1);
-    odd.map(|same| same[0]).collect()
+/// A directed edge in one number: its lesser node, its greater one, and whether it comes from that.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+struct Edge(u64);
+
+impl Edge {
+    #[inline]
+    fn new(from: u32, to: u32) -> Self {
+        // Nodes have 31 bits.
+        Self(u64::from(from.min(to)) << 32 | u64::from(from.max(to)) << 1 | u64::from(from > to))
+    }
+
+    #[inline]
+    fn ends(self) -> [u32; 2] {
+        let (low, high) = ((self.0 >> 32) as u32, self.0 as u32 >> 1);
+        if self.0 & 1 == 0 { [low, high] } else { [high, low] }
+    }
+
+    /// The same, wherever it goes.
+    fn undirected(self) -> Self {
+        Self(self.0 & !1)
+    }
+
+    /// Whether both join the same nodes.
+    #[inline]
+    fn is_beside(self, other: Self) -> bool {
+        self.0 | 1 == other.0 | 1
+    }
+
+    fn is_loop(self) -> bool {
+        let [from, to] = self.ends();
+        from == to
+    }
 }

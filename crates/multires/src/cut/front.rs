@@ -120,9 +120,15 @@ impl<'m> Front<'m> {
     /// Splits an update's node, which must be there, if all around it is coarse enough; else adds to
     /// `first` the updates that must come first.
     pub(super) fn split(&mut self, update: u32, first: &mut Vec<u32>) -> bool {
-        if !self.may_split(update, first) {
-            return false;
+        let may_split = self.may_split(update, first);
+        if may_split {
+            self.make(update);
         }
+        may_split
+    }
+
+    /// Makes an update that [`may_split`](Self::may_split) was just asked for.
+    pub(super) fn make(&mut self, update: u32) {
         let (node, level) = (self.mt.parent(update), self.mt.level(update));
         let [first, second] = self.mt.children(update);
         self.vertices[node as usize].corner = SPLIT;
@@ -146,7 +152,6 @@ impl<'m> Front<'m> {
                 }
             }
         }
-        true
     }
 
     /// Moves the triangles of the second child to the front of the star; how many those are, and the
@@ -195,7 +200,7 @@ impl<'m> Front<'m> {
             return false;
         }
         let level = self.mt.level(update);
-        let is_needed = |n: u32| !parts.contains(&n) && self.vertices[n as usize].above <= level;
+        let is_needed = |n: u32| !parts.contains(&n) && !self.is_made_above(n, level);
         // Most that are held are held by one of the first few.
         let is_held = |&child: &u32| {
             let mut around = self.triangles.around(self.vertices[child as usize].corner);
@@ -274,7 +279,7 @@ impl<'m> Front<'m> {
         self.star[..place].iter().all(|spoke| spoke.corner / 3 != t)
     }
 
-    /// What was around the vertex that was split last.
+    /// What was around the vertex that was split last, or that may be split now.
     pub(super) fn last_star(&self) -> &[Spoke] {
         &self.star
     }
@@ -284,16 +289,10 @@ impl<'m> Front<'m> {
         self.standing(node) == Standing::Active
     }
 
-    /// The triangles at some vertices, each once.
-    pub(super) fn triangles_at(&mut self, nodes: &[u32]) -> Vec<[u32; 3]> {
-        self.star.clear();
-        for &node in nodes {
-            self.triangles.gather(self.vertices[node as usize].corner, &mut self.star);
-        }
-        let mut all: Vec<u32> = self.star.iter().map(|spoke| spoke.corner / 3).collect();
-        all.sort_unstable();
-        all.dedup();
-        all.into_iter().map(|t| self.triangles.nodes(t)).collect()
+    /// Whether a vertex, which must be there, is a root or was made by an update of a higher level.
+    #[inline]
+    pub(super) fn is_made_above(&self, node: u32, level: u16) -> bool {
+        self.vertices[node as usize].above > level
     }
 
     /// Appends the triangles around a vertex, which must be there, to `star`.

@@ -1,6 +1,8 @@
 //! The triangles of all cuts.
 
+use super::by_level::by_level;
 use super::front::Front;
+use crate::forest::MOST_LEVELS;
 use crate::implicit::Implicit;
 
 impl Implicit {
@@ -11,11 +13,9 @@ impl Implicit {
     pub(crate) fn each_triangle(&self, mut visit: impl FnMut([u32; 3])) {
         let mut front = Front::new(self);
         self.base().iter().for_each(|&face| visit(face));
-        let mut order: Vec<u32> = (0..self.update_count() as u32).collect();
         // The parts of one that is glued stay together.
-        order.sort_by_key(|&update| {
-            let outer = if self.is_inner(update) { update - 1 } else { update };
-            std::cmp::Reverse(self.level(outer))
+        let order = by_level(self, |update| {
+            MOST_LEVELS - self.level(if self.is_inner(update) { update - 1 } else { update })
         });
         let mut waiting = Vec::new();
         for update in order {

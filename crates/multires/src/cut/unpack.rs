@@ -1,5 +1,6 @@
 //! The forest that a packed model could have been made of.
 
+use super::by_level::by_level;
 use super::front::{Front, find};
 use super::star::Spoke;
 use crate::forest::{Forest, NONE, Update};
@@ -38,20 +39,25 @@ impl Forest {
         };
         let mut front = Front::new(mt);
         // What it meets last is recorded first.
-        let mut rings = Vec::with_capacity(mt.update_count());
+        let (mut rings, mut room, mut first) = (Vec::new(), Default::default(), Vec::new());
         for (u, &update) in numbers.updates.iter().enumerate().rev() {
-            let is_split = front.split(update, &mut Vec::new());
+            let is_split = front.split(update, &mut first);
             assert!(is_split, "levels are in the order of needs, or there is no certificate");
-            rings.push(numbers.update(mt, u, front.last_star()));
+            let of = numbers.update(mt, update, front.last_star());
+            this.updates.push(Update { ring: rings.len() as u32, ..of });
+            numbers.append_ring(front.last_star(), &mut room, &mut rings);
             this.brought.resize(front.triangles.places(), u as u32);
-        }
-        for (u, (update, ring)) in rings.into_iter().rev().enumerate() {
-            this.updates.push(Update { ring: this.rings.len() as u32, ..update });
-            this.rings.extend(ring);
-            if let Some(odd) = mt.odd(numbers.updates[u]) {
+            if let Some(odd) = mt.odd(update) {
                 let odd = odd.renumbered(|node| numbers.nodes[node as usize]);
                 this.odd.insert(u as u32, odd);
             }
+        }
+        this.updates.reverse();
+        let mut end = rings.len();
+        this.rings.reserve_exact(end);
+        for update in &mut this.updates {
+            let start = std::mem::replace(&mut update.ring, this.rings.len() as u32) as usize;
+            this.rings.extend(&rings[start..std::mem::replace(&mut end, start)]);
         }
         let leaf = |node: u32| numbers.nodes[node as usize];
         this.faces.extend(front.triangles.iter().map(|(_, nodes)| nodes.map(leaf)));
@@ -61,12 +67,17 @@ impl Forest {
 
 impl Numbers {
     fn new(mt: &Implicit) -> Self {
-        let mut updates: Vec<u32> = (0..mt.update_count() as u32).collect();
-        // The parts of one that is glued stay together.
-        updates.sort_unstable_by_key(|&update| {
-            let outer = if mt.is_inner(update) { update - 1 } else { update };
-            (mt.level(outer), outer, outer == update)
-        });
+        let mut updates =
+            by_level(mt, |update| mt.level(if mt.is_inner(update) { update - 1 } else { update }));
+        // The parts of one that is glued stay together, the inner one first.
+        let mut at = 0;
+        while at < updates.len() {
+            let is_glued = mt.is_glued(updates[at]);
+            if is_glued {
+                updates.swap(at, at + 1);
+            }
+            at += if is_glued { 2 } else { 1 };
+        }
         let leaves = (0..mt.node_count() as u32).filter(|&node| mt.update_of(node).is_none());
         let mut nodes = vec![NONE; mt.node_count()];
         let mut vertices = 0;
@@ -80,17 +91,12 @@ impl Numbers {
         Self { updates, nodes, vertices: vertices as usize }
     }
 
-    /// An update and its ring, by what was at its node before it was split.
-    fn update(&self, mt: &Implicit, u: usize, star: &[Spoke]) -> (Update, Vec<u32>) {
-        let update = self.updates[u];
+    /// An update without its ring, by what was at its node before it was split.
+    fn update(&self, mt: &Implicit, update: u32, star: &[Spoke]) -> Update {
         let number = |node: u32| self.nodes[node as usize];
         let ball = mt.packed_ball(update, mt.parent(update));
         let wings = if mt.odd(update).is_some() { [None; 2] } else { find(star, mt.wings(update)) };
-        // Those whom no face follows last.
-        let mut ring = distinct(star.iter().map(|spoke| spoke.a));
-        let ends = distinct(star.iter().map(|spoke| spoke.b));
-        ring.extend(ends.into_iter().filter(|end| star.iter().all(|spoke| spoke.a != *end)));
-        let update = Update {
+        Update {
             children: mt.children(update).map(number),
             wings: wings.map(|wing| wing.map_or(NONE, number)),
             ring: 0,
@@ -100,14 +106,26 @@ impl Numbers {
             is_open: mt.is_open(update) && mt.odd(update).is_none(),
             either: false,
             glued: mt.is_glued(update),
-        };
-        (update, ring.into_iter().map(number).collect())
+        }
+    }
+
+    /// Appends those around what was split: first those whom a face follows, each in its order.
+    fn append_ring(
+        &self,
+        star: &[Spoke],
+        [followed, others]: &mut [Vec<u32>; 2],
+        ring: &mut Vec<u32>,
+    ) {
+        keep_distinct(star.iter().map(|spoke| spoke.a), followed);
+        let is_followed = |node: &u32| followed.binary_search(node).is_ok();
+        keep_distinct(star.iter().map(|spoke| spoke.b).filter(|b| !is_followed(b)), others);
+        ring.extend(followed.iter().chain(&*others).map(|&node| self.nodes[node as usize]));
     }
 }
 
-fn distinct(nodes: impl Iterator<Item = u32>) -> Vec<u32> {
-    let mut nodes: Vec<u32> = nodes.collect();
-    nodes.sort_unstable();
-    nodes.dedup();
-    nodes
+fn keep_distinct(nodes: impl Iterator<Item = u32>, distinct: &mut Vec<u32>) {
+    distinct.clear();
+    distinct.extend(nodes);
+    distinct.sort_unstable();
+    distinct.dedup();
 }
