@@ -3,6 +3,8 @@
 //! Bands of falling error, each parted into boxes. An update goes with the last chunk that holds something it needs: so the chunks up to any one
 //! are a cut, and a file is good from its start to any chunk's end.
 
+use std::ops::Range;
+
 use glam::Vec3;
 
 use super::keep::{OCTAVES, octave};
@@ -20,8 +22,7 @@ pub(super) struct Plan {
 
 /// A run of the order.
 pub(super) struct Chunk {
-    /// Behind its last update.
-    pub(super) end: usize,
+    pub(super) updates: Range<usize>,
     /// Around all of its updates and all that need any of them; the greatest error.
     pub(super) area: Area,
 }
@@ -48,16 +49,16 @@ pub(super) fn plan(mt: &Implicit, links: &Links, in_chunk: usize) -> Plan {
     for (update, &chunk) in chunk_of.iter().enumerate() {
         members[chunk as usize].push(update as u32);
     }
-    members.retain(|members| !members.is_empty());
-    let areas = areas(mt, links, &members);
+    let areas = areas(mt, links, &chunk_of, count);
     let mut plan = Plan {
         order: Vec::with_capacity(mt.update_count()),
         place: vec![0; mt.update_count()],
         chunks: Vec::new(),
     };
-    for (members, area) in members.into_iter().zip(areas) {
-        plan.append(mt, &members);
-        plan.chunks.push(Chunk { end: plan.order.len(), area });
+    for (members, area) in members.into_iter().zip(areas).filter(|(all, _)| !all.is_empty()) {
+        let start = plan.order.len();
+        plan.append(mt, &members, &chunk_of);
+        plan.chunks.push(Chunk { updates: start..plan.order.len(), area });
     }
     plan
 }
@@ -65,9 +66,10 @@ pub(super) fn plan(mt: &Implicit, links: &Links, in_chunk: usize) -> Plan {
 impl Plan {
     /// Adds a chunk: by the node that each splits, as the file numbers them. That of an update whose
     /// parent is in the same chunk comes behind all others.
-    fn append(&mut self, mt: &Implicit, members: &[u32]) {
+    fn append(&mut self, mt: &Implicit, members: &[u32], chunk_of: &[u32]) {
+        let Some(chunk) = members.first().map(|&update| chunk_of[update as usize]) else { return };
         let start = self.order.len();
-        let is_member = |update: u32| members.binary_search(&update).is_ok();
+        let is_member = |update: u32| chunk_of[update as usize] == chunk;
         let is_apart = |&&update: &&u32| !mt.family(mt.parent(update)).is_some_and(is_member);
         self.order.extend(members.iter().filter(is_apart));
         let Self { order, place, .. } = self;
@@ -133,21 +135,19 @@ fn part(mt: &Implicit, updates: &mut [u32], first: u32, chunks: usize, chunk_of:
 
 /// Where the updates of each chunk are, and all that need them. So an update that is wanted lies in the
 /// area of every chunk that it needs, and the chunks whose areas are wanted hold all that it takes.
-fn areas(mt: &Implicit, links: &Links, members: &[Vec<u32>]) -> Vec<Area> {
+fn areas(mt: &Implicit, links: &Links, chunk_of: &[u32], count: usize) -> Vec<Area> {
     let mut reach: Vec<Area> = (0..mt.update_count() as u32)
         .map(|update| {
             let Ball { center, radius, error } = mt.ball(update);
             Area { min: center - radius, max: center + radius, error }
         })
         .collect();
+    let mut areas = vec![Area::EMPTY; count];
     for update in links.in_order_of_need() {
+        // All that need it came before.
         let own = reach[update as usize];
+        areas[chunk_of[update as usize] as usize].join(&own);
         links.of(update).for_each(|need| reach[need as usize].join(&own));
     }
-    let area = |members: &Vec<u32>| {
-        let mut all = Area::EMPTY;
-        members.iter().for_each(|&update| all.join(&reach[update as usize]));
-        all
-    };
-    members.iter().map(area).collect()
+    areas
 }

@@ -20,18 +20,16 @@ pub(super) fn spread(
     cells: &[Cell],
     had_area: impl Fn([u32; 3]) -> bool,
 ) -> BTreeMap<u32, Cell> {
-    let mut movable = Vec::new();
-    mt.each_triangle(|nodes| {
-        if flatness(nodes.map(|n| cells[n as usize])) > 0 && had_area(nodes) {
-            movable.extend(nodes);
+    // To keep them takes less time than to make them once more.
+    let mut all = Vec::new();
+    mt.each_triangle(|nodes| all.push(nodes));
+    let mut movable = vec![false; cells.len()];
+    for nodes in &all {
+        if flatness(nodes.map(|n| cells[n as usize])) > 0 && had_area(*nodes) {
+            nodes.iter().for_each(|&node| movable[node as usize] = true);
         }
-    });
-    if movable.is_empty() {
-        return BTreeMap::new();
     }
-    movable.sort_unstable();
-    movable.dedup();
-    Patch::new(mt, cells, &movable).solve()
+    Patch::new(cells, &all, &movable).solve()
 }
 
 /// The triangles at the nodes that may move.
@@ -42,13 +40,13 @@ struct Patch<'c> {
 }
 
 impl<'c> Patch<'c> {
-    fn new(mt: &Implicit, cells: &'c [Cell], movable: &[u32]) -> Self {
+    fn new(cells: &'c [Cell], all: &[[u32; 3]], movable: &[bool]) -> Self {
         let mut at: BTreeMap<u32, Vec<[u32; 3]>> = BTreeMap::new();
-        mt.each_triangle(|nodes| {
-            for node in nodes.into_iter().filter(|node| movable.binary_search(node).is_ok()) {
-                at.entry(node).or_default().push(nodes);
+        for nodes in all {
+            for &node in nodes.iter().filter(|&&node| movable[node as usize]) {
+                at.entry(node).or_default().push(*nodes);
             }
-        });
+        }
         Self { cells, moved: BTreeMap::new(), at }
     }
 

@@ -3,6 +3,7 @@
 use std::io;
 
 use meshlod_mesh::Bounds;
+use rayon::prelude::*;
 
 use super::FileError;
 use super::chunk;
@@ -10,7 +11,7 @@ use super::header::{Entry, Header, Stored};
 use super::keep::Kept;
 use super::known::Known;
 use super::lattice::Lattice;
-use super::plan::{number, plan};
+use super::plan::{Chunk, Plan, number, plan};
 use super::streams::Packer;
 use crate::cut::Certificate;
 use crate::forest::Forest;
@@ -49,43 +50,58 @@ pub(super) fn write(
     let Kept { forest, moved } = forest.kept(lattice)?;
     let order = Order::new(&forest);
     let mt = Implicit::in_order(&forest, &order)?;
-    let certificate = mt.certify()?;
-    let links = Links::in_order(&forest, &order, Rule::Strict);
-    let plan = plan(&mt, &links, storage.in_chunk.max(1));
-    let mut known = Known::new(lattice, mt.loose_base());
-    known.go_to(0);
-    known.updates.extend(plan.order.iter().map(|&update| {
-        let loose = mt.loose(update);
-        let number = |node| number(&mt, &plan.place, node);
-        let odd = loose.odd.map(|odd| Box::new(odd.renumbered(number)));
-        Loose { parent: number(loose.parent), odd, ..loose }
-    }));
-    let base = write_base(&known)?;
-    let (mut from, mut bodies, mut chunks) = (0, Vec::new(), Vec::new());
-    for planned in &plan.chunks {
-        let updates = from..planned.end;
-        let body = chunk::write(&known, updates.clone())?;
-        let faces = known.updates[updates.clone()].iter().map(Loose::brought).sum::<usize>();
-        chunks.push(Entry {
-            stored: Stored::of(&body),
-            updates: updates.len() as u32,
-            faces: faces as u32,
-            area: planned.area,
-        });
-        bodies.extend(body);
-        from = planned.end;
-    }
+    let (certificate, packed) = rayon::join(
+        || mt.certify(),
+        || {
+            let links = Links::in_order(&forest, &order, Rule::Strict);
+            pack(&mt, &plan(&mt, &links, storage.in_chunk.max(1)), lattice)
+        },
+    );
+    let (certificate, packed) = (certificate?, packed?);
     let header = Header {
         about: About { frame: forest.frame, error_kind: forest.error_kind },
         lattice,
         diagonal,
         rounding: forest.frame.length_of_model(moved),
-        roots: known.roots(),
-        base_faces: known.base.faces.len() as u32,
-        base: Stored::of(&base),
-        chunks,
+        roots: mt.root_count() as u32,
+        base_faces: mt.base_faces() as u32,
+        base: Stored::of(&packed.base),
+        chunks: packed.chunks,
     };
-    Ok(([header.to_bytes(), base, bodies].concat(), certificate))
+    let bytes = [header.to_bytes(), packed.base, packed.bodies.concat()].concat();
+    Ok((bytes, certificate))
+}
+
+/// All that stands behind the header, and the index.
+struct Packed {
+    base: Vec<u8>,
+    chunks: Vec<Entry>,
+    bodies: Vec<Vec<u8>>,
+}
+
+fn pack(mt: &Implicit, plan: &Plan, lattice: Lattice) -> io::Result<Packed> {
+    let mut known = Known::new(lattice, mt.loose_base());
+    known.go_to(0);
+    known.updates.extend(plan.order.iter().map(|&update| {
+        let loose = mt.loose(update);
+        let number = |node| number(mt, &plan.place, node);
+        let odd = loose.odd.map(|odd| Box::new(odd.renumbered(number)));
+        Loose { parent: number(loose.parent), odd, ..loose }
+    }));
+    let write = |chunk: &Chunk| {
+        let body = chunk::write(&known, chunk.updates.clone())?;
+        let updates = &known.updates[chunk.updates.clone()];
+        let entry = Entry {
+            stored: Stored::of(&body),
+            updates: updates.len() as u32,
+            faces: updates.iter().map(Loose::brought).sum::<usize>() as u32,
+            area: chunk.area,
+        };
+        Ok((entry, body))
+    };
+    let written: io::Result<Vec<_>> = plan.chunks.par_iter().map(write).collect();
+    let (chunks, bodies) = written?.into_iter().unzip();
+    Ok(Packed { base: write_base(&known)?, chunks, bodies })
 }
 
 /// The coarsest that is fine enough.
