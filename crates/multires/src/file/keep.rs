@@ -56,11 +56,11 @@ impl Forest {
         let order = Order::new(self);
         let mt = Implicit::in_order(self, &order)?;
         let place = |node: u32| Vec3::from(mt.positions()[node as usize]);
-        let cells: Vec<_> = mt.positions().iter().map(|&p| lattice.round(p.into())).collect();
-        let spread = spread(&mt, &cells, |nodes| has_area(nodes.map(place)));
+        let mut cells: Vec<_> = mt.positions().iter().map(|&p| lattice.round(p.into())).collect();
+        spread(&mt, &mut cells, |nodes| has_area(nodes.map(place)));
         let mut moved = 0.0f64;
         for (node, cell) in cells.into_iter().enumerate() {
-            let to = lattice.put(spread.get(&(node as u32)).copied().unwrap_or(cell));
+            let to = lattice.put(cell);
             moved = moved.max(to.as_dvec3().distance(place(node as u32).as_dvec3()));
             self.positions[order.nodes[node] as usize] = to.into();
         }

@@ -1,7 +1,5 @@
 //! Keeps triangles from collapsing on the lattice: what is smaller than a cell would have no area.
 
-use std::collections::BTreeMap;
-
 use crate::implicit::Implicit;
 
 /// A place on the lattice.
@@ -12,78 +10,80 @@ const FARTHEST: i32 = 2;
 /// How often all flat triangles are gone through.
 const ROUNDS: usize = 16;
 
-/// Nodes to be moved from where they were rounded to, so that no triangle of any cut is without area
-/// on the lattice that has one without it; as far as a few cells do. `cells` are the places of all
-/// nodes, and `had_area` says whether a triangle is to have one.
-pub(super) fn spread(
-    mt: &Implicit,
-    cells: &[Cell],
-    had_area: impl Fn([u32; 3]) -> bool,
-) -> BTreeMap<u32, Cell> {
+/// Moves nodes from the cells they were rounded to, so that no triangle of any cut is without area on
+/// the lattice that has one without it; as far as a few cells do.
+///
+/// `cells` are those of all nodes; `had_area` says whether a triangle is to have one.
+pub(super) fn spread(mt: &Implicit, cells: &mut [Cell], had_area: impl Fn([u32; 3]) -> bool) {
     // To keep them takes less time than to make them once more.
     let mut all = Vec::new();
     mt.each_triangle(|nodes| all.push(nodes));
-    let mut movable = vec![false; cells.len()];
+    let mut is_movable = vec![false; cells.len()];
     for nodes in &all {
         if flatness(nodes.map(|n| cells[n as usize])) > 0 && had_area(*nodes) {
-            nodes.iter().for_each(|&node| movable[node as usize] = true);
+            nodes.iter().for_each(|&node| is_movable[node as usize] = true);
         }
     }
-    Patch::new(cells, &all, &movable).solve()
+    let mut at: Vec<(u32, [u32; 3])> = Vec::new();
+    for nodes in all {
+        let movable = nodes.into_iter().filter(|&node| is_movable[node as usize]);
+        at.extend(movable.map(|node| (node, nodes)));
+    }
+    at.sort_unstable();
+    solve(&at, cells);
 }
 
-/// The triangles at the nodes that may move.
-struct Patch<'c> {
-    cells: &'c [Cell],
-    moved: BTreeMap<u32, Cell>,
-    at: BTreeMap<u32, Vec<[u32; 3]>>,
+/// Moves nodes one by one while that makes the triangles at them less flat.
+fn solve(at: &[(u32, [u32; 3])], cells: &mut [Cell]) {
+    let stars: Vec<Star<'_>> = at
+        .chunk_by(|a, b| a.0 == b.0)
+        .map(|triangles| Star { home: cells[triangles[0].0 as usize], triangles })
+        .collect();
+    let steps = steps();
+    for _ in 0..ROUNDS {
+        let moved = stars.iter().filter(|star| star.improve(&steps, cells)).count();
+        if moved == 0 {
+            break;
+        }
+    }
 }
 
-impl<'c> Patch<'c> {
-    fn new(cells: &'c [Cell], all: &[[u32; 3]], movable: &[bool]) -> Self {
-        let mut at: BTreeMap<u32, Vec<[u32; 3]>> = BTreeMap::new();
-        for nodes in all {
-            for &node in nodes.iter().filter(|&&node| movable[node as usize]) {
-                at.entry(node).or_default().push(*nodes);
+/// A node that may move, with all triangles at it.
+struct Star<'t> {
+    home: Cell,
+    triangles: &'t [(u32, [u32; 3])],
+}
+
+impl Star<'_> {
+    /// Moves the node to the closest place where its triangles are least flat, if that is less than now.
+    fn improve(&self, steps: &[Cell], cells: &mut [Cell]) -> bool {
+        let node = self.triangles[0].0 as usize;
+        let (mut best, mut least) = (cells[node], self.flatness(cells, u32::MAX));
+        let before = least;
+        for step in steps {
+            if least == 0 {
+                break;
+            }
+            cells[node] = [0, 1, 2].map(|k| self.home[k] + step[k]);
+            let flatness = self.flatness(cells, least);
+            if flatness < least {
+                (best, least) = (cells[node], flatness);
             }
         }
-        Self { cells, moved: BTreeMap::new(), at }
+        cells[node] = best;
+        least < before
     }
 
-    /// Moves nodes one by one while that makes triangles less flat.
-    fn solve(mut self) -> BTreeMap<u32, Cell> {
-        let nodes: Vec<u32> = self.at.keys().copied().collect();
-        let steps = steps();
-        for _ in 0..ROUNDS {
-            let mut is_better = false;
-            for &node in &nodes {
-                let now = self.flatness_at(node, self.cell(node));
-                if now == 0 {
-                    continue;
-                }
-                let home = self.cells[node as usize];
-                let tried = steps.iter().map(|step| [0, 1, 2].map(|k| home[k] + step[k]));
-                let best = tried.min_by_key(|&cell| self.flatness_at(node, cell));
-                if let Some(cell) = best.filter(|&cell| self.flatness_at(node, cell) < now) {
-                    self.moved.insert(node, cell);
-                    is_better = true;
-                }
-            }
-            if !is_better {
+    /// How flat all triangles are; no more is added up than `most`.
+    fn flatness(&self, cells: &[Cell], most: u32) -> u32 {
+        let mut all = 0;
+        for (_, nodes) in self.triangles {
+            all += flatness(nodes.map(|n| cells[n as usize]));
+            if all >= most {
                 break;
             }
         }
-        self.moved
-    }
-
-    fn cell(&self, node: u32) -> Cell {
-        self.moved.get(&node).copied().unwrap_or(self.cells[node as usize])
-    }
-
-    /// How flat the triangles at a node would be if it were there.
-    fn flatness_at(&self, node: u32, cell: Cell) -> u32 {
-        let place = |n: u32| if n == node { cell } else { self.cell(n) };
-        self.at[&node].iter().map(|nodes| flatness(nodes.map(place))).sum()
+        all
     }
 }
 

@@ -6,7 +6,7 @@ use std::io::{self, Read, Write};
 const EFFORT: i32 = 9;
 /// At most so many numbers are read from a byte, so that a short file cannot fill the memory; real ones
 /// have up to 20.
-const NUMBERS_A_BYTE: usize = 256;
+const NUMBERS_A_BYTE: usize = 64;
 /// What a file may take that has more: a frame without content, and how long that is.
 const SKIPPED: [u8; 4] = 0x184D_2A50u32.to_le_bytes();
 
