@@ -3,12 +3,12 @@
 use std::fs::File;
 use std::path::Path;
 
-use meshlod::multires::{Archive, Certificate, ErrorKind, ModelFile, Source};
+use meshlod::multires::{Archive, Certificate, ErrorKind, Fit, ModelFile, Source};
 use serde_json::{Value, json};
 
 use crate::failure::Failure;
 use crate::files;
-use crate::numbers::{count, plural};
+use crate::numbers::{count, plural, value};
 use crate::session::Session;
 
 /// What such files end with.
@@ -56,6 +56,19 @@ pub fn certificate_text(certificate: &Certificate) -> String {
         text += &format!("; {} beside what is not manifold in the input", count(odd));
     }
     text
+}
+
+pub fn fit_json(fit: &Fit) -> Value {
+    json!({ "moved": fit.moved, "turned": fit.turned, "rounded": fit.rounded })
+}
+
+/// How far the finest level of a height field may be from the mesh.
+pub fn fit_text(fit: &Fit) -> String {
+    format!(
+        "the finest is off the mesh by up to {} where a cell has its other diagonal, {} where vertices are          not on a grid; bounds of errors are from the finest",
+        value(fit.turned),
+        value(fit.moved),
+    )
 }
 
 /// What the errors of a file are.

@@ -63,14 +63,16 @@ fn prove_field(path: &Path, field: &HeightField, session: &Session) -> Result<An
         "model": "right-triangles",
         "error_kind": "bound",
         "grid": [columns, rows],
+        "fit": model_file::fit_json(&field.fit()),
         "faces": model.full_faces(),
         "certificate": { "sound": sound },
     });
     let text = format!(
-        "{}: right triangles of {columns} x {rows} heights, up to {}, bounds of errors\nproved: no cut \
-         of {} updates has a crack\n",
+        "{}: right triangles of {columns} x {rows} heights, up to {}; {}\nproved: no cut of {} updates \
+         has a crack\n",
         files::name(path),
         faces(model.full_faces()),
+        model_file::fit_text(&field.fit()),
         count(sound),
     );
     Ok(Answer::new(json, text))

@@ -6,7 +6,8 @@ use std::time::{Duration, Instant};
 use clap::{Args, ValueEnum};
 use meshlod::io::write_file;
 use meshlod::multires::{
-    Archive, BuildError, Certificate, HeightField, HeightPrecision, Recorder, Storage,
+    Archive, BuildError, Certificate, Fit, HeightField, HeightPrecision, ModelFile, Recorder,
+    Storage,
 };
 use meshlod::simplify::Simplifier;
 use meshlod::{Mesh, Method, Options, Target};
@@ -76,6 +77,7 @@ enum Levels {
     },
     RightTriangles {
         size: [u32; 2],
+        fit: Fit,
     },
 }
 
@@ -135,8 +137,10 @@ impl Build {
             rounding => HeightPrecision::Within(rounding),
         };
         let bytes = field.to_file(precision).map_err(|error| failed(&error))?;
-        let rounding = self.rounding(mesh);
-        Ok(Built { bytes, rounding, levels: Levels::RightTriangles { size: field.size() } })
+        let stored = ModelFile::open(bytes.clone()).map_err(|error| failed(&error))?;
+        let ModelFile::HeightField(field) = stored else { unreachable!("a field was written") };
+        let levels = Levels::RightTriangles { size: field.size(), fit: field.fit() };
+        Ok(Built { bytes, rounding: field.fit().rounded, levels })
     }
 
     fn rounding(&self, mesh: &Mesh) -> f64 {
@@ -163,9 +167,11 @@ impl Build {
                 json["base_faces"] = (*base_faces).into();
                 json["certificate"] = model_file::certificate_json(certificate);
             }
-            Levels::RightTriangles { size } => {
+            Levels::RightTriangles { size, fit } => {
                 json["model"] = "right-triangles".into();
+                json["error_kind"] = "bound".into();
                 json["grid"] = json!(size);
+                json["fit"] = model_file::fit_json(fit);
             }
         }
         json
@@ -191,9 +197,10 @@ impl Build {
                 faces(*base_faces),
                 model_file::certificate_text(certificate),
             ),
-            Levels::RightTriangles { size: [columns, rows] } => {
-                format!("right triangles of {columns} x {rows} heights\n")
-            }
+            Levels::RightTriangles { size: [columns, rows], fit } => format!(
+                "right triangles of {columns} x {rows} heights; {}\n",
+                model_file::fit_text(fit),
+            ),
         };
         text + &format!("build_seconds: {}\n", value(time.as_secs_f64()))
     }

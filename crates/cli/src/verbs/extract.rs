@@ -51,7 +51,8 @@ pub struct Extract {
 #[derive(Args)]
 #[group(required = true, multiple = false)]
 struct Goal {
-    /// No face further off than this: 1px of the camera, 0.01% of the diagonal, 0.5 in model units
+    /// No face further off than this, by the errors of the file (estimates, or bounds): 1px of the
+    /// camera, 0.01% of the diagonal, 0.5 in model units; at 0 only what changes nothing is left out
     #[arg(long, value_name = "BOUND", value_parser = question::allowed, allow_hyphen_values = true)]
     error: Option<Allowed>,
     /// The best with at most so many faces: for the camera if there is one, or for all sides
@@ -63,7 +64,8 @@ struct Goal {
 struct Taken {
     level: Level,
     error_kind: &'static str,
-    chunks: [usize; 2],
+    /// Read, there, and in all.
+    chunks: [usize; 3],
     updates: usize,
     bytes: u64,
 }
@@ -97,11 +99,7 @@ impl Extract {
         let query = self.query(archive.diagonal())?;
         let taken = match self.goal.faces {
             None => archive.extract(&query),
-            // Whoever asks for all sides alike needs the coarsest chunks only.
-            Some(faces) if self.camera.is_none() && self.focus.is_none() => {
-                archive.extract_at_most(faces, &query, archive.chunks_up_to(faces))
-            }
-            Some(faces) => archive.extract_at_most(faces, &query, archive.whole_chunks()),
+            Some(faces) => archive.extract_at_most(faces, &query),
         };
         let taken = taken.map_err(|error| match error {
             FileError::Query(error) => Failure::usage(error),
@@ -110,7 +108,7 @@ impl Extract {
         Ok(Taken {
             level: self.cut_out(taken.level, &query)?,
             error_kind: model_file::error_kind(archive),
-            chunks: [taken.chunks, archive.chunk_count()],
+            chunks: [taken.chunks, archive.whole_chunks(), archive.chunk_count()],
             updates: taken.updates,
             bytes: taken.bytes,
         })
@@ -127,7 +125,7 @@ impl Extract {
         let bytes = std::fs::metadata(&self.input).map_or(0, |data| data.len());
         let updates = field.heights().len();
         let level = self.cut_out(level, &query)?;
-        Ok(Taken { level, error_kind: "bound", chunks: [1, 1], updates, bytes })
+        Ok(Taken { level, error_kind: "bound", chunks: [1; 3], updates, bytes })
     }
 
     fn query(&self, diagonal: f64) -> Result<Query<'static>, Failure> {
@@ -153,7 +151,8 @@ impl Extract {
             "vertices": vertices,
             "faces": faces,
             "error_kind": taken.error_kind,
-            "chunks": taken.chunks[1],
+            "chunks": taken.chunks[2],
+            "chunks_there": taken.chunks[1],
             "chunks_read": taken.chunks[0],
             "updates_read": taken.updates,
             "bytes_read": taken.bytes,
@@ -162,7 +161,7 @@ impl Extract {
     }
 
     fn text(&self, taken: &Taken, [vertices, all]: [usize; 2], time: Duration) -> String {
-        let [read, chunks] = taken.chunks;
+        let [read, _, chunks] = taken.chunks;
         format!(
             "{}: {} vertices, {}\nread {read} of {chunks} chunk{}, {} bytes\nextract_seconds: {}\n",
             files::name(&self.output),

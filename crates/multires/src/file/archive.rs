@@ -47,6 +47,7 @@ impl Archive<Vec<u8>> {
     }
 
     /// Writes the checksums that fit into bytes that were changed, for tests of [`Archive::read`].
+    #[doc(hidden)]
     pub fn seal(bytes: &mut [u8]) {
         header::seal(bytes);
     }
@@ -129,18 +130,6 @@ impl<S: Source> Archive<S> {
         self.read_chunks(self.whole)
     }
 
-    /// How many chunks hold the best uniform cut of so many faces: those up to so many faces.
-    pub fn chunks_up_to(&self, faces: usize) -> usize {
-        let mut all = self.header.base_faces as usize;
-        let chunks = self.header.chunks[..self.whole].iter();
-        let needed = chunks.take_while(|chunk| {
-            let is_needed = all < faces;
-            all = all.saturating_add(chunk.faces as usize);
-            is_needed
-        });
-        needed.count()
-    }
-
     /// The levels of so many chunks from the start, and the proof that none has a crack.
     /// # Errors
     /// A file that is damaged, or made to mislead.
@@ -158,26 +147,47 @@ impl<S: Source> Archive<S> {
         Ok((model, certificate))
     }
 
-    /// The best cut with at most so many faces among those of so many chunks from the start, as
-    /// [`Extractor::at_most`](crate::Extractor::at_most).
+    /// The best cut with at most so many faces, as [`Extractor::at_most`](crate::Extractor::at_most).
+    /// Of a uniform query only those chunks are read that may have a part in it.
     /// # Errors
     /// A query that is none; a file that is damaged, or made to mislead.
-    pub fn extract_at_most(
-        &self,
-        faces: usize,
-        query: &Query<'_>,
-        chunks: usize,
-    ) -> Result<Extract, FileError> {
-        let model = Model::proved(&self.read_chunks(chunks)?.0);
-        let level = model.extractor().at_most(faces, query)?.clone();
-        let chunks = chunks.min(self.whole);
-        let bytes = self.ends().nth(chunks).unwrap_or(0);
-        Ok(Extract { level, chunks, updates: model.implicit().update_count(), bytes })
+    pub fn extract_at_most(&self, faces: usize, query: &Query<'_>) -> Result<Extract, FileError> {
+        let is_uniform = Need::new(query, &self.header.about.frame)?.is_uniform();
+        let mut chunks = if is_uniform { self.chunks_up_to(faces) } else { self.whole };
+        loop {
+            let model = Model::proved(&self.read_chunks(chunks)?.0);
+            let level = model.extractor().at_most(faces, query)?.clone();
+            // What is as urgent as something that was made may be in chunks further on.
+            let least = model.implicit().least_error_above(&level.nodes).get();
+            let rest = &self.header.chunks[chunks..self.whole];
+            let urgent = rest.iter().rposition(|chunk| chunk.area.error >= least);
+            let Some(more) = urgent.filter(|_| is_uniform) else {
+                let bytes = self.ends().nth(chunks).unwrap_or(0);
+                let updates = model.implicit().update_count();
+                return Ok(Extract { level, chunks, updates, bytes });
+            };
+            chunks += more + 1;
+        }
+    }
+
+    /// How many chunks it takes to have so many faces.
+    fn chunks_up_to(&self, faces: usize) -> usize {
+        let mut all = self.header.base_faces as usize;
+        let chunks = self.header.chunks[..self.whole].iter();
+        let needed = chunks.take_while(|chunk| {
+            let is_needed = all < faces;
+            all = all.saturating_add(chunk.faces as usize);
+            is_needed
+        });
+        needed.count()
     }
 
     /// The answer to a query. Reads only what it takes: chunks whose area the query wants.
+    ///
+    /// Nothing is proved here: a file that was made to mislead, with checksums that fit, may give a mesh
+    /// with cracks. [`Archive::read`] finds that out.
     /// # Errors
-    /// A query that is none; a file that is damaged, or made to mislead.
+    /// A query that is none; a file that is damaged.
     pub fn extract(&self, query: &Query<'_>) -> Result<Extract, FileError> {
         let need = Need::new(query, &self.header.about.frame)?;
         let wanted = |&chunk: &usize| need.wants_in(&self.header.chunks[chunk].area);

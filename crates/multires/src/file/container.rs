@@ -18,7 +18,9 @@ pub enum ModelFile<S> {
 const FIELD_MAGIC: &[u8; 8] = b"meshlodh";
 /// Where the checksum is, and what it is of starts.
 const CHECKSUM: usize = 12;
-const BODY: usize = 16;
+/// Where the length of the rest is.
+const LENGTH: usize = 16;
+const BODY: usize = 24;
 
 impl<S: Source> ModelFile<S> {
     /// Reads a height field, or what a file of contractions starts with.
@@ -35,7 +37,11 @@ impl<S: Source> ModelFile<S> {
         if version != VERSION {
             return Err(FileError::Version(version));
         }
-        if crc32fast::hash(&bytes[BODY..]) != checksum {
+        let body = u64::from_le_bytes(std::array::from_fn(|k| bytes[LENGTH + k]));
+        if body > length - BODY as u64 {
+            return Err(FileError::Truncated { at: length, what: "the height field" });
+        }
+        if crc32fast::hash(&bytes[LENGTH..]) != checksum {
             return Err(FileError::Checksum("the height field".into()));
         }
         Ok(Self::HeightField(HeightField::from_bytes(&bytes[BODY..])?))
@@ -48,8 +54,8 @@ impl HeightField {
     /// A bound that is none.
     pub fn to_file(&self, precision: HeightPrecision) -> Result<Vec<u8>, FileError> {
         let body = self.to_bytes(precision)?;
-        let head =
-            [&FIELD_MAGIC[..], &VERSION.to_le_bytes(), &crc32fast::hash(&body).to_le_bytes()];
-        Ok([&head.concat()[..], &body].concat())
+        let rest = [&(body.len() as u64).to_le_bytes()[..], &body].concat();
+        let checksum = crc32fast::hash(&rest).to_le_bytes();
+        Ok([&FIELD_MAGIC[..], &VERSION.to_le_bytes(), &checksum, &rest].concat())
     }
 }

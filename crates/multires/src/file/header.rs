@@ -84,7 +84,10 @@ impl Header {
         for Entry { stored, updates, faces, area } in &self.chunks {
             let words = [stored.bytes, stored.checksum, *updates, *faces];
             out.extend(words.iter().flat_map(|word| word.to_le_bytes()));
-            let numbers = [-up(-area.min), up(area.max)].map(|corner| corner.to_array());
+            // Far beyond everything, but a number.
+            let [min, max] =
+                [area.min, area.max].map(|x| x.clamp(DVec3::splat(-FAR), DVec3::splat(FAR)));
+            let numbers = [-up(-min), up(max)].map(|corner| corner.to_array());
             out.extend(numbers.as_flattened().iter().flat_map(|x| x.to_le_bytes()));
             out.extend(up(DVec3::splat(area.error)).x.to_le_bytes());
         }
@@ -146,6 +149,8 @@ impl Header {
     }
 }
 
+/// In units: the bounds of areas that have none.
+const FAR: f64 = 1e30;
 /// Nodes are numbered up to 2³¹: roots, and two an update.
 const MOST_UPDATES: usize = 1 << 29;
 

@@ -85,6 +85,9 @@ pub enum FileError {
     /// Its meshes would have cracks.
     #[error(transparent)]
     Unsound(#[from] Unsound),
+    /// A rounding below 0, beyond the diagonal, or none.
+    #[error("vertices cannot be moved by up to {0}: give at least 0 and at most the diagonal")]
+    Rounding(f64),
     /// There is no model to write.
     #[error(transparent)]
     Build(#[from] BuildError),

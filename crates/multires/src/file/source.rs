@@ -1,11 +1,12 @@
 //! Where the bytes of a file are.
 
 use std::fs::File;
-use std::io::{self, Read, Seek, SeekFrom};
+use std::io::{self, Read};
 
 use super::FileError;
 
-/// Bytes that can be read from any place on: a file, a piece of memory, a range request.
+/// Bytes that can be read from any place on, by several at once: a file, a piece of memory, a range
+/// request.
 pub trait Source {
     /// How many there are.
     /// # Errors
@@ -23,10 +24,23 @@ impl Source for File {
         Ok(self.metadata()?.len())
     }
 
+    #[cfg(unix)]
     fn read_at(&self, at: u64, bytes: &mut [u8]) -> io::Result<()> {
-        let mut file = self;
-        file.seek(SeekFrom::Start(at))?;
-        file.read_exact(bytes)
+        std::os::unix::fs::FileExt::read_exact_at(self, bytes, at)
+    }
+
+    #[cfg(windows)]
+    fn read_at(&self, mut at: u64, mut bytes: &mut [u8]) -> io::Result<()> {
+        while !bytes.is_empty() {
+            match std::os::windows::fs::FileExt::seek_read(self, bytes, at)? {
+                0 => return Err(io::ErrorKind::UnexpectedEof.into()),
+                read => {
+                    at += read as u64;
+                    bytes = &mut bytes[read..];
+                }
+            }
+        }
+        Ok(())
     }
 }
 

@@ -46,6 +46,9 @@ pub(super) fn write(
     storage: &Storage,
 ) -> Result<(Vec<u8>, Certificate), FileError> {
     let diagonal = diagonal(forest);
+    if let Some(rounding) = storage.rounding.filter(|&most| !(0.0..=diagonal).contains(&most)) {
+        return Err(FileError::Rounding(rounding));
+    }
     let lattice = lattice(forest, storage);
     let Kept { forest, moved } = forest.kept(lattice)?;
     let order = Order::new(&forest);

@@ -215,6 +215,12 @@ impl Implicit {
         self.splits[update as usize].error
     }
 
+    /// The least error of the updates that were made to come to these nodes; infinite for none.
+    pub(crate) fn least_error_above(&self, nodes: &[u32]) -> Length16 {
+        let made = nodes.iter().filter_map(|&node| self.family(node));
+        made.map(|update| self.error(update)).min().unwrap_or(Length16::INFINITE)
+    }
+
     /// What an update's need is judged by.
     #[inline]
     pub(crate) fn ball(&self, update: u32) -> Ball {
