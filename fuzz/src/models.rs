@@ -6,24 +6,28 @@ use meshlod_mesh::{Mesh, sample};
 use meshlod_multires::{Archive, Forest, HeightField, HeightPrecision, Storage};
 use meshlod_simplify::{Method, Options};
 
-/// Where a file of contractions (docs/formats/mlod.md) has how many chunks there are, and where that table starts.
+/// Where a file of contractions (docs/formats/mlod.md) says how many chunks it has, and where the table of
+/// them starts.
 const CHUNKS: usize = 36;
 const TABLE: usize = 88;
 /// How long an entry of the table is.
 const ENTRY: usize = 44;
 /// Where the size of the coarsest mesh is, before its checksum.
 const BASE: usize = 28;
-/// How a height field starts, where its checksum is, what that is of, and where the heights are.
+/// How a height field starts, where its checksum is, the length of the rest, that rest, and the heights.
 const FIELD: &[u8] = b"meshlodh";
 const FIELD_CHECKSUM: usize = 12;
-const FIELD_BODY: usize = 16;
+const FIELD_LENGTH: usize = 16;
+const FIELD_BODY: usize = 24;
 const HEIGHTS: usize = FIELD_BODY + 72;
 
-/// Writes the checksums that fit, for both kinds of files.
+/// Writes the checksums and lengths that fit, for both kinds of files.
 pub fn seal(bytes: &mut [u8]) {
     if bytes.starts_with(FIELD) && bytes.len() >= FIELD_BODY {
-        let checksum = crc32fast::hash(&bytes[FIELD_BODY..]);
-        bytes[FIELD_CHECKSUM..FIELD_BODY].copy_from_slice(&checksum.to_le_bytes());
+        let length = (bytes.len() - FIELD_BODY) as u64;
+        bytes[FIELD_LENGTH..FIELD_BODY].copy_from_slice(&length.to_le_bytes());
+        let checksum = crc32fast::hash(&bytes[FIELD_LENGTH..]);
+        bytes[FIELD_CHECKSUM..FIELD_LENGTH].copy_from_slice(&checksum.to_le_bytes());
     } else {
         Archive::seal(bytes);
     }
