@@ -65,7 +65,8 @@ pub fn fit_json(fit: &Fit) -> Value {
 /// How far the finest level of a height field may be from the mesh.
 pub fn fit_text(fit: &Fit) -> String {
     format!(
-        "the finest is off the mesh by up to {} where a cell has its other diagonal, {} where vertices are          not on a grid; bounds of errors are from the finest",
+        "the finest is off the mesh by up to {} where a cell has its other diagonal, {} where vertices are \
+         off the grid; bounds of errors are from the finest",
         value(fit.turned),
         value(fit.moved),
     )
