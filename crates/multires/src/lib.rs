@@ -52,15 +52,18 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
+//! [`Archive`] is all of it as a `.mlod` file, of which a query reads what it needs.
+//!
 //! A mesh that is a height field on a grid needs no record: [`RightTriangles`] has its levels by
 //! arithmetic, in ten bytes a vertex, with errors that are bounds. docs/notes/right-triangles.md tells how.
 //!
 //! Positions are kept as `f32` about the middle of the mesh, errors are the simplification's estimates,
-//! made monotone, or proven bounds ([`Forest::measure_bounds`]). docs/notes/multires.md has the rules,
+//! made monotone, maybe evened out ([`Forest::even_out`]), or proven bounds ([`Forest::measure_bounds`]). docs/notes/multires.md has the rules,
 //! and why they suffice.
 #![forbid(unsafe_code)]
 
 mod bounds;
+mod by_level;
 mod cut;
 mod even;
 mod explicit;

@@ -6,6 +6,10 @@ use crate::frame::{Frame, Length16};
 use crate::place::Place;
 use crate::query::{Query, QueryError, Tolerance};
 
+/// By how much a ball is drawn larger than it has to be, so that rounding in a query cannot make it
+/// miss what a ball within it meets.
+pub(crate) const SLACK: f64 = 1.0 + 1e-6;
+
 /// What an update is judged by, in stored units: a ball around both its sides and the error of the
 /// coarse one.
 #[derive(Clone, Copy, Debug, PartialEq)]

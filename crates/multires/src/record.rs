@@ -13,6 +13,7 @@ use meshlod_simplify::{Neighbourhood, Observe, Placed, Simplifier, Spoke, Surfac
 use crate::bounds::ErrorKind;
 use crate::forest::{BuildError, Forest, MOST_LEVELS, NONE, Odd, Update};
 use crate::frame::{Frame, Length16};
+use crate::need::SLACK;
 
 /// An observer of a [`Simplifier`], there from its first contraction on.
 #[derive(Debug)]
@@ -39,10 +40,6 @@ struct Standing {
     error: Length16,
     radius: Length16,
 }
-
-/// By how much a ball is drawn larger than it has to be, so that rounding in a query cannot make it
-/// miss what a ball within it meets.
-const SLACK: f64 = 1.0 + 1e-6;
 
 /// Wings are stored as ranks among so many at most.
 pub(crate) const MOST_RANKED: usize = 250;

@@ -6,11 +6,11 @@
 
 use thiserror::Error;
 
-use super::by_level::by_level;
 use super::front::Front;
 use super::star::Spoke;
+use crate::by_level::by_level;
 use crate::forest::MOST_LEVELS;
-use crate::implicit::{Implicit, Wing};
+use crate::implicit::{Implicit, Wing, has_three_corners};
 
 /// What was proved of every cut of a model, whatever is asked of it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -84,7 +84,7 @@ impl Implicit {
     pub fn certify(&self) -> Result<Certificate, Unsound> {
         let mut proof = Proof::new(self);
         let mut certificate = Certificate::default();
-        for update in by_level(self, |update| MOST_LEVELS - self.level(update)) {
+        for update in by_level(self.update_count(), |update| MOST_LEVELS - self.level(update)) {
             match proof.check(update) {
                 Ok(true) => certificate.sound += 1,
                 Ok(false) => certificate.odd += 1,
@@ -127,7 +127,7 @@ impl<'m> Proof<'m> {
         let Self { front, coarse, fine, .. } = self;
         let mt = front.mt;
         let (node, children) = (mt.parent(update), mt.children(update));
-        if fine.triangles.iter().any(|t| t[0] == t[1] || t[1] == t[2] || t[2] == t[0]) {
+        if !fine.triangles.iter().all(has_three_corners) {
             return Err(Flaw::NoArea);
         }
         let has_both = |t: &&[u32; 3]| children.iter().all(|child| t.contains(child));

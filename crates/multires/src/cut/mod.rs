@@ -1,6 +1,5 @@
 //! A cut that follows its query: refined and coarsened where the query has moved, and nowhere else.
 
-mod by_level;
 mod certificate;
 mod change;
 mod front;

@@ -1,7 +1,7 @@
 //! The triangles of all cuts.
 
-use super::by_level::by_level;
 use super::front::Front;
+use crate::by_level::by_level;
 use crate::forest::MOST_LEVELS;
 use crate::implicit::Implicit;
 
@@ -14,7 +14,7 @@ impl Implicit {
         let mut front = Front::new(self);
         self.base().iter().for_each(|&face| visit(face));
         // The parts of one that is glued stay together.
-        let order = by_level(self, |update| {
+        let order = by_level(self.update_count(), |update| {
             MOST_LEVELS - self.level(if self.is_inner(update) { update - 1 } else { update })
         });
         let mut waiting = Vec::new();

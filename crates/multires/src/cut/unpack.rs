@@ -1,8 +1,8 @@
 //! The forest that a packed model could have been made of.
 
-use super::by_level::by_level;
 use super::front::{Front, find};
 use super::star::Spoke;
+use crate::by_level::by_level;
 use crate::forest::{Forest, NONE, Update};
 use crate::implicit::Implicit;
 
@@ -67,8 +67,9 @@ impl Forest {
 
 impl Numbers {
     fn new(mt: &Implicit) -> Self {
-        let mut updates =
-            by_level(mt, |update| mt.level(if mt.is_inner(update) { update - 1 } else { update }));
+        let mut updates = by_level(mt.update_count(), |update| {
+            mt.level(if mt.is_inner(update) { update - 1 } else { update })
+        });
         // The parts of one that is glued stay together, the inner one first.
         let mut at = 0;
         while at < updates.len() {

@@ -10,14 +10,13 @@ use std::ops::Range;
 use glam::Vec3;
 use thiserror::Error;
 
-use super::has_three_corners;
 use super::known::Known;
 use super::lattice::{Lattice, error9, error16, radius8, radius16};
 use super::slant::Slant;
 use super::streams::{Packer, Unpacker};
 use crate::forest::{NONE, Odd};
 use crate::frame::Length16;
-use crate::implicit::Loose;
+use crate::implicit::{Loose, has_three_corners};
 
 /// Why a chunk is none.
 #[derive(Debug, Error)]

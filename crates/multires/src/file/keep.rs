@@ -9,9 +9,7 @@ use crate::bounds::ErrorKind;
 use crate::forest::{BuildError, Forest, MOST_LEVELS, NONE};
 use crate::frame::Length16;
 use crate::implicit::{Implicit, Order};
-
-/// As the recorder draws its balls.
-const SLACK: f64 = 1.0 + 1e-6;
+use crate::need::SLACK;
 
 /// A forest as a file keeps it.
 pub(super) struct Kept {

@@ -37,11 +37,6 @@ use crate::right::FieldBytesError;
 const MAGIC: &[u8; 8] = b"meshlodm";
 const VERSION: u32 = 1;
 
-/// Whether no two corners of a face are one node.
-fn has_three_corners(&[a, b, c]: &[u32; 3]) -> bool {
-    a != b && b != c && c != a
-}
-
 /// Why a file gives no model.
 #[derive(Debug, Error)]
 pub enum FileError {

@@ -1,7 +1,8 @@
 //! Which updates go into which chunk, and in which order.
 //!
-//! Bands of falling error, each parted into boxes. An update goes with the last chunk that holds something it needs: so the chunks up to any one
-//! are a cut, and a file is good from its start to any chunk's end.
+//! Bands of falling error, each parted into boxes. An update goes with the last chunk that holds
+//! something it needs: so the chunks up to any one are a cut, and a file is good from its start to any
+//! chunk's end.
 
 use std::ops::Range;
 

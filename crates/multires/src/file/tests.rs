@@ -3,7 +3,7 @@
 use meshlod_mesh::{Mesh, sample};
 use meshlod_simplify::Method;
 
-use super::write::lattice;
+use super::write::{diagonal, lattice};
 use super::*;
 use crate::tests::walks::{Dice, each_by, forest, query, topology};
 use crate::{Cut, Forest, Implicit, Level, Model, Query};
@@ -37,8 +37,10 @@ fn by_place(level: &Level) -> Vec<[[u32; 3]; 3]> {
 #[test]
 fn a_file_gives_back_the_model() {
     each(|what, mesh, forest| {
-        let rounded =
-            Implicit::new(&forest.kept(lattice(forest, &small())).unwrap().forest).unwrap();
+        let rounded = Implicit::new(
+            &forest.kept(lattice(forest, &small(), diagonal(forest))).unwrap().forest,
+        )
+        .unwrap();
         let (read, certificate) = Archive::open(bytes(forest)).unwrap().read().unwrap();
         assert_eq!(certificate, rounded.certify().unwrap(), "{what}");
         assert_eq!(read.bytes(), rounded.bytes(), "{what}");

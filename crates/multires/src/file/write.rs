@@ -49,7 +49,7 @@ pub(super) fn write(
     if let Some(rounding) = storage.rounding.filter(|&most| !(0.0..=diagonal).contains(&most)) {
         return Err(FileError::Rounding(rounding));
     }
-    let lattice = lattice(forest, storage);
+    let lattice = lattice(forest, storage, diagonal);
     let Kept { forest, moved } = forest.kept(lattice)?;
     let order = Order::new(&forest);
     let mt = Implicit::in_order(&forest, &order)?;
@@ -107,14 +107,14 @@ fn pack(mt: &Implicit, plan: &Plan, lattice: Lattice) -> io::Result<Packed> {
     Ok(Packed { base: write_base(&known)?, chunks, bodies })
 }
 
-/// The coarsest that is fine enough.
-pub(super) fn lattice(forest: &Forest, storage: &Storage) -> Lattice {
-    let most = storage.rounding.unwrap_or_else(|| ROUNDING * diagonal(forest));
+/// The coarsest that is fine enough for a mesh of this diagonal.
+pub(super) fn lattice(forest: &Forest, storage: &Storage, diagonal: f64) -> Lattice {
+    let most = storage.rounding.unwrap_or(ROUNDING * diagonal);
     Lattice::within(forest.frame.length(most))
 }
 
 /// Of the finest mesh, in model units.
-fn diagonal(forest: &Forest) -> f64 {
+pub(super) fn diagonal(forest: &Forest) -> f64 {
     let leaves = forest.faces.iter().flatten().map(|&leaf| forest.positions[leaf as usize]);
     let places: Vec<_> = leaves.map(|p| p.map(f64::from)).collect();
     let bounds = Bounds::of(&places);

@@ -153,3 +153,8 @@ impl Odd {
         }
     }
 }
+
+/// Whether no two corners of a face are one node.
+pub(crate) fn has_three_corners(&[a, b, c]: &[u32; 3]) -> bool {
+    a != b && b != c && c != a
+}

@@ -1,6 +1,7 @@
 //! What updates need, written out: for exact answers by the face list, where no neighbours are met.
 
 use super::{Implicit, Order};
+use crate::by_level::by_level;
 use crate::forest::{Forest, NONE};
 
 /// What must hold for an update to be made.
@@ -33,7 +34,9 @@ impl Links {
         let parents = forest.parents();
         let mut this = Self { lists: vec![], starts: vec![NONE; order.updates.len()] };
         let (mut found, mut finder) = (Vec::new(), Finder::new(forest, &parents));
-        for at in by_level(forest, order) {
+        // Those of low levels first: what they need is above them.
+        let level = |at: u32| forest.updates[order.updates[at as usize] as usize].level;
+        for at in by_level(order.updates.len(), level) {
             let update = order.updates[at as usize] as usize;
             let of = &forest.updates[update];
             found.clear();
@@ -155,22 +158,6 @@ impl<'f> Finder<'f> {
         }
         found.retain(|&up| needed_by[up as usize] == by);
     }
-}
-
-/// All updates, those of low levels first: what they need is above them.
-fn by_level(forest: &Forest, order: &Order) -> Vec<u32> {
-    let level = |update: u32| usize::from(forest.updates[update as usize].level);
-    let top = order.updates.iter().map(|&u| level(u)).max().unwrap_or(0);
-    let mut starts = vec![0u32; top + 2];
-    order.updates.iter().for_each(|&u| starts[level(u) + 1] += 1);
-    (0..=top).for_each(|level| starts[level + 1] += starts[level]);
-    let mut sorted = vec![0; order.updates.len()];
-    for (at, &update) in order.updates.iter().enumerate() {
-        let start = &mut starts[level(update)];
-        sorted[*start as usize] = at as u32;
-        *start += 1;
-    }
-    sorted
 }
 
 /// The last update that has both nodes under it.

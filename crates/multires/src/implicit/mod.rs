@@ -28,7 +28,7 @@ use crate::forest::{MOST_LEVELS, Odd};
 use crate::frame::{Frame, Length16};
 use crate::need::{Ball, PackedBall};
 
-pub(crate) use assemble::{About, Base, Loose};
+pub(crate) use assemble::{About, Base, Loose, has_three_corners};
 pub(crate) use budget::Weight;
 pub use extractor::Extractor;
 pub(crate) use faces::Faces;

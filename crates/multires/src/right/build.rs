@@ -4,10 +4,7 @@ use super::field::{HeightField, Plan};
 use super::places::{Extent, Grid, Place, Triangle};
 use super::{RightTriangles, Vertex};
 use crate::frame::{Frame, Length16};
-
-/// By how much a ball is drawn larger than it has to be, so that rounding in a query cannot make it
-/// miss what a ball within it meets.
-pub(super) const SLACK: f64 = 1.0 + 1e-6;
+use crate::need::SLACK;
 
 impl RightTriangles {
     /// Measures all triangles of all levels at all vertices under them.

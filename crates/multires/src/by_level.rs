@@ -1,14 +1,11 @@
 //! Updates in the order of their levels.
 
-use crate::implicit::Implicit;
-
-/// All updates in the order of some number that has to do with their levels; what is alike in the order
-/// of the model.
+/// So many updates in the order of some number that has to do with their levels; what is alike in their
+/// own order.
 ///
 /// Cost: linear.
-pub(super) fn by_level(mt: &Implicit, number: impl Fn(u32) -> u16) -> Vec<u32> {
-    let updates = 0..mt.update_count() as u32;
-    let numbers: Vec<u16> = updates.map(number).collect();
+pub(crate) fn by_level(count: usize, number: impl Fn(u32) -> u16) -> Vec<u32> {
+    let numbers: Vec<u16> = (0..count as u32).map(number).collect();
     let mut starts = vec![0u32; numbers.iter().max().map_or(0, |&most| usize::from(most) + 2)];
     numbers.iter().for_each(|&number| starts[usize::from(number) + 1] += 1);
     (1..starts.len()).for_each(|number| starts[number] += starts[number - 1]);
