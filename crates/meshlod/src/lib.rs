@@ -126,6 +126,7 @@ pub use meshlod_picture as picture;
 #[doc(inline)]
 pub use meshlod_simplify as simplify;
 pub use meshlod_spatial as spatial;
+pub use meshlod_strip as strip;
 
 pub use contacts::scene_locks;
 pub use fuse::fuse_scene;

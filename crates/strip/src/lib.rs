@@ -1,0 +1,12 @@
+//! Triangle strips that follow the level.
+//!
+//! [`Strips`] are what a GPU draws as strips: sequences of vertices, every three in a row a triangle, every
+//! second one turned. [`difference`] says whether they draw exactly the triangles of a mesh.
+
+#![forbid(unsafe_code)]
+
+mod strips;
+mod verify;
+
+pub use strips::Strips;
+pub use verify::{Difference, difference};

@@ -1,0 +1,81 @@
+//! Sequences of vertices, every three in a row a triangle.
+
+use meshlod_mesh::VertexId;
+
+/// Triangle strips, one after the other.
+///
+/// The windows of three vertices of a strip are its triangles, those at odd places with their first two
+/// exchanged, so that the winding stays. A window that repeats a vertex draws nothing: so a swap is a vertex
+/// said twice, and a strip that must begin with an odd triangle says its first vertex twice.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Strips {
+    vertices: Vec<VertexId>,
+    /// Where each strip ends in `vertices`.
+    ends: Vec<u32>,
+}
+
+impl Strips {
+    /// Puts one strip more at the end; of an empty one nothing stays.
+    pub fn push(&mut self, strip: impl IntoIterator<Item = VertexId>) {
+        let start = self.vertices.len();
+        self.vertices.extend(strip);
+        if self.vertices.len() > start {
+            self.ends.push(
+                u32::try_from(self.vertices.len()).expect("strips hold fewer than 2^32 vertices"),
+            );
+        }
+    }
+
+    /// How many strips there are.
+    pub fn len(&self) -> usize {
+        self.ends.len()
+    }
+
+    /// Whether there is none.
+    pub fn is_empty(&self) -> bool {
+        self.ends.is_empty()
+    }
+
+    /// The vertices of all strips, one strip after the other: what is sent where each is drawn on its own.
+    pub fn vertices(&self) -> &[VertexId] {
+        &self.vertices
+    }
+
+    /// The strips, first to last.
+    pub fn iter(&self) -> impl ExactSizeIterator<Item = &[VertexId]> {
+        let start = |strip: usize| if strip == 0 { 0 } else { self.ends[strip - 1] as usize };
+        (0..self.ends.len())
+            .map(move |strip| &self.vertices[start(strip)..self.ends[strip] as usize])
+    }
+
+    /// The triangles drawn, in the order and with the winding they are drawn in.
+    pub fn triangles(&self) -> impl Iterator<Item = [VertexId; 3]> {
+        self.iter().flat_map(drawn)
+    }
+}
+
+/// The triangles one strip draws.
+pub(crate) fn drawn(strip: &[VertexId]) -> impl Iterator<Item = [VertexId; 3]> {
+    let wound = |(place, window): (usize, &[VertexId])| {
+        let (a, b, c) = (window[0], window[1], window[2]);
+        if place % 2 == 0 { [a, b, c] } else { [b, a, c] }
+    };
+    strip.windows(3).enumerate().map(wound).filter(|[a, b, c]| a != b && b != c && c != a)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_second_triangle_is_turned_and_repeated_vertices_draw_nothing() {
+        let mut strips = Strips::default();
+        strips.push([0, 1, 2, 3].map(VertexId));
+        strips.push([]);
+        strips.push([4, 4, 5, 6].map(VertexId));
+        let drawn: Vec<_> = strips.triangles().map(|t| t.map(|v| v.0)).collect();
+        assert_eq!(drawn, [[0, 1, 2], [2, 1, 3], [5, 4, 6]]);
+        assert_eq!(strips.len(), 2);
+        assert_eq!(strips.vertices().len(), 8);
+    }
+}

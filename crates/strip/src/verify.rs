@@ -1,0 +1,71 @@
+//! Whether strips draw the triangles they stand for.
+
+use meshlod_mesh::VertexId;
+
+use crate::strips::Strips;
+
+/// What strips draw too little and too much.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Difference {
+    /// Triangles of the mesh that are not drawn.
+    pub missing: usize,
+    /// Triangles drawn that the mesh does not have, or not so often.
+    pub extra: usize,
+}
+
+/// How what `strips` draw differs from `faces`: both as multisets of triangles, each up to the corner it
+/// begins with. Faces that repeat a vertex are not asked for. Cost: O(n log n).
+pub fn difference(strips: &Strips, faces: &[[VertexId; 3]]) -> Difference {
+    let whole = |[a, b, c]: &[VertexId; 3]| a != b && b != c && c != a;
+    let wanted = sorted(faces.iter().copied().filter(whole));
+    let drawn = sorted(strips.triangles());
+    let (mut w, mut d, mut both) = (0, 0, 0);
+    while w < wanted.len() && d < drawn.len() {
+        let order = wanted[w].cmp(&drawn[d]);
+        w += usize::from(order.is_le());
+        d += usize::from(order.is_ge());
+        both += usize::from(order.is_eq());
+    }
+    Difference { missing: wanted.len() - both, extra: drawn.len() - both }
+}
+
+/// The triangles in order, each beginning with its lowest vertex.
+fn sorted(triangles: impl Iterator<Item = [VertexId; 3]>) -> Vec<[VertexId; 3]> {
+    let mut triangles: Vec<_> = triangles.map(lowest_first).collect();
+    triangles.sort_unstable();
+    triangles
+}
+
+fn lowest_first([a, b, c]: [VertexId; 3]) -> [VertexId; 3] {
+    let lowest = a.min(b).min(c);
+    if lowest == a {
+        [a, b, c]
+    } else if lowest == b {
+        [b, c, a]
+    } else {
+        [c, a, b]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn turned_and_doubled_triangles_are_seen() {
+        let faces = [[0, 1, 2], [2, 1, 3], [5, 5, 6]].map(|face: [u32; 3]| face.map(VertexId));
+        let drawing = |vertices: &[u32]| {
+            let mut strips = Strips::default();
+            strips.push(vertices.iter().copied().map(VertexId));
+            difference(&strips, &faces)
+        };
+        assert_eq!(drawing(&[0, 1, 2, 3]), Difference::default());
+        assert_eq!(drawing(&[0, 0, 1, 2, 3]), Difference { missing: 2, extra: 2 }, "turned");
+        assert_eq!(drawing(&[0, 1, 2]), Difference { missing: 1, extra: 0 });
+        assert_eq!(
+            drawing(&[0, 1, 2, 0, 1]),
+            Difference { missing: 1, extra: 2 },
+            "drawn three times"
+        );
+    }
+}
