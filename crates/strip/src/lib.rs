@@ -5,8 +5,12 @@
 
 #![forbid(unsafe_code)]
 
+mod filter;
+mod skip;
 mod strips;
 mod verify;
 
+pub use filter::Filter;
+pub use skip::{HistoryError, MergeTree, SkipStrip};
 pub use strips::Strips;
 pub use verify::{Difference, difference};

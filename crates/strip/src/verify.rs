@@ -16,8 +16,7 @@ pub struct Difference {
 /// How what `strips` draw differs from `faces`: both as multisets of triangles, each up to the corner it
 /// begins with. Faces that repeat a vertex are not asked for. Cost: O(n log n).
 pub fn difference(strips: &Strips, faces: &[[VertexId; 3]]) -> Difference {
-    let whole = |[a, b, c]: &[VertexId; 3]| a != b && b != c && c != a;
-    let wanted = sorted(faces.iter().copied().filter(whole));
+    let wanted = sorted(faces.iter().copied().filter(has_three_corners));
     let drawn = sorted(strips.triangles());
     let (mut w, mut d, mut both) = (0, 0, 0);
     while w < wanted.len() && d < drawn.len() {
@@ -36,7 +35,13 @@ fn sorted(triangles: impl Iterator<Item = [VertexId; 3]>) -> Vec<[VertexId; 3]> 
     triangles
 }
 
-fn lowest_first([a, b, c]: [VertexId; 3]) -> [VertexId; 3] {
+/// Whether a face repeats no vertex.
+pub(crate) fn has_three_corners([a, b, c]: &[VertexId; 3]) -> bool {
+    a != b && b != c && c != a
+}
+
+/// A triangle from its lowest vertex.
+pub(crate) fn lowest_first([a, b, c]: [VertexId; 3]) -> [VertexId; 3] {
     let lowest = a.min(b).min(c);
     if lowest == a {
         [a, b, c]

@@ -1,0 +1,81 @@
+//! Parent pointers, shortened where they have been followed.
+
+use meshlod_mesh::VertexId;
+
+/// By vertex: one on its way up that is gone, behind which its way goes on.
+///
+/// A vertex goes before the one it becomes. So where one on the way up is gone, all below it are, and a
+/// shortened pointer holds as long as its last gone vertex is gone: coming back, it heals by itself.
+/// # References
+/// [ESAV99], path compression.
+#[derive(Clone, Debug)]
+pub(super) struct Pointers {
+    last: Vec<VertexId>,
+}
+
+impl Pointers {
+    pub(super) fn new(vertices: usize) -> Self {
+        Self { last: (0..vertices).map(VertexId::new).collect() }
+    }
+
+    /// The first vertex on the way up that is not gone.
+    #[inline]
+    pub(super) fn shown(
+        &mut self,
+        vertex: VertexId,
+        parents: &[VertexId],
+        is_gone: impl Fn(VertexId) -> bool,
+    ) -> VertexId {
+        if !is_gone(vertex) {
+            return vertex;
+        }
+        let mut last = vertex;
+        loop {
+            let further = self.last[last.index()];
+            if further != last && is_gone(further) {
+                last = further;
+            }
+            let next = parents[last.index()];
+            if !is_gone(next) {
+                self.last[vertex.index()] = last;
+                return next;
+            }
+            last = next;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn shortened_pointers_follow_what_comes_back() {
+        // 0 becomes 1, that 2, …
+        let parents: Vec<_> = (1..=9).chain([9]).map(VertexId::new).collect();
+        let mut pointers = Pointers::new(10);
+        for made in [9, 3, 7, 0, 5, 9, 1, 2, 0] {
+            for v in 0..10 {
+                let shown = pointers.shown(VertexId(v), &parents, |v| v.0 < made);
+                assert_eq!(shown.0, v.max(made), "{made}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_way_that_was_gone_is_short() {
+        let parents: Vec<_> = (1..=999).chain([999]).map(VertexId::new).collect();
+        let mut pointers = Pointers::new(1000);
+        let looks = std::cell::Cell::new(0);
+        let mut follow = |v| {
+            looks.set(0);
+            let is_gone = |v: VertexId| {
+                looks.set(looks.get() + 1);
+                v.0 < 999
+            };
+            assert_eq!(pointers.shown(VertexId(v), &parents, is_gone).0, 999);
+            looks.get()
+        };
+        assert!(follow(0) > 900 && follow(0) < 10);
+    }
+}

@@ -1,0 +1,238 @@
+//! Which vertex each one becomes, and when.
+
+use meshlod_mesh::{Mesh, VertexId};
+use meshlod_simplify::{History, Method, Options, Simplifier, SimplifyError, Target};
+use thiserror::Error;
+
+use super::pointers::Pointers;
+use crate::verify::{has_three_corners, lowest_first};
+
+/// A mesh and its half-edge contractions, first to last: after so many of them it is at a level.
+///
+/// Points never move, so every vertex of every level is one of the mesh's and one vertex buffer serves
+/// all. Faces that repeat a vertex or an earlier face are left out.
+/// # References
+/// [KY05], the merge tree.
+#[derive(Clone, Debug)]
+pub struct MergeTree {
+    faces: Vec<[VertexId; 3]>,
+    /// By vertex: what it becomes.
+    parents: Vec<VertexId>,
+    /// By vertex: the contraction it goes with, or [`STAYS`].
+    turns: Vec<u32>,
+    /// After so many contractions, from none.
+    faces_left: Vec<u32>,
+}
+
+/// The turn of a vertex that never goes.
+const STAYS: u32 = u32::MAX;
+
+/// Why a history is none that strips can follow.
+#[derive(Clone, Copy, Debug, Error, PartialEq, Eq)]
+pub enum HistoryError {
+    /// Its vertex is not one of the two that were contracted.
+    #[error(
+        "contraction {0} moves a point; strips follow half-edge contractions, as of qem-endpoint"
+    )]
+    Moves(usize),
+    /// A face that went with it has not lost an edge: it is of another mesh, or a component vanished.
+    #[error(
+        "contraction {0} is not one of this mesh's; record it without letting components vanish"
+    )]
+    Foreign(usize),
+}
+
+impl MergeTree {
+    /// A mesh without contractions.
+    ///
+    /// Cost: O(n log n).
+    pub fn new(mesh: &Mesh) -> Self {
+        let faces = whole_faces(&mesh.faces);
+        let vertices = mesh.positions.len();
+        Self {
+            parents: (0..vertices).map(VertexId::new).collect(),
+            turns: vec![STAYS; vertices],
+            faces_left: vec![faces.len() as u32],
+            faces,
+        }
+    }
+
+    /// A mesh with the contractions that bring it to a target, by `qem-endpoint`.
+    /// # Errors
+    /// A mesh or a target that simplification does not take.
+    pub fn record(mesh: &Mesh, target: Target) -> Result<Self, SimplifyError> {
+        let options = Options { method: Method::QemEndpoint, ..Options::default() };
+        let mut history = History::default();
+        Simplifier::new(mesh, &options)?.run(target, &mut history)?;
+        Ok(Self::of_history(mesh, &history).expect("it was recorded of this mesh just now"))
+    }
+
+    /// A mesh with the contractions of a history.
+    ///
+    /// Cost: linear, but for the mesh's faces, which are sorted.
+    /// # Errors
+    /// A history that moves points, or is not of this mesh.
+    pub fn of_history(mesh: &Mesh, history: &History) -> Result<Self, HistoryError> {
+        let mut this = Self::new(mesh);
+        let mut pointers = Pointers::new(mesh.positions.len());
+        for (turn, contraction) in history.contractions().iter().enumerate() {
+            let &[v0, v1] = &contraction.contracted[..] else {
+                return Err(HistoryError::Moves(turn));
+            };
+            let [kept, gone] = if contraction.kept == 0 { [v0, v1] } else { [v1, v0] };
+            if contraction.from != contraction.to {
+                return Err(HistoryError::Moves(turn));
+            }
+            let is_new = |v: VertexId| this.turns.get(v.index()) == Some(&STAYS);
+            if !is_new(kept) || !is_new(gone) {
+                return Err(HistoryError::Foreign(turn));
+            }
+            let died = history.died(turn);
+            for face in died {
+                let corners = mesh.faces.get(face.index()).ok_or(HistoryError::Foreign(turn))?;
+                let shown = corners.map(|v| this.shown(v, turn, &mut pointers));
+                if !shown.contains(&kept) || !shown.contains(&gone) {
+                    return Err(HistoryError::Foreign(turn));
+                }
+            }
+            this.parents[gone.index()] = kept;
+            this.turns[gone.index()] = turn as u32;
+            let left = this.faces_left[turn].checked_sub(died.len() as u32);
+            this.faces_left.push(left.ok_or(HistoryError::Foreign(turn))?);
+        }
+        Ok(this)
+    }
+
+    /// How many contractions there are.
+    pub fn contractions(&self) -> usize {
+        self.faces_left.len() - 1
+    }
+
+    /// How many vertices the mesh has.
+    pub fn vertices(&self) -> usize {
+        self.parents.len()
+    }
+
+    /// How many faces are left after so many contractions, at most all.
+    pub fn faces_left(&self, contractions: usize) -> usize {
+        self.faces_left[contractions.min(self.contractions())] as usize
+    }
+
+    /// The least contractions that leave no more than so many faces; all where none do.
+    pub fn contractions_to(&self, faces: usize) -> usize {
+        let found = self.faces_left.partition_point(|&left| left as usize > faces);
+        found.min(self.contractions())
+    }
+
+    /// The faces of the mesh.
+    pub fn faces(&self) -> &[[VertexId; 3]] {
+        &self.faces
+    }
+
+    /// The faces of the level after so many contractions, by the vertices of the mesh.
+    ///
+    /// Cost: linear.
+    pub fn level(&self, contractions: usize) -> Vec<[VertexId; 3]> {
+        let mut pointers = Pointers::new(self.vertices());
+        let shown =
+            self.faces.iter().map(|face| face.map(|v| self.shown(v, contractions, &mut pointers)));
+        shown.filter(has_three_corners).collect()
+    }
+
+    /// The vertex that stands for one after so many contractions.
+    #[inline]
+    pub(super) fn shown(
+        &self,
+        vertex: VertexId,
+        contractions: usize,
+        pointers: &mut Pointers,
+    ) -> VertexId {
+        let is_gone = |v: VertexId| (self.turns[v.index()] as usize) < contractions;
+        pointers.shown(vertex, &self.parents, is_gone)
+    }
+}
+
+/// The faces with three corners that repeat no earlier one, in their order.
+fn whole_faces(faces: &[[VertexId; 3]]) -> Vec<[VertexId; 3]> {
+    let whole = faces.iter().filter(|face| has_three_corners(face)).zip(0u32..);
+    let mut sorted: Vec<_> = whole.map(|(&face, i)| (lowest_first(face), i, face)).collect();
+    sorted.sort_unstable();
+    sorted.dedup_by_key(|(corners, ..)| *corners);
+    sorted.sort_unstable_by_key(|&(_, i, _)| i);
+    sorted.into_iter().map(|(.., face)| face).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use meshlod_fixtures::{grid, tetrahedron};
+    use meshlod_mesh::sample;
+
+    use super::*;
+    use crate::strips::Strips;
+    use crate::verify::{Difference, difference};
+
+    /// Every triangle a strip of its own.
+    fn apart(faces: &[[VertexId; 3]]) -> Strips {
+        let mut strips = Strips::default();
+        faces.iter().for_each(|&face| strips.push(face));
+        strips
+    }
+
+    #[test]
+    fn levels_are_those_of_the_simplification() {
+        let mesh = sample::knot(1000);
+        let tree = MergeTree::record(&mesh, Target::Faces(0)).unwrap();
+        let options = Options { method: Method::QemEndpoint, ..Options::default() };
+        let mut simplifier = Simplifier::new(&mesh, &options).unwrap();
+        for ratio in [1.0, 0.7, 0.31, 0.1] {
+            let report = simplifier.run(Target::Ratio(ratio), &mut ()).unwrap();
+            let surface = simplifier.surface();
+            let alive = (0..surface.face_count()).map(meshlod_mesh::FaceId::new);
+            let alive = alive.filter(|&face| surface.is_alive(face));
+            let engine: Vec<_> = alive.map(|face| surface.face(face)).collect();
+            let made = tree.contractions_to(Target::Ratio(ratio).faces_of(mesh.faces.len()));
+            assert_eq!(tree.faces_left(made), report.output_faces);
+            assert_eq!(difference(&apart(&engine), &tree.level(made)), Difference::default());
+        }
+    }
+
+    #[test]
+    fn the_least_contractions_are_found() {
+        let tree = MergeTree::record(&grid(6), Target::Faces(0)).unwrap();
+        for faces in 0..=72 {
+            let made = tree.contractions_to(faces);
+            let is_enough = |made| tree.faces_left(made) <= faces;
+            assert!(is_enough(made) || made == tree.contractions(), "{faces}");
+            assert!(made == 0 || !is_enough(made - 1), "{faces}");
+        }
+    }
+
+    #[test]
+    fn a_history_that_moves_points_is_refused() {
+        let mesh = sample::sphere(200);
+        let mut history = History::default();
+        let mut simplifier = Simplifier::new(&mesh, &Options::default()).unwrap();
+        simplifier.run(Target::Ratio(0.5), &mut history).unwrap();
+        assert_eq!(MergeTree::of_history(&mesh, &history).err(), Some(HistoryError::Moves(0)));
+    }
+
+    #[test]
+    fn a_history_of_another_mesh_is_refused() {
+        let options = Options { method: Method::QemEndpoint, ..Options::default() };
+        let mut history = History::default();
+        let mesh = sample::sphere(200);
+        let mut simplifier = Simplifier::new(&mesh, &options).unwrap();
+        simplifier.run(Target::Ratio(0.5), &mut history).unwrap();
+        for other in [sample::torus(200), tetrahedron()] {
+            let error = MergeTree::of_history(&other, &history).err();
+            assert!(matches!(error, Some(HistoryError::Foreign(_))), "{error:?}");
+        }
+    }
+
+    #[test]
+    fn faces_without_three_corners_and_repeated_ones_are_left_out() {
+        let faces = [[0, 1, 2], [1, 2, 0], [3, 3, 1], [2, 1, 0]].map(|f: [u32; 3]| f.map(VertexId));
+        let whole: Vec<_> = whole_faces(&faces).iter().map(|f| f.map(|v| v.0)).collect();
+        assert_eq!(whole, [[0, 1, 2], [2, 1, 0]]);
+    }
+}
