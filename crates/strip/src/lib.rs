@@ -5,12 +5,23 @@
 
 #![forbid(unsafe_code)]
 
+mod anneal;
+mod cover;
+mod dual;
+mod emit;
+mod energy;
 mod filter;
+mod random;
+mod region;
 mod skip;
+mod stripify;
 mod strips;
+mod trail;
 mod verify;
 
+pub use energy::Prices;
 pub use filter::Filter;
 pub use skip::{HistoryError, MergeTree, SkipStrip};
+pub use stripify::{Options, Quality, stripify};
 pub use strips::Strips;
 pub use verify::{Difference, difference};

@@ -1,0 +1,159 @@
+//! Strips of any faces.
+
+use meshlod_mesh::VertexId;
+
+use crate::anneal::{Annealing, Starts};
+use crate::cover::Cover;
+use crate::energy::Prices;
+use crate::strips::Strips;
+
+/// How good strips shall be.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Quality {
+    /// As few vertices as that many tries for each face find.
+    Best {
+        /// 40 are quick, 1000 are thorough.
+        moves_per_face: f64,
+    },
+}
+
+/// What strips are wanted.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Options<'a> {
+    /// How good they shall be.
+    pub quality: Quality,
+    /// What counts as their cost.
+    pub prices: Prices,
+    /// A label for each face, and no strip goes from one label to another.
+    pub clusters: Option<&'a [u32]>,
+    /// Other seeds give other strips, about as good.
+    pub seed: u64,
+}
+
+impl Default for Options<'_> {
+    fn default() -> Self {
+        Self {
+            quality: Quality::Best { moves_per_face: 40.0 },
+            prices: Prices::default(),
+            clusters: None,
+            seed: 0,
+        }
+    }
+}
+
+/// Strips that draw exactly `faces`, each as often as it is there and as it is wound.
+///
+/// Any faces are taken: at edges of more than two faces, or where two neighbours are not oriented alike, a strip
+/// goes on as far as it can. Faces that repeat a vertex are left out. The same faces and options give the same
+/// strips.
+///
+/// Panics unless there are as many labels as faces, where there are labels, and above a billion faces.
+pub fn stripify(faces: &[[VertexId; 3]], options: &Options) -> Strips {
+    let mut cover = Cover::new(faces);
+    if let Some(labels) = options.clusters {
+        cover.part(labels);
+    }
+    let Quality::Best { moves_per_face } = options.quality;
+    cover.anneal(
+        Starts::All,
+        &Annealing {
+            prices: options.prices,
+            heat: [0.58, 0.11],
+            moves_per_cell: moves_per_face,
+            seed: options.seed,
+        },
+    );
+    cover.strips(faces)
+}
+
+#[cfg(test)]
+mod tests {
+    use meshlod_fixtures::{cube, fan, hourglass, mesh, moebius, tetrahedron};
+    use meshlod_mesh::{Mesh, sample};
+
+    use super::*;
+    use crate::verify::{Difference, difference};
+
+    fn quick() -> Options<'static> {
+        Options { quality: Quality::Best { moves_per_face: 20.0 }, ..Options::default() }
+    }
+
+    /// Meshes as they should be, and faces as they should not.
+    fn all_sorts() -> Vec<Mesh> {
+        let soup = |seed: u32| {
+            let corner = |i: u32| i.wrapping_mul(2_654_435_761).wrapping_add(seed) >> 16;
+            let faces: Vec<_> =
+                (0..300).map(|f| [0, 1, 2].map(|k| corner(3 * f + k) % 12)).collect();
+            mesh(&[[0.0; 3]; 12], &faces)
+        };
+        let book = mesh(&[[0.0; 3]; 6], &[[0, 1, 2], [1, 0, 3], [1, 0, 4], [0, 1, 5], [0, 1, 2]]);
+        let odd = mesh(&[[0.0; 3]; 3], &[[0, 1, 2], [2, 1, 0], [0, 0, 1], [2, 2, 2]]);
+        vec![
+            Mesh::default(),
+            fan(),
+            hourglass(),
+            moebius(9),
+            tetrahedron(),
+            cube(),
+            sample::sphere(400),
+            book,
+            odd,
+            soup(1),
+            soup(77),
+        ]
+    }
+
+    #[test]
+    fn exactly_the_faces_are_drawn_whatever_they_are() {
+        for mesh in all_sorts() {
+            let strips = stripify(&mesh.faces, &quick());
+            assert_eq!(difference(&strips, &mesh.faces), Difference::default());
+        }
+    }
+
+    #[test]
+    fn a_regular_torus_needs_few_more_vertices_than_faces() {
+        let faces = torus(24, 32);
+        let strips = stripify(
+            &faces,
+            &Options { quality: Quality::Best { moves_per_face: 300.0 }, ..quick() },
+        );
+        assert!(strips.vertices().len() < faces.len() * 105 / 100, "{}", strips.vertices().len());
+    }
+
+    #[test]
+    fn no_strip_leaves_its_cluster() {
+        let faces = torus(12, 12);
+        let labels: Vec<u32> = (0..faces.len() as u32).map(|f| f / 24).collect();
+        let strips = stripify(&faces, &Options { clusters: Some(&labels), ..quick() });
+        assert_eq!(difference(&strips, &faces), Difference::default());
+        let label = |triangle: [VertexId; 3]| {
+            let of = |face: &[VertexId; 3]| face.iter().all(|v| triangle.contains(v));
+            labels[faces.iter().position(of).unwrap()]
+        };
+        for strip in strips.iter() {
+            let mut alone = Strips::default();
+            alone.push(strip.iter().copied());
+            let mut of_strip: Vec<u32> = alone.triangles().map(label).collect();
+            of_strip.dedup();
+            assert_eq!(of_strip.len(), 1);
+        }
+    }
+
+    #[test]
+    fn the_same_seed_gives_the_same_strips() {
+        let faces = sample::sphere(500).faces;
+        assert_eq!(stripify(&faces, &quick()), stripify(&faces, &quick()));
+        assert_ne!(stripify(&faces, &quick()), stripify(&faces, &Options { seed: 1, ..quick() }));
+    }
+
+    /// A torus of `m` by `n` squares, each cut the same way: every vertex has six faces.
+    fn torus(m: u32, n: u32) -> Vec<[VertexId; 3]> {
+        let at = |i: u32, j: u32| VertexId(i % m * n + j % n);
+        let square = |i, j| {
+            let [a, b, c, d] = [at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)];
+            [[a, b, c], [a, c, d]]
+        };
+        (0..m * n).flat_map(|s| square(s / n, s % n)).collect()
+    }
+}
