@@ -38,20 +38,25 @@ impl Level {
         self.faces.clear();
     }
 
-    /// Of faces by nodes, whose places are in a table.
-    pub(crate) fn of_nodes(frame: Frame, places: &[[f32; 3]], mut faces: Vec<[u32; 3]>) -> Self {
+    /// Of faces by nodes, of which there are `count`, and where each is.
+    pub(crate) fn of_nodes(
+        frame: Frame,
+        count: usize,
+        place: impl Fn(u32) -> [f32; 3],
+        mut faces: Vec<[u32; 3]>,
+    ) -> Self {
         let mut nodes: Vec<u32> = faces.iter().flatten().copied().collect();
         nodes.sort_unstable();
         nodes.dedup();
-        if nodes.len() < places.len() / SPARSE {
+        if nodes.len() < count / SPARSE {
             let number = |node: u32| nodes.binary_search(&node).unwrap_or_default() as u32;
             faces.iter_mut().flatten().for_each(|node| *node = number(*node));
         } else {
-            let mut number = vec![0; places.len()];
+            let mut number = vec![0; count];
             (0..).zip(&nodes).for_each(|(i, &node)| number[node as usize] = i);
             faces.iter_mut().flatten().for_each(|node| *node = number[*node as usize]);
         }
-        let positions = nodes.iter().map(|&node| places[node as usize]).collect();
+        let positions = nodes.iter().map(|&node| place(node)).collect();
         Self { frame, nodes, positions, faces }
     }
 
@@ -66,7 +71,8 @@ impl Level {
         let place = Place::new(focus, &self.frame);
         let corner = |v: u32| Vec3::from(self.positions[v as usize]).as_dvec3();
         let faces = self.faces.iter().filter(|face| place.meets_triangle(face.map(corner)));
-        let mut level = Self::of_nodes(self.frame, &self.positions, faces.copied().collect());
+        let (count, place) = (self.positions.len(), |v: u32| self.positions[v as usize]);
+        let mut level = Self::of_nodes(self.frame, count, place, faces.copied().collect());
         // They were told by their places here.
         level.nodes.iter_mut().for_each(|node| *node = self.nodes[*node as usize]);
         Ok(level)
@@ -132,7 +138,7 @@ mod tests {
             let corners = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.5, 1.0, 0.0], [0.5, 0.9, height]];
             let places: Vec<_> =
                 corners.iter().map(|&c| frame.store(DVec3::from(c)).to_array()).collect();
-            Level::of_nodes(frame, &places, vec![[0, 1, 2], [0, 3, 1]])
+            Level::of_nodes(frame, 4, |node| places[node as usize], vec![[0, 1, 2], [0, 3, 1]])
         };
         assert_eq!((level(0.1).folds(), level(2.0).folds()), (1, 0));
     }

@@ -6,7 +6,7 @@
 //! ([`Explicit`] stores it as it is, triangles and all).
 //!
 //! A simplification is such an order read backwards: its contractions are the updates. [`Forest`] is the
-//! record of one; [`Implicit`] packs it into 40 bytes a vertex and stores no triangle but the coarsest;
+//! record of one; [`Implicit`] packs it into 40 bytes a vertex, or 22, and stores no triangle but the coarsest;
 //! [`Model`] adds the lists that make extraction fast. Asked with a [`Query`], it answers in several ways:
 //!
 //! | | gives | for |
@@ -78,6 +78,7 @@ mod place;
 mod query;
 mod record;
 mod right;
+mod short;
 
 #[cfg(test)]
 mod tests;

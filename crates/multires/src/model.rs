@@ -87,6 +87,16 @@ impl Model {
         Ok(())
     }
 
+    /// Makes the implicit model [narrow](Implicit::narrowed), if it can be; says whether it is.
+    pub fn narrow(&mut self) -> bool {
+        let narrow = self.implicit.narrowed();
+        let can_be = narrow.is_some();
+        if let Some(narrow) = narrow {
+            self.implicit = narrow;
+        }
+        can_be
+    }
+
     /// A cut that follows its queries, from the base mesh.
     pub fn cut(&self) -> Cut<'_> {
         Cut::new(&self.implicit)

@@ -61,7 +61,7 @@ impl Cut<'_> {
             (Standing::Split | Standing::Active, _) => {}
             (Standing::Absent, _) => return,
         }
-        let center = self.front.mt.positions()[node as usize];
+        let center = self.front.mt.place(node);
         let entry = Entry { update, node, center, span: needs.span(&ball, wanted) };
         if self.schedule.add(entry) {
             self.front.set_scheduled(node, true);

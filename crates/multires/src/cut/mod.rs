@@ -172,12 +172,7 @@ impl<'m> Cut<'m> {
 
     /// The mesh.
     pub fn level(&self) -> Level {
-        let mt = self.front.mt;
-        Level::of_nodes(
-            *mt.frame(),
-            mt.positions(),
-            self.front.triangles.iter().map(|(_, nodes)| nodes).collect(),
-        )
+        self.front.mt.level_of(self.front.triangles.iter().map(|(_, nodes)| nodes).collect())
     }
 }
 

@@ -63,7 +63,7 @@ impl Cut<'_> {
         met.dedup();
         let nodes = met.into_iter().map(|t| self.front.triangles.nodes(t));
         let faces = nodes.filter(|&nodes| place.meets_triangle(self.corners(nodes)));
-        Ok(Level::of_nodes(*mt.frame(), mt.positions(), faces.collect()))
+        Ok(mt.level_of(faces.collect()))
     }
 
     /// The triangle closest to a place, in model units: the one that it lies in, if it lies in one.
@@ -136,6 +136,6 @@ impl Cut<'_> {
     }
 
     fn corners(&self, nodes: [u32; 3]) -> [DVec3; 3] {
-        nodes.map(|node| Vec3::from(self.front.mt.positions()[node as usize]).as_dvec3())
+        nodes.map(|node| Vec3::from(self.front.mt.place(node)).as_dvec3())
     }
 }

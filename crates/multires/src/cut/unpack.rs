@@ -23,8 +23,8 @@ impl Forest {
     pub(crate) fn of(mt: &Implicit) -> Self {
         let numbers = Numbers::new(mt);
         let mut positions = vec![[0.0; 3]; mt.node_count()];
-        for (&node, &place) in numbers.nodes.iter().zip(mt.positions()) {
-            positions[node as usize] = place;
+        for (&to, node) in numbers.nodes.iter().zip(0..) {
+            positions[to as usize] = mt.place(node);
         }
         let mut this = Self {
             frame: *mt.frame(),

@@ -59,7 +59,8 @@ impl<'m> ExplicitCut<'m> {
     /// The mesh.
     pub fn level(&self) -> Level {
         let faces = self.present.iter().map(|&t| self.mt.triangles[t as usize].nodes);
-        Level::of_nodes(self.mt.frame, &self.mt.positions, faces.collect())
+        let place = |node: u32| self.mt.positions[node as usize];
+        Level::of_nodes(self.mt.frame, self.mt.positions.len(), place, faces.collect())
     }
 
     /// Makes a single update with all that it needs.

@@ -11,12 +11,13 @@ use glam::Vec3;
 use thiserror::Error;
 
 use super::known::Known;
-use super::lattice::{Lattice, error9, error16, radius8, radius16};
+use super::lattice::Lattice;
 use super::slant::Slant;
 use super::streams::{Packer, Unpacker};
 use crate::forest::{NONE, Odd};
 use crate::frame::Length16;
 use crate::implicit::{Loose, has_three_corners};
+use crate::short::{error9, error16, radius8, radius16};
 
 /// Why a chunk is none.
 #[derive(Debug, Error)]

@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 
-use super::lattice::{ERRORS, Lattice, error9, error16, radius8, radius16};
+use super::lattice::Lattice;
 use super::slant::Slant;
 use super::spread::spread;
 use crate::bounds::ErrorKind;
@@ -10,6 +10,7 @@ use crate::forest::{BuildError, Forest, MOST_LEVELS, NONE};
 use crate::frame::Length16;
 use crate::implicit::{Implicit, Order};
 use crate::need::SLACK;
+use crate::short::{ERRORS, error9, error16, radius8, radius16};
 
 /// A forest as a file keeps it.
 pub(super) struct Kept {
@@ -53,8 +54,9 @@ impl Forest {
     fn move_to(&mut self, lattice: Lattice) -> Result<f64, BuildError> {
         let order = Order::new(self);
         let mt = Implicit::in_order(self, &order)?;
-        let place = |node: u32| Vec3::from(mt.positions()[node as usize]);
-        let mut cells: Vec<_> = mt.positions().iter().map(|&p| lattice.round(p.into())).collect();
+        let place = |node: u32| Vec3::from(mt.place(node));
+        let nodes = 0..mt.node_count() as u32;
+        let mut cells: Vec<_> = nodes.map(|node| lattice.round(place(node))).collect();
         spread(&mt, &mut cells, |nodes| has_area(nodes.map(place)));
         let mut moved = 0.0f64;
         for (node, cell) in cells.into_iter().enumerate() {

@@ -119,7 +119,7 @@ fn part(mt: &Implicit, updates: &mut [u32], first: u32, chunks: usize, chunk_of:
         updates.iter().for_each(|&update| chunk_of[update as usize] = first);
         return;
     }
-    let place = |update: u32| mt.positions()[mt.parent(update) as usize];
+    let place = |update: u32| mt.place(mt.parent(update));
     let (mut min, mut max) = (Vec3::INFINITY, Vec3::NEG_INFINITY);
     for &update in &*updates {
         (min, max) = (min.min(place(update).into()), max.max(place(update).into()));

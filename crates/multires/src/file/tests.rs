@@ -6,7 +6,7 @@ use meshlod_simplify::Method;
 use super::write::{diagonal, lattice};
 use super::*;
 use crate::tests::walks::{Dice, each_by, forest, query, topology};
-use crate::{Cut, Forest, Implicit, Level, Model, Query};
+use crate::{Cut, Effort, Forest, Implicit, Level, Model, Query};
 
 /// With chunks so small that a little mesh has many.
 fn small() -> Storage {
@@ -51,6 +51,32 @@ fn a_file_gives_back_the_model() {
             assert!(is.canonical() == was.canonical(), "{what}: {query:?}");
             assert!(by_place(&is) == by_place(&was), "{what}: {query:?}");
         }
+    });
+}
+
+#[test]
+fn what_was_read_can_be_narrow_and_answers_alike() {
+    each(|what, mesh, forest| {
+        let read = Archive::open(bytes(forest)).unwrap().read().unwrap().0;
+        let narrow = read.narrowed().unwrap_or_else(|| panic!("{what}"));
+        assert_eq!(narrow.certify(), read.certify(), "{what}");
+        let fewer = (40 - 22) * read.update_count() + 6 * read.root_count();
+        // A table of 512 least levels, and where roots are.
+        assert!(narrow.bytes() <= read.bytes() - fewer + 1024 + 8 * read.root_count(), "{what}");
+        let [mut was, mut is] = [&read, &narrow].map(Cut::new);
+        let mut dice = Dice(23);
+        for _ in 0..40 {
+            let query = query(&mut dice, mesh);
+            for cut in [&mut was, &mut is] {
+                cut.update(&query, &Effort::default()).unwrap();
+            }
+            assert!(is.level() == was.level(), "{what}: {query:?}");
+        }
+        let mut model = Model::of(&read).unwrap();
+        let query = Query::uniform(0.01);
+        let expected = model.extractor().exact(&query).unwrap().clone();
+        assert!(model.narrow(), "{what}");
+        assert!(*model.extractor().exact(&query).unwrap() == expected, "{what}");
     });
 }
 

@@ -2,7 +2,9 @@
 
 use glam::Vec3;
 
-use super::{FLAG, Implicit, LAST_WING, NO_WING, OPEN, Order, Split};
+use super::places::Places;
+use super::splits::{Local, Split, Splits};
+use super::{FLAG, Implicit, LAST_WING, NO_WING, OPEN, Order};
 use crate::bounds::ErrorKind;
 use crate::forest::{MOST_LEVELS, NONE, Odd};
 use crate::frame::{Frame, Length16};
@@ -43,7 +45,8 @@ pub(crate) struct Base {
 impl Implicit {
     /// An update by the numbers of this model.
     pub(crate) fn loose(&self, update: u32) -> Loose {
-        let Split { parent, radius, error, level, wings, .. } = self.splits[update as usize];
+        let (parent, local) = (self.splits.parent(update), self.splits.local(update));
+        let Local { radius, error, level, wings } = local;
         Loose {
             parent: parent & !FLAG,
             level: level & !OPEN,
@@ -53,14 +56,14 @@ impl Implicit {
             is_open: level & OPEN != 0,
             glued: parent & FLAG != 0,
             odd: self.odd(update).cloned().map(Box::new),
-            children: self.children(update).map(|child| self.positions[child as usize].into()),
+            children: self.children(update).map(|child| self.place(child).into()),
         }
     }
 
     /// The coarsest mesh.
     pub(crate) fn loose_base(&self) -> Base {
-        let roots = &self.positions[..self.root_count()];
-        Base { positions: roots.iter().map(|&p| p.into()).collect(), faces: self.base.clone() }
+        let roots = (0..self.roots).map(|root| self.place(root).into());
+        Base { positions: roots.collect(), faces: self.base.clone() }
     }
 
     /// A model of loose updates, without those whose node nobody makes. Each node may be split once.
@@ -85,28 +88,32 @@ impl Implicit {
             error_kind: about.error_kind,
             roots: roots as u32,
             trees: order.trees.clone(),
-            positions: base.positions.iter().map(|p| p.to_array()).collect(),
-            splits: Vec::with_capacity(order.updates.len()),
+            places: Places::Free(Vec::new()),
+            splits: Splits::Wide(Vec::new()),
             full_faces: base.faces.len(),
             base: base.faces,
             odd: Default::default(),
         };
-        this.positions.reserve_exact(2 * order.updates.len());
+        let mut splits = Vec::with_capacity(order.updates.len());
+        let mut places: Vec<_> = base.positions.iter().map(|p| p.to_array()).collect();
+        places.reserve_exact(2 * order.updates.len());
         for (at, &u) in order.updates.iter().enumerate() {
             let update = &updates[u as usize];
-            this.positions.extend(update.children.map(|child| child.to_array()));
+            places.extend(update.children.map(|child| child.to_array()));
             let below = family(u).map(|child| {
                 children(child).map(|(update, _)| order.place_of_update[update as usize])
             });
             // Only what is split can go in the same go.
             let glued = update.glued && below[0].is_some();
-            this.splits.push(Split {
+            splits.push(Split {
                 parent: order.place[update.parent as usize] | if glued { FLAG } else { 0 },
                 second: order.second(at, below),
-                radius: update.radius,
-                error: update.error,
-                level: update.level | if update.is_open { OPEN } else { 0 },
-                wings: update.wings,
+                local: Local {
+                    radius: update.radius,
+                    error: update.error,
+                    level: update.level | if update.is_open { OPEN } else { 0 },
+                    wings: update.wings,
+                },
             });
             this.full_faces += update.brought();
             if let Some(odd) = &update.odd {
@@ -117,6 +124,7 @@ impl Implicit {
                 this.odd.insert(at as u32, odd);
             }
         }
+        (this.places, this.splits) = (Places::Free(places), Splits::Wide(splits));
         this
     }
 }

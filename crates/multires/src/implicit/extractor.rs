@@ -131,7 +131,7 @@ impl<'m> Extractor<'m> {
             let leaves = below.leaf as usize..(below.leaf + below.end - below.start + 1) as usize;
             above[leaves].fill(level.nodes.len() as u32);
             level.nodes.push(below.node);
-            level.positions.push(mt.positions()[below.node as usize]);
+            level.positions.push(mt.place(below.node));
         });
         self.model.faces().write(&made, &above, &mut level.faces);
         (self.level, self.above, self.made) = (level, above, made);

@@ -1,6 +1,8 @@
 //! Packs a forest.
 
-use super::{FLAG, Implicit, LAST_WING, NO_WING, OPEN, Order, Split};
+use super::places::Places;
+use super::splits::{Local, Split, Splits};
+use super::{FLAG, Implicit, LAST_WING, NO_WING, OPEN, Order};
 use crate::forest::{BuildError, Forest, NONE, Odd};
 
 impl Implicit {
@@ -18,13 +20,15 @@ impl Implicit {
         if order.nodes.len() >= FLAG as usize {
             return Err(BuildError::TooLarge);
         }
+        let positions = order.nodes.iter().map(|&n| forest.positions[n as usize]);
+        let mut splits = Vec::with_capacity(order.updates.len());
         let mut this = Self {
             frame: forest.frame,
             error_kind: forest.error_kind,
             roots: order.trees.len() as u32 - 1,
             trees: order.trees.clone(),
-            positions: order.nodes.iter().map(|&n| forest.positions[n as usize]).collect(),
-            splits: Vec::with_capacity(order.updates.len()),
+            places: Places::Free(positions.collect()),
+            splits: Splits::Wide(Vec::new()),
             base: base(forest, order),
             odd: Default::default(),
             full_faces: forest.faces.len(),
@@ -32,22 +36,25 @@ impl Implicit {
         for at in 0..order.updates.len() {
             let update = order.updates[at] as usize;
             let (node, of) = (order.place[forest.node(update)], forest.updates[update]);
-            this.splits.push(Split {
+            splits.push(Split {
                 parent: node | if of.glued { FLAG } else { 0 },
                 second: order.second(
                     at,
                     of.children
                         .map(|child| forest.update_of(child).map(|u| order.place_of_update[u])),
                 ),
-                radius: of.radius,
-                error: of.error,
-                level: of.level | if of.is_open || of.wings == [NONE; 2] { OPEN } else { 0 },
-                wings: of.wings.map(|wing| rank(forest, order, update, wing)),
+                local: Local {
+                    radius: of.radius,
+                    error: of.error,
+                    level: of.level | if of.is_open || of.wings == [NONE; 2] { OPEN } else { 0 },
+                    wings: of.wings.map(|wing| rank(forest, order, update, wing)),
+                },
             });
             if of.wings == [NONE; 2] {
                 this.odd.insert(at as u32, odd(forest, order, update));
             }
         }
+        this.splits = Splits::Wide(splits);
         Ok(this)
     }
 }

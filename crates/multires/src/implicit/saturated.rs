@@ -45,7 +45,7 @@ impl Saturated {
     #[inline]
     pub(crate) fn ball(&self, mt: &Implicit, update: u32, node: u32) -> Ball {
         let [radius, error] = self.balls[update as usize].map(f64::from);
-        let center = Vec3::from(mt.positions()[node as usize]).as_dvec3();
+        let center = Vec3::from(mt.place(node)).as_dvec3();
         Ball { center, radius, error }
     }
 }

@@ -30,7 +30,7 @@ fn the_closest_triangle_is_found() {
     each(|what, mesh, forest| {
         let mt = Implicit::new(forest).unwrap();
         let (mut cut, mut dice) = (Cut::new(&mt), Dice(29));
-        let corner = |node: u32| Vec3::from(mt.positions()[node as usize]).as_dvec3();
+        let corner = |node: u32| Vec3::from(mt.place(node)).as_dvec3();
         for step in 0..60 {
             cut.update(&query(&mut dice, mesh), &Effort::default()).unwrap();
             // On the surface, close to it, and far away.
