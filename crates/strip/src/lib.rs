@@ -13,6 +13,7 @@ mod energy;
 mod filter;
 mod random;
 mod region;
+mod repair;
 mod skip;
 mod stripify;
 mod strips;
@@ -21,6 +22,7 @@ mod verify;
 
 pub use energy::Prices;
 pub use filter::Filter;
+pub use repair::{Effort, LevelStrips, LiveStrips};
 pub use skip::{HistoryError, MergeTree, SkipStrip};
 pub use stripify::{Options, Quality, stripify};
 pub use strips::Strips;

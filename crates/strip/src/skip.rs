@@ -1,8 +1,10 @@
 //! One set of strips for all levels.
 
+mod descent;
 mod pointers;
 mod tree;
 
+pub(crate) use descent::Descent;
 pub use tree::{HistoryError, MergeTree};
 
 use meshlod_mesh::VertexId;
@@ -68,15 +70,20 @@ impl SkipStrip {
     ///
     /// Cost: linear in the strips of the mesh.
     pub fn display(&mut self, filter: Filter) -> Strips {
-        let Self { tree, strips, contractions, pointers } = self;
         let mut display = Strips::default();
-        let mut room = Vec::new();
-        for strip in strips.iter() {
-            room.clear();
-            room.extend(strip.iter().map(|&v| tree.shown(v, *contractions, pointers)));
-            filter.strip(&room, &mut display);
-        }
+        self.each_strip(|_, shown| filter.strip(shown, &mut display));
         display
+    }
+
+    /// Calls `visit` with each strip of the mesh, and with what shows its vertices at the level.
+    pub(crate) fn each_strip(&mut self, mut visit: impl FnMut(&[VertexId], &[VertexId])) {
+        let Self { tree, strips, contractions, pointers } = self;
+        let mut shown = Vec::new();
+        for strip in strips.iter() {
+            shown.clear();
+            shown.extend(strip.iter().map(|&v| tree.shown(v, *contractions, pointers)));
+            visit(strip, &shown);
+        }
     }
 }
 

@@ -139,6 +139,20 @@ impl MergeTree {
         shown.filter(has_three_corners).collect()
     }
 
+    /// The vertices that go, first to last.
+    pub(super) fn order(&self) -> Vec<VertexId> {
+        let mut order = vec![VertexId(0); self.contractions()];
+        for (v, &turn) in self.turns.iter().enumerate().filter(|(_, turn)| **turn != STAYS) {
+            order[turn as usize] = VertexId::new(v);
+        }
+        order
+    }
+
+    /// What a vertex becomes; itself if it stays.
+    pub(super) fn parent(&self, vertex: VertexId) -> VertexId {
+        self.parents[vertex.index()]
+    }
+
     /// The vertex that stands for one after so many contractions.
     #[inline]
     pub(super) fn shown(

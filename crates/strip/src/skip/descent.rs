@@ -1,0 +1,158 @@
+//! From level to level, by what changes.
+
+use meshlod_mesh::VertexId;
+
+use super::pointers::Pointers;
+use super::tree::MergeTree;
+use crate::verify::has_three_corners;
+
+/// A level of a merge tree, which knows the faces that the way to another one changes.
+#[derive(Clone, Debug)]
+pub(crate) struct Descent {
+    tree: MergeTree,
+    pointers: Pointers,
+    contractions: usize,
+    /// The vertices that go, first to last.
+    order: Vec<VertexId>,
+    below: Below,
+    /// By face: the last time it was looked at.
+    seen: Vec<u32>,
+    times: u32,
+}
+
+/// The faces of the mesh by their corners, those of each vertex with all that became it in one run.
+#[derive(Clone, Debug)]
+struct Below {
+    /// By vertex: where its run starts, and where it ends.
+    runs: Vec<[u32; 2]>,
+    faces: Vec<u32>,
+}
+
+/// A place in a list of triangles, and what is there now.
+pub(crate) type Change = (u32, Option<[VertexId; 3]>);
+
+impl Descent {
+    /// At the mesh itself.
+    pub(crate) fn new(tree: MergeTree) -> Self {
+        let order = tree.order();
+        Self {
+            below: Below::new(&tree, &order),
+            pointers: Pointers::new(tree.vertices()),
+            seen: vec![0; tree.faces().len()],
+            tree,
+            contractions: 0,
+            order,
+            times: 0,
+        }
+    }
+
+    pub(crate) fn tree(&self) -> &MergeTree {
+        &self.tree
+    }
+
+    pub(crate) fn level(&self) -> usize {
+        self.contractions
+    }
+
+    /// Goes to the level after so many contractions: the faces on the way, some of which may be as they were.
+    pub(crate) fn go(&mut self, contractions: usize) -> Vec<Change> {
+        let to = contractions.min(self.tree.contractions());
+        let from = std::mem::replace(&mut self.contractions, to);
+        let Self { tree, pointers, order, below, seen, times, .. } = self;
+        *times += 1;
+        let mut changes = Vec::new();
+        for vertex in &order[from.min(to)..from.max(to)] {
+            for &face in below.of(*vertex) {
+                if std::mem::replace(&mut seen[face as usize], *times) == *times {
+                    continue;
+                }
+                let corners = tree.faces()[face as usize].map(|v| tree.shown(v, to, pointers));
+                changes.push((face, Some(corners).filter(has_three_corners)));
+            }
+        }
+        changes
+    }
+}
+
+impl Below {
+    fn new(tree: &MergeTree, order: &[VertexId]) -> Self {
+        let parent = |v: VertexId| tree.parent(v).index();
+        // How many corners each vertex has, with all that became it: those are complete before it goes.
+        let mut counts = vec![0u32; tree.vertices()];
+        tree.faces().iter().flatten().for_each(|v| counts[v.index()] += 1);
+        let own = counts.clone();
+        order.iter().for_each(|&v| counts[parent(v)] += counts[v.index()]);
+        // The last to go is the first below its parent.
+        let mut is_root = vec![true; tree.vertices()];
+        order.iter().for_each(|v| is_root[v.index()] = false);
+        let mut runs = vec![[0; 2]; tree.vertices()];
+        let mut end = 0;
+        for root in (0..tree.vertices()).filter(|&v| is_root[v]) {
+            runs[root] = [end, end + counts[root]];
+            end += counts[root];
+        }
+        let mut next: Vec<u32> = (0..tree.vertices()).map(|v| runs[v][0] + own[v]).collect();
+        for &v in order.iter().rev() {
+            let start = next[parent(v)];
+            next[parent(v)] += counts[v.index()];
+            runs[v.index()] = [start, start + counts[v.index()]];
+            next[v.index()] = start + own[v.index()];
+        }
+        let mut faces = vec![0; end as usize];
+        let mut at: Vec<u32> = runs.iter().map(|run| run[0]).collect();
+        for (face, corners) in (0..).zip(tree.faces()) {
+            for v in corners {
+                faces[at[v.index()] as usize] = face;
+                at[v.index()] += 1;
+            }
+        }
+        Self { runs, faces }
+    }
+
+    fn of(&self, vertex: VertexId) -> &[u32] {
+        let [start, end] = self.runs[vertex.index()];
+        &self.faces[start as usize..end as usize]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use meshlod_fixtures::{fan, hourglass};
+    use meshlod_mesh::{Mesh, sample};
+    use meshlod_simplify::Target;
+
+    use super::*;
+
+    fn changes_lead_to_every_level(mesh: &Mesh) {
+        let tree = MergeTree::record(mesh, Target::Faces(0)).unwrap();
+        let mut faces: Vec<_> = tree.faces().iter().copied().map(Some).collect();
+        let mut descent = Descent::new(tree);
+        let all = descent.tree().contractions();
+        for part in [1, 5, 4, 10, 0, 9, 3] {
+            for (face, triangle) in descent.go(all * part / 10) {
+                faces[face as usize] = triangle;
+            }
+            let mut there: Vec<_> = faces.iter().copied().flatten().collect();
+            let mut level = descent.tree().level(descent.level());
+            there.sort_unstable();
+            level.sort_unstable();
+            assert_eq!(there, level, "{part}");
+        }
+    }
+
+    #[test]
+    fn what_changes_is_all_that_changes() {
+        changes_lead_to_every_level(&sample::knot(800));
+        changes_lead_to_every_level(&fan());
+        changes_lead_to_every_level(&hourglass());
+    }
+
+    #[test]
+    fn little_is_looked_at_for_a_small_step() {
+        let tree = MergeTree::record(&sample::sphere(4000), Target::Faces(0)).unwrap();
+        let mut descent = Descent::new(tree);
+        let half = descent.tree().contractions_to(2000);
+        descent.go(half);
+        assert!(descent.go(half + 1).len() < 100);
+    }
+}
