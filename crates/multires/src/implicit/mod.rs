@@ -116,6 +116,14 @@ impl Implicit {
         self.frame.model(self.place(node))
     }
 
+    /// The nodes that a node is split into, which have higher numbers; `None` for those of the finest level.
+    ///
+    /// # Panics
+    /// As [`position`](Self::position).
+    pub fn children_of(&self, node: u32) -> Option<[u32; 2]> {
+        self.update_of(node).map(|update| self.children(update))
+    }
+
     /// How many nodes there are, the vertices of all levels.
     pub fn node_count(&self) -> usize {
         self.places.len()
