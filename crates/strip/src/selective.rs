@@ -1,0 +1,151 @@
+//! Strips of a cut: fine where it is looked at, coarse elsewhere.
+
+use meshlod_mesh::VertexId;
+use meshlod_multires::{Cut, Implicit};
+use thiserror::Error;
+
+use crate::repair::{Effort, LiveStrips};
+use crate::stripify::{Options, stripify};
+use crate::strips::Strips;
+
+/// The strips of a cut that follows its queries, of an MT of half-edge contractions.
+///
+/// They draw exactly the cut's triangles. Vertices are the nodes of the finest level, so one vertex buffer, of
+/// [`Implicit::position`] by node, serves all cuts. Where points move, [`LiveStrips`] takes the
+/// [patches](Cut::patches) of a cut as they are.
+#[derive(Clone, Debug)]
+pub struct CutStrips {
+    /// By node: the leaf at its place.
+    leaves: Vec<VertexId>,
+    live: LiveStrips,
+}
+
+/// An MT in which points move.
+#[derive(Clone, Copy, Debug, Error, PartialEq, Eq)]
+#[error(
+    "node {0} is where none of its children is; make the model of half-edge contractions, as of qem-endpoint"
+)]
+pub struct PointsMove(pub u32);
+
+impl CutStrips {
+    /// Strips for a cut of `mt` as it is.
+    ///
+    /// Cost: of [`stripify`], and linear in the MT.
+    /// # Errors
+    /// An MT of other than half-edge contractions.
+    pub fn new(
+        mt: &Implicit,
+        cut: &Cut<'_>,
+        options: &Options,
+        effort: Effort,
+    ) -> Result<Self, PointsMove> {
+        let leaves = leaves(mt)?;
+        let triangles = cut.triangles().map(|(place, nodes)| (place, shown(&leaves, nodes)));
+        let triangles: Vec<_> = triangles.collect();
+        let faces: Vec<_> = triangles.iter().map(|&(_, face)| face).collect();
+        let live = LiveStrips::new(triangles, &stripify(&faces, options), effort);
+        Ok(Self { leaves, live })
+    }
+
+    /// Follows the last update of the cut, whose every update must be followed. How many triangles came, went or
+    /// have another corner.
+    ///
+    /// Cost: of what changed.
+    pub fn update(&mut self, cut: &Cut<'_>) -> usize {
+        let Self { leaves, live } = self;
+        live.update(
+            cut.patches().map(|patch| (patch.place, patch.into.map(|nodes| shown(leaves, nodes)))),
+        )
+    }
+
+    /// The strips as they are now.
+    ///
+    /// Cost: linear in all of them.
+    pub fn strips(&self) -> Strips {
+        self.live.strips()
+    }
+
+    /// The vertex that a node of the MT is, itself a node of the finest level.
+    pub fn vertex(&self, node: u32) -> VertexId {
+        self.leaves[node as usize]
+    }
+}
+
+fn shown(leaves: &[VertexId], nodes: [u32; 3]) -> [VertexId; 3] {
+    nodes.map(|node| leaves[node as usize])
+}
+
+/// By node, the leaf at its place.
+fn leaves(mt: &Implicit) -> Result<Vec<VertexId>, PointsMove> {
+    let mut leaves: Vec<_> = (0..mt.node_count()).map(VertexId::new).collect();
+    // Children have higher numbers.
+    for node in (0..mt.node_count() as u32).rev() {
+        let Some(children) = mt.children_of(node) else { continue };
+        let place = mt.position(node);
+        let at_place = children.into_iter().find(|&child| mt.position(child) == place);
+        leaves[node as usize] = leaves[at_place.ok_or(PointsMove(node))? as usize];
+    }
+    Ok(leaves)
+}
+
+#[cfg(test)]
+mod tests {
+    use meshlod_fixtures::{grid, moebius};
+    use meshlod_mesh::{Mesh, sample};
+    use meshlod_multires::{Effort as Allowed, Focus, Forest, Model, Query, Tolerance};
+    use meshlod_simplify::Method;
+
+    use super::*;
+    use crate::verify::{Difference, difference};
+
+    fn model(mesh: &Mesh, method: Method) -> Model {
+        let options = meshlod_simplify::Options { method, ..Default::default() };
+        Model::new(&Forest::new(mesh, &options).unwrap()).unwrap()
+    }
+
+    /// Moves a sphere of full detail across.
+    fn follows(mesh: &Mesh) {
+        let model = model(mesh, Method::QemEndpoint);
+        let mut cut = model.cut();
+        let options = Options::default();
+        let mut strips = CutStrips::new(model.implicit(), &cut, &options, Effort::Quick).unwrap();
+        let bounds = mesh.bounds();
+        for step in [0, 3, 10, 11, 12, 4, 0, 7] {
+            let center = std::array::from_fn(|k| {
+                bounds.min[k] + (bounds.max[k] - bounds.min[k]) * f64::from(step) / 12.0
+            });
+            let focus = Focus::Sphere { center, radius: 0.25 * bounds.diagonal() };
+            let query = Query { focus, tolerance: Tolerance::Uniform(0.0) };
+            cut.update(&query, &Allowed::default()).unwrap();
+            assert!(strips.update(&cut) <= cut.patches().count());
+            let faces: Vec<_> =
+                cut.triangles().map(|(_, nodes)| nodes.map(|node| strips.vertex(node))).collect();
+            assert_eq!(difference(&strips.strips(), &faces), Difference::default(), "{step}");
+        }
+    }
+
+    #[test]
+    fn every_cut_is_drawn() {
+        [sample::torus(800), grid(10), moebius(30)].iter().for_each(follows);
+    }
+
+    #[test]
+    fn vertices_are_where_their_nodes_are() {
+        let model = model(&sample::sphere(400), Method::QemEndpoint);
+        let mt = model.implicit();
+        let strips = CutStrips::new(mt, &model.cut(), &Options::default(), Effort::Quick).unwrap();
+        for node in 0..mt.node_count() as u32 {
+            let leaf = strips.vertex(node).0;
+            assert_eq!(mt.position(leaf), mt.position(node));
+            assert_eq!(mt.children_of(leaf), None);
+        }
+    }
+
+    #[test]
+    fn where_points_move_it_is_said() {
+        let model = model(&sample::sphere(400), Method::Qem);
+        let made =
+            CutStrips::new(model.implicit(), &model.cut(), &Options::default(), Effort::Quick);
+        assert!(made.is_err());
+    }
+}
