@@ -31,44 +31,39 @@ const HEAD: u32 = 1 << 31;
 impl Links {
     /// Those of the forest, in the order of the model.
     pub(crate) fn in_order(forest: &Forest, order: &Order, rule: Rule) -> Self {
-        let parents = forest.parents();
-        let mut this = Self { lists: vec![], starts: vec![NONE; order.updates.len()] };
-        let (mut found, mut finder) = (Vec::new(), Finder::new(forest, &parents));
-        // Those of low levels first: what they need is above them.
-        let level = |at: u32| forest.updates[order.updates[at as usize] as usize].level;
-        for at in by_level(order.updates.len(), level) {
-            let update = order.updates[at as usize] as usize;
-            let of = &forest.updates[update];
+        let mut finder = Finder::new(Makers::new(forest, order));
+        let (mut needs, mut ends, mut found) = (Vec::new(), Vec::new(), Vec::new());
+        for (at, &update) in (0..).zip(&order.updates) {
+            let of = &forest.updates[update as usize];
             found.clear();
             if rule == Rule::Strict || of.wings == [NONE; 2] {
-                finder.around(update, &mut found);
+                finder.around(at, &mut found);
             } else if !of.wings.contains(&NONE) {
-                found.extend(lowest_common(forest, &parents, of.wings));
+                let wings = of.wings.map(|wing| order.maker(wing));
+                found.extend(finder.makers.lowest_common(wings));
             }
-            found.iter_mut().for_each(|up| *up = order.place_of_update[*up as usize]);
-            let family = Some(parents[forest.node(update)]).filter(|&up| up != NONE);
-            let family = family.map(|up| order.place_of_update[up as usize]);
-            this.add(order, at, family, &mut found);
+            needs.extend(finder.makers.family(at));
+            reduce(order, at, &mut found);
+            needs.append(&mut found);
+            ends.push(needs.len() as u32);
         }
-        this
+        let level = |at: u32| forest.updates[order.updates[at as usize] as usize].level;
+        Self::of_needs(&needs, &ends, by_level(ends.len(), level))
     }
 
-    /// Adds what an update needs, without what is above it or above another of them, but for its
-    /// family.
-    fn add(&mut self, order: &Order, update: u32, family: Option<u32>, found: &mut Vec<u32>) {
-        found.sort_unstable();
-        found.dedup();
-        self.lists.push(update | HEAD);
-        self.starts[update as usize] = self.lists.len() as u32;
-        self.lists.extend(family);
-        let is_above = |up: u32, down: u32| up < down && down < order.ends[up as usize];
-        for (i, &up) in found.iter().enumerate() {
-            // Those under it come right behind it.
-            let next = found.get(i + 1);
-            if !is_above(up, update) && !next.is_some_and(|&next| is_above(up, next)) {
-                self.lists.push(up);
-            }
+    /// The needs of each update, to where they end; low levels first: what they need is above them.
+    fn of_needs(needs: &[u32], ends: &[u32], updates: Vec<u32>) -> Self {
+        let mut this = Self {
+            lists: Vec::with_capacity(needs.len() + ends.len()),
+            starts: vec![NONE; ends.len()],
+        };
+        for update in updates {
+            let start = update.checked_sub(1).map_or(0, |before| ends[before as usize]);
+            this.lists.push(update | HEAD);
+            this.starts[update as usize] = this.lists.len() as u32;
+            this.lists.extend(&needs[start as usize..ends[update as usize] as usize]);
         }
+        this
     }
 
     /// What it takes in memory.
@@ -122,10 +117,75 @@ impl Links {
     }
 }
 
+/// Takes out what is above the update or above another of those that it needs.
+fn reduce(order: &Order, update: u32, found: &mut Vec<u32>) {
+    found.sort_unstable();
+    let is_above = |up: u32, down: u32| up < down && down < order.ends[up as usize];
+    let mut kept = 0;
+    for i in 0..found.len() {
+        let up = found[i];
+        // Those under it come right behind it.
+        let next = found.get(i + 1);
+        if !is_above(up, update) && !next.is_some_and(|&next| is_above(up, next)) {
+            found[kept] = up;
+            kept += 1;
+        }
+    }
+    found.truncate(kept);
+}
+
+/// Of each update the one that makes its node, and those that make its ring, by the model's numbers: side by
+/// side, where the forest would be asked about node after node.
+struct Makers {
+    lists: Vec<u32>,
+    /// Where each update's list starts, and the last ends.
+    starts: Vec<u32>,
+    /// [`NONE`] for those of roots.
+    families: Vec<u32>,
+}
+
+impl Makers {
+    fn new(forest: &Forest, order: &Order) -> Self {
+        let mut this = Self {
+            lists: Vec::with_capacity(forest.rings.len()),
+            starts: vec![0],
+            families: Vec::with_capacity(order.updates.len()),
+        };
+        for &update in &order.updates {
+            let update = update as usize;
+            this.lists.extend(forest.ring(update).iter().filter_map(|&node| order.maker(node)));
+            this.starts.push(this.lists.len() as u32);
+            this.families.push(order.maker(forest.node(update) as u32).unwrap_or(NONE));
+        }
+        this
+    }
+
+    fn family(&self, update: u32) -> Option<u32> {
+        Some(self.families[update as usize]).filter(|&up| up != NONE)
+    }
+
+    fn around(&self, update: u32) -> &[u32] {
+        let [start, end] = [0, 1].map(|next| self.starts[update as usize + next] as usize);
+        &self.lists[start..end]
+    }
+
+    /// The last update that has both nodes under it, by the updates that make them.
+    fn lowest_common(&self, mut makers: [Option<u32>; 2]) -> Option<u32> {
+        // Updates above have lower numbers.
+        loop {
+            let [a, b] = [makers[0]?, makers[1]?];
+            if a == b {
+                return Some(a);
+            }
+            let lower = usize::from(b > a);
+            makers[lower] = self.family(a.max(b));
+        }
+    }
+}
+
 /// Finds what updates need for the sake of their rings.
-struct Finder<'f> {
-    forest: &'f Forest,
-    parents: &'f [u32],
+struct Finder {
+    makers: Makers,
     /// By update: the last that was found to need it.
     needed_by: Vec<u32>,
 }
@@ -133,49 +193,26 @@ struct Finder<'f> {
 /// Longer rings are not searched for what their updates need: a hub is in the rings of all around it.
 const MOST_SEARCHED: usize = 64;
 
-impl<'f> Finder<'f> {
-    fn new(forest: &'f Forest, parents: &'f [u32]) -> Self {
-        Self { forest, parents, needed_by: vec![NONE; forest.updates.len()] }
+impl Finder {
+    fn new(makers: Makers) -> Self {
+        let needed_by = vec![NONE; makers.families.len()];
+        Self { makers, needed_by }
     }
 
     /// The updates that make the ring of another, without those that others of them need: of two
     /// neighbours in the ring the one that was contracted first had the other around it. A third is
     /// left.
-    fn around(&mut self, update: usize, found: &mut Vec<u32>) {
-        let Self { forest, parents, needed_by } = self;
-        let makers = |update: usize| {
-            let up = forest.ring(update).iter().map(|&node| parents[node as usize]);
-            up.filter(|&up| up != NONE)
-        };
-        let by = update as u32;
-        for up in makers(update) {
+    fn around(&mut self, by: u32, found: &mut Vec<u32>) {
+        let Self { makers, needed_by } = self;
+        for &up in makers.around(by) {
             if std::mem::replace(&mut needed_by[up as usize], by) != by {
                 found.push(up);
             }
         }
-        for &up in found.iter().filter(|&&up| forest.ring(up as usize).len() <= MOST_SEARCHED) {
-            makers(up as usize).for_each(|up| needed_by[up as usize] = NONE);
+        let searched = found.iter().map(|&up| makers.around(up));
+        for &up in searched.filter(|ring| ring.len() <= MOST_SEARCHED).flatten() {
+            needed_by[up as usize] = NONE;
         }
         found.retain(|&up| needed_by[up as usize] == by);
-    }
-}
-
-/// The last update that has both nodes under it.
-fn lowest_common(forest: &Forest, parents: &[u32], nodes: [u32; 2]) -> Option<u32> {
-    let [mut a, mut b] = nodes;
-    // Updates above are later ones.
-    loop {
-        let [over_a, over_b] = [parents[a as usize], parents[b as usize]];
-        if over_a == NONE || over_b == NONE {
-            return None;
-        }
-        if over_a == over_b {
-            return Some(over_a);
-        }
-        if over_a < over_b {
-            a = forest.node(over_a as usize) as u32;
-        } else {
-            b = forest.node(over_b as usize) as u32;
-        }
     }
 }

@@ -58,6 +58,12 @@ impl Order {
         this
     }
 
+    /// The model's update that makes a node of the forest; `None` for roots.
+    pub(super) fn maker(&self, node: u32) -> Option<u32> {
+        let roots = self.trees.len() as u32 - 1;
+        self.place[node as usize].checked_sub(roots).map(|child| child / 2)
+    }
+
     /// Numbers the updates below a node, and the leaves.
     fn walk(
         &mut self,
