@@ -198,11 +198,6 @@ impl Cover {
         }
     }
 
-    /// The other end of the path that ends in `end`; itself, if it is alone.
-    pub(crate) fn far_end(&self, end: usize) -> usize {
-        self.path(end).last().map_or(end, |(cell, _)| cell)
-    }
-
     /// The cells of the path that ends in `end`, from there on, each with the side it is left by; `None` at the far
     /// end.
     pub(crate) fn path(&self, end: usize) -> impl Iterator<Item = (usize, Option<usize>)> + '_ {

@@ -18,50 +18,86 @@ pub(crate) fn pairs(faces: &[[VertexId; 3]]) -> Vec<[Port; 3]> {
     if most > 8 * faces.len() {
         return sorted_pairs(faces);
     }
-    pairs_in_passing(faces, most + 1).unwrap_or_else(|| sorted_pairs(faces))
+    listed_pairs(faces, most + 1).unwrap_or_else(|| sorted_pairs(faces))
 }
 
-/// How many sides that wait may be looked at for each face, on average, before sorting is the better way. Meshes in
-/// the order of their scanner or of a vertex cache need 4 to 8; fans of thousands in random order need thousands.
+/// How many rising sides may be looked at for each face, on average, before sorting is the better way. Meshes need 2
+/// to 4; fans of thousands need thousands.
 const MOST_LOOKS: usize = 64;
 
-/// One pass: each side looks among those that wait at its lower vertex, and waits there if none fits.
+/// In two passes: sides that rise to a higher vertex are listed at the lower one, and those that fall look there.
 ///
-/// The waiting sides of a vertex are a list, threaded through the places that their own neighbours will stand in.
-fn pairs_in_passing(faces: &[[VertexId; 3]], vertex_count: usize) -> Option<Vec<[Port; 3]>> {
+/// Which sides rise is as good as random, so nothing branches on it.
+fn listed_pairs(faces: &[[VertexId; 3]], vertex_count: usize) -> Option<Vec<[Port; 3]>> {
+    let Sides { starts, mut rising, falling } = Sides::new(faces, vertex_count);
     let mut across = vec![[Port::NONE; 3]; faces.len()];
-    let mut waiting = vec![Port::NONE; vertex_count];
     let mut looks = faces.len() * MOST_LOOKS;
-    for (f, face) in faces.iter().enumerate().filter(|(_, face)| whole(face)) {
-        for side in 0..3 {
-            let [from, to] = ends(face, side);
-            let first = from.min(to).index();
-            let mut before = Port::NONE;
-            let mut at = waiting[first];
-            while !at.is_none() && ends(&faces[at.cell()], at.side()) != [to, from] {
-                looks = looks.checked_sub(1)?;
-                before = at;
-                at = across[at.cell()][at.side()];
-            }
-            let here = Port::new(f, side);
-            if at.is_none() {
-                across[f][side] = std::mem::replace(&mut waiting[first], here);
-                continue;
-            }
-            let after = std::mem::replace(&mut across[at.cell()][at.side()], here);
-            across[f][side] = at;
-            match before.is_none() {
-                true => waiting[first] = after,
-                false => across[before.cell()][before.side()] = after,
-            }
-        }
-    }
-    for mut at in waiting {
-        while !at.is_none() {
-            at = std::mem::replace(&mut across[at.cell()][at.side()], Port::NONE);
+    for port in falling {
+        let [from, to] = ends(&faces[port.cell()], port.side());
+        let listed = &mut rising[starts[to.index()] as usize..starts[to.index() + 1] as usize];
+        let found = listed.iter().position(|rising| rising.0 == from);
+        looks = looks.checked_sub(found.map_or(listed.len(), |place| place + 1))?;
+        if let Some(place) = found {
+            let (_, other) = std::mem::replace(&mut listed[place], (to, Port::NONE));
+            across[port.cell()][port.side()] = other;
+            across[other.cell()][other.side()] = port;
         }
     }
     Some(across)
+}
+
+/// The sides of all faces that have three vertices.
+struct Sides {
+    /// Where the rising sides of each vertex begin.
+    starts: Vec<u32>,
+    /// Those that run from a lower vertex to a higher one, by the lower: the higher, and the side.
+    rising: Vec<(VertexId, Port)>,
+    /// The others, in order.
+    falling: Vec<Port>,
+}
+
+impl Sides {
+    fn new(faces: &[[VertexId; 3]], vertex_count: usize) -> Self {
+        let (mut starts, rising_count) = starts(faces, vertex_count);
+        let whole_count = faces.iter().filter(|face| whole(face)).count();
+        let mut falling = vec![Port::NONE; 3 * whole_count + 1 - rising_count];
+        let mut rising = vec![(VertexId(0), Port::NONE); rising_count + 1];
+        let mut falls = falling.len() - 1;
+        // From the last side to the first, for the starts walk down from their ends. What is not to be written goes
+        // to a place that is written over, or to the last, which is cut off.
+        for (f, face) in faces.iter().enumerate().rev().filter(|(_, face)| whole(face)) {
+            for side in [2, 1, 0] {
+                let [from, to] = ends(face, side);
+                let rises = from < to;
+                let start = &mut starts[from.index()];
+                *start -= u32::from(rises);
+                let place = if rises { *start as usize } else { rising_count };
+                rising[place] = (to, Port::new(f, side));
+                falls -= usize::from(!rises);
+                let place = if rises { falling.len() - 1 } else { falls };
+                falling[place] = Port::new(f, side);
+            }
+        }
+        rising.truncate(rising_count);
+        falling.pop();
+        Self { starts, rising, falling }
+    }
+}
+
+/// Where the rising sides of each vertex end, and how many there are.
+fn starts(faces: &[[VertexId; 3]], vertex_count: usize) -> (Vec<u32>, usize) {
+    let mut starts = vec![0_u32; vertex_count + 1];
+    for [a, b, c] in faces.iter().filter(|face| whole(face)) {
+        starts[a.index()] += u32::from(a < b);
+        starts[b.index()] += u32::from(b < c);
+        starts[c.index()] += u32::from(c < a);
+    }
+    let mut sum = 0;
+    for start in &mut starts {
+        sum += *start;
+        *start = sum;
+    }
+    (starts, sum as usize)
 }
 
 /// The same by sorting all sides by edge.
@@ -88,7 +124,19 @@ fn sorted_pairs(faces: &[[VertexId; 3]]) -> Vec<[Port; 3]> {
 /// The vertices a side of a face runs from and to.
 #[inline]
 pub(crate) fn ends(face: &[VertexId; 3], side: usize) -> [VertexId; 2] {
-    [face[side], face[(side + 1) % 3]]
+    [face[side], face[next(side)]]
+}
+
+/// The side after one.
+#[inline]
+pub(crate) fn next(side: usize) -> usize {
+    if side == 2 { 0 } else { side + 1 }
+}
+
+/// The side before one.
+#[inline]
+pub(crate) fn previous(side: usize) -> usize {
+    if side == 0 { 2 } else { side - 1 }
 }
 
 /// Whether a face has three vertices.
@@ -105,21 +153,21 @@ mod tests {
     use super::*;
 
     #[test]
-    fn in_passing_and_by_sorting_find_the_same() {
+    fn lists_and_sorting_find_the_same() {
         for mesh in [sample::sphere(500), fan(), moebius(9)] {
-            let passing = pairs_in_passing(&mesh.faces, mesh.positions.len());
-            assert_eq!(passing, Some(sorted_pairs(&mesh.faces)));
+            let listed = listed_pairs(&mesh.faces, mesh.positions.len());
+            assert_eq!(listed, Some(sorted_pairs(&mesh.faces)));
         }
     }
 
     #[test]
-    fn a_fan_in_bad_order_is_left_to_sorting() {
+    fn a_fan_is_left_to_sorting() {
         let blades = 4000;
         let faces: Vec<_> = (0..blades)
             .map(|i| i * 1789 % blades)
             .map(|i| [0, i + 1, (i + 1) % blades + 1].map(VertexId))
             .collect();
-        assert_eq!(pairs_in_passing(&faces, 4001), None);
+        assert_eq!(listed_pairs(&faces, 4001), None);
         let joined = pairs(&faces).iter().flatten().filter(|port| !port.is_none()).count();
         assert_eq!(joined, 2 * blades as usize);
     }
@@ -128,7 +176,7 @@ mod tests {
     fn only_sides_that_run_opposite_are_paired() {
         let faces = [[0, 1, 2], [1, 0, 3], [1, 0, 4], [0, 1, 5], [6, 6, 7], [0, 1, u32::MAX]]
             .map(|face| face.map(VertexId));
-        for across in [pairs(&faces), pairs_in_passing(&faces[..5], 8).unwrap()] {
+        for across in [pairs(&faces), listed_pairs(&faces[..5], 8).unwrap()] {
             let partner = |f: usize| Some(across[f][0]).filter(|p| !p.is_none()).map(Port::cell);
             let mut partners = [partner(0), partner(3)];
             partners.sort();

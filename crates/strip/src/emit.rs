@@ -3,7 +3,7 @@
 use meshlod_mesh::VertexId;
 
 use crate::cover::{Cover, Port};
-use crate::dual::{ends, whole};
+use crate::dual::{ends, next, previous, whole};
 use crate::strips::Strips;
 
 impl Cover {
@@ -15,9 +15,12 @@ impl Cover {
         let mut strip = Vec::new();
         for cell in 0..self.cells.len() {
             if whole(&faces[cell]) && self.is_end(cell) && !drawn[cell] {
-                let far = self.far_end(cell);
+                let far = self.draw(faces, cell, &mut strip);
                 drawn[far] = true;
-                self.draw(faces, self.better_end(cell, far), &mut strip);
+                if self.better_end(cell, far) == far {
+                    strip.clear();
+                    self.draw(faces, far, &mut strip);
+                }
                 strips.push(strip.drain(..));
             }
         }
@@ -42,14 +45,23 @@ impl Cover {
     #[inline]
     pub(crate) fn turn(&self, entry: Port) -> Option<Turn> {
         let onward = self.cells[entry.cell()].links.without(entry.side()).first()?;
-        Some(if onward == (entry.side() + 1) % 3 { Turn::Next } else { Turn::Previous })
+        Some(if onward == next(entry.side()) { Turn::Next } else { Turn::Previous })
     }
 
-    /// Puts the vertices of the path that ends in `end` behind those of `strip`, which begins at an even place.
-    pub(crate) fn draw(&self, faces: &[[VertexId; 3]], end: usize, strip: &mut Vec<VertexId>) {
+    /// Puts the vertices of the path that ends in `end` behind those of `strip`, which are even in number. The other
+    /// end of the path.
+    pub(crate) fn draw(
+        &self,
+        faces: &[[VertexId; 3]],
+        end: usize,
+        strip: &mut Vec<VertexId>,
+    ) -> usize {
         let face = &faces[end];
-        let Some(side) = self.cells[end].links.first() else { return strip.extend(face) };
-        let apex = face[(side + 2) % 3];
+        let Some(side) = self.cells[end].links.first() else {
+            strip.extend(face);
+            return end;
+        };
+        let apex = face[previous(side)];
         let [mut older, mut newer] = ends(face, side);
         strip.push(apex);
         if self.starts_odd(end) {
@@ -60,8 +72,11 @@ impl Cover {
         let mut entry = self.cells[end].across[side];
         loop {
             let face = &faces[entry.cell()];
-            let found = face[(entry.side() + 2) % 3];
-            let Some(turn) = self.turn(entry) else { return strip.push(found) };
+            let found = face[previous(entry.side())];
+            let Some(turn) = self.turn(entry) else {
+                strip.push(found);
+                return entry.cell();
+            };
             // The older vertex is dropped, unless it is said once more: a swap.
             let pivot = ends(face, entry.side())[usize::from(turn == Turn::Next)];
             if pivot == older {
@@ -86,7 +101,12 @@ pub(crate) enum Turn {
 impl Turn {
     /// The side it leaves by, having come in by `entry`.
     #[inline]
-    fn side(self, entry: Port) -> usize {
-        (entry.side() + if self == Self::Next { 1 } else { 2 }) % 3
+    pub(crate) fn side(self, entry: Port) -> usize {
+        if self == Self::Next { next(entry.side()) } else { previous(entry.side()) }
+    }
+
+    #[inline]
+    pub(crate) fn other(self) -> Self {
+        if self == Self::Next { Self::Previous } else { Self::Next }
     }
 }

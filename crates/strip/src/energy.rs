@@ -31,6 +31,7 @@ pub(crate) struct Energy {
     cells: [i32; 8],
     /// Of a link, by how its path goes on beyond both its cells: 4 × [`ONWARD`] of one + that of the other.
     links: [i32; 16],
+    most_won_back: i32,
 }
 
 /// By the links of a cell and one of them: how the path goes on beyond that cell. 0: it ends. 1: by the next side.
@@ -58,7 +59,7 @@ impl Energy {
         // Both turn about the same vertex where one goes on by the next side and the other by the previous one.
         (links[4 + 2], links[2 * 4 + 1]) = (swap, swap);
         (links[1], links[4]) = (odd, odd);
-        Self { cells, links }
+        Self { cells, links, most_won_back: strip + swap / 2 }
     }
 
     /// What a link between `p` and `q` costs, by the links of their cells.
@@ -66,6 +67,14 @@ impl Energy {
     pub(crate) fn link(&self, p: Port, of_p: Links, q: Port, of_q: Links) -> i32 {
         let onward = |port: Port, links: Links| ONWARD[links.bits()][port.side()] as usize;
         self.links[onward(p, of_p) * 4 + onward(q, of_q)]
+    }
+
+    /// What a trail that goes on is expected to win back at most: a strip, where it meets an end, and half a swap.
+    /// The bunny, 60 moves a face: a swap less 1.107 vertices a face in .8 s, this 1.104 in .9, no end to it 1.106 in
+    /// 1.9.
+    #[inline]
+    pub(crate) fn most_won_back(&self) -> i32 {
+        self.most_won_back
     }
 
     /// What a cell costs by its links.

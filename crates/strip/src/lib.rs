@@ -11,6 +11,8 @@ mod dual;
 mod emit;
 mod energy;
 mod filter;
+mod greedy;
+mod order;
 mod random;
 mod region;
 mod repair;

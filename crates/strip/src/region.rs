@@ -37,6 +37,12 @@ impl<'a> Region<'a> {
         self.cell(port.cell()).across[port.side()]
     }
 
+    /// Whether a trail that has cost so much may still end with a cost below `limit`.
+    #[inline]
+    pub(crate) fn may_pay(&self, cost: i32, limit: i32) -> bool {
+        cost <= limit + self.energy.most_won_back()
+    }
+
     /// Makes the link at `p` where it is not, cuts it where it is; what that adds to the cost.
     #[inline]
     pub(crate) fn toggle(&mut self, p: Port) -> i32 {
