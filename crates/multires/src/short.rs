@@ -2,7 +2,8 @@
 
 use crate::frame::Length16;
 
-/// Steps an octave of a radius, as a power of two: 3 bits of mantissa.
+/// Steps an octave of a radius, as a power of two: 3 bits of mantissa. 2 bits save .1 byte a vertex, and give
+/// cameras 1 % more faces, small focuses up to 9.
 const RADIUS: u32 = 8;
 /// Steps an octave of an error: 4 bits of mantissa. 3 bits cost queries 3 % more faces and save .1 byte.
 const ERROR: u32 = 7;
