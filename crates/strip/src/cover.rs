@@ -165,6 +165,14 @@ impl Cover {
         true
     }
 
+    /// Cuts the link at a side.
+    pub(crate) fn unlink(&mut self, port: Port) {
+        for port in [port, self.across(port)] {
+            let cell = &mut self.cells[port.cell()];
+            cell.links = cell.links.without(port.side());
+        }
+    }
+
     /// Whether the two cells, which both end paths, end the same one. Cost: the length of the shorter path.
     fn same_path(&self, p: Port, q: Port) -> bool {
         let (mut from_p, mut from_q) = (self.path(p.cell()), self.path(q.cell()));

@@ -6,6 +6,7 @@ use crate::anneal::{Annealing, Starts};
 use crate::cover::Cover;
 use crate::energy::Prices;
 use crate::order::Order;
+use crate::pieces::CacheAware;
 use crate::strips::Strips;
 
 /// How good strips shall be.
@@ -27,6 +28,8 @@ pub struct Options<'a> {
     pub quality: Quality,
     /// What counts as their cost.
     pub prices: Prices,
+    /// Whether strips shall be cut and ordered for a vertex cache, and for which.
+    pub cache: Option<CacheAware>,
     /// A label for each face, and no strip goes from one label to another.
     pub clusters: Option<&'a [u32]>,
     /// Other seeds give other strips, about as good.
@@ -38,6 +41,7 @@ impl Default for Options<'_> {
         Self {
             quality: Quality::Best { moves_per_face: 40.0 },
             prices: Prices::default(),
+            cache: None,
             clusters: None,
             seed: 0,
         }
@@ -57,7 +61,11 @@ pub fn stripify(faces: &[[VertexId; 3]], options: &Options) -> Strips {
         cover.part(labels);
     }
     let Quality::Best { moves_per_face } = options.quality else {
-        return cover.lay(faces);
+        let strips = cover.lay(faces);
+        return match &options.cache {
+            None => strips,
+            Some(cache) => cover.strips_for_cache(faces, cache),
+        };
     };
     let order = Order::new(&cover);
     let mut cover = order.sort(&cover);
@@ -68,7 +76,11 @@ pub fn stripify(faces: &[[VertexId; 3]], options: &Options) -> Strips {
         seed: options.seed,
     };
     cover.anneal(Starts::Runs(LEAST_RUN.max(RUN_IN_RINGS * order.widest)), &annealing);
-    cover.strips(&order.sorted(faces))
+    let faces = order.sorted(faces);
+    match &options.cache {
+        None => cover.strips(&faces),
+        Some(cache) => cover.strips_for_cache(&faces, cache),
+    }
 }
 
 /// How hot the annealing begins and ends, in vertices. The bunny, 60 moves a face: 1.101, 1.099 and 1.101 vertices a
@@ -124,8 +136,10 @@ mod tests {
     fn exactly_the_faces_are_drawn_whatever_they_are() {
         for mesh in all_sorts() {
             for quality in [Quality::Fast, quick().quality] {
-                let strips = stripify(&mesh.faces, &Options { quality, ..quick() });
-                assert_eq!(difference(&strips, &mesh.faces), Difference::default());
+                for cache in [None, Some(CacheAware::default())] {
+                    let strips = stripify(&mesh.faces, &Options { quality, cache, ..quick() });
+                    assert_eq!(difference(&strips, &mesh.faces), Difference::default());
+                }
             }
         }
     }

@@ -1,0 +1,137 @@
+//! How often the same pixel is shaded again.
+
+use meshlod_mesh::VertexId;
+
+/// Pixels along each side of a view. A triangle of a dense mesh covers few of them, and that is what is drawn.
+const SIZE: usize = 256;
+
+/// An estimate of how many times a pixel that is covered is shaded, if `triangles` are drawn in their order: the mean
+/// over views along the axes, from both ends, without perspective. 1 is the least; 0 where nothing is seen.
+///
+/// A pixel is shaded where its centre lies in a triangle that faces the viewer and nothing drawn so far is nearer.
+/// `positions` are those of the vertices; what is not finite is not drawn. Panics on a vertex without a position.
+pub fn overdraw(
+    triangles: impl Iterator<Item = [VertexId; 3]> + Clone,
+    positions: &[[f64; 3]],
+) -> f64 {
+    let Some(frame) = Frame::new(triangles.clone().flatten().map(|v| positions[v.index()])) else {
+        return 0.0;
+    };
+    let (mut shaded, mut covered) = (0, 0);
+    for axis in 0..3 {
+        for from_above in [true, false] {
+            let mut view = View::new();
+            for triangle in triangles.clone() {
+                let corners = triangle.map(|v| frame.seen(positions[v.index()], axis, from_above));
+                view.draw(corners);
+            }
+            shaded += view.shaded;
+            covered += view.nearest.iter().filter(|depth| depth.is_finite()).count();
+        }
+    }
+    if covered == 0 { 0.0 } else { shaded as f64 / covered as f64 }
+}
+
+/// The cube that is seen.
+struct Frame {
+    low: [f64; 3],
+    /// Pixels by unit of length.
+    scale: f64,
+}
+
+impl Frame {
+    /// Nothing, where the positions have no finite extent.
+    fn new(positions: impl Iterator<Item = [f64; 3]>) -> Option<Self> {
+        let mut low = [f64::INFINITY; 3];
+        let mut high = [f64::NEG_INFINITY; 3];
+        for position in positions.filter(|p| p.iter().all(|x| x.is_finite())) {
+            for k in 0..3 {
+                low[k] = low[k].min(position[k]);
+                high[k] = high[k].max(position[k]);
+            }
+        }
+        let extent = (0..3).map(|k| high[k] - low[k]).fold(0.0, f64::max);
+        (extent > 0.0 && extent.is_finite()).then(|| Self { low, scale: SIZE as f64 / extent })
+    }
+
+    /// Where a place is seen, in pixels, and how far from the viewer.
+    fn seen(&self, position: [f64; 3], axis: usize, from_above: bool) -> [f64; 3] {
+        let at = |k: usize| (position[k] - self.low[k]) * self.scale;
+        let [x, y, z] = [at((axis + 1) % 3), at((axis + 2) % 3), at(axis)];
+        // From below the picture is mirrored, so that what winds counter-clockwise still faces the viewer.
+        if from_above { [x, y, -z] } else { [y, x, z] }
+    }
+}
+
+/// What is seen along one axis.
+struct View {
+    /// How far what is nearest is, by pixel.
+    nearest: Vec<f64>,
+    shaded: usize,
+}
+
+impl View {
+    fn new() -> Self {
+        Self { nearest: vec![f64::INFINITY; SIZE * SIZE], shaded: 0 }
+    }
+
+    fn draw(&mut self, corners: [[f64; 3]; 3]) {
+        let [a, b, c] = corners;
+        let area = cross(a, b, c);
+        if !(area > 0.0 && area.is_finite()) {
+            return;
+        }
+        let first = |k: usize| a[k].min(b[k]).min(c[k]).clamp(0.0, SIZE as f64) as usize;
+        let end = |k: usize| a[k].max(b[k]).max(c[k]).clamp(0.0, SIZE as f64).ceil() as usize;
+        for y in first(1)..end(1) {
+            for x in first(0)..end(0) {
+                let at = [x as f64 + 0.5, y as f64 + 0.5, 0.0];
+                let weights = [cross(b, c, at), cross(c, a, at), cross(a, b, at)];
+                // A centre on an edge is taken by both sides: the estimate is none the worse.
+                if weights.iter().all(|&weight| weight >= 0.0) {
+                    let depth = (weights[0] * a[2] + weights[1] * b[2] + weights[2] * c[2]) / area;
+                    let nearest = &mut self.nearest[y * SIZE + x];
+                    if depth < *nearest {
+                        *nearest = depth;
+                        self.shaded += 1;
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// Twice the area of a triangle in the picture, positive where it winds counter-clockwise.
+fn cross(a: [f64; 3], b: [f64; 3], c: [f64; 3]) -> f64 {
+    (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
+}
+
+#[cfg(test)]
+mod tests {
+    use meshlod_mesh::sample;
+
+    use super::*;
+
+    #[test]
+    fn a_ball_is_never_shaded_twice_whatever_the_order() {
+        let mesh = sample::sphere(2000);
+        let forth = overdraw(mesh.faces.iter().copied(), &mesh.positions);
+        assert!((1.0..1.01).contains(&forth), "{forth}");
+    }
+
+    #[test]
+    fn what_is_drawn_behind_first_is_shaded_twice() {
+        let positions = [
+            [0.0, 0.0, 0.0],
+            [1.0, 0.0, 0.0],
+            [0.0, 1.0, 0.0],
+            [0.0, 0.0, 1.0],
+            [1.0, 0.0, 1.0],
+            [0.0, 1.0, 1.0],
+        ];
+        let [low, high] = [[0, 1, 2], [3, 4, 5]].map(|face| face.map(VertexId));
+        assert_eq!(overdraw([high, low].into_iter(), &positions), 1.0);
+        assert_eq!(overdraw([low, high].into_iter(), &positions), 2.0);
+        assert_eq!(overdraw([].into_iter(), &positions), 0.0);
+    }
+}
