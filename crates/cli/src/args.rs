@@ -12,7 +12,7 @@ use crate::demo::Demo;
 use crate::failure::Failure;
 use crate::session::Session;
 use crate::verbs::{
-    build, check, extract, info, lods, measure, render, repair, replay, sample, simplify,
+    build, check, extract, info, lods, measure, render, repair, replay, sample, simplify, strip,
 };
 
 /// Level of detail for triangle meshes.
@@ -61,6 +61,8 @@ pub enum Verb {
     Build(build::Build),
     /// Take one mesh out of a multiresolution file: fine where it is looked at, coarse elsewhere
     Extract(extract::Extract),
+    /// Draw a mesh and its levels as triangle strips, and say what is sent
+    Strip(strip::Strip),
     /// Run all methods on one mesh: a table, and a page with pictures and heat maps
     Compare(Compare),
     /// Measure how far two meshes are apart, both ways
@@ -84,6 +86,7 @@ impl Verb {
             Self::Lods(verb) => verb.run(session),
             Self::Build(verb) => verb.run(session),
             Self::Extract(verb) => verb.run(session),
+            Self::Strip(verb) => verb.run(session),
             Self::Compare(verb) => verb.run(session),
             Self::Measure(verb) => verb.run(session),
             Self::Sample(verb) => verb.run(session),

@@ -11,3 +11,4 @@ pub mod repair;
 pub mod replay;
 pub mod sample;
 pub mod simplify;
+pub mod strip;

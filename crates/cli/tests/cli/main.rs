@@ -9,5 +9,6 @@ mod models;
 mod pipes;
 mod repair;
 mod run;
+mod strip;
 mod usage;
 mod verbs;

@@ -1,0 +1,155 @@
+//! Strips as files: glTF, or lists of vertices.
+
+use std::cmp::Reverse;
+use std::path::Path;
+
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD;
+use meshlod::io::write_file;
+use meshlod::mesh::{Bounds, VertexId};
+use meshlod::strip::Strips;
+use serde_json::{Value, json};
+
+use super::Level;
+use crate::failure::Failure;
+use crate::files;
+
+/// Component types, modes and targets of glTF by their numbers.
+const FLOAT: u32 = 5126;
+const UNSIGNED_INT: u32 = 5125;
+const TRIANGLE_STRIP: u32 = 5;
+const ARRAY_BUFFER: u32 = 34962;
+const ELEMENT_ARRAY_BUFFER: u32 = 34963;
+
+/// Refuses a file that could not be written.
+pub(super) fn check(out: &Path, input: &Path) -> Result<(), Failure> {
+    if files::is_pipe(out) {
+        return Err(Failure::usage("-: strips need a file to go to"));
+    }
+    if !is_gltf(out) && !has_suffix(out, "json") {
+        let name = files::name(out);
+        return Err(Failure::usage(format_args!("{name}: strips go to .gltf or .json")));
+    }
+    files::check_place(out)?;
+    files::check_apart(out, &[input])
+}
+
+pub(super) fn write(out: &Path, positions: &[[f64; 3]], levels: &[Level]) -> Result<(), Failure> {
+    let json = if is_gltf(out) { gltf(positions, levels) } else { lists(levels) };
+    Ok(write_file(out, format!("{json:#}\n").as_bytes())?)
+}
+
+fn is_gltf(out: &Path) -> bool {
+    has_suffix(out, "gltf")
+}
+
+fn has_suffix(path: &Path, suffix: &str) -> bool {
+    path.extension().is_some_and(|found| found.eq_ignore_ascii_case(suffix))
+}
+
+/// Each strip as the list of its vertices, by their numbers in the input.
+fn lists(levels: &[Level]) -> Value {
+    let strips = |level: &Level| {
+        let lists = level.strips.iter().map(|strip| strip.iter().map(|v| v.0).collect::<Vec<_>>());
+        json!({
+            "size": level.size.to_string(),
+            "triangles": level.triangles,
+            "strips": lists.collect::<Vec<_>>(),
+        })
+    };
+    json!({ "levels": levels.iter().map(strips).collect::<Vec<_>>() })
+}
+
+/// A document with its buffer in it: the vertices once, and each level as a mesh of one primitive. The strips of a
+/// level are one, joined by triangles without area, for glTF knows no restart.
+fn gltf(positions: &[[f64; 3]], levels: &[Level]) -> Value {
+    let mut drawn: Vec<_> = levels.iter().filter(|level| !level.strips.is_empty()).collect();
+    drawn.sort_by_key(|level| Reverse(level.triangles));
+    let asset = json!({ "version": "2.0", "generator": "meshlod" });
+    if drawn.is_empty() {
+        return json!({ "asset": asset, "scene": 0, "scenes": [{}] });
+    }
+    let mut document = Document::default();
+    let places: Vec<[f32; 3]> = positions.iter().map(|p| p.map(|x| x as f32)).collect();
+    let shown: Vec<_> = places.iter().map(|p| p.map(f64::from)).collect();
+    let Bounds { min, max } = Bounds::of(&shown);
+    let bytes = places.as_flattened().iter().flat_map(|x| x.to_le_bytes()).collect();
+    let vertices = document.accessor(
+        bytes,
+        ARRAY_BUFFER,
+        json!({
+            "componentType": FLOAT, "count": places.len(), "type": "VEC3", "min": min, "max": max,
+        }),
+    );
+    let mut meshes = Vec::new();
+    for level in &drawn {
+        let stitched = stitched(&level.strips);
+        let bytes = stitched.iter().flat_map(|v| v.0.to_le_bytes()).collect();
+        let indices = document.accessor(
+            bytes,
+            ELEMENT_ARRAY_BUFFER,
+            json!({
+                "componentType": UNSIGNED_INT, "count": stitched.len(), "type": "SCALAR",
+            }),
+        );
+        let primitive = json!({
+            "attributes": { "POSITION": vertices }, "indices": indices, "mode": TRIANGLE_STRIP,
+        });
+        meshes.push(json!({ "name": level.size.to_string(), "primitives": [primitive] }));
+    }
+    let node = |mesh: usize| json!({ "name": format!("strips_LOD{mesh}"), "mesh": mesh });
+    let mut nodes: Vec<_> = (0..meshes.len()).map(node).collect();
+    let mut json = json!({ "asset": asset, "scene": 0, "scenes": [{ "nodes": [0] }] });
+    if nodes.len() > 1 {
+        let coarser: Vec<usize> = (1..nodes.len()).collect();
+        nodes[0]["extensions"] = json!({ "MSFT_lod": { "ids": coarser } });
+        json["extensionsUsed"] = json!(["MSFT_lod"]);
+    }
+    json["nodes"] = nodes.into();
+    json["meshes"] = meshes.into();
+    document.finish(json)
+}
+
+/// All strips as one, which repeats vertices between them.
+fn stitched(strips: &Strips) -> Vec<VertexId> {
+    let mut one: Vec<VertexId> = Vec::new();
+    for strip in strips.iter() {
+        if let Some(&last) = one.last() {
+            one.extend([last, strip[0]]);
+            // So that it begins with an even triangle.
+            one.extend((one.len() % 2 == 1).then_some(strip[0]));
+        }
+        one.extend(strip);
+    }
+    one
+}
+
+/// The buffer of a document, and what tells its parts.
+#[derive(Default)]
+struct Document {
+    buffer: Vec<u8>,
+    views: Vec<Value>,
+    accessors: Vec<Value>,
+}
+
+impl Document {
+    /// Appends an array of words of four bytes; the number of its accessor.
+    fn accessor(&mut self, bytes: Vec<u8>, target: u32, mut accessor: Value) -> usize {
+        self.views.push(json!({
+            "buffer": 0, "byteOffset": self.buffer.len(), "byteLength": bytes.len(),
+            "target": target,
+        }));
+        self.buffer.extend(bytes);
+        accessor["bufferView"] = (self.views.len() - 1).into();
+        self.accessors.push(accessor);
+        self.accessors.len() - 1
+    }
+
+    fn finish(self, mut json: Value) -> Value {
+        let uri = format!("data:application/octet-stream;base64,{}", STANDARD.encode(&self.buffer));
+        json["accessors"] = self.accessors.into();
+        json["bufferViews"] = self.views.into();
+        json["buffers"] = json!([{ "byteLength": self.buffer.len(), "uri": uri }]);
+        json
+    }
+}

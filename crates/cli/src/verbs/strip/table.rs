@@ -1,0 +1,67 @@
+//! The figures of all levels, for people.
+
+use crate::numbers::count;
+use crate::reduce;
+use crate::table::aligned;
+
+use super::{Level, Origin, Strip};
+
+impl Strip {
+    pub(super) fn text(&self, origin: &Origin, levels: &[Level]) -> String {
+        let headings = [
+            "level",
+            "triangles",
+            "vertices",
+            "a triangle",
+            "indices",
+            "strips",
+            "swaps",
+            "ACMR16",
+            "ACMR32",
+            "ms",
+        ];
+        let mut rows = vec![headings.map(String::from)];
+        rows.extend(levels.iter().map(row));
+        let mut text = aligned(&rows);
+        text += "vertices: sent where each strip is drawn by itself; indices: with a restart between them;\n";
+        text += "ACMR: what a cache of the last 16 or 32 has to fetch, a triangle\n";
+        if self.verify {
+            let wrong: Vec<_> = levels.iter().filter(|level| level.is_wrong()).collect();
+            for Level { size, difference, .. } in &wrong {
+                let (missing, extra) = difference.map_or((0, 0), |d| (d.missing, d.extra));
+                text += &format!("{size}: {missing} triangles missing, {extra} too many\n");
+            }
+            if wrong.is_empty() {
+                text += "verified: each level is drawn as it is\n";
+            }
+        }
+        let left_out = origin.mesh.faces.len() - origin.tree.faces().len();
+        if left_out > 0 {
+            text += &format!(
+                "left out: {} that repeat a vertex or another face\n",
+                crate::numbers::faces(left_out)
+            );
+        }
+        if !origin.simplify_time.is_zero() {
+            text += &reduce::seconds_line(origin.simplify_time);
+        }
+        text
+    }
+}
+
+fn row(level: &Level) -> [String; 10] {
+    let Level { sent, triangles, .. } = level;
+    let each = sent.vertices as f64 / (*triangles).max(1) as f64;
+    [
+        level.size.to_string(),
+        count(*triangles),
+        count(sent.vertices),
+        format!("{each:.3}"),
+        count(sent.indices_with_restart),
+        count(sent.strips),
+        count(sent.swaps),
+        format!("{:.3}", sent.acmr16),
+        format!("{:.3}", sent.acmr32),
+        format!("{:.1}", level.time.as_secs_f64() * 1e3),
+    ]
+}
