@@ -118,6 +118,7 @@ mod repair;
 mod scene;
 
 pub use meshlod_check as check;
+pub use meshlod_codec as codec;
 pub use meshlod_io as io;
 pub use meshlod_measure as measure;
 pub use meshlod_mesh as mesh;

@@ -1,0 +1,22 @@
+//! Geometry that stays compressed on the GPU, without cracks.
+//!
+//! [`Parts`] are positions of eight bits an axis, decoded by the vertex transform alone: the mesh falls into
+//! parts whose boxes are about equally large, all cells are of one size and lie in one grid, and each part has
+//! a matrix that puts its cells where they belong. What two parts share is in the same cell in both.
+//!
+//! ```
+//! use meshlod_codec::{Cells, Parting};
+//! use meshlod_mesh::sample;
+//!
+//! let mesh = sample::sphere(5000);
+//! let parts = Parting::new(&mesh)?.within_reduction(0.7, Cells::Centred)?;
+//! assert!(parts.reduction() >= 0.7);
+//! let decoded = parts.decode();
+//! assert_eq!(decoded.faces.len(), mesh.faces.len());
+//! # Ok::<(), meshlod_codec::PartsError>(())
+//! ```
+#![forbid(unsafe_code)]
+
+mod parts;
+
+pub use parts::{Cells, Part, Parting, Parts, PartsError};

@@ -1,0 +1,152 @@
+//! Faces merged into ever fewer clusters, each time those whose common box is smallest.
+//!
+//! Hierarchical face clustering [GWH01], by the longest side of the box of two clusters together [LCL10].
+
+use std::cmp::Reverse;
+use std::collections::BinaryHeap;
+
+use meshlod_mesh::Bounds;
+
+use super::surface::Surface;
+
+/// The merges of a surface, first to last: all clusterings into any number of clusters.
+#[derive(Clone, Debug)]
+pub(super) struct Merges {
+    faces: usize,
+    /// Two faces of the two clusters that become one.
+    pairs: Vec<[u32; 2]>,
+}
+
+impl Merges {
+    /// Merges until nothing is left to merge: neighbours first, and components after all of them.
+    ///
+    /// Cost: O(n log n) for each doubling of a cluster.
+    pub(super) fn new(surface: &Surface) -> Self {
+        let mut forming = Forming::new(surface);
+        let neighbours = |f: u32| surface.neighbours(f).filter(move |&other| f < other);
+        let faces = 0..surface.faces() as u32;
+        forming.merge(faces.clone().flat_map(|f| neighbours(f).map(move |other| [f, other])));
+        // What has no neighbours any more, in an order in which near ones are mostly side by side.
+        let mut apart: Vec<u32> = faces.filter(|&f| forming.root(f) == f).collect();
+        apart.sort_by_cached_key(|&f| surface.morton(forming.boxes[f as usize].center()));
+        forming.merge(apart.windows(2).map(|pair| [pair[0], pair[1]]));
+        Self { faces: surface.faces(), pairs: forming.pairs }
+    }
+
+    /// The cluster of each face, of `count` clusters, numbered by their first faces; of fewer where there
+    /// are fewer faces.
+    pub(super) fn clusters(&self, count: usize) -> Vec<u32> {
+        let mut parents: Vec<u32> = (0..self.faces as u32).collect();
+        for &[a, b] in &self.pairs[..self.faces.saturating_sub(count.max(1))] {
+            let (a, b) = (root(&mut parents, a), root(&mut parents, b));
+            parents[a.max(b) as usize] = a.min(b);
+        }
+        let mut numbers = vec![u32::MAX; self.faces];
+        let mut next = 0;
+        let mut number = |face: u32| {
+            let first = root(&mut parents, face) as usize;
+            if numbers[first] == u32::MAX {
+                numbers[first] = next;
+                next += 1;
+            }
+            numbers[first]
+        };
+        (0..self.faces as u32).map(&mut number).collect()
+    }
+}
+
+/// Clusters on their way.
+struct Forming {
+    parents: Vec<u32>,
+    /// By the least face of each cluster.
+    boxes: Vec<Bounds>,
+    pairs: Vec<[u32; 2]>,
+}
+
+impl Forming {
+    fn new(surface: &Surface) -> Self {
+        let faces = 0..surface.faces() as u32;
+        Self {
+            parents: faces.clone().collect(),
+            boxes: faces.map(|f| Bounds::of(&surface.corners(f))).collect(),
+            pairs: Vec::new(),
+        }
+    }
+
+    fn root(&mut self, face: u32) -> u32 {
+        root(&mut self.parents, face)
+    }
+
+    /// Merges what is paired, the smallest first, until each pair is in one cluster.
+    fn merge(&mut self, pairs: impl Iterator<Item = [u32; 2]>) {
+        let pairs: Vec<_> = pairs.map(|pair| Reverse((self.side(pair), pair))).collect();
+        let mut waiting = BinaryHeap::from(pairs);
+        while let Some(Reverse((side, pair))) = waiting.pop() {
+            let [a, b] = pair.map(|face| self.root(face));
+            if a == b {
+                continue;
+            }
+            // Boxes only grow: what is still as small as it was is the smallest.
+            let now = self.side([a, b]);
+            if now > side {
+                waiting.push(Reverse((now, [a, b])));
+                continue;
+            }
+            let (first, second) = (a.min(b), a.max(b));
+            let other = self.boxes[second as usize];
+            self.boxes[first as usize].merge(&other);
+            self.parents[second as usize] = first;
+            self.pairs.push([a, b]);
+        }
+    }
+
+    /// The longest side of the box of two clusters, as bits, which are in the order of lengths.
+    fn side(&self, [a, b]: [u32; 2]) -> u64 {
+        let mut both = self.boxes[a as usize];
+        both.merge(&self.boxes[b as usize]);
+        super::longest_side(&both).to_bits()
+    }
+}
+
+fn root(parents: &mut [u32], mut face: u32) -> u32 {
+    while parents[face as usize] != face {
+        let above = parents[parents[face as usize] as usize];
+        parents[face as usize] = above;
+        face = above;
+    }
+    face
+}
+
+#[cfg(test)]
+mod tests {
+    use meshlod_fixtures::{grid, two_objects};
+
+    use super::*;
+
+    #[test]
+    fn there_are_as_many_clusters_as_asked() {
+        for mesh in [grid(8), two_objects()] {
+            let surface = Surface::new(&mesh);
+            let merges = Merges::new(&surface);
+            for count in [1, 2, 3, 7, mesh.faces.len(), mesh.faces.len() + 5] {
+                let clusters = merges.clusters(count);
+                let found = clusters.iter().max().unwrap() + 1;
+                assert_eq!(found as usize, count.min(mesh.faces.len()));
+            }
+        }
+    }
+
+    #[test]
+    fn four_clusters_of_a_square_are_its_quarters() {
+        let mesh = grid(8);
+        let surface = Surface::new(&mesh);
+        let clusters = Merges::new(&surface).clusters(4);
+        let whole = Bounds::of(&mesh.positions);
+        for cluster in 0..4 {
+            let faces = (0..).zip(&clusters).filter(|(_, of)| **of == cluster);
+            let corners: Vec<_> = faces.flat_map(|(f, _)| surface.corners(f)).collect();
+            let side = super::super::longest_side(&Bounds::of(&corners));
+            assert!(side < 0.8 * super::super::longest_side(&whole), "{side}");
+        }
+    }
+}

@@ -1,0 +1,149 @@
+//! Eight bits an axis, in parts that share one grid [LCL10].
+
+mod grid;
+mod lloyd;
+mod merge;
+mod parting;
+mod surface;
+#[cfg(test)]
+mod tests;
+
+use meshlod_mesh::{Bounds, Mesh, VertexId};
+use thiserror::Error;
+
+pub use self::grid::Cells;
+use self::grid::Grid;
+pub use self::parting::Parting;
+
+/// The positions and faces of a mesh in parts, positions in eight bits an axis.
+///
+/// A vertex is stored once for each part that uses it. It is in the same cell of the grid in all of them.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Parts {
+    grid: Grid,
+    /// How many vertices the mesh has that faces use.
+    vertices: usize,
+    parts: Vec<Part>,
+}
+
+/// A part: at most 256 cells along each axis.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Part {
+    /// The cell of the grid in which its own cell `[0; 3]` is.
+    pub offset: [i32; 3],
+    /// The cells of its vertices, from its offset on.
+    pub positions: Vec<[u8; 3]>,
+    /// The vertex of the mesh that each is.
+    pub vertices: Vec<VertexId>,
+    /// By places in these lists.
+    pub faces: Vec<[u32; 3]>,
+}
+
+/// Why a mesh is not made parts.
+#[derive(Clone, Debug, Error, PartialEq)]
+pub enum PartsError {
+    /// No face has three corners.
+    #[error("the mesh has no faces to part")]
+    Empty,
+    /// A number that is none.
+    #[error("{0} has a coordinate that is not finite, or too large")]
+    NotFinite(VertexId),
+    /// Not a part between nothing and all.
+    #[error("a reduction of {0} is none: give a part between 0 and 1")]
+    Reduction(f64),
+    /// The mesh is too small for its headers.
+    #[error("so small a mesh is reduced by {best:.3} at most, in one part")]
+    TooSmall {
+        /// What there is.
+        best: f64,
+    },
+}
+
+/// Of a file: how many vertices and parts it has, and the sides of a cell.
+const HEADER: usize = 2 * 4 + 3 * 4;
+/// Of a part: how many vertices it has, and its offset in 16 bits an axis or in 32.
+const PART: usize = 4;
+
+impl Parts {
+    /// The parts.
+    pub fn parts(&self) -> &[Part] {
+        &self.parts
+    }
+
+    /// The sides of a cell, in model units.
+    pub fn cell(&self) -> [f32; 3] {
+        self.grid.cell()
+    }
+
+    /// What puts a part's positions where they belong: three rows of four, model units.
+    pub fn matrix(&self, part: &Part) -> [[f32; 4]; 3] {
+        self.grid.matrix(part)
+    }
+
+    /// The mesh of all parts: each vertex where its cell is, each once.
+    ///
+    /// Vertices are in the order in which parts have them; faces part by part.
+    pub fn decode(&self) -> Mesh {
+        let most = self.parts.iter().flat_map(|part| &part.vertices).max();
+        let mut numbers = vec![None; most.map_or(0, |v| v.index() + 1)];
+        let mut mesh = Mesh::default();
+        for part in &self.parts {
+            for (&vertex, &position) in part.vertices.iter().zip(&part.positions) {
+                numbers[vertex.index()].get_or_insert_with(|| {
+                    mesh.positions.push(self.grid.place(part, position));
+                    VertexId::new(mesh.positions.len() - 1)
+                });
+            }
+            let number = |local: u32| numbers[part.vertices[local as usize].index()];
+            mesh.faces.extend(
+                part.faces
+                    .iter()
+                    .filter_map(|&[a, b, c]| Some([number(a)?, number(b)?, number(c)?])),
+            );
+        }
+        mesh
+    }
+
+    /// What positions take, with all that decoding them needs, in bytes.
+    pub fn position_bytes(&self) -> usize {
+        HEADER + self.parts.len() * self.part_header() + 3 * self.stored()
+    }
+
+    fn part_header(&self) -> usize {
+        let is_short = |part: &Part| part.offset.iter().all(|&x| i16::try_from(x).is_ok());
+        PART + if self.parts.iter().all(is_short) { 6 } else { 12 }
+    }
+
+    /// How many vertices all parts have together.
+    fn stored(&self) -> usize {
+        self.parts.iter().map(|part| part.positions.len()).sum()
+    }
+
+    /// How many parts would leave a reduction, as far as these tell: vertices are stored again along borders,
+    /// whose length grows as the root of the number of parts.
+    fn count_for(&self, reduction: f64) -> usize {
+        let (count, header) = (self.parts.len() as f64, self.part_header() as f64);
+        let again = (self.stored() - self.vertices).max(1) as f64 / count.sqrt();
+        let room = (1.0 - reduction) * (12 * self.vertices) as f64;
+        let room = room - (HEADER + 3 * self.vertices) as f64;
+        // header · x² + 3 again · x = room, where x is the root.
+        let half = 1.5 * again / header;
+        let root = (half * half + room.max(0.0) / header).sqrt() - half;
+        (root * root) as usize
+    }
+
+    /// How much less that is than three `f32` for each vertex, as a part.
+    pub fn reduction(&self) -> f64 {
+        1.0 - self.position_bytes() as f64 / (12 * self.vertices) as f64
+    }
+
+    /// How many vertices are stored again, as a part of all.
+    pub fn overhead(&self) -> f64 {
+        self.stored() as f64 / self.vertices as f64 - 1.0
+    }
+}
+
+/// The longest side of a box.
+fn longest_side(bounds: &Bounds) -> f64 {
+    (0..3).map(|axis| bounds.max[axis] - bounds.min[axis]).fold(0.0, f64::max)
+}

@@ -1,0 +1,60 @@
+//! The faces of a mesh with their neighbours, as parts are made of them.
+
+use meshlod_mesh::{Bounds, Connectivity, FaceId, Mesh, Side, Twin, VertexId};
+
+/// Faces that have three corners, their corners and their neighbours.
+pub(super) struct Surface<'m> {
+    positions: &'m [[f64; 3]],
+    /// The mesh's faces, without those that repeat a vertex.
+    pub(super) triangles: Vec<[VertexId; 3]>,
+    /// Across each side; [`NONE`] where there is not exactly one face.
+    across: Vec<[u32; 3]>,
+    bounds: Bounds,
+}
+
+const NONE: u32 = u32::MAX;
+
+impl<'m> Surface<'m> {
+    pub(super) fn new(mesh: &'m Mesh) -> Self {
+        let whole = |[a, b, c]: &&[VertexId; 3]| a != b && b != c && c != a;
+        let triangles: Vec<_> = mesh.faces.iter().filter(whole).copied().collect();
+        let connectivity = Connectivity::new(&triangles, mesh.positions.len());
+        let across =
+            |face: usize, k: usize| match connectivity.twin(Side::new(FaceId::new(face), k)) {
+                Twin::Side(side) => side.face().0,
+                Twin::Boundary | Twin::NonManifold | Twin::Degenerate => NONE,
+            };
+        let across = (0..triangles.len()).map(|face| [0, 1, 2].map(|k| across(face, k))).collect();
+        let corners = triangles.iter().flatten().map(|v| &mesh.positions[v.index()]);
+        let bounds = Bounds::of(corners);
+        Self { positions: &mesh.positions, triangles, across, bounds }
+    }
+
+    pub(super) fn faces(&self) -> usize {
+        self.triangles.len()
+    }
+
+    pub(super) fn position(&self, vertex: VertexId) -> [f64; 3] {
+        self.positions[vertex.index()]
+    }
+
+    pub(super) fn corners(&self, face: u32) -> [[f64; 3]; 3] {
+        self.triangles[face as usize].map(|vertex| self.position(vertex))
+    }
+
+    /// The faces across its sides.
+    pub(super) fn neighbours(&self, face: u32) -> impl Iterator<Item = u32> {
+        self.across[face as usize].into_iter().filter(|&other| other != NONE)
+    }
+
+    /// Where a place is along a curve through all the surface's box: near ones are mostly near along it.
+    pub(super) fn morton(&self, place: [f64; 3]) -> u64 {
+        let side = super::longest_side(&self.bounds).max(f64::MIN_POSITIVE);
+        let spread = |x: u64| (0..21).fold(0, |bits, i| bits | (x >> i & 1) << (3 * i));
+        (0..3).fold(0, |code, axis| {
+            // Saturating: whatever lies outside is at an end.
+            let x = ((place[axis] - self.bounds.min[axis]) / side * f64::from(1 << 21)) as u64;
+            code | spread(x.min((1 << 21) - 1)) << axis
+        })
+    }
+}

@@ -1,0 +1,129 @@
+//! What parts hold, whatever the mesh.
+
+use meshlod_fixtures::{grid, mesh, two_objects};
+use meshlod_mesh::sample;
+
+use super::*;
+
+fn parting(mesh: &Mesh) -> Parting<'_> {
+    Parting::new(mesh).unwrap()
+}
+
+fn meshes() -> Vec<Mesh> {
+    vec![sample::sphere(3000), sample::gyroid(4000), sample::terrain(2000), grid(9), two_objects()]
+}
+
+/// The faces with what their corners were, each from its least.
+fn drawn(parts: &Parts) -> Vec<[VertexId; 3]> {
+    let of_part = |part: &'_ Part| {
+        let face = |face: &[u32; 3]| face.map(|local| part.vertices[local as usize]);
+        part.faces.iter().map(face).collect::<Vec<_>>()
+    };
+    let mut faces: Vec<_> = parts.parts().iter().flat_map(of_part).collect();
+    faces.sort_unstable();
+    faces
+}
+
+#[test]
+fn every_face_is_in_one_part_as_it_was() {
+    for mesh in meshes() {
+        let parting = parting(&mesh);
+        for count in [1, 5, 40] {
+            let parts = parting.into_count(count, Cells::Centred);
+            let mut faces = mesh.faces.clone();
+            faces.sort_unstable();
+            assert_eq!(drawn(&parts), faces);
+            assert_eq!(parts.decode().faces.len(), faces.len());
+        }
+    }
+}
+
+#[test]
+fn a_vertex_is_in_the_same_cell_of_all_its_parts() {
+    for mesh in meshes() {
+        let parts = parting(&mesh).into_count(24, Cells::Centred);
+        let mut cells = vec![None; mesh.positions.len()];
+        let mut again = 0;
+        for part in parts.parts() {
+            for (&vertex, &position) in part.vertices.iter().zip(&part.positions) {
+                let cell = [0, 1, 2].map(|k| part.offset[k] + i32::from(position[k]));
+                again += usize::from(cells[vertex.index()].is_some());
+                assert_eq!(*cells[vertex.index()].get_or_insert(cell), cell);
+            }
+        }
+        assert!(again > 0);
+    }
+}
+
+#[test]
+fn no_vertex_is_further_off_than_half_a_cell() {
+    for mesh in meshes() {
+        for (cells, most) in [(Cells::Centred, 0.5), (Cells::Truncated, 1.0)] {
+            let parts = parting(&mesh).into_count(12, cells);
+            let sides = parts.cell().map(f64::from);
+            for part in parts.parts() {
+                let matrix = parts.matrix(part);
+                for (&vertex, &position) in part.vertices.iter().zip(&part.positions) {
+                    let [x, y, z] = position.map(f32::from);
+                    for axis in 0..3 {
+                        let [a, b, c, d] = matrix[axis];
+                        let decoded = f64::from(a * x + b * y + c * z + d);
+                        let off = (decoded - mesh.positions[vertex.index()][axis]).abs();
+                        assert!(off <= most * sides[axis] * 1.001, "{off} of {sides:?}");
+                    }
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn more_parts_have_smaller_cells_and_settling_helps() {
+    let mesh = sample::gyroid(6000);
+    let parting = parting(&mesh);
+    let size = |count| parting.into_count(count, Cells::Centred).cell().map(f64::from);
+    let [few, many] = [size(4), size(64)].map(|cell| cell.iter().sum::<f64>());
+    assert!(many < 0.5 * few, "{few} {many}");
+    let merged = parting.merges.clusters(64);
+    let [before, after] = [merged.clone(), lloyd::settle(&parting.surface, merged, 64)]
+        .map(|parts| lloyd::common_box(&lloyd::boxes(&parting.surface, &parts, 64)).length());
+    assert!(after < before, "{before} {after}");
+}
+
+#[test]
+fn a_reduction_is_kept_by_as_many_parts_as_it_allows() {
+    let mesh = sample::sphere(6000);
+    let parting = parting(&mesh);
+    let parts = parting.within_reduction(0.68, Cells::Centred).unwrap();
+    assert!((0.68..0.69).contains(&parts.reduction()), "{}", parts.reduction());
+    assert!(parts.parts().len() > 3 && parts.overhead() > 0.0);
+}
+
+#[test]
+fn what_cannot_be_is_said() {
+    let small = mesh(&[[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]], &[[0, 1, 2]]);
+    let too_small = parting(&small).within_reduction(0.7, Cells::Centred);
+    assert!(matches!(too_small, Err(PartsError::TooSmall { .. })));
+    let none = |part| parting(&small).within_reduction(part, Cells::Centred).err();
+    assert_eq!(none(1.0), Some(PartsError::Reduction(1.0)));
+    assert!(none(f64::NAN).is_some());
+    assert_eq!(Parting::new(&Mesh::default()).err(), Some(PartsError::Empty));
+    let far = mesh(&[[0.0; 3], [1e300, 0.0, 0.0], [0.0, 1.0, 0.0]], &[[0, 1, 2]]);
+    assert_eq!(Parting::new(&far).err(), Some(PartsError::NotFinite(VertexId(1))));
+}
+
+#[test]
+fn flat_tiny_and_far_meshes_stay_where_they_are() {
+    for (scale, from) in [(1.0, 0.0), (1e30, 0.0), (1e-30, 0.0), (1.0, 4e6), (0.0, 5.0)] {
+        let place = |x: f64, y: f64| [from + scale * x, from + scale * y, from];
+        let corners = [place(0.0, 0.0), place(1.0, 0.0), place(0.0, 1.0)];
+        let mesh = mesh(&corners, &[[0, 1, 2]]);
+        let decoded = parting(&mesh).into_count(1, Cells::Centred).decode();
+        for (was, is) in corners.iter().zip(&decoded.positions) {
+            for axis in 0..3 {
+                let most = (scale / 256.0).max(from / 4e6);
+                assert!((was[axis] - is[axis]).abs() <= most, "{was:?} {is:?}");
+            }
+        }
+    }
+}
