@@ -106,7 +106,7 @@ struct Round<'a> {
 impl Round<'_> {
     /// Anneals runs of cells side by side, beginning at a random cell, so that their borders are elsewhere next time.
     fn runs(self, cells: &mut [Cell], run: usize, moves_per_cell: f64, mut random: Random) {
-        let first = random.below(run).min(cells.len());
+        let first = if cells.len() > run { random.below(run) } else { 0 };
         let seed = random.bits();
         let (head, rest) = cells.split_at_mut(first);
         let others =

@@ -124,12 +124,12 @@ fn linked_side(cell: usize, links: Links, dice: &mut u64) -> Port {
     Port::new(cell, nth(links.bits(), roll(dice, 2)))
 }
 
-/// A number below `sides`, from six of the bits.
+/// A number below `sides`, which are three at most, from four of the bits: a trail rolls fourteen times.
 #[inline]
 fn roll(dice: &mut u64, sides: u32) -> u32 {
-    let face = (*dice & 63) as u32;
-    *dice >>= 6;
-    (face * sides) >> 6
+    let face = (*dice & 15) as u32;
+    *dice >>= 4;
+    (face * sides) >> 4
 }
 
 /// The `n`-th of the bits that are set.
