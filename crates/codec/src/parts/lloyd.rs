@@ -9,35 +9,31 @@ use meshlod_mesh::Bounds;
 
 use super::surface::Surface;
 
-/// So often parts are grown anew at most, and so often without getting better. On horse, feline and
-/// squirrel all that is gained is gained in the first dozen rounds.
+/// So often parts are grown anew at most, and so often without getting better. Horse, feline and squirrel in
+/// parts of 70 % reduction are best after 7 to 15 rounds, 7 to 14 % better than before; from round 7 on it is
+/// 1 %.
 const ROUNDS: usize = 24;
-const PATIENCE: usize = 6;
+const PATIENCE: usize = 4;
 
 /// Parts whose common box is as small as was found, from given ones. All have a face.
 pub(super) fn settle(surface: &Surface, parts: Vec<u32>, count: usize) -> Vec<u32> {
-    let mut best = (common_box(&boxes(surface, &parts, count)), parts.clone());
-    let (mut parts, mut worse) = (parts, 0);
+    let boxes_of = |parts: &[u32]| boxes(surface, parts, count);
+    let mut best = (cost(&boxes_of(&parts)), parts.clone());
+    let (mut parts, mut from, mut worse) = (parts, Vec::new(), 0);
     for _ in 0..ROUNDS {
-        parts = grow(surface, &seeds(surface, &parts, count));
-        let size = common_box(&boxes(surface, &parts, count));
-        if cost(size) < cost(best.0) {
-            best = (size, parts.clone());
-            worse = 0;
-        } else {
-            worse += 1;
-        }
-        if worse > PATIENCE {
+        let seeds = seeds(surface, &parts, &boxes_of(&parts));
+        if seeds == from || worse > PATIENCE {
             break;
+        }
+        parts = grow(surface, &seeds);
+        from = seeds;
+        let cost = cost(&boxes_of(&parts));
+        worse = if cost < best.0 { 0 } else { worse + 1 };
+        if cost < best.0 {
+            best = (cost, parts.clone());
         }
     }
     best.1
-}
-
-/// The sides of the least box that each part fits into.
-pub(super) fn common_box(boxes: &[Bounds]) -> DVec3 {
-    let sides = boxes.iter().map(|of| DVec3::from(of.max) - DVec3::from(of.min));
-    sides.fold(DVec3::ZERO, DVec3::max)
 }
 
 /// The box of each part.
@@ -49,16 +45,16 @@ pub(super) fn boxes(surface: &Surface, parts: &[u32], count: usize) -> Vec<Bound
     boxes
 }
 
-/// The mean square of the error of cells that share a box so out, but for a factor.
-fn cost(size: DVec3) -> f64 {
-    size.length_squared()
+/// The mean square of the error, but for a factor: that of the sides of the least box that all fit into.
+pub(super) fn cost(boxes: &[Bounds]) -> f64 {
+    let sides = boxes.iter().map(|of| DVec3::from(of.max) - DVec3::from(of.min));
+    sides.fold(DVec3::ZERO, DVec3::max).length_squared()
 }
 
 /// The face of each part that is closest to the middle of its box.
-fn seeds(surface: &Surface, parts: &[u32], count: usize) -> Vec<u32> {
-    let middles = boxes(surface, parts, count).into_iter().map(|of| DVec3::from(of.center()));
-    let middles: Vec<DVec3> = middles.collect();
-    let mut seeds = vec![(f64::INFINITY, 0); count];
+fn seeds(surface: &Surface, parts: &[u32], boxes: &[Bounds]) -> Vec<u32> {
+    let middles: Vec<_> = boxes.iter().map(|of| DVec3::from(of.center())).collect();
+    let mut seeds = vec![(f64::INFINITY, 0); boxes.len()];
     for (face, &part) in (0..).zip(parts) {
         let distance = center(surface, face).distance(middles[part as usize]);
         let best = &mut seeds[part as usize];

@@ -86,7 +86,7 @@ fn more_parts_have_smaller_cells_and_settling_helps() {
     assert!(many < 0.5 * few, "{few} {many}");
     let merged = parting.merges.clusters(64);
     let [before, after] = [merged.clone(), lloyd::settle(&parting.surface, merged, 64)]
-        .map(|parts| lloyd::common_box(&lloyd::boxes(&parting.surface, &parts, 64)).length());
+        .map(|parts| lloyd::cost(&lloyd::boxes(&parting.surface, &parts, 64)));
     assert!(after < before, "{before} {after}");
 }
 
