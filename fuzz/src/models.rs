@@ -2,8 +2,8 @@
 //! meet the numbers and not a code of them.
 
 use meshlod_fixtures as fixtures;
-use meshlod_mesh::{Mesh, sample};
-use meshlod_multires::{Archive, Forest, HeightField, HeightPrecision, Storage};
+use meshlod_mesh::sample;
+use meshlod_multires::{Archive, BuildError, Forest, HeightField, HeightPrecision, Storage};
 use meshlod_simplify::{Method, Options};
 
 /// Where a file of contractions (docs/formats/mlod.md) says how many chunks it has, and where the table of
@@ -46,7 +46,12 @@ pub(crate) fn seeds() -> Vec<Vec<u8>> {
         sample::torus(80),
     ];
     let methods = [Method::Qem, Method::LeeJang, Method::LindstromTurkFaces];
-    let files = meshes.iter().flat_map(|mesh| methods.map(|method| contractions(mesh, method)));
+    let files = meshes.iter().flat_map(|mesh| {
+        methods.into_iter().flat_map(move |method| {
+            let options = Options { method, ..Options::default() };
+            [Forest::new, Forest::lossless].map(|record| contractions(record(mesh, &options)))
+        })
+    });
     let fields = [fixtures::grid(4), sample::terrain(100)];
     let precisions = [HeightPrecision::Exact, HeightPrecision::Within(0.01)];
     let fields = fields.iter().filter_map(|mesh| HeightField::of_mesh(mesh).ok());
@@ -57,10 +62,9 @@ pub(crate) fn seeds() -> Vec<Vec<u8>> {
 }
 
 /// With chunks so small that there are some.
-fn contractions(mesh: &Mesh, method: Method) -> Vec<u8> {
-    let forest = Forest::new(mesh, &Options { method, ..Options::default() }).expect("a mesh");
+fn contractions(forest: Result<Forest, BuildError>) -> Vec<u8> {
     let storage = Storage { in_chunk: 8, ..Storage::default() };
-    plain(&Archive::write(&forest, &storage).expect("a proof").0)
+    plain(&Archive::write(&forest.expect("a mesh"), &storage).expect("a proof").0)
 }
 
 /// The same file of contractions, not pressed.

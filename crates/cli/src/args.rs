@@ -127,8 +127,8 @@ impl Reading {
 /// Options of every verb that writes meshes.
 #[derive(Args)]
 pub struct Writing {
-    /// Of coordinates in PLY, OBJ, OFF and SMF: f32 or f64; f32 if not said, and for repair what
-    /// they need
+    /// Of coordinates in PLY, OBJ, OFF and SMF: f32 or f64; f32 if not said, and for repair and what a
+    /// lossless file gives what they need
     #[arg(long, value_name = "TYPE", value_parser = amounts::precision)]
     precision: Option<Precision>,
 }

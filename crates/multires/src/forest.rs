@@ -7,6 +7,7 @@ use meshlod_simplify::{Options, Simplifier, SimplifyError, Target};
 use thiserror::Error;
 
 use crate::bounds::ErrorKind;
+use crate::exact::Exact;
 use crate::frame::{Frame, Length16};
 use crate::need::{Ball, PackedBall};
 use crate::record::Recorder;
@@ -30,6 +31,8 @@ pub struct Forest {
     pub(crate) vertices: usize,
     /// Of every node, in stored units.
     pub(crate) positions: Vec<[f32; 3]>,
+    /// Of leaves, where the input is kept to the bit.
+    pub(crate) exact: Exact,
     pub(crate) updates: Vec<Update>,
     /// The nodes around each update's node just after its contraction, one update after the other;
     /// where the fan is open, its last node is the last.
@@ -102,9 +105,25 @@ impl Forest {
     /// # Errors
     /// A mesh that simplification does not take.
     pub fn new(mesh: &Mesh, options: &Options) -> Result<Self, BuildError> {
+        Self::by(mesh, options, Recorder::new)
+    }
+
+    /// The same, which keeps the positions of the mesh to the bit: levels have those of its vertices, and
+    /// rounded ones where some have become one. 24 bytes a vertex.
+    /// # Errors
+    /// As [`Forest::new`].
+    pub fn lossless(mesh: &Mesh, options: &Options) -> Result<Self, BuildError> {
+        Self::by(mesh, options, Recorder::lossless)
+    }
+
+    fn by(
+        mesh: &Mesh,
+        options: &Options,
+        recorder: impl FnOnce(&Simplifier<'_>) -> Recorder,
+    ) -> Result<Self, BuildError> {
         let options = Options { vanish_below: None, ..options.clone() };
         let mut simplifier = Simplifier::new(mesh, &options)?;
-        let mut recorder = Recorder::new(&simplifier);
+        let mut recorder = recorder(&simplifier);
         simplifier.run(Target::Faces(0), &mut recorder)?;
         recorder.into_forest()
     }

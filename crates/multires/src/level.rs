@@ -3,6 +3,7 @@
 use glam::Vec3;
 use meshlod_mesh::{Mesh, VertexId};
 
+use crate::exact::Exact;
 use crate::frame::Frame;
 use crate::place::Place;
 use crate::query::{Focus, QueryError};
@@ -20,15 +21,24 @@ pub struct Level {
     frame: Frame,
     /// What each vertex is in the model: the same vertex of another level has the same number.
     pub nodes: Vec<u32>,
-    /// Where each vertex is, in stored units: see [`Level::mesh`] for those of the model.
+    /// Where each vertex is, in stored units and single precision: see [`Level::mesh`] for those of the
+    /// model.
     pub positions: Vec<[f32; 3]>,
     /// Three vertices each, counter-clockwise seen from outside.
     pub faces: Vec<[u32; 3]>,
+    /// Of vertices of the input, where they are kept as they were.
+    pub(crate) exact: Exact,
 }
 
 impl Level {
     pub(crate) fn new(frame: Frame) -> Self {
-        Self { frame, nodes: Vec::new(), positions: Vec::new(), faces: Vec::new() }
+        Self {
+            frame,
+            nodes: Vec::new(),
+            positions: Vec::new(),
+            faces: Vec::new(),
+            exact: Exact::default(),
+        }
     }
 
     /// Forgets the mesh and keeps the room.
@@ -36,6 +46,7 @@ impl Level {
         self.nodes.clear();
         self.positions.clear();
         self.faces.clear();
+        self.exact.clear();
     }
 
     /// Of faces by nodes, of which there are `count`, and where each is.
@@ -57,7 +68,13 @@ impl Level {
             faces.iter_mut().flatten().for_each(|node| *node = number[*node as usize]);
         }
         let positions = nodes.iter().map(|&node| place(node)).collect();
-        Self { frame, nodes, positions, faces }
+        Self { frame, nodes, positions, faces, exact: Exact::default() }
+    }
+
+    /// With the positions to the bit of those nodes that have one.
+    pub(crate) fn with_exact(mut self, exact: &Exact) -> Self {
+        self.exact.pick(exact, self.nodes.iter().copied());
+        self
     }
 
     /// The faces that meet a focus, with their vertices: those that have a point in it, up to the
@@ -72,16 +89,21 @@ impl Level {
         let corner = |v: u32| Vec3::from(self.positions[v as usize]).as_dvec3();
         let faces = self.faces.iter().filter(|face| place.meets_triangle(face.map(corner)));
         let (count, place) = (self.positions.len(), |v: u32| self.positions[v as usize]);
-        let mut level = Self::of_nodes(self.frame, count, place, faces.copied().collect());
+        let level = Self::of_nodes(self.frame, count, place, faces.copied().collect());
+        let mut level = level.with_exact(&self.exact);
         // They were told by their places here.
         level.nodes.iter_mut().for_each(|node| *node = self.nodes[*node as usize]);
         Ok(level)
     }
 
-    /// In model units.
+    /// In model units; vertices of the input to the bit, where the model [keeps](crate::Forest::lossless)
+    /// them.
     pub fn mesh(&self) -> Mesh {
+        let position = |(v, &rounded): (u32, &[f32; 3])| {
+            self.exact.of(v).unwrap_or_else(|| self.frame.model(rounded))
+        };
         Mesh::new(
-            self.positions.iter().map(|&p| self.frame.model(p)).collect(),
+            (0..).zip(&self.positions).map(position).collect(),
             self.faces.iter().map(|face| face.map(VertexId)).collect(),
         )
     }

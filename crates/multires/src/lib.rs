@@ -57,7 +57,8 @@
 //! A mesh that is a height field on a grid needs no record: [`RightTriangles`] has its levels by
 //! arithmetic, in ten bytes a vertex, with errors that are bounds. docs/notes/right-triangles.md tells how.
 //!
-//! Positions are kept as `f32` about the middle of the mesh, errors are the simplification's estimates,
+//! Positions are kept as `f32` about the middle of the mesh, those of the input to the bit where that is
+//! asked for ([`Forest::lossless`]); errors are the simplification's estimates,
 //! made monotone, maybe evened out ([`Forest::even_out`]), or proven bounds ([`Forest::measure_bounds`]). docs/notes/multires.md has the rules,
 //! and why they suffice.
 #![forbid(unsafe_code)]
@@ -66,6 +67,7 @@ mod bounds;
 mod by_level;
 mod cut;
 mod even;
+mod exact;
 mod explicit;
 mod file;
 mod forest;

@@ -11,6 +11,7 @@ use meshlod_mesh::{Bounds, FaceId, VertexId};
 use meshlod_simplify::{Neighbourhood, Observe, Placed, Simplifier, Spoke, Surface};
 
 use crate::bounds::ErrorKind;
+use crate::exact::Exact;
 use crate::forest::{BuildError, Forest, MOST_LEVELS, NONE, Odd, Update};
 use crate::frame::{Frame, Length16};
 use crate::need::SLACK;
@@ -76,6 +77,7 @@ impl Recorder {
                 error_kind: ErrorKind::Estimate,
                 vertices,
                 positions,
+                exact: Exact::default(),
                 updates: Vec::with_capacity(vertices),
                 rings: Vec::with_capacity(7 * vertices),
                 brought: vec![NONE; faces.len()],
@@ -83,6 +85,16 @@ impl Recorder {
                 odd: BTreeMap::new(),
             },
         }
+    }
+
+    /// The same, which keeps the positions of all vertices to the bit ([`Forest::lossless`]).
+    pub fn lossless(simplifier: &Simplifier<'_>) -> Self {
+        let mut this = Self::new(simplifier);
+        let surface = simplifier.surface();
+        for v in 0..this.forest.vertices as u32 {
+            this.forest.exact.push(v, surface.position(VertexId(v)).into());
+        }
+        this
     }
 
     /// What was recorded.

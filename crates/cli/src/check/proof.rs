@@ -36,6 +36,7 @@ fn prove_contractions(
         "model": "contractions",
         "error_kind": kind,
         "rounding": archive.rounding(),
+        "lossless": archive.is_lossless(),
         "chunks": chunks,
         "chunks_there": there,
         "updates": model.update_count(),

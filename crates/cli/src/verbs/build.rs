@@ -45,6 +45,10 @@ pub struct Build {
     #[arg(long, value_name = "BOUND", value_parser = amounts::bound, default_value = "0.005%",
         allow_hyphen_values = true)]
     rounding: Bound,
+    /// Keep the vertices of the mesh where they are, to the bit, and bring all of them back at --error 0;
+    /// those that replace them in coarser levels are moved by up to 0.002% of the diagonal
+    #[arg(long, conflicts_with = "rounding")]
+    lossless: bool,
     /// About how many vertices are read at once: fewer make a larger file, of which queries read less
     #[arg(long, value_name = "N", value_parser = amounts::positive, default_value_t = 4096,
         allow_negative_numbers = true)]
@@ -84,6 +88,11 @@ enum Levels {
 impl Build {
     pub fn run(self, session: &Session) -> Result<Answer, Failure> {
         model_file::check_output(&self.output)?;
+        if self.lossless && self.model == Model::RightTriangles {
+            return Err(Failure::usage(
+                "--lossless: right triangles move vertices to a grid; --rounding 0 keeps their heights",
+            ));
+        }
         let scene = files::read(&self.input, &self.reading, session)?;
         let mesh = bare(scene.into_mesh(), session);
         if mesh.faces.is_empty() {
@@ -106,7 +115,8 @@ impl Build {
         let mut simplifier =
             Simplifier::new(mesh, &options).map_err(|error| failed(error.into()))?;
         let watch = session.progress.contractions("contracting", Some(mesh.faces.len()));
-        let mut both = (Recorder::new(&simplifier), watch);
+        let recorder = if self.lossless { Recorder::lossless } else { Recorder::new };
+        let mut both = (recorder(&simplifier), watch);
         simplifier.run(Target::Faces(0), &mut both).map_err(|error| failed(error.into()))?;
         let mut forest = both.0.into_forest().map_err(failed)?;
         session.progress.stage("measuring errors");
@@ -116,7 +126,8 @@ impl Build {
             false => forest.even_out(),
         }
         session.progress.stage("proving and packing");
-        let storage = Storage { rounding: Some(self.rounding(mesh)), in_chunk: self.in_chunk };
+        let rounding = (!self.lossless).then(|| self.rounding(mesh));
+        let storage = Storage { rounding, in_chunk: self.in_chunk };
         let written = Archive::write(&forest, &storage);
         let (bytes, certificate) = written.map_err(|error| Failure::at(&self.input, error))?;
         let archive = Archive::open(bytes).map_err(|error| Failure::at(&self.output, error))?;
@@ -163,6 +174,7 @@ impl Build {
                 json["error_kind"] = (*error_kind).into();
                 json["model"] = "contractions".into();
                 json["method"] = self.method.name().into();
+                json["lossless"] = self.lossless.into();
                 json["updates"] = (*updates).into();
                 json["base_faces"] = (*base_faces).into();
                 json["certificate"] = model_file::certificate_json(certificate);
@@ -180,14 +192,18 @@ impl Build {
     fn text(&self, mesh: &Mesh, built: &Built, time: Duration) -> String {
         let vertices = vertex_count(mesh);
         let part = 100.0 * built.rounding / mesh.bounds().diagonal();
+        let moved = match self.lossless {
+            true => "no vertex of the mesh moved".to_owned(),
+            false => {
+                format!("vertices moved by up to {} ({})", value(built.rounding), percent(part))
+            }
+        };
         let mut text = format!(
-            "{}: all levels of {} in {} bytes, {:.2} a vertex; vertices moved by up to {} ({})\n",
+            "{}: all levels of {} in {} bytes, {:.2} a vertex; {moved}\n",
             files::name(&self.output),
             faces(mesh.faces.len()),
             count(built.bytes.len()),
             built.bytes.len() as f64 / vertices as f64,
-            value(built.rounding),
-            percent(part),
         );
         text += &match &built.levels {
             Levels::Contractions { updates, base_faces, certificate, error_kind } => format!(

@@ -63,6 +63,7 @@ struct Goal {
 /// A mesh, and what was read for it.
 struct Taken {
     level: Level,
+    lossless: bool,
     error_kind: &'static str,
     /// Read, there, and in all.
     chunks: [usize; 3],
@@ -90,8 +91,9 @@ impl Extract {
             session.warn(Failure::at(&self.input, reason));
         }
         let scene = Scene::from_mesh(name(&self.input), mesh);
-        files::write(&self.output, &scene, &self.writing, session)?;
         let (json, text) = (self.json(&taken, counts, time), self.text(&taken, counts, time));
+        let writing = if taken.lossless { self.writing.lossless(&scene) } else { self.writing };
+        files::write(&self.output, &scene, &writing, session)?;
         Ok(Answer { file_on_stdout: files::is_pipe(&self.output), ..Answer::new(json, text) })
     }
 
@@ -107,6 +109,7 @@ impl Extract {
         })?;
         Ok(Taken {
             level: self.cut_out(taken.level, &query)?,
+            lossless: archive.is_lossless(),
             error_kind: model_file::error_kind(archive),
             chunks: [taken.chunks, archive.whole_chunks(), archive.chunk_count()],
             updates: taken.updates,
@@ -125,7 +128,8 @@ impl Extract {
         let bytes = std::fs::metadata(&self.input).map_or(0, |data| data.len());
         let updates = field.heights().len();
         let level = self.cut_out(level, &query)?;
-        Ok(Taken { level, error_kind: "bound", chunks: [1; 3], updates, bytes })
+        let (lossless, error_kind) = (false, "bound");
+        Ok(Taken { level, lossless, error_kind, chunks: [1; 3], updates, bytes })
     }
 
     fn query(&self, diagonal: f64) -> Result<Query<'static>, Failure> {

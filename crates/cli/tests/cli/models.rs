@@ -95,6 +95,71 @@ fn all_levels_of_a_mesh_are_in_one_file() {
     assert!(far <= built["rounding"].as_f64(), "{far:?}");
 }
 
+/// A hilly field far from the origin, as an OBJ file whose numbers no `f32` holds.
+fn far_hills() -> String {
+    const SIDE: usize = 20;
+    let vertex = |i: usize| {
+        let (x, y) = ((i % SIDE) as f64 / 3.0, (i / SIDE) as f64 / 7.0);
+        let height = if i.is_multiple_of(31) { -0.0 } else { (x + 2.0 * y).sin() };
+        format!("v {} {} {height}\n", 431_234.1 + x, 5_412_345.7 + y)
+    };
+    let face = |i: usize| {
+        let [a, b, c, d] = [i, i + 1, i + SIDE, i + SIDE + 1].map(|v| v + 1);
+        format!("f {a} {b} {d}\nf {a} {d} {c}\n")
+    };
+    let cells = (0..SIDE * (SIDE - 1)).filter(|i| (i + 1) % SIDE != 0);
+    (0..SIDE * SIDE).map(vertex).chain(cells.map(face)).collect()
+}
+
+/// Faces of an OBJ file by the bits of their corners, each from its least.
+fn by_bits(text: &str) -> Vec<[[u64; 3]; 3]> {
+    let of = |key: &str| {
+        let rows = text.lines().filter_map(|line| line.strip_prefix(key));
+        let words = |row: &str| -> [String; 3] {
+            let words: Vec<String> = row.split_whitespace().map(str::to_owned).collect();
+            words.try_into().expect("three words")
+        };
+        rows.map(words).collect::<Vec<_>>()
+    };
+    let bits = |word: &String| word.parse::<f64>().unwrap().to_bits();
+    let places: Vec<_> = of("v ").iter().map(|row| row.each_ref().map(bits)).collect();
+    let corner = |word: &String| places[word.parse::<usize>().unwrap() - 1];
+    let mut faces: Vec<_> = of("f ").iter().map(|row| row.each_ref().map(corner)).collect();
+    for face in &mut faces {
+        let least = (0..3).min_by_key(|&k| face[k]).unwrap();
+        face.rotate_left(least);
+    }
+    faces.sort_unstable();
+    faces
+}
+
+#[test]
+fn a_lossless_file_gives_the_mesh_back_to_the_bit() {
+    let run = Run::new();
+    let text = far_hills();
+    write(&run, "in.obj", text.as_bytes());
+    let built = run.json(&["build", "in.obj", "out.mlod", "--lossless", "--in-chunk", "100"]);
+    assert_eq!((&built["lossless"], built["rounding"].as_f64()), (&true.into(), Some(0.0)));
+    let proved = run.json(&["check", "out.mlod"]);
+    assert_eq!((&proved["lossless"], proved["rounding"].as_f64()), (&true.into(), Some(0.0)));
+    for goal in [["--error", "0"], ["--faces", "100000"]] {
+        extract(&run, "out.mlod", "back.obj", &goal);
+        let back = String::from_utf8(bytes(&run, "back.obj")).unwrap();
+        assert!(by_bits(&back) == by_bits(&text), "{goal:?}");
+    }
+    // What is left of it in a level is where it was.
+    extract(&run, "out.mlod", "part.obj", &["--faces", "400"]);
+    let part = String::from_utf8(bytes(&run, "part.obj")).unwrap();
+    let all = by_bits(&text);
+    let is_old = |corner: &[u64; 3]| all.as_flattened().contains(corner);
+    let kept = by_bits(&part).as_flattened().iter().filter(|&corner| is_old(corner)).count();
+    assert!(kept > 300 && kept < 3 * 400, "{kept}");
+    let told = run.run(&["build", "in.obj", "again.mlod", "--lossless"]);
+    assert!(told.code == 0 && told.text().contains("no vertex of the mesh moved"), "{told:?}");
+    let plain = run.json(&["build", "in.obj", "plain.mlod"]);
+    assert!(plain["lossless"] == false && plain["rounding"].as_f64().unwrap() > 0.0);
+}
+
 #[test]
 fn words_say_what_json_says() {
     let run = Run::new();
@@ -311,6 +376,9 @@ fn wrong_builds_are_2_and_write_nothing() {
         &["in.ply", "out.mlod", "--method", "magic"],
         &["in.ply", "out.mlod", "--model", "left-triangles"],
         &["in.ply", "out.mlod", "--rounding", "-1"],
+        &["in.ply", "out.mlod", "--lossless", "--rounding", "0"],
+        &["in.ply", "out.mlod", "--lossless", "--rounding", "0.005%"],
+        &["in.ply", "out.mlod", "--lossless", "--model", "right-triangles"],
         &["in.ply", "out.mlod", "--rounding", "much"],
         &["in.ply", "out.mlod", "--in-chunk", "0"],
         &["in.ply", "out.mlod", "--in-chunk", "-5"],

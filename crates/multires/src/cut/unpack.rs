@@ -12,7 +12,8 @@ struct Numbers {
     updates: Vec<u32>,
     /// The forest's node of each of the model's.
     nodes: Vec<u32>,
-    vertices: usize,
+    /// The model's leaves, which are the forest's first nodes.
+    leaves: Vec<u32>,
 }
 
 impl Forest {
@@ -29,8 +30,9 @@ impl Forest {
         let mut this = Self {
             frame: *mt.frame(),
             error_kind: mt.error_kind(),
-            vertices: numbers.vertices,
+            vertices: numbers.leaves.len(),
             positions,
+            exact: mt.exact().picked(numbers.leaves.iter().copied()),
             updates: Vec::with_capacity(mt.update_count()),
             rings: Vec::new(),
             faces: Vec::with_capacity(mt.full_faces()),
@@ -79,17 +81,12 @@ impl Numbers {
             }
             at += if is_glued { 2 } else { 1 };
         }
-        let leaves = (0..mt.node_count() as u32).filter(|&node| mt.update_of(node).is_none());
+        let all = 0..mt.node_count() as u32;
+        let leaves: Vec<u32> = all.filter(|&node| mt.update_of(node).is_none()).collect();
         let mut nodes = vec![NONE; mt.node_count()];
-        let mut vertices = 0;
-        for leaf in leaves {
-            nodes[leaf as usize] = vertices;
-            vertices += 1;
-        }
-        for (u, &update) in updates.iter().enumerate() {
-            nodes[mt.parent(update) as usize] = vertices + u as u32;
-        }
-        Self { updates, nodes, vertices: vertices as usize }
+        let numbered = leaves.iter().copied().chain(updates.iter().map(|&u| mt.parent(u)));
+        (0..).zip(numbered).for_each(|(number, node)| nodes[node as usize] = number);
+        Self { updates, nodes, leaves }
     }
 
     /// An update without its ring, by what was at its node before it was split.

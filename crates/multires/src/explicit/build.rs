@@ -12,6 +12,7 @@ impl Explicit {
         let mut this = Self {
             frame: forest.frame,
             positions: forest.positions.clone(),
+            exact: forest.exact.clone(),
             updates: Vec::new(),
             triangles: Vec::new(),
             splits: vec![None; forest.positions.len()],

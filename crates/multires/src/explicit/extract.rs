@@ -60,7 +60,8 @@ impl<'m> ExplicitCut<'m> {
     pub fn level(&self) -> Level {
         let faces = self.present.iter().map(|&t| self.mt.triangles[t as usize].nodes);
         let place = |node: u32| self.mt.positions[node as usize];
-        Level::of_nodes(self.mt.frame, self.mt.positions.len(), place, faces.collect())
+        let count = self.mt.positions.len();
+        Level::of_nodes(self.mt.frame, count, place, faces.collect()).with_exact(&self.mt.exact)
     }
 
     /// Makes a single update with all that it needs.

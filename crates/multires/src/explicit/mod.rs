@@ -7,6 +7,7 @@
 mod build;
 mod extract;
 
+use crate::exact::Exact;
 use crate::frame::Frame;
 use crate::need::{Ball, Need};
 
@@ -17,6 +18,8 @@ pub use extract::ExplicitCut;
 pub struct Explicit {
     frame: Frame,
     positions: Vec<[f32; 3]>,
+    /// Of the input's vertices, where they are kept as they were.
+    exact: Exact,
     updates: Vec<ExplicitUpdate>,
     /// By their nodes.
     triangles: Vec<Triangle>,
@@ -60,6 +63,7 @@ impl Explicit {
     pub fn bytes(&self) -> usize {
         let lists = |u: &ExplicitUpdate| 4 * (u.coarse.len() + u.fine.len() + u.needs.len());
         size_of_val(&self.positions[..])
+            + self.exact.bytes()
             + size_of_val(&self.updates[..])
             + self.updates.iter().map(lists).sum::<usize>()
             + size_of_val(&self.triangles[..])

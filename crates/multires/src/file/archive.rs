@@ -1,5 +1,6 @@
 //! Reads a file: all of it, its first part, or what a query needs.
 
+use super::exact::Steps;
 use super::header::{self, FIXED, Header, Stored};
 use super::known::Known;
 use super::source::{Source, piece};
@@ -7,6 +8,7 @@ use super::streams::Unpacker;
 use super::{FileError, Storage, chunk, write};
 use crate::bounds::ErrorKind;
 use crate::cut::{Certificate, Cut};
+use crate::exact::Exact;
 use crate::forest::Forest;
 use crate::implicit::{Base, Implicit, has_three_corners};
 use crate::level::Level;
@@ -118,7 +120,14 @@ impl<S: Source> Archive<S> {
         self.header.diagonal
     }
 
-    /// By how much a vertex was moved to the file's lattice at most, in model units.
+    /// Whether the vertices of the finest mesh are where they were in the input, to the bit. Those of other
+    /// levels are if they are of the finest, too.
+    pub fn is_lossless(&self) -> bool {
+        self.header.lossless
+    }
+
+    /// By how much a vertex was moved to the file's lattice at most, in model units; 0 in a lossless file,
+    /// whose finest level is the input.
     pub fn rounding(&self) -> f64 {
         self.header.rounding
     }
@@ -136,7 +145,7 @@ impl<S: Source> Archive<S> {
     pub fn read_chunks(&self, count: usize) -> Result<(Implicit, Certificate), FileError> {
         let known = self.load(&(0..count.min(self.whole)).collect::<Vec<_>>())?;
         let updates = known.updates.len();
-        let model = Implicit::assemble(self.header.about, known.base, &known.updates);
+        let model = self.assemble(known);
         if model.update_count() != updates {
             return Err(FileError::Piece {
                 piece: "the updates".into(),
@@ -196,14 +205,19 @@ impl<S: Source> Archive<S> {
         let stored = chunks.iter().map(|&chunk| u64::from(self.header.chunks[chunk].stored.bytes));
         let bytes = self.ends().next().unwrap_or(0) + stored.sum::<u64>();
         let updates = known.updates.len();
-        let model = Implicit::assemble(self.header.about, known.base, &known.updates);
+        let model = self.assemble(known);
         let level = Cut::at(&model, query)?.level();
         Ok(Extract { level, chunks: chunks.len(), updates, bytes })
     }
 
+    fn assemble(&self, known: Known) -> Implicit {
+        let exact = known.exact.unwrap_or_default();
+        Implicit::assemble(self.header.about, known.base, &known.updates, &exact)
+    }
+
     /// The base and some chunks, by rising numbers.
     fn load(&self, chunks: &[usize]) -> Result<Known, FileError> {
-        let mut known = Known::new(self.header.lattice, self.read_base()?);
+        let mut known = self.read_base()?;
         let (mut first, mut wanted) = (0, chunks.iter().peekable());
         for (at, (entry, offset)) in self.header.chunks.iter().zip(self.ends()).enumerate() {
             if wanted.next_if(|&&chunk| chunk == at).is_some() {
@@ -217,13 +231,15 @@ impl<S: Source> Archive<S> {
         Ok(known)
     }
 
-    fn read_base(&self) -> Result<Base, FileError> {
+    fn read_base(&self) -> Result<Known, FileError> {
         let name = || "the coarsest mesh".to_owned();
         let bytes = self.stored(self.header.len(), self.header.base, name)?;
         let bad = |why: &str| FileError::Piece { piece: name(), why: why.into() };
         let (roots, faces) = (self.header.roots as usize, self.header.base_faces as usize);
-        let numbers = unpack_base(&bytes, roots, faces);
-        let [x, y, z, a, b, c] = numbers.map_err(|why| bad(&why.to_string()))?;
+        let packed = |why: std::io::Error| bad(&why.to_string());
+        let mut input = Unpacker::new(&bytes).map_err(packed)?;
+        let numbers = unpack_base(&mut input, roots, faces);
+        let [x, y, z, a, b, c] = numbers.map_err(packed)?;
         let place = |i: usize| self.header.lattice.place([x[i], y[i], z[i]]);
         let places: Option<Vec<_>> = (0..roots).map(place).collect();
         let positions = places.ok_or(bad("a vertex is out of reach"))?;
@@ -234,7 +250,13 @@ impl<S: Source> Archive<S> {
         if !faces.iter().all(has_three_corners) {
             return Err(bad("a face has a vertex twice"));
         }
-        Ok(Base { positions, faces })
+        let Header { about, lattice, lossless, .. } = self.header;
+        let mut known = Known::new(about.frame, lattice, Base { positions, faces }, None);
+        if lossless {
+            let exact = read_exact(&known, &mut input).map_err(packed)?;
+            known.exact = Some(exact.ok_or(bad("a position of it is no number"))?);
+        }
+        Ok(known)
     }
 
     /// A piece of the file that is what was written.
@@ -250,8 +272,11 @@ impl<S: Source> Archive<S> {
 }
 
 /// Places and corners, by axis, each told by the one before.
-fn unpack_base(bytes: &[u8], roots: usize, faces: usize) -> std::io::Result<[Vec<i64>; 6]> {
-    let mut input = Unpacker::new(bytes)?;
+fn unpack_base(
+    input: &mut Unpacker<'_>,
+    roots: usize,
+    faces: usize,
+) -> std::io::Result<[Vec<i64>; 6]> {
     let mut all: [Vec<i64>; 6] = Default::default();
     for (k, numbers) in all.iter_mut().enumerate() {
         let steps = input.signed(if k < 3 { roots } else { faces })?;
@@ -261,4 +286,17 @@ fn unpack_base(bytes: &[u8], roots: usize, faces: usize) -> std::io::Result<[Vec
         }));
     }
     Ok(all)
+}
+
+/// The positions of those roots that have them; `None` where one is no number.
+fn read_exact(known: &Known, input: &mut Unpacker<'_>) -> std::io::Result<Option<Exact>> {
+    let flags = input.bytes(known.roots() as usize)?;
+    let nodes: Vec<u32> = (0..known.roots()).filter(|&root| flags[root as usize] != 0).collect();
+    let steps = Steps::read(nodes.len(), input)?;
+    let mut exact = Exact::default();
+    for (at, node) in nodes.into_iter().enumerate() {
+        let Some(position) = steps.position(at, known.guess(node)) else { return Ok(None) };
+        exact.push(node, position);
+    }
+    Ok(Some(exact))
 }

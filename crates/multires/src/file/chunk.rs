@@ -10,6 +10,7 @@ use std::ops::Range;
 use glam::Vec3;
 use thiserror::Error;
 
+use super::exact::{self, Steps};
 use super::known::Known;
 use super::lattice::Lattice;
 use super::slant::Slant;
@@ -36,10 +37,12 @@ pub(super) enum ChunkError {
 const OPEN: u8 = 1;
 const GLUED: u8 = 2;
 const ODD: u8 = 4;
+/// The first child, or the second, is of the finest mesh: its position is there to the bit.
+const EXACT: [u8; 2] = [8, 16];
 
 /// A run of what is known as bytes. All before it must be known.
 pub(super) fn write(known: &Known, run: Range<usize>) -> io::Result<Vec<u8>> {
-    let updates = &known.updates[run];
+    let updates = &known.updates[run.clone()];
     let mut packer = Packer::new()?;
     let parents = updates.iter().scan(0, |next, u| {
         let gap = u.parent - *next;
@@ -47,10 +50,13 @@ pub(super) fn write(known: &Known, run: Range<usize>) -> io::Result<Vec<u8>> {
         Some(gap)
     });
     packer.numbers(&parents.collect::<Vec<_>>())?;
-    let flags = |u: &Loose| {
-        OPEN * u8::from(u.is_open) + GLUED * u8::from(u.glued) + ODD * u8::from(u.odd.is_some())
+    let flags = |(at, u): (usize, &Loose)| {
+        let own = [(OPEN, u.is_open), (GLUED, u.glued), (ODD, u.odd.is_some())];
+        let exact = known.children(at).map(|child| known.exact(child).is_some());
+        let all = own.into_iter().chain(EXACT.into_iter().zip(exact));
+        all.filter(|(_, is_so)| *is_so).map(|(flag, _)| flag).sum::<u8>()
     };
-    packer.bytes(&updates.iter().map(flags).collect::<Vec<_>>())?;
+    packer.bytes(&run.clone().zip(updates).map(flags).collect::<Vec<_>>())?;
     for side in [0, 1] {
         packer.bytes(&updates.iter().map(|u| u.wings[side]).collect::<Vec<_>>())?;
     }
@@ -58,6 +64,11 @@ pub(super) fn write(known: &Known, run: Range<usize>) -> io::Result<Vec<u8>> {
     write_places(known, updates, &mut packer)?;
     for odd in updates.iter().filter_map(|u| u.odd.as_deref()) {
         write_odd(odd, &mut packer)?;
+    }
+    if known.exact.is_some() {
+        let pair = |node| known.exact(node).map(|exact| [exact, known.guess(node)]);
+        let pairs = run.flat_map(|at| known.children(at)).filter_map(pair);
+        exact::write(&pairs.collect::<Vec<_>>(), &mut packer)?;
     }
     packer.finish()
 }
@@ -113,7 +124,7 @@ pub(super) fn read(
 ) -> Result<(), ChunkError> {
     known.go_to(first);
     let mut input = Unpacker::new(bytes)?;
-    let gaps = input.numbers(count)?;
+    let gaps: Vec<u32> = input.numbers(count)?;
     let flags = input.bytes(count)?;
     let wings = [input.bytes(count)?, input.bytes(count)?];
     let (errors, levels) = read_errors(&mut input, count)?;
@@ -159,15 +170,51 @@ pub(super) fn read(
         let odd = read_odd(&mut input, nodes)?.ok_or(bad)?.renumbered(|node| known.node(node));
         known.updates[start + at].odd = Some(Box::new(odd));
     }
+    if known.exact.is_some() {
+        read_exact(known, &mut input, start, &flags)?;
+    }
     if input.is_over()? { Ok(()) } else { Err(ChunkError::Rest) }
+}
+
+/// The positions of those children that have them, of the updates from `start` on.
+fn read_exact(
+    known: &mut Known,
+    input: &mut Unpacker<'_>,
+    start: usize,
+    flags: &[u8],
+) -> Result<(), ChunkError> {
+    let of = |at: usize| {
+        let children = known.children(start + at).into_iter().zip(EXACT);
+        children.filter(move |(_, flag)| flags[at] & flag != 0).map(move |(child, _)| (at, child))
+    };
+    let nodes: Vec<_> = (0..flags.len()).flat_map(of).collect();
+    let steps = Steps::read(nodes.len(), input)?;
+    for (i, (at, node)) in nodes.into_iter().enumerate() {
+        // What is not known is nowhere.
+        if known.updates[start + at].parent != NONE {
+            let position = steps.position(i, known.guess(node));
+            let bad = ChunkError::Update { update: at, why: "a position of it is no number" };
+            known.add_exact(node, position.ok_or(bad)?);
+        }
+    }
+    for at in 0..flags.len() {
+        let parent = known.updates[start + at].parent;
+        if parent != NONE && known.exact(parent).is_some() {
+            return Err(ChunkError::Update {
+                update: at,
+                why: "it splits what is of the finest mesh",
+            });
+        }
+    }
+    Ok(())
 }
 
 /// Errors and levels, as large as they may be told.
 fn read_errors(input: &mut Unpacker<'_>, count: usize) -> io::Result<(Vec<u32>, Vec<u32>)> {
     let [least, steps] = input.numbers(2)?[..] else { unreachable!("two are two") };
     let least_levels = input.numbers(steps as usize)?;
-    let mut errors = input.numbers(count)?;
-    let mut levels = input.numbers(count)?;
+    let mut errors: Vec<u32> = input.numbers(count)?;
+    let mut levels: Vec<u32> = input.numbers(count)?;
     for (error, level) in errors.iter_mut().zip(&mut levels) {
         let least_level = least_levels.get(*error as usize).ok_or(io::ErrorKind::InvalidData)?;
         *level = level.saturating_add(*least_level);
@@ -179,7 +226,7 @@ fn read_errors(input: &mut Unpacker<'_>, count: usize) -> io::Result<(Vec<u32>, 
 /// What wings cannot tell, by nodes of the file: so many are made up to this chunk's end.
 fn read_odd(input: &mut Unpacker<'_>, nodes: u32) -> Result<Option<Odd>, io::Error> {
     let mut list = |size: usize| -> io::Result<Vec<u32>> {
-        let count = input.numbers(1)?[0] as usize;
+        let count = input.numbers::<u32>(1)?[0] as usize;
         input.numbers(size * count)
     };
     let (second, brought) = (list(2)?, list(3)?);

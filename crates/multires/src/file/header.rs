@@ -14,9 +14,11 @@ use crate::need::Area;
 pub(super) struct Header {
     pub(super) about: About,
     pub(super) lattice: Lattice,
+    /// Whether the vertices of the finest mesh have positions to the bit.
+    pub(super) lossless: bool,
     /// Of the finest mesh, in model units.
     pub(super) diagonal: f64,
-    /// By how much a vertex was moved at most, in model units.
+    /// By how much a vertex was moved at most, in model units; 0 where none of the finest mesh was.
     pub(super) rounding: f64,
     pub(super) roots: u32,
     pub(super) base_faces: u32,
@@ -73,7 +75,8 @@ impl Header {
         out.extend([0; BODY - CHECKSUM]);
         let kind = self.about.error_kind;
         out.extend(self.lattice.to_bytes());
-        out.extend([u8::from(kind == ErrorKind::Bound), 0]);
+        let flags = if self.lossless { LOSSLESS } else { 0 };
+        out.extend([u8::from(kind == ErrorKind::Bound), flags]);
         let words = [self.roots, self.base_faces, self.base.bytes, self.base.checksum];
         out.extend(words.iter().flat_map(|word| word.to_le_bytes()));
         out.extend((self.chunks.len() as u32).to_le_bytes());
@@ -127,6 +130,7 @@ impl Header {
                 },
             },
             lattice: lattice.ok_or(bad("its lattice is none"))?,
+            lossless: bytes[BODY + 3] & LOSSLESS != 0,
             diagonal: double(bytes, 72),
             rounding: double(bytes, 80),
             roots: word(bytes, 20),
@@ -134,6 +138,9 @@ impl Header {
             base: Stored { bytes: word(bytes, 28), checksum: word(bytes, 32) },
             chunks: bytes[FIXED..].chunks_exact(ENTRY).map(Entry::from_bytes).collect(),
         };
+        if bytes[BODY + 3] & !LOSSLESS != 0 {
+            return Err(bad("it has flags that this program does not know"));
+        }
         if this.updates() > MOST_UPDATES || this.roots as usize > MOST_UPDATES {
             return Err(bad("it has more updates than can be numbered"));
         }
@@ -151,6 +158,8 @@ impl Header {
 
 /// In units: the bounds of areas that have none.
 const FAR: f64 = 1e30;
+/// The one flag that there is.
+const LOSSLESS: u8 = 1;
 /// Nodes are numbered up to 2³¹: roots, and two an update.
 const MOST_UPDATES: usize = 1 << 29;
 

@@ -1,6 +1,6 @@
 //! What a file keeps of a forest: the same cuts, in numbers that take less room.
 
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 
 use super::lattice::Lattice;
 use super::slant::Slant;
@@ -27,6 +27,14 @@ impl Forest {
     pub(super) fn kept(&self, lattice: Lattice) -> Result<Kept, BuildError> {
         let mut this = self.clone();
         let moved = this.move_to(lattice)?;
+        // A bound holds for where things are now, and where the input is that is kept to the bit.
+        let restored = self.restored();
+        let rounding = match self.error_kind {
+            ErrorKind::Bound => moved.max(restored) + restored,
+            ErrorKind::Estimate => 0.0,
+        };
+        // What changes no surface takes vertices away still: to have them all is to ask for no error.
+        let least = if self.exact.is_empty() { 0 } else { 1 };
         for u in 0..this.updates.len() {
             let update = &this.updates[u];
             let ball = this.ball(u);
@@ -36,9 +44,8 @@ impl Forest {
             let balls = below.map(|below| this.ball(below));
             let reach = balls.map(|below| below.center.distance(ball.center) + below.radius);
             let radius = Length16::up(reach.fold(own, f64::max) * SLACK);
-            // A bound holds for where things are now.
-            let bound = ball.error + if self.error_kind == ErrorKind::Bound { moved } else { 0.0 };
-            let error = error16(error9(Length16::up(bound))).unwrap_or(Length16::INFINITE);
+            let error = error9(Length16::up(ball.error + rounding)).max(least);
+            let error = error16(error).unwrap_or(Length16::INFINITE);
             let radius = radius16(radius8(radius));
             (this.updates[u].radius, this.updates[u].error) = (radius, error);
             if this.updates[u].glued {
@@ -50,21 +57,40 @@ impl Forest {
         Ok(Kept { forest: this, moved })
     }
 
-    /// Puts all nodes on the lattice, and says how far one was moved at most.
+    /// Puts all nodes on the lattice, and says how far one was moved at most. Those that are kept to the
+    /// bit are seen there; triangles have to have an area with them where they are.
     fn move_to(&mut self, lattice: Lattice) -> Result<f64, BuildError> {
         let order = Order::new(self);
         let mt = Implicit::in_order(self, &order)?;
-        let place = |node: u32| Vec3::from(mt.place(node));
-        let nodes = 0..mt.node_count() as u32;
-        let mut cells: Vec<_> = nodes.map(|node| lattice.round(place(node))).collect();
-        spread(&mt, &mut cells, |nodes| has_area(nodes.map(place)));
+        let before = |node: u32| Vec3::from(mt.place(node));
+        let exact = |node: u32| mt.exact().of(node).map(|p| mt.frame().point(p.into()));
+        let place = |node: u32| exact(node).unwrap_or_else(|| before(node).as_dvec3());
+        let cell = |node: u32| lattice.round(before(node));
+        let nodes = || 0..mt.node_count() as u32;
+        let in_cells = |node: u32| match exact(node) {
+            Some(place) => (place / lattice.cell()).into(),
+            None => cell(node).map(f64::from),
+        };
+        let mut places: Vec<_> = nodes().map(in_cells).collect();
+        let is_free = |node: u32| mt.exact().of(node).is_none();
+        spread(&mt, &mut places, is_free, |nodes| has_area(nodes.map(place)));
         let mut moved = 0.0f64;
-        for (node, cell) in cells.into_iter().enumerate() {
-            let to = lattice.put(cell);
-            moved = moved.max(to.as_dvec3().distance(place(node as u32).as_dvec3()));
-            self.positions[order.nodes[node] as usize] = to.into();
+        for (node, place) in nodes().zip(places) {
+            let at = if is_free(node) { place.map(|x| x as i32) } else { cell(node) };
+            let (from, to) = (before(node).as_dvec3(), lattice.put(at));
+            moved = moved.max(from.distance(to.as_dvec3()));
+            self.positions[order.nodes[node as usize] as usize] = to.into();
         }
         Ok(moved)
+    }
+
+    /// How far those that are kept to the bit are from where they were measured, at most, in stored units.
+    fn restored(&self) -> f64 {
+        let apart = |leaf: u32| {
+            let exact = self.frame.point(self.exact.of(leaf)?.into());
+            Some(exact.distance(Vec3::from(self.positions[leaf as usize]).as_dvec3()))
+        };
+        (0..self.vertices as u32).filter_map(apart).fold(0.0, f64::max)
     }
 
     /// Lets the second of two siblings be the one that is further along, where that is free: then a
@@ -121,8 +147,7 @@ impl Forest {
     }
 }
 
-fn has_area(corners: [Vec3; 3]) -> bool {
-    let [a, b, c] = corners.map(Vec3::as_dvec3);
+fn has_area([a, b, c]: [DVec3; 3]) -> bool {
     (b - a).cross(c - a).length_squared() > 0.0
 }
 

@@ -4,21 +4,26 @@ use glam::Vec3;
 
 use super::lattice::Lattice;
 use super::slant::Slant;
+use crate::exact::Exact;
 use crate::forest::NONE;
+use crate::frame::Frame;
 use crate::implicit::{Base, Loose};
 
 /// The base and some runs of updates. Those of a file that was read in part are numbered without gaps.
 pub(super) struct Known {
+    frame: Frame,
     pub(super) lattice: Lattice,
     pub(super) base: Base,
     pub(super) updates: Vec<Loose>,
+    /// Of the finest mesh's vertices, by the numbers here, where they are kept to the bit.
+    pub(super) exact: Option<Exact>,
     /// By run of updates: its first in the file, and its first here.
     runs: Vec<[u32; 2]>,
 }
 
 impl Known {
-    pub(super) fn new(lattice: Lattice, base: Base) -> Self {
-        Self { lattice, base, updates: Vec::new(), runs: Vec::new() }
+    pub(super) fn new(frame: Frame, lattice: Lattice, base: Base, exact: Option<Exact>) -> Self {
+        Self { frame, lattice, base, updates: Vec::new(), exact, runs: Vec::new() }
     }
 
     /// What comes next are the updates of the file from this one on.
@@ -48,6 +53,27 @@ impl Known {
     pub(super) fn place(&self, node: u32) -> Vec3 {
         let side = node.wrapping_sub(self.roots()) as usize % 2;
         self.above(node).map_or_else(|| self.base.positions[node as usize], |u| u.children[side])
+    }
+
+    /// The nodes that an update makes.
+    pub(super) fn children(&self, update: usize) -> [u32; 2] {
+        let first = self.roots() + 2 * update as u32;
+        [first, first + 1]
+    }
+
+    /// Where a node is to the bit, if that is known.
+    pub(super) fn exact(&self, node: u32) -> Option<[f64; 3]> {
+        self.exact.as_ref()?.of(node)
+    }
+
+    /// Adds where a node is to the bit; nodes come by rising numbers.
+    pub(super) fn add_exact(&mut self, node: u32, position: [f64; 3]) {
+        self.exact.get_or_insert_default().push(node, position);
+    }
+
+    /// Where a node is by the lattice, in model units.
+    pub(super) fn guess(&self, node: u32) -> [f64; 3] {
+        self.frame.model(self.place(node).into())
     }
 
     /// How the surface leans at a node.

@@ -7,6 +7,7 @@
 mod archive;
 mod chunk;
 mod container;
+mod exact;
 mod header;
 mod keep;
 mod known;

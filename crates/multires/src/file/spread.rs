@@ -2,26 +2,33 @@
 
 use crate::implicit::Implicit;
 
-/// A place on the lattice.
-type Cell = [i32; 3];
+/// In cells of the lattice: whole numbers, but for what is kept to the bit. They are less than 2²⁵, so that
+/// nothing is rounded here.
+type Place = [f64; 3];
 
-/// Moves of this many cells along each axis are tried, the least first.
-const FARTHEST: i32 = 2;
+/// Moves of so many cells along each axis are tried, the least first.
+const ALONG: [f64; 5] = [-2.0, -1.0, 0.0, 1.0, 2.0];
 /// How often all flat triangles are gone through.
 const ROUNDS: usize = 16;
 
-/// Moves nodes from the cells they were rounded to, so that no triangle of any cut is without area on
-/// the lattice that has one without it; as far as a few cells do.
+/// Moves nodes from the cells they were rounded to, so that no triangle of any cut is without area there
+/// that has one without rounding; as far as a few cells do.
 ///
-/// `cells` are those of all nodes; `had_area` says whether a triangle is to have one.
-pub(super) fn spread(mt: &Implicit, cells: &mut [Cell], had_area: impl Fn([u32; 3]) -> bool) {
+/// `places` are those of all nodes; `is_free` says which may be moved, `had_area` whether a triangle is to
+/// have one.
+pub(super) fn spread(
+    mt: &Implicit,
+    places: &mut [Place],
+    is_free: impl Fn(u32) -> bool,
+    had_area: impl Fn([u32; 3]) -> bool,
+) {
     // To keep them takes less time than to make them once more.
     let mut all = Vec::new();
     mt.each_triangle(|nodes| all.push(nodes));
-    let mut is_movable = vec![false; cells.len()];
+    let mut is_movable = vec![false; places.len()];
     for nodes in &all {
-        if flatness(nodes.map(|n| cells[n as usize])) > 0 && had_area(*nodes) {
-            nodes.iter().for_each(|&node| is_movable[node as usize] = true);
+        if flatness(nodes.map(|n| places[n as usize])) > 0 && had_area(*nodes) {
+            nodes.iter().for_each(|&node| is_movable[node as usize] = is_free(node));
         }
     }
     let mut at: Vec<(u32, [u32; 3])> = Vec::new();
@@ -30,18 +37,18 @@ pub(super) fn spread(mt: &Implicit, cells: &mut [Cell], had_area: impl Fn([u32; 
         at.extend(movable.map(|node| (node, nodes)));
     }
     at.sort_unstable();
-    solve(&at, cells);
+    solve(&at, places);
 }
 
 /// Moves nodes one by one while that makes the triangles at them less flat.
-fn solve(at: &[(u32, [u32; 3])], cells: &mut [Cell]) {
+fn solve(at: &[(u32, [u32; 3])], places: &mut [Place]) {
     let stars: Vec<Star<'_>> = at
         .chunk_by(|a, b| a.0 == b.0)
-        .map(|triangles| Star { home: cells[triangles[0].0 as usize], triangles })
+        .map(|triangles| Star { home: places[triangles[0].0 as usize], triangles })
         .collect();
     let steps = steps();
     for _ in 0..ROUNDS {
-        let moved = stars.iter().filter(|star| star.improve(&steps, cells)).count();
+        let moved = stars.iter().filter(|star| star.improve(&steps, places)).count();
         if moved == 0 {
             break;
         }
@@ -50,35 +57,35 @@ fn solve(at: &[(u32, [u32; 3])], cells: &mut [Cell]) {
 
 /// A node that may move, with all triangles at it.
 struct Star<'t> {
-    home: Cell,
+    home: Place,
     triangles: &'t [(u32, [u32; 3])],
 }
 
 impl Star<'_> {
     /// Moves the node to the closest place where its triangles are least flat, if that is less than now.
-    fn improve(&self, steps: &[Cell], cells: &mut [Cell]) -> bool {
+    fn improve(&self, steps: &[Place], places: &mut [Place]) -> bool {
         let node = self.triangles[0].0 as usize;
-        let (mut best, mut least) = (cells[node], self.flatness(cells, u32::MAX));
+        let (mut best, mut least) = (places[node], self.flatness(places, u32::MAX));
         let before = least;
         for step in steps {
             if least == 0 {
                 break;
             }
-            cells[node] = [0, 1, 2].map(|k| self.home[k] + step[k]);
-            let flatness = self.flatness(cells, least);
+            places[node] = [0, 1, 2].map(|k| self.home[k] + step[k]);
+            let flatness = self.flatness(places, least);
             if flatness < least {
-                (best, least) = (cells[node], flatness);
+                (best, least) = (places[node], flatness);
             }
         }
-        cells[node] = best;
+        places[node] = best;
         least < before
     }
 
     /// How flat all triangles are; no more is added up than `most`.
-    fn flatness(&self, cells: &[Cell], most: u32) -> u32 {
+    fn flatness(&self, places: &[Place], most: u32) -> u32 {
         let mut all = 0;
         for (_, nodes) in self.triangles {
-            all += flatness(nodes.map(|n| cells[n as usize]));
+            all += flatness(nodes.map(|n| places[n as usize]));
             if all >= most {
                 break;
             }
@@ -88,16 +95,16 @@ impl Star<'_> {
 }
 
 /// All moves, the least first.
-fn steps() -> Vec<Cell> {
-    let along = -FARTHEST..=FARTHEST;
-    let all = along.clone().flat_map(|x| along.clone().map(move |y| [x, y]));
-    let mut all: Vec<Cell> = all.flat_map(|[x, y]| along.clone().map(move |z| [x, y, z])).collect();
-    all.sort_by_key(|step| step.iter().map(|x| x * x).sum::<i32>());
+fn steps() -> Vec<Place> {
+    let all = ALONG.into_iter().flat_map(|x| ALONG.map(|y| [x, y]));
+    let mut all: Vec<Place> = all.flat_map(|[x, y]| ALONG.map(|z| [x, y, z])).collect();
+    let squared = |step: &Place| step.iter().map(|x| x * x).sum::<f64>();
+    all.sort_by(|a, b| squared(a).total_cmp(&squared(b)));
     all
 }
 
 /// 0 for a triangle with an area, 1 where its corners are on a line, more where some are at one place.
-fn flatness([a, b, c]: [Cell; 3]) -> u32 {
+fn flatness([a, b, c]: [Place; 3]) -> u32 {
     match [a == b, b == c, c == a].into_iter().filter(|&same| same).count() {
         0 => u32::from(is_line([a, b, c])),
         1 => 2,
@@ -105,8 +112,8 @@ fn flatness([a, b, c]: [Cell; 3]) -> u32 {
     }
 }
 
-fn is_line([a, b, c]: [Cell; 3]) -> bool {
-    let from_a = |p: Cell| [0, 1, 2].map(|k| i64::from(p[k]) - i64::from(a[k]));
+fn is_line([a, b, c]: [Place; 3]) -> bool {
+    let from_a = |p: Place| [0, 1, 2].map(|k| p[k] - a[k]);
     let (u, v) = (from_a(b), from_a(c));
     (0..3).all(|k| u[k] * v[(k + 1) % 3] == u[(k + 1) % 3] * v[k])
 }

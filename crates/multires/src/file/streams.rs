@@ -1,6 +1,7 @@
 //! Numbers as streams of bytes that compress well: like with like.
 
 use std::io::{self, Read, Write};
+use std::ops::{BitOrAssign, Shl};
 
 /// How hard to press: beyond this the dragon takes twice the time for half a percent.
 const EFFORT: i32 = 9;
@@ -32,13 +33,13 @@ impl Packer {
 
     /// A stream of numbers: all least bytes, then all next ones. Ahead stands how many bytes the
     /// greatest takes.
-    pub(super) fn numbers(&mut self, numbers: &[u32]) -> io::Result<()> {
-        let most = numbers.iter().copied().max().unwrap_or(0);
-        let planes = (u32::BITS - most.leading_zeros()).div_ceil(8);
+    pub(super) fn numbers<N: Copy + Into<u64>>(&mut self, numbers: &[N]) -> io::Result<()> {
+        let most = numbers.iter().map(|&n| n.into()).max().unwrap_or(0);
+        let planes = (u64::BITS - most.leading_zeros()).div_ceil(8);
         self.numbers += 1 + if planes > 0 { 0 } else { numbers.len() };
         self.encoder.write_all(&[planes as u8])?;
         for plane in 0..planes {
-            let bytes: Vec<u8> = numbers.iter().map(|n| (n >> (8 * plane)) as u8).collect();
+            let bytes: Vec<u8> = numbers.iter().map(|&n| (n.into() >> (8 * plane)) as u8).collect();
             self.bytes(&bytes)?;
         }
         Ok(())
@@ -89,20 +90,24 @@ impl<'b> Unpacker<'b> {
         Ok(())
     }
 
-    pub(super) fn numbers(&mut self, count: usize) -> io::Result<Vec<u32>> {
-        let planes = u32::from(self.bytes(1)?[0]);
-        if planes > 4 {
+    /// Numbers of four bytes, or of eight.
+    pub(super) fn numbers<N>(&mut self, count: usize) -> io::Result<Vec<N>>
+    where
+        N: Copy + From<u8> + BitOrAssign + Shl<usize, Output = N>,
+    {
+        let planes = usize::from(self.bytes(1)?[0]);
+        if planes > size_of::<N>() {
             return Err(io::ErrorKind::InvalidData.into());
         }
         if planes == 0 {
             self.spend(count)?;
-            return Ok(vec![0; count]);
+            return Ok(vec![N::from(0); count]);
         }
-        let mut numbers: Vec<u32> = self.bytes(count)?.into_iter().map(u32::from).collect();
+        let mut numbers: Vec<N> = self.bytes(count)?.into_iter().map(N::from).collect();
         for plane in 1..planes {
             let bytes = self.bytes(count)?;
             let parts = numbers.iter_mut().zip(bytes);
-            parts.for_each(|(number, byte)| *number |= u32::from(byte) << (8 * plane));
+            parts.for_each(|(number, byte)| *number |= N::from(byte) << (8 * plane));
         }
         Ok(numbers)
     }
@@ -125,17 +130,20 @@ mod tests {
     #[test]
     fn numbers_come_back() {
         let numbers = [0, 1, 255, 256, u32::MAX, 70_000];
+        let wide = [1, u64::MAX, 1 << 40];
         let signed = [0, -1, i32::MIN, i32::MAX, 300, -300];
         let mut packer = Packer::new().unwrap();
-        packer.numbers(&numbers).unwrap();
+        packer.numbers::<u32>(&numbers).unwrap();
         packer.signed(signed.into_iter()).unwrap();
-        packer.numbers(&[0; 3]).unwrap();
+        packer.numbers(&[0u32; 3]).unwrap();
+        packer.numbers(&wide).unwrap();
         packer.bytes(b"end").unwrap();
         let bytes = packer.finish().unwrap();
         let mut unpacker = Unpacker::new(&bytes).unwrap();
-        assert_eq!(unpacker.numbers(6).unwrap(), numbers);
+        assert_eq!(unpacker.numbers::<u32>(6).unwrap(), numbers);
         assert_eq!(unpacker.signed(6).unwrap(), signed);
-        assert_eq!(unpacker.numbers(3).unwrap(), [0; 3]);
+        assert_eq!(unpacker.numbers::<u32>(3).unwrap(), [0; 3]);
+        assert_eq!(unpacker.numbers::<u64>(3).unwrap(), wide);
         assert_eq!(unpacker.bytes(3).unwrap(), b"end");
         assert!(unpacker.is_over().unwrap());
         assert!(unpacker.bytes(1).is_err());
@@ -144,11 +152,11 @@ mod tests {
     #[test]
     fn what_is_cut_off_is_an_error() {
         let mut packer = Packer::new().unwrap();
-        packer.numbers(&(0..1000).map(|i| i * i).collect::<Vec<_>>()).unwrap();
+        packer.numbers(&(0..1000).map(|i| i * i).collect::<Vec<u32>>()).unwrap();
         let bytes = packer.finish().unwrap();
         for end in 0..bytes.len() {
             let read = Unpacker::new(&bytes[..end]).and_then(|mut u| {
-                u.numbers(1000)?;
+                u.numbers::<u32>(1000)?;
                 u.is_over()
             });
             assert!(read.is_err() || end + 3 >= bytes.len(), "{end} of {}", bytes.len());

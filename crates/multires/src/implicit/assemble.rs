@@ -6,6 +6,7 @@ use super::places::Places;
 use super::splits::{Local, Split, Splits};
 use super::{FLAG, Implicit, LAST_WING, NO_WING, OPEN, Order};
 use crate::bounds::ErrorKind;
+use crate::exact::Exact;
 use crate::forest::{MOST_LEVELS, NONE, Odd};
 use crate::frame::{Frame, Length16};
 use crate::record::MOST_RANKED;
@@ -66,11 +67,12 @@ impl Implicit {
         Base { positions: roots.collect(), faces: self.base.clone() }
     }
 
-    /// A model of loose updates, without those whose node nobody makes. Each node may be split once.
+    /// A model of loose updates, without those whose node nobody makes; with the positions of some nodes
+    /// to the bit. Each node may be split once.
     ///
     /// Wings stay what they are: in every set of updates with all above them, nodes are in the same
     /// order.
-    pub(crate) fn assemble(about: About, base: Base, updates: &[Loose]) -> Self {
+    pub(crate) fn assemble(about: About, base: Base, updates: &[Loose], exact: &Exact) -> Self {
         let roots = base.positions.len();
         let nodes = roots + 2 * updates.len();
         let mut update_of = vec![NONE; nodes];
@@ -89,6 +91,7 @@ impl Implicit {
             roots: roots as u32,
             trees: order.trees.clone(),
             places: Places::Free(Vec::new()),
+            exact: exact.picked(order.nodes.iter().copied()),
             splits: Splits::Wide(Vec::new()),
             full_faces: base.faces.len(),
             base: base.faces,

@@ -133,6 +133,7 @@ impl<'m> Extractor<'m> {
             level.nodes.push(below.node);
             level.positions.push(mt.place(below.node));
         });
+        level.exact.pick(mt.exact(), level.nodes.iter().copied());
         self.model.faces().write(&made, &above, &mut level.faces);
         (self.level, self.above, self.made) = (level, above, made);
         &self.level

@@ -29,6 +29,7 @@ mod splits;
 use std::collections::BTreeMap;
 
 use crate::bounds::ErrorKind;
+use crate::exact::Exact;
 use crate::forest::{MOST_LEVELS, Odd};
 use crate::frame::{Frame, Length16};
 use crate::level::Level;
@@ -57,6 +58,8 @@ pub struct Implicit {
     /// Where the updates below each root start, and the last of them end.
     trees: Vec<u32>,
     places: Places,
+    /// Of the input's vertices, where they are kept as they were.
+    exact: Exact,
     splits: Splits,
     /// The coarsest faces, by roots.
     base: Vec<[u32; 3]>,
@@ -113,7 +116,7 @@ impl Implicit {
     /// # Panics
     /// Nodes are numbered below [`node_count`](Self::node_count).
     pub fn position(&self, node: u32) -> [f64; 3] {
-        self.frame.model(self.place(node))
+        self.exact.of(node).unwrap_or_else(|| self.frame.model(self.place(node)))
     }
 
     /// The nodes that a node is split into, which have higher numbers; `None` for those of the finest level.
@@ -137,7 +140,8 @@ impl Implicit {
     pub fn narrowed(&self) -> Option<Self> {
         let (places, splits) = (self.places.narrowed()?, self.splits.narrowed(self.roots)?);
         let (trees, base, odd) = (self.trees.clone(), self.base.clone(), self.odd.clone());
-        Some(Self { places, splits, trees, base, odd, ..*self })
+        let exact = self.exact.clone();
+        Some(Self { places, splits, trees, base, odd, exact, ..*self })
     }
 
     /// What it takes in memory.
@@ -146,6 +150,7 @@ impl Implicit {
             |o: &Odd| size_of::<Odd>() + size_of_val(&o.second[..]) + size_of_val(&o.brought[..]);
         size_of_val(&self.trees[..])
             + self.places.bytes()
+            + self.exact.bytes()
             + self.splits.bytes()
             + size_of_val(&self.base[..])
             + self.odd.values().map(odd).sum::<usize>()
@@ -164,6 +169,12 @@ impl Implicit {
     /// The mesh of some faces.
     pub(crate) fn level_of(&self, faces: Vec<[u32; 3]>) -> Level {
         Level::of_nodes(self.frame, self.node_count(), |node| self.place(node), faces)
+            .with_exact(&self.exact)
+    }
+
+    /// The positions that nothing has rounded, by node.
+    pub(crate) fn exact(&self) -> &Exact {
+        &self.exact
     }
 
     pub(crate) fn base(&self) -> &[[u32; 3]] {

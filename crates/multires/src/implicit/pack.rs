@@ -27,6 +27,7 @@ impl Implicit {
             error_kind: forest.error_kind,
             roots: order.trees.len() as u32 - 1,
             trees: order.trees.clone(),
+            exact: forest.exact.picked(order.nodes.iter().copied()),
             places: Places::Free(positions.collect()),
             splits: Splits::Wide(Vec::new()),
             base: base(forest, order),

@@ -1,0 +1,145 @@
+//! Positions to the bit: each coordinate by how many numbers lie between it and a guess.
+//!
+//! Numbers are counted without the last bits that none of a list has: what was once single precision is
+//! counted in that.
+
+use std::io;
+
+use super::streams::{Packer, Unpacker};
+
+/// By axis, how far positions are from their guesses.
+pub(super) struct Steps([Axis; 3]);
+
+struct Axis {
+    /// So many last bits are 0.
+    spare: u8,
+    steps: Vec<i64>,
+}
+
+/// All bits of a number but its sign.
+const SIZE: i64 = i64::MAX;
+
+/// Writes positions, each beside its guess.
+pub(super) fn write(pairs: &[[[f64; 3]; 2]], packer: &mut Packer) -> io::Result<()> {
+    for k in 0..3 {
+        // Without the sign, which is the first; 0 can spare all 63.
+        let zeros = pairs.iter().map(|[exact, _]| (exact[k].to_bits() << 1).trailing_zeros());
+        let spare = zeros.min().map_or(0, |zeros| zeros - 1) as u8;
+        packer.bytes(&[spare])?;
+        let step = |[exact, guess]: &[[f64; 3]; 2]| {
+            zigzag(rank(exact[k], spare).wrapping_sub(rank(guess[k], spare)))
+        };
+        packer.numbers(&pairs.iter().map(step).collect::<Vec<u64>>())?;
+    }
+    Ok(())
+}
+
+impl Steps {
+    /// Of so many positions.
+    pub(super) fn read(count: usize, input: &mut Unpacker<'_>) -> io::Result<Self> {
+        let mut axis = || {
+            let spare = input.bytes(1)?[0];
+            if u32::from(spare) >= i64::BITS {
+                return Err(io::Error::from(io::ErrorKind::InvalidData));
+            }
+            let steps = input.numbers(count)?;
+            Ok(Axis { spare, steps: steps.into_iter().map(unzigzag).collect() })
+        };
+        Ok(Self([axis()?, axis()?, axis()?]))
+    }
+
+    /// One of the positions; `None` where it is no number.
+    pub(super) fn position(&self, at: usize, guess: [f64; 3]) -> Option<[f64; 3]> {
+        let coordinate = |k: usize| {
+            let Axis { spare, steps } = &self.0[k];
+            number(rank(guess[k], *spare).wrapping_add(steps[at]), *spare)
+        };
+        Some([coordinate(0)?, coordinate(1)?, coordinate(2)?])
+    }
+}
+
+/// The place of a number among those without so many last bits, towards 0; what is below 0 from -1 on.
+fn rank(x: f64, spare: u8) -> i64 {
+    let bits = x.to_bits() as i64;
+    let size = (bits & SIZE) >> spare;
+    if bits < 0 { !size } else { size }
+}
+
+/// The number of a rank, if it is one.
+fn number(rank: i64, spare: u8) -> Option<f64> {
+    let (size, sign) = if rank < 0 { (!rank, !SIZE) } else { (rank, 0) };
+    let is_there = size <= SIZE >> spare;
+    let x = f64::from_bits(((size << spare) | sign) as u64);
+    (is_there && x.is_finite()).then_some(x)
+}
+
+fn zigzag(x: i64) -> u64 {
+    ((x << 1) ^ (x >> 63)) as u64
+}
+
+fn unzigzag(x: u64) -> i64 {
+    (x >> 1) as i64 ^ -((x & 1) as i64)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn there_and_back(pairs: &[[[f64; 3]; 2]]) -> usize {
+        let mut packer = Packer::new().unwrap();
+        write(pairs, &mut packer).unwrap();
+        let bytes = packer.finish().unwrap();
+        let steps = Steps::read(pairs.len(), &mut Unpacker::new(&bytes).unwrap()).unwrap();
+        for (at, [exact, guess]) in pairs.iter().enumerate() {
+            let read = steps.position(at, *guess).unwrap();
+            assert_eq!(read.map(f64::to_bits), exact.map(f64::to_bits));
+        }
+        bytes.len()
+    }
+
+    #[test]
+    fn every_number_comes_back_to_the_bit() {
+        let least = f64::from_bits(1);
+        let all = [
+            0.0,
+            -0.0,
+            1.0,
+            -1.0,
+            least,
+            -least,
+            f64::MIN_POSITIVE,
+            f64::MAX,
+            f64::MIN,
+            0.1,
+            -1e6,
+            500_000.123,
+        ];
+        let guesses = [0.0, -0.0, 1e300, -1e-300, 500_000.1];
+        let pairs = all.iter().flat_map(|&x| guesses.map(|guess| [[x, -x, x], [guess, x, -x]]));
+        let pairs: Vec<_> = pairs.collect();
+        there_and_back(&pairs);
+        pairs.iter().for_each(|pair| _ = there_and_back(&[*pair]));
+        there_and_back(&[]);
+        there_and_back(&[[[0.0, -0.0, 0.0], [1.5, 2.5, -1.5]]]);
+    }
+
+    #[test]
+    fn what_was_single_takes_less_room() {
+        let of = |x: fn(f64) -> f64| {
+            let guess = |i: u32| f64::from(i).sqrt() * (1.0 + 1e-7 * f64::from(i % 97));
+            let pair = |i: u32| [[x(f64::from(i).sqrt()); 3], [guess(i); 3]];
+            there_and_back(&(1..2000).map(pair).collect::<Vec<_>>())
+        };
+        let (doubles, singles) = (of(|x| x), of(|x| f64::from(x as f32)));
+        assert!(2 * singles < doubles, "{singles} of {doubles}");
+    }
+
+    #[test]
+    fn what_is_no_number_is_refused() {
+        let inf = rank(f64::INFINITY, 0);
+        assert_eq!((number(inf - 1, 0), number(inf, 0)), (Some(f64::MAX), None));
+        assert_eq!((number(!inf, 0), number(i64::MAX, 0), number(i64::MIN, 0)), (None, None, None));
+        assert_eq!((number(i64::MAX, 29), number(1 << 34, 29)), (None, None));
+        assert_eq!(number(rank(-1.5, 29), 29), Some(-1.5));
+    }
+}

@@ -1,0 +1,203 @@
+//! What is kept to the bit comes back so, by every way there is.
+
+use std::collections::BTreeSet;
+
+use meshlod_fixtures as fixtures;
+use meshlod_mesh::{Mesh, sample};
+use meshlod_simplify::{Method, Options};
+
+use super::{Dice, query, small};
+use crate::{Archive, Cut, Explicit, Focus, Forest, Implicit, Level, Model, Query, Storage};
+
+/// Meshes with positions that no `f32` holds: far away, large, small, and hardly there.
+fn meshes() -> Vec<(&'static str, Mesh)> {
+    let far = |x: f64, k: usize| [431_234.1, 5_412_345.7, 0.3][k] + 123.4567 * x;
+    // Signs of nothing, and what is close to it.
+    let fine = |x: f64, k: usize| match (k, x) {
+        (2, _) if x.abs() < 0.1 => -0.0 * x,
+        (0, _) if x.abs() < 0.1 => x * 1e-310,
+        _ => x,
+    };
+    vec![
+        ("torus, far away", placed(sample::torus(700), far)),
+        ("terrain, far away", placed(sample::terrain(500), far)),
+        ("knot, with zeros", placed(sample::knot(800), fine)),
+        ("gyroid, large", placed(sample::gyroid(700), |x, _| x * 1.7e20)),
+        ("sphere, small", placed(sample::sphere(600), |x, _| x * 1.7e-20)),
+        ("grid", fixtures::grid(9)),
+        ("tetrahedron", placed(fixtures::tetrahedron(), |x, _| x / 3.0)),
+        ("hourglass", placed(fixtures::hourglass(), |x, _| x / 3.0)),
+        ("two objects", placed(fixtures::two_objects(), |x, _| x / 3.0)),
+        ("moebius", placed(fixtures::moebius(9), |x, _| x / 3.0)),
+    ]
+}
+
+fn placed(mut mesh: Mesh, place: impl Fn(f64, usize) -> f64) -> Mesh {
+    for position in &mut mesh.positions {
+        *position = std::array::from_fn(|k| place(position[k], k));
+    }
+    mesh
+}
+
+fn each(mut check: impl FnMut(&str, &Mesh, &Forest, &Archive<Vec<u8>>)) {
+    for (name, mesh) in meshes() {
+        for method in [Method::Qem, Method::LeeJang] {
+            let options = Options { method, ..Options::default() };
+            let forest = Forest::lossless(&mesh, &options).unwrap();
+            let archive = Archive::open(Archive::write(&forest, &small()).unwrap().0).unwrap();
+            check(&format!("{name} by {}", method.name()), &mesh, &forest, &archive);
+        }
+    }
+}
+
+type Bits = [u64; 3];
+
+fn bits(position: [f64; 3]) -> Bits {
+    position.map(f64::to_bits)
+}
+
+/// Faces by the bits of their corners.
+fn by_bits(mesh: &Mesh) -> Vec<[Bits; 3]> {
+    let corners = |face: &[meshlod_mesh::VertexId; 3]| face.map(|v| mesh.positions[v.index()]);
+    let mut faces: Vec<_> = mesh.faces.iter().map(|face| corners(face).map(bits)).collect();
+    for face in &mut faces {
+        let least = (0..3).min_by_key(|&k| face[k]).unwrap();
+        face.rotate_left(least);
+    }
+    faces.sort_unstable();
+    faces
+}
+
+#[test]
+fn the_finest_level_is_the_input() {
+    let mut narrow_ones = 0;
+    each(|what, mesh, forest, archive| {
+        assert!(archive.is_lossless() && archive.rounding() == 0.0, "{what}");
+        let input = by_bits(mesh);
+        let is_input = |level: &Level| by_bits(&level.mesh()) == input;
+        let (all, most) = (Query::uniform(0.0), usize::MAX);
+        assert!(is_input(&archive.extract(&all).unwrap().level), "{what}: extracted");
+        assert!(is_input(&archive.extract_at_most(most, &all).unwrap().level), "{what}: so many");
+        let read = archive.read().unwrap().0;
+        let cut = Cut::at(&read, &all).unwrap();
+        assert!(is_input(&cut.level()), "{what}: cut");
+        let within = cut.level().within(&Focus::Everything).unwrap();
+        assert!(is_input(&within), "{what}: within");
+        assert!(is_input(&cut.level_within(&Focus::Everything).unwrap()), "{what}: cut within");
+        // Some have a vertex too far out for that.
+        if let Some(narrow) = read.narrowed() {
+            assert!(is_input(&Cut::at(&narrow, &all).unwrap().level()), "{what}: narrow");
+            narrow_ones += 1;
+        }
+        let model = Model::of(&read).unwrap();
+        let mut extractor = model.extractor();
+        assert!(is_input(extractor.uniform(0.0).unwrap()), "{what}: uniform");
+        assert!(is_input(extractor.exact(&all).unwrap()), "{what}: exact");
+        assert!(is_input(extractor.at_most(most, &all).unwrap()), "{what}: at most");
+        let kept = forest.kept(super::lattice(forest, &small(), super::diagonal(forest))).unwrap();
+        let explicit = Explicit::new(&kept.forest);
+        assert!(is_input(&explicit.extract(&all).unwrap()), "{what}: explicit");
+    });
+    assert!(narrow_ones > meshes().len(), "{narrow_ones}");
+}
+
+#[test]
+fn what_is_left_of_the_input_in_a_level_is_as_it_was() {
+    let (mut of_input, mut others) = (0, 0);
+    each(|what, mesh, _, archive| {
+        let input: BTreeSet<Bits> = mesh.positions.iter().map(|&p| bits(p)).collect();
+        let model = archive.read().unwrap().0;
+        let mut check = |model: &Implicit, level: &Level| {
+            for (&node, position) in level.nodes.iter().zip(level.mesh().positions) {
+                assert_eq!(bits(model.position(node)), bits(position), "{what}");
+                let is_leaf = model.update_of(node).is_none();
+                *(if is_leaf { &mut of_input } else { &mut others }) += 1;
+                assert!(!is_leaf || input.contains(&bits(position)), "{what}");
+            }
+        };
+        let mut dice = Dice(3);
+        for _ in 0..6 {
+            let query = query(&mut dice, mesh);
+            let whole = Cut::at(&model, &query).unwrap().level();
+            check(&model, &whole);
+            check(&model, &whole.within(&query.focus).unwrap());
+            let part = archive.extract(&query).unwrap().level;
+            assert_eq!(by_bits(&part.mesh()), by_bits(&whole.mesh()), "{what}: {query:?}");
+        }
+    });
+    assert!(of_input > 1000 && others > 1000, "{of_input}, {others}");
+}
+
+#[test]
+fn every_start_of_a_lossless_file_is_a_cut() {
+    each(|what, mesh, _, archive| {
+        let input: BTreeSet<Bits> = mesh.positions.iter().map(|&p| bits(p)).collect();
+        let mut most = 0;
+        for chunks in 0..=archive.chunk_count() {
+            let model = Model::of(&archive.read_chunks(chunks).unwrap().0).unwrap();
+            let mut extractor = model.extractor();
+            let level = extractor.uniform(0.0).unwrap();
+            let places = level.nodes.iter().zip(level.mesh().positions);
+            let exact = places.filter(|(node, _)| model.implicit().exact().of(**node).is_some());
+            let exact: Vec<_> = exact.map(|(_, place)| bits(place)).collect();
+            assert!(exact.iter().all(|place| input.contains(place)), "{what}");
+            assert!(exact.len() >= most, "{what}");
+            most = exact.len();
+        }
+        assert_eq!(most, mesh.positions.len(), "{what}");
+    });
+}
+
+/// On a lattice so coarse that what replaces the input's vertices would fall on each other.
+#[test]
+fn no_triangle_beside_the_input_loses_its_area() {
+    let mesh = sample::knot(4000);
+    let forest = Forest::lossless(&mesh, &Options::default()).unwrap();
+    for part in [1e-2, 2e-2] {
+        let storage = Storage { rounding: Some(part * mesh.bounds().diagonal()), ..small() };
+        let archive = Archive::open(Archive::write(&forest, &storage).unwrap().0).unwrap();
+        let model = archive.read().unwrap().0;
+        model.each_triangle(|nodes| {
+            let [a, b, c] = nodes.map(|n| glam::DVec3::from(model.position(n)));
+            assert!((b - a).cross(c - a).length_squared() > 0.0, "{part}: {nodes:?}");
+        });
+    }
+}
+
+#[test]
+fn a_lossless_file_that_is_damaged_is_refused() {
+    let mesh = placed(fixtures::grid(6), |x, _| x / 3.0);
+    let forest = Forest::lossless(&mesh, &Options::default()).unwrap();
+    let bytes = Archive::write(&forest, &small()).unwrap().0;
+    let mut dice = Dice(29);
+    let (mut refused, mut passed) = (0, 0);
+    for at in 0..bytes.len() {
+        let mut wrong = bytes.clone();
+        wrong[at] ^= 1 << (at % 8);
+        let open = |bytes| Archive::open(bytes).and_then(|archive| archive.read());
+        assert!(open(wrong.clone()).is_err(), "byte {at} may be another");
+        Archive::seal(&mut wrong);
+        match Archive::open(wrong).and_then(|archive| {
+            archive.extract(&query(&mut dice, &mesh))?;
+            archive.read()
+        }) {
+            Ok((model, _)) => {
+                passed += 1;
+                let finest = Cut::at(&model, &Query::uniform(0.0)).unwrap().level().mesh();
+                assert!(finest.positions.iter().flatten().all(|x| x.is_finite()));
+            }
+            Err(_) => refused += 1,
+        }
+    }
+    assert!(refused > 100 && passed > 20, "{refused} refused, {passed} passed");
+}
+
+/// A flag that a later version may have.
+#[test]
+fn a_file_with_flags_that_are_not_known_is_refused() {
+    let forest = Forest::new(&sample::torus(100), &Options::default()).unwrap();
+    let mut bytes = Archive::write(&forest, &small()).unwrap().0;
+    bytes[19] = 2;
+    Archive::seal(&mut bytes);
+    assert!(Archive::open(bytes).unwrap_err().to_string().contains("flags"));
+}
