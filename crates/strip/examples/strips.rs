@@ -52,12 +52,12 @@ fn figures(name: &str, mesh: &Mesh, thorough: bool) {
         );
     };
     row("fast", &Options { quality: Quality::Fast, ..Options::default() });
-    let moves: &[f64] = if thorough { &[20.0, 60.0, 300.0, 1000.0] } else { &[20.0, 60.0] };
+    let moves: &[f64] = if thorough { &[20.0, 60.0, 300.0, 1500.0] } else { &[20.0, 60.0] };
     for &moves in moves {
         let options = Options { quality: best(moves), ..Options::default() };
         row(&format!("best, {moves} moves"), &options);
-        let options = Options { prices: Prices::vertices_only(), ..options };
-        row(&format!("best, {moves} moves, vertices only"), &options);
+        let options = Options { prices: Prices::with_restarts(), ..options };
+        row(&format!("best, {moves} moves, restarts priced"), &options);
     }
     for longest in [10, 12, 14, 16, 20, 24, 32, 48, 96] {
         let cache = Some(CacheAware { longest, ..CacheAware::default() });

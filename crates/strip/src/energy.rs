@@ -5,7 +5,7 @@ use crate::cover::{Links, Port};
 /// What strips cost beyond one vertex for each triangle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Prices {
-    /// A strip: its first two vertices, and half or all of a restart if that counts.
+    /// A strip: its first two vertices, and a restart if that counts.
     pub strip: f64,
     /// A swap: a vertex said again.
     pub swap: f64,
@@ -15,16 +15,18 @@ pub struct Prices {
 }
 
 impl Default for Prices {
-    /// A restart counts half: between fewest vertices, where it would count nothing, and fewest indices.
+    /// Fewest vertices: a restart costs nothing. An odd end costs .4: of the bunny, 60 moves a face, .5 and .3 leave .001
+    /// vertices a face more.
     fn default() -> Self {
-        Self { strip: 2.5, swap: 1.0, odd_end: 0.5 }
+        Self { strip: 2.0, swap: 1.0, odd_end: 0.4 }
     }
 }
 
 impl Prices {
-    /// Where a restart costs nothing: fewest vertices.
-    pub fn vertices_only() -> Self {
-        Self { strip: 2.0, ..Self::default() }
+    /// Fewest indices, where a restart between strips is one. The bunny, 1000 moves a face: 1.106 indices and 1.089
+    /// vertices a face with 2.5 for a strip, 1.109 and 1.086 without.
+    pub fn with_restarts() -> Self {
+        Self { strip: 3.0, ..Self::default() }
     }
 }
 

@@ -10,6 +10,7 @@ mod cover;
 mod dual;
 mod emit;
 mod energy;
+mod even;
 mod filter;
 mod greedy;
 mod measure;
