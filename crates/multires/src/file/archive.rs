@@ -1,16 +1,13 @@
 //! Reads a file: all of it, its first part, or what a query needs.
 
-use super::exact::Steps;
 use super::header::{self, FIXED, Header, Stored};
 use super::known::Known;
 use super::source::{Source, piece};
-use super::streams::Unpacker;
-use super::{FileError, Storage, chunk, write};
+use super::{FileError, Storage, base, chunk, write};
 use crate::bounds::ErrorKind;
 use crate::cut::{Certificate, Cut};
-use crate::exact::Exact;
 use crate::forest::Forest;
-use crate::implicit::{Base, Implicit, has_three_corners};
+use crate::implicit::Implicit;
 use crate::level::Level;
 use crate::model::Model;
 use crate::need::Need;
@@ -234,29 +231,8 @@ impl<S: Source> Archive<S> {
     fn read_base(&self) -> Result<Known, FileError> {
         let name = || "the coarsest mesh".to_owned();
         let bytes = self.stored(self.header.len(), self.header.base, name)?;
-        let bad = |why: &str| FileError::Piece { piece: name(), why: why.into() };
-        let (roots, faces) = (self.header.roots as usize, self.header.base_faces as usize);
-        let packed = |why: std::io::Error| bad(&why.to_string());
-        let mut input = Unpacker::new(&bytes).map_err(packed)?;
-        let numbers = unpack_base(&mut input, roots, faces);
-        let [x, y, z, a, b, c] = numbers.map_err(packed)?;
-        let place = |i: usize| self.header.lattice.place([x[i], y[i], z[i]]);
-        let places: Option<Vec<_>> = (0..roots).map(place).collect();
-        let positions = places.ok_or(bad("a vertex is out of reach"))?;
-        let corner = |v: i64| u32::try_from(v).ok().filter(|&v| (v as usize) < roots);
-        let face = |i: usize| Some([corner(a[i])?, corner(b[i])?, corner(c[i])?]);
-        let faces: Option<Vec<_>> = (0..faces).map(face).collect();
-        let faces = faces.ok_or(bad("a face has a vertex that is not there"))?;
-        if !faces.iter().all(has_three_corners) {
-            return Err(bad("a face has a vertex twice"));
-        }
-        let Header { about, lattice, lossless, .. } = self.header;
-        let mut known = Known::new(about.frame, lattice, Base { positions, faces }, None);
-        if lossless {
-            let exact = read_exact(&known, &mut input).map_err(packed)?;
-            known.exact = Some(exact.ok_or(bad("a position of it is no number"))?);
-        }
-        Ok(known)
+        let read = base::read(&self.header, &bytes);
+        read.map_err(|why| FileError::Piece { piece: name(), why: why.to_string() })
     }
 
     /// A piece of the file that is what was written.
@@ -269,34 +245,4 @@ impl<S: Source> Archive<S> {
         let bytes = piece(&self.source, offset, u64::from(stored.bytes), "a chunk")?;
         if Stored::of(&bytes) == stored { Ok(bytes) } else { Err(FileError::Checksum(name())) }
     }
-}
-
-/// Places and corners, by axis, each told by the one before.
-fn unpack_base(
-    input: &mut Unpacker<'_>,
-    roots: usize,
-    faces: usize,
-) -> std::io::Result<[Vec<i64>; 6]> {
-    let mut all: [Vec<i64>; 6] = Default::default();
-    for (k, numbers) in all.iter_mut().enumerate() {
-        let steps = input.signed(if k < 3 { roots } else { faces })?;
-        numbers.extend(steps.into_iter().scan(0i64, |at, step| {
-            *at += i64::from(step);
-            Some(*at)
-        }));
-    }
-    Ok(all)
-}
-
-/// The positions of those roots that have them; `None` where one is no number.
-fn read_exact(known: &Known, input: &mut Unpacker<'_>) -> std::io::Result<Option<Exact>> {
-    let flags = input.bytes(known.roots() as usize)?;
-    let nodes: Vec<u32> = (0..known.roots()).filter(|&root| flags[root as usize] != 0).collect();
-    let steps = Steps::read(nodes.len(), input)?;
-    let mut exact = Exact::default();
-    for (at, node) in nodes.into_iter().enumerate() {
-        let Some(position) = steps.position(at, known.guess(node)) else { return Ok(None) };
-        exact.push(node, position);
-    }
-    Ok(Some(exact))
 }

@@ -11,9 +11,8 @@ use glam::Vec3;
 use thiserror::Error;
 
 use super::exact::{self, Steps};
+use super::family::{Family, Places};
 use super::known::Known;
-use super::lattice::Lattice;
-use super::slant::Slant;
 use super::streams::{Packer, Unpacker};
 use crate::forest::{NONE, Odd};
 use crate::frame::Length16;
@@ -235,74 +234,4 @@ fn read_odd(input: &mut Unpacker<'_>, nodes: u32) -> Result<Option<Odd>, io::Err
     // No edge with more than two faces is contracted.
     let are_faces = brought.len() <= 2 && brought.iter().all(has_three_corners);
     Ok((are_made && are_faces).then_some(Odd { second, brought }))
-}
-
-/// Where the two children of a node are.
-struct Family {
-    /// From the first to the second.
-    apart: [i32; 3],
-    /// From the parent to their middle, without what `apart` tells.
-    middle: [i32; 3],
-}
-
-struct Places {
-    apart: [Vec<i32>; 3],
-    middle: [Vec<i32>; 3],
-    radii: Vec<i32>,
-}
-
-impl Places {
-    fn read(input: &mut Unpacker<'_>, count: usize) -> io::Result<Self> {
-        let (mut apart, mut middle) = <([Vec<i32>; 3], [Vec<i32>; 3])>::default();
-        for k in 0..3 {
-            apart[k] = input.signed(count)?;
-            middle[k] = input.signed(count)?;
-        }
-        Ok(Self { apart, middle, radii: input.signed(count)? })
-    }
-
-    fn family(&self, at: usize) -> Family {
-        Family {
-            apart: [0, 1, 2].map(|k| self.apart[k][at]),
-            middle: [0, 1, 2].map(|k| self.middle[k][at]),
-        }
-    }
-}
-
-impl Family {
-    fn of(lattice: Lattice, parent: Vec3, children: [Vec3; 2]) -> Self {
-        let parent = lattice.round(parent);
-        let [a, b] = children.map(|child| lattice.round(child));
-        let apart = [0, 1, 2].map(|k| b[k] - a[k]);
-        // Their sum is odd where their difference is.
-        let middle = [0, 1, 2].map(|k| (a[k] + b[k] - 2 * parent[k] - (apart[k] & 1)) / 2);
-        Self { apart, middle }
-    }
-
-    fn folded(&self, slant: &Slant) -> Self {
-        Self { apart: slant.fold(self.apart), middle: slant.fold(self.middle) }
-    }
-
-    fn unfolded(&self, slant: &Slant) -> Self {
-        Self { apart: slant.unfold(self.apart), middle: slant.unfold(self.middle) }
-    }
-
-    /// None where they would be out of reach.
-    fn children(&self, lattice: Lattice, parent: Vec3) -> Option<[Vec3; 2]> {
-        let parent = lattice.round(parent);
-        let ends = [-1, 1].map(|side| {
-            lattice.place([0, 1, 2].map(|k| {
-                let apart = i64::from(self.apart[k]);
-                let sum = 2 * (i64::from(self.middle[k]) + i64::from(parent[k])) + (apart & 1);
-                (sum + side * apart) / 2
-            }))
-        });
-        Some([ends[0]?, ends[1]?])
-    }
-
-    /// What a ball around them would take at least, about.
-    fn radius8(&self, lattice: Lattice) -> u8 {
-        let squared: f64 = self.apart.iter().map(|&x| f64::from(x) * f64::from(x)).sum();
-        radius8(Length16::up(squared.sqrt() * lattice.cell()))
-    }
 }

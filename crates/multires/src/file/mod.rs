@@ -5,9 +5,11 @@
 //! coarse things are without it: a query reads what it needs. docs/formats/mlod.md has the bytes.
 
 mod archive;
+mod base;
 mod chunk;
 mod container;
 mod exact;
+mod family;
 mod header;
 mod keep;
 mod known;

@@ -5,18 +5,15 @@ use std::io;
 use meshlod_mesh::Bounds;
 use rayon::prelude::*;
 
-use super::FileError;
-use super::chunk;
-use super::exact;
 use super::header::{Entry, Header, Stored};
 use super::keep::Kept;
 use super::known::Known;
 use super::lattice::Lattice;
 use super::plan::{Chunk, Plan, number, plan};
-use super::streams::Packer;
+use super::{FileError, base, chunk};
 use crate::cut::Certificate;
 use crate::forest::Forest;
-use crate::implicit::{About, Base, Implicit, Links, Loose, Order, Rule};
+use crate::implicit::{About, Implicit, Links, Loose, Order, Rule};
 
 /// How a model is stored.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -116,7 +113,7 @@ fn pack(mt: &Implicit, plan: &Plan, lattice: Lattice) -> io::Result<Packed> {
     };
     let written: io::Result<Vec<_>> = plan.chunks.par_iter().map(write).collect();
     let (chunks, bodies) = written?.into_iter().unzip();
-    Ok(Packed { base: write_base(&known)?, chunks, bodies })
+    Ok(Packed { base: base::write(&known)?, chunks, bodies })
 }
 
 /// The coarsest that is fine enough for a mesh of this diagonal.
@@ -132,25 +129,4 @@ pub(super) fn diagonal(forest: &Forest) -> f64 {
     let places: Vec<_> = leaves.map(|p| p.map(f64::from)).collect();
     let bounds = Bounds::of(&places);
     if bounds.is_empty() { 0.0 } else { forest.frame.length_of_model(bounds.diagonal()) }
-}
-
-/// Its vertices and faces, each told by the one before.
-fn write_base(known: &Known) -> io::Result<Vec<u8>> {
-    let Base { positions, faces } = &known.base;
-    let mut packer = Packer::new()?;
-    for k in 0..3 {
-        let places = positions.iter().map(|&p| known.lattice.round(p)[k]);
-        packer.signed(places.scan(0, |last, x| Some(x - std::mem::replace(last, x))))?;
-    }
-    for k in 0..3 {
-        let corners = faces.iter().map(|face| face[k] as i32);
-        packer.signed(corners.scan(0, |last, v| Some(v - std::mem::replace(last, v))))?;
-    }
-    if known.exact.is_some() {
-        let flags = (0..known.roots()).map(|root| known.exact(root).is_some().into());
-        packer.bytes(&flags.collect::<Vec<u8>>())?;
-        let pair = |root| known.exact(root).map(|exact| [exact, known.guess(root)]);
-        exact::write(&(0..known.roots()).filter_map(pair).collect::<Vec<_>>(), &mut packer)?;
-    }
-    packer.finish()
 }

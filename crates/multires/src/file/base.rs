@@ -1,0 +1,90 @@
+//! The coarsest mesh as bytes: vertices and faces, each told by the one before.
+
+use std::io;
+
+use thiserror::Error;
+
+use super::exact::{self, Steps};
+use super::header::Header;
+use super::known::Known;
+use super::streams::{Packer, Unpacker};
+use crate::exact::Exact;
+use crate::implicit::{Base, has_three_corners};
+
+/// Why the coarsest mesh is none.
+#[derive(Debug, Error)]
+pub(super) enum BaseError {
+    /// It cannot be unpacked, or ends too early.
+    #[error("it cannot be unpacked")]
+    Packed(#[from] io::Error),
+    #[error("{0}")]
+    Wrong(&'static str),
+}
+
+pub(super) fn write(known: &Known) -> io::Result<Vec<u8>> {
+    let Base { positions, faces } = &known.base;
+    let mut packer = Packer::new()?;
+    for k in 0..3 {
+        let places = positions.iter().map(|&p| known.lattice.round(p)[k]);
+        packer.signed(places.scan(0, |last, x| Some(x - std::mem::replace(last, x))))?;
+    }
+    for k in 0..3 {
+        let corners = faces.iter().map(|face| face[k] as i32);
+        packer.signed(corners.scan(0, |last, v| Some(v - std::mem::replace(last, v))))?;
+    }
+    if known.exact.is_some() {
+        let flags = (0..known.roots()).map(|root| known.exact(root).is_some().into());
+        packer.bytes(&flags.collect::<Vec<u8>>())?;
+        let pair = |root| known.exact(root).map(|exact| [exact, known.guess(root)]);
+        exact::write(&(0..known.roots()).filter_map(pair).collect::<Vec<_>>(), &mut packer)?;
+    }
+    packer.finish()
+}
+
+/// The coarsest mesh, and nothing more known.
+pub(super) fn read(header: &Header, bytes: &[u8]) -> Result<Known, BaseError> {
+    let Header { about, lattice, lossless, .. } = *header;
+    let (roots, faces) = (header.roots as usize, header.base_faces as usize);
+    let mut input = Unpacker::new(bytes)?;
+    let [x, y, z, a, b, c] = unpack(&mut input, roots, faces)?;
+    let places: Option<Vec<_>> = (0..roots).map(|i| lattice.place([x[i], y[i], z[i]])).collect();
+    let positions = places.ok_or(BaseError::Wrong("a vertex is out of reach"))?;
+    let corner = |v: i64| u32::try_from(v).ok().filter(|&v| (v as usize) < roots);
+    let face = |i: usize| Some([corner(a[i])?, corner(b[i])?, corner(c[i])?]);
+    let faces: Option<Vec<_>> = (0..faces).map(face).collect();
+    let faces = faces.ok_or(BaseError::Wrong("a face has a vertex that is not there"))?;
+    if !faces.iter().all(has_three_corners) {
+        return Err(BaseError::Wrong("a face has a vertex twice"));
+    }
+    let mut known = Known::new(about.frame, lattice, Base { positions, faces }, None);
+    if lossless {
+        known.exact = Some(read_exact(&known, &mut input)?);
+    }
+    Ok(known)
+}
+
+/// Places and corners, by axis.
+fn unpack(input: &mut Unpacker<'_>, roots: usize, faces: usize) -> io::Result<[Vec<i64>; 6]> {
+    let mut all: [Vec<i64>; 6] = Default::default();
+    for (k, numbers) in all.iter_mut().enumerate() {
+        let steps = input.signed(if k < 3 { roots } else { faces })?;
+        numbers.extend(steps.into_iter().scan(0i64, |at, step| {
+            *at += i64::from(step);
+            Some(*at)
+        }));
+    }
+    Ok(all)
+}
+
+/// The positions to the bit of those roots that have them.
+fn read_exact(known: &Known, input: &mut Unpacker<'_>) -> Result<Exact, BaseError> {
+    let flags = input.bytes(known.roots() as usize)?;
+    let nodes: Vec<u32> = (0..known.roots()).filter(|&root| flags[root as usize] != 0).collect();
+    let steps = Steps::read(nodes.len(), input)?;
+    let mut exact = Exact::default();
+    for (at, node) in nodes.into_iter().enumerate() {
+        let position = steps.position(at, known.guess(node));
+        exact.push(node, position.ok_or(BaseError::Wrong("a position of it is no number"))?);
+    }
+    Ok(exact)
+}
