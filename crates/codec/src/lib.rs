@@ -4,6 +4,9 @@
 //! parts whose boxes are about equally large, all cells are of one size and lie in one grid, and each part has
 //! a matrix that puts its cells where they belong. What two parts share is in the same cell in both.
 //!
+//! [`LatticeBlocks`] put each vertex into one block of 32, on a [`Lattice`] that meshes can share: what they have in
+//! common is the same in both, bit for bit, and there are no borders to crack.
+//!
 //! ```
 //! use meshlod_codec::{Cells, Parting};
 //! use meshlod_mesh::sample;
@@ -17,6 +20,10 @@
 //! ```
 #![forbid(unsafe_code)]
 
+mod bits;
+mod kd;
+mod lattice;
 mod parts;
 
+pub use lattice::{Lattice, LatticeBlocks, LatticeError};
 pub use parts::{Cells, Part, Parting, Parts, PartsError};

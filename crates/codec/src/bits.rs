@@ -1,0 +1,72 @@
+//! Numbers of any width, one after the other.
+
+/// A row of bits that numbers are put behind and read from anywhere.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub(crate) struct Bits {
+    words: Vec<u64>,
+    len: usize,
+}
+
+impl Bits {
+    /// Puts the low `width` bits of a number behind all others, at most 64.
+    pub(crate) fn push(&mut self, number: u64, width: u32) {
+        debug_assert!(width == 64 || number >> width == 0, "{number} has more than {width} bits");
+        if width == 0 {
+            return;
+        }
+        let shift = self.len as u32 % u64::BITS;
+        if shift == 0 {
+            self.words.push(number);
+        } else {
+            *self.words.last_mut().expect("it has begun") |= number << shift;
+            if shift + width > u64::BITS {
+                self.words.push(number >> (u64::BITS - shift));
+            }
+        }
+        self.len += width as usize;
+    }
+
+    /// The number in the `width` bits from a place on.
+    ///
+    /// # Panics
+    /// Bits that are not there.
+    #[inline]
+    pub(crate) fn get(&self, at: usize, width: u32) -> u64 {
+        if width == 0 {
+            return 0;
+        }
+        let (word, shift) = (at / u64::BITS as usize, at as u32 % u64::BITS);
+        let mut number = self.words[word] >> shift;
+        if shift + width > u64::BITS {
+            number |= self.words[word + 1] << (u64::BITS - shift);
+        }
+        if width < u64::BITS { number & ((1 << width) - 1) } else { number }
+    }
+
+    /// How many there are.
+    pub(crate) fn len(&self) -> usize {
+        self.len
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_of_all_widths_come_back() {
+        let number = |i: u64| i.wrapping_mul(0x9e37_79b9_7f4a_7c15);
+        let of = |i: u64| {
+            let width = (i % 65) as u32;
+            (if width == 64 { number(i) } else { number(i) & ((1 << width) - 1) }, width)
+        };
+        let mut bits = Bits::default();
+        (0..500).map(of).for_each(|(number, width)| bits.push(number, width));
+        let mut at = 0;
+        for (number, width) in (0..500).map(of) {
+            assert_eq!(bits.get(at, width), number);
+            at += width as usize;
+        }
+        assert_eq!(bits.len(), at);
+    }
+}
