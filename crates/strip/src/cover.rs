@@ -6,7 +6,7 @@
 
 use meshlod_mesh::VertexId;
 
-use crate::dual::pairs;
+use crate::dual::cells;
 
 /// A side of a cell as one word.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -86,12 +86,17 @@ impl Links {
 }
 
 /// A face in a cover: what lies across its sides, and which of them are linked.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Cell {
     pub(crate) across: [Port; 3],
     pub(crate) links: Links,
     /// Whether its links must stay as they are for now.
     pub(crate) held: bool,
+}
+
+impl Cell {
+    /// A face with nothing across.
+    pub(crate) const ALONE: Self = Self { across: [Port::NONE; 3], links: Links(0), held: false };
 }
 
 /// A path cover of some faces.
@@ -105,8 +110,7 @@ pub(crate) struct Cover {
 impl Cover {
     /// Every face of `faces` a path by itself.
     pub(crate) fn new(faces: &[[VertexId; 3]]) -> Self {
-        let cell = |across| Cell { across, links: Links::default(), held: false };
-        Self { cells: pairs(faces).into_iter().map(cell).collect() }
+        Self { cells: cells(faces) }
     }
 
     /// Takes away what lies across between faces with different labels: no strip crosses there.

@@ -2,23 +2,23 @@
 
 use meshlod_mesh::VertexId;
 
-use crate::cover::Port;
+use crate::cover::{Cell, Port};
 
-/// What lies across the sides of every face: the side of a face that runs along the same edge the other way.
+/// The faces as cells without links, and what lies across their sides: the side of a face that runs along the same edge the other way.
 ///
 /// Any faces are taken. Where an edge has more than two sides, they are paired as far as their directions allow;
 /// sides that run the same way are never paired, for no strip can go from one to the other. A face that repeats a
 /// vertex has nothing across. Cost: O(n) where the faces of a vertex come near each other, at worst O(n log n).
 ///
 /// Panics above [`Port::MOST_CELLS`] faces.
-pub(crate) fn pairs(faces: &[[VertexId; 3]]) -> Vec<[Port; 3]> {
+pub(crate) fn cells(faces: &[[VertexId; 3]]) -> Vec<Cell> {
     assert!(faces.len() <= Port::MOST_CELLS, "sides are numbered in 32 bits");
-    let most = faces.iter().flatten().max().map_or(0, |v| v.index());
+    let most = faces.as_flattened().iter().fold(0, |most, v| v.0.max(most)) as usize;
     // A table over vertices that are hardly there is not worth having, and could be any size.
     if most > 8 * faces.len() {
-        return sorted_pairs(faces);
+        return sorted(faces);
     }
-    listed_pairs(faces, most + 1).unwrap_or_else(|| sorted_pairs(faces))
+    listed(faces, most + 1).unwrap_or_else(|| sorted(faces))
 }
 
 /// How many rising sides may be looked at for each face, on average, before sorting is the better way. Meshes need 2
@@ -28,22 +28,22 @@ const MOST_LOOKS: usize = 64;
 /// In two passes: sides that rise to a higher vertex are listed at the lower one, and those that fall look there.
 ///
 /// Which sides rise is as good as random, so nothing branches on it.
-fn listed_pairs(faces: &[[VertexId; 3]], vertex_count: usize) -> Option<Vec<[Port; 3]>> {
+fn listed(faces: &[[VertexId; 3]], vertex_count: usize) -> Option<Vec<Cell>> {
     let Sides { starts, mut rising, falling } = Sides::new(faces, vertex_count);
-    let mut across = vec![[Port::NONE; 3]; faces.len()];
+    let mut cells = vec![Cell::ALONE; faces.len()];
     let mut looks = faces.len() * MOST_LOOKS;
     for port in falling {
         let [from, to] = ends(&faces[port.cell()], port.side());
-        let listed = &mut rising[starts[to.index()] as usize..starts[to.index() + 1] as usize];
-        let found = listed.iter().position(|rising| rising.0 == from);
-        looks = looks.checked_sub(found.map_or(listed.len(), |place| place + 1))?;
+        let list = &mut rising[starts[to.index()] as usize..starts[to.index() + 1] as usize];
+        let found = list.iter().position(|rising| rising.0 == from);
+        looks = looks.checked_sub(found.map_or(list.len(), |place| place + 1))?;
         if let Some(place) = found {
-            let (_, other) = std::mem::replace(&mut listed[place], (to, Port::NONE));
-            across[port.cell()][port.side()] = other;
-            across[other.cell()][other.side()] = port;
+            let (_, other) = std::mem::replace(&mut list[place], (to, Port::NONE));
+            cells[port.cell()].across[port.side()] = other;
+            cells[other.cell()].across[other.side()] = port;
         }
     }
-    Some(across)
+    Some(cells)
 }
 
 /// The sides of all faces that have three vertices.
@@ -58,50 +58,51 @@ struct Sides {
 
 impl Sides {
     fn new(faces: &[[VertexId; 3]], vertex_count: usize) -> Self {
-        let (mut starts, rising_count) = starts(faces, vertex_count);
-        let whole_count = faces.iter().filter(|face| whole(face)).count();
-        let mut falling = vec![Port::NONE; 3 * whole_count + 1 - rising_count];
-        let mut rising = vec![(VertexId(0), Port::NONE); rising_count + 1];
-        let mut falls = falling.len() - 1;
-        // From the last side to the first, for the starts walk down from their ends. What is not to be written goes
-        // to a place that is written over, or to the last, which is cut off.
+        let mut starts = vec![0_u32; vertex_count + 1];
+        let mut count = 0;
+        for [a, b, c] in faces.iter().filter(|face| whole(face)) {
+            starts[a.index()] += u32::from(a < b);
+            starts[b.index()] += u32::from(b < c);
+            starts[c.index()] += u32::from(c < a);
+            count += 3;
+        }
+        let mut rising_count = 0;
+        for start in &mut starts {
+            rising_count += *start;
+            *start = rising_count;
+        }
+        let rising = vec![(VertexId(0), Port::NONE); rising_count as usize + 1];
+        let falling = vec![Port::NONE; count - rising_count as usize + 1];
+        let mut sides = Self { starts, rising, falling };
+        sides.fill(faces);
+        sides
+    }
+
+    /// Writes down all sides, from the last to the first, for the starts walk down from their ends. What does not
+    /// belong where it is written is written over, or stands at the very end and is taken off.
+    fn fill(&mut self, faces: &[[VertexId; 3]]) {
+        let (last_rising, last_falling) = (self.rising.len() - 1, self.falling.len() - 1);
+        let mut falls = last_falling;
         for (f, face) in faces.iter().enumerate().rev().filter(|(_, face)| whole(face)) {
             for side in [2, 1, 0] {
                 let [from, to] = ends(face, side);
                 let rises = from < to;
-                let start = &mut starts[from.index()];
+                let start = &mut self.starts[from.index()];
                 *start -= u32::from(rises);
-                let place = if rises { *start as usize } else { rising_count };
-                rising[place] = (to, Port::new(f, side));
+                let place = if rises { *start as usize } else { last_rising };
+                self.rising[place] = (to, Port::new(f, side));
                 falls -= usize::from(!rises);
-                let place = if rises { falling.len() - 1 } else { falls };
-                falling[place] = Port::new(f, side);
+                let place = if rises { last_falling } else { falls };
+                self.falling[place] = Port::new(f, side);
             }
         }
-        rising.truncate(rising_count);
-        falling.pop();
-        Self { starts, rising, falling }
+        self.rising.pop();
+        self.falling.pop();
     }
-}
-
-/// Where the rising sides of each vertex end, and how many there are.
-fn starts(faces: &[[VertexId; 3]], vertex_count: usize) -> (Vec<u32>, usize) {
-    let mut starts = vec![0_u32; vertex_count + 1];
-    for [a, b, c] in faces.iter().filter(|face| whole(face)) {
-        starts[a.index()] += u32::from(a < b);
-        starts[b.index()] += u32::from(b < c);
-        starts[c.index()] += u32::from(c < a);
-    }
-    let mut sum = 0;
-    for start in &mut starts {
-        sum += *start;
-        *start = sum;
-    }
-    (starts, sum as usize)
 }
 
 /// The same by sorting all sides by edge.
-fn sorted_pairs(faces: &[[VertexId; 3]]) -> Vec<[Port; 3]> {
+fn sorted(faces: &[[VertexId; 3]]) -> Vec<Cell> {
     let mut sides = Vec::with_capacity(3 * faces.len());
     for (f, face) in faces.iter().enumerate().filter(|(_, face)| whole(face)) {
         for side in 0..3 {
@@ -110,15 +111,15 @@ fn sorted_pairs(faces: &[[VertexId; 3]]) -> Vec<[Port; 3]> {
         }
     }
     sides.sort_unstable_by_key(|&(low, high, falls, port)| (low, high, falls, port.cell()));
-    let mut across = vec![[Port::NONE; 3]; faces.len()];
+    let mut cells = vec![Cell::ALONE; faces.len()];
     for edge in sides.chunk_by(|a, b| (a.0, a.1) == (b.0, b.1)) {
         let (rising, falling) = edge.split_at(edge.partition_point(|side| !side.2));
         for (&(.., p), &(.., q)) in rising.iter().zip(falling) {
-            across[p.cell()][p.side()] = q;
-            across[q.cell()][q.side()] = p;
+            cells[p.cell()].across[p.side()] = q;
+            cells[q.cell()].across[q.side()] = p;
         }
     }
-    across
+    cells
 }
 
 /// The vertices a side of a face runs from and to.
@@ -155,8 +156,8 @@ mod tests {
     #[test]
     fn lists_and_sorting_find_the_same() {
         for mesh in [sample::sphere(500), fan(), moebius(9)] {
-            let listed = listed_pairs(&mesh.faces, mesh.positions.len());
-            assert_eq!(listed, Some(sorted_pairs(&mesh.faces)));
+            let by_lists = listed(&mesh.faces, mesh.positions.len());
+            assert_eq!(by_lists, Some(sorted(&mesh.faces)));
         }
     }
 
@@ -167,8 +168,12 @@ mod tests {
             .map(|i| i * 1789 % blades)
             .map(|i| [0, i + 1, (i + 1) % blades + 1].map(VertexId))
             .collect();
-        assert_eq!(listed_pairs(&faces, 4001), None);
-        let joined = pairs(&faces).iter().flatten().filter(|port| !port.is_none()).count();
+        assert_eq!(listed(&faces, 4001), None);
+        let joined = cells(&faces)
+            .iter()
+            .flat_map(|cell| cell.across)
+            .filter(|port| !port.is_none())
+            .count();
         assert_eq!(joined, 2 * blades as usize);
     }
 
@@ -176,14 +181,15 @@ mod tests {
     fn only_sides_that_run_opposite_are_paired() {
         let faces = [[0, 1, 2], [1, 0, 3], [1, 0, 4], [0, 1, 5], [6, 6, 7], [0, 1, u32::MAX]]
             .map(|face| face.map(VertexId));
-        for across in [pairs(&faces), listed_pairs(&faces[..5], 8).unwrap()] {
-            let partner = |f: usize| Some(across[f][0]).filter(|p| !p.is_none()).map(Port::cell);
+        for cells in [cells(&faces), listed(&faces[..5], 8).unwrap()] {
+            let partner =
+                |f: usize| Some(cells[f].across[0]).filter(|p| !p.is_none()).map(Port::cell);
             let mut partners = [partner(0), partner(3)];
             partners.sort();
             assert_eq!(partners, [Some(1), Some(2)]);
             assert_eq!(partner(4), None);
-            for (f, p) in across.iter().enumerate().map(|(f, a)| (f, a[0])) {
-                assert!(p.is_none() || across[p.cell()][p.side()] == Port::new(f, 0));
+            for (f, p) in cells.iter().enumerate().map(|(f, cell)| (f, cell.across[0])) {
+                assert!(p.is_none() || cells[p.cell()].across[p.side()] == Port::new(f, 0));
             }
         }
     }

@@ -48,19 +48,20 @@ struct Layer<'a> {
 impl Layer<'_> {
     /// Lays a strip through a free cell; its ends.
     fn lay_strip(&mut self, start: usize) -> [usize; 2] {
-        self.take(start);
+        self.taken[start] = true;
         let Some((side, turn)) = self.best_direction(start) else { return [start; 2] };
         let end = self.extend(Port::new(start, side), turn);
         // Back from the start: where no swap is needed first.
         let straight = turn.side(Port::new(start, side));
-        for side in [straight, 3 - side - straight] {
-            let back = Port::new(start, side);
-            if self.is_free(self.cover.across(back)) {
-                let turned = if side == straight { turn.other() } else { turn };
-                return [end, self.extend(back, turned)];
-            }
+        let bent = 3 - side - straight;
+        if self.is_free(self.cover.across(Port::new(start, straight))) {
+            self.remember(Port::new(start, bent));
+            [end, self.extend(Port::new(start, straight), turn.other())]
+        } else if self.is_free(self.cover.across(Port::new(start, bent))) {
+            [end, self.extend(Port::new(start, bent), turn)]
+        } else {
+            [end, start]
         }
-        [end, start]
     }
 
     /// The side to leave a cell by, and the turn in the next, from which the strip is longest both ways.
@@ -101,20 +102,21 @@ impl Layer<'_> {
     fn extend(&mut self, mut port: Port, mut turn: Turn) -> usize {
         loop {
             let entry = self.cover.across(port);
-            self.take(entry.cell());
+            self.taken[entry.cell()] = true;
             for port in [port, entry] {
                 let links = &mut self.cover.cells[port.cell()].links;
                 *links = links.with(port.side());
             }
-            let beyond = |turn: Turn| Port::new(entry.cell(), turn.side(entry));
-            if !self.is_free(self.cover.across(beyond(turn))) {
+            let ahead = |turn: Turn| Port::new(entry.cell(), turn.side(entry));
+            if !self.is_free(self.cover.across(ahead(turn))) {
                 turn = turn.other();
-                if !self.is_free(self.cover.across(beyond(turn))) {
+                if !self.is_free(self.cover.across(ahead(turn))) {
                     return entry.cell();
                 }
             }
-            port = beyond(turn);
+            port = ahead(turn);
             turn = turn.other();
+            self.remember(ahead(turn));
         }
     }
 
@@ -123,12 +125,12 @@ impl Layer<'_> {
         !port.is_none() && !self.taken[port.cell()]
     }
 
-    fn take(&mut self, cell: usize) {
-        self.taken[cell] = true;
-        for port in self.cover.cells[cell].across {
-            if self.is_free(port) {
-                self.near.push(port.cell() as u32);
-            }
+    /// Lets a strip begin beyond `port`, if it is still free then.
+    #[inline]
+    fn remember(&mut self, port: Port) {
+        let beside = self.cover.across(port);
+        if self.is_free(beside) {
+            self.near.push(beside.cell() as u32);
         }
     }
 }
