@@ -30,7 +30,7 @@ fn fast_strips_are_shorter_than_meshopts() {
 fn quick_strips_take_a_tenth_more_vertices_than_faces() {
     let Some(mesh) = bunny() else { return };
     let [vertices, indices, _] = figures(&mesh, &Options::default());
-    assert!(vertices <= 1.10 && indices <= 1.13, "{vertices} {indices}");
+    assert!(vertices <= 1.10 && indices <= 1.125, "{vertices} {indices}");
 }
 
 #[test]
