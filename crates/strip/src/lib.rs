@@ -2,6 +2,22 @@
 //!
 //! [`Strips`] are what a GPU draws as strips: sequences of vertices, every three in a row a triangle, every
 //! second one turned. [`difference`] says whether they draw exactly the triangles of a mesh.
+//!
+//! [`stripify`] makes strips of any faces: fast ones in one pass, or the best that a path cover of the dual graph can
+//! be annealed to; and cuts and orders them for a vertex cache if it is asked to. [`StripStatistics`] say what they
+//! send.
+//!
+//! ```
+//! use meshlod_mesh::sample;
+//! use meshlod_strip::{Options, Quality, StripStatistics, difference, stripify};
+//!
+//! let faces = sample::sphere(1000).faces;
+//! let fast = stripify(&faces, &Options { quality: Quality::Fast, ..Options::default() });
+//! let best = stripify(&faces, &Options::default());
+//! assert_eq!(difference(&best, &faces), Default::default());
+//! assert!(best.vertices().len() <= fast.vertices().len());
+//! assert!(StripStatistics::new(&best).vertices_sent < faces.len() * 5 / 4);
+//! ```
 
 #![forbid(unsafe_code)]
 
