@@ -11,6 +11,7 @@ use meshlod_mesh::VertexId;
 
 use self::mender::Mender;
 use crate::cover::Cover;
+use crate::filter::Filter;
 use crate::skip::SkipStrip;
 use crate::strips::Strips;
 use crate::verify::has_three_corners;
@@ -29,7 +30,7 @@ impl SkipStrip {
     /// The strips of the level: those that [`Filter::Dtff`](crate::Filter::Dtff) leaves, made better by local
     /// changes that start where the level is not as the mesh is.
     ///
-    /// The same for the same level, however it was come to. At the mesh itself they are its strips.
+    /// They never send more vertices than the filter leaves. The same for the same level, however it was come to.
     /// Cost: linear.
     pub fn repaired(&mut self, effort: Effort) -> Strips {
         let mut seed = Seed::default();
@@ -43,7 +44,11 @@ impl SkipStrip {
         }
         let starts = starts(&cover, &is_changed);
         Mender::new(effort).mend(&mut cover, &starts);
-        cover.strips(&faces)
+        let repaired = cover.strips(&faces);
+        // Where little is to be gained, it may be lost by luck.
+        let filtered = self.display(Filter::Dtff);
+        let is_better = repaired.vertices().len() <= filtered.vertices().len();
+        if is_better { repaired } else { filtered }
     }
 }
 
@@ -98,7 +103,6 @@ mod tests {
     use meshlod_simplify::Target;
 
     use super::*;
-    use crate::filter::Filter;
     use crate::skip::MergeTree;
     use crate::stripify::{Options, stripify};
     use crate::verify::{Difference, difference};
@@ -117,6 +121,8 @@ mod tests {
             for effort in [Effort::Quick, Effort::Thorough] {
                 let repaired = skip.repaired(effort);
                 assert_eq!(difference(&repaired, &level), Difference::default(), "{effort:?}");
+                let filtered = skip.display(Filter::Dtff);
+                assert!(repaired.vertices().len() <= filtered.vertices().len());
             }
         }
     }
