@@ -2,7 +2,6 @@
 
 mod drawing;
 mod output;
-mod sent;
 mod table;
 
 use std::path::PathBuf;
@@ -11,10 +10,11 @@ use std::time::{Duration, Instant};
 use clap::{Args, ValueEnum};
 use meshlod::Mesh;
 use meshlod::mesh::{Connectivity, VertexId};
-use meshlod::strip::{Difference, Effort, Filter, MergeTree, SkipStrip, Strips, difference};
+use meshlod::strip::{
+    Difference, Effort, Filter, MergeTree, SkipStrip, StripStatistics, Strips, difference,
+};
 use serde_json::{Value, json};
 
-use self::sent::Sent;
 use crate::amounts::{self, Size};
 use crate::answer::Answer;
 use crate::args::Reading;
@@ -90,7 +90,7 @@ struct Level {
     reached: bool,
     triangles: usize,
     strips: Strips,
-    sent: Sent,
+    sent: StripStatistics,
     time: Duration,
     difference: Option<Difference>,
 }
@@ -184,7 +184,7 @@ impl Strip {
         };
         let time = start.elapsed();
         let triangles = tree.faces_left(contractions);
-        let sent = Sent::of(&strips);
+        let sent = StripStatistics::new(&strips);
         let reached = triangles <= faces;
         Level { size, reached, triangles, strips, sent, time, difference: None }
     }
@@ -251,7 +251,7 @@ impl Level {
             "size": self.size.to_string(),
             "reached": self.reached,
             "triangles": self.triangles,
-            "vertices_sent": sent.vertices,
+            "vertices_sent": sent.vertices_sent,
             "indices_with_restart": sent.indices_with_restart,
             "strips": sent.strips,
             "swaps": sent.swaps,

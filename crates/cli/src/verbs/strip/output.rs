@@ -6,8 +6,7 @@ use std::path::Path;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use meshlod::io::write_file;
-use meshlod::mesh::{Bounds, VertexId};
-use meshlod::strip::Strips;
+use meshlod::mesh::Bounds;
 use serde_json::{Value, json};
 
 use super::Level;
@@ -83,7 +82,7 @@ fn gltf(positions: &[[f64; 3]], levels: &[Level]) -> Value {
     );
     let mut meshes = Vec::new();
     for level in &drawn {
-        let stitched = stitched(&level.strips);
+        let stitched = level.strips.stitched();
         let bytes = stitched.iter().flat_map(|v| v.0.to_le_bytes()).collect();
         let indices = document.accessor(
             bytes,
@@ -108,20 +107,6 @@ fn gltf(positions: &[[f64; 3]], levels: &[Level]) -> Value {
     json["nodes"] = nodes.into();
     json["meshes"] = meshes.into();
     document.finish(json)
-}
-
-/// All strips as one, which repeats vertices between them.
-fn stitched(strips: &Strips) -> Vec<VertexId> {
-    let mut one: Vec<VertexId> = Vec::new();
-    for strip in strips.iter() {
-        if let Some(&last) = one.last() {
-            one.extend([last, strip[0]]);
-            // So that it begins with an even triangle.
-            one.extend((one.len() % 2 == 1).then_some(strip[0]));
-        }
-        one.extend(strip);
-    }
-    one
 }
 
 /// The buffer of a document, and what tells its parts.

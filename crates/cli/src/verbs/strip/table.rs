@@ -51,11 +51,11 @@ impl Strip {
 
 fn row(level: &Level) -> [String; 10] {
     let Level { sent, triangles, .. } = level;
-    let each = sent.vertices as f64 / (*triangles).max(1) as f64;
+    let each = sent.vertices_sent as f64 / (*triangles).max(1) as f64;
     [
         level.size.to_string(),
         count(*triangles),
-        count(sent.vertices),
+        count(sent.vertices_sent),
         format!("{each:.3}"),
         count(sent.indices_with_restart),
         count(sent.strips),
