@@ -1,8 +1,8 @@
 //! `strip`: triangle strips of a mesh at any level, and what they send.
 
-mod drawing;
 mod output;
 mod table;
+mod verify;
 
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
@@ -11,7 +11,7 @@ use clap::{Args, ValueEnum};
 use meshlod::Mesh;
 use meshlod::mesh::{Connectivity, VertexId};
 use meshlod::strip::{
-    Difference, Effort, Filter, MergeTree, SkipStrip, StripStatistics, Strips, difference,
+    self, Difference, Effort, Filter, MergeTree, SkipStrip, StripStatistics, Strips,
 };
 use serde_json::{Value, json};
 
@@ -120,7 +120,8 @@ impl Strip {
         }
         if self.verify {
             session.progress.stage("verifying");
-            self.compare(&origin, &mut levels)?;
+            verify::compare(&origin.mesh, origin.tree.faces(), &mut levels)
+                .map_err(|error| Failure::at(&self.input, error))?;
         }
         for level in levels.iter().filter(|level| !level.reached) {
             let reason = format_args!("{}: no more can be contracted", level.size);
@@ -158,9 +159,7 @@ impl Strip {
         };
         session.progress.stage("stripping");
         let start = Instant::now();
-        let skip = self.filter.map(|_| {
-            SkipStrip::new(tree.clone(), drawing::stripify(tree.faces(), self.quality, self.effort))
-        });
+        let skip = self.filter.map(|_| SkipStrip::new(tree.clone(), self.stripify(tree.faces())));
         Ok(Origin { mesh, tree, simplify_time, skip, strip_time: start.elapsed() })
     }
 
@@ -180,7 +179,7 @@ impl Strip {
                     Shortened::Repair => skip.repaired(self.effort.into()),
                 }
             }
-            _ => drawing::stripify(&own.unwrap_or_default(), self.quality, self.effort),
+            _ => self.stripify(&own.unwrap_or_default()),
         };
         let time = start.elapsed();
         let triangles = tree.faces_left(contractions);
@@ -189,29 +188,13 @@ impl Strip {
         Level { size, reached, triangles, strips, sent, time, difference: None }
     }
 
-    /// Holds each level against the faces that simplifying to it leaves.
-    fn compare(&self, origin: &Origin, levels: &mut [Level]) -> Result<(), Failure> {
-        let Origin { mesh, tree, .. } = origin;
-        let mut engine = None;
-        let mut order: Vec<usize> = (0..levels.len()).collect();
-        order.sort_by_key(|&level| std::cmp::Reverse(levels[level].triangles));
-        for at in order {
-            let level = &mut levels[at];
-            let faces: Vec<[VertexId; 3]> = if level.triangles == tree.faces().len() {
-                tree.faces().to_vec()
-            } else {
-                let engine = match &mut engine {
-                    Some(engine) => engine,
-                    none => none.insert(
-                        drawing::Engine::new(mesh)
-                            .map_err(|error| Failure::at(&self.input, error))?,
-                    ),
-                };
-                engine.faces(level.triangles).map_err(|error| Failure::at(&self.input, error))?
-            };
-            level.difference = Some(difference(&level.strips, &faces));
-        }
-        Ok(())
+    fn stripify(&self, faces: &[[VertexId; 3]]) -> Strips {
+        let quality = match (self.quality, self.effort) {
+            (Quality::Fast, _) => strip::Quality::Fast,
+            (Quality::Best, Tried::Quick) => strip::Quality::Best { moves_per_face: 40.0 },
+            (Quality::Best, Tried::Thorough) => strip::Quality::Best { moves_per_face: 1000.0 },
+        };
+        strip::stripify(faces, &strip::Options { quality, ..strip::Options::default() })
     }
 
     fn json(&self, origin: &Origin, levels: &[Level]) -> Value {

@@ -1,0 +1,40 @@
+//! Whether strips draw their levels, by a simplification of its own.
+
+use std::cmp::Reverse;
+
+use meshlod::mesh::{FaceId, VertexId};
+use meshlod::simplify::Simplifier;
+use meshlod::strip::difference;
+use meshlod::{Mesh, Method, Options, SimplifyError, Target};
+
+use super::Level;
+
+/// Holds each level against the faces that simplifying to it leaves; one of all faces against `whole`, those of
+/// the mesh but for what is left out.
+pub(super) fn compare(
+    mesh: &Mesh,
+    whole: &[[VertexId; 3]],
+    levels: &mut [Level],
+) -> Result<(), SimplifyError> {
+    let mut levels: Vec<&mut Level> = levels.iter_mut().collect();
+    levels.sort_by_key(|level| Reverse(level.triangles));
+    let finest = levels.partition_point(|level| level.triangles == whole.len());
+    let (finest, coarser) = levels.split_at_mut(finest);
+    for level in finest {
+        level.difference = Some(difference(&level.strips, whole));
+    }
+    if coarser.is_empty() {
+        return Ok(());
+    }
+    let options = Options { method: Method::QemEndpoint, ..Options::default() };
+    let mut simplifier = Simplifier::new(mesh, &options)?;
+    for level in coarser {
+        simplifier.run(Target::Faces(level.triangles), &mut ())?;
+        let surface = simplifier.surface();
+        let ids = (0..surface.face_count()).map(FaceId::new);
+        let alive = ids.filter(|&face| surface.is_alive(face));
+        let faces: Vec<_> = alive.map(|face| surface.face(face)).collect();
+        level.difference = Some(difference(&level.strips, &faces));
+    }
+    Ok(())
+}
