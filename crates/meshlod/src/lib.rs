@@ -100,6 +100,25 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
+//! [`strip`] draws it as triangle strips, one set of them at every level: vertices are shown by what they have become,
+//! and strips are mended where the level changed.
+//!
+//! ```
+//! # let knot = meshlod::mesh::sample::knot(2_000);
+//! use meshlod::Target;
+//! use meshlod::strip::{Difference, Effort, MergeTree, Options, SkipStrip, difference, stripify};
+//!
+//! let tree = MergeTree::record(&knot, Target::Ratio(0.1))?;
+//! let strips = stripify(tree.faces(), &Options::default());
+//! let mut skip = SkipStrip::new(tree, strips);
+//! skip.set_level(skip.tree().contractions_to(500));
+//!
+//! let (strips, level) = (skip.repaired(Effort::Quick), skip.tree().level(skip.level()));
+//! assert_eq!(difference(&strips, &level), Difference::default());
+//! assert!(strips.vertices().len() < 700, "three a triangle would be 1500");
+//! # Ok::<(), meshlod::SimplifyError>(())
+//! ```
+//!
 //! [`spatial`] has what the others search with: the exact closest point of a surface.
 //!
 //! # What always holds

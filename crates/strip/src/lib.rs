@@ -18,6 +18,10 @@
 //! assert!(best.vertices().len() <= fast.vertices().len());
 //! assert!(StripStatistics::new(&best).vertices_sent < faces.len() * 5 / 4);
 //! ```
+//!
+//! A [`SkipStrip`] leads the strips of a mesh down the half-edge contractions of a [`MergeTree`]: to every level its
+//! display strips, shortened by a [`Filter`] or [repaired](SkipStrip::repaired). [`LevelStrips`] and [`CutStrips`] follow
+//! levels and cuts for the price of what changes. docs/notes/strips.md tells how.
 
 #![forbid(unsafe_code)]
 

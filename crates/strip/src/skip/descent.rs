@@ -76,34 +76,15 @@ impl Descent {
 
 impl Below {
     fn new(tree: &MergeTree, order: &[VertexId]) -> Self {
-        let parent = |v: VertexId| tree.parent(v).index();
-        // How many corners each vertex has, with all that became it: those are complete before it goes.
-        let mut counts = vec![0u32; tree.vertices()];
-        tree.faces().iter().flatten().for_each(|v| counts[v.index()] += 1);
-        let own = counts.clone();
-        order.iter().for_each(|&v| counts[parent(v)] += counts[v.index()]);
-        // The last to go is the first below its parent.
-        let mut is_root = vec![true; tree.vertices()];
-        order.iter().for_each(|v| is_root[v.index()] = false);
-        let mut runs = vec![[0; 2]; tree.vertices()];
-        let mut end = 0;
-        for root in (0..tree.vertices()).filter(|&v| is_root[v]) {
-            runs[root] = [end, end + counts[root]];
-            end += counts[root];
-        }
-        let mut next: Vec<u32> = (0..tree.vertices()).map(|v| runs[v][0] + own[v]).collect();
-        for &v in order.iter().rev() {
-            let start = next[parent(v)];
-            next[parent(v)] += counts[v.index()];
-            runs[v.index()] = [start, start + counts[v.index()]];
-            next[v.index()] = start + own[v.index()];
-        }
-        let mut faces = vec![0; end as usize];
-        let mut at: Vec<u32> = runs.iter().map(|run| run[0]).collect();
+        let mut own = vec![0; tree.vertices()];
+        tree.faces().iter().flatten().for_each(|v| own[v.index()] += 1);
+        let runs = runs(tree, order, &own);
+        let mut faces = vec![0; own.iter().sum::<u32>() as usize];
+        let mut next: Vec<u32> = runs.iter().map(|run| run[0]).collect();
         for (face, corners) in (0..).zip(tree.faces()) {
             for v in corners {
-                faces[at[v.index()] as usize] = face;
-                at[v.index()] += 1;
+                faces[next[v.index()] as usize] = face;
+                next[v.index()] += 1;
             }
         }
         Self { runs, faces }
@@ -113,6 +94,31 @@ impl Below {
         let [start, end] = self.runs[vertex.index()];
         &self.faces[start as usize..end as usize]
     }
+}
+
+/// By vertex: a run with a place for each of its own corners, and behind them the runs of those that become it.
+fn runs(tree: &MergeTree, order: &[VertexId], own: &[u32]) -> Vec<[u32; 2]> {
+    let parent = |v: VertexId| tree.parent(v).index();
+    // What becomes a vertex has done so before it goes.
+    let mut counts = own.to_vec();
+    order.iter().for_each(|&v| counts[parent(v)] += counts[v.index()]);
+    let mut stays = vec![true; tree.vertices()];
+    order.iter().for_each(|v| stays[v.index()] = false);
+    let mut runs = vec![[0; 2]; tree.vertices()];
+    let mut end = 0;
+    for v in (0..tree.vertices()).filter(|&v| stays[v]) {
+        runs[v] = [end, end + counts[v]];
+        end += counts[v];
+    }
+    // Where the next run within each begins. The last to go has its place before those below it.
+    let mut next: Vec<u32> = runs.iter().zip(own).map(|(run, own)| run[0] + own).collect();
+    for &v in order.iter().rev() {
+        let start = next[parent(v)];
+        next[parent(v)] += counts[v.index()];
+        runs[v.index()] = [start, start + counts[v.index()]];
+        next[v.index()] = start + own[v.index()];
+    }
+    runs
 }
 
 #[cfg(test)]
