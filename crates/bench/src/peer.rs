@@ -5,12 +5,14 @@
 
 mod attributes;
 mod border;
+mod strips;
 
 use meshlod::mesh::{Mesh, VertexId};
 
 pub use attributes::{Settings, Update, simplify_with_attributes};
 pub use border::simplify_with_border_lock;
 pub use meshopt::SimplifyOptions;
+pub use strips::meshopt_strips;
 
 /// A mesh as meshoptimizer takes it.
 #[derive(Clone, Debug)]

@@ -10,6 +10,7 @@ mod machine;
 mod memory;
 mod reading;
 mod speed;
+mod strips;
 mod table;
 mod textured;
 mod volume;
@@ -21,7 +22,7 @@ use crate::project::Project;
 type Section = fn(&Project) -> Result<String>;
 
 /// With their titles, in the order of the page.
-const SECTIONS: [(&str, Section); 10] = [
+const SECTIONS: [(&str, Section); 11] = [
     // First, while this program is small: see there.
     ("Memory and determinism", memory::section),
     ("Accuracy", accuracy::section),
@@ -32,6 +33,7 @@ const SECTIONS: [(&str, Section); 10] = [
     ("Check", check::section),
     ("Contacts", contacts::section),
     ("All levels", levels::section),
+    ("Strips", strips::section),
     ("Reading and measuring", reading::section),
 ];
 

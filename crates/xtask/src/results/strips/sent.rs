@@ -1,0 +1,159 @@
+//! What is sent at each level.
+
+use meshlod::mesh::VertexId;
+use meshlod::strip::{
+    Difference, Effort, Filter, MergeTree, Options, Quality, SkipStrip, Strips, difference,
+    stripify,
+};
+use meshlod_bench::peer::meshopt_strips;
+
+/// The strips of the mesh that all levels come from.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub enum Base {
+    Meshopt,
+    Fast,
+    Best,
+}
+
+pub const BASES: [Base; 3] = [Base::Meshopt, Base::Fast, Base::Best];
+
+impl Base {
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Meshopt => "meshoptimizer",
+            Self::Fast => "`fast`",
+            Self::Best => "`best`",
+        }
+    }
+
+    pub fn strips(self, faces: &[[VertexId; 3]]) -> Strips {
+        match self {
+            Self::Meshopt => meshopt_strips(faces),
+            Self::Fast => of_quality(faces, Quality::Fast),
+            Self::Best => best(faces),
+        }
+    }
+}
+
+/// A model with its contractions.
+pub struct Model {
+    name: &'static str,
+    tree: MergeTree,
+    /// Vertices that strips made anew send, from a tenth of its faces to all.
+    anew: [usize; 10],
+}
+
+impl Model {
+    pub fn new(file: &'static str, tree: MergeTree) -> Self {
+        let anew = std::array::from_fn(|tenth| {
+            let contractions = contractions_to(&tree, 10 * (tenth + 1));
+            best(&tree.level(contractions)).vertices().len()
+        });
+        Self { name: file.split('.').next().unwrap_or(file), tree, anew }
+    }
+}
+
+/// What is sent of a model, from a tenth of its faces to all.
+pub struct Levels {
+    model: &'static str,
+    levels: Vec<Level>,
+}
+
+/// Vertices sent at a level.
+pub struct Level {
+    pub percent: usize,
+    pub triangles: usize,
+    /// By STSS, DTFF, quick repair, repair, and strips anew.
+    pub sent: [usize; 5],
+}
+
+impl Levels {
+    /// # Panics
+    /// Where something is drawn that the level has not, or has and is not drawn.
+    pub fn of(model: &Model, base: Base) -> Self {
+        let mut skip = SkipStrip::new(model.tree.clone(), base.strips(model.tree.faces()));
+        let levels =
+            (1..).zip(&model.anew).map(|(tenth, &anew)| level(&mut skip, 10 * tenth, anew));
+        Self { model: model.name, levels: levels.collect() }
+    }
+
+    pub fn model(&self) -> &'static str {
+        self.model
+    }
+
+    pub fn levels(&self) -> &[Level] {
+        &self.levels
+    }
+
+    /// Vertices a triangle of the mesh itself.
+    pub fn of_mesh(&self) -> f64 {
+        self.levels.last().map_or(0.0, |level| level.each(0))
+    }
+
+    /// What DTFF, quick repair, repair and strips anew save over STSS, in %, on average.
+    pub fn saved(&self) -> [f64; 4] {
+        let saved = |way: usize, level: &Level| {
+            100.0 * (1.0 - level.sent[way] as f64 / level.sent[0] as f64)
+        };
+        [1, 2, 3, 4].map(|way| {
+            self.levels.iter().map(|level| saved(way, level)).sum::<f64>()
+                / self.levels.len() as f64
+        })
+    }
+
+    /// The most vertices a triangle of any level by STSS, DTFF, quick repair and repair.
+    pub fn most(&self) -> [f64; 4] {
+        [0, 1, 2, 3].map(|way| self.levels.iter().map(|level| level.each(way)).fold(0.0, f64::max))
+    }
+
+    /// For a table.
+    pub fn rows(&self) -> impl Iterator<Item = Vec<String>> + '_ {
+        self.levels.iter().map(|level| {
+            let mut row = vec![format!("{} %", level.percent), level.triangles.to_string()];
+            row.extend((0..5).map(|way| format!("{:.3}", level.each(way))));
+            row.extend([1, 3].map(|way| format!("{:.1}", level.over_independent(way))));
+            row
+        })
+    }
+}
+
+impl Level {
+    /// Vertices a triangle.
+    pub fn each(&self, way: usize) -> f64 {
+        self.sent[way] as f64 / self.triangles as f64
+    }
+
+    /// What a way saves over triangles sent one by one, in %.
+    pub fn over_independent(&self, way: usize) -> f64 {
+        100.0 * (1.0 - self.each(way) / 3.0)
+    }
+}
+
+fn level(skip: &mut SkipStrip, percent: usize, anew: usize) -> Level {
+    skip.set_level(contractions_to(skip.tree(), percent));
+    let faces = skip.tree().level(skip.level());
+    let ways = [
+        skip.display(Filter::Stss),
+        skip.display(Filter::Dtff),
+        skip.repaired(Effort::Quick),
+        skip.repaired(Effort::Thorough),
+    ];
+    let [stss, dtff, quick, repair] = ways.map(|strips| {
+        assert_eq!(difference(&strips, &faces), Difference::default());
+        strips.vertices().len()
+    });
+    Level { percent, triangles: faces.len(), sent: [stss, dtff, quick, repair, anew] }
+}
+
+fn contractions_to(tree: &MergeTree, percent: usize) -> usize {
+    tree.contractions_to(tree.faces().len() * percent / 100)
+}
+
+/// Small meshes are annealed several times, which is more than this says.
+fn best(faces: &[[VertexId; 3]]) -> Strips {
+    of_quality(faces, Quality::Best { moves_per_face: 100.0 })
+}
+
+fn of_quality(faces: &[[VertexId; 3]], quality: Quality) -> Strips {
+    stripify(faces, &Options { quality, ..Options::default() })
+}
