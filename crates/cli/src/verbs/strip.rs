@@ -192,7 +192,7 @@ impl Strip {
         let quality = match (self.quality, self.effort) {
             (Quality::Fast, _) => strip::Quality::Fast,
             (Quality::Best, Tried::Quick) => strip::Quality::Best { moves_per_face: 40.0 },
-            (Quality::Best, Tried::Thorough) => strip::Quality::Best { moves_per_face: 1000.0 },
+            (Quality::Best, Tried::Thorough) => strip::Quality::Best { moves_per_face: 1500.0 },
         };
         strip::stripify(faces, &strip::Options { quality, ..strip::Options::default() })
     }
