@@ -50,7 +50,7 @@ pub fn page(plots: &[Plot]) -> String {
     );
     for (i, plot) in plots.iter().enumerate() {
         let [x, y] = [SIZE[0] * (i % 2) as f64, SIZE[1] * (i / 2) as f64];
-        let _ = write!(svg, "<g transform=\"translate({x} {y})\">\n{}</g>\n", plot.svg());
+        let _ = writeln!(svg, "<g transform=\"translate({x} {y})\">\n{}</g>", plot.svg());
     }
     svg + "</svg>\n"
 }
@@ -70,10 +70,10 @@ impl Plot {
             format!("<text x=\"{left}\" y=\"16\" font-weight=\"bold\">{}</text>\n", self.caption);
         for i in 0..=((high - low) / step).round() as u32 {
             let value = low + f64::from(i) * step;
-            let _ = write!(
+            let _ = writeln!(
                 svg,
                 "<path d=\"M{left} {y:.1}H{right}\" stroke=\"#ddd\"/><text x=\"{}\" y=\"{:.1}\" \
-                 text-anchor=\"end\">{}</text>\n",
+                 text-anchor=\"end\">{}</text>",
                 left - 5.0,
                 y(value) + 4.0,
                 rounded(value),
