@@ -127,8 +127,8 @@ impl Reading {
 /// Options of every verb that writes meshes.
 #[derive(Args)]
 pub struct Writing {
-    /// Of coordinates in PLY, OBJ, OFF and SMF: f32 or f64; f32 if not said, and for repair and what a
-    /// lossless file gives what they need
+    /// Of coordinates in PLY, OBJ, OFF and SMF: f32 or f64; f32 if not said, but f64 where repair and extract
+    /// need it
     #[arg(long, value_name = "TYPE", value_parser = amounts::precision)]
     precision: Option<Precision>,
 }
@@ -138,13 +138,36 @@ impl Writing {
         WriteOptions { precision: self.precision.unwrap_or(Precision::F32) }
     }
 
-    /// The same, but where nothing is said as precise as it takes for no position to change.
-    pub fn lossless(mut self, scene: &Scene) -> Self {
-        let mut positions = scene.meshes.iter().flat_map(|mesh| mesh.mesh.positions.as_flattened());
-        let is_short = |x: &f64| f64::from(*x as f32) == *x;
-        let needed = if positions.all(is_short) { Precision::F32 } else { Precision::F64 };
-        self.precision.get_or_insert(needed);
+    /// The same, but where nothing is said as precise as it takes for whoever reads the file to find every
+    /// position within `most` of where it is, in model units.
+    pub fn within(mut self, most: f64, scene: &Scene, format: Format) -> Self {
+        if self.moves(scene, format) > most {
+            self.precision.get_or_insert(Precision::F64);
+        }
         self
+    }
+
+    /// How far from where it is a coordinate is read again, at most.
+    pub fn moves(&self, scene: &Scene, format: Format) -> f64 {
+        let precision = self.options().precision;
+        let positions = scene.meshes.iter().flat_map(|mesh| mesh.mesh.positions.as_flattened());
+        let moves = positions.map(|&x| (read_again(x, precision, format) - x).abs());
+        moves.fold(0.0, f64::max)
+    }
+}
+
+/// What is read where a coordinate was written.
+fn read_again(x: f64, precision: Precision, format: Format) -> f64 {
+    let short = x as f32;
+    match (format, precision) {
+        (Format::Stl | Format::Gltf | Format::Glb, _) | (Format::Ply, Precision::F32) => {
+            short.into()
+        }
+        // The shortest decimal of an `f32` is mostly another number as an `f64`.
+        (Format::Obj | Format::Off | Format::Smf, Precision::F32) => {
+            short.to_string().parse().unwrap_or(f64::NAN)
+        }
+        (_, Precision::F64) => x,
     }
 }
 

@@ -8,7 +8,7 @@ use serde_json::{Value, json};
 
 use crate::failure::Failure;
 use crate::files;
-use crate::numbers::{count, plural, value};
+use crate::numbers::{count, percent, plural, value};
 use crate::session::Session;
 
 /// What such files end with.
@@ -77,5 +77,20 @@ pub fn error_kind<S: Source>(archive: &Archive<S>) -> &'static str {
     match archive.error_kind() {
         ErrorKind::Estimate => "estimate",
         ErrorKind::Bound => "bound",
+    }
+}
+
+/// By how much vertices of the mesh were moved at most, in model units.
+pub fn rounding<S: Source>(archive: &Archive<S>) -> f64 {
+    if archive.is_lossless() { 0.0 } else { archive.rounding() }
+}
+
+/// The same in words.
+pub fn rounding_text<S: Source>(archive: &Archive<S>) -> String {
+    let part = percent(100.0 * archive.rounding() / archive.diagonal());
+    let moved = format!("moved by up to {} ({part})", value(archive.rounding()));
+    match archive.is_lossless() {
+        true => format!("lossless; vertices of coarser levels {moved}"),
+        false => format!("vertices {moved}"),
     }
 }

@@ -10,7 +10,7 @@ use crate::answer::Answer;
 use crate::failure::Failure;
 use crate::files;
 use crate::model_file;
-use crate::numbers::{count, faces};
+use crate::numbers::{count, faces, plural};
 use crate::session::Session;
 
 /// Proves that no cut of a file has a crack, or says why not.
@@ -35,7 +35,7 @@ fn prove_contractions(
         "file": files::name(path),
         "model": "contractions",
         "error_kind": kind,
-        "rounding": archive.rounding(),
+        "rounding": model_file::rounding(archive),
         "lossless": archive.is_lossless(),
         "chunks": chunks,
         "chunks_there": there,
@@ -45,10 +45,12 @@ fn prove_contractions(
         "certificate": model_file::certificate_json(&certificate),
     });
     let text = format!(
-        "{}: {} to {}, {there} of {chunks} chunks, {kind}s of errors\n{}\n",
+        "{}: {} to {}, {there} of {chunks} chunk{}, {kind}s of errors; {}\n{}\n",
         files::name(path),
         count(model.base_faces()),
         faces(model.full_faces()),
+        plural(chunks),
+        model_file::rounding_text(archive),
         model_file::certificate_text(&certificate),
     );
     Ok(Answer::new(json, text))

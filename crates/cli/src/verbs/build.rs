@@ -41,12 +41,12 @@ pub struct Build {
     #[arg(long)]
     bounds: bool,
     /// By how much a vertex may be moved to take less room: 0.001 in model units, 0.005% of the
-    /// diagonal
+    /// diagonal; a cell or two more where a triangle would lose its area
     #[arg(long, value_name = "BOUND", value_parser = amounts::bound, default_value = "0.005%",
         allow_hyphen_values = true)]
     rounding: Bound,
-    /// Keep the vertices of the mesh where they are, to the bit, and bring all of them back at --error 0;
-    /// those that replace them in coarser levels are moved by up to 0.002% of the diagonal
+    /// Keep the vertices of the mesh where they are, to the bit, and bring all its faces back at --error 0;
+    /// vertices of coarser levels are moved by about 0.002% of the diagonal
     #[arg(long, conflicts_with = "rounding")]
     lossless: bool,
     /// About how many vertices are read at once: fewer make a larger file, of which queries read less
@@ -68,7 +68,11 @@ enum Model {
 /// A file, and what is to be said of it.
 struct Built {
     bytes: Vec<u8>,
+    /// Of the finest level.
+    faces: usize,
     rounding: f64,
+    /// The same in words.
+    moved: String,
     levels: Levels,
 }
 
@@ -103,10 +107,26 @@ impl Build {
             Model::Contractions => self.contractions(&mesh, session)?,
             Model::RightTriangles => self.right_triangles(&mesh)?,
         };
+        self.warn(&mesh, &built, session);
         session.progress.stage(&format!("writing {}", files::name(&self.output)));
         write_file(&self.output, &built.bytes)?;
         let time = start.elapsed();
         Ok(Answer::new(self.json(&mesh, &built, time), self.text(&mesh, &built, time)))
+    }
+
+    /// Says what of the mesh is not in the file.
+    fn warn(&self, mesh: &Mesh, built: &Built, session: &Session) {
+        let alone = mesh.positions.len() - vertex_count(mesh);
+        if alone > 0 {
+            let some = if alone == 1 { "vertex" } else { "vertices" };
+            let reason = format_args!("left out: {} {some} without faces", count(alone));
+            session.warn(Failure::at(&self.input, reason));
+        }
+        let odd = mesh.faces.len() - built.faces;
+        if odd > 0 {
+            let reason = format_args!("left out: {} that repeat a corner or a face", faces(odd));
+            session.warn(Failure::at(&self.input, reason));
+        }
     }
 
     fn contractions(&self, mesh: &Mesh, session: &Session) -> Result<Built, Failure> {
@@ -137,7 +157,13 @@ impl Build {
             certificate,
             error_kind: model_file::error_kind(&archive),
         };
-        Ok(Built { rounding: archive.rounding(), bytes: archive.into_source(), levels })
+        Ok(Built {
+            faces: forest.full_faces(),
+            rounding: model_file::rounding(&archive),
+            moved: model_file::rounding_text(&archive),
+            bytes: archive.into_source(),
+            levels,
+        })
     }
 
     fn right_triangles(&self, mesh: &Mesh) -> Result<Built, Failure> {
@@ -150,8 +176,15 @@ impl Build {
         let bytes = field.to_file(precision).map_err(|error| failed(&error))?;
         let stored = ModelFile::open(bytes.clone()).map_err(|error| failed(&error))?;
         let ModelFile::HeightField(field) = stored else { unreachable!("a field was written") };
-        let levels = Levels::RightTriangles { size: field.size(), fit: field.fit() };
-        Ok(Built { bytes, rounding: field.fit().rounded, levels })
+        let rounding = field.fit().rounded;
+        let part = percent(100.0 * rounding / mesh.bounds().diagonal());
+        Ok(Built {
+            bytes,
+            faces: mesh.faces.len(),
+            rounding,
+            moved: format!("vertices moved by up to {} ({part})", value(rounding)),
+            levels: Levels::RightTriangles { size: field.size(), fit: field.fit() },
+        })
     }
 
     fn rounding(&self, mesh: &Mesh) -> f64 {
@@ -191,19 +224,13 @@ impl Build {
 
     fn text(&self, mesh: &Mesh, built: &Built, time: Duration) -> String {
         let vertices = vertex_count(mesh);
-        let part = 100.0 * built.rounding / mesh.bounds().diagonal();
-        let moved = match self.lossless {
-            true => "no vertex of the mesh moved".to_owned(),
-            false => {
-                format!("vertices moved by up to {} ({})", value(built.rounding), percent(part))
-            }
-        };
         let mut text = format!(
-            "{}: all levels of {} in {} bytes, {:.2} a vertex; {moved}\n",
+            "{}: all levels of {} in {} bytes, {:.2} a vertex; {}\n",
             files::name(&self.output),
-            faces(mesh.faces.len()),
+            faces(built.faces),
             count(built.bytes.len()),
             built.bytes.len() as f64 / vertices as f64,
+            built.moved,
         );
         text += &match &built.levels {
             Levels::Contractions { updates, base_faces, certificate, error_kind } => format!(

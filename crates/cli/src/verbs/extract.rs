@@ -63,6 +63,8 @@ struct Goal {
 /// A mesh, and what was read for it.
 struct Taken {
     level: Level,
+    /// By how much its vertices were moved before, at most.
+    rounding: f64,
     lossless: bool,
     error_kind: &'static str,
     /// Read, there, and in all.
@@ -73,7 +75,7 @@ struct Taken {
 
 impl Extract {
     pub fn run(self, session: &Session) -> Result<Answer, Failure> {
-        files::check_output(&self.output, session)?;
+        let format = files::check_output(&self.output, session)?;
         files::check_apart(&self.output, &[&self.input])?;
         let start = Instant::now();
         let taken = match model_file::open(&self.input, session)? {
@@ -92,7 +94,12 @@ impl Extract {
         }
         let scene = Scene::from_mesh(name(&self.input), mesh);
         let (json, text) = (self.json(&taken, counts, time), self.text(&taken, counts, time));
-        let writing = if taken.lossless { self.writing.lossless(&scene) } else { self.writing };
+        let writing = self.writing.within(taken.rounding, &scene, format);
+        let moves = writing.moves(&scene, format);
+        if moves > taken.rounding {
+            let moved = format_args!("rounding to f32 moved coordinates by up to {}", value(moves));
+            session.warn(Failure::at(&self.output, moved));
+        }
         files::write(&self.output, &scene, &writing, session)?;
         Ok(Answer { file_on_stdout: files::is_pipe(&self.output), ..Answer::new(json, text) })
     }
@@ -109,6 +116,7 @@ impl Extract {
         })?;
         Ok(Taken {
             level: self.cut_out(taken.level, &query)?,
+            rounding: model_file::rounding(archive),
             lossless: archive.is_lossless(),
             error_kind: model_file::error_kind(archive),
             chunks: [taken.chunks, archive.whole_chunks(), archive.chunk_count()],
@@ -127,9 +135,15 @@ impl Extract {
         let level = level.map_err(Failure::usage)?;
         let bytes = std::fs::metadata(&self.input).map_or(0, |data| data.len());
         let updates = field.heights().len();
-        let level = self.cut_out(level, &query)?;
-        let (lossless, error_kind) = (false, "bound");
-        Ok(Taken { level, lossless, error_kind, chunks: [1; 3], updates, bytes })
+        Ok(Taken {
+            level: self.cut_out(level, &query)?,
+            rounding: field.fit().rounded,
+            lossless: false,
+            error_kind: "bound",
+            chunks: [1; 3],
+            updates,
+            bytes,
+        })
     }
 
     fn query(&self, diagonal: f64) -> Result<Query<'static>, Failure> {
@@ -155,6 +169,7 @@ impl Extract {
             "vertices": vertices,
             "faces": faces,
             "error_kind": taken.error_kind,
+            "lossless": taken.lossless,
             "chunks": taken.chunks[2],
             "chunks_there": taken.chunks[1],
             "chunks_read": taken.chunks[0],

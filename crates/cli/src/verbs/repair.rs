@@ -116,7 +116,7 @@ impl Repair {
             return Err(Failure::at(&self.input, "no face is left that has an area"));
         }
         // Rounding could undo what was mended.
-        self.writing = self.writing.lossless(&scene);
+        self.writing = self.writing.within(0.0, &scene, format);
         files::write(&self.output, &scene, &self.writing, session)?;
         let left = errors(files::read_again(&self.output, &scene, &self.writing, session)?);
         let done = Done { report, fused, left, before, after, time };

@@ -97,11 +97,16 @@ fn all_levels_of_a_mesh_are_in_one_file() {
 
 /// A hilly field far from the origin, as an OBJ file whose numbers no `f32` holds.
 fn far_hills() -> String {
+    hills([431_234.1, 5_412_345.7], |x| x)
+}
+
+fn hills(at: [f64; 2], exact: impl Fn(f64) -> f64) -> String {
     const SIDE: usize = 20;
     let vertex = |i: usize| {
         let (x, y) = ((i % SIDE) as f64 / 3.0, (i / SIDE) as f64 / 7.0);
         let height = if i.is_multiple_of(31) { -0.0 } else { (x + 2.0 * y).sin() };
-        format!("v {} {} {height}\n", 431_234.1 + x, 5_412_345.7 + y)
+        let [x, y, height] = [at[0] + x, at[1] + y, height].map(&exact);
+        format!("v {x} {y} {height}\n")
     };
     let face = |i: usize| {
         let [a, b, c, d] = [i, i + 1, i + SIDE, i + SIDE + 1].map(|v| v + 1);
@@ -155,9 +160,42 @@ fn a_lossless_file_gives_the_mesh_back_to_the_bit() {
     let kept = by_bits(&part).as_flattened().iter().filter(|&corner| is_old(corner)).count();
     assert!(kept > 300 && kept < 3 * 400, "{kept}");
     let told = run.run(&["build", "in.obj", "again.mlod", "--lossless"]);
-    assert!(told.code == 0 && told.text().contains("no vertex of the mesh moved"), "{told:?}");
+    assert!(told.code == 0 && told.text().contains("; lossless; vertices of coarser"), "{told:?}");
     let plain = run.json(&["build", "in.obj", "plain.mlod"]);
     assert!(plain["lossless"] == false && plain["rounding"].as_f64().unwrap() > 0.0);
+}
+
+#[test]
+fn a_lossless_file_gives_text_files_to_the_bit_and_says_what_others_round() {
+    let run = Run::new();
+    // Of an `f32` in thirds the shortest decimal is another `f64`.
+    let text = hills([0.0; 2], |x| f64::from(x as f32));
+    write(&run, "in.obj", text.as_bytes());
+    run.json(&["build", "in.obj", "out.mlod", "--lossless"]);
+    extract(&run, "out.mlod", "back.obj", &["--error", "0"]);
+    assert!(by_bits(&String::from_utf8(bytes(&run, "back.obj")).unwrap()) == by_bits(&text));
+    write(&run, "far.obj", far_hills().as_bytes());
+    for (options, is_far) in
+        [(&["--lossless"][..], true), (&[], true), (&["--rounding", "1"], false)]
+    {
+        run.json(&[&["build", "far.obj", "far.mlod"], options].concat());
+        let taken = run.run(&["extract", "far.mlod", "far.stl", "--error", "0"]);
+        let is_told = taken.err.contains("far.stl: rounding to f32 moved coordinates by up to 0.2");
+        assert!(taken.code == 0 && is_told == is_far, "{options:?} {taken:?}");
+        let taken = run.run(&["extract", "far.mlod", "far.ply", "--error", "0"]);
+        assert!(taken.code == 0 && taken.err.is_empty(), "{options:?} {taken:?}");
+    }
+}
+
+#[test]
+fn what_is_left_out_is_said() {
+    let run = Run::new();
+    write(&run, "in.obj", b"v 0 0 0\nv 1 0 0\nv 0 1 0\nv 5 5 5\nf 1 2 3\nf 2 3 1\nf 1 1 2\n");
+    let built = run.run(&["build", "in.obj", "out.mlod"]);
+    assert_eq!(built.code, 0, "{built:?}");
+    assert!(built.err.contains("left out: 1 vertex without faces"), "{built:?}");
+    assert!(built.err.contains("left out: 2 faces that repeat a corner or a face"), "{built:?}");
+    assert!(built.text().contains("all levels of 1 face in"), "{built:?}");
 }
 
 #[test]

@@ -25,7 +25,8 @@ pub(crate) struct Links {
     starts: Vec<u32>,
 }
 
-/// Set where a list begins: there are no more than half of 2³¹ updates.
+/// Set where a list begins: there are no more than half of 2³¹ updates. Places in the lists are 32 bits too: rings,
+/// which are longer, were numbered so.
 const HEAD: u32 = 1 << 31;
 
 impl Links {

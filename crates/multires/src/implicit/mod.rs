@@ -135,8 +135,10 @@ impl Implicit {
     /// The same model in 22 bytes a vertex: the places of two children in 12, all else of an update in 10.
     ///
     /// It answers everything alike, and extraction goes through half the memory. `None` where something
-    /// would not be the same: a model from a file can be narrow if its rounding is .0015 % of the diagonal
-    /// or more, one made of a [`Forest`](crate::Forest) is mostly too exact.
+    /// would not be the same: radii, errors or places that are more exact than those of a file, as of a
+    /// [`Forest`](crate::Forest); places further out than 32,767 cells, which no file has that moves
+    /// vertices by .0017 % of the diagonal or more, unless a contraction left its box; 4,096 levels of one
+    /// error.
     pub fn narrowed(&self) -> Option<Self> {
         let (places, splits) = (self.places.narrowed()?, self.splits.narrowed(self.roots)?);
         let (trees, base, odd) = (self.trees.clone(), self.base.clone(), self.odd.clone());

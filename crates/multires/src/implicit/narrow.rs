@@ -2,8 +2,8 @@
 //!
 //! In depth-first order the node that an update splits is a child of the update before it, or the second
 //! child of one that is not far behind; and its own second child's updates are not far ahead. So both are
-//! told by a distance in 16 bits. Few are farther: the updates of roots, and those that have 65,534 others
-//! between their children. Levels are told within those of the same error, as a file has them.
+//! told by a distance in 16 bits. Few are farther: the updates of roots, and those that have 65,534 others or
+//! more between their children. Levels are told within those of the same error, as a file has them.
 
 use super::splits::{Local, Split};
 use super::{FLAG, OPEN};
