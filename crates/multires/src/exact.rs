@@ -1,9 +1,14 @@
 //! Positions as they were given, to the bit, of the nodes that have one.
 
-/// The positions of some nodes in model units. A node has one or it has none: there is no room for those
-/// that have none but a bit.
+use std::sync::Arc;
+
+/// The positions of some nodes in model units, or word that none is kept. A node has one or it has none:
+/// for each there are two bits that say so, and where its position is. Copies share the room.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub(crate) struct Exact {
+pub(crate) struct Exact(Option<Arc<Table>>);
+
+#[derive(Clone, Debug, Default, PartialEq)]
+struct Table {
     /// By 64 nodes.
     blocks: Vec<Block>,
     /// Of those that have one, in the order of their numbers.
@@ -20,58 +25,57 @@ struct Block {
 }
 
 impl Exact {
+    /// Where positions are kept, of no node yet.
+    pub(crate) fn kept() -> Self {
+        Self(Some(Arc::default()))
+    }
+
+    /// Whether positions are kept, if only of nodes that are not here: whether a model is lossless.
+    pub(crate) fn is_kept(&self) -> bool {
+        self.0.is_some()
+    }
+
     /// Adds the position of a node; nodes come by rising numbers.
     pub(crate) fn push(&mut self, node: u32, position: [f64; 3]) {
         let (block, bit) = place(node);
-        let before = self.positions.len() as u32;
-        self.blocks.resize(self.blocks.len().max(block + 1), Block { nodes: 0, before });
-        self.blocks[block].nodes |= bit;
-        self.positions.push(position);
+        let Table { blocks, positions } = Arc::make_mut(self.0.get_or_insert_default());
+        debug_assert!(blocks.len() <= block + 1, "node {node} comes late");
+        let before = positions.len() as u32;
+        blocks.resize(blocks.len().max(block + 1), Block { nodes: 0, before });
+        debug_assert!(blocks[block].nodes < bit, "node {node} comes late");
+        blocks[block].nodes |= bit;
+        positions.push(position);
     }
 
     /// Where a node is, if it has a position.
     #[inline]
     pub(crate) fn of(&self, node: u32) -> Option<[f64; 3]> {
+        let Table { blocks, positions } = &**self.0.as_ref()?;
         let (block, bit) = place(node);
-        let Block { nodes, before } = *self.blocks.get(block)?;
+        let Block { nodes, before } = *blocks.get(block)?;
         let rank = before + (nodes & (bit - 1)).count_ones();
-        (nodes & bit != 0).then(|| self.positions[rank as usize])
-    }
-
-    /// Takes the positions of a list of nodes, by their places in the list.
-    pub(crate) fn pick(&mut self, from: &Self, nodes: impl IntoIterator<Item = u32>) {
-        self.clear();
-        if from.is_empty() {
-            return;
-        }
-        for (at, node) in (0..).zip(nodes) {
-            if let Some(position) = from.of(node) {
-                self.push(at, position);
-            }
-        }
+        (nodes & bit != 0).then(|| positions[rank as usize])
     }
 
     /// The positions of a list of nodes, by their places in the list.
     pub(crate) fn picked(&self, nodes: impl IntoIterator<Item = u32>) -> Self {
-        let mut picked = Self::default();
-        picked.pick(self, nodes);
+        if !self.is_kept() {
+            return Self::default();
+        }
+        let mut picked = Self::kept();
+        for (at, node) in (0..).zip(nodes) {
+            if let Some(position) = self.of(node) {
+                picked.push(at, position);
+            }
+        }
         picked
-    }
-
-    /// Forgets all and keeps the room.
-    pub(crate) fn clear(&mut self) {
-        self.blocks.clear();
-        self.positions.clear();
-    }
-
-    /// Whether no node has a position.
-    pub(crate) fn is_empty(&self) -> bool {
-        self.positions.is_empty()
     }
 
     /// What it takes in memory.
     pub(crate) fn bytes(&self) -> usize {
-        size_of_val(&self.blocks[..]) + size_of_val(&self.positions[..])
+        let bytes =
+            |table: &Arc<Table>| size_of_val(&table.blocks[..]) + size_of_val(&table.positions[..]);
+        self.0.as_ref().map_or(0, bytes)
     }
 }
 
@@ -99,6 +103,16 @@ mod tests {
         for (at, node) in (0..).zip(expected) {
             assert_eq!(picked.of(at), node.map(position));
         }
-        assert!(exact.picked([1, 2]).is_empty() && !picked.is_empty());
+    }
+
+    #[test]
+    fn what_keeps_no_position_yet_keeps_them_still() {
+        let mut exact = Exact::kept();
+        exact.push(7, [1.0; 3]);
+        assert!(exact.picked([1, 2]).is_kept() && !Exact::default().picked([7]).is_kept());
+        assert_eq!((exact.picked([1, 2]).of(0), Exact::default().of(7)), (None, None));
+        // 64 nodes are 16 bytes.
+        exact.push(1023, [2.0; 3]);
+        assert_eq!(exact.bytes(), 2 * 24 + 1024 / 4);
     }
 }

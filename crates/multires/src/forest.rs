@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use glam::{DVec3, Vec3};
 use meshlod_mesh::Mesh;
 use meshlod_simplify::{Options, Simplifier, SimplifyError, Target};
 use thiserror::Error;
@@ -11,6 +12,7 @@ use crate::exact::Exact;
 use crate::frame::{Frame, Length16};
 use crate::need::{Ball, PackedBall};
 use crate::record::Recorder;
+use crate::short::LEAST_ERROR;
 
 /// Levels stay below this.
 pub(crate) const MOST_LEVELS: u16 = 1 << 15;
@@ -109,7 +111,8 @@ impl Forest {
     }
 
     /// The same, which keeps the positions of the mesh to the bit: levels have those of its vertices, and
-    /// rounded ones where some have become one. 24 bytes a vertex.
+    /// rounded ones where some have become one. No error is 0, so that to ask for none is to ask for the
+    /// mesh. 24 bytes a vertex, and two bits a node.
     /// # Errors
     /// As [`Forest::new`].
     pub fn lossless(mesh: &Mesh, options: &Options) -> Result<Self, BuildError> {
@@ -163,8 +166,22 @@ impl Forest {
 
     /// What an update's need is judged by.
     pub(crate) fn ball(&self, update: usize) -> Ball {
-        let Update { radius, error, .. } = self.updates[update];
+        let (radius, error) = (self.updates[update].radius, self.error(update));
         PackedBall { center: self.positions[self.node(update)], radius, error }.unpack()
+    }
+
+    /// How far off an update's coarse side is. What changes no surface takes vertices away still: where
+    /// the input is kept no error is 0, and to ask for none is to ask for every vertex.
+    #[inline]
+    pub(crate) fn error(&self, update: usize) -> Length16 {
+        let error = self.updates[update].error;
+        if self.exact.is_kept() { error.max(LEAST_ERROR) } else { error }
+    }
+
+    /// Where a node is in stored units: to the bit if that is kept.
+    pub(crate) fn spot(&self, node: u32) -> DVec3 {
+        let rounded = || Vec3::from(self.positions[node as usize]).as_dvec3();
+        self.exact.of(node).map_or_else(rounded, |exact| self.frame.point(exact.into()))
     }
 
     /// The update that contracts each node; [`NONE`] for roots.

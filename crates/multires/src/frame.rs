@@ -49,6 +49,11 @@ impl Frame {
         (point - self.origin) * self.per_unit
     }
 
+    /// Whether a stored point is a number in model units.
+    pub(crate) fn holds(&self, point: Vec3) -> bool {
+        self.model_point(point.as_dvec3()).iter().all(|x| x.is_finite())
+    }
+
     /// A length of the model in stored units.
     #[inline]
     pub(crate) fn length(&self, length: f64) -> f64 {

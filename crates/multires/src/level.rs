@@ -1,6 +1,6 @@
 //! What an extraction gives.
 
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 use meshlod_mesh::{Mesh, VertexId};
 
 use crate::exact::Exact;
@@ -16,17 +16,21 @@ const FOLD: f64 = -0.7;
 const SPARSE: usize = 64;
 
 /// A mesh out of a multiresolution model.
+///
+/// It shares with the model the positions that are kept to the bit, and finds them by `nodes`: what is
+/// put in another order has to take its node along.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Level {
     frame: Frame,
-    /// What each vertex is in the model: the same vertex of another level has the same number.
+    /// What each vertex is in the model: the same vertex of another level has the same number. Not to be
+    /// changed: a vertex of the input is where its node is.
     pub nodes: Vec<u32>,
     /// Where each vertex is, in stored units and single precision: see [`Level::mesh`] for those of the
     /// model.
     pub positions: Vec<[f32; 3]>,
     /// Three vertices each, counter-clockwise seen from outside.
     pub faces: Vec<[u32; 3]>,
-    /// Of vertices of the input, where they are kept as they were.
+    /// Of the model's nodes, where the input is kept as it was.
     pub(crate) exact: Exact,
 }
 
@@ -46,7 +50,7 @@ impl Level {
         self.nodes.clear();
         self.positions.clear();
         self.faces.clear();
-        self.exact.clear();
+        self.exact = Exact::default();
     }
 
     /// Of faces by nodes, of which there are `count`, and where each is.
@@ -71,10 +75,9 @@ impl Level {
         Self { frame, nodes, positions, faces, exact: Exact::default() }
     }
 
-    /// With the positions to the bit of those nodes that have one.
-    pub(crate) fn with_exact(mut self, exact: &Exact) -> Self {
-        self.exact.pick(exact, self.nodes.iter().copied());
-        self
+    /// With the positions to the bit of those of the model's nodes that have one.
+    pub(crate) fn with_exact(self, exact: &Exact) -> Self {
+        Self { exact: exact.clone(), ..self }
     }
 
     /// The faces that meet a focus, with their vertices: those that have a point in it, up to the
@@ -86,8 +89,8 @@ impl Level {
     pub fn within(&self, focus: &Focus) -> Result<Self, QueryError> {
         focus.validate()?;
         let place = Place::new(focus, &self.frame);
-        let corner = |v: u32| Vec3::from(self.positions[v as usize]).as_dvec3();
-        let faces = self.faces.iter().filter(|face| place.meets_triangle(face.map(corner)));
+        let corners = |face: &&[u32; 3]| face.map(|v| self.spot(v));
+        let faces = self.faces.iter().filter(|face| place.meets_triangle(corners(face)));
         let (count, place) = (self.positions.len(), |v: u32| self.positions[v as usize]);
         let level = Self::of_nodes(self.frame, count, place, faces.copied().collect());
         let mut level = level.with_exact(&self.exact);
@@ -96,14 +99,21 @@ impl Level {
         Ok(level)
     }
 
+    /// Where a vertex is, in stored units: to the bit if that is known.
+    fn spot(&self, v: u32) -> DVec3 {
+        let rounded = || Vec3::from(self.positions[v as usize]).as_dvec3();
+        let exact = self.exact.of(self.nodes[v as usize]);
+        exact.map_or_else(rounded, |exact| self.frame.point(exact.into()))
+    }
+
     /// In model units; vertices of the input to the bit, where the model [keeps](crate::Forest::lossless)
     /// them.
     pub fn mesh(&self) -> Mesh {
-        let position = |(v, &rounded): (u32, &[f32; 3])| {
-            self.exact.of(v).unwrap_or_else(|| self.frame.model(rounded))
+        let position = |(&node, &rounded): (&u32, &[f32; 3])| {
+            self.exact.of(node).unwrap_or_else(|| self.frame.model(rounded))
         };
         Mesh::new(
-            (0..).zip(&self.positions).map(position).collect(),
+            self.nodes.iter().zip(&self.positions).map(position).collect(),
             self.faces.iter().map(|face| face.map(VertexId)).collect(),
         )
     }
@@ -113,9 +123,8 @@ impl Level {
     ///
     /// Cost: n log n.
     pub fn folds(&self) -> usize {
-        let corner = |v: u32| Vec3::from(self.positions[v as usize]).as_dvec3();
         let normal = |face: &[u32; 3]| {
-            let [a, b, c] = face.map(corner);
+            let [a, b, c] = face.map(|v| self.spot(v));
             (b - a).cross(c - a).normalize_or_zero()
         };
         let normals: Vec<_> = self.faces.iter().map(normal).collect();
@@ -148,7 +157,6 @@ impl Level {
 
 #[cfg(test)]
 mod tests {
-    use glam::DVec3;
     use meshlod_mesh::Bounds;
 
     use super::*;

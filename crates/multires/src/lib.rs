@@ -81,6 +81,7 @@ mod query;
 mod record;
 mod right;
 mod short;
+mod zigzag;
 
 #[cfg(test)]
 mod tests;

@@ -6,7 +6,6 @@
 
 use std::collections::BTreeMap;
 
-use glam::{DVec3, Vec3};
 use meshlod_mesh::{Bounds, FaceId, VertexId};
 use meshlod_simplify::{Neighbourhood, Observe, Placed, Simplifier, Spoke, Surface};
 
@@ -91,6 +90,7 @@ impl Recorder {
     pub fn lossless(simplifier: &Simplifier<'_>) -> Self {
         let mut this = Self::new(simplifier);
         let surface = simplifier.surface();
+        this.forest.exact = Exact::kept();
         for v in 0..this.forest.vertices as u32 {
             this.forest.exact.push(v, surface.position(VertexId(v)).into());
         }
@@ -133,11 +133,11 @@ impl Recorder {
             self.trouble = Some(BuildError::TooLarge);
             return;
         };
+        let radius = self.radius(hood, placed, &both);
         let Self { forest, now, .. } = self;
         let position = forest.frame.store(placed.position);
         let own = Length16::up(forest.frame.length(placed.error_estimate));
         let error = own.max(both[0].error).max(both[1].error);
-        let radius = radius(&forest.frame, hood, position, &both, &forest.positions);
         forest.rings.extend(ring().map(|v| now[v.index()].node));
         if let Some(end) = open_end {
             forest.rings[start as usize..].swap(end, hood.ring().len() - 1);
@@ -173,6 +173,17 @@ impl Recorder {
         for dying in hood.dying() {
             forest.brought[self.place[dying.face.index()] as usize] = node - forest.vertices as u32;
         }
+    }
+
+    /// Of a ball about the new node, around its ring and what became one, with the balls of that; around
+    /// vertices of the input where they are kept to the bit, not where they are rounded to.
+    fn radius(&self, hood: &Neighbourhood, placed: &Placed, both: &[Standing; 2]) -> Length16 {
+        let center = self.forest.frame.store(placed.position).as_dvec3();
+        let reach = |node: u32| center.distance_squared(self.forest.spot(node));
+        let ring = hood.ring().iter().map(|r| reach(self.now[r.id.index()].node));
+        let ring = ring.fold(0.0, f64::max).sqrt();
+        let balls = both.iter().map(|s| reach(s.node).sqrt() + s.radius.get());
+        Length16::up(balls.fold(ring, f64::max) * SLACK)
     }
 
     /// Keeps what wings cannot tell.
@@ -212,24 +223,6 @@ impl Observe for Recorder {
     fn vanish(&mut self, _: &Surface, _: &[FaceId]) {
         self.trouble.get_or_insert(BuildError::Vanished);
     }
-}
-
-/// Of a ball about the new node, around its ring and what became one, with the balls of that.
-fn radius(
-    frame: &Frame,
-    hood: &Neighbourhood,
-    position: Vec3,
-    both: &[Standing; 2],
-    positions: &[[f32; 3]],
-) -> Length16 {
-    let center = position.as_dvec3();
-    let reach = |to: DVec3| center.distance_squared(to);
-    let ring = hood.ring().iter().map(|r| reach(frame.store(r.position).as_dvec3()));
-    let ring = ring.fold(0.0, f64::max).sqrt();
-    let balls = both
-        .iter()
-        .map(|s| reach(Vec3::from(positions[s.node as usize]).as_dvec3()).sqrt() + s.radius.get());
-    Length16::up(balls.fold(ring, f64::max) * SLACK)
 }
 
 /// The place in the ring of the one node behind which no face follows, if there is one: the fan is

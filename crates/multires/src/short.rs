@@ -11,6 +11,9 @@ const ERROR: u32 = 7;
 /// How many errors there are.
 pub(crate) const ERRORS: usize = 1 << (u16::BITS - ERROR);
 
+/// The least error that is not 0.
+pub(crate) const LEAST_ERROR: Length16 = Length16(1 << ERROR);
+
 /// A radius as a byte.
 pub(crate) fn radius8(radius: Length16) -> u8 {
     (up(radius, RADIUS).0 >> RADIUS) as u8

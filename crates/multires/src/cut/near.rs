@@ -4,7 +4,7 @@
 //! the updates that made them. So whoever goes down to every vertex above which all balls reach the
 //! place, and looks at the triangles there, has met all that do.
 
-use glam::{DVec3, Vec3};
+use glam::DVec3;
 use meshlod_spatial::closest_point;
 
 use super::Cut;
@@ -136,6 +136,6 @@ impl Cut<'_> {
     }
 
     fn corners(&self, nodes: [u32; 3]) -> [DVec3; 3] {
-        nodes.map(|node| Vec3::from(self.front.mt.place(node)).as_dvec3())
+        nodes.map(|node| self.front.mt.spot(node))
     }
 }

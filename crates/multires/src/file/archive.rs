@@ -17,7 +17,7 @@ use crate::query::Query;
 #[derive(Debug)]
 pub struct Archive<S> {
     source: S,
-    header: Header,
+    pub(super) header: Header,
     /// How many of its chunks are there as a whole.
     whole: usize,
 }
@@ -38,9 +38,12 @@ pub struct Extract {
 impl Archive<Vec<u8>> {
     /// The bytes of a `.mlod` file with all levels, and the proof that none of them has a crack.
     ///
-    /// Vertices are moved to a lattice; errors are rounded up, by a sixteenth at most. Cost: linear.
+    /// Vertices are moved to a lattice, as far as the storage says; those of the input stay where they are
+    /// where the forest keeps them [to the bit](Forest::lossless). Errors are rounded up, by a sixteenth at
+    /// most. Cost: linear.
     /// # Errors
-    /// More vertices than are numbered. What has no certificate is not written.
+    /// More vertices than are numbered; a rounding below 0 or beyond the diagonal. What has no certificate is
+    /// not written.
     pub fn write(forest: &Forest, storage: &Storage) -> Result<(Vec<u8>, Certificate), FileError> {
         write::write(forest, storage)
     }
@@ -117,14 +120,16 @@ impl<S: Source> Archive<S> {
         self.header.diagonal
     }
 
-    /// Whether the vertices of the finest mesh are where they were in the input, to the bit. Those of other
-    /// levels are if they are of the finest, too.
+    /// Whether the vertices of the finest mesh are where they were in the input, to the bit: that level is
+    /// off by 0, whatever [`rounding`](Self::rounding) says. Those of other levels are if they are of the
+    /// finest, too.
     pub fn is_lossless(&self) -> bool {
         self.header.lossless
     }
 
-    /// By how much a vertex was moved to the file's lattice at most, in model units; 0 in a lossless file,
-    /// whose finest level is the input.
+    /// By how much a vertex was moved to the file's lattice at most, in model units. In a
+    /// [lossless](Self::is_lossless) file those of the input were not moved: it is the others', which only
+    /// coarser levels have.
     pub fn rounding(&self) -> f64 {
         self.header.rounding
     }
@@ -136,7 +141,8 @@ impl<S: Source> Archive<S> {
         self.read_chunks(self.whole)
     }
 
-    /// The levels of so many chunks from the start, and the proof that none has a crack.
+    /// The levels of so many chunks from the start, and the proof that none has a crack. Of all chunks of a
+    /// lossless file, that the finest has its positions to the bit.
     /// # Errors
     /// A file that is damaged, or made to mislead.
     pub fn read_chunks(&self, count: usize) -> Result<(Implicit, Certificate), FileError> {
@@ -149,8 +155,23 @@ impl<S: Source> Archive<S> {
                 why: "some split what another splits".into(),
             });
         }
+        if count.min(self.whole) == self.header.chunks.len() {
+            self.check_finest(&model)?;
+        }
         let certificate = model.certify()?;
         Ok((model, certificate))
+    }
+
+    /// Whether what is lossless has the position of every vertex of the finest mesh.
+    fn check_finest(&self, model: &Implicit) -> Result<(), FileError> {
+        let is_leaf = |&node: &u32| model.update_of(node).is_none();
+        let leaves = (0..model.node_count() as u32).filter(is_leaf);
+        let bare = leaves.filter(|&leaf| model.exact().of(leaf).is_none()).count();
+        if !self.is_lossless() || bare == 0 {
+            return Ok(());
+        }
+        let why = format!("{bare} of its vertices have no position to the bit in a lossless file");
+        Err(FileError::Piece { piece: "the finest mesh".into(), why })
     }
 
     /// The best cut with at most so many faces, as [`Extractor::at_most`](crate::Extractor::at_most).
@@ -208,8 +229,8 @@ impl<S: Source> Archive<S> {
     }
 
     fn assemble(&self, known: Known) -> Implicit {
-        let exact = known.exact.unwrap_or_default();
-        Implicit::assemble(self.header.about, known.base, &known.updates, &exact)
+        let (base, updates, exact) = known.into_parts();
+        Implicit::assemble(self.header.about, base, &updates, &exact)
     }
 
     /// The base and some chunks, by rising numbers.

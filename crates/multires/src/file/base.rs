@@ -5,7 +5,7 @@ use std::io;
 use thiserror::Error;
 
 use super::exact::{self, Steps};
-use super::header::Header;
+use super::header::{Header, UNKNOWN_FLAGS};
 use super::known::Known;
 use super::streams::{Packer, Unpacker};
 use crate::exact::Exact;
@@ -32,7 +32,7 @@ pub(super) fn write(known: &Known) -> io::Result<Vec<u8>> {
         let corners = faces.iter().map(|face| face[k] as i32);
         packer.signed(corners.scan(0, |last, v| Some(v - std::mem::replace(last, v))))?;
     }
-    if known.exact.is_some() {
+    if known.is_lossless() {
         let flags = (0..known.roots()).map(|root| known.exact(root).is_some().into());
         packer.bytes(&flags.collect::<Vec<u8>>())?;
         let pair = |root| known.exact(root).map(|exact| [exact, known.guess(root)]);
@@ -47,7 +47,8 @@ pub(super) fn read(header: &Header, bytes: &[u8]) -> Result<Known, BaseError> {
     let (roots, faces) = (header.roots as usize, header.base_faces as usize);
     let mut input = Unpacker::new(bytes)?;
     let [x, y, z, a, b, c] = unpack(&mut input, roots, faces)?;
-    let places: Option<Vec<_>> = (0..roots).map(|i| lattice.place([x[i], y[i], z[i]])).collect();
+    let place = |i| lattice.place([x[i], y[i], z[i]]).filter(|&place| about.frame.holds(place));
+    let places: Option<Vec<_>> = (0..roots).map(place).collect();
     let positions = places.ok_or(BaseError::Wrong("a vertex is out of reach"))?;
     let corner = |v: i64| u32::try_from(v).ok().filter(|&v| (v as usize) < roots);
     let face = |i: usize| Some([corner(a[i])?, corner(b[i])?, corner(c[i])?]);
@@ -56,9 +57,10 @@ pub(super) fn read(header: &Header, bytes: &[u8]) -> Result<Known, BaseError> {
     if !faces.iter().all(has_three_corners) {
         return Err(BaseError::Wrong("a face has a vertex twice"));
     }
-    let mut known = Known::new(about.frame, lattice, Base { positions, faces }, None);
+    let exact = if lossless { Exact::kept() } else { Exact::default() };
+    let mut known = Known::new(about.frame, lattice, Base { positions, faces }, exact);
     if lossless {
-        known.exact = Some(read_exact(&known, &mut input)?);
+        read_exact(&mut known, &mut input)?;
     }
     Ok(known)
 }
@@ -77,14 +79,15 @@ fn unpack(input: &mut Unpacker<'_>, roots: usize, faces: usize) -> io::Result<[V
 }
 
 /// The positions to the bit of those roots that have them.
-fn read_exact(known: &Known, input: &mut Unpacker<'_>) -> Result<Exact, BaseError> {
+fn read_exact(known: &mut Known, input: &mut Unpacker<'_>) -> Result<(), BaseError> {
     let flags = input.bytes(known.roots() as usize)?;
+    if flags.iter().any(|&flag| flag > 1) {
+        return Err(BaseError::Wrong(UNKNOWN_FLAGS));
+    }
     let nodes: Vec<u32> = (0..known.roots()).filter(|&root| flags[root as usize] != 0).collect();
     let steps = Steps::read(nodes.len(), input)?;
-    let mut exact = Exact::default();
     for (at, node) in nodes.into_iter().enumerate() {
-        let position = steps.position(at, known.guess(node));
-        exact.push(node, position.ok_or(BaseError::Wrong("a position of it is no number"))?);
+        known.add_exact(node, &steps, at).map_err(BaseError::Wrong)?;
     }
-    Ok(exact)
+    Ok(())
 }

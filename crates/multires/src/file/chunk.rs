@@ -12,6 +12,7 @@ use thiserror::Error;
 
 use super::exact::{self, Steps};
 use super::family::{Family, Places};
+use super::header::UNKNOWN_FLAGS;
 use super::known::Known;
 use super::streams::{Packer, Unpacker};
 use crate::forest::{NONE, Odd};
@@ -36,7 +37,8 @@ pub(super) enum ChunkError {
 const OPEN: u8 = 1;
 const GLUED: u8 = 2;
 const ODD: u8 = 4;
-/// The first child, or the second, is of the finest mesh: its position is there to the bit.
+/// The first child, or the second, is of the finest mesh: its position is there to the bit. Only in lossless
+/// files.
 const EXACT: [u8; 2] = [8, 16];
 
 /// A run of what is known as bytes. All before it must be known.
@@ -64,7 +66,7 @@ pub(super) fn write(known: &Known, run: Range<usize>) -> io::Result<Vec<u8>> {
     for odd in updates.iter().filter_map(|u| u.odd.as_deref()) {
         write_odd(odd, &mut packer)?;
     }
-    if known.exact.is_some() {
+    if known.is_lossless() {
         let pair = |node| known.exact(node).map(|exact| [exact, known.guess(node)]);
         let pairs = run.flat_map(|at| known.children(at)).filter_map(pair);
         exact::write(&pairs.collect::<Vec<_>>(), &mut packer)?;
@@ -131,6 +133,9 @@ pub(super) fn read(
     let mut next = 0;
     for at in 0..count {
         let bad = |why| ChunkError::Update { update: at, why };
+        if flags[at] & !flags_of(known) != 0 {
+            return Err(bad(UNKNOWN_FLAGS));
+        }
         let made = known.roots() + 2 * (first + at as u32);
         let parent = gaps[at].checked_add(next).filter(|&parent| parent < made);
         let parent = parent.ok_or(bad("it splits a node that is not there yet"))?;
@@ -154,6 +159,7 @@ pub(super) fn read(
         if parent != NONE {
             let family = places.family(at).unfolded(&known.slant(parent));
             let children = family.children(known.lattice, known.place(parent));
+            let children = children.filter(|children| known.holds(children));
             update.children = children.ok_or(bad("its children are out of reach"))?;
             let radius = i64::from(family.radius8(known.lattice)) + i64::from(places.radii[at]);
             let radius = u8::try_from(radius).map_err(|_| bad("its radius is no length"))?;
@@ -169,10 +175,16 @@ pub(super) fn read(
         let odd = read_odd(&mut input, nodes)?.ok_or(bad)?.renumbered(|node| known.node(node));
         known.updates[start + at].odd = Some(Box::new(odd));
     }
-    if known.exact.is_some() {
+    if known.is_lossless() {
         read_exact(known, &mut input, start, &flags)?;
     }
     if input.is_over()? { Ok(()) } else { Err(ChunkError::Rest) }
+}
+
+/// The flags that an update may have.
+fn flags_of(known: &Known) -> u8 {
+    let of_all = OPEN | GLUED | ODD;
+    if known.is_lossless() { of_all | EXACT[0] | EXACT[1] } else { of_all }
 }
 
 /// The positions of those children that have them, of the updates from `start` on.
@@ -191,9 +203,8 @@ fn read_exact(
     for (i, (at, node)) in nodes.into_iter().enumerate() {
         // What is not known is nowhere.
         if known.updates[start + at].parent != NONE {
-            let position = steps.position(i, known.guess(node));
-            let bad = ChunkError::Update { update: at, why: "a position of it is no number" };
-            known.add_exact(node, position.ok_or(bad)?);
+            let added = known.add_exact(node, &steps, i);
+            added.map_err(|why| ChunkError::Update { update: at, why })?;
         }
     }
     for at in 0..flags.len() {

@@ -6,6 +6,7 @@
 use std::io;
 
 use super::streams::{Packer, Unpacker};
+use crate::zigzag::{unzigzag, zigzag};
 
 /// By axis, how far positions are from their guesses.
 pub(super) struct Steps([Axis; 3]);
@@ -71,14 +72,6 @@ fn number(rank: i64, spare: u8) -> Option<f64> {
     let is_there = size <= SIZE >> spare;
     let x = f64::from_bits(((size << spare) | sign) as u64);
     (is_there && x.is_finite()).then_some(x)
-}
-
-fn zigzag(x: i64) -> u64 {
-    ((x << 1) ^ (x >> 63)) as u64
-}
-
-fn unzigzag(x: u64) -> i64 {
-    (x >> 1) as i64 ^ -((x & 1) as i64)
 }
 
 #[cfg(test)]

@@ -18,7 +18,7 @@ pub(super) struct Header {
     pub(super) lossless: bool,
     /// Of the finest mesh, in model units.
     pub(super) diagonal: f64,
-    /// By how much a vertex was moved at most, in model units; 0 where none of the finest mesh was.
+    /// By how much a vertex was moved at most that has no position to the bit, in model units.
     pub(super) rounding: f64,
     pub(super) roots: u32,
     pub(super) base_faces: u32,
@@ -139,7 +139,7 @@ impl Header {
             chunks: bytes[FIXED..].chunks_exact(ENTRY).map(Entry::from_bytes).collect(),
         };
         if bytes[BODY + 3] & !LOSSLESS != 0 {
-            return Err(bad("it has flags that this program does not know"));
+            return Err(bad(UNKNOWN_FLAGS));
         }
         if this.updates() > MOST_UPDATES || this.roots as usize > MOST_UPDATES {
             return Err(bad("it has more updates than can be numbered"));
@@ -160,6 +160,8 @@ impl Header {
 const FAR: f64 = 1e30;
 /// The one flag that there is.
 const LOSSLESS: u8 = 1;
+/// What is wrong with others, here and elsewhere.
+pub(super) const UNKNOWN_FLAGS: &str = "it has flags that this program does not know";
 /// Nodes are numbered up to 2³¹: roots, and two an update.
 const MOST_UPDATES: usize = 1 << 29;
 

@@ -15,8 +15,18 @@ use crate::short::{ERRORS, error9, error16, radius8, radius16};
 /// A forest as a file keeps it.
 pub(super) struct Kept {
     pub(super) forest: Forest,
-    /// By how much a node was moved at most, in stored units.
+    /// By how much a node was moved at most that is not kept to the bit, in stored units.
     pub(super) moved: f64,
+}
+
+/// How far nodes were moved at most, in stored units.
+#[derive(Clone, Copy, Debug, Default)]
+struct Moved {
+    all: f64,
+    /// Those that are not kept to the bit.
+    rounded: f64,
+    /// Those that are, by what puts them in their places again: from where they were measured.
+    restored: f64,
 }
 
 impl Forest {
@@ -28,23 +38,20 @@ impl Forest {
         let mut this = self.clone();
         let moved = this.move_to(lattice)?;
         // A bound holds for where things are now, and where the input is that is kept to the bit.
-        let restored = self.restored();
         let rounding = match self.error_kind {
-            ErrorKind::Bound => moved.max(restored) + restored,
+            ErrorKind::Bound => moved.all.max(moved.restored) + moved.restored,
             ErrorKind::Estimate => 0.0,
         };
-        // What changes no surface takes vertices away still: to have them all is to ask for no error.
-        let least = if self.exact.is_empty() { 0 } else { 1 };
         for u in 0..this.updates.len() {
             let update = &this.updates[u];
             let ball = this.ball(u);
             // Its own place may have moved, and what is around.
-            let own = ball.radius + 2.0 * moved;
+            let own = ball.radius + 2.0 * moved.all;
             let below = update.children.iter().filter_map(|&child| this.update_of(child));
             let balls = below.map(|below| this.ball(below));
             let reach = balls.map(|below| below.center.distance(ball.center) + below.radius);
             let radius = Length16::up(reach.fold(own, f64::max) * SLACK);
-            let error = error9(Length16::up(ball.error + rounding)).max(least);
+            let error = error9(Length16::up(ball.error + rounding));
             let error = error16(error).unwrap_or(Length16::INFINITE);
             let radius = radius16(radius8(radius));
             (this.updates[u].radius, this.updates[u].error) = (radius, error);
@@ -54,43 +61,38 @@ impl Forest {
         }
         this.turn_siblings();
         this.level_by_error();
-        Ok(Kept { forest: this, moved })
+        Ok(Kept { forest: this, moved: moved.rounded })
     }
 
-    /// Puts all nodes on the lattice, and says how far one was moved at most. Those that are kept to the
-    /// bit are seen there; triangles have to have an area with them where they are.
-    fn move_to(&mut self, lattice: Lattice) -> Result<f64, BuildError> {
+    /// Puts all nodes on the lattice, and says how far. Those that are kept to the bit are seen where they
+    /// are; triangles have to have an area with them there.
+    fn move_to(&mut self, lattice: Lattice) -> Result<Moved, BuildError> {
         let order = Order::new(self);
         let mt = Implicit::in_order(self, &order)?;
         let before = |node: u32| Vec3::from(mt.place(node));
-        let exact = |node: u32| mt.exact().of(node).map(|p| mt.frame().point(p.into()));
-        let place = |node: u32| exact(node).unwrap_or_else(|| before(node).as_dvec3());
         let cell = |node: u32| lattice.round(before(node));
         let nodes = || 0..mt.node_count() as u32;
-        let in_cells = |node: u32| match exact(node) {
-            Some(place) => (place / lattice.cell()).into(),
-            None => cell(node).map(f64::from),
+        let is_free = |node: u32| mt.exact().of(node).is_none();
+        let in_cells = |node: u32| match is_free(node) {
+            true => cell(node).map(f64::from),
+            false => (mt.spot(node) / lattice.cell()).into(),
         };
         let mut places: Vec<_> = nodes().map(in_cells).collect();
-        let is_free = |node: u32| mt.exact().of(node).is_none();
-        spread(&mt, &mut places, is_free, |nodes| has_area(nodes.map(place)));
-        let mut moved = 0.0f64;
+        spread(&mt, &mut places, is_free, |nodes| has_area(nodes.map(|node| mt.spot(node))));
+        let mut moved = Moved::default();
         for (node, place) in nodes().zip(places) {
             let at = if is_free(node) { place.map(|x| x as i32) } else { cell(node) };
             let (from, to) = (before(node).as_dvec3(), lattice.put(at));
-            moved = moved.max(from.distance(to.as_dvec3()));
+            let far = from.distance(to.as_dvec3());
+            moved.all = moved.all.max(far);
+            if is_free(node) {
+                moved.rounded = moved.rounded.max(far);
+            } else {
+                moved.restored = moved.restored.max(from.distance(mt.spot(node)));
+            }
             self.positions[order.nodes[node as usize] as usize] = to.into();
         }
         Ok(moved)
-    }
-
-    /// How far those that are kept to the bit are from where they were measured, at most, in stored units.
-    fn restored(&self) -> f64 {
-        let apart = |leaf: u32| {
-            let exact = self.frame.point(self.exact.of(leaf)?.into());
-            Some(exact.distance(Vec3::from(self.positions[leaf as usize]).as_dvec3()))
-        };
-        (0..self.vertices as u32).filter_map(apart).fold(0.0, f64::max)
     }
 
     /// Lets the second of two siblings be the one that is further along, where that is free: then a

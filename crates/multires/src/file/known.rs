@@ -2,6 +2,7 @@
 
 use glam::Vec3;
 
+use super::exact::Steps;
 use super::lattice::Lattice;
 use super::slant::Slant;
 use crate::exact::Exact;
@@ -16,13 +17,13 @@ pub(super) struct Known {
     pub(super) base: Base,
     pub(super) updates: Vec<Loose>,
     /// Of the finest mesh's vertices, by the numbers here, where they are kept to the bit.
-    pub(super) exact: Option<Exact>,
+    exact: Exact,
     /// By run of updates: its first in the file, and its first here.
     runs: Vec<[u32; 2]>,
 }
 
 impl Known {
-    pub(super) fn new(frame: Frame, lattice: Lattice, base: Base, exact: Option<Exact>) -> Self {
+    pub(super) fn new(frame: Frame, lattice: Lattice, base: Base, exact: Exact) -> Self {
         Self { frame, lattice, base, updates: Vec::new(), exact, runs: Vec::new() }
     }
 
@@ -63,12 +64,38 @@ impl Known {
 
     /// Where a node is to the bit, if that is known.
     pub(super) fn exact(&self, node: u32) -> Option<[f64; 3]> {
-        self.exact.as_ref()?.of(node)
+        self.exact.of(node)
     }
 
-    /// Adds where a node is to the bit; nodes come by rising numbers.
-    pub(super) fn add_exact(&mut self, node: u32, position: [f64; 3]) {
-        self.exact.get_or_insert_default().push(node, position);
+    /// Whether positions of the finest mesh's vertices are kept to the bit.
+    pub(super) fn is_lossless(&self) -> bool {
+        self.exact.is_kept()
+    }
+
+    /// Adds where a node is to the bit, by the steps from its place, or says why it cannot be; nodes come by
+    /// rising numbers.
+    pub(super) fn add_exact(
+        &mut self,
+        node: u32,
+        steps: &Steps,
+        at: usize,
+    ) -> Result<(), &'static str> {
+        let position = steps.position(at, self.guess(node));
+        let position = position.ok_or("a position of it is no number")?;
+        let is_near = self.lattice.is_place_of(self.place(node), self.frame.point(position.into()));
+        is_near
+            .then(|| self.exact.push(node, position))
+            .ok_or("a position of it is not at its place")
+    }
+
+    /// The model so far: its base, its updates, and the positions to the bit.
+    pub(super) fn into_parts(self) -> (Base, Vec<Loose>, Exact) {
+        (self.base, self.updates, self.exact)
+    }
+
+    /// Whether places are numbers in model units.
+    pub(super) fn holds(&self, places: &[Vec3]) -> bool {
+        places.iter().all(|&place| self.frame.holds(place))
     }
 
     /// Where a node is by the lattice, in model units.

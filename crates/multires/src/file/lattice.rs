@@ -59,6 +59,14 @@ impl Lattice {
         at.iter().all(|x| near.contains(x)).then(|| self.put(at.map(|x| x as i32)))
     }
 
+    /// Whether what is here, in stored units, is rounded to that place: half a cell off along each axis at
+    /// most, and what single precision takes from it before.
+    pub(super) fn is_place_of(self, place: Vec3, here: DVec3) -> bool {
+        let place = place.as_dvec3();
+        let most = 0.5 * self.cell() + f64::from(f32::EPSILON) * place.abs();
+        (here - place).abs().cmple(most).all()
+    }
+
     pub(super) fn put(self, at: [i32; 3]) -> Vec3 {
         (DVec3::from(at.map(f64::from)) * self.cell()).as_vec3()
     }
@@ -92,5 +100,30 @@ mod tests {
         assert_eq!(Lattice::from_bytes(lattice.to_bytes()), Some(lattice));
         assert_eq!((Lattice::from_bytes([24, 4]), Lattice::from_bytes([3, 0])), (None, None));
         assert_eq!(lattice.place([i64::from(i32::MIN); 3]), None);
+    }
+
+    #[test]
+    fn what_is_rounded_to_a_place_is_near_it() {
+        let mut seed = 7u64;
+        let mut roll = || {
+            seed = seed.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+            (seed >> 11) as f64 / (1u64 << 53) as f64
+        };
+        for lattice in [Lattice::within(0.0), Lattice::within(1e-6), Lattice::within(3e-2)] {
+            for size in [1e-9, 1e-3, 0.5, 1.9] {
+                let here = DVec3::new(roll() - 0.5, roll() - 0.5, roll() - 0.5) * 2.0 * size;
+                // Middles of cells too.
+                let middle =
+                    (here / lattice.cell()).floor() * lattice.cell() + 0.5 * lattice.cell();
+                for here in [here, middle] {
+                    let place = lattice.put(lattice.round(here.as_vec3()));
+                    assert!(lattice.is_place_of(place, here), "{lattice:?} {here}");
+                    for far in [DVec3::X, DVec3::NEG_Y, DVec3::Z * 1e300, DVec3::INFINITY] {
+                        assert!(!lattice.is_place_of(place, here + 2.0 * lattice.cell() * far));
+                    }
+                    assert!(!lattice.is_place_of(place, DVec3::NAN));
+                }
+            }
+        }
     }
 }

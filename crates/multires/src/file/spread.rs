@@ -2,8 +2,9 @@
 
 use crate::implicit::Implicit;
 
-/// In cells of the lattice: whole numbers, but for what is kept to the bit. They are less than 2²⁵, so that
-/// nothing is rounded here.
+/// In cells of the lattice: whole numbers below 2²⁵, so that nothing is rounded here, but for what is kept to
+/// the bit. With such a corner products may be rounded: a sliver that is taken for flat moves a vertex by a
+/// few cells for nothing, and what is flat and taken for a sliver has an area for whoever computes it so.
 type Place = [f64; 3];
 
 /// Moves of so many cells along each axis are tried, the least first.

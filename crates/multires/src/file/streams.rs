@@ -3,6 +3,8 @@
 use std::io::{self, Read, Write};
 use std::ops::{BitOrAssign, Shl};
 
+use crate::zigzag::{unzigzag, zigzag};
+
 /// How hard to press: beyond this the dragon takes twice the time for half a percent.
 const EFFORT: i32 = 9;
 /// At most so many numbers are read from a byte, so that a short file cannot fill the memory; real ones
@@ -47,7 +49,7 @@ impl Packer {
 
     /// The same of numbers with a sign.
     pub(super) fn signed(&mut self, numbers: impl Iterator<Item = i32>) -> io::Result<()> {
-        let folded: Vec<u32> = numbers.map(|n| ((n << 1) ^ (n >> 31)) as u32).collect();
+        let folded: Vec<u32> = numbers.map(|n| zigzag(n.into()) as u32).collect();
         self.numbers(&folded)
     }
 
@@ -113,7 +115,7 @@ impl<'b> Unpacker<'b> {
     }
 
     pub(super) fn signed(&mut self, count: usize) -> io::Result<Vec<i32>> {
-        let unfold = |n: u32| (n >> 1) as i32 ^ -((n & 1) as i32);
+        let unfold = |n: u32| unzigzag(n.into()) as i32;
         Ok(self.numbers(count)?.into_iter().map(unfold).collect())
     }
 

@@ -1,6 +1,7 @@
 //! What comes back of a file: of a whole one, of its start, of what a query needs, and of a damaged one.
 
 mod lossless;
+mod wrong;
 
 use meshlod_mesh::{Mesh, sample};
 use meshlod_simplify::Method;

@@ -40,11 +40,7 @@ const ROUNDING: f64 = 5e-5;
 /// `ROUNDING`, 11.6 at this, 12.4 at a quarter of it and 14.0 in single precision.
 const LOSSLESS_ROUNDING: f64 = 2e-5;
 
-/// The bytes of a `.mlod` file with all levels, and the proof that none of them has a crack.
-///
-/// Vertices are moved to a lattice; errors are rounded up, by a sixteenth at most. Cost: linear.
-/// # Errors
-/// More vertices than are numbered. What has no certificate is not written.
+/// What [`Archive::write`](super::Archive::write) gives.
 pub(super) fn write(
     forest: &Forest,
     storage: &Storage,
@@ -55,7 +51,6 @@ pub(super) fn write(
     }
     let lattice = lattice(forest, storage, diagonal);
     let Kept { forest, moved } = forest.kept(lattice)?;
-    let lossless = !forest.exact.is_empty();
     let order = Order::new(&forest);
     let mt = Implicit::in_order(&forest, &order)?;
     let (certificate, packed) = rayon::join(
@@ -69,9 +64,9 @@ pub(super) fn write(
     let header = Header {
         about: About { frame: forest.frame, error_kind: forest.error_kind },
         lattice,
-        lossless,
+        lossless: forest.exact.is_kept(),
         diagonal,
-        rounding: if lossless { 0.0 } else { forest.frame.length_of_model(moved) },
+        rounding: forest.frame.length_of_model(moved),
         roots: mt.root_count() as u32,
         base_faces: mt.base_faces() as u32,
         base: Stored::of(&packed.base),
@@ -91,7 +86,7 @@ struct Packed {
 fn pack(mt: &Implicit, plan: &Plan, lattice: Lattice) -> io::Result<Packed> {
     let nodes = (0..mt.root_count() as u32)
         .chain(plan.order.iter().flat_map(|&update| mt.children(update)));
-    let exact = (!mt.exact().is_empty()).then(|| mt.exact().picked(nodes));
+    let exact = mt.exact().picked(nodes);
     let mut known = Known::new(*mt.frame(), lattice, mt.loose_base(), exact);
     known.go_to(0);
     known.updates.extend(plan.order.iter().map(|&update| {
@@ -118,7 +113,7 @@ fn pack(mt: &Implicit, plan: &Plan, lattice: Lattice) -> io::Result<Packed> {
 
 /// The coarsest that is fine enough for a mesh of this diagonal.
 pub(super) fn lattice(forest: &Forest, storage: &Storage, diagonal: f64) -> Lattice {
-    let part = if forest.exact.is_empty() { ROUNDING } else { LOSSLESS_ROUNDING };
+    let part = if forest.exact.is_kept() { LOSSLESS_ROUNDING } else { ROUNDING };
     let most = storage.rounding.unwrap_or(part * diagonal);
     Lattice::within(forest.frame.length(most))
 }

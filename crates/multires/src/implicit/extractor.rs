@@ -133,7 +133,7 @@ impl<'m> Extractor<'m> {
             level.nodes.push(below.node);
             level.positions.push(mt.place(below.node));
         });
-        level.exact.pick(mt.exact(), level.nodes.iter().copied());
+        level.exact = mt.exact().clone();
         self.model.faces().write(&made, &above, &mut level.faces);
         (self.level, self.above, self.made) = (level, above, made);
         &self.level

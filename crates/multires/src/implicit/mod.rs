@@ -28,6 +28,8 @@ mod splits;
 
 use std::collections::BTreeMap;
 
+use glam::{DVec3, Vec3};
+
 use crate::bounds::ErrorKind;
 use crate::exact::Exact;
 use crate::forest::{MOST_LEVELS, Odd};
@@ -166,6 +168,12 @@ impl Implicit {
     #[inline]
     pub(crate) fn place(&self, node: u32) -> [f32; 3] {
         self.places.at(node)
+    }
+
+    /// The same of a node that is kept to the bit where that is, not rounded to what is stored.
+    pub(crate) fn spot(&self, node: u32) -> DVec3 {
+        let rounded = || Vec3::from(self.place(node)).as_dvec3();
+        self.exact.of(node).map_or_else(rounded, |exact| self.frame.point(exact.into()))
     }
 
     /// The mesh of some faces.

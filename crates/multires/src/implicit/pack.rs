@@ -46,7 +46,7 @@ impl Implicit {
                 ),
                 local: Local {
                     radius: of.radius,
-                    error: of.error,
+                    error: forest.error(update),
                     level: of.level | if of.is_open || of.wings == [NONE; 2] { OPEN } else { 0 },
                     wings: of.wings.map(|wing| rank(forest, order, update, wing)),
                 },

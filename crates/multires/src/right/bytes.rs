@@ -8,6 +8,7 @@ use thiserror::Error;
 
 use super::field::{Fit, HeightField, Plan};
 use super::places::{Grid, Place};
+use crate::zigzag::{unzigzag, zigzag};
 
 /// How exact the heights of a field are kept.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -209,14 +210,6 @@ fn last_bit(x: f64) -> i16 {
 /// Bits of an `f64` as a number in the same order, and back.
 fn in_order(bits: i64) -> i64 {
     bits ^ ((bits >> 63) as u64 >> 1) as i64
-}
-
-fn zigzag(x: i64) -> u64 {
-    ((x << 1) ^ (x >> 63)) as u64
-}
-
-fn unzigzag(x: u64) -> i64 {
-    (x >> 1) as i64 ^ -((x & 1) as i64)
 }
 
 fn header(grid: &Grid, plan: &Plan, fit: &Fit, scale: Scale) -> Vec<u8> {

@@ -1,0 +1,130 @@
+//! Files with the right checksums that say what must not be.
+
+use meshlod_fixtures as fixtures;
+use meshlod_mesh::{Mesh, sample};
+use meshlod_simplify::Options;
+
+use super::small;
+use crate::exact::Exact;
+use crate::{Archive, Forest};
+
+/// Where the header has the length of the base, and where the index starts, which has that of each chunk;
+/// how long an entry is.
+const BASE: usize = 28;
+const INDEX: usize = 88;
+const ENTRY: usize = 44;
+
+fn written(forest: &Forest) -> Vec<u8> {
+    Archive::write(forest, &small()).unwrap().0
+}
+
+fn lossless(mesh: &Mesh) -> Forest {
+    Forest::lossless(mesh, &Options::default()).unwrap()
+}
+
+fn lossy(mesh: &Mesh) -> Forest {
+    Forest::new(mesh, &Options::default()).unwrap()
+}
+
+/// Why a file cannot be read.
+fn refusal(bytes: Vec<u8>) -> String {
+    let read = Archive::open(bytes).and_then(|archive| archive.read());
+    let why = read.map(|_| ()).unwrap_err().to_string();
+    assert!(!why.contains('\n'));
+    why
+}
+
+/// A file with a piece that says something else: the base if there is no number, or that chunk.
+fn changed(bytes: &[u8], chunk: Option<usize>, change: impl FnOnce(&mut Vec<u8>)) -> Vec<u8> {
+    let archive = Archive::open(bytes.to_vec()).unwrap();
+    let ends: Vec<usize> = archive.ends().map(|end| end as usize).collect();
+    let (entry, start, end) = match chunk {
+        Some(chunk) => (INDEX + ENTRY * chunk, ends[chunk], ends[chunk + 1]),
+        None => (BASE, INDEX + ENTRY * archive.chunk_count(), ends[0]),
+    };
+    let mut content = zstd::decode_all(&bytes[start..end]).unwrap();
+    change(&mut content);
+    let piece = zstd::encode_all(&content[..], 1).unwrap();
+    let mut all = [&bytes[..start], &piece, &bytes[end..]].concat();
+    all[entry..entry + 4].copy_from_slice(&(piece.len() as u32).to_le_bytes());
+    Archive::seal(&mut all);
+    all
+}
+
+/// The first flag behind streams of so many numbers each.
+fn first_flag<'c>(content: &'c mut [u8], numbers: &[usize]) -> &'c mut u8 {
+    let at = numbers.iter().fold(0, |at, count| at + 1 + usize::from(content[at]) * count);
+    &mut content[at]
+}
+
+#[test]
+fn flags_that_are_not_known_are_refused() {
+    let mesh = sample::torus(100);
+    let [lossy, lossless] = [lossy(&mesh), lossless(&mesh)].map(|forest| written(&forest));
+    for (bytes, flags) in [(&lossy, &[8, 16, 32, 64, 128][..]), (&lossless, &[32, 64, 128])] {
+        let archive = Archive::open(bytes.clone()).unwrap();
+        let updates = archive.header.chunks[0].updates as usize;
+        for flag in flags {
+            let wrong = changed(bytes, Some(0), |all| *first_flag(all, &[updates]) |= flag);
+            let why = refusal(wrong);
+            assert!(why.contains("update 0: it has flags"), "{flag}: {why}");
+        }
+        assert!(Archive::open(changed(bytes, Some(0), |_| ())).unwrap().read().is_ok());
+    }
+    let header = Archive::open(lossless.clone()).unwrap().header;
+    let [roots, faces] = [header.roots, header.base_faces].map(|count| count as usize);
+    let streams = [roots, roots, roots, faces, faces, faces];
+    let wrong = changed(&lossless, None, |all| *first_flag(all, &streams) |= 2);
+    assert!(refusal(wrong).contains("the coarsest mesh: it has flags"));
+    let mut wrong = lossy;
+    wrong[19] = 2;
+    Archive::seal(&mut wrong);
+    assert!(refusal(wrong).contains("the header: it has flags"));
+}
+
+#[test]
+fn every_vertex_of_the_finest_mesh_has_its_position() {
+    for without in [0, 57] {
+        let mut forest = lossless(&sample::torus(200));
+        let mut exact = Exact::kept();
+        let others = (0..forest.vertices as u32).filter(|&leaf| leaf != without);
+        others.for_each(|leaf| exact.push(leaf, forest.exact.of(leaf).unwrap()));
+        forest.exact = exact;
+        let archive = Archive::open(written(&forest)).unwrap();
+        let why = archive.read().unwrap_err().to_string();
+        assert_eq!(
+            why,
+            "the finest mesh: 1 of its vertices have no position to the bit in a lossless file"
+        );
+        // Nobody can tell before the end.
+        assert!(archive.read_chunks(archive.chunk_count() - 1).is_ok());
+    }
+}
+
+#[test]
+fn a_position_is_where_its_place_is() {
+    let cases: [(usize, f64); 4] = [(0, 2e38), (1, 1e-3), (2, -1e-3), (0, f64::MAX)];
+    for (axis, off) in cases {
+        let mut forest = lossless(&sample::torus(200));
+        let mut exact = Exact::kept();
+        for leaf in 0..forest.vertices as u32 {
+            let mut position = forest.exact.of(leaf).unwrap();
+            position[axis] += if leaf == 31 { off } else { 0.0 };
+            exact.push(leaf, position);
+        }
+        forest.exact = exact;
+        let why = refusal(written(&forest));
+        assert!(why.ends_with("a position of it is not at its place"), "{off}: {why}");
+    }
+}
+
+#[test]
+fn places_are_numbers() {
+    for forest in [lossy(&fixtures::cube()), lossless(&sample::torus(100))] {
+        let mut wrong = written(&forest);
+        wrong[40..48].copy_from_slice(&f64::MAX.to_le_bytes());
+        wrong[64..72].copy_from_slice(&1000f64.exp2().to_le_bytes());
+        Archive::seal(&mut wrong);
+        assert!(refusal(wrong).contains("out of reach"));
+    }
+}
