@@ -17,7 +17,7 @@ pub enum Quality {
     Fast,
     /// As few vertices as that many changes tried for each face find: [`Quality::QUICK`], [`Quality::THOROUGH`].
     Best {
-        /// How many. 60 take less than a second for the 69 thousand faces of the bunny on one core of 2026, and twice as
+        /// How many, a million at most. 60 take less than a second for the 69 thousand faces of the bunny on one core of 2026, and twice as
         /// many twice as long.
         moves_per_face: f64,
     },
@@ -82,6 +82,7 @@ pub fn stripify(faces: &[[VertexId; 3]], options: &Options) -> Strips {
             let order = Order::new(&cover);
             let faces = order.sorted(faces);
             let run = LEAST_RUN.max(RUN_IN_RINGS * order.widest);
+            let moves_per_face = moves_per_face.min(MOST_MOVES);
             let (mut cover, strips) =
                 best_try(order.sort(&cover), &faces, run, moves_per_face, options);
             match &options.cache {
@@ -120,6 +121,9 @@ fn best_try(
     let best = tried.into_iter().min_by(|(_, a), (_, b)| cost(a).total_cmp(&cost(b)));
     best.filter(|(_, strips)| cost(strips) <= cost(&laid)).unwrap_or((cover, laid))
 }
+
+/// More for a face would never end, and gain nothing.
+const MOST_MOVES: f64 = 1e6;
 
 /// Meshes with fewer faces are annealed several times: how well one time comes out is more and more a matter of luck,
 /// and there is time. fandisk.off, 13 thousand faces, 500 moves a face: from 1.069 to 1.076 vertices a face.

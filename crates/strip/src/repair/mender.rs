@@ -14,7 +14,7 @@ use crate::region::Region;
 const QUICK_HEATS: [f64; 4] = [0.2, 0.1, 0.05, 0.0];
 
 /// What a change of a thorough repair may cost with the first moves and with the last, and how many moves there are a
-/// triangle. A seed must not be melted: whole meshes are annealed from .58.
+/// triangle. A seed must not be melted: whole meshes are annealed from .9.
 const THOROUGH_HEATS: [f64; 2] = [0.35, 0.08];
 const THOROUGH_MOVES: f64 = 100.0;
 
