@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use meshlod_fixtures as fixtures;
-use meshlod_mesh::{Mesh, sample};
+use meshlod_mesh::{Mesh, VertexId, sample};
 use meshlod_simplify::{Method, Options};
 
 use super::{Dice, query, small};
@@ -58,7 +58,7 @@ fn bits(position: [f64; 3]) -> Bits {
 
 /// Faces by the bits of their corners.
 fn by_bits(mesh: &Mesh) -> Vec<[Bits; 3]> {
-    let corners = |face: &[meshlod_mesh::VertexId; 3]| face.map(|v| mesh.positions[v.index()]);
+    let corners = |face: &[VertexId; 3]| face.map(|v| mesh.positions[v.index()]);
     let mut faces: Vec<_> = mesh.faces.iter().map(|face| corners(face).map(bits)).collect();
     for face in &mut faces {
         let least = (0..3).min_by_key(|&k| face[k]).unwrap();
@@ -186,6 +186,27 @@ fn a_vertex_is_found_where_it_is() {
             }
         }
     });
+}
+
+/// Else whoever asks at a vertex would not be led to it. So small, single precision moves vertices by as
+/// much as balls have room.
+#[test]
+fn balls_are_around_vertices_where_they_are() {
+    let mut mesh = placed(sample::sphere(2000), |x, k| 0.3 + 1e-4 * x * [1.0, 0.9, 1.1][k]);
+    let first = mesh.positions.len() as u32;
+    mesh.positions.extend([[-0.5; 3], [0.5, -0.5, -0.5], [-0.5, 0.5, -0.5]]);
+    mesh.faces.push([0, 1, 2].map(|k| VertexId(first + k)));
+    let forest = Forest::lossless(&mesh, &Options::default()).unwrap();
+    let kept = forest.kept(super::lattice(&forest, &small(), super::diagonal(&forest))).unwrap();
+    for (way, forest) in [("in memory", &forest), ("in a file", &kept.forest)] {
+        for u in 0..forest.update_count() {
+            let ball = forest.ball(u);
+            for &node in forest.ring(u).iter().chain(&forest.updates[u].children) {
+                let apart = ball.center.distance(forest.spot(node));
+                assert!(apart <= ball.radius, "{way}: update {u}, node {node}");
+            }
+        }
+    }
 }
 
 /// A level tells of each vertex by its node, in whatever order.
