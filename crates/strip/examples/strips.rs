@@ -1,5 +1,5 @@
-//! The figures of docs/notes/strips.md on whole meshes: vertices and indices a face, ACMR and seconds, by setting; and
-//! what a vertex cache takes and gives.
+//! Strips of whole meshes by setting: vertices and indices a face, ACMR and seconds; and what a vertex cache takes and
+//! gives. docs/notes/strips.md has the figures of `cargo xtask results strips`, whose settings differ a little.
 //!
 //! `cargo run --release -p meshlod-strip --example strips -- bunny.ply fandisk.off`, with meshes of the shared folder;
 //! `--thorough` in front for the slow settings too.

@@ -3,6 +3,7 @@
 use meshlod_mesh::VertexId;
 
 use crate::cover::{Cell, Port};
+use crate::verify::has_three_corners;
 
 /// The faces as cells without links, and what lies across their sides: the side of a face that runs along the same edge the other way.
 ///
@@ -60,7 +61,7 @@ impl Sides {
     fn new(faces: &[[VertexId; 3]], vertex_count: usize) -> Self {
         let mut starts = vec![0_u32; vertex_count + 1];
         let mut count = 0;
-        for [a, b, c] in faces.iter().filter(|face| whole(face)) {
+        for [a, b, c] in faces.iter().filter(|face| has_three_corners(face)) {
             starts[a.index()] += u32::from(a < b);
             starts[b.index()] += u32::from(b < c);
             starts[c.index()] += u32::from(c < a);
@@ -83,7 +84,8 @@ impl Sides {
     fn fill(&mut self, faces: &[[VertexId; 3]]) {
         let (last_rising, last_falling) = (self.rising.len() - 1, self.falling.len() - 1);
         let mut falls = last_falling;
-        for (f, face) in faces.iter().enumerate().rev().filter(|(_, face)| whole(face)) {
+        for (f, face) in faces.iter().enumerate().rev().filter(|(_, face)| has_three_corners(face))
+        {
             for side in [2, 1, 0] {
                 let [from, to] = ends(face, side);
                 let rises = from < to;
@@ -104,7 +106,7 @@ impl Sides {
 /// The same by sorting all sides by edge.
 fn sorted(faces: &[[VertexId; 3]]) -> Vec<Cell> {
     let mut sides = Vec::with_capacity(3 * faces.len());
-    for (f, face) in faces.iter().enumerate().filter(|(_, face)| whole(face)) {
+    for (f, face) in faces.iter().enumerate().filter(|(_, face)| has_three_corners(face)) {
         for side in 0..3 {
             let [from, to] = ends(face, side);
             sides.push((from.min(to), from.max(to), from > to, Port::new(f, side)));
@@ -138,12 +140,6 @@ pub(crate) fn next(side: usize) -> usize {
 #[inline]
 pub(crate) fn previous(side: usize) -> usize {
     if side == 0 { 2 } else { side - 1 }
-}
-
-/// Whether a face has three vertices.
-#[inline]
-pub(crate) fn whole(face: &[VertexId; 3]) -> bool {
-    face[0] != face[1] && face[1] != face[2] && face[2] != face[0]
 }
 
 #[cfg(test)]

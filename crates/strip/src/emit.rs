@@ -3,8 +3,9 @@
 use meshlod_mesh::VertexId;
 
 use crate::cover::{Cover, Port};
-use crate::dual::{ends, next, previous, whole};
+use crate::dual::{ends, next, previous};
 use crate::strips::Strips;
+use crate::verify::has_three_corners;
 
 impl Cover {
     /// The strips of the paths, in the order of their first cells; `faces` are those the cover is of. Faces that
@@ -14,7 +15,7 @@ impl Cover {
         let mut drawn = vec![false; self.cells.len()];
         let mut strip = Vec::new();
         for cell in 0..self.cells.len() {
-            if whole(&faces[cell]) && self.is_end(cell) && !drawn[cell] {
+            if has_three_corners(&faces[cell]) && self.is_end(cell) && !drawn[cell] {
                 let far = self.draw(faces, cell, &mut strip);
                 drawn[far] = true;
                 if self.better_end(cell, far) == far {

@@ -2,7 +2,7 @@
 
 use crate::cover::{Links, Port};
 
-/// What strips cost beyond one vertex for each triangle.
+/// What strips cost beyond one vertex for each triangle; a thousand vertices at most.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Prices {
     /// A strip: its first two vertices, and a restart if that counts.
@@ -56,9 +56,12 @@ const ONWARD: [[u8; 4]; 8] = [
     [0, 0, 0, 0],
 ];
 
+/// A price of more vertices counts as so many.
+const MOST: f64 = 1000.0;
+
 impl Energy {
     pub(crate) fn new(prices: &Prices) -> Self {
-        let units = |price: f64| (price * UNIT).round() as i32;
+        let units = |price: f64| (price.clamp(-MOST, MOST) * UNIT).round() as i32;
         let (strip, swap, odd) = (units(prices.strip), units(prices.swap), units(prices.odd_end));
         let mut cells = [0; 8];
         for (links, cost) in cells.iter_mut().enumerate() {

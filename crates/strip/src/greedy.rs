@@ -3,9 +3,9 @@
 use meshlod_mesh::VertexId;
 
 use crate::cover::{Cover, Port};
-use crate::dual::whole;
 use crate::emit::Turn;
 use crate::strips::Strips;
+use crate::verify::has_three_corners;
 
 /// How many cells are looked at in either direction before a strip is begun. The bunny: 1 leaves 1.180 vertices a
 /// face, 4 1.177, 8 1.174, 16 1.172, 40 1.173; a strip looks six times, so 8 cost some nanoseconds a face.
@@ -20,7 +20,7 @@ impl Cover {
         let mut layer = Layer { taken: vec![false; faces.len()], near: Vec::new(), cover: self };
         let mut strips = Strips::default();
         let mut strip = Vec::new();
-        for first in (0..faces.len()).filter(|&face| whole(&faces[face])) {
+        for first in (0..faces.len()).filter(|&face| has_three_corners(&faces[face])) {
             let mut start = Some(first);
             while let Some(cell) = start {
                 if !layer.taken[cell] {

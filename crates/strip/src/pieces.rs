@@ -6,9 +6,10 @@ use meshlod_mesh::{Buckets, VertexId};
 
 use self::fifo::Fifo;
 use crate::cover::{Cover, Port};
-use crate::dual::{ends, previous, whole};
+use crate::dual::{ends, previous};
 use crate::emit::Turn;
 use crate::strips::Strips;
+use crate::verify::has_three_corners;
 
 /// The vertex cache that strips are sent to, and how much of them is given up for it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -62,7 +63,7 @@ impl Cover {
         let mut sender = Sender::new(self, &faces, names.len(), cache);
         let mut strips = Strips::default();
         let mut strip = Vec::new();
-        for first in (0..faces.len()).filter(|&face| whole(&faces[face])) {
+        for first in (0..faces.len()).filter(|&face| has_three_corners(&faces[face])) {
             while !sender.sent[first] {
                 let piece = sender.best_piece(first);
                 sender.send(&piece, &mut strip);
@@ -123,7 +124,7 @@ impl<'a> Sender<'a> {
             faces,
             cache,
             // Faces that repeat a vertex are as good as sent.
-            sent: faces.iter().map(|face| !whole(face)).collect(),
+            sent: faces.iter().map(|face| !has_three_corners(face)).collect(),
             fifo: Fifo::new(cache.entries, vertex_count),
             stars: Buckets::new(vertex_count, corners),
             done: vec![0; vertex_count],
@@ -208,7 +209,7 @@ impl<'a> Sender<'a> {
 
     /// How many cells the path has from a cell on; where that is more than can be of interest, some number like it.
     fn ahead(&self, cell: usize, side: Option<usize>) -> usize {
-        let enough = self.cache.longest + SHORT;
+        let enough = self.cache.longest.saturating_add(SHORT);
         let mut next = side.map(|side| self.cover.cells[cell].across[side]);
         let mut count = 1;
         while let Some(entry) = next.filter(|_| count < enough) {

@@ -69,6 +69,6 @@ mod tests {
     fn restarts_stand_between_strips_only() {
         let r = Strips::RESTART;
         assert_eq!(three().with_restarts(), [0, 1, 2, 3, r, 4, 4, 5, 6, 7, r, 8, 9, 10]);
-        assert_eq!(Strips::default().with_restarts(), []);
+        assert_eq!(Strips::default().with_restarts(), [0u32; 0]);
     }
 }

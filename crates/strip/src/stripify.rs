@@ -17,8 +17,8 @@ pub enum Quality {
     Fast,
     /// As few vertices as that many changes tried for each face find: [`Quality::QUICK`], [`Quality::THOROUGH`].
     Best {
-        /// How many, a million at most. 60 take less than a second for the 69 thousand faces of the bunny on one core of 2026, and twice as
-        /// many twice as long.
+        /// How many, a million at most. 60 take one or two seconds for the 69 thousand faces of the bunny on one core of 2026, and
+        /// twice as many twice as long.
         moves_per_face: f64,
     },
 }

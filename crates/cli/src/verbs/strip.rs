@@ -191,8 +191,8 @@ impl Strip {
     fn stripify(&self, faces: &[[VertexId; 3]]) -> Strips {
         let quality = match (self.quality, self.effort) {
             (Quality::Fast, _) => strip::Quality::Fast,
-            (Quality::Best, Tried::Quick) => strip::Quality::Best { moves_per_face: 40.0 },
-            (Quality::Best, Tried::Thorough) => strip::Quality::Best { moves_per_face: 1500.0 },
+            (Quality::Best, Tried::Quick) => strip::Quality::QUICK,
+            (Quality::Best, Tried::Thorough) => strip::Quality::THOROUGH,
         };
         strip::stripify(faces, &strip::Options { quality, ..strip::Options::default() })
     }

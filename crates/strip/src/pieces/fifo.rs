@@ -30,7 +30,7 @@ impl Fifo {
     #[inline]
     pub(crate) fn send(&mut self, vertex: VertexId) {
         let last = self.last[vertex.index()];
-        if last == 0 || last as usize + self.size <= self.came.len() {
+        if last == 0 || self.came.len() - last as usize >= self.size {
             self.came.push(Came { vertex, last });
             self.last[vertex.index()] = self.came.len() as u32;
         }

@@ -36,7 +36,9 @@ impl LiveStrips {
     /// The triangles in some places, with strips for them. What the strips lack, or draw that is in no place, does no
     /// harm.
     ///
-    /// Cost: O(n log n).
+    /// Cost: O(n log n); memory for the greatest place.
+    /// # Panics
+    /// Places of a billion and more.
     pub fn new(
         triangles: impl IntoIterator<Item = (u32, [VertexId; 3])>,
         strips: &Strips,
@@ -44,6 +46,7 @@ impl LiveStrips {
     ) -> Self {
         let mut faces = Vec::new();
         for (place, triangle) in triangles {
+            assert!((place as usize) < Port::MOST_CELLS, "places are numbered in 30 bits");
             faces.resize(faces.len().max(place as usize + 1), FREE);
             faces[place as usize] = triangle;
         }
@@ -68,6 +71,8 @@ impl LiveStrips {
     /// have another corner.
     ///
     /// Cost: of the changes, and of the strips that go through them as far as they are walked.
+    /// # Panics
+    /// Places of a billion and more.
     pub fn update(
         &mut self,
         changes: impl IntoIterator<Item = (u32, Option<[VertexId; 3]>)>,
@@ -90,6 +95,7 @@ impl LiveStrips {
     }
 
     fn write(&mut self, place: usize, triangle: [VertexId; 3]) {
+        assert!(place < Port::MOST_CELLS, "places are numbered in 30 bits");
         while self.faces.len() <= place {
             self.faces.push(FREE);
             let across = [Port::NONE; 3];
