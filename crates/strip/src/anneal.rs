@@ -87,11 +87,18 @@ impl Due {
 }
 
 /// What changes may cost at a heat of one, each as likely as the others.
-struct Limits([f64; 256]);
+#[derive(Clone, Debug)]
+pub(crate) struct Limits([f64; 256]);
 
 impl Limits {
-    fn new() -> Self {
+    pub(crate) fn new() -> Self {
         Self(std::array::from_fn(|i| -((i as f64 + 0.5) / 256.0).ln() * UNIT))
+    }
+
+    /// What one change may cost.
+    #[inline]
+    pub(crate) fn draw(&self, heat: f64, random: &mut Random) -> i32 {
+        (heat * self.0[random.below(256)]) as i32
     }
 }
 
@@ -130,7 +137,7 @@ impl Round<'_> {
         }
         let mut at = 0;
         for _ in 0..moves {
-            let limit = (self.heat * self.limits.0[random.below(256)]) as i32;
+            let limit = self.limits.draw(self.heat, &mut random);
             if random.below(256) >= AT_DEFECTS {
                 region.try_trail(starts[random.below(starts.len())] as usize, limit, &mut random);
                 continue;

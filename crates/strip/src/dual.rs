@@ -5,7 +5,8 @@ use meshlod_mesh::VertexId;
 use crate::cover::{Cell, Port};
 use crate::verify::has_three_corners;
 
-/// The faces as cells without links, and what lies across their sides: the side of a face that runs along the same edge the other way.
+/// The faces as cells without links, and what lies across their sides: the side of a face that runs along the
+/// same edge the other way.
 ///
 /// Any faces are taken. Where an edge has more than two sides, they are paired as far as their directions allow;
 /// sides that run the same way are never paired, for no strip can go from one to the other. A face that repeats a

@@ -28,9 +28,14 @@ fn bytes(forest: &Forest) -> Vec<u8> {
 /// A mesh by where its corners are, whatever their numbers.
 fn by_place(level: &Level) -> Vec<[[u32; 3]; 3]> {
     let corner = |v: u32| level.positions[v as usize].map(f32::to_bits);
-    let mut faces: Vec<_> = level.faces.iter().map(|face| face.map(corner)).collect();
+    in_order(level.faces.iter().map(|face| face.map(corner)))
+}
+
+/// Faces in order, each from its least corner.
+fn in_order<C: Ord>(faces: impl Iterator<Item = [C; 3]>) -> Vec<[C; 3]> {
+    let mut faces: Vec<_> = faces.collect();
     for face in &mut faces {
-        let least = (0..3).min_by_key(|&k| face[k]).unwrap();
+        let least = (0..3).min_by(|&a, &b| face[a].cmp(&face[b])).unwrap();
         face.rotate_left(least);
     }
     faces.sort_unstable();

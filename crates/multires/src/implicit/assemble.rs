@@ -1,5 +1,7 @@
 //! Updates one by one, and a model of such: how it goes into a file and comes back.
 
+use std::collections::BTreeMap;
+
 use glam::Vec3;
 
 use super::places::Places;
@@ -85,19 +87,8 @@ impl Implicit {
             (update != NONE).then(|| (update, family(update)))
         };
         let order = Order::of((0..roots as u32).collect(), nodes, updates.len(), children);
-        let mut this = Self {
-            frame: about.frame,
-            error_kind: about.error_kind,
-            roots: roots as u32,
-            trees: order.trees.clone(),
-            places: Places::Free(Vec::new()),
-            exact: exact.picked(order.nodes.iter().copied()),
-            splits: Splits::Wide(Vec::new()),
-            full_faces: base.faces.len(),
-            base: base.faces,
-            odd: Default::default(),
-        };
-        let mut splits = Vec::with_capacity(order.updates.len());
+        let (mut splits, mut odds) = (Vec::with_capacity(order.updates.len()), BTreeMap::new());
+        let mut full_faces = base.faces.len();
         let mut places: Vec<_> = base.positions.iter().map(|p| p.to_array()).collect();
         places.reserve_exact(2 * order.updates.len());
         for (at, &u) in order.updates.iter().enumerate() {
@@ -118,17 +109,27 @@ impl Implicit {
                     wings: update.wings,
                 },
             });
-            this.full_faces += update.brought();
+            full_faces += update.brought();
             if let Some(odd) = &update.odd {
                 // What is unknown stays unknown.
                 let place = |node: u32| order.place.get(node as usize).copied().unwrap_or(NONE);
                 let mut odd = odd.renumbered(place);
                 odd.brought.retain(|face| !face.contains(&NONE));
-                this.odd.insert(at as u32, odd);
+                odds.insert(at as u32, odd);
             }
         }
-        (this.places, this.splits) = (Places::Free(places), Splits::Wide(splits));
-        this
+        Self {
+            frame: about.frame,
+            error_kind: about.error_kind,
+            roots: roots as u32,
+            exact: exact.picked(order.nodes.iter().copied()),
+            trees: order.trees,
+            places: Places::Free(places),
+            splits: Splits::Wide(splits),
+            base: base.faces,
+            odd: odds,
+            full_faces,
+        }
     }
 }
 

@@ -1,5 +1,7 @@
 //! Packs a forest.
 
+use std::collections::BTreeMap;
+
 use super::places::Places;
 use super::splits::{Local, Split, Splits};
 use super::{FLAG, Implicit, LAST_WING, NO_WING, OPEN, Order};
@@ -20,20 +22,7 @@ impl Implicit {
         if order.nodes.len() >= FLAG as usize {
             return Err(BuildError::TooLarge);
         }
-        let positions = order.nodes.iter().map(|&n| forest.positions[n as usize]);
-        let mut splits = Vec::with_capacity(order.updates.len());
-        let mut this = Self {
-            frame: forest.frame,
-            error_kind: forest.error_kind,
-            roots: order.trees.len() as u32 - 1,
-            trees: order.trees.clone(),
-            exact: forest.exact.picked(order.nodes.iter().copied()),
-            places: Places::Free(positions.collect()),
-            splits: Splits::Wide(Vec::new()),
-            base: base(forest, order),
-            odd: Default::default(),
-            full_faces: forest.faces.len(),
-        };
+        let (mut splits, mut odds) = (Vec::with_capacity(order.updates.len()), BTreeMap::new());
         for at in 0..order.updates.len() {
             let update = order.updates[at] as usize;
             let (node, of) = (order.place[forest.node(update)], forest.updates[update]);
@@ -52,11 +41,22 @@ impl Implicit {
                 },
             });
             if of.wings == [NONE; 2] {
-                this.odd.insert(at as u32, odd(forest, order, update));
+                odds.insert(at as u32, odd(forest, order, update));
             }
         }
-        this.splits = Splits::Wide(splits);
-        Ok(this)
+        let positions = order.nodes.iter().map(|&n| forest.positions[n as usize]);
+        Ok(Self {
+            frame: forest.frame,
+            error_kind: forest.error_kind,
+            roots: order.trees.len() as u32 - 1,
+            trees: order.trees.clone(),
+            exact: forest.exact.picked(order.nodes.iter().copied()),
+            places: Places::Free(positions.collect()),
+            splits: Splits::Wide(splits),
+            base: base(forest, order),
+            odd: odds,
+            full_faces: forest.faces.len(),
+        })
     }
 }
 

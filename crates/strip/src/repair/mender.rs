@@ -1,9 +1,9 @@
 //! The local changes of a repair.
 
 use super::Effort;
-use crate::anneal::{Annealing, Starts};
+use crate::anneal::{Annealing, Limits, Starts};
 use crate::cover::Cover;
-use crate::energy::{Energy, Prices, UNIT};
+use crate::energy::{Energy, Prices};
 use crate::random::Random;
 use crate::region::Region;
 
@@ -28,21 +28,18 @@ pub(super) struct Mender {
     effort: Effort,
     prices: Prices,
     energy: Energy,
-    /// What changes may cost at a heat of one vertex, one as likely as the other.
-    limits: Vec<f64>,
+    limits: Limits,
     random: Random,
 }
 
 impl Mender {
     pub(super) fn new(effort: Effort) -> Self {
-        const LIMITS: usize = 256;
-        let limit = |i: usize| -((i as f64 + 0.5) / LIMITS as f64).ln() * UNIT;
         let prices = Prices::default();
         Self {
             effort,
             prices,
             energy: Energy::new(&prices),
-            limits: (0..LIMITS).map(limit).collect(),
+            limits: Limits::new(),
             random: Random::new(0, 0),
         }
     }
@@ -70,8 +67,8 @@ impl Mender {
         for heat in QUICK_HEATS {
             for &cell in cells {
                 if region.is_defect(cell as usize) {
-                    let limit = heat * limits[random.below(limits.len())];
-                    region.try_trail(cell as usize, limit as i32, random);
+                    let limit = limits.draw(heat, random);
+                    region.try_trail(cell as usize, limit, random);
                 }
             }
         }

@@ -6,7 +6,7 @@ use meshlod_fixtures as fixtures;
 use meshlod_mesh::{Mesh, VertexId, sample};
 use meshlod_simplify::{Method, Options};
 
-use super::{Dice, query, small};
+use super::{Dice, in_order, query, small};
 use crate::{Archive, Cut, Explicit, Focus, Forest, Implicit, Level, Model, Query, Storage};
 
 /// Meshes with positions that no `f32` holds: far away, large, small, and hardly there.
@@ -59,13 +59,7 @@ fn bits(position: [f64; 3]) -> Bits {
 /// Faces by the bits of their corners.
 fn by_bits(mesh: &Mesh) -> Vec<[Bits; 3]> {
     let corners = |face: &[VertexId; 3]| face.map(|v| mesh.positions[v.index()]);
-    let mut faces: Vec<_> = mesh.faces.iter().map(|face| corners(face).map(bits)).collect();
-    for face in &mut faces {
-        let least = (0..3).min_by_key(|&k| face[k]).unwrap();
-        face.rotate_left(least);
-    }
-    faces.sort_unstable();
-    faces
+    in_order(mesh.faces.iter().map(|face| corners(face).map(bits)))
 }
 
 #[test]
