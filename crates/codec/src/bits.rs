@@ -1,5 +1,7 @@
 //! Numbers of any width, one after the other.
 
+use crate::bytes::{Malformed, Reader};
+
 /// A row of bits that numbers are put behind and read from anywhere.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Bits {
@@ -43,6 +45,20 @@ impl Bits {
         if width < u64::BITS { number & ((1 << width) - 1) } else { number }
     }
 
+    /// Puts them behind other bytes, the last filled up with zeros.
+    pub(crate) fn store(&self, out: &mut Vec<u8>) {
+        let end = out.len() + self.len.div_ceil(8);
+        out.extend(self.words.iter().flat_map(|word| word.to_le_bytes()));
+        out.truncate(end);
+    }
+
+    /// So many bits of those that follow.
+    pub(crate) fn restore(len: usize, reader: &mut Reader) -> Result<Self, Malformed> {
+        let word =
+            |bytes: &[u8]| bytes.iter().rev().fold(0, |word, &byte| word << 8 | u64::from(byte));
+        Ok(Self { words: reader.take(len.div_ceil(8))?.chunks(8).map(word).collect(), len })
+    }
+
     /// How many there are.
     pub(crate) fn len(&self) -> usize {
         self.len
@@ -68,5 +84,12 @@ mod tests {
             at += width as usize;
         }
         assert_eq!(bits.len(), at);
+
+        let mut bytes = Vec::new();
+        bits.store(&mut bytes);
+        assert_eq!(bytes.len(), at.div_ceil(8));
+        let mut reader = Reader::new(&bytes);
+        assert_eq!(Bits::restore(at, &mut reader), Ok(bits));
+        assert!(reader.finish().is_ok() && Bits::restore(1, &mut reader).is_err());
     }
 }

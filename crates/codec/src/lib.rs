@@ -21,9 +21,11 @@
 #![forbid(unsafe_code)]
 
 mod bits;
+mod bytes;
 mod kd;
 mod lattice;
 mod parts;
 
+pub use bytes::Malformed;
 pub use lattice::{Lattice, LatticeBlocks, LatticeError};
 pub use parts::{Cells, Part, Parting, Parts, PartsError};

@@ -1,0 +1,82 @@
+//! Whole numbers and floats from bytes that may be anything, little-endian.
+
+use thiserror::Error;
+
+/// What is wrong with bytes that were to be decoded.
+#[derive(Clone, Debug, Error, PartialEq, Eq)]
+#[error("byte {at}: {reason}")]
+pub struct Malformed {
+    /// How many bytes before it are well.
+    pub at: usize,
+    /// What was expected, and what is there.
+    pub reason: String,
+}
+
+/// Reads bytes from the first on, and never past the last.
+#[derive(Clone, Debug)]
+pub(crate) struct Reader<'a> {
+    bytes: &'a [u8],
+    at: usize,
+}
+
+macro_rules! numbers {
+    ($($name:ident),*) => {$(
+        pub(crate) fn $name(&mut self) -> Result<$name, Malformed> {
+            let bytes = self.take(size_of::<$name>())?;
+            Ok($name::from_le_bytes(bytes.try_into().expect("as many as were taken")))
+        }
+    )*};
+}
+
+impl<'a> Reader<'a> {
+    pub(crate) fn new(bytes: &'a [u8]) -> Self {
+        Self { bytes, at: 0 }
+    }
+
+    numbers!(u8, u16, u32, i32, i64, f32, f64);
+
+    /// The next bytes.
+    pub(crate) fn take(&mut self, count: usize) -> Result<&'a [u8], Malformed> {
+        let rest = &self.bytes[self.at..];
+        let Some(taken) = rest.get(..count) else {
+            return Err(self.wrong(format!("{count} bytes should follow, {} do", rest.len())));
+        };
+        self.at += count;
+        Ok(taken)
+    }
+
+    /// How many bytes are left: what says that more follow need not be believed.
+    pub(crate) fn left(&self) -> usize {
+        self.bytes.len() - self.at
+    }
+
+    /// That there is nothing left.
+    pub(crate) fn finish(&self) -> Result<(), Malformed> {
+        match self.left() {
+            0 => Ok(()),
+            left => Err(self.wrong(format!("{left} bytes too many"))),
+        }
+    }
+
+    /// That what was read last is not what it should be.
+    pub(crate) fn wrong(&self, reason: impl Into<String>) -> Malformed {
+        Malformed { at: self.at, reason: reason.into() }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn nothing_is_read_past_the_end() {
+        let mut reader = Reader::new(&[1, 2, 3, 4, 5, 6, 7]);
+        assert_eq!(reader.u8(), Ok(1));
+        assert_eq!(reader.u32(), Ok(0x0504_0302));
+        assert_eq!(reader.u32().unwrap_err().at, 5);
+        assert_eq!(reader.finish().unwrap_err().to_string(), "byte 5: 2 bytes too many");
+        assert_eq!(reader.take(usize::MAX).unwrap_err().at, 5);
+        assert_eq!(reader.u16(), Ok(0x0706));
+        assert_eq!((reader.left(), reader.finish()), (0, Ok(())));
+    }
+}
