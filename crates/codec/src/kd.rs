@@ -1,12 +1,29 @@
 //! Vertices in blocks of one size, each close together.
 
 use glam::DVec3;
+use meshlod_mesh::{Mesh, VertexId};
 
-/// The vertices that are used, in an order in which every `size` of them in a row are close together:
+/// How many vertices a block has: more share a header, fewer lie closer together. At 11 bits and a little more 24
+/// take as much on the mean of ten meshes, and 48 take 1.3 % more.
+pub(crate) const BLOCK: usize = 32;
+
+/// The vertices that faces use, every [`BLOCK`] in a row close together.
+///
+/// What is no number is put somewhere.
+/// Cost: O(n log n).
+pub(crate) fn blocks_of(mesh: &Mesh) -> Vec<VertexId> {
+    let used = mesh.used_vertices();
+    let mut vertices: Vec<u32> =
+        (0..).zip(used).filter(|(_, used)| *used).map(|(v, _)| v).collect();
+    in_blocks(&mesh.positions, &mut vertices, BLOCK);
+    vertices.into_iter().map(VertexId).collect()
+}
+
+/// The vertices in an order in which every `size` of them in a row are close together:
 /// halved again and again across the direction in which they are longest.
 ///
 /// Cost: O(n log n).
-pub(crate) fn in_blocks(places: &[[f64; 3]], vertices: &mut [u32], size: usize) {
+fn in_blocks(places: &[[f64; 3]], vertices: &mut [u32], size: usize) {
     if vertices.len() <= size {
         return;
     }

@@ -7,7 +7,7 @@ use thiserror::Error;
 
 use self::shape::{MOST_CELLS, SLOPE_BITS, SPAN_BITS, Shape, axes};
 use crate::bits::Bits;
-use crate::kd::in_blocks;
+use crate::kd::{BLOCK, blocks_of};
 
 /// Cubic cells of a power of two, with a vertex of the lattice at the origin.
 ///
@@ -58,9 +58,6 @@ pub enum LatticeError {
     Exponent(i32),
 }
 
-/// How many vertices a block has: more share a header, fewer lie closer together. At 11 bits and a little more 24
-/// take as much on the mean of ten meshes, and 48 take 1.3 % more.
-const BLOCK: usize = 32;
 /// The lattice's exponent, how many vertices there are, and the cells that they are in.
 const HEADER: usize = 2 * 4 + 3 * (8 + 4);
 const AXIS_BITS: u32 = 2;
@@ -111,31 +108,37 @@ impl LatticeBlocks {
     /// # Errors
     /// A mesh with a coordinate that is none, or too large for the lattice.
     pub fn new(mesh: &Mesh, lattice: Lattice) -> Result<Self, LatticeError> {
-        let used = mesh.used_vertices();
-        let mut vertices: Vec<u32> =
-            (0..).zip(used).filter(|(_, used)| *used).map(|(v, _)| v).collect();
-        let place = |v: u32| mesh.positions[v as usize];
-        let bad = vertices.iter().find(|&&v| !place(v).iter().all(|x| x.is_finite()));
+        Self::of_blocks(&mesh.positions, blocks_of(mesh), lattice)
+    }
+
+    /// The same of some of the positions, every [`BLOCK`] of `ordered` a block: in whatever order within.
+    pub(crate) fn of_blocks(
+        positions: &[[f64; 3]],
+        ordered: Vec<VertexId>,
+        lattice: Lattice,
+    ) -> Result<Self, LatticeError> {
+        let place = |v: VertexId| positions[v.index()];
+        let bad = ordered.iter().find(|&&v| !place(v).iter().all(|x| x.is_finite()));
         if let Some(&v) = bad {
-            return Err(LatticeError::NotFinite(VertexId(v)));
+            return Err(LatticeError::NotFinite(v));
         }
-        in_blocks(&mesh.positions, &mut vertices, BLOCK);
-        let bounds = Bounds::of(vertices.iter().map(|&v| &mesh.positions[v as usize]));
+        let bounds = Bounds::of(ordered.iter().map(|v| &positions[v.index()]));
         let (first, most) = range(&bounds, lattice)?;
         let mut this = Self {
             lattice,
             first,
             most,
-            vertices: vertices.iter().map(|&v| VertexId(v)).collect(),
+            vertices: ordered,
             headers: Bits::default(),
             numbers: Bits::default(),
             starts: Vec::new(),
         };
         let cell =
-            |&v: &u32| [0, 1, 2].map(|k| (lattice.number(place(v)[k]) as i64 - first[k]) as i32);
-        for (at, block) in vertices.chunks(BLOCK).enumerate() {
-            let cells: Vec<_> = block.iter().map(cell).collect();
-            if at % STRIDE == 0 {
+            |v: VertexId| [0, 1, 2].map(|k| (lattice.number(place(v)[k]) as i64 - first[k]) as i32);
+        for block in 0..this.vertices.len().div_ceil(BLOCK) {
+            let rest = &this.vertices[block * BLOCK..];
+            let cells: Vec<_> = rest.iter().take(BLOCK).map(|&v| cell(v)).collect();
+            if block % STRIDE == 0 {
                 this.starts.push(this.numbers.len() as u32);
             }
             this.push(&Shape::of(&cells, most), &cells);
