@@ -20,6 +20,7 @@ mod flatten;
 mod format;
 pub mod gltf;
 mod lines;
+pub mod meshopt;
 pub mod obj;
 pub mod off;
 pub mod ply;

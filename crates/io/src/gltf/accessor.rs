@@ -235,10 +235,11 @@ mod tests {
     use serde_json::json;
 
     use super::*;
+    use crate::gltf::document::Buffers;
 
     /// The floats of accessor 0 over a buffer of 16 bytes: 0, 1, 2 …
     fn floats(accessor: serde_json::Value) -> Result<Values, String> {
-        let buffers = [(0..16).collect::<Vec<u8>>()];
+        let buffers = Buffers::new(vec![(0..16).collect()]);
         let json = json!({
             "accessors": [accessor],
             "bufferViews": [

@@ -5,6 +5,7 @@ use std::cell::Cell;
 use serde_json::Value;
 
 use super::schema::{self, Accessor, Buffer, View};
+use super::unpack::{self, MESHOPT};
 use super::uri::{self, Uri};
 use crate::{ParseError, Resolve};
 
@@ -13,6 +14,20 @@ use crate::{ParseError, Resolve};
 /// One is honest work; accessors shared by many primitives, strips and accessors without data give
 /// more. Instanced test scenes stay below 4.
 const UNFOLDING: u64 = 64;
+
+/// The buffers of a document.
+#[derive(Debug)]
+pub(super) struct Buffers {
+    pub bytes: Vec<Vec<u8>>,
+    /// The bytes that the file had before anything was unfolded from them.
+    pub stored: usize,
+}
+
+impl Buffers {
+    pub fn new(bytes: Vec<Vec<u8>>) -> Self {
+        Self { stored: bytes.iter().map(Vec::len).sum(), bytes }
+    }
+}
 
 /// A document with its parts in reach.
 pub(super) struct Document<'a> {
@@ -27,7 +42,8 @@ pub(super) struct Document<'a> {
 
 impl<'a> Document<'a> {
     /// Types the parts that geometry needs.
-    pub fn new(json: &'a Value, buffers: &'a [Vec<u8>]) -> Result<Self, ParseError> {
+    pub fn new(json: &'a Value, buffers: &'a Buffers) -> Result<Self, ParseError> {
+        let Buffers { bytes: buffers, stored } = buffers;
         let views: Vec<View> = schema::array(json, "bufferViews", "bufferView")?;
         for (i, view) in views.iter().enumerate() {
             check_view(i, view, buffers)?;
@@ -45,8 +61,10 @@ impl<'a> Document<'a> {
         }
         // An entry of the document takes about a hundred bytes of JSON.
         let entries = accessors.len() + meshes.iter().map(|m| m.primitives.len()).sum::<usize>();
-        let bytes = buffers.iter().map(Vec::len).sum::<usize>() + 100 * entries;
-        let budget = Cell::new((1 << 16) + bytes as u64 * UNFOLDING);
+        // What was unfolded has done some of it already, but each of its bytes may be a value.
+        let unfolded = buffers.iter().map(Vec::len).sum::<usize>() as u64;
+        let values = (stored + 100 * entries) as u64 * UNFOLDING;
+        let budget = Cell::new((1 << 16) + values.max(4 * unfolded));
         Ok(Self { json, buffers, accessors, views, meshes, budget })
     }
 
@@ -96,7 +114,7 @@ pub(super) fn check_head(json: &Value) -> Result<(), ParseError> {
 /// The extensions that change how geometry is to be read and are read so, and those that leave
 /// geometry alone.
 fn is_understood(name: &str) -> bool {
-    const GEOMETRY: [&str; 2] = ["KHR_mesh_quantization", "MSFT_lod"];
+    const GEOMETRY: [&str; 4] = ["KHR_mesh_quantization", "MSFT_lod", MESHOPT[0], MESHOPT[1]];
     const OTHERS: [&str; 12] = [
         "KHR_materials_",
         "KHR_texture_",
@@ -124,14 +142,19 @@ pub(super) fn compressed(part: &str, extension: &str) -> ParseError {
     ParseError::part(part, reason)
 }
 
-/// The buffers of a document: the chunk of the GLB, data URIs, files.
+/// The buffers of a document: the chunk of the GLB, data URIs, files. Those that are but places to
+/// unfold to are empty.
 pub(super) fn buffers(
     json: &Value,
     chunk: Option<&[u8]>,
     resolve: Resolve<'_>,
-) -> Result<Vec<Vec<u8>>, ParseError> {
+) -> Result<Buffers, ParseError> {
     let declared: Vec<Buffer> = schema::array(json, "buffers", "buffer")?;
     let load = |(i, buffer): (usize, &Buffer)| {
+        let named = buffer.uri.is_some() || (i == 0 && chunk.is_some());
+        if unpack::is_fallback(&json["buffers"][i]) || !named && unpack::is_unfolded_into(json, i) {
+            return Ok(Vec::new());
+        }
         let wrong = |reason| ParseError::part(format!("buffer {i}"), reason);
         let bytes = match (&buffer.uri, chunk) {
             (None, Some(chunk)) if i == 0 => chunk.to_vec(),
@@ -149,7 +172,8 @@ pub(super) fn buffers(
         }
         Ok(bytes)
     };
-    declared.iter().enumerate().map(load).collect()
+    let bytes = declared.iter().enumerate().map(load).collect::<Result<_, _>>()?;
+    Ok(Buffers::new(bytes))
 }
 
 fn check_view(index: usize, view: &View, buffers: &[Vec<u8>]) -> Result<(), ParseError> {

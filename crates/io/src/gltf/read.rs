@@ -4,8 +4,8 @@ use std::sync::Arc;
 
 use serde_json::Value;
 
-use super::document::{self, Document};
-use super::{container, materials, mesh, nodes};
+use super::document::{self, Buffers, Document};
+use super::{container, materials, mesh, nodes, unpack};
 use crate::{ParseError, Resolve, Scene, SceneMesh, Weld};
 
 /// The glTF document that a scene came from; what is not geometry goes from it to the output.
@@ -18,7 +18,7 @@ pub struct Source(pub(super) Arc<Contents>);
 #[derive(Debug)]
 pub(super) struct Contents {
     pub json: Value,
-    pub buffers: Vec<Vec<u8>>,
+    pub buffers: Buffers,
     pub weld: Weld,
 }
 
@@ -31,17 +31,22 @@ pub(super) struct Contents {
 /// layers named `target 0 POSITION`. Skins and poses are carried through, not applied.
 ///
 /// Read: triangles, strips and fans; any index and component type; strides; sparse accessors;
-/// `KHR_mesh_quantization`; `MSFT_lod` (the finest level is shown).
+/// `KHR_mesh_quantization`; `EXT_meshopt_compression` and `KHR_meshopt_compression`, of which
+/// nothing is left behind the reader; `MSFT_lod` (the finest level is shown). Carried through, and
+/// not applied to texture coordinates: `KHR_texture_transform`.
 ///
 /// # Errors
-/// The place (`accessor 7`, `node 3`) and the reason. Compressed geometry (Draco, meshopt) and
+/// The place (`accessor 7`, `bufferView 3`) and the reason. Geometry compressed by Draco and
 /// unknown required extensions are refused by name; a coordinate that is not finite, too.
+/// # References
+/// [Kap20]; [KS21] and [KSL25], in [`crate::meshopt`].
 pub fn read(bytes: &[u8], resolve: Resolve<'_>, weld: Weld) -> Result<Scene, ParseError> {
     let (text, chunk) = container::split(bytes)?;
     let mut json: Value = serde_json::from_slice(text)
         .map_err(|error| ParseError::part("JSON", error.to_string()))?;
     document::check_head(&json)?;
-    let buffers = document::buffers(&json, chunk, resolve)?;
+    let mut buffers = document::buffers(&json, chunk, resolve)?;
+    unpack::unpack(&mut json, &mut buffers)?;
     let mut scene = Scene::default();
     let document = Document::new(&json, &buffers)?;
     scene.images = materials::images(&document, resolve)?;

@@ -47,7 +47,6 @@ fn geometry_that_cannot_be_decoded_is_refused_by_the_extensions_name() {
     let draco = "KHR_draco_mesh_compression";
     for (name, change) in [
         (draco, json!({ "extensionsRequired": [draco] })),
-        ("EXT_meshopt_compression", json!({ "extensionsRequired": ["EXT_meshopt_compression"] })),
         ("EXT_unheard_of", json!({ "extensionsRequired": ["EXT_unheard_of"] })),
     ] {
         let error =

@@ -4,6 +4,7 @@ mod broken;
 mod carried;
 mod levels;
 mod mutated;
+mod packed;
 mod shared;
 
 use serde_json::{Value, json};
