@@ -25,7 +25,12 @@ mod bytes;
 mod kd;
 mod lattice;
 mod parts;
+mod transport;
 
 pub use bytes::Malformed;
 pub use lattice::{Lattice, LatticeBlocks, LatticeError};
 pub use parts::{Cells, Part, Parting, Parts, PartsError};
+pub use transport::{
+    Transport, TransportBlock, TransportError, TransportFile, TransportGrid, TransportOptions,
+    TransportSizes,
+};

@@ -1,0 +1,257 @@
+//! The border of what is known of a block, which faces are put on one by one.
+//!
+//! Border edges form loops. The edge of a node runs from its vertex to that of the node that follows, in the direction in which
+//! the face behind it has it; a new face is put on from the other side [GS98]. Encoder and decoder do the same steps here, so
+//! both know the same of every edge.
+
+/// How many faces a block has at most.
+pub(super) const MOST_FACES: usize = 1024;
+/// A face makes three nodes at most. A power of two, so that no place is outside.
+pub(super) const NODES: usize = 4 * MOST_FACES;
+const MASK: usize = NODES - 1;
+
+/// What is done at an edge of the border.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Step {
+    /// A face to a new vertex.
+    New,
+    /// A face to the vertex before the edge: the first vertex of the edge is inside then.
+    Before,
+    /// A face to the vertex behind it: the second one is.
+    Behind,
+    /// No face.
+    Nothing,
+    /// A face to some other vertex of the border.
+    Other,
+}
+
+impl Step {
+    pub(super) const ALL: [Self; 5] =
+        [Self::New, Self::Before, Self::Behind, Self::Nothing, Self::Other];
+}
+
+/// A vertex on a loop, and the edge that leaves from it.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Node {
+    pub(super) vertex: u16,
+    pub(super) next: u16,
+    pub(super) before: u16,
+    /// The third vertex of the face behind the edge.
+    pub(super) apex: u16,
+    /// The one before it, in the fan around the node's vertex.
+    pub(super) older: u16,
+    pub(super) state: State,
+}
+
+/// What is known of a node's edge.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[repr(u8)]
+pub(super) enum State {
+    /// There may be a face.
+    #[default]
+    Open,
+    /// There is none.
+    Shut,
+    /// The node is inside.
+    Gone,
+}
+
+pub(super) struct Border {
+    nodes: Box<[Node; NODES]>,
+    len: usize,
+    /// Nodes whose edges are to be looked at, in the order in which they came.
+    queue: Vec<u16>,
+    taken: usize,
+    /// How many faces each vertex has.
+    faces: Box<[u8; NODES]>,
+}
+
+impl Border {
+    pub(super) fn new() -> Self {
+        let nodes: Box<[Node]> = vec![Node::default(); NODES].into();
+        let faces: Box<[u8]> = vec![0; NODES].into();
+        Self {
+            nodes: nodes.try_into().expect("as many as there are"),
+            len: 0,
+            queue: Vec::with_capacity(NODES),
+            taken: 0,
+            faces: faces.try_into().expect("as many as there are"),
+        }
+    }
+
+    pub(super) fn clear(&mut self) {
+        self.len = 0;
+        self.queue.clear();
+        self.taken = 0;
+    }
+
+    #[inline(always)]
+    pub(super) fn node(&self, at: u16) -> &Node {
+        &self.nodes[usize::from(at) & MASK]
+    }
+
+    #[inline(always)]
+    fn node_mut(&mut self, at: u16) -> &mut Node {
+        &mut self.nodes[usize::from(at) & MASK]
+    }
+
+    /// How many faces a vertex has by now.
+    #[inline(always)]
+    pub(super) fn faces_at(&self, vertex: u16) -> u8 {
+        self.faces[usize::from(vertex) & MASK]
+    }
+
+    #[inline(always)]
+    fn put_face(&mut self, corners: [u16; 3]) {
+        for v in corners {
+            let count = &mut self.faces[usize::from(v) & MASK];
+            *count = count.saturating_add(1);
+        }
+    }
+
+    /// The first node whose edge is open, in the order in which they came.
+    #[inline(always)]
+    pub(super) fn pivot(&mut self) -> Option<u16> {
+        while let Some(&at) = self.queue.get(self.taken) {
+            if self.node(at).state == State::Open {
+                return Some(at);
+            }
+            self.taken += 1;
+        }
+        None
+    }
+
+    /// A face apart from all others, with new vertices; its first node.
+    pub(super) fn start(&mut self, vertices: [u16; 3]) -> u16 {
+        let at = self.len as u16;
+        for k in 0..3u16 {
+            let [vertex, _, apex] = [0, 1, 2].map(|i| vertices[usize::from(k + i) % 3]);
+            self.faces[usize::from(vertex) & MASK] = 0;
+            let (next, before) = (at + (k + 1) % 3, at + (k + 2) % 3);
+            self.push(Node { vertex, next, before, apex, older: apex, state: State::Open });
+        }
+        self.put_face(vertices);
+        at
+    }
+
+    #[inline(always)]
+    fn push(&mut self, node: Node) -> u16 {
+        let at = self.len as u16;
+        *self.node_mut(at) = node;
+        self.len += 1;
+        self.queue.push(at);
+        at
+    }
+
+    /// A face on an edge to a new vertex, which has a node then, between the edge's.
+    #[inline(always)]
+    pub(super) fn put_new(&mut self, at: u16, vertex: u16) -> [u16; 3] {
+        let Node { vertex: a, next: second, apex, .. } = *self.node(at);
+        let b = self.node(second).vertex;
+        self.faces[usize::from(vertex) & MASK] = 0;
+        let new = self.push(Node {
+            vertex,
+            next: second,
+            before: at,
+            apex: a,
+            older: a,
+            state: State::Open,
+        });
+        let node = self.node_mut(at);
+        (node.next, node.apex, node.older) = (new, b, apex);
+        self.node_mut(second).before = new;
+        self.put_face([b, a, vertex]);
+        [b, a, vertex]
+    }
+
+    /// A face on an edge to the vertex before it.
+    #[inline(always)]
+    pub(super) fn put_before(&mut self, at: u16) -> [u16; 3] {
+        let Node { vertex: a, next: second, before, .. } = *self.node(at);
+        let b = self.node(second).vertex;
+        self.node_mut(at).state = State::Gone;
+        let node = self.node_mut(before);
+        let c = node.vertex;
+        (node.next, node.older, node.apex) = (second, node.apex, a);
+        self.node_mut(second).before = before;
+        self.put_face([b, a, c]);
+        self.zip(before);
+        [b, a, c]
+    }
+
+    /// A face on an edge to the vertex behind it.
+    #[inline(always)]
+    pub(super) fn put_behind(&mut self, at: u16) -> [u16; 3] {
+        let Node { vertex: a, next: second, apex, .. } = *self.node(at);
+        let Node { vertex: b, next: third, .. } = *self.node(second);
+        self.node_mut(second).state = State::Gone;
+        let node = self.node_mut(at);
+        (node.next, node.older, node.apex) = (third, apex, b);
+        let node = self.node_mut(third);
+        let c = node.vertex;
+        node.before = at;
+        self.put_face([b, a, c]);
+        self.zip(at);
+        [b, a, c]
+    }
+
+    /// Two edges that run between the same two nodes there and back are one edge.
+    #[inline(always)]
+    fn zip(&mut self, at: u16) {
+        let Node { next, before, state, .. } = *self.node(at);
+        if next == before && state == State::Open && self.node(next).state == State::Open {
+            self.node_mut(at).state = State::Gone;
+            self.node_mut(next).state = State::Gone;
+        }
+    }
+
+    /// A face on an edge to the vertex of any node, which parts a loop or makes one of two.
+    pub(super) fn put_other(&mut self, at: u16, other: u16) -> [u16; 3] {
+        let Node { vertex: a, next: second, apex, .. } = *self.node(at);
+        let b = self.node(second).vertex;
+        let Node { vertex: c, next: after, .. } = *self.node(other);
+        let state = self.node(other).state;
+        let Node { apex: other_apex, older: other_older, .. } = *self.node(other);
+        let twin = self.push(Node {
+            vertex: c,
+            next: after,
+            before: at,
+            apex: other_apex,
+            older: other_older,
+            state,
+        });
+        self.node_mut(after).before = twin;
+        let node = self.node_mut(at);
+        (node.next, node.apex, node.older) = (twin, b, apex);
+        let node = self.node_mut(other);
+        (node.next, node.apex, node.older) = (second, a, a);
+        node.state = State::Open;
+        self.node_mut(second).before = other;
+        self.queue.push(other);
+        self.put_face([b, a, c]);
+        [b, a, c]
+    }
+
+    /// No face on an edge.
+    #[inline(always)]
+    pub(super) fn shut(&mut self, at: u16) {
+        self.node_mut(at).state = State::Shut;
+    }
+
+    /// A node of a vertex, where it is on the border.
+    pub(super) fn find(&self, vertex: u16) -> Option<u16> {
+        let is_there = |node: &Node| node.vertex == vertex && node.state != State::Gone;
+        self.nodes[..self.len].iter().position(is_there).map(|at| at as u16)
+    }
+
+    /// The vertices that are on the border, some of them more than once.
+    pub(super) fn vertices(&self) -> impl Iterator<Item = u16> {
+        let nodes = self.nodes[..self.len].iter();
+        nodes.filter(|node| node.state != State::Gone).map(|node| node.vertex)
+    }
+
+    /// A node, if there is such a one; else the first.
+    pub(super) fn known(&self, at: u16) -> u16 {
+        if usize::from(at) < self.len { at } else { 0 }
+    }
+}

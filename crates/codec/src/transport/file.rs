@@ -1,0 +1,338 @@
+//! The bytes of a file: what they are, and what is in them.
+
+use meshlod_mesh::{Mesh, VertexId};
+
+use super::border::MOST_FACES;
+use super::decode::{Lane, Reach};
+use super::grid::{FARTHEST, Grid, MOST_BITS};
+use super::join::{Joints, key};
+use super::models::{Codes, Models};
+use super::predict::{Cells, SPAN};
+use crate::bits::Bits;
+use crate::bytes::{Malformed, Reader};
+
+/// What a file is told by, before its blocks.
+#[derive(Clone, Debug)]
+pub(super) struct Header {
+    pub(super) grid: Grid,
+    /// Bits of the first vertex of a block, along each axis.
+    pub(super) first_bits: [u8; 3],
+    pub(super) faces: usize,
+    pub(super) vertices: usize,
+    pub(super) codes: Codes,
+    pub(super) entries: Vec<Entry>,
+}
+
+/// What the index tells of a block.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Entry {
+    pub(super) faces: usize,
+    pub(super) bytes: usize,
+}
+
+const MAGIC: [u8; 8] = *b"meshlodz";
+const VERSION: u32 = 1;
+/// The coder's state.
+const LEAST_BYTES: usize = 4;
+/// A block has a byte for so many faces, and so a short file does not ask for much memory.
+pub(super) const FACES_A_BYTE: usize = 16;
+
+impl Header {
+    /// The header of a file of such blocks.
+    pub(super) fn store(&self, blocks: &[u8]) -> Vec<u8> {
+        let mut out = Vec::new();
+        for x in self.grid.origin.into_iter().chain([self.grid.cell]) {
+            out.extend(x.to_le_bytes());
+        }
+        out.extend(self.first_bits);
+        for number in [self.faces, self.vertices, self.entries.len()] {
+            out.extend((number as u32).to_le_bytes());
+        }
+        self.codes.store(&mut out);
+        self.store_index(&mut out);
+        let mut file = MAGIC.to_vec();
+        file.extend(VERSION.to_le_bytes());
+        file.extend(crc32fast::hash(&out).to_le_bytes());
+        file.extend(crc32fast::hash(blocks).to_le_bytes());
+        file.extend(out);
+        file
+    }
+
+    fn store_index(&self, out: &mut Vec<u8>) {
+        let mut bits = Bits::default();
+        let faces: Vec<u32> = self.entries.iter().map(|entry| entry.faces as u32).collect();
+        let words: Vec<u32> = self.entries.iter().map(|entry| entry.bytes as u32 / 2).collect();
+        for numbers in [faces, words] {
+            let least = numbers.iter().copied().min().unwrap_or(0);
+            let most = numbers.iter().copied().max().unwrap_or(0);
+            let width = u32::BITS - (most - least).leading_zeros();
+            out.extend(least.to_le_bytes());
+            out.push(width as u8);
+            numbers.iter().for_each(|number| bits.push(u64::from(number - least), width));
+        }
+        bits.store(out);
+    }
+}
+
+/// A file, of which blocks are decoded when they are asked for.
+#[derive(Clone, Debug)]
+pub struct TransportFile<'a> {
+    grid: Grid,
+    first_bits: [u8; 3],
+    faces: usize,
+    vertices: usize,
+    models: Models,
+    places: Vec<Place>,
+    /// All blocks, their checksum, and where they are.
+    blocks: &'a [u8],
+    checksum: u32,
+    at: usize,
+}
+
+/// Where a block is among all blocks.
+#[derive(Clone, Copy, Debug)]
+struct Place {
+    at: usize,
+    bytes: usize,
+    faces: usize,
+}
+
+/// A block by itself.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct TransportBlock {
+    /// Its vertices, those on its border too, in model units.
+    pub positions: Vec<[f64; 3]>,
+    /// By places in this list, counter-clockwise.
+    pub faces: Vec<[u32; 3]>,
+}
+
+impl<'a> TransportFile<'a> {
+    /// Reads the header and the index; no block.
+    /// # Errors
+    /// Bytes that are no such file, or damaged.
+    pub fn open(bytes: &'a [u8]) -> Result<Self, Malformed> {
+        let mut reader = Reader::new(bytes);
+        if reader.take(MAGIC.len())? != MAGIC {
+            return Err(reader.wrong("not an .mlz file: it begins otherwise"));
+        }
+        let version = reader.u32()?;
+        if version != VERSION {
+            return Err(reader.wrong(format!("version {version} is not known, only {VERSION} is")));
+        }
+        let (header_sum, checksum) = (reader.u32()?, reader.u32()?);
+        let from = bytes.len() - reader.left();
+        let origin = [reader.f64()?, reader.f64()?, reader.f64()?];
+        let grid = Grid { origin, cell: reader.f64()? };
+        check_grid(&grid, &reader)?;
+        let first_bits = [reader.u8()?, reader.u8()?, reader.u8()?];
+        if first_bits.iter().any(|&bits| u32::from(bits) > MOST_BITS) {
+            return Err(reader.wrong("more bits for a coordinate than there are"));
+        }
+        let [faces, vertices, blocks] = [reader.u32()?, reader.u32()?, reader.u32()?];
+        let codes = Codes::restore(&mut reader)?;
+        let places = read_index(blocks as usize, &mut reader)?;
+        let at = bytes.len() - reader.left();
+        if crc32fast::hash(&bytes[from..at]) != header_sum {
+            return Err(reader.wrong("the header is damaged: its checksum is another"));
+        }
+        let last = places.last().map_or(0, |place| place.at + place.bytes);
+        let blocks = reader.take(last)?;
+        reader.finish()?;
+        if places.iter().map(|place| place.faces).sum::<usize>() != faces as usize {
+            return Err(reader.wrong("blocks have more faces than the mesh, or fewer"));
+        }
+        let (faces, vertices) = (faces as usize, vertices as usize);
+        let models = Models::new(&codes);
+        Ok(Self { grid, first_bits, faces, vertices, models, places, blocks, checksum, at })
+    }
+
+    /// How many blocks there are.
+    pub fn blocks(&self) -> usize {
+        self.places.len()
+    }
+
+    /// How many vertices the mesh has.
+    pub fn vertices(&self) -> usize {
+        self.vertices
+    }
+
+    /// How many faces the mesh has.
+    pub fn faces(&self) -> usize {
+        self.faces
+    }
+
+    /// The side of a cell, in model units: positions are off by half of it at most, along each axis.
+    pub fn cell(&self) -> f64 {
+        self.grid.cell
+    }
+
+    /// A block by itself: no byte of another is looked at.
+    ///
+    /// # Errors
+    /// A block that is damaged.
+    /// # Panics
+    /// A block that there is not.
+    pub fn block(&self, block: usize) -> Result<TransportBlock, Malformed> {
+        let mut lane = Lane::new();
+        self.decode_block(self.places[block], &mut lane)?;
+        let mut out = TransportBlock::default();
+        let mut gather = Gather::new(lane.cells().len());
+        gather.add(&lane, |cell| out.positions.push(self.grid.place(cell)), &mut out.faces);
+        Ok(out)
+    }
+
+    /// The mesh: each vertex once, faces as they were, block by block.
+    ///
+    /// # Errors
+    /// A file that is damaged.
+    pub fn decode(&self) -> Result<Mesh, Malformed> {
+        let (mut positions, mut faces) = (Vec::new(), Vec::new());
+        self.decode_all(|cell| positions.push(self.grid.place(cell)), &mut faces)?;
+        Ok(Mesh::new(positions, faces.iter().map(|face| face.map(VertexId)).collect()))
+    }
+
+    /// The mesh as a GPU wants it, put in place of what is there. Positions are those of [`TransportFile::decode`], rounded once.
+    ///
+    /// # Errors
+    /// A file that is damaged.
+    pub fn decode_into(
+        &self,
+        positions: &mut Vec<[f32; 3]>,
+        faces: &mut Vec<[u32; 3]>,
+    ) -> Result<(), Malformed> {
+        positions.clear();
+        faces.clear();
+        let place = |cell| positions.push(self.grid.place(cell).map(|x| x as f32));
+        self.decode_all(place, faces)
+    }
+
+    /// Where a block is, from the first block on.
+    #[cfg(test)]
+    pub(super) fn range(&self, block: usize) -> std::ops::Range<usize> {
+        let Place { at, bytes, .. } = self.places[block];
+        at..at + bytes
+    }
+
+    /// Puts the checksums right that bytes have where the header of a file would be, for tests of what they do not tell.
+    #[doc(hidden)]
+    pub fn seal(bytes: &mut [u8]) {
+        let Some(header) = header_end(bytes) else { return };
+        let blocks = crc32fast::hash(&bytes[header..]);
+        bytes[16..20].copy_from_slice(&blocks.to_le_bytes());
+        let header = crc32fast::hash(&bytes[20..header]);
+        bytes[12..16].copy_from_slice(&header.to_le_bytes());
+    }
+
+    fn decode_all(
+        &self,
+        mut place: impl FnMut(Cells),
+        faces: &mut Vec<[u32; 3]>,
+    ) -> Result<(), Malformed> {
+        if crc32fast::hash(self.blocks) != self.checksum {
+            let reason = "a block is damaged: the checksum of all is another".into();
+            return Err(Malformed { at: self.at, reason });
+        }
+        // A fifth of all faces have a border vertex of their own, more or less.
+        let mut gather = Gather::new(self.faces.min(self.blocks.len()) / 8);
+        let mut lane = Lane::new();
+        for &block in &self.places {
+            self.decode_block(block, &mut lane)?;
+            gather.add(&lane, &mut place, faces);
+        }
+        if gather.vertices as usize == self.vertices {
+            return Ok(());
+        }
+        let reason = format!("{} vertices where {} should be", gather.vertices, self.vertices);
+        Err(Malformed { at: self.at, reason })
+    }
+
+    fn decode_block(&self, block: Place, lane: &mut Lane) -> Result<(), Malformed> {
+        let bytes = &self.blocks[block.at..][..block.bytes];
+        let decoded = lane.decode(bytes, block.faces, &self.models, self.first_bits);
+        decoded.map_err(|wrong| Malformed { at: self.at + block.at, ..wrong })
+    }
+}
+
+/// Makes one mesh of blocks.
+struct Gather {
+    joints: Joints,
+    vertices: u32,
+    reach: Vec<Reach>,
+    numbers: Vec<u32>,
+}
+
+impl Gather {
+    fn new(joints: usize) -> Self {
+        Self { joints: Joints::new(joints), vertices: 0, reach: Vec::new(), numbers: Vec::new() }
+    }
+
+    #[inline(never)]
+    fn add(&mut self, lane: &Lane, mut place: impl FnMut(Cells), faces: &mut Vec<[u32; 3]>) {
+        lane.reach(&mut self.reach);
+        self.numbers.clear();
+        for (&cell, &reach) in lane.cells().iter().zip(&self.reach) {
+            let number = match reach {
+                Reach::Inside => self.vertices,
+                Reach::Joint(tag) => *self.joints.join(key(cell), tag, self.vertices),
+            };
+            if number == self.vertices {
+                self.vertices += 1;
+                place(cell);
+            }
+            self.numbers.push(number);
+        }
+        let numbers = &self.numbers;
+        faces.extend(lane.faces.iter().map(|face| face.map(|v| numbers[usize::from(v)])));
+    }
+}
+
+/// Where the blocks begin, if all before can be read.
+fn header_end(bytes: &[u8]) -> Option<usize> {
+    let mut reader = Reader::new(bytes.get(20..)?);
+    reader.take(4 * 8 + 3 + 2 * 4).ok()?;
+    let blocks = reader.u32().ok()?;
+    Codes::restore(&mut reader).ok()?;
+    read_index(blocks as usize, &mut reader).ok()?;
+    Some(bytes.len() - reader.left())
+}
+
+/// That all cells are numbers, also in `f32`.
+fn check_grid(grid: &Grid, reader: &Reader) -> Result<(), Malformed> {
+    let farthest = |x: f64| x.abs() <= 2.0 * FARTHEST;
+    let is_known = grid.cell > 0.0 && grid.origin.iter().all(|&x| farthest(x));
+    if is_known && farthest(grid.cell * f64::from(SPAN)) {
+        return Ok(());
+    }
+    Err(reader.wrong("the cells are not anywhere"))
+}
+
+/// Where all blocks are; as many as said, and each of a size that can be.
+fn read_index(count: usize, reader: &mut Reader) -> Result<Vec<Place>, Malformed> {
+    let mut ranges = [(0, 0); 2];
+    for range in &mut ranges {
+        *range = (reader.u32()?, u32::from(reader.u8()?));
+        if range.1 > u32::BITS {
+            return Err(reader.wrong("the index has numbers of more than 32 bits"));
+        }
+    }
+    if count > reader.left() / LEAST_BYTES {
+        return Err(reader.wrong(format!("{count} blocks are more than the file has bytes for")));
+    }
+    let [(least_faces, face_bits), (least_words, word_bits)] = ranges;
+    let bits = Bits::restore(count * (face_bits + word_bits) as usize, reader)?;
+    let mut places = Vec::with_capacity(count);
+    let mut at = 0;
+    for k in 0..count {
+        let faces = bits.get(k * face_bits as usize, face_bits) + u64::from(least_faces);
+        let word = count * face_bits as usize + k * word_bits as usize;
+        let bytes = 2 * (bits.get(word, word_bits) + u64::from(least_words));
+        let (faces, bytes) = (faces as usize, bytes as usize);
+        let is_one = (1..=MOST_FACES).contains(&faces) && faces / FACES_A_BYTE <= bytes;
+        if !is_one || bytes > reader.left() {
+            return Err(reader.wrong(format!("block {k} is of a size that no block has")));
+        }
+        places.push(Place { at, bytes, faces });
+        at += bytes;
+    }
+    Ok(places)
+}

@@ -1,0 +1,89 @@
+//! The cells that positions are rounded to.
+
+use glam::DVec3;
+use meshlod_mesh::{Mesh, VertexId};
+
+use super::predict::{Cells, SPAN};
+use super::{TransportError, TransportGrid};
+
+/// Cubic cells from an origin on.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Grid {
+    pub(super) origin: [f64; 3],
+    pub(super) cell: f64,
+}
+
+/// Sides of more bits are not told.
+pub(super) const MOST_BITS: u32 = SPAN.trailing_zeros();
+/// What `f32` has room for, and some to spare.
+pub(super) const FARTHEST: f64 = 1e38;
+
+impl Grid {
+    /// The grid that is asked for, and the cell of each vertex that a face uses; zero for others.
+    pub(super) fn of(
+        mesh: &Mesh,
+        grid: TransportGrid,
+    ) -> Result<(Self, Vec<Cells>), TransportError> {
+        let count = mesh.positions.len();
+        let is_bad = |v: &&VertexId| {
+            !mesh.positions.get(v.index()).is_some_and(|p| p.iter().all(|x| x.abs() <= FARTHEST))
+        };
+        match mesh.faces.iter().flatten().find(is_bad) {
+            Some(v) if v.index() < count => return Err(TransportError::NotFinite(*v)),
+            Some(v) => return Err(TransportError::BadVertex(*v)),
+            None => {}
+        }
+        let bounds = mesh.bounds();
+        let longest = (0..3).map(|k| bounds.max[k] - bounds.min[k]).fold(0.0, f64::max);
+        let this = match grid {
+            TransportGrid::Bits(bits) if !(1..=MOST_BITS).contains(&bits) => {
+                return Err(TransportError::Bits(bits));
+            }
+            TransportGrid::Bits(bits) => {
+                let cell = longest / f64::from((1u32 << bits) - 1);
+                // Where all is in one place, any cell will do.
+                let cell = if cell > f64::MIN_POSITIVE { cell } else { 1.0 };
+                Self { origin: bounds.min, cell }
+            }
+            TransportGrid::Lattice(lattice) => {
+                let cell = lattice.cell();
+                let origin = bounds.min.map(|x| (x / cell).round() * cell);
+                if !origin.iter().all(|x| (x / cell).abs() <= (1u64 << 52) as f64) {
+                    return Err(TransportError::TooFar);
+                }
+                Self { origin, cell }
+            }
+        };
+        let is_lattice = matches!(grid, TransportGrid::Lattice(_));
+        // On a lattice both ends are rounded.
+        let cells = (longest / this.cell).round() + f64::from(u8::from(is_lattice));
+        if cells >= f64::from(SPAN) {
+            return Err(TransportError::TooFine { cells });
+        }
+        let used = mesh.used_vertices();
+        let cell = |(p, &used): (&[f64; 3], &bool)| match (used, is_lattice) {
+            (false, _) => Cells::ZERO,
+            (true, true) => this.number(p),
+            (true, false) => this.cell_of(p),
+        };
+        Ok((this, mesh.positions.iter().zip(&used).map(cell).collect()))
+    }
+
+    /// The vertex of the lattice depends on the position alone, not on where the mesh begins.
+    fn number(&self, position: &[f64; 3]) -> Cells {
+        let number = |x: f64| (x / self.cell).round();
+        let along = |k: usize| (number(position[k]) - number(self.origin[k])) as f32;
+        Cells::new(along(0), along(1), along(2))
+    }
+
+    fn cell_of(&self, position: &[f64; 3]) -> Cells {
+        let along = |k: usize| ((position[k] - self.origin[k]) / self.cell).round() as f32;
+        Cells::new(along(0), along(1), along(2)).max(Cells::ZERO)
+    }
+
+    /// The middle of a cell, which on a lattice is a whole number of cells, exactly.
+    #[inline(always)]
+    pub(super) fn place(&self, cell: Cells) -> [f64; 3] {
+        (DVec3::from(self.origin) + self.cell * cell.as_dvec3()).to_array()
+    }
+}

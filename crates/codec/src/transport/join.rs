@@ -1,0 +1,84 @@
+//! Which vertices of different blocks are one.
+//!
+//! A block has vertices on its border, and its neighbours have them too. What is on borders and in one cell is one vertex, unless it is
+//! told apart: by a tag, which is 0 if nothing else is said. Few vertices share a cell, so that takes next to nothing.
+
+use super::predict::Cells;
+
+/// Vertices by cell and tag.
+pub(super) struct Joints {
+    slots: Vec<Slot>,
+    len: usize,
+}
+
+#[derive(Clone, Copy)]
+struct Slot {
+    key: u64,
+    tag: u32,
+    vertex: u32,
+}
+
+const EMPTY: u32 = u32::MAX;
+
+/// A cell as a number.
+#[inline]
+pub(super) fn key(cell: Cells) -> u64 {
+    let (x, y, z) = (cell.x as u32 as u64, cell.y as u32 as u64, cell.z as u32 as u64);
+    x | y << 21 | z << 42
+}
+
+/// Of the cells of a block, in their order.
+pub(super) fn checksum(cells: impl Iterator<Item = Cells>) -> u16 {
+    let mix = |sum: u64, cell| (sum.rotate_left(23) ^ key(cell)).wrapping_mul(MIX);
+    (cells.fold(0, mix) >> 48) as u16
+}
+
+/// 2⁶⁴ by the golden ratio.
+const MIX: u64 = 0x9e37_79b9_7f4a_7c15;
+
+impl Joints {
+    pub(super) fn new(capacity: usize) -> Self {
+        let len = (2 * capacity).next_power_of_two().max(64);
+        Self { slots: vec![Slot { key: 0, tag: 0, vertex: EMPTY }; len], len: 0 }
+    }
+
+    /// What there is of such a cell and tag; `vertex`, where there has been nothing. `vertex` is not the greatest number.
+    #[inline]
+    pub(super) fn join(&mut self, key: u64, tag: u32, vertex: u32) -> &mut u32 {
+        if 2 * self.len >= self.slots.len() {
+            self.grow();
+        }
+        let at = self.find(key, tag);
+        let slot = &mut self.slots[at];
+        if slot.vertex == EMPTY {
+            *slot = Slot { key, tag, vertex };
+            self.len += 1;
+        }
+        &mut slot.vertex
+    }
+
+    #[inline]
+    fn find(&self, key: u64, tag: u32) -> usize {
+        let mask = self.slots.len() - 1;
+        let mixed = (key ^ u64::from(tag) << 32).wrapping_mul(MIX);
+        let mut at = (mixed >> 32 ^ mixed >> 15) as usize & mask;
+        loop {
+            let slot = &self.slots[at];
+            if slot.vertex == EMPTY || (slot.key == key && slot.tag == tag) {
+                return at;
+            }
+            at = (at + 1) & mask;
+        }
+    }
+
+    #[cold]
+    fn grow(&mut self) {
+        let mut wider = Self::new(self.slots.len());
+        for slot in self.slots.iter().filter(|slot| slot.vertex != EMPTY) {
+            let at = wider.find(slot.key, slot.tag);
+            wider.slots[at] = *slot;
+        }
+        wider.len = self.len;
+        *self = wider;
+    }
+}

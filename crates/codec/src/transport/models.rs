@@ -1,0 +1,268 @@
+//! What all blocks of a file share: how likely steps and distances are, and what vertices are guessed from.
+//!
+//! All that a block needs is here from its first symbol on: nothing is learnt on the way, and blocks stay apart. A file tells
+//! its models in some hundred bytes.
+
+use super::border::Step;
+use super::gate::CONTEXTS;
+use super::predict::{FEATURES, GATES};
+use super::rans::Symbol;
+use crate::bytes::{Malformed, Reader};
+
+/// Bits of the tables of distances.
+pub(super) const DISTANCE_BITS: u32 = 11;
+const DISTANCE_ALL: usize = 1 << DISTANCE_BITS;
+/// The greatest distance that has a symbol of its own.
+pub(super) const MOST: i32 = 24;
+pub(super) const SYMBOLS: usize = 2 * MOST as usize + 2;
+/// The symbol of all others.
+pub(super) const FAR: usize = SYMBOLS - 1;
+/// Widths have classes of a quarter of an octave, from a quarter of a cell to four cells. Greater ones have the last four, and bits below.
+pub(super) const CLASSES: usize = 16;
+
+/// Bits of the tables of steps.
+pub(super) const STEP_BITS: u32 = 12;
+const STEP_ALL: u32 = 1 << STEP_BITS;
+const STEPS: usize = Step::ALL.len();
+
+/// The models as a file tells them.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) struct Codes {
+    pub(super) weights: [[i8; FEATURES]; GATES],
+    pub(super) spreads: [[u8; 2]; GATES],
+    pub(super) start: u8,
+    pub(super) shapes: [u8; CLASSES],
+    /// Of each context that has a table of its own; the last one is what all others have.
+    pub(super) steps: Vec<Option<[u8; STEPS]>>,
+}
+
+/// The models as they are used.
+#[derive(Clone, Debug)]
+pub(super) struct Models {
+    pub(super) weights: [[f32; FEATURES]; GATES],
+    /// The variances along the surface and across, in parts of the gate's squared sides.
+    pub(super) spreads: [[f32; 2]; GATES],
+    /// The variance of the corners of a face that stands alone.
+    pub(super) start: f32,
+    pub(super) distances: Vec<Distances>,
+    pub(super) steps: Vec<Steps>,
+}
+
+/// How likely the distances of a class are.
+#[derive(Clone, Debug)]
+pub(super) struct Distances {
+    /// For each place: the symbol, how large it is, and how far it is behind its start.
+    places: Box<[u32; DISTANCE_ALL]>,
+    starts: [u16; SYMBOLS + 1],
+}
+
+/// How likely steps are: where each starts, and the end.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Steps([u16; STEPS + 1]);
+
+impl Distances {
+    /// The symbol at a place, its size, and how far behind its start that is.
+    #[inline(always)]
+    pub(super) fn at(&self, place: usize) -> (usize, u32, u32) {
+        let entry = self.places[place % DISTANCE_ALL];
+        ((entry & 63) as usize, entry >> 6 & 0xfff, entry >> 18)
+    }
+
+    /// The symbol with bits below it; `None` where it is one of the others.
+    pub(super) fn symbol(&self, symbol: usize, low: u16, low_bits: u8) -> Option<Symbol> {
+        let (start, end) = (self.starts[symbol], self.starts[symbol + 1]);
+        let bits = DISTANCE_BITS as u8;
+        (start < end).then(|| Symbol { start, size: end - start, bits, low_bits, low })
+    }
+
+    pub(super) fn of(class: usize, code: u8) -> Self {
+        Self::cut(&parts(class, code))
+    }
+
+    /// Parts as whole numbers of all; what is too small for one is left to the others.
+    fn cut(parts: &[f64; SYMBOLS]) -> Self {
+        let all: f64 = parts.iter().sum();
+        let mut sizes: Vec<i32> =
+            parts.iter().map(|part| (part / all * DISTANCE_ALL as f64 + 0.5) as i32).collect();
+        sizes[FAR] = sizes[FAR].max(1);
+        // The middle is the greatest by far enough to make up for all rounding.
+        sizes[MOST as usize] += DISTANCE_ALL as i32 - sizes.iter().sum::<i32>();
+        let mut starts = [0; SYMBOLS + 1];
+        let mut places = vec![0; DISTANCE_ALL];
+        for (symbol, &size) in sizes.iter().enumerate() {
+            let start = starts[symbol];
+            starts[symbol + 1] = start + size as u16;
+            for behind in 0..size as u32 {
+                places[usize::from(start) + behind as usize] =
+                    behind << 18 | (size as u32) << 6 | symbol as u32;
+            }
+        }
+        let places: Box<[u32]> = places.into();
+        Self { places: places.try_into().expect("as many as there are"), starts }
+    }
+}
+
+/// Student's distribution, its width and its degrees of freedom by a code, cut into cells: what each symbol has, and all others.
+pub(super) fn parts(class: usize, code: u8) -> [f64; SYMBOLS] {
+    let width = pow2(2 * class as i32 - 15 + i32::from(code & 31) - 16);
+    let freedom = FREEDOM[usize::from(code >> 5)];
+    let scale = 1.0 / (width * width * f64::from(freedom));
+    let density = |x: f64| {
+        let part = 1.0 / (1.0 + x * x * scale);
+        (0..freedom.div_ceil(2)).fold(1.0, |product, _| product * part)
+    };
+    // A cell's part by Simpson's rule, in halves.
+    let part = |d: i32| {
+        let at = |quarters: i32| density(f64::from(d) + f64::from(quarters) / 4.0);
+        (at(-2) + at(2) + 4.0 * (at(-1) + at(1)) + 2.0 * at(0)) / 12.0
+    };
+    let mut parts = [0.0; SYMBOLS];
+    for d in 0..=MOST {
+        let part = part(d);
+        parts[(MOST + d) as usize] = part;
+        parts[(MOST - d) as usize] = part;
+    }
+    // Eight at a time, as far as anything is to be expected.
+    let beyond = (0..20).map(|k| density(f64::from(MOST + 4 + 8 * k)));
+    parts[FAR] = 16.0 * beyond.sum::<f64>();
+    parts
+}
+
+/// Degrees of freedom, all odd.
+const FREEDOM: [u32; 8] = [1, 3, 5, 7, 9, 13, 19, 31];
+/// 2 to the power of `eighths` / 8, the same on every machine.
+pub(super) fn pow2(eighths: i32) -> f64 {
+    const PARTS: [f64; 8] = [
+        1.0,
+        1.090_507_732_665_257_7,
+        1.189_207_115_002_721,
+        1.296_839_554_651_009_6,
+        std::f64::consts::SQRT_2,
+        1.542_210_825_407_940_7,
+        1.681_792_830_507_429,
+        1.834_008_086_409_342_4,
+    ];
+    let whole = f64::from_bits(((1023 + eighths.div_euclid(8)) as u64) << 52);
+    whole * PARTS[eighths.rem_euclid(8) as usize]
+}
+
+impl Steps {
+    /// The step at a place, its size, and how far behind its start that is.
+    #[inline(always)]
+    pub(super) fn at(&self, place: usize) -> (Step, u32, u32) {
+        let place = place as u16;
+        let behind = |k: usize| usize::from(place >= self.0[k]);
+        let step = behind(1) + behind(2) + behind(3) + behind(4);
+        let start = self.0[step];
+        (Step::ALL[step], u32::from(self.0[step + 1] - start), u32::from(place.wrapping_sub(start)))
+    }
+
+    pub(super) fn symbol(&self, step: Step) -> Symbol {
+        let start = self.0[step as usize];
+        let size = self.0[step as usize + 1] - start;
+        Symbol { start, size, bits: STEP_BITS as u8, low_bits: 0, low: 0 }
+    }
+
+    /// Parts are powers of the cube root of ½; each has some.
+    fn of(codes: [u8; STEPS]) -> Self {
+        const THIRDS: [u32; 3] = [1 << 16, 52_016, 41_285];
+        let part = |code: u8| (THIRDS[usize::from(code) % 3] >> (code / 3)).max(1);
+        let all: u32 = codes.iter().map(|&code| part(code)).sum();
+        let mut sizes = codes.map(|code| (part(code) * (STEP_ALL - 8) / all).max(1));
+        let most = (0..STEPS).max_by_key(|&k| sizes[k]).unwrap_or(0);
+        sizes[most] += STEP_ALL - sizes.iter().sum::<u32>();
+        let mut starts = [0; STEPS + 1];
+        for (k, size) in sizes.iter().enumerate() {
+            starts[k + 1] = starts[k] + *size as u16;
+        }
+        Self(starts)
+    }
+
+    /// The codes closest to how often there were steps.
+    pub(super) fn codes(counts: [u32; STEPS]) -> [u8; STEPS] {
+        let all: u32 = counts.iter().sum();
+        counts.map(|count| {
+            let code = 3.0 * (f64::from(all) / f64::from(count)).log2();
+            code.round().clamp(0.0, 31.0) as u8
+        })
+    }
+}
+
+/// Bits of the code of a step.
+const CODE_BITS: u32 = 5;
+
+impl Codes {
+    pub(super) fn store(&self, out: &mut Vec<u8>) {
+        out.extend(self.weights.iter().flatten().map(|&w| w as u8));
+        out.extend(self.spreads.iter().flatten());
+        out.push(self.start);
+        out.extend(self.shapes);
+        let mut bits = crate::bits::Bits::default();
+        for codes in &self.steps {
+            bits.push(u64::from(codes.is_some()), 1);
+            for &code in codes.iter().flatten() {
+                bits.push(u64::from(code), CODE_BITS);
+            }
+        }
+        bits.store(out);
+    }
+
+    pub(super) fn restore(reader: &mut Reader) -> Result<Self, Malformed> {
+        let mut this = Self {
+            weights: [[0; FEATURES]; GATES],
+            spreads: [[0; 2]; GATES],
+            start: 0,
+            shapes: [0; CLASSES],
+            steps: Vec::with_capacity(CONTEXTS + 1),
+        };
+        for weight in this.weights.iter_mut().flatten() {
+            *weight = reader.u8()? as i8;
+        }
+        for spread in this.spreads.iter_mut().flatten() {
+            *spread = reader.u8()?;
+        }
+        this.start = reader.u8()?;
+        for shape in &mut this.shapes {
+            *shape = reader.u8()?;
+        }
+        let (mut word, mut held) = (0u64, 0);
+        let mut take = |bits: u32| -> Result<u64, Malformed> {
+            while held < bits {
+                word |= u64::from(reader.u8()?) << held;
+                held += 8;
+            }
+            let number = word & ((1 << bits) - 1);
+            word >>= bits;
+            held -= bits;
+            Ok(number)
+        };
+        for _ in 0..=CONTEXTS {
+            let mut codes = None;
+            if take(1)? == 1 {
+                let all = take(CODE_BITS * STEPS as u32)?;
+                codes = Some(std::array::from_fn(|k| (all >> (CODE_BITS * k as u32) & 31) as u8));
+            }
+            this.steps.push(codes);
+        }
+        Ok(this)
+    }
+}
+
+impl Models {
+    pub(super) fn new(codes: &Codes) -> Self {
+        let rest = codes.steps.last().copied().flatten().unwrap_or([6; STEPS]);
+        let shapes = codes.shapes.iter().enumerate();
+        Self {
+            weights: codes.weights.map(|weights| weights.map(|w| f32::from(w) / 64.0)),
+            spreads: codes
+                .spreads
+                .map(|spreads| spreads.map(|code| pow2(32 - i32::from(code)) as f32)),
+            start: pow2(2 * i32::from(codes.start)) as f32,
+            distances: shapes.map(|(class, &code)| Distances::of(class, code)).collect(),
+            steps: codes.steps[..CONTEXTS]
+                .iter()
+                .map(|codes| Steps::of(codes.unwrap_or(rest)))
+                .collect(),
+        }
+    }
+}

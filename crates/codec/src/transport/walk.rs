@@ -1,0 +1,153 @@
+//! How the encoder walks a block from face to face.
+
+use meshlod_mesh::{Connectivity, FaceId, Side, Twin, VertexId};
+
+use super::border::{Border, State, Step};
+use super::gate::{Gate, OTHERS, context, walk};
+
+/// A block as it is told.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Walk {
+    /// How many faces it has.
+    pub(super) faces: usize,
+    /// What is done, and the context that it is told in.
+    pub(super) steps: Vec<(u8, Step)>,
+    /// The vertices that [`Step::Other`] leads to, each told by its place in [`OTHERS`] or by its node.
+    pub(super) others: Vec<Result<usize, u16>>,
+    /// What each vertex is guessed from.
+    pub(super) births: Vec<Gate>,
+    /// The vertex of the mesh that each is. Where a block's faces at a vertex are apart, it is there more than once.
+    pub(super) vertices: Vec<u32>,
+    /// Those that the decoder sees on the border.
+    pub(super) borders: Vec<bool>,
+}
+
+/// Walks block after block.
+pub(super) struct Walker<'a> {
+    faces: &'a [[VertexId; 3]],
+    connectivity: &'a Connectivity,
+    /// The block of each face that has not been told.
+    block_of: Vec<u32>,
+    border: Border,
+    /// The side of the face behind each node's edge.
+    sides: Vec<Side>,
+    /// The vertex of the block that one of the mesh was last.
+    local: Vec<u16>,
+}
+
+const NONE: u16 = u16::MAX;
+const TOLD: u32 = u32::MAX;
+
+impl<'a> Walker<'a> {
+    pub(super) fn new(
+        faces: &'a [[VertexId; 3]],
+        connectivity: &'a Connectivity,
+        block_of: Vec<u32>,
+    ) -> Self {
+        let local = vec![NONE; connectivity.vertex_count()];
+        Self { faces, connectivity, block_of, border: Border::new(), sides: Vec::new(), local }
+    }
+
+    /// A block of such faces; it is begun at the first of them, and so are pieces of it that are apart.
+    pub(super) fn walk(&mut self, block: u32, members: &[u32]) -> Walk {
+        let mut out = Walk { faces: members.len(), ..Walk::default() };
+        self.border.clear();
+        self.sides.clear();
+        let mut rest = members.iter();
+        let mut left = members.len();
+        while left > 0 {
+            let Some(at) = self.border.pivot() else {
+                let untold = |&&f: &&u32| self.block_of[f as usize] == block;
+                let f = *rest.find(untold).expect("some are left");
+                self.start(f, &mut out);
+                left -= 1;
+                continue;
+            };
+            let context = context(&self.border, at) as u8;
+            let step = self.step(at, block, &mut out);
+            out.steps.push((context, step));
+            left -= usize::from(step != Step::Nothing);
+        }
+        out.borders = vec![false; out.vertices.len()];
+        for vertex in self.border.vertices() {
+            out.borders[usize::from(vertex)] = true;
+        }
+        for &v in &out.vertices {
+            self.local[v as usize] = NONE;
+        }
+        out
+    }
+
+    fn vertex(&mut self, v: VertexId, gate: Gate, out: &mut Walk) -> u16 {
+        let local = out.vertices.len() as u16;
+        self.local[v.index()] = local;
+        out.vertices.push(v.0);
+        out.births.push(gate);
+        local
+    }
+
+    fn start(&mut self, f: u32, out: &mut Walk) {
+        let corners = self.faces[f as usize];
+        let vertices = [0, 1, 2].map(|k| self.vertex(corners[k], Gate::corner(k as u8), out));
+        self.border.start(vertices);
+        self.sides.extend((0..3).map(|k| Side::new(FaceId(f), k)));
+        self.block_of[f as usize] = TOLD;
+    }
+
+    fn step(&mut self, at: u16, block: u32, out: &mut Walk) -> Step {
+        let Some(side) = self.across(at, block, out) else {
+            self.border.shut(at);
+            return Step::Nothing;
+        };
+        let k = side.corner();
+        let apex = self.faces[side.face().index()][(k + 2) % 3];
+        let to_apex = Side::new(side.face(), (k + 1) % 3);
+        let from_apex = Side::new(side.face(), (k + 2) % 3);
+        self.block_of[side.face().index()] = TOLD;
+        let local = self.local[apex.index()];
+        let node = *self.border.node(at);
+        let before = self.border.node(node.before);
+        let second = self.border.node(node.next);
+        if before.vertex == local && before.state == State::Open {
+            self.border.put_before(at);
+            self.sides[usize::from(node.before)] = from_apex;
+            return Step::Before;
+        }
+        if self.border.node(second.next).vertex == local && second.state == State::Open {
+            self.border.put_behind(at);
+            self.sides[usize::from(at)] = to_apex;
+            return Step::Behind;
+        }
+        let (step, from) = match self.border.find(local) {
+            Some(other) => {
+                let by = OTHERS.iter().position(|&(by, _)| walk(&self.border, at, by) == other);
+                out.others.push(by.ok_or(other));
+                self.border.put_other(at, other);
+                self.sides.push(self.sides[usize::from(other)]);
+                (Step::Other, other)
+            }
+            None => {
+                let gate = Gate::at(&self.border, at);
+                let vertex = self.vertex(apex, gate, out);
+                self.border.put_new(at, vertex);
+                self.sides.push(from_apex);
+                (Step::New, self.sides.len() as u16 - 1)
+            }
+        };
+        self.sides[usize::from(at)] = to_apex;
+        self.sides[usize::from(from)] = from_apex;
+        step
+    }
+
+    /// The side of the block's face across an edge, where it has not been told and runs the other way.
+    fn across(&self, at: u16, block: u32, out: &Walk) -> Option<Side> {
+        let Twin::Side(side) = self.connectivity.twin(self.sides[usize::from(at)]) else {
+            return None;
+        };
+        let f = side.face().index();
+        let first = out.vertices[usize::from(self.border.node(at).vertex)];
+        let is_there =
+            self.block_of[f] == block && self.faces[f][(side.corner() + 1) % 3].0 == first;
+        is_there.then_some(side)
+    }
+}

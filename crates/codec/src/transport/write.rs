@@ -1,0 +1,153 @@
+//! The file of a mesh.
+
+use meshlod_mesh::{Connectivity, Mesh, VertexId};
+
+use super::blocks::blocks;
+use super::encode::{symbols, tell};
+use super::file::{Entry, FACES_A_BYTE, Header};
+use super::fit::{fit, shapes};
+use super::grid::Grid;
+use super::join::{Joints, checksum, key};
+use super::models::Models;
+use super::predict::Cells;
+use super::rans::{Symbol, encode};
+use super::walk::{Walk, Walker};
+use super::{Transport, TransportError, TransportOptions, TransportSizes, largest};
+
+/// Faces are numbered in 32 bits, and sides of faces too.
+const MOST: usize = 1 << 30;
+
+impl Transport {
+    /// The file of a mesh: positions rounded to a grid, faces as they are, turned so that each may begin at another
+    /// corner.
+    ///
+    /// Every vertex that a face uses is there, once; no other is, and nothing that hangs on faces. Cost: O(n).
+    /// # Errors
+    /// A mesh without faces or with positions that are none, and options that cannot be.
+    pub fn encode(mesh: &Mesh, options: &TransportOptions) -> Result<Self, TransportError> {
+        if mesh.faces.is_empty() {
+            return Err(TransportError::Empty);
+        }
+        if mesh.faces.len() > MOST {
+            return Err(TransportError::TooMany(mesh.faces.len()));
+        }
+        if !(16..=largest()).contains(&options.block_faces) {
+            return Err(TransportError::Block(options.block_faces));
+        }
+        let (grid, cells) = Grid::of(mesh, options.grid)?;
+        let walks = walks(&mesh.faces, &cells, options.block_faces);
+        Ok(write(grid, &cells, &walks, mesh.faces.len()))
+    }
+}
+
+/// All blocks of faces whose vertices are in such cells.
+pub(super) fn walks(faces: &[[VertexId; 3]], cells: &[Cells], size: usize) -> Vec<Walk> {
+    let connectivity = Connectivity::new(faces, cells.len());
+    let blocks = blocks(faces, cells, &connectivity, size);
+    let mut walker = Walker::new(faces, &connectivity, blocks.of.clone());
+    blocks.members().zip(0..).map(|(members, block)| walker.walk(block, members)).collect()
+}
+
+fn write(grid: Grid, cells: &[Cells], walks: &[Walk], faces: usize) -> Transport {
+    let mut codes = fit(walks, cells);
+    let models = Models::new(&codes);
+    let mut told = Vec::new();
+    let mut ends = Vec::with_capacity(walks.len());
+    for walk in walks {
+        tell(walk, cells, &models, &mut told);
+        ends.push(told.len());
+    }
+    codes.shapes = shapes(&told);
+    let models = Models::new(&codes);
+    let first_bits = [0, 1, 2].map(|k| {
+        let most = walks.iter().map(|walk| cells[walk.vertices[0] as usize][k] as u32).max();
+        (u32::BITS - most.unwrap_or(0).leading_zeros()) as u8
+    });
+    let (tags, vertices) = tags(walks, cells);
+    let mut payload = Vec::new();
+    let mut entries = Vec::with_capacity(walks.len());
+    let (mut from, mut row) = (0, Vec::new());
+    let mut bits = Bits::default();
+    for ((walk, &end), tags) in walks.iter().zip(&ends).zip(&tags) {
+        row.clear();
+        let first = cells[walk.vertices[0] as usize];
+        let parts = symbols(walk, (first, first_bits), tags, &told[from..end], &models, &mut row);
+        bits.add(&row, parts);
+        from = end;
+        let start = payload.len();
+        let sum = checksum(walk.vertices.iter().map(|&v| cells[v as usize]));
+        encode(&row, sum, &mut payload);
+        let least = (walk.faces / FACES_A_BYTE).next_multiple_of(2);
+        payload.resize(payload.len().max(start + least), 0);
+        entries.push(Entry { faces: walk.faces, bytes: payload.len() - start });
+    }
+    let header = Header { grid, first_bits, faces, vertices, codes, entries };
+    let mut bytes = header.store(&payload);
+    bytes.extend(payload);
+    let positions = bits.positions / 8.0;
+    let connectivity = bits.connectivity / 8.0;
+    let headers = bytes.len() as f64 - positions - connectivity;
+    let sizes = TransportSizes { positions, connectivity, headers };
+    Transport { bytes, blocks: walks.len(), sizes }
+}
+
+/// How many bits symbols take.
+struct Bits {
+    positions: f64,
+    connectivity: f64,
+    log2: Vec<f64>,
+}
+
+impl Default for Bits {
+    fn default() -> Self {
+        let log2 = (0..=4096).map(|size| f64::from(size).log2()).collect();
+        Self { positions: 0.0, connectivity: 0.0, log2 }
+    }
+}
+
+impl Bits {
+    /// First and last are the first vertex and what is joined, distances are between.
+    fn add(&mut self, symbols: &[Symbol], [connectivity, positions]: [usize; 2]) {
+        let bits = |symbols: &[Symbol]| -> f64 {
+            let bits = |s: &Symbol| {
+                f64::from(s.bits) + f64::from(s.low_bits) - self.log2[usize::from(s.size)]
+            };
+            symbols.iter().map(bits).sum()
+        };
+        let told = bits(&symbols[connectivity..positions]);
+        let all = bits(symbols);
+        self.positions += told;
+        self.connectivity += all - told;
+    }
+}
+
+/// For each block the vertices that need a tag, and how many vertices there are.
+fn tags(walks: &[Walk], cells: &[Cells]) -> (Vec<Vec<(u16, u32)>>, usize) {
+    let mut uses = vec![0u8; cells.len()];
+    for &v in walks.iter().flat_map(|walk| &walk.vertices) {
+        uses[v as usize] = uses[v as usize].saturating_add(1);
+    }
+    // How many tags a cell has by now.
+    let mut joints = Joints::new(1 << 10);
+    let mut tag_of = vec![u32::MAX; cells.len()];
+    let tags = walks.iter().map(|walk| {
+        let mut tags = Vec::new();
+        for (local, (&v, &is_border)) in walk.vertices.iter().zip(&walk.borders).enumerate() {
+            let v = v as usize;
+            if !is_border && uses[v] == 1 {
+                continue;
+            }
+            if tag_of[v] == u32::MAX {
+                let next = joints.join(key(cells[v]), 0, 0);
+                tag_of[v] = *next;
+                *next += 1;
+            }
+            if tag_of[v] > 0 || !is_border {
+                tags.push((local as u16, tag_of[v]));
+            }
+        }
+        tags
+    });
+    let tags = tags.collect();
+    (tags, uses.iter().filter(|&&uses| uses > 0).count())
+}
