@@ -7,6 +7,9 @@
 //! [`LatticeBlocks`] put each vertex into one block of 32, on a [`Lattice`] that meshes can share: what they have in
 //! common is the same in both, bit for bit, and there are no borders to crack.
 //!
+//! [`VertexBlocks`] lie as the surface does, each in its own frame, with cells as large as the surface allows: the
+//! fewest bits for the distance between the surfaces. A matrix a block decodes them.
+//!
 //! ```
 //! use meshlod_codec::{Cells, Parting};
 //! use meshlod_mesh::sample;
@@ -21,12 +24,14 @@
 #![forbid(unsafe_code)]
 
 mod bits;
+mod blocks;
 mod bytes;
 mod kd;
 mod lattice;
 mod parts;
 mod transport;
 
+pub use blocks::{BlocksError, BlocksReport, Change, Target, VertexBlocks};
 pub use bytes::Malformed;
 pub use lattice::{Lattice, LatticeBlocks, LatticeError};
 pub use parts::{Cells, Part, Parting, Parts, PartsError};
