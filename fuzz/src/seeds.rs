@@ -1,9 +1,10 @@
 //! Files to start from, made by our writers and by hand, so that mutations begin near the grammar.
 
+use meshlod_codec::{AttributeBounds, Cells, Scheme, Target, compress};
 use meshlod_fixtures as fixtures;
 use meshlod_io::{Precision, Scene, gltf, obj, off, ply, smf, stl};
-use meshlod_mesh::Mesh;
-use meshlod_simplify::{History, Options, Progressive, Simplifier, Target};
+use meshlod_mesh::{Mesh, sample};
+use meshlod_simplify::{self as simplify, History, Options, Progressive, Simplifier};
 
 use crate::kept::{corpus, kept};
 use crate::models;
@@ -26,6 +27,7 @@ fn seeds(target: &str) -> Vec<Vec<u8>> {
     match target {
         "check" => return few_faces(),
         "mlod" => return models::seeds(),
+        "mlq" => return compressed(),
         _ => {}
     }
     let by_hand: &[&str] = match target {
@@ -67,8 +69,24 @@ fn write(target: &str, mesh: &Mesh) -> Vec<u8> {
 fn sequence(mesh: &Mesh) -> Vec<u8> {
     let mut history = History::default();
     let mut simplifier = Simplifier::new(mesh, &Options::default()).expect("a fixture is a mesh");
-    simplifier.run(Target::Faces(0), &mut history).expect("a target");
+    simplifier.run(simplify::Target::Faces(0), &mut history).expect("a target");
     Progressive::new(simplifier, history).expect("all is taken down").to_bytes()
+}
+
+/// Small meshes by every scheme.
+fn compressed() -> Vec<Vec<u8>> {
+    let meshes = [
+        fixtures::cube(),
+        fixtures::seam_strip(),
+        fixtures::hourglass(),
+        fixtures::grid(9),
+        sample::torus(300),
+    ];
+    let schemes = [Scheme::Parts(Cells::Centred), Scheme::Parts(Cells::Truncated), Scheme::Lattice];
+    let bounds = AttributeBounds::default();
+    let by = |mesh: &Mesh, scheme| compress(mesh, scheme, Target::Bits(8), &bounds);
+    let done = meshes.iter().flat_map(|mesh| schemes.map(|scheme| by(mesh, scheme)));
+    done.map(|done| done.expect("a mesh").compressed.to_bytes()).collect()
 }
 
 /// Small meshes as the target `check` reads them, with what it asks of attributes and holes.

@@ -5,12 +5,14 @@
 
 mod attributes;
 mod border;
+mod codec;
 mod strips;
 
 use meshlod::mesh::{Mesh, VertexId};
 
 pub use attributes::{Settings, Update, simplify_with_attributes};
 pub use border::simplify_with_border_lock;
+pub use codec::meshopt_codec;
 pub use meshopt::SimplifyOptions;
 pub use strips::meshopt_strips;
 

@@ -12,7 +12,8 @@ use crate::demo::Demo;
 use crate::failure::Failure;
 use crate::session::Session;
 use crate::verbs::{
-    build, check, extract, info, lods, measure, render, repair, replay, sample, simplify, strip,
+    build, check, compress, decompress, extract, info, lods, measure, render, repair, replay,
+    sample, simplify, strip,
 };
 
 /// Level of detail for triangle meshes.
@@ -63,6 +64,10 @@ pub enum Verb {
     Extract(extract::Extract),
     /// Draw a mesh and its levels as triangle strips, and say what is sent
     Strip(strip::Strip),
+    /// Write a mesh in few bytes, to draw from or to send
+    Compress(compress::Compress),
+    /// Give back the mesh of a compressed file
+    Decompress(decompress::Decompress),
     /// Run all methods on one mesh: a table, and a page with pictures and heat maps
     Compare(Compare),
     /// Measure how far two meshes are apart, both ways
@@ -87,6 +92,8 @@ impl Verb {
             Self::Build(verb) => verb.run(session),
             Self::Extract(verb) => verb.run(session),
             Self::Strip(verb) => verb.run(session),
+            Self::Compress(verb) => verb.run(session),
+            Self::Decompress(verb) => verb.run(session),
             Self::Compare(verb) => verb.run(session),
             Self::Measure(verb) => verb.run(session),
             Self::Sample(verb) => verb.run(session),

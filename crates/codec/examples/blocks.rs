@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use meshlod_codec::{Target, VertexBlocks};
+use meshlod_codec::{Closeness, VertexBlocks};
 use meshlod_fixtures::shared_mesh;
 use meshlod_measure::{DistanceOptions, distance};
 use meshlod_mesh::{Bounds, Mesh};
@@ -29,7 +29,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let Some(path) = shared_mesh(name) else { continue };
         let mesh = meshlod_io::read(&path, &Default::default())?.flatten();
         let start = Instant::now();
-        let (blocks, report) = VertexBlocks::new(&mesh, Target::Bits(11))?;
+        let (blocks, report) = VertexBlocks::new(&mesh, Closeness::Bits(11))?;
         let seconds = start.elapsed().as_secs_f64();
         let mut decoded = mesh.clone();
         for (vertex, place) in blocks.vertices().iter().zip(blocks.positions()) {

@@ -28,6 +28,11 @@ impl Bits {
         self.len += width as usize;
     }
 
+    /// Zeros until the last byte is full.
+    pub(crate) fn fill_byte(&mut self) {
+        self.push(0, (8 - self.len as u32 % 8) % 8);
+    }
+
     /// The number in the `width` bits from a place on.
     ///
     /// # Panics
@@ -62,6 +67,40 @@ impl Bits {
     /// How many there are.
     pub(crate) fn len(&self) -> usize {
         self.len
+    }
+}
+
+/// How many bits tell one of so many.
+pub(crate) fn width(count: usize) -> u32 {
+    usize::BITS - count.saturating_sub(1).leading_zeros()
+}
+
+/// Reads numbers one after the other, and none past the last.
+#[derive(Clone, Debug)]
+pub(crate) struct Cursor<'a> {
+    bits: &'a Bits,
+    at: usize,
+}
+
+impl<'a> Cursor<'a> {
+    pub(crate) fn new(bits: &'a Bits, at: usize) -> Self {
+        Self { bits, at }
+    }
+
+    #[inline]
+    pub(crate) fn next(&mut self, width: u32) -> Result<u64, Malformed> {
+        let end = self.at + width as usize;
+        if end > self.bits.len {
+            return Err(self.wrong("the bits end here"));
+        }
+        let number = self.bits.get(self.at, width);
+        self.at = end;
+        Ok(number)
+    }
+
+    /// That what was read last is not what it should be.
+    pub(crate) fn wrong(&self, reason: impl Into<String>) -> Malformed {
+        Malformed { at: self.at / 8, reason: reason.into() }
     }
 }
 

@@ -33,7 +33,7 @@ impl<'a> Reader<'a> {
         Self { bytes, at: 0 }
     }
 
-    numbers!(u8, u16, u32, i32, i64, f32, f64);
+    numbers!(u8, u16, u32, u64, i32, f32, f64);
 
     /// The next bytes.
     pub(crate) fn take(&mut self, count: usize) -> Result<&'a [u8], Malformed> {
@@ -43,6 +43,18 @@ impl<'a> Reader<'a> {
         };
         self.at += count;
         Ok(taken)
+    }
+
+    /// The next bytes to read alone, each at its own place.
+    pub(crate) fn section(&mut self, len: usize) -> Result<Reader<'a>, Malformed> {
+        let at = self.at;
+        self.take(len)?;
+        Ok(Reader { bytes: &self.bytes[..self.at], at })
+    }
+
+    /// All that is left.
+    pub(crate) fn rest(&self) -> &'a [u8] {
+        &self.bytes[self.at..]
     }
 
     /// How many bytes are left: what says that more follow need not be believed.

@@ -23,17 +23,22 @@
 //! ```
 #![forbid(unsafe_code)]
 
+mod attributes;
 mod bits;
 mod blocks;
 mod bytes;
 mod kd;
 mod lattice;
+mod mlq;
 mod parts;
+mod patch;
 mod transport;
 
-pub use blocks::{BlocksError, BlocksReport, Change, Target, VertexBlocks};
+pub use attributes::{AttributeBounds, LayerReport};
+pub use blocks::{BlocksError, BlocksReport, Change, Closeness, VertexBlocks};
 pub use bytes::Malformed;
 pub use lattice::{Lattice, LatticeBlocks, LatticeError};
+pub use mlq::{CompressError, Compressed, Compression, Scheme, Sizes, Target, compress};
 pub use parts::{Cells, Part, Parting, Parts, PartsError};
 pub use transport::{
     Transport, TransportBlock, TransportError, TransportFile, TransportGrid, TransportOptions,

@@ -3,11 +3,13 @@
 mod accuracy;
 mod check;
 mod command;
+mod compression;
 mod constriction;
 mod contacts;
 mod levels;
 mod machine;
 mod memory;
+mod plot;
 mod reading;
 mod speed;
 mod strips;
@@ -22,7 +24,7 @@ use crate::project::Project;
 type Section = fn(&Project) -> Result<String>;
 
 /// With their titles, in the order of the page.
-const SECTIONS: [(&str, Section); 11] = [
+const SECTIONS: [(&str, Section); 12] = [
     // First, while this program is small: see there.
     ("Memory and determinism", memory::section),
     ("Accuracy", accuracy::section),
@@ -34,6 +36,7 @@ const SECTIONS: [(&str, Section); 11] = [
     ("Contacts", contacts::section),
     ("All levels", levels::section),
     ("Strips", strips::section),
+    ("Compression", compression::section),
     ("Reading and measuring", reading::section),
 ];
 

@@ -2,6 +2,8 @@
 
 pub mod build;
 pub mod check;
+pub mod compress;
+pub mod decompress;
 pub mod extract;
 pub mod info;
 pub mod lods;

@@ -2,6 +2,7 @@
 
 mod check;
 mod compare;
+mod compress;
 mod demo;
 mod hostile;
 mod levels;

@@ -11,7 +11,7 @@ use super::reference::Reference;
 use super::settle::{Grid, Settled, Settling};
 use super::shape::{Block, Shape, Units, Wanted, numbers};
 use super::surface::Surface;
-use super::{BlocksError, BlocksReport, Target};
+use super::{BlocksError, BlocksReport, Closeness};
 use crate::bits::Bits;
 use crate::kd::BLOCK;
 
@@ -64,7 +64,7 @@ const FARTHEST_ALONE: f64 = 1.5;
 pub(super) fn fitted(
     mesh: &Mesh,
     ordered: &[VertexId],
-    target: Target,
+    target: Closeness,
 ) -> Result<(Layout, Bits, BlocksReport), BlocksError> {
     let bounds = Bounds::of(ordered.iter().map(|v| &mesh.positions[v.index()]));
     let [low, high] = if bounds.is_empty() { [[0.0; 3]; 2] } else { [bounds.min, bounds.max] };

@@ -35,7 +35,7 @@ pub struct VertexBlocks {
 
 /// How close decoded positions are to be.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Target {
+pub enum Closeness {
     /// As close as so many bits for the whole mesh: cubic cells, 2^bits − 1 along its longest side, rounded.
     Bits(u32),
     /// The mean distance of the surfaces, in model units.
@@ -93,7 +93,7 @@ impl VertexBlocks {
     /// Cost: O(n log n); a few dozen visits of each face.
     /// # Errors
     /// A coordinate that is none, a target that is none or too fine.
-    pub fn new(mesh: &Mesh, target: Target) -> Result<(Self, BlocksReport), BlocksError> {
+    pub fn new(mesh: &Mesh, target: Closeness) -> Result<(Self, BlocksReport), BlocksError> {
         Self::of_blocks(mesh, blocks_of(mesh), target)
     }
 
@@ -101,7 +101,7 @@ impl VertexBlocks {
     pub(crate) fn of_blocks(
         mesh: &Mesh,
         ordered: Vec<VertexId>,
-        target: Target,
+        target: Closeness,
     ) -> Result<(Self, BlocksReport), BlocksError> {
         let is_far = |v: &&VertexId| !mesh.positions[v.index()].iter().all(|x| x.abs() < MOST);
         if let Some(&v) = ordered.iter().find(is_far) {

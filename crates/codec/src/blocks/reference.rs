@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::surface::Surface;
-use super::{BlocksError, Change, Target};
+use super::{BlocksError, Change, Closeness};
 
 /// Cubic cells, and what they do.
 pub(super) struct Reference {
@@ -28,21 +28,21 @@ impl Reference {
         surface: &Surface,
         low: DVec3,
         longest: f64,
-        target: Target,
+        target: Closeness,
     ) -> Result<Self, BlocksError> {
         // One point is as it is in cells of any size.
         let longest = if longest > 0.0 { longest } else { f64::from(f32::MIN_POSITIVE) };
         match target {
-            Target::Bits(bits) if !(2..=24).contains(&bits) => Err(BlocksError::Bits(bits)),
-            Target::Bits(bits) => {
+            Closeness::Bits(bits) if !(2..=24).contains(&bits) => Err(BlocksError::Bits(bits)),
+            Closeness::Bits(bits) => {
                 let cell = longest / f64::from((1 << bits) - 1);
                 let change = surface.change(&rounded(surface, low, cell));
                 Ok(Self { cell, change, error: change.error_estimate.max(LEAST_ERROR * cell) })
             }
-            Target::Error(error) if !(error > 0.0 && error.is_finite()) => {
+            Closeness::Error(error) if !(error > 0.0 && error.is_finite()) => {
                 Err(BlocksError::Error(error))
             }
-            Target::Error(error) => {
+            Closeness::Error(error) => {
                 let usual = (error / USUAL_ERROR).min(longest);
                 let mean = surface.error(&rounded(surface, low, usual));
                 let cell = usual * (error / mean.max(LEAST_ERROR * usual)).clamp(0.1, 10.0);

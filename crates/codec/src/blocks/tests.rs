@@ -11,7 +11,7 @@ fn meshes() -> Vec<Mesh> {
 }
 
 fn of_bits(mesh: &Mesh, bits: u32) -> (VertexBlocks, BlocksReport) {
-    VertexBlocks::new(mesh, Target::Bits(bits)).unwrap()
+    VertexBlocks::new(mesh, Closeness::Bits(bits)).unwrap()
 }
 
 fn decoded(mesh: &Mesh, blocks: &VertexBlocks) -> Mesh {
@@ -79,7 +79,7 @@ fn surfaces_are_as_close_as_in_cubes_and_no_more_faces_are_turned_over() {
 fn an_error_is_kept() {
     let mesh = sample::gyroid(6000);
     for error in [1e-2, 1e-4] {
-        let (blocks, _) = VertexBlocks::new(&mesh, Target::Error(error)).unwrap();
+        let (blocks, _) = VertexBlocks::new(&mesh, Closeness::Error(error)).unwrap();
         let options = DistanceOptions { samples: 20_000, ..Default::default() };
         let mean = distance(&mesh, &decoded(&mesh, &blocks), &options).unwrap().mean();
         assert!((0.5 * error..1.02 * error).contains(&mean), "{mean} for {error}");
@@ -136,7 +136,7 @@ fn vertices_may_be_in_any_order_within_a_block() {
     let mesh = sample::sphere(3000);
     let mut ordered = blocks_of(&mesh);
     ordered.chunks_mut(BLOCK).for_each(<[_]>::reverse);
-    let (blocks, _) = VertexBlocks::of_blocks(&mesh, ordered.clone(), Target::Bits(11)).unwrap();
+    let (blocks, _) = VertexBlocks::of_blocks(&mesh, ordered.clone(), Closeness::Bits(11)).unwrap();
     assert_eq!(blocks.vertices(), ordered);
     let plain = of_bits(&mesh, 11).0.bytes() as f64;
     assert!((blocks.bytes() as f64 / plain - 1.0).abs() < 0.02);
@@ -147,21 +147,22 @@ fn what_cannot_be_is_said() {
     let far = |x: f64| mesh(&[[x, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]], &[[0, 1, 2]]);
     let ask = |x: f64, target| VertexBlocks::new(&far(x), target).err();
     for bits in [0, 1, 25, 64, u32::MAX] {
-        assert_eq!(ask(0.0, Target::Bits(bits)), Some(BlocksError::Bits(bits)));
+        assert_eq!(ask(0.0, Closeness::Bits(bits)), Some(BlocksError::Bits(bits)));
     }
     for error in [0.0, -1.0, f64::INFINITY] {
-        assert_eq!(ask(0.0, Target::Error(error)), Some(BlocksError::Error(error)));
+        assert_eq!(ask(0.0, Closeness::Error(error)), Some(BlocksError::Error(error)));
     }
-    assert!(matches!(ask(0.0, Target::Error(f64::NAN)), Some(BlocksError::Error(_))));
-    assert!(matches!(ask(0.0, Target::Error(1e-30)), Some(BlocksError::TooFine(_))));
+    assert!(matches!(ask(0.0, Closeness::Error(f64::NAN)), Some(BlocksError::Error(_))));
+    assert!(matches!(ask(0.0, Closeness::Error(1e-30)), Some(BlocksError::TooFine(_))));
     for x in [f64::NAN, f64::INFINITY, 1e300] {
-        assert_eq!(ask(x, Target::Bits(11)), Some(BlocksError::NotFinite(VertexId(0))));
+        assert_eq!(ask(x, Closeness::Bits(11)), Some(BlocksError::NotFinite(VertexId(0))));
     }
 }
 
 #[test]
 fn flat_tiny_and_far_meshes_stay_where_they_are() {
-    let targets = [Target::Bits(2), Target::Bits(11), Target::Bits(24), Target::Error(1e300)];
+    let targets =
+        [Closeness::Bits(2), Closeness::Bits(11), Closeness::Bits(24), Closeness::Error(1e300)];
     for (scale, from) in
         [(1.0, 0.0), (1e30, 0.0), (1e-30, 0.0), (1.0, 1e6), (0.0, 5.0), (0.0, 1e30)]
     {
@@ -170,7 +171,7 @@ fn flat_tiny_and_far_meshes_stay_where_they_are() {
         let mesh = mesh(&corners, &[[0, 1, 2]]);
         for target in targets {
             let blocks = VertexBlocks::new(&mesh, target).unwrap().0;
-            let most = if target == Target::Bits(11) { scale / 256.0 } else { scale };
+            let most = if target == Closeness::Bits(11) { scale / 256.0 } else { scale };
             for (vertex, is) in blocks.vertices().iter().zip(blocks.positions()) {
                 for (is, was) in is.iter().zip(corners[vertex.index()]) {
                     assert!((is - was).abs() <= most, "{is} for {was}, {target:?}");

@@ -86,6 +86,13 @@ impl Lattice {
         Self::new(if exponent.abs() <= 1000.0 { exponent as i32 } else { i32::MAX })
     }
 
+    /// With cells half as large.
+    /// # Errors
+    /// As [`Lattice::new`].
+    pub fn finer(self) -> Result<Self, LatticeError> {
+        Self::new(self.exponent - 1)
+    }
+
     /// The side of a cell, in model units.
     pub fn cell(self) -> f64 {
         f64::from(self.exponent).exp2()
@@ -189,6 +196,52 @@ impl LatticeBlocks {
     /// How much less that is than three `f32` for each vertex, as a part.
     pub fn reduction(&self) -> f64 {
         1.0 - self.bytes() as f64 / (12 * self.vertices.len()) as f64
+    }
+
+    pub(crate) fn store(&self, out: &mut Vec<u8>) {
+        out.extend(self.lattice.exponent.to_le_bytes());
+        out.extend((self.vertices.len() as u32).to_le_bytes());
+        out.extend(self.first.iter().flat_map(|x| x.to_le_bytes()));
+        out.extend(self.most.iter().flat_map(|x| x.to_le_bytes()));
+        self.headers.store(out);
+        out.extend(self.starts.iter().flat_map(|x| x.to_le_bytes()));
+        self.numbers.store(out);
+    }
+
+    pub(crate) fn restore(reader: &mut crate::bytes::Reader) -> Result<Self, crate::Malformed> {
+        let lattice = Lattice::new(reader.i32()?).map_err(|e| reader.wrong(e.to_string()))?;
+        let count = reader.u32()? as usize;
+        let mut first = [0i64; 3];
+        for x in &mut first {
+            *x = reader.u64()? as i64;
+        }
+        let mut most = [0i32; 3];
+        for x in &mut most {
+            *x = reader.i32()?.clamp(0, MOST_CELLS as i32 - 1);
+        }
+        let mut this = Self {
+            lattice,
+            first,
+            most,
+            vertices: Vec::new(),
+            headers: Bits::default(),
+            numbers: Bits::default(),
+            starts: Vec::new(),
+        };
+        let all: u32 = (0..3).map(|k| this.width(0, k)).sum();
+        let blocks = count.div_ceil(BLOCK);
+        this.headers = Bits::restore(
+            blocks * (AXIS_BITS + 3 * (SLOPE_BITS + SPAN_BITS) + all) as usize,
+            reader,
+        )?;
+        for _ in 0..blocks.div_ceil(STRIDE) {
+            this.starts.push(reader.u32()?);
+        }
+        this.vertices = (0..count).map(VertexId::new).collect();
+        let bits =
+            (0..blocks).map(|b| this.shape(b).bits() as usize * BLOCK.min(count - b * BLOCK)).sum();
+        this.numbers = Bits::restore(bits, reader)?;
+        Ok(this)
     }
 
     fn decode(&self, shape: &Shape, at: usize) -> [f64; 3] {

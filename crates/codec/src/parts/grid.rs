@@ -27,9 +27,14 @@ const ACROSS: f64 = 255.0;
 /// No cell is smaller than this part of how far from the origin the mesh goes: `f32` tells the middles of
 /// cells apart so far, and no further.
 const FINEST: f64 = 1.0 / (1 << 22) as f64;
+/// So the cell of an offset is this many from the origin at most: twice what [`FINEST`] leaves, for what is rounded.
+pub(super) const FARTHEST: u32 = 1 << 23;
 
 impl Grid {
     /// The finest in which each of these boxes has at most 256 cells along each axis.
+    ///
+    /// Where vertices are in the middles of cells, sides have no more significant bits than leave all that `f32`
+    /// makes of a part exact: its borders are those of its neighbours, bit for bit.
     pub(super) fn new(boxes: &[Bounds], cells: Cells) -> Self {
         let cell = [0, 1, 2].map(|axis| {
             let spans = boxes.iter().map(|of| [of.min[axis], of.max[axis]]);
@@ -40,10 +45,15 @@ impl Grid {
                 spans.clone().all(|span| across(span) <= ACROSS)
             };
             let least = f64::from(f32::MIN_POSITIVE);
-            let mut cell = (longest / ACROSS).max(farthest * FINEST).max(least) as f32;
-            // Two roundings may have made it too small by a little.
+            let cell = (longest / ACROSS).max(farthest * FINEST).max(least) as f32;
+            let spare = match cells {
+                Cells::Centred => spare_bits(farthest / f64::from(cell)),
+                Cells::Truncated => 0,
+            };
+            let mut cell = rounded_up(cell, spare);
+            // Roundings may have made it too small by a little.
             while !fits(cell) {
-                cell = cell.next_up();
+                cell = rounded_up(cell.next_up(), spare);
             }
             cell
         });
@@ -66,10 +76,19 @@ impl Grid {
         part.positions = cells.iter().map(from_offset).collect();
     }
 
+    /// A grid that was made before, if its cells have a size.
+    pub(super) fn of_cells(cell: [f32; 3], cells: Cells) -> Option<Self> {
+        cell.iter().all(|side| side.is_normal() && *side > 0.0).then_some(Self { cell, cells })
+    }
+
+    pub(super) fn is_centred(&self) -> bool {
+        self.cells == Cells::Centred
+    }
+
     /// Where a cell of a part is decoded to: the same place for whatever part it is told by.
-    pub(super) fn place(&self, part: &Part, position: [u8; 3]) -> [f64; 3] {
+    pub(super) fn place(&self, offset: [i32; 3], position: [u8; 3]) -> [f64; 3] {
         [0, 1, 2].map(|axis| {
-            let cell = part.offset[axis] + i32::from(position[axis]);
+            let cell = offset[axis] + i32::from(position[axis]);
             (f64::from(cell) + self.within()) * f64::from(self.cell[axis])
         })
     }
@@ -90,6 +109,19 @@ impl Grid {
             Cells::Truncated => 0.0,
         }
     }
+}
+
+/// How many of the last bits of a side are to be zeros, for products with so many halves of cells to be exact.
+fn spare_bits(cells: f64) -> u32 {
+    // One more for the halves, one for the cells that a part goes on beyond.
+    let bits = (2.0 * cells + 2.0 * ACROSS).log2().ceil() as u32;
+    bits.min(f32::MANTISSA_DIGITS - 1)
+}
+
+/// The next number up, or the same, whose last bits are zeros.
+fn rounded_up(side: f32, spare: u32) -> f32 {
+    let ones = (1u32 << spare) - 1;
+    f32::from_bits((side.to_bits() + ones) & !ones)
 }
 
 /// The number of the cell that a place along an axis is in.

@@ -3,16 +3,18 @@
 mod grid;
 mod lloyd;
 mod merge;
+mod packed;
 mod parting;
 mod surface;
 #[cfg(test)]
 mod tests;
 
-use meshlod_mesh::{Bounds, Mesh, VertexId};
+use meshlod_mesh::{Bounds, FaceId, Mesh, VertexId};
 use thiserror::Error;
 
 pub use self::grid::Cells;
 use self::grid::Grid;
+pub(crate) use self::packed::PackedParts;
 pub use self::parting::Parting;
 
 /// The positions and faces of a mesh in parts, positions in eight bits an axis.
@@ -27,7 +29,7 @@ pub struct Parts {
 }
 
 /// A part: at most 256 cells along each axis.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Part {
     /// The cell of the grid in which its own cell `[0; 3]` is.
     pub offset: [i32; 3],
@@ -37,6 +39,8 @@ pub struct Part {
     pub vertices: Vec<VertexId>,
     /// By places in these lists.
     pub faces: Vec<[u32; 3]>,
+    /// The face of the mesh that each is.
+    pub ids: Vec<FaceId>,
 }
 
 /// Why a mesh is not made parts.
@@ -59,8 +63,8 @@ pub enum PartsError {
     },
 }
 
-/// Of a file: how many vertices and parts it has, and the sides of a cell.
-const HEADER: usize = 2 * 4 + 3 * 4;
+/// Of a file: its flags, how many vertices and parts it has, and the sides of a cell.
+const HEADER: usize = 1 + 2 * 4 + 3 * 4;
 /// Of a part: how many vertices it has, and its offset in 16 bits an axis or in 32.
 const PART: usize = 4;
 
@@ -73,6 +77,11 @@ impl Parts {
     /// The sides of a cell, in model units.
     pub fn cell(&self) -> [f32; 3] {
         self.grid.cell()
+    }
+
+    /// Their mean.
+    pub(crate) fn mean_side(&self) -> f64 {
+        self.cell().iter().map(|&side| f64::from(side)).sum::<f64>() / 3.0
     }
 
     /// What puts a part's positions where they belong: three rows of four, model units.
@@ -90,7 +99,7 @@ impl Parts {
         for part in &self.parts {
             for (&vertex, &position) in part.vertices.iter().zip(&part.positions) {
                 numbers[vertex.index()].get_or_insert_with(|| {
-                    mesh.positions.push(self.grid.place(part, position));
+                    mesh.positions.push(self.grid.place(part.offset, position));
                     VertexId::new(mesh.positions.len() - 1)
                 });
             }
@@ -110,8 +119,8 @@ impl Parts {
     }
 
     fn part_header(&self) -> usize {
-        let is_short = |part: &Part| part.offset.iter().all(|&x| i16::try_from(x).is_ok());
-        PART + if self.parts.iter().all(is_short) { 6 } else { 12 }
+        let offsets: Vec<_> = self.parts.iter().map(|part| part.offset).collect();
+        part_header(&offsets)
     }
 
     /// How many vertices all parts have together.
@@ -141,6 +150,12 @@ impl Parts {
     pub fn overhead(&self) -> f64 {
         self.stored() as f64 / self.vertices as f64 - 1.0
     }
+}
+
+/// What each part takes beside its positions.
+fn part_header(offsets: &[[i32; 3]]) -> usize {
+    let is_short = offsets.as_flattened().iter().all(|&x| i16::try_from(x).is_ok());
+    PART + if is_short { 6 } else { 12 }
 }
 
 /// The longest side of a box.

@@ -17,6 +17,10 @@ pub struct Parting<'m> {
 /// Where the search for a number of parts begins, and how often it is tried.
 const FIRST_COUNT: usize = 64;
 const MOST_COUNTS: usize = 10;
+/// What is as close as this below the cells that were asked for is good.
+const CLOSE_CELL: f64 = 0.97;
+/// So that the next try rather keeps what was asked for.
+const SLIGHTLY_MORE: f64 = 1.01;
 /// What is as close as this to the reduction that was asked for is good.
 const CLOSE: f64 = 5e-4;
 
@@ -87,13 +91,47 @@ impl<'m> Parting<'m> {
         Ok(best)
     }
 
+    /// In as few parts as are found whose cells have sides of this length in the mean; or, where those would take more
+    /// than the positions do, in about as many as take less.
+    ///
+    /// Cost: of some [`Parting::into_count`].
+    pub fn within_cell(&self, cell: f64, cells: Cells) -> Parts {
+        let (mut few, mut many): (Option<Parts>, Option<Parts>) = (None, None);
+        let mut next = 1;
+        for _ in 0..MOST_COUNTS {
+            let parts = self.into_count(next, cells);
+            let ratio = parts.mean_side() / cell;
+            let is_small = parts.reduction() > 0.0;
+            let is_few = ratio > 1.0 && is_small;
+            let side = if is_few { &mut few } else { &mut many };
+            *side = Some(parts);
+            let count = |parts: &Option<Parts>| parts.as_ref().map(|parts| parts.parts.len());
+            let least = count(&few).unwrap_or(0) + 1;
+            let most = count(&many).map_or(self.surface.faces(), |many| many - 1);
+            if least > most || (CLOSE_CELL..=1.0).contains(&ratio) {
+                break;
+            }
+            // Sides of a surface's parts shrink as the root of how many there are.
+            let wanted = match is_small {
+                true => next as f64 * ratio * ratio * SLIGHTLY_MORE,
+                false => (least as f64 * most as f64).sqrt(),
+            };
+            next = (wanted as usize).clamp(least, most);
+        }
+        let is_enough = |parts: &Parts| parts.mean_side() <= cell;
+        let enough = if many.as_ref().is_some_and(is_enough) { many } else { few.or(many) };
+        enough.unwrap_or_else(|| self.into_count(1, cells))
+    }
+
     /// The parts with their own numbers for vertices, not yet in cells.
     fn members(&self, of_faces: &[u32], count: usize) -> Vec<Part> {
-        let empty = Part { offset: [0; 3], positions: vec![], vertices: vec![], faces: vec![] };
-        let mut parts = vec![empty; count];
-        for (face, &part) in self.surface.triangles.iter().zip(of_faces) {
+        let mut parts = vec![Part::default(); count];
+        let faces = self.surface.triangles.iter().zip(&self.surface.ids);
+        for ((face, &id), &part) in faces.zip(of_faces) {
+            let part = &mut parts[part as usize];
             // By the mesh's numbers, for now.
-            parts[part as usize].faces.push(face.map(|vertex| vertex.0));
+            part.faces.push(face.map(|vertex| vertex.0));
+            part.ids.push(id);
         }
         for part in &mut parts {
             let mut vertices: Vec<u32> = part.faces.iter().flatten().copied().collect();

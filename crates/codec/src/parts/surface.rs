@@ -7,6 +7,8 @@ pub(super) struct Surface<'m> {
     positions: &'m [[f64; 3]],
     /// The mesh's faces, without those that repeat a vertex.
     pub(super) triangles: Vec<[VertexId; 3]>,
+    /// The face of the mesh that each is.
+    pub(super) ids: Vec<FaceId>,
     /// Across each side; [`NONE`] where there is not exactly one face.
     across: Vec<[u32; 3]>,
     bounds: Bounds,
@@ -16,8 +18,10 @@ const NONE: u32 = u32::MAX;
 
 impl<'m> Surface<'m> {
     pub(super) fn new(mesh: &'m Mesh) -> Self {
-        let whole = |[a, b, c]: &&[VertexId; 3]| a != b && b != c && c != a;
-        let triangles: Vec<_> = mesh.faces.iter().filter(whole).copied().collect();
+        let is_whole = |&[a, b, c]: &[VertexId; 3]| a != b && b != c && c != a;
+        let faces = mesh.faces.iter().enumerate().filter(|(_, face)| is_whole(face));
+        let (ids, triangles): (_, Vec<_>) =
+            faces.map(|(id, &face)| (FaceId::new(id), face)).unzip();
         let connectivity = Connectivity::new(&triangles, mesh.positions.len());
         let across =
             |face: usize, k: usize| match connectivity.twin(Side::new(FaceId::new(face), k)) {
@@ -27,7 +31,7 @@ impl<'m> Surface<'m> {
         let across = (0..triangles.len()).map(|face| [0, 1, 2].map(|k| across(face, k))).collect();
         let corners = triangles.iter().flatten().map(|v| &mesh.positions[v.index()]);
         let bounds = Bounds::of(corners);
-        Self { positions: &mesh.positions, triangles, across, bounds }
+        Self { positions: &mesh.positions, triangles, ids, across, bounds }
     }
 
     pub(super) fn faces(&self) -> usize {

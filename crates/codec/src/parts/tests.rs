@@ -78,6 +78,28 @@ fn no_vertex_is_further_off_than_half_a_cell() {
 }
 
 #[test]
+fn parts_meet_bit_for_bit_by_their_matrices_in_f32() {
+    for mut mesh in meshes() {
+        for shift in [0.0, 0.3, -77.7, 1000.1] {
+            mesh.positions.as_flattened_mut().iter_mut().for_each(|x| *x += shift);
+            let parts = parting(&mesh).into_count(24, Cells::Centred);
+            for part in parts.parts() {
+                let matrix = parts.matrix(part);
+                for &position in &part.positions {
+                    let is = parts.grid.place(part.offset, position);
+                    for k in 0..3 {
+                        let x = f32::from(position[k]);
+                        let [cell, from] = [matrix[k][k], matrix[k][3]];
+                        assert_eq!(f64::from(cell * x + from), is[k]);
+                        assert_eq!(f64::from(cell.mul_add(x, from)), is[k]);
+                    }
+                }
+            }
+        }
+    }
+}
+
+#[test]
 fn more_parts_have_smaller_cells_and_settling_helps() {
     let mesh = sample::gyroid(6000);
     let parting = parting(&mesh);
@@ -100,8 +122,24 @@ fn a_reduction_is_kept_by_as_many_parts_as_it_allows() {
 }
 
 #[test]
+fn cells_of_a_size_are_kept_where_they_take_less_than_floats() {
+    let mesh = sample::sphere(6000);
+    let parting = parting(&mesh);
+    let parts = parting.within_cell(0.002, Cells::Centred);
+    assert!((0.0017..=0.002).contains(&parts.mean_side()), "{}", parts.mean_side());
+    let finest = parting.within_cell(1e-9, Cells::Centred);
+    assert!(finest.mean_side() < 0.001 && finest.reduction() > 0.0);
+    let small = mesh_of_one();
+    assert_eq!(Parting::new(&small).unwrap().within_cell(1e-9, Cells::Centred).parts().len(), 1);
+}
+
+fn mesh_of_one() -> Mesh {
+    mesh(&[[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]], &[[0, 1, 2]])
+}
+
+#[test]
 fn what_cannot_be_is_said() {
-    let small = mesh(&[[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]], &[[0, 1, 2]]);
+    let small = mesh_of_one();
     let too_small = parting(&small).within_reduction(0.7, Cells::Centred);
     assert!(matches!(too_small, Err(PartsError::TooSmall { .. })));
     let none = |part| parting(&small).within_reduction(part, Cells::Centred).err();

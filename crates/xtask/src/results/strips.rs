@@ -1,7 +1,6 @@
 //! Strips at every level: what filters and repair save, over strips of three makes.
 
 mod drawn;
-mod plot;
 mod sent;
 mod whole;
 

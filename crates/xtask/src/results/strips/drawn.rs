@@ -1,7 +1,7 @@
 //! Figure 5 and table 2 of [KY05], with ours beside them.
 
-use super::plot::{Line, Plot, page};
 use super::sent::{Level, Levels};
+use crate::results::plot::{Line, Plot, page};
 
 /// Table 2 of the paper, from 10 %: what DTFF and STSS save of eight's independent triangles.
 const TABLE_2: [[f64; 2]; 10] = [

@@ -8,7 +8,7 @@ use meshlod::strip::{
 use meshlod_bench::least_seconds;
 use meshlod_bench::peer::meshopt_strips;
 
-use super::plot::{Line, Plot, page};
+use crate::results::plot::{Line, Plot, page};
 use crate::results::table::Table;
 
 const MESHES: [&str; 5] =

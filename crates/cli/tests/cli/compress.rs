@@ -1,0 +1,168 @@
+//! Compressed meshes, there and back.
+
+use serde_json::Value;
+
+use crate::run::Run;
+
+const SCHEMES: [&str; 2] = ["parts", "lattice"];
+
+fn number(report: &Value, field: &str) -> f64 {
+    report[field].as_f64().unwrap_or_else(|| panic!("{field} of {report}"))
+}
+
+#[test]
+fn every_scheme_gives_the_surface_back_as_close_as_asked() {
+    let run = Run::new();
+    run.sample("gyroid", 20_000, "in.ply");
+    for scheme in SCHEMES {
+        let packed =
+            run.json(&["compress", "in.ply", "in.mlq", "--scheme", scheme, "--bits", "10"]);
+        let parts = ["bytes_positions", "bytes_connectivity", "bytes_attributes"];
+        let sum: f64 = parts.iter().map(|part| number(&packed, part)).sum();
+        let total = std::fs::metadata(run.path("in.mlq")).unwrap().len() as f64;
+        assert_eq!(number(&packed, "bytes_total"), total);
+        assert!(sum < total && total < sum + 100.0, "{sum} {total}");
+        assert!(number(&packed, "reduction") > 0.6 && packed["reached"] == true, "{packed}");
+        let pieces = if scheme == "parts" { "parts" } else { "blocks" };
+        assert!(number(&packed, pieces) > 10.0 && number(&packed, "encode_seconds") > 0.0);
+
+        run.json(&["decompress", "in.mlq", "out.ply"]);
+        let [was, is] = ["in.ply", "out.ply"].map(|file| run.json(&["info", file]));
+        for field in ["faces", "vertices", "closed", "components"] {
+            assert_eq!(was[field], is[field], "{scheme}: {field}");
+        }
+        let apart = run.json(&["measure", "in.ply", "out.ply"]);
+        // A cell is 1/1023 of the longest side, the mean a sixth of it, and the longest side less than the diagonal.
+        let mean = number(&apart["forward"], "mean_percent");
+        assert!(mean > 0.001 && mean < 100.0 / 1023.0 / 6.0, "{scheme}: {mean}");
+    }
+}
+
+#[test]
+fn attributes_and_seams_come_back() {
+    let run = Run::new();
+    run.sample("terrain", 3_000, "in.glb");
+    for scheme in SCHEMES {
+        let way = ["compress", "in.glb", "in.mlq", "--scheme", scheme, "--uv-error", "0.001"];
+        let packed = run.json(&way);
+        let layers = packed["layers"].as_array().unwrap();
+        assert_eq!(number(&packed, "bytes_attributes") > 0.0, !layers.is_empty());
+        assert!(layers.iter().all(|layer| number(layer, "max_error") < 0.01), "{packed}");
+        run.json(&["decompress", "in.mlq", "out.glb"]);
+        let [was, is] = ["in.glb", "out.glb"].map(|file| run.json(&["info", file]));
+        assert_eq!(was["faces"], is["faces"]);
+    }
+}
+
+#[test]
+fn people_read_what_became_of_it() {
+    let run = Run::new();
+    run.sample("sphere", 2_000, "in.ply");
+    let done = run.run(&["compress", "in.ply", "in.mlq"]);
+    assert_eq!((done.code, &done.err[..]), (0, ""));
+    for word in ["a triangle", "less than f32", "blocks", "encode_seconds: "] {
+        assert!(done.text().contains(word), "{word}: {done:?}");
+    }
+    assert!(run.run(&["decompress", "in.mlq", "out.ply"]).text().contains("decode_seconds: "));
+}
+
+#[test]
+fn a_reduction_that_is_out_of_reach_is_met_as_far_as_it_goes() {
+    let run = Run::new();
+    run.sample("sphere", 20, "in.ply");
+    for scheme in SCHEMES {
+        let way = ["compress", "in.ply", "in.mlq", "--scheme", scheme, "--reduction", "95%"];
+        let done = run.run(&way);
+        assert_eq!(done.code, 0);
+        assert!(done.err.contains("too small"), "{done:?}");
+        assert_eq!(run.run(&[&way[..], &["--strict"]].concat()).code, 1);
+    }
+    run.sample("sphere", 5_000, "large.ply");
+    let way = ["compress", "large.ply", "in.mlq", "--scheme", "parts", "--paper"];
+    let packed = run.json(&[&way[..], &["--reduction", "65%"]].concat());
+    assert!((0.65..0.66).contains(&number(&packed, "reduction")), "{packed}");
+}
+
+#[test]
+fn what_is_asked_wrongly_is_wrong_usage() {
+    let run = Run::new();
+    run.sample("sphere", 100, "in.ply");
+    let cases: [&[&str]; 11] = [
+        &["--bits", "0"],
+        &["--bits", "25"],
+        &["--bits", "-1"],
+        &["--error", "0"],
+        &["--error", "-1"],
+        &["--error", "x%"],
+        &["--reduction", "0%"],
+        &["--reduction", "100%"],
+        &["--bits", "11", "--error", "0.1%"],
+        &["--scheme", "magic"],
+        &["--normal-error", "-1"],
+    ];
+    for case in cases {
+        let done = run.run(&[&["compress", "in.ply", "out.mlq"], case].concat());
+        assert_eq!((done.code, &done.out[..]), (2, &b""[..]), "{case:?}: {done:?}");
+    }
+    for out in ["out.ply", "out", "-"] {
+        assert_eq!(run.run(&["compress", "in.ply", out]).code, 2);
+    }
+    assert_eq!(run.files(), ["in.ply"]);
+}
+
+#[test]
+fn spoilt_files_are_told_and_nothing_is_written() {
+    let run = Run::new();
+    run.sample("torus", 1_000, "in.ply");
+    run.json(&["compress", "in.ply", "in.mlq"]);
+    let whole = std::fs::read(run.path("in.mlq")).unwrap();
+    let mut spoilt = vec![b"PNG?".to_vec(), Vec::new(), whole[..whole.len() - 1].to_vec()];
+    for at in [4, 10, 60, whole.len() - 9] {
+        let mut bytes = whole.clone();
+        bytes[at] ^= 0x10;
+        spoilt.push(bytes);
+    }
+    for bytes in spoilt {
+        std::fs::write(run.path("spoilt.mlq"), bytes).unwrap();
+        let done = run.run(&["decompress", "spoilt.mlq", "out.ply"]);
+        assert_eq!(done.code, 1);
+        assert!(done.only_line().contains("spoilt.mlq: byte "), "{done:?}");
+    }
+    assert_eq!(run.files(), ["in.mlq", "in.ply", "spoilt.mlq"]);
+}
+
+#[test]
+fn odd_meshes_have_clear_outcomes() {
+    let run = Run::new();
+    let off = |scale: f64, faces: &str| {
+        let points = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [1.0, 1.0, 0.0]];
+        let points = points.map(|p| format!("{} {} {}\n", p[0] * scale, p[1] * scale, p[2]));
+        format!("OFF\n4 {} 0\n{}{faces}", faces.lines().count(), points.concat())
+    };
+    let two = "3 0 1 2\n3 1 3 2\n";
+    let meshes = [
+        ("flat", off(1.0, two), 0),
+        ("huge", off(1e30, two), 0),
+        ("tiny", off(1e-30, two), 0),
+        ("point", off(0.0, two), 0),
+        ("one face", off(1.0, "3 0 1 2\n"), 0),
+        ("none", off(1.0, ""), 1),
+        ("beyond f32", off(1e300, two), 1),
+    ];
+    for (name, text, code) in meshes {
+        std::fs::write(run.path("in.off"), text).unwrap();
+        for scheme in SCHEMES {
+            let done = run.run(&["compress", "in.off", "out.mlq", "--scheme", scheme]);
+            // A lattice has no limit but that of its cells.
+            if (name, scheme) == ("beyond f32", "lattice") {
+                continue;
+            }
+            assert_eq!(done.code, code, "{name}, {scheme}: {done:?}");
+            if code == 0 {
+                assert_eq!(run.run(&["decompress", "out.mlq", "out.off"]).code, 0);
+                std::fs::remove_file(run.path("out.mlq")).unwrap();
+            }
+            assert!(!run.path("out.mlq").exists() || code == 0);
+        }
+    }
+}

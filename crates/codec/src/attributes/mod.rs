@@ -1,0 +1,294 @@
+//! Attributes in whole numbers, by the rows that positions lie in, each within a bound.
+
+mod octahedral;
+mod packed;
+mod steps;
+#[cfg(test)]
+mod tests;
+
+use glam::DVec3;
+use meshlod_mesh::{Layer, LayerKind, WedgeId};
+
+use self::octahedral::{fold, most_turn_rad, unfold};
+pub(crate) use self::packed::Packed;
+use self::steps::Steps;
+use crate::bytes::{Malformed, Reader};
+use crate::patch::Rows;
+
+/// How far attributes may be from what they were.
+///
+/// What `f32` does not tell apart is not asked for: a bound of zero is met as closely as that.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct AttributeBounds {
+    /// Normals and tangents, in radians. Directions have at most 16 bits twice: .00004.
+    pub direction_rad: f64,
+    /// Texture coordinates: 1 is the whole texture.
+    pub uv: f64,
+    /// Colours, from 0 to 1.
+    pub color: f64,
+    /// Weights of joints, from 0 to 1.
+    pub weight: f64,
+    /// All others, as a part of the range of their values.
+    pub other: f64,
+}
+
+/// One layer, and how its values are told.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct PackedLayer {
+    kind: LayerKind,
+    name: String,
+    width: usize,
+    coding: Coding,
+    numbers: Packed,
+    /// See [`LayerReport`].
+    max_error: f64,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+enum Coding {
+    /// Directions in so many bits twice; of tangents the sign besides.
+    Directions { bits: u32 },
+    /// Values in steps.
+    Values(Steps),
+}
+
+/// What a layer takes, and what it has lost.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LayerReport {
+    /// What its values mean.
+    pub kind: LayerKind,
+    /// The file's name of it.
+    pub name: String,
+    /// With all that decoding it needs.
+    pub bytes: usize,
+    /// The furthest that a value is off: radians for directions, else the unit of the values.
+    pub max_error: f64,
+}
+
+impl Default for AttributeBounds {
+    /// Directions to a third of a degree, texture coordinates to half a texel of 4096, colours and weights to what
+    /// 8 bits tell, and all others to 16 bits.
+    fn default() -> Self {
+        Self {
+            direction_rad: 0.006,
+            uv: 1.0 / 8192.0,
+            color: 1.0 / 512.0,
+            weight: 1.0 / 512.0,
+            other: 1.0 / 65_536.0,
+        }
+    }
+}
+
+/// Directions have so many bits twice, at least and at most.
+const DIRECTION_BITS: [u32; 2] = [3, 16];
+
+impl PackedLayer {
+    /// A layer of wedges, of which these are the nodes in the order of the rows.
+    pub(crate) fn new(
+        layer: &Layer,
+        wedges: &[WedgeId],
+        rows: Rows,
+        bounds: &AttributeBounds,
+    ) -> Self {
+        let bound = bounds.of(layer);
+        let coding = if is_direction(layer.kind) {
+            Coding::Directions { bits: direction_bits(bound) }
+        } else {
+            let values = wedges.iter().map(|&wedge| layer.of(wedge));
+            Coding::Values(Steps::new(values, layer.width, bound))
+        };
+        let numbers: Vec<u32> =
+            wedges.iter().flat_map(|&wedge| coding.numbers(layer.of(wedge))).collect();
+        let numbers = Packed::new(rows, coding.components(layer.width), &numbers);
+        let (kind, name, width) = (layer.kind, layer.name.clone(), layer.width);
+        let mut this = Self { kind, name, width, coding, numbers, max_error: 0.0 };
+        let decoded = this.decode();
+        let values = decoded.values.chunks_exact(width);
+        let apart = wedges.iter().zip(values).map(|(&wedge, is)| apart(kind, layer.of(wedge), is));
+        this.max_error = apart.fold(0.0, f64::max);
+        this
+    }
+
+    /// Whether files can tell what a layer is.
+    pub(crate) fn is_told(layer: &Layer) -> bool {
+        let is_name = u16::try_from(layer.name.len()).is_ok();
+        is_name && (1..=usize::from(u8::MAX)).contains(&layer.width)
+    }
+
+    /// The values of all nodes.
+    pub(crate) fn decode(&self) -> Layer {
+        let numbers = self.numbers.all();
+        self.layer(numbers.chunks_exact(self.numbers.components()))
+    }
+
+    /// The values of some nodes, each given by its row and its number there.
+    pub(crate) fn decode_some(&self, places: &[(usize, usize)]) -> Layer {
+        self.layer(places.iter().map(|&(row, number)| self.numbers.get(row, number)))
+    }
+
+    fn layer<T: AsRef<[u32]>>(&self, nodes: impl ExactSizeIterator<Item = T>) -> Layer {
+        let mut values = Vec::with_capacity(nodes.len() * self.width);
+        nodes.for_each(|numbers| self.coding.values(numbers.as_ref(), &mut values));
+        Layer { kind: self.kind, name: self.name.clone(), width: self.width, values }
+    }
+
+    pub(crate) fn report(&self) -> LayerReport {
+        LayerReport {
+            kind: self.kind,
+            name: self.name.clone(),
+            bytes: self.bytes(),
+            max_error: self.max_error,
+        }
+    }
+
+    pub(crate) fn bytes(&self) -> usize {
+        let coding = match &self.coding {
+            Coding::Directions { .. } => 1,
+            Coding::Values(steps) => steps.bytes(),
+        };
+        // Its kind, set and width, how far it is off, and how long its name is.
+        13 + self.name.len() + coding + self.numbers.bytes()
+    }
+
+    pub(crate) fn store(&self, out: &mut Vec<u8>) {
+        let (kind, set) = tag(self.kind);
+        out.extend([kind, set, self.width as u8]);
+        out.extend(self.max_error.to_le_bytes());
+        out.extend((self.name.len() as u16).to_le_bytes());
+        out.extend(self.name.as_bytes());
+        match &self.coding {
+            Coding::Directions { bits } => out.push(*bits as u8),
+            Coding::Values(steps) => steps.store(out),
+        }
+        self.numbers.store(out);
+    }
+
+    pub(crate) fn restore(rows: Rows, reader: &mut Reader) -> Result<Self, Malformed> {
+        let (kind, set, width) = (reader.u8()?, reader.u8()?, usize::from(reader.u8()?));
+        let kind = untag(kind, set);
+        let kind = kind.ok_or_else(|| reader.wrong("a layer of no kind that is known"))?;
+        if width == 0 || kind.width().is_some_and(|only| only != width) {
+            return Err(reader.wrong(format!("a layer of {kind:?} is not {width} wide")));
+        }
+        let max_error = reader.f64()?;
+        let name = usize::from(reader.u16()?);
+        let name = String::from_utf8(reader.take(name)?.to_vec());
+        let name = name.map_err(|_| reader.wrong("a name that is not UTF-8"))?;
+        let coding = if is_direction(kind) {
+            let bits = u32::from(reader.u8()?);
+            if !(DIRECTION_BITS[0]..=DIRECTION_BITS[1]).contains(&bits) {
+                return Err(reader.wrong(format!("directions of {bits} bits")));
+            }
+            Coding::Directions { bits }
+        } else {
+            Coding::Values(Steps::restore(width, reader)?)
+        };
+        let numbers = Packed::restore(rows, coding.components(width), reader)?;
+        Ok(Self { kind, name, width, coding, numbers, max_error })
+    }
+}
+
+impl Coding {
+    /// How many numbers values of that width are.
+    fn components(&self, width: usize) -> usize {
+        match self {
+            // Tangents have their sign besides.
+            Self::Directions { .. } => width.min(4) - 1,
+            Self::Values(_) => width,
+        }
+    }
+
+    fn numbers(&self, values: &[f32]) -> Vec<u32> {
+        match self {
+            Self::Directions { bits } => {
+                let sign = values.get(3).map(|&sign| u32::from(sign < 0.0));
+                fold(direction(values), *bits).into_iter().chain(sign).collect()
+            }
+            Self::Values(steps) => steps.numbers(values),
+        }
+    }
+
+    fn values(&self, numbers: &[u32], values: &mut Vec<f32>) {
+        match self {
+            Self::Directions { bits } => {
+                // What is out of range is of spoilt bytes.
+                let last = (1 << bits) - 1;
+                let is = unfold([numbers[0].min(last), numbers[1].min(last)], *bits);
+                values.extend(is.to_array().map(|x| x as f32));
+                values.extend(numbers.get(2).map(|&sign| if sign == 1 { -1.0 } else { 1.0 }));
+            }
+            Self::Values(steps) => steps.values(numbers, values),
+        }
+    }
+}
+
+impl AttributeBounds {
+    /// The bound of a layer, in its own unit.
+    fn of(&self, layer: &Layer) -> f64 {
+        match layer.kind {
+            LayerKind::Normal | LayerKind::Tangent => self.direction_rad,
+            LayerKind::Uv(_) => self.uv,
+            LayerKind::Color(_) => self.color,
+            LayerKind::Weights(_) => self.weight,
+            // Whole numbers.
+            LayerKind::Joints(_) => 0.5,
+            LayerKind::Other => {
+                let values = layer.values.iter().map(|&x| f64::from(x));
+                let [min, max] = [
+                    values.clone().fold(f64::INFINITY, f64::min),
+                    values.fold(f64::NEG_INFINITY, f64::max),
+                ];
+                self.other * (max - min).max(0.0)
+            }
+        }
+    }
+}
+
+/// The least number of bits that turn no direction further.
+fn direction_bits(bound_rad: f64) -> u32 {
+    let [least, most] = DIRECTION_BITS;
+    (least..most).find(|&bits| most_turn_rad(bits) <= bound_rad).unwrap_or(most)
+}
+
+fn is_direction(kind: LayerKind) -> bool {
+    matches!(kind, LayerKind::Normal | LayerKind::Tangent)
+}
+
+fn direction(values: &[f32]) -> DVec3 {
+    DVec3::new(values[0].into(), values[1].into(), values[2].into())
+}
+
+/// How far a value is from what it was; a direction of no length was none.
+fn apart(kind: LayerKind, was: &[f32], is: &[f32]) -> f64 {
+    if is_direction(kind) {
+        let was = direction(was);
+        return if was.length() > 0.0 { was.angle_between(direction(is)) } else { 0.0 };
+    }
+    was.iter().zip(is).map(|(&was, &is)| (f64::from(was) - f64::from(is)).abs()).fold(0.0, f64::max)
+}
+
+/// The bytes that tell a kind.
+fn tag(kind: LayerKind) -> (u8, u8) {
+    match kind {
+        LayerKind::Normal => (0, 0),
+        LayerKind::Uv(set) => (1, set),
+        LayerKind::Color(set) => (2, set),
+        LayerKind::Tangent => (3, 0),
+        LayerKind::Joints(set) => (4, set),
+        LayerKind::Weights(set) => (5, set),
+        LayerKind::Other => (6, 0),
+    }
+}
+
+fn untag(kind: u8, set: u8) -> Option<LayerKind> {
+    let kinds = [
+        LayerKind::Normal,
+        LayerKind::Uv(set),
+        LayerKind::Color(set),
+        LayerKind::Tangent,
+        LayerKind::Joints(set),
+        LayerKind::Weights(set),
+        LayerKind::Other,
+    ];
+    kinds.into_iter().nth(kind.into())
+}

@@ -1,0 +1,76 @@
+//! Directions as two whole numbers: the octahedron, unfolded [CDE14].
+
+use glam::DVec3;
+
+/// The numbers of a direction, each of so many bits: of the four that are close, those that are closest.
+///
+/// No direction is taken for the first axis.
+pub(crate) fn fold(direction: DVec3, bits: u32) -> [u32; 2] {
+    let direction = direction.try_normalize().unwrap_or(DVec3::X);
+    let most = last(bits);
+    let [x, y] = flat(direction).map(|x| ((x + 1.0) / 2.0 * most).floor());
+    let near = [[x, y], [x + 1.0, y], [x, y + 1.0], [x + 1.0, y + 1.0]];
+    let near = near.map(|at| at.map(|x| x.min(most) as u32));
+    let apart = |at: &[u32; 2]| unfold(*at, bits).distance_squared(direction);
+    near.into_iter().min_by(|a, b| apart(a).total_cmp(&apart(b))).expect("there are four")
+}
+
+/// The direction that they tell: the same on every machine.
+pub(crate) fn unfold(at: [u32; 2], bits: u32) -> DVec3 {
+    let [x, y] = at.map(|x| f64::from(x) / last(bits) * 2.0 - 1.0);
+    let z = 1.0 - x.abs() - y.abs();
+    let over = (-z).max(0.0);
+    DVec3::new(x - over.copysign(x), y - over.copysign(y), z).normalize()
+}
+
+/// No direction is turned further.
+///
+/// Cells are squares of side `s` = 2 / (2^bits - 1). Where the octahedron is closest to its centre a step along their diagonal
+/// turns three times as far as it is long, across it √3 times: corners of cells are a lattice of triangles of side √6 s
+/// there, and nothing is further from all of them than √6 s / √3.
+pub(crate) fn most_turn_rad(bits: u32) -> f64 {
+    2.0 * 2f64.sqrt() / last(bits)
+}
+
+fn last(bits: u32) -> f64 {
+    f64::from((1u32 << bits) - 1)
+}
+
+/// Where a direction is on the unfolded octahedron, from -1 to 1.
+fn flat(direction: DVec3) -> [f64; 2] {
+    let DVec3 { x, y, z } = direction / direction.abs().element_sum();
+    if z >= 0.0 {
+        return [x, y];
+    }
+    [(1.0 - y.abs()).copysign(x), (1.0 - x.abs()).copysign(y)]
+}
+
+#[cfg(test)]
+mod tests {
+    use meshlod_mesh::sample;
+
+    use super::*;
+
+    #[test]
+    fn a_bit_more_halves_how_far_directions_turn() {
+        let worst = |bits: u32| {
+            let turn = |p: &[f64; 3]| {
+                let direction = DVec3::from(*p).normalize();
+                unfold(fold(direction, bits), bits).angle_between(direction)
+            };
+            sample::sphere(20_000).positions.iter().map(turn).fold(0.0, f64::max)
+        };
+        for bits in [4, 8, 12, 16] {
+            let bound = most_turn_rad(bits);
+            assert!((0.8 * bound..bound).contains(&worst(bits)), "{bits}: {}", worst(bits));
+        }
+    }
+
+    #[test]
+    fn the_axes_and_what_is_no_direction_are_told() {
+        for axis in [DVec3::X, DVec3::NEG_X, DVec3::Y, DVec3::NEG_Y, DVec3::Z, DVec3::NEG_Z] {
+            assert!(unfold(fold(axis, 10), 10).angle_between(axis) < 2e-3);
+        }
+        assert!(unfold(fold(DVec3::ZERO, 10), 10).angle_between(DVec3::X) < 2e-3);
+    }
+}

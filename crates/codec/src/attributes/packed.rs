@@ -1,0 +1,219 @@
+//! Whole numbers of nodes, in the rows that nodes lie in: each row tells its least, and as many bits as it needs.
+
+use crate::bits::{Bits, width};
+use crate::bytes::{Malformed, Reader};
+use crate::patch::Rows;
+
+/// So many numbers of each node.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct Packed {
+    /// The nodes of each row, as sums.
+    rows: Rows,
+    /// How many bits the least of a row takes, of each component.
+    widths: Vec<u32>,
+    /// Of each row and component its least, and how many bits say what is added to it.
+    heads: Bits,
+    numbers: Bits,
+    /// The bit at which the numbers of every [`STRIDE`]-th row start.
+    starts: Vec<u64>,
+}
+
+/// So many rows share the place where they start.
+const STRIDE: usize = 16;
+/// Numbers have at most 32 bits.
+const WIDTH_BITS: u32 = 6;
+
+impl Packed {
+    /// The numbers of nodes, `components` each, in the order of the rows.
+    pub(crate) fn new(rows: Rows, components: usize, numbers: &[u32]) -> Self {
+        let most = |k: usize| numbers.iter().skip(k).step_by(components).max().copied();
+        let widths = (0..components).map(|k| width(most(k).map_or(0, |most| most as usize + 1)));
+        let mut this = Self {
+            rows,
+            widths: widths.collect(),
+            heads: Bits::default(),
+            numbers: Bits::default(),
+            starts: Vec::new(),
+        };
+        for row in 0..this.rows.len() {
+            if row % STRIDE == 0 {
+                this.starts.push(this.numbers.len() as u64);
+            }
+            let nodes = this.rows.range(row);
+            this.push(&numbers[components * nodes.start..components * nodes.end]);
+        }
+        this
+    }
+
+    fn push(&mut self, numbers: &[u32]) {
+        let components = self.widths.len();
+        let of = |k: usize| numbers.iter().skip(k).step_by(components).copied();
+        let spans: Vec<_> = (0..components)
+            .map(|k| {
+                let least = of(k).min().unwrap_or(0);
+                (least, width((of(k).max().unwrap_or(0) - least) as usize + 1))
+            })
+            .collect();
+        for (&(least, width), &least_width) in spans.iter().zip(&self.widths) {
+            self.heads.push(least.into(), least_width);
+            self.heads.push(width.into(), WIDTH_BITS);
+        }
+        for node in numbers.chunks_exact(components) {
+            for (&number, &(least, width)) in node.iter().zip(&spans) {
+                self.numbers.push((number - least).into(), width);
+            }
+        }
+    }
+
+    pub(crate) fn rows(&self) -> &Rows {
+        &self.rows
+    }
+
+    /// How many numbers a node has.
+    pub(crate) fn components(&self) -> usize {
+        self.widths.len()
+    }
+
+    /// The numbers of a node, by its row and its number there: no others are decoded.
+    pub(crate) fn get(&self, row: usize, number: usize) -> Vec<u32> {
+        let stride = row - row % STRIDE;
+        let before = (stride..row).map(|row| self.rows.range(row).len() * self.row_bits(row));
+        let start = self.starts[row / STRIDE] as usize + before.sum::<usize>();
+        let mut numbers = Vec::with_capacity(self.components());
+        self.read(row, start + number * self.row_bits(row), &mut numbers);
+        numbers
+    }
+
+    /// The numbers of all.
+    pub(crate) fn all(&self) -> Vec<u32> {
+        let mut numbers = Vec::with_capacity(self.components() * self.rows.nodes());
+        let mut at = 0;
+        for row in 0..self.rows.len() {
+            for _ in self.rows.range(row) {
+                at = self.read(row, at, &mut numbers);
+            }
+        }
+        numbers
+    }
+
+    /// Reads a node's numbers from a bit on, and gives back where they end.
+    fn read(&self, row: usize, mut at: usize, numbers: &mut Vec<u32>) -> usize {
+        for (least, width) in self.spans(row) {
+            numbers.push(least.wrapping_add(self.numbers.get(at, width) as u32));
+            at += width as usize;
+        }
+        at
+    }
+
+    /// Of each component of a row: the least number, and how many bits the others take.
+    fn spans(&self, row: usize) -> impl Iterator<Item = (u32, u32)> {
+        let mut at = row * self.head_bits();
+        let mut next = move |width: u32| {
+            at += width as usize;
+            self.heads.get(at - width as usize, width) as u32
+        };
+        self.widths.iter().map(move |&width| (next(width), next(WIDTH_BITS)))
+    }
+
+    fn head_bits(&self) -> usize {
+        self.widths.iter().map(|width| (width + WIDTH_BITS) as usize).sum()
+    }
+
+    fn row_bits(&self, row: usize) -> usize {
+        self.spans(row).map(|(_, width)| width as usize).sum()
+    }
+
+    /// What they take, with all that decoding them needs, in bytes.
+    pub(crate) fn bytes(&self) -> usize {
+        let bits = self.heads.len().div_ceil(8) + self.numbers.len().div_ceil(8);
+        self.widths.len() + size_of_val(&self.starts[..]) + bits
+    }
+
+    /// All but the rows and how many components there are.
+    pub(crate) fn store(&self, out: &mut Vec<u8>) {
+        out.extend(self.widths.iter().map(|&width| width as u8));
+        self.heads.store(out);
+        out.extend(self.starts.iter().flat_map(|start| start.to_le_bytes()));
+        self.numbers.store(out);
+    }
+
+    pub(crate) fn restore(
+        rows: Rows,
+        components: usize,
+        reader: &mut Reader,
+    ) -> Result<Self, Malformed> {
+        let widths: Vec<u32> = reader.take(components)?.iter().map(|&width| width.into()).collect();
+        if widths.iter().any(|&width| width > u32::BITS) {
+            return Err(reader.wrong("numbers have at most 32 bits"));
+        }
+        let (heads, numbers, starts) = (Bits::default(), Bits::default(), Vec::new());
+        let mut this = Self { rows, widths, heads, numbers, starts };
+        this.heads = Bits::restore(this.rows.len() * this.head_bits(), reader)?;
+        let mut end = 0;
+        for row in 0..this.rows.len() {
+            if this.spans(row).any(|(_, width)| width > u32::BITS) {
+                return Err(reader.wrong(format!("row {row} has numbers of more than 32 bits")));
+            }
+            if row % STRIDE == 0 {
+                this.starts.push(end as u64);
+                if reader.u64()? != end as u64 {
+                    return Err(reader.wrong(format!("row {row} starts elsewhere")));
+                }
+            }
+            end += this.rows.range(row).len() * this.row_bits(row);
+        }
+        this.numbers = Bits::restore(end, reader)?;
+        Ok(this)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn packed() -> (Vec<u32>, Packed) {
+        let sizes = (0..40).map(|row| row * 7 % 5);
+        let rows = Rows::new(sizes);
+        let number = |at: u32| at.wrapping_mul(0x9e37_79b9) >> (at / 3 % 33).min(31);
+        let numbers: Vec<u32> = (0..3 * rows.nodes() as u32).map(number).collect();
+        (numbers.clone(), Packed::new(rows, 3, &numbers))
+    }
+
+    #[test]
+    fn numbers_come_back_all_together_and_each_alone() {
+        let (numbers, packed) = packed();
+        assert_eq!(packed.all(), numbers);
+        let mut all = numbers.chunks(3);
+        for row in 0..packed.rows.len() {
+            for number in 0..packed.rows.range(row).len() {
+                assert_eq!(packed.get(row, number), all.next().unwrap());
+            }
+        }
+    }
+
+    #[test]
+    fn bytes_are_what_they_say_and_spoilt_ones_do_no_harm() {
+        let (_, packed) = packed();
+        let mut bytes = Vec::new();
+        packed.store(&mut bytes);
+        assert_eq!(bytes.len(), packed.bytes());
+        let restore =
+            |bytes: &[u8]| Packed::restore(packed.rows.clone(), 3, &mut Reader::new(bytes));
+        assert_eq!(restore(&bytes), Ok(packed.clone()));
+        assert!(restore(&bytes[..bytes.len() - 1]).is_err());
+        for bit in 0..8 * bytes.len() {
+            let mut spoilt = bytes.clone();
+            spoilt[bit / 8] ^= 1 << (bit % 8);
+            if let Ok(packed) = restore(&spoilt) {
+                assert_eq!(packed.all().len(), 3 * packed.rows.nodes());
+            }
+        }
+    }
+
+    #[test]
+    fn what_is_the_same_all_over_a_row_takes_no_bits() {
+        let same = Packed::new(Rows::new([1000]), 1, &[u32::MAX; 1000]);
+        assert!(same.bytes() < 20);
+        assert_eq!(same.get(0, 999), [u32::MAX]);
+    }
+}

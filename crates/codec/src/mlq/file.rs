@@ -1,0 +1,133 @@
+//! The file `.mlq`: docs/formats/mlq.md.
+
+use super::{BLOCKS_PER_PATCH, Compressed, Exceptions, Homes, Positions};
+use crate::attributes::{Packed, PackedLayer};
+use crate::bytes::{Malformed, Reader};
+use crate::kd::BLOCK;
+use crate::patch::{Patches, Rows};
+
+const MAGIC: [u8; 4] = *b"MLQ1";
+/// The magic bytes, the scheme, whether there are doubles, how many layers there are, and of the three sections how
+/// long they are and their sums.
+pub(super) const HEADER: usize = 4 + 1 + 1 + 2 + 3 * SUM;
+const SUM: usize = 8 + 4;
+
+impl Compressed {
+    /// The bytes of a file.
+    pub fn to_bytes(&self) -> Vec<u8> {
+        let mut sections = [Vec::new(), Vec::new(), Vec::new()];
+        let [positions, connectivity, attributes] = &mut sections;
+        self.positions.store(positions);
+        if let Homes::Doubles(numbers) = &self.homes {
+            numbers.rows().store(connectivity);
+            numbers.store(connectivity);
+        }
+        self.patches.store(connectivity);
+        if let Homes::Parts(exceptions) = &self.homes {
+            exceptions.store(connectivity);
+        }
+        self.layers.iter().for_each(|layer| layer.store(attributes));
+
+        let mut bytes = Vec::with_capacity(self.sizes().total);
+        bytes.extend(MAGIC);
+        bytes.push(self.positions.tag());
+        bytes.push(matches!(self.homes, Homes::Doubles(_)).into());
+        bytes.extend((self.layers.len() as u16).to_le_bytes());
+        for section in &sections {
+            bytes.extend((section.len() as u64).to_le_bytes());
+            bytes.extend(crc32fast::hash(section).to_le_bytes());
+        }
+        sections.iter().for_each(|section| bytes.extend(section));
+        bytes
+    }
+
+    /// Writes the checksums that fit into bytes that were changed, for tests of [`Compressed::from_bytes`].
+    #[doc(hidden)]
+    pub fn seal(bytes: &mut [u8]) {
+        let (mut at, mut sum) = (HEADER, 8);
+        while sum + SUM <= HEADER.min(bytes.len()) {
+            let len: [u8; 8] = bytes[sum..sum + 8].try_into().expect("eight");
+            let end =
+                at.saturating_add(usize::try_from(u64::from_le_bytes(len)).unwrap_or(usize::MAX));
+            let told = crc32fast::hash(bytes.get(at..end).unwrap_or_default());
+            bytes[sum + 8..sum + SUM].copy_from_slice(&told.to_le_bytes());
+            (at, sum) = (end, sum + SUM);
+        }
+    }
+
+    /// What the bytes of a file are.
+    ///
+    /// # Errors
+    /// Bytes that are none, or were spoilt.
+    pub fn from_bytes(bytes: &[u8]) -> Result<Self, Malformed> {
+        let mut reader = Reader::new(bytes);
+        if reader.take(4)? != MAGIC {
+            return Err(Malformed {
+                at: 0,
+                reason: "these are not the first bytes of a .mlq".into(),
+            });
+        }
+        let (scheme, has_doubles, layers) = (reader.u8()?, reader.u8()?, reader.u16()?);
+        if has_doubles > 1 {
+            return Err(reader.wrong(format!("flags {has_doubles:#x} are not known")));
+        }
+        let mut sums = [(0, 0); 3];
+        for sum in &mut sums {
+            *sum = (reader.u64()?, reader.u32()?);
+        }
+        let mut section = |what: &str, (len, sum): (u64, u32)| {
+            let section = reader.section(usize::try_from(len).unwrap_or(usize::MAX))?;
+            match crc32fast::hash(section.rest()) == sum {
+                true => Ok(section),
+                false => Err(section.wrong(format!("the {what} have been spoilt: another sum"))),
+            }
+        };
+        let mut positions = section("positions", sums[0])?;
+        let mut faces = section("faces", sums[1])?;
+        let mut attributes = section("attributes", sums[2])?;
+        reader.finish()?;
+        let this = restore(
+            scheme,
+            has_doubles == 1,
+            layers,
+            [&mut positions, &mut faces, &mut attributes],
+        )?;
+        [positions, faces, attributes].iter().try_for_each(Reader::finish)?;
+        Ok(this)
+    }
+}
+
+/// What is in the sections of positions, faces and attributes.
+fn restore(
+    scheme: u8,
+    has_doubles: bool,
+    layers: u16,
+    [positions, faces, attributes]: [&mut Reader; 3],
+) -> Result<Compressed, Malformed> {
+    let positions = Positions::restore(scheme, positions)?;
+    let count = positions.len();
+    let block = |at: usize| BLOCK.min(count - BLOCK * at);
+    let blocks = count.div_ceil(BLOCK);
+    let (mut homes, rows, rows_per_patch) = match &positions {
+        Positions::Parts(parts) => (Homes::Own, parts.rows().clone(), 1),
+        _ if has_doubles => {
+            let doubles = Rows::restore(blocks, faces)?;
+            let rows = (0..blocks).flat_map(|at| [block(at), doubles.range(at).len()]);
+            let rows = Rows::new(rows);
+            (Homes::Doubles(Packed::restore(doubles, 1, faces)?), rows, 2 * BLOCKS_PER_PATCH)
+        }
+        _ => (Homes::Own, Rows::new((0..blocks).map(block)), BLOCKS_PER_PATCH),
+    };
+    let patches = Patches::restore(rows.clone(), rows_per_patch, faces)?;
+    // Each is at a corner, or there would be no need of it; and a face takes bits.
+    if rows.nodes() > 3 * patches.face_count() {
+        return Err(faces.wrong("more nodes than corners of faces"));
+    }
+    if let Positions::Parts(_) = positions {
+        homes = Homes::Parts(Exceptions::restore(faces)?);
+    }
+    let layers = (0..layers)
+        .map(|_| PackedLayer::restore(rows.clone(), attributes))
+        .collect::<Result<_, _>>()?;
+    Ok(Compressed { positions, patches, homes, layers })
+}

@@ -1,0 +1,75 @@
+//! What faces have at their corners: vertices, or wedges where there are attributes.
+
+use meshlod_mesh::{FaceId, Mesh, VertexId};
+
+use crate::kd::BLOCK;
+use crate::parts::Parts;
+
+/// The nodes of a mesh, each in a row.
+pub(super) struct Nodes {
+    pub(super) faces: Vec<[u32; 3]>,
+    /// The vertex that each node is, or is a wedge of.
+    pub(super) vertex_of: Vec<VertexId>,
+    /// Its vertex or wedge.
+    pub(super) corner_of: Vec<u32>,
+    pub(super) row_of: Vec<u32>,
+    pub(super) rows: usize,
+}
+
+impl Nodes {
+    /// Nodes in rows of the blocks that vertices are in. Where a vertex has several wedges, a block has two rows: of
+    /// the first wedges of its vertices, and of the others.
+    pub(super) fn of_blocks(mesh: &Mesh, ordered: &[VertexId]) -> Self {
+        let mut this = Self::of_groups(mesh, [(0..mesh.faces.len()).map(FaceId::new)]);
+        let mut block_of = vec![0; mesh.positions.len()];
+        ordered.iter().enumerate().for_each(|(at, v)| block_of[v.index()] = at / BLOCK);
+        let mut seen = vec![false; mesh.positions.len()];
+        let mut is_double = |v: &VertexId| std::mem::replace(&mut seen[v.index()], true);
+        let is_double: Vec<bool> = this.vertex_of.iter().map(&mut is_double).collect();
+        let per_block = if is_double.contains(&true) { 2 } else { 1 };
+        let row = |(v, &is_double): (&VertexId, &bool)| {
+            (per_block * block_of[v.index()] + usize::from(is_double)) as u32
+        };
+        this.row_of = this.vertex_of.iter().zip(&is_double).map(row).collect();
+        this.rows = per_block * ordered.len().div_ceil(BLOCK);
+        this
+    }
+
+    /// Nodes in a row for each part: what several parts have is several nodes.
+    pub(super) fn of_parts(mesh: &Mesh, parts: &Parts) -> Self {
+        Self::of_groups(mesh, parts.parts().iter().map(|part| part.ids.iter().copied()))
+    }
+
+    /// Nodes in a row for each group of faces.
+    fn of_groups<I: Iterator<Item = FaceId>>(
+        mesh: &Mesh,
+        groups: impl IntoIterator<Item = I>,
+    ) -> Self {
+        let attributes = mesh.attributes.as_ref().filter(|of| !of.layers.is_empty());
+        let corners = attributes.map(|attributes| &attributes.corners);
+        let count = attributes.map_or(mesh.positions.len(), |of| of.wedge_count);
+        let mut number_of = vec![None; count];
+        let (faces, vertex_of) = (Vec::with_capacity(mesh.faces.len()), Vec::new());
+        let mut this = Self { faces, vertex_of, corner_of: vec![], row_of: vec![], rows: 0 };
+        for group in groups {
+            let first = this.vertex_of.len();
+            for face in group {
+                let vertices = mesh.faces[face.index()];
+                let corners =
+                    corners.map_or(vertices.map(|v| v.0), |of| of[face.index()].map(|w| w.0));
+                let node = |k: usize| {
+                    *number_of[corners[k] as usize].get_or_insert_with(|| {
+                        this.vertex_of.push(vertices[k]);
+                        this.corner_of.push(corners[k]);
+                        this.vertex_of.len() as u32 - 1
+                    })
+                };
+                this.faces.push([0, 1, 2].map(node));
+            }
+            this.corner_of[first..].iter().for_each(|&corner| number_of[corner as usize] = None);
+            this.row_of.resize(this.vertex_of.len(), this.rows as u32);
+            this.rows += 1;
+        }
+        this
+    }
+}

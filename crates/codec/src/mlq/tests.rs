@@ -1,0 +1,193 @@
+//! What every scheme must hold, on every kind of mesh.
+
+use glam::DVec3;
+use meshlod_fixtures as fixtures;
+use meshlod_mesh::{Connectivity, Layer, LayerKind, face_components, sample};
+
+use super::*;
+use crate::parts::{Cells, Parting};
+
+/// Meshes with and without attributes and seams, closed and open, and what is no surface.
+fn meshes() -> Vec<Mesh> {
+    let mut seamed = sample::terrain(1500);
+    // Each face has wedges of its own.
+    let corners = (0..seamed.faces.len()).map(|f| [3 * f, 3 * f + 1, 3 * f + 2].map(WedgeId::new));
+    let corners: Vec<_> = corners.collect();
+    let uv = |k: usize| [(k % 97) as f32 / 97.0, (k / 7 % 13) as f32];
+    let count = 3 * corners.len();
+    seamed.attributes = Some(Attributes {
+        corners,
+        wedge_count: count,
+        layers: vec![Layer {
+            kind: LayerKind::Uv(0),
+            name: "uv".into(),
+            width: 2,
+            values: (0..count).flat_map(uv).collect(),
+        }],
+    });
+    vec![
+        sample::sphere(3000),
+        sample::gyroid(4000),
+        fixtures::seam_strip(),
+        seamed,
+        fixtures::two_objects(),
+        fixtures::moebius(9),
+        fixtures::hourglass(),
+        fixtures::mesh(&[[5.0; 3], [6.0, 5.0, 5.0], [5.0, 6.0, 5.0]], &[[0, 1, 2], [0, 1, 2]]),
+    ]
+}
+
+/// A mesh by every scheme.
+fn by_schemes(mesh: &Mesh) -> Vec<Compressed> {
+    compressions(mesh).into_iter().map(|done| done.compressed).collect()
+}
+
+fn compressions(mesh: &Mesh) -> Vec<Compression> {
+    let bounds = AttributeBounds::default();
+    let parts = Parting::new(mesh).unwrap();
+    let in_parts = |count, cells| {
+        Compressed::in_parts(mesh, &parts.into_count(count, cells), &bounds).unwrap()
+    };
+    vec![
+        in_parts(1, Cells::Centred),
+        in_parts(9, Cells::Truncated),
+        Compressed::on_lattice(mesh, Lattice::new(-7).unwrap(), &bounds).unwrap(),
+        Compressed::in_blocks(mesh, Closeness::Bits(8), &bounds).unwrap(),
+    ]
+}
+
+/// The faces of a mesh by where their corners are and the values there, from the least corner on, in order.
+fn drawn(mesh: &Mesh, at: impl Fn(f64) -> f64) -> Vec<[String; 3]> {
+    let corner = |face: usize, k: usize| {
+        let place = mesh.positions[mesh.faces[face][k].index()].map(&at);
+        let values = mesh.attributes.iter().flat_map(|of| {
+            of.layers.iter().map(move |layer| layer.of(of.corners[face][k]).to_vec())
+        });
+        format!("{place:?} {:?}", values.collect::<Vec<_>>())
+    };
+    let turned = |face: usize| {
+        let mut corners = [0, 1, 2].map(|k| corner(face, k));
+        let least = (0..3).min_by_key(|&k| &corners[k]).unwrap();
+        corners.rotate_left(least);
+        corners
+    };
+    let mut drawn: Vec<_> = (0..mesh.faces.len()).map(turned).collect();
+    drawn.sort_unstable();
+    drawn
+}
+
+#[test]
+fn every_scheme_gives_the_mesh_back_from_bytes() {
+    for mesh in meshes() {
+        for compressed in by_schemes(&mesh) {
+            let bytes = compressed.to_bytes();
+            assert_eq!(bytes.len(), compressed.sizes().total);
+            assert!(Compressed::from_bytes(&bytes).unwrap() == compressed);
+            let decoded = compressed.decode().unwrap();
+            decoded.validate().unwrap();
+            let used = mesh.used_vertices().iter().filter(|&&used| used).count();
+            assert_eq!((decoded.positions.len(), decoded.faces.len()), (used, mesh.faces.len()));
+            let shape = |mesh: &Mesh| {
+                let count = mesh.positions.len();
+                let is_closed = Connectivity::new(&mesh.faces, count).is_closed();
+                (is_closed, face_components(&mesh.faces, count).1)
+            };
+            assert_eq!(shape(&decoded), shape(&mesh));
+        }
+    }
+}
+
+#[test]
+fn faces_are_where_the_lattice_puts_them_with_their_values() {
+    for mut mesh in meshes() {
+        let bounds = AttributeBounds::default();
+        let compressed = Compressed::on_lattice(&mesh, Lattice::new(-7).unwrap(), &bounds).unwrap();
+        let closest = |x: f64| (x * 128.0).round() / 128.0 + 0.0;
+        for layer in mesh.attributes.iter_mut().flat_map(|of| &mut of.layers) {
+            layer.values.iter_mut().for_each(|x| *x = (*x * 4096.0).round() / 4096.0 + 0.0);
+        }
+        let decoded = compressed.compressed.decode().unwrap();
+        assert!(drawn(&decoded, |x| x + 0.0) == drawn(&mesh, closest));
+    }
+}
+
+#[test]
+fn patches_decoded_alone_are_the_mesh() {
+    for mesh in meshes() {
+        for compressed in by_schemes(&mesh) {
+            let patches = (0..compressed.patches()).map(|at| compressed.patch(at).unwrap());
+            let mut alone: Vec<_> = patches.flat_map(|patch| drawn(&patch, |x| x)).collect();
+            alone.sort_unstable();
+            assert!(alone == drawn(&compressed.decode().unwrap(), |x| x));
+        }
+    }
+}
+
+#[test]
+fn every_vertex_is_told_which_it_was() {
+    for mesh in meshes() {
+        for Compression { compressed, vertices, .. } in compressions(&mesh) {
+            let decoded = compressed.decode().unwrap();
+            assert_eq!(vertices.len(), decoded.positions.len());
+            let was = |v: &VertexId| DVec3::from(mesh.positions[v.index()]);
+            let apart = vertices.iter().zip(&decoded.positions);
+            let apart = apart.map(|(v, &is)| was(v).distance(is.into())).fold(0.0, f64::max);
+            assert!(apart < mesh.bounds().diagonal() / 60.0, "{apart}");
+        }
+    }
+}
+
+#[test]
+fn what_cannot_be_is_said() {
+    let lattice = Lattice::new(-7).unwrap();
+    let ask = |mesh: &Mesh| {
+        Compressed::on_lattice(mesh, lattice, &AttributeBounds::default()).map(|_| ()).unwrap_err()
+    };
+    assert_eq!(ask(&Mesh::default()), CompressError::Empty);
+    let mut mesh = fixtures::seam_strip();
+    let layer = |mesh: &mut Mesh, change: &dyn Fn(&mut Layer)| {
+        change(&mut mesh.attributes.as_mut().unwrap().layers[0]);
+    };
+    layer(&mut mesh, &|layer| *layer.values.last_mut().unwrap() = f32::NAN);
+    assert!(matches!(ask(&mesh), CompressError::NotFinite { .. }));
+    layer(&mut mesh, &|layer| layer.name = "x".repeat(70_000));
+    assert!(matches!(ask(&mesh), CompressError::Layer(_)));
+    mesh.faces[0][0] = VertexId(1000);
+    assert!(matches!(ask(&mesh), CompressError::Mesh(_)));
+}
+
+#[test]
+fn spoilt_bytes_are_told() {
+    for mesh in [sample::gyroid(1000), fixtures::seam_strip()] {
+        for compressed in by_schemes(&mesh) {
+            let bytes = compressed.to_bytes();
+            for bit in (0..8 * bytes.len()).step_by(bytes.len() / 40) {
+                let mut spoilt = bytes.clone();
+                spoilt[bit / 8] ^= 1 << (bit % 8);
+                assert!(Compressed::from_bytes(&spoilt).is_err(), "bit {bit}");
+            }
+            for len in (0..bytes.len()).step_by(bytes.len() / 40) {
+                assert!(Compressed::from_bytes(&bytes[..len]).is_err());
+            }
+        }
+    }
+}
+
+#[test]
+fn what_sums_do_not_tell_does_no_harm() {
+    let mut read = 0;
+    for mesh in [sample::gyroid(600), meshes().remove(3)] {
+        for compressed in by_schemes(&mesh) {
+            let bytes = compressed.to_bytes();
+            for bit in (0..8 * bytes.len()).step_by(1 + bytes.len() / 300) {
+                let mut spoilt = bytes.clone();
+                spoilt[bit / 8] ^= 1 << (bit % 8);
+                Compressed::seal(&mut spoilt);
+                let decoded = Compressed::from_bytes(&spoilt).and_then(|of| of.decode());
+                read += usize::from(decoded.is_ok());
+                decoded.map_or(Ok(()), |mesh| mesh.validate()).unwrap();
+            }
+        }
+    }
+    assert!(read > 1000, "{read}");
+}

@@ -1,0 +1,124 @@
+//! The positions of parts alone, in an order that others give: as files have them.
+
+use meshlod_mesh::VertexId;
+
+use super::grid::{Cells, FARTHEST, Grid};
+use super::{HEADER, Part, Parts, part_header};
+use crate::bytes::{Malformed, Reader};
+use crate::patch::Rows;
+
+/// The positions of nodes, each in a part: parts are rows.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct PackedParts {
+    grid: Grid,
+    /// How many vertices nodes are of.
+    vertices: u32,
+    rows: Rows,
+    offsets: Vec<[i32; 3]>,
+    positions: Vec<[u8; 3]>,
+}
+
+/// Vertices are in the middles of their cells.
+const CENTRED: u8 = 1;
+/// Offsets have 32 bits an axis.
+const LONG: u8 = 2;
+
+impl PackedParts {
+    /// The positions of nodes, given as vertices in the order of the parts.
+    ///
+    /// # Panics
+    /// A node that its part has not.
+    pub(crate) fn new(parts: &Parts, rows: Rows, nodes: &[VertexId]) -> Self {
+        let position = |(row, part): (usize, &Part)| {
+            let of =
+                |v: &VertexId| part.positions[part.vertices.binary_search(v).expect("its own")];
+            nodes[rows.range(row)].iter().map(of).collect::<Vec<_>>()
+        };
+        let positions = parts.parts.iter().enumerate().flat_map(position).collect();
+        let offsets = parts.parts.iter().map(|part| part.offset).collect();
+        Self { grid: parts.grid, vertices: parts.vertices as u32, rows, offsets, positions }
+    }
+
+    pub(crate) fn vertices(&self) -> usize {
+        self.vertices as usize
+    }
+
+    /// The nodes of each part.
+    pub(crate) fn rows(&self) -> &Rows {
+        &self.rows
+    }
+
+    /// The cell of the common grid that each node is in.
+    pub(crate) fn cells(&self) -> Vec<[i32; 3]> {
+        self.each(|offset, position| [0, 1, 2].map(|k| offset[k] + i32::from(position[k])))
+    }
+
+    /// Where each node is.
+    pub(crate) fn positions(&self) -> Vec<[f64; 3]> {
+        self.each(|offset, position| self.grid.place(offset, position))
+    }
+
+    /// Where one is.
+    pub(crate) fn position(&self, node: usize) -> [f64; 3] {
+        let (part, _) = self.rows.place(node as u32);
+        self.grid.place(self.offsets[part], self.positions[node])
+    }
+
+    fn each<T>(&self, of: impl Fn([i32; 3], [u8; 3]) -> T) -> Vec<T> {
+        let rows = self.offsets.iter().enumerate();
+        let nodes =
+            rows.flat_map(|(row, &offset)| self.rows.range(row).map(move |at| (offset, at)));
+        nodes.map(|(offset, at)| of(offset, self.positions[at])).collect()
+    }
+
+    pub(crate) fn bytes(&self) -> usize {
+        HEADER + self.offsets.len() * part_header(&self.offsets) + 3 * self.positions.len()
+    }
+
+    pub(crate) fn store(&self, out: &mut Vec<u8>) {
+        let is_long = part_header(&self.offsets) > part_header(&[]);
+        out.push(if is_long { LONG } else { 0 } | if self.grid.is_centred() { CENTRED } else { 0 });
+        out.extend(self.vertices.to_le_bytes());
+        out.extend((self.offsets.len() as u32).to_le_bytes());
+        out.extend(self.grid.cell().iter().flat_map(|side| side.to_le_bytes()));
+        for (row, offset) in self.offsets.iter().enumerate() {
+            out.extend((self.rows.range(row).len() as u32).to_le_bytes());
+            for x in offset {
+                let bytes = x.to_le_bytes();
+                out.extend(if is_long { &bytes[..] } else { &bytes[..2] });
+            }
+        }
+        out.extend(self.positions.as_flattened());
+    }
+
+    pub(crate) fn restore(reader: &mut Reader) -> Result<Self, Malformed> {
+        let flags = reader.u8()?;
+        if flags & !(CENTRED | LONG) != 0 {
+            return Err(reader.wrong(format!("flags {flags:#x} are not known")));
+        }
+        let (vertices, count) = (reader.u32()?, reader.u32()?);
+        let cell = [reader.f32()?, reader.f32()?, reader.f32()?];
+        let cells = if flags & CENTRED == 0 { Cells::Truncated } else { Cells::Centred };
+        let grid = Grid::of_cells(cell, cells).ok_or_else(|| reader.wrong("cells of no size"))?;
+        let (mut sizes, mut offsets) = (Vec::new(), Vec::new());
+        for _ in 0..count {
+            sizes.push(reader.u32()? as usize);
+            let mut axis = || match flags & LONG {
+                0 => reader.u16().map(|x| i32::from(x as i16)),
+                _ => reader.i32(),
+            };
+            let offset = [axis()?, axis()?, axis()?];
+            if offset.iter().any(|x| x.abs_diff(0) > FARTHEST) {
+                return Err(reader.wrong("a part further off than f32 tells"));
+            }
+            offsets.push(offset);
+        }
+        let nodes: u64 = sizes.iter().map(|&size| size as u64).sum();
+        if nodes > u32::MAX.into() || u64::from(vertices) > nodes {
+            return Err(reader.wrong(format!("{vertices} vertices in {nodes} positions")));
+        }
+        let size = usize::try_from(3 * nodes).unwrap_or(usize::MAX);
+        let (positions, _) = reader.take(size)?.as_chunks();
+        Ok(Self { grid, vertices, rows: Rows::new(sizes), offsets, positions: positions.to_vec() })
+    }
+}

@@ -1,0 +1,255 @@
+//! Faces in patches, each decoded alone: told by how they grow from one another.
+//!
+//! What faces have at their corners, *nodes*, lies in rows; so many rows in a row belong to a patch, and faces are in
+//! the patch that has most of their corners. A patch grows over its edges as a cut-border machine does [GS98]: across
+//! each open edge there is nothing, or a face whose third corner is new, or a neighbour of the edge on the border,
+//! or any other. New nodes come in the order in which their rows have them, so most faces need no index at all.
+
+mod front;
+mod grow;
+mod regrow;
+mod steps;
+#[cfg(test)]
+mod tests;
+
+use std::ops::Range;
+
+use self::grow::{Grower, Step};
+use self::regrow::Regrowth;
+use self::steps::{Book, Place};
+use crate::bits::{Bits, Cursor, width};
+use crate::bytes::{Malformed, Reader};
+
+/// How many nodes each row has, as sums.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct Rows {
+    starts: Vec<u32>,
+}
+
+/// The faces of a mesh in patches.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct Patches {
+    rows: Rows,
+    rows_per_patch: usize,
+    heads: Vec<Head>,
+    bits: Bits,
+}
+
+/// Which byte a patch's bits start at, and how many faces it has.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Head {
+    start: u32,
+    faces: u32,
+}
+
+/// Of a file: how many bytes the bits of all take. Of a patch: [`Head`].
+const HEADER: usize = 4;
+const PATCH: usize = 8;
+
+impl Rows {
+    /// Rows of that many nodes each.
+    pub(crate) fn new(sizes: impl IntoIterator<Item = usize>) -> Self {
+        let mut starts = vec![0];
+        let mut end = 0;
+        starts.extend(sizes.into_iter().map(|size| {
+            end += size as u32;
+            end
+        }));
+        Self { starts }
+    }
+
+    pub(crate) fn len(&self) -> usize {
+        self.starts.len() - 1
+    }
+
+    /// How many nodes all have.
+    pub(crate) fn nodes(&self) -> usize {
+        self.starts[self.len()] as usize
+    }
+
+    /// What they take in bytes: a width, and as many bits for each.
+    pub(crate) fn bytes(&self) -> usize {
+        1 + (self.len() * self.width() as usize).div_ceil(8)
+    }
+
+    pub(crate) fn store(&self, out: &mut Vec<u8>) {
+        let mut bits = Bits::default();
+        (0..self.len()).for_each(|row| bits.push(self.range(row).len() as u64, self.width()));
+        out.push(self.width() as u8);
+        bits.store(out);
+    }
+
+    pub(crate) fn restore(count: usize, reader: &mut Reader) -> Result<Self, Malformed> {
+        let width = u32::from(reader.u8()?);
+        if width > u32::BITS {
+            return Err(reader.wrong("rows with more nodes than are numbered"));
+        }
+        let bits = Bits::restore(count.saturating_mul(width as usize), reader)?;
+        let sizes = (0..count).map(|row| bits.get(row * width as usize, width));
+        if sizes.clone().sum::<u64>() > u32::MAX.into() {
+            return Err(reader.wrong("more nodes than are numbered"));
+        }
+        Ok(Self::new(sizes.map(|size| size as usize)))
+    }
+
+    fn width(&self) -> u32 {
+        let most = (0..self.len()).map(|row| self.range(row).len()).max();
+        width(most.unwrap_or(0) + 1)
+    }
+
+    /// The nodes of one.
+    pub(crate) fn range(&self, row: usize) -> Range<usize> {
+        self.starts[row] as usize..self.starts[row + 1] as usize
+    }
+
+    /// The row of a node, and its number there.
+    pub(crate) fn place(&self, node: u32) -> (usize, usize) {
+        let row = self.starts.partition_point(|&start| start <= node) - 1;
+        (row, (node - self.starts[row]) as usize)
+    }
+
+    fn first(&self, row: u32) -> u32 {
+        self.starts[row as usize]
+    }
+
+    fn size(&self, row: u32) -> u32 {
+        self.starts[row as usize + 1] - self.starts[row as usize]
+    }
+}
+
+impl Patches {
+    /// The faces in patches, and the nodes in the order of the rows: within a row as its patch comes to them.
+    ///
+    /// `row_of` is the row of each node. A patch has `rows_per_patch` rows.
+    pub(crate) fn new(
+        faces: &[[u32; 3]],
+        row_of: &[u32],
+        rows: usize,
+        rows_per_patch: usize,
+    ) -> (Self, Vec<u32>) {
+        let members = members(faces, row_of, rows_per_patch, rows.div_ceil(rows_per_patch));
+        let mut grower = Grower::new(row_of.len());
+        let grown: Vec<_> = members.iter().map(|faces| grower.grow(faces)).collect();
+        let order = in_rows(&grown, row_of, rows, rows_per_patch);
+        let rows = Rows::new(order.iter().map(Vec::len));
+        let mut numbers = vec![0; row_of.len()];
+        order.iter().for_each(|row| {
+            row.iter().zip(0..).for_each(|(&node, number)| numbers[node as usize] = number);
+        });
+        let place =
+            |node: u32| Place { row: row_of[node as usize], number: numbers[node as usize] };
+        let mut this = Self { rows, rows_per_patch, heads: Vec::new(), bits: Bits::default() };
+        for (steps, faces) in grown.iter().zip(&members) {
+            this.push(steps, faces.len(), place);
+        }
+        this.bits.fill_byte();
+        (this, order.concat())
+    }
+
+    pub(crate) fn rows(&self) -> &Rows {
+        &self.rows
+    }
+
+    /// How many patches there are.
+    pub(crate) fn len(&self) -> usize {
+        self.heads.len()
+    }
+
+    pub(crate) fn face_count(&self) -> usize {
+        self.heads.iter().map(|head| head.faces as usize).sum()
+    }
+
+    /// The faces of one, by nodes in the order of the rows: no other is decoded.
+    pub(crate) fn faces(&self, patch: usize) -> Result<Vec<[u32; 3]>, Malformed> {
+        let head = self.heads[patch];
+        let bits = Cursor::new(&self.bits, 8 * head.start as usize);
+        Regrowth::new(&self.rows, self.own(patch), bits)?.faces(head.faces as usize)
+    }
+
+    /// What they take, with all that decoding them needs, in bytes.
+    pub(crate) fn bytes(&self) -> usize {
+        HEADER + PATCH * self.heads.len() + self.bits.len() / 8
+    }
+
+    pub(crate) fn store(&self, out: &mut Vec<u8>) {
+        out.extend(((self.bits.len() / 8) as u32).to_le_bytes());
+        for head in &self.heads {
+            out.extend(head.start.to_le_bytes());
+            out.extend(head.faces.to_le_bytes());
+        }
+        self.bits.store(out);
+    }
+
+    /// Patches of so many rows each, from bytes; their bits are looked at when they are decoded.
+    pub(crate) fn restore(
+        rows: Rows,
+        rows_per_patch: usize,
+        reader: &mut Reader,
+    ) -> Result<Self, Malformed> {
+        let len = reader.u32()?;
+        let mut heads: Vec<Head> = Vec::new();
+        for _ in 0..rows.len().div_ceil(rows_per_patch) {
+            heads.push(Head { start: reader.u32()?, faces: reader.u32()? });
+        }
+        for (at, head) in heads.iter().enumerate() {
+            // A face takes a bit at least, and no two patches the same.
+            let end = u64::from(heads.get(at + 1).map_or(len, |next| next.start));
+            let room = 8 * end.saturating_sub(head.start.into());
+            if end > len.into() || u64::from(head.faces) > room {
+                return Err(reader.wrong(format!("patch {at} has no room for its faces")));
+            }
+        }
+        let bits = Bits::restore(8 * len as usize, reader)?;
+        Ok(Self { rows, rows_per_patch, heads, bits })
+    }
+
+    fn push(&mut self, steps: &[Step], faces: usize, place: impl Fn(u32) -> Place) {
+        let own = self.own(self.heads.len());
+        self.bits.fill_byte();
+        self.heads.push(Head { start: (self.bits.len() / 8) as u32, faces: faces as u32 });
+        Book::of(steps, own, &place).push(steps, place, &self.rows, &mut self.bits);
+    }
+
+    fn own(&self, patch: usize) -> Range<u32> {
+        let first = patch * self.rows_per_patch;
+        first as u32..(first + self.rows_per_patch).min(self.rows.len()) as u32
+    }
+}
+
+/// The faces of each patch: those with most of their corners there.
+fn members(
+    faces: &[[u32; 3]],
+    row_of: &[u32],
+    rows_per_patch: usize,
+    patches: usize,
+) -> Vec<Vec<[u32; 3]>> {
+    let mut members = vec![Vec::new(); patches];
+    for &face in faces {
+        let of = face.map(|node| row_of[node as usize] as usize / rows_per_patch);
+        members[of[0].min(of[1]).min(of[2])].push(face);
+    }
+    members
+}
+
+/// The nodes of each row: as its patch comes to them, and then those that only others have.
+fn in_rows(
+    grown: &[Vec<Step>],
+    row_of: &[u32],
+    rows: usize,
+    rows_per_patch: usize,
+) -> Vec<Vec<u32>> {
+    let mut order = vec![Vec::new(); rows];
+    let mut is_in = vec![false; row_of.len()];
+    let mut put = |node: u32| {
+        order[row_of[node as usize] as usize].push(node);
+        is_in[node as usize] = true;
+    };
+    for (patch, steps) in grown.iter().enumerate() {
+        let is_own = |node: u32| row_of[node as usize] as usize / rows_per_patch == patch;
+        steps.iter().filter_map(Step::new_node).filter(|&node| is_own(node)).for_each(&mut put);
+    }
+    for (node, _) in (0..).zip(is_in.clone()).filter(|(_, is_in)| !is_in) {
+        order[row_of[node as usize] as usize].push(node);
+    }
+    order
+}

@@ -1,0 +1,117 @@
+//! Reading a patch: face after face, as it has grown.
+
+use std::ops::Range;
+
+use super::Rows;
+use super::front::{Front, Gate};
+use super::steps::{Book, Code, Context, Place};
+use crate::bits::{Cursor, width};
+use crate::bytes::Malformed;
+
+/// A patch that grows as its bits say.
+pub(super) struct Regrowth<'a> {
+    rows: &'a Rows,
+    book: Book,
+    bits: Cursor<'a>,
+    front: Front,
+    /// The nodes that it has met.
+    met: Vec<Place>,
+    /// How many it has met of each row of its own.
+    taken: Vec<u32>,
+}
+
+impl<'a> Regrowth<'a> {
+    pub(super) fn new(
+        rows: &'a Rows,
+        own: Range<u32>,
+        mut bits: Cursor<'a>,
+    ) -> Result<Self, Malformed> {
+        let taken = vec![0; own.len()];
+        let book = Book::next(own, rows, &mut bits)?;
+        Ok(Self { rows, book, bits, front: Front::default(), met: Vec::new(), taken })
+    }
+
+    /// So many faces.
+    pub(super) fn faces(mut self, count: usize) -> Result<Vec<[u32; 3]>, Malformed> {
+        let mut faces = Vec::with_capacity(count);
+        while faces.len() < count {
+            if let Some(gate) = self.front.pass() {
+                let Some(third) = self.third(gate)? else {
+                    continue;
+                };
+                self.front.grow(gate, third);
+                faces.push([gate.from, gate.to, third]);
+            } else {
+                let face = [self.corner()?, self.corner()?, self.corner()?];
+                self.front.start(face);
+                faces.push(face);
+            }
+        }
+        for number in faces.iter_mut().flatten() {
+            let Place { row, number: at } = self.met[*number as usize];
+            *number = self.rows.first(row) + at;
+        }
+        Ok(faces)
+    }
+
+    /// The node across a gate, if there is a face.
+    fn third(&mut self, gate: Gate) -> Result<Option<u32>, Malformed> {
+        let rows = [gate.from, gate.to].map(|number| self.met[number as usize].row);
+        let context = self.book.context(Some(rows));
+        let neighbour = match context.next_code(&mut self.bits)? {
+            Code::Nothing => return Ok(None),
+            Code::Next => self.front.next(gate),
+            Code::Previous => self.front.previous(gate),
+            code => Some(self.node(code, context)?),
+        };
+        let neighbour = neighbour.ok_or_else(|| self.bits.wrong("the border goes no further"))?;
+        Ok(Some(neighbour))
+    }
+
+    /// A corner of a face that starts anew.
+    fn corner(&mut self) -> Result<u32, Malformed> {
+        let context = self.book.context(None);
+        let code = context.next_code(&mut self.bits)?;
+        self.node(code, context)
+    }
+
+    fn node(&mut self, code: Code, context: Context) -> Result<u32, Malformed> {
+        let node = match code {
+            Code::Own => self.own(context)?,
+            Code::Foreign => self.foreign()?,
+            Code::Known => return self.known(),
+            _ => return Err(self.bits.wrong("a face that starts anew has no border")),
+        };
+        self.met.push(node);
+        Ok(self.front.meet())
+    }
+
+    fn own(&mut self, context: Context) -> Result<Place, Malformed> {
+        let row = self.book.next_own(context, &mut self.bits)?;
+        let taken = &mut self.taken[(row - self.book.own.start) as usize];
+        if *taken == self.rows.size(row) {
+            return Err(self.bits.wrong(format!("row {row} has no more nodes")));
+        }
+        *taken += 1;
+        Ok(Place { row, number: *taken - 1 })
+    }
+
+    fn foreign(&mut self) -> Result<Place, Malformed> {
+        let at = self.bits.next(width(self.book.foreign.len()))? as usize;
+        let row = self.book.foreign.get(at).copied();
+        let row = row.ok_or_else(|| self.bits.wrong(format!("the patch names no {at}-th row")))?;
+        let number = self.bits.next(width(self.rows.size(row) as usize))? as u32;
+        if number >= self.rows.size(row) {
+            return Err(self.bits.wrong(format!("row {row} has no node {number}")));
+        }
+        Ok(Place { row, number })
+    }
+
+    fn known(&mut self) -> Result<u32, Malformed> {
+        let number = self.bits.next(width(self.met.len()))? as u32;
+        if number as usize >= self.met.len() {
+            return Err(self.bits.wrong(format!("the patch has met no node {number} yet")));
+        }
+        Ok(number)
+    }
+}

@@ -1,0 +1,41 @@
+//! Cubic cells for a whole mesh: what schemes are held against.
+
+use meshlod::Mesh;
+
+/// Where in its cell a vertex is put.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub enum Rounding {
+    /// At the least corner.
+    Down,
+    /// In the middle.
+    Nearest,
+}
+
+/// The mesh with 2^bits - 1 cells along the longest side of its box.
+pub fn global(mesh: &Mesh, bits: u32, rounding: Rounding) -> Mesh {
+    let (numbers, cell) = numbers(mesh, bits, rounding);
+    let least = mesh.bounds().min;
+    let place = |number: [u32; 3]| [0, 1, 2].map(|k| least[k] + cell * f64::from(number[k]));
+    Mesh::new(numbers.into_iter().map(place).collect(), mesh.faces.clone())
+}
+
+/// The numbers of the cells, and their side.
+pub fn numbers(mesh: &Mesh, bits: u32, rounding: Rounding) -> (Vec<[u32; 3]>, f64) {
+    let bounds = mesh.bounds();
+    let longest = (0..3).map(|k| bounds.max[k] - bounds.min[k]).fold(0.0, f64::max);
+    let cell = longest / f64::from((1u32 << bits) - 1);
+    let half = if rounding == Rounding::Nearest { 0.5 } else { 0.0 };
+    let number = |p: &[f64; 3]| {
+        [0, 1, 2].map(|k| (((p[k] - bounds.min[k]) / cell).max(0.0) + half).floor() as u32)
+    };
+    (mesh.positions.iter().map(number).collect(), cell)
+}
+
+/// How many faces look the other way than they did; `moved` has the same faces.
+pub fn turned_over(mesh: &Mesh, moved: &Mesh) -> usize {
+    let normal = |mesh: &Mesh, face: usize| {
+        let [a, b, c] = mesh.triangle(mesh.faces[face]);
+        (b - a).cross(c - a)
+    };
+    (0..mesh.faces.len()).filter(|&f| normal(mesh, f).dot(normal(moved, f)) < 0.0).count()
+}

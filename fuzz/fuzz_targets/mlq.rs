@@ -1,0 +1,18 @@
+#![no_main]
+
+use meshlod_codec::Compressed;
+
+libfuzzer_sys::fuzz_target!(init: meshlod_fuzz::plant("mlq"), |bytes: &[u8]| {
+    // A mutation with the right checksums is what gets past the door.
+    let mut bytes = bytes.to_vec();
+    Compressed::seal(&mut bytes);
+    let Ok(compressed) = Compressed::from_bytes(&bytes) else { return };
+    if let Ok(mesh) = compressed.decode() {
+        meshlod_fuzz::accept(&mesh);
+    }
+    for at in 0..compressed.patches() {
+        if let Ok(mesh) = compressed.patch(at) {
+            meshlod_fuzz::accept(&mesh);
+        }
+    }
+});
