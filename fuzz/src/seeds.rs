@@ -82,7 +82,12 @@ fn compressed() -> Vec<Vec<u8>> {
         fixtures::grid(9),
         sample::torus(300),
     ];
-    let schemes = [Scheme::Parts(Cells::Centred), Scheme::Parts(Cells::Truncated), Scheme::Lattice];
+    let schemes = [
+        Scheme::Parts(Cells::Centred),
+        Scheme::Parts(Cells::Truncated),
+        Scheme::Blocks,
+        Scheme::Lattice,
+    ];
     let bounds = AttributeBounds::default();
     let by = |mesh: &Mesh, scheme| compress(mesh, scheme, Target::Bits(8), &bounds);
     let done = meshes.iter().flat_map(|mesh| schemes.map(|scheme| by(mesh, scheme)));

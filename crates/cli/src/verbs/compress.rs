@@ -30,7 +30,7 @@ pub struct Compress {
     #[command(flatten)]
     goal: Goal,
     /// How positions are told
-    #[arg(long, value_name = "SCHEME", default_value = "lattice")]
+    #[arg(long, value_name = "SCHEME", default_value = "blocks")]
     scheme: SchemeName,
     /// Parts as in the paper: vertices at the least corners of their cells, and held against truncated bits
     #[arg(long)]
@@ -63,6 +63,8 @@ struct Goal {
 enum SchemeName {
     /// Eight bits an axis, one matrix a part; what parts share is stored in each
     Parts,
+    /// Each vertex in one block, in cells that lie as the surface does
+    Blocks,
     /// Each vertex in one block, on a lattice with cells of a power of two: the same for all meshes
     Lattice,
 }
@@ -143,6 +145,7 @@ impl Compress {
         match self.scheme {
             SchemeName::Parts if self.paper => Scheme::Parts(Cells::Truncated),
             SchemeName::Parts => Scheme::Parts(Cells::Centred),
+            SchemeName::Blocks => Scheme::Blocks,
             SchemeName::Lattice => Scheme::Lattice,
         }
     }

@@ -4,7 +4,7 @@ use serde_json::Value;
 
 use crate::run::Run;
 
-const SCHEMES: [&str; 2] = ["parts", "lattice"];
+const SCHEMES: [&str; 3] = ["parts", "blocks", "lattice"];
 
 fn number(report: &Value, field: &str) -> f64 {
     report[field].as_f64().unwrap_or_else(|| panic!("{field} of {report}"))

@@ -189,8 +189,8 @@ impl LatticeBlocks {
 
     /// What positions take, with all that decoding them needs, in bytes.
     pub fn bytes(&self) -> usize {
-        let bits = self.headers.len() + self.numbers.len();
-        HEADER + bits.div_ceil(8) + size_of_val(&self.starts[..])
+        let bits = self.headers.len().div_ceil(8) + self.numbers.len().div_ceil(8);
+        HEADER + bits + size_of_val(&self.starts[..])
     }
 
     /// How much less that is than three `f32` for each vertex, as a part.
@@ -198,6 +198,7 @@ impl LatticeBlocks {
         1.0 - self.bytes() as f64 / (12 * self.vertices.len()) as f64
     }
 
+    /// Puts all but [`LatticeBlocks::vertices`] behind other bytes.
     pub(crate) fn store(&self, out: &mut Vec<u8>) {
         out.extend(self.lattice.exponent.to_le_bytes());
         out.extend((self.vertices.len() as u32).to_le_bytes());
@@ -208,6 +209,7 @@ impl LatticeBlocks {
         self.numbers.store(out);
     }
 
+    /// What was stored: each vertex is the one of its place.
     pub(crate) fn restore(reader: &mut crate::bytes::Reader) -> Result<Self, crate::Malformed> {
         let lattice = Lattice::new(reader.i32()?).map_err(|e| reader.wrong(e.to_string()))?;
         let count = reader.u32()? as usize;
@@ -217,7 +219,7 @@ impl LatticeBlocks {
         }
         let mut most = [0i32; 3];
         for x in &mut most {
-            *x = reader.i32()?.clamp(0, MOST_CELLS as i32 - 1);
+            *x = reader.i32()?.clamp(0, MOST_CELLS - 1);
         }
         let mut this = Self {
             lattice,

@@ -7,9 +7,10 @@ use crate::kd::BLOCK;
 use crate::patch::{Patches, Rows};
 
 const MAGIC: [u8; 4] = *b"MLQ1";
-/// The magic bytes, the scheme, whether there are doubles, how many layers there are, and of the three sections how
-/// long they are and their sums.
-pub(super) const HEADER: usize = 4 + 1 + 1 + 2 + 3 * SUM;
+/// The magic bytes, the scheme, whether there are doubles, how many layers there are, of the three sections how
+/// long they are and their sums, and the sum of all that.
+pub(super) const HEADER: usize = SUMS + 3 * SUM + 4;
+const SUMS: usize = 4 + 1 + 1 + 2;
 const SUM: usize = 8 + 4;
 
 impl Compressed {
@@ -37,6 +38,7 @@ impl Compressed {
             bytes.extend((section.len() as u64).to_le_bytes());
             bytes.extend(crc32fast::hash(section).to_le_bytes());
         }
+        bytes.extend(crc32fast::hash(&bytes).to_le_bytes());
         sections.iter().for_each(|section| bytes.extend(section));
         bytes
     }
@@ -44,15 +46,20 @@ impl Compressed {
     /// Writes the checksums that fit into bytes that were changed, for tests of [`Compressed::from_bytes`].
     #[doc(hidden)]
     pub fn seal(bytes: &mut [u8]) {
-        let (mut at, mut sum) = (HEADER, 8);
-        while sum + SUM <= HEADER.min(bytes.len()) {
+        if bytes.len() < HEADER {
+            return;
+        }
+        let mut at = HEADER;
+        for sum in (0..3).map(|section| SUMS + section * SUM) {
             let len: [u8; 8] = bytes[sum..sum + 8].try_into().expect("eight");
-            let end =
-                at.saturating_add(usize::try_from(u64::from_le_bytes(len)).unwrap_or(usize::MAX));
+            let len = usize::try_from(u64::from_le_bytes(len)).unwrap_or(usize::MAX);
+            let end = at.saturating_add(len);
             let told = crc32fast::hash(bytes.get(at..end).unwrap_or_default());
             bytes[sum + 8..sum + SUM].copy_from_slice(&told.to_le_bytes());
-            (at, sum) = (end, sum + SUM);
+            at = end;
         }
+        let told = crc32fast::hash(&bytes[..HEADER - 4]);
+        bytes[HEADER - 4..HEADER].copy_from_slice(&told.to_le_bytes());
     }
 
     /// What the bytes of a file are.
@@ -67,6 +74,13 @@ impl Compressed {
                 reason: "these are not the first bytes of a .mlq".into(),
             });
         }
+        if reader.left() < HEADER - 4 {
+            return Err(reader.wrong("the header is cut off"));
+        }
+        let (head, sum) = bytes[..HEADER].split_at(HEADER - 4);
+        if crc32fast::hash(head).to_le_bytes() != sum {
+            return Err(reader.wrong("the header has been spoilt: another sum"));
+        }
         let (scheme, has_doubles, layers) = (reader.u8()?, reader.u8()?, reader.u16()?);
         if has_doubles > 1 {
             return Err(reader.wrong(format!("flags {has_doubles:#x} are not known")));
@@ -75,6 +89,7 @@ impl Compressed {
         for sum in &mut sums {
             *sum = (reader.u64()?, reader.u32()?);
         }
+        reader.take(4)?;
         let mut section = |what: &str, (len, sum): (u64, u32)| {
             let section = reader.section(usize::try_from(len).unwrap_or(usize::MAX))?;
             match crc32fast::hash(section.rest()) == sum {
@@ -109,6 +124,7 @@ fn restore(
     let block = |at: usize| BLOCK.min(count - BLOCK * at);
     let blocks = count.div_ceil(BLOCK);
     let (mut homes, rows, rows_per_patch) = match &positions {
+        Positions::Parts(_) if has_doubles => return Err(faces.wrong("parts have no doubles")),
         Positions::Parts(parts) => (Homes::Own, parts.rows().clone(), 1),
         _ if has_doubles => {
             let doubles = Rows::restore(blocks, faces)?;

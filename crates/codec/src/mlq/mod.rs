@@ -184,7 +184,8 @@ impl Compressed {
         let (patches, order) =
             Patches::new(&nodes.faces, &nodes.row_of, nodes.rows, rows_per_patch);
         let vertex = |&node: &u32| nodes.vertex_of[node as usize];
-        let is_first = |node: &&u32| !has_doubles || nodes.row_of[**node as usize] % 2 == 0;
+        let is_first =
+            |node: &&u32| !has_doubles || nodes.row_of[**node as usize].is_multiple_of(2);
         let ordered: Vec<_> = order.iter().filter(is_first).map(vertex).collect();
         let homes = match has_doubles {
             false => Homes::Own,

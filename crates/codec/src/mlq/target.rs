@@ -171,18 +171,30 @@ fn in_blocks(
 
 /// The least distance that is found to leave a reduction, or the greatest, and whether it does.
 fn closest(mesh: &Mesh, part: f64) -> Result<(Closeness, bool), CompressError> {
-    let mut bits = [*BITS.start(), *BITS.end() + 1];
+    // The error of what keeps it.
     let keeps = |closeness| match VertexBlocks::new(mesh, closeness) {
-        Ok((blocks, _)) => Ok(blocks.reduction() >= part),
-        Err(BlocksError::TooFine(_)) => Ok(false),
+        Ok((blocks, report)) => {
+            Ok((blocks.reduction() >= part).then_some(report.blocks.error_estimate))
+        }
+        Err(BlocksError::TooFine(_)) => Ok(None),
         Err(error) => Err(error),
     };
-    if !keeps(Closeness::Bits(bits[0]))? {
-        return Ok((Closeness::Bits(bits[0]), false));
+    let mut best = (Closeness::Bits(*BITS.start()), None);
+    let [mut most, mut fails] = [*BITS.start() - 1, *BITS.end() + 1];
+    while fails - most > 1 {
+        let middle = most.midpoint(fails);
+        match keeps(Closeness::Bits(middle))? {
+            Some(error) => (most, best) = (middle, (Closeness::Bits(middle), Some(error))),
+            None => fails = middle,
+        }
     }
-    while bits[1] - bits[0] > 1 {
-        let middle = bits[0].midpoint(bits[1]);
-        bits[usize::from(!keeps(Closeness::Bits(middle))?)] = middle;
+    // Between that and a bit more.
+    for quarters in [3.0, 2.0, 1.0] {
+        let Some(error) = best.1.filter(|error| *error > 0.0) else { break };
+        let finer = Closeness::Error(error * f64::exp2(-quarters / 4.0));
+        if keeps(finer)?.is_some() {
+            return Ok((finer, true));
+        }
     }
-    Ok((Closeness::Bits(bits[0]), true))
+    Ok((best.0, best.1.is_some()))
 }

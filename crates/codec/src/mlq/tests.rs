@@ -82,8 +82,10 @@ fn every_scheme_gives_the_mesh_back_from_bytes() {
         for compressed in by_schemes(&mesh) {
             let bytes = compressed.to_bytes();
             assert_eq!(bytes.len(), compressed.sizes().total);
-            assert!(Compressed::from_bytes(&bytes).unwrap() == compressed);
+            let read = Compressed::from_bytes(&bytes).unwrap();
+            assert!(read.to_bytes() == bytes && read.sizes() == compressed.sizes());
             let decoded = compressed.decode().unwrap();
+            assert!(read.decode().unwrap() == decoded);
             decoded.validate().unwrap();
             let used = mesh.used_vertices().iter().filter(|&&used| used).count();
             assert_eq!((decoded.positions.len(), decoded.faces.len()), (used, mesh.faces.len()));
@@ -179,7 +181,7 @@ fn what_sums_do_not_tell_does_no_harm() {
     for mesh in [sample::gyroid(600), meshes().remove(3)] {
         for compressed in by_schemes(&mesh) {
             let bytes = compressed.to_bytes();
-            for bit in (0..8 * bytes.len()).step_by(1 + bytes.len() / 300) {
+            for bit in (0..8 * bytes.len()).step_by(1 + bytes.len() / 30) {
                 let mut spoilt = bytes.clone();
                 spoilt[bit / 8] ^= 1 << (bit % 8);
                 Compressed::seal(&mut spoilt);
@@ -189,5 +191,5 @@ fn what_sums_do_not_tell_does_no_harm() {
             }
         }
     }
-    assert!(read > 1000, "{read}");
+    assert!(read > 200, "{read}");
 }

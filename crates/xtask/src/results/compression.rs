@@ -28,8 +28,11 @@ const MESHES: [&str; 10] = [
     "armadillo-173k.ply",
     "igea.ply",
 ];
-const SCHEMES: [(&str, Scheme); 2] =
-    [("parts", Scheme::Parts(Cells::Centred)), ("lattice", Scheme::Lattice)];
+const SCHEMES: [(&str, Scheme); 3] = [
+    ("parts", Scheme::Parts(Cells::Centred)),
+    ("blocks", Scheme::Blocks),
+    ("lattice", Scheme::Lattice),
+];
 const BITS: u32 = 11;
 
 pub fn section(project: &Project) -> Result<String> {

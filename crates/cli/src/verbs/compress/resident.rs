@@ -23,7 +23,7 @@ impl Compress {
             faces: compressed.faces(),
             pieces: match self.scheme {
                 SchemeName::Parts => ("parts", compressed.blocks()),
-                SchemeName::Lattice => ("blocks", compressed.blocks()),
+                SchemeName::Blocks | SchemeName::Lattice => ("blocks", compressed.blocks()),
             },
             layers: compressed.layers(),
             reached: done.reached,

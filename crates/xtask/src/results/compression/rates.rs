@@ -37,6 +37,7 @@ fn lines(mesh: &Mesh) -> Result<[Vec<Line>; 2]> {
     let schemes = [
         ("parts, as the paper", "#999999", Scheme::Parts(Cells::Truncated)),
         ("parts", "#d9822b", Scheme::Parts(Cells::Centred)),
+        ("blocks", "#c53030", Scheme::Blocks),
         ("lattice", "#2b6cb0", Scheme::Lattice),
     ];
     for (name, color, scheme) in schemes {
