@@ -40,7 +40,8 @@ fn seeds(target: &str) -> Vec<Vec<u8>> {
         _ => &GLTF,
     };
     let written = meshes.iter().map(|mesh| write(target, mesh));
-    written.chain(by_hand.iter().map(|text| text.as_bytes().to_vec())).collect()
+    let small = if target == "gltf" { small_gltf(&meshes) } else { Vec::new() };
+    written.chain(small).chain(by_hand.iter().map(|text| text.as_bytes().to_vec())).collect()
 }
 
 fn write(target: &str, mesh: &Mesh) -> Vec<u8> {
@@ -63,6 +64,19 @@ fn write(target: &str, mesh: &Mesh) -> Vec<u8> {
     }
     .expect("memory takes all bytes");
     out
+}
+
+/// Meshes as glTF of whole numbers, with and without streams, and with every filter named.
+fn small_gltf(meshes: &[Mesh]) -> Vec<Vec<u8>> {
+    let write = |mesh: &Mesh, meshopt: bool| {
+        let scene = Scene::from_mesh("seed", mesh.clone());
+        let how = gltf::Compression { meshopt, ..gltf::Compression::default() };
+        gltf::write_small_glb(&scene, &[], &how).expect("a fixture fits").0
+    };
+    let mut all: Vec<Vec<u8>> =
+        meshes.iter().flat_map(|mesh| [write(mesh, false), write(mesh, true)]).collect();
+    all.push(FILTERED.as_bytes().to_vec());
+    all
 }
 
 /// A progressive mesh of all that can be contracted.
@@ -156,6 +170,17 @@ const SMF: [&str; 2] = [
      v 0 1 0\nv 0 0 1\nend\nbind c vertex\nc 1 0 0\nc 0 1 0\nc 0 0 1\nc 1 1 1\nt 1 2 3\nf 1 2 3 4\n",
     "bind n face\nbind r vertex\nv 0 0 0\nv 1 0 0\nv 0 1 0\nn 0 0 1\nr 0 0\nr 1 0\nr 0 1\nf -1 -2 -3\n",
 ];
+
+/// A triangle of streams of version 1 with each filter, and one of indices.
+const FILTERED: &str = r#"{"asset":{"version":"2.0"},"extensionsRequired":["KHR_meshopt_compression","KHR_mesh_quantization"],
+"meshes":[{"primitives":[{"attributes":{"POSITION":0,"NORMAL":1,"COLOR_0":2,"TEXCOORD_0":3},"indices":4}]}],"nodes":[{"mesh":0}],
+"accessors":[{"bufferView":1,"componentType":5122,"normalized":true,"count":4,"type":"VEC3"},{"bufferView":0,"componentType":5122,"normalized":true,"count":4,"type":"VEC3"},{"bufferView":2,"componentType":5123,"normalized":true,"count":4,"type":"VEC4"},{"bufferView":3,"componentType":5126,"count":4,"type":"VEC2"},{"bufferView":4,"componentType":5123,"count":3,"type":"SCALAR"}],
+"bufferViews":[{"buffer":1,"byteLength":32,"extensions":{"KHR_meshopt_compression":{"buffer":0,"byteOffset":0,"byteLength":27,"byteStride":8,"count":4,"mode":"ATTRIBUTES","filter":"OCTAHEDRAL"}}},
+{"buffer":1,"byteLength":32,"extensions":{"KHR_meshopt_compression":{"buffer":0,"byteOffset":0,"byteLength":27,"byteStride":8,"count":4,"mode":"ATTRIBUTES","filter":"QUATERNION"}}},
+{"buffer":1,"byteLength":32,"extensions":{"KHR_meshopt_compression":{"buffer":0,"byteOffset":0,"byteLength":27,"byteStride":8,"count":4,"mode":"ATTRIBUTES","filter":"COLOR"}}},
+{"buffer":1,"byteLength":32,"extensions":{"KHR_meshopt_compression":{"buffer":0,"byteOffset":0,"byteLength":27,"byteStride":8,"count":4,"mode":"ATTRIBUTES","filter":"EXPONENTIAL"}}},
+{"buffer":1,"byteLength":6,"extensions":{"KHR_meshopt_compression":{"buffer":0,"byteOffset":27,"byteLength":8,"byteStride":2,"count":3,"mode":"INDICES"}}}],
+"buffers":[{"byteLength":35,"uri":"data:;base64,oaqqAAAAAAAAAAAAAAAAAAAKABQA/wEAAgAB0QAEBAAAAAA="},{"byteLength":64}]}"#;
 
 const GLTF: [&str; 2] = [
     r#"{"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],

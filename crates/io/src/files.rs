@@ -126,18 +126,49 @@ pub fn write_lods(path: &Path, scene: &Scene, levels: &[gltf::Level]) -> Result<
             let bytes = gltf::write_glb(scene, levels).map_err(unfit)?;
             write_one(path, |out| out.write_all(&bytes))
         }
-        Format::Gltf => {
-            let written = gltf::write(scene, levels, &stem(path)).map_err(unfit)?;
-            for image in &written.images {
-                write_image(path, image)?;
-            }
-            if let Some((name, bytes)) = &written.buffer {
-                write_one(&path.with_file_name(name), |out| out.write_all(bytes))?;
-            }
-            write_one(path, |out| out.write_all(&written.document))
-        }
+        Format::Gltf => write_gltf(path, &gltf::write(scene, levels, &stem(path)).map_err(unfit)?),
         _ => Err(unfit(Unfit::new("levels", "only .glb and .gltf hold levels; use one of those"))),
     }
+}
+
+/// Writes a scene as small glTF or GLB and tells what that came to; see [`gltf::write_small_glb`].
+///
+/// # Errors
+/// As for [`write()`]; also another suffix, and bits that cannot be.
+pub fn write_small(
+    path: &Path,
+    scene: &Scene,
+    how: &gltf::Compression,
+) -> Result<gltf::CompressionReport, IoError> {
+    let unfit = |error| IoError::unfit(path, error);
+    match Format::of_path(path)? {
+        Format::Glb => {
+            let (bytes, report) = gltf::write_small_glb(scene, &[], how).map_err(unfit)?;
+            write_one(path, |out| out.write_all(&bytes))?;
+            Ok(report)
+        }
+        Format::Gltf => {
+            let (written, report) =
+                gltf::write_small(scene, &[], &stem(path), how).map_err(unfit)?;
+            write_gltf(path, &written)?;
+            Ok(report)
+        }
+        _ => Err(unfit(Unfit::new(
+            "file",
+            "only .glb and .gltf are written small; use one of those",
+        ))),
+    }
+}
+
+/// Writes a document and what goes with it, the document last.
+fn write_gltf(path: &Path, written: &gltf::Written) -> Result<(), IoError> {
+    for image in &written.images {
+        write_image(path, image)?;
+    }
+    if let Some((name, bytes)) = &written.buffer {
+        write_one(&path.with_file_name(name), |out| out.write_all(bytes))?;
+    }
+    write_one(path, |out| out.write_all(&written.document))
 }
 
 /// Gives every corner a vertex of its own, as STL has them.

@@ -33,7 +33,9 @@ mod text;
 mod torn;
 
 pub use error::{IoError, ParseError, Place, Unfit};
-pub use files::{ReadOptions, Resolve, Weld, WriteOptions, read, read_bytes, write, write_lods};
+pub use files::{
+    ReadOptions, Resolve, Weld, WriteOptions, read, read_bytes, write, write_lods, write_small,
+};
 pub use flatten::Placement;
 pub use format::Format;
 pub use meshlod_mesh::{merge_equal_wedges, weld};

@@ -3,10 +3,13 @@
 use meshlod_mesh::{Layer, LayerKind, Mesh, WedgeId};
 
 use super::accessor::component;
+use super::compress::{Compression, Grid};
 use super::mesh::flip_v;
-use super::pool::{Blob, Usage};
+use super::pool::{Blob, Part, Usage};
 use super::schema::parse_target_name;
+use super::{order, quantize};
 use crate::Unfit;
+use crate::meshopt::Filter;
 
 /// The arrays of a primitive.
 pub(super) struct Arrays {
@@ -16,6 +19,16 @@ pub(super) struct Arrays {
     pub layers: Vec<Blob>,
     /// Three per face.
     pub indices: Blob,
+    /// The farthest that a vertex moved.
+    pub position_error: f64,
+}
+
+/// How numbers are written: as they are, or small.
+#[derive(Clone, Copy, Default)]
+pub(super) struct Numbers<'a> {
+    pub compression: Option<&'a Compression>,
+    /// Of the mesh's positions, if they are to lie on one.
+    pub grid: Option<&'a Grid>,
 }
 
 /// A layer and the component type that its file had it in, if it came from one.
@@ -26,28 +39,38 @@ pub(super) struct Typed<'a> {
 }
 
 /// Makes the arrays of the faces at `faces`. Every pair of a vertex and its wedge is one vertex of
-/// the primitive, in the order of wedges, which is that of the file where the mesh came from one.
+/// the primitive, in the order of wedges, which is that of the file where the mesh came from one;
+/// small ones in that of use, with faces after their neighbours.
 ///
 /// # Errors
 /// When a coordinate is beyond 32 bits, or a layer is of a width that the format has not.
-pub(super) fn arrays(mesh: &Mesh, faces: &[u32], layers: &[Typed<'_>]) -> Result<Arrays, Unfit> {
+pub(super) fn arrays(
+    mesh: &Mesh,
+    faces: &[u32],
+    layers: &[Typed<'_>],
+    numbers: Numbers<'_>,
+) -> Result<Arrays, Unfit> {
     let corners: Vec<u64> = faces.iter().flat_map(|&face| keys(mesh, face as usize)).collect();
     let mut vertices = corners.clone();
     vertices.sort_unstable();
     vertices.dedup();
-    let indices = index_blob(&corners, &vertices);
-    let blobs = layers.iter().map(|&typed| layer_blob(typed, &vertices));
-    Ok(Arrays {
-        layers: blobs.collect::<Result<_, _>>()?,
-        positions: positions(mesh, &vertices)?,
-        indices,
-    })
+    let find = |corner| vertices.binary_search(corner).expect("every corner is a vertex") as u32;
+    let mut indices: Vec<u32> = corners.iter().map(find).collect();
+    if numbers.compression.is_some() {
+        let old = order::arrange(indices.as_chunks_mut().0, vertices.len());
+        vertices = old.iter().map(|&v| vertices[v as usize]).collect();
+    }
+    let indices = index_blob(&indices, vertices.len());
+    let blobs = layers.iter().map(|&typed| layer_blob(typed, &vertices, numbers));
+    let layers = blobs.collect::<Result<_, _>>()?;
+    let (positions, position_error) = positions(mesh, &vertices, numbers.grid)?;
+    Ok(Arrays { layers, positions, indices, position_error })
 }
 
 /// A primitive that shows nothing at `point`: the format allows no empty mesh.
 pub(super) fn nothing(point: [f64; 3]) -> Result<Arrays, Unfit> {
     let face = [meshlod_mesh::VertexId(0); 3];
-    arrays(&Mesh::new(vec![point], vec![face]), &[0], &[])
+    arrays(&Mesh::new(vec![point], vec![face]), &[0], &[], Numbers::default())
 }
 
 /// Wedge and vertex of each corner in one number, the wedge first.
@@ -64,34 +87,28 @@ fn wedge_of(key: u64) -> WedgeId {
     WedgeId((key >> 32) as u32)
 }
 
-fn index_blob(corners: &[u64], vertices: &[u64]) -> Blob {
-    let find = |corner| vertices.binary_search(corner).expect("every corner is a vertex");
-    let indices = corners.iter().map(find);
+fn index_blob(indices: &[u32], vertices: usize) -> Blob {
     // The greatest number of a type restarts strips and is no index.
-    let (component, bytes): (_, Vec<u8>) = if vertices.len() < usize::from(u16::MAX) {
-        (
-            component::U16,
-            indices.map(|i| (i as u16).to_le_bytes()).collect::<Vec<_>>().into_flattened(),
-        )
+    let (component, bytes): (_, Vec<u8>) = if vertices < usize::from(u16::MAX) {
+        (component::U16, indices.iter().flat_map(|&i| (i as u16).to_le_bytes()).collect())
     } else {
-        (
-            component::U32,
-            indices.map(|i| (i as u32).to_le_bytes()).collect::<Vec<_>>().into_flattened(),
-        )
+        (component::U32, indices.iter().flat_map(|i| i.to_le_bytes()).collect())
     };
     Blob {
         component,
         shape: "SCALAR",
         normalized: false,
-        count: corners.len(),
+        count: indices.len(),
         bytes,
         stride: None,
         extent: None,
         usage: Usage::Indices,
+        part: Part::Connectivity,
+        filter: Filter::None,
     }
 }
 
-fn positions(mesh: &Mesh, vertices: &[u64]) -> Result<Blob, Unfit> {
+fn positions(mesh: &Mesh, vertices: &[u64], grid: Option<&Grid>) -> Result<(Blob, f64), Unfit> {
     let mut points = Vec::with_capacity(vertices.len());
     for &key in vertices {
         let vertex = key as u32;
@@ -102,14 +119,20 @@ fn positions(mesh: &Mesh, vertices: &[u64]) -> Result<Blob, Unfit> {
         }
         points.push(position);
     }
-    Ok(Blob {
+    if let Some(grid) = grid {
+        let places = vertices.iter().map(|&key| mesh.positions[key as u32 as usize]);
+        return Ok(quantize::positions(&places.collect::<Vec<_>>(), grid));
+    }
+    let blob = Blob {
         extent: Some(extent(&points)),
+        part: Part::Positions,
         ..floats("VEC3", points.len(), points.as_flattened())
-    })
+    };
+    Ok((blob, 0.0))
 }
 
 /// The least and the greatest of each coordinate.
-fn extent(points: &[[f32; 3]]) -> [[f32; 3]; 2] {
+pub(super) fn extent(points: &[[f32; 3]]) -> [[f32; 3]; 2] {
     let mut extent = [[f32::INFINITY; 3], [f32::NEG_INFINITY; 3]];
     for point in points {
         for axis in 0..3 {
@@ -120,7 +143,7 @@ fn extent(points: &[[f32; 3]]) -> [[f32; 3]; 2] {
     extent
 }
 
-fn layer_blob(typed: Typed<'_>, vertices: &[u64]) -> Result<Blob, Unfit> {
+fn layer_blob(typed: Typed<'_>, vertices: &[u64], numbers: Numbers<'_>) -> Result<Blob, Unfit> {
     let Typed { layer, component } = typed;
     let shape = match layer.width {
         1 => "SCALAR",
@@ -138,6 +161,12 @@ fn layer_blob(typed: Typed<'_>, vertices: &[u64]) -> Result<Blob, Unfit> {
         vertices.iter().flat_map(|&key| layer.of(wedge_of(key))).copied().collect();
     if matches!(layer.kind, LayerKind::Uv(_)) {
         flip_v(&mut values);
+    }
+    // Colours of 16 bits stay that fine.
+    let small = numbers.compression.filter(|_| component != Some(component::U16));
+    let small = small.and_then(|how| quantize::layer(layer.kind, layer.width, &values, how));
+    if let Some(blob) = small {
+        return Ok(blob);
     }
     let integers = match (layer.kind, component) {
         (LayerKind::Joints(_), _) if values.iter().any(|&x| x > 255.0) => {
@@ -203,5 +232,7 @@ fn floats(shape: &'static str, count: usize, values: &[f32]) -> Blob {
         stride: None,
         extent: None,
         usage: Usage::Vertices,
+        part: Part::Attributes,
+        filter: Filter::None,
     }
 }

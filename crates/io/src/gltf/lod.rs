@@ -5,6 +5,7 @@ use std::collections::BTreeSet;
 use meshlod_mesh::Mesh;
 use serde_json::{Map, Value, json};
 
+use super::compress::Grid;
 use super::nodes::{self, MSFT_LOD};
 use super::primitives::Replacer;
 use crate::Unfit;
@@ -21,15 +22,17 @@ pub struct Level {
 
 /// Adds the levels of all meshes, and nodes that show them.
 ///
-/// `templates` are the meshes of the document before their geometry was replaced.
+/// `templates` are the meshes of the document before their geometry was replaced, `grids` what
+/// the positions of each lie on.
 pub(super) fn add(
     json: &mut Value,
     templates: &[Value],
+    grids: &[Option<Grid>],
     levels: &[Level],
     replacer: &mut Replacer<'_>,
 ) -> Result<(), Unfit> {
     check(levels, templates.len())?;
-    let first = add_meshes(json, templates, levels, replacer)?;
+    let first = add_meshes(json, templates, grids, levels, replacer)?;
     let count = json.get("nodes").and_then(Value::as_array).map_or(0, Vec::len);
     let hidden = nodes::levels(json, count);
     let moving = moving(json);
@@ -43,7 +46,7 @@ pub(super) fn add(
             if has_children || moving.contains(&node) { give_to_child(json, node) } else { node };
         link(json, shown, &name, &ids, levels);
     }
-    use_extension(json);
+    list_extension(json, "extensionsUsed", MSFT_LOD);
     Ok(())
 }
 
@@ -65,14 +68,15 @@ fn check(levels: &[Level], meshes: usize) -> Result<(), Unfit> {
 fn add_meshes(
     json: &mut Value,
     templates: &[Value],
+    grids: &[Option<Grid>],
     levels: &[Level],
     replacer: &mut Replacer<'_>,
 ) -> Result<usize, Unfit> {
     let mut new = Vec::new();
     for (k, level) in levels.iter().enumerate() {
-        for (template, mesh) in templates.iter().zip(&level.meshes) {
+        for ((template, mesh), grid) in templates.iter().zip(&level.meshes).zip(grids) {
             let mut coarse = template.clone();
-            replacer.replace(&mut coarse, mesh)?;
+            replacer.replace(&mut coarse, mesh, grid.as_ref())?;
             if let Some(name) = template.get("name").and_then(Value::as_str) {
                 coarse["name"] = format!("{name}_LOD{}", k + 1).into();
             }
@@ -99,7 +103,7 @@ fn extend(json: &mut Value, key: &str, new: Vec<Value>) -> usize {
 
 /// The nodes that animations or skins move: a level that stands beside such a node would not
 /// follow it.
-fn moving(json: &Value) -> BTreeSet<usize> {
+pub(super) fn moving(json: &Value) -> BTreeSet<usize> {
     let array = |value: &Value, key: &str| {
         value.get(key).and_then(Value::as_array).cloned().unwrap_or_default()
     };
@@ -119,7 +123,7 @@ fn base_name(json: &Value, node: usize, mesh: usize) -> String {
 }
 
 /// Moves the mesh of a node, with what belongs to it, to a new child, and says which.
-fn give_to_child(json: &mut Value, node: usize) -> usize {
+pub(super) fn give_to_child(json: &mut Value, node: usize) -> usize {
     let mut child = Map::new();
     if let Some(parent) = json["nodes"][node].as_object_mut() {
         for key in ["mesh", "skin", "weights"] {
@@ -178,9 +182,10 @@ fn set(node: &mut Value, object: &str, key: &str, value: Value) {
     node[object][key] = value;
 }
 
-fn use_extension(json: &mut Value) {
-    let used = json.get("extensionsUsed").and_then(Value::as_array);
-    if !used.is_some_and(|used| used.iter().any(|name| name == MSFT_LOD)) {
-        extend(json, "extensionsUsed", vec![MSFT_LOD.into()]);
+/// Names an extension under `extensionsUsed` or `extensionsRequired`, once.
+pub(super) fn list_extension(json: &mut Value, key: &str, extension: &str) {
+    let listed = json.get(key).and_then(Value::as_array);
+    if !listed.is_some_and(|names| names.iter().any(|name| name == extension)) {
+        extend(json, key, vec![extension.into()]);
     }
 }

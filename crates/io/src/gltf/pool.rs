@@ -5,7 +5,10 @@ use std::ops::Range;
 use serde_json::{Map, Value, json};
 
 use super::accessor::component;
+use super::compress::Bytes;
 use super::document::Document;
+use super::unpack::MESHOPT;
+use crate::meshopt::{Filter, encode_attributes, encode_triangles};
 
 /// What becomes an accessor of its own.
 pub(super) struct Blob {
@@ -22,6 +25,17 @@ pub(super) struct Blob {
     /// Least and greatest element, which positions must have.
     pub extent: Option<[[f32; 3]; 2]>,
     pub usage: Usage,
+    pub part: Part,
+    /// What turns `bytes` into the elements, in a pool that packs.
+    pub filter: Filter,
+}
+
+/// What bytes are counted as.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Part {
+    Positions,
+    Connectivity,
+    Attributes,
 }
 
 /// What a GPU does with a blob.
@@ -42,9 +56,20 @@ pub(super) struct Pool {
     free_accessors: Vec<usize>,
     free_views: Vec<usize>,
     bytes: Vec<u8>,
+    /// Whether what is added is compressed, and then how large the buffer is to which it unfolds.
+    unfolded: Option<usize>,
+    /// Whether something added is of a type that the format has not by itself.
+    quantized: bool,
+    /// What was added, by [`Part`].
+    pub added: [Bytes; 3],
 }
 
 impl Pool {
+    /// From now on compresses what is added.
+    pub fn pack(&mut self) {
+        self.unfolded = Some(0);
+    }
+
     /// The pool of a document that was read, `free_accessors` and what only they used given up.
     pub fn of(document: &Document<'_>, free_accessors: &[bool]) -> Self {
         let array = |key| document.json.get(key).and_then(Value::as_array).cloned();
@@ -60,9 +85,30 @@ impl Pool {
         pool
     }
 
+    pub fn is_quantized(&self) -> bool {
+        self.quantized
+    }
+
+    pub fn is_packed(&self) -> bool {
+        self.unfolded.is_some_and(|length| length > 0)
+    }
+
     /// Adds an accessor with its buffer view, and says its number.
     pub fn add(&mut self, blob: Blob) -> usize {
-        let mut view = self.view_of(&blob.bytes);
+        // Unsigned integers that are normalised may be colours and texture coordinates anyway; no
+        // position is normalised, and joints are no more than unsigned.
+        let signed = matches!(blob.component, component::I8 | component::I16);
+        let position = blob.part == Part::Positions && blob.component != component::F32;
+        self.quantized |= signed || position;
+        self.align();
+        let stored = self.bytes.len();
+        let mut view = match self.unfolded {
+            None => self.view_of(&blob.bytes),
+            Some(at) => self.packed_view_of(&blob, at),
+        };
+        let added = &mut self.added[blob.part as usize];
+        added.resident += blob.bytes.len();
+        added.stored += self.bytes.len() - stored;
         view.insert("target".into(), (blob.usage as u32).into());
         if let Some(stride) = blob.stride {
             view.insert("byteStride".into(), stride.into());
@@ -110,7 +156,11 @@ impl Pool {
             .and_then(|buffers| buffers.as_array()?.first()?.as_object().cloned())
             .unwrap_or_default();
         buffer.insert("byteLength".into(), self.bytes.len().into());
-        let buffers = if self.bytes.is_empty() { vec![] } else { vec![buffer.into()] };
+        let mut buffers = if self.bytes.is_empty() { vec![] } else { vec![buffer.into()] };
+        if let Some(length) = self.unfolded.filter(|&length| length > 0) {
+            let fallback = json!({ MESHOPT[0]: { "fallback": true } });
+            buffers.push(json!({ "byteLength": length, "extensions": fallback }));
+        }
         for (key, values) in
             [("accessors", self.accessors), ("bufferViews", self.views), ("buffers", buffers)]
         {
@@ -125,11 +175,43 @@ impl Pool {
 
     /// Appends bytes to the buffer, and describes where they are.
     fn view_of(&mut self, bytes: &[u8]) -> Map<String, Value> {
-        self.bytes.resize(self.bytes.len().next_multiple_of(4), 0);
+        self.align();
         let view = json!({
             "buffer": 0, "byteOffset": self.bytes.len(), "byteLength": bytes.len(),
         });
         self.bytes.extend_from_slice(bytes);
+        match view {
+            Value::Object(view) => view,
+            _ => unreachable!("made as an object just above"),
+        }
+    }
+
+    fn align(&mut self) {
+        self.bytes.resize(self.bytes.len().next_multiple_of(4), 0);
+    }
+
+    /// Appends a blob as a stream, and describes where it is and where it unfolds to.
+    fn packed_view_of(&mut self, blob: &Blob, at: usize) -> Map<String, Value> {
+        let stride = blob.bytes.len() / blob.count.max(1);
+        let (mode, stream) = match blob.usage {
+            Usage::Vertices => ("ATTRIBUTES", encode_attributes(&blob.bytes, stride)),
+            Usage::Indices => ("TRIANGLES", encode_triangles(&triangles(&blob.bytes, stride))),
+        };
+        let mut packed = self.view_of(&stream);
+        for (key, value) in [("byteStride", stride.into()), ("count", blob.count.into())] {
+            packed.insert(key.into(), value);
+        }
+        packed.insert("mode".into(), mode.into());
+        match blob.filter {
+            Filter::Octahedral => drop(packed.insert("filter".into(), "OCTAHEDRAL".into())),
+            Filter::Exponential => drop(packed.insert("filter".into(), "EXPONENTIAL".into())),
+            _ => {}
+        }
+        self.unfolded = Some((at + blob.bytes.len()).next_multiple_of(4));
+        let view = json!({
+            "buffer": 1, "byteOffset": at, "byteLength": blob.bytes.len(),
+            "extensions": { MESHOPT[0]: packed },
+        });
         match view {
             Value::Object(view) => view,
             _ => unreachable!("made as an object just above"),
@@ -168,6 +250,15 @@ impl Pool {
             self.views[view]["byteOffset"] = (run_at + start - run_range.start).into();
         }
     }
+}
+
+/// Indices of two or four bytes as triangles.
+fn triangles(bytes: &[u8], size: usize) -> Vec<[u32; 3]> {
+    let indices: Vec<u32> = match size {
+        2 => bytes.as_chunks().0.iter().map(|&b| u32::from(u16::from_le_bytes(b))).collect(),
+        _ => bytes.as_chunks().0.iter().map(|&b| u32::from_le_bytes(b)).collect(),
+    };
+    indices.as_chunks().0.to_vec()
 }
 
 fn places(flags: &[bool]) -> Vec<usize> {

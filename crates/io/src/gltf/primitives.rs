@@ -5,29 +5,46 @@ use std::collections::{BTreeMap, BTreeSet};
 use meshlod_mesh::{Layer, LayerKind, Mesh};
 use serde_json::{Map, Value, json};
 
+use super::compress::{Compression, CompressionReport, Grid};
 use super::document::Document;
-use super::encode::{self, Arrays, Typed};
+use super::encode::{self, Arrays, Numbers, Typed};
+use super::lod;
 use super::pool::Pool;
 use super::schema::{self, parse_target_name};
+use super::unpack::MESHOPT;
 use crate::Unfit;
 
 /// Where geometry goes to, and the document that it came from, if any.
 pub(super) struct Replacer<'a> {
     pub document: Option<&'a Document<'a>>,
     pub pool: Pool,
+    /// How small numbers are written, if they are.
+    pub compression: Option<&'a Compression>,
+    /// The farthest that a vertex moved by it.
+    pub position_error: f64,
 }
 
-impl Replacer<'_> {
+impl<'a> Replacer<'a> {
+    pub fn new(document: Option<&'a Document<'a>>, pool: Pool) -> Self {
+        Self { document, pool, compression: None, position_error: 0.0 }
+    }
+
     /// Replaces the triangle primitives in the JSON of a mesh by the faces of `mesh`.
     ///
     /// Primitives keep all but their arrays, of which they have the kinds that they had, and those
     /// that no primitive had. Primitives that no face is left of go; of a mesh that has no face
-    /// one stays that shows nothing.
+    /// one stays that shows nothing. Positions lie on the grid, if there is one.
     ///
     /// # Errors
     /// When the mesh is not valid, when a face's label names no triangle primitive, or see
     /// [`encode::arrays`].
-    pub fn replace(&mut self, json: &mut Value, mesh: &Mesh) -> Result<(), Unfit> {
+    pub fn replace(
+        &mut self,
+        json: &mut Value,
+        mesh: &Mesh,
+        grid: Option<&Grid>,
+    ) -> Result<(), Unfit> {
+        let numbers = Numbers { compression: self.compression, grid };
         let name = json.get("name").and_then(Value::as_str).unwrap_or_default().to_owned();
         let wrong = |reason: String| Unfit::new(format!("mesh {name:?}"), reason);
         mesh.validate().map_err(|error| wrong(error.to_string()))?;
@@ -51,7 +68,7 @@ impl Replacer<'_> {
                     .filter(|(name, _)| own.contains_key(*name) || !known.contains(*name))
                     .map(|(name, &layer)| (name, Typed { layer, component: of_file(name) }))
                     .unzip();
-                let arrays = encode::arrays(mesh, faces, &typed)?;
+                let arrays = encode::arrays(mesh, faces, &typed, numbers)?;
                 new.push(self.with_arrays(primitive, arrays, &names));
             }
         }
@@ -64,8 +81,28 @@ impl Replacer<'_> {
         Ok(())
     }
 
+    /// What compression came to.
+    pub fn report(&self, kept: Vec<String>) -> CompressionReport {
+        let [positions, connectivity, attributes] = self.pool.added;
+        let max_position_error = self.position_error;
+        CompressionReport { positions, connectivity, attributes, max_position_error, kept }
+    }
+
+    /// Names the extensions that the arrays need.
+    pub fn list_extensions(&self, json: &mut Value) {
+        let needed = [
+            ("KHR_mesh_quantization", self.pool.is_quantized()),
+            (MESHOPT[0], self.pool.is_packed()),
+        ];
+        for (extension, _) in needed.into_iter().filter(|&(_, needed)| needed) {
+            lod::list_extension(json, "extensionsUsed", extension);
+            lod::list_extension(json, "extensionsRequired", extension);
+        }
+    }
+
     /// The primitive with other arrays, those of `names` in order.
     fn with_arrays(&mut self, primitive: &Value, arrays: Arrays, names: &[&String]) -> Value {
+        self.position_error = self.position_error.max(arrays.position_error);
         let mut attributes = Map::new();
         let mut targets: Vec<Map<String, Value>> = Vec::new();
         attributes.insert("POSITION".into(), self.pool.add(arrays.positions).into());

@@ -13,9 +13,8 @@ pub(super) const MESHOPT: [&str; 2] = ["EXT_meshopt_compression", "KHR_meshopt_c
 
 /// How many bytes a file may unfold to for each of its own: the views of one may overlap.
 ///
-/// What gltfpack makes of the shared meshes stays below 8; planes of zeros alone reach 64, and
-/// 1024 in version 1.
-const UNFOLDING: usize = 32;
+/// Version 0 cannot do more; planes of zeros reach 1024 in version 1, but no mesh is of those alone.
+const UNFOLDING: usize = 64;
 
 /// `bufferViews[i].extensions.EXT_meshopt_compression`.
 #[derive(Debug, Deserialize)]

@@ -3,13 +3,14 @@
 use meshlod_mesh::Mesh;
 use serde_json::{Map, Value};
 
+use super::compress::{self, Compression, CompressionReport};
 use super::document::Document;
 use super::lod::{self, Level};
 use super::pool::Pool;
 use super::primitives::{Replacer, attributes, is_surface};
 use super::read::Contents;
 use super::uri::{self, Uri};
-use super::{container, mesh, plain};
+use super::{container, mesh, place, plain};
 use crate::{Image, Scene, Unfit};
 
 /// A `.gltf` file and the files that go with it.
@@ -40,10 +41,35 @@ pub struct Written {
 /// When a mesh is not valid or leaves 32 bits; when labels or numbers of meshes do not match the
 /// source; above 4 GB.
 pub fn write_glb(scene: &Scene, levels: &[Level]) -> Result<Vec<u8>, Unfit> {
-    let mut output = Output::of(scene, levels)?;
-    output.embed_images(scene, |_| true);
-    let buffer = output.pool.finish(&mut output.json);
-    container::join(&to_bytes(output.json)?, &buffer)
+    Output::of(scene, levels, None)?.into_glb(scene)
+}
+
+/// Writes a scene as GLB like [`write_glb`], but small, and tells what that came to.
+///
+/// Positions are whole numbers on a grid of each mesh, which its levels share, with equal cells on
+/// all axes: a vertex moves by half a cell an axis at most, and primitives that met still meet.
+/// The nodes that show it, or new children of theirs, scale and move it to its place. Positions
+/// stay floats, and the report says so, where a node cannot do that: with skins, morph targets,
+/// points or lines, materials of a thickness, instances.
+///
+/// Normals and tangents become bytes or shorts; texture coordinates in [0, 1] normalised integers,
+/// others stay floats; colours in [0, 1] bytes, unless the file had shorts. Everything else is as
+/// it was. Faces come after their neighbours and vertices in the order of use. With
+/// [`Compression::meshopt`] the geometry is in streams, and texture coordinates beyond [0, 1] have
+/// the bits asked for. Images and animations stay as they are.
+///
+/// # Errors
+/// As for [`write_glb`]; also bits that cannot be.
+/// # References
+/// [Kap20], [KS21]
+pub fn write_small_glb(
+    scene: &Scene,
+    levels: &[Level],
+    how: &Compression,
+) -> Result<(Vec<u8>, CompressionReport), Unfit> {
+    let mut output = Output::of(scene, levels, Some(how))?;
+    let report = std::mem::take(&mut output.report);
+    Ok((output.into_glb(scene)?, report))
 }
 
 /// Writes a scene as a `.gltf` of that stem, with its buffer as `stem.bin`. Images that were files
@@ -52,39 +78,53 @@ pub fn write_glb(scene: &Scene, levels: &[Level]) -> Result<Vec<u8>, Unfit> {
 /// # Errors
 /// As for [`write_glb`], but for the size.
 pub fn write(scene: &Scene, levels: &[Level], stem: &str) -> Result<Written, Unfit> {
-    let mut output = Output::of(scene, levels)?;
-    // One that lies elsewhere is not ours to write.
-    output.embed_images(scene, |name| crate::files::inner_path(name).is_none());
-    let images = output.external_images(scene);
-    let bytes = output.pool.finish(&mut output.json);
-    let name = format!("{stem}.bin");
-    if let Some(buffer) = output.json.get_mut("buffers") {
-        buffer[0]["uri"] = uri::of_file(&name).into();
-    }
-    let document = to_bytes(output.json)?;
-    Ok(Written { document, buffer: (!bytes.is_empty()).then_some((name, bytes)), images })
+    Output::of(scene, levels, None)?.into_files(scene, stem)
+}
+
+/// Writes a scene as [`write`], but small as [`write_small_glb`] has it.
+///
+/// # Errors
+/// As for [`write_small_glb`], but for the size.
+pub fn write_small(
+    scene: &Scene,
+    levels: &[Level],
+    stem: &str,
+    how: &Compression,
+) -> Result<(Written, CompressionReport), Unfit> {
+    let mut output = Output::of(scene, levels, Some(how))?;
+    let report = std::mem::take(&mut output.report);
+    Ok((output.into_files(scene, stem)?, report))
 }
 
 /// A document with its geometry in it, but for the buffer.
 struct Output {
     json: Map<String, Value>,
     pool: Pool,
+    report: CompressionReport,
 }
 
 impl Output {
-    fn of(scene: &Scene, levels: &[Level]) -> Result<Self, Unfit> {
+    fn of(scene: &Scene, levels: &[Level], how: Option<&Compression>) -> Result<Self, Unfit> {
+        how.map_or(Ok(()), Compression::check)?;
         match &scene.source {
-            Some(source) => Self::with_source(scene, &source.0, levels),
+            Some(source) => Self::with_source(scene, &source.0, levels, how),
             None => {
                 let mut pool = Pool::default();
                 let json = plain::document(scene, &mut pool);
                 let all = vec![true; scene.meshes.len()];
-                Self::finish(json, scene, &all, Replacer { document: None, pool }, levels)
+                let mut replacer = Replacer::new(None, pool);
+                replacer.compression = how;
+                Self::finish(json, scene, &all, replacer, levels)
             }
         }
     }
 
-    fn with_source(scene: &Scene, source: &Contents, levels: &[Level]) -> Result<Self, Unfit> {
+    fn with_source(
+        scene: &Scene,
+        source: &Contents,
+        levels: &[Level],
+        how: Option<&Compression>,
+    ) -> Result<Self, Unfit> {
         let (json, buffers) = (&source.json, &source.buffers);
         let unreadable = |error: crate::ParseError| Unfit::new("source", error.to_string());
         let document = Document::new(json, buffers).map_err(unreadable)?;
@@ -97,10 +137,11 @@ impl Output {
         let mut changed = Vec::new();
         for (index, mesh) in scene.meshes.iter().enumerate() {
             let old = mesh::read(&document, index, source.weld).map_err(unreadable)?;
-            changed.push(!same_geometry(&old, &mesh.mesh));
+            changed.push(how.is_some() || !same_geometry(&old, &mesh.mesh));
         }
         let pool = Pool::of(&document, &free_accessors(&document, &changed));
-        let replacer = Replacer { document: Some(&document), pool };
+        let mut replacer = Replacer::new(Some(&document), pool);
+        replacer.compression = how;
         Self::finish(json.clone(), scene, &changed, replacer, levels)
     }
 
@@ -113,18 +154,48 @@ impl Output {
         levels: &[Level],
     ) -> Result<Self, Unfit> {
         let templates = json.get("meshes").and_then(Value::as_array).cloned().unwrap_or_default();
+        let mut kept = Vec::new();
+        let mut grids = vec![None; scene.meshes.len()];
+        if let Some(how) = replacer.compression {
+            grids = compress::grids(&json, scene, levels, how.position_bits, &mut kept);
+            place::place(&mut json, &grids);
+            if how.meshopt {
+                replacer.pool.pack();
+            }
+        }
         for (index, mesh) in scene.meshes.iter().enumerate().filter(|&(index, _)| changed[index]) {
             let mut new = templates[index].clone();
-            replacer.replace(&mut new, &mesh.mesh)?;
+            replacer.replace(&mut new, &mesh.mesh, grids[index].as_ref())?;
             json["meshes"][index] = new;
         }
         if !levels.is_empty() {
-            lod::add(&mut json, &templates, levels, &mut replacer)?;
+            lod::add(&mut json, &templates, &grids, levels, &mut replacer)?;
         }
+        let report = replacer.report(kept);
+        replacer.list_extensions(&mut json);
         match json {
-            Value::Object(json) => Ok(Self { json, pool: replacer.pool }),
+            Value::Object(json) => Ok(Self { json, pool: replacer.pool, report }),
             _ => Err(Unfit::new("source", "is no JSON object")),
         }
+    }
+
+    fn into_glb(mut self, scene: &Scene) -> Result<Vec<u8>, Unfit> {
+        self.embed_images(scene, |_| true);
+        let buffer = self.pool.finish(&mut self.json);
+        container::join(&to_bytes(self.json)?, &buffer)
+    }
+
+    fn into_files(mut self, scene: &Scene, stem: &str) -> Result<Written, Unfit> {
+        // One that lies elsewhere is not ours to write.
+        self.embed_images(scene, |name| crate::files::inner_path(name).is_none());
+        let images = self.external_images(scene);
+        let bytes = self.pool.finish(&mut self.json);
+        let name = format!("{stem}.bin");
+        if let Some(buffer) = self.json.get_mut("buffers") {
+            buffer[0]["uri"] = uri::of_file(&name).into();
+        }
+        let document = to_bytes(self.json)?;
+        Ok(Written { document, buffer: (!bytes.is_empty()).then_some((name, bytes)), images })
     }
 
     /// Takes images that are files into the buffer, where their bytes are known and `inside` says

@@ -6,6 +6,7 @@ mod levels;
 mod mutated;
 mod packed;
 mod shared;
+mod small;
 
 use serde_json::{Value, json};
 

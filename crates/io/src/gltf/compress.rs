@@ -1,0 +1,231 @@
+//! What is asked of compressed glTF, what it came to, and which meshes can have a grid.
+
+use std::collections::BTreeSet;
+
+use meshlod_mesh::Bounds;
+use serde_json::Value;
+
+use super::lod::Level;
+use super::primitives::is_surface;
+use super::schema::parse_target_name;
+use crate::{Scene, Unfit};
+
+/// How geometry is written small: [Kap20], and [KS21] where `meshopt` asks for it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Compression {
+    /// Bits of the longest side of a mesh, 1 to 16; all axes and primitives share its cells.
+    pub position_bits: u32,
+    /// Bits of each component of normals and tangents, 2 to 16; up to 8 take one byte.
+    pub normal_bits: u32,
+    /// Bits of a texture from side to side, 1 to 16; up to 8 take one byte.
+    pub uv_bits: u32,
+    /// Whether buffer views are compressed, too; else a GPU can take them from the file.
+    pub meshopt: bool,
+}
+
+impl Default for Compression {
+    /// What is seldom told from the original: 14 bits for positions, 8 for normals and 12 for
+    /// texture coordinates, compressed.
+    fn default() -> Self {
+        Self { position_bits: 14, normal_bits: 8, uv_bits: 12, meshopt: true }
+    }
+}
+
+impl Compression {
+    pub(super) fn check(&self) -> Result<(), Unfit> {
+        for (name, bits, least) in [
+            ("position bits", self.position_bits, 1),
+            ("normal bits", self.normal_bits, 2),
+            ("uv bits", self.uv_bits, 1),
+        ] {
+            if !(least..=16).contains(&bits) {
+                return Err(Unfit::new(name, format!("{bits} cannot be; {least} to 16 can")));
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Bytes of arrays as a GPU holds them, and as the file does.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Bytes {
+    /// After quantization.
+    pub resident: usize,
+    /// After the codecs, too; the same without them.
+    pub stored: usize,
+}
+
+/// What compression came to.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct CompressionReport {
+    /// Of positions.
+    pub positions: Bytes,
+    /// Of indices.
+    pub connectivity: Bytes,
+    /// Of all else at vertices.
+    pub attributes: Bytes,
+    /// The farthest that a vertex moved, in the units of its own mesh.
+    pub max_position_error: f64,
+    /// What stays as floats, and why: `mesh 2: …`.
+    pub kept: Vec<String>,
+}
+
+/// The cells on which the positions of a mesh lie.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Grid {
+    /// The corner of the first cell, in numbers of 32 bits.
+    pub origin: [f64; 3],
+    /// Their side, in a number of 32 bits.
+    pub cell: f64,
+    /// The greatest number of a cell.
+    pub most: u16,
+}
+
+impl Grid {
+    /// The grid of so many bits over points; none where its cells are no number of 32 bits.
+    fn over<'a>(points: impl Iterator<Item = &'a [f64; 3]>, bits: u32) -> Option<Self> {
+        let bounds = Bounds::of(points);
+        let origin = bounds.min.map(|x| f64::from(rounded_down(x)));
+        let longest = (0..3).map(|axis| bounds.max[axis] - origin[axis]).fold(0.0, f64::max);
+        let most = ((1u32 << bits) - 1) as u16;
+        // Rounded up, so that the last cell is among them.
+        let cell = -f64::from(rounded_down(-longest / f64::from(most)));
+        let cell = if longest == 0.0 { 1.0 } else { cell };
+        let sound = origin.iter().all(|x| x.abs() <= f64::from(f32::MAX))
+            && (f64::from(f32::MIN_POSITIVE)..=f64::from(f32::MAX)).contains(&cell);
+        sound.then_some(Self { origin, cell, most })
+    }
+
+    /// The nearest cell.
+    pub fn quantized(&self, point: [f64; 3]) -> [u16; 3] {
+        let most = f64::from(self.most);
+        std::array::from_fn(|axis| {
+            ((point[axis] - self.origin[axis]) / self.cell).round().clamp(0.0, most) as u16
+        })
+    }
+
+    /// Where a cell is.
+    pub fn place(&self, cell: [u16; 3]) -> [f64; 3] {
+        std::array::from_fn(|axis| self.origin[axis] + f64::from(cell[axis]) * self.cell)
+    }
+}
+
+/// The greatest number of 32 bits that is not above `x`.
+fn rounded_down(x: f64) -> f32 {
+    let near = x as f32;
+    if f64::from(near) > x { near.next_down() } else { near }
+}
+
+/// The grid of each mesh, in common with its levels; none where its positions must stay floats,
+/// which `kept` is told.
+pub(super) fn grids(
+    json: &Value,
+    scene: &Scene,
+    levels: &[Level],
+    bits: u32,
+    kept: &mut Vec<String>,
+) -> Vec<Option<Grid>> {
+    let mut grid = |index: usize| {
+        let mesh = &scene.meshes[index].mesh;
+        let why = match why_floats(json, index) {
+            _ if mesh.faces.is_empty() => return None,
+            Some(why) => why,
+            None if has_target(scene, index) => "has morph targets",
+            None => {
+                let coarser = levels.iter().filter_map(|level| level.meshes.get(index));
+                let points = std::iter::once(mesh).chain(coarser).flat_map(|mesh| &mesh.positions);
+                match Grid::over(points, bits) {
+                    Some(grid) => return Some(grid),
+                    None => "is too large or too small for a node to scale",
+                }
+            }
+        };
+        kept.push(format!("mesh {index}: positions stay floats, as it {why}"));
+        None
+    };
+    (0..scene.meshes.len()).map(&mut grid).collect()
+}
+
+fn has_target(scene: &Scene, index: usize) -> bool {
+    let attributes = scene.meshes[index].mesh.attributes.iter();
+    let mut layers = attributes.flat_map(|attributes| &attributes.layers);
+    layers.any(|layer| matches!(parse_target_name(&layer.name), Some((_, "POSITION"))))
+}
+
+/// Why a node's transform cannot stand for the grid of a mesh, by all that shows it.
+fn why_floats(json: &Value, mesh: usize) -> Option<&'static str> {
+    let array = |value: &'_ Value, key: &str| {
+        value.get(key).and_then(Value::as_array).cloned().unwrap_or_default()
+    };
+    let primitives = array(&json["meshes"][mesh], "primitives");
+    if !primitives.iter().all(is_surface) {
+        return Some("has points or lines");
+    }
+    // Thickness is in the mesh's own units.
+    let volumes = array(json, "materials");
+    let has_volume = |i: usize| {
+        volumes.get(i).is_some_and(|m| m["extensions"]["KHR_materials_volume"].is_object())
+    };
+    let mut named = BTreeSet::new();
+    primitives.iter().for_each(|primitive| name_materials(primitive, &mut named));
+    if named.into_iter().any(has_volume) {
+        return Some("has a material with a thickness");
+    }
+    for node in array(json, "nodes").iter().filter(|node| node["mesh"] == mesh) {
+        if node.get("skin").is_some() {
+            return Some("has a skin");
+        }
+        let extensions = node.get("extensions").and_then(Value::as_object);
+        let harmless = ["MSFT_lod", "KHR_lights_punctual", "KHR_node_visibility"];
+        if extensions.into_iter().flatten().any(|(name, _)| !harmless.contains(&&name[..])) {
+            return Some("is shown by a node with an extension");
+        }
+    }
+    None
+}
+
+/// The materials of a primitive, those of its variants, too.
+fn name_materials(value: &Value, into: &mut BTreeSet<usize>) {
+    match value {
+        Value::Array(values) => values.iter().for_each(|value| name_materials(value, into)),
+        Value::Object(entries) => {
+            for (key, value) in entries {
+                match value.as_u64().filter(|_| key == "material") {
+                    Some(material) => drop(into.insert(material as usize)),
+                    None => name_materials(value, into),
+                }
+            }
+        }
+        _ => {}
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn points_are_at_most_half_a_cell_away_on_each_axis() {
+        let points = [[-1.0, 2.0, 1e6], [0.3, 2.1, 1e6 + 7.0], [0.1, 2.05, 1e6 + 3.3]];
+        for bits in [1, 8, 11, 16] {
+            let grid = Grid::over(points.iter(), bits).unwrap();
+            assert!(f64::from(grid.cell as f32) == grid.cell);
+            for point in points {
+                let place = grid.place(grid.quantized(point));
+                for axis in 0..3 {
+                    let off = (place[axis] - point[axis]).abs();
+                    assert!(off <= 0.5 * grid.cell * (1.0 + 1e-9), "{bits} bits: {off}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn what_no_node_can_scale_has_no_grid() {
+        let of = |points: &[[f64; 3]]| Grid::over(points.iter(), 1);
+        assert!(of(&[[0.0; 3], [1e-60, 0.0, 0.0]]).is_none());
+        assert!(of(&[[-3e38, 0.0, 0.0], [3e38, 0.0, 0.0]]).is_none());
+        assert!(of(&[[1e39, 0.0, 0.0]]).is_none());
+        assert_eq!(of(&[[3.0; 3]]).map(|grid| grid.place([0; 3])), Some([3.0; 3]));
+    }
+}

@@ -1,0 +1,123 @@
+//! Parts of a mesh in eight bits an axis, each a node of its own that turns them into places.
+
+use serde_json::{Value, json};
+
+use super::accessor::component;
+use super::container;
+use crate::Unfit;
+
+/// A part of a mesh with its own grid of 256 cells an axis.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct QuantizedPart {
+    /// Rows of the matrix that turns cells into places; its fourth column moves. As glTF wants of
+    /// nodes, it scales, turns and moves, and does not shear.
+    pub matrix: [[f32; 4]; 3],
+    /// Cells of the vertices.
+    pub positions: Vec<[u8; 3]>,
+    /// Faces, by index into `positions`.
+    pub faces: Vec<[u32; 3]>,
+}
+
+/// Writes parts as GLB with `KHR_mesh_quantization`: a mesh with one primitive and a node for each.
+///
+/// A position takes four bytes, an index two, or four where a part has more than 65535 vertices.
+/// Parts without faces are left out. Vertices are drawn at the place that the matrix gives in 32
+/// bits, so vertices of two parts meet where their matrices agree on the bit.
+///
+/// # Errors
+/// When a matrix is not finite or a face names a vertex that is not there; above 4 GB.
+/// # References
+/// [Kap20]
+pub fn write_parts_glb(parts: &[QuantizedPart]) -> Result<Vec<u8>, Unfit> {
+    parts.iter().enumerate().try_for_each(|(i, part)| check(i, part))?;
+    let shown: Vec<&QuantizedPart> = parts.iter().filter(|part| !part.faces.is_empty()).collect();
+    let mut buffer: Vec<u8> = (shown.iter().flat_map(|part| &part.positions))
+        .flat_map(|&[x, y, z]| [x, y, z, 0])
+        .collect();
+    let positions = buffer.len();
+    let (component, size) = index_type(&shown);
+    for part in &shown {
+        let indices = part.faces.as_flattened().iter();
+        buffer.extend(indices.flat_map(|index| index.to_le_bytes().into_iter().take(size)));
+    }
+    let json = if shown.is_empty() {
+        json!({ "asset": asset(), "scene": 0, "scenes": [{}] })
+    } else {
+        json!({
+            "asset": asset(),
+            "extensionsUsed": ["KHR_mesh_quantization"],
+            "extensionsRequired": ["KHR_mesh_quantization"],
+            "scene": 0,
+            "scenes": [{ "nodes": (0..shown.len()).collect::<Vec<_>>() }],
+            "nodes": shown.iter().enumerate().map(node).collect::<Vec<_>>(),
+            "meshes": (0..shown.len()).map(mesh).collect::<Vec<_>>(),
+            "accessors": accessors(&shown, component, size),
+            "bufferViews": [
+                { "buffer": 0, "byteLength": positions, "byteStride": 4, "target": 34962 },
+                { "buffer": 0, "byteOffset": positions, "byteLength": buffer.len() - positions,
+                  "target": 34963 },
+            ],
+            "buffers": [{ "byteLength": buffer.len() }],
+        })
+    };
+    container::join(json.to_string().as_bytes(), &buffer)
+}
+
+fn asset() -> Value {
+    json!({ "version": "2.0", "generator": concat!("meshlod ", env!("CARGO_PKG_VERSION")) })
+}
+
+fn check(index: usize, part: &QuantizedPart) -> Result<(), Unfit> {
+    let wrong = |reason| Err(Unfit::new(format!("part {index}"), reason));
+    if !part.matrix.as_flattened().iter().all(|x| x.is_finite()) {
+        return wrong("its matrix is not finite".to_owned());
+    }
+    let count = part.positions.len();
+    match part.faces.iter().flatten().find(|&&v| v as usize >= count) {
+        Some(vertex) => wrong(format!("a face names vertex {vertex} of {count}")),
+        None => Ok(()),
+    }
+}
+
+/// The least type that has all indices; the greatest number of each restarts strips.
+fn index_type(parts: &[&QuantizedPart]) -> (u32, usize) {
+    // One byte would do for small parts, but newer GPU interfaces do not take such indices.
+    match parts.iter().map(|part| part.positions.len()).max().unwrap_or(0) {
+        ..=65535 => (component::U16, 2),
+        _ => (component::U32, 4),
+    }
+}
+
+fn node((index, part): (usize, &&QuantizedPart)) -> Value {
+    let [x, y, z] = part.matrix;
+    let column = |k: usize, last: f32| [x[k], y[k], z[k], last];
+    let columns = [column(0, 0.0), column(1, 0.0), column(2, 0.0), column(3, 1.0)];
+    json!({ "mesh": index, "matrix": columns.as_flattened() })
+}
+
+fn mesh(index: usize) -> Value {
+    let primitive = json!({ "attributes": { "POSITION": 2 * index }, "indices": 2 * index + 1 });
+    json!({ "primitives": [primitive] })
+}
+
+/// Positions and indices of each part, one after the other.
+fn accessors(parts: &[&QuantizedPart], component: u32, size: usize) -> Vec<Value> {
+    let (mut vertices, mut indices) = (0, 0);
+    let mut accessors = Vec::with_capacity(2 * parts.len());
+    for part in parts {
+        let least = |axis: usize| part.positions.iter().map(|p| p[axis]).min().unwrap_or(0);
+        let most = |axis: usize| part.positions.iter().map(|p| p[axis]).max().unwrap_or(0);
+        accessors.push(json!({
+            "bufferView": 0, "byteOffset": 4 * vertices, "componentType": component::U8,
+            "count": part.positions.len(), "type": "VEC3",
+            "min": [least(0), least(1), least(2)], "max": [most(0), most(1), most(2)],
+        }));
+        accessors.push(json!({
+            "bufferView": 1, "byteOffset": size * indices, "componentType": component,
+            "count": 3 * part.faces.len(), "type": "SCALAR",
+        }));
+        vertices += part.positions.len();
+        indices += 3 * part.faces.len();
+    }
+    accessors
+}

@@ -1,0 +1,110 @@
+//! Positions and attributes as integers, in the types that `KHR_mesh_quantization` allows.
+
+use meshlod_mesh::LayerKind;
+
+use super::accessor::component;
+use super::compress::{Compression, Grid};
+use super::pool::{Blob, Part, Usage};
+use crate::meshopt::{Filter, encode_exponential, encode_octahedral};
+
+/// An array of integers for a GPU, each element filled up to a multiple of four bytes.
+fn integers(shape: &'static str, component: u32, count: usize, values: &[i32]) -> Blob {
+    let width = values.len() / count.max(1);
+    let size = if matches!(component, component::I8 | component::U8) { 1 } else { 2 };
+    let stride = (width * size).next_multiple_of(4);
+    let mut bytes = Vec::with_capacity(count * stride);
+    for element in values.chunks_exact(width.max(1)) {
+        for value in element {
+            bytes.extend_from_slice(&value.to_le_bytes()[..size]);
+        }
+        bytes.resize(bytes.len().next_multiple_of(4), 0);
+    }
+    Blob {
+        component,
+        shape,
+        normalized: true,
+        count,
+        bytes,
+        stride: (stride != width * size).then_some(stride),
+        extent: None,
+        usage: Usage::Vertices,
+        part: Part::Attributes,
+        filter: Filter::None,
+    }
+}
+
+/// Positions by the numbers of their cells, and the farthest that one moved.
+pub(super) fn positions(points: &[[f64; 3]], grid: &Grid) -> (Blob, f64) {
+    let cells: Vec<[u16; 3]> = points.iter().map(|&point| grid.quantized(point)).collect();
+    let moved = |(cell, point): (&[u16; 3], &[f64; 3])| {
+        let place = grid.place(*cell);
+        (0..3).map(|axis| (place[axis] - point[axis]).powi(2)).sum::<f64>().sqrt()
+    };
+    let error = cells.iter().zip(points).map(moved).fold(0.0, f64::max);
+    let values: Vec<i32> = cells.as_flattened().iter().map(|&x| i32::from(x)).collect();
+    let component = if grid.most <= 255 { component::U8 } else { component::U16 };
+    let floats: Vec<[f32; 3]> = cells.iter().map(|cell| cell.map(f32::from)).collect();
+    let blob = Blob {
+        normalized: false,
+        extent: Some(super::encode::extent(&floats)),
+        part: Part::Positions,
+        ..integers("VEC3", component, cells.len(), &values)
+    };
+    (blob, error)
+}
+
+/// A layer's values as integers, or as floats of fewer bits; `None` where they stay as they are.
+pub(super) fn layer(
+    kind: LayerKind,
+    width: usize,
+    values: &[f32],
+    how: &Compression,
+) -> Option<Blob> {
+    match kind {
+        LayerKind::Normal | LayerKind::Tangent => Some(directions(width, values, how)),
+        LayerKind::Uv(_) if all_in_unit(values) => Some(uvs(values, how.uv_bits)),
+        LayerKind::Uv(_) if how.meshopt => {
+            let bytes = encode_exponential(values, 0.5f64.powi(how.uv_bits as i32))?;
+            let shape = integers("VEC2", component::F32, 0, &[]);
+            let (count, filter) = (values.len() / 2, Filter::Exponential);
+            Some(Blob { normalized: false, count, bytes, filter, ..shape })
+        }
+        LayerKind::Color(_) if all_in_unit(values) => {
+            let shape = if width == 3 { "VEC3" } else { "VEC4" };
+            let bytes: Vec<i32> = values.iter().map(|x| (x * 255.0).round() as i32).collect();
+            Some(integers(shape, component::U8, values.len() / width, &bytes))
+        }
+        _ => None,
+    }
+}
+
+pub(super) fn all_in_unit(values: &[f32]) -> bool {
+    values.iter().all(|x| (0.0..=1.0).contains(x))
+}
+
+/// Normals, or tangents with their handedness.
+fn directions(width: usize, values: &[f32], how: &Compression) -> Blob {
+    let shape = if width == 3 { "VEC3" } else { "VEC4" };
+    let small = how.normal_bits <= 8;
+    let (component, greatest) =
+        if small { (component::I8, 127.0) } else { (component::I16, 32767.0) };
+    let whole: Vec<i32> =
+        values.iter().map(|x| (x.clamp(-1.0, 1.0) * greatest).round() as i32).collect();
+    let plain = integers(shape, component, values.len() / width, &whole);
+    if !how.meshopt {
+        return plain;
+    }
+    let four = |e: &[f32]| [e[0], e[1], e[2], e.get(3).copied().unwrap_or(0.0)];
+    let directions: Vec<[f32; 4]> = values.chunks_exact(width).map(four).collect();
+    let bytes = encode_octahedral(&directions, how.normal_bits);
+    Blob { bytes, filter: Filter::Octahedral, ..plain }
+}
+
+/// Texture coordinates in [0, 1], with zeros in the bits that were not asked for.
+fn uvs(values: &[f32], bits: u32) -> Blob {
+    let (component, all) = if bits <= 8 { (component::U8, 8) } else { (component::U16, 16) };
+    let greatest = f64::from((1u32 << all) - 1);
+    let step = f64::from(1u32 << (all - bits));
+    let whole = |&x: &f32| ((f64::from(x) * greatest / step).round() * step).min(greatest) as i32;
+    integers("VEC2", component, values.len() / 2, &values.iter().map(whole).collect::<Vec<_>>())
+}
