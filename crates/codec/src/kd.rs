@@ -1,7 +1,9 @@
 //! Vertices in blocks of one size, each close together.
 
-use glam::DVec3;
-use meshlod_mesh::{Mesh, VertexId};
+use std::f64::consts::FRAC_1_SQRT_2;
+
+use glam::{DMat3, DVec3};
+use meshlod_mesh::{Bounds, Mesh, VertexId};
 
 /// How many vertices a block has: more share a header, fewer lie closer together. At 11 bits and a little more 24
 /// take as much on the mean of ten meshes, and 48 take 1.3 % more.
@@ -19,53 +21,133 @@ pub(crate) fn blocks_of(mesh: &Mesh) -> Vec<VertexId> {
     vertices.into_iter().map(VertexId).collect()
 }
 
-/// The vertices in an order in which every `size` of them in a row are close together:
-/// halved again and again across the direction in which they are longest.
+/// The vertices in an order in which every `size` of them in a row are close together: halved again and again, across
+/// the direction in which they are longest, at last across the one that leaves the smallest boxes.
 ///
 /// Cost: O(n log n).
 fn in_blocks(places: &[[f64; 3]], vertices: &mut [u32], size: usize) {
-    if vertices.len() <= size {
-        return;
-    }
-    let along = longest(places, vertices);
-    let far = |v: u32| DVec3::from(places[v as usize]).dot(along);
-    // Whole blocks on the first side.
-    let middle = (vertices.len() / 2).next_multiple_of(size).min(vertices.len() - 1);
-    vertices.select_nth_unstable_by(middle, |&a, &b| far(a).total_cmp(&far(b)).then(a.cmp(&b)));
-    let (first, second) = vertices.split_at_mut(middle);
-    in_blocks(places, first, size);
-    in_blocks(places, second, size);
+    let bounds = Bounds::of(vertices.iter().map(|&v| &places[v as usize]));
+    let halving = Halving { places, size, grain: GRAIN * bounds.diagonal() };
+    halving.halve(vertices);
 }
 
-/// So often the direction is turned by the spread: it need not be exact.
-const TURNS: usize = 8;
+/// What stays the same from half to half.
+struct Halving<'p> {
+    places: &'p [[f64; 3]],
+    size: usize,
+    /// Thinner boxes count as if they were so thick.
+    grain: f64,
+}
 
-/// About the direction of their greatest spread.
-fn longest(places: &[[f64; 3]], vertices: &[u32]) -> DVec3 {
-    let place = |&v: &u32| DVec3::from(places[v as usize]);
-    let mean = vertices.iter().map(place).sum::<DVec3>() / vertices.len() as f64;
-    let (mut square, mut mixed) = (DVec3::ZERO, DVec3::ZERO);
-    for away in vertices.iter().map(|v| place(v) - mean) {
-        square += away * away;
-        mixed += DVec3::new(away.y * away.z, away.z * away.x, away.x * away.y);
+/// As a part of the mesh: a cell of 11 bits or so.
+const GRAIN: f64 = 1.0 / 4096.0;
+/// So many blocks or fewer are halved across the best of several directions: with 8 they take 5 % less on the lattice
+/// than if only the longest is looked at, with 64 they take 6 % less.
+const FEW: usize = 64;
+
+impl Halving<'_> {
+    fn halve(&self, vertices: &mut [u32]) {
+        if vertices.len() <= self.size {
+            return;
+        }
+        // Whole blocks on the first side.
+        let middle = (vertices.len() / 2).next_multiple_of(self.size).min(vertices.len() - 1);
+        let [along, across, _] = self.axes(vertices);
+        let mut best = (f64::INFINITY, along);
+        if vertices.len() <= FEW * self.size {
+            for [cos, sin] in TURNS {
+                let turned = along * cos + across * sin;
+                self.part(vertices, middle, turned);
+                let (first, second) = vertices.split_at(middle);
+                let volume = self.volume(first) * self.volume(second);
+                if volume < best.0 {
+                    best = (volume, turned);
+                }
+            }
+        }
+        self.part(vertices, middle, best.1);
+        let (first, second) = vertices.split_at_mut(middle);
+        self.halve(first);
+        self.halve(second);
     }
-    let axis = square.max_position();
-    let mut along = DVec3::from([0, 1, 2].map(|k| if k == axis { 1.0 } else { 0.1 }));
-    for _ in 0..TURNS {
-        let turned = square * along
-            + DVec3::new(
-                mixed.z * along.y + mixed.y * along.z,
-                mixed.z * along.x + mixed.x * along.z,
-                mixed.y * along.x + mixed.x * along.y,
-            );
-        along = turned.try_normalize().unwrap_or(along);
+
+    fn place(&self, v: u32) -> DVec3 {
+        DVec3::from(self.places[v as usize])
     }
-    along
+
+    /// Puts the farther ones behind the first so many.
+    fn part(&self, vertices: &mut [u32], middle: usize, along: DVec3) {
+        let far = |v: u32| self.place(v).dot(along);
+        vertices.select_nth_unstable_by(middle, |&a, &b| far(a).total_cmp(&far(b)).then(a.cmp(&b)));
+    }
+
+    /// About the volume of the smallest box around vertices.
+    fn volume(&self, vertices: &[u32]) -> f64 {
+        let [along, across, normal] = self.axes(vertices);
+        let mut low = [f64::INFINITY; TURNS.len() + 1];
+        let mut high = [f64::NEG_INFINITY; TURNS.len() + 1];
+        for place in vertices.iter().map(|&v| self.place(v)) {
+            let (x, y) = (place.dot(along), place.dot(across));
+            let turned = TURNS.map(|[cos, sin]| x * cos + y * sin);
+            for (k, x) in turned.into_iter().chain([place.dot(normal)]).enumerate() {
+                low[k] = low[k].min(x);
+                high[k] = high[k].max(x);
+            }
+        }
+        let reach = |k: usize| high[k] - low[k] + self.grain;
+        let quarter = TURNS.len() / 2;
+        let area =
+            (0..quarter).map(|k| reach(k) * reach(k + quarter)).fold(f64::INFINITY, f64::min);
+        area * reach(TURNS.len())
+    }
+
+    /// About the directions of the greatest spread, of the greatest across it, and of the least.
+    fn axes(&self, vertices: &[u32]) -> [DVec3; 3] {
+        let mean = vertices.iter().map(|&v| self.place(v)).sum::<DVec3>() / vertices.len() as f64;
+        let mut spread = DMat3::ZERO;
+        for away in vertices.iter().map(|&v| self.place(v) - mean) {
+            spread += DMat3::from_cols(away * away.x, away * away.y, away * away.z);
+        }
+        let along = greatest(&spread);
+        // What is left across it.
+        let flat =
+            DMat3::IDENTITY - DMat3::from_cols(along * along.x, along * along.y, along * along.z);
+        let across = greatest(&(flat * spread * flat));
+        let across = (across - along * across.dot(along)).try_normalize();
+        let across = across.unwrap_or_else(|| along.any_orthonormal_vector());
+        [along, across, along.cross(across)]
+    }
+}
+
+/// Cosines and sines of eighths of a half turn: written down, for all machines to part alike.
+const TURNS: [[f64; 2]; 8] = [
+    [1.0, 0.0],
+    [0.923_879_532_511_286_7, 0.382_683_432_365_089_8],
+    [FRAC_1_SQRT_2, FRAC_1_SQRT_2],
+    [0.382_683_432_365_089_8, 0.923_879_532_511_286_7],
+    [0.0, 1.0],
+    [-0.382_683_432_365_089_8, 0.923_879_532_511_286_7],
+    [-FRAC_1_SQRT_2, FRAC_1_SQRT_2],
+    [-0.923_879_532_511_286_7, 0.382_683_432_365_089_8],
+];
+
+/// A direction is turned by the spread so often: it need not be exact.
+const STEPS: usize = 8;
+
+/// About the direction in which a spread is greatest.
+fn greatest(spread: &DMat3) -> DVec3 {
+    let longer = |a: DVec3, b: DVec3| if b.length_squared() > a.length_squared() { b } else { a };
+    let mut along = longer(longer(spread.x_axis, spread.y_axis), spread.z_axis);
+    for _ in 0..STEPS {
+        // Of no spread any is as good.
+        along = *spread * along.try_normalize().unwrap_or(DVec3::X);
+    }
+    along.try_normalize().unwrap_or(DVec3::X)
 }
 
 #[cfg(test)]
 mod tests {
-    use meshlod_mesh::{Bounds, sample};
+    use meshlod_mesh::sample;
 
     use super::*;
 

@@ -57,8 +57,8 @@ const ALONG: f64 = 0.03;
 const SWEEPS: usize = 2;
 /// Of the greatest distance in cubic cells: where a vertex is to stay; what it is kept to without regard to its
 /// neighbours is less.
-const FARTHEST: f64 = 1.9;
-const FARTHEST_ALONE: f64 = 1.5;
+const FARTHEST: f64 = 1.75;
+const FARTHEST_ALONE: f64 = 1.4;
 
 /// The blocks of a mesh, in the fewest bits found that keep to a target.
 pub(super) fn fitted(
@@ -182,6 +182,8 @@ impl Fit {
             let Attempt { grids, settled, .. } = &mut *attempt;
             let doubts = doubtful.into_iter();
             let far = settled.mend(&self.surface, grids, FARTHEST * self.most(), doubts);
+            // What is wrong with a vertex may be due to its neighbours.
+            let far = self.surface.with_neighbours(far.into_iter());
             let mut bad = self.blocks_of(far, &settled.moved);
             bad.retain(|&block| finer[block] > FINEST);
             if bad.is_empty() {

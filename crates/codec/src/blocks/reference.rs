@@ -19,6 +19,8 @@ const CELLS: [f64; 2] = [3.0, (1 << 24) as f64];
 /// The mean distance to planes, in cells: where rounding happens to be exact, as on a flat mesh, that is no measure.
 const LEAST_ERROR: f64 = 0.1;
 const USUAL_ERROR: f64 = 0.2;
+/// Of an error that is asked for: planes of faces tell it too low, by up to 4 % on a gyroid.
+const SAFE: f64 = 0.96;
 
 impl Reference {
     /// Cells that meet a target.
@@ -51,7 +53,7 @@ impl Reference {
                 }
                 let cell = cell.min(longest / CELLS[0]);
                 let change = surface.change(&rounded(surface, low, cell));
-                Ok(Self { cell, change, error: error.min(USUAL_ERROR * longest) })
+                Ok(Self { cell, change, error: SAFE * error.min(USUAL_ERROR * longest) })
             }
         }
     }

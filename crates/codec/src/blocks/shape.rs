@@ -50,6 +50,9 @@ pub(super) const MOST_STEP: u8 = 255;
 /// Farther from the middle of its group no block is told.
 const FARTHEST: f64 = (1 << 30) as f64;
 
+/// Than they should be, cells may be by this: half of what the next width makes of them, and a step.
+const LARGER: f64 = 1.3;
+
 /// Eighths of an octave.
 const EIGHTHS: [f64; 8] = [
     1.0,
@@ -83,6 +86,23 @@ impl Units {
             .rev()
             .find(|&step| self.size(step) <= size)
             .unwrap_or(octave)
+    }
+
+    /// The width, step and anchor of cells about so large that reach over a range.
+    fn fitted(&self, reach: [f64; 2], size: f64, anchor: f64) -> Option<(u8, u8, i32)> {
+        let length = reach[1] - reach[0];
+        let count = (length / size).max(1.0);
+        // Twice the logarithm, rounded.
+        let about = u8::try_from(floor_log2(count * count * std::f64::consts::SQRT_2)).ok()?;
+        // Between anchors few cells may not reach far enough: then there are more, not larger ones.
+        (about..=WIDEST).find_map(|width| {
+            let count = numbers(width) as f64;
+            let most = self.step_below(size * LARGER);
+            // How large a single cell is makes no difference.
+            let least = if count > 1.0 { self.step_below(length / count) } else { most };
+            let fit = |step| Some((width, step, first(reach, count, self.size(step), anchor)?));
+            (least..=most).find_map(fit)
+        })
     }
 
     fn anchor(&self, axis: usize) -> f64 {
@@ -161,16 +181,8 @@ impl Block<'_> {
         for k in 0..3 {
             let middle = self.middle.dot(axes[k]);
             let reach = self.reach(axes[k]).map(|x| x - middle);
-            let count = ((reach[1] - reach[0]) / sizes[k]).max(1.0);
-            // Twice the logarithm, rounded.
-            let width = floor_log2(count * count * std::f64::consts::SQRT_2);
-            shape.widths[k] = u8::try_from(width).ok().filter(|&width| width <= WIDEST)?;
-            let count = numbers(shape.widths[k]) as f64;
-            // A single cell has the size that is usual: how far it reaches is not asked.
-            let size = if count > 1.0 { (reach[1] - reach[0]) / count } else { sizes[k] };
-            let least = units.step_below(size);
-            let fit = |step| Some((step, first(reach, count, units.size(step), units.anchor(k))?));
-            (shape.steps[k], shape.anchors[k]) = (least..=MOST_STEP).find_map(fit)?;
+            let fitted = units.fitted(reach, sizes[k], units.anchor(k))?;
+            (shape.widths[k], shape.steps[k], shape.anchors[k]) = fitted;
         }
         Some(shape)
     }
@@ -180,15 +192,8 @@ impl Block<'_> {
 fn first([low, high]: [f64; 2], count: f64, cell: f64, anchor: f64) -> Option<i32> {
     let least = ((high - (count - 0.5) * cell) / anchor).ceil();
     let most = ((low + 0.5 * cell) / anchor).floor();
-    let found = if least <= most {
-        ((least + most) * 0.5).round().min(most)
-    } else if count == 1.0 && high - low <= cell {
-        // Between two anchors: the closer.
-        ((high + low) * 0.5 / anchor).round()
-    } else {
-        return None;
-    };
-    (found.abs() < FARTHEST).then_some(found as i32)
+    let found = ((least + most) * 0.5).round().min(most);
+    (least <= most && found.abs() < FARTHEST).then_some(found as i32)
 }
 
 impl Shape {

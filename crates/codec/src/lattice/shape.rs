@@ -1,149 +1,284 @@
-//! How the vertices of a block lie on the lattice: sheared flat, and how far they reach then.
+//! How the vertices of a block lie on the lattice: laid flat, and how far they reach then.
 //!
-//! Most blocks are nearly plane. Along the axis that is closest to the normal, each vertex loses the whole part of
-//! where the plane is above it: integers in, integers out, so nothing is lost [BE92]. What is left spans a
-//! few cells.
+//! Along the axis that is closest to the normal, each vertex loses the whole part of where a bent plane is above it;
+//! along the two others a block is sheared upright. Integers in, integers out, each step by what stays as it is, so
+//! nothing is lost [BE92]. What is left spans a few cells.
 
-/// How a block is told.
+/// How a block is told. All is counted from its middle on.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct Shape {
-    /// The axis that is sheared by the two others; those follow it, in cyclic order.
+    /// The axis that is flattened, `w`; those along the block follow it in cyclic order, `u` and `v`.
     pub(super) axis: u8,
-    /// How much of the first other axis, and of the second, is taken off the sheared one; how much of the
-    /// second off the first. In parts of [`SLOPE`].
-    pub(super) slopes: [i8; 3],
-    /// The least of each, along the two other axes and the sheared one, after shearing.
-    pub(super) least: [i32; 3],
-    /// As many cells each spans, as a code of [`span`].
+    /// How much of `v` is taken off `u`, of `u` then off `v`, and of `u` and `v` off `w`: in parts of [`SLOPE`].
+    pub(super) slopes: [i8; 4],
+    /// How much of `u²`, `uv` and `v²` is taken off `w`, in parts of [`BEND`] by the span of `u`, `u` and `v`.
+    pub(super) bends: [i8; 3],
+    /// Where the middle is, along `u`, `v` and `w`.
+    pub(super) middle: [i32; 3],
+    /// How many cells each spans then, as a code of [`span`].
     pub(super) spans: [u8; 3],
 }
 
-const SLOPE: i32 = 32;
-/// Slopes have so many bits, with a sign.
+const SLOPE: i64 = 64;
+/// Slopes across a block have so many bits, with a sign; those along it are less fine.
 pub(super) const SLOPE_BITS: u32 = 7;
-const STEEPEST: i32 = (1 << (SLOPE_BITS - 1)) - 1;
+pub(super) const COARSE_BITS: u32 = 5;
+pub(super) const COARSE: i8 = 1 << (SLOPE_BITS - COARSE_BITS);
+const BEND: i64 = 64;
+pub(super) const BEND_BITS: u32 = 6;
+/// So many vertices have one number together, of which all bits are used but a part of one.
+pub(super) const TUPLE: usize = 4;
 
 impl Shape {
-    /// The one of the shapes tried that takes the fewest bits. Cells are at least 0 and at most `most`, which is
-    /// below [`MOST_CELLS`], along each axis; so are all leasts.
-    pub(super) fn of(cells: &[[i32; 3]], most: [i32; 3]) -> Self {
-        let plain = Self::fitted(cells, 0, [0; 3]);
-        let sheared = (0..3).map(|axis| Self::fitted(cells, axis, slopes(cells, axis)));
-        let is_told = |shape: &Self| {
-            let axes = axes(shape.axis);
-            (0..3).all(|k| (0..=most[axes[k]]).contains(&shape.least[k]))
-        };
-        let told = sheared.flatten().filter(is_told);
-        // Within so few cells a plain one fits.
-        let plain = plain.unwrap_or_default();
-        told.fold(plain, |best, shape| if shape.bits() < best.bits() { shape } else { best })
+    /// The one found that takes the fewest bits; bent or not. Cells are at least 0 and below [`MOST_CELLS`].
+    pub(super) fn of(cells: &[[i32; 3]], is_bent: bool) -> Self {
+        // Around the middle of its box it fits whatever the box is.
+        let plain = Self::default().settled(cells).unwrap_or_default();
+        let laid = (0..3).filter_map(|axis| {
+            let at = Search::new(cells, axis, is_bent).best();
+            Self { axis, slopes: at.slopes(), bends: at.bends(), ..Self::default() }.settled(cells)
+        });
+        laid.fold(plain, |best, shape| if shape.volume() < best.volume() { shape } else { best })
     }
 
-    /// Around sheared cells; `None` where they span too much.
-    fn fitted(cells: &[[i32; 3]], axis: u8, slopes: [i8; 3]) -> Option<Self> {
-        let mut shape = Self { axis, slopes, least: [0; 3], spans: [0; 3] };
-        // What an axis is sheared by is known before it.
-        for k in [1, 0, 2] {
-            let along = |&cell: &[i32; 3]| shape.sheared(cell)[k];
-            let least = cells.iter().map(along).min().unwrap_or(0);
-            let most = cells.iter().map(along).max().unwrap_or(0);
-            shape.spans[k] = span_code((i64::from(most) - i64::from(least) + 1) as u64)?;
-            shape.least[k] = least;
+    /// With the middle where it takes the least, and spans by it.
+    fn settled(mut self, cells: &[[i32; 3]]) -> Option<Self> {
+        let of = centre(cells);
+        let middle = axes(self.axis).map(|axis| of[axis]);
+        let mut best = None::<Self>;
+        let mut at = middle;
+        for _ in 0..TRIES {
+            let Some(fitted) = self.fitted(cells, at) else { break };
+            if best.is_none_or(|best| fitted.volume() < best.volume()) {
+                best = Some(fitted);
+            }
+            // Bends are by spans.
+            self.spans = fitted.spans;
+            let [low, high] = fitted.reach(cells);
+            let by = [0, 1, 2].map(|k| (low[k] + high[k] + 1).div_euclid(2));
+            let v = by[1] + shear(self.slopes[1], by[0]);
+            let u = by[0] + shear(self.slopes[0], v);
+            let w = by[2] + shear(self.slopes[2], u) + shear(self.slopes[3], v);
+            let next = [(0, u), (1, v), (2, w)].map(|(k, by)| at[k] + by as i32);
+            if next == at || next.iter().any(|&x| !(0..MOST_CELLS).contains(&x)) {
+                break;
+            }
+            at = next;
         }
-        Some(shape)
+        best
     }
 
-    /// How many bits a vertex takes.
-    #[inline]
-    pub(super) fn bits(&self) -> u32 {
-        let [u, v, w] = self.spans.map(span);
-        // All numbers below u·v·w.
-        u64::BITS - (u * v * w - 1).leading_zeros()
+    /// Around a middle.
+    fn fitted(mut self, cells: &[[i32; 3]], middle: [i32; 3]) -> Option<Self> {
+        self.middle = middle;
+        for k in 0..3 {
+            // What the last axis loses depends on the spans of the others.
+            let [low, high] = self.reach(cells);
+            self.spans[k] = span_code((-2 * low[k]).max(2 * high[k] + 1).max(1) as u64)?;
+        }
+        Some(self)
     }
 
-    /// A cell of the block as one number.
-    pub(super) fn number(&self, cell: [i32; 3]) -> u64 {
-        let cell = self.sheared(cell);
-        let [u, v, w] = [0, 1, 2].map(|k| (cell[k] - self.least[k]) as u64);
-        u + span(self.spans[0]) * (v + span(self.spans[1]) * w)
+    /// The least and the greatest along each axis.
+    fn reach(&self, cells: &[[i32; 3]]) -> [[i64; 3]; 2] {
+        let laid = cells.iter().map(|&cell| self.laid(cell));
+        laid.fold([[0; 3]; 2], |[low, high], x| {
+            [[0, 1, 2].map(|k| low[k].min(x[k])), [0, 1, 2].map(|k| high[k].max(x[k]))]
+        })
     }
 
-    /// The cell of a number.
-    #[inline]
-    pub(super) fn cell(&self, number: u64) -> [i32; 3] {
-        let [first, second, _] = self.spans.map(span);
-        let digits = [number % first, number / first % second, number / first / second];
-        let [u, v, w] = [0, 1, 2].map(|k| digits[k] as i32 + self.least[k]);
-        let u = u + shear(self.slopes[2], v - self.least[1]);
-        let w = w + self.height(u, v);
+    fn volume(&self) -> u64 {
+        self.spans.map(span).into_iter().product()
+    }
+
+    /// How many vertices have a number together, and how many bits that has.
+    pub(super) fn tuple(&self) -> (usize, u32) {
+        let volume = u128::from(self.volume());
+        let bits = |most: u128| u128::BITS - (most - 1).leading_zeros();
+        // A single one has fewer than 64 bits in any case.
+        match volume.checked_pow(TUPLE as u32) {
+            Some(most) => (TUPLE, bits(most)),
+            None => (1, bits(volume)),
+        }
+    }
+
+    /// How many bits so many vertices take.
+    pub(super) fn bits(&self, vertices: usize) -> usize {
+        let (size, bits) = self.tuple();
+        vertices.div_ceil(size) * bits as usize
+    }
+
+    /// Cells of the block as one number: as many as a tuple has, or fewer.
+    pub(super) fn number(&self, cells: &[[i32; 3]]) -> u128 {
+        let volume = u128::from(self.volume());
+        cells.iter().rev().fold(0, |number, &cell| {
+            let cell = self.laid(cell);
+            let [u, v, w] = self.spans.map(span);
+            let digit = |k: usize| (cell[k] + span(self.spans[k]) as i64 / 2) as u64;
+            debug_assert!(digit(0) < u && digit(1) < v && digit(2) < w);
+            number * volume + u128::from(digit(0) + u * (digit(1) + v * digit(2)))
+        })
+    }
+
+    /// The cell of a place in a tuple.
+    pub(super) fn cell(&self, number: u128, at: usize) -> [i64; 3] {
+        let volume = u128::from(self.volume());
+        // Below the volume, which is below 2^58.
+        let own = (number / volume.pow(at as u32) % volume) as u64;
+        let [first, second, third] = self.spans.map(span);
+        let away = |digit: u64, span: u64| digit as i64 - span as i64 / 2;
+        let v = away(own / first % second, second);
+        let u = away(own % first, first);
+        let v = v + shear(self.slopes[1], u);
+        let u = u + shear(self.slopes[0], v);
+        let w = away(own / first / second, third) + self.height(u, v);
         let mut cell = [0; 3];
-        let [along_u, along_v, along_w] = axes(self.axis);
-        (cell[along_u], cell[along_v], cell[along_w]) = (u, v, w);
+        for (k, axis) in axes(self.axis).into_iter().enumerate() {
+            cell[axis] = i64::from(self.middle[k]) + [u, v, w][k];
+        }
         cell
     }
 
-    /// Along the two other axes and the sheared one.
-    fn sheared(&self, cell: [i32; 3]) -> [i32; 3] {
-        let [u, v, w] = axes(self.axis).map(|axis| cell[axis]);
-        [u - shear(self.slopes[2], v - self.least[1]), v, w - self.height(u, v)]
+    /// Along `u`, `v` and `w`, from the middle on: upright and flat.
+    fn laid(&self, cell: [i32; 3]) -> [i64; 3] {
+        let axes = axes(self.axis);
+        let [u, v, w] = [0, 1, 2].map(|k| i64::from(cell[axes[k]]) - i64::from(self.middle[k]));
+        let w = w - self.height(u, v);
+        let u = u - shear(self.slopes[0], v);
+        [u, v - shear(self.slopes[1], u), w]
     }
 
-    /// How high the plane is.
-    #[inline]
-    fn height(&self, u: i32, v: i32) -> i32 {
-        let [first, second, _] = self.slopes;
-        shear(first, u - self.least[0]) + shear(second, v - self.least[1])
+    /// How high the bent plane is.
+    fn height(&self, u: i64, v: i64) -> i64 {
+        let [uu, uv, vv] = self.bends.map(i64::from);
+        let plane = shear(self.slopes[2], u) + shear(self.slopes[3], v);
+        if self.bends == [0; 3] {
+            return plane;
+        }
+        let [across_u, across_v, _] = self.spans.map(|code| BEND * span(code) as i64);
+        plane + (u * (uu * u + uv * v)).div_euclid(across_u) + (vv * v * v).div_euclid(across_v)
     }
 }
 
-/// The two other axes in cyclic order, and the sheared one.
-#[inline]
-pub(super) fn axes(sheared: u8) -> [usize; 3] {
-    let axis = usize::from(sheared);
+/// So often the middle is moved.
+const TRIES: usize = 6;
+
+/// `u`, `v` and `w` of an axis that is flattened.
+pub(super) fn axes(flattened: u8) -> [usize; 3] {
+    let axis = usize::from(flattened);
     [(axis + 1) % 3, (axis + 2) % 3, axis % 3]
 }
 
 /// A slope times a number, rounded down: the same on every machine.
-#[inline]
-fn shear(slope: i8, by: i32) -> i32 {
-    ((i64::from(slope) * i64::from(by)) >> SLOPE.trailing_zeros()) as i32
+fn shear(slope: i8, by: i64) -> i64 {
+    (i64::from(slope) * by).div_euclid(SLOPE)
 }
 
-/// The slopes of the plane closest to the cells along an axis, and how much of the second other axis goes with
-/// the first.
-fn slopes(cells: &[[i32; 3]], axis: u8) -> [i8; 3] {
-    let axes = axes(axis);
-    let count = cells.len().max(1) as f64;
-    let mean = axes.map(|k| cells.iter().map(|cell| f64::from(cell[k])).sum::<f64>() / count);
-    let mut sums = [[0.0; 3]; 3];
-    for cell in cells {
-        let away = [0, 1, 2].map(|i| f64::from(cell[axes[i]]) - mean[i]);
-        for i in 0..3 {
-            for j in 0..3 {
-                sums[i][j] += away[i] * away[j];
-            }
-        }
-    }
-    let [[uu, uv, uw], [_, vv, vw], _] = sums;
-    let det = uu * vv - uv * uv;
-    let flat = |x: f64, by: f64| if by > 0.0 { x / by } else { 0.0 };
-    let plane = if det > 1e-9 * uu * vv {
-        [(uw * vv - vw * uv) / det, (vw * uu - uw * uv) / det]
-    } else {
-        [flat(uw, uu), 0.0]
-    };
-    [plane[0], plane[1], flat(uv, vv)].map(|slope| {
-        let steps = (slope * f64::from(SLOPE)).round();
-        // NaN is not expected, and would be no slope.
-        steps.clamp(f64::from(-STEEPEST), f64::from(STEEPEST)) as i8
+/// Half way between the ends, rounded up.
+fn centre(cells: &[[i32; 3]]) -> [i32; 3] {
+    [0, 1, 2].map(|k| {
+        let along = cells.iter().map(|cell| cell[k]);
+        let [low, high] = [along.clone().min(), along.max()].map(|end| end.unwrap_or(0));
+        high - (high - low) / 2
     })
 }
 
-/// Spans of four bits of mantissa and four of exponent: at most a sixteenth more than need be.
-pub(super) const SPAN_BITS: u32 = 8;
+/// A search for slopes and bends, without rounding.
+struct Search {
+    /// Along `u`, `v` and `w`, from about the middle on.
+    cells: Vec<[f64; 3]>,
+    /// Half of about how far they reach.
+    half: [f64; 2],
+    /// Four slopes and three bends.
+    at: [i32; 7],
+    is_bent: bool,
+}
 
-/// How many cells a code spans.
-#[inline]
+impl Search {
+    fn new(cells: &[[i32; 3]], axis: u8, is_bent: bool) -> Self {
+        let (axes, centre) = (axes(axis), centre(cells));
+        let away = |cell: &[i32; 3]| axes.map(|k| f64::from(cell[k] - centre[k]));
+        let cells: Vec<_> = cells.iter().map(away).collect();
+        let half = [0, 1].map(|k| cells.iter().fold(1.0, |most: f64, x| most.max(x[k].abs())));
+        let mut this = Self { cells, half, at: [0; 7], is_bent };
+        let [a, b] = this.plane().map(|slope| (slope * SLOPE as f64).round());
+        // Steeper ones, and none at all, are cut off; another axis does better.
+        (this.at[2], this.at[3]) = (a as i32, b as i32);
+        this.at = this.at.map(|x| x.clamp(-STEEPEST, STEEPEST));
+        this
+    }
+
+    /// The slopes of the plane closest along `w`.
+    fn plane(&self) -> [f64; 2] {
+        let mean =
+            |k: usize| self.cells.iter().map(|x| x[k]).sum::<f64>() / self.cells.len() as f64;
+        let mean = [mean(0), mean(1), mean(2)];
+        let product = |i: usize, j: usize| {
+            self.cells.iter().map(|x| (x[i] - mean[i]) * (x[j] - mean[j])).sum::<f64>()
+        };
+        let (uu, uv, vv) = (product(0, 0), product(0, 1), product(1, 1));
+        let (uw, vw) = (product(0, 2), product(1, 2));
+        let det = uu * vv - uv * uv;
+        if det > 1e-9 * uu * vv {
+            [(uw * vv - vw * uv) / det, (vw * uu - uw * uv) / det]
+        } else {
+            [if uu > 0.0 { uw / uu } else { 0.0 }, 0.0]
+        }
+    }
+
+    /// Steps along one of the numbers, as long as any makes the volume less.
+    fn best(mut self) -> Self {
+        let mut smallest = self.volume();
+        for step in [16, 8, 4, 2, 1, 2, 1] {
+            for number in 0..if self.is_bent { 7 } else { 4 } {
+                let least_step = if number < 2 { i32::from(COARSE) } else { 1 };
+                let by = step.max(least_step);
+                for by in [-by, by] {
+                    let was = self.at[number];
+                    let most = if number < 4 { STEEPEST } else { MOST_BENT };
+                    let most = most / least_step * least_step;
+                    self.at[number] = (was + by).clamp(-most, most);
+                    let volume = self.volume();
+                    if volume < smallest {
+                        smallest = volume;
+                    } else {
+                        self.at[number] = was;
+                    }
+                }
+            }
+        }
+        self
+    }
+
+    fn volume(&self) -> f64 {
+        let [s, r, a, b] = [0, 1, 2, 3].map(|k| f64::from(self.at[k]) / SLOPE as f64);
+        let bend = |k: usize, half: f64| f64::from(self.at[k]) / (BEND as f64 * 2.0 * half);
+        let [uu, uv, vv] = [bend(4, self.half[0]), bend(5, self.half[0]), bend(6, self.half[1])];
+        let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
+        for &[u, v, w] in &self.cells {
+            let w = w - a * u - b * v - u * (uu * u + uv * v) - vv * v * v;
+            let u = u - s * v;
+            for (k, x) in [u, v - r * u, w].into_iter().enumerate() {
+                low[k] = low[k].min(x);
+                high[k] = high[k].max(x);
+            }
+        }
+        (0..3).map(|k| high[k] - low[k] + 1.0).product()
+    }
+
+    fn slopes(&self) -> [i8; 4] {
+        [0, 1, 2, 3].map(|k| self.at[k] as i8)
+    }
+
+    fn bends(&self) -> [i8; 3] {
+        [4, 5, 6].map(|k| self.at[k] as i8)
+    }
+}
+
+const STEEPEST: i32 = (1 << (SLOPE_BITS - 1)) - 1;
+const MOST_BENT: i32 = (1 << (BEND_BITS - 1)) - 1;
+
+/// How many cells a code spans: four bits of mantissa and four of exponent, at most a sixteenth more than need be.
 pub(super) fn span(code: u8) -> u64 {
     let (exponent, mantissa) = (u32::from(code >> 4), u64::from(code & 15));
     match exponent {
@@ -164,45 +299,44 @@ pub(super) const MOST_CELLS: i32 = 1 << 19;
 mod tests {
     use super::*;
 
-    const MOST: [i32; 3] = [MOST_CELLS - 1; 3];
-
+    /// A bent piece of a slanted plane, sheared along itself.
     fn slanted() -> Vec<[i32; 3]> {
-        let at = |i: i32| [i % 8 * 9 + 300, i / 8 * 11 + 4000];
-        (0..64).map(at).map(|[u, v]| [u, v, 2000 + (3 * u - 2 * v) / 5 + (u ^ v) % 2]).collect()
+        let at = |i: i32| [i % 8 * 9 + i / 8 * 5 + 300, i / 8 * 11 + 4000];
+        let height =
+            |u: i32, v: i32| 2000 + (3 * u - 2 * v) / 5 + (u - 340).pow(2) / 60 + (u ^ v) % 2;
+        (0..64).map(at).map(|[u, v]| [u, v, height(u, v)]).collect()
     }
 
     #[test]
-    fn every_cell_comes_back() {
+    fn every_cell_comes_back_and_laid_flat_they_are_fewer() {
         for turn in 0..3 {
             let mut cells = slanted();
             cells.iter_mut().for_each(|cell| cell.rotate_left(turn));
-            let shape = Shape::of(&cells, MOST);
-            let plain = Shape::fitted(&cells, 0, [0; 3]).unwrap();
-            assert!(shape.bits() + 3 < plain.bits(), "{shape:?}");
-            for &cell in &cells {
-                assert!(shape.number(cell) >> shape.bits() == 0);
-                assert_eq!(shape.cell(shape.number(cell)), cell);
+            let boxed = Shape::default().settled(&cells).unwrap();
+            let [plain, bent] = [false, true].map(|is_bent| Shape::of(&cells, is_bent));
+            assert!(plain.volume() * 2 < boxed.volume(), "{plain:?}");
+            assert!(bent.volume() * 2 < plain.volume(), "{bent:?}");
+            for shape in [boxed, plain, bent] {
+                let (size, bits) = shape.tuple();
+                for tuple in cells.chunks(size) {
+                    let number = shape.number(tuple);
+                    assert!(number >> bits == 0);
+                    let back = |at| shape.cell(number, at).map(|x| x as i32);
+                    assert!(tuple.iter().enumerate().all(|(at, &cell)| back(at) == cell));
+                }
             }
         }
     }
 
     #[test]
-    fn leasts_stay_where_the_mesh_is() {
-        // Sheared back to its first vertex, it would lie below all of the mesh.
-        let cells: Vec<_> = (0..32).map(|i| [i, 20 - i / 2, (31 - i) / 2]).collect();
-        let shape = Shape::of(&cells, [31, 20, 15]);
-        let axes = axes(shape.axis);
-        assert!((0..3).all(|k| (0..=[31, 20, 15][axes[k]]).contains(&shape.least[k])), "{shape:?}");
-        assert!(cells.iter().all(|&cell| shape.cell(shape.number(cell)) == cell));
-    }
-
-    #[test]
     fn one_cell_takes_no_bits_and_the_widest_blocks_fit() {
-        let shape = Shape::of(&[[7, 3, 1 << 18]; 3], MOST);
-        assert_eq!((shape.bits(), shape.cell(0)), (0, [7, 3, 1 << 18]));
-        let wide = [[0; 3], MOST];
-        let shape = Shape::of(&wide, MOST);
-        assert!(wide.iter().all(|&cell| shape.cell(shape.number(cell)) == cell));
+        let shape = Shape::of(&[[7, 3, 1 << 18]; 3], true);
+        assert_eq!((shape.bits(3), shape.cell(0, 2)), (0, [7, 3, 1 << 18]));
+        let wide = [[0; 3], [MOST_CELLS - 1; 3], [0, MOST_CELLS - 1, 0]];
+        let shape = Shape::of(&wide, true);
+        for cell in wide {
+            assert_eq!(shape.cell(shape.number(&[cell]), 0), cell.map(i64::from));
+        }
     }
 
     #[test]
