@@ -37,19 +37,7 @@ struct Input {
 impl<'m> Simplifier<'m> {
     /// Connects the mesh and costs its candidates; nothing is contracted yet.
     pub fn new(mesh: &'m Mesh, options: &Options) -> Result<Self, SimplifyError> {
-        mesh.validate()?;
-        if mesh.faces.is_empty() {
-            return Err(SimplifyError::NoFaces);
-        }
-        let diagonal = mesh.bounds().diagonal();
-        if diagonal > 0.0 && !EXTENTS.contains(&diagonal) {
-            return Err(SimplifyError::Extent { diagonal });
-        }
-        locks::validate(&options.locks, mesh)?;
-        options.weights.validate()?;
-        if let Some(size) = options.vanish_below.filter(|size| size.is_nan() || *size < 0.0) {
-            return Err(SimplifyError::BadSize(size));
-        }
+        validate(mesh, options)?;
         let (connectivity, duplicate_faces) = clean::connect(mesh);
         let degenerate_faces = connectivity.degenerate_faces() - duplicate_faces;
         if connectivity.edge_count() == 0 {
@@ -141,4 +129,22 @@ impl<'m> Simplifier<'m> {
     pub(crate) fn into_surface(self) -> (&'m Mesh, Surface) {
         (self.mesh, self.engine.into_surface())
     }
+}
+
+/// Refuses meshes and options that no method could work with.
+pub(crate) fn validate(mesh: &Mesh, options: &Options) -> Result<(), SimplifyError> {
+    mesh.validate()?;
+    if mesh.faces.is_empty() {
+        return Err(SimplifyError::NoFaces);
+    }
+    let diagonal = mesh.bounds().diagonal();
+    if diagonal > 0.0 && !EXTENTS.contains(&diagonal) {
+        return Err(SimplifyError::Extent { diagonal });
+    }
+    locks::validate(&options.locks, mesh)?;
+    options.weights.validate()?;
+    if let Some(size) = options.vanish_below.filter(|size| size.is_nan() || *size < 0.0) {
+        return Err(SimplifyError::BadSize(size));
+    }
+    Ok(())
 }

@@ -1,0 +1,36 @@
+//! The frame that the fast engine works in: floats, around the middle, faces about one in area.
+//!
+//! Costs go with the sixth power of a length. A scan in metres would have them run out of floats.
+
+use glam::DVec3;
+use meshlod_mesh::Mesh;
+
+/// From model units to the engine's and back.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Frame {
+    center: DVec3,
+    /// Model units to one of the engine's.
+    pub(super) unit: f64,
+}
+
+impl Frame {
+    /// The frame in which the box is as many wide as there are faces, squared.
+    pub(super) fn new(mesh: &Mesh) -> Self {
+        let bounds = mesh.bounds();
+        let unit = bounds.diagonal() / (mesh.faces.len() as f64).sqrt();
+        let unit = if unit > 0.0 { unit } else { 1.0 };
+        Self { center: bounds.center().into(), unit }
+    }
+
+    /// A place in it.
+    #[inline]
+    pub(super) fn enter(&self, position: [f64; 3]) -> [f32; 3] {
+        ((DVec3::from(position) - self.center) / self.unit).as_vec3().to_array()
+    }
+
+    /// A position out of it.
+    #[inline]
+    pub(super) fn leave(&self, place: [f32; 3]) -> [f64; 3] {
+        (DVec3::from(place.map(f64::from)) * self.unit + self.center).to_array()
+    }
+}

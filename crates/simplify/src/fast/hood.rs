@@ -1,0 +1,296 @@
+//! What is around an edge, gathered once for all that a contraction asks.
+//!
+//! ```text
+//!        x1 = ids[0]                  The ring of what becomes of v0 and v1: first the vertices
+//!       /  | \                        around v0, from wing to wing, then the others around v1.
+//!   x2 —— v0 — v1 —— y                Spoke i is the face of ids[i], ids[i + 1] and v0, or v1 for
+//!       \  | /                        the last ones. Ghosts have their places too, and no area.
+//!        xk = ids[of_v0]
+//! ```
+
+use crate::fast::lanes::{LANES, Lanes, Lanes3};
+use crate::fast::ring::{MOST, Vertices, place_in};
+use crate::fast::vertex::{Flags, Star};
+use crate::refusal::Refusal;
+
+/// Room for a ring and the lanes beyond its end.
+const ROOM: usize = MOST + 2 * LANES;
+
+/// The least cosine between a face's normal before and after, as in the general engine.
+const LEAST_COSINE: f32 = 0.2;
+
+/// What is around an edge.
+pub(super) struct Hood {
+    /// The ring.
+    pub(super) ids: [u32; ROOM],
+    /// How many of them there are.
+    pub(super) len: usize,
+    /// How many spokes are v0's: those before.
+    pub(super) of_v0: usize,
+    /// The ghost's place in the ring.
+    pub(super) ghost: Option<usize>,
+    /// v1 as seen from v0.
+    pub(super) along: [f32; 3],
+    /// The ring as seen from v0.
+    ring: [[f32; ROOM]; 3],
+    /// One where a spoke is v1's.
+    of_v1: [f32; ROOM],
+    /// Twice the area of each spoke along its normal, now.
+    pub(super) old: [[f32; ROOM]; 3],
+    /// The same with the new vertex.
+    pub(super) new: [[f32; ROOM]; 3],
+}
+
+impl Hood {
+    pub(super) fn new() -> Self {
+        let empty = [[0.0; ROOM]; 3];
+        Self {
+            ids: [0; ROOM],
+            len: 0,
+            of_v0: 0,
+            ghost: None,
+            along: [0.0; 3],
+            ring: empty,
+            of_v1: [0.0; ROOM],
+            old: empty,
+            new: empty,
+        }
+    }
+
+    /// The ring's vertices.
+    #[inline(always)]
+    pub(super) fn ids(&self) -> &[u32] {
+        &self.ids[..self.len]
+    }
+
+    /// Gathers the ring of an edge, or says why it may not be contracted wherever its vertex goes.
+    #[inline(always)]
+    pub(super) fn gather(
+        &mut self,
+        vertices: &mut Vertices,
+        v0: u32,
+        v1: u32,
+    ) -> Result<(), Refusal> {
+        vertices.ring(v0);
+        vertices.ring(v1);
+        let (ring0, ring1) = (vertices.settled(v0), vertices.settled(v1));
+        let len = (ring0.len() + ring1.len()).saturating_sub(4);
+        if len < 3 || ring0.len().min(ring1.len()) < 3 {
+            return Err(Refusal::LastFaces);
+        }
+        if len > MOST {
+            return Err(Refusal::Valence);
+        }
+        let (Some(at0), Some(at1)) = (place_in(ring0, v1), place_in(ring1, v0)) else {
+            return Err(Refusal::NonManifold);
+        };
+        self.len = len;
+        self.of_v0 = ring0.len() - 2;
+        let first = ring0[at0 + 1..].iter().chain(&ring0[..at0]);
+        self.ids.iter_mut().zip(first).for_each(|(id, &w)| *id = w);
+        // The wings are there already.
+        let second = ring1[at1 + 1..].iter().chain(&ring1[..at1]);
+        let rest = &mut self.ids[self.of_v0 + 1..self.len];
+        rest.iter_mut().zip(second.skip(1)).for_each(|(id, &w)| *id = w);
+        self.link(vertices, [v0, v1])?;
+        self.see(vertices, v0, v1);
+        Ok(())
+    }
+
+    /// The link condition [DEGN99]: no common neighbours but the wings. Copies of a vertex are one.
+    #[inline(always)]
+    fn link(&self, vertices: &Vertices, ends: [u32; 2]) -> Result<(), Refusal> {
+        let (first, second) = self.ids().split_at(self.of_v0 + 1);
+        if first.iter().any(|w| second.contains(w)) {
+            return Err(Refusal::Link);
+        }
+        for wing in [first[0], first[self.of_v0]] {
+            let wing = vertices.get(wing);
+            // A wing of three faces would be left between two on the same vertices.
+            if wing.len <= 3 && !wing.flags.any(Flags::BARRED) {
+                return Err(Refusal::Link);
+            }
+        }
+        if vertices.copied.is_empty() { Ok(()) } else { self.link_of_copies(vertices, ends) }
+    }
+
+    /// As the input has it, where copies are one vertex: no edge may come to be twice.
+    fn link_of_copies(&self, vertices: &Vertices, ends: [u32; 2]) -> Result<(), Refusal> {
+        let origin = |&v: &u32| vertices.origin(v);
+        let mut origins: Vec<u32> = self.ids().iter().chain(&ends).map(origin).collect();
+        origins.sort_unstable();
+        if origins.windows(2).any(|pair| pair[0] == pair[1]) {
+            return Err(Refusal::Link);
+        }
+        for (end, others) in [(ends[0], self.of_v0 + 1..self.len), (ends[1], 1..self.of_v0)] {
+            if !vertices.get(end).flags.any(Flags::SPLIT) {
+                continue;
+            }
+            let copy_of_end = |w: &u32| vertices.origin(*w) == vertices.origin(end);
+            let new = self.ids[others].iter().filter(|&&w| w != vertices.ghost);
+            for &w in new {
+                // A hub's list may name dead vertices: it is taken to know a copy.
+                let hub = vertices.get(w).flags.any(Flags::BARRED);
+                if hub || vertices.settled(w).iter().any(copy_of_end) {
+                    return Err(Refusal::NonManifold);
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Looks up where the ring is, and what its faces are now.
+    #[inline(always)]
+    fn see(&mut self, vertices: &Vertices, v0: u32, v1: u32) {
+        let (from, to) = (vertices.get(v0).place, vertices.get(v1).place);
+        self.along = [0, 1, 2].map(|k| to[k] - from[k]);
+        self.ghost = None;
+        for i in 0..self.len {
+            let w = self.ids[i];
+            let place = vertices.get(w).place;
+            for k in 0..3 {
+                self.ring[k][i] = place[k] - from[k];
+            }
+            self.of_v1[i] = if i < self.of_v0 { 0.0 } else { 1.0 };
+            if w == vertices.ghost {
+                self.ghost = Some(i);
+            }
+        }
+        // The ring closes; the lanes beyond are faces of one point.
+        for i in self.len..=self.len.next_multiple_of(LANES) {
+            for k in 0..3 {
+                self.ring[k][i] = self.ring[k][0];
+            }
+            self.of_v1[i] = 0.0;
+        }
+        for start in (0..self.len).step_by(LANES) {
+            let of_v1 = lanes(&self.of_v1, start);
+            let apex = Lanes3(self.along.map(|x| Lanes::all(x) * of_v1));
+            let normal = self.normal(start, apex);
+            store(&mut self.old, start, normal);
+        }
+        if let Some(ghost) = self.ghost {
+            clear(&mut self.old, ghost, self.len);
+        }
+    }
+
+    /// The normals of eight spokes with this apex.
+    #[inline(always)]
+    fn normal(&self, start: usize, apex: Lanes3) -> Lanes3 {
+        let at = |start: usize| Lanes3([0, 1, 2].map(|k| lanes(&self.ring[k], start)));
+        (at(start) - apex).cross(at(start + 1) - apex)
+    }
+
+    /// Puts the new vertex at `place`, as seen from v0. Whether no face turns over, or by more than a
+    /// limit, or loses its area.
+    #[inline(always)]
+    pub(super) fn put(&mut self, place: [f32; 3]) -> Result<(), Refusal> {
+        let apex = Lanes3(place.map(Lanes::all));
+        for start in (0..self.len).step_by(LANES) {
+            let new = self.normal(start, apex);
+            store(&mut self.new, start, new);
+        }
+        if let Some(ghost) = self.ghost {
+            clear(&mut self.new, ghost, self.len);
+        }
+        let mut turned = false;
+        for start in (0..self.len).step_by(LANES) {
+            let [old, new] =
+                [&self.old, &self.new].map(|n| Lanes3([0, 1, 2].map(|k| lanes(&n[k], start))));
+            let (turn, before) = (old.dot(new), old.dot(old));
+            let least = Lanes::all(LEAST_COSINE * LEAST_COSINE) * before * new.dot(new);
+            for i in 0..LANES {
+                let kept = turn.0[i] > 0.0 && turn.0[i] * turn.0[i] > least.0[i];
+                turned |= !kept & (before.0[i] > 0.0);
+            }
+        }
+        if turned { Err(Refusal::Flip) } else { Ok(()) }
+    }
+
+    /// The dying faces' normals, in the order of the wings they have.
+    #[inline(always)]
+    pub(super) fn dying(&self) -> [[f32; 3]; 2] {
+        let d = self.along;
+        let wing = |i: usize| [0, 1, 2].map(|k| self.ring[k][i]);
+        let (first, last) = (cross(d, wing(0)), cross(wing(self.of_v0), d));
+        [(0, first), (self.of_v0, last)]
+            .map(|(i, normal)| if self.ghost == Some(i) { [0.0; 3] } else { normal })
+    }
+
+    /// The spokes' new normals less their old ones, and of the squares likewise.
+    #[inline(always)]
+    pub(super) fn change(&self, i: usize) -> Star {
+        let at = |n: &[[f32; ROOM]; 3]| Star::face([n[0][i], n[1][i], n[2][i]]);
+        at(&self.new).minus(&at(&self.old))
+    }
+
+    /// The new vertex's star but for boundaries.
+    #[inline(always)]
+    pub(super) fn star(&self) -> Star {
+        let mut star = Star::default();
+        for i in 0..self.len {
+            star.add(&Star::face([self.new[0][i], self.new[1][i], self.new[2][i]]));
+        }
+        star
+    }
+
+    /// The sums of the old normals around v0 and around v1.
+    #[inline(always)]
+    pub(super) fn sums(&self) -> [[f32; 3]; 2] {
+        let sum = |range: std::ops::Range<usize>| {
+            [0, 1, 2].map(|k| self.old[k][range.clone()].iter().sum::<f32>())
+        };
+        [sum(0..self.of_v0), sum(self.of_v0..self.len)]
+    }
+
+    /// The boundary edges among the spokes: where in the ring they end, from which apex before.
+    #[inline(always)]
+    pub(super) fn boundary(&self) -> [(usize, bool); 2] {
+        let Some(ghost) = self.ghost else { return [(0, false); 2] };
+        let before = (ghost + self.len - 1) % self.len;
+        let after = (ghost + 1) % self.len;
+        [(before, before >= self.of_v0), (after, ghost >= self.of_v0)]
+    }
+
+    /// A vertex of the ring as seen from v0.
+    #[inline(always)]
+    pub(super) fn seen(&self, i: usize) -> [f32; 3] {
+        [0, 1, 2].map(|k| self.ring[k][i])
+    }
+
+    /// The farthest of the ring and the ends from the middle of the edge, squared.
+    pub(super) fn reach(&self) -> f32 {
+        let half = self.along.map(|x| 0.5 * x);
+        let far = |[x, y, z]: [f32; 3]| x * x + y * y + z * z;
+        let seen = (0..self.len).filter(|&i| self.ghost != Some(i)).map(|i| {
+            let p = self.seen(i);
+            far([0, 1, 2].map(|k| p[k] - half[k]))
+        });
+        seen.fold(far(half), f32::max)
+    }
+}
+
+#[inline(always)]
+fn lanes(of: &[f32; ROOM], start: usize) -> Lanes {
+    Lanes(std::array::from_fn(|i| of[start + i]))
+}
+
+#[inline(always)]
+fn store(to: &mut [[f32; ROOM]; 3], start: usize, from: Lanes3) {
+    for (to, from) in to.iter_mut().zip(from.0) {
+        to[start..start + LANES].copy_from_slice(&from.0);
+    }
+}
+
+/// The ghost's faces have no area.
+fn clear(normals: &mut [[f32; ROOM]; 3], ghost: usize, len: usize) {
+    for normals in normals {
+        normals[ghost] = 0.0;
+        normals[(ghost + len - 1) % len] = 0.0;
+    }
+}
+
+#[inline(always)]
+pub(super) fn cross([a, b, c]: [f32; 3], [x, y, z]: [f32; 3]) -> [f32; 3] {
+    [b * z - c * y, c * x - a * z, a * y - b * x]
+}

@@ -1,0 +1,112 @@
+//! Vertices where the surface is not manifold, split aside: each fan of faces gets a copy, and all
+//! copies stay where they are. In the result they are one vertex again, so topology is as it was.
+
+use rustc_hash::FxHashMap;
+
+use crate::fast::fans::Pair;
+
+/// Faces on copies of vertices.
+pub(super) struct Split {
+    /// As many as in the input; those that repeat another are `[0, 0, 0]`.
+    pub(super) faces: Vec<[u32; 3]>,
+    /// The vertices that the copies are of. The first copy's id is one more than the ghost's.
+    pub(super) copied: Vec<u32>,
+    /// Faces that repeat another.
+    pub(super) duplicates: usize,
+}
+
+/// A corner of a face at a vertex.
+#[derive(Clone, Copy)]
+struct Corner {
+    face: u32,
+    corner: usize,
+    pair: Pair,
+}
+
+/// Gives each fan around the irregular vertices a vertex of its own: the first keeps the id.
+pub(super) fn split(mut faces: Vec<[u32; 3]>, irregular: &[u32], ghost: u32) -> Split {
+    let duplicates = drop_duplicates(&mut faces, irregular);
+    let stars = stars(&faces, irregular);
+    let mut copied = Vec::new();
+    for (&v, star) in irregular.iter().zip(&stars) {
+        for (i, fan) in fans(star).into_iter().enumerate() {
+            if i == 0 {
+                continue;
+            }
+            copied.push(v);
+            let copy = ghost + copied.len() as u32;
+            for corner in fan {
+                faces[corner.face as usize][corner.corner] = copy;
+            }
+        }
+    }
+    Split { faces, copied, duplicates }
+}
+
+/// The corners of faces at each of these vertices.
+fn stars(faces: &[[u32; 3]], of: &[u32]) -> Vec<Vec<Corner>> {
+    let place: FxHashMap<u32, usize> = of.iter().enumerate().map(|(i, &v)| (v, i)).collect();
+    let mut stars = vec![Vec::new(); of.len()];
+    for (f, &[a, b, c]) in faces.iter().enumerate() {
+        if a == b || b == c || c == a {
+            continue;
+        }
+        for (corner, (v, pair)) in [(a, [b, c]), (b, [c, a]), (c, [a, b])].into_iter().enumerate() {
+            if let Some(&i) = place.get(&v) {
+                stars[i].push(Corner { face: f as u32, corner, pair });
+            }
+        }
+    }
+    stars
+}
+
+/// Empties all faces that repeat one before, in the same turn. Their corners are all irregular.
+fn drop_duplicates(faces: &mut [[u32; 3]], irregular: &[u32]) -> usize {
+    let mut seen = FxHashMap::default();
+    let mut count = 0;
+    for face in faces.iter_mut() {
+        if face.iter().any(|v| irregular.binary_search(v).is_err()) {
+            continue;
+        }
+        let [a, b, c] = *face;
+        let turned = [[a, b, c], [b, c, a], [c, a, b]].into_iter().min();
+        if a != b && b != c && c != a && seen.insert(turned, ()).is_some() {
+            *face = [0; 3];
+            count += 1;
+        }
+    }
+    count
+}
+
+/// The fans of a star: faces that hang together by edges that have one face on either side.
+fn fans(star: &[Corner]) -> Vec<Vec<Corner>> {
+    let mut from: FxHashMap<u32, Vec<usize>> = FxHashMap::default();
+    let mut to: FxHashMap<u32, usize> = FxHashMap::default();
+    for (i, corner) in star.iter().enumerate() {
+        from.entry(corner.pair[0]).or_default().push(i);
+        *to.entry(corner.pair[1]).or_default() += 1;
+    }
+    let next = |i: usize| match from.get(&star[i].pair[1]).map(Vec::as_slice) {
+        Some(&[next]) if to[&star[i].pair[1]] == 1 => Some(next),
+        _ => None,
+    };
+    let mut has_previous = vec![false; star.len()];
+    (0..star.len()).filter_map(next).for_each(|i| has_previous[i] = true);
+    let mut taken = vec![false; star.len()];
+    let mut fans = Vec::new();
+    // Open fans from their beginnings, then closed ones from anywhere.
+    let beginnings = (0..star.len()).filter(|&i| !has_previous[i]);
+    for start in beginnings.chain(0..star.len()) {
+        let mut fan = Vec::new();
+        let mut at = Some(start);
+        while let Some(i) = at.filter(|&i| !taken[i]) {
+            taken[i] = true;
+            fan.push(star[i]);
+            at = next(i);
+        }
+        if !fan.is_empty() {
+            fans.push(fan);
+        }
+    }
+    fans
+}
