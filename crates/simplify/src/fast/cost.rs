@@ -15,7 +15,7 @@ pub(super) const PULL: f32 = 1e-5;
 
 /// What the square of half the length counts. Short edges go first where all costs are rounding,
 /// which for these floats is a ten-millionth.
-const SHORT_FIRST: f32 = 1e-7;
+pub(super) const SHORT_FIRST: f32 = 1e-7;
 
 /// Keeps a division by nothing from being one.
 const TINY: f32 = 1e-30;
@@ -48,7 +48,7 @@ pub(super) fn cheapest(all: &[Vertex], u: &Vertex, ring: &[u32]) -> Cheapest {
                 ends[6 + k][lane] = v.star.squares[k];
             }
         }
-        let mut costs = costs(u, &ends.map(Lanes)).0;
+        let mut costs = costs(u, &ends).0;
         if Flags(special).any(SPECIAL) {
             correct(&mut costs, all, u, part);
         }
@@ -91,39 +91,55 @@ pub(super) fn swept(vertex: &Vertex, to: [f32; 3]) -> f32 {
         + SHORT_FIRST * (xx + yy + zz) * (x * x + y * y + z * z)
 }
 
-/// The product of a symmetric matrix and a vector.
-#[inline(always)]
-fn apply([xx, yy, zz, xy, xz, yz]: &[Lanes; 6], Lanes3([x, y, z]): Lanes3) -> Lanes3 {
-    Lanes3([*xx * x + *xy * y + *xz * z, *xy * x + *yy * y + *yz * z, *xz * x + *yz * y + *zz * z])
+/// A symmetric matrix of each: xx, yy, zz, xy, xz, yz.
+#[derive(Clone, Copy)]
+struct Symmetric([Lanes; 6]);
+
+impl Symmetric {
+    /// The product with a vector.
+    #[inline(always)]
+    fn apply(&self, Lanes3 { x, y, z }: Lanes3) -> Lanes3 {
+        let [xx, yy, zz, xy, xz, yz] = self.0;
+        Lanes3 {
+            x: xx * x + xy * y + xz * z,
+            y: xy * x + yy * y + yz * z,
+            z: xz * x + yz * y + zz * z,
+        }
+    }
 }
 
-/// The costs of eight edges from `u`. Symmetric: the same from either end, to the bit.
+/// The costs of edges from `u`. Symmetric: the same from either end, to the bit.
 #[inline(always)]
-fn costs(u: &Vertex, ends: &[Lanes; 12]) -> Lanes {
-    let own = |x: f32| Lanes::all(x);
-    let [px, py, pz] = u.place.map(own);
-    let h = Lanes3([ends[0] - px, ends[1] - py, ends[2] - pz]).by(own(0.5));
-    let n0 = Lanes3(u.star.normal.map(own));
-    let n1 = Lanes3([ends[3], ends[4], ends[5]]);
-    let a0 = u.star.squares.map(own);
-    let sum: [Lanes; 6] = std::array::from_fn(|k| ends[6 + k] + a0[k]);
-    let difference: [Lanes; 6] = std::array::from_fn(|k| ends[6 + k] - a0[k]);
-    let trace = sum[0] + sum[1] + sum[2];
+fn costs(u: &Vertex, ends: &[[f32; LANES]; 12]) -> Lanes {
+    let own = Lanes::all;
+    let vector =
+        |k: usize| Lanes3 { x: Lanes(ends[k]), y: Lanes(ends[k + 1]), z: Lanes(ends[k + 2]) };
+    let h = (vector(0) - Lanes3::all(u.place)).by(own(0.5));
+    let (n0, n1) = (Lanes3::all(u.star.normal), vector(3));
+    let mut sum = Symmetric([own(0.0); 6]);
+    let mut difference = sum;
+    for k in 0..6 {
+        let (a0, a1) = (own(u.star.squares[k]), Lanes(ends[6 + k]));
+        sum.0[k] = a1 + a0;
+        difference.0[k] = a1 - a0;
+    }
+    let trace = sum.0[0] + sum.0[1] + sum.0[2];
     let scale = own(1.0) / (trace + own(TINY));
 
-    let q = apply(&difference, h);
-    let at_middle = apply(&sum, h).dot(h);
+    let q = difference.apply(h);
+    let at_middle = sum.apply(h).dot(h);
     let g = n0 + n1;
-    let gg = g.dot(g) + own(TINY);
+    let to_unit = own(1.0) / (g.dot(g) + own(TINY));
     // The place on the plane of equal volumes that is next to the middle.
-    let x0 = g.by((n1 - n0).dot(h) / gg);
-    let slope = q - apply(&sum, x0);
+    let x0 = g.by((n1 - n0).dot(h) * to_unit);
+    let slope = q - sum.apply(x0);
     let there = at_middle - x0.dot(q + slope);
 
     // Two directions in the plane, at right angles, the second along the slope.
-    let e1 = g.cross(slope).by(scale / gg.sqrt());
-    let e2 = g.cross(e1).by(own(1.0) / gg.sqrt());
-    let (a1, a2) = (apply(&sum, e1), apply(&sum, e2));
+    let to_unit = to_unit.sqrt();
+    let e1 = g.cross(slope).by(scale * to_unit);
+    let e2 = g.cross(e1).by(to_unit);
+    let (a1, a2) = (sum.apply(e1), sum.apply(e2));
     let along = e1.dot(e1);
     let pull = own(PULL) * along;
     let m11 = e1.dot(a1) * scale + pull;

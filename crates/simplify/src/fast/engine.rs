@@ -6,7 +6,7 @@
 
 use glam::DVec3;
 
-use crate::fast::cost::{Cheapest, cheapest};
+use crate::fast::cost::{Cheapest, SHORT_FIRST, cheapest};
 use crate::fast::hood::Hood;
 use crate::fast::place::{Swept, matrix};
 use crate::fast::queue::{NONE, Queue, bucket};
@@ -130,7 +130,8 @@ impl Engine {
         let free = !end0.flags.any(Flags::PINNED);
         let best = if free { swept.best() } else { -swept.half };
         let cost = swept.at(best);
-        let bucket = bucket(cost as f32);
+        let short = f64::from(SHORT_FIRST) * swept.weight() * swept.half.length_squared();
+        let bucket = bucket((cost.max(0.0) + short) as f32);
         if bucket > front.saturating_add(SLACK) {
             return Err(if bucket == NONE {
                 refused(Refusal::Volume)
@@ -179,7 +180,7 @@ impl Engine {
                 let mut woken = vertex.floor > 0;
                 if i == 0 || i == hood.of_v0 {
                     let dying = Star::face(dying[usize::from(i > 0)]);
-                    vertex.star = vertex.star.minus(&dying);
+                    vertex.star.take(&dying);
                     woken |= vertex.lose(v1);
                 } else if i > hood.of_v0 {
                     vertex.swap(v1, v0);

@@ -129,9 +129,11 @@ impl Hood {
             let copy_of_end = |w: &u32| vertices.origin(*w) == vertices.origin(end);
             let new = self.ids[others].iter().filter(|&&w| w != vertices.ghost);
             for &w in new {
-                // A hub's list may name dead vertices: it is taken to know a copy.
-                let hub = vertices.get(w).flags.any(Flags::BARRED);
-                if hub || vertices.settled(w).iter().any(copy_of_end) {
+                // Nor between copies, of which others may have the edge, nor to a hub, whose list may
+                // name dead vertices.
+                let vertex = vertices.get(w);
+                let unclear = vertex.flags.any(Flags::SPLIT) || vertex.flags.any(Flags::BARRED);
+                if unclear || vertices.settled(w).iter().any(copy_of_end) {
                     return Err(Refusal::NonManifold);
                 }
             }
@@ -164,8 +166,7 @@ impl Hood {
             self.of_v1[i] = 0.0;
         }
         for start in (0..self.len).step_by(LANES) {
-            let of_v1 = lanes(&self.of_v1, start);
-            let apex = Lanes3(self.along.map(|x| Lanes::all(x) * of_v1));
+            let apex = Lanes3::all(self.along).by(Lanes::of(&self.of_v1, start));
             let normal = self.normal(start, apex);
             store(&mut self.old, start, normal);
         }
@@ -177,15 +178,14 @@ impl Hood {
     /// The normals of eight spokes with this apex.
     #[inline(always)]
     fn normal(&self, start: usize, apex: Lanes3) -> Lanes3 {
-        let at = |start: usize| Lanes3([0, 1, 2].map(|k| lanes(&self.ring[k], start)));
-        (at(start) - apex).cross(at(start + 1) - apex)
+        (load(&self.ring, start) - apex).cross(load(&self.ring, start + 1) - apex)
     }
 
     /// Puts the new vertex at `place`, as seen from v0. Whether no face turns over, or by more than a
     /// limit, or loses its area.
     #[inline(always)]
     pub(super) fn put(&mut self, place: [f32; 3]) -> Result<(), Refusal> {
-        let apex = Lanes3(place.map(Lanes::all));
+        let apex = Lanes3::all(place);
         for start in (0..self.len).step_by(LANES) {
             let new = self.normal(start, apex);
             store(&mut self.new, start, new);
@@ -195,8 +195,7 @@ impl Hood {
         }
         let mut turned = false;
         for start in (0..self.len).step_by(LANES) {
-            let [old, new] =
-                [&self.old, &self.new].map(|n| Lanes3([0, 1, 2].map(|k| lanes(&n[k], start))));
+            let (old, new) = (load(&self.old, start), load(&self.new, start));
             let (turn, before) = (old.dot(new), old.dot(old));
             let least = Lanes::all(LEAST_COSINE * LEAST_COSINE) * before * new.dot(new);
             for i in 0..LANES {
@@ -271,13 +270,15 @@ impl Hood {
 }
 
 #[inline(always)]
-fn lanes(of: &[f32; ROOM], start: usize) -> Lanes {
-    Lanes(std::array::from_fn(|i| of[start + i]))
+fn load(from: &[[f32; ROOM]; 3], start: usize) -> Lanes3 {
+    let [x, y, z] = from;
+    Lanes3 { x: Lanes::of(x, start), y: Lanes::of(y, start), z: Lanes::of(z, start) }
 }
 
 #[inline(always)]
 fn store(to: &mut [[f32; ROOM]; 3], start: usize, from: Lanes3) {
-    for (to, from) in to.iter_mut().zip(from.0) {
+    let [x, y, z] = to;
+    for (to, from) in [(x, from.x), (y, from.y), (z, from.z)] {
         to[start..start + LANES].copy_from_slice(&from.0);
     }
 }

@@ -1,11 +1,10 @@
-//! Eight numbers that go through the same arithmetic. Plain loops over arrays: the compiler makes
-//! them as wide as the machine is, and the numbers are the same on every one.
+//! A few numbers that go through the same arithmetic. Plain loops over arrays: the compiler makes them
+//! as wide as the machine is, and the numbers are the same on every one.
 
-use std::array::from_fn;
 use std::ops::{Add, Div, Mul, Sub};
 
 /// How many.
-pub(super) const LANES: usize = 8;
+pub(super) const LANES: usize = 4;
 
 /// One number of each.
 #[derive(Clone, Copy, Debug)]
@@ -13,15 +12,26 @@ pub(super) struct Lanes(pub(super) [f32; LANES]);
 
 /// A vector of each.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Lanes3(pub(super) [Lanes; 3]);
+pub(super) struct Lanes3 {
+    pub(super) x: Lanes,
+    pub(super) y: Lanes,
+    pub(super) z: Lanes,
+}
 
+// Closures over arrays, as `from_fn` and `map` take them, are not always inlined; that made it all
+// four times as slow.
 macro_rules! each {
     ($trait:ident, $name:ident, $op:tt) => {
         impl $trait for Lanes {
             type Output = Self;
             #[inline(always)]
+            #[allow(clippy::needless_range_loop)]
             fn $name(self, other: Self) -> Self {
-                Self(from_fn(|i| self.0[i] $op other.0[i]))
+                let mut all = [0.0; LANES];
+                for i in 0..LANES {
+                    all[i] = self.0[i] $op other.0[i];
+                }
+                Self(all)
             }
         }
 
@@ -29,7 +39,7 @@ macro_rules! each {
             type Output = Self;
             #[inline(always)]
             fn $name(self, other: Self) -> Self {
-                Self(from_fn(|k| self.0[k] $op other.0[k]))
+                Self { x: self.x $op other.x, y: self.y $op other.y, z: self.z $op other.z }
             }
         }
     };
@@ -47,31 +57,52 @@ impl Lanes {
     }
 
     #[inline(always)]
-    pub(super) fn max(self, least: f32) -> Self {
-        Self(from_fn(|i| if self.0[i] > least { self.0[i] } else { least }))
+    pub(super) fn max(mut self, least: f32) -> Self {
+        for x in &mut self.0 {
+            *x = if *x > least { *x } else { least };
+        }
+        self
     }
 
     #[inline(always)]
-    pub(super) fn sqrt(self) -> Self {
-        Self(from_fn(|i| self.0[i].sqrt()))
+    pub(super) fn sqrt(mut self) -> Self {
+        for x in &mut self.0 {
+            *x = x.sqrt();
+        }
+        self
+    }
+
+    /// Those of a list from `start` on.
+    #[inline(always)]
+    pub(super) fn of(list: &[f32], start: usize) -> Self {
+        let mut all = [0.0; LANES];
+        all.copy_from_slice(&list[start..start + LANES]);
+        Self(all)
     }
 }
 
 impl Lanes3 {
     #[inline(always)]
+    pub(super) fn all([x, y, z]: [f32; 3]) -> Self {
+        Self { x: Lanes::all(x), y: Lanes::all(y), z: Lanes::all(z) }
+    }
+
+    #[inline(always)]
     pub(super) fn dot(self, other: Self) -> Lanes {
-        let [x, y, z] = (self * other).0;
-        x + y + z
+        self.x * other.x + self.y * other.y + self.z * other.z
     }
 
     #[inline(always)]
     pub(super) fn cross(self, other: Self) -> Self {
-        let ([a, b, c], [x, y, z]) = (self.0, other.0);
-        Self([b * z - c * y, c * x - a * z, a * y - b * x])
+        Self {
+            x: self.y * other.z - self.z * other.y,
+            y: self.z * other.x - self.x * other.z,
+            z: self.x * other.y - self.y * other.x,
+        }
     }
 
     #[inline(always)]
     pub(super) fn by(self, factor: Lanes) -> Self {
-        Self(self.0.map(|x| x * factor))
+        Self { x: self.x * factor, y: self.y * factor, z: self.z * factor }
     }
 }

@@ -82,8 +82,7 @@ impl<'m> Prepared<'m> {
         let mut split = None;
         let irregular = std::mem::take(&mut fans.irregular);
         if !irregular.is_empty() {
-            let parts =
-                split::split(faces.collect(), &irregular, mesh.positions.len() as u32);
+            let parts = split::split(faces.collect(), &irregular, mesh.positions.len() as u32);
             let copies: Vec<_> =
                 parts.copied.iter().map(|&v| frame.enter(mesh.positions[v as usize])).collect();
             let places: Vec<_> = places.chain(copies).collect();

@@ -107,11 +107,19 @@ impl Star {
     }
 
     #[inline(always)]
-    pub(super) fn minus(&self, other: &Self) -> Self {
-        Self {
-            normal: std::array::from_fn(|k| self.normal[k] - other.normal[k]),
-            squares: std::array::from_fn(|k| self.squares[k] - other.squares[k]),
+    pub(super) fn take(&mut self, change: &Self) {
+        for k in 0..3 {
+            self.normal[k] -= change.normal[k];
         }
+        for k in 0..6 {
+            self.squares[k] -= change.squares[k];
+        }
+    }
+
+    #[inline(always)]
+    pub(super) fn minus(mut self, other: &Self) -> Self {
+        self.take(other);
+        self
     }
 }
 

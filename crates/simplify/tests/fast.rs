@@ -1,0 +1,285 @@
+//! The fast engine by the rules of the general one, its oracle, and on meshes made to break it.
+
+use std::collections::HashSet;
+
+use meshlod_fixtures as fixtures;
+use meshlod_mesh::{Connectivity, Lock, Locks, Mesh, VertexId, face_components, sample};
+use meshlod_simplify::{Method, Options, Report, SimplifyError, Target, fast};
+
+fn options() -> Options {
+    Options { method: Method::LindstromTurk, ..Options::default() }
+}
+
+fn run(mesh: &Mesh, target: Target) -> (Mesh, Report) {
+    let mut mesh = mesh.clone();
+    mesh.attributes = None;
+    assert!(fast::fits(&mesh, &options()));
+    fast::simplify(&mesh, target, &options()).unwrap()
+}
+
+fn meshes() -> Vec<(&'static str, Mesh)> {
+    vec![
+        ("tetrahedron", fixtures::tetrahedron()),
+        ("cube", fixtures::cube()),
+        ("grid", fixtures::grid(12)),
+        ("fan", fixtures::fan()),
+        ("hourglass", fixtures::hourglass()),
+        ("moebius", fixtures::moebius(40)),
+        ("seam strip", fixtures::seam_strip()),
+        ("two objects", fixtures::two_objects()),
+        ("sphere", sample::sphere(2000)),
+        ("torus", sample::torus(2000)),
+        ("knot", sample::knot(3000)),
+        ("gyroid", sample::gyroid(3000)),
+        ("terrain", sample::terrain(2000)),
+        ("fish", sample::fish(2000)),
+        ("three pages", pages(3)),
+        ("five pages", pages(5)),
+    ]
+}
+
+/// Terrains that all have one edge of theirs in common, with `n` faces on each side of it.
+fn pages(n: usize) -> Mesh {
+    let page = fixtures::grid(8);
+    let spine = |v: usize| page.positions[v][0] == 0.0;
+    let mut mesh = Mesh::default();
+    let mut of_spine = vec![None; page.positions.len()];
+    for p in 0..n {
+        let (sin, cos) = (p as f64 / n as f64 * 6.0).sin_cos();
+        let ids: Vec<VertexId> = (0..page.positions.len())
+            .map(|v| match of_spine[v] {
+                Some(id) => id,
+                None => {
+                    let [x, y, _] = page.positions[v];
+                    mesh.positions.push([x * cos, y, x * sin]);
+                    let id = VertexId::new(mesh.positions.len() - 1);
+                    of_spine[v] = spine(v).then_some(id);
+                    id
+                }
+            })
+            .collect();
+        mesh.faces.extend(page.faces.iter().map(|face| face.map(|v| ids[v.index()])));
+    }
+    mesh
+}
+
+/// `n` faces around one vertex, a little above its rim.
+fn cone(n: u32) -> Mesh {
+    let mut positions = vec![[0.0, 0.0, 0.5]];
+    positions.extend((0..n).map(|i| {
+        let (y, x) = (std::f64::consts::TAU * f64::from(i) / f64::from(n)).sin_cos();
+        [x, y, 0.0]
+    }));
+    let rim = |i: u32| VertexId(1 + i % n);
+    Mesh::new(positions, (0..n).map(|i| [VertexId(0), rim(i), rim(i + 1)]).collect())
+}
+
+/// Components, Euler number, whether closed, non-manifold and inconsistent edges.
+fn topology(mesh: &Mesh) -> (usize, i64, bool, usize, usize) {
+    let c = Connectivity::new(&mesh.faces, mesh.positions.len());
+    let used = mesh.used_vertices().iter().filter(|&&used| used).count();
+    let euler = used as i64 - c.edge_count() as i64 + mesh.faces.len() as i64;
+    let components = face_components(&mesh.faces, mesh.positions.len()).1;
+    (components, euler, c.is_closed(), c.non_manifold_edges(), c.inconsistent_edges())
+}
+
+fn check_level(what: &str, level: &Mesh, report: &Report) {
+    level.validate().unwrap_or_else(|error| panic!("{what}: {error}"));
+    assert_eq!(level.faces.len(), report.output_faces, "{what}");
+    assert!(level.used_vertices().iter().all(|&used| used), "{what}");
+    let mut seen = HashSet::new();
+    for face in &level.faces {
+        let [a, b, c] = *face;
+        assert!(a != b && b != c && c != a, "{what}: {face:?}");
+        // The two sides of a leaf are two faces.
+        let turned = [[a, b, c], [b, c, a], [c, a, b]].into_iter().min();
+        assert!(seen.insert(turned), "{what}: {face:?} stands twice");
+    }
+}
+
+#[test]
+fn a_level_is_valid_and_as_closed_manifold_and_oriented_as_its_mesh() {
+    for (name, mesh) in meshes() {
+        for ratio in [0.5, 0.1, 0.0] {
+            let what = format!("{name} to {ratio}");
+            let (level, report) = run(&mesh, Target::Ratio(ratio));
+            check_level(&what, &level, &report);
+            assert_eq!(topology(&level), topology(&mesh), "{what}");
+        }
+    }
+}
+
+#[test]
+fn targets_of_a_few_faces_are_met_or_refused_in_words() {
+    for (name, mesh) in meshes() {
+        for faces in [0, 1, 4] {
+            let (level, report) = run(&mesh, Target::Faces(faces));
+            let refused = report.refusals.iter().map(|(_, count)| count).sum::<u64>();
+            assert!(report.reached || refused > 0 || mesh.faces.len() <= 4, "{name}: {report:?}");
+            assert!(!level.faces.is_empty(), "{name}");
+        }
+    }
+}
+
+#[test]
+fn smooth_samples_reach_their_target() {
+    for mesh in [sample::sphere(2000), sample::torus(2000), sample::knot(3000)] {
+        let (level, report) = run(&mesh, Target::Ratio(0.05));
+        let target = mesh.faces.len() / 20;
+        assert!(report.reached && (target - 1..=target).contains(&level.faces.len()));
+    }
+}
+
+#[test]
+fn a_flat_stays_one_and_grows_no_hubs() {
+    let mesh = fixtures::grid(200);
+    let (level, report) = run(&mesh, Target::Ratio(0.02));
+    assert!(report.reached, "{report:?}");
+    let connectivity = Connectivity::new(&level.faces, level.positions.len());
+    let valence = |v| connectivity.star(VertexId::new(v)).len();
+    assert!((0..level.positions.len()).map(valence).max().unwrap() < 40);
+    let z = mesh.positions[0][2];
+    assert!(level.positions.iter().all(|p| (p[2] - z).abs() < 1e-4));
+}
+
+#[test]
+fn a_hub_shrinks_with_its_rim() {
+    let (level, report) = run(&cone(100_000), Target::Faces(100));
+    assert!(report.reached, "{report:?}");
+    check_level("cone", &level, &report);
+    assert!((level.bounds().max[2] - 0.5).abs() < 0.05, "the tip is gone");
+}
+
+#[test]
+fn faces_given_twice_are_left_out() {
+    let mut mesh = cone(2_000);
+    mesh.faces.extend_from_within(..);
+    let (level, report) = run(&mesh, Target::Faces(100));
+    check_level("two cones", &level, &report);
+    assert_eq!(report.duplicate_faces, 2_000);
+}
+
+#[test]
+fn scale_and_place_change_nothing_to_speak_of() {
+    let mesh = sample::torus(2_000);
+    let (at_home, _) = run(&mesh, Target::Ratio(0.1));
+    for (scale, shift) in [(2f64.powi(-90), 0.0), (2f64.powi(90), 0.0), (1.0, 1e6)] {
+        let mut other = mesh.clone();
+        other.positions.iter_mut().flatten().for_each(|x| *x = *x * scale + shift);
+        let (level, report) = run(&other, Target::Ratio(0.1));
+        assert!(report.reached);
+        if shift == 0.0 {
+            // Powers of two round alike.
+            assert_eq!(level.faces, at_home.faces, "{scale:e}");
+        }
+        let diagonal =
+            (level.bounds().diagonal() / scale / at_home.bounds().diagonal() - 1.0).abs();
+        assert!(diagonal < 0.02, "{scale:e} {shift:e}: {diagonal}");
+    }
+    let mut huge = mesh;
+    huge.positions.iter_mut().flatten().for_each(|x| *x *= 1e40);
+    let refused = fast::simplify(&huge, Target::Ratio(0.1), &options());
+    assert!(matches!(refused, Err(SimplifyError::Extent { .. })));
+}
+
+#[test]
+fn faces_without_area_and_points_in_one_place_end() {
+    let positions = (0..200).map(|i| [f64::from(i) * f64::from(i), 0.0, 0.0]).collect();
+    let strip = |i: u32| [VertexId(i), VertexId(i + 1), VertexId(i + 2)];
+    let mut line = Mesh::new(positions, (0..198).map(strip).collect());
+    let (level, report) = run(&line, Target::Ratio(0.1));
+    check_level("line", &level, &report);
+    line.positions.fill([3.0; 3]);
+    let (level, report) = run(&line, Target::Ratio(0.1));
+    check_level("point", &level, &report);
+    let mut sphere = sample::sphere(2000);
+    sphere.positions.fill([0.0; 3]);
+    let (level, report) = run(&sphere, Target::Ratio(0.1));
+    check_level("collapsed sphere", &level, &report);
+}
+
+#[test]
+fn tiny_and_huge_faces_go_together() {
+    // A sphere a millionth of the other's size, and one a hundred-millionth.
+    let mut mesh = sample::sphere(2000);
+    let (vertices, faces) = (mesh.positions.clone(), mesh.faces.clone());
+    for (i, scale) in [1e-6, 1e-8].into_iter().enumerate() {
+        let first = ((i + 1) * vertices.len()) as u32;
+        mesh.positions.extend(vertices.iter().map(|p| p.map(|x| x * scale)));
+        mesh.faces.extend(faces.iter().map(|face| face.map(|v| VertexId(v.0 + first))));
+    }
+    let (level, report) = run(&mesh, Target::Ratio(0.0));
+    check_level("spheres", &level, &report);
+    assert_eq!(topology(&level).0, 3);
+}
+
+#[test]
+fn a_thousand_components_keep_apart() {
+    let one = fixtures::tetrahedron();
+    let mut mesh = Mesh::default();
+    for i in 0..1000u32 {
+        let first = mesh.positions.len() as u32;
+        mesh.positions.extend(one.positions.iter().map(|&[x, y, z]| [x + f64::from(i), y, z]));
+        mesh.faces.extend(one.faces.iter().map(|face| face.map(|v| VertexId(v.0 + first))));
+    }
+    let (level, report) = run(&mesh, Target::Faces(4));
+    assert_eq!((level.faces.len(), report.reached), (4000, false));
+}
+
+#[test]
+fn locked_vertices_stay() {
+    let mesh = sample::terrain(2000);
+    let every_fifth = |v: usize| if v.is_multiple_of(5) { Lock::Locked } else { Lock::Free };
+    let locks =
+        Locks { of_vertex: (0..mesh.positions.len()).map(every_fifth).collect(), ties: Vec::new() };
+    let bare = Mesh { attributes: None, ..mesh.clone() };
+    let locked = Options { locks, ..options() };
+    let (level, report) = fast::simplify(&bare, Target::Ratio(0.0), &locked).unwrap();
+    check_level("locked", &level, &report);
+    let left: HashSet<[u64; 3]> = level.positions.iter().map(|p| p.map(f64::to_bits)).collect();
+    let kept = |v: &usize| left.contains(&mesh.positions[*v].map(f64::to_bits));
+    assert!((0..mesh.positions.len()).step_by(5).all(|v| kept(&v)));
+    let edge = Options { lock_boundary: true, ..options() };
+    let (level, report) = fast::simplify(&bare, Target::Ratio(0.0), &edge).unwrap();
+    let connectivity = Connectivity::new(&level.faces, level.positions.len());
+    assert_eq!(connectivity.boundary_edges(), report.held.locked);
+}
+
+#[test]
+fn a_bound_of_the_error_is_kept() {
+    let mesh = sample::torus(3000);
+    let (level, report) = run(&mesh, Target::Error(1e-2));
+    assert!(report.error_estimate <= 1e-2 && level.faces.len() < mesh.faces.len() / 2);
+}
+
+#[test]
+fn volume_stays_and_runs_are_alike() {
+    for mesh in [sample::torus(20_000), sample::knot(20_000)] {
+        let (level, _) = run(&mesh, Target::Ratio(0.05));
+        let volume = |mesh: &Mesh| -> f64 {
+            let sixfold = |&face| {
+                let [a, b, c] = mesh.triangle(face);
+                a.cross(b).dot(c)
+            };
+            mesh.faces.iter().map(sixfold).sum::<f64>() / 6.0
+        };
+        assert!((volume(&level) / volume(&mesh) - 1.0).abs() < 1e-6);
+        assert_eq!(run(&mesh, Target::Ratio(0.05)).0, level);
+    }
+}
+
+#[test]
+fn damaged_files_end() {
+    for path in fixtures::shared_broken() {
+        let Ok(text) = std::fs::read(&path) else { continue };
+        // Any bytes make a soup: four of them an index.
+        let index = |bytes: &[u8]| VertexId(u32::from(bytes[0]) % 40);
+        let faces = text.chunks_exact(3).take(500);
+        let faces = faces.map(|b| [index(b), index(&b[1..]), index(&b[2..])]).collect();
+        let positions = (0..40).map(|i| [f64::from(i % 7), f64::from(i % 5), f64::from(i % 3)]);
+        let soup = Mesh::new(positions.collect(), faces);
+        if let Ok((level, report)) = fast::simplify(&soup, Target::Ratio(0.1), &options()) {
+            check_level("soup", &level, &report);
+        }
+    }
+}
