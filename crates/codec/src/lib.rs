@@ -38,7 +38,7 @@ pub use attributes::{AttributeBounds, LayerReport};
 pub use blocks::{BlocksError, BlocksReport, Change, Closeness, VertexBlocks};
 pub use bytes::Malformed;
 pub use lattice::{Lattice, LatticeBlocks, LatticeError};
-pub use mlq::{CompressError, Compressed, Compression, Scheme, Sizes, Target, compress};
+pub use mlq::{CompressError, Compressed, Compression, Scheme, Sizes, Target, compress, parts_for};
 pub use parts::{Cells, Part, Parting, Parts, PartsError};
 pub use transport::{
     Transport, TransportBlock, TransportError, TransportFile, TransportGrid, TransportOptions,

@@ -1,14 +1,16 @@
 //! `compress`: a mesh in few bytes, to draw from or to send.
 
+mod gltf;
 mod resident;
+mod transport;
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
 use clap::{Args, ValueEnum};
-use meshlod::Mesh;
 use meshlod::codec::{AttributeBounds, Cells, LayerReport, Scheme, Target};
 use meshlod::io::write_file;
+use meshlod::Mesh;
 use serde_json::{Value, json};
 
 use crate::amounts::{self, Bound};
@@ -24,17 +26,20 @@ pub struct Compress {
     /// File to read, or -
     #[arg(value_name = "IN")]
     input: PathBuf,
-    /// File to write: .mlq is drawn from as it is
+    /// File to write: .mlq is drawn from as it is, .mlz is for sending, .glb is what other programs read
     #[arg(value_name = "OUT")]
     output: PathBuf,
     #[command(flatten)]
     goal: Goal,
-    /// How positions are told
-    #[arg(long, value_name = "SCHEME", default_value = "blocks")]
-    scheme: SchemeName,
+    /// How positions are told. In .mlq blocks if it is not said; .mlz can have a lattice, .glb parts
+    #[arg(long, value_name = "SCHEME")]
+    scheme: Option<SchemeName>,
     /// Parts as in the paper: vertices at the least corners of their cells, and held against truncated bits
     #[arg(long)]
     paper: bool,
+    /// In .glb: only what a GPU takes as it is (KHR_mesh_quantization, and no EXT_meshopt_compression)
+    #[arg(long)]
+    resident: bool,
     #[command(flatten)]
     attributes: AttributeGoals,
     /// Exit with 1 when the target is out of reach
@@ -82,6 +87,14 @@ struct AttributeGoals {
     color_error: Option<f64>,
 }
 
+/// What a file is for.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Kind {
+    Resident,
+    Transport,
+    Gltf,
+}
+
 /// A compressed file, and what is to be said of it.
 struct Packed {
     bytes: Vec<u8>,
@@ -89,23 +102,35 @@ struct Packed {
     sizes: [usize; 3],
     vertices: usize,
     faces: usize,
-    /// Blocks or parts, and how many.
+    /// Blocks, parts or meshes, and how many.
     pieces: (&'static str, usize),
     layers: Vec<LayerReport>,
     reached: bool,
+    /// What of the input is not there, or not compressed.
+    left_out: Vec<String>,
 }
 
 impl Compress {
     pub fn run(self, session: &Session) -> Result<Answer, Failure> {
-        check_output(&self.output)?;
+        let kind = self.check_output()?;
         files::check_apart(&self.output, &[&self.input])?;
         let scene = files::read(&self.input, &self.reading, session)?;
-        let mesh = scene.into_mesh();
         session.progress.stage("compressing");
         let start = Instant::now();
-        let packed = self.resident(&mesh)?;
+        let packed = match kind {
+            Kind::Resident => self.resident(scene)?,
+            Kind::Transport => self.transport(scene)?,
+            Kind::Gltf => self.gltf(scene)?,
+        };
         let time = start.elapsed();
-        self.warn(&mesh, &packed, session);
+        for left_out in &packed.left_out {
+            session.warn(Failure::at(&self.input, left_out));
+        }
+        if !packed.reached {
+            let best = percent(100.0 * packed.reduction());
+            let reason = format_args!("too small for what is asked; the reduction is {best}");
+            session.warn(Failure::at(&self.input, reason));
+        }
         session.progress.stage(&format!("writing {}", files::name(&self.output)));
         write_file(&self.output, &packed.bytes)?;
         Ok(Answer {
@@ -114,40 +139,56 @@ impl Compress {
         })
     }
 
-    /// Says what of the mesh is not in the file, and what it is not.
-    fn warn(&self, mesh: &Mesh, packed: &Packed, session: &Session) {
-        let odd = mesh.faces.len() - packed.faces;
-        if odd > 0 {
-            let reason = format_args!("left out: {} that repeat a corner", faces(odd));
-            session.warn(Failure::at(&self.input, reason));
+    /// Refuses a file that could not be written, and options that it has no use for, before any work is done.
+    fn check_output(&self) -> Result<Kind, Failure> {
+        let suffix = self.output.extension().map(|suffix| suffix.to_ascii_lowercase());
+        let (kind, schemes): (_, &[SchemeName]) = match suffix.as_ref().and_then(|of| of.to_str()) {
+            Some("mlq") => (Kind::Resident, SchemeName::value_variants()),
+            Some("mlz") => (Kind::Transport, &[SchemeName::Lattice]),
+            Some("glb") => (Kind::Gltf, &[SchemeName::Parts]),
+            _ => {
+                let name = files::name(&self.output);
+                let reason = format_args!("{name}: compressed meshes are .mlq, .mlz or .glb");
+                return Err(Failure::usage(reason));
+            }
+        };
+        let name = files::name(&self.output);
+        if self.scheme.is_some_and(|scheme| !schemes.contains(&scheme)) {
+            return Err(Failure::usage(format_args!("{name}: such files do not have this --scheme")));
         }
-        if mesh.materials.is_some() || mesh.objects.is_some() {
-            let reason = "left out: its materials and objects; the file has one surface";
-            session.warn(Failure::at(&self.input, reason));
+        if self.paper && self.scheme != Some(SchemeName::Parts) {
+            return Err(Failure::usage("--paper is of --scheme parts"));
         }
-        if !packed.reached {
-            let best = percent(100.0 * packed.reduction());
-            let reason =
-                format_args!("the mesh is too small for what is asked; the reduction is {best}");
-            session.warn(Failure::at(&self.input, reason));
+        if self.resident && kind != Kind::Gltf {
+            return Err(Failure::usage("--resident is of .glb"));
         }
+        files::check_place(&self.output).map(|()| kind)
     }
 
     fn target(&self, mesh: &Mesh) -> Target {
         match (self.goal.error, self.goal.reduction) {
             (Some(error), _) => Target::Error(error.length(mesh.bounds().diagonal())),
             (None, Some(part)) => Target::Reduction(part),
-            (None, None) => Target::Bits(self.goal.bits.unwrap_or(11)),
+            (None, None) => Target::Bits(self.bits()),
         }
+    }
+
+    fn bits(&self) -> u32 {
+        self.goal.bits.unwrap_or(11)
     }
 
     fn scheme(&self) -> Scheme {
         match self.scheme {
-            SchemeName::Parts if self.paper => Scheme::Parts(Cells::Truncated),
-            SchemeName::Parts => Scheme::Parts(Cells::Centred),
-            SchemeName::Blocks => Scheme::Blocks,
-            SchemeName::Lattice => Scheme::Lattice,
+            Some(SchemeName::Parts) if self.paper => Scheme::Parts(Cells::Truncated),
+            Some(SchemeName::Parts) => Scheme::Parts(Cells::Centred),
+            Some(SchemeName::Lattice) => Scheme::Lattice,
+            Some(SchemeName::Blocks) | None => Scheme::Blocks,
         }
+    }
+
+    /// A failure of the mesh.
+    fn failed(&self, error: impl std::fmt::Display) -> Failure {
+        Failure::at(&self.input, error)
     }
 
     fn json(&self, packed: &Packed, time: Duration) -> Value {
@@ -218,10 +259,15 @@ fn layer_json(layer: &LayerReport) -> Value {
     })
 }
 
-/// Refuses a file that could not be written, before any work is done.
-fn check_output(path: &Path) -> Result<(), Failure> {
-    match path.extension() {
-        Some(suffix) if suffix.eq_ignore_ascii_case("mlq") => files::check_place(path),
-        _ => Err(Failure::usage(format_args!("{}: compressed meshes are .mlq", files::name(path)))),
+/// What a file of one surface leaves out of a mesh.
+fn left_out(mesh: &Mesh, faces_there: usize) -> Vec<String> {
+    let mut left_out = Vec::new();
+    let odd = mesh.faces.len() - faces_there;
+    if odd > 0 {
+        left_out.push(format!("left out: {} that repeat a corner", faces(odd)));
     }
+    if mesh.materials.is_some() || mesh.objects.is_some() {
+        left_out.push("left out: materials and objects; the file has one surface".into());
+    }
+    left_out
 }

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
 use clap::Args;
-use meshlod::codec::{Compressed, Malformed};
+use meshlod::codec::{Compressed, Malformed, TransportFile};
 use meshlod::{Mesh, Scene};
 use serde_json::{Value, json};
 
@@ -17,8 +17,8 @@ use crate::session::Session;
 
 #[derive(Args)]
 pub struct Decompress {
-    /// File to read, or -
-    #[arg(value_name = "IN.mlq")]
+    /// File to read, .mlq or .mlz, or -
+    #[arg(value_name = "IN")]
     input: PathBuf,
     /// File to write, or -
     #[arg(value_name = "OUT")]
@@ -59,6 +59,10 @@ impl Decompress {
     }
 }
 
+/// What a file begins with says which it is.
 fn decode(bytes: &[u8]) -> Result<Mesh, Malformed> {
-    Compressed::from_bytes(bytes)?.decode()
+    match bytes.starts_with(&TransportFile::MAGIC) {
+        true => TransportFile::open(bytes)?.decode(),
+        false => Compressed::from_bytes(bytes)?.decode(),
+    }
 }

@@ -6,11 +6,12 @@ use crate::bytes::{Malformed, Reader};
 use crate::kd::BLOCK;
 use crate::patch::{Patches, Rows};
 
-const MAGIC: [u8; 4] = *b"MLQ1";
-/// The magic bytes, the scheme, whether there are doubles, how many layers there are, of the three sections how
+const MAGIC: [u8; 8] = *b"meshlodq";
+const VERSION: u32 = 1;
+/// The magic bytes, the version, the scheme, whether there are doubles, how many layers there are, of the three sections how
 /// long they are and their sums, and the sum of all that.
 pub(super) const HEADER: usize = SUMS + 3 * SUM + 4;
-const SUMS: usize = 4 + 1 + 1 + 2;
+const SUMS: usize = 8 + 4 + 1 + 1 + 2;
 const SUM: usize = 8 + 4;
 
 impl Compressed {
@@ -31,6 +32,7 @@ impl Compressed {
 
         let mut bytes = Vec::with_capacity(self.sizes().total);
         bytes.extend(MAGIC);
+        bytes.extend(VERSION.to_le_bytes());
         bytes.push(self.positions.tag());
         bytes.push(matches!(self.homes, Homes::Doubles(_)).into());
         bytes.extend((self.layers.len() as u16).to_le_bytes());
@@ -68,13 +70,14 @@ impl Compressed {
     /// Bytes that are none, or were spoilt.
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, Malformed> {
         let mut reader = Reader::new(bytes);
-        if reader.take(4)? != MAGIC {
-            return Err(Malformed {
-                at: 0,
-                reason: "these are not the first bytes of a .mlq".into(),
-            });
+        if reader.take(MAGIC.len())? != MAGIC {
+            return Err(Malformed { at: 0, reason: "not an .mlq file: it begins otherwise".into() });
         }
-        if reader.left() < HEADER - 4 {
+        match reader.u32()? {
+            VERSION => {}
+            version => return Err(reader.wrong(format!("version {version} is not known"))),
+        }
+        if bytes.len() < HEADER {
             return Err(reader.wrong("the header is cut off"));
         }
         let (head, sum) = bytes[..HEADER].split_at(HEADER - 4);

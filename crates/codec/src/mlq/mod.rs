@@ -13,7 +13,7 @@ use thiserror::Error;
 
 use self::nodes::Nodes;
 use self::positions::Positions;
-pub use self::target::{Compression, Scheme, Target, compress};
+pub use self::target::{Compression, Scheme, Target, compress, parts_for};
 use self::unite::Exceptions;
 use crate::attributes::{AttributeBounds, LayerReport, Packed, PackedLayer};
 use crate::blocks::{BlocksError, Closeness, VertexBlocks};

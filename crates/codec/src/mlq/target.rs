@@ -6,7 +6,7 @@ use super::{CompressError, Compressed};
 use crate::attributes::AttributeBounds;
 use crate::blocks::{BlocksError, Closeness, VertexBlocks};
 use crate::lattice::{Lattice, LatticeBlocks};
-use crate::parts::{Cells, Parting, PartsError};
+use crate::parts::{Cells, Parting, Parts, PartsError};
 
 /// How positions are told.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -77,6 +77,17 @@ enum Goal {
 }
 
 impl Target {
+    /// The side of cubic cells that are as good for a mesh, each vertex in the middle of its own; none of a reduction.
+    ///
+    /// # Errors
+    /// A target that is none.
+    pub fn cell(self, mesh: &Mesh) -> Result<Option<f64>, CompressError> {
+        Ok(match self.goal(mesh, MEAN_OF_CELL)? {
+            Goal::Cell(side) => Some(side),
+            Goal::Reduction(_) => None,
+        })
+    }
+
     fn goal(self, mesh: &Mesh, mean_of_cell: f64) -> Result<Goal, CompressError> {
         match self {
             Self::Bits(bits) if BITS.contains(&bits) => {
@@ -103,25 +114,33 @@ fn extent(bounds: &Bounds) -> (f64, f64) {
     (longest, farthest)
 }
 
+/// The parts of a mesh that meet a target, and whether they do: as [`compress`] makes them.
+///
+/// # Errors
+/// A target that is none, a mesh without faces or with coordinates that are none.
+pub fn parts_for(mesh: &Mesh, cells: Cells, target: Target) -> Result<(Parts, bool), CompressError> {
+    let parting = Parting::new(mesh)?;
+    let mean = if cells == Cells::Centred { MEAN_OF_CELL } else { MEAN_OF_TRUNCATED };
+    match target.goal(mesh, mean)? {
+        Goal::Cell(cell) => {
+            let parts = parting.within_cell(cell, cells);
+            let reached = parts.mean_side() <= cell;
+            Ok((parts, reached))
+        }
+        Goal::Reduction(part) => match parting.within_reduction(part, cells) {
+            Err(PartsError::TooSmall { .. }) => Ok((parting.into_count(1, cells), false)),
+            parts => Ok((parts?, true)),
+        },
+    }
+}
+
 fn in_parts(
     mesh: &Mesh,
     cells: Cells,
     target: Target,
     bounds: &AttributeBounds,
 ) -> Result<Compression, CompressError> {
-    let parting = Parting::new(mesh)?;
-    let mean = if cells == Cells::Centred { MEAN_OF_CELL } else { MEAN_OF_TRUNCATED };
-    let (parts, reached) = match target.goal(mesh, mean)? {
-        Goal::Cell(cell) => {
-            let parts = parting.within_cell(cell, cells);
-            let reached = parts.mean_side() <= cell;
-            (parts, reached)
-        }
-        Goal::Reduction(part) => match parting.within_reduction(part, cells) {
-            Err(PartsError::TooSmall { .. }) => (parting.into_count(1, cells), false),
-            parts => (parts?, true),
-        },
-    };
+    let (parts, reached) = parts_for(mesh, cells, target)?;
     Ok(Compression { reached, ..Compressed::in_parts(mesh, &parts, bounds)? })
 }
 

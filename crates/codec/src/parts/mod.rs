@@ -74,6 +74,11 @@ impl Parts {
         &self.parts
     }
 
+    /// How many vertices of the mesh they have.
+    pub fn vertices(&self) -> usize {
+        self.vertices
+    }
+
     /// The sides of a cell, in model units.
     pub fn cell(&self) -> [f32; 3] {
         self.grid.cell()

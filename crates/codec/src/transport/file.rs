@@ -30,7 +30,6 @@ pub(super) struct Entry {
     pub(super) bytes: usize,
 }
 
-const MAGIC: [u8; 8] = *b"meshlodz";
 const VERSION: u32 = 1;
 /// The coder's state.
 const LEAST_BYTES: usize = 4;
@@ -50,7 +49,7 @@ impl Header {
         }
         self.codes.store(&mut out);
         self.store_index(&mut out);
-        let mut file = MAGIC.to_vec();
+        let mut file = TransportFile::MAGIC.to_vec();
         file.extend(VERSION.to_le_bytes());
         file.extend(crc32fast::hash(&out).to_le_bytes());
         file.extend(crc32fast::hash(blocks).to_le_bytes());
@@ -107,12 +106,15 @@ pub struct TransportBlock {
 }
 
 impl<'a> TransportFile<'a> {
+    /// What every such file begins with.
+    pub const MAGIC: [u8; 8] = *b"meshlodz";
+
     /// Reads the header and the index; no block.
     /// # Errors
     /// Bytes that are no such file, or damaged.
     pub fn open(bytes: &'a [u8]) -> Result<Self, Malformed> {
         let mut reader = Reader::new(bytes);
-        if reader.take(MAGIC.len())? != MAGIC {
+        if reader.take(Self::MAGIC.len())? != Self::MAGIC {
             return Err(reader.wrong("not an .mlz file: it begins otherwise"));
         }
         let version = reader.u32()?;

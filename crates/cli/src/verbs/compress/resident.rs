@@ -1,33 +1,38 @@
 //! `.mlq`: drawn from as it is.
 
-use meshlod::Mesh;
+use meshlod::Scene;
 use meshlod::codec::{CompressError, compress};
 
-use super::{Compress, Packed, SchemeName};
+use super::{Compress, Packed, SchemeName, left_out};
 use crate::failure::Failure;
 
 impl Compress {
-    pub(super) fn resident(&self, mesh: &Mesh) -> Result<Packed, Failure> {
+    pub(super) fn resident(&self, scene: Scene) -> Result<Packed, Failure> {
+        let mesh = scene.into_mesh();
         let bounds = self.attributes.bounds();
-        let done = compress(mesh, self.scheme(), self.target(mesh), &bounds);
-        let done = done.map_err(|error| match error {
-            CompressError::Bits(_) | CompressError::Error(_) | CompressError::Reduction(_) => {
-                Failure::usage(error)
-            }
-            error => Failure::at(&self.input, error),
-        })?;
+        let done = compress(&mesh, self.scheme(), self.target(&mesh), &bounds);
+        let done = done.map_err(|error| self.refused(error))?;
         let (sizes, compressed) = (done.compressed.sizes(), done.compressed);
+        let pieces = if self.scheme == Some(SchemeName::Parts) { "parts" } else { "blocks" };
         Ok(Packed {
             sizes: [sizes.positions, sizes.connectivity, sizes.attributes],
             vertices: compressed.vertices(),
             faces: compressed.faces(),
-            pieces: match self.scheme {
-                SchemeName::Parts => ("parts", compressed.blocks()),
-                SchemeName::Blocks | SchemeName::Lattice => ("blocks", compressed.blocks()),
-            },
+            pieces: (pieces, compressed.blocks()),
             layers: compressed.layers(),
             reached: done.reached,
+            left_out: left_out(&mesh, compressed.faces()),
             bytes: compressed.to_bytes(),
         })
+    }
+
+    /// A target that is none is wrong usage, else it is the mesh.
+    pub(super) fn refused(&self, error: CompressError) -> Failure {
+        match error {
+            CompressError::Bits(_) | CompressError::Error(_) | CompressError::Reduction(_) => {
+                Failure::usage(error)
+            }
+            error => self.failed(error),
+        }
     }
 }

@@ -1,0 +1,100 @@
+//! `.glb`: what other programs read.
+
+use meshlod::Scene;
+use meshlod::codec::{Cells, parts_for};
+use meshlod::io::gltf::{
+    Compression, CompressionReport, QuantizedPart, write_parts_glb, write_small_glb,
+};
+
+use super::{Compress, Packed, SchemeName, left_out};
+use crate::failure::Failure;
+
+impl Compress {
+    pub(super) fn gltf(&self, scene: Scene) -> Result<Packed, Failure> {
+        match self.scheme {
+            Some(SchemeName::Parts) => self.gltf_of_parts(scene),
+            _ => self.small_gltf(&scene),
+        }
+    }
+
+    /// The scene with all that is in it, quantized.
+    fn small_gltf(&self, scene: &Scene) -> Result<Packed, Failure> {
+        if self.goal.error.is_some() || self.goal.reduction.is_some() {
+            return Err(Failure::usage("--error and --reduction are not of .glb; --bits is"));
+        }
+        let (bytes, report) = write_small_glb(scene, &[], &self.gltf_compression()?)
+            .map_err(|error| self.failed(error))?;
+        let CompressionReport { positions, connectivity, attributes, .. } = report;
+        let meshes = scene.meshes.iter().map(|mesh| &mesh.mesh);
+        Ok(Packed {
+            sizes: [positions, connectivity, attributes].map(|bytes| bytes.stored),
+            vertices: meshes.clone().map(|mesh| mesh.positions.len()).sum(),
+            faces: meshes.map(|mesh| mesh.faces.len()).sum(),
+            pieces: ("meshes", scene.meshes.len()),
+            layers: Vec::new(),
+            reached: true,
+            left_out: report.kept,
+            bytes,
+        })
+    }
+
+    fn gltf_compression(&self) -> Result<Compression, Failure> {
+        let default = Compression::default();
+        let bits = self.bits();
+        if !(1..=16).contains(&bits) {
+            return Err(Failure::usage(format_args!("{bits} bits are not of glTF: take 1 to 16")));
+        }
+        Ok(Compression {
+            position_bits: bits,
+            normal_bits: self.attributes.normal_error.map_or(default.normal_bits, normal_bits),
+            uv_bits: self.attributes.uv_error.map_or(default.uv_bits, uv_bits),
+            meshopt: !self.resident,
+        })
+    }
+
+    /// The surface in parts, each a node with its matrix.
+    fn gltf_of_parts(&self, scene: Scene) -> Result<Packed, Failure> {
+        let mesh = scene.into_mesh();
+        let cells = if self.paper { Cells::Truncated } else { Cells::Centred };
+        let done = parts_for(&mesh, cells, self.target(&mesh));
+        let (parts, reached) = done.map_err(|error| self.refused(error))?;
+        let quantized: Vec<_> = parts
+            .parts()
+            .iter()
+            .map(|part| QuantizedPart {
+                matrix: parts.matrix(part),
+                positions: part.positions.clone(),
+                faces: part.faces.clone(),
+            })
+            .collect();
+        let bytes = write_parts_glb(&quantized).map_err(|error| self.failed(error))?;
+        let faces = parts.parts().iter().map(|part| part.faces.len()).sum();
+        let mut left_out = left_out(&mesh, faces);
+        if mesh.attributes.is_some() {
+            left_out.push("left out: attributes; parts are the surface alone".into());
+        }
+        let positions: usize = quantized.iter().map(|part| 4 * part.positions.len()).sum();
+        Ok(Packed {
+            // Positions are padded to four bytes; the rest are indices and the document.
+            sizes: [positions, bytes.len() - positions, 0],
+            vertices: parts.vertices(),
+            faces,
+            pieces: ("parts", quantized.len()),
+            layers: Vec::new(),
+            reached,
+            left_out,
+            bytes,
+        })
+    }
+}
+
+/// The least bits of a component that turn no normal further than so many degrees: half a step along each of three axes.
+fn normal_bits(degrees: f64) -> u32 {
+    let turns = |bits: u32| 3f64.sqrt() / 2.0 / f64::from((1u32 << (bits - 1)) - 1);
+    (2..16).find(|&bits| turns(bits) <= degrees.to_radians()).unwrap_or(16)
+}
+
+/// The least bits of a texture that move no coordinate further.
+fn uv_bits(error: f64) -> u32 {
+    (1..16).find(|&bits| 0.5 / f64::from((1u32 << bits) - 1) <= error).unwrap_or(16)
+}

@@ -1,0 +1,54 @@
+//! `.mlz`: for sending.
+
+use meshlod::Scene;
+use meshlod::codec::{
+    Lattice, Transport, TransportError, TransportFile, TransportGrid, TransportOptions,
+    TransportSizes,
+};
+use meshlod::Mesh;
+
+use super::{Compress, Packed, left_out};
+use crate::failure::Failure;
+
+impl Compress {
+    pub(super) fn transport(&self, scene: Scene) -> Result<Packed, Failure> {
+        let mesh = scene.into_mesh();
+        let options = TransportOptions { grid: self.grid(&mesh)?, ..TransportOptions::default() };
+        let done = Transport::encode(&mesh, &options).map_err(|error| match error {
+            TransportError::Bits(_) => Failure::usage(error),
+            error => self.failed(error),
+        })?;
+        let file = TransportFile::open(&done.bytes).map_err(|error| self.failed(error))?;
+        let mut left_out = left_out(&mesh, file.faces());
+        if mesh.attributes.is_some() {
+            left_out.push("left out: attributes; .mlz has the surface alone".into());
+        }
+        let TransportSizes { positions, connectivity, .. } = done.sizes;
+        Ok(Packed {
+            sizes: [positions.round() as usize, connectivity.round() as usize, 0],
+            vertices: file.vertices(),
+            faces: file.faces(),
+            pieces: ("blocks", done.blocks),
+            layers: Vec::new(),
+            reached: true,
+            left_out,
+            bytes: done.bytes,
+        })
+    }
+
+    /// The cells that a target asks for.
+    fn grid(&self, mesh: &Mesh) -> Result<TransportGrid, Failure> {
+        let Some(cell) = self.target(mesh).cell(mesh).map_err(|error| self.refused(error))? else {
+            return Err(Failure::usage("--reduction is not of .mlz; --bits and --error are"));
+        };
+        if self.scheme.is_some() {
+            return Lattice::within(cell).map(TransportGrid::Lattice).map_err(|error| self.failed(error));
+        }
+        let bounds = mesh.bounds();
+        let longest = (0..3).map(|k| bounds.max[k] - bounds.min[k]).fold(0.0, f64::max);
+        Ok(TransportGrid::Bits(match self.goal.error {
+            Some(_) => ((longest / cell + 1.0).log2().ceil() as u32).max(1),
+            None => self.bits(),
+        }))
+    }
+}
