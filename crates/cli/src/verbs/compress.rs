@@ -8,9 +8,9 @@ use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
 use clap::{Args, ValueEnum};
+use meshlod::Mesh;
 use meshlod::codec::{AttributeBounds, Cells, LayerReport, Scheme, Target};
 use meshlod::io::write_file;
-use meshlod::Mesh;
 use serde_json::{Value, json};
 
 use crate::amounts::{self, Bound};
@@ -154,7 +154,9 @@ impl Compress {
         };
         let name = files::name(&self.output);
         if self.scheme.is_some_and(|scheme| !schemes.contains(&scheme)) {
-            return Err(Failure::usage(format_args!("{name}: such files do not have this --scheme")));
+            return Err(Failure::usage(format_args!(
+                "{name}: such files do not have this --scheme"
+            )));
         }
         if self.paper && self.scheme != Some(SchemeName::Parts) {
             return Err(Failure::usage("--paper is of --scheme parts"));

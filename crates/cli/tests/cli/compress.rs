@@ -55,6 +55,43 @@ fn attributes_and_seams_come_back() {
 }
 
 #[test]
+fn what_is_sent_comes_back() {
+    let run = Run::new();
+    run.sample("gyroid", 10_000, "in.ply");
+    let ways: [&[&str]; 3] = [&["--bits", "11"], &["--error", "0.01%"], &["--scheme", "lattice"]];
+    for way in ways {
+        let packed = run.json(&[&["compress", "in.ply", "in.mlz"], way].concat());
+        assert!(number(&packed, "bytes_per_triangle") < 3.0 && number(&packed, "blocks") > 10.0);
+        run.json(&["decompress", "in.mlz", "out.ply"]);
+        let [was, is] = ["in.ply", "out.ply"].map(|file| run.json(&["info", file]));
+        for field in ["faces", "vertices", "closed", "components"] {
+            assert_eq!(was[field], is[field], "{way:?}: {field}");
+        }
+        let apart = run.json(&["measure", "in.ply", "out.ply"]);
+        assert!(number(&apart["forward"], "mean_percent") < 0.01, "{way:?}: {apart}");
+    }
+    let mut bytes = std::fs::read(run.path("in.mlz")).unwrap();
+    *bytes.last_mut().unwrap() ^= 1;
+    std::fs::write(run.path("in.mlz"), bytes).unwrap();
+    assert_eq!(run.run(&["decompress", "in.mlz", "out.ply"]).code, 1);
+}
+
+#[test]
+fn gltf_is_read_back_by_itself() {
+    let run = Run::new();
+    run.sample("torus", 5_000, "in.glb");
+    let ways: [&[&str]; 3] = [&["--bits", "12"], &["--resident"], &["--scheme", "parts"]];
+    for way in ways {
+        let packed = run.json(&[&["compress", "in.glb", "out.glb"], way].concat());
+        assert!(number(&packed, "reduction") > 0.1, "{way:?}: {packed}");
+        let apart = run.json(&["measure", "in.glb", "out.glb"]);
+        assert!(number(&apart["forward"], "mean_percent") < 0.02, "{way:?}: {apart}");
+        let [was, is] = ["in.glb", "out.glb"].map(|file| run.json(&["info", file]));
+        assert_eq!(was["faces"], is["faces"]);
+    }
+}
+
+#[test]
 fn people_read_what_became_of_it() {
     let run = Run::new();
     run.sample("sphere", 2_000, "in.ply");
@@ -106,6 +143,21 @@ fn what_is_asked_wrongly_is_wrong_usage() {
     }
     for out in ["out.ply", "out", "-"] {
         assert_eq!(run.run(&["compress", "in.ply", out]).code, 2);
+    }
+    let cases: [&[&str]; 9] = [
+        &["out.mlz", "--scheme", "parts"],
+        &["out.mlz", "--reduction", "70%"],
+        &["out.mlz", "--bits", "0"],
+        &["out.mlz", "--error", "0"],
+        &["out.glb", "--scheme", "blocks"],
+        &["out.glb", "--bits", "17"],
+        &["out.glb", "--error", "0.1%"],
+        &["out.mlq", "--paper"],
+        &["out.mlq", "--resident"],
+    ];
+    for case in cases {
+        let done = run.run(&[&["compress", "in.ply"], case].concat());
+        assert_eq!((done.code, &done.out[..]), (2, &b""[..]), "{case:?}: {done:?}");
     }
     assert_eq!(run.files(), ["in.ply"]);
 }

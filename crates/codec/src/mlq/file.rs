@@ -71,7 +71,10 @@ impl Compressed {
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, Malformed> {
         let mut reader = Reader::new(bytes);
         if reader.take(MAGIC.len())? != MAGIC {
-            return Err(Malformed { at: 0, reason: "not an .mlq file: it begins otherwise".into() });
+            return Err(Malformed {
+                at: 0,
+                reason: "not an .mlq file: it begins otherwise".into(),
+            });
         }
         match reader.u32()? {
             VERSION => {}

@@ -118,7 +118,11 @@ fn extent(bounds: &Bounds) -> (f64, f64) {
 ///
 /// # Errors
 /// A target that is none, a mesh without faces or with coordinates that are none.
-pub fn parts_for(mesh: &Mesh, cells: Cells, target: Target) -> Result<(Parts, bool), CompressError> {
+pub fn parts_for(
+    mesh: &Mesh,
+    cells: Cells,
+    target: Target,
+) -> Result<(Parts, bool), CompressError> {
     let parting = Parting::new(mesh)?;
     let mean = if cells == Cells::Centred { MEAN_OF_CELL } else { MEAN_OF_TRUNCATED };
     match target.goal(mesh, mean)? {

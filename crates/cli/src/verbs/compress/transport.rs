@@ -1,11 +1,11 @@
 //! `.mlz`: for sending.
 
+use meshlod::Mesh;
 use meshlod::Scene;
 use meshlod::codec::{
     Lattice, Transport, TransportError, TransportFile, TransportGrid, TransportOptions,
     TransportSizes,
 };
-use meshlod::Mesh;
 
 use super::{Compress, Packed, left_out};
 use crate::failure::Failure;
@@ -42,7 +42,9 @@ impl Compress {
             return Err(Failure::usage("--reduction is not of .mlz; --bits and --error are"));
         };
         if self.scheme.is_some() {
-            return Lattice::within(cell).map(TransportGrid::Lattice).map_err(|error| self.failed(error));
+            return Lattice::within(cell)
+                .map(TransportGrid::Lattice)
+                .map_err(|error| self.failed(error));
         }
         let bounds = mesh.bounds();
         let longest = (0..3).map(|k| bounds.max[k] - bounds.min[k]).fold(0.0, f64::max);
