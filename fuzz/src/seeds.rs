@@ -1,6 +1,8 @@
 //! Files to start from, made by our writers and by hand, so that mutations begin near the grammar.
 
-use meshlod_codec::{AttributeBounds, Cells, Scheme, Target, compress};
+use meshlod_codec::{
+    AttributeBounds, Cells, Lattice, Scheme, Target, Transport, TransportGrid, TransportOptions, compress,
+};
 use meshlod_fixtures as fixtures;
 use meshlod_io::{Precision, Scene, gltf, obj, off, ply, smf, stl};
 use meshlod_mesh::{Mesh, sample};
@@ -28,6 +30,7 @@ fn seeds(target: &str) -> Vec<Vec<u8>> {
         "check" => return few_faces(),
         "mlod" => return models::seeds(),
         "mlq" => return compressed(),
+        "mlz" => return transports(),
         _ => {}
     }
     let by_hand: &[&str] = match target {
@@ -77,6 +80,18 @@ fn small_gltf(meshes: &[Mesh]) -> Vec<Vec<u8>> {
         meshes.iter().flat_map(|mesh| [write(mesh, false), write(mesh, true)]).collect();
     all.push(FILTERED.as_bytes().to_vec());
     all
+}
+
+/// Meshes of one block and of several, on a grid and on a lattice.
+fn transports() -> Vec<Vec<u8>> {
+    let lattice = Lattice::new(-6).expect("an exponent");
+    let meshes = [fixtures::cube(), fixtures::hourglass(), fixtures::moebius(20), sample::knot(90)];
+    let write = |mesh: &Mesh, grid| {
+        let options = TransportOptions { grid, block_faces: 16 };
+        Transport::encode(mesh, &options).expect("a fixture fits").bytes
+    };
+    let grids = [TransportGrid::Bits(5), TransportGrid::Lattice(lattice)];
+    meshes.iter().flat_map(|mesh| grids.map(|grid| write(mesh, grid))).collect()
 }
 
 /// A progressive mesh of all that can be contracted.

@@ -10,6 +10,8 @@
 //! [`VertexBlocks`] lie as the surface does, each in its own frame, with cells as large as the surface allows: the
 //! fewest bits for the distance between the surfaces. A matrix a block decodes them.
 //!
+//! A [`Transport`] is a mesh to be sent or stored, entropy coded, in blocks that a [`TransportFile`] decodes one by one.
+//!
 //! ```
 //! use meshlod_codec::{Cells, Parting};
 //! use meshlod_mesh::sample;
@@ -41,6 +43,6 @@ pub use lattice::{Lattice, LatticeBlocks, LatticeError};
 pub use mlq::{CompressError, Compressed, Compression, Scheme, Sizes, Target, compress, parts_for};
 pub use parts::{Cells, Part, Parting, Parts, PartsError};
 pub use transport::{
-    Transport, TransportBlock, TransportError, TransportFile, TransportGrid, TransportOptions,
-    TransportSizes,
+    LeftOut, Transport, TransportBlock, TransportError, TransportFile, TransportGrid,
+    TransportOptions, TransportSizes,
 };

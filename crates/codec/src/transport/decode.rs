@@ -1,24 +1,38 @@
 //! Blocks from bytes that may be anything.
 
+use glam::{BVec4A, Vec4};
+
 use super::border::{Border, NODES, Step};
 use super::encode::{CHUNK_BITS, LENGTH_BITS, WITH_BITS};
-use super::gate::{Gate, NODE_BITS, OTHERS, OTHERS_BITS, context, walk};
+use super::gate::{CONTEXTS, Gate, NODE_BITS, OTHERS, OTHERS_BITS, context, walk};
 use super::join::checksum;
 use super::models::{DISTANCE_BITS, FAR, MOST, Models, STEP_BITS};
-use super::predict::{Cells, Guess, SPAN, Trend};
+use super::predict::{Cells, Guess, LANES, SPAN, Trends};
 use super::rans::Symbols;
 use crate::bytes::Malformed;
 
 const MASK: usize = NODES - 1;
 
-/// Room for one block after the other.
+/// Room for four blocks at a time.
+pub(super) struct Decoder {
+    lanes: [Lane; LANES],
+}
+
+/// Room for a block.
 pub(super) struct Lane {
     border: Border,
     births: Vec<Gate>,
-    cells: Box<[Cells; NODES]>,
+    cells: Box<[Vec4; NODES]>,
     pub(super) faces: Vec<[u16; 3]>,
     /// Those vertices that are not what their cell says.
     tags: Vec<(u16, u32)>,
+}
+
+/// The bytes of a block, and how many faces it has: at most [`super::border::MOST_FACES`].
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Sealed<'a> {
+    pub(super) bytes: &'a [u8],
+    pub(super) faces: usize,
 }
 
 /// Whether a vertex may be in other blocks too.
@@ -29,9 +43,93 @@ pub(super) enum Reach {
     Joint(u32),
 }
 
-impl Lane {
+impl Decoder {
     pub(super) fn new() -> Self {
-        let cells: Box<[Cells]> = vec![Cells::ZERO; NODES].into();
+        Self { lanes: std::array::from_fn(|_| Lane::new()) }
+    }
+
+    /// Decodes blocks, as many as there are lanes at most. What is wrong is told with the number of the block.
+    pub(super) fn decode(
+        &mut self,
+        blocks: &[Sealed],
+        models: &Models,
+        first_bits: [u8; 3],
+    ) -> Result<&[Lane], (usize, Malformed)> {
+        let mut symbols: [Symbols; LANES] = std::array::from_fn(|_| Symbols::none());
+        for (k, block) in blocks.iter().enumerate() {
+            symbols[k] = Symbols::new(block.bytes).map_err(|wrong| (k, wrong))?;
+            self.lanes[k].begin(&mut symbols[k], first_bits);
+        }
+        for lane in &mut self.lanes[blocks.len()..] {
+            lane.births.clear();
+        }
+        connect(&mut self.lanes[..blocks.len()], &mut symbols, blocks, models);
+        let inside = place(&mut self.lanes, &mut symbols, models);
+        for (k, lane) in self.lanes[..blocks.len()].iter_mut().enumerate() {
+            lane.finish(&mut symbols[k], inside[k]).map_err(|wrong| (k, wrong))?;
+        }
+        Ok(&self.lanes[..blocks.len()])
+    }
+}
+
+/// What faces join: a step of each block by turns, so that the processor has several to work on.
+#[inline(never)]
+fn connect(lanes: &mut [Lane], symbols: &mut [Symbols; LANES], blocks: &[Sealed], models: &Models) {
+    let mut is_left = true;
+    while is_left {
+        is_left = false;
+        for ((lane, symbols), block) in lanes.iter_mut().zip(&mut *symbols).zip(blocks) {
+            if lane.faces.len() < block.faces {
+                lane.step(symbols, models);
+                is_left = true;
+            }
+        }
+    }
+}
+
+/// Where all vertices but the first are; false for a lane with one where none can be.
+#[inline(never)]
+fn place(
+    lanes: &mut [Lane; LANES],
+    symbols: &mut [Symbols; LANES],
+    models: &Models,
+) -> [bool; LANES] {
+    let mut trends = Trends::new();
+    let mut outside = [0; LANES];
+    let longest = lanes.iter().map(|lane| lane.births.len()).max().unwrap_or(0);
+    for v in 1..longest {
+        let gate = |lane: usize| lanes[lane].births.get(v).copied().unwrap_or_default();
+        let gates = [gate(0), gate(1), gate(2), gate(3)];
+        let at = |lane: usize, v: u16| lanes[lane].cells[usize::from(v) & MASK];
+        let guesses = trends.guess(&gates, models, at);
+        let mut places = [Vec4::ZERO; LANES];
+        for k in 0..LANES {
+            if v >= lanes[k].births.len() {
+                continue;
+            }
+            let guess = match gates[k].faces_a {
+                0 => Guess::start(v as u16, &gates[k], models, |v| at(k, v)),
+                _ => guesses.of(k),
+            };
+            places[k] = guess.take(|_, nearest, (class, low_bits)| {
+                let distance = distance(&mut symbols[k], models, class, low_bits);
+                let cell = nearest.wrapping_add(distance);
+                outside[k] |= cell;
+                cell & (SPAN - 1)
+            });
+        }
+        for k in 0..LANES {
+            lanes[k].cells[v & MASK] = places[k];
+        }
+        let is_told = gates.map(|gate| gate.faces_a > 0);
+        trends.tell(&guesses, places, BVec4A::from_array(is_told));
+    }
+    outside.map(|bits| (0..SPAN).contains(&bits))
+}
+
+impl Lane {
+    fn new() -> Self {
+        let cells: Box<[Vec4]> = vec![Vec4::ZERO; NODES].into();
         Self {
             border: Border::new(),
             births: Vec::with_capacity(NODES),
@@ -42,98 +140,56 @@ impl Lane {
     }
 
     /// The cells of the vertices of the last block.
-    pub(super) fn cells(&self) -> &[Cells] {
-        &self.cells[..self.births.len()]
+    pub(super) fn cells(&self) -> impl ExactSizeIterator<Item = Cells> {
+        self.cells[..self.births.len()].iter().map(|&cell| Cells::from_vec4(cell))
     }
 
-    /// Decodes a block of at most [`super::border::MOST_FACES`] faces.
-    pub(super) fn decode(
-        &mut self,
-        bytes: &[u8],
-        faces: usize,
-        models: &Models,
-        first_bits: [u8; 3],
-    ) -> Result<(), Malformed> {
-        let mut symbols = Symbols::new(bytes)?;
-        let first = first_bits.map(|bits| number(&mut symbols, u32::from(bits)) as f32);
-        self.cells[0] = Cells::from(first);
-        self.connect(&mut symbols, faces, models);
-        let is_inside = self.place(&mut symbols, models);
-        self.read_tags(&mut symbols)?;
-        symbols.finish(checksum(self.cells().iter().copied()))?;
-        if is_inside { Ok(()) } else { Err(wrong("a vertex is outside of all cells")) }
-    }
-
-    #[inline(never)]
-    fn connect(&mut self, symbols: &mut Symbols, faces: usize, models: &Models) {
+    fn begin(&mut self, symbols: &mut Symbols, first_bits: [u8; 3]) {
         self.border.clear();
         self.births.clear();
         self.faces.clear();
-        while self.faces.len() < faces {
-            let Some(at) = self.border.pivot() else {
-                let first = self.births.len() as u16;
-                let corners = [first, first + 1, first + 2];
-                self.births.extend([0, 1, 2].map(Gate::corner));
-                self.border.start(corners);
-                self.faces.push(corners);
-                continue;
-            };
-            let steps = &models.steps[context(&self.border, at)];
-            let (step, size, behind) = steps.at(symbols.place(STEP_BITS));
-            symbols.pass(STEP_BITS, size, behind, 0);
-            let face = match step {
-                Step::New => {
-                    let vertex = self.births.len() as u16;
-                    self.births.push(Gate::at(&self.border, at));
-                    self.border.put_new(at, vertex)
-                }
-                Step::Before => self.border.put_before(at),
-                Step::Behind => self.border.put_behind(at),
-                Step::Nothing => {
-                    self.border.shut(at);
-                    continue;
-                }
-                Step::Other => {
-                    let other = other(&self.border, at, symbols);
-                    self.border.put_other(at, other)
-                }
-            };
-            self.faces.push(face);
-        }
+        let first = first_bits.map(|bits| number(symbols, u32::from(bits)) as f32);
+        self.cells[0] = Cells::from(first).extend(0.0);
     }
 
-    /// Where all vertices but the first are; false if one is where none can be.
-    #[inline(never)]
-    fn place(&mut self, symbols: &mut Symbols, models: &Models) -> bool {
-        let mut trend = Trend::new();
-        let mut is_inside = true;
-        for (v, gate) in self.births.iter().enumerate().skip(1) {
-            let at = |v: u16| self.cells[usize::from(v) & MASK];
-            let is_start = gate.faces_a == 0;
-            let guess = if is_start {
-                Guess::start(v as u16, gate, models, at)
-            } else {
-                Guess::at(gate, models, &trend, at)
-            };
-            let mut place = [0.0; 3];
-            let mut read = |axis: usize, (nearest, (class, low_bits)): (i32, (usize, u32))| {
-                let cell = nearest.wrapping_add(distance(symbols, models, class, low_bits));
-                is_inside &= (0..SPAN).contains(&cell);
-                let cell = cell & (SPAN - 1);
-                place[axis] = cell as f32;
-                guess.off(axis, cell)
-            };
-            let [first, second, third] = guess.axes();
-            let off = read(first, guess.first());
-            let off = [off, read(second, guess.second(off))];
-            read(third, guess.third(off));
-            let place = Cells::from(place);
-            if !is_start {
-                guess.tell(place, &mut trend);
+    fn finish(&mut self, symbols: &mut Symbols, is_inside: bool) -> Result<(), Malformed> {
+        self.read_tags(symbols)?;
+        symbols.finish(checksum(self.cells()))?;
+        if is_inside { Ok(()) } else { Err(wrong("a vertex is outside of all cells")) }
+    }
+
+    /// One step at the border.
+    #[inline(always)]
+    fn step(&mut self, symbols: &mut Symbols, models: &Models) {
+        let Some(at) = self.border.pivot() else { return self.start() };
+        let steps = &models.steps[context(&self.border, at) % CONTEXTS];
+        let (step, size, behind) = steps.at(symbols.place(STEP_BITS));
+        symbols.pass(STEP_BITS, size, behind, 0);
+        let face = match step {
+            Step::New => {
+                let vertex = self.births.len() as u16;
+                self.births.push(Gate::at(&self.border, at));
+                self.border.put_new(at, vertex)
             }
-            self.cells[v & MASK] = place;
-        }
-        is_inside
+            Step::Before => self.border.put_before(at),
+            Step::Behind => self.border.put_behind(at),
+            Step::Nothing => return self.border.shut(at),
+            Step::Other => {
+                let other = other(&self.border, at, symbols);
+                self.border.put_other(at, other)
+            }
+        };
+        self.faces.push(face);
+    }
+
+    /// A face apart from all others.
+    #[cold]
+    fn start(&mut self) {
+        let first = self.births.len() as u16;
+        let corners = [first, first + 1, first + 2];
+        self.births.extend([Gate::corner(0), Gate::corner(1), Gate::corner(2)]);
+        self.border.start(corners);
+        self.faces.push(corners);
     }
 
     fn read_tags(&mut self, symbols: &mut Symbols) -> Result<(), Malformed> {

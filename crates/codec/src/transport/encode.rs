@@ -1,9 +1,11 @@
 //! Blocks as symbols, and as bytes.
 
+use glam::{BVec4A, Vec4};
+
 use super::border::Step;
-use super::gate::{NODE_BITS, OTHERS, OTHERS_BITS};
+use super::gate::{Gate, NODE_BITS, OTHERS, OTHERS_BITS};
 use super::models::{Distances, FAR, MOST, Models};
-use super::predict::{Cells, Guess, Trend};
+use super::predict::{Cells, Guess, LANES, Trends};
 use super::rans::Symbol;
 use super::walk::Walk;
 
@@ -65,31 +67,37 @@ fn push_any(number: u32, symbols: &mut Vec<Symbol>) {
     push_number(number, bits, symbols);
 }
 
-/// How far all vertices are from where they are expected, but the first.
-pub(super) fn tell(walk: &Walk, cells: &[Cells], models: &Models, told: &mut Vec<Told>) {
-    let at = |v: u16| cells[walk.vertices[usize::from(v)] as usize];
-    let mut trend = Trend::new();
-    for (v, gate) in walk.births.iter().enumerate().skip(1) {
-        let place = at(v as u16);
-        let guess = if gate.faces_a == 0 {
-            Guess::start(v as u16, gate, models, at)
-        } else {
-            Guess::at(gate, models, &trend, at)
-        };
-        let mut push = |axis: usize, (nearest, (class, low_bits)): (i32, (usize, u32))| {
-            let cell = place[axis] as i32;
-            let (class, low_bits) = (class as u8, low_bits as u8);
-            told.push(Told { distance: cell - nearest, class, low_bits });
-            guess.off(axis, cell)
-        };
-        let [first, second, third] = guess.axes();
-        let off = push(first, guess.first());
-        let off = [off, push(second, guess.second(off))];
-        push(third, guess.third(off));
-        if gate.faces_a > 0 {
-            guess.tell(place, &mut trend);
+/// How far all vertices but the first are from where they are expected, of four blocks at most.
+pub(super) fn tell(walks: &[Walk], cells: &[Cells], models: &Models) -> [Vec<Told>; LANES] {
+    let at = |lane: usize, v: u16| {
+        let v = walks.get(lane).and_then(|walk| walk.vertices.get(usize::from(v)));
+        v.map_or(Vec4::ZERO, |&v| cells[v as usize].extend(0.0))
+    };
+    let longest = walks.iter().map(|walk| walk.births.len()).max().unwrap_or(0);
+    let mut told: [Vec<Told>; LANES] = std::array::from_fn(|_| Vec::with_capacity(3 * longest));
+    let mut trends = Trends::new();
+    for v in 1..longest {
+        let birth = |lane: usize| walks.get(lane).and_then(|walk| walk.births.get(v)).copied();
+        let births: [Option<Gate>; LANES] = std::array::from_fn(birth);
+        let gates = births.map(Option::unwrap_or_default);
+        let guesses = trends.guess(&gates, models, at);
+        let places = std::array::from_fn(|lane| at(lane, v as u16));
+        for (lane, _) in births.iter().enumerate().filter(|(_, gate)| gate.is_some()) {
+            let guess = match gates[lane].faces_a {
+                0 => Guess::start(v as u16, &gates[lane], models, |v| at(lane, v)),
+                _ => guesses.of(lane),
+            };
+            let axes = guess.axes();
+            guess.take(|turn, nearest, (class, low_bits)| {
+                let cell = places[lane][axes[turn]] as i32;
+                let (class, low_bits) = (class as u8, low_bits as u8);
+                told[lane].push(Told { distance: cell - nearest, class, low_bits });
+                cell
+            });
         }
+        trends.tell(&guesses, places, BVec4A::from_array(gates.map(|gate| gate.faces_a > 0)));
     }
+    told
 }
 
 /// All symbols of a block.

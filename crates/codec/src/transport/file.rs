@@ -3,11 +3,11 @@
 use meshlod_mesh::{Mesh, VertexId};
 
 use super::border::MOST_FACES;
-use super::decode::{Lane, Reach};
+use super::decode::{Decoder, Lane, Reach, Sealed};
 use super::grid::{FARTHEST, Grid, MOST_BITS};
 use super::join::{Joints, key};
 use super::models::{Codes, Models};
-use super::predict::{Cells, SPAN};
+use super::predict::{Cells, LANES, SPAN};
 use crate::bits::Bits;
 use crate::bytes::{Malformed, Reader};
 
@@ -175,11 +175,11 @@ impl<'a> TransportFile<'a> {
     /// # Panics
     /// A block that there is not.
     pub fn block(&self, block: usize) -> Result<TransportBlock, Malformed> {
-        let mut lane = Lane::new();
-        self.decode_block(self.places[block], &mut lane)?;
+        let mut decoder = Decoder::new();
+        let lanes = self.decode_blocks(&self.places[block..=block], &mut decoder)?;
         let mut out = TransportBlock::default();
-        let mut gather = Gather::new(lane.cells().len());
-        gather.add(&lane, |cell| out.positions.push(self.grid.place(cell)), &mut out.faces);
+        let mut gather = Gather::new(lanes[0].cells().len());
+        gather.add(&lanes[0], |cell| out.positions.push(self.grid.place(cell)), &mut out.faces);
         Ok(out)
     }
 
@@ -204,7 +204,10 @@ impl<'a> TransportFile<'a> {
     ) -> Result<(), Malformed> {
         positions.clear();
         faces.clear();
-        let place = |cell| positions.push(self.grid.place(cell).map(|x| x as f32));
+        let place = |cell| {
+            let [x, y, z] = self.grid.place(cell);
+            positions.push([x as f32, y as f32, z as f32]);
+        };
         self.decode_all(place, faces)
     }
 
@@ -236,10 +239,11 @@ impl<'a> TransportFile<'a> {
         }
         // A fifth of all faces have a border vertex of their own, more or less.
         let mut gather = Gather::new(self.faces.min(self.blocks.len()) / 8);
-        let mut lane = Lane::new();
-        for &block in &self.places {
-            self.decode_block(block, &mut lane)?;
-            gather.add(&lane, &mut place, faces);
+        let mut decoder = Decoder::new();
+        for places in self.places.chunks(LANES) {
+            for lane in self.decode_blocks(places, &mut decoder)? {
+                gather.add(lane, &mut place, faces);
+            }
         }
         if gather.vertices as usize == self.vertices {
             return Ok(());
@@ -248,10 +252,19 @@ impl<'a> TransportFile<'a> {
         Err(Malformed { at: self.at, reason })
     }
 
-    fn decode_block(&self, block: Place, lane: &mut Lane) -> Result<(), Malformed> {
-        let bytes = &self.blocks[block.at..][..block.bytes];
-        let decoded = lane.decode(bytes, block.faces, &self.models, self.first_bits);
-        decoded.map_err(|wrong| Malformed { at: self.at + block.at, ..wrong })
+    fn decode_blocks<'d>(
+        &self,
+        places: &[Place],
+        decoder: &'d mut Decoder,
+    ) -> Result<&'d [Lane], Malformed> {
+        let seal = |place: &Place| Sealed {
+            bytes: &self.blocks[place.at..][..place.bytes],
+            faces: place.faces,
+        };
+        let mut blocks = [Sealed { bytes: &[], faces: 0 }; LANES];
+        blocks.iter_mut().zip(places).for_each(|(block, place)| *block = seal(place));
+        let lanes = decoder.decode(&blocks[..places.len()], &self.models, self.first_bits);
+        lanes.map_err(|(k, wrong)| Malformed { at: self.at + places[k].at, ..wrong })
     }
 }
 
@@ -272,7 +285,7 @@ impl Gather {
     fn add(&mut self, lane: &Lane, mut place: impl FnMut(Cells), faces: &mut Vec<[u32; 3]>) {
         lane.reach(&mut self.reach);
         self.numbers.clear();
-        for (&cell, &reach) in lane.cells().iter().zip(&self.reach) {
+        for (cell, &reach) in lane.cells().zip(&self.reach) {
             let number = match reach {
                 Reach::Inside => self.vertices,
                 Reach::Joint(tag) => *self.joints.join(key(cell), tag, self.vertices),
@@ -284,7 +297,8 @@ impl Gather {
             self.numbers.push(number);
         }
         let numbers = &self.numbers;
-        faces.extend(lane.faces.iter().map(|face| face.map(|v| numbers[usize::from(v)])));
+        let number = |v: u16| numbers[usize::from(v)];
+        faces.extend(lane.faces.iter().map(|&[a, b, c]| [number(a), number(b), number(c)]));
     }
 }
 

@@ -4,7 +4,7 @@ use super::border::Step;
 use super::encode::Told;
 use super::gate::{CONTEXTS, Gate};
 use super::models::{CLASSES, Codes, SYMBOLS, Steps, parts};
-use super::predict::{Around, Cells, FEATURES, Frame, GATES, dot};
+use super::predict::{Cells, FEATURES, GATES};
 use super::walk::Walk;
 
 /// Vertices that weights are fitted to, about. With all there are, a file is a thousandth smaller.
@@ -15,7 +15,10 @@ const FEWEST_STEPS: u32 = 40;
 /// One vertex that weights are to guess well.
 struct Sample {
     kind: usize,
-    frame: Frame,
+    /// Across the surface, of unit length, or nothing.
+    normal: Cells,
+    /// The squared sides of the face behind the edge.
+    sides: f64,
     /// The features, and what is to be guessed from them.
     rows: [Cells; FEATURES + 1],
 }
@@ -54,10 +57,22 @@ fn samples(walks: &[Walk], cells: &[Cells]) -> Vec<Sample> {
 impl Sample {
     fn of(gate: &Gate, vertex: usize, walk: &Walk, cells: &[Cells]) -> Self {
         let at = |v: u16| cells[walk.vertices[usize::from(v)] as usize];
-        let around = Around::new(gate, at);
-        let (corner, [f0, f1, f2, f3, f4]) = around.features();
-        let target = at(vertex as u16) - corner;
-        Self { kind: gate.kind(), frame: Frame::at(&around), rows: [f0, f1, f2, f3, f4, target] }
+        let [a, b, apex] = [gate.a, gate.b, gate.apex].map(at);
+        let [older, before, behind] = [gate.older, gate.before, gate.behind].map(at);
+        let (edge, spoke, rim) = (b - a, apex - a, apex - b);
+        let corner = b - spoke;
+        // As in `predict`.
+        let rows = [
+            corner - apex,
+            edge,
+            corner - (a + a - older),
+            behind - b + rim,
+            before - a + spoke,
+            at(vertex as u16) - corner,
+        ];
+        let normal = (edge.cross(spoke) + spoke.cross(older - a)).normalize_or_zero();
+        let sides = edge.length_squared() + spoke.length_squared() + rim.length_squared();
+        Self { kind: gate.kind(), normal, sides: f64::from(sides) + 1.0, rows }
     }
 
     /// What is missed, by squares along the surface and across.
@@ -66,7 +81,8 @@ impl Sample {
         for (row, &weight) in self.rows.iter().zip(weights) {
             missed -= *row * weight as f32;
         }
-        self.frame.squares(missed).map(|square| f64::from(square.max(0.0)))
+        let across = missed.dot(self.normal).powi(2);
+        [0.5 * (missed.length_squared() - across), across].map(|square| f64::from(square.max(0.0)))
     }
 }
 
@@ -80,15 +96,14 @@ fn weights(samples: &[Sample]) -> ([[i8; FEATURES]; GATES], [[u8; 2]; GATES]) {
         for sample in samples {
             let kind = sample.kind;
             let missed = sample.missed(&weights[kind]);
-            let sides = f64::from(sample.frame.sides);
+            let sides = sample.sides;
             let [along, across] =
                 [0, 1].map(|k| 1.0 / (missed[k] + 2.0 * sides * typical[kind][k] + 0.25));
-            let normal = sample.frame.normal * sample.frame.inverse.sqrt();
-            let heights = sample.rows.map(|row| dot(row, normal));
+            let heights = sample.rows.map(|row| row.dot(sample.normal));
             for (i, sums) in sums[kind].iter_mut().enumerate() {
                 for (j, sum) in sums.iter_mut().enumerate().skip(i) {
                     let up = f64::from(heights[i] * heights[j]);
-                    let all = f64::from(dot(sample.rows[i], sample.rows[j]));
+                    let all = f64::from(sample.rows[i].dot(sample.rows[j]));
                     *sum += along * all + (across - along) * up;
                 }
             }
@@ -112,7 +127,7 @@ fn typical(samples: &[Sample], weights: &[[f64; FEATURES]; GATES]) -> [[f64; 2];
     let mut counts = [0.0; GATES];
     for sample in samples {
         let missed = sample.missed(&weights[sample.kind]);
-        let sides = f64::from(sample.frame.sides);
+        let sides = sample.sides;
         for (sum, missed) in sums[sample.kind].iter_mut().zip(missed) {
             *sum += (missed / sides + 1e-5).log2();
         }
@@ -147,7 +162,7 @@ fn start(walks: &[Walk], cells: &[Cells]) -> u8 {
         let at = |v: usize| cells[walk.vertices[v] as usize];
         for corner in [1, 2] {
             let way = at(corner) - at(0);
-            sum += f64::from(dot(way, way)) / 3.0;
+            sum += f64::from(way.length_squared()) / 3.0;
             count += 1.0;
         }
     }
@@ -168,7 +183,7 @@ fn steps(walks: &[Walk]) -> Vec<Option<[u8; Step::ALL.len()]>> {
 }
 
 /// The shape of each class that tells its distances in the fewest bits.
-pub(super) fn shapes(told: &[Told]) -> [u8; CLASSES] {
+pub(super) fn shapes<'a>(told: impl Iterator<Item = &'a Told>) -> [u8; CLASSES] {
     let mut counts = [[0u32; SYMBOLS]; CLASSES];
     for told in told {
         counts[usize::from(told.class)][told.symbol().0] += 1;

@@ -34,6 +34,21 @@ pub struct Transport {
     pub blocks: usize,
     /// What takes how much of it.
     pub sizes: TransportSizes,
+    /// What of the mesh is not in the file.
+    pub left_out: Vec<LeftOut>,
+}
+
+/// What a mesh has and the file has not.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum LeftOut {
+    /// Normals, uvs and whatever else wedges have.
+    Attributes,
+    /// The materials of faces.
+    Materials,
+    /// The objects of faces.
+    Objects,
+    /// Vertices that no face uses.
+    UnusedVertices,
 }
 
 /// Parts of a file, in bytes; together they are all of it.

@@ -3,6 +3,8 @@
 //! All that a block needs is here from its first symbol on: nothing is learnt on the way, and blocks stay apart. A file tells
 //! its models in some hundred bytes.
 
+use glam::Vec4;
+
 use super::border::Step;
 use super::gate::CONTEXTS;
 use super::predict::{FEATURES, GATES};
@@ -39,13 +41,13 @@ pub(super) struct Codes {
 /// The models as they are used.
 #[derive(Clone, Debug)]
 pub(super) struct Models {
-    pub(super) weights: [[f32; FEATURES]; GATES],
-    /// The variances along the surface and across, in parts of the gate's squared sides.
-    pub(super) spreads: [[f32; 2]; GATES],
+    /// For each kind of gate the weights of the features, then the variances along the surface and across, in parts of the
+    /// gate's squared sides.
+    pub(super) gates: [[Vec4; 2]; GATES],
     /// The variance of the corners of a face that stands alone.
     pub(super) start: f32,
-    pub(super) distances: Vec<Distances>,
-    pub(super) steps: Vec<Steps>,
+    pub(super) distances: Box<[Distances; CLASSES]>,
+    pub(super) steps: Box<[Steps; CONTEXTS]>,
 }
 
 /// How likely the distances of a class are.
@@ -85,8 +87,10 @@ impl Distances {
         let mut sizes: Vec<i32> =
             parts.iter().map(|part| (part / all * DISTANCE_ALL as f64 + 0.5) as i32).collect();
         sizes[FAR] = sizes[FAR].max(1);
-        // The middle is the greatest by far enough to make up for all rounding.
-        sizes[MOST as usize] += DISTANCE_ALL as i32 - sizes.iter().sum::<i32>();
+        // The middle makes up for all rounding.
+        let middle = MOST as usize;
+        sizes[middle] += DISTANCE_ALL as i32 - sizes.iter().sum::<i32>();
+        debug_assert!(sizes[middle] > 0);
         let mut starts = [0; SYMBOLS + 1];
         let mut places = vec![0; DISTANCE_ALL];
         for (symbol, &size) in sizes.iter().enumerate() {
@@ -251,18 +255,20 @@ impl Codes {
 impl Models {
     pub(super) fn new(codes: &Codes) -> Self {
         let rest = codes.steps.last().copied().flatten().unwrap_or([6; STEPS]);
-        let shapes = codes.shapes.iter().enumerate();
+        let gate = |kind: usize| {
+            let [w0, w1, w2, w3, w4] = codes.weights[kind].map(|weight| f32::from(weight) / 64.0);
+            let [along, across] = codes.spreads[kind].map(|code| pow2(32 - i32::from(code)) as f32);
+            [Vec4::new(w0, w1, w2, w3), Vec4::new(w4, along, across, 0.0)]
+        };
         Self {
-            weights: codes.weights.map(|weights| weights.map(|w| f32::from(w) / 64.0)),
-            spreads: codes
-                .spreads
-                .map(|spreads| spreads.map(|code| pow2(32 - i32::from(code)) as f32)),
+            gates: std::array::from_fn(gate),
             start: pow2(2 * i32::from(codes.start)) as f32,
-            distances: shapes.map(|(class, &code)| Distances::of(class, code)).collect(),
-            steps: codes.steps[..CONTEXTS]
-                .iter()
-                .map(|codes| Steps::of(codes.unwrap_or(rest)))
-                .collect(),
+            distances: Box::new(std::array::from_fn(|class| {
+                Distances::of(class, codes.shapes[class])
+            })),
+            steps: Box::new(std::array::from_fn(|context| {
+                Steps::of(codes.steps[context].unwrap_or(rest))
+            })),
         }
     }
 }

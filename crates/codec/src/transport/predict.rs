@@ -1,9 +1,10 @@
-//! Where a vertex is expected, and how far from there.
+//! Where vertices are expected, and how far from there: of four blocks at a time.
 //!
-//! A parallelogram [TG98], corrected by what else is known around; more surely across the surface than along it. Sums, products and
-//! quotients of `f32` in one order: the same on every machine.
+//! A parallelogram [TG98], corrected by what else is known around; more surely across the surface than along it. Each number is a lane
+//! of four, so that the processor has four blocks to work on. Sums, products and quotients of `f32`, each rounded by
+//! itself: the same on every machine, whichever blocks are side by side.
 
-use glam::{Vec3A, Vec3Swizzles};
+use glam::{BVec4A, Mat4, Vec3A, Vec4};
 
 use super::gate::Gate;
 use super::models::{CLASSES, Models};
@@ -17,6 +18,8 @@ pub(super) const SPAN: i32 = 1 << 21;
 pub(super) const FEATURES: usize = 5;
 /// Gates are of so many kinds.
 pub(super) const GATES: usize = 5 * 4;
+/// Blocks that are taken at a time.
+pub(super) const LANES: usize = 4;
 
 impl Gate {
     /// By how many faces the ends of the edge have by now.
@@ -28,290 +31,362 @@ impl Gate {
     }
 }
 
-/// Where the vertices of a gate are.
+/// What places are rounded by, a variance. Of .1 to .3, .15 takes the least.
+const FLOOR: f32 = 0.15;
+/// How much a vertex counts for the trend: .08 and .125 take as much, .18 and .06 some thousandths more.
+const GAIN: f32 = 0.1;
+
+/// A place or a way of each lane.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Around {
-    a: Cells,
-    b: Cells,
-    apex: Cells,
-    older: Cells,
-    before: Cells,
-    behind: Cells,
+struct Four {
+    x: Vec4,
+    y: Vec4,
+    z: Vec4,
+}
+
+impl Four {
+    /// Places with anything behind them, which is dropped.
+    #[inline(always)]
+    fn new(places: [Vec4; LANES]) -> Self {
+        let [a, b, c, d] = places;
+        let Mat4 { x_axis, y_axis, z_axis, .. } = Mat4::from_cols(a, b, c, d).transpose();
+        Self { x: x_axis, y: y_axis, z: z_axis }
+    }
+
+    #[inline(always)]
+    fn dot(self, other: Self) -> Vec4 {
+        self.x * other.x + self.y * other.y + self.z * other.z
+    }
+
+    #[inline(always)]
+    fn cross(self, other: Self) -> Self {
+        Self {
+            x: self.y * other.z - self.z * other.y,
+            y: self.z * other.x - self.x * other.z,
+            z: self.x * other.y - self.y * other.x,
+        }
+    }
+
+    #[inline(always)]
+    fn each(self, by: impl Fn(Vec4) -> Vec4) -> Self {
+        Self { x: by(self.x), y: by(self.y), z: by(self.z) }
+    }
+
+    /// The coordinates by turns: the one of the normal's greatest coordinate last, the others before it in cyclic order.
+    #[inline(always)]
+    fn turned(self, last: &Last) -> [Vec4; 3] {
+        let Self { x, y, z } = self;
+        [last.select(y, z, x), last.select(z, x, y), last.select(x, y, z)]
+    }
+}
+
+impl std::ops::Add for Four {
+    type Output = Self;
+
+    #[inline(always)]
+    fn add(self, other: Self) -> Self {
+        Self { x: self.x + other.x, y: self.y + other.y, z: self.z + other.z }
+    }
+}
+
+impl std::ops::Sub for Four {
+    type Output = Self;
+
+    #[inline(always)]
+    fn sub(self, other: Self) -> Self {
+        Self { x: self.x - other.x, y: self.y - other.y, z: self.z - other.z }
+    }
+}
+
+/// The axis that is told last.
+#[derive(Clone, Copy, Debug)]
+struct Last {
+    is_x: BVec4A,
+    is_y: BVec4A,
+}
+
+impl Last {
+    #[inline(always)]
+    fn of(normal: Four) -> Self {
+        let Four { x, y, z } = normal.each(Vec4::abs);
+        let is_y = y.cmpgt(x.max(z));
+        Self { is_x: x.cmpgt(z) & !is_y, is_y }
+    }
+
+    #[inline(always)]
+    fn select(&self, x: Vec4, y: Vec4, z: Vec4) -> Vec4 {
+        Vec4::select(self.is_x, x, Vec4::select(self.is_y, y, z))
+    }
+}
+
+/// Where the vertices of gates are, and what may be made of them.
+struct Around {
+    corner: Four,
+    /// Added to the corner by weights. In a regular mesh all but the first two are nothing.
+    features: [Four; FEATURES],
+    /// Across the surface, of any length.
+    normal: Four,
+    /// The squared sides of the face behind the edge.
+    sides: Vec4,
 }
 
 impl Around {
     #[inline(always)]
-    pub(super) fn new(gate: &Gate, at: impl Fn(u16) -> Cells) -> Self {
+    fn new(gates: &[Gate; LANES], at: impl Fn(usize, u16) -> Vec4) -> Self {
+        let four = |of: fn(&Gate) -> u16| {
+            let [a, b, c, d] = gates;
+            Four::new([at(0, of(a)), at(1, of(b)), at(2, of(c)), at(3, of(d))])
+        };
+        let (a, b) = (four(|gate| gate.a), four(|gate| gate.b));
+        let (apex, older) = (four(|gate| gate.apex), four(|gate| gate.older));
+        let (before, behind) = (four(|gate| gate.before), four(|gate| gate.behind));
+        let (edge, spoke, rim) = (b - a, apex - a, apex - b);
         Self {
-            a: at(gate.a),
-            b: at(gate.b),
-            apex: at(gate.apex),
-            older: at(gate.older),
-            before: at(gate.before),
-            behind: at(gate.behind),
+            corner: b - spoke,
+            features: [
+                b - spoke - apex,
+                edge,
+                // By how much the parallelogram before has missed.
+                (b - spoke) - (a + a - older),
+                behind - b + rim,
+                before - a + spoke,
+            ],
+            normal: edge.cross(spoke) + spoke.cross(older - a),
+            sides: edge.dot(edge) + spoke.dot(spoke) + rim.dot(rim) + Vec4::ONE,
         }
-    }
-
-    /// The fourth corner of the parallelogram, and what may be added to it. In a regular mesh all but the first two are nothing.
-    #[inline(always)]
-    pub(super) fn features(&self) -> (Cells, [Cells; FEATURES]) {
-        let Self { a, b, apex, older, before, behind } = *self;
-        let corner = a + b - apex;
-        let features = [
-            corner - apex,
-            a - b,
-            // By how much the parallelogram before has missed.
-            b - (a + apex) + older,
-            behind - (b + b) + apex,
-            before - (a + a) + apex,
-        ];
-        (corner, features)
-    }
-}
-
-/// How the surface lies at an edge.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Frame {
-    /// Across the surface, of any length.
-    pub(super) normal: Cells,
-    /// One by its squared length, or 0.
-    pub(super) inverse: f32,
-    /// The squared sides of the face behind the edge.
-    pub(super) sides: f32,
-}
-
-impl Frame {
-    #[inline(always)]
-    pub(super) fn at(around: &Around) -> Self {
-        let Around { a, b, apex, older, .. } = *around;
-        let (edge, spoke, last) = (b - a, apex - a, older - a);
-        let rim = apex - b;
-        let normal = cross(edge, spoke) + cross(spoke, last);
-        let squared = dot(normal, normal);
-        let sides = edge * edge + spoke * spoke + rim * rim;
-        Self {
-            normal,
-            inverse: if squared > 0.0 { 1.0 / squared } else { 0.0 },
-            sides: sum(sides) + 1.0,
-        }
-    }
-
-    /// The squares of what is along the surface, the mean of two axes, and across it.
-    #[inline(always)]
-    pub(super) fn squares(&self, way: Cells) -> [f32; 2] {
-        let along_normal = dot(way, self.normal);
-        let across = along_normal * along_normal * self.inverse;
-        [0.5 * (dot(way, way) - across), across]
     }
 }
 
 /// How much wider than the models say distances have been lately, and will be told by from the next vertex on.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Trend {
-    now: [f32; 2],
-    next: [f32; 2],
+pub(super) struct Trends {
+    now: [Vec4; 2],
+    next: [Vec4; 2],
 }
 
-impl Trend {
-    pub(super) fn new() -> Self {
-        Self { now: [1.0; 2], next: [1.0; 2] }
-    }
+/// Where a vertex of each lane is expected: a normal distribution that is taken axis by axis, each given those before.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Guesses {
+    mean: Four,
+    /// By turns: the axis closest to the normal is the last one, by then it is nearly certain.
+    turns: [[f32; LANES]; 3],
+    variances: [[f32; LANES]; 3],
+    /// What the second axis takes of the first; the third of both.
+    second: [f32; LANES],
+    third: [[f32; LANES]; 2],
+    last: [u8; LANES],
+    normal: Four,
+    /// One by the normal's squared length, or 0.
+    inverse: Vec4,
+    /// Along and across.
+    expected: [Vec4; 2],
 }
 
-/// What places are rounded by, a variance. Of .1 to .3, .15 takes the least.
-pub(super) const FLOOR: f32 = 0.15;
-/// How much a vertex counts for the trend: .08 and .125 take as much, .18 and .06 some thousandths more.
-const GAIN: f32 = 0.1;
+/// Of one lane.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Guess {
+    mean: [f32; 3],
+    variances: [f32; 3],
+    second: f32,
+    third: [f32; 2],
+    last: u8,
+}
 
 /// How much further pieces of a block are apart than corners of a face, in squares.
 const APART: f32 = 64.0;
 
-/// Where a vertex is expected, as a normal distribution that is taken axis by axis, each given those before.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Guess {
-    mean: Cells,
-    /// The one closest to the normal last: by then it is nearly certain.
-    axes: [usize; 3],
-    variances: [f32; 3],
-    /// What the second axis takes of the first; the third of both.
-    second: f32,
-    third: [f32; 2],
-    frame: Frame,
-    /// Along and across.
-    expected: [f32; 2],
+impl Trends {
+    pub(super) fn new() -> Self {
+        Self { now: [Vec4::ONE; 2], next: [Vec4::ONE; 2] }
+    }
+
+    /// By the gate of each lane, and where the lane's vertices are.
+    #[inline(always)]
+    pub(super) fn guess(
+        &self,
+        gates: &[Gate; LANES],
+        models: &Models,
+        at: impl Fn(usize, u16) -> Vec4,
+    ) -> Guesses {
+        let Around { corner, features: [f0, f1, f2, f3, f4], normal, sides } =
+            Around::new(gates, at);
+        let kinds = [gates[0].kind(), gates[1].kind(), gates[2].kind(), gates[3].kind()];
+        let row = |half: usize| {
+            let at = |lane: usize| models.gates[kinds[lane]][half];
+            Mat4::from_cols(at(0), at(1), at(2), at(3)).transpose()
+        };
+        let Mat4 { x_axis: w0, y_axis: w1, z_axis: w2, w_axis: w3 } = row(0);
+        let Mat4 { x_axis: w4, y_axis: along, z_axis: across, .. } = row(1);
+        let more = f0.each(|x| x * w0)
+            + f1.each(|x| x * w1)
+            + (f3.each(|x| x * w3) + f4.each(|x| x * w4))
+            + f2.each(|x| x * w2);
+        let floor = Vec4::splat(FLOOR);
+        let along = along * sides * self.now[0] + floor;
+        let across = least(across * sides * self.now[1] + floor, along);
+        Guesses::across(corner + more, normal, [along, across])
+    }
+
+    /// What the vertices of some lanes were: how far off they were counts for later ones.
+    #[inline(always)]
+    pub(super) fn tell(&mut self, guesses: &Guesses, places: [Vec4; LANES], which: BVec4A) {
+        let way = Four::new(places) - guesses.mean;
+        let height = way.dot(guesses.normal);
+        let across = height * height * guesses.inverse;
+        let squares = [0.5 * (way.dot(way) - across), across];
+        let next = self.next;
+        for k in 0..2 {
+            let beyond = (squares[k] + Vec4::splat(FLOOR)) / guesses.expected[k] - Vec4::ONE;
+            let beyond = least(beyond, Vec4::splat(3.0));
+            let value = next[k] + next[k] * beyond * GAIN;
+            let value = least(most(value, Vec4::splat(0.05)), Vec4::splat(20.0));
+            self.now[k] = Vec4::select(which, next[k], self.now[k]);
+            self.next[k] = Vec4::select(which, value, next[k]);
+        }
+    }
 }
 
-impl Guess {
-    /// Around a place, as far in all directions.
-    pub(super) fn around(mean: Cells, variance: f32) -> Self {
-        Self {
-            mean,
-            axes: [0, 1, 2],
-            variances: [variance; 3],
-            second: 0.0,
-            third: [0.0; 2],
-            frame: Frame { normal: Cells::ZERO, inverse: 0.0, sides: 1.0 },
-            expected: [variance; 2],
-        }
-    }
-
-    /// A corner of a face that stands alone, after others of the block.
-    pub(super) fn start(
-        vertex: u16,
-        gate: &Gate,
-        models: &Models,
-        at: impl Fn(u16) -> Cells,
-    ) -> Self {
-        match gate.faces_b {
-            0 => Self::around(at(vertex - 1), APART * models.start),
-            corner => Self::around(at(vertex - u16::from(corner)), models.start),
-        }
-    }
-
-    #[inline(always)]
-    pub(super) fn at(
-        gate: &Gate,
-        models: &Models,
-        trend: &Trend,
-        at: impl Fn(u16) -> Cells,
-    ) -> Self {
-        let kind = gate.kind();
-        let around = Around::new(gate, at);
-        let (corner, [f0, f1, f2, f3, f4]) = around.features();
-        let [w0, w1, w2, w3, w4] = models.weights[kind];
-        let mean = corner + ((f0 * w0 + f1 * w1) + (f3 * w3 + f4 * w4) + f2 * w2);
-        let frame = Frame::at(&around);
-        let [along, across] = models.spreads[kind];
-        let along = along * frame.sides * trend.now[0] + FLOOR;
-        let across = least(across * frame.sides * trend.now[1] + FLOOR, along);
-        Self::across(mean, frame, [along, across])
-    }
-
+impl Guesses {
     /// The covariance is `along` − (`along` − `across`) n nᵗ; each axis is conditioned on those before.
     #[inline(always)]
-    fn across(mean: Cells, frame: Frame, [along, across]: [f32; 2]) -> Self {
-        let axes = axes(frame.normal);
-        let normal = frame.normal.to_array();
-        let (u, v, w) = (normal[axes[0]], normal[axes[1]], normal[axes[2]]);
-        let inverse = frame.inverse;
+    fn across(mean: Four, normal: Four, [along, across]: [Vec4; 2]) -> Self {
+        let squared = normal.dot(normal);
+        let is_plane = squared.cmpgt(Vec4::ZERO);
+        let inverse = Vec4::select(is_plane, Vec4::ONE / squared, Vec4::ZERO);
+        let last = Last::of(normal);
+        let [u, v, w] = normal.turned(&last);
         let (uu, vv, ww) = (u * u * inverse, v * v * inverse, w * w * inverse);
-        let thin = if inverse > 0.0 { 1.0 - across / along } else { 0.0 };
-        let rest = 1.0 - thin * uu;
-        let by_rest = 1.0 / rest;
-        let by_last = 1.0 / (across + (along - across) * ww);
-        let last = (across - along) * by_last * inverse * w;
+        let thin = Vec4::select(is_plane, Vec4::ONE - across / along, Vec4::ZERO);
+        let rest = Vec4::ONE - thin * uu;
+        let by_rest = Vec4::ONE / rest;
+        let by_last = Vec4::ONE / (across + (along - across) * ww);
+        let second = (Vec4::ZERO - thin) * u * v * inverse * by_rest;
+        let third = (across - along) * by_last * inverse * w;
+        let variances = [
+            along * rest,
+            along * (Vec4::ONE - thin * (uu + vv)) * by_rest,
+            along * across * by_last,
+        ];
+        let axis = last.select(Vec4::ZERO, Vec4::ONE, Vec4::splat(2.0)).to_array();
         Self {
             mean,
-            axes,
-            variances: [
-                along * rest,
-                along * (1.0 - thin * (uu + vv)) * by_rest,
-                along * across * by_last,
-            ],
-            second: -thin * u * v * inverse * by_rest,
-            third: [last * u, last * v],
-            frame,
+            turns: mean.turned(&last).map(inside),
+            variances: variances.map(Vec4::into),
+            second: second.to_array(),
+            third: [(third * u).to_array(), (third * v).to_array()],
+            last: axis.map(|axis| axis as u8),
+            normal,
+            inverse,
             expected: [along, across],
         }
     }
 
-    /// The axis that is told first, second and third.
     #[inline(always)]
-    pub(super) fn axes(&self) -> [usize; 3] {
-        self.axes
-    }
-
-    /// The closest cell to where the first axis is expected, and the class of the width with the bits below.
-    #[inline(always)]
-    pub(super) fn first(&self) -> (i32, (usize, u32)) {
-        (nearest(self.mean[self.axes[0]]), class(self.variances[0]))
-    }
-
-    /// The second axis, by how far off the first one was.
-    #[inline(always)]
-    pub(super) fn second(&self, off: f32) -> (i32, (usize, u32)) {
-        (nearest(self.mean[self.axes[1]] + self.second * off), class(self.variances[1]))
-    }
-
-    /// The third axis, by how far off the two others were.
-    #[inline(always)]
-    pub(super) fn third(&self, off: [f32; 2]) -> (i32, (usize, u32)) {
-        let mean = self.mean[self.axes[2]] + (self.third[0] * off[0] + self.third[1] * off[1]);
-        (nearest(mean), class(self.variances[2]))
-    }
-
-    /// How far from the mean a coordinate is.
-    #[inline(always)]
-    pub(super) fn off(&self, axis: usize, coordinate: i32) -> f32 {
-        coordinate as f32 - self.mean[axis]
-    }
-
-    /// Tells the trend how far off it was.
-    #[inline(always)]
-    pub(super) fn tell(&self, place: Cells, trend: &mut Trend) {
-        let squares = self.frame.squares(place - self.mean);
-        let next = trend.next;
-        trend.now = next;
-        for k in 0..2 {
-            let beyond = least((squares[k] + FLOOR) / self.expected[k] - 1.0, 3.0);
-            let value = next[k] + next[k] * beyond * GAIN;
-            trend.next[k] = least(most(value, 0.05), 20.0);
+    pub(super) fn of(&self, lane: usize) -> Guess {
+        let [u, v, w] = &self.turns;
+        let [var_u, var_v, var_w] = &self.variances;
+        Guess {
+            mean: [u[lane], v[lane], w[lane]],
+            variances: [var_u[lane], var_v[lane], var_w[lane]],
+            second: self.second[lane],
+            third: [self.third[0][lane], self.third[1][lane]],
+            last: self.last[lane],
         }
     }
 }
 
-/// The two others in cyclic order, and the one of the greatest coordinate.
+/// Where there can be cells.
 #[inline(always)]
-fn axes(normal: Cells) -> [usize; 3] {
-    const CYCLES: [[usize; 3]; 3] = [[1, 2, 0], [2, 0, 1], [0, 1, 2]];
-    let normal = normal.abs();
-    let (x, y, z) = (normal.x, normal.y, normal.z);
-    let last = if x > z { usize::from(y > x) } else { 2 - usize::from(y > z) };
-    CYCLES[last]
+fn inside(mean: Vec4) -> [f32; LANES] {
+    least(most(mean, Vec4::ZERO), Vec4::splat(SPAN as f32)).to_array()
+}
+
+impl Guess {
+    /// A corner of a face that stands alone, after others of the block: as far in all directions.
+    pub(super) fn start(
+        vertex: u16,
+        gate: &Gate,
+        models: &Models,
+        at: impl Fn(u16) -> Vec4,
+    ) -> Self {
+        let (mean, variance) = match gate.faces_b {
+            0 => (at(vertex.saturating_sub(1)), APART * models.start),
+            corner => (at(vertex.saturating_sub(u16::from(corner))), models.start),
+        };
+        Self {
+            mean: [mean.x, mean.y, mean.z],
+            variances: [variance; 3],
+            second: 0.0,
+            third: [0.0; 2],
+            last: 2,
+        }
+    }
+
+    /// Takes the coordinates by turns from what gives one for the closest cell to where it is expected and the class of the
+    /// width with the bits below; gives the place.
+    #[inline(always)]
+    pub(super) fn take(&self, mut cell: impl FnMut(usize, i32, (usize, u32)) -> i32) -> Vec4 {
+        let [u, v, w] = self.mean;
+        let first = cell(0, nearest(u), class(self.variances[0])) as f32;
+        let off_u = first - u;
+        let second = nearest(v + self.second * off_u);
+        let second = cell(1, second, class(self.variances[1])) as f32;
+        let off_v = second - v;
+        let third = nearest(w + (self.third[0] * off_u + self.third[1] * off_v));
+        let third = cell(2, third, class(self.variances[2])) as f32;
+        // Looked up, since a branch would be guessed wrong wherever the surface turns.
+        const TURNS: [[u8; 3]; 4] = [[2, 0, 1], [1, 2, 0], [0, 1, 2], [0, 1, 2]];
+        let by_turn = [first, second, third, 0.0];
+        let [x, y, z] = TURNS[usize::from(self.last % 4)];
+        let by_turn = |turn: u8| by_turn[usize::from(turn % 4)];
+        Vec4::new(by_turn(x), by_turn(y), by_turn(z), 0.0)
+    }
+
+    /// The axis of each turn.
+    pub(super) fn axes(&self) -> [usize; 3] {
+        [[1, 2, 0], [2, 0, 1], [0, 1, 2]][usize::from(self.last)]
+    }
 }
 
 /// The class of a variance, and how many bits of a distance are below.
 #[inline(always)]
-pub(super) fn class(variance: f32) -> (usize, u32) {
+fn class(variance: f32) -> (usize, u32) {
     // Exponent and first bit of the mantissa are half octaves of the variance.
     const FIRST: i32 = (0.0625f32.to_bits() >> 22) as i32;
-    const WIDEST: i32 = CLASSES as i32 + 4 * 15 - 1;
-    let octaves = ((variance.to_bits() >> 22) as i32 - FIRST).clamp(0, WIDEST) as u32;
-    let low_bits = (octaves / 4).saturating_sub(CLASSES as u32 / 4 - 1);
-    ((octaves - 4 * low_bits) as usize % CLASSES, low_bits)
+    let octaves = ((variance.to_bits() >> 22) as i32 - FIRST).clamp(0, WIDEST as i32);
+    let (class, low_bits) = WIDTHS[octaves as usize % WIDTHS.len()];
+    (usize::from(class), u32::from(low_bits))
 }
 
-/// The closest cell that there can be.
+const WIDEST: usize = CLASSES + 4 * 15 - 1;
+/// Of each half octave.
+const WIDTHS: [(u8, u8); 128] = {
+    let mut widths = [(0, 0); 128];
+    let mut octaves = 0;
+    while octaves <= WIDEST {
+        let low_bits = (octaves / 4).saturating_sub(CLASSES / 4 - 1);
+        widths[octaves] = ((octaves - 4 * low_bits) as u8, low_bits as u8);
+        octaves += 1;
+    }
+    widths
+};
+
+/// The closest cell, where there can be one.
 #[inline(always)]
 fn nearest(x: f32) -> i32 {
     // Where floats are whole numbers.
     const WHOLE: f32 = 1.5 * (1 << 23) as f32;
-    let inside = least(most(x, 0.0), SPAN as f32);
-    (inside + WHOLE).to_bits() as i32 - WHOLE.to_bits() as i32
-}
-
-/// Without what `f32::min` does about numbers that are none.
-#[inline(always)]
-fn least(a: f32, b: f32) -> f32 {
-    if a < b { a } else { b }
+    let x = if x > 0.0 { x } else { 0.0 };
+    let x = if x < SPAN as f32 { x } else { SPAN as f32 };
+    (x + WHOLE).to_bits() as i32 - WHOLE.to_bits() as i32
 }
 
 #[inline(always)]
-fn most(a: f32, b: f32) -> f32 {
-    if a > b { a } else { b }
+fn least(a: Vec4, b: Vec4) -> Vec4 {
+    Vec4::select(a.cmplt(b), a, b)
 }
 
 #[inline(always)]
-fn sum(a: Cells) -> f32 {
-    a.x + a.y + a.z
-}
-
-#[inline(always)]
-pub(super) fn dot(a: Cells, b: Cells) -> f32 {
-    sum(a * b)
-}
-
-#[inline(always)]
-fn cross(a: Cells, b: Cells) -> Cells {
-    a.yzx() * b.zxy() - a.zxy() * b.yzx()
+fn most(a: Vec4, b: Vec4) -> Vec4 {
+    Vec4::select(a.cmpgt(b), a, b)
 }

@@ -193,6 +193,27 @@ fn on_a_lattice_shared_vertices_are_at_one_place() {
 }
 
 #[test]
+fn what_is_left_out_is_told() {
+    let left_out = |mesh: &Mesh| Transport::encode(mesh, &options(256)).unwrap().left_out;
+    assert_eq!(left_out(&tetrahedron()), []);
+    let mut mesh = seam_strip();
+    mesh.positions.push([0.0; 3]);
+    assert_eq!(left_out(&mesh), [LeftOut::Attributes, LeftOut::UnusedVertices]);
+}
+
+#[test]
+fn every_shape_has_a_table() {
+    for class in 0..models::CLASSES {
+        for code in 0..=u8::MAX {
+            let table = models::Distances::of(class, code);
+            assert!(table.symbol(models::FAR, 0, 0).is_some(), "{class} {code}");
+            let all = (0..models::SYMBOLS).filter_map(|symbol| table.symbol(symbol, 0, 0));
+            assert_eq!(all.map(|symbol| u32::from(symbol.size)).sum::<u32>(), 2048);
+        }
+    }
+}
+
+#[test]
 fn bad_input_is_refused_in_words() {
     let encode = |mesh: &Mesh, options| Transport::encode(mesh, &options).unwrap_err();
     let good = tetrahedron();

@@ -9,10 +9,10 @@ use super::fit::{fit, shapes};
 use super::grid::Grid;
 use super::join::{Joints, checksum, key};
 use super::models::Models;
-use super::predict::Cells;
+use super::predict::{Cells, LANES};
 use super::rans::{Symbol, encode};
 use super::walk::{Walk, Walker};
-use super::{Transport, TransportError, TransportOptions, TransportSizes, largest};
+use super::{LeftOut, Transport, TransportError, TransportOptions, TransportSizes, largest};
 
 /// Faces are numbered in 32 bits, and sides of faces too.
 const MOST: usize = 1 << 30;
@@ -21,7 +21,7 @@ impl Transport {
     /// The file of a mesh: positions rounded to a grid, faces as they are, turned so that each may begin at another
     /// corner.
     ///
-    /// Every vertex that a face uses is there, once; no other is, and nothing that hangs on faces. Cost: O(n).
+    /// Every vertex that a face uses is there, once; no other is, and nothing that hangs on faces: [`Transport::left_out`] tells. Cost: O(n).
     /// # Errors
     /// A mesh without faces or with positions that are none, and options that cannot be.
     pub fn encode(mesh: &Mesh, options: &TransportOptions) -> Result<Self, TransportError> {
@@ -36,8 +36,20 @@ impl Transport {
         }
         let (grid, cells) = Grid::of(mesh, options.grid)?;
         let walks = walks(&mesh.faces, &cells, options.block_faces);
-        Ok(write(grid, &cells, &walks, mesh.faces.len()))
+        let mut this = write(grid, &cells, &walks, mesh.faces.len());
+        this.left_out = left_out(mesh);
+        Ok(this)
     }
+}
+
+fn left_out(mesh: &Mesh) -> Vec<LeftOut> {
+    let is_left = [
+        (mesh.attributes.is_some(), LeftOut::Attributes),
+        (mesh.materials.is_some(), LeftOut::Materials),
+        (mesh.objects.is_some(), LeftOut::Objects),
+        (mesh.used_vertices().contains(&false), LeftOut::UnusedVertices),
+    ];
+    is_left.into_iter().filter(|(is_left, _)| *is_left).map(|(_, what)| what).collect()
 }
 
 /// All blocks of faces whose vertices are in such cells.
@@ -51,13 +63,9 @@ pub(super) fn walks(faces: &[[VertexId; 3]], cells: &[Cells], size: usize) -> Ve
 fn write(grid: Grid, cells: &[Cells], walks: &[Walk], faces: usize) -> Transport {
     let mut codes = fit(walks, cells);
     let models = Models::new(&codes);
-    let mut told = Vec::new();
-    let mut ends = Vec::with_capacity(walks.len());
-    for walk in walks {
-        tell(walk, cells, &models, &mut told);
-        ends.push(told.len());
-    }
-    codes.shapes = shapes(&told);
+    let told = walks.chunks(LANES).flat_map(|walks| tell(walks, cells, &models));
+    let told: Vec<_> = told.take(walks.len()).collect();
+    codes.shapes = shapes(told.iter().flatten());
     let models = Models::new(&codes);
     let first_bits = [0, 1, 2].map(|k| {
         let most = walks.iter().map(|walk| cells[walk.vertices[0] as usize][k] as u32).max();
@@ -66,14 +74,13 @@ fn write(grid: Grid, cells: &[Cells], walks: &[Walk], faces: usize) -> Transport
     let (tags, vertices) = tags(walks, cells);
     let mut payload = Vec::new();
     let mut entries = Vec::with_capacity(walks.len());
-    let (mut from, mut row) = (0, Vec::new());
+    let mut row = Vec::new();
     let mut bits = Bits::default();
-    for ((walk, &end), tags) in walks.iter().zip(&ends).zip(&tags) {
+    for ((walk, told), tags) in walks.iter().zip(&told).zip(&tags) {
         row.clear();
         let first = cells[walk.vertices[0] as usize];
-        let parts = symbols(walk, (first, first_bits), tags, &told[from..end], &models, &mut row);
+        let parts = symbols(walk, (first, first_bits), tags, told, &models, &mut row);
         bits.add(&row, parts);
-        from = end;
         let start = payload.len();
         let sum = checksum(walk.vertices.iter().map(|&v| cells[v as usize]));
         encode(&row, sum, &mut payload);
@@ -88,7 +95,7 @@ fn write(grid: Grid, cells: &[Cells], walks: &[Walk], faces: usize) -> Transport
     let connectivity = bits.connectivity / 8.0;
     let headers = bytes.len() as f64 - positions - connectivity;
     let sizes = TransportSizes { positions, connectivity, headers };
-    Transport { bytes, blocks: walks.len(), sizes }
+    Transport { bytes, blocks: walks.len(), sizes, left_out: Vec::new() }
 }
 
 /// How many bits symbols take.

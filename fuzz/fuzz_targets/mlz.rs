@@ -1,0 +1,26 @@
+#![no_main]
+
+use meshlod_codec::{Malformed, TransportFile};
+
+libfuzzer_sys::fuzz_target!(init: meshlod_fuzz::plant("mlz"), |bytes: &[u8]| {
+    // A mutation with the right checksums is what gets past the door.
+    let mut bytes = bytes.to_vec();
+    TransportFile::seal(&mut bytes);
+    let _ = decode(&bytes);
+});
+
+/// Each block by itself, and all.
+fn decode(bytes: &[u8]) -> Result<(), Malformed> {
+    let file = TransportFile::open(bytes)?;
+    for block in 0..file.blocks() {
+        if let Ok(block) = file.block(block) {
+            let is_there = |&v: &u32| (v as usize) < block.positions.len();
+            assert!(block.faces.iter().flatten().all(is_there));
+        }
+    }
+    let (mut positions, mut faces) = (Vec::new(), Vec::new());
+    file.decode_into(&mut positions, &mut faces)?;
+    assert!(positions.iter().flatten().all(|x| x.is_finite()));
+    meshlod_fuzz::accept(&file.decode()?);
+    Ok(())
+}
