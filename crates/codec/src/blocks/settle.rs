@@ -146,19 +146,20 @@ impl Settled {
 
     fn mend_one(&mut self, surface: &Surface, grid: &Grid, v: usize, most: f64) -> f64 {
         let at = grid.at(surface.places[v]);
-        let range =
-            |k: usize| grid.within(k, at[k].floor() - 1.0)..=grid.within(k, at[k].floor() + 2.0);
+        // The closest first: any that is near enough will do.
+        let range = |k: usize| [0.0, 1.0, -1.0, 2.0].map(|by| grid.within(k, at[k].floor() + by));
         let cost = |moved: &[DVec3]| (flips(surface, v, moved), surface.apart(v, moved, most));
         let mut best = (cost(&self.moved), self.cells[v], self.moved[v]);
-        for a in range(0) {
-            for b in range(1) {
-                for c in range(2) {
-                    self.moved[v] = grid.place([a, b, c]) - surface.places[v];
-                    let cost = cost(&self.moved);
-                    if cost < best.0 {
-                        best = (cost, [a, b, c], self.moved[v]);
-                    }
-                }
+        let [across, along, beside] = [2, 1, 0].map(range);
+        let cells = across.iter().flat_map(|&c| along.iter().map(move |&b| (b, c)));
+        for cell in cells.flat_map(|(b, c)| beside.iter().map(move |&a| [a, b, c])) {
+            self.moved[v] = grid.place(cell) - surface.places[v];
+            let cost = cost(&self.moved);
+            if cost < best.0 {
+                best = (cost, cell, self.moved[v]);
+            }
+            if best.0 == (0, 0.0) {
+                break;
             }
         }
         (self.cells[v], self.moved[v]) = (best.1, best.2);

@@ -105,16 +105,20 @@ impl Surface {
         face.is_flipped(face.corners.map(|v| self.places[v as usize] + moved[v as usize]))
     }
 
-    /// How far a vertex is from the faces around it, or points of its faces and sides, they or these moved: the greatest.
-    /// If that is more than `enough`, faces around its neighbours are looked at as well.
+    /// How far a vertex is from the faces around it, or points of its faces and sides, they or these moved: the greatest,
+    /// if it is more than `enough`, and else nothing. Faces around its neighbours are looked at where it seems more.
     pub(super) fn apart(&self, vertex: usize, moved: &[DVec3], enough: f64) -> f64 {
-        let apart = self.apart_from(self.around(vertex), vertex, moved);
+        if self.around(vertex).next().is_none() {
+            // Of faces without an area.
+            return moved[vertex].length();
+        }
+        let apart = self.apart_from(self.around(vertex), vertex, moved, enough);
         if apart <= enough {
-            return apart;
+            return 0.0;
         }
         let corners = self.around(vertex).flat_map(|face| face.corners);
         let wide = corners.flat_map(|corner| self.around(corner as usize));
-        self.apart_from(wide, vertex, moved).min(moved[vertex].length().max(apart))
+        self.apart_from(wide, vertex, moved, enough)
     }
 
     fn apart_from<'f>(
@@ -122,27 +126,28 @@ impl Surface {
         faces: impl Iterator<Item = &'f Face> + Clone,
         vertex: usize,
         moved: &[DVec3],
+        enough: f64,
     ) -> f64 {
-        let nearer =
-            |nearest: f64, p: DVec3, corners| nearest.min(p.distance_squared(closest(p, corners)));
+        let least = enough * enough;
         let v = vertex as u32;
-        let middles = self.around(vertex).flat_map(|face| {
-            let after = face.after(v);
-            [[v, after, v], [after, v, after], face.corners]
+        // Quarters of its sides, and places in its faces.
+        let points = self.around(vertex).flat_map(|face| {
+            let (a, b) = (face.after(v), face.after(face.after(v)));
+            [[v, v, v, a], [v, v, a, a], [v, a, a, a], [v, v, a, b], [v, a, a, b], [v, a, b, b]]
         });
-        let apart = |of: [u32; 3]| {
-            let was = of.iter().map(|&v| self.places[v as usize]).sum::<DVec3>() / 3.0;
-            let is = was + of.iter().map(|&v| moved[v as usize]).sum::<DVec3>() / 3.0;
-            let (mut to_was, mut to_is) = (f64::INFINITY, f64::INFINITY);
-            for face in faces.clone() {
-                to_was = nearer(to_was, is, face.corners.map(|v| self.places[v as usize]));
-                let corners = face.corners.map(|v| self.places[v as usize] + moved[v as usize]);
-                to_is = nearer(to_is, was, corners);
+        let apart = |of: [u32; 4]| {
+            let was = of.iter().map(|&v| self.places[v as usize]).sum::<DVec3>() * 0.25;
+            let by = of.iter().map(|&v| moved[v as usize]).sum::<DVec3>() * 0.25;
+            // Wherever the faces are, it is no farther from where it was.
+            if by.length_squared() <= least {
+                return 0.0;
             }
-            to_was.max(to_is)
+            let is = |v: u32| self.places[v as usize] + moved[v as usize];
+            let to_was = faces.clone().map(|face| face.corners.map(|v| self.places[v as usize]));
+            let to_is = faces.clone().map(|face| face.corners.map(is));
+            nearest(was + by, to_was, least).max(nearest(was, to_is, least))
         };
-        let apart = middles.chain([[v; 3]]).map(apart).fold(0.0, f64::max);
-        if apart.is_finite() { apart.sqrt() } else { moved[vertex].length() }
+        points.chain([[v; 4]]).map(apart).fold(0.0, f64::max).sqrt()
     }
 
     /// Whether a vertex is surely about as near to the faces around it as that: all of them moved no farther, or they
@@ -232,6 +237,18 @@ fn rims(faces: &[Face], places: &[DVec3]) -> HashMap<u32, DMat3> {
 /// The square of a vector, as a matrix.
 pub(super) fn outer(v: DVec3) -> DMat3 {
     DMat3::from_cols(v * v.x, v * v.y, v * v.z)
+}
+
+/// The square of the distance to the nearest of some triangles, or to one that is near enough.
+fn nearest(p: DVec3, triangles: impl Iterator<Item = [DVec3; 3]>, enough: f64) -> f64 {
+    let mut nearest = f64::INFINITY;
+    for corners in triangles {
+        nearest = nearest.min(p.distance_squared(closest(p, corners)));
+        if nearest <= enough {
+            break;
+        }
+    }
+    nearest
 }
 
 /// The point of a triangle closest to another.
