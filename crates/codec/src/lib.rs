@@ -12,16 +12,21 @@
 //!
 //! A [`Transport`] is a mesh to be sent or stored, entropy coded, in blocks that a [`TransportFile`] decodes one by one.
 //!
+//! [`compress`] makes a whole mesh of one of them: with its faces in patches and its attributes by the same blocks, any
+//! piece decoded alone. That is the file `.mlq`; [`Transport`] makes `.mlz`, smaller, to be sent.
+//!
 //! ```
-//! use meshlod_codec::{Cells, Parting};
+//! use meshlod_codec::{AttributeBounds, Compressed, Scheme, Target, compress};
 //! use meshlod_mesh::sample;
 //!
 //! let mesh = sample::sphere(5000);
-//! let parts = Parting::new(&mesh)?.within_reduction(0.7, Cells::Centred)?;
-//! assert!(parts.reduction() >= 0.7);
-//! let decoded = parts.decode();
+//! let bounds = AttributeBounds::default();
+//! let done = compress(&mesh, Scheme::Blocks, Target::Bits(11), &bounds)?;
+//! assert!(done.compressed.reduction() > 0.75);
+//! let bytes = done.compressed.to_bytes();
+//! let decoded = Compressed::from_bytes(&bytes)?.decode()?;
 //! assert_eq!(decoded.faces.len(), mesh.faces.len());
-//! # Ok::<(), meshlod_codec::PartsError>(())
+//! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 #![forbid(unsafe_code)]
 

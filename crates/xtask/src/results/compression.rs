@@ -2,6 +2,7 @@
 
 mod global;
 mod rates;
+mod sent;
 
 use anyhow::{Context, Result};
 use meshlod::Mesh;
@@ -44,9 +45,10 @@ pub fn section(project: &Project) -> Result<String> {
     Ok(format!(
         "Distances are means of both ways (Metro's), 200,000 samples each, in parts of those of cubic cells for the whole \
          mesh, 2047 along the longest side. Sizes are all that decoding needs. Drawn in docs/notes/compression.md. Again: \
-         `cargo xtask results compression`.\n\n{}{}",
+         `cargo xtask results compression`.\n\n{}{}{}",
         of_paper()?,
-        schemes()?
+        schemes()?,
+        sent::table()?
     ))
 }
 
