@@ -136,7 +136,7 @@ impl VertexBlocks {
     /// # Panics
     /// A place that there is not.
     pub fn cell(&self, at: usize) -> [u32; 3] {
-        assert!(at < self.vertices.len(), "there are {} vertices", self.vertices.len());
+        assert!(at < self.layout.vertices, "there are {} vertices", self.layout.vertices);
         let shape = self.layout.shape(&self.bits, at / BLOCK);
         self.number(&shape, self.layout.start(&self.bits, at / BLOCK), at % BLOCK)
     }
@@ -153,13 +153,13 @@ impl VertexBlocks {
 
     /// Where all vertices are.
     pub fn positions(&self) -> Vec<[f64; 3]> {
-        let mut positions = Vec::with_capacity(self.vertices.len());
+        let mut positions = Vec::with_capacity(self.layout.vertices);
         for block in 0..self.blocks() {
             let shape = self.layout.shape(&self.bits, block);
             let (sides, first) = self.cells(&shape, block);
             let start = self.layout.start(&self.bits, block);
             let place = |at| placed(&sides, first, self.number(&shape, start, at));
-            positions.extend((0..BLOCK.min(self.vertices.len() - block * BLOCK)).map(place));
+            positions.extend((0..BLOCK.min(self.layout.vertices - block * BLOCK)).map(place));
         }
         positions
     }
@@ -171,10 +171,20 @@ impl VertexBlocks {
 
     /// How much less that is than three `f32` for each vertex, as a part; nothing of nothing.
     pub fn reduction(&self) -> f64 {
-        match self.vertices.len() {
+        match self.layout.vertices {
             0 => 0.0,
             count => 1.0 - self.bytes() as f64 / (12 * count) as f64,
         }
+    }
+
+    /// How many vertices there are.
+    pub(crate) fn len(&self) -> usize {
+        self.layout.vertices
+    }
+
+    /// Without knowing which vertex of the mesh is which, as from a file.
+    pub(crate) fn forgetful(self) -> Self {
+        Self { vertices: Vec::new(), ..self }
     }
 
     /// Puts all but [`VertexBlocks::vertices`] behind other bytes.
@@ -182,11 +192,10 @@ impl VertexBlocks {
         self.layout.store(&self.bits, out);
     }
 
-    /// What was stored: each vertex is the one of its place.
+    /// What was stored: it does not say which vertex is which.
     pub(crate) fn restore(reader: &mut Reader) -> Result<Self, Malformed> {
         let (layout, bits) = Layout::restore(reader)?;
-        let vertices = (0..layout.vertices as u32).map(VertexId).collect();
-        Ok(Self { layout, bits, vertices })
+        Ok(Self { layout, bits, vertices: Vec::new() })
     }
 
     /// The sides of a block's cells, and the middle of the first.

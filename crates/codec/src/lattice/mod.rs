@@ -142,7 +142,7 @@ impl LatticeBlocks {
     /// # Panics
     /// A place that there is not.
     pub fn position(&self, at: usize) -> [f64; 3] {
-        assert!(at < self.vertices.len(), "there are {} vertices", self.vertices.len());
+        assert!(at < self.layout.vertices, "there are {} vertices", self.layout.vertices);
         self.place(self.layout.cell(at))
     }
 
@@ -158,10 +158,20 @@ impl LatticeBlocks {
 
     /// How much less that is than three `f32` for each vertex, as a part; nothing of nothing.
     pub fn reduction(&self) -> f64 {
-        match self.vertices.len() {
+        match self.layout.vertices {
             0 => 0.0,
             count => 1.0 - self.bytes() as f64 / (12 * count) as f64,
         }
+    }
+
+    /// How many vertices there are.
+    pub(crate) fn len(&self) -> usize {
+        self.layout.vertices
+    }
+
+    /// Without knowing which vertex of the mesh is which, as from a file.
+    pub(crate) fn forgetful(self) -> Self {
+        Self { vertices: Vec::new(), ..self }
     }
 
     /// Puts all but [`LatticeBlocks::vertices`] behind other bytes.
@@ -171,7 +181,7 @@ impl LatticeBlocks {
         self.layout.store(out);
     }
 
-    /// What was stored: each vertex is the one of its place.
+    /// What was stored: it does not say which vertex is which.
     pub(crate) fn restore(reader: &mut Reader) -> Result<Self, Malformed> {
         let lattice = Lattice::new(reader.i32()?).map_err(|why| reader.wrong(why.to_string()))?;
         let first = [reader.u64()?, reader.u64()?, reader.u64()?].map(u64::cast_signed);
@@ -179,8 +189,7 @@ impl LatticeBlocks {
             return Err(reader.wrong("the first cell is too far away"));
         }
         let layout = Layout::restore(reader)?;
-        let vertices = (0..layout.vertices as u32).map(VertexId).collect();
-        Ok(Self { lattice, first, layout, vertices })
+        Ok(Self { lattice, first, layout, vertices: Vec::new() })
     }
 
     fn place(&self, cell: [i64; 3]) -> [f64; 3] {

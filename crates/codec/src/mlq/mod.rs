@@ -124,7 +124,7 @@ impl Compressed {
     ) -> Result<Compression, CompressError> {
         Self::of_blocks(mesh, bounds, |ordered| {
             let blocks = LatticeBlocks::of_blocks(&mesh.positions, ordered, lattice)?;
-            Ok(Positions::Lattice(blocks))
+            Ok(Positions::Lattice(blocks.forgetful()))
         })
     }
 
@@ -140,7 +140,7 @@ impl Compressed {
     ) -> Result<Compression, CompressError> {
         Self::of_blocks(mesh, bounds, |ordered| {
             let (blocks, _) = VertexBlocks::of_blocks(mesh, ordered, closeness)?;
-            Ok(Positions::Blocks(blocks))
+            Ok(Positions::Blocks(blocks.forgetful()))
         })
     }
 

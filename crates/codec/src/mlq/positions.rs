@@ -35,8 +35,8 @@ impl Positions {
     pub(super) fn len(&self) -> usize {
         match self {
             Self::Parts(parts) => parts.rows().nodes(),
-            Self::Lattice(blocks) => blocks.vertices().len(),
-            Self::Blocks(blocks) => blocks.vertices().len(),
+            Self::Lattice(blocks) => blocks.len(),
+            Self::Blocks(blocks) => blocks.len(),
         }
     }
 

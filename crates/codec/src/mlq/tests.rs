@@ -83,7 +83,7 @@ fn every_scheme_gives_the_mesh_back_from_bytes() {
             let bytes = compressed.to_bytes();
             assert_eq!(bytes.len(), compressed.sizes().total);
             let read = Compressed::from_bytes(&bytes).unwrap();
-            assert!(read.to_bytes() == bytes && read.sizes() == compressed.sizes());
+            assert!(read == compressed && read.sizes() == compressed.sizes());
             let decoded = compressed.decode().unwrap();
             assert!(read.decode().unwrap() == decoded);
             decoded.validate().unwrap();
