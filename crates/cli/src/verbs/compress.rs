@@ -264,6 +264,11 @@ fn layer_json(layer: &LayerReport) -> Value {
 /// What a file of one surface leaves out of a mesh.
 fn left_out(mesh: &Mesh, faces_there: usize) -> Vec<String> {
     let mut left_out = Vec::new();
+    let alone = mesh.used_vertices().iter().filter(|&&used| !used).count();
+    if alone > 0 {
+        let some = if alone == 1 { "vertex" } else { "vertices" };
+        left_out.push(format!("left out: {} {some} without faces", count(alone)));
+    }
     let odd = mesh.faces.len() - faces_there;
     if odd > 0 {
         left_out.push(format!("left out: {} that repeat a corner", faces(odd)));
