@@ -6,6 +6,8 @@
 //! x'Sx − 2q·x + h'Sh, and the volume stays where g·x = (N₁ − N₀)·h. Faces that both stars have
 //! contain h; they count twice in S and g and nowhere else.
 
+use glam::Vec3;
+
 use crate::fast::lanes::{LANES, Lanes, Lanes3};
 use crate::fast::queue::{NONE, bucket};
 use crate::fast::vertex::{Flags, NOBODY, Vertex};
@@ -40,8 +42,10 @@ pub(super) fn cheapest(all: &[Vertex], u: &Vertex, ring: &[u32]) -> Cheapest {
         for (lane, &v) in part.iter().enumerate() {
             let v = &all[v as usize];
             special |= v.flags.0;
+            ends[0][lane] = v.place.x;
+            ends[1][lane] = v.place.y;
+            ends[2][lane] = v.place.z;
             for k in 0..3 {
-                ends[k][lane] = v.place[k];
                 ends[3 + k][lane] = v.star.normal[k];
             }
             for k in 0..6 {
@@ -82,8 +86,8 @@ fn correct(costs: &mut [f32; LANES], all: &[Vertex], u: &Vertex, ring: &[u32]) {
 }
 
 /// What a vertex's own star costs if it goes to a place.
-pub(super) fn swept(vertex: &Vertex, to: [f32; 3]) -> f32 {
-    let [x, y, z] = [0, 1, 2].map(|k| to[k] - vertex.place[k]);
+fn swept(vertex: &Vertex, to: Vec3) -> f32 {
+    let Vec3 { x, y, z } = to - vertex.place;
     let [xx, yy, zz, xy, xz, yz] = vertex.star.squares;
     let squares = xx * x * x + yy * y * y + zz * z * z;
     squares
@@ -115,7 +119,7 @@ fn costs(u: &Vertex, ends: &[[f32; LANES]; 12]) -> Lanes {
     let vector =
         |k: usize| Lanes3 { x: Lanes(ends[k]), y: Lanes(ends[k + 1]), z: Lanes(ends[k + 2]) };
     let h = (vector(0) - Lanes3::all(u.place)).by(own(0.5));
-    let (n0, n1) = (Lanes3::all(u.star.normal), vector(3));
+    let (n0, n1) = (Lanes3::all(u.star.normal.into()), vector(3));
     let mut sum = Symmetric([own(0.0); 6]);
     let mut difference = sum;
     for k in 0..6 {

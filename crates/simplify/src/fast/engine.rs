@@ -4,7 +4,7 @@
 //! contractions around it change is seen when the entry comes up: the edge is costed again by the
 //! contraction itself, and goes through if it costs at most [`SLACK`] buckets more.
 
-use glam::DVec3;
+use glam::Vec3;
 
 use crate::fast::cost::{Cheapest, SHORT_FIRST, cheapest};
 use crate::fast::hood::Hood;
@@ -125,7 +125,7 @@ impl Engine {
         let Self { vertices, hood, .. } = self;
         let refused = |refusal| Not::Refused(refusal, front);
         hood.gather(vertices, v0, v1).map_err(refused)?;
-        let [end0, end1] = [v0, v1].map(|v| vertices.get(v));
+        let (end0, end1) = (vertices.get(v0), vertices.get(v1));
         let swept = swept(hood, end0, end1);
         let free = !end0.flags.any(Flags::PINNED);
         let best = if free { swept.best() } else { -swept.half };
@@ -150,10 +150,8 @@ impl Engine {
         }
         // The place as it will be read back, so that normals are those of the faces as they are.
         let from = end0.place;
-        let offset = best + swept.half;
-        let place =
-            if free { [0, 1, 2].map(|k| (f64::from(from[k]) + offset[k]) as f32) } else { from };
-        hood.put([0, 1, 2].map(|k| place[k] - from[k])).map_err(refused)?;
+        let place = if free { (from.as_dvec3() + best + swept.half).as_vec3() } else { from };
+        hood.put(place - from).map_err(refused)?;
         self.error = self.error.max(moved);
         self.carry_out(v0, v1, place, moved as f32, front);
         Ok(v0)
@@ -161,7 +159,7 @@ impl Engine {
 
     /// Writes a contraction that may be.
     #[inline(always)]
-    fn carry_out(&mut self, v0: u32, v1: u32, place: [f32; 3], moved: f32, front: u16) {
+    fn carry_out(&mut self, v0: u32, v1: u32, place: Vec3, moved: f32, front: u16) {
         let Self { vertices, hood, queue, .. } = self;
         self.live_faces -= [0, hood.of_v0].iter().filter(|&&wing| hood.ghost != Some(wing)).count();
         let mut star = hood.star();
@@ -194,7 +192,7 @@ impl Engine {
         let gone = vertices.get_mut(v1);
         gone.flags.set(Flags::DEAD);
         gone.target = v0;
-        vertices.set_ring(v0, hood.ids());
+        vertices.set_ring_of(v0, &hood.ids, hood.len);
         let kept = vertices.get_mut(v0);
         if place != kept.place {
             kept.flags.set(Flags::MOVED);
@@ -220,8 +218,7 @@ fn wake(vertex: &mut Vertex, id: u32, queue: &mut Queue, front: u16) {
 /// What the contraction of a gathered edge sweeps.
 #[inline(always)]
 fn swept(hood: &Hood, end0: &Vertex, end1: &Vertex) -> Swept {
-    let double = |v: [f32; 3]| DVec3::from(v.map(f64::from));
-    let half = double(hood.along) * 0.5;
+    let half = hood.along.as_dvec3() * 0.5;
     let (a0, a1) = (matrix(&end0.star.squares), matrix(&end1.star.squares));
     let mut sum = a0 + a1;
     let dying = hood.dying();
@@ -232,33 +229,26 @@ fn swept(hood: &Hood, end0: &Vertex, end1: &Vertex) -> Swept {
         };
         sum -= matrix(&twice.squares);
     }
-    let [n0, n1] = hood.sums().map(double);
+    let [n0, n1] = hood.sums();
+    let (n0, n1) = (n0.as_dvec3(), n1.as_dvec3());
     Swept {
         half,
         sum,
         slope: (a1 - a0) * half,
         at_middle: half.dot((a0 + a1) * half),
-        normal: n0 + n1 + double(dying[0]) + double(dying[1]),
+        normal: n0 + n1 + dying[0].as_dvec3() + dying[1].as_dvec3(),
         level: (n1 - n0).dot(half),
     }
 }
 
 /// Brings the boundary's part of the stars up to date; gives that of the new vertex.
 #[cold]
-fn renew_boundary(
-    vertices: &mut Vertices,
-    hood: &Hood,
-    [v0, v1]: [u32; 2],
-    place: [f32; 3],
-) -> Star {
+fn renew_boundary(vertices: &mut Vertices, hood: &Hood, [v0, v1]: [u32; 2], place: Vec3) -> Star {
     let mut sum = Star::default();
-    let ends = [v0, v1].map(|v| vertices.get(v).place);
+    let ends = [vertices.get(v0).place, vertices.get(v1).place];
     for (i, of_v1) in hood.boundary() {
         let vertex = vertices.get_mut(hood.ids[i]);
-        let edge = |apex: [f32; 3]| {
-            let along = [0, 1, 2].map(|k| vertex.place[k] - apex[k]);
-            Star::boundary(along, BOUNDARY_WEIGHT)
-        };
+        let edge = |apex: Vec3| Star::boundary(vertex.place - apex, BOUNDARY_WEIGHT);
         let (old, new) = (edge(ends[usize::from(of_v1)]), edge(place));
         vertex.star.add(&new.minus(&old));
         sum.add(&new);

@@ -1,8 +1,9 @@
 //! From faces to rings. Around a vertex where the surface is manifold, the faces are one fan, closed or
 //! open; an open one is closed by the ghost.
 
+use glam::Vec3;
+
 use crate::fast::engine::BOUNDARY_WEIGHT;
-use crate::fast::hood::cross;
 use crate::fast::ring::{LONG, RING, Vertices};
 use crate::fast::vertex::{Flags, Star, Vertex};
 
@@ -24,7 +25,7 @@ pub(super) type Pair = [u32; 2];
 impl Fans {
     /// Rings of `places` and the ghost behind the first `own` of them; what follows it is copies.
     pub(super) fn new(
-        places: impl ExactSizeIterator<Item = [f32; 3]>,
+        places: impl ExactSizeIterator<Item = Vec3>,
         copied: Vec<u32>,
         faces: impl Iterator<Item = [u32; 3]>,
     ) -> Self {
@@ -46,9 +47,8 @@ impl Fans {
                 continue;
             }
             count += 1;
-            let [p, q, r] = [a, b, c].map(|v| all[v as usize].place);
-            let side = |to: [f32; 3]| [0, 1, 2].map(|k| to[k] - p[k]);
-            let star = Star::face(cross(side(q), side(r)));
+            let place = |v: u32| all[v as usize].place;
+            let star = Star::face((place(b) - place(a)).cross(place(c) - place(a)));
             for (v, pair) in [(a, [b, c]), (b, [c, a]), (c, [a, b])] {
                 let vertex = &mut all[v as usize];
                 vertex.star.add(&star);
@@ -98,7 +98,9 @@ impl Fans {
         match chain(pairs) {
             Some(Chain::Closed) => {
                 let vertex = self.vertices.get_mut(v);
-                vertex.ring.iter_mut().zip(&*pairs).for_each(|(w, pair)| *w = pair[0]);
+                for (w, pair) in vertex.ring.iter_mut().zip(&*pairs) {
+                    *w = pair[0];
+                }
             }
             Some(Chain::Open) => self.open(v, pairs),
             None => self.irregular(v),
@@ -131,14 +133,14 @@ impl Fans {
         let place = self.vertices.get(v).place;
         for end in [first, last] {
             let end = self.vertices.get(end).place;
-            let edge = Star::boundary([0, 1, 2].map(|k| end[k] - place[k]), BOUNDARY_WEIGHT);
+            let edge = Star::boundary(end - place, BOUNDARY_WEIGHT);
             self.vertices.get_mut(v).star.add(&edge);
         }
     }
 }
 
 fn ghost_vertex() -> Vertex {
-    let mut ghost = Vertex::at([0.0; 3]);
+    let mut ghost = Vertex::at(Vec3::ZERO);
     ghost.flags.set(Flags::BARRED);
     ghost
 }

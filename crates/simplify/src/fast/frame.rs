@@ -2,7 +2,7 @@
 //!
 //! Costs go with the sixth power of a length. A scan in metres would have them run out of floats.
 
-use glam::DVec3;
+use glam::{DVec3, Vec3};
 use meshlod_mesh::Mesh;
 
 /// From model units to the engine's and back.
@@ -24,13 +24,13 @@ impl Frame {
 
     /// A place in it.
     #[inline]
-    pub(super) fn enter(&self, position: [f64; 3]) -> [f32; 3] {
-        ((DVec3::from(position) - self.center) / self.unit).as_vec3().to_array()
+    pub(super) fn enter(&self, position: [f64; 3]) -> Vec3 {
+        ((DVec3::from(position) - self.center) / self.unit).as_vec3()
     }
 
     /// A position out of it.
     #[inline]
-    pub(super) fn leave(&self, place: [f32; 3]) -> [f64; 3] {
-        (DVec3::from(place.map(f64::from)) * self.unit + self.center).to_array()
+    pub(super) fn leave(&self, place: Vec3) -> [f64; 3] {
+        (place.as_dvec3() * self.unit + self.center).to_array()
     }
 }

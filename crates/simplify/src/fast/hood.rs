@@ -8,6 +8,8 @@
 //!        xk = ids[of_v0]
 //! ```
 
+use glam::Vec3;
+
 use crate::fast::lanes::{LANES, Lanes, Lanes3};
 use crate::fast::ring::{MOST, Vertices, place_in};
 use crate::fast::vertex::{Flags, Star};
@@ -30,7 +32,7 @@ pub(super) struct Hood {
     /// The ghost's place in the ring.
     pub(super) ghost: Option<usize>,
     /// v1 as seen from v0.
-    pub(super) along: [f32; 3],
+    pub(super) along: Vec3,
     /// The ring as seen from v0.
     ring: [[f32; ROOM]; 3],
     /// One where a spoke is v1's.
@@ -49,7 +51,7 @@ impl Hood {
             len: 0,
             of_v0: 0,
             ghost: None,
-            along: [0.0; 3],
+            along: Vec3::ZERO,
             ring: empty,
             of_v1: [0.0; ROOM],
             old: empty,
@@ -145,14 +147,12 @@ impl Hood {
     #[inline(always)]
     fn see(&mut self, vertices: &Vertices, v0: u32, v1: u32) {
         let (from, to) = (vertices.get(v0).place, vertices.get(v1).place);
-        self.along = [0, 1, 2].map(|k| to[k] - from[k]);
+        self.along = to - from;
         self.ghost = None;
-        for i in 0..self.len {
-            let w = self.ids[i];
-            let place = vertices.get(w).place;
-            for k in 0..3 {
-                self.ring[k][i] = place[k] - from[k];
-            }
+        let [x, y, z] = &mut self.ring;
+        for (i, &w) in self.ids[..self.len].iter().enumerate() {
+            let seen = vertices.get(w).place - from;
+            (x[i], y[i], z[i]) = (seen.x, seen.y, seen.z);
             self.of_v1[i] = if i < self.of_v0 { 0.0 } else { 1.0 };
             if w == vertices.ghost {
                 self.ghost = Some(i);
@@ -160,9 +160,8 @@ impl Hood {
         }
         // The ring closes; the lanes beyond are faces of one point.
         for i in self.len..=self.len.next_multiple_of(LANES) {
-            for k in 0..3 {
-                self.ring[k][i] = self.ring[k][0];
-            }
+            let [x, y, z] = &mut self.ring;
+            (x[i], y[i], z[i]) = (x[0], y[0], z[0]);
             self.of_v1[i] = 0.0;
         }
         for start in (0..self.len).step_by(LANES) {
@@ -184,7 +183,7 @@ impl Hood {
     /// Puts the new vertex at `place`, as seen from v0. Whether no face turns over, or by more than a
     /// limit, or loses its area.
     #[inline(always)]
-    pub(super) fn put(&mut self, place: [f32; 3]) -> Result<(), Refusal> {
+    pub(super) fn put(&mut self, place: Vec3) -> Result<(), Refusal> {
         let apex = Lanes3::all(place);
         for start in (0..self.len).step_by(LANES) {
             let new = self.normal(start, apex);
@@ -208,19 +207,21 @@ impl Hood {
 
     /// The dying faces' normals, in the order of the wings they have.
     #[inline(always)]
-    pub(super) fn dying(&self) -> [[f32; 3]; 2] {
-        let d = self.along;
-        let wing = |i: usize| [0, 1, 2].map(|k| self.ring[k][i]);
-        let (first, last) = (cross(d, wing(0)), cross(wing(self.of_v0), d));
-        [(0, first), (self.of_v0, last)]
-            .map(|(i, normal)| if self.ghost == Some(i) { [0.0; 3] } else { normal })
+    pub(super) fn dying(&self) -> [Vec3; 2] {
+        let [mut first, mut last] = [Vec3::ZERO; 2];
+        if self.ghost != Some(0) {
+            first = self.along.cross(self.seen(0));
+        }
+        if self.ghost != Some(self.of_v0) {
+            last = self.seen(self.of_v0).cross(self.along);
+        }
+        [first, last]
     }
 
-    /// The spokes' new normals less their old ones, and of the squares likewise.
+    /// A spoke's new normal less its old one, and of the squares likewise.
     #[inline(always)]
     pub(super) fn change(&self, i: usize) -> Star {
-        let at = |n: &[[f32; ROOM]; 3]| Star::face([n[0][i], n[1][i], n[2][i]]);
-        at(&self.new).minus(&at(&self.old))
+        Star::face(one(&self.new, i)).minus(&Star::face(one(&self.old, i)))
     }
 
     /// The new vertex's star but for boundaries.
@@ -228,18 +229,22 @@ impl Hood {
     pub(super) fn star(&self) -> Star {
         let mut star = Star::default();
         for i in 0..self.len {
-            star.add(&Star::face([self.new[0][i], self.new[1][i], self.new[2][i]]));
+            star.add(&Star::face(one(&self.new, i)));
         }
         star
     }
 
     /// The sums of the old normals around v0 and around v1.
     #[inline(always)]
-    pub(super) fn sums(&self) -> [[f32; 3]; 2] {
-        let sum = |range: std::ops::Range<usize>| {
-            [0, 1, 2].map(|k| self.old[k][range.clone()].iter().sum::<f32>())
-        };
-        [sum(0..self.of_v0), sum(self.of_v0..self.len)]
+    pub(super) fn sums(&self) -> [Vec3; 2] {
+        let mut sums = [Vec3::ZERO; 2];
+        for i in 0..self.of_v0 {
+            sums[0] += one(&self.old, i);
+        }
+        for i in self.of_v0..self.len {
+            sums[1] += one(&self.old, i);
+        }
+        sums
     }
 
     /// The boundary edges among the spokes: where in the ring they end, from which apex before.
@@ -253,20 +258,27 @@ impl Hood {
 
     /// A vertex of the ring as seen from v0.
     #[inline(always)]
-    pub(super) fn seen(&self, i: usize) -> [f32; 3] {
-        [0, 1, 2].map(|k| self.ring[k][i])
+    fn seen(&self, i: usize) -> Vec3 {
+        one(&self.ring, i)
     }
 
     /// The farthest of the ring and the ends from the middle of the edge, squared.
+    #[inline(always)]
     pub(super) fn reach(&self) -> f32 {
-        let half = self.along.map(|x| 0.5 * x);
-        let far = |[x, y, z]: [f32; 3]| x * x + y * y + z * z;
-        let seen = (0..self.len).filter(|&i| self.ghost != Some(i)).map(|i| {
-            let p = self.seen(i);
-            far([0, 1, 2].map(|k| p[k] - half[k]))
-        });
-        seen.fold(far(half), f32::max)
+        let half = self.along * 0.5;
+        let mut reach = half.length_squared();
+        for i in 0..self.len {
+            if self.ghost != Some(i) {
+                reach = reach.max(self.seen(i).distance_squared(half));
+            }
+        }
+        reach
     }
+}
+
+#[inline(always)]
+fn one(from: &[[f32; ROOM]; 3], i: usize) -> Vec3 {
+    Vec3::new(from[0][i], from[1][i], from[2][i])
 }
 
 #[inline(always)]
@@ -289,9 +301,4 @@ fn clear(normals: &mut [[f32; ROOM]; 3], ghost: usize, len: usize) {
         normals[ghost] = 0.0;
         normals[(ghost + len - 1) % len] = 0.0;
     }
-}
-
-#[inline(always)]
-pub(super) fn cross([a, b, c]: [f32; 3], [x, y, z]: [f32; 3]) -> [f32; 3] {
-    [b * z - c * y, c * x - a * z, a * y - b * x]
 }

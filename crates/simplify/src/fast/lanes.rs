@@ -3,6 +3,8 @@
 
 use std::ops::{Add, Div, Mul, Sub};
 
+use glam::Vec3;
+
 /// How many.
 pub(super) const LANES: usize = 4;
 
@@ -83,7 +85,8 @@ impl Lanes {
 
 impl Lanes3 {
     #[inline(always)]
-    pub(super) fn all([x, y, z]: [f32; 3]) -> Self {
+    pub(super) fn all(v: Vec3) -> Self {
+        let Vec3 { x, y, z } = v;
         Self { x: Lanes::all(x), y: Lanes::all(y), z: Lanes::all(z) }
     }
 

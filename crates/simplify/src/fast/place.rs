@@ -57,6 +57,7 @@ impl Swept {
 
 /// The matrix of six numbers.
 pub(super) fn matrix(squares: &[f32; 6]) -> DMat3 {
-    let [xx, yy, zz, xy, xz, yz] = squares.map(f64::from);
-    DMat3::from_cols_array(&[xx, xy, xz, xy, yy, yz, xz, yz, zz])
+    let [xx, yy, zz, xy, xz, yz] = *squares;
+    let column = |x: f32, y: f32, z: f32| DVec3::new(x.into(), y.into(), z.into());
+    DMat3::from_cols(column(xx, xy, xz), column(xy, yy, yz), column(xz, yz, zz))
 }

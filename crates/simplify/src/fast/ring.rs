@@ -97,6 +97,18 @@ impl Vertices {
         }
     }
 
+    /// Gives it the first `len` of these as neighbours.
+    #[inline(always)]
+    pub(super) fn set_ring_of<const N: usize>(&mut self, v: u32, ring: &[u32; N], len: usize) {
+        if len > RING {
+            return self.set_long(v, &ring[..len]);
+        }
+        let vertex = self.get_mut(v);
+        // All of the room, always: a copy of unknown length is a call.
+        vertex.ring.copy_from_slice(&ring[..RING]);
+        vertex.len = len as u8;
+    }
+
     /// Gives it these neighbours.
     #[inline(always)]
     pub(super) fn set_ring(&mut self, v: u32, ring: &[u32]) {
@@ -132,7 +144,7 @@ impl Vertex {
     #[inline(always)]
     pub(super) fn lose(&mut self, neighbour: u32) -> bool {
         if self.len == LONG {
-            self.ring[1] -= 1;
+            self.ring[1] = self.ring[1].saturating_sub(1);
             let shrunk = self.flags.any(Flags::BARRED) && self.ring[1] as usize <= MOST;
             if shrunk {
                 self.flags.clear(Flags::BARRED);
@@ -141,7 +153,10 @@ impl Vertex {
         }
         let len = self.len as usize;
         if let Some(at) = place_in(&self.ring[..len], neighbour) {
-            self.ring.copy_within(at + 1..len, at);
+            // All of it, always: a move of unknown length is a call.
+            for i in 0..RING - 1 {
+                self.ring[i] = if i < at { self.ring[i] } else { self.ring[i + 1] };
+            }
             self.len -= 1;
         }
         false

@@ -3,6 +3,8 @@
 //! The first line is what a neighbour asks for when it looks for its cheapest edge, the second is the
 //! ring. A look at a star reads both lines of its vertex and one of each neighbour, nothing else.
 
+use glam::Vec3;
+
 use crate::fast::ring::RING;
 
 /// No vertex.
@@ -13,7 +15,7 @@ pub(super) const NOBODY: u32 = u32::MAX;
 #[repr(C, align(128))]
 pub(super) struct Vertex {
     /// Where it is, in the engine's frame.
-    pub(super) place: [f32; 3],
+    pub(super) place: Vec3,
     /// What the faces around it come to, seen from it.
     pub(super) star: Star,
     /// The neighbour that its cheapest edge goes to; of a dead one, the vertex it has gone into.
@@ -87,7 +89,8 @@ impl Star {
     ///
     /// A half and a sixth of products of vectors make nine of them against volumes [LT99].
     #[inline(always)]
-    pub(super) fn boundary([x, y, z]: [f32; 3], weight: f32) -> Self {
+    pub(super) fn boundary(along: Vec3, weight: f32) -> Self {
+        let Vec3 { x, y, z } = along;
         let squared = x * x + y * y + z * z;
         let w = weight * squared;
         let squares = [
@@ -102,7 +105,8 @@ impl Star {
     }
 
     #[inline(always)]
-    pub(super) fn face([x, y, z]: [f32; 3]) -> Self {
+    pub(super) fn face(normal: Vec3) -> Self {
+        let Vec3 { x, y, z } = normal;
         Self { normal: [x, y, z], squares: [x * x, y * y, z * z, x * y, x * z, y * z] }
     }
 
@@ -124,7 +128,7 @@ impl Star {
 }
 
 impl Vertex {
-    pub(super) fn at(place: [f32; 3]) -> Self {
+    pub(super) fn at(place: Vec3) -> Self {
         Self {
             place,
             star: Star::default(),
