@@ -33,9 +33,14 @@ impl Bounds {
     /// Grows to hold `point`.
     #[inline]
     pub fn add(&mut self, point: [f64; 3]) {
-        for ((min, max), x) in self.min.iter_mut().zip(&mut self.max).zip(point) {
-            *min = min.min(x);
-            *max = max.max(x);
+        // Comparisons, since `min` minds a NaN on either side, which takes five instructions for one.
+        for axis in 0..3 {
+            if point[axis] < self.min[axis] {
+                self.min[axis] = point[axis];
+            }
+            if point[axis] > self.max[axis] {
+                self.max[axis] = point[axis];
+            }
         }
     }
 

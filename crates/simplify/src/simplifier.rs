@@ -1,6 +1,6 @@
 //! A mesh being simplified: run it to a target, take the level, run on.
 
-use meshlod_mesh::{Mesh, VertexId};
+use meshlod_mesh::{Bounds, Mesh, VertexId};
 
 use crate::clean;
 use crate::engine::Run;
@@ -131,13 +131,14 @@ impl<'m> Simplifier<'m> {
     }
 }
 
-/// Refuses meshes and options that no method could work with.
-pub(crate) fn validate(mesh: &Mesh, options: &Options) -> Result<(), SimplifyError> {
+/// The box of a mesh; refuses meshes and options that no method could work with.
+pub(crate) fn validate(mesh: &Mesh, options: &Options) -> Result<Bounds, SimplifyError> {
     mesh.validate()?;
     if mesh.faces.is_empty() {
         return Err(SimplifyError::NoFaces);
     }
-    let diagonal = mesh.bounds().diagonal();
+    let bounds = mesh.bounds();
+    let diagonal = bounds.diagonal();
     if diagonal > 0.0 && !EXTENTS.contains(&diagonal) {
         return Err(SimplifyError::Extent { diagonal });
     }
@@ -146,5 +147,5 @@ pub(crate) fn validate(mesh: &Mesh, options: &Options) -> Result<(), SimplifyErr
     if let Some(size) = options.vanish_below.filter(|size| size.is_nan() || *size < 0.0) {
         return Err(SimplifyError::BadSize(size));
     }
-    Ok(())
+    Ok(bounds)
 }

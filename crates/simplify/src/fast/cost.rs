@@ -56,7 +56,8 @@ pub(super) fn cheapest(all: &[Vertex], u: &Vertex, ring: &[u32]) -> Cheapest {
         if Flags(special).any(SPECIAL) {
             correct(&mut costs, all, u, part);
         }
-        for (&v, &cost) in part.iter().zip(&costs) {
+        for (lane, &v) in part.iter().enumerate() {
+            let cost = costs[lane];
             let bucket = bucket(cost);
             if cost < least_cost && (u.floor == 0 || bucket > u.floor) {
                 (least_cost, least) = (cost, Cheapest { bucket, target: v });

@@ -79,10 +79,14 @@ impl Engine {
 
     #[inline(always)]
     fn try_at(&mut self, v: u32, front: u16) {
-        let target = self.vertices.get(v).target;
-        const GONE: Flags = Flags(Flags::DEAD.0 | Flags::BARRED.0);
-        if target == NOBODY || self.vertices.get(target).flags.any(GONE) {
-            return self.look(v, front, None);
+        let Some(target) = self.target(v) else { return self.look(v, front, None) };
+        // A look at one edge is cheaper than a contraction that is given up.
+        if self.vertices.get(v).flags.any(Flags::STALE) {
+            let vertex = self.vertices.get(v);
+            let now = cheapest(&self.vertices.all, vertex, &[target]).bucket;
+            if now > front.saturating_add(SLACK) {
+                return self.look(v, front, None);
+            }
         }
         match self.contract(v, target, front) {
             Ok(kept) => self.look(kept, 0, None),
@@ -97,11 +101,28 @@ impl Engine {
         }
     }
 
+    /// The neighbour that its cheapest edge went to when it was looked at, or what has become of it.
+    #[inline(always)]
+    fn target(&mut self, v: u32) -> Option<u32> {
+        let mut target = self.vertices.get(v).target;
+        if target == NOBODY {
+            return None;
+        }
+        if self.vertices.get(target).flags.any(Flags::DEAD) {
+            target = self.vertices.heir(target);
+            let vertex = self.vertices.get_mut(v);
+            vertex.target = target;
+            vertex.flags.set(Flags::STALE);
+        }
+        let barred = self.vertices.get(target).flags.any(Flags::BARRED);
+        (target != v && !barred).then_some(target)
+    }
+
     /// Looks for the cheapest edge of a vertex and queues it, at the front or behind. What has just
     /// been seen of an edge is not doubted: another rounding must not bring it back to the front.
     #[inline(always)]
     fn look(&mut self, v: u32, front: u16, seen: Option<(u32, u16)>) {
-        self.vertices.ring(v);
+        self.vertices.bring_up(v);
         let vertex = self.vertices.get(v);
         let Cheapest { mut bucket, target } =
             cheapest(&self.vertices.all, vertex, self.vertices.settled(v));
@@ -114,6 +135,7 @@ impl Engine {
         let vertex = self.vertices.get_mut(v);
         vertex.target = target;
         vertex.bucket = bucket;
+        vertex.flags.clear(Flags::STALE);
         self.queue.push(v, bucket);
     }
 
@@ -175,6 +197,7 @@ impl Engine {
                 let vertex = vertices.get_mut(id);
                 vertex.star.add(&last);
                 vertex.star.add(&change);
+                vertex.flags.set(Flags::STALE);
                 let mut woken = vertex.floor > 0;
                 if i == 0 || i == hood.of_v0 {
                     let dying = Star::face(dying[usize::from(i > 0)]);

@@ -3,7 +3,7 @@
 //! Costs go with the sixth power of a length. A scan in metres would have them run out of floats.
 
 use glam::{DVec3, Vec3};
-use meshlod_mesh::Mesh;
+use meshlod_mesh::{Bounds, Mesh};
 
 /// From model units to the engine's and back.
 #[derive(Clone, Copy, Debug)]
@@ -14,9 +14,8 @@ pub(super) struct Frame {
 }
 
 impl Frame {
-    /// The frame in which the box is as many wide as there are faces, squared.
-    pub(super) fn new(mesh: &Mesh) -> Self {
-        let bounds = mesh.bounds();
+    /// The frame of a mesh and its box, in which the diagonal is the root of the number of faces.
+    pub(super) fn new(mesh: &Mesh, bounds: &Bounds) -> Self {
         let unit = bounds.diagonal() / (mesh.faces.len() as f64).sqrt();
         let unit = if unit > 0.0 { unit } else { 1.0 };
         Self { center: bounds.center().into(), unit }

@@ -73,8 +73,8 @@ impl Hood {
         v0: u32,
         v1: u32,
     ) -> Result<(), Refusal> {
-        vertices.ring(v0);
-        vertices.ring(v1);
+        vertices.bring_up(v0);
+        vertices.bring_up(v1);
         let (ring0, ring1) = (vertices.settled(v0), vertices.settled(v1));
         let len = (ring0.len() + ring1.len()).saturating_sub(4);
         if len < 3 || ring0.len().min(ring1.len()) < 3 {
@@ -88,12 +88,21 @@ impl Hood {
         };
         self.len = len;
         self.of_v0 = ring0.len() - 2;
-        let first = ring0[at0 + 1..].iter().chain(&ring0[..at0]);
-        self.ids.iter_mut().zip(first).for_each(|(id, &w)| *id = w);
-        // The wings are there already.
-        let second = ring1[at1 + 1..].iter().chain(&ring1[..at1]);
-        let rest = &mut self.ids[self.of_v0 + 1..self.len];
-        rest.iter_mut().zip(second.skip(1)).for_each(|(id, &w)| *id = w);
+        let mut next = 0;
+        for part in [&ring0[at0 + 1..], &ring0[..at0]] {
+            for &w in part {
+                self.ids[next] = w;
+                next += 1;
+            }
+        }
+        // The first wing is there already; the second comes last and is written over.
+        next -= 1;
+        for part in [&ring1[at1 + 1..], &ring1[..at1]] {
+            for &w in part {
+                self.ids[next] = w;
+                next += 1;
+            }
+        }
         self.link(vertices, [v0, v1])?;
         self.see(vertices, v0, v1);
         Ok(())
@@ -164,10 +173,12 @@ impl Hood {
             (x[i], y[i], z[i]) = (x[0], y[0], z[0]);
             self.of_v1[i] = 0.0;
         }
-        for start in (0..self.len).step_by(LANES) {
+        let mut start = 0;
+        while start < self.len {
             let apex = Lanes3::all(self.along).by(Lanes::of(&self.of_v1, start));
             let normal = self.normal(start, apex);
             store(&mut self.old, start, normal);
+            start += LANES;
         }
         if let Some(ghost) = self.ghost {
             clear(&mut self.old, ghost, self.len);
@@ -185,15 +196,18 @@ impl Hood {
     #[inline(always)]
     pub(super) fn put(&mut self, place: Vec3) -> Result<(), Refusal> {
         let apex = Lanes3::all(place);
-        for start in (0..self.len).step_by(LANES) {
+        let mut start = 0;
+        while start < self.len {
             let new = self.normal(start, apex);
             store(&mut self.new, start, new);
+            start += LANES;
         }
         if let Some(ghost) = self.ghost {
             clear(&mut self.new, ghost, self.len);
         }
         let mut turned = false;
-        for start in (0..self.len).step_by(LANES) {
+        let mut start = 0;
+        while start < self.len {
             let (old, new) = (load(&self.old, start), load(&self.new, start));
             let (turn, before) = (old.dot(new), old.dot(old));
             let least = Lanes::all(LEAST_COSINE * LEAST_COSINE) * before * new.dot(new);
@@ -201,6 +215,7 @@ impl Hood {
                 let kept = turn.0[i] > 0.0 && turn.0[i] * turn.0[i] > least.0[i];
                 turned |= !kept & (before.0[i] > 0.0);
             }
+            start += LANES;
         }
         if turned { Err(Refusal::Flip) } else { Ok(()) }
     }
@@ -291,7 +306,8 @@ fn load(from: &[[f32; ROOM]; 3], start: usize) -> Lanes3 {
 fn store(to: &mut [[f32; ROOM]; 3], start: usize, from: Lanes3) {
     let [x, y, z] = to;
     for (to, from) in [(x, from.x), (y, from.y), (z, from.z)] {
-        to[start..start + LANES].copy_from_slice(&from.0);
+        *to[start..].first_chunk_mut().expect("rings have room for lanes beyond their end") =
+            from.0;
     }
 }
 

@@ -77,9 +77,7 @@ impl Lanes {
     /// Those of a list from `start` on.
     #[inline(always)]
     pub(super) fn of(list: &[f32], start: usize) -> Self {
-        let mut all = [0.0; LANES];
-        all.copy_from_slice(&list[start..start + LANES]);
-        Self(all)
+        Self(*list[start..].first_chunk().expect("lists have room for lanes beyond their end"))
     }
 }
 

@@ -16,7 +16,7 @@ mod ring;
 mod split;
 mod vertex;
 
-use meshlod_mesh::{Lock, Mesh, VertexId};
+use meshlod_mesh::{Bounds, Lock, Mesh, VertexId};
 
 use crate::fast::engine::Engine;
 use crate::fast::fans::Fans;
@@ -52,9 +52,9 @@ pub fn simplify(
     target: Target,
     options: &Options,
 ) -> Result<(Mesh, Report), SimplifyError> {
-    simplifier::validate(mesh, options)?;
+    let bounds = simplifier::validate(mesh, options)?;
     let target = target.valid()?;
-    let prepared = if fits(mesh, options) { Prepared::new(mesh, options) } else { None };
+    let prepared = if fits(mesh, options) { Prepared::new(mesh, &bounds, options) } else { None };
     match prepared {
         Some(prepared) => Ok(prepared.simplify(target)),
         None => crate::simplify(mesh, target, options),
@@ -74,8 +74,8 @@ struct Prepared<'m> {
 
 impl<'m> Prepared<'m> {
     /// `None` where copies of vertices do not make it manifold.
-    fn new(mesh: &'m Mesh, options: &Options) -> Option<Self> {
-        let frame = Frame::new(mesh);
+    fn new(mesh: &'m Mesh, bounds: &Bounds, options: &Options) -> Option<Self> {
+        let frame = Frame::new(mesh, bounds);
         let places = mesh.positions.iter().map(|&p| frame.enter(p));
         let faces = mesh.faces.iter().map(corners);
         let mut fans = Fans::new(places.clone(), Vec::new(), faces.clone());

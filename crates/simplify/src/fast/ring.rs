@@ -61,16 +61,15 @@ impl Vertices {
         v
     }
 
-    /// Its neighbours, counter-clockwise, brought up to date.
+    /// Brings its ring up to date.
     #[inline(always)]
-    pub(super) fn ring(&mut self, v: u32) -> &[u32] {
+    pub(super) fn bring_up(&mut self, v: u32) {
         if self.get(v).len == LONG {
             self.settle(v);
         }
-        self.settled(v)
     }
 
-    /// Its neighbours as last brought up to date.
+    /// Its neighbours, counter-clockwise, as last brought up to date.
     #[inline(always)]
     pub(super) fn settled(&self, v: u32) -> &[u32] {
         let vertex = self.get(v);

@@ -55,6 +55,8 @@ impl Flags {
     pub(super) const BARRED: Self = Self(4);
     /// It is not where it was in the input.
     pub(super) const MOVED: Self = Self(8);
+    /// A face of it has changed since it was looked at.
+    pub(super) const STALE: Self = Self(32);
     /// One of the copies of a vertex where the surface is not manifold.
     pub(super) const SPLIT: Self = Self(16);
 
