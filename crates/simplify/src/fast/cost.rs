@@ -6,9 +6,9 @@
 //! x'Sx − 2q·x + h'Sh, and the volume stays where g·x = (N₁ − N₀)·h. Faces that both stars have
 //! contain h; they count twice in S and g and nowhere else.
 
-use glam::Vec3;
+use glam::{Vec3, Vec4};
 
-use crate::fast::lanes::{LANES, Lanes, Lanes3};
+use crate::fast::lanes::{LANES, Lanes3, transpose};
 use crate::fast::queue::{NONE, bucket};
 use crate::fast::vertex::{Flags, NOBODY, Vertex};
 
@@ -37,22 +37,11 @@ pub(super) fn cheapest(all: &[Vertex], u: &Vertex, ring: &[u32]) -> Cheapest {
     let mut least = Cheapest { bucket: NONE, target: NOBODY };
     let mut least_cost = f32::INFINITY;
     for part in ring.chunks(LANES) {
-        let mut ends = [[0.0; LANES]; 12];
-        let mut special = u.flags.0;
-        for (lane, &v) in part.iter().enumerate() {
-            let v = &all[v as usize];
-            special |= v.flags.0;
-            ends[0][lane] = v.place.x;
-            ends[1][lane] = v.place.y;
-            ends[2][lane] = v.place.z;
-            for k in 0..3 {
-                ends[3 + k][lane] = v.star.normal[k];
-            }
-            for k in 0..6 {
-                ends[6 + k][lane] = v.star.squares[k];
-            }
-        }
-        let mut costs = costs(u, &ends).0;
+        let end = |lane: usize| &all[part[lane.min(part.len() - 1)] as usize];
+        let ends = [end(0), end(1), end(2), end(3)];
+        let special =
+            u.flags.0 | ends[0].flags.0 | ends[1].flags.0 | ends[2].flags.0 | ends[3].flags.0;
+        let mut costs = costs(u, &ends).to_array();
         if Flags(special).any(SPECIAL) {
             correct(&mut costs, all, u, part);
         }
@@ -80,16 +69,16 @@ fn correct(costs: &mut [f32; LANES], all: &[Vertex], u: &Vertex, ring: &[u32]) {
             _ if v.flags.any(Flags::BARRED) || u.flags.any(Flags::BARRED) => f32::INFINITY,
             [false, false] => *cost,
             [true, true] => f32::INFINITY,
-            [true, false] => swept(v, u.place),
-            [false, true] => swept(u, v.place),
+            [true, false] => swept(v, u.place()),
+            [false, true] => swept(u, v.place()),
         };
     }
 }
 
 /// What a vertex's own star costs if it goes to a place.
 fn swept(vertex: &Vertex, to: Vec3) -> f32 {
-    let Vec3 { x, y, z } = to - vertex.place;
-    let [xx, yy, zz, xy, xz, yz] = vertex.star.squares;
+    let Vec3 { x, y, z } = to - vertex.place();
+    let [xx, yy, zz, xy, xz, yz] = vertex.seen.squares();
     let squares = xx * x * x + yy * y * y + zz * z * z;
     squares
         + 2.0 * (xy * x * y + xz * x * z + yz * y * z)
@@ -98,13 +87,14 @@ fn swept(vertex: &Vertex, to: Vec3) -> f32 {
 
 /// A symmetric matrix of each: xx, yy, zz, xy, xz, yz.
 #[derive(Clone, Copy)]
-struct Symmetric([Lanes; 6]);
+struct Symmetric([Vec4; 6]);
 
 impl Symmetric {
     /// The product with a vector.
     #[inline(always)]
-    fn apply(&self, Lanes3 { x, y, z }: Lanes3) -> Lanes3 {
+    fn apply(&self, v: Lanes3) -> Lanes3 {
         let [xx, yy, zz, xy, xz, yz] = self.0;
+        let Lanes3 { x, y, z } = v;
         Lanes3 {
             x: xx * x + xy * y + xz * z,
             y: xy * x + yy * y + yz * z,
@@ -115,42 +105,43 @@ impl Symmetric {
 
 /// The costs of edges from `u`. Symmetric: the same from either end, to the bit.
 #[inline(always)]
-fn costs(u: &Vertex, ends: &[[f32; LANES]; 12]) -> Lanes {
-    let own = Lanes::all;
-    let vector =
-        |k: usize| Lanes3 { x: Lanes(ends[k]), y: Lanes(ends[k + 1]), z: Lanes(ends[k + 2]) };
-    let h = (vector(0) - Lanes3::all(u.place)).by(own(0.5));
-    let (n0, n1) = (Lanes3::all(u.star.normal.into()), vector(3));
-    let mut sum = Symmetric([own(0.0); 6]);
-    let mut difference = sum;
-    for k in 0..6 {
-        let (a0, a1) = (own(u.star.squares[k]), Lanes(ends[6 + k]));
-        sum.0[k] = a1 + a0;
-        difference.0[k] = a1 - a0;
-    }
+fn costs(u: &Vertex, ends: &[&Vertex; LANES]) -> Vec4 {
+    let row = |k: usize| {
+        transpose(ends[0].seen.0[k], ends[1].seen.0[k], ends[2].seen.0[k], ends[3].seen.0[k])
+    };
+    let ([px, py, pz, nx], [ny, nz, xx, yy], [zz, xy, xz, yz]) = (row(0), row(1), row(2));
+    let h = (Lanes3 { x: px, y: py, z: pz } - Lanes3::all(u.place())).by(Vec4::splat(0.5));
+    let (n0, n1) = (Lanes3::all(u.seen.normal()), Lanes3 { x: nx, y: ny, z: nz });
+    let [uxx, uyy, uzz, uxy, uxz, uyz] = u.seen.squares();
+    let own = Vec4::splat;
+    let (uxx, uyy, uzz, uxy, uxz, uyz) =
+        (own(uxx), own(uyy), own(uzz), own(uxy), own(uxz), own(uyz));
+    let sum = Symmetric([xx + uxx, yy + uyy, zz + uzz, xy + uxy, xz + uxz, yz + uyz]);
+    let less = Symmetric([xx - uxx, yy - uyy, zz - uzz, xy - uxy, xz - uxz, yz - uyz]);
     let trace = sum.0[0] + sum.0[1] + sum.0[2];
-    let scale = own(1.0) / (trace + own(TINY));
+    let scale = (trace + own(TINY)).recip();
 
-    let q = difference.apply(h);
+    let q = less.apply(h);
     let at_middle = sum.apply(h).dot(h);
     let g = n0 + n1;
-    let to_unit = own(1.0) / (g.dot(g) + own(TINY));
+    let to_unit = (g.dot(g) + own(TINY)).recip();
     // The place on the plane of equal volumes that is next to the middle.
     let x0 = g.by((n1 - n0).dot(h) * to_unit);
     let slope = q - sum.apply(x0);
     let there = at_middle - x0.dot(q + slope);
 
-    // Two directions in the plane, at right angles, the second along the slope.
-    let to_unit = to_unit.sqrt();
-    let e1 = g.cross(slope).by(scale * to_unit);
-    let e2 = g.cross(e1).by(to_unit);
-    let (a1, a2) = (sum.apply(e1), sum.apply(e2));
-    let along = e1.dot(e1);
-    let pull = own(PULL) * along;
-    let m11 = e1.dot(a1) * scale + pull;
+    // Two directions in the plane, at right angles, the second along the slope; as long as keeps all
+    // that follows about one.
+    let across = g.cross(slope).by(scale);
+    let e1 = across.by(to_unit);
+    let e2 = g.cross(e1);
+    let rise = e1.dot(across);
+    let pull = own(PULL);
+    let m11 = e1.dot(sum.apply(e1)) * scale + pull * e1.dot(e1);
+    let (a2, long2) = (sum.apply(e2), e2.dot(e2));
     let m12 = e1.dot(a2) * scale;
-    let m22 = e2.dot(a2) * scale + pull;
-    let determinant = (m11 * m22 - m12 * m12).max(1e-36);
-    let gain = along * along * m11 / determinant * trace;
+    let m22 = e2.dot(a2) * scale + pull * long2;
+    let determinant = (m11 * m22 - m12 * m12).max(own(1e-36));
+    let gain = rise * rise * m11 / determinant * trace;
     there - gain + own(SHORT_FIRST) * trace * h.dot(h)
 }

@@ -171,7 +171,7 @@ impl Engine {
             return Err(refused(Refusal::Error));
         }
         // The place as it will be read back, so that normals are those of the faces as they are.
-        let from = end0.place;
+        let from = end0.place();
         let place = if free { (from.as_dvec3() + best + swept.half).as_vec3() } else { from };
         hood.put(place - from).map_err(refused)?;
         self.error = self.error.max(moved);
@@ -184,24 +184,24 @@ impl Engine {
     fn carry_out(&mut self, v0: u32, v1: u32, place: Vec3, moved: f32, front: u16) {
         let Self { vertices, hood, queue, .. } = self;
         self.live_faces -= [0, hood.of_v0].iter().filter(|&&wing| hood.ghost != Some(wing)).count();
-        let mut star = hood.star();
+        let mut star = hood.change();
         if hood.ghost.is_some() {
             star.add(&renew_boundary(vertices, hood, [v0, v1], place));
         }
         let dying = hood.dying();
-        let mut last = hood.change(hood.len - 1);
+        let mut last = hood.changes[hood.len - 1];
         for i in 0..hood.len {
-            let change = hood.change(i);
+            let change = hood.changes[i];
             let id = hood.ids[i];
             if id != vertices.ghost {
                 let vertex = vertices.get_mut(id);
-                vertex.star.add(&last);
-                vertex.star.add(&change);
+                vertex.seen.add(&last);
+                vertex.seen.add(&change);
                 vertex.flags.set(Flags::STALE);
                 let mut woken = vertex.floor > 0;
                 if i == 0 || i == hood.of_v0 {
                     let dying = Star::face(dying[usize::from(i > 0)]);
-                    vertex.star.take(&dying);
+                    vertex.seen.take(&dying);
                     woken |= vertex.lose(v1);
                 } else if i > hood.of_v0 {
                     vertex.swap(v1, v0);
@@ -217,11 +217,10 @@ impl Engine {
         gone.target = v0;
         vertices.set_ring_of(v0, &hood.ids, hood.len);
         let kept = vertices.get_mut(v0);
-        if place != kept.place {
+        if place != kept.place() {
             kept.flags.set(Flags::MOVED);
         }
-        kept.place = place;
-        kept.star = star;
+        kept.put(place, star);
         kept.moved = moved;
         kept.floor = 0;
     }
@@ -242,7 +241,7 @@ fn wake(vertex: &mut Vertex, id: u32, queue: &mut Queue, front: u16) {
 #[inline(always)]
 fn swept(hood: &Hood, end0: &Vertex, end1: &Vertex) -> Swept {
     let half = hood.along.as_dvec3() * 0.5;
-    let (a0, a1) = (matrix(&end0.star.squares), matrix(&end1.star.squares));
+    let (a0, a1) = (matrix(&end0.seen), matrix(&end1.seen));
     let mut sum = a0 + a1;
     let dying = hood.dying();
     for (wing, normal) in [0, hood.of_v0].into_iter().zip(dying) {
@@ -250,7 +249,7 @@ fn swept(hood: &Hood, end0: &Vertex, end1: &Vertex) -> Swept {
             true => Star::boundary(hood.along, BOUNDARY_WEIGHT),
             false => Star::face(normal),
         };
-        sum -= matrix(&twice.squares);
+        sum -= matrix(&twice);
     }
     let [n0, n1] = hood.sums();
     let (n0, n1) = (n0.as_dvec3(), n1.as_dvec3());
@@ -268,12 +267,13 @@ fn swept(hood: &Hood, end0: &Vertex, end1: &Vertex) -> Swept {
 #[cold]
 fn renew_boundary(vertices: &mut Vertices, hood: &Hood, [v0, v1]: [u32; 2], place: Vec3) -> Star {
     let mut sum = Star::default();
-    let ends = [vertices.get(v0).place, vertices.get(v1).place];
+    let ends = [vertices.get(v0).place(), vertices.get(v1).place()];
     for (i, of_v1) in hood.boundary() {
         let vertex = vertices.get_mut(hood.ids[i]);
-        let edge = |apex: Vec3| Star::boundary(vertex.place - apex, BOUNDARY_WEIGHT);
+        let edge = |apex: Vec3| Star::boundary(vertex.place() - apex, BOUNDARY_WEIGHT);
         let (old, new) = (edge(ends[usize::from(of_v1)]), edge(place));
-        vertex.star.add(&new.minus(&old));
+        vertex.seen.add(&new);
+        vertex.seen.take(&old);
         sum.add(&new);
     }
     sum

@@ -47,11 +47,11 @@ impl Fans {
                 continue;
             }
             count += 1;
-            let place = |v: u32| all[v as usize].place;
+            let place = |v: u32| all[v as usize].place();
             let star = Star::face((place(b) - place(a)).cross(place(c) - place(a)));
             for (v, pair) in [(a, [b, c]), (b, [c, a]), (c, [a, b])] {
                 let vertex = &mut all[v as usize];
-                vertex.star.add(&star);
+                vertex.seen.add(&star);
                 let at = vertex.len as usize;
                 if at < PAIRS {
                     vertex.ring[2 * at..2 * at + 2].copy_from_slice(&pair);
@@ -130,11 +130,11 @@ impl Fans {
         let mut ring: Vec<u32> = pairs.iter().map(|pair| pair[0]).collect();
         ring.extend([last, self.vertices.ghost]);
         self.vertices.set_ring(v, &ring);
-        let place = self.vertices.get(v).place;
+        let place = self.vertices.get(v).place();
         for end in [first, last] {
-            let end = self.vertices.get(end).place;
+            let end = self.vertices.get(end).place();
             let edge = Star::boundary(end - place, BOUNDARY_WEIGHT);
-            self.vertices.get_mut(v).star.add(&edge);
+            self.vertices.get_mut(v).seen.add(&edge);
         }
     }
 }

@@ -8,9 +8,9 @@
 //!        xk = ids[of_v0]
 //! ```
 
-use glam::Vec3;
+use glam::{Vec3, Vec4};
 
-use crate::fast::lanes::{LANES, Lanes, Lanes3};
+use crate::fast::lanes::{LANES, Lanes3, transpose};
 use crate::fast::ring::{MOST, Vertices, place_in};
 use crate::fast::vertex::{Flags, Star};
 use crate::refusal::Refusal;
@@ -41,6 +41,8 @@ pub(super) struct Hood {
     pub(super) old: [[f32; ROOM]; 3],
     /// The same with the new vertex.
     pub(super) new: [[f32; ROOM]; 3],
+    /// What a contraction changes in the star of each spoke.
+    pub(super) changes: [Star; ROOM],
 }
 
 impl Hood {
@@ -56,6 +58,7 @@ impl Hood {
             of_v1: [0.0; ROOM],
             old: empty,
             new: empty,
+            changes: [Star::default(); ROOM],
         }
     }
 
@@ -155,12 +158,12 @@ impl Hood {
     /// Looks up where the ring is, and what its faces are now.
     #[inline(always)]
     fn see(&mut self, vertices: &Vertices, v0: u32, v1: u32) {
-        let (from, to) = (vertices.get(v0).place, vertices.get(v1).place);
+        let (from, to) = (vertices.get(v0).place(), vertices.get(v1).place());
         self.along = to - from;
         self.ghost = None;
         let [x, y, z] = &mut self.ring;
         for (i, &w) in self.ids[..self.len].iter().enumerate() {
-            let seen = vertices.get(w).place - from;
+            let seen = vertices.get(w).place() - from;
             (x[i], y[i], z[i]) = (seen.x, seen.y, seen.z);
             self.of_v1[i] = if i < self.of_v0 { 0.0 } else { 1.0 };
             if w == vertices.ghost {
@@ -175,7 +178,7 @@ impl Hood {
         }
         let mut start = 0;
         while start < self.len {
-            let apex = Lanes3::all(self.along).by(Lanes::of(&self.of_v1, start));
+            let apex = Lanes3::all(self.along).by(Vec4::from_slice(&self.of_v1[start..]));
             let normal = self.normal(start, apex);
             store(&mut self.old, start, normal);
             start += LANES;
@@ -210,11 +213,9 @@ impl Hood {
         while start < self.len {
             let (old, new) = (load(&self.old, start), load(&self.new, start));
             let (turn, before) = (old.dot(new), old.dot(old));
-            let least = Lanes::all(LEAST_COSINE * LEAST_COSINE) * before * new.dot(new);
-            for i in 0..LANES {
-                let kept = turn.0[i] > 0.0 && turn.0[i] * turn.0[i] > least.0[i];
-                turned |= !kept & (before.0[i] > 0.0);
-            }
+            let least = LEAST_COSINE * LEAST_COSINE * before * new.dot(new);
+            let kept = turn.cmpgt(Vec4::ZERO) & (turn * turn).cmpgt(least);
+            turned |= (!kept & before.cmpgt(Vec4::ZERO)).any();
             start += LANES;
         }
         if turned { Err(Refusal::Flip) } else { Ok(()) }
@@ -233,20 +234,23 @@ impl Hood {
         [first, last]
     }
 
-    /// A spoke's new normal less its old one, and of the squares likewise.
+    /// What each spoke's star becomes, less what it was, and the new vertex's star but for boundaries.
     #[inline(always)]
-    pub(super) fn change(&self, i: usize) -> Star {
-        Star::face(one(&self.new, i)).minus(&Star::face(one(&self.old, i)))
-    }
-
-    /// The new vertex's star but for boundaries.
-    #[inline(always)]
-    pub(super) fn star(&self) -> Star {
-        let mut star = Star::default();
-        for i in 0..self.len {
-            star.add(&Star::face(one(&self.new, i)));
+    pub(super) fn change(&mut self) -> Star {
+        let mut sum = Star::default();
+        let mut start = 0;
+        while start < self.len {
+            let (old, new) = (load(&self.old, start), load(&self.new, start));
+            let (n, was) = (faces(new), faces(old));
+            for lane in 0..LANES {
+                sum.add(&n[lane]);
+                let mut change = n[lane];
+                change.take(&was[lane]);
+                self.changes[start + lane] = change;
+            }
+            start += LANES;
         }
-        star
+        sum
     }
 
     /// The sums of the old normals around v0 and around v1.
@@ -291,6 +295,20 @@ impl Hood {
     }
 }
 
+/// The stars of four faces by their normals.
+#[inline(always)]
+fn faces(Lanes3 { x, y, z }: Lanes3) -> [Star; LANES] {
+    let first = transpose(Vec4::ZERO, Vec4::ZERO, Vec4::ZERO, x);
+    let second = transpose(y, z, x * x, y * y);
+    let third = transpose(z * z, x * y, x * z, y * z);
+    [
+        Star([first[0], second[0], third[0]]),
+        Star([first[1], second[1], third[1]]),
+        Star([first[2], second[2], third[2]]),
+        Star([first[3], second[3], third[3]]),
+    ]
+}
+
 #[inline(always)]
 fn one(from: &[[f32; ROOM]; 3], i: usize) -> Vec3 {
     Vec3::new(from[0][i], from[1][i], from[2][i])
@@ -299,16 +317,16 @@ fn one(from: &[[f32; ROOM]; 3], i: usize) -> Vec3 {
 #[inline(always)]
 fn load(from: &[[f32; ROOM]; 3], start: usize) -> Lanes3 {
     let [x, y, z] = from;
-    Lanes3 { x: Lanes::of(x, start), y: Lanes::of(y, start), z: Lanes::of(z, start) }
+    let at = |of: &[f32; ROOM]| Vec4::from_slice(&of[start..]);
+    Lanes3 { x: at(x), y: at(y), z: at(z) }
 }
 
 #[inline(always)]
 fn store(to: &mut [[f32; ROOM]; 3], start: usize, from: Lanes3) {
     let [x, y, z] = to;
-    for (to, from) in [(x, from.x), (y, from.y), (z, from.z)] {
-        *to[start..].first_chunk_mut().expect("rings have room for lanes beyond their end") =
-            from.0;
-    }
+    from.x.write_to_slice(&mut x[start..]);
+    from.y.write_to_slice(&mut y[start..]);
+    from.z.write_to_slice(&mut z[start..]);
 }
 
 /// The ghost's faces have no area.

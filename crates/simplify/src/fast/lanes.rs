@@ -1,95 +1,48 @@
-//! A few numbers that go through the same arithmetic. Plain loops over arrays: the compiler makes them
-//! as wide as the machine is, and the numbers are the same on every one.
+//! Four vectors that go through the same arithmetic, a coordinate of all in one register.
+//!
+//! Arrays of floats in loops would be left to the compiler, which makes registers of them here and
+//! single floats there; glam's four floats are a register on every machine that has them, and the
+//! numbers are the same on all.
 
-use std::ops::{Add, Div, Mul, Sub};
+use std::ops::{Add, Sub};
 
-use glam::Vec3;
+use glam::{Mat4, Vec3, Vec4};
 
 /// How many.
 pub(super) const LANES: usize = 4;
 
-/// One number of each.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Lanes(pub(super) [f32; LANES]);
-
 /// A vector of each.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Lanes3 {
-    pub(super) x: Lanes,
-    pub(super) y: Lanes,
-    pub(super) z: Lanes,
+    pub(super) x: Vec4,
+    pub(super) y: Vec4,
+    pub(super) z: Vec4,
 }
 
-// Closures over arrays, as `from_fn` and `map` take them, are not always inlined; that made it all
-// four times as slow.
-macro_rules! each {
-    ($trait:ident, $name:ident, $op:tt) => {
-        impl $trait for Lanes {
-            type Output = Self;
-            #[inline(always)]
-            #[allow(clippy::needless_range_loop)]
-            fn $name(self, other: Self) -> Self {
-                let mut all = [0.0; LANES];
-                for i in 0..LANES {
-                    all[i] = self.0[i] $op other.0[i];
-                }
-                Self(all)
-            }
-        }
-
-        impl $trait for Lanes3 {
-            type Output = Self;
-            #[inline(always)]
-            fn $name(self, other: Self) -> Self {
-                Self { x: self.x $op other.x, y: self.y $op other.y, z: self.z $op other.z }
-            }
-        }
-    };
+impl Add for Lanes3 {
+    type Output = Self;
+    #[inline(always)]
+    fn add(self, other: Self) -> Self {
+        Self { x: self.x + other.x, y: self.y + other.y, z: self.z + other.z }
+    }
 }
 
-each!(Add, add, +);
-each!(Sub, sub, -);
-each!(Mul, mul, *);
-each!(Div, div, /);
-
-impl Lanes {
+impl Sub for Lanes3 {
+    type Output = Self;
     #[inline(always)]
-    pub(super) fn all(value: f32) -> Self {
-        Self([value; LANES])
-    }
-
-    #[inline(always)]
-    pub(super) fn max(mut self, least: f32) -> Self {
-        for x in &mut self.0 {
-            *x = if *x > least { *x } else { least };
-        }
-        self
-    }
-
-    #[inline(always)]
-    pub(super) fn sqrt(mut self) -> Self {
-        for x in &mut self.0 {
-            *x = x.sqrt();
-        }
-        self
-    }
-
-    /// Those of a list from `start` on.
-    #[inline(always)]
-    pub(super) fn of(list: &[f32], start: usize) -> Self {
-        Self(*list[start..].first_chunk().expect("lists have room for lanes beyond their end"))
+    fn sub(self, other: Self) -> Self {
+        Self { x: self.x - other.x, y: self.y - other.y, z: self.z - other.z }
     }
 }
 
 impl Lanes3 {
     #[inline(always)]
     pub(super) fn all(v: Vec3) -> Self {
-        let Vec3 { x, y, z } = v;
-        Self { x: Lanes::all(x), y: Lanes::all(y), z: Lanes::all(z) }
+        Self { x: Vec4::splat(v.x), y: Vec4::splat(v.y), z: Vec4::splat(v.z) }
     }
 
     #[inline(always)]
-    pub(super) fn dot(self, other: Self) -> Lanes {
+    pub(super) fn dot(self, other: Self) -> Vec4 {
         self.x * other.x + self.y * other.y + self.z * other.z
     }
 
@@ -103,7 +56,14 @@ impl Lanes3 {
     }
 
     #[inline(always)]
-    pub(super) fn by(self, factor: Lanes) -> Self {
+    pub(super) fn by(self, factor: Vec4) -> Self {
         Self { x: self.x * factor, y: self.y * factor, z: self.z * factor }
     }
+}
+
+/// Four rows of four as four columns.
+#[inline(always)]
+pub(super) fn transpose(a: Vec4, b: Vec4, c: Vec4, d: Vec4) -> [Vec4; 4] {
+    let Mat4 { x_axis, y_axis, z_axis, w_axis } = Mat4::from_cols(a, b, c, d).transpose();
+    [x_axis, y_axis, z_axis, w_axis]
 }

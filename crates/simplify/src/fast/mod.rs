@@ -170,7 +170,7 @@ fn level(mesh: &Mesh, frame: &Frame, engine: Engine, split: Option<Split>) -> Me
         let vertex = vertices.get(*id);
         let moved = vertex.flags.any(Flags::MOVED);
         level.positions.push(if moved {
-            frame.leave(vertex.place)
+            frame.leave(vertex.place())
         } else {
             mesh.positions[origin]
         });

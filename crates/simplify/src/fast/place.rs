@@ -3,6 +3,7 @@
 use glam::{DMat3, DVec3};
 
 use crate::fast::cost::PULL;
+use crate::fast::vertex::Star;
 
 /// What a contraction sweeps, seen from the middle of its edge.
 pub(super) struct Swept {
@@ -55,9 +56,9 @@ impl Swept {
     }
 }
 
-/// The matrix of six numbers.
-pub(super) fn matrix(squares: &[f32; 6]) -> DMat3 {
-    let [xx, yy, zz, xy, xz, yz] = *squares;
+/// The sum of n n'.
+pub(super) fn matrix(star: &Star) -> DMat3 {
+    let [xx, yy, zz, xy, xz, yz] = star.squares();
     let column = |x: f32, y: f32, z: f32| DVec3::new(x.into(), y.into(), z.into());
     DMat3::from_cols(column(xx, xy, xz), column(xy, yy, yz), column(xz, yz, zz))
 }

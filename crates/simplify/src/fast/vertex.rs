@@ -3,7 +3,7 @@
 //! The first line is what a neighbour asks for when it looks for its cheapest edge, the second is the
 //! ring. A look at a star reads both lines of its vertex and one of each neighbour, nothing else.
 
-use glam::Vec3;
+use glam::{Vec3, Vec4};
 
 use crate::fast::ring::RING;
 
@@ -14,10 +14,8 @@ pub(super) const NOBODY: u32 = u32::MAX;
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(128))]
 pub(super) struct Vertex {
-    /// Where it is, in the engine's frame.
-    pub(super) place: Vec3,
-    /// What the faces around it come to, seen from it.
-    pub(super) star: Star,
+    /// Where it is, in the engine's frame, and what the faces around it come to: `place` and `star`.
+    pub(super) seen: Star,
     /// The neighbour that its cheapest edge goes to; of a dead one, the vertex it has gone into.
     pub(super) target: u32,
     /// The square of how far the surface has moved here.
@@ -33,14 +31,15 @@ pub(super) struct Vertex {
     pub(super) ring: [u32; RING],
 }
 
-/// The sums of n n' and of n over the faces around a vertex, n twice the area along the normal.
+/// The sums of n and of n n' over the faces around a vertex, n twice the area along the normal, in
+/// three registers: (the place), n; n n' as xx, yy, zz, xy, xz, yz.
+///
+/// ```text
+/// place.x place.y place.z  n.x | n.y n.z  xx yy | zz xy xz yz
+/// ```
 #[derive(Clone, Copy, Debug, Default)]
 #[repr(C)]
-pub(super) struct Star {
-    pub(super) normal: [f32; 3],
-    /// xx, yy, zz, xy, xz, yz.
-    pub(super) squares: [f32; 6],
-}
+pub(super) struct Star(pub(super) [Vec4; 3]);
 
 /// Yes-or-no facts about a vertex.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -79,61 +78,56 @@ impl Flags {
 impl Star {
     #[inline(always)]
     pub(super) fn add(&mut self, change: &Self) {
-        for k in 0..3 {
-            self.normal[k] += change.normal[k];
-        }
-        for k in 0..6 {
-            self.squares[k] += change.squares[k];
-        }
-    }
-
-    /// The squares of the areas swept over a boundary edge, along `e`; seen from its ends.
-    ///
-    /// A half and a sixth of products of vectors make nine of them against volumes [LT99].
-    #[inline(always)]
-    pub(super) fn boundary(along: Vec3, weight: f32) -> Self {
-        let Vec3 { x, y, z } = along;
-        let squared = x * x + y * y + z * z;
-        let w = weight * squared;
-        let squares = [
-            w * (squared - x * x),
-            w * (squared - y * y),
-            w * (squared - z * z),
-            -w * x * y,
-            -w * x * z,
-            -w * y * z,
-        ];
-        Self { normal: [0.0; 3], squares }
-    }
-
-    #[inline(always)]
-    pub(super) fn face(normal: Vec3) -> Self {
-        let Vec3 { x, y, z } = normal;
-        Self { normal: [x, y, z], squares: [x * x, y * y, z * z, x * y, x * z, y * z] }
+        self.0[0] += change.0[0];
+        self.0[1] += change.0[1];
+        self.0[2] += change.0[2];
     }
 
     #[inline(always)]
     pub(super) fn take(&mut self, change: &Self) {
-        for k in 0..3 {
-            self.normal[k] -= change.normal[k];
-        }
-        for k in 0..6 {
-            self.squares[k] -= change.squares[k];
-        }
+        self.0[0] -= change.0[0];
+        self.0[1] -= change.0[1];
+        self.0[2] -= change.0[2];
+    }
+
+    /// One face, without a place.
+    #[inline(always)]
+    pub(super) fn face(normal: Vec3) -> Self {
+        let Vec3 { x, y, z } = normal;
+        let second = Vec4::new(y, z, x, y) * Vec4::new(1.0, 1.0, x, y);
+        let third = Vec4::new(z, x, x, y) * Vec4::new(z, y, z, z);
+        Self([Vec4::new(0.0, 0.0, 0.0, x), second, third])
+    }
+
+    /// The squares of the areas swept over a boundary edge; seen from its ends.
+    pub(super) fn boundary(along: Vec3, weight: f32) -> Self {
+        let Vec3 { x, y, z } = along;
+        let squared = along.length_squared();
+        let w = weight * squared;
+        Self([
+            Vec4::ZERO,
+            Vec4::new(0.0, 0.0, w * (squared - x * x), w * (squared - y * y)),
+            Vec4::new(w * (squared - z * z), -w * x * y, -w * x * z, -w * y * z),
+        ])
     }
 
     #[inline(always)]
-    pub(super) fn minus(mut self, other: &Self) -> Self {
-        self.take(other);
-        self
+    pub(super) fn normal(&self) -> Vec3 {
+        Vec3::new(self.0[0].w, self.0[1].x, self.0[1].y)
+    }
+
+    /// xx, yy, zz, xy, xz, yz.
+    #[inline(always)]
+    pub(super) fn squares(&self) -> [f32; 6] {
+        let [_, b, c] = &self.0;
+        [b.z, b.w, c.x, c.y, c.z, c.w]
     }
 }
 
 impl Vertex {
     pub(super) fn at(place: Vec3) -> Self {
         Self {
-            place,
-            star: Star::default(),
+            seen: Star([place.extend(0.0), Vec4::ZERO, Vec4::ZERO]),
             target: NOBODY,
             moved: 0.0,
             bucket: 0,
@@ -142,6 +136,18 @@ impl Vertex {
             len: 0,
             ring: [NOBODY; RING],
         }
+    }
+
+    #[inline(always)]
+    pub(super) fn place(&self) -> Vec3 {
+        self.seen.0[0].truncate()
+    }
+
+    /// Puts it at a place, with the star of the faces it has there.
+    #[inline(always)]
+    pub(super) fn put(&mut self, place: Vec3, star: Star) {
+        let Star([first, second, third]) = star;
+        self.seen = Star([place.extend(first.w), second, third]);
     }
 }
 
