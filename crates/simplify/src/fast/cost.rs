@@ -9,7 +9,7 @@
 use glam::{Vec3, Vec4};
 
 use crate::fast::lanes::{LANES, Lanes3, transpose};
-use crate::fast::queue::{NONE, bucket};
+use crate::fast::queue::bucket;
 use crate::fast::vertex::{Flags, NOBODY, Vertex};
 
 /// How strongly the optimum is pulled to the middle of the edge, as in the general engine.
@@ -34,37 +34,42 @@ pub(super) struct Cheapest {
 /// The cheapest edge from `u` around a ring, of those above `u`'s floor.
 #[inline(always)]
 pub(super) fn cheapest(all: &[Vertex], u: &Vertex, ring: &[u32]) -> Cheapest {
-    let mut least = Cheapest { bucket: NONE, target: NOBODY };
-    let mut least_cost = f32::INFINITY;
-    for part in ring.chunks(LANES) {
-        let end = |lane: usize| &all[part[lane.min(part.len() - 1)] as usize];
-        let ends = [end(0), end(1), end(2), end(3)];
+    let (mut least, mut target) = (f32::INFINITY, NOBODY);
+    let mut start = 0;
+    while start < ring.len() {
+        // Lanes beyond the end look at the last one again.
+        let id = |lane: usize| ring[(start + lane).min(ring.len() - 1)];
+        let ids = [id(0), id(1), id(2), id(3)];
+        let ends = [
+            &all[ids[0] as usize],
+            &all[ids[1] as usize],
+            &all[ids[2] as usize],
+            &all[ids[3] as usize],
+        ];
         let special =
             u.flags.0 | ends[0].flags.0 | ends[1].flags.0 | ends[2].flags.0 | ends[3].flags.0;
         let mut costs = costs(u, &ends).to_array();
-        if Flags(special).any(SPECIAL) {
-            correct(&mut costs, all, u, part);
+        if Flags(special).any(SPECIAL) || u.floor > 0 {
+            correct(&mut costs, u, &ends);
         }
-        for (lane, &v) in part.iter().enumerate() {
-            let cost = costs[lane];
-            let bucket = bucket(cost);
-            if cost < least_cost && (u.floor == 0 || bucket > u.floor) {
-                (least_cost, least) = (cost, Cheapest { bucket, target: v });
+        for (cost, id) in costs.into_iter().zip(ids) {
+            if cost < least {
+                (least, target) = (cost, id);
             }
         }
+        start += LANES;
     }
-    least
+    Cheapest { bucket: bucket(least), target }
 }
 
 /// What makes a cost other than that of a free edge.
 const SPECIAL: Flags = Flags(Flags::PINNED.0 | Flags::BARRED.0);
 
-/// Costs of edges with an end that stays where it is, or that may not be contracted.
+/// Costs of edges with an end that stays where it is, or that may not be contracted, or not now.
 #[cold]
-fn correct(costs: &mut [f32; LANES], all: &[Vertex], u: &Vertex, ring: &[u32]) {
-    for (cost, &v) in costs.iter_mut().zip(ring) {
-        let v = &all[v as usize];
-        let pinned = [u, v].map(|end| end.flags.any(Flags::PINNED));
+fn correct(costs: &mut [f32; LANES], u: &Vertex, ends: &[&Vertex; LANES]) {
+    for (cost, v) in costs.iter_mut().zip(ends) {
+        let pinned = [u.flags.any(Flags::PINNED), v.flags.any(Flags::PINNED)];
         *cost = match pinned {
             _ if v.flags.any(Flags::BARRED) || u.flags.any(Flags::BARRED) => f32::INFINITY,
             [false, false] => *cost,
@@ -72,6 +77,9 @@ fn correct(costs: &mut [f32; LANES], all: &[Vertex], u: &Vertex, ring: &[u32]) {
             [true, false] => swept(v, u.place()),
             [false, true] => swept(u, v.place()),
         };
+        if u.floor > 0 && bucket(*cost) <= u.floor {
+            *cost = f32::INFINITY;
+        }
     }
 }
 
@@ -117,12 +125,15 @@ fn costs(u: &Vertex, ends: &[&Vertex; LANES]) -> Vec4 {
     let (uxx, uyy, uzz, uxy, uxz, uyz) =
         (own(uxx), own(uyy), own(uzz), own(uxy), own(uxz), own(uyz));
     let sum = Symmetric([xx + uxx, yy + uyy, zz + uzz, xy + uxy, xz + uxz, yz + uyz]);
-    let less = Symmetric([xx - uxx, yy - uyy, zz - uzz, xy - uxy, xz - uxz, yz - uyz]);
     let trace = sum.0[0] + sum.0[1] + sum.0[2];
     let scale = (trace + own(TINY)).recip();
 
-    let q = less.apply(h);
-    let at_middle = sum.apply(h).dot(h);
+    let (a0h, a1h) = (
+        Symmetric([uxx, uyy, uzz, uxy, uxz, uyz]).apply(h),
+        Symmetric([xx, yy, zz, xy, xz, yz]).apply(h),
+    );
+    let q = a1h - a0h;
+    let at_middle = (a1h + a0h).dot(h);
     let g = n0 + n1;
     let to_unit = (g.dot(g) + own(TINY)).recip();
     // The place on the plane of equal volumes that is next to the middle.

@@ -223,15 +223,15 @@ impl Hood {
 
     /// The dying faces' normals, in the order of the wings they have.
     #[inline(always)]
-    pub(super) fn dying(&self) -> [Vec3; 2] {
-        let [mut first, mut last] = [Vec3::ZERO; 2];
+    pub(super) fn dying(&self) -> (Vec3, Vec3) {
+        let (mut first, mut last) = (Vec3::ZERO, Vec3::ZERO);
         if self.ghost != Some(0) {
             first = self.along.cross(self.seen(0));
         }
         if self.ghost != Some(self.of_v0) {
             last = self.seen(self.of_v0).cross(self.along);
         }
-        [first, last]
+        (first, last)
     }
 
     /// What each spoke's star becomes, less what it was, and the new vertex's star but for boundaries.
@@ -255,15 +255,15 @@ impl Hood {
 
     /// The sums of the old normals around v0 and around v1.
     #[inline(always)]
-    pub(super) fn sums(&self) -> [Vec3; 2] {
-        let mut sums = [Vec3::ZERO; 2];
+    pub(super) fn sums(&self) -> (Vec3, Vec3) {
+        let (mut of_v0, mut of_v1) = (Vec3::ZERO, Vec3::ZERO);
         for i in 0..self.of_v0 {
-            sums[0] += one(&self.old, i);
+            of_v0 += one(&self.old, i);
         }
         for i in self.of_v0..self.len {
-            sums[1] += one(&self.old, i);
+            of_v1 += one(&self.old, i);
         }
-        sums
+        (of_v0, of_v1)
     }
 
     /// The boundary edges among the spokes: where in the ring they end, from which apex before.

@@ -27,6 +27,11 @@ pub(super) fn bucket(cost: f32) -> u16 {
     if cost < f32::INFINITY { bucket as u16 } else { NONE }
 }
 
+/// The bucket of the greatest costs.
+pub(super) const fn last_bucket() -> u16 {
+    BUCKETS as u16 - 1
+}
+
 impl Queue {
     pub(super) fn new() -> Self {
         Self { buckets: vec![Vec::new(); BUCKETS], lowest: BUCKETS }
