@@ -46,6 +46,12 @@ impl Queue {
         }
     }
 
+    /// Those that come next if nothing is put in before them, `count` at most.
+    pub(super) fn upcoming(&self, count: usize) -> &[u32] {
+        let list = self.buckets.get(self.lowest).map_or(&[][..], Vec::as_slice);
+        &list[list.len().saturating_sub(count)..]
+    }
+
     /// The next vertex, and its bucket.
     #[inline(always)]
     pub(super) fn pop(&mut self) -> Option<(u32, u16)> {
