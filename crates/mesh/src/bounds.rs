@@ -34,12 +34,12 @@ impl Bounds {
     #[inline]
     pub fn add(&mut self, point: [f64; 3]) {
         // Comparisons, since `min` minds a NaN on either side, which takes five instructions for one.
-        for axis in 0..3 {
-            if point[axis] < self.min[axis] {
-                self.min[axis] = point[axis];
+        for (axis, x) in point.into_iter().enumerate() {
+            if x < self.min[axis] {
+                self.min[axis] = x;
             }
-            if point[axis] > self.max[axis] {
-                self.max[axis] = point[axis];
+            if x > self.max[axis] {
+                self.max[axis] = x;
             }
         }
     }
