@@ -2,7 +2,7 @@
 //! volume.
 //!
 //! ```text
-//! cargo run --release --example fast -- 5 horse-97k.ply igea.ply dragon.ply bunny.ply
+//! cargo run --release -p meshlod-bench --example fast -- 5 horse-97k.ply igea.ply dragon.ply bunny.ply
 //! ```
 //! Takes a number of rounds, 0 for none, and names of shared meshes.
 

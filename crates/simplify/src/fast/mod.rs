@@ -44,7 +44,8 @@ pub fn fits(mesh: &Mesh, options: &Options) -> bool {
 /// A coarser mesh, and what was done to get it, as [`crate::simplify`] gives it, several times as fast
 /// where it [`fits`].
 ///
-/// Vertices that are not manifold stay where they are. `volume` of the report is left empty.
+/// Vertices that are not manifold stay where they are. `volume` of the report is left empty, and its
+/// estimate of the error is that of the costs alone, blind to tips that are cut off.
 /// # Errors
 /// As [`crate::simplify`].
 pub fn simplify(
