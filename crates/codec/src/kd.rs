@@ -11,7 +11,7 @@ pub(crate) const BLOCK: usize = 32;
 
 /// The vertices that faces use, every [`BLOCK`] in a row close together.
 ///
-/// What is no number is put somewhere.
+/// Coordinates that are no numbers have no place; the others do not suffer from them.
 /// Cost: O(n log n).
 pub(crate) fn blocks_of(mesh: &Mesh) -> Vec<VertexId> {
     let used = mesh.used_vertices();

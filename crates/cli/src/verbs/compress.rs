@@ -128,7 +128,7 @@ impl Compress {
         }
         if !packed.reached {
             let best = percent(100.0 * packed.reduction());
-            let reason = format_args!("too small for what is asked; the reduction is {best}");
+            let reason = format_args!("what is asked is out of reach; the reduction is {best}");
             session.warn(Failure::at(&self.input, reason));
         }
         session.progress.stage(&format!("writing {}", files::name(&self.output)));
@@ -163,6 +163,17 @@ impl Compress {
         }
         if self.resident && kind != Kind::Gltf {
             return Err(Failure::usage("--resident is of .glb"));
+        }
+        let AttributeGoals { normal_error, uv_error, color_error } = &self.attributes;
+        let bounds = match (kind, self.scheme) {
+            (Kind::Resident, _) => None,
+            (Kind::Gltf, None) => *color_error,
+            _ => normal_error.or(*uv_error).or(*color_error),
+        };
+        if bounds.is_some() {
+            return Err(Failure::usage(format_args!(
+                "{name}: such files do not bound such an error"
+            )));
         }
         files::check_place(&self.output).map(|()| kind)
     }
@@ -202,6 +213,7 @@ impl Compress {
             "bytes_positions": positions,
             "bytes_connectivity": connectivity,
             "bytes_attributes": attributes,
+            "bytes_headers": packed.bytes.len() - positions - connectivity - attributes,
             "bytes_total": packed.bytes.len(),
             "bytes_per_triangle": packed.bytes.len() as f64 / packed.faces as f64,
             "reduction": packed.reduction(),

@@ -61,8 +61,14 @@ impl Decompress {
 
 /// What a file begins with says which it is.
 fn decode(bytes: &[u8]) -> Result<Mesh, Malformed> {
-    match bytes.starts_with(&TransportFile::MAGIC) {
-        true => TransportFile::open(bytes)?.decode(),
-        false => Compressed::from_bytes(bytes)?.decode(),
+    if bytes.starts_with(&TransportFile::MAGIC) {
+        return TransportFile::open(bytes)?.decode();
     }
+    if !bytes.starts_with(&Compressed::MAGIC) {
+        return Err(Malformed {
+            at: 0,
+            reason: "neither an .mlq nor an .mlz file begins so".into(),
+        });
+    }
+    Compressed::from_bytes(bytes)?.decode()
 }

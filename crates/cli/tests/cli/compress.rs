@@ -22,6 +22,7 @@ fn every_scheme_gives_the_surface_back_as_close_as_asked() {
         let total = std::fs::metadata(run.path("in.mlq")).unwrap().len() as f64;
         assert_eq!(number(&packed, "bytes_total"), total);
         assert!(sum < total && total < sum + 100.0, "{sum} {total}");
+        assert_eq!(number(&packed, "bytes_headers"), total - sum);
         assert!(number(&packed, "reduction") > 0.6 && packed["reached"] == true, "{packed}");
         let pieces = if scheme == "parts" { "parts" } else { "blocks" };
         assert!(number(&packed, pieces) > 10.0 && number(&packed, "encode_seconds") > 0.0);
@@ -111,7 +112,7 @@ fn a_reduction_that_is_out_of_reach_is_met_as_far_as_it_goes() {
         let way = ["compress", "in.ply", "in.mlq", "--scheme", scheme, "--reduction", "95%"];
         let done = run.run(&way);
         assert_eq!(done.code, 0);
-        assert!(done.err.contains("too small"), "{done:?}");
+        assert!(done.err.contains("out of reach"), "{done:?}");
         assert_eq!(run.run(&[&way[..], &["--strict"]].concat()).code, 1);
     }
     run.sample("sphere", 5_000, "large.ply");
@@ -144,7 +145,10 @@ fn what_is_asked_wrongly_is_wrong_usage() {
     for out in ["out.ply", "out", "-"] {
         assert_eq!(run.run(&["compress", "in.ply", out]).code, 2);
     }
-    let cases: [&[&str]; 9] = [
+    let cases: [&[&str]; 12] = [
+        &["out.mlz", "--normal-error", "1"],
+        &["out.glb", "--color-error", "0.1"],
+        &["out.glb", "--scheme", "parts", "--uv-error", "0.1"],
         &["out.mlz", "--scheme", "parts"],
         &["out.mlz", "--reduction", "70%"],
         &["out.mlz", "--bits", "0"],

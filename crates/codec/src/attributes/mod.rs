@@ -20,7 +20,7 @@ use crate::patch::Rows;
 /// What `f32` does not tell apart is not asked for: a bound of zero is met as closely as that.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AttributeBounds {
-    /// Normals and tangents, in radians. Directions have at most 16 bits twice: .00004.
+    /// Normals and tangents, in radians. Directions have at most 16 bits twice: .00004. One of no length becomes any.
     pub direction_rad: f64,
     /// Texture coordinates: 1 is the whole texture.
     pub uv: f64,
@@ -90,7 +90,7 @@ impl PackedLayer {
         rows: Rows,
         bounds: &AttributeBounds,
     ) -> Self {
-        let bound = bounds.of(layer);
+        let bound = bounds.of(layer, wedges);
         let coding = if is_direction(layer.kind) {
             Coding::Directions { bits: direction_bits(bound) }
         } else {
@@ -130,6 +130,11 @@ impl PackedLayer {
         let mut values = Vec::with_capacity(nodes.len() * self.width);
         nodes.for_each(|numbers| self.coding.values(numbers.as_ref(), &mut values));
         Layer { kind: self.kind, name: self.name.clone(), width: self.width, values }
+    }
+
+    /// How many values a node has.
+    pub(crate) fn width(&self) -> usize {
+        self.width
     }
 
     pub(crate) fn report(&self) -> LayerReport {
@@ -223,8 +228,8 @@ impl Coding {
 }
 
 impl AttributeBounds {
-    /// The bound of a layer, in its own unit.
-    fn of(&self, layer: &Layer) -> f64 {
+    /// The bound of a layer over these wedges, in its own unit.
+    fn of(&self, layer: &Layer, wedges: &[WedgeId]) -> f64 {
         match layer.kind {
             LayerKind::Normal | LayerKind::Tangent => self.direction_rad,
             LayerKind::Uv(_) => self.uv,
@@ -233,12 +238,11 @@ impl AttributeBounds {
             // Whole numbers.
             LayerKind::Joints(_) => 0.5,
             LayerKind::Other => {
-                let values = layer.values.iter().map(|&x| f64::from(x));
-                let [min, max] = [
-                    values.clone().fold(f64::INFINITY, f64::min),
-                    values.fold(f64::NEG_INFINITY, f64::max),
-                ];
-                self.other * (max - min).max(0.0)
+                let values = wedges.iter().flat_map(|&wedge| layer.of(wedge));
+                let range = values.fold([f64::INFINITY, f64::NEG_INFINITY], |[min, max], &x| {
+                    [min.min(x.into()), max.max(x.into())]
+                });
+                self.other * (range[1] - range[0]).max(0.0)
             }
         }
     }

@@ -51,15 +51,16 @@ const GROUP_BYTES: usize = 4 + 3 + 3;
 const FARTHEST: f64 = 1e60;
 
 impl Field {
-    /// That holds all of these.
+    /// That holds all of these, and none beyond 255.
     pub(super) fn of(numbers: impl Iterator<Item = u8> + Clone) -> Self {
         let least = numbers.clone().min().unwrap_or(0);
         let most = numbers.max().unwrap_or(0);
-        Self { least, bits: (u8::BITS - (most - least).leading_zeros()) as u8 }
+        let bits = u8::BITS - (most - least).leading_zeros();
+        Self { least: least.min((256 - (1 << bits)) as u8), bits: bits as u8 }
     }
 
-    fn most(self) -> u32 {
-        u32::from(self.least) + (1 << self.bits) - 1
+    fn is_sound(self) -> bool {
+        u32::from(self.bits) <= u8::BITS && u32::from(self.least) + (1 << self.bits) <= 256
     }
 }
 
@@ -170,10 +171,10 @@ impl Layout {
         let (cell, reach) = (length(f64::MIN_POSITIVE)?, length(0.0)?);
         let units = Units { cell, anchors: [reader.u8()?, reader.u8()?] };
         let mut fields = [Field::default(); 4];
-        for (field, most) in fields.iter_mut().zip([WIDEST, WIDEST, MOST_STEP, MOST_STEP]) {
+        for field in &mut fields {
             *field = Field { least: reader.u8()?, bits: reader.u8()? };
-            if field.bits > 8 || field.most() > u32::from(most) {
-                return Err(reader.wrong(format!("a header has numbers beyond {most}")));
+            if !field.is_sound() {
+                return Err(reader.wrong("headers have numbers beyond 255"));
             }
         }
         let mut this = Self { vertices, centre, units, reach, fields, groups: Vec::new() };
@@ -204,7 +205,11 @@ impl Layout {
                     return Err(format!("the headers of group {number} are beyond the end"));
                 }
                 let count = BLOCK.min(self.vertices - block * BLOCK);
-                end += self.shape(bits, block).bits() as usize * count.div_ceil(2);
+                let shape = self.shape(bits, block);
+                if shape.widths.iter().any(|&width| width > WIDEST) {
+                    return Err(format!("block {block} has a width beyond {WIDEST}"));
+                }
+                end += shape.bits() as usize * count.div_ceil(2);
             }
             end = end.next_multiple_of(WORD);
         }

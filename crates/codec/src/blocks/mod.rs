@@ -42,6 +42,16 @@ pub enum Closeness {
     Error(f64),
 }
 
+impl Closeness {
+    /// A little less close: by a bit, or a quarter of one.
+    pub(crate) fn coarser(self) -> Option<Self> {
+        match self {
+            Self::Bits(bits) => (bits > 2).then_some(Self::Bits(bits - 1)),
+            Self::Error(error) => Some(Self::Error(error * f64::exp2(0.25))),
+        }
+    }
+}
+
 /// What became of the surface, beside what becomes of it in cubic cells of the whole mesh that are as close.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct BlocksReport {

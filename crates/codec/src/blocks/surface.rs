@@ -30,6 +30,9 @@ pub(super) struct Face {
 /// The cosine up to which a face counts as level with its neighbours.
 const LEVEL: f64 = 0.8;
 
+/// Where so many faces meet, no more are looked at for each of them: else the apex of a cone takes the square of them.
+const MANY: usize = 32;
+
 impl Surface {
     pub(super) fn new(mesh: &Mesh, ordered: &[VertexId], centre: DVec3) -> Self {
         let mut numbers = vec![0; mesh.positions.len()];
@@ -116,9 +119,12 @@ impl Surface {
         if apart <= enough {
             return 0.0;
         }
+        if self.around(vertex).nth(MANY).is_some() {
+            return apart;
+        }
         let corners = self.around(vertex).flat_map(|face| face.corners);
-        let wide = corners.flat_map(|corner| self.around(corner as usize));
-        self.apart_from(wide, vertex, moved, enough)
+        let wide = corners.flat_map(|corner| self.around(corner as usize).take(MANY));
+        self.apart_from(wide, vertex, moved, enough).min(apart)
     }
 
     fn apart_from<'f>(
@@ -131,7 +137,7 @@ impl Surface {
         let least = enough * enough;
         let v = vertex as u32;
         // Quarters of its sides, and places in its faces.
-        let points = self.around(vertex).flat_map(|face| {
+        let points = self.around(vertex).take(MANY).flat_map(|face| {
             let (a, b) = (face.after(v), face.after(face.after(v)));
             [[v, v, v, a], [v, v, a, a], [v, a, a, a], [v, v, a, b], [v, a, a, b], [v, a, b, b]]
         });

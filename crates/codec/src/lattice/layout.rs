@@ -300,10 +300,11 @@ impl Layout {
 }
 
 impl Field {
-    /// That holds all of these.
+    /// That holds all of these, and none beyond the last code.
     fn of(codes: impl Iterator<Item = u8> + Clone) -> Self {
         let least = codes.clone().min().unwrap_or(0);
         let most = codes.max().unwrap_or(0);
-        Self { least, bits: u8::BITS - (most - least).leading_zeros() }
+        let bits = u8::BITS - (most - least).leading_zeros();
+        Self { least: least.min((256 - (1 << bits)) as u8), bits }
     }
 }

@@ -52,7 +52,7 @@ pub enum LatticeError {
         exponent: i32,
     },
     /// A cell that is no number.
-    #[error("cells of 2^{0} cannot be: take an exponent from -1000 to 1000")]
+    #[error("cells of 2^{0} cannot be: take an exponent from -960 to 960")]
     Exponent(i32),
 }
 
@@ -64,9 +64,9 @@ const FARTHEST: f64 = (1u64 << 52) as f64;
 impl Lattice {
     /// Cells of 2^`exponent` model units.
     /// # Errors
-    /// An exponent below -1000 or above 1000.
+    /// An exponent below -960 or above 960.
     pub fn new(exponent: i32) -> Result<Self, LatticeError> {
-        let is_one = (-1000..=1000).contains(&exponent);
+        let is_one = (-960..=960).contains(&exponent);
         if is_one { Ok(Self { exponent }) } else { Err(LatticeError::Exponent(exponent)) }
     }
 
@@ -76,7 +76,14 @@ impl Lattice {
     pub fn within(cell: f64) -> Result<Self, LatticeError> {
         let exponent = cell.log2().floor();
         // Also of what is no number.
-        Self::new(if exponent.abs() <= 1000.0 { exponent as i32 } else { i32::MAX })
+        Self::new(if exponent.abs() <= 960.0 { exponent as i32 } else { i32::MAX })
+    }
+
+    /// With cells twice as large.
+    /// # Errors
+    /// As [`Lattice::new`].
+    pub fn coarser(self) -> Result<Self, LatticeError> {
+        Self::new(self.exponent + 1)
     }
 
     /// With cells half as large.

@@ -1,12 +1,11 @@
 //! The file `.mlq`: docs/formats/mlq.md.
 
-use super::{BLOCKS_PER_PATCH, Compressed, Exceptions, Homes, Positions};
+use super::{BLOCKS_PER_PATCH, Compressed, Exceptions, Homes, MOST_VALUES, Positions};
 use crate::attributes::{Packed, PackedLayer};
 use crate::bytes::{Malformed, Reader};
 use crate::kd::BLOCK;
 use crate::patch::{Patches, Rows};
 
-const MAGIC: [u8; 8] = *b"meshlodq";
 const VERSION: u32 = 1;
 /// The magic bytes, the version, the scheme, whether there are doubles, how many layers there are, of the three sections how
 /// long they are and their sums, and the sum of all that.
@@ -15,6 +14,9 @@ const SUMS: usize = 8 + 4 + 1 + 1 + 2;
 const SUM: usize = 8 + 4;
 
 impl Compressed {
+    /// What every such file begins with.
+    pub const MAGIC: [u8; 8] = *b"meshlodq";
+
     /// The bytes of a file.
     pub fn to_bytes(&self) -> Vec<u8> {
         let mut sections = [Vec::new(), Vec::new(), Vec::new()];
@@ -31,7 +33,7 @@ impl Compressed {
         self.layers.iter().for_each(|layer| layer.store(attributes));
 
         let mut bytes = Vec::with_capacity(self.sizes().total);
-        bytes.extend(MAGIC);
+        bytes.extend(Self::MAGIC);
         bytes.extend(VERSION.to_le_bytes());
         bytes.push(self.positions.tag());
         bytes.push(matches!(self.homes, Homes::Doubles(_)).into());
@@ -70,7 +72,7 @@ impl Compressed {
     /// Bytes that are none, or were spoilt.
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, Malformed> {
         let mut reader = Reader::new(bytes);
-        if reader.take(MAGIC.len())? != MAGIC {
+        if reader.take(Self::MAGIC.len())? != Self::MAGIC {
             return Err(Malformed {
                 at: 0,
                 reason: "not an .mlq file: it begins otherwise".into(),
@@ -134,6 +136,9 @@ fn restore(
         Positions::Parts(parts) => (Homes::Own, parts.rows().clone(), 1),
         _ if has_doubles => {
             let doubles = Rows::restore(blocks, faces)?;
+            if count + doubles.nodes() > u32::MAX as usize {
+                return Err(faces.wrong("more wedges than are numbered"));
+            }
             let rows = (0..blocks).flat_map(|at| [block(at), doubles.range(at).len()]);
             let rows = Rows::new(rows);
             (Homes::Doubles(Packed::restore(doubles, 1, faces)?), rows, 2 * BLOCKS_PER_PATCH)
@@ -148,8 +153,14 @@ fn restore(
     if let Positions::Parts(_) = positions {
         homes = Homes::Parts(Exceptions::restore(faces)?);
     }
-    let layers = (0..layers)
-        .map(|_| PackedLayer::restore(rows.clone(), attributes))
-        .collect::<Result<_, _>>()?;
+    let (count, mut layers, mut values) = (layers, Vec::new(), 0);
+    for _ in 0..count {
+        let layer = PackedLayer::restore(rows.clone(), attributes)?;
+        values += layer.width();
+        if values > MOST_VALUES {
+            return Err(attributes.wrong(format!("more than {MOST_VALUES} values a wedge")));
+        }
+        layers.push(layer);
+    }
     Ok(Compressed { positions, patches, homes, layers })
 }

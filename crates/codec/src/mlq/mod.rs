@@ -81,9 +81,9 @@ pub enum CompressError {
         "{0} faces are more than {MOST_FACES}, which is what one file holds: cut the mesh in tiles"
     )]
     TooManyFaces(usize),
-    /// Attributes of more layers, wider ones or with longer names than files tell.
+    /// Attributes of more values, or with longer names, than files tell.
     #[error(
-        "layer \"{0}\" is one of more than 65535, or more than 255 wide, or has a name of more than 65535 bytes"
+        "up to layer \"{0}\" wedges have more than {MOST_VALUES} values, or its name has more than 65535 bytes"
     )]
     Layer(String),
     /// Not a number of bits.
@@ -106,6 +106,9 @@ pub enum CompressError {
     Blocks(#[from] BlocksError),
 }
 
+/// So many values may wedges have in all layers: else a file of values that are all the same would be a small one of a
+/// mesh without end.
+const MOST_VALUES: usize = 255;
 /// So many faces have less than 4 GB of bits, whatever they are.
 const MOST_FACES: usize = 1 << 27;
 /// So many blocks of vertices share a patch of about 256 faces. With twice as many a face takes half a bit less.
@@ -147,6 +150,9 @@ impl Compressed {
     /// A mesh in parts of its own. Faces that repeat a vertex are left out.
     /// # Errors
     /// No mesh, no faces, or nothing that a file can have.
+    ///
+    /// # Panics
+    /// Parts of another mesh.
     pub fn in_parts(
         mesh: &Mesh,
         parts: &Parts,
@@ -294,6 +300,10 @@ impl Compressed {
                         home[node] = home[is as usize];
                     }
                 }
+                if kept.len() != parts.vertices() {
+                    let reason = format!("{} vertices, not {}", kept.len(), parts.vertices());
+                    return Err(Malformed { at: 0, reason });
+                }
                 Ok((home, kept))
             }
             (Homes::Doubles(numbers), _) => {
@@ -368,9 +378,10 @@ fn check(mesh: &Mesh) -> Result<(), CompressError> {
         1..=MOST_FACES => {}
         many => return Err(CompressError::TooManyFaces(many)),
     }
-    let layers = mesh.attributes.iter().flat_map(|attributes| attributes.layers.iter().zip(0..));
-    for (layer, at) in layers {
-        if at > u16::MAX.into() || !PackedLayer::is_told(layer) {
+    let mut values = 0;
+    for layer in mesh.attributes.iter().flat_map(|attributes| &attributes.layers) {
+        values += layer.width;
+        if values > MOST_VALUES || !PackedLayer::is_told(layer) {
             return Err(CompressError::Layer(layer.name.clone()));
         }
         if let Some(at) = layer.values.iter().position(|x| !x.is_finite()) {

@@ -157,7 +157,14 @@ fn on_lattice(
         Goal::Cell(cell) => (Lattice::within(cell)?, true),
         Goal::Reduction(part) => finest(mesh, part)?,
     };
-    Ok(Compression { reached, ..Compressed::on_lattice(mesh, lattice, bounds)? })
+    let mut done = Compressed::on_lattice(mesh, lattice, bounds)?;
+    if let (Target::Reduction(part), true) = (target, reached) {
+        // Within blocks the order is another now, and so may be a bit.
+        if done.compressed.reduction() < part {
+            done = Compressed::on_lattice(mesh, lattice.coarser()?, bounds)?;
+        }
+    }
+    Ok(Compression { reached, ..done })
 }
 
 /// The finest lattice that leaves a reduction, or that of a single cell, and whether it does.
@@ -184,12 +191,25 @@ fn in_blocks(
     target: Target,
     bounds: &AttributeBounds,
 ) -> Result<Compression, CompressError> {
-    let (closeness, reached) = match (target.goal(mesh, MEAN_OF_CELL)?, target) {
+    let (mut closeness, reached) = match (target.goal(mesh, MEAN_OF_CELL)?, target) {
         (Goal::Reduction(part), _) => closest(mesh, part)?,
         (Goal::Cell(_), Target::Bits(bits)) => (Closeness::Bits(bits), true),
         (Goal::Cell(cell), _) => (Closeness::Error(cell * MEAN_OF_CELL), true),
     };
-    Ok(Compression { reached, ..Compressed::in_blocks(mesh, closeness, bounds)? })
+    let mut done = Compressed::in_blocks(mesh, closeness, bounds)?;
+    if let (Target::Reduction(part), true) = (target, reached) {
+        // Within blocks the order is another now, and so may be a bit.
+        while done.compressed.reduction() < part {
+            let Some(coarser) = closeness.coarser() else { break };
+            closeness = coarser;
+            done = Compressed::in_blocks(mesh, closeness, bounds)?;
+        }
+    }
+    let reached = match target {
+        Target::Reduction(part) => done.compressed.reduction() >= part,
+        _ => reached,
+    };
+    Ok(Compression { reached, ..done })
 }
 
 /// The least distance that is found to leave a reduction, or the greatest, and whether it does.

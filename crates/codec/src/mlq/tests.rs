@@ -99,6 +99,59 @@ fn every_scheme_gives_the_mesh_back_from_bytes() {
     }
 }
 
+/// Triangles anywhere, some of them far larger than others.
+fn soup(seed: u32) -> Mesh {
+    let number = |i: u32| {
+        let hashed = (i ^ seed.wrapping_mul(0x9e37_79b9)).wrapping_mul(0x85eb_ca6b);
+        let hashed = (hashed ^ (hashed >> 13)).wrapping_mul(0xc2b2_ae35);
+        f64::from(hashed ^ (hashed >> 16)) / f64::from(u32::MAX)
+    };
+    let scale = |v: u32| if number(7000 + v) < 0.1 { 100.0 } else { 1.0 };
+    let count = 10 + seed * 13 % 200;
+    let place = |v: u32| [0, 1, 2].map(|k| number(3 * v + k) * scale(v));
+    let corner = |i: u32| (number(20_000 + i) * f64::from(count)) as u32 % count;
+    let faces = (0..2 * count).map(|f| [0, 1, 2].map(|k| corner(3 * f + k)));
+    fixtures::mesh(&(0..count).map(place).collect::<Vec<_>>(), &faces.collect::<Vec<_>>())
+}
+
+#[test]
+fn what_is_written_is_read_whatever_the_cells() {
+    for seed in 0..24 {
+        let (mesh, bits) = (soup(seed), 2 + seed % 23);
+        for scheme in [Scheme::Parts(Cells::Centred), Scheme::Lattice, Scheme::Blocks] {
+            let done = compress(&mesh, scheme, Target::Bits(bits), &AttributeBounds::default());
+            let Ok(Compression { compressed, vertices, .. }) = done else { continue };
+            let read = Compressed::from_bytes(&compressed.to_bytes()).unwrap();
+            assert_eq!(read.decode().unwrap().positions.len(), vertices.len());
+        }
+    }
+}
+
+#[test]
+fn many_faces_at_one_vertex_are_compressed_too() {
+    let rim = |i: u32| (f64::from(i) * 0.01).sin_cos();
+    let points = (0..600).map(|i| [rim(i).0, rim(i).1, f64::from(i) * 1e-3]);
+    let points: Vec<_> = std::iter::once([0.0, 0.0, 1.0]).chain(points).collect();
+    let faces: Vec<_> = (1..600).map(|i| [0, i, i + 1]).collect();
+    let mesh = fixtures::mesh(&points, &faces);
+    for compressed in by_schemes(&mesh) {
+        assert_eq!(compressed.decode().unwrap().faces.len(), faces.len());
+    }
+}
+
+#[test]
+fn a_reduction_is_kept_or_said_not_to_be() {
+    for mesh in [sample::gyroid(3000), sample::sphere(600), fixtures::grid(6)] {
+        for scheme in [Scheme::Parts(Cells::Centred), Scheme::Lattice, Scheme::Blocks] {
+            for part in [0.5, 0.6, 0.7] {
+                let target = Target::Reduction(part);
+                let done = compress(&mesh, scheme, target, &AttributeBounds::default()).unwrap();
+                assert_eq!(done.reached, done.compressed.reduction() >= part);
+            }
+        }
+    }
+}
+
 #[test]
 fn faces_are_where_the_lattice_puts_them_with_their_values() {
     for mut mesh in meshes() {

@@ -114,7 +114,8 @@ impl PackedParts {
             offsets.push(offset);
         }
         let nodes: u64 = sizes.iter().map(|&size| size as u64).sum();
-        if nodes > u32::MAX.into() || u64::from(vertices) > nodes {
+        if nodes > u32::MAX.into() || u64::from(vertices) > nodes || (vertices == 0) != (nodes == 0)
+        {
             return Err(reader.wrong(format!("{vertices} vertices in {nodes} positions")));
         }
         let size = usize::try_from(3 * nodes).unwrap_or(usize::MAX);

@@ -1,7 +1,7 @@
 //! Faces in patches, each decoded alone: told by how they grow from one another.
 //!
 //! What faces have at their corners, *nodes*, lies in rows; so many rows in a row belong to a patch, and faces are in
-//! the patch that has most of their corners. A patch grows over its edges as a cut-border machine does [GS98]: across
+//! the first patch that has one of their corners: so of two patches only one has nodes of the other. A patch grows over its edges as a cut-border machine does [GS98]: across
 //! each open edge there is nothing, or a face whose third corner is new, or a neighbour of the edge on the border,
 //! or any other. New nodes come in the order in which their rows have them, so most faces need no index at all.
 
@@ -48,11 +48,14 @@ const PATCH: usize = 8;
 
 impl Rows {
     /// Rows of that many nodes each.
+    ///
+    /// # Panics
+    /// More nodes than are numbered.
     pub(crate) fn new(sizes: impl IntoIterator<Item = usize>) -> Self {
         let mut starts = vec![0];
         let mut end = 0;
         starts.extend(sizes.into_iter().map(|size| {
-            end += size as u32;
+            end = u32::try_from(end as usize + size).expect("nodes are numbered by 32 bits");
             end
         }));
         Self { starts }
@@ -216,7 +219,8 @@ impl Patches {
     }
 }
 
-/// The faces of each patch: those with most of their corners there.
+/// The faces of each patch: those with a corner there, and none in one before. By the majority of corners patches have
+/// twice as many nodes of others, and faces take 1.3 bits more.
 fn members(
     faces: &[[u32; 3]],
     row_of: &[u32],

@@ -80,7 +80,7 @@ impl<'a> Regrowth<'a> {
             Code::Own => self.own(context)?,
             Code::Foreign => self.foreign()?,
             Code::Known => return self.known(),
-            _ => return Err(self.bits.wrong("a face that starts anew has no border")),
+            Code::Next | Code::Previous | Code::Nothing => unreachable!("a node is asked for"),
         };
         self.met.push(node);
         Ok(self.front.meet())

@@ -27,13 +27,13 @@ pub(super) enum Code {
 /// From the most frequent on, by how many ends of the gate are not the patch's own, and at last where there is no gate:
 /// each is so many ones, and a zero but for the last. On ten meshes steps take 3.2 bits a face so, 4.0 by
 /// one list for all.
-const CODES: [[Code; 6]; 4] = {
+const CODES: [&[Code]; 4] = {
     use Code::*;
     [
-        [Own, Previous, Next, Nothing, Foreign, Known],
-        [Foreign, Own, Previous, Next, Nothing, Known],
-        [Nothing, Own, Foreign, Previous, Next, Known],
-        [Own, Foreign, Known, Nothing, Next, Previous],
+        &[Own, Previous, Next, Nothing, Foreign, Known],
+        &[Foreign, Own, Previous, Next, Nothing, Known],
+        &[Nothing, Own, Foreign, Previous, Next, Known],
+        &[Own, Foreign, Known],
     ]
 };
 
@@ -53,7 +53,7 @@ pub(super) struct Place {
 /// What is known before a step.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Context {
-    codes: &'static [Code; 6],
+    codes: &'static [Code],
     /// The row that a new node is likely in.
     row: u32,
 }
@@ -70,11 +70,11 @@ impl Book {
     /// Of a step across a gate between nodes of these rows, if there is one.
     pub(super) fn context(&self, gate: Option<[u32; 2]>) -> Context {
         let Some([from, to]) = gate else {
-            return Context { codes: &CODES[3], row: self.own.start };
+            return Context { codes: CODES[3], row: self.own.start };
         };
         let own = [to, from].into_iter().filter(|row| self.own.contains(row));
         Context {
-            codes: &CODES[2 - own.clone().count()],
+            codes: CODES[2 - own.clone().count()],
             row: own.clone().next().unwrap_or(self.own.start),
         }
     }
@@ -141,8 +141,12 @@ impl Book {
     }
 
     pub(super) fn next(own: Range<u32>, rows: &Rows, bits: &mut Cursor) -> Result<Self, Malformed> {
+        let count = next_count(bits)?;
+        if count > (rows.len() - own.len()) as u64 {
+            return Err(bits.wrong(format!("there are no {count} rows of others")));
+        }
         let mut foreign = Vec::new();
-        for _ in 0..next_count(bits)? {
+        for _ in 0..count {
             let row = bits.next(width(rows.len()))? as u32;
             if row as usize >= rows.len() {
                 return Err(bits.wrong(format!("there are {} rows, and no row {row}", rows.len())));

@@ -73,10 +73,13 @@ impl Compress {
         if mesh.attributes.is_some() {
             left_out.push("left out: attributes; parts are the surface alone".into());
         }
-        let positions: usize = quantized.iter().map(|part| 4 * part.positions.len()).sum();
+        // Positions are padded to four bytes, and a part has a matrix.
+        let positions: usize =
+            quantized.iter().map(|part| 4 * part.positions.len() + size_of_val(&part.matrix)).sum();
+        let index = |part: &QuantizedPart| if part.positions.len() < 65_536 { 2 } else { 4 };
+        let indices: usize = quantized.iter().map(|part| 3 * part.faces.len() * index(part)).sum();
         Ok(Packed {
-            // Positions are padded to four bytes; the rest are indices and the document.
-            sizes: [positions, bytes.len() - positions, 0],
+            sizes: [positions, indices.min(bytes.len().saturating_sub(positions)), 0],
             vertices: parts.vertices(),
             faces,
             pieces: ("parts", quantized.len()),

@@ -23,9 +23,12 @@ impl Compress {
         if mesh.attributes.is_some() {
             left_out.push("left out: attributes; .mlz has the surface alone".into());
         }
-        let TransportSizes { positions, connectivity, .. } = done.sizes;
+        let TransportSizes { positions, connectivity, headers } = done.sizes;
+        // Tables, index and states of the coder are what decoding needs, for both: by what they are for.
+        let of_positions = headers * positions / (positions + connectivity);
+        let positions = (positions + of_positions).round() as usize;
         Ok(Packed {
-            sizes: [positions.round() as usize, connectivity.round() as usize, 0],
+            sizes: [positions, done.bytes.len() - positions, 0],
             vertices: file.vertices(),
             faces: file.faces(),
             pieces: ("blocks", done.blocks),
