@@ -81,12 +81,13 @@ fn what_is_sent_comes_back() {
 fn gltf_is_read_back_by_itself() {
     let run = Run::new();
     run.sample("torus", 5_000, "in.glb");
-    let ways: [&[&str]; 3] = [&["--bits", "12"], &["--resident"], &["--scheme", "parts"]];
+    let ways: [&[&str]; 3] =
+        [&["--bits", "12"], &["--resident"], &["--scheme", "parts", "--bits", "9"]];
     for way in ways {
         let packed = run.json(&[&["compress", "in.glb", "out.glb"], way].concat());
         assert!(number(&packed, "reduction") > 0.1, "{way:?}: {packed}");
         let apart = run.json(&["measure", "in.glb", "out.glb"]);
-        assert!(number(&apart["forward"], "mean_percent") < 0.02, "{way:?}: {apart}");
+        assert!(number(&apart["forward"], "mean_percent") < 0.05, "{way:?}: {apart}");
         let [was, is] = ["in.glb", "out.glb"].map(|file| run.json(&["info", file]));
         assert_eq!(was["faces"], is["faces"]);
     }
