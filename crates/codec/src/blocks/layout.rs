@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::frame::{ANGLE_BITS, Frame, NORMAL_BITS};
-use super::shape::{MOST_STEP, Shape, Units, WIDEST, numbers};
+use super::shape::{Shape, Units, WIDEST, numbers};
 use crate::bits::Bits;
 use crate::bytes::{Malformed, Reader};
 use crate::kd::BLOCK;

@@ -46,7 +46,6 @@ pub(super) struct Wanted {
 
 /// The numbers of two vertices are below this power of two, together.
 pub(super) const WIDEST: u8 = 56;
-pub(super) const MOST_STEP: u8 = 255;
 /// Farther from the middle of its group no block is told.
 const FARTHEST: f64 = (1 << 30) as f64;
 
