@@ -69,10 +69,12 @@ fn push_any(number: u32, symbols: &mut Vec<Symbol>) {
 
 /// How far all vertices but the first are from where they are expected, of four blocks at most.
 pub(super) fn tell(walks: &[Walk], cells: &[Cells], models: &Models) -> [Vec<Told>; LANES] {
-    let at = |lane: usize, v: u16| {
-        let v = walks.get(lane).and_then(|walk| walk.vertices.get(usize::from(v)));
-        v.map_or(Vec4::ZERO, |&v| cells[v as usize].extend(0.0))
-    };
+    // Side by side as in the decoder: each is asked for some six times.
+    let placed: [Vec<Vec4>; LANES] = std::array::from_fn(|lane| {
+        let vertices = walks.get(lane).map_or(&[][..], |walk| &walk.vertices);
+        vertices.iter().map(|&v| cells[v as usize].extend(0.0)).collect()
+    });
+    let at = |lane: usize, v: u16| placed[lane].get(usize::from(v)).copied().unwrap_or(Vec4::ZERO);
     let longest = walks.iter().map(|walk| walk.births.len()).max().unwrap_or(0);
     let mut told: [Vec<Told>; LANES] = std::array::from_fn(|_| Vec::with_capacity(3 * longest));
     let mut trends = Trends::new();

@@ -50,7 +50,13 @@ impl<'a> Walker<'a> {
 
     /// A block of such faces; it is begun at the first of them, and so are pieces of it that are apart.
     pub(super) fn walk(&mut self, block: u32, members: &[u32]) -> Walk {
-        let mut out = Walk { faces: members.len(), ..Walk::default() };
+        let mut out = Walk {
+            faces: members.len(),
+            steps: Vec::with_capacity(2 * members.len()),
+            births: Vec::with_capacity(members.len()),
+            vertices: Vec::with_capacity(members.len()),
+            ..Walk::default()
+        };
         self.border.clear();
         self.sides.clear();
         let mut rest = members.iter();
@@ -118,7 +124,9 @@ impl<'a> Walker<'a> {
             self.sides[usize::from(at)] = to_apex;
             return Step::Behind;
         }
-        let (step, from) = match self.border.find(local) {
+        // Most are new: no need to look for them.
+        let known = if local == NONE { None } else { self.border.find(local) };
+        let (step, from) = match known {
             Some(other) => {
                 let by = OTHERS.iter().position(|&(by, _)| walk(&self.border, at, by) == other);
                 out.others.push(by.ok_or(other));
