@@ -81,7 +81,7 @@ pub fn write(scene: &Scene, levels: &[Level], stem: &str) -> Result<Written, Unf
     Output::of(scene, levels, None)?.into_files(scene, stem)
 }
 
-/// Writes a scene as [`write`], but small as [`write_small_glb`] has it.
+/// Writes a scene as [`write()`], but small as [`write_small_glb`] has it.
 ///
 /// # Errors
 /// As for [`write_small_glb`], but for the size.
