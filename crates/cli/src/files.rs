@@ -24,6 +24,10 @@ pub fn name(path: &Path) -> String {
 /// Reads a mesh file, or standard input.
 pub fn read(path: &Path, reading: &Reading, session: &Session) -> Result<Scene, Failure> {
     session.progress.stage(&format!("reading {}", name(path)));
+    if let Some(verb) = opened_by(path) {
+        let reason = format_args!("meshlod {verb} gives the mesh that it holds");
+        return Err(Failure::at(path, reason));
+    }
     if !is_pipe(path) {
         return Ok(meshlod::read(path, &reading.options())?);
     }
@@ -32,6 +36,13 @@ pub fn read(path: &Path, reading: &Reading, session: &Session) -> Result<Scene, 
     // What a pipe names beside itself is not there.
     read_bytes(&bytes, format, &mut |_| None, &reading.options())
         .map_err(|error| Failure::at(path, error))
+}
+
+/// The verb for our own files, which are no meshes by themselves.
+fn opened_by(path: &Path) -> Option<&'static str> {
+    let suffix = path.extension()?.to_str()?;
+    let verbs = [("mlq", "decompress"), ("mlz", "decompress"), ("mlod", "extract")];
+    verbs.into_iter().find(|(of, _)| suffix.eq_ignore_ascii_case(of)).map(|(_, verb)| verb)
 }
 
 /// The bytes of a file, or of standard input.

@@ -103,6 +103,7 @@ fn people_read_what_became_of_it() {
         assert!(done.text().contains(word), "{word}: {done:?}");
     }
     assert!(run.run(&["decompress", "in.mlq", "out.ply"]).text().contains("decode_seconds: "));
+    assert!(run.run(&["info", "in.mlq"]).only_line().contains("decompress"));
 }
 
 #[test]
