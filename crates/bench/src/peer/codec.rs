@@ -1,10 +1,7 @@
 //! meshoptimizer's codecs of vertices and indices.
 
 use meshlod::mesh::VertexId;
-use meshopt::{
-    encode_index_buffer, encode_vertex_buffer, optimize_vertex_cache_strip,
-    optimize_vertex_fetch_remap, remap_index_buffer, remap_vertex_buffer,
-};
+use meshopt::{encode_index_buffer, encode_vertex_buffer, optimize_vertex_cache_strip};
 
 /// What positions and faces take by meshoptimizer's codecs, in bytes: positions as four `u16`, in the order in which
 /// faces in the order for strips come to them.
@@ -13,15 +10,27 @@ use meshopt::{
 /// Where the library refuses what it has ordered itself.
 pub fn meshopt_codec(positions: &[[u16; 3]], faces: &[[VertexId; 3]]) -> [usize; 2] {
     let indices: Vec<u32> = faces.iter().flatten().map(|v| v.0).collect();
-    let indices = optimize_vertex_cache_strip(&indices, positions.len());
-    let padded: Vec<[u16; 4]> = positions.iter().map(|&[x, y, z]| [x, y, z, 0]).collect();
-    let remap = optimize_vertex_fetch_remap(&indices, padded.len());
-    let used = remap.iter().filter(|&&to| to != u32::MAX).count();
-    let indices = remap_index_buffer(Some(&indices), indices.len(), &remap);
-    let vertices = remap_vertex_buffer(&padded, used, &remap);
-    let vertices = encode_vertex_buffer(&vertices).expect("four u16 are eight bytes");
-    let indices = encode_index_buffer(&indices, used).expect("indices are in range");
-    [vertices.len(), indices.len()]
+    let mut indices = optimize_vertex_cache_strip(&indices, positions.len());
+    let vertices = by_first_use(&mut indices, positions);
+    let bytes = encode_vertex_buffer(&vertices).expect("four u16 are eight bytes").len();
+    [bytes, encode_index_buffer(&indices, vertices.len()).expect("indices are in range").len()]
+}
+
+/// The vertices in the order in which indices come to them; those that none comes to are left out. The crate's own
+/// way (`optimize_vertex_fetch_remap`, meshopt 0.7.0) gives a map that is too short where there are such.
+fn by_first_use(indices: &mut [u32], positions: &[[u16; 3]]) -> Vec<[u16; 4]> {
+    let mut number = vec![u32::MAX; positions.len()];
+    let mut vertices = Vec::new();
+    for index in indices {
+        let [x, y, z] = positions[*index as usize];
+        let number = &mut number[*index as usize];
+        if *number == u32::MAX {
+            *number = vertices.len() as u32;
+            vertices.push([x, y, z, 0]);
+        }
+        *index = *number;
+    }
+    vertices
 }
 
 #[cfg(test)]
@@ -38,5 +47,13 @@ mod tests {
         let [vertices, indices] = meshopt_codec(&positions, &mesh.faces);
         assert!((1..8 * positions.len()).contains(&vertices), "{vertices}");
         assert!((1..4 * mesh.faces.len()).contains(&indices), "{indices}");
+    }
+
+    #[test]
+    fn vertices_that_nothing_uses_are_left_out() {
+        let mut indices = [4, 1, 3, 3, 1, 0];
+        let vertices = by_first_use(&mut indices, &[0, 1, 2, 3, 4].map(|x| [x; 3]));
+        assert_eq!(vertices.iter().map(|v| v[0]).collect::<Vec<_>>(), [4, 1, 3, 0]);
+        assert_eq!(indices, [0, 1, 2, 2, 1, 3]);
     }
 }

@@ -89,7 +89,7 @@ impl Compressed {
         if crc32fast::hash(head).to_le_bytes() != sum {
             return Err(reader.wrong("the header has been spoilt: another sum"));
         }
-        let (scheme, has_doubles, layers) = (reader.u8()?, reader.u8()?, reader.u16()?);
+        let (scheme, has_doubles, count) = (reader.u8()?, reader.u8()?, reader.u16()?);
         if has_doubles > 1 {
             return Err(reader.wrong(format!("flags {has_doubles:#x} are not known")));
         }
@@ -105,33 +105,38 @@ impl Compressed {
                 false => Err(section.wrong(format!("the {what} have been spoilt: another sum"))),
             }
         };
-        let mut positions = section("positions", sums[0])?;
-        let mut faces = section("faces", sums[1])?;
-        let mut attributes = section("attributes", sums[2])?;
+        let positions = section("positions", sums[0])?;
+        let faces = section("faces", sums[1])?;
+        let attributes = section("attributes", sums[2])?;
         reader.finish()?;
-        let this = restore(
-            scheme,
-            has_doubles == 1,
-            layers,
-            [&mut positions, &mut faces, &mut attributes],
-        )?;
-        [positions, faces, attributes].iter().try_for_each(Reader::finish)?;
-        Ok(this)
+        let positions = whole(positions, |reader| Positions::restore(scheme, reader))?;
+        let (patches, homes) =
+            whole(faces, |reader| restore_faces(reader, &positions, has_doubles == 1))?;
+        let layers = whole(attributes, |reader| restore_layers(reader, count, patches.rows()))?;
+        Ok(Self { positions, patches, homes, layers })
     }
 }
 
-/// What is in the sections of positions, faces and attributes.
-fn restore(
-    scheme: u8,
+/// What is read of a section, if that is all of it.
+fn whole<T>(
+    mut section: Reader,
+    read: impl FnOnce(&mut Reader) -> Result<T, Malformed>,
+) -> Result<T, Malformed> {
+    let this = read(&mut section)?;
+    section.finish()?;
+    Ok(this)
+}
+
+/// Faces, and which vertices their nodes are.
+fn restore_faces(
+    faces: &mut Reader,
+    positions: &Positions,
     has_doubles: bool,
-    layers: u16,
-    [positions, faces, attributes]: [&mut Reader; 3],
-) -> Result<Compressed, Malformed> {
-    let positions = Positions::restore(scheme, positions)?;
+) -> Result<(Patches, Homes), Malformed> {
     let count = positions.len();
     let block = |at: usize| BLOCK.min(count - BLOCK * at);
     let blocks = count.div_ceil(BLOCK);
-    let (mut homes, rows, rows_per_patch) = match &positions {
+    let (mut homes, rows, rows_per_patch) = match positions {
         Positions::Parts(_) if has_doubles => return Err(faces.wrong("parts have no doubles")),
         Positions::Parts(parts) => (Homes::Own, parts.rows().clone(), 1),
         _ if has_doubles => {
@@ -145,15 +150,23 @@ fn restore(
         }
         _ => (Homes::Own, Rows::new((0..blocks).map(block)), BLOCKS_PER_PATCH),
     };
-    let patches = Patches::restore(rows.clone(), rows_per_patch, faces)?;
+    let patches = Patches::restore(rows, rows_per_patch, faces)?;
     // Each is at a corner, or there would be no need of it; and a face takes bits.
-    if rows.nodes() > 3 * patches.face_count() {
+    if patches.rows().nodes() > 3 * patches.face_count() {
         return Err(faces.wrong("more nodes than corners of faces"));
     }
     if let Positions::Parts(_) = positions {
         homes = Homes::Parts(Exceptions::restore(faces)?);
     }
-    let (count, mut layers, mut values) = (layers, Vec::new(), 0);
+    Ok((patches, homes))
+}
+
+fn restore_layers(
+    attributes: &mut Reader,
+    count: u16,
+    rows: &Rows,
+) -> Result<Vec<PackedLayer>, Malformed> {
+    let (mut layers, mut values) = (Vec::new(), 0);
     for _ in 0..count {
         let layer = PackedLayer::restore(rows.clone(), attributes)?;
         values += layer.width();
@@ -162,5 +175,5 @@ fn restore(
         }
         layers.push(layer);
     }
-    Ok(Compressed { positions, patches, homes, layers })
+    Ok(layers)
 }

@@ -1,6 +1,7 @@
 //! A whole mesh that stays compressed: positions by one of the schemes, faces in patches, attributes by the same rows.
 
 mod file;
+mod homes;
 mod nodes;
 mod positions;
 mod target;
@@ -11,11 +12,12 @@ mod unite;
 use meshlod_mesh::{Attributes, Mesh, MeshError, VertexId, WedgeId, merge_equal_wedges};
 use thiserror::Error;
 
+use self::homes::Homes;
 use self::nodes::Nodes;
 use self::positions::Positions;
 pub use self::target::{Compression, Scheme, Target, compress, parts_for};
 use self::unite::Exceptions;
-use crate::attributes::{AttributeBounds, LayerReport, Packed, PackedLayer};
+use crate::attributes::{AttributeBounds, LayerReport, PackedLayer};
 use crate::blocks::{BlocksError, Closeness, VertexBlocks};
 use crate::bytes::Malformed;
 use crate::kd::{BLOCK, blocks_of};
@@ -33,17 +35,6 @@ pub struct Compressed {
     /// Where a wedge that is not its vertex's first has its position.
     homes: Homes,
     layers: Vec<PackedLayer>,
-}
-
-/// How nodes come to vertices.
-#[derive(Clone, Debug, PartialEq)]
-enum Homes {
-    /// Each is one.
-    Own,
-    /// Every second row has further wedges of vertices in the row before: their numbers there.
-    Doubles(Packed),
-    /// Parts have a vertex once each.
-    Parts(Exceptions),
 }
 
 /// What a compressed mesh takes, in bytes.
@@ -195,7 +186,7 @@ impl Compressed {
         let ordered: Vec<_> = order.iter().filter(is_first).map(vertex).collect();
         let homes = match has_doubles {
             false => Homes::Own,
-            true => Homes::Doubles(doubles(&order, &nodes, &ordered, patches.rows())),
+            true => Homes::doubles(&order, &nodes, &ordered, patches.rows()),
         };
         let layers = layers(mesh, &nodes, &order, patches.rows(), bounds);
         let positions = positions(ordered.clone())?;
@@ -210,7 +201,7 @@ impl Compressed {
     pub fn decode(&self) -> Result<Mesh, Malformed> {
         let faces = (0..self.patches.len()).map(|patch| self.patches.faces(patch));
         let faces = faces.collect::<Result<Vec<_>, _>>()?.concat();
-        let (home, positions) = self.homes(&faces)?;
+        let (home, positions) = self.homes.all(&faces, &self.positions, self.patches.rows())?;
         let vertex = |node: u32| VertexId(home[node as usize]);
         let mut mesh = Mesh::new(positions, faces.iter().map(|face| face.map(vertex)).collect());
         if !self.layers.is_empty() {
@@ -244,9 +235,10 @@ impl Compressed {
         let mut nodes: Vec<u32> = faces.as_flattened().to_vec();
         nodes.sort_unstable();
         nodes.dedup();
-        let places: Vec<_> = nodes.iter().map(|&node| self.patches.rows().place(node)).collect();
-        let homes: Vec<_> =
-            nodes.iter().zip(&places).map(|(&node, &at)| self.home(node, at)).collect();
+        let rows = self.patches.rows();
+        let places: Vec<_> = nodes.iter().map(|&node| rows.place(node)).collect();
+        let home = |(&node, &at)| self.homes.of(node, at, rows);
+        let homes: Vec<_> = nodes.iter().zip(&places).map(home).collect();
         let mut vertices = homes.clone();
         vertices.sort_unstable();
         vertices.dedup();
@@ -263,63 +255,6 @@ impl Compressed {
             mesh.attributes = Some(Attributes { corners, wedge_count: nodes.len(), layers });
         }
         Ok(mesh)
-    }
-
-    /// The vertex of a node, in a row by its number there.
-    fn home(&self, node: u32, (row, number): (usize, usize)) -> u32 {
-        let Homes::Doubles(doubles) = &self.homes else { return node };
-        let first = (row / 2 * BLOCK) as u32;
-        match row % 2 {
-            0 => first + number as u32,
-            // More is told by spoilt bytes alone.
-            _ => first
-                .saturating_add(doubles.get(row / 2, number)[0])
-                .min(first + self.own(row / 2) - 1),
-        }
-    }
-
-    /// How many vertices a block has.
-    fn own(&self, block: usize) -> u32 {
-        self.patches.rows().range(2 * block).len() as u32
-    }
-
-    /// The vertex of each node, and where vertices are.
-    fn homes(&self, faces: &[[u32; 3]]) -> Result<(Vec<u32>, Vec<[f64; 3]>), Malformed> {
-        let rows = self.patches.rows();
-        let positions = self.positions.all();
-        match (&self.homes, &self.positions) {
-            (Homes::Parts(exceptions), Positions::Parts(parts)) => {
-                let first = exceptions.first(faces, &parts.cells())?;
-                let mut home = vec![0; first.len()];
-                let mut kept = Vec::new();
-                for (node, &is) in first.iter().enumerate() {
-                    if is as usize == node {
-                        home[node] = kept.len() as u32;
-                        kept.push(positions[node]);
-                    } else {
-                        home[node] = home[is as usize];
-                    }
-                }
-                if kept.len() != parts.vertices() {
-                    let reason = format!("{} vertices, not {}", kept.len(), parts.vertices());
-                    return Err(Malformed { at: 0, reason });
-                }
-                Ok((home, kept))
-            }
-            (Homes::Doubles(numbers), _) => {
-                let mut home = Vec::with_capacity(rows.nodes());
-                let mut numbers = numbers.all().into_iter();
-                for block in 0..rows.len() / 2 {
-                    let first = (block * BLOCK) as u32;
-                    let last = first + self.own(block) - 1;
-                    home.extend(first..=last);
-                    let doubles = numbers.by_ref().take(rows.range(2 * block + 1).len());
-                    home.extend(doubles.map(|number| first.saturating_add(number).min(last)));
-                }
-                Ok((home, positions))
-            }
-            _ => Ok(((0..rows.nodes() as u32).collect(), positions)),
-        }
     }
 
     /// What it takes.
@@ -360,16 +295,6 @@ impl Compressed {
     }
 }
 
-impl Homes {
-    fn bytes(&self) -> usize {
-        match self {
-            Self::Own => 0,
-            Self::Doubles(numbers) => numbers.rows().bytes() + numbers.bytes(),
-            Self::Parts(exceptions) => exceptions.bytes(),
-        }
-    }
-}
-
 /// That there is a mesh that files can have.
 fn check(mesh: &Mesh) -> Result<(), CompressError> {
     mesh.validate()?;
@@ -390,16 +315,6 @@ fn check(mesh: &Mesh) -> Result<(), CompressError> {
         }
     }
     Ok(())
-}
-
-/// Of the wedges that are not their vertex's first: the number of their vertex in its block.
-fn doubles(order: &[u32], nodes: &Nodes, ordered: &[VertexId], rows: &Rows) -> Packed {
-    let mut number = vec![0; nodes.vertex_of.iter().max().map_or(0, |v| v.index() + 1)];
-    ordered.iter().enumerate().for_each(|(at, v)| number[v.index()] = (at % BLOCK) as u32);
-    let odd = (0..rows.len() / 2).map(|block| rows.range(2 * block + 1));
-    let number = |at: usize| number[nodes.vertex_of[order[at] as usize].index()];
-    let numbers: Vec<u32> = odd.clone().flatten().map(number).collect();
-    Packed::new(Rows::new(odd.map(|row| row.len())), 1, &numbers)
 }
 
 /// The layers of a mesh by the nodes of the rows.
