@@ -42,37 +42,52 @@ const SECTIONS: [(&str, Section); 12] = [
 
 /// Makes all tables, writes docs/RESULTS.md and the same as a dated record beside it.
 ///
-/// Takes some minutes. Tables whose meshes are not here say so. With `names`, only prints the
-/// sections that have one of them in their title.
+/// Takes some minutes. Tables whose meshes are not here say so. With `names`, only the sections that
+/// have one of them in their title are made anew, in both; they say when.
 ///
 /// # Errors
 /// A name that no title has, before anything is made; a table that cannot be.
 pub fn run(project: &Project, names: &[String]) -> Result<()> {
     check_names(names)?;
     let machine = machine::describe();
-    let mut page = format!(
-        "# Results\n\nMade by `cargo xtask results` on {}, {}. Distances are measured both ways with \
-         500,000 samples each and all vertices, in % of the diagonal of the input's box.\n",
-        machine.date, machine.what
-    );
+    let results = project.root().join("docs/RESULTS.md");
+    let old = if names.is_empty() { String::new() } else { std::fs::read_to_string(&results)? };
+    let mut page = match old.split_once("\n## ") {
+        Some((head, _)) => head.to_owned(),
+        None => format!(
+            "# Results\n\nMade by `cargo xtask results` on {}, {}. Distances are measured both ways with \
+             500,000 samples each and all vertices, in % of the diagonal of the input's box.\n",
+            machine.date, machine.what
+        ),
+    };
     for (title, section) in SECTIONS {
-        if !names.is_empty() && !names.iter().any(|name| is_named(title, name)) {
+        let is_asked = names.iter().any(|name| is_named(title, name));
+        let heading = format!("\n## {title}\n\n");
+        if !names.is_empty() && !is_asked {
+            page.push_str(section_of(&old, &heading));
             continue;
         }
         eprintln!("{title} …");
-        page.push_str(&format!("\n## {title}\n\n{}", section(project)?));
+        page.push_str(&heading);
+        if is_asked {
+            page.push_str(&format!("Made anew on {}, {}.\n\n", machine.date, machine.what));
+        }
+        page.push_str(&section(project)?);
     }
-    if !names.is_empty() {
-        print!("{page}");
-        return Ok(());
-    }
-    for path in ["docs/RESULTS.md".to_owned(), format!("docs/records/{}.md", machine.date)] {
-        let path = project.root().join(path);
+    let record = project.root().join(format!("docs/records/{}.md", machine.date));
+    for path in [results, record] {
         std::fs::create_dir_all(path.parent().context("a file has a folder")?)?;
         std::fs::write(&path, &page).with_context(|| path.display().to_string())?;
     }
     print!("{page}");
     Ok(())
+}
+
+/// A section of a page with its heading, or nothing where the page has none of it.
+fn section_of<'p>(page: &'p str, heading: &str) -> &'p str {
+    let Some(start) = page.find(heading) else { return "" };
+    let end = page[start + heading.len()..].find("\n## ");
+    &page[start..end.map_or(page.len(), |end| start + heading.len() + end)]
 }
 
 fn check_names(names: &[String]) -> Result<()> {
@@ -94,4 +109,17 @@ fn is_named(title: &str, name: &str) -> bool {
 pub fn textured(names: &[String]) -> Result<()> {
     print!("{}", textured::table_of(names)?);
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_section_ends_where_the_next_begins() {
+        let page = "# Results\n\n## A\n\none\n\n### B\n\ntwo\n\n## B\n\nthree\n";
+        assert_eq!(section_of(page, "\n## A\n\n"), "\n## A\n\none\n\n### B\n\ntwo\n");
+        assert_eq!(section_of(page, "\n## B\n\n"), "\n## B\n\nthree\n");
+        assert_eq!(section_of(page, "\n## C\n\n"), "");
+    }
 }
