@@ -72,7 +72,7 @@ pub struct Change {
     pub error_estimate: f64,
     /// The greatest distance between a vertex and the other surface.
     pub max_estimate: f64,
-    /// Faces that are turned by more than a right angle.
+    /// Faces that are turned by more than a right angle, or left without area.
     pub flips: usize,
 }
 

@@ -203,9 +203,10 @@ impl Face {
         }
     }
 
-    /// Whether other corners turn it by more than a right angle.
+    /// Whether other corners turn it by more than a right angle, or leave it none of its area: then which way it is
+    /// turned is for rounding to say.
     pub(super) fn is_flipped(&self, [a, b, c]: [DVec3; 3]) -> bool {
-        (b - a).cross(c - a).dot(self.normal) < 0.0
+        (b - a).cross(c - a).dot(self.normal) <= NO_AREA * self.area
     }
 
     fn new(corners: [u32; 3], places: &[DVec3]) -> Option<Self> {
@@ -217,6 +218,9 @@ impl Face {
         Some(Self { corners, normal, area, height: 2.0 * area / longest })
     }
 }
+
+/// So much of a face's area is none.
+const NO_AREA: f64 = 1e-9;
 
 /// The squares of the directions across a border at each of its vertices.
 fn rims(faces: &[Face], places: &[DVec3]) -> HashMap<u32, DMat3> {

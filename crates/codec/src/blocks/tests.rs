@@ -53,6 +53,23 @@ fn each_vertex_is_found_alone_where_its_matrix_puts_it() {
 }
 
 #[test]
+fn faces_that_are_turned_over_or_lost_are_told_as_they_are_decoded() {
+    for mesh in [sample::gyroid(20_000), sample::terrain(20_000)] {
+        let (blocks, report) = of_bits(&mesh, 6);
+        let decoded = decoded(&mesh, &blocks);
+        let normal = |mesh: &Mesh, face: usize| {
+            let [a, b, c] = mesh.triangle(mesh.faces[face]);
+            (b - a).cross(c - a)
+        };
+        let is_lost = |&face: &usize| {
+            let was = normal(&mesh, face);
+            was.dot(normal(&decoded, face)) <= 1e-10 * was.length_squared()
+        };
+        assert_eq!((0..mesh.faces.len()).filter(is_lost).count(), report.blocks.flips);
+    }
+}
+
+#[test]
 fn surfaces_are_as_close_as_in_cubes_and_no_more_faces_are_turned_over() {
     for mesh in [sample::sphere(6000), sample::gyroid(6000), sample::terrain(4000)] {
         for bits in [8, 11] {

@@ -31,11 +31,20 @@ pub fn numbers(mesh: &Mesh, bits: u32, rounding: Rounding) -> (Vec<[u32; 3]>, f6
     (mesh.positions.iter().map(number).collect(), cell)
 }
 
-/// How many faces look the other way than they did; `moved` has the same faces.
+/// So much of a face's area is none.
+const NO_AREA: f64 = 1e-9;
+
+/// How many faces look the other way than they did, or have lost their area; `moved` has the same faces.
 pub fn turned_over(mesh: &Mesh, moved: &Mesh) -> usize {
     let normal = |mesh: &Mesh, face: usize| {
         let [a, b, c] = mesh.triangle(mesh.faces[face]);
         (b - a).cross(c - a)
     };
-    (0..mesh.faces.len()).filter(|&f| normal(mesh, f).dot(normal(moved, f)) < 0.0).count()
+    (0..mesh.faces.len())
+        .filter(|&f| {
+            let was = normal(mesh, f);
+            let area = was.length_squared();
+            area > 0.0 && was.dot(normal(moved, f)) <= NO_AREA * area
+        })
+        .count()
 }
