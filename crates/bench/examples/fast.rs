@@ -9,7 +9,7 @@
 use anyhow::{Context, Result};
 use meshlod::measure::{DistanceOptions, Surface, surface_distance, volume};
 use meshlod::mesh::Mesh;
-use meshlod::simplify::{Method, Options, Target, fast};
+use meshlod::simplify::{Method, Options, Target, simplify};
 use meshlod_bench::peer::{Indexed, simplify_with_update};
 use meshlod_bench::{alternate, one_core, read};
 
@@ -33,7 +33,7 @@ fn line(name: &str, mesh: &Mesh, ratio: f64, rounds: usize) -> Result<()> {
     let options = Options { method: Method::LindstromTurk, ..Options::default() };
     let indexed = Indexed::from(mesh);
     let faces = (mesh.faces.len() as f64 * ratio) as usize;
-    let ours = || fast::simplify(mesh, Target::Ratio(ratio), &options).expect("it can be");
+    let ours = || simplify(mesh, Target::Ratio(ratio), &options).expect("it can be");
     let theirs = || simplify_with_update(&indexed, faces);
     let (level, report) = ours();
     print!("{name} {ratio} {} |", level.faces.len());

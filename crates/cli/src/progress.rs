@@ -4,8 +4,7 @@ use std::io::IsTerminal;
 use std::time::Duration;
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
-use meshlod::mesh::FaceId;
-use meshlod::simplify::{Neighbourhood, Observe, Placed, Surface};
+use meshlod::simplify::Observe;
 
 /// A line on standard error that says what is being done.
 pub struct Progress {
@@ -39,7 +38,7 @@ impl Progress {
             self.bar.set_length(faces as u64);
         }
         self.bar.set_position(0);
-        Watch { bar: &self.bar, gone: 0, before: 0, calls: 0 }
+        Watch { bar: &self.bar, gone: 0, shown: 0 }
     }
 
     /// Does something with the line out of the way.
@@ -56,27 +55,23 @@ impl Progress {
 pub struct Watch<'p> {
     bar: &'p ProgressBar,
     gone: u64,
-    before: usize,
-    calls: u32,
+    /// As many as the bar shows.
+    shown: u64,
 }
 
-/// Contractions between two looks at the bar, which costs more than one of them.
-const CALLS_A_LOOK: u32 = 4096;
+/// Faces between two looks at the bar, which costs more than a contraction.
+const FACES_A_LOOK: u64 = 8192;
 
 impl Observe for Watch<'_> {
-    fn before(&mut self, surface: &Surface, _: &Neighbourhood, _: &Placed) {
-        self.before = surface.live_faces();
+    fn needs_surface(&self) -> bool {
+        false
     }
 
-    fn after(&mut self, surface: &Surface, _: &Neighbourhood, _: &Placed) {
-        self.gone += (self.before - surface.live_faces()) as u64;
-        self.calls += 1;
-        if self.calls.is_multiple_of(CALLS_A_LOOK) {
+    fn gone(&mut self, faces: usize) {
+        self.gone += faces as u64;
+        if self.gone >= self.shown + FACES_A_LOOK {
+            self.shown = self.gone;
             self.bar.set_position(self.gone);
         }
-    }
-
-    fn vanish(&mut self, _: &Surface, faces: &[FaceId]) {
-        self.gone += faces.len() as u64;
     }
 }

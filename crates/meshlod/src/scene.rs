@@ -71,6 +71,7 @@ pub fn simplify_scene(
     let mut simplifier = SceneSimplifier::new(scene, options)?;
     let report = simplifier.run(target, &mut ())?;
     let level = simplifier.level();
+    drop(simplifier);
     for (mesh, level) in scene.meshes.iter_mut().zip(level) {
         mesh.mesh = level;
     }

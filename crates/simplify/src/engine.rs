@@ -9,7 +9,7 @@ mod together;
 mod vanish;
 mod waiting;
 
-use meshlod_mesh::{Connectivity, VertexId};
+use meshlod_mesh::{Connectivity, Mesh, VertexId};
 use rayon::prelude::*;
 
 use self::waiting::{Desk, Waiting};
@@ -17,12 +17,14 @@ use crate::candidates::CandidateId;
 use crate::checks::{flip, topology};
 use crate::contracted::{Contracted, Freedom};
 use crate::estimate::estimate;
+use crate::level::level;
 use crate::neighbourhood::{Neighbourhood, freedom};
 use crate::policy::{Candidates, Memory, Observe, Placement, Priority, Stop};
 use crate::queue::{Entry, Key};
 use crate::refusal::{Refusal, Refusals};
 use crate::surface::{Flags, Placed, State, Surface};
 use crate::vanishing::Vanishing;
+use crate::volume::VolumeLoss;
 
 /// An algorithm: a choice of policies. What stops it and who observes come with each run.
 pub(crate) struct Algorithm<C, M, P, L> {
@@ -51,6 +53,7 @@ pub(crate) struct Engine<C, M, P, L> {
     taken: Vec<(Entry, Contracted)>,
     refusals: Refusals,
     error_estimate: f64,
+    volume: VolumeLoss,
     /// The narrowest bound of the error that has refused a candidate since all were awake.
     refused_above: f64,
 }
@@ -62,11 +65,8 @@ where
     P: Priority<M>,
     L: Placement<M>,
 {
-    pub(crate) fn new(
-        algorithm: Algorithm<C, M, P, L>,
-        mut surface: Surface,
-        connectivity: Connectivity,
-    ) -> Self {
+    fn new(algorithm: Algorithm<C, M, P, L>, ready: Ready) -> Self {
+        let Ready { mut surface, connectivity, vanishing } = ready;
         let seeds = algorithm.candidates.seed(&surface, &connectivity);
         // Its room is wanted for the queue.
         drop(connectivity);
@@ -80,12 +80,13 @@ where
             part: Neighbourhood::default(),
             mates: Vec::new(),
             waiting,
-            vanishing: Vanishing::default(),
+            vanishing,
             vanished: 0,
             opened: Vec::new(),
             taken: Vec::new(),
             refusals: Refusals::default(),
             error_estimate: 0.0,
+            volume: VolumeLoss::default(),
             refused_above: f64::INFINITY,
         }
     }
@@ -175,7 +176,8 @@ where
 
     /// Contracts what is gathered, and brings all that is kept up to date.
     fn carry_out(&mut self, placed: &Placed, observer: &mut dyn Observe) {
-        let Self { algorithm, surface, hood, part, .. } = self;
+        let Self { algorithm, surface, hood, part, volume, .. } = self;
+        let observer = &mut (volume, observer);
         algorithm.memory.merge(surface, hood, placed);
         match hood.contracted[..] {
             [_, _] => change(surface, hood, placed, observer),
@@ -236,6 +238,7 @@ fn change(
     observer.before(surface, hood, placed);
     surface.contract(hood, placed);
     observer.after(surface, hood, placed);
+    observer.gone(hood.dying.len());
 }
 
 /// Contracts a face as two edges: its other corners follow each other into the kept one. So wedges,
@@ -262,17 +265,35 @@ pub(crate) trait Run {
     fn run(&mut self, stop: &Stop, observer: &mut dyn Observe);
     /// One contraction; false when no candidate is left that may, at the cost allowed.
     fn step(&mut self, stop: &Stop, observer: &mut dyn Observe) -> bool;
-    /// Lets these components vanish when they are the cheapest.
-    fn let_vanish(&mut self, vanishing: Vanishing);
-    /// How many components have vanished.
-    fn vanished(&self) -> usize;
     /// The cost of what is next, before any check.
     fn next_cost(&mut self) -> Option<f64>;
+    /// How many faces are left.
+    fn live_faces(&self) -> usize;
     fn surface(&self) -> &Surface;
     fn into_surface(self: Box<Self>) -> Surface;
-    fn refusals(&self) -> Refusals;
-    /// The greatest estimate of a contraction made so far, in model units.
-    fn error_estimate(&self) -> f64;
+    /// The mesh that it was given, as it is now.
+    fn level(&self, mesh: &Mesh) -> Mesh {
+        level(mesh, self.surface())
+    }
+    fn tally(&self) -> Tally;
+}
+
+/// What was done so far.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Tally {
+    /// How many components have vanished.
+    pub(crate) vanished: usize,
+    pub(crate) refusals: Refusals,
+    /// The greatest estimate of a contraction, in model units.
+    pub(crate) error_estimate: f64,
+    pub(crate) volume: VolumeLoss,
+}
+
+/// What an algorithm is set to work on.
+pub(crate) struct Ready {
+    pub(crate) surface: Surface,
+    pub(crate) connectivity: Connectivity,
+    pub(crate) vanishing: Vanishing,
 }
 
 impl<C, M, P, L> Run for Engine<C, M, P, L>
@@ -318,14 +339,6 @@ where
         }
     }
 
-    fn let_vanish(&mut self, vanishing: Vanishing) {
-        self.vanishing = vanishing;
-    }
-
-    fn vanished(&self) -> usize {
-        self.vanished
-    }
-
     fn next_cost(&mut self) -> Option<f64> {
         self.try_again_within(f64::INFINITY);
         let next = self.next_fresh();
@@ -343,12 +356,13 @@ where
         self.surface
     }
 
-    fn refusals(&self) -> Refusals {
-        self.refusals
+    fn live_faces(&self) -> usize {
+        self.surface.live_faces()
     }
 
-    fn error_estimate(&self) -> f64 {
-        self.error_estimate
+    fn tally(&self) -> Tally {
+        let &Self { vanished, refusals, error_estimate, volume, .. } = self;
+        Tally { vanished, refusals, error_estimate, volume }
     }
 }
 
@@ -359,9 +373,9 @@ where
     P: Priority<M> + 'static,
     L: Placement<M> + 'static,
 {
-    /// Sets it to work on a surface.
-    pub(crate) fn start(self, surface: Surface, connectivity: Connectivity) -> Box<dyn Run> {
-        Box::new(Engine::new(self, surface, connectivity))
+    /// Sets it to work.
+    pub(crate) fn start(self, ready: Ready) -> Box<dyn Run> {
+        Box::new(Engine::new(self, ready))
     }
 }
 

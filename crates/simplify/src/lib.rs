@@ -21,7 +21,7 @@ mod clean;
 mod contracted;
 mod engine;
 mod estimate;
-pub mod fast;
+mod fast;
 mod history;
 mod interpolate;
 mod level;

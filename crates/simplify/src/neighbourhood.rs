@@ -133,18 +133,44 @@ impl Neighbourhood {
         surface: &Surface,
         contracted: Contracted,
     ) -> Result<(), Refusal> {
-        self.contracted = contracted;
-        self.spokes.clear();
-        self.dying.clear();
-        self.ring.clear();
+        self.clear(contracted);
         if surface.is_crowded(&contracted) {
             return Err(Refusal::Valence);
         }
         let Self { wedge_pairs, partners, .. } = self;
         self.freedom = freedom(surface, &contracted, wedge_pairs, partners)?;
+        self.look_around(surface);
+        Ok(())
+    }
+
+    /// The same of an edge whose contraction has been decided on elsewhere: nothing is refused.
+    pub(crate) fn gather_decided(
+        &mut self,
+        surface: &Surface,
+        edge: [VertexId; 2],
+        freedom: Freedom,
+    ) {
+        self.clear(Contracted::edge(edge));
+        self.freedom = freedom;
+        self.partners.clear();
+        self.wedge_pairs.clear();
+        if let Some(wedges) = &surface.wedges {
+            wedges.pair(surface, edge, &mut self.wedge_pairs);
+        }
+        self.look_around(surface);
+    }
+
+    fn clear(&mut self, contracted: Contracted) {
+        self.contracted = contracted;
+        self.spokes.clear();
+        self.dying.clear();
+        self.ring.clear();
+    }
+
+    fn look_around(&mut self, surface: &Surface) {
         // Short loops of loads that do not wait for each other: most of the time here is memory's.
         self.star.clear();
-        for (owner, &v) in contracted.iter().enumerate() {
+        for (owner, &v) in self.contracted.iter().enumerate() {
             let star = surface.star(v);
             self.star.extend(star.map(|face| (face, owner as u8, surface.face(face))));
         }
@@ -155,7 +181,6 @@ impl Neighbourhood {
         for r in &mut self.ring {
             r.position = surface.position(r.id);
         }
-        Ok(())
     }
 
     #[inline]

@@ -102,7 +102,20 @@ impl Stop {
 /// Hooks into the engine's loop. All do nothing unless written.
 ///
 /// They see edges only: a face is contracted as two edges, the second through the first's vertex.
+/// They see them in their order, with the surface as it was at each; an engine that keeps no surface
+/// shows all of a run at its end.
 pub trait Observe {
+    /// Whether it wants to see contractions. If not, only [`gone`](Self::gone) may be called: the fast
+    /// engine spares making a surface to show.
+    fn needs_surface(&self) -> bool {
+        true
+    }
+
+    /// So many faces more are gone, by one contraction or by several.
+    fn gone(&mut self, faces: usize) {
+        let _ = faces;
+    }
+
     /// A face is about to be contracted: the next two contractions are its edges, to one place.
     fn face(&mut self) {}
 
@@ -122,9 +135,22 @@ pub trait Observe {
     }
 }
 
-impl Observe for () {}
+impl Observe for () {
+    fn needs_surface(&self) -> bool {
+        false
+    }
+}
 
 impl<A: Observe, B: Observe> Observe for (A, B) {
+    fn needs_surface(&self) -> bool {
+        self.0.needs_surface() || self.1.needs_surface()
+    }
+
+    fn gone(&mut self, faces: usize) {
+        self.0.gone(faces);
+        self.1.gone(faces);
+    }
+
     fn face(&mut self) {
         self.0.face();
         self.1.face();
@@ -147,6 +173,14 @@ impl<A: Observe, B: Observe> Observe for (A, B) {
 }
 
 impl<O: Observe + ?Sized> Observe for &mut O {
+    fn needs_surface(&self) -> bool {
+        (**self).needs_surface()
+    }
+
+    fn gone(&mut self, faces: usize) {
+        (**self).gone(faces);
+    }
+
     fn face(&mut self) {
         (**self).face();
     }

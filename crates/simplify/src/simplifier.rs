@@ -3,15 +3,14 @@
 use meshlod_mesh::{Bounds, Mesh, VertexId};
 
 use crate::clean;
-use crate::engine::Run;
-use crate::level::level;
+use crate::engine::{Ready, Run, Tally};
+use crate::fast;
 use crate::locks::{self, Held};
 use crate::methods;
 use crate::options::{Options, Report, SimplifyError, Target};
 use crate::policy::{Observe, Stop};
 use crate::surface::Surface;
 use crate::vanishing::Vanishing;
-use crate::volume::VolumeLoss;
 
 /// The diagonals that can be worked with. Costs go with up to the sixth power of a length, checks with
 /// the eighth; beyond, doubles would run out.
@@ -20,24 +19,43 @@ const EXTENTS: std::ops::RangeInclusive<f64> = 1e-30..=1e30;
 /// A mesh at work. Levels taken from one run are nested: each comes from the one before.
 pub struct Simplifier<'m> {
     mesh: &'m Mesh,
-    engine: Box<dyn Run>,
-    volume: VolumeLoss,
+    engine: Box<dyn Run + 'm>,
     input: Input,
 }
 
 /// What was found in the input.
 #[derive(Clone, Copy)]
-struct Input {
-    degenerate_faces: usize,
-    duplicate_faces: usize,
-    non_manifold_vertices: usize,
-    held: Held,
+pub(crate) struct Input {
+    pub(crate) degenerate_faces: usize,
+    pub(crate) duplicate_faces: usize,
+    pub(crate) non_manifold_vertices: usize,
+    pub(crate) held: Held,
 }
+
+/// An engine at work, and what was found in its mesh.
+pub(crate) type Started<'m> = (Box<dyn Run + 'm>, Input);
 
 impl<'m> Simplifier<'m> {
     /// Connects the mesh and costs its candidates; nothing is contracted yet.
+    ///
+    /// The fast engine works where it can: for `lindstrom-turk` of bare geometry without ties,
+    /// protected vertices, or components that may vanish. The general one does the rest.
     pub fn new(mesh: &'m Mesh, options: &Options) -> Result<Self, SimplifyError> {
+        let bounds = validate(mesh, options)?;
+        match fast::start(mesh, &bounds, options)? {
+            Some((engine, input)) => Ok(Self { mesh, engine, input }),
+            None => Self::generally(mesh, options),
+        }
+    }
+
+    /// The same with the general engine in any case: the fast one's oracle.
+    #[doc(hidden)]
+    pub fn with_general_engine(mesh: &'m Mesh, options: &Options) -> Result<Self, SimplifyError> {
         validate(mesh, options)?;
+        Self::generally(mesh, options)
+    }
+
+    fn generally(mesh: &'m Mesh, options: &Options) -> Result<Self, SimplifyError> {
         let (connectivity, duplicate_faces) = clean::connect(mesh);
         let degenerate_faces = connectivity.degenerate_faces() - duplicate_faces;
         if connectivity.edge_count() == 0 {
@@ -50,9 +68,8 @@ impl<'m> Simplifier<'m> {
         let held = locks::apply(options, &connectivity, &mut surface);
         let input = Input { degenerate_faces, duplicate_faces, non_manifold_vertices, held };
         let vanishing = Vanishing::new(&surface, options);
-        let mut engine = methods::start(options, surface, connectivity);
-        engine.let_vanish(vanishing);
-        Ok(Self { mesh, engine, volume: VolumeLoss::default(), input })
+        let engine = methods::start(options, Ready { surface, connectivity, vanishing });
+        Ok(Self { mesh, engine, input })
     }
 
     /// Contracts until the target is reached or nothing more may be contracted.
@@ -62,14 +79,14 @@ impl<'m> Simplifier<'m> {
         observer: &mut dyn Observe,
     ) -> Result<Report, SimplifyError> {
         let stop = self.stop(target)?;
-        self.engine.run(&stop, &mut (&mut self.volume, observer));
+        self.engine.run(&stop, observer);
         Ok(self.report(target, &stop))
     }
 
     /// Makes the one next contraction that costs at most `most_cost`; false when none may be made.
     pub fn step(&mut self, most_cost: f64, observer: &mut dyn Observe) -> bool {
         let stop = Stop { cost: most_cost, ..Stop::NEVER };
-        self.engine.step(&stop, &mut (&mut self.volume, observer))
+        self.engine.step(&stop, observer)
     }
 
     /// The cost of the candidate that is tried next, in the method's own terms, see
@@ -81,18 +98,22 @@ impl<'m> Simplifier<'m> {
     }
 
     /// The surface as it is now, in the ids of the input.
+    ///
+    /// The fast engine makes one when it is asked, and keeps it while observers see it change; a face
+    /// that went before has what its corners have become.
     pub fn surface(&self) -> &Surface {
         self.engine.surface()
     }
 
     /// How many faces are left.
     pub fn live_faces(&self) -> usize {
-        self.engine.surface().live_faces()
+        self.engine.live_faces()
     }
 
     /// What was done so far.
     fn report(&self, target: Target, stop: &Stop) -> Report {
         let output_faces = self.live_faces();
+        let Tally { vanished, refusals, error_estimate, volume } = self.engine.tally();
         let reached = matches!(target, Target::Error(_)) || output_faces <= stop.faces;
         Report {
             input_faces: self.mesh.faces.len(),
@@ -101,11 +122,11 @@ impl<'m> Simplifier<'m> {
             non_manifold_vertices: self.input.non_manifold_vertices,
             held: self.input.held,
             output_faces,
-            vanished: self.engine.vanished(),
+            vanished,
             reached,
-            error_estimate: self.engine.error_estimate(),
-            refusals: self.engine.refusals(),
-            volume: self.volume,
+            error_estimate,
+            refusals,
+            volume,
         }
     }
 
@@ -118,7 +139,7 @@ impl<'m> Simplifier<'m> {
 
     /// The mesh as it is now: unused vertices and wedges left out, the rest in the input's order.
     pub fn level(&self) -> Mesh {
-        level(self.mesh, self.engine.surface())
+        self.engine.level(self.mesh)
     }
 
     /// How many faces there were before the first contraction.
@@ -132,7 +153,7 @@ impl<'m> Simplifier<'m> {
 }
 
 /// The box of a mesh; refuses meshes and options that no method could work with.
-pub(crate) fn validate(mesh: &Mesh, options: &Options) -> Result<Bounds, SimplifyError> {
+fn validate(mesh: &Mesh, options: &Options) -> Result<Bounds, SimplifyError> {
     mesh.validate()?;
     if mesh.faces.is_empty() {
         return Err(SimplifyError::NoFaces);

@@ -24,7 +24,7 @@ pub struct Placed {
 }
 
 /// More faces than this around a candidate are refused.
-const MOST_FACES: usize = 256;
+pub(crate) const MOST_FACES: usize = 256;
 
 /// The largest star that is searched for each face that leaves it.
 const SEARCHED: u32 = 32;

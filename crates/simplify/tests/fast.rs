@@ -3,8 +3,10 @@
 use std::collections::HashSet;
 
 use meshlod_fixtures as fixtures;
-use meshlod_mesh::{Connectivity, Lock, Locks, Mesh, VertexId, face_components, sample};
-use meshlod_simplify::{Method, Options, Report, SimplifyError, Target, fast};
+use meshlod_mesh::{Connectivity, FaceId, Lock, Locks, Mesh, VertexId, face_components, sample};
+use meshlod_simplify::{
+    History, Method, Observe, Options, Report, Simplifier, SimplifyError, Target, simplify,
+};
 
 fn options() -> Options {
     Options { method: Method::LindstromTurk, ..Options::default() }
@@ -13,8 +15,7 @@ fn options() -> Options {
 fn run(mesh: &Mesh, target: Target) -> (Mesh, Report) {
     let mut mesh = mesh.clone();
     mesh.attributes = None;
-    assert!(fast::fits(&mesh, &options()));
-    fast::simplify(&mesh, target, &options()).unwrap()
+    simplify(&mesh, target, &options()).unwrap()
 }
 
 fn meshes() -> Vec<(&'static str, Mesh)> {
@@ -178,7 +179,7 @@ fn scale_and_place_change_nothing_to_speak_of() {
     }
     let mut huge = mesh;
     huge.positions.iter_mut().flatten().for_each(|x| *x *= 1e40);
-    let refused = fast::simplify(&huge, Target::Ratio(0.1), &options());
+    let refused = simplify(&huge, Target::Ratio(0.1), &options());
     assert!(matches!(refused, Err(SimplifyError::Extent { .. })));
 }
 
@@ -234,13 +235,13 @@ fn locked_vertices_stay() {
         Locks { of_vertex: (0..mesh.positions.len()).map(every_fifth).collect(), ties: Vec::new() };
     let bare = Mesh { attributes: None, ..mesh.clone() };
     let locked = Options { locks, ..options() };
-    let (level, report) = fast::simplify(&bare, Target::Ratio(0.0), &locked).unwrap();
+    let (level, report) = simplify(&bare, Target::Ratio(0.0), &locked).unwrap();
     check_level("locked", &level, &report);
     let left: HashSet<[u64; 3]> = level.positions.iter().map(|p| p.map(f64::to_bits)).collect();
     let kept = |v: &usize| left.contains(&mesh.positions[*v].map(f64::to_bits));
     assert!((0..mesh.positions.len()).step_by(5).all(|v| kept(&v)));
     let edge = Options { lock_boundary: true, ..options() };
-    let (level, report) = fast::simplify(&bare, Target::Ratio(0.0), &edge).unwrap();
+    let (level, report) = simplify(&bare, Target::Ratio(0.0), &edge).unwrap();
     let connectivity = Connectivity::new(&level.faces, level.positions.len());
     assert_eq!(connectivity.boundary_edges(), report.held.locked);
 }
@@ -269,6 +270,114 @@ fn volume_stays_and_runs_are_alike() {
 }
 
 #[test]
+fn what_was_found_in_the_input_is_told_as_by_the_general_engine() {
+    let mut dirty = sample::terrain(500);
+    dirty.attributes = None;
+    let first = dirty.faces[0];
+    dirty.faces.extend([first, [first[0], first[0], first[2]], [first[1], first[2], first[0]]]);
+    let bare = |mesh: Mesh| Mesh { attributes: None, ..mesh };
+    for mesh in [dirty, cone(300), pages(3), fixtures::hourglass(), bare(sample::fish(500))] {
+        let every_fifth = |v: usize| if v.is_multiple_of(5) { Lock::Locked } else { Lock::Free };
+        let of_vertex = (0..mesh.positions.len()).map(every_fifth).collect();
+        let locks = Locks { of_vertex, ties: Vec::new() };
+        for options in
+            [Options { locks, ..options() }, Options { lock_boundary: true, ..options() }]
+        {
+            let found = |mut simplifier: Simplifier<'_>| {
+                let report = simplifier.run(Target::Ratio(1.0), &mut ()).unwrap();
+                let Report { degenerate_faces, duplicate_faces, .. } = report;
+                let faces = [degenerate_faces, duplicate_faces, report.output_faces];
+                (faces, report.non_manifold_vertices, report.held, simplifier.level())
+            };
+            let fast = found(Simplifier::new(&mesh, &options).unwrap());
+            assert_eq!(fast, found(Simplifier::with_general_engine(&mesh, &options).unwrap()));
+        }
+    }
+}
+
+/// The faces of a surface that are left, by the input's ids, and where their corners are.
+fn of_surface(simplifier: &Simplifier<'_>) -> Vec<[[u64; 3]; 3]> {
+    let surface = simplifier.surface();
+    let alive = (0..surface.face_count()).map(FaceId::new).filter(|&f| surface.is_alive(f));
+    let place = |v| surface.position(v).to_array().map(f64::to_bits);
+    alive.map(|f| surface.face(f).map(place)).collect()
+}
+
+/// The same of a level.
+fn of_level(level: &Mesh) -> Vec<[[u64; 3]; 3]> {
+    let place = |v: VertexId| level.positions[v.index()].map(f64::to_bits);
+    level.faces.iter().map(|face| face.map(place)).collect()
+}
+
+#[test]
+fn what_observers_see_is_the_level_to_the_bit() {
+    for (name, mesh) in meshes() {
+        let mesh = Mesh { attributes: None, ..mesh };
+        let mut simplifier = Simplifier::new(&mesh, &options()).unwrap();
+        // Seen, not seen, seen again; looked at before the start and after.
+        assert_eq!(of_surface(&simplifier), of_level(&simplifier.level()), "{name}");
+        for (ratio, is_seen) in [(0.7, true), (0.5, false), (0.3, true), (0.1, true), (0.0, false)]
+        {
+            let mut history = History::default();
+            let before = simplifier.live_faces();
+            let target = Target::Ratio(ratio);
+            match is_seen {
+                true => simplifier.run(target, &mut history).unwrap(),
+                false => simplifier.run(target, &mut ()).unwrap(),
+            };
+            let died = (0..history.contractions().len()).map(|i| history.died(i).len()).sum();
+            let gone = if is_seen { before - simplifier.live_faces() } else { 0 };
+            assert_eq!(gone, died, "{name} to {ratio}");
+            assert_eq!(of_surface(&simplifier), of_level(&simplifier.level()), "{name} to {ratio}");
+        }
+    }
+}
+
+/// Counts what it is told, and wants to see nothing.
+#[derive(Default)]
+struct Count(usize);
+
+impl Observe for Count {
+    fn needs_surface(&self) -> bool {
+        false
+    }
+
+    fn gone(&mut self, faces: usize) {
+        self.0 += faces;
+    }
+}
+
+#[test]
+fn every_face_that_goes_is_counted() {
+    let mesh = sample::torus(30_000);
+    let mut simplifier = Simplifier::new(&mesh, &options()).unwrap();
+    let (mut alone, mut beside) = (Count::default(), Count::default());
+    simplifier.run(Target::Ratio(0.3), &mut alone).unwrap();
+    assert_eq!(alone.0, mesh.faces.len() - simplifier.live_faces());
+    simplifier.run(Target::Ratio(0.1), &mut (&mut beside, History::default())).unwrap();
+    assert_eq!(alone.0 + beside.0, mesh.faces.len() - simplifier.live_faces());
+}
+
+#[test]
+fn runs_and_steps_go_the_same_way() {
+    let mesh = sample::knot(3000);
+    let mut by_steps = Simplifier::new(&mesh, &options()).unwrap();
+    let mut by_runs = Simplifier::new(&mesh, &options()).unwrap();
+    for ratio in [0.5, 0.2, 0.05] {
+        by_runs.run(Target::Ratio(ratio), &mut ()).unwrap();
+        while by_steps.live_faces() > by_runs.live_faces() {
+            // Told what it costs, it can be made for that, or is found to be refused.
+            let cost = by_steps.next_cost().unwrap();
+            let before = by_steps.live_faces();
+            let made = by_steps.step(cost, &mut ());
+            assert!(made || by_steps.next_cost() > Some(cost), "{cost:e}");
+            assert_eq!(made, by_steps.live_faces() < before);
+        }
+        assert_eq!(by_steps.level(), by_runs.level());
+    }
+}
+
+#[test]
 fn damaged_files_end() {
     for path in fixtures::shared_broken() {
         let Ok(text) = std::fs::read(&path) else { continue };
@@ -278,7 +387,7 @@ fn damaged_files_end() {
         let faces = faces.map(|b| [index(b), index(&b[1..]), index(&b[2..])]).collect();
         let positions = (0..40).map(|i| [f64::from(i % 7), f64::from(i % 5), f64::from(i % 3)]);
         let soup = Mesh::new(positions.collect(), faces);
-        if let Ok((level, report)) = fast::simplify(&soup, Target::Ratio(0.1), &options()) {
+        if let Ok((level, report)) = simplify(&soup, Target::Ratio(0.1), &options()) {
             check_level("soup", &level, &report);
         }
     }

@@ -32,8 +32,10 @@ where
             self.vanishing.refuse(component);
             return false;
         }
+        let observer = &mut (&mut self.volume, observer);
         observer.vanish(surface, &left);
         surface.take_out(&component.faces);
+        observer.gone(left.len());
         self.error_estimate = self.error_estimate.max(component.size);
         self.vanished += 1;
         true

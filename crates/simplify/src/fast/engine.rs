@@ -8,10 +8,12 @@ use glam::Vec3;
 
 use crate::fast::cost::{Cheapest, SHORT_FIRST, cheapest};
 use crate::fast::hood::Hood;
+use crate::fast::log::Done;
 use crate::fast::place::{Swept, matrix};
 use crate::fast::queue::{NONE, Queue, bucket, last_bucket};
 use crate::fast::ring::{MOST, RING, Vertices};
 use crate::fast::vertex::{Flags, NOBODY, Star, Vertex};
+use crate::fast::volume::Volume;
 use crate::refusal::{Refusal, Refusals};
 
 /// By how many buckets of a quarter octave a cost may have risen. Mean error of horse-97k at 10 %:
@@ -35,11 +37,16 @@ pub(super) struct Engine {
     pub(super) live_faces: usize,
     /// The square of the greatest estimate so far, in the frame's units.
     pub(super) error: f64,
+    /// The square of the greatest estimate allowed.
+    pub(super) most_error: f64,
     pub(super) refusals: Refusals,
+    pub(super) volume: Volume,
+    /// What was done, where that is wanted.
+    pub(super) log: Option<Vec<Done>>,
     queue: Queue,
     hood: Hood,
-    /// The square of the greatest estimate allowed.
-    most_error: f64,
+    /// How many of the vertices read before they are wanted are still to come.
+    warm: usize,
 }
 
 /// Why the edge at the front was not contracted.
@@ -51,15 +58,18 @@ enum Not {
 }
 
 impl Engine {
-    pub(super) fn new(vertices: Vertices, live_faces: usize, most_error: f64) -> Self {
+    pub(super) fn new(vertices: Vertices, live_faces: usize) -> Self {
         let mut engine = Self {
             vertices,
             live_faces,
             error: 0.0,
+            most_error: f64::INFINITY,
             refusals: Refusals::default(),
+            volume: Volume::default(),
+            log: None,
             queue: Queue::new(),
             hood: Hood::new(),
-            most_error,
+            warm: 0,
         };
         for v in 0..engine.vertices.all.len() as u32 {
             if engine.vertices.get(v).len > 0 {
@@ -69,25 +79,58 @@ impl Engine {
         engine
     }
 
-    /// Contracts until no more than `faces` are left or nothing more may be contracted.
-    pub(super) fn run(&mut self, faces: usize) {
-        let mut warm = 0;
+    /// Contracts until no more than `faces` are left, or what comes next is in a bucket behind `last`,
+    /// or nothing more may be contracted.
+    pub(super) fn run(&mut self, faces: usize, last: u16) {
         while self.live_faces > faces {
-            if warm == 0 {
+            if self.warm == 0 {
                 self.warm();
-                warm = AHEAD;
+                self.warm = AHEAD;
             }
-            warm -= 1;
+            self.warm -= 1;
             let Some((v, bucket)) = self.queue.pop() else { return };
+            if bucket > last {
+                return self.queue.push(v, bucket);
+            }
+            if self.is_due(v, bucket) {
+                self.try_at(v, bucket);
+            }
+        }
+    }
+
+    /// The bucket of what comes next.
+    pub(super) fn next_bucket(&mut self) -> Option<u16> {
+        loop {
+            let (v, bucket) = self.queue.pop()?;
+            if self.is_due(v, bucket) {
+                self.vertices.get_mut(v).bucket = bucket;
+                self.queue.push(v, bucket);
+                return Some(bucket);
+            }
+        }
+    }
+
+    /// Whether an entry that has left the queue still stands for its vertex.
+    #[inline(always)]
+    fn is_due(&mut self, v: u32, bucket: u16) -> bool {
+        let vertex = self.vertices.get_mut(v);
+        if vertex.bucket != bucket || vertex.flags.any(Flags::DEAD) {
+            return false;
+        }
+        vertex.bucket = NONE;
+        !vertex.flags.any(Flags::BARRED)
+    }
+
+    /// Lets all edges try again that were refused.
+    pub(super) fn wake_all(&mut self) {
+        for v in 0..self.vertices.all.len() as u32 {
             let vertex = self.vertices.get_mut(v);
-            if vertex.bucket != bucket || vertex.flags.any(Flags::DEAD) {
-                continue;
+            if vertex.floor > 0 && !vertex.flags.any(ASIDE) {
+                vertex.floor = 0;
+                vertex.target = NOBODY;
+                vertex.bucket = 0;
+                self.queue.push(v, 0);
             }
-            vertex.bucket = NONE;
-            if vertex.flags.any(Flags::BARRED) {
-                continue;
-            }
-            self.try_at(v, bucket);
         }
     }
 
@@ -235,6 +278,12 @@ impl Engine {
         let place = if free { (from.as_dvec3() + best + swept.half).as_vec3() } else { from };
         hood.put(place - from).map_err(refused)?;
         self.error = self.error.max(moved);
+        let to = (place - from).as_dvec3() - swept.half;
+        let lost = swept.level - swept.normal.dot(to);
+        self.volume.add(place, lost, hood.is_open(end0), free);
+        if let Some(log) = &mut self.log {
+            log.push(Done { kept: v0, gone: v1, place, moved: moved as f32 });
+        }
         self.carry_out(v0, v1, place, moved as f32, front);
         Ok(v0)
     }
@@ -277,14 +326,14 @@ impl Engine {
         gone.target = v0;
         vertices.set_ring_of(v0, &hood.ids, hood.len);
         let kept = vertices.get_mut(v0);
-        if place != kept.place() {
-            kept.flags.set(Flags::MOVED);
-        }
         kept.put(place, star);
         kept.moved = moved;
         kept.floor = 0;
     }
 }
+
+/// Vertices that do not wait for anything.
+const ASIDE: Flags = Flags(Flags::DEAD.0 | Flags::BARRED.0);
 
 /// A vertex whose edges were refused may have others now.
 #[cold]

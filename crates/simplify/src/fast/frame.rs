@@ -32,4 +32,10 @@ impl Frame {
     pub(super) fn leave(&self, place: Vec3) -> [f64; 3] {
         (place.as_dvec3() * self.unit + self.center).to_array()
     }
+
+    /// The position of a vertex: as it was in the input if it is there still.
+    #[inline]
+    pub(super) fn leave_from(&self, input: [f64; 3], place: Vec3) -> [f64; 3] {
+        if self.enter(input) == place { input } else { self.leave(place) }
+    }
 }

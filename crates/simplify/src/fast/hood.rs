@@ -12,7 +12,7 @@ use glam::{Vec3, Vec4};
 
 use crate::fast::lanes::{LANES, Lanes3, transpose};
 use crate::fast::ring::{MOST, Vertices, place_in};
-use crate::fast::vertex::{Flags, Star};
+use crate::fast::vertex::{Flags, Star, Vertex};
 use crate::refusal::Refusal;
 
 /// Room for a ring and the lanes beyond its end.
@@ -264,6 +264,16 @@ impl Hood {
             of_v1 += one(&self.old, i);
         }
         (of_v0, of_v1)
+    }
+
+    /// Whether the surface ends here. Around a vertex that stands for one fan of several it ends only
+    /// where it does around the other end: the other fans go on.
+    #[inline(always)]
+    pub(super) fn is_open(&self, end0: &Vertex) -> bool {
+        match self.ghost {
+            Some(at) if end0.flags.any(Flags::SPLIT) => at == 0 || at >= self.of_v0,
+            ghost => ghost.is_some(),
+        }
     }
 
     /// The boundary edges among the spokes: where in the ring they end, from which apex before.

@@ -27,6 +27,11 @@ pub(super) fn bucket(cost: f32) -> u16 {
     if cost < f32::INFINITY { bucket as u16 } else { NONE }
 }
 
+/// The least cost in a bucket.
+pub(super) fn least_of(bucket: u16) -> f32 {
+    f32::from_bits(u32::from(bucket) << BELOW)
+}
+
 /// The bucket of the greatest costs.
 pub(super) const fn last_bucket() -> u16 {
     BUCKETS as u16 - 1
@@ -96,5 +101,6 @@ mod tests {
     fn four_buckets_are_an_octave() {
         assert_eq!(bucket(2.0) - bucket(1.0), 4);
         assert!(bucket(f32::MAX) < NONE && bucket(-1.0) == 0);
+        assert_eq!([bucket(least_of(77)), bucket(least_of(77).next_down())], [77, 76]);
     }
 }

@@ -48,6 +48,26 @@ impl Vertices {
         if v > self.ghost { self.copied[(v - self.ghost - 1) as usize] } else { v }
     }
 
+    /// The live vertex that each is or has gone into.
+    pub(super) fn heirs(&self) -> Vec<u32> {
+        let next = |(v, vertex): (u32, &Vertex)| match vertex.flags.any(Flags::DEAD) {
+            true => vertex.target,
+            false => v,
+        };
+        let mut heirs: Vec<u32> = (0..).zip(&self.all).map(next).collect();
+        for v in 0..heirs.len() {
+            let mut last = heirs[v];
+            while heirs[last as usize] != last {
+                last = heirs[last as usize];
+            }
+            let mut at = v;
+            while heirs[at] != last {
+                at = std::mem::replace(&mut heirs[at], last) as usize;
+            }
+        }
+        heirs
+    }
+
     /// The live vertex that this one is or has gone into.
     pub(super) fn heir(&mut self, mut v: u32) -> u32 {
         while self.get(v).flags.any(Flags::DEAD) {

@@ -7,12 +7,10 @@ use crate::fast::fans::Pair;
 
 /// Faces on copies of vertices.
 pub(super) struct Split {
-    /// As many as in the input; those that repeat another are `[0, 0, 0]`.
+    /// As many as were given.
     pub(super) faces: Vec<[u32; 3]>,
     /// The vertices that the copies are of. The first copy's id is one more than the ghost's.
     pub(super) copied: Vec<u32>,
-    /// Faces that repeat another.
-    pub(super) duplicates: usize,
 }
 
 /// A corner of a face at a vertex.
@@ -25,7 +23,6 @@ struct Corner {
 
 /// Gives each fan around the irregular vertices a vertex of its own: the first keeps the id.
 pub(super) fn split(mut faces: Vec<[u32; 3]>, irregular: &[u32], ghost: u32) -> Split {
-    let duplicates = drop_duplicates(&mut faces, irregular);
     let stars = stars(&faces, irregular);
     let mut copied = Vec::new();
     for (&v, star) in irregular.iter().zip(&stars) {
@@ -40,7 +37,7 @@ pub(super) fn split(mut faces: Vec<[u32; 3]>, irregular: &[u32], ghost: u32) -> 
             }
         }
     }
-    Split { faces, copied, duplicates }
+    Split { faces, copied }
 }
 
 /// The corners of faces at each of these vertices.
@@ -60,8 +57,9 @@ fn stars(faces: &[[u32; 3]], of: &[u32]) -> Vec<Vec<Corner>> {
     stars
 }
 
-/// Empties all faces that repeat one before, in the same turn. Their corners are all irregular.
-fn drop_duplicates(faces: &mut [[u32; 3]], irregular: &[u32]) -> usize {
+/// Makes all faces that repeat one before, in the same turn, `[0, 0, 0]`, and says how many those were.
+/// Their corners are all irregular.
+pub(super) fn drop_duplicates(faces: &mut [[u32; 3]], irregular: &[u32]) -> usize {
     let mut seen = FxHashMap::default();
     let mut count = 0;
     for face in faces.iter_mut() {

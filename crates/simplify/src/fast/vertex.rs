@@ -52,10 +52,8 @@ impl Flags {
     pub(super) const DEAD: Self = Self(2);
     /// No edge to it may be contracted: the ghost, and hubs until they have shrunk.
     pub(super) const BARRED: Self = Self(4);
-    /// It is not where it was in the input.
-    pub(super) const MOVED: Self = Self(8);
     /// A face of it has changed since it was looked at.
-    pub(super) const STALE: Self = Self(32);
+    pub(super) const STALE: Self = Self(8);
     /// One of the copies of a vertex where the surface is not manifold.
     pub(super) const SPLIT: Self = Self(16);
 

@@ -19,10 +19,8 @@ mod spr;
 mod volume;
 mod wu;
 
-use meshlod_mesh::Connectivity;
-
 use crate::candidates::{Edges, FacesAndEdges};
-use crate::engine::{Algorithm, Run};
+use crate::engine::{Algorithm, Ready, Run};
 use crate::methods::appearance::Appearance;
 use crate::methods::channels::Channels;
 use crate::methods::creases::Creases;
@@ -37,88 +35,78 @@ use crate::methods::samples::Samples;
 use crate::methods::spr::Turn;
 use crate::methods::wu::WeightedMean;
 use crate::options::{Method, Options};
-use crate::surface::Surface;
 
-/// Sets a method to work on a surface.
-pub(crate) fn start(
-    options: &Options,
-    surface: Surface,
-    connectivity: Connectivity,
-) -> Box<dyn Run> {
+/// Sets a method to work.
+pub(crate) fn start(options: &Options, ready: Ready) -> Box<dyn Run> {
+    let surface = &ready.surface;
     match options.method {
-        Method::Qem => by_quadrics(options, Optimal, surface, connectivity),
-        Method::QemEndpoint => by_quadrics(options, Endpoint, surface, connectivity),
+        Method::Qem => by_quadrics(options, Optimal, ready),
+        Method::QemEndpoint => by_quadrics(options, Endpoint, ready),
         Method::LindstromTurk => Algorithm {
             candidates: Edges,
-            memory: Stars::new(&surface),
+            memory: Stars::new(surface),
             priority: Memoryless,
             placement: Memoryless,
         }
-        .start(surface, connectivity),
+        .start(ready),
         Method::LindstromTurkFaces => Algorithm {
             candidates: FacesAndEdges,
-            memory: Stars::new(&surface),
+            memory: Stars::new(surface),
             priority: Memoryless,
             placement: Memoryless,
         }
-        .start(surface, connectivity),
+        .start(ready),
         Method::LeeJang => Algorithm {
             candidates: FacesAndEdges,
-            memory: Creases::new(&surface, lee_jang::weight),
-            priority: FaceOrder::new(&surface),
+            memory: Creases::new(surface, lee_jang::weight),
+            priority: FaceOrder::new(surface),
             placement: Constriction,
         }
-        .start(surface, connectivity),
+        .start(ready),
         Method::Wu => Algorithm {
             candidates: FacesAndEdges,
-            memory: Creases::new(&surface, wu::weight),
-            priority: FaceOrder::new(&surface),
+            memory: Creases::new(surface, wu::weight),
+            priority: FaceOrder::new(surface),
             placement: WeightedMean,
         }
-        .start(surface, connectivity),
+        .start(ready),
         Method::KimJang => Algorithm {
             candidates: Edges,
-            memory: Quadrics::new(&surface, &connectivity, ()),
+            memory: Quadrics::new(surface, &ready.connectivity, ()),
             priority: Optimal,
             placement: Conserving,
         }
-        .start(surface, connectivity),
+        .start(ready),
         Method::Pm => Algorithm {
             candidates: Edges,
-            memory: Samples::new(&surface, &connectivity),
+            memory: Samples::new(surface, &ready.connectivity),
             priority: Energy,
             placement: Energy,
         }
-        .start(surface, connectivity),
+        .start(ready),
         Method::Spr => Algorithm { candidates: Edges, memory: (), priority: Turn, placement: Turn }
-            .start(surface, connectivity),
+            .start(ready),
     }
 }
 
 /// Quadrics with attributes, where there are any that count.
-fn by_quadrics<R: Rule + Copy + 'static>(
-    options: &Options,
-    rule: R,
-    surface: Surface,
-    connectivity: Connectivity,
-) -> Box<dyn Run> {
-    let channels = Channels::new(&surface, &options.weights);
+fn by_quadrics<R: Rule + Copy + 'static>(options: &Options, rule: R, ready: Ready) -> Box<dyn Run> {
+    let surface = &ready.surface;
+    let channels = Channels::new(surface, &options.weights);
     match (channels, &surface.wedges) {
         (Some(channels), Some(wedges)) => {
-            let appearance = Expectations::new(&surface, wedges, channels);
-            with_appearance(appearance, rule, surface, connectivity)
+            let appearance = Expectations::new(surface, wedges, channels);
+            with_appearance(appearance, rule, ready)
         }
-        _ => with_appearance((), rule, surface, connectivity),
+        _ => with_appearance((), rule, ready),
     }
 }
 
 fn with_appearance<A: Appearance + 'static, R: Rule + Copy + 'static>(
     appearance: A,
     rule: R,
-    surface: Surface,
-    connectivity: Connectivity,
+    ready: Ready,
 ) -> Box<dyn Run> {
-    let memory = Quadrics::new(&surface, &connectivity, appearance);
-    Algorithm { candidates: Edges, memory, priority: rule, placement: rule }
-        .start(surface, connectivity)
+    let memory = Quadrics::new(&ready.surface, &ready.connectivity, appearance);
+    Algorithm { candidates: Edges, memory, priority: rule, placement: rule }.start(ready)
 }

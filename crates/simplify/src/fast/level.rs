@@ -1,0 +1,58 @@
+//! A mesh out of the fast engine's vertices as they are.
+
+use meshlod_mesh::{Mesh, VertexId};
+
+use crate::fast::log::Names;
+use crate::fast::prepare::corners;
+
+/// The faces that are left, with what they use, in the input's order. `faces` are those on copies of
+/// vertices, where there are any.
+pub(super) fn level(names: Names<'_>, faces: Option<&[[u32; 3]]>) -> Mesh {
+    let Names { mesh, vertices, .. } = names;
+    let heirs = vertices.heirs();
+    let faces = match faces {
+        Some(faces) => live(faces.iter().copied(), &heirs),
+        None => live(mesh.faces.iter().map(corners), &heirs),
+    };
+    let mut ids = vec![u32::MAX; mesh.positions.len()];
+    let mut level = Mesh::default();
+    for (_, corners) in &faces {
+        for &v in corners {
+            ids[names.input(v).index()] = v;
+        }
+    }
+    for (input, id) in ids.iter_mut().enumerate().filter(|(_, id)| **id != u32::MAX) {
+        let place = vertices.get(*id).place();
+        level.positions.push(names.position(VertexId::new(input), place));
+        *id = level.positions.len() as u32 - 1;
+    }
+    let corner = |v: u32| VertexId(ids[names.input(v).index()]);
+    level.faces = faces.iter().map(|&(_, [a, b, c])| [corner(a), corner(b), corner(c)]).collect();
+    let kept: Vec<u32> = faces.iter().map(|&(face, _)| face).collect();
+    level.materials = mesh.materials.as_ref().map(|labels| labels.select(&kept));
+    level.objects = mesh.objects.as_ref().map(|labels| labels.select(&kept));
+    level
+}
+
+/// All vertices and faces of the input as they are; a face that is gone repeats a vertex.
+pub(super) fn workspace(names: Names<'_>, faces: Option<&[[u32; 3]]>) -> Mesh {
+    let Names { mesh, vertices, .. } = names;
+    let heirs = vertices.heirs();
+    let now = |v: u32| names.input(heirs[v as usize]);
+    let now = |[a, b, c]: [u32; 3]| [now(a), now(b), now(c)];
+    let place = |v: u32| names.position(VertexId(v), vertices.get(v).place());
+    Mesh::new(
+        (0..mesh.positions.len() as u32).map(place).collect(),
+        match faces {
+            Some(faces) => faces.iter().copied().map(now).collect(),
+            None => mesh.faces.iter().map(corners).map(now).collect(),
+        },
+    )
+}
+
+/// The faces whose corners are still three, by what the corners have become.
+fn live(faces: impl Iterator<Item = [u32; 3]>, heirs: &[u32]) -> Vec<(u32, [u32; 3])> {
+    let heir = |v: u32| heirs[v as usize];
+    let now = |(i, [a, b, c]): (usize, [u32; 3])| (i as u32, [heir(a), heir(b), heir(c)]);
+    faces.enumerate().map(now).filter(|(_, [a, b, c])| a != b && b != c && c != a).collect()
+}
