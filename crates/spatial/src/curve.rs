@@ -1,6 +1,7 @@
-//! An order of boxes along a curve that fills space.
+//! An order of boxes and points along a curve that fills space.
 
 use glam::{DVec3, Vec3};
+use rayon::prelude::*;
 
 use crate::blocks::Corners;
 use crate::box3::Box3;
@@ -17,9 +18,20 @@ const CROWD: usize = 32;
 /// Boxes in one cell are ordered again in the box of their own centres, so neither far-off boxes nor
 /// crowds spoil the order; those with one centre stay in their order.
 pub(crate) fn order(boxes: &[Box3]) -> Vec<u32> {
-    let mut keyed: Vec<Keyed> =
-        (0..boxes.len() as u32).map(|item| Keyed { key: 0, item }).collect();
-    sort(&mut keyed, boxes, &mut Vec::new());
+    order_by(boxes.len(), |item| boxes[item as usize].center())
+}
+
+/// Points, by their indices, so that those that are near are near in the order; those in one place stay
+/// in their order.
+///
+/// Finite coordinates, in any unit. Cost: O(n), n = points; the keys are found on all threads.
+pub fn curve_order(points: &[[f32; 3]]) -> Vec<u32> {
+    order_by(points.len(), |item| points[item as usize].into())
+}
+
+fn order_by(count: usize, center: impl Fn(u32) -> Vec3 + Sync) -> Vec<u32> {
+    let mut keyed: Vec<Keyed> = (0..count as u32).map(|item| Keyed { key: 0, item }).collect();
+    sort(&mut keyed, &center, &mut Vec::new());
     keyed.into_iter().map(|keyed| keyed.item).collect()
 }
 
@@ -29,23 +41,27 @@ struct Keyed {
     item: u32,
 }
 
-fn sort(run: &mut [Keyed], boxes: &[Box3], scratch: &mut Vec<Keyed>) {
-    let center = |keyed: &Keyed| boxes[keyed.item as usize].center();
+/// Keys to a thread at a time.
+const AT_ONCE: usize = 1 << 14;
+
+fn sort(run: &mut [Keyed], center: &(impl Fn(u32) -> Vec3 + Sync), scratch: &mut Vec<Keyed>) {
     let empty = (Vec3::INFINITY, Vec3::NEG_INFINITY);
-    let (lo, hi) = run.iter().map(center).fold(empty, |(lo, hi), p| (lo.min(p), hi.max(p)));
+    let centers = run.iter().map(|keyed| center(keyed.item));
+    let (lo, hi) = centers.fold(empty, |(lo, hi), p| (lo.min(p), hi.max(p)));
     let extent = (hi - lo).max_element();
     if extent <= 0.0 || extent.is_nan() {
         return;
     }
     let scale = CELLS / extent;
-    for keyed in run.iter_mut() {
-        keyed.key = curve_key(((center(keyed) - lo) * scale).min(Vec3::splat(CELLS - 1.0)));
-    }
+    run.par_iter_mut().with_min_len(AT_ONCE).for_each(|keyed| {
+        let cell = (center(keyed.item) - lo) * scale;
+        keyed.key = curve_key(cell.min(Vec3::splat(CELLS - 1.0)));
+    });
     radix_sort(run, scratch);
     let whole = run.len();
     for crowd in run.chunk_by_mut(|a, b| a.key == b.key) {
         if crowd.len() >= CROWD && crowd.len() < whole {
-            sort(crowd, boxes, scratch);
+            sort(crowd, center, scratch);
         }
     }
 }

@@ -32,6 +32,7 @@ mod triangle;
 pub use blocks::{BoxBlocks, Corners, LANES, Row, lanes};
 pub use bvh::{Bvh, BvhError};
 pub use closest::Closest;
+pub use curve::curve_order;
 pub use frame::Frame;
 pub use octree::{Cube, Octree};
 pub use triangle::{Triangle, closest_point};
