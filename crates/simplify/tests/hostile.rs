@@ -8,17 +8,6 @@ fn run(mesh: &Mesh, target: Target) -> (Mesh, meshlod_simplify::Report) {
     simplify(mesh, target, &Options::default()).unwrap()
 }
 
-/// `n` faces around one vertex, a little above its rim.
-fn cone(n: u32) -> Mesh {
-    let mut positions = vec![[0.0, 0.0, 0.5]];
-    positions.extend((0..n).map(|i| {
-        let (y, x) = (std::f64::consts::TAU * f64::from(i) / f64::from(n)).sin_cos();
-        [x, y, 0.0]
-    }));
-    let rim = |i: u32| VertexId(1 + i % n);
-    Mesh::new(positions, (0..n).map(|i| [VertexId(0), rim(i), rim(i + 1)]).collect())
-}
-
 #[test]
 fn a_flat_grows_no_hubs() {
     let (level, report) = run(&fixtures::grid(200), Target::Ratio(0.02));
@@ -34,7 +23,8 @@ fn a_flat_grows_no_hubs() {
 fn a_hub_shrinks_with_its_rim() {
     for method in Method::ALL {
         let options = Options { method, ..Options::default() };
-        let (level, report) = simplify(&cone(20_000), Target::Faces(100), &options).unwrap();
+        let (level, report) =
+            simplify(&fixtures::cone(20_000), Target::Faces(100), &options).unwrap();
         assert!(report.reached, "{}: {}", method.name(), report.refusals);
         assert!((level.bounds().max[2] - 0.5).abs() < 0.05, "{}: the tip is gone", method.name());
     }
@@ -42,7 +32,7 @@ fn a_hub_shrinks_with_its_rim() {
 
 #[test]
 fn a_hub_given_twice_is_a_hub() {
-    let mut mesh = cone(20_000);
+    let mut mesh = fixtures::cone(20_000);
     mesh.faces.extend_from_within(..);
     let (_, report) = run(&mesh, Target::Faces(100));
     assert_eq!((report.duplicate_faces, report.reached), (20_000, true));
