@@ -64,17 +64,6 @@ fn pages(n: usize) -> Mesh {
     mesh
 }
 
-/// `n` faces around one vertex, a little above its rim.
-fn cone(n: u32) -> Mesh {
-    let mut positions = vec![[0.0, 0.0, 0.5]];
-    positions.extend((0..n).map(|i| {
-        let (y, x) = (std::f64::consts::TAU * f64::from(i) / f64::from(n)).sin_cos();
-        [x, y, 0.0]
-    }));
-    let rim = |i: u32| VertexId(1 + i % n);
-    Mesh::new(positions, (0..n).map(|i| [VertexId(0), rim(i), rim(i + 1)]).collect())
-}
-
 /// Components, Euler number, whether closed, non-manifold and inconsistent edges.
 fn topology(mesh: &Mesh) -> (usize, i64, bool, usize, usize) {
     let c = Connectivity::new(&mesh.faces, mesh.positions.len());
@@ -145,7 +134,7 @@ fn a_flat_stays_one_and_grows_no_hubs() {
 
 #[test]
 fn a_hub_shrinks_with_its_rim() {
-    let (level, report) = run(&cone(100_000), Target::Faces(100));
+    let (level, report) = run(&fixtures::cone(100_000), Target::Faces(100));
     assert!(report.reached, "{report:?}");
     check_level("cone", &level, &report);
     assert!((level.bounds().max[2] - 0.5).abs() < 0.05, "the tip is gone");
@@ -153,7 +142,7 @@ fn a_hub_shrinks_with_its_rim() {
 
 #[test]
 fn faces_given_twice_are_left_out() {
-    let mut mesh = cone(2_000);
+    let mut mesh = fixtures::cone(2_000);
     mesh.faces.extend_from_within(..);
     let (level, report) = run(&mesh, Target::Faces(100));
     check_level("two cones", &level, &report);
@@ -276,7 +265,9 @@ fn what_was_found_in_the_input_is_told_as_by_the_general_engine() {
     let first = dirty.faces[0];
     dirty.faces.extend([first, [first[0], first[0], first[2]], [first[1], first[2], first[0]]]);
     let bare = |mesh: Mesh| Mesh { attributes: None, ..mesh };
-    for mesh in [dirty, cone(300), pages(3), fixtures::hourglass(), bare(sample::fish(500))] {
+    for mesh in
+        [dirty, fixtures::cone(300), pages(3), fixtures::hourglass(), bare(sample::fish(500))]
+    {
         let every_fifth = |v: usize| if v.is_multiple_of(5) { Lock::Locked } else { Lock::Free };
         let of_vertex = (0..mesh.positions.len()).map(every_fifth).collect();
         let locks = Locks { of_vertex, ties: Vec::new() };

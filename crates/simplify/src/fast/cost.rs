@@ -10,6 +10,7 @@ use glam::{Vec3, Vec4};
 
 use crate::fast::lanes::{LANES, Lanes3, transpose};
 use crate::fast::queue::bucket;
+use crate::fast::ring::Vertices;
 use crate::fast::vertex::{Flags, NOBODY, Vertex};
 
 /// How strongly the optimum is pulled to the middle of the edge, as in the general engine.
@@ -33,19 +34,15 @@ pub(super) struct Cheapest {
 
 /// The cheapest edge from `u` around a ring, of those above `u`'s floor.
 #[inline(always)]
-pub(super) fn cheapest(all: &[Vertex], u: &Vertex, ring: &[u32]) -> Cheapest {
+pub(super) fn cheapest(vertices: &Vertices, u: &Vertex, ring: &[u32]) -> Cheapest {
     let (mut least, mut target) = (f32::INFINITY, NOBODY);
     let mut start = 0;
     while start < ring.len() {
         // Lanes beyond the end look at the last one again.
         let id = |lane: usize| ring[(start + lane).min(ring.len() - 1)];
         let ids = [id(0), id(1), id(2), id(3)];
-        let ends = [
-            &all[ids[0] as usize],
-            &all[ids[1] as usize],
-            &all[ids[2] as usize],
-            &all[ids[3] as usize],
-        ];
+        let see = |lane: usize| vertices.get(ids[lane]);
+        let ends = [see(0), see(1), see(2), see(3)];
         let special =
             u.flags.0 | ends[0].flags.0 | ends[1].flags.0 | ends[2].flags.0 | ends[3].flags.0;
         let mut costs = costs(u, &ends).to_array();
@@ -63,7 +60,7 @@ pub(super) fn cheapest(all: &[Vertex], u: &Vertex, ring: &[u32]) -> Cheapest {
 }
 
 /// What makes a cost other than that of a free edge.
-const SPECIAL: Flags = Flags(Flags::PINNED.0 | Flags::BARRED.0);
+const SPECIAL: Flags = Flags(Flags::PINNED.0 | Flags::SHUT.0);
 
 /// Costs of edges with an end that stays where it is, or that may not be contracted, or not now.
 #[cold]
@@ -71,7 +68,7 @@ fn correct(costs: &mut [f32; LANES], u: &Vertex, ends: &[&Vertex; LANES]) {
     for (cost, v) in costs.iter_mut().zip(ends) {
         let pinned = [u.flags.any(Flags::PINNED), v.flags.any(Flags::PINNED)];
         *cost = match pinned {
-            _ if v.flags.any(Flags::BARRED) || u.flags.any(Flags::BARRED) => f32::INFINITY,
+            _ if v.flags.any(Flags::SHUT) || u.flags.any(Flags::SHUT) => f32::INFINITY,
             [false, false] => *cost,
             [true, true] => f32::INFINITY,
             [true, false] => swept(v, u.place()),

@@ -11,7 +11,7 @@ use crate::fast::hood::Hood;
 use crate::fast::log::Done;
 use crate::fast::place::{Swept, matrix};
 use crate::fast::queue::{NONE, Queue, bucket, last_bucket};
-use crate::fast::ring::{MOST, RING, Vertices};
+use crate::fast::ring::{GHOST, MOST, RING, Vertices};
 use crate::fast::vertex::{Flags, NOBODY, Star, Vertex};
 use crate::fast::volume::Volume;
 use crate::refusal::{Refusal, Refusals};
@@ -31,9 +31,9 @@ const AHEAD: usize = 16;
 /// What a boundary edge counts [LT99].
 pub(super) const BOUNDARY_WEIGHT: f32 = 9.0;
 
-/// A surface at work.
-pub(super) struct Engine {
-    pub(super) vertices: Vertices,
+/// A part of a surface at work.
+pub(super) struct Engine<'v> {
+    pub(super) vertices: Vertices<'v>,
     pub(super) live_faces: usize,
     /// The square of the greatest estimate so far, in the frame's units.
     pub(super) error: f64,
@@ -43,10 +43,8 @@ pub(super) struct Engine {
     pub(super) volume: Volume,
     /// What was done, where that is wanted.
     pub(super) log: Option<Vec<Done>>,
-    queue: Queue,
-    hood: Hood,
-    /// How many of the vertices read before they are wanted are still to come.
-    warm: usize,
+    pub(super) queue: &'v mut Queue,
+    hood: &'v mut Hood,
 }
 
 /// Why the edge at the front was not contracted.
@@ -57,41 +55,42 @@ enum Not {
     Refused(Refusal, u16),
 }
 
-impl Engine {
-    pub(super) fn new(vertices: Vertices, live_faces: usize) -> Self {
-        let mut engine = Self {
+impl<'v> Engine<'v> {
+    pub(super) fn new(vertices: Vertices<'v>, queue: &'v mut Queue, hood: &'v mut Hood) -> Self {
+        Self {
             vertices,
-            live_faces,
+            live_faces: 0,
             error: 0.0,
             most_error: f64::INFINITY,
             refusals: Refusals::default(),
             volume: Volume::default(),
             log: None,
-            queue: Queue::new(),
-            hood: Hood::new(),
-            warm: 0,
-        };
-        for v in 0..engine.vertices.all.len() as u32 {
-            if engine.vertices.get(v).len > 0 {
-                engine.look_up(v);
+            queue,
+            hood,
+        }
+    }
+
+    /// Looks at all vertices for the first time, but for those that wait.
+    pub(super) fn look_around(&mut self) {
+        for v in self.vertices.ids() {
+            let vertex = self.vertices.get(v);
+            if vertex.len > 0 && !vertex.flags.any(Flags::OUTER) {
+                self.look_up(v);
             }
         }
-        engine
     }
 
     /// Contracts until no more than `faces` are left, or what comes next is in a bucket behind `last`,
     /// or nothing more may be contracted.
     pub(super) fn run(&mut self, faces: usize, last: u16) {
+        let mut warm = 0;
         while self.live_faces > faces {
-            if self.warm == 0 {
+            if warm == 0 {
                 self.warm();
-                self.warm = AHEAD;
+                warm = AHEAD;
             }
-            self.warm -= 1;
-            let Some((v, bucket)) = self.queue.pop() else { return };
-            if bucket > last {
-                return self.queue.push(v, bucket);
-            }
+            warm -= 1;
+            let Some((v, bucket)) = self.queue.pop(last) else { return };
             if self.is_due(v, bucket) {
                 self.try_at(v, bucket);
             }
@@ -101,7 +100,7 @@ impl Engine {
     /// The bucket of what comes next.
     pub(super) fn next_bucket(&mut self) -> Option<u16> {
         loop {
-            let (v, bucket) = self.queue.pop()?;
+            let (v, bucket) = self.queue.pop(last_bucket())?;
             if self.is_due(v, bucket) {
                 self.vertices.get_mut(v).bucket = bucket;
                 self.queue.push(v, bucket);
@@ -118,37 +117,49 @@ impl Engine {
             return false;
         }
         vertex.bucket = NONE;
-        !vertex.flags.any(Flags::BARRED)
+        !vertex.flags.any(Flags::SHUT)
     }
 
     /// Lets all edges try again that were refused.
     pub(super) fn wake_all(&mut self) {
-        for v in 0..self.vertices.all.len() as u32 {
-            let vertex = self.vertices.get_mut(v);
+        for v in self.vertices.ids() {
+            let vertex = self.vertices.get(v);
             if vertex.floor > 0 && !vertex.flags.any(ASIDE) {
-                vertex.floor = 0;
-                vertex.target = NOBODY;
-                vertex.bucket = 0;
-                self.queue.push(v, 0);
+                self.put_first(v);
             }
         }
+    }
+
+    /// Lets a vertex go on that has waited.
+    pub(super) fn release(&mut self, v: u32) {
+        self.vertices.get_mut(v).flags.clear(Flags::OUTER);
+        self.put_first(v);
+    }
+
+    /// Queues a vertex before all others, to be looked at there.
+    fn put_first(&mut self, v: u32) {
+        let vertex = self.vertices.get_mut(v);
+        vertex.floor = 0;
+        vertex.target = NOBODY;
+        vertex.bucket = 0;
+        self.queue.push(v, 0);
     }
 
     /// Reads the vertices that come next, and their neighbours, in loops whose loads do not wait for
     /// each other: met one by one, they would cost a memory latency each.
     fn warm(&self) {
-        let all = &self.vertices.all;
+        let vertices = &self.vertices;
         let mut sum = 0;
         for &v in self.queue.upcoming(AHEAD) {
-            sum ^= all[v as usize].ring[0] ^ all[v as usize].target;
+            sum ^= vertices.get(v).ring[0] ^ vertices.get(v).target;
         }
         for &v in self.queue.upcoming(AHEAD) {
-            let vertex = &all[v as usize];
+            let vertex = vertices.get(v);
             if vertex.flags.any(Flags::DEAD) || vertex.len > RING as u8 {
                 continue;
             }
             for &w in &vertex.ring[..vertex.len as usize] {
-                sum ^= all[w as usize].target ^ all[w as usize].ring[0];
+                sum ^= vertices.get(w).target ^ vertices.get(w).ring[0];
             }
         }
         std::hint::black_box(sum);
@@ -160,7 +171,7 @@ impl Engine {
         // A look at one edge is cheaper than a contraction that is given up.
         if self.vertices.get(v).flags.any(Flags::STALE) {
             let vertex = self.vertices.get(v);
-            let now = cheapest(&self.vertices.all, vertex, &[target]).bucket;
+            let now = cheapest(&self.vertices, vertex, &[target]).bucket;
             if now > front.saturating_add(SLACK) {
                 return self.look(v, front, None);
             }
@@ -191,7 +202,7 @@ impl Engine {
             vertex.target = target;
             vertex.flags.set(Flags::STALE);
         }
-        let barred = self.vertices.get(target).flags.any(Flags::BARRED);
+        let barred = self.vertices.get(target).flags.any(Flags::SHUT);
         (target != v && !barred).then_some(target)
     }
 
@@ -202,9 +213,9 @@ impl Engine {
         let (mut above, mut count) = ([0; MOST], 0);
         for &w in vertices.settled(v).iter().take(MOST) {
             above[count] = w;
-            count += usize::from(w > v);
+            count += usize::from(w > v && w != GHOST);
         }
-        let Cheapest { bucket, target } = cheapest(&vertices.all, vertices.get(v), &above[..count]);
+        let Cheapest { bucket, target } = cheapest(vertices, vertices.get(v), &above[..count]);
         let vertex = self.vertices.get_mut(v);
         vertex.target = target;
         vertex.bucket = bucket;
@@ -218,7 +229,7 @@ impl Engine {
         self.vertices.bring_up(v);
         let vertex = self.vertices.get(v);
         let Cheapest { mut bucket, target } =
-            cheapest(&self.vertices.all, vertex, self.vertices.settled(v));
+            cheapest(&self.vertices, vertex, self.vertices.settled(v));
         if let Some((of, least)) = seen
             && of == target
         {
@@ -282,7 +293,7 @@ impl Engine {
         let lost = swept.level - swept.normal.dot(to);
         self.volume.add(place, lost, hood.is_open(end0), free);
         if let Some(log) = &mut self.log {
-            log.push(Done { kept: v0, gone: v1, place, moved: moved as f32 });
+            log.push(Done { kept: v0, gone: v1, place, moved: moved as f32, front });
         }
         self.carry_out(v0, v1, place, moved as f32, front);
         Ok(v0)
@@ -302,7 +313,7 @@ impl Engine {
         for i in 0..hood.len {
             let change = hood.changes[i];
             let id = hood.ids[i];
-            if id != vertices.ghost {
+            if id != GHOST {
                 let vertex = vertices.get_mut(id);
                 vertex.seen.add(&last);
                 vertex.seen.add(&change);
@@ -333,7 +344,7 @@ impl Engine {
 }
 
 /// Vertices that do not wait for anything.
-const ASIDE: Flags = Flags(Flags::DEAD.0 | Flags::BARRED.0);
+const ASIDE: Flags = Flags(Flags::DEAD.0 | Flags::SHUT.0);
 
 /// A vertex whose edges were refused may have others now.
 #[cold]

@@ -2,20 +2,22 @@
 //! open; an open one is closed by the ghost.
 
 use glam::Vec3;
+use rayon::prelude::*;
 
+use crate::fast::cells::{CELL, Cells};
 use crate::fast::engine::BOUNDARY_WEIGHT;
-use crate::fast::ring::{LONG, RING, Vertices};
-use crate::fast::vertex::{Flags, Star, Vertex};
+use crate::fast::ring::{GHOST, LONG, Long, RING, Store, Vertices};
+use crate::fast::vertex::{Star, Vertex};
 
 /// Pairs of neighbours that a vertex has room for before they are a ring.
 const PAIRS: usize = RING / 2;
 
 /// Faces made vertices with rings, and those where that cannot be done.
 pub(super) struct Fans {
-    pub(super) vertices: Vertices,
+    pub(super) store: Store,
     /// Faces of three different vertices.
     pub(super) faces: usize,
-    /// Vertices whose faces are not one fan. They have no ring.
+    /// Vertices whose faces are not one fan, in their order. They have no ring.
     pub(super) irregular: Vec<u32>,
 }
 
@@ -23,56 +25,57 @@ pub(super) struct Fans {
 pub(super) type Pair = [u32; 2];
 
 impl Fans {
-    /// Rings of `places` and the ghost behind the first `own` of them; what follows it is copies.
+    /// Rings of vertices at these places, the last of them copies, from `count` faces.
     pub(super) fn new(
-        places: impl ExactSizeIterator<Item = Vec3>,
+        places: &[Vec3],
         copied: Vec<u32>,
-        faces: impl Iterator<Item = [u32; 3]>,
+        count: usize,
+        face: impl Fn(usize) -> [u32; 3] + Sync,
     ) -> Self {
-        let ghost = places.len() - copied.len();
-        let mut all = Vec::with_capacity(places.len() + 1);
-        for (i, place) in places.enumerate() {
-            if i == ghost {
-                all.push(ghost_vertex());
-            }
-            all.push(Vertex::at(place));
+        let cells = Cells::new(places.len(), count, face);
+        let mut all: Vec<Vertex> = places.par_iter().map(|&place| Vertex::at(place)).collect();
+        let close = |(number, all)| close(number, all, places, &cells);
+        let closed: Vec<_> = all.par_chunks_mut(CELL).enumerate().map(close).collect();
+        let (mut long, mut irregular) = (Vec::new(), Vec::new());
+        for (lists, odd) in closed {
+            long.push(lists);
+            irregular.extend(odd);
         }
-        if all.len() == ghost {
-            all.push(ghost_vertex());
-        }
-        let mut beyond = Vec::new();
-        let mut count = 0;
-        for [a, b, c] in faces {
-            if a == b || b == c || c == a {
-                continue;
-            }
-            count += 1;
-            let place = |v: u32| all[v as usize].place();
-            let star = Star::face((place(b) - place(a)).cross(place(c) - place(a)));
-            for (v, pair) in [(a, [b, c]), (b, [c, a]), (c, [a, b])] {
-                let vertex = &mut all[v as usize];
-                vertex.seen.add(&star);
-                let at = vertex.len as usize;
-                if at < PAIRS {
-                    vertex.ring[2 * at..2 * at + 2].copy_from_slice(&pair);
-                    vertex.len += 1;
-                } else {
-                    beyond.push((v, pair));
-                }
-            }
-        }
-        let vertices = Vertices::new(all, ghost as u32, copied);
-        let mut fans = Self { vertices, faces: count, irregular: Vec::new() };
-        fans.close(beyond);
-        fans
+        Self { store: Store::new(all, copied, long), faces: cells.faces, irregular }
     }
+}
 
-    /// Makes rings of the pairs.
-    fn close(&mut self, mut beyond: Vec<(u32, Pair)>) {
+/// Makes the rings of a cell; gives those that are long, and the vertices that have none.
+fn close(
+    number: usize,
+    all: &mut [Vertex],
+    places: &[Vec3],
+    cells: &Cells,
+) -> (Vec<Long>, Vec<u32>) {
+    let mut long = Vec::new();
+    let vertices = Vertices::new(all, (number * CELL) as u32, &mut long);
+    let mut cell = Cell { number, vertices, places, irregular: Vec::new() };
+    cell.close(cells);
+    let irregular = cell.irregular;
+    (long, irregular)
+}
+
+/// A run of vertices whose rings are made.
+struct Cell<'c> {
+    number: usize,
+    vertices: Vertices<'c>,
+    /// Those of all vertices.
+    places: &'c [Vec3],
+    irregular: Vec<u32>,
+}
+
+impl Cell<'_> {
+    fn close(&mut self, cells: &Cells) {
+        let mut beyond = self.collect(cells);
         beyond.sort_by_key(|&(v, _)| v);
         let mut beyond = &beyond[..];
         let mut pairs = Vec::new();
-        for v in 0..self.vertices.all.len() as u32 {
+        for v in self.vertices.ids() {
             let vertex = self.vertices.get_mut(v);
             let len = vertex.len as usize;
             if len == 0 {
@@ -91,6 +94,29 @@ impl Fans {
                 self.ring_of_many(v, &mut pairs);
             }
         }
+    }
+
+    /// Gives each vertex its faces' star and pairs; those that it has no room for are given back.
+    fn collect(&mut self, cells: &Cells) -> Vec<(u32, Pair)> {
+        let (places, first) = (self.places, self.vertices.base);
+        let all = &mut *self.vertices.all;
+        let mut beyond = Vec::new();
+        for &[a, b, c] in cells.of(self.number).flatten() {
+            let place = |v: u32| places[v as usize];
+            let star = Star::face((place(b) - place(a)).cross(place(c) - place(a)));
+            for (v, pair) in [(a, [b, c]), (b, [c, a]), (c, [a, b])] {
+                let Some(vertex) = all.get_mut(v.wrapping_sub(first) as usize) else { continue };
+                vertex.seen.add(&star);
+                let at = vertex.len as usize;
+                if at < PAIRS {
+                    vertex.ring[2 * at..2 * at + 2].copy_from_slice(&pair);
+                    vertex.len += 1;
+                } else {
+                    beyond.push((v, pair));
+                }
+            }
+        }
+        beyond
     }
 
     #[inline(always)]
@@ -128,21 +154,14 @@ impl Fans {
     fn open(&mut self, v: u32, pairs: &[Pair]) {
         let (first, last) = (pairs[0][0], pairs[pairs.len() - 1][1]);
         let mut ring: Vec<u32> = pairs.iter().map(|pair| pair[0]).collect();
-        ring.extend([last, self.vertices.ghost]);
+        ring.extend([last, GHOST]);
         self.vertices.set_ring(v, &ring);
-        let place = self.vertices.get(v).place();
+        let place = self.places[v as usize];
         for end in [first, last] {
-            let end = self.vertices.get(end).place();
-            let edge = Star::boundary(end - place, BOUNDARY_WEIGHT);
+            let edge = Star::boundary(self.places[end as usize] - place, BOUNDARY_WEIGHT);
             self.vertices.get_mut(v).seen.add(&edge);
         }
     }
-}
-
-fn ghost_vertex() -> Vertex {
-    let mut ghost = Vertex::at(Vec3::ZERO);
-    ghost.flags.set(Flags::BARRED);
-    ghost
 }
 
 /// A fan.

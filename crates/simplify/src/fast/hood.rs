@@ -11,7 +11,7 @@
 use glam::{Vec3, Vec4};
 
 use crate::fast::lanes::{LANES, Lanes3, transpose};
-use crate::fast::ring::{MOST, Vertices, place_in};
+use crate::fast::ring::{GHOST, MOST, Vertices, place_in};
 use crate::fast::vertex::{Flags, Star, Vertex};
 use crate::refusal::Refusal;
 
@@ -141,7 +141,7 @@ impl Hood {
                 continue;
             }
             let copy_of_end = |w: &u32| vertices.origin(*w) == vertices.origin(end);
-            let new = self.ids[others].iter().filter(|&&w| w != vertices.ghost);
+            let new = self.ids[others].iter().filter(|&&w| w != GHOST);
             for &w in new {
                 // Nor between copies, of which others may have the edge, nor to a hub, whose list may
                 // name dead vertices.
@@ -166,7 +166,7 @@ impl Hood {
             let seen = vertices.get(w).place() - from;
             (x[i], y[i], z[i]) = (seen.x, seen.y, seen.z);
             self.of_v1[i] = if i < self.of_v0 { 0.0 } else { 1.0 };
-            if w == vertices.ghost {
+            if w == GHOST {
                 self.ghost = Some(i);
             }
         }

@@ -1,18 +1,18 @@
 //! A mesh out of the fast engine's vertices as they are.
 
 use meshlod_mesh::{Mesh, VertexId};
+use rayon::prelude::*;
 
 use crate::fast::log::Names;
-use crate::fast::prepare::corners;
 
 /// The faces that are left, with what they use, in the input's order. `faces` are those on copies of
 /// vertices, where there are any.
 pub(super) fn level(names: Names<'_>, faces: Option<&[[u32; 3]]>) -> Mesh {
-    let Names { mesh, vertices, .. } = names;
-    let heirs = vertices.heirs();
+    let Names { mesh, order, store, .. } = names;
+    let heirs = store.heirs();
     let faces = match faces {
-        Some(faces) => live(faces.iter().copied(), &heirs),
-        None => live(mesh.faces.iter().map(corners), &heirs),
+        Some(faces) => live(faces.len(), |i| faces[i], &heirs),
+        None => live(mesh.faces.len(), |i| order.face(&mesh.faces[i]), &heirs),
     };
     let mut ids = vec![u32::MAX; mesh.positions.len()];
     let mut level = Mesh::default();
@@ -22,7 +22,7 @@ pub(super) fn level(names: Names<'_>, faces: Option<&[[u32; 3]]>) -> Mesh {
         }
     }
     for (input, id) in ids.iter_mut().enumerate().filter(|(_, id)| **id != u32::MAX) {
-        let place = vertices.get(*id).place();
+        let place = store.all[*id as usize].place();
         level.positions.push(names.position(VertexId::new(input), place));
         *id = level.positions.len() as u32 - 1;
     }
@@ -36,23 +36,31 @@ pub(super) fn level(names: Names<'_>, faces: Option<&[[u32; 3]]>) -> Mesh {
 
 /// All vertices and faces of the input as they are; a face that is gone repeats a vertex.
 pub(super) fn workspace(names: Names<'_>, faces: Option<&[[u32; 3]]>) -> Mesh {
-    let Names { mesh, vertices, .. } = names;
-    let heirs = vertices.heirs();
+    let Names { mesh, order, store, .. } = names;
+    let heirs = store.heirs();
     let now = |v: u32| names.input(heirs[v as usize]);
     let now = |[a, b, c]: [u32; 3]| [now(a), now(b), now(c)];
-    let place = |v: u32| names.position(VertexId(v), vertices.get(v).place());
+    let place = |v: VertexId| names.position(v, store.all[order.id(v) as usize].place());
     Mesh::new(
-        (0..mesh.positions.len() as u32).map(place).collect(),
+        (0..mesh.positions.len() as u32).map(|v| place(VertexId(v))).collect(),
         match faces {
             Some(faces) => faces.iter().copied().map(now).collect(),
-            None => mesh.faces.iter().map(corners).map(now).collect(),
+            None => mesh.faces.iter().map(|face| now(order.face(face))).collect(),
         },
     )
 }
 
 /// The faces whose corners are still three, by what the corners have become.
-fn live(faces: impl Iterator<Item = [u32; 3]>, heirs: &[u32]) -> Vec<(u32, [u32; 3])> {
+fn live(
+    count: usize,
+    face: impl Fn(usize) -> [u32; 3] + Sync,
+    heirs: &[u32],
+) -> Vec<(u32, [u32; 3])> {
     let heir = |v: u32| heirs[v as usize];
-    let now = |(i, [a, b, c]): (usize, [u32; 3])| (i as u32, [heir(a), heir(b), heir(c)]);
-    faces.enumerate().map(now).filter(|(_, [a, b, c])| a != b && b != c && c != a).collect()
+    let now = |i: usize| {
+        let [a, b, c] = face(i);
+        (i as u32, [heir(a), heir(b), heir(c)])
+    };
+    let is_left = |(_, [a, b, c]): &(u32, [u32; 3])| a != b && b != c && c != a;
+    (0..count).into_par_iter().map(now).filter(is_left).collect()
 }

@@ -8,12 +8,13 @@ use meshlod_mesh::{Mesh, VertexId};
 
 use crate::contracted::Freedom;
 use crate::fast::frame::Frame;
-use crate::fast::ring::Vertices;
+use crate::fast::order::Order;
+use crate::fast::ring::Store;
 use crate::neighbourhood::Neighbourhood;
 use crate::policy::Observe;
 use crate::surface::{Placed, Surface};
 
-/// A contraction as it is taken down: 24 bytes.
+/// A contraction as it is taken down: 28 bytes.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Done {
     pub(super) kept: u32,
@@ -22,6 +23,8 @@ pub(super) struct Done {
     pub(super) place: Vec3,
     /// The square of how far the surface has moved there.
     pub(super) moved: f32,
+    /// The bucket that it came from.
+    pub(super) front: u16,
 }
 
 /// From the engine's ids and places to the input's.
@@ -29,14 +32,15 @@ pub(super) struct Done {
 pub(super) struct Names<'w> {
     pub(super) mesh: &'w Mesh,
     pub(super) frame: &'w Frame,
-    pub(super) vertices: &'w Vertices,
+    pub(super) order: &'w Order,
+    pub(super) store: &'w Store,
 }
 
 impl Names<'_> {
     /// The vertex of the input that one is, or is a copy of.
     #[inline]
     pub(super) fn input(&self, v: u32) -> VertexId {
-        VertexId(self.vertices.origin(v))
+        VertexId(self.order.input(self.store.origin(v)))
     }
 
     /// The position of a vertex of the input at a place.
@@ -44,6 +48,20 @@ impl Names<'_> {
     pub(super) fn position(&self, input: VertexId, place: Vec3) -> [f64; 3] {
         self.frame.leave_from(self.mesh.positions[input.index()], place)
     }
+}
+
+/// What parts have done side by side as if one had: by cost, each part in its order.
+pub(super) fn merge(logs: impl Iterator<Item = Vec<Done>>) -> Vec<Done> {
+    let mut merged: Vec<(u16, Done)> = Vec::new();
+    for log in logs {
+        let mut front = 0;
+        merged.extend(log.into_iter().map(|done| {
+            front = front.max(done.front);
+            (front, done)
+        }));
+    }
+    merged.sort_by_key(|&(front, _)| front);
+    merged.into_iter().map(|(_, done)| done).collect()
 }
 
 /// Makes contractions again on a surface, before the eyes of the observer.

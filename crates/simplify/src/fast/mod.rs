@@ -4,6 +4,7 @@
 //! instead of stars of faces, one queue entry a vertex instead of one an edge, floats, and costs from
 //! nine numbers a vertex. docs/notes/fast-simplify.md tells why each of these.
 
+mod cells;
 mod cost;
 mod engine;
 mod fans;
@@ -12,6 +13,8 @@ mod hood;
 mod lanes;
 mod level;
 mod log;
+mod order;
+mod parts;
 mod place;
 mod prepare;
 mod queue;

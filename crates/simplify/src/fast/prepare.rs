@@ -3,12 +3,14 @@
 use meshlod_mesh::{Bounds, Lock, Mesh, VertexId};
 
 use crate::clean;
-use crate::fast::engine::Engine;
 use crate::fast::fans::Fans;
 use crate::fast::frame::Frame;
+use crate::fast::order::Order;
+use crate::fast::parts::Parts;
+use crate::fast::ring::GHOST;
 use crate::fast::split::{self, Split};
 use crate::fast::vertex::Flags;
-use crate::fast::work::Work;
+use crate::fast::work::{Source, Work};
 use crate::locks::Held;
 use crate::options::Options;
 use crate::simplifier::Input;
@@ -18,6 +20,7 @@ use crate::surface::MOST_FACES;
 pub(super) struct Prepared<'m> {
     mesh: &'m Mesh,
     frame: Frame,
+    order: Order,
     fans: Fans,
     /// The faces on copies of vertices, or without those that repeat another, where there are any.
     faces: Option<Vec<[u32; 3]>>,
@@ -29,24 +32,29 @@ impl<'m> Prepared<'m> {
     /// than anybody looks at.
     pub(super) fn new(mesh: &'m Mesh, bounds: &Bounds, options: &Options) -> Option<Self> {
         let frame = Frame::new(mesh, bounds);
-        let mut fans = fans_of(mesh, &frame, mesh.faces.iter().map(corners), Vec::new());
-        let degenerate_faces = mesh.faces.len() - fans.faces;
+        let (order, mut places) = Order::new(mesh, &frame);
+        let count = mesh.faces.len();
+        let face = |i: usize| order.face(&mesh.faces[i]);
+        let mut fans = Fans::new(&places, Vec::new(), count, face);
+        let degenerate_faces = count - fans.faces;
         let (mut faces, mut duplicate_faces) = (None, 0);
         if !fans.irregular.is_empty() {
-            let mut all: Vec<_> = mesh.faces.iter().map(corners).collect();
+            let mut all: Vec<_> = (0..count).map(face).collect();
             duplicate_faces = split::drop_duplicates(&mut all, &fans.irregular);
             if duplicate_faces > 0 {
-                fans = fans_of(mesh, &frame, all.iter().copied(), Vec::new());
+                fans = Fans::new(&places, Vec::new(), count, |i| all[i]);
             }
             faces = Some(all);
         }
         let irregular = std::mem::take(&mut fans.irregular);
         if let Some(all) = faces.as_mut().filter(|_| !irregular.is_empty()) {
             let Split { faces, copied } =
-                split::split(std::mem::take(all), &irregular, mesh.positions.len() as u32);
-            fans = fans_of(mesh, &frame, faces.iter().copied(), copied);
+                split::split(std::mem::take(all), &irregular, places.len());
+            let copies: Vec<_> = copied.iter().map(|&v| places[v as usize]).collect();
+            places.extend(copies);
+            fans = Fans::new(&places, copied, count, |i| faces[i]);
             *all = faces;
-            if !fans.irregular.is_empty() || is_crowded(&fans, &irregular) {
+            if !fans.irregular.is_empty() || is_crowded(&mut fans, &irregular) {
                 return None;
             }
         }
@@ -56,7 +64,7 @@ impl<'m> Prepared<'m> {
             non_manifold_vertices: irregular.len(),
             held: Held::default(),
         };
-        let mut prepared = Self { mesh, frame, fans, faces, input };
+        let mut prepared = Self { mesh, frame, order, fans, faces, input };
         prepared.pin(&irregular);
         prepared.lock(options);
         Some(prepared)
@@ -64,28 +72,33 @@ impl<'m> Prepared<'m> {
 
     /// Holds the copies of vertices together.
     fn pin(&mut self, irregular: &[u32]) {
-        let vertices = &mut self.fans.vertices;
-        let copies = vertices.ghost + 1..vertices.all.len() as u32;
+        let store = &mut self.fans.store;
+        let copies = store.own() as u32..store.all.len() as u32;
         for v in irregular.iter().copied().chain(copies) {
-            let flags = &mut vertices.get_mut(v).flags;
+            let flags = &mut store.all[v as usize].flags;
             flags.set(Flags::PINNED);
             flags.set(Flags::SPLIT);
         }
     }
 
     fn lock(&mut self, options: &Options) {
-        let vertices = &mut self.fans.vertices;
         let locks = &options.locks.of_vertex;
+        if locks.is_empty() && !options.lock_boundary {
+            return;
+        }
         // Where copies end, the surface may go on.
         let with_copies = options.lock_boundary && self.input.non_manifold_vertices > 0;
         let connectivity = with_copies.then(|| clean::connect(self.mesh).0);
-        for v in 0..vertices.ghost {
+        let own = self.fans.store.own() as u32;
+        let mut vertices = self.fans.store.whole();
+        for v in 0..own {
+            let input = VertexId(self.order.input(v));
             let on_boundary = options.lock_boundary
                 && match &connectivity {
-                    Some(connectivity) => connectivity.marks(VertexId(v)).boundary(),
-                    None => vertices.settled(v).contains(&vertices.ghost),
+                    Some(connectivity) => connectivity.marks(input).boundary(),
+                    None => vertices.settled(v).contains(&GHOST),
                 };
-            if on_boundary || locks.get(v as usize) == Some(&Lock::Locked) {
+            if on_boundary || locks.get(input.index()) == Some(&Lock::Locked) {
                 vertices.get_mut(v).flags.set(Flags::PINNED);
                 self.input.held.locked += 1;
             }
@@ -104,40 +117,21 @@ impl<'m> Prepared<'m> {
 
     /// Costs all vertices.
     pub(super) fn start(self) -> Work<'m> {
-        let Self { mesh, frame, fans, faces, .. } = self;
-        Work::new(mesh, frame, faces, Engine::new(fans.vertices, fans.faces))
+        let Self { mesh, frame, order, fans, faces, .. } = self;
+        Work::new(Source { mesh, frame, order, faces }, Parts::new(fans.store, fans.faces))
     }
-}
-
-fn fans_of(
-    mesh: &Mesh,
-    frame: &Frame,
-    faces: impl Iterator<Item = [u32; 3]>,
-    copied: Vec<u32>,
-) -> Fans {
-    let places = mesh.positions.iter().map(|&position| frame.enter(position));
-    if copied.is_empty() {
-        return Fans::new(places, copied, faces);
-    }
-    let copies = copied.iter().map(|&v| frame.enter(mesh.positions[v as usize]));
-    let places: Vec<_> = places.chain(copies).collect();
-    Fans::new(places.into_iter(), copied, faces)
 }
 
 /// Whether all copies of some vertex have more faces together than the general engine looks at: each
 /// time that one of them takes another vertex in, whoever observes would look at all.
-fn is_crowded(fans: &Fans, irregular: &[u32]) -> bool {
-    let vertices = &fans.vertices;
+fn is_crowded(fans: &mut Fans, irregular: &[u32]) -> bool {
+    let first_copy = fans.store.own() as u32;
+    let vertices = fans.store.whole();
     let mut faces: Vec<usize> = irregular.iter().map(|&v| vertices.settled(v).len()).collect();
-    for (copy, of) in (vertices.ghost + 1..).zip(&vertices.copied) {
+    for (copy, of) in (first_copy..).zip(vertices.copied) {
         if let Ok(at) = irregular.binary_search(of) {
             faces[at] += vertices.settled(copy).len();
         }
     }
     faces.iter().any(|&faces| faces > MOST_FACES)
-}
-
-/// A face's vertices as numbers. `map` over its array is not inlined, and was a tenth of all time.
-pub(super) fn corners(&[a, b, c]: &[VertexId; 3]) -> [u32; 3] {
-    [a.0, b.0, c.0]
 }

@@ -37,11 +37,13 @@ pub(super) const fn last_bucket() -> u16 {
     BUCKETS as u16 - 1
 }
 
-impl Queue {
-    pub(super) fn new() -> Self {
+impl Default for Queue {
+    fn default() -> Self {
         Self { buckets: vec![Vec::new(); BUCKETS], lowest: BUCKETS }
     }
+}
 
+impl Queue {
     /// Puts a vertex in; nothing happens to one that goes to `NONE`.
     #[inline(always)]
     pub(super) fn push(&mut self, vertex: u32, bucket: u16) {
@@ -57,15 +59,34 @@ impl Queue {
         &list[list.len().saturating_sub(count)..]
     }
 
-    /// The next vertex, and its bucket.
+    /// The next vertex, and its bucket, if that is not behind `last`.
     #[inline(always)]
-    pub(super) fn pop(&mut self) -> Option<(u32, u16)> {
-        loop {
+    pub(super) fn pop(&mut self, last: u16) -> Option<(u32, u16)> {
+        while self.lowest <= last as usize {
             let list = self.buckets.get_mut(self.lowest)?;
             if let Some(vertex) = list.pop() {
                 return Some((vertex, self.lowest as u16));
             }
             self.lowest += 1;
+        }
+        None
+    }
+
+    /// A bucket that none with an entry comes before.
+    pub(super) fn lowest(&self) -> usize {
+        self.lowest
+    }
+
+    /// How many entries each bucket has.
+    pub(super) fn lengths(&self) -> impl Iterator<Item = usize> {
+        self.buckets.iter().map(Vec::len)
+    }
+
+    /// Takes the entries of another, to come before its own of the same bucket.
+    pub(super) fn append(&mut self, other: Self) {
+        self.lowest = self.lowest.min(other.lowest);
+        for (own, mut others) in self.buckets.iter_mut().zip(other.buckets) {
+            own.append(&mut others);
         }
     }
 }
@@ -76,25 +97,28 @@ mod tests {
 
     #[test]
     fn the_cheapest_bucket_comes_first_and_a_cheaper_one_cuts_in() {
-        let mut queue = Queue::new();
+        let mut queue = Queue::default();
         for (v, cost) in [(0, 4.0), (1, 1e-3), (2, 100.0), (3, 0.0)] {
             queue.push(v, bucket(cost));
         }
-        assert_eq!(queue.pop().unwrap().0, 3);
-        assert_eq!(queue.pop().unwrap().0, 1);
+        assert_eq!(queue.pop(NONE).unwrap().0, 3);
+        assert_eq!(queue.pop(NONE).unwrap().0, 1);
         queue.push(7, bucket(1e-30));
-        assert_eq!([queue.pop(), queue.pop(), queue.pop()].map(|e| e.unwrap().0), [7, 0, 2]);
-        assert_eq!(queue.pop(), None);
+        assert_eq!(
+            [queue.pop(NONE), queue.pop(NONE), queue.pop(NONE)].map(|e| e.unwrap().0),
+            [7, 0, 2]
+        );
+        assert_eq!(queue.pop(NONE), None);
     }
 
     #[test]
     fn what_is_no_cost_is_not_queued() {
-        let mut queue = Queue::new();
+        let mut queue = Queue::default();
         for cost in [f32::NAN, f32::INFINITY] {
             assert_eq!(bucket(cost), NONE);
             queue.push(0, bucket(cost));
         }
-        assert_eq!(queue.pop(), None);
+        assert_eq!(queue.pop(NONE), None);
     }
 
     #[test]

@@ -4,7 +4,12 @@
 //! that have gone into others are replaced by them when it is next read, so that a hub of a hundred
 //! thousand faces costs its neighbours nothing.
 
-use crate::fast::vertex::{Flags, Vertex};
+use std::ops::Range;
+
+use glam::Vec4;
+use rayon::prelude::*;
+
+use crate::fast::vertex::{Flags, NOBODY, Star, Vertex};
 
 /// How many neighbours a vertex has room for. Of horse-97k's vertices on the way to 1 %, fewer than
 /// one in a thousand have more.
@@ -17,44 +22,78 @@ pub(super) const LONG: u8 = u8::MAX;
 /// neighbours have become fewer. Costs grow with the square of it.
 pub(super) const MOST: usize = 64;
 
-/// All vertices, dead ones and the ghost too, and the rings that they have no room for.
-pub(super) struct Vertices {
+/// The vertex that closes the rings of boundary vertices. It has no record of its own.
+pub(super) const GHOST: u32 = u32::MAX - 1;
+
+/// What the ghost looks like, and vertices of other parts: edges to them are not contracted.
+static ELSEWHERE: Vertex = Vertex {
+    seen: Star([Vec4::ZERO; 3]),
+    target: NOBODY,
+    moved: 0.0,
+    bucket: 0,
+    floor: 0,
+    flags: Flags::BARRED,
+    len: 0,
+    ring: [NOBODY; RING],
+};
+
+/// All vertices, dead ones too, and the rings that they have no room for.
+pub(super) struct Store {
     pub(super) all: Vec<Vertex>,
-    long: Vec<Vec<u32>>,
-    /// The vertex that closes the rings of boundary vertices.
-    pub(super) ghost: u32,
-    /// The vertices of the input that those after the ghost are copies of.
+    pub(super) long: Vec<Long>,
+    /// The vertices that the last ones are copies of.
     pub(super) copied: Vec<u32>,
 }
 
-impl Vertices {
-    pub(super) fn new(all: Vec<Vertex>, ghost: u32, copied: Vec<u32>) -> Self {
-        Self { all, long: Vec::new(), ghost, copied }
+/// A ring in a list, of a vertex that may have another by now.
+pub(super) struct Long {
+    pub(super) of: u32,
+    ring: Vec<u32>,
+}
+
+/// A run of the vertices. Of others it knows only the ids.
+pub(super) struct Vertices<'v> {
+    pub(super) all: &'v mut [Vertex],
+    /// The id of the first.
+    pub(super) base: u32,
+    pub(super) long: &'v mut Vec<Long>,
+    /// The vertices that those from `first_copy` on are copies of.
+    pub(super) copied: &'v [u32],
+    pub(super) first_copy: u32,
+}
+
+impl Store {
+    pub(super) fn new(mut all: Vec<Vertex>, copied: Vec<u32>, lists: Vec<Vec<Long>>) -> Self {
+        let mut long = Vec::new();
+        let mut vertices = Vertices::new(&mut all, 0, &mut long);
+        lists.into_iter().for_each(|lists| vertices.adopt(lists));
+        Self { all, long, copied }
     }
 
-    #[inline(always)]
-    pub(super) fn get(&self, v: u32) -> &Vertex {
-        &self.all[v as usize]
+    /// All of the vertices.
+    pub(super) fn whole(&mut self) -> Vertices<'_> {
+        let first_copy = self.own() as u32;
+        let Self { all, long, copied } = self;
+        Vertices { all, base: 0, long, copied, first_copy }
     }
 
-    #[inline(always)]
-    pub(super) fn get_mut(&mut self, v: u32) -> &mut Vertex {
-        &mut self.all[v as usize]
+    /// How many of the vertices are the input's.
+    pub(super) fn own(&self) -> usize {
+        self.all.len() - self.copied.len()
     }
 
     /// The vertex of the input that it is, or is a copy of.
-    #[inline]
     pub(super) fn origin(&self, v: u32) -> u32 {
-        if v > self.ghost { self.copied[(v - self.ghost - 1) as usize] } else { v }
+        (v as usize).checked_sub(self.own()).map_or(v, |copy| self.copied[copy])
     }
 
     /// The live vertex that each is or has gone into.
     pub(super) fn heirs(&self) -> Vec<u32> {
-        let next = |(v, vertex): (u32, &Vertex)| match vertex.flags.any(Flags::DEAD) {
+        let next = |(v, vertex): (usize, &Vertex)| match vertex.flags.any(Flags::DEAD) {
             true => vertex.target,
-            false => v,
+            false => v as u32,
         };
-        let mut heirs: Vec<u32> = (0..).zip(&self.all).map(next).collect();
+        let mut heirs: Vec<u32> = self.all.par_iter().enumerate().map(next).collect();
         for v in 0..heirs.len() {
             let mut last = heirs[v];
             while heirs[last as usize] != last {
@@ -66,6 +105,51 @@ impl Vertices {
             }
         }
         heirs
+    }
+}
+
+impl<'v> Vertices<'v> {
+    /// Vertices of which none is a copy.
+    pub(super) fn new(all: &'v mut [Vertex], base: u32, long: &'v mut Vec<Long>) -> Self {
+        Self { all, base, long, copied: &[], first_copy: GHOST }
+    }
+
+    /// Their ids.
+    pub(super) fn ids(&self) -> Range<u32> {
+        self.base..self.base + self.all.len() as u32
+    }
+
+    /// Takes over the lists of a part of it.
+    pub(super) fn adopt(&mut self, lists: Vec<Long>) {
+        for (slot, list) in lists.into_iter().enumerate() {
+            let next = self.long.len() as u32;
+            let vertex = self.get_mut(list.of);
+            if vertex.len == LONG && vertex.ring[0] == slot as u32 {
+                vertex.ring[0] = next;
+                self.long.push(list);
+            }
+        }
+    }
+
+    /// A vertex; of the ghost and of those in other parts, only that they are not to be touched.
+    #[inline(always)]
+    pub(super) fn get(&self, v: u32) -> &Vertex {
+        self.all.get(v.wrapping_sub(self.base) as usize).unwrap_or(&ELSEWHERE)
+    }
+
+    /// A vertex of this part.
+    #[inline(always)]
+    pub(super) fn get_mut(&mut self, v: u32) -> &mut Vertex {
+        &mut self.all[v.wrapping_sub(self.base) as usize]
+    }
+
+    /// The vertex of the input that it is, or is a copy of.
+    #[inline]
+    pub(super) fn origin(&self, v: u32) -> u32 {
+        if v < self.first_copy || v == GHOST {
+            return v;
+        }
+        self.copied[(v - self.first_copy) as usize]
     }
 
     /// The live vertex that this one is or has gone into.
@@ -94,7 +178,7 @@ impl Vertices {
     pub(super) fn settled(&self, v: u32) -> &[u32] {
         let vertex = self.get(v);
         match vertex.len {
-            LONG => &self.long[vertex.ring[0] as usize],
+            LONG => &self.long[vertex.ring[0] as usize].ring,
             len => &vertex.ring[..len as usize],
         }
     }
@@ -102,18 +186,17 @@ impl Vertices {
     #[cold]
     fn settle(&mut self, v: u32) {
         let slot = self.get(v).ring[0] as usize;
-        let mut list = std::mem::take(&mut self.long[slot]);
+        let mut list = std::mem::take(&mut self.long[slot].ring);
         list.iter_mut().for_each(|w| *w = self.heir(*w));
         list.dedup();
         while list.len() > 1 && list.first() == list.last() {
             list.pop();
         }
         self.get_mut(v).ring[1] = list.len() as u32;
-        self.long[slot] = list;
-        if self.long[slot].len() <= RING {
-            let list = std::mem::take(&mut self.long[slot]);
-            self.set_ring(v, &list);
+        if list.len() <= RING {
+            return self.set_ring(v, &list);
         }
+        self.long[slot].ring = list;
     }
 
     /// Gives it the first `len` of these as neighbours.
@@ -144,11 +227,11 @@ impl Vertices {
         let slot = match self.get(v) {
             Vertex { len: LONG, ring: [slot, ..], .. } => *slot as usize,
             _ => {
-                self.long.push(Vec::new());
+                self.long.push(Long { of: v, ring: Vec::new() });
                 self.long.len() - 1
             }
         };
-        self.long[slot] = ring.to_vec();
+        self.long[slot].ring = ring.to_vec();
         let vertex = self.get_mut(v);
         vertex.len = LONG;
         vertex.ring[..2].copy_from_slice(&[slot as u32, ring.len() as u32]);

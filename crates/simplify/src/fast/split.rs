@@ -9,7 +9,7 @@ use crate::fast::fans::Pair;
 pub(super) struct Split {
     /// As many as were given.
     pub(super) faces: Vec<[u32; 3]>,
-    /// The vertices that the copies are of. The first copy's id is one more than the ghost's.
+    /// The vertices that the copies are of. The copies' ids follow those of all vertices.
     pub(super) copied: Vec<u32>,
 }
 
@@ -22,7 +22,7 @@ struct Corner {
 }
 
 /// Gives each fan around the irregular vertices a vertex of its own: the first keeps the id.
-pub(super) fn split(mut faces: Vec<[u32; 3]>, irregular: &[u32], ghost: u32) -> Split {
+pub(super) fn split(mut faces: Vec<[u32; 3]>, irregular: &[u32], vertices: usize) -> Split {
     let stars = stars(&faces, irregular);
     let mut copied = Vec::new();
     for (&v, star) in irregular.iter().zip(&stars) {
@@ -30,8 +30,8 @@ pub(super) fn split(mut faces: Vec<[u32; 3]>, irregular: &[u32], ghost: u32) -> 
             if i == 0 {
                 continue;
             }
+            let copy = (vertices + copied.len()) as u32;
             copied.push(v);
-            let copy = ghost + copied.len() as u32;
             for corner in fan {
                 faces[corner.face as usize][corner.corner] = copy;
             }

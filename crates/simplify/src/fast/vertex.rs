@@ -54,6 +54,10 @@ impl Flags {
     pub(super) const BARRED: Self = Self(4);
     /// A face of it has changed since it was looked at.
     pub(super) const STALE: Self = Self(8);
+    /// It has neighbours in another part, so it waits until both are in one.
+    pub(super) const OUTER: Self = Self(64);
+    /// No edge to it may be contracted, as things are.
+    pub(super) const SHUT: Self = Self(Self::BARRED.0 | Self::OUTER.0);
     /// One of the copies of a vertex where the surface is not manifold.
     pub(super) const SPLIT: Self = Self(16);
 

@@ -43,6 +43,13 @@ impl Volume {
         }
     }
 
+    /// Counts what another part has lost.
+    pub(super) fn join(&mut self, other: &Self) {
+        self.sixfold += other.sixfold;
+        self.open.join(&other.open);
+        self.held.join(&other.held);
+    }
+
     /// The same in model units.
     pub(super) fn loss(&self, frame: &Frame) -> VolumeLoss {
         VolumeLoss {
@@ -58,6 +65,11 @@ impl Unchosen {
     fn add(&mut self, place: Vec3) {
         self.contractions += 1;
         (self.min, self.max) = (self.min.min(place), self.max.max(place));
+    }
+
+    fn join(&mut self, other: &Self) {
+        self.contractions += other.contractions;
+        (self.min, self.max) = (self.min.min(other.min), self.max.max(other.max));
     }
 
     fn leave(&self, frame: &Frame) -> Unconserved {

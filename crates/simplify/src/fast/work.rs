@@ -6,25 +6,29 @@ use meshlod_mesh::Mesh;
 
 use crate::clean;
 use crate::engine::{Run, Tally};
-use crate::fast::engine::Engine;
 use crate::fast::frame::Frame;
 use crate::fast::level::{level, workspace};
 use crate::fast::log::{Names, replay};
+use crate::fast::order::Order;
+use crate::fast::parts::Parts;
 use crate::fast::queue::{NONE, bucket, least_of};
 use crate::policy::{Observe, Stop};
 use crate::refusal::Refusal;
 use crate::surface::Surface;
 
-/// How many faces go between two calls of an observer that wants to know how many.
-const FACES_A_CALL: usize = 8192;
+/// What is worked on, and how the engine has it.
+pub(super) struct Source<'m> {
+    pub(super) mesh: &'m Mesh,
+    pub(super) frame: Frame,
+    pub(super) order: Order,
+    /// The faces on copies of vertices, where there are any.
+    pub(super) faces: Option<Vec<[u32; 3]>>,
+}
 
 /// A mesh at work.
 pub(super) struct Work<'m> {
-    mesh: &'m Mesh,
-    frame: Frame,
-    /// The faces on copies of vertices, where there are any.
-    faces: Option<Vec<[u32; 3]>>,
-    engine: Engine,
+    source: Source<'m>,
+    parts: Parts,
     /// The narrowest bound of the error that has refused an edge since all were awake.
     refused_above: f64,
     /// As it is now, if anybody has looked since it last changed unseen.
@@ -32,23 +36,19 @@ pub(super) struct Work<'m> {
 }
 
 impl<'m> Work<'m> {
-    pub(super) fn new(
-        mesh: &'m Mesh,
-        frame: Frame,
-        faces: Option<Vec<[u32; 3]>>,
-        engine: Engine,
-    ) -> Self {
+    pub(super) fn new(source: Source<'m>, parts: Parts) -> Self {
         let (refused_above, surface) = (f64::INFINITY, OnceCell::new());
-        Self { mesh, frame, faces, engine, refused_above, surface }
+        Self { source, parts, refused_above, surface }
     }
 
     fn names(&self) -> Names<'_> {
-        Names { mesh: self.mesh, frame: &self.frame, vertices: &self.engine.vertices }
+        let Source { mesh, frame, order, .. } = &self.source;
+        Names { mesh, frame, order, store: &self.parts.store }
     }
 
     /// What the engine's costs are multiplied by in model units.
     fn cost_unit(&self) -> f64 {
-        self.frame.unit.powi(6)
+        self.source.frame.unit.powi(6)
     }
 
     /// The last bucket with something that costs no more than this. The cost of a bucket is the least
@@ -69,7 +69,7 @@ impl<'m> Work<'m> {
     fn try_again_within(&mut self, error: f64) {
         if error > self.refused_above {
             self.refused_above = f64::INFINITY;
-            self.engine.wake_all();
+            self.parts.wake_all();
         }
     }
 
@@ -78,31 +78,23 @@ impl<'m> Work<'m> {
         let is_shown = observer.needs_surface();
         if is_shown {
             self.surface();
-            self.engine.log = Some(Vec::new());
+            self.parts.log = Some(Vec::new());
         }
         self.try_again_within(stop.error);
-        self.engine.most_error = (stop.error / self.frame.unit).powi(2);
+        self.parts.most_error = (stop.error / self.source.frame.unit).powi(2);
         let last = self.last_bucket(stop.cost);
-        let refused = |engine: &Engine| engine.refusals.count(Refusal::Error);
-        let (refused_before, at_first) = (refused(&self.engine), self.engine.live_faces);
-        loop {
-            let before = self.engine.live_faces;
-            self.engine.run(faces.max(before.saturating_sub(FACES_A_CALL)), last);
-            let gone = before - self.engine.live_faces;
-            observer.gone(gone);
-            if gone < FACES_A_CALL || self.engine.live_faces <= faces {
-                break;
-            }
-        }
-        if refused(&self.engine) > refused_before {
+        let refused = |parts: &Parts| parts.refusals.count(Refusal::Error);
+        let (refused_before, at_first) = (refused(&self.parts), self.parts.live_faces);
+        self.parts.run(faces, last, &mut |gone| observer.gone(gone));
+        if refused(&self.parts) > refused_before {
             self.refused_above = self.refused_above.min(stop.error);
         }
-        match (self.engine.log.take(), self.surface.take()) {
+        match (self.parts.log.take(), self.surface.take()) {
             (Some(log), Some(mut surface)) => {
                 replay(&log, self.names(), &mut surface, observer);
                 self.surface = surface.into();
             }
-            (_, surface) if self.engine.live_faces == at_first => {
+            (_, surface) if self.parts.live_faces == at_first => {
                 self.surface = surface.map_or_else(OnceCell::new, OnceCell::from);
             }
             _ => {}
@@ -116,28 +108,30 @@ impl Run for Work<'_> {
     }
 
     fn step(&mut self, stop: &Stop, observer: &mut dyn Observe) -> bool {
-        let before = self.engine.live_faces;
+        self.parts.unite();
+        let before = self.parts.live_faces;
         self.advance(before.saturating_sub(1), stop, observer);
-        self.engine.live_faces < before
+        self.parts.live_faces < before
     }
 
     fn next_cost(&mut self) -> Option<f64> {
         self.try_again_within(f64::INFINITY);
-        let bucket = self.engine.next_bucket()?;
+        self.parts.unite();
+        let bucket = self.parts.next_bucket()?;
         Some(f64::from(least_of(bucket)) * self.cost_unit())
     }
 
     fn live_faces(&self) -> usize {
-        self.engine.live_faces
+        self.parts.live_faces
     }
 
     fn level(&self, _: &Mesh) -> Mesh {
-        level(self.names(), self.faces.as_deref())
+        level(self.names(), self.source.faces.as_deref())
     }
 
     fn surface(&self) -> &Surface {
         self.surface.get_or_init(|| {
-            let mesh = workspace(self.names(), self.faces.as_deref());
+            let mesh = workspace(self.names(), self.source.faces.as_deref());
             let (connectivity, _) = clean::connect(&mesh);
             Surface::new(&mesh, &connectivity)
         })
@@ -151,9 +145,9 @@ impl Run for Work<'_> {
     fn tally(&self) -> Tally {
         Tally {
             vanished: 0,
-            refusals: self.engine.refusals,
-            error_estimate: self.engine.error.sqrt() * self.frame.unit,
-            volume: self.engine.volume.loss(&self.frame),
+            refusals: self.parts.refusals,
+            error_estimate: self.parts.error.sqrt() * self.source.frame.unit,
+            volume: self.parts.volume.loss(&self.source.frame),
         }
     }
 }
