@@ -31,7 +31,6 @@ mod fixtures;
 mod quality;
 mod sample;
 mod size;
-mod sum;
 mod surface;
 
 pub use distance::{

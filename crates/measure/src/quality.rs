@@ -2,8 +2,7 @@
 
 use glam::DVec3;
 use meshlod_mesh::Mesh;
-
-use crate::sum::Sum;
+use meshlod_spatial::Sum;
 
 /// Bins of the histogram.
 pub const QUALITY_BINS: usize = 10;

@@ -2,9 +2,7 @@
 
 use glam::DVec3;
 use meshlod_mesh::Mesh;
-use meshlod_spatial::Frame;
-
-use crate::sum::Sum;
+use meshlod_spatial::{Frame, Sum};
 
 /// The area of all faces, in square model units; 0 without faces.
 ///

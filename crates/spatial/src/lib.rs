@@ -25,6 +25,7 @@ mod closest;
 mod curve;
 mod frame;
 mod octree;
+mod sum;
 #[cfg(test)]
 mod tests;
 mod triangle;
@@ -35,4 +36,5 @@ pub use closest::Closest;
 pub use curve::curve_order;
 pub use frame::Frame;
 pub use octree::{Cube, Octree};
+pub use sum::Sum;
 pub use triangle::{Triangle, closest_point};

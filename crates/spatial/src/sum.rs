@@ -6,14 +6,15 @@
 /// # References
 /// [Neu74] algorithm IV.
 #[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Sum {
+pub struct Sum {
     total: f64,
     lost: f64,
 }
 
 impl Sum {
+    /// Adds a term.
     #[inline]
-    pub(crate) fn add(&mut self, term: f64) {
+    pub fn add(&mut self, term: f64) {
         let total = self.total + term;
         self.lost += if self.total.abs() >= term.abs() {
             (self.total - total) + term
@@ -23,7 +24,8 @@ impl Sum {
         self.total = total;
     }
 
-    pub(crate) fn value(self) -> f64 {
+    /// What it comes to.
+    pub fn value(self) -> f64 {
         self.total + self.lost
     }
 }
