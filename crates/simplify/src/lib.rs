@@ -21,6 +21,7 @@ mod clean;
 mod contracted;
 mod engine;
 mod estimate;
+mod exact_volume;
 mod fast;
 mod history;
 mod interpolate;
@@ -44,6 +45,7 @@ mod wedges;
 use meshlod_mesh::Mesh;
 
 pub use contracted::{Contracted, Freedom};
+pub use exact_volume::{Digits, ExactVolumeError, VolumeResidual, conserve_volume};
 pub use history::{Contraction, History};
 pub use locks::Held;
 pub use neighbourhood::{Dying, Neighbourhood, RingVertex, Spoke};

@@ -1,0 +1,427 @@
+//! A level with the volume of its mesh, in the digits that it is written with.
+//!
+//! Rounding to `f32` alone changes a volume by 1e-9 of it and more. The volume is linear in each
+//! vertex: a step of one along an axis changes six times the volume by that part of the vertex's
+//! normal, the sum of its faces' normals, twice their areas long. So the volume is brought about
+//! with vertices moved along their normals, all by the same factor, and what rounding then leaves
+//! with steps of one unit in the last place: there are as many sizes of step as coordinates.
+
+use glam::DVec3;
+use meshlod_mesh::{Connectivity, Lock, Locks, Mesh};
+use meshlod_spatial::{Frame, Sum};
+use rustc_hash::FxHashMap;
+use thiserror::Error;
+
+/// How far a vertex may be moved, in parts of the diagonal.
+const FARTHEST: f64 = 1e-5;
+
+/// Sums of normals and of terms of the volume below this part of their lengths' sum are rounding.
+const CANCELLED: f64 = 1e-9;
+
+/// What is left is rounding at this part of the volume: no step is so small.
+const ENOUGH: f64 = 1e-15;
+
+/// How often units in the last place are added. Two steps at one edge count together too, for about
+/// 1e-15 of the volume; the second time mends that.
+const ROUNDS: usize = 4;
+
+/// The numbers that positions are written as.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Digits {
+    /// 32-bit floats: in all binary files but those that are asked for more.
+    #[default]
+    F32,
+    /// The shortest decimals of 32-bit floats, read as doubles: in text.
+    Decimal,
+    /// All that the level has.
+    F64,
+}
+
+impl Digits {
+    /// What is read again where a float was written.
+    fn read(self, x: f32) -> f64 {
+        match self {
+            Self::Decimal => x.to_string().parse().unwrap_or(f64::NAN),
+            _ => x.into(),
+        }
+    }
+}
+
+/// How far the volume of a level, as written, is from that of its mesh.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct VolumeResidual {
+    /// Before it was corrected, in parts of the mesh's volume.
+    pub before: f64,
+    /// Now.
+    pub after: f64,
+    /// How far a vertex was moved at most, in model units, with its rounding.
+    pub farthest: f64,
+}
+
+/// Why a level cannot have the volume of its mesh.
+#[derive(Clone, Copy, Debug, Error, PartialEq)]
+pub enum ExactVolumeError {
+    /// What is open has none.
+    #[error("the mesh is not a closed, oriented surface and has no volume: see `meshlod check`")]
+    OpenMesh,
+    /// Not what a method of this crate makes of a closed mesh.
+    #[error("the level is not a closed, oriented surface and has no volume")]
+    OpenLevel,
+    /// Nothing to be a part of.
+    #[error("the mesh has no volume, or as much inside out")]
+    Flat,
+    /// Vertices would have to be moved visibly.
+    #[error(
+        "the level's volume is off by {relative:e}: to mend that would move vertices by more than \
+         1e-5 of the diagonal; take a method that conserves the volume, or fewer locks"
+    )]
+    TooFar {
+        /// In parts of the mesh's volume.
+        relative: f64,
+    },
+    /// `f32` has no such number.
+    #[error("positions do not fit f32: write f64")]
+    Unwritable,
+}
+
+/// Moves vertices of `level`, a closed mesh made of `mesh`, until its volume as written is the mesh's.
+///
+/// Vertices move by parts of a millionth of the diagonal, and stand on numbers of `digits` then. Those
+/// that are locked in `mesh`, and those that share their place with others, stay. What is left is
+/// about 1e-14 of the volume for levels of five hundred vertices; the fewer there are, the fewer steps
+/// there are to choose from. The residual says what it came to. Each component may exchange volume
+/// with others.
+///
+/// Cost: O(faces of the mesh), a few percent of what it takes to make the level.
+/// # Errors
+/// Open meshes, meshes without volume, and levels that would have to be moved visibly: these are left
+/// as they are.
+pub fn conserve_volume(
+    level: &mut Mesh,
+    mesh: &Mesh,
+    digits: Digits,
+    locks: &Locks,
+) -> Result<VolumeResidual, ExactVolumeError> {
+    let bounds = mesh.bounds();
+    let frame = Frame::of(&bounds);
+    let wanted = Sixfold::of(mesh, &mesh.positions, &frame);
+    if !wanted.is_closed() {
+        return Err(ExactVolumeError::OpenMesh);
+    }
+    let connectivity = Connectivity::new(&level.faces, level.positions.len());
+    if !connectivity.is_closed() || connectivity.inconsistent_edges() > 0 {
+        return Err(ExactVolumeError::OpenLevel);
+    }
+    if wanted.volume.abs() <= CANCELLED * wanted.terms {
+        return Err(ExactVolumeError::Flat);
+    }
+    let mut settling = Settling { level, frame, wanted: wanted.volume, free: Vec::new() };
+    settling.free = free(settling.level, mesh, locks);
+    settling.settle(digits, FARTHEST * bounds.diagonal())
+}
+
+/// Six times the volume that faces enclose, in a frame's units.
+struct Sixfold {
+    volume: f64,
+    /// The sum of its terms as if all had one sign.
+    terms: f64,
+    /// The sum of the faces' normals: nothing where no boundary is.
+    normal: DVec3,
+    lengths: f64,
+}
+
+impl Sixfold {
+    fn of(mesh: &Mesh, positions: &[[f64; 3]], frame: &Frame) -> Self {
+        let mut sum = Sum::default();
+        let (mut terms, mut normal, mut lengths) = (0.0, DVec3::ZERO, 0.0);
+        for face in &mesh.faces {
+            let [a, b, c] = face.map(|v| frame.local(positions[v.index()]));
+            let n = (b - a).cross(c - a);
+            let term = a.dot(n);
+            sum.add(term);
+            terms += term.abs();
+            normal += n;
+            lengths += n.length();
+        }
+        Self { volume: sum.value(), terms, normal, lengths }
+    }
+
+    fn is_closed(&self) -> bool {
+        self.normal.length() <= CANCELLED * self.lengths
+    }
+}
+
+/// Which vertices of a level may be moved: none that is locked, none that meets another.
+fn free(level: &Mesh, mesh: &Mesh, locks: &Locks) -> Vec<bool> {
+    let key = |p: &[f64; 3]| p.map(|x| (x + 0.0).to_bits());
+    let mut at = FxHashMap::<_, u32>::default();
+    for position in &level.positions {
+        *at.entry(key(position)).or_default() += 1;
+    }
+    let locked = locks.of_vertex.iter().zip(&mesh.positions);
+    for (_, position) in locked.filter(|(lock, _)| **lock == Lock::Locked) {
+        at.insert(key(position), 2);
+    }
+    level.positions.iter().map(|position| at[&key(position)] == 1).collect()
+}
+
+/// A level on its way.
+struct Settling<'l> {
+    level: &'l mut Mesh,
+    frame: Frame,
+    /// Six times the volume that it is to have.
+    wanted: f64,
+    free: Vec<bool>,
+}
+
+/// A step of one coordinate to its next number.
+struct Step {
+    /// By how much six times the volume changes, either way.
+    gain: f64,
+    coordinate: usize,
+    to: f64,
+}
+
+impl Settling<'_> {
+    fn settle(
+        &mut self,
+        digits: Digits,
+        farthest: f64,
+    ) -> Result<VolumeResidual, ExactVolumeError> {
+        let unmoved = self.level.positions.clone();
+        let mut written = round(&unmoved, digits)?;
+        let before = self.residual(&written);
+        let mut places = unmoved.clone();
+        self.spread(&mut places);
+        let most = self.farthest(&unmoved, &places);
+        if most.is_nan() || most > farthest {
+            return Err(ExactVolumeError::TooFar { relative: before / self.wanted });
+        }
+        written = round(&places, digits)?;
+        let mut after = self.residual(&written);
+        for _ in 0..if digits == Digits::F64 { 0 } else { ROUNDS } {
+            let mut next = written.clone();
+            self.grade(&mut next, after, digits);
+            let left = self.residual(&next);
+            if left.abs() >= after.abs() {
+                break;
+            }
+            (written, after) = (next, left);
+        }
+        if after.abs() > before.abs() {
+            (written, after) = (unmoved.clone(), before);
+        }
+        let farthest = self.farthest(&unmoved, &written);
+        for ((position, to), free) in self.level.positions.iter_mut().zip(written).zip(&self.free) {
+            if *free {
+                *position = to;
+            }
+        }
+        let relative = |residual: f64| residual / self.wanted;
+        Ok(VolumeResidual { before: relative(before), after: relative(after), farthest })
+    }
+
+    fn residual(&self, positions: &[[f64; 3]]) -> f64 {
+        Sixfold::of(self.level, positions, &self.frame).volume - self.wanted
+    }
+
+    fn farthest(&self, from: &[[f64; 3]], to: &[[f64; 3]]) -> f64 {
+        let moved = from.iter().zip(to).zip(&self.free).filter(|(_, free)| **free);
+        let apart = |((a, b), _): ((&[f64; 3], &[f64; 3]), _)| {
+            DVec3::from(*a).distance_squared(DVec3::from(*b))
+        };
+        moved.map(apart).fold(0.0, f64::max).sqrt()
+    }
+
+    /// The sums of the normals around each free vertex; zero of others.
+    fn normals(&self, positions: &[[f64; 3]]) -> Vec<DVec3> {
+        let mut normals = vec![DVec3::ZERO; positions.len()];
+        for face in &self.level.faces {
+            let [a, b, c] = face.map(|v| self.frame.local(positions[v.index()]));
+            let n = (b - a).cross(c - a);
+            face.iter().for_each(|v| normals[v.index()] += n);
+        }
+        for (normal, free) in normals.iter_mut().zip(&self.free) {
+            if !free {
+                *normal = DVec3::ZERO;
+            }
+        }
+        normals
+    }
+
+    /// Brings the volume about by moving all vertices along their normals, each by the same part.
+    fn spread(&self, positions: &mut [[f64; 3]]) {
+        // Newton: quadratic in a step that is small from the start.
+        for _ in 0..3 {
+            let residual = self.residual(positions);
+            let normals = self.normals(positions);
+            let slope: f64 = normals.iter().map(|n| n.length_squared()).sum();
+            if residual.abs() <= ENOUGH * self.wanted.abs() || slope == 0.0 {
+                return;
+            }
+            let by = -residual / slope / self.frame.scale();
+            for (position, normal) in positions.iter_mut().zip(normals) {
+                *position = (DVec3::from(*position) + normal * by).to_array();
+            }
+        }
+    }
+
+    /// Takes the residual down by the greatest steps that do not go past it, each coordinate by one.
+    fn grade(&self, written: &mut [[f64; 3]], residual: f64, digits: Digits) {
+        let least = 0.1 * ENOUGH * self.wanted.abs();
+        let mut steps = Vec::new();
+        for (v, normal) in self.normals(written).into_iter().enumerate() {
+            for axis in 0..3 {
+                let (x, slope) = (written[v][axis] as f32, normal[axis] * self.frame.scale());
+                let to = if slope * residual < 0.0 { x.next_up() } else { x.next_down() };
+                let to = digits.read(to);
+                let gain = (slope * (to - written[v][axis])).abs();
+                if gain > least && gain.is_finite() {
+                    steps.push(Step { gain, coordinate: 3 * v + axis, to });
+                }
+            }
+        }
+        let order = |a: &Step, b: &Step| {
+            b.gain.total_cmp(&a.gain).then_with(|| a.coordinate.cmp(&b.coordinate))
+        };
+        steps.sort_unstable_by(order);
+        let mut left = residual.abs();
+        for step in steps {
+            if step.gain <= left {
+                left -= step.gain;
+                written[step.coordinate / 3][step.coordinate % 3] = step.to;
+            }
+        }
+    }
+}
+
+/// Positions as they are written.
+fn round(positions: &[[f64; 3]], digits: Digits) -> Result<Vec<[f64; 3]>, ExactVolumeError> {
+    let written: Vec<[f64; 3]> = match digits {
+        Digits::F64 => positions.to_vec(),
+        _ => positions.iter().map(|p| p.map(|x| digits.read(x as f32))).collect(),
+    };
+    let finite = written.iter().flatten().all(|x| x.is_finite());
+    if finite { Ok(written) } else { Err(ExactVolumeError::Unwritable) }
+}
+
+#[cfg(test)]
+mod tests {
+    use meshlod_fixtures as fixtures;
+    use meshlod_mesh::{VertexId, sample};
+
+    use super::*;
+    use crate::{Method, Options, Target, simplify};
+
+    fn coarse(mesh: &Mesh, ratio: f64) -> Mesh {
+        let options = Options { method: Method::LindstromTurk, ..Options::default() };
+        simplify(mesh, Target::Ratio(ratio), &options).unwrap().0
+    }
+
+    /// What is left as whoever reads the file finds it, about a corner of its box.
+    fn as_read(level: &Mesh, mesh: &Mesh) -> f64 {
+        let frame = Frame::of(&meshlod_mesh::Bounds {
+            min: mesh.bounds().min,
+            max: mesh.bounds().min.map(|x| x + 1.0),
+        });
+        let read = round(&level.positions, Digits::F32).unwrap();
+        let wanted = Sixfold::of(mesh, &mesh.positions, &frame).volume;
+        Sixfold::of(level, &read, &frame).volume / wanted - 1.0
+    }
+
+    #[test]
+    fn the_written_volume_is_that_of_the_mesh() {
+        for mesh in [sample::torus(20_000), sample::knot(20_000), sample::sphere(20_000)] {
+            let mut level = coarse(&mesh, 0.05);
+            let before = as_read(&level, &mesh);
+            let unmoved = level.clone();
+            let residual =
+                conserve_volume(&mut level, &mesh, Digits::F32, &Locks::default()).unwrap();
+            assert!((residual.before - before).abs() < 1e-13 && before.abs() > 1e-11, "{before:e}");
+            assert!(residual.after.abs() <= 1e-13, "{residual:?}");
+            assert!(as_read(&level, &mesh).abs() <= 1e-13);
+            let apart = |(a, b): (&[f64; 3], &[f64; 3])| DVec3::from(*a).distance(DVec3::from(*b));
+            let moved = level.positions.iter().zip(&unmoved.positions).map(apart);
+            let farthest = moved.fold(0.0, f64::max);
+            assert!(farthest <= 3e-7 * mesh.bounds().diagonal());
+            assert_eq!(farthest, residual.farthest);
+        }
+    }
+
+    #[test]
+    fn decimals_are_corrected_as_they_are_read() {
+        let mesh = sample::torus(20_000);
+        let mut level = coarse(&mesh, 0.05);
+        conserve_volume(&mut level, &mesh, Digits::Decimal, &Locks::default()).unwrap();
+        for x in level.positions.iter().flatten() {
+            assert_eq!((*x as f32).to_string().parse(), Ok(*x));
+        }
+        let frame = Frame::of(&mesh.bounds());
+        let volume = |of: &Mesh| Sixfold::of(of, &of.positions, &frame).volume;
+        assert!((volume(&level) / volume(&mesh) - 1.0).abs() < 1e-13);
+    }
+
+    #[test]
+    fn in_doubles_nothing_is_left_either() {
+        let mesh = sample::knot(20_000);
+        let mut level = coarse(&mesh, 0.1);
+        level.positions.iter_mut().flatten().for_each(|x| *x *= 1.0 + 1e-8);
+        let residual = conserve_volume(&mut level, &mesh, Digits::F64, &Locks::default()).unwrap();
+        assert!(residual.before > 1e-8 && residual.after.abs() < 1e-14, "{residual:?}");
+    }
+
+    #[test]
+    fn locked_vertices_and_those_that_meet_stay() {
+        let mesh = sample::torus(5_000);
+        let locked = |v: usize| if v.is_multiple_of(3) { Lock::Locked } else { Lock::Free };
+        let locks =
+            Locks { of_vertex: (0..mesh.positions.len()).map(locked).collect(), ties: Vec::new() };
+        let mut level = mesh.clone();
+        // Two tori in one place: every vertex meets another.
+        let count = mesh.positions.len() as u32;
+        level.positions.extend(mesh.positions.iter());
+        level.faces.extend(mesh.faces.iter().map(|face| face.map(|v| VertexId(v.0 + count))));
+        let twice = level.clone();
+        let residual = conserve_volume(&mut level, &twice, Digits::F32, &locks).unwrap();
+        assert_eq!((&level, residual.farthest), (&twice, 0.0));
+        assert_eq!(residual.after, residual.before);
+        let mut level = mesh.clone();
+        let residual = conserve_volume(&mut level, &mesh, Digits::F32, &locks).unwrap();
+        assert!(residual.after.abs() < 1e-14, "{residual:?}");
+        let stays = |v: usize| level.positions[v] == mesh.positions[v];
+        assert!((0..mesh.positions.len()).step_by(3).all(stays));
+        assert!(!(0..mesh.positions.len()).all(stays));
+    }
+
+    #[test]
+    fn a_mesh_of_four_faces_says_what_is_left() {
+        let mesh = fixtures::tetrahedron();
+        let mut level = mesh.clone();
+        level.positions[0] = level.positions[0].map(|x| x - 1e-6);
+        let residual = conserve_volume(&mut level, &mesh, Digits::F32, &Locks::default()).unwrap();
+        assert!(residual.after.abs() < residual.before.abs());
+        assert!((as_read(&level, &mesh) - residual.after).abs() < 1e-15);
+    }
+
+    #[test]
+    fn what_cannot_be_is_refused_and_left_alone() {
+        let settle = |level: &Mesh, mesh: &Mesh| {
+            let mut moved = level.clone();
+            let found = conserve_volume(&mut moved, mesh, Digits::F32, &Locks::default());
+            assert_eq!(&moved, level);
+            found.unwrap_err()
+        };
+        let (sphere, open) = (sample::sphere(500), fixtures::grid(4));
+        assert_eq!(settle(&sphere, &open), ExactVolumeError::OpenMesh);
+        assert_eq!(settle(&open, &sphere), ExactVolumeError::OpenLevel);
+        let mut flat = sphere.clone();
+        flat.positions.iter_mut().for_each(|p| p[2] = 0.0);
+        assert_eq!(settle(&flat, &flat), ExactVolumeError::Flat);
+        let mut larger = sphere.clone();
+        larger.positions.iter_mut().flatten().for_each(|x| *x *= 1.01);
+        assert!(matches!(settle(&larger, &sphere), ExactVolumeError::TooFar { .. }));
+        let mut huge = sphere.clone();
+        huge.positions.iter_mut().flatten().for_each(|x| *x *= 1e39);
+        assert_eq!(settle(&huge, &huge), ExactVolumeError::Unwritable);
+    }
+}
