@@ -7,6 +7,7 @@ use meshlod_mesh::{Connectivity, FaceId, Lock, Locks, Mesh, VertexId, face_compo
 use meshlod_simplify::{
     History, Method, Observe, Options, Report, Simplifier, SimplifyError, Target, simplify,
 };
+use meshlod_spatial::Bvh;
 
 fn options() -> Options {
     Options { method: Method::LindstromTurk, ..Options::default() }
@@ -382,4 +383,54 @@ fn damaged_files_end() {
             check_level("soup", &level, &report);
         }
     }
+}
+
+/// A sphere of which single vertices stand out by a third of its radius.
+fn hedgehog() -> Mesh {
+    let mut mesh = sample::sphere(20_000);
+    mesh.attributes = None;
+    for p in mesh.positions.iter_mut().step_by(199) {
+        *p = p.map(|x| 1.33 * x);
+    }
+    mesh
+}
+
+/// How far the vertices of a mesh are at most from a level of it.
+fn farthest(mesh: &Mesh, level: &Mesh) -> f64 {
+    let level = Bvh::new(level).unwrap();
+    let squared = |&p| level.closest(p, None).distance_squared;
+    mesh.positions.iter().map(squared).fold(0.0, f64::max).sqrt()
+}
+
+#[test]
+fn tips_stay_while_others_go() {
+    let mesh = hedgehog();
+    let (level, report) = run(&mesh, Target::Ratio(0.15));
+    assert!(report.reached);
+    let radius = mesh.bounds().diagonal() / 4.6;
+    let lost = farthest(&mesh, &level) / radius;
+    assert!(lost < 0.1, "tips of 0.33 of the radius have lost {lost}");
+}
+
+#[test]
+fn tips_that_are_cut_off_are_in_the_estimate() {
+    for mesh in [hedgehog(), Mesh { attributes: None, ..sample::fish(5000) }] {
+        for faces in [1000, 100] {
+            let (level, report) = run(&mesh, Target::Faces(faces));
+            let lost = farthest(&mesh, &level);
+            assert!(report.error_estimate > 0.7 * lost, "{faces}: {report:?}, {lost}");
+        }
+    }
+}
+
+#[test]
+fn a_bound_of_the_error_keeps_tips_as_the_general_engine_does() {
+    let mesh = hedgehog();
+    let most = 0.02 * mesh.bounds().diagonal();
+    let (level, report) = run(&mesh, Target::Error(most));
+    assert!(level.faces.len() < mesh.faces.len() / 4, "{report:?}");
+    let mut general = Simplifier::with_general_engine(&mesh, &options()).unwrap();
+    general.run(Target::Error(most), &mut ()).unwrap();
+    let [fast, general] = [&level, &general.level()].map(|level| farthest(&mesh, level));
+    assert!(fast < 1.25 * general.max(most), "{fast}, {general}, for {most}");
 }

@@ -9,6 +9,7 @@ use glam::Vec3;
 use crate::fast::cost::{Cheapest, SHORT_FIRST, cheapest};
 use crate::fast::hood::Hood;
 use crate::fast::log::Done;
+use crate::fast::pace::Pace;
 use crate::fast::place::{Swept, matrix};
 use crate::fast::queue::{NONE, Queue, bucket, last_bucket};
 use crate::fast::ring::{GHOST, MOST, RING, Vertices};
@@ -45,18 +46,26 @@ pub(super) struct Engine<'v> {
     pub(super) log: Option<Vec<Done>>,
     pub(super) queue: &'v mut Queue,
     hood: &'v mut Hood,
+    pace: &'v mut Pace,
 }
 
 /// Why the edge at the front was not contracted.
 enum Not {
     /// It costs so much by now.
     TooDear(u16),
+    /// It takes the surface too far for now, but not in this bucket.
+    TooFar(u16),
     /// It may not be, at a cost in this bucket.
     Refused(Refusal, u16),
 }
 
 impl<'v> Engine<'v> {
-    pub(super) fn new(vertices: Vertices<'v>, queue: &'v mut Queue, hood: &'v mut Hood) -> Self {
+    pub(super) fn new(
+        vertices: Vertices<'v>,
+        queue: &'v mut Queue,
+        hood: &'v mut Hood,
+        pace: &'v mut Pace,
+    ) -> Self {
         Self {
             vertices,
             live_faces: 0,
@@ -67,6 +76,7 @@ impl<'v> Engine<'v> {
             log: None,
             queue,
             hood,
+            pace,
         }
     }
 
@@ -177,7 +187,8 @@ impl<'v> Engine<'v> {
             }
         }
         match self.contract(v, target, front) {
-            Ok(kept) => self.put_off(kept, front),
+            Ok(kept) => self.put_off(kept, front + REST),
+            Err(Not::TooFar(bucket)) => self.put_off(v, bucket),
             Err(Not::TooDear(bucket)) => self.look(v, front, Some((target, bucket))),
             Err(Not::Refused(refusal, bucket)) => {
                 self.refusals.add(refusal);
@@ -243,13 +254,12 @@ impl<'v> Engine<'v> {
         self.queue.push(v, bucket);
     }
 
-    /// Queues what a contraction has made a little behind the front, to be looked at there if it is
-    /// still there then.
+    /// Queues a vertex behind the front, to be looked at there if it is still there then.
     #[inline(always)]
-    fn put_off(&mut self, v: u32, front: u16) {
+    fn put_off(&mut self, v: u32, bucket: u16) {
         let vertex = self.vertices.get_mut(v);
         vertex.target = NOBODY;
-        vertex.bucket = last_bucket().min(front + REST);
+        vertex.bucket = last_bucket().min(bucket);
         self.queue.push(v, vertex.bucket);
     }
 
@@ -258,7 +268,7 @@ impl<'v> Engine<'v> {
     fn contract(&mut self, v: u32, target: u32, front: u16) -> Result<u32, Not> {
         let pinned = self.vertices.get(target).flags.any(Flags::PINNED);
         let (v0, v1) = if pinned { (target, v) } else { (v, target) };
-        let Self { vertices, hood, .. } = self;
+        let Self { vertices, hood, pace, .. } = self;
         let refused = |refusal| Not::Refused(refusal, front);
         hood.gather(vertices, v0, v1).map_err(refused)?;
         let (end0, end1) = (vertices.get(v0), vertices.get(v1));
@@ -279,23 +289,27 @@ impl<'v> Engine<'v> {
         if free && best.length_squared() > f64::from(hood.reach()) {
             return Err(refused(Refusal::Volume));
         }
-        let moved = (cost.max(0.0) / swept.weight().max(f64::MIN_POSITIVE))
-            + f64::from(end0.moved.max(end1.moved));
-        if moved > self.most_error {
-            return Err(refused(Refusal::Error));
-        }
         // The place as it will be read back, so that normals are those of the faces as they are.
         let from = end0.place();
         let place = if free { (from.as_dvec3() + best + swept.half).as_vec3() } else { from };
         hood.put(place - from).map_err(refused)?;
-        self.error = self.error.max(moved);
+        let swept_over = cost.max(0.0) / swept.weight().max(f64::MIN_POSITIVE);
+        let now = hood.apart(place - from).max(swept_over as f32);
+        let moved = now + end0.moved.max(end1.moved);
+        if f64::from(moved) > self.most_error {
+            return Err(refused(Refusal::Error));
+        }
+        if let Some(bucket) = pace.wait(now, moved, front) {
+            return Err(Not::TooFar(bucket));
+        }
+        self.error = self.error.max(moved.into());
         let to = (place - from).as_dvec3() - swept.half;
         let lost = swept.level - swept.normal.dot(to);
         self.volume.add(place, lost, hood.is_open(end0), free);
         if let Some(log) = &mut self.log {
-            log.push(Done { kept: v0, gone: v1, place, moved: moved as f32, front });
+            log.push(Done { kept: v0, gone: v1, place, moved, front });
         }
-        self.carry_out(v0, v1, place, moved as f32, front);
+        self.carry_out(v0, v1, place, moved, front);
         Ok(v0)
     }
 

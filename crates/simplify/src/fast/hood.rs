@@ -34,9 +34,9 @@ pub(super) struct Hood {
     /// v1 as seen from v0.
     pub(super) along: Vec3,
     /// The ring as seen from v0.
-    ring: [[f32; ROOM]; 3],
+    pub(super) ring: [[f32; ROOM]; 3],
     /// One where a spoke is v1's.
-    of_v1: [f32; ROOM],
+    pub(super) of_v1: [f32; ROOM],
     /// Twice the area of each spoke along its normal, now.
     pub(super) old: [[f32; ROOM]; 3],
     /// The same with the new vertex.
@@ -170,6 +170,12 @@ impl Hood {
                 self.ghost = Some(i);
             }
         }
+        // The ghost lies on the boundary: an edge to it is one that there is.
+        if let Some(ghost) = self.ghost {
+            let before = (ghost + self.len - 1) % self.len;
+            let [x, y, z] = &mut self.ring;
+            (x[ghost], y[ghost], z[ghost]) = (x[before], y[before], z[before]);
+        }
         // The ring closes; the lanes beyond are faces of one point.
         for i in self.len..=self.len.next_multiple_of(LANES) {
             let [x, y, z] = &mut self.ring;
@@ -287,7 +293,7 @@ impl Hood {
 
     /// A vertex of the ring as seen from v0.
     #[inline(always)]
-    fn seen(&self, i: usize) -> Vec3 {
+    pub(super) fn seen(&self, i: usize) -> Vec3 {
         one(&self.ring, i)
     }
 
@@ -325,7 +331,7 @@ fn one(from: &[[f32; ROOM]; 3], i: usize) -> Vec3 {
 }
 
 #[inline(always)]
-fn load(from: &[[f32; ROOM]; 3], start: usize) -> Lanes3 {
+pub(super) fn load(from: &[[f32; ROOM]; 3], start: usize) -> Lanes3 {
     let [x, y, z] = from;
     let at = |of: &[f32; ROOM]| Vec4::from_slice(&of[start..]);
     Lanes3 { x: at(x), y: at(y), z: at(z) }

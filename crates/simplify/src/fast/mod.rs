@@ -4,6 +4,7 @@
 //! instead of stars of faces, one queue entry a vertex instead of one an edge, floats, and costs from
 //! nine numbers a vertex. docs/notes/fast-simplify.md tells why each of these.
 
+mod apart;
 mod cells;
 mod cost;
 mod engine;
@@ -14,6 +15,7 @@ mod lanes;
 mod level;
 mod log;
 mod order;
+mod pace;
 mod parts;
 mod place;
 mod prepare;

@@ -15,6 +15,7 @@ use rayon::prelude::*;
 use crate::fast::engine::Engine;
 use crate::fast::hood::Hood;
 use crate::fast::log::{Done, merge};
+use crate::fast::pace::Pace;
 use crate::fast::queue::{Queue, last_bucket};
 use crate::fast::ring::{GHOST, Long, Store, Vertices};
 use crate::fast::vertex::Flags;
@@ -67,6 +68,7 @@ struct Part {
     long: Vec<Long>,
     /// Room to work in, made once: simplification may go on step by step.
     hood: Box<Hood>,
+    pace: Pace,
     /// Those with neighbours in other parts.
     waiting: Vec<u32>,
 }
@@ -179,6 +181,7 @@ impl Parts {
             for part in &mut *parts {
                 joined.queue.append(std::mem::take(&mut part.queue));
                 joined.waiting.append(&mut part.waiting);
+                joined.pace.join(&part.pace);
             }
             lists.push(parts.iter_mut().map(|part| std::mem::take(&mut part.long)).collect());
         }
@@ -202,12 +205,12 @@ impl Parts {
         let Store { all, copied, .. } = &mut self.store;
         let mut rest = &mut all[..];
         let mut engines = Vec::with_capacity(self.parts.len());
-        for Part { vertices, queue, long, hood, waiting } in &mut self.parts {
+        for Part { vertices, queue, long, hood, pace, waiting } in &mut self.parts {
             let (all, others) = rest.split_at_mut(vertices.len());
             rest = others;
             let base = vertices.start as u32;
             let vertices = Vertices { all, base, long, copied, first_copy };
-            engines.push((Engine::new(vertices, queue, hood), waiting));
+            engines.push((Engine::new(vertices, queue, hood, pace), waiting));
         }
         engines
     }
@@ -233,6 +236,7 @@ fn cut(store: &Store, count: usize) -> Vec<Part> {
         queue: Queue::default(),
         long: Vec::new(),
         hood: Box::new(Hood::new()),
+        pace: Pace::default(),
         waiting: Vec::new(),
     };
     (0..count).map(part).collect()
