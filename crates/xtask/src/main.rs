@@ -2,9 +2,11 @@
 #![forbid(unsafe_code)]
 
 mod check;
+mod compare;
 mod doc;
 mod project;
 mod results;
+mod table;
 
 use std::process::ExitCode;
 
@@ -14,7 +16,9 @@ const USAGE: &str = "usage: cargo xtask VERB
   check    keys of references, arrows between crates, lengths of files
   doc      the documentation of all crates, warnings being errors
   results [SECTION...]  every figure of docs/RESULTS.md; or prints the sections with such titles
-  textured [MODEL...]  image errors of levels beside meshoptimizer's";
+  textured [MODEL...]  image errors of levels beside meshoptimizer's
+  compare [--meshes NAME,...] [--ratios 10%,...] [--rounds N] [--json]
+                       speed, distance and volume by turns with meshoptimizer's simplify with update";
 
 fn main() -> ExitCode {
     let mut arguments = std::env::args().skip(1);
@@ -22,6 +26,7 @@ fn main() -> ExitCode {
     let project = Project::here();
     let outcome = match verb.as_deref() {
         Some("check") => check::run(&project),
+        Some("compare") => compare::run(&arguments.collect::<Vec<_>>()),
         Some("doc") => doc::run(&project),
         Some("results") => results::run(&project, &arguments.collect::<Vec<_>>()),
         Some("textured") => results::textured(&arguments.collect::<Vec<_>>()),

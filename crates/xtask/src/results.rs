@@ -13,7 +13,6 @@ mod plot;
 mod reading;
 mod speed;
 mod strips;
-mod table;
 mod textured;
 mod volume;
 

@@ -6,8 +6,8 @@ use meshlod::mesh::Mesh;
 use meshlod::simplify::{Method, Options, Target, simplify};
 use meshlod_bench::peer::{Indexed, simplify_with_update};
 
-use super::table::Table;
 use crate::project::Project;
+use crate::table::Table;
 
 /// A peer as measured before: mean, RMS and maximum, in % of the diagonal, at a ratio.
 struct Peer {

@@ -5,8 +5,8 @@ use meshlod::check::{CheckOptions, Kind, Kinds, Net, findings};
 use meshlod::mesh::{Connectivity, FaceId, Mesh, Side, Twin, VertexId};
 use meshlod_bench::{least_seconds, one_core};
 
-use super::table::Table;
 use crate::project::Project;
+use crate::table::Table;
 
 const ROUNDS: usize = 5;
 /// File, and how often every face is parted in four.

@@ -11,8 +11,8 @@ use meshlod::measure::{Distance, DistanceOptions, distance};
 use meshlod_bench::least_seconds;
 
 use self::global::{Rounding, global};
-use super::table::Table;
 use crate::project::Project;
+use crate::table::Table;
 
 /// The meshes of the paper, or of their sizes.
 const OF_PAPER: [&str; 5] =

@@ -5,8 +5,8 @@ use meshlod::mesh::Mesh;
 use meshlod::simplify::{Method, Options, Report, Target, simplify};
 use meshlod_bench::{Ratio, alternate, one_core};
 
-use super::table::Table;
 use crate::project::Project;
+use crate::table::Table;
 
 const ROUNDS: usize = 9;
 

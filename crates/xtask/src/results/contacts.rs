@@ -8,8 +8,8 @@ use meshlod::mesh::Mesh;
 use meshlod::picture::{BreachOptions, Breaches, Cover, Parted};
 use meshlod::simplify::Target;
 
-use super::table::Table;
 use crate::project::Project;
+use crate::table::Table;
 use ways::{Level, Way, by_component};
 
 const FILES: [&str; 5] =

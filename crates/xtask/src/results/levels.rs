@@ -11,8 +11,8 @@ use meshlod::simplify::Simplifier;
 use meshlod::{Options, Target};
 use meshlod_bench::{least_seconds, one_core};
 
-use super::table::Table;
 use crate::project::Project;
+use crate::table::Table;
 
 const MESHES: [&str; 4] = ["bunny.ply", "horse-97k.ply", "igea.ply", "dragon.ply"];
 const ROUNDS: usize = 5;

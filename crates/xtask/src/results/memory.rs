@@ -5,8 +5,8 @@ use std::path::Path;
 use anyhow::{Context, Result};
 
 use super::command::Program;
-use super::table::Table;
 use crate::project::Project;
+use crate::table::Table;
 
 /// Peak resident memory of a whole run, and the same bytes from 1 and 2 threads.
 pub fn section(project: &Project) -> Result<String> {

@@ -7,8 +7,8 @@ use meshlod::measure::{DistanceOptions, Surface, surface_distance};
 use meshlod::simplify::{Options, Target, simplify};
 use meshlod_bench::{alternate, one_core};
 
-use super::table::Table;
 use crate::project::Project;
+use crate::table::Table;
 
 const ROUNDS: usize = 7;
 

@@ -5,8 +5,8 @@ use meshlod::simplify::{Method, Options, Target, simplify};
 use meshlod_bench::peer::{Indexed, simplify_with_update};
 use meshlod_bench::{Ratio, alternate, one_core};
 
-use super::table::Table;
 use crate::project::Project;
+use crate::table::Table;
 
 const ROUNDS: usize = 5;
 const METHODS: [Method; 6] = [

@@ -10,8 +10,8 @@ use meshlod::strip::{Effort, LevelStrips, MergeTree};
 use meshlod_bench::{least_seconds, one_core};
 
 use self::sent::{BASES, Base, Levels, Model};
-use super::table::Table;
 use crate::project::Project;
+use crate::table::Table;
 
 /// Those of [KY05].
 const MODELS: [&str; 4] = ["bishop.obj", "eight.off", "femur.off", "triceratops.off"];

@@ -8,8 +8,8 @@ use meshlod::simplify::{Method, Options, Target};
 use meshlod::{Scene, materials_of, simplify_scene};
 use meshlod_bench::peer::{Settings, SimplifyOptions, Update, simplify_with_attributes};
 
-use super::table::Table;
 use crate::project::Project;
+use crate::table::Table;
 
 const MODELS: [&str; 5] =
     ["flight-helmet/FlightHelmet.gltf", "duck.glb", "pirate.obj", "spot.obj", "fish-bream.obj"];

@@ -7,8 +7,8 @@ use meshlod::mesh::{Connectivity, Mesh, sample};
 use meshlod::simplify::{Method, Options, Target, simplify};
 use meshlod::{ReadOptions, Scene, WriteOptions, read, write};
 
-use super::table::Table;
 use crate::project::Project;
+use crate::table::Table;
 
 const MESHES: [&str; 5] =
     ["bunny-closed.ply", "horse.ply", "feline.ply", "igea.ply", "armadillo-173k.ply"];

@@ -4,7 +4,7 @@ use anyhow::{Context, Result};
 use meshlod::codec::{Transport, TransportFile, TransportOptions};
 use meshlod_bench::{least_seconds, one_core};
 
-use crate::results::table::Table;
+use crate::table::Table;
 
 /// Bytes a triangle of Draco, 11 bits, compression level 7, the whole mesh in one: measured with its own program.
 const DRACO: [(&str, f64); 10] = [

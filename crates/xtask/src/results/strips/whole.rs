@@ -9,7 +9,7 @@ use meshlod_bench::least_seconds;
 use meshlod_bench::peer::meshopt_strips;
 
 use crate::results::plot::{Line, Plot, page};
-use crate::results::table::Table;
+use crate::table::Table;
 
 const MESHES: [&str; 5] =
     ["bunny.ply", "horse-97k.ply", "fandisk.off", "fandisk-32k.ply", "igea.ply"];
