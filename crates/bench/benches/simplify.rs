@@ -10,7 +10,7 @@ fn to_a_tenth(c: &mut Criterion) {
     group.sample_size(10);
     for (name, mesh) in [("gyroid", sample::gyroid(50_000)), ("terrain", sample::terrain(50_000))] {
         for method in Method::ALL {
-            let options = Options { method, ..Options::default() };
+            let options = Options { method: Some(method), ..Options::default() };
             group.bench_function(format!("{name}/{}", method.name()), |b| {
                 b.iter(|| {
                     let (level, report) = simplify(&mesh, Target::Ratio(0.1), &options).unwrap();

@@ -30,7 +30,7 @@ fn main() -> Result<()> {
 }
 
 fn line(name: &str, mesh: &Mesh, ratio: f64, rounds: usize) -> Result<()> {
-    let options = Options { method: Method::LindstromTurk, ..Options::default() };
+    let options = Options { method: Some(Method::LindstromTurk), ..Options::default() };
     let indexed = Indexed::from(mesh);
     let faces = (mesh.faces.len() as f64 * ratio) as usize;
     let ours = || simplify(mesh, Target::Ratio(ratio), &options).expect("it can be");

@@ -179,6 +179,12 @@ pub fn methods() -> String {
     format!("The algorithm: {}; compare shows which suits a mesh", names())
 }
 
+/// The same where one is chosen if none is named.
+pub fn methods_or_suited() -> String {
+    let [bare, dressed] = [Method::LindstromTurk, Method::Qem].map(Method::name);
+    format!("{} [default: {bare}; {dressed} where there are attributes]", methods())
+}
+
 fn names() -> String {
     Method::ALL.map(Method::name).join(", ")
 }

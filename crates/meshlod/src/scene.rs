@@ -1,9 +1,9 @@
 //! Scenes simplified as a whole: one budget or one bound for all their meshes.
 
-use meshlod_io::Scene;
+use meshlod_io::{Scene, SceneMesh};
 use meshlod_mesh::Mesh;
 use meshlod_simplify::{
-    Held, Observe, Options, Refusals, Report, Simplifier, SimplifyError, Target, VolumeLoss,
+    Held, Method, Observe, Options, Refusals, Report, Simplifier, SimplifyError, Target, VolumeLoss,
 };
 use thiserror::Error;
 
@@ -21,6 +21,7 @@ use crate::place::length_scale;
 /// [`Simplifier`].
 pub struct SceneSimplifier<'s> {
     scene: &'s Scene,
+    method: Method,
     parts: Vec<Part<'s>>,
     /// Shown faces of the meshes that stay as they are.
     still_faces: usize,
@@ -91,9 +92,14 @@ impl<'s> SceneSimplifier<'s> {
     /// to work on.
     pub fn new(scene: &'s Scene, options: &Options) -> Result<Self, SceneError> {
         let locks = locks::split(scene, &options.locks)?;
-        let mut this = Self { scene, parts: Vec::new(), still_faces: 0 };
+        let shown = shown(scene);
+        // Costs of different methods are not to be compared.
+        let is_shown = |(mesh, _): &(usize, &SceneMesh)| shown[*mesh].0 > 0;
+        let meshes = scene.meshes.iter().enumerate().filter(is_shown);
+        let method = options.method_for(meshes.map(|(_, mesh)| &mesh.mesh));
+        let mut this = Self { scene, method, parts: Vec::new(), still_faces: 0 };
         let mut still = None;
-        for ((index, (copies, scale)), locks) in shown(scene).into_iter().enumerate().zip(locks) {
+        for ((index, (copies, scale)), locks) in shown.into_iter().enumerate().zip(locks) {
             let mesh = &scene.meshes[index].mesh;
             if copies == 0 {
                 continue;
@@ -101,10 +107,10 @@ impl<'s> SceneSimplifier<'s> {
             // What the world squeezes to a point is smaller than anything.
             let vanish_below = options.vanish_below.map(|size| size / scale);
             let vanish_below = vanish_below.map(|size| if size.is_nan() { 0.0 } else { size });
-            let options = Options { locks, vanish_below, ..*options };
+            let options = Options { method: Some(method), locks, vanish_below, ..*options };
             match Simplifier::new(mesh, &options) {
                 Ok(simplifier) => {
-                    let cost_scale = scale.powi(options.method.cost_power());
+                    let cost_scale = scale.powi(method.cost_power());
                     this.parts.push(Part { mesh: index, copies, scale, cost_scale, simplifier });
                 }
                 Err(error @ (SimplifyError::NoFaces | SimplifyError::AllDegenerate(_))) => {
@@ -196,9 +202,9 @@ impl<'s> SceneSimplifier<'s> {
         let mut costs: Vec<Option<f64>> = self.parts.iter_mut().map(Part::next_cost).collect();
         let mut faces = self.live_faces();
         while faces > budget {
-            let Some((cheapest, runner_up)) = two_cheapest(&costs) else { return };
+            let Some((cheapest, most)) = cheapest(&costs) else { return };
             let part = &mut self.parts[cheapest];
-            let most_cost = part.cost_up_to(runner_up);
+            let most_cost = part.cost_up_to(most);
             while faces > budget {
                 let before = part.simplifier.live_faces();
                 if !part.simplifier.step(most_cost, observer) {
@@ -213,6 +219,7 @@ impl<'s> SceneSimplifier<'s> {
     /// What was done so far, summed over the meshes; a target of an error counts as reached.
     fn report(&mut self) -> Result<Report, SimplifyError> {
         let mut whole = Report {
+            method: self.method,
             input_faces: self.input_faces(),
             degenerate_faces: 0,
             duplicate_faces: 0,
@@ -282,20 +289,14 @@ fn shown(scene: &Scene) -> Vec<(usize, f64)> {
     shown
 }
 
-/// The place of the least cost, and the least of the others.
-fn two_cheapest(costs: &[Option<f64>]) -> Option<(usize, f64)> {
-    let mut cheapest: Option<(usize, f64)> = None;
-    let mut runner_up = f64::INFINITY;
-    for (i, cost) in costs.iter().enumerate().filter_map(|(i, cost)| Some((i, (*cost)?))) {
-        match cheapest {
-            Some((_, least)) if cost >= least => runner_up = runner_up.min(cost),
-            previous => {
-                runner_up = previous.map_or(runner_up, |(_, least)| least);
-                cheapest = Some((i, cost));
-            }
-        }
-    }
-    cheapest.map(|(i, _)| (i, runner_up))
+/// The place of the least cost, the first of equal ones, and how far the cost there may rise until
+/// another is in front: a run that was interrupted goes on as if it had not been.
+fn cheapest(costs: &[Option<f64>]) -> Option<(usize, f64)> {
+    let known = || costs.iter().enumerate().filter_map(|(i, cost)| Some((i, (*cost)?)));
+    let (first, _) = known().min_by(|a, b| a.1.total_cmp(&b.1))?;
+    let up_to = |(i, cost): (usize, f64)| if i < first { cost.next_down() } else { cost };
+    let others = known().filter(|&(i, _)| i != first);
+    Some((first, others.map(up_to).fold(f64::INFINITY, f64::min)))
 }
 
 fn in_brackets(name: &str) -> String {

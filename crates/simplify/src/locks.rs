@@ -2,7 +2,7 @@
 
 use meshlod_mesh::{Connectivity, Lock, Locks, Mesh, VertexId};
 
-use crate::options::{Options, SimplifyError};
+use crate::options::{Method, Options, SimplifyError};
 use crate::surface::{Flags, Surface};
 use crate::ties::{MOST_MEMBERS, Ties};
 
@@ -65,7 +65,12 @@ pub(crate) fn validate(locks: &Locks, mesh: &Mesh) -> Result<(), SimplifyError> 
 }
 
 /// Flags what locks hold, and ties what they tie.
-pub(crate) fn apply(options: &Options, connectivity: &Connectivity, surface: &mut Surface) -> Held {
+pub(crate) fn apply(
+    options: &Options,
+    method: Method,
+    connectivity: &Connectivity,
+    surface: &mut Surface,
+) -> Held {
     let Options { locks, lock_boundary, .. } = options;
     let mut held = Held::default();
     for v in (0..surface.vertex_count()).map(VertexId::new) {
@@ -96,6 +101,6 @@ pub(crate) fn apply(options: &Options, connectivity: &Connectivity, surface: &mu
         }
     }
     surface.ties = Ties::new(ties);
-    surface.protection = PROTECTION.powi(options.method.cost_power());
+    surface.protection = PROTECTION.powi(method.cost_power());
     held
 }

@@ -1,6 +1,6 @@
 //! What a user may ask for, and what comes back beside the mesh.
 
-use meshlod_mesh::{Locks, MeshError, VertexId};
+use meshlod_mesh::{Locks, Mesh, MeshError, VertexId};
 use thiserror::Error;
 
 use crate::locks::Held;
@@ -11,11 +11,11 @@ use crate::volume::VolumeLoss;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Method {
     /// Quadric error metrics with optimal placement [GH97].
-    #[default]
     Qem,
     /// The same, but every vertex of the result is one of the input: half-edge contraction.
     QemEndpoint,
     /// Memoryless, with the volume conserved exactly [LT98].
+    #[default]
     LindstromTurk,
     /// The same of faces instead of edges.
     LindstromTurkFaces,
@@ -44,6 +44,14 @@ impl Method {
         Self::Pm,
         Self::Spr,
     ];
+
+    /// The method where none is named, for meshes that share a target: the most accurate one,
+    /// [`Self::LindstromTurk`], for bare geometry; where any has attributes [`Self::Qem`], which counts
+    /// them.
+    pub fn suited_to<'m>(meshes: impl IntoIterator<Item = &'m Mesh>) -> Self {
+        let have_attributes = meshes.into_iter().any(|mesh| mesh.attributes.is_some());
+        if have_attributes { Self::Qem } else { Self::LindstromTurk }
+    }
 
     /// Its name on the command line and in reports.
     pub fn name(self) -> &'static str {
@@ -133,8 +141,8 @@ impl Target {
 /// How to simplify.
 #[derive(Clone, Debug, Default)]
 pub struct Options {
-    /// The algorithm.
-    pub method: Method,
+    /// The algorithm; `None` for the one that suits the mesh, see [`Method::suited_to`].
+    pub method: Option<Method>,
     /// How much attributes count where the method counts them: `qem` and `qem-endpoint` do.
     pub weights: AttributeWeights,
     /// Keep every vertex of a boundary edge where it is.
@@ -146,6 +154,13 @@ pub struct Options {
     /// as a whole, where nothing of it can be spared for less; not one with a vertex that a lock or a
     /// tie holds, and not the last. Its size then counts as an error. `None`: none ever vanishes.
     pub vanish_below: Option<f64>,
+}
+
+impl Options {
+    /// The method that is named, or else suits these meshes.
+    pub fn method_for<'m>(&self, meshes: impl IntoIterator<Item = &'m Mesh>) -> Method {
+        self.method.unwrap_or_else(|| Method::suited_to(meshes))
+    }
 }
 
 /// How much an error in an attribute counts against an error in distance; 0 not at all.
@@ -250,6 +265,8 @@ pub enum SimplifyError {
 /// What a run did.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Report {
+    /// The algorithm, also where none was named.
+    pub method: Method,
     /// Faces of the input, all of them.
     pub input_faces: usize,
     /// Faces of the input left out because they repeat a vertex.

@@ -7,7 +7,7 @@ use crate::engine::{Ready, Run, Tally};
 use crate::fast;
 use crate::locks::{self, Held};
 use crate::methods;
-use crate::options::{Options, Report, SimplifyError, Target};
+use crate::options::{Method, Options, Report, SimplifyError, Target};
 use crate::policy::{Observe, Stop};
 use crate::surface::Surface;
 use crate::vanishing::Vanishing;
@@ -20,6 +20,7 @@ const EXTENTS: std::ops::RangeInclusive<f64> = 1e-30..=1e30;
 pub struct Simplifier<'m> {
     mesh: &'m Mesh,
     engine: Box<dyn Run + 'm>,
+    method: Method,
     input: Input,
 }
 
@@ -43,7 +44,9 @@ impl<'m> Simplifier<'m> {
     pub fn new(mesh: &'m Mesh, options: &Options) -> Result<Self, SimplifyError> {
         let bounds = validate(mesh, options)?;
         match fast::start(mesh, &bounds, options)? {
-            Some((engine, input)) => Ok(Self { mesh, engine, input }),
+            Some((engine, input)) => {
+                Ok(Self { mesh, engine, method: options.method_for([mesh]), input })
+            }
             None => Self::generally(mesh, options),
         }
     }
@@ -65,11 +68,13 @@ impl<'m> Simplifier<'m> {
             .filter(|&v| connectivity.marks(VertexId::new(v)).non_manifold())
             .count();
         let mut surface = Surface::new(mesh, &connectivity);
-        let held = locks::apply(options, &connectivity, &mut surface);
+        let method = options.method_for([mesh]);
+        let held = locks::apply(options, method, &connectivity, &mut surface);
         let input = Input { degenerate_faces, duplicate_faces, non_manifold_vertices, held };
-        let vanishing = Vanishing::new(&surface, options);
-        let engine = methods::start(options, Ready { surface, connectivity, vanishing });
-        Ok(Self { mesh, engine, input })
+        let vanishing = Vanishing::new(&surface, method, options.vanish_below);
+        let engine =
+            methods::start(method, &options.weights, Ready { surface, connectivity, vanishing });
+        Ok(Self { mesh, engine, method, input })
     }
 
     /// Contracts until the target is reached or nothing more may be contracted.
@@ -116,6 +121,7 @@ impl<'m> Simplifier<'m> {
         let Tally { vanished, refusals, error_estimate, volume } = self.engine.tally();
         let reached = matches!(target, Target::Error(_)) || output_faces <= stop.faces;
         Report {
+            method: self.method,
             input_faces: self.mesh.faces.len(),
             degenerate_faces: self.input.degenerate_faces,
             duplicate_faces: self.input.duplicate_faces,

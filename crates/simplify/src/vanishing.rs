@@ -5,7 +5,7 @@
 
 use meshlod_mesh::{Bounds, FaceId, VertexId, face_components, first_near};
 
-use crate::options::{Method, Options};
+use crate::options::Method;
 use crate::surface::{Flags, Surface};
 
 /// A component that may vanish.
@@ -32,8 +32,8 @@ impl Vanishing {
     /// The components of an untouched surface that are small enough, and that no lock holds.
     ///
     /// Cost: linear, and n log n of those that may vanish.
-    pub(crate) fn new(surface: &Surface, options: &Options) -> Self {
-        let Some(below) = options.vanish_below else { return Self::default() };
+    pub(crate) fn new(surface: &Surface, method: Method, below: Option<f64>) -> Self {
+        let Some(below) = below else { return Self::default() };
         let alive = (0..surface.face_count()).map(FaceId::new).filter(|&f| surface.is_alive(f));
         let alive: Vec<FaceId> = alive.collect();
         let corners: Vec<_> = alive.iter().map(|&face| surface.face(face)).collect();
@@ -57,7 +57,7 @@ impl Vanishing {
         }
         let mut this = Self { waiting: waiting.into_iter().flatten().collect(), ..Self::default() };
         for component in &mut this.waiting {
-            component.cost = cost(surface, options.method, component);
+            component.cost = cost(surface, method, component);
         }
         this.sort();
         this

@@ -10,7 +10,7 @@ use meshlod_simplify::{
 use meshlod_spatial::Bvh;
 
 fn options() -> Options {
-    Options { method: Method::LindstromTurk, ..Options::default() }
+    Options { method: Some(Method::LindstromTurk), ..Options::default() }
 }
 
 fn run(mesh: &Mesh, target: Target) -> (Mesh, Report) {

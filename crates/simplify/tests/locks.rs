@@ -127,7 +127,7 @@ fn defects(mesh: &Mesh) -> [usize; 3] {
 /// Runs with all ties, sees that they hold, and gives the level.
 fn tied_run(mesh: &Mesh, method: Method, ratio: f64) -> Mesh {
     let locks = ties(mesh);
-    let options = Options { method, locks: locks.clone(), ..Options::default() };
+    let options = Options { method: Some(method), locks: locks.clone(), ..Options::default() };
     let mut simplifier = Simplifier::new(mesh, &options).unwrap();
     let mut trace = Trace::new(mesh);
     let report = simplifier.run(Target::Ratio(ratio), &mut trace).unwrap();
@@ -206,7 +206,7 @@ proptest! {
         };
         let of_vertex = (0..mesh.positions.len()).map(lock).collect();
         let locks = Locks { of_vertex, ..ties(&mesh) };
-        let options = Options { method, locks: locks.clone(), ..Options::default() };
+        let options = Options { method: Some(method), locks: locks.clone(), ..Options::default() };
         let mut simplifier = Simplifier::new(&mesh, &options).unwrap();
         let mut trace = Trace::new(&mesh);
         simplifier.run(Target::Ratio(ratio), &mut trace).unwrap();
@@ -236,7 +236,7 @@ proptest! {
             raw.iter().map(|face| face.map(|v| VertexId(v % count))).collect(),
         );
         let locks = ties(&mesh);
-        let options = Options { method, locks: locks.clone(), ..Options::default() };
+        let options = Options { method: Some(method), locks: locks.clone(), ..Options::default() };
         // All is degenerate, then there is nothing to keep.
         if let Ok(mut simplifier) = Simplifier::new(&mesh, &options) {
             let before = defects(&simplifier.level());
@@ -256,7 +256,7 @@ proptest! {
 fn what_was_contracted_together_comes_back_to_the_bit() {
     let mesh = three_boxes(6);
     for method in Method::ALL {
-        let options = Options { method, locks: ties(&mesh), ..Options::default() };
+        let options = Options { method: Some(method), locks: ties(&mesh), ..Options::default() };
         let mut simplifier = Simplifier::new(&mesh, &options).unwrap();
         let mut history = History::default();
         let mut levels = vec![simplifier.level()];
@@ -326,7 +326,8 @@ fn what_is_protected_goes_last_and_is_not_safe() {
     let (mesh, locks) = halved(Lock::Protected);
     for method in Method::ALL {
         let share = |locks: &Locks, ratio| {
-            let options = Options { method, locks: locks.clone(), ..Options::default() };
+            let options =
+                Options { method: Some(method), locks: locks.clone(), ..Options::default() };
             let (level, report) = simplify(&mesh, Target::Ratio(ratio), &options).unwrap();
             assert!(report.reached);
             let there = level.positions.iter().filter(|p| p[0] > 0.01).count();
@@ -344,7 +345,8 @@ fn a_bound_is_of_the_error_and_not_of_its_cost() {
     let (mesh, locks) = halved(Lock::Protected);
     for method in Method::ALL {
         let faces = |locks: &Locks| {
-            let options = Options { method, locks: locks.clone(), ..Options::default() };
+            let options =
+                Options { method: Some(method), locks: locks.clone(), ..Options::default() };
             // What is protected takes the general engine; the fast one's estimate is a stricter one.
             let mut simplifier = Simplifier::with_general_engine(&mesh, &options).unwrap();
             let report = simplifier.run(Target::Error(0.02), &mut ()).unwrap();

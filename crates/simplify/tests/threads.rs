@@ -7,7 +7,7 @@ use meshlod_mesh::{Connectivity, Lock, Locks, Mesh, VertexId, sample};
 use meshlod_simplify::{History, Method, Options, Report, Simplifier, Target, simplify};
 
 fn options() -> Options {
-    Options { method: Method::LindstromTurk, ..Options::default() }
+    Options { method: Some(Method::LindstromTurk), ..Options::default() }
 }
 
 fn run_with(threads: usize, mesh: &Mesh, target: Target, options: &Options) -> (Mesh, Report) {

@@ -70,7 +70,7 @@ impl<'s> Descent<'s> {
     pub fn start(bench: Bench<'s>, method: Method, what: String) -> Result<Self, Failure> {
         let Bench { subject, original, options, session } = bench;
         let path = Path::new(&subject.name);
-        let manner = Options { method, ..Options::default() };
+        let manner = Options { method: Some(method), ..Options::default() };
         session.progress.stage(&format!("{what}: connecting"));
         let engine = Engine::start(&subject.scene, &manner, path, session)?;
         Ok(Self { subject, original, options, engine, session, what })

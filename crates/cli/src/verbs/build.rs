@@ -33,7 +33,7 @@ pub struct Build {
     /// What the levels are made by
     #[arg(long, value_name = "MODEL", default_value = "contractions")]
     model: Model,
-    #[arg(long, value_name = "NAME", default_value = Method::default().name(),
+    #[arg(long, value_name = "NAME", default_value = Method::Qem.name(),
         value_parser = amounts::method, help = amounts::methods())]
     method: Method,
     /// Prove bounds of the errors, in place of the method's estimates, which are evened out; takes some
@@ -131,7 +131,8 @@ impl Build {
 
     fn contractions(&self, mesh: &Mesh, session: &Session) -> Result<Built, Failure> {
         let failed = |error: BuildError| Failure::at(&self.input, error);
-        let options = Options { method: self.method, vanish_below: None, ..Options::default() };
+        let options =
+            Options { method: Some(self.method), vanish_below: None, ..Options::default() };
         let mut simplifier =
             Simplifier::new(mesh, &options).map_err(|error| failed(error.into()))?;
         let watch = session.progress.contractions("contracting", Some(mesh.faces.len()));

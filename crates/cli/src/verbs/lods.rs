@@ -68,7 +68,6 @@ impl Lods {
             (1..=self.levels.len()).try_for_each(|i| files::check_place(&self.file_of(i)))?;
         }
         let mut scene = files::read(&self.input, &self.reading, session)?;
-        self.manner.warn(session);
         let fused = self.manner.fusing.apply(&mut scene, session);
         let origin = Origin { scene: &scene, path: &self.input, reading: &self.reading };
         let options = self.manner.options(&origin, session)?;
@@ -78,6 +77,9 @@ impl Lods {
         for link in chain.iter().filter(|link| !link.reduced.report.reached) {
             let reason = reduce::why_not_reached(&link.reduced.report);
             session.warn(Failure::at(&self.input, format_args!("{}: {reason}", link.size)));
+        }
+        if let Some(link) = chain.last() {
+            self.manner.warn(&link.reduced.report, session);
         }
         let missed = chain.iter().any(|link| !link.reduced.report.reached);
         Ok(Answer {
@@ -169,7 +171,7 @@ impl Lods {
         };
         let report = chain.last().map(|link| &link.reduced.report);
         json!({
-            "method": self.manner.method.name(),
+            "method": report.map(|report| report.method.name()),
             "input_faces": input_faces,
             "levels": chain.iter().map(level).collect::<Vec<_>>(),
             "simplify_seconds": time.as_secs_f64(),

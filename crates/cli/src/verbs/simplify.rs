@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use clap::Args;
 use meshlod::simplify::AttributeWeights;
-use meshlod::{Method, Options, Scene, Target, world_bounds};
+use meshlod::{Method, Options, Report, Scene, Target, world_bounds};
 use serde_json::{Value, json};
 
 use crate::amounts::{self, Bound};
@@ -69,9 +69,9 @@ struct Goal {
 /// How contractions are done.
 #[derive(Args)]
 pub struct Manner {
-    #[arg(long, value_name = "NAME", default_value = Method::default().name(),
-        value_parser = amounts::method, help = amounts::methods())]
-    pub method: Method,
+    #[arg(long, value_name = "NAME", value_parser = amounts::method,
+        help = amounts::methods_or_suited())]
+    method: Option<Method>,
     #[command(flatten)]
     pub fusing: Fusing,
     #[command(flatten)]
@@ -116,9 +116,9 @@ impl Manner {
     }
 
     /// Says which of the options have no part in what the method does.
-    pub fn warn(&self, session: &Session) {
-        if self.weights() != WEIGHTS && !self.method.counts_attributes() {
-            let method = self.method.name();
+    pub fn warn(&self, report: &Report, session: &Session) {
+        if self.weights() != WEIGHTS && !report.method.counts_attributes() {
+            let method = report.method.name();
             session.warn(format_args!("--weight-…: {method} does not count attributes; qem does"));
         }
     }
@@ -148,7 +148,6 @@ struct Task<'s> {
 impl Simplify {
     pub fn run(self, session: &Session) -> Result<Answer, Failure> {
         files::check_output(&self.output, session)?;
-        self.manner.warn(session);
         if let Some(path) = &self.sequence {
             sequence::check(path, &self.input, &self.output)?;
         }
@@ -173,6 +172,7 @@ impl Simplify {
             (Some(path), Some(sequence)) => sequence::write_with(path, sequence, write)?,
             _ => write()?,
         }
+        self.manner.warn(&done.report, session);
         if !done.report.reached {
             let reason = Failure::at(&self.input, reduce::why_not_reached(&done.report));
             session.warn(reason);
@@ -232,13 +232,13 @@ impl Simplify {
 
     fn json(&self, done: &Reduced, fused: Option<&fusing::Done>, time: Duration) -> Value {
         let report = &done.report;
-        let mut json = json!({ "method": self.manner.method.name() });
+        let mut json = json!({ "method": report.method.name() });
         for (key, value) in reduce::report_json(report).as_object().into_iter().flatten() {
             json[key] = value.clone();
         }
         json["error_measured"] = done.measured.as_ref().map(distance::to_json).into();
         json["volume_running_sum"] = report.volume.running_sum.into();
-        json["volume_not_conserved"] = volume::unconserved_json(self.manner.method, &report.volume);
+        json["volume_not_conserved"] = volume::unconserved_json(report.method, &report.volume);
         json["simplify_seconds"] = time.as_secs_f64().into();
         json["degenerate_faces"] = report.degenerate_faces.into();
         json["duplicate_faces"] = report.duplicate_faces.into();
@@ -268,7 +268,7 @@ impl Simplify {
         if let Some(distance) = &done.measured {
             text += &format!("error_measured:\n{}", distance::to_table(distance));
         }
-        if let Some(line) = volume::unconserved_text(self.manner.method, &report.volume) {
+        if let Some(line) = volume::unconserved_text(report.method, &report.volume) {
             text += &format!("{line}\n");
         }
         text + &reduce::seconds_line(time)

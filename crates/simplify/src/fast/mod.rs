@@ -35,8 +35,8 @@ use crate::simplifier::Started;
 /// Whether there is a fast way for this: `lindstrom-turk`, meshes without attributes, and locks that
 /// lock: no ties, nothing protected, nothing that may vanish.
 fn fits(mesh: &Mesh, options: &Options) -> bool {
-    let Options { method, locks, vanish_below, .. } = options;
-    *method == Method::LindstromTurk
+    let Options { locks, vanish_below, .. } = options;
+    options.method_for([mesh]) == Method::LindstromTurk
         && mesh.attributes.is_none()
         && locks.ties.is_empty()
         && !locks.of_vertex.contains(&Lock::Protected)

@@ -34,14 +34,14 @@ use crate::methods::qem::{Endpoint, Optimal, Quadrics, Rule};
 use crate::methods::samples::Samples;
 use crate::methods::spr::Turn;
 use crate::methods::wu::WeightedMean;
-use crate::options::{Method, Options};
+use crate::options::{AttributeWeights, Method};
 
 /// Sets a method to work.
-pub(crate) fn start(options: &Options, ready: Ready) -> Box<dyn Run> {
+pub(crate) fn start(method: Method, weights: &AttributeWeights, ready: Ready) -> Box<dyn Run> {
     let surface = &ready.surface;
-    match options.method {
-        Method::Qem => by_quadrics(options, Optimal, ready),
-        Method::QemEndpoint => by_quadrics(options, Endpoint, ready),
+    match method {
+        Method::Qem => by_quadrics(weights, Optimal, ready),
+        Method::QemEndpoint => by_quadrics(weights, Endpoint, ready),
         Method::LindstromTurk => Algorithm {
             candidates: Edges,
             memory: Stars::new(surface),
@@ -90,9 +90,13 @@ pub(crate) fn start(options: &Options, ready: Ready) -> Box<dyn Run> {
 }
 
 /// Quadrics with attributes, where there are any that count.
-fn by_quadrics<R: Rule + Copy + 'static>(options: &Options, rule: R, ready: Ready) -> Box<dyn Run> {
+fn by_quadrics<R: Rule + Copy + 'static>(
+    weights: &AttributeWeights,
+    rule: R,
+    ready: Ready,
+) -> Box<dyn Run> {
     let surface = &ready.surface;
-    let channels = Channels::new(surface, &options.weights);
+    let channels = Channels::new(surface, weights);
     match (channels, &surface.wedges) {
         (Some(channels), Some(wedges)) => {
             let appearance = Expectations::new(surface, wedges, channels);
