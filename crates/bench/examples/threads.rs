@@ -1,0 +1,97 @@
+//! The fast engine with one thread and with two, in the file's order and in none: wall time by turns,
+//! and whether the levels are the same.
+//!
+//! ```text
+//! cargo run --release -p meshlod-bench --example threads -- 5 dragon.ply igea.ply
+//! ```
+//! Takes a number of rounds and names of shared meshes.
+
+use std::time::Instant;
+
+use anyhow::{Context, Result};
+use meshlod::measure::{DistanceOptions, Surface, surface_distance};
+use meshlod::mesh::{Mesh, VertexId};
+use meshlod::simplify::{Method, Options, Target, simplify};
+use meshlod_bench::read;
+
+fn main() -> Result<()> {
+    let mut args = std::env::args().skip(1);
+    let rounds: usize = args.next().context("how many rounds?")?.parse()?;
+    println!("mesh ratio | 1 thread s | 2 threads times as fast | scrambled times as slow | means");
+    for name in args {
+        let mut mesh = read(&name)?.with_context(|| format!("{name} is not here"))?;
+        mesh.attributes = None;
+        let scrambled = scrambled(&mesh);
+        for ratio in [0.1, 0.01] {
+            line(&name, [&mesh, &scrambled], ratio, rounds)?;
+        }
+    }
+    Ok(())
+}
+
+fn line(name: &str, [mesh, scrambled]: [&Mesh; 2], ratio: f64, rounds: usize) -> Result<()> {
+    let one = pool(1)?;
+    let two = pool(2)?;
+    let (mut seconds, mut faster, mut slower) = (Vec::new(), Vec::new(), Vec::new());
+    for _ in 0..rounds {
+        let (alone, first) = one.install(|| timed(mesh, ratio));
+        let (together, second) = two.install(|| timed(mesh, ratio));
+        let (without_order, _) = one.install(|| timed(scrambled, ratio));
+        anyhow::ensure!(first == second, "two threads give another level than one");
+        seconds.push(alone);
+        faster.push(alone / together);
+        slower.push(without_order / alone);
+    }
+    print!("{name} {ratio} | {:.3} | ", median(seconds));
+    print!("{:.2} | {:.2} |", median(faster), median(slower));
+    let original = Surface::new(mesh)?;
+    let options = DistanceOptions { samples: 200_000, seed: 0 };
+    for mesh in [mesh, scrambled] {
+        let (_, level) = timed(mesh, ratio);
+        let apart = surface_distance(&original, &Surface::new(&level)?, &options)?;
+        print!(" {:.5}", apart.percent(apart.mean()));
+    }
+    println!();
+    Ok(())
+}
+
+fn pool(threads: usize) -> Result<rayon::ThreadPool> {
+    Ok(rayon::ThreadPoolBuilder::new().num_threads(threads).build()?)
+}
+
+/// Seconds by the clock on the wall: what threads are for.
+fn timed(mesh: &Mesh, ratio: f64) -> (f64, Mesh) {
+    let options = Options { method: Method::LindstromTurk, ..Options::default() };
+    let start = Instant::now();
+    let (level, _) = simplify(mesh, Target::Ratio(ratio), &options).expect("it can be");
+    (start.elapsed().as_secs_f64(), level)
+}
+
+/// The same mesh with its vertices and faces in no order.
+fn scrambled(mesh: &Mesh) -> Mesh {
+    let places = shuffled(mesh.positions.len(), 1);
+    let mut positions = vec![[0.0; 3]; places.len()];
+    for (&place, &position) in places.iter().zip(&mesh.positions) {
+        positions[place as usize] = position;
+    }
+    let moved = |&f: &u32| mesh.faces[f as usize].map(|v| VertexId(places[v.index()]));
+    Mesh::new(positions, shuffled(mesh.faces.len(), 2).iter().map(moved).collect())
+}
+
+/// The numbers below `count` in no order, the same in every run.
+fn shuffled(count: usize, seed: u64) -> Vec<u32> {
+    let mut all: Vec<u32> = (0..count as u32).collect();
+    let mut state = seed;
+    for i in (1..count).rev() {
+        // The upper bits of a linear congruence are random enough.
+        state =
+            state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        all.swap(i, (state >> 33) as usize % (i + 1));
+    }
+    all
+}
+
+fn median(mut values: Vec<f64>) -> f64 {
+    values.sort_by(f64::total_cmp);
+    values[values.len() / 2]
+}
