@@ -18,7 +18,7 @@ fn figures(mesh: &Mesh, mut simplifier: Simplifier<'_>, ratio: f64) -> [f64; 2] 
 /// Every vertex moved to a mean of its neighbours at random, more than half the way.
 ///
 /// On the samples as they are all edges of a row cost the same, and where a bucket takes them in the
-/// order they came a level is up to 6 % farther off than by the general engine's order.
+/// order they came a level is some 5 % farther off than by the general engine's order.
 fn shaken(mesh: &Mesh) -> Mesh {
     let mut state = 1u64;
     let mut random = || {
