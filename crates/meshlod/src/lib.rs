@@ -129,6 +129,7 @@
 #![forbid(unsafe_code)]
 
 mod contacts;
+mod exact_volume;
 mod fuse;
 mod locks;
 mod materials;
@@ -149,6 +150,7 @@ pub use meshlod_spatial as spatial;
 pub use meshlod_strip as strip;
 
 pub use contacts::scene_locks;
+pub use exact_volume::{conserve_volumes, digits_of};
 pub use fuse::fuse_scene;
 pub use locks::join_locks;
 pub use materials::{UnreadImage, materials_of};

@@ -1,11 +1,13 @@
 //! `simplify`: one coarser mesh.
 
 use std::path::PathBuf;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use clap::Args;
-use meshlod::simplify::AttributeWeights;
-use meshlod::{Method, Options, Report, Scene, Target, world_bounds};
+use meshlod::simplify::{AttributeWeights, Digits};
+use meshlod::{
+    Mesh, Method, Options, Report, Scene, Target, conserve_volumes, digits_of, world_bounds,
+};
 use serde_json::{Value, json};
 
 use crate::amounts::{self, Bound};
@@ -42,6 +44,10 @@ pub struct Simplify {
     /// nodes and materials; of a file with one mesh
     #[arg(long, value_name = "FILE", conflicts_with_all = ["measured", "fuse"])]
     sequence: Option<PathBuf>,
+    /// Move vertices by their last digits until each mesh has its volume again, as it is written;
+    /// closed meshes only
+    #[arg(long, conflicts_with = "sequence")]
+    exact_volume: bool,
     /// Exit with 1 when the target is out of reach
     #[arg(long)]
     strict: bool,
@@ -147,7 +153,7 @@ struct Task<'s> {
 
 impl Simplify {
     pub fn run(self, session: &Session) -> Result<Answer, Failure> {
-        files::check_output(&self.output, session)?;
+        let format = files::check_output(&self.output, session)?;
         if let Some(path) = &self.sequence {
             sequence::check(path, &self.input, &self.output)?;
         }
@@ -161,10 +167,19 @@ impl Simplify {
         let origin = Origin { scene: &scene, path: &self.input, reading: &self.reading };
         let options = self.manner.options(&origin, session)?;
         let task = Task { scene: &scene, target, options };
-        let (mut done, time) = match target {
+        let (mut done, mut time) = match target {
             Target::Error(_) => self.measured_run(&task, session)?,
             _ if self.measured => self.measured_run(&task, session)?,
             _ => self.plain_run(&task, session)?,
+        };
+        let residual = if self.exact_volume {
+            let start = Instant::now();
+            let digits = digits_of(format, self.writing.options().precision);
+            let residual = self.conserve(&task, &mut done.meshes, digits, session)?;
+            time += start.elapsed();
+            residual
+        } else {
+            None
         };
         reduce::replace(&mut scene, std::mem::take(&mut done.meshes));
         let write = || files::write(&self.output, &scene, &self.writing, session);
@@ -177,14 +192,38 @@ impl Simplify {
             let reason = Failure::at(&self.input, reduce::why_not_reached(&done.report));
             session.warn(reason);
         }
+        let mut json = self.json(&done, fused.as_ref(), time);
+        json["volume_residual"] = residual.into();
+        let mut text = self.text(&done, fused.as_ref(), time);
+        if let Some(residual) = residual {
+            text += &format!("volume_residual: {residual:.1e}\n");
+        }
         Ok(Answer {
             file_on_stdout: files::is_pipe(&self.output),
             missed: self.strict && !done.report.reached,
-            ..Answer::new(
-                self.json(&done, fused.as_ref(), time),
-                self.text(&done, fused.as_ref(), time),
-            )
+            ..Answer::new(json, text)
         })
+    }
+
+    /// Gives the levels the volumes of their meshes. How far the worst is off, in parts of its volume;
+    /// `None` where none has a volume.
+    fn conserve(
+        &self,
+        task: &Task<'_>,
+        levels: &mut [Mesh],
+        digits: Digits,
+        session: &Session,
+    ) -> Result<Option<f64>, Failure> {
+        let found = conserve_volumes(task.scene, levels, digits, &task.options.locks)
+            .map_err(|error| Failure::at(&self.input, error))?;
+        let mut worst: Option<f64> = None;
+        for (i, residual) in found.into_iter().enumerate() {
+            match residual {
+                Ok(residual) => worst = Some(residual.after.abs().max(worst.unwrap_or(0.0))),
+                Err(error) => session.warn(format_args!("--exact-volume: mesh {i}: {error}")),
+            }
+        }
+        Ok(worst)
     }
 
     fn plain_run(
