@@ -10,7 +10,7 @@ mod strips;
 
 use meshlod::mesh::{Mesh, VertexId};
 
-pub use attributes::{Settings, Update, simplify_with_attributes};
+pub use attributes::{Settings, Torn, Update, simplify_with_attributes};
 pub use border::simplify_with_border_lock;
 pub use codec::meshopt_codec;
 pub use meshopt::SimplifyOptions;

@@ -80,8 +80,11 @@ impl Method {
     }
 
     /// Whether attributes count in its costs, by [`Options::weights`]. All methods place them.
+    ///
+    /// `lindstrom-turk` counts them where the fast engine does it: without ties, protected vertices, or
+    /// components that may vanish.
     pub fn counts_attributes(self) -> bool {
-        matches!(self, Self::Qem | Self::QemEndpoint)
+        matches!(self, Self::Qem | Self::QemEndpoint | Self::LindstromTurk)
     }
 
     /// Whether every contraction with a closed ring that is free to choose its place conserves the
@@ -143,7 +146,7 @@ impl Target {
 pub struct Options {
     /// The algorithm; `None` for the one that suits the mesh, see [`Method::suited_to`].
     pub method: Option<Method>,
-    /// How much attributes count where the method counts them: `qem` and `qem-endpoint` do.
+    /// How much attributes count where the method counts them, see [`Method::counts_attributes`].
     pub weights: AttributeWeights,
     /// Keep every vertex of a boundary edge where it is.
     pub lock_boundary: bool,

@@ -263,7 +263,7 @@ impl Wedges {
 }
 
 /// The material and object of every face as one number, where there are several.
-fn labels(mesh: &Mesh) -> Option<Vec<u32>> {
+pub(crate) fn labels(mesh: &Mesh) -> Option<Vec<u32>> {
     let several = |labels: &&Labels| labels.names.len() > 1;
     let [materials, objects] =
         [&mesh.materials, &mesh.objects].map(|labels| labels.as_ref().filter(several));

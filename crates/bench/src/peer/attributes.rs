@@ -27,8 +27,8 @@ pub enum Update {
     All,
 }
 
-/// A mesh as a GPU has it.
-struct Torn {
+/// A mesh as a GPU has it, and as meshoptimizer takes it.
+pub struct Torn {
     vertices: Vec<TornVertex>,
     /// Their positions.
     positions: Vec<f32>,
@@ -59,7 +59,8 @@ pub fn simplify_with_attributes(mesh: &Mesh, faces: usize, settings: &Settings) 
 }
 
 impl Torn {
-    fn new(mesh: &Mesh) -> Self {
+    /// Every vertex with its wedge and its material is one to the library.
+    pub fn new(mesh: &Mesh) -> Self {
         let mut known = HashMap::new();
         let mut vertices = Vec::new();
         let mut indices = Vec::new();
@@ -80,6 +81,18 @@ impl Torn {
         Self { vertices, positions, attributes, indices }
     }
 
+    /// How many faces the library leaves of a mesh: what it does, and a copy of what it changes.
+    pub fn faces_left(&self, faces: usize, settings: &Settings) -> usize {
+        let Self { positions, attributes, indices, .. } = self;
+        let mut torn = Self {
+            vertices: Vec::new(),
+            positions: positions.clone(),
+            attributes: attributes.clone(),
+            indices: indices.clone(),
+        };
+        torn.simplify(3 * faces, settings) / 3
+    }
+
     /// Calls the library; gives how many indices are left.
     fn simplify(&mut self, target: usize, settings: &Settings) -> usize {
         let Settings { normal_weight: normal, uv_weight: uv, options, update } = *settings;
@@ -96,7 +109,7 @@ impl Torn {
                     source.as_ptr(),
                     source.len(),
                     self.positions.as_ptr(),
-                    self.vertices.len(),
+                    self.positions.len() / 3,
                     3 * row,
                     self.attributes.as_ptr(),
                     WIDTH * row,
@@ -112,7 +125,7 @@ impl Torn {
                     self.indices.as_mut_ptr(),
                     source.len(),
                     self.positions.as_mut_ptr(),
-                    self.vertices.len(),
+                    self.positions.len() / 3,
                     3 * row,
                     self.attributes.as_mut_ptr(),
                     WIDTH * row,

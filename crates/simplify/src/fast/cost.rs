@@ -9,6 +9,8 @@
 use glam::{Vec3, Vec4};
 
 use crate::fast::lanes::{LANES, Lanes3, transpose};
+use crate::fast::looks::{Looks, Parts};
+use crate::fast::place::{Swept, matrix};
 use crate::fast::queue::bucket;
 use crate::fast::ring::Vertices;
 use crate::fast::vertex::{Flags, NOBODY, Vertex};
@@ -34,7 +36,8 @@ pub(super) struct Cheapest {
 
 /// The cheapest edge from `u` around a ring, of those above `u`'s floor.
 #[inline(always)]
-pub(super) fn cheapest(vertices: &Vertices, u: &Vertex, ring: &[u32]) -> Cheapest {
+pub(super) fn cheapest(vertices: &Vertices, looks: &impl Looks, u: u32, ring: &[u32]) -> Cheapest {
+    let own = vertices.get(u);
     let (mut least, mut target) = (f32::INFINITY, NOBODY);
     let mut start = 0;
     while start < ring.len() {
@@ -44,10 +47,10 @@ pub(super) fn cheapest(vertices: &Vertices, u: &Vertex, ring: &[u32]) -> Cheapes
         let see = |lane: usize| vertices.get(ids[lane]);
         let ends = [see(0), see(1), see(2), see(3)];
         let special =
-            u.flags.0 | ends[0].flags.0 | ends[1].flags.0 | ends[2].flags.0 | ends[3].flags.0;
-        let mut costs = costs(u, &ends).to_array();
-        if Flags(special).any(SPECIAL) || u.floor > 0 {
-            correct(&mut costs, u, &ends);
+            own.flags.0 | ends[0].flags.0 | ends[1].flags.0 | ends[2].flags.0 | ends[3].flags.0;
+        let mut costs = costs(looks, (u, own), &ids, &ends).to_array();
+        if Flags(special).any(SPECIAL) || own.floor > 0 {
+            correct(&mut costs, vertices, looks, u, &ids);
         }
         for (cost, id) in costs.into_iter().zip(ids) {
             if cost < least {
@@ -60,24 +63,58 @@ pub(super) fn cheapest(vertices: &Vertices, u: &Vertex, ring: &[u32]) -> Cheapes
 }
 
 /// What makes a cost other than that of a free edge.
-const SPECIAL: Flags = Flags(Flags::PINNED.0 | Flags::SHUT.0);
+const SPECIAL: Flags = Flags(Flags::PINNED.0 | Flags::SHUT.0 | Flags::SEAM.0);
 
 /// Costs of edges with an end that stays where it is, or that may not be contracted, or not now.
 #[cold]
-fn correct(costs: &mut [f32; LANES], u: &Vertex, ends: &[&Vertex; LANES]) {
-    for (cost, v) in costs.iter_mut().zip(ends) {
-        let pinned = [u.flags.any(Flags::PINNED), v.flags.any(Flags::PINNED)];
-        *cost = match pinned {
-            _ if v.flags.any(Flags::SHUT) || u.flags.any(Flags::SHUT) => f32::INFINITY,
-            [false, false] => *cost,
-            [true, true] => f32::INFINITY,
-            [true, false] => swept(v, u.place()),
-            [false, true] => swept(u, v.place()),
+fn correct(
+    costs: &mut [f32; LANES],
+    vertices: &Vertices,
+    looks: &impl Looks,
+    u: u32,
+    ends: &[u32; LANES],
+) {
+    let floor = vertices.get(u).floor;
+    for (cost, &v) in costs.iter_mut().zip(ends) {
+        let flags = Flags(vertices.get(u).flags.0 | vertices.get(v).flags.0);
+        if flags.any(Flags::SHUT) {
+            *cost = f32::INFINITY;
+            continue;
+        }
+        *cost = match looks.order(vertices, u, v) {
+            Err(_) => f32::INFINITY,
+            Ok(ends) if !ends.free => {
+                let to = vertices.get(ends.v0).place();
+                swept(vertices.get(ends.v1), to) + looks.onto(vertices, ends)
+            }
+            Ok(ends) if flags.any(Flags::SEAM) => {
+                let (swept, short) = along(vertices.get(ends.v0), vertices.get(ends.v1));
+                let whole = looks.whole(vertices, ends, swept);
+                whole.at(whole.best()) as f32 + short
+            }
+            Ok(_) => *cost,
         };
-        if u.floor > 0 && bucket(*cost) <= u.floor {
+        if floor > 0 && bucket(*cost) <= floor {
             *cost = f32::INFINITY;
         }
     }
+}
+
+/// The squares of one edge from the stars of its ends, and what its length counts.
+fn along(v0: &Vertex, v1: &Vertex) -> (Swept, f32) {
+    let half = (v1.place() - v0.place()).as_dvec3() * 0.5;
+    let (a0, a1) = (matrix(&v0.seen), matrix(&v1.seen));
+    let (n0, n1) = (v0.seen.normal().as_dvec3(), v1.seen.normal().as_dvec3());
+    let swept = Swept {
+        half,
+        sum: a0 + a1,
+        slope: (a1 - a0) * half,
+        at_middle: half.dot((a0 + a1) * half),
+        normal: n0 + n1,
+        level: (n1 - n0).dot(half),
+    };
+    let short = SHORT_FIRST * (swept.weight() * half.length_squared()) as f32;
+    (swept, short)
 }
 
 /// What a vertex's own star costs if it goes to a place.
@@ -110,27 +147,37 @@ impl Symmetric {
 
 /// The costs of edges from `u`. Symmetric: the same from either end, to the bit.
 #[inline(always)]
-fn costs(u: &Vertex, ends: &[&Vertex; LANES]) -> Vec4 {
+fn costs(
+    looks: &impl Looks,
+    (id, u): (u32, &Vertex),
+    ids: &[u32; LANES],
+    ends: &[&Vertex; LANES],
+) -> Vec4 {
     let row = |k: usize| {
         transpose(ends[0].seen.0[k], ends[1].seen.0[k], ends[2].seen.0[k], ends[3].seen.0[k])
     };
     let ([px, py, pz, nx], [ny, nz, xx, yy], [zz, xy, xz, yz]) = (row(0), row(1), row(2));
+    let (mut own, mut theirs) = (u.seen.squares(), [xx, yy, zz, xy, xz, yz]);
+    let weights = looks.squares(id, ids, &mut own, &mut theirs);
     let h = (Lanes3 { x: px, y: py, z: pz } - Lanes3::all(u.place())).by(Vec4::splat(0.5));
     let (n0, n1) = (Lanes3::all(u.seen.normal()), Lanes3 { x: nx, y: ny, z: nz });
-    let [uxx, uyy, uzz, uxy, uxz, uyz] = u.seen.squares();
+    let [uxx, uyy, uzz, uxy, uxz, uyz] = own;
+    let [xx, yy, zz, xy, xz, yz] = theirs;
     let own = Vec4::splat;
     let (uxx, uyy, uzz, uxy, uxz, uyz) =
         (own(uxx), own(uyy), own(uzz), own(uxy), own(uxz), own(uyz));
-    let sum = Symmetric([xx + uxx, yy + uyy, zz + uzz, xy + uxy, xz + uxz, yz + uyz]);
-    let trace = sum.0[0] + sum.0[1] + sum.0[2];
-    let scale = (trace + own(TINY)).recip();
+    let mut sum = Symmetric([xx + uxx, yy + uyy, zz + uzz, xy + uxy, xz + uxz, yz + uyz]);
 
     let (a0h, a1h) = (
         Symmetric([uxx, uyy, uzz, uxy, uxz, uyz]).apply(h),
         Symmetric([xx, yy, zz, xy, xz, yz]).apply(h),
     );
-    let q = a1h - a0h;
-    let at_middle = (a1h + a0h).dot(h);
+    let mut q = a1h - a0h;
+    let mut at_middle = (a1h + a0h).dot(h);
+    let parts = Parts { sum: &mut sum.0, slope: &mut q, at_middle: &mut at_middle };
+    looks.join(id, ids, weights, h, parts);
+    let trace = sum.0[0] + sum.0[1] + sum.0[2];
+    let scale = (trace + own(TINY)).recip();
     let g = n0 + n1;
     let to_unit = (g.dot(g) + own(TINY)).recip();
     // The place on the plane of equal volumes that is next to the middle.

@@ -9,6 +9,7 @@ use glam::Vec3;
 use crate::fast::cost::{Cheapest, SHORT_FIRST, cheapest};
 use crate::fast::hood::Hood;
 use crate::fast::log::Done;
+use crate::fast::looks::{Ends, Looks, Placed};
 use crate::fast::pace::Pace;
 use crate::fast::place::{Swept, matrix};
 use crate::fast::queue::{NONE, Queue, bucket, last_bucket};
@@ -32,9 +33,13 @@ const AHEAD: usize = 16;
 /// What a boundary edge counts [LT99].
 pub(super) const BOUNDARY_WEIGHT: f32 = 9.0;
 
-/// A part of a surface at work.
-pub(super) struct Engine<'v> {
+/// What an edge of a seam counts, which otherwise would cost nothing to move across the surface.
+pub(super) const SEAM_WEIGHT: f32 = 4.5;
+
+/// A part of a surface at work, with what it looks like.
+pub(super) struct Engine<'v, L> {
     pub(super) vertices: Vertices<'v>,
+    looks: &'v mut L,
     pub(super) live_faces: usize,
     /// The square of the greatest estimate so far, in the frame's units.
     pub(super) error: f64,
@@ -59,15 +64,17 @@ enum Not {
     Refused(Refusal, u16),
 }
 
-impl<'v> Engine<'v> {
+impl<'v, L: Looks> Engine<'v, L> {
     pub(super) fn new(
         vertices: Vertices<'v>,
+        looks: &'v mut L,
         queue: &'v mut Queue,
         hood: &'v mut Hood,
         pace: &'v mut Pace,
     ) -> Self {
         Self {
             vertices,
+            looks,
             live_faces: 0,
             error: 0.0,
             most_error: f64::INFINITY,
@@ -161,7 +168,7 @@ impl<'v> Engine<'v> {
         let vertices = &self.vertices;
         let mut sum = 0;
         for &v in self.queue.upcoming(AHEAD) {
-            sum ^= vertices.get(v).ring[0] ^ vertices.get(v).target;
+            sum ^= vertices.get(v).ring[0] ^ vertices.get(v).target ^ self.looks.warm(v);
         }
         for &v in self.queue.upcoming(AHEAD) {
             let vertex = vertices.get(v);
@@ -169,7 +176,7 @@ impl<'v> Engine<'v> {
                 continue;
             }
             for &w in &vertex.ring[..vertex.len as usize] {
-                sum ^= vertices.get(w).target ^ vertices.get(w).ring[0];
+                sum ^= vertices.get(w).target ^ vertices.get(w).ring[0] ^ self.looks.warm(w);
             }
         }
         std::hint::black_box(sum);
@@ -180,8 +187,7 @@ impl<'v> Engine<'v> {
         let Some(target) = self.target(v) else { return self.look(v, front, None) };
         // A look at one edge is cheaper than a contraction that is given up.
         if self.vertices.get(v).flags.any(Flags::STALE) {
-            let vertex = self.vertices.get(v);
-            let now = cheapest(&self.vertices, vertex, &[target]).bucket;
+            let now = cheapest(&self.vertices, self.looks, v, &[target]).bucket;
             if now > front.saturating_add(SLACK) {
                 return self.look(v, front, None);
             }
@@ -226,7 +232,7 @@ impl<'v> Engine<'v> {
             above[count] = w;
             count += usize::from(w > v && w != GHOST);
         }
-        let Cheapest { bucket, target } = cheapest(vertices, vertices.get(v), &above[..count]);
+        let Cheapest { bucket, target } = cheapest(vertices, self.looks, v, &above[..count]);
         let vertex = self.vertices.get_mut(v);
         vertex.target = target;
         vertex.bucket = bucket;
@@ -238,9 +244,8 @@ impl<'v> Engine<'v> {
     #[inline(always)]
     fn look(&mut self, v: u32, front: u16, seen: Option<(u32, u16)>) {
         self.vertices.bring_up(v);
-        let vertex = self.vertices.get(v);
         let Cheapest { mut bucket, target } =
-            cheapest(&self.vertices, vertex, self.vertices.settled(v));
+            cheapest(&self.vertices, self.looks, v, self.vertices.settled(v));
         if let Some((of, least)) = seen
             && of == target
         {
@@ -266,17 +271,18 @@ impl<'v> Engine<'v> {
     /// Contracts an edge; gives the vertex that stays.
     #[inline(always)]
     fn contract(&mut self, v: u32, target: u32, front: u16) -> Result<u32, Not> {
-        let pinned = self.vertices.get(target).flags.any(Flags::PINNED);
-        let (v0, v1) = if pinned { (target, v) } else { (v, target) };
-        let Self { vertices, hood, pace, .. } = self;
+        let Self { vertices, looks, hood, pace, .. } = self;
         let refused = |refusal| Not::Refused(refusal, front);
+        let ends = looks.order(vertices, v, target).map_err(refused)?;
+        let Ends { v0, v1, free } = ends;
         hood.gather(vertices, v0, v1).map_err(refused)?;
         let (end0, end1) = (vertices.get(v0), vertices.get(v1));
         let swept = swept(hood, end0, end1);
-        let free = !end0.flags.any(Flags::PINNED);
-        let best = if free { swept.best() } else { -swept.half };
-        let cost = swept.at(best);
-        let short = f64::from(SHORT_FIRST) * swept.weight() * swept.half.length_squared();
+        let whole = if free { looks.whole(vertices, ends, swept) } else { swept };
+        let best = if free { whole.best() } else { -swept.half };
+        let looked = if free { 0.0 } else { f64::from(looks.onto(vertices, ends)) };
+        let cost = whole.at(best) + looked;
+        let short = f64::from(SHORT_FIRST) * whole.weight() * swept.half.length_squared();
         let bucket = bucket((cost.max(0.0) + short) as f32);
         if bucket > front.saturating_add(SLACK) {
             return Err(if bucket == NONE {
@@ -293,7 +299,8 @@ impl<'v> Engine<'v> {
         let from = end0.place();
         let place = if free { (from.as_dvec3() + best + swept.half).as_vec3() } else { from };
         hood.put(place - from).map_err(refused)?;
-        let swept_over = cost.max(0.0) / swept.weight().max(f64::MIN_POSITIVE);
+        // A length: attributes have no part in it.
+        let swept_over = swept.at(best).max(0.0) / swept.weight().max(f64::MIN_POSITIVE);
         let now = hood.apart(place - from).max(swept_over as f32);
         let moved = now + end0.moved.max(end1.moved);
         if f64::from(moved) > self.most_error {
@@ -309,16 +316,22 @@ impl<'v> Engine<'v> {
         if let Some(log) = &mut self.log {
             log.push(Done { kept: v0, gone: v1, place, moved, front });
         }
-        self.carry_out(v0, v1, place, moved, front);
+        let placed = Placed { ends, half: swept.half, best, by: place - from };
+        self.carry_out(&placed, place, moved, front);
+        if self.log.is_some() {
+            self.looks.record(v0);
+        }
         Ok(v0)
     }
 
     /// Writes a contraction that may be.
     #[inline(always)]
-    fn carry_out(&mut self, v0: u32, v1: u32, place: Vec3, moved: f32, front: u16) {
-        let Self { vertices, hood, queue, .. } = self;
+    fn carry_out(&mut self, placed: &Placed, place: Vec3, moved: f32, front: u16) {
+        let Ends { v0, v1, .. } = placed.ends;
+        let Self { vertices, looks, hood, queue, .. } = self;
         self.live_faces -= [0, hood.of_v0].iter().filter(|&&wing| hood.ghost != Some(wing)).count();
         let mut star = hood.change();
+        star.add(&looks.contract(vertices, hood, placed));
         if hood.ghost.is_some() {
             star.add(&renew_boundary(vertices, hood, [v0, v1], place));
         }

@@ -16,7 +16,7 @@ use crate::fast::vertex::{Flags, Star, Vertex};
 use crate::refusal::Refusal;
 
 /// Room for a ring and the lanes beyond its end.
-const ROOM: usize = MOST + 2 * LANES;
+pub(super) const ROOM: usize = MOST + 2 * LANES;
 
 /// The least cosine between a face's normal before and after, as in the general engine.
 const LEAST_COSINE: f32 = 0.2;
@@ -295,6 +295,12 @@ impl Hood {
     #[inline(always)]
     pub(super) fn seen(&self, i: usize) -> Vec3 {
         one(&self.ring, i)
+    }
+
+    /// Whether a spoke is a face, none of the ghost's.
+    #[inline(always)]
+    pub(super) fn is_face(&self, spoke: usize) -> bool {
+        self.ghost.is_none_or(|ghost| ghost != spoke && ghost != (spoke + 1) % self.len)
     }
 
     /// The farthest of the ring and the ends from the middle of the edge, squared.

@@ -4,16 +4,19 @@ use meshlod_mesh::{Mesh, VertexId};
 use rayon::prelude::*;
 
 use crate::fast::log::Names;
+use crate::fast::looks::Looks;
+use crate::fast::prepare::numbers;
 
-/// The faces that are left, with what they use, in the input's order. `faces` are those on copies of
+/// The faces that are left, with what they use, in the input's order. `split` are those on copies of
 /// vertices, where there are any.
-pub(super) fn level(names: Names<'_>, faces: Option<&[[u32; 3]]>) -> Mesh {
+pub(super) fn level(names: Names<'_>, looks: &impl Looks, split: Option<&[[u32; 3]]>) -> Mesh {
     let Names { mesh, order, store, .. } = names;
     let heirs = store.heirs();
-    let faces = match faces {
-        Some(faces) => live(faces.len(), |i| faces[i], &heirs),
-        None => live(mesh.faces.len(), |i| order.face(&mesh.faces[i]), &heirs),
+    let of_input = |i: usize| match split {
+        Some(split) => split[i],
+        None => order.face(&mesh.faces[i]),
     };
+    let faces = live(mesh.faces.len(), of_input, &heirs);
     let mut ids = vec![u32::MAX; mesh.positions.len()];
     let mut level = Mesh::default();
     for (_, corners) in &faces {
@@ -29,25 +32,27 @@ pub(super) fn level(names: Names<'_>, faces: Option<&[[u32; 3]]>) -> Mesh {
     let corner = |v: u32| VertexId(ids[names.input(v).index()]);
     level.faces = faces.iter().map(|&(_, [a, b, c])| [corner(a), corner(b), corner(c)]).collect();
     let kept: Vec<u32> = faces.iter().map(|&(face, _)| face).collect();
+    level.attributes = looks.attributes(kept.iter().map(|&i| (i, of_input(i as usize))));
     level.materials = mesh.materials.as_ref().map(|labels| labels.select(&kept));
     level.objects = mesh.objects.as_ref().map(|labels| labels.select(&kept));
     level
 }
 
 /// All vertices and faces of the input as they are; a face that is gone repeats a vertex.
-pub(super) fn workspace(names: Names<'_>, faces: Option<&[[u32; 3]]>) -> Mesh {
+pub(super) fn workspace(names: Names<'_>, looks: &impl Looks, split: Option<&[[u32; 3]]>) -> Mesh {
     let Names { mesh, order, store, .. } = names;
     let heirs = store.heirs();
     let now = |v: u32| names.input(heirs[v as usize]);
     let now = |[a, b, c]: [u32; 3]| [now(a), now(b), now(c)];
     let place = |v: VertexId| names.position(v, store.all[order.id(v) as usize].place());
-    Mesh::new(
-        (0..mesh.positions.len() as u32).map(|v| place(VertexId(v))).collect(),
-        match faces {
-            Some(faces) => faces.iter().copied().map(now).collect(),
-            None => mesh.faces.iter().map(|face| now(order.face(face))).collect(),
-        },
-    )
+    let faces = numbers(mesh, order, split);
+    Mesh {
+        positions: (0..mesh.positions.len() as u32).map(|v| place(VertexId(v))).collect(),
+        faces: faces.clone().map(now).collect(),
+        attributes: looks.all_attributes(faces),
+        materials: mesh.materials.clone(),
+        objects: mesh.objects.clone(),
+    }
 }
 
 /// The faces whose corners are still three, by what the corners have become.

@@ -8,6 +8,7 @@ use meshlod_mesh::{Mesh, VertexId};
 
 use crate::contracted::Freedom;
 use crate::fast::frame::Frame;
+use crate::fast::looks::Revalued;
 use crate::fast::order::Order;
 use crate::fast::ring::Store;
 use crate::neighbourhood::Neighbourhood;
@@ -67,12 +68,14 @@ pub(super) fn merge(logs: impl Iterator<Item = Vec<Done>>) -> Vec<Done> {
 /// Makes contractions again on a surface, before the eyes of the observer.
 pub(super) fn replay(
     log: &[Done],
+    values: &[Revalued],
     names: Names<'_>,
     surface: &mut Surface,
     observer: &mut dyn Observe,
 ) {
     let mut hood = Neighbourhood::default();
-    for done in log {
+    let mut values = values.iter().peekable();
+    for (number, done) in log.iter().enumerate() {
         let [kept, gone] = [done.kept, done.gone].map(|v| names.input(v));
         let position = names.position(kept, done.place).into();
         let stays = position == surface.position(kept);
@@ -82,6 +85,10 @@ pub(super) fn replay(
         let placed = Placed { position, kept: 0, error_estimate };
         observer.before(surface, &hood, &placed);
         surface.contract(&hood, &placed);
+        // The engine's values, not those of the surface's own making.
+        while let Some(next) = values.next_if(|next| next.number == number) {
+            surface.wedges.iter_mut().for_each(|all| all.restore(next.wedge, &next.values));
+        }
         observer.after(surface, &hood, &placed);
     }
 }

@@ -1,26 +1,34 @@
-//! The fast engine: `lindstrom-turk` of bare geometry at the speed of quadrics.
+//! The fast engine: `lindstrom-turk` at the speed of quadrics.
 //!
 //! It answers to the same rules as the general engine, which is its oracle, by other means: rings
 //! instead of stars of faces, one queue entry a vertex instead of one an edge, floats, and costs from
 //! nine numbers a vertex. docs/notes/fast-simplify.md tells why each of these.
 
 mod apart;
+mod around;
+mod carry;
 mod cells;
+mod coat;
 mod cost;
+mod dress;
 mod engine;
 mod fans;
+mod field;
 mod frame;
 mod hood;
 mod lanes;
 mod level;
 mod log;
+mod looks;
 mod order;
 mod pace;
+mod painted;
 mod parts;
 mod place;
 mod prepare;
 mod queue;
 mod ring;
+mod seams;
 mod split;
 mod vertex;
 mod volume;
@@ -32,12 +40,11 @@ use crate::fast::prepare::Prepared;
 use crate::options::{Method, Options, SimplifyError};
 use crate::simplifier::Started;
 
-/// Whether there is a fast way for this: `lindstrom-turk`, meshes without attributes, and locks that
-/// lock: no ties, nothing protected, nothing that may vanish.
+/// Whether there is a fast way for this: `lindstrom-turk`, and locks that lock: no ties, nothing
+/// protected, nothing that may vanish.
 fn fits(mesh: &Mesh, options: &Options) -> bool {
     let Options { locks, vanish_below, .. } = options;
     options.method_for([mesh]) == Method::LindstromTurk
-        && mesh.attributes.is_none()
         && locks.ties.is_empty()
         && !locks.of_vertex.contains(&Lock::Protected)
         && vanish_below.is_none()
@@ -60,5 +67,5 @@ pub(crate) fn start<'m>(
         return Err(SimplifyError::AllDegenerate(mesh.faces.len()));
     }
     let input = prepared.input();
-    Ok(Some((Box::new(prepared.start()), input)))
+    Ok(prepared.start(&options.weights).map(|work| (work, input)))
 }

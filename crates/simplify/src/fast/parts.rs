@@ -15,6 +15,7 @@ use rayon::prelude::*;
 use crate::fast::engine::Engine;
 use crate::fast::hood::Hood;
 use crate::fast::log::{Done, merge};
+use crate::fast::looks::Looks;
 use crate::fast::pace::Pace;
 use crate::fast::queue::{Queue, last_bucket};
 use crate::fast::ring::{GHOST, Long, Store, Vertices};
@@ -48,8 +49,10 @@ const FEW: usize = 4;
 const FACES_A_CALL: usize = 8192;
 
 /// A surface at work.
-pub(super) struct Parts {
+pub(super) struct Parts<L> {
     pub(super) store: Store,
+    /// What each part looks like.
+    pub(super) looks: Vec<L>,
     pub(super) live_faces: usize,
     /// The square of the greatest estimate so far, in the frame's units.
     pub(super) error: f64,
@@ -74,21 +77,22 @@ struct Part {
     waiting: Vec<u32>,
 }
 
-impl Parts {
-    pub(super) fn new(store: Store, live_faces: usize) -> Self {
-        Self::of_at_most(PART, store, live_faces)
+impl<L: Looks> Parts<L> {
+    pub(super) fn new(store: Store, looks: L, live_faces: usize) -> Self {
+        Self::of_at_most(PART, store, looks, live_faces)
     }
 
     /// In parts of at most so many vertices.
-    fn of_at_most(part: usize, mut store: Store, live_faces: usize) -> Self {
+    fn of_at_most(part: usize, mut store: Store, looks: L, live_faces: usize) -> Self {
         let mut count = 1;
-        while store.own().div_ceil(count) > part {
+        while L::IN_PARTS && store.own().div_ceil(count) > part {
             count *= JOINED;
         }
         let long = std::mem::take(&mut store.long);
         let mut parts = Self {
             parts: cut(&store, count),
             store,
+            looks: looks.side_by_side(count),
             live_faces,
             error: 0.0,
             most_error: f64::INFINITY,
@@ -148,7 +152,7 @@ impl Parts {
         let stop = (faces + LEFT_OVER * waiting).max(FACES_A_WAITING * waiting);
         let (mut live, most_error) = (self.live_faces, self.most_error);
         let mut log = self.log.take();
-        let mut engines: Vec<Engine> =
+        let mut engines: Vec<Engine<'_, L>> =
             self.engines().into_iter().map(|(engine, _)| engine).collect();
         engines.iter_mut().for_each(|engine| engine.most_error = most_error);
         while live > stop {
@@ -201,17 +205,18 @@ impl Parts {
     }
 
     /// An engine for each part, and its vertices that wait.
-    fn engines(&mut self) -> Vec<(Engine<'_>, &mut Vec<u32>)> {
+    fn engines(&mut self) -> Vec<(Engine<'_, L>, &mut Vec<u32>)> {
         let first_copy = self.store.own() as u32;
         let Store { all, copied, .. } = &mut self.store;
         let mut rest = &mut all[..];
         let mut engines = Vec::with_capacity(self.parts.len());
-        for Part { vertices, queue, long, hood, pace, waiting } in &mut self.parts {
+        for (part, looks) in self.parts.iter_mut().zip(&mut self.looks) {
+            let Part { vertices, queue, long, hood, pace, waiting } = part;
             let (all, others) = rest.split_at_mut(vertices.len());
             rest = others;
             let base = vertices.start as u32;
             let vertices = Vertices { all, base, long, copied, first_copy };
-            engines.push((Engine::new(vertices, queue, hood, pace), waiting));
+            engines.push((Engine::new(vertices, looks, queue, hood, pace), waiting));
         }
         engines
     }
@@ -259,7 +264,7 @@ struct Step {
 impl Step {
     /// The next step up to the bucket `last`, in which no more than `excess` faces go; `None` where no
     /// part has anything to do.
-    fn new(engines: &[Engine], excess: usize, last: u16) -> Option<Self> {
+    fn new<L: Looks>(engines: &[Engine<'_, L>], excess: usize, last: u16) -> Option<Self> {
         if let [engine] = engines {
             let is_idle = engine.queue.lowest() > usize::from(last.min(last_bucket()));
             return (!is_idle).then(|| Self { last, shares: Vec::new() });
@@ -276,14 +281,14 @@ impl Step {
             }
         }
         let until = until?;
-        let own = |engine: &Engine| engine.queue.lengths().take(until + 1).sum::<usize>();
+        let own = |engine: &Engine<'_, L>| engine.queue.lengths().take(until + 1).sum::<usize>();
         let share = |engine| (excess as u64 * own(engine) as u64 / total as u64) as usize;
         let shares = engines.iter().map(share).collect();
         Some(Self { last: until as u16, shares })
     }
 
     /// Goes so far from `live` faces, but not below `stop`; gives what is left.
-    fn run(&self, engines: &mut [Engine], live: usize, stop: usize) -> usize {
+    fn run<L: Looks>(&self, engines: &mut [Engine<'_, L>], live: usize, stop: usize) -> usize {
         if let [engine] = engines {
             return run(engine, live, stop.max(live.saturating_sub(FACES_A_CALL)), self.last);
         }
@@ -300,7 +305,7 @@ impl Step {
 }
 
 /// Lets one part go from `live` to `stop` faces of all; gives how many are left.
-fn run(engine: &mut Engine, live: usize, stop: usize, last: u16) -> usize {
+fn run<L: Looks>(engine: &mut Engine<'_, L>, live: usize, stop: usize, last: u16) -> usize {
     engine.live_faces = live;
     engine.run(stop, last);
     engine.live_faces
@@ -320,7 +325,7 @@ mod tests {
     struct Test {
         mesh: Mesh,
         order: Order,
-        parts: Parts,
+        parts: Parts<()>,
     }
 
     impl Test {
@@ -330,7 +335,7 @@ mod tests {
             let face = |i: usize| order.face(&mesh.faces[i]);
             let fans = Fans::new(&places, Vec::new(), mesh.faces.len(), face);
             assert!(fans.irregular.is_empty());
-            let parts = Parts::of_at_most(part, fans.store, fans.faces);
+            let parts = Parts::of_at_most(part, fans.store, (), fans.faces);
             Self { mesh, order, parts }
         }
 

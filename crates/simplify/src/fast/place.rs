@@ -6,6 +6,7 @@ use crate::fast::cost::PULL;
 use crate::fast::vertex::Star;
 
 /// What a contraction sweeps, seen from the middle of its edge.
+#[derive(Clone, Copy)]
 pub(super) struct Swept {
     /// Half the edge.
     pub(super) half: DVec3,
@@ -58,7 +59,12 @@ impl Swept {
 
 /// The sum of n n'.
 pub(super) fn matrix(star: &Star) -> DMat3 {
-    let [xx, yy, zz, xy, xz, yz] = star.squares();
+    symmetric(star.squares())
+}
+
+/// The matrix of xx, yy, zz, xy, xz, yz.
+#[inline(always)]
+pub(super) fn symmetric([xx, yy, zz, xy, xz, yz]: [f32; 6]) -> DMat3 {
     let column = |x: f32, y: f32, z: f32| DVec3::new(x.into(), y.into(), z.into());
     DMat3::from_cols(column(xx, xy, xz), column(xy, yy, yz), column(xz, yz, zz))
 }

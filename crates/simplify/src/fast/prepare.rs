@@ -3,18 +3,26 @@
 use meshlod_mesh::{Bounds, Lock, Mesh, VertexId};
 
 use crate::clean;
+use crate::engine::Run;
+use crate::fast::coat::Coat;
+use crate::fast::dress::Corners;
 use crate::fast::fans::Fans;
 use crate::fast::frame::Frame;
+use crate::fast::looks::Looks;
 use crate::fast::order::Order;
+use crate::fast::painted::Painted;
 use crate::fast::parts::Parts;
 use crate::fast::ring::GHOST;
 use crate::fast::split::{self, Split};
 use crate::fast::vertex::Flags;
 use crate::fast::work::{Source, Work};
 use crate::locks::Held;
-use crate::options::Options;
+use crate::options::{AttributeWeights, Options};
 use crate::simplifier::Input;
 use crate::surface::MOST_FACES;
+
+/// As many channels of attributes count at most; the rest of them only moves along.
+const MOST_CHANNELS: usize = 8;
 
 /// A mesh about to be simplified.
 pub(super) struct Prepared<'m> {
@@ -115,11 +123,47 @@ impl<'m> Prepared<'m> {
         self.fans.faces
     }
 
-    /// Costs all vertices.
-    pub(super) fn start(self) -> Work<'m> {
-        let Self { mesh, frame, order, fans, faces, .. } = self;
-        Work::new(Source { mesh, frame, order, faces }, Parts::new(fans.store, fans.faces))
+    /// Costs all vertices; `None` where hardly any vertex has a single wedge.
+    pub(super) fn start(self, weights: &AttributeWeights) -> Option<Box<dyn Run + 'm>> {
+        let faces = numbers(self.mesh, &self.order, self.faces.as_deref());
+        let Some(corners) = Corners::new(self.mesh, faces, self.fans.store.all.len()) else {
+            return Some(self.work(()));
+        };
+        if corners.is_crowded() {
+            return None;
+        }
+        let coat = Coat::new(self.mesh, &self.frame, weights, MOST_CHANNELS);
+        Some(match coat.channels() {
+            0..=2 => self.paint::<2>(coat, corners),
+            3 => self.paint::<3>(coat, corners),
+            4..=5 => self.paint::<5>(coat, corners),
+            _ => self.paint::<MOST_CHANNELS>(coat, corners),
+        })
     }
+
+    fn paint<const K: usize>(mut self, coat: Coat<'m>, corners: Corners<'m>) -> Box<dyn Run + 'm> {
+        let faces = numbers(self.mesh, &self.order, self.faces.as_deref());
+        let looks = Painted::<K>::new(coat, corners, &mut self.fans.store.whole(), faces);
+        self.work(looks)
+    }
+
+    fn work<L: Looks + 'm>(self, looks: L) -> Box<dyn Run + 'm> {
+        let Self { mesh, frame, order, fans, faces, .. } = self;
+        let parts = Parts::new(fans.store, looks, fans.faces);
+        Box::new(Work::new(Source { mesh, frame, order, faces }, parts))
+    }
+}
+
+/// The faces of a mesh by the engine's names, or those on copies of vertices.
+pub(super) fn numbers<'a>(
+    mesh: &'a Mesh,
+    order: &'a Order,
+    split: Option<&'a [[u32; 3]]>,
+) -> impl Iterator<Item = [u32; 3]> + Clone + 'a {
+    (0..mesh.faces.len()).map(move |i| match split {
+        Some(split) => split[i],
+        None => order.face(&mesh.faces[i]),
+    })
 }
 
 /// Whether all copies of some vertex have more faces together than the general engine looks at: each

@@ -61,6 +61,9 @@ impl Flags {
     /// One of the copies of a vertex where the surface is not manifold.
     pub(super) const SPLIT: Self = Self(16);
 
+    /// It has several wedges, or another slot than that of its own number.
+    pub(super) const SEAM: Self = Self(32);
+
     #[inline(always)]
     pub(super) fn any(self, of: Self) -> bool {
         self.0 & of.0 != 0

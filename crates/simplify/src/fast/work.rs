@@ -9,6 +9,7 @@ use crate::engine::{Run, Tally};
 use crate::fast::frame::Frame;
 use crate::fast::level::{level, workspace};
 use crate::fast::log::{Names, replay};
+use crate::fast::looks::Looks;
 use crate::fast::order::Order;
 use crate::fast::parts::Parts;
 use crate::fast::queue::{NONE, bucket, least_of};
@@ -26,17 +27,17 @@ pub(super) struct Source<'m> {
 }
 
 /// A mesh at work.
-pub(super) struct Work<'m> {
+pub(super) struct Work<'m, L> {
     source: Source<'m>,
-    parts: Parts,
+    parts: Parts<L>,
     /// The narrowest bound of the error that has refused an edge since all were awake.
     refused_above: f64,
     /// As it is now, if anybody has looked since it last changed unseen.
     surface: OnceCell<Surface>,
 }
 
-impl<'m> Work<'m> {
-    pub(super) fn new(source: Source<'m>, parts: Parts) -> Self {
+impl<'m, L: Looks> Work<'m, L> {
+    pub(super) fn new(source: Source<'m>, parts: Parts<L>) -> Self {
         let (refused_above, surface) = (f64::INFINITY, OnceCell::new());
         Self { source, parts, refused_above, surface }
     }
@@ -83,7 +84,7 @@ impl<'m> Work<'m> {
         self.try_again_within(stop.error);
         self.parts.most_error = (stop.error / self.source.frame.unit).powi(2);
         let last = self.last_bucket(stop.cost);
-        let refused = |parts: &Parts| parts.refusals.count(Refusal::Error);
+        let refused = |parts: &Parts<L>| parts.refusals.count(Refusal::Error);
         let (refused_before, at_first) = (refused(&self.parts), self.parts.live_faces);
         self.parts.run(faces, last, &mut |gone| observer.gone(gone));
         if refused(&self.parts) > refused_before {
@@ -91,7 +92,8 @@ impl<'m> Work<'m> {
         }
         match (self.parts.log.take(), self.surface.take()) {
             (Some(log), Some(mut surface)) => {
-                replay(&log, self.names(), &mut surface, observer);
+                let values = self.parts.looks[0].recorded();
+                replay(&log, &values, self.names(), &mut surface, observer);
                 self.surface = surface.into();
             }
             (_, surface) if self.parts.live_faces == at_first => {
@@ -102,7 +104,7 @@ impl<'m> Work<'m> {
     }
 }
 
-impl Run for Work<'_> {
+impl<L: Looks> Run for Work<'_, L> {
     fn run(&mut self, stop: &Stop, observer: &mut dyn Observe) {
         self.advance(stop.faces, stop, observer);
     }
@@ -126,12 +128,12 @@ impl Run for Work<'_> {
     }
 
     fn level(&self, _: &Mesh) -> Mesh {
-        level(self.names(), self.source.faces.as_deref())
+        level(self.names(), &self.parts.looks[0], self.source.faces.as_deref())
     }
 
     fn surface(&self) -> &Surface {
         self.surface.get_or_init(|| {
-            let mesh = workspace(self.names(), self.source.faces.as_deref());
+            let mesh = workspace(self.names(), &self.parts.looks[0], self.source.faces.as_deref());
             let (connectivity, _) = clean::connect(&mesh);
             Surface::new(&mesh, &connectivity)
         })

@@ -1,0 +1,268 @@
+//! Contractions where seams are: every face asks which wedges it has, one face at a time.
+
+use glam::{DVec3, Vec3};
+use meshlod_mesh::WedgeId;
+use meshlod_spatial::closest_point;
+
+use crate::fast::carry::dying;
+use crate::fast::engine::SEAM_WEIGHT;
+use crate::fast::field::Field;
+use crate::fast::hood::{Hood, ROOM};
+use crate::fast::looks::{Ends, Placed};
+use crate::fast::painted::{Painted, Pairs, is_seam};
+use crate::fast::ring::{GHOST, Vertices};
+use crate::fast::seams::Seams;
+use crate::fast::vertex::{Flags, NOBODY, Star};
+use crate::interpolate::{Place, shares};
+
+/// The slots of the faces around an edge. Of spoke i, those of its apex, of `ids[i]` and `ids[i + 1]`.
+pub(super) struct Slots {
+    pub(super) spokes: [[u32; 3]; ROOM],
+    /// Of the two faces that go: `v0`'s, `v1`'s and the wing's.
+    pub(super) dying: [[u32; 3]; 2],
+}
+
+impl Slots {
+    pub(super) fn new(seams: &Seams, vertices: &Vertices, hood: &Hood, ends: Ends) -> Self {
+        let Ends { v0, v1, .. } = ends;
+        let (at0, at1) = (seams.sides(vertices, v0, v1), seams.sides(vertices, v1, v0));
+        let mut spokes = [[0; 3]; ROOM];
+        // Around both ends the ring begins with a wing, after the face that goes.
+        let mut slot = at0.after;
+        for i in 0..hood.len {
+            let apex = if i < hood.of_v0 { v0 } else { v1 };
+            if i == hood.of_v0 {
+                slot = at1.after;
+            }
+            slot = seams.next(apex, hood.ids[i], slot);
+            spokes[i][0] = slot;
+        }
+        let mut dying = [[at0.after, at1.before, hood.ids[0]], [at0.before, at1.after, 0]];
+        dying[1][2] = hood.ids[hood.of_v0];
+        for i in 0..hood.len {
+            let (w, before) = (hood.ids[i], if i == 0 { hood.len - 1 } else { i - 1 });
+            let apexes = [before, i].map(|i| if i < hood.of_v0 { v0 } else { v1 });
+            if !is_seam(vertices, w) {
+                (spokes[before][2], spokes[i][1]) = (w, w);
+                continue;
+            }
+            let last = seams.sides(vertices, w, apexes[1]);
+            let first = match apexes[0] == apexes[1] {
+                true => last,
+                false => seams.sides(vertices, w, apexes[0]),
+            };
+            let sides = [first, last];
+            (spokes[before][2], spokes[i][1]) = (sides[0].after, sides[1].before);
+            if i == 0 {
+                dying[0][2] = sides[1].after;
+            } else if i == hood.of_v0 {
+                dying[1][2] = sides[1].after;
+            }
+        }
+        Self { spokes, dying }
+    }
+
+    /// The slots of the new vertex, of the face that begins at each of the ring.
+    fn apexes(&self, hood: &Hood, pairs: &Pairs) -> [u32; ROOM] {
+        let mut apexes = [0; ROOM];
+        for (i, apex) in apexes[..hood.len].iter_mut().enumerate() {
+            *apex = self.spokes[i][0];
+            if i >= hood.of_v0 {
+                let pair = pairs.all().iter().find(|pair| pair[1] == *apex);
+                *apex = pair.map_or(*apex, |pair| pair[0]);
+            }
+        }
+        // The ghost's faces go with those beside them.
+        if let Some(ghost) = hood.ghost {
+            let at = |i: usize| (ghost + hood.len + i) % hood.len;
+            apexes[at(hood.len - 1)] = apexes[at(hood.len - 2)];
+            apexes[ghost] = apexes[at(1)];
+        }
+        apexes
+    }
+}
+
+impl<const K: usize> Painted<'_, K> {
+    /// Where something around has a seam. Gives what the new star has of seams.
+    pub(super) fn contract_by_slots(
+        &mut self,
+        vertices: &mut Vertices,
+        hood: &Hood,
+        placed: &Placed,
+    ) -> Star {
+        let Ends { v0, v1, .. } = placed.ends;
+        let slots = Slots::new(&self.seams, vertices, hood, placed.ends);
+        let pairs = self.pairs(vertices, placed.ends);
+        self.move_rest(hood, placed, (&slots, &pairs));
+        let apexes = slots.apexes(hood, &pairs);
+        let fence = self.renew_fences(vertices, hood, placed, (&slots, &apexes));
+        self.renew_fields(hood, placed, (&slots, &pairs, &apexes));
+        for &[s0, s1] in pairs.all() {
+            self.heirs[s1 as usize] = s0;
+            if placed.by != Vec3::ZERO {
+                self.heirs[s0 as usize] = s0;
+            }
+        }
+        self.renew_sectors(vertices, hood, [v0, v1], &apexes);
+        fence
+    }
+
+    /// Brings up to date what the faces that change have added to all fields around.
+    fn renew_fields(
+        &mut self,
+        hood: &Hood,
+        placed: &Placed,
+        (slots, pairs, apexes): (&Slots, &Pairs, &[u32; ROOM]),
+    ) {
+        let mut merged = [(NOBODY, [0.0; K]); 2];
+        for (merged, &[s0, s1]) in merged.iter_mut().zip(pairs.all()) {
+            *merged = (s0, self.values(placed, [s0, s1]));
+        }
+        let becomes =
+            |slot: u32| merged.iter().find(|(of, _)| *of == slot).map(|(_, values)| values);
+        let Self { fields, scratch, none, .. } = self;
+        for i in 0..hood.len {
+            let of = |slot: u32| &fields.get(slot as usize).unwrap_or(none).channels;
+            let [was, a, b] = slots.spokes[i].map(of);
+            let now = fields[apexes[i] as usize].values();
+            let now = becomes(apexes[i]).unwrap_or(&now);
+            for k in 0..K {
+                scratch.first[k][i] = a[k].w;
+                scratch.second[k][i] = b[k].w;
+                scratch.before[k][i] = was[k].w;
+                scratch.after[k][i] = now[k];
+            }
+        }
+        let none = [0.0; K];
+        scratch.change::<true>(hood, placed.by, [&none; 3]);
+        for (wing, of) in [0, hood.of_v0].into_iter().zip(slots.dying) {
+            if hood.ghost != Some(wing) {
+                let [v0, v1, other] = of.map(|slot| fields[slot as usize].values());
+                fields[of[2] as usize].take(&dying(hood, wing, [&v0, &v1, &other]));
+            }
+        }
+        for &slot in &apexes[..hood.len] {
+            let field = &mut fields[slot as usize];
+            *field = Field::of_values(*becomes(slot).unwrap_or(&field.values()));
+        }
+        for i in (0..hood.len).filter(|&i| hood.is_face(i)) {
+            let [_, a, b] = slots.spokes[i];
+            fields[a as usize].add(&scratch.changes[i]);
+            fields[b as usize].add(&scratch.changes[i]);
+            fields[apexes[i] as usize].add(&scratch.new[i]);
+        }
+    }
+
+    /// Takes the squares of seams that change out of the stars around and puts in what they become;
+    /// gives those of the new vertex.
+    fn renew_fences(
+        &self,
+        vertices: &mut Vertices,
+        hood: &Hood,
+        placed: &Placed,
+        (slots, apexes): (&Slots, &[u32; ROOM]),
+    ) -> Star {
+        let Ends { v0, v1, .. } = placed.ends;
+        let mut sum = Star::default();
+        for i in (0..hood.len).filter(|&i| hood.ghost != Some(i)) {
+            let w = hood.ids[i];
+            let before = (i + hood.len - 1) % hood.len;
+            let mut change = Star::default();
+            let near = [i <= hood.of_v0, i >= hood.of_v0 || i == 0];
+            for (apex, at, near) in [(v0, Vec3::ZERO, near[0]), (v1, hood.along, near[1])] {
+                if near && self.is_seam_edge(apex, w) {
+                    change.take(&Star::boundary(hood.seen(i) - at, SEAM_WEIGHT));
+                }
+            }
+            let inside = hood.is_face(i) && hood.is_face(before);
+            let parts =
+                apexes[before] != apexes[i] || slots.spokes[before][2] != slots.spokes[i][1];
+            if inside && parts {
+                let fence = Star::boundary(hood.seen(i) - placed.by, SEAM_WEIGHT);
+                change.add(&fence);
+                sum.add(&fence);
+            }
+            vertices.get_mut(w).seen.add(&change);
+        }
+        sum
+    }
+
+    /// Whether wedges differ across an edge, at either end.
+    pub(super) fn is_seam_edge(&self, v: u32, w: u32) -> bool {
+        self.seams.parts(v, w) || self.seams.parts(w, v)
+    }
+
+    fn renew_sectors(
+        &mut self,
+        vertices: &mut Vertices,
+        hood: &Hood,
+        [v0, v1]: [u32; 2],
+        apexes: &[u32; ROOM],
+    ) {
+        for (i, &w) in hood.ids().iter().enumerate() {
+            if w == GHOST || !is_seam(vertices, w) {
+                continue;
+            }
+            let first = match i {
+                0 => Some(v0),
+                i if i == hood.of_v0 => Some(v1),
+                _ => None,
+            };
+            if !self.seams.rename(w, v1, v0, first) {
+                vertices.get_mut(w).flags.clear(Flags::SEAM);
+            }
+        }
+        if is_seam(vertices, v0) || is_seam(vertices, v1) {
+            let faces: Vec<(u32, u32)> =
+                hood.ids().iter().copied().zip(apexes.iter().copied()).collect();
+            let any = self.seams.set(v0, &faces, vertices.all.len());
+            let flags = &mut vertices.get_mut(v0).flags;
+            if any { flags.set(Flags::SEAM) } else { flags.clear(Flags::SEAM) }
+        }
+    }
+
+    /// Gives wedges that move what channels do not hold, from the closest point of the faces that they
+    /// stand for.
+    pub(super) fn move_rest(
+        &mut self,
+        hood: &Hood,
+        placed: &Placed,
+        (slots, pairs): (&Slots, &Pairs),
+    ) {
+        if !self.coat.has_rest() || placed.by == Vec3::ZERO {
+            return;
+        }
+        let to = placed.by.as_dvec3();
+        let mut taken = Vec::with_capacity(2);
+        for pair in pairs.all() {
+            let spokes = (0..hood.len).filter(|&i| hood.is_face(i)).map(|i| {
+                let apex = if i < hood.of_v0 { Vec3::ZERO } else { hood.along };
+                ([apex, hood.seen(i), hood.seen((i + 1) % hood.len)], slots.spokes[i])
+            });
+            let wings = [0, hood.of_v0].into_iter().zip(slots.dying);
+            let dying = wings.filter(|(wing, _)| hood.ghost != Some(*wing));
+            let dying =
+                dying.map(|(wing, slots)| ([Vec3::ZERO, hood.along, hood.seen(wing)], slots));
+            let stands_for = |(_, slots): &([Vec3; 3], [u32; 3])| pair.contains(&slots[0]);
+            let distance = |(triangle, slots): ([Vec3; 3], [u32; 3])| {
+                let triangle: [DVec3; 3] = triangle.map(|corner| corner.as_dvec3());
+                let closest = closest_point(to, &triangle);
+                (closest.distance_squared(to), closest, triangle, slots)
+            };
+            let nearest = spokes
+                .chain(dying)
+                .filter(stands_for)
+                .map(distance)
+                .min_by(|a, b| a.0.total_cmp(&b.0));
+            if let Some((_, closest, triangle, slots)) = nearest {
+                let place =
+                    Place { wedges: slots.map(WedgeId), shares: shares(closest, &triangle) };
+                taken.push((pair[0], self.coat.rest_at(&place)));
+            }
+        }
+        // Only now: the values before were still wanted.
+        for (slot, values) in taken {
+            self.coat.set_rest(slot, &values);
+        }
+    }
+}

@@ -1,0 +1,203 @@
+//! The layers of a mesh as the fast engine has them: those that count as channels, in its lengths; and
+//! the rest, which only moves along.
+
+use std::ops::Range;
+
+use glam::{DVec3, Vec3};
+use meshlod_mesh::{Layer, LayerKind, Mesh, WedgeId};
+
+use crate::fast::frame::Frame;
+use crate::interpolate::{Place, interpolate};
+use crate::options::AttributeWeights;
+
+/// A layer that counts, or the part of it that does.
+#[derive(Clone, Debug)]
+struct Counted {
+    layer: usize,
+    /// Its channels.
+    channels: Range<usize>,
+    /// The engine's lengths to one of its values.
+    scale: f64,
+    /// The least and the greatest of its values, in channels.
+    range: [f32; 2],
+    is_normal: bool,
+}
+
+/// The layers of a mesh.
+pub(super) struct Coat<'m> {
+    layers: &'m [Layer],
+    counted: Vec<Counted>,
+    /// Layers that channels do not hold, or not all of, by slot.
+    rest: Vec<Layer>,
+    /// Which layers they are.
+    rest_of: Vec<usize>,
+}
+
+/// A slot that is left: whose wedge of the input it was, and whether that one's values are still its.
+pub(super) struct Left<const K: usize> {
+    pub(super) slot: u32,
+    /// Where it stands among the wedges.
+    pub(super) own: u32,
+    pub(super) wedge: u32,
+    pub(super) moved: bool,
+    pub(super) channels: [f32; K],
+}
+
+impl<'m> Coat<'m> {
+    /// The layers of a mesh, those that count weighed as in the general engine; `most` channels of them
+    /// at most, the first layers first.
+    pub(super) fn new(
+        mesh: &'m Mesh,
+        frame: &Frame,
+        weights: &AttributeWeights,
+        most: usize,
+    ) -> Self {
+        let layers = mesh.attributes.as_ref().map_or(&[][..], |all| &all.layers);
+        let mut counted: Vec<Counted> = Vec::new();
+        let diagonal = mesh.bounds().diagonal();
+        for (i, layer) in layers.iter().enumerate() {
+            let (width, scale) = match layer.kind {
+                LayerKind::Normal => (3, weights.normal * diagonal),
+                LayerKind::Color(_) => (3, weights.color * diagonal),
+                LayerKind::Uv(_) if weights.uv > 0.0 => (2, weights.uv * length_of_uv(mesh, layer)),
+                _ => continue,
+            };
+            let scale = scale / frame.unit;
+            let start = counted.last().map_or(0, |last| last.channels.end);
+            let fits = layer.width >= width && start + width <= most;
+            if fits && scale > 0.0 && scale.is_finite() {
+                let channels = start..start + width;
+                let range = range(layer, width, scale);
+                let is_normal = layer.kind == LayerKind::Normal;
+                counted.push(Counted { layer: i, channels, scale, range, is_normal });
+            }
+        }
+        Self { layers, counted, rest: Vec::new(), rest_of: Vec::new() }
+    }
+
+    /// How many channels count.
+    pub(super) fn channels(&self) -> usize {
+        self.counted.last().map_or(0, |last| last.channels.end)
+    }
+
+    /// Whether something moves along that no channel holds.
+    pub(super) fn has_rest(&self) -> bool {
+        !self.rest.is_empty()
+    }
+
+    /// Takes what channels do not hold of these wedges, as the values of the slots. A slot without a
+    /// wedge has none.
+    pub(super) fn fill(&mut self, wedges: &[u32]) {
+        for (i, layer) in self.layers.iter().enumerate() {
+            let width = layer.width;
+            let holds = |counted: &Counted| counted.layer == i && counted.channels.len() == width;
+            if self.counted.iter().any(holds) {
+                continue;
+            }
+            let mut values = vec![0.0; width * wedges.len()];
+            for (slot, &wedge) in wedges.iter().enumerate().filter(|(_, w)| **w != u32::MAX) {
+                values[slot * width..][..width].copy_from_slice(layer.of(WedgeId(wedge)));
+            }
+            self.rest.push(Layer { kind: layer.kind, name: String::new(), width, values });
+            self.rest_of.push(i);
+        }
+    }
+
+    /// The channels of a wedge. What is no number counts as zero.
+    pub(super) fn channels_of<const K: usize>(&self, wedge: u32) -> [f32; K] {
+        let mut channels = [0.0; K];
+        for Counted { layer, channels: at, scale, .. } in &self.counted {
+            let values = self.layers[*layer].of(WedgeId(wedge));
+            for (channel, &x) in channels[at.clone()].iter_mut().zip(values) {
+                *channel = if x.is_finite() { (f64::from(x) * scale) as f32 } else { 0.0 };
+            }
+        }
+        channels
+    }
+
+    /// Makes of channels that fit best such as may be: normals of their length, all in the range of the
+    /// input. `before` stands in for directions that cancel.
+    #[inline(always)]
+    pub(super) fn settle<const K: usize>(&self, channels: &mut [f32; K], before: &[f32; K]) {
+        for Counted { channels: at, scale, range: [low, high], is_normal, .. } in &self.counted {
+            let values = &mut channels[at.clone()];
+            if *is_normal {
+                let unit = Vec3::new(values[0], values[1], values[2]).normalize_or_zero();
+                match unit == Vec3::ZERO {
+                    true => values.copy_from_slice(&before[at.clone()]),
+                    false => values.copy_from_slice(&(unit * *scale as f32).to_array()),
+                }
+            } else {
+                values.iter_mut().for_each(|x| *x = x.clamp(*low, *high));
+            }
+        }
+    }
+
+    /// What channels do not hold at a place between slots.
+    pub(super) fn rest_at(&self, place: &Place) -> Vec<f32> {
+        let mut values = Vec::new();
+        interpolate(&self.rest, place, &mut values);
+        values
+    }
+
+    /// Gives a slot what [`Self::rest_at`] found.
+    pub(super) fn set_rest(&mut self, slot: u32, mut values: &[f32]) {
+        for layer in &mut self.rest {
+            let (these, others) = values.split_at(layer.width);
+            layer.of_mut(WedgeId(slot)).copy_from_slice(these);
+            values = others;
+        }
+    }
+
+    /// The layers over the slots that are left.
+    pub(super) fn layers<const K: usize>(&self, left: &[Left<K>]) -> Vec<Layer> {
+        let of_layer = |(i, layer): (usize, &Layer)| {
+            let counted = self.counted.iter().find(|counted| counted.layer == i);
+            let rest = self.rest_of.iter().position(|&of| of == i).map(|r| &self.rest[r]);
+            let mut values = Vec::with_capacity(left.len() * layer.width);
+            for Left { slot, wedge, moved, channels, .. } in left {
+                if !moved {
+                    values.extend_from_slice(layer.of(WedgeId(*wedge)));
+                    continue;
+                }
+                let start = values.len();
+                match rest {
+                    Some(rest) => values.extend_from_slice(rest.of(WedgeId(*slot))),
+                    None => values.resize(start + layer.width, 0.0),
+                }
+                if let Some(Counted { channels: at, scale, .. }) = counted {
+                    let own = channels[at.clone()].iter().map(|&x| (f64::from(x) / scale) as f32);
+                    values[start..].iter_mut().zip(own).for_each(|(value, x)| *value = x);
+                }
+            }
+            Layer { values, kind: layer.kind, name: layer.name.clone(), width: layer.width }
+        };
+        self.layers.iter().enumerate().map(of_layer).collect()
+    }
+}
+
+/// The least and the greatest of the first `width` values of each wedge, as channels.
+fn range(layer: &Layer, width: usize, scale: f64) -> [f32; 2] {
+    let counted = layer.values.chunks_exact(layer.width).flat_map(|values| &values[..width]);
+    let finite = counted.copied().filter(|x| x.is_finite());
+    let [low, high] =
+        finite.fold([f32::INFINITY, f32::NEG_INFINITY], |[low, high], x| [low.min(x), high.max(x)]);
+    // Values that are no numbers count as zero.
+    let [low, high] = [low.min(0.0), high.max(0.0)].map(|x| (f64::from(x) * scale) as f32);
+    [low, high]
+}
+
+/// The length of a unit of uv on the surface: the root of its area by that of its texture.
+fn length_of_uv(mesh: &Mesh, layer: &Layer) -> f64 {
+    let Some(attributes) = &mesh.attributes else { return 0.0 };
+    let (mut area, mut in_texture) = (0.0, 0.0);
+    for (face, wedges) in mesh.faces.iter().zip(&attributes.corners) {
+        let [a, b, c] = mesh.triangle(*face);
+        area += (b - a).cross(c - a).length();
+        let uv = |w: WedgeId| DVec3::new(layer.of(w)[0].into(), layer.of(w)[1].into(), 0.0);
+        let [a, b, c] = wedges.map(uv);
+        let twice = (b - a).cross(c - a).z.abs();
+        in_texture += if twice.is_finite() { twice } else { 0.0 };
+    }
+    (area / in_texture).sqrt()
+}

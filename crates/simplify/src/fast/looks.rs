@@ -1,0 +1,165 @@
+//! What the engine asks of attributes; `()` where there are none, and nothing is left of it in the code.
+
+use glam::{DVec3, Vec3, Vec4};
+use meshlod_mesh::{Attributes, WedgeId};
+
+use crate::fast::hood::Hood;
+use crate::fast::lanes::{LANES, Lanes3};
+use crate::fast::place::Swept;
+use crate::fast::ring::Vertices;
+use crate::fast::vertex::{Flags, Star};
+use crate::refusal::Refusal;
+
+/// The ends of an edge that may be contracted: `v1` goes into `v0`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Ends {
+    pub(super) v0: u32,
+    pub(super) v1: u32,
+    /// Whether the new vertex may go anywhere, or is where `v0` is.
+    pub(super) free: bool,
+}
+
+/// A contraction that is about to be carried out.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Placed {
+    pub(super) ends: Ends,
+    /// Half the edge.
+    pub(super) half: DVec3,
+    /// The new place as seen from the middle.
+    pub(super) best: DVec3,
+    /// The new place as seen from `v0`, as rounded.
+    pub(super) by: Vec3,
+}
+
+/// Attributes, as costs and contractions have to do with them.
+pub(super) trait Looks: Sized + Send + Sync {
+    /// Whether the surface may be worked on in parts.
+    const IN_PARTS: bool;
+
+    /// What each of so many parts looks like.
+    fn side_by_side(self, parts: usize) -> Vec<Self>;
+
+    /// Adds to the squares of `u` and of four others; gives the weights that [`Self::join`] wants.
+    fn squares(
+        &self,
+        u: u32,
+        ends: &[u32; LANES],
+        own: &mut [f32; 6],
+        theirs: &mut [Vec4; 6],
+    ) -> Vec4;
+
+    /// Adds what attributes leave of four edges' costs where they are best; seen from the middle.
+    fn join(&self, u: u32, ends: &[u32; LANES], weights: Vec4, h: Lanes3, parts: Parts<'_>);
+
+    /// Which end of an edge goes into which.
+    fn order(&self, vertices: &Vertices, v: u32, target: u32) -> Result<Ends, Refusal>;
+
+    /// The squares of an edge with free ends, by those of the geometry.
+    fn whole(&self, vertices: &Vertices, ends: Ends, geometry: Swept) -> Swept;
+
+    /// What attributes cost where `v1` goes to the place of `v0`.
+    fn onto(&self, vertices: &Vertices, ends: Ends) -> f32;
+
+    /// Carries a contraction out, before the vertices themselves change; gives what the star of the new
+    /// vertex has beside its faces.
+    fn contract(&mut self, vertices: &mut Vertices, hood: &Hood, placed: &Placed) -> Star;
+
+    /// Reads what is wanted of a vertex soon.
+    fn warm(&self, v: u32) -> u32;
+
+    /// What faces have by now, by their numbers and their corners as the engine was given them.
+    fn attributes(&self, faces: impl Iterator<Item = (u32, [u32; 3])>) -> Option<Attributes>;
+
+    /// The same of all faces, dead ones too, with every wedge in its place.
+    fn all_attributes(&self, faces: impl Iterator<Item = [u32; 3]>) -> Option<Attributes>;
+
+    /// Takes down the values that a contraction has given to a vertex: the next of those that are logged.
+    fn record(&mut self, vertex: u32);
+
+    /// What was taken down.
+    fn recorded(&mut self) -> Vec<Revalued>;
+}
+
+/// The values that a wedge has after a contraction, by the number of that in the log.
+#[derive(Clone, Debug)]
+pub(super) struct Revalued {
+    pub(super) number: usize,
+    pub(super) wedge: WedgeId,
+    /// In all layers, one after the other.
+    pub(super) values: Vec<f32>,
+}
+
+/// Squares of four edges: x'Sx − 2 q·x + c.
+pub(super) struct Parts<'a> {
+    pub(super) sum: &'a mut [Vec4; 6],
+    pub(super) slope: &'a mut Lanes3,
+    pub(super) at_middle: &'a mut Vec4,
+}
+
+impl Looks for () {
+    const IN_PARTS: bool = true;
+
+    fn side_by_side(self, parts: usize) -> Vec<Self> {
+        vec![(); parts]
+    }
+
+    #[inline(always)]
+    fn squares(&self, _: u32, _: &[u32; LANES], _: &mut [f32; 6], _: &mut [Vec4; 6]) -> Vec4 {
+        Vec4::ZERO
+    }
+
+    #[inline(always)]
+    fn join(&self, _: u32, _: &[u32; LANES], _: Vec4, _: Lanes3, _: Parts<'_>) {}
+
+    #[inline(always)]
+    fn order(&self, vertices: &Vertices, v: u32, target: u32) -> Result<Ends, Refusal> {
+        by_pins(vertices, v, target)
+    }
+
+    #[inline(always)]
+    fn whole(&self, _: &Vertices, _: Ends, geometry: Swept) -> Swept {
+        geometry
+    }
+
+    #[inline(always)]
+    fn onto(&self, _: &Vertices, _: Ends) -> f32 {
+        0.0
+    }
+
+    #[inline(always)]
+    fn contract(&mut self, _: &mut Vertices, _: &Hood, _: &Placed) -> Star {
+        Star::default()
+    }
+
+    #[inline(always)]
+    fn warm(&self, _: u32) -> u32 {
+        0
+    }
+
+    fn attributes(&self, _: impl Iterator<Item = (u32, [u32; 3])>) -> Option<Attributes> {
+        None
+    }
+
+    fn all_attributes(&self, _: impl Iterator<Item = [u32; 3]>) -> Option<Attributes> {
+        None
+    }
+
+    #[inline(always)]
+    fn record(&mut self, _: u32) {}
+
+    fn recorded(&mut self) -> Vec<Revalued> {
+        Vec::new()
+    }
+}
+
+/// What goes where, if pins alone decide.
+#[inline(always)]
+pub(super) fn by_pins(vertices: &Vertices, v: u32, target: u32) -> Result<Ends, Refusal> {
+    let pinned = |v: u32| vertices.get(v).flags.any(Flags::PINNED);
+    match (pinned(v), pinned(target)) {
+        (false, false) => Ok(Ends { v0: v, v1: target, free: true }),
+        (true, false) => Ok(Ends { v0: v, v1: target, free: false }),
+        (false, true) => Ok(Ends { v0: target, v1: v, free: false }),
+        (true, true) => Err(Refusal::Locked),
+    }
+}
