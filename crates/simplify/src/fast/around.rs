@@ -29,13 +29,13 @@ impl Slots {
         let mut spokes = [[0; 3]; ROOM];
         // Around both ends the ring begins with a wing, after the face that goes.
         let mut slot = at0.after;
-        for i in 0..hood.len {
+        for (i, (spoke, &w)) in spokes.iter_mut().zip(hood.ids()).enumerate() {
             let apex = if i < hood.of_v0 { v0 } else { v1 };
             if i == hood.of_v0 {
                 slot = at1.after;
             }
-            slot = seams.next(apex, hood.ids[i], slot);
-            spokes[i][0] = slot;
+            slot = seams.next(apex, w, slot);
+            spoke[0] = slot;
         }
         let mut dying = [[at0.after, at1.before, hood.ids[0]], [at0.before, at1.after, 0]];
         dying[1][2] = hood.ids[hood.of_v0];

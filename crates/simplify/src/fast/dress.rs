@@ -196,13 +196,12 @@ impl<'m, const K: usize> Painted<'m, K> {
     fn add_face(&mut self, vertices: &Vertices, [a, b, c]: [u32; 3], slots: [u32; 3]) {
         let place = |v: u32| vertices.get(v).place();
         let from = place(a);
-        let mut changes = [[0.0; K]; 2];
-        for k in 0..K {
-            let value = |corner: usize| self.field(slots[corner]).channels[k].w;
-            changes[0][k] = value(1) - value(0);
-            changes[1][k] = value(2) - value(0);
+        let [own, mut to_b, mut to_c] = slots.map(|slot| self.field(slot).values());
+        for (k, own) in own.into_iter().enumerate() {
+            to_b[k] -= own;
+            to_c[k] -= own;
         }
-        let face = Field::face(place(b) - from, place(c) - from, changes[0], changes[1]);
+        let face = Field::face(place(b) - from, place(c) - from, to_b, to_c);
         for slot in slots {
             self.fields[slot as usize].add(&face);
         }
