@@ -238,13 +238,9 @@ fn a_box_with_a_texture_a_side_goes_down_to_its_twelve_faces() {
 }
 
 #[test]
-fn attributes_and_seams_cost_lindstrom_turk_no_volume() {
-    let mut mesh = boxed(24);
-    // Not flat, so that places are free.
-    mesh.positions.iter_mut().for_each(|p| {
-        let [x, y, z] = *p;
-        *p = [x + (y * 0.4).sin(), y + (z * 0.5).sin(), z + (x * 0.3).cos()];
-    });
+fn attributes_cost_lindstrom_turk_no_volume() {
+    let uv = |[x, y, z]: [f64; 3]| vec![(x * y) as f32, (z + x * x) as f32];
+    let mesh = with_layers(sample::torus(5000), &[(LayerKind::Uv(0), uv)]);
     let volume = |mesh: &Mesh| -> f64 {
         let sixfold = |&face| {
             let [a, b, c] = mesh.triangle(face);
@@ -252,15 +248,10 @@ fn attributes_and_seams_cost_lindstrom_turk_no_volume() {
         };
         mesh.faces.iter().map(sixfold).sum::<f64>()
     };
-    let level = to(&mesh, Method::LindstromTurk, 0.2);
-    assert!(level.faces.len() <= mesh.faces.len() / 5);
+    let level = to(&mesh, Method::LindstromTurk, 0.1);
+    assert!(level.faces.len() <= mesh.faces.len() / 10);
     let drift = volume(&level) / volume(&mesh) - 1.0;
     assert!(drift.abs() < 1e-6, "{drift}");
-    // A texture a side, still.
-    for side in 0..6 {
-        let on_side = |(_, uv): &([f64; 3], &[f32])| uv[0].floor() as i32 == side;
-        assert!(corners(&level, 0).any(|corner| on_side(&corner)));
-    }
 }
 
 #[test]
