@@ -55,7 +55,7 @@ fn main() -> Result<()> {
 }
 
 fn options(method: Method) -> Options {
-    Options { method, ..Options::default() }
+    Options { method: Some(method), ..Options::default() }
 }
 
 fn speed(mesh: &Mesh, ratio: f64, rounds: usize) {
