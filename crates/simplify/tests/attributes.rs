@@ -294,7 +294,8 @@ fn weights_are_numbers_of_at_least_0() {
 fn attributes_that_count_for_nothing_change_no_position() {
     let mesh = sample::fish(1000);
     let bare = Mesh { attributes: None, ..mesh.clone() };
-    let options = Options { weights: AttributeWeights::NONE, ..Options::default() };
+    let (weights, method) = (AttributeWeights::NONE, Some(Method::Qem));
+    let options = Options { weights, method, ..Options::default() };
     // Seams still do: compare where there are none.
     let flat = with_layers(bare.clone(), &[(LayerKind::Color(0), |[x, ..]| vec![x as f32; 3])]);
     let [with, without] =
