@@ -35,12 +35,9 @@ impl Bounds {
     pub fn add(&mut self, point: [f64; 3]) {
         // Comparisons, since `min` minds a NaN on either side, which takes five instructions for one.
         for (axis, x) in point.into_iter().enumerate() {
-            if x < self.min[axis] {
-                self.min[axis] = x;
-            }
-            if x > self.max[axis] {
-                self.max[axis] = x;
-            }
+            let (min, max) = (self.min[axis], self.max[axis]);
+            self.min[axis] = if x < min { x } else { min };
+            self.max[axis] = if x > max { x } else { max };
         }
     }
 

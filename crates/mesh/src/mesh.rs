@@ -102,7 +102,8 @@ impl Mesh {
 
     /// The box around the vertices that faces use; unused vertices do not count.
     pub fn bounds(&self) -> Bounds {
-        Bounds::of(self.faces.iter().flatten().map(|v| &self.positions[v.index()]))
+        let used = self.used_vertices();
+        Bounds::of(self.positions.iter().zip(used).filter(|(_, used)| *used).map(|(p, _)| p))
     }
 
     /// One flag per vertex: does any face use it?

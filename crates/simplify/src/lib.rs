@@ -12,7 +12,7 @@
 //!
 //! Same input, same options, same bytes out, for any number of threads. After every contraction the
 //! surface is as manifold, as closed and as oriented as before.
-#![forbid(unsafe_code)]
+#![deny(unsafe_code)]
 
 mod candidates;
 mod charts;

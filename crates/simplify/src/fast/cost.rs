@@ -6,14 +6,14 @@
 //! x'Sx − 2q·x + h'Sh, and the volume stays where g·x = (N₁ − N₀)·h. Faces that both stars have
 //! contain h; they count twice in S and g and nowhere else.
 
-use glam::{Vec3, Vec4};
+use glam::Vec3;
 
-use crate::fast::lanes::{LANES, Lanes3, transpose};
-use crate::fast::looks::{Looks, Parts};
+use crate::fast::looks::Looks;
 use crate::fast::place::{Swept, matrix};
-use crate::fast::queue::bucket;
-use crate::fast::ring::Vertices;
+use crate::fast::queue::{NONE, bucket};
+use crate::fast::ring::{LONG, MOST, Vertices};
 use crate::fast::vertex::{Flags, NOBODY, Vertex};
+use crate::fast::wide::{LANES, Row, Row3, most, transpose};
 
 /// How strongly the optimum is pulled to the middle of the edge, as in the general engine.
 pub(super) const PULL: f32 = 1e-5;
@@ -34,32 +34,108 @@ pub(super) struct Cheapest {
     pub(super) target: u32,
 }
 
-/// The cheapest edge from `u` around a ring, of those above `u`'s floor.
+/// The cheapest edge from `u`, of those above its floor; its ring is up to date.
 #[inline(always)]
-pub(super) fn cheapest(vertices: &Vertices, looks: &impl Looks, u: u32, ring: &[u32]) -> Cheapest {
-    let own = vertices.get(u);
-    let (mut least, mut target) = (f32::INFINITY, NOBODY);
-    let mut start = 0;
-    while start < ring.len() {
-        // Lanes beyond the end look at the last one again.
-        let id = |lane: usize| ring[(start + lane).min(ring.len() - 1)];
-        let ids = [id(0), id(1), id(2), id(3)];
-        let see = |lane: usize| vertices.get(ids[lane]);
-        let ends = [see(0), see(1), see(2), see(3)];
-        let special =
-            own.flags.0 | ends[0].flags.0 | ends[1].flags.0 | ends[2].flags.0 | ends[3].flags.0;
-        let mut costs = costs(looks, (u, own), &ids, &ends).to_array();
-        if Flags(special).any(SPECIAL) || own.floor > 0 {
-            correct(&mut costs, vertices, looks, u, &ids);
-        }
-        for (cost, id) in costs.into_iter().zip(ids) {
-            if cost < least {
-                (least, target) = (cost, id);
-            }
-        }
-        start += LANES;
+pub(super) fn cheapest(vertices: &Vertices, looks: &impl Looks, u: u32) -> Cheapest {
+    let vertex = vertices.get(u);
+    match vertex.len {
+        LONG => cheapest_of_many(vertices, looks, u),
+        len => cheapest_of(vertices, looks, u, &vertex.ring, len.into()),
     }
-    Cheapest { bucket: bucket(least), target }
+}
+
+#[cold]
+fn cheapest_of_many(vertices: &Vertices, looks: &impl Looks, u: u32) -> Cheapest {
+    let mut ring = [NOBODY; MOST];
+    let all = vertices.settled(u);
+    ring.iter_mut().zip(all).for_each(|(to, &w)| *to = w);
+    cheapest_of(vertices, looks, u, &ring, all.len().min(MOST))
+}
+
+#[inline(always)]
+fn cheapest_of<const ROOM: usize>(
+    vertices: &Vertices,
+    looks: &impl Looks,
+    u: u32,
+    ring: &[u32; ROOM],
+    len: usize,
+) -> Cheapest {
+    let (mut least, mut left) = (Rank::LAST, len as u32);
+    for some in ring.as_chunks::<LANES>().0 {
+        // Lanes beyond the end look at the first one again.
+        let mut ids = *some;
+        for (lane, id) in (0..).zip(&mut ids) {
+            *id = if lane < left { *id } else { some[0] };
+        }
+        let costs = costs(vertices, looks, Ends::Of(u), &ids);
+        for (cost, id) in costs.into_iter().zip(ids) {
+            least = least.min(Rank::new(cost, id));
+        }
+        left = left.saturating_sub(LANES as u32);
+        if left == 0 {
+            break;
+        }
+    }
+    least.cheapest()
+}
+
+/// An edge among others of its vertex, by its cost, then by its end. A number, since which one is less
+/// is not to be guessed by a branch.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) struct Rank(u64);
+
+impl Rank {
+    /// Behind all edges.
+    pub(super) const LAST: Self = Self(u64::MAX);
+
+    #[inline(always)]
+    pub(super) fn new(cost: f32, to: u32) -> Self {
+        Self(u64::from(most(cost, 0.0).to_bits()) << 32 | u64::from(to))
+    }
+
+    #[inline(always)]
+    pub(super) fn cheapest(self) -> Cheapest {
+        match bucket(f32::from_bits((self.0 >> 32) as u32)) {
+            NONE => Cheapest { bucket: NONE, target: NOBODY },
+            bucket => Cheapest { bucket, target: self.0 as u32 },
+        }
+    }
+}
+
+/// One end of eight edges: the same vertex or one of each.
+#[derive(Clone, Copy)]
+pub(super) enum Ends<'e> {
+    Of(u32),
+    Each(&'e [u32; LANES]),
+}
+
+impl Ends<'_> {
+    #[inline(always)]
+    pub(super) fn get(self, lane: usize) -> u32 {
+        match self {
+            Self::Of(v) => v,
+            Self::Each(ids) => ids[lane],
+        }
+    }
+}
+
+/// What eight edges cost; infinite where an edge may not be contracted, or costs no more than has been
+/// refused at its first end.
+#[inline(always)]
+pub(super) fn costs(
+    vertices: &Vertices,
+    looks: &impl Looks,
+    us: Ends<'_>,
+    vs: &[u32; LANES],
+) -> Row {
+    let (first, second) = (Stars::of(vertices, us), Stars::of(vertices, Ends::Each(vs)));
+    let mut edges = Edges::between(&first, &second);
+    looks.join(us, vs, &mut edges);
+    let mut costs = edges.costs();
+    if Flags(first.flags | second.flags).any(SPECIAL) || first.floor > 0 {
+        correct(&mut costs, vertices, looks, us, vs);
+    }
+    costs
 }
 
 /// What makes a cost other than that of a free edge.
@@ -68,14 +144,15 @@ const SPECIAL: Flags = Flags(Flags::PINNED.0 | Flags::SHUT.0 | Flags::SEAM.0);
 /// Costs of edges with an end that stays where it is, or that may not be contracted, or not now.
 #[cold]
 fn correct(
-    costs: &mut [f32; LANES],
+    costs: &mut Row,
     vertices: &Vertices,
     looks: &impl Looks,
-    u: u32,
-    ends: &[u32; LANES],
+    us: Ends<'_>,
+    vs: &[u32; LANES],
 ) {
-    let floor = vertices.get(u).floor;
-    for (cost, &v) in costs.iter_mut().zip(ends) {
+    for (lane, (cost, &v)) in costs.iter_mut().zip(vs).enumerate() {
+        let u = us.get(lane);
+        let floor = vertices.get(u).floor;
         let flags = Flags(vertices.get(u).flags.0 | vertices.get(v).flags.0);
         if flags.any(Flags::SHUT) {
             *cost = f32::INFINITY;
@@ -127,76 +204,170 @@ fn swept(vertex: &Vertex, to: Vec3) -> f32 {
         + SHORT_FIRST * (xx + yy + zz) * (x * x + y * y + z * z)
 }
 
-/// A symmetric matrix of each: xx, yy, zz, xy, xz, yz.
+/// A symmetric matrix: xx, yy, zz, xy, xz, yz.
 #[derive(Clone, Copy)]
-struct Symmetric([Vec4; 6]);
+pub(super) struct Symmetric(pub(super) [f32; 6]);
 
 impl Symmetric {
     /// The product with a vector.
     #[inline(always)]
-    fn apply(&self, v: Lanes3) -> Lanes3 {
+    pub(super) fn apply(&self, Vec3 { x, y, z }: Vec3) -> Vec3 {
         let [xx, yy, zz, xy, xz, yz] = self.0;
-        let Lanes3 { x, y, z } = v;
-        Lanes3 {
-            x: xx * x + xy * y + xz * z,
-            y: xy * x + yy * y + yz * z,
-            z: xz * x + yz * y + zz * z,
+        Vec3::new(xx * x + xy * y + xz * z, xy * x + yy * y + yz * z, xz * x + yz * y + zz * z)
+    }
+
+    #[inline(always)]
+    fn trace(&self) -> f32 {
+        self.0[0] + self.0[1] + self.0[2]
+    }
+}
+
+/// The stars of eight vertices.
+struct Stars {
+    place: Row3,
+    normal: Row3,
+    squares: [Row; 6],
+    /// All that any of them has.
+    flags: u8,
+    /// Zero where none has any.
+    floor: u16,
+}
+
+impl Stars {
+    #[inline(always)]
+    fn of(vertices: &Vertices, ids: Ends<'_>) -> Self {
+        match ids {
+            Ends::Of(v) => Self::all(vertices.get(v)),
+            Ends::Each(ids) => {
+                let see = |lane: usize| vertices.get(ids[lane]);
+                Self::each([see(0), see(1), see(2), see(3), see(4), see(5), see(6), see(7)])
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn all(vertex: &Vertex) -> Self {
+        let (place, normal) = (vertex.place(), vertex.seen.normal());
+        let [xx, yy, zz, xy, xz, yz] = vertex.seen.squares();
+        let row = |x: f32| [x; LANES];
+        Self {
+            place: Row3::all(place),
+            normal: Row3::all(normal),
+            squares: [row(xx), row(yy), row(zz), row(xy), row(xz), row(yz)],
+            flags: vertex.flags.0,
+            floor: vertex.floor,
+        }
+    }
+
+    #[inline(always)]
+    fn each(all: [&Vertex; LANES]) -> Self {
+        let [a, b, c, d, e, f, g, h] = all;
+        let row = |k: usize| {
+            let of = |vertex: &Vertex| vertex.seen.0[k];
+            transpose([of(a), of(b), of(c), of(d), of(e), of(f), of(g), of(h)])
+        };
+        let ([x, y, z, nx], [ny, nz, xx, yy], [zz, xy, xz, yz]) = (row(0), row(1), row(2));
+        let (mut flags, mut floor) = (0, 0);
+        for vertex in all {
+            flags |= vertex.flags.0;
+            floor |= vertex.floor;
+        }
+        Self {
+            place: Row3 { x, y, z },
+            normal: Row3 { x: nx, y: ny, z: nz },
+            squares: [xx, yy, zz, xy, xz, yz],
+            flags,
+            floor,
         }
     }
 }
 
-/// The costs of edges from `u`. Symmetric: the same from either end, to the bit.
 #[inline(always)]
-fn costs(
-    looks: &impl Looks,
-    (id, u): (u32, &Vertex),
-    ids: &[u32; LANES],
-    ends: &[&Vertex; LANES],
-) -> Vec4 {
-    let row = |k: usize| {
-        transpose(ends[0].seen.0[k], ends[1].seen.0[k], ends[2].seen.0[k], ends[3].seen.0[k])
+pub(super) fn lane_of(rows: &[Row; 6], lane: usize) -> [f32; 6] {
+    let [a, b, c, d, e, f] = rows;
+    [a[lane], b[lane], c[lane], d[lane], e[lane], f[lane]]
+}
+
+/// What eight edges sweep, seen from the middle of each: x'Sx − 2 q·x + c, and the volume stays where
+/// g·x is `level`. Symmetric: the same from either end, to the bit.
+pub(super) struct Edges {
+    pub(super) half: Row3,
+    /// S.
+    pub(super) sum: [Row; 6],
+    /// q.
+    pub(super) slope: Row3,
+    /// c.
+    pub(super) at_middle: Row,
+    /// g.
+    normal: Row3,
+    level: Row,
+}
+
+impl Edges {
+    const ZERO: Self = Self {
+        half: Row3::ZERO,
+        sum: [[0.0; LANES]; 6],
+        slope: Row3::ZERO,
+        at_middle: [0.0; LANES],
+        normal: Row3::ZERO,
+        level: [0.0; LANES],
     };
-    let ([px, py, pz, nx], [ny, nz, xx, yy], [zz, xy, xz, yz]) = (row(0), row(1), row(2));
-    let (mut own, mut theirs) = (u.seen.squares(), [xx, yy, zz, xy, xz, yz]);
-    let weights = looks.squares(id, ids, &mut own, &mut theirs);
-    let h = (Lanes3 { x: px, y: py, z: pz } - Lanes3::all(u.place())).by(Vec4::splat(0.5));
-    let (n0, n1) = (Lanes3::all(u.seen.normal()), Lanes3 { x: nx, y: ny, z: nz });
-    let [uxx, uyy, uzz, uxy, uxz, uyz] = own;
-    let [xx, yy, zz, xy, xz, yz] = theirs;
-    let own = Vec4::splat;
-    let (uxx, uyy, uzz, uxy, uxz, uyz) =
-        (own(uxx), own(uyy), own(uzz), own(uxy), own(uxz), own(uyz));
-    let mut sum = Symmetric([xx + uxx, yy + uyy, zz + uzz, xy + uxy, xz + uxz, yz + uyz]);
 
-    let (a0h, a1h) = (
-        Symmetric([uxx, uyy, uzz, uxy, uxz, uyz]).apply(h),
-        Symmetric([xx, yy, zz, xy, xz, yz]).apply(h),
-    );
-    let mut q = a1h - a0h;
-    let mut at_middle = (a1h + a0h).dot(h);
-    let parts = Parts { sum: &mut sum.0, slope: &mut q, at_middle: &mut at_middle };
-    looks.join(id, ids, weights, h, parts);
-    let trace = sum.0[0] + sum.0[1] + sum.0[2];
-    let scale = (trace + own(TINY)).recip();
-    let g = n0 + n1;
-    let to_unit = (g.dot(g) + own(TINY)).recip();
-    // The place on the plane of equal volumes that is next to the middle.
-    let x0 = g.by((n1 - n0).dot(h) * to_unit);
-    let slope = q - sum.apply(x0);
-    let there = at_middle - x0.dot(q + slope);
+    #[inline(always)]
+    fn between(first: &Stars, second: &Stars) -> Self {
+        let mut edges = Self::ZERO;
+        for lane in 0..LANES {
+            let h = (second.place.get(lane) - first.place.get(lane)) * 0.5;
+            let (n0, n1) = (first.normal.get(lane), second.normal.get(lane));
+            let a0 = Symmetric(lane_of(&first.squares, lane));
+            let a1 = Symmetric(lane_of(&second.squares, lane));
+            let (a0h, a1h) = (a0.apply(h), a1.apply(h));
+            for (sum, (a0, a1)) in edges.sum.iter_mut().zip(a0.0.into_iter().zip(a1.0)) {
+                sum[lane] = a0 + a1;
+            }
+            edges.half.set(lane, h);
+            edges.slope.set(lane, a1h - a0h);
+            edges.at_middle[lane] = (a1h + a0h).dot(h);
+            edges.normal.set(lane, n0 + n1);
+            edges.level[lane] = (n1 - n0).dot(h);
+        }
+        edges
+    }
 
-    // Two directions in the plane, at right angles, the second along the slope; as long as keeps all
-    // that follows about one.
-    let across = g.cross(slope).by(scale);
-    let e1 = across.by(to_unit);
-    let e2 = g.cross(e1);
-    let rise = e1.dot(across);
-    let pull = own(PULL);
-    let m11 = e1.dot(sum.apply(e1)) * scale + pull * e1.dot(e1);
-    let (a2, long2) = (sum.apply(e2), e2.dot(e2));
-    let m12 = e1.dot(a2) * scale;
-    let m22 = e2.dot(a2) * scale + pull * long2;
-    let determinant = (m11 * m22 - m12 * m12).max(own(1e-36));
-    let gain = rise * rise * m11 / determinant * trace;
-    there - gain + own(SHORT_FIRST) * trace * h.dot(h)
+    /// What each costs.
+    #[inline(always)]
+    fn costs(&self) -> Row {
+        let mut costs = [0.0; LANES];
+        for (lane, cost) in costs.iter_mut().enumerate() {
+            *cost = self.cost(lane);
+        }
+        costs
+    }
+
+    #[inline(always)]
+    fn cost(&self, lane: usize) -> f32 {
+        let (h, g, q) = (self.half.get(lane), self.normal.get(lane), self.slope.get(lane));
+        let sum = Symmetric(lane_of(&self.sum, lane));
+        let trace = sum.trace();
+        let scale = (trace + TINY).recip();
+        let to_unit = (g.dot(g) + TINY).recip();
+        // The place on the plane of equal volumes that is next to the middle.
+        let x0 = g * (self.level[lane] * to_unit);
+        let slope = q - sum.apply(x0);
+        let there = self.at_middle[lane] - x0.dot(q + slope);
+
+        // Two directions in the plane, at right angles, the second along the slope; as long as keeps
+        // all that follows about one.
+        let across = g.cross(slope) * scale;
+        let e1 = across * to_unit;
+        let e2 = g.cross(e1);
+        let rise = e1.dot(across);
+        let m11 = e1.dot(sum.apply(e1)) * scale + PULL * e1.dot(e1);
+        let (a2, long2) = (sum.apply(e2), e2.dot(e2));
+        let m12 = e1.dot(a2) * scale;
+        let m22 = e2.dot(a2) * scale + PULL * long2;
+        let determinant = most(m11 * m22 - m12 * m12, 1e-36);
+        let gain = rise * rise * m11 / determinant * trace;
+        there - gain + SHORT_FIRST * trace * h.dot(h)
+    }
 }

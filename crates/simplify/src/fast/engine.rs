@@ -6,16 +6,18 @@
 
 use glam::Vec3;
 
-use crate::fast::cost::{Cheapest, SHORT_FIRST, cheapest};
+use crate::fast::cost::{Cheapest, Rank, SHORT_FIRST, cheapest};
 use crate::fast::hood::Hood;
 use crate::fast::log::Done;
 use crate::fast::looks::{Ends, Looks, Placed};
 use crate::fast::pace::Pace;
+use crate::fast::pairs::Pairs;
 use crate::fast::place::{Swept, matrix};
-use crate::fast::queue::{NONE, Queue, bucket, last_bucket};
+use crate::fast::queue::{AHEAD, NONE, Queue, bucket, last_bucket};
 use crate::fast::ring::{GHOST, MOST, RING, Vertices};
 use crate::fast::vertex::{Flags, NOBODY, Star, Vertex};
 use crate::fast::volume::Volume;
+use crate::fast::wide::{Work, widest};
 use crate::refusal::{Refusal, Refusals};
 
 /// By how many buckets of a quarter octave a cost may have risen. Mean error of horse-97k at 10 %:
@@ -26,9 +28,6 @@ const SLACK: u16 = 4;
 /// up. Mean error of horse-97k at 10 % and 1 %, and millions of instructions of both: looked at at once
 /// .00723, .0572, 849; 4 .00721, .0580; 6 .00720, .0578, 789; 8 .00723, .0586, 766; 10 .00727, .0583.
 const REST: u16 = 6;
-
-/// How many vertices are read before they are wanted.
-const AHEAD: usize = 16;
 
 /// What a boundary edge counts [LT99].
 pub(super) const BOUNDARY_WEIGHT: f32 = 9.0;
@@ -89,56 +88,110 @@ impl<'v, L: Looks> Engine<'v, L> {
 
     /// Looks at all vertices for the first time, but for those that wait.
     pub(super) fn look_around(&mut self) {
-        for v in self.vertices.ids() {
-            let vertex = self.vertices.get(v);
-            if vertex.len > 0 && !vertex.flags.any(Flags::OUTER) {
-                self.look_up(v);
-            }
-        }
+        widest(LookAround(self));
     }
 
     /// Contracts until no more than `faces` are left, or what comes next is in a bucket behind `last`,
     /// or nothing more may be contracted.
     pub(super) fn run(&mut self, faces: usize, last: u16) {
-        let mut warm = 0;
-        while self.live_faces > faces {
-            if warm == 0 {
-                self.warm();
-                warm = AHEAD;
-            }
-            warm -= 1;
-            let Some((v, bucket)) = self.queue.pop(last) else { return };
-            if self.is_due(v, bucket) {
+        widest(Run { engine: self, faces, last });
+    }
+
+    #[inline(always)]
+    fn contract_all(&mut self, faces: usize, last: u16) {
+        while self.live_faces > faces && self.has_next(last) {
+            let (_, bucket) = self.queue.next();
+            if let Some(v) = self.pop() {
                 self.try_at(v, bucket);
+            }
+        }
+    }
+
+    /// Takes the next vertex out of the queue; `None` if its entry does not stand for it any more.
+    #[inline(always)]
+    fn pop(&mut self) -> Option<u32> {
+        let (_, bucket) = self.queue.next();
+        let v = self.queue.pop()?;
+        let is_due = self.is_due(v, bucket);
+        let vertex = self.vertices.get_mut(v);
+        if vertex.bucket == bucket {
+            vertex.bucket = NONE;
+        }
+        is_due.then_some(v)
+    }
+
+    /// Whether anything is left in a bucket not behind `last`; sees to it that what comes next is ready.
+    #[inline(always)]
+    fn has_next(&mut self, last: u16) -> bool {
+        let (next, front) = self.queue.next();
+        if !next.is_empty() {
+            return front <= last;
+        }
+        if !self.queue.take(last) {
+            return false;
+        }
+        self.warm();
+        self.look_ahead();
+        true
+    }
+
+    /// Looks at those of the next that have changed: first only at the edges that they would go by, of
+    /// all of them at once. Who costs too much by now is queued again.
+    #[inline(always)]
+    fn look_ahead(&mut self) {
+        let (taken, front) = self.queue.next();
+        let (mut next, len) = ([0; AHEAD], taken.len());
+        next[..len].copy_from_slice(taken);
+        let (mut changed, mut dear, mut count) = (Pairs::<AHEAD>::new(), [0; AHEAD], 0);
+        for &v in &next[..len] {
+            if !self.is_due(v, front) {
+                continue;
+            }
+            let target = self.target(v);
+            let vertex = self.vertices.get_mut(v);
+            changed.push(v, vertex.target, target.is_some() && vertex.flags.any(Flags::STALE));
+            vertex.flags.clear(Flags::STALE);
+            dear[count] = v;
+            count += usize::from(target.is_none());
+        }
+        changed.cost_all(&self.vertices, self.looks, |[v, _], cost| {
+            dear[count] = v;
+            count += usize::from(bucket(cost) > front.saturating_add(SLACK));
+        });
+        for &v in &dear[..count] {
+            self.vertices.bring_up(v);
+            let Cheapest { bucket, target } = cheapest(&self.vertices, self.looks, v);
+            let vertex = self.vertices.get_mut(v);
+            vertex.target = target;
+            if bucket > front.saturating_add(SLACK) {
+                vertex.bucket = bucket;
+                self.queue.push(v, bucket);
             }
         }
     }
 
     /// The bucket of what comes next.
     pub(super) fn next_bucket(&mut self) -> Option<u16> {
-        loop {
-            let (v, bucket) = self.queue.pop(last_bucket())?;
-            if self.is_due(v, bucket) {
-                self.vertices.get_mut(v).bucket = bucket;
-                self.queue.push(v, bucket);
+        while self.has_next(last_bucket()) {
+            let (next, bucket) = self.queue.next();
+            if next.last().is_some_and(|&v| self.is_due(v, bucket)) {
                 return Some(bucket);
             }
+            self.pop();
         }
+        None
     }
 
-    /// Whether an entry that has left the queue still stands for its vertex.
+    /// Whether an entry still stands for its vertex.
     #[inline(always)]
-    fn is_due(&mut self, v: u32, bucket: u16) -> bool {
-        let vertex = self.vertices.get_mut(v);
-        if vertex.bucket != bucket || vertex.flags.any(Flags::DEAD) {
-            return false;
-        }
-        vertex.bucket = NONE;
-        !vertex.flags.any(Flags::SHUT)
+    fn is_due(&self, v: u32, bucket: u16) -> bool {
+        let vertex = self.vertices.get(v);
+        vertex.bucket == bucket && !vertex.flags.any(ASIDE)
     }
 
     /// Lets all edges try again that were refused.
     pub(super) fn wake_all(&mut self) {
+        self.queue.put_back();
         for v in self.vertices.ids() {
             let vertex = self.vertices.get(v);
             if vertex.floor > 0 && !vertex.flags.any(ASIDE) {
@@ -165,18 +218,18 @@ impl<'v, L: Looks> Engine<'v, L> {
     /// Reads the vertices that come next, and their neighbours, in loops whose loads do not wait for
     /// each other: met one by one, they would cost a memory latency each.
     fn warm(&self) {
-        let vertices = &self.vertices;
+        let (vertices, (next, _)) = (&self.vertices, self.queue.next());
         let mut sum = 0;
-        for &v in self.queue.upcoming(AHEAD) {
+        for &v in next {
             sum ^= vertices.get(v).ring[0] ^ vertices.get(v).target ^ self.looks.warm(v);
         }
-        for &v in self.queue.upcoming(AHEAD) {
+        for &v in next {
             let vertex = vertices.get(v);
             if vertex.flags.any(Flags::DEAD) || vertex.len > RING as u8 {
                 continue;
             }
             for &w in &vertex.ring[..vertex.len as usize] {
-                sum ^= vertices.get(w).target ^ vertices.get(w).ring[0] ^ self.looks.warm(w);
+                sum ^= vertices.get(w).target ^ self.looks.warm(w);
             }
         }
         std::hint::black_box(sum);
@@ -185,13 +238,6 @@ impl<'v, L: Looks> Engine<'v, L> {
     #[inline(always)]
     fn try_at(&mut self, v: u32, front: u16) {
         let Some(target) = self.target(v) else { return self.look(v, front, None) };
-        // A look at one edge is cheaper than a contraction that is given up.
-        if self.vertices.get(v).flags.any(Flags::STALE) {
-            let now = cheapest(&self.vertices, self.looks, v, &[target]).bucket;
-            if now > front.saturating_add(SLACK) {
-                return self.look(v, front, None);
-            }
-        }
         match self.contract(v, target, front) {
             Ok(kept) => self.put_off(kept, front + REST),
             Err(Not::TooFar(bucket)) => self.put_off(v, bucket),
@@ -223,20 +269,35 @@ impl<'v, L: Looks> Engine<'v, L> {
         (target != v && !barred).then_some(target)
     }
 
-    /// The first look at a vertex: at the edges to those after it, so that each edge is seen once.
+    /// The first look at all vertices: at the edges to those after each, so that an edge is seen once.
     #[inline(always)]
-    fn look_up(&mut self, v: u32) {
-        let vertices = &self.vertices;
-        let (mut above, mut count) = ([0; MOST], 0);
-        for &w in vertices.settled(v).iter().take(MOST) {
-            above[count] = w;
-            count += usize::from(w > v && w != GHOST);
+    fn look_at_all(&mut self) {
+        let Self { vertices, looks, queue, .. } = self;
+        let first = vertices.base;
+        let mut least = vec![Rank::LAST; vertices.all.len()];
+        let mut tell = |[v, w]: [u32; 2], cost: f32| {
+            let least = &mut least[(v - first) as usize];
+            *least = (*least).min(Rank::new(cost, w));
+        };
+        let mut pairs = Pairs::<{ 4 * MOST }>::new();
+        for v in vertices.ids() {
+            for &w in vertices.settled(v).iter().take(MOST) {
+                pairs.push(v, w, w > v && w != GHOST);
+            }
+            if !pairs.has_room(MOST) {
+                pairs.cost_all(vertices, *looks, &mut tell);
+            }
         }
-        let Cheapest { bucket, target } = cheapest(vertices, self.looks, v, &above[..count]);
-        let vertex = self.vertices.get_mut(v);
-        vertex.target = target;
-        vertex.bucket = bucket;
-        self.queue.push(v, bucket);
+        pairs.cost_all(vertices, *looks, tell);
+        for (v, least) in vertices.ids().zip(least) {
+            let vertex = vertices.get_mut(v);
+            if vertex.len > 0 && !vertex.flags.any(Flags::OUTER) {
+                let Cheapest { bucket, target } = least.cheapest();
+                vertex.target = target;
+                vertex.bucket = bucket;
+                queue.push(v, bucket);
+            }
+        }
     }
 
     /// Looks for the cheapest edge of a vertex and queues it, at the front or behind. What has just
@@ -244,8 +305,7 @@ impl<'v, L: Looks> Engine<'v, L> {
     #[inline(always)]
     fn look(&mut self, v: u32, front: u16, seen: Option<(u32, u16)>) {
         self.vertices.bring_up(v);
-        let Cheapest { mut bucket, target } =
-            cheapest(&self.vertices, self.looks, v, self.vertices.settled(v));
+        let Cheapest { mut bucket, target } = cheapest(&self.vertices, self.looks, v);
         if let Some((of, least)) = seen
             && of == target
         {
@@ -367,6 +427,30 @@ impl<'v, L: Looks> Engine<'v, L> {
         kept.put(place, star);
         kept.moved = moved;
         kept.floor = 0;
+    }
+}
+
+/// A first look at all vertices.
+struct LookAround<'e, 'v, L>(&'e mut Engine<'v, L>);
+
+impl<L: Looks> Work for LookAround<'_, '_, L> {
+    #[inline(always)]
+    fn work(self) {
+        self.0.look_at_all();
+    }
+}
+
+/// Contractions, see [`Engine::run`].
+struct Run<'e, 'v, L> {
+    engine: &'e mut Engine<'v, L>,
+    faces: usize,
+    last: u16,
+}
+
+impl<L: Looks> Work for Run<'_, '_, L> {
+    #[inline(always)]
+    fn work(self) {
+        self.engine.contract_all(self.faces, self.last);
     }
 }
 

@@ -7,7 +7,7 @@ use rayon::prelude::*;
 use crate::fast::cells::{CELL, Cells};
 use crate::fast::engine::BOUNDARY_WEIGHT;
 use crate::fast::ring::{GHOST, LONG, Long, RING, Store, Vertices};
-use crate::fast::vertex::{Star, Vertex};
+use crate::fast::vertex::{NOBODY, Star, Vertex};
 
 /// Pairs of neighbours that a vertex has room for before they are a ring.
 const PAIRS: usize = RING / 2;
@@ -81,14 +81,12 @@ impl Cell<'_> {
             if len == 0 {
                 continue;
             }
-            let mut near = [[0; 2]; PAIRS];
-            near[..len].copy_from_slice(&vertex.ring.as_chunks().0[..len]);
             let more = beyond.iter().take_while(|(of, _)| *of == v).count();
             if more == 0 {
-                self.ring_of(v, &mut near[..len]);
+                self.ring_of(v, len);
             } else {
                 pairs.clear();
-                pairs.extend_from_slice(&near);
+                pairs.extend_from_slice(vertex.ring.as_chunks().0);
                 pairs.extend(beyond[..more].iter().map(|&(_, pair)| pair));
                 beyond = &beyond[more..];
                 self.ring_of_many(v, &mut pairs);
@@ -109,7 +107,7 @@ impl Cell<'_> {
                 vertex.seen.add(&star);
                 let at = vertex.len as usize;
                 if at < PAIRS {
-                    vertex.ring[2 * at..2 * at + 2].copy_from_slice(&pair);
+                    vertex.ring.as_chunks_mut().0[at] = pair;
                     vertex.len += 1;
                 } else {
                     beyond.push((v, pair));
@@ -119,16 +117,21 @@ impl Cell<'_> {
         beyond
     }
 
+    /// Of a vertex whose pairs are all in the place of its ring.
     #[inline(always)]
-    fn ring_of(&mut self, v: u32, pairs: &mut [Pair]) {
-        match chain(pairs) {
-            Some(Chain::Closed) => {
-                let vertex = self.vertices.get_mut(v);
-                for (w, pair) in vertex.ring.iter_mut().zip(&*pairs) {
-                    *w = pair[0];
-                }
-            }
-            Some(Chain::Open) => self.open(v, pairs),
+    fn ring_of(&mut self, v: u32, len: usize) {
+        let vertex = self.vertices.get_mut(v);
+        let ring = vertex.ring;
+        match closed(&ring, len) {
+            Some(closed) => vertex.ring = closed,
+            None => self.ring_not_closed(v, &mut ring.as_chunks().0[..len].to_vec()),
+        }
+    }
+
+    #[cold]
+    fn ring_not_closed(&mut self, v: u32, pairs: &mut [Pair]) {
+        match chain_open(pairs) {
+            Some(()) => self.open(v, pairs),
             None => self.irregular(v),
         }
     }
@@ -171,41 +174,48 @@ enum Chain {
     Open,
 }
 
-/// Sorts pairs so that each begins with what the one before ends with; `None` if that is not one fan.
+/// What the first of each pair counts in [`closed`]: one, and the number of the pair after it.
+const FIRSTS: [u32; RING] = {
+    let (mut counts, mut pair) = ([0; RING], 0);
+    while pair < PAIRS {
+        counts[2 * pair] = 1 << 16 | 2 * pair as u32;
+        pair += 1;
+    }
+    counts
+};
+
+/// The ring of `len` pairs, one beside the other, that are a closed fan. No search: that would guess
+/// wrong where it ends as often as not.
 #[inline(always)]
-fn chain(pairs: &mut [Pair]) -> Option<Chain> {
-    for sorted in 1..pairs.len() {
-        let want = pairs[sorted - 1][1];
-        let mut found = None;
-        for (i, pair) in pairs.iter().enumerate().skip(sorted) {
-            if pair[0] == want {
-                if found.is_some() {
-                    return None;
-                }
-                found = Some(i);
-            }
+fn closed(pairs: &[u32; RING], len: usize) -> Option<[u32; RING]> {
+    let (mut ring, mut next) = ([NOBODY; RING], pairs[1]);
+    ring[0] = pairs[0];
+    for slot in ring.iter_mut().take(len).skip(1) {
+        let mut found = 0;
+        for (&w, count) in pairs.iter().zip(FIRSTS) {
+            found += if w == next { count } else { 0 };
         }
-        match found {
-            Some(i) => pairs.swap(sorted, i),
-            None => return chain_open(pairs, sorted),
+        if found >> 16 != 1 || next == pairs[0] {
+            return None;
         }
+        *slot = next;
+        next = pairs[(found as usize & (RING - 1)) + 1];
     }
-    if pairs[pairs.len() - 1][1] == pairs[0][0] && pairs.len() > 1 {
-        return Some(Chain::Closed);
-    }
-    distinct(pairs).then_some(Chain::Open)
+    (next == pairs[0] && len > 1).then_some(ring)
 }
 
-/// Goes on from the front of the first `sorted`, which end at a boundary.
-#[cold]
-fn chain_open(pairs: &mut [Pair], sorted: usize) -> Option<Chain> {
-    for sorted in sorted..pairs.len() {
-        let want = pairs[0][0];
-        let found = sorted + pairs[sorted..].iter().position(|pair| pair[1] == want)?;
+/// Sorts pairs so that each begins with what the one before ends with; `None` if that is not one open
+/// fan.
+fn chain_open(pairs: &mut [Pair]) -> Option<()> {
+    let is_end = |v: u32| pairs.iter().any(|pair| pair[1] == v);
+    let first = pairs.iter().position(|pair| !is_end(pair[0]))?;
+    pairs.swap(0, first);
+    for sorted in 1..pairs.len() {
+        let want = pairs[sorted - 1][1];
+        let found = sorted + pairs[sorted..].iter().position(|pair| pair[0] == want)?;
         pairs.swap(sorted, found);
-        pairs[..=sorted].rotate_right(1);
     }
-    distinct(pairs).then_some(Chain::Open)
+    distinct(pairs).then_some(())
 }
 
 /// Whether no neighbour stands twice in an open fan.

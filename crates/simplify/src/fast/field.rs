@@ -8,9 +8,9 @@
 
 use glam::{DMat3, DVec3, Vec3, Vec4};
 
-use crate::fast::lanes::{LANES, Lanes3, transpose};
-use crate::fast::looks::Parts;
+use crate::fast::cost::{Edges, Symmetric, lane_of};
 use crate::fast::place::{Swept, symmetric};
+use crate::fast::wide::{LANES, Row, transpose};
 
 /// Keeps a division by nothing from being one.
 pub(super) const TINY: f32 = 1e-30;
@@ -117,51 +117,106 @@ impl<const K: usize> Field<K> {
     }
 }
 
-/// The G of four ends.
-#[inline(always)]
-pub(super) fn squares_of<const K: usize>(ends: &[&Field<K>; LANES]) -> ([Vec4; 6], Vec4) {
-    let row = |k: usize| {
-        transpose(ends[0].squares[k], ends[1].squares[k], ends[2].squares[k], ends[3].squares[k])
-    };
-    let ([xx, yy, zz, xy], [xz, yz, weight, _]) = (row(0), row(1));
-    ([xx, yy, zz, xy, xz, yz], weight)
+/// Fields of eight edges' ends, in rows.
+pub(super) trait Fields<const K: usize> {
+    fn squares(&self, k: usize) -> [Row; 4];
+    fn channel(&self, k: usize) -> [Row; 4];
 }
 
-/// What the best value of each channel leaves of four edges' squares, beside the G: seen from the
-/// middle they are x'Sx − 2 q·x + c, and this adds to S, q and c. The ends are at −h and h.
+/// One field, of all of them.
+pub(super) struct All<'f, const K: usize>(pub(super) &'f Field<K>);
+
+/// A field of each.
+pub(super) struct Each<'f, const K: usize>(pub(super) [&'f Field<K>; LANES]);
+
+impl<const K: usize> Fields<K> for All<'_, K> {
+    #[inline(always)]
+    fn squares(&self, k: usize) -> [Row; 4] {
+        splat(self.0.squares[k])
+    }
+
+    #[inline(always)]
+    fn channel(&self, k: usize) -> [Row; 4] {
+        splat(self.0.channels[k])
+    }
+}
+
+impl<const K: usize> Fields<K> for Each<'_, K> {
+    #[inline(always)]
+    fn squares(&self, k: usize) -> [Row; 4] {
+        let [a, b, c, d, e, f, g, h] = self.0;
+        let of = |field: &Field<K>| field.squares[k];
+        transpose([of(a), of(b), of(c), of(d), of(e), of(f), of(g), of(h)])
+    }
+
+    #[inline(always)]
+    fn channel(&self, k: usize) -> [Row; 4] {
+        let [a, b, c, d, e, f, g, h] = self.0;
+        let of = |field: &Field<K>| field.channels[k];
+        transpose([of(a), of(b), of(c), of(d), of(e), of(f), of(g), of(h)])
+    }
+}
+
+#[inline(always)]
+fn splat(v: Vec4) -> [Row; 4] {
+    [[v.x; LANES], [v.y; LANES], [v.z; LANES], [v.w; LANES]]
+}
+
+/// Adds to what eight edges sweep what the best value of each channel leaves of their squares: seen
+/// from the middle they are x'Sx − 2 q·x + c, and this adds to S, q and c.
 #[inline(always)]
 pub(super) fn join<const K: usize>(
-    own: &Field<K>,
-    ends: &[&Field<K>; LANES],
-    weights: Vec4,
-    h: Lanes3,
-    Parts { sum, slope, at_middle }: Parts<'_>,
+    first: &impl Fields<K>,
+    second: &impl Fields<K>,
+    edges: &mut Edges,
 ) {
-    let own_weight = Vec4::splat(own.weight());
-    let weight = own_weight + weights;
-    let less_weight = own_weight - weights;
-    let share = (weight + Vec4::splat(TINY)).recip();
+    let (g0, w0) = squares_of(first);
+    let (g1, w1) = squares_of(second);
+    for lane in 0..LANES {
+        let h = edges.half.get(lane);
+        let (g0, g1) = (Symmetric(lane_of(&g0, lane)), Symmetric(lane_of(&g1, lane)));
+        let (g0h, g1h) = (g0.apply(h), g1.apply(h));
+        for (sum, (g0, g1)) in edges.sum.iter_mut().zip(g0.0.into_iter().zip(g1.0)) {
+            sum[lane] += g0 + g1;
+        }
+        edges.slope.set(lane, edges.slope.get(lane) + (g1h - g0h));
+        edges.at_middle[lane] += (g0h + g1h).dot(h);
+    }
     for k in 0..K {
-        let own = own.channels[k];
-        let [x, y, z, value] = transpose(
-            ends[0].channels[k],
-            ends[1].channels[k],
-            ends[2].channels[k],
-            ends[3].channels[k],
-        );
-        let (ours, theirs) = (Lanes3::all(own.truncate()), Lanes3 { x, y, z });
-        let (both, less) = (ours + theirs, ours - theirs);
-        let change = (value - Vec4::splat(own.w)) * 0.5;
-        let off = less.dot(h) - less_weight * change;
-        let part = both.by(share);
-        sum[0] -= both.x * part.x;
-        sum[1] -= both.y * part.y;
-        sum[2] -= both.z * part.z;
-        sum[3] -= both.x * part.y;
-        sum[4] -= both.x * part.z;
-        sum[5] -= both.y * part.z;
-        *slope = *slope + less.by(change) + part.by(off);
-        *at_middle += change * (weight * change - both.dot(h) * 2.0) - off * off * share;
+        join_channel([&first.channel(k), &second.channel(k)], [&w0, &w1], edges);
+    }
+}
+
+/// The G and the weights.
+#[inline(always)]
+fn squares_of<const K: usize>(fields: &impl Fields<K>) -> ([Row; 6], Row) {
+    let ([xx, yy, zz, xy], [xz, yz, weights, _]) = (fields.squares(0), fields.squares(1));
+    ([xx, yy, zz, xy, xz, yz], weights)
+}
+
+/// One channel of it.
+#[inline(always)]
+fn join_channel([c0, c1]: [&[Row; 4]; 2], [w0, w1]: [&Row; 2], edges: &mut Edges) {
+    let slope = |[x, y, z, _]: &[Row; 4], lane: usize| Vec3::new(x[lane], y[lane], z[lane]);
+    for lane in 0..LANES {
+        let h = edges.half.get(lane);
+        let (b0, b1) = (slope(c0, lane), slope(c1, lane));
+        let (both, less) = (b0 + b1, b0 - b1);
+        let weight = w0[lane] + w1[lane];
+        let share = (weight + TINY).recip();
+        let change = (c1[3][lane] - c0[3][lane]) * 0.5;
+        let off = less.dot(h) - (w0[lane] - w1[lane]) * change;
+        let part = both * share;
+        let [xx, yy, zz, xy, xz, yz] = &mut edges.sum;
+        xx[lane] -= both.x * part.x;
+        yy[lane] -= both.y * part.y;
+        zz[lane] -= both.z * part.z;
+        xy[lane] -= both.x * part.y;
+        xz[lane] -= both.x * part.z;
+        yz[lane] -= both.y * part.z;
+        edges.slope.set(lane, edges.slope.get(lane) + less * change + part * off);
+        let square = weight * change - both.dot(h) * 2.0;
+        edges.at_middle[lane] += change * square - off * off * share;
     }
 }
 

@@ -8,11 +8,14 @@
 //!        xk = ids[of_v0]
 //! ```
 
+use std::ops::Range;
+
 use glam::{Vec3, Vec4};
 
-use crate::fast::lanes::{LANES, Lanes3, transpose};
-use crate::fast::ring::{GHOST, MOST, Vertices, place_in};
+use crate::fast::lanes::{self, Lanes3};
+use crate::fast::ring::{GHOST, MOST, RING, Vertices, place_in, place_of};
 use crate::fast::vertex::{Flags, Star, Vertex};
+use crate::fast::wide::{LANES, Row, Row3, most, transpose};
 use crate::refusal::Refusal;
 
 /// Room for a ring and the lanes beyond its end.
@@ -86,25 +89,13 @@ impl Hood {
         if len > MOST {
             return Err(Refusal::Valence);
         }
-        let (Some(at0), Some(at1)) = (place_in(ring0, v1), place_in(ring1, v0)) else {
-            return Err(Refusal::NonManifold);
-        };
         self.len = len;
         self.of_v0 = ring0.len() - 2;
-        let mut next = 0;
-        for part in [&ring0[at0 + 1..], &ring0[..at0]] {
-            for &w in part {
-                self.ids[next] = w;
-                next += 1;
-            }
-        }
-        // The first wing is there already; the second comes last and is written over.
-        next -= 1;
-        for part in [&ring1[at1 + 1..], &ring1[..at1]] {
-            for &w in part {
-                self.ids[next] = w;
-                next += 1;
-            }
+        // The last of the first part is the first of the second; the last of all is written beyond.
+        let found = write_after(&mut self.ids, 0, (vertices, v0), v1)
+            && write_after(&mut self.ids, self.of_v0, (vertices, v1), v0);
+        if !found {
+            return Err(Refusal::NonManifold);
         }
         self.link(vertices, [v0, v1])?;
         self.see(vertices, v0, v1);
@@ -115,7 +106,11 @@ impl Hood {
     #[inline(always)]
     fn link(&self, vertices: &Vertices, ends: [u32; 2]) -> Result<(), Refusal> {
         let (first, second) = self.ids().split_at(self.of_v0 + 1);
-        if first.iter().any(|w| second.contains(w)) {
+        let is_common = match self.ids.first_chunk::<RING>() {
+            Some(ids) if self.len <= RING => has_before(ids, self.of_v0 + 1..self.len),
+            _ => first.iter().any(|w| second.contains(w)),
+        };
+        if is_common {
             return Err(Refusal::Link);
         }
         for wing in [first[0], first[self.of_v0]] {
@@ -160,71 +155,93 @@ impl Hood {
     fn see(&mut self, vertices: &Vertices, v0: u32, v1: u32) {
         let (from, to) = (vertices.get(v0).place(), vertices.get(v1).place());
         self.along = to - from;
-        self.ghost = None;
-        let [x, y, z] = &mut self.ring;
-        for (i, &w) in self.ids[..self.len].iter().enumerate() {
-            let seen = vertices.get(w).place() - from;
-            (x[i], y[i], z[i]) = (seen.x, seen.y, seen.z);
-            self.of_v1[i] = if i < self.of_v0 { 0.0 } else { 1.0 };
-            if w == GHOST {
-                self.ghost = Some(i);
-            }
-        }
-        // The ghost lies on the boundary: an edge to it is one that there is.
-        if let Some(ghost) = self.ghost {
-            let before = (ghost + self.len - 1) % self.len;
-            let [x, y, z] = &mut self.ring;
-            (x[ghost], y[ghost], z[ghost]) = (x[before], y[before], z[before]);
+        for start in self.starts() {
+            self.see_some(vertices, start, from);
         }
         // The ring closes; the lanes beyond are faces of one point.
-        for i in self.len..=self.len.next_multiple_of(LANES) {
-            let [x, y, z] = &mut self.ring;
-            (x[i], y[i], z[i]) = (x[0], y[0], z[0]);
-            self.of_v1[i] = 0.0;
+        for x in &mut self.ring {
+            x[self.len.next_multiple_of(LANES)] = x[0];
         }
-        let mut start = 0;
-        while start < self.len {
-            let apex = Lanes3::all(self.along).by(Vec4::from_slice(&self.of_v1[start..]));
-            let normal = self.normal(start, apex);
-            store(&mut self.old, start, normal);
-            start += LANES;
+        self.ghost = self.ids().iter().position(|&w| w == GHOST);
+        if let Some(ghost) = self.ghost {
+            self.place_ghost(ghost);
+        }
+        for start in self.starts() {
+            let (spokes, mut old) = (self.spokes(start), Row3::ZERO);
+            for lane in 0..LANES {
+                old.set(lane, spokes.normal(lane, self.along * spokes.of_v1[lane]));
+            }
+            write(&mut self.old, start, &old);
         }
         if let Some(ghost) = self.ghost {
             clear(&mut self.old, ghost, self.len);
         }
     }
 
-    /// The normals of eight spokes with this apex.
+    /// Looks up where eight of the ring are, and whose spokes theirs are.
     #[inline(always)]
-    fn normal(&self, start: usize, apex: Lanes3) -> Lanes3 {
-        (load(&self.ring, start) - apex).cross(load(&self.ring, start + 1) - apex)
+    fn see_some(&mut self, vertices: &Vertices, start: usize, from: Vec3) {
+        let first = self.ids[0];
+        let ids: &mut [u32; LANES] = chunk_mut(&mut self.ids, start);
+        let (len, of_v0) = ((self.len - start) as u32, self.of_v0.saturating_sub(start) as u32);
+        for (lane, id) in (0..).zip(&mut *ids) {
+            *id = if lane < len { *id } else { first };
+        }
+        let see = |lane: usize| vertices.get(ids[lane]).seen.0[0] - from.extend(0.0);
+        let [x, y, z, _] =
+            transpose([see(0), see(1), see(2), see(3), see(4), see(5), see(6), see(7)]);
+        write(&mut self.ring, start, &Row3 { x, y, z });
+        let mut of_v1 = [0.0; LANES];
+        for (lane, of_v1) in (0..).zip(&mut of_v1) {
+            *of_v1 = if (lane >= of_v0) & (lane < len) { 1.0 } else { 0.0 };
+        }
+        *chunk_mut(&mut self.of_v1, start) = of_v1;
+    }
+
+    /// Puts the ghost on the boundary: an edge to it is one that there is.
+    #[cold]
+    fn place_ghost(&mut self, ghost: usize) {
+        let before = (ghost + self.len - 1) % self.len;
+        let beyond = self.len..=self.len.next_multiple_of(LANES);
+        for x in &mut self.ring {
+            x[ghost] = x[before];
+            let first = x[0];
+            x[beyond.clone()].fill(first);
+        }
+    }
+
+    /// Where each eight spokes begin.
+    #[inline(always)]
+    pub(super) fn starts(&self) -> impl Iterator<Item = usize> + use<> {
+        (0..self.len).step_by(LANES)
     }
 
     /// Puts the new vertex at `place`, as seen from v0. Whether no face turns over, or by more than a
     /// limit, or loses its area.
     #[inline(always)]
     pub(super) fn put(&mut self, place: Vec3) -> Result<(), Refusal> {
-        let apex = Lanes3::all(place);
-        let mut start = 0;
-        while start < self.len {
-            let new = self.normal(start, apex);
-            store(&mut self.new, start, new);
-            start += LANES;
+        for start in self.starts() {
+            let (spokes, mut new) = (self.spokes(start), Row3::ZERO);
+            for lane in 0..LANES {
+                new.set(lane, spokes.normal(lane, place));
+            }
+            write(&mut self.new, start, &new);
         }
         if let Some(ghost) = self.ghost {
             clear(&mut self.new, ghost, self.len);
         }
-        let mut turned = false;
-        let mut start = 0;
-        while start < self.len {
-            let (old, new) = (load(&self.old, start), load(&self.new, start));
-            let (turn, before) = (old.dot(new), old.dot(old));
-            let least = LEAST_COSINE * LEAST_COSINE * before * new.dot(new);
-            let kept = turn.cmpgt(Vec4::ZERO) & (turn * turn).cmpgt(least);
-            turned |= (!kept & before.cmpgt(Vec4::ZERO)).any();
-            start += LANES;
+        let mut turned = 0;
+        for start in self.starts() {
+            let (old, new) = (row3(&self.old, start), row3(&self.new, start));
+            for lane in 0..LANES {
+                let (old, new) = (old.get(lane), new.get(lane));
+                let (turn, before) = (old.dot(new), old.dot(old));
+                let least = LEAST_COSINE * LEAST_COSINE * before * new.dot(new);
+                let kept = (turn > 0.0) & (turn * turn > least);
+                turned |= u32::from(!kept & (before > 0.0));
+            }
         }
-        if turned { Err(Refusal::Flip) } else { Ok(()) }
+        if turned == 0 { Ok(()) } else { Err(Refusal::Flip) }
     }
 
     /// The dying faces' normals, in the order of the wings they have.
@@ -243,33 +260,47 @@ impl Hood {
     /// What each spoke's star becomes, less what it was, and the new vertex's star but for boundaries.
     #[inline(always)]
     pub(super) fn change(&mut self) -> Star {
-        let mut sum = Star::default();
-        let mut start = 0;
-        while start < self.len {
-            let (old, new) = (load(&self.old, start), load(&self.new, start));
-            let (n, was) = (faces(new), faces(old));
+        let mut sums = [[0.0; LANES]; 9];
+        for start in self.starts() {
+            let (old, new) = (row3(&self.old, start), row3(&self.new, start));
+            let mut change = [[0.0; LANES]; 9];
             for lane in 0..LANES {
-                sum.add(&n[lane]);
-                let mut change = n[lane];
-                change.take(&was[lane]);
-                self.changes[start + lane] = change;
+                let (now, was) = (sums_of(new.get(lane)), sums_of(old.get(lane)));
+                for k in 0..9 {
+                    sums[k][lane] += now[k];
+                    change[k][lane] = now[k] - was[k];
+                }
             }
-            start += LANES;
+            let [nx, ny, nz, xx, yy, zz, xy, xz, yz] = change;
+            let none = [0.0; LANES];
+            let (first, second) = (turn([none, none, none, nx]), turn([ny, nz, xx, yy]));
+            let third = turn([zz, xy, xz, yz]);
+            for lane in 0..LANES {
+                self.changes[start + lane] = Star([first[lane], second[lane], third[lane]]);
+            }
         }
-        sum
+        let mut sum = [0.0; 9];
+        for (sum, lanes) in sum.iter_mut().zip(&sums) {
+            *sum = added(lanes);
+        }
+        let [nx, ny, nz, xx, yy, zz, xy, xz, yz] = sum;
+        Star([Vec4::new(0.0, 0.0, 0.0, nx), Vec4::new(ny, nz, xx, yy), Vec4::new(zz, xy, xz, yz)])
     }
 
     /// The sums of the old normals around v0 and around v1.
     #[inline(always)]
     pub(super) fn sums(&self) -> (Vec3, Vec3) {
-        let (mut of_v0, mut of_v1) = (Vec3::ZERO, Vec3::ZERO);
-        for i in 0..self.of_v0 {
-            of_v0 += one(&self.old, i);
+        let (mut of_v0, mut of_v1) = (Row3::ZERO, Row3::ZERO);
+        for start in self.starts() {
+            let (old, part): (_, &Row) = (row3(&self.old, start), chunk(&self.of_v1, start));
+            for lane in 0..LANES {
+                let old = old.get(lane);
+                of_v0.set(lane, of_v0.get(lane) + old * (1.0 - part[lane]));
+                of_v1.set(lane, of_v1.get(lane) + old * part[lane]);
+            }
         }
-        for i in self.of_v0..self.len {
-            of_v1 += one(&self.old, i);
-        }
-        (of_v0, of_v1)
+        let sum = |of: &Row3| Vec3::new(added(&of.x), added(&of.y), added(&of.z));
+        (sum(&of_v0), sum(&of_v1))
     }
 
     /// Whether the surface ends here. Around a vertex that stands for one fan of several it ends only
@@ -307,28 +338,68 @@ impl Hood {
     #[inline(always)]
     pub(super) fn reach(&self) -> f32 {
         let half = self.along * 0.5;
-        let mut reach = half.length_squared();
-        for i in 0..self.len {
-            if self.ghost != Some(i) {
-                reach = reach.max(self.seen(i).distance_squared(half));
+        let mut reach = [half.length_squared(); LANES];
+        for start in self.starts() {
+            let ring = row3(&self.ring, start);
+            for lane in 0..LANES {
+                reach[lane] = most(ring.get(lane).distance_squared(half), reach[lane]);
             }
         }
-        reach
+        let mut farthest = reach[0];
+        for lane in reach {
+            farthest = most(lane, farthest);
+        }
+        farthest
+    }
+
+    /// Eight spokes.
+    #[inline(always)]
+    pub(super) fn spokes(&self, start: usize) -> Spokes {
+        Spokes {
+            a: row3(&self.ring, start),
+            b: row3(&self.ring, start + 1),
+            of_v1: *chunk(&self.of_v1, start),
+        }
     }
 }
 
-/// The stars of four faces by their normals.
+/// Eight spokes: the ring's vertices, those after them, and which end's they are.
+#[derive(Clone, Copy)]
+pub(super) struct Spokes {
+    pub(super) a: Row3,
+    pub(super) b: Row3,
+    pub(super) of_v1: Row,
+}
+
+impl Spokes {
+    /// Twice the area along the normal with this apex.
+    #[inline(always)]
+    fn normal(&self, lane: usize, apex: Vec3) -> Vec3 {
+        (self.a.get(lane) - apex).cross(self.b.get(lane) - apex)
+    }
+}
+
+/// n and n n' of one face: x, y, z, xx, yy, zz, xy, xz, yz.
 #[inline(always)]
-fn faces(Lanes3 { x, y, z }: Lanes3) -> [Star; LANES] {
-    let first = transpose(Vec4::ZERO, Vec4::ZERO, Vec4::ZERO, x);
-    let second = transpose(y, z, x * x, y * y);
-    let third = transpose(z * z, x * y, x * z, y * z);
-    [
-        Star([first[0], second[0], third[0]]),
-        Star([first[1], second[1], third[1]]),
-        Star([first[2], second[2], third[2]]),
-        Star([first[3], second[3], third[3]]),
-    ]
+fn sums_of(Vec3 { x, y, z }: Vec3) -> [f32; 9] {
+    [x, y, z, x * x, y * y, z * z, x * y, x * z, y * z]
+}
+
+/// Four rows of eight as eight rows of four.
+#[inline(always)]
+fn turn([a, b, c, d]: [Row; 4]) -> [Vec4; LANES] {
+    let four = |row: &Row, start: usize| Vec4::from_slice(&row[start..start + 4]);
+    let half = |start: usize| {
+        lanes::transpose(four(&a, start), four(&b, start), four(&c, start), four(&d, start))
+    };
+    let ([e, f, g, h], [i, j, k, l]) = (half(0), half(4));
+    [e, f, g, h, i, j, k, l]
+}
+
+/// The sum of all lanes, halves by halves.
+#[inline(always)]
+fn added(&[a, b, c, d, e, f, g, h]: &Row) -> f32 {
+    (Vec4::new(a, b, c, d) + Vec4::new(e, f, g, h)).element_sum()
 }
 
 #[inline(always)]
@@ -337,18 +408,74 @@ fn one(from: &[[f32; ROOM]; 3], i: usize) -> Vec3 {
 }
 
 #[inline(always)]
+fn chunk<T, const N: usize>(of: &[T], start: usize) -> &[T; N] {
+    of[start..].first_chunk().expect("there is room beyond the end")
+}
+
+#[inline(always)]
+fn chunk_mut<T, const N: usize>(of: &mut [T], start: usize) -> &mut [T; N] {
+    of[start..].first_chunk_mut().expect("there is room beyond the end")
+}
+
+#[inline(always)]
+pub(super) fn row3([x, y, z]: &[[f32; ROOM]; 3], start: usize) -> Row3 {
+    Row3 { x: *chunk(x, start), y: *chunk(y, start), z: *chunk(z, start) }
+}
+
+#[inline(always)]
+fn write([x, y, z]: &mut [[f32; ROOM]; 3], start: usize, from: &Row3) {
+    *chunk_mut(x, start) = from.x;
+    *chunk_mut(y, start) = from.y;
+    *chunk_mut(z, start) = from.z;
+}
+
+/// Writes the ring of a vertex from the neighbour after `end` on, and what comes to lie beyond it; false
+/// if `end` is no neighbour. Whole rooms: a copy of unknown length is a call.
+#[inline(always)]
+fn write_after(
+    to: &mut [u32; ROOM],
+    start: usize,
+    (vertices, v): (&Vertices, u32),
+    end: u32,
+) -> bool {
+    let vertex = vertices.get(v);
+    let len = vertex.len as usize;
+    if len > RING {
+        return write_long_after(&mut to[start..], vertices.settled(v), end);
+    }
+    let Some(at) = place_of(&vertex.ring, len, end) else { return false };
+    let mut twice = [0; 2 * RING];
+    *chunk_mut(&mut twice, 0) = vertex.ring;
+    *chunk_mut(&mut twice, len) = vertex.ring;
+    *chunk_mut(to, start) = *chunk::<_, RING>(&twice, at + 1);
+    true
+}
+
+#[cold]
+fn write_long_after(to: &mut [u32], ring: &[u32], end: u32) -> bool {
+    let Some(at) = place_in(ring, end) else { return false };
+    let turned = ring[at + 1..].iter().chain(&ring[..at]);
+    to.iter_mut().zip(turned).for_each(|(to, &w)| *to = w);
+    true
+}
+
+/// Whether those in a range that ends with the ring have one before it.
+#[inline(always)]
+fn has_before(ids: &[u32; RING], range: Range<usize>) -> bool {
+    let (start, mut times) = (range.start as u32, 0);
+    for &v in &ids[range] {
+        for (i, &id) in (0..).zip(ids) {
+            times += u32::from((id == v) & (i < start));
+        }
+    }
+    times > 0
+}
+
+#[inline(always)]
 pub(super) fn load(from: &[[f32; ROOM]; 3], start: usize) -> Lanes3 {
     let [x, y, z] = from;
     let at = |of: &[f32; ROOM]| Vec4::from_slice(&of[start..]);
     Lanes3 { x: at(x), y: at(y), z: at(z) }
-}
-
-#[inline(always)]
-fn store(to: &mut [[f32; ROOM]; 3], start: usize, from: Lanes3) {
-    let [x, y, z] = to;
-    from.x.write_to_slice(&mut x[start..]);
-    from.y.write_to_slice(&mut y[start..]);
-    from.z.write_to_slice(&mut z[start..]);
 }
 
 /// The ghost's faces have no area.

@@ -1,13 +1,14 @@
 //! What the engine asks of attributes; `()` where there are none, and nothing is left of it in the code.
 
-use glam::{DVec3, Vec3, Vec4};
+use glam::{DVec3, Vec3};
 use meshlod_mesh::{Attributes, WedgeId};
 
+use crate::fast::cost::{self, Edges};
 use crate::fast::hood::Hood;
-use crate::fast::lanes::{LANES, Lanes3};
 use crate::fast::place::Swept;
 use crate::fast::ring::Vertices;
 use crate::fast::vertex::{Flags, Star};
+use crate::fast::wide::LANES;
 use crate::refusal::Refusal;
 
 /// The ends of an edge that may be contracted: `v1` goes into `v0`.
@@ -39,17 +40,8 @@ pub(super) trait Looks: Sized + Send + Sync {
     /// What each of so many parts looks like.
     fn side_by_side(self, parts: usize) -> Vec<Self>;
 
-    /// Adds to the squares of `u` and of four others; gives the weights that [`Self::join`] wants.
-    fn squares(
-        &self,
-        u: u32,
-        ends: &[u32; LANES],
-        own: &mut [f32; 6],
-        theirs: &mut [Vec4; 6],
-    ) -> Vec4;
-
-    /// Adds what attributes leave of four edges' costs where they are best; seen from the middle.
-    fn join(&self, u: u32, ends: &[u32; LANES], weights: Vec4, h: Lanes3, parts: Parts<'_>);
+    /// Adds to the squares of edges what attributes leave of them where they are best.
+    fn join(&self, us: cost::Ends<'_>, vs: &[u32; LANES], edges: &mut Edges);
 
     /// Which end of an edge goes into which.
     fn order(&self, vertices: &Vertices, v: u32, target: u32) -> Result<Ends, Refusal>;
@@ -89,13 +81,6 @@ pub(super) struct Revalued {
     pub(super) values: Vec<f32>,
 }
 
-/// Squares of four edges: x'Sx − 2 q·x + c.
-pub(super) struct Parts<'a> {
-    pub(super) sum: &'a mut [Vec4; 6],
-    pub(super) slope: &'a mut Lanes3,
-    pub(super) at_middle: &'a mut Vec4,
-}
-
 impl Looks for () {
     const IN_PARTS: bool = true;
 
@@ -104,12 +89,7 @@ impl Looks for () {
     }
 
     #[inline(always)]
-    fn squares(&self, _: u32, _: &[u32; LANES], _: &mut [f32; 6], _: &mut [Vec4; 6]) -> Vec4 {
-        Vec4::ZERO
-    }
-
-    #[inline(always)]
-    fn join(&self, _: u32, _: &[u32; LANES], _: Vec4, _: Lanes3, _: Parts<'_>) {}
+    fn join(&self, _: cost::Ends<'_>, _: &[u32; LANES], _: &mut Edges) {}
 
     #[inline(always)]
     fn order(&self, vertices: &Vertices, v: u32, target: u32) -> Result<Ends, Refusal> {

@@ -23,6 +23,7 @@ mod looks;
 mod order;
 mod pace;
 mod painted;
+mod pairs;
 mod parts;
 mod place;
 mod prepare;
@@ -32,6 +33,7 @@ mod seams;
 mod split;
 mod vertex;
 mod volume;
+mod wide;
 mod work;
 
 use meshlod_mesh::{Bounds, Lock, Mesh};

@@ -6,21 +6,21 @@
 //! Seams are contracted along themselves, both sides at once; a vertex that has no seam goes into one
 //! that has, which stays where it is. So do the ends of seams, and where several meet.
 
-use glam::Vec4;
 use meshlod_mesh::Attributes;
 
 use crate::fast::around::Slots;
 use crate::fast::carry::Scratch;
 use crate::fast::coat::Coat;
+use crate::fast::cost::{self, Edges};
 use crate::fast::dress::Corners;
-use crate::fast::field::{Field, join, join_one, squares_of};
+use crate::fast::field::{All, Each, Field, join, join_one};
 use crate::fast::hood::Hood;
-use crate::fast::lanes::{LANES, Lanes3};
-use crate::fast::looks::{Ends, Looks, Parts, Placed, Revalued, by_pins};
+use crate::fast::looks::{Ends, Looks, Placed, Revalued, by_pins};
 use crate::fast::place::Swept;
 use crate::fast::ring::{GHOST, Vertices};
 use crate::fast::seams::Seams;
 use crate::fast::vertex::{Flags, Star};
+use crate::fast::wide::LANES;
 use crate::refusal::Refusal;
 
 /// All wedges of a surface.
@@ -68,11 +68,6 @@ impl<const K: usize> Painted<'_, K> {
         self.fields.get(slot as usize).unwrap_or(&self.none)
     }
 
-    #[inline(always)]
-    fn four(&self, ends: &[u32; LANES]) -> [&Field<K>; LANES] {
-        [self.field(ends[0]), self.field(ends[1]), self.field(ends[2]), self.field(ends[3])]
-    }
-
     /// The slots that meet along an edge.
     pub(super) fn pairs(&self, vertices: &Vertices, Ends { v0, v1, .. }: Ends) -> Pairs {
         let mut pairs = Pairs::default();
@@ -112,26 +107,15 @@ impl<const K: usize> Looks for Painted<'_, K> {
     }
 
     #[inline(always)]
-    fn squares(
-        &self,
-        u: u32,
-        ends: &[u32; LANES],
-        own: &mut [f32; 6],
-        theirs: &mut [Vec4; 6],
-    ) -> Vec4 {
-        for (own, more) in own.iter_mut().zip(self.field(u).squares()) {
-            *own += more;
+    fn join(&self, us: cost::Ends<'_>, vs: &[u32; LANES], edges: &mut Edges) {
+        let of = |ids: &[u32; LANES]| {
+            let of = |lane: usize| self.field(ids[lane]);
+            [of(0), of(1), of(2), of(3), of(4), of(5), of(6), of(7)]
+        };
+        match us {
+            cost::Ends::Of(u) => join(&All(self.field(u)), &Each(of(vs)), edges),
+            cost::Ends::Each(us) => join(&Each(of(us)), &Each(of(vs)), edges),
         }
-        let (squares, weights) = squares_of(&self.four(ends));
-        for (theirs, more) in theirs.iter_mut().zip(squares) {
-            *theirs += more;
-        }
-        weights
-    }
-
-    #[inline(always)]
-    fn join(&self, u: u32, ends: &[u32; LANES], weights: Vec4, h: Lanes3, parts: Parts<'_>) {
-        join(self.field(u), &self.four(ends), weights, h, parts);
     }
 
     #[inline(always)]

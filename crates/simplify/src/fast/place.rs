@@ -24,6 +24,7 @@ pub(super) struct Swept {
 
 impl Swept {
     /// The squares there.
+    #[inline(always)]
     pub(super) fn at(&self, x: DVec3) -> f64 {
         x.dot(self.sum * x) - 2.0 * self.slope.dot(x) + self.at_middle
     }
@@ -34,6 +35,7 @@ impl Swept {
     }
 
     /// The best place; not a number where there is none.
+    #[inline(always)]
     pub(super) fn best(&self) -> DVec3 {
         let squared = self.normal.length_squared();
         if squared <= f64::MIN_POSITIVE {
@@ -58,6 +60,7 @@ impl Swept {
 }
 
 /// The sum of n n'.
+#[inline(always)]
 pub(super) fn matrix(star: &Star) -> DMat3 {
     symmetric(star.squares())
 }

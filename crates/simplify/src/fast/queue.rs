@@ -13,11 +13,18 @@ const BUCKETS: usize = (f32::INFINITY.to_bits() >> BELOW) as usize;
 /// Not in the queue.
 pub(super) const NONE: u16 = u16::MAX;
 
+/// How many vertices are taken at once, to be made ready before the first is gone on with.
+pub(super) const AHEAD: usize = 16;
+
 /// Vertices by the bucket of their cost.
 pub(super) struct Queue {
     buckets: Vec<Vec<u32>>,
     /// No bucket below has an entry.
     lowest: usize,
+    /// Those that come next, the first one last, all of one bucket; they have left theirs.
+    next: Vec<u32>,
+    /// The bucket of `next`; none below has an entry.
+    front: u16,
 }
 
 /// The bucket of a cost; `NONE` of one that is infinite or not a number.
@@ -39,7 +46,12 @@ pub(super) const fn last_bucket() -> u16 {
 
 impl Default for Queue {
     fn default() -> Self {
-        Self { buckets: vec![Vec::new(); BUCKETS], lowest: BUCKETS }
+        Self {
+            buckets: vec![Vec::new(); BUCKETS],
+            lowest: BUCKETS,
+            next: Vec::with_capacity(AHEAD),
+            front: 0,
+        }
     }
 }
 
@@ -53,28 +65,44 @@ impl Queue {
         }
     }
 
-    /// Those that come next if nothing is put in before them, `count` at most.
-    pub(super) fn upcoming(&self, count: usize) -> &[u32] {
-        let list = self.buckets.get(self.lowest).map_or(&[][..], Vec::as_slice);
-        &list[list.len().saturating_sub(count)..]
-    }
-
-    /// The next vertex, and its bucket, if that is not behind `last`.
+    /// Takes some vertices out where none is left of those taken before. False where all that there are
+    /// come behind `last`.
     #[inline(always)]
-    pub(super) fn pop(&mut self, last: u16) -> Option<(u32, u16)> {
+    pub(super) fn take(&mut self, last: u16) -> bool {
         while self.lowest <= last as usize {
-            let list = self.buckets.get_mut(self.lowest)?;
-            if let Some(vertex) = list.pop() {
-                return Some((vertex, self.lowest as u16));
+            let Some(list) = self.buckets.get_mut(self.lowest) else { return false };
+            if !list.is_empty() {
+                self.front = self.lowest as u16;
+                self.next.extend(list.drain(list.len().saturating_sub(AHEAD)..));
+                return true;
             }
             self.lowest += 1;
         }
-        None
+        false
+    }
+
+    /// Those that were taken out and come next, the first one last, and their bucket.
+    #[inline(always)]
+    pub(super) fn next(&self) -> (&[u32], u16) {
+        (&self.next, self.front)
+    }
+
+    /// Goes past the next vertex.
+    #[inline(always)]
+    pub(super) fn pop(&mut self) -> Option<u32> {
+        self.next.pop()
+    }
+
+    /// Puts those back that were taken out, before others come in that may be in front of them.
+    pub(super) fn put_back(&mut self) {
+        if let Some(list) = self.buckets.get_mut(self.front as usize) {
+            list.append(&mut self.next);
+        }
     }
 
     /// A bucket that none with an entry comes before.
     pub(super) fn lowest(&self) -> usize {
-        self.lowest
+        if self.next.is_empty() { self.lowest } else { self.front.into() }
     }
 
     /// How many entries each bucket has.
@@ -83,7 +111,9 @@ impl Queue {
     }
 
     /// Takes the entries of another, to come before its own of the same bucket.
-    pub(super) fn append(&mut self, other: Self) {
+    pub(super) fn append(&mut self, mut other: Self) {
+        self.put_back();
+        other.put_back();
         self.lowest = self.lowest.min(other.lowest);
         for (own, mut others) in self.buckets.iter_mut().zip(other.buckets) {
             own.append(&mut others);
@@ -95,20 +125,32 @@ impl Queue {
 mod tests {
     use super::*;
 
+    fn next(queue: &mut Queue) -> Option<u32> {
+        queue.pop().or_else(|| if queue.take(NONE) { queue.pop() } else { None })
+    }
+
     #[test]
     fn the_cheapest_bucket_comes_first_and_a_cheaper_one_cuts_in() {
         let mut queue = Queue::default();
         for (v, cost) in [(0, 4.0), (1, 1e-3), (2, 100.0), (3, 0.0)] {
             queue.push(v, bucket(cost));
         }
-        assert_eq!(queue.pop(NONE).unwrap().0, 3);
-        assert_eq!(queue.pop(NONE).unwrap().0, 1);
+        assert_eq!((next(&mut queue), next(&mut queue)), (Some(3), Some(1)));
         queue.push(7, bucket(1e-30));
-        assert_eq!(
-            [queue.pop(NONE), queue.pop(NONE), queue.pop(NONE)].map(|e| e.unwrap().0),
-            [7, 0, 2]
-        );
-        assert_eq!(queue.pop(NONE), None);
+        assert_eq!((next(&mut queue), next(&mut queue)), (Some(7), Some(0)));
+        assert_eq!((next(&mut queue), next(&mut queue)), (Some(2), None));
+    }
+
+    #[test]
+    fn the_last_one_in_comes_first_and_what_was_taken_can_be_put_back() {
+        let mut queue = Queue::default();
+        (0..AHEAD as u32 + 3).for_each(|v| queue.push(v, 9));
+        assert!(!queue.take(8) && queue.take(9));
+        assert_eq!((queue.next().0.len(), queue.pop()), (AHEAD, Some(18)));
+        queue.put_back();
+        queue.push(40, 4);
+        let all: Vec<u32> = std::iter::from_fn(|| next(&mut queue)).collect();
+        assert_eq!(all, [40].into_iter().chain((0..18).rev()).collect::<Vec<_>>());
     }
 
     #[test]
@@ -118,7 +160,7 @@ mod tests {
             assert_eq!(bucket(cost), NONE);
             queue.push(0, bucket(cost));
         }
-        assert_eq!(queue.pop(NONE), None);
+        assert!(!queue.take(NONE));
     }
 
     #[test]

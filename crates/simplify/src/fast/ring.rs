@@ -254,10 +254,11 @@ impl Vertex {
             return shrunk;
         }
         let len = self.len as usize;
-        if let Some(at) = place_in(&self.ring[..len], neighbour) {
+        if let Some(at) = place_of(&self.ring, len, neighbour) {
             // All of it, always: a move of unknown length is a call.
             for i in 0..RING - 1 {
-                self.ring[i] = if i < at { self.ring[i] } else { self.ring[i + 1] };
+                let (here, next) = (self.ring[i], self.ring[i + 1]);
+                self.ring[i] = if (i as u32) < at as u32 { here } else { next };
             }
             self.len -= 1;
         }
@@ -273,6 +274,16 @@ impl Vertex {
             }
         }
     }
+}
+
+/// Where it is among the first `len` of a ring, found without a guess.
+#[inline(always)]
+pub(super) fn place_of(ring: &[u32; RING], len: usize, v: u32) -> Option<usize> {
+    let (len, mut beyond) = (len as u32, 0);
+    for (i, &w) in (1..).zip(ring) {
+        beyond += if (w == v) & (i <= len) { i } else { 0 };
+    }
+    (beyond as usize).checked_sub(1)
 }
 
 /// Where it is in a ring.

@@ -1,0 +1,56 @@
+//! Edges of any vertices, costed eight at a time.
+
+use crate::fast::cost::{Ends, costs};
+use crate::fast::looks::Looks;
+use crate::fast::ring::Vertices;
+use crate::fast::wide::LANES;
+
+/// Edges to be costed, `ROOM` at most.
+pub(super) struct Pairs<const ROOM: usize> {
+    us: [u32; ROOM],
+    vs: [u32; ROOM],
+    len: usize,
+}
+
+impl<const ROOM: usize> Pairs<ROOM> {
+    pub(super) fn new() -> Self {
+        Self { us: [0; ROOM], vs: [0; ROOM], len: 0 }
+    }
+
+    /// Whether there is room for so many more.
+    #[inline(always)]
+    pub(super) fn has_room(&self, more: usize) -> bool {
+        self.len + more <= ROOM
+    }
+
+    /// Takes an edge up `if_so`, which is not to be guessed by a branch.
+    #[inline(always)]
+    pub(super) fn push(&mut self, u: u32, v: u32, if_so: bool) {
+        (self.us[self.len], self.vs[self.len]) = (u, v);
+        self.len += usize::from(if_so);
+    }
+
+    /// Tells the cost of each, in their order, and forgets them.
+    #[inline(always)]
+    pub(super) fn cost_all(
+        &mut self,
+        vertices: &Vertices,
+        looks: &impl Looks,
+        mut tell: impl FnMut([u32; 2], f32),
+    ) {
+        let mut start = 0;
+        while start < self.len {
+            // Lanes beyond the end look at the first one again.
+            let (mut us, mut vs) = ([self.us[start]; LANES], [self.vs[start]; LANES]);
+            for lane in 0..LANES.min(self.len - start) {
+                (us[lane], vs[lane]) = (self.us[start + lane], self.vs[start + lane]);
+            }
+            let costs = costs(vertices, looks, Ends::Each(&us), &vs);
+            for lane in 0..LANES.min(self.len - start) {
+                tell([us[lane], vs[lane]], costs[lane]);
+            }
+            start += LANES;
+        }
+        self.len = 0;
+    }
+}

@@ -1,0 +1,116 @@
+//! Eight at a time: rows of floats that go through the same arithmetic, lane by lane.
+//!
+//! A loop over the lanes of rows, with no branch in it, becomes registers as wide as the machine has
+//! them; the numbers are the same for any width. [`widest`] is where the width is chosen.
+
+use glam::{Mat4, Vec3, Vec4};
+
+/// How many.
+pub(super) const LANES: usize = 8;
+
+/// A number of each.
+pub(super) type Row = [f32; LANES];
+
+/// A vector of each.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Row3 {
+    pub(super) x: Row,
+    pub(super) y: Row,
+    pub(super) z: Row,
+}
+
+impl Row3 {
+    pub(super) const ZERO: Self = Self { x: [0.0; LANES], y: [0.0; LANES], z: [0.0; LANES] };
+
+    #[inline(always)]
+    pub(super) fn all(v: Vec3) -> Self {
+        Self { x: [v.x; LANES], y: [v.y; LANES], z: [v.z; LANES] }
+    }
+
+    #[inline(always)]
+    pub(super) fn get(&self, lane: usize) -> Vec3 {
+        Vec3::new(self.x[lane], self.y[lane], self.z[lane])
+    }
+
+    #[inline(always)]
+    pub(super) fn set(&mut self, lane: usize, v: Vec3) {
+        (self.x[lane], self.y[lane], self.z[lane]) = (v.x, v.y, v.z);
+    }
+}
+
+/// Eight rows of four as four rows of eight.
+#[inline(always)]
+pub(super) fn transpose(rows: [Vec4; LANES]) -> [Row; 4] {
+    let [a, b, c, d, e, f, g, h] = rows;
+    let (left, right) = (Mat4::from_cols(a, b, c, d), Mat4::from_cols(e, f, g, h));
+    let (left, right) = (left.transpose(), right.transpose());
+    [
+        side_by_side(left.x_axis, right.x_axis),
+        side_by_side(left.y_axis, right.y_axis),
+        side_by_side(left.z_axis, right.z_axis),
+        side_by_side(left.w_axis, right.w_axis),
+    ]
+}
+
+#[inline(always)]
+fn side_by_side(left: Vec4, right: Vec4) -> Row {
+    let ([a, b, c, d], [e, f, g, h]) = (left.to_array(), right.to_array());
+    [a, b, c, d, e, f, g, h]
+}
+
+/// The lesser of two; where one is no number, the second.
+#[inline(always)]
+pub(super) fn least(a: f32, b: f32) -> f32 {
+    if a < b { a } else { b }
+}
+
+/// The greater of two; where one is no number, the second.
+#[inline(always)]
+pub(super) fn most(a: f32, b: f32) -> f32 {
+    if a > b { a } else { b }
+}
+
+/// Work for [`widest`]. A function that is always inlined, which a closure need not be.
+pub(super) trait Work {
+    fn work(self);
+}
+
+/// Does the work with the widest registers that this machine has.
+pub(super) fn widest(work: impl Work) {
+    #[cfg(target_arch = "x86_64")]
+    if std::arch::is_x86_feature_detected!("avx2") {
+        #[target_feature(enable = "avx2")]
+        fn with_avx2(work: impl Work) {
+            work.work();
+        }
+        // SAFETY: the machine has what the function is compiled for.
+        #[allow(unsafe_code)]
+        return unsafe { with_avx2(work) };
+    }
+    work.work();
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rows_become_columns() {
+        let mut rows = [Vec4::ZERO; LANES];
+        for (lane, row) in rows.iter_mut().enumerate() {
+            *row = Vec4::new(0.0, 10.0, 20.0, 30.0) + lane as f32;
+        }
+        let columns = transpose(rows);
+        for (i, column) in columns.iter().enumerate() {
+            for (lane, x) in column.iter().enumerate() {
+                assert_eq!(*x, (10 * i + lane) as f32);
+            }
+        }
+    }
+
+    #[test]
+    fn what_is_no_number_gives_way() {
+        assert_eq!((least(f32::NAN, 1.0), most(f32::NAN, 1.0)), (1.0, 1.0));
+        assert_eq!((least(2.0, 1.0), most(2.0, 1.0)), (1.0, 2.0));
+    }
+}
