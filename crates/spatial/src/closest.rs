@@ -41,13 +41,40 @@ impl Bvh {
     /// Cost: O(log n) for points near the surface, n = faces.
     pub fn closest(&self, point: [f64; 3], hint: Option<FaceId>) -> Closest {
         let p = self.frame.local(point);
+        let mut best = self.first(p, hint);
+        self.descend(p, &mut best, -1.0, f64::INFINITY);
+        self.in_model(&best)
+    }
+
+    /// A point of the mesh within `most` of `point`, which must be finite: any that is within `enough`,
+    /// else the closest; `None` if there is none. `hint` as in [`Self::closest`]. Lengths in model units.
+    ///
+    /// Cost: that of [`Self::closest`] or less.
+    pub fn near(
+        &self,
+        point: [f64; 3],
+        hint: Option<FaceId>,
+        [enough, most]: [f64; 2],
+    ) -> Option<Closest> {
+        let p = self.frame.local(point);
+        let [enough, most] = [enough, most].map(|length| (length * self.frame.scale()).powi(2));
+        let mut best = self.first(p, hint);
+        if best.distance_squared > enough {
+            self.descend(p, &mut best, enough, most);
+        }
+        (best.distance_squared <= most).then(|| self.in_model(&best))
+    }
+
+    fn first(&self, p: DVec3, hint: Option<FaceId>) -> Candidate {
         let start = hint.and_then(|face| self.slots.get(face.index())).map_or(0, |&slot| slot);
-        let mut best = self.candidate(p, start as usize);
-        self.descend(p, &mut best);
+        self.candidate(p, start as usize)
+    }
+
+    fn in_model(&self, found: &Candidate) -> Closest {
         Closest {
-            point: self.frame.model(best.point),
-            face: best.face,
-            distance_squared: self.frame.model_squared(best.distance_squared),
+            point: self.frame.model(found.point),
+            face: found.face,
+            distance_squared: self.frame.model_squared(found.distance_squared),
         }
     }
 
@@ -56,10 +83,12 @@ impl Bvh {
         Candidate { point, face: self.faces[slot], distance_squared: p.distance_squared(point) }
     }
 
-    /// Improves `best` to the closest of all: nearest boxes first, no box beyond the best so far.
-    fn descend(&self, p: DVec3, best: &mut Candidate) {
+    /// Improves `best` to the closest of all, or until it is within `enough`: nearest boxes first, no
+    /// box beyond the best so far or `most`. Squares. In line, as it is without limits most often.
+    #[inline(always)]
+    fn descend(&self, p: DVec3, best: &mut Candidate, enough: f64, most: f64) {
         let query = Query::new(p);
-        let mut reach = reach(best.distance_squared);
+        let mut reach = reach(best.distance_squared.min(most));
         let mut stack = [(0.0, 0); STACK];
         let mut waiting = 1;
         while waiting > 0 {
@@ -86,7 +115,10 @@ impl Bvh {
                     let first = node.first[child] as usize;
                     for slot in first..first + usize::from(node.count[child]) {
                         if best.improve(self.candidate(p, slot)) {
-                            reach = self::reach(best.distance_squared);
+                            if best.distance_squared <= enough {
+                                return;
+                            }
+                            reach = self::reach(best.distance_squared.min(most));
                         }
                     }
                 }

@@ -71,6 +71,25 @@ proptest! {
     }
 
     #[test]
+    fn what_is_near_is_found_and_nothing_else(
+        mesh in soup(),
+        point in prop::array::uniform3(-1.5f64..1.5),
+        [enough, more] in prop::array::uniform2(0.0f64..0.5),
+    ) {
+        let bvh = Bvh::new(&mesh).unwrap();
+        let (_, least) = naive(&bvh, point);
+        let most = enough + more;
+        match bvh.near(point, None, [enough, most]) {
+            Some(found) => {
+                let apart = found.distance_squared.sqrt();
+                prop_assert!(apart <= most * (1.0 + 1e-12));
+                prop_assert!(apart <= enough || (apart - least.sqrt()).abs() < 1e-12);
+            }
+            None => prop_assert!(least.sqrt() > most * (1.0 - 1e-12)),
+        }
+    }
+
+    #[test]
     fn neither_place_nor_size_matters(
         mesh in soup(),
         scale in prop_oneof![Just(1e-30), Just(1e-3), Just(1e30)],

@@ -6,8 +6,8 @@
 
 use glam::Vec3;
 
-use crate::fast::hood::{Hood, Spokes, row3};
-use crate::fast::wide::{LANES, least, most};
+use crate::fast::hood::{Hood, ROOM, Spokes, row3};
+use crate::fast::wide::{LANES, Row3, least, most};
 
 /// Keeps a division by nothing from being one.
 const TINY: f32 = 1e-30;
@@ -33,10 +33,9 @@ impl Hood {
                 of_new[lane] = least(face.squared(place - apex), of_new[lane]);
             }
         }
-        let (first, last) = self.dying();
-        let (wing0, wing1) = (self.seen(0), self.seen(self.of_v0));
-        of_new[0] = least(Spoke::new(along, wing0, first).squared(place), of_new[0]);
-        of_new[0] = least(Spoke::new(wing1, along, last).squared(place), of_new[0]);
+        for [a, b, normal] in self.dying_faces() {
+            of_new[0] = least(Spoke::new(a, b, normal).squared(place), of_new[0]);
+        }
         let mut nearest = [of_v0[0], of_v1[0], of_new[0]];
         for lane in 1..LANES {
             nearest[0] = least(of_v0[lane], nearest[0]);
@@ -44,6 +43,91 @@ impl Hood {
             nearest[2] = least(of_new[lane], nearest[2]);
         }
         most(nearest[0], most(nearest[1], nearest[2]))
+    }
+
+    /// The square of how far a place is from the planes of the old faces that stay, at most.
+    pub(super) fn off_planes(&self, place: Vec3) -> f32 {
+        let mut farthest = 0.0;
+        for start in self.starts() {
+            let (old, of_v1) = (row3(&self.old, start), self.spokes(start).of_v1);
+            for lane in 0..LANES {
+                let normal = old.get(lane);
+                let height = normal.dot(place - self.along * of_v1[lane]);
+                let to_unit = (normal.dot(normal) + TINY).recip();
+                farthest = most(height * height * to_unit, farthest);
+            }
+        }
+        farthest
+    }
+
+    /// The dying faces: two corners as seen from v0, and the normal.
+    #[inline(always)]
+    fn dying_faces(&self) -> [[Vec3; 3]; 2] {
+        let (first, last) = self.dying();
+        [[self.along, self.seen(0), first], [self.seen(self.of_v0), self.along, last]]
+    }
+}
+
+/// The faces around an edge, for many points.
+#[derive(Default)]
+pub(super) struct Fan(Vec<Faces>);
+
+/// Eight faces: an apex as seen from v0, the other corners as seen from the apex, the normal.
+struct Faces {
+    apex: Row3,
+    a: Row3,
+    b: Row3,
+    normal: Row3,
+}
+
+impl Fan {
+    /// Lays out the faces with the new vertex, which are those last put. `place` as seen from v0.
+    pub(super) fn lay_new(&mut self, hood: &Hood, place: Vec3) {
+        self.0.clear();
+        self.lay(hood, &hood.new, |_| place);
+    }
+
+    /// Lays out the faces with the old vertices, those that die too.
+    pub(super) fn lay_old(&mut self, hood: &Hood) {
+        self.0.clear();
+        self.lay(hood, &hood.old, |of_v1| hood.along * of_v1);
+        let [first, [a, b, normal]] = hood.dying_faces();
+        let (a, b, normal) = (Row3::all(a), Row3::all(b), Row3::all(normal));
+        let mut faces = Faces { apex: Row3::ZERO, a, b, normal };
+        let [a, b, normal] = first;
+        faces.a.set(0, a);
+        faces.b.set(0, b);
+        faces.normal.set(0, normal);
+        self.0.push(faces);
+    }
+
+    fn lay(&mut self, hood: &Hood, normals: &[[f32; ROOM]; 3], apex: impl Fn(f32) -> Vec3) {
+        for start in hood.starts() {
+            let Spokes { mut a, mut b, of_v1 } = hood.spokes(start);
+            let mut apices = Row3::ZERO;
+            for lane in 0..LANES {
+                let apex = apex(of_v1[lane]);
+                a.set(lane, a.get(lane) - apex);
+                b.set(lane, b.get(lane) - apex);
+                apices.set(lane, apex);
+            }
+            self.0.push(Faces { apex: apices, a, b, normal: row3(normals, start) });
+        }
+    }
+
+    /// The square of the distance of a point, as seen from v0.
+    #[inline]
+    pub(super) fn squared(&self, point: Vec3) -> f32 {
+        let mut nearest = [f32::INFINITY; LANES];
+        for Faces { apex, a, b, normal } in &self.0 {
+            for lane in 0..LANES {
+                let face = Spoke::new(a.get(lane), b.get(lane), normal.get(lane));
+                let seen = point - apex.get(lane);
+                let squared = least(face.squared(seen), face.squared_of_rim(seen));
+                nearest[lane] = least(squared, nearest[lane]);
+            }
+        }
+        nearest.into_iter().fold(f32::INFINITY, least)
     }
 }
 
@@ -80,5 +164,14 @@ impl Spoke {
         let t = least(most(pa * self.to_a, 0.0), 1.0);
         let edge = most(point.dot(point) - t * (pa + pa - t * self.aa), 0.0);
         if is_over { height * height * self.to_unit } else { edge }
+    }
+
+    /// The square of the distance of a point from the outer edge, where the face has an area.
+    #[inline(always)]
+    fn squared_of_rim(&self, point: Vec3) -> f32 {
+        let (along, from_a) = (self.b - self.a, point - self.a);
+        let t = from_a.dot(along) * (along.dot(along) + TINY).recip();
+        let apart = from_a - along * least(most(t, 0.0), 1.0);
+        if self.nn > 0.0 { apart.dot(apart) } else { f32::INFINITY }
     }
 }

@@ -392,7 +392,7 @@ mod tests {
         let coat = Coat::new(mesh, &frame, &AttributeWeights::DEFAULT, 2);
         let painted = Painted::<2>::new(coat, corners(), &mut fans.store.whole(), numbers());
         let mut parts = Parts::new(fans.store, painted, fans.faces);
-        parts.run(faces, u16::MAX, &mut |_| ());
+        parts.run(faces, u16::MAX, None, &mut |_| ());
         assert!(parts.live_faces <= faces && parts.live_faces > faces / 2);
         let Parts { mut store, mut looks, .. } = parts;
         let (looks, heirs) = (looks.remove(0), store.heirs());

@@ -18,6 +18,7 @@ use crate::fast::ring::{GHOST, MOST, RING, Vertices};
 use crate::fast::vertex::{Flags, NOBODY, Star, Vertex};
 use crate::fast::volume::Volume;
 use crate::fast::wide::{Work, widest};
+use crate::fast::within::{Step, Within};
 use crate::refusal::{Refusal, Refusals};
 
 /// By how many buckets of a quarter octave a cost may have risen. Mean error of horse-97k at 10 %:
@@ -42,8 +43,8 @@ pub(super) struct Engine<'v, L> {
     pub(super) live_faces: usize,
     /// The square of the greatest estimate so far, in the frame's units.
     pub(super) error: f64,
-    /// The square of the greatest estimate allowed.
-    pub(super) most_error: f64,
+    /// What holds the surface within a bound, where there is one.
+    pub(super) within: Option<Within<'v>>,
     pub(super) refusals: Refusals,
     pub(super) volume: Volume,
     /// What was done, where that is wanted.
@@ -76,7 +77,7 @@ impl<'v, L: Looks> Engine<'v, L> {
             looks,
             live_faces: 0,
             error: 0.0,
-            most_error: f64::INFINITY,
+            within: None,
             refusals: Refusals::default(),
             volume: Volume::default(),
             log: None,
@@ -362,12 +363,13 @@ impl<'v, L: Looks> Engine<'v, L> {
         // A length: attributes have no part in it.
         let swept_over = swept.at(best).max(0.0) / swept.weight().max(f64::MIN_POSITIVE);
         let now = hood.apart(place - from).max(swept_over as f32);
-        let moved = now + end0.moved.max(end1.moved);
-        if f64::from(moved) > self.most_error {
-            return Err(refused(Refusal::Error));
-        }
+        let mut moved = now + end0.moved.max(end1.moved);
         if let Some(bucket) = pace.wait(now, moved, front) {
             return Err(Not::TooFar(bucket));
+        }
+        if let Some(within) = &mut self.within {
+            let step = Step { hood, ends: [v0, v1], from, by: place - from, now };
+            moved = within.admit(&step, moved).ok_or_else(|| refused(Refusal::Error))?;
         }
         self.error = self.error.max(moved.into());
         let to = (place - from).as_dvec3() - swept.half;

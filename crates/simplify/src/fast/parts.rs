@@ -21,6 +21,7 @@ use crate::fast::queue::{Queue, last_bucket};
 use crate::fast::ring::{GHOST, Long, Store, Vertices};
 use crate::fast::vertex::Flags;
 use crate::fast::volume::Volume;
+use crate::fast::within::Bound;
 use crate::refusal::Refusals;
 
 /// The most vertices of a part in the first round: 6 MB of records. Smaller meshes are one part: in four
@@ -56,8 +57,6 @@ pub(super) struct Parts<L> {
     pub(super) live_faces: usize,
     /// The square of the greatest estimate so far, in the frame's units.
     pub(super) error: f64,
-    /// The square of the greatest estimate allowed.
-    pub(super) most_error: f64,
     pub(super) refusals: Refusals,
     pub(super) volume: Volume,
     /// What was done, where that is wanted.
@@ -95,7 +94,6 @@ impl<L: Looks> Parts<L> {
             looks: looks.side_by_side(count),
             live_faces,
             error: 0.0,
-            most_error: f64::INFINITY,
             refusals: Refusals::default(),
             volume: Volume::default(),
             log: None,
@@ -119,9 +117,15 @@ impl<L: Looks> Parts<L> {
 
     /// Contracts until no more than `faces` are left, or all costs are in buckets behind `last`, or
     /// nothing more may be contracted. Says now and then how many faces have gone.
-    pub(super) fn run(&mut self, faces: usize, last: u16, gone: &mut dyn FnMut(usize)) {
+    pub(super) fn run(
+        &mut self,
+        faces: usize,
+        last: u16,
+        mut bound: Option<&mut Bound<'_>>,
+        gone: &mut dyn FnMut(usize),
+    ) {
         loop {
-            self.round(faces, last, gone);
+            self.round(faces, last, bound.as_deref_mut(), gone);
             if self.live_faces <= faces || self.parts.len() == 1 {
                 return;
             }
@@ -147,14 +151,24 @@ impl<L: Looks> Parts<L> {
     }
 
     /// Goes on to so many faces, or until the borders weigh too much.
-    fn round(&mut self, faces: usize, last: u16, gone: &mut dyn FnMut(usize)) {
+    fn round(
+        &mut self,
+        faces: usize,
+        last: u16,
+        bound: Option<&mut Bound<'_>>,
+        gone: &mut dyn FnMut(usize),
+    ) {
         let waiting: usize = self.parts.iter().map(|part| part.waiting.len()).sum();
         let stop = (faces + LEFT_OVER * waiting).max(FACES_A_WAITING * waiting);
-        let (mut live, most_error) = (self.live_faces, self.most_error);
+        let mut live = self.live_faces;
         let mut log = self.log.take();
         let mut engines: Vec<Engine<'_, L>> =
             self.engines().into_iter().map(|(engine, _)| engine).collect();
-        engines.iter_mut().for_each(|engine| engine.most_error = most_error);
+        if let Some(bound) = bound {
+            let lengths: Vec<usize> = engines.iter().map(|e| e.vertices.all.len()).collect();
+            let all = bound.split(&lengths);
+            engines.iter_mut().zip(all).for_each(|(engine, part)| engine.within = Some(part));
+        }
         while live > stop {
             let Some(step) = Step::new(&engines, live - stop, last) else { break };
             let before = live;
@@ -391,7 +405,7 @@ mod tests {
             assert!(test.parts.parts.len() > 4);
             test.check();
             loop {
-                test.parts.round(faces / 20, NONE, &mut |_| ());
+                test.parts.round(faces / 20, NONE, None, &mut |_| ());
                 test.check();
                 if test.parts.parts.len() == 1 {
                     break;
@@ -410,7 +424,7 @@ mod tests {
             let faces = mesh.faces.len() / 10;
             let [one, several] = [usize::MAX, 300].map(|part| {
                 let mut test = Test::new(mesh.clone(), part);
-                test.parts.run(faces, NONE, &mut |_| ());
+                test.parts.run(faces, NONE, None, &mut |_| ());
                 let used = test.parts.store.all.iter().filter(|v| !v.flags.any(Flags::DEAD));
                 used.map(|v| f64::from(v.moved).sqrt()).sum::<f64>()
             });
@@ -422,7 +436,7 @@ mod tests {
     fn a_target_in_the_midst_of_a_round_is_met_and_gone_on_from() {
         let mut test = Test::new(sample::sphere(4000), 200);
         for faces in [3901, 3900, 3300, 2000, 1999, 500, 50] {
-            test.parts.run(faces, NONE, &mut |_| ());
+            test.parts.run(faces, NONE, None, &mut |_| ());
             test.check();
             assert!(test.parts.live_faces.abs_diff(faces) <= 1 && test.parts.live_faces <= faces);
         }

@@ -11,8 +11,12 @@ use crate::fast::level::{level, workspace};
 use crate::fast::log::{Names, replay};
 use crate::fast::looks::Looks;
 use crate::fast::order::Order;
+use crate::fast::original::Original;
 use crate::fast::parts::Parts;
+use crate::fast::prepare::numbers;
 use crate::fast::queue::{NONE, bucket, least_of};
+use crate::fast::ring::Store;
+use crate::fast::within::Bound;
 use crate::policy::{Observe, Stop};
 use crate::refusal::Refusal;
 use crate::surface::Surface;
@@ -32,6 +36,8 @@ pub(super) struct Work<'m, L> {
     parts: Parts<L>,
     /// The narrowest bound of the error that has refused an edge since all were awake.
     refused_above: f64,
+    /// The input, if a bound of the error has been asked for.
+    original: OnceCell<Original>,
     /// As it is now, if anybody has looked since it last changed unseen.
     surface: OnceCell<Surface>,
 }
@@ -39,7 +45,7 @@ pub(super) struct Work<'m, L> {
 impl<'m, L: Looks> Work<'m, L> {
     pub(super) fn new(source: Source<'m>, parts: Parts<L>) -> Self {
         let (refused_above, surface) = (f64::INFINITY, OnceCell::new());
-        Self { source, parts, refused_above, surface }
+        Self { source, parts, refused_above, original: OnceCell::new(), surface }
     }
 
     fn names(&self) -> Names<'_> {
@@ -82,11 +88,13 @@ impl<'m, L: Looks> Work<'m, L> {
             self.parts.log = Some(Vec::new());
         }
         self.try_again_within(stop.error);
-        self.parts.most_error = (stop.error / self.source.frame.unit).powi(2);
         let last = self.last_bucket(stop.cost);
         let refused = |parts: &Parts<L>| parts.refusals.count(Refusal::Error);
         let (refused_before, at_first) = (refused(&self.parts), self.parts.live_faces);
-        self.parts.run(faces, last, &mut |gone| observer.gone(gone));
+        let Self { source, parts, original, .. } = &mut *self;
+        let is_bounded = stop.error < f64::INFINITY;
+        let mut bound = is_bounded.then(|| bound(stop.error, source, &parts.store, original));
+        parts.run(faces, last, bound.as_mut(), &mut |gone| observer.gone(gone));
         if refused(&self.parts) > refused_before {
             self.refused_above = self.refused_above.min(stop.error);
         }
@@ -102,6 +110,22 @@ impl<'m, L: Looks> Work<'m, L> {
             _ => {}
         }
     }
+}
+
+/// What it takes to stay within this error, in model units.
+fn bound<'o>(
+    error: f64,
+    source: &Source<'_>,
+    store: &Store,
+    original: &'o OnceCell<Original>,
+) -> Bound<'o> {
+    let Source { mesh, frame, order, faces } = source;
+    let original = original.get_or_init(|| {
+        let place = |v: u32| frame.enter(mesh.positions[order.input(store.origin(v)) as usize]);
+        let places = (0..store.all.len() as u32).map(place).collect();
+        Original::new(mesh, *frame, places, numbers(mesh, order, faces.as_deref()))
+    });
+    Bound::new((error / frame.unit) as f32, original, store)
 }
 
 impl<L: Looks> Run for Work<'_, L> {
