@@ -87,6 +87,15 @@ impl Method {
         matches!(self, Self::Qem | Self::QemEndpoint | Self::LindstromTurk)
     }
 
+    /// Whether what boundaries move has a weight of its own in its costs, [`Options::boundary_weight`].
+    pub fn weighs_boundaries(self) -> bool {
+        match self {
+            Self::Qem | Self::QemEndpoint | Self::KimJang => true,
+            Self::LindstromTurk | Self::LindstromTurkFaces => true,
+            Self::LeeJang | Self::Wu | Self::Pm | Self::Spr => false,
+        }
+    }
+
     /// Whether every contraction with a closed ring that is free to choose its place conserves the
     /// volume.
     pub fn conserves_volume(self) -> bool {
@@ -150,6 +159,11 @@ pub struct Options {
     pub weights: AttributeWeights,
     /// Keep every vertex of a boundary edge where it is.
     pub lock_boundary: bool,
+    /// What it costs to move a boundary, where the method counts that, see
+    /// [`Method::weighs_boundaries`]: a factor, 0 for nothing. Of squared areas under the boundary against squared
+    /// volumes in `lindstrom-turk`, of planes on boundary edges against those of faces in `qem`. `None` for
+    /// the method's own, which is 9 in `lindstrom-turk`, 2 in `qem`.
+    pub boundary_weight: Option<f64>,
     /// What must stay, or move together. Where vertices of a tie do not find edges to move along
     /// together, they stay.
     pub locks: Locks,
@@ -160,6 +174,15 @@ pub struct Options {
 }
 
 impl Options {
+    /// Refuses a weight of boundaries that is none.
+    pub(crate) fn validate(&self) -> Result<(), SimplifyError> {
+        self.weights.validate()?;
+        match self.boundary_weight.filter(|weight| !weight.is_finite() || *weight < 0.0) {
+            Some(weight) => Err(SimplifyError::BadWeight(weight)),
+            None => Ok(()),
+        }
+    }
+
     /// The method that is named, or else suits these meshes.
     pub fn method_for<'m>(&self, meshes: impl IntoIterator<Item = &'m Mesh>) -> Method {
         self.method.unwrap_or_else(|| Method::suited_to(meshes))

@@ -72,8 +72,7 @@ impl<'m> Simplifier<'m> {
         let held = locks::apply(options, method, &connectivity, &mut surface);
         let input = Input { degenerate_faces, duplicate_faces, non_manifold_vertices, held };
         let vanishing = Vanishing::new(&surface, method, options.vanish_below);
-        let engine =
-            methods::start(method, &options.weights, Ready { surface, connectivity, vanishing });
+        let engine = methods::start(method, options, Ready { surface, connectivity, vanishing });
         Ok(Self { mesh, engine, method, input })
     }
 
@@ -170,7 +169,7 @@ fn validate(mesh: &Mesh, options: &Options) -> Result<Bounds, SimplifyError> {
         return Err(SimplifyError::Extent { diagonal });
     }
     locks::validate(&options.locks, mesh)?;
-    options.weights.validate()?;
+    options.validate()?;
     if let Some(size) = options.vanish_below.filter(|size| size.is_nan() || *size < 0.0) {
         return Err(SimplifyError::BadSize(size));
     }

@@ -42,7 +42,7 @@ impl Bvh {
     pub fn closest(&self, point: [f64; 3], hint: Option<FaceId>) -> Closest {
         let p = self.frame.local(point);
         let mut best = self.first(p, hint);
-        self.descend(p, &mut best, -1.0, f64::INFINITY);
+        self.descend::<false>(p, &mut best, [0.0; 2]);
         self.in_model(&best)
     }
 
@@ -60,7 +60,7 @@ impl Bvh {
         let [enough, most] = [enough, most].map(|length| (length * self.frame.scale()).powi(2));
         let mut best = self.first(p, hint);
         if best.distance_squared > enough {
-            self.descend(p, &mut best, enough, most);
+            self.descend::<true>(p, &mut best, [enough, most]);
         }
         (best.distance_squared <= most).then(|| self.in_model(&best))
     }
@@ -83,12 +83,17 @@ impl Bvh {
         Candidate { point, face: self.faces[slot], distance_squared: p.distance_squared(point) }
     }
 
-    /// Improves `best` to the closest of all, or until it is within `enough`: nearest boxes first, no
-    /// box beyond the best so far or `most`. Squares. In line, as it is without limits most often.
-    #[inline(always)]
-    fn descend(&self, p: DVec3, best: &mut Candidate, enough: f64, most: f64) {
+    /// Improves `best` to the closest of all: nearest boxes first, no box beyond the best so far. With
+    /// limits until it is within `enough`, and no box beyond `most`; squares.
+    fn descend<const LIMITED: bool>(
+        &self,
+        p: DVec3,
+        best: &mut Candidate,
+        [enough, most]: [f64; 2],
+    ) {
         let query = Query::new(p);
-        let mut reach = reach(best.distance_squared.min(most));
+        let reach_of = |squared: f64| reach(if LIMITED { squared.min(most) } else { squared });
+        let mut reach = reach_of(best.distance_squared);
         let mut stack = [(0.0, 0); STACK];
         let mut waiting = 1;
         while waiting > 0 {
@@ -115,10 +120,10 @@ impl Bvh {
                     let first = node.first[child] as usize;
                     for slot in first..first + usize::from(node.count[child]) {
                         if best.improve(self.candidate(p, slot)) {
-                            if best.distance_squared <= enough {
+                            if LIMITED && best.distance_squared <= enough {
                                 return;
                             }
-                            reach = self::reach(best.distance_squared.min(most));
+                            reach = reach_of(best.distance_squared);
                         }
                     }
                 }

@@ -82,6 +82,9 @@ pub struct Manner {
     pub fusing: Fusing,
     #[command(flatten)]
     holding: Holding,
+    /// What it costs to move a boundary, 0: nothing; without it 9 with lindstrom-turk, 2 with qem
+    #[arg(long, value_name = "WEIGHT", value_parser = amounts::weight, allow_negative_numbers = true)]
+    boundary: Option<f64>,
     #[command(flatten)]
     weights: Weights,
 }
@@ -111,8 +114,12 @@ struct Weights {
 impl Manner {
     /// The options for a scene.
     pub fn options(&self, origin: &Origin<'_>, session: &Session) -> Result<Options, Failure> {
-        let options =
-            Options { method: self.method, weights: self.weights(), ..Options::default() };
+        let options = Options {
+            method: self.method,
+            weights: self.weights(),
+            boundary_weight: self.boundary,
+            ..Options::default()
+        };
         self.holding.hold(options, origin, session)
     }
 
@@ -126,6 +133,10 @@ impl Manner {
         if self.weights() != WEIGHTS && !report.method.counts_attributes() {
             let method = report.method.name();
             session.warn(format_args!("--weight-…: {method} does not count attributes; qem does"));
+        }
+        if self.boundary.is_some() && !report.method.weighs_boundaries() {
+            let method = report.method.name();
+            session.warn(format_args!("--boundary: {method} has no weight of boundaries; qem has"));
         }
     }
 }

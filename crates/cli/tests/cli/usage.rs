@@ -17,6 +17,8 @@ fn wrong_usage_is_2_and_writes_nothing() {
         &["simplify", "in.ply", "out.ply", "--faces", "10", "--method", "magic"],
         &["simplify", "in.ply", "out.ply", "--faces", "10", "--weight-uv", "-1"],
         &["lods", "in.ply", "out.glb", "--weight-normal", "much"],
+        &["simplify", "in.ply", "out.ply", "--faces", "10", "--boundary", "-1"],
+        &["simplify", "in.ply", "out.ply", "--faces", "10", "--boundary", "inf"],
         &["simplify", "in.ply", "out.ply", "--faces", "10", "--no-weld", "--weld", "1"],
         &["simplify", "in.ply", "out.ply", "--faces", "10", "--threads", "0"],
         &["simplify", "in.ply", "out.ply", "--faces", "10", "--threads", "257"],

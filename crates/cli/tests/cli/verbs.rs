@@ -175,6 +175,24 @@ fn weights_that_a_method_does_not_look_at_are_a_warning() {
 }
 
 #[test]
+fn a_weight_of_boundaries_is_taken_or_warned_of() {
+    let run = Run::new();
+    run.sample("terrain", 2_000, "in.ply");
+    let simplify = |method, weight| {
+        let how = ["--ratio", "10%", "--method", method, "--boundary", weight, "--json"];
+        run.run(&[&["simplify", "in.ply", "out.ply"], &how[..]].concat())
+    };
+    let spr = simplify("spr", "3");
+    assert!(spr.code == 0 && spr.err.contains("spr has no weight of boundaries"), "{spr:?}");
+    let [light, heavy] = ["0", "1000"].map(|weight| {
+        let done = simplify("lindstrom-turk", weight);
+        assert!(done.code == 0 && done.err.is_empty(), "{done:?}");
+        std::fs::read(run.path("out.ply")).unwrap()
+    });
+    assert_ne!(light, heavy);
+}
+
+#[test]
 fn what_became_of_the_volume_is_told() {
     let run = Run::new();
     run.sample("knot", 2_000, "closed.ply");

@@ -355,7 +355,7 @@ mod tests {
     use meshlod_mesh::{Layer, LayerKind, VertexId, sample};
 
     use super::*;
-    use crate::fast::fans::Fans;
+    use crate::fast::fans::{BOUNDARY_WEIGHT, Fans};
     use crate::fast::frame::Frame;
     use crate::fast::order::Order;
     use crate::fast::parts::Parts;
@@ -387,7 +387,7 @@ mod tests {
         let (order, places) = Order::new(mesh, &frame);
         let face = |i: usize| order.face(&mesh.faces[i]);
         let numbers = || (0..mesh.faces.len()).map(face);
-        let mut fans = Fans::new(&places, Vec::new(), mesh.faces.len(), face);
+        let mut fans = Fans::new((&places, Vec::new()), mesh.faces.len(), face, BOUNDARY_WEIGHT);
         let corners = || Corners::new(mesh, numbers(), mesh.positions.len()).unwrap();
         let coat = Coat::new(mesh, &frame, &AttributeWeights::DEFAULT, 2);
         let painted = Painted::<2>::new(coat, corners(), &mut fans.store.whole(), numbers());

@@ -30,9 +30,6 @@ const SLACK: u16 = 4;
 /// .00723, .0572, 849; 4 .00721, .0580; 6 .00720, .0578, 789; 8 .00723, .0586, 766; 10 .00727, .0583.
 const REST: u16 = 6;
 
-/// What a boundary edge counts [LT99].
-pub(super) const BOUNDARY_WEIGHT: f32 = 9.0;
-
 /// What an edge of a seam counts, which otherwise would cost nothing to move across the surface.
 pub(super) const SEAM_WEIGHT: f32 = 4.5;
 
@@ -481,7 +478,7 @@ fn swept(hood: &Hood, end0: &Vertex, end1: &Vertex) -> Swept {
     let mut once = both;
     for (wing, normal) in [(0, first), (hood.of_v0, last)] {
         once.take(&match hood.ghost == Some(wing) {
-            true => Star::boundary(hood.along, BOUNDARY_WEIGHT),
+            true => Star::boundary(hood.along, hood.boundary_weight),
             false => Star::face(normal),
         });
     }
@@ -504,7 +501,7 @@ fn renew_boundary(vertices: &mut Vertices, hood: &Hood, [v0, v1]: [u32; 2], plac
     let ends = [vertices.get(v0).place(), vertices.get(v1).place()];
     for (i, of_v1) in hood.boundary() {
         let vertex = vertices.get_mut(hood.ids[i]);
-        let edge = |apex: Vec3| Star::boundary(vertex.place() - apex, BOUNDARY_WEIGHT);
+        let edge = |apex: Vec3| Star::boundary(vertex.place() - apex, hood.boundary_weight);
         let (old, new) = (edge(ends[usize::from(of_v1)]), edge(place));
         vertex.seen.add(&new);
         vertex.seen.take(&old);

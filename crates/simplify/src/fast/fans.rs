@@ -5,9 +5,11 @@ use glam::Vec3;
 use rayon::prelude::*;
 
 use crate::fast::cells::{CELL, Cells};
-use crate::fast::engine::BOUNDARY_WEIGHT;
 use crate::fast::ring::{GHOST, LONG, Long, RING, Store, Vertices};
 use crate::fast::vertex::{NOBODY, Star, Vertex};
+
+/// What a boundary edge counts [LT99], unless another weight is asked for.
+pub(super) const BOUNDARY_WEIGHT: f32 = 9.0;
 
 /// Pairs of neighbours that a vertex has room for before they are a ring.
 const PAIRS: usize = RING / 2;
@@ -27,34 +29,35 @@ pub(super) type Pair = [u32; 2];
 impl Fans {
     /// Rings of vertices at these places, the last of them copies, from `count` faces.
     pub(super) fn new(
-        places: &[Vec3],
-        copied: Vec<u32>,
+        (places, copied): (&[Vec3], Vec<u32>),
         count: usize,
         face: impl Fn(usize) -> [u32; 3] + Sync,
+        boundary_weight: f32,
     ) -> Self {
         let cells = Cells::new(places.len(), count, face);
         let mut all: Vec<Vertex> = places.par_iter().map(|&place| Vertex::at(place)).collect();
-        let close = |(number, all)| close(number, all, places, &cells);
+        let close = |(number, all)| close((number, all), places, &cells, boundary_weight);
         let closed: Vec<_> = all.par_chunks_mut(CELL).enumerate().map(close).collect();
         let (mut long, mut irregular) = (Vec::new(), Vec::new());
         for (lists, odd) in closed {
             long.push(lists);
             irregular.extend(odd);
         }
-        Self { store: Store::new(all, copied, long), faces: cells.faces, irregular }
+        let store = Store::new(all, copied, long, boundary_weight);
+        Self { store, faces: cells.faces, irregular }
     }
 }
 
 /// Makes the rings of a cell; gives those that are long, and the vertices that have none.
 fn close(
-    number: usize,
-    all: &mut [Vertex],
+    (number, all): (usize, &mut [Vertex]),
     places: &[Vec3],
     cells: &Cells,
+    boundary_weight: f32,
 ) -> (Vec<Long>, Vec<u32>) {
     let mut long = Vec::new();
     let vertices = Vertices::new(all, (number * CELL) as u32, &mut long);
-    let mut cell = Cell { number, vertices, places, irregular: Vec::new() };
+    let mut cell = Cell { number, vertices, places, boundary_weight, irregular: Vec::new() };
     cell.close(cells);
     let irregular = cell.irregular;
     (long, irregular)
@@ -66,6 +69,7 @@ struct Cell<'c> {
     vertices: Vertices<'c>,
     /// Those of all vertices.
     places: &'c [Vec3],
+    boundary_weight: f32,
     irregular: Vec<u32>,
 }
 
@@ -161,7 +165,7 @@ impl Cell<'_> {
         self.vertices.set_ring(v, &ring);
         let place = self.places[v as usize];
         for end in [first, last] {
-            let edge = Star::boundary(self.places[end as usize] - place, BOUNDARY_WEIGHT);
+            let edge = Star::boundary(self.places[end as usize] - place, self.boundary_weight);
             self.vertices.get_mut(v).seen.add(&edge);
         }
     }

@@ -44,12 +44,14 @@ pub(super) struct Hood {
     pub(super) old: [[f32; ROOM]; 3],
     /// The same with the new vertex.
     pub(super) new: [[f32; ROOM]; 3],
+    /// What a boundary edge counts.
+    pub(super) boundary_weight: f32,
     /// What a contraction changes in the star of each spoke.
     pub(super) changes: [Star; ROOM],
 }
 
 impl Hood {
-    pub(super) fn new() -> Self {
+    pub(super) fn new(boundary_weight: f32) -> Self {
         let empty = [[0.0; ROOM]; 3];
         Self {
             ids: [0; ROOM],
@@ -61,6 +63,7 @@ impl Hood {
             of_v1: [0.0; ROOM],
             old: empty,
             new: empty,
+            boundary_weight,
             changes: [Star::default(); ROOM],
         }
     }

@@ -255,7 +255,7 @@ fn cut(store: &Store, count: usize) -> Vec<Part> {
         vertices: whole * i / count..whole * (i + 1) / count,
         queue: Queue::default(),
         long: Vec::new(),
-        hood: Box::new(Hood::new()),
+        hood: Box::new(Hood::new(store.boundary_weight)),
         pace: Pace::default(),
         waiting: Vec::new(),
     };
@@ -331,7 +331,7 @@ mod tests {
     use meshlod_mesh::{Mesh, VertexId, sample};
 
     use super::*;
-    use crate::fast::fans::Fans;
+    use crate::fast::fans::{BOUNDARY_WEIGHT, Fans};
     use crate::fast::frame::Frame;
     use crate::fast::order::Order;
     use crate::fast::queue::NONE;
@@ -347,7 +347,7 @@ mod tests {
             let frame = Frame::new(&mesh, &mesh.bounds());
             let (order, places) = Order::new(&mesh, &frame);
             let face = |i: usize| order.face(&mesh.faces[i]);
-            let fans = Fans::new(&places, Vec::new(), mesh.faces.len(), face);
+            let fans = Fans::new((&places, Vec::new()), mesh.faces.len(), face, BOUNDARY_WEIGHT);
             assert!(fans.irregular.is_empty());
             let parts = Parts::of_at_most(part, fans.store, (), fans.faces);
             Self { mesh, order, parts }

@@ -6,7 +6,7 @@ use crate::clean;
 use crate::engine::Run;
 use crate::fast::coat::Coat;
 use crate::fast::dress::Corners;
-use crate::fast::fans::Fans;
+use crate::fast::fans::{BOUNDARY_WEIGHT, Fans};
 use crate::fast::frame::Frame;
 use crate::fast::looks::Looks;
 use crate::fast::order::Order;
@@ -23,6 +23,9 @@ use crate::surface::MOST_FACES;
 
 /// As many channels of attributes count at most; the rest of them only moves along.
 const MOST_CHANNELS: usize = 8;
+
+/// No boundary counts for more: floats would run out, and nothing changes any more.
+const MOST_BOUNDARY_WEIGHT: f64 = 1e9;
 
 /// A mesh about to be simplified.
 pub(super) struct Prepared<'m> {
@@ -43,14 +46,15 @@ impl<'m> Prepared<'m> {
         let (order, mut places) = Order::new(mesh, &frame);
         let count = mesh.faces.len();
         let face = |i: usize| order.face(&mesh.faces[i]);
-        let mut fans = Fans::new(&places, Vec::new(), count, face);
+        let weight = options.boundary_weight.map_or(BOUNDARY_WEIGHT, boundary_weight);
+        let mut fans = Fans::new((&places, Vec::new()), count, face, weight);
         let degenerate_faces = count - fans.faces;
         let (mut faces, mut duplicate_faces) = (None, 0);
         if !fans.irregular.is_empty() {
             let mut all: Vec<_> = (0..count).map(face).collect();
             duplicate_faces = split::drop_duplicates(&mut all, &fans.irregular);
             if duplicate_faces > 0 {
-                fans = Fans::new(&places, Vec::new(), count, |i| all[i]);
+                fans = Fans::new((&places, Vec::new()), count, |i| all[i], weight);
             }
             faces = Some(all);
         }
@@ -60,7 +64,7 @@ impl<'m> Prepared<'m> {
                 split::split(std::mem::take(all), &irregular, places.len());
             let copies: Vec<_> = copied.iter().map(|&v| places[v as usize]).collect();
             places.extend(copies);
-            fans = Fans::new(&places, copied, count, |i| faces[i]);
+            fans = Fans::new((&places, copied), count, |i| faces[i], weight);
             *all = faces;
             if !fans.irregular.is_empty() || is_crowded(&mut fans, &irregular) {
                 return None;
@@ -152,6 +156,10 @@ impl<'m> Prepared<'m> {
         let parts = Parts::new(fans.store, looks, fans.faces);
         Box::new(Work::new(Source { mesh, frame, order, faces }, parts))
     }
+}
+
+fn boundary_weight(asked: f64) -> f32 {
+    asked.min(MOST_BOUNDARY_WEIGHT) as f32
 }
 
 /// The faces of a mesh by the engine's names, or those on copies of vertices.

@@ -43,6 +43,8 @@ pub(super) struct Store {
     pub(super) long: Vec<Long>,
     /// The vertices that the last ones are copies of.
     pub(super) copied: Vec<u32>,
+    /// What a boundary edge counts.
+    pub(super) boundary_weight: f32,
 }
 
 /// A ring in a list, of a vertex that may have another by now.
@@ -63,17 +65,22 @@ pub(super) struct Vertices<'v> {
 }
 
 impl Store {
-    pub(super) fn new(mut all: Vec<Vertex>, copied: Vec<u32>, lists: Vec<Vec<Long>>) -> Self {
+    pub(super) fn new(
+        mut all: Vec<Vertex>,
+        copied: Vec<u32>,
+        lists: Vec<Vec<Long>>,
+        boundary_weight: f32,
+    ) -> Self {
         let mut long = Vec::new();
         let mut vertices = Vertices::new(&mut all, 0, &mut long);
         lists.into_iter().for_each(|lists| vertices.adopt(lists));
-        Self { all, long, copied }
+        Self { all, long, copied, boundary_weight }
     }
 
     /// All of the vertices.
     pub(super) fn whole(&mut self) -> Vertices<'_> {
         let first_copy = self.own() as u32;
-        let Self { all, long, copied } = self;
+        let Self { all, long, copied, .. } = self;
         Vertices { all, base: 0, long, copied, first_copy }
     }
 

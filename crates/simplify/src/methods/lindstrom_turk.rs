@@ -24,7 +24,7 @@ use crate::surface::{Flags, Placed, Surface};
 const PULL: f64 = 1e-5;
 
 /// What an area on an outline counts against a volume over the length of the edge: both squared, a
-/// half and a sixth of what the products of vectors give.
+/// half and a sixth of what the products of vectors give. Of a boundary, unless another is asked for.
 const OUTLINE_WEIGHT: f64 = 9.0;
 
 /// The least sine of the angle between a direction and a plane that may fix each other [LT98].
@@ -97,7 +97,17 @@ impl Memory for Stars {
 }
 
 /// The least swept volume, as priority and as placement, of edges and of faces.
-pub(crate) struct Memoryless;
+#[derive(Clone, Copy)]
+pub(crate) struct Memoryless {
+    /// What an area under a boundary counts.
+    boundary: f64,
+}
+
+impl Memoryless {
+    pub(crate) fn new(boundary_weight: Option<f64>) -> Self {
+        Self { boundary: boundary_weight.unwrap_or(OUTLINE_WEIGHT) }
+    }
+}
 
 impl Priority<Stars> for Memoryless {
     #[inline]
@@ -109,7 +119,7 @@ impl Priority<Stars> for Memoryless {
         freedom: Freedom,
     ) -> Option<f64> {
         if of.iter().any(|&v| surface.flags(v).any(Flags::LINED)) {
-            return cost_at_outline(surface, of);
+            return cost_at_outline(surface, of, self.boundary);
         }
         let origin = surface.position(of[0]);
         let offset = |v: VertexId| surface.position(v) - origin;
@@ -143,24 +153,28 @@ fn middle(surface: &Surface, of: &Contracted) -> DVec3 {
 }
 
 /// The cost of an edge with an end on an outline, from all the faces around. Few edges have one.
-fn cost_at_outline(surface: &Surface, of: &Contracted) -> Option<f64> {
+fn cost_at_outline(surface: &Surface, of: &Contracted, boundary: f64) -> Option<f64> {
     let mut hood = Neighbourhood::default();
     hood.gather(surface, *of).ok()?;
-    let choice = choose(surface, &hood);
+    let choice = choose(surface, &hood, boundary);
     let length = surface.position(of[0]).distance_squared(surface.position(of[1]));
     Some(choice.swept.at(choice.offset) + SHORT_FIRST * choice.swept.mean_of(length))
 }
 
 impl Placement<Stars> for Memoryless {
     fn place(&self, surface: &Surface, _: &Stars, hood: &Neighbourhood) -> Result<Placed, Refusal> {
-        place(surface, hood)
+        place_with(surface, hood, self.boundary)
     }
 }
 
 /// The place of any gathered contraction, from the faces around as they are. Where these nearly
 /// cancel, as in folds, the place that conserves the volume can be far outside of them.
 pub(crate) fn place(surface: &Surface, hood: &Neighbourhood) -> Result<Placed, Refusal> {
-    let Choice { offset, swept, middle } = choose(surface, hood);
+    place_with(surface, hood, OUTLINE_WEIGHT)
+}
+
+fn place_with(surface: &Surface, hood: &Neighbourhood, boundary: f64) -> Result<Placed, Refusal> {
+    let Choice { offset, swept, middle } = choose(surface, hood, boundary);
     let error_estimate = swept.distance(swept.at(offset));
     let origin = surface.position(hood.contracted()[0]);
     match hood.freedom() {
@@ -183,7 +197,7 @@ struct Choice {
     middle: DVec3,
 }
 
-fn choose(surface: &Surface, hood: &Neighbourhood) -> Choice {
+fn choose(surface: &Surface, hood: &Neighbourhood, boundary_weight: f64) -> Choice {
     let place = |i: usize| surface.position(hood.contracted()[i]);
     let (origin, along) = (place(0), place(1) - place(0));
     let middle = middle(surface, hood.contracted());
@@ -198,7 +212,8 @@ fn choose(surface: &Surface, hood: &Neighbourhood) -> Choice {
         let [from, to] = outline.ends.map(|v| surface.position(v) - origin);
         let edge = to - from;
         let across = Symmetric::scalar(edge.length_squared()) + Symmetric::outer(edge) * -1.0;
-        let weight = OUTLINE_WEIGHT * along.length_squared();
+        let weight = if outline.is_boundary { boundary_weight } else { OUTLINE_WEIGHT };
+        let weight = weight * along.length_squared();
         swept = swept + Quadric::squared(across * weight, from).as_constraint();
         if outline.is_boundary {
             boundary.add(from, to);

@@ -34,26 +34,26 @@ use crate::methods::qem::{Endpoint, Optimal, Quadrics, Rule};
 use crate::methods::samples::Samples;
 use crate::methods::spr::Turn;
 use crate::methods::wu::WeightedMean;
-use crate::options::{AttributeWeights, Method};
+use crate::options::{Method, Options};
 
 /// Sets a method to work.
-pub(crate) fn start(method: Method, weights: &AttributeWeights, ready: Ready) -> Box<dyn Run> {
+pub(crate) fn start(method: Method, options: &Options, ready: Ready) -> Box<dyn Run> {
     let surface = &ready.surface;
     match method {
-        Method::Qem => by_quadrics(weights, Optimal, ready),
-        Method::QemEndpoint => by_quadrics(weights, Endpoint, ready),
+        Method::Qem => by_quadrics(options, Optimal, ready),
+        Method::QemEndpoint => by_quadrics(options, Endpoint, ready),
         Method::LindstromTurk => Algorithm {
             candidates: Edges,
             memory: Stars::new(surface),
-            priority: Memoryless,
-            placement: Memoryless,
+            priority: Memoryless::new(options.boundary_weight),
+            placement: Memoryless::new(options.boundary_weight),
         }
         .start(ready),
         Method::LindstromTurkFaces => Algorithm {
             candidates: FacesAndEdges,
             memory: Stars::new(surface),
-            priority: Memoryless,
-            placement: Memoryless,
+            priority: Memoryless::new(options.boundary_weight),
+            placement: Memoryless::new(options.boundary_weight),
         }
         .start(ready),
         Method::LeeJang => Algorithm {
@@ -72,7 +72,7 @@ pub(crate) fn start(method: Method, weights: &AttributeWeights, ready: Ready) ->
         .start(ready),
         Method::KimJang => Algorithm {
             candidates: Edges,
-            memory: Quadrics::new(surface, &ready.connectivity, ()),
+            memory: Quadrics::new(surface, &ready.connectivity, options.boundary_weight, ()),
             priority: Optimal,
             placement: Conserving,
         }
@@ -90,27 +90,25 @@ pub(crate) fn start(method: Method, weights: &AttributeWeights, ready: Ready) ->
 }
 
 /// Quadrics with attributes, where there are any that count.
-fn by_quadrics<R: Rule + Copy + 'static>(
-    weights: &AttributeWeights,
-    rule: R,
-    ready: Ready,
-) -> Box<dyn Run> {
+fn by_quadrics<R: Rule + Copy + 'static>(options: &Options, rule: R, ready: Ready) -> Box<dyn Run> {
     let surface = &ready.surface;
-    let channels = Channels::new(surface, weights);
+    let channels = Channels::new(surface, &options.weights);
     match (channels, &surface.wedges) {
         (Some(channels), Some(wedges)) => {
             let appearance = Expectations::new(surface, wedges, channels);
-            with_appearance(appearance, rule, ready)
+            with_appearance(appearance, options, rule, ready)
         }
-        _ => with_appearance((), rule, ready),
+        _ => with_appearance((), options, rule, ready),
     }
 }
 
 fn with_appearance<A: Appearance + 'static, R: Rule + Copy + 'static>(
     appearance: A,
+    options: &Options,
     rule: R,
     ready: Ready,
 ) -> Box<dyn Run> {
-    let memory = Quadrics::new(&ready.surface, &ready.connectivity, appearance);
+    let Ready { surface, connectivity, .. } = &ready;
+    let memory = Quadrics::new(surface, connectivity, options.boundary_weight, appearance);
     Algorithm { candidates: Edges, memory, priority: rule, placement: rule }.start(ready)
 }

@@ -42,7 +42,8 @@ pub(super) const SHORT_FIRST: f64 = 1e-9;
 /// Nothing left of it brings no more, but would lose what a flat's vertices know of its rim.
 const MEMORY: f64 = 0.1;
 
-/// The weight of a boundary edge's plane, against the square of its length as an area.
+/// The weight of a boundary edge's plane, against the square of its length as an area; unless another is
+/// asked for.
 const BOUNDARY_WEIGHT: f64 = 2.0;
 
 /// The weight of the plane of a seam or a contact likewise.
@@ -55,12 +56,18 @@ pub(crate) struct Quadrics<A = ()> {
 }
 
 impl<A> Quadrics<A> {
-    pub(crate) fn new(surface: &Surface, connectivity: &Connectivity, appearance: A) -> Self {
+    pub(crate) fn new(
+        surface: &Surface,
+        connectivity: &Connectivity,
+        boundary_weight: Option<f64>,
+        appearance: A,
+    ) -> Self {
+        let boundary_weight = boundary_weight.unwrap_or(BOUNDARY_WEIGHT);
         let mut quadrics = vec![Quadric::default(); surface.vertex_count()];
         for f in 0..surface.face_count() {
             let face = FaceId(f as u32);
             if surface.is_alive(face) {
-                add_face(&mut quadrics, surface, face, connectivity);
+                add_face(&mut quadrics, surface, (face, connectivity), boundary_weight);
             }
         }
         Self { quadrics, appearance }
@@ -108,8 +115,8 @@ fn star(hood: &Neighbourhood, position: DVec3) -> Quadric {
 fn add_face(
     quadrics: &mut [Quadric],
     surface: &Surface,
-    face: FaceId,
-    connectivity: &Connectivity,
+    (face, connectivity): (FaceId, &Connectivity),
+    boundary_weight: f64,
 ) {
     let area_normal = surface.area_normal(face);
     let Some(normal) = area_normal.try_normalize() else { return };
@@ -120,7 +127,7 @@ fn add_face(
     }
     for k in 0..3 {
         let weight = match connectivity.twin(Side::new(face, k)) {
-            Twin::Boundary => BOUNDARY_WEIGHT,
+            Twin::Boundary => boundary_weight,
             Twin::Side(twin) if is_line(surface, Side::new(face, k), twin) => LINE_WEIGHT,
             _ => continue,
         };

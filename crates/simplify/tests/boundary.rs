@@ -1,0 +1,93 @@
+//! What a boundary weighs: the more, the closer it stays, by either engine and by quadrics.
+
+use meshlod_mesh::{Connectivity, FaceId, Mesh, Side, Twin, VertexId, sample};
+use meshlod_simplify::{Method, Options, Simplifier, SimplifyError, Target, simplify};
+use meshlod_spatial::Bvh;
+
+fn options(method: Method, boundary_weight: Option<f64>) -> Options {
+    Options { method: Some(method), boundary_weight, ..Options::default() }
+}
+
+/// The boundary edges of a mesh, as faces without area.
+fn rim(mesh: &Mesh) -> Mesh {
+    let connectivity = Connectivity::new(&mesh.faces, mesh.positions.len());
+    let sides = (0..mesh.faces.len()).flat_map(|f| (0..3).map(move |k| (f, k)));
+    let open =
+        sides.filter(|&(f, k)| connectivity.twin(Side::new(FaceId::new(f), k)) == Twin::Boundary);
+    let edge = |(f, k): (usize, usize)| {
+        let [from, to] = [mesh.faces[f][k], mesh.faces[f][(k + 1) % 3]];
+        [from, to, to]
+    };
+    Mesh::new(mesh.positions.clone(), open.map(edge).collect())
+}
+
+/// The mean distance of the boundary's vertices from the boundary of a level.
+fn slipped(mesh: &Mesh, level: &Mesh) -> f64 {
+    let now = Bvh::new(&rim(level)).unwrap();
+    let ends: Vec<VertexId> = rim(mesh).faces.iter().map(|edge| edge[0]).collect();
+    let away = |v: &VertexId| now.closest(mesh.positions[v.index()], None).distance_squared.sqrt();
+    ends.iter().map(away).sum::<f64>() / ends.len() as f64
+}
+
+fn hills() -> Mesh {
+    Mesh { attributes: None, ..sample::terrain(8000) }
+}
+
+#[test]
+fn a_higher_weight_keeps_a_boundary_closer() {
+    let mesh = hills();
+    let slips = |is_fast: bool, options: &Options| {
+        let start = if is_fast { Simplifier::new } else { Simplifier::with_general_engine };
+        let mut simplifier = start(&mesh, options).unwrap();
+        assert!(simplifier.run(Target::Ratio(0.05), &mut ()).unwrap().reached);
+        slipped(&mesh, &simplifier.level())
+    };
+    for (method, is_fast) in [
+        (Method::LindstromTurk, true),
+        (Method::LindstromTurk, false),
+        (Method::LindstromTurkFaces, false),
+        (Method::Qem, false),
+        (Method::KimJang, false),
+    ] {
+        assert!(method.weighs_boundaries());
+        let weights = [0.01, 1.0, 100.0];
+        let [low, middle, high] =
+            weights.map(|weight| slips(is_fast, &options(method, Some(weight))));
+        let falls = high < 0.8 * middle && middle < 0.95 * low;
+        assert!(falls, "{method:?}, fast {is_fast}: {low} {middle} {high}");
+    }
+}
+
+#[test]
+fn without_one_it_is_the_weight_of_the_method() {
+    let mesh = hills();
+    for (method, weight) in
+        [(Method::LindstromTurk, 9.0), (Method::LindstromTurkFaces, 9.0), (Method::Qem, 2.0)]
+    {
+        let [given, own] = [Some(weight), None]
+            .map(|weight| simplify(&mesh, Target::Ratio(0.2), &options(method, weight)).unwrap());
+        assert_eq!(given, own, "{method:?}");
+    }
+}
+
+#[test]
+fn nothing_and_a_great_deal_are_weights() {
+    let mesh = hills();
+    for method in [Method::LindstromTurk, Method::Qem] {
+        for weight in [0.0, 1e300] {
+            let (level, report) =
+                simplify(&mesh, Target::Ratio(0.2), &options(method, Some(weight))).unwrap();
+            assert!(report.reached, "{method:?} {weight}: {report:?}");
+            level.validate().unwrap();
+        }
+    }
+}
+
+#[test]
+fn what_is_no_weight_is_refused() {
+    for weight in [-1.0, f64::NAN, f64::INFINITY] {
+        let refused =
+            simplify(&hills(), Target::Ratio(0.5), &options(Method::LindstromTurk, Some(weight)));
+        assert!(matches!(refused, Err(SimplifyError::BadWeight(_))), "{weight}");
+    }
+}
