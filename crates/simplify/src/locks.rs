@@ -38,7 +38,7 @@ impl Held {
 /// | 5 | 6,294 | 96,156 | | | 376 |
 ///
 /// From 5 on what is not protected goes first, whatever that costs.
-const PROTECTION: f64 = 2.0;
+pub(crate) const PROTECTION: f64 = 2.0;
 
 /// Refuses locks that are not for this mesh.
 pub(crate) fn validate(locks: &Locks, mesh: &Mesh) -> Result<(), SimplifyError> {

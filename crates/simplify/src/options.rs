@@ -81,8 +81,8 @@ impl Method {
 
     /// Whether attributes count in its costs, by [`Options::weights`]. All methods place them.
     ///
-    /// `lindstrom-turk` counts them where the fast engine does it: without ties, protected vertices, or
-    /// components that may vanish.
+    /// `lindstrom-turk` counts them where the fast engine does it: without ties or components that may
+    /// vanish.
     pub fn counts_attributes(self) -> bool {
         matches!(self, Self::Qem | Self::QemEndpoint | Self::LindstromTurk)
     }

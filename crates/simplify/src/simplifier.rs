@@ -39,8 +39,8 @@ pub(crate) type Started<'m> = (Box<dyn Run + 'm>, Input);
 impl<'m> Simplifier<'m> {
     /// Connects the mesh and costs its candidates; nothing is contracted yet.
     ///
-    /// The fast engine works where it can: for `lindstrom-turk` without ties, protected vertices, or
-    /// components that may vanish. The general one does the rest.
+    /// The fast engine works where it can: for `lindstrom-turk` without ties or components that may
+    /// vanish. The general one does the rest.
     pub fn new(mesh: &'m Mesh, options: &Options) -> Result<Self, SimplifyError> {
         let bounds = validate(mesh, options)?;
         match fast::start(mesh, &bounds, options)? {

@@ -341,14 +341,30 @@ fn what_is_protected_goes_last_and_is_not_safe() {
 }
 
 #[test]
+fn both_engines_protect_as_much() {
+    let (mesh, locks) = halved(Lock::Protected);
+    let options = Options { method: Some(Method::LindstromTurk), locks, ..Options::default() };
+    for ratio in [0.6, 0.3, 0.1] {
+        let [fast, general] = [true, false].map(|is_fast| {
+            let start = if is_fast { Simplifier::new } else { Simplifier::with_general_engine };
+            let mut simplifier = start(&mesh, &options).unwrap();
+            simplifier.run(Target::Ratio(ratio), &mut ()).unwrap();
+            let level = simplifier.level();
+            let there = level.positions.iter().filter(|p| p[0] > 0.01).count();
+            there as f64 / level.positions.len() as f64
+        });
+        assert!((fast - general).abs() < 0.05, "{ratio}: {fast} {general}");
+    }
+}
+
+#[test]
 fn a_bound_is_of_the_error_and_not_of_its_cost() {
     let (mesh, locks) = halved(Lock::Protected);
     for method in Method::ALL {
         let faces = |locks: &Locks| {
             let options =
                 Options { method: Some(method), locks: locks.clone(), ..Options::default() };
-            // What is protected takes the general engine; the fast one's estimate is a stricter one.
-            let mut simplifier = Simplifier::with_general_engine(&mesh, &options).unwrap();
+            let mut simplifier = Simplifier::new(&mesh, &options).unwrap();
             let report = simplifier.run(Target::Error(0.02), &mut ()).unwrap();
             assert!(report.error_estimate <= 0.02);
             simplifier.live_faces() as f64

@@ -14,6 +14,7 @@ use crate::fast::queue::{NONE, bucket};
 use crate::fast::ring::{LONG, MOST, Vertices};
 use crate::fast::vertex::{Flags, NOBODY, Vertex};
 use crate::fast::wide::{LANES, Row, Row3, most, transpose};
+use crate::locks;
 
 /// How strongly the optimum is pulled to the middle of the edge, as in the general engine.
 pub(super) const PULL: f32 = 1e-5;
@@ -24,6 +25,12 @@ pub(super) const SHORT_FIRST: f32 = 1e-7;
 
 /// Keeps a division by nothing from being one.
 const TINY: f32 = 1e-30;
+
+/// What an edge to a protected vertex costs, times: as if all moved so much farther.
+pub(super) const PROTECTION: f32 = {
+    let squared = (locks::PROTECTION * locks::PROTECTION) as f32;
+    squared * squared * squared
+};
 
 /// A vertex's cheapest edge.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -139,9 +146,9 @@ pub(super) fn costs(
 }
 
 /// What makes a cost other than that of a free edge.
-const SPECIAL: Flags = Flags(Flags::PINNED.0 | Flags::SHUT.0 | Flags::SEAM.0);
+const SPECIAL: Flags = Flags(Flags::PINNED.0 | Flags::SHUT.0 | Flags::SEAM.0 | Flags::PROTECTED.0);
 
-/// Costs of edges with an end that stays where it is, or that may not be contracted, or not now.
+/// Costs of edges with an end that stays where it is or goes late, or that may not be contracted, or not now.
 #[cold]
 fn correct(
     costs: &mut Row,
@@ -171,6 +178,9 @@ fn correct(
             }
             Ok(_) => *cost,
         };
+        if flags.any(Flags::PROTECTED) {
+            *cost *= PROTECTION;
+        }
         if floor > 0 && bucket(*cost) <= floor {
             *cost = f32::INFINITY;
         }

@@ -6,7 +6,7 @@
 
 use glam::Vec3;
 
-use crate::fast::cost::{Cheapest, Rank, SHORT_FIRST, cheapest};
+use crate::fast::cost::{Cheapest, PROTECTION, Rank, SHORT_FIRST, cheapest};
 use crate::fast::hood::Hood;
 use crate::fast::log::Done;
 use crate::fast::looks::{Ends, Looks, Placed};
@@ -341,7 +341,11 @@ impl<'v, L: Looks> Engine<'v, L> {
         let looked = if free { 0.0 } else { f64::from(looks.onto(vertices, ends)) };
         let cost = whole.at(best) + looked;
         let short = f64::from(SHORT_FIRST) * whole.weight() * swept.half.length_squared();
-        let bucket = bucket((cost.max(0.0) + short) as f32);
+        let mut cost = (cost.max(0.0) + short) as f32;
+        if end0.flags.any(Flags::PROTECTED) || end1.flags.any(Flags::PROTECTED) {
+            cost *= PROTECTION;
+        }
+        let bucket = bucket(cost);
         if bucket > front.saturating_add(SLACK) {
             return Err(if bucket == NONE {
                 refused(Refusal::Volume)
@@ -421,10 +425,12 @@ impl<'v, L: Looks> Engine<'v, L> {
         let gone = vertices.get_mut(v1);
         gone.flags.set(Flags::DEAD);
         gone.target = v0;
+        let protected = gone.flags.0 & Flags::PROTECTED.0;
         vertices.set_ring_of(v0, &hood.ids, hood.len);
         let kept = vertices.get_mut(v0);
         kept.put(place, star);
         kept.moved = moved;
+        kept.flags.set(Flags(protected));
         kept.floor = 0;
     }
 }

@@ -39,19 +39,17 @@ mod wide;
 mod within;
 mod work;
 
-use meshlod_mesh::{Bounds, Lock, Mesh};
+use meshlod_mesh::{Bounds, Mesh};
 
 use crate::fast::prepare::Prepared;
 use crate::options::{Method, Options, SimplifyError};
 use crate::simplifier::Started;
 
-/// Whether there is a fast way for this: `lindstrom-turk`, and locks that lock: no ties, nothing
-/// protected, nothing that may vanish.
+/// Whether there is a fast way for this: `lindstrom-turk`, no ties, nothing that may vanish.
 fn fits(mesh: &Mesh, options: &Options) -> bool {
     let Options { locks, vanish_below, .. } = options;
     options.method_for([mesh]) == Method::LindstromTurk
         && locks.ties.is_empty()
-        && !locks.of_vertex.contains(&Lock::Protected)
         && vanish_below.is_none()
 }
 

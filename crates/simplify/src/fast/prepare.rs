@@ -105,15 +105,28 @@ impl<'m> Prepared<'m> {
         let mut vertices = self.fans.store.whole();
         for v in 0..own {
             let input = VertexId(self.order.input(v));
+            let lock = locks.get(input.index()).copied().unwrap_or_default();
             let on_boundary = options.lock_boundary
                 && match &connectivity {
                     Some(connectivity) => connectivity.marks(input).boundary(),
                     None => vertices.settled(v).contains(&GHOST),
                 };
-            if on_boundary || locks.get(input.index()) == Some(&Lock::Locked) {
-                vertices.get_mut(v).flags.set(Flags::PINNED);
-                self.input.held.locked += 1;
+            let flags = &mut vertices.get_mut(v).flags;
+            match if on_boundary { Lock::Locked } else { lock } {
+                Lock::Free => {}
+                Lock::Protected => {
+                    flags.set(Flags::PROTECTED);
+                    self.input.held.protected += 1;
+                }
+                Lock::Locked => {
+                    flags.set(Flags::PINNED);
+                    self.input.held.locked += 1;
+                }
             }
+        }
+        for copy in own..own + vertices.copied.len() as u32 {
+            let of = vertices.get(vertices.origin(copy)).flags;
+            vertices.get_mut(copy).flags.set(Flags(of.0 & Flags::PROTECTED.0));
         }
     }
 

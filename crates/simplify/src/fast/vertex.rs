@@ -60,7 +60,8 @@ impl Flags {
     pub(super) const SHUT: Self = Self(Self::BARRED.0 | Self::OUTER.0);
     /// One of the copies of a vertex where the surface is not manifold.
     pub(super) const SPLIT: Self = Self(16);
-
+    /// It goes late: what moves it costs [`PROTECTION`](crate::fast::cost::PROTECTION) times as much.
+    pub(super) const PROTECTED: Self = Self(128);
     /// It has several wedges, or another slot than that of its own number.
     pub(super) const SEAM: Self = Self(32);
 
