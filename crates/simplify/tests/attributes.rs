@@ -1,5 +1,7 @@
 //! What becomes of attributes.
 
+use std::collections::HashMap;
+
 use meshlod_fixtures as fixtures;
 use meshlod_mesh::{Attributes, Layer, LayerKind, Mesh, VertexId, WedgeId, sample};
 use meshlod_simplify::{AttributeWeights, Method, Options, SimplifyError, Target, simplify};
@@ -301,4 +303,40 @@ fn attributes_that_count_for_nothing_change_no_position() {
     let [with, without] =
         [&flat, &bare].map(|mesh| simplify(mesh, Target::Ratio(0.1), &options).unwrap().0);
     assert_eq!((with.positions, with.faces), (without.positions, without.faces));
+}
+
+/// A torus with a texture all over it, and a normal of its own at every corner.
+fn faceted() -> Mesh {
+    let mesh = sample::torus(2000);
+    let around = |p: [f64; 3]| vec![p[1].atan2(p[0]).cos() as f32, p[2] as f32];
+    let uv = mesh.faces.iter().flatten().flat_map(|&v| around(mesh.positions[v.index()]));
+    let normals = mesh.faces.iter().flat_map(|&face| {
+        let [a, b, c] = mesh.triangle(face);
+        [(b - a).cross(c - a).normalize().as_vec3().to_array(); 3].concat()
+    });
+    let layer = |kind, width, values| Layer { kind, name: String::new(), width, values };
+    let layers = vec![
+        layer(LayerKind::Uv(0), 2, uv.collect()),
+        layer(LayerKind::Normal, 3, normals.collect()),
+        layer(LayerKind::Uv(1), 2, vec![0.25; 6 * mesh.faces.len()]),
+    ];
+    let wedge_count = 3 * mesh.faces.len();
+    let corners: Vec<_> = (0..wedge_count).map(WedgeId::new).collect();
+    let corners = corners.as_chunks::<3>().0.to_vec();
+    Mesh { attributes: Some(Attributes { corners, wedge_count, layers }), ..mesh }
+}
+
+#[test]
+fn creases_in_the_shading_stop_nothing_and_tear_no_texture() {
+    let mesh = faceted();
+    for method in [Method::Qem, Method::LindstromTurk] {
+        let level = to(&mesh, method, 0.05);
+        assert!(level.faces.len() <= 100, "{} {}", method.name(), level.faces.len());
+        let mut uvs = HashMap::new();
+        for (place, uv) in corners(&level, 0) {
+            let at = uvs.entry(place.map(f64::to_bits)).or_insert(uv);
+            assert_eq!(*at, uv, "{}", method.name());
+        }
+        assert!(level.attributes.as_ref().unwrap().wedge_count > 2 * level.positions.len());
+    }
 }

@@ -12,7 +12,7 @@ use crate::fast::looks::{Ends, Placed};
 use crate::fast::painted::{Painted, Pairs, is_seam};
 use crate::fast::ring::{GHOST, Vertices};
 use crate::fast::seams::Seams;
-use crate::fast::vertex::{Flags, NOBODY, Star};
+use crate::fast::vertex::{Flags, Star};
 use crate::interpolate::{Place, shares};
 
 /// The slots of the faces around an edge. Of spoke i, those of its apex, of `ids[i]` and `ids[i + 1]`.
@@ -94,14 +94,17 @@ impl<const K: usize> Painted<'_, K> {
         let slots = Slots::new(&self.seams, vertices, hood, placed.ends);
         let pairs = self.pairs(vertices, placed.ends);
         self.move_rest(hood, placed, (&slots, &pairs));
+        self.find_values(placed, &pairs);
         let apexes = slots.apexes(hood, &pairs);
-        let fence = self.renew_fences(vertices, hood, placed, (&slots, &apexes));
-        self.renew_fields(hood, placed, (&slots, &pairs, &apexes));
+        self.take_fences(vertices, hood, placed);
+        self.join_charts(&pairs);
+        let fence = self.put_fences(vertices, hood, placed, (&slots, &apexes));
+        self.renew_fields(hood, placed, (&slots, &apexes));
         for &[s0, s1] in pairs.all() {
             self.heirs[s1 as usize] = s0;
-            if placed.by != Vec3::ZERO {
-                self.heirs[s0 as usize] = s0;
-            }
+        }
+        for renewed in &self.scratch.renewed {
+            self.heirs[renewed.slot as usize] = renewed.slot;
         }
         self.renew_sectors(vertices, hood, [v0, v1], &apexes);
         fence
@@ -112,14 +115,12 @@ impl<const K: usize> Painted<'_, K> {
         &mut self,
         hood: &Hood,
         placed: &Placed,
-        (slots, pairs, apexes): (&Slots, &Pairs, &[u32; ROOM]),
+        (slots, apexes): (&Slots, &[u32; ROOM]),
     ) {
-        let mut merged = [(NOBODY, [0.0; K]); 2];
-        for (merged, &[s0, s1]) in merged.iter_mut().zip(pairs.all()) {
-            *merged = (s0, self.values(placed, [s0, s1]));
-        }
-        let becomes =
-            |slot: u32| merged.iter().find(|(of, _)| *of == slot).map(|(_, values)| values);
+        let renewed = std::mem::take(&mut self.scratch.renewed);
+        let becomes = |slot: u32| {
+            renewed.iter().find(|renewed| renewed.slot == slot).map(|renewed| &renewed.values)
+        };
         let Self { fields, scratch, none, .. } = self;
         for i in 0..hood.len {
             let of = |slot: u32| &fields.get(slot as usize).unwrap_or(none).channels;
@@ -151,45 +152,53 @@ impl<const K: usize> Painted<'_, K> {
             fields[b as usize].add(&scratch.changes[i]);
             fields[apexes[i] as usize].add(&scratch.new[i]);
         }
+        scratch.renewed = renewed;
     }
 
-    /// Takes the squares of seams that change out of the stars around and puts in what they become;
-    /// gives those of the new vertex.
-    fn renew_fences(
+    /// Takes the squares of cuts that change out of the stars around.
+    fn take_fences(&self, vertices: &mut Vertices, hood: &Hood, placed: &Placed) {
+        let Ends { v0, v1, .. } = placed.ends;
+        for i in (0..hood.len).filter(|&i| hood.ghost != Some(i)) {
+            let w = hood.ids[i];
+            let near = [i <= hood.of_v0, i >= hood.of_v0 || i == 0];
+            for (apex, at, near) in [(v0, Vec3::ZERO, near[0]), (v1, hood.along, near[1])] {
+                if near && self.is_cut_edge(apex, w) {
+                    let fence = Star::boundary(hood.seen(i) - at, SEAM_WEIGHT);
+                    vertices.get_mut(w).seen.take(&fence);
+                }
+            }
+        }
+    }
+
+    /// Puts what they become in; gives what the new vertex has of them.
+    fn put_fences(
         &self,
         vertices: &mut Vertices,
         hood: &Hood,
         placed: &Placed,
         (slots, apexes): (&Slots, &[u32; ROOM]),
     ) -> Star {
-        let Ends { v0, v1, .. } = placed.ends;
         let mut sum = Star::default();
-        for i in (0..hood.len).filter(|&i| hood.ghost != Some(i)) {
-            let w = hood.ids[i];
+        let differ = |a: u32, b: u32| self.chart(a) != self.chart(b);
+        for i in (0..hood.len).filter(|&i| hood.is_face(i)) {
             let before = (i + hood.len - 1) % hood.len;
-            let mut change = Star::default();
-            let near = [i <= hood.of_v0, i >= hood.of_v0 || i == 0];
-            for (apex, at, near) in [(v0, Vec3::ZERO, near[0]), (v1, hood.along, near[1])] {
-                if near && self.is_seam_edge(apex, w) {
-                    change.take(&Star::boundary(hood.seen(i) - at, SEAM_WEIGHT));
-                }
-            }
-            let inside = hood.is_face(i) && hood.is_face(before);
-            let parts =
-                apexes[before] != apexes[i] || slots.spokes[before][2] != slots.spokes[i][1];
-            if inside && parts {
+            let (last, first) = (slots.spokes[before][2], slots.spokes[i][1]);
+            if hood.is_face(before) && (differ(apexes[before], apexes[i]) || differ(last, first)) {
                 let fence = Star::boundary(hood.seen(i) - placed.by, SEAM_WEIGHT);
-                change.add(&fence);
+                vertices.get_mut(hood.ids[i]).seen.add(&fence);
                 sum.add(&fence);
             }
-            vertices.get_mut(w).seen.add(&change);
         }
         sum
     }
 
-    /// Whether wedges differ across an edge, at either end.
-    pub(super) fn is_seam_edge(&self, v: u32, w: u32) -> bool {
-        self.seams.parts(v, w) || self.seams.parts(w, v)
+    /// Whether charts differ across an edge, at this end.
+    pub(super) fn is_cut(&self, v: u32, w: u32) -> bool {
+        self.seams.parted(v, w).is_some_and(|[a, b]| self.chart(a) != self.chart(b))
+    }
+
+    fn is_cut_edge(&self, v: u32, w: u32) -> bool {
+        self.is_cut(v, w) || self.is_cut(w, v)
     }
 
     fn renew_sectors(

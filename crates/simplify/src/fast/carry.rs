@@ -2,11 +2,12 @@
 
 use glam::{Vec3, Vec4};
 
-use crate::fast::field::{Field, TINY, best_values};
+use crate::fast::field::{Field, TINY};
 use crate::fast::hood::{Hood, ROOM, load};
 use crate::fast::lanes::{LANES, Lanes3, transpose};
 use crate::fast::looks::{Ends, Placed};
 use crate::fast::painted::Painted;
+use crate::fast::renew::Renewed;
 use crate::fast::ring::GHOST;
 
 /// Values at corners of spokes, a channel of all in one row, and the lanes beyond their end.
@@ -24,21 +25,11 @@ pub(super) struct Scratch<const K: usize> {
     pub(super) changes: [Field<K>; ROOM],
     /// What it becomes, where there are seams.
     pub(super) new: [Field<K>; ROOM],
+    /// The slots that have new values.
+    pub(super) renewed: Vec<Renewed<K>>,
 }
 
 impl<const K: usize> Painted<'_, K> {
-    /// The values of the wedge that two become.
-    pub(super) fn values(&self, placed: &Placed, [s0, s1]: [u32; 2]) -> [f32; K] {
-        let (f0, f1) = (self.field(s0), self.field(s1));
-        let before = f0.values();
-        if placed.by == Vec3::ZERO {
-            return before;
-        }
-        let mut values = best_values(f0, f1, placed.half, placed.best);
-        self.coat.settle(&mut values, &before);
-        values
-    }
-
     /// Where nothing around has a seam: slots are vertices.
     #[inline(always)]
     pub(super) fn contract_smooth(&mut self, hood: &Hood, placed: &Placed) {
@@ -86,7 +77,8 @@ impl<const K: usize> Scratch<K> {
     pub(super) fn new() -> Box<Self> {
         let (rows, fields) = ([[0.0; ROOM]; K], [Field::EMPTY; ROOM]);
         let (first, second, before, after) = (rows, rows, rows, rows);
-        Box::new(Self { first, second, before, after, changes: fields, new: fields })
+        let renewed = Vec::new();
+        Box::new(Self { first, second, before, after, changes: fields, new: fields, renewed })
     }
 
     /// Puts what each spoke changes in its place; gives the sum of the new faces where there are no

@@ -6,6 +6,7 @@ use std::ops::Range;
 use glam::{DVec3, Vec3};
 use meshlod_mesh::{Layer, LayerKind, Mesh, WedgeId};
 
+use crate::charts::is_shading;
 use crate::fast::frame::Frame;
 use crate::interpolate::{Place, interpolate};
 use crate::options::AttributeWeights;
@@ -131,6 +132,28 @@ impl<'m> Coat<'m> {
                 values.iter_mut().for_each(|x| *x = x.clamp(*low, *high));
             }
         }
+    }
+
+    /// Takes textures, all that is no normal, from other channels.
+    pub(super) fn follow<const K: usize>(&self, channels: &mut [f32; K], other: &[f32; K]) {
+        for Counted { channels: at, .. } in self.counted.iter().filter(|c| !c.is_normal) {
+            channels[at.clone()].copy_from_slice(&other[at.clone()]);
+        }
+    }
+
+    /// The same of what channels do not hold, from slot to slot.
+    pub(super) fn follow_rest(&mut self, slot: u32, other: u32) {
+        for layer in self.rest.iter_mut().filter(|layer| !is_shading(layer)) {
+            let from = other as usize * layer.width;
+            layer.values.copy_within(from..from + layer.width, slot as usize * layer.width);
+        }
+    }
+
+    /// The layers in which wedges of one chart are equal; `None` where nothing is shading, so that each
+    /// wedge is a chart.
+    pub(super) fn textures(&self) -> Option<Vec<&'m Layer>> {
+        let any_shading = self.layers.iter().any(is_shading);
+        any_shading.then(|| self.layers.iter().filter(|layer| !is_shading(layer)).collect())
     }
 
     /// What channels do not hold at a place between slots.

@@ -2,7 +2,7 @@
 
 use std::borrow::Cow;
 
-use meshlod_mesh::{Attributes, Mesh, WedgeId};
+use meshlod_mesh::{Attributes, Layer, Mesh, WedgeId};
 use rustc_hash::FxHashMap;
 
 use crate::fast::carry::Scratch;
@@ -22,6 +22,8 @@ pub(super) struct Corners<'m> {
     /// The wedges of the input that those after its own are of, and how many it has.
     split: Vec<u32>,
     own: usize,
+    /// The material and object of each wedge, where there are several.
+    labels: Vec<u32>,
     /// By vertex: its first wedge.
     first: Vec<u32>,
     /// Whether the mesh has attributes, or there are wedges for its labels alone.
@@ -51,6 +53,7 @@ impl<'m> Corners<'m> {
             of_face,
             split: Vec::new(),
             own,
+            labels: Vec::new(),
             are_given: mesh.attributes.is_some(),
             first: vec![NOBODY; vertices],
             others: Vec::new(),
@@ -64,11 +67,11 @@ impl<'m> Corners<'m> {
 
     /// Gives each label wedges of its own; the first label to use one keeps it.
     fn split_by(&mut self, labels: &[u32]) {
-        let mut owner = vec![u32::MAX; self.own];
+        self.labels = vec![u32::MAX; self.own];
         let mut copies = FxHashMap::default();
         for (wedges, &label) in self.of_face.to_mut().iter_mut().zip(labels) {
             for wedge in wedges {
-                let owner = &mut owner[wedge.index()];
+                let owner = &mut self.labels[wedge.index()];
                 if *owner == u32::MAX {
                     *owner = label;
                 }
@@ -77,6 +80,7 @@ impl<'m> Corners<'m> {
                     let copy = *copies.entry((wedge.0, label)).or_insert(next);
                     if copy == next {
                         self.split.push(wedge.0);
+                        self.labels.push(label);
                     }
                     wedge.0 = copy;
                 }
@@ -109,12 +113,6 @@ impl<'m> Corners<'m> {
         (self.first.len() + found) as u32
     }
 
-    /// Whether vertices have so many wedges, as with one normal a face, that hardly an edge could be
-    /// contracted if all of them were to be kept.
-    pub(super) fn is_crowded(&self) -> bool {
-        self.others.len() > self.first.iter().filter(|&&first| first != NOBODY).count()
-    }
-
     /// The slots at the corners of a face; what is no face has those of its vertices.
     #[inline]
     fn slots(&self, i: usize, [a, b, c]: [u32; 3]) -> [u32; 3] {
@@ -135,6 +133,35 @@ impl<'m> Corners<'m> {
     fn wedge(&self, slot: u32) -> u32 {
         let other = || self.others[slot as usize - self.first.len()].1;
         self.first.get(slot as usize).copied().unwrap_or_else(other)
+    }
+
+    /// The chart of each slot, as the first slot of its vertex in it; nothing where each is its own.
+    fn charts(&self, textures: Option<&[&Layer]>) -> Vec<u32> {
+        let Some(textures) = textures.filter(|_| !self.others.is_empty()) else {
+            return Vec::new();
+        };
+        let bits = |layer: &Layer, wedge: u32| -> Vec<u32> {
+            layer.of(WedgeId(wedge)).iter().map(|x| x.to_bits()).collect()
+        };
+        let is_same = |a: u32, b: u32| {
+            let [a, b] = [a, b].map(|slot| self.wedge(slot));
+            let [own, other] = [a, b].map(|wedge| self.source(wedge));
+            self.labels.get(a as usize) == self.labels.get(b as usize)
+                && textures.iter().all(|layer| bits(layer, own) == bits(layer, other))
+        };
+        let vertices = self.first.len() as u32;
+        let mut charts: Vec<u32> = (0..vertices + self.others.len() as u32).collect();
+        let mut start = vertices;
+        for others in self.others.chunk_by(|a, b| a.0 == b.0) {
+            let all = start..start + others.len() as u32;
+            for slot in all.clone() {
+                let before = std::iter::once(others[0].0).chain(start..slot);
+                let chart = before.into_iter().find(|&other| is_same(slot, other));
+                charts[slot as usize] = chart.unwrap_or(slot);
+            }
+            start = all.end;
+        }
+        charts
     }
 
     /// The wedge of the input that one is, or is split from.
@@ -166,6 +193,7 @@ impl<'m, const K: usize> Painted<'m, K> {
             heirs: vec![NOBODY; fields.len()],
             fields,
             seams: Seams::default(),
+            charts: corners.charts(coat.textures().as_deref()),
             coat,
             corners,
             scratch: Scratch::new(),
@@ -234,7 +262,7 @@ impl<'m, const K: usize> Painted<'m, K> {
         for faces in around.chunk_by(|a, b| a.0 == b.0) {
             let v = faces[0].0;
             for &w in vertices.settled(v).iter().filter(|&&w| w != GHOST) {
-                let [own, other] = [(v, w), (w, v)].map(|(v, w)| self.seams.parts(v, w));
+                let [own, other] = [(v, w), (w, v)].map(|(v, w)| self.is_cut(v, w));
                 if own {
                     fences.push((v, w));
                     if !other {
@@ -352,7 +380,7 @@ fn is_face([a, b, c]: [u32; 3]) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use meshlod_mesh::{Layer, LayerKind, VertexId, sample};
+    use meshlod_mesh::{LayerKind, VertexId, sample};
 
     use super::*;
     use crate::fast::fans::{BOUNDARY_WEIGHT, Fans};
@@ -381,6 +409,27 @@ mod tests {
         mesh
     }
 
+    /// The same with a normal for each face, which makes a wedge of every corner.
+    fn faceted(mesh: Mesh) -> Mesh {
+        let mut mesh = halved(mesh);
+        let Some(smooth) = mesh.attributes.take() else { return mesh };
+        let corners = smooth.corners.iter().flatten();
+        let values = corners.flat_map(|&w| smooth.layers[0].of(w).to_vec()).collect();
+        let uv = Layer { values, ..smooth.layers[0].clone() };
+        let normal = |face| {
+            let [a, b, c] = mesh.triangle(face);
+            let normal = (b - a).cross(c - a).normalize().as_vec3().to_array();
+            [normal; 3].concat()
+        };
+        let values = mesh.faces.iter().flat_map(|&face| normal(face)).collect();
+        let normals = Layer { kind: LayerKind::Normal, name: String::new(), width: 3, values };
+        let wedge_count = 3 * mesh.faces.len();
+        let corners: Vec<_> = (0..wedge_count).map(WedgeId::new).collect();
+        let corners = corners.as_chunks::<3>().0.to_vec();
+        mesh.attributes = Some(Attributes { corners, wedge_count, layers: vec![uv, normals] });
+        mesh
+    }
+
     /// What all fields come to by the faces as they are, and by the contractions.
     fn check_fields(mesh: &Mesh, faces: usize) {
         let frame = Frame::new(mesh, &mesh.bounds());
@@ -402,6 +451,7 @@ mod tests {
             fields: looks.fields.iter().map(|field| Field::of_values(field.values())).collect(),
             heirs: Vec::new(),
             seams: Seams::default(),
+            charts: Vec::new(),
             coat: Coat::new(mesh, &frame, &AttributeWeights::NONE, 0),
             corners: corners(),
             scratch: Scratch::new(),
@@ -423,15 +473,23 @@ mod tests {
             }
         }
         assert!(seam_faces > 0);
+        for v in (0..vertices.all.len() as u32).filter(|&v| heirs[v as usize] == v) {
+            let slots: Vec<u32> = looks.seams.slots(v).collect();
+            for pair in slots.windows(2).filter(|p| looks.chart(p[0]) == looks.chart(p[1])) {
+                let [a, b] = [pair[0], pair[1]].map(|slot| looks.field(slot).values());
+                assert_eq!(a, b, "one place in the textures");
+            }
+        }
         for (found, wanted) in
             looks.fields.iter().zip(&again.fields).filter(|(_, w)| w.weight() > 0.0)
         {
             let apart = |a: glam::Vec4, b: glam::Vec4| (a - b).abs().max_element();
-            let scale = wanted.squares[0].max_element() + wanted.weight();
-            assert!(apart(found.squares[0], wanted.squares[0]) < 1e-3 * scale);
-            assert!(apart(found.squares[1], wanted.squares[1]) < 1e-3 * scale);
+            // What a sliver is left with is rounding, where edges are one long.
+            let most = 1e-3 * (wanted.squares[0].max_element() + wanted.weight()) + 1e-6;
+            assert!(apart(found.squares[0], wanted.squares[0]) < most);
+            assert!(apart(found.squares[1], wanted.squares[1]) < most);
             for (found, wanted) in found.channels.iter().zip(&wanted.channels) {
-                assert!(apart(*found, *wanted) < 1e-3 * scale);
+                assert!(apart(*found, *wanted) < most);
             }
         }
     }
@@ -441,5 +499,7 @@ mod tests {
         check_fields(&halved(sample::torus(3000)), 600);
         check_fields(&halved(sample::knot(3000)), 1500);
         check_fields(&halved(meshlod_fixtures::grid(30)), 300);
+        check_fields(&faceted(sample::torus(2000)), 500);
+        check_fields(&faceted(meshlod_fixtures::grid(20)), 200);
     }
 }

@@ -105,15 +105,21 @@ impl<const K: usize> Field<K> {
         symmetric(self.squares())
     }
 
-    /// What it costs if the wedge goes to a place `by` further, and takes the values there.
-    pub(super) fn onto(&self, by: Vec3, values: &Self) -> f32 {
+    /// What it costs if the wedge goes to a place `by` further, and takes these values there.
+    pub(super) fn onto(&self, by: Vec3, values: &[f32; K]) -> f32 {
         let by4 = by.extend(0.0);
         let squares = by.as_dvec3().dot(self.matrix() * by.as_dvec3()) as f32;
-        let each = self.channels.iter().zip(&values.channels).map(|(own, other)| {
-            let change = other.w - own.w;
+        let each = self.channels.iter().zip(values).map(|(own, value)| {
+            let change = value - own.w;
             change * (self.weight() * change - 2.0 * own.dot(by4))
         });
         squares + each.sum::<f32>()
+    }
+
+    /// The values that fit best a place `by` further.
+    pub(super) fn best_values(&self, by: DVec3) -> [f32; K] {
+        let share = 1.0 / f64::from(self.weight() + TINY);
+        self.channels.map(|own| own.w + (own.truncate().as_dvec3().dot(by) * share) as f32)
     }
 }
 
@@ -237,6 +243,20 @@ pub(super) fn join_one<const K: usize>(swept: &mut Swept, v0: &Field<K>, v1: &Fi
         swept.at_middle += change * (weight * change - 2.0 * both.dot(h));
         swept.at_middle -= off * off / (weight + f64::from(TINY));
     }
+}
+
+/// The same for a wedge that moves without another, from a place seen from the middle.
+pub(super) fn join_alone<const K: usize>(swept: &mut Swept, field: &Field<K>, from: DVec3) {
+    let share = 1.0 / f64::from(field.weight() + TINY);
+    let mut squares = field.matrix();
+    for channel in &field.channels {
+        let b = channel.truncate().as_dvec3();
+        let part = b * share;
+        squares -= DMat3::from_cols(b * part.x, b * part.y, b * part.z);
+    }
+    swept.sum += squares;
+    swept.slope += squares * from;
+    swept.at_middle += from.dot(squares * from);
 }
 
 /// The values that fit best at `x` from the middle of an edge.

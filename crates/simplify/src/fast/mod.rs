@@ -30,6 +30,7 @@ mod place;
 mod prepare;
 mod probe;
 mod queue;
+mod renew;
 mod ring;
 mod seams;
 mod split;
@@ -70,5 +71,5 @@ pub(crate) fn start<'m>(
         return Err(SimplifyError::AllDegenerate(mesh.faces.len()));
     }
     let input = prepared.input();
-    Ok(prepared.start(&options.weights).map(|work| (work, input)))
+    Ok(Some((prepared.start(&options.weights), input)))
 }

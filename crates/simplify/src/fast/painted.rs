@@ -13,11 +13,11 @@ use crate::fast::carry::Scratch;
 use crate::fast::coat::Coat;
 use crate::fast::cost::{self, Edges};
 use crate::fast::dress::Corners;
-use crate::fast::field::{All, Each, Field, join, join_one};
+use crate::fast::field::{All, Each, Field, join, join_alone, join_one};
 use crate::fast::hood::Hood;
 use crate::fast::looks::{Ends, Looks, Placed, Revalued, by_pins};
 use crate::fast::place::Swept;
-use crate::fast::ring::{GHOST, Vertices};
+use crate::fast::ring::Vertices;
 use crate::fast::seams::Seams;
 use crate::fast::vertex::{Flags, Star};
 use crate::fast::wide::LANES;
@@ -31,6 +31,8 @@ pub(super) struct Painted<'m, const K: usize> {
     /// those of the input.
     pub(super) heirs: Vec<u32>,
     pub(super) seams: Seams,
+    /// By slot: the chart that it is of, see [`Painted::chart`]; empty where each is its own.
+    pub(super) charts: Vec<u32>,
     pub(super) coat: Coat<'m>,
     pub(super) corners: Corners<'m>,
     pub(super) scratch: Box<Scratch<K>>,
@@ -82,20 +84,49 @@ impl<const K: usize> Painted<'_, K> {
         pairs
     }
 
-    /// Whether the wedges of `v` all have one at `onto` to go to.
-    fn may_leave(&self, vertices: &Vertices, v: u32, onto: u32) -> bool {
+    /// What the slots of one vertex have in common that differ in normals and tangents alone: their
+    /// place in the textures. A cut between charts stays; a crease in the shading is no obstacle.
+    #[inline]
+    pub(super) fn chart(&self, slot: u32) -> u32 {
+        self.charts.get(slot as usize).copied().unwrap_or(slot)
+    }
+
+    /// Whether the charts of an end of an edge all have one at the other end to go to.
+    fn may_leave(&self, vertices: &Vertices, pairs: &Pairs, (end, v): (usize, u32)) -> bool {
         if vertices.get(v).flags.any(Flags::PINNED) {
             return false;
         }
-        let sectors = self.seams.of(v);
-        match sectors.len() {
-            0 | 1 => !self.seams.parts(onto, v),
-            2 => {
-                let along = sectors.iter().any(|sector| sector.from == onto);
-                along && !vertices.settled(v).contains(&GHOST)
-            }
-            _ => false,
+        let pairs = pairs.all();
+        if let [a, b] = pairs
+            && a[end] == b[end]
+        {
+            return false;
         }
+        let chart_at = |pair: &[u32; 2], end: usize| self.chart(pair[end]);
+        let goes = |slot: u32| {
+            let mut met = pairs.iter().filter(|pair| chart_at(pair, end) == self.chart(slot));
+            let first = met.next().map(|pair| chart_at(pair, 1 - end));
+            first.is_some_and(|first| met.all(|pair| chart_at(pair, 1 - end) == first))
+        };
+        self.seams.slots(v).all(goes)
+    }
+
+    /// The slots of an end that do not meet any along the edge. They stay with their faces.
+    pub(super) fn alone<'a>(
+        &'a self,
+        pairs: &'a Pairs,
+        (end, v): (usize, u32),
+    ) -> impl Iterator<Item = u32> + 'a {
+        let count = if self.charts.is_empty() { 0 } else { usize::MAX };
+        let is_alone = move |slot: &u32| pairs.all().iter().all(|pair| pair[end] != *slot);
+        self.seams.slots(v).take(count).filter(is_alone)
+    }
+
+    /// The slot of `v0` whose chart that of a slot of `v1` becomes.
+    pub(super) fn leader(&self, pairs: &Pairs, slot: u32) -> u32 {
+        let chart = self.chart(slot);
+        let met = pairs.all().iter().find(|pair| self.chart(pair[1]) == chart);
+        met.map_or(slot, |pair| pair[0])
     }
 }
 
@@ -123,8 +154,9 @@ impl<const K: usize> Looks for Painted<'_, K> {
         if !is_seam(vertices, v) && !is_seam(vertices, target) {
             return by_pins(vertices, v, target);
         }
-        let leaves = self.may_leave(vertices, v, target);
-        let goes = self.may_leave(vertices, target, v);
+        let pairs = self.pairs(vertices, Ends { v0: v, v1: target, free: true });
+        let leaves = self.may_leave(vertices, &pairs, (0, v));
+        let goes = self.may_leave(vertices, &pairs, (1, target));
         match (leaves, goes) {
             (true, true) => Ok(Ends { v0: v, v1: target, free: true }),
             (true, false) => Ok(Ends { v0: target, v1: v, free: false }),
@@ -135,8 +167,15 @@ impl<const K: usize> Looks for Painted<'_, K> {
 
     #[inline(always)]
     fn whole(&self, vertices: &Vertices, ends: Ends, mut swept: Swept) -> Swept {
-        for &[s0, s1] in self.pairs(vertices, ends).all() {
+        let pairs = self.pairs(vertices, ends);
+        for &[s0, s1] in pairs.all() {
             join_one(&mut swept, self.field(s0), self.field(s1));
+        }
+        let half = swept.half;
+        for (end, v, from) in [(0, ends.v0, -half), (1, ends.v1, half)] {
+            for slot in self.alone(&pairs, (end, v)) {
+                join_alone(&mut swept, self.field(slot), from);
+            }
         }
         swept
     }
@@ -144,7 +183,14 @@ impl<const K: usize> Looks for Painted<'_, K> {
     fn onto(&self, vertices: &Vertices, ends: Ends) -> f32 {
         let by = vertices.get(ends.v0).place() - vertices.get(ends.v1).place();
         let pairs = self.pairs(vertices, ends);
-        pairs.all().iter().map(|&[s0, s1]| self.field(s1).onto(by, self.field(s0))).sum()
+        let to = |&[s0, s1]: &[u32; 2]| self.field(s1).onto(by, &self.field(s0).values());
+        let alone = self.alone(&pairs, (1, ends.v1)).map(|slot| {
+            let field = self.field(slot);
+            let mut values = field.best_values(by.as_dvec3());
+            self.coat.follow(&mut values, &self.field(self.leader(&pairs, slot)).values());
+            field.onto(by, &values)
+        });
+        pairs.all().iter().map(to).chain(alone).sum()
     }
 
     #[inline(always)]

@@ -140,22 +140,19 @@ impl<'m> Prepared<'m> {
         self.fans.faces
     }
 
-    /// Costs all vertices; `None` where hardly any vertex has a single wedge.
-    pub(super) fn start(self, weights: &AttributeWeights) -> Option<Box<dyn Run + 'm>> {
+    /// Costs all vertices.
+    pub(super) fn start(self, weights: &AttributeWeights) -> Box<dyn Run + 'm> {
         let faces = numbers(self.mesh, &self.order, self.faces.as_deref());
         let Some(corners) = Corners::new(self.mesh, faces, self.fans.store.all.len()) else {
-            return Some(self.work(()));
+            return self.work(());
         };
-        if corners.is_crowded() {
-            return None;
-        }
         let coat = Coat::new(self.mesh, &self.frame, weights, MOST_CHANNELS);
-        Some(match coat.channels() {
+        match coat.channels() {
             0..=2 => self.paint::<2>(coat, corners),
             3 => self.paint::<3>(coat, corners),
             4..=5 => self.paint::<5>(coat, corners),
             _ => self.paint::<MOST_CHANNELS>(coat, corners),
-        })
+        }
     }
 
     fn paint<const K: usize>(mut self, coat: Coat<'m>, corners: Corners<'m>) -> Box<dyn Run + 'm> {

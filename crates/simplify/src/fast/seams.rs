@@ -39,11 +39,27 @@ impl Seams {
         }
     }
 
-    /// Whether the wedges of `v` differ across its edge to a neighbour.
-    #[inline]
-    pub(super) fn parts(&self, v: u32, neighbour: u32) -> bool {
+    /// The slots of a vertex, each once.
+    pub(super) fn slots(&self, v: u32) -> impl Iterator<Item = u32> + '_ {
         let sectors = self.of(v);
-        sectors.len() > 1 && sectors.iter().any(|sector| sector.from == neighbour)
+        let own = sectors.is_empty().then_some(v);
+        let first = |(i, sector): (usize, &Sector)| {
+            let before = sectors[..i].iter().any(|other| other.slot == sector.slot);
+            (!before).then_some(sector.slot)
+        };
+        own.into_iter().chain(sectors.iter().enumerate().filter_map(first))
+    }
+
+    /// The slots of `v` on both sides of its edge to a neighbour, if they differ.
+    #[inline]
+    pub(super) fn parted(&self, v: u32, neighbour: u32) -> Option<[u32; 2]> {
+        let sectors = self.of(v);
+        if sectors.len() < 2 {
+            return None;
+        }
+        let at = sectors.iter().position(|sector| sector.from == neighbour)?;
+        let before = if at == 0 { sectors.len() - 1 } else { at - 1 };
+        Some([sectors[before].slot, sectors[at].slot])
     }
 
     /// The slot of the face that begins at a neighbour, if that of the face before is `before`.

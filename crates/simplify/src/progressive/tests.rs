@@ -1,4 +1,4 @@
-use meshlod_mesh::{Labels, Mesh, sample};
+use meshlod_mesh::{Attributes, Labels, Layer, LayerKind, Mesh, WedgeId, sample};
 
 use super::*;
 use crate::{Method, Options, Target};
@@ -58,11 +58,31 @@ fn dressed() -> Mesh {
     mesh
 }
 
+/// The same with a normal for each face.
+fn faceted() -> Mesh {
+    let mut mesh = dressed();
+    let Some(all) = mesh.attributes.take() else { return mesh };
+    let corners = || all.corners.iter().flatten();
+    let own = |layer: &Layer| {
+        let values = corners().flat_map(|&wedge| layer.of(wedge).to_vec()).collect();
+        Layer { values, ..layer.clone() }
+    };
+    let mut layers: Vec<Layer> = all.layers.iter().map(own).collect();
+    let normals = layers.iter_mut().find(|layer| layer.kind == LayerKind::Normal).unwrap();
+    normals.values = (0..9 * mesh.faces.len()).map(|i| ((i / 9 + i % 3) % 7) as f32).collect();
+    let wedge_count = 3 * mesh.faces.len();
+    let corners: Vec<_> = (0..wedge_count).map(WedgeId::new).collect();
+    let corners = corners.as_chunks::<3>().0.to_vec();
+    mesh.attributes = Some(Attributes { corners, wedge_count, layers });
+    mesh
+}
+
 #[test]
 fn attributes_come_back_to_the_bit() {
     for method in Method::ALL {
         there_and_back(&sample::fish(500), method);
         there_and_back(&dressed(), method);
+        there_and_back(&faceted(), method);
     }
 }
 

@@ -1,0 +1,114 @@
+//! The values that wedges have after a contraction.
+//!
+//! Those that meet along the edge become one, with the values that fit both best. Where a vertex has
+//! several of one chart, creases in the shading, the others stay with their faces: each has the normal
+//! that fits it best, all have one place in the textures.
+
+use glam::Vec3;
+
+use crate::fast::field::{Field, best_values};
+use crate::fast::looks::{Ends, Placed};
+use crate::fast::painted::{Painted, Pairs};
+
+/// A slot and its new values.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Renewed<const K: usize> {
+    pub(super) slot: u32,
+    pub(super) values: [f32; K],
+    /// The slot whose chart it has from now on.
+    leader: u32,
+    /// What it counts for the place in the textures that its chart has from now on.
+    weight: f32,
+}
+
+impl<const K: usize> Painted<'_, K> {
+    /// The values of the wedge that two become.
+    pub(super) fn values(&self, placed: &Placed, [s0, s1]: [u32; 2]) -> [f32; K] {
+        let (f0, f1) = (self.field(s0), self.field(s1));
+        let before = f0.values();
+        if placed.by == Vec3::ZERO {
+            return before;
+        }
+        let mut values = best_values(f0, f1, placed.half, placed.best);
+        self.coat.settle(&mut values, &before);
+        values
+    }
+
+    /// Finds the new values of all slots of both ends.
+    ///
+    /// Where `v0` stays, its values do; but if others come to it they are all written again, for what
+    /// becomes of a value in channels and back may be off by its last digit.
+    pub(super) fn find_values(&mut self, placed: &Placed, pairs: &Pairs) {
+        let mut renewed = std::mem::take(&mut self.scratch.renewed);
+        renewed.clear();
+        let Ends { v0, v1, .. } = placed.ends;
+        let stays = placed.by == Vec3::ZERO;
+        if !stays || self.alone(pairs, (1, v1)).next().is_some() {
+            let weight = |field: &Field<K>| if stays { 0.0 } else { field.weight() };
+            for (i, &[s0, s1]) in pairs.all().iter().enumerate() {
+                if pairs.all()[..i].iter().all(|before| before[0] != s0) {
+                    let weight = weight(self.field(s0)) + weight(self.field(s1));
+                    let values = self.values(placed, [s0, s1]);
+                    renewed.push(Renewed { slot: s0, values, leader: s0, weight });
+                }
+            }
+            for (end, v, from) in [(0, v0, -placed.half), (1, v1, placed.half)] {
+                for slot in self.alone(pairs, (end, v)) {
+                    let field = self.field(slot);
+                    let mut values = field.values();
+                    if end == 1 || !stays {
+                        values = field.best_values(placed.best - from);
+                        self.coat.settle(&mut values, &field.values());
+                    }
+                    let leader = if end == 0 { slot } else { self.leader(pairs, slot) };
+                    renewed.push(Renewed { slot, values, leader, weight: weight(field) });
+                }
+            }
+        }
+        if !self.charts.is_empty() && renewed.len() > 1 {
+            self.settle_charts(&mut renewed);
+        }
+        self.scratch.renewed = renewed;
+    }
+
+    /// Gives slots of one chart one place in the textures.
+    fn settle_charts(&self, renewed: &mut [Renewed<K>]) {
+        for i in 0..renewed.len() {
+            let chart = self.chart(renewed[i].leader);
+            let is_of = |other: &Renewed<K>| self.chart(other.leader) == chart;
+            if renewed[..i].iter().any(is_of) {
+                continue;
+            }
+            let (mut sum, mut weight) = ([0.0; K], 0.0);
+            for other in renewed.iter().filter(|other| is_of(other)) {
+                let share = f64::from(other.weight);
+                weight += share;
+                for (sum, x) in sum.iter_mut().zip(other.values) {
+                    *sum += share * f64::from(x);
+                }
+            }
+            let mean = match weight > 0.0 {
+                true => sum.map(|x| (x / weight) as f32),
+                false => renewed[i].values,
+            };
+            let others = renewed[i..].iter_mut().filter(|other| is_of(other));
+            others.for_each(|other| self.coat.follow(&mut other.values, &mean));
+        }
+    }
+
+    /// Gives slots that go to another chart that one, and what no channel holds of its textures.
+    pub(super) fn join_charts(&mut self, pairs: &Pairs) {
+        let Self { scratch, charts, coat, .. } = self;
+        if charts.is_empty() {
+            return;
+        }
+        for &Renewed { slot, leader, .. } in &scratch.renewed {
+            let chart = charts[leader as usize];
+            charts[slot as usize] = chart;
+            let mut met = pairs.all().iter().map(|pair| pair[0]);
+            if let Some(other) = met.find(|&other| charts[other as usize] == chart) {
+                coat.follow_rest(slot, other);
+            }
+        }
+    }
+}
