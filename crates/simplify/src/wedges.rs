@@ -176,7 +176,9 @@ impl Wedges {
         for spoke in &hood.spokes {
             let wedge = self.at(spoke.face, spoke.corner());
             let end = spoke.owner();
-            if let Some(pair) = pairs.iter().find(|pair| pair[end] == wedge) {
+            let met = pairs.iter().filter(|pair| pair[end] == wedge);
+            // The lowest of several, as in the fast engine, whose contractions are made again here.
+            if let Some(pair) = met.min_by_key(|pair| pair[kept]) {
                 self.set(spoke.face, spoke.corner(), pair[kept]);
             } else if let Some(pair) = pairs.iter().find(|p| self.same_chart(p[end], wedge)) {
                 self.follow(wedge, pair[kept]);

@@ -16,14 +16,31 @@ use crate::fast::vertex::{Flags, Star};
 use crate::interpolate::{Place, shares};
 
 /// The slots of the faces around an edge. Of spoke i, those of its apex, of `ids[i]` and `ids[i + 1]`.
+#[derive(Clone, Copy, Debug)]
 pub(super) struct Slots {
     pub(super) spokes: [[u32; 3]; ROOM],
     /// Of the two faces that go: `v0`'s, `v1`'s and the wing's.
     pub(super) dying: [[u32; 3]; 2],
+    /// Those that meet along the edge.
+    pub(super) pairs: Pairs,
+    /// Those of the new vertex in each spoke.
+    pub(super) apexes: [u32; ROOM],
+}
+
+impl Default for Slots {
+    fn default() -> Self {
+        let (spokes, dying) = ([[0; 3]; ROOM], [[0; 3]; 2]);
+        Self { spokes, dying, pairs: Pairs::default(), apexes: [0; ROOM] }
+    }
 }
 
 impl Slots {
-    pub(super) fn new(seams: &Seams, vertices: &Vertices, hood: &Hood, ends: Ends) -> Self {
+    pub(super) fn new(
+        seams: &Seams,
+        vertices: &Vertices,
+        hood: &Hood,
+        (ends, pairs): (Ends, Pairs),
+    ) -> Self {
         let Ends { v0, v1, .. } = ends;
         let (at0, at1) = (seams.sides(vertices, v0, v1), seams.sides(vertices, v1, v0));
         let mut spokes = [[0; 3]; ROOM];
@@ -59,14 +76,15 @@ impl Slots {
                 dying[1][2] = sides[1].after;
             }
         }
-        Self { spokes, dying }
+        let mut slots = Self { spokes, dying, pairs, apexes: [0; ROOM] };
+        slots.find_apexes(hood);
+        slots
     }
 
-    /// The slots of the new vertex, of the face that begins at each of the ring.
-    fn apexes(&self, hood: &Hood, pairs: &Pairs) -> [u32; ROOM] {
-        let mut apexes = [0; ROOM];
+    fn find_apexes(&mut self, hood: &Hood) {
+        let Self { spokes, pairs, apexes, .. } = self;
         for (i, apex) in apexes[..hood.len].iter_mut().enumerate() {
-            *apex = self.spokes[i][0];
+            *apex = spokes[i][0];
             if i >= hood.of_v0 {
                 let pair = pairs.all().iter().find(|pair| pair[1] == *apex);
                 *apex = pair.map_or(*apex, |pair| pair[0]);
@@ -78,7 +96,6 @@ impl Slots {
             apexes[at(hood.len - 1)] = apexes[at(hood.len - 2)];
             apexes[ghost] = apexes[at(1)];
         }
-        apexes
     }
 }
 
@@ -91,60 +108,36 @@ impl<const K: usize> Painted<'_, K> {
         placed: &Placed,
     ) -> Star {
         let Ends { v0, v1, .. } = placed.ends;
-        let slots = Slots::new(&self.seams, vertices, hood, placed.ends);
-        let pairs = self.pairs(vertices, placed.ends);
-        self.move_rest(hood, placed, (&slots, &pairs));
-        self.find_values(placed, &pairs);
-        let apexes = slots.apexes(hood, &pairs);
+        let slots = self.scratch.slots;
+        self.move_rest(hood, placed, &slots);
         self.take_fences(vertices, hood, placed);
-        self.join_charts(&pairs);
-        let fence = self.put_fences(vertices, hood, placed, (&slots, &apexes));
-        self.renew_fields(hood, placed, (&slots, &apexes));
-        for &[s0, s1] in pairs.all() {
+        self.join_charts(&slots.pairs);
+        let fence = self.put_fences(vertices, hood, placed, &slots);
+        self.renew_fields(hood, placed, &slots);
+        for &[s0, s1] in slots.pairs.all() {
             self.heirs[s1 as usize] = s0;
         }
         for renewed in &self.scratch.renewed {
             self.heirs[renewed.slot as usize] = renewed.slot;
         }
-        self.renew_sectors(vertices, hood, [v0, v1], &apexes);
+        self.renew_sectors(vertices, hood, [v0, v1], &slots.apexes);
         fence
     }
 
     /// Brings up to date what the faces that change have added to all fields around.
-    fn renew_fields(
-        &mut self,
-        hood: &Hood,
-        placed: &Placed,
-        (slots, apexes): (&Slots, &[u32; ROOM]),
-    ) {
-        let renewed = std::mem::take(&mut self.scratch.renewed);
-        let becomes = |slot: u32| {
-            renewed.iter().find(|renewed| renewed.slot == slot).map(|renewed| &renewed.values)
-        };
-        let Self { fields, scratch, none, .. } = self;
-        for i in 0..hood.len {
-            let of = |slot: u32| &fields.get(slot as usize).unwrap_or(none).channels;
-            let [was, a, b] = slots.spokes[i].map(of);
-            let now = fields[apexes[i] as usize].values();
-            let now = becomes(apexes[i]).unwrap_or(&now);
-            for k in 0..K {
-                scratch.first[k][i] = a[k].w;
-                scratch.second[k][i] = b[k].w;
-                scratch.before[k][i] = was[k].w;
-                scratch.after[k][i] = now[k];
-            }
-        }
-        let none = [0.0; K];
-        scratch.change::<true>(hood, placed.by, [&none; 3]);
+    fn renew_fields(&mut self, hood: &Hood, placed: &Placed, slots: &Slots) {
+        let Self { fields, scratch, .. } = self;
+        let apexes = &slots.apexes;
+        scratch.change::<true>(hood, placed.by, [&[0.0; K]; 3]);
         for (wing, of) in [0, hood.of_v0].into_iter().zip(slots.dying) {
             if hood.ghost != Some(wing) {
                 let [v0, v1, other] = of.map(|slot| fields[slot as usize].values());
                 fields[of[2] as usize].take(&dying(hood, wing, [&v0, &v1, &other]));
             }
         }
-        for &slot in &apexes[..hood.len] {
+        for (i, &slot) in apexes[..hood.len].iter().enumerate() {
             let field = &mut fields[slot as usize];
-            *field = Field::of_values(*becomes(slot).unwrap_or(&field.values()));
+            *field = Field::of_values(scratch.after.map(|row| row[i]));
         }
         for i in (0..hood.len).filter(|&i| hood.is_face(i)) {
             let [_, a, b] = slots.spokes[i];
@@ -152,7 +145,6 @@ impl<const K: usize> Painted<'_, K> {
             fields[b as usize].add(&scratch.changes[i]);
             fields[apexes[i] as usize].add(&scratch.new[i]);
         }
-        scratch.renewed = renewed;
     }
 
     /// Takes the squares of cuts that change out of the stars around.
@@ -176,8 +168,9 @@ impl<const K: usize> Painted<'_, K> {
         vertices: &mut Vertices,
         hood: &Hood,
         placed: &Placed,
-        (slots, apexes): (&Slots, &[u32; ROOM]),
+        slots: &Slots,
     ) -> Star {
+        let apexes = &slots.apexes;
         let mut sum = Star::default();
         let differ = |a: u32, b: u32| self.chart(a) != self.chart(b);
         for i in (0..hood.len).filter(|&i| hood.is_face(i)) {
@@ -232,18 +225,13 @@ impl<const K: usize> Painted<'_, K> {
 
     /// Gives wedges that move what channels do not hold, from the closest point of the faces that they
     /// stand for.
-    pub(super) fn move_rest(
-        &mut self,
-        hood: &Hood,
-        placed: &Placed,
-        (slots, pairs): (&Slots, &Pairs),
-    ) {
+    pub(super) fn move_rest(&mut self, hood: &Hood, placed: &Placed, slots: &Slots) {
         if !self.coat.has_rest() || placed.by == Vec3::ZERO {
             return;
         }
         let to = placed.by.as_dvec3();
         let mut taken = Vec::with_capacity(2);
-        for pair in pairs.all() {
+        for pair in slots.pairs.all() {
             let spokes = (0..hood.len).filter(|&i| hood.is_face(i)).map(|i| {
                 let apex = if i < hood.of_v0 { Vec3::ZERO } else { hood.along };
                 ([apex, hood.seen(i), hood.seen((i + 1) % hood.len)], slots.spokes[i])

@@ -2,6 +2,7 @@
 
 use glam::{Vec3, Vec4};
 
+use crate::fast::around::Slots;
 use crate::fast::field::{Field, TINY};
 use crate::fast::hood::{Hood, ROOM, load};
 use crate::fast::lanes::{LANES, Lanes3, transpose};
@@ -25,25 +26,21 @@ pub(super) struct Scratch<const K: usize> {
     pub(super) changes: [Field<K>; ROOM],
     /// What it becomes, where there are seams.
     pub(super) new: [Field<K>; ROOM],
-    /// The slots that have new values.
+    /// Where there are none: the new vertex's values.
+    pub(super) values: [f32; K],
+    /// Where there are seams: the slots that have new values, and which is where.
     pub(super) renewed: Vec<Renewed<K>>,
+    pub(super) slots: Slots,
 }
 
 impl<const K: usize> Painted<'_, K> {
-    /// Where nothing around has a seam: slots are vertices.
+    /// Where nothing around has a seam: slots are vertices. As looked ahead to.
     #[inline(always)]
     pub(super) fn contract_smooth(&mut self, hood: &Hood, placed: &Placed) {
         let Ends { v0, v1, .. } = placed.ends;
-        let values = self.values(placed, [v0, v1]);
         let (of_v0, of_v1) = (self.field(v0).values(), self.field(v1).values());
-        let Self { fields, scratch, none, .. } = self;
-        for i in 0..=hood.len.next_multiple_of(LANES) {
-            let id = hood.ids[if i < hood.len { i } else { 0 }];
-            let field = fields.get(id as usize).unwrap_or(none);
-            for (row, channel) in scratch.first.iter_mut().zip(&field.channels) {
-                row[i] = channel.w;
-            }
-        }
+        let Self { fields, scratch, .. } = self;
+        let values = scratch.values;
         let mut new = scratch.change::<false>(hood, placed.by, [&of_v0, &of_v1, &values]);
         for (channel, value) in new.channels.iter_mut().zip(values) {
             channel.w = value;
@@ -77,8 +74,18 @@ impl<const K: usize> Scratch<K> {
     pub(super) fn new() -> Box<Self> {
         let (rows, fields) = ([[0.0; ROOM]; K], [Field::EMPTY; ROOM]);
         let (first, second, before, after) = (rows, rows, rows, rows);
-        let renewed = Vec::new();
-        Box::new(Self { first, second, before, after, changes: fields, new: fields, renewed })
+        let (values, renewed, slots) = ([0.0; K], Vec::new(), Slots::default());
+        Box::new(Self {
+            first,
+            second,
+            before,
+            after,
+            changes: fields,
+            new: fields,
+            values,
+            renewed,
+            slots,
+        })
     }
 
     /// Puts what each spoke changes in its place; gives the sum of the new faces where there are no

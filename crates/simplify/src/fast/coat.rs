@@ -22,6 +22,7 @@ struct Counted {
     /// The least and the greatest of its values, in channels.
     range: [f32; 2],
     is_normal: bool,
+    is_uv: bool,
 }
 
 /// The layers of a mesh.
@@ -70,7 +71,8 @@ impl<'m> Coat<'m> {
                 let channels = start..start + width;
                 let range = range(layer, width, scale);
                 let is_normal = layer.kind == LayerKind::Normal;
-                counted.push(Counted { layer: i, channels, scale, range, is_normal });
+                let is_uv = width == 2;
+                counted.push(Counted { layer: i, channels, scale, range, is_normal, is_uv });
             }
         }
         Self { layers, counted, rest: Vec::new(), rest_of: Vec::new() }
@@ -79,6 +81,11 @@ impl<'m> Coat<'m> {
     /// How many channels count.
     pub(super) fn channels(&self) -> usize {
         self.counted.last().map_or(0, |last| last.channels.end)
+    }
+
+    /// The channels of textures' places: each time the first of two.
+    pub(super) fn uvs(&self) -> impl Iterator<Item = usize> + '_ {
+        self.counted.iter().filter(|counted| counted.is_uv).map(|counted| counted.channels.start)
     }
 
     /// Whether something moves along that no channel holds.

@@ -130,7 +130,7 @@ impl<'m> Corners<'m> {
     }
 
     /// The wedge that a slot is.
-    fn wedge(&self, slot: u32) -> u32 {
+    pub(super) fn wedge(&self, slot: u32) -> u32 {
         let other = || self.others[slot as usize - self.first.len()].1;
         self.first.get(slot as usize).copied().unwrap_or_else(other)
     }

@@ -52,7 +52,11 @@ pub(super) trait Looks: Sized + Send + Sync {
     /// What attributes cost where `v1` goes to the place of `v0`.
     fn onto(&self, vertices: &Vertices, ends: Ends) -> f32;
 
-    /// Carries a contraction out, before the vertices themselves change; gives what the star of the new
+    /// Finds what a contraction that may be otherwise makes of attributes; whether it turns a face over
+    /// in its texture.
+    fn look_ahead(&mut self, vertices: &Vertices, hood: &Hood, placed: &Placed) -> bool;
+
+    /// Carries out what was last looked ahead to, before the vertices themselves change; gives what the star of the new
     /// vertex has beside its faces.
     fn contract(&mut self, vertices: &mut Vertices, hood: &Hood, placed: &Placed) -> Star;
 
@@ -104,6 +108,11 @@ impl Looks for () {
     #[inline(always)]
     fn onto(&self, _: &Vertices, _: Ends) -> f32 {
         0.0
+    }
+
+    #[inline(always)]
+    fn look_ahead(&mut self, _: &Vertices, _: &Hood, _: &Placed) -> bool {
+        false
     }
 
     #[inline(always)]

@@ -4,6 +4,7 @@
 //! instead of stars of faces, one queue entry a vertex instead of one an edge, floats, and costs from
 //! nine numbers a vertex. docs/notes/fast-simplify.md tells why each of these.
 
+mod ahead;
 mod apart;
 mod around;
 mod carry;

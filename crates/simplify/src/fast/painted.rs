@@ -71,7 +71,7 @@ impl<const K: usize> Painted<'_, K> {
     }
 
     /// The slots that meet along an edge.
-    pub(super) fn pairs(&self, vertices: &Vertices, Ends { v0, v1, .. }: Ends) -> Pairs {
+    fn meeting(&self, vertices: &Vertices, Ends { v0, v1, .. }: Ends) -> Pairs {
         let mut pairs = Pairs::default();
         if !is_seam(vertices, v0) && !is_seam(vertices, v1) {
             pairs.add([v0, v1]);
@@ -81,6 +81,19 @@ impl<const K: usize> Painted<'_, K> {
         let (at0, at1) = (self.seams.sides(vertices, v0, v1), self.seams.sides(vertices, v1, v0));
         pairs.add([at0.after, at1.before]);
         pairs.add([at0.before, at1.after]);
+        pairs
+    }
+
+    /// The slots that become one. One of `v1` that meets two goes into that of the lower wedge.
+    pub(super) fn pairs(&self, vertices: &Vertices, ends: Ends) -> Pairs {
+        let mut pairs = self.meeting(vertices, ends);
+        if let [[a, s], [b, t]] = *pairs.all()
+            && s == t
+        {
+            let [first, second] = [a, b].map(|slot| self.corners.wedge(slot));
+            pairs = Pairs::default();
+            pairs.add([if first <= second { a } else { b }, s]);
+        }
         pairs
     }
 
@@ -97,11 +110,6 @@ impl<const K: usize> Painted<'_, K> {
             return false;
         }
         let pairs = pairs.all();
-        if let [a, b] = pairs
-            && a[end] == b[end]
-        {
-            return false;
-        }
         let chart_at = |pair: &[u32; 2], end: usize| self.chart(pair[end]);
         let goes = |slot: u32| {
             let mut met = pairs.iter().filter(|pair| chart_at(pair, end) == self.chart(slot));
@@ -154,7 +162,7 @@ impl<const K: usize> Looks for Painted<'_, K> {
         if !is_seam(vertices, v) && !is_seam(vertices, target) {
             return by_pins(vertices, v, target);
         }
-        let pairs = self.pairs(vertices, Ends { v0: v, v1: target, free: true });
+        let pairs = self.meeting(vertices, Ends { v0: v, v1: target, free: true });
         let leaves = self.may_leave(vertices, &pairs, (0, v));
         let goes = self.may_leave(vertices, &pairs, (1, target));
         match (leaves, goes) {
@@ -194,16 +202,22 @@ impl<const K: usize> Looks for Painted<'_, K> {
     }
 
     #[inline(always)]
+    fn look_ahead(&mut self, vertices: &Vertices, hood: &Hood, placed: &Placed) -> bool {
+        match self.has_seam(vertices, hood, placed.ends) {
+            true => self.look_ahead_by_slots(vertices, hood, placed),
+            false => self.look_ahead_smooth(hood, placed),
+        }
+    }
+
+    #[inline(always)]
     fn contract(&mut self, vertices: &mut Vertices, hood: &Hood, placed: &Placed) -> Star {
-        let Ends { v0, v1, .. } = placed.ends;
-        let any = |v: &u32| is_seam(vertices, *v);
-        if any(&v0) || any(&v1) || hood.ids().iter().any(any) {
+        if self.has_seam(vertices, hood, placed.ends) {
             return self.contract_by_slots(vertices, hood, placed);
         }
         if self.coat.has_rest() {
-            let slots = Slots::new(&self.seams, vertices, hood, placed.ends);
             let pairs = self.pairs(vertices, placed.ends);
-            self.move_rest(hood, placed, (&slots, &pairs));
+            let slots = Slots::new(&self.seams, vertices, hood, (placed.ends, pairs));
+            self.move_rest(hood, placed, &slots);
         }
         self.contract_smooth(hood, placed);
         Star::default()
