@@ -181,8 +181,11 @@ pub fn methods() -> String {
 
 /// The same where one is chosen if none is named.
 pub fn methods_or_suited() -> String {
-    let [bare, dressed] = [Method::LindstromTurk, Method::Qem].map(Method::name);
-    format!("{} [default: {bare}; {dressed} where there are attributes]", methods())
+    let [one, other] = [Method::LindstromTurk, Method::Qem].map(Method::name);
+    format!(
+        "{} [default: {one}; {other} where attributes meet ties, protection, or pieces that may vanish]",
+        methods()
+    )
 }
 
 fn names() -> String {

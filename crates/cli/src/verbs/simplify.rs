@@ -95,17 +95,17 @@ const WEIGHTS: AttributeWeights = AttributeWeights::DEFAULT;
 #[derive(Args)]
 struct Weights {
     /// What a normal that is off by one counts, as a part of the diagonal; 0: nothing;
-    /// with qem and qem-endpoint
+    /// with lindstrom-turk, qem and qem-endpoint
     #[arg(long, value_name = "W", default_value_t = WEIGHTS.normal, value_parser = amounts::weight,
         allow_negative_numbers = true)]
     weight_normal: f64,
     /// What a texture that slides by a length counts, as a part of it; 0: nothing;
-    /// with qem and qem-endpoint
+    /// with lindstrom-turk, qem and qem-endpoint
     #[arg(long, value_name = "W", default_value_t = WEIGHTS.uv, value_parser = amounts::weight,
         allow_negative_numbers = true)]
     weight_uv: f64,
     /// What a colour that is off by one counts, as a part of the diagonal; 0: nothing;
-    /// with qem and qem-endpoint
+    /// with lindstrom-turk, qem and qem-endpoint
     #[arg(long, value_name = "W", default_value_t = WEIGHTS.color, value_parser = amounts::weight,
         allow_negative_numbers = true)]
     weight_color: f64,
@@ -132,7 +132,9 @@ impl Manner {
     pub fn warn(&self, report: &Report, session: &Session) {
         if self.weights() != WEIGHTS && !report.method.counts_attributes() {
             let method = report.method.name();
-            session.warn(format_args!("--weight-…: {method} does not count attributes; qem does"));
+            session.warn(format_args!(
+                "--weight-…: {method} does not count attributes; lindstrom-turk does"
+            ));
         }
         if self.boundary.is_some() && !report.method.weighs_boundaries() {
             let method = report.method.name();

@@ -55,8 +55,12 @@ fn attributes_are_counted_where_no_method_is_named() {
     let simplify = |rest: &[&str]| {
         run.json(&[&["simplify", "in.obj", "out.obj", "--ratio", "50%"], rest].concat())
     };
-    assert_eq!(simplify(&[])["method"], "qem");
-    assert_eq!(simplify(&["--method", "lindstrom-turk"])["method"], "lindstrom-turk");
+    assert_eq!(simplify(&[])["method"], "lindstrom-turk");
+    // What the fast engine does not do is left to one that counts them in the general engine.
+    assert_eq!(simplify(&["--keep-objects=5%"])["method"], "qem");
+    run.sample("knot", 1_000, "in.ply");
+    let bare = ["simplify", "in.ply", "out.ply", "--ratio", "50%", "--keep-objects=5%"];
+    assert_eq!(run.json(&bare)["method"], "lindstrom-turk");
 }
 
 #[test]

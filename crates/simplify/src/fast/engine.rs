@@ -31,9 +31,9 @@ const SLACK: u16 = 4;
 const REST: u16 = 6;
 
 /// What an edge of a seam counts, which otherwise would cost nothing to move across the surface. The
-/// mean of the logarithms of FLIP over pirate, spot, duck and the flight helmet at 25, 10 and 3 % of the
-/// faces: 0.5 -3.269, -2.423, -1.388; 1.5 -3.264, -2.407, -1.390; 4.5 -3.260, -2.398, -1.386; 9 -3.248,
-/// -2.381, -1.360. At 1 % of the duck, 42 faces: 0 .68, 0.5 .68, 1.5 .62, 4.5 .60, 9 .61, 18 .64.
+/// mean of the logarithms of FLIP over pirate, spot, duck and the flight helmet at 25, 10, 3 and 1 % of
+/// the faces: 0.5 -3.214, -2.362, -1.378, -.749; 1.5 -3.209, -2.349, -1.380, -.854; 4.5 -3.202, -2.337,
+/// -1.378, -.850; 9 -3.191, -2.331, -1.341, -.806.
 pub(super) const SEAM_WEIGHT: f32 = 1.5;
 
 /// By how many buckets a contraction waits that turns a face over in its texture. Those turned in the

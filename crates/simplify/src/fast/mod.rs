@@ -47,12 +47,9 @@ use crate::fast::prepare::Prepared;
 use crate::options::{Method, Options, SimplifyError};
 use crate::simplifier::Started;
 
-/// Whether there is a fast way for this: `lindstrom-turk`, no ties, nothing that may vanish.
+/// Whether there is a fast way for this.
 fn fits(mesh: &Mesh, options: &Options) -> bool {
-    let Options { locks, vanish_below, .. } = options;
-    options.method_for([mesh]) == Method::LindstromTurk
-        && locks.ties.is_empty()
-        && vanish_below.is_none()
+    options.method_for([mesh]) == Method::LindstromTurk && !options.needs_general_engine()
 }
 
 /// Sets the engine to work on a valid mesh, and says what was found in it; `None` where the general
