@@ -182,7 +182,7 @@ enum Chain {
 const FIRSTS: [u32; RING] = {
     let (mut counts, mut pair) = ([0; RING], 0);
     while pair < PAIRS {
-        counts[2 * pair] = 1 << 16 | 2 * pair as u32;
+        counts[2 * pair] = (1 << 16) | (2 * pair) as u32;
         pair += 1;
     }
     counts

@@ -4,6 +4,9 @@
 //! instead of stars of faces, one queue entry a vertex instead of one an edge, floats, and costs from
 //! nine numbers a vertex. docs/notes/fast-simplify.md tells why each of these.
 
+// Lanes go by their number, in one row as in the next.
+#![allow(clippy::needless_range_loop)]
+
 mod ahead;
 mod apart;
 mod around;
