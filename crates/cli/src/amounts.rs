@@ -182,10 +182,8 @@ pub fn methods() -> String {
 /// The same where one is chosen if none is named.
 pub fn methods_or_suited() -> String {
     let [one, other] = [Method::LindstromTurk, Method::Qem].map(Method::name);
-    format!(
-        "{} [default: {one}; {other} where attributes meet ties, protection, or pieces that may vanish]",
-        methods()
-    )
+    let exception = "where attributes meet ties or pieces that may vanish";
+    format!("{} [default: {one}; {other} {exception}]", methods())
 }
 
 fn names() -> String {

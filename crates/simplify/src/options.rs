@@ -110,7 +110,8 @@ pub enum Target {
     Faces(usize),
     /// To this part of the input's faces, between 0 and 1.
     Ratio(f64),
-    /// As far as the algorithm's own estimate of the error stays within this, in model units.
+    /// As far as the error stays within this, in model units: by the algorithm's own estimate, and in
+    /// the fast engine's `lindstrom-turk` by distances from the input, both ways.
     Error(f64),
 }
 
@@ -152,9 +153,9 @@ pub struct Options {
     /// Keep every vertex of a boundary edge where it is.
     pub lock_boundary: bool,
     /// What it costs to move a boundary, where the method counts that, see
-    /// [`Method::weighs_boundaries`]: a factor, 0 for nothing. Of squared areas under the boundary against squared
-    /// volumes in `lindstrom-turk`, of planes on boundary edges against those of faces in `qem`. `None` for
-    /// the method's own, which is 9 in `lindstrom-turk`, 2 in `qem`.
+    /// [`Method::weighs_boundaries`]: a factor, 0 for nothing, more than 1e9 as 1e9. Of squared areas under
+    /// the boundary against squared volumes in `lindstrom-turk`, of planes on boundary edges against
+    /// those of faces in `qem`. `None` for the method's own, which is 9 in `lindstrom-turk`, 2 in `qem`.
     pub boundary_weight: Option<f64>,
     /// What must stay, or move together. Where vertices of a tie do not find edges to move along
     /// together, they stay.
@@ -166,7 +167,7 @@ pub struct Options {
 }
 
 impl Options {
-    /// Refuses a weight of boundaries that is none.
+    /// Refuses weights that are none.
     pub(crate) fn validate(&self) -> Result<(), SimplifyError> {
         self.weights.validate()?;
         match self.boundary_weight.filter(|weight| !weight.is_finite() || *weight < 0.0) {
@@ -178,9 +179,10 @@ impl Options {
     /// The method that is named, or else suits these meshes, which share a target: the most accurate
     /// one, [`Method::LindstromTurk`].
     ///
-    /// Its fast engine counts attributes, but knows no ties, and no components that may vanish. Where any of these is asked for and any mesh has attributes it is [`Method::Qem`]: FLIP of
-    /// six models at 25 % of the faces, the mean by factors, is .75 of that of the general engine's
-    /// `lindstrom-turk`, which does not count them; at 10 % .89.
+    /// Its fast engine counts attributes, but knows no ties, and no components that may vanish. Where
+    /// any of these is asked for and any mesh has attributes it is [`Method::Qem`]: FLIP of six models at
+    /// 25 % of the faces, the mean by factors, is .75 of that of the general engine's `lindstrom-turk`,
+    /// which does not count them; at 10 % .89.
     pub fn method_for<'m>(&self, meshes: impl IntoIterator<Item = &'m Mesh>) -> Method {
         let counts = |mesh: &Mesh| !self.needs_general_engine() || mesh.attributes.is_none();
         let suited = || match meshes.into_iter().all(counts) {

@@ -257,6 +257,20 @@ fn attributes_cost_lindstrom_turk_no_volume() {
 }
 
 #[test]
+fn one_value_far_from_all_others_does_no_harm() {
+    let mesh = sample::terrain(2000);
+    let layers = mesh.attributes.as_ref().unwrap().layers.len();
+    for (layer, far) in (0..layers).flat_map(|layer| [1e18, 1e24, 1e36].map(|far| (layer, far))) {
+        let mut mesh = mesh.clone();
+        let layers = &mut mesh.attributes.as_mut().unwrap().layers;
+        let middle = layers[layer].values.len() / 2;
+        layers[layer].values[middle] = far;
+        let level = to(&mesh, Method::LindstromTurk, 0.2);
+        assert!(level.faces.len() <= 400, "{layer}, {far}: {}", level.faces.len());
+    }
+}
+
+#[test]
 fn values_out_of_all_bounds_do_no_harm() {
     let uv =
         |[x, y, _]: [f64; 3]| vec![(x * 3e38) as f32, if y > 0.5 { f32::MAX } else { f32::MIN }];

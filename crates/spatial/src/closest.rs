@@ -57,7 +57,8 @@ impl Bvh {
         [enough, most]: [f64; 2],
     ) -> Option<Closest> {
         let p = self.frame.local(point);
-        let [enough, most] = [enough, most].map(|length| (length * self.frame.scale()).powi(2));
+        let squared = |length: f64| (length * self.frame.scale()).powi(2);
+        let (enough, most) = (squared(enough.min(most)), squared(most));
         let mut best = self.first(p, hint);
         if best.distance_squared > enough {
             self.descend::<true>(p, &mut best, [enough, most]);

@@ -11,6 +11,9 @@ use crate::fast::frame::Frame;
 use crate::interpolate::{Place, interpolate};
 use crate::options::AttributeWeights;
 
+/// No attribute counts for more, in the frame's units.
+const MOST_LENGTH: f64 = 1e9;
+
 /// A layer that counts, or the part of it that does.
 #[derive(Clone, Debug)]
 struct Counted {
@@ -111,13 +114,15 @@ impl<'m> Coat<'m> {
         }
     }
 
-    /// The channels of a wedge. What is no number counts as zero.
+    /// The channels of a wedge. What is no number counts as zero, and nothing for more than floats
+    /// have room for the squares of.
     pub(super) fn channels_of<const K: usize>(&self, wedge: u32) -> [f32; K] {
         let mut channels = [0.0; K];
         for Counted { layer, channels: at, scale, .. } in &self.counted {
             let values = self.layers[*layer].of(WedgeId(wedge));
             for (channel, &x) in channels[at.clone()].iter_mut().zip(values) {
-                *channel = if x.is_finite() { (f64::from(x) * scale) as f32 } else { 0.0 };
+                let length = (f64::from(x) * scale).clamp(-MOST_LENGTH, MOST_LENGTH);
+                *channel = if x.is_finite() { length as f32 } else { 0.0 };
             }
         }
         channels

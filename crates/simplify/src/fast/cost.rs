@@ -95,9 +95,11 @@ impl Rank {
     /// Behind all edges.
     pub(super) const LAST: Self = Self(u64::MAX);
 
+    /// What is no number costs more than anything.
     #[inline(always)]
     pub(super) fn new(cost: f32, to: u32) -> Self {
-        Self(u64::from(most(cost, 0.0).to_bits()) << 32 | u64::from(to))
+        let cost = if cost < f32::INFINITY { most(cost, 0.0) } else { f32::INFINITY };
+        Self((u64::from(cost.to_bits()) << 32) | u64::from(to))
     }
 
     #[inline(always)]
@@ -148,7 +150,8 @@ pub(super) fn costs(
 /// What makes a cost other than that of a free edge.
 const SPECIAL: Flags = Flags(Flags::PINNED.0 | Flags::SHUT.0 | Flags::SEAM.0 | Flags::PROTECTED.0);
 
-/// Costs of edges with an end that stays where it is or goes late, or that may not be contracted, or not now.
+/// Costs of edges with an end that stays where it is or goes late, or that may not be contracted, or
+/// not now.
 #[cold]
 fn correct(
     costs: &mut Row,
@@ -379,5 +382,22 @@ impl Edges {
         let determinant = most(m11 * m22 - m12 * m12, 1e-36);
         let gain = rise * rise * m11 / determinant * trace;
         there - gain + SHORT_FIRST * trace * h.dot(h)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_no_number_comes_last() {
+        let rank = |cost| Rank::new(cost, 7);
+        assert!(
+            rank(-1.0) == rank(0.0) && rank(0.0) < rank(1e-30) && rank(2.0) < Rank::new(2.0, 8)
+        );
+        for cost in [f32::NAN, f32::INFINITY] {
+            assert_eq!(rank(cost).cheapest(), Cheapest { bucket: NONE, target: NOBODY });
+            assert!(rank(f32::MAX) < rank(cost));
+        }
     }
 }

@@ -252,7 +252,7 @@ impl<'v, L: Looks> Engine<'v, L> {
                 self.refusals.add(refusal);
                 let vertex = self.vertices.get_mut(v);
                 // It must rise, or the edge would be tried for ever.
-                vertex.floor = bucket.max(front).max(vertex.floor + 1);
+                vertex.floor = bucket.max(front).max(vertex.floor.saturating_add(1));
                 self.look(v, front, None);
             }
         }
@@ -348,6 +348,9 @@ impl<'v, L: Looks> Engine<'v, L> {
         let best = if free { whole.best() } else { -swept.half };
         let looked = if free { 0.0 } else { f64::from(looks.onto(vertices, ends)) };
         let cost = whole.at(best) + looked;
+        if !cost.is_finite() {
+            return Err(refused(Refusal::Volume));
+        }
         let short = f64::from(SHORT_FIRST) * whole.weight() * swept.half.length_squared();
         let mut cost = (cost.max(0.0) + short) as f32;
         if end0.flags.any(Flags::PROTECTED) || end1.flags.any(Flags::PROTECTED) {

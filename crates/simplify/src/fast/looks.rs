@@ -56,8 +56,8 @@ pub(super) trait Looks: Sized + Send + Sync {
     /// in its texture.
     fn look_ahead(&mut self, vertices: &Vertices, hood: &Hood, placed: &Placed) -> bool;
 
-    /// Carries out what was last looked ahead to, before the vertices themselves change; gives what the star of the new
-    /// vertex has beside its faces.
+    /// Carries out what was last looked ahead to, before the vertices themselves change; gives what the
+    /// star of the new vertex has beside its faces.
     fn contract(&mut self, vertices: &mut Vertices, hood: &Hood, placed: &Placed) -> Star;
 
     /// Reads what is wanted of a vertex soon.

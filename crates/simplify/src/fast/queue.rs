@@ -107,7 +107,8 @@ impl Queue {
 
     /// How many entries each bucket has.
     pub(super) fn lengths(&self) -> impl Iterator<Item = usize> {
-        self.buckets.iter().map(Vec::len)
+        let taken = |bucket| if bucket == self.front as usize { self.next.len() } else { 0 };
+        self.buckets.iter().enumerate().map(move |(bucket, list)| list.len() + taken(bucket))
     }
 
     /// Takes the entries of another, to come before its own of the same bucket.

@@ -78,7 +78,7 @@ pub(super) trait Work {
 /// Does the work with the widest registers that this machine has.
 pub(super) fn widest(work: impl Work) {
     #[cfg(target_arch = "x86_64")]
-    if std::arch::is_x86_feature_detected!("avx2") {
+    if std::arch::is_x86_feature_detected!("avx2") && !tests_are_narrow() {
         #[target_feature(enable = "avx2")]
         fn with_avx2(work: impl Work) {
             work.work();
@@ -90,9 +90,41 @@ pub(super) fn widest(work: impl Work) {
     work.work();
 }
 
+#[cfg(not(test))]
+fn tests_are_narrow() -> bool {
+    false
+}
+
+#[cfg(test)]
+use self::tests::tests_are_narrow;
+
 #[cfg(test)]
 mod tests {
+    use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
+
+    use meshlod_mesh::sample;
+
     use super::*;
+    use crate::{Options, Target, simplify};
+
+    /// Whether tests go without wide registers, all of them: it is not to be seen.
+    static ARE_NARROW: AtomicBool = AtomicBool::new(false);
+
+    pub(super) fn tests_are_narrow() -> bool {
+        ARE_NARROW.load(Relaxed)
+    }
+
+    #[test]
+    fn the_width_is_not_seen() {
+        for mesh in [sample::knot(4000), sample::fish(4000), sample::terrain(4000)] {
+            let [wide, narrow] = [false, true].map(|are_narrow| {
+                ARE_NARROW.store(are_narrow, Relaxed);
+                simplify(&mesh, Target::Ratio(0.1), &Options::default()).unwrap().0
+            });
+            ARE_NARROW.store(false, Relaxed);
+            assert_eq!(wide, narrow);
+        }
+    }
 
     #[test]
     fn rows_become_columns() {

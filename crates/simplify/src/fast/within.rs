@@ -106,8 +106,8 @@ pub(super) struct Step<'a> {
 }
 
 impl Within<'_> {
-    /// The square of how far the surface is from the input after a step, or `estimate` where that cannot be
-    /// near the bound; `None` if it is beyond. The step is taken for carried out.
+    /// The square of how far the surface is from the input after a step, or `estimate` where that cannot
+    /// be near the bound; `None` if it is beyond. The step is taken for carried out.
     pub(super) fn admit(&mut self, step: &Step<'_>, estimate: f32) -> Option<f32> {
         let [v0, v1] = step.ends.map(|v| self.slot(v));
         let before = self.ways[v0].max(self.ways[v1]);
