@@ -258,9 +258,12 @@ fn attributes_cost_lindstrom_turk_no_volume() {
 
 #[test]
 fn one_value_far_from_all_others_does_no_harm() {
-    let mesh = sample::terrain(2000);
-    let layers = mesh.attributes.as_ref().unwrap().layers.len();
-    for (layer, far) in (0..layers).flat_map(|layer| [1e18, 1e24, 1e36].map(|far| (layer, far))) {
+    let three: fn([f64; 3]) -> Vec<f32> = |at| at.map(|x| x as f32).to_vec();
+    let two: fn([f64; 3]) -> Vec<f32> = |[x, y, _]| vec![x as f32, y as f32];
+    let layers =
+        [(LayerKind::Normal, three), (LayerKind::Color(0), three), (LayerKind::Uv(0), two)];
+    let mesh = with_layers(sample::sphere(2000), &layers);
+    for (layer, far) in (0..3).flat_map(|layer| [1e18, 1e24, 1e36].map(|far| (layer, far))) {
         let mut mesh = mesh.clone();
         let layers = &mut mesh.attributes.as_mut().unwrap().layers;
         let middle = layers[layer].values.len() / 2;
