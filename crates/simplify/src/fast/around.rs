@@ -136,8 +136,11 @@ impl<const K: usize> Painted<'_, K> {
             }
         }
         for (i, &slot) in apexes[..hood.len].iter().enumerate() {
-            let field = &mut fields[slot as usize];
-            *field = Field::of_values(scratch.after.map(|row| row[i]));
+            let mut values = [0.0; K];
+            for (value, row) in values.iter_mut().zip(&scratch.after) {
+                *value = row[i];
+            }
+            fields[slot as usize] = Field::of_values(values);
         }
         for i in (0..hood.len).filter(|&i| hood.is_face(i)) {
             let [_, a, b] = slots.spokes[i];

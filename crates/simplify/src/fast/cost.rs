@@ -164,6 +164,9 @@ fn correct(
         let u = us.get(lane);
         let floor = vertices.get(u).floor;
         let flags = Flags(vertices.get(u).flags.0 | vertices.get(v).flags.0);
+        if !flags.any(SPECIAL) && floor == 0 {
+            continue;
+        }
         if flags.any(Flags::SHUT) {
             *cost = f32::INFINITY;
             continue;
