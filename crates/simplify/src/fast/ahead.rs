@@ -8,8 +8,8 @@ use glam::Vec4;
 
 use crate::fast::around::Slots;
 use crate::fast::carry::Scratch;
-use crate::fast::hood::{Hood, load};
-use crate::fast::lanes::LANES;
+use crate::fast::hood::Hood;
+use crate::fast::lanes::{LANES, Lanes3};
 use crate::fast::looks::{Ends, Placed};
 use crate::fast::painted::{Painted, is_seam};
 use crate::fast::ring::Vertices;
@@ -91,7 +91,7 @@ impl<const K: usize> Scratch<K> {
             };
             let ((ax, bx, x), (ay, by, y)) = (row(u), row(u + 1));
             let area = |i: usize| (ax - x[i]) * (by - y[i]) - (ay - y[i]) * (bx - x[i]);
-            let (old, new) = (load(&hood.old, start), load(&hood.new, start));
+            let (old, new) = (Lanes3::load(&hood.old, start), Lanes3::load(&hood.new, start));
             // Lanes past the end are faces of one point, and the ghost's have no area either.
             before.count(area(0), old.dot(old));
             after.count(area(1), new.dot(new));

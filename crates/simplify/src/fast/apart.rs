@@ -7,10 +7,7 @@
 use glam::Vec3;
 
 use crate::fast::hood::{Hood, ROOM, Spokes, row3};
-use crate::fast::wide::{LANES, Row3, least, most};
-
-/// Keeps a division by nothing from being one.
-const TINY: f32 = 1e-30;
+use crate::fast::wide::{LANES, Row3, TINY, least, most};
 
 impl Hood {
     /// The square of the greatest of the three distances. `place` as seen from v0; the new faces are

@@ -3,13 +3,14 @@
 use glam::{Vec3, Vec4};
 
 use crate::fast::around::Slots;
-use crate::fast::field::{Field, TINY};
-use crate::fast::hood::{Hood, ROOM, load};
+use crate::fast::field::Field;
+use crate::fast::hood::{Hood, ROOM};
 use crate::fast::lanes::{LANES, Lanes3, transpose};
 use crate::fast::looks::{Ends, Placed};
 use crate::fast::painted::Painted;
 use crate::fast::renew::Renewed;
 use crate::fast::ring::GHOST;
+use crate::fast::wide::TINY;
 
 /// Values at corners of spokes, a channel of all in one row, and the lanes beyond their end.
 type Rows<const K: usize> = [[f32; ROOM]; K];
@@ -105,9 +106,14 @@ impl<const K: usize> Scratch<K> {
             let row = |row: &[f32; ROOM], start: usize| Vec4::from_slice(&row[start..]);
             let at_v1 = row(&hood.of_v1, start);
             let at_v0 = Vec4::ONE - at_v1;
-            let (a, b) = (load(&hood.ring, start), load(&hood.ring, start + 1));
-            let old = Spokes::new(a, b, Lanes3::all(hood.along).by(at_v1), load(&hood.old, start));
-            let new = Spokes::new(a, b, Lanes3::all(by), load(&hood.new, start));
+            let (a, b) = (Lanes3::load(&hood.ring, start), Lanes3::load(&hood.ring, start + 1));
+            let old = Spokes::new(
+                a,
+                b,
+                Lanes3::all(hood.along).by(at_v1),
+                Lanes3::load(&hood.old, start),
+            );
+            let new = Spokes::new(a, b, Lanes3::all(by), Lanes3::load(&hood.new, start));
             let (mut changes, mut news) = ([[Vec4::ZERO; 3]; K], [[Vec4::ZERO; 3]; K]);
             let (mut was, mut now) = ([Vec4::ZERO; 6], [Vec4::ZERO; 6]);
             for k in 0..K {

@@ -6,14 +6,14 @@
 //! x'Sx − 2q·x + h'Sh, and the volume stays where g·x = (N₁ − N₀)·h. Faces that both stars have
 //! contain h; they count twice in S and g and nowhere else.
 
-use glam::Vec3;
+use glam::{Vec3, Vec4};
 
 use crate::fast::looks::Looks;
 use crate::fast::place::{Swept, matrix};
 use crate::fast::queue::{NONE, bucket};
 use crate::fast::ring::{LONG, MOST, Vertices};
 use crate::fast::vertex::{Flags, NOBODY, Vertex};
-use crate::fast::wide::{LANES, Row, Row3, most, transpose};
+use crate::fast::wide::{LANES, Row, Row3, TINY, most, transpose};
 use crate::locks;
 
 /// How strongly the optimum is pulled to the middle of the edge, as in the general engine.
@@ -22,9 +22,6 @@ pub(super) const PULL: f32 = 1e-5;
 /// What the square of half the length counts. Short edges go first where all costs are rounding,
 /// which for these floats is a ten-millionth.
 pub(super) const SHORT_FIRST: f32 = 1e-7;
-
-/// Keeps a division by nothing from being one.
-const TINY: f32 = 1e-30;
 
 /// What an edge to a protected vertex costs, times: as if all moved so much farther.
 pub(super) const PROTECTION: f32 = {
@@ -74,7 +71,7 @@ fn cheapest_of<const ROOM: usize>(
         for (lane, id) in (0..).zip(&mut ids) {
             *id = if lane < left { *id } else { some[0] };
         }
-        let costs = costs(vertices, looks, Ends::Of(u), &ids);
+        let costs = costs(vertices, looks, Side::Of(u), &ids);
         for (cost, id) in costs.into_iter().zip(ids) {
             least = least.min(Rank::new(cost, id));
         }
@@ -111,19 +108,43 @@ impl Rank {
     }
 }
 
-/// One end of eight edges: the same vertex or one of each.
+/// One end of eight edges: one and the same or one of each.
 #[derive(Clone, Copy)]
-pub(super) enum Ends<'e> {
-    Of(u32),
-    Each(&'e [u32; LANES]),
+pub(super) enum Side<T> {
+    Of(T),
+    Each([T; LANES]),
 }
 
-impl Ends<'_> {
+impl<T: Copy> Side<T> {
     #[inline(always)]
-    pub(super) fn get(self, lane: usize) -> u32 {
+    pub(super) fn get(self, lane: usize) -> T {
         match self {
-            Self::Of(v) => v,
-            Self::Each(ids) => ids[lane],
+            Self::Of(end) => end,
+            Self::Each(ends) => ends[lane],
+        }
+    }
+
+    #[inline(always)]
+    pub(super) fn map<U>(self, to: impl Fn(T) -> U) -> Side<U> {
+        match self {
+            Self::Of(end) => Side::Of(to(end)),
+            Self::Each([a, b, c, d, e, f, g, h]) => {
+                Side::Each([to(a), to(b), to(c), to(d), to(e), to(f), to(g), to(h)])
+            }
+        }
+    }
+}
+
+impl Side<Vec4> {
+    /// Four floats of each, in rows.
+    #[inline(always)]
+    pub(super) fn rows(self) -> [Row; 4] {
+        match self {
+            Self::Of(four) => {
+                let [x, y, z, w] = four.to_array();
+                [[x; LANES], [y; LANES], [z; LANES], [w; LANES]]
+            }
+            Self::Each(fours) => transpose(fours),
         }
     }
 }
@@ -134,12 +155,12 @@ impl Ends<'_> {
 pub(super) fn costs(
     vertices: &Vertices,
     looks: &impl Looks,
-    us: Ends<'_>,
+    us: Side<u32>,
     vs: &[u32; LANES],
 ) -> Row {
-    let (first, second) = (Stars::of(vertices, us), Stars::of(vertices, Ends::Each(vs)));
+    let (first, second) = (Stars::of(vertices, us), Stars::of(vertices, Side::Each(*vs)));
     let mut edges = Edges::between(&first, &second);
-    looks.join(us, vs, &mut edges);
+    looks.join([us, Side::Each(*vs)], &mut edges);
     let mut costs = edges.costs();
     if Flags(first.flags | second.flags).any(SPECIAL) || first.floor > 0 {
         correct(&mut costs, vertices, looks, us, vs);
@@ -157,7 +178,7 @@ fn correct(
     costs: &mut Row,
     vertices: &Vertices,
     looks: &impl Looks,
-    us: Ends<'_>,
+    us: Side<u32>,
     vs: &[u32; LANES],
 ) {
     for (lane, (cost, &v)) in costs.iter_mut().zip(vs).enumerate() {
@@ -251,42 +272,14 @@ struct Stars {
 
 impl Stars {
     #[inline(always)]
-    fn of(vertices: &Vertices, ids: Ends<'_>) -> Self {
-        match ids {
-            Ends::Of(v) => Self::all(vertices.get(v)),
-            Ends::Each(ids) => {
-                let see = |lane: usize| vertices.get(ids[lane]);
-                Self::each([see(0), see(1), see(2), see(3), see(4), see(5), see(6), see(7)])
-            }
-        }
-    }
-
-    #[inline(always)]
-    fn all(vertex: &Vertex) -> Self {
-        let (place, normal) = (vertex.place(), vertex.seen.normal());
-        let [xx, yy, zz, xy, xz, yz] = vertex.seen.squares();
-        let row = |x: f32| [x; LANES];
-        Self {
-            place: Row3::all(place),
-            normal: Row3::all(normal),
-            squares: [row(xx), row(yy), row(zz), row(xy), row(xz), row(yz)],
-            flags: vertex.flags.0,
-            floor: vertex.floor,
-        }
-    }
-
-    #[inline(always)]
-    fn each(all: [&Vertex; LANES]) -> Self {
-        let [a, b, c, d, e, f, g, h] = all;
-        let row = |k: usize| {
-            let of = |vertex: &Vertex| vertex.seen.0[k];
-            transpose([of(a), of(b), of(c), of(d), of(e), of(f), of(g), of(h)])
-        };
+    fn of(vertices: &Vertices, side: Side<u32>) -> Self {
+        let side = side.map(|v| vertices.get(v));
+        let row = |k: usize| side.map(|vertex| vertex.seen.0[k]).rows();
         let ([x, y, z, nx], [ny, nz, xx, yy], [zz, xy, xz, yz]) = (row(0), row(1), row(2));
         let (mut flags, mut floor) = (0, 0);
-        for vertex in all {
-            flags |= vertex.flags.0;
-            floor |= vertex.floor;
+        for lane in 0..LANES {
+            flags |= side.get(lane).flags.0;
+            floor |= side.get(lane).floor;
         }
         Self {
             place: Row3 { x, y, z },

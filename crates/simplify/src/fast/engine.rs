@@ -1,17 +1,17 @@
 //! The loop: take the cheapest vertex, contract its cheapest edge, put what became of it back.
 //!
 //! A vertex has one entry in the queue, by the cheapest of its edges when it was last looked at. What
-//! contractions around it change is seen when the entry comes up: the edge is costed again by the
-//! contraction itself, and goes through if it costs at most [`SLACK`] buckets more.
+//! contractions around it change is seen when the entry is among the next: the edge is costed again, by
+//! itself and then by the contraction, and goes through if it costs at most [`SLACK`] buckets more.
 
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 
+use crate::fast::batch::Batch;
 use crate::fast::cost::{Cheapest, PROTECTION, Rank, SHORT_FIRST, cheapest};
 use crate::fast::hood::Hood;
 use crate::fast::log::Done;
 use crate::fast::looks::{Ends, Looks, Placed};
 use crate::fast::pace::Pace;
-use crate::fast::pairs::Pairs;
 use crate::fast::place::{Swept, matrix};
 use crate::fast::queue::{AHEAD, NONE, Queue, bucket, last_bucket};
 use crate::fast::ring::{GHOST, MOST, RING, Vertices};
@@ -67,6 +67,17 @@ enum Not {
     TooFar(u16),
     /// It may not be, at a cost in this bucket.
     Refused(Refusal, u16),
+}
+
+/// An edge that may be contracted for what it costs.
+struct Priced {
+    ends: Ends,
+    /// By its geometry alone.
+    swept: Swept,
+    /// Where its vertex goes, as seen from the middle.
+    best: DVec3,
+    /// Of the cost.
+    bucket: u16,
 }
 
 impl<'v, L: Looks> Engine<'v, L> {
@@ -148,7 +159,7 @@ impl<'v, L: Looks> Engine<'v, L> {
         let (taken, front) = self.queue.next();
         let (mut next, len) = ([0; AHEAD], taken.len());
         next[..len].copy_from_slice(taken);
-        let (mut changed, mut dear, mut count) = (Pairs::<AHEAD>::new(), [0; AHEAD], 0);
+        let (mut changed, mut dear, mut count) = (Batch::<AHEAD>::new(), [0; AHEAD], 0);
         for &v in &next[..len] {
             if !self.is_due(v, front) {
                 continue;
@@ -285,16 +296,16 @@ impl<'v, L: Looks> Engine<'v, L> {
             let least = &mut least[(v - first) as usize];
             *least = (*least).min(Rank::new(cost, w));
         };
-        let mut pairs = Pairs::<{ 4 * MOST }>::new();
+        let mut batch = Batch::<{ 4 * MOST }>::new();
         for v in vertices.ids() {
             for &w in vertices.settled(v).iter().take(MOST) {
-                pairs.push(v, w, w > v && w != GHOST);
+                batch.push(v, w, w > v && w != GHOST);
             }
-            if !pairs.has_room(MOST) {
-                pairs.cost_all(vertices, *looks, &mut tell);
+            if !batch.has_room(MOST) {
+                batch.cost_all(vertices, *looks, &mut tell);
             }
         }
-        pairs.cost_all(vertices, *looks, tell);
+        batch.cost_all(vertices, *looks, tell);
         for (v, least) in vertices.ids().zip(least) {
             let vertex = vertices.get_mut(v);
             if vertex.len > 0 && !vertex.flags.any(Flags::OUTER) {
@@ -334,10 +345,10 @@ impl<'v, L: Looks> Engine<'v, L> {
         self.queue.push(v, vertex.bucket);
     }
 
-    /// Contracts an edge; gives the vertex that stays.
+    /// Gathers what is around an edge, and finds what it costs and where its vertex goes.
     #[inline(always)]
-    fn contract(&mut self, v: u32, target: u32, front: u16) -> Result<u32, Not> {
-        let Self { vertices, looks, hood, pace, .. } = self;
+    fn price(&mut self, v: u32, target: u32, front: u16) -> Result<Priced, Not> {
+        let Self { vertices, looks, hood, .. } = self;
         let refused = |refusal| Not::Refused(refusal, front);
         let ends = looks.order(vertices, v, target).map_err(refused)?;
         let Ends { v0, v1, free } = ends;
@@ -353,17 +364,23 @@ impl<'v, L: Looks> Engine<'v, L> {
         }
         let short = f64::from(SHORT_FIRST) * whole.weight() * swept.half.length_squared();
         let mut cost = (cost.max(0.0) + short) as f32;
-        if end0.flags.any(Flags::PROTECTED) || end1.flags.any(Flags::PROTECTED) {
+        if Flags(end0.flags.0 | end1.flags.0).any(Flags::PROTECTED) {
             cost *= PROTECTION;
         }
-        let bucket = bucket(cost);
-        if bucket > front.saturating_add(SLACK) {
-            return Err(if bucket == NONE {
-                refused(Refusal::Volume)
-            } else {
-                Not::TooDear(bucket)
-            });
+        match bucket(cost) {
+            NONE => Err(refused(Refusal::Volume)),
+            bucket if bucket > front.saturating_add(SLACK) => Err(Not::TooDear(bucket)),
+            bucket => Ok(Priced { ends, swept, best, bucket }),
         }
+    }
+
+    /// Contracts an edge; gives the vertex that stays.
+    #[inline(always)]
+    fn contract(&mut self, v: u32, target: u32, front: u16) -> Result<u32, Not> {
+        let Priced { ends, swept, best, bucket } = self.price(v, target, front)?;
+        let Ends { v0, v1, free } = ends;
+        let Self { vertices, looks, hood, pace, .. } = self;
+        let (end0, end1) = (vertices.get(v0), vertices.get(v1));
         let refused = |refusal| Not::Refused(refusal, bucket);
         if free && best.length_squared() > f64::from(hood.reach()) {
             return Err(refused(Refusal::Volume));

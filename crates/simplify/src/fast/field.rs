@@ -8,12 +8,9 @@
 
 use glam::{DMat3, DVec3, Vec3, Vec4};
 
-use crate::fast::cost::{Edges, Symmetric, lane_of};
+use crate::fast::cost::{Edges, Side, Symmetric, lane_of};
 use crate::fast::place::{Swept, symmetric};
-use crate::fast::wide::{LANES, Row, transpose};
-
-/// Keeps a division by nothing from being one.
-pub(super) const TINY: f32 = 1e-30;
+use crate::fast::wide::{LANES, Row, TINY};
 
 /// The sums of a star, in whole registers.
 ///
@@ -123,59 +120,20 @@ impl<const K: usize> Field<K> {
     }
 }
 
-/// Fields of eight edges' ends, in rows.
-pub(super) trait Fields<const K: usize> {
-    fn squares(&self, k: usize) -> [Row; 4];
-    fn channel(&self, k: usize) -> [Row; 4];
-}
-
-/// One field, of all of them.
-pub(super) struct All<'f, const K: usize>(pub(super) &'f Field<K>);
-
-/// A field of each.
-pub(super) struct Each<'f, const K: usize>(pub(super) [&'f Field<K>; LANES]);
-
-impl<const K: usize> Fields<K> for All<'_, K> {
-    #[inline(always)]
-    fn squares(&self, k: usize) -> [Row; 4] {
-        splat(self.0.squares[k])
-    }
-
-    #[inline(always)]
-    fn channel(&self, k: usize) -> [Row; 4] {
-        splat(self.0.channels[k])
-    }
-}
-
-impl<const K: usize> Fields<K> for Each<'_, K> {
-    #[inline(always)]
-    fn squares(&self, k: usize) -> [Row; 4] {
-        let [a, b, c, d, e, f, g, h] = self.0;
-        let of = |field: &Field<K>| field.squares[k];
-        transpose([of(a), of(b), of(c), of(d), of(e), of(f), of(g), of(h)])
-    }
-
-    #[inline(always)]
-    fn channel(&self, k: usize) -> [Row; 4] {
-        let [a, b, c, d, e, f, g, h] = self.0;
-        let of = |field: &Field<K>| field.channels[k];
-        transpose([of(a), of(b), of(c), of(d), of(e), of(f), of(g), of(h)])
-    }
-}
-
-#[inline(always)]
-fn splat(v: Vec4) -> [Row; 4] {
-    [[v.x; LANES], [v.y; LANES], [v.z; LANES], [v.w; LANES]]
-}
-
 /// Adds to what eight edges sweep what the best value of each channel leaves of their squares: seen
 /// from the middle they are x'Sx − 2 q·x + c, and this adds to S, q and c.
 #[inline(always)]
-pub(super) fn join<const K: usize>(
-    first: &impl Fields<K>,
-    second: &impl Fields<K>,
+pub(super) fn join<'f, const K: usize>(
+    sides: [Side<u32>; 2],
+    field: impl Fn(u32) -> &'f Field<K>,
     edges: &mut Edges,
 ) {
+    let [first, second] = sides.map(|side| side.map(&field));
+    let squares_of = |side: Side<&Field<K>>| {
+        let row = |k: usize| side.map(|field| field.squares[k]).rows();
+        let ([xx, yy, zz, xy], [xz, yz, weights, _]) = (row(0), row(1));
+        ([xx, yy, zz, xy, xz, yz], weights)
+    };
     let (g0, w0) = squares_of(first);
     let (g1, w1) = squares_of(second);
     for lane in 0..LANES {
@@ -189,15 +147,9 @@ pub(super) fn join<const K: usize>(
         edges.at_middle[lane] += (g0h + g1h).dot(h);
     }
     for k in 0..K {
-        join_channel([&first.channel(k), &second.channel(k)], [&w0, &w1], edges);
+        let channel = |side: Side<&Field<K>>| side.map(|field| field.channels[k]).rows();
+        join_channel([&channel(first), &channel(second)], [&w0, &w1], edges);
     }
-}
-
-/// The G and the weights.
-#[inline(always)]
-fn squares_of<const K: usize>(fields: &impl Fields<K>) -> ([Row; 6], Row) {
-    let ([xx, yy, zz, xy], [xz, yz, weights, _]) = (fields.squares(0), fields.squares(1));
-    ([xx, yy, zz, xy, xz, yz], weights)
 }
 
 /// One channel of it.

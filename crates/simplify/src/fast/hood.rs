@@ -12,10 +12,9 @@ use std::ops::Range;
 
 use glam::{Vec3, Vec4};
 
-use crate::fast::lanes::{self, Lanes3};
 use crate::fast::ring::{GHOST, MOST, RING, Vertices, place_in, place_of};
 use crate::fast::vertex::{Flags, Star, Vertex};
-use crate::fast::wide::{LANES, Row, Row3, most, transpose};
+use crate::fast::wide::{LANES, Row, Row3, most, sum_of, transpose, transpose_back};
 use crate::refusal::Refusal;
 
 /// Room for a ring and the lanes beyond its end.
@@ -276,15 +275,16 @@ impl Hood {
             }
             let [nx, ny, nz, xx, yy, zz, xy, xz, yz] = change;
             let none = [0.0; LANES];
-            let (first, second) = (turn([none, none, none, nx]), turn([ny, nz, xx, yy]));
-            let third = turn([zz, xy, xz, yz]);
+            let (first, second) =
+                (transpose_back([none, none, none, nx]), transpose_back([ny, nz, xx, yy]));
+            let third = transpose_back([zz, xy, xz, yz]);
             for lane in 0..LANES {
                 self.changes[start + lane] = Star([first[lane], second[lane], third[lane]]);
             }
         }
         let mut sum = [0.0; 9];
         for (sum, lanes) in sum.iter_mut().zip(&sums) {
-            *sum = added(lanes);
+            *sum = sum_of(lanes);
         }
         let [nx, ny, nz, xx, yy, zz, xy, xz, yz] = sum;
         Star([Vec4::new(0.0, 0.0, 0.0, nx), Vec4::new(ny, nz, xx, yy), Vec4::new(zz, xy, xz, yz)])
@@ -302,7 +302,7 @@ impl Hood {
                 of_v1.set(lane, of_v1.get(lane) + old * part[lane]);
             }
         }
-        let sum = |of: &Row3| Vec3::new(added(&of.x), added(&of.y), added(&of.z));
+        let sum = |of: &Row3| Vec3::new(sum_of(&of.x), sum_of(&of.y), sum_of(&of.z));
         (sum(&of_v0), sum(&of_v1))
     }
 
@@ -388,23 +388,6 @@ fn sums_of(Vec3 { x, y, z }: Vec3) -> [f32; 9] {
     [x, y, z, x * x, y * y, z * z, x * y, x * z, y * z]
 }
 
-/// Four rows of eight as eight rows of four.
-#[inline(always)]
-fn turn([a, b, c, d]: [Row; 4]) -> [Vec4; LANES] {
-    let four = |row: &Row, start: usize| Vec4::from_slice(&row[start..start + 4]);
-    let half = |start: usize| {
-        lanes::transpose(four(&a, start), four(&b, start), four(&c, start), four(&d, start))
-    };
-    let ([e, f, g, h], [i, j, k, l]) = (half(0), half(4));
-    [e, f, g, h, i, j, k, l]
-}
-
-/// The sum of all lanes, halves by halves.
-#[inline(always)]
-fn added(&[a, b, c, d, e, f, g, h]: &Row) -> f32 {
-    (Vec4::new(a, b, c, d) + Vec4::new(e, f, g, h)).element_sum()
-}
-
 #[inline(always)]
 fn one(from: &[[f32; ROOM]; 3], i: usize) -> Vec3 {
     Vec3::new(from[0][i], from[1][i], from[2][i])
@@ -472,13 +455,6 @@ fn has_before(ids: &[u32; RING], range: Range<usize>) -> bool {
         }
     }
     times > 0
-}
-
-#[inline(always)]
-pub(super) fn load(from: &[[f32; ROOM]; 3], start: usize) -> Lanes3 {
-    let [x, y, z] = from;
-    let at = |of: &[f32; ROOM]| Vec4::from_slice(&of[start..]);
-    Lanes3 { x: at(x), y: at(y), z: at(z) }
 }
 
 /// The ghost's faces have no area.

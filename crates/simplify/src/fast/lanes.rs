@@ -1,12 +1,13 @@
 //! Four vectors that go through the same arithmetic, a coordinate of all in one register.
 //!
-//! Arrays of floats in loops would be left to the compiler, which makes registers of them here and
-//! single floats there; glam's four floats are a register on every machine that has them, and the
-//! numbers are the same on all.
+//! What a contraction does to attributes goes by these: glam's four floats are a register on every machine
+//! that has them, and the numbers are the same on all. All else goes eight at a time, see `wide.rs`.
 
 use std::ops::{Add, Sub};
 
 use glam::{Mat4, Vec3, Vec4};
+
+use crate::fast::hood::ROOM;
 
 /// How many.
 pub(super) const LANES: usize = 4;
@@ -36,6 +37,13 @@ impl Sub for Lanes3 {
 }
 
 impl Lanes3 {
+    /// Four of the vectors in three rows, from `start` on.
+    #[inline(always)]
+    pub(super) fn load([x, y, z]: &[[f32; ROOM]; 3], start: usize) -> Self {
+        let at = |of: &[f32; ROOM]| Vec4::from_slice(&of[start..]);
+        Self { x: at(x), y: at(y), z: at(z) }
+    }
+
     #[inline(always)]
     pub(super) fn all(v: Vec3) -> Self {
         Self { x: Vec4::splat(v.x), y: Vec4::splat(v.y), z: Vec4::splat(v.z) }

@@ -3,12 +3,11 @@
 use glam::{DVec3, Vec3};
 use meshlod_mesh::{Attributes, WedgeId};
 
-use crate::fast::cost::{self, Edges};
+use crate::fast::cost::{Edges, Side};
 use crate::fast::hood::Hood;
 use crate::fast::place::Swept;
 use crate::fast::ring::Vertices;
 use crate::fast::vertex::{Flags, Star};
-use crate::fast::wide::LANES;
 use crate::refusal::Refusal;
 
 /// The ends of an edge that may be contracted: `v1` goes into `v0`.
@@ -41,7 +40,7 @@ pub(super) trait Looks: Sized + Send + Sync {
     fn side_by_side(self, parts: usize) -> Vec<Self>;
 
     /// Adds to the squares of edges what attributes leave of them where they are best.
-    fn join(&self, us: cost::Ends<'_>, vs: &[u32; LANES], edges: &mut Edges);
+    fn join(&self, sides: [Side<u32>; 2], edges: &mut Edges);
 
     /// Which end of an edge goes into which.
     fn order(&self, vertices: &Vertices, v: u32, target: u32) -> Result<Ends, Refusal>;
@@ -93,7 +92,7 @@ impl Looks for () {
     }
 
     #[inline(always)]
-    fn join(&self, _: cost::Ends<'_>, _: &[u32; LANES], _: &mut Edges) {}
+    fn join(&self, _: [Side<u32>; 2], _: &mut Edges) {}
 
     #[inline(always)]
     fn order(&self, vertices: &Vertices, v: u32, target: u32) -> Result<Ends, Refusal> {

@@ -10,6 +10,7 @@
 mod ahead;
 mod apart;
 mod around;
+mod batch;
 mod carry;
 mod cells;
 mod coat;
@@ -28,7 +29,6 @@ mod order;
 mod original;
 mod pace;
 mod painted;
-mod pairs;
 mod parts;
 mod place;
 mod prepare;

@@ -11,16 +11,15 @@ use meshlod_mesh::Attributes;
 use crate::fast::around::Slots;
 use crate::fast::carry::Scratch;
 use crate::fast::coat::Coat;
-use crate::fast::cost::{self, Edges};
+use crate::fast::cost::{Edges, Side};
 use crate::fast::dress::Corners;
-use crate::fast::field::{All, Each, Field, join, join_alone, join_one};
+use crate::fast::field::{Field, join, join_alone, join_one};
 use crate::fast::hood::Hood;
 use crate::fast::looks::{Ends, Looks, Placed, Revalued, by_pins};
 use crate::fast::place::Swept;
 use crate::fast::ring::Vertices;
 use crate::fast::seams::Seams;
 use crate::fast::vertex::{Flags, Star};
-use crate::fast::wide::LANES;
 use crate::refusal::Refusal;
 
 /// All wedges of a surface.
@@ -146,15 +145,8 @@ impl<const K: usize> Looks for Painted<'_, K> {
     }
 
     #[inline(always)]
-    fn join(&self, us: cost::Ends<'_>, vs: &[u32; LANES], edges: &mut Edges) {
-        let of = |ids: &[u32; LANES]| {
-            let of = |lane: usize| self.field(ids[lane]);
-            [of(0), of(1), of(2), of(3), of(4), of(5), of(6), of(7)]
-        };
-        match us {
-            cost::Ends::Of(u) => join(&All(self.field(u)), &Each(of(vs)), edges),
-            cost::Ends::Each(us) => join(&Each(of(us)), &Each(of(vs)), edges),
-        }
+    fn join(&self, sides: [Side<u32>; 2], edges: &mut Edges) {
+        join(sides, |slot| self.field(slot), edges);
     }
 
     #[inline(always)]

@@ -8,6 +8,9 @@ use glam::{Mat4, Vec3, Vec4};
 /// How many.
 pub(super) const LANES: usize = 8;
 
+/// Keeps a division by nothing from being one.
+pub(super) const TINY: f32 = 1e-30;
+
 /// A number of each.
 pub(super) type Row = [f32; LANES];
 
@@ -56,6 +59,24 @@ pub(super) fn transpose(rows: [Vec4; LANES]) -> [Row; 4] {
 fn side_by_side(left: Vec4, right: Vec4) -> Row {
     let ([a, b, c, d], [e, f, g, h]) = (left.to_array(), right.to_array());
     [a, b, c, d, e, f, g, h]
+}
+
+/// Four rows of eight as eight rows of four.
+#[inline(always)]
+pub(super) fn transpose_back(rows: [Row; 4]) -> [Vec4; LANES] {
+    let half = |start: usize| {
+        let four = |row: &Row| Vec4::from_slice(&row[start..start + 4]);
+        let [a, b, c, d] = &rows;
+        Mat4::from_cols(four(a), four(b), four(c), four(d)).transpose()
+    };
+    let (l, r) = (half(0), half(4));
+    [l.x_axis, l.y_axis, l.z_axis, l.w_axis, r.x_axis, r.y_axis, r.z_axis, r.w_axis]
+}
+
+/// The sum of all lanes, halves by halves.
+#[inline(always)]
+pub(super) fn sum_of(&[a, b, c, d, e, f, g, h]: &Row) -> f32 {
+    (Vec4::new(a, b, c, d) + Vec4::new(e, f, g, h)).element_sum()
 }
 
 /// The lesser of two; where one is no number, the second.
@@ -138,6 +159,7 @@ mod tests {
                 assert_eq!(*x, (10 * i + lane) as f32);
             }
         }
+        assert_eq!(transpose_back(columns), rows);
     }
 
     #[test]

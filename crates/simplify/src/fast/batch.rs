@@ -1,18 +1,18 @@
 //! Edges of any vertices, costed eight at a time.
 
-use crate::fast::cost::{Ends, costs};
+use crate::fast::cost::{Side, costs};
 use crate::fast::looks::Looks;
 use crate::fast::ring::Vertices;
 use crate::fast::wide::LANES;
 
 /// Edges to be costed, `ROOM` at most.
-pub(super) struct Pairs<const ROOM: usize> {
+pub(super) struct Batch<const ROOM: usize> {
     us: [u32; ROOM],
     vs: [u32; ROOM],
     len: usize,
 }
 
-impl<const ROOM: usize> Pairs<ROOM> {
+impl<const ROOM: usize> Batch<ROOM> {
     pub(super) fn new() -> Self {
         Self { us: [0; ROOM], vs: [0; ROOM], len: 0 }
     }
@@ -45,7 +45,7 @@ impl<const ROOM: usize> Pairs<ROOM> {
             for lane in 0..LANES.min(self.len - start) {
                 (us[lane], vs[lane]) = (self.us[start + lane], self.vs[start + lane]);
             }
-            let costs = costs(vertices, looks, Ends::Each(&us), &vs);
+            let costs = costs(vertices, looks, Side::Each(us), &vs);
             for lane in 0..LANES.min(self.len - start) {
                 tell([us[lane], vs[lane]], costs[lane]);
             }
