@@ -1,4 +1,4 @@
-//! The fast engine and the general one, on the same method: the same accuracy, and the same volume.
+//! The fast engine and the general one, on the same methods: the same accuracy, and the same volume.
 
 use meshlod::measure::{DistanceOptions, Surface, surface_distance, volume};
 use meshlod::mesh::sample;
@@ -46,12 +46,19 @@ fn shaken(mesh: &Mesh) -> Mesh {
 fn both_engines_are_as_near_and_keep_the_volume() {
     let samples = [sample::knot(40_000), sample::gyroid(40_000), sample::torus(40_000)];
     for mesh in samples.iter().map(shaken) {
-        for ratio in [0.2, 0.05] {
-            let options = Options { method: Some(Method::LindstromTurk), ..Options::default() };
+        for (method, ratio) in [
+            (Method::LindstromTurk, 0.2),
+            (Method::LindstromTurk, 0.05),
+            (Method::Qem, 0.2),
+            (Method::Qem, 0.05),
+        ] {
+            let options = Options { method: Some(method), ..Options::default() };
             let fast = Simplifier::new(&mesh, &options).unwrap();
             let general = Simplifier::with_general_engine(&mesh, &options).unwrap();
             let [fast, general] = [fast, general].map(|engine| figures(&mesh, engine, ratio));
-            assert!(fast[1].abs() < 1e-6 && general[1].abs() < 1e-12);
+            if method.conserves_volume() {
+                assert!(fast[1].abs() < 1e-6 && general[1].abs() < 1e-12);
+            }
             let times = fast[0] / general[0];
             assert!((0.98..1.02).contains(&times), "{times} times as far off at {ratio}");
         }

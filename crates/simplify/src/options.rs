@@ -111,7 +111,7 @@ pub enum Target {
     /// To this part of the input's faces, between 0 and 1.
     Ratio(f64),
     /// As far as the error stays within this, in model units: by the algorithm's own estimate, and in
-    /// the fast engine's `lindstrom-turk` by distances from the input, both ways.
+    /// the fast engine by distances from the input, both ways.
     Error(f64),
 }
 

@@ -39,8 +39,9 @@ pub(crate) type Started<'m> = (Box<dyn Run + 'm>, Input);
 impl<'m> Simplifier<'m> {
     /// Connects the mesh and costs its candidates; nothing is contracted yet.
     ///
-    /// The fast engine works where it can: for `lindstrom-turk` without ties or components that may
-    /// vanish. The general one does the rest.
+    /// The fast engine works where it can: without ties or components that may vanish, for
+    /// `lindstrom-turk`, and for `qem` on a mesh without attributes and of one material and object. The
+    /// general one does the rest.
     pub fn new(mesh: &'m Mesh, options: &Options) -> Result<Self, SimplifyError> {
         let bounds = validate(mesh, options)?;
         match fast::start(mesh, &bounds, options)? {

@@ -4,7 +4,9 @@ use std::collections::HashMap;
 
 use meshlod_fixtures as fixtures;
 use meshlod_mesh::{Attributes, Layer, LayerKind, Mesh, VertexId, WedgeId, sample};
-use meshlod_simplify::{AttributeWeights, Method, Options, SimplifyError, Target, simplify};
+use meshlod_simplify::{
+    AttributeWeights, Method, Options, Simplifier, SimplifyError, Target, simplify,
+};
 
 /// A layer as a function of the position.
 type Painted = (LayerKind, fn([f64; 3]) -> Vec<f32>);
@@ -317,8 +319,12 @@ fn attributes_that_count_for_nothing_change_no_position() {
     let options = Options { weights, method, ..Options::default() };
     // Seams still do: compare where there are none.
     let flat = with_layers(bare.clone(), &[(LayerKind::Color(0), |[x, ..]| vec![x as f32; 3])]);
-    let [with, without] =
-        [&flat, &bare].map(|mesh| simplify(mesh, Target::Ratio(0.1), &options).unwrap().0);
+    let [with, without] = [&flat, &bare].map(|mesh| {
+        // Where there are none at all, the fast one would go another way.
+        let mut simplifier = Simplifier::with_general_engine(mesh, &options).unwrap();
+        simplifier.run(Target::Ratio(0.1), &mut ()).unwrap();
+        simplifier.level()
+    });
     assert_eq!((with.positions, with.faces), (without.positions, without.faces));
 }
 

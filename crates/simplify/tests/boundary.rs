@@ -46,6 +46,7 @@ fn a_higher_weight_keeps_a_boundary_closer() {
         (Method::LindstromTurk, true),
         (Method::LindstromTurk, false),
         (Method::LindstromTurkFaces, false),
+        (Method::Qem, true),
         (Method::Qem, false),
         (Method::KimJang, false),
     ] {

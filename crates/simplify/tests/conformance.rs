@@ -80,7 +80,8 @@ impl Way {
     /// Every method as it is done, and what the fast engine does by the general one too.
     fn all() -> impl Iterator<Item = Self> {
         let as_done = Method::ALL.into_iter().map(|method| Self { method, general: false });
-        as_done.chain([Self { method: Method::LindstromTurk, general: true }])
+        let fast = [Method::LindstromTurk, Method::Qem];
+        as_done.chain(fast.map(|method| Self { method, general: true }))
     }
 
     fn start<'m>(self, mesh: &'m Mesh, options: &Options) -> Result<Simplifier<'m>, SimplifyError> {
@@ -103,7 +104,7 @@ impl Way {
 
     /// Whether it works in floats, on meshes without attributes.
     fn is_fast(self) -> bool {
-        self.method == Method::LindstromTurk && !self.general
+        matches!(self.method, Method::LindstromTurk | Method::Qem) && !self.general
     }
 }
 

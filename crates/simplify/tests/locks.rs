@@ -343,8 +343,11 @@ fn what_is_protected_goes_last_and_is_not_safe() {
 #[test]
 fn both_engines_protect_as_much() {
     let (mesh, locks) = halved(Lock::Protected);
-    let options = Options { method: Some(Method::LindstromTurk), locks, ..Options::default() };
-    for ratio in [0.6, 0.3, 0.1] {
+    let cases = [Method::LindstromTurk, Method::Qem]
+        .into_iter()
+        .flat_map(|method| [0.6, 0.3, 0.1].map(|ratio| (method, ratio)));
+    for (method, ratio) in cases {
+        let options = Options { method: Some(method), locks: locks.clone(), ..Options::default() };
         let [fast, general] = [true, false].map(|is_fast| {
             let start = if is_fast { Simplifier::new } else { Simplifier::with_general_engine };
             let mut simplifier = start(&mesh, &options).unwrap();

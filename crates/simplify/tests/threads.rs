@@ -6,8 +6,11 @@ use meshlod_fixtures as fixtures;
 use meshlod_mesh::{Connectivity, Lock, Locks, Mesh, VertexId, sample};
 use meshlod_simplify::{History, Method, Options, Report, Simplifier, Target, simplify};
 
-fn options() -> Options {
-    Options { method: Some(Method::LindstromTurk), ..Options::default() }
+/// What the fast engine does.
+const FAST: [Method; 2] = [Method::LindstromTurk, Method::Qem];
+
+fn options(method: Method) -> Options {
+    Options { method: Some(method), ..Options::default() }
 }
 
 fn run_with(threads: usize, mesh: &Mesh, target: Target, options: &Options) -> (Mesh, Report) {
@@ -15,8 +18,8 @@ fn run_with(threads: usize, mesh: &Mesh, target: Target, options: &Options) -> (
     pool.install(|| simplify(mesh, target, options).unwrap())
 }
 
-fn run(mesh: &Mesh, target: Target) -> (Mesh, Report) {
-    run_with(2, mesh, target, &options())
+fn run(method: Method, mesh: &Mesh, target: Target) -> (Mesh, Report) {
+    run_with(2, mesh, target, &options(method))
 }
 
 /// Several parts of vertices each, with boundaries, with flats, in pieces, and not manifold.
@@ -95,105 +98,124 @@ fn euler(mesh: &Mesh) -> (i64, usize, usize) {
 
 #[test]
 fn any_number_of_threads_gives_the_same_bytes() {
-    for (name, mesh) in large() {
-        let bound = Target::Error(0.005 * mesh.bounds().diagonal());
-        for target in [Target::Ratio(0.5), Target::Ratio(0.03), bound] {
-            let runs = [1, 2, 5].map(|threads| run_with(threads, &mesh, target, &options()));
-            assert!(runs.iter().all(|run| *run == runs[0]), "{name} {target:?}");
+    for method in FAST {
+        for (name, mesh) in large() {
+            let bound = Target::Error(0.005 * mesh.bounds().diagonal());
+            for target in [Target::Ratio(0.5), Target::Ratio(0.03), bound] {
+                let runs =
+                    [1, 2, 5].map(|threads| run_with(threads, &mesh, target, &options(method)));
+                assert!(runs.iter().all(|run| *run == runs[0]), "{name} {target:?}");
+            }
         }
     }
 }
 
 #[test]
 fn targets_are_met_to_the_face_and_topology_is_kept() {
-    for (name, mesh) in large() {
-        let before = euler(&mesh);
-        for faces in [mesh.faces.len() - 1, mesh.faces.len() / 2, mesh.faces.len() / 3 + 1] {
-            let (level, report) = run(&mesh, Target::Faces(faces));
-            assert!(report.reached, "{name} {faces}");
-            assert!((faces - 1..=faces).contains(&level.faces.len()), "{name} {faces}");
-            assert_eq!(level.faces.len(), report.output_faces);
-            let after = euler(&level);
-            assert_eq!((after.0, after.2), (before.0, before.2), "{name} {faces}");
-            assert!(after.1 <= before.1, "{name} {faces}");
+    for method in FAST {
+        for (name, mesh) in large() {
+            let before = euler(&mesh);
+            for faces in [mesh.faces.len() - 1, mesh.faces.len() / 2, mesh.faces.len() / 3 + 1] {
+                let (level, report) = run(method, &mesh, Target::Faces(faces));
+                assert!(report.reached, "{name} {faces}");
+                assert!((faces - 1..=faces).contains(&level.faces.len()), "{name} {faces}");
+                assert_eq!(level.faces.len(), report.output_faces);
+                let after = euler(&level);
+                assert_eq!((after.0, after.2), (before.0, before.2), "{name} {faces}");
+                assert!(after.1 <= before.1, "{name} {faces}");
+            }
         }
     }
 }
 
 #[test]
 fn whoever_observes_sees_the_same_level() {
-    for (name, mesh) in large() {
-        let (level, _) = run(&mesh, Target::Ratio(0.05));
-        let mut simplifier = Simplifier::new(&mesh, &options()).unwrap();
-        let mut history = History::default();
-        simplifier.run(Target::Ratio(0.05), &mut history).unwrap();
-        assert!(simplifier.level() == level, "{name}");
-        let died = (0..history.contractions().len()).map(|i| history.died(i).len()).sum::<usize>();
-        assert_eq!(mesh.faces.len() - level.faces.len(), died, "{name}");
-        let surface = simplifier.surface();
-        assert_eq!(surface.live_faces(), level.faces.len(), "{name}");
+    for method in FAST {
+        for (name, mesh) in large() {
+            let (level, _) = run(method, &mesh, Target::Ratio(0.05));
+            let mut simplifier = Simplifier::new(&mesh, &options(method)).unwrap();
+            let mut history = History::default();
+            simplifier.run(Target::Ratio(0.05), &mut history).unwrap();
+            assert!(simplifier.level() == level, "{name}");
+            let died =
+                (0..history.contractions().len()).map(|i| history.died(i).len()).sum::<usize>();
+            assert_eq!(mesh.faces.len() - level.faces.len(), died, "{name}");
+            let surface = simplifier.surface();
+            assert_eq!(surface.live_faces(), level.faces.len(), "{name}");
+        }
     }
 }
 
 #[test]
 fn targets_of_a_few_faces_end() {
-    for (name, mesh) in large() {
-        for faces in [0, 1, 4] {
-            let (level, report) = run(&mesh, Target::Faces(faces));
-            assert_eq!(report.reached, level.faces.len() <= faces, "{name}");
-            assert!(!level.faces.is_empty(), "{name}");
-            assert!(level.faces.len() < mesh.faces.len() / 10, "{name}: {}", level.faces.len());
+    for method in FAST {
+        for (name, mesh) in large() {
+            for faces in [0, 1, 4] {
+                let (level, report) = run(method, &mesh, Target::Faces(faces));
+                assert_eq!(report.reached, level.faces.len() <= faces, "{name}");
+                assert!(!level.faces.is_empty(), "{name}");
+                assert!(level.faces.len() < mesh.faces.len() / 10, "{name}: {}", level.faces.len());
+            }
         }
     }
 }
 
 #[test]
 fn a_file_in_no_order_is_simplified_as_well() {
-    for mesh in [sample::knot(80_000), sample::torus(80_000)] {
-        let other = scrambled(&mesh);
-        let [(level, first), (_, second)] =
-            [&mesh, &other].map(|mesh| run(mesh, Target::Ratio(0.05)));
-        assert_eq!(first.output_faces, second.output_faces);
-        assert!((first.error_estimate / second.error_estimate).ln().abs() < 0.2);
-        // The level keeps the order of its file: a locked or untouched vertex says so.
-        let (kept, _) = run(&other, Target::Faces(other.faces.len() - 2));
-        let left: HashSet<_> = kept.positions.iter().map(|p| p.map(f64::to_bits)).collect();
-        let untouched = |p: &&[f64; 3]| left.contains(&p.map(f64::to_bits));
-        let expected = other.positions.iter().filter(untouched);
-        let of_input: HashSet<_> = other.positions.iter().map(|p| p.map(f64::to_bits)).collect();
-        let found = kept.positions.iter().filter(|p| of_input.contains(&p.map(f64::to_bits)));
-        assert!(found.eq(expected));
-        assert!(level.validate().is_ok());
+    for method in FAST {
+        for mesh in [sample::knot(80_000), sample::torus(80_000)] {
+            let other = scrambled(&mesh);
+            let [(level, first), (_, second)] =
+                [&mesh, &other].map(|mesh| run(method, mesh, Target::Ratio(0.05)));
+            assert_eq!(first.output_faces, second.output_faces);
+            assert!((first.error_estimate / second.error_estimate).ln().abs() < 0.2);
+            // The level keeps the order of its file: a locked or untouched vertex says so.
+            let (kept, _) = run(method, &other, Target::Faces(other.faces.len() - 2));
+            let left: HashSet<_> = kept.positions.iter().map(|p| p.map(f64::to_bits)).collect();
+            let untouched = |p: &&[f64; 3]| left.contains(&p.map(f64::to_bits));
+            let expected = other.positions.iter().filter(untouched);
+            let of_input: HashSet<_> =
+                other.positions.iter().map(|p| p.map(f64::to_bits)).collect();
+            let found = kept.positions.iter().filter(|p| of_input.contains(&p.map(f64::to_bits)));
+            assert!(found.eq(expected));
+            assert!(level.validate().is_ok());
+        }
     }
 }
 
 #[test]
 fn locks_hold_across_parts() {
-    let mesh = sample::torus(100_000);
-    let every_fifth = |v: usize| if v.is_multiple_of(5) { Lock::Locked } else { Lock::Free };
-    let of_vertex = (0..mesh.positions.len()).map(every_fifth).collect();
-    let options = Options { locks: Locks { of_vertex, ties: Vec::new() }, ..options() };
-    let (level, report) = run_with(2, &mesh, Target::Ratio(0.0), &options);
-    let left: HashSet<_> = level.positions.iter().map(|p| p.map(f64::to_bits)).collect();
-    let kept = |v: usize| left.contains(&mesh.positions[v].map(f64::to_bits));
-    assert!((0..mesh.positions.len()).step_by(5).all(kept));
-    assert_eq!(report.held.locked, mesh.positions.len().div_ceil(5));
+    for method in FAST {
+        let mesh = sample::torus(100_000);
+        let every_fifth = |v: usize| if v.is_multiple_of(5) { Lock::Locked } else { Lock::Free };
+        let of_vertex = (0..mesh.positions.len()).map(every_fifth).collect();
+        let options = Options { locks: Locks { of_vertex, ties: Vec::new() }, ..options(method) };
+        let (level, report) = run_with(2, &mesh, Target::Ratio(0.0), &options);
+        let left: HashSet<_> = level.positions.iter().map(|p| p.map(f64::to_bits)).collect();
+        let kept = |v: usize| left.contains(&mesh.positions[v].map(f64::to_bits));
+        assert!((0..mesh.positions.len()).step_by(5).all(kept));
+        assert_eq!(report.held.locked, mesh.positions.len().div_ceil(5));
+    }
 }
 
 #[test]
 fn a_bound_of_the_error_holds_across_parts() {
-    let mesh = sample::torus(100_000);
-    let (level, report) = run(&mesh, Target::Error(1e-3));
-    assert!(report.error_estimate <= 1e-3 && level.faces.len() < mesh.faces.len() / 4);
+    for method in FAST {
+        let mesh = sample::torus(100_000);
+        let (level, report) = run(method, &mesh, Target::Error(1e-3));
+        assert!(report.error_estimate <= 1e-3 && level.faces.len() < mesh.faces.len() / 4);
+    }
 }
 
 #[test]
 fn a_stray_vertex_far_off_and_one_place_for_all_end() {
-    let mut mesh = sample::torus(60_000);
-    mesh.positions.push([1e300, -1e300, 1e300]);
-    let (level, report) = run(&mesh, Target::Ratio(0.1));
-    assert!(report.reached && level.bounds().diagonal() < 10.0);
-    mesh.positions.fill([7.0; 3]);
-    let (_, report) = run(&mesh, Target::Ratio(0.1));
-    assert!(report.output_faces <= mesh.faces.len());
+    for method in FAST {
+        let mut mesh = sample::torus(60_000);
+        mesh.positions.push([1e300, -1e300, 1e300]);
+        let (level, report) = run(method, &mesh, Target::Ratio(0.1));
+        assert!(report.reached && level.bounds().diagonal() < 10.0);
+        mesh.positions.fill([7.0; 3]);
+        let (_, report) = run(method, &mesh, Target::Ratio(0.1));
+        assert!(report.output_faces <= mesh.faces.len());
+    }
 }

@@ -1,33 +1,20 @@
-//! What the edges of a vertex cost: the least sum of squared volumes that a new vertex sweeps, among
-//! the places that keep the volume. All from the stars of the two ends.
+//! What the edges of a vertex cost: the least that their squares come to, by the [rule](Rule), and a
+//! little for their length.
 //!
-//! Every plane of a star passes through its vertex. Seen from the middle of the edge, with ends at −h
-//! and h, stars (A₀, N₀) and (A₁, N₁), S = A₀ + A₁, q = (A₁ − A₀)h and g = N₀ + N₁, the squares are
-//! x'Sx − 2q·x + h'Sh, and the volume stays where g·x = (N₁ − N₀)·h. Faces that both stars have
-//! contain h; they count twice in S and g and nowhere else.
+//! All from the squares at the two ends, as planes through them: seen from the middle of the edge, with
+//! ends at −h and h and matrices A₀ and A₁, those are x'Sx − 2q·x + h'Sh, S = A₀ + A₁, q = (A₁ − A₀)h.
 
 use glam::{Vec3, Vec4};
 
 use crate::fast::looks::Looks;
-use crate::fast::place::{Swept, matrix};
 use crate::fast::queue::{NONE, bucket};
 use crate::fast::ring::{LONG, MOST, Vertices};
-use crate::fast::vertex::{Flags, NOBODY, Vertex};
-use crate::fast::wide::{LANES, Row, Row3, TINY, most, transpose};
-use crate::locks;
+use crate::fast::rule::{Rule, protection};
+use crate::fast::vertex::{Flags, NOBODY};
+use crate::fast::wide::{LANES, Row, Row3, most, transpose};
 
 /// How strongly the optimum is pulled to the middle of the edge, as in the general engine.
 pub(super) const PULL: f32 = 1e-5;
-
-/// What the square of half the length counts. Short edges go first where all costs are rounding,
-/// which for these floats is a ten-millionth.
-pub(super) const SHORT_FIRST: f32 = 1e-7;
-
-/// What an edge to a protected vertex costs, times: as if all moved so much farther.
-pub(super) const PROTECTION: f32 = {
-    let squared = (locks::PROTECTION * locks::PROTECTION) as f32;
-    squared * squared * squared
-};
 
 /// A vertex's cheapest edge.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -152,16 +139,16 @@ impl Side<Vec4> {
 /// What eight edges cost; infinite where an edge may not be contracted, or costs no more than has been
 /// refused at its first end.
 #[inline(always)]
-pub(super) fn costs(
+pub(super) fn costs<L: Looks>(
     vertices: &Vertices,
-    looks: &impl Looks,
+    looks: &L,
     us: Side<u32>,
     vs: &[u32; LANES],
 ) -> Row {
     let (first, second) = (Stars::of(vertices, us), Stars::of(vertices, Side::Each(*vs)));
-    let mut edges = Edges::between(&first, &second);
+    let mut edges = Edges::between::<L::Rule>(&first, &second);
     looks.join([us, Side::Each(*vs)], &mut edges);
-    let mut costs = edges.costs();
+    let mut costs = edges.costs::<L::Rule>();
     if Flags(first.flags | second.flags).any(SPECIAL) || first.floor > 0 {
         correct(&mut costs, vertices, looks, us, vs);
     }
@@ -174,10 +161,10 @@ const SPECIAL: Flags = Flags(Flags::PINNED.0 | Flags::SHUT.0 | Flags::SEAM.0 | F
 /// Costs of edges with an end that stays where it is or goes late, or that may not be contracted, or
 /// not now.
 #[cold]
-fn correct(
+fn correct<L: Looks>(
     costs: &mut Row,
     vertices: &Vertices,
-    looks: &impl Looks,
+    looks: &L,
     us: Side<u32>,
     vs: &[u32; LANES],
 ) {
@@ -195,50 +182,27 @@ fn correct(
         *cost = match looks.order(vertices, u, v) {
             Err(_) => f32::INFINITY,
             Ok(ends) if !ends.free => {
-                let to = vertices.get(ends.v0).place();
-                swept(vertices.get(ends.v1), to) + looks.onto(vertices, ends)
+                let (end0, end1) = (vertices.get(ends.v0), vertices.get(ends.v1));
+                let length = end0.place().distance_squared(end1.place());
+                let short = L::Rule::SHORT_FIRST * Symmetric(end1.seen.squares()).trace() * length;
+                L::Rule::onto(end0, end1) + short + looks.onto(vertices, ends)
             }
             Ok(ends) if flags.any(Flags::SEAM) => {
-                let (swept, short) = along(vertices.get(ends.v0), vertices.get(ends.v1));
+                let swept = L::Rule::along(vertices.get(ends.v0), vertices.get(ends.v1));
+                let short =
+                    L::Rule::SHORT_FIRST * (swept.weight() * swept.half.length_squared()) as f32;
                 let whole = looks.whole(vertices, ends, swept);
-                whole.at(whole.best()) as f32 + short
+                whole.at(L::Rule::best(&whole)) as f32 + short
             }
             Ok(_) => *cost,
         };
         if flags.any(Flags::PROTECTED) {
-            *cost *= PROTECTION;
+            *cost *= protection::<L::Rule>();
         }
         if floor > 0 && bucket(*cost) <= floor {
             *cost = f32::INFINITY;
         }
     }
-}
-
-/// The squares of one edge from the stars of its ends, and what its length counts.
-fn along(v0: &Vertex, v1: &Vertex) -> (Swept, f32) {
-    let half = (v1.place() - v0.place()).as_dvec3() * 0.5;
-    let (a0, a1) = (matrix(&v0.seen), matrix(&v1.seen));
-    let (n0, n1) = (v0.seen.normal().as_dvec3(), v1.seen.normal().as_dvec3());
-    let swept = Swept {
-        half,
-        sum: a0 + a1,
-        slope: (a1 - a0) * half,
-        at_middle: half.dot((a0 + a1) * half),
-        normal: n0 + n1,
-        level: (n1 - n0).dot(half),
-    };
-    let short = SHORT_FIRST * (swept.weight() * half.length_squared()) as f32;
-    (swept, short)
-}
-
-/// What a vertex's own star costs if it goes to a place.
-fn swept(vertex: &Vertex, to: Vec3) -> f32 {
-    let Vec3 { x, y, z } = to - vertex.place();
-    let [xx, yy, zz, xy, xz, yz] = vertex.seen.squares();
-    let squares = xx * x * x + yy * y * y + zz * z * z;
-    squares
-        + 2.0 * (xy * x * y + xz * x * z + yz * y * z)
-        + SHORT_FIRST * (xx + yy + zz) * (x * x + y * y + z * z)
 }
 
 /// A symmetric matrix: xx, yy, zz, xy, xz, yz.
@@ -254,16 +218,24 @@ impl Symmetric {
     }
 
     #[inline(always)]
-    fn trace(&self) -> f32 {
+    pub(super) fn trace(&self) -> f32 {
         self.0[0] + self.0[1] + self.0[2]
+    }
+
+    /// x'Ax.
+    pub(super) fn at(&self, Vec3 { x, y, z }: Vec3) -> f32 {
+        let [xx, yy, zz, xy, xz, yz] = self.0;
+        let squares = xx * x * x + yy * y * y + zz * z * z;
+        squares + 2.0 * (xy * x * y + xz * x * z + yz * y * z)
     }
 }
 
-/// The stars of eight vertices.
-struct Stars {
-    place: Row3,
-    normal: Row3,
-    squares: [Row; 6],
+/// The squares of eight vertices.
+pub(super) struct Stars {
+    pub(super) place: Row3,
+    pub(super) vector: Row3,
+    pub(super) squares: [Row; 6],
+    pub(super) constant: Row,
     /// All that any of them has.
     flags: u8,
     /// Zero where none has any.
@@ -275,16 +247,18 @@ impl Stars {
     fn of(vertices: &Vertices, side: Side<u32>) -> Self {
         let side = side.map(|v| vertices.get(v));
         let row = |k: usize| side.map(|vertex| vertex.seen.0[k]).rows();
-        let ([x, y, z, nx], [ny, nz, xx, yy], [zz, xy, xz, yz]) = (row(0), row(1), row(2));
-        let (mut flags, mut floor) = (0, 0);
+        let ([x, y, z, vx], [vy, vz, xx, yy], [zz, xy, xz, yz]) = (row(0), row(1), row(2));
+        let (mut flags, mut floor, mut constant) = (0, 0, [0.0; LANES]);
         for lane in 0..LANES {
+            constant[lane] = side.get(lane).constant.get();
             flags |= side.get(lane).flags.0;
             floor |= side.get(lane).floor;
         }
         Self {
             place: Row3 { x, y, z },
-            normal: Row3 { x: nx, y: ny, z: nz },
+            vector: Row3 { x: vx, y: vy, z: vz },
             squares: [xx, yy, zz, xy, xz, yz],
+            constant,
             flags,
             floor,
         }
@@ -297,8 +271,8 @@ pub(super) fn lane_of(rows: &[Row; 6], lane: usize) -> [f32; 6] {
     [a[lane], b[lane], c[lane], d[lane], e[lane], f[lane]]
 }
 
-/// What eight edges sweep, seen from the middle of each: x'Sx − 2 q·x + c, and the volume stays where
-/// g·x is `level`. Symmetric: the same from either end, to the bit.
+/// The squares of eight edges, seen from the middle of each: x'Sx − 2 q·x + c. The volume stays where g·x
+/// is `level`, if the rule asks for that. Symmetric: the same from either end, to the bit.
 pub(super) struct Edges {
     pub(super) half: Row3,
     /// S.
@@ -308,8 +282,8 @@ pub(super) struct Edges {
     /// c.
     pub(super) at_middle: Row,
     /// g.
-    normal: Row3,
-    level: Row,
+    pub(super) normal: Row3,
+    pub(super) level: Row,
 }
 
 impl Edges {
@@ -323,11 +297,10 @@ impl Edges {
     };
 
     #[inline(always)]
-    fn between(first: &Stars, second: &Stars) -> Self {
+    fn between<R: Rule>(first: &Stars, second: &Stars) -> Self {
         let mut edges = Self::ZERO;
         for lane in 0..LANES {
             let h = (second.place.get(lane) - first.place.get(lane)) * 0.5;
-            let (n0, n1) = (first.normal.get(lane), second.normal.get(lane));
             let a0 = Symmetric(lane_of(&first.squares, lane));
             let a1 = Symmetric(lane_of(&second.squares, lane));
             let (a0h, a1h) = (a0.apply(h), a1.apply(h));
@@ -337,47 +310,21 @@ impl Edges {
             edges.half.set(lane, h);
             edges.slope.set(lane, a1h - a0h);
             edges.at_middle[lane] = (a1h + a0h).dot(h);
-            edges.normal.set(lane, n0 + n1);
-            edges.level[lane] = (n1 - n0).dot(h);
+            R::complete(&mut edges, lane, first, second);
         }
         edges
     }
 
     /// What each costs.
     #[inline(always)]
-    fn costs(&self) -> Row {
+    fn costs<R: Rule>(&self) -> Row {
         let mut costs = [0.0; LANES];
         for (lane, cost) in costs.iter_mut().enumerate() {
-            *cost = self.cost(lane);
+            let h = self.half.get(lane);
+            let trace = Symmetric(lane_of(&self.sum, lane)).trace();
+            *cost = R::least(self, lane) + R::SHORT_FIRST * trace * h.dot(h);
         }
         costs
-    }
-
-    #[inline(always)]
-    fn cost(&self, lane: usize) -> f32 {
-        let (h, g, q) = (self.half.get(lane), self.normal.get(lane), self.slope.get(lane));
-        let sum = Symmetric(lane_of(&self.sum, lane));
-        let trace = sum.trace();
-        let scale = (trace + TINY).recip();
-        let to_unit = (g.dot(g) + TINY).recip();
-        // The place on the plane of equal volumes that is next to the middle.
-        let x0 = g * (self.level[lane] * to_unit);
-        let slope = q - sum.apply(x0);
-        let there = self.at_middle[lane] - x0.dot(q + slope);
-
-        // Two directions in the plane, at right angles, the second along the slope; as long as keeps
-        // all that follows about one.
-        let across = g.cross(slope) * scale;
-        let e1 = across * to_unit;
-        let e2 = g.cross(e1);
-        let rise = e1.dot(across);
-        let m11 = e1.dot(sum.apply(e1)) * scale + PULL * e1.dot(e1);
-        let (a2, long2) = (sum.apply(e2), e2.dot(e2));
-        let m12 = e1.dot(a2) * scale;
-        let m22 = e2.dot(a2) * scale + PULL * long2;
-        let determinant = most(m11 * m22 - m12 * m12, 1e-36);
-        let gain = rise * rise * m11 / determinant * trace;
-        there - gain + SHORT_FIRST * trace * h.dot(h)
     }
 }
 

@@ -383,10 +383,12 @@ mod tests {
     use meshlod_mesh::{LayerKind, VertexId, sample};
 
     use super::*;
-    use crate::fast::fans::{BOUNDARY_WEIGHT, Fans};
+    use crate::fast::fans::Fans;
     use crate::fast::frame::Frame;
+    use crate::fast::memoryless::Memoryless;
     use crate::fast::order::Order;
     use crate::fast::parts::Parts;
+    use crate::fast::rule::Rule;
     use crate::options::AttributeWeights;
 
     /// A mesh with a texture cut in two across, each half with its own wedges where they meet.
@@ -436,7 +438,8 @@ mod tests {
         let (order, places) = Order::new(mesh, &frame);
         let face = |i: usize| order.face(&mesh.faces[i]);
         let numbers = || (0..mesh.faces.len()).map(face);
-        let mut fans = Fans::new((&places, Vec::new()), mesh.faces.len(), face, BOUNDARY_WEIGHT);
+        let (count, weight) = (mesh.faces.len(), Memoryless::BOUNDARY_WEIGHT);
+        let mut fans = Fans::new::<Memoryless>((&places, Vec::new()), count, face, weight);
         let corners = || Corners::new(mesh, numbers(), mesh.positions.len()).unwrap();
         let coat = Coat::new(mesh, &frame, &AttributeWeights::DEFAULT, 2);
         let painted = Painted::<2>::new(coat, corners(), &mut fans.store.whole(), numbers());

@@ -2,28 +2,25 @@
 //!
 //! A vertex has one entry in the queue, by the cheapest of its edges when it was last looked at. What
 //! contractions around it change is seen when the entry is among the next: the edge is costed again, by
-//! itself and then by the contraction, and goes through if it costs at most [`SLACK`] buckets more.
+//! itself and then by the contraction, and goes through if it costs at most [`Rule::SLACK`] buckets more.
 
-use glam::{DVec3, Vec3};
+use glam::DVec3;
 
 use crate::fast::batch::Batch;
-use crate::fast::cost::{Cheapest, PROTECTION, Rank, SHORT_FIRST, cheapest};
+use crate::fast::cost::{Cheapest, Rank, cheapest};
 use crate::fast::hood::Hood;
 use crate::fast::log::Done;
 use crate::fast::looks::{Ends, Looks, Placed};
 use crate::fast::pace::Pace;
-use crate::fast::place::{Swept, matrix};
+use crate::fast::place::Swept;
 use crate::fast::queue::{AHEAD, NONE, Queue, bucket, last_bucket};
 use crate::fast::ring::{GHOST, MOST, RING, Vertices};
-use crate::fast::vertex::{Flags, NOBODY, Star, Vertex};
+use crate::fast::rule::{Rule, protection};
+use crate::fast::vertex::{Flags, NOBODY, Vertex};
 use crate::fast::volume::Volume;
 use crate::fast::wide::{Work, widest};
 use crate::fast::within::{Step, Within};
 use crate::refusal::{Refusal, Refusals};
-
-/// By how many buckets of a quarter octave a cost may have risen. Mean error of horse-97k at 10 %:
-/// 0 .00725, 1 .00723, 2 .00725, 4 .00724, 8 .00743.
-const SLACK: u16 = 4;
 
 /// How many buckets behind the front a new vertex is put, not looked at: many are gone before they come
 /// up. Mean error of horse-97k at 10 % and 1 %, and millions of instructions of both: looked at at once
@@ -173,14 +170,14 @@ impl<'v, L: Looks> Engine<'v, L> {
         }
         changed.cost_all(&self.vertices, self.looks, |[v, _], cost| {
             dear[count] = v;
-            count += usize::from(bucket(cost) > front.saturating_add(SLACK));
+            count += usize::from(bucket(cost) > front.saturating_add(L::Rule::SLACK));
         });
         for &v in &dear[..count] {
             self.vertices.bring_up(v);
             let Cheapest { bucket, target } = cheapest(&self.vertices, self.looks, v);
             let vertex = self.vertices.get_mut(v);
             vertex.target = target;
-            if bucket > front.saturating_add(SLACK) {
+            if bucket > front.saturating_add(L::Rule::SLACK) {
                 vertex.bucket = bucket;
                 self.queue.push(v, bucket);
             }
@@ -354,22 +351,22 @@ impl<'v, L: Looks> Engine<'v, L> {
         let Ends { v0, v1, free } = ends;
         hood.gather(vertices, v0, v1).map_err(refused)?;
         let (end0, end1) = (vertices.get(v0), vertices.get(v1));
-        let swept = swept(hood, end0, end1);
+        let swept = L::Rule::swept(hood, end0, end1);
         let whole = if free { looks.whole(vertices, ends, swept) } else { swept };
-        let best = if free { whole.best() } else { -swept.half };
+        let best = if free { L::Rule::best(&whole) } else { -swept.half };
         let looked = if free { 0.0 } else { f64::from(looks.onto(vertices, ends)) };
         let cost = whole.at(best) + looked;
         if !cost.is_finite() {
             return Err(refused(Refusal::Volume));
         }
-        let short = f64::from(SHORT_FIRST) * whole.weight() * swept.half.length_squared();
+        let short = f64::from(L::Rule::SHORT_FIRST) * whole.weight() * swept.half.length_squared();
         let mut cost = (cost.max(0.0) + short) as f32;
         if Flags(end0.flags.0 | end1.flags.0).any(Flags::PROTECTED) {
-            cost *= PROTECTION;
+            cost *= protection::<L::Rule>();
         }
         match bucket(cost) {
             NONE => Err(refused(Refusal::Volume)),
-            bucket if bucket > front.saturating_add(SLACK) => Err(Not::TooDear(bucket)),
+            bucket if bucket > front.saturating_add(L::Rule::SLACK) => Err(Not::TooDear(bucket)),
             bucket => Ok(Priced { ends, swept, best, bucket }),
         }
     }
@@ -396,7 +393,7 @@ impl<'v, L: Looks> Engine<'v, L> {
         if let Some(bucket) = pace.wait(now, moved, front) {
             return Err(Not::TooFar(bucket));
         }
-        let placed = Placed { ends, half: swept.half, best, by: place - from };
+        let placed = Placed { ends, half: swept.half, best, place, by: place - from };
         let turns = looks.look_ahead(vertices, hood, &placed);
         let later = bucket.saturating_add(TURNED).min(last_bucket());
         if turns && front < later {
@@ -413,7 +410,7 @@ impl<'v, L: Looks> Engine<'v, L> {
         if let Some(log) = &mut self.log {
             log.push(Done { kept: v0, gone: v1, place, moved, front });
         }
-        self.carry_out(&placed, place, moved, front);
+        self.carry_out(&placed, &swept, moved, front);
         if self.log.is_some() {
             self.looks.record(v0);
         }
@@ -422,15 +419,13 @@ impl<'v, L: Looks> Engine<'v, L> {
 
     /// Writes a contraction that may be.
     #[inline(always)]
-    fn carry_out(&mut self, placed: &Placed, place: Vec3, moved: f32, front: u16) {
+    fn carry_out(&mut self, placed: &Placed, swept: &Swept, moved: f32, front: u16) {
         let Ends { v0, v1, .. } = placed.ends;
         let Self { vertices, looks, hood, queue, .. } = self;
         self.live_faces -= [0, hood.of_v0].iter().filter(|&&wing| hood.ghost != Some(wing)).count();
-        let mut star = hood.change();
-        star.add(&looks.contract(vertices, hood, placed));
-        if hood.ghost.is_some() {
-            star.add(&renew_boundary(vertices, hood, [v0, v1], place));
-        }
+        let fences = looks.contract(vertices, hood, placed);
+        let mut seen = L::Rule::merge(vertices, hood, swept, placed);
+        seen.star.add(&fences);
         let (first, second) = hood.dying();
         let mut last = hood.changes[hood.len - 1];
         for i in 0..hood.len {
@@ -438,13 +433,10 @@ impl<'v, L: Looks> Engine<'v, L> {
             let id = hood.ids[i];
             if id != GHOST {
                 let vertex = vertices.get_mut(id);
-                vertex.seen.add(&last);
-                vertex.seen.add(&change);
-                vertex.flags.set(Flags::STALE);
+                L::Rule::renew(vertex, [&last, &change], v0);
                 let mut woken = vertex.floor > 0;
                 if i == 0 || i == hood.of_v0 {
-                    let dying = Star::face(if i == 0 { first } else { second });
-                    vertex.seen.take(&dying);
+                    L::Rule::lose(vertex, if i == 0 { first } else { second });
                     woken |= vertex.lose(v1);
                 } else if i > hood.of_v0 {
                     vertex.swap(v1, v0);
@@ -461,7 +453,7 @@ impl<'v, L: Looks> Engine<'v, L> {
         let protected = gone.flags.0 & Flags::PROTECTED.0;
         vertices.set_ring_of(v0, &hood.ids, hood.len);
         let kept = vertices.get_mut(v0);
-        kept.put(place, star);
+        kept.put(placed.place, seen);
         kept.moved = moved;
         kept.flags.set(Flags(protected));
         kept.floor = 0;
@@ -504,47 +496,4 @@ fn wake(vertex: &mut Vertex, id: u32, queue: &mut Queue, front: u16) {
         vertex.bucket = front;
         queue.push(id, front);
     }
-}
-
-/// What the contraction of a gathered edge sweeps.
-#[inline(always)]
-fn swept(hood: &Hood, end0: &Vertex, end1: &Vertex) -> Swept {
-    let (a0, a1) = (end0.seen, end1.seen);
-    let (mut both, mut less) = (a0, a1);
-    both.add(&a1);
-    less.take(&a0);
-    let (first, last) = hood.dying();
-    let mut once = both;
-    for (wing, normal) in [(0, first), (hood.of_v0, last)] {
-        once.take(&match hood.ghost == Some(wing) {
-            true => Star::boundary(hood.along, hood.boundary_weight),
-            false => Star::face(normal),
-        });
-    }
-    let half = hood.along.as_dvec3() * 0.5;
-    let (n0, n1) = hood.sums();
-    Swept {
-        half,
-        sum: matrix(&once),
-        slope: matrix(&less) * half,
-        at_middle: half.dot(matrix(&both) * half),
-        normal: (n0 + n1 + first + last).as_dvec3(),
-        level: (n1 - n0).as_dvec3().dot(half),
-    }
-}
-
-/// Brings the boundary's part of the stars up to date; gives that of the new vertex.
-#[cold]
-fn renew_boundary(vertices: &mut Vertices, hood: &Hood, [v0, v1]: [u32; 2], place: Vec3) -> Star {
-    let mut sum = Star::default();
-    let ends = [vertices.get(v0).place(), vertices.get(v1).place()];
-    for (i, of_v1) in hood.boundary() {
-        let vertex = vertices.get_mut(hood.ids[i]);
-        let edge = |apex: Vec3| Star::boundary(vertex.place() - apex, hood.boundary_weight);
-        let (old, new) = (edge(ends[usize::from(of_v1)]), edge(place));
-        vertex.seen.add(&new);
-        vertex.seen.take(&old);
-        sum.add(&new);
-    }
-    sum
 }

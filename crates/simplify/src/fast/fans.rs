@@ -6,10 +6,8 @@ use rayon::prelude::*;
 
 use crate::fast::cells::{CELL, Cells};
 use crate::fast::ring::{GHOST, LONG, Long, RING, Store, Vertices};
-use crate::fast::vertex::{NOBODY, Star, Vertex};
-
-/// What a boundary edge counts [LT99], unless another weight is asked for.
-pub(super) const BOUNDARY_WEIGHT: f32 = 9.0;
+use crate::fast::rule::Rule;
+use crate::fast::vertex::{NOBODY, Vertex};
 
 /// Pairs of neighbours that a vertex has room for before they are a ring.
 const PAIRS: usize = RING / 2;
@@ -28,7 +26,7 @@ pub(super) type Pair = [u32; 2];
 
 impl Fans {
     /// Rings of vertices at these places, the last of them copies, from `count` faces.
-    pub(super) fn new(
+    pub(super) fn new<R: Rule>(
         (places, copied): (&[Vec3], Vec<u32>),
         count: usize,
         face: impl Fn(usize) -> [u32; 3] + Sync,
@@ -36,7 +34,7 @@ impl Fans {
     ) -> Self {
         let cells = Cells::new(places.len(), count, face);
         let mut all: Vec<Vertex> = places.par_iter().map(|&place| Vertex::at(place)).collect();
-        let close = |(number, all)| close((number, all), places, &cells, boundary_weight);
+        let close = |(number, all)| close::<R>((number, all), places, &cells, boundary_weight);
         let closed: Vec<_> = all.par_chunks_mut(CELL).enumerate().map(close).collect();
         let (mut long, mut irregular) = (Vec::new(), Vec::new());
         for (lists, odd) in closed {
@@ -49,7 +47,7 @@ impl Fans {
 }
 
 /// Makes the rings of a cell; gives those that are long, and the vertices that have none.
-fn close(
+fn close<R: Rule>(
     (number, all): (usize, &mut [Vertex]),
     places: &[Vec3],
     cells: &Cells,
@@ -58,7 +56,7 @@ fn close(
     let mut long = Vec::new();
     let vertices = Vertices::new(all, (number * CELL) as u32, &mut long);
     let mut cell = Cell { number, vertices, places, boundary_weight, irregular: Vec::new() };
-    cell.close(cells);
+    cell.close::<R>(cells);
     let irregular = cell.irregular;
     (long, irregular)
 }
@@ -74,8 +72,8 @@ struct Cell<'c> {
 }
 
 impl Cell<'_> {
-    fn close(&mut self, cells: &Cells) {
-        let mut beyond = self.collect(cells);
+    fn close<R: Rule>(&mut self, cells: &Cells) {
+        let mut beyond = self.collect::<R>(cells);
         beyond.sort_by_key(|&(v, _)| v);
         let mut beyond = &beyond[..];
         let mut pairs = Vec::new();
@@ -87,25 +85,25 @@ impl Cell<'_> {
             }
             let more = beyond.iter().take_while(|(of, _)| *of == v).count();
             if more == 0 {
-                self.ring_of(v, len);
+                self.ring_of::<R>(v, len);
             } else {
                 pairs.clear();
                 pairs.extend_from_slice(vertex.ring.as_chunks().0);
                 pairs.extend(beyond[..more].iter().map(|&(_, pair)| pair));
                 beyond = &beyond[more..];
-                self.ring_of_many(v, &mut pairs);
+                self.ring_of_many::<R>(v, &mut pairs);
             }
         }
     }
 
     /// Gives each vertex its faces' star and pairs; those that it has no room for are given back.
-    fn collect(&mut self, cells: &Cells) -> Vec<(u32, Pair)> {
+    fn collect<R: Rule>(&mut self, cells: &Cells) -> Vec<(u32, Pair)> {
         let (places, first) = (self.places, self.vertices.base);
         let all = &mut *self.vertices.all;
         let mut beyond = Vec::new();
         for &[a, b, c] in cells.of(self.number).flatten() {
             let place = |v: u32| places[v as usize];
-            let star = Star::face((place(b) - place(a)).cross(place(c) - place(a)));
+            let star = R::face((place(b) - place(a)).cross(place(c) - place(a)));
             for (v, pair) in [(a, [b, c]), (b, [c, a]), (c, [a, b])] {
                 let Some(vertex) = all.get_mut(v.wrapping_sub(first) as usize) else { continue };
                 vertex.seen.add(&star);
@@ -123,31 +121,31 @@ impl Cell<'_> {
 
     /// Of a vertex whose pairs are all in the place of its ring.
     #[inline(always)]
-    fn ring_of(&mut self, v: u32, len: usize) {
+    fn ring_of<R: Rule>(&mut self, v: u32, len: usize) {
         let vertex = self.vertices.get_mut(v);
         let ring = vertex.ring;
         match closed(&ring, len) {
             Some(closed) => vertex.ring = closed,
-            None => self.ring_not_closed(v, &mut ring.as_chunks().0[..len].to_vec()),
+            None => self.ring_not_closed::<R>(v, &mut ring.as_chunks().0[..len].to_vec()),
         }
     }
 
     #[cold]
-    fn ring_not_closed(&mut self, v: u32, pairs: &mut [Pair]) {
+    fn ring_not_closed<R: Rule>(&mut self, v: u32, pairs: &mut [Pair]) {
         match chain_open(pairs) {
-            Some(()) => self.open(v, pairs),
+            Some(()) => self.open::<R>(v, pairs),
             None => self.irregular(v),
         }
     }
 
     /// Of a vertex with many faces, by sorting: a search for each would cost the square of them.
-    fn ring_of_many(&mut self, v: u32, pairs: &mut Vec<Pair>) {
+    fn ring_of_many<R: Rule>(&mut self, v: u32, pairs: &mut Vec<Pair>) {
         match chain_many(pairs) {
             Some(Chain::Closed) => {
                 let ring: Vec<u32> = pairs.iter().map(|pair| pair[0]).collect();
                 self.vertices.set_ring(v, &ring);
             }
-            Some(Chain::Open) => self.open(v, pairs),
+            Some(Chain::Open) => self.open::<R>(v, pairs),
             None => self.irregular(v),
         }
     }
@@ -158,14 +156,14 @@ impl Cell<'_> {
     }
 
     /// A ring through the ghost, and the edges to it.
-    fn open(&mut self, v: u32, pairs: &[Pair]) {
+    fn open<R: Rule>(&mut self, v: u32, pairs: &[Pair]) {
         let (first, last) = (pairs[0][0], pairs[pairs.len() - 1][1]);
         let mut ring: Vec<u32> = pairs.iter().map(|pair| pair[0]).collect();
         ring.extend([last, GHOST]);
         self.vertices.set_ring(v, &ring);
-        let place = self.places[v as usize];
-        for end in [first, last] {
-            let edge = Star::boundary(self.places[end as usize] - place, self.boundary_weight);
+        let along = |w: u32| self.places[w as usize] - self.places[v as usize];
+        for (end, [a, b]) in [(first, pairs[0]), (last, pairs[pairs.len() - 1])] {
+            let edge = R::boundary(along(end), along(a).cross(along(b)), self.boundary_weight);
             self.vertices.get_mut(v).seen.add(&edge);
         }
     }

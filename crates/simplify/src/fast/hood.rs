@@ -10,7 +10,7 @@
 
 use std::ops::Range;
 
-use glam::{Vec3, Vec4};
+use glam::{DVec3, Vec3, Vec4};
 
 use crate::fast::ring::{GHOST, MOST, RING, Vertices, place_in, place_of};
 use crate::fast::vertex::{Flags, Star, Vertex};
@@ -290,9 +290,18 @@ impl Hood {
         Star([Vec4::new(0.0, 0.0, 0.0, nx), Vec4::new(ny, nz, xx, yy), Vec4::new(zz, xy, xz, yz)])
     }
 
+    /// The sum of n over the faces as they are, each once, and what n·x is where the volume stays, seen
+    /// from the middle; by the normals of the dying faces.
+    #[inline(always)]
+    pub(super) fn volume(&self, (first, last): (Vec3, Vec3)) -> (DVec3, f64) {
+        let (n0, n1) = self.sums();
+        let half = self.along.as_dvec3() * 0.5;
+        ((n0 + n1 + first + last).as_dvec3(), (n1 - n0).as_dvec3().dot(half))
+    }
+
     /// The sums of the old normals around v0 and around v1.
     #[inline(always)]
-    pub(super) fn sums(&self) -> (Vec3, Vec3) {
+    fn sums(&self) -> (Vec3, Vec3) {
         let (mut of_v0, mut of_v1) = (Row3::ZERO, Row3::ZERO);
         for start in self.starts() {
             let (old, part): (_, &Row) = (row3(&self.old, start), chunk(&self.of_v1, start));

@@ -1,4 +1,5 @@
-//! What the engine asks of attributes; `()` where there are none, and nothing is left of it in the code.
+//! What the engine asks of attributes; [`Bare`] where there are none, and nothing is left of it in the
+//! code.
 
 use glam::{DVec3, Vec3};
 use meshlod_mesh::{Attributes, WedgeId};
@@ -7,6 +8,7 @@ use crate::fast::cost::{Edges, Side};
 use crate::fast::hood::Hood;
 use crate::fast::place::Swept;
 use crate::fast::ring::Vertices;
+use crate::fast::rule::Rule;
 use crate::fast::vertex::{Flags, Star};
 use crate::refusal::Refusal;
 
@@ -27,12 +29,17 @@ pub(super) struct Placed {
     pub(super) half: DVec3,
     /// The new place as seen from the middle.
     pub(super) best: DVec3,
-    /// The new place as seen from `v0`, as rounded.
+    /// The new place, as rounded.
+    pub(super) place: Vec3,
+    /// The same as seen from `v0`.
     pub(super) by: Vec3,
 }
 
 /// Attributes, as costs and contractions have to do with them.
 pub(super) trait Looks: Sized + Send + Sync {
+    /// What the surface itself costs.
+    type Rule: Rule;
+
     /// Whether the surface may be worked on in parts.
     const IN_PARTS: bool;
 
@@ -84,11 +91,17 @@ pub(super) struct Revalued {
     pub(super) values: Vec<f32>,
 }
 
-impl Looks for () {
+/// No attributes, and what costs by this rule.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Bare<R>(pub(super) R);
+
+impl<R: Rule> Looks for Bare<R> {
+    type Rule = R;
+
     const IN_PARTS: bool = true;
 
     fn side_by_side(self, parts: usize) -> Vec<Self> {
-        vec![(); parts]
+        vec![self; parts]
     }
 
     #[inline(always)]

@@ -1,8 +1,8 @@
-//! The fast engine: `lindstrom-turk` at the speed of quadrics.
+//! The fast engine: `lindstrom-turk` at the speed of quadrics, and `qem` without attributes.
 //!
 //! It answers to the same rules as the general engine, which is its oracle, by other means: rings
 //! instead of stars of faces, one queue entry a vertex instead of one an edge, floats, and costs from
-//! nine numbers a vertex. docs/notes/fast-simplify.md tells why each of these.
+//! nine numbers a vertex, or ten. docs/notes/fast-simplify.md tells why each of these.
 
 // Lanes go by their number, in one row as in the next.
 #![allow(clippy::needless_range_loop)]
@@ -25,6 +25,7 @@ mod lanes;
 mod level;
 mod log;
 mod looks;
+mod memoryless;
 mod order;
 mod original;
 mod pace;
@@ -33,9 +34,11 @@ mod parts;
 mod place;
 mod prepare;
 mod probe;
+mod quadrics;
 mod queue;
 mod renew;
 mod ring;
+mod rule;
 mod seams;
 mod split;
 mod vertex;
@@ -46,14 +49,14 @@ mod work;
 
 use meshlod_mesh::{Bounds, Mesh};
 
+use crate::engine::Run;
+use crate::fast::memoryless::Memoryless;
 use crate::fast::prepare::Prepared;
+use crate::fast::quadrics::Quadrics;
+use crate::fast::rule::Rule;
 use crate::options::{Method, Options, SimplifyError};
 use crate::simplifier::Started;
-
-/// Whether there is a fast way for this.
-fn fits(mesh: &Mesh, options: &Options) -> bool {
-    options.method_for([mesh]) == Method::LindstromTurk && !options.needs_general_engine()
-}
+use crate::wedges::labels;
 
 /// Sets the engine to work on a valid mesh, and says what was found in it; `None` where the general
 /// engine has to.
@@ -66,11 +69,30 @@ pub(crate) fn start<'m>(
     bounds: &Bounds,
     options: &Options,
 ) -> Result<Option<Started<'m>>, SimplifyError> {
-    let prepared = if fits(mesh, options) { Prepared::new(mesh, bounds, options) } else { None };
-    let Some(prepared) = prepared else { return Ok(None) };
+    if options.needs_general_engine() {
+        return Ok(None);
+    }
+    let is_bare = mesh.attributes.is_none() && labels(mesh).is_none();
+    match options.method_for([mesh]) {
+        Method::LindstromTurk => {
+            start_by(Memoryless, mesh, bounds, options, |prepared| prepared.start(&options.weights))
+        }
+        Method::Qem if is_bare => start_by(Quadrics, mesh, bounds, options, Prepared::start_bare),
+        _ => Ok(None),
+    }
+}
+
+fn start_by<'m, R: Rule + 'm>(
+    rule: R,
+    mesh: &'m Mesh,
+    bounds: &Bounds,
+    options: &Options,
+    start: impl FnOnce(Prepared<'m, R>) -> Box<dyn Run + 'm>,
+) -> Result<Option<Started<'m>>, SimplifyError> {
+    let Some(prepared) = Prepared::new(rule, mesh, bounds, options) else { return Ok(None) };
     if prepared.live_faces() == 0 {
         return Err(SimplifyError::AllDegenerate(mesh.faces.len()));
     }
     let input = prepared.input();
-    Ok(Some((prepared.start(&options.weights), input)))
+    Ok(Some((start(prepared), input)))
 }

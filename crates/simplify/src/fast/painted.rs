@@ -16,6 +16,7 @@ use crate::fast::dress::Corners;
 use crate::fast::field::{Field, join, join_alone, join_one};
 use crate::fast::hood::Hood;
 use crate::fast::looks::{Ends, Looks, Placed, Revalued, by_pins};
+use crate::fast::memoryless::Memoryless;
 use crate::fast::place::Swept;
 use crate::fast::ring::Vertices;
 use crate::fast::seams::Seams;
@@ -138,6 +139,8 @@ impl<const K: usize> Painted<'_, K> {
 }
 
 impl<const K: usize> Looks for Painted<'_, K> {
+    type Rule = Memoryless;
+
     const IN_PARTS: bool = false;
 
     fn side_by_side(self, _: usize) -> Vec<Self> {

@@ -331,15 +331,18 @@ mod tests {
     use meshlod_mesh::{Mesh, VertexId, sample};
 
     use super::*;
-    use crate::fast::fans::{BOUNDARY_WEIGHT, Fans};
+    use crate::fast::fans::Fans;
     use crate::fast::frame::Frame;
+    use crate::fast::looks::Bare;
+    use crate::fast::memoryless::Memoryless;
     use crate::fast::order::Order;
     use crate::fast::queue::NONE;
+    use crate::fast::rule::Rule;
 
     struct Test {
         mesh: Mesh,
         order: Order,
-        parts: Parts<()>,
+        parts: Parts<Bare<Memoryless>>,
     }
 
     impl Test {
@@ -347,9 +350,10 @@ mod tests {
             let frame = Frame::new(&mesh, &mesh.bounds());
             let (order, places) = Order::new(&mesh, &frame);
             let face = |i: usize| order.face(&mesh.faces[i]);
-            let fans = Fans::new((&places, Vec::new()), mesh.faces.len(), face, BOUNDARY_WEIGHT);
+            let (count, weight) = (mesh.faces.len(), Memoryless::BOUNDARY_WEIGHT);
+            let fans = Fans::new::<Memoryless>((&places, Vec::new()), count, face, weight);
             assert!(fans.irregular.is_empty());
-            let parts = Parts::of_at_most(part, fans.store, (), fans.faces);
+            let parts = Parts::of_at_most(part, fans.store, Bare(Memoryless), fans.faces);
             Self { mesh, order, parts }
         }
 

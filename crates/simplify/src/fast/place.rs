@@ -1,20 +1,19 @@
-//! Where the new vertex goes: the least of the squares on the plane of equal volumes, in doubles.
+//! The squares of one edge in doubles, for where its vertex goes.
 
 use glam::{DMat3, DVec3};
 
-use crate::fast::cost::PULL;
 use crate::fast::vertex::Star;
 
-/// What a contraction sweeps, seen from the middle of its edge.
+/// The squares of an edge, seen from its middle: x'Sx − 2 q·x + c; and the plane of equal volumes.
 #[derive(Clone, Copy)]
 pub(super) struct Swept {
     /// Half the edge.
     pub(super) half: DVec3,
-    /// The sum of the stars' squares, each face once.
+    /// S.
     pub(super) sum: DMat3,
-    /// What the squares have along the edge: (A₁ − A₀)h.
+    /// q.
     pub(super) slope: DVec3,
-    /// The squares in the middle.
+    /// c.
     pub(super) at_middle: f64,
     /// The sum of n over the faces, each once.
     pub(super) normal: DVec3,
@@ -33,33 +32,9 @@ impl Swept {
     pub(super) fn weight(&self) -> f64 {
         self.sum.x_axis.x + self.sum.y_axis.y + self.sum.z_axis.z
     }
-
-    /// The best place; not a number where there is none.
-    #[inline(always)]
-    pub(super) fn best(&self) -> DVec3 {
-        let squared = self.normal.length_squared();
-        if squared <= f64::MIN_POSITIVE {
-            return DVec3::ZERO;
-        }
-        let up = self.normal / squared.sqrt();
-        let on_plane = self.normal * (self.level / squared);
-        let (e1, e2) = up.any_orthonormal_pair();
-        let pull = f64::from(PULL) * self.weight();
-        let (a1, a2) = (self.sum * e1, self.sum * e2);
-        let (m11, m12, m22) = (e1.dot(a1) + pull, e1.dot(a2), e2.dot(a2) + pull);
-        let slope = self.slope - self.sum * on_plane;
-        let (r1, r2) = (e1.dot(slope), e2.dot(slope));
-        let determinant = m11 * m22 - m12 * m12;
-        if determinant <= 0.0 {
-            return on_plane;
-        }
-        on_plane
-            + e1 * ((m22 * r1 - m12 * r2) / determinant)
-            + e2 * ((m11 * r2 - m12 * r1) / determinant)
-    }
 }
 
-/// The sum of n n'.
+/// The matrix of the squares at a vertex.
 #[inline(always)]
 pub(super) fn matrix(star: &Star) -> DMat3 {
     symmetric(star.squares())

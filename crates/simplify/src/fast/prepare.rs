@@ -6,13 +6,15 @@ use crate::clean;
 use crate::engine::Run;
 use crate::fast::coat::Coat;
 use crate::fast::dress::Corners;
-use crate::fast::fans::{BOUNDARY_WEIGHT, Fans};
+use crate::fast::fans::Fans;
 use crate::fast::frame::Frame;
-use crate::fast::looks::Looks;
+use crate::fast::looks::{Bare, Looks};
+use crate::fast::memoryless::Memoryless;
 use crate::fast::order::Order;
 use crate::fast::painted::Painted;
 use crate::fast::parts::Parts;
 use crate::fast::ring::GHOST;
+use crate::fast::rule::Rule;
 use crate::fast::split::{self, Split};
 use crate::fast::vertex::Flags;
 use crate::fast::work::{Source, Work};
@@ -28,7 +30,8 @@ const MOST_CHANNELS: usize = 8;
 const MOST_BOUNDARY_WEIGHT: f64 = 1e9;
 
 /// A mesh about to be simplified.
-pub(super) struct Prepared<'m> {
+pub(super) struct Prepared<'m, R> {
+    rule: R,
     mesh: &'m Mesh,
     frame: Frame,
     order: Order,
@@ -38,23 +41,23 @@ pub(super) struct Prepared<'m> {
     input: Input,
 }
 
-impl<'m> Prepared<'m> {
+impl<'m, R: Rule + 'm> Prepared<'m, R> {
     /// `None` where copies of vertices do not make it manifold, or a vertex has copies with more faces
     /// than anybody looks at.
-    pub(super) fn new(mesh: &'m Mesh, bounds: &Bounds, options: &Options) -> Option<Self> {
+    pub(super) fn new(rule: R, mesh: &'m Mesh, bounds: &Bounds, options: &Options) -> Option<Self> {
         let frame = Frame::new(mesh, bounds);
         let (order, mut places) = Order::new(mesh, &frame);
         let count = mesh.faces.len();
         let face = |i: usize| order.face(&mesh.faces[i]);
-        let weight = options.boundary_weight.map_or(BOUNDARY_WEIGHT, boundary_weight);
-        let mut fans = Fans::new((&places, Vec::new()), count, face, weight);
+        let weight = options.boundary_weight.map_or(R::BOUNDARY_WEIGHT, boundary_weight);
+        let mut fans = Fans::new::<R>((&places, Vec::new()), count, face, weight);
         let degenerate_faces = count - fans.faces;
         let (mut faces, mut duplicate_faces) = (None, 0);
         if !fans.irregular.is_empty() {
             let mut all: Vec<_> = (0..count).map(face).collect();
             duplicate_faces = split::drop_duplicates(&mut all, &fans.irregular);
             if duplicate_faces > 0 {
-                fans = Fans::new((&places, Vec::new()), count, |i| all[i], weight);
+                fans = Fans::new::<R>((&places, Vec::new()), count, |i| all[i], weight);
             }
             faces = Some(all);
         }
@@ -64,7 +67,7 @@ impl<'m> Prepared<'m> {
                 split::split(std::mem::take(all), &irregular, places.len());
             let copies: Vec<_> = copied.iter().map(|&v| places[v as usize]).collect();
             places.extend(copies);
-            fans = Fans::new((&places, copied), count, |i| faces[i], weight);
+            fans = Fans::new::<R>((&places, copied), count, |i| faces[i], weight);
             *all = faces;
             if !fans.irregular.is_empty() || is_crowded(&mut fans, &irregular) {
                 return None;
@@ -76,7 +79,7 @@ impl<'m> Prepared<'m> {
             non_manifold_vertices: irregular.len(),
             held: Held::default(),
         };
-        let mut prepared = Self { mesh, frame, order, fans, faces, input };
+        let mut prepared = Self { rule, mesh, frame, order, fans, faces, input };
         prepared.pin(&irregular);
         prepared.lock(options);
         Some(prepared)
@@ -140,11 +143,25 @@ impl<'m> Prepared<'m> {
         self.fans.faces
     }
 
-    /// Costs all vertices.
+    /// Costs all vertices of a mesh without attributes.
+    pub(super) fn start_bare(self) -> Box<dyn Run + 'm> {
+        let rule = self.rule;
+        self.work(Bare(rule))
+    }
+
+    fn work<L: Looks + 'm>(self, looks: L) -> Box<dyn Run + 'm> {
+        let Self { mesh, frame, order, fans, faces, .. } = self;
+        let parts = Parts::new(fans.store, looks, fans.faces);
+        Box::new(Work::new(Source { mesh, frame, order, faces }, parts))
+    }
+}
+
+impl<'m> Prepared<'m, Memoryless> {
+    /// Costs all vertices, and what is at them.
     pub(super) fn start(self, weights: &AttributeWeights) -> Box<dyn Run + 'm> {
         let faces = numbers(self.mesh, &self.order, self.faces.as_deref());
         let Some(corners) = Corners::new(self.mesh, faces, self.fans.store.all.len()) else {
-            return self.work(());
+            return self.start_bare();
         };
         let coat = Coat::new(self.mesh, &self.frame, weights, MOST_CHANNELS);
         match coat.channels() {
@@ -159,12 +176,6 @@ impl<'m> Prepared<'m> {
         let faces = numbers(self.mesh, &self.order, self.faces.as_deref());
         let looks = Painted::<K>::new(coat, corners, &mut self.fans.store.whole(), faces);
         self.work(looks)
-    }
-
-    fn work<L: Looks + 'm>(self, looks: L) -> Box<dyn Run + 'm> {
-        let Self { mesh, frame, order, fans, faces, .. } = self;
-        let parts = Parts::new(fans.store, looks, fans.faces);
-        Box::new(Work::new(Source { mesh, frame, order, faces }, parts))
     }
 }
 

@@ -9,7 +9,7 @@ use std::ops::Range;
 use glam::Vec4;
 use rayon::prelude::*;
 
-use crate::fast::vertex::{Flags, NOBODY, Star, Vertex};
+use crate::fast::vertex::{Constant, Flags, NOBODY, Star, Vertex};
 
 /// How many neighbours a vertex has room for. Of horse-97k's vertices on the way to 1 %, fewer than
 /// one in a thousand have more.
@@ -34,6 +34,7 @@ static ELSEWHERE: Vertex = Vertex {
     floor: 0,
     flags: Flags::BARRED,
     len: 0,
+    constant: Constant::NONE,
     ring: [NOBODY; RING],
 };
 

@@ -123,10 +123,10 @@ use self::tests::tests_are_narrow;
 mod tests {
     use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 
-    use meshlod_mesh::sample;
+    use meshlod_mesh::{Mesh, sample};
 
     use super::*;
-    use crate::{Options, Target, simplify};
+    use crate::{Method, Options, Target, simplify};
 
     /// Whether tests go without wide registers, all of them: it is not to be seen.
     static ARE_NARROW: AtomicBool = AtomicBool::new(false);
@@ -137,10 +137,18 @@ mod tests {
 
     #[test]
     fn the_width_is_not_seen() {
-        for mesh in [sample::knot(4000), sample::fish(4000), sample::terrain(4000)] {
+        let bare = Mesh { attributes: None, ..sample::terrain(4000) };
+        for (mesh, method) in [
+            (sample::knot(4000), Method::LindstromTurk),
+            (sample::fish(4000), Method::LindstromTurk),
+            (sample::terrain(4000), Method::LindstromTurk),
+            (sample::knot(4000), Method::Qem),
+            (bare, Method::Qem),
+        ] {
+            let options = Options { method: Some(method), ..Options::default() };
             let [wide, narrow] = [false, true].map(|are_narrow| {
                 ARE_NARROW.store(are_narrow, Relaxed);
-                simplify(&mesh, Target::Ratio(0.1), &Options::default()).unwrap().0
+                simplify(&mesh, Target::Ratio(0.1), &options).unwrap().0
             });
             ARE_NARROW.store(false, Relaxed);
             assert_eq!(wide, narrow);

@@ -16,6 +16,7 @@ use crate::fast::parts::Parts;
 use crate::fast::prepare::numbers;
 use crate::fast::queue::{NONE, bucket, least_of};
 use crate::fast::ring::Store;
+use crate::fast::rule::Rule;
 use crate::fast::within::Bound;
 use crate::policy::{Observe, Stop};
 use crate::refusal::Refusal;
@@ -55,7 +56,7 @@ impl<'m, L: Looks> Work<'m, L> {
 
     /// What the engine's costs are multiplied by in model units.
     fn cost_unit(&self) -> f64 {
-        self.source.frame.unit.powi(6)
+        self.source.frame.unit.powi(L::Rule::POWER)
     }
 
     /// The last bucket with something that costs no more than this. The cost of a bucket is the least

@@ -11,7 +11,7 @@ mod lee_jang;
 mod lindstrom_turk;
 mod outline;
 mod pm;
-mod qem;
+pub(crate) mod qem;
 mod quadric;
 mod samples;
 mod slopes;

@@ -40,11 +40,11 @@ pub(super) const SHORT_FIRST: f64 = 1e-9;
 /// | 0 | .1179 | .0724 | .0357 | | | |
 ///
 /// Nothing left of it brings no more, but would lose what a flat's vertices know of its rim.
-const MEMORY: f64 = 0.1;
+pub(crate) const MEMORY: f64 = 0.1;
 
 /// The weight of a boundary edge's plane, against the square of its length as an area; unless another is
 /// asked for.
-const BOUNDARY_WEIGHT: f64 = 2.0;
+pub(crate) const BOUNDARY_WEIGHT: f64 = 2.0;
 
 /// The weight of the plane of a seam or a contact likewise.
 const LINE_WEIGHT: f64 = 1.0;
