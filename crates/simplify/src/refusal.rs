@@ -25,7 +25,7 @@ pub enum Refusal {
     LastFaces,
     /// More faces meet in its ends than are looked at.
     Valence,
-    /// No place among the vertices around conserves the volume.
+    /// No place among the vertices around conserves the volume; by `qem`, none costs least.
     Volume,
     /// It would move the surface further than the target error.
     Error,
