@@ -29,7 +29,7 @@ fn main() -> Result<(), Failure> {
         Some(path) => path.into(),
         None => meshlod_fixtures::shared_mesh("dragon.ply").ok_or("name a PLY file")?,
     };
-    let method = args.next().map_or(Some(Method::Qem), |name| Method::by_name(&name));
+    let method = args.next().map_or(Some(Method::LindstromTurk), |name| Method::by_name(&name));
     let method = method.ok_or("no such method")?;
     let options = Options { method: Some(method), ..Options::default() };
     let mesh = meshlod_io::ply::read(&std::fs::read(path)?)?;

@@ -33,7 +33,7 @@ pub struct Build {
     /// What the levels are made by
     #[arg(long, value_name = "MODEL", default_value = "contractions")]
     model: Model,
-    #[arg(long, value_name = "NAME", default_value = Method::Qem.name(),
+    #[arg(long, value_name = "NAME", default_value = Method::LindstromTurk.name(),
         value_parser = amounts::method, help = amounts::methods())]
     method: Method,
     /// Prove bounds of the errors, in place of the method's estimates, which are evened out; takes some

@@ -86,7 +86,7 @@ pub fn section(_: &Project) -> Result<String> {
         })?;
     }
     Ok(format!(
-        "By `qem`, evened out, one core, CPU time, the least of {ROUNDS} rounds. Files move vertices by .005 % of the diagonal \
+        "By `lindstrom-turk`, evened out, one core, CPU time, the least of {ROUNDS} rounds. Files move vertices by .005 % of the diagonal \
          at most, but for those of triangles that would lose their area. The camera is 1.2 diagonals from the \
          middle, 1920 × 1080, 46° high. Right triangles are in docs/notes/right-triangles.md, more in \
          docs/notes/multires.md. Again: `cargo xtask results levels`.\n\n{}{}{}{}{following}",
