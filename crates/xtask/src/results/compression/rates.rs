@@ -26,7 +26,7 @@ pub fn drawing() -> Result<Option<String>> {
 }
 
 fn plot(caption: String, lines: Vec<Line>) -> Plot {
-    Plot { caption, across: [8.0, 14.0], unit: "", up_from: None, low_key: false, lines }
+    Plot { caption, across: [6.0, 16.0], unit: "", up_from: None, low_key: false, lines }
 }
 
 fn lines(mesh: &Mesh) -> Result<[Vec<Line>; 2]> {
