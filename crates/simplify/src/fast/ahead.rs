@@ -4,18 +4,32 @@
 //! A face that is left shall have the same sign of its area in uv as before, or next to no area there.
 //! Else what the texture shows would be there twice, once the wrong way round.
 
-use glam::Vec4;
-
-use crate::fast::around::Slots;
 use crate::fast::carry::Scratch;
-use crate::fast::hood::Hood;
-use crate::fast::lanes::{LANES, Lanes3};
+use crate::fast::hood::{Hood, chunk, row3};
 use crate::fast::looks::{Ends, Placed};
 use crate::fast::painted::{Painted, is_seam};
 use crate::fast::ring::Vertices;
+use crate::fast::wide::{LANES, Row, Work};
 
-/// The square of the area in the texture, as a part of that on the surface, that is none.
-const FLAT: f32 = 1e-4;
+/// The square of the area in the texture, as a part of that on the surface, that is none; where a length in
+/// the texture is one on the surface.
+const FLAT: f32 = 1.6e-3;
+
+/// A look ahead where something around has a seam.
+pub(super) struct AheadBySlots<'a, 'm, 'v, const K: usize> {
+    pub(super) painted: &'a mut Painted<'m, K>,
+    pub(super) vertices: &'a Vertices<'v>,
+    pub(super) hood: &'a Hood,
+    pub(super) placed: &'a Placed,
+    pub(super) turns: &'a mut bool,
+}
+
+impl<const K: usize> Work for AheadBySlots<'_, '_, '_, K> {
+    #[inline(always)]
+    fn work(self) {
+        *self.turns = self.painted.look_ahead_by_slots(self.vertices, self.hood, self.placed);
+    }
+}
 
 impl<const K: usize> Painted<'_, K> {
     /// Whether anything around has a seam.
@@ -39,19 +53,15 @@ impl<const K: usize> Painted<'_, K> {
                 row[i] = channel.w;
             }
         }
-        coat.uvs().any(|u| scratch.folds::<false>(hood, u, [&of_v0, &of_v1]))
+        let mut uvs = coat.uvs();
+        uvs.any(|(u, weight)| scratch.folds::<false>(hood, (u, flat(weight)), [&of_v0, &of_v1]))
     }
 
     /// The same where something has.
-    pub(super) fn look_ahead_by_slots(
-        &mut self,
-        vertices: &Vertices,
-        hood: &Hood,
-        placed: &Placed,
-    ) -> bool {
-        let pairs = self.pairs(vertices, placed.ends);
-        self.scratch.slots = Slots::new(&self.seams, vertices, hood, (placed.ends, pairs));
-        self.find_values(placed, &pairs);
+    #[inline(always)]
+    fn look_ahead_by_slots(&mut self, vertices: &Vertices, hood: &Hood, placed: &Placed) -> bool {
+        self.scratch.slots.find(&self.seams, vertices, hood, &placed.ends);
+        self.find_values(placed);
         let Self { fields, scratch, none, coat, .. } = self;
         for i in 0..hood.len {
             let of = |slot: u32| fields.get(slot as usize).unwrap_or(none).values();
@@ -66,39 +76,63 @@ impl<const K: usize> Painted<'_, K> {
                 scratch.after[k][i] = now[k];
             }
         }
-        coat.uvs().any(|u| scratch.folds::<true>(hood, u, [&[0.0; K]; 2]))
+        let mut uvs = coat.uvs();
+        uvs.any(|(u, weight)| scratch.folds::<true>(hood, (u, flat(weight)), [&[0.0; K]; 2]))
     }
 }
 
 impl<const K: usize> Scratch<K> {
     /// Whether more faces look the other way than most in the plane of two channels, from `u` on, than
-    /// did before.
+    /// did before. Less than `flat` is no area.
     #[inline(always)]
-    fn folds<const SEAMS: bool>(&self, hood: &Hood, u: usize, ends: [&[f32; K]; 2]) -> bool {
+    fn folds<const SEAMS: bool>(
+        &self,
+        hood: &Hood,
+        (u, flat): (usize, f32),
+        ends: [&[f32; K]; 2],
+    ) -> bool {
         let (mut before, mut after) = (Ways::default(), Ways::default());
-        let mut start = 0;
-        while start < hood.len {
-            let at = |row: &[f32], start: usize| Vec4::from_slice(&row[start..]);
-            let row = |k: usize| {
+        for start in hood.starts() {
+            let corners = |k: usize| -> [Row; 4] {
                 if SEAMS {
-                    let apexes = [at(&self.before[k], start), at(&self.after[k], start)];
-                    return (at(&self.first[k], start), at(&self.second[k], start), apexes);
+                    let (first, second) = (&self.first[k], &self.second[k]);
+                    let (before, after) = (&self.before[k], &self.after[k]);
+                    return [
+                        *chunk(first, start),
+                        *chunk(second, start),
+                        *chunk(before, start),
+                        *chunk(after, start),
+                    ];
                 }
-                let of_v1 = at(&hood.of_v1, start);
-                let before = Vec4::splat(ends[0][k]) * (Vec4::ONE - of_v1) + of_v1 * ends[1][k];
-                let apexes = [before, Vec4::splat(self.values[k])];
-                (at(&self.first[k], start), at(&self.first[k], start + 1), apexes)
+                let (of_v1, mut before): (&Row, Row) = (chunk(&hood.of_v1, start), [0.0; LANES]);
+                for lane in 0..LANES {
+                    let part = of_v1[lane];
+                    before[lane] = ends[0][k] * (1.0 - part) + part * ends[1][k];
+                }
+                let first = &self.first[k];
+                [*chunk(first, start), *chunk(first, start + 1), before, [self.values[k]; LANES]]
             };
-            let ((ax, bx, x), (ay, by, y)) = (row(u), row(u + 1));
-            let area = |i: usize| (ax - x[i]) * (by - y[i]) - (ay - y[i]) * (bx - x[i]);
-            let (old, new) = (Lanes3::load(&hood.old, start), Lanes3::load(&hood.new, start));
-            // Lanes past the end are faces of one point, and the ghost's have no area either.
-            before.count(area(0), old.dot(old));
-            after.count(area(1), new.dot(new));
-            start += LANES;
+            let ([ax, bx, x0, x1], [ay, by, y0, y1]) = (corners(u), corners(u + 1));
+            let (old, new) = (row3(&hood.old, start), row3(&hood.new, start));
+            for lane in 0..LANES {
+                let area = |x: f32, y: f32| {
+                    (ax[lane] - x) * (by[lane] - y) - (ay[lane] - y) * (bx[lane] - x)
+                };
+                let (old, new) = (old.get(lane), new.get(lane));
+                // Lanes past the end are faces of one point, and the ghost's have no area either.
+                before.count(area(x0[lane], y0[lane]), old.dot(old), flat);
+                after.count(area(x1[lane], y1[lane]), new.dot(new), flat);
+            }
         }
         after.fewer() > before.fewer()
     }
+}
+
+/// The same where a length in the texture is so many on the surface.
+#[inline(always)]
+fn flat(weight: f32) -> f32 {
+    let area = weight * weight;
+    FLAT * area * area
 }
 
 /// How many faces look which way in a texture.
@@ -109,12 +143,12 @@ struct Ways {
 }
 
 impl Ways {
-    /// Adds four faces by twice their areas in the texture, and the squares of those on the surface.
+    /// Adds a face by twice its area in the texture, and the square of that on the surface.
     #[inline(always)]
-    fn count(&mut self, area: Vec4, on_surface: Vec4) {
-        let counts = (area * area).cmpgt(on_surface * FLAT) & on_surface.cmpgt(Vec4::ZERO);
-        self.up += (counts & area.cmpgt(Vec4::ZERO)).bitmask().count_ones();
-        self.down += (counts & area.cmplt(Vec4::ZERO)).bitmask().count_ones();
+    fn count(&mut self, area: f32, on_surface: f32, flat: f32) {
+        let counts = (area * area > on_surface * flat) & (on_surface > 0.0);
+        self.up += u32::from(counts & (area > 0.0));
+        self.down += u32::from(counts & (area < 0.0));
     }
 
     fn fewer(&self) -> u32 {

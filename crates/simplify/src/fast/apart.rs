@@ -42,6 +42,24 @@ impl Hood {
         most(nearest[0], most(nearest[1], nearest[2]))
     }
 
+    /// The squares of how far a place is from each of the old faces: the spokes, then those that go.
+    pub(super) fn squares_to_old(&self, place: Vec3) -> [f32; ROOM] {
+        let mut squares = [0.0; ROOM];
+        for start in self.starts() {
+            let (Spokes { a, b, of_v1 }, old) = (self.spokes(start), row3(&self.old, start));
+            for lane in 0..LANES {
+                let apex = self.along * of_v1[lane];
+                let (a, b) = (a.get(lane) - apex, b.get(lane) - apex);
+                squares[start + lane] =
+                    Spoke::new(a, b, old.get(lane)).squared_of_all(place - apex);
+            }
+        }
+        for (square, [a, b, normal]) in squares[self.len..].iter_mut().zip(self.dying_faces()) {
+            *square = Spoke::new(a, b, normal).squared_of_all(place);
+        }
+        squares
+    }
+
     /// The square of how far a place is from the planes of the old faces that stay, at most.
     pub(super) fn off_planes(&self, place: Vec3) -> f32 {
         let mut farthest = 0.0;
@@ -161,6 +179,15 @@ impl Spoke {
         let t = least(most(pa * self.to_a, 0.0), 1.0);
         let edge = most(point.dot(point) - t * (pa + pa - t * self.aa), 0.0);
         if is_over { height * height * self.to_unit } else { edge }
+    }
+
+    /// The square of the distance of a point from all of it.
+    #[inline(always)]
+    fn squared_of_all(&self, point: Vec3) -> f32 {
+        let pb = point.dot(self.b);
+        let t = least(most(pb * (self.bb + TINY).recip(), 0.0), 1.0);
+        let second = most(point.dot(point) - t * (pb + pb - t * self.bb), 0.0);
+        least(least(self.squared(point), second), self.squared_of_rim(point))
     }
 
     /// The square of the distance of a point from the outer edge, where the face has an area.

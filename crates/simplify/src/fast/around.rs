@@ -1,49 +1,45 @@
 //! Contractions where seams are: every face asks which wedges it has, one face at a time.
 
-use glam::{DVec3, Vec3};
-use meshlod_mesh::WedgeId;
-use meshlod_spatial::closest_point;
+use glam::Vec3;
 
 use crate::fast::carry::dying;
 use crate::fast::engine::SEAM_WEIGHT;
 use crate::fast::field::Field;
-use crate::fast::hood::{Hood, ROOM};
+use crate::fast::hood::Hood;
 use crate::fast::looks::{Ends, Placed};
-use crate::fast::painted::{Painted, Pairs, is_seam};
+use crate::fast::meet::Meeting;
+use crate::fast::painted::{Painted, is_seam};
 use crate::fast::ring::{GHOST, Vertices};
 use crate::fast::seams::Seams;
 use crate::fast::vertex::{Flags, Star};
-use crate::interpolate::{Place, shares};
+use crate::fast::wide::Work;
 
 /// The slots of the faces around an edge. Of spoke i, those of its apex, of `ids[i]` and `ids[i + 1]`.
-#[derive(Clone, Copy, Debug)]
+#[derive(Debug, Default)]
 pub(super) struct Slots {
-    pub(super) spokes: [[u32; 3]; ROOM],
+    pub(super) spokes: Vec<[u32; 3]>,
     /// Of the two faces that go: `v0`'s, `v1`'s and the wing's.
     pub(super) dying: [[u32; 3]; 2],
-    /// Those that meet along the edge.
-    pub(super) pairs: Pairs,
     /// Those of the new vertex in each spoke.
-    pub(super) apexes: [u32; ROOM],
-}
-
-impl Default for Slots {
-    fn default() -> Self {
-        let (spokes, dying) = ([[0; 3]; ROOM], [[0; 3]; 2]);
-        Self { spokes, dying, pairs: Pairs::default(), apexes: [0; ROOM] }
-    }
+    pub(super) apexes: Vec<u32>,
 }
 
 impl Slots {
-    pub(super) fn new(
-        seams: &Seams,
-        vertices: &Vertices,
-        hood: &Hood,
-        (ends, pairs): (Ends, Pairs),
-    ) -> Self {
-        let Ends { v0, v1, .. } = ends;
-        let (at0, at1) = (seams.sides(vertices, v0, v1), seams.sides(vertices, v1, v0));
-        let mut spokes = [[0; 3]; ROOM];
+    /// Of the spokes, then of the faces that go.
+    pub(super) fn face(&self, i: usize) -> [u32; 3] {
+        let len = self.spokes.len();
+        if i < len { self.spokes[i] } else { self.dying[i - len] }
+    }
+
+    /// Finds them.
+    #[inline(always)]
+    pub(super) fn find(&mut self, seams: &Seams, vertices: &Vertices, hood: &Hood, ends: &Ends) {
+        let Ends { v0, v1, met, .. } = ends;
+        let (v0, v1, [at0, at1]) = (*v0, *v1, met.sides);
+        let ends_are_seams = [is_seam(vertices, v0), is_seam(vertices, v1)];
+        let Self { spokes, dying, .. } = self;
+        spokes.clear();
+        spokes.resize(hood.len, [0; 3]);
         // Around both ends the ring begins with a wing, after the face that goes.
         let mut slot = at0.after;
         for (i, (spoke, &w)) in spokes.iter_mut().zip(hood.ids()).enumerate() {
@@ -51,11 +47,13 @@ impl Slots {
             if i == hood.of_v0 {
                 slot = at1.after;
             }
-            slot = seams.next(apex, w, slot);
+            if ends_are_seams[usize::from(i >= hood.of_v0)] {
+                slot = seams.next(apex, w, slot);
+            }
             spoke[0] = slot;
         }
-        let mut dying = [[at0.after, at1.before, hood.ids[0]], [at0.before, at1.after, 0]];
-        dying[1][2] = hood.ids[hood.of_v0];
+        let wings = [hood.ids[0], hood.ids[hood.of_v0]];
+        *dying = [[at0.after, at1.before, wings[0]], [at0.before, at1.after, wings[1]]];
         for i in 0..hood.len {
             let (w, before) = (hood.ids[i], if i == 0 { hood.len - 1 } else { i - 1 });
             let apexes = [before, i].map(|i| if i < hood.of_v0 { v0 } else { v1 });
@@ -76,17 +74,17 @@ impl Slots {
                 dying[1][2] = sides[1].after;
             }
         }
-        let mut slots = Self { spokes, dying, pairs, apexes: [0; ROOM] };
-        slots.find_apexes(hood);
-        slots
+        self.find_apexes(hood, met);
     }
 
-    fn find_apexes(&mut self, hood: &Hood) {
-        let Self { spokes, pairs, apexes, .. } = self;
-        for (i, apex) in apexes[..hood.len].iter_mut().enumerate() {
+    fn find_apexes(&mut self, hood: &Hood, met: &Meeting) {
+        let Self { spokes, apexes, .. } = self;
+        apexes.clear();
+        apexes.resize(hood.len, 0);
+        for (i, apex) in apexes.iter_mut().enumerate() {
             *apex = spokes[i][0];
             if i >= hood.of_v0 {
-                let pair = pairs.all().iter().find(|pair| pair[1] == *apex);
+                let pair = met.pairs().iter().find(|pair| pair[1] == *apex);
                 *apex = pair.map_or(*apex, |pair| pair[0]);
             }
         }
@@ -99,32 +97,46 @@ impl Slots {
     }
 }
 
+/// A contraction where something around has a seam, see [`Painted::contract_by_slots`].
+pub(super) struct BySlots<'a, 'm, 'v, const K: usize> {
+    pub(super) painted: &'a mut Painted<'m, K>,
+    pub(super) vertices: &'a mut Vertices<'v>,
+    pub(super) hood: &'a Hood,
+    pub(super) placed: &'a Placed,
+    pub(super) fence: &'a mut Star,
+}
+
+impl<const K: usize> Work for BySlots<'_, '_, '_, K> {
+    #[inline(always)]
+    fn work(self) {
+        *self.fence = self.painted.contract_by_slots(self.vertices, self.hood, self.placed);
+    }
+}
+
 impl<const K: usize> Painted<'_, K> {
     /// Where something around has a seam. Gives what the new star has of seams.
-    pub(super) fn contract_by_slots(
-        &mut self,
-        vertices: &mut Vertices,
-        hood: &Hood,
-        placed: &Placed,
-    ) -> Star {
-        let Ends { v0, v1, .. } = placed.ends;
-        let slots = self.scratch.slots;
-        self.move_rest(hood, placed, &slots);
+    #[inline(always)]
+    fn contract_by_slots(&mut self, vertices: &mut Vertices, hood: &Hood, placed: &Placed) -> Star {
+        let Ends { v0, v1, met, .. } = placed.ends;
+        let slots = std::mem::take(&mut self.scratch.slots);
+        self.move_rest(hood, placed, Some(&slots));
         self.take_fences(vertices, hood, placed);
-        self.join_charts(&slots.pairs);
+        self.join_charts(&met);
         let fence = self.put_fences(vertices, hood, placed, &slots);
         self.renew_fields(hood, placed, &slots);
-        for &[s0, s1] in slots.pairs.all() {
+        for &[s0, s1] in met.pairs() {
             self.heirs[s1 as usize] = s0;
         }
         for renewed in &self.scratch.renewed {
             self.heirs[renewed.slot as usize] = renewed.slot;
         }
         self.renew_sectors(vertices, hood, [v0, v1], &slots.apexes);
+        self.scratch.slots = slots;
         fence
     }
 
     /// Brings up to date what the faces that change have added to all fields around.
+    #[inline(always)]
     fn renew_fields(&mut self, hood: &Hood, placed: &Placed, slots: &Slots) {
         let Self { fields, scratch, .. } = self;
         let apexes = &slots.apexes;
@@ -135,7 +147,10 @@ impl<const K: usize> Painted<'_, K> {
                 fields[of[2] as usize].take(&dying(hood, wing, [&v0, &v1, &other]));
             }
         }
-        for (i, &slot) in apexes[..hood.len].iter().enumerate() {
+        for (i, &slot) in apexes.iter().enumerate() {
+            if i > 0 && slot == apexes[i - 1] {
+                continue;
+            }
             let mut values = [0.0; K];
             for (value, row) in values.iter_mut().zip(&scratch.after) {
                 *value = row[i];
@@ -153,8 +168,12 @@ impl<const K: usize> Painted<'_, K> {
     /// Takes the squares of cuts that change out of the stars around.
     fn take_fences(&self, vertices: &mut Vertices, hood: &Hood, placed: &Placed) {
         let Ends { v0, v1, .. } = placed.ends;
+        let any = is_seam(vertices, v0) || is_seam(vertices, v1);
         for i in (0..hood.len).filter(|&i| hood.ghost != Some(i)) {
             let w = hood.ids[i];
+            if !any && !is_seam(vertices, w) {
+                continue;
+            }
             let near = [i <= hood.of_v0, i >= hood.of_v0 || i == 0];
             for (apex, at, near) in [(v0, Vec3::ZERO, near[0]), (v1, hood.along, near[1])] {
                 if near && self.is_cut_edge(apex, w) {
@@ -175,7 +194,7 @@ impl<const K: usize> Painted<'_, K> {
     ) -> Star {
         let apexes = &slots.apexes;
         let mut sum = Star::default();
-        let differ = |a: u32, b: u32| self.chart(a) != self.chart(b);
+        let differ = |a: u32, b: u32| a != b && self.chart(a) != self.chart(b);
         for i in (0..hood.len).filter(|&i| hood.is_face(i)) {
             let before = (i + hood.len - 1) % hood.len;
             let (last, first) = (slots.spokes[before][2], slots.spokes[i][1]);
@@ -202,7 +221,7 @@ impl<const K: usize> Painted<'_, K> {
         vertices: &mut Vertices,
         hood: &Hood,
         [v0, v1]: [u32; 2],
-        apexes: &[u32; ROOM],
+        apexes: &[u32],
     ) {
         for (i, &w) in hood.ids().iter().enumerate() {
             if w == GHOST || !is_seam(vertices, w) {
@@ -218,51 +237,9 @@ impl<const K: usize> Painted<'_, K> {
             }
         }
         if is_seam(vertices, v0) || is_seam(vertices, v1) {
-            let faces: Vec<(u32, u32)> =
-                hood.ids().iter().copied().zip(apexes.iter().copied()).collect();
-            let any = self.seams.set(v0, &faces, vertices.all.len());
+            let any = self.seams.set(v0, (hood.ids(), apexes), vertices.all.len());
             let flags = &mut vertices.get_mut(v0).flags;
             if any { flags.set(Flags::SEAM) } else { flags.clear(Flags::SEAM) }
-        }
-    }
-
-    /// Gives wedges that move what channels do not hold, from the closest point of the faces that they
-    /// stand for.
-    pub(super) fn move_rest(&mut self, hood: &Hood, placed: &Placed, slots: &Slots) {
-        if !self.coat.has_rest() || placed.by == Vec3::ZERO {
-            return;
-        }
-        let to = placed.by.as_dvec3();
-        let mut taken = Vec::with_capacity(2);
-        for pair in slots.pairs.all() {
-            let spokes = (0..hood.len).filter(|&i| hood.is_face(i)).map(|i| {
-                let apex = if i < hood.of_v0 { Vec3::ZERO } else { hood.along };
-                ([apex, hood.seen(i), hood.seen((i + 1) % hood.len)], slots.spokes[i])
-            });
-            let wings = [0, hood.of_v0].into_iter().zip(slots.dying);
-            let dying = wings.filter(|(wing, _)| hood.ghost != Some(*wing));
-            let dying =
-                dying.map(|(wing, slots)| ([Vec3::ZERO, hood.along, hood.seen(wing)], slots));
-            let stands_for = |(_, slots): &([Vec3; 3], [u32; 3])| pair.contains(&slots[0]);
-            let distance = |(triangle, slots): ([Vec3; 3], [u32; 3])| {
-                let triangle: [DVec3; 3] = triangle.map(|corner| corner.as_dvec3());
-                let closest = closest_point(to, &triangle);
-                (closest.distance_squared(to), closest, triangle, slots)
-            };
-            let nearest = spokes
-                .chain(dying)
-                .filter(stands_for)
-                .map(distance)
-                .min_by(|a, b| a.0.total_cmp(&b.0));
-            if let Some((_, closest, triangle, slots)) = nearest {
-                let place =
-                    Place { wedges: slots.map(WedgeId), shares: shares(closest, &triangle) };
-                taken.push((pair[0], self.coat.rest_at(&place)));
-            }
-        }
-        // Only now: the values before were still wanted.
-        for (slot, values) in taken {
-            self.coat.set_rest(slot, &values);
         }
     }
 }

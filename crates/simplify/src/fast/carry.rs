@@ -4,13 +4,12 @@ use glam::{Vec3, Vec4};
 
 use crate::fast::around::Slots;
 use crate::fast::field::Field;
-use crate::fast::hood::{Hood, ROOM};
-use crate::fast::lanes::{LANES, Lanes3, transpose};
+use crate::fast::hood::{self, Hood, ROOM, chunk, row3};
 use crate::fast::looks::{Ends, Placed};
 use crate::fast::painted::Painted;
 use crate::fast::renew::Renewed;
 use crate::fast::ring::GHOST;
-use crate::fast::wide::TINY;
+use crate::fast::wide::{LANES, Row, Row3, TINY, sum_of, transpose_back};
 
 /// Values at corners of spokes, a channel of all in one row, and the lanes beyond their end.
 type Rows<const K: usize> = [[f32; ROOM]; K];
@@ -32,6 +31,8 @@ pub(super) struct Scratch<const K: usize> {
     /// Where there are seams: the slots that have new values, and which is where.
     pub(super) renewed: Vec<Renewed<K>>,
     pub(super) slots: Slots,
+    /// What slots take over that no channel holds.
+    pub(super) rest: Vec<f32>,
 }
 
 impl<const K: usize> Painted<'_, K> {
@@ -86,6 +87,7 @@ impl<const K: usize> Scratch<K> {
             values,
             renewed,
             slots,
+            rest: Vec::new(),
         })
     }
 
@@ -99,122 +101,137 @@ impl<const K: usize> Scratch<K> {
         by: Vec3,
         [of_v0, of_v1, values]: [&[f32; K]; 3],
     ) -> Field<K> {
-        let mut sum = [[Vec4::ZERO; 3]; K];
-        let mut squares = [Vec4::ZERO; 7];
-        let mut start = 0;
-        while start < hood.len {
-            let row = |row: &[f32; ROOM], start: usize| Vec4::from_slice(&row[start..]);
-            let at_v1 = row(&hood.of_v1, start);
-            let at_v0 = Vec4::ONE - at_v1;
-            let (a, b) = (Lanes3::load(&hood.ring, start), Lanes3::load(&hood.ring, start + 1));
-            let old = Spokes::new(
-                a,
-                b,
-                Lanes3::all(hood.along).by(at_v1),
-                Lanes3::load(&hood.old, start),
-            );
-            let new = Spokes::new(a, b, Lanes3::all(by), Lanes3::load(&hood.new, start));
-            let (mut changes, mut news) = ([[Vec4::ZERO; 3]; K], [[Vec4::ZERO; 3]; K]);
-            let (mut was, mut now) = ([Vec4::ZERO; 6], [Vec4::ZERO; 6]);
+        let none = [0.0; LANES];
+        let (mut sums, mut squares) = ([[none; 3]; K], [none; 7]);
+        for start in hood.starts() {
+            let spokes = hood.spokes(start);
+            let at_v1 = spokes.of_v1;
+            let old = Faces::new(&spokes, |lane| hood.along * at_v1[lane], row3(&hood.old, start));
+            let new = Faces::new(&spokes, |_| by, row3(&hood.new, start));
+            let (mut changes, mut news) = ([[none; 3]; K], [[none; 3]; K]);
+            let (mut was, mut now) = ([none; 6], [none; 6]);
             for k in 0..K {
-                let to_a = row(&self.first[k], start);
-                let (to_b, at_first, at_last) = if SEAMS {
-                    let (second, before) = (&self.second[k], &self.before[k]);
-                    (row(second, start), row(before, start), row(&self.after[k], start))
+                let to_a: &Row = chunk(&self.first[k], start);
+                let (to_b, at_first, at_last): (&Row, Row, Row) = if SEAMS {
+                    let (before, after) = (&self.before[k], &self.after[k]);
+                    (chunk(&self.second[k], start), *chunk(before, start), *chunk(after, start))
                 } else {
-                    let at_first = at_v0 * of_v0[k] + at_v1 * of_v1[k];
-                    (row(&self.first[k], start + 1), at_first, Vec4::splat(values[k]))
+                    let mut at_first = none;
+                    for lane in 0..LANES {
+                        let part = at_v1[lane];
+                        at_first[lane] = of_v0[k] * (1.0 - part) + of_v1[k] * part;
+                    }
+                    (chunk(&self.first[k], start + 1), at_first, [values[k]; LANES])
                 };
-                let before = old.slope(to_a - at_first, to_b - at_first, &mut was);
-                let after = new.slope(to_a - at_last, to_b - at_last, &mut now);
-                changes[k] = [after.x - before.x, after.y - before.y, after.z - before.z];
-                news[k] = [after.x, after.y, after.z];
-                for (sum, after) in sum[k].iter_mut().zip(news[k]) {
-                    *sum += after;
+                for lane in 0..LANES {
+                    let (a, b) = (to_a[lane], to_b[lane]);
+                    let before = old.slope(lane, a - at_first[lane], b - at_first[lane]);
+                    let after = new.slope(lane, a - at_last[lane], b - at_last[lane]);
+                    add_squares(&mut was, lane, before);
+                    add_squares(&mut now, lane, after);
+                    put(&mut changes[k], lane, after - before);
+                    put(&mut news[k], lane, after);
+                    for (sum, after) in sums[k].iter_mut().zip(after.to_array()) {
+                        sum[lane] += after;
+                    }
                 }
             }
-            let (mut change, mut after) = ([Vec4::ZERO; 7], [Vec4::ZERO; 7]);
-            for i in 0..6 {
-                after[i] = now[i] * new.scale;
-                change[i] = after[i] - was[i] * old.scale;
-            }
-            after[6] = new.weight;
-            change[6] = new.weight - old.weight;
-            for (sum, after) in squares.iter_mut().zip(after) {
-                *sum += after;
+            let (mut change, mut after) = ([none; 7], [none; 7]);
+            for lane in 0..LANES {
+                for i in 0..6 {
+                    after[i][lane] = now[i][lane] * new.scale[lane];
+                    change[i][lane] = after[i][lane] - was[i][lane] * old.scale[lane];
+                }
+                after[6][lane] = new.weight[lane];
+                change[6][lane] = new.weight[lane] - old.weight[lane];
+                for (sum, after) in squares.iter_mut().zip(&after) {
+                    sum[lane] += after[lane];
+                }
             }
             write(&mut self.changes, start, &change, &changes);
             if SEAMS {
                 write(&mut self.new, start, &after, &news);
             }
-            start += LANES;
         }
-        let [xx, yy, zz, xy, xz, yz, weight] = squares.map(Vec4::element_sum);
+        let [xx, yy, zz, xy, xz, yz, weight] = &squares;
         let mut field = Field::EMPTY;
-        field.squares = [Vec4::new(xx, yy, zz, xy), Vec4::new(xz, yz, weight, 0.0)];
-        for (channel, [x, y, z]) in field.channels.iter_mut().zip(sum) {
-            *channel = Vec4::new(x.element_sum(), y.element_sum(), z.element_sum(), 0.0);
+        field.squares = [
+            Vec4::new(sum_of(xx), sum_of(yy), sum_of(zz), sum_of(xy)),
+            Vec4::new(sum_of(xz), sum_of(yz), sum_of(weight), 0.0),
+        ];
+        for (channel, [x, y, z]) in field.channels.iter_mut().zip(&sums) {
+            *channel = Vec4::new(sum_of(x), sum_of(y), sum_of(z), 0.0);
         }
         field
     }
 }
 
-/// Writes the fields of four spokes.
+#[inline(always)]
+fn put(rows: &mut [Row; 3], lane: usize, Vec3 { x, y, z }: Vec3) {
+    (rows[0][lane], rows[1][lane], rows[2][lane]) = (x, y, z);
+}
+
+#[inline(always)]
+fn add_squares(squares: &mut [Row; 6], lane: usize, Vec3 { x, y, z }: Vec3) {
+    for (sum, square) in squares.iter_mut().zip([x * x, y * y, z * z, x * y, x * z, y * z]) {
+        sum[lane] += square;
+    }
+}
+
+/// Writes the fields of eight spokes.
 #[inline(always)]
 fn write<const K: usize>(
     to: &mut [Field<K>; ROOM],
     start: usize,
-    squares: &[Vec4; 7],
-    channels: &[[Vec4; 3]; K],
+    squares: &[Row; 7],
+    channels: &[[Row; 3]; K],
 ) {
+    let none = [0.0; LANES];
     let [xx, yy, zz, xy, xz, yz, weight] = *squares;
-    let first = transpose(xx, yy, zz, xy);
-    let second = transpose(xz, yz, weight, Vec4::ZERO);
+    let first = transpose_back([xx, yy, zz, xy]);
+    let second = transpose_back([xz, yz, weight, none]);
     for lane in 0..LANES {
         to[start + lane].squares = [first[lane], second[lane]];
     }
-    for (k, [x, y, z]) in channels.iter().enumerate() {
-        let rows = transpose(*x, *y, *z, Vec4::ZERO);
-        for (lane, row) in rows.into_iter().enumerate() {
-            to[start + lane].channels[k] = row;
+    for (k, &[x, y, z]) in channels.iter().enumerate() {
+        let rows = transpose_back([x, y, z, none]);
+        for lane in 0..LANES {
+            to[start + lane].channels[k] = rows[lane];
         }
     }
 }
 
-/// Four faces, and how a channel's slope on them follows from its values.
-struct Spokes {
-    along_a: Lanes3,
-    along_b: Lanes3,
-    weight: Vec4,
+/// Eight faces, and how a channel's slope on them follows from its values.
+struct Faces {
+    along_a: Row3,
+    along_b: Row3,
+    weight: Row,
     /// The weight's inverse.
-    scale: Vec4,
+    scale: Row,
 }
 
-impl Spokes {
-    /// Corners `a`, `b` and `apex`; no face where the normal is zero.
+impl Faces {
+    /// No face where the normal is zero.
     #[inline(always)]
-    fn new(a: Lanes3, b: Lanes3, apex: Lanes3, normal: Lanes3) -> Self {
-        let weight = normal.dot(normal);
-        Self {
-            along_a: (b - apex).cross(normal),
-            along_b: normal.cross(a - apex),
-            weight,
-            scale: (weight + Vec4::splat(TINY)).recip(),
+    fn new(spokes: &hood::Spokes, apex: impl Fn(usize) -> Vec3, normals: Row3) -> Self {
+        let none = [0.0; LANES];
+        let mut faces =
+            Self { along_a: Row3::ZERO, along_b: Row3::ZERO, weight: none, scale: none };
+        for lane in 0..LANES {
+            let (apex, normal) = (apex(lane), normals.get(lane));
+            let weight = normal.dot(normal);
+            faces.along_a.set(lane, (spokes.b.get(lane) - apex).cross(normal));
+            faces.along_b.set(lane, normal.cross(spokes.a.get(lane) - apex));
+            faces.weight[lane] = weight;
+            faces.scale[lane] = (weight + TINY).recip();
         }
+        faces
     }
 
-    /// The slope by the weight, its squares added.
+    /// The slope by the weight.
     #[inline(always)]
-    fn slope(&self, to_a: Vec4, to_b: Vec4, squares: &mut [Vec4; 6]) -> Lanes3 {
-        let slope = self.along_a.by(to_a) + self.along_b.by(to_b);
-        let Lanes3 { x, y, z } = slope;
-        squares[0] += x * x;
-        squares[1] += y * y;
-        squares[2] += z * z;
-        squares[3] += x * y;
-        squares[4] += x * z;
-        squares[5] += y * z;
-        slope
+    fn slope(&self, lane: usize, to_a: f32, to_b: f32) -> Vec3 {
+        self.along_a.get(lane) * to_a + self.along_b.get(lane) * to_b
     }
 }
 

@@ -32,6 +32,8 @@ struct Counted {
 pub(super) struct Coat<'m> {
     layers: &'m [Layer],
     counted: Vec<Counted>,
+    /// What lengths in textures count, as on the surface.
+    uv_weight: f32,
     /// Layers that channels do not hold, or not all of, by slot.
     rest: Vec<Layer>,
     /// Which layers they are.
@@ -78,7 +80,8 @@ impl<'m> Coat<'m> {
                 counted.push(Counted { layer: i, channels, scale, range, is_normal, is_uv });
             }
         }
-        Self { layers, counted, rest: Vec::new(), rest_of: Vec::new() }
+        let uv_weight = weights.uv as f32;
+        Self { layers, counted, uv_weight, rest: Vec::new(), rest_of: Vec::new() }
     }
 
     /// How many channels count.
@@ -86,9 +89,11 @@ impl<'m> Coat<'m> {
         self.counted.last().map_or(0, |last| last.channels.end)
     }
 
-    /// The channels of textures' places: each time the first of two.
-    pub(super) fn uvs(&self) -> impl Iterator<Item = usize> + '_ {
-        self.counted.iter().filter(|counted| counted.is_uv).map(|counted| counted.channels.start)
+    /// The channels of textures' places, each time the first of two, and what their lengths on the surface
+    /// count.
+    pub(super) fn uvs(&self) -> impl Iterator<Item = (usize, f32)> + '_ {
+        let uvs = self.counted.iter().filter(|counted| counted.is_uv);
+        uvs.map(|counted| (counted.channels.start, self.uv_weight))
     }
 
     /// Whether something moves along that no channel holds.
@@ -168,20 +173,19 @@ impl<'m> Coat<'m> {
         any_shading.then(|| self.layers.iter().filter(|layer| !is_shading(layer)).collect())
     }
 
-    /// What channels do not hold at a place between slots.
-    pub(super) fn rest_at(&self, place: &Place) -> Vec<f32> {
-        let mut values = Vec::new();
-        interpolate(&self.rest, place, &mut values);
-        values
+    /// Adds what channels do not hold at a place between slots.
+    pub(super) fn rest_at(&self, place: &Place, values: &mut Vec<f32>) {
+        interpolate(&self.rest, place, values);
     }
 
-    /// Gives a slot what [`Self::rest_at`] found.
-    pub(super) fn set_rest(&mut self, slot: u32, mut values: &[f32]) {
+    /// Gives a slot the first of what [`Self::rest_at`] found; gives what is left.
+    pub(super) fn set_rest<'v>(&mut self, slot: u32, mut values: &'v [f32]) -> &'v [f32] {
         for layer in &mut self.rest {
             let (these, others) = values.split_at(layer.width);
             layer.of_mut(WedgeId(slot)).copy_from_slice(these);
             values = others;
         }
+        values
     }
 
     /// The layers over the slots that are left.

@@ -145,18 +145,31 @@ pub(super) fn costs<L: Looks>(
     us: Side<u32>,
     vs: &[u32; LANES],
 ) -> Row {
-    let (first, second) = (Stars::of(vertices, us), Stars::of(vertices, Side::Each(*vs)));
-    let mut edges = Edges::between::<L::Rule>(&first, &second);
-    looks.join([us, Side::Each(*vs)], &mut edges);
-    let mut costs = edges.costs::<L::Rule>();
-    if Flags(first.flags | second.flags).any(SPECIAL) || first.floor > 0 {
-        correct(&mut costs, vertices, looks, us, vs);
+    let mut found = match looks.at_seams(vertices, us, vs) {
+        Some(found) => found,
+        None => {
+            let (first, second) = (Stars::of(vertices, us), Stars::of(vertices, Side::Each(*vs)));
+            let mut edges = Edges::between::<L::Rule>(&first, &second);
+            looks.join([us, Side::Each(*vs)], &mut edges);
+            let any_special = Flags(first.flags | second.flags).any(SPECIAL) || first.floor > 0;
+            Costs { costs: edges.costs::<L::Rule>(), any_special }
+        }
+    };
+    if found.any_special {
+        correct(&mut found.costs, vertices, looks, us, vs);
     }
-    costs
+    found.costs
+}
+
+/// What eight edges cost if none is special.
+pub(super) struct Costs {
+    pub(super) costs: Row,
+    /// Whether one may be: has an end with one of [`SPECIAL`], or a floor.
+    pub(super) any_special: bool,
 }
 
 /// What makes a cost other than that of a free edge.
-const SPECIAL: Flags = Flags(Flags::PINNED.0 | Flags::SHUT.0 | Flags::SEAM.0 | Flags::PROTECTED.0);
+pub(super) const SPECIAL: Flags = Flags(Flags::PINNED.0 | Flags::SHUT.0 | Flags::PROTECTED.0);
 
 /// Costs of edges with an end that stays where it is or goes late, or that may not be contracted, or
 /// not now.
@@ -179,23 +192,18 @@ fn correct<L: Looks>(
             *cost = f32::INFINITY;
             continue;
         }
-        *cost = match looks.order(vertices, u, v) {
-            Err(_) => f32::INFINITY,
-            Ok(ends) if !ends.free => {
-                let (end0, end1) = (vertices.get(ends.v0), vertices.get(ends.v1));
-                let length = end0.place().distance_squared(end1.place());
-                let short = L::Rule::SHORT_FIRST * Symmetric(end1.seen.squares()).trace() * length;
-                L::Rule::onto(end0, end1) + short + looks.onto(vertices, ends)
-            }
-            Ok(ends) if flags.any(Flags::SEAM) => {
-                let swept = L::Rule::along(vertices.get(ends.v0), vertices.get(ends.v1));
-                let short =
-                    L::Rule::SHORT_FIRST * (swept.weight() * swept.half.length_squared()) as f32;
-                let whole = looks.whole(vertices, ends, swept);
-                whole.at(L::Rule::best(&whole)) as f32 + short
-            }
-            Ok(_) => *cost,
-        };
+        if flags.any(Flags::PINNED) && !flags.any(Flags::SEAM) {
+            *cost = match looks.order(vertices, u, v) {
+                Err(_) => f32::INFINITY,
+                Ok(ends) => {
+                    let (end0, end1) = (vertices.get(ends.v0), vertices.get(ends.v1));
+                    let weight = Symmetric(end1.seen.squares()).trace();
+                    let length = end0.place().distance_squared(end1.place());
+                    let short = L::Rule::SHORT_FIRST * weight * length;
+                    L::Rule::onto(end0, end1) + short + looks.onto(vertices, &ends)
+                }
+            };
+        }
         if flags.any(Flags::PROTECTED) {
             *cost *= protection::<L::Rule>();
         }
@@ -244,7 +252,7 @@ pub(super) struct Stars {
 
 impl Stars {
     #[inline(always)]
-    fn of(vertices: &Vertices, side: Side<u32>) -> Self {
+    pub(super) fn of(vertices: &Vertices, side: Side<u32>) -> Self {
         let side = side.map(|v| vertices.get(v));
         let row = |k: usize| side.map(|vertex| vertex.seen.0[k]).rows();
         let ([x, y, z, vx], [vy, vz, xx, yy], [zz, xy, xz, yz]) = (row(0), row(1), row(2));
@@ -271,6 +279,18 @@ pub(super) fn lane_of(rows: &[Row; 6], lane: usize) -> [f32; 6] {
     [a[lane], b[lane], c[lane], d[lane], e[lane], f[lane]]
 }
 
+/// Squares of one edge, seen from its middle: S, q and c.
+pub(super) struct Part {
+    pub(super) sum: Symmetric,
+    pub(super) slope: Vec3,
+    pub(super) at_middle: f32,
+}
+
+impl Part {
+    pub(super) const NONE: Self =
+        Self { sum: Symmetric([0.0; 6]), slope: Vec3::ZERO, at_middle: 0.0 };
+}
+
 /// The squares of eight edges, seen from the middle of each: x'Sx − 2 q·x + c. The volume stays where g·x
 /// is `level`, if the rule asks for that. Symmetric: the same from either end, to the bit.
 pub(super) struct Edges {
@@ -287,7 +307,7 @@ pub(super) struct Edges {
 }
 
 impl Edges {
-    const ZERO: Self = Self {
+    pub(super) const ZERO: Self = Self {
         half: Row3::ZERO,
         sum: [[0.0; LANES]; 6],
         slope: Row3::ZERO,
@@ -297,7 +317,7 @@ impl Edges {
     };
 
     #[inline(always)]
-    fn between<R: Rule>(first: &Stars, second: &Stars) -> Self {
+    pub(super) fn between<R: Rule>(first: &Stars, second: &Stars) -> Self {
         let mut edges = Self::ZERO;
         for lane in 0..LANES {
             let h = (second.place.get(lane) - first.place.get(lane)) * 0.5;
@@ -315,9 +335,36 @@ impl Edges {
         edges
     }
 
+    /// The squares of one.
+    #[inline(always)]
+    pub(super) fn part(&self, lane: usize) -> Part {
+        let (slope, at_middle) = (self.slope.get(lane), self.at_middle[lane]);
+        Part { sum: Symmetric(lane_of(&self.sum, lane)), slope, at_middle }
+    }
+
+    /// Gives one these squares.
+    #[inline(always)]
+    pub(super) fn set(&mut self, lane: usize, part: &Part) {
+        for (sum, part) in self.sum.iter_mut().zip(part.sum.0) {
+            sum[lane] = part;
+        }
+        self.slope.set(lane, part.slope);
+        self.at_middle[lane] = part.at_middle;
+    }
+
+    /// Adds to the squares of one.
+    #[inline(always)]
+    pub(super) fn add(&mut self, lane: usize, part: &Part) {
+        for (sum, part) in self.sum.iter_mut().zip(part.sum.0) {
+            sum[lane] += part;
+        }
+        self.slope.set(lane, self.slope.get(lane) + part.slope);
+        self.at_middle[lane] += part.at_middle;
+    }
+
     /// What each costs.
     #[inline(always)]
-    fn costs<R: Rule>(&self) -> Row {
+    pub(super) fn costs<R: Rule>(&self) -> Row {
         let mut costs = [0.0; LANES];
         for (lane, cost) in costs.iter_mut().enumerate() {
             let h = self.half.get(lane);

@@ -348,13 +348,13 @@ impl<'v, L: Looks> Engine<'v, L> {
         let Self { vertices, looks, hood, .. } = self;
         let refused = |refusal| Not::Refused(refusal, front);
         let ends = looks.order(vertices, v, target).map_err(refused)?;
-        let Ends { v0, v1, free } = ends;
+        let Ends { v0, v1, free, .. } = ends;
         hood.gather(vertices, v0, v1).map_err(refused)?;
         let (end0, end1) = (vertices.get(v0), vertices.get(v1));
         let swept = L::Rule::swept(hood, end0, end1);
-        let whole = if free { looks.whole(vertices, ends, swept) } else { swept };
+        let whole = if free { looks.whole(&ends, swept) } else { swept };
         let best = if free { L::Rule::best(&whole) } else { -swept.half };
-        let looked = if free { 0.0 } else { f64::from(looks.onto(vertices, ends)) };
+        let looked = if free { 0.0 } else { f64::from(looks.onto(vertices, &ends)) };
         let cost = whole.at(best) + looked;
         if !cost.is_finite() {
             return Err(refused(Refusal::Volume));
@@ -375,7 +375,7 @@ impl<'v, L: Looks> Engine<'v, L> {
     #[inline(always)]
     fn contract(&mut self, v: u32, target: u32, front: u16) -> Result<u32, Not> {
         let Priced { ends, swept, best, bucket } = self.price(v, target, front)?;
-        let Ends { v0, v1, free } = ends;
+        let Ends { v0, v1, free, .. } = ends;
         let Self { vertices, looks, hood, pace, .. } = self;
         let (end0, end1) = (vertices.get(v0), vertices.get(v1));
         let refused = |refusal| Not::Refused(refusal, bucket);

@@ -8,7 +8,7 @@
 
 use glam::{DMat3, DVec3, Vec3, Vec4};
 
-use crate::fast::cost::{Edges, Side, Symmetric, lane_of};
+use crate::fast::cost::{Edges, Part, Side, Symmetric, lane_of};
 use crate::fast::place::{Swept, symmetric};
 use crate::fast::wide::{LANES, Row, TINY};
 
@@ -128,6 +128,28 @@ pub(super) fn join<'f, const K: usize>(
     field: impl Fn(u32) -> &'f Field<K>,
     edges: &mut Edges,
 ) {
+    join_all::<K, false>(sides, field, edges, &mut [0.0; LANES]);
+}
+
+/// The same; and adds to `onto` what each second end costs if it goes to the place of the first and takes
+/// its values.
+#[inline(always)]
+pub(super) fn join_and_onto<'f, const K: usize>(
+    sides: [Side<u32>; 2],
+    field: impl Fn(u32) -> &'f Field<K>,
+    edges: &mut Edges,
+    onto: &mut Row,
+) {
+    join_all::<K, true>(sides, field, edges, onto);
+}
+
+#[inline(always)]
+fn join_all<'f, const K: usize, const ONTO: bool>(
+    sides: [Side<u32>; 2],
+    field: impl Fn(u32) -> &'f Field<K>,
+    edges: &mut Edges,
+    onto: &mut Row,
+) {
     let [first, second] = sides.map(|side| side.map(&field));
     let squares_of = |side: Side<&Field<K>>| {
         let row = |k: usize| side.map(|field| field.squares[k]).rows();
@@ -145,20 +167,26 @@ pub(super) fn join<'f, const K: usize>(
         }
         edges.slope.set(lane, edges.slope.get(lane) + (g1h - g0h));
         edges.at_middle[lane] += (g0h + g1h).dot(h);
+        if ONTO {
+            onto[lane] += 4.0 * g1h.dot(h);
+        }
     }
     for k in 0..K {
         let channel = |side: Side<&Field<K>>| side.map(|field| field.channels[k]).rows();
-        join_channel([&channel(first), &channel(second)], [&w0, &w1], edges);
+        let channels = [channel(first), channel(second)];
+        join_channel(&channels, [&w0, &w1], edges);
+        if ONTO {
+            channel_onto(&channels, &w1, edges, onto);
+        }
     }
 }
 
 /// One channel of it.
 #[inline(always)]
-fn join_channel([c0, c1]: [&[Row; 4]; 2], [w0, w1]: [&Row; 2], edges: &mut Edges) {
-    let slope = |[x, y, z, _]: &[Row; 4], lane: usize| Vec3::new(x[lane], y[lane], z[lane]);
+fn join_channel([c0, c1]: &[[Row; 4]; 2], [w0, w1]: [&Row; 2], edges: &mut Edges) {
     for lane in 0..LANES {
         let h = edges.half.get(lane);
-        let (b0, b1) = (slope(c0, lane), slope(c1, lane));
+        let (b0, b1) = (slope_of(c0, lane), slope_of(c1, lane));
         let (both, less) = (b0 + b1, b0 - b1);
         let weight = w0[lane] + w1[lane];
         let share = (weight + TINY).recip();
@@ -176,6 +204,39 @@ fn join_channel([c0, c1]: [&[Row; 4]; 2], [w0, w1]: [&Row; 2], edges: &mut Edges
         let square = weight * change - both.dot(h) * 2.0;
         edges.at_middle[lane] += change * square - off * off * share;
     }
+}
+
+/// One channel of what goes to the place of the first end.
+#[inline(always)]
+fn channel_onto([c0, c1]: &[[Row; 4]; 2], w1: &Row, edges: &Edges, onto: &mut Row) {
+    for lane in 0..LANES {
+        let change = c0[3][lane] - c1[3][lane];
+        let along = slope_of(c1, lane).dot(edges.half.get(lane));
+        onto[lane] += change * (w1[lane] * change + 4.0 * along);
+    }
+}
+
+#[inline(always)]
+fn slope_of([x, y, z, _]: &[Row; 4], lane: usize) -> Vec3 {
+    Vec3::new(x[lane], y[lane], z[lane])
+}
+
+/// The same for a wedge at one end of an edge that moves without another: `from` is its place as seen from
+/// the middle.
+pub(super) fn alone<const K: usize>(field: &Field<K>, from: Vec3) -> Part {
+    let share = 1.0 / (field.weight() + TINY);
+    let mut squares = field.squares();
+    for channel in &field.channels {
+        let [x, y, z, _] = channel.to_array();
+        let [px, py, pz] = [x * share, y * share, z * share];
+        let products = [x * px, y * py, z * pz, x * py, x * pz, y * pz];
+        for (square, product) in squares.iter_mut().zip(products) {
+            *square -= product;
+        }
+    }
+    let sum = Symmetric(squares);
+    let slope = sum.apply(from);
+    Part { sum, slope, at_middle: from.dot(slope) }
 }
 
 /// The same for one edge, in doubles, G with it.

@@ -334,6 +334,12 @@ impl Hood {
         [(before, before >= self.of_v0), (after, ghost >= self.of_v0)]
     }
 
+    /// Where in the ring the wing is of one of the faces that go.
+    #[inline(always)]
+    pub(super) fn wing(&self, dying: usize) -> usize {
+        if dying == 0 { 0 } else { self.of_v0 }
+    }
+
     /// A vertex of the ring as seen from v0.
     #[inline(always)]
     pub(super) fn seen(&self, i: usize) -> Vec3 {
@@ -403,7 +409,7 @@ fn one(from: &[[f32; ROOM]; 3], i: usize) -> Vec3 {
 }
 
 #[inline(always)]
-fn chunk<T, const N: usize>(of: &[T], start: usize) -> &[T; N] {
+pub(super) fn chunk<T, const N: usize>(of: &[T], start: usize) -> &[T; N] {
     of[start..].first_chunk().expect("there is room beyond the end")
 }
 

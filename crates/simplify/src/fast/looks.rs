@@ -4,12 +4,14 @@
 use glam::{DVec3, Vec3};
 use meshlod_mesh::{Attributes, WedgeId};
 
-use crate::fast::cost::{Edges, Side};
+use crate::fast::cost::{Costs, Edges, Side};
 use crate::fast::hood::Hood;
+use crate::fast::meet::Meeting;
 use crate::fast::place::Swept;
 use crate::fast::ring::Vertices;
 use crate::fast::rule::Rule;
 use crate::fast::vertex::{Flags, Star};
+use crate::fast::wide::LANES;
 use crate::refusal::Refusal;
 
 /// The ends of an edge that may be contracted: `v1` goes into `v0`.
@@ -19,6 +21,16 @@ pub(super) struct Ends {
     pub(super) v1: u32,
     /// Whether the new vertex may go anywhere, or is where `v0` is.
     pub(super) free: bool,
+    /// Which of their slots become one.
+    pub(super) met: Meeting,
+}
+
+impl Ends {
+    /// Where nothing is in the way.
+    #[inline(always)]
+    pub(super) fn free(v0: u32, v1: u32) -> Self {
+        Self { v0, v1, free: true, met: Meeting::smooth(v0, v1) }
+    }
 }
 
 /// A contraction that is about to be carried out.
@@ -49,14 +61,18 @@ pub(super) trait Looks: Sized + Send + Sync {
     /// Adds to the squares of edges what attributes leave of them where they are best.
     fn join(&self, sides: [Side<u32>; 2], edges: &mut Edges);
 
+    /// What eight edges cost if any of their vertices is on a seam. Of those without such an end,
+    /// what they cost if both may go anywhere.
+    fn at_seams(&self, vertices: &Vertices, us: Side<u32>, vs: &[u32; LANES]) -> Option<Costs>;
+
     /// Which end of an edge goes into which.
     fn order(&self, vertices: &Vertices, v: u32, target: u32) -> Result<Ends, Refusal>;
 
     /// The squares of an edge with free ends, by those of the geometry.
-    fn whole(&self, vertices: &Vertices, ends: Ends, geometry: Swept) -> Swept;
+    fn whole(&self, ends: &Ends, geometry: Swept) -> Swept;
 
     /// What attributes cost where `v1` goes to the place of `v0`.
-    fn onto(&self, vertices: &Vertices, ends: Ends) -> f32;
+    fn onto(&self, vertices: &Vertices, ends: &Ends) -> f32;
 
     /// Finds what a contraction that may be otherwise makes of attributes; whether it turns a face over
     /// in its texture.
@@ -108,17 +124,22 @@ impl<R: Rule> Looks for Bare<R> {
     fn join(&self, _: [Side<u32>; 2], _: &mut Edges) {}
 
     #[inline(always)]
+    fn at_seams(&self, _: &Vertices, _: Side<u32>, _: &[u32; LANES]) -> Option<Costs> {
+        None
+    }
+
+    #[inline(always)]
     fn order(&self, vertices: &Vertices, v: u32, target: u32) -> Result<Ends, Refusal> {
         by_pins(vertices, v, target)
     }
 
     #[inline(always)]
-    fn whole(&self, _: &Vertices, _: Ends, geometry: Swept) -> Swept {
+    fn whole(&self, _: &Ends, geometry: Swept) -> Swept {
         geometry
     }
 
     #[inline(always)]
-    fn onto(&self, _: &Vertices, _: Ends) -> f32 {
+    fn onto(&self, _: &Vertices, _: &Ends) -> f32 {
         0.0
     }
 
@@ -158,9 +179,9 @@ impl<R: Rule> Looks for Bare<R> {
 pub(super) fn by_pins(vertices: &Vertices, v: u32, target: u32) -> Result<Ends, Refusal> {
     let pinned = |v: u32| vertices.get(v).flags.any(Flags::PINNED);
     match (pinned(v), pinned(target)) {
-        (false, false) => Ok(Ends { v0: v, v1: target, free: true }),
-        (true, false) => Ok(Ends { v0: v, v1: target, free: false }),
-        (false, true) => Ok(Ends { v0: target, v1: v, free: false }),
+        (false, false) => Ok(Ends::free(v, target)),
+        (true, false) => Ok(Ends { free: false, ..Ends::free(v, target) }),
+        (false, true) => Ok(Ends { free: false, ..Ends::free(target, v) }),
         (true, true) => Err(Refusal::Locked),
     }
 }

@@ -7,8 +7,9 @@
 use glam::Vec3;
 
 use crate::fast::field::{Field, best_values};
-use crate::fast::looks::{Ends, Placed};
-use crate::fast::painted::{Painted, Pairs};
+use crate::fast::looks::Placed;
+use crate::fast::meet::Meeting;
+use crate::fast::painted::Painted;
 
 /// A slot and its new values.
 #[derive(Clone, Copy, Debug)]
@@ -38,29 +39,29 @@ impl<const K: usize> Painted<'_, K> {
     ///
     /// Where `v0` stays, its values do; but if others come to it they are all written again, for what
     /// becomes of a value in channels and back may be off by its last digit.
-    pub(super) fn find_values(&mut self, placed: &Placed, pairs: &Pairs) {
+    pub(super) fn find_values(&mut self, placed: &Placed) {
         let mut renewed = std::mem::take(&mut self.scratch.renewed);
         renewed.clear();
-        let Ends { v0, v1, .. } = placed.ends;
+        let (ends, met) = (&placed.ends, &placed.ends.met);
         let stays = placed.by == Vec3::ZERO;
-        if !stays || self.alone(pairs, (1, v1)).next().is_some() {
+        if !stays || self.alone(ends, 1).next().is_some() {
             let weight = |field: &Field<K>| if stays { 0.0 } else { field.weight() };
-            for (i, &[s0, s1]) in pairs.all().iter().enumerate() {
-                if pairs.all()[..i].iter().all(|before| before[0] != s0) {
+            for (i, &[s0, s1]) in met.pairs().iter().enumerate() {
+                if met.pairs()[..i].iter().all(|before| before[0] != s0) {
                     let weight = weight(self.field(s0)) + weight(self.field(s1));
                     let values = self.values(placed, [s0, s1]);
                     renewed.push(Renewed { slot: s0, values, leader: s0, weight });
                 }
             }
-            for (end, v, from) in [(0, v0, -placed.half), (1, v1, placed.half)] {
-                for slot in self.alone(pairs, (end, v)) {
+            for (end, from) in [(0, -placed.half), (1, placed.half)] {
+                for slot in self.alone(ends, end) {
                     let field = self.field(slot);
                     let mut values = field.values();
                     if end == 1 || !stays {
                         values = field.best_values(placed.best - from);
                         self.coat.settle(&mut values, &field.values());
                     }
-                    let leader = if end == 0 { slot } else { self.leader(pairs, slot) };
+                    let leader = if end == 0 { slot } else { self.leader(met, slot) };
                     renewed.push(Renewed { slot, values, leader, weight: weight(field) });
                 }
             }
@@ -97,7 +98,7 @@ impl<const K: usize> Painted<'_, K> {
     }
 
     /// Gives slots that go to another chart that one, and what no channel holds of its textures.
-    pub(super) fn join_charts(&mut self, pairs: &Pairs) {
+    pub(super) fn join_charts(&mut self, met: &Meeting) {
         let Self { scratch, charts, coat, .. } = self;
         if charts.is_empty() {
             return;
@@ -105,8 +106,8 @@ impl<const K: usize> Painted<'_, K> {
         for &Renewed { slot, leader, .. } in &scratch.renewed {
             let chart = charts[leader as usize];
             charts[slot as usize] = chart;
-            let mut met = pairs.all().iter().map(|pair| pair[0]);
-            if let Some(other) = met.find(|&other| charts[other as usize] == chart) {
+            let mut leaders = met.pairs().iter().map(|pair| pair[0]);
+            if let Some(other) = leaders.find(|&other| charts[other as usize] == chart) {
                 coat.follow_rest(slot, other);
             }
         }

@@ -3,7 +3,7 @@
 //! Most vertices have one wedge: its slot is the vertex's own number, and nothing is kept here. The
 //! others are flagged, and have a list of sectors: runs of faces with one wedge, counter-clockwise.
 
-use crate::fast::ring::{Vertices, place_in};
+use crate::fast::ring::{LONG, RING, Vertices, place_in, place_of};
 use crate::fast::vertex::Flags;
 
 /// A run of faces around a vertex that have one wedge: from this neighbour on, counter-clockwise.
@@ -32,6 +32,7 @@ pub(super) struct Sides {
 
 impl Seams {
     /// The sectors of a vertex; none if it has one wedge in the slot of its own number.
+    #[inline(always)]
     pub(super) fn of(&self, v: u32) -> &[Sector] {
         match self.of_vertex.get(v as usize) {
             Some(&list) if list != u32::MAX => &self.lists[list as usize],
@@ -39,27 +40,10 @@ impl Seams {
         }
     }
 
-    /// The slots of a vertex, each once.
-    pub(super) fn slots(&self, v: u32) -> impl Iterator<Item = u32> + '_ {
-        let sectors = self.of(v);
-        let own = sectors.is_empty().then_some(v);
-        let first = |(i, sector): (usize, &Sector)| {
-            let before = sectors[..i].iter().any(|other| other.slot == sector.slot);
-            (!before).then_some(sector.slot)
-        };
-        own.into_iter().chain(sectors.iter().enumerate().filter_map(first))
-    }
-
     /// The slots of `v` on both sides of its edge to a neighbour, if they differ.
     #[inline]
     pub(super) fn parted(&self, v: u32, neighbour: u32) -> Option<[u32; 2]> {
-        let sectors = self.of(v);
-        if sectors.len() < 2 {
-            return None;
-        }
-        let at = sectors.iter().position(|sector| sector.from == neighbour)?;
-        let before = if at == 0 { sectors.len() - 1 } else { at - 1 };
-        Some([sectors[before].slot, sectors[at].slot])
+        parted(self.of(v), neighbour)
     }
 
     /// The slot of the face that begins at a neighbour, if that of the face before is `before`.
@@ -70,51 +54,52 @@ impl Seams {
     }
 
     /// The slots of `v` on both sides of its edge to a neighbour.
+    #[inline(always)]
     pub(super) fn sides(&self, vertices: &Vertices, v: u32, neighbour: u32) -> Sides {
-        if !vertices.get(v).flags.any(Flags::SEAM) {
+        let vertex = vertices.get(v);
+        if !vertex.flags.any(Flags::SEAM) {
             return Sides { before: v, after: v };
         }
         let sectors = self.of(v);
-        let ring = vertices.settled(v);
-        let at = |w: u32| vertices.place_of(ring, w).unwrap_or(0);
-        let here = at(neighbour);
-        // Of the sectors the one that begins next before, or here.
-        let back = |sector: &Sector| (here + ring.len() - at(sector.from)) % ring.len();
-        let (mut found, mut least) = (0, usize::MAX);
-        for (i, sector) in sectors.iter().enumerate() {
-            let back = back(sector);
-            if back < least {
-                (found, least) = (i, back);
-            }
+        if let [only] = sectors {
+            return Sides { before: only.slot, after: only.slot };
         }
-        let after = sectors[found].slot;
-        let previous = (found + sectors.len() - 1) % sectors.len();
-        let before = if least == 0 { sectors[previous].slot } else { after };
-        Sides { before, after }
+        if let Some([before, after]) = parted(sectors, neighbour) {
+            return Sides { before, after };
+        }
+        let slot = match vertex.len {
+            LONG => within_long(vertices, sectors, v, neighbour),
+            len => within(&vertex.ring, len.into(), sectors, neighbour),
+        };
+        Sides { before: slot, after: slot }
     }
 
     /// Gives a vertex these slots, of the face that begins at each of its neighbours. Whether it has
     /// anything but the slot of its own number.
-    pub(super) fn set(&mut self, v: u32, faces: &[(u32, u32)], vertices: usize) -> bool {
-        let last = faces.len() - 1;
-        let begins = |i: usize| faces[i].1 != faces[if i == 0 { last } else { i - 1 }].1;
-        let sector = |i: usize| Sector { from: faces[i].0, slot: faces[i].1 };
-        let mut sectors: Vec<Sector> = (0..=last).filter(|&i| begins(i)).map(sector).collect();
-        if sectors.is_empty() && faces[0].1 != v {
-            sectors.push(sector(0));
-        }
-        let any = !sectors.is_empty();
+    pub(super) fn set(&mut self, v: u32, (ring, slots): (&[u32], &[u32]), vertices: usize) -> bool {
+        let (own, last) = (slots[0], slots[slots.len() - 1]);
+        let any = own != v || slots.iter().any(|&slot| slot != own);
         if any && self.of_vertex.is_empty() {
             self.of_vertex = vec![u32::MAX; vertices];
         }
-        match self.of_vertex.get(v as usize).copied() {
-            None => {}
-            Some(u32::MAX) if !any => {}
-            Some(u32::MAX) => {
-                self.of_vertex[v as usize] = self.lists.len() as u32;
-                self.lists.push(sectors);
+        let Some(list) = self.of_vertex.get_mut(v as usize) else { return any };
+        if *list == u32::MAX {
+            if !any {
+                return false;
             }
-            Some(list) => self.lists[list as usize] = sectors,
+            *list = self.lists.len() as u32;
+            self.lists.push(Vec::new());
+        }
+        let sectors = &mut self.lists[*list as usize];
+        sectors.clear();
+        let mut before = last;
+        for (&from, &slot) in ring.iter().zip(slots) {
+            if slot != std::mem::replace(&mut before, slot) {
+                sectors.push(Sector { from, slot });
+            }
+        }
+        if any && sectors.is_empty() {
+            sectors.push(Sector { from: ring[0], slot: own });
         }
         any
     }
@@ -147,6 +132,41 @@ impl Seams {
         }
         !sectors.is_empty()
     }
+}
+
+/// The slots before and after a neighbour where a sector begins, if they differ.
+#[inline(always)]
+fn parted(sectors: &[Sector], neighbour: u32) -> Option<[u32; 2]> {
+    let mut before = sectors.last()?.slot;
+    for sector in sectors {
+        if sector.from == neighbour {
+            return (before != sector.slot).then_some([before, sector.slot]);
+        }
+        before = sector.slot;
+    }
+    None
+}
+
+/// The slot at a neighbour in the midst of a sector: of that which begins next before.
+#[inline(always)]
+fn within(ring: &[u32; RING], len: usize, sectors: &[Sector], neighbour: u32) -> u32 {
+    let at = |w: u32| place_of(ring, len, w).unwrap_or(0) as u32;
+    let (here, mut least) = (at(neighbour), u64::MAX);
+    for sector in sectors {
+        let there = at(sector.from);
+        let back = if there > here { here + len as u32 - there } else { here - there };
+        least = least.min((u64::from(back) << 32) | u64::from(sector.slot));
+    }
+    least as u32
+}
+
+#[cold]
+fn within_long(vertices: &Vertices, sectors: &[Sector], v: u32, neighbour: u32) -> u32 {
+    let ring = vertices.settled(v);
+    let at = |w: u32| vertices.place_of(ring, w).unwrap_or(0);
+    let here = at(neighbour);
+    let back = |sector: &&Sector| (here + ring.len() - at(sector.from)) % ring.len();
+    sectors.iter().min_by_key(back).map_or(v, |sector| sector.slot)
 }
 
 impl Vertices<'_> {

@@ -126,6 +126,7 @@ mod tests {
     use meshlod_mesh::{Mesh, sample};
 
     use super::*;
+    use crate::fast::dress::tests::{faceted, halved};
     use crate::{Method, Options, Target, simplify};
 
     /// Whether tests go without wide registers, all of them: it is not to be seen.
@@ -142,6 +143,8 @@ mod tests {
             (sample::knot(4000), Method::LindstromTurk),
             (sample::fish(4000), Method::LindstromTurk),
             (sample::terrain(4000), Method::LindstromTurk),
+            (halved(sample::knot(4000)), Method::LindstromTurk),
+            (faceted(sample::torus(2000)), Method::LindstromTurk),
             (sample::knot(4000), Method::Qem),
             (bare, Method::Qem),
         ] {
