@@ -15,6 +15,13 @@ use crate::fast::wide::{LANES, Row, Work};
 /// the texture is one on the surface.
 const FLAT: f32 = 1.6e-3;
 
+/// [`FLAT`] where a length in the texture is so many on the surface.
+#[inline(always)]
+fn flat(weight: f32) -> f32 {
+    let area = weight * weight;
+    FLAT * area * area
+}
+
 /// A look ahead where something around has a seam.
 pub(super) struct AheadBySlots<'a, 'm, 'v, const K: usize> {
     pub(super) painted: &'a mut Painted<'m, K>,
@@ -53,8 +60,8 @@ impl<const K: usize> Painted<'_, K> {
                 row[i] = channel.w;
             }
         }
-        let mut uvs = coat.uvs();
-        uvs.any(|(u, weight)| scratch.folds::<false>(hood, (u, flat(weight)), [&of_v0, &of_v1]))
+        let flat = flat(coat.uv_weight);
+        coat.uvs().any(|u| scratch.folds::<false>(hood, (u, flat), [&of_v0, &of_v1]))
     }
 
     /// The same where something has.
@@ -76,8 +83,8 @@ impl<const K: usize> Painted<'_, K> {
                 scratch.after[k][i] = now[k];
             }
         }
-        let mut uvs = coat.uvs();
-        uvs.any(|(u, weight)| scratch.folds::<true>(hood, (u, flat(weight)), [&[0.0; K]; 2]))
+        let flat = flat(coat.uv_weight);
+        coat.uvs().any(|u| scratch.folds::<true>(hood, (u, flat), [&[0.0; K]; 2]))
     }
 }
 
@@ -126,13 +133,6 @@ impl<const K: usize> Scratch<K> {
         }
         after.fewer() > before.fewer()
     }
-}
-
-/// The same where a length in the texture is so many on the surface.
-#[inline(always)]
-fn flat(weight: f32) -> f32 {
-    let area = weight * weight;
-    FLAT * area * area
 }
 
 /// How many faces look which way in a texture.

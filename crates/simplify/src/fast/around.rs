@@ -1,4 +1,4 @@
-//! Contractions where seams are: every face asks which wedges it has, one face at a time.
+//! Contractions where seams are: every face asks which wedges it has.
 
 use glam::Vec3;
 

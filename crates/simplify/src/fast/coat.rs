@@ -33,7 +33,7 @@ pub(super) struct Coat<'m> {
     layers: &'m [Layer],
     counted: Vec<Counted>,
     /// What lengths in textures count, as on the surface.
-    uv_weight: f32,
+    pub(super) uv_weight: f32,
     /// Layers that channels do not hold, or not all of, by slot.
     rest: Vec<Layer>,
     /// Which layers they are.
@@ -89,11 +89,9 @@ impl<'m> Coat<'m> {
         self.counted.last().map_or(0, |last| last.channels.end)
     }
 
-    /// The channels of textures' places, each time the first of two, and what their lengths on the surface
-    /// count.
-    pub(super) fn uvs(&self) -> impl Iterator<Item = (usize, f32)> + '_ {
-        let uvs = self.counted.iter().filter(|counted| counted.is_uv);
-        uvs.map(|counted| (counted.channels.start, self.uv_weight))
+    /// The channels of textures' places: each time the first of two.
+    pub(super) fn uvs(&self) -> impl Iterator<Item = usize> + '_ {
+        self.counted.iter().filter(|counted| counted.is_uv).map(|counted| counted.channels.start)
     }
 
     /// Whether something moves along that no channel holds.

@@ -1,8 +1,9 @@
 //! What the edges of a vertex cost: the least that their squares come to, by the [rule](Rule), and a
 //! little for their length.
 //!
-//! All from the squares at the two ends, as planes through them: seen from the middle of the edge, with
-//! ends at −h and h and matrices A₀ and A₁, those are x'Sx − 2q·x + h'Sh, S = A₀ + A₁, q = (A₁ − A₀)h.
+//! All from the squares at the two ends. Of planes through them, seen from the middle of the edge, with
+//! ends at −h and h and matrices A₀ and A₁, those are x'Sx − 2q·x + h'Sh, S = A₀ + A₁, q = (A₁ − A₀)h; the
+//! rule adds the rest.
 
 use glam::{Vec3, Vec4};
 
@@ -292,7 +293,8 @@ impl Part {
 }
 
 /// The squares of eight edges, seen from the middle of each: x'Sx − 2 q·x + c. The volume stays where g·x
-/// is `level`, if the rule asks for that. Symmetric: the same from either end, to the bit.
+/// is `level`, if the rule asks for that. But at
+/// seams the same from either end, to the bit.
 pub(super) struct Edges {
     pub(super) half: Row3,
     /// S.

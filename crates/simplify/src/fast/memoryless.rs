@@ -21,6 +21,24 @@ use crate::fast::wide::{TINY, most};
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Memoryless;
 
+#[cfg(test)]
+impl Memoryless {
+    /// The squares of one edge, in doubles, from those of its ends: faces that both have count twice.
+    pub(super) fn along(end0: &Vertex, end1: &Vertex) -> Swept {
+        let half = (end1.place() - end0.place()).as_dvec3() * 0.5;
+        let (a0, a1) = (matrix(&end0.seen), matrix(&end1.seen));
+        let (n0, n1) = (end0.seen.vector().as_dvec3(), end1.seen.vector().as_dvec3());
+        Swept {
+            half,
+            sum: a0 + a1,
+            slope: (a1 - a0) * half,
+            at_middle: half.dot((a0 + a1) * half),
+            normal: n0 + n1,
+            level: (n1 - n0).dot(half),
+        }
+    }
+}
+
 impl Rule for Memoryless {
     const POWER: i32 = 6;
 
@@ -78,20 +96,6 @@ impl Rule for Memoryless {
     fn onto(end0: &Vertex, end1: &Vertex) -> f32 {
         let to = end0.place() - end1.place();
         Symmetric(end1.seen.squares()).at(to)
-    }
-
-    fn along(end0: &Vertex, end1: &Vertex) -> Swept {
-        let half = (end1.place() - end0.place()).as_dvec3() * 0.5;
-        let (a0, a1) = (matrix(&end0.seen), matrix(&end1.seen));
-        let (n0, n1) = (end0.seen.vector().as_dvec3(), end1.seen.vector().as_dvec3());
-        Swept {
-            half,
-            sum: a0 + a1,
-            slope: (a1 - a0) * half,
-            at_middle: half.dot((a0 + a1) * half),
-            normal: n0 + n1,
-            level: (n1 - n0).dot(half),
-        }
     }
 
     /// Each face once.

@@ -74,12 +74,12 @@ pub(crate) fn start<'m>(
     if options.needs_general_engine() {
         return Ok(None);
     }
-    let is_bare = mesh.attributes.is_none() && labels(mesh).is_none();
+    let is_bare = || mesh.attributes.is_none() && labels(mesh).is_none();
     match options.method_for([mesh]) {
         Method::LindstromTurk => {
             start_by(Memoryless, mesh, bounds, options, |prepared| prepared.start(&options.weights))
         }
-        Method::Qem if is_bare => start_by(Quadrics, mesh, bounds, options, Prepared::start_bare),
+        Method::Qem if is_bare() => start_by(Quadrics, mesh, bounds, options, Prepared::start_bare),
         _ => Ok(None),
     }
 }

@@ -26,6 +26,25 @@ use crate::methods::qem::{BOUNDARY_WEIGHT, MEMORY};
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Quadrics;
 
+impl Quadrics {
+    /// The squares of one edge, in doubles, from those of its ends.
+    #[inline(always)]
+    fn along(end0: &Vertex, end1: &Vertex) -> Swept {
+        let half = (end1.place() - end0.place()).as_dvec3() * 0.5;
+        let (a0, a1) = (matrix(&end0.seen), matrix(&end1.seen));
+        let (b0, b1) = (end0.seen.vector().as_dvec3(), end1.seen.vector().as_dvec3());
+        let constant = f64::from(end0.constant.get()) + f64::from(end1.constant.get());
+        Swept {
+            half,
+            sum: a0 + a1,
+            slope: (a1 - a0) * half + (b0 + b1),
+            at_middle: half.dot((a0 + a1) * half) + 2.0 * (b1 - b0).dot(half) + constant,
+            normal: DVec3::ZERO,
+            level: 0.0,
+        }
+    }
+}
+
 impl Rule for Quadrics {
     const POWER: i32 = 4;
 
@@ -82,22 +101,6 @@ impl Rule for Quadrics {
         let (to, seen) = (end0.place() - end1.place(), &end1.seen);
         let moved = Symmetric(seen.squares()).at(to) - 2.0 * seen.vector().dot(to);
         moved + (end0.constant.get() + end1.constant.get())
-    }
-
-    #[inline(always)]
-    fn along(end0: &Vertex, end1: &Vertex) -> Swept {
-        let half = (end1.place() - end0.place()).as_dvec3() * 0.5;
-        let (a0, a1) = (matrix(&end0.seen), matrix(&end1.seen));
-        let (b0, b1) = (end0.seen.vector().as_dvec3(), end1.seen.vector().as_dvec3());
-        let constant = f64::from(end0.constant.get()) + f64::from(end1.constant.get());
-        Swept {
-            half,
-            sum: a0 + a1,
-            slope: (a1 - a0) * half + (b0 + b1),
-            at_middle: half.dot((a0 + a1) * half) + 2.0 * (b1 - b0).dot(half) + constant,
-            normal: DVec3::ZERO,
-            level: 0.0,
-        }
     }
 
     #[inline(always)]

@@ -30,7 +30,7 @@ pub(super) trait Rule: Copy + Send + Sync {
     const SLACK: u16;
 
     /// What the square of half the length of an edge counts. Short edges go first where all costs are
-    /// rounding, which for these floats is a ten-millionth.
+    /// rounding.
     const SHORT_FIRST: f32;
 
     /// What a face adds to each of its vertices, by twice its area along its normal.
@@ -48,10 +48,7 @@ pub(super) trait Rule: Copy + Send + Sync {
     /// What they are where `end1` goes to the place of `end0`.
     fn onto(end0: &Vertex, end1: &Vertex) -> f32;
 
-    /// Those of one edge, in doubles, from those of its ends.
-    fn along(end0: &Vertex, end1: &Vertex) -> Swept;
-
-    /// The same of a gathered edge, by what is around.
+    /// Those of a gathered edge, in doubles.
     fn swept(hood: &Hood, end0: &Vertex, end1: &Vertex) -> Swept;
 
     /// Where they are least, as seen from the middle; not a number where there is no such place.

@@ -45,7 +45,8 @@ pub(super) struct Vertex {
 pub(super) struct Star(pub(super) [Vec4; 3]);
 
 /// What squares are at their vertex itself, c of x'Ax − 2b·x + c: a float without its lower half, since
-/// that is the room there is. It is off by one part in 256; costs are told apart by a fifth.
+/// that is the room there is. It is off by one part in 256; costs are told apart by a fifth. Where all is
+/// remembered, what comes to it in smaller parts is lost.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct Constant(u16);
 
