@@ -28,13 +28,14 @@ pub(super) struct AheadBySlots<'a, 'm, 'v, const K: usize> {
     pub(super) vertices: &'a Vertices<'v>,
     pub(super) hood: &'a Hood,
     pub(super) placed: &'a Placed,
-    pub(super) turns: &'a mut bool,
 }
 
 impl<const K: usize> Work for AheadBySlots<'_, '_, '_, K> {
+    type Output = bool;
+
     #[inline(always)]
-    fn work(self) {
-        *self.turns = self.painted.look_ahead_by_slots(self.vertices, self.hood, self.placed);
+    fn work(self) -> bool {
+        self.painted.look_ahead_by_slots(self.vertices, self.hood, self.placed)
     }
 }
 

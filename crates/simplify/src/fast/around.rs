@@ -103,13 +103,14 @@ pub(super) struct BySlots<'a, 'm, 'v, const K: usize> {
     pub(super) vertices: &'a mut Vertices<'v>,
     pub(super) hood: &'a Hood,
     pub(super) placed: &'a Placed,
-    pub(super) fence: &'a mut Star,
 }
 
 impl<const K: usize> Work for BySlots<'_, '_, '_, K> {
+    type Output = Star;
+
     #[inline(always)]
-    fn work(self) {
-        *self.fence = self.painted.contract_by_slots(self.vertices, self.hood, self.placed);
+    fn work(self) -> Star {
+        self.painted.contract_by_slots(self.vertices, self.hood, self.placed)
     }
 }
 

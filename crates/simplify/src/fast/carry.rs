@@ -3,6 +3,7 @@
 use glam::{Vec3, Vec4};
 
 use crate::fast::around::Slots;
+use crate::fast::cost::outer;
 use crate::fast::field::Field;
 use crate::fast::hood::{self, Hood, ROOM, chunk, row3};
 use crate::fast::looks::{Ends, Placed};
@@ -172,8 +173,8 @@ fn put(rows: &mut [Row; 3], lane: usize, Vec3 { x, y, z }: Vec3) {
 }
 
 #[inline(always)]
-fn add_squares(squares: &mut [Row; 6], lane: usize, Vec3 { x, y, z }: Vec3) {
-    for (sum, square) in squares.iter_mut().zip([x * x, y * y, z * z, x * y, x * z, y * z]) {
+fn add_squares(squares: &mut [Row; 6], lane: usize, slope: Vec3) {
+    for (sum, square) in squares.iter_mut().zip(outer(slope)) {
         sum[lane] += square;
     }
 }

@@ -239,6 +239,12 @@ impl Symmetric {
     }
 }
 
+/// The product v v': xx, yy, zz, xy, xz, yz.
+#[inline(always)]
+pub(super) fn outer(Vec3 { x, y, z }: Vec3) -> [f32; 6] {
+    [x * x, y * y, z * z, x * y, x * z, y * z]
+}
+
 /// The squares of eight vertices.
 pub(super) struct Stars {
     pub(super) place: Row3,
@@ -293,8 +299,7 @@ impl Part {
 }
 
 /// The squares of eight edges, seen from the middle of each: x'Sx − 2 q·x + c. The volume stays where g·x
-/// is `level`, if the rule asks for that. But at
-/// seams the same from either end, to the bit.
+/// is `level`, if the rule asks for that. The same from either end, to the bit, but at seams.
 pub(super) struct Edges {
     pub(super) half: Row3,
     /// S.

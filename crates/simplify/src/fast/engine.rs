@@ -464,6 +464,8 @@ impl<'v, L: Looks> Engine<'v, L> {
 struct LookAround<'e, 'v, L>(&'e mut Engine<'v, L>);
 
 impl<L: Looks> Work for LookAround<'_, '_, L> {
+    type Output = ();
+
     #[inline(always)]
     fn work(self) {
         self.0.look_at_all();
@@ -478,6 +480,8 @@ struct Run<'e, 'v, L> {
 }
 
 impl<L: Looks> Work for Run<'_, '_, L> {
+    type Output = ();
+
     #[inline(always)]
     fn work(self) {
         self.engine.contract_all(self.faces, self.last);

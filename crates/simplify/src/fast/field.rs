@@ -249,7 +249,7 @@ pub(super) fn join_one<const K: usize>(swept: &mut Swept, v0: &Field<K>, v1: &Fi
     swept.slope += (g1 - g0) * h;
     swept.at_middle += h.dot((g0 + g1) * h);
     for (c0, c1) in v0.channels.iter().zip(&v1.channels) {
-        let Meeting { both, less, change, off } = Meeting::new(*c0, *c1, [w0, w1], h);
+        let Joined { both, less, change, off } = Joined::new(*c0, *c1, [w0, w1], h);
         let part = both / (weight + f64::from(TINY));
         swept.sum -= DMat3::from_cols(both * part.x, both * part.y, both * part.z);
         swept.slope += less * change + part * off;
@@ -284,7 +284,7 @@ pub(super) fn best_values<const K: usize>(
     let mut values = [0.0; K];
     for (k, value) in values.iter_mut().enumerate() {
         let (c0, c1) = (v0.channels[k], v1.channels[k]);
-        let Meeting { both, off, .. } = Meeting::new(c0, c1, weights, h);
+        let Joined { both, off, .. } = Joined::new(c0, c1, weights, h);
         let middle = 0.5 * (f64::from(c0.w) + f64::from(c1.w));
         *value = (middle + (both.dot(x) + off) / (weight + f64::from(TINY))) as f32;
     }
@@ -292,7 +292,7 @@ pub(super) fn best_values<const K: usize>(
 }
 
 /// A channel of two wedges that become one.
-struct Meeting {
+struct Joined {
     both: DVec3,
     less: DVec3,
     /// Half the change along the edge.
@@ -301,7 +301,7 @@ struct Meeting {
     off: f64,
 }
 
-impl Meeting {
+impl Joined {
     #[inline(always)]
     fn new(c0: Vec4, c1: Vec4, [w0, w1]: [f64; 2], h: DVec3) -> Self {
         let (b0, b1) = (c0.truncate().as_dvec3(), c1.truncate().as_dvec3());

@@ -106,20 +106,16 @@ impl<const K: usize> Looks for Painted<'_, K> {
 
     #[inline(always)]
     fn look_ahead(&mut self, vertices: &Vertices, hood: &Hood, placed: &Placed) -> bool {
-        if !self.has_seam(vertices, hood, placed.ends) {
-            return self.look_ahead_smooth(hood, placed);
+        match self.has_seam(vertices, hood, placed.ends) {
+            true => widest(AheadBySlots { painted: self, vertices, hood, placed }),
+            false => self.look_ahead_smooth(hood, placed),
         }
-        let mut turns = false;
-        widest(AheadBySlots { painted: self, vertices, hood, placed, turns: &mut turns });
-        turns
     }
 
     #[inline(always)]
     fn contract(&mut self, vertices: &mut Vertices, hood: &Hood, placed: &Placed) -> Star {
         if self.has_seam(vertices, hood, placed.ends) {
-            let mut fence = Star::default();
-            widest(BySlots { painted: self, vertices, hood, placed, fence: &mut fence });
-            return fence;
+            return widest(BySlots { painted: self, vertices, hood, placed });
         }
         self.move_rest(hood, placed, None);
         self.contract_smooth(hood, placed);

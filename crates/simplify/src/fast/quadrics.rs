@@ -12,7 +12,7 @@
 
 use glam::{DMat3, DVec3, Vec3};
 
-use crate::fast::cost::{Edges, PULL, Stars, Symmetric, lane_of};
+use crate::fast::cost::{Edges, PULL, Stars, Symmetric, lane_of, outer};
 use crate::fast::hood::{Hood, row3};
 use crate::fast::looks::Placed;
 use crate::fast::place::{Swept, matrix};
@@ -172,12 +172,6 @@ fn plane(normal: Vec3) -> [f32; 6] {
     let by = 0.5 * (normal.dot(normal) + TINY).sqrt().recip();
     let [xx, yy, zz, xy, xz, yz] = outer(normal);
     [xx * by, yy * by, zz * by, xy * by, xz * by, yz * by]
-}
-
-/// xx, yy, zz, xy, xz, yz.
-#[inline(always)]
-fn outer(Vec3 { x, y, z }: Vec3) -> [f32; 6] {
-    [x * x, y * y, z * z, x * y, x * z, y * z]
 }
 
 #[cfg(test)]

@@ -35,8 +35,7 @@ impl<const K: usize> Painted<'_, K> {
         if !Flags(any).any(Flags::SEAM) {
             return None;
         }
-        let mut costs = [0.0; LANES];
-        widest(AtSeams { painted: self, vertices, edges: (us, vs), costs: &mut costs });
+        let costs = widest(AtSeams { painted: self, vertices, edges: (us, vs) });
         Some(Costs { costs, any_special: Flags(any).any(SPECIAL) || floor > 0 })
     }
 
@@ -52,24 +51,22 @@ impl<const K: usize> Painted<'_, K> {
     }
 }
 
-/// The costs of eight edges, into a row.
+/// The costs of eight edges.
 struct AtSeams<'a, 'm, 'v, const K: usize> {
     painted: &'a Painted<'m, K>,
     vertices: &'a Vertices<'v>,
     edges: (Side<u32>, &'a [u32; LANES]),
-    costs: &'a mut Row,
 }
 
 impl<const K: usize> Work for AtSeams<'_, '_, '_, K> {
+    type Output = Row;
+
     #[inline(always)]
-    fn work(self) {
-        let Self { painted, vertices, edges: (us, vs), costs } = self;
-        *costs = [f32::INFINITY; LANES];
+    fn work(self) -> Row {
+        let Self { painted, vertices, edges: (us, vs) } = self;
         let mut laid = Laid::new();
         laid.lay(painted, vertices, us, vs);
-        if laid.lend() {
-            laid.costs(painted, vertices, costs);
-        }
+        if laid.lend() { laid.costs(painted, vertices) } else { [f32::INFINITY; LANES] }
     }
 }
 
@@ -176,12 +173,7 @@ impl Laid {
     }
 
     #[inline(always)]
-    fn costs<const K: usize>(
-        &self,
-        painted: &Painted<'_, K>,
-        vertices: &Vertices,
-        costs: &mut Row,
-    ) {
+    fn costs<const K: usize>(&self, painted: &Painted<'_, K>, vertices: &Vertices) -> Row {
         let first = Stars::of(vertices, Side::Each(self.ends[0]));
         let second = Stars::of(vertices, Side::Each(self.ends[1]));
         let mut edges = Edges::between::<Memoryless>(&first, &second);
@@ -201,14 +193,15 @@ impl Laid {
             self.join_rest(painted, &mut edges, &mut onto);
         }
         self.join_alone(painted, &mut edges, &mut onto);
-        let free = edges.costs::<Memoryless>();
+        let mut costs = edges.costs::<Memoryless>();
         for lane in 0..LANES {
             costs[lane] = match self.ways[lane] {
                 Way::Not => f32::INFINITY,
-                Way::Free => free[lane],
+                Way::Free => costs[lane],
                 Way::Onto => onto[lane],
             };
         }
+        costs
     }
 
     /// Joins the other sides that no lane was lent to, each in that of its edge.

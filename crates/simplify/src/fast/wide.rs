@@ -93,22 +93,25 @@ pub(super) fn most(a: f32, b: f32) -> f32 {
 
 /// Work for [`widest`]. A function that is always inlined, which a closure need not be.
 pub(super) trait Work {
-    fn work(self);
+    /// What it comes to.
+    type Output;
+
+    fn work(self) -> Self::Output;
 }
 
 /// Does the work with the widest registers that this machine has.
-pub(super) fn widest(work: impl Work) {
+pub(super) fn widest<W: Work>(work: W) -> W::Output {
     #[cfg(target_arch = "x86_64")]
     if std::arch::is_x86_feature_detected!("avx2") && !tests_are_narrow() {
         #[target_feature(enable = "avx2")]
-        fn with_avx2(work: impl Work) {
-            work.work();
+        fn with_avx2<W: Work>(work: W) -> W::Output {
+            work.work()
         }
         // SAFETY: the machine has what the function is compiled for.
         #[allow(unsafe_code)]
         return unsafe { with_avx2(work) };
     }
-    work.work();
+    work.work()
 }
 
 #[cfg(not(test))]

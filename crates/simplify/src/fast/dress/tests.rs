@@ -53,17 +53,24 @@ pub(in crate::fast) fn faceted(mesh: Mesh) -> Mesh {
     mesh
 }
 
-/// What all fields come to by the faces as they are, and by the contractions.
-fn check_fields(mesh: &Mesh, faces: usize) {
+/// A surface at work: the engine's names, the rings, and what it looks like in so many channels.
+fn start<const K: usize>(mesh: &Mesh) -> (Order, Fans, Painted<'_, K>) {
     let frame = Frame::new(mesh, &mesh.bounds());
     let (order, places) = Order::new(mesh, &frame);
     let face = |i: usize| order.face(&mesh.faces[i]);
     let numbers = || (0..mesh.faces.len()).map(face);
     let (count, weight) = (mesh.faces.len(), Memoryless::BOUNDARY_WEIGHT);
     let mut fans = Fans::new::<Memoryless>((&places, Vec::new()), count, face, weight);
-    let corners = || Corners::new(mesh, numbers(), mesh.positions.len()).unwrap();
-    let coat = Coat::new(mesh, &frame, &AttributeWeights::DEFAULT, 2);
-    let painted = Painted::<2>::new(coat, corners(), &mut fans.store.whole(), numbers());
+    let corners = Corners::new(mesh, numbers(), mesh.positions.len()).unwrap();
+    let coat = Coat::new(mesh, &frame, &AttributeWeights::DEFAULT, K);
+    let painted = Painted::new(coat, corners, &mut fans.store.whole(), numbers());
+    (order, fans, painted)
+}
+
+/// What all fields come to by the faces as they are, and by the contractions.
+fn check_fields(mesh: &Mesh, faces: usize) {
+    let (order, fans, painted) = start::<2>(mesh);
+    let numbers = || mesh.faces.iter().map(|face| order.face(face));
     let mut parts = Parts::new(fans.store, painted, fans.faces);
     parts.run(faces, u16::MAX, None, &mut |_| ());
     assert!(parts.live_faces <= faces && parts.live_faces > faces / 2);
@@ -76,8 +83,8 @@ fn check_fields(mesh: &Mesh, faces: usize) {
         heirs: Vec::new(),
         seams: Seams::default(),
         charts: Vec::new(),
-        coat: Coat::new(mesh, &frame, &AttributeWeights::NONE, 0),
-        corners: corners(),
+        coat: Coat::new(mesh, &Frame::new(mesh, &mesh.bounds()), &AttributeWeights::NONE, 0),
+        corners: Corners::new(mesh, numbers(), mesh.positions.len()).unwrap(),
         scratch: Scratch::new(),
         record: Vec::new(),
         logged: 0,
@@ -117,20 +124,6 @@ fn check_fields(mesh: &Mesh, faces: usize) {
     }
 }
 
-/// A surface at work, with what it looks like.
-fn start(mesh: &Mesh) -> (Fans, Painted<'_, 5>) {
-    let frame = Frame::new(mesh, &mesh.bounds());
-    let (order, places) = Order::new(mesh, &frame);
-    let face = |i: usize| order.face(&mesh.faces[i]);
-    let numbers = || (0..mesh.faces.len()).map(face);
-    let (count, weight) = (mesh.faces.len(), Memoryless::BOUNDARY_WEIGHT);
-    let mut fans = Fans::new::<Memoryless>((&places, Vec::new()), count, face, weight);
-    let corners = Corners::new(mesh, numbers(), mesh.positions.len()).unwrap();
-    let coat = Coat::new(mesh, &frame, &AttributeWeights::DEFAULT, 5);
-    let painted = Painted::new(coat, corners, &mut fans.store.whole(), numbers());
-    (fans, painted)
-}
-
 /// What an edge costs, one by one and in doubles.
 fn cost_of(vertices: &Vertices, painted: &Painted<'_, 5>, u: u32, v: u32) -> f64 {
     let Ok(ends) = painted.order(vertices, u, v) else { return f64::INFINITY };
@@ -147,7 +140,7 @@ fn eight_edges_at_seams_cost_what_each_does() {
     let grid = faceted(meshlod_fixtures::grid(12));
     let (mut free, mut held) = (0, 0);
     for mesh in [halved(sample::knot(3000)), faceted(sample::torus(1000)), grid] {
-        let (mut fans, painted) = start(&mesh);
+        let (_, mut fans, painted) = start::<5>(&mesh);
         let vertices = fans.store.whole();
         let mut all = Vec::new();
         for v in vertices.ids().filter(|&v| is_seam(&vertices, v)) {
@@ -195,7 +188,7 @@ fn slit(mesh: Mesh) -> Mesh {
 #[test]
 fn a_crease_that_ends_is_not_forgotten() {
     let mesh = slit(sample::torus(1000));
-    let (mut fans, painted) = start(&mesh);
+    let (_, mut fans, painted) = start::<5>(&mesh);
     let vertices = fans.store.whole();
     let mut at_the_end = 0;
     for v in vertices.ids().filter(|&v| is_seam(&vertices, v)) {
