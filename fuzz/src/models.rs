@@ -2,7 +2,7 @@
 //! meet the numbers and not a code of them.
 
 use meshlod_fixtures as fixtures;
-use meshlod_mesh::sample;
+use meshlod_samples as samples;
 use meshlod_multires::{Archive, BuildError, Forest, HeightField, HeightPrecision, Storage};
 use meshlod_simplify::{Method, Options};
 
@@ -43,7 +43,7 @@ pub(crate) fn seeds() -> Vec<Vec<u8>> {
         fixtures::hourglass(),
         fixtures::moebius(5),
         fixtures::two_objects(),
-        sample::torus(80),
+        samples::torus(80),
     ];
     let methods = [Method::Qem, Method::LeeJang, Method::LindstromTurkFaces];
     let files = meshes.iter().flat_map(|mesh| {
@@ -52,7 +52,7 @@ pub(crate) fn seeds() -> Vec<Vec<u8>> {
             [Forest::new, Forest::lossless].map(|record| contractions(record(mesh, &options)))
         })
     });
-    let fields = [fixtures::grid(4), sample::terrain(100)];
+    let fields = [fixtures::grid(4), samples::terrain(100)];
     let precisions = [HeightPrecision::Exact, HeightPrecision::Within(0.01)];
     let fields = fields.iter().filter_map(|mesh| HeightField::of_mesh(mesh).ok());
     let fields = fields.flat_map(|field| {

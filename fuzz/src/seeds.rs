@@ -5,7 +5,8 @@ use meshlod_codec::{
 };
 use meshlod_fixtures as fixtures;
 use meshlod_io::{Precision, Scene, gltf, obj, off, ply, smf, stl};
-use meshlod_mesh::{Mesh, sample};
+use meshlod_mesh::Mesh;
+use meshlod_samples as samples;
 use meshlod_simplify::{self as simplify, History, Options, Progressive, Simplifier};
 
 use crate::kept::{corpus, kept};
@@ -85,7 +86,7 @@ fn small_gltf(meshes: &[Mesh]) -> Vec<Vec<u8>> {
 /// Meshes of one block and of several, on a grid and on a lattice.
 fn transports() -> Vec<Vec<u8>> {
     let lattice = Lattice::new(-6).expect("an exponent");
-    let meshes = [fixtures::cube(), fixtures::hourglass(), fixtures::moebius(20), sample::knot(90)];
+    let meshes = [fixtures::cube(), fixtures::hourglass(), fixtures::moebius(20), samples::knot(90)];
     let write = |mesh: &Mesh, grid| {
         let options = TransportOptions { grid, block_faces: 16 };
         Transport::encode(mesh, &options).expect("a fixture fits").bytes
@@ -109,7 +110,7 @@ fn compressed() -> Vec<Vec<u8>> {
         fixtures::seam_strip(),
         fixtures::hourglass(),
         fixtures::grid(9),
-        sample::torus(300),
+        samples::torus(300),
     ];
     let schemes = [
         Scheme::Parts(Cells::Centred),

@@ -1,14 +1,15 @@
 //! Simplification of procedural meshes to 10 %, with the peer beside it.
 
 use criterion::{Criterion, criterion_group, criterion_main};
-use meshlod::mesh::sample;
+use meshlod::samples;
 use meshlod::simplify::{Method, Options, Target, simplify};
 use meshlod_bench::peer::{Indexed, simplify_with_update};
 
 fn to_a_tenth(c: &mut Criterion) {
     let mut group = c.benchmark_group("to 10 %");
     group.sample_size(10);
-    for (name, mesh) in [("gyroid", sample::gyroid(50_000)), ("terrain", sample::terrain(50_000))] {
+    for (name, mesh) in [("gyroid", samples::gyroid(50_000)), ("terrain", samples::terrain(50_000))]
+    {
         for method in Method::ALL {
             let options = Options { method: Some(method), ..Options::default() };
             group.bench_function(format!("{name}/{}", method.name()), |b| {

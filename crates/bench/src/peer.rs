@@ -82,7 +82,7 @@ mod tests {
 
     #[test]
     fn the_peer_gives_a_valid_mesh_of_the_size_asked_for() {
-        let mesh = meshlod::mesh::sample::sphere(2000);
+        let mesh = meshlod::samples::sphere(2000);
         let level = Mesh::from(&simplify_with_update(&Indexed::from(&mesh), 200));
         level.validate().unwrap();
         assert!((190..=200).contains(&level.faces.len()), "{}", level.faces.len());

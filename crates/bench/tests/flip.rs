@@ -1,7 +1,7 @@
 //! Our FLIP against the one of its authors.
 
-use meshlod::mesh::sample;
 use meshlod::picture::{Camera, Paint, Picture, Style, flip, render};
+use meshlod::samples;
 
 fn theirs(reference: &Picture, test: &Picture) -> Vec<f32> {
     let image = |picture: &Picture| {
@@ -15,7 +15,7 @@ fn theirs(reference: &Picture, test: &Picture) -> Vec<f32> {
 
 #[test]
 fn every_pixel_has_the_error_that_the_authors_program_gives() {
-    let meshes = [sample::fish(4_000), sample::fish(400)];
+    let meshes = [samples::fish(4_000), samples::fish(400)];
     let camera = Camera::icosahedron_views(&meshes[0])[1];
     for paint in [Paint::Checker { squares: 16 }, Paint::Colors, Paint::default()] {
         let style = Style { paint, size: [300, 260], ..Style::comparison() };

@@ -2,10 +2,10 @@
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use meshlod_check::{CheckOptions, Kind, Kinds, Net, findings};
-use meshlod_mesh::sample;
+use meshlod_samples as samples;
 
 fn check(criterion: &mut Criterion) {
-    let mesh = sample::knot(100_000);
+    let mesh = samples::knot(100_000);
     let mut group = criterion.benchmark_group("a knot of 100,000 faces");
     group.throughput(Throughput::Elements(mesh.faces.len() as u64));
     group.sample_size(10);

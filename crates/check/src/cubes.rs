@@ -70,7 +70,8 @@ impl Cubes {
 
 #[cfg(test)]
 mod tests {
-    use meshlod_mesh::{VertexId, sample};
+    use meshlod_mesh::VertexId;
+    use meshlod_samples as samples;
 
     use super::*;
     use crate::{Finding, Kind, Kinds, findings};
@@ -86,7 +87,7 @@ mod tests {
 
     #[test]
     fn objects_that_are_apart_share_no_cube_where_cubes_are_small() {
-        let mesh = both(sample::sphere(1000), sample::sphere(1000), 2.2);
+        let mesh = both(samples::sphere(1000), samples::sphere(1000), 2.2);
         let cubes = Cubes::of(&mesh, &CheckOptions::default());
         assert!(cubes.marked.len() > 100 && cubes.shared().count() == 0);
         assert!(cubes.marked.iter().all(|cube| cube.faces.len() <= 16));
@@ -94,7 +95,7 @@ mod tests {
 
     #[test]
     fn every_contact_is_in_a_shared_cube() {
-        let mesh = both(sample::sphere(1000), sample::torus(1000), 0.3);
+        let mesh = both(samples::sphere(1000), samples::torus(1000), 0.3);
         let options = CheckOptions { kinds: Kinds::NONE.with(Kind::Contact), ..Default::default() };
         let cubes = Cubes::of(&mesh, &options);
         let contacts = findings(&mesh, &options);

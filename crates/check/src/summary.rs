@@ -7,10 +7,10 @@ use crate::finding::{Finding, Kind, Severity};
 /// ```
 /// use std::ops::ControlFlow;
 /// use meshlod_check::{CheckOptions, Kind, Summary, check};
-/// use meshlod_mesh::sample;
+/// use meshlod_samples as samples;
 ///
 /// let mut summary = Summary::default();
-/// let _ = check(&sample::terrain(1000), &CheckOptions::default(), &mut |finding| {
+/// let _ = check(&samples::terrain(1000), &CheckOptions::default(), &mut |finding| {
 ///     summary.add(finding);
 ///     ControlFlow::Continue(())
 /// });

@@ -147,13 +147,13 @@ fn greatest(spread: &DMat3) -> DVec3 {
 
 #[cfg(test)]
 mod tests {
-    use meshlod_mesh::sample;
+    use meshlod_samples as samples;
 
     use super::*;
 
     #[test]
     fn blocks_are_small_and_each_vertex_is_in_one() {
-        let places = sample::sphere(8000).positions;
+        let places = samples::sphere(8000).positions;
         let mut vertices: Vec<u32> = (0..places.len() as u32).collect();
         in_blocks(&places, &mut vertices, 32);
         let size =

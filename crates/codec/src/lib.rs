@@ -17,9 +17,9 @@
 //!
 //! ```
 //! use meshlod_codec::{AttributeBounds, Compressed, Scheme, Target, compress};
-//! use meshlod_mesh::sample;
+//! use meshlod_samples as samples;
 //!
-//! let mesh = sample::sphere(5000);
+//! let mesh = samples::sphere(5000);
 //! let bounds = AttributeBounds::default();
 //! let done = compress(&mesh, Scheme::Blocks, Target::Bits(11), &bounds)?;
 //! assert!(done.compressed.reduction() > 0.75);

@@ -16,7 +16,7 @@ fn sponza(c: &mut Criterion) {
 }
 
 fn scan(c: &mut Criterion) {
-    let mesh = meshlod_mesh::sample::torus(200_000);
+    let mesh = meshlod_samples::torus(200_000);
     let scene = Scene::from_mesh("", mesh);
     let mut bytes = Vec::new();
     obj::write(&scene, Precision::F32, &mut bytes, None).expect("a torus fits OBJ");

@@ -11,17 +11,18 @@ use meshlod_io::gltf::{
     Bytes, Compression, QuantizedPart, write_glb, write_parts_glb, write_small_glb,
 };
 use meshlod_io::{Node, Scene, SceneMesh};
-use meshlod_mesh::{Attributes, Layer, LayerKind, Mesh, WedgeId, sample};
+use meshlod_mesh::{Attributes, Layer, LayerKind, Mesh, WedgeId};
+use meshlod_samples as samples;
 
 fn main() -> Result<(), Box<dyn Error>> {
     let mut arguments = std::env::args_os().skip(1).map(PathBuf::from);
     let folder = arguments.next().ok_or("which folder to write to?")?;
     std::fs::create_dir_all(&folder)?;
     for name in ["torus", "knot"] {
-        let mesh = sample::by_name(name, Some(20_000)).ok_or("a sample of that name")?;
+        let mesh = samples::by_name(name, Some(20_000)).ok_or("a sample of that name")?;
         write_both(&folder, name, dressed(mesh))?;
     }
-    write_parts(&folder, &sample::by_name("gyroid", Some(5000)).ok_or("a sample of that name")?)?;
+    write_parts(&folder, &samples::by_name("gyroid", Some(5000)).ok_or("a sample of that name")?)?;
     for path in arguments {
         let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
         write_both(&folder, &name, meshlod_io::read(&path, &Default::default())?)?;

@@ -2,10 +2,10 @@
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use meshlod_measure::{DistanceOptions, Surface, quality, surface_distance, volume};
-use meshlod_mesh::sample;
+use meshlod_samples as samples;
 
 fn measures(criterion: &mut Criterion) {
-    let (fine, coarse) = (sample::knot(400_000), sample::knot(40_000));
+    let (fine, coarse) = (samples::knot(400_000), samples::knot(40_000));
     let options = DistanceOptions::default();
     let mut group = criterion.benchmark_group("a knot of 400,000 faces");
     group.sample_size(10);

@@ -1,13 +1,13 @@
-//! Triangle meshes: ids, attributes, connectivity, bounds, procedural samples.
+//! Triangle meshes: ids, attributes, connectivity, bounds.
 //!
 //! No I/O, no threads, no policy. Positions are `f64`; attributes hang on *wedges*, which have
 //! their own corner indices, so that a texture seam never tears the surface.
 //!
 //! ```
-//! use meshlod_mesh::{Connectivity, sample};
+//! use meshlod_mesh::{Connectivity, VertexId};
 //!
-//! let mesh = sample::sphere(1000);
-//! let connectivity = Connectivity::new(&mesh.faces, mesh.positions.len());
+//! let tetrahedron = [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]].map(|face| face.map(VertexId));
+//! let connectivity = Connectivity::new(&tetrahedron, 4);
 //! assert!(connectivity.is_closed());
 //! ```
 #![forbid(unsafe_code)]
@@ -21,7 +21,6 @@ mod ids;
 mod labels;
 mod locks;
 mod mesh;
-pub mod sample;
 mod weld;
 
 pub use attributes::{Attributes, Layer, LayerKind};

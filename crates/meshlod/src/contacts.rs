@@ -156,7 +156,8 @@ fn squeezes(linear: &DMat3) -> bool {
 #[cfg(test)]
 mod tests {
     use meshlod_io::Node;
-    use meshlod_mesh::{Mesh, sample};
+    use meshlod_mesh::Mesh;
+    use meshlod_samples as samples;
 
     use super::*;
 
@@ -183,7 +184,7 @@ mod tests {
     #[test]
     fn meshes_that_cross_in_the_world_are_protected_there() {
         let balls = |x| {
-            let meshes = vec![sample::sphere(500); 3];
+            let meshes = vec![samples::sphere(500); 3];
             scene_locks(&scene(meshes, vec![at(0.0, 0), at(x, 1)]), &CONTACTS)
         };
         let held = |of: &Locking| of.locks.of_vertex.contains(&Lock::Protected);
@@ -214,7 +215,7 @@ mod tests {
 
     #[test]
     fn what_the_world_squeezes_is_free() {
-        let ball = || scene(vec![sample::sphere(500)], vec![at(0.0, 0), at(9.0, 0)]);
+        let ball = || scene(vec![samples::sphere(500)], vec![at(0.0, 0), at(9.0, 0)]);
         for scale in [[1.0, 1.0, 0.0], [0.0, 0.0, 0.0], [1e-30, 0.0, 1.0]] {
             let mut squeezed = ball();
             let turn = glam::DQuat::from_xyzw(0.1, 0.7, -0.3, 0.5).normalize();
@@ -223,7 +224,7 @@ mod tests {
             assert_eq!(scene_locks(&squeezed, &CONTACTS), scene_locks(&ball(), &CONTACTS));
         }
         // What is only thin is there.
-        let mut thin = scene(vec![sample::sphere(500)], vec![at(0.0, 0), at(0.5, 0)]);
+        let mut thin = scene(vec![samples::sphere(500)], vec![at(0.0, 0), at(0.5, 0)]);
         thin.nodes[1].transform[0][0] = 1e-6;
         thin.nodes[1].transform[1][1] = 1e-6;
         assert!(scene_locks(&thin, &CONTACTS)[0].locks.of_vertex.contains(&Lock::Protected));

@@ -28,13 +28,14 @@ pub fn fuse_scene(scene: &mut Scene) -> Fused {
 #[cfg(test)]
 mod tests {
     use meshlod_io::{Material, SceneMesh};
-    use meshlod_mesh::{Labels, Mesh, VertexId, sample};
+    use meshlod_mesh::{Labels, Mesh, VertexId};
+    use meshlod_samples as samples;
 
     use super::*;
 
     /// Two balls that cross, the second of another material.
     fn balls(alpha: f32) -> Scene {
-        let mut mesh = sample::sphere(500);
+        let mut mesh = samples::sphere(500);
         let (vertices, faces) = (mesh.positions.len(), mesh.faces.len());
         let moved: Vec<_> = mesh.positions.iter().map(|[x, y, z]| [x + 1.0, y + 0.1, *z]).collect();
         mesh.positions.extend(moved);

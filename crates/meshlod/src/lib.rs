@@ -16,9 +16,10 @@
 //! [`Connectivity`](mesh::Connectivity), and procedural samples of any size:
 //!
 //! ```
-//! use meshlod::mesh::{Connectivity, sample};
+//! use meshlod::mesh::Connectivity;
+//! use meshlod::samples;
 //!
-//! let knot = sample::knot(20_000);
+//! let knot = samples::knot(20_000);
 //! let connectivity = Connectivity::new(&knot.faces, knot.positions.len());
 //! assert!(connectivity.is_closed() && connectivity.non_manifold_edges() == 0);
 //! ```
@@ -27,7 +28,7 @@
 //! an error allows. The report says what was reached, and if it was not, why.
 //!
 //! ```
-//! # let knot = meshlod::mesh::sample::knot(20_000);
+//! # let knot = meshlod::samples::knot(20_000);
 //! use meshlod::{Options, Target, simplify};
 //!
 //! let (level, report) = simplify(&knot, Target::Ratio(0.1), &Options::default())?;
@@ -39,7 +40,7 @@
 //!
 //! ```
 //! # use meshlod::{Options, Target, simplify};
-//! # let knot = meshlod::mesh::sample::knot(20_000);
+//! # let knot = meshlod::samples::knot(20_000);
 //! # let (level, _) = simplify(&knot, Target::Ratio(0.1), &Options::default())?;
 //! use meshlod::measure::{DistanceOptions, distance, volume};
 //!
@@ -53,7 +54,7 @@
 //! [`picture`] draws it, with the same pixels on every machine:
 //!
 //! ```
-//! # let level = meshlod::mesh::sample::knot(2_000);
+//! # let level = meshlod::samples::knot(2_000);
 //! use meshlod::picture::{Camera, Style, View, Wireframe, render};
 //!
 //! let camera = Camera::fit_mesh(&level, &View::default());
@@ -69,10 +70,10 @@
 //!
 //! ```
 //! use meshlod::{Options, ReadOptions, Target, WriteOptions, read, simplify_scene, write};
-//! # use meshlod::{Scene, mesh::sample};
+//! # use meshlod::{Scene, samples};
 //! # let folder = tempfile::tempdir()?;
 //! # let [path, out] = ["fish.ply", "fish.glb"].map(|name| folder.path().join(name));
-//! # write(&path, &Scene::from_mesh("fish", sample::fish(4_000)), &WriteOptions::default())?;
+//! # write(&path, &Scene::from_mesh("fish", samples::fish(4_000)), &WriteOptions::default())?;
 //!
 //! let mut scene = read(&path, &ReadOptions::default())?;
 //! simplify_scene(&mut scene, Target::Ratio(0.25), &Options::default())?;
@@ -85,11 +86,11 @@
 //!
 //! ```
 //! use meshlod::io::{gltf::Level, write_lods};
-//! use meshlod::{Options, Scene, SceneSimplifier, Target, mesh::sample};
+//! use meshlod::{Options, Scene, SceneSimplifier, Target, samples};
 //! # let folder = tempfile::tempdir()?;
 //! # let out = folder.path().join("torus.glb");
 //!
-//! let scene = Scene::from_mesh("torus", sample::torus(4_000));
+//! let scene = Scene::from_mesh("torus", samples::torus(4_000));
 //! let mut simplifier = SceneSimplifier::new(&scene, &Options::default())?;
 //! let mut levels = Vec::new();
 //! for (ratio, screen_coverage) in [(0.5, 0.4), (0.1, 0.1)] {
@@ -104,7 +105,7 @@
 //! and strips are mended where the level changed.
 //!
 //! ```
-//! # let knot = meshlod::mesh::sample::knot(2_000);
+//! # let knot = meshlod::samples::knot(2_000);
 //! use meshlod::Target;
 //! use meshlod::strip::{Difference, Effort, MergeTree, Options, SkipStrip, difference, stripify};
 //!
@@ -144,6 +145,7 @@ pub use meshlod_measure as measure;
 pub use meshlod_mesh as mesh;
 pub use meshlod_multires as multires;
 pub use meshlod_picture as picture;
+pub use meshlod_samples as samples;
 #[doc(inline)]
 pub use meshlod_simplify as simplify;
 pub use meshlod_spatial as spatial;

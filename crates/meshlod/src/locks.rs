@@ -90,15 +90,16 @@ fn owner(starts: &[usize], v: VertexId) -> usize {
 #[cfg(test)]
 mod tests {
     use meshlod_io::SceneMesh;
-    use meshlod_mesh::{Mesh, sample};
+    use meshlod_mesh::Mesh;
+    use meshlod_samples as samples;
 
     use super::*;
 
     /// A scene of two meshes and a bare one between them; two vertices of the last are at one place.
     fn scene() -> Scene {
-        let mut pinched = sample::sphere(100);
+        let mut pinched = samples::sphere(100);
         pinched.positions[5] = pinched.positions[3];
-        let meshes = [sample::torus(100), Mesh::default(), pinched];
+        let meshes = [samples::torus(100), Mesh::default(), pinched];
         let meshes = meshes.map(|mesh| SceneMesh { mesh, ..SceneMesh::default() }).to_vec();
         Scene { meshes, ..Scene::default() }
     }

@@ -55,7 +55,7 @@ fn trace(matrix: &DMat3) -> f64 {
 #[cfg(test)]
 mod tests {
     use glam::DQuat;
-    use meshlod_mesh::sample;
+    use meshlod_samples as samples;
 
     use super::*;
 
@@ -88,7 +88,7 @@ mod tests {
 
     #[test]
     fn the_world_box_is_that_of_the_flat_mesh() {
-        let mut scene = Scene::from_mesh("torus", sample::torus(500));
+        let mut scene = Scene::from_mesh("torus", samples::torus(500));
         scene.meshes[0].mesh.positions.push([99.0; 3]);
         assert_eq!(world_bounds(&scene), scene.flatten().bounds());
         let turn = DQuat::from_xyzw(0.1, 0.7, -0.3, 0.5).normalize();

@@ -1,7 +1,7 @@
 //! The fast engine and the general one, on the same methods: the same accuracy, and the same volume.
 
 use meshlod::measure::{DistanceOptions, Surface, surface_distance, volume};
-use meshlod::mesh::sample;
+use meshlod::samples;
 use meshlod::simplify::Simplifier;
 use meshlod::{Mesh, Method, Options, Target};
 
@@ -44,7 +44,7 @@ fn shaken(mesh: &Mesh) -> Mesh {
 
 #[test]
 fn both_engines_are_as_near_and_keep_the_volume() {
-    let samples = [sample::knot(40_000), sample::gyroid(40_000), sample::torus(40_000)];
+    let samples = [samples::knot(40_000), samples::gyroid(40_000), samples::torus(40_000)];
     for mesh in samples.iter().map(shaken) {
         for (method, ratio) in [
             (Method::LindstromTurk, 0.2),

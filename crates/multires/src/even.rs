@@ -55,7 +55,7 @@ fn rising(values: impl Iterator<Item = f64>) -> Vec<f64> {
 
 #[cfg(test)]
 mod tests {
-    use meshlod_mesh::sample;
+    use meshlod_samples as samples;
     use meshlod_simplify::Method;
 
     use super::*;
@@ -88,7 +88,7 @@ mod tests {
 
     #[test]
     fn great_errors_shrink_small_ones_grow_and_bounds_stay() {
-        let estimates = forest(&sample::gyroid(2000), Method::Qem);
+        let estimates = forest(&samples::gyroid(2000), Method::Qem);
         let mut evened = estimates.clone();
         evened.even_out();
         let pairs = || estimates.updates.iter().zip(&evened.updates);

@@ -20,11 +20,11 @@
 //! What a [`Cut`] has at a place, [`Cut::level_within`] and [`Cut::locate`] find.
 //!
 //! ```
-//! use meshlod_mesh::sample;
+//! use meshlod_samples as samples;
 //! use meshlod_multires::{Camera, Effort, Forest, Model, Query};
 //! use meshlod_simplify::Options;
 //!
-//! let mesh = sample::torus(5000);
+//! let mesh = samples::torus(5000);
 //! let forest = Forest::new(&mesh, &Options::default())?;
 //! let model = Model::new(&forest)?;
 //! assert_eq!(model.implicit().certify()?.sound, forest.update_count());

@@ -1,11 +1,11 @@
 //! A million faces at 1024 × 1024, in the styles that reports use.
 
 use criterion::{Criterion, criterion_group, criterion_main};
-use meshlod_mesh::sample;
 use meshlod_picture::{Antialiasing, Camera, Normals, Style, View, Wireframe, render, visibility};
+use meshlod_samples as samples;
 
 fn pictures(criterion: &mut Criterion) {
-    let mesh = sample::knot(1_000_000);
+    let mesh = samples::knot(1_000_000);
     let camera = Camera::fit_mesh(&mesh, &View::default());
     let one = Style { antialiasing: Antialiasing::Off, ..Style::default() };
     let lined = Style { wireframe: Some(Wireframe::default()), ..Style::default() };

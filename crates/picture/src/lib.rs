@@ -5,10 +5,10 @@
 //! a [`Picture`], which becomes a PNG:
 //!
 //! ```
-//! use meshlod_mesh::sample;
+//! use meshlod_samples as samples;
 //! use meshlod_picture::{Camera, Style, View, Wireframe, render};
 //!
-//! let mesh = sample::torus(2_000);
+//! let mesh = samples::torus(2_000);
 //! let camera = Camera::fit_mesh(&mesh, &View::default());
 //! let style = Style { wireframe: Some(Wireframe::default()), size: [256, 256], ..Style::default() };
 //! let picture = render(&mesh, &camera, &style)?;

@@ -308,7 +308,8 @@ fn round(positions: &[[f64; 3]], digits: Digits) -> Result<Vec<[f64; 3]>, ExactV
 #[cfg(test)]
 mod tests {
     use meshlod_fixtures as fixtures;
-    use meshlod_mesh::{VertexId, sample};
+    use meshlod_mesh::VertexId;
+    use meshlod_samples as samples;
 
     use super::*;
     use crate::{Method, Options, Target, simplify};
@@ -331,7 +332,7 @@ mod tests {
 
     #[test]
     fn the_written_volume_is_that_of_the_mesh() {
-        for mesh in [sample::torus(20_000), sample::knot(20_000), sample::sphere(20_000)] {
+        for mesh in [samples::torus(20_000), samples::knot(20_000), samples::sphere(20_000)] {
             let mut level = coarse(&mesh, 0.05);
             let before = as_read(&level, &mesh);
             let unmoved = level.clone();
@@ -350,7 +351,7 @@ mod tests {
 
     #[test]
     fn decimals_are_corrected_as_they_are_read() {
-        let mesh = sample::torus(20_000);
+        let mesh = samples::torus(20_000);
         let mut level = coarse(&mesh, 0.05);
         conserve_volume(&mut level, &mesh, Digits::Decimal, &Locks::default()).unwrap();
         for x in level.positions.iter().flatten() {
@@ -363,7 +364,7 @@ mod tests {
 
     #[test]
     fn in_doubles_nothing_is_left_either() {
-        let mesh = sample::knot(20_000);
+        let mesh = samples::knot(20_000);
         let mut level = coarse(&mesh, 0.1);
         level.positions.iter_mut().flatten().for_each(|x| *x *= 1.0 + 1e-8);
         let residual = conserve_volume(&mut level, &mesh, Digits::F64, &Locks::default()).unwrap();
@@ -372,7 +373,7 @@ mod tests {
 
     #[test]
     fn locked_vertices_and_those_that_meet_stay() {
-        let mesh = sample::torus(5_000);
+        let mesh = samples::torus(5_000);
         let locked = |v: usize| if v.is_multiple_of(3) { Lock::Locked } else { Lock::Free };
         let locks =
             Locks { of_vertex: (0..mesh.positions.len()).map(locked).collect(), ties: Vec::new() };
@@ -411,7 +412,7 @@ mod tests {
             assert_eq!(&moved, level);
             found.unwrap_err()
         };
-        let (sphere, open) = (sample::sphere(500), fixtures::grid(4));
+        let (sphere, open) = (samples::sphere(500), fixtures::grid(4));
         assert_eq!(settle(&sphere, &open), ExactVolumeError::OpenMesh);
         assert_eq!(settle(&open, &sphere), ExactVolumeError::OpenLevel);
         let mut flat = sphere.clone();

@@ -1,10 +1,10 @@
 //! Coarser triangle meshes: one contraction engine, algorithms as sets of policies.
 //!
 //! ```
-//! use meshlod_mesh::sample;
+//! use meshlod_samples as samples;
 //! use meshlod_simplify::{Options, Target, simplify};
 //!
-//! let mesh = sample::sphere(1000);
+//! let mesh = samples::sphere(1000);
 //! let (level, report) = simplify(&mesh, Target::Ratio(0.1), &Options::default())?;
 //! assert!(report.reached && level.faces.len() <= 100);
 //! # Ok::<(), meshlod_simplify::SimplifyError>(())

@@ -3,7 +3,8 @@
 use std::collections::HashMap;
 
 use meshlod_fixtures as fixtures;
-use meshlod_mesh::{Attributes, Layer, LayerKind, Mesh, VertexId, WedgeId, sample};
+use meshlod_mesh::{Attributes, Layer, LayerKind, Mesh, VertexId, WedgeId};
+use meshlod_samples as samples;
 use meshlod_simplify::{
     AttributeWeights, Method, Options, Simplifier, SimplifyError, Target, simplify,
 };
@@ -63,7 +64,7 @@ fn what_is_linear_on_a_flat_stays_so() {
 #[test]
 fn an_end_that_stays_keeps_its_values_to_the_bit() {
     let of = |[x, y, z]: [f64; 3]| vec![(x * x).sin() as f32, (y + z * 7.0).cos() as f32];
-    let mesh = with_layers(sample::torus(1000), &[(LayerKind::Uv(0), of)]);
+    let mesh = with_layers(samples::torus(1000), &[(LayerKind::Uv(0), of)]);
     for method in [Method::QemEndpoint, Method::Spr] {
         for (p, found) in corners(&to(&mesh, method, 0.1), 0) {
             assert_eq!(found, of(p));
@@ -113,7 +114,7 @@ fn skin_weights_stay_one_in_all() {
         vec![a, b, 1.0 - a - b, 0.0]
     };
     let mesh = with_layers(
-        sample::knot(2000),
+        samples::knot(2000),
         &[(LayerKind::Joints(0), joints), (LayerKind::Weights(0), weights)],
     );
     for method in Method::ALL {
@@ -244,7 +245,7 @@ fn a_box_with_a_texture_a_side_goes_down_to_its_twelve_faces() {
 #[test]
 fn attributes_cost_lindstrom_turk_no_volume() {
     let uv = |[x, y, z]: [f64; 3]| vec![(x * y) as f32, (z + x * x) as f32];
-    let mesh = with_layers(sample::torus(5000), &[(LayerKind::Uv(0), uv)]);
+    let mesh = with_layers(samples::torus(5000), &[(LayerKind::Uv(0), uv)]);
     let volume = |mesh: &Mesh| -> f64 {
         let sixfold = |&face| {
             let [a, b, c] = mesh.triangle(face);
@@ -264,7 +265,7 @@ fn one_value_far_from_all_others_does_no_harm() {
     let two: fn([f64; 3]) -> Vec<f32> = |[x, y, _]| vec![x as f32, y as f32];
     let layers =
         [(LayerKind::Normal, three), (LayerKind::Color(0), three), (LayerKind::Uv(0), two)];
-    let mesh = with_layers(sample::sphere(2000), &layers);
+    let mesh = with_layers(samples::sphere(2000), &layers);
     for (layer, far) in (0..3).flat_map(|layer| [1e18, 1e24, 1e36].map(|far| (layer, far))) {
         let mut mesh = mesh.clone();
         let layers = &mut mesh.attributes.as_mut().unwrap().layers;
@@ -284,7 +285,7 @@ fn values_out_of_all_bounds_do_no_harm() {
         _ if y > 0.8 => vec![f32::INFINITY; 3],
         _ => vec![0.0; 3],
     };
-    let mut mesh = sample::sphere(1000);
+    let mut mesh = samples::sphere(1000);
     // Faces without area, and some that hardly have any.
     for face in [3, 50, 400] {
         let [a, b, _] = mesh.faces[face];
@@ -306,14 +307,14 @@ fn weights_are_numbers_of_at_least_0() {
     for uv in [-1.0, f64::NAN, f64::INFINITY] {
         let weights = AttributeWeights { uv, ..AttributeWeights::DEFAULT };
         let options = Options { weights, ..Options::default() };
-        let refused = simplify(&sample::sphere(100), Target::Ratio(0.5), &options);
+        let refused = simplify(&samples::sphere(100), Target::Ratio(0.5), &options);
         assert!(matches!(refused, Err(SimplifyError::BadWeight(_))));
     }
 }
 
 #[test]
 fn attributes_that_count_for_nothing_change_no_position() {
-    let mesh = sample::fish(1000);
+    let mesh = samples::fish(1000);
     let bare = Mesh { attributes: None, ..mesh.clone() };
     let (weights, method) = (AttributeWeights::NONE, Some(Method::Qem));
     let options = Options { weights, method, ..Options::default() };
@@ -330,7 +331,7 @@ fn attributes_that_count_for_nothing_change_no_position() {
 
 /// A torus with a texture all over it, and a normal of its own at every corner.
 fn faceted() -> Mesh {
-    let mesh = sample::torus(2000);
+    let mesh = samples::torus(2000);
     let around = |p: [f64; 3]| vec![p[1].atan2(p[0]).cos() as f32, p[2] as f32];
     let uv = mesh.faces.iter().flatten().flat_map(|&v| around(mesh.positions[v.index()]));
     let normals = mesh.faces.iter().flat_map(|&face| {

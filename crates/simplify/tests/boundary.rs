@@ -1,6 +1,7 @@
 //! What a boundary weighs: the more, the closer it stays, by either engine and by quadrics.
 
-use meshlod_mesh::{Connectivity, FaceId, Mesh, Side, Twin, VertexId, sample};
+use meshlod_mesh::{Connectivity, FaceId, Mesh, Side, Twin, VertexId};
+use meshlod_samples as samples;
 use meshlod_simplify::{Method, Options, Simplifier, SimplifyError, Target, simplify};
 use meshlod_spatial::Bvh;
 
@@ -30,7 +31,7 @@ fn slipped(mesh: &Mesh, level: &Mesh) -> f64 {
 }
 
 fn hills() -> Mesh {
-    Mesh { attributes: None, ..sample::terrain(8000) }
+    Mesh { attributes: None, ..samples::terrain(8000) }
 }
 
 #[test]

@@ -6,8 +6,9 @@ use glam::DVec3;
 use meshlod_fixtures as fixtures;
 use meshlod_mesh::{
     Attributes, Connectivity, FaceId, Layer, LayerKind, Lock, Locks, Mesh, VertexId, WedgeId,
-    face_components, sample,
+    face_components,
 };
+use meshlod_samples as samples;
 use meshlod_simplify::{
     Method, Neighbourhood, Observe, Options, Placed, Report, Simplifier, SimplifyError, Surface,
     Target, Unconserved, simplify,
@@ -24,15 +25,15 @@ fn meshes() -> Vec<(&'static str, Mesh)> {
         ("moebius", fixtures::moebius(40)),
         ("seam strip", fixtures::seam_strip()),
         ("two objects", fixtures::two_objects()),
-        ("sphere", sample::sphere(2000)),
-        ("torus", sample::torus(2000)),
-        ("faceted torus", sample::faceted_torus(2000)),
-        ("knot", sample::knot(3000)),
-        ("gyroid", sample::gyroid(3000)),
-        ("terrain", sample::terrain(2000)),
-        ("fish", sample::fish(2000)),
+        ("sphere", samples::sphere(2000)),
+        ("torus", samples::torus(2000)),
+        ("faceted torus", samples::faceted_torus(2000)),
+        ("knot", samples::knot(3000)),
+        ("gyroid", samples::gyroid(3000)),
+        ("terrain", samples::terrain(2000)),
+        ("fish", samples::fish(2000)),
         ("bare seam strip", bare(fixtures::seam_strip())),
-        ("bare fish", bare(sample::fish(600))),
+        ("bare fish", bare(samples::fish(600))),
     ]
 }
 
@@ -156,7 +157,7 @@ fn a_level_is_valid_and_has_no_face_twice() {
 
 #[test]
 fn smooth_samples_reach_their_target() {
-    for mesh in [sample::sphere(2000), sample::torus(2000), sample::knot(3000)] {
+    for mesh in [samples::sphere(2000), samples::torus(2000), samples::knot(3000)] {
         for way in Way::all() {
             let (level, report) = way.run(&mesh, 0.05);
             let target = mesh.faces.len() / 20;
@@ -181,7 +182,7 @@ fn what_stopped_it_is_reported() {
 #[test]
 fn every_single_step_keeps_a_closed_surface_closed() {
     for way in Way::all() {
-        let mesh = sample::torus(300);
+        let mesh = samples::torus(300);
         let mut simplifier = way.start(&mesh, &Options::default()).unwrap();
         while simplifier.step(f64::INFINITY, &mut ()) {
             let level = simplifier.level();
@@ -215,9 +216,10 @@ impl Observe for Turned {
 
 #[test]
 fn no_step_turns_a_face_over() {
-    let fish = sample::fish(800);
+    let fish = samples::fish(800);
     let bare_fish = bare(fish.clone());
-    for mesh in [sample::knot(1500), sample::gyroid(1500), sample::terrain(800), fish, bare_fish] {
+    for mesh in [samples::knot(1500), samples::gyroid(1500), samples::terrain(800), fish, bare_fish]
+    {
         for way in Way::all() {
             let mut simplifier = way.start(&mesh, &Options::default()).unwrap();
             loop {
@@ -235,7 +237,7 @@ fn no_step_turns_a_face_over() {
 
 #[test]
 fn volume_is_conserved_by_those_who_say_so() {
-    for mesh in [sample::torus(1500), sample::knot(1500), sample::gyroid(1500)] {
+    for mesh in [samples::torus(1500), samples::knot(1500), samples::gyroid(1500)] {
         let volume = |mesh: &Mesh| -> f64 {
             let sixfold = |&face: &[VertexId; 3]| {
                 let [a, b, c] = mesh.triangle(face);
@@ -258,10 +260,10 @@ fn volume_is_conserved_by_those_who_say_so() {
 #[test]
 fn where_the_volume_is_not_conserved_is_told() {
     for way in Way::all().filter(|way| way.method.conserves_volume()) {
-        let (_, report) = way.run(&sample::terrain(800), 0.1);
+        let (_, report) = way.run(&samples::terrain(800), 0.1);
         let Unconserved { contractions, bounds } = report.volume.open;
         assert!(contractions > 0 && bounds.diagonal() > 0.0);
-        let mesh = sample::sphere(800);
+        let mesh = samples::sphere(800);
         let locks = every_nth(&mesh, 9, Lock::Locked);
         let options = Options { locks, ..Options::default() };
         let (_, report) = way.go(&mesh, Target::Ratio(0.3), &options);
@@ -272,7 +274,7 @@ fn where_the_volume_is_not_conserved_is_told() {
 
 #[test]
 fn steps_stop_where_they_would_cost_too_much() {
-    let mesh = sample::knot(1000);
+    let mesh = samples::knot(1000);
     for way in Way::all() {
         let mut simplifier = way.start(&mesh, &Options::default()).unwrap();
         for _ in 0..20 {
@@ -301,7 +303,7 @@ fn the_same_bytes_for_any_number_of_threads() {
 
 #[test]
 fn locked_vertices_stay_where_they_are() {
-    let mesh = sample::sphere(1000);
+    let mesh = samples::sphere(1000);
     let locks = every_nth(&mesh, 7, Lock::Locked);
     for way in Way::all() {
         let options = Options { locks: locks.clone(), ..Options::default() };
@@ -315,7 +317,7 @@ fn locked_vertices_stay_where_they_are() {
 
 #[test]
 fn a_wider_bound_goes_on_where_a_narrower_one_stopped() {
-    let mesh = sample::knot(2000);
+    let mesh = samples::knot(2000);
     for way in Way::all() {
         let mut simplifier = way.start(&mesh, &Options::default()).unwrap();
         let mut faces = mesh.faces.len();
@@ -332,7 +334,7 @@ fn a_wider_bound_goes_on_where_a_narrower_one_stopped() {
 
 #[test]
 fn a_locked_boundary_keeps_every_vertex() {
-    let mesh = sample::terrain(800);
+    let mesh = samples::terrain(800);
     let options = Options { lock_boundary: true, ..Options::default() };
     let edges = |mesh: &Mesh| Connectivity::new(&mesh.faces, mesh.positions.len()).boundary_edges();
     for way in Way::all() {
@@ -344,7 +346,7 @@ fn a_locked_boundary_keeps_every_vertex() {
 
 #[test]
 fn endpoint_keeps_to_the_vertices_of_the_input() {
-    let mesh = sample::knot(2000);
+    let mesh = samples::knot(2000);
     let places: HashSet<_> = mesh.positions.iter().map(|p| p.map(f64::to_bits)).collect();
     let (level, _) = run(&mesh, Method::QemEndpoint, 0.1);
     assert!(level.positions.iter().all(|p| places.contains(&p.map(f64::to_bits))));
@@ -364,7 +366,7 @@ fn a_flat_costs_nothing_and_keeps_its_outline() {
 
 #[test]
 fn an_error_bound_stops_what_would_exceed_it() {
-    let mesh = sample::sphere(5000);
+    let mesh = samples::sphere(5000);
     let methods = [Method::Qem, Method::LindstromTurk];
     for way in Way::all().filter(|way| methods.contains(&way.method)) {
         let mut last = mesh.faces.len();
@@ -378,7 +380,7 @@ fn an_error_bound_stops_what_would_exceed_it() {
 
 #[test]
 fn far_from_the_origin_is_as_good_as_near() {
-    let near = sample::torus(2000);
+    let near = samples::torus(2000);
     let mut far = near.clone();
     far.positions.iter_mut().flatten().for_each(|x| *x += 65536.0);
     for method in [Method::Qem, Method::LindstromTurk] {
@@ -390,7 +392,7 @@ fn far_from_the_origin_is_as_good_as_near() {
 
 #[test]
 fn the_seam_of_a_strip_keeps_its_two_wedges() {
-    let mesh = sample::fish(2000);
+    let mesh = samples::fish(2000);
     for method in Method::ALL {
         let (level, _) = run(&mesh, method, 0.1);
         let attributes = level.attributes.as_ref().unwrap();
@@ -455,7 +457,7 @@ proptest! {
 
 #[test]
 fn normals_of_its_own_at_every_face_stop_nothing() {
-    let mut mesh = sample::torus(2000);
+    let mut mesh = samples::torus(2000);
     let corners = (0..mesh.faces.len() as u32 * 3).map(WedgeId).collect::<Vec<_>>();
     let normals = mesh.faces.iter().flat_map(|&face| {
         let [a, b, c] = mesh.triangle(face);

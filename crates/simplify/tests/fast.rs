@@ -3,7 +3,8 @@
 use std::collections::HashSet;
 
 use meshlod_fixtures as fixtures;
-use meshlod_mesh::{Connectivity, FaceId, Lock, Locks, Mesh, VertexId, face_components, sample};
+use meshlod_mesh::{Connectivity, FaceId, Lock, Locks, Mesh, VertexId, face_components};
+use meshlod_samples as samples;
 use meshlod_simplify::{
     History, Method, Observe, Options, Report, Simplifier, SimplifyError, Target, simplify,
 };
@@ -32,12 +33,12 @@ fn meshes() -> Vec<(&'static str, Mesh)> {
         ("moebius", fixtures::moebius(40)),
         ("seam strip", fixtures::seam_strip()),
         ("two objects", fixtures::two_objects()),
-        ("sphere", sample::sphere(2000)),
-        ("torus", sample::torus(2000)),
-        ("knot", sample::knot(3000)),
-        ("gyroid", sample::gyroid(3000)),
-        ("terrain", sample::terrain(2000)),
-        ("fish", sample::fish(2000)),
+        ("sphere", samples::sphere(2000)),
+        ("torus", samples::torus(2000)),
+        ("knot", samples::knot(3000)),
+        ("gyroid", samples::gyroid(3000)),
+        ("terrain", samples::terrain(2000)),
+        ("fish", samples::fish(2000)),
         ("three pages", pages(3)),
         ("five pages", pages(5)),
     ]
@@ -125,7 +126,7 @@ fn targets_of_a_few_faces_are_met_or_refused_in_words() {
 #[test]
 fn smooth_samples_reach_their_target() {
     for method in FAST {
-        for mesh in [sample::sphere(2000), sample::torus(2000), sample::knot(3000)] {
+        for mesh in [samples::sphere(2000), samples::torus(2000), samples::knot(3000)] {
             let (level, report) = run(method, &mesh, Target::Ratio(0.05));
             let target = mesh.faces.len() / 20;
             assert!(report.reached && (target - 1..=target).contains(&level.faces.len()));
@@ -171,7 +172,7 @@ fn faces_given_twice_are_left_out() {
 #[test]
 fn scale_and_place_change_nothing_to_speak_of() {
     for method in FAST {
-        let mesh = sample::torus(2_000);
+        let mesh = samples::torus(2_000);
         let (at_home, _) = run(method, &mesh, Target::Ratio(0.1));
         for (scale, shift) in [(2f64.powi(-90), 0.0), (2f64.powi(90), 0.0), (1.0, 1e6)] {
             let mut other = mesh.clone();
@@ -204,7 +205,7 @@ fn faces_without_area_and_points_in_one_place_end() {
         line.positions.fill([3.0; 3]);
         let (level, report) = run(method, &line, Target::Ratio(0.1));
         check_level("point", &level, &report);
-        let mut sphere = sample::sphere(2000);
+        let mut sphere = samples::sphere(2000);
         sphere.positions.fill([0.0; 3]);
         let (level, report) = run(method, &sphere, Target::Ratio(0.1));
         check_level("collapsed sphere", &level, &report);
@@ -215,7 +216,7 @@ fn faces_without_area_and_points_in_one_place_end() {
 fn tiny_and_huge_faces_go_together() {
     for method in FAST {
         // A sphere a millionth of the other's size, and one a hundred-millionth.
-        let mut mesh = sample::sphere(2000);
+        let mut mesh = samples::sphere(2000);
         let (vertices, faces) = (mesh.positions.clone(), mesh.faces.clone());
         for (i, scale) in [1e-6, 1e-8].into_iter().enumerate() {
             let first = ((i + 1) * vertices.len()) as u32;
@@ -246,7 +247,7 @@ fn a_thousand_components_keep_apart() {
 #[test]
 fn locked_vertices_stay() {
     for method in FAST {
-        let mesh = sample::terrain(2000);
+        let mesh = samples::terrain(2000);
         let every_fifth = |v: usize| if v.is_multiple_of(5) { Lock::Locked } else { Lock::Free };
         let locks = Locks {
             of_vertex: (0..mesh.positions.len()).map(every_fifth).collect(),
@@ -280,10 +281,10 @@ fn farthest_point(from: &Mesh, to: &Mesh) -> f64 {
 fn a_bound_of_the_error_is_kept_both_ways() {
     for method in FAST {
         for (mesh, parts) in [
-            (sample::torus(3000), [3, 10]),
-            (sample::fish(4000), [3, 20]),
-            (sample::terrain(20_000), [5, 15]),
-            (sample::gyroid(20_000), [4, 7]),
+            (samples::torus(3000), [3, 10]),
+            (samples::fish(4000), [3, 20]),
+            (samples::terrain(20_000), [5, 15]),
+            (samples::gyroid(20_000), [4, 7]),
         ] {
             let diagonal = mesh.bounds().diagonal();
             for (part, fewer) in [0.003, 0.01].into_iter().zip(parts) {
@@ -301,7 +302,7 @@ fn a_bound_of_the_error_is_kept_both_ways() {
 #[test]
 fn a_bound_holds_after_another_target_and_after_another_bound() {
     for method in FAST {
-        let mesh = sample::fish(4000);
+        let mesh = samples::fish(4000);
         let bare = Mesh { attributes: None, ..mesh.clone() };
         let diagonal = mesh.bounds().diagonal();
         let mut simplifier = Simplifier::new(&bare, &options(method)).unwrap();
@@ -320,7 +321,7 @@ fn a_bound_holds_after_another_target_and_after_another_bound() {
 
 #[test]
 fn volume_stays_and_runs_are_alike() {
-    for mesh in [sample::torus(20_000), sample::knot(20_000)] {
+    for mesh in [samples::torus(20_000), samples::knot(20_000)] {
         let (level, _) = run(Method::LindstromTurk, &mesh, Target::Ratio(0.05));
         let volume = |mesh: &Mesh| -> f64 {
             let sixfold = |&face| {
@@ -337,13 +338,13 @@ fn volume_stays_and_runs_are_alike() {
 #[test]
 fn what_was_found_in_the_input_is_told_as_by_the_general_engine() {
     for method in FAST {
-        let mut dirty = sample::terrain(500);
+        let mut dirty = samples::terrain(500);
         dirty.attributes = None;
         let first = dirty.faces[0];
         dirty.faces.extend([first, [first[0], first[0], first[2]], [first[1], first[2], first[0]]]);
         let bare = |mesh: Mesh| Mesh { attributes: None, ..mesh };
         for mesh in
-            [dirty, fixtures::cone(300), pages(3), fixtures::hourglass(), bare(sample::fish(500))]
+            [dirty, fixtures::cone(300), pages(3), fixtures::hourglass(), bare(samples::fish(500))]
         {
             let in_turn = |v: usize| [Lock::Locked, Lock::Free, Lock::Protected, Lock::Free][v % 4];
             let of_vertex = (0..mesh.positions.len()).map(in_turn).collect();
@@ -427,7 +428,7 @@ impl Observe for Count {
 #[test]
 fn every_face_that_goes_is_counted() {
     for method in FAST {
-        let mesh = sample::torus(30_000);
+        let mesh = samples::torus(30_000);
         let mut simplifier = Simplifier::new(&mesh, &options(method)).unwrap();
         let (mut alone, mut beside) = (Count::default(), Count::default());
         simplifier.run(Target::Ratio(0.3), &mut alone).unwrap();
@@ -440,7 +441,7 @@ fn every_face_that_goes_is_counted() {
 #[test]
 fn runs_and_steps_go_the_same_way() {
     for method in FAST {
-        let mesh = sample::knot(3000);
+        let mesh = samples::knot(3000);
         let mut by_steps = Simplifier::new(&mesh, &options(method)).unwrap();
         let mut by_runs = Simplifier::new(&mesh, &options(method)).unwrap();
         for ratio in [0.5, 0.2, 0.05] {
@@ -478,7 +479,7 @@ fn damaged_files_end() {
 
 /// A sphere of which single vertices stand out by a third of its radius.
 fn hedgehog() -> Mesh {
-    let mut mesh = sample::sphere(20_000);
+    let mut mesh = samples::sphere(20_000);
     mesh.attributes = None;
     for p in mesh.positions.iter_mut().step_by(199) {
         *p = p.map(|x| 1.33 * x);
@@ -508,7 +509,7 @@ fn tips_stay_while_others_go() {
 #[test]
 fn tips_that_are_cut_off_are_in_the_estimate() {
     for method in FAST {
-        for mesh in [hedgehog(), Mesh { attributes: None, ..sample::fish(5000) }] {
+        for mesh in [hedgehog(), Mesh { attributes: None, ..samples::fish(5000) }] {
             for faces in [1000, 100] {
                 let (level, report) = run(method, &mesh, Target::Faces(faces));
                 let lost = farthest(&mesh, &level);

@@ -1,7 +1,8 @@
 //! Meshes made to be slow or to break the arithmetic. What counts is that they end, and how.
 
 use meshlod_fixtures as fixtures;
-use meshlod_mesh::{Attributes, Connectivity, Layer, LayerKind, Mesh, VertexId, WedgeId, sample};
+use meshlod_mesh::{Attributes, Connectivity, Layer, LayerKind, Mesh, VertexId, WedgeId};
+use meshlod_samples as samples;
 use meshlod_simplify::{Method, Options, Refusal, SimplifyError, Target, simplify};
 
 fn run(mesh: &Mesh, target: Target) -> (Mesh, meshlod_simplify::Report) {
@@ -53,7 +54,7 @@ fn a_bound_holds_where_faces_have_no_area() {
 #[test]
 fn scale_changes_nothing_until_it_is_refused_by_name() {
     let scaled = |factor: f64, method| {
-        let mut mesh = sample::torus(1000);
+        let mut mesh = samples::torus(1000);
         mesh.positions.iter_mut().flatten().for_each(|x| *x *= factor);
         simplify(&mesh, Target::Ratio(0.1), &Options { method: Some(method), ..Options::default() })
     };
@@ -72,7 +73,7 @@ fn scale_changes_nothing_until_it_is_refused_by_name() {
 
 #[test]
 fn all_in_one_point_ends() {
-    let mut mesh = sample::sphere(2000);
+    let mut mesh = samples::sphere(2000);
     mesh.positions.fill([1.0; 3]);
     let (level, _) = run(&mesh, Target::Ratio(0.1));
     assert!(level.faces.len() <= mesh.faces.len());
@@ -80,7 +81,7 @@ fn all_in_one_point_ends() {
 
 /// A sphere with one layer of four values a vertex.
 fn with_layer(kind: LayerKind, value: impl Fn(usize) -> [f32; 4]) -> Mesh {
-    let mut mesh = sample::sphere(2000);
+    let mut mesh = samples::sphere(2000);
     let count = mesh.positions.len();
     mesh.attributes = Some(Attributes {
         corners: mesh.faces.iter().map(|face| face.map(|v| WedgeId(v.0))).collect(),
@@ -122,7 +123,7 @@ fn a_wedge_at_two_vertices_is_no_mesh() {
 
 /// A closed fold: two sheets so near to each other that their normals all but cancel.
 fn fold() -> Mesh {
-    let mut mesh = sample::sphere(2000);
+    let mut mesh = samples::sphere(2000);
     mesh.positions.iter_mut().for_each(|p| p[2] *= 1e-7);
     mesh
 }

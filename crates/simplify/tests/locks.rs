@@ -2,7 +2,8 @@
 
 use std::collections::HashMap;
 
-use meshlod_mesh::{Connectivity, Lock, Locks, Mesh, VertexId, face_components, sample};
+use meshlod_mesh::{Connectivity, Lock, Locks, Mesh, VertexId, face_components};
+use meshlod_samples as samples;
 use meshlod_simplify::{
     History, Method, Neighbourhood, Observe, Options, Placed, Progressive, Simplifier,
     SimplifyError, Surface, Target, simplify,
@@ -315,7 +316,7 @@ fn surfaces_that_are_cut_otherwise_stay_together() {
 
 /// A torus with half of it locked in some way.
 fn halved(lock: Lock) -> (Mesh, Locks) {
-    let mesh = sample::torus(2000);
+    let mesh = samples::torus(2000);
     let of = |p: &[f64; 3]| if p[0] > 0.0 { lock } else { Lock::Free };
     let locks = Locks { of_vertex: mesh.positions.iter().map(of).collect(), ties: Vec::new() };
     (mesh, locks)

@@ -3,7 +3,8 @@
 use std::collections::HashSet;
 
 use meshlod_fixtures as fixtures;
-use meshlod_mesh::{Connectivity, Lock, Locks, Mesh, VertexId, sample};
+use meshlod_mesh::{Connectivity, Lock, Locks, Mesh, VertexId};
+use meshlod_samples as samples;
 use meshlod_simplify::{History, Method, Options, Report, Simplifier, Target, simplify};
 
 /// What the fast engine does.
@@ -24,12 +25,12 @@ fn run(method: Method, mesh: &Mesh, target: Target) -> (Mesh, Report) {
 
 /// Several parts of vertices each, with boundaries, with flats, in pieces, and not manifold.
 fn large() -> Vec<(&'static str, Mesh)> {
-    let terrain = Mesh { attributes: None, ..sample::terrain(120_000) };
+    let terrain = Mesh { attributes: None, ..samples::terrain(120_000) };
     vec![
-        ("torus", sample::torus(120_000)),
+        ("torus", samples::torus(120_000)),
         ("terrain", terrain),
         ("flat", fixtures::grid(240)),
-        ("pieces", pieces(&sample::sphere(60), 2_000)),
+        ("pieces", pieces(&samples::sphere(60), 2_000)),
         ("crossing", crossing(&fixtures::grid(200))),
     ]
 }
@@ -163,7 +164,7 @@ fn targets_of_a_few_faces_end() {
 #[test]
 fn a_file_in_no_order_is_simplified_as_well() {
     for method in FAST {
-        for mesh in [sample::knot(80_000), sample::torus(80_000)] {
+        for mesh in [samples::knot(80_000), samples::torus(80_000)] {
             let other = scrambled(&mesh);
             let [(level, first), (_, second)] =
                 [&mesh, &other].map(|mesh| run(method, mesh, Target::Ratio(0.05)));
@@ -186,7 +187,7 @@ fn a_file_in_no_order_is_simplified_as_well() {
 #[test]
 fn locks_hold_across_parts() {
     for method in FAST {
-        let mesh = sample::torus(100_000);
+        let mesh = samples::torus(100_000);
         let every_fifth = |v: usize| if v.is_multiple_of(5) { Lock::Locked } else { Lock::Free };
         let of_vertex = (0..mesh.positions.len()).map(every_fifth).collect();
         let options = Options { locks: Locks { of_vertex, ties: Vec::new() }, ..options(method) };
@@ -201,7 +202,7 @@ fn locks_hold_across_parts() {
 #[test]
 fn a_bound_of_the_error_holds_across_parts() {
     for method in FAST {
-        let mesh = sample::torus(100_000);
+        let mesh = samples::torus(100_000);
         let (level, report) = run(method, &mesh, Target::Error(1e-3));
         assert!(report.error_estimate <= 1e-3 && level.faces.len() < mesh.faces.len() / 4);
     }
@@ -210,7 +211,7 @@ fn a_bound_of_the_error_holds_across_parts() {
 #[test]
 fn a_stray_vertex_far_off_and_one_place_for_all_end() {
     for method in FAST {
-        let mut mesh = sample::torus(60_000);
+        let mut mesh = samples::torus(60_000);
         mesh.positions.push([1e300, -1e300, 1e300]);
         let (level, report) = run(method, &mesh, Target::Ratio(0.1));
         assert!(report.reached && level.bounds().diagonal() < 10.0);

@@ -3,7 +3,8 @@
 use std::collections::HashSet;
 
 use meshlod_fixtures as fixtures;
-use meshlod_mesh::{Lock, Locks, Mesh, VertexId, face_components, sample};
+use meshlod_mesh::{Lock, Locks, Mesh, VertexId, face_components};
+use meshlod_samples as samples;
 use meshlod_simplify::{
     History, Method, Options, Progressive, Report, Simplifier, SimplifyError, Target, simplify,
 };
@@ -15,7 +16,7 @@ const DIAGONAL: f64 = 3.47;
 fn balls(sizes: &[f64]) -> Mesh {
     let mut all = Mesh::default();
     for (i, &size) in [1.0].iter().chain(sizes).enumerate() {
-        let mesh = sample::sphere(400);
+        let mesh = samples::sphere(400);
         let start = all.positions.len() as u32;
         let moved =
             mesh.positions.iter().map(|p| [p[0] * size + 3.0 * i as f64, p[1] * size, p[2] * size]);
@@ -33,7 +34,7 @@ fn run(mesh: &Mesh, options: &Options, target: Target) -> (Mesh, Report) {
 fn left(mesh: &Mesh, method: Method, vanish_below: Option<f64>, faces: usize) -> Vec<usize> {
     let options = Options { method: Some(method), vanish_below, ..Options::default() };
     let (level, report) = run(mesh, &options, Target::Faces(faces));
-    let mut left = vec![0; 1 + mesh.positions.len() / sample::sphere(400).positions.len()];
+    let mut left = vec![0; 1 + mesh.positions.len() / samples::sphere(400).positions.len()];
     for face in &level.faces {
         let x = face.iter().map(|v| level.positions[v.index()][0]).sum::<f64>() / 3.0;
         left[(x / 3.0).round() as usize] += 1;

@@ -146,13 +146,13 @@ pub(crate) fn previous(side: usize) -> usize {
 #[cfg(test)]
 mod tests {
     use meshlod_fixtures::{fan, moebius};
-    use meshlod_mesh::sample;
+    use meshlod_samples as samples;
 
     use super::*;
 
     #[test]
     fn lists_and_sorting_find_the_same() {
-        for mesh in [sample::sphere(500), fan(), moebius(9)] {
+        for mesh in [samples::sphere(500), fan(), moebius(9)] {
             let by_lists = listed(&mesh.faces, mesh.positions.len());
             assert_eq!(by_lists, Some(sorted(&mesh.faces)));
         }

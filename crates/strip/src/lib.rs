@@ -8,10 +8,10 @@
 //! send.
 //!
 //! ```
-//! use meshlod_mesh::sample;
+//! use meshlod_samples as samples;
 //! use meshlod_strip::{Options, Quality, StripStatistics, difference, stripify};
 //!
-//! let faces = sample::sphere(1000).faces;
+//! let faces = samples::sphere(1000).faces;
 //! let fast = stripify(&faces, &Options { quality: Quality::Fast, ..Options::default() });
 //! let best = stripify(&faces, &Options::default());
 //! assert_eq!(difference(&best, &faces), Default::default());

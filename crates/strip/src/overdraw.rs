@@ -108,13 +108,13 @@ fn cross(a: [f64; 3], b: [f64; 3], c: [f64; 3]) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use meshlod_mesh::sample;
+    use meshlod_samples as samples;
 
     use super::*;
 
     #[test]
     fn a_ball_is_never_shaded_twice_whatever_the_order() {
-        let mesh = sample::sphere(2000);
+        let mesh = samples::sphere(2000);
         let forth = overdraw(mesh.faces.iter().copied(), &mesh.positions);
         assert!((1.0..1.01).contains(&forth), "{forth}");
     }

@@ -244,7 +244,7 @@ impl<'a> Sender<'a> {
 
 #[cfg(test)]
 mod tests {
-    use meshlod_mesh::sample;
+    use meshlod_samples as samples;
 
     use super::*;
     use crate::measure::acmr;
@@ -252,7 +252,7 @@ mod tests {
 
     #[test]
     fn pieces_draw_the_faces_and_miss_less_than_whole_strips() {
-        let faces = sample::torus(4000).faces;
+        let faces = samples::torus(4000).faces;
         let mut cover = Cover::new(&faces);
         let whole = cover.lay(&faces);
         let mut before = acmr(&whole, 16);

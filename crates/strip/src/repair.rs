@@ -99,7 +99,8 @@ fn starts(cover: &Cover, is_changed: &[bool]) -> Vec<u32> {
 #[cfg(test)]
 mod tests {
     use meshlod_fixtures::{fan, grid, hourglass, moebius};
-    use meshlod_mesh::{Mesh, sample};
+    use meshlod_mesh::Mesh;
+    use meshlod_samples as samples;
     use meshlod_simplify::Target;
 
     use super::*;
@@ -129,20 +130,20 @@ mod tests {
 
     #[test]
     fn repaired_strips_draw_every_level() {
-        [sample::torus(600), grid(9)].iter().for_each(holds_everywhere);
+        [samples::torus(600), grid(9)].iter().for_each(holds_everywhere);
         [fan(), hourglass(), moebius(20)].iter().for_each(holds_everywhere);
     }
 
     #[test]
     fn the_mesh_itself_keeps_its_strips() {
-        let mut skip = skip_strip(&sample::sphere(500));
+        let mut skip = skip_strip(&samples::sphere(500));
         let sent = |strips: &Strips| (strips.len(), strips.vertices().len());
         assert_eq!(sent(&skip.repaired(Effort::Thorough)), sent(skip.strips()));
     }
 
     #[test]
     fn coarse_levels_send_half_of_what_the_filter_leaves() {
-        let mut skip = skip_strip(&sample::sphere(4000));
+        let mut skip = skip_strip(&samples::sphere(4000));
         skip.set_level(skip.tree().contractions_to(400));
         let [dtff, quick, thorough] = [
             skip.display(Filter::Dtff),
@@ -155,7 +156,7 @@ mod tests {
 
     #[test]
     fn a_level_is_the_same_however_it_is_come_to() {
-        let mut skip = skip_strip(&sample::torus(500));
+        let mut skip = skip_strip(&samples::torus(500));
         skip.set_level(100);
         let straight = skip.repaired(Effort::Quick);
         skip.set_level(200);

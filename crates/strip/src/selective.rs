@@ -91,8 +91,9 @@ fn leaves(mt: &Implicit) -> Result<Vec<VertexId>, PointsMove> {
 #[cfg(test)]
 mod tests {
     use meshlod_fixtures::{grid, moebius};
-    use meshlod_mesh::{Mesh, sample};
+    use meshlod_mesh::Mesh;
     use meshlod_multires::{Effort as Allowed, Focus, Forest, Model, Query, Tolerance};
+    use meshlod_samples as samples;
     use meshlod_simplify::Method;
 
     use super::*;
@@ -126,12 +127,12 @@ mod tests {
 
     #[test]
     fn every_cut_is_drawn() {
-        [sample::torus(800), grid(10), moebius(30)].iter().for_each(follows);
+        [samples::torus(800), grid(10), moebius(30)].iter().for_each(follows);
     }
 
     #[test]
     fn vertices_are_where_their_nodes_are() {
-        let model = model(&sample::sphere(400), Method::QemEndpoint);
+        let model = model(&samples::sphere(400), Method::QemEndpoint);
         let mt = model.implicit();
         let strips = CutStrips::new(mt, &model.cut(), &Options::default(), Effort::Quick).unwrap();
         for node in 0..mt.node_count() as u32 {
@@ -143,7 +144,7 @@ mod tests {
 
     #[test]
     fn where_points_move_it_is_said() {
-        let model = model(&sample::sphere(400), Method::Qem);
+        let model = model(&samples::sphere(400), Method::Qem);
         let made =
             CutStrips::new(model.implicit(), &model.cut(), &Options::default(), Effort::Quick);
         assert!(made.is_err());

@@ -90,7 +90,8 @@ impl SkipStrip {
 #[cfg(test)]
 mod tests {
     use meshlod_fixtures::{fan, grid, hourglass, moebius};
-    use meshlod_mesh::{Mesh, sample};
+    use meshlod_mesh::Mesh;
+    use meshlod_samples as samples;
     use meshlod_simplify::Target;
 
     use super::*;
@@ -128,7 +129,7 @@ mod tests {
 
     #[test]
     fn every_filter_draws_every_level_on_the_way_up_and_down() {
-        holds_everywhere(&sample::torus(600));
+        holds_everywhere(&samples::torus(600));
         holds_everywhere(&grid(9));
     }
 

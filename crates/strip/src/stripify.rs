@@ -148,7 +148,8 @@ const RUN_IN_RINGS: usize = 12;
 #[cfg(test)]
 mod tests {
     use meshlod_fixtures::{cube, fan, hourglass, mesh, moebius, tetrahedron};
-    use meshlod_mesh::{Mesh, sample};
+    use meshlod_mesh::Mesh;
+    use meshlod_samples as samples;
 
     use super::*;
     use crate::verify::{Difference, difference};
@@ -174,7 +175,7 @@ mod tests {
             moebius(9),
             tetrahedron(),
             cube(),
-            sample::sphere(400),
+            samples::sphere(400),
             book,
             odd,
             soup(1),
@@ -246,7 +247,7 @@ mod tests {
 
     #[test]
     fn the_same_seed_gives_the_same_strips() {
-        let faces = sample::sphere(500).faces;
+        let faces = samples::sphere(500).faces;
         assert_eq!(stripify(&faces, &quick()), stripify(&faces, &quick()));
         assert_ne!(stripify(&faces, &quick()), stripify(&faces, &Options { seed: 1, ..quick() }));
     }

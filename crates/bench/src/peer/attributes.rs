@@ -232,7 +232,7 @@ mod tests {
 
     #[test]
     fn levels_keep_layers_and_have_the_size_asked_for() {
-        let mesh = meshlod::mesh::sample::fish(4_000);
+        let mesh = meshlod::samples::fish(4_000);
         for update in [Update::Nothing, Update::All] {
             let settings = Settings { update, ..SETTINGS };
             let level = simplify_with_attributes(&mesh, 1_000, &settings);
@@ -245,7 +245,7 @@ mod tests {
 
     #[test]
     fn nothing_to_do_leaves_positions_and_values_as_they_are() {
-        let mesh = meshlod::mesh::sample::fish(500);
+        let mesh = meshlod::samples::fish(500);
         let level = simplify_with_attributes(&mesh, mesh.faces.len(), &SETTINGS);
         let corners = |mesh: &Mesh| -> Vec<_> {
             let uv =

@@ -42,13 +42,14 @@ fn by_corners(faces: &[[VertexId; 3]], of_vertex: &[u32]) -> Vec<u32> {
 
 #[cfg(test)]
 mod tests {
-    use meshlod::mesh::{face_components, sample};
+    use meshlod::mesh::face_components;
+    use meshlod::samples;
 
     use super::*;
 
     #[test]
     fn levels_have_the_size_asked_for_and_the_objects_of_the_mesh() {
-        let mut mesh = sample::sphere(2000);
+        let mut mesh = samples::sphere(2000);
         let ball = mesh.clone();
         let moved = |v: VertexId| VertexId::new(ball.positions.len() + v.index());
         mesh.faces.extend(ball.faces.iter().map(|face| face.map(moved)));

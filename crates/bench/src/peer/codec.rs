@@ -35,13 +35,13 @@ fn by_first_use(indices: &mut [u32], positions: &[[u16; 3]]) -> Vec<[u16; 4]> {
 
 #[cfg(test)]
 mod tests {
-    use meshlod::mesh::sample;
+    use meshlod::samples;
 
     use super::*;
 
     #[test]
     fn a_smooth_mesh_takes_less_than_it_was() {
-        let mesh = sample::torus(5000);
+        let mesh = samples::torus(5000);
         let positions: Vec<_> =
             mesh.positions.iter().map(|p| p.map(|x| (1000.0 * (x + 2.0)) as u16)).collect();
         let [vertices, indices] = meshopt_codec(&positions, &mesh.faces);

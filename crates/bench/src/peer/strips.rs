@@ -24,14 +24,14 @@ pub fn meshopt_strips(faces: &[[VertexId; 3]]) -> Strips {
 
 #[cfg(test)]
 mod tests {
-    use meshlod::mesh::sample;
+    use meshlod::samples;
     use meshlod::strip::{Difference, difference};
 
     use super::*;
 
     #[test]
     fn they_draw_the_faces() {
-        let faces = sample::torus(500).faces;
+        let faces = samples::torus(500).faces;
         assert_eq!(difference(&meshopt_strips(&faces), &faces), Difference::default());
         assert!(meshopt_strips(&[]).is_empty());
     }

@@ -1,7 +1,8 @@
 //! Every kind on the least mesh that has it.
 
 use meshlod_fixtures::{cube, fan, grid, hourglass, mesh, moebius, tetrahedron, two_objects};
-use meshlod_mesh::{Attributes, FaceId, Labels, MeshError, VertexId, sample};
+use meshlod_mesh::{Attributes, FaceId, Labels, MeshError, VertexId};
+use meshlod_samples as samples;
 
 use super::*;
 use crate::finding::Degeneracy;
@@ -29,7 +30,7 @@ fn vertices<const N: usize>(ids: [u32; N]) -> [VertexId; N] {
 
 #[test]
 fn nothing_is_found_where_nothing_is_wrong() {
-    for mesh in [tetrahedron(), cube(), sample::torus(500), Mesh::default()] {
+    for mesh in [tetrahedron(), cube(), samples::torus(500), Mesh::default()] {
         assert_eq!(found(&mesh), []);
     }
 }
@@ -187,7 +188,7 @@ fn shells_that_touch_are_inside_out_one_by_one() {
 
 #[test]
 fn far_away_outside_is_still_outside() {
-    let mut mesh = sample::sphere(500);
+    let mut mesh = samples::sphere(500);
     mesh.positions.iter_mut().flatten().for_each(|x| *x += 1e9);
     assert_eq!(of_kind(&mesh, Kind::InsideOut), []);
     mesh.faces.iter_mut().for_each(|face| face.swap(0, 1));

@@ -2,7 +2,8 @@
 
 use std::collections::BTreeSet;
 
-use meshlod_mesh::{Connectivity, Labels, Mesh, sample};
+use meshlod_mesh::{Connectivity, Labels, Mesh};
+use meshlod_samples as samples;
 
 use super::*;
 use crate::{CheckOptions, Finding, Kind, Kinds, Places, findings};
@@ -112,7 +113,7 @@ fn soups_are_searched_as_all_pairs_would_be() {
 fn rough_surfaces_are_searched_as_all_pairs_would_be() {
     for (seed, size) in [(0, 0.0), (1, 0.02), (2, 0.1), (3, 0.3)] {
         let mut random = Random(seed);
-        let mut mesh = sample::torus(500);
+        let mut mesh = samples::torus(500);
         for x in mesh.positions.iter_mut().flatten() {
             *x += (random.below(1000) as f64 / 1000.0 - 0.5) * size;
         }
@@ -133,7 +134,7 @@ fn real_meshes_are_searched_alike_by_both_nets() {
 #[test]
 fn samples_do_not_meet_themselves() {
     for (name, faces) in [("sphere", 3000), ("torus", 3000), ("knot", 6000), ("gyroid", 9000)] {
-        let mesh = sample::by_name(name, Some(faces)).unwrap();
+        let mesh = samples::by_name(name, Some(faces)).unwrap();
         assert!(found(&mesh, Net::Tree).is_empty(), "{name}");
     }
 }

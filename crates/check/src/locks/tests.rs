@@ -1,4 +1,4 @@
-use meshlod_mesh::sample;
+use meshlod_samples as samples;
 
 use super::*;
 
@@ -26,7 +26,7 @@ fn moved(mut mesh: Mesh, [x, y, z]: [f64; 3]) -> Mesh {
 
 #[test]
 fn balls_that_cross_are_protected_where_they_do() {
-    let balls = both(sample::sphere(2000), &moved(sample::sphere(2000), [1.0, 0.0, 0.0]));
+    let balls = both(samples::sphere(2000), &moved(samples::sphere(2000), [1.0, 0.0, 0.0]));
     let locking = locks(&balls, &CONTACTS);
     // Spheres of radius 1 cross at x = 0.5.
     let away = |v: usize| (balls.positions[v][0] - 0.5).abs();
@@ -42,7 +42,7 @@ fn balls_that_cross_are_protected_where_they_do() {
 
 #[test]
 fn balls_apart_are_free() {
-    let balls = both(sample::sphere(500), &moved(sample::sphere(500), [2.1, 0.0, 0.0]));
+    let balls = both(samples::sphere(500), &moved(samples::sphere(500), [2.1, 0.0, 0.0]));
     let locking = locks(&balls, &CONTACTS);
     assert!(locking.reasons.iter().all(Option::is_none));
     assert!(locking.locks.of_vertex.iter().all(|lock| *lock == Lock::Free));
@@ -99,7 +99,7 @@ fn one_in_the_other_and_one_on_the_other_in_one_plane() {
 
 #[test]
 fn boundaries_are_what_is_asked_for() {
-    let mesh = sample::terrain(500);
+    let mesh = samples::terrain(500);
     let connectivity = Connectivity::new(&mesh.faces, mesh.positions.len());
     for lock in [Lock::Free, Lock::Protected, Lock::Locked] {
         let locking = locks(&mesh, &LockOptions { contacts: false, boundary: lock });

@@ -3,9 +3,8 @@
 use std::collections::BTreeSet;
 
 use meshlod_fixtures::{cube, fan, grid, hourglass, mesh, moebius, seam_strip, tetrahedron};
-use meshlod_mesh::{
-    Attributes, Connectivity, FaceId, Labels, Layer, LayerKind, VertexId, WedgeId, sample,
-};
+use meshlod_mesh::{Attributes, Connectivity, FaceId, Labels, Layer, LayerKind, VertexId, WedgeId};
+use meshlod_samples as samples;
 use proptest::prelude::*;
 
 use super::*;
@@ -40,7 +39,7 @@ fn turn_over(mesh: &mut Mesh, faces: impl IntoIterator<Item = usize>) {
 
 #[test]
 fn a_sound_mesh_stays_as_it_is() {
-    for mesh in [cube(), grid(3), seam_strip(), sample::fish(2000), Mesh::default()] {
+    for mesh in [cube(), grid(3), seam_strip(), samples::fish(2000), Mesh::default()] {
         let (same, report) = repaired(&mesh);
         assert_eq!((same, report), (mesh, vec![]));
     }
@@ -190,7 +189,7 @@ fn what_looks_inwards_is_turned_unless_it_may_be_a_hollow() {
 #[test]
 fn normals_are_turned_where_they_agreed_with_the_faces() {
     for sign in [1.0, -1.0] {
-        let mut inward = sample::sphere(200);
+        let mut inward = samples::sphere(200);
         let outward: Vec<f32> = inward.positions.iter().flatten().map(|&x| x as f32).collect();
         let all = inward.faces.len();
         turn_over(&mut inward, 0..all);
@@ -212,7 +211,7 @@ fn what_cannot_be_oriented_is_told_and_left() {
 
 #[test]
 fn a_soup_becomes_the_mesh_it_was() {
-    let whole = sample::torus(300);
+    let whole = samples::torus(300);
     let (stitched, report) = repaired(&torn(&whole));
     assert_eq!(report[0], (RepairStep::Stitched, 3 * whole.faces.len() / 2));
     let connectivity = Connectivity::new(&stitched.faces, stitched.positions.len());
@@ -221,7 +220,7 @@ fn a_soup_becomes_the_mesh_it_was() {
 
 #[test]
 fn borders_within_the_tolerance_are_stitched() {
-    let mut apart = torn(&sample::torus(300));
+    let mut apart = torn(&samples::torus(300));
     for (i, x) in apart.positions.iter_mut().flatten().enumerate() {
         *x += 1e-7 * ((i % 7) as f64 - 3.0);
     }

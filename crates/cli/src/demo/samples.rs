@@ -1,8 +1,8 @@
 //! What is shown, and why.
 
 use meshlod::Scene;
-use meshlod::mesh::sample;
 use meshlod::picture::{Normals, Wireframe};
+use meshlod::samples;
 
 use crate::page::look::{Coat, Look};
 use crate::page::subject::Subject;
@@ -73,7 +73,7 @@ pub const ALL: [Sample; 3] = [
 impl Sample {
     /// Makes it.
     pub fn subject(&self) -> Subject {
-        let mesh = sample::by_name(self.name, Some(self.faces)).expect("every one is a sample");
+        let mesh = samples::by_name(self.name, Some(self.faces)).expect("every one is a sample");
         let scene = Scene::from_mesh(self.name, mesh);
         Subject::new([self.name, self.title], scene, |_| self.look())
     }

@@ -185,13 +185,13 @@ fn whole(number: f64) -> String {
 
 #[cfg(test)]
 mod tests {
-    use meshlod::mesh::sample;
+    use meshlod::samples;
 
     use super::*;
 
     #[test]
     fn what_rounding_makes_is_no_merit() {
-        let input = Counts::of(&sample::sphere(500));
+        let input = Counts::of(&samples::sphere(500));
         for head in ["Volume", "Sum"] {
             let column = COLUMNS.iter().find(|column| column.head == head).unwrap();
             let size = |value| column.best.unwrap().size(value, &input);

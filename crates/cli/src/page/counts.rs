@@ -76,21 +76,21 @@ fn genus(
 
 #[cfg(test)]
 mod tests {
-    use meshlod::mesh::sample;
+    use meshlod::samples;
 
     use super::*;
 
     #[test]
     fn a_sphere_has_no_tunnel_and_a_torus_one() {
         let genus = |mesh: Mesh| Counts::of(&mesh).genus;
-        assert_eq!(genus(sample::sphere(500)), Some(0));
-        assert_eq!(genus(sample::torus(500)), Some(1));
-        assert_eq!(genus(sample::terrain(500)), None, "it is open");
+        assert_eq!(genus(samples::sphere(500)), Some(0));
+        assert_eq!(genus(samples::torus(500)), Some(1));
+        assert_eq!(genus(samples::terrain(500)), None, "it is open");
     }
 
     #[test]
     fn a_vertex_that_no_face_uses_makes_no_tunnel() {
-        let mut mesh = sample::sphere(500);
+        let mut mesh = samples::sphere(500);
         let alone = Counts::of(&mesh).vertices;
         mesh.positions.push([9.0; 3]);
         let counts = Counts::of(&mesh);

@@ -138,13 +138,13 @@ fn has(mesh: &Mesh, kind: LayerKind) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use meshlod::mesh::sample;
+    use meshlod::samples;
 
     use super::*;
 
     #[test]
     fn uvs_without_a_texture_are_compared_under_a_checker_whatever_the_colours() {
-        let mesh = sample::fish(500);
+        let mesh = samples::fish(500);
         let mut scene = Scene::from_mesh("fish", mesh.clone());
         let red = [1.0, 0.0, 0.0, 1.0];
         scene.materials = vec![meshlod::io::Material { base_color: red, ..Default::default() }];

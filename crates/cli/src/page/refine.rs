@@ -47,13 +47,13 @@ fn pieces(first: usize, cuts: usize) -> impl Iterator<Item = [VertexId; 3]> {
 #[cfg(test)]
 mod tests {
     use meshlod::measure::{area, volume};
-    use meshlod::mesh::sample;
+    use meshlod::samples;
 
     use super::*;
 
     #[test]
     fn a_refined_mesh_is_the_same_surface() {
-        let mesh = sample::sphere(200);
+        let mesh = samples::sphere(200);
         let fine = refined(&mesh, 0.05);
         assert!(fine.validate().is_ok() && fine.faces.len() > 10 * mesh.faces.len());
         assert!((area(&fine) / area(&mesh) - 1.0).abs() < 1e-12);
@@ -62,7 +62,7 @@ mod tests {
 
     #[test]
     fn small_faces_stay_whole() {
-        let mesh = sample::sphere(200);
+        let mesh = samples::sphere(200);
         assert_eq!(refined(&mesh, 10.0).faces.len(), mesh.faces.len());
     }
 }

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 use clap::builder::PossibleValuesParser;
 use meshlod::Scene;
-use meshlod::mesh::sample;
+use meshlod::samples;
 use serde_json::json;
 
 use crate::amounts;
@@ -19,7 +19,7 @@ use crate::session::Session;
 #[derive(Args)]
 pub struct Sample {
     /// Which
-    #[arg(value_name = "NAME", value_parser = PossibleValuesParser::new(sample::NAMES))]
+    #[arg(value_name = "NAME", value_parser = PossibleValuesParser::new(samples::NAMES))]
     name: String,
     /// File to write, or -
     #[arg(value_name = "OUT")]
@@ -35,7 +35,7 @@ impl Sample {
     pub fn run(self, session: &Session) -> Result<Answer, Failure> {
         files::check_output(&self.output, session)?;
         session.progress.stage("making it");
-        let mesh = sample::by_name(&self.name, self.faces)
+        let mesh = samples::by_name(&self.name, self.faces)
             .ok_or_else(|| Failure::usage(format_args!("no sample is called {}", self.name)))?;
         let (vertices, faces) = (mesh.positions.len(), mesh.faces.len());
         let scene = Scene::from_mesh(&self.name, mesh);
@@ -54,7 +54,7 @@ impl Sample {
 
 fn faces(text: &str) -> Result<usize, String> {
     match amounts::positive(text)? {
-        faces if faces <= sample::MAX_FACES => Ok(faces),
-        _ => Err(format!("at most {}", sample::MAX_FACES)),
+        faces if faces <= samples::MAX_FACES => Ok(faces),
+        _ => Err(format!("at most {}", samples::MAX_FACES)),
     }
 }

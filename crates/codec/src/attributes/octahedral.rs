@@ -47,7 +47,7 @@ fn flat(direction: DVec3) -> [f64; 2] {
 
 #[cfg(test)]
 mod tests {
-    use meshlod_mesh::sample;
+    use meshlod_samples as samples;
 
     use super::*;
 
@@ -58,7 +58,7 @@ mod tests {
                 let direction = DVec3::from(*p).normalize();
                 unfold(fold(direction, bits), bits).angle_between(direction)
             };
-            sample::sphere(20_000).positions.iter().map(turn).fold(0.0, f64::max)
+            samples::sphere(20_000).positions.iter().map(turn).fold(0.0, f64::max)
         };
         for bits in [4, 8, 12, 16] {
             let bound = most_turn_rad(bits);

@@ -1,4 +1,4 @@
-use meshlod_mesh::sample;
+use meshlod_samples as samples;
 
 use super::*;
 
@@ -16,7 +16,7 @@ const KINDS: [(LayerKind, usize); 9] = [
 
 /// Values over the points of a sphere: directions, or their coordinates again and again.
 fn layer(kind: LayerKind, width: usize, scale: f32) -> (Layer, Vec<WedgeId>) {
-    let points = sample::sphere(2000).positions;
+    let points = samples::sphere(2000).positions;
     let value = |p: &[f64; 3], k: usize| match kind {
         LayerKind::Joints(_) => (p[k % 3] * 100.0).abs().round() as f32,
         LayerKind::Normal | LayerKind::Tangent if k == 3 => (p[0] as f32).signum(),

@@ -2,12 +2,19 @@
 
 use meshlod_fixtures::{grid, mesh, two_objects};
 use meshlod_measure::{DistanceOptions, distance};
-use meshlod_mesh::{Bounds, sample};
+use meshlod_mesh::Bounds;
+use meshlod_samples as samples;
 
 use super::*;
 
 fn meshes() -> Vec<Mesh> {
-    vec![sample::sphere(3000), sample::gyroid(4000), sample::terrain(2000), grid(9), two_objects()]
+    vec![
+        samples::sphere(3000),
+        samples::gyroid(4000),
+        samples::terrain(2000),
+        grid(9),
+        two_objects(),
+    ]
 }
 
 fn of_bits(mesh: &Mesh, bits: u32) -> (VertexBlocks, BlocksReport) {
@@ -54,7 +61,7 @@ fn each_vertex_is_found_alone_where_its_matrix_puts_it() {
 
 #[test]
 fn faces_that_are_turned_over_or_lost_are_told_as_they_are_decoded() {
-    for mesh in [sample::gyroid(20_000), sample::terrain(20_000)] {
+    for mesh in [samples::gyroid(20_000), samples::terrain(20_000)] {
         let (blocks, report) = of_bits(&mesh, 6);
         let decoded = decoded(&mesh, &blocks);
         let normal = |mesh: &Mesh, face: usize| {
@@ -71,7 +78,7 @@ fn faces_that_are_turned_over_or_lost_are_told_as_they_are_decoded() {
 
 #[test]
 fn surfaces_are_as_close_as_in_cubes_and_no_more_faces_are_turned_over() {
-    for mesh in [sample::sphere(6000), sample::gyroid(6000), sample::terrain(4000)] {
+    for mesh in [samples::sphere(6000), samples::gyroid(6000), samples::terrain(4000)] {
         for bits in [8, 11] {
             let (blocks, report) = of_bits(&mesh, bits);
             assert!(report.blocks.flips <= report.cubes.flips, "{report:?}");
@@ -94,7 +101,7 @@ fn surfaces_are_as_close_as_in_cubes_and_no_more_faces_are_turned_over() {
 
 #[test]
 fn an_error_is_kept() {
-    let mesh = sample::gyroid(6000);
+    let mesh = samples::gyroid(6000);
     for error in [1e-2, 1e-4] {
         let (blocks, _) = VertexBlocks::new(&mesh, Closeness::Error(error)).unwrap();
         let options = DistanceOptions { samples: 20_000, ..Default::default() };
@@ -105,7 +112,7 @@ fn an_error_is_kept() {
 
 #[test]
 fn smooth_meshes_shrink_to_less_than_a_fifth() {
-    let (blocks, _) = of_bits(&sample::sphere(40_000), 11);
+    let (blocks, _) = of_bits(&samples::sphere(40_000), 11);
     assert!(blocks.reduction() > 0.82, "{}", blocks.reduction());
 }
 
@@ -124,7 +131,7 @@ fn what_is_stored_comes_back_as_large_as_was_said() {
 
 #[test]
 fn bytes_that_may_be_anything_do_no_harm() {
-    let bytes = stored(&of_bits(&sample::gyroid(3000), 9).0);
+    let bytes = stored(&of_bits(&samples::gyroid(3000), 9).0);
     for length in (0..bytes.len()).step_by(7) {
         assert!(restored(&bytes[..length]).is_err());
     }
@@ -150,7 +157,7 @@ fn bytes_that_may_be_anything_do_no_harm() {
 
 #[test]
 fn vertices_may_be_in_any_order_within_a_block() {
-    let mesh = sample::sphere(3000);
+    let mesh = samples::sphere(3000);
     let mut ordered = blocks_of(&mesh);
     ordered.chunks_mut(BLOCK).for_each(<[_]>::reverse);
     let (blocks, _) = VertexBlocks::of_blocks(&mesh, ordered.clone(), Closeness::Bits(11)).unwrap();

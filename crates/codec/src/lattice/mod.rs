@@ -226,7 +226,7 @@ fn range(bounds: &Bounds, lattice: Lattice) -> Result<([i64; 3], [i32; 3]), Latt
 #[cfg(test)]
 mod tests {
     use meshlod_fixtures::mesh;
-    use meshlod_mesh::sample;
+    use meshlod_samples as samples;
 
     use super::*;
 
@@ -236,7 +236,7 @@ mod tests {
 
     #[test]
     fn vertices_are_at_the_closest_of_the_lattice_and_each_is_found_alone() {
-        for mesh in [sample::sphere(5000), sample::gyroid(3000), sample::terrain(2000)] {
+        for mesh in [samples::sphere(5000), samples::gyroid(3000), samples::terrain(2000)] {
             let blocks = blocks(&mesh, -9);
             let positions = blocks.positions();
             assert_eq!(positions.len(), mesh.positions.len());
@@ -251,7 +251,7 @@ mod tests {
 
     #[test]
     fn what_tiles_share_is_the_same_in_all_of_them() {
-        let mesh = sample::gyroid(6000);
+        let mesh = samples::gyroid(6000);
         for tiles in [2, 8, 64] {
             let mut places = vec![None; mesh.positions.len()];
             let mut shared = 0;
@@ -287,7 +287,7 @@ mod tests {
 
     #[test]
     fn what_is_stored_comes_back_as_large_as_was_said() {
-        for mesh in [sample::sphere(5000), sample::terrain(2000), Mesh::default()] {
+        for mesh in [samples::sphere(5000), samples::terrain(2000), Mesh::default()] {
             for exponent in [-4, -11] {
                 let blocks = blocks(&mesh, exponent);
                 let bytes = stored(&blocks);
@@ -302,7 +302,7 @@ mod tests {
 
     #[test]
     fn bytes_that_may_be_anything_do_no_harm() {
-        let bytes = stored(&blocks(&sample::gyroid(3000), -8));
+        let bytes = stored(&blocks(&samples::gyroid(3000), -8));
         for length in (0..bytes.len()).step_by(7) {
             assert!(restored(&bytes[..length]).is_err());
         }
@@ -342,7 +342,7 @@ mod tests {
 
     #[test]
     fn vertices_may_be_in_any_order_within_a_block() {
-        let mesh = sample::sphere(3000);
+        let mesh = samples::sphere(3000);
         let mut ordered = blocks_of(&mesh);
         ordered.chunks_mut(32).for_each(<[_]>::reverse);
         let lattice = Lattice::new(-9).unwrap();
@@ -356,7 +356,7 @@ mod tests {
     #[test]
     fn smooth_meshes_shrink_to_less_than_a_quarter() {
         // 11 bits of its longest side.
-        let blocks = blocks(&sample::sphere(40_000), -10);
+        let blocks = blocks(&samples::sphere(40_000), -10);
         assert!(blocks.reduction() > 0.8, "{}", blocks.reduction());
     }
 

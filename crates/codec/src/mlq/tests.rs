@@ -2,14 +2,15 @@
 
 use glam::DVec3;
 use meshlod_fixtures as fixtures;
-use meshlod_mesh::{Connectivity, Layer, LayerKind, face_components, sample};
+use meshlod_mesh::{Connectivity, Layer, LayerKind, face_components};
+use meshlod_samples as samples;
 
 use super::*;
 use crate::parts::{Cells, Parting};
 
 /// Meshes with and without attributes and seams, closed and open, and what is no surface.
 fn meshes() -> Vec<Mesh> {
-    let mut seamed = sample::terrain(1500);
+    let mut seamed = samples::terrain(1500);
     // Each face has wedges of its own.
     let corners = (0..seamed.faces.len()).map(|f| [3 * f, 3 * f + 1, 3 * f + 2].map(WedgeId::new));
     let corners: Vec<_> = corners.collect();
@@ -26,8 +27,8 @@ fn meshes() -> Vec<Mesh> {
         }],
     });
     vec![
-        sample::sphere(3000),
-        sample::gyroid(4000),
+        samples::sphere(3000),
+        samples::gyroid(4000),
         fixtures::seam_strip(),
         seamed,
         fixtures::two_objects(),
@@ -141,7 +142,7 @@ fn many_faces_at_one_vertex_are_compressed_too() {
 
 #[test]
 fn a_reduction_is_kept_or_said_not_to_be() {
-    for mesh in [sample::gyroid(3000), sample::sphere(600), fixtures::grid(6)] {
+    for mesh in [samples::gyroid(3000), samples::sphere(600), fixtures::grid(6)] {
         for scheme in [Scheme::Parts(Cells::Centred), Scheme::Lattice, Scheme::Blocks] {
             for part in [0.5, 0.6, 0.7] {
                 let target = Target::Reduction(part);
@@ -213,7 +214,7 @@ fn what_cannot_be_is_said() {
 
 #[test]
 fn spoilt_bytes_are_told() {
-    for mesh in [sample::gyroid(1000), fixtures::seam_strip()] {
+    for mesh in [samples::gyroid(1000), fixtures::seam_strip()] {
         for compressed in by_schemes(&mesh) {
             let bytes = compressed.to_bytes();
             for bit in (0..8 * bytes.len()).step_by(bytes.len() / 40) {
@@ -231,7 +232,7 @@ fn spoilt_bytes_are_told() {
 #[test]
 fn what_sums_do_not_tell_does_no_harm() {
     let mut read = 0;
-    for mesh in [sample::gyroid(600), meshes().remove(3)] {
+    for mesh in [samples::gyroid(600), meshes().remove(3)] {
         for compressed in by_schemes(&mesh) {
             let bytes = compressed.to_bytes();
             for bit in (0..8 * bytes.len()).step_by(1 + bytes.len() / 30) {

@@ -1,7 +1,7 @@
 //! What parts hold, whatever the mesh.
 
 use meshlod_fixtures::{grid, mesh, two_objects};
-use meshlod_mesh::sample;
+use meshlod_samples as samples;
 
 use super::*;
 
@@ -10,7 +10,13 @@ fn parting(mesh: &Mesh) -> Parting<'_> {
 }
 
 fn meshes() -> Vec<Mesh> {
-    vec![sample::sphere(3000), sample::gyroid(4000), sample::terrain(2000), grid(9), two_objects()]
+    vec![
+        samples::sphere(3000),
+        samples::gyroid(4000),
+        samples::terrain(2000),
+        grid(9),
+        two_objects(),
+    ]
 }
 
 /// The faces with what their corners were, each from its least.
@@ -101,7 +107,7 @@ fn parts_meet_bit_for_bit_by_their_matrices_in_f32() {
 
 #[test]
 fn more_parts_have_smaller_cells_and_settling_helps() {
-    let mesh = sample::gyroid(6000);
+    let mesh = samples::gyroid(6000);
     let parting = parting(&mesh);
     let size = |count| parting.into_count(count, Cells::Centred).cell().map(f64::from);
     let [few, many] = [size(4), size(64)].map(|cell| cell.iter().sum::<f64>());
@@ -114,7 +120,7 @@ fn more_parts_have_smaller_cells_and_settling_helps() {
 
 #[test]
 fn a_reduction_is_kept_by_as_many_parts_as_it_allows() {
-    let mesh = sample::sphere(6000);
+    let mesh = samples::sphere(6000);
     let parting = parting(&mesh);
     let parts = parting.within_reduction(0.68, Cells::Centred).unwrap();
     assert!((0.68..0.69).contains(&parts.reduction()), "{}", parts.reduction());
@@ -123,7 +129,7 @@ fn a_reduction_is_kept_by_as_many_parts_as_it_allows() {
 
 #[test]
 fn cells_of_a_size_are_kept_where_they_take_less_than_floats() {
-    let mesh = sample::sphere(6000);
+    let mesh = samples::sphere(6000);
     let parting = parting(&mesh);
     let parts = parting.within_cell(0.002, Cells::Centred);
     assert!((0.0017..=0.002).contains(&parts.mean_side()), "{}", parts.mean_side());

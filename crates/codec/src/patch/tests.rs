@@ -1,5 +1,6 @@
 use meshlod_fixtures as fixtures;
-use meshlod_mesh::{Mesh, sample};
+use meshlod_mesh::Mesh;
+use meshlod_samples as samples;
 
 use super::*;
 use crate::kd::{BLOCK, blocks_of};
@@ -50,7 +51,7 @@ fn assert_same(faces: &[[u32; 3]], row_of: &[u32], rows_per_patch: usize) -> Pat
 
 #[test]
 fn every_face_comes_back_as_it_was_turned() {
-    for mesh in [sample::sphere(5000), sample::gyroid(3000), sample::terrain(2000)] {
+    for mesh in [samples::sphere(5000), samples::gyroid(3000), samples::terrain(2000)] {
         for rows_per_patch in [1, 4] {
             assert_same(&faces_of(&mesh), &rows_of(&mesh), rows_per_patch);
         }
@@ -59,7 +60,7 @@ fn every_face_comes_back_as_it_was_turned() {
 
 #[test]
 fn a_smooth_mesh_takes_less_than_seven_bits_a_face() {
-    let mesh = sample::sphere(20_000);
+    let mesh = samples::sphere(20_000);
     let patches = assert_same(&faces_of(&mesh), &rows_of(&mesh), 4);
     let bits = 8.0 * patches.bytes() as f64 / mesh.faces.len() as f64;
     assert!(bits < 7.0, "{bits}");
@@ -93,7 +94,7 @@ fn many_faces_on_one_edge_are_no_work_for_long() {
 
 #[test]
 fn spoilt_bits_are_told_or_give_other_faces() {
-    let mesh = sample::gyroid(3000);
+    let mesh = samples::gyroid(3000);
     let row_of = rows_of(&mesh);
     let rows = row_of.iter().max().map_or(0, |&row| row as usize + 1);
     let (patches, _) = Patches::new(&faces_of(&mesh), &row_of, rows, 4);

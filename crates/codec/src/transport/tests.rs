@@ -1,7 +1,8 @@
 use meshlod_fixtures::{
     cube, fan, grid, hourglass, mesh, moebius, seam_strip, tetrahedron, two_objects,
 };
-use meshlod_mesh::{Mesh, VertexId, sample};
+use meshlod_mesh::{Mesh, VertexId};
+use meshlod_samples as samples;
 
 use super::*;
 use crate::Malformed;
@@ -79,7 +80,7 @@ fn soup(vertices: usize, faces: usize, seed: u64) -> Mesh {
 #[test]
 fn samples_come_back() {
     for name in ["sphere", "torus", "knot", "gyroid", "terrain"] {
-        let mesh = sample::by_name(name, Some(3000)).unwrap();
+        let mesh = samples::by_name(name, Some(3000)).unwrap();
         for bits in [1, 4, 11, 16, 21] {
             let grid = TransportGrid::Bits(bits);
             assert_same(&mesh, &TransportOptions { grid, ..Default::default() });
@@ -121,7 +122,7 @@ fn corners_may_be_the_same_and_faces_too() {
 #[test]
 fn vertices_in_one_cell_are_told_apart() {
     // All in a few cells, and all in one.
-    let mut mesh = sample::sphere(3000);
+    let mut mesh = samples::sphere(3000);
     assert_same(&mesh, &TransportOptions { grid: TransportGrid::Bits(2), block_faces: 100 });
     mesh.positions.fill([7.0, -2.0, 1e30]);
     assert_same(&mesh, &options(100));
@@ -141,7 +142,7 @@ fn a_flat_mesh_a_line_and_a_far_one_come_back() {
 
 #[test]
 fn a_block_is_decoded_alone() {
-    let mesh = sample::torus(5000);
+    let mesh = samples::torus(5000);
     let bytes = Transport::encode(&mesh, &TransportOptions::default()).unwrap().bytes;
     let whole = TransportFile::open(&bytes).unwrap().decode().unwrap();
     let blocks = TransportFile::open(&bytes).unwrap().blocks();
@@ -169,7 +170,7 @@ fn a_block_is_decoded_alone() {
 #[test]
 fn on_a_lattice_shared_vertices_are_at_one_place() {
     let lattice = crate::Lattice::new(-9).unwrap();
-    let mesh = sample::knot(4000);
+    let mesh = samples::knot(4000);
     let halves = mesh.faces.split_at(1500);
     let options = TransportOptions { grid: TransportGrid::Lattice(lattice), block_faces: 200 };
     for faces in [halves.0, halves.1] {
@@ -264,7 +265,7 @@ fn decode_all(bytes: &[u8]) -> Result<Mesh, Malformed> {
 
 #[test]
 fn a_flipped_bit_is_told() {
-    let mesh = sample::knot(2000);
+    let mesh = samples::knot(2000);
     let bytes = Transport::encode(&mesh, &options(256)).unwrap().bytes;
     let mut missed = 0;
     for at in 0..bytes.len() {
@@ -282,7 +283,7 @@ fn a_flipped_bit_is_told() {
 
 #[test]
 fn any_bytes_are_taken() {
-    let meshes = [sample::sphere(700), soup(60, 300, 5), hourglass(), grid(9)];
+    let meshes = [samples::sphere(700), soup(60, 300, 5), hourglass(), grid(9)];
     let mut numbers = Numbers(1);
     for mesh in meshes {
         let bytes = Transport::encode(&mesh, &options(100)).unwrap().bytes;

@@ -97,9 +97,20 @@ fn plainly(faces: &[[VertexId; 3]], vertex_count: usize) -> Connectivity {
     connectivity
 }
 
+/// Faces of a closed grid, wrapped in both directions: 60 vertices, 120 faces.
+fn torus() -> Vec<[VertexId; 3]> {
+    let id = |i: u32, j: u32| i % 10 + j % 6 * 10;
+    let cells = (0..6).flat_map(|j| (0..10).map(move |i| [i, j]));
+    let split = |[i, j]: [u32; 2]| {
+        let [a, b, c, d] = [id(i, j), id(i + 1, j), id(i + 1, j + 1), id(i, j + 1)];
+        [[a, b, c], [a, c, d]]
+    };
+    faces(&cells.flat_map(split).collect::<Vec<_>>())
+}
+
 /// A closed mesh with some faces turned, dropped, doubled or led astray.
 fn spoilt(harm: &[(usize, u8, u32)]) -> Vec<[VertexId; 3]> {
-    let mut faces = crate::sample::torus(120).faces;
+    let mut faces = torus();
     for &(at, what, v) in harm {
         let at = at % faces.len();
         match what {

@@ -1,7 +1,8 @@
 use meshlod_fixtures::{fan, shared_mesh};
 use meshlod_io::{Node, ReadOptions, SceneMesh, read};
 use meshlod_measure::{DistanceOptions, distance};
-use meshlod_mesh::{Lock, Locks, sample};
+use meshlod_mesh::{Lock, Locks};
+use meshlod_samples as samples;
 
 use super::*;
 
@@ -30,7 +31,7 @@ fn run(scene: &Scene, target: Target) -> (Vec<Mesh>, Report) {
 
 #[test]
 fn one_mesh_is_simplified_as_by_itself() {
-    let knot = sample::knot(2_000);
+    let knot = samples::knot(2_000);
     let (level, report) = run(&Scene::from_mesh("", knot.clone()), Target::Ratio(0.2));
     let alone = meshlod_simplify::simplify(&knot, Target::Ratio(0.2), &Options::default());
     assert_eq!((level.into_iter().next().unwrap(), report), alone.unwrap());
@@ -38,7 +39,7 @@ fn one_mesh_is_simplified_as_by_itself() {
 
 #[test]
 fn the_larger_copy_keeps_more() {
-    let ball = sample::sphere(2_000);
+    let ball = samples::sphere(2_000);
     let twins = scene(vec![ball.clone(), ball], vec![node(0, 1.0), node(1, 3.0)]);
     let (level, report) = run(&twins, Target::Ratio(0.25));
     let [small, large] = faces(&level)[..] else { panic!("two meshes") };
@@ -48,7 +49,7 @@ fn the_larger_copy_keeps_more() {
 
 #[test]
 fn meshes_of_one_kind_and_size_share_evenly() {
-    let ball = sample::sphere(2_000);
+    let ball = samples::sphere(2_000);
     let twins = scene(vec![ball.clone(), ball], vec![node(0, 2.0), node(1, -2.0)]);
     let [a, b] = faces(&run(&twins, Target::Faces(800)).0)[..] else { panic!("two meshes") };
     // Many costs on a ball are equal, and of equal ones the first mesh takes all.
@@ -57,7 +58,7 @@ fn meshes_of_one_kind_and_size_share_evenly() {
 
 #[test]
 fn copies_count_as_often_as_they_are_shown() {
-    let ball = sample::sphere(1_000);
+    let ball = samples::sphere(1_000);
     let input = ball.faces.len();
     let trio = scene(vec![ball], vec![node(0, 1.0), node(0, 2.0), node(0, 0.5)]);
     let (level, report) = run(&trio, Target::Faces(900));
@@ -67,7 +68,7 @@ fn copies_count_as_often_as_they_are_shown() {
 
 #[test]
 fn a_bound_holds_in_the_world() {
-    let ball = sample::sphere(5_000);
+    let ball = samples::sphere(5_000);
     let bound = 0.01;
     let (level, report) =
         run(&scene(vec![ball.clone()], vec![node(0, 10.0)]), Target::Error(bound));
@@ -81,7 +82,7 @@ fn a_bound_holds_in_the_world() {
 #[test]
 fn levels_of_one_run_go_on_from_each_other() {
     let pair =
-        scene(vec![sample::torus(1_000), sample::knot(1_000)], vec![node(0, 1.0), node(1, 1.0)]);
+        scene(vec![samples::torus(1_000), samples::knot(1_000)], vec![node(0, 1.0), node(1, 1.0)]);
     let mut simplifier = SceneSimplifier::new(&pair, &Options::default()).unwrap();
     simplifier.run(Target::Ratio(0.5), &mut ()).unwrap();
     simplifier.run(Target::Ratio(0.1), &mut ()).unwrap();
@@ -92,9 +93,9 @@ fn levels_of_one_run_go_on_from_each_other() {
 fn what_cannot_or_need_not_shrink_stays() {
     let mut points = Mesh::default();
     points.positions.push([1.0; 3]);
-    let hidden = sample::sphere(500);
+    let hidden = samples::sphere(500);
     let mixed = scene(
-        vec![points.clone(), sample::torus(600), hidden.clone()],
+        vec![points.clone(), samples::torus(600), hidden.clone()],
         vec![node(0, 1.0), node(1, 1.0)],
     );
     let (level, report) = run(&mixed, Target::Faces(100));
@@ -125,7 +126,7 @@ fn errors_name_the_mesh_where_there_are_several() {
 #[test]
 fn lock_masks_run_over_all_meshes() {
     let pair =
-        scene(vec![sample::sphere(300), sample::sphere(300)], vec![node(0, 1.0), node(1, 1.0)]);
+        scene(vec![samples::sphere(300), samples::sphere(300)], vec![node(0, 1.0), node(1, 1.0)]);
     let count = pair.meshes[0].mesh.positions.len();
     let locks = |of_vertex: Vec<Lock>| Locks { of_vertex, ties: Vec::new() };
     let first = [vec![Lock::Locked; count], vec![Lock::Free; count]].concat();

@@ -2,7 +2,8 @@
 
 use meshlod_fixtures as fixtures;
 use meshlod_measure::{Surface, vertex_errors};
-use meshlod_mesh::{Mesh, VertexId, sample};
+use meshlod_mesh::{Mesh, VertexId};
+use meshlod_samples as samples;
 use meshlod_simplify::Method;
 
 use crate::forest::NONE;
@@ -88,7 +89,7 @@ fn every_triangle_is_within_its_bound_and_the_mesh_within_the_greatest() {
 
 #[test]
 fn smaller_ones_would_not_hold() {
-    let mesh = sample::torus(4000);
+    let mesh = samples::torus(4000);
     let estimates = forest(&mesh, Method::Qem);
     let bounds = bounded(estimates.clone());
     let worst = |forest: &Forest, factor: f64| {
@@ -137,7 +138,7 @@ fn what_is_flat_costs_nothing() {
 
 #[test]
 fn bounds_of_a_smooth_surface_are_a_few_times_what_is_measured() {
-    let mesh = sample::torus(4000);
+    let mesh = samples::torus(4000);
     let model = Model::new(&bounded(forest(&mesh, Method::Qem))).unwrap();
     let mut extractor = model.extractor();
     for (tolerance, most) in [(0.01, 2.0), (0.03, 3.0), (0.1, 4.0)] {

@@ -3,7 +3,8 @@
 mod lossless;
 mod wrong;
 
-use meshlod_mesh::{Mesh, sample};
+use meshlod_mesh::Mesh;
+use meshlod_samples as samples;
 use meshlod_simplify::Method;
 
 use super::write::{diagonal, lattice};
@@ -154,7 +155,7 @@ fn every_start_of_a_file_is_a_cut() {
 /// With tens of chunks a band: an answer that stopped within one would be fine on one side only.
 #[test]
 fn as_much_is_read_as_it_takes() {
-    let forest = forest(&sample::knot(4000), Method::Qem);
+    let forest = forest(&samples::knot(4000), Method::Qem);
     let archive = Archive::open(bytes(&forest)).unwrap();
     let model = Model::of(&archive.read().unwrap().0).unwrap();
     let query = Query::uniform(1.0);
@@ -176,7 +177,7 @@ fn as_much_is_read_as_it_takes() {
 
 #[test]
 fn vertices_move_as_little_as_asked() {
-    let mesh = sample::torus(800);
+    let mesh = samples::torus(800);
     let forest = forest(&mesh, Method::Qem);
     for rounding in [1e-2, 1e-5] {
         let storage = Storage { rounding: Some(rounding), ..small() };
@@ -194,7 +195,7 @@ fn vertices_move_as_little_as_asked() {
 
 #[test]
 fn what_is_damaged_is_refused() {
-    let forest = forest(&sample::torus(300), Method::LeeJang);
+    let forest = forest(&samples::torus(300), Method::LeeJang);
     let bytes = bytes(&forest);
     let open = |bytes: &[u8]| Archive::open(bytes.to_vec()).and_then(|archive| archive.read());
     assert!(open(&bytes).is_ok());
@@ -215,7 +216,7 @@ fn what_is_damaged_is_refused() {
 /// What has the right checksums and cannot be is refused too, or gives sound meshes.
 #[test]
 fn what_is_made_to_mislead_does_no_harm() {
-    let mesh: Mesh = sample::terrain(200);
+    let mesh: Mesh = samples::terrain(200);
     let (mut refused, mut passed) = (0, 0);
     for method in [Method::Qem, Method::LeeJang] {
         let bytes = bytes(&forest(&mesh, method));
@@ -245,7 +246,7 @@ fn what_is_made_to_mislead_does_no_harm() {
 /// On a lattice so coarse that half the triangles would have none.
 #[test]
 fn no_triangle_loses_its_area() {
-    let mesh = sample::knot(4000);
+    let mesh = samples::knot(4000);
     for method in [Method::Qem, Method::LeeJang] {
         let forest = forest(&mesh, method);
         for part in [1e-4, 1e-3, 3e-3] {

@@ -3,7 +3,8 @@
 use std::collections::BTreeSet;
 
 use meshlod_fixtures as fixtures;
-use meshlod_mesh::{Mesh, sample};
+use meshlod_mesh::Mesh;
+use meshlod_samples as samples;
 use meshlod_simplify::Method;
 
 use super::walks::{Dice, each, forest, query, topology};
@@ -22,7 +23,7 @@ fn what_is_built_has_a_certificate() {
 fn only_what_is_not_manifold_is_odd() {
     let certify = |mesh: &Mesh, method| Implicit::new(&forest(mesh, method)).unwrap().certify();
     for method in [Method::Qem, Method::LeeJang] {
-        let sound = certify(&sample::terrain(600), method).unwrap();
+        let sound = certify(&samples::terrain(600), method).unwrap();
         assert!(sound.sound > 200 && sound.odd == 0, "{sound:?}");
     }
     let turned = certify(&fixtures::moebius(40), Method::Qem).unwrap();
@@ -33,7 +34,7 @@ fn only_what_is_not_manifold_is_odd() {
 /// may do as well, and wings the other way round are another surface without a crack.
 #[test]
 fn what_has_a_certificate_is_sound() {
-    let mesh = sample::terrain(160);
+    let mesh = samples::terrain(160);
     let expected = topology(&mesh);
     let mut dice = Dice(3);
     let mut reasons = BTreeSet::new();

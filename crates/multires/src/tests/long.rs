@@ -1,6 +1,7 @@
 //! Long walks: focus and tolerance move a little at every step, and change their kinds now and then.
 
-use meshlod_mesh::{Mesh, sample};
+use meshlod_mesh::Mesh;
+use meshlod_samples as samples;
 
 use super::walks::{Dice, METHODS, forest, in_forest, topology};
 use crate::implicit::Order;
@@ -72,7 +73,7 @@ impl Walker {
 #[test]
 fn a_thousand_steps_in_every_way_of_building() {
     for (seed, method) in (31..).zip(METHODS) {
-        for mesh in [sample::terrain(300), sample::torus(300)] {
+        for mesh in [samples::terrain(300), samples::torus(300)] {
             let forest = forest(&mesh, method);
             let (order, explicit) = (Order::new(&forest), Explicit::new(&forest));
             let model = Model::new(&forest).unwrap();

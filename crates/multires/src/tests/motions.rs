@@ -2,7 +2,8 @@
 
 use std::time::Duration;
 
-use meshlod_mesh::{Mesh, sample};
+use meshlod_mesh::Mesh;
+use meshlod_samples as samples;
 use meshlod_simplify::Method;
 
 use super::walks::{Dice, cone, forest, topology};
@@ -41,7 +42,7 @@ fn model(mesh: &Mesh, method: Method) -> Implicit {
 #[test]
 fn a_thousand_steps_later_it_is_the_static_answer() {
     for method in [Method::Qem, Method::LeeJang] {
-        let mt = model(&sample::torus(3000), method);
+        let mt = model(&samples::torus(3000), method);
         let (mut cut, mut wanderer) = (Cut::new(&mt), Wanderer::new());
         let (mut looks, mut changes) = (0, 0);
         for step in 0..1000 {
@@ -63,7 +64,7 @@ fn a_thousand_steps_later_it_is_the_static_answer() {
 
 #[test]
 fn what_went_under_another_question_is_looked_at_when_it_comes_back() {
-    let mt = model(&sample::torus(3000), Method::Qem);
+    let mt = model(&samples::torus(3000), Method::Qem);
     let (mut cut, mut wanderer) = (Cut::new(&mt), Wanderer::new());
     for step in 0..600 {
         let query = wanderer.next([1.0, 4.0, 0.5][step / 20 % 3]);
@@ -75,7 +76,7 @@ fn what_went_under_another_question_is_looked_at_when_it_comes_back() {
 
 #[test]
 fn patches_lead_from_frame_to_frame() {
-    for mesh in [sample::gyroid(2000), cone(1500)] {
+    for mesh in [samples::gyroid(2000), cone(1500)] {
         let mt = model(&mesh, Method::LindstromTurk);
         let (mut cut, mut wanderer) = (Cut::new(&mt), Wanderer::new());
         cut.update(&wanderer.next(1.0), &Effort::default()).unwrap();
@@ -115,7 +116,7 @@ impl Mirror {
 #[test]
 fn interrupted_anywhere_it_is_a_mesh_and_gets_there_in_the_end() {
     for method in [Method::QemEndpoint, Method::LeeJang] {
-        let mesh = sample::terrain(800);
+        let mesh = samples::terrain(800);
         let mt = model(&mesh, method);
         let expected = topology(&mesh);
         let (mut cut, mut wanderer) = (Cut::new(&mt), Wanderer::new());
@@ -137,7 +138,7 @@ fn interrupted_anywhere_it_is_a_mesh_and_gets_there_in_the_end() {
 
 #[test]
 fn without_time_it_gets_there_piece_by_piece() {
-    let mesh = sample::terrain(3000);
+    let mesh = samples::terrain(3000);
     let mt = model(&mesh, Method::Qem);
     let expected = topology(&mesh);
     let mut wanderer = Wanderer::new();
@@ -165,7 +166,7 @@ fn without_time_it_gets_there_piece_by_piece() {
 
 #[test]
 fn with_hysteresis_it_lies_between_two_answers() {
-    let mt = model(&sample::knot(3000), Method::Qem);
+    let mt = model(&samples::knot(3000), Method::Qem);
     let (mut cut, mut still) = (Cut::new(&mt), Cut::new(&mt));
     cut.set_hysteresis(Some(0.5)).unwrap();
     assert!(cut.set_hysteresis(Some(-1.0)).is_err());

@@ -1,7 +1,7 @@
 //! What of a cut is at a place: held against looking at every triangle.
 
 use glam::{DVec3, Vec3};
-use meshlod_mesh::sample;
+use meshlod_samples as samples;
 use meshlod_spatial::closest_point;
 
 use super::walks::{Dice, each, forest, query};
@@ -51,7 +51,7 @@ fn the_closest_triangle_is_found() {
 
 #[test]
 fn a_small_focus_has_a_small_part() {
-    let mt = Implicit::new(&forest(&sample::torus(5000), Default::default())).unwrap();
+    let mt = Implicit::new(&forest(&samples::torus(5000), Default::default())).unwrap();
     let cut = Cut::at(&mt, &crate::Query::uniform(0.0)).unwrap();
     let at = mt.position(cut.triangles().next().unwrap().1[0]);
     let faces = |focus: Focus| cut.level_within(&focus).unwrap().faces.len();

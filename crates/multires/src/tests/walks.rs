@@ -4,7 +4,8 @@ use std::collections::BTreeSet;
 
 use glam::DVec3;
 use meshlod_fixtures as fixtures;
-use meshlod_mesh::{Connectivity, Mesh, sample};
+use meshlod_mesh::{Connectivity, Mesh};
+use meshlod_samples as samples;
 use meshlod_simplify::{Method, Options};
 
 use crate::implicit::Order;
@@ -23,10 +24,10 @@ pub(crate) const METHODS: [Method; 5] = [
 
 fn meshes() -> Vec<(&'static str, Mesh)> {
     vec![
-        ("sphere", sample::sphere(600)),
-        ("torus", sample::torus(500)),
-        ("terrain", sample::terrain(600)),
-        ("gyroid", sample::gyroid(900)),
+        ("sphere", samples::sphere(600)),
+        ("torus", samples::torus(500)),
+        ("terrain", samples::terrain(600)),
+        ("gyroid", samples::gyroid(900)),
         ("grid", fixtures::grid(10)),
         ("fan", fixtures::fan()),
         ("hourglass", fixtures::hourglass()),
@@ -222,7 +223,7 @@ fn every_encoding_gives_the_same_cuts_by_any_way() {
 /// A closed chain of the right Euler number may still lie folded in itself: areas and volumes tell.
 #[test]
 fn cuts_cover_the_surface_once() {
-    let mesh = sample::torus(4000);
+    let mesh = samples::torus(4000);
     let measure = |mesh: &Mesh| {
         let parts = mesh.faces.iter().map(|&face| {
             let [a, b, c] = mesh.triangle(face);

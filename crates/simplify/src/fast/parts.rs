@@ -330,7 +330,8 @@ fn run<L: Looks>(engine: &mut Engine<'_, L>, live: usize, stop: usize, last: u16
 #[cfg(test)]
 mod tests {
     use meshlod_fixtures as fixtures;
-    use meshlod_mesh::{Mesh, VertexId, sample};
+    use meshlod_mesh::{Mesh, VertexId};
+    use meshlod_samples as samples;
 
     use super::*;
     use crate::fast::fans::Fans;
@@ -395,9 +396,9 @@ mod tests {
     fn meshes() -> [Mesh; 5] {
         let bare = |mesh| Mesh { attributes: None, ..mesh };
         [
-            sample::sphere(3000),
-            sample::knot(3000),
-            bare(sample::terrain(3000)),
+            samples::sphere(3000),
+            samples::knot(3000),
+            bare(samples::terrain(3000)),
             fixtures::grid(40),
             fixtures::cone(2000),
         ]
@@ -426,7 +427,7 @@ mod tests {
 
     #[test]
     fn parts_cost_no_accuracy() {
-        for mesh in [sample::sphere(8000), sample::knot(8000), sample::torus(8000)] {
+        for mesh in [samples::sphere(8000), samples::knot(8000), samples::torus(8000)] {
             let faces = mesh.faces.len() / 10;
             let [one, several] = [usize::MAX, 300].map(|part| {
                 let mut test = Test::new(mesh.clone(), part);
@@ -440,7 +441,7 @@ mod tests {
 
     #[test]
     fn levels_on_the_way_have_few_vertices_that_wait() {
-        let mut test = Test::new(sample::sphere(160_000), 20_000);
+        let mut test = Test::new(samples::sphere(160_000), 20_000);
         let all = &test.parts.store.all;
         let mut untouched: Vec<bool> = all.iter().map(|v| v.flags.any(Flags::OUTER)).collect();
         let mut fine = untouched.iter().filter(|&&is| is).count();
@@ -459,7 +460,7 @@ mod tests {
 
     #[test]
     fn a_target_in_the_midst_of_a_round_is_met_and_gone_on_from() {
-        let mut test = Test::new(sample::sphere(4000), 200);
+        let mut test = Test::new(samples::sphere(4000), 200);
         for faces in [3901, 3900, 3300, 2000, 1999, 500, 50] {
             test.parts.run(faces, NONE, None, &mut |_| ());
             test.check();

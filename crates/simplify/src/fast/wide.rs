@@ -126,7 +126,8 @@ use self::tests::tests_are_narrow;
 mod tests {
     use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 
-    use meshlod_mesh::{Mesh, sample};
+    use meshlod_mesh::Mesh;
+    use meshlod_samples as samples;
 
     use super::*;
     use crate::fast::dress::tests::{faceted, halved};
@@ -141,14 +142,14 @@ mod tests {
 
     #[test]
     fn the_width_is_not_seen() {
-        let bare = Mesh { attributes: None, ..sample::terrain(4000) };
+        let bare = Mesh { attributes: None, ..samples::terrain(4000) };
         for (mesh, method) in [
-            (sample::knot(4000), Method::LindstromTurk),
-            (sample::fish(4000), Method::LindstromTurk),
-            (sample::terrain(4000), Method::LindstromTurk),
-            (halved(sample::knot(4000)), Method::LindstromTurk),
-            (faceted(sample::torus(2000)), Method::LindstromTurk),
-            (sample::knot(4000), Method::Qem),
+            (samples::knot(4000), Method::LindstromTurk),
+            (samples::fish(4000), Method::LindstromTurk),
+            (samples::terrain(4000), Method::LindstromTurk),
+            (halved(samples::knot(4000)), Method::LindstromTurk),
+            (faceted(samples::torus(2000)), Method::LindstromTurk),
+            (samples::knot(4000), Method::Qem),
             (bare, Method::Qem),
         ] {
             let options = Options { method: Some(method), ..Options::default() };

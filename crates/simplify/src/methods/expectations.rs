@@ -332,14 +332,15 @@ fn only(mut all: impl Iterator<Item = WedgeId>) -> Option<WedgeId> {
 
 #[cfg(test)]
 mod tests {
-    use meshlod_mesh::{Attributes, Connectivity, Layer, LayerKind, Mesh, sample};
+    use meshlod_mesh::{Attributes, Connectivity, Layer, LayerKind, Mesh};
+    use meshlod_samples as samples;
 
     use super::*;
     use crate::options::AttributeWeights;
 
     /// A torus with uvs of its positions.
     fn torus(uv: fn([f64; 3]) -> [f64; 2]) -> (Surface, Expectations) {
-        let mut mesh = sample::torus(300);
+        let mut mesh = samples::torus(300);
         let values = mesh.positions.iter().flat_map(|&p| uv(p)).map(|x| x as f32).collect();
         mesh.attributes = Some(Attributes {
             corners: mesh.faces.iter().map(|face| face.map(|v| WedgeId(v.0))).collect(),

@@ -194,7 +194,8 @@ impl Desk {
 
 #[cfg(test)]
 mod tests {
-    use meshlod_mesh::{Connectivity, FaceId, Mesh, sample};
+    use meshlod_mesh::{Connectivity, FaceId, Mesh};
+    use meshlod_samples as samples;
     use meshlod_spatial::closest_point;
 
     use super::*;
@@ -223,7 +224,7 @@ mod tests {
 
     #[test]
     fn the_energy_is_that_of_brute_force() {
-        let mesh = sample::knot(600);
+        let mesh = samples::knot(600);
         let (mut surface, mut samples) = start(&mesh);
         let (mut hood, mut desk, mut contracted) = (Neighbourhood::default(), Desk::default(), 0);
         for face in (0..mesh.faces.len()).step_by(3).map(FaceId::new) {

@@ -1,4 +1,5 @@
-use meshlod_mesh::{Attributes, Labels, Layer, LayerKind, Mesh, WedgeId, sample};
+use meshlod_mesh::{Attributes, Labels, Layer, LayerKind, Mesh, WedgeId};
+use meshlod_samples as samples;
 
 use super::*;
 use crate::{Method, Options, Target};
@@ -40,14 +41,14 @@ fn there_and_back(mesh: &Mesh, method: Method) -> Progressive {
 #[test]
 fn every_level_comes_back_to_the_bit() {
     for method in Method::ALL {
-        there_and_back(&sample::torus(400), method);
-        there_and_back(&sample::terrain(400), method);
+        there_and_back(&samples::torus(400), method);
+        there_and_back(&samples::terrain(400), method);
     }
 }
 
 /// With uvs and normals of its own, two materials and two objects.
 fn dressed() -> Mesh {
-    let mut mesh = sample::fish(500);
+    let mut mesh = samples::fish(500);
     let count = mesh.faces.len() as u32;
     let labels = |part: u32| Labels {
         names: vec!["one".into(), "two".into()],
@@ -80,7 +81,7 @@ fn faceted() -> Mesh {
 #[test]
 fn attributes_come_back_to_the_bit() {
     for method in Method::ALL {
-        there_and_back(&sample::fish(500), method);
+        there_and_back(&samples::fish(500), method);
         there_and_back(&dressed(), method);
         there_and_back(&faceted(), method);
     }
@@ -88,7 +89,7 @@ fn attributes_come_back_to_the_bit() {
 
 #[test]
 fn a_history_with_a_gap_is_refused() {
-    let mesh = sample::torus(400);
+    let mesh = samples::torus(400);
     let mut simplifier = Simplifier::new(&mesh, &Options::default()).unwrap();
     simplifier.run(Target::Ratio(0.5), &mut ()).unwrap();
     assert!(Progressive::new(simplifier, History::default()).is_none());
@@ -96,7 +97,7 @@ fn a_history_with_a_gap_is_refused() {
 
 #[test]
 fn bytes_and_back_is_the_same() {
-    for mesh in [sample::torus(300), sample::terrain(300), dressed()] {
+    for mesh in [samples::torus(300), samples::terrain(300), dressed()] {
         let mut progressive = there_and_back(&mesh, Method::Qem);
         let bytes = progressive.to_bytes();
         let mut again = Progressive::from_bytes(&bytes).unwrap();

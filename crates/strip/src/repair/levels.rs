@@ -51,7 +51,8 @@ impl LevelStrips {
 #[cfg(test)]
 mod tests {
     use meshlod_fixtures::{fan, grid, hourglass, moebius};
-    use meshlod_mesh::{Mesh, sample};
+    use meshlod_mesh::Mesh;
+    use meshlod_samples as samples;
     use meshlod_simplify::Target;
 
     use super::*;
@@ -77,13 +78,13 @@ mod tests {
 
     #[test]
     fn every_level_is_drawn_on_the_way_up_and_down() {
-        [sample::torus(600), grid(9)].iter().for_each(holds_everywhere);
+        [samples::torus(600), grid(9)].iter().for_each(holds_everywhere);
         [fan(), hourglass(), moebius(20)].iter().for_each(holds_everywhere);
     }
 
     #[test]
     fn strips_stay_good_all_the_way() {
-        let mut strips = start(&sample::torus(2000));
+        let mut strips = start(&samples::torus(2000));
         for percent in (10..=100).rev().chain(10..=100) {
             strips.set_level(strips.tree().contractions_to(2000 * percent / 100));
         }
@@ -93,7 +94,7 @@ mod tests {
 
     #[test]
     fn a_level_that_stays_costs_nothing() {
-        let mut strips = start(&sample::sphere(500));
+        let mut strips = start(&samples::sphere(500));
         assert!(strips.set_level(50) > 0);
         let before = strips.strips();
         assert_eq!(strips.set_level(50), 0);

@@ -203,7 +203,7 @@ impl LiveStrips {
 
 #[cfg(test)]
 mod tests {
-    use meshlod_mesh::sample;
+    use meshlod_samples as samples;
 
     use super::*;
     use crate::stripify::{Options, stripify};
@@ -228,7 +228,7 @@ mod tests {
 
     #[test]
     fn strips_are_taken_over() {
-        let faces = sample::torus(300).faces;
+        let faces = samples::torus(300).faces;
         let strips = stripify(&faces, &Options::default());
         let places = (0..).zip(faces.iter().copied());
         let live = LiveStrips::new(places.map(|(i, f)| (2 * i, f)), &strips, Effort::Quick);
@@ -239,7 +239,7 @@ mod tests {
 
     #[test]
     fn what_is_taken_away_and_put_back_costs_little() {
-        let faces = sample::sphere(2000).faces;
+        let faces = samples::sphere(2000).faces;
         let strips = stripify(&faces, &Options::default());
         let places = || (0..).zip(faces.iter().copied());
         let mut live = LiveStrips::new(places(), &strips, Effort::Thorough);

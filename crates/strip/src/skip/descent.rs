@@ -124,7 +124,8 @@ fn runs(tree: &MergeTree, order: &[VertexId], own: &[u32]) -> Vec<[u32; 2]> {
 #[cfg(test)]
 mod tests {
     use meshlod_fixtures::{fan, hourglass};
-    use meshlod_mesh::{Mesh, sample};
+    use meshlod_mesh::Mesh;
+    use meshlod_samples as samples;
     use meshlod_simplify::Target;
 
     use super::*;
@@ -148,14 +149,14 @@ mod tests {
 
     #[test]
     fn what_changes_is_all_that_changes() {
-        changes_lead_to_every_level(&sample::knot(800));
+        changes_lead_to_every_level(&samples::knot(800));
         changes_lead_to_every_level(&fan());
         changes_lead_to_every_level(&hourglass());
     }
 
     #[test]
     fn little_is_looked_at_for_a_small_step() {
-        let tree = MergeTree::record(&sample::sphere(4000), Target::Faces(0)).unwrap();
+        let tree = MergeTree::record(&samples::sphere(4000), Target::Faces(0)).unwrap();
         let mut descent = Descent::new(tree);
         let half = descent.tree().contractions_to(2000);
         descent.go(half);

@@ -179,7 +179,7 @@ fn whole_faces(faces: &[[VertexId; 3]]) -> Vec<[VertexId; 3]> {
 #[cfg(test)]
 mod tests {
     use meshlod_fixtures::{grid, tetrahedron};
-    use meshlod_mesh::sample;
+    use meshlod_samples as samples;
 
     use super::*;
     use crate::strips::Strips;
@@ -194,7 +194,7 @@ mod tests {
 
     #[test]
     fn levels_are_those_of_the_simplification() {
-        let mesh = sample::knot(1000);
+        let mesh = samples::knot(1000);
         let tree = MergeTree::record(&mesh, Target::Faces(0)).unwrap();
         let options = Options { method: Some(Method::QemEndpoint), ..Options::default() };
         let mut simplifier = Simplifier::new(&mesh, &options).unwrap();
@@ -223,7 +223,7 @@ mod tests {
 
     #[test]
     fn a_history_that_moves_points_is_refused() {
-        let mesh = sample::sphere(200);
+        let mesh = samples::sphere(200);
         let mut history = History::default();
         let mut simplifier = Simplifier::new(&mesh, &Options::default()).unwrap();
         simplifier.run(Target::Ratio(0.5), &mut history).unwrap();
@@ -234,10 +234,10 @@ mod tests {
     fn a_history_of_another_mesh_is_refused() {
         let options = Options { method: Some(Method::QemEndpoint), ..Options::default() };
         let mut history = History::default();
-        let mesh = sample::sphere(200);
+        let mesh = samples::sphere(200);
         let mut simplifier = Simplifier::new(&mesh, &options).unwrap();
         simplifier.run(Target::Ratio(0.5), &mut history).unwrap();
-        for other in [sample::torus(200), tetrahedron()] {
+        for other in [samples::torus(200), tetrahedron()] {
             let error = MergeTree::of_history(&other, &history).err();
             assert!(matches!(error, Some(HistoryError::Foreign(_))), "{error:?}");
         }

@@ -8,6 +8,7 @@ use crate::project::Text;
 /// The map: a crate's folder, and the folders of the project's crates that it may use.
 const MAP: &[(&str, &[&str])] = &[
     ("mesh", &[]),
+    ("samples", &["mesh"]),
     ("spatial", &["mesh"]),
     ("io", &["mesh"]),
     ("picture", &["mesh"]),
@@ -21,7 +22,7 @@ const MAP: &[(&str, &[&str])] = &[
     (
         "meshlod",
         &[
-            "mesh", "spatial", "io", "picture", "measure", "check", "simplify", "codec",
+            "mesh", "samples", "spatial", "io", "picture", "measure", "check", "simplify", "codec",
             "multires", "strip", "flock",
         ],
     ),

@@ -81,15 +81,15 @@ fn in_four(mesh: &Mesh) -> Mesh {
 
 #[cfg(test)]
 mod tests {
-    use meshlod::mesh::sample;
+    use meshlod::samples;
 
     use super::*;
 
     #[test]
     fn a_closed_mesh_in_four_is_closed_and_as_connected() {
-        let mesh = in_four(&sample::torus(200));
+        let mesh = in_four(&samples::torus(200));
         let connectivity = Connectivity::new(&mesh.faces, mesh.positions.len());
-        assert_eq!(mesh.faces.len(), 4 * sample::torus(200).faces.len());
+        assert_eq!(mesh.faces.len(), 4 * samples::torus(200).faces.len());
         assert!(connectivity.is_closed() && connectivity.inconsistent_edges() == 0);
         assert_eq!(mesh.positions.len() + mesh.faces.len(), connectivity.edge_count());
     }

@@ -3,7 +3,8 @@
 use anyhow::{Context, Result};
 use meshlod::io::Precision;
 use meshlod::measure::volume;
-use meshlod::mesh::{Connectivity, Mesh, sample};
+use meshlod::mesh::{Connectivity, Mesh};
+use meshlod::samples;
 use meshlod::simplify::{Method, Options, Target, simplify};
 use meshlod::{ReadOptions, Scene, WriteOptions, read, write};
 
@@ -51,7 +52,7 @@ pub fn section(_: &Project) -> Result<String> {
 
 /// The closed meshes that are here, and a sample.
 fn meshes() -> Result<Vec<(String, Mesh)>> {
-    let mut meshes = vec![("gyroid (sample)".to_owned(), sample::gyroid(50_000))];
+    let mut meshes = vec![("gyroid (sample)".to_owned(), samples::gyroid(50_000))];
     for file in MESHES {
         if let Some(mesh) = meshlod_bench::read(file)? {
             let closed = Connectivity::new(&mesh.faces, mesh.positions.len()).is_closed();

@@ -3,7 +3,8 @@
 use std::collections::BTreeSet;
 
 use meshlod_fixtures as fixtures;
-use meshlod_mesh::{Mesh, VertexId, sample};
+use meshlod_mesh::{Mesh, VertexId};
+use meshlod_samples as samples;
 use meshlod_simplify::{Method, Options};
 
 use super::{Dice, in_order, query, small};
@@ -19,11 +20,11 @@ fn meshes() -> Vec<(&'static str, Mesh)> {
         _ => x,
     };
     vec![
-        ("torus, far away", placed(sample::torus(700), far)),
-        ("terrain, far away", placed(sample::terrain(500), far)),
-        ("knot, with zeros", placed(sample::knot(800), fine)),
-        ("gyroid, large", placed(sample::gyroid(700), |x, _| x * 1.7e20)),
-        ("sphere, small", placed(sample::sphere(600), |x, _| x * 1.7e-20)),
+        ("torus, far away", placed(samples::torus(700), far)),
+        ("terrain, far away", placed(samples::terrain(500), far)),
+        ("knot, with zeros", placed(samples::knot(800), fine)),
+        ("gyroid, large", placed(samples::gyroid(700), |x, _| x * 1.7e20)),
+        ("sphere, small", placed(samples::sphere(600), |x, _| x * 1.7e-20)),
         ("grid", fixtures::grid(9)),
         ("tetrahedron", placed(fixtures::tetrahedron(), |x, _| x / 3.0)),
         ("hourglass", placed(fixtures::hourglass(), |x, _| x / 3.0)),
@@ -186,7 +187,7 @@ fn a_vertex_is_found_where_it_is() {
 /// much as balls have room.
 #[test]
 fn balls_are_around_vertices_where_they_are() {
-    let mut mesh = placed(sample::sphere(2000), |x, k| 0.3 + 1e-4 * x * [1.0, 0.9, 1.1][k]);
+    let mut mesh = placed(samples::sphere(2000), |x, k| 0.3 + 1e-4 * x * [1.0, 0.9, 1.1][k]);
     let first = mesh.positions.len() as u32;
     mesh.positions.extend([[-0.5; 3], [0.5, -0.5, -0.5], [-0.5, 0.5, -0.5]]);
     mesh.faces.push([0, 1, 2].map(|k| VertexId(first + k)));
@@ -219,7 +220,7 @@ fn vertices_of_a_level_can_change_places() {
 
 #[test]
 fn what_is_not_of_the_input_moves_as_little_as_asked() {
-    let mesh = sample::torus(800);
+    let mesh = samples::torus(800);
     let forest = Forest::lossless(&mesh, &Options::default()).unwrap();
     for rounding in [1e-2, 1e-5] {
         let storage = Storage { rounding: Some(rounding), ..small() };
@@ -232,7 +233,7 @@ fn what_is_not_of_the_input_moves_as_little_as_asked() {
 /// On a lattice so coarse that what replaces the input's vertices would fall on each other.
 #[test]
 fn no_triangle_beside_the_input_loses_its_area() {
-    let mesh = sample::knot(4000);
+    let mesh = samples::knot(4000);
     let forest = Forest::lossless(&mesh, &Options::default()).unwrap();
     for part in [1e-2, 2e-2] {
         let storage = Storage { rounding: Some(part * mesh.bounds().diagonal()), ..small() };

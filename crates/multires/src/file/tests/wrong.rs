@@ -1,7 +1,8 @@
 //! Files with the right checksums that say what must not be.
 
 use meshlod_fixtures as fixtures;
-use meshlod_mesh::{Mesh, sample};
+use meshlod_mesh::Mesh;
+use meshlod_samples as samples;
 use meshlod_simplify::Options;
 
 use super::small;
@@ -59,7 +60,7 @@ fn first_flag<'c>(content: &'c mut [u8], numbers: &[usize]) -> &'c mut u8 {
 
 #[test]
 fn flags_that_are_not_known_are_refused() {
-    let mesh = sample::torus(100);
+    let mesh = samples::torus(100);
     let [lossy, lossless] = [lossy(&mesh), lossless(&mesh)].map(|forest| written(&forest));
     for (bytes, flags) in [(&lossy, &[8, 16, 32, 64, 128][..]), (&lossless, &[32, 64, 128])] {
         let archive = Archive::open(bytes.clone()).unwrap();
@@ -85,7 +86,7 @@ fn flags_that_are_not_known_are_refused() {
 #[test]
 fn every_vertex_of_the_finest_mesh_has_its_position() {
     for without in [0, 57] {
-        let mut forest = lossless(&sample::torus(200));
+        let mut forest = lossless(&samples::torus(200));
         let mut exact = Exact::kept();
         let others = (0..forest.vertices as u32).filter(|&leaf| leaf != without);
         others.for_each(|leaf| exact.push(leaf, forest.exact.of(leaf).unwrap()));
@@ -105,7 +106,7 @@ fn every_vertex_of_the_finest_mesh_has_its_position() {
 fn a_position_is_where_its_place_is() {
     let cases: [(usize, f64); 4] = [(0, 2e38), (1, 1e-3), (2, -1e-3), (0, f64::MAX)];
     for (axis, off) in cases {
-        let mut forest = lossless(&sample::torus(200));
+        let mut forest = lossless(&samples::torus(200));
         let mut exact = Exact::kept();
         for leaf in 0..forest.vertices as u32 {
             let mut position = forest.exact.of(leaf).unwrap();
@@ -120,7 +121,7 @@ fn a_position_is_where_its_place_is() {
 
 #[test]
 fn places_are_numbers() {
-    for forest in [lossy(&fixtures::cube()), lossless(&sample::torus(100))] {
+    for forest in [lossy(&fixtures::cube()), lossless(&samples::torus(100))] {
         let mut wrong = written(&forest);
         wrong[40..48].copy_from_slice(&f64::MAX.to_le_bytes());
         wrong[64..72].copy_from_slice(&1000f64.exp2().to_le_bytes());

@@ -1,7 +1,8 @@
 //! Which meshes are height fields.
 
 use meshlod_fixtures as fixtures;
-use meshlod_mesh::{FaceId, Mesh, VertexId, sample};
+use meshlod_mesh::{FaceId, Mesh, VertexId};
+use meshlod_samples as samples;
 
 use super::{SIZES, Sample};
 use crate::right::{HeightField, HeightFieldError};
@@ -37,7 +38,7 @@ fn fields_are_found_along_each_axis_in_any_order() {
             }
         }
     }
-    let terrain = HeightField::of_mesh(&sample::terrain(800)).unwrap();
+    let terrain = HeightField::of_mesh(&samples::terrain(800)).unwrap();
     assert_eq!((terrain.size(), terrain.axis(), terrain.plan.looks_down), ([21, 21], 1, false));
 }
 
@@ -95,7 +96,8 @@ fn what_is_no_field_is_told_where() {
     assert!(matches!(twice, E::Twice { column: 2, row: 1, .. }), "{twice}");
     let bad = fails(&|mesh| mesh.positions[3][2] = f64::NAN);
     assert!(matches!(bad, E::Mesh(_)), "{bad}");
-    for mesh in [sample::sphere(500), sample::torus(300), fixtures::tetrahedron(), Mesh::default()]
+    for mesh in
+        [samples::sphere(500), samples::torus(300), fixtures::tetrahedron(), Mesh::default()]
     {
         let error = HeightField::of_mesh(&mesh).unwrap_err();
         assert!(!error.to_string().is_empty());

@@ -1,4 +1,5 @@
-use meshlod_mesh::{LayerKind, VertexId, sample};
+use meshlod_mesh::{LayerKind, VertexId};
+use meshlod_samples as samples;
 
 use super::*;
 use crate::fast::cost::{Side, costs};
@@ -139,7 +140,7 @@ fn cost_of(vertices: &Vertices, painted: &Painted<'_, 5>, u: u32, v: u32) -> f64
 fn eight_edges_at_seams_cost_what_each_does() {
     let grid = faceted(meshlod_fixtures::grid(12));
     let (mut free, mut held) = (0, 0);
-    for mesh in [halved(sample::knot(3000)), faceted(sample::torus(1000)), grid] {
+    for mesh in [halved(samples::knot(3000)), faceted(samples::torus(1000)), grid] {
         let (_, mut fans, painted) = start::<5>(&mesh);
         let vertices = fans.store.whole();
         let mut all = Vec::new();
@@ -187,7 +188,7 @@ fn slit(mesh: Mesh) -> Mesh {
 
 #[test]
 fn a_crease_that_ends_is_not_forgotten() {
-    let mesh = slit(sample::torus(1000));
+    let mesh = slit(samples::torus(1000));
     let (_, mut fans, painted) = start::<5>(&mesh);
     let vertices = fans.store.whole();
     let mut at_the_end = 0;
@@ -209,9 +210,9 @@ fn a_crease_that_ends_is_not_forgotten() {
 
 #[test]
 fn fields_and_sectors_stay_those_of_the_faces_as_they_are() {
-    check_fields(&halved(sample::torus(3000)), 600);
-    check_fields(&halved(sample::knot(3000)), 1500);
+    check_fields(&halved(samples::torus(3000)), 600);
+    check_fields(&halved(samples::knot(3000)), 1500);
     check_fields(&halved(meshlod_fixtures::grid(30)), 300);
-    check_fields(&faceted(sample::torus(2000)), 500);
+    check_fields(&faceted(samples::torus(2000)), 500);
     check_fields(&faceted(meshlod_fixtures::grid(20)), 200);
 }

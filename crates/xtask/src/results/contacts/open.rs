@@ -82,7 +82,7 @@ fn place(position: [f64; 3]) -> Place {
 
 #[cfg(test)]
 mod tests {
-    use meshlod::mesh::sample;
+    use meshlod::samples;
     use meshlod::simplify::{Options, Simplifier, Target};
 
     use super::*;
@@ -120,7 +120,7 @@ mod tests {
     #[test]
     fn a_border_that_another_component_closes_is_not_open() {
         assert_eq!(open_sides(&halves(3)).len(), 4 * 3 + 2 * 3);
-        assert!(open_sides(&sample::sphere(100)).is_empty());
+        assert!(open_sides(&samples::sphere(100)).is_empty());
     }
 
     #[test]

@@ -25,7 +25,7 @@ use build::Builder;
 use fin::{Fin, Root};
 use patch::{Block, Patch};
 
-use crate::Mesh;
+use meshlod_mesh::Mesh;
 
 /// A fish, from -1 to 1 along x, that swims towards -x; its left side looks to +z.
 ///

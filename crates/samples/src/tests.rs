@@ -3,7 +3,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use glam::DVec3;
 
 use super::*;
-use crate::{Connectivity, VertexId, face_components};
+use meshlod_mesh::{Connectivity, VertexId, face_components};
 
 const CLOSED: [&str; 6] = ["sphere", "torus", "faceted-torus", "knot", "gyroid", "fish"];
 

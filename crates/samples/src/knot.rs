@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use glam::DVec3;
 
 use super::grid::{self, Size};
-use crate::Mesh;
+use meshlod_mesh::Mesh;
 
 /// Turns around the y axis and around the tube of the torus that the knot winds on.
 const TURNS: [f64; 2] = [2.0, 3.0];

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use crate::{Mesh, VertexId};
+use meshlod_mesh::{Mesh, VertexId};
 
 /// A sphere of radius 1: an icosahedron with every face split into n², pushed onto the sphere.
 ///

@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use glam::DVec3;
 
 use super::tetrahedra::polygonize;
-use crate::{Mesh, face_components};
+use meshlod_mesh::{Mesh, face_components};
 
 /// Periods of the gyroid across the lattice.
 const PERIODS: f64 = 3.0;

@@ -8,7 +8,7 @@
 use glam::DVec3;
 
 use super::grid::split;
-use crate::{Mesh, VertexId};
+use meshlod_mesh::{Mesh, VertexId};
 
 /// The surface of where `field` is negative, inside the cube [-1, 1]³ with `cells` cells a side.
 ///

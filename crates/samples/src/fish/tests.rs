@@ -1,7 +1,7 @@
 use std::collections::BTreeSet;
 
 use super::*;
-use crate::{Attributes, Connectivity, LayerKind, Twin, VertexId, WedgeId};
+use meshlod_mesh::{Attributes, Connectivity, LayerKind, Twin, VertexId, WedgeId};
 
 fn attributes(mesh: &Mesh) -> &Attributes {
     mesh.attributes.as_ref().expect("a fish has attributes")
@@ -42,7 +42,7 @@ fn charts_are_many_and_seams_few() {
     let seams = connectivity.edges().filter(|&side| flat.twin(side) == Twin::Boundary).count();
     assert!((100..800).contains(&seams), "{seams} seams");
     // The body, two sides of six fins, three rings of two eyes, the laces of mouth and tail.
-    let (_, charts) = crate::face_components(&wedges, attributes(&mesh).wedge_count);
+    let (_, charts) = meshlod_mesh::face_components(&wedges, attributes(&mesh).wedge_count);
     assert_eq!(charts, 1 + 12 + 6 + 2);
 }
 

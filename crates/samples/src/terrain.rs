@@ -3,7 +3,7 @@
 use glam::{DVec2, DVec3};
 
 use super::grid::{self, Size};
-use crate::Mesh;
+use meshlod_mesh::Mesh;
 
 /// Mountains over the square [-1, 1]² of x and z, heights along +y; one surface with one boundary.
 ///

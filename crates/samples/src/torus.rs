@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use glam::DVec3;
 
 use super::grid::{self, Size};
-use crate::Mesh;
+use meshlod_mesh::Mesh;
 
 /// From the axis to the middle of the tube.
 const RING: f64 = 0.7;

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use glam::DVec3;
 
 use super::patch::{Chart, Patch, Spot, Within, in_cell, rim, within};
-use crate::{Attributes, Layer, LayerKind, Mesh, VertexId, WedgeId};
+use meshlod_mesh::{Attributes, Layer, LayerKind, Mesh, VertexId, WedgeId};
 
 /// Cells 14 and 15 of the texture hold the seams of the mouth and the tail.
 const LACES: [usize; 2] = [14, 15];

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use crate::{Mesh, VertexId};
+use meshlod_mesh::{Mesh, VertexId};
 
 /// How many quads each way: `columns` first, `rows` second.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -1,4 +1,4 @@
-//! Procedural meshes of any size, the same on every run.
+//! Procedural triangle meshes of any size, the same on every run.
 //!
 //! Every sample takes the number of faces wanted and comes as near as its structure allows; each
 //! says how near. Model units are arbitrary: each fits about [-1, 1]³. Up is +y.
@@ -9,11 +9,10 @@
 //! point within an ulp of the surface could take the other side.
 //!
 //! ```
-//! use meshlod_mesh::sample;
-//!
-//! let mesh = sample::by_name("knot", Some(20_000)).expect("a knot is known");
+//! let mesh = meshlod_samples::by_name("knot", Some(20_000)).expect("a knot is known");
 //! assert!(mesh.faces.len().abs_diff(20_000) < 200);
 //! ```
+#![forbid(unsafe_code)]
 
 mod fish;
 mod grid;
@@ -33,7 +32,7 @@ pub use sphere::sphere;
 pub use terrain::terrain;
 pub use torus::{faceted_torus, torus};
 
-use crate::Mesh;
+use meshlod_mesh::Mesh;
 
 /// The samples that [`by_name`] knows.
 pub const NAMES: [&str; 7] =
