@@ -29,7 +29,7 @@ pub fn seal(bytes: &mut [u8]) {
         let checksum = crc32fast::hash(&bytes[FIELD_LENGTH..]);
         bytes[FIELD_CHECKSUM..FIELD_LENGTH].copy_from_slice(&checksum.to_le_bytes());
     } else {
-        Archive::seal(bytes);
+        Archive::rewrite_checksums(bytes);
     }
 }
 
@@ -63,7 +63,7 @@ pub(crate) fn seeds() -> Vec<Vec<u8>> {
 
 /// With chunks so small that there are some.
 fn contractions(forest: Result<Forest, BuildError>) -> Vec<u8> {
-    let storage = Storage { in_chunk: 8, ..Storage::default() };
+    let storage = Storage { updates_per_chunk: 8, ..Storage::default() };
     plain(&Archive::write(&forest.expect("a mesh"), &storage).expect("a proof").0)
 }
 

@@ -35,9 +35,9 @@ pub fn open(path: &Path, session: &Session) -> Result<ModelFile<File>, Failure> 
     let file = File::open(path).map_err(|error| Failure::at(path, error))?;
     let model = ModelFile::open(file).map_err(|error| Failure::at(path, error))?;
     if let ModelFile::Contractions(archive) = &model
-        && archive.whole_chunks() < archive.chunk_count()
+        && archive.complete_chunks() < archive.chunk_count()
     {
-        let (there, all) = (archive.whole_chunks(), archive.chunk_count());
+        let (there, all) = (archive.complete_chunks(), archive.chunk_count());
         let reason = format_args!("the file is cut off: {there} of its {all} chunks are there");
         session.warn(Failure::at(path, reason));
     }

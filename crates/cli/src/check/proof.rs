@@ -29,7 +29,7 @@ fn prove_contractions(
     session.progress.stage("proving");
     let proved = archive.read_chunks(archive.chunk_count());
     let (model, certificate) = proved.map_err(|error| Failure::at(path, error))?;
-    let [there, chunks] = [archive.whole_chunks(), archive.chunk_count()];
+    let [there, chunks] = [archive.complete_chunks(), archive.chunk_count()];
     let kind = model_file::error_kind(archive);
     let json = json!({
         "file": files::name(path),

@@ -148,7 +148,7 @@ impl Build {
         }
         session.progress.stage("proving and packing");
         let rounding = (!self.lossless).then(|| self.rounding(mesh));
-        let storage = Storage { rounding, in_chunk: self.in_chunk };
+        let storage = Storage { rounding, updates_per_chunk: self.in_chunk };
         let written = Archive::write(&forest, &storage);
         let (bytes, certificate) = written.map_err(|error| Failure::at(&self.input, error))?;
         let archive = Archive::open(bytes).map_err(|error| Failure::at(&self.output, error))?;

@@ -119,7 +119,7 @@ impl Extract {
             rounding: model_file::rounding(archive),
             lossless: archive.is_lossless(),
             error_kind: model_file::error_kind(archive),
-            chunks: [taken.chunks, archive.whole_chunks(), archive.chunk_count()],
+            chunks: [taken.chunks, archive.complete_chunks(), archive.chunk_count()],
             updates: taken.updates,
             bytes: taken.bytes,
         })

@@ -6,9 +6,9 @@
 //! A contraction pairs the points of its two sides ([`overlay`]) and finds the new vertex a shadow that
 //! holds what has to be in it. How far shadows reach is the bound.
 
-mod cell;
+mod enclosing_ball;
 mod overlay;
-mod shadow;
+mod plane_triangle;
 mod stars;
 #[cfg(test)]
 mod tests;
@@ -17,8 +17,8 @@ use glam::{DVec3, Vec3};
 
 use crate::forest::Forest;
 use crate::frame::Length16;
+use enclosing_ball::EnclosingBall;
 use overlay::{Fragment, Overlay};
-use shadow::Shadow;
 use stars::Stars;
 
 /// What is known of an update's error.
@@ -48,8 +48,8 @@ impl Forest {
     pub fn measure_bounds(&mut self) {
         let mut stars = Stars::new(self);
         let mut overlay = Overlay::default();
-        let mut shadows: Vec<Shadow> =
-            (0..self.vertices as u32).map(|leaf| Shadow::of(self.place(leaf))).collect();
+        let mut shadows: Vec<EnclosingBall> =
+            (0..self.vertices as u32).map(|leaf| EnclosingBall::point(self.place(leaf))).collect();
         // By node: the greatest bound of those that need its update.
         let mut asked = vec![Length16::default(); self.positions.len()];
         for u in 0..self.updates.len() {

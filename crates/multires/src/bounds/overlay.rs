@@ -3,8 +3,8 @@
 
 use glam::{DVec2, DVec3, Vec3};
 
-use super::cell::{Cell, Corner, Demand, demand};
-use super::shadow::{Shadow, ball_around};
+use super::enclosing_ball::{EnclosingBall, enclosing_ball};
+use super::plane_triangle::{Constraint, PlaneCorner, PlaneTriangle, add_constraints};
 
 /// An update's sides.
 pub(super) struct Fragment<'f> {
@@ -19,11 +19,11 @@ pub(super) struct Fragment<'f> {
 #[derive(Debug, Default)]
 pub(super) struct Overlay {
     coarse: Vec<[u32; 3]>,
-    fine_cells: Vec<Cell>,
-    coarse_cells: Vec<Cell>,
-    demands: Vec<Demand>,
+    fine_triangles: Vec<PlaneTriangle>,
+    coarse_triangles: Vec<PlaneTriangle>,
+    constraints: Vec<Constraint>,
     /// What the shadow of the new vertex must hold.
-    balls: Vec<Shadow>,
+    balls: Vec<EnclosingBall>,
     /// By how much shadows around have to grow.
     growth: Vec<(u32, f64)>,
 }
@@ -34,30 +34,34 @@ const SLACK: f64 = 1.0 / (1 << 28) as f64;
 /// Where the new vertex counts less than this, shadows around it grow instead: there its own would have
 /// to grow by several times what lacks. Faces of the bunny's and the horse's cut to 1 % of the diagonal
 /// for 0.02, 0.15, 0.25, 0.35 and 0.5: 3118, 2738, 2682, 2501, 2992 and 2364, 2328, 2334, 2132, 2478.
-const SHARE: f64 = 0.35;
+const MIN_SHARE: f64 = 0.35;
 
 /// Sides of more faces are not laid into a plane: it costs the square.
-const MOST_FACES: usize = 64;
+const MAX_FACES: usize = 64;
 
 /// Where the place beyond open edges is laid, in sizes of the sides.
 const FAR: f64 = 16.0;
 
 impl Overlay {
     /// The shadow of the new vertex. Those around it may have to grow.
-    pub(super) fn contract(&mut self, of: &Fragment<'_>, shadows: &mut [Shadow]) -> Shadow {
+    pub(super) fn contract(
+        &mut self,
+        of: &Fragment<'_>,
+        shadows: &mut [EnclosingBall],
+    ) -> EnclosingBall {
         self.coarse.clear();
-        let coarse = of.fine.iter().filter(|face| !of.dies(face));
-        self.coarse.extend(coarse.map(|face| face.map(|v| of.moved(v))));
+        let coarse = of.fine.iter().filter(|face| !of.is_collapsed(face));
+        self.coarse.extend(coarse.map(|face| face.map(|v| of.contracted(v))));
         let (place, size) = (of.place(of.node), of.size());
-        let moved = self.by_moving(of, shadows, size);
-        if of.fine.len() > MOST_FACES {
+        let moved = self.ball_by_vertex_motion(of, shadows, size);
+        if of.fine.len() > MAX_FACES {
             return moved;
         }
         for direction in of.directions(&self.coarse) {
-            if self.lay(of, direction, size, shadows).is_none() {
+            if self.project(of, direction, size, shadows).is_none() {
                 continue;
             }
-            let laid = self.fit(place, size * SLACK);
+            let laid = self.fit_ball(place, size * SLACK);
             let growth = self.growth.iter().map(|grown| grown.1).fold(0.0, f64::max);
             if laid.reach(place) + growth < moved.reach(place) {
                 for (node, by) in self.growth.drain(..) {
@@ -70,28 +74,33 @@ impl Overlay {
     }
 
     /// The shadow if each face is paired with what becomes of it, point by point.
-    fn by_moving(&mut self, of: &Fragment<'_>, shadows: &[Shadow], size: f64) -> Shadow {
+    fn ball_by_vertex_motion(
+        &mut self,
+        of: &Fragment<'_>,
+        shadows: &[EnclosingBall],
+        size: f64,
+    ) -> EnclosingBall {
         if self.coarse.is_empty() {
-            return Shadow { center: of.place(of.node), radius: f64::INFINITY };
+            return EnclosingBall { center: of.place(of.node), radius: f64::INFINITY };
         }
         self.balls.clear();
         self.balls.extend(of.children.map(|child| shadows[child as usize]));
         // A face that would become an edge of no face is paired with the new vertex.
-        let is_left = |v: u32| self.coarse.iter().any(|face| face.contains(&of.moved(v)));
-        let dying = of.fine.iter().filter(|face| of.dies(face)).flatten();
+        let is_left = |v: u32| self.coarse.iter().any(|face| face.contains(&of.contracted(v)));
+        let dying = of.fine.iter().filter(|face| of.is_collapsed(face)).flatten();
         self.balls.extend(dying.filter(|&&v| !is_left(v)).map(|&v| shadows[v as usize]));
-        let ball = ball_around(&self.balls);
-        Shadow { radius: ball.radius + size * SLACK, ..ball }
+        let ball = enclosing_ball(&self.balls);
+        EnclosingBall { radius: ball.radius + size * SLACK, ..ball }
     }
 
     /// Lays both sides into the plane at right angles to a direction; none where a triangle is turned
     /// over or thin there.
-    fn lay(
+    fn project(
         &mut self,
         of: &Fragment<'_>,
         direction: DVec3,
         size: f64,
-        shadows: &[Shadow],
+        shadows: &[EnclosingBall],
     ) -> Option<()> {
         let (right, up) = direction.any_orthonormal_pair();
         let origin = of.place(of.node);
@@ -99,20 +108,20 @@ impl Overlay {
             let from_here = of.place(node) - origin;
             let at = DVec2::new(right.dot(from_here), up.dot(from_here));
             if node == of.node {
-                return Corner { node, at, share: 1.0, ..Corner::default() };
+                return PlaneCorner { node, at, share: 1.0, ..PlaneCorner::default() };
             }
-            let Shadow { center, radius } = shadows[node as usize];
-            Corner { node, at, center: center - origin, radius, share: 0.0 }
+            let EnclosingBall { center, radius } = shadows[node as usize];
+            PlaneCorner { node, at, center: center - origin, radius, share: 0.0 }
         };
         let sides = [
-            (of.fine, &of.children[..], &mut self.fine_cells),
-            (&self.coarse[..], &[of.node][..], &mut self.coarse_cells),
+            (of.fine, &of.children[..], &mut self.fine_triangles),
+            (&self.coarse[..], &[of.node][..], &mut self.coarse_triangles),
         ];
         let mut open = [const { Vec::new() }; 2];
         for ((faces, inner, cells), open) in sides.into_iter().zip(&mut open) {
             cells.clear();
             for face in faces {
-                cells.push(Cell::new(face.map(laid), false)?);
+                cells.push(PlaneTriangle::new(face.map(laid), false)?);
             }
             *open = open_edges(faces, inner);
         }
@@ -122,46 +131,47 @@ impl Overlay {
         let beyond = |[a, b]: [u32; 2], inner: &[u32]| {
             let edge = [b, a].map(laid);
             let inner = edge.iter().filter(|corner| inner.contains(&corner.node));
-            let end = Corner::between(inner.copied(), outside * (FAR * size));
-            Cell::new([edge[0], edge[1], end], true)
+            let end = PlaneCorner::between(inner.copied(), outside * (FAR * size));
+            PlaneTriangle::new([edge[0], edge[1], end], true)
         };
         for &edge in &open[0] {
-            self.fine_cells.push(beyond(edge, &of.children)?);
+            self.fine_triangles.push(beyond(edge, &of.children)?);
         }
         for &edge in &open[1] {
-            self.coarse_cells.push(beyond(edge, &[of.node])?);
+            self.coarse_triangles.push(beyond(edge, &[of.node])?);
         }
         Some(())
     }
 
     /// The shadow that the new vertex must have, and by how much those around it must grow.
-    fn fit(&mut self, place: DVec3, slack: f64) -> Shadow {
-        self.demands.clear();
-        for fine in &self.fine_cells {
-            for (i, coarse) in self.coarse_cells.iter().enumerate() {
-                if !(fine.is_outside && coarse.is_outside) {
-                    demand(fine, coarse, i, &mut self.demands);
+    fn fit_ball(&mut self, place: DVec3, slack: f64) -> EnclosingBall {
+        self.constraints.clear();
+        for fine in &self.fine_triangles {
+            for (i, coarse) in self.coarse_triangles.iter().enumerate() {
+                if !(fine.is_virtual && coarse.is_virtual) {
+                    add_constraints(fine, coarse, i, &mut self.constraints);
                 }
             }
         }
         self.balls.clear();
-        let own = self.demands.iter().filter(|demand| demand.share >= SHARE);
-        self.balls.extend(own.map(|Demand { ball, share, .. }| Shadow {
+        let own = self.constraints.iter().filter(|constraint| constraint.share >= MIN_SHARE);
+        self.balls.extend(own.map(|Constraint { ball, share, .. }| EnclosingBall {
             center: ball.center / share,
             radius: ball.radius / share,
         }));
-        let ball = ball_around(&self.balls);
-        let radius = ball.radius + slack / SHARE;
+        let ball = enclosing_ball(&self.balls);
+        let radius = ball.radius + slack / MIN_SHARE;
         self.growth.clear();
-        for demand in self.demands.iter().filter(|demand| demand.share < SHARE) {
-            let Demand { ball: asked, share, coarse } = demand;
+        for constraint in self.constraints.iter().filter(|constraint| constraint.share < MIN_SHARE)
+        {
+            let Constraint { ball: asked, share, coarse } = constraint;
             let lack = asked.reach(share * ball.center) - share * radius + slack;
-            let others = self.coarse_cells[*coarse].corners.iter().filter(|c| c.share == 0.0);
+            let others = self.coarse_triangles[*coarse].corners.iter().filter(|c| c.share == 0.0);
             for other in others {
                 grow(&mut self.growth, other.node, lack / (1.0 - share));
             }
         }
-        Shadow { center: place + ball.center, radius }
+        EnclosingBall { center: place + ball.center, radius }
     }
 }
 
@@ -171,12 +181,12 @@ impl Fragment<'_> {
     }
 
     /// What a node of the fine side becomes.
-    fn moved(&self, node: u32) -> u32 {
+    fn contracted(&self, node: u32) -> u32 {
         if self.children.contains(&node) { self.node } else { node }
     }
 
     /// Whether a face of the fine side becomes an edge.
-    fn dies(&self, face: &[u32; 3]) -> bool {
+    fn is_collapsed(&self, face: &[u32; 3]) -> bool {
         self.children.iter().all(|child| face.contains(child))
     }
 
@@ -236,7 +246,7 @@ mod tests {
     use crate::tests::walks::{Dice, each};
 
     /// Places in a cell, on its edges and at its corners too.
-    fn places<'c>(cell: &'c Cell, dice: &'c mut Dice) -> impl Iterator<Item = DVec2> + 'c {
+    fn places<'c>(cell: &'c PlaneTriangle, dice: &'c mut Dice) -> impl Iterator<Item = DVec2> + 'c {
         (0..12).map(|i| {
             let mut weights = [0; 3].map(|_| dice.roll());
             weights[i % 3] *= f64::from(u8::from(i > 2));
@@ -246,21 +256,21 @@ mod tests {
         })
     }
 
-    fn covers(cell: &Cell, place: DVec2) -> bool {
+    fn covers(cell: &PlaneTriangle, place: DVec2) -> bool {
         cell.weights.iter().all(|(slope, rest)| slope.dot(place) + rest > -1e-9)
     }
 
     /// Each place of each triangle is covered by the other side, and wherever both are, the shadow on
     /// the coarse side holds that on the fine side.
-    fn check(overlay: &Overlay, place: DVec3, shadows: &[Shadow], dice: &mut Dice) {
-        let mut coarse = overlay.coarse_cells.clone();
+    fn check(overlay: &Overlay, place: DVec3, shadows: &[EnclosingBall], dice: &mut Dice) {
+        let mut coarse = overlay.coarse_triangles.clone();
         for corner in coarse.iter_mut().flat_map(|cell| &mut cell.corners) {
-            let Shadow { center, radius } = shadows[corner.node as usize];
+            let EnclosingBall { center, radius } = shadows[corner.node as usize];
             (corner.center, corner.radius) = (center - place, radius);
         }
-        let sides = [(&overlay.fine_cells, &coarse), (&coarse, &overlay.fine_cells)];
+        let sides = [(&overlay.fine_triangles, &coarse), (&coarse, &overlay.fine_triangles)];
         for (i, (from, to)) in sides.into_iter().enumerate() {
-            for cell in from.iter().filter(|cell| !cell.is_outside) {
+            for cell in from.iter().filter(|cell| !cell.is_virtual) {
                 for place in places(cell, dice) {
                     let mut pairs = 0;
                     for other in to.iter().filter(|other| covers(other, place)) {
@@ -283,8 +293,9 @@ mod tests {
             let mut dice = Dice(1);
             let mut stars = Stars::new(forest);
             let mut overlay = Overlay::default();
-            let mut shadows: Vec<Shadow> =
-                (0..forest.vertices as u32).map(|leaf| Shadow::of(forest.place(leaf))).collect();
+            let mut shadows: Vec<EnclosingBall> = (0..forest.vertices as u32)
+                .map(|leaf| EnclosingBall::point(forest.place(leaf)))
+                .collect();
             let mut count = [0; 2];
             for u in 0..forest.updates.len() {
                 let (node, children) = (forest.node(u) as u32, forest.updates[u].children);
@@ -293,11 +304,11 @@ mod tests {
                 let before = shadows.clone();
                 let shadow = overlay.contract(&fragment, &mut shadows);
                 shadows.push(shadow);
-                if shadow != overlay.by_moving(&fragment, &before, fragment.size()) {
+                if shadow != overlay.ball_by_vertex_motion(&fragment, &before, fragment.size()) {
                     // What it was laid in last is what it has taken.
                     check(&overlay, fragment.place(node), &shadows, &mut dice);
                     count[0] += 1;
-                    count[1] += usize::from(overlay.fine_cells.iter().any(|c| c.is_outside));
+                    count[1] += usize::from(overlay.fine_triangles.iter().any(|c| c.is_virtual));
                 }
             }
             let updates = forest.updates.len();
@@ -313,7 +324,8 @@ mod tests {
         let positions = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.5, 9.0, 0.0], [0.0, 1.0, 0.0]];
         let positions: Vec<_> = positions.into_iter().chain([[-1.0, 0.0, 0.0], [0.5; 3]]).collect();
         let of = |fine| Fragment { fine, children: [0, 1], node: 5, positions: &positions };
-        let shadows: Vec<Shadow> = (0..5).map(|node| Shadow::of(of(&[]).place(node))).collect();
+        let shadows: Vec<EnclosingBall> =
+            (0..5).map(|node| EnclosingBall::point(of(&[]).place(node))).collect();
         let radius = |fine| Overlay::default().contract(&of(fine), &mut shadows.clone()).radius;
         assert!(radius(&[[0, 1, 2], [0, 3, 4]]) > 4.5);
         assert!(radius(&[[0, 1, 3], [0, 3, 4]]) < 0.6);

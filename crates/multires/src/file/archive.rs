@@ -1,8 +1,8 @@
 //! Reads a file: all of it, its first part, or what a query needs.
 
-use super::header::{self, FIXED, Header, Stored};
-use super::known::Known;
-use super::source::{Source, piece};
+use super::decoder_state::DecoderState;
+use super::header::{self, FIXED_LEN, Header, Section};
+use super::source::{Source, read_range};
 use super::{FileError, Storage, base, chunk, write};
 use crate::bounds::ErrorKind;
 use crate::cut::{Certificate, Cut};
@@ -18,8 +18,8 @@ use crate::query::Query;
 pub struct Archive<S> {
     source: S,
     pub(super) header: Header,
-    /// How many of its chunks are there as a whole.
-    whole: usize,
+    /// How many of its chunks are complete.
+    complete: usize,
 }
 
 /// What a query reads of a file.
@@ -50,8 +50,8 @@ impl Archive<Vec<u8>> {
 
     /// Writes the checksums that fit into bytes that were changed, for tests of [`Archive::read`].
     #[doc(hidden)]
-    pub fn seal(bytes: &mut [u8]) {
-        header::seal(bytes);
+    pub fn rewrite_checksums(bytes: &mut [u8]) {
+        header::rewrite_checksums(bytes);
     }
 }
 
@@ -61,15 +61,15 @@ impl<S: Source> Archive<S> {
     /// One that is something else, damaged, or ends before its coarsest mesh does.
     pub fn open(source: S) -> Result<Self, FileError> {
         let length = source.length()?;
-        let start = piece(&source, 0, FIXED as u64, "the header")?;
+        let start = read_range(&source, 0, FIXED_LEN as u64, "the header")?;
         let header = Header::length(&start)? as u64;
-        let header = Header::from_bytes(&piece(&source, 0, header, "the index")?)?;
-        let mut this = Self { source, header, whole: 0 };
-        let there = this.ends().take_while(|&end| end <= length).count();
+        let header = Header::from_bytes(&read_range(&source, 0, header, "the index")?)?;
+        let mut this = Self { source, header, complete: 0 };
+        let there = this.chunk_ends().take_while(|&end| end <= length).count();
         let truncated = FileError::Truncated { at: length, what: "the coarsest mesh" };
-        this.whole = there.checked_sub(1).ok_or(truncated)?;
-        match this.ends().last() {
-            Some(at) if at < length => Err(FileError::Rest { at }),
+        this.complete = there.checked_sub(1).ok_or(truncated)?;
+        match this.chunk_ends().last() {
+            Some(at) if at < length => Err(FileError::TrailingData { at }),
             _ => Ok(this),
         }
     }
@@ -80,12 +80,12 @@ impl<S: Source> Archive<S> {
     }
 
     /// How many of its chunks are there; the rest is cut off, and only missing.
-    pub fn whole_chunks(&self) -> usize {
-        self.whole
+    pub fn complete_chunks(&self) -> usize {
+        self.complete
     }
 
     /// Where the coarsest mesh ends, and each chunk.
-    pub fn ends(&self) -> impl Iterator<Item = u64> + '_ {
+    pub fn chunk_ends(&self) -> impl Iterator<Item = u64> + '_ {
         let base = self.header.len() + u64::from(self.header.base.bytes);
         let sizes = self.header.chunks.iter().map(|chunk| u64::from(chunk.stored.bytes));
         let ends = sizes.scan(base, |end, size| {
@@ -138,7 +138,7 @@ impl<S: Source> Archive<S> {
     /// # Errors
     /// A file that is damaged, or made to mislead.
     pub fn read(&self) -> Result<(Implicit, Certificate), FileError> {
-        self.read_chunks(self.whole)
+        self.read_chunks(self.complete)
     }
 
     /// The levels of so many chunks from the start, and the proof that none has a crack. Of all chunks of a
@@ -146,24 +146,24 @@ impl<S: Source> Archive<S> {
     /// # Errors
     /// A file that is damaged, or made to mislead.
     pub fn read_chunks(&self, count: usize) -> Result<(Implicit, Certificate), FileError> {
-        let known = self.load(&(0..count.min(self.whole)).collect::<Vec<_>>())?;
-        let updates = known.updates.len();
-        let model = self.assemble(known);
+        let state = self.load(&(0..count.min(self.complete)).collect::<Vec<_>>())?;
+        let updates = state.updates.len();
+        let model = self.assemble(state);
         if model.update_count() != updates {
-            return Err(FileError::Piece {
-                piece: "the updates".into(),
+            return Err(FileError::Section {
+                section: "the updates".into(),
                 why: "some split what another splits".into(),
             });
         }
-        if count.min(self.whole) == self.header.chunks.len() {
-            self.check_finest(&model)?;
+        if count.min(self.complete) == self.header.chunks.len() {
+            self.check_lossless(&model)?;
         }
         let certificate = model.certify()?;
         Ok((model, certificate))
     }
 
     /// Whether what is lossless has the position of every vertex of the finest mesh.
-    fn check_finest(&self, model: &Implicit) -> Result<(), FileError> {
+    fn check_lossless(&self, model: &Implicit) -> Result<(), FileError> {
         let is_leaf = |&node: &u32| model.update_of(node).is_none();
         let leaves = (0..model.node_count() as u32).filter(is_leaf);
         let bare = leaves.filter(|&leaf| model.exact().of(leaf).is_none()).count();
@@ -171,7 +171,7 @@ impl<S: Source> Archive<S> {
             return Ok(());
         }
         let why = format!("{bare} of its vertices have no position to the bit in a lossless file");
-        Err(FileError::Piece { piece: "the finest mesh".into(), why })
+        Err(FileError::Section { section: "the finest mesh".into(), why })
     }
 
     /// The best cut with at most so many faces, as [`Extractor::at_most`](crate::Extractor::at_most).
@@ -180,16 +180,16 @@ impl<S: Source> Archive<S> {
     /// A query that is none; a file that is damaged, or made to mislead.
     pub fn extract_at_most(&self, faces: usize, query: &Query<'_>) -> Result<Extract, FileError> {
         let is_uniform = Need::new(query, &self.header.about.frame)?.is_uniform();
-        let mut chunks = if is_uniform { self.chunks_up_to(faces) } else { self.whole };
+        let mut chunks = if is_uniform { self.chunks_for_faces(faces) } else { self.complete };
         loop {
             let model = Model::proved(&self.read_chunks(chunks)?.0);
             let level = model.extractor().at_most(faces, query)?.clone();
             // What is as urgent as something that was made may be in chunks further on.
             let least = model.implicit().least_error_above(&level.nodes).get();
-            let rest = &self.header.chunks[chunks..self.whole];
+            let rest = &self.header.chunks[chunks..self.complete];
             let urgent = rest.iter().rposition(|chunk| chunk.area.error >= least);
             let Some(more) = urgent.filter(|_| is_uniform) else {
-                let bytes = self.ends().nth(chunks).unwrap_or(0);
+                let bytes = self.chunk_ends().nth(chunks).unwrap_or(0);
                 let updates = model.implicit().update_count();
                 return Ok(Extract { level, chunks, updates, bytes });
             };
@@ -198,9 +198,9 @@ impl<S: Source> Archive<S> {
     }
 
     /// How many chunks it takes to have so many faces.
-    fn chunks_up_to(&self, faces: usize) -> usize {
+    fn chunks_for_faces(&self, faces: usize) -> usize {
         let mut all = self.header.base_faces as usize;
-        let chunks = self.header.chunks[..self.whole].iter();
+        let chunks = self.header.chunks[..self.complete].iter();
         let needed = chunks.take_while(|chunk| {
             let is_needed = all < faces;
             all = all.saturating_add(chunk.faces as usize);
@@ -218,52 +218,52 @@ impl<S: Source> Archive<S> {
     pub fn extract(&self, query: &Query<'_>) -> Result<Extract, FileError> {
         let need = Need::new(query, &self.header.about.frame)?;
         let wanted = |&chunk: &usize| need.wants_in(&self.header.chunks[chunk].area);
-        let chunks: Vec<usize> = (0..self.whole).filter(wanted).collect();
-        let known = self.load(&chunks)?;
+        let chunks: Vec<usize> = (0..self.complete).filter(wanted).collect();
+        let state = self.load(&chunks)?;
         let stored = chunks.iter().map(|&chunk| u64::from(self.header.chunks[chunk].stored.bytes));
-        let bytes = self.ends().next().unwrap_or(0) + stored.sum::<u64>();
-        let updates = known.updates.len();
-        let model = self.assemble(known);
+        let bytes = self.chunk_ends().next().unwrap_or(0) + stored.sum::<u64>();
+        let updates = state.updates.len();
+        let model = self.assemble(state);
         let level = Cut::at(&model, query)?.level();
         Ok(Extract { level, chunks: chunks.len(), updates, bytes })
     }
 
-    fn assemble(&self, known: Known) -> Implicit {
-        let (base, updates, exact) = known.into_parts();
+    fn assemble(&self, state: DecoderState) -> Implicit {
+        let (base, updates, exact) = state.into_parts();
         Implicit::assemble(self.header.about, base, &updates, &exact)
     }
 
     /// The base and some chunks, by rising numbers.
-    fn load(&self, chunks: &[usize]) -> Result<Known, FileError> {
-        let mut known = self.read_base()?;
+    fn load(&self, chunks: &[usize]) -> Result<DecoderState, FileError> {
+        let mut state = self.read_base()?;
         let (mut first, mut wanted) = (0, chunks.iter().peekable());
-        for (at, (entry, offset)) in self.header.chunks.iter().zip(self.ends()).enumerate() {
+        for (at, (entry, offset)) in self.header.chunks.iter().zip(self.chunk_ends()).enumerate() {
             if wanted.next_if(|&&chunk| chunk == at).is_some() {
                 let name = || format!("chunk {at}");
-                let bytes = self.stored(offset, entry.stored, name)?;
-                let read = chunk::read(&mut known, &bytes, first, entry.updates as usize);
-                read.map_err(|why| FileError::Piece { piece: name(), why: why.to_string() })?;
+                let bytes = self.read_section(offset, entry.stored, name)?;
+                let read = chunk::read(&mut state, &bytes, first, entry.updates as usize);
+                read.map_err(|why| FileError::Section { section: name(), why: why.to_string() })?;
             }
             first += entry.updates;
         }
-        Ok(known)
+        Ok(state)
     }
 
-    fn read_base(&self) -> Result<Known, FileError> {
+    fn read_base(&self) -> Result<DecoderState, FileError> {
         let name = || "the coarsest mesh".to_owned();
-        let bytes = self.stored(self.header.len(), self.header.base, name)?;
+        let bytes = self.read_section(self.header.len(), self.header.base, name)?;
         let read = base::read(&self.header, &bytes);
-        read.map_err(|why| FileError::Piece { piece: name(), why: why.to_string() })
+        read.map_err(|why| FileError::Section { section: name(), why: why.to_string() })
     }
 
     /// A piece of the file that is what was written.
-    fn stored(
+    fn read_section(
         &self,
         offset: u64,
-        stored: Stored,
+        stored: Section,
         name: impl Fn() -> String,
     ) -> Result<Vec<u8>, FileError> {
-        let bytes = piece(&self.source, offset, u64::from(stored.bytes), "a chunk")?;
-        if Stored::of(&bytes) == stored { Ok(bytes) } else { Err(FileError::Checksum(name())) }
+        let bytes = read_range(&self.source, offset, u64::from(stored.bytes), "a chunk")?;
+        if Section::of(&bytes) == stored { Ok(bytes) } else { Err(FileError::Checksum(name())) }
     }
 }

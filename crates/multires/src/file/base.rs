@@ -4,9 +4,9 @@ use std::io;
 
 use thiserror::Error;
 
-use super::exact::{self, Steps};
+use super::decoder_state::DecoderState;
+use super::exact_positions::{self, Deltas};
 use super::header::{Header, UNKNOWN_FLAGS};
-use super::known::Known;
 use super::streams::{Packer, Unpacker};
 use crate::exact::Exact;
 use crate::implicit::{Base, has_three_corners};
@@ -16,56 +16,60 @@ use crate::implicit::{Base, has_three_corners};
 pub(super) enum BaseError {
     /// It cannot be unpacked, or ends too early.
     #[error("it cannot be unpacked")]
-    Packed(#[from] io::Error),
+    Decompress(#[from] io::Error),
     #[error("{0}")]
-    Wrong(&'static str),
+    Invalid(&'static str),
 }
 
-pub(super) fn write(known: &Known) -> io::Result<Vec<u8>> {
-    let Base { positions, faces } = &known.base;
+pub(super) fn write(state: &DecoderState) -> io::Result<Vec<u8>> {
+    let Base { positions, faces } = &state.base;
     let mut packer = Packer::new()?;
     for k in 0..3 {
-        let places = positions.iter().map(|&p| known.lattice.round(p)[k]);
+        let places = positions.iter().map(|&p| state.lattice.round(p)[k]);
         packer.signed(places.scan(0, |last, x| Some(x - std::mem::replace(last, x))))?;
     }
     for k in 0..3 {
         let corners = faces.iter().map(|face| face[k] as i32);
         packer.signed(corners.scan(0, |last, v| Some(v - std::mem::replace(last, v))))?;
     }
-    if known.is_lossless() {
-        let flags = (0..known.roots()).map(|root| known.exact(root).is_some().into());
+    if state.is_lossless() {
+        let flags = (0..state.root_count()).map(|root| state.exact_position(root).is_some().into());
         packer.bytes(&flags.collect::<Vec<u8>>())?;
-        let pair = |root| known.exact(root).map(|exact| [exact, known.guess(root)]);
-        exact::write(&(0..known.roots()).filter_map(pair).collect::<Vec<_>>(), &mut packer)?;
+        let pair =
+            |root| state.exact_position(root).map(|exact| [exact, state.predicted_position(root)]);
+        exact_positions::write(
+            &(0..state.root_count()).filter_map(pair).collect::<Vec<_>>(),
+            &mut packer,
+        )?;
     }
     packer.finish()
 }
 
-/// The coarsest mesh, and nothing more known.
-pub(super) fn read(header: &Header, bytes: &[u8]) -> Result<Known, BaseError> {
+/// Decodes the coarsest mesh into a new decoder state.
+pub(super) fn read(header: &Header, bytes: &[u8]) -> Result<DecoderState, BaseError> {
     let Header { about, lattice, lossless, .. } = *header;
     let (roots, faces) = (header.roots as usize, header.base_faces as usize);
     let mut input = Unpacker::new(bytes)?;
     let [x, y, z, a, b, c] = unpack(&mut input, roots, faces)?;
     let place = |i| lattice.place([x[i], y[i], z[i]]).filter(|&place| about.frame.holds(place));
     let places: Option<Vec<_>> = (0..roots).map(place).collect();
-    let positions = places.ok_or(BaseError::Wrong("a vertex is out of reach"))?;
+    let positions = places.ok_or(BaseError::Invalid("a vertex is out of reach"))?;
     let corner = |v: i64| u32::try_from(v).ok().filter(|&v| (v as usize) < roots);
     let face = |i: usize| Some([corner(a[i])?, corner(b[i])?, corner(c[i])?]);
     let faces: Option<Vec<_>> = (0..faces).map(face).collect();
-    let faces = faces.ok_or(BaseError::Wrong("a face has a vertex that is not there"))?;
+    let faces = faces.ok_or(BaseError::Invalid("a face has a vertex that is not there"))?;
     if !faces.iter().all(has_three_corners) {
-        return Err(BaseError::Wrong("a face has a vertex twice"));
+        return Err(BaseError::Invalid("a face has a vertex twice"));
     }
     let exact = if lossless { Exact::kept() } else { Exact::default() };
-    let mut known = Known::new(about.frame, lattice, Base { positions, faces }, exact);
+    let mut state = DecoderState::new(about.frame, lattice, Base { positions, faces }, exact);
     if lossless {
-        read_exact(&mut known, &mut input)?;
+        read_exact(&mut state, &mut input)?;
     }
-    Ok(known)
+    Ok(state)
 }
 
-/// Places and corners, by axis.
+/// Decodes the cells of the vertices and the corners of the faces, one list per axis or corner.
 fn unpack(input: &mut Unpacker<'_>, roots: usize, faces: usize) -> io::Result<[Vec<i64>; 6]> {
     let mut all: [Vec<i64>; 6] = Default::default();
     for (k, numbers) in all.iter_mut().enumerate() {
@@ -79,15 +83,16 @@ fn unpack(input: &mut Unpacker<'_>, roots: usize, faces: usize) -> io::Result<[V
 }
 
 /// The positions to the bit of those roots that have them.
-fn read_exact(known: &mut Known, input: &mut Unpacker<'_>) -> Result<(), BaseError> {
-    let flags = input.bytes(known.roots() as usize)?;
+fn read_exact(state: &mut DecoderState, input: &mut Unpacker<'_>) -> Result<(), BaseError> {
+    let flags = input.bytes(state.root_count() as usize)?;
     if flags.iter().any(|&flag| flag > 1) {
-        return Err(BaseError::Wrong(UNKNOWN_FLAGS));
+        return Err(BaseError::Invalid(UNKNOWN_FLAGS));
     }
-    let nodes: Vec<u32> = (0..known.roots()).filter(|&root| flags[root as usize] != 0).collect();
-    let steps = Steps::read(nodes.len(), input)?;
+    let nodes: Vec<u32> =
+        (0..state.root_count()).filter(|&root| flags[root as usize] != 0).collect();
+    let steps = Deltas::read(nodes.len(), input)?;
     for (at, node) in nodes.into_iter().enumerate() {
-        known.add_exact(node, &steps, at).map_err(BaseError::Wrong)?;
+        state.add_exact_position(node, &steps, at).map_err(BaseError::Invalid)?;
     }
     Ok(())
 }

@@ -10,10 +10,10 @@ use std::ops::Range;
 use glam::Vec3;
 use thiserror::Error;
 
-use super::exact::{self, Steps};
-use super::family::{Family, Places};
+use super::child_offsets::{ChildOffsets, OffsetStreams};
+use super::decoder_state::DecoderState;
+use super::exact_positions::{self, Deltas};
 use super::header::UNKNOWN_FLAGS;
-use super::known::Known;
 use super::streams::{Packer, Unpacker};
 use crate::forest::{NONE, Odd};
 use crate::frame::Length16;
@@ -25,12 +25,12 @@ use crate::short::{error9, error16, radius8, radius16};
 pub(super) enum ChunkError {
     /// It cannot be unpacked, or ends too early.
     #[error("it cannot be unpacked")]
-    Packed(#[from] io::Error),
+    Decompress(#[from] io::Error),
     /// An update of it cannot be.
     #[error("its update {update}: {why}")]
     Update { update: usize, why: &'static str },
     #[error("it goes on behind its last update")]
-    Rest,
+    TrailingData,
 }
 
 /// Bits of an update's flags.
@@ -41,9 +41,9 @@ const ODD: u8 = 4;
 /// files.
 const EXACT: [u8; 2] = [8, 16];
 
-/// A run of what is known as bytes. All before it must be known.
-pub(super) fn write(known: &Known, run: Range<usize>) -> io::Result<Vec<u8>> {
-    let updates = &known.updates[run.clone()];
+/// Encodes a run of updates. Everything before it must be known to the decoder.
+pub(super) fn write(state: &DecoderState, run: Range<usize>) -> io::Result<Vec<u8>> {
+    let updates = &state.updates[run.clone()];
     let mut packer = Packer::new()?;
     let parents = updates.iter().scan(0, |next, u| {
         let gap = u.parent - *next;
@@ -53,7 +53,7 @@ pub(super) fn write(known: &Known, run: Range<usize>) -> io::Result<Vec<u8>> {
     packer.numbers(&parents.collect::<Vec<_>>())?;
     let flags = |(at, u): (usize, &Loose)| {
         let own = [(OPEN, u.is_open), (GLUED, u.glued), (ODD, u.odd.is_some())];
-        let exact = known.children(at).map(|child| known.exact(child).is_some());
+        let exact = state.children(at).map(|child| state.exact_position(child).is_some());
         let all = own.into_iter().chain(EXACT.into_iter().zip(exact));
         all.filter(|(_, is_so)| *is_so).map(|(flag, _)| flag).sum::<u8>()
     };
@@ -62,14 +62,15 @@ pub(super) fn write(known: &Known, run: Range<usize>) -> io::Result<Vec<u8>> {
         packer.bytes(&updates.iter().map(|u| u.wings[side]).collect::<Vec<_>>())?;
     }
     write_errors(updates, &mut packer)?;
-    write_places(known, updates, &mut packer)?;
+    write_places(state, updates, &mut packer)?;
     for odd in updates.iter().filter_map(|u| u.odd.as_deref()) {
         write_odd(odd, &mut packer)?;
     }
-    if known.is_lossless() {
-        let pair = |node| known.exact(node).map(|exact| [exact, known.guess(node)]);
-        let pairs = run.flat_map(|at| known.children(at)).filter_map(pair);
-        exact::write(&pairs.collect::<Vec<_>>(), &mut packer)?;
+    if state.is_lossless() {
+        let pair =
+            |node| state.exact_position(node).map(|exact| [exact, state.predicted_position(node)]);
+        let pairs = run.flat_map(|at| state.children(at)).filter_map(pair);
+        exact_positions::write(&pairs.collect::<Vec<_>>(), &mut packer)?;
     }
     packer.finish()
 }
@@ -94,18 +95,25 @@ fn write_errors(updates: &[Loose], packer: &mut Packer) -> io::Result<()> {
     packer.numbers(&above)
 }
 
-fn write_places(known: &Known, updates: &[Loose], packer: &mut Packer) -> io::Result<()> {
-    let lattice = known.lattice;
-    let families: Vec<_> =
-        updates.iter().map(|u| Family::of(lattice, known.place(u.parent), u.children)).collect();
-    let folded: Vec<_> =
-        updates.iter().zip(&families).map(|(u, f)| f.folded(&known.slant(u.parent))).collect();
+fn write_places(state: &DecoderState, updates: &[Loose], packer: &mut Packer) -> io::Result<()> {
+    let lattice = state.lattice;
+    let families: Vec<_> = updates
+        .iter()
+        .map(|u| ChildOffsets::of(lattice, state.stored_position(u.parent), u.children))
+        .collect();
+    let folded: Vec<_> = updates
+        .iter()
+        .zip(&families)
+        .map(|(u, f)| f.encoded(&state.normal_predictor(u.parent)))
+        .collect();
     for k in 0..3 {
         packer.signed(folded.iter().map(|family| family.apart[k]))?;
         packer.signed(folded.iter().map(|family| family.middle[k]))?;
     }
     let radii = updates.iter().zip(&families);
-    packer.signed(radii.map(|(u, f)| i32::from(radius8(u.radius)) - i32::from(f.radius8(lattice))))
+    packer.signed(
+        radii.map(|(u, f)| i32::from(radius8(u.radius)) - i32::from(f.predicted_radius8(lattice))),
+    )
 }
 
 fn write_odd(odd: &Odd, packer: &mut Packer) -> io::Result<()> {
@@ -118,31 +126,31 @@ fn write_odd(odd: &Odd, packer: &mut Packer) -> io::Result<()> {
 /// Adds a chunk of so many updates, the first of which has this number in the file. Those whose node
 /// is not known come without it.
 pub(super) fn read(
-    known: &mut Known,
+    state: &mut DecoderState,
     bytes: &[u8],
     first: u32,
     count: usize,
 ) -> Result<(), ChunkError> {
-    known.go_to(first);
+    state.begin_run(first);
     let mut input = Unpacker::new(bytes)?;
     let gaps: Vec<u32> = input.numbers(count)?;
     let flags = input.bytes(count)?;
     let wings = [input.bytes(count)?, input.bytes(count)?];
     let (errors, levels) = read_errors(&mut input, count)?;
-    let places = Places::read(&mut input, count)?;
+    let offsets = OffsetStreams::read(&mut input, count)?;
     let mut next = 0;
     for at in 0..count {
         let bad = |why| ChunkError::Update { update: at, why };
-        if flags[at] & !flags_of(known) != 0 {
+        if flags[at] & !flags_of(state) != 0 {
             return Err(bad(UNKNOWN_FLAGS));
         }
-        let made = known.roots() + 2 * (first + at as u32);
+        let made = state.root_count() + 2 * (first + at as u32);
         let parent = gaps[at].checked_add(next).filter(|&parent| parent < made);
         let parent = parent.ok_or(bad("it splits a node that is not there yet"))?;
         next = parent + 1;
-        let parent = match known.node(parent) {
+        let parent = match state.local_node(parent) {
             // What is below something unknown is unknown.
-            node if node != NONE && known.above(node).is_none_or(|up| up.parent != NONE) => node,
+            node if node != NONE && state.creator(node).is_none_or(|up| up.parent != NONE) => node,
             _ => NONE,
         };
         let mut update = Loose {
@@ -157,59 +165,61 @@ pub(super) fn read(
             children: [Vec3::ZERO; 2],
         };
         if parent != NONE {
-            let family = places.family(at).unfolded(&known.slant(parent));
-            let children = family.children(known.lattice, known.place(parent));
-            let children = children.filter(|children| known.holds(children));
+            let family = offsets.offsets(at).decoded(&state.normal_predictor(parent));
+            let children = family.children(state.lattice, state.stored_position(parent));
+            let children = children.filter(|children| state.are_finite(children));
             update.children = children.ok_or(bad("its children are out of reach"))?;
-            let radius = i64::from(family.radius8(known.lattice)) + i64::from(places.radii[at]);
+            let radius =
+                i64::from(family.predicted_radius8(state.lattice)) + i64::from(offsets.radii[at]);
             let radius = u8::try_from(radius).map_err(|_| bad("its radius is no length"))?;
             update.radius = radius16(radius);
-            update.trouble(known.above(parent)).map_or(Ok(()), |why| Err(bad(why)))?;
+            update.trouble(state.creator(parent)).map_or(Ok(()), |why| Err(bad(why)))?;
         }
-        known.updates.push(update);
+        state.updates.push(update);
     }
-    let nodes = known.roots() + 2 * (first + count as u32);
-    let start = known.updates.len() - count;
+    let nodes = state.root_count() + 2 * (first + count as u32);
+    let start = state.updates.len() - count;
     for at in (0..count).filter(|&at| flags[at] & ODD != 0) {
         let bad = ChunkError::Update { update: at, why: "it brings what is no face, or too many" };
-        let odd = read_odd(&mut input, nodes)?.ok_or(bad)?.renumbered(|node| known.node(node));
-        known.updates[start + at].odd = Some(Box::new(odd));
+        let odd =
+            read_odd(&mut input, nodes)?.ok_or(bad)?.renumbered(|node| state.local_node(node));
+        state.updates[start + at].odd = Some(Box::new(odd));
     }
-    if known.is_lossless() {
-        read_exact(known, &mut input, start, &flags)?;
+    if state.is_lossless() {
+        read_exact(state, &mut input, start, &flags)?;
     }
-    if input.is_over()? { Ok(()) } else { Err(ChunkError::Rest) }
+    if input.is_at_end()? { Ok(()) } else { Err(ChunkError::TrailingData) }
 }
 
 /// The flags that an update may have.
-fn flags_of(known: &Known) -> u8 {
+fn flags_of(state: &DecoderState) -> u8 {
     let of_all = OPEN | GLUED | ODD;
-    if known.is_lossless() { of_all | EXACT[0] | EXACT[1] } else { of_all }
+    if state.is_lossless() { of_all | EXACT[0] | EXACT[1] } else { of_all }
 }
 
 /// The positions of those children that have them, of the updates from `start` on.
 fn read_exact(
-    known: &mut Known,
+    state: &mut DecoderState,
     input: &mut Unpacker<'_>,
     start: usize,
     flags: &[u8],
 ) -> Result<(), ChunkError> {
     let of = |at: usize| {
-        let children = known.children(start + at).into_iter().zip(EXACT);
+        let children = state.children(start + at).into_iter().zip(EXACT);
         children.filter(move |(_, flag)| flags[at] & flag != 0).map(move |(child, _)| (at, child))
     };
     let nodes: Vec<_> = (0..flags.len()).flat_map(of).collect();
-    let steps = Steps::read(nodes.len(), input)?;
+    let steps = Deltas::read(nodes.len(), input)?;
     for (i, (at, node)) in nodes.into_iter().enumerate() {
         // What is not known is nowhere.
-        if known.updates[start + at].parent != NONE {
-            let added = known.add_exact(node, &steps, i);
+        if state.updates[start + at].parent != NONE {
+            let added = state.add_exact_position(node, &steps, i);
             added.map_err(|why| ChunkError::Update { update: at, why })?;
         }
     }
     for at in 0..flags.len() {
-        let parent = known.updates[start + at].parent;
-        if parent != NONE && known.exact(parent).is_some() {
+        let parent = state.updates[start + at].parent;
+        if parent != NONE && state.exact_position(parent).is_some() {
             return Err(ChunkError::Update {
                 update: at,
                 why: "it splits what is of the finest mesh",

@@ -1,7 +1,7 @@
 //! What kind of model a file holds, told by how it starts.
 
 use super::archive::Archive;
-use super::source::{Source, piece};
+use super::source::{Source, read_range};
 use super::{FileError, VERSION};
 use crate::right::{HeightField, HeightPrecision};
 
@@ -28,10 +28,10 @@ impl<S: Source> ModelFile<S> {
     /// A file that is something else, damaged, or cut off too early.
     pub fn open(source: S) -> Result<Self, FileError> {
         let length = source.length()?;
-        if length < BODY as u64 || piece(&source, 0, 8, "its first word")? != FIELD_MAGIC {
+        if length < BODY as u64 || read_range(&source, 0, 8, "its first word")? != FIELD_MAGIC {
             return Archive::open(source).map(Self::Contractions);
         }
-        let bytes = piece(&source, 0, length, "the height field")?;
+        let bytes = read_range(&source, 0, length, "the height field")?;
         let [version, checksum] =
             [8, CHECKSUM].map(|at| u32::from_le_bytes(std::array::from_fn(|k| bytes[at + k])));
         if version != VERSION {

@@ -22,21 +22,21 @@ pub(super) struct Header {
     pub(super) rounding: f64,
     pub(super) roots: u32,
     pub(super) base_faces: u32,
-    pub(super) base: Stored,
-    pub(super) chunks: Vec<Entry>,
+    pub(super) base: Section,
+    pub(super) chunks: Vec<ChunkEntry>,
 }
 
 /// A piece of a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Stored {
+pub(super) struct Section {
     pub(super) bytes: u32,
     pub(super) checksum: u32,
 }
 
 /// A chunk as the index has it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Entry {
-    pub(super) stored: Stored,
+pub(super) struct ChunkEntry {
+    pub(super) stored: Section,
     pub(super) updates: u32,
     /// How many faces its updates bring.
     pub(super) faces: u32,
@@ -44,14 +44,14 @@ pub(super) struct Entry {
     pub(super) area: Area,
 }
 
-/// Up to where the size of everything is known.
-pub(super) const FIXED: usize = 88;
-const ENTRY: usize = 44;
+/// Length of the header without its index, in bytes.
+pub(super) const FIXED_LEN: usize = 88;
+const ENTRY_LEN: usize = 44;
 /// Where the checksum is, and what it is of starts.
-const CHECKSUM: usize = 12;
-const BODY: usize = 16;
+const CHECKSUM_AT: usize = 12;
+const BODY_AT: usize = 16;
 
-impl Stored {
+impl Section {
     pub(super) fn of(bytes: &[u8]) -> Self {
         Self { bytes: bytes.len() as u32, checksum: crc32fast::hash(bytes) }
     }
@@ -60,7 +60,7 @@ impl Stored {
 impl Header {
     /// How many bytes it takes itself.
     pub(super) fn len(&self) -> u64 {
-        (FIXED + ENTRY * self.chunks.len()) as u64
+        (FIXED_LEN + ENTRY_LEN * self.chunks.len()) as u64
     }
 
     /// How many updates all chunks have.
@@ -72,7 +72,7 @@ impl Header {
         let mut out = Vec::with_capacity(self.len() as usize);
         out.extend(MAGIC);
         out.extend(VERSION.to_le_bytes());
-        out.extend([0; BODY - CHECKSUM]);
+        out.extend([0; BODY_AT - CHECKSUM_AT]);
         let kind = self.about.error_kind;
         out.extend(self.lattice.to_bytes());
         let flags = if self.lossless { LOSSLESS } else { 0 };
@@ -84,64 +84,67 @@ impl Header {
         out.extend(origin.iter().flat_map(|x| x.to_le_bytes()));
         out.extend(self.about.frame.length_of_model(1.0).to_le_bytes());
         out.extend([self.diagonal, self.rounding].iter().flat_map(|x| x.to_le_bytes()));
-        for Entry { stored, updates, faces, area } in &self.chunks {
+        for ChunkEntry { stored, updates, faces, area } in &self.chunks {
             let words = [stored.bytes, stored.checksum, *updates, *faces];
             out.extend(words.iter().flat_map(|word| word.to_le_bytes()));
             // Far beyond everything, but a number.
             let [min, max] =
                 [area.min, area.max].map(|x| x.clamp(DVec3::splat(-FAR), DVec3::splat(FAR)));
-            let numbers = [-up(-min), up(max)].map(|corner| corner.to_array());
+            let numbers = [-round_up(-min), round_up(max)].map(|corner| corner.to_array());
             out.extend(numbers.as_flattened().iter().flat_map(|x| x.to_le_bytes()));
-            out.extend(up(DVec3::splat(area.error)).x.to_le_bytes());
+            out.extend(round_up(DVec3::splat(area.error)).x.to_le_bytes());
         }
-        let checksum = crc32fast::hash(&out[BODY..]);
-        out[CHECKSUM..BODY].copy_from_slice(&checksum.to_le_bytes());
+        let checksum = crc32fast::hash(&out[BODY_AT..]);
+        out[CHECKSUM_AT..BODY_AT].copy_from_slice(&checksum.to_le_bytes());
         out
     }
 
-    /// How long the header is that starts like this, at least [`FIXED`] bytes.
+    /// How long the header is that starts like this, at least [`FIXED_LEN`] bytes.
     pub(super) fn length(start: &[u8]) -> Result<usize, FileError> {
         if !start.starts_with(MAGIC) {
             return Err(FileError::Magic);
         }
-        let version = word(start, MAGIC.len());
+        let version = u32_at(start, MAGIC.len());
         if version != VERSION {
             return Err(FileError::Version(version));
         }
-        Ok(FIXED + ENTRY * word(start, 36) as usize)
+        Ok(FIXED_LEN + ENTRY_LEN * u32_at(start, 36) as usize)
     }
 
     /// Of as many bytes as [`Header::length`] says.
     pub(super) fn from_bytes(bytes: &[u8]) -> Result<Self, FileError> {
-        if crc32fast::hash(&bytes[BODY..]) != word(bytes, CHECKSUM) {
+        if crc32fast::hash(&bytes[BODY_AT..]) != u32_at(bytes, CHECKSUM_AT) {
             return Err(FileError::Checksum("the header".into()));
         }
-        let origin = [0, 1, 2].map(|k| double(bytes, 40 + 8 * k));
-        let frame = Frame::from_parts(origin, double(bytes, 64));
-        let lattice = Lattice::from_bytes([bytes[BODY], bytes[BODY + 1]]);
+        let origin = [0, 1, 2].map(|k| f64_at(bytes, 40 + 8 * k));
+        let frame = Frame::from_parts(origin, f64_at(bytes, 64));
+        let lattice = Lattice::from_bytes([bytes[BODY_AT], bytes[BODY_AT + 1]]);
         let bad = |why| FileError::Header(why);
         let this = Self {
             about: About {
                 frame: frame.ok_or(bad("its frame is no place"))?,
-                error_kind: match bytes[BODY + 2] {
+                error_kind: match bytes[BODY_AT + 2] {
                     0 => ErrorKind::Estimate,
                     1 => ErrorKind::Bound,
                     _ => return Err(bad("its errors are of no kind")),
                 },
             },
             lattice: lattice.ok_or(bad("its lattice is none"))?,
-            lossless: bytes[BODY + 3] & LOSSLESS != 0,
-            diagonal: double(bytes, 72),
-            rounding: double(bytes, 80),
-            roots: word(bytes, 20),
-            base_faces: word(bytes, 24),
-            base: Stored { bytes: word(bytes, 28), checksum: word(bytes, 32) },
-            chunks: bytes[FIXED..].chunks_exact(ENTRY).map(Entry::from_bytes).collect(),
+            lossless: bytes[BODY_AT + 3] & LOSSLESS != 0,
+            diagonal: f64_at(bytes, 72),
+            rounding: f64_at(bytes, 80),
+            roots: u32_at(bytes, 20),
+            base_faces: u32_at(bytes, 24),
+            base: Section { bytes: u32_at(bytes, 28), checksum: u32_at(bytes, 32) },
+            chunks: bytes[FIXED_LEN..]
+                .chunks_exact(ENTRY_LEN)
+                .map(ChunkEntry::from_bytes)
+                .collect(),
         };
-        if bytes[BODY + 3] & !LOSSLESS != 0 {
+        if bytes[BODY_AT + 3] & !LOSSLESS != 0 {
             return Err(bad(UNKNOWN_FLAGS));
         }
-        if this.updates() > MOST_UPDATES || this.roots as usize > MOST_UPDATES {
+        if this.updates() > MAX_UPDATES || this.roots as usize > MAX_UPDATES {
             return Err(bad("it has more updates than can be numbered"));
         }
         let is_length = |length: f64| length >= 0.0 && length.is_finite();
@@ -163,15 +166,15 @@ const LOSSLESS: u8 = 1;
 /// What is wrong with others, here and elsewhere.
 pub(super) const UNKNOWN_FLAGS: &str = "it has flags that this program does not know";
 /// Nodes are numbered up to 2³¹: roots, and two an update.
-const MOST_UPDATES: usize = 1 << 29;
+const MAX_UPDATES: usize = 1 << 29;
 
-impl Entry {
+impl ChunkEntry {
     fn from_bytes(bytes: &[u8]) -> Self {
-        let number = |at| f64::from(f32::from_bits(word(bytes, at)));
+        let number = |at| f64::from(f32::from_bits(u32_at(bytes, at)));
         Self {
-            stored: Stored { bytes: word(bytes, 0), checksum: word(bytes, 4) },
-            updates: word(bytes, 8),
-            faces: word(bytes, 12),
+            stored: Section { bytes: u32_at(bytes, 0), checksum: u32_at(bytes, 4) },
+            updates: u32_at(bytes, 8),
+            faces: u32_at(bytes, 12),
             area: Area {
                 min: DVec3::new(number(16), number(20), number(24)),
                 max: DVec3::new(number(28), number(32), number(36)),
@@ -182,8 +185,8 @@ impl Entry {
 }
 
 /// Writes the checksums that fit.
-pub(super) fn seal(bytes: &mut [u8]) {
-    let Some(index) = bytes.get(..FIXED).and_then(|start| Header::length(start).ok()) else {
+pub(super) fn rewrite_checksums(bytes: &mut [u8]) {
+    let Some(index) = bytes.get(..FIXED_LEN).and_then(|start| Header::length(start).ok()) else {
         return;
     };
     if bytes.len() < index {
@@ -191,27 +194,27 @@ pub(super) fn seal(bytes: &mut [u8]) {
     }
     // Of the base, whose size and checksum are in the header, and of each chunk.
     let mut from = index;
-    for at in std::iter::once(28).chain((FIXED..index).step_by(ENTRY)) {
-        let size = word(bytes, at) as usize;
+    for at in std::iter::once(28).chain((FIXED_LEN..index).step_by(ENTRY_LEN)) {
+        let size = u32_at(bytes, at) as usize;
         let Some(piece) = bytes.get(from..).and_then(|rest| rest.get(..size)) else { break };
         let checksum = crc32fast::hash(piece);
         bytes[at + 4..at + 8].copy_from_slice(&checksum.to_le_bytes());
         from += size;
     }
-    let checksum = crc32fast::hash(&bytes[BODY..index]);
-    bytes[CHECKSUM..BODY].copy_from_slice(&checksum.to_le_bytes());
+    let checksum = crc32fast::hash(&bytes[BODY_AT..index]);
+    bytes[CHECKSUM_AT..BODY_AT].copy_from_slice(&checksum.to_le_bytes());
 }
 
-fn word(bytes: &[u8], at: usize) -> u32 {
+fn u32_at(bytes: &[u8], at: usize) -> u32 {
     u32::from_le_bytes(std::array::from_fn(|k| bytes[at + k]))
 }
 
-fn double(bytes: &[u8], at: usize) -> f64 {
+fn f64_at(bytes: &[u8], at: usize) -> f64 {
     f64::from_le_bytes(std::array::from_fn(|k| bytes[at + k]))
 }
 
 /// The least of `f32` that are no less.
-fn up(x: DVec3) -> Vec3 {
+fn round_up(x: DVec3) -> Vec3 {
     let near = x.as_vec3();
     Vec3::select(near.as_dvec3().cmplt(x), near.map(f32::next_up), near)
 }

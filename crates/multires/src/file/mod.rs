@@ -6,21 +6,21 @@
 
 mod archive;
 mod base;
+mod child_offsets;
 mod chunk;
+mod chunk_plan;
 mod container;
-mod exact;
-mod family;
+mod decoder_state;
+mod exact_positions;
 mod header;
-mod keep;
-mod known;
 mod lattice;
-mod plan;
-mod slant;
+mod normal_predictor;
+mod quantize;
 mod source;
-mod spread;
 mod streams;
 #[cfg(test)]
 mod tests;
+mod unflatten;
 mod write;
 
 use std::io;
@@ -65,7 +65,7 @@ pub enum FileError {
     Checksum(String),
     /// It goes on.
     #[error("byte {at}: the last chunk is over, the file goes on")]
-    Rest {
+    TrailingData {
         /// Where it should end.
         at: u64,
     },
@@ -73,10 +73,10 @@ pub enum FileError {
     #[error("the header: {0}")]
     Header(&'static str),
     /// A piece of it cannot be.
-    #[error("{piece}: {why}")]
-    Piece {
+    #[error("{section}: {why}")]
+    Section {
         /// Which.
-        piece: String,
+        section: String,
         /// What is wrong with it.
         why: String,
     },

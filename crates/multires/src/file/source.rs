@@ -57,7 +57,7 @@ impl Source for Vec<u8> {
 }
 
 /// So many bytes, which are not asked for before they are known to be there.
-pub(super) fn piece(
+pub(super) fn read_range(
     source: &impl Source,
     at: u64,
     count: u64,

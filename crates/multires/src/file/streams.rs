@@ -6,12 +6,12 @@ use std::ops::{BitOrAssign, Shl};
 use crate::zigzag::{unzigzag, zigzag};
 
 /// How hard to press: beyond this the dragon takes twice the time for half a percent.
-const EFFORT: i32 = 9;
+const COMPRESSION_LEVEL: i32 = 9;
 /// At most so many numbers are read from a byte, so that a short file cannot fill the memory; real ones
 /// have up to 20.
-const NUMBERS_A_BYTE: usize = 64;
+const MAX_NUMBERS_PER_BYTE: usize = 64;
 /// What a file may take that has more: a frame without content, and how long that is.
-const SKIPPED: [u8; 4] = 0x184D_2A50u32.to_le_bytes();
+const SKIPPABLE_FRAME: [u8; 4] = 0x184D_2A50u32.to_le_bytes();
 
 /// Streams one after the other, each in blocks of its own, so that each has its own code.
 pub(super) struct Packer {
@@ -21,7 +21,7 @@ pub(super) struct Packer {
 
 impl Packer {
     pub(super) fn new() -> io::Result<Self> {
-        let mut encoder = zstd::Encoder::new(Vec::new(), EFFORT)?;
+        let mut encoder = zstd::Encoder::new(Vec::new(), COMPRESSION_LEVEL)?;
         encoder.include_contentsize(false)?;
         Ok(Self { encoder, numbers: 0 })
     }
@@ -55,10 +55,10 @@ impl Packer {
 
     pub(super) fn finish(self) -> io::Result<Vec<u8>> {
         let mut bytes = self.encoder.finish()?;
-        let least = self.numbers / NUMBERS_A_BYTE;
+        let least = self.numbers / MAX_NUMBERS_PER_BYTE;
         if bytes.len() < least {
             let rest = least - bytes.len();
-            bytes.extend(SKIPPED);
+            bytes.extend(SKIPPABLE_FRAME);
             bytes.extend((rest as u32).to_le_bytes());
             bytes.resize(bytes.len() + rest, 0);
         }
@@ -75,18 +75,18 @@ pub(super) struct Unpacker<'b> {
 
 impl<'b> Unpacker<'b> {
     pub(super) fn new(bytes: &'b [u8]) -> io::Result<Self> {
-        let left = (bytes.len() + 1).saturating_mul(NUMBERS_A_BYTE);
+        let left = (bytes.len() + 1).saturating_mul(MAX_NUMBERS_PER_BYTE);
         Ok(Self { decoder: zstd::Decoder::with_buffer(bytes)?, left })
     }
 
     pub(super) fn bytes(&mut self, count: usize) -> io::Result<Vec<u8>> {
-        self.spend(count)?;
+        self.charge(count)?;
         let mut bytes = vec![0; count];
         self.decoder.read_exact(&mut bytes)?;
         Ok(bytes)
     }
 
-    fn spend(&mut self, count: usize) -> io::Result<()> {
+    fn charge(&mut self, count: usize) -> io::Result<()> {
         let left = self.left.checked_sub(count).ok_or(io::ErrorKind::InvalidData)?;
         self.left = left;
         Ok(())
@@ -102,7 +102,7 @@ impl<'b> Unpacker<'b> {
             return Err(io::ErrorKind::InvalidData.into());
         }
         if planes == 0 {
-            self.spend(count)?;
+            self.charge(count)?;
             return Ok(vec![N::from(0); count]);
         }
         let mut numbers: Vec<N> = self.bytes(count)?.into_iter().map(N::from).collect();
@@ -120,7 +120,7 @@ impl<'b> Unpacker<'b> {
     }
 
     /// Whether there is nothing more.
-    pub(super) fn is_over(&mut self) -> io::Result<bool> {
+    pub(super) fn is_at_end(&mut self) -> io::Result<bool> {
         Ok(self.decoder.read(&mut [0])? == 0)
     }
 }
@@ -147,7 +147,7 @@ mod tests {
         assert_eq!(unpacker.numbers::<u32>(3).unwrap(), [0; 3]);
         assert_eq!(unpacker.numbers::<u64>(3).unwrap(), wide);
         assert_eq!(unpacker.bytes(3).unwrap(), b"end");
-        assert!(unpacker.is_over().unwrap());
+        assert!(unpacker.is_at_end().unwrap());
         assert!(unpacker.bytes(1).is_err());
     }
 
@@ -159,7 +159,7 @@ mod tests {
         for end in 0..bytes.len() {
             let read = Unpacker::new(&bytes[..end]).and_then(|mut u| {
                 u.numbers::<u32>(1000)?;
-                u.is_over()
+                u.is_at_end()
             });
             assert!(read.is_err() || end + 3 >= bytes.len(), "{end} of {}", bytes.len());
         }

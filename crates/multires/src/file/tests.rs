@@ -14,7 +14,7 @@ use crate::{Cut, Effort, Forest, Implicit, Level, Model, Query};
 
 /// With chunks so small that a little mesh has many.
 fn small() -> Storage {
-    Storage { in_chunk: 20, ..Storage::default() }
+    Storage { updates_per_chunk: 20, ..Storage::default() }
 }
 
 /// Contractions of edges, and of faces.
@@ -47,7 +47,7 @@ fn in_order<C: Ord>(faces: impl Iterator<Item = [C; 3]>) -> Vec<[C; 3]> {
 fn a_file_gives_back_the_model() {
     each(|what, mesh, forest| {
         let rounded = Implicit::new(
-            &forest.kept(lattice(forest, &small(), diagonal(forest))).unwrap().forest,
+            &forest.quantized(lattice(forest, &small(), diagonal(forest))).unwrap().forest,
         )
         .unwrap();
         let (read, certificate) = Archive::open(bytes(forest)).unwrap().read().unwrap();
@@ -131,10 +131,10 @@ fn every_start_of_a_file_is_a_cut() {
         let bytes = bytes(forest);
         let archive = Archive::open(bytes.clone()).unwrap();
         let mut faces = 0;
-        for (count, end) in archive.ends().enumerate() {
+        for (count, end) in archive.chunk_ends().enumerate() {
             let cut_off = Archive::open(bytes[..end as usize].to_vec()).unwrap();
             assert_eq!(
-                (cut_off.whole_chunks(), cut_off.chunk_count()),
+                (cut_off.complete_chunks(), cut_off.chunk_count()),
                 (count, archive.chunk_count())
             );
             let (model, _) = cut_off.read().unwrap_or_else(|why| panic!("{what}, {count}: {why}"));
@@ -145,7 +145,7 @@ fn every_start_of_a_file_is_a_cut() {
             faces = model.full_faces();
             if let Some(&byte) = bytes.get(end as usize) {
                 let more = Archive::open([&bytes[..end as usize], &[byte]].concat()).unwrap();
-                assert_eq!(more.whole_chunks(), count, "an unfinished chunk is not there yet");
+                assert_eq!(more.complete_chunks(), count, "an unfinished chunk is not there yet");
             }
         }
         assert_eq!(faces, forest.full_faces());
@@ -206,8 +206,8 @@ fn what_is_damaged_is_refused() {
     }
     let mut longer = bytes.clone();
     longer.push(0);
-    assert!(matches!(open(&longer), Err(FileError::Rest { .. })));
-    let base = Archive::open(bytes.clone()).unwrap().ends().next().unwrap() as usize;
+    assert!(matches!(open(&longer), Err(FileError::TrailingData { .. })));
+    let base = Archive::open(bytes.clone()).unwrap().chunk_ends().next().unwrap() as usize;
     for end in 0..base {
         assert!(matches!(open(&bytes[..end]), Err(FileError::Truncated { .. } | FileError::Magic)));
     }
@@ -224,7 +224,7 @@ fn what_is_made_to_mislead_does_no_harm() {
         for at in 0..bytes.len() {
             let mut wrong = bytes.clone();
             wrong[at] = (256.0 * dice.roll()) as u8;
-            Archive::seal(&mut wrong);
+            Archive::rewrite_checksums(&mut wrong);
             let Ok(archive) = Archive::open(wrong) else {
                 refused += 1;
                 continue;

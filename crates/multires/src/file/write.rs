@@ -5,11 +5,11 @@ use std::io;
 use meshlod_mesh::Bounds;
 use rayon::prelude::*;
 
-use super::header::{Entry, Header, Stored};
-use super::keep::Kept;
-use super::known::Known;
+use super::chunk_plan::{ChunkPlan, PlannedChunk, file_node, plan_chunks};
+use super::decoder_state::DecoderState;
+use super::header::{ChunkEntry, Header, Section};
 use super::lattice::Lattice;
-use super::plan::{Chunk, Plan, number, plan};
+use super::quantize::Quantized;
 use super::{FileError, base, chunk};
 use crate::cut::Certificate;
 use crate::forest::Forest;
@@ -24,12 +24,12 @@ pub struct Storage {
     pub rounding: Option<f64>,
     /// About how many updates a chunk has: more are a little smaller on disk, fewer are read in smaller
     /// parts. At least 1.
-    pub in_chunk: usize,
+    pub updates_per_chunk: usize,
 }
 
 impl Default for Storage {
     fn default() -> Self {
-        Self { rounding: None, in_chunk: 1 << 12 }
+        Self { rounding: None, updates_per_chunk: 1 << 12 }
     }
 }
 
@@ -50,14 +50,14 @@ pub(super) fn write(
         return Err(FileError::Rounding(rounding));
     }
     let lattice = lattice(forest, storage, diagonal);
-    let Kept { forest, moved } = forest.kept(lattice)?;
+    let Quantized { forest, moved } = forest.quantized(lattice)?;
     let order = Order::new(&forest);
     let mt = Implicit::in_order(&forest, &order)?;
     let (certificate, packed) = rayon::join(
         || mt.certify(),
         || {
             let links = Links::in_order(&forest, &order, Rule::Strict);
-            pack(&mt, &plan(&mt, &links, storage.in_chunk.max(1)), lattice)
+            pack(&mt, &plan_chunks(&mt, &links, storage.updates_per_chunk.max(1)), lattice)
         },
     );
     let (certificate, packed) = (certificate?, packed?);
@@ -69,7 +69,7 @@ pub(super) fn write(
         rounding: forest.frame.length_of_model(moved),
         roots: mt.root_count() as u32,
         base_faces: mt.base_faces() as u32,
-        base: Stored::of(&packed.base),
+        base: Section::of(&packed.base),
         chunks: packed.chunks,
     };
     let bytes = [header.to_bytes(), packed.base, packed.bodies.concat()].concat();
@@ -79,27 +79,27 @@ pub(super) fn write(
 /// All that stands behind the header, and the index.
 struct Packed {
     base: Vec<u8>,
-    chunks: Vec<Entry>,
+    chunks: Vec<ChunkEntry>,
     bodies: Vec<Vec<u8>>,
 }
 
-fn pack(mt: &Implicit, plan: &Plan, lattice: Lattice) -> io::Result<Packed> {
+fn pack(mt: &Implicit, plan: &ChunkPlan, lattice: Lattice) -> io::Result<Packed> {
     let nodes = (0..mt.root_count() as u32)
         .chain(plan.order.iter().flat_map(|&update| mt.children(update)));
     let exact = mt.exact().picked(nodes);
-    let mut known = Known::new(*mt.frame(), lattice, mt.loose_base(), exact);
-    known.go_to(0);
-    known.updates.extend(plan.order.iter().map(|&update| {
+    let mut state = DecoderState::new(*mt.frame(), lattice, mt.loose_base(), exact);
+    state.begin_run(0);
+    state.updates.extend(plan.order.iter().map(|&update| {
         let loose = mt.loose(update);
-        let number = |node| number(mt, &plan.place, node);
+        let number = |node| file_node(mt, &plan.place, node);
         let odd = loose.odd.map(|odd| Box::new(odd.renumbered(number)));
         Loose { parent: number(loose.parent), odd, ..loose }
     }));
-    let write = |chunk: &Chunk| {
-        let body = chunk::write(&known, chunk.updates.clone())?;
-        let updates = &known.updates[chunk.updates.clone()];
-        let entry = Entry {
-            stored: Stored::of(&body),
+    let write = |chunk: &PlannedChunk| {
+        let body = chunk::write(&state, chunk.updates.clone())?;
+        let updates = &state.updates[chunk.updates.clone()];
+        let entry = ChunkEntry {
+            stored: Section::of(&body),
             updates: updates.len() as u32,
             faces: updates.iter().map(Loose::brought).sum::<usize>() as u32,
             area: chunk.area,
@@ -108,7 +108,7 @@ fn pack(mt: &Implicit, plan: &Plan, lattice: Lattice) -> io::Result<Packed> {
     };
     let written: io::Result<Vec<_>> = plan.chunks.par_iter().map(write).collect();
     let (chunks, bodies) = written?.into_iter().unzip();
-    Ok(Packed { base: base::write(&known)?, chunks, bodies })
+    Ok(Packed { base: base::write(&state)?, chunks, bodies })
 }
 
 /// The coarsest that is fine enough for a mesh of this diagonal.

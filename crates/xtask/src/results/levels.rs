@@ -142,14 +142,14 @@ fn in_bytes(file: &str, mesh: &Mesh, forest: &Forest) -> Result<Vec<String>> {
         each(bytes.faces),
         each(Explicit::new(forest).bytes()),
     ];
-    for in_chunk in CHUNKS {
-        let storage = Storage { in_chunk, ..Storage::default() };
+    for updates_per_chunk in CHUNKS {
+        let storage = Storage { updates_per_chunk, ..Storage::default() };
         let size = Archive::write(forest, &storage)?.0.len();
         row.push(format!("{:.2}", size as f64 / vertices));
     }
     let archive = Archive::open(Archive::write(forest, &Storage::default())?.0)?;
     row.push(format!("{:.4}", 100.0 * archive.rounding() / archive.diagonal()));
-    let first = archive.ends().nth(1).unwrap_or(0);
+    let first = archive.chunk_ends().nth(1).unwrap_or(0);
     let coarse = archive.read_chunks(1)?.0;
     let coarse = Cut::at(&coarse, &Query::uniform(0.0))?.level().mesh();
     let apart = distance(mesh, &coarse, &DistanceOptions::default())?;
@@ -158,7 +158,7 @@ fn in_bytes(file: &str, mesh: &Mesh, forest: &Forest) -> Result<Vec<String>> {
     let center = mesh.positions[mesh.faces[mesh.faces.len() / 3][0].index()];
     let focus = Focus::Sphere { center, radius: 0.02 * archive.diagonal() };
     let read = archive.extract(&Query { focus, tolerance: Tolerance::Uniform(0.0) })?.bytes;
-    let all = archive.ends().last().unwrap_or(1);
+    let all = archive.chunk_ends().last().unwrap_or(1);
     row.push(format!("{:.0}", 100.0 * read as f64 / all as f64));
     Ok(row)
 }

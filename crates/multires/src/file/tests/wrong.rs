@@ -13,7 +13,7 @@ use crate::{Archive, Forest};
 /// how long an entry is.
 const BASE: usize = 28;
 const INDEX: usize = 88;
-const ENTRY: usize = 44;
+const ENTRY_LEN: usize = 44;
 
 fn written(forest: &Forest) -> Vec<u8> {
     Archive::write(forest, &small()).unwrap().0
@@ -38,17 +38,17 @@ fn refusal(bytes: Vec<u8>) -> String {
 /// A file with a piece that says something else: the base if there is no number, or that chunk.
 fn changed(bytes: &[u8], chunk: Option<usize>, change: impl FnOnce(&mut Vec<u8>)) -> Vec<u8> {
     let archive = Archive::open(bytes.to_vec()).unwrap();
-    let ends: Vec<usize> = archive.ends().map(|end| end as usize).collect();
+    let ends: Vec<usize> = archive.chunk_ends().map(|end| end as usize).collect();
     let (entry, start, end) = match chunk {
-        Some(chunk) => (INDEX + ENTRY * chunk, ends[chunk], ends[chunk + 1]),
-        None => (BASE, INDEX + ENTRY * archive.chunk_count(), ends[0]),
+        Some(chunk) => (INDEX + ENTRY_LEN * chunk, ends[chunk], ends[chunk + 1]),
+        None => (BASE, INDEX + ENTRY_LEN * archive.chunk_count(), ends[0]),
     };
     let mut content = zstd::decode_all(&bytes[start..end]).unwrap();
     change(&mut content);
     let piece = zstd::encode_all(&content[..], 1).unwrap();
     let mut all = [&bytes[..start], &piece, &bytes[end..]].concat();
     all[entry..entry + 4].copy_from_slice(&(piece.len() as u32).to_le_bytes());
-    Archive::seal(&mut all);
+    Archive::rewrite_checksums(&mut all);
     all
 }
 
@@ -79,7 +79,7 @@ fn flags_that_are_not_known_are_refused() {
     assert!(refusal(wrong).contains("the coarsest mesh: it has flags"));
     let mut wrong = lossy;
     wrong[19] = 2;
-    Archive::seal(&mut wrong);
+    Archive::rewrite_checksums(&mut wrong);
     assert!(refusal(wrong).contains("the header: it has flags"));
 }
 
@@ -125,7 +125,7 @@ fn places_are_numbers() {
         let mut wrong = written(&forest);
         wrong[40..48].copy_from_slice(&f64::MAX.to_le_bytes());
         wrong[64..72].copy_from_slice(&1000f64.exp2().to_le_bytes());
-        Archive::seal(&mut wrong);
+        Archive::rewrite_checksums(&mut wrong);
         assert!(refusal(wrong).contains("out of reach"));
     }
 }

@@ -8,21 +8,21 @@ use std::ops::Range;
 
 use glam::Vec3;
 
-use super::keep::{OCTAVES, octave};
+use super::quantize::{OCTAVES, octave};
 use crate::implicit::{Implicit, Links};
 use crate::need::{Area, Ball};
 
 /// The updates of a model in the order of its file.
-pub(super) struct Plan {
+pub(super) struct ChunkPlan {
     /// The model's update of each place in the file.
     pub(super) order: Vec<u32>,
     /// The place in the file of each of the model's updates.
     pub(super) place: Vec<u32>,
-    pub(super) chunks: Vec<Chunk>,
+    pub(super) chunks: Vec<PlannedChunk>,
 }
 
 /// A run of the order.
-pub(super) struct Chunk {
+pub(super) struct PlannedChunk {
     pub(super) updates: Range<usize>,
     /// Around all of its updates and all that need any of them; the greatest error.
     pub(super) area: Area,
@@ -32,9 +32,9 @@ pub(super) struct Chunk {
 const LEAST_IN_BAND: usize = 4;
 
 /// In chunks of about so many updates.
-pub(super) fn plan(mt: &Implicit, links: &Links, in_chunk: usize) -> Plan {
+pub(super) fn plan_chunks(mt: &Implicit, links: &Links, updates_per_chunk: usize) -> ChunkPlan {
     let mut chunk_of = vec![0; mt.update_count()];
-    let count = natural_chunks(mt, in_chunk, &mut chunk_of);
+    let count = partition_by_error(mt, updates_per_chunk, &mut chunk_of);
     // What is needed comes first: it is of a higher level.
     let order: Vec<u32> = links.in_order_of_need().collect();
     for &update in order.iter().rev() {
@@ -50,8 +50,8 @@ pub(super) fn plan(mt: &Implicit, links: &Links, in_chunk: usize) -> Plan {
     for (update, &chunk) in chunk_of.iter().enumerate() {
         members[chunk as usize].push(update as u32);
     }
-    let areas = areas(mt, links, &chunk_of, count);
-    let mut plan = Plan {
+    let areas = chunk_areas(mt, links, &chunk_of, count);
+    let mut plan = ChunkPlan {
         order: Vec::with_capacity(mt.update_count()),
         place: vec![0; mt.update_count()],
         chunks: Vec::new(),
@@ -59,12 +59,12 @@ pub(super) fn plan(mt: &Implicit, links: &Links, in_chunk: usize) -> Plan {
     for (members, area) in members.into_iter().zip(areas).filter(|(all, _)| !all.is_empty()) {
         let start = plan.order.len();
         plan.append(mt, &members, &chunk_of);
-        plan.chunks.push(Chunk { updates: start..plan.order.len(), area });
+        plan.chunks.push(PlannedChunk { updates: start..plan.order.len(), area });
     }
     plan
 }
 
-impl Plan {
+impl ChunkPlan {
     /// Adds a chunk: by the node that each splits, as the file numbers them. That of an update whose
     /// parent is in the same chunk comes behind all others.
     fn append(&mut self, mt: &Implicit, members: &[u32], chunk_of: &[u32]) {
@@ -74,7 +74,7 @@ impl Plan {
         let is_apart = |&&update: &&u32| !mt.family(mt.parent(update)).is_some_and(is_member);
         self.order.extend(members.iter().filter(is_apart));
         let Self { order, place, .. } = self;
-        order[start..].sort_unstable_by_key(|&update| number(mt, place, mt.parent(update)));
+        order[start..].sort_unstable_by_key(|&update| file_node(mt, place, mt.parent(update)));
         let mut at = start;
         while at < order.len() {
             let update = order[at];
@@ -87,13 +87,13 @@ impl Plan {
 }
 
 /// The number of a node in the file, where its family has a place.
-pub(super) fn number(mt: &Implicit, place: &[u32], node: u32) -> u32 {
+pub(super) fn file_node(mt: &Implicit, place: &[u32], node: u32) -> u32 {
     let roots = mt.root_count() as u32;
     mt.family(node).map_or(node, |family| roots + 2 * place[family as usize] + (node - roots) % 2)
 }
 
 /// By band, and within it by place; how many chunks there are.
-fn natural_chunks(mt: &Implicit, in_chunk: usize, chunk_of: &mut [u32]) -> usize {
+fn partition_by_error(mt: &Implicit, updates_per_chunk: usize, chunk_of: &mut [u32]) -> usize {
     let mut octaves = vec![Vec::new(); OCTAVES];
     for update in 0..mt.update_count() as u32 {
         octaves[octave(mt.error(update))].push(update);
@@ -102,9 +102,9 @@ fn natural_chunks(mt: &Implicit, in_chunk: usize, chunk_of: &mut [u32]) -> usize
     let mut band = Vec::new();
     for (octave, members) in octaves.into_iter().enumerate().rev() {
         band.extend(members);
-        if octave == 0 || band.len() >= in_chunk / LEAST_IN_BAND {
-            let chunks = band.len().div_ceil(in_chunk);
-            part(mt, &mut band, count as u32, chunks, chunk_of);
+        if octave == 0 || band.len() >= updates_per_chunk / LEAST_IN_BAND {
+            let chunks = band.len().div_ceil(updates_per_chunk);
+            bisect(mt, &mut band, count as u32, chunks, chunk_of);
             band.clear();
             count += chunks;
         }
@@ -114,7 +114,7 @@ fn natural_chunks(mt: &Implicit, in_chunk: usize, chunk_of: &mut [u32]) -> usize
 
 /// Parts updates into so many chunks from `first` on: halves them again and again, where they are
 /// widest.
-fn part(mt: &Implicit, updates: &mut [u32], first: u32, chunks: usize, chunk_of: &mut [u32]) {
+fn bisect(mt: &Implicit, updates: &mut [u32], first: u32, chunks: usize, chunk_of: &mut [u32]) {
     if chunks <= 1 {
         updates.iter().for_each(|&update| chunk_of[update as usize] = first);
         return;
@@ -130,13 +130,13 @@ fn part(mt: &Implicit, updates: &mut [u32], first: u32, chunks: usize, chunk_of:
         place(a)[axis].total_cmp(&place(b)[axis]).then(a.cmp(&b))
     });
     let (low, high) = updates.split_at_mut(middle);
-    part(mt, low, first, chunks / 2, chunk_of);
-    part(mt, high, first + chunks as u32 / 2, chunks - chunks / 2, chunk_of);
+    bisect(mt, low, first, chunks / 2, chunk_of);
+    bisect(mt, high, first + chunks as u32 / 2, chunks - chunks / 2, chunk_of);
 }
 
 /// Where the updates of each chunk are, and all that need them. So an update that is wanted lies in the
 /// area of every chunk that it needs, and the chunks whose areas are wanted hold all that it takes.
-fn areas(mt: &Implicit, links: &Links, chunk_of: &[u32], count: usize) -> Vec<Area> {
+fn chunk_areas(mt: &Implicit, links: &Links, chunk_of: &[u32], count: usize) -> Vec<Area> {
     let mut reach: Vec<Area> = (0..mt.update_count() as u32)
         .map(|update| {
             let Ball { center, radius, error } = mt.ball(update);

@@ -3,8 +3,8 @@
 use glam::{DVec3, Vec3};
 
 use super::lattice::Lattice;
-use super::slant::Slant;
-use super::spread::spread;
+use super::normal_predictor::NormalPredictor;
+use super::unflatten::unflatten;
 use crate::bounds::ErrorKind;
 use crate::forest::{BuildError, Forest, MOST_LEVELS, NONE};
 use crate::frame::Length16;
@@ -13,7 +13,7 @@ use crate::need::SLACK;
 use crate::short::{ERRORS, error9, error16, radius8, radius16};
 
 /// A forest as a file keeps it.
-pub(super) struct Kept {
+pub(super) struct Quantized {
     pub(super) forest: Forest,
     /// By how much a node was moved at most that is not kept to the bit, in stored units.
     pub(super) moved: f64,
@@ -21,7 +21,7 @@ pub(super) struct Kept {
 
 /// How far nodes were moved at most, in stored units.
 #[derive(Clone, Copy, Debug, Default)]
-struct Moved {
+struct Displacement {
     all: f64,
     /// Those that are not kept to the bit.
     rounded: f64,
@@ -34,9 +34,9 @@ impl Forest {
     /// again; with levels that tell little beside the error; with siblings in an order that tells little.
     /// # Errors
     /// More nodes than are numbered.
-    pub(super) fn kept(&self, lattice: Lattice) -> Result<Kept, BuildError> {
+    pub(super) fn quantized(&self, lattice: Lattice) -> Result<Quantized, BuildError> {
         let mut this = self.clone();
-        let moved = this.move_to(lattice)?;
+        let moved = this.snap_to(lattice)?;
         // A bound holds for where things are now, and where the input is that is kept to the bit.
         let rounding = match self.error_kind {
             ErrorKind::Bound => moved.all.max(moved.restored) + moved.restored,
@@ -59,14 +59,14 @@ impl Forest {
                 (this.updates[u - 1].radius, this.updates[u - 1].error) = (radius, error);
             }
         }
-        this.turn_siblings();
+        this.orient_siblings();
         this.level_by_error();
-        Ok(Kept { forest: this, moved: moved.rounded })
+        Ok(Quantized { forest: this, moved: moved.rounded })
     }
 
     /// Puts all nodes on the lattice, and says how far. Those that are kept to the bit are seen where they
     /// are; triangles have to have an area with them there.
-    fn move_to(&mut self, lattice: Lattice) -> Result<Moved, BuildError> {
+    fn snap_to(&mut self, lattice: Lattice) -> Result<Displacement, BuildError> {
         let order = Order::new(self);
         let mt = Implicit::in_order(self, &order)?;
         let before = |node: u32| Vec3::from(mt.place(node));
@@ -78,8 +78,8 @@ impl Forest {
             false => (mt.spot(node) / lattice.cell()).into(),
         };
         let mut places: Vec<_> = nodes().map(in_cells).collect();
-        spread(&mt, &mut places, is_free, |nodes| has_area(nodes.map(|node| mt.spot(node))));
-        let mut moved = Moved::default();
+        unflatten(&mt, &mut places, is_free, |nodes| has_area(nodes.map(|node| mt.spot(node))));
+        let mut moved = Displacement::default();
         for (node, place) in nodes().zip(places) {
             let at = if is_free(node) { place.map(|x| x as i32) } else { cell(node) };
             let (from, to) = (before(node).as_dvec3(), lattice.put(at));
@@ -97,12 +97,12 @@ impl Forest {
 
     /// Lets the second of two siblings be the one that is further along, where that is free: then a
     /// sign less is to be told.
-    fn turn_siblings(&mut self) {
+    fn orient_siblings(&mut self) {
         let parents = self.parents();
         for u in 0..self.updates.len() {
             let family = self.family(u);
             let mut at = self.node(u);
-            let slant = Slant::of(std::array::from_fn(|_| {
+            let slant = NormalPredictor::of(std::array::from_fn(|_| {
                 let above = Some(parents[at]).filter(|&up| up != NONE)? as usize;
                 at = self.node(above);
                 Some(self.family(above))

@@ -4,14 +4,14 @@ use glam::DVec3;
 
 /// A ball that holds the points of the finest mesh that are paired with a vertex.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Shadow {
+pub(super) struct EnclosingBall {
     pub(super) center: DVec3,
     pub(super) radius: f64,
 }
 
-impl Shadow {
+impl EnclosingBall {
     /// Of a point of the finest mesh: itself.
-    pub(super) fn of(point: DVec3) -> Self {
+    pub(super) fn point(point: DVec3) -> Self {
         Self { center: point, radius: 0.0 }
     }
 
@@ -30,16 +30,16 @@ const STEPS: usize = 16;
 ///
 /// # References
 /// [BC03]: from step to step a shorter way to the one that is farthest.
-pub(super) fn ball_around(balls: &[Shadow]) -> Shadow {
+pub(super) fn enclosing_ball(balls: &[EnclosingBall]) -> EnclosingBall {
     let mut center = balls.iter().map(|ball| ball.center).sum::<DVec3>() / balls.len() as f64;
-    let mut best = Shadow { center, radius: f64::INFINITY };
+    let mut best = EnclosingBall { center, radius: f64::INFINITY };
     for step in 1..=STEPS {
-        let by_reach = |ball: &Shadow| (ball.reach(center), ball.center);
+        let by_reach = |ball: &EnclosingBall| (ball.reach(center), ball.center);
         let reaches = balls.iter().map(by_reach);
         let farther = |a: (f64, DVec3), b: (f64, DVec3)| if b.0 > a.0 { b } else { a };
         let (radius, farthest) = reaches.fold((0.0, center), farther);
         if radius < best.radius {
-            best = Shadow { center, radius };
+            best = EnclosingBall { center, radius };
         }
         let way = farthest - center;
         let share = radius / (way.length() * (step as f64 + 1.0));
@@ -57,15 +57,16 @@ mod tests {
 
     #[test]
     fn all_balls_are_held_and_the_ball_is_small() {
-        let ball = |x: f64, y: f64, radius: f64| Shadow { center: DVec3::new(x, y, 0.0), radius };
+        let ball =
+            |x: f64, y: f64, radius: f64| EnclosingBall { center: DVec3::new(x, y, 0.0), radius };
         let apart = [ball(-1.0, 0.0, 0.5), ball(3.0, 0.0, 0.0), ball(0.0, 1.0, -0.5)];
-        let around = ball_around(&apart);
+        let around = enclosing_ball(&apart);
         for one in &apart {
             assert!(one.reach(around.center) <= around.radius * (1.0 + 1e-15));
         }
         assert!((2.25..2.4).contains(&around.radius), "{around:?}");
-        assert_eq!(ball_around(&[ball(2.0, 1.0, 0.25)]), ball(2.0, 1.0, 0.25));
+        assert_eq!(enclosing_ball(&[ball(2.0, 1.0, 0.25)]), ball(2.0, 1.0, 0.25));
         let inside = [ball(0.0, 0.0, 2.0), ball(0.5, 0.0, 0.1)];
-        assert!(ball_around(&inside).radius < 2.1, "{:?}", ball_around(&inside));
+        assert!(enclosing_ball(&inside).radius < 2.1, "{:?}", enclosing_ball(&inside));
     }
 }

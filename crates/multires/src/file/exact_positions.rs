@@ -9,42 +9,42 @@ use super::streams::{Packer, Unpacker};
 use crate::zigzag::{unzigzag, zigzag};
 
 /// By axis, how far positions are from their guesses.
-pub(super) struct Steps([Axis; 3]);
+pub(super) struct Deltas([AxisDeltas; 3]);
 
-struct Axis {
+struct AxisDeltas {
     /// So many last bits are 0.
-    spare: u8,
-    steps: Vec<i64>,
+    zero_bits: u8,
+    deltas: Vec<i64>,
 }
 
 /// All bits of a number but its sign.
-const SIZE: i64 = i64::MAX;
+const MAGNITUDE: i64 = i64::MAX;
 
 /// Writes positions, each beside its guess.
 pub(super) fn write(pairs: &[[[f64; 3]; 2]], packer: &mut Packer) -> io::Result<()> {
     for k in 0..3 {
-        // Without the sign, which is the first; 0 can spare all 63.
+        // The shift drops the sign bit; 0 has 63 zero bits.
         let zeros = pairs.iter().map(|[exact, _]| (exact[k].to_bits() << 1).trailing_zeros());
-        let spare = zeros.min().map_or(0, |zeros| zeros - 1) as u8;
-        packer.bytes(&[spare])?;
+        let zero_bits = zeros.min().map_or(0, |zeros| zeros - 1) as u8;
+        packer.bytes(&[zero_bits])?;
         let step = |[exact, guess]: &[[f64; 3]; 2]| {
-            zigzag(rank(exact[k], spare).wrapping_sub(rank(guess[k], spare)))
+            zigzag(ordinal(exact[k], zero_bits).wrapping_sub(ordinal(guess[k], zero_bits)))
         };
         packer.numbers(&pairs.iter().map(step).collect::<Vec<u64>>())?;
     }
     Ok(())
 }
 
-impl Steps {
+impl Deltas {
     /// Of so many positions.
     pub(super) fn read(count: usize, input: &mut Unpacker<'_>) -> io::Result<Self> {
         let mut axis = || {
-            let spare = input.bytes(1)?[0];
-            if u32::from(spare) >= i64::BITS {
+            let zero_bits = input.bytes(1)?[0];
+            if u32::from(zero_bits) >= i64::BITS {
                 return Err(io::Error::from(io::ErrorKind::InvalidData));
             }
-            let steps = input.numbers(count)?;
-            Ok(Axis { spare, steps: steps.into_iter().map(unzigzag).collect() })
+            let deltas = input.numbers(count)?;
+            Ok(AxisDeltas { zero_bits, deltas: deltas.into_iter().map(unzigzag).collect() })
         };
         Ok(Self([axis()?, axis()?, axis()?]))
     }
@@ -52,25 +52,25 @@ impl Steps {
     /// One of the positions; `None` where it is no number.
     pub(super) fn position(&self, at: usize, guess: [f64; 3]) -> Option<[f64; 3]> {
         let coordinate = |k: usize| {
-            let Axis { spare, steps } = &self.0[k];
-            number(rank(guess[k], *spare).wrapping_add(steps[at]), *spare)
+            let AxisDeltas { zero_bits, deltas } = &self.0[k];
+            from_ordinal(ordinal(guess[k], *zero_bits).wrapping_add(deltas[at]), *zero_bits)
         };
         Some([coordinate(0)?, coordinate(1)?, coordinate(2)?])
     }
 }
 
 /// The place of a number among those without so many last bits, towards 0; what is below 0 from -1 on.
-fn rank(x: f64, spare: u8) -> i64 {
+fn ordinal(x: f64, zero_bits: u8) -> i64 {
     let bits = x.to_bits() as i64;
-    let size = (bits & SIZE) >> spare;
-    if bits < 0 { !size } else { size }
+    let magnitude = (bits & MAGNITUDE) >> zero_bits;
+    if bits < 0 { !magnitude } else { magnitude }
 }
 
 /// The number of a rank, if it is one.
-fn number(rank: i64, spare: u8) -> Option<f64> {
-    let (size, sign) = if rank < 0 { (!rank, !SIZE) } else { (rank, 0) };
-    let is_there = size <= SIZE >> spare;
-    let x = f64::from_bits(((size << spare) | sign) as u64);
+fn from_ordinal(rank: i64, zero_bits: u8) -> Option<f64> {
+    let (magnitude, sign) = if rank < 0 { (!rank, !MAGNITUDE) } else { (rank, 0) };
+    let is_there = magnitude <= MAGNITUDE >> zero_bits;
+    let x = f64::from_bits(((magnitude << zero_bits) | sign) as u64);
     (is_there && x.is_finite()).then_some(x)
 }
 
@@ -82,9 +82,9 @@ mod tests {
         let mut packer = Packer::new().unwrap();
         write(pairs, &mut packer).unwrap();
         let bytes = packer.finish().unwrap();
-        let steps = Steps::read(pairs.len(), &mut Unpacker::new(&bytes).unwrap()).unwrap();
+        let deltas = Deltas::read(pairs.len(), &mut Unpacker::new(&bytes).unwrap()).unwrap();
         for (at, [exact, guess]) in pairs.iter().enumerate() {
-            let read = steps.position(at, *guess).unwrap();
+            let read = deltas.position(at, *guess).unwrap();
             assert_eq!(read.map(f64::to_bits), exact.map(f64::to_bits));
         }
         bytes.len()
@@ -129,10 +129,13 @@ mod tests {
 
     #[test]
     fn what_is_no_number_is_refused() {
-        let inf = rank(f64::INFINITY, 0);
-        assert_eq!((number(inf - 1, 0), number(inf, 0)), (Some(f64::MAX), None));
-        assert_eq!((number(!inf, 0), number(i64::MAX, 0), number(i64::MIN, 0)), (None, None, None));
-        assert_eq!((number(i64::MAX, 29), number(1 << 34, 29)), (None, None));
-        assert_eq!(number(rank(-1.5, 29), 29), Some(-1.5));
+        let inf = ordinal(f64::INFINITY, 0);
+        assert_eq!((from_ordinal(inf - 1, 0), from_ordinal(inf, 0)), (Some(f64::MAX), None));
+        assert_eq!(
+            (from_ordinal(!inf, 0), from_ordinal(i64::MAX, 0), from_ordinal(i64::MIN, 0)),
+            (None, None, None)
+        );
+        assert_eq!((from_ordinal(i64::MAX, 29), from_ordinal(1 << 34, 29)), (None, None));
+        assert_eq!(from_ordinal(ordinal(-1.5, 29), 29), Some(-1.5));
     }
 }

@@ -2,21 +2,21 @@
 
 use glam::{DVec2, DVec3};
 
-use super::shadow::Shadow;
+use super::enclosing_ball::EnclosingBall;
 
 /// A triangle laid into the plane.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Cell {
-    pub(super) corners: [Corner; 3],
+pub(super) struct PlaneTriangle {
+    pub(super) corners: [PlaneCorner; 3],
     /// The weight of each corner at a place is linear: a slope, and what is there at the origin.
     pub(super) weights: [(DVec2, f64); 3],
     /// It is no triangle of the mesh: all of it stands for one open edge.
-    pub(super) is_outside: bool,
+    pub(super) is_virtual: bool,
 }
 
 /// Where a vertex is laid, and what of its shadow is known.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Corner {
+pub(super) struct PlaneCorner {
     pub(super) node: u32,
     pub(super) at: DVec2,
     /// The shadow, about the new vertex's place.
@@ -28,9 +28,9 @@ pub(super) struct Corner {
 
 /// What must hold at a corner of a piece: the shadow on the fine side is in that on the coarse side.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Demand {
+pub(super) struct Constraint {
     /// The shadow on the fine side without what the ring gives to that on the coarse side.
-    pub(super) ball: Shadow,
+    pub(super) ball: EnclosingBall,
     /// How much the new vertex's shadow counts there.
     pub(super) share: f64,
     /// The triangle on the coarse side.
@@ -39,9 +39,9 @@ pub(super) struct Demand {
 
 /// Triangles must be wider than this part of their length in the plane. Then rounding moves nothing by
 /// more than 2⁻³² of the sides.
-const THIN: f64 = 1.0 / 65536.0;
+const MIN_RELATIVE_WIDTH: f64 = 1.0 / 65536.0;
 
-impl Corner {
+impl PlaneCorner {
     /// The middle of one or two others, laid elsewhere.
     pub(super) fn between(others: impl Iterator<Item = Self> + Clone, at: DVec2) -> Self {
         let part = 1.0 / others.clone().count() as f64;
@@ -56,14 +56,14 @@ impl Corner {
     }
 }
 
-impl Cell {
+impl PlaneTriangle {
     /// None where it is thin or turned over.
-    pub(super) fn new(corners: [Corner; 3], is_outside: bool) -> Option<Self> {
+    pub(super) fn new(corners: [PlaneCorner; 3], is_virtual: bool) -> Option<Self> {
         let [a, b, c] = corners.map(|corner| corner.at);
         let longest =
             [b - a, c - b, a - c].map(DVec2::length_squared).into_iter().fold(0.0, f64::max);
         let twice_area = (b - a).perp_dot(c - a);
-        if twice_area.is_nan() || twice_area <= THIN * longest {
+        if twice_area.is_nan() || twice_area <= MIN_RELATIVE_WIDTH * longest {
             return None;
         }
         // One at a corner, none at the two others.
@@ -71,7 +71,7 @@ impl Cell {
             let slope = (to - from).perp() / twice_area;
             (slope, -slope.dot(from))
         };
-        Some(Self { corners, weights: [weight(b, c), weight(c, a), weight(a, b)], is_outside })
+        Some(Self { corners, weights: [weight(b, c), weight(c, a), weight(a, b)], is_virtual })
     }
 
     /// The shadow at a place, as far as it is known, and how much the unknown one counts.
@@ -89,41 +89,46 @@ impl Cell {
     /// Whether another lies behind one of its edges.
     fn is_apart(&self, other: &Self) -> bool {
         self.weights.iter().any(|(slope, rest)| {
-            other.corners.iter().all(|corner| slope.dot(corner.at) + rest <= TOUCH)
+            other.corners.iter().all(|corner| slope.dot(corner.at) + rest <= TOUCH_TOLERANCE)
         })
     }
 }
 
 /// What overlaps by less than this part of a triangle's width touches it only.
-const TOUCH: f64 = 1e-12;
+const TOUCH_TOLERANCE: f64 = 1e-12;
 
 /// Three cuts make six corners of three; nine, were each corner by rounding on the other side than both
 /// its neighbours.
-const MOST_CORNERS: usize = 9;
+const MAX_CORNERS: usize = 9;
 
 /// What the corners of the piece that two triangles have in common ask for. On the piece everything is
 /// linear but a distance, which is convex, so it holds all over where it holds there.
-pub(super) fn demand(fine: &Cell, coarse: &Cell, number: usize, demands: &mut Vec<Demand>) {
+pub(super) fn add_constraints(
+    fine: &PlaneTriangle,
+    coarse: &PlaneTriangle,
+    number: usize,
+    constraints: &mut Vec<Constraint>,
+) {
     if coarse.is_apart(fine) || fine.is_apart(coarse) {
         return;
     }
-    let mut piece = [DVec2::ZERO; MOST_CORNERS];
+    let mut piece = [DVec2::ZERO; MAX_CORNERS];
     let mut count = 3;
     (0..3).for_each(|k| piece[k] = fine.corners[k].at);
     for line in &coarse.weights {
-        (piece, count) = cut(&piece[..count], line);
+        (piece, count) = clip(&piece[..count], line);
     }
     for &place in &piece[..count] {
         let (center, radius, _) = fine.at(place);
         let (others, radius_of_others, share) = coarse.at(place);
-        let ball = Shadow { center: center - others, radius: radius - radius_of_others };
-        demands.push(Demand { ball, share, coarse: number });
+        let ball = EnclosingBall { center: center - others, radius: radius - radius_of_others };
+        constraints.push(Constraint { ball, share, coarse: number });
     }
 }
 
 /// What of a convex polygon lies where a weight is positive.
-fn cut(polygon: &[DVec2], (slope, rest): &(DVec2, f64)) -> ([DVec2; MOST_CORNERS], usize) {
-    let (mut left, mut count) = ([DVec2::ZERO; MOST_CORNERS], 0);
+fn clip(polygon: &[DVec2], (slope, rest): &(DVec2, f64)) -> ([DVec2; MAX_CORNERS], usize) {
+    let (mut left, mut count) = ([DVec2::ZERO; MAX_CORNERS], 0);
     let mut keep = |corner: DVec2| {
         left[count] = corner;
         count += 1;

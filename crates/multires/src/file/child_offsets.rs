@@ -6,13 +6,13 @@ use std::io;
 use glam::Vec3;
 
 use super::lattice::Lattice;
-use super::slant::Slant;
+use super::normal_predictor::NormalPredictor;
 use super::streams::Unpacker;
 use crate::frame::Length16;
 use crate::short::radius8;
 
 /// Where the two children of a node are.
-pub(super) struct Family {
+pub(super) struct ChildOffsets {
     /// From the first to the second.
     pub(super) apart: [i32; 3],
     /// From the parent to their middle, without what `apart` tells.
@@ -20,13 +20,13 @@ pub(super) struct Family {
 }
 
 /// Many of them, and how much larger their balls are than they have to be, by codes.
-pub(super) struct Places {
+pub(super) struct OffsetStreams {
     apart: [Vec<i32>; 3],
     middle: [Vec<i32>; 3],
     pub(super) radii: Vec<i32>,
 }
 
-impl Places {
+impl OffsetStreams {
     pub(super) fn read(input: &mut Unpacker<'_>, count: usize) -> io::Result<Self> {
         let (mut apart, mut middle) = <([Vec<i32>; 3], [Vec<i32>; 3])>::default();
         for k in 0..3 {
@@ -36,15 +36,15 @@ impl Places {
         Ok(Self { apart, middle, radii: input.signed(count)? })
     }
 
-    pub(super) fn family(&self, at: usize) -> Family {
-        Family {
+    pub(super) fn offsets(&self, at: usize) -> ChildOffsets {
+        ChildOffsets {
             apart: [0, 1, 2].map(|k| self.apart[k][at]),
             middle: [0, 1, 2].map(|k| self.middle[k][at]),
         }
     }
 }
 
-impl Family {
+impl ChildOffsets {
     pub(super) fn of(lattice: Lattice, parent: Vec3, children: [Vec3; 2]) -> Self {
         let parent = lattice.round(parent);
         let [a, b] = children.map(|child| lattice.round(child));
@@ -54,12 +54,12 @@ impl Family {
         Self { apart, middle }
     }
 
-    pub(super) fn folded(&self, slant: &Slant) -> Self {
-        Self { apart: slant.fold(self.apart), middle: slant.fold(self.middle) }
+    pub(super) fn encoded(&self, predictor: &NormalPredictor) -> Self {
+        Self { apart: predictor.encode(self.apart), middle: predictor.encode(self.middle) }
     }
 
-    pub(super) fn unfolded(&self, slant: &Slant) -> Self {
-        Self { apart: slant.unfold(self.apart), middle: slant.unfold(self.middle) }
+    pub(super) fn decoded(&self, predictor: &NormalPredictor) -> Self {
+        Self { apart: predictor.decode(self.apart), middle: predictor.decode(self.middle) }
     }
 
     /// None where they would be out of reach.
@@ -76,7 +76,7 @@ impl Family {
     }
 
     /// What a ball around them would take at least, about.
-    pub(super) fn radius8(&self, lattice: Lattice) -> u8 {
+    pub(super) fn predicted_radius8(&self, lattice: Lattice) -> u8 {
         let squared: f64 = self.apart.iter().map(|&x| f64::from(x) * f64::from(x)).sum();
         radius8(Length16::up(squared.sqrt() * lattice.cell()))
     }
