@@ -8,7 +8,7 @@ libfuzzer_sys::fuzz_target!(init: meshlod_fuzz::plant("gltf"), |bytes: &[u8]| {
         // What passes through from the document must not trip the writer.
         let _ = gltf::write_glb(&scene, &[]);
         let how = gltf::Compression { meshopt: bytes.len() % 2 == 0, ..Default::default() };
-        if let Ok((glb, _)) = gltf::write_small_glb(&scene, &[], &how) {
+        if let Ok((glb, _)) = gltf::write_compressed_glb(&scene, &[], &how) {
             gltf::read(&glb, &mut |_| None, Weld::Exact).expect("what was written is read");
         }
     }

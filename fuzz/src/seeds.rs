@@ -75,7 +75,7 @@ fn small_gltf(meshes: &[Mesh]) -> Vec<Vec<u8>> {
     let write = |mesh: &Mesh, meshopt: bool| {
         let scene = Scene::from_mesh("seed", mesh.clone());
         let how = gltf::Compression { meshopt, ..gltf::Compression::default() };
-        gltf::write_small_glb(&scene, &[], &how).expect("a fixture fits").0
+        gltf::write_compressed_glb(&scene, &[], &how).expect("a fixture fits").0
     };
     let mut all: Vec<Vec<u8>> =
         meshes.iter().flat_map(|mesh| [write(mesh, false), write(mesh, true)]).collect();

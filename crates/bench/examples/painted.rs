@@ -10,7 +10,7 @@
 use anyhow::{Context, Result};
 use meshlod::materials_of;
 use meshlod::mesh::{Attributes, Layer, LayerKind, Mesh, VertexId, WedgeId};
-use meshlod::picture::{Paint, Portrait};
+use meshlod::picture::{Paint, ReferenceImages};
 use meshlod::simplify::{Method, Options, Target, simplify};
 use meshlod_bench::peer::{Settings, SimplifyOptions, Torn, Update, simplify_with_attributes};
 use meshlod_bench::{alternate, one_core, read_scene};
@@ -39,7 +39,8 @@ fn main() -> Result<()> {
             mesh.attributes = Some(smooth_normals(&mesh));
         }
         let paint = Paint::comparison(&mesh, &materials);
-        let portrait = (side > 0).then(|| Portrait::of_side(&mesh, &paint, side)).transpose()?;
+        let portrait =
+            (side > 0).then(|| ReferenceImages::of_side(&mesh, &paint, side)).transpose()?;
         for ratio in [0.25, 0.1, 0.01] {
             print!("{name} {ratio}");
             if rounds > 0 {
@@ -70,7 +71,7 @@ fn speed(mesh: &Mesh, ratio: f64, rounds: usize) {
     print!(" {:.2} {:.2} {:.2} |", rate(took.ours), rate(took.theirs), took.ratio);
 }
 
-fn looks(mesh: &Mesh, ratio: f64, portrait: &Portrait<'_>) -> Result<()> {
+fn looks(mesh: &Mesh, ratio: f64, portrait: &ReferenceImages<'_>) -> Result<()> {
     let faces = (mesh.faces.len() as f64 * ratio) as usize;
     let theirs = simplify_with_attributes(mesh, faces, &PEER);
     let target = Target::Faces(theirs.faces.len());

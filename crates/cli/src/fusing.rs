@@ -89,5 +89,5 @@ pub fn to_text(done: Option<&Done>) -> String {
 }
 
 fn shown_faces(scene: &Scene) -> usize {
-    scene.placements().iter().map(|place| scene.meshes[place.mesh].mesh.faces.len()).sum()
+    scene.instances().iter().map(|place| scene.meshes[place.mesh].mesh.faces.len()).sum()
 }

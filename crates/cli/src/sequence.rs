@@ -27,7 +27,7 @@ pub fn check_scene(scene: &Scene, input: &Path, session: &Session) -> Result<(),
         return Err(several_meshes(input));
     }
     let unmoved = Node::default().transform;
-    let moved = scene.placements().iter().any(|placed| placed.transform != unmoved);
+    let moved = scene.instances().iter().any(|placed| placed.transform != unmoved);
     if moved || !scene.materials.is_empty() {
         session.warn(format_args!(
             "--sequence keeps no nodes and no materials; replay with --scene {} to have them back",

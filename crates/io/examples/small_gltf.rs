@@ -8,7 +8,7 @@ use std::error::Error;
 use std::path::{Path, PathBuf};
 
 use meshlod_io::gltf::{
-    Bytes, Compression, QuantizedPart, write_glb, write_parts_glb, write_small_glb,
+    Bytes, Compression, QuantizedPart, write_compressed_glb, write_glb, write_parts_glb,
 };
 use meshlod_io::{Node, Scene, SceneMesh};
 use meshlod_mesh::{Attributes, Layer, LayerKind, Mesh, WedgeId};
@@ -59,7 +59,7 @@ fn dressed(mut mesh: Mesh) -> Scene {
 fn write_both(folder: &Path, name: &str, mut scene: Scene) -> Result<(), Box<dyn Error>> {
     let quantized = Compression { meshopt: false, ..Compression::default() };
     for (kind, how) in [("quantized", quantized), ("packed", Compression::default())] {
-        let (_, report) = write_small_glb(&scene, &[], &how)?;
+        let (_, report) = write_compressed_glb(&scene, &[], &how)?;
         let faces: usize = scene.meshes.iter().map(|mesh| mesh.mesh.faces.len()).sum();
         let per_face = |bytes: Bytes| bytes.stored as f64 / faces as f64;
         println!(
@@ -75,7 +75,7 @@ fn write_both(folder: &Path, name: &str, mut scene: Scene) -> Result<(), Box<dyn
     number(&mut scene);
     std::fs::write(folder.join(format!("{name}.plain.glb")), write_glb(&scene, &[])?)?;
     for (kind, how) in [("quantized", quantized), ("packed", Compression::default())] {
-        let (glb, _) = write_small_glb(&scene, &[], &how)?;
+        let (glb, _) = write_compressed_glb(&scene, &[], &how)?;
         std::fs::write(folder.join(format!("{name}.{kind}.glb")), glb)?;
     }
     Ok(())

@@ -6,7 +6,7 @@ use thiserror::Error;
 
 /// A place in a file.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Place {
+pub enum FileLocation {
     /// A line of a text file, counted from 1.
     Line(usize),
     /// A byte of a binary file, counted from 0.
@@ -15,7 +15,7 @@ pub enum Place {
     Part(String),
 }
 
-impl std::fmt::Display for Place {
+impl std::fmt::Display for FileLocation {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
             Self::Line(line) => write!(f, "line {line}"),
@@ -27,10 +27,10 @@ impl std::fmt::Display for Place {
 
 /// What a parser found wrong: the place and the reason, without the file's name.
 #[derive(Clone, Debug, Error, PartialEq, Eq)]
-#[error("{place}: {reason}")]
+#[error("{location}: {reason}")]
 pub struct ParseError {
     /// Where.
-    pub place: Place,
+    pub location: FileLocation,
     /// What is wrong there, and what to do where that is clear.
     pub reason: String,
 }
@@ -38,31 +38,31 @@ pub struct ParseError {
 impl ParseError {
     /// Wrong at a line, counted from 1.
     pub fn line(line: usize, reason: impl Into<String>) -> Self {
-        Self { place: Place::Line(line), reason: reason.into() }
+        Self { location: FileLocation::Line(line), reason: reason.into() }
     }
 
     /// Wrong at a byte, counted from 0.
     pub fn byte(byte: usize, reason: impl Into<String>) -> Self {
-        Self { place: Place::Byte(byte), reason: reason.into() }
+        Self { location: FileLocation::Byte(byte), reason: reason.into() }
     }
 
     /// Wrong in a named part.
     pub fn part(part: impl Into<String>, reason: impl Into<String>) -> Self {
-        Self { place: Place::Part(part.into()), reason: reason.into() }
+        Self { location: FileLocation::Part(part.into()), reason: reason.into() }
     }
 }
 
 /// What of a scene a format cannot hold: the part and the reason, without the file's name.
 #[derive(Clone, Debug, Error, PartialEq, Eq)]
 #[error("{part}: {reason}")]
-pub struct Unfit {
+pub struct Unsupported {
     /// Which part: `mesh 3`, `v12`.
     pub part: String,
     /// Why, and what to do where that is clear.
     pub reason: String,
 }
 
-impl Unfit {
+impl Unsupported {
     /// A part that does not fit, and why.
     pub fn new(part: impl Into<String>, reason: impl Into<String>) -> Self {
         Self { part: part.into(), reason: reason.into() }
@@ -90,11 +90,11 @@ pub enum IoError {
     },
     /// The format cannot hold the scene.
     #[error("{}: {source}", path.display())]
-    Unfit {
+    Unsupported {
         /// The file.
         path: PathBuf,
         /// What does not fit.
-        source: Unfit,
+        source: Unsupported,
     },
     /// No format goes with the suffix.
     #[error("{}: unknown suffix; known are {known}", path.display())]
@@ -118,7 +118,7 @@ impl IoError {
     }
 
     /// A scene that does not fit a format, at a path.
-    pub fn unfit(path: &Path, source: Unfit) -> Self {
-        Self::Unfit { path: path.to_owned(), source }
+    pub fn unsupported(path: &Path, source: Unsupported) -> Self {
+        Self::Unsupported { path: path.to_owned(), source }
     }
 }

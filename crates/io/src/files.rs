@@ -8,8 +8,8 @@ use meshlod_mesh::{Mesh, VertexId};
 
 use crate::replace::replace;
 use crate::{
-    Format, Image, IoError, ParseError, Precision, Scene, Unfit, gltf, obj, off, ply, smf, stl,
-    weld,
+    Format, Image, IoError, ParseError, Precision, Scene, Unsupported, gltf, obj, off, ply, smf,
+    stl, weld,
 };
 
 /// How vertices at the same place are treated on reading.
@@ -86,7 +86,7 @@ pub fn read_bytes(
     for mesh in &mut scene.meshes {
         match options.weld {
             Weld::Within(epsilon) => drop(weld(&mut mesh.mesh, epsilon)),
-            Weld::Off if format == Format::Stl => tear(&mut mesh.mesh),
+            Weld::Off if format == Format::Stl => unweld(&mut mesh.mesh),
             Weld::Exact | Weld::Off => {}
         }
     }
@@ -120,40 +120,46 @@ pub fn write(path: &Path, scene: &Scene, options: &WriteOptions) -> Result<(), I
 /// # Errors
 /// As for [`write()`]; also another suffix, and levels with another number of meshes than the scene.
 pub fn write_lods(path: &Path, scene: &Scene, levels: &[gltf::Level]) -> Result<(), IoError> {
-    let unfit = |error| IoError::unfit(path, error);
+    let unsupported = |error| IoError::unsupported(path, error);
     match Format::of_path(path)? {
         Format::Glb => {
-            let bytes = gltf::write_glb(scene, levels).map_err(unfit)?;
+            let bytes = gltf::write_glb(scene, levels).map_err(unsupported)?;
             write_one(path, |out| out.write_all(&bytes))
         }
-        Format::Gltf => write_gltf(path, &gltf::write(scene, levels, &stem(path)).map_err(unfit)?),
-        _ => Err(unfit(Unfit::new("levels", "only .glb and .gltf hold levels; use one of those"))),
+        Format::Gltf => {
+            write_gltf(path, &gltf::write(scene, levels, &stem(path)).map_err(unsupported)?)
+        }
+        _ => Err(unsupported(Unsupported::new(
+            "levels",
+            "only .glb and .gltf hold levels; use one of those",
+        ))),
     }
 }
 
-/// Writes a scene as small glTF or GLB and tells what that came to; see [`gltf::write_small_glb`].
+/// Writes a scene as small glTF or GLB and tells what that came to; see [`gltf::write_compressed_glb`].
 ///
 /// # Errors
 /// As for [`write()`]; also another suffix, and bits that cannot be.
-pub fn write_small(
+pub fn write_compressed(
     path: &Path,
     scene: &Scene,
-    how: &gltf::Compression,
+    compression: &gltf::Compression,
 ) -> Result<gltf::CompressionReport, IoError> {
-    let unfit = |error| IoError::unfit(path, error);
+    let unsupported = |error| IoError::unsupported(path, error);
     match Format::of_path(path)? {
         Format::Glb => {
-            let (bytes, report) = gltf::write_small_glb(scene, &[], how).map_err(unfit)?;
+            let (bytes, report) =
+                gltf::write_compressed_glb(scene, &[], compression).map_err(unsupported)?;
             write_one(path, |out| out.write_all(&bytes))?;
             Ok(report)
         }
         Format::Gltf => {
-            let (written, report) =
-                gltf::write_small(scene, &[], &stem(path), how).map_err(unfit)?;
+            let (written, report) = gltf::write_compressed(scene, &[], &stem(path), compression)
+                .map_err(unsupported)?;
             write_gltf(path, &written)?;
             Ok(report)
         }
-        _ => Err(unfit(Unfit::new(
+        _ => Err(unsupported(Unsupported::new(
             "file",
             "only .glb and .gltf are written small; use one of those",
         ))),
@@ -172,7 +178,7 @@ fn write_gltf(path: &Path, written: &gltf::Written) -> Result<(), IoError> {
 }
 
 /// Gives every corner a vertex of its own, as STL has them.
-fn tear(mesh: &mut Mesh) {
+fn unweld(mesh: &mut Mesh) {
     mesh.positions = mesh.faces.iter().flatten().map(|v| mesh.positions[v.index()]).collect();
     for (i, vertex) in mesh.faces.iter_mut().flatten().enumerate() {
         *vertex = VertexId::new(i);
@@ -210,14 +216,17 @@ fn write_image(path: &Path, image: &Image) -> Result<(), IoError> {
             return Ok(());
         }
         let reason = "its name leads out of the folder; write .glb, which holds images inside";
-        return Err(IoError::unfit(path, Unfit::new(format!("image {:?}", image.name), reason)));
+        return Err(IoError::unsupported(
+            path,
+            Unsupported::new(format!("image {:?}", image.name), reason),
+        ));
     };
     let target = path.parent().unwrap_or(Path::new("")).join(name);
     match fs::read(&target) {
         Ok(found) if found == image.bytes => return Ok(()),
         Ok(_) => {
             let reason = "another image of that name is there already; move it, or write .glb";
-            return Err(IoError::unfit(&target, Unfit::new("image", reason)));
+            return Err(IoError::unsupported(&target, Unsupported::new("image", reason)));
         }
         Err(_) => {}
     }

@@ -10,7 +10,7 @@ use crate::scene::IDENTITY;
 
 /// A mesh at a place in the world.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Placement {
+pub struct MeshInstance {
     /// The node that shows it.
     pub node: usize,
     /// The mesh, by index into `Scene::meshes`.
@@ -19,7 +19,7 @@ pub struct Placement {
     pub transform: [[f64; 4]; 4],
 }
 
-impl Placement {
+impl MeshInstance {
     /// The transform without its translation. A last row, which only a perspective has, counts for
     /// nothing.
     fn linear(&self) -> DMat3 {
@@ -35,8 +35,8 @@ impl Placement {
 impl Scene {
     /// The meshes that the scene shows, depth first from the roots. One that several nodes show
     /// comes several times.
-    pub fn placements(&self) -> Vec<Placement> {
-        let mut placements = Vec::new();
+    pub fn instances(&self) -> Vec<MeshInstance> {
+        let mut instances = Vec::new();
         let mut seen = vec![false; self.nodes.len()];
         let mut stack: Vec<(usize, DMat4)> =
             self.roots.iter().rev().map(|&root| (root, DMat4::IDENTITY)).collect();
@@ -48,11 +48,11 @@ impl Scene {
             let at = &self.nodes[node];
             let world = parent * DMat4::from_cols_array_2d(&at.transform);
             if let Some(mesh) = at.mesh {
-                placements.push(Placement { node, mesh, transform: world.to_cols_array_2d() });
+                instances.push(MeshInstance { node, mesh, transform: world.to_cols_array_2d() });
             }
             stack.extend(at.children.iter().rev().map(|&child| (child, world)));
         }
-        placements
+        instances
     }
 
     /// All that the scene shows as one mesh in world space.
@@ -64,19 +64,19 @@ impl Scene {
     ///
     /// Cost: linear in what is shown.
     pub fn flatten(&self) -> Mesh {
-        let placements = self.placements();
+        let instances = self.instances();
         let mut flat = Mesh::default();
-        for placement in &placements {
-            self.append(&mut flat, placement);
+        for instance in &instances {
+            self.append(&mut flat, instance);
         }
-        let shown = || placements.iter().map(|placement| &self.meshes[placement.mesh].mesh);
-        flat.attributes = self.flat_attributes(&placements, flat.positions.len());
-        flat.materials = self.flat_materials(&placements);
-        if placements.len() > 1
+        let shown = || instances.iter().map(|instance| &self.meshes[instance.mesh].mesh);
+        flat.attributes = self.flat_attributes(&instances, flat.positions.len());
+        flat.materials = self.flat_materials(&instances);
+        if instances.len() > 1
             || shown().any(|mesh| mesh.objects.is_some())
-            || placements.iter().any(|placement| !self.nodes[placement.node].name.is_empty())
+            || instances.iter().any(|instance| !self.nodes[instance.node].name.is_empty())
         {
-            flat.objects = Some(self.flat_objects(&placements));
+            flat.objects = Some(self.flat_objects(&instances));
         }
         flat
     }
@@ -84,12 +84,11 @@ impl Scene {
     /// [`Scene::flatten`] without a copy where one mesh is shown as it is.
     pub fn into_mesh(mut self) -> Mesh {
         let Some(only) = self.only_mesh() else { return self.flatten() };
-        let placements = self.placements();
-        let (materials, objects) =
-            (self.flat_materials(&placements), self.flat_objects(&placements));
+        let instances = self.instances();
+        let (materials, objects) = (self.flat_materials(&instances), self.flat_objects(&instances));
         let mut mesh = std::mem::take(&mut self.meshes[only].mesh);
         mesh.materials = materials;
-        if mesh.objects.is_none() && !self.nodes[placements[0].node].name.is_empty() {
+        if mesh.objects.is_none() && !self.nodes[instances[0].node].name.is_empty() {
             mesh.objects = Some(objects);
         }
         mesh
@@ -106,44 +105,44 @@ impl Scene {
 
     /// The mesh that is all the scene shows, if its node leaves it where it is.
     fn only_mesh(&self) -> Option<usize> {
-        match self.placements()[..] {
+        match self.instances()[..] {
             [only] if only.transform == IDENTITY => Some(only.mesh),
             _ => None,
         }
     }
 
-    fn append(&self, flat: &mut Mesh, placement: &Placement) {
-        let mesh = &self.meshes[placement.mesh].mesh;
+    fn append(&self, flat: &mut Mesh, instance: &MeshInstance) {
+        let mesh = &self.meshes[instance.mesh].mesh;
         let base = flat.positions.len();
-        let world = DMat4::from_cols_array_2d(&placement.transform);
-        if placement.transform == IDENTITY {
+        let world = DMat4::from_cols_array_2d(&instance.transform);
+        if instance.transform == IDENTITY {
             flat.positions.extend_from_slice(&mesh.positions);
         } else {
             let moved = mesh.positions.iter().map(|&p| world.transform_point3(p.into()).to_array());
             flat.positions.extend(moved);
         }
-        let mirrored = placement.mirrors();
+        let mirrored = instance.mirrors();
         flat.faces.extend(mesh.faces.iter().map(|face| {
             let [a, b, c] = face.map(|v| VertexId::new(base + v.index()));
             if mirrored { [a, c, b] } else { [a, b, c] }
         }));
     }
 
-    fn flat_attributes(&self, placements: &[Placement], vertices: usize) -> Option<Attributes> {
-        let shown = || placements.iter().map(|placement| &self.meshes[placement.mesh].mesh);
+    fn flat_attributes(&self, instances: &[MeshInstance], vertices: usize) -> Option<Attributes> {
+        let shown = || instances.iter().map(|instance| &self.meshes[instance.mesh].mesh);
         shown().find(|mesh| mesh.attributes.is_some())?;
         let mut flat = Attributes { layers: union_of_layers(shown()), ..Attributes::default() };
         flat.corners.reserve(shown().map(|mesh| mesh.faces.len()).sum());
         for layer in &mut flat.layers {
             layer.values.reserve(vertices * layer.width);
         }
-        for placement in placements {
-            append_attributes(&mut flat, &self.meshes[placement.mesh].mesh, placement);
+        for instance in instances {
+            append_attributes(&mut flat, &self.meshes[instance.mesh].mesh, instance);
         }
         Some(flat)
     }
 
-    fn flat_materials(&self, placements: &[Placement]) -> Option<Labels> {
+    fn flat_materials(&self, instances: &[MeshInstance]) -> Option<Labels> {
         if self.materials.is_empty() {
             return None;
         }
@@ -152,8 +151,8 @@ impl Scene {
             names: self.materials.iter().map(|material| material.name.clone()).collect(),
             of_face: Vec::new(),
         };
-        for placement in placements {
-            let mesh = &self.meshes[placement.mesh];
+        for instance in instances {
+            let mesh = &self.meshes[instance.mesh];
             let material =
                 |label: usize| mesh.materials.get(label).copied().flatten().unwrap_or(none) as u32;
             match &mesh.mesh.materials {
@@ -170,9 +169,9 @@ impl Scene {
         Some(flat)
     }
 
-    fn flat_objects(&self, placements: &[Placement]) -> Labels {
+    fn flat_objects(&self, instances: &[MeshInstance]) -> Labels {
         let mut flat = Labels::default();
-        for &Placement { node, mesh, .. } in placements {
+        for &MeshInstance { node, mesh, .. } in instances {
             let mesh = &self.meshes[mesh];
             let base = flat.names.len() as u32;
             if let Some(objects) = &mesh.mesh.objects {
@@ -204,9 +203,9 @@ fn same_meaning(a: &Layer, b: &Layer) -> bool {
     a.kind == b.kind && (a.kind != LayerKind::Other || (a.name == b.name && a.width == b.width))
 }
 
-fn append_attributes(flat: &mut Attributes, mesh: &Mesh, placement: &Placement) {
+fn append_attributes(flat: &mut Attributes, mesh: &Mesh, instance: &MeshInstance) {
     let base = flat.wedge_count;
-    let mirrored = placement.mirrors();
+    let mirrored = instance.mirrors();
     let mut push = |[a, b, c]: [usize; 3]| {
         let corners = if mirrored { [a, c, b] } else { [a, b, c] };
         flat.corners.push(corners.map(|w| WedgeId::new(base + w)));
@@ -224,7 +223,7 @@ fn append_attributes(flat: &mut Attributes, mesh: &Mesh, placement: &Placement) 
     };
     flat.wedge_count += wedges;
     let own = mesh.attributes.as_ref().map_or(&[][..], |attributes| &attributes.layers);
-    let moved = (placement.transform != IDENTITY).then(|| Directions::new(placement.linear()));
+    let moved = (instance.transform != IDENTITY).then(|| Directions::new(instance.linear()));
     for layer in &mut flat.layers {
         let from = layer.values.len();
         if let Some(own) = own.iter().find(|own| same_meaning(own, layer)) {

@@ -19,7 +19,7 @@ mod files;
 mod flatten;
 mod format;
 pub mod gltf;
-mod lines;
+mod line_writer;
 pub mod meshopt;
 pub mod obj;
 pub mod off;
@@ -29,14 +29,14 @@ mod replace;
 mod scene;
 pub mod smf;
 pub mod stl;
-mod text;
-mod torn;
+mod text_cursor;
+mod vertex_attributes;
 
-pub use error::{IoError, ParseError, Place, Unfit};
+pub use error::{FileLocation, IoError, ParseError, Unsupported};
 pub use files::{
-    ReadOptions, Resolve, Weld, WriteOptions, read, read_bytes, write, write_lods, write_small,
+    ReadOptions, Resolve, Weld, WriteOptions, read, read_bytes, write, write_compressed, write_lods,
 };
-pub use flatten::Placement;
+pub use flatten::MeshInstance;
 pub use format::Format;
 pub use meshlod_mesh::{merge_equal_wedges, weld};
 pub use replace::{abandon_files, write_file};

@@ -86,7 +86,7 @@ struct EarClipper {
     next: Vec<u32>,
     /// Whether a corner is still in the ring and not convex: only such a corner can lie in an ear.
     blocks: Vec<bool>,
-    grid: Grid,
+    grid: ReflexGrid,
     looks_left: usize,
 }
 
@@ -103,7 +103,7 @@ impl EarClipper {
         Self {
             previous: (0..n).map(|i| ((i + n - 1) % n) as u32).collect(),
             next: (0..n).map(|i| ((i + 1) % n) as u32).collect(),
-            grid: Grid::new(&points, blockers),
+            grid: ReflexGrid::new(&points, blockers),
             looks_left: n * LOOKS_PER_CORNER,
             points,
             spatial,
@@ -216,7 +216,7 @@ impl EarClipper {
 }
 
 /// Reflex corners by place: about one a cell, in rows and columns of the polygon's box.
-struct Grid {
+struct ReflexGrid {
     frame: Frame,
     /// For each cell, places in `corners`.
     cells: Buckets,
@@ -230,7 +230,7 @@ struct Frame {
     side: usize,
 }
 
-impl Grid {
+impl ReflexGrid {
     fn new(points: &[DVec2], corners: Vec<u32>) -> Self {
         let side = ((corners.len() as f64).sqrt() as usize).max(1);
         let low = points.iter().copied().fold(DVec2::INFINITY, DVec2::min);

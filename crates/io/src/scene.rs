@@ -2,7 +2,7 @@
 
 use meshlod_mesh::Mesh;
 
-use crate::gltf::Source;
+use crate::gltf::SourceDocument;
 
 /// A file's contents. A format without nodes gives one mesh under one root.
 #[derive(Clone, Debug, Default)]
@@ -22,7 +22,7 @@ pub struct Scene {
     /// A scene with a source is written to glTF as that document with the geometry of
     /// [`Scene::meshes`] in it; changes to the other fields do not show there. Set to `None` to
     /// write the fields alone.
-    pub source: Option<Source>,
+    pub source: Option<SourceDocument>,
 }
 
 /// A mesh, its name and its materials.

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use glam::{DMat3, DMat4};
 use meshlod_check::{LockOptions, LockReason, Locking, locks};
-use meshlod_io::{Placement, Scene, SceneMesh};
+use meshlod_io::{MeshInstance, Scene, SceneMesh};
 use meshlod_mesh::{Labels, Lock, Mesh, VertexId, first_near};
 
 /// What must stay of each mesh of a scene, by where its meshes meet in the world.
@@ -72,7 +72,7 @@ impl World {
     fn of(scene: &Scene) -> Self {
         let mut this = Self { mesh: Mesh::default(), homes: Vec::new() };
         let mut objects = Labels::default();
-        for Placement { node, mesh, transform } in scene.placements() {
+        for MeshInstance { node, mesh, transform } in scene.instances() {
             let transform = DMat4::from_cols_array_2d(&transform);
             if squeezes(&DMat3::from_mat4(transform)) {
                 continue;

@@ -1,7 +1,7 @@
 //! A scene's materials as pictures want them.
 
 use meshlod_io::{Image, Scene};
-use meshlod_picture::{Material, Materials, Texture};
+use meshlod_picture::{Materials, PaintMaterial, Texture};
 
 /// The materials of a scene, for a picture of [`Scene::flatten`], and the images that could not be
 /// read.
@@ -26,16 +26,16 @@ pub fn materials_of(scene: &Scene) -> (Materials, Vec<UnreadImage>) {
             }
         })
     };
-    let mut materials: Vec<Material> = scene
+    let mut materials: Vec<PaintMaterial> = scene
         .materials
         .iter()
         .map(|material| {
             let [r, g, b, _] = material.base_color;
             let texture = material.base_color_image.and_then(&mut texture);
-            Material { base_color: [r, g, b], texture }
+            PaintMaterial { base_color: [r, g, b], texture }
         })
         .collect();
-    materials.push(Material { base_color: [0.7; 3], texture: None });
+    materials.push(PaintMaterial { base_color: [0.7; 3], texture: None });
     (Materials { materials, textures }, unread)
 }
 

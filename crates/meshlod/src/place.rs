@@ -10,7 +10,7 @@ use meshlod_mesh::Bounds;
 /// Cost: linear in what is shown.
 pub fn world_bounds(scene: &Scene) -> Bounds {
     let mut bounds = Bounds::EMPTY;
-    for placement in scene.placements() {
+    for placement in scene.instances() {
         let world = DMat4::from_cols_array_2d(&placement.transform);
         let mesh = &scene.meshes[placement.mesh].mesh;
         if world == DMat4::IDENTITY {

@@ -232,7 +232,7 @@ impl<'s> SceneSimplifier<'s> {
             refusals: Refusals::default(),
             volume: VolumeLoss::default(),
         };
-        let mut places = self.scene.placements();
+        let mut places = self.scene.instances();
         places.sort_by_key(|place| place.mesh);
         let mut places = places.into_iter().peekable();
         for part in &mut self.parts {
@@ -281,7 +281,7 @@ impl Part<'_> {
 /// For each mesh how many nodes show it, and the greatest length scale of those.
 fn shown(scene: &Scene) -> Vec<(usize, f64)> {
     let mut shown = vec![(0, 0.0f64); scene.meshes.len()];
-    for placement in scene.placements() {
+    for placement in scene.instances() {
         let (copies, scale) = &mut shown[placement.mesh];
         *copies += 1;
         *scale = scale.max(length_scale(&placement.transform));

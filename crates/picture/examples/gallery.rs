@@ -8,8 +8,8 @@ use std::path::Path;
 use meshlod_io::ReadOptions;
 use meshlod_mesh::Mesh;
 use meshlod_picture::{
-    Backs, Camera, ColorMap, Lighting, Normals, Paint, Picture, PictureError, Style, Values, View,
-    Wireframe, grid, render,
+    BackFaces, Camera, ColorMap, Lighting, Normals, Paint, Picture, PictureError, Style, Values,
+    View, Wireframe, grid, render,
 };
 
 /// Pictures a row.
@@ -45,6 +45,6 @@ fn row(mesh: &Mesh) -> Result<[Picture; COLUMNS], PictureError> {
         draw(&Style { wireframe, normals: Normals::Flat, ..plain.clone() })?,
         draw(&Style { paint: heat, lighting: Lighting::Soft, ..plain.clone() })?,
         draw(&Style { paint: Paint::Checker { squares: 16 }, ..plain.clone() })?,
-        draw(&Style { backs: Backs::RED, ..plain })?,
+        draw(&Style { back_faces: BackFaces::RED, ..plain })?,
     ])
 }

@@ -6,7 +6,7 @@ use rayon::prelude::*;
 use crate::camera::Lens;
 use crate::clip::clip;
 use crate::project::{Point, Projected, beyond, project};
-use crate::raster::Window;
+use crate::raster::SampleRect;
 
 /// A face over more tiles than this is kept once and looked at by all tiles, which bounds the
 /// memory of a face.
@@ -34,15 +34,15 @@ impl Tiling {
     }
 
     /// The samples of a tile; tiles go row by row.
-    pub(crate) fn window(&self, tile: usize) -> Window {
+    pub(crate) fn window(&self, tile: usize) -> SampleRect {
         let [column, row] = [tile as u32 % self.columns(), tile as u32 / self.columns()];
         let start = [column * self.side, row * self.side];
         let end = [0, 1].map(|axis| (start[axis] + self.side).min(self.size[axis]) as i32);
-        Window { start: start.map(|s| s as i32), end }
+        SampleRect { start: start.map(|s| s as i32), end }
     }
 
-    fn whole(&self) -> Window {
-        Window { start: [0, 0], end: self.size.map(|s| s as i32) }
+    fn whole(&self) -> SampleRect {
+        SampleRect { start: [0, 0], end: self.size.map(|s| s as i32) }
     }
 }
 

@@ -26,7 +26,7 @@ pub const PIXELS_PER_DEGREE: f64 = 67.0;
 pub fn flip(reference: &Picture, test: &Picture) -> Result<Vec<f32>, PictureError> {
     check_same_size(reference, test)?;
     let filters = Filters::new();
-    let [reference, test] = [reference, test].map(|picture| Seen::new(picture, &filters));
+    let [reference, test] = [reference, test].map(|picture| PerceivedImage::new(picture, &filters));
     let scale = ColorScale::new();
     let error = |i: usize| {
         let color = scale.error(reference.colors[i], test.colors[i]);
@@ -40,7 +40,7 @@ pub fn flip(reference: &Picture, test: &Picture) -> Result<Vec<f32>, PictureErro
 }
 
 /// What the eye makes of a picture.
-struct Seen {
+struct PerceivedImage {
     /// L a b, without the detail that is too fine for it.
     colors: Vec<Vec3>,
     /// How much of an edge, and of a point or line, each pixel is.
@@ -48,7 +48,7 @@ struct Seen {
     points: Vec<f32>,
 }
 
-impl Seen {
+impl PerceivedImage {
     fn new(picture: &Picture, filters: &Filters) -> Self {
         let size = [picture.width(), picture.height()];
         let opponent: Vec<Vec3> = picture

@@ -13,7 +13,7 @@ pub struct ImageError {
     pub flip: f64,
     /// Mean [`ssim`](crate::ssim()) of the twelve views: 1 for no difference.
     pub ssim: f64,
-    /// View by view, in the order of [`Camera::icosahedron_views`].
+    /// ReferenceImage by view, in the order of [`Camera::icosahedron_views`].
     pub views: [ViewError; 12],
 }
 
@@ -29,13 +29,13 @@ pub struct ViewError {
 }
 
 /// An original in its twelve pictures, to compare levels with.
-pub struct Portrait<'a> {
+pub struct ReferenceImages<'a> {
     style: Style<'a>,
-    views: Vec<View>,
+    views: Vec<ReferenceImage>,
 }
 
 /// One picture of a portrait.
-struct View {
+struct ReferenceImage {
     camera: Camera,
     picture: Picture,
     shown: Vec<bool>,
@@ -53,10 +53,10 @@ pub fn image_error(
     level: &Mesh,
     paint: &Paint<'_>,
 ) -> Result<ImageError, PictureError> {
-    Portrait::new(original, paint)?.error_of(level)
+    ReferenceImages::new(original, paint)?.error_of(level)
 }
 
-impl<'a> Portrait<'a> {
+impl<'a> ReferenceImages<'a> {
     /// The twelve pictures of an original. They take 60 MB.
     ///
     /// # Errors
@@ -78,7 +78,7 @@ impl<'a> Portrait<'a> {
     fn with_style(original: &Mesh, style: Style<'a>) -> Result<Self, PictureError> {
         let view = |camera| {
             let (picture, shown) = draw(original, &camera, &style)?;
-            Ok(View { camera, picture, shown })
+            Ok(ReferenceImage { camera, picture, shown })
         };
         let views = Camera::icosahedron_views(original).map(view);
         Ok(Self { views: views.into_iter().collect::<Result<_, PictureError>>()?, style })
@@ -98,12 +98,12 @@ impl<'a> Portrait<'a> {
     }
 }
 
-impl View {
+impl ReferenceImage {
     fn error_of(&self, level: &Mesh, style: &Style<'_>) -> Result<ViewError, PictureError> {
         let (picture, shown) = draw(level, &self.camera, style)?;
         let union: Vec<bool> = self.shown.iter().zip(&shown).map(|(&a, &b)| a || b).collect();
         let width = picture.width();
-        let Some(window) = Window::around(&union, width) else {
+        let Some(window) = Crop::around(&union, width) else {
             return Ok(ViewError { flip: 0.0, ssim: 1.0, pixels: 0 });
         };
         let [reference, test] = [&self.picture, &picture].map(|picture| window.cut(picture));
@@ -131,12 +131,12 @@ fn draw(
 }
 
 /// A part of a picture, in pixels.
-struct Window {
+struct Crop {
     start: [usize; 2],
     end: [usize; 2],
 }
 
-impl Window {
+impl Crop {
     /// Around marked pixels, with a margin of background: as filters go on with the outermost
     /// pixels, all values inside are those of the whole picture. None without a mark.
     fn around(marks: &[bool], width: u32) -> Option<Self> {
@@ -177,8 +177,9 @@ mod tests {
     use crate::scenes::{ball, sheet_with_uv};
     use crate::{Antialiasing, Background};
 
-    fn portrait(mesh: &Mesh) -> Portrait<'static> {
-        Portrait::with_style(mesh, Style { size: [160, 160], ..Style::comparison() }).unwrap()
+    fn portrait(mesh: &Mesh) -> ReferenceImages<'static> {
+        ReferenceImages::with_style(mesh, Style { size: [160, 160], ..Style::comparison() })
+            .unwrap()
     }
 
     #[test]
@@ -205,14 +206,14 @@ mod tests {
         moved.attributes.as_mut().unwrap().layers[0].values.iter_mut().for_each(|uv| *uv += 0.03);
         let style =
             Style { size: [160, 160], paint: Paint::Checker { squares: 4 }, ..Style::comparison() };
-        let portrait = Portrait::with_style(&original, style).unwrap();
+        let portrait = ReferenceImages::with_style(&original, style).unwrap();
         assert!(portrait.error_of(&moved).unwrap().flip > 0.02);
     }
 
     #[test]
     fn the_object_fills_the_frame_and_its_surroundings_do_not_count() {
         for view in portrait(&ball(4)).views {
-            let window = Window::around(&view.shown, 160).unwrap();
+            let window = Crop::around(&view.shown, 160).unwrap();
             let sides = [0, 1].map(|axis| window.end[axis] - window.start[axis] - 4);
             assert!(sides.iter().all(|side| (126..=128).contains(side)), "{sides:?}");
             let disc = std::f64::consts::PI * 64.0 * 64.0;
@@ -241,7 +242,7 @@ mod tests {
         assert!(matches!(style.background, Background::Plain(_)));
         let camera = Camera::icosahedron_views(&mesh)[3];
         let [a, b] = [&mesh, &ball(1)].map(|mesh| draw(mesh, &camera, &style).unwrap());
-        let window = Window::around(&a.1, 160).unwrap();
+        let window = Crop::around(&a.1, 160).unwrap();
         let whole = flip(&a.0, &b.0).unwrap();
         let part = flip(&window.cut(&a.0).unwrap(), &window.cut(&b.0).unwrap()).unwrap();
         let expected: Vec<f32> = window.rows(160).flat_map(|row| whole[row].to_vec()).collect();

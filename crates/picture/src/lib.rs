@@ -21,7 +21,7 @@
 //! sees, without any shading.
 //!
 //! [`image_error`] is what a level looks wrong by: its pictures from twelve sides beside those of
-//! its original, compared as the eye does ([`flip()`]) and by structure ([`ssim()`]). A [`Cover`]
+//! its original, compared as the eye does ([`flip()`]) and by structure ([`ssim()`]). A [`ReferenceVisibility`]
 //! finds the pixels where a level shows what its original hides.
 //!
 //! # How it works
@@ -32,8 +32,8 @@
 //! roots are used, which are the same on all machines; comparing pictures also takes roots and powers of the library.
 #![forbid(unsafe_code)]
 
+mod albedo;
 mod bins;
-mod breach;
 mod camera;
 mod clip;
 mod color_map;
@@ -46,13 +46,13 @@ mod lab;
 mod light;
 mod normals;
 mod picture;
-mod pigment;
 mod plane;
 mod project;
 mod raster;
 mod render;
 #[cfg(test)]
 mod scenes;
+mod see_through;
 mod srgb;
 mod ssim;
 mod style;
@@ -60,18 +60,20 @@ mod texture;
 mod trigonometry;
 mod visibility;
 
-pub use breach::{Breach, BreachOptions, Breaches, Cover, Parted};
 pub use camera::{Camera, UpAxis, View};
 pub use color_map::ColorMap;
 pub use error::{MAX_SIDE, PictureError};
 pub use flip::{PIXELS_PER_DEGREE, flip};
-pub use image_error::{ImageError, Portrait, ViewError, image_error};
+pub use image_error::{ImageError, ReferenceImages, ViewError, image_error};
 pub use picture::{Picture, beside, grid};
 pub use render::render;
+pub use see_through::{
+    LabelledMesh, ReferenceVisibility, SeeThrough, SeeThroughCounts, SeeThroughOptions,
+};
 pub use ssim::ssim;
 pub use style::{
-    Antialiasing, Background, Backs, Lighting, Material, Materials, Normals, Paint, Style, Values,
-    Wireframe,
+    Antialiasing, BackFaces, Background, Lighting, Materials, Normals, Paint, PaintMaterial, Style,
+    Values, Wireframe,
 };
 pub use texture::Texture;
 pub use visibility::{Visibility, visibility};

@@ -4,12 +4,12 @@ use crate::project::{Point, SUBSTEPS};
 
 /// A rectangle of samples; `end` is not in it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Window {
+pub(crate) struct SampleRect {
     pub start: [i32; 2],
     pub end: [i32; 2],
 }
 
-impl Window {
+impl SampleRect {
     /// The samples of this window that the box around a triangle holds: none where `start` is not
     /// below `end`.
     #[inline]
@@ -44,7 +44,11 @@ impl Window {
 /// # References
 /// [Pin88] edge functions.
 #[inline]
-pub(crate) fn cover(triangle: &[Point; 3], window: &Window, mut give: impl FnMut(i32, i32, f32)) {
+pub(crate) fn cover(
+    triangle: &[Point; 3],
+    window: &SampleRect,
+    mut give: impl FnMut(i32, i32, f32),
+) {
     let window = window.around(triangle);
     if window.is_empty() {
         return;
@@ -156,7 +160,7 @@ mod tests {
 
     /// How often each sample of a square is covered by triangles over `points`.
     fn counts(points: &[Point], faces: &[[usize; 3]], side: i32) -> Vec<u32> {
-        let window = Window { start: [0, 0], end: [side, side] };
+        let window = SampleRect { start: [0, 0], end: [side, side] };
         let mut counts = vec![0; (side * side) as usize];
         for face in faces {
             cover(&face.map(|i| points[i]), &window, |x, y, _| {
@@ -225,7 +229,7 @@ mod tests {
     fn windows_agree_on_what_is_covered() {
         let triangle = [point(-300, 20), point(5000, 900), point(700, 4500)];
         let mut whole = Vec::new();
-        let window = |start, end| Window { start, end };
+        let window = |start, end| SampleRect { start, end };
         cover(&triangle, &window([0, 0], [16, 16]), |x, y, near| whole.push((y, x, near)));
         let mut parts = Vec::new();
         for (sx, sy) in [(0, 0), (8, 0), (0, 8), (8, 8)] {
@@ -240,7 +244,7 @@ mod tests {
     fn nearness_is_linear_between_the_corners() {
         let corner = |x, y, nearness| Point { x: x * 256 + 128, y: y * 256 + 128, nearness };
         let triangle = [corner(0, 0, 0.0), corner(8, 0, 0.8), corner(0, 8, 0.4)];
-        cover(&triangle, &Window { start: [0, 0], end: [9, 9] }, |x, y, near| {
+        cover(&triangle, &SampleRect { start: [0, 0], end: [9, 9] }, |x, y, near| {
             assert!((near - (0.1 * x as f32 + 0.05 * y as f32)).abs() < 1e-6, "{x} {y} {near}");
         });
     }
@@ -265,7 +269,7 @@ mod tests {
         let far = 1 << 29;
         let triangle = [point(-far, -far), point(far, -far), point(0, far)];
         let mut covered = 0;
-        let window = Window { start: [0, 0], end: [4, 4] };
+        let window = SampleRect { start: [0, 0], end: [4, 4] };
         cover(&triangle, &window, |_, _, _| covered += 1);
         assert_eq!(covered, 16);
     }

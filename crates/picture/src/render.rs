@@ -3,17 +3,17 @@
 use glam::Vec3;
 use meshlod_mesh::Mesh;
 
+use crate::albedo::Albedo;
 use crate::bins::Tiling;
 use crate::camera::Lens;
 use crate::error::check_size;
 use crate::facet::Facet;
 use crate::light::Lights;
 use crate::normals::CornerNormals;
-use crate::pigment::Pigment;
-use crate::raster::Window;
+use crate::raster::SampleRect;
 use crate::srgb::{decode, encode};
 use crate::visibility::{NO_FACE, Sample, draw_tiles};
-use crate::{Background, Backs, Camera, Picture, PictureError, Style};
+use crate::{BackFaces, Background, Camera, Picture, PictureError, Style};
 
 /// Draws a mesh.
 ///
@@ -63,13 +63,13 @@ struct Scene<'a> {
     lens: Lens,
     lights: Lights,
     normals: CornerNormals<'a>,
-    pigment: Pigment<'a>,
+    pigment: Albedo<'a>,
 }
 
 /// The samples of a tile.
 struct Grid<'a> {
     samples: &'a [Sample],
-    window: Window,
+    window: SampleRect,
     /// Samples along a pixel's side.
     across: usize,
 }
@@ -93,7 +93,7 @@ impl<'a> Scene<'a> {
     fn new(mesh: &'a Mesh, camera: &Camera, style: &'a Style) -> Result<Self, PictureError> {
         let lens = camera.lens(style.size[0], style.size[1]);
         let lights = Lights::new(style.lighting, lens.axes());
-        let pigment = Pigment::new(mesh, &style.paint)?;
+        let pigment = Albedo::new(mesh, &style.paint)?;
         let normals = CornerNormals::new(mesh, style.normals);
         Ok(Self { mesh, style, lens, lights, normals, pigment })
     }
@@ -135,8 +135,8 @@ impl<'a> Scene<'a> {
         let facet = self.facet(glimpse.face as usize, facets);
         let [x, y] = grid.middle(glimpse);
         let fragment = facet.at(&self.lens, x, y);
-        let color = match self.style.backs {
-            Backs::Tint(tint) if facet.from_behind => decode(tint),
+        let color = match self.style.back_faces {
+            BackFaces::Tint(tint) if facet.from_behind => decode(tint),
             _ => self.pigment.color(self.mesh, &fragment),
         };
         let to_eye = -self.lens.ray(x, y).as_vec3().normalize_or_zero();
@@ -157,9 +157,9 @@ impl<'a> Scene<'a> {
 
 impl Grid<'_> {
     /// The tile in pixels.
-    fn pixels(&self) -> Window {
+    fn pixels(&self) -> SampleRect {
         let across = self.across as i32;
-        Window {
+        SampleRect {
             start: self.window.start.map(|s| s / across),
             end: self.window.end.map(|s| s / across),
         }

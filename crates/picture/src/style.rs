@@ -16,7 +16,7 @@ pub struct Style<'a> {
     /// The light on it.
     pub lighting: Lighting,
     /// How the inner sides of faces look.
-    pub backs: Backs,
+    pub back_faces: BackFaces,
     /// Lines along the edges of all faces.
     pub wireframe: Option<Wireframe>,
     /// What is behind.
@@ -32,7 +32,7 @@ impl Default for Style<'_> {
             paint: Paint::default(),
             normals: Normals::default(),
             lighting: Lighting::default(),
-            backs: Backs::default(),
+            back_faces: BackFaces::default(),
             wireframe: None,
             background: Background::default(),
             antialiasing: Antialiasing::default(),
@@ -124,14 +124,14 @@ pub struct Values<'a> {
 #[derive(Clone, Debug, Default)]
 pub struct Materials {
     /// One per name of the mesh's material labels.
-    pub materials: Vec<Material>,
+    pub materials: Vec<PaintMaterial>,
     /// What they share.
     pub textures: Vec<Texture>,
 }
 
 /// What a surface is made of.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Material {
+pub struct PaintMaterial {
     /// Linear RGB.
     pub base_color: [f32; 3],
     /// What multiplies it, by index into [`Materials::textures`]; looked up by the first uv layer.
@@ -171,7 +171,7 @@ pub enum Lighting {
 
 /// How the inner sides of faces look.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Backs {
+pub enum BackFaces {
     /// As the outer ones.
     #[default]
     Same,
@@ -179,7 +179,7 @@ pub enum Backs {
     Tint([u8; 3]),
 }
 
-impl Backs {
+impl BackFaces {
     /// A red that no surface is mistaken for.
     pub const RED: Self = Self::Tint([196, 92, 78]);
 }

@@ -7,7 +7,7 @@ use crate::bins::{Bins, Tiling};
 use crate::camera::Lens;
 use crate::error::check_size;
 use crate::project::Point;
-use crate::raster::{Window, cover};
+use crate::raster::{SampleRect, cover};
 use crate::{Camera, PictureError};
 
 /// The face that each pixel's middle sees, and how far away it is.
@@ -100,7 +100,7 @@ pub(crate) fn draw_tiles<T: Send>(
     mesh: &Mesh,
     lens: &Lens,
     tiling: Tiling,
-    finish: impl Fn(Window, &[Sample]) -> T + Sync,
+    finish: impl Fn(SampleRect, &[Sample]) -> T + Sync,
 ) -> Vec<T> {
     let bins = Bins::new(mesh, lens, tiling);
     let draw = |samples: &mut Vec<Sample>, tile| {
@@ -114,7 +114,7 @@ pub(crate) fn draw_tiles<T: Send>(
     (0..tiling.count()).into_par_iter().map_init(Vec::new, draw).collect()
 }
 
-fn draw(samples: &mut [Sample], window: &Window, face: u32, triangle: &[Point; 3]) {
+fn draw(samples: &mut [Sample], window: &SampleRect, face: u32, triangle: &[Point; 3]) {
     let width = (window.end[0] - window.start[0]) as usize;
     cover(triangle, window, |x, y, nearness| {
         let at = (y - window.start[1]) as usize * width + (x - window.start[0]) as usize;

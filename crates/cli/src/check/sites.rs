@@ -22,7 +22,7 @@ struct Site {
 impl Sites {
     pub fn of(scene: &Scene) -> Self {
         let (mut first_vertex, mut first_face) = (0, 0);
-        let sites = scene.placements().into_iter().map(|placement| {
+        let sites = scene.instances().into_iter().map(|placement| {
             let (node, mesh) = (placement.node, placement.mesh);
             let of = &scene.meshes[mesh];
             let named = [&scene.nodes[node].name, &of.name].into_iter().find(|n| !n.is_empty());

@@ -2,7 +2,7 @@
 
 use meshlod::Method;
 use meshlod::measure::{DistanceOptions, Surface};
-use meshlod::picture::Portrait;
+use meshlod::picture::ReferenceImages;
 
 use crate::amounts::Size;
 use crate::compare::output::Output;
@@ -52,7 +52,7 @@ struct Means<'c> {
 /// What pictures are made with, and compared.
 struct Drawing<'c> {
     studio: Studio<'c>,
-    portrait: Portrait<'c>,
+    portrait: ReferenceImages<'c>,
 }
 
 /// Width and height of the pictures that are compared: a sixteenth of the protocol's pixels, so
@@ -86,7 +86,8 @@ impl Contest<'_> {
 
     fn drawing(&self) -> Result<Drawing<'_>, Failure> {
         let Self { subject, original, .. } = self;
-        let portrait = Portrait::of_side(&subject.mesh, &subject.look.coat.paint(), COMPARED_SIDE);
+        let portrait =
+            ReferenceImages::of_side(&subject.mesh, &subject.look.coat.paint(), COMPARED_SIDE);
         let portrait =
             portrait.map_err(|error| Failure::new(format_args!("{}: {error}", subject.name)))?;
         Ok(Drawing { studio: Studio::new(subject, original), portrait })

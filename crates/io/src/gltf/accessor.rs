@@ -17,7 +17,7 @@ pub(super) mod component {
 }
 
 /// An accessor's elements, one after the other without gaps.
-struct Packed<'a> {
+struct PackedElements<'a> {
     accessor: &'a Accessor,
     /// Components an element.
     width: usize,
@@ -43,7 +43,7 @@ impl Values {
 impl Document<'_> {
     /// An accessor of any type as numbers, all of them finite.
     pub fn floats(&self, index: usize) -> Result<Values, ParseError> {
-        let Packed { accessor, width, bytes } = self.packed(index)?;
+        let PackedElements { accessor, width, bytes } = self.packed(index)?;
         let values = numbers(&bytes, accessor.component_type, accessor.normalized);
         match values.iter().position(|x| !x.is_finite()) {
             None => Ok(Values { width, values }),
@@ -56,7 +56,7 @@ impl Document<'_> {
 
     /// An accessor of indices, each below `limit`.
     pub fn indices(&self, index: usize, limit: usize) -> Result<Vec<u32>, ParseError> {
-        let Packed { accessor, width, bytes } = self.packed(index)?;
+        let PackedElements { accessor, width, bytes } = self.packed(index)?;
         let kind = accessor.component_type;
         if width != 1 || !matches!(kind, component::U8 | component::U16 | component::U32) {
             let shape = &accessor.shape;
@@ -74,7 +74,7 @@ impl Document<'_> {
         }
     }
 
-    fn packed(&self, index: usize) -> Result<Packed<'_>, ParseError> {
+    fn packed(&self, index: usize) -> Result<PackedElements<'_>, ParseError> {
         let Some(accessor) = self.accessors.get(index) else {
             return Err(missing("accessor", index, self.accessors.len()));
         };
@@ -97,7 +97,7 @@ impl Document<'_> {
         if let Some(sparse) = &accessor.sparse {
             self.replace_sparse(index, sparse, element, bytes.to_mut())?;
         }
-        Ok(Packed { accessor, width, bytes })
+        Ok(PackedElements { accessor, width, bytes })
     }
 
     fn elements(

@@ -8,7 +8,7 @@ use serde_json::Value;
 use super::lod::Level;
 use super::primitives::is_surface;
 use super::schema::parse_target_name;
-use crate::{Scene, Unfit};
+use crate::{Scene, Unsupported};
 
 /// How geometry is written small: [Kap20], and [KS21] where `meshopt` asks for it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -32,14 +32,14 @@ impl Default for Compression {
 }
 
 impl Compression {
-    pub(super) fn check(&self) -> Result<(), Unfit> {
+    pub(super) fn check(&self) -> Result<(), Unsupported> {
         for (name, bits, least) in [
             ("position bits", self.position_bits, 1),
             ("normal bits", self.normal_bits, 2),
             ("uv bits", self.uv_bits, 1),
         ] {
             if !(least..=16).contains(&bits) {
-                return Err(Unfit::new(name, format!("{bits} cannot be; {least} to 16 can")));
+                return Err(Unsupported::new(name, format!("{bits} cannot be; {least} to 16 can")));
             }
         }
         Ok(())
@@ -72,7 +72,7 @@ pub struct CompressionReport {
 
 /// The cells on which the positions of a mesh lie.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Grid {
+pub(super) struct QuantizationGrid {
     /// The corner of the first cell, in numbers of 32 bits.
     pub origin: [f64; 3],
     /// Their side, in a number of 32 bits.
@@ -81,7 +81,7 @@ pub(super) struct Grid {
     pub most: u16,
 }
 
-impl Grid {
+impl QuantizationGrid {
     /// The grid of so many bits over points; none where its cells are no number of 32 bits.
     fn over<'a>(points: impl Iterator<Item = &'a [f64; 3]>, bits: u32) -> Option<Self> {
         let bounds = Bounds::of(points);
@@ -124,7 +124,7 @@ pub(super) fn grids(
     levels: &[Level],
     bits: u32,
     kept: &mut Vec<String>,
-) -> Vec<Option<Grid>> {
+) -> Vec<Option<QuantizationGrid>> {
     let mut grid = |index: usize| {
         let mesh = &scene.meshes[index].mesh;
         let why = match why_floats(json, index) {
@@ -134,7 +134,7 @@ pub(super) fn grids(
             None => {
                 let coarser = levels.iter().filter_map(|level| level.meshes.get(index));
                 let points = std::iter::once(mesh).chain(coarser).flat_map(|mesh| &mesh.positions);
-                match Grid::over(points, bits) {
+                match QuantizationGrid::over(points, bits) {
                     Some(grid) => return Some(grid),
                     None => "is too large or too small for a node to scale",
                 }
@@ -208,7 +208,7 @@ mod tests {
     fn points_are_at_most_half_a_cell_away_on_each_axis() {
         let points = [[-1.0, 2.0, 1e6], [0.3, 2.1, 1e6 + 7.0], [0.1, 2.05, 1e6 + 3.3]];
         for bits in [1, 8, 11, 16] {
-            let grid = Grid::over(points.iter(), bits).unwrap();
+            let grid = QuantizationGrid::over(points.iter(), bits).unwrap();
             assert!(f64::from(grid.cell as f32) == grid.cell);
             for point in points {
                 let place = grid.place(grid.quantized(point));
@@ -222,7 +222,7 @@ mod tests {
 
     #[test]
     fn what_no_node_can_scale_has_no_grid() {
-        let of = |points: &[[f64; 3]]| Grid::over(points.iter(), 1);
+        let of = |points: &[[f64; 3]]| QuantizationGrid::over(points.iter(), 1);
         assert!(of(&[[0.0; 3], [1e-60, 0.0, 0.0]]).is_none());
         assert!(of(&[[-3e38, 0.0, 0.0], [3e38, 0.0, 0.0]]).is_none());
         assert!(of(&[[1e39, 0.0, 0.0]]).is_none());

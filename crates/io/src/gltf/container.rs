@@ -1,6 +1,6 @@
 //! The GLB container: JSON and binary chunk in one file.
 
-use crate::{ParseError, Unfit};
+use crate::{ParseError, Unsupported};
 
 const MAGIC: &[u8; 4] = b"glTF";
 const JSON: &[u8; 4] = b"JSON";
@@ -38,13 +38,13 @@ pub(super) fn split(bytes: &[u8]) -> Result<(&[u8], Option<&[u8]>), ParseError> 
 }
 
 /// Puts JSON and binary chunk together.
-pub(super) fn join(json: &[u8], bin: &[u8]) -> Result<Vec<u8>, Unfit> {
+pub(super) fn join(json: &[u8], bin: &[u8]) -> Result<Vec<u8>, Unsupported> {
     let padded = |chunk: &[u8]| chunk.len().next_multiple_of(4);
     let bin_size = if bin.is_empty() { 0 } else { 8 + padded(bin) };
     let length = HEADER + 8 + padded(json) + bin_size;
     let Ok(total) = u32::try_from(length) else {
         let reason = format!("{length} bytes are more than a GLB can have; write .gltf");
-        return Err(Unfit::new("file", reason));
+        return Err(Unsupported::new("file", reason));
     };
     let mut out = Vec::with_capacity(length);
     out.extend_from_slice(MAGIC);

@@ -4,8 +4,8 @@ use std::cell::Cell;
 
 use serde_json::Value;
 
-use super::schema::{self, Accessor, Buffer, View};
-use super::unpack::{self, MESHOPT};
+use super::decompress::{self, MESHOPT};
+use super::schema::{self, Accessor, Buffer, BufferView};
 use super::uri::{self, Uri};
 use crate::{ParseError, Resolve};
 
@@ -34,8 +34,8 @@ pub(super) struct Document<'a> {
     pub json: &'a Value,
     pub buffers: &'a [Vec<u8>],
     pub accessors: Vec<Accessor>,
-    pub views: Vec<View>,
-    pub meshes: Vec<schema::Mesh>,
+    pub views: Vec<BufferView>,
+    pub meshes: Vec<schema::GltfMesh>,
     /// How many more values may come out of it.
     budget: Cell<u64>,
 }
@@ -44,12 +44,12 @@ impl<'a> Document<'a> {
     /// Types the parts that geometry needs.
     pub fn new(json: &'a Value, buffers: &'a Buffers) -> Result<Self, ParseError> {
         let Buffers { bytes: buffers, stored } = buffers;
-        let views: Vec<View> = schema::array(json, "bufferViews", "bufferView")?;
+        let views: Vec<BufferView> = schema::array(json, "bufferViews", "bufferView")?;
         for (i, view) in views.iter().enumerate() {
             check_view(i, view, buffers)?;
         }
         let accessors: Vec<Accessor> = schema::array(json, "accessors", "accessor")?;
-        let meshes: Vec<schema::Mesh> = schema::array(json, "meshes", "mesh")?;
+        let meshes: Vec<schema::GltfMesh> = schema::array(json, "meshes", "mesh")?;
         for (i, mesh) in json["meshes"].as_array().into_iter().flatten().enumerate() {
             // Types alone would take arrays as well.
             if !mesh["primitives"].as_array().is_some_and(|p| p.iter().all(Value::is_object)) {
@@ -69,7 +69,7 @@ impl<'a> Document<'a> {
     }
 
     /// The bytes of a buffer view.
-    pub fn view(&self, index: usize) -> Result<(&View, &'a [u8]), ParseError> {
+    pub fn view(&self, index: usize) -> Result<(&BufferView, &'a [u8]), ParseError> {
         let Some(view) = self.views.get(index) else {
             return Err(missing("bufferView", index, self.views.len()));
         };
@@ -152,7 +152,9 @@ pub(super) fn buffers(
     let declared: Vec<Buffer> = schema::array(json, "buffers", "buffer")?;
     let load = |(i, buffer): (usize, &Buffer)| {
         let named = buffer.uri.is_some() || (i == 0 && chunk.is_some());
-        if unpack::is_fallback(&json["buffers"][i]) || !named && unpack::is_unfolded_into(json, i) {
+        if decompress::is_fallback(&json["buffers"][i])
+            || !named && decompress::is_unfolded_into(json, i)
+        {
             return Ok(Vec::new());
         }
         let wrong = |reason| ParseError::part(format!("buffer {i}"), reason);
@@ -176,7 +178,7 @@ pub(super) fn buffers(
     Ok(Buffers::new(bytes))
 }
 
-fn check_view(index: usize, view: &View, buffers: &[Vec<u8>]) -> Result<(), ParseError> {
+fn check_view(index: usize, view: &BufferView, buffers: &[Vec<u8>]) -> Result<(), ParseError> {
     let part = format!("bufferView {index}");
     if let Some(extension) = view.extensions.keys().find(|name| compresses(name)) {
         return Err(compressed(&part, extension));

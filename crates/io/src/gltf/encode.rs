@@ -3,12 +3,12 @@
 use meshlod_mesh::{Layer, LayerKind, Mesh, WedgeId};
 
 use super::accessor::component;
-use super::compress::{Compression, Grid};
+use super::buffer_builder::{Blob, Part, Usage};
+use super::compress::{Compression, QuantizationGrid};
 use super::mesh::flip_v;
-use super::pool::{Blob, Part, Usage};
 use super::schema::parse_target_name;
-use super::{order, quantize};
-use crate::Unfit;
+use super::{quantize, vertex_cache};
+use crate::Unsupported;
 use crate::meshopt::Filter;
 
 /// The arrays of a primitive.
@@ -28,7 +28,7 @@ pub(super) struct Arrays {
 pub(super) struct Numbers<'a> {
     pub compression: Option<&'a Compression>,
     /// Of the mesh's positions, if they are to lie on one.
-    pub grid: Option<&'a Grid>,
+    pub grid: Option<&'a QuantizationGrid>,
 }
 
 /// A layer and the component type that its file had it in, if it came from one.
@@ -49,7 +49,7 @@ pub(super) fn arrays(
     faces: &[u32],
     layers: &[Typed<'_>],
     numbers: Numbers<'_>,
-) -> Result<Arrays, Unfit> {
+) -> Result<Arrays, Unsupported> {
     let corners: Vec<u64> = faces.iter().flat_map(|&face| keys(mesh, face as usize)).collect();
     let mut vertices = corners.clone();
     vertices.sort_unstable();
@@ -57,7 +57,7 @@ pub(super) fn arrays(
     let find = |corner| vertices.binary_search(corner).expect("every corner is a vertex") as u32;
     let mut indices: Vec<u32> = corners.iter().map(find).collect();
     if numbers.compression.is_some() {
-        let old = order::arrange(indices.as_chunks_mut().0, vertices.len());
+        let old = vertex_cache::arrange(indices.as_chunks_mut().0, vertices.len());
         vertices = old.iter().map(|&v| vertices[v as usize]).collect();
     }
     let indices = index_blob(&indices, vertices.len());
@@ -68,7 +68,7 @@ pub(super) fn arrays(
 }
 
 /// A primitive that shows nothing at `point`: the format allows no empty mesh.
-pub(super) fn nothing(point: [f64; 3]) -> Result<Arrays, Unfit> {
+pub(super) fn nothing(point: [f64; 3]) -> Result<Arrays, Unsupported> {
     let face = [meshlod_mesh::VertexId(0); 3];
     arrays(&Mesh::new(vec![point], vec![face]), &[0], &[], Numbers::default())
 }
@@ -108,14 +108,18 @@ fn index_blob(indices: &[u32], vertices: usize) -> Blob {
     }
 }
 
-fn positions(mesh: &Mesh, vertices: &[u64], grid: Option<&Grid>) -> Result<(Blob, f64), Unfit> {
+fn positions(
+    mesh: &Mesh,
+    vertices: &[u64],
+    grid: Option<&QuantizationGrid>,
+) -> Result<(Blob, f64), Unsupported> {
     let mut points = Vec::with_capacity(vertices.len());
     for &key in vertices {
         let vertex = key as u32;
         let position = mesh.positions[vertex as usize].map(|x| x as f32);
         if !position.iter().all(|x| x.is_finite()) {
             let reason = "a coordinate is beyond 32-bit floats, which is all that glTF has";
-            return Err(Unfit::new(format!("v{vertex}"), reason));
+            return Err(Unsupported::new(format!("v{vertex}"), reason));
         }
         points.push(position);
     }
@@ -143,7 +147,11 @@ pub(super) fn extent(points: &[[f32; 3]]) -> [[f32; 3]; 2] {
     extent
 }
 
-fn layer_blob(typed: Typed<'_>, vertices: &[u64], numbers: Numbers<'_>) -> Result<Blob, Unfit> {
+fn layer_blob(
+    typed: Typed<'_>,
+    vertices: &[u64],
+    numbers: Numbers<'_>,
+) -> Result<Blob, Unsupported> {
     let Typed { layer, component } = typed;
     let shape = match layer.width {
         1 => "SCALAR",
@@ -154,7 +162,7 @@ fn layer_blob(typed: Typed<'_>, vertices: &[u64], numbers: Numbers<'_>) -> Resul
         16 => "MAT4",
         width => {
             let reason = format!("is {width} wide; glTF has 1 to 4, 9 and 16");
-            return Err(Unfit::new(format!("layer {:?}", layer.name), reason));
+            return Err(Unsupported::new(format!("layer {:?}", layer.name), reason));
         }
     };
     let mut values: Vec<f32> =
@@ -164,7 +172,8 @@ fn layer_blob(typed: Typed<'_>, vertices: &[u64], numbers: Numbers<'_>) -> Resul
     }
     // Colours of 16 bits stay that fine.
     let small = numbers.compression.filter(|_| component != Some(component::U16));
-    let small = small.and_then(|how| quantize::layer(layer.kind, layer.width, &values, how));
+    let small = small
+        .and_then(|compression| quantize::layer(layer.kind, layer.width, &values, compression));
     if let Some(blob) = small {
         return Ok(blob);
     }

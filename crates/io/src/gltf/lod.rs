@@ -5,10 +5,10 @@ use std::collections::BTreeSet;
 use meshlod_mesh::Mesh;
 use serde_json::{Map, Value, json};
 
-use super::compress::Grid;
+use super::compress::QuantizationGrid;
 use super::nodes::{self, MSFT_LOD};
 use super::primitives::Replacer;
-use crate::Unfit;
+use crate::Unsupported;
 
 /// A coarser level of a whole scene.
 #[derive(Clone, Debug)]
@@ -27,10 +27,10 @@ pub struct Level {
 pub(super) fn add(
     json: &mut Value,
     templates: &[Value],
-    grids: &[Option<Grid>],
+    grids: &[Option<QuantizationGrid>],
     levels: &[Level],
     replacer: &mut Replacer<'_>,
-) -> Result<(), Unfit> {
+) -> Result<(), Unsupported> {
     check(levels, templates.len())?;
     let first = add_meshes(json, templates, grids, levels, replacer)?;
     let count = json.get("nodes").and_then(Value::as_array).map_or(0, Vec::len);
@@ -50,9 +50,9 @@ pub(super) fn add(
     Ok(())
 }
 
-fn check(levels: &[Level], meshes: usize) -> Result<(), Unfit> {
+fn check(levels: &[Level], meshes: usize) -> Result<(), Unsupported> {
     for (k, level) in levels.iter().enumerate() {
-        let wrong = |reason| Err(Unfit::new(format!("level {}", k + 1), reason));
+        let wrong = |reason| Err(Unsupported::new(format!("level {}", k + 1), reason));
         if level.meshes.len() != meshes {
             let found = level.meshes.len();
             return wrong(format!("has {found} meshes where the scene has {meshes}"));
@@ -68,10 +68,10 @@ fn check(levels: &[Level], meshes: usize) -> Result<(), Unfit> {
 fn add_meshes(
     json: &mut Value,
     templates: &[Value],
-    grids: &[Option<Grid>],
+    grids: &[Option<QuantizationGrid>],
     levels: &[Level],
     replacer: &mut Replacer<'_>,
-) -> Result<usize, Unfit> {
+) -> Result<usize, Unsupported> {
     let mut new = Vec::new();
     for (k, level) in levels.iter().enumerate() {
         for ((template, mesh), grid) in templates.iter().zip(&level.meshes).zip(grids) {

@@ -3,7 +3,7 @@
 use serde_json::Value;
 
 use super::document::{Document, missing};
-use super::plain::mime_type;
+use super::new_document::mime_type;
 use super::schema::{self, Texture};
 use super::uri::{self, Uri};
 use crate::{Image, Material, ParseError, Resolve};
@@ -11,8 +11,8 @@ use crate::{Image, Material, ParseError, Resolve};
 /// Reads the materials; each image that they name is one of `images`.
 pub(super) fn materials(json: &Value, images: usize) -> Result<Vec<Material>, ParseError> {
     let textures: Vec<Texture> = schema::array(json, "textures", "texture")?;
-    let materials: Vec<schema::Material> = schema::array(json, "materials", "material")?;
-    let read = |material: schema::Material| {
+    let materials: Vec<schema::GltfMaterial> = schema::array(json, "materials", "material")?;
+    let read = |material: schema::GltfMaterial| {
         let surface = material.pbr_metallic_roughness;
         let base_color_image = match surface.base_color_texture {
             None => None,
@@ -40,8 +40,8 @@ pub(super) fn images(
     document: &Document<'_>,
     resolve: Resolve<'_>,
 ) -> Result<Vec<Image>, ParseError> {
-    let images: Vec<schema::Image> = schema::array(document.json, "images", "image")?;
-    let mut read = |(i, image): (usize, schema::Image)| {
+    let images: Vec<schema::GltfImage> = schema::array(document.json, "images", "image")?;
+    let mut read = |(i, image): (usize, schema::GltfImage)| {
         let named = |bytes: &[u8]| file_name(image.name.clone(), i, bytes);
         if let Some(view) = image.buffer_view {
             let (_, bytes) = document.view(view)?;

@@ -1,33 +1,33 @@
 //! glTF 2.0 and GLB, with all that a document holds carried through.
 
 mod accessor;
+mod buffer_builder;
 mod compress;
 mod container;
+mod decompress;
+mod dequantize_nodes;
 mod document;
 mod encode;
 mod lod;
 mod materials;
 mod mesh;
+mod new_document;
 mod nodes;
-mod order;
 mod parts;
-mod place;
-mod plain;
-mod pool;
+mod primitive_rows;
 mod primitives;
 mod quantize;
 mod read;
-mod rows;
 mod schema;
 #[cfg(test)]
 mod tests;
-mod unpack;
 mod uri;
+mod vertex_cache;
 mod write;
 
 pub use compress::{Bytes, Compression, CompressionReport};
 pub use lod::Level;
 pub use parts::{QuantizedPart, write_parts_glb};
-pub use read::{Source, read};
-pub use rows::PrimitiveRows;
-pub use write::{Written, write, write_glb, write_small, write_small_glb};
+pub use primitive_rows::PrimitiveRows;
+pub use read::{SourceDocument, read};
+pub use write::{Written, write, write_compressed, write_compressed_glb, write_glb};

@@ -4,7 +4,7 @@ use glam::{DMat4, DQuat, DVec3};
 use serde_json::Value;
 
 use super::document::missing;
-use super::schema::{self, Roots};
+use super::schema::{self, GltfScene};
 use crate::{Node, ParseError, Scene};
 
 /// The most faces that a scene may show, over all instances. 2^28 take some 10 GB as one mesh.
@@ -20,7 +20,7 @@ pub(super) const MSFT_LOD: &str = "MSFT_lod";
 ///
 /// Coarser levels by `MSFT_lod` are nodes, but neither roots nor children of any.
 pub(super) fn read(json: &Value, scene: &mut Scene) -> Result<(), ParseError> {
-    let nodes: Vec<schema::Node> = schema::array(json, "nodes", "node")?;
+    let nodes: Vec<schema::GltfNode> = schema::array(json, "nodes", "node")?;
     let parents = parents(&nodes)?;
     check_trees(&nodes, &parents)?;
     let hidden = levels(json, nodes.len());
@@ -55,7 +55,7 @@ pub(super) fn levels(json: &Value, count: usize) -> Vec<bool> {
     hidden
 }
 
-fn parents(nodes: &[schema::Node]) -> Result<Vec<Option<usize>>, ParseError> {
+fn parents(nodes: &[schema::GltfNode]) -> Result<Vec<Option<usize>>, ParseError> {
     let mut parents = vec![None; nodes.len()];
     for (i, node) in nodes.iter().enumerate() {
         for &child in &node.children {
@@ -72,7 +72,7 @@ fn parents(nodes: &[schema::Node]) -> Result<Vec<Option<usize>>, ParseError> {
 }
 
 /// With one parent at most, what cannot be reached from above runs in a circle.
-fn check_trees(nodes: &[schema::Node], parents: &[Option<usize>]) -> Result<(), ParseError> {
+fn check_trees(nodes: &[schema::GltfNode], parents: &[Option<usize>]) -> Result<(), ParseError> {
     let mut reached = vec![false; nodes.len()];
     let mut stack: Vec<usize> = (0..nodes.len()).filter(|&i| parents[i].is_none()).collect();
     while let Some(node) = stack.pop() {
@@ -90,7 +90,7 @@ fn check_trees(nodes: &[schema::Node], parents: &[Option<usize>]) -> Result<(), 
 
 /// The roots of the scene that is shown first; without scenes, every node that has no parent.
 fn roots(json: &Value, parents: &[Option<usize>]) -> Result<Vec<usize>, ParseError> {
-    let scenes: Vec<Roots> = schema::array(json, "scenes", "scene")?;
+    let scenes: Vec<GltfScene> = schema::array(json, "scenes", "scene")?;
     let shown = match json.get("scene") {
         None => 0,
         Some(shown) => shown
@@ -101,7 +101,7 @@ fn roots(json: &Value, parents: &[Option<usize>]) -> Result<Vec<usize>, ParseErr
     if scenes.is_empty() {
         return Ok((0..parents.len()).filter(|&node| parents[node].is_none()).collect());
     }
-    let Some(Roots { nodes }) = scenes.get(shown) else {
+    let Some(GltfScene { nodes }) = scenes.get(shown) else {
         return Err(missing("scene", shown, scenes.len()));
     };
     for &node in nodes {
@@ -117,7 +117,7 @@ fn roots(json: &Value, parents: &[Option<usize>]) -> Result<Vec<usize>, ParseErr
     Ok(nodes.clone())
 }
 
-fn transform(node: &schema::Node) -> Result<DMat4, String> {
+fn transform(node: &schema::GltfNode) -> Result<DMat4, String> {
     if let Some(matrix) = &node.matrix {
         return Ok(DMat4::from_cols_array(matrix));
     }
@@ -137,13 +137,13 @@ fn transform(node: &schema::Node) -> Result<DMat4, String> {
 /// That no transform leaves the numbers, and that instances do not multiply beyond memory.
 fn check_placements(scene: &Scene) -> Result<(), ParseError> {
     let mut faces = 0;
-    for placement in scene.placements() {
-        let part = || format!("node {}", placement.node);
-        let entries = placement.transform.as_flattened();
+    for instance in scene.instances() {
+        let part = || format!("node {}", instance.node);
+        let entries = instance.transform.as_flattened();
         if !entries.iter().all(|entry| entry.abs() <= GREATEST_ENTRY) {
             return Err(ParseError::part(part(), "its place in the world is not finite"));
         }
-        let mesh = &scene.meshes[placement.mesh].mesh;
+        let mesh = &scene.meshes[instance.mesh].mesh;
         faces += mesh.faces.len().max(mesh.positions.len());
         if faces > MOST_SHOWN_FACES {
             let reason = format!("the scene shows more than {MOST_SHOWN_FACES} faces up to here");

@@ -4,7 +4,7 @@ use serde_json::{Value, json};
 
 use super::accessor::component;
 use super::container;
-use crate::Unfit;
+use crate::Unsupported;
 
 /// A part of a mesh with its own grid of 256 cells an axis.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -28,7 +28,7 @@ pub struct QuantizedPart {
 /// When a matrix is not finite or a face names a vertex that is not there; above 4 GB.
 /// # References
 /// [Kap20]
-pub fn write_parts_glb(parts: &[QuantizedPart]) -> Result<Vec<u8>, Unfit> {
+pub fn write_parts_glb(parts: &[QuantizedPart]) -> Result<Vec<u8>, Unsupported> {
     parts.iter().enumerate().try_for_each(|(i, part)| check(i, part))?;
     let shown: Vec<&QuantizedPart> = parts.iter().filter(|part| !part.faces.is_empty()).collect();
     let mut buffer: Vec<u8> = (shown.iter().flat_map(|part| &part.positions))
@@ -67,8 +67,8 @@ fn asset() -> Value {
     json!({ "version": "2.0", "generator": concat!("meshlod ", env!("CARGO_PKG_VERSION")) })
 }
 
-fn check(index: usize, part: &QuantizedPart) -> Result<(), Unfit> {
-    let wrong = |reason| Err(Unfit::new(format!("part {index}"), reason));
+fn check(index: usize, part: &QuantizedPart) -> Result<(), Unsupported> {
+    let wrong = |reason| Err(Unsupported::new(format!("part {index}"), reason));
     if !part.matrix.as_flattened().iter().all(|x| x.is_finite()) {
         return wrong("its matrix is not finite".to_owned());
     }

@@ -5,19 +5,19 @@ use std::collections::{BTreeMap, BTreeSet};
 use meshlod_mesh::{Layer, LayerKind, Mesh};
 use serde_json::{Map, Value, json};
 
-use super::compress::{Compression, CompressionReport, Grid};
+use super::buffer_builder::BufferBuilder;
+use super::compress::{Compression, CompressionReport, QuantizationGrid};
+use super::decompress::MESHOPT;
 use super::document::Document;
 use super::encode::{self, Arrays, Numbers, Typed};
 use super::lod;
-use super::pool::Pool;
 use super::schema::{self, parse_target_name};
-use super::unpack::MESHOPT;
-use crate::Unfit;
+use crate::Unsupported;
 
 /// Where geometry goes to, and the document that it came from, if any.
 pub(super) struct Replacer<'a> {
     pub document: Option<&'a Document<'a>>,
-    pub pool: Pool,
+    pub pool: BufferBuilder,
     /// How small numbers are written, if they are.
     pub compression: Option<&'a Compression>,
     /// The farthest that a vertex moved by it.
@@ -25,7 +25,7 @@ pub(super) struct Replacer<'a> {
 }
 
 impl<'a> Replacer<'a> {
-    pub fn new(document: Option<&'a Document<'a>>, pool: Pool) -> Self {
+    pub fn new(document: Option<&'a Document<'a>>, pool: BufferBuilder) -> Self {
         Self { document, pool, compression: None, position_error: 0.0 }
     }
 
@@ -42,11 +42,11 @@ impl<'a> Replacer<'a> {
         &mut self,
         json: &mut Value,
         mesh: &Mesh,
-        grid: Option<&Grid>,
-    ) -> Result<(), Unfit> {
+        grid: Option<&QuantizationGrid>,
+    ) -> Result<(), Unsupported> {
         let numbers = Numbers { compression: self.compression, grid };
         let name = json.get("name").and_then(Value::as_str).unwrap_or_default().to_owned();
-        let wrong = |reason: String| Unfit::new(format!("mesh {name:?}"), reason);
+        let wrong = |reason: String| Unsupported::new(format!("mesh {name:?}"), reason);
         mesh.validate().map_err(|error| wrong(error.to_string()))?;
         let old = json.get("primitives").and_then(Value::as_array).cloned().unwrap_or_default();
         let faces = faces_by_primitive(mesh, &old).map_err(wrong)?;

@@ -3,8 +3,8 @@
 use meshlod_mesh::LayerKind;
 
 use super::accessor::component;
-use super::compress::{Compression, Grid};
-use super::pool::{Blob, Part, Usage};
+use super::buffer_builder::{Blob, Part, Usage};
+use super::compress::{Compression, QuantizationGrid};
 use crate::meshopt::{Filter, encode_exponential, encode_octahedral};
 
 /// An array of integers for a GPU, each element filled up to a multiple of four bytes.
@@ -34,7 +34,7 @@ fn integers(shape: &'static str, component: u32, count: usize, values: &[i32]) -
 }
 
 /// Positions by the numbers of their cells, and the farthest that one moved.
-pub(super) fn positions(points: &[[f64; 3]], grid: &Grid) -> (Blob, f64) {
+pub(super) fn positions(points: &[[f64; 3]], grid: &QuantizationGrid) -> (Blob, f64) {
     let cells: Vec<[u16; 3]> = points.iter().map(|&point| grid.quantized(point)).collect();
     let moved = |(cell, point): (&[u16; 3], &[f64; 3])| {
         let place = grid.place(*cell);
@@ -58,13 +58,13 @@ pub(super) fn layer(
     kind: LayerKind,
     width: usize,
     values: &[f32],
-    how: &Compression,
+    compression: &Compression,
 ) -> Option<Blob> {
     match kind {
-        LayerKind::Normal | LayerKind::Tangent => Some(directions(width, values, how)),
-        LayerKind::Uv(_) if all_in_unit(values) => Some(uvs(values, how.uv_bits)),
-        LayerKind::Uv(_) if how.meshopt => {
-            let bytes = encode_exponential(values, 0.5f64.powi(how.uv_bits as i32))?;
+        LayerKind::Normal | LayerKind::Tangent => Some(directions(width, values, compression)),
+        LayerKind::Uv(_) if all_in_unit(values) => Some(uvs(values, compression.uv_bits)),
+        LayerKind::Uv(_) if compression.meshopt => {
+            let bytes = encode_exponential(values, 0.5f64.powi(compression.uv_bits as i32))?;
             let shape = integers("VEC2", component::F32, 0, &[]);
             let (count, filter) = (values.len() / 2, Filter::Exponential);
             Some(Blob { normalized: false, count, bytes, filter, ..shape })
@@ -83,20 +83,20 @@ pub(super) fn all_in_unit(values: &[f32]) -> bool {
 }
 
 /// Normals, or tangents with their handedness.
-fn directions(width: usize, values: &[f32], how: &Compression) -> Blob {
+fn directions(width: usize, values: &[f32], compression: &Compression) -> Blob {
     let shape = if width == 3 { "VEC3" } else { "VEC4" };
-    let small = how.normal_bits <= 8;
+    let small = compression.normal_bits <= 8;
     let (component, greatest) =
         if small { (component::I8, 127.0) } else { (component::I16, 32767.0) };
     let whole: Vec<i32> =
         values.iter().map(|x| (x.clamp(-1.0, 1.0) * greatest).round() as i32).collect();
     let plain = integers(shape, component, values.len() / width, &whole);
-    if !how.meshopt {
+    if !compression.meshopt {
         return plain;
     }
     let four = |e: &[f32]| [e[0], e[1], e[2], e.get(3).copied().unwrap_or(0.0)];
     let directions: Vec<[f32; 4]> = values.chunks_exact(width).map(four).collect();
-    let bytes = encode_octahedral(&directions, how.normal_bits);
+    let bytes = encode_octahedral(&directions, compression.normal_bits);
     Blob { bytes, filter: Filter::Octahedral, ..plain }
 }
 

@@ -5,14 +5,14 @@ use std::sync::Arc;
 use serde_json::Value;
 
 use super::document::{self, Buffers, Document};
-use super::{container, materials, mesh, nodes, unpack};
+use super::{container, decompress, materials, mesh, nodes};
 use crate::{ParseError, Resolve, Scene, SceneMesh, Weld};
 
 /// The glTF document that a scene came from; what is not geometry goes from it to the output.
 ///
 /// Cheap to clone.
 #[derive(Clone, Debug)]
-pub struct Source(pub(super) Arc<Contents>);
+pub struct SourceDocument(pub(super) Arc<Contents>);
 
 /// A document's JSON and buffers, and how its vertices were read.
 #[derive(Debug)]
@@ -46,7 +46,7 @@ pub fn read(bytes: &[u8], resolve: Resolve<'_>, weld: Weld) -> Result<Scene, Par
         .map_err(|error| ParseError::part("JSON", error.to_string()))?;
     document::check_head(&json)?;
     let mut buffers = document::buffers(&json, chunk, resolve)?;
-    unpack::unpack(&mut json, &mut buffers)?;
+    decompress::decompress(&mut json, &mut buffers)?;
     let mut scene = Scene::default();
     let document = Document::new(&json, &buffers)?;
     scene.images = materials::images(&document, resolve)?;
@@ -56,7 +56,7 @@ pub fn read(bytes: &[u8], resolve: Resolve<'_>, weld: Weld) -> Result<Scene, Par
     }
     nodes::read(&json, &mut scene)?;
     forget_uris(&mut json);
-    scene.source = Some(Source(Arc::new(Contents { json, buffers, weld })));
+    scene.source = Some(SourceDocument(Arc::new(Contents { json, buffers, weld })));
     Ok(scene)
 }
 

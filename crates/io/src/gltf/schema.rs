@@ -54,7 +54,7 @@ pub(super) struct SparseValues {
 /// `bufferViews[i]`.
 #[derive(Debug, Deserialize)]
 #[serde(rename_all = "camelCase")]
-pub(super) struct View {
+pub(super) struct BufferView {
     pub buffer: usize,
     #[serde(default)]
     pub byte_offset: usize,
@@ -66,7 +66,7 @@ pub(super) struct View {
 
 /// `meshes[i]`.
 #[derive(Debug, Deserialize)]
-pub(super) struct Mesh {
+pub(super) struct GltfMesh {
     pub name: Option<String>,
     pub primitives: Vec<Primitive>,
 }
@@ -128,7 +128,7 @@ pub(super) fn parse_target_name(name: &str) -> Option<(usize, &str)> {
 
 /// `nodes[i]`.
 #[derive(Debug, Deserialize)]
-pub(super) struct Node {
+pub(super) struct GltfNode {
     pub name: Option<String>,
     #[serde(default)]
     pub children: Vec<usize>,
@@ -141,7 +141,7 @@ pub(super) struct Node {
 
 /// `scenes[i]`.
 #[derive(Debug, Deserialize)]
-pub(super) struct Roots {
+pub(super) struct GltfScene {
     #[serde(default)]
     pub nodes: Vec<usize>,
 }
@@ -149,7 +149,7 @@ pub(super) struct Roots {
 /// `materials[i]`.
 #[derive(Debug, Deserialize)]
 #[serde(rename_all = "camelCase")]
-pub(super) struct Material {
+pub(super) struct GltfMaterial {
     pub name: Option<String>,
     #[serde(default)]
     pub pbr_metallic_roughness: MetallicRoughness,
@@ -178,7 +178,7 @@ pub(super) struct Texture {
 /// `images[i]`.
 #[derive(Debug, Deserialize)]
 #[serde(rename_all = "camelCase")]
-pub(super) struct Image {
+pub(super) struct GltfImage {
     pub name: Option<String>,
     pub uri: Option<String>,
     pub buffer_view: Option<usize>,

@@ -3,15 +3,15 @@
 use meshlod_mesh::Mesh;
 use serde_json::{Map, Value};
 
+use super::buffer_builder::BufferBuilder;
 use super::compress::{self, Compression, CompressionReport};
 use super::document::Document;
 use super::lod::{self, Level};
-use super::pool::Pool;
 use super::primitives::{Replacer, attributes, is_surface};
 use super::read::Contents;
 use super::uri::{self, Uri};
-use super::{container, mesh, place, plain};
-use crate::{Image, Scene, Unfit};
+use super::{container, dequantize_nodes, mesh, new_document};
+use crate::{Image, Scene, Unsupported};
 
 /// A `.gltf` file and the files that go with it.
 #[derive(Clone, Debug)]
@@ -40,7 +40,7 @@ pub struct Written {
 /// # Errors
 /// When a mesh is not valid or leaves 32 bits; when labels or numbers of meshes do not match the
 /// source; above 4 GB.
-pub fn write_glb(scene: &Scene, levels: &[Level]) -> Result<Vec<u8>, Unfit> {
+pub fn write_glb(scene: &Scene, levels: &[Level]) -> Result<Vec<u8>, Unsupported> {
     Output::of(scene, levels, None)?.into_glb(scene)
 }
 
@@ -62,12 +62,12 @@ pub fn write_glb(scene: &Scene, levels: &[Level]) -> Result<Vec<u8>, Unfit> {
 /// As for [`write_glb`]; also bits that cannot be.
 /// # References
 /// [Kap20], [KS21]
-pub fn write_small_glb(
+pub fn write_compressed_glb(
     scene: &Scene,
     levels: &[Level],
-    how: &Compression,
-) -> Result<(Vec<u8>, CompressionReport), Unfit> {
-    let mut output = Output::of(scene, levels, Some(how))?;
+    compression: &Compression,
+) -> Result<(Vec<u8>, CompressionReport), Unsupported> {
+    let mut output = Output::of(scene, levels, Some(compression))?;
     let report = std::mem::take(&mut output.report);
     Ok((output.into_glb(scene)?, report))
 }
@@ -77,21 +77,21 @@ pub fn write_small_glb(
 ///
 /// # Errors
 /// As for [`write_glb`], but for the size.
-pub fn write(scene: &Scene, levels: &[Level], stem: &str) -> Result<Written, Unfit> {
+pub fn write(scene: &Scene, levels: &[Level], stem: &str) -> Result<Written, Unsupported> {
     Output::of(scene, levels, None)?.into_files(scene, stem)
 }
 
-/// Writes a scene as [`write()`], but small as [`write_small_glb`] has it.
+/// Writes a scene as [`write()`], but small as [`write_compressed_glb`] has it.
 ///
 /// # Errors
-/// As for [`write_small_glb`], but for the size.
-pub fn write_small(
+/// As for [`write_compressed_glb`], but for the size.
+pub fn write_compressed(
     scene: &Scene,
     levels: &[Level],
     stem: &str,
-    how: &Compression,
-) -> Result<(Written, CompressionReport), Unfit> {
-    let mut output = Output::of(scene, levels, Some(how))?;
+    compression: &Compression,
+) -> Result<(Written, CompressionReport), Unsupported> {
+    let mut output = Output::of(scene, levels, Some(compression))?;
     let report = std::mem::take(&mut output.report);
     Ok((output.into_files(scene, stem)?, report))
 }
@@ -99,21 +99,25 @@ pub fn write_small(
 /// A document with its geometry in it, but for the buffer.
 struct Output {
     json: Map<String, Value>,
-    pool: Pool,
+    pool: BufferBuilder,
     report: CompressionReport,
 }
 
 impl Output {
-    fn of(scene: &Scene, levels: &[Level], how: Option<&Compression>) -> Result<Self, Unfit> {
-        how.map_or(Ok(()), Compression::check)?;
+    fn of(
+        scene: &Scene,
+        levels: &[Level],
+        compression: Option<&Compression>,
+    ) -> Result<Self, Unsupported> {
+        compression.map_or(Ok(()), Compression::check)?;
         match &scene.source {
-            Some(source) => Self::with_source(scene, &source.0, levels, how),
+            Some(source) => Self::with_source(scene, &source.0, levels, compression),
             None => {
-                let mut pool = Pool::default();
-                let json = plain::document(scene, &mut pool);
+                let mut pool = BufferBuilder::default();
+                let json = new_document::document(scene, &mut pool);
                 let all = vec![true; scene.meshes.len()];
                 let mut replacer = Replacer::new(None, pool);
-                replacer.compression = how;
+                replacer.compression = compression;
                 Self::finish(json, scene, &all, replacer, levels)
             }
         }
@@ -123,25 +127,25 @@ impl Output {
         scene: &Scene,
         source: &Contents,
         levels: &[Level],
-        how: Option<&Compression>,
-    ) -> Result<Self, Unfit> {
+        compression: Option<&Compression>,
+    ) -> Result<Self, Unsupported> {
         let (json, buffers) = (&source.json, &source.buffers);
-        let unreadable = |error: crate::ParseError| Unfit::new("source", error.to_string());
+        let unreadable = |error: crate::ParseError| Unsupported::new("source", error.to_string());
         let document = Document::new(json, buffers).map_err(unreadable)?;
         let count = document.meshes.len();
         if scene.meshes.len() != count {
             let reason =
                 format!("it has {count} meshes, the scene {}; drop the source", scene.meshes.len());
-            return Err(Unfit::new("source", reason));
+            return Err(Unsupported::new("source", reason));
         }
         let mut changed = Vec::new();
         for (index, mesh) in scene.meshes.iter().enumerate() {
             let old = mesh::read(&document, index, source.weld).map_err(unreadable)?;
-            changed.push(how.is_some() || !same_geometry(&old, &mesh.mesh));
+            changed.push(compression.is_some() || !same_geometry(&old, &mesh.mesh));
         }
-        let pool = Pool::of(&document, &free_accessors(&document, &changed));
+        let pool = BufferBuilder::of(&document, &free_accessors(&document, &changed));
         let mut replacer = Replacer::new(Some(&document), pool);
-        replacer.compression = how;
+        replacer.compression = compression;
         Self::finish(json.clone(), scene, &changed, replacer, levels)
     }
 
@@ -152,14 +156,14 @@ impl Output {
         changed: &[bool],
         mut replacer: Replacer<'_>,
         levels: &[Level],
-    ) -> Result<Self, Unfit> {
+    ) -> Result<Self, Unsupported> {
         let templates = json.get("meshes").and_then(Value::as_array).cloned().unwrap_or_default();
         let mut kept = Vec::new();
         let mut grids = vec![None; scene.meshes.len()];
-        if let Some(how) = replacer.compression {
-            grids = compress::grids(&json, scene, levels, how.position_bits, &mut kept);
-            place::place(&mut json, &grids);
-            if how.meshopt {
+        if let Some(compression) = replacer.compression {
+            grids = compress::grids(&json, scene, levels, compression.position_bits, &mut kept);
+            dequantize_nodes::add_transforms(&mut json, &grids);
+            if compression.meshopt {
                 replacer.pool.pack();
             }
         }
@@ -175,17 +179,17 @@ impl Output {
         replacer.list_extensions(&mut json);
         match json {
             Value::Object(json) => Ok(Self { json, pool: replacer.pool, report }),
-            _ => Err(Unfit::new("source", "is no JSON object")),
+            _ => Err(Unsupported::new("source", "is no JSON object")),
         }
     }
 
-    fn into_glb(mut self, scene: &Scene) -> Result<Vec<u8>, Unfit> {
+    fn into_glb(mut self, scene: &Scene) -> Result<Vec<u8>, Unsupported> {
         self.embed_images(scene, |_| true);
         let buffer = self.pool.finish(&mut self.json);
         container::join(&to_bytes(self.json)?, &buffer)
     }
 
-    fn into_files(mut self, scene: &Scene, stem: &str) -> Result<Written, Unfit> {
+    fn into_files(mut self, scene: &Scene, stem: &str) -> Result<Written, Unsupported> {
         // One that lies elsewhere is not ours to write.
         self.embed_images(scene, |name| crate::files::inner_path(name).is_none());
         let images = self.external_images(scene);
@@ -241,7 +245,7 @@ fn mime_type(name: &str, bytes: &[u8]) -> Option<&'static str> {
         let suffix = name.rsplit('.').next().unwrap_or_default().to_ascii_lowercase();
         if suffix == "png" { "image/png" } else { "image/jpeg" }
     };
-    (!bytes.is_empty()).then(|| plain::mime_type(bytes).unwrap_or_else(by_name))
+    (!bytes.is_empty()).then(|| new_document::mime_type(bytes).unwrap_or_else(by_name))
 }
 
 /// Whether meshes are equal in all that is written of them.
@@ -290,6 +294,6 @@ fn mark_others(json: &Value, marks: &mut [bool]) {
     }
 }
 
-fn to_bytes(json: Map<String, Value>) -> Result<Vec<u8>, Unfit> {
-    serde_json::to_vec(&json).map_err(|error| Unfit::new("JSON", error.to_string()))
+fn to_bytes(json: Map<String, Value>) -> Result<Vec<u8>, Unsupported> {
+    serde_json::to_vec(&json).map_err(|error| Unsupported::new("JSON", error.to_string()))
 }

@@ -3,8 +3,8 @@
 use std::collections::{HashMap, HashSet};
 use std::io::{self, Write};
 
-use crate::text::Text;
-use crate::{Image, Material, ParseError, Place, Scene};
+use crate::text_cursor::TextCursor;
+use crate::{FileLocation, Image, Material, ParseError, Scene};
 
 /// What a library says of a material.
 #[derive(Clone, Debug, PartialEq)]
@@ -60,7 +60,7 @@ impl Library {
     /// Reads the library `name`, which its errors name, too.
     fn parse(&mut self, name: &str, bytes: &[u8]) -> Result<(), ParseError> {
         let in_library = |error: ParseError| ParseError {
-            place: Place::Part(format!("{name}, {}", error.place)),
+            location: FileLocation::Part(format!("{name}, {}", error.location)),
             ..error
         };
         self.parse_lines(bytes).map_err(in_library)
@@ -71,7 +71,7 @@ impl Library {
         if bytes.is_empty() {
             return Ok(());
         }
-        let mut text = Text::new(bytes)?;
+        let mut text = TextCursor::new(bytes)?;
         let mut current: Option<(String, Definition)> = None;
         loop {
             let word = if text.more() { text.word() } else { b"" };
@@ -97,7 +97,7 @@ impl Library {
 }
 
 impl Definition {
-    fn set(&mut self, word: &[u8], text: &mut Text) -> Result<(), ParseError> {
+    fn set(&mut self, word: &[u8], text: &mut TextCursor) -> Result<(), ParseError> {
         match word {
             // `Kd spectral` and `Kd xyz` give the colour in other spaces: it stays grey.
             b"Kd" if text.more() && !text.comes(b's') && !text.comes(b'x') => {

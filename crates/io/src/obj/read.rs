@@ -8,7 +8,7 @@ use super::labels::LabelRuns;
 use super::mtl::{self, Library};
 use super::wedges::{self, CornerIds, Pools};
 use crate::polygon::triangulate;
-use crate::text::{Text, quoted};
+use crate::text_cursor::{TextCursor, quoted};
 use crate::{Node, ParseError, Scene, SceneMesh};
 
 /// Reads an OBJ file as one mesh under one node; `resolve` gives the bytes of the files that
@@ -28,7 +28,7 @@ pub fn read(
     bytes: &[u8],
     resolve: &mut dyn FnMut(&str) -> Option<Vec<u8>>,
 ) -> Result<Scene, ParseError> {
-    let mut reader = Reader::new(bytes)?;
+    let mut reader = ObjReader::new(bytes)?;
     loop {
         reader.statement()?;
         if !reader.text.next_line() {
@@ -52,8 +52,8 @@ struct Forward {
     corners: Vec<Corner>,
 }
 
-struct Reader<'a> {
-    text: Text<'a>,
+struct ObjReader<'a> {
+    text: TextCursor<'a>,
     positions: Vec<[f64; 3]>,
     pools: Pools,
     faces: Vec<[VertexId; 3]>,
@@ -70,10 +70,10 @@ struct Reader<'a> {
     triangles: Vec<[u32; 3]>,
 }
 
-impl<'a> Reader<'a> {
+impl<'a> ObjReader<'a> {
     fn new(bytes: &'a [u8]) -> Result<Self, ParseError> {
         Ok(Self {
-            text: Text::new(bytes)?,
+            text: TextCursor::new(bytes)?,
             positions: Vec::new(),
             pools: Pools::default(),
             faces: Vec::new(),

@@ -4,7 +4,7 @@ use std::num::NonZeroU32;
 
 use meshlod_mesh::{Attributes, Buckets, Layer, LayerKind, VertexId, WedgeId};
 
-use crate::torn::{layer, of_vertices, to_unit};
+use crate::vertex_attributes::{named_layer, normalize_colors, per_vertex};
 
 /// What a corner names beside its vertex; ids counted from 1.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -57,14 +57,14 @@ pub(super) fn attributes(
     corners: &[[CornerIds; 3]],
     mut pools: Pools,
 ) -> Option<Attributes> {
-    to_unit(pools.colors.as_flattened_mut());
+    normalize_colors(pools.colors.as_flattened_mut());
     if !pools.colors.is_empty() {
         pools.colors.resize(vertices, WHITE);
     }
     if corners.is_empty() {
         let colors = Some(pools.colors.into_flattened()).filter(|colors| !colors.is_empty());
-        let layers = colors.map(|values| layer(LayerKind::Color(0), 3, values));
-        return of_vertices(vertices, faces, layers.into_iter().collect());
+        let layers = colors.map(|values| named_layer(LayerKind::Color(0), 3, values));
+        return per_vertex(vertices, faces, layers.into_iter().collect());
     }
     let ids = corners.as_flattened();
     let mut numbers = vec![[WedgeId::default(); 3]; faces.len()];
@@ -119,15 +119,15 @@ fn layers(shown: &[Shown], ids: &[CornerIds], pools: &Pools) -> Vec<Layer> {
     let mut layers = Vec::new();
     if ids.iter().any(|ids| ids.uv.is_some()) {
         let values = shown.iter().flat_map(|shown| pools.uv(of(shown))).collect();
-        layers.push(layer(LayerKind::Uv(0), 2, values));
+        layers.push(named_layer(LayerKind::Uv(0), 2, values));
     }
     if ids.iter().any(|ids| ids.normal.is_some()) {
         let values = shown.iter().flat_map(|shown| pools.normal(of(shown))).collect();
-        layers.push(layer(LayerKind::Normal, 3, values));
+        layers.push(named_layer(LayerKind::Normal, 3, values));
     }
     if !pools.colors.is_empty() {
         let values = shown.iter().flat_map(|shown| pools.colors[shown.vertex]).collect();
-        layers.push(layer(LayerKind::Color(0), 3, values));
+        layers.push(named_layer(LayerKind::Color(0), 3, values));
     }
     layers
 }

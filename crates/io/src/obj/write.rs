@@ -6,7 +6,7 @@ use std::io::{self, Write};
 use meshlod_mesh::{Labels, LayerKind, Mesh};
 
 use super::mtl::{names, one_line};
-use crate::lines::Lines;
+use crate::line_writer::LineWriter;
 use crate::{Precision, Scene};
 
 /// Writes all that a scene shows, in world space, as one OBJ; `mtl_name` names the library that
@@ -26,22 +26,22 @@ pub fn write(
     mtl_name: Option<&str>,
 ) -> io::Result<()> {
     let mesh = scene.flatten();
-    let mut lines = Lines::new(out, precision);
+    let mut lines = LineWriter::new(out, precision);
     if let Some(name) = mtl_name {
         lines.word("mtllib");
         lines.word(name);
         lines.end()?;
     }
     write_positions(&mesh, &mut lines)?;
-    let uvs = Pool::write(&mesh, LayerKind::Uv(0), "vt", &mut lines)?;
-    let normals = Pool::write(&mesh, LayerKind::Normal, "vn", &mut lines)?;
+    let uvs = ValueNumbers::write(&mesh, LayerKind::Uv(0), "vt", &mut lines)?;
+    let normals = ValueNumbers::write(&mesh, LayerKind::Normal, "vn", &mut lines)?;
     let objects = Changes::new("o", mesh.objects.as_ref(), &[]);
     let materials = Changes::new("usemtl", mesh.materials.as_ref(), &names(&scene.materials));
     write_faces(&mesh, [&uvs, &normals], [objects, materials], &mut lines)?;
     lines.finish()
 }
 
-fn write_positions(mesh: &Mesh, lines: &mut Lines) -> io::Result<()> {
+fn write_positions(mesh: &Mesh, lines: &mut LineWriter) -> io::Result<()> {
     let colors = vertex_colors(mesh);
     for (v, &position) in mesh.positions.iter().enumerate() {
         lines.word("v");
@@ -69,13 +69,13 @@ fn vertex_colors(mesh: &Mesh) -> Option<Vec<[f32; 3]>> {
 }
 
 /// The values of a layer, each once, and the number from 1 that each wedge's has.
-struct Pool {
+struct ValueNumbers {
     of_wedge: Option<Vec<u32>>,
 }
 
-impl Pool {
+impl ValueNumbers {
     /// Writes the values of a layer, where the mesh has it.
-    fn write(mesh: &Mesh, kind: LayerKind, word: &str, lines: &mut Lines) -> io::Result<Self> {
+    fn write(mesh: &Mesh, kind: LayerKind, word: &str, lines: &mut LineWriter) -> io::Result<Self> {
         let layer = mesh.attributes.as_ref().and_then(|attributes| attributes.layer(kind));
         let Some(layer) = layer else { return Ok(Self { of_wedge: None }) };
         let mut numbers: HashMap<[u32; 3], u32> = HashMap::new();
@@ -98,7 +98,7 @@ impl Pool {
     }
 }
 
-/// Lines that say where a label begins to hold.
+/// LineWriter that say where a label begins to hold.
 struct Changes<'a> {
     word: &'static str,
     labels: Option<&'a Labels>,
@@ -115,7 +115,7 @@ impl<'a> Changes<'a> {
         Self { word, labels, names: names.iter().cloned().chain(rest).collect(), current: None }
     }
 
-    fn write(&mut self, face: usize, lines: &mut Lines) -> io::Result<()> {
+    fn write(&mut self, face: usize, lines: &mut LineWriter) -> io::Result<()> {
         let Some(labels) = self.labels else { return Ok(()) };
         let label = labels.of(face);
         if self.current == Some(label) {
@@ -135,9 +135,9 @@ impl<'a> Changes<'a> {
 
 fn write_faces(
     mesh: &Mesh,
-    [uvs, normals]: [&Pool; 2],
+    [uvs, normals]: [&ValueNumbers; 2],
     mut changes: [Changes; 2],
-    lines: &mut Lines,
+    lines: &mut LineWriter,
 ) -> io::Result<()> {
     let corners = mesh.attributes.as_ref().map(|attributes| &attributes.corners);
     for (i, face) in mesh.faces.iter().enumerate() {
@@ -147,7 +147,7 @@ fn write_faces(
         lines.word("f");
         for (corner, vertex) in face.iter().enumerate() {
             lines.integer(vertex.index() + 1);
-            let number = |pool: &Pool| {
+            let number = |pool: &ValueNumbers| {
                 let wedge = corners?[i][corner];
                 Some(pool.of_wedge.as_ref()?[wedge.index()] as usize)
             };

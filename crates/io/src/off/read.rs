@@ -4,8 +4,8 @@ use meshlod_mesh::{Attributes, LayerKind, Mesh, VertexId};
 
 use crate::ParseError;
 use crate::polygon::triangulate;
-use crate::text::Text;
-use crate::torn::{layer, of_vertices, to_unit};
+use crate::text_cursor::TextCursor;
+use crate::vertex_attributes::{named_layer, normalize_colors, per_vertex};
 
 /// Reads a text OFF file.
 ///
@@ -22,7 +22,7 @@ use crate::torn::{layer, of_vertices, to_unit};
 /// # References
 /// [PLM93], section OFF of its manual.
 pub fn read(bytes: &[u8]) -> Result<Mesh, ParseError> {
-    let mut text = Text::new(bytes)?;
+    let mut text = TextCursor::new(bytes)?;
     if !text.more_anywhere() {
         return Err(text.error("the file is empty"));
     }
@@ -51,16 +51,16 @@ pub fn read(bytes: &[u8]) -> Result<Mesh, ParseError> {
 
 /// What a vertex has behind its position, in this order.
 #[derive(Clone, Copy, Default)]
-struct Layout {
+struct VertexFormat {
     has_normal: bool,
     /// Parts of a colour: 0 where there is none, 3 until the first vertex tells.
     color_width: usize,
     has_uv: bool,
 }
 
-impl Layout {
+impl VertexFormat {
     /// Colours have as many parts as the line of the first vertex leaves room for.
-    fn measure_color(&mut self, text: &Text) -> Result<(), ParseError> {
+    fn measure_color(&mut self, text: &TextCursor) -> Result<(), ParseError> {
         if self.color_width == 0 {
             return Ok(());
         }
@@ -81,12 +81,12 @@ impl Layout {
 }
 
 /// The header word, if there is one, up to the first count.
-fn header(text: &mut Text) -> Result<Layout, ParseError> {
+fn header(text: &mut TextCursor) -> Result<VertexFormat, ParseError> {
     if text.comes_digit() {
         return if text.take_word(b"4OFF") || text.take_word(b"4nOFF") {
             Err(text.error("only three dimensions are read"))
         } else {
-            Ok(Layout::default())
+            Ok(VertexFormat::default())
         };
     }
     let start = text.clone();
@@ -102,11 +102,11 @@ fn header(text: &mut Text) -> Result<Layout, ParseError> {
     if text.more() && text.take_word(b"BINARY") {
         return Err(text.error("this OFF file is binary; convert it to text, or to PLY"));
     }
-    Ok(Layout { has_normal, color_width, has_uv })
+    Ok(VertexFormat { has_normal, color_width, has_uv })
 }
 
 /// The numbers of vertices and faces; that of edges is not needed.
-fn counts(text: &mut Text) -> Result<[usize; 2], ParseError> {
+fn counts(text: &mut TextCursor) -> Result<[usize; 2], ParseError> {
     const NEED: &str = "the counts of vertices and faces are missing";
     let mut counts = [0; 2];
     for count in &mut counts {
@@ -132,7 +132,7 @@ fn counts(text: &mut Text) -> Result<[usize; 2], ParseError> {
 }
 
 /// Moves to the next vertex or face.
-fn need(text: &mut Text, done: usize, all: usize, what: &str) -> Result<(), ParseError> {
+fn need(text: &mut TextCursor, done: usize, all: usize, what: &str) -> Result<(), ParseError> {
     if text.more_anywhere() {
         return Ok(());
     }
@@ -149,7 +149,7 @@ struct Columns {
 }
 
 impl Columns {
-    fn read(&mut self, layout: Layout, text: &mut Text) -> Result<(), ParseError> {
+    fn read(&mut self, layout: VertexFormat, text: &mut TextCursor) -> Result<(), ParseError> {
         let mut position = [0.0; 3];
         for x in &mut position {
             text.more_anywhere();
@@ -171,16 +171,17 @@ impl Columns {
         Ok(())
     }
 
-    fn attributes(&mut self, layout: Layout, faces: &[[VertexId; 3]]) -> Option<Attributes> {
-        to_unit(&mut self.colors);
+    fn attributes(&mut self, layout: VertexFormat, faces: &[[VertexId; 3]]) -> Option<Attributes> {
+        normalize_colors(&mut self.colors);
         let layers = [
             (LayerKind::Normal, 3, std::mem::take(&mut self.normals)),
             (LayerKind::Color(0), layout.color_width, std::mem::take(&mut self.colors)),
             (LayerKind::Uv(0), 2, std::mem::take(&mut self.uvs)),
         ];
         let present = layers.into_iter().filter(|(_, _, values)| !values.is_empty());
-        let layers = present.map(|(kind, width, values)| layer(kind, width, values)).collect();
-        of_vertices(self.positions.len(), faces, layers)
+        let layers =
+            present.map(|(kind, width, values)| named_layer(kind, width, values)).collect();
+        per_vertex(self.positions.len(), faces, layers)
     }
 }
 
@@ -197,7 +198,7 @@ impl Scratch {
     fn face(
         &mut self,
         positions: &[[f64; 3]],
-        text: &mut Text,
+        text: &mut TextCursor,
         out: &mut Vec<[VertexId; 3]>,
     ) -> Result<(), ParseError> {
         let corners = text.integer("a face is missing")?;

@@ -5,8 +5,8 @@ use std::io::{self, Write};
 use meshlod_mesh::{Attributes, LayerKind, Mesh};
 
 use crate::Precision;
-use crate::lines::Lines;
-use crate::torn::tear;
+use crate::line_writer::LineWriter;
+use crate::vertex_attributes::split_at_seams;
 
 /// Writes a mesh as text OFF, with normals (N), the first colours (C) and texture coordinates (ST)
 /// at the vertices where it has them.
@@ -21,17 +21,17 @@ pub fn write(mesh: &Mesh, precision: Precision, out: &mut dyn Write) -> io::Resu
     const LAYERS: [LayerKind; 3] = [LayerKind::Normal, LayerKind::Color(0), LayerKind::Uv(0)];
     let find = |kind| mesh.attributes.as_ref().and_then(|a: &Attributes| a.layer(kind));
     let [normals, colors, uvs] = LAYERS.map(find);
-    let torn = tear(mesh);
-    let mut lines = Lines::new(out, precision);
+    let split = split_at_seams(mesh);
+    let mut lines = LineWriter::new(out, precision);
     let letters = [(uvs, "ST"), (colors, "C"), (normals, "N")];
     let present = letters.iter().filter(|(layer, _)| layer.is_some());
     lines.word(&(present.map(|&(_, letter)| letter).collect::<String>() + "OFF"));
     lines.end()?;
-    for count in [torn.rows.len(), torn.faces.len(), 0] {
+    for count in [split.vertices.len(), split.faces.len(), 0] {
         lines.integer(count);
     }
     lines.end()?;
-    for row in &torn.rows {
+    for row in &split.vertices {
         lines.position(row.vertex.index(), mesh.positions[row.vertex.index()])?;
         for layer in [normals, colors, uvs].into_iter().flatten() {
             match row.wedge {
@@ -41,7 +41,7 @@ pub fn write(mesh: &Mesh, precision: Precision, out: &mut dyn Write) -> io::Resu
         }
         lines.end()?;
     }
-    for face in &torn.faces {
+    for face in &split.faces {
         lines.word("3");
         for &v in face {
             lines.integer(v as usize);

@@ -2,8 +2,8 @@
 
 use meshlod_mesh::VertexId;
 
+use super::body::{BodyReader, Row};
 use super::header::{Element, Shape};
-use super::source::{Row, Source};
 use crate::ParseError;
 use crate::polygon::triangulate;
 
@@ -20,9 +20,9 @@ pub(super) struct Faces {
 
 impl Faces {
     /// Adds the rows of an element `face` or `tristrips`.
-    pub fn read<S: Source>(
+    pub fn read<B: BodyReader>(
         &mut self,
-        source: &mut S,
+        body: &mut B,
         element: &Element,
         positions: &[[f64; 3]],
     ) -> Result<(), ParseError> {
@@ -33,32 +33,32 @@ impl Faces {
         let is_strip = element.name == "tristrips";
         let mut first = 0;
         if !is_strip {
-            first = source.quick_triangles(element, positions.len(), &mut self.triangles);
-            let rest = (element.count - first).min(source.most_rows(element) as u64);
+            first = body.bulk_triangles(element, positions.len(), &mut self.triangles);
+            let rest = (element.count - first).min(body.most_rows(element) as u64);
             self.triangles.reserve(rest as usize);
         }
         for index in first..element.count {
             let row = Row { element, index };
-            source.begin_row();
+            body.begin_row();
             for (at, property) in element.properties.iter().enumerate() {
                 match property.shape {
                     Shape::List { length, item } if at == list => {
-                        let length = source.length(length, item, row)?;
+                        let length = body.length(length, item, row)?;
                         self.list.clear();
                         for _ in 0..length {
-                            let index = source.number(item, row)?;
+                            let index = body.number(item, row)?;
                             let vertex = match index {
                                 -1.0 if is_strip => RESTART,
                                 _ => checked(index, positions.len())
-                                    .map_err(|reason| source.wrong(format!("{row} {reason}")))?,
+                                    .map_err(|reason| body.wrong(format!("{row} {reason}")))?,
                             };
                             self.list.push(vertex);
                         }
                     }
-                    shape => source.pass_property(shape, row)?,
+                    shape => body.pass_property(shape, row)?,
                 }
             }
-            source.end_row(row)?;
+            body.end_row(row)?;
             if is_strip { self.add_strips() } else { self.add_polygon(positions) }
         }
         Ok(())

@@ -65,7 +65,7 @@ impl Header {
         if bytes.is_empty() {
             return Err(ParseError::byte(0, "the file is empty"));
         }
-        let mut lines = Lines { rest: bytes, number: 0 };
+        let mut lines = HeaderLines { rest: bytes, number: 0 };
         if lines.next().is_none_or(|line| line.trim_ascii() != b"ply") {
             return Err(ParseError::line(1, "not a PLY file: its first line must be \"ply\""));
         }
@@ -91,13 +91,13 @@ impl Header {
     }
 }
 
-/// Lines that end in LF, CR LF or CR, without the end.
-struct Lines<'a> {
+/// HeaderLines that end in LF, CR LF or CR, without the end.
+struct HeaderLines<'a> {
     rest: &'a [u8],
     number: usize,
 }
 
-impl<'a> Iterator for Lines<'a> {
+impl<'a> Iterator for HeaderLines<'a> {
     type Item = &'a [u8];
 
     fn next(&mut self) -> Option<&'a [u8]> {

@@ -21,26 +21,26 @@
 //! 32 ms with an allocation for each, `serde-ply` 0.2 in 64 ms, and neither says at which byte or
 //! line a file goes wrong. This one takes 4 ms (one core of a virtual machine, best of 25).
 
-mod binary;
+mod binary_body;
+mod body;
+mod bulk;
 mod faces;
-mod fast;
 mod header;
 mod layers;
-mod source;
 #[cfg(test)]
 mod tests;
-mod text;
+mod text_body;
 mod vertices;
 mod write;
 
 use meshlod_mesh::{Attributes, Layer, Mesh, VertexId, WedgeId};
 
 use crate::ParseError;
-use binary::Binary;
+use binary_body::BinaryBody;
+use body::BodyReader;
 use faces::Faces;
 use header::{Element, Encoding, Header};
-use source::Source;
-use text::Text;
+use text_body::TextBody;
 use vertices::Vertices;
 
 pub use write::write;
@@ -49,7 +49,7 @@ pub use write::write;
 ///
 /// Attributes are `None` where vertices have nothing but positions. Faces of fewer than three
 /// corners, and the folded triangles that join the parts of a strip, are left out; a face that
-/// repeats a vertex stays. Text holds its numbers at the type that the header declares, so that
+/// repeats a vertex stays. TextBody holds its numbers at the type that the header declares, so that
 /// both encodings of a mesh read the same.
 /// Memory: no more than a small multiple of `bytes`, whatever the header claims.
 /// # Errors
@@ -58,9 +58,9 @@ pub fn read(bytes: &[u8]) -> Result<Mesh, ParseError> {
     let header = Header::parse(bytes)?;
     check_elements(&header)?;
     match header.encoding {
-        Encoding::Text => read_body(&header, Text::new(bytes, &header)),
-        Encoding::LittleEndian => read_body(&header, Binary::<false>::new(bytes, &header)),
-        Encoding::BigEndian => read_body(&header, Binary::<true>::new(bytes, &header)),
+        Encoding::Text => read_body(&header, TextBody::new(bytes, &header)),
+        Encoding::LittleEndian => read_body(&header, BinaryBody::<false>::new(bytes, &header)),
+        Encoding::BigEndian => read_body(&header, BinaryBody::<true>::new(bytes, &header)),
     }
 }
 
@@ -83,25 +83,25 @@ fn check_elements(header: &Header) -> Result<(), ParseError> {
 }
 
 /// Reads the elements in order. Faces that stand before the vertices wait until those are known.
-fn read_body<S: Source>(header: &Header, mut source: S) -> Result<Mesh, ParseError> {
+fn read_body<B: BodyReader>(header: &Header, mut body: B) -> Result<Mesh, ParseError> {
     let mut vertices: Option<Vertices> = None;
     let mut faces = Faces::default();
-    let mut waiting: Vec<(S, &Element)> = Vec::new();
+    let mut waiting: Vec<(B, &Element)> = Vec::new();
     for element in &header.elements {
         if element.name == "vertex" {
-            vertices = Some(vertices::read(&mut source, element)?);
+            vertices = Some(vertices::read(&mut body, element)?);
         } else if !element.holds_faces() {
-            source.skip(element)?;
+            body.skip(element)?;
         } else if let Some(vertices) = &vertices {
-            faces.read(&mut source, element, &vertices.positions)?;
+            faces.read(&mut body, element, &vertices.positions)?;
         } else {
-            waiting.push((source.clone(), element));
-            source.skip(element)?;
+            waiting.push((body.clone(), element));
+            body.skip(element)?;
         }
     }
     let vertices = vertices.unwrap_or_default();
-    for (mut source, element) in waiting {
-        faces.read(&mut source, element, &vertices.positions)?;
+    for (mut body, element) in waiting {
+        faces.read(&mut body, element, &vertices.positions)?;
     }
     if faces.triangles.is_empty() {
         return Err(ParseError::part("header", "no faces: there is none with three corners"));

@@ -2,9 +2,9 @@
 
 use meshlod_mesh::Layer;
 
+use super::body::{BodyReader, Row};
 use super::header::{Element, Shape};
 use super::layers::{self, LayerColumns};
-use super::source::{Row, Source};
 use crate::ParseError;
 
 /// All vertices of a file.
@@ -16,9 +16,9 @@ pub(super) struct Vertices {
 }
 
 /// Reads every row of the element.
-pub(super) fn read<S: Source>(source: &mut S, element: &Element) -> Result<Vertices, ParseError> {
+pub(super) fn read<B: BodyReader>(body: &mut B, element: &Element) -> Result<Vertices, ParseError> {
     if element.count > u64::from(u32::MAX) {
-        let most = source.most_rows(element);
+        let most = body.most_rows(element);
         return Err(ParseError::part(
             "header",
             format!("{} vertices are claimed, but no more than {most} can follow", element.count),
@@ -27,10 +27,10 @@ pub(super) fn read<S: Source>(source: &mut S, element: &Element) -> Result<Verti
     let xyz = coordinates(element)?;
     let columns = layers::columns(&element.properties);
     let mut vertices = Vertices::default();
-    let rows = source.most_rows(element).min(element.count as usize);
+    let rows = body.most_rows(element).min(element.count as usize);
     let mut first = 0;
     if columns.is_empty() {
-        first = source.quick_positions(element, xyz, &mut vertices.positions);
+        first = body.bulk_positions(element, xyz, &mut vertices.positions);
     }
     vertices.positions.reserve_exact(rows - first as usize);
     vertices.layers = columns.iter().map(|columns| columns.layer(rows)).collect();
@@ -38,10 +38,10 @@ pub(super) fn read<S: Source>(source: &mut S, element: &Element) -> Result<Verti
     let mut numbers = vec![0.0; element.properties.len()];
     for index in first..element.count {
         let row = Row { element, index };
-        source.begin_row();
-        read_numbers(source, row, &mut numbers)?;
-        vertices.add(source, xyz, &columns, &numbers)?;
-        source.end_row(row)?;
+        body.begin_row();
+        read_numbers(body, row, &mut numbers)?;
+        vertices.add(body, xyz, &columns, &numbers)?;
+        body.end_row(row)?;
     }
     Ok(vertices)
 }
@@ -62,15 +62,15 @@ fn coordinates(element: &Element) -> Result<[usize; 3], ParseError> {
 }
 
 /// One number per property; lists leave theirs alone.
-fn read_numbers<S: Source>(
-    source: &mut S,
+fn read_numbers<B: BodyReader>(
+    body: &mut B,
     row: Row,
     numbers: &mut [f64],
 ) -> Result<(), ParseError> {
     for (number, property) in numbers.iter_mut().zip(&row.element.properties) {
         match property.shape {
-            Shape::One(kind) => *number = source.number(kind, row)?,
-            list @ Shape::List { .. } => source.pass_property(list, row)?,
+            Shape::One(kind) => *number = body.number(kind, row)?,
+            list @ Shape::List { .. } => body.pass_property(list, row)?,
         }
     }
     Ok(())
@@ -80,7 +80,7 @@ impl Vertices {
     /// Adds one vertex from the numbers of its row.
     fn add(
         &mut self,
-        source: &impl Source,
+        body: &impl BodyReader,
         xyz: [usize; 3],
         columns: &[LayerColumns],
         numbers: &[f64],
@@ -88,7 +88,7 @@ impl Vertices {
         let vertex = self.positions.len();
         let position = xyz.map(|property| numbers[property]);
         if !position.iter().all(|x| x.is_finite()) {
-            return Err(source.wrong(format!(
+            return Err(body.wrong(format!(
                 "vertex {vertex} has a coordinate that is not finite: {position:?}"
             )));
         }
@@ -97,7 +97,7 @@ impl Vertices {
             for column in &columns.columns {
                 let value = (numbers[column.property] / column.unit) as f32;
                 if !value.is_finite() {
-                    return Err(source.wrong(format!(
+                    return Err(body.wrong(format!(
                         "vertex {vertex} has a value of \"{}\" that is not finite in 32 bits: {:?}",
                         layer.name, numbers[column.property]
                     )));

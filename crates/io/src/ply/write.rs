@@ -26,7 +26,7 @@ pub fn write(mesh: &Mesh, precision: Precision, out: &mut dyn Write) -> Result<(
     }
     let rows = Rows::of(mesh)?;
     let layers = mesh.attributes.as_ref().map_or(&[][..], |attributes| &attributes.layers);
-    let columns: Vec<_> = layers.iter().map(Column::of).collect();
+    let columns: Vec<_> = layers.iter().map(LayerEncoder::of).collect();
     out.write_all(header(mesh.faces.len(), precision, rows.len(mesh), layers).as_bytes())?;
 
     let mut block = Vec::with_capacity(BLOCK + BLOCK / 4);
@@ -144,12 +144,12 @@ fn is_bytes(layer: &Layer) -> bool {
 }
 
 /// A layer and how its values are written.
-struct Column<'a> {
+struct LayerEncoder<'a> {
     layer: &'a Layer,
     bytes: bool,
 }
 
-impl<'a> Column<'a> {
+impl<'a> LayerEncoder<'a> {
     fn of(layer: &'a Layer) -> Self {
         Self { layer, bytes: is_bytes(layer) }
     }

@@ -5,8 +5,8 @@ use meshlod_mesh::{Attributes, Layer, LayerKind, Mesh, VertexId, WedgeId, merge_
 use super::scope::Scopes;
 use crate::ParseError;
 use crate::polygon::triangulate;
-use crate::text::{Text, quoted};
-use crate::torn::{layer, of_vertices, to_unit};
+use crate::text_cursor::{TextCursor, quoted};
+use crate::vertex_attributes::{named_layer, normalize_colors, per_vertex};
 
 /// Reads an SMF file: `v`, `f` and `t`, the properties `c`, `n` and `r` as `bind` says, and scopes
 /// with `trans`, `scale`, `rot`, `t_trans`, `t_scale` and `set vertex_correction`.
@@ -23,8 +23,8 @@ use crate::torn::{layer, of_vertices, to_unit};
 /// # References
 /// [Gar98] (the format's page in QSlim 2.0).
 pub fn read(bytes: &[u8]) -> Result<Mesh, ParseError> {
-    let mut text = Text::new(bytes)?;
-    let mut reader = Reader::new();
+    let mut text = TextCursor::new(bytes)?;
+    let mut reader = SmfReader::new();
     loop {
         reader.command(&mut text)?;
         if !text.next_line() {
@@ -42,7 +42,7 @@ enum Binding {
 }
 
 /// One of the three properties.
-struct Property {
+struct BoundLayer {
     letter: &'static str,
     kind: LayerKind,
     width: usize,
@@ -50,14 +50,14 @@ struct Property {
     values: Vec<f32>,
 }
 
-struct Reader {
+struct SmfReader {
     scopes: Scopes,
     positions: Vec<[f64; 3]>,
     faces: Vec<[VertexId; 3]>,
     /// The face of the file that each of `faces` is part of.
     origins: Vec<u32>,
     faces_in_file: u32,
-    properties: [Property; 3],
+    properties: [BoundLayer; 3],
     polygon: Vec<u32>,
     triangles: Vec<[u32; 3]>,
 }
@@ -66,9 +66,9 @@ const COLOR: usize = 0;
 const NORMAL: usize = 1;
 const UV: usize = 2;
 
-impl Reader {
+impl SmfReader {
     fn new() -> Self {
-        let property = |letter, kind, width| Property {
+        let property = |letter, kind, width| BoundLayer {
             letter,
             kind,
             width,
@@ -91,7 +91,7 @@ impl Reader {
         }
     }
 
-    fn command(&mut self, text: &mut Text) -> Result<(), ParseError> {
+    fn command(&mut self, text: &mut TextCursor) -> Result<(), ParseError> {
         if !text.more() {
             return Ok(());
         }
@@ -122,7 +122,7 @@ impl Reader {
         }
     }
 
-    fn vertex(&mut self, text: &mut Text) -> Result<(), ParseError> {
+    fn vertex(&mut self, text: &mut TextCursor) -> Result<(), ParseError> {
         const NEED: &str = "a vertex needs three coordinates";
         let position = [text.number(NEED)?, text.number(NEED)?, text.number(NEED)?];
         let position = self.scopes.position(position);
@@ -136,7 +136,7 @@ impl Reader {
         Ok(())
     }
 
-    fn face(&mut self, text: &mut Text) -> Result<(), ParseError> {
+    fn face(&mut self, text: &mut TextCursor) -> Result<(), ParseError> {
         self.polygon.clear();
         while text.more() {
             let index = text.integer("")?;
@@ -165,7 +165,7 @@ impl Reader {
     }
 
     /// `bind c|n|r vertex|face`.
-    fn bind(&mut self, text: &mut Text) -> Result<(), ParseError> {
+    fn bind(&mut self, text: &mut TextCursor) -> Result<(), ParseError> {
         let letter = text.word();
         let Some(property) =
             self.properties.iter_mut().find(|property| property.letter.as_bytes() == letter)
@@ -188,9 +188,9 @@ impl Reader {
     fn attribute<const N: usize>(
         &self,
         property: usize,
-        text: &mut Text,
+        text: &mut TextCursor,
     ) -> Result<[f32; N], ParseError> {
-        let Property { letter, binding, .. } = &self.properties[property];
+        let BoundLayer { letter, binding, .. } = &self.properties[property];
         if binding.is_none() {
             return Err(text.error(format!("{letter} comes before \"bind {letter}\"")));
         }
@@ -201,7 +201,7 @@ impl Reader {
         Ok(values)
     }
 
-    fn finish(mut self, text: &Text) -> Result<Mesh, ParseError> {
+    fn finish(mut self, text: &TextCursor) -> Result<Mesh, ParseError> {
         if self.faces.is_empty() {
             let points = self.positions.len();
             return Err(text.error(format!("the file ends without faces ({points} vertices)")));
@@ -220,7 +220,7 @@ impl Reader {
                 return Err(text.error(reason));
             }
         }
-        to_unit(&mut self.properties[COLOR].values);
+        normalize_colors(&mut self.properties[COLOR].values);
         let attributes = self.attributes();
         let mut mesh = Mesh { attributes, ..Mesh::new(self.positions, self.faces) };
         merge_equal_wedges(&mut mesh);
@@ -231,8 +231,8 @@ impl Reader {
     fn attributes(&self) -> Option<Attributes> {
         let given = || self.properties.iter().filter(|property| !property.values.is_empty());
         if given().all(|property| property.binding == Some(Binding::Vertex)) {
-            let layers = given().map(|p| layer(p.kind, p.width, p.values.clone()));
-            return of_vertices(self.positions.len(), &self.faces, layers.collect());
+            let layers = given().map(|p| named_layer(p.kind, p.width, p.values.clone()));
+            return per_vertex(self.positions.len(), &self.faces, layers.collect());
         }
         let corners = (0..self.faces.len()).map(|f| [0, 1, 2].map(|i| WedgeId::new(3 * f + i)));
         Some(Attributes {
@@ -243,12 +243,12 @@ impl Reader {
     }
 
     /// A property's values for each corner.
-    fn spread(&self, property: &Property) -> Layer {
+    fn spread(&self, property: &BoundLayer) -> Layer {
         let of = |i: u32| property.values[i as usize * property.width..][..property.width].iter();
         let values = self.faces.iter().zip(&self.origins).flat_map(|(face, &origin)| {
             face.map(|v| if property.binding == Some(Binding::Face) { origin } else { v.0 })
         });
-        layer(property.kind, property.width, values.flat_map(of).copied().collect())
+        named_layer(property.kind, property.width, values.flat_map(of).copied().collect())
     }
 }
 

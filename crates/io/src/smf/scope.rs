@@ -3,7 +3,7 @@
 use glam::{DMat3, DMat4, DVec2, DVec3};
 
 use crate::ParseError;
-use crate::text::{Text, quoted};
+use crate::text_cursor::{TextCursor, quoted};
 
 /// More than any file nests, and few enough to be small.
 const MOST_SCOPES: usize = 1000;
@@ -38,7 +38,7 @@ impl Scopes {
         &mut self,
         command: &[u8],
         vertices: usize,
-        text: &mut Text,
+        text: &mut TextCursor,
     ) -> Result<bool, ParseError> {
         match command {
             b"begin" => self.begin(vertices, text)?,
@@ -67,7 +67,7 @@ impl Scopes {
         Ok(true)
     }
 
-    fn begin(&mut self, vertices: usize, text: &Text) -> Result<(), ParseError> {
+    fn begin(&mut self, vertices: usize, text: &TextCursor) -> Result<(), ParseError> {
         if self.0.len() > MOST_SCOPES {
             return Err(text.error(format!("more than {MOST_SCOPES} scopes in each other")));
         }
@@ -76,7 +76,7 @@ impl Scopes {
         Ok(())
     }
 
-    fn end(&mut self, text: &Text) -> Result<(), ParseError> {
+    fn end(&mut self, text: &TextCursor) -> Result<(), ParseError> {
         if self.0.len() == 1 {
             return Err(text.error("an end without a begin"));
         }
@@ -84,7 +84,7 @@ impl Scopes {
         Ok(())
     }
 
-    fn rotate(&mut self, text: &mut Text) -> Result<(), ParseError> {
+    fn rotate(&mut self, text: &mut TextCursor) -> Result<(), ParseError> {
         let axis = match text.word() {
             b"x" => DVec3::X,
             b"y" => DVec3::Y,
@@ -98,7 +98,7 @@ impl Scopes {
 
     /// `set vertex_correction N`, or with a `=` before the number. Other variables are for the
     /// programs that know them.
-    fn set(&mut self, text: &mut Text) -> Result<(), ParseError> {
+    fn set(&mut self, text: &mut TextCursor) -> Result<(), ParseError> {
         if text.word() == b"vertex_correction" {
             if text.more() {
                 text.take(b'=');
@@ -153,7 +153,7 @@ impl Scopes {
     }
 }
 
-fn numbers<const N: usize>(text: &mut Text, need: &str) -> Result<[f64; N], ParseError> {
+fn numbers<const N: usize>(text: &mut TextCursor, need: &str) -> Result<[f64; N], ParseError> {
     let mut numbers = [0.0; N];
     for number in &mut numbers {
         *number = text.number(need)?;

@@ -5,8 +5,8 @@ use std::io::{self, Write};
 use meshlod_mesh::{LayerKind, Mesh};
 
 use crate::Precision;
-use crate::lines::Lines;
-use crate::torn::tear;
+use crate::line_writer::LineWriter;
+use crate::vertex_attributes::split_at_seams;
 
 /// Writes a mesh as SMF, with the first colours, normals and texture coordinates at the vertices
 /// where it has them.
@@ -18,22 +18,22 @@ use crate::torn::tear;
 /// # Errors
 /// Those of `out`, and a position that `precision` cannot hold.
 pub fn write(mesh: &Mesh, precision: Precision, out: &mut dyn Write) -> io::Result<()> {
-    let torn = tear(mesh);
-    let mut lines = Lines::new(out, precision);
+    let split = split_at_seams(mesh);
+    let mut lines = LineWriter::new(out, precision);
     for header in [
         "#$SMF 1.0".to_owned(),
-        format!("#$vertices {}", torn.rows.len()),
-        format!("#$faces {}", torn.faces.len()),
+        format!("#$vertices {}", split.vertices.len()),
+        format!("#$faces {}", split.faces.len()),
     ] {
         lines.word(&header);
         lines.end()?;
     }
-    for row in &torn.rows {
+    for row in &split.vertices {
         lines.word("v");
         lines.position(row.vertex.index(), mesh.positions[row.vertex.index()])?;
         lines.end()?;
     }
-    for face in &torn.faces {
+    for face in &split.faces {
         lines.word("f");
         for &v in face {
             lines.integer(v as usize + 1);
@@ -49,7 +49,7 @@ pub fn write(mesh: &Mesh, precision: Precision, out: &mut dyn Write) -> io::Resu
         };
         lines.word(&format!("bind {letter} vertex"));
         lines.end()?;
-        for row in &torn.rows {
+        for row in &split.vertices {
             let mut values = [0.0; 3];
             if let Some(wedge) = row.wedge {
                 for (value, &x) in values.iter_mut().zip(layer.of(wedge)) {

@@ -3,8 +3,8 @@ use meshlod_mesh::Labels;
 use super::*;
 use crate::scenes::{ball, from_front, roof, sheet, sheet_with_uv, stack};
 use crate::{
-    Antialiasing, ColorMap, Lighting, Material, Materials, Normals, Paint, Texture, Values, View,
-    Wireframe,
+    Antialiasing, ColorMap, Lighting, Materials, Normals, Paint, PaintMaterial, Texture, Values,
+    View, Wireframe,
 };
 
 /// Colours as they are, one sample a pixel, on black.
@@ -86,7 +86,7 @@ fn each_face_has_its_colour_and_the_nearer_one_hides_the_other() {
 fn a_texture_is_seen_upright() {
     let texels = [[255, 0, 0, 255], [0, 255, 0, 255], [0, 0, 255, 255], [255; 4]].concat();
     let texture = Texture::new(2, 2, &texels).unwrap();
-    let material = Material { base_color: [1.0; 3], texture: Some(0) };
+    let material = PaintMaterial { base_color: [1.0; 3], texture: Some(0) };
     let materials = Materials { materials: vec![material], textures: vec![texture] };
     let style = Style { paint: Paint::Materials(&materials), ..bare(100) };
     // The sheet spans ±1 and the view ±1.04 at this distance.
@@ -110,7 +110,7 @@ fn texture_coordinates_are_right_in_perspective() {
     let rgba: Vec<u8> =
         (0..256u32 * 256).flat_map(|i| [0, (255 - i / 256) as u8, 0, 255]).collect();
     let texture = Texture::new(256, 256, &rgba).unwrap();
-    let material = Material { base_color: [1.0; 3], texture: Some(0) };
+    let material = PaintMaterial { base_color: [1.0; 3], texture: Some(0) };
     let materials = Materials { materials: vec![material], textures: vec![texture] };
     let style = Style { paint: Paint::Materials(&materials), ..bare(201) };
     let picture = render(&mesh, &from_front(3.0), &style).unwrap();
@@ -122,7 +122,7 @@ fn texture_coordinates_are_right_in_perspective() {
 fn materials_go_by_label() {
     let mut mesh = sheet(1);
     mesh.materials = Some(Labels { names: vec!["a".into(), "b".into()], of_face: vec![1, 0] });
-    let plain = |base_color| Material { base_color, texture: None };
+    let plain = |base_color| PaintMaterial { base_color, texture: None };
     let materials = vec![plain([1.0, 0.0, 0.0]), plain([0.0, 0.0, 1.0])];
     let materials = Materials { materials, textures: Vec::new() };
     let picture =
@@ -146,7 +146,7 @@ fn values_are_blended_over_faces() {
 #[test]
 fn inner_sides_take_the_tint() {
     let behind = Camera::look_at([0.0, 0.0, -3.0], [0.0; 3], [0.0, 1.0, 0.0], 0.8);
-    let tinted = Style { backs: Backs::Tint([9, 8, 7]), ..bare(9) };
+    let tinted = Style { back_faces: BackFaces::Tint([9, 8, 7]), ..bare(9) };
     for (camera, color) in [(behind, [9, 8, 7]), (from_front(3.0), PLAIN)] {
         assert_eq!(rgb(&render(&roof(), &camera, &bare(9)).unwrap(), 0, 0), [0; 3]);
         assert_eq!(rgb(&render(&stack(&[0.0]), &camera, &tinted).unwrap(), 4, 4), color);
@@ -243,7 +243,7 @@ fn what_does_not_fit_the_mesh_is_refused() {
     assert_eq!(message, "colours of faces: 0 entries where 2 are needed");
     let message = refused(&mesh, bare(0));
     assert!(message.contains("0 x 0"), "{message}");
-    let material = Material { base_color: [1.0; 3], texture: Some(3) };
+    let material = PaintMaterial { base_color: [1.0; 3], texture: Some(3) };
     let materials = Materials { materials: vec![material], textures: vec![] };
     let message = refused(&mesh, Style { paint: Paint::Materials(&materials), ..bare(5) });
     assert_eq!(message, "material 0 names texture 3, but there are only 0");

@@ -5,7 +5,7 @@ mod ways;
 
 use anyhow::Result;
 use meshlod::mesh::Mesh;
-use meshlod::picture::{BreachOptions, Breaches, Cover, Parted};
+use meshlod::picture::{LabelledMesh, ReferenceVisibility, SeeThroughCounts, SeeThroughOptions};
 use meshlod::simplify::Target;
 
 use crate::project::Project;
@@ -22,10 +22,10 @@ const GOAL: f64 = 0.1;
 struct Figures {
     way: Way,
     level: Level,
-    breaches: Breaches,
+    breaches: SeeThroughCounts,
 }
 
-/// Breaches and new open edges per mesh, ratio and way.
+/// SeeThroughCounts and new open edges per mesh, ratio and way.
 pub fn section(_: &Project) -> Result<String> {
     let mut table = Table::new([
         "mesh, ratio, way",
@@ -60,7 +60,7 @@ fn text(met: &[String]) -> String {
         "Levels of meshes whose components touch and cross, in 24 views of 1024 by 1024. A pixel counts where the \
          level lets the background or a component through that the original does not show within 4 \
          pixels, unless an outline moved there, by 32 pixels at most \
-         (`picture::Cover`). Ratios are those of the sums, to plain `qem` with the same values on its faces and to \
+         (`picture::ReferenceVisibility`). Ratios are those of the sums, to plain `qem` with the same values on its faces and to \
          meshoptimizer's simplify with its border lock, which sees positions only; `bare` is without attributes \
          and materials. `locked` is what \
          `--lock-contacts` does, `fused` what `check::fuse` makes of all that crosses, both with components as \
@@ -82,7 +82,7 @@ fn skipped(missing: &[&str]) -> String {
 /// The figures of all ways, for each ratio.
 fn figures(mesh: &Mesh) -> Result<Vec<Vec<Figures>>> {
     let targets = RATIOS.map(|ratio| Target::Ratio(ratio).faces_of(mesh.faces.len()));
-    let cover = Cover::new(parted(mesh), BreachOptions::default())?;
+    let cover = ReferenceVisibility::new(parted(mesh), SeeThroughOptions::default())?;
     let mut of_ratios: Vec<Vec<Figures>> = RATIOS.map(|_| Vec::new()).into();
     for way in Way::ALL {
         for (level, figures) in way.levels(mesh, &targets)?.into_iter().zip(&mut of_ratios) {
@@ -94,9 +94,9 @@ fn figures(mesh: &Mesh) -> Result<Vec<Vec<Figures>>> {
 }
 
 /// By its objects.
-fn parted(mesh: &Mesh) -> Parted<'_> {
-    let part_of_face = mesh.objects.as_ref().map_or(&[][..], |objects| &objects.of_face);
-    Parted { mesh, part_of_face }
+fn parted(mesh: &Mesh) -> LabelledMesh<'_> {
+    let label_of_face = mesh.objects.as_ref().map_or(&[][..], |objects| &objects.of_face);
+    LabelledMesh { mesh, label_of_face }
 }
 
 fn add_rows(table: &mut Table, what: &str, all: &[Figures]) {
@@ -108,7 +108,7 @@ fn add_rows(table: &mut Table, what: &str, all: &[Figures]) {
             _ => "–".to_owned(),
         });
         let miss = if own.level.reached { "" } else { "*" };
-        let Breaches { background, hidden, .. } = own.breaches;
+        let SeeThroughCounts { background, hidden, .. } = own.breaches;
         table.row([
             format!("{what}, {}", own.way.name()),
             format!("{}{miss}", own.level.mesh.faces.len()),
@@ -154,7 +154,11 @@ mod tests {
     fn a_goal_is_met_against_both_on_target_with_nothing_open() {
         let figures = |way, hidden| {
             let level = Level { mesh: Mesh::default(), reached: true, newly_open: 0 };
-            Figures { way, level, breaches: Breaches { hidden, ..Breaches::default() } }
+            Figures {
+                way,
+                level,
+                breaches: SeeThroughCounts { hidden, ..SeeThroughCounts::default() },
+            }
         };
         let with = |locked: Figures| {
             let plain = figures(Way::Plain(Values::Kept), 300);

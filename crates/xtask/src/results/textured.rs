@@ -3,7 +3,7 @@
 
 use anyhow::{Context, Result};
 use meshlod::mesh::Mesh;
-use meshlod::picture::{ImageError, Paint, Portrait};
+use meshlod::picture::{ImageError, Paint, ReferenceImages};
 use meshlod::simplify::{Method, Options, Target};
 use meshlod::{Scene, materials_of, simplify_scene};
 use meshlod_bench::peer::{Settings, SimplifyOptions, Update, simplify_with_attributes};
@@ -53,7 +53,7 @@ fn table(models: &[&str]) -> Result<String> {
         let Some(scene) = meshlod_bench::read_scene(model)? else { continue };
         let (materials, _) = materials_of(&scene);
         let mesh = scene.flatten();
-        let portrait = Portrait::new(&mesh, &Paint::comparison(&mesh, &materials))?;
+        let portrait = ReferenceImages::new(&mesh, &Paint::comparison(&mesh, &materials))?;
         for ratio in RATIOS {
             for (method, level) in levels(&scene, &mesh, ratio)? {
                 let ImageError { flip, ssim, .. } =

@@ -3,7 +3,7 @@
 use meshlod::Scene;
 use meshlod::codec::{Cells, parts_for};
 use meshlod::io::gltf::{
-    Compression, CompressionReport, QuantizedPart, write_parts_glb, write_small_glb,
+    Compression, CompressionReport, QuantizedPart, write_compressed_glb, write_parts_glb,
 };
 
 use super::{Compress, Packed, SchemeName, left_out};
@@ -22,7 +22,7 @@ impl Compress {
         if self.goal.error.is_some() || self.goal.reduction.is_some() {
             return Err(Failure::usage("--error and --reduction are not of .glb; --bits is"));
         }
-        let (bytes, report) = write_small_glb(scene, &[], &self.gltf_compression()?)
+        let (bytes, report) = write_compressed_glb(scene, &[], &self.gltf_compression()?)
             .map_err(|error| self.failed(error))?;
         let CompressionReport { positions, connectivity, attributes, .. } = report;
         let meshes = scene.meshes.iter().map(|mesh| &mesh.mesh);

@@ -5,7 +5,7 @@ use serde_json::{Value, json};
 
 use super::carried::rich;
 use super::{container, json_of, levels, read_alone};
-use crate::gltf::{Compression, write_glb, write_small_glb};
+use crate::gltf::{Compression, write_compressed_glb, write_glb};
 
 /// Reads; what can be read must be sound, and writable with and without levels.
 fn check(bytes: &[u8]) {
@@ -18,7 +18,7 @@ fn check(bytes: &[u8]) {
     }
     for meshopt in [false, true] {
         let how = Compression { meshopt, ..Compression::default() };
-        if let Ok((glb, _)) = write_small_glb(&scene, &levels::levels(&scene), &how) {
+        if let Ok((glb, _)) = write_compressed_glb(&scene, &levels::levels(&scene), &how) {
             read_alone(&glb).unwrap();
         }
     }
@@ -84,7 +84,7 @@ proptest! {
     #[test]
     fn any_byte_of_a_small_file(changes in prop::collection::vec((any::<usize>(), any::<u8>()), 1..6)) {
         let scene = crate::Scene::from_mesh("cube", meshlod_fixtures::cube());
-        let (mut glb, _) = write_small_glb(&scene, &[], &Compression::default()).unwrap();
+        let (mut glb, _) = write_compressed_glb(&scene, &[], &Compression::default()).unwrap();
         for (place, byte) in changes {
             let place = place % glb.len();
             glb[place] = byte;

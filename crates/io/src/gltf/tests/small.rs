@@ -6,7 +6,9 @@ use meshlod_mesh::{Attributes, Layer, LayerKind, Mesh, WedgeId};
 use serde_json::{Value, json};
 
 use super::{json_of, levels, read_alone, read_parts, square};
-use crate::gltf::{Compression, QuantizedPart, write_parts_glb, write_small, write_small_glb};
+use crate::gltf::{
+    Compression, QuantizedPart, write_compressed, write_compressed_glb, write_parts_glb,
+};
 use crate::{ReadOptions, Scene};
 
 const PLAIN: Compression =
@@ -69,7 +71,7 @@ fn values(scene: &Scene, kind: LayerKind) -> Vec<(u32, Vec<f32>)> {
 
 /// Writes small and reads again; every corner must be within half a cell an axis.
 fn check(scene: &Scene, how: &Compression, what: &str) -> Scene {
-    let (glb, report) = write_small_glb(scene, &[], how).unwrap();
+    let (glb, report) = write_compressed_glb(scene, &[], how).unwrap();
     let again = read_alone(&glb).unwrap();
     let (old, new) = (faces(scene), faces(&again));
     assert_eq!(old.len(), new.len(), "{what}");
@@ -176,8 +178,8 @@ fn attributes_come_back_within_their_bits() {
 #[test]
 fn what_is_asked_for_is_what_is_in_the_file() {
     let scene = dressed();
-    let (plain, a) = write_small_glb(&scene, &[], &PLAIN).unwrap();
-    let (packed, b) = write_small_glb(&scene, &[], &PACKED).unwrap();
+    let (plain, a) = write_compressed_glb(&scene, &[], &PLAIN).unwrap();
+    let (packed, b) = write_compressed_glb(&scene, &[], &PACKED).unwrap();
     assert_eq!(json_of(&plain)["extensionsRequired"], json!(["KHR_mesh_quantization"]));
     let both = json!(["KHR_mesh_quantization", "EXT_meshopt_compression"]);
     assert_eq!(json_of(&packed)["extensionsRequired"], both);
@@ -188,13 +190,13 @@ fn what_is_asked_for_is_what_is_in_the_file() {
     assert_eq!(a.positions.resident, a.positions.stored);
     assert!(b.connectivity.stored < a.connectivity.stored);
     let (bytes, _) =
-        write_small_glb(&scene, &[], &Compression { position_bits: 8, ..PLAIN }).unwrap();
+        write_compressed_glb(&scene, &[], &Compression { position_bits: 8, ..PLAIN }).unwrap();
     let positions = &json_of(&bytes)["accessors"][0];
     assert_eq!(
         (&positions["componentType"], &positions["max"]),
         (&json!(5121), &json!([255.0, 255.0, 255.0]))
     );
-    let (written, _) = write_small(&scene, &[], "a b", &PACKED).unwrap();
+    let (written, _) = write_compressed(&scene, &[], "a b", &PACKED).unwrap();
     assert_eq!(written.buffer.unwrap().0, "a b.bin");
 }
 
@@ -202,7 +204,7 @@ fn what_is_asked_for_is_what_is_in_the_file() {
 fn primitives_that_met_still_meet() {
     let scene = numbered(Scene::from_mesh("two", two_objects()));
     let how = Compression { position_bits: 3, ..PACKED };
-    let (glb, _) = write_small_glb(&scene, &[], &how).unwrap();
+    let (glb, _) = write_compressed_glb(&scene, &[], &how).unwrap();
     let again = read_alone(&glb).unwrap();
     let mut places = std::collections::BTreeMap::new();
     for ((_, old), (_, new)) in faces(&scene).iter().zip(faces(&again)) {
@@ -270,7 +272,7 @@ fn meshes_that_no_node_can_scale_keep_their_floats_and_the_report_says_so() {
     ];
     for (why, change) in changes {
         let scene = square_with(change);
-        let (glb, report) = write_small_glb(&scene, &[], &PACKED).unwrap();
+        let (glb, report) = write_compressed_glb(&scene, &[], &PACKED).unwrap();
         assert!(
             report.kept[0].starts_with("mesh 0: ") && report.kept[0].contains(why),
             "{report:?}"
@@ -284,7 +286,7 @@ fn meshes_that_no_node_can_scale_keep_their_floats_and_the_report_says_so() {
 fn levels_lie_on_the_grid_of_their_mesh() {
     let scene = numbered(Scene::from_mesh("strip", seam_strip()));
     let levels = levels::levels(&scene);
-    let (glb, _) = write_small_glb(&scene, &levels, &PACKED).unwrap();
+    let (glb, _) = write_compressed_glb(&scene, &levels, &PACKED).unwrap();
     let json = json_of(&glb);
     let nodes = json["nodes"].as_array().unwrap();
     assert!(nodes.len() > levels.len());
@@ -298,12 +300,12 @@ fn files_of_both_forms_are_written_by_path() {
     let scene = dressed();
     for name in ["a.glb", "a.gltf"] {
         let path = folder.path().join(name);
-        let report = crate::write_small(&path, &scene, &PACKED).unwrap();
+        let report = crate::write_compressed(&path, &scene, &PACKED).unwrap();
         assert!(report.connectivity.stored < report.connectivity.resident);
         let again = crate::read(&path, &ReadOptions::default()).unwrap();
         assert_eq!(faces(&again).len(), faces(&scene).len());
     }
-    let error = crate::write_small(&folder.path().join("a.ply"), &scene, &PACKED).unwrap_err();
+    let error = crate::write_compressed(&folder.path().join("a.ply"), &scene, &PACKED).unwrap_err();
     assert!(error.to_string().contains("use one of those"), "{error}");
 }
 
@@ -315,7 +317,7 @@ fn bits_that_cannot_be_are_refused() {
         Compression { normal_bits: 1, ..PLAIN },
         Compression { uv_bits: u32::MAX, ..PLAIN },
     ] {
-        let error = write_small_glb(&dressed(), &[], &how).unwrap_err();
+        let error = write_compressed_glb(&dressed(), &[], &how).unwrap_err();
         assert!(error.to_string().contains("16 can"), "{error}");
     }
 }
@@ -324,7 +326,7 @@ fn bits_that_cannot_be_are_refused() {
 fn a_mesh_without_faces_and_no_mesh_at_all_are_written() {
     for scene in [Scene::default(), Scene::from_mesh("none", Mesh::default())] {
         for how in [PLAIN, PACKED] {
-            let (glb, _) = write_small_glb(&scene, &[], &how).unwrap();
+            let (glb, _) = write_compressed_glb(&scene, &[], &how).unwrap();
             read_alone(&glb).unwrap();
         }
     }
@@ -360,7 +362,7 @@ fn bytes_per_triangle_of_the_bunny() {
     let scene = crate::read(&path, &ReadOptions::default()).unwrap();
     let faces = scene.meshes[0].mesh.faces.len() as f64;
     let per_face = |how: &Compression| {
-        let (_, report) = write_small_glb(&scene, &[], how).unwrap();
+        let (_, report) = write_compressed_glb(&scene, &[], how).unwrap();
         let [p, c] = [report.positions, report.connectivity].map(|b| b.stored as f64 / faces);
         println!("bunny, {how:?}: {p:.3} + {c:.3} bytes a triangle");
         p + c

@@ -5,7 +5,7 @@
 
 use meshlod_mesh::VertexId;
 
-use super::binary::little;
+use super::binary_body::little;
 use super::header::{Element, Scalar, Shape};
 
 /// Bytes of a face of three 32-bit indices behind its length.

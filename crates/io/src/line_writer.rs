@@ -11,15 +11,15 @@ const PIECE: usize = 1 << 16;
 /// Writes lines of words, each with a space before it but the first.
 ///
 /// Numbers are the shortest that read back as the same `f32` or `f64`. What is left at the end
-/// must be sent by [`Lines::finish`].
-pub(crate) struct Lines<'a> {
+/// must be sent by [`LineWriter::finish`].
+pub(crate) struct LineWriter<'a> {
     out: &'a mut dyn Write,
     precision: Precision,
     buffer: String,
     at_start: bool,
 }
 
-impl<'a> Lines<'a> {
+impl<'a> LineWriter<'a> {
     pub(crate) fn new(out: &'a mut dyn Write, precision: Precision) -> Self {
         Self { out, precision, buffer: String::with_capacity(PIECE + 1024), at_start: true }
     }
@@ -146,7 +146,7 @@ mod tests {
 
     fn written(precision: Precision, position: [f64; 3]) -> Result<String, String> {
         let mut out = Vec::new();
-        let mut lines = Lines::new(&mut out, precision);
+        let mut lines = LineWriter::new(&mut out, precision);
         lines.word("v");
         lines.position(7, position).map_err(|error| error.to_string())?;
         lines.end().unwrap();

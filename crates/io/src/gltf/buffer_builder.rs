@@ -6,8 +6,8 @@ use serde_json::{Map, Value, json};
 
 use super::accessor::component;
 use super::compress::Bytes;
+use super::decompress::MESHOPT;
 use super::document::Document;
-use super::unpack::MESHOPT;
 use crate::meshopt::{Filter, encode_attributes, encode_triangles};
 
 /// What becomes an accessor of its own.
@@ -50,7 +50,7 @@ pub(super) enum Usage {
 /// Places that are free are used again; none moves, so whatever names one, extensions that nobody
 /// here knows included, keeps its meaning.
 #[derive(Default)]
-pub(super) struct Pool {
+pub(super) struct BufferBuilder {
     accessors: Vec<Value>,
     views: Vec<Value>,
     free_accessors: Vec<usize>,
@@ -64,7 +64,7 @@ pub(super) struct Pool {
     pub added: [Bytes; 3],
 }
 
-impl Pool {
+impl BufferBuilder {
     /// From now on compresses what is added.
     pub fn pack(&mut self) {
         self.unfolded = Some(0);

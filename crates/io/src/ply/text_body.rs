@@ -1,19 +1,19 @@
 //! The body as text.
 
+use super::body::{BodyReader, Row};
 use super::header::{Element, Header, Scalar, shown};
-use super::source::{Row, Source};
 use crate::ParseError;
 
-/// Text: numbers between white space, a row a line. A row may go on over further lines, but two
+/// TextBody: numbers between white space, a row a line. A row may go on over further lines, but two
 /// rows never share one, so a missing or surplus number is found where it is.
 #[derive(Clone)]
-pub(super) struct Text<'a> {
+pub(super) struct TextBody<'a> {
     rest: &'a [u8],
     /// Counted from 1.
     line: usize,
 }
 
-impl<'a> Text<'a> {
+impl<'a> TextBody<'a> {
     pub fn new(bytes: &'a [u8], header: &Header) -> Self {
         Self { rest: &bytes[header.body..], line: header.body_line }
     }
@@ -44,7 +44,7 @@ impl<'a> Text<'a> {
     }
 }
 
-impl Source for Text<'_> {
+impl BodyReader for TextBody<'_> {
     fn begin_row(&mut self) {
         self.skip_space();
     }

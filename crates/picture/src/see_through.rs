@@ -9,16 +9,16 @@ use crate::{Camera, PictureError, visibility};
 
 /// A mesh whose faces are told apart: by component, object or what else is seen as a whole.
 #[derive(Clone, Copy, Debug)]
-pub struct Parted<'a> {
+pub struct LabelledMesh<'a> {
     /// The mesh.
     pub mesh: &'a Mesh,
     /// The part that each face belongs to.
-    pub part_of_face: &'a [u32],
+    pub label_of_face: &'a [u32],
 }
 
 /// How breaches are looked for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct BreachOptions {
+pub struct SeeThroughOptions {
     /// Width and height of a view, in pixels.
     pub side: u32,
     /// What the original shows within so many pixels of a spot may be seen at the spot.
@@ -27,7 +27,7 @@ pub struct BreachOptions {
     pub outline: u32,
 }
 
-impl Default for BreachOptions {
+impl Default for SeeThroughOptions {
     fn default() -> Self {
         Self { side: 1024, radius: 4, outline: 32 }
     }
@@ -35,7 +35,7 @@ impl Default for BreachOptions {
 
 /// How much of a level is breached.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Breaches {
+pub struct SeeThroughCounts {
     /// Pixels that show the original.
     pub shown: usize,
     /// Those of them where the level lets the background through.
@@ -46,7 +46,7 @@ pub struct Breaches {
 
 /// What a level shows at a pixel that its original hides.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Breach {
+pub enum SeeThrough {
     /// Nothing at all.
     Background,
     /// This part.
@@ -56,17 +56,17 @@ pub enum Breach {
 /// An original from 24 sides.
 ///
 /// A pixel is a breach where the level lets a part or the background through that the original does
-/// not show nearby ([`BreachOptions::radius`]). Outlines shift in any level: what the original has
+/// not show nearby ([`SeeThroughOptions::radius`]). Outlines shift in any level: what the original has
 /// right beyond the nearest border of what it shows at the pixel, no farther than
-/// [`BreachOptions::outline`], is no breach, if that border is an outline: before the background, or
+/// [`SeeThroughOptions::outline`], is no breach, if that border is an outline: before the background, or
 /// with a leap in depth. So these are breaches: a gap between parts that touched, a hole within a
 /// part, an inner part that comes through an outer one, a line where parts cross that wanders. A fin
 /// that gets shorter is none, be it before the background or before the body.
 ///
 /// Memory: 8 bytes a pixel: 200 MB by the default.
-pub struct Cover {
+pub struct ReferenceVisibility {
     frame: Frame,
-    views: Vec<View>,
+    views: Vec<ReferenceView>,
 }
 
 /// How pixels lie in a view, and which are near.
@@ -81,16 +81,16 @@ struct Frame {
 }
 
 /// What each pixel shows, with the margin.
-struct View {
+struct ReferenceView {
     camera: Camera,
-    seen: Vec<Seen>,
+    seen: Vec<VisibleLabel>,
     /// Neighbouring pixels whose depths differ by more than this part of them are before and behind.
     leap: f32,
 }
 
 /// A part and its depth.
 #[derive(Clone, Copy)]
-struct Seen {
+struct VisibleLabel {
     part: u32,
     depth: f32,
 }
@@ -104,23 +104,26 @@ const BACKGROUND: u32 = u32::MAX;
 /// What the margin shows.
 const OUTSIDE: u32 = u32::MAX - 1;
 
-impl Cover {
+impl ReferenceVisibility {
     /// Looks at the original from the corners of two icosahedra, by [`Camera::icosahedron_views`]
     /// and [`Camera::other_icosahedron_views`].
     ///
     /// # Errors
     /// As for [`visibility()`], and labels for another number of faces.
-    pub fn new(original: Parted<'_>, options: BreachOptions) -> Result<Self, PictureError> {
+    pub fn new(
+        original: LabelledMesh<'_>,
+        options: SeeThroughOptions,
+    ) -> Result<Self, PictureError> {
         let first = Camera::icosahedron_views(original.mesh);
         let cameras = first.into_iter().chain(Camera::other_icosahedron_views(original.mesh));
         let frame = Frame::new(options);
         let view = |camera| {
-            let mut padded = vec![Seen { part: OUTSIDE, depth: 0.0 }; frame.pixels()];
+            let mut padded = vec![VisibleLabel { part: OUTSIDE, depth: 0.0 }; frame.pixels()];
             for (at, seen) in look(original, &camera, options.side)?.into_iter().enumerate() {
                 padded[frame.padded(at)] = seen;
             }
             let leap = LEAP_PX * camera.pixel_width(options.side) as f32;
-            Ok(View { camera, seen: padded, leap })
+            Ok(ReferenceView { camera, seen: padded, leap })
         };
         let views = cameras.map(view).collect::<Result<_, PictureError>>()?;
         Ok(Self { frame, views })
@@ -129,15 +132,15 @@ impl Cover {
     /// How often a level shows what the original hides, over all views.
     ///
     /// # Errors
-    /// As for [`Cover::new`].
-    pub fn breaches(&self, level: Parted<'_>) -> Result<Breaches, PictureError> {
-        let mut sum = Breaches::default();
+    /// As for [`ReferenceVisibility::new`].
+    pub fn breaches(&self, level: LabelledMesh<'_>) -> Result<SeeThroughCounts, PictureError> {
+        let mut sum = SeeThroughCounts::default();
         for (view, original) in self.views.iter().enumerate() {
             sum.shown += original.seen.iter().filter(|seen| seen.part < OUTSIDE).count();
             for breach in self.breaches_in(view, level)?.into_iter().flatten() {
                 match breach {
-                    Breach::Background => sum.background += 1,
-                    Breach::Hidden(_) => sum.hidden += 1,
+                    SeeThrough::Background => sum.background += 1,
+                    SeeThrough::Hidden(_) => sum.hidden += 1,
                 }
             }
         }
@@ -147,12 +150,12 @@ impl Cover {
     /// The same of one view, pixel by pixel, row after row from the top.
     ///
     /// # Errors
-    /// As for [`Cover::new`].
+    /// As for [`ReferenceVisibility::new`].
     pub fn breaches_in(
         &self,
         view: usize,
-        level: Parted<'_>,
-    ) -> Result<Vec<Option<Breach>>, PictureError> {
+        level: LabelledMesh<'_>,
+    ) -> Result<Vec<Option<SeeThrough>>, PictureError> {
         let view = &self.views[view];
         let level = look(level, &view.camera, self.frame.side as u32)?;
         let of = |at: usize| self.frame.breach(view, self.frame.padded(at), level[at].part);
@@ -166,7 +169,7 @@ impl Cover {
 }
 
 impl Frame {
-    fn new(BreachOptions { side, radius, outline }: BreachOptions) -> Self {
+    fn new(SeeThroughOptions { side, radius, outline }: SeeThroughOptions) -> Self {
         let square = |[right, down]: [isize; 2]| right * right + down * down;
         let [radius, reach] = [radius, outline.max(radius)].map(|r| r as isize);
         let margin = reach as usize;
@@ -190,7 +193,12 @@ impl Frame {
     }
 
     /// What is wrong where the level shows `shown`.
-    fn breach(&self, View { seen, leap, .. }: &View, at: usize, shown: u32) -> Option<Breach> {
+    fn breach(
+        &self,
+        ReferenceView { seen, leap, .. }: &ReferenceView,
+        at: usize,
+        shown: u32,
+    ) -> Option<SeeThrough> {
         let part = seen[at].part;
         if part == shown || part == BACKGROUND {
             return None;
@@ -207,13 +215,13 @@ impl Frame {
             return None;
         }
         match shown {
-            BACKGROUND => Some(Breach::Background),
-            shown => Some(Breach::Hidden(shown)),
+            BACKGROUND => Some(SeeThrough::Background),
+            shown => Some(SeeThrough::Hidden(shown)),
         }
     }
 
     /// Whether a pixel is well behind those beside it that show a part.
-    fn is_behind(&self, seen: &[Seen], at: usize, part: u32, leap: f32) -> bool {
+    fn is_behind(&self, seen: &[VisibleLabel], at: usize, part: u32, leap: f32) -> bool {
         let row = (self.side + 2 * self.margin) as isize;
         let sides = [-row - 1, -row, 1 - row, -1, 1, row - 1, row, row + 1];
         let beside = sides.map(|step| seen[at.wrapping_add_signed(step)]);
@@ -223,11 +231,15 @@ impl Frame {
 }
 
 /// What each pixel's middle sees.
-fn look(of: Parted<'_>, camera: &Camera, side: u32) -> Result<Vec<Seen>, PictureError> {
-    check_length("parts of faces", of.part_of_face.len(), of.mesh.faces.len())?;
+fn look(
+    of: LabelledMesh<'_>,
+    camera: &Camera,
+    side: u32,
+) -> Result<Vec<VisibleLabel>, PictureError> {
+    check_length("parts of faces", of.label_of_face.len(), of.mesh.faces.len())?;
     let seen = visibility(of.mesh, camera, [side; 2])?;
-    let seen = seen.faces().zip(seen.depths()).map(|(face, depth)| Seen {
-        part: face.map_or(BACKGROUND, |face| of.part_of_face[face.index()]),
+    let seen = seen.faces().zip(seen.depths()).map(|(face, depth)| VisibleLabel {
+        part: face.map_or(BACKGROUND, |face| of.label_of_face[face.index()]),
         depth: depth.unwrap_or_default() as f32,
     });
     Ok(seen.collect())
@@ -238,7 +250,7 @@ mod tests {
     use super::*;
     use crate::scenes::{ball, sheet};
 
-    const OPTIONS: BreachOptions = BreachOptions { side: 128, radius: 3, outline: 8 };
+    const OPTIONS: SeeThroughOptions = SeeThroughOptions { side: 128, radius: 3, outline: 8 };
 
     /// A ball of part 0 with a smaller one of part 1 in it, and what to do with both.
     fn balls(outer: f64, inner: f64) -> (Mesh, Vec<u32>) {
@@ -252,13 +264,16 @@ mod tests {
         (mesh, parts)
     }
 
-    fn breaches(original: &(Mesh, Vec<u32>), level: &(Mesh, Vec<u32>)) -> Breaches {
+    fn breaches(original: &(Mesh, Vec<u32>), level: &(Mesh, Vec<u32>)) -> SeeThroughCounts {
         let parted = |of: &'_ (Mesh, Vec<u32>)| (of.0.clone(), of.1.clone());
         let (original, level) = (parted(original), parted(level));
-        Cover::new(Parted { mesh: &original.0, part_of_face: &original.1 }, OPTIONS)
-            .unwrap()
-            .breaches(Parted { mesh: &level.0, part_of_face: &level.1 })
-            .unwrap()
+        ReferenceVisibility::new(
+            LabelledMesh { mesh: &original.0, label_of_face: &original.1 },
+            OPTIONS,
+        )
+        .unwrap()
+        .breaches(LabelledMesh { mesh: &level.0, label_of_face: &level.1 })
+        .unwrap()
     }
 
     #[test]

@@ -5,7 +5,7 @@ use std::ops::Range;
 use serde_json::Value;
 
 use super::primitives::is_surface;
-use super::read::Source;
+use super::read::SourceDocument;
 
 /// The positions of a primitive, in a mesh that was read without welding.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -16,7 +16,7 @@ pub struct PrimitiveRows {
     pub vertices: Range<usize>,
 }
 
-impl Source {
+impl SourceDocument {
     /// The vertices of each primitive of a mesh, as [`Weld::Off`](crate::Weld::Off) numbers them:
     /// the rows of one POSITION accessor after those of another, each accessor once. `None` for
     /// points and lines. Empty for a mesh that is not there.

@@ -21,7 +21,7 @@ impl fmt::Display for Row<'_> {
 }
 
 /// Numbers in the order of the file. A clone reads on from the same place.
-pub(super) trait Source: Clone {
+pub(super) trait BodyReader: Clone {
     /// To be called before the first number of a row.
     fn begin_row(&mut self);
 
@@ -42,8 +42,8 @@ pub(super) trait Source: Clone {
     fn wrong(&self, reason: String) -> ParseError;
 
     /// Takes the first rows in one sweep, as long as they are plain, and gives their number; the
-    /// others are left to the careful way, and so are all errors. See [`super::fast`].
-    fn quick_positions(
+    /// others are left to the careful way, and so are all errors. See [`super::bulk`].
+    fn bulk_positions(
         &mut self,
         _element: &Element,
         _xyz: [usize; 3],
@@ -53,7 +53,7 @@ pub(super) trait Source: Clone {
     }
 
     /// The same for faces.
-    fn quick_triangles(
+    fn bulk_triangles(
         &mut self,
         _element: &Element,
         _vertices: usize,

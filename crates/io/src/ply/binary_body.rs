@@ -2,14 +2,14 @@
 
 use meshlod_mesh::VertexId;
 
-use super::fast;
+use super::body::{BodyReader, Row};
+use super::bulk;
 use super::header::{Element, Header, Scalar};
-use super::source::{Row, Source};
 use crate::ParseError;
 
-/// Binary data; `BIG` is the byte order.
+/// BinaryBody data; `BIG` is the byte order.
 #[derive(Clone)]
-pub(super) struct Binary<'a, const BIG: bool> {
+pub(super) struct BinaryBody<'a, const BIG: bool> {
     rest: &'a [u8],
     /// Bytes of the whole file.
     total: usize,
@@ -17,7 +17,7 @@ pub(super) struct Binary<'a, const BIG: bool> {
     row_at: usize,
 }
 
-impl<'a, const BIG: bool> Binary<'a, BIG> {
+impl<'a, const BIG: bool> BinaryBody<'a, BIG> {
     pub fn new(bytes: &'a [u8], header: &Header) -> Self {
         Self { rest: &bytes[header.body..], total: bytes.len(), row_at: header.body }
     }
@@ -46,7 +46,7 @@ pub(super) fn little<const N: usize, const BIG: bool>(mut raw: [u8; N]) -> [u8; 
     raw
 }
 
-impl<const BIG: bool> Source for Binary<'_, BIG> {
+impl<const BIG: bool> BodyReader for BinaryBody<'_, BIG> {
     #[inline]
     fn begin_row(&mut self) {
         self.row_at = self.total - self.rest.len();
@@ -89,25 +89,25 @@ impl<const BIG: bool> Source for Binary<'_, BIG> {
         ParseError::byte(self.row_at, reason)
     }
 
-    fn quick_positions(
+    fn bulk_positions(
         &mut self,
         element: &Element,
         xyz: [usize; 3],
         positions: &mut Vec<[f64; 3]>,
     ) -> u64 {
-        let rows = fast::positions::<BIG>(self.rest, element, xyz, positions);
+        let rows = bulk::positions::<BIG>(self.rest, element, xyz, positions);
         self.rest = &self.rest[rows * element.least_row_size()..];
         rows as u64
     }
 
-    fn quick_triangles(
+    fn bulk_triangles(
         &mut self,
         element: &Element,
         vertices: usize,
         triangles: &mut Vec<[VertexId; 3]>,
     ) -> u64 {
-        let rows = fast::triangles::<BIG>(self.rest, element, vertices, triangles);
-        self.rest = &self.rest[rows * fast::TRIANGLE_ROW..];
+        let rows = bulk::triangles::<BIG>(self.rest, element, vertices, triangles);
+        self.rest = &self.rest[rows * bulk::TRIANGLE_ROW..];
         rows as u64
     }
 }

@@ -10,7 +10,7 @@ use crate::srgb;
 use crate::{Materials, Paint, PictureError, Texture, Values};
 
 /// A [`Paint`] checked against its mesh, ready to be looked up.
-pub(crate) enum Pigment<'a> {
+pub(crate) enum Albedo<'a> {
     Plain(Vec3),
     FaceColors(&'a [[u8; 3]]),
     FaceValues(&'a [f32], Scale),
@@ -30,7 +30,7 @@ pub(crate) struct OverWedges<'a> {
 /// The surface where a paint finds no layer to go by.
 const BARE: [u8; 3] = [205, 205, 205];
 
-impl<'a> Pigment<'a> {
+impl<'a> Albedo<'a> {
     pub(crate) fn new(mesh: &'a Mesh, paint: &Paint<'a>) -> Result<Self, PictureError> {
         let bare = || Self::Plain(srgb::decode(BARE));
         Ok(match *paint {

@@ -19,7 +19,7 @@ const UNFOLDING: usize = 64;
 /// `bufferViews[i].extensions.EXT_meshopt_compression`.
 #[derive(Debug, Deserialize)]
 #[serde(rename_all = "camelCase")]
-struct Packed {
+struct CompressedView {
     buffer: usize,
     #[serde(default)]
     byte_offset: usize,
@@ -35,7 +35,7 @@ struct Packed {
 ///
 /// # Errors
 /// The view and what is wrong with it or its stream.
-pub(super) fn unpack(json: &mut Value, buffers: &mut Buffers) -> Result<(), ParseError> {
+pub(super) fn decompress(json: &mut Value, buffers: &mut Buffers) -> Result<(), ParseError> {
     let mut unpacked = Vec::new();
     let target = buffers.bytes.len();
     let views = json.get_mut("bufferViews").and_then(Value::as_array_mut);
@@ -81,7 +81,7 @@ pub(super) fn is_unfolded_into(json: &Value, buffer: usize) -> bool {
 }
 
 /// Takes the extension out of a view, if it has it.
-fn take_extension(view: &mut Value) -> Result<Option<Packed>, String> {
+fn take_extension(view: &mut Value) -> Result<Option<CompressedView>, String> {
     let Some(name) = MESHOPT.into_iter().find(|name| view["extensions"].get(name).is_some()) else {
         return Ok(None);
     };
@@ -89,7 +89,8 @@ fn take_extension(view: &mut Value) -> Result<Option<Packed>, String> {
     if !packed.is_object() {
         return Err(format!("its {name} is no object"));
     }
-    let packed = Packed::deserialize(packed).map_err(|error| format!("its {name}: {error}"))?;
+    let packed =
+        CompressedView::deserialize(packed).map_err(|error| format!("its {name}: {error}"))?;
     drop_entry(view, name);
     Ok(Some(packed))
 }
@@ -105,8 +106,8 @@ fn drop_entry(of: &mut Value, name: &str) {
     }
 }
 
-fn stream<'a>(packed: &Packed, buffers: &'a Buffers) -> Result<&'a [u8], ParseError> {
-    let Packed { buffer, byte_offset: offset, byte_length: length, .. } = *packed;
+fn stream<'a>(packed: &CompressedView, buffers: &'a Buffers) -> Result<&'a [u8], ParseError> {
+    let CompressedView { buffer, byte_offset: offset, byte_length: length, .. } = *packed;
     let Some(bytes) = buffers.bytes.get(buffer) else {
         return Err(missing("buffer", buffer, buffers.bytes.len()));
     };
@@ -117,7 +118,7 @@ fn stream<'a>(packed: &Packed, buffers: &'a Buffers) -> Result<&'a [u8], ParseEr
     })
 }
 
-fn layout(packed: &Packed) -> Result<Layout, String> {
+fn layout(packed: &CompressedView) -> Result<Layout, String> {
     let mode = match &packed.mode[..] {
         "ATTRIBUTES" => Mode::Attributes,
         "TRIANGLES" => Mode::Triangles,

@@ -2,12 +2,12 @@
 
 use serde_json::{Map, Value, json};
 
-use super::pool::Pool;
+use super::buffer_builder::BufferBuilder;
 use crate::scene::IDENTITY;
 use crate::{Material, Node, Scene, SceneMesh};
 
 /// The JSON of a scene but for the geometry: its meshes have bare primitives, one a material label.
-pub(super) fn document(scene: &Scene, pool: &mut Pool) -> Value {
+pub(super) fn document(scene: &Scene, pool: &mut BufferBuilder) -> Value {
     let mut images = Images::default();
     let materials: Vec<Value> =
         scene.materials.iter().map(|m| material(m, images.texture(m, scene, pool))).collect();
@@ -56,7 +56,12 @@ struct Images {
 impl Images {
     /// The texture of a material; none where its image is neither PNG nor JPEG, as glTF has no
     /// other.
-    fn texture(&mut self, material: &Material, scene: &Scene, pool: &mut Pool) -> Option<usize> {
+    fn texture(
+        &mut self,
+        material: &Material,
+        scene: &Scene,
+        pool: &mut BufferBuilder,
+    ) -> Option<usize> {
         let index = material.base_color_image?;
         if let Some(&texture) = self.of_scene.get(&index) {
             return Some(texture);

@@ -4,7 +4,7 @@ use meshlod_mesh::{Attributes, Layer, LayerKind, Mesh, VertexId, WedgeId};
 
 /// Attributes with one wedge per vertex: `layers` have a value for each vertex. `None` without
 /// layers.
-pub(crate) fn of_vertices(
+pub(crate) fn per_vertex(
     vertices: usize,
     faces: &[[VertexId; 3]],
     layers: Vec<Layer>,
@@ -14,7 +14,7 @@ pub(crate) fn of_vertices(
 }
 
 /// A layer of a known kind under its usual name.
-pub(crate) fn layer(kind: LayerKind, width: usize, values: Vec<f32>) -> Layer {
+pub(crate) fn named_layer(kind: LayerKind, width: usize, values: Vec<f32>) -> Layer {
     let name = match kind {
         LayerKind::Normal => "normal",
         LayerKind::Uv(_) => "uv",
@@ -25,7 +25,7 @@ pub(crate) fn layer(kind: LayerKind, width: usize, values: Vec<f32>) -> Layer {
 }
 
 /// Brings colours to [0, 1]: where any is above 1, all are taken to be of 255.
-pub(crate) fn to_unit(colors: &mut [f32]) {
+pub(crate) fn normalize_colors(colors: &mut [f32]) {
     if colors.iter().any(|&c| c > 1.0) {
         colors.iter_mut().for_each(|c| *c /= 255.0);
     }
@@ -33,40 +33,41 @@ pub(crate) fn to_unit(colors: &mut [f32]) {
 
 /// A vertex as a file has it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Row {
+pub(crate) struct SplitVertex {
     pub(crate) vertex: VertexId,
     /// The attributes of it; none where no face uses the vertex.
     pub(crate) wedge: Option<WedgeId>,
 }
 
 /// The vertices and faces of a file in which a vertex has one set of attributes.
-pub(crate) struct Torn {
-    pub(crate) rows: Vec<Row>,
+pub(crate) struct SplitMesh {
+    pub(crate) vertices: Vec<SplitVertex>,
     pub(crate) faces: Vec<[u32; 3]>,
 }
 
 /// Tears a mesh at its seams: the vertices in order, each with its first wedge, then one more for
 /// each further wedge. Where there are no seams, vertices and faces are those of the mesh.
-pub(crate) fn tear(mesh: &Mesh) -> Torn {
-    let mut rows: Vec<Row> =
-        (0..mesh.positions.len()).map(|v| Row { vertex: VertexId::new(v), wedge: None }).collect();
+pub(crate) fn split_at_seams(mesh: &Mesh) -> SplitMesh {
+    let mut vertices: Vec<SplitVertex> = (0..mesh.positions.len())
+        .map(|v| SplitVertex { vertex: VertexId::new(v), wedge: None })
+        .collect();
     let mut faces: Vec<[u32; 3]> = mesh.faces.iter().map(|face| face.map(|v| v.0)).collect();
-    let Some(attributes) = &mesh.attributes else { return Torn { rows, faces } };
+    let Some(attributes) = &mesh.attributes else { return SplitMesh { vertices, faces } };
     let mut row_of: Vec<Option<u32>> = vec![None; attributes.wedge_count];
     for (corner, &wedge) in
         faces.as_flattened_mut().iter_mut().zip(attributes.corners.as_flattened())
     {
         let vertex = VertexId(*corner);
         *corner = *row_of[wedge.index()].get_or_insert_with(|| {
-            if rows[vertex.index()].wedge.is_none() {
-                rows[vertex.index()].wedge = Some(wedge);
+            if vertices[vertex.index()].wedge.is_none() {
+                vertices[vertex.index()].wedge = Some(wedge);
                 return vertex.0;
             }
-            rows.push(Row { vertex, wedge: Some(wedge) });
-            rows.len() as u32 - 1
+            vertices.push(SplitVertex { vertex, wedge: Some(wedge) });
+            vertices.len() as u32 - 1
         });
     }
-    Torn { rows, faces }
+    SplitMesh { vertices, faces }
 }
 
 #[cfg(test)]
@@ -86,26 +87,27 @@ mod tests {
 
     #[test]
     fn without_seams_vertices_stay() {
-        let torn = tear(&two([[3, 1, 0], [0, 1, 2]]));
-        assert_eq!(torn.faces, [[0, 1, 2], [2, 1, 3]]);
-        let wedges: Vec<Option<u32>> = torn.rows.iter().map(|row| row.wedge.map(|w| w.0)).collect();
+        let split = split_at_seams(&two([[3, 1, 0], [0, 1, 2]]));
+        assert_eq!(split.faces, [[0, 1, 2], [2, 1, 3]]);
+        let wedges: Vec<Option<u32>> =
+            split.vertices.iter().map(|row| row.wedge.map(|w| w.0)).collect();
         assert_eq!(wedges, [Some(3), Some(1), Some(0), Some(2), None]);
     }
 
     #[test]
     fn further_wedges_come_behind() {
-        let torn = tear(&two([[0, 1, 2], [3, 4, 5]]));
-        assert_eq!(torn.faces, [[0, 1, 2], [5, 6, 3]]);
-        assert_eq!(torn.rows[5], Row { vertex: VertexId(2), wedge: Some(WedgeId(3)) });
-        assert_eq!(torn.rows.len(), 7);
+        let split = split_at_seams(&two([[0, 1, 2], [3, 4, 5]]));
+        assert_eq!(split.faces, [[0, 1, 2], [5, 6, 3]]);
+        assert_eq!(split.vertices[5], SplitVertex { vertex: VertexId(2), wedge: Some(WedgeId(3)) });
+        assert_eq!(split.vertices.len(), 7);
     }
 
     #[test]
     fn colours_of_255_become_unit() {
         let mut colors = [0.0, 255.0, 51.0];
-        to_unit(&mut colors);
+        normalize_colors(&mut colors);
         assert_eq!(colors, [0.0, 1.0, 0.2]);
-        to_unit(&mut colors);
+        normalize_colors(&mut colors);
         assert_eq!(colors, [0.0, 1.0, 0.2]);
     }
 }

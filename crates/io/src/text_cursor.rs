@@ -1,4 +1,4 @@
-//! Text formats: one pass over the bytes, line by line, numbers read where they stand.
+//! TextCursor formats: one pass over the bytes, line by line, numbers read where they stand.
 
 use crate::ParseError;
 
@@ -7,13 +7,13 @@ use crate::ParseError;
 /// Lines end with LF, CR LF or CR; the end of the text ends the last one. Blanks are all bytes up
 /// to the space; a backslash at the end of a line makes the next one part of it.
 #[derive(Clone)]
-pub(crate) struct Text<'a> {
+pub(crate) struct TextCursor<'a> {
     bytes: &'a [u8],
     at: usize,
     line: usize,
 }
 
-impl<'a> Text<'a> {
+impl<'a> TextCursor<'a> {
     /// At the first line, behind a byte order mark.
     ///
     /// # Errors
@@ -140,7 +140,7 @@ impl<'a> Text<'a> {
     /// A number that hangs on a point, rounded once; what is not finite (`nan`) is 0.
     ///
     /// # Errors
-    /// As [`Text::number`], but for what is not finite.
+    /// As [`TextCursor::number`], but for what is not finite.
     #[inline]
     pub(crate) fn attribute(&mut self, need: &str) -> Result<f32, ParseError> {
         let start = self.at;
@@ -382,7 +382,10 @@ mod tests {
     use super::*;
 
     fn number(text: &str) -> Result<f64, String> {
-        Text::new(text.as_bytes()).unwrap().number("missing").map_err(|error| error.to_string())
+        TextCursor::new(text.as_bytes())
+            .unwrap()
+            .number("missing")
+            .map_err(|error| error.to_string())
     }
 
     #[test]
@@ -422,14 +425,14 @@ mod tests {
 
     #[test]
     fn attributes_that_are_not_finite_are_zero() {
-        let mut text = Text::new(b"nan -inf 1e300 0.25 -nan(ind) 2").unwrap();
+        let mut text = TextCursor::new(b"nan -inf 1e300 0.25 -nan(ind) 2").unwrap();
         let values: Vec<f32> = (0..6).map(|_| text.attribute("").unwrap()).collect();
         assert_eq!(values, [0.0, 0.0, 0.0, 0.25, 0.0, 2.0]);
     }
 
     #[test]
     fn lines_count_with_any_end_and_go_on_after_a_backslash() {
-        let mut text = Text::new(b"\xef\xbb\xbfa\r\nb \\\n c\\\r\nd # \\\n\re f").unwrap();
+        let mut text = TextCursor::new(b"\xef\xbb\xbfa\r\nb \\\n c\\\r\nd # \\\n\re f").unwrap();
         let mut words = Vec::new();
         loop {
             while text.more() {
@@ -446,7 +449,7 @@ mod tests {
     #[test]
     fn what_is_no_text_is_refused() {
         for bytes in [&b""[..], b"\xff\xfev\0", b"\xfe\xff\0v", b"v 1\0"] {
-            assert!(Text::new(bytes).is_err());
+            assert!(TextCursor::new(bytes).is_err());
         }
     }
 
@@ -457,7 +460,7 @@ mod tests {
         ) {
             let text = format!("{}e{exponent}", digits >> shift);
             prop_assert_eq!(number(&text).unwrap(), text.parse::<f64>().unwrap());
-            let attribute = Text::new(text.as_bytes()).unwrap().attribute("").unwrap();
+            let attribute = TextCursor::new(text.as_bytes()).unwrap().attribute("").unwrap();
             let expected = text.parse::<f32>().unwrap();
             prop_assert_eq!(attribute, if expected.is_finite() { expected } else { 0.0 });
         }
@@ -468,7 +471,7 @@ mod tests {
             prop_assert_eq!(number(&format!("{x}")).unwrap(), x);
             prop_assert_eq!(number(&format!("{x:e}")).unwrap(), x);
             let text = format!("{y:e}");
-            prop_assert_eq!(Text::new(text.as_bytes()).unwrap().attribute("").unwrap(), y);
+            prop_assert_eq!(TextCursor::new(text.as_bytes()).unwrap().attribute("").unwrap(), y);
         }
     }
 }

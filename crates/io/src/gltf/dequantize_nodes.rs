@@ -2,14 +2,14 @@
 
 use serde_json::{Value, json};
 
-use super::compress::Grid;
+use super::compress::QuantizationGrid;
 use super::lod::{give_to_child, moving};
 
 /// Lets every node that shows a mesh with a grid scale and move it to its place.
 ///
 /// A node that has no transform, no children and does not move takes it on; else a new child takes
 /// the mesh and the transform, and is not the parent of anything.
-pub(super) fn place(json: &mut Value, grids: &[Option<Grid>]) {
+pub(super) fn add_transforms(json: &mut Value, grids: &[Option<QuantizationGrid>]) {
     let count = json.get("nodes").and_then(Value::as_array).map_or(0, Vec::len);
     let moving = moving(json);
     for node in 0..count {
