@@ -2,8 +2,8 @@
 
 use meshlod_fuzz::models;
 use meshlod_multires::{
-    Archive, Camera, Cut, Effort, Focus, HeightField, Implicit, Level, Model, ModelFile, Query,
-    RightExtractor, RightTriangles, Tolerance,
+    Archive, ViewCamera, Cut, UpdateLimits, Focus, HeightField, Implicit, Level, Model, ModelFile, Query,
+    RtinExtractor, Rtin, Tolerance,
 };
 
 libfuzzer_sys::fuzz_target!(init: meshlod_fuzz::plant("mlod"), |bytes: &[u8]| {
@@ -39,11 +39,11 @@ fn take_parts(archive: &Archive<Vec<u8>>) {
 fn walk(implicit: &Implicit, queries: &[Query<'_>]) {
     let mut cut = Cut::new(implicit);
     for query in queries.iter().chain(queries.iter().rev()) {
-        let change = cut.update(query, &Effort::default()).expect("it was asked before");
+        let change = cut.update(query, &UpdateLimits::default()).expect("it was asked before");
         assert!(change.done, "there is all the time");
         accept(&cut.level());
     }
-    let model = Model::of(implicit).expect("it has a certificate");
+    let model = Model::from_implicit(implicit).expect("it has a certificate");
     let mut extractor = model.extractor();
     for query in queries {
         accept(extractor.exact(query).expect("a query"));
@@ -54,9 +54,9 @@ fn walk(implicit: &Implicit, queries: &[Query<'_>]) {
 }
 
 fn walk_field(field: &HeightField) {
-    let model = RightTriangles::new(field);
+    let model = Rtin::new(field);
     let is_sound = model.certify().is_ok();
-    let mut extractor = RightExtractor::new(&model);
+    let mut extractor = RtinExtractor::new(&model);
     for query in &queries(field.bounds().diagonal()) {
         if let Ok(level) = model.level(query) {
             accept(&level);
@@ -76,7 +76,7 @@ fn accept(level: &Level) {
 fn queries(diagonal: f64) -> Vec<Query<'static>> {
     // At other scales directions have no length.
     let side = if (1e-100..1e100).contains(&diagonal) { diagonal } else { 1.0 };
-    let camera = Camera {
+    let camera = ViewCamera {
         eye: [side, 0.5 * side, 0.1 * side],
         look: [0.0; 3],
         up: [0.0, 0.0, 1.0],

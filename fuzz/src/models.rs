@@ -54,7 +54,7 @@ pub(crate) fn seeds() -> Vec<Vec<u8>> {
     });
     let fields = [fixtures::grid(4), samples::terrain(100)];
     let precisions = [HeightPrecision::Exact, HeightPrecision::Within(0.01)];
-    let fields = fields.iter().filter_map(|mesh| HeightField::of_mesh(mesh).ok());
+    let fields = fields.iter().filter_map(|mesh| HeightField::from_mesh(mesh).ok());
     let fields = fields.flat_map(|field| {
         precisions.map(|precision| plain_field(&field.to_file(precision).expect("a precision")))
     });

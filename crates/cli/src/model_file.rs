@@ -45,15 +45,15 @@ pub fn open(path: &Path, session: &Session) -> Result<ModelFile<File>, Failure> 
 }
 
 pub fn certificate_json(certificate: &Certificate) -> Value {
-    json!({ "sound": certificate.sound, "odd": certificate.odd })
+    json!({ "sound": certificate.sound, "odd": certificate.non_manifold })
 }
 
 pub fn certificate_text(certificate: &Certificate) -> String {
-    let Certificate { sound, odd } = *certificate;
+    let Certificate { sound, non_manifold } = *certificate;
     let mut text =
         format!("proved: no cut of {} update{} has a crack", count(sound), plural(sound));
-    if odd > 0 {
-        text += &format!("; {} beside what is not manifold in the input", count(odd));
+    if non_manifold > 0 {
+        text += &format!("; {} beside what is not manifold in the input", count(non_manifold));
     }
     text
 }

@@ -1,6 +1,6 @@
 //! Where to look, and how fine: words of the command line that become queries.
 
-use meshlod::multires::{Camera, Focus, Query, Tolerance};
+use meshlod::multires::{Focus, Query, Tolerance, ViewCamera};
 
 use crate::amounts::{self, Bound};
 use crate::failure::Failure;
@@ -26,7 +26,7 @@ pub enum Where {
 pub struct Question {
     pub allowed: Allowed,
     pub focus: Option<Where>,
-    pub camera: Option<Camera>,
+    pub camera: Option<ViewCamera>,
 }
 
 impl Question {
@@ -41,7 +41,7 @@ impl Question {
         };
         let tolerance = match self.allowed {
             Allowed::Length(bound) => Tolerance::Uniform(bound.length(diagonal)),
-            Allowed::Pixels(most) => Tolerance::Pixels { camera: camera()?, most },
+            Allowed::Pixels(pixels) => Tolerance::Pixels { camera: camera()?, pixels },
         };
         Ok(Query { focus, tolerance })
     }
@@ -75,7 +75,7 @@ pub fn focus(text: &str) -> Result<Where, String> {
 }
 
 /// `eye=x,y,z look=x,y,z fov=45 1920x1080`, and maybe `up=x,y,z`.
-pub fn camera(text: &str) -> Result<Camera, String> {
+pub fn camera(text: &str) -> Result<ViewCamera, String> {
     const FORM: &str = "write \"eye=x,y,z look=x,y,z fov=45 1920x1080\", with degrees from the lower \
                         edge to the upper one, and up=x,y,z if it is not y";
     let (mut eye, mut look, mut up, mut fov, mut viewport) = (None, None, None, None, None);
@@ -91,7 +91,7 @@ pub fn camera(text: &str) -> Result<Camera, String> {
     }
     match (eye, look, fov, viewport) {
         (Some(eye), Some(look), Some(fov_rad), Some(viewport)) => {
-            Ok(Camera { eye, look, up: up.unwrap_or([0.0, 1.0, 0.0]), fov_rad, viewport })
+            Ok(ViewCamera { eye, look, up: up.unwrap_or([0.0, 1.0, 0.0]), fov_rad, viewport })
         }
         _ => Err(FORM.into()),
     }

@@ -8,7 +8,7 @@ use std::error::Error;
 use cpu_time::ThreadTime;
 use meshlod_measure::{Distance, DistanceOptions, Surface, surface_distance};
 use meshlod_mesh::{Bounds, Mesh};
-use meshlod_multires::{Camera, Forest, Model, Query, Rule};
+use meshlod_multires::{Forest, Model, Query, SplitRule, ViewCamera};
 use meshlod_simplify::{Method, Options, Simplifier, Target};
 
 type Failure = Box<dyn Error + Send + Sync>;
@@ -43,7 +43,7 @@ fn main() -> Result<(), Failure> {
     let measured = start.elapsed().as_secs_f64();
     println!("{}: recorded in {recorded:.2} s, bounds in {measured:.2} s", method.name());
     let mut evened = forest.clone();
-    evened.even_out();
+    evened.smooth_errors();
     let original = Surface::new(&mesh)?;
     let straight = straight(&mesh, &options, &original)?;
     let models = [("estimates", &forest), ("evened", &evened), ("bounds", &bounded)];
@@ -148,7 +148,7 @@ fn aspects(mesh: &Mesh) -> String {
 /// What needs cost where a camera asks.
 fn by_rule(forest: &Forest, bounds: &Bounds) -> Result<(), Failure> {
     println!("camera cuts: what is wanted alone, and with what each rule needs");
-    let models = [Rule::Strict, Rule::Wings].map(|rule| Model::with_rule(forest, rule));
+    let models = [SplitRule::Strict, SplitRule::Wings].map(|rule| Model::with_rule(forest, rule));
     for pixels in [1.0, 0.5, 0.25, 0.1] {
         let query = Query::pixels(camera(bounds), pixels);
         let mut report = format!("{pixels} px:");
@@ -165,8 +165,8 @@ fn by_rule(forest: &Forest, bounds: &Bounds) -> Result<(), Failure> {
 }
 
 /// Where figures are taken from.
-fn camera(bounds: &Bounds) -> Camera {
+fn camera(bounds: &Bounds) -> ViewCamera {
     let center = bounds.center();
     let eye = [center[0], center[1], center[2] + 1.2 * bounds.diagonal()];
-    Camera { eye, look: center, up: [0.0, 1.0, 0.0], fov_rad: 0.8, viewport: [1920, 1080] }
+    ViewCamera { eye, look: center, up: [0.0, 1.0, 0.0], fov_rad: 0.8, viewport: [1920, 1080] }
 }

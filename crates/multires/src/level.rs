@@ -3,9 +3,9 @@
 use glam::{DVec3, Vec3};
 use meshlod_mesh::{Mesh, VertexId};
 
-use crate::exact::Exact;
 use crate::frame::Frame;
-use crate::place::Place;
+use crate::pack::ExactPositions;
+use crate::query::Region;
 use crate::query::{Focus, QueryError};
 
 /// The cosine between two normals below which an edge is a fold.
@@ -31,7 +31,7 @@ pub struct Level {
     /// Three vertices each, counter-clockwise seen from outside.
     pub faces: Vec<[u32; 3]>,
     /// Of the model's nodes, where the input is kept as it was.
-    pub(crate) exact: Exact,
+    pub(crate) exact: ExactPositions,
 }
 
 impl Level {
@@ -41,7 +41,7 @@ impl Level {
             nodes: Vec::new(),
             positions: Vec::new(),
             faces: Vec::new(),
-            exact: Exact::default(),
+            exact: ExactPositions::default(),
         }
     }
 
@@ -50,11 +50,11 @@ impl Level {
         self.nodes.clear();
         self.positions.clear();
         self.faces.clear();
-        self.exact = Exact::default();
+        self.exact = ExactPositions::default();
     }
 
     /// Of faces by nodes, of which there are `count`, and where each is.
-    pub(crate) fn of_nodes(
+    pub(crate) fn from_nodes(
         frame: Frame,
         count: usize,
         place: impl Fn(u32) -> [f32; 3],
@@ -72,11 +72,11 @@ impl Level {
             faces.iter_mut().flatten().for_each(|node| *node = number[*node as usize]);
         }
         let positions = nodes.iter().map(|&node| place(node)).collect();
-        Self { frame, nodes, positions, faces, exact: Exact::default() }
+        Self { frame, nodes, positions, faces, exact: ExactPositions::default() }
     }
 
     /// With the positions to the bit of those of the model's nodes that have one.
-    pub(crate) fn with_exact(self, exact: &Exact) -> Self {
+    pub(crate) fn with_exact(self, exact: &ExactPositions) -> Self {
         Self { exact: exact.clone(), ..self }
     }
 
@@ -88,11 +88,11 @@ impl Level {
     /// A focus that is none.
     pub fn within(&self, focus: &Focus) -> Result<Self, QueryError> {
         focus.validate()?;
-        let place = Place::new(focus, &self.frame);
-        let corners = |face: &&[u32; 3]| face.map(|v| self.spot(v));
-        let faces = self.faces.iter().filter(|face| place.meets_triangle(corners(face)));
+        let region = Region::new(focus, &self.frame);
+        let corners = |face: &&[u32; 3]| face.map(|v| self.exact_stored(v));
+        let faces = self.faces.iter().filter(|face| region.meets_triangle(corners(face)));
         let (count, place) = (self.positions.len(), |v: u32| self.positions[v as usize]);
-        let level = Self::of_nodes(self.frame, count, place, faces.copied().collect());
+        let level = Self::from_nodes(self.frame, count, place, faces.copied().collect());
         let mut level = level.with_exact(&self.exact);
         // They were told by their places here.
         level.nodes.iter_mut().for_each(|node| *node = self.nodes[*node as usize]);
@@ -100,9 +100,9 @@ impl Level {
     }
 
     /// Where a vertex is, in stored units: to the bit if that is known.
-    fn spot(&self, v: u32) -> DVec3 {
+    fn exact_stored(&self, v: u32) -> DVec3 {
         let rounded = || Vec3::from(self.positions[v as usize]).as_dvec3();
-        let exact = self.exact.of(self.nodes[v as usize]);
+        let exact = self.exact.get(self.nodes[v as usize]);
         exact.map_or_else(rounded, |exact| self.frame.point(exact.into()))
     }
 
@@ -110,7 +110,7 @@ impl Level {
     /// them.
     pub fn mesh(&self) -> Mesh {
         let position = |(&node, &rounded): (&u32, &[f32; 3])| {
-            self.exact.of(node).unwrap_or_else(|| self.frame.model(rounded))
+            self.exact.get(node).unwrap_or_else(|| self.frame.model(rounded))
         };
         Mesh::new(
             self.nodes.iter().zip(&self.positions).map(position).collect(),
@@ -124,7 +124,7 @@ impl Level {
     /// Cost: n log n.
     pub fn folds(&self) -> usize {
         let normal = |face: &[u32; 3]| {
-            let [a, b, c] = face.map(|v| self.spot(v));
+            let [a, b, c] = face.map(|v| self.exact_stored(v));
             (b - a).cross(c - a).normalize_or_zero()
         };
         let normals: Vec<_> = self.faces.iter().map(normal).collect();
@@ -168,7 +168,7 @@ mod tests {
             let corners = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.5, 1.0, 0.0], [0.5, 0.9, height]];
             let places: Vec<_> =
                 corners.iter().map(|&c| frame.store(DVec3::from(c)).to_array()).collect();
-            Level::of_nodes(frame, 4, |node| places[node as usize], vec![[0, 1, 2], [0, 3, 1]])
+            Level::from_nodes(frame, 4, |node| places[node as usize], vec![[0, 1, 2], [0, 3, 1]])
         };
         assert_eq!((level(0.1).folds(), level(2.0).folds()), (1, 0));
     }

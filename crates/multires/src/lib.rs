@@ -21,7 +21,7 @@
 //!
 //! ```
 //! use meshlod_samples as samples;
-//! use meshlod_multires::{Camera, Effort, Forest, Model, Query};
+//! use meshlod_multires::{Forest, Model, Query, UpdateLimits, ViewCamera};
 //! use meshlod_simplify::Options;
 //!
 //! let mesh = samples::torus(5000);
@@ -30,7 +30,7 @@
 //! assert_eq!(model.implicit().certify()?.sound, forest.update_count());
 //!
 //! // Near the camera fine, far from it coarse.
-//! let near = Camera {
+//! let near = ViewCamera {
 //!     eye: [2.0, 0.0, 1.0],
 //!     look: [0.0; 3],
 //!     up: [0.0, 0.0, 1.0],
@@ -38,12 +38,12 @@
 //!     viewport: [1920, 1080],
 //! };
 //! let mut cut = model.cut();
-//! cut.update(&Query::pixels(near, 1.0), &Effort::default())?;
+//! cut.update(&Query::pixels(near, 1.0), &UpdateLimits::default())?;
 //! let faces = cut.face_count();
 //!
 //! // A step back: what changes is told triangle by triangle.
-//! let far = Camera { eye: [4.0, 0.0, 2.0], ..near };
-//! cut.update(&Query::pixels(far, 1.0), &Effort::default())?;
+//! let far = ViewCamera { eye: [4.0, 0.0, 2.0], ..near };
+//! cut.update(&Query::pixels(far, 1.0), &UpdateLimits::default())?;
 //! assert!(cut.face_count() < faces && cut.patches().count() > 0);
 //!
 //! // The same mesh at once, by the face list.
@@ -54,8 +54,8 @@
 //!
 //! [`Archive`] is all of it as a `.mlod` file, of which a query reads what it needs.
 //!
-//! A mesh that is a height field on a grid needs no record: [`RightTriangles`] has its levels by
-//! arithmetic, in ten bytes a vertex, with errors that are bounds. docs/notes/right-triangles.md tells how.
+//! A mesh that is a height field on a grid needs no record: [`Rtin`] has its levels by
+//! arithmetic, in ten bytes a vertex, with errors that are bounds. docs/notes/rtin.md tells how.
 //!
 //! Positions are kept as `f32` about the middle of the mesh, those of the input to the bit where that is
 //! asked for ([`Forest::lossless`]); errors are the simplification's estimates,
@@ -64,10 +64,7 @@
 #![forbid(unsafe_code)]
 
 mod bounds;
-mod by_level;
 mod cut;
-mod even;
-mod exact;
 mod explicit;
 mod file;
 mod forest;
@@ -75,29 +72,24 @@ mod frame;
 mod implicit;
 mod level;
 mod model;
-mod need;
-mod place;
+mod pack;
 mod query;
-mod record;
-mod right;
-mod short;
-mod zigzag;
+mod rtin;
 
 #[cfg(test)]
 mod tests;
 
 pub use bounds::ErrorKind;
-pub use cut::{Certificate, Change, Cut, Effort, Flaw, Located, Patch, Unsound};
+pub use cut::{Certificate, CertifyError, Cut, CutChange, Flaw, Located, Patch, UpdateLimits};
 pub use explicit::{Explicit, ExplicitCut};
 pub use file::{Archive, Extract, FileError, ModelFile, Source, Storage};
-pub use forest::{BuildError, Forest};
+pub use forest::{BuildError, Forest, Recorder};
 pub use frame::Frame;
-pub use implicit::{Extractor, Implicit, Rule};
+pub use implicit::{Extractor, Implicit, SplitRule};
 pub use level::Level;
 pub use model::{Model, ModelBytes};
-pub use query::{Camera, Focus, Query, QueryError, Tolerance};
-pub use record::Recorder;
-pub use right::{
-    FieldBytesError, Fit, HeightField, HeightFieldError, HeightPrecision, RightExtractor,
-    RightFlaw, RightTriangles, RightUnsound,
+pub use query::{Focus, Query, QueryError, Tolerance, ViewCamera};
+pub use rtin::{
+    FieldBytesError, Fit, HeightField, HeightFieldError, HeightPrecision, Rtin, RtinCertifyError,
+    RtinExtractor, RtinFlaw,
 };

@@ -2,9 +2,11 @@
 
 use std::sync::OnceLock;
 
-use crate::cut::{Cut, Unsound};
+use crate::cut::{CertifyError, Cut};
 use crate::forest::{BuildError, Forest};
-use crate::implicit::{Extractor, Faces, Implicit, Links, Order, Rule, Saturated, Weight};
+use crate::implicit::{
+    Dependencies, Extractor, Faces, Implicit, Order, SaturatedBalls, SplitRule, Weight,
+};
 use crate::query::QueryError;
 
 /// An [`Implicit`] model with what makes static extraction fast: the finest faces, and what updates
@@ -16,9 +18,9 @@ use crate::query::QueryError;
 pub struct Model {
     implicit: Implicit,
     faces: Faces,
-    links: Links,
+    dependencies: Dependencies,
     /// Balls that nest, by the range of tolerances for which they do.
-    saturated: Vec<Saturated>,
+    saturated: Vec<SaturatedBalls>,
     /// How many faces each update brings, once somebody asks for the best of so many.
     weights: OnceLock<Vec<Weight>>,
 }
@@ -31,7 +33,7 @@ pub struct ModelBytes {
     /// The face list.
     pub faces: usize,
     /// What updates need.
-    pub links: usize,
+    pub dependencies: usize,
     /// The balls of all ranges that were asked for.
     pub saturated: usize,
 }
@@ -43,7 +45,7 @@ impl Model {
     /// # Errors
     /// More than 2³¹ nodes: half as many vertices.
     pub fn new(forest: &Forest) -> Result<Self, BuildError> {
-        Self::with_rule(forest, Rule::default())
+        Self::with_rule(forest, SplitRule::default())
     }
 
     /// All levels of a model that was read from a file.
@@ -51,25 +53,25 @@ impl Model {
     /// Cost: linear; every update is made once.
     /// # Errors
     /// One that has no certificate.
-    pub fn of(implicit: &Implicit) -> Result<Self, Unsound> {
+    pub fn from_implicit(implicit: &Implicit) -> Result<Self, CertifyError> {
         implicit.certify()?;
-        Ok(Self::proved(implicit))
+        Ok(Self::from_certified(implicit))
     }
 
     /// The same of one that has a certificate.
-    pub(crate) fn proved(implicit: &Implicit) -> Self {
-        Self::new(&Forest::of(implicit)).expect("its nodes were numbered before")
+    pub(crate) fn from_certified(implicit: &Implicit) -> Self {
+        Self::new(&Forest::from_implicit(implicit)).expect("its nodes were numbered before")
     }
 
     /// The same, whose [`Extractor`] obeys another rule. A [`Cut`] obeys the strict one in any case.
     /// # Errors
     /// As [`Model::new`].
-    pub fn with_rule(forest: &Forest, rule: Rule) -> Result<Self, BuildError> {
+    pub fn with_rule(forest: &Forest, rule: SplitRule) -> Result<Self, BuildError> {
         let order = Order::new(forest);
         Ok(Self {
             implicit: Implicit::in_order(forest, &order)?,
             faces: Faces::in_order(forest, &order),
-            links: Links::in_order(forest, &order, rule),
+            dependencies: Dependencies::in_order(forest, &order, rule),
             saturated: Vec::new(),
             weights: OnceLock::new(),
         })
@@ -83,18 +85,15 @@ impl Model {
     /// # Errors
     /// A range that is none.
     pub fn saturate(&mut self, slopes: [f64; 2]) -> Result<(), QueryError> {
-        self.saturated.push(Saturated::new(&self.implicit, &self.links, slopes)?);
+        self.saturated.push(SaturatedBalls::new(&self.implicit, &self.dependencies, slopes)?);
         Ok(())
     }
 
     /// Makes the implicit model [narrow](Implicit::narrowed), if it can be; says whether it is.
-    pub fn narrow(&mut self) -> bool {
-        let narrow = self.implicit.narrowed();
-        let can_be = narrow.is_some();
-        if let Some(narrow) = narrow {
-            self.implicit = narrow;
-        }
-        can_be
+    pub fn compact(&mut self) -> bool {
+        let Some(compact) = self.implicit.compacted() else { return false };
+        self.implicit = compact;
+        true
     }
 
     /// A cut that follows its queries, from the base mesh.
@@ -117,8 +116,8 @@ impl Model {
         ModelBytes {
             implicit: self.implicit.bytes(),
             faces: self.faces.bytes(),
-            links: self.links.bytes(),
-            saturated: self.saturated.iter().map(Saturated::bytes).sum(),
+            dependencies: self.dependencies.bytes(),
+            saturated: self.saturated.iter().map(SaturatedBalls::bytes).sum(),
         }
     }
 
@@ -126,14 +125,14 @@ impl Model {
         &self.faces
     }
 
-    pub(crate) fn links(&self) -> &Links {
-        &self.links
+    pub(crate) fn dependencies(&self) -> &Dependencies {
+        &self.dependencies
     }
 
     /// The balls that were nested for such a tolerance a unit of distance, and well within their
     /// range: they are tightest in its middle.
-    pub(crate) fn saturated_at(&self, slope: f64) -> Option<&Saturated> {
-        let inside = |balls: &&Saturated| balls.inside(slope);
+    pub(crate) fn saturated_at(&self, slope: f64) -> Option<&SaturatedBalls> {
+        let inside = |balls: &&SaturatedBalls| balls.inside(slope);
         let best = self.saturated.iter().max_by(|a, b| inside(a).total_cmp(&inside(b)));
         best.filter(|balls| balls.inside(slope) >= 1.0 - 1e-9)
     }

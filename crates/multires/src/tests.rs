@@ -1,7 +1,7 @@
 //! What every encoding must hold, on random walks through queries.
 
 mod certificates;
+mod locate;
 mod long;
 mod motions;
-mod near;
 pub(crate) mod walks;

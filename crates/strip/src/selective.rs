@@ -54,7 +54,7 @@ impl CutStrips {
     pub fn update(&mut self, cut: &Cut<'_>) -> usize {
         let Self { leaves, live } = self;
         live.update(
-            cut.patches().map(|patch| (patch.place, patch.into.map(|nodes| shown(leaves, nodes)))),
+            cut.patches().map(|patch| (patch.slot, patch.new.map(|nodes| shown(leaves, nodes)))),
         )
     }
 
@@ -92,7 +92,7 @@ fn leaves(mt: &Implicit) -> Result<Vec<VertexId>, PointsMove> {
 mod tests {
     use meshlod_fixtures::{grid, moebius};
     use meshlod_mesh::Mesh;
-    use meshlod_multires::{Effort as Allowed, Focus, Forest, Model, Query, Tolerance};
+    use meshlod_multires::{Focus, Forest, Model, Query, Tolerance, UpdateLimits};
     use meshlod_samples as samples;
     use meshlod_simplify::Method;
 
@@ -117,7 +117,7 @@ mod tests {
             });
             let focus = Focus::Sphere { center, radius: 0.25 * bounds.diagonal() };
             let query = Query { focus, tolerance: Tolerance::Uniform(0.0) };
-            cut.update(&query, &Allowed::default()).unwrap();
+            cut.update(&query, &UpdateLimits::default()).unwrap();
             assert!(strips.update(&cut) <= cut.patches().count());
             let faces: Vec<_> =
                 cut.triangles().map(|(_, nodes)| nodes.map(|node| strips.vertex(node))).collect();

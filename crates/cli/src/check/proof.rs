@@ -3,7 +3,7 @@
 use std::fs::File;
 use std::path::Path;
 
-use meshlod::multires::{Archive, HeightField, ModelFile, RightTriangles};
+use meshlod::multires::{Archive, HeightField, ModelFile, Rtin};
 use serde_json::json;
 
 use crate::answer::Answer;
@@ -58,7 +58,7 @@ fn prove_contractions(
 
 fn prove_field(path: &Path, field: &HeightField, session: &Session) -> Result<Answer, Failure> {
     session.progress.stage("proving");
-    let model = RightTriangles::new(field);
+    let model = Rtin::new(field);
     let sound = model.certify().map_err(|error| Failure::at(path, error))?;
     let [columns, rows] = field.size();
     let json = json!({

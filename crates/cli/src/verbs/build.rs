@@ -144,7 +144,7 @@ impl Build {
         match self.bounds {
             true => forest.measure_bounds(),
             // The greatest errors alone would keep cuts from being good on the whole.
-            false => forest.even_out(),
+            false => forest.smooth_errors(),
         }
         session.progress.stage("proving and packing");
         let rounding = (!self.lossless).then(|| self.rounding(mesh));
@@ -169,7 +169,7 @@ impl Build {
 
     fn right_triangles(&self, mesh: &Mesh) -> Result<Built, Failure> {
         let failed = |error: &dyn std::fmt::Display| Failure::at(&self.input, error);
-        let field = HeightField::of_mesh(mesh).map_err(|error| failed(&error))?;
+        let field = HeightField::from_mesh(mesh).map_err(|error| failed(&error))?;
         let precision = match self.rounding(mesh) {
             0.0 => HeightPrecision::Exact,
             rounding => HeightPrecision::Within(rounding),

@@ -7,8 +7,7 @@ use std::time::{Duration, Instant};
 use clap::Args;
 use meshlod::Scene;
 use meshlod::multires::{
-    Archive, Camera, FileError, HeightField, Level, ModelFile, Query, RightExtractor,
-    RightTriangles,
+    Archive, FileError, HeightField, Level, ModelFile, Query, Rtin, RtinExtractor, ViewCamera,
 };
 use serde_json::{Value, json};
 
@@ -35,7 +34,7 @@ pub struct Extract {
     /// The camera that pixels are of: "eye=x,y,z look=x,y,z fov=45 1920x1080", and up=x,y,z if it is
     /// not y
     #[arg(long, value_name = "CAMERA", value_parser = question::camera)]
-    camera: Option<Camera>,
+    camera: Option<ViewCamera>,
     /// Where it has to be so good, coarse elsewhere: point=x,y,z, segment=x,y,z,x,y,z,
     /// box=x,y,z,x,y,z, sphere=x,y,z,r, or frustum: what the camera sees
     #[arg(long, value_name = "FOCUS", value_parser = question::focus, allow_hyphen_values = true)]
@@ -127,10 +126,10 @@ impl Extract {
 
     fn take_field(&self, field: &HeightField) -> Result<Taken, Failure> {
         let query = self.query(field.bounds().diagonal())?;
-        let model = RightTriangles::new(field);
+        let model = Rtin::new(field);
         let level = match self.goal.faces {
             None => model.level(&query),
-            Some(faces) => RightExtractor::new(&model).at_most(faces, &query).cloned(),
+            Some(faces) => RtinExtractor::new(&model).at_most(faces, &query).cloned(),
         };
         let level = level.map_err(Failure::usage)?;
         let bytes = std::fs::metadata(&self.input).map_or(0, |data| data.len());

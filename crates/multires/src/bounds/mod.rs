@@ -75,7 +75,7 @@ impl Forest {
     /// An update's error, which all around will ask of theirs.
     fn set_error(&mut self, u: usize, error: Length16, asked: &mut [Length16]) {
         self.updates[u].error = error;
-        if self.updates[u].glued {
+        if self.updates[u].fused_with_child {
             // One update of two contractions is needed as a whole.
             self.updates[u - 1].error = error;
         }

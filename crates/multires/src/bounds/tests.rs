@@ -8,7 +8,7 @@ use meshlod_simplify::Method;
 
 use crate::forest::NONE;
 use crate::tests::walks::{Dice, each, forest, query, soup};
-use crate::{Cut, Effort, ErrorKind, Forest, Implicit, Level, Model};
+use crate::{Cut, ErrorKind, Forest, Implicit, Level, Model, UpdateLimits};
 
 /// How far rounding to `f32` takes a vertex of a mesh of diagonal 1, twice.
 const ROUNDED: f64 = 2e-7;
@@ -65,7 +65,7 @@ fn every_triangle_is_within_its_bound_and_the_mesh_within_the_greatest() {
         let mut cut = Cut::new(&mt);
         for _ in 0..5 {
             let query = query(&mut dice, mesh);
-            cut.update(&query, &Effort::default()).unwrap();
+            cut.update(&query, &UpdateLimits::default()).unwrap();
             let excess = excess(mesh, &mt, &cut.level(), 1.0);
             assert!(excess < ROUNDED, "{what} {query:?}: {excess:e}");
         }
@@ -79,7 +79,7 @@ fn every_triangle_is_within_its_bound_and_the_mesh_within_the_greatest() {
             let mt = Implicit::new(&bounded(forest(&mesh, method))).unwrap();
             let mut cut = Cut::new(&mt);
             for _ in 0..5 {
-                cut.update(&query(&mut dice, &mesh), &Effort::default()).unwrap();
+                cut.update(&query(&mut dice, &mesh), &UpdateLimits::default()).unwrap();
                 let excess = excess(&mesh, &mt, &cut.level(), 1.0);
                 assert!(excess < ROUNDED, "{} {excess:e}", method.name());
             }

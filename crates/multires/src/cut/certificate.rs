@@ -7,9 +7,9 @@
 use thiserror::Error;
 
 use super::front::Front;
-use super::star::Spoke;
-use crate::by_level::by_level;
-use crate::forest::MOST_LEVELS;
+use super::triangles::Spoke;
+use crate::forest::MAX_LEVELS;
+use crate::forest::by_level;
 use crate::implicit::{Implicit, Wing, has_three_corners};
 
 /// What was proved of every cut of a model, whatever is asked of it.
@@ -21,12 +21,12 @@ pub struct Certificate {
     /// Updates next to what is not manifold, or not oriented, in the input already. Their levels were
     /// proved, so they are the same in every cut; and that on both sides, the children taken for one,
     /// the same edges have an odd number of faces. Nothing is said of how manifold they are.
-    pub odd: usize,
+    pub non_manifold: usize,
 }
 
 /// Why a model is not sound.
 #[derive(Clone, Copy, Debug, Error, PartialEq, Eq)]
-pub enum Unsound {
+pub enum CertifyError {
     /// Some cut has a flaw.
     #[error("update {update} is not sound: {why}")]
     Update {
@@ -81,19 +81,19 @@ impl Implicit {
     /// Cost: linear.
     /// # Errors
     /// The first update of which that cannot be said.
-    pub fn certify(&self) -> Result<Certificate, Unsound> {
+    pub fn certify(&self) -> Result<Certificate, CertifyError> {
         let mut proof = Proof::new(self);
         let mut certificate = Certificate::default();
-        for update in by_level(self.update_count(), |update| MOST_LEVELS - self.level(update)) {
+        for update in by_level(self.update_count(), |update| MAX_LEVELS - self.level(update)) {
             match proof.check(update) {
                 Ok(true) => certificate.sound += 1,
-                Ok(false) => certificate.odd += 1,
-                Err(why) => return Err(Unsound::Update { update, why }),
+                Ok(false) => certificate.non_manifold += 1,
+                Err(why) => return Err(CertifyError::Update { update, why }),
             }
         }
         let (found, expected) = (proof.front.triangles.len(), self.full_faces());
         if found != expected {
-            return Err(Unsound::FullFaces { found, expected });
+            return Err(CertifyError::FullFaces { found, expected });
         }
         Ok(certificate)
     }
@@ -132,12 +132,12 @@ impl<'m> Proof<'m> {
         }
         let has_both = |t: &&[u32; 3]| children.iter().all(|child| t.contains(child));
         let between = fine.triangles.iter().filter(has_both).count();
-        let brought = brought(mt, update);
-        if fine.triangles.len() != coarse.triangles.len() + brought || between != brought {
+        let created = created(mt, update);
+        if fine.triangles.len() != coarse.triangles.len() + created || between != created {
             return Err(Flaw::NoWing);
         }
         let up = |end: u32| if children.contains(&end) { node } else { end };
-        if mt.odd(update).is_some() || !coarse.find_open() {
+        if mt.non_fan_split(update).is_some() || !coarse.find_open() {
             coarse.find_odd(up);
             fine.find_odd(up);
             return if coarse.edges == fine.edges { Ok(false) } else { Err(Flaw::Boundary) };
@@ -167,7 +167,7 @@ impl<'m> Proof<'m> {
         let Self { front, coarse, fine, around, first } = self;
         let mt = front.mt;
         let (node, level) = (mt.parent(update), mt.level(update));
-        if !front.is_there(node) {
+        if !front.is_active(node) {
             return Err(Flaw::VertexLater);
         }
         first.clear();
@@ -188,13 +188,13 @@ impl<'m> Proof<'m> {
         };
         around.extend(star.iter().filter(is_first).map(Spoke::triangle));
         coarse.take(front, around.iter().copied());
-        let brought = front.triangles.places() as u32;
+        let created = front.triangles.slots() as u32;
         front.make(update);
-        let brought = brought..front.triangles.places() as u32;
-        fine.take(front, around.iter().copied().chain(brought));
-        if mt.is_glued(update) {
+        let created = created..front.triangles.slots() as u32;
+        fine.take(front, around.iter().copied().chain(created));
+        if mt.is_fused_with_child(update) {
             let is_next = mt.update_of(mt.children(update)[0]) == Some(update + 1);
-            let are_two = !mt.is_inner(update) && !mt.is_glued(update + 1);
+            let are_two = !mt.is_fused_with_parent(update) && !mt.is_fused_with_child(update + 1);
             if !is_next || !are_two || !front.may_split(update + 1, first) {
                 return Err(Flaw::Torn);
             }
@@ -204,9 +204,9 @@ impl<'m> Proof<'m> {
 }
 
 /// How many faces an update brings.
-fn brought(mt: &Implicit, update: u32) -> usize {
+fn created(mt: &Implicit, update: u32) -> usize {
     let wings = || mt.wings(update).iter().filter(|&&wing| wing != Wing::None).count();
-    mt.odd(update).map_or_else(wings, |odd| odd.brought.len())
+    mt.non_fan_split(update).map_or_else(wings, |non_fan| non_fan.created_faces.len())
 }
 
 /// One side of an update.

@@ -1,9 +1,9 @@
 //! The surface of a cut: splits and merges, each with the rule that it must obey.
 
-use super::star::{MOST_SEARCHED, NEXT, Spoke, Triangles};
-use crate::forest::{MOST_LEVELS, NONE};
+use super::triangles::{MAX_SEARCHED, NEXT, Spoke, Triangles};
+use crate::forest::MAX_RANKED;
+use crate::forest::{MAX_LEVELS, NONE};
 use crate::implicit::{Implicit, Wing};
-use crate::record::MOST_RANKED;
 
 /// The corner of a vertex that is not there yet.
 const ABSENT: u32 = NONE - 1;
@@ -37,11 +37,11 @@ struct Vertex {
     above: u16,
 }
 
-const SCHEDULED: u16 = MOST_LEVELS;
+const SCHEDULED: u16 = MAX_LEVELS;
 
 /// How a vertex stands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Standing {
+pub(super) enum VertexState {
     /// Not there: above it some vertex has not been split.
     Absent,
     /// There.
@@ -77,11 +77,11 @@ impl<'m> Front<'m> {
     }
 
     #[inline]
-    pub(super) fn standing(&self, node: u32) -> Standing {
+    pub(super) fn state(&self, node: u32) -> VertexState {
         match self.vertices[node as usize].corner {
-            ABSENT => Standing::Absent,
-            SPLIT => Standing::Split,
-            _ => Standing::Active,
+            ABSENT => VertexState::Absent,
+            SPLIT => VertexState::Split,
+            _ => VertexState::Active,
         }
     }
 
@@ -135,19 +135,19 @@ impl<'m> Front<'m> {
         self.active -= 1;
         self.enter(first, level);
         self.enter(second, level);
-        let (run, brought) = self.part(update);
+        let (run, created) = self.part(update);
         for i in 0..self.star.len() {
             let child = if i < run { second } else { first };
             let Vertex { corner, .. } = &mut self.vertices[child as usize];
             self.triangles.give(self.star[i].corner, child, corner);
         }
-        brought.into_iter().flatten().for_each(|face| self.add(face));
-        if brought == [None; 2]
-            && let Some(odd) = self.mt.odd(update)
+        created.into_iter().flatten().for_each(|face| self.add(face));
+        if created == [None; 2]
+            && let Some(non_fan) = self.mt.non_fan_split(update)
         {
-            for &face in &odd.brought {
+            for &face in &non_fan.created_faces {
                 // Of a file that nobody has proved it may be anything.
-                if face.iter().all(|&node| self.is_there(node)) {
+                if face.iter().all(|&node| self.is_active(node)) {
                     self.add(face);
                 }
             }
@@ -161,10 +161,10 @@ impl<'m> Front<'m> {
         let mut run = 0;
         let wings = mt.wings(update);
         if wings == [Wing::None; 2]
-            && let Some(odd) = mt.odd(update)
+            && let Some(non_fan) = mt.non_fan_split(update)
         {
             for i in 0..star.len() {
-                if odd.second.contains(&[star[i].a, star[i].b]) {
+                if non_fan.second.contains(&[star[i].a, star[i].b]) {
                     star.swap(run, i);
                     run += 1;
                 }
@@ -184,19 +184,19 @@ impl<'m> Front<'m> {
             run += 1;
         }
         let [first, second] = mt.children(update);
-        let brought = [start.map(|w| [first, w, second]), end.map(|w| [second, w, first])];
-        (run, brought)
+        let created = [start.map(|w| [first, w, second]), end.map(|w| [second, w, first])];
+        (run, created)
     }
 
     /// Undoes a split if nothing depends on it: all around is as it was recorded; false else.
     ///
     /// An update that is glued goes back whole.
     pub(super) fn merge(&mut self, update: u32) -> bool {
-        let glued = self.mt.is_glued(update);
+        let fused_with_child = self.mt.is_fused_with_child(update);
         let [first, second] = self.mt.children(update);
-        let inner = if glued { self.mt.children(update + 1) } else { [first; 2] };
+        let inner = if fused_with_child { self.mt.children(update + 1) } else { [first; 2] };
         let parts = [second, inner[0], inner[1]];
-        if parts.iter().any(|&child| self.standing(child) != Standing::Active) {
+        if parts.iter().any(|&child| self.state(child) != VertexState::Active) {
             return false;
         }
         let level = self.mt.level(update);
@@ -206,10 +206,10 @@ impl<'m> Front<'m> {
             let mut around = self.triangles.around(self.vertices[child as usize].corner);
             around.any(|spoke| is_needed(spoke.a) || is_needed(spoke.b))
         };
-        if parts[..if glued { 3 } else { 2 }].iter().any(is_held) {
+        if parts[..if fused_with_child { 3 } else { 2 }].iter().any(is_held) {
             return false;
         }
-        if glued {
+        if fused_with_child {
             self.join(update + 1);
         }
         self.join(update);
@@ -220,7 +220,7 @@ impl<'m> Front<'m> {
     fn join(&mut self, update: u32) {
         let node = self.mt.parent(update);
         let [first, second] = self.mt.children(update);
-        let above = self.mt.family(node).map_or(u16::MAX, |up| self.mt.level(up));
+        let above = self.mt.creator(node).map_or(u16::MAX, |up| self.mt.level(up));
         self.star.clear();
         for child in [first, second] {
             self.triangles.gather(self.vertices[child as usize].corner, &mut self.star);
@@ -250,7 +250,7 @@ impl<'m> Front<'m> {
     fn remove(&mut self, t: u32, wing: u32, joined: [u32; 3]) {
         let Self { triangles, vertices, .. } = self;
         let list = &mut vertices[wing as usize].corner;
-        if triangles.unlink(t, list, MOST_SEARCHED) {
+        if triangles.unlink(t, list, MAX_SEARCHED) {
             triangles.remove(t);
             return;
         }
@@ -285,8 +285,8 @@ impl<'m> Front<'m> {
     }
 
     /// Whether a vertex is there.
-    pub(super) fn is_there(&self, node: u32) -> bool {
-        self.standing(node) == Standing::Active
+    pub(super) fn is_active(&self, node: u32) -> bool {
+        self.state(node) == VertexState::Active
     }
 
     /// Whether a vertex, which must be there, is a root or was made by an update of a higher level.
@@ -331,7 +331,7 @@ impl<'m> Front<'m> {
 pub(super) fn find(star: &[Spoke], wings: [Wing; 2]) -> [Option<u32>; 2] {
     let ranks = wings.map(|wing| if let Wing::Rank(rank) = wing { rank.into() } else { NONE });
     let mut found = [None; 2];
-    if star.len() > MOST_RANKED {
+    if star.len() > MAX_RANKED {
         return found;
     }
     // Counting all is quicker than sorting these few, or than stopping early.

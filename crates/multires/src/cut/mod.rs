@@ -1,17 +1,17 @@
 //! A cut that follows its query: refined and coarsened where the query has moved, and nowhere else.
 
 mod certificate;
-mod change;
+mod each_triangle;
 mod front;
-mod look;
-mod near;
+mod inspect;
+mod locate;
+mod refine;
 mod schedule;
-mod star;
+mod to_forest;
 mod triangles;
-mod unpack;
 
-pub use certificate::{Certificate, Flaw, Unsound};
-pub use near::Located;
+pub use certificate::{Certificate, CertifyError, Flaw};
+pub use locate::Located;
 
 use std::collections::VecDeque;
 use std::time::{Duration, Instant};
@@ -20,7 +20,7 @@ use self::front::Front;
 use self::schedule::{Schedule, Span};
 use crate::implicit::Implicit;
 use crate::level::Level;
-use crate::need::{Asked, Ball, Need};
+use crate::query::{Ball, Criterion, QueryKey};
 use crate::query::{Query, QueryError};
 
 /// A mesh out of an [`Implicit`] MT, which the next query changes.
@@ -31,22 +31,22 @@ pub struct Cut<'m> {
     front: Front<'m>,
     schedule: Schedule,
     /// What was asked last, where it can be told whether it is asked again.
-    asked: Option<Asked>,
+    last_key: Option<QueryKey>,
     /// Nodes whose updates, and all below, are yet to be looked at.
-    unseen: VecDeque<u32>,
+    uninspected: VecDeque<u32>,
     /// Updates that are wanted.
-    fresh: Vec<u32>,
+    to_split: Vec<u32>,
     /// Updates that may be taken back.
-    loose: Vec<u32>,
+    to_merge: Vec<u32>,
     hysteresis: Option<f64>,
 }
 
 /// The clock is read after so many looks, of some dozen nanoseconds each.
-const LOOKS_AT_ONCE: usize = 256;
+const INSPECTIONS_PER_CLOCK: usize = 256;
 
 /// How much a [`Cut`] may do at once.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Effort {
+pub struct UpdateLimits {
     /// At most so many splits and merges; `None`: as many as it takes.
     pub changes: Option<usize>,
     /// Nothing is begun after so long, and nothing is looked at after half of that. A question of
@@ -56,13 +56,13 @@ pub struct Effort {
 
 /// What a query did to a [`Cut`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Change {
+pub struct CutChange {
     /// Vertices that were split.
     pub splits: usize,
     /// Vertices that were merged again.
     pub merges: usize,
     /// Updates that were looked at.
-    pub looks: usize,
+    pub inspected: usize,
     /// Whether the cut answers the query now; else there was no time.
     pub done: bool,
 }
@@ -71,11 +71,11 @@ pub struct Change {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Patch {
     /// The place.
-    pub place: u32,
+    pub slot: u32,
     /// The triangle that was there, by its nodes.
-    pub out: Option<[u32; 3]>,
+    pub old: Option<[u32; 3]>,
     /// The triangle that is there now.
-    pub into: Option<[u32; 3]>,
+    pub new: Option<[u32; 3]>,
 }
 
 impl<'m> Cut<'m> {
@@ -84,10 +84,10 @@ impl<'m> Cut<'m> {
         let mut this = Self {
             front: Front::new(mt),
             schedule: Schedule::default(),
-            asked: None,
-            unseen: VecDeque::new(),
-            fresh: Vec::new(),
-            loose: Vec::new(),
+            last_key: None,
+            uninspected: VecDeque::new(),
+            to_split: Vec::new(),
+            to_merge: Vec::new(),
             hysteresis: None,
         };
         this.front.triangles.mark();
@@ -97,7 +97,7 @@ impl<'m> Cut<'m> {
     /// The answer to a query, from the base.
     pub fn at(mt: &'m Implicit, query: &Query<'_>) -> Result<Self, QueryError> {
         let mut cut = Self::new(mt);
-        cut.update(query, &Effort::default())?;
+        cut.update(query, &UpdateLimits::default())?;
         Ok(cut)
     }
 
@@ -112,7 +112,7 @@ impl<'m> Cut<'m> {
         }
         self.hysteresis = part;
         self.schedule.forget();
-        self.asked = None;
+        self.last_key = None;
         Ok(())
     }
 
@@ -125,24 +125,28 @@ impl<'m> Cut<'m> {
     /// where the query is the last one; else of a look at every vertex besides.
     /// # Errors
     /// A query that is none; the cut is as it was.
-    pub fn update(&mut self, query: &Query<'_>, effort: &Effort) -> Result<Change, QueryError> {
-        let needs = Needed::new(query, self.front.mt, self.hysteresis)?;
+    pub fn update(
+        &mut self,
+        query: &Query<'_>,
+        effort: &UpdateLimits,
+    ) -> Result<CutChange, QueryError> {
+        let criteria = Criteria::new(query, self.front.mt, self.hysteresis)?;
         self.front.triangles.mark();
-        let mut work = Work::new(effort);
-        let asked = needs.least.asked();
-        let is_same = asked.is_some() && asked == self.asked;
-        self.asked = asked;
-        if self.schedule.follow(needs.least.eye()) || is_same {
-            self.fresh.retain(|&update| needs.least.wants(&self.front.mt.ball(update)));
+        let mut meter = Meter::new(effort);
+        let last_key = criteria.refine.key();
+        let is_same = last_key.is_some() && last_key == self.last_key;
+        self.last_key = last_key;
+        if self.schedule.follow(criteria.refine.viewpoint()) || is_same {
+            self.to_split.retain(|&update| criteria.refine.refines(&self.front.mt.ball(update)));
         } else {
-            self.start_over();
+            self.restart();
         }
-        self.look_around(&needs, &mut work);
-        self.refine(&needs, &mut work);
-        self.coarsen(&needs, &mut work);
-        let waiting = [self.fresh.len(), self.loose.len(), self.unseen.len()];
-        work.change.done = waiting == [0; 3] && self.schedule.due.is_empty();
-        Ok(work.change)
+        self.inspect_pending(&criteria, &mut meter);
+        self.refine(&criteria, &mut meter);
+        self.coarsen(&criteria, &mut meter);
+        let waiting = [self.to_split.len(), self.to_merge.len(), self.uninspected.len()];
+        meter.change.done = waiting == [0; 3] && self.schedule.due.is_empty();
+        Ok(meter.change)
     }
 
     /// How many faces there are.
@@ -156,8 +160,8 @@ impl<'m> Cut<'m> {
     }
 
     /// How long a list of triangles by [`Patch::place`] has to be.
-    pub fn places(&self) -> usize {
-        self.front.triangles.places()
+    pub fn slots(&self) -> usize {
+        self.front.triangles.slots()
     }
 
     /// The triangles by place and nodes.
@@ -167,41 +171,43 @@ impl<'m> Cut<'m> {
 
     /// What the last update changed, in no order.
     pub fn patches(&self) -> impl Iterator<Item = Patch> + '_ {
-        self.front.triangles.changes().map(|(place, out, into)| Patch { place, out, into })
+        self.front.triangles.changes().map(|(slot, old, new)| Patch { slot, old, new })
     }
 
     /// The mesh.
     pub fn level(&self) -> Level {
-        self.front.mt.level_of(self.front.triangles.iter().map(|(_, nodes)| nodes).collect())
+        self.front
+            .mt
+            .level_from_faces(self.front.triangles.iter().map(|(_, nodes)| nodes).collect())
     }
 }
 
 /// A query, and the tighter one by which what is there may stay.
-struct Needed<'f> {
-    least: Need<'f>,
-    most: Option<Need<'f>>,
+struct Criteria<'f> {
+    refine: Criterion<'f>,
+    keep: Option<Criterion<'f>>,
 }
 
-impl<'f> Needed<'f> {
+impl<'f> Criteria<'f> {
     fn new(query: &Query<'f>, mt: &Implicit, hysteresis: Option<f64>) -> Result<Self, QueryError> {
-        let least = Need::new(query, mt.frame())?;
-        let tighter = |part| Need::new(query, mt.frame()).map(|need| need.tightened(part));
-        let most = hysteresis.map(|part| tighter(1.0 / (1.0 + part))).transpose()?;
-        Ok(Self { least, most })
+        let refine = Criterion::new(query, mt.frame())?;
+        let tighter = |part| Criterion::new(query, mt.frame()).map(|need| need.scaled(part));
+        let keep = hysteresis.map(|part| tighter(1.0 / (1.0 + part))).transpose()?;
+        Ok(Self { refine, keep })
     }
 
     /// Whether an update is wanted, and whether it may stay.
     #[inline]
     fn wanted(&self, ball: &Ball) -> [bool; 2] {
-        let is_wanted = self.least.wants(ball);
-        [is_wanted, is_wanted || self.most.as_ref().is_some_and(|most| most.wants(ball))]
+        let is_wanted = self.refine.refines(ball);
+        [is_wanted, is_wanted || self.keep.as_ref().is_some_and(|keep| keep.refines(ball))]
     }
 
     /// From how far away an update is wanted as it is, or not.
     fn span(&self, ball: &Ball, wanted: [bool; 2]) -> Span {
-        let reach = |need: &Need<'f>| need.eye().and_then(|eye| eye.reach(ball));
-        let Some(least) = reach(&self.least) else { return Span::NEVER_TURNS };
-        let most = self.most.as_ref().and_then(reach).unwrap_or(least);
+        let reach = |need: &Criterion<'f>| need.viewpoint().and_then(|eye| eye.reach(ball));
+        let Some(least) = reach(&self.refine) else { return Span::NEVER_TURNS };
+        let most = self.keep.as_ref().and_then(reach).unwrap_or(least);
         match wanted {
             [true, _] => Span::below(least),
             [false, true] => Span::above(least).and_below(most),
@@ -211,39 +217,39 @@ impl<'f> Needed<'f> {
 
     /// Whether an update may stay.
     fn may_stay(&self, ball: &Ball) -> bool {
-        self.most.as_ref().unwrap_or(&self.least).wants(ball)
+        self.keep.as_ref().unwrap_or(&self.refine).refines(ball)
     }
 }
 
 /// Counts what is done, and says when it is enough.
-struct Work {
-    change: Change,
+struct Meter {
+    change: CutChange,
     most: usize,
     /// When to stop, and before that when to stop looking.
     until: Option<[Instant; 2]>,
 }
 
-impl Work {
-    fn new(effort: &Effort) -> Self {
+impl Meter {
+    fn new(effort: &UpdateLimits) -> Self {
         let now = Instant::now();
         let until = effort.time.map(|time| [time, time / 2].map(|part| now.checked_add(part)));
         Self {
-            change: Change::default(),
+            change: CutChange::default(),
             most: effort.changes.unwrap_or(usize::MAX),
-            until: until.and_then(|[all, looking]| Some([all?, looking?])),
+            until: until.and_then(|[all, inspecting]| Some([all?, inspecting?])),
         }
     }
 
-    fn may_go_on(&self) -> bool {
+    fn may_change_more(&self) -> bool {
         self.change.splits + self.change.merges < self.most
             && self.until.is_none_or(|[until, _]| Instant::now() < until)
     }
 
     /// Counts a look; whether there may be another.
     #[inline]
-    fn may_look_on(&mut self) -> bool {
-        self.change.looks += 1;
-        !self.change.looks.is_multiple_of(LOOKS_AT_ONCE)
+    fn may_inspect_more(&mut self) -> bool {
+        self.change.inspected += 1;
+        !self.change.inspected.is_multiple_of(INSPECTIONS_PER_CLOCK)
             || self.until.is_none_or(|[_, until]| Instant::now() < until)
     }
 }

@@ -6,7 +6,7 @@
 
 use glam::Vec3;
 
-use crate::need::Eye;
+use crate::query::Viewpoint;
 
 /// A unit of the way has 2³⁰ of the finest steps.
 const FINEST_EXPONENT: u64 = 30;
@@ -25,7 +25,7 @@ const SLACK: f64 = 1e-12;
 /// An update that was looked at, with all that it takes to see that nothing has turned: most looks end
 /// there, and go nowhere else in memory.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Entry {
+pub(super) struct ScheduleEntry {
     pub(super) update: u32,
     /// The node that it splits.
     pub(super) node: u32,
@@ -64,14 +64,14 @@ impl Span {
 /// An octave of leeway has steps of a length of its own, and a ring of lists, one for each step.
 #[derive(Clone, Debug)]
 pub(super) struct Schedule {
-    eye: Option<Eye>,
+    eye: Option<Viewpoint>,
     /// How far the eye has come.
     way: f64,
-    rings: Vec<Vec<Entry>>,
+    rings: Vec<Vec<ScheduleEntry>>,
     /// How many entries each octave has.
     counts: [usize; OCTAVES],
     /// What is due now.
-    pub(super) due: Vec<Entry>,
+    pub(super) due: Vec<ScheduleEntry>,
 }
 
 impl Default for Schedule {
@@ -84,7 +84,7 @@ impl Default for Schedule {
 impl Schedule {
     /// Goes where the eye is now and collects what is due; false where it is another eye, or where it
     /// is not the eye that matters: then all must be looked at.
-    pub(super) fn follow(&mut self, eye: Option<Eye>) -> bool {
+    pub(super) fn follow(&mut self, eye: Option<Viewpoint>) -> bool {
         let last = std::mem::replace(&mut self.eye, eye);
         let (Some(last), Some(eye)) = (last, eye) else { return false };
         if last.slope != eye.slope {
@@ -121,7 +121,7 @@ impl Schedule {
     }
 
     /// Enters an update that has just been looked at, if it may turn.
-    pub(super) fn add(&mut self, entry: Entry) -> bool {
+    pub(super) fn add(&mut self, entry: ScheduleEntry) -> bool {
         let Some(leeway) = self.leeway(&entry) else { return false };
         if leeway < f64::INFINITY {
             self.enter(entry, leeway.max(0.0));
@@ -131,7 +131,7 @@ impl Schedule {
 
     /// Enters an update again if it cannot have turned.
     #[inline]
-    pub(super) fn add_again(&mut self, entry: Entry) -> bool {
+    pub(super) fn add_again(&mut self, entry: ScheduleEntry) -> bool {
         let leeway = self.leeway(&entry).filter(|leeway| *leeway > 0.0);
         if let Some(leeway) = leeway {
             self.enter(entry, leeway);
@@ -141,7 +141,7 @@ impl Schedule {
 
     /// How far the eye may move before an update may turn.
     #[inline]
-    fn leeway(&self, entry: &Entry) -> Option<f64> {
+    fn leeway(&self, entry: &ScheduleEntry) -> Option<f64> {
         let distance = self.eye?.at.distance(Vec3::from(entry.center).as_dvec3());
         let Span(least, most) = entry.span;
         let leeway = (distance - f64::from(least)).min(f64::from(most) - distance);
@@ -149,7 +149,7 @@ impl Schedule {
     }
 
     #[inline]
-    fn enter(&mut self, entry: Entry, leeway: f64) {
+    fn enter(&mut self, entry: ScheduleEntry, leeway: f64) {
         let steps = leeway * (PER_FINEST / STEPS as f64);
         let octave = ((steps as i64).max(1).ilog2() as usize).min(OCTAVES - 1);
         let most = (2 * STEPS) as f64 / per_length(octave);
@@ -195,21 +195,22 @@ mod tests {
 
     #[test]
     fn nobody_is_late_and_few_are_early() {
-        let eye = |x: f64| Some(Eye { at: DVec3::new(x, 0.0, 0.0), slope: 0.01 });
+        let eye = |x: f64| Some(Viewpoint { at: DVec3::new(x, 0.0, 0.0), slope: 0.01 });
         let mut schedule = Schedule::default();
         assert!(!schedule.follow(eye(0.0)), "the first look is at everything");
         schedule.clear(|_| {});
         // Update i turns when the eye has come to about x = i³ / 1000.
         let center = |i: u32| [(f64::from(i).powi(3) / 1000.0 + 1.0) as f32, 0.0, 0.0];
         let at = |i: u32| f64::from(center(i)[0]) - 1.0;
-        let entry = |i| Entry { update: i, node: i, center: center(i), span: Span::above(1.0) };
+        let entry =
+            |i| ScheduleEntry { update: i, node: i, center: center(i), span: Span::above(1.0) };
         (0..60).for_each(|i| assert!(schedule.add(entry(i))));
         let mut looks = 0;
         let mut x = 0.0;
         for frame in 0..200 {
             x += 0.001 * f64::from(frame);
             assert!(schedule.follow(eye(x)));
-            for Entry { update, .. } in std::mem::take(&mut schedule.due) {
+            for ScheduleEntry { update, .. } in std::mem::take(&mut schedule.due) {
                 looks += 1;
                 if at(update) <= x {
                     continue;
@@ -224,7 +225,7 @@ mod tests {
 
     #[test]
     fn a_long_way_swallows_no_short_steps() {
-        let eye = |x: f64| Some(Eye { at: DVec3::new(x, 0.0, 0.0), slope: 0.01 });
+        let eye = |x: f64| Some(Viewpoint { at: DVec3::new(x, 0.0, 0.0), slope: 0.01 });
         let mut schedule = Schedule::default();
         schedule.follow(eye(0.0));
         schedule.clear(|_| {});
@@ -233,7 +234,7 @@ mod tests {
         let [from, to] = [Span::above(1.0), Span::below(1.0)].map(|span| [span.0, span.1]);
         assert!(from[0] > 1.0 && to[1] < 1.0, "rounded inwards");
         let center = [1.0 + 2.0 * f32::EPSILON, 0.0, 0.0];
-        let entry = Entry { update: 0, node: 0, center, span: Span::above(1.0) };
+        let entry = ScheduleEntry { update: 0, node: 0, center, span: Span::above(1.0) };
         assert!(schedule.add(entry));
         // A leeway of 9e-9, in steps of which each is lost when it is added to so long a way.
         let steps = (0..400_000).take_while(|&i| {
@@ -246,7 +247,7 @@ mod tests {
 
     #[test]
     fn a_way_that_is_too_long_begins_anew() {
-        let eye = |x: f64| Some(Eye { at: DVec3::new(x, 0.0, 0.0), slope: 0.01 });
+        let eye = |x: f64| Some(Viewpoint { at: DVec3::new(x, 0.0, 0.0), slope: 0.01 });
         let mut schedule = Schedule::default();
         schedule.follow(eye(0.0));
         assert!(schedule.follow(eye(0.5 * LONGEST)) && !schedule.follow(eye(2.0 * LONGEST)));
@@ -257,9 +258,9 @@ mod tests {
     #[test]
     fn another_slope_is_another_question() {
         let mut schedule = Schedule::default();
-        let eye = Eye { at: DVec3::ZERO, slope: 0.01 };
+        let eye = Viewpoint { at: DVec3::ZERO, slope: 0.01 };
         assert!(!schedule.follow(Some(eye)) && schedule.follow(Some(eye)));
-        assert!(!schedule.follow(Some(Eye { slope: 0.02, ..eye })));
+        assert!(!schedule.follow(Some(Viewpoint { slope: 0.02, ..eye })));
         assert!(!schedule.follow(None) && !schedule.follow(Some(eye)));
     }
 }

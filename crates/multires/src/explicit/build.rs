@@ -1,6 +1,6 @@
 //! Contracts again, and keeps every triangle.
 
-use super::{Explicit, ExplicitUpdate, Triangle};
+use super::{Explicit, ExplicitTriangle, ExplicitUpdate};
 use crate::forest::Forest;
 
 impl Explicit {
@@ -20,11 +20,12 @@ impl Explicit {
         for &nodes in &forest.faces {
             this.add(nodes, None, &mut stars);
         }
-        let is_inner = |u: usize| forest.updates.get(u + 1).is_some_and(|next| next.glued);
-        for u in (0..forest.updates.len()).filter(|&u| !is_inner(u)) {
+        let is_fused_with_parent =
+            |u: usize| forest.updates.get(u + 1).is_some_and(|next| next.fused_with_child);
+        for u in (0..forest.updates.len()).filter(|&u| !is_fused_with_parent(u)) {
             let [first, second] = forest.updates[u].children;
             let mut children = vec![first, second];
-            if forest.updates[u].glued {
+            if forest.updates[u].fused_with_child {
                 children.splice(..1, forest.updates[u - 1].children);
             }
             this.contract(forest, u, &children, &mut stars);
@@ -36,7 +37,7 @@ impl Explicit {
     /// A triangle that a contraction makes, and its update refines.
     fn add(&mut self, nodes: [u32; 3], refiner: Option<u32>, stars: &mut [Vec<u32>]) -> u32 {
         let id = self.triangles.len() as u32;
-        self.triangles.push(Triangle { nodes, maker: None, refiner });
+        self.triangles.push(ExplicitTriangle { nodes, maker: None, refiner });
         nodes.iter().for_each(|&node| stars[node as usize].push(id));
         id
     }

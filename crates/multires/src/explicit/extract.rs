@@ -4,7 +4,7 @@ use std::collections::{BTreeSet, VecDeque};
 
 use super::Explicit;
 use crate::level::Level;
-use crate::need::Need;
+use crate::query::Criterion;
 use crate::query::{Query, QueryError};
 
 /// A mesh out of an [`Explicit`] MT, which the next query changes.
@@ -21,7 +21,7 @@ impl Explicit {
     /// The smallest mesh in which every triangle that meets the focus is good enough.
     pub fn extract(&self, query: &Query<'_>) -> Result<Level, QueryError> {
         let mut cut = ExplicitCut::new(self);
-        cut.refine(&Need::new(query, &self.frame)?);
+        cut.refine(&Criterion::new(query, &self.frame)?);
         Ok(cut.level())
     }
 }
@@ -50,9 +50,9 @@ impl<'m> ExplicitCut<'m> {
 
     /// Goes to the answer of another query from here.
     pub fn update(&mut self, query: &Query<'_>) -> Result<(), QueryError> {
-        let need = Need::new(query, &self.mt.frame)?;
-        self.refine(&need);
-        self.coarsen(&need);
+        let criterion = Criterion::new(query, &self.mt.frame)?;
+        self.refine(&criterion);
+        self.coarsen(&criterion);
         Ok(())
     }
 
@@ -61,7 +61,7 @@ impl<'m> ExplicitCut<'m> {
         let faces = self.present.iter().map(|&t| self.mt.triangles[t as usize].nodes);
         let place = |node: u32| self.mt.positions[node as usize];
         let count = self.mt.positions.len();
-        Level::of_nodes(self.mt.frame, count, place, faces.collect()).with_exact(&self.mt.exact)
+        Level::from_nodes(self.mt.frame, count, place, faces.collect()).with_exact(&self.mt.exact)
     }
 
     /// Makes a single update with all that it needs.
@@ -71,10 +71,10 @@ impl<'m> ExplicitCut<'m> {
     }
 
     /// Static extraction: breadth first over triangles, from those there are.
-    fn refine(&mut self, need: &Need<'_>) {
+    fn refine(&mut self, criterion: &Criterion<'_>) {
         let mut queue: VecDeque<u32> = self.present.iter().copied().collect();
         while let Some(triangle) = queue.pop_front() {
-            if !self.present.contains(&triangle) || self.mt.is_valid(need, triangle) {
+            if !self.present.contains(&triangle) || self.mt.is_valid(criterion, triangle) {
                 continue;
             }
             if let Some(refiner) = self.mt.triangles[triangle as usize].refiner {
@@ -107,14 +107,14 @@ impl<'m> ExplicitCut<'m> {
     }
 
     /// Takes back every update that nobody needs and without which the mesh is good enough still.
-    fn coarsen(&mut self, need: &Need<'_>) {
+    fn coarsen(&mut self, criterion: &Criterion<'_>) {
         let mut leaves: Vec<u32> = (0..self.applied.len() as u32).collect();
         while let Some(leaf) = leaves.pop() {
             let update = &self.mt.updates[leaf as usize];
             let is_leaf = || update.fine.iter().all(|t| self.present.contains(t));
             if self.applied[leaf as usize]
                 && is_leaf()
-                && update.coarse.iter().all(|&t| self.mt.is_valid(need, t))
+                && update.coarse.iter().all(|&t| self.mt.is_valid(criterion, t))
             {
                 update.fine.iter().for_each(|t| assert!(self.present.remove(t)));
                 self.present.extend(&update.coarse);

@@ -7,9 +7,9 @@
 mod build;
 mod extract;
 
-use crate::exact::Exact;
 use crate::frame::Frame;
-use crate::need::{Ball, Need};
+use crate::pack::ExactPositions;
+use crate::query::{Ball, Criterion};
 
 pub use extract::ExplicitCut;
 
@@ -19,10 +19,10 @@ pub struct Explicit {
     frame: Frame,
     positions: Vec<[f32; 3]>,
     /// Of the input's vertices, where they are kept as they were.
-    exact: Exact,
+    exact: ExactPositions,
     updates: Vec<ExplicitUpdate>,
     /// By their nodes.
-    triangles: Vec<Triangle>,
+    triangles: Vec<ExplicitTriangle>,
     /// The update that splits each node; `None` for leaves.
     splits: Vec<Option<u32>>,
 }
@@ -40,7 +40,7 @@ struct ExplicitUpdate {
 }
 
 #[derive(Clone, Copy, Debug)]
-struct Triangle {
+struct ExplicitTriangle {
     nodes: [u32; 3],
     /// The update that makes it; `None` for those of the base.
     maker: Option<u32>,
@@ -72,10 +72,10 @@ impl Explicit {
 
     /// Whether a triangle is good enough for a query: no corner's own update is wanted. The triangle
     /// lies in the ball of one of them, that of the update that refines it.
-    fn is_valid(&self, need: &Need<'_>, triangle: u32) -> bool {
+    fn is_valid(&self, criterion: &Criterion<'_>, triangle: u32) -> bool {
         let wanted = |&node: &u32| {
             let update = self.splits[node as usize];
-            update.is_some_and(|u| need.wants(&self.updates[u as usize].ball))
+            update.is_some_and(|u| criterion.refines(&self.updates[u as usize].ball))
         };
         !self.triangles[triangle as usize].nodes.iter().any(wanted)
     }

@@ -10,7 +10,7 @@ use crate::forest::Forest;
 use crate::implicit::Implicit;
 use crate::level::Level;
 use crate::model::Model;
-use crate::need::Need;
+use crate::query::Criterion;
 use crate::query::Query;
 
 /// A `.mlod` file: all levels of a mesh, the coarsest first.
@@ -166,7 +166,7 @@ impl<S: Source> Archive<S> {
     fn check_lossless(&self, model: &Implicit) -> Result<(), FileError> {
         let is_leaf = |&node: &u32| model.update_of(node).is_none();
         let leaves = (0..model.node_count() as u32).filter(is_leaf);
-        let bare = leaves.filter(|&leaf| model.exact().of(leaf).is_none()).count();
+        let bare = leaves.filter(|&leaf| model.exact().get(leaf).is_none()).count();
         if !self.is_lossless() || bare == 0 {
             return Ok(());
         }
@@ -179,10 +179,10 @@ impl<S: Source> Archive<S> {
     /// # Errors
     /// A query that is none; a file that is damaged, or made to mislead.
     pub fn extract_at_most(&self, faces: usize, query: &Query<'_>) -> Result<Extract, FileError> {
-        let is_uniform = Need::new(query, &self.header.about.frame)?.is_uniform();
+        let is_uniform = Criterion::new(query, &self.header.about.frame)?.is_uniform();
         let mut chunks = if is_uniform { self.chunks_for_faces(faces) } else { self.complete };
         loop {
-            let model = Model::proved(&self.read_chunks(chunks)?.0);
+            let model = Model::from_certified(&self.read_chunks(chunks)?.0);
             let level = model.extractor().at_most(faces, query)?.clone();
             // What is as urgent as something that was made may be in chunks further on.
             let least = model.implicit().least_error_above(&level.nodes).get();
@@ -216,8 +216,8 @@ impl<S: Source> Archive<S> {
     /// # Errors
     /// A query that is none; a file that is damaged.
     pub fn extract(&self, query: &Query<'_>) -> Result<Extract, FileError> {
-        let need = Need::new(query, &self.header.about.frame)?;
-        let wanted = |&chunk: &usize| need.wants_in(&self.header.chunks[chunk].area);
+        let criterion = Criterion::new(query, &self.header.about.frame)?;
+        let wanted = |&chunk: &usize| criterion.may_refine_in(&self.header.chunks[chunk].area);
         let chunks: Vec<usize> = (0..self.complete).filter(wanted).collect();
         let state = self.load(&chunks)?;
         let stored = chunks.iter().map(|&chunk| u64::from(self.header.chunks[chunk].stored.bytes));

@@ -8,8 +8,8 @@ use super::decoder_state::DecoderState;
 use super::exact_positions::{self, Deltas};
 use super::header::{Header, UNKNOWN_FLAGS};
 use super::streams::{Packer, Unpacker};
-use crate::exact::Exact;
-use crate::implicit::{Base, has_three_corners};
+use crate::implicit::{BaseMesh, has_three_corners};
+use crate::pack::ExactPositions;
 
 /// Why the coarsest mesh is none.
 #[derive(Debug, Error)]
@@ -22,7 +22,7 @@ pub(super) enum BaseError {
 }
 
 pub(super) fn write(state: &DecoderState) -> io::Result<Vec<u8>> {
-    let Base { positions, faces } = &state.base;
+    let BaseMesh { positions, faces } = &state.base;
     let mut packer = Packer::new()?;
     for k in 0..3 {
         let places = positions.iter().map(|&p| state.lattice.round(p)[k]);
@@ -61,8 +61,8 @@ pub(super) fn read(header: &Header, bytes: &[u8]) -> Result<DecoderState, BaseEr
     if !faces.iter().all(has_three_corners) {
         return Err(BaseError::Invalid("a face has a vertex twice"));
     }
-    let exact = if lossless { Exact::kept() } else { Exact::default() };
-    let mut state = DecoderState::new(about.frame, lattice, Base { positions, faces }, exact);
+    let exact = if lossless { ExactPositions::lossless() } else { ExactPositions::default() };
+    let mut state = DecoderState::new(about.frame, lattice, BaseMesh { positions, faces }, exact);
     if lossless {
         read_exact(&mut state, &mut input)?;
     }

@@ -9,7 +9,7 @@ use super::lattice::Lattice;
 use super::normal_predictor::NormalPredictor;
 use super::streams::Unpacker;
 use crate::frame::Length16;
-use crate::short::radius8;
+use crate::pack::radius8;
 
 /// Where the two children of a node are.
 pub(super) struct ChildOffsets {

@@ -15,10 +15,10 @@ use super::decoder_state::DecoderState;
 use super::exact_positions::{self, Deltas};
 use super::header::UNKNOWN_FLAGS;
 use super::streams::{Packer, Unpacker};
-use crate::forest::{NONE, Odd};
+use crate::forest::{NONE, NonFanSplit};
 use crate::frame::Length16;
-use crate::implicit::{Loose, has_three_corners};
-use crate::short::{error9, error16, radius8, radius16};
+use crate::implicit::{DetachedUpdate, has_three_corners};
+use crate::pack::{error9, error16, radius8, radius16};
 
 /// Why a chunk is none.
 #[derive(Debug, Error)]
@@ -35,8 +35,8 @@ pub(super) enum ChunkError {
 
 /// Bits of an update's flags.
 const OPEN: u8 = 1;
-const GLUED: u8 = 2;
-const ODD: u8 = 4;
+const FUSED: u8 = 2;
+const NON_FAN: u8 = 4;
 /// The first child, or the second, is of the finest mesh: its position is there to the bit. Only in lossless
 /// files.
 const EXACT: [u8; 2] = [8, 16];
@@ -51,8 +51,8 @@ pub(super) fn write(state: &DecoderState, run: Range<usize>) -> io::Result<Vec<u
         Some(gap)
     });
     packer.numbers(&parents.collect::<Vec<_>>())?;
-    let flags = |(at, u): (usize, &Loose)| {
-        let own = [(OPEN, u.is_open), (GLUED, u.glued), (ODD, u.odd.is_some())];
+    let flags = |(at, u): (usize, &DetachedUpdate)| {
+        let own = [(OPEN, u.is_open), (FUSED, u.fused_with_child), (NON_FAN, u.non_fan.is_some())];
         let exact = state.children(at).map(|child| state.exact_position(child).is_some());
         let all = own.into_iter().chain(EXACT.into_iter().zip(exact));
         all.filter(|(_, is_so)| *is_so).map(|(flag, _)| flag).sum::<u8>()
@@ -63,8 +63,8 @@ pub(super) fn write(state: &DecoderState, run: Range<usize>) -> io::Result<Vec<u
     }
     write_errors(updates, &mut packer)?;
     write_places(state, updates, &mut packer)?;
-    for odd in updates.iter().filter_map(|u| u.odd.as_deref()) {
-        write_odd(odd, &mut packer)?;
+    for non_fan in updates.iter().filter_map(|u| u.non_fan.as_deref()) {
+        write_non_fan(non_fan, &mut packer)?;
     }
     if state.is_lossless() {
         let pair =
@@ -76,7 +76,7 @@ pub(super) fn write(state: &DecoderState, run: Range<usize>) -> io::Result<Vec<u
 }
 
 /// Errors above the least, and levels above the least of those with the same error.
-fn write_errors(updates: &[Loose], packer: &mut Packer) -> io::Result<()> {
+fn write_errors(updates: &[DetachedUpdate], packer: &mut Packer) -> io::Result<()> {
     let errors = || updates.iter().map(|u| error9(u.error));
     let least = errors().min().unwrap_or(0);
     let steps: Vec<u32> = errors().map(|error| error - least).collect();
@@ -95,7 +95,11 @@ fn write_errors(updates: &[Loose], packer: &mut Packer) -> io::Result<()> {
     packer.numbers(&above)
 }
 
-fn write_places(state: &DecoderState, updates: &[Loose], packer: &mut Packer) -> io::Result<()> {
+fn write_places(
+    state: &DecoderState,
+    updates: &[DetachedUpdate],
+    packer: &mut Packer,
+) -> io::Result<()> {
     let lattice = state.lattice;
     let families: Vec<_> = updates
         .iter()
@@ -116,11 +120,11 @@ fn write_places(state: &DecoderState, updates: &[Loose], packer: &mut Packer) ->
     )
 }
 
-fn write_odd(odd: &Odd, packer: &mut Packer) -> io::Result<()> {
-    packer.numbers(&[odd.second.len() as u32])?;
-    packer.numbers(odd.second.as_flattened())?;
-    packer.numbers(&[odd.brought.len() as u32])?;
-    packer.numbers(odd.brought.as_flattened())
+fn write_non_fan(non_fan: &NonFanSplit, packer: &mut Packer) -> io::Result<()> {
+    packer.numbers(&[non_fan.second.len() as u32])?;
+    packer.numbers(non_fan.second.as_flattened())?;
+    packer.numbers(&[non_fan.created_faces.len() as u32])?;
+    packer.numbers(non_fan.created_faces.as_flattened())
 }
 
 /// Adds a chunk of so many updates, the first of which has this number in the file. Those whose node
@@ -153,15 +157,15 @@ pub(super) fn read(
             node if node != NONE && state.creator(node).is_none_or(|up| up.parent != NONE) => node,
             _ => NONE,
         };
-        let mut update = Loose {
+        let mut update = DetachedUpdate {
             parent,
             level: u16::try_from(levels[at]).map_err(|_| bad("its level is too high"))?,
             wings: [wings[0][at], wings[1][at]],
             radius: Length16::default(),
             error: error16(errors[at]).ok_or(bad("its error is no length"))?,
             is_open: flags[at] & OPEN != 0,
-            glued: flags[at] & GLUED != 0,
-            odd: None,
+            fused_with_child: flags[at] & FUSED != 0,
+            non_fan: None,
             children: [Vec3::ZERO; 2],
         };
         if parent != NONE {
@@ -179,11 +183,11 @@ pub(super) fn read(
     }
     let nodes = state.root_count() + 2 * (first + count as u32);
     let start = state.updates.len() - count;
-    for at in (0..count).filter(|&at| flags[at] & ODD != 0) {
+    for at in (0..count).filter(|&at| flags[at] & NON_FAN != 0) {
         let bad = ChunkError::Update { update: at, why: "it brings what is no face, or too many" };
-        let odd =
-            read_odd(&mut input, nodes)?.ok_or(bad)?.renumbered(|node| state.local_node(node));
-        state.updates[start + at].odd = Some(Box::new(odd));
+        let non_fan =
+            read_non_fan(&mut input, nodes)?.ok_or(bad)?.renumbered(|node| state.local_node(node));
+        state.updates[start + at].non_fan = Some(Box::new(non_fan));
     }
     if state.is_lossless() {
         read_exact(state, &mut input, start, &flags)?;
@@ -193,7 +197,7 @@ pub(super) fn read(
 
 /// The flags that an update may have.
 fn flags_of(state: &DecoderState) -> u8 {
-    let of_all = OPEN | GLUED | ODD;
+    let of_all = OPEN | FUSED | NON_FAN;
     if state.is_lossless() { of_all | EXACT[0] | EXACT[1] } else { of_all }
 }
 
@@ -244,15 +248,16 @@ fn read_errors(input: &mut Unpacker<'_>, count: usize) -> io::Result<(Vec<u32>, 
 }
 
 /// What wings cannot tell, by nodes of the file: so many are made up to this chunk's end.
-fn read_odd(input: &mut Unpacker<'_>, nodes: u32) -> Result<Option<Odd>, io::Error> {
+fn read_non_fan(input: &mut Unpacker<'_>, nodes: u32) -> Result<Option<NonFanSplit>, io::Error> {
     let mut list = |size: usize| -> io::Result<Vec<u32>> {
         let count = input.numbers::<u32>(1)?[0] as usize;
         input.numbers(size * count)
     };
-    let (second, brought) = (list(2)?, list(3)?);
-    let are_made = second.iter().chain(&brought).all(|&node| node < nodes);
-    let (second, brought) = (second.as_chunks().0.to_vec(), brought.as_chunks().0.to_vec());
+    let (second, created_faces) = (list(2)?, list(3)?);
+    let are_made = second.iter().chain(&created_faces).all(|&node| node < nodes);
+    let (second, created_faces) =
+        (second.as_chunks().0.to_vec(), created_faces.as_chunks().0.to_vec());
     // No edge with more than two faces is contracted.
-    let are_faces = brought.len() <= 2 && brought.iter().all(has_three_corners);
-    Ok((are_made && are_faces).then_some(Odd { second, brought }))
+    let are_faces = created_faces.len() <= 2 && created_faces.iter().all(has_three_corners);
+    Ok((are_made && are_faces).then_some(NonFanSplit { second, created_faces }))
 }

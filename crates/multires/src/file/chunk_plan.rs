@@ -9,8 +9,8 @@ use std::ops::Range;
 use glam::Vec3;
 
 use super::quantize::{OCTAVES, octave};
-use crate::implicit::{Implicit, Links};
-use crate::need::{Area, Ball};
+use crate::implicit::{Dependencies, Implicit};
+use crate::query::{Area, Ball};
 
 /// The updates of a model in the order of its file.
 pub(super) struct ChunkPlan {
@@ -32,17 +32,21 @@ pub(super) struct PlannedChunk {
 const LEAST_IN_BAND: usize = 4;
 
 /// In chunks of about so many updates.
-pub(super) fn plan_chunks(mt: &Implicit, links: &Links, updates_per_chunk: usize) -> ChunkPlan {
+pub(super) fn plan_chunks(
+    mt: &Implicit,
+    links: &Dependencies,
+    updates_per_chunk: usize,
+) -> ChunkPlan {
     let mut chunk_of = vec![0; mt.update_count()];
     let count = partition_by_error(mt, updates_per_chunk, &mut chunk_of);
     // What is needed comes first: it is of a higher level.
-    let order: Vec<u32> = links.in_order_of_need().collect();
+    let order: Vec<u32> = links.dependents_first().collect();
     for &update in order.iter().rev() {
         let needed = links.of(update).map(|need| chunk_of[need as usize]).max();
         let own = &mut chunk_of[update as usize];
         *own = needed.map_or(*own, |needed| needed.max(*own));
         // What is glued is needed as a whole, and needs the same.
-        if mt.is_glued(update) {
+        if mt.is_fused_with_child(update) {
             chunk_of[update as usize + 1] = *own;
         }
     }
@@ -71,7 +75,7 @@ impl ChunkPlan {
         let Some(chunk) = members.first().map(|&update| chunk_of[update as usize]) else { return };
         let start = self.order.len();
         let is_member = |update: u32| chunk_of[update as usize] == chunk;
-        let is_apart = |&&update: &&u32| !mt.family(mt.parent(update)).is_some_and(is_member);
+        let is_apart = |&&update: &&u32| !mt.creator(mt.parent(update)).is_some_and(is_member);
         self.order.extend(members.iter().filter(is_apart));
         let Self { order, place, .. } = self;
         order[start..].sort_unstable_by_key(|&update| file_node(mt, place, mt.parent(update)));
@@ -89,7 +93,7 @@ impl ChunkPlan {
 /// The number of a node in the file, where its family has a place.
 pub(super) fn file_node(mt: &Implicit, place: &[u32], node: u32) -> u32 {
     let roots = mt.root_count() as u32;
-    mt.family(node).map_or(node, |family| roots + 2 * place[family as usize] + (node - roots) % 2)
+    mt.creator(node).map_or(node, |family| roots + 2 * place[family as usize] + (node - roots) % 2)
 }
 
 /// By band, and within it by place; how many chunks there are.
@@ -119,7 +123,7 @@ fn bisect(mt: &Implicit, updates: &mut [u32], first: u32, chunks: usize, chunk_o
         updates.iter().for_each(|&update| chunk_of[update as usize] = first);
         return;
     }
-    let place = |update: u32| mt.place(mt.parent(update));
+    let place = |update: u32| mt.stored_position(mt.parent(update));
     let (mut min, mut max) = (Vec3::INFINITY, Vec3::NEG_INFINITY);
     for &update in &*updates {
         (min, max) = (min.min(place(update).into()), max.max(place(update).into()));
@@ -136,7 +140,7 @@ fn bisect(mt: &Implicit, updates: &mut [u32], first: u32, chunks: usize, chunk_o
 
 /// Where the updates of each chunk are, and all that need them. So an update that is wanted lies in the
 /// area of every chunk that it needs, and the chunks whose areas are wanted hold all that it takes.
-fn chunk_areas(mt: &Implicit, links: &Links, chunk_of: &[u32], count: usize) -> Vec<Area> {
+fn chunk_areas(mt: &Implicit, links: &Dependencies, chunk_of: &[u32], count: usize) -> Vec<Area> {
     let mut reach: Vec<Area> = (0..mt.update_count() as u32)
         .map(|update| {
             let Ball { center, radius, error } = mt.ball(update);
@@ -144,7 +148,7 @@ fn chunk_areas(mt: &Implicit, links: &Links, chunk_of: &[u32], count: usize) -> 
         })
         .collect();
     let mut areas = vec![Area::EMPTY; count];
-    for update in links.in_order_of_need() {
+    for update in links.dependents_first() {
         // All that need it came before.
         let own = reach[update as usize];
         areas[chunk_of[update as usize] as usize].join(&own);

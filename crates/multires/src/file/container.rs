@@ -3,14 +3,14 @@
 use super::archive::Archive;
 use super::source::{Source, read_range};
 use super::{FileError, VERSION};
-use crate::right::{HeightField, HeightPrecision};
+use crate::rtin::{HeightField, HeightPrecision};
 
 /// A multiresolution file of any kind.
 #[derive(Debug)]
 pub enum ModelFile<S> {
     /// The contractions of a mesh.
     Contractions(Archive<S>),
-    /// A height field, for [`RightTriangles`](crate::RightTriangles).
+    /// A height field, for [`Rtin`](crate::Rtin).
     HeightField(HeightField),
 }
 

@@ -5,25 +5,30 @@ use glam::Vec3;
 use super::exact_positions::Deltas;
 use super::lattice::Lattice;
 use super::normal_predictor::NormalPredictor;
-use crate::exact::Exact;
 use crate::forest::NONE;
 use crate::frame::Frame;
-use crate::implicit::{Base, Loose};
+use crate::implicit::{BaseMesh, DetachedUpdate};
+use crate::pack::ExactPositions;
 
 /// The base and some runs of updates. Those of a file that was read in part are numbered without gaps.
 pub(super) struct DecoderState {
     frame: Frame,
     pub(super) lattice: Lattice,
-    pub(super) base: Base,
-    pub(super) updates: Vec<Loose>,
+    pub(super) base: BaseMesh,
+    pub(super) updates: Vec<DetachedUpdate>,
     /// Of the finest mesh's vertices, by the numbers here, where they are kept to the bit.
-    exact: Exact,
+    exact: ExactPositions,
     /// By run of updates: its first in the file, and its first here.
     runs: Vec<[u32; 2]>,
 }
 
 impl DecoderState {
-    pub(super) fn new(frame: Frame, lattice: Lattice, base: Base, exact: Exact) -> Self {
+    pub(super) fn new(
+        frame: Frame,
+        lattice: Lattice,
+        base: BaseMesh,
+        exact: ExactPositions,
+    ) -> Self {
         Self { frame, lattice, base, updates: Vec::new(), exact, runs: Vec::new() }
     }
 
@@ -45,7 +50,7 @@ impl DecoderState {
     }
 
     /// The update that makes a node; none for a root.
-    pub(super) fn creator(&self, node: u32) -> Option<&Loose> {
+    pub(super) fn creator(&self, node: u32) -> Option<&DetachedUpdate> {
         let child = node.checked_sub(self.root_count());
         child.map(|child| &self.updates[child as usize / 2])
     }
@@ -64,12 +69,12 @@ impl DecoderState {
 
     /// Where a node is to the bit, if known.
     pub(super) fn exact_position(&self, node: u32) -> Option<[f64; 3]> {
-        self.exact.of(node)
+        self.exact.get(node)
     }
 
     /// Whether positions of the finest mesh's vertices are kept to the bit.
     pub(super) fn is_lossless(&self) -> bool {
-        self.exact.is_kept()
+        self.exact.is_lossless()
     }
 
     /// Adds where a node is to the bit, by the steps from its place, or says why it cannot be; nodes come by
@@ -90,7 +95,7 @@ impl DecoderState {
     }
 
     /// The model so far: its base, its updates, and the positions to the bit.
-    pub(super) fn into_parts(self) -> (Base, Vec<Loose>, Exact) {
+    pub(super) fn into_parts(self) -> (BaseMesh, Vec<DetachedUpdate>, ExactPositions) {
         (self.base, self.updates, self.exact)
     }
 

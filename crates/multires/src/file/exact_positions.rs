@@ -6,7 +6,7 @@
 use std::io;
 
 use super::streams::{Packer, Unpacker};
-use crate::zigzag::{unzigzag, zigzag};
+use crate::pack::{unzigzag, zigzag};
 
 /// By axis, how far positions are from their guesses.
 pub(super) struct Deltas([AxisDeltas; 3]);

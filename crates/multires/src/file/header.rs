@@ -6,13 +6,13 @@ use super::lattice::Lattice;
 use super::{FileError, MAGIC, VERSION};
 use crate::bounds::ErrorKind;
 use crate::frame::Frame;
-use crate::implicit::About;
-use crate::need::Area;
+use crate::implicit::ModelInfo;
+use crate::query::Area;
 
 /// What a file holds, without the updates.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Header {
-    pub(super) about: About,
+    pub(super) about: ModelInfo,
     pub(super) lattice: Lattice,
     /// Whether the vertices of the finest mesh have positions to the bit.
     pub(super) lossless: bool,
@@ -121,7 +121,7 @@ impl Header {
         let lattice = Lattice::from_bytes([bytes[BODY_AT], bytes[BODY_AT + 1]]);
         let bad = |why| FileError::Header(why);
         let this = Self {
-            about: About {
+            about: ModelInfo {
                 frame: frame.ok_or(bad("its frame is no place"))?,
                 error_kind: match bytes[BODY_AT + 2] {
                     0 => ErrorKind::Estimate,

@@ -32,10 +32,10 @@ pub use container::ModelFile;
 pub use source::Source;
 pub use write::Storage;
 
-use crate::cut::Unsound;
+use crate::cut::CertifyError;
 use crate::forest::BuildError;
 use crate::query::QueryError;
-use crate::right::FieldBytesError;
+use crate::rtin::FieldBytesError;
 
 const MAGIC: &[u8; 8] = b"meshlodm";
 const VERSION: u32 = 1;
@@ -82,7 +82,7 @@ pub enum FileError {
     },
     /// Its meshes would have cracks.
     #[error(transparent)]
-    Unsound(#[from] Unsound),
+    NotCertified(#[from] CertifyError),
     /// A rounding below 0, beyond the diagonal, or none.
     #[error("vertices cannot be moved by up to {0}: give at least 0 and at most the diagonal")]
     Rounding(f64),

@@ -6,11 +6,11 @@ use super::lattice::Lattice;
 use super::normal_predictor::NormalPredictor;
 use super::unflatten::unflatten;
 use crate::bounds::ErrorKind;
-use crate::forest::{BuildError, Forest, MOST_LEVELS, NONE};
+use crate::forest::{BuildError, Forest, MAX_LEVELS, NONE};
 use crate::frame::Length16;
 use crate::implicit::{Implicit, Order};
-use crate::need::SLACK;
-use crate::short::{ERRORS, error9, error16, radius8, radius16};
+use crate::pack::{ERRORS, error9, error16, radius8, radius16};
+use crate::query::SLACK;
 
 /// A forest as a file keeps it.
 pub(super) struct Quantized {
@@ -55,7 +55,7 @@ impl Forest {
             let error = error16(error).unwrap_or(Length16::INFINITE);
             let radius = radius16(radius8(radius));
             (this.updates[u].radius, this.updates[u].error) = (radius, error);
-            if this.updates[u].glued {
+            if this.updates[u].fused_with_child {
                 (this.updates[u - 1].radius, this.updates[u - 1].error) = (radius, error);
             }
         }
@@ -69,16 +69,18 @@ impl Forest {
     fn snap_to(&mut self, lattice: Lattice) -> Result<Displacement, BuildError> {
         let order = Order::new(self);
         let mt = Implicit::in_order(self, &order)?;
-        let before = |node: u32| Vec3::from(mt.place(node));
+        let before = |node: u32| Vec3::from(mt.stored_position(node));
         let cell = |node: u32| lattice.round(before(node));
         let nodes = || 0..mt.node_count() as u32;
-        let is_free = |node: u32| mt.exact().of(node).is_none();
+        let is_free = |node: u32| mt.exact().get(node).is_none();
         let in_cells = |node: u32| match is_free(node) {
             true => cell(node).map(f64::from),
-            false => (mt.spot(node) / lattice.cell()).into(),
+            false => (mt.exact_stored(node) / lattice.cell()).into(),
         };
         let mut places: Vec<_> = nodes().map(in_cells).collect();
-        unflatten(&mt, &mut places, is_free, |nodes| has_area(nodes.map(|node| mt.spot(node))));
+        unflatten(&mt, &mut places, is_free, |nodes| {
+            has_area(nodes.map(|node| mt.exact_stored(node)))
+        });
         let mut moved = Displacement::default();
         for (node, place) in nodes().zip(places) {
             let at = if is_free(node) { place.map(|x| x as i32) } else { cell(node) };
@@ -88,7 +90,7 @@ impl Forest {
             if is_free(node) {
                 moved.rounded = moved.rounded.max(far);
             } else {
-                moved.restored = moved.restored.max(from.distance(mt.spot(node)));
+                moved.restored = moved.restored.max(from.distance(mt.exact_stored(node)));
             }
             self.positions[order.nodes[node as usize] as usize] = to.into();
         }
@@ -109,7 +111,7 @@ impl Forest {
             }));
             let update = &mut self.updates[u];
             let apart = family[1].as_dvec3() - family[0].as_dvec3();
-            if slant.is_backwards(apart) && update.either && !update.glued {
+            if slant.is_backwards(apart) && update.children_swappable && !update.fused_with_child {
                 update.children.reverse();
                 update.wings.reverse();
             }
@@ -140,7 +142,7 @@ impl Forest {
             all += usize::from(top);
             all - usize::from(top)
         });
-        if all >= usize::from(MOST_LEVELS) {
+        if all >= usize::from(MAX_LEVELS) {
             return;
         }
         for (u, height) in heights.into_iter().enumerate() {

@@ -3,7 +3,7 @@
 use std::io::{self, Read, Write};
 use std::ops::{BitOrAssign, Shl};
 
-use crate::zigzag::{unzigzag, zigzag};
+use crate::pack::{unzigzag, zigzag};
 
 /// How hard to press: beyond this the dragon takes twice the time for half a percent.
 const COMPRESSION_LEVEL: i32 = 9;

@@ -10,7 +10,7 @@ use meshlod_simplify::Method;
 use super::write::{diagonal, lattice};
 use super::*;
 use crate::tests::walks::{Dice, each_by, forest, query, topology};
-use crate::{Cut, Effort, Forest, Implicit, Level, Model, Query};
+use crate::{Cut, Forest, Implicit, Level, Model, Query, UpdateLimits};
 
 /// With chunks so small that a little mesh has many.
 fn small() -> Storage {
@@ -67,7 +67,7 @@ fn a_file_gives_back_the_model() {
 fn what_was_read_can_be_narrow_and_answers_alike() {
     each(|what, mesh, forest| {
         let read = Archive::open(bytes(forest)).unwrap().read().unwrap().0;
-        let narrow = read.narrowed().unwrap_or_else(|| panic!("{what}"));
+        let narrow = read.compacted().unwrap_or_else(|| panic!("{what}"));
         assert_eq!(narrow.certify(), read.certify(), "{what}");
         let fewer = (40 - 22) * read.update_count() + 6 * read.root_count();
         // A table of 512 least levels, and where roots are.
@@ -77,14 +77,14 @@ fn what_was_read_can_be_narrow_and_answers_alike() {
         for _ in 0..40 {
             let query = query(&mut dice, mesh);
             for cut in [&mut was, &mut is] {
-                cut.update(&query, &Effort::default()).unwrap();
+                cut.update(&query, &UpdateLimits::default()).unwrap();
             }
             assert!(is.level() == was.level(), "{what}: {query:?}");
         }
-        let mut model = Model::of(&read).unwrap();
+        let mut model = Model::from_implicit(&read).unwrap();
         let query = Query::uniform(0.01);
         let expected = model.extractor().exact(&query).unwrap().clone();
-        assert!(model.narrow(), "{what}");
+        assert!(model.compact(), "{what}");
         assert!(*model.extractor().exact(&query).unwrap() == expected, "{what}");
     });
 }
@@ -93,7 +93,7 @@ fn what_was_read_can_be_narrow_and_answers_alike() {
 fn what_was_read_makes_a_model_again() {
     each(|what, mesh, forest| {
         let read = Archive::open(bytes(forest)).unwrap().read().unwrap().0;
-        let model = Model::of(&read).unwrap();
+        let model = Model::from_implicit(&read).unwrap();
         assert_eq!(model.implicit().certify(), read.certify(), "{what}");
         let mut extractor = model.extractor();
         let mut dice = Dice(11);
@@ -157,7 +157,7 @@ fn every_start_of_a_file_is_a_cut() {
 fn as_much_is_read_as_it_takes() {
     let forest = forest(&samples::knot(4000), Method::Qem);
     let archive = Archive::open(bytes(&forest)).unwrap();
-    let model = Model::of(&archive.read().unwrap().0).unwrap();
+    let model = Model::from_implicit(&archive.read().unwrap().0).unwrap();
     let query = Query::uniform(1.0);
     let mut spared = 0;
     for faces in [0, 50, 400, 900, 1500, 2200, 3000, 9000] {
@@ -168,7 +168,7 @@ fn as_much_is_read_as_it_takes() {
         let least = |level: &Level, mt: &Implicit| mt.least_error_above(&level.nodes);
         let read = archive.read_chunks(part.chunks).unwrap().0;
         // Which of those with equal errors are made is open, but not how small errors are.
-        let of_part = least(&part.level, Model::of(&read).unwrap().implicit());
+        let of_part = least(&part.level, Model::from_implicit(&read).unwrap().implicit());
         assert_eq!(of_part, least(whole, model.implicit()), "{faces}");
         spared += archive.chunk_count() - part.chunks;
     }

@@ -13,7 +13,7 @@ use super::quantize::Quantized;
 use super::{FileError, base, chunk};
 use crate::cut::Certificate;
 use crate::forest::Forest;
-use crate::implicit::{About, Implicit, Links, Loose, Order, Rule};
+use crate::implicit::{Dependencies, DetachedUpdate, Implicit, ModelInfo, Order, SplitRule};
 
 /// How a model is stored.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -56,15 +56,15 @@ pub(super) fn write(
     let (certificate, packed) = rayon::join(
         || mt.certify(),
         || {
-            let links = Links::in_order(&forest, &order, Rule::Strict);
+            let links = Dependencies::in_order(&forest, &order, SplitRule::Strict);
             pack(&mt, &plan_chunks(&mt, &links, storage.updates_per_chunk.max(1)), lattice)
         },
     );
     let (certificate, packed) = (certificate?, packed?);
     let header = Header {
-        about: About { frame: forest.frame, error_kind: forest.error_kind },
+        about: ModelInfo { frame: forest.frame, error_kind: forest.error_kind },
         lattice,
-        lossless: forest.exact.is_kept(),
+        lossless: forest.exact.is_lossless(),
         diagonal,
         rounding: forest.frame.length_of_model(moved),
         roots: mt.root_count() as u32,
@@ -86,14 +86,14 @@ struct Packed {
 fn pack(mt: &Implicit, plan: &ChunkPlan, lattice: Lattice) -> io::Result<Packed> {
     let nodes = (0..mt.root_count() as u32)
         .chain(plan.order.iter().flat_map(|&update| mt.children(update)));
-    let exact = mt.exact().picked(nodes);
-    let mut state = DecoderState::new(*mt.frame(), lattice, mt.loose_base(), exact);
+    let exact = mt.exact().select(nodes);
+    let mut state = DecoderState::new(*mt.frame(), lattice, mt.base_mesh(), exact);
     state.begin_run(0);
     state.updates.extend(plan.order.iter().map(|&update| {
-        let loose = mt.loose(update);
+        let loose = mt.detached(update);
         let number = |node| file_node(mt, &plan.place, node);
-        let odd = loose.odd.map(|odd| Box::new(odd.renumbered(number)));
-        Loose { parent: number(loose.parent), odd, ..loose }
+        let non_fan = loose.non_fan.map(|non_fan| Box::new(non_fan.renumbered(number)));
+        DetachedUpdate { parent: number(loose.parent), non_fan, ..loose }
     }));
     let write = |chunk: &PlannedChunk| {
         let body = chunk::write(&state, chunk.updates.clone())?;
@@ -101,7 +101,7 @@ fn pack(mt: &Implicit, plan: &ChunkPlan, lattice: Lattice) -> io::Result<Packed>
         let entry = ChunkEntry {
             stored: Section::of(&body),
             updates: updates.len() as u32,
-            faces: updates.iter().map(Loose::brought).sum::<usize>() as u32,
+            faces: updates.iter().map(DetachedUpdate::created_face_count).sum::<usize>() as u32,
             area: chunk.area,
         };
         Ok((entry, body))
@@ -113,7 +113,7 @@ fn pack(mt: &Implicit, plan: &ChunkPlan, lattice: Lattice) -> io::Result<Packed>
 
 /// The coarsest that is fine enough for a mesh of this diagonal.
 pub(super) fn lattice(forest: &Forest, storage: &Storage, diagonal: f64) -> Lattice {
-    let part = if forest.exact.is_kept() { LOSSLESS_ROUNDING } else { ROUNDING };
+    let part = if forest.exact.is_lossless() { LOSSLESS_ROUNDING } else { ROUNDING };
     let most = storage.rounding.unwrap_or(part * diagonal);
     Lattice::within(forest.frame.length(most))
 }

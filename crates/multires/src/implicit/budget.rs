@@ -9,7 +9,7 @@ use std::cmp::Reverse;
 use super::{Extractor, Faces, Implicit};
 use crate::level::Level;
 use crate::model::Model;
-use crate::need::Need;
+use crate::query::Criterion;
 use crate::query::{Query, QueryError};
 
 /// Urgencies of one bucket differ in these bits only: by a hundredth at most.
@@ -18,7 +18,7 @@ const LOW_BITS: u32 = 16;
 const BUCKETS: usize = 1 << (u32::BITS - 1 - LOW_BITS);
 
 /// The urgency of each update, as bits: those are in the order of the numbers.
-struct Urgencies<'m> {
+struct Priorities<'m> {
     model: &'m Model,
     of: Vec<u32>,
 }
@@ -46,13 +46,13 @@ impl Extractor<'_> {
     /// # Errors
     /// A query that is none.
     pub fn at_most(&mut self, faces: usize, query: &Query<'_>) -> Result<&Level, QueryError> {
-        let need = Need::new(query, self.model.implicit().frame())?;
+        let criterion = Criterion::new(query, self.model.implicit().frame())?;
         let room = faces.saturating_sub(self.model.faces().base_faces());
-        let mut urgencies = Urgencies::new(self.model, &need);
-        if !need.is_uniform() {
-            self.model.links().raise(&mut urgencies.of);
+        let mut priorities = Priorities::new(self.model, &criterion);
+        if !criterion.is_uniform() {
+            self.model.dependencies().raise(&mut priorities.of);
         }
-        urgencies.choose(room, &mut self.chosen);
+        priorities.choose(room, &mut self.chosen);
         Ok(self.write_chosen())
     }
 }
@@ -62,10 +62,10 @@ impl Weight {
     const INNER: Self = Self(u8::MAX);
 
     pub(crate) fn all(mt: &Implicit, faces: &Faces) -> Vec<Self> {
-        let weight = |update: u32| match mt.is_glued(update) {
-            _ if mt.is_inner(update) => Self::INNER,
-            true => Self((faces.brought(update) + faces.brought(update + 1)) as u8),
-            false => Self(faces.brought(update) as u8),
+        let weight = |update: u32| match mt.is_fused_with_child(update) {
+            _ if mt.is_fused_with_parent(update) => Self::INNER,
+            true => Self((faces.created_count(update) + faces.created_count(update + 1)) as u8),
+            false => Self(faces.created_count(update) as u8),
         };
         (0..mt.update_count() as u32).map(weight).collect()
     }
@@ -76,19 +76,19 @@ impl Weight {
     }
 }
 
-impl<'m> Urgencies<'m> {
+impl<'m> Priorities<'m> {
     /// As the updates' own balls have them.
-    fn new(model: &'m Model, need: &Need<'_>) -> Self {
+    fn new(model: &'m Model, criterion: &Criterion<'_>) -> Self {
         let mt = model.implicit();
         let balls = (0..mt.update_count() as u32).map(|update| mt.ball(update));
-        Self { model, of: need.urgencies(balls).into_iter().map(f32::to_bits).collect() }
+        Self { model, of: criterion.priorities(balls).into_iter().map(f32::to_bits).collect() }
     }
 
     /// Where those end that bring so many faces.
     fn limit(&self, room: usize) -> Limit {
         let mut buckets = vec![0u32; BUCKETS];
-        for (&urgency, weight) in self.of.iter().zip(self.model.weights()) {
-            buckets[bucket(urgency)] += weight.faces();
+        for (&priority, weight) in self.of.iter().zip(self.model.weights()) {
+            buckets[bucket(priority)] += weight.faces();
         }
         let mut limit = Limit { bucket: BUCKETS, room };
         // The lowest holds what is not urgent at all.
@@ -107,11 +107,11 @@ impl<'m> Urgencies<'m> {
         let mut limit = self.limit(room);
         let least = (limit.bucket << LOW_BITS) as u32;
         chosen.clear();
-        chosen.extend(self.of.iter().map(|&urgency| urgency >= least));
+        chosen.extend(self.of.iter().map(|&priority| priority >= least));
         let mut tight = Vec::new();
         let next = ((limit.bucket - 1) << LOW_BITS).max(1) as u32..least;
-        for (update, urgency) in self.of.iter().enumerate() {
-            if next.contains(urgency) && weights[update] != Weight::INNER {
+        for (update, priority) in self.of.iter().enumerate() {
+            if next.contains(priority) && weights[update] != Weight::INNER {
                 tight.push(update as u32);
             }
         }
@@ -130,13 +130,13 @@ impl<'m> Urgencies<'m> {
             };
             limit.room = rest;
             chosen[update as usize] = true;
-            if mt.is_glued(update) {
+            if mt.is_fused_with_child(update) {
                 chosen[update as usize + 1] = true;
             }
         }
     }
 }
 
-fn bucket(urgency: u32) -> usize {
-    (urgency >> LOW_BITS) as usize
+fn bucket(priority: u32) -> usize {
+    (priority >> LOW_BITS) as usize
 }

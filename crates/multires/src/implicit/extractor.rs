@@ -1,10 +1,10 @@
 //! Static extraction by the face list.
 
-use super::Below;
+use super::Subtree;
 use crate::frame::Length16;
 use crate::level::Level;
 use crate::model::Model;
-use crate::need::Need;
+use crate::query::Criterion;
 use crate::query::{Query, QueryError};
 
 /// Meshes out of a [`Model`] by its face list, one after the other in the same room.
@@ -16,7 +16,7 @@ pub struct Extractor<'m> {
     above: Vec<u32>,
     /// The updates made, as a walk down meets them.
     made: Vec<u32>,
-    stack: Vec<Below>,
+    stack: Vec<Subtree>,
     /// By update: whether it is to be made.
     pub(super) chosen: Vec<bool>,
 }
@@ -62,20 +62,21 @@ impl<'m> Extractor<'m> {
     /// A query that is none, or that the model was not [saturated](Model::saturate) for.
     pub fn saturated(&mut self, query: &Query<'_>) -> Result<&Level, QueryError> {
         let mt = self.model.implicit();
-        let need = Need::new(query, mt.frame())?;
-        let balls = need.eye().and_then(|eye| self.model.saturated_at(eye.slope));
+        let criterion = Criterion::new(query, mt.frame())?;
+        let balls = criterion.viewpoint().and_then(|eye| self.model.saturated_at(eye.slope));
         let balls = balls.ok_or(QueryError::NotSaturated)?;
-        Ok(self
-            .write(|update, node| mt.is_inner(update) || need.wants(&balls.ball(mt, update, node))))
+        Ok(self.write(|update, node| {
+            mt.is_fused_with_parent(update) || criterion.refines(&balls.ball(mt, update, node))
+        }))
     }
 
     /// The smallest cut that meets the query, by what updates need of each other.
     /// # Errors
     /// A query that is none.
     pub fn exact(&mut self, query: &Query<'_>) -> Result<&Level, QueryError> {
-        let need = Need::new(query, self.model.implicit().frame())?;
-        self.choose_wanted(&need);
-        self.model.links().close(self.model.implicit(), &mut self.chosen);
+        let criterion = Criterion::new(query, self.model.implicit().frame())?;
+        self.choose_wanted(&criterion);
+        self.model.dependencies().close(self.model.implicit(), &mut self.chosen);
         Ok(self.write_chosen())
     }
 
@@ -84,8 +85,8 @@ impl<'m> Extractor<'m> {
     /// # Errors
     /// A query that is none.
     pub fn wanted(&mut self, query: &Query<'_>) -> Result<&Level, QueryError> {
-        let need = Need::new(query, self.model.implicit().frame())?;
-        self.choose_wanted(&need);
+        let criterion = Criterion::new(query, self.model.implicit().frame())?;
+        self.choose_wanted(&criterion);
         Ok(self.write_chosen())
     }
 
@@ -98,13 +99,15 @@ impl<'m> Extractor<'m> {
     }
 
     /// Chooses what the need wants: the balls nest down the forest.
-    fn choose_wanted(&mut self, need: &Need<'_>) {
+    fn choose_wanted(&mut self, criterion: &Criterion<'_>) {
         let mt = self.model.implicit();
         let mut chosen = std::mem::take(&mut self.chosen);
         chosen.clear();
         chosen.resize(mt.update_count(), false);
-        let wants = |update, node| mt.is_inner(update) || need.wants(&mt.ball_at(update, node));
-        self.descend(wants, |below, is_wanted| {
+        let refines = |update, node| {
+            mt.is_fused_with_parent(update) || criterion.refines(&mt.ball_at(update, node))
+        };
+        self.descend(refines, |below, is_wanted| {
             if is_wanted {
                 chosen[below.start as usize] = true;
             }
@@ -131,7 +134,7 @@ impl<'m> Extractor<'m> {
             let leaves = below.leaf as usize..(below.leaf + below.end - below.start + 1) as usize;
             above[leaves].fill(level.nodes.len() as u32);
             level.nodes.push(below.node);
-            level.positions.push(mt.place(below.node));
+            level.positions.push(mt.stored_position(below.node));
         });
         level.exact = mt.exact().clone();
         self.model.faces().write(&made, &above, &mut level.faces);
@@ -143,13 +146,13 @@ impl<'m> Extractor<'m> {
     fn descend(
         &mut self,
         mut is_made: impl FnMut(u32, u32) -> bool,
-        mut visit: impl FnMut(Below, bool),
+        mut visit: impl FnMut(Subtree, bool),
     ) {
         let Self { model, stack, .. } = self;
         let mt = model.implicit();
         let mut leaf = 0;
         for (node, [start, end]) in mt.roots() {
-            stack.push(Below { node, start, end, leaf });
+            stack.push(Subtree { node, start, end, leaf });
             leaf += end - start + 1;
             if stack.len() < AT_ONCE && node as usize + 1 < mt.root_count() {
                 continue;
@@ -157,7 +160,7 @@ impl<'m> Extractor<'m> {
             while !stack.is_empty() {
                 let from = stack.len().saturating_sub(AT_ONCE);
                 let count = stack.len() - from;
-                let mut batch = [(Below::default(), false); AT_ONCE];
+                let mut batch = [(Subtree::default(), false); AT_ONCE];
                 for (slot, below) in batch.iter_mut().zip(stack.drain(from..)) {
                     *slot = (below, below.start < below.end && is_made(below.start, below.node));
                 }

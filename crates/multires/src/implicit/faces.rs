@@ -13,12 +13,12 @@ pub(crate) struct Faces {
     leaves: u32,
     /// The faces that are always there.
     base: Vec<[u32; 3]>,
-    brought: Brought,
+    created: CreatedFaces,
 }
 
 /// Two places for faces an update.
 #[derive(Clone, Debug)]
-enum Brought {
+enum CreatedFaces {
     /// Three times 21 bits.
     Small(Vec<[u64; 2]>),
     Large(Vec<[[u32; 3]; 2]>),
@@ -36,31 +36,31 @@ impl Faces {
         let leaves = order.leaves.len() as u32;
         (0..).zip(&order.leaves).for_each(|(number, &leaf)| leaf_of[leaf as usize] = number);
         let mut base = Vec::new();
-        let mut brought = vec![[[NONE; 3]; 2]; order.updates.len()];
-        for (face, &by) in forest.faces.iter().zip(&forest.brought) {
+        let mut created = vec![[[NONE; 3]; 2]; order.updates.len()];
+        for (face, &by) in forest.faces.iter().zip(&forest.created_by) {
             let face = face.map(|leaf| leaf_of[leaf as usize]);
             if by == NONE {
                 base.push(face);
                 continue;
             }
-            let places = &mut brought[order.place_of_update[by as usize] as usize];
+            let places = &mut created[order.index_of_update[by as usize] as usize];
             let free = places.iter_mut().find(|place| place[0] == NONE);
             *free.expect("no edge that is contracted has more than two faces") = face;
         }
-        let brought = if leaves <= SMALL {
-            Brought::Small(brought.iter().map(|faces| faces.map(pack)).collect())
+        let created = if leaves <= SMALL {
+            CreatedFaces::Small(created.iter().map(|faces| faces.map(pack)).collect())
         } else {
-            Brought::Large(brought)
+            CreatedFaces::Large(created)
         };
-        Self { leaves, base, brought }
+        Self { leaves, base, created }
     }
 
     /// What it takes in memory.
     pub(crate) fn bytes(&self) -> usize {
         size_of_val(&self.base[..])
-            + match &self.brought {
-                Brought::Small(faces) => size_of_val(&faces[..]),
-                Brought::Large(faces) => size_of_val(&faces[..]),
+            + match &self.created {
+                CreatedFaces::Small(faces) => size_of_val(&faces[..]),
+                CreatedFaces::Large(faces) => size_of_val(&faces[..]),
             }
     }
 
@@ -71,12 +71,12 @@ impl Faces {
 
     /// How many faces an update brings.
     #[inline]
-    pub(crate) fn brought(&self, update: u32) -> usize {
-        match &self.brought {
-            Brought::Small(faces) => {
+    pub(crate) fn created_count(&self, update: u32) -> usize {
+        match &self.created {
+            CreatedFaces::Small(faces) => {
                 faces[update as usize].iter().filter(|&&face| face != NO_FACE).count()
             }
-            Brought::Large(faces) => {
+            CreatedFaces::Large(faces) => {
                 faces[update as usize].iter().filter(|face| face[0] != NONE).count()
             }
         }
@@ -86,15 +86,15 @@ impl Faces {
     pub(super) fn write(&self, made: &[u32], above: &[u32], to: &mut Vec<[u32; 3]>) {
         let shown = |face: [u32; 3]| face.map(|leaf| above[leaf as usize]);
         to.extend(self.base.iter().map(|&face| shown(face)));
-        match &self.brought {
-            Brought::Small(faces) => {
+        match &self.created {
+            CreatedFaces::Small(faces) => {
                 for &update in made {
                     for &face in faces[update as usize].iter().filter(|&&face| face != NO_FACE) {
                         to.push(shown(unpack(face)));
                     }
                 }
             }
-            Brought::Large(faces) => {
+            CreatedFaces::Large(faces) => {
                 for &update in made {
                     for &face in faces[update as usize].iter().filter(|face| face[0] != NONE) {
                         to.push(shown(face));

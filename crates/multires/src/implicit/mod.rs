@@ -16,13 +16,13 @@
 
 mod assemble;
 mod budget;
+mod compact;
+mod dependencies;
 mod extractor;
 mod faces;
-mod links;
-mod narrow;
+mod from_forest;
 mod order;
-mod pack;
-mod places;
+mod positions;
 mod saturated;
 mod splits;
 
@@ -31,22 +31,22 @@ use std::collections::BTreeMap;
 use glam::{DVec3, Vec3};
 
 use crate::bounds::ErrorKind;
-use crate::exact::Exact;
-use crate::forest::{MOST_LEVELS, Odd};
+use crate::forest::{MAX_LEVELS, NonFanSplit};
 use crate::frame::{Frame, Length16};
 use crate::level::Level;
-use crate::need::{Ball, PackedBall};
+use crate::pack::ExactPositions;
+use crate::query::{Ball, PackedBall};
 
-pub(crate) use assemble::{About, Base, Loose, has_three_corners};
+pub(crate) use assemble::{BaseMesh, DetachedUpdate, ModelInfo, has_three_corners};
 pub(crate) use budget::Weight;
+pub(crate) use dependencies::Dependencies;
+pub use dependencies::SplitRule;
 pub use extractor::Extractor;
 pub(crate) use faces::Faces;
-pub(crate) use links::Links;
-pub use links::Rule;
 pub(crate) use order::Order;
-pub(crate) use saturated::Saturated;
+pub(crate) use saturated::SaturatedBalls;
 
-use self::places::Places;
+use self::positions::StoredPositions;
 use self::splits::{Local, Splits};
 
 /// All levels of a mesh, in 40 bytes a vertex or in 22.
@@ -59,14 +59,14 @@ pub struct Implicit {
     roots: u32,
     /// Where the updates below each root start, and the last of them end.
     trees: Vec<u32>,
-    places: Places,
+    positions: StoredPositions,
     /// Of the input's vertices, where they are kept as they were.
-    exact: Exact,
+    exact: ExactPositions,
     splits: Splits,
     /// The coarsest faces, by roots.
     base: Vec<[u32; 3]>,
     /// What wings cannot tell, by update, in nodes of this model.
-    odd: BTreeMap<u32, Odd>,
+    non_fan_splits: BTreeMap<u32, NonFanSplit>,
     full_faces: usize,
 }
 
@@ -82,7 +82,7 @@ pub(crate) enum Wing {
 }
 
 const FLAG: u32 = 1 << 31;
-const OPEN: u16 = MOST_LEVELS;
+const OPEN: u16 = MAX_LEVELS;
 const NO_WING: u8 = u8::MAX;
 const LAST_WING: u8 = u8::MAX - 1;
 
@@ -118,7 +118,7 @@ impl Implicit {
     /// # Panics
     /// Nodes are numbered below [`node_count`](Self::node_count).
     pub fn position(&self, node: u32) -> [f64; 3] {
-        self.exact.of(node).unwrap_or_else(|| self.frame.model(self.place(node)))
+        self.exact.get(node).unwrap_or_else(|| self.frame.model(self.stored_position(node)))
     }
 
     /// The nodes that a node is split into, which have higher numbers; `None` for those of the finest level.
@@ -131,7 +131,7 @@ impl Implicit {
 
     /// How many nodes there are, the vertices of all levels.
     pub fn node_count(&self) -> usize {
-        self.places.len()
+        self.positions.len()
     }
 
     /// The same model in 22 bytes a vertex: the places of two children in 12, all else of an update in 10.
@@ -141,23 +141,27 @@ impl Implicit {
     /// [`Forest`](crate::Forest); places further out than 32,767 cells, which no file has that moves
     /// vertices by .0017 % of the diagonal or more, unless a contraction left its box; 4,096 levels of one
     /// error.
-    pub fn narrowed(&self) -> Option<Self> {
-        let (places, splits) = (self.places.narrowed()?, self.splits.narrowed(self.roots)?);
-        let (trees, base, odd) = (self.trees.clone(), self.base.clone(), self.odd.clone());
+    pub fn compacted(&self) -> Option<Self> {
+        let (positions, splits) = (self.positions.compacted()?, self.splits.compacted(self.roots)?);
+        let (trees, base, non_fan_splits) =
+            (self.trees.clone(), self.base.clone(), self.non_fan_splits.clone());
         let exact = self.exact.clone();
-        Some(Self { places, splits, trees, base, odd, exact, ..*self })
+        Some(Self { positions, splits, trees, base, non_fan_splits, exact, ..*self })
     }
 
     /// What it takes in memory.
     pub fn bytes(&self) -> usize {
-        let odd =
-            |o: &Odd| size_of::<Odd>() + size_of_val(&o.second[..]) + size_of_val(&o.brought[..]);
+        let non_fan = |o: &NonFanSplit| {
+            size_of::<NonFanSplit>()
+                + size_of_val(&o.second[..])
+                + size_of_val(&o.created_faces[..])
+        };
         size_of_val(&self.trees[..])
-            + self.places.bytes()
+            + self.positions.bytes()
             + self.exact.bytes()
             + self.splits.bytes()
             + size_of_val(&self.base[..])
-            + self.odd.values().map(odd).sum::<usize>()
+            + self.non_fan_splits.values().map(non_fan).sum::<usize>()
     }
 
     pub(crate) fn frame(&self) -> &Frame {
@@ -166,24 +170,24 @@ impl Implicit {
 
     /// Where a node is, in stored units.
     #[inline]
-    pub(crate) fn place(&self, node: u32) -> [f32; 3] {
-        self.places.at(node)
+    pub(crate) fn stored_position(&self, node: u32) -> [f32; 3] {
+        self.positions.at(node)
     }
 
     /// The same of a node that is kept to the bit where that is, not rounded to what is stored.
-    pub(crate) fn spot(&self, node: u32) -> DVec3 {
-        let rounded = || Vec3::from(self.place(node)).as_dvec3();
-        self.exact.of(node).map_or_else(rounded, |exact| self.frame.point(exact.into()))
+    pub(crate) fn exact_stored(&self, node: u32) -> DVec3 {
+        let rounded = || Vec3::from(self.stored_position(node)).as_dvec3();
+        self.exact.get(node).map_or_else(rounded, |exact| self.frame.point(exact.into()))
     }
 
     /// The mesh of some faces.
-    pub(crate) fn level_of(&self, faces: Vec<[u32; 3]>) -> Level {
-        Level::of_nodes(self.frame, self.node_count(), |node| self.place(node), faces)
+    pub(crate) fn level_from_faces(&self, faces: Vec<[u32; 3]>) -> Level {
+        Level::from_nodes(self.frame, self.node_count(), |node| self.stored_position(node), faces)
             .with_exact(&self.exact)
     }
 
     /// The positions that nothing has rounded, by node.
-    pub(crate) fn exact(&self) -> &Exact {
+    pub(crate) fn exact(&self) -> &ExactPositions {
         &self.exact
     }
 
@@ -200,7 +204,7 @@ impl Implicit {
 
     /// The update that a node is a child of; `None` for roots.
     #[inline]
-    pub(crate) fn family(&self, node: u32) -> Option<u32> {
+    pub(crate) fn creator(&self, node: u32) -> Option<u32> {
         node.checked_sub(self.roots).map(|child| child / 2)
     }
 
@@ -228,14 +232,14 @@ impl Implicit {
 
     /// Whether the first child is split in the same go, by the next update.
     #[inline]
-    pub(crate) fn is_glued(&self, update: u32) -> bool {
+    pub(crate) fn is_fused_with_child(&self, update: u32) -> bool {
         self.splits.parent(update) & FLAG != 0
     }
 
     /// Whether an update goes in the same go as the one before it, which splits its node's parent.
     #[inline]
-    pub(crate) fn is_inner(&self, update: u32) -> bool {
-        update.checked_sub(1).is_some_and(|before| self.is_glued(before))
+    pub(crate) fn is_fused_with_parent(&self, update: u32) -> bool {
+        update.checked_sub(1).is_some_and(|before| self.is_fused_with_child(before))
     }
 
     /// Above those of all that it needs first.
@@ -258,7 +262,7 @@ impl Implicit {
 
     /// The least error of the updates that were made to come to these nodes; infinite for none.
     pub(crate) fn least_error_above(&self, nodes: &[u32]) -> Length16 {
-        let made = nodes.iter().filter_map(|&node| self.family(node));
+        let made = nodes.iter().filter_map(|&node| self.creator(node));
         made.map(|update| self.error(update)).min().unwrap_or(Length16::INFINITE)
     }
 
@@ -278,7 +282,7 @@ impl Implicit {
     #[inline]
     pub(crate) fn packed_ball(&self, update: u32, node: u32) -> PackedBall {
         let Local { radius, error, .. } = self.splits.local(update);
-        PackedBall { center: self.place(node), radius, error }
+        PackedBall { center: self.stored_position(node), radius, error }
     }
 
     /// The wings of an update.
@@ -292,8 +296,8 @@ impl Implicit {
     }
 
     /// What the wings of an update cannot tell.
-    pub(crate) fn odd(&self, update: u32) -> Option<&Odd> {
-        self.odd.get(&update)
+    pub(crate) fn non_fan_split(&self, update: u32) -> Option<&NonFanSplit> {
+        self.non_fan_splits.get(&update)
     }
 
     /// Each root, and the run of updates below it.
@@ -304,14 +308,14 @@ impl Implicit {
 
     /// The children of a node that is split, the second one first.
     #[inline]
-    fn below(&self, Below { start, end, leaf, .. }: Below) -> [Below; 2] {
+    fn below(&self, Subtree { start, end, leaf, .. }: Subtree) -> [Subtree; 2] {
         let [first, second] = self.children(start);
         let middle = self.splits.second(start) & !FLAG;
         // There is a leaf more than updates below the first child.
         let next = leaf + middle - start;
         [
-            Below { node: second, start: middle, end, leaf: next },
-            Below { node: first, start: start + 1, end: middle, leaf },
+            Subtree { node: second, start: middle, end, leaf: next },
+            Subtree { node: first, start: start + 1, end: middle, leaf },
         ]
     }
 }
@@ -319,39 +323,41 @@ impl Implicit {
 #[cfg(test)]
 impl Implicit {
     /// Copies with something of an update changed.
-    pub(crate) fn spoiled(&self, update: u32) -> Vec<Self> {
-        let spoil = |change: &dyn Fn(&mut Local)| {
+    pub(crate) fn corrupted(&self, update: u32) -> Vec<Self> {
+        let corrupt = |change: &dyn Fn(&mut Local)| {
             let mut wrong = self.clone();
-            let Splits::Wide(splits) = &mut wrong.splits else { unreachable!("none is narrow") };
+            let Splits::Full(splits) = &mut wrong.splits else { unreachable!("none is narrow") };
             change(&mut splits[update as usize].local);
             wrong
         };
         vec![
-            spoil(&|split| split.level = 0),
-            spoil(&|split| split.level = (split.level - 1).min(split.level)),
-            spoil(&|split| split.level += 1),
-            spoil(&|split| split.level = u16::MAX >> 1),
-            spoil(&|split| split.wings[1] = split.wings[0]),
-            spoil(&|split| split.wings.reverse()),
-            spoil(&|split| split.wings[0] = NO_WING),
-            spoil(&|split| split.wings[1] = 0),
+            corrupt(&|split| split.level = 0),
+            corrupt(&|split| split.level = (split.level - 1).min(split.level)),
+            corrupt(&|split| split.level += 1),
+            corrupt(&|split| split.level = u16::MAX >> 1),
+            corrupt(&|split| split.wings[1] = split.wings[0]),
+            corrupt(&|split| split.wings.reverse()),
+            corrupt(&|split| split.wings[0] = NO_WING),
+            corrupt(&|split| split.wings[1] = 0),
         ]
     }
 
     /// Copies in which an odd update brings a face to another place: with a child's corner at a node
     /// that is around, or at one that is mostly not there yet.
-    pub(crate) fn spoiled_odd(&self) -> Vec<Self> {
+    pub(crate) fn corrupted_non_fan(&self) -> Vec<Self> {
         let mut all = Vec::new();
-        for (&update, odd) in &self.odd {
+        for (&update, non_fan) in &self.non_fan_splits {
             let children = self.children(update);
-            let Some(face) = odd.brought.first() else { continue };
+            let Some(face) = non_fan.created_faces.first() else { continue };
             let Some(corner) = face.iter().position(|node| children.contains(node)) else {
                 continue;
             };
-            let others = odd.second.iter().flatten().copied().chain([self.node_count() as u32 - 1]);
+            let others =
+                non_fan.second.iter().flatten().copied().chain([self.node_count() as u32 - 1]);
             for other in others.filter(|node| !face.contains(node)) {
                 let mut wrong = self.clone();
-                wrong.odd.get_mut(&update).expect("a copy").brought[0][corner] = other;
+                wrong.non_fan_splits.get_mut(&update).expect("a copy").created_faces[0][corner] =
+                    other;
                 all.push(wrong);
             }
         }
@@ -361,7 +367,7 @@ impl Implicit {
 
 /// A node to go down from.
 #[derive(Clone, Copy, Debug, Default)]
-struct Below {
+struct Subtree {
     node: u32,
     /// The run of updates below it, of which the first splits it.
     start: u32,

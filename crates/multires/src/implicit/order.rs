@@ -9,13 +9,13 @@ pub(crate) struct Order {
     /// The forest's node of each.
     pub(crate) nodes: Vec<u32>,
     /// The place of each of the forest's nodes; [`NONE`] for a vertex without faces.
-    pub(crate) place: Vec<u32>,
+    pub(crate) index_of_node: Vec<u32>,
     /// The forest's leaves that are below roots, as a walk meets them.
     pub(crate) leaves: Vec<u32>,
     /// The forest's update of each.
     pub(crate) updates: Vec<u32>,
     /// The place of each of the forest's updates.
-    pub(crate) place_of_update: Vec<u32>,
+    pub(crate) index_of_update: Vec<u32>,
     /// How many updates are below each root and those before it; one more than roots.
     pub(crate) trees: Vec<u32>,
     /// Behind the last update below each update.
@@ -38,10 +38,10 @@ impl Order {
     ) -> Self {
         let mut this = Self {
             nodes: Vec::with_capacity(nodes),
-            place: vec![NONE; nodes],
+            index_of_node: vec![NONE; nodes],
             leaves: Vec::with_capacity(nodes - updates),
             updates: Vec::with_capacity(updates),
-            place_of_update: vec![NONE; updates],
+            index_of_update: vec![NONE; updates],
             trees: Vec::with_capacity(roots.len() + 1),
             ends: Vec::new(),
         };
@@ -54,14 +54,14 @@ impl Order {
         }
         this.find_ends(&pairs, &children);
         this.nodes.extend(pairs.into_iter().flatten());
-        this.nodes.iter().enumerate().for_each(|(i, &n)| this.place[n as usize] = i as u32);
+        this.nodes.iter().enumerate().for_each(|(i, &n)| this.index_of_node[n as usize] = i as u32);
         this
     }
 
     /// The model's update that makes a node of the forest; `None` for roots.
     pub(super) fn maker(&self, node: u32) -> Option<u32> {
         let roots = self.trees.len() as u32 - 1;
-        self.place[node as usize].checked_sub(roots).map(|child| child / 2)
+        self.index_of_node[node as usize].checked_sub(roots).map(|child| child / 2)
     }
 
     /// Numbers the updates below a node, and the leaves.
@@ -77,7 +77,7 @@ impl Order {
                 self.leaves.push(node);
                 continue;
             };
-            self.place_of_update[update as usize] = self.updates.len() as u32;
+            self.index_of_update[update as usize] = self.updates.len() as u32;
             self.updates.push(update);
             pairs.push([first, second]);
             stack.extend([second, first]);
@@ -91,7 +91,7 @@ impl Order {
     ) {
         self.ends = vec![0; pairs.len()];
         for (at, &[first, second]) in pairs.iter().enumerate().rev() {
-            let place = |child| children(child).map(|(u, _)| self.place_of_update[u as usize]);
+            let place = |child| children(child).map(|(u, _)| self.index_of_update[u as usize]);
             let last = place(second).or(place(first));
             self.ends[at] = last.map_or(at as u32 + 1, |last| self.ends[last as usize]);
         }

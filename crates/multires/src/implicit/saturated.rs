@@ -8,21 +8,25 @@
 
 use glam::Vec3;
 
-use super::{Implicit, Links};
-use crate::need::Ball;
+use super::{Dependencies, Implicit};
+use crate::query::Ball;
 use crate::query::QueryError;
 
 /// A radius and an error an update, 8 bytes; for tolerances of the range it was made for.
 #[derive(Clone, Debug)]
-pub(crate) struct Saturated {
+pub(crate) struct SaturatedBalls {
     /// The tolerances a unit of distance between which the balls nest.
     slopes: [f64; 2],
     balls: Vec<[f32; 2]>,
 }
 
-impl Saturated {
+impl SaturatedBalls {
     /// Nests the balls along what updates need.
-    pub(crate) fn new(mt: &Implicit, links: &Links, slopes: [f64; 2]) -> Result<Self, QueryError> {
+    pub(crate) fn new(
+        mt: &Implicit,
+        links: &Dependencies,
+        slopes: [f64; 2],
+    ) -> Result<Self, QueryError> {
         let is_range = slopes[0] > 0.0 && slopes[0] <= slopes[1] && slopes[1].is_finite();
         if !is_range {
             return Err(QueryError::BadLength { what: "a range of tolerances", value: slopes[0] });
@@ -45,18 +49,18 @@ impl Saturated {
     #[inline]
     pub(crate) fn ball(&self, mt: &Implicit, update: u32, node: u32) -> Ball {
         let [radius, error] = self.balls[update as usize].map(f64::from);
-        let center = Vec3::from(mt.place(node)).as_dvec3();
+        let center = Vec3::from(mt.stored_position(node)).as_dvec3();
         Ball { center, radius, error }
     }
 }
 
 /// Balls that reach, at both slopes, as far as those that need them do.
-fn nested(mt: &Implicit, links: &Links, slopes: [f64; 2]) -> Vec<[f32; 2]> {
+fn nested(mt: &Implicit, links: &Dependencies, slopes: [f64; 2]) -> Vec<[f32; 2]> {
     let reach = |ball: &Ball| slopes.map(|slope| ball.radius + ball.error / slope);
     let updates = 0..mt.update_count() as u32;
     let mut reaches: Vec<[f64; 2]> = updates.map(|update| reach(&mt.ball(update))).collect();
     let mut balls = vec![[0.0; 2]; reaches.len()];
-    for update in links.in_order_of_need() {
+    for update in links.dependents_first() {
         let own = mt.ball(update);
         let [radius, error] = chord(slopes, reaches[update as usize], own.error);
         balls[update as usize] = [radius, error];

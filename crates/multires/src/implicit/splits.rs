@@ -1,13 +1,13 @@
 //! What updates are, from their coarse sides: 16 bytes each, or 10.
 
-use super::narrow::Narrow;
+use super::compact::CompactSplits;
 use crate::frame::Length16;
 
 /// All updates of a model.
 #[derive(Clone, Debug)]
 pub(super) enum Splits {
-    Wide(Vec<Split>),
-    Narrow(Narrow),
+    Full(Vec<Split>),
+    Compact(CompactSplits),
 }
 
 /// An update, from its coarse side.
@@ -35,46 +35,46 @@ impl Splits {
     #[inline]
     pub(super) fn parent(&self, update: u32) -> u32 {
         match self {
-            Self::Wide(splits) => splits[update as usize].parent,
-            Self::Narrow(narrow) => narrow.parent(update),
+            Self::Full(splits) => splits[update as usize].parent,
+            Self::Compact(compact) => compact.parent(update),
         }
     }
 
     #[inline]
     pub(super) fn second(&self, update: u32) -> u32 {
         match self {
-            Self::Wide(splits) => splits[update as usize].second,
-            Self::Narrow(narrow) => narrow.second(update),
+            Self::Full(splits) => splits[update as usize].second,
+            Self::Compact(compact) => compact.second(update),
         }
     }
 
     #[inline]
     pub(super) fn local(&self, update: u32) -> Local {
         match self {
-            Self::Wide(splits) => splits[update as usize].local,
-            Self::Narrow(narrow) => narrow.local(update),
+            Self::Full(splits) => splits[update as usize].local,
+            Self::Compact(compact) => compact.local(update),
         }
     }
 
     pub(super) fn len(&self) -> usize {
         match self {
-            Self::Wide(splits) => splits.len(),
-            Self::Narrow(narrow) => narrow.len(),
+            Self::Full(splits) => splits.len(),
+            Self::Compact(compact) => compact.len(),
         }
     }
 
     pub(super) fn bytes(&self) -> usize {
         match self {
-            Self::Wide(splits) => size_of_val(&splits[..]),
-            Self::Narrow(narrow) => narrow.bytes(),
+            Self::Full(splits) => size_of_val(&splits[..]),
+            Self::Compact(compact) => compact.bytes(),
         }
     }
 
     /// The same in less room; `None` where numbers are too large for that.
-    pub(super) fn narrowed(&self, roots: u32) -> Option<Self> {
+    pub(super) fn compacted(&self, roots: u32) -> Option<Self> {
         match self {
-            Self::Wide(splits) => Narrow::new(splits, roots).map(Self::Narrow),
-            Self::Narrow(_) => Some(self.clone()),
+            Self::Full(splits) => CompactSplits::new(splits, roots).map(Self::Compact),
+            Self::Compact(_) => Some(self.clone()),
         }
     }
 }

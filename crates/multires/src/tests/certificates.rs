@@ -8,14 +8,14 @@ use meshlod_samples as samples;
 use meshlod_simplify::Method;
 
 use super::walks::{Dice, each, forest, query, topology};
-use crate::{Certificate, Cut, Flaw, Implicit, Query, Unsound};
+use crate::{Certificate, CertifyError, Cut, Flaw, Implicit, Query};
 
 #[test]
 fn what_is_built_has_a_certificate() {
     each(|what, _, forest| {
         let mt = Implicit::new(forest).unwrap();
         let certificate = mt.certify().unwrap_or_else(|why| panic!("{what}: {why}"));
-        assert_eq!(certificate.sound + certificate.odd, mt.update_count(), "{what}");
+        assert_eq!(certificate.sound + certificate.non_manifold, mt.update_count(), "{what}");
     });
 }
 
@@ -24,10 +24,10 @@ fn only_what_is_not_manifold_is_odd() {
     let certify = |mesh: &Mesh, method| Implicit::new(&forest(mesh, method)).unwrap().certify();
     for method in [Method::Qem, Method::LeeJang] {
         let sound = certify(&samples::terrain(600), method).unwrap();
-        assert!(sound.sound > 200 && sound.odd == 0, "{sound:?}");
+        assert!(sound.sound > 200 && sound.non_manifold == 0, "{sound:?}");
     }
     let turned = certify(&fixtures::moebius(40), Method::Qem).unwrap();
-    assert!(turned.odd > 0, "a strip of one side is not oriented somewhere: {turned:?}");
+    assert!(turned.non_manifold > 0, "a strip of one side is not oriented somewhere: {turned:?}");
 }
 
 /// Changes one field of one update at a time. Whatever passes must give only sound cuts: another level
@@ -41,12 +41,12 @@ fn what_has_a_certificate_is_sound() {
     let (mut passed, mut refused) = (0, 0);
     for method in [Method::Qem, Method::LeeJang] {
         let mt = Implicit::new(&forest(&mesh, method)).unwrap();
-        assert_eq!(mt.certify(), Ok(Certificate { sound: mt.update_count(), odd: 0 }));
-        for changed in (0..mt.update_count() as u32).flat_map(|update| mt.spoiled(update)) {
+        assert_eq!(mt.certify(), Ok(Certificate { sound: mt.update_count(), non_manifold: 0 }));
+        for changed in (0..mt.update_count() as u32).flat_map(|update| mt.corrupted(update)) {
             if let Err(unsound) = changed.certify() {
                 reasons.insert(match unsound {
-                    Unsound::Update { why, .. } => Some(why),
-                    Unsound::FullFaces { .. } => None,
+                    CertifyError::Update { why, .. } => Some(why),
+                    CertifyError::FullFaces { .. } => None,
                 });
                 refused += 1;
                 continue;
@@ -66,11 +66,11 @@ fn what_has_a_certificate_is_sound() {
 #[test]
 fn a_face_at_the_wrong_place_is_found_beside_what_is_not_manifold_too() {
     let mt = Implicit::new(&forest(&fixtures::moebius(60), Method::Qem)).unwrap();
-    let all = mt.spoiled_odd();
+    let all = mt.corrupted_non_fan();
     assert!(!all.is_empty());
     for changed in all {
         let found = changed.certify();
-        assert!(matches!(found, Err(Unsound::Update { why: Flaw::NoWing, .. })), "{found:?}");
+        assert!(matches!(found, Err(CertifyError::Update { why: Flaw::NoWing, .. })), "{found:?}");
         // Without a proof there may be cracks, but no face whose corners are not there.
         let level = Cut::at(&changed, &Query::uniform(0.0)).unwrap().level();
         assert!(level.mesh().validate().is_ok());

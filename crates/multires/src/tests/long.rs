@@ -5,7 +5,7 @@ use meshlod_samples as samples;
 
 use super::walks::{Dice, METHODS, forest, in_forest, topology};
 use crate::implicit::Order;
-use crate::{Camera, Effort, Explicit, Focus, Model, Query, Tolerance};
+use crate::{Explicit, Focus, Model, Query, Tolerance, UpdateLimits, ViewCamera};
 
 /// Somebody who goes about a mesh and asks.
 struct Walker {
@@ -46,7 +46,7 @@ impl Walker {
         let (center, diagonal) = (mesh.bounds().center(), mesh.bounds().diagonal());
         let place = |by: f64| [0, 1, 2].map(|k| center[k] + diagonal * (self.at[k] + by));
         let size = self.size.exp2();
-        let camera = Camera {
+        let camera = ViewCamera {
             eye: [0, 1, 2].map(|k| center[k] + diagonal * 3.0 * self.at[k]),
             look: center,
             up: [0.1, 0.3, 1.0],
@@ -62,7 +62,7 @@ impl Walker {
             _ => Focus::Frustum(camera),
         };
         let tolerance = match self.by_pixels {
-            true => Tolerance::Pixels { camera, most: (self.coarse + 9.0).exp2() },
+            true => Tolerance::Pixels { camera, pixels: (self.coarse + 9.0).exp2() },
             false => Tolerance::Uniform(diagonal * self.coarse.exp2()),
         };
         Query { focus, tolerance }
@@ -82,12 +82,12 @@ fn a_thousand_steps_in_every_way_of_building() {
             let expected = topology(&mesh);
             for step in 0..1000 {
                 let query = walker.next(&mesh);
-                let some = Effort { changes: Some(step % 5), time: None };
+                let some = UpdateLimits { changes: Some(step % 5), time: None };
                 let begun = cut.update(&query, &some).unwrap();
                 if step % 4 == 0 {
                     assert_eq!(topology(&cut.level().mesh()), expected, "{step}: {query:?}");
                 }
-                let ended = cut.update(&query, &Effort::default()).unwrap();
+                let ended = cut.update(&query, &UpdateLimits::default()).unwrap();
                 assert!(ended.done);
                 changes += begun.splits + begun.merges + ended.splits + ended.merges;
                 let level = cut.level();

@@ -7,7 +7,7 @@ use meshlod_samples as samples;
 use meshlod_simplify::Method;
 
 use super::walks::{Dice, cone, forest, topology};
-use crate::{Camera, Cut, Effort, Implicit, Query, Tolerance};
+use crate::{Cut, Implicit, Query, Tolerance, UpdateLimits, ViewCamera};
 
 /// The view of an eye that wanders around a mesh, in steps of very different lengths.
 struct Wanderer {
@@ -24,7 +24,7 @@ impl Wanderer {
         let step = (-9.0 * self.dice.roll()).exp2();
         // Drawn home from afar.
         self.eye = self.eye.map(|x| 0.97 * x + step * (self.dice.roll() - 0.5));
-        let camera = Camera {
+        let camera = ViewCamera {
             eye: self.eye,
             look: self.eye.map(|x| x + 1.0),
             up: [0.0, 0.0, 1.0],
@@ -47,9 +47,9 @@ fn a_thousand_steps_later_it_is_the_static_answer() {
         let (mut looks, mut changes) = (0, 0);
         for step in 0..1000 {
             let query = wanderer.next(1.0);
-            let change = cut.update(&query, &Effort::default()).unwrap();
+            let change = cut.update(&query, &UpdateLimits::default()).unwrap();
             assert!(change.done);
-            looks += change.looks;
+            looks += change.inspected;
             changes += change.splits + change.merges;
             if step % 7 == 0 {
                 let fresh = Cut::at(&mt, &query).unwrap().level();
@@ -68,7 +68,7 @@ fn what_went_under_another_question_is_looked_at_when_it_comes_back() {
     let (mut cut, mut wanderer) = (Cut::new(&mt), Wanderer::new());
     for step in 0..600 {
         let query = wanderer.next([1.0, 4.0, 0.5][step / 20 % 3]);
-        cut.update(&query, &Effort::default()).unwrap();
+        cut.update(&query, &UpdateLimits::default()).unwrap();
         let fresh = Cut::at(&mt, &query).unwrap().level();
         assert_eq!(cut.level().canonical(), fresh.canonical(), "step {step}");
     }
@@ -79,14 +79,14 @@ fn patches_lead_from_frame_to_frame() {
     for mesh in [samples::gyroid(2000), cone(1500)] {
         let mt = model(&mesh, Method::LindstromTurk);
         let (mut cut, mut wanderer) = (Cut::new(&mt), Wanderer::new());
-        cut.update(&wanderer.next(1.0), &Effort::default()).unwrap();
+        cut.update(&wanderer.next(1.0), &UpdateLimits::default()).unwrap();
         let mut known = Mirror::of(&cut);
         for _ in 0..300 {
             let query = wanderer.next(1.0);
-            cut.update(&query, &Effort::default()).unwrap();
+            cut.update(&query, &UpdateLimits::default()).unwrap();
             for patch in cut.patches() {
-                assert_ne!(patch.out, patch.into);
-                known.patch(patch.place, patch.out, patch.into);
+                assert_ne!(patch.old, patch.new);
+                known.patch(patch.slot, patch.old, patch.new);
             }
             assert_eq!(known.canonical(), Mirror::of(&cut).canonical());
             let fresh = Cut::at(&mt, &query).unwrap().level();
@@ -125,12 +125,12 @@ fn interrupted_anywhere_it_is_a_mesh_and_gets_there_in_the_end() {
             if step % 20 == 0 {
                 query = wanderer.next(0.5);
             }
-            let few = Effort { changes: Some(step % 7), time: None };
+            let few = UpdateLimits { changes: Some(step % 7), time: None };
             let change = cut.update(&query, &few).unwrap();
             assert!(change.splits + change.merges <= step % 7);
             assert_eq!(topology(&cut.level().mesh()), expected, "step {step}");
         }
-        assert!(cut.update(&query, &Effort::default()).unwrap().done);
+        assert!(cut.update(&query, &UpdateLimits::default()).unwrap().done);
         let fresh = Cut::at(&mt, &query).unwrap().level();
         assert_eq!(cut.level().canonical(), fresh.canonical());
     }
@@ -142,7 +142,7 @@ fn without_time_it_gets_there_piece_by_piece() {
     let mt = model(&mesh, Method::Qem);
     let expected = topology(&mesh);
     let mut wanderer = Wanderer::new();
-    let none = Effort { changes: None, time: Some(Duration::ZERO) };
+    let none = UpdateLimits { changes: None, time: Some(Duration::ZERO) };
     for step in 0..20 {
         let mut cut = Cut::at(&mt, &Query::uniform(1e-4)).unwrap();
         let (fine, mut looks) = (cut.face_count(), 0);
@@ -153,11 +153,11 @@ fn without_time_it_gets_there_piece_by_piece() {
                 query = wanderer.next(2.0);
             }
             let change = cut.update(&query, &none).unwrap();
-            assert!(change.looks <= 256 && change.splits + change.merges == 0);
-            looks += change.looks;
+            assert!(change.inspected <= 256 && change.splits + change.merges == 0);
+            looks += change.inspected;
         }
         assert_eq!((cut.face_count(), topology(&cut.level().mesh())), (fine, expected));
-        let change = cut.update(&query, &Effort::default()).unwrap();
+        let change = cut.update(&query, &UpdateLimits::default()).unwrap();
         let fresh = Cut::at(&mt, &query).unwrap().level();
         assert!(change.done && cut.level().canonical() == fresh.canonical(), "step {step}");
         assert!(step < 2 || looks > 300, "it goes on where it stopped: {looks}");
@@ -175,10 +175,10 @@ fn with_hysteresis_it_lies_between_two_answers() {
     let (mut trembling, mut calm) = (0, 0);
     for _ in 0..300 {
         let query = wanderer.next(1.0);
-        let Tolerance::Pixels { camera, most } = query.tolerance else { unreachable!() };
-        let finer = Query::pixels(camera, most / 1.5);
-        let change = cut.update(&query, &Effort::default()).unwrap();
-        let least = still.update(&query, &Effort::default()).unwrap();
+        let Tolerance::Pixels { camera, pixels } = query.tolerance else { unreachable!() };
+        let finer = Query::pixels(camera, pixels / 1.5);
+        let change = cut.update(&query, &UpdateLimits::default()).unwrap();
+        let least = still.update(&query, &UpdateLimits::default()).unwrap();
         calm += change.splits + change.merges;
         trembling += least.splits + least.merges;
         let most = Cut::at(&mt, &finer).unwrap();

@@ -10,8 +10,8 @@ use meshlod_simplify::{Method, Options};
 
 use crate::implicit::Order;
 use crate::{
-    Camera, Cut, Effort, Explicit, ExplicitCut, Focus, Forest, Implicit, Level, Model, Query, Rule,
-    Tolerance,
+    Cut, Explicit, ExplicitCut, Focus, Forest, Implicit, Level, Model, Query, SplitRule, Tolerance,
+    UpdateLimits, ViewCamera,
 };
 
 pub(crate) const METHODS: [Method; 5] = [
@@ -71,7 +71,7 @@ impl Dice {
 /// A query like others and then again not.
 pub(crate) fn query(dice: &mut Dice, mesh: &Mesh) -> Query<'static> {
     let diagonal = mesh.bounds().diagonal();
-    let camera = Camera {
+    let camera = ViewCamera {
         eye: dice.place(mesh).map(|x| x + diagonal * (0.1 + dice.roll())),
         look: mesh.bounds().center(),
         up: [0.0, 0.3, 1.0],
@@ -92,7 +92,7 @@ pub(crate) fn query(dice: &mut Dice, mesh: &Mesh) -> Query<'static> {
     let tolerance = match (dice.roll() * 4.0) as usize {
         0 => Tolerance::Uniform(0.0),
         1 => Tolerance::Uniform(diagonal * (-4.0 - 10.0 * dice.roll()).exp2()),
-        _ => Tolerance::Pixels { camera, most: (6.0 * dice.roll() - 2.0).exp2() },
+        _ => Tolerance::Pixels { camera, pixels: (6.0 * dice.roll() - 2.0).exp2() },
     };
     Query { focus, tolerance }
 }
@@ -138,7 +138,7 @@ fn split_nodes(level: &Level, mt: &Implicit, order: &Order) -> BTreeSet<u32> {
     let mut above = BTreeSet::new();
     for &node in &level.nodes {
         let mut node = node;
-        while let Some(up) = mt.family(node) {
+        while let Some(up) = mt.creator(node) {
             node = mt.parent(up);
             if !above.insert(order.nodes[node as usize]) {
                 break;
@@ -166,8 +166,8 @@ fn every_encoding_gives_the_same_cuts_by_any_way() {
     each(|what, mesh, forest| {
         let order = Order::new(forest);
         let explicit = Explicit::new(forest);
-        let [strict, loose] =
-            [Rule::Strict, Rule::Wings].map(|rule| Model::with_rule(forest, rule).unwrap());
+        let [strict, loose] = [SplitRule::Strict, SplitRule::Wings]
+            .map(|rule| Model::with_rule(forest, rule).unwrap());
         let implicit = strict.implicit();
         let [mut extractor, mut weaker] = [&strict, &loose].map(Model::extractor);
         let (mut oracle, mut cut) = (ExplicitCut::new(&explicit), strict.cut());
@@ -178,7 +178,7 @@ fn every_encoding_gives_the_same_cuts_by_any_way() {
             assert_eq!(topology(&level.mesh()), topology(mesh), "{what} {query:?}");
             oracle.update(&query).unwrap();
             assert_eq!(oracle.level().canonical(), level.canonical(), "{what} {query:?}");
-            let change = cut.update(&query, &Effort::default()).unwrap();
+            let change = cut.update(&query, &UpdateLimits::default()).unwrap();
             assert!(change.done);
             let found = in_forest(&cut.level(), &order);
             assert_eq!(found, level.canonical(), "{what} {query:?}");
@@ -197,10 +197,10 @@ fn every_encoding_gives_the_same_cuts_by_any_way() {
             // The next update would be too much: that of a face brings up to four.
             assert!(best.faces.len() == all || best.faces.len() + 4 > most, "{what} {query:?}");
             assert!(explicit.cut_of(&split_nodes(best, implicit, &order)).is_some(), "{what}");
-            if let (Focus::Everything, Tolerance::Pixels { camera, most }) =
+            if let (Focus::Everything, Tolerance::Pixels { camera, pixels }) =
                 (&query.focus, &query.tolerance)
             {
-                let slope = most * camera.pixel();
+                let slope = pixels * camera.pixel();
                 let range = [slope / (1.0 + dice.roll()), slope * (1.0 + dice.roll())];
                 let mut saturated = strict.clone();
                 saturated.saturate(range).unwrap();
@@ -241,7 +241,7 @@ fn cuts_cover_the_surface_once() {
                 (0.05 * (near.distance(at.into()) - radius)).clamp(1e-4, 0.03)
             };
             let query = Query { focus: Focus::Everything, tolerance: Tolerance::Field(&field) };
-            cut.update(&query, &Effort::default()).unwrap();
+            cut.update(&query, &UpdateLimits::default()).unwrap();
             assert!(cut.face_count() < mt.full_faces() * 9 / 10, "{}", cut.face_count());
             let level = cut.level();
             let [found, enclosed] = measure(&level.mesh());
@@ -267,7 +267,7 @@ fn odd_places_are_told_face_by_face() {
             let mut dice = Dice(5);
             for _ in 0..10 {
                 let query = query(&mut dice, &mesh);
-                cut.update(&query, &Effort::default()).unwrap();
+                cut.update(&query, &UpdateLimits::default()).unwrap();
                 let level = explicit.extract(&query).unwrap();
                 assert_eq!(in_forest(&cut.level(), &order), level.canonical(), "{query:?}");
             }

@@ -4,8 +4,8 @@ use anyhow::Result;
 use meshlod::measure::{DistanceOptions, distance};
 use meshlod::mesh::{Bounds, Mesh};
 use meshlod::multires::{
-    Archive, Camera, Cut, Effort, Explicit, Focus, Forest, Implicit, Model, Query, Recorder, Rule,
-    Storage, Tolerance,
+    Archive, Cut, Explicit, Focus, Forest, Implicit, Model, Query, Recorder, SplitRule, Storage,
+    Tolerance, UpdateLimits, ViewCamera,
 };
 use meshlod::simplify::Simplifier;
 use meshlod::{Options, Target};
@@ -88,7 +88,7 @@ pub fn section(_: &Project) -> Result<String> {
     Ok(format!(
         "By `lindstrom-turk`, evened out, one core, CPU time, the least of {ROUNDS} rounds. Files move vertices by .005 % of the diagonal \
          at most, but for those of triangles that would lose their area. The camera is 1.2 diagonals from the \
-         middle, 1920 × 1080, 46° high. Right triangles are in docs/notes/right-triangles.md, more in \
+         middle, 1920 × 1080, 46° high. Right triangles are in docs/notes/rtin.md, more in \
          docs/notes/multires.md. Again: `cargo xtask results levels`.\n\n{}{}{}{}{following}",
         room.markdown(),
         build.markdown(),
@@ -112,7 +112,7 @@ fn built(file: &str, mesh: &Mesh) -> Result<(Forest, Vec<String>)> {
     };
     let mut forest = record()?;
     // As the command line does.
-    forest.even_out();
+    forest.smooth_errors();
     let recorded = least_seconds(ROUNDS, record);
     let written = least_seconds(ROUNDS, || Archive::write(&forest, &Storage::default()));
     let packed = least_seconds(ROUNDS, || Implicit::new(&forest));
@@ -198,13 +198,13 @@ fn answered(file: &str, bounds: &Bounds, forest: &Forest) -> Result<Vec<String>>
 /// The model as a file gives it back, in half the memory.
 fn narrowed(forest: &Forest) -> Result<Option<Implicit>> {
     let bytes = Archive::write(forest, &Storage::default())?.0;
-    Ok(Archive::open(bytes)?.read()?.0.narrowed())
+    Ok(Archive::open(bytes)?.read()?.0.compacted())
 }
 
 /// How much larger cuts are that nothing is forced for, and how much smaller those of the weaker rule.
 fn beyond(file: &str, bounds: &Bounds, forest: &Forest) -> Result<Vec<String>> {
     let mut model = Model::new(forest)?;
-    let weaker = Model::with_rule(forest, Rule::Wings)?;
+    let weaker = Model::with_rule(forest, SplitRule::Wings)?;
     let query = |pixels| Query::pixels(camera(bounds, 0.0, 1.2), pixels);
     let percent =
         |of: usize, than: usize| format!("{:+.1}", 100.0 * (of as f64 / than as f64 - 1.0));
@@ -278,7 +278,7 @@ fn frames(
     let (mut times, mut changed) = (Vec::new(), 0);
     for frame in 1..=FRAMES {
         let query = query(frame);
-        times.push(least_seconds(1, || cut.update(&query, &Effort::default()).map(|_| ())));
+        times.push(least_seconds(1, || cut.update(&query, &UpdateLimits::default()).map(|_| ())));
         changed += cut.patches().count();
     }
     let all: f64 = times.iter().sum();
@@ -287,9 +287,9 @@ fn frames(
     Ok(Frames { median, a_triangle: all * 1e9 / changed.max(1) as f64 })
 }
 
-fn camera(bounds: &Bounds, angle: f64, distance: f64) -> Camera {
+fn camera(bounds: &Bounds, angle: f64, distance: f64) -> ViewCamera {
     let (center, reach) = (bounds.center(), distance * bounds.diagonal());
     let (sin, cos) = angle.sin_cos();
     let eye = [center[0] + reach * sin, center[1], center[2] + reach * cos];
-    Camera { eye, look: center, up: [0.0, 1.0, 0.0], fov_rad: 0.8, viewport: [1920, 1080] }
+    ViewCamera { eye, look: center, up: [0.0, 1.0, 0.0], fov_rad: 0.8, viewport: [1920, 1080] }
 }

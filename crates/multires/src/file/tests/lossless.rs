@@ -80,11 +80,11 @@ fn the_finest_level_is_the_input() {
         assert!(is_input(&within), "{what}: within");
         assert!(is_input(&cut.level_within(&Focus::Everything).unwrap()), "{what}: cut within");
         // Some have a vertex too far out for that.
-        if let Some(narrow) = read.narrowed() {
+        if let Some(narrow) = read.compacted() {
             assert!(is_input(&Cut::at(&narrow, &all).unwrap().level()), "{what}: narrow");
             narrow_ones += 1;
         }
-        let model = Model::of(&read).unwrap();
+        let model = Model::from_implicit(&read).unwrap();
         let mut extractor = model.extractor();
         assert!(is_input(extractor.uniform(0.0).unwrap()), "{what}: uniform");
         assert!(is_input(extractor.exact(&all).unwrap()), "{what}: exact");
@@ -139,12 +139,12 @@ fn every_start_of_a_lossless_file_is_a_cut() {
         let input: BTreeSet<Bits> = mesh.positions.iter().map(|&p| bits(p)).collect();
         let mut most = 0;
         for chunks in 0..=archive.chunk_count() {
-            let model = Model::of(&archive.read_chunks(chunks).unwrap().0).unwrap();
-            assert!(model.implicit().exact().is_kept(), "{what}, {chunks} chunks");
+            let model = Model::from_implicit(&archive.read_chunks(chunks).unwrap().0).unwrap();
+            assert!(model.implicit().exact().is_lossless(), "{what}, {chunks} chunks");
             let mut extractor = model.extractor();
             let level = extractor.uniform(0.0).unwrap();
             let places = level.nodes.iter().zip(level.mesh().positions);
-            let exact = places.filter(|(node, _)| model.implicit().exact().of(**node).is_some());
+            let exact = places.filter(|(node, _)| model.implicit().exact().get(**node).is_some());
             let exact: Vec<_> = exact.map(|(_, place)| bits(place)).collect();
             assert!(exact.iter().all(|place| input.contains(place)), "{what}");
             assert!(exact.len() >= most, "{what}");
@@ -199,7 +199,7 @@ fn balls_are_around_vertices_where_they_are() {
         for u in 0..forest.update_count() {
             let ball = forest.ball(u);
             for &node in forest.ring(u).iter().chain(&forest.updates[u].children) {
-                let apart = ball.center.distance(forest.spot(node));
+                let apart = ball.center.distance(forest.exact_stored(node));
                 assert!(apart <= ball.radius, "{way}: update {u}, node {node}");
             }
         }

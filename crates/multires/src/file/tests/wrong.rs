@@ -6,7 +6,7 @@ use meshlod_samples as samples;
 use meshlod_simplify::Options;
 
 use super::small;
-use crate::exact::Exact;
+use crate::pack::ExactPositions;
 use crate::{Archive, Forest};
 
 /// Where the header has the length of the base, and where the index starts, which has that of each chunk;
@@ -87,9 +87,9 @@ fn flags_that_are_not_known_are_refused() {
 fn every_vertex_of_the_finest_mesh_has_its_position() {
     for without in [0, 57] {
         let mut forest = lossless(&samples::torus(200));
-        let mut exact = Exact::kept();
+        let mut exact = ExactPositions::lossless();
         let others = (0..forest.vertices as u32).filter(|&leaf| leaf != without);
-        others.for_each(|leaf| exact.push(leaf, forest.exact.of(leaf).unwrap()));
+        others.for_each(|leaf| exact.push(leaf, forest.exact.get(leaf).unwrap()));
         forest.exact = exact;
         let archive = Archive::open(written(&forest)).unwrap();
         let why = archive.read().unwrap_err().to_string();
@@ -107,9 +107,9 @@ fn a_position_is_where_its_place_is() {
     let cases: [(usize, f64); 4] = [(0, 2e38), (1, 1e-3), (2, -1e-3), (0, f64::MAX)];
     for (axis, off) in cases {
         let mut forest = lossless(&samples::torus(200));
-        let mut exact = Exact::kept();
+        let mut exact = ExactPositions::lossless();
         for leaf in 0..forest.vertices as u32 {
-            let mut position = forest.exact.of(leaf).unwrap();
+            let mut position = forest.exact.get(leaf).unwrap();
             position[axis] += if leaf == 31 { off } else { 0.0 };
             exact.push(leaf, position);
         }

@@ -1,0 +1,84 @@
+//! What the cut looks at: what is due, or everything there is.
+
+use super::front::VertexState;
+use super::schedule::ScheduleEntry;
+use super::{Criteria, Cut, Meter};
+
+impl Cut<'_> {
+    /// Begins to look at every update whose vertex is there, or was and has been split.
+    ///
+    /// Cost: of what is on the schedule.
+    pub(super) fn restart(&mut self) {
+        // Also what is not there: it may come back.
+        self.schedule.clear(|node| self.front.set_scheduled(node, false));
+        self.to_split.clear();
+        self.to_merge.clear();
+        self.uninspected.clear();
+        self.uninspected.extend(self.front.mt.roots().map(|(root, _)| root));
+    }
+
+    /// Looks at what is due and goes on with what is yet to be seen, coarse before fine.
+    pub(super) fn inspect_pending(&mut self, criteria: &Criteria<'_>, meter: &mut Meter) {
+        while let Some(entry) = self.schedule.due.pop() {
+            self.inspect_due(entry, criteria);
+            if !meter.may_inspect_more() {
+                return;
+            }
+        }
+        let mt = self.front.mt;
+        while let Some(node) = self.uninspected.pop_front() {
+            let Some(update) = mt.update_of(node) else { continue };
+            if self.front.state(node) == VertexState::Split {
+                self.uninspected.extend(mt.children(update));
+            }
+            // It may have been split, and seen, since it was put here.
+            if mt.is_fused_with_parent(update) || self.front.is_scheduled(node) {
+                continue;
+            }
+            self.inspect(update, node, criteria);
+            if !meter.may_inspect_more() {
+                return;
+            }
+        }
+    }
+
+    /// Looks at what is due.
+    #[inline]
+    fn inspect_due(&mut self, entry: ScheduleEntry, criteria: &Criteria<'_>) {
+        if !self.schedule.add_again(entry) {
+            self.front.set_scheduled(entry.node, false);
+            self.inspect(entry.update, entry.node, criteria);
+        }
+    }
+
+    /// Puts an update on the list that its need asks for; and looks again when that may have turned.
+    fn inspect(&mut self, update: u32, node: u32, criteria: &Criteria<'_>) {
+        let ball = self.front.mt.ball_at(update, node);
+        let wanted = criteria.wanted(&ball);
+        match (self.front.state(node), wanted) {
+            (VertexState::Split, [_, false]) => self.to_merge.push(update),
+            (VertexState::Active, [true, _]) => self.to_split.push(update),
+            (VertexState::Split | VertexState::Active, _) => {}
+            (VertexState::Absent, _) => return,
+        }
+        let center = self.front.mt.stored_position(node);
+        let entry = ScheduleEntry { update, node, center, span: criteria.span(&ball, wanted) };
+        if self.schedule.add(entry) {
+            self.front.set_scheduled(node, true);
+        }
+    }
+
+    /// Looks at the children of a split for the first time.
+    pub(super) fn inspect_children(&mut self, update: u32, criteria: &Criteria<'_>) {
+        let mt = self.front.mt;
+        let first_is_gone = usize::from(mt.is_fused_with_child(update));
+        for node in mt.children(update).into_iter().skip(first_is_gone) {
+            let Some(update) = mt.update_of(node) else { continue };
+            if !self.front.is_scheduled(node) {
+                self.inspect(update, node, criteria);
+            } else if criteria.refine.refines(&mt.ball_at(update, node)) {
+                self.to_split.push(update);
+            }
+        }
+    }
+}

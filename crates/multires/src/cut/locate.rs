@@ -1,0 +1,141 @@
+//! What of a cut is at a place: found from the roots down, where balls nest, not by looking at all.
+//!
+//! A triangle lies in the ball of its corner of the highest level; one between leaves only in those of
+//! the updates that made them. So whoever goes down to every vertex above which all balls reach the
+//! place, and looks at the triangles there, has met all that do.
+
+use glam::DVec3;
+use meshlod_spatial::closest_point;
+
+use super::Cut;
+use super::front::VertexState;
+use super::triangles::Spoke;
+use crate::level::Level;
+use crate::query::Region;
+use crate::query::{Focus, QueryError};
+
+/// The triangle of a cut that is closest to a place.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Located {
+    /// Its place in the list of triangles.
+    pub slot: u32,
+    /// Its nodes.
+    pub nodes: [u32; 3],
+    /// Its closest point, in model units.
+    pub closest: [f64; 3],
+    /// How far away that is, in model units.
+    pub distance: f64,
+}
+
+/// A triangle, and in stored units the point that is closest and the square of its distance.
+struct Candidate {
+    slot: u32,
+    point: DVec3,
+    squared: f64,
+}
+
+impl Cut<'_> {
+    /// The triangles that meet a focus: those that have a point in it, up to the rounding of positions;
+    /// for a segment and a frustum maybe some that only come close.
+    ///
+    /// Cost: of what is around the focus.
+    /// # Errors
+    /// A focus that is none.
+    pub fn level_within(&self, focus: &Focus) -> Result<Level, QueryError> {
+        focus.validate()?;
+        let mt = self.front.mt;
+        let region = Region::new(focus, mt.frame());
+        let (mut star, mut stack) = (Vec::new(), Vec::new());
+        stack.extend(mt.roots().map(|(root, _)| root));
+        while let Some(node) = stack.pop() {
+            let update = mt.update_of(node);
+            let ball = update.map(|update| mt.ball_at(update, node));
+            if ball.is_some_and(|ball| !region.meets_ball(ball.center, ball.radius)) {
+                continue;
+            }
+            match update.filter(|_| self.front.state(node) == VertexState::Split) {
+                Some(update) => stack.extend(mt.children(update)),
+                None => self.front.gather(node, &mut star),
+            }
+        }
+        let mut met: Vec<u32> = star.iter().map(Spoke::triangle).collect();
+        met.sort_unstable();
+        met.dedup();
+        let nodes = met.into_iter().map(|t| self.front.triangles.nodes(t));
+        let faces = nodes.filter(|&nodes| region.meets_triangle(self.corners(nodes)));
+        Ok(mt.level_from_faces(faces.collect()))
+    }
+
+    /// The triangle closest to a place, in model units: the one that it lies in, if it lies in one.
+    /// `None` where there are no triangles or the place has a coordinate that is not finite.
+    ///
+    /// Where several are equally close, as at a corner, it is the one of the least nodes.
+    ///
+    /// Cost: of what is as close as that triangle, and of the roots.
+    pub fn locate(&self, point: [f64; 3]) -> Option<Located> {
+        let mt = self.front.mt;
+        let at = mt.frame().point(point.into());
+        if !at.is_finite() {
+            return None;
+        }
+        let mut best: Option<Candidate> = None;
+        let mut star = Vec::new();
+        // Nodes, and how close what is below them may be.
+        let mut stack: Vec<(f64, u32)> =
+            mt.roots().map(|(root, _)| (self.bound(root, at), root)).collect();
+        // The closest come last, and are gone down first.
+        stack.sort_by(|a, b| b.0.total_cmp(&a.0));
+        while let Some((bound, node)) = stack.pop() {
+            if best.as_ref().is_some_and(|best| bound * bound > best.squared) {
+                continue;
+            }
+            let split = mt.update_of(node).filter(|_| self.front.state(node) == VertexState::Split);
+            if let Some(update) = split {
+                let mut below =
+                    mt.children(update).map(|child| (bound.max(self.bound(child, at)), child));
+                below.sort_by(|a, b| b.0.total_cmp(&a.0));
+                stack.extend(below);
+                continue;
+            }
+            star.clear();
+            self.front.gather(node, &mut star);
+            for slot in star.iter().map(Spoke::triangle) {
+                let corners = self.corners(self.front.triangles.nodes(slot));
+                let point = closest_point(at, &corners);
+                let found = Candidate { slot, point, squared: at.distance_squared(point) };
+                if best.as_ref().is_none_or(|best| self.is_closer(&found, best)) {
+                    best = Some(found);
+                }
+            }
+        }
+        best.map(|Candidate { slot, point, squared }| Located {
+            slot,
+            nodes: self.front.triangles.nodes(slot),
+            closest: mt.frame().model_point(point),
+            distance: mt.frame().length_of_model(squared.sqrt()),
+        })
+    }
+
+    fn is_closer(&self, one: &Candidate, other: &Candidate) -> bool {
+        let sorted = |candidate: &Candidate| {
+            let mut nodes = self.front.triangles.nodes(candidate.slot);
+            nodes.sort_unstable();
+            nodes
+        };
+        let order = one.squared.total_cmp(&other.squared);
+        order.then_with(|| sorted(one).cmp(&sorted(other))).is_lt()
+    }
+
+    /// How close a triangle may be of which a node, or one below it, is the corner of the highest level.
+    fn bound(&self, node: u32, at: DVec3) -> f64 {
+        let mt = self.front.mt;
+        mt.update_of(node).map_or(0.0, |update| {
+            let ball = mt.ball_at(update, node);
+            (at.distance(ball.center) - ball.radius).max(0.0)
+        })
+    }
+
+    fn corners(&self, nodes: [u32; 3]) -> [DVec3; 3] {
+        nodes.map(|node| self.front.mt.exact_stored(node))
+    }
+}

@@ -1,0 +1,101 @@
+//! Packs a forest.
+
+use std::collections::BTreeMap;
+
+use super::positions::StoredPositions;
+use super::splits::{Local, Split, Splits};
+use super::{FLAG, Implicit, LAST_WING, NO_WING, OPEN, Order};
+use crate::forest::{BuildError, Forest, NONE, NonFanSplit};
+
+impl Implicit {
+    /// All levels of a simplification.
+    ///
+    /// Cost: linear.
+    /// # Errors
+    /// More than 2³¹ nodes: half as many vertices.
+    pub fn new(forest: &Forest) -> Result<Self, BuildError> {
+        Self::in_order(forest, &Order::new(forest))
+    }
+
+    /// The same in an order that others share.
+    pub(crate) fn in_order(forest: &Forest, order: &Order) -> Result<Self, BuildError> {
+        if order.nodes.len() >= FLAG as usize {
+            return Err(BuildError::TooLarge);
+        }
+        let (mut splits, mut non_fans) = (Vec::with_capacity(order.updates.len()), BTreeMap::new());
+        for at in 0..order.updates.len() {
+            let update = order.updates[at] as usize;
+            let (node, of) = (order.index_of_node[forest.node(update)], forest.updates[update]);
+            splits.push(Split {
+                parent: node | if of.fused_with_child { FLAG } else { 0 },
+                second: order.second(
+                    at,
+                    of.children
+                        .map(|child| forest.update_of(child).map(|u| order.index_of_update[u])),
+                ),
+                local: Local {
+                    radius: of.radius,
+                    error: forest.error(update),
+                    level: of.level | if of.is_open || of.wings == [NONE; 2] { OPEN } else { 0 },
+                    wings: of.wings.map(|wing| rank(forest, order, update, wing)),
+                },
+            });
+            if of.wings == [NONE; 2] {
+                non_fans.insert(at as u32, non_fan(forest, order, update));
+            }
+        }
+        let positions = order.nodes.iter().map(|&n| forest.positions[n as usize]);
+        Ok(Self {
+            frame: forest.frame,
+            error_kind: forest.error_kind,
+            roots: order.trees.len() as u32 - 1,
+            trees: order.trees.clone(),
+            exact: forest.exact.select(order.nodes.iter().copied()),
+            positions: StoredPositions::Float(positions.collect()),
+            splits: Splits::Full(splits),
+            base: base(forest, order),
+            non_fan_splits: non_fans,
+            full_faces: forest.faces.len(),
+        })
+    }
+}
+
+/// The faces that no update brings.
+fn base(forest: &Forest, order: &Order) -> Vec<[u32; 3]> {
+    // Up from the leaves, an update after its children's.
+    let mut root: Vec<u32> = (0..forest.positions.len() as u32).collect();
+    for (u, update) in forest.updates.iter().enumerate().rev() {
+        let above = root[forest.node(u)];
+        update.children.iter().for_each(|&child| root[child as usize] = above);
+    }
+    let faces = forest.faces.iter().zip(&forest.created_by).filter(|(_, by)| **by == NONE);
+    faces
+        .map(|(face, _)| face.map(|leaf| order.index_of_node[root[leaf as usize] as usize]))
+        .collect()
+}
+
+/// The rank of a wing among the nodes around that a face follows.
+fn rank(forest: &Forest, order: &Order, update: usize, wing: u32) -> u8 {
+    if wing == NONE {
+        return NO_WING;
+    }
+    let mut followed = forest.ring(update);
+    if forest.updates[update].is_open
+        && let Some((&last, rest)) = followed.split_last()
+    {
+        if wing == last {
+            return LAST_WING;
+        }
+        followed = rest;
+    }
+    let place = order.index_of_node[wing as usize];
+    // Fewer than both codes, or the recorder would have written the faces out.
+    followed.iter().filter(|&&other| order.index_of_node[other as usize] < place).count() as u8
+}
+
+fn non_fan(forest: &Forest, order: &Order, update: usize) -> NonFanSplit {
+    let non_fan = forest.non_fan_splits.get(&(update as u32));
+    non_fan.map_or_else(NonFanSplit::default, |non_fan| {
+        non_fan.renumbered(|node| order.index_of_node[node as usize])
+    })
+}

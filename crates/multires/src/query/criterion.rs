@@ -1,0 +1,351 @@
+//! Whether a query needs an update: the one question that every algorithm here asks.
+
+use glam::{DVec3, Vec3};
+
+use crate::frame::{Frame, Length16};
+use crate::query::Region;
+use crate::query::{Query, QueryError, Tolerance};
+
+/// By how much a ball is drawn larger than it has to be, so that rounding in a query cannot make it
+/// miss what a ball within it meets.
+pub(crate) const SLACK: f64 = 1.0 + 1e-6;
+
+/// What an update is judged by, in stored units: a ball around both its sides and the error of the
+/// coarse one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Ball {
+    pub(crate) center: DVec3,
+    pub(crate) radius: f64,
+    pub(crate) error: f64,
+}
+
+/// A box around many updates, with the greatest of their errors, in stored units.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Area {
+    pub(crate) min: DVec3,
+    pub(crate) max: DVec3,
+    pub(crate) error: f64,
+}
+
+impl Area {
+    /// Around nothing.
+    pub(crate) const EMPTY: Self =
+        Self { min: DVec3::INFINITY, max: DVec3::NEG_INFINITY, error: 0.0 };
+
+    /// Grows around another.
+    pub(crate) fn join(&mut self, other: &Self) {
+        self.min = self.min.min(other.min);
+        self.max = self.max.max(other.max);
+        self.error = self.error.max(other.error);
+    }
+}
+
+/// A ball as the packed model stores it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct PackedBall {
+    pub(crate) center: [f32; 3],
+    pub(crate) radius: Length16,
+    pub(crate) error: Length16,
+}
+
+impl PackedBall {
+    #[inline]
+    pub(crate) fn unpack(&self) -> Ball {
+        Ball {
+            center: Vec3::from(self.center).as_dvec3(),
+            radius: self.radius.get(),
+            error: self.error.get(),
+        }
+    }
+}
+
+/// A query in stored units.
+///
+/// It is monotone: what it wants of a ball it wants of every ball around that with at least its error.
+pub(crate) struct Criterion<'f> {
+    region: Region,
+    most: StoredTolerance<'f>,
+}
+
+enum StoredTolerance<'f> {
+    Uniform(f64),
+    /// So much of the distance from the eye.
+    Perspective(Viewpoint),
+    /// A part of the field.
+    Field {
+        field: &'f dyn Fn([f64; 3], f64) -> f64,
+        part: f64,
+        frame: Frame,
+    },
+}
+
+/// A camera, as far as it matters how large it sees an error.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Viewpoint {
+    pub(crate) at: DVec3,
+    /// The tolerance a unit of distance.
+    pub(crate) slope: f64,
+}
+
+/// A need that can be told from others: of any but a field.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct QueryKey {
+    region: Region,
+    everywhere: Option<f64>,
+    eye: Option<Viewpoint>,
+}
+
+impl<'f> Criterion<'f> {
+    pub(crate) fn new(query: &Query<'f>, frame: &Frame) -> Result<Self, QueryError> {
+        query.validate()?;
+        let region = Region::new(&query.focus, frame);
+        let most = match query.tolerance {
+            Tolerance::Uniform(most) => StoredTolerance::Uniform(frame.length(most)),
+            Tolerance::Pixels { camera, pixels } => StoredTolerance::Perspective(Viewpoint {
+                at: frame.point(camera.eye.into()),
+                slope: pixels * camera.pixel(),
+            }),
+            Tolerance::Field(field) => StoredTolerance::Field { field, part: 1.0, frame: *frame },
+        };
+        Ok(Self { region, most })
+    }
+
+    /// Whether the ball meets the focus with more than the least tolerance in it.
+    #[inline]
+    pub(crate) fn refines(&self, ball: &Ball) -> bool {
+        self.exceeds(ball) && self.meets(ball)
+    }
+
+    /// How many times the least tolerance in each ball its error is; 0 where the focus is not met or
+    /// the ball has none. It is monotone too.
+    pub(crate) fn priorities(&self, balls: impl Iterator<Item = Ball>) -> Vec<f32> {
+        match (&self.region, &self.most) {
+            // The common ones, with nothing to decide in the loop.
+            (Region::Everything, StoredTolerance::Uniform(most)) => {
+                balls.map(|ball| times(ball.error, *most)).collect()
+            }
+            (Region::Everything, StoredTolerance::Perspective(eye)) => {
+                balls.map(|ball| times(ball.error, eye.least(&ball))).collect()
+            }
+            _ => balls.map(|ball| self.priority(&ball)).collect(),
+        }
+    }
+
+    fn priority(&self, ball: &Ball) -> f32 {
+        if self.meets(ball) { times(ball.error, self.least(ball)) } else { 0.0 }
+    }
+
+    /// The least tolerance in a ball.
+    fn least(&self, ball: &Ball) -> f64 {
+        match &self.most {
+            StoredTolerance::Uniform(most) => *most,
+            StoredTolerance::Perspective(eye) => eye.least(ball),
+            StoredTolerance::Field { field, part, frame } => {
+                let center = frame.model(ball.center.as_vec3().into());
+                let most = field(center, frame.length_of_model(ball.radius));
+                // What is no tolerance tolerates nothing: `max` prefers a number.
+                frame.length(part * most.max(0.0))
+            }
+        }
+    }
+
+    /// Whether it may want something with this error that lies in the box.
+    pub(crate) fn may_refine_in(&self, area: &Area) -> bool {
+        let Area { min, max, error } = *area;
+        let ball = Ball { center: 0.5 * (min + max), radius: 0.5 * min.distance(max), error };
+        let squared = |from: DVec3| from.distance_squared(from.clamp(min, max));
+        let exceeds = match &self.most {
+            StoredTolerance::Perspective(eye) => {
+                eye.slope * eye.slope * squared(eye.at) < error * error
+            }
+            StoredTolerance::Uniform(_) | StoredTolerance::Field { .. } => self.exceeds(&ball),
+        };
+        exceeds
+            && self.meets(&ball)
+            && match &self.region {
+                Region::Box([low, high]) => low.cmple(max).all() && high.cmpge(min).all(),
+                Region::Sphere(middle, reach) => squared(*middle) <= reach * reach,
+                Region::Everything | Region::Segment(_) | Region::Planes(_) => true,
+            }
+    }
+
+    #[inline]
+    fn exceeds(&self, ball: &Ball) -> bool {
+        match &self.most {
+            StoredTolerance::Uniform(most) => ball.error > *most,
+            StoredTolerance::Perspective(eye) => eye.exceeded_by(ball),
+            StoredTolerance::Field { .. } => ball.error > self.least(ball),
+        }
+    }
+
+    #[inline]
+    fn meets(&self, ball: &Ball) -> bool {
+        self.region.meets_ball(ball.center, ball.radius)
+    }
+
+    /// The same with a part of the tolerance.
+    pub(crate) fn scaled(mut self, by: f64) -> Self {
+        match &mut self.most {
+            StoredTolerance::Uniform(most) => *most *= by,
+            StoredTolerance::Perspective(eye) => eye.slope *= by,
+            StoredTolerance::Field { part, .. } => *part *= by,
+        }
+        self
+    }
+
+    /// What it is known by; a field is not known.
+    pub(crate) fn key(&self) -> Option<QueryKey> {
+        let (everywhere, eye) = match self.most {
+            StoredTolerance::Uniform(most) => (Some(most), None),
+            StoredTolerance::Perspective(eye) => (None, Some(eye)),
+            StoredTolerance::Field { .. } => return None,
+        };
+        Some(QueryKey { region: self.region.clone(), everywhere, eye })
+    }
+
+    /// Whether it is one tolerance everywhere.
+    pub(crate) fn is_uniform(&self) -> bool {
+        matches!((&self.region, &self.most), (Region::Everything, StoredTolerance::Uniform(_)))
+    }
+
+    /// The eye, where it is all that the need depends on.
+    pub(crate) fn viewpoint(&self) -> Option<Viewpoint> {
+        match (&self.region, &self.most) {
+            (Region::Everything, StoredTolerance::Perspective(eye)) => Some(*eye),
+            _ => None,
+        }
+    }
+}
+
+impl Viewpoint {
+    /// The least tolerance in a ball.
+    #[inline]
+    fn least(&self, ball: &Ball) -> f64 {
+        self.slope * (self.at.distance(ball.center) - ball.radius)
+    }
+
+    #[inline]
+    fn exceeded_by(&self, ball: &Ball) -> bool {
+        // Most error a unit of distance, at the ball's closest place.
+        let reach = ball.error + self.slope * ball.radius;
+        let squared = self.slope * self.slope * self.at.distance_squared(ball.center);
+        ball.error > 0.0 && (squared < reach * reach || self.slope == 0.0)
+    }
+
+    /// How close the eye must be to want an update; `None` where it never turns.
+    pub(crate) fn reach(&self, ball: &Ball) -> Option<f64> {
+        let reach = ball.radius + ball.error / self.slope;
+        (ball.error > 0.0 && reach.is_finite()).then_some(reach)
+    }
+}
+
+/// How many times a tolerance an error is; one of nothing makes everything as urgent as its error.
+#[inline]
+fn times(error: f64, most: f64) -> f32 {
+    let least = f64::from(f32::MIN_POSITIVE);
+    (error / if most > least { most } else { least }).min(f32::MAX.into()) as f32
+}
+
+#[cfg(test)]
+mod tests {
+    use meshlod_mesh::Bounds;
+
+    use super::*;
+    use crate::query::{Focus, ViewCamera};
+
+    fn criterion(focus: Focus, tolerance: Tolerance<'_>) -> Criterion<'_> {
+        let frame = Frame::new(&Bounds { min: [-1.0; 3], max: [1.0; 3] });
+        Criterion::new(&Query { focus, tolerance }, &frame).unwrap()
+    }
+
+    /// A ball in model units of a frame of unit 4.
+    fn ball(center: [f64; 3], radius: f64, error: f64) -> Ball {
+        Ball { center: DVec3::from(center) / 4.0, radius: radius / 4.0, error: error / 4.0 }
+    }
+
+    fn camera() -> ViewCamera {
+        ViewCamera {
+            eye: [0.0, 0.0, 5.0],
+            look: [0.0; 3],
+            up: [0.0, 1.0, 0.0],
+            fov_rad: std::f64::consts::FRAC_PI_2,
+            viewport: [200, 100],
+        }
+    }
+
+    #[test]
+    fn a_focus_is_met_by_balls_that_reach_it() {
+        let reached = |focus: Focus, center| {
+            let criterion = criterion(focus, Tolerance::Uniform(0.0));
+            [0.9, 1.1].map(|radius| criterion.refines(&ball(center, radius, 1.0)))
+        };
+        let at = [2.0, 0.0, 0.0];
+        assert_eq!(reached(Focus::Everything, at), [true, true]);
+        assert_eq!(reached(Focus::Point([1.0, 0.0, 0.0]), at), [false, true]);
+        assert_eq!(reached(Focus::Segment([[1.0, -3.0, 0.0], [1.0, 3.0, 0.0]]), at), [false, true]);
+        assert_eq!(reached(Focus::Segment([[1.0, 0.0, 0.0]; 2]), at), [false, true]);
+        assert_eq!(reached(Focus::Box([[-1.0; 3], [1.0; 3]]), at), [false, true]);
+        assert_eq!(reached(Focus::Sphere { center: [0.0; 3], radius: 1.0 }, at), [false, true]);
+        // The picture is twice as wide as high: its upper side rises by one a unit of distance.
+        let above = [0.0, 5.0 + 2f64.sqrt(), 0.0];
+        assert_eq!(reached(Focus::Frustum(camera()), above), [false, true]);
+        assert_eq!(reached(Focus::Frustum(camera()), [9.0, 0.0, 0.0]), [true, true]);
+        assert_eq!(reached(Focus::Frustum(camera()), [0.0, 0.0, 6.0]), [false, true]);
+    }
+
+    #[test]
+    fn pixels_grow_with_the_distance() {
+        // A pixel spans a fiftieth of the distance: 0.1 at distance 5.
+        let criterion =
+            criterion(Focus::Everything, Tolerance::Pixels { camera: camera(), pixels: 1.0 });
+        assert!(
+            !criterion.refines(&ball([0.0; 3], 0.0, 0.099))
+                && criterion.refines(&ball([0.0; 3], 0.0, 0.101))
+        );
+        // What reaches half the way is seen from there.
+        assert!(
+            criterion.refines(&ball([0.0; 3], 2.5, 0.051))
+                && !criterion.refines(&ball([0.0; 3], 2.5, 0.049))
+        );
+        assert!(!criterion.refines(&ball([0.0; 3], 9.0, 0.0)), "what is exact is fine enough");
+        let reach = criterion.viewpoint().unwrap().reach(&ball([0.0; 3], 2.0, 0.02)).unwrap();
+        assert!((4.0 * reach - 3.0).abs() < 1e-12, "2 + 1: {reach}");
+    }
+
+    #[test]
+    fn a_field_is_asked_in_model_units() {
+        let field = |center: [f64; 3], radius: f64| (center[0].abs() - radius).max(0.0);
+        let criterion = criterion(Focus::Everything, Tolerance::Field(&field));
+        assert!(criterion.refines(&ball([1.0, 0.0, 0.0], 0.5, 0.6)));
+        assert!(!criterion.refines(&ball([1.0, 0.0, 0.0], 0.5, 0.4)));
+    }
+
+    #[test]
+    fn a_field_without_a_tolerance_tolerates_nothing() {
+        for none in [f64::NAN, -1.0, f64::NEG_INFINITY] {
+            let field = |_: [f64; 3], _: f64| none;
+            let criterion = criterion(Focus::Everything, Tolerance::Field(&field));
+            assert!(criterion.refines(&ball([0.0; 3], 0.1, 1e-6)), "{none}");
+            assert!(!criterion.refines(&ball([0.0; 3], 0.1, 0.0)), "what is exact is fine enough");
+            let priorities = criterion.priorities([ball([0.0; 3], 0.1, 1e-6)].into_iter());
+            assert!(priorities[0] > 1e20, "{none}: {priorities:?}");
+        }
+    }
+
+    #[test]
+    fn questions_that_are_none_are_refused() {
+        let frame = Frame::new(&Bounds { min: [-1.0; 3], max: [1.0; 3] });
+        let ask = |focus, tolerance| Criterion::new(&Query { focus, tolerance }, &frame).err();
+        let fine = || Tolerance::Uniform(0.1);
+        assert!(ask(Focus::Everything, Tolerance::Uniform(f64::NAN)).is_some());
+        assert!(ask(Focus::Everything, Tolerance::Uniform(-1.0)).is_some());
+        assert!(ask(Focus::Point([f64::INFINITY, 0.0, 0.0]), fine()).is_some());
+        assert_eq!(ask(Focus::Box([[1.0; 3], [0.0; 3]]), fine()), Some(QueryError::InsideOut));
+        let along_up = ViewCamera { up: [0.0, 0.0, 1.0], ..camera() };
+        assert!(ask(Focus::Frustum(along_up), fine()).is_some());
+        let without = ViewCamera { viewport: [0, 10], ..camera() };
+        assert!(
+            ask(Focus::Everything, Tolerance::Pixels { camera: without, pixels: 1.0 }).is_some()
+        );
+    }
+}

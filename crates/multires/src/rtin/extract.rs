@@ -1,0 +1,239 @@
+//! Levels by recursion over triangles, each halved while its vertex is in the cut.
+
+use super::Rtin;
+use super::grid::{Extent, Grid, GridPoint, RightTriangle, middle};
+use crate::forest::NONE;
+use crate::level::Level;
+use crate::query::Criterion;
+use crate::query::{Query, QueryError};
+
+/// Levels out of one model, one after the other in the same room.
+///
+/// Cost: linear in what comes out, whatever the size of the field, but for [`RtinExtractor::at_most`].
+#[derive(Clone, Debug)]
+pub struct RtinExtractor<'m> {
+    pub(super) model: &'m Rtin,
+    level: Level,
+    /// By vertex, its number in the level.
+    numbers: Vec<u32>,
+    /// By vertex: whether it is in the cut.
+    pub(super) chosen: Vec<bool>,
+    /// All that are.
+    pub(super) all_chosen: Vec<u32>,
+}
+
+impl<'m> RtinExtractor<'m> {
+    /// With nothing extracted yet.
+    pub fn new(model: &'m Rtin) -> Self {
+        let count = model.vertices.len();
+        Self {
+            model,
+            level: Level::new(model.frame),
+            numbers: vec![NONE; count],
+            chosen: vec![false; count],
+            all_chosen: Vec::new(),
+        }
+    }
+
+    /// The smallest level that meets the query: the vertices that it wants, and what those need.
+    /// # Errors
+    /// A query that is none.
+    pub fn exact(&mut self, query: &Query<'_>) -> Result<&Level, QueryError> {
+        let criterion = Criterion::new(query, &self.model.frame)?;
+        if criterion.is_uniform() {
+            return self.saturated(query);
+        }
+        self.forget_chosen();
+        let Self { model, chosen, all_chosen, .. } = self;
+        // What is wanted is wanted also by nested balls, and those make a cut: it lies above that.
+        let mut chooser = Chooser { model, criterion: &criterion, chosen, all_chosen };
+        model.grid.walk(&mut chooser);
+        Ok(self.write_chosen())
+    }
+
+    /// A level that meets the query, each vertex judged by itself: balls and errors nest, so what is
+    /// wanted is a cut already.
+    ///
+    /// It is not the smallest: the notes say by how much.
+    /// # Errors
+    /// A query that is none.
+    pub fn saturated(&mut self, query: &Query<'_>) -> Result<&Level, QueryError> {
+        let criterion = Criterion::new(query, &self.model.frame)?;
+        let model = self.model;
+        Ok(self.write(|place, _| criterion.refines(&model.nested_ball(place))))
+    }
+
+    /// The level of the chosen vertices, which must be a cut.
+    pub(super) fn write_chosen(&mut self) -> &Level {
+        let chosen = std::mem::take(&mut self.chosen);
+        self.write(|_, index| chosen[index]);
+        self.chosen = chosen;
+        &self.level
+    }
+
+    /// The level of the vertices of which `is_in` says so; those that are in every level are not asked.
+    fn write(&mut self, is_in: impl FnMut(GridPoint, usize) -> bool) -> &Level {
+        let Self { model, level, numbers, .. } = self;
+        level.nodes.iter().for_each(|&node| numbers[node as usize] = NONE);
+        level.clear();
+        model.grid.walk(&mut Writer { model, level, numbers, is_in });
+        level
+    }
+
+    pub(super) fn forget_chosen(&mut self) {
+        let Self { chosen, all_chosen, .. } = self;
+        all_chosen.drain(..).for_each(|index| chosen[index as usize] = false);
+    }
+}
+
+/// What is to be done on a walk over the triangles.
+trait Visit {
+    /// Of a vertex that is in the cut, its number in the level; `apex` is one of those that it needs.
+    fn number(&mut self, place: GridPoint, apex: GridPoint) -> Option<u32>;
+
+    /// A triangle of the level.
+    fn show(&mut self, corners: [u32; 3]);
+}
+
+/// A triangle with the numbers of its corners.
+#[derive(Clone, Copy)]
+struct Numbered {
+    triangle: RightTriangle,
+    /// The right angle first.
+    numbers: [u32; 3],
+}
+
+impl Grid {
+    /// Halves triangles while their vertex has a number, and shows the others.
+    fn walk(&self, visit: &mut impl Visit) {
+        for triangle in self.roots() {
+            let numbers = triangle.corners().map(|p| self.number(p, p, visit).unwrap_or(NONE));
+            self.halve(Numbered { triangle, numbers }, self.depth(), false, visit);
+        }
+    }
+
+    /// Of a place outside the field, nothing.
+    fn number(&self, place: GridPoint, apex: GridPoint, visit: &mut impl Visit) -> Option<u32> {
+        if self.holds(place) { visit.number(place, apex) } else { Some(NONE) }
+    }
+
+    fn halve(&self, of: Numbered, depth: u32, is_inside: bool, visit: &mut impl Visit) {
+        let Numbered { triangle, numbers: [apex, first, last] } = of;
+        let is_inside = is_inside
+            || match self.extent(&triangle) {
+                Extent::Outside => return,
+                Extent::Across => false,
+                Extent::Inside => true,
+            };
+        if depth == 0 {
+            return visit.show(of.numbers);
+        }
+        let at = middle(triangle.ends);
+        let number = match is_inside {
+            true => visit.number(at, triangle.apex),
+            false => self.number(at, triangle.apex, visit),
+        };
+        let Some(number) = number else { return visit.show(of.numbers) };
+        let [start, end] = triangle.ends;
+        let halves = [
+            (RightTriangle { apex: at, ends: [triangle.apex, start] }, [number, apex, first]),
+            (RightTriangle { apex: at, ends: [end, triangle.apex] }, [number, last, apex]),
+        ];
+        for (triangle, numbers) in halves {
+            self.halve(Numbered { triangle, numbers }, depth - 1, is_inside, visit);
+        }
+    }
+}
+
+struct Writer<'a, F> {
+    model: &'a Rtin,
+    level: &'a mut Level,
+    numbers: &'a mut [u32],
+    is_in: F,
+}
+
+impl<F: FnMut(GridPoint, usize) -> bool> Visit for Writer<'_, F> {
+    #[inline(always)]
+    fn number(&mut self, place: GridPoint, _: GridPoint) -> Option<u32> {
+        let Self { model, level, .. } = self;
+        let index = model.grid.index(place);
+        let number = self.numbers[index];
+        if number != NONE {
+            return Some(number);
+        }
+        let vertex = &model.vertices[index];
+        if !vertex.is_forced() && !(self.is_in)(place, index) {
+            return None;
+        }
+        let number = level.nodes.len() as u32;
+        self.numbers[index] = number;
+        level.nodes.push(index as u32);
+        level.positions.push(model.placement.point(place, vertex.height.into()).as_vec3().into());
+        Some(number)
+    }
+
+    #[inline]
+    fn show(&mut self, [apex, first, last]: [u32; 3]) {
+        let looks_down = self.model.placement.looks_down;
+        let corners = if looks_down { [apex, last, first] } else { [apex, first, last] };
+        self.level.faces.push(corners);
+    }
+}
+
+/// Chooses what is wanted and what that needs.
+struct Chooser<'a, 'f> {
+    model: &'a Rtin,
+    criterion: &'a Criterion<'f>,
+    chosen: &'a mut [bool],
+    all_chosen: &'a mut Vec<u32>,
+}
+
+impl Chooser<'_, '_> {
+    /// Whether it is in the cut so far.
+    #[inline]
+    fn has(&self, index: usize) -> bool {
+        self.chosen[index] || self.model.vertices[index].is_forced()
+    }
+
+    #[inline]
+    fn add(&mut self, index: usize) {
+        self.chosen[index] = true;
+        self.all_chosen.push(index as u32);
+    }
+
+    /// And what it needs; that of what is in every level is, too.
+    fn choose(&mut self, place: GridPoint) {
+        let index = self.model.grid.index(place);
+        if !self.has(index) {
+            self.add(index);
+            self.model.grid.parents(place).for_each(|parent| self.choose(parent));
+        }
+    }
+}
+
+impl Visit for Chooser<'_, '_> {
+    /// The walk meets each vertex once with each of those that it needs.
+    #[inline(always)]
+    fn number(&mut self, place: GridPoint, apex: GridPoint) -> Option<u32> {
+        let (model, criterion) = (self.model, self.criterion);
+        let index = model.grid.index(place);
+        if model.vertices[index].is_forced() {
+            return Some(NONE);
+        }
+        if !self.chosen[index] {
+            if !criterion.refines(&model.nested_ball(place)) {
+                return None;
+            }
+            if !criterion.refines(&model.own_ball(place)) {
+                return Some(NONE);
+            }
+            self.add(index);
+        }
+        if !self.has(model.grid.index(apex)) {
+            self.choose(apex);
+        }
+        Some(NONE)
+    }
+
+    fn show(&mut self, _: [u32; 3]) {}
+}
