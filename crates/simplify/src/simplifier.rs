@@ -4,7 +4,7 @@ use meshlod_mesh::{Bounds, Mesh, VertexId};
 
 use crate::clean;
 use crate::engine::{Ready, Run, Tally};
-use crate::fast;
+use crate::kernel;
 use crate::locks::{self, Held};
 use crate::methods;
 use crate::options::{Method, Options, Report, SimplifyError, Target};
@@ -44,7 +44,7 @@ impl<'m> Simplifier<'m> {
     /// general one does the rest.
     pub fn new(mesh: &'m Mesh, options: &Options) -> Result<Self, SimplifyError> {
         let bounds = validate(mesh, options)?;
-        match fast::start(mesh, &bounds, options)? {
+        match kernel::start(mesh, &bounds, options)? {
             Some((engine, input)) => {
                 Ok(Self { mesh, engine, method: options.method_for([mesh]), input })
             }

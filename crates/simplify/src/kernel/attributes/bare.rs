@@ -1,0 +1,92 @@
+//! A surface without attributes: nothing is added to its costs, and nothing is left of it in the code.
+
+use crate::kernel::attributes::{AttributeModel, RecordedValues};
+use crate::kernel::collapse::edge_ring::EdgeRing;
+use crate::kernel::collapse::{Collapse, Ends};
+use crate::kernel::mesh::one_ring::Vertices;
+use crate::kernel::mesh::vertex::{VertexFlags, VertexQuadric};
+use crate::kernel::metric::Metric;
+use crate::kernel::metric::edge_quadric::{Costs, EdgeQuadrics, EdgeSide};
+use crate::kernel::metric::edge_quadric_f64::EdgeQuadricF64;
+use crate::kernel::simd::LANES;
+use crate::refusal::Refusal;
+use meshlod_mesh::Attributes;
+
+/// No attributes, and what costs by this rule.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct NoAttributes<R>(pub(crate) R);
+
+impl<R: Metric> AttributeModel for NoAttributes<R> {
+    type Metric = R;
+
+    const IN_PARTS: bool = true;
+
+    fn side_by_side(self, parts: usize) -> Vec<Self> {
+        vec![self; parts]
+    }
+
+    #[inline(always)]
+    fn join(&self, _: [EdgeSide<u32>; 2], _: &mut EdgeQuadrics) {}
+
+    #[inline(always)]
+    fn at_seams(&self, _: &Vertices, _: EdgeSide<u32>, _: &[u32; LANES]) -> Option<Costs> {
+        None
+    }
+
+    #[inline(always)]
+    fn order(&self, vertices: &Vertices, v: u32, target: u32) -> Result<Ends, Refusal> {
+        by_pins(vertices, v, target)
+    }
+
+    #[inline(always)]
+    fn whole(&self, _: &Ends, geometry: EdgeQuadricF64) -> EdgeQuadricF64 {
+        geometry
+    }
+
+    #[inline(always)]
+    fn onto(&self, _: &Vertices, _: &Ends) -> f32 {
+        0.0
+    }
+
+    #[inline(always)]
+    fn look_ahead(&mut self, _: &Vertices, _: &EdgeRing, _: &Collapse) -> bool {
+        false
+    }
+
+    #[inline(always)]
+    fn contract(&mut self, _: &mut Vertices, _: &EdgeRing, _: &Collapse) -> VertexQuadric {
+        VertexQuadric::default()
+    }
+
+    #[inline(always)]
+    fn prefetch(&self, _: u32) -> u32 {
+        0
+    }
+
+    fn attributes(&self, _: impl Iterator<Item = (u32, [u32; 3])>) -> Option<Attributes> {
+        None
+    }
+
+    fn all_attributes(&self, _: impl Iterator<Item = [u32; 3]>) -> Option<Attributes> {
+        None
+    }
+
+    #[inline(always)]
+    fn record(&mut self, _: u32) {}
+
+    fn recorded(&mut self) -> Vec<RecordedValues> {
+        Vec::new()
+    }
+}
+
+/// What goes where, if pins alone decide.
+#[inline(always)]
+pub(crate) fn by_pins(vertices: &Vertices, v: u32, target: u32) -> Result<Ends, Refusal> {
+    let pinned = |v: u32| vertices.get(v).flags.any(VertexFlags::PINNED);
+    match (pinned(v), pinned(target)) {
+        (false, false) => Ok(Ends::free(v, target)),
+        (true, false) => Ok(Ends { free: false, ..Ends::free(v, target) }),
+        (false, true) => Ok(Ends { free: false, ..Ends::free(target, v) }),
+        (true, true) => Err(Refusal::Locked),
+    }
+}

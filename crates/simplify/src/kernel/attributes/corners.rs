@@ -1,0 +1,169 @@
+//! The wedges at the corners of faces, as the input has them.
+
+use crate::kernel::mesh::vertex::NOBODY;
+use crate::wedges::labels;
+use meshlod_mesh::{Layer, Mesh, WedgeId};
+use rustc_hash::FxHashMap;
+use std::borrow::Cow;
+
+/// The wedges at the corners of a mesh, split further where the material changes or the object.
+pub(crate) struct Corners<'m> {
+    of_face: Cow<'m, [[WedgeId; 3]]>,
+    /// The wedges of the input that those after its own are of, and how many it has.
+    pub(crate) split: Vec<u32>,
+    pub(crate) own: usize,
+    /// The material and object of each wedge, where there are several.
+    labels: Vec<u32>,
+    /// By vertex: its first wedge.
+    first: Vec<u32>,
+    /// Whether the mesh has attributes, or there are wedges for its labels alone.
+    pub(crate) are_given: bool,
+    /// The other wedges that vertices have, in order; their slots follow those of vertices.
+    pub(crate) others: Vec<(u32, u32)>,
+}
+
+impl<'m> Corners<'m> {
+    /// `None` if there is nothing that could differ at a vertex. `faces` are those of the mesh, on
+    /// copies of vertices where it has them, of `vertices` in all.
+    pub(crate) fn new(
+        mesh: &'m Mesh,
+        faces: impl Iterator<Item = [u32; 3]>,
+        vertices: usize,
+    ) -> Option<Self> {
+        let labels = labels(mesh);
+        let (of_face, own) = match &mesh.attributes {
+            Some(all) => (Cow::Borrowed(&all.corners[..]), all.wedge_count),
+            None if labels.is_some() => {
+                let corners = mesh.faces.iter().map(|face| face.map(|v| WedgeId(v.0))).collect();
+                (Cow::Owned(corners), mesh.positions.len())
+            }
+            None => return None,
+        };
+        let mut corners = Self {
+            of_face,
+            split: Vec::new(),
+            own,
+            labels: Vec::new(),
+            are_given: mesh.attributes.is_some(),
+            first: vec![NOBODY; vertices],
+            others: Vec::new(),
+        };
+        if let Some(labels) = labels {
+            corners.split_by(&labels);
+        }
+        corners.find(faces);
+        Some(corners)
+    }
+
+    /// Gives each label wedges of its own; the first label to use one keeps it.
+    fn split_by(&mut self, labels: &[u32]) {
+        self.labels = vec![u32::MAX; self.own];
+        let mut copies = FxHashMap::default();
+        for (wedges, &label) in self.of_face.to_mut().iter_mut().zip(labels) {
+            for wedge in wedges {
+                let owner = &mut self.labels[wedge.index()];
+                if *owner == u32::MAX {
+                    *owner = label;
+                }
+                if *owner != label {
+                    let next = (self.own + self.split.len()) as u32;
+                    let copy = *copies.entry((wedge.0, label)).or_insert(next);
+                    if copy == next {
+                        self.split.push(wedge.0);
+                        self.labels.push(label);
+                    }
+                    wedge.0 = copy;
+                }
+            }
+        }
+    }
+
+    fn find(&mut self, faces: impl Iterator<Item = [u32; 3]>) {
+        for (face, wedges) in faces.zip(&*self.of_face).filter(|(face, _)| is_face(*face)) {
+            for (v, wedge) in face.into_iter().zip(wedges) {
+                let first = &mut self.first[v as usize];
+                if *first == NOBODY {
+                    *first = wedge.0;
+                } else if *first != wedge.0 {
+                    self.others.push((v, wedge.0));
+                }
+            }
+        }
+        self.others.sort_unstable();
+        self.others.dedup();
+    }
+
+    /// The slot of a wedge at a vertex.
+    #[inline]
+    fn slot(&self, v: u32, wedge: WedgeId) -> u32 {
+        if self.first[v as usize] == wedge.0 {
+            return v;
+        }
+        let found = self.others.binary_search(&(v, wedge.0)).unwrap_or_default();
+        (self.first.len() + found) as u32
+    }
+
+    /// The slots at the corners of a face; what is no face has those of its vertices.
+    #[inline]
+    pub(crate) fn slots(&self, i: usize, [a, b, c]: [u32; 3]) -> [u32; 3] {
+        if !is_face([a, b, c]) {
+            return [a, b, c];
+        }
+        let [of_a, of_b, of_c] = self.of_face[i];
+        [self.slot(a, of_a), self.slot(b, of_b), self.slot(c, of_c)]
+    }
+
+    /// The wedge that each slot is; `NOBODY` where there is none.
+    pub(crate) fn wedges(&self) -> impl Iterator<Item = u32> + '_ {
+        let others = self.others.iter().map(|&(_, wedge)| wedge);
+        self.first.iter().copied().chain(others)
+    }
+
+    /// The wedge that a slot is.
+    pub(crate) fn wedge(&self, slot: u32) -> u32 {
+        let other = || self.others[slot as usize - self.first.len()].1;
+        self.first.get(slot as usize).copied().unwrap_or_else(other)
+    }
+
+    /// The chart of each slot, as the first slot of its vertex in it; nothing where each is its own.
+    pub(crate) fn charts(&self, textures: Option<&[&Layer]>) -> Vec<u32> {
+        let Some(textures) = textures.filter(|_| !self.others.is_empty()) else {
+            return Vec::new();
+        };
+        let bits = |layer: &Layer, wedge: u32| -> Vec<u32> {
+            layer.of(WedgeId(wedge)).iter().map(|x| x.to_bits()).collect()
+        };
+        let is_same = |a: u32, b: u32| {
+            let [a, b] = [a, b].map(|slot| self.wedge(slot));
+            let [own, other] = [a, b].map(|wedge| self.source(wedge));
+            self.labels.get(a as usize) == self.labels.get(b as usize)
+                && textures.iter().all(|layer| bits(layer, own) == bits(layer, other))
+        };
+        let vertices = self.first.len() as u32;
+        let mut charts: Vec<u32> = (0..vertices + self.others.len() as u32).collect();
+        let mut start = vertices;
+        for others in self.others.chunk_by(|a, b| a.0 == b.0) {
+            let all = start..start + others.len() as u32;
+            for slot in all.clone() {
+                let before = std::iter::once(others[0].0).chain(start..slot);
+                let chart = before.into_iter().find(|&other| is_same(slot, other));
+                charts[slot as usize] = chart.unwrap_or(slot);
+            }
+            start = all.end;
+        }
+        charts
+    }
+
+    /// The wedge of the input that one is, or is split from.
+    pub(crate) fn source(&self, wedge: u32) -> u32 {
+        match (wedge as usize).checked_sub(self.own) {
+            Some(split) if wedge != NOBODY => self.split[split],
+            _ => wedge,
+        }
+    }
+}
+
+/// Whether three vertices are a face.
+pub(crate) fn is_face([a, b, c]: [u32; 3]) -> bool {
+    a != b && b != c && c != a
+}

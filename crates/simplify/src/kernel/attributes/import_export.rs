@@ -1,0 +1,219 @@
+//! Wedges from the corners of faces, and back.
+
+use meshlod_mesh::{Attributes, WedgeId};
+
+use crate::kernel::attributes::RecordedValues;
+use crate::kernel::attributes::attribute_quadric::AttributeQuadric;
+use crate::kernel::attributes::corners::{Corners, is_face};
+use crate::kernel::attributes::layers::{AttributeLayers, SurvivingWedge};
+use crate::kernel::attributes::scratch::Scratch;
+use crate::kernel::attributes::seam_sectors::SeamSectors;
+use crate::kernel::attributes::wedge_quadrics::{SEAM_WEIGHT, WedgeQuadrics};
+use crate::kernel::mesh::one_ring::{GHOST, Vertices};
+use crate::kernel::mesh::vertex::{NOBODY, VertexFlags, VertexQuadric};
+
+impl<'m, const K: usize> WedgeQuadrics<'m, K> {
+    /// The quadrics of a mesh whose rings are made; flags the vertices on seams, and puts the squares of
+    /// seams in their stars.
+    pub(crate) fn new(
+        mut layers: AttributeLayers<'m>,
+        corners: Corners<'m>,
+        vertices: &mut Vertices,
+        faces: impl Iterator<Item = [u32; 3]>,
+    ) -> Self {
+        let wedges: Vec<u32> = corners.wedges().map(|wedge| corners.source(wedge)).collect();
+        layers.fill(&wedges);
+        let values = |&wedge: &u32| match wedge {
+            NOBODY => AttributeQuadric::EMPTY,
+            wedge => AttributeQuadric::of_values(layers.channels_of(wedge)),
+        };
+        let quadrics: Vec<AttributeQuadric<K>> = wedges.iter().map(values).collect();
+        let mut wedges = Self {
+            heirs: vec![NOBODY; quadrics.len()],
+            quadrics,
+            seams: SeamSectors::default(),
+            charts: corners.charts(layers.textures().as_deref()),
+            layers,
+            corners,
+            scratch: Scratch::new(),
+            record: Vec::new(),
+            logged: 0,
+            none: AttributeQuadric::EMPTY,
+        };
+        for &(v, _) in &wedges.corners.others {
+            vertices.get_mut(v).flags.set(VertexFlags::SEAM);
+        }
+        let mut around = Vec::new();
+        for (i, face) in faces.enumerate().filter(|(_, face)| is_face(*face)) {
+            let slots = wedges.corners.slots(i, face);
+            wedges.add_face(vertices, face, slots);
+            if !wedges.corners.others.is_empty() {
+                for k in 0..3 {
+                    if vertices.get(face[k]).flags.any(VertexFlags::SEAM) {
+                        around.push((face[k], face[(k + 1) % 3], slots[k]));
+                    }
+                }
+            }
+        }
+        wedges.sort_sectors(vertices, around);
+        wedges
+    }
+
+    #[inline(always)]
+    fn add_face(&mut self, vertices: &Vertices, [a, b, c]: [u32; 3], slots: [u32; 3]) {
+        let place = |v: u32| vertices.get(v).place();
+        let from = place(a);
+        let [own, mut to_b, mut to_c] = slots.map(|slot| self.field(slot).values());
+        for (k, own) in own.into_iter().enumerate() {
+            to_b[k] -= own;
+            to_c[k] -= own;
+        }
+        let face = AttributeQuadric::face(place(b) - from, place(c) - from, to_b, to_c);
+        for slot in slots {
+            self.quadrics[slot as usize].add(&face);
+        }
+    }
+
+    /// Sectors from the faces around the vertices that have several wedges: vertex, the neighbour where
+    /// the face begins, slot.
+    fn sort_sectors(&mut self, vertices: &mut Vertices, mut around: Vec<(u32, u32, u32)>) {
+        around.sort_unstable();
+        for faces in around.chunk_by(|a, b| a.0 == b.0) {
+            let v = faces[0].0;
+            let begins = |w: u32| {
+                let found = faces.binary_search_by_key(&w, |&(_, next, _)| next);
+                found.ok().map(|at| faces[at].2)
+            };
+            let ring = vertices.neighbours(v);
+            let mut slots: Vec<u32> = ring.iter().map(|&w| begins(w).unwrap_or(NOBODY)).collect();
+            // The ghost's faces go with those beside them.
+            let count = slots.len();
+            if let Some(ghost) = ring.iter().position(|&w| w == GHOST) {
+                slots[ghost] = slots[(ghost + 1) % count];
+                slots[(ghost + count - 1) % count] = slots[(ghost + count - 2) % count];
+            }
+            if !self.seams.set(v, (ring, &slots), vertices.all.len()) {
+                vertices.get_mut(v).flags.clear(VertexFlags::SEAM);
+            }
+        }
+        let mut constraints = Vec::new();
+        for faces in around.chunk_by(|a, b| a.0 == b.0) {
+            let v = faces[0].0;
+            for &w in vertices.neighbours(v).iter().filter(|&&w| w != GHOST) {
+                let [own, other] = [(v, w), (w, v)].map(|(v, w)| self.is_cut(v, w));
+                if own {
+                    constraints.push((v, w));
+                    if !other {
+                        constraints.push((w, v));
+                    }
+                }
+            }
+        }
+        for (v, w) in constraints {
+            let constraint = VertexQuadric::boundary(
+                vertices.get(w).place() - vertices.get(v).place(),
+                SEAM_WEIGHT,
+            );
+            vertices.get_mut(v).quadric.add(&constraint);
+        }
+    }
+
+    /// The attributes of faces, by their numbers and corners in the input; wedges in the input's order.
+    pub(crate) fn to_attributes(&self, faces: impl Iterator<Item = (u32, [u32; 3])>) -> Attributes {
+        let live = self.live();
+        let slots = |(i, face): (u32, [u32; 3])| {
+            let [a, b, c] = self.corners.slots(i as usize, face);
+            [live[a as usize], live[b as usize], live[c as usize]]
+        };
+        let of_faces: Vec<[u32; 3]> = faces.map(slots).collect();
+        let wedges: Vec<u32> = self.corners.wedges().collect();
+        let mut used: Vec<u32> = of_faces.as_flattened().to_vec();
+        used.sort_unstable_by_key(|&slot| (wedges[slot as usize], slot));
+        used.dedup();
+        let mut ids = vec![NOBODY; self.quadrics.len()];
+        let mut left: Vec<SurvivingWedge<K>> = Vec::with_capacity(used.len());
+        for slot in used {
+            let next = self.left(slot, wedges[slot as usize]);
+            // Copies of a vertex that have not moved are one again, and so are their wedges.
+            let same =
+                |last: &SurvivingWedge<K>| !last.moved && !next.moved && last.own == next.own;
+            if !left.last().is_some_and(same) {
+                left.push(next);
+            }
+            ids[slot as usize] = left.len() as u32 - 1;
+        }
+        let corner = |slot: u32| WedgeId(ids[slot as usize]);
+        let corners = of_faces.iter().map(|&[a, b, c]| [corner(a), corner(b), corner(c)]).collect();
+        Attributes { corners, wedge_count: left.len(), layers: self.layers.layers(&left) }
+    }
+
+    /// The attributes of all faces, wedges as in the input; what is no face has one more.
+    pub(crate) fn to_all_attributes(&self, faces: impl Iterator<Item = [u32; 3]>) -> Attributes {
+        let live = self.live();
+        let wedges: Vec<u32> = self.corners.wedges().collect();
+        let count = self.corners.own + self.corners.split.len();
+        let none = WedgeId::new(count);
+        let corner = |slot: u32| WedgeId(wedges[live[slot as usize] as usize]);
+        let corners = faces.enumerate().map(|(i, face)| {
+            let [a, b, c] = self.corners.slots(i, face);
+            if is_face(face) { [corner(a), corner(b), corner(c)] } else { [none; 3] }
+        });
+        let corners = corners.collect();
+        let mut slots = vec![NOBODY; count + 1];
+        for (slot, &wedge) in wedges.iter().enumerate().filter(|(_, wedge)| **wedge != NOBODY) {
+            slots[wedge as usize] = slot as u32;
+        }
+        let left = |(wedge, &slot): (usize, &u32)| self.left(slot, wedge as u32);
+        let left: Vec<SurvivingWedge<K>> = slots.iter().enumerate().map(left).collect();
+        Attributes { corners, wedge_count: left.len(), layers: self.layers.layers(&left) }
+    }
+
+    /// What is in a slot, or the input's values of a wedge that no slot has.
+    fn left(&self, slot: u32, own: u32) -> SurvivingWedge<K> {
+        let is_wedge = (own as usize) < self.corners.own + self.corners.split.len();
+        let wedge = if is_wedge { self.corners.source(own) } else { NOBODY };
+        if slot == NOBODY {
+            return SurvivingWedge { slot: 0, own, wedge, moved: !is_wedge, channels: [0.0; K] };
+        }
+        // What no face has used has nothing to keep.
+        let moved = self.heirs[slot as usize] == slot || !is_wedge;
+        SurvivingWedge { slot, own, wedge, moved, channels: self.field(slot).values() }
+    }
+
+    /// Takes down what a contraction has made of the wedges of a vertex.
+    pub(crate) fn record_values(&mut self, vertex: u32) {
+        let sectors = self.seams.of(vertex).iter().map(|sector| sector.slot);
+        let mut slots: Vec<u32> = sectors.collect();
+        if slots.is_empty() {
+            slots.push(vertex);
+        }
+        slots.sort_unstable();
+        slots.dedup();
+        for slot in slots.into_iter().filter(|&slot| self.heirs[slot as usize] == slot) {
+            let own = self.corners.wedge(slot);
+            let layers = self.layers.layers(&[self.left(slot, own)]);
+            let values = layers.into_iter().flat_map(|layer| layer.values).collect();
+            self.record.push(RecordedValues { number: self.logged, wedge: WedgeId(own), values });
+        }
+    }
+
+    /// The slot that each is or has become part of.
+    fn live(&self) -> Vec<u32> {
+        let of = |(slot, &heir): (u32, &u32)| if heir == NOBODY { slot } else { heir };
+        let mut live: Vec<u32> = (0..).zip(&self.heirs).map(of).collect();
+        for slot in 0..live.len() {
+            let mut last = live[slot];
+            while live[last as usize] != last {
+                last = live[last as usize];
+            }
+            let mut at = slot;
+            while live[at] != last {
+                at = std::mem::replace(&mut live[at], last) as usize;
+            }
+        }
+        live
+    }
+}
+
+#[cfg(test)]
+pub(crate) mod tests;

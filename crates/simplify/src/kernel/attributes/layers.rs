@@ -1,0 +1,242 @@
+//! The layers of a mesh as the fast engine has them: those that count as channels, in its lengths; and
+//! the rest, which only moves along.
+
+use std::ops::Range;
+
+use glam::{DVec3, Vec3};
+use meshlod_mesh::{Layer, LayerKind, Mesh, WedgeId};
+
+use crate::charts::is_shading;
+use crate::interpolate::{Place, interpolate};
+use crate::kernel::mesh::local_frame::Frame;
+use crate::options::AttributeWeights;
+
+/// No attribute counts for more, in the frame's units.
+const MOST_LENGTH: f64 = 1e9;
+
+/// A layer that counts, or the part of it that does.
+#[derive(Clone, Debug)]
+struct CostedLayer {
+    layer: usize,
+    /// Its channels.
+    channels: Range<usize>,
+    /// The engine's lengths to one of its values.
+    scale: f64,
+    /// The least and the greatest of its values, in channels.
+    range: [f32; 2],
+    is_normal: bool,
+    is_uv: bool,
+}
+
+/// The layers of a mesh.
+pub(crate) struct AttributeLayers<'m> {
+    layers: &'m [Layer],
+    counted: Vec<CostedLayer>,
+    /// What lengths in textures count, as on the surface.
+    pub(crate) uv_weight: f32,
+    /// Layers that channels do not hold, or not all of, by slot.
+    rest: Vec<Layer>,
+    /// Which layers they are.
+    rest_of: Vec<usize>,
+}
+
+/// A slot that is left: whose wedge of the input it was, and whether that one's values are still its.
+pub(crate) struct SurvivingWedge<const K: usize> {
+    pub(crate) slot: u32,
+    /// Where it stands among the wedges.
+    pub(crate) own: u32,
+    pub(crate) wedge: u32,
+    pub(crate) moved: bool,
+    pub(crate) channels: [f32; K],
+}
+
+impl<'m> AttributeLayers<'m> {
+    /// The layers of a mesh, those that count weighed as in the general engine; `most` channels of them
+    /// at most, the first layers first.
+    pub(crate) fn new(
+        mesh: &'m Mesh,
+        frame: &Frame,
+        weights: &AttributeWeights,
+        most: usize,
+    ) -> Self {
+        let layers = mesh.attributes.as_ref().map_or(&[][..], |all| &all.layers);
+        let mut counted: Vec<CostedLayer> = Vec::new();
+        let diagonal = mesh.bounds().diagonal();
+        for (i, layer) in layers.iter().enumerate() {
+            let (width, scale) = match layer.kind {
+                LayerKind::Normal => (3, weights.normal * diagonal),
+                LayerKind::Color(_) => (3, weights.color * diagonal),
+                LayerKind::Uv(_) if weights.uv > 0.0 => (2, weights.uv * length_of_uv(mesh, layer)),
+                _ => continue,
+            };
+            let scale = scale / frame.unit;
+            let start = counted.last().map_or(0, |last| last.channels.end);
+            let fits = layer.width >= width && start + width <= most;
+            if fits && scale > 0.0 && scale.is_finite() {
+                let channels = start..start + width;
+                let range = range(layer, width, scale);
+                let is_normal = layer.kind == LayerKind::Normal;
+                let is_uv = width == 2;
+                counted.push(CostedLayer { layer: i, channels, scale, range, is_normal, is_uv });
+            }
+        }
+        let uv_weight = weights.uv as f32;
+        Self { layers, counted, uv_weight, rest: Vec::new(), rest_of: Vec::new() }
+    }
+
+    /// How many channels count.
+    pub(crate) fn channels(&self) -> usize {
+        self.counted.last().map_or(0, |last| last.channels.end)
+    }
+
+    /// The channels of textures' places: each time the first of two.
+    pub(crate) fn uvs(&self) -> impl Iterator<Item = usize> + '_ {
+        self.counted.iter().filter(|counted| counted.is_uv).map(|counted| counted.channels.start)
+    }
+
+    /// Whether something moves along that no channel holds.
+    pub(crate) fn has_rest(&self) -> bool {
+        !self.rest.is_empty()
+    }
+
+    /// Takes what channels do not hold of these wedges, as the values of the slots. A slot without a
+    /// wedge has none.
+    pub(crate) fn fill(&mut self, wedges: &[u32]) {
+        for (i, layer) in self.layers.iter().enumerate() {
+            let width = layer.width;
+            let holds =
+                |counted: &CostedLayer| counted.layer == i && counted.channels.len() == width;
+            if self.counted.iter().any(holds) {
+                continue;
+            }
+            let mut values = vec![0.0; width * wedges.len()];
+            for (slot, &wedge) in wedges.iter().enumerate().filter(|(_, w)| **w != u32::MAX) {
+                values[slot * width..][..width].copy_from_slice(layer.of(WedgeId(wedge)));
+            }
+            self.rest.push(Layer { kind: layer.kind, name: String::new(), width, values });
+            self.rest_of.push(i);
+        }
+    }
+
+    /// The channels of a wedge. What is no number counts as zero, and nothing for more than floats
+    /// have room for the squares of.
+    pub(crate) fn channels_of<const K: usize>(&self, wedge: u32) -> [f32; K] {
+        let mut channels = [0.0; K];
+        for CostedLayer { layer, channels: at, scale, .. } in &self.counted {
+            let values = self.layers[*layer].of(WedgeId(wedge));
+            for (channel, &x) in channels[at.clone()].iter_mut().zip(values) {
+                let length = (f64::from(x) * scale).clamp(-MOST_LENGTH, MOST_LENGTH);
+                *channel = if x.is_finite() { length as f32 } else { 0.0 };
+            }
+        }
+        channels
+    }
+
+    /// Makes of channels that fit best such as may be: normals of their length, all in the range of the
+    /// input. `before` stands in for directions that cancel.
+    #[inline(always)]
+    pub(crate) fn settle<const K: usize>(&self, channels: &mut [f32; K], before: &[f32; K]) {
+        for CostedLayer { channels: at, scale, range: [low, high], is_normal, .. } in &self.counted
+        {
+            let values = &mut channels[at.clone()];
+            if *is_normal {
+                let unit = Vec3::new(values[0], values[1], values[2]).normalize_or_zero();
+                match unit == Vec3::ZERO {
+                    true => values.copy_from_slice(&before[at.clone()]),
+                    false => values.copy_from_slice(&(unit * *scale as f32).to_array()),
+                }
+            } else {
+                values.iter_mut().for_each(|x| *x = x.clamp(*low, *high));
+            }
+        }
+    }
+
+    /// Takes textures, all that is no normal, from other channels.
+    pub(crate) fn follow<const K: usize>(&self, channels: &mut [f32; K], other: &[f32; K]) {
+        for CostedLayer { channels: at, .. } in self.counted.iter().filter(|c| !c.is_normal) {
+            channels[at.clone()].copy_from_slice(&other[at.clone()]);
+        }
+    }
+
+    /// The same of what channels do not hold, from slot to slot.
+    pub(crate) fn follow_rest(&mut self, slot: u32, other: u32) {
+        for layer in self.rest.iter_mut().filter(|layer| !is_shading(layer)) {
+            let from = other as usize * layer.width;
+            layer.values.copy_within(from..from + layer.width, slot as usize * layer.width);
+        }
+    }
+
+    /// The layers in which wedges of one chart are equal; `None` where nothing is shading, so that each
+    /// wedge is a chart.
+    pub(crate) fn textures(&self) -> Option<Vec<&'m Layer>> {
+        let any_shading = self.layers.iter().any(is_shading);
+        any_shading.then(|| self.layers.iter().filter(|layer| !is_shading(layer)).collect())
+    }
+
+    /// Adds what channels do not hold at a place between slots.
+    pub(crate) fn rest_at(&self, place: &Place, values: &mut Vec<f32>) {
+        interpolate(&self.rest, place, values);
+    }
+
+    /// Gives a slot the first of what [`Self::rest_at`] found; gives what is left.
+    pub(crate) fn set_rest<'v>(&mut self, slot: u32, mut values: &'v [f32]) -> &'v [f32] {
+        for layer in &mut self.rest {
+            let (these, others) = values.split_at(layer.width);
+            layer.of_mut(WedgeId(slot)).copy_from_slice(these);
+            values = others;
+        }
+        values
+    }
+
+    /// The layers over the slots that are left.
+    pub(crate) fn layers<const K: usize>(&self, left: &[SurvivingWedge<K>]) -> Vec<Layer> {
+        let of_layer = |(i, layer): (usize, &Layer)| {
+            let counted = self.counted.iter().find(|counted| counted.layer == i);
+            let rest = self.rest_of.iter().position(|&of| of == i).map(|r| &self.rest[r]);
+            let mut values = Vec::with_capacity(left.len() * layer.width);
+            for SurvivingWedge { slot, wedge, moved, channels, .. } in left {
+                if !moved {
+                    values.extend_from_slice(layer.of(WedgeId(*wedge)));
+                    continue;
+                }
+                let start = values.len();
+                match rest {
+                    Some(rest) => values.extend_from_slice(rest.of(WedgeId(*slot))),
+                    None => values.resize(start + layer.width, 0.0),
+                }
+                if let Some(CostedLayer { channels: at, scale, .. }) = counted {
+                    let own = channels[at.clone()].iter().map(|&x| (f64::from(x) / scale) as f32);
+                    values[start..].iter_mut().zip(own).for_each(|(value, x)| *value = x);
+                }
+            }
+            Layer { values, kind: layer.kind, name: layer.name.clone(), width: layer.width }
+        };
+        self.layers.iter().enumerate().map(of_layer).collect()
+    }
+}
+
+/// The least and the greatest of the first `width` values of each wedge, as channels.
+fn range(layer: &Layer, width: usize, scale: f64) -> [f32; 2] {
+    let counted = layer.values.chunks_exact(layer.width).flat_map(|values| &values[..width]);
+    let finite = counted.copied().filter(|x| x.is_finite());
+    let [low, high] =
+        finite.fold([f32::INFINITY, f32::NEG_INFINITY], |[low, high], x| [low.min(x), high.max(x)]);
+    // Values that are no numbers count as zero.
+    let [low, high] = [low.min(0.0), high.max(0.0)].map(|x| (f64::from(x) * scale) as f32);
+    [low, high]
+}
+
+/// The length of a unit of uv on the surface: the root of its area by that of its texture.
+fn length_of_uv(mesh: &Mesh, layer: &Layer) -> f64 {
+    let Some(attributes) = &mesh.attributes else { return 0.0 };
+    let (mut area, mut in_texture) = (0.0, 0.0);
+    for (face, wedges) in mesh.faces.iter().zip(&attributes.corners) {
+        let [a, b, c] = mesh.triangle(*face);
+        area += (b - a).cross(c - a).length();
+        let uv = |w: WedgeId| DVec3::new(layer.of(w)[0].into(), layer.of(w)[1].into(), 0.0);
+        let [a, b, c] = wedges.map(uv);
+        let twice = (b - a).cross(c - a).z.abs();
+        in_texture += if twice.is_finite() { twice } else { 0.0 };
+    }
+    (area / in_texture).sqrt()
+}

@@ -1,0 +1,103 @@
+//! The values that wedges have after a contraction.
+//!
+//! Those that meet along the edge become one, with the values that fit both best. Where a vertex has
+//! several of one chart, creases in the shading, the others stay with their faces: each has the normal
+//! that fits it best, all have one place in the textures.
+
+use crate::kernel::attributes::attribute_quadric::{AttributeQuadric, best_values};
+use crate::kernel::attributes::scratch::NewValues;
+use crate::kernel::attributes::wedge_quadrics::WedgeQuadrics;
+use crate::kernel::collapse::{Collapse, WedgePairs};
+use glam::Vec3;
+
+impl<const K: usize> WedgeQuadrics<'_, K> {
+    /// The values of the wedge that two become.
+    pub(crate) fn values(&self, placed: &Collapse, [s0, s1]: [u32; 2]) -> [f32; K] {
+        let (f0, f1) = (self.field(s0), self.field(s1));
+        let before = f0.values();
+        if placed.by == Vec3::ZERO {
+            return before;
+        }
+        let mut values = best_values(f0, f1, placed.half, placed.best);
+        self.layers.settle(&mut values, &before);
+        values
+    }
+
+    /// Finds the new values of all slots of both ends.
+    ///
+    /// Where `v0` stays, its values do; but if others come to it they are all written again, for what
+    /// becomes of a value in channels and back may be off by its last digit.
+    pub(crate) fn find_values(&mut self, placed: &Collapse) {
+        let mut renewed = std::mem::take(&mut self.scratch.renewed);
+        renewed.clear();
+        let (ends, met) = (&placed.ends, &placed.ends.met);
+        let stays = placed.by == Vec3::ZERO;
+        if !stays || self.alone(ends, 1).next().is_some() {
+            let weight = |field: &AttributeQuadric<K>| if stays { 0.0 } else { field.weight() };
+            for (i, &[s0, s1]) in met.pairs().iter().enumerate() {
+                if met.pairs()[..i].iter().all(|before| before[0] != s0) {
+                    let weight = weight(self.field(s0)) + weight(self.field(s1));
+                    let values = self.values(placed, [s0, s1]);
+                    renewed.push(NewValues { slot: s0, values, leader: s0, weight });
+                }
+            }
+            for (end, from) in [(0, -placed.half), (1, placed.half)] {
+                for slot in self.alone(ends, end) {
+                    let field = self.field(slot);
+                    let mut values = field.values();
+                    if end == 1 || !stays {
+                        values = field.best_values(placed.best - from);
+                        self.layers.settle(&mut values, &field.values());
+                    }
+                    let leader = if end == 0 { slot } else { self.leader(met, slot) };
+                    renewed.push(NewValues { slot, values, leader, weight: weight(field) });
+                }
+            }
+        }
+        if !self.charts.is_empty() && renewed.len() > 1 {
+            self.settle_charts(&mut renewed);
+        }
+        self.scratch.renewed = renewed;
+    }
+
+    /// Gives slots of one chart one place in the textures.
+    fn settle_charts(&self, renewed: &mut [NewValues<K>]) {
+        for i in 0..renewed.len() {
+            let chart = self.chart(renewed[i].leader);
+            let is_of = |other: &NewValues<K>| self.chart(other.leader) == chart;
+            if renewed[..i].iter().any(is_of) {
+                continue;
+            }
+            let (mut sum, mut weight) = ([0.0; K], 0.0);
+            for other in renewed.iter().filter(|other| is_of(other)) {
+                let share = f64::from(other.weight);
+                weight += share;
+                for (sum, x) in sum.iter_mut().zip(other.values) {
+                    *sum += share * f64::from(x);
+                }
+            }
+            let mean = match weight > 0.0 {
+                true => sum.map(|x| (x / weight) as f32),
+                false => renewed[i].values,
+            };
+            let others = renewed[i..].iter_mut().filter(|other| is_of(other));
+            others.for_each(|other| self.layers.follow(&mut other.values, &mean));
+        }
+    }
+
+    /// Gives slots that go to another chart that one, and what no channel holds of its textures.
+    pub(crate) fn join_charts(&mut self, met: &WedgePairs) {
+        let Self { scratch, charts, layers, .. } = self;
+        if charts.is_empty() {
+            return;
+        }
+        for &NewValues { slot, leader, .. } in &scratch.renewed {
+            let chart = charts[leader as usize];
+            charts[slot as usize] = chart;
+            let mut leaders = met.pairs().iter().map(|pair| pair[0]);
+            if let Some(other) = leaders.find(|&other| charts[other as usize] == chart) {
+                layers.follow_rest(slot, other);
+            }
+        }
+    }
+}

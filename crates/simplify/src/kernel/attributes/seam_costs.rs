@@ -1,0 +1,267 @@
+//! What edges cost where seams are, eight at a time.
+//!
+//! An edge along a seam has a pair of slots on each side. The second goes into a lane that is not wanted
+//! otherwise, if there is one. One end may have to go to the other; both costs are found, and each edge
+//! takes its own.
+
+use glam::Vec3;
+
+use crate::kernel::attributes::attribute_quadric::{alone, join_and_onto};
+use crate::kernel::attributes::wedge_quadrics::WedgeQuadrics;
+use crate::kernel::collapse::Ends;
+use crate::kernel::mesh::one_ring::Vertices;
+use crate::kernel::mesh::vertex::{NOBODY, VertexFlags};
+use crate::kernel::metric::edge_quadric::{
+    Costs, EdgeQuadric, EdgeQuadrics, EdgeSide, SymmetricMatrix, VertexQuadrics, lane_of,
+};
+use crate::kernel::metric::swept_volume::SweptVolume;
+use crate::kernel::metric::{Metric, edges_between, least_costs};
+use crate::kernel::simd::{LANES, Row, Row3, SimdTask, widest};
+
+impl<const K: usize> WedgeQuadrics<'_, K> {
+    /// What eight edges cost if any of their vertices is on a seam. Of those without such an end, what
+    /// they cost if both may go anywhere.
+    #[inline(always)]
+    pub(crate) fn costs_at_seams(
+        &self,
+        vertices: &Vertices,
+        us: EdgeSide<u32>,
+        vs: &[u32; LANES],
+    ) -> Option<Costs> {
+        let (mut any, mut floor) = (0, 0);
+        for lane in 0..LANES {
+            let u = vertices.get(us.get(lane));
+            any |= u.flags.0 | vertices.get(vs[lane]).flags.0;
+            floor |= u.floor;
+        }
+        if !VertexFlags(any).any(VertexFlags::SEAM) {
+            return None;
+        }
+        let costs = widest(CostsAtSeams { wedges: self, vertices, edges: (us, vs) });
+        Some(Costs { costs, any_special: VertexFlags(any).any(VertexFlags::SPECIAL) || floor > 0 })
+    }
+
+    /// What slots of `v1` cost that meet none, if it goes to the place of `v0`: `by` from its own.
+    pub(crate) fn alone_onto(&self, ends: &Ends, by: Vec3) -> f32 {
+        let cost = |slot: u32| {
+            let field = self.field(slot);
+            let mut values = field.best_values(by.as_dvec3());
+            self.layers.follow(&mut values, &self.field(self.leader(&ends.met, slot)).values());
+            field.onto(by, &values)
+        };
+        self.alone(ends, 1).map(cost).sum()
+    }
+}
+
+/// The costs of eight edges.
+struct CostsAtSeams<'a, 'm, 'v, const K: usize> {
+    wedges: &'a WedgeQuadrics<'m, K>,
+    vertices: &'a Vertices<'v>,
+    edges: (EdgeSide<u32>, &'a [u32; LANES]),
+}
+
+impl<const K: usize> SimdTask for CostsAtSeams<'_, '_, '_, K> {
+    type Output = Row;
+
+    #[inline(always)]
+    fn work(self) -> Row {
+        let Self { wedges, vertices, edges: (us, vs) } = self;
+        let mut laid = SeamBatch::new();
+        laid.lay(wedges, vertices, us, vs);
+        if laid.lend() { laid.costs(wedges, vertices) } else { [f32::INFINITY; LANES] }
+    }
+}
+
+/// How an edge is contracted.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Motion {
+    Not,
+    Free,
+    /// Its second end goes to the first.
+    Onto,
+}
+
+/// Eight edges, by the slots that meet along them.
+struct SeamBatch {
+    ends: [[u32; LANES]; 2],
+    slots: [[u32; LANES]; 2],
+    ways: [Motion; LANES],
+    /// EdgeQuadrics with slots that meet none.
+    alone: [Option<Ends>; LANES],
+    /// On the other side of an edge, if there are others: which edge's, and the slots.
+    others: [(usize, [u32; 2]); LANES],
+    others_len: usize,
+    /// The lanes lent to the first of these.
+    lent: [usize; LANES],
+    lent_len: usize,
+}
+
+impl SeamBatch {
+    #[inline(always)]
+    fn new() -> Self {
+        Self {
+            ends: [[0; LANES]; 2],
+            slots: [[NOBODY; LANES]; 2],
+            ways: [Motion::Not; LANES],
+            alone: [None; LANES],
+            others: [(0, [NOBODY; 2]); LANES],
+            others_len: 0,
+            lent: [0; LANES],
+            lent_len: 0,
+        }
+    }
+
+    #[inline(always)]
+    fn lay<const K: usize>(
+        &mut self,
+        wedges: &WedgeQuadrics<'_, K>,
+        vertices: &Vertices,
+        us: EdgeSide<u32>,
+        vs: &[u32; LANES],
+    ) {
+        for lane in 0..LANES {
+            let (u, v) = (us.get(lane), vs[lane]);
+            let flags = VertexFlags(vertices.get(u).flags.0 | vertices.get(v).flags.0);
+            // Lanes beyond the end look at the first one again.
+            let again = lane > 0 && (u, v) == (us.get(0), vs[0]);
+            if flags.any(VertexFlags::SHUT) || again {
+                self.put(lane, [u, v], [NOBODY; 2], Motion::Not);
+            } else if !flags.any(VertexFlags::SEAM) {
+                self.put(lane, [u, v], [u, v], Motion::Free);
+            } else if let Ok(ends) = wedges.ends(vertices, u, v) {
+                self.put_ends(lane, &ends);
+            } else {
+                self.put(lane, [u, v], [NOBODY; 2], Motion::Not);
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn put(&mut self, lane: usize, ends: [u32; 2], slots: [u32; 2], way: Motion) {
+        (self.ends[0][lane], self.ends[1][lane]) = (ends[0], ends[1]);
+        (self.slots[0][lane], self.slots[1][lane]) = (slots[0], slots[1]);
+        self.ways[lane] = way;
+    }
+
+    #[inline(always)]
+    fn put_ends(&mut self, lane: usize, ends: &Ends) {
+        let Ends { v0, v1, free, met } = ends;
+        self.put(lane, [*v0, *v1], met.pairs()[0], if *free { Motion::Free } else { Motion::Onto });
+        if let Some(other) = met.other() {
+            self.others[self.others_len] = (lane, other);
+            self.others_len += 1;
+        }
+        if met.has_alone[1] || (*free && met.has_alone[0]) {
+            self.alone[lane] = Some(*ends);
+        }
+    }
+
+    /// Lends lanes that are not wanted to other sides. Whether any lane is wanted.
+    #[inline(always)]
+    fn lend(&mut self) -> bool {
+        let mut wanted = 0;
+        for lane in 0..LANES {
+            if self.ways[lane] != Motion::Not {
+                wanted += 1;
+            } else if self.lent_len < self.others_len {
+                let (of, [s0, s1]) = self.others[self.lent_len];
+                let ends = [self.ends[0][of], self.ends[1][of]];
+                self.put(lane, ends, [s0, s1], Motion::Not);
+                self.lent[self.lent_len] = lane;
+                self.lent_len += 1;
+            }
+        }
+        wanted > 0
+    }
+
+    #[inline(always)]
+    fn costs<const K: usize>(&self, wedges: &WedgeQuadrics<'_, K>, vertices: &Vertices) -> Row {
+        let first = VertexQuadrics::of(vertices, EdgeSide::Each(self.ends[0]));
+        let second = VertexQuadrics::of(vertices, EdgeSide::Each(self.ends[1]));
+        let mut edges = edges_between::<SweptVolume>(&first, &second);
+        let mut onto = onto_first(&second, &edges.half);
+        for &lane in &self.lent[..self.lent_len] {
+            edges.set(lane, &EdgeQuadric::NONE);
+            onto[lane] = 0.0;
+        }
+        let slots = [EdgeSide::Each(self.slots[0]), EdgeSide::Each(self.slots[1])];
+        join_and_onto(slots, |slot| wedges.field(slot), &mut edges, &mut onto);
+        for (&lane, &(of, _)) in self.lent[..self.lent_len].iter().zip(&self.others) {
+            let part = edges.part(lane);
+            edges.add(of, &part);
+            onto[of] += onto[lane];
+        }
+        if self.lent_len < self.others_len {
+            self.join_rest(wedges, &mut edges, &mut onto);
+        }
+        self.join_alone(wedges, &mut edges, &mut onto);
+        let mut costs = least_costs::<SweptVolume>(&edges);
+        for lane in 0..LANES {
+            costs[lane] = match self.ways[lane] {
+                Motion::Not => f32::INFINITY,
+                Motion::Free => costs[lane],
+                Motion::Onto => onto[lane],
+            };
+        }
+        costs
+    }
+
+    /// Joins the other sides that no lane was lent to, each in that of its edge.
+    #[inline(always)]
+    fn join_rest<const K: usize>(
+        &self,
+        wedges: &WedgeQuadrics<'_, K>,
+        edges: &mut EdgeQuadrics,
+        onto: &mut Row,
+    ) {
+        let rest = &self.others[self.lent_len..self.others_len];
+        let mut slots = [[NOBODY; LANES]; 2];
+        for &(of, [s0, s1]) in rest {
+            (slots[0][of], slots[1][of]) = (s0, s1);
+        }
+        let mut parts = EdgeQuadrics::ZERO;
+        parts.half = edges.half;
+        let slots = [EdgeSide::Each(slots[0]), EdgeSide::Each(slots[1])];
+        let mut part_onto = [0.0; LANES];
+        join_and_onto(slots, |slot| wedges.field(slot), &mut parts, &mut part_onto);
+        for &(of, _) in rest {
+            edges.add(of, &parts.part(of));
+            onto[of] += part_onto[of];
+        }
+    }
+
+    /// Joins what meets nothing, one by one: there is little of it.
+    #[inline(always)]
+    fn join_alone<const K: usize>(
+        &self,
+        wedges: &WedgeQuadrics<'_, K>,
+        edges: &mut EdgeQuadrics,
+        onto: &mut Row,
+    ) {
+        for (lane, ends) in self.alone.iter().enumerate() {
+            let Some(ends) = ends else { continue };
+            let half = edges.half.get(lane);
+            if !ends.free {
+                onto[lane] += wedges.alone_onto(ends, -2.0 * half);
+                continue;
+            }
+            for (end, from) in [(0, -half), (1, half)] {
+                for slot in wedges.alone(ends, end) {
+                    edges.add(lane, &alone(wedges.field(slot), from));
+                }
+            }
+        }
+    }
+}
+
+/// What the stars of second ends cost by themselves if they go to the first ones.
+#[inline(always)]
+fn onto_first(stars: &VertexQuadrics, half: &Row3) -> Row {
+    let mut costs = [0.0; LANES];
+    for (lane, cost) in costs.iter_mut().enumerate() {
+        let (h, squares) = (half.get(lane), SymmetricMatrix(lane_of(&stars.squares, lane)));
+        let short = SweptVolume::SHORT_FIRST * squares.trace() * h.dot(h);
+        *cost = 4.0 * (h.dot(squares.apply(h)) + short);
+    }
+    costs
+}

@@ -1,0 +1,168 @@
+//! Contractions where seams are: every face asks which wedges it has.
+
+use crate::kernel::attributes::attribute_quadric::AttributeQuadric;
+use crate::kernel::attributes::face_wedges::FaceWedges;
+use crate::kernel::attributes::update_smooth::dying;
+use crate::kernel::attributes::wedge_quadrics::{SEAM_WEIGHT, WedgeQuadrics};
+use crate::kernel::collapse::edge_ring::EdgeRing;
+use crate::kernel::collapse::{Collapse, Ends};
+use crate::kernel::mesh::one_ring::{GHOST, Vertices, is_seam};
+use crate::kernel::mesh::vertex::{VertexFlags, VertexQuadric};
+use crate::kernel::simd::SimdTask;
+use glam::Vec3;
+
+/// A contraction where something around has a seam, see [`WedgeQuadrics::contract_by_slots`].
+pub(crate) struct UpdateAtSeams<'a, 'm, 'v, const K: usize> {
+    pub(crate) wedges: &'a mut WedgeQuadrics<'m, K>,
+    pub(crate) vertices: &'a mut Vertices<'v>,
+    pub(crate) edge_ring: &'a EdgeRing,
+    pub(crate) placed: &'a Collapse,
+}
+
+impl<const K: usize> SimdTask for UpdateAtSeams<'_, '_, '_, K> {
+    type Output = VertexQuadric;
+
+    #[inline(always)]
+    fn work(self) -> VertexQuadric {
+        self.wedges.contract_by_slots(self.vertices, self.edge_ring, self.placed)
+    }
+}
+
+impl<const K: usize> WedgeQuadrics<'_, K> {
+    /// Where something around has a seam. Gives what the new star has of seams.
+    #[inline(always)]
+    fn contract_by_slots(
+        &mut self,
+        vertices: &mut Vertices,
+        edge_ring: &EdgeRing,
+        placed: &Collapse,
+    ) -> VertexQuadric {
+        let Ends { v0, v1, met, .. } = placed.ends;
+        let slots = std::mem::take(&mut self.scratch.slots);
+        self.move_rest(edge_ring, placed, Some(&slots));
+        self.remove_constraints(vertices, edge_ring, placed);
+        self.join_charts(&met);
+        let constraint = self.add_constraints(vertices, edge_ring, placed, &slots);
+        self.renew_fields(edge_ring, placed, &slots);
+        for &[s0, s1] in met.pairs() {
+            self.heirs[s1 as usize] = s0;
+        }
+        for renewed in &self.scratch.renewed {
+            self.heirs[renewed.slot as usize] = renewed.slot;
+        }
+        self.renew_sectors(vertices, edge_ring, [v0, v1], &slots.apexes);
+        self.scratch.slots = slots;
+        constraint
+    }
+
+    /// Brings up to date what the faces that change have added to all quadrics around.
+    #[inline(always)]
+    fn renew_fields(&mut self, edge_ring: &EdgeRing, placed: &Collapse, slots: &FaceWedges) {
+        let Self { quadrics, scratch, .. } = self;
+        let apexes = &slots.apexes;
+        scratch.change::<true>(edge_ring, placed.by, [&[0.0; K]; 3]);
+        for (wing, of) in [0, edge_ring.of_v0].into_iter().zip(slots.dying) {
+            if edge_ring.ghost != Some(wing) {
+                let [v0, v1, other] = of.map(|slot| quadrics[slot as usize].values());
+                quadrics[of[2] as usize].take(&dying(edge_ring, wing, [&v0, &v1, &other]));
+            }
+        }
+        for (i, &slot) in apexes.iter().enumerate() {
+            if i > 0 && slot == apexes[i - 1] {
+                continue;
+            }
+            let mut values = [0.0; K];
+            for (value, row) in values.iter_mut().zip(&scratch.after) {
+                *value = row[i];
+            }
+            quadrics[slot as usize] = AttributeQuadric::of_values(values);
+        }
+        for i in (0..edge_ring.len).filter(|&i| edge_ring.is_face(i)) {
+            let [_, a, b] = slots.spokes[i];
+            quadrics[a as usize].add(&scratch.changes[i]);
+            quadrics[b as usize].add(&scratch.changes[i]);
+            quadrics[apexes[i] as usize].add(&scratch.new[i]);
+        }
+    }
+
+    /// Takes the squares of cuts that change out of the stars around.
+    fn remove_constraints(&self, vertices: &mut Vertices, edge_ring: &EdgeRing, placed: &Collapse) {
+        let Ends { v0, v1, .. } = placed.ends;
+        let any = is_seam(vertices, v0) || is_seam(vertices, v1);
+        for i in (0..edge_ring.len).filter(|&i| edge_ring.ghost != Some(i)) {
+            let w = edge_ring.ids[i];
+            if !any && !is_seam(vertices, w) {
+                continue;
+            }
+            let near = [i <= edge_ring.of_v0, i >= edge_ring.of_v0 || i == 0];
+            for (apex, at, near) in [(v0, Vec3::ZERO, near[0]), (v1, edge_ring.along, near[1])] {
+                if near && self.is_cut_edge(apex, w) {
+                    let constraint = VertexQuadric::boundary(edge_ring.seen(i) - at, SEAM_WEIGHT);
+                    vertices.get_mut(w).quadric.take(&constraint);
+                }
+            }
+        }
+    }
+
+    /// Puts what they become in; gives what the new vertex has of them.
+    fn add_constraints(
+        &self,
+        vertices: &mut Vertices,
+        edge_ring: &EdgeRing,
+        placed: &Collapse,
+        slots: &FaceWedges,
+    ) -> VertexQuadric {
+        let apexes = &slots.apexes;
+        let mut sum = VertexQuadric::default();
+        let differ = |a: u32, b: u32| a != b && self.chart(a) != self.chart(b);
+        for i in (0..edge_ring.len).filter(|&i| edge_ring.is_face(i)) {
+            let before = (i + edge_ring.len - 1) % edge_ring.len;
+            let (last, first) = (slots.spokes[before][2], slots.spokes[i][1]);
+            if edge_ring.is_face(before)
+                && (differ(apexes[before], apexes[i]) || differ(last, first))
+            {
+                let constraint =
+                    VertexQuadric::boundary(edge_ring.seen(i) - placed.by, SEAM_WEIGHT);
+                vertices.get_mut(edge_ring.ids[i]).quadric.add(&constraint);
+                sum.add(&constraint);
+            }
+        }
+        sum
+    }
+
+    /// Whether charts differ across an edge, at this end.
+    pub(crate) fn is_cut(&self, v: u32, w: u32) -> bool {
+        self.seams.parted(v, w).is_some_and(|[a, b]| self.chart(a) != self.chart(b))
+    }
+
+    fn is_cut_edge(&self, v: u32, w: u32) -> bool {
+        self.is_cut(v, w) || self.is_cut(w, v)
+    }
+
+    fn renew_sectors(
+        &mut self,
+        vertices: &mut Vertices,
+        edge_ring: &EdgeRing,
+        [v0, v1]: [u32; 2],
+        apexes: &[u32],
+    ) {
+        for (i, &w) in edge_ring.ids().iter().enumerate() {
+            if w == GHOST || !is_seam(vertices, w) {
+                continue;
+            }
+            let first = match i {
+                0 => Some(v0),
+                i if i == edge_ring.of_v0 => Some(v1),
+                _ => None,
+            };
+            if !self.seams.rename(w, v1, v0, first) {
+                vertices.get_mut(w).flags.clear(VertexFlags::SEAM);
+            }
+        }
+        if is_seam(vertices, v0) || is_seam(vertices, v1) {
+            let any = self.seams.set(v0, (edge_ring.ids(), apexes), vertices.all.len());
+            let flags = &mut vertices.get_mut(v0).flags;
+            if any { flags.set(VertexFlags::SEAM) } else { flags.clear(VertexFlags::SEAM) }
+        }
+    }
+}

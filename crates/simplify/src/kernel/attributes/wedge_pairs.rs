@@ -1,0 +1,86 @@
+//! Which wedges of two vertices meet along their edge, and which of the two goes into the other.
+
+use crate::kernel::attributes::bare::by_pins;
+use crate::kernel::attributes::seam_sectors::Sector;
+use crate::kernel::attributes::wedge_quadrics::WedgeQuadrics;
+use crate::kernel::collapse::{Ends, WedgePairs};
+use crate::kernel::mesh::one_ring::{Vertices, is_seam};
+use crate::kernel::mesh::vertex::VertexFlags;
+use crate::refusal::Refusal;
+
+impl<const K: usize> WedgeQuadrics<'_, K> {
+    /// Which end of an edge goes into which, and what meets.
+    #[inline(always)]
+    pub(crate) fn ends(&self, vertices: &Vertices, v: u32, target: u32) -> Result<Ends, Refusal> {
+        if !is_seam(vertices, v) && !is_seam(vertices, target) {
+            return by_pins(vertices, v, target);
+        }
+        let at0 = self.seams.sides(vertices, v, target);
+        let at1 = self.seams.sides(vertices, target, v);
+        let mut met = WedgePairs::new(at0, at1, [false; 2]);
+        let leaves = self.may_leave(vertices, &mut met, (0, v));
+        let goes = self.may_leave(vertices, &mut met, (1, target));
+        if !leaves && !goes {
+            return Err(Refusal::Seam);
+        }
+        // Where two of one end meet one of the other not all may be one: that other end goes.
+        let [[a, _], [b, _]] = met.pairs;
+        let one_meets_two = met.are_two && a == b;
+        let turns = if leaves && goes { one_meets_two } else { leaves };
+        let (v0, v1) = if turns { (target, v) } else { (v, target) };
+        let met = if turns { met.turned() } else { met };
+        Ok(Ends { v0, v1, free: leaves && goes, met: self.one_each(met) })
+    }
+
+    /// One of `v1` that meets two goes into that of the lower wedge.
+    #[inline(always)]
+    fn one_each(&self, mut met: WedgePairs) -> WedgePairs {
+        let [[a, s], [b, t]] = met.pairs;
+        if met.are_two && s == t {
+            let [first, second] = [self.corners.wedge(a), self.corners.wedge(b)];
+            met.pairs[0][0] = if first <= second { a } else { b };
+            met.are_two = false;
+            met.has_alone[0] = !self.charts.is_empty();
+        }
+        met
+    }
+
+    /// Whether the charts of an end of an edge all have one at the other end to go to, and only one.
+    /// Takes down whether it has slots that meet none.
+    #[inline(always)]
+    fn may_leave(&self, vertices: &Vertices, met: &mut WedgePairs, (end, v): (usize, u32)) -> bool {
+        let [[a, s], [b, t]] = met.pairs;
+        let (own, other) = if end == 0 { ([a, b], [s, t]) } else { ([s, t], [a, b]) };
+        let [first, second] = [self.chart(own[0]), self.chart(own[1])];
+        let parts = || self.chart(other[0]) != self.chart(other[1]);
+        let (mut all_go, mut any_alone) = (true, false);
+        for sector in self.seams.of(v) {
+            if met.is_alone(end, sector.slot) {
+                let chart = self.chart(sector.slot);
+                all_go &= (chart == first) | (chart == second);
+                any_alone = true;
+            }
+        }
+        met.has_alone[end] = any_alone & !self.charts.is_empty();
+        all_go && !(first == second && parts()) && !vertices.get(v).flags.any(VertexFlags::PINNED)
+    }
+
+    /// The slots of an end that do not meet any along the edge. They stay with their faces.
+    #[inline(always)]
+    pub(crate) fn alone(&self, ends: &Ends, end: usize) -> impl Iterator<Item = u32> + '_ {
+        let (v, met) = ([ends.v0, ends.v1][end], ends.met);
+        let sectors = if met.has_alone[end] { self.seams.of(v) } else { &[] };
+        let first = move |(i, sector): (usize, &Sector)| {
+            let is_first = || sectors[..i].iter().all(|other| other.slot != sector.slot);
+            (met.is_alone(end, sector.slot) && is_first()).then_some(sector.slot)
+        };
+        sectors.iter().enumerate().filter_map(first)
+    }
+
+    /// The slot of `v0` whose chart that of a slot of `v1` becomes.
+    pub(crate) fn leader(&self, met: &WedgePairs, slot: u32) -> u32 {
+        let chart = self.chart(slot);
+        let found = met.pairs().iter().find(|pair| self.chart(pair[1]) == chart);
+        found.map_or(slot, |pair| pair[0])
+    }
+}

@@ -1,0 +1,69 @@
+//! Looking for the input from points of new faces.
+
+use glam::Vec3;
+use meshlod_mesh::FaceId;
+
+use crate::kernel::bound::input_surface::InputSurface;
+
+/// How often a way is halved at most.
+const HALVINGS: u32 = 4;
+
+/// A way is halved on while something on it can be beyond the bound by more than this.
+const OVER: f32 = 1.1;
+
+/// A way is not halved on where its ends and its middle are within this part of the bound, and the input
+/// is not looked for any closer. CPU time of the bunny within .1 %: .25 1.2, .4 1.0; at .6 fandisk-32k is
+/// 1.24 times as far off as .3 % instead of 1.1.
+const CALM: f32 = 0.4;
+
+/// Finds how far places are from the input, one near the other.
+pub(crate) struct Probe<'v> {
+    original: &'v InputSurface,
+    most: f32,
+    near: Option<FaceId>,
+    farthest: f32,
+}
+
+/// A place, and how far it is from the input.
+pub(crate) type Probed = (Vec3, f32);
+
+impl<'v> Probe<'v> {
+    /// `most` is the bound, in the frame's units.
+    pub(crate) fn new(original: &'v InputSurface, most: f32) -> Self {
+        Self { original, most, near: None, farthest: 0.0 }
+    }
+
+    /// The farthest place yet.
+    pub(crate) fn farthest(&self) -> f32 {
+        self.farthest
+    }
+
+    /// How far a place is from the input, at most; `None` if beyond the bound.
+    pub(crate) fn at(&mut self, place: Vec3) -> Option<f32> {
+        let limits = [CALM * self.most, self.most];
+        let apart = self.original.apart(place, &mut self.near, limits)?;
+        self.farthest = self.farthest.max(apart);
+        Some(apart)
+    }
+
+    /// Looks at points between two places; `None` if one is beyond the bound.
+    pub(crate) fn along(&mut self, ends: [Probed; 2]) -> Option<()> {
+        self.halve(ends, HALVINGS)
+    }
+
+    fn halve(&mut self, [a, b]: [Probed; 2], times: u32) -> Option<()> {
+        // Distance does not change faster than the place does.
+        let highest = (a.1 + b.1 + a.0.distance(b.0)) / 2.0;
+        if times == 0 || highest <= OVER * self.most {
+            return Some(());
+        }
+        let place = a.0.midpoint(b.0);
+        let middle = (place, self.at(place)?);
+        let is_calm = a.1.max(b.1).max(middle.1) <= CALM * self.most;
+        if is_calm && times < HALVINGS {
+            return Some(());
+        }
+        self.halve([a, middle], times - 1)?;
+        self.halve([middle, b], times - 1)
+    }
+}

@@ -1,0 +1,206 @@
+//! How far a contraction takes the surface away from itself: the two old vertices from the new
+//! faces, the new vertex from the old ones.
+//!
+//! The cost is a mean over planes, and planes do not see the tip of a spike: all of them pass close
+//! by its foot. Nor do they see a vertex that slides out along a fin.
+
+use glam::Vec3;
+
+use crate::kernel::collapse::edge_ring::{EdgeRing, ROOM, Spokes, row3};
+use crate::kernel::simd::{LANES, Row3, TINY, least, most};
+
+impl EdgeRing {
+    /// The square of the greatest of the three distances. `place` as seen from v0; the new faces are
+    /// those last put.
+    #[inline(always)]
+    pub(crate) fn apart(&self, place: Vec3) -> f32 {
+        let beyond = [f32::INFINITY; LANES];
+        let (mut of_v0, mut of_v1, mut of_new) = (beyond, beyond, beyond);
+        let along = self.along;
+        for start in self.starts() {
+            let Spokes { a, b, of_v1: at_v1 } = self.spokes(start);
+            let (old, new) = (row3(&self.old, start), row3(&self.new, start));
+            for lane in 0..LANES {
+                let (a, b) = (a.get(lane), b.get(lane));
+                let face = CornerFace::new(a - place, b - place, new.get(lane));
+                of_v0[lane] = least(face.squared(-place), of_v0[lane]);
+                of_v1[lane] = least(face.squared(along - place), of_v1[lane]);
+                let apex = along * at_v1[lane];
+                let face = CornerFace::new(a - apex, b - apex, old.get(lane));
+                of_new[lane] = least(face.squared(place - apex), of_new[lane]);
+            }
+        }
+        for [a, b, normal] in self.dying_faces() {
+            of_new[0] = least(CornerFace::new(a, b, normal).squared(place), of_new[0]);
+        }
+        let mut nearest = [of_v0[0], of_v1[0], of_new[0]];
+        for lane in 1..LANES {
+            nearest[0] = least(of_v0[lane], nearest[0]);
+            nearest[1] = least(of_v1[lane], nearest[1]);
+            nearest[2] = least(of_new[lane], nearest[2]);
+        }
+        most(nearest[0], most(nearest[1], nearest[2]))
+    }
+
+    /// The squares of how far a place is from each of the old faces: the spokes, then those that go.
+    pub(crate) fn squares_to_old(&self, place: Vec3) -> [f32; ROOM] {
+        let mut squares = [0.0; ROOM];
+        for start in self.starts() {
+            let (Spokes { a, b, of_v1 }, old) = (self.spokes(start), row3(&self.old, start));
+            for lane in 0..LANES {
+                let apex = self.along * of_v1[lane];
+                let (a, b) = (a.get(lane) - apex, b.get(lane) - apex);
+                squares[start + lane] =
+                    CornerFace::new(a, b, old.get(lane)).squared_of_all(place - apex);
+            }
+        }
+        for (square, [a, b, normal]) in squares[self.len..].iter_mut().zip(self.dying_faces()) {
+            *square = CornerFace::new(a, b, normal).squared_of_all(place);
+        }
+        squares
+    }
+
+    /// The square of how far a place is from the planes of the old faces that stay, at most.
+    pub(crate) fn off_planes(&self, place: Vec3) -> f32 {
+        let mut farthest = 0.0;
+        for start in self.starts() {
+            let (old, of_v1) = (row3(&self.old, start), self.spokes(start).of_v1);
+            for lane in 0..LANES {
+                let normal = old.get(lane);
+                let height = normal.dot(place - self.along * of_v1[lane]);
+                let to_unit = (normal.dot(normal) + TINY).recip();
+                farthest = most(height * height * to_unit, farthest);
+            }
+        }
+        farthest
+    }
+
+    /// The dying faces: two corners as seen from v0, and the normal.
+    #[inline(always)]
+    fn dying_faces(&self) -> [[Vec3; 3]; 2] {
+        let (first, last) = self.dying();
+        [[self.along, self.seen(0), first], [self.seen(self.of_v0), self.along, last]]
+    }
+}
+
+/// The faces around an edge, for many points.
+#[derive(Default)]
+pub(crate) struct FaceFan(Vec<FaceRows>);
+
+/// Eight faces: an apex as seen from v0, the other corners as seen from the apex, the normal.
+struct FaceRows {
+    apex: Row3,
+    a: Row3,
+    b: Row3,
+    normal: Row3,
+}
+
+impl FaceFan {
+    /// Lays out the faces with the new vertex, which are those last put. `place` as seen from v0.
+    pub(crate) fn lay_new(&mut self, edge_ring: &EdgeRing, place: Vec3) {
+        self.0.clear();
+        self.lay(edge_ring, &edge_ring.new, |_| place);
+    }
+
+    /// Lays out the faces with the old vertices, those that die too.
+    pub(crate) fn lay_old(&mut self, edge_ring: &EdgeRing) {
+        self.0.clear();
+        self.lay(edge_ring, &edge_ring.old, |of_v1| edge_ring.along * of_v1);
+        let [first, [a, b, normal]] = edge_ring.dying_faces();
+        let (a, b, normal) = (Row3::all(a), Row3::all(b), Row3::all(normal));
+        let mut faces = FaceRows { apex: Row3::ZERO, a, b, normal };
+        let [a, b, normal] = first;
+        faces.a.set(0, a);
+        faces.b.set(0, b);
+        faces.normal.set(0, normal);
+        self.0.push(faces);
+    }
+
+    fn lay(
+        &mut self,
+        edge_ring: &EdgeRing,
+        normals: &[[f32; ROOM]; 3],
+        apex: impl Fn(f32) -> Vec3,
+    ) {
+        for start in edge_ring.starts() {
+            let Spokes { mut a, mut b, of_v1 } = edge_ring.spokes(start);
+            let mut apices = Row3::ZERO;
+            for lane in 0..LANES {
+                let apex = apex(of_v1[lane]);
+                a.set(lane, a.get(lane) - apex);
+                b.set(lane, b.get(lane) - apex);
+                apices.set(lane, apex);
+            }
+            self.0.push(FaceRows { apex: apices, a, b, normal: row3(normals, start) });
+        }
+    }
+
+    /// The square of the distance of a point, as seen from v0.
+    #[inline]
+    pub(crate) fn squared(&self, point: Vec3) -> f32 {
+        let mut nearest = [f32::INFINITY; LANES];
+        for FaceRows { apex, a, b, normal } in &self.0 {
+            for lane in 0..LANES {
+                let face = CornerFace::new(a.get(lane), b.get(lane), normal.get(lane));
+                let quadric = point - apex.get(lane);
+                let squared = least(face.squared(quadric), face.squared_of_rim(quadric));
+                nearest[lane] = least(squared, nearest[lane]);
+            }
+        }
+        nearest.into_iter().fold(f32::INFINITY, least)
+    }
+}
+
+/// A face with a corner at the origin.
+struct CornerFace {
+    a: Vec3,
+    normal: Vec3,
+    b: Vec3,
+    aa: f32,
+    bb: f32,
+    ab: f32,
+    to_a: f32,
+    /// The square of the normal, and one over it.
+    nn: f32,
+    to_unit: f32,
+}
+
+impl CornerFace {
+    #[inline(always)]
+    fn new(a: Vec3, b: Vec3, normal: Vec3) -> Self {
+        let (aa, bb, ab, nn) = (a.dot(a), b.dot(b), a.dot(b), normal.dot(normal));
+        let (to_a, to_unit) = ((aa + TINY).recip(), (nn + TINY).recip());
+        Self { a, b, normal, aa, bb, ab, to_a, nn, to_unit }
+    }
+
+    /// The square of the distance of a point from it, or from its first edge where it does not lie
+    /// over it: the outer edge is left out.
+    #[inline(always)]
+    fn squared(&self, point: Vec3) -> f32 {
+        let (pa, pb) = (point.dot(self.a), point.dot(self.b));
+        let (u, v) = (pa * self.bb - pb * self.ab, pb * self.aa - pa * self.ab);
+        let is_over = (u >= 0.0) & (v >= 0.0) & (u + v <= self.nn) & (self.nn > 0.0);
+        let height = point.dot(self.normal);
+        let t = least(most(pa * self.to_a, 0.0), 1.0);
+        let edge = most(point.dot(point) - t * (pa + pa - t * self.aa), 0.0);
+        if is_over { height * height * self.to_unit } else { edge }
+    }
+
+    /// The square of the distance of a point from all of it.
+    #[inline(always)]
+    fn squared_of_all(&self, point: Vec3) -> f32 {
+        let pb = point.dot(self.b);
+        let t = least(most(pb * (self.bb + TINY).recip(), 0.0), 1.0);
+        let second = most(point.dot(point) - t * (pb + pb - t * self.bb), 0.0);
+        least(least(self.squared(point), second), self.squared_of_rim(point))
+    }
+
+    /// The square of the distance of a point from the outer edge, where the face has an area.
+    #[inline(always)]
+    fn squared_of_rim(&self, point: Vec3) -> f32 {
+        let (along, from_a) = (self.b - self.a, point - self.a);
+        let t = from_a.dot(along) * (along.dot(along) + TINY).recip();
+        let apart = from_a - along * least(most(t, 0.0), 1.0);
+        if self.nn > 0.0 { apart.dot(apart) } else { f32::INFINITY }
+    }
+}

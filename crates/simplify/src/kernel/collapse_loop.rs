@@ -1,0 +1,506 @@
+//! The loop: take the cheapest vertex, contract its cheapest edge, put what became of it back.
+//!
+//! A vertex has one entry in the queue, by the cheapest of its edges when it was last looked at. What
+//! contractions around it change is seen when the entry is among the next: the edge is costed again, by
+//! itself and then by the contraction, and goes through if it costs at most [`Metric::SLACK`] buckets more.
+
+use glam::DVec3;
+
+use crate::kernel::attributes::AttributeModel;
+use crate::kernel::bound::{BoundPart, BoundedStep};
+use crate::kernel::collapse::edge_ring::EdgeRing;
+use crate::kernel::collapse::{Collapse, Ends};
+use crate::kernel::contraction_log::LoggedContraction;
+use crate::kernel::mesh::one_ring::{GHOST, MOST, Vertices};
+use crate::kernel::mesh::vertex::{NOBODY, RING, Vertex, VertexFlags};
+use crate::kernel::metric::edge_quadric_f64::EdgeQuadricF64;
+use crate::kernel::metric::{Metric, protection};
+use crate::kernel::schedule::batch::Batch;
+use crate::kernel::schedule::bucket_queue::{AHEAD, BucketQueue, NONE, bucket, last_bucket};
+use crate::kernel::schedule::deferral::Deferral;
+use crate::kernel::schedule::edge_costs::{Cheapest, Rank, cheapest};
+use crate::kernel::simd::{SimdTask, widest};
+use crate::kernel::volume::VolumeTally;
+use crate::refusal::{Refusal, Refusals};
+
+/// How many buckets behind the front a new vertex is put, not looked at: many are gone before they come
+/// up. Mean error of horse-97k at 10 % and 1 %, and millions of instructions of both: looked at at once
+/// .00723, .0572, 849; 4 .00721, .0580; 6 .00720, .0578, 789; 8 .00723, .0586, 766; 10 .00727, .0583.
+const REST: u16 = 6;
+
+/// By how many buckets a contraction waits that turns a face over in its texture. Those turned in the
+/// flight helmet at 25 and 10 %, FLIP of pirate at 5 %, which has few faces left to go: 0 95, 111, .314;
+/// 4 44, 51, .324; 8 21, 41, .348; 16 .348; refused for good 9, 20, .393. Else FLIP is the same.
+const TURNED: u16 = 8;
+
+/// A part of a surface at work, with what it looks like.
+pub(crate) struct CollapseLoop<'v, L> {
+    pub(crate) vertices: Vertices<'v>,
+    model: &'v mut L,
+    pub(crate) live_faces: usize,
+    /// The square of the greatest estimate so far, in the frame's units.
+    pub(crate) error: f64,
+    /// What holds the surface within a bound, where there is one.
+    pub(crate) within: Option<BoundPart<'v>>,
+    pub(crate) refusals: Refusals,
+    pub(crate) volume: VolumeTally,
+    /// What was done, where that is wanted.
+    pub(crate) log: Option<Vec<LoggedContraction>>,
+    pub(crate) queue: &'v mut BucketQueue,
+    edge_ring: &'v mut EdgeRing,
+    pace: &'v mut Deferral,
+}
+
+/// Why the edge at the front was not contracted.
+enum Rejection {
+    /// It costs so much by now.
+    TooDear(u16),
+    /// It takes the surface too far for now, or turns a texture, but may go in this bucket.
+    TooFar(u16),
+    /// It may not be, at a cost in this bucket.
+    Refused(Refusal, u16),
+}
+
+/// An edge that may be contracted for what it costs.
+struct PricedEdge {
+    ends: Ends,
+    /// By its geometry alone.
+    swept: EdgeQuadricF64,
+    /// Where its vertex goes, as seen from the middle.
+    best: DVec3,
+    /// Of the cost.
+    bucket: u16,
+}
+
+impl<'v, L: AttributeModel> CollapseLoop<'v, L> {
+    pub(crate) fn new(
+        vertices: Vertices<'v>,
+        model: &'v mut L,
+        queue: &'v mut BucketQueue,
+        edge_ring: &'v mut EdgeRing,
+        pace: &'v mut Deferral,
+    ) -> Self {
+        Self {
+            vertices,
+            model,
+            live_faces: 0,
+            error: 0.0,
+            within: None,
+            refusals: Refusals::default(),
+            volume: VolumeTally::default(),
+            log: None,
+            queue,
+            edge_ring,
+            pace,
+        }
+    }
+
+    /// AttributeModel at all vertices for the first time, but for those that wait.
+    pub(crate) fn cost_all_vertices(&mut self) {
+        widest(CostAll(self));
+    }
+
+    /// Contracts until no more than `faces` are left, or what comes next is in a bucket behind `last`,
+    /// or nothing more may be contracted.
+    pub(crate) fn run(&mut self, faces: usize, last: u16) {
+        widest(ContractAll { engine: self, faces, last });
+    }
+
+    #[inline(always)]
+    fn contract_all(&mut self, faces: usize, last: u16) {
+        while self.live_faces > faces && self.take_batch(last) {
+            let (_, bucket) = self.queue.next();
+            if let Some(v) = self.pop() {
+                self.try_collapse(v, bucket);
+            }
+        }
+    }
+
+    /// Takes the next vertex out of the queue; `None` if its entry does not stand for it any more.
+    #[inline(always)]
+    fn pop(&mut self) -> Option<u32> {
+        let (_, bucket) = self.queue.next();
+        let v = self.queue.pop()?;
+        let is_due = self.is_due(v, bucket);
+        let vertex = self.vertices.get_mut(v);
+        if vertex.bucket == bucket {
+            vertex.bucket = NONE;
+        }
+        is_due.then_some(v)
+    }
+
+    /// Whether anything is left in a bucket not behind `last`; sees to it that what comes next is ready.
+    #[inline(always)]
+    fn take_batch(&mut self, last: u16) -> bool {
+        let (next, front) = self.queue.next();
+        if !next.is_empty() {
+            return front <= last;
+        }
+        if !self.queue.take(last) {
+            return false;
+        }
+        self.prefetch();
+        self.look_ahead();
+        true
+    }
+
+    /// AttributeModel at those of the next that have changed: first only at the edges that they would go by, of
+    /// all of them at once. Who costs too much by now is queued again.
+    #[inline(always)]
+    fn look_ahead(&mut self) {
+        let (taken, front) = self.queue.next();
+        let (mut next, len) = ([0; AHEAD], taken.len());
+        next[..len].copy_from_slice(taken);
+        let (mut changed, mut dear, mut count) = (Batch::<AHEAD>::new(), [0; AHEAD], 0);
+        for &v in &next[..len] {
+            if !self.is_due(v, front) {
+                continue;
+            }
+            let target = self.target(v);
+            let vertex = self.vertices.get_mut(v);
+            changed.push(
+                v,
+                vertex.target,
+                target.is_some() && vertex.flags.any(VertexFlags::STALE),
+            );
+            vertex.flags.clear(VertexFlags::STALE);
+            dear[count] = v;
+            count += usize::from(target.is_none());
+        }
+        changed.cost_all(&self.vertices, self.model, |[v, _], cost| {
+            dear[count] = v;
+            count += usize::from(bucket(cost) > front.saturating_add(L::Metric::SLACK));
+        });
+        for &v in &dear[..count] {
+            self.vertices.refresh(v);
+            let Cheapest { bucket, target } = cheapest(&self.vertices, self.model, v);
+            let vertex = self.vertices.get_mut(v);
+            vertex.target = target;
+            if bucket > front.saturating_add(L::Metric::SLACK) {
+                vertex.bucket = bucket;
+                self.queue.push(v, bucket);
+            }
+        }
+    }
+
+    /// The bucket of what comes next.
+    pub(crate) fn next_bucket(&mut self) -> Option<u16> {
+        while self.take_batch(last_bucket()) {
+            let (next, bucket) = self.queue.next();
+            if next.last().is_some_and(|&v| self.is_due(v, bucket)) {
+                return Some(bucket);
+            }
+            self.pop();
+        }
+        None
+    }
+
+    /// Whether an entry still stands for its vertex.
+    #[inline(always)]
+    fn is_due(&self, v: u32, bucket: u16) -> bool {
+        let vertex = self.vertices.get(v);
+        vertex.bucket == bucket && !vertex.flags.any(ASIDE)
+    }
+
+    /// Lets all edges try again that were refused.
+    pub(crate) fn wake_all(&mut self) {
+        self.queue.put_back();
+        for v in self.vertices.ids() {
+            let vertex = self.vertices.get(v);
+            if vertex.floor > 0 && !vertex.flags.any(ASIDE) {
+                self.put_first(v);
+            }
+        }
+    }
+
+    /// Lets a vertex go on that has waited.
+    pub(crate) fn release(&mut self, v: u32) {
+        self.vertices.get_mut(v).flags.clear(VertexFlags::OUTER);
+        self.put_first(v);
+    }
+
+    /// Queues a vertex before all others, to be looked at there.
+    fn put_first(&mut self, v: u32) {
+        let vertex = self.vertices.get_mut(v);
+        vertex.floor = 0;
+        vertex.target = NOBODY;
+        vertex.bucket = 0;
+        self.queue.push(v, 0);
+    }
+
+    /// Reads the vertices that come next, and their neighbours, in loops whose loads do not wait for
+    /// each other: met one by one, they would cost a memory latency each.
+    fn prefetch(&self) {
+        let (vertices, (next, _)) = (&self.vertices, self.queue.next());
+        let mut sum = 0;
+        for &v in next {
+            sum ^= vertices.get(v).ring[0] ^ vertices.get(v).target ^ self.model.prefetch(v);
+        }
+        for &v in next {
+            let vertex = vertices.get(v);
+            if vertex.flags.any(VertexFlags::DEAD) || vertex.len > RING as u8 {
+                continue;
+            }
+            for &w in &vertex.ring[..vertex.len as usize] {
+                sum ^= vertices.get(w).target ^ self.model.prefetch(w);
+            }
+        }
+        std::hint::black_box(sum);
+    }
+
+    #[inline(always)]
+    fn try_collapse(&mut self, v: u32, front: u16) {
+        let Some(target) = self.target(v) else { return self.look(v, front, None) };
+        match self.contract(v, target, front) {
+            Ok(kept) => self.defer(kept, front + REST),
+            Err(Rejection::TooFar(bucket)) => self.defer(v, bucket),
+            Err(Rejection::TooDear(bucket)) => self.look(v, front, Some((target, bucket))),
+            Err(Rejection::Refused(refusal, bucket)) => {
+                self.refusals.add(refusal);
+                let vertex = self.vertices.get_mut(v);
+                // It must rise, or the edge would be tried for ever.
+                vertex.floor = bucket.max(front).max(vertex.floor.saturating_add(1));
+                self.look(v, front, None);
+            }
+        }
+    }
+
+    /// The neighbour that its cheapest edge went to when it was looked at, or what has become of it.
+    #[inline(always)]
+    fn target(&mut self, v: u32) -> Option<u32> {
+        let mut target = self.vertices.get(v).target;
+        if target == NOBODY {
+            return None;
+        }
+        if self.vertices.get(target).flags.any(VertexFlags::DEAD) {
+            target = self.vertices.heir(target);
+            let vertex = self.vertices.get_mut(v);
+            vertex.target = target;
+            vertex.flags.set(VertexFlags::STALE);
+        }
+        let barred = self.vertices.get(target).flags.any(VertexFlags::SHUT);
+        (target != v && !barred).then_some(target)
+    }
+
+    /// The first look at all vertices: at the edges to those after each, so that an edge is seen once.
+    #[inline(always)]
+    fn cost_all(&mut self) {
+        let Self { vertices, model, queue, .. } = self;
+        let first = vertices.base;
+        let mut least = vec![Rank::LAST; vertices.all.len()];
+        let mut tell = |[v, w]: [u32; 2], cost: f32| {
+            let least = &mut least[(v - first) as usize];
+            *least = (*least).min(Rank::new(cost, w));
+        };
+        let mut batch = Batch::<{ 4 * MOST }>::new();
+        for v in vertices.ids() {
+            for &w in vertices.neighbours(v).iter().take(MOST) {
+                batch.push(v, w, w > v && w != GHOST);
+            }
+            if !batch.has_room(MOST) {
+                batch.cost_all(vertices, *model, &mut tell);
+            }
+        }
+        batch.cost_all(vertices, *model, tell);
+        for (v, least) in vertices.ids().zip(least) {
+            let vertex = vertices.get_mut(v);
+            if vertex.len > 0 && !vertex.flags.any(VertexFlags::OUTER) {
+                let Cheapest { bucket, target } = least.cheapest();
+                vertex.target = target;
+                vertex.bucket = bucket;
+                queue.push(v, bucket);
+            }
+        }
+    }
+
+    /// AttributeModel for the cheapest edge of a vertex and queues it, at the front or behind. What has just
+    /// been seen of an edge is not doubted: another rounding must not bring it back to the front.
+    #[inline(always)]
+    fn look(&mut self, v: u32, front: u16, quadric: Option<(u32, u16)>) {
+        self.vertices.refresh(v);
+        let Cheapest { mut bucket, target } = cheapest(&self.vertices, self.model, v);
+        if let Some((of, least)) = quadric
+            && of == target
+        {
+            bucket = bucket.max(least);
+        }
+        let bucket = bucket.max(front);
+        let vertex = self.vertices.get_mut(v);
+        vertex.target = target;
+        vertex.bucket = bucket;
+        vertex.flags.clear(VertexFlags::STALE);
+        self.queue.push(v, bucket);
+    }
+
+    /// Queues a vertex behind the front, to be looked at there if it is still there then.
+    #[inline(always)]
+    fn defer(&mut self, v: u32, bucket: u16) {
+        let vertex = self.vertices.get_mut(v);
+        vertex.target = NOBODY;
+        vertex.bucket = last_bucket().min(bucket);
+        self.queue.push(v, vertex.bucket);
+    }
+
+    /// Gathers what is around an edge, and finds what it costs and where its vertex goes.
+    #[inline(always)]
+    fn price(&mut self, v: u32, target: u32, front: u16) -> Result<PricedEdge, Rejection> {
+        let Self { vertices, model, edge_ring, .. } = self;
+        let refused = |refusal| Rejection::Refused(refusal, front);
+        let ends = model.order(vertices, v, target).map_err(refused)?;
+        let Ends { v0, v1, free, .. } = ends;
+        edge_ring.gather(vertices, v0, v1).map_err(refused)?;
+        let (end0, end1) = (vertices.get(v0), vertices.get(v1));
+        let swept = L::Metric::swept(edge_ring, end0, end1);
+        let whole = if free { model.whole(&ends, swept) } else { swept };
+        let best = if free { L::Metric::best(&whole) } else { -swept.half };
+        let looked = if free { 0.0 } else { f64::from(model.onto(vertices, &ends)) };
+        let cost = whole.at(best) + looked;
+        if !cost.is_finite() {
+            return Err(refused(Refusal::Volume));
+        }
+        let short =
+            f64::from(L::Metric::SHORT_FIRST) * whole.weight() * swept.half.length_squared();
+        let mut cost = (cost.max(0.0) + short) as f32;
+        if VertexFlags(end0.flags.0 | end1.flags.0).any(VertexFlags::PROTECTED) {
+            cost *= protection::<L::Metric>();
+        }
+        match bucket(cost) {
+            NONE => Err(refused(Refusal::Volume)),
+            bucket if bucket > front.saturating_add(L::Metric::SLACK) => {
+                Err(Rejection::TooDear(bucket))
+            }
+            bucket => Ok(PricedEdge { ends, swept, best, bucket }),
+        }
+    }
+
+    /// Contracts an edge; gives the vertex that stays.
+    #[inline(always)]
+    fn contract(&mut self, v: u32, target: u32, front: u16) -> Result<u32, Rejection> {
+        let PricedEdge { ends, swept, best, bucket } = self.price(v, target, front)?;
+        let Ends { v0, v1, free, .. } = ends;
+        let Self { vertices, model, edge_ring, pace, .. } = self;
+        let (end0, end1) = (vertices.get(v0), vertices.get(v1));
+        let refused = |refusal| Rejection::Refused(refusal, bucket);
+        if free && best.length_squared() > f64::from(edge_ring.reach()) {
+            return Err(refused(Refusal::Volume));
+        }
+        // The place as it will be read back, so that normals are those of the faces as they are.
+        let from = end0.place();
+        let place = if free { (from.as_dvec3() + best + swept.half).as_vec3() } else { from };
+        edge_ring.put(place - from).map_err(refused)?;
+        // A length: attributes have no part in it.
+        let swept_over = swept.at(best).max(0.0) / swept.weight().max(f64::MIN_POSITIVE);
+        let now = edge_ring.apart(place - from).max(swept_over as f32);
+        let mut moved = now + end0.moved.max(end1.moved);
+        if let Some(bucket) = pace.wait(now, moved, front) {
+            return Err(Rejection::TooFar(bucket));
+        }
+        let placed = Collapse { ends, half: swept.half, best, place, by: place - from };
+        let turns = model.look_ahead(vertices, edge_ring, &placed);
+        let later = bucket.saturating_add(TURNED).min(last_bucket());
+        if turns && front < later {
+            return Err(Rejection::TooFar(later));
+        }
+        if let Some(within) = &mut self.within {
+            let step = BoundedStep { edge_ring, ends: [v0, v1], from, by: place - from, now };
+            moved = within.admit(&step, moved).ok_or_else(|| refused(Refusal::Error))?;
+        }
+        self.error = self.error.max(moved.into());
+        let to = (place - from).as_dvec3() - swept.half;
+        let lost = swept.level - swept.normal.dot(to);
+        self.volume.add(place, lost, edge_ring.is_open(end0), free);
+        if let Some(log) = &mut self.log {
+            log.push(LoggedContraction { kept: v0, gone: v1, place, moved, front });
+        }
+        self.apply(&placed, &swept, moved, front);
+        if self.log.is_some() {
+            self.model.record(v0);
+        }
+        Ok(v0)
+    }
+
+    /// Writes a contraction that may be.
+    #[inline(always)]
+    fn apply(&mut self, placed: &Collapse, swept: &EdgeQuadricF64, moved: f32, front: u16) {
+        let Ends { v0, v1, .. } = placed.ends;
+        let Self { vertices, model, edge_ring, queue, .. } = self;
+        self.live_faces -=
+            [0, edge_ring.of_v0].iter().filter(|&&wing| edge_ring.ghost != Some(wing)).count();
+        let constraints = model.contract(vertices, edge_ring, placed);
+        let mut quadric = L::Metric::merge(vertices, edge_ring, swept, placed);
+        quadric.star.add(&constraints);
+        let (first, second) = edge_ring.dying();
+        let mut last = edge_ring.changes[edge_ring.len - 1];
+        for i in 0..edge_ring.len {
+            let change = edge_ring.changes[i];
+            let id = edge_ring.ids[i];
+            if id != GHOST {
+                let vertex = vertices.get_mut(id);
+                L::Metric::renew(vertex, [&last, &change], v0);
+                let mut woken = vertex.floor > 0;
+                if i == 0 || i == edge_ring.of_v0 {
+                    L::Metric::lose(vertex, if i == 0 { first } else { second });
+                    woken |= vertex.lose(v1);
+                } else if i > edge_ring.of_v0 {
+                    vertex.swap(v1, v0);
+                }
+                if woken {
+                    wake(vertex, id, queue, front);
+                }
+            }
+            last = change;
+        }
+        let gone = vertices.get_mut(v1);
+        gone.flags.set(VertexFlags::DEAD);
+        gone.target = v0;
+        let protected = gone.flags.0 & VertexFlags::PROTECTED.0;
+        vertices.set_ring_of(v0, &edge_ring.ids, edge_ring.len);
+        let kept = vertices.get_mut(v0);
+        kept.put(placed.place, quadric);
+        kept.moved = moved;
+        kept.flags.set(VertexFlags(protected));
+        kept.floor = 0;
+    }
+}
+
+/// A first look at all vertices.
+struct CostAll<'e, 'v, L>(&'e mut CollapseLoop<'v, L>);
+
+impl<L: AttributeModel> SimdTask for CostAll<'_, '_, L> {
+    type Output = ();
+
+    #[inline(always)]
+    fn work(self) {
+        self.0.cost_all();
+    }
+}
+
+/// Contractions, see [`CollapseLoop::run`].
+struct ContractAll<'e, 'v, L> {
+    engine: &'e mut CollapseLoop<'v, L>,
+    faces: usize,
+    last: u16,
+}
+
+impl<L: AttributeModel> SimdTask for ContractAll<'_, '_, L> {
+    type Output = ();
+
+    #[inline(always)]
+    fn work(self) {
+        self.engine.contract_all(self.faces, self.last);
+    }
+}
+
+/// Vertices that do not wait for anything.
+const ASIDE: VertexFlags = VertexFlags(VertexFlags::DEAD.0 | VertexFlags::SHUT.0);
+
+/// A vertex whose edges were refused may have others now.
+#[cold]
+fn wake(vertex: &mut Vertex, id: u32, queue: &mut BucketQueue, front: u16) {
+    vertex.floor = 0;
+    if vertex.bucket == NONE {
+        vertex.target = NOBODY;
+        vertex.bucket = front;
+        queue.push(id, front);
+    }
+}

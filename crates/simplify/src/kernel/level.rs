@@ -1,0 +1,79 @@
+//! A mesh out of the fast engine's vertices as they are.
+
+use meshlod_mesh::{Mesh, VertexId};
+use rayon::prelude::*;
+
+use crate::kernel::attributes::AttributeModel;
+use crate::kernel::contraction_log::InputNames;
+use crate::kernel::setup::vertex_order::numbers;
+
+/// The faces that are left, with what they use, in the input's order. `split` are those on copies of
+/// vertices, where there are any.
+pub(crate) fn level(
+    names: InputNames<'_>,
+    model: &impl AttributeModel,
+    split: Option<&[[u32; 3]]>,
+) -> Mesh {
+    let InputNames { mesh, order, store, .. } = names;
+    let heirs = store.heirs();
+    let of_input = |i: usize| match split {
+        Some(split) => split[i],
+        None => order.face(&mesh.faces[i]),
+    };
+    let faces = live(mesh.faces.len(), of_input, &heirs);
+    let mut ids = vec![u32::MAX; mesh.positions.len()];
+    let mut level = Mesh::default();
+    for (_, corners) in &faces {
+        for &v in corners {
+            ids[names.input(v).index()] = v;
+        }
+    }
+    for (input, id) in ids.iter_mut().enumerate().filter(|(_, id)| **id != u32::MAX) {
+        let place = store.all[*id as usize].place();
+        level.positions.push(names.position(VertexId::new(input), place));
+        *id = level.positions.len() as u32 - 1;
+    }
+    let corner = |v: u32| VertexId(ids[names.input(v).index()]);
+    level.faces = faces.iter().map(|&(_, [a, b, c])| [corner(a), corner(b), corner(c)]).collect();
+    let kept: Vec<u32> = faces.iter().map(|&(face, _)| face).collect();
+    level.attributes = model.attributes(kept.iter().map(|&i| (i, of_input(i as usize))));
+    level.materials = mesh.materials.as_ref().map(|labels| labels.select(&kept));
+    level.objects = mesh.objects.as_ref().map(|labels| labels.select(&kept));
+    level
+}
+
+/// All vertices and faces of the input as they are; a face that is gone repeats a vertex.
+pub(crate) fn workspace(
+    names: InputNames<'_>,
+    model: &impl AttributeModel,
+    split: Option<&[[u32; 3]]>,
+) -> Mesh {
+    let InputNames { mesh, order, store, .. } = names;
+    let heirs = store.heirs();
+    let now = |v: u32| names.input(heirs[v as usize]);
+    let now = |[a, b, c]: [u32; 3]| [now(a), now(b), now(c)];
+    let place = |v: VertexId| names.position(v, store.all[order.id(v) as usize].place());
+    let faces = numbers(mesh, order, split);
+    Mesh {
+        positions: (0..mesh.positions.len() as u32).map(|v| place(VertexId(v))).collect(),
+        faces: faces.clone().map(now).collect(),
+        attributes: model.all_attributes(faces),
+        materials: mesh.materials.clone(),
+        objects: mesh.objects.clone(),
+    }
+}
+
+/// The faces whose corners are still three, by what the corners have become.
+fn live(
+    count: usize,
+    face: impl Fn(usize) -> [u32; 3] + Sync,
+    heirs: &[u32],
+) -> Vec<(u32, [u32; 3])> {
+    let heir = |v: u32| heirs[v as usize];
+    let now = |i: usize| {
+        let [a, b, c] = face(i);
+        (i as u32, [heir(a), heir(b), heir(c)])
+    };
+    let is_left = |(_, [a, b, c]): &(u32, [u32; 3])| a != b && b != c && c != a;
+    (0..count).into_par_iter().map(now).filter(is_left).collect()
+}

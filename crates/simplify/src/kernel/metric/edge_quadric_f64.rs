@@ -1,0 +1,48 @@
+//! The squares of one edge in doubles, for where its vertex goes.
+
+use glam::{DMat3, DVec3};
+
+use crate::kernel::mesh::vertex::VertexQuadric;
+
+/// The squares of an edge, seen from its middle: x'Sx − 2 q·x + c; and the plane of equal volumes.
+#[derive(Clone, Copy)]
+pub(crate) struct EdgeQuadricF64 {
+    /// Half the edge.
+    pub(crate) half: DVec3,
+    /// S.
+    pub(crate) sum: DMat3,
+    /// q.
+    pub(crate) slope: DVec3,
+    /// c.
+    pub(crate) at_middle: f64,
+    /// The sum of n over the faces, each once.
+    pub(crate) normal: DVec3,
+    /// `normal`·x where the volume stays.
+    pub(crate) level: f64,
+}
+
+impl EdgeQuadricF64 {
+    /// The squares there.
+    #[inline(always)]
+    pub(crate) fn at(&self, x: DVec3) -> f64 {
+        x.dot(self.sum * x) - 2.0 * self.slope.dot(x) + self.at_middle
+    }
+
+    /// The sum of the faces' weights.
+    pub(crate) fn weight(&self) -> f64 {
+        self.sum.x_axis.x + self.sum.y_axis.y + self.sum.z_axis.z
+    }
+}
+
+/// The matrix of the squares at a vertex.
+#[inline(always)]
+pub(crate) fn matrix(star: &VertexQuadric) -> DMat3 {
+    symmetric(star.squares())
+}
+
+/// The matrix of xx, yy, zz, xy, xz, yz.
+#[inline(always)]
+pub(crate) fn symmetric([xx, yy, zz, xy, xz, yz]: [f32; 6]) -> DMat3 {
+    let column = |x: f32, y: f32, z: f32| DVec3::new(x.into(), y.into(), z.into());
+    DMat3::from_cols(column(xx, xy, xz), column(xy, yy, yz), column(xz, yz, zz))
+}

@@ -1,0 +1,207 @@
+//! `lindstrom-turk` [LT98]: the squares of the volumes that the faces around sweep, at their least on
+//! the plane where the volume stays. A vertex has those of the faces that it has now.
+//!
+//! Every plane of a star passes through its vertex. FullQuadric from the middle of an edge, with ends at −h
+//! and h, stars (A₀, N₀) and (A₁, N₁), S = A₀ + A₁, q = (A₁ − A₀)h and g = N₀ + N₁, the squares are
+//! x'Sx − 2q·x + h'Sh, and the volume stays where g·x = (N₁ − N₀)·h. Faces that both stars have
+//! contain h; they count twice in S and g and nowhere else.
+
+use glam::{DVec3, Vec3};
+
+use crate::kernel::collapse::edge_ring::EdgeRing;
+use crate::kernel::collapse::{Collapse, Ends};
+use crate::kernel::mesh::one_ring::Vertices;
+use crate::kernel::mesh::vertex::{Bf16, FullQuadric, Vertex, VertexFlags, VertexQuadric};
+use crate::kernel::metric::Metric;
+use crate::kernel::metric::edge_quadric::{
+    EdgeQuadrics, PULL, SymmetricMatrix, VertexQuadrics, lane_of,
+};
+use crate::kernel::metric::edge_quadric_f64::{EdgeQuadricF64, matrix};
+use crate::kernel::simd::{TINY, most};
+
+/// Forgets all that faces have been.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct SweptVolume;
+
+#[cfg(test)]
+impl SweptVolume {
+    /// The squares of one edge, in doubles, from those of its ends: faces that both have count twice.
+    pub(crate) fn along(end0: &Vertex, end1: &Vertex) -> EdgeQuadricF64 {
+        let half = (end1.place() - end0.place()).as_dvec3() * 0.5;
+        let (a0, a1) = (matrix(&end0.quadric), matrix(&end1.quadric));
+        let (n0, n1) = (end0.quadric.vector().as_dvec3(), end1.quadric.vector().as_dvec3());
+        EdgeQuadricF64 {
+            half,
+            sum: a0 + a1,
+            slope: (a1 - a0) * half,
+            at_middle: half.dot((a0 + a1) * half),
+            normal: n0 + n1,
+            level: (n1 - n0).dot(half),
+        }
+    }
+}
+
+impl Metric for SweptVolume {
+    const POWER: i32 = 6;
+
+    /// [LT99]
+    const BOUNDARY_WEIGHT: f32 = 9.0;
+
+    /// Mean error of horse-97k at 10 %: 0 .00725, 1 .00723, 2 .00725, 4 .00724, 8 .00743.
+    const SLACK: u16 = 4;
+
+    const SHORT_FIRST: f32 = 1e-7;
+
+    #[inline(always)]
+    fn face(normal: Vec3) -> VertexQuadric {
+        VertexQuadric::face(normal)
+    }
+
+    fn boundary(along: Vec3, _: Vec3, weight: f32) -> VertexQuadric {
+        VertexQuadric::boundary(along, weight)
+    }
+
+    #[inline(always)]
+    fn complete(
+        edges: &mut EdgeQuadrics,
+        lane: usize,
+        first: &VertexQuadrics,
+        second: &VertexQuadrics,
+    ) {
+        let (n0, n1) = (first.vector.get(lane), second.vector.get(lane));
+        edges.normal.set(lane, n0 + n1);
+        edges.level[lane] = (n1 - n0).dot(edges.half.get(lane));
+    }
+
+    #[inline(always)]
+    fn least(edges: &EdgeQuadrics, lane: usize) -> f32 {
+        let (g, q) = (edges.normal.get(lane), edges.slope.get(lane));
+        let sum = SymmetricMatrix(lane_of(&edges.sum, lane));
+        let trace = sum.trace();
+        let scale = (trace + TINY).recip();
+        let to_unit = (g.dot(g) + TINY).recip();
+        // The place on the plane of equal volumes that is next to the middle.
+        let x0 = g * (edges.level[lane] * to_unit);
+        let slope = q - sum.apply(x0);
+        let there = edges.at_middle[lane] - x0.dot(q + slope);
+
+        // Two directions in the plane, at right angles, the second along the slope; as long as keeps
+        // all that follows about one.
+        let across = g.cross(slope) * scale;
+        let e1 = across * to_unit;
+        let e2 = g.cross(e1);
+        let rise = e1.dot(across);
+        let m11 = e1.dot(sum.apply(e1)) * scale + PULL * e1.dot(e1);
+        let (a2, long2) = (sum.apply(e2), e2.dot(e2));
+        let m12 = e1.dot(a2) * scale;
+        let m22 = e2.dot(a2) * scale + PULL * long2;
+        let determinant = most(m11 * m22 - m12 * m12, 1e-36);
+        let gain = rise * rise * m11 / determinant * trace;
+        there - gain
+    }
+
+    fn onto(end0: &Vertex, end1: &Vertex) -> f32 {
+        let to = end0.place() - end1.place();
+        SymmetricMatrix(end1.quadric.squares()).at(to)
+    }
+
+    /// Each face once.
+    #[inline(always)]
+    fn swept(edge_ring: &EdgeRing, end0: &Vertex, end1: &Vertex) -> EdgeQuadricF64 {
+        let (a0, a1) = (end0.quadric, end1.quadric);
+        let (mut both, mut less) = (a0, a1);
+        both.add(&a1);
+        less.take(&a0);
+        let (first, last) = edge_ring.dying();
+        let mut once = both;
+        for (wing, normal) in [(0, first), (edge_ring.of_v0, last)] {
+            once.take(&match edge_ring.ghost == Some(wing) {
+                true => VertexQuadric::boundary(edge_ring.along, edge_ring.boundary_weight),
+                false => VertexQuadric::face(normal),
+            });
+        }
+        let half = edge_ring.along.as_dvec3() * 0.5;
+        let (normal, level) = edge_ring.volume((first, last));
+        EdgeQuadricF64 {
+            half,
+            sum: matrix(&once),
+            slope: matrix(&less) * half,
+            at_middle: half.dot(matrix(&both) * half),
+            normal,
+            level,
+        }
+    }
+
+    /// On the plane of equal volumes.
+    #[inline(always)]
+    fn best(swept: &EdgeQuadricF64) -> DVec3 {
+        let EdgeQuadricF64 { sum, slope, normal, level, .. } = *swept;
+        let squared = normal.length_squared();
+        if squared <= f64::MIN_POSITIVE {
+            return DVec3::ZERO;
+        }
+        let up = normal / squared.sqrt();
+        let on_plane = normal * (level / squared);
+        let (e1, e2) = up.any_orthonormal_pair();
+        let pull = f64::from(PULL) * swept.weight();
+        let (a1, a2) = (sum * e1, sum * e2);
+        let (m11, m12, m22) = (e1.dot(a1) + pull, e1.dot(a2), e2.dot(a2) + pull);
+        let slope = slope - sum * on_plane;
+        let (r1, r2) = (e1.dot(slope), e2.dot(slope));
+        let determinant = m11 * m22 - m12 * m12;
+        if determinant <= 0.0 {
+            return on_plane;
+        }
+        on_plane
+            + e1 * ((m22 * r1 - m12 * r2) / determinant)
+            + e2 * ((m11 * r2 - m12 * r1) / determinant)
+    }
+
+    #[inline(always)]
+    fn merge(
+        vertices: &mut Vertices,
+        edge_ring: &mut EdgeRing,
+        _: &EdgeQuadricF64,
+        placed: &Collapse,
+    ) -> FullQuadric {
+        let mut star = edge_ring.change();
+        if edge_ring.ghost.is_some() {
+            star.add(&renew_boundary(vertices, edge_ring, placed));
+        }
+        FullQuadric { star, constant: Bf16::NONE }
+    }
+
+    #[inline(always)]
+    fn renew(vertex: &mut Vertex, [before, after]: [&VertexQuadric; 2], _: u32) {
+        vertex.quadric.add(before);
+        vertex.quadric.add(after);
+        vertex.flags.set(VertexFlags::STALE);
+    }
+
+    #[inline(always)]
+    fn lose(vertex: &mut Vertex, normal: Vec3) {
+        vertex.quadric.take(&VertexQuadric::face(normal));
+    }
+}
+
+/// Brings the boundary's part of the stars up to date; gives that of the new vertex.
+#[cold]
+fn renew_boundary(
+    vertices: &mut Vertices,
+    edge_ring: &EdgeRing,
+    placed: &Collapse,
+) -> VertexQuadric {
+    let Ends { v0, v1, .. } = placed.ends;
+    let mut sum = VertexQuadric::default();
+    let ends = [vertices.get(v0).place(), vertices.get(v1).place()];
+    for (i, of_v1) in edge_ring.boundary() {
+        let vertex = vertices.get_mut(edge_ring.ids[i]);
+        let edge =
+            |apex: Vec3| VertexQuadric::boundary(vertex.place() - apex, edge_ring.boundary_weight);
+        let (old, new) = (edge(ends[usize::from(of_v1)]), edge(placed.place));
+        vertex.quadric.add(&new);
+        vertex.quadric.take(&old);
+        sum.add(&new);
+    }
+    sum
+}

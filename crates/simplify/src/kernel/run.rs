@@ -1,0 +1,179 @@
+//! A mesh at work by the fast engine, as [`Simplifier`](crate::Simplifier) has it.
+
+use std::cell::OnceCell;
+
+use meshlod_mesh::Mesh;
+
+use crate::clean;
+use crate::engine::{Run, Tally};
+use crate::kernel::attributes::AttributeModel;
+use crate::kernel::bound::ErrorBound;
+use crate::kernel::bound::input_surface::InputSurface;
+use crate::kernel::contraction_log::{InputNames, replay};
+use crate::kernel::level::{level, workspace};
+use crate::kernel::mesh::local_frame::Frame;
+use crate::kernel::mesh::one_ring::VertexStore;
+use crate::kernel::metric::Metric;
+use crate::kernel::partition::Partition;
+use crate::kernel::schedule::bucket_queue::{NONE, bucket, least_of};
+use crate::kernel::setup::vertex_order::{Order, numbers};
+use crate::policy::{Observe, Stop};
+use crate::refusal::Refusal;
+use crate::surface::Surface;
+
+/// What is worked on, and how the engine has it.
+pub(crate) struct KernelInput<'m> {
+    pub(crate) mesh: &'m Mesh,
+    pub(crate) frame: Frame,
+    pub(crate) order: Order,
+    /// The faces on copies of vertices, where there are any.
+    pub(crate) faces: Option<Vec<[u32; 3]>>,
+}
+
+/// A mesh at work.
+pub(crate) struct KernelRun<'m, L> {
+    source: KernelInput<'m>,
+    parts: Partition<L>,
+    /// The narrowest bound of the error that has refused an edge since all were awake.
+    refused_above: f64,
+    /// The input, if a bound of the error has been asked for.
+    original: OnceCell<InputSurface>,
+    /// As it is now, if anybody has looked since it last changed unseen.
+    surface: OnceCell<Surface>,
+}
+
+impl<'m, L: AttributeModel> KernelRun<'m, L> {
+    pub(crate) fn new(source: KernelInput<'m>, parts: Partition<L>) -> Self {
+        let (refused_above, surface) = (f64::INFINITY, OnceCell::new());
+        Self { source, parts, refused_above, original: OnceCell::new(), surface }
+    }
+
+    fn names(&self) -> InputNames<'_> {
+        let KernelInput { mesh, frame, order, .. } = &self.source;
+        InputNames { mesh, frame, order, store: &self.parts.store }
+    }
+
+    /// What the engine's costs are multiplied by in model units.
+    fn cost_unit(&self) -> f64 {
+        self.source.frame.unit.powi(L::Metric::POWER)
+    }
+
+    /// The last bucket with something that costs no more than this. The cost of a bucket is the least
+    /// in it, so that what [`Run::next_cost`] tells is always enough to go on.
+    fn last_bucket(&self, cost: f64) -> u16 {
+        let unit = self.cost_unit();
+        let costs_at_most = |bucket: u16| f64::from(least_of(bucket)) * unit <= cost;
+        // The division may have rounded either way.
+        let about = bucket((cost / unit) as f32);
+        let near = [about.saturating_add(1), about, about.saturating_sub(1)];
+        match about {
+            NONE => NONE,
+            _ => near.into_iter().find(|&b| b < NONE && costs_at_most(b)).unwrap_or(0),
+        }
+    }
+
+    /// Lets those try again that a narrower bound of the error has refused.
+    fn try_again_within(&mut self, error: f64) {
+        if error > self.refused_above {
+            self.refused_above = f64::INFINITY;
+            self.parts.wake_all();
+        }
+    }
+
+    /// Goes on to so many faces, and shows the observer what it wants to see.
+    fn advance(&mut self, faces: usize, stop: &Stop, observer: &mut dyn Observe) {
+        let is_shown = observer.needs_surface();
+        if is_shown {
+            self.surface();
+            self.parts.log = Some(Vec::new());
+        }
+        self.try_again_within(stop.error);
+        let last = self.last_bucket(stop.cost);
+        let refused = |parts: &Partition<L>| parts.refusals.count(Refusal::Error);
+        let (refused_before, at_first) = (refused(&self.parts), self.parts.live_faces);
+        let Self { source, parts, original, .. } = &mut *self;
+        let is_bounded = stop.error < f64::INFINITY;
+        let mut bound = is_bounded.then(|| bound(stop.error, source, &parts.store, original));
+        parts.run(faces, last, bound.as_mut(), &mut |gone| observer.gone(gone));
+        if refused(&self.parts) > refused_before {
+            self.refused_above = self.refused_above.min(stop.error);
+        }
+        match (self.parts.log.take(), self.surface.take()) {
+            (Some(log), Some(mut surface)) => {
+                let values = self.parts.model[0].recorded();
+                replay(&log, &values, self.names(), &mut surface, observer);
+                self.surface = surface.into();
+            }
+            (_, surface) if self.parts.live_faces == at_first => {
+                self.surface = surface.map_or_else(OnceCell::new, OnceCell::from);
+            }
+            _ => {}
+        }
+    }
+}
+
+/// What it takes to stay within this error, in model units.
+fn bound<'o>(
+    error: f64,
+    source: &KernelInput<'_>,
+    store: &VertexStore,
+    original: &'o OnceCell<InputSurface>,
+) -> ErrorBound<'o> {
+    let KernelInput { mesh, frame, order, faces } = source;
+    let original = original.get_or_init(|| {
+        let place = |v: u32| frame.enter(mesh.positions[order.input(store.origin(v)) as usize]);
+        let places = (0..store.all.len() as u32).map(place).collect();
+        InputSurface::new(mesh, *frame, places, numbers(mesh, order, faces.as_deref()))
+    });
+    ErrorBound::new((error / frame.unit) as f32, original, store)
+}
+
+impl<L: AttributeModel> Run for KernelRun<'_, L> {
+    fn run(&mut self, stop: &Stop, observer: &mut dyn Observe) {
+        self.advance(stop.faces, stop, observer);
+    }
+
+    fn step(&mut self, stop: &Stop, observer: &mut dyn Observe) -> bool {
+        self.parts.unite();
+        let before = self.parts.live_faces;
+        self.advance(before.saturating_sub(1), stop, observer);
+        self.parts.live_faces < before
+    }
+
+    fn next_cost(&mut self) -> Option<f64> {
+        self.try_again_within(f64::INFINITY);
+        self.parts.unite();
+        let bucket = self.parts.next_bucket()?;
+        Some(f64::from(least_of(bucket)) * self.cost_unit())
+    }
+
+    fn live_faces(&self) -> usize {
+        self.parts.live_faces
+    }
+
+    fn level(&self, _: &Mesh) -> Mesh {
+        level(self.names(), &self.parts.model[0], self.source.faces.as_deref())
+    }
+
+    fn surface(&self) -> &Surface {
+        self.surface.get_or_init(|| {
+            let mesh = workspace(self.names(), &self.parts.model[0], self.source.faces.as_deref());
+            let (connectivity, _) = clean::connect(&mesh);
+            Surface::new(&mesh, &connectivity)
+        })
+    }
+
+    fn into_surface(self: Box<Self>) -> Surface {
+        self.surface();
+        self.surface.into_inner().expect("it was made just now")
+    }
+
+    fn tally(&self) -> Tally {
+        Tally {
+            vanished: 0,
+            refusals: self.parts.refusals,
+            error_estimate: self.parts.error.sqrt() * self.source.frame.unit,
+            volume: self.parts.volume.loss(&self.source.frame),
+        }
+    }
+}

@@ -1,0 +1,57 @@
+//! EdgeQuadrics of any vertices, costed eight at a time.
+
+use crate::kernel::attributes::AttributeModel;
+use crate::kernel::mesh::one_ring::Vertices;
+use crate::kernel::metric::edge_quadric::EdgeSide;
+use crate::kernel::schedule::edge_costs::costs;
+use crate::kernel::simd::LANES;
+
+/// EdgeQuadrics to be costed, `ROOM` at most.
+pub(crate) struct Batch<const ROOM: usize> {
+    us: [u32; ROOM],
+    vs: [u32; ROOM],
+    len: usize,
+}
+
+impl<const ROOM: usize> Batch<ROOM> {
+    pub(crate) fn new() -> Self {
+        Self { us: [0; ROOM], vs: [0; ROOM], len: 0 }
+    }
+
+    /// Whether there is room for so many more.
+    #[inline(always)]
+    pub(crate) fn has_room(&self, more: usize) -> bool {
+        self.len + more <= ROOM
+    }
+
+    /// Takes an edge up `if_so`, which is not to be guessed by a branch.
+    #[inline(always)]
+    pub(crate) fn push(&mut self, u: u32, v: u32, if_so: bool) {
+        (self.us[self.len], self.vs[self.len]) = (u, v);
+        self.len += usize::from(if_so);
+    }
+
+    /// Tells the cost of each, in their order, and forgets them.
+    #[inline(always)]
+    pub(crate) fn cost_all(
+        &mut self,
+        vertices: &Vertices,
+        model: &impl AttributeModel,
+        mut tell: impl FnMut([u32; 2], f32),
+    ) {
+        let mut start = 0;
+        while start < self.len {
+            // Lanes beyond the end look at the first one again.
+            let (mut us, mut vs) = ([self.us[start]; LANES], [self.vs[start]; LANES]);
+            for lane in 0..LANES.min(self.len - start) {
+                (us[lane], vs[lane]) = (self.us[start + lane], self.vs[start + lane]);
+            }
+            let costs = costs(vertices, model, EdgeSide::Each(us), &vs);
+            for lane in 0..LANES.min(self.len - start) {
+                tell([us[lane], vs[lane]], costs[lane]);
+            }
+            start += LANES;
+        }
+        self.len = 0;
+    }
+}

@@ -1,0 +1,111 @@
+//! Vertices where the surface is not manifold, split aside: each fan of faces gets a copy, and all
+//! copies stay where they are. In the result they are one vertex again, so topology is as it was.
+
+use rustc_hash::FxHashMap;
+
+/// The two other corners of a face, in its turn.
+pub(crate) type Pair = [u32; 2];
+
+/// Faces on copies of vertices.
+pub(crate) struct SplitFaces {
+    /// As many as were given.
+    pub(crate) faces: Vec<[u32; 3]>,
+    /// The vertices that the copies are of. The copies' ids follow those of all vertices.
+    pub(crate) copied: Vec<u32>,
+}
+
+/// A corner of a face at a vertex.
+#[derive(Clone, Copy)]
+struct Corner {
+    face: u32,
+    corner: usize,
+    pair: Pair,
+}
+
+/// Gives each fan around the irregular vertices a vertex of its own: the first keeps the id.
+pub(crate) fn split(mut faces: Vec<[u32; 3]>, irregular: &[u32], vertices: usize) -> SplitFaces {
+    let stars = stars(&faces, irregular);
+    let mut copied = Vec::new();
+    for (&v, star) in irregular.iter().zip(&stars) {
+        for (i, fan) in fans(star).into_iter().enumerate() {
+            if i == 0 {
+                continue;
+            }
+            let copy = (vertices + copied.len()) as u32;
+            copied.push(v);
+            for corner in fan {
+                faces[corner.face as usize][corner.corner] = copy;
+            }
+        }
+    }
+    SplitFaces { faces, copied }
+}
+
+/// The corners of faces at each of these vertices.
+fn stars(faces: &[[u32; 3]], of: &[u32]) -> Vec<Vec<Corner>> {
+    let place: FxHashMap<u32, usize> = of.iter().enumerate().map(|(i, &v)| (v, i)).collect();
+    let mut stars = vec![Vec::new(); of.len()];
+    for (f, &[a, b, c]) in faces.iter().enumerate() {
+        if a == b || b == c || c == a {
+            continue;
+        }
+        for (corner, (v, pair)) in [(a, [b, c]), (b, [c, a]), (c, [a, b])].into_iter().enumerate() {
+            if let Some(&i) = place.get(&v) {
+                stars[i].push(Corner { face: f as u32, corner, pair });
+            }
+        }
+    }
+    stars
+}
+
+/// Makes all faces that repeat one before, in the same turn, `[0, 0, 0]`, and says how many those were.
+/// Their corners are all irregular.
+pub(crate) fn drop_duplicates(faces: &mut [[u32; 3]], irregular: &[u32]) -> usize {
+    let mut seen = FxHashMap::default();
+    let mut count = 0;
+    for face in faces.iter_mut() {
+        if face.iter().any(|v| irregular.binary_search(v).is_err()) {
+            continue;
+        }
+        let [a, b, c] = *face;
+        let turned = [[a, b, c], [b, c, a], [c, a, b]].into_iter().min();
+        if a != b && b != c && c != a && seen.insert(turned, ()).is_some() {
+            *face = [0; 3];
+            count += 1;
+        }
+    }
+    count
+}
+
+/// The fans of a star: faces that hang together by edges that have one face on either side.
+fn fans(star: &[Corner]) -> Vec<Vec<Corner>> {
+    let mut from: FxHashMap<u32, Vec<usize>> = FxHashMap::default();
+    let mut to: FxHashMap<u32, usize> = FxHashMap::default();
+    for (i, corner) in star.iter().enumerate() {
+        from.entry(corner.pair[0]).or_default().push(i);
+        *to.entry(corner.pair[1]).or_default() += 1;
+    }
+    let next = |i: usize| match from.get(&star[i].pair[1]).map(Vec::as_slice) {
+        Some(&[next]) if to[&star[i].pair[1]] == 1 => Some(next),
+        _ => None,
+    };
+    let mut has_previous = vec![false; star.len()];
+    (0..star.len()).filter_map(next).for_each(|i| has_previous[i] = true);
+    let mut taken = vec![false; star.len()];
+    let mut fans = Vec::new();
+    // Open fans from their beginnings, then closed ones from anywhere.
+    let beginnings = (0..star.len()).filter(|&i| !has_previous[i]);
+    for start in beginnings.chain(0..star.len()) {
+        let mut fan = Vec::new();
+        let mut at = Some(start);
+        while let Some(i) = at.filter(|&i| !taken[i]) {
+            taken[i] = true;
+            fan.push(star[i]);
+            at = next(i);
+        }
+        if !fan.is_empty() {
+            fans.push(fan);
+        }
+    }
+    fans
+}

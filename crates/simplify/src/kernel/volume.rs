@@ -1,0 +1,104 @@
+//! What contractions did to the volume, as the fast engine counts it.
+
+use glam::Vec3;
+use meshlod_mesh::Bounds;
+
+use crate::kernel::mesh::local_frame::Frame;
+use crate::volume::{Unconserved, VolumeLoss};
+
+/// The volume lost, and the contractions that could not choose their place by it, in the frame.
+///
+/// Places are rounded, so a free contraction loses a little too.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct VolumeTally {
+    sixfold: f64,
+    open: Unchosen,
+    held: Unchosen,
+}
+
+/// How many, and the box of where they were.
+#[derive(Clone, Copy, Debug)]
+struct Unchosen {
+    contractions: usize,
+    min: Vec3,
+    max: Vec3,
+}
+
+impl Default for Unchosen {
+    fn default() -> Self {
+        Self { contractions: 0, min: Vec3::INFINITY, max: Vec3::NEG_INFINITY }
+    }
+}
+
+impl VolumeTally {
+    /// Counts a contraction to `place` that loses a sixth of `sixfold`.
+    #[inline(always)]
+    pub(crate) fn add(&mut self, place: Vec3, sixfold: f64, is_open: bool, is_free: bool) {
+        if is_open {
+            return self.open.add(place);
+        }
+        self.sixfold += sixfold;
+        if !is_free {
+            self.held.add(place);
+        }
+    }
+
+    /// Counts what another part has lost.
+    pub(crate) fn join(&mut self, other: &Self) {
+        self.sixfold += other.sixfold;
+        self.open.join(&other.open);
+        self.held.join(&other.held);
+    }
+
+    /// The same in model units.
+    pub(crate) fn loss(&self, frame: &Frame) -> VolumeLoss {
+        VolumeLoss {
+            running_sum: self.sixfold * frame.unit.powi(3) / 6.0,
+            open: self.open.leave(frame),
+            held: self.held.leave(frame),
+        }
+    }
+}
+
+impl Unchosen {
+    #[cold]
+    fn add(&mut self, place: Vec3) {
+        self.contractions += 1;
+        (self.min, self.max) = (self.min.min(place), self.max.max(place));
+    }
+
+    fn join(&mut self, other: &Self) {
+        self.contractions += other.contractions;
+        (self.min, self.max) = (self.min.min(other.min), self.max.max(other.max));
+    }
+
+    fn leave(&self, frame: &Frame) -> Unconserved {
+        let Self { contractions, min, max } = *self;
+        let mut bounds = Bounds::EMPTY;
+        if contractions > 0 {
+            [min, max].iter().for_each(|&corner| bounds.add(frame.leave(corner)));
+        }
+        Unconserved { contractions, bounds }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use meshlod_fixtures::cube;
+
+    use super::*;
+
+    #[test]
+    fn what_could_not_be_conserved_is_told_apart() {
+        let mesh = cube();
+        let frame = Frame::new(&mesh, &mesh.bounds());
+        let mut volume = VolumeTally::default();
+        volume.add(Vec3::ZERO, 6.0, false, true);
+        volume.add(Vec3::ONE, 7.0, true, true);
+        volume.add(Vec3::ONE, 6.0, false, false);
+        let loss = volume.loss(&frame);
+        assert!((loss.running_sum / frame.unit.powi(3) - 2.0).abs() < 1e-12);
+        assert_eq!([loss.open.contractions, loss.held.contractions], [1, 1]);
+        assert_eq!(loss.held.bounds.min, frame.leave(Vec3::ONE));
+    }
+}
