@@ -1,7 +1,8 @@
 //! Files to start from, made by our writers and by hand, so that mutations begin near the grammar.
 
 use meshlod_codec::{
-    AttributeBounds, Cells, Lattice, Scheme, Target, Transport, TransportGrid, TransportOptions, compress,
+    AttributeBounds, CompressionTarget, Lattice, Reconstruction, Scheme, Transport, TransportOptions,
+    TransportQuantization, compress,
 };
 use meshlod_fixtures as fixtures;
 use meshlod_io::{Precision, Scene, gltf, obj, off, ply, smf, stl};
@@ -87,12 +88,12 @@ fn small_gltf(meshes: &[Mesh]) -> Vec<Vec<u8>> {
 fn transports() -> Vec<Vec<u8>> {
     let lattice = Lattice::new(-6).expect("an exponent");
     let meshes = [fixtures::cube(), fixtures::hourglass(), fixtures::moebius(20), samples::knot(90)];
-    let write = |mesh: &Mesh, grid| {
-        let options = TransportOptions { grid, block_faces: 16 };
+    let write = |mesh: &Mesh, quantization| {
+        let options = TransportOptions { quantization, block_faces: 16 };
         Transport::encode(mesh, &options).expect("a fixture fits").bytes
     };
-    let grids = [TransportGrid::Bits(5), TransportGrid::Lattice(lattice)];
-    meshes.iter().flat_map(|mesh| grids.map(|grid| write(mesh, grid))).collect()
+    let grids = [TransportQuantization::Bits(5), TransportQuantization::Lattice(lattice)];
+    meshes.iter().flat_map(|mesh| grids.map(|quantization| write(mesh, quantization))).collect()
 }
 
 /// A progressive mesh of all that can be contracted.
@@ -113,13 +114,13 @@ fn compressed() -> Vec<Vec<u8>> {
         samples::torus(300),
     ];
     let schemes = [
-        Scheme::Parts(Cells::Centred),
-        Scheme::Parts(Cells::Truncated),
+        Scheme::Parts(Reconstruction::Centred),
+        Scheme::Parts(Reconstruction::Truncated),
         Scheme::Blocks,
         Scheme::Lattice,
     ];
     let bounds = AttributeBounds::default();
-    let by = |mesh: &Mesh, scheme| compress(mesh, scheme, Target::Bits(8), &bounds);
+    let by = |mesh: &Mesh, scheme| compress(mesh, scheme, CompressionTarget::Bits(8), &bounds);
     let done = meshes.iter().flat_map(|mesh| schemes.map(|scheme| by(mesh, scheme)));
     done.map(|done| done.expect("a mesh").compressed.to_bytes()).collect()
 }

@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use meshlod_codec::{Closeness, VertexBlocks};
+use meshlod_codec::{Accuracy, VertexBlocks};
 use meshlod_fixtures::shared_mesh;
 use meshlod_measure::{DistanceOptions, distance};
 use meshlod_mesh::{Bounds, Mesh};
@@ -29,13 +29,13 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let Some(path) = shared_mesh(name) else { continue };
         let mesh = meshlod_io::read(&path, &Default::default())?.flatten();
         let start = Instant::now();
-        let (blocks, report) = VertexBlocks::new(&mesh, Closeness::Bits(11))?;
+        let (blocks, report) = VertexBlocks::new(&mesh, Accuracy::Bits(11))?;
         let seconds = start.elapsed().as_secs_f64();
         let mut decoded = mesh.clone();
         for (vertex, place) in blocks.vertices().iter().zip(blocks.positions()) {
             decoded.positions[vertex.index()] = place;
         }
-        let cubes = in_cubes(&mesh, report.cube);
+        let cubes = in_cubes(&mesh, report.cube_side);
         let options = DistanceOptions { samples: 200_000, ..Default::default() };
         let [ours, theirs] = [&decoded, &cubes].map(|coarse| distance(&mesh, coarse, &options));
         let (ours, theirs) = (ours?, theirs?);
@@ -48,7 +48,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             report.blocks.flips,
             report.cubes.flips,
             turned(&mesh, &decoded) / turned(&mesh, &cubes),
-            100.0 * report.finer as f64 / blocks.blocks() as f64,
+            100.0 * report.refined_blocks as f64 / blocks.blocks() as f64,
         );
     }
     Ok(())

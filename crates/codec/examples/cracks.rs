@@ -5,7 +5,7 @@
 
 use std::f64::consts::{FRAC_PI_4, PI};
 
-use meshlod_codec::{Cells, Parting, Parts};
+use meshlod_codec::{Partitioner, Parts, Reconstruction};
 use meshlod_mesh::{Bounds, Mesh, VertexId};
 use meshlod_picture::{Camera, View, Visibility, visibility};
 
@@ -23,15 +23,15 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     for name in MESHES {
         let Some(path) = meshlod_fixtures::shared_mesh(name) else { continue };
         let mesh = meshlod_io::read(&path, &Default::default())?.into_mesh();
-        let parting = Parting::new(&mesh)?;
+        let parting = Partitioner::new(&mesh)?;
         let mut row = Vec::new();
         let mut count = 0;
-        for cells in [Cells::Centred, Cells::Truncated] {
+        for cells in [Reconstruction::Centred, Reconstruction::Truncated] {
             let parts = parting.within_reduction(0.7, cells)?;
             count = parts.parts().len();
             row.push(cracks(&parts.decode(), &drawn(&parts), views, side)?);
         }
-        let naive = naive(&parting.within_reduction(0.7, Cells::Centred)?, &mesh);
+        let naive = naive(&parting.within_reduction(0.7, Reconstruction::Centred)?, &mesh);
         row.push(cracks(&mesh, &naive, views, side)?);
         println!(
             "| {} | {count} | {} | {} | {} |",

@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::time::Instant;
 
-use meshlod_codec::{Cells, Parting, Parts};
+use meshlod_codec::{Partitioner, Parts, Reconstruction};
 use meshlod_fixtures::shared_mesh;
 use meshlod_measure::{DistanceOptions, distance};
 use meshlod_mesh::{Bounds, Mesh};
@@ -20,10 +20,10 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let Some(path) = shared_mesh(name) else { continue };
         let mesh = read(&path)?;
         let start = Instant::now();
-        let parting = Parting::new(&mesh)?;
-        let centred = parting.within_reduction(0.7, Cells::Centred)?;
+        let parting = Partitioner::new(&mesh)?;
+        let centred = parting.within_reduction(0.7, Reconstruction::Centred)?;
         let seconds = start.elapsed().as_secs_f64();
-        let truncated = parting.into_count(centred.parts().len(), Cells::Truncated);
+        let truncated = parting.with_count(centred.parts().len(), Reconstruction::Truncated);
         let ratio = |parts: &Parts, rounding: f64| -> Result<f64, Box<dyn std::error::Error>> {
             let options = DistanceOptions { samples: 200_000, ..Default::default() };
             let of = |coarse: &Mesh| distance(&mesh, coarse, &options).map(|apart| apart.mean());

@@ -12,6 +12,14 @@ pub struct Malformed {
     pub reason: String,
 }
 
+/// Returns the fraction by which `bytes` is smaller than three `f32` for each vertex; 0 for no vertices.
+pub(crate) fn reduction(bytes: usize, vertices: usize) -> f64 {
+    match vertices {
+        0 => 0.0,
+        count => 1.0 - bytes as f64 / (12 * count) as f64,
+    }
+}
+
 /// Reads bytes from the first on, and never past the last.
 #[derive(Clone, Debug)]
 pub(crate) struct Reader<'a> {

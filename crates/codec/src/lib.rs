@@ -1,27 +1,29 @@
-//! Geometry that stays compressed on the GPU, without cracks.
+//! Compression of triangle meshes, for drawing from compressed memory and for sending.
 //!
-//! [`Parts`] are positions of eight bits an axis, decoded by the vertex transform alone: the mesh falls into
-//! parts whose boxes are about equally large, all cells are of one size and lie in one grid, and each part has
-//! a matrix that puts its cells where they belong. What two parts share is in the same cell in both.
+//! Four ways to store positions:
 //!
-//! [`LatticeBlocks`] put each vertex into one block of 32, on a [`Lattice`] that meshes can share: what they have in
-//! common is the same in both, bit for bit, and there are no borders to crack.
+//! - [`Parts`]: 8 bits per axis, decoded by the vertex transform alone [LCL10]. The mesh is
+//!   partitioned into parts with boxes of about equal size. All parts share one grid of equal cells,
+//!   and each part has a matrix that places its cells, so that common vertices coincide.
+//! - [`LatticeBlocks`]: each vertex in one block of 32, on a [`Lattice`] that several meshes can
+//!   share. Common vertices decode to the same bits in every mesh.
+//! - [`VertexBlocks`]: each vertex in one block of 32, with an oriented frame per block and cells as
+//!   large as the surface allows. Fewest bits for a given distance between the surfaces; one matrix
+//!   per block decodes them.
+//! - [`Transport`]: an entropy-coded mesh for sending and storing, in blocks that a
+//!   [`TransportFile`] decodes independently.
 //!
-//! [`VertexBlocks`] lie as the surface does, each in its own frame, with cells as large as the surface allows: the
-//! fewest bits for the distance between the surfaces. A matrix a block decodes them.
-//!
-//! A [`Transport`] is a mesh to be sent or stored, entropy coded, in blocks that a [`TransportFile`] decodes one by one.
-//!
-//! [`compress`] makes a whole mesh of one of them: with its faces in patches and its attributes by the same blocks, any
-//! piece decoded alone. That is the file `.mlq`; [`Transport`] makes `.mlz`, smaller, to be sent.
+//! [`compress`] builds a complete mesh with one of the first three: faces in patches and attributes
+//! in the same rows, so that any piece can be decoded on its own. That is the `.mlq` file.
+//! [`Transport`] writes the smaller `.mlz` file.
 //!
 //! ```
-//! use meshlod_codec::{AttributeBounds, Compressed, Scheme, Target, compress};
+//! use meshlod_codec::{AttributeBounds, Compressed, CompressionTarget, Scheme, compress};
 //! use meshlod_samples as samples;
 //!
 //! let mesh = samples::sphere(5000);
 //! let bounds = AttributeBounds::default();
-//! let done = compress(&mesh, Scheme::Blocks, Target::Bits(11), &bounds)?;
+//! let done = compress(&mesh, Scheme::Blocks, CompressionTarget::Bits(11), &bounds)?;
 //! assert!(done.compressed.reduction() > 0.75);
 //! let bytes = done.compressed.to_bytes();
 //! let decoded = Compressed::from_bytes(&bytes)?.decode()?;
@@ -34,20 +36,24 @@ mod attributes;
 mod bits;
 mod blocks;
 mod bytes;
+mod header_field;
 mod kd;
 mod lattice;
-mod mlq;
 mod parts;
 mod patch;
+mod resident;
 mod transport;
 
 pub use attributes::{AttributeBounds, LayerReport};
-pub use blocks::{BlocksError, BlocksReport, Change, Closeness, VertexBlocks};
+pub use blocks::{Accuracy, BlocksError, BlocksReport, SurfaceChange, VertexBlocks};
 pub use bytes::Malformed;
 pub use lattice::{Lattice, LatticeBlocks, LatticeError};
-pub use mlq::{CompressError, Compressed, Compression, Scheme, Sizes, Target, compress, parts_for};
-pub use parts::{Cells, Part, Parting, Parts, PartsError};
+pub use parts::{Part, Partitioner, Parts, PartsError, Reconstruction};
+pub use resident::{
+    CompressError, Compressed, CompressedSizes, Compression, CompressionTarget, Scheme, compress,
+    parts_for,
+};
 pub use transport::{
-    LeftOut, Transport, TransportBlock, TransportError, TransportFile, TransportGrid,
-    TransportOptions, TransportSizes,
+    LeftOut, Transport, TransportBlock, TransportError, TransportFile, TransportOptions,
+    TransportQuantization, TransportSizes,
 };

@@ -9,7 +9,7 @@ use std::time::{Duration, Instant};
 
 use clap::{Args, ValueEnum};
 use meshlod::Mesh;
-use meshlod::codec::{AttributeBounds, Cells, LayerReport, Scheme, Target};
+use meshlod::codec::{AttributeBounds, CompressionTarget, LayerReport, Reconstruction, Scheme};
 use meshlod::io::write_file;
 use serde_json::{Value, json};
 
@@ -178,11 +178,11 @@ impl Compress {
         files::check_place(&self.output).map(|()| kind)
     }
 
-    fn target(&self, mesh: &Mesh) -> Target {
+    fn target(&self, mesh: &Mesh) -> CompressionTarget {
         match (self.goal.error, self.goal.reduction) {
-            (Some(error), _) => Target::Error(error.length(mesh.bounds().diagonal())),
-            (None, Some(part)) => Target::Reduction(part),
-            (None, None) => Target::Bits(self.bits()),
+            (Some(error), _) => CompressionTarget::Error(error.length(mesh.bounds().diagonal())),
+            (None, Some(part)) => CompressionTarget::Reduction(part),
+            (None, None) => CompressionTarget::Bits(self.bits()),
         }
     }
 
@@ -192,8 +192,8 @@ impl Compress {
 
     fn scheme(&self) -> Scheme {
         match self.scheme {
-            Some(SchemeName::Parts) if self.paper => Scheme::Parts(Cells::Truncated),
-            Some(SchemeName::Parts) => Scheme::Parts(Cells::Centred),
+            Some(SchemeName::Parts) if self.paper => Scheme::Parts(Reconstruction::Truncated),
+            Some(SchemeName::Parts) => Scheme::Parts(Reconstruction::Centred),
             Some(SchemeName::Lattice) => Scheme::Lattice,
             Some(SchemeName::Blocks) | None => Scheme::Blocks,
         }

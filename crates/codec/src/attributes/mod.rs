@@ -2,7 +2,7 @@
 
 mod octahedral;
 mod packed;
-mod steps;
+mod quantizer;
 #[cfg(test)]
 mod tests;
 
@@ -10,8 +10,8 @@ use glam::DVec3;
 use meshlod_mesh::{Layer, LayerKind, WedgeId};
 
 use self::octahedral::{fold, most_turn_rad, unfold};
-pub(crate) use self::packed::Packed;
-use self::steps::Steps;
+pub(crate) use self::packed::PackedRows;
+use self::quantizer::UniformQuantizer;
 use crate::bytes::{Malformed, Reader};
 use crate::patch::Rows;
 
@@ -39,7 +39,7 @@ pub(crate) struct PackedLayer {
     name: String,
     width: usize,
     coding: Coding,
-    numbers: Packed,
+    numbers: PackedRows,
     /// See [`LayerReport`].
     max_error: f64,
 }
@@ -48,8 +48,8 @@ pub(crate) struct PackedLayer {
 enum Coding {
     /// Directions in so many bits twice; of tangents the sign besides.
     Directions { bits: u32 },
-    /// Values in steps.
-    Values(Steps),
+    /// Values in quantizer.
+    Values(UniformQuantizer),
 }
 
 /// What a layer takes, and what it has lost.
@@ -95,11 +95,11 @@ impl PackedLayer {
             Coding::Directions { bits: direction_bits(bound) }
         } else {
             let values = wedges.iter().map(|&wedge| layer.of(wedge));
-            Coding::Values(Steps::new(values, layer.width, bound))
+            Coding::Values(UniformQuantizer::new(values, layer.width, bound))
         };
         let numbers: Vec<u32> =
             wedges.iter().flat_map(|&wedge| coding.numbers(layer.of(wedge))).collect();
-        let numbers = Packed::new(rows, coding.components(layer.width), &numbers);
+        let numbers = PackedRows::new(rows, coding.components(layer.width), &numbers);
         let (kind, name, width) = (layer.kind, layer.name.clone(), layer.width);
         let mut this = Self { kind, name, width, coding, numbers, max_error: 0.0 };
         let decoded = this.decode();
@@ -110,7 +110,7 @@ impl PackedLayer {
     }
 
     /// Whether files can tell what a layer is.
-    pub(crate) fn is_told(layer: &Layer) -> bool {
+    pub(crate) fn is_storable(layer: &Layer) -> bool {
         let is_name = u16::try_from(layer.name.len()).is_ok();
         is_name && (1..=usize::from(u8::MAX)).contains(&layer.width)
     }
@@ -149,7 +149,7 @@ impl PackedLayer {
     pub(crate) fn bytes(&self) -> usize {
         let coding = match &self.coding {
             Coding::Directions { .. } => 1,
-            Coding::Values(steps) => steps.bytes(),
+            Coding::Values(quantizer) => quantizer.bytes(),
         };
         // Its kind, set and width, how far it is off, and how long its name is.
         13 + self.name.len() + coding + self.numbers.bytes()
@@ -163,7 +163,7 @@ impl PackedLayer {
         out.extend(self.name.as_bytes());
         match &self.coding {
             Coding::Directions { bits } => out.push(*bits as u8),
-            Coding::Values(steps) => steps.store(out),
+            Coding::Values(quantizer) => quantizer.store(out),
         }
         self.numbers.store(out);
     }
@@ -186,9 +186,9 @@ impl PackedLayer {
             }
             Coding::Directions { bits }
         } else {
-            Coding::Values(Steps::restore(width, reader)?)
+            Coding::Values(UniformQuantizer::restore(width, reader)?)
         };
-        let numbers = Packed::restore(rows, coding.components(width), reader)?;
+        let numbers = PackedRows::restore(rows, coding.components(width), reader)?;
         Ok(Self { kind, name, width, coding, numbers, max_error })
     }
 }
@@ -209,7 +209,7 @@ impl Coding {
                 let sign = values.get(3).map(|&sign| u32::from(sign < 0.0));
                 fold(direction(values), *bits).into_iter().chain(sign).collect()
             }
-            Self::Values(steps) => steps.numbers(values),
+            Self::Values(quantizer) => quantizer.numbers(values),
         }
     }
 
@@ -222,7 +222,7 @@ impl Coding {
                 values.extend(is.to_array().map(|x| x as f32));
                 values.extend(numbers.get(2).map(|&sign| if sign == 1 { -1.0 } else { 1.0 }));
             }
-            Self::Values(steps) => steps.values(numbers, values),
+            Self::Values(quantizer) => quantizer.values(numbers, values),
         }
     }
 }

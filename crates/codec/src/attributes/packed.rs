@@ -6,7 +6,7 @@ use crate::patch::Rows;
 
 /// So many numbers of each node.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(crate) struct Packed {
+pub(crate) struct PackedRows {
     /// The nodes of each row, as sums.
     rows: Rows,
     /// How many bits the least of a row takes, of each component.
@@ -23,7 +23,7 @@ const STRIDE: usize = 16;
 /// Numbers have at most 32 bits.
 const WIDTH_BITS: u32 = 6;
 
-impl Packed {
+impl PackedRows {
     /// The numbers of nodes, `components` each, in the order of the rows.
     pub(crate) fn new(rows: Rows, components: usize, numbers: &[u32]) -> Self {
         let most = |k: usize| numbers.iter().skip(k).step_by(components).max().copied();
@@ -171,12 +171,12 @@ impl Packed {
 mod tests {
     use super::*;
 
-    fn packed() -> (Vec<u32>, Packed) {
+    fn packed() -> (Vec<u32>, PackedRows) {
         let sizes = (0..40).map(|row| row * 7 % 5);
         let rows = Rows::new(sizes);
         let number = |at: u32| at.wrapping_mul(0x9e37_79b9) >> (at / 3 % 33).min(31);
         let numbers: Vec<u32> = (0..3 * rows.nodes() as u32).map(number).collect();
-        (numbers.clone(), Packed::new(rows, 3, &numbers))
+        (numbers.clone(), PackedRows::new(rows, 3, &numbers))
     }
 
     #[test]
@@ -198,7 +198,7 @@ mod tests {
         packed.store(&mut bytes);
         assert_eq!(bytes.len(), packed.bytes());
         let restore =
-            |bytes: &[u8]| Packed::restore(packed.rows.clone(), 3, &mut Reader::new(bytes));
+            |bytes: &[u8]| PackedRows::restore(packed.rows.clone(), 3, &mut Reader::new(bytes));
         assert_eq!(restore(&bytes), Ok(packed.clone()));
         assert!(restore(&bytes[..bytes.len() - 1]).is_err());
         for bit in 0..8 * bytes.len() {
@@ -212,7 +212,7 @@ mod tests {
 
     #[test]
     fn what_is_the_same_all_over_a_row_takes_no_bits() {
-        let same = Packed::new(Rows::new([1000]), 1, &[u32::MAX; 1000]);
+        let same = PackedRows::new(Rows::new([1000]), 1, &[u32::MAX; 1000]);
         assert!(same.bytes() < 20);
         assert_eq!(same.get(0, 999), [u32::MAX]);
     }

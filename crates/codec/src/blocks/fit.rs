@@ -1,99 +1,102 @@
-//! Cells as large as an error allows.
+//! Fitting the cells of all blocks to an error bound.
 
 use std::ops::Range;
 
 use glam::{DMat3, DVec3};
 use meshlod_mesh::{Bounds, Mesh, VertexId};
 
+use super::assign_cells::{AssignOptions, BlockGrid, CellAssignment};
 use super::frame::Frame;
-use super::layout::{Field, GROUP, Layout};
-use super::reference::Reference;
-use super::settle::{Grid, Settled, Settling};
-use super::shape::{Block, Shape, Units, Wanted, numbers};
-use super::surface::Surface;
-use super::{BlocksError, BlocksReport, Closeness};
+use super::header::{BlockHeader, BlockVertices, CellSizes, Units, numbers};
+use super::layout::{BlockLayout, GROUP};
+use super::original::OriginalSurface;
+use super::reference::CubicReference;
+use super::{Accuracy, BlocksError, BlocksReport};
 use crate::bits::Bits;
+use crate::header_field::HeaderField;
 use crate::kd::BLOCK;
 
-/// What stays the same while cells are tried.
+/// What stays the same while cell sizes are tried.
 struct Fit {
-    surface: Surface,
-    reference: Reference,
-    /// What middles count.
+    surface: OriginalSurface,
+    reference: CubicReference,
+    /// Unit of `middles`, in model units.
     reach: f64,
-    /// Of groups.
+    /// Middle of each group.
     middles: Vec<[i8; 3]>,
-    /// Of blocks.
+    /// Frame of each block.
     frames: Vec<Frame>,
     normals: Vec<DMat3>,
 }
 
-/// Cells that were tried.
+/// Cells at one scale, and the vertices assigned to them.
 struct Attempt {
     scale: f64,
     units: Units,
-    shapes: Vec<Shape>,
-    grids: Vec<Grid>,
-    settled: Settled,
+    headers: Vec<BlockHeader>,
+    grids: Vec<BlockGrid>,
+    assignment: CellAssignment,
 }
 
-/// Of the mean distance that is allowed: estimated by planes it is up to 1.1 % below what is measured, on the ten
-/// meshes of docs/notes/compression.md.
+/// Target as a fraction of the allowed mean distance. The estimate by planes is up to 1.1 % below
+/// the measured distance, on the ten meshes of docs/notes/compression.md.
 const AIM: f64 = 0.985;
-/// That is near enough, by this part.
+/// Ratio of error to target at which the search stops.
 const NEAR: [f64; 2] = [0.99, 1.004];
 const TRIES: usize = 6;
-/// Blocks are made finer so often at most.
+/// Rounds of refining blocks at most.
 const ROUNDS: usize = 8;
 const FINER: f64 = 0.6;
 const FINEST: f64 = 1.0 / 8.0;
-/// How much larger cells are along the surface than across it, where that is flat: 5 takes as much on squirrel-20k and
-/// dragon-100k and 1.3 % less on the bunny, 3 takes .6 % more, as much, and 1.6 % more.
-const MOST_ALONG: f64 = 4.0;
-/// How much moving along the surface counts: at .01 these three take 2 to 3 % less, and faces are turned 2 to 5 %
-/// farther; at .1 they take 2 % more, and faces are turned 3 to 5 % less far.
+/// How many times as long as high a cell may be where the surface is flat. With 5, squirrel-20k and
+/// dragon-100k take as much and the bunny 1.3 % less; with 3 they take .6 % more, as much, and 1.6
+/// % more.
+const MAX_ELONGATION: f64 = 4.0;
+/// Cost of moving along the surface, relative to moving across it. At .01 these three meshes take 2
+/// to 3 % less, and faces turn 2 to 5 % farther; at .1 they take 2 % more, and faces turn 3 to 5 %
+/// less.
 const ALONG: f64 = 0.03;
-/// Vertices are moved to and fro so often.
+/// Passes of cell assignment over all vertices.
 const SWEEPS: usize = 2;
-/// Of the greatest distance in cubic cells: where a vertex is to stay; what it is kept to without regard to its
-/// neighbours is less.
+/// Limits on a vertex's distance, relative to the largest distance in cubic cells: the final one,
+/// and the lower one used while neighbours still move.
 const FARTHEST: f64 = 1.9;
-const FARTHEST_ALONE: f64 = 1.5;
+const MAX_DISTANCE_ALONE: f64 = 1.5;
 
-/// The blocks of a mesh, in the fewest bits found that keep to a target.
-pub(super) fn fitted(
+/// Fits blocks to a target accuracy and packs them, in the fewest bits found.
+pub(super) fn fit_blocks(
     mesh: &Mesh,
     ordered: &[VertexId],
-    target: Closeness,
-) -> Result<(Layout, Bits, BlocksReport), BlocksError> {
+    target: Accuracy,
+) -> Result<(BlockLayout, Bits, BlocksReport), BlocksError> {
     let bounds = Bounds::of(ordered.iter().map(|v| &mesh.positions[v.index()]));
     let [low, high] = if bounds.is_empty() { [[0.0; 3]; 2] } else { [bounds.min, bounds.max] };
     let [low, high] = [low, high].map(DVec3::from);
     let centre = low + (high - low) * 0.5;
-    let surface = Surface::new(mesh, ordered, centre);
+    let surface = OriginalSurface::new(mesh, ordered, centre);
     let longest = (high - low).max_element();
-    let reference = Reference::new(&surface, low - centre, longest, target)?;
+    let reference = CubicReference::new(&surface, low - centre, longest, target)?;
     let fit = Fit::new(surface, reference, longest);
     let too_fine = || BlocksError::TooFine(fit.reference.error);
     let mut attempt = fit.search().ok_or_else(too_fine)?;
-    let finer = fit.refine(&mut attempt).ok_or_else(too_fine)?;
+    let refined_blocks = fit.refine(&mut attempt).ok_or_else(too_fine)?;
     let report = BlocksReport {
-        blocks: fit.surface.change(&attempt.settled.moved),
+        blocks: fit.surface.change(&attempt.assignment.moved),
         cubes: fit.reference.change,
-        cube: fit.reference.cell,
-        finer,
+        cube_side: fit.reference.cell,
+        refined_blocks,
     };
     let (layout, bits) = fit.layout(centre, &attempt);
     Ok((layout, bits, report))
 }
 
 impl Fit {
-    fn new(surface: Surface, reference: Reference, longest: f64) -> Self {
+    fn new(surface: OriginalSurface, reference: CubicReference, longest: f64) -> Self {
         let reach = longest * 0.5 / f64::from(i8::MAX);
         let middle = |group: &[DVec3]| {
             let low = group.iter().copied().reduce(DVec3::min).unwrap_or_default();
             let high = group.iter().copied().reduce(DVec3::max).unwrap_or_default();
-            // One place is its own middle: nothing by nothing is none.
+            // All vertices in one place have reach 0: avoid 0 / 0.
             ((low + high) * (0.5 / reach.max(f64::MIN_POSITIVE)))
                 .round()
                 .to_array()
@@ -105,20 +108,20 @@ impl Fit {
         let mut this = Self { surface, reference, reach, middles, frames, normals };
         let normals = |block: usize| this.surface.normals(this.range(block));
         this.normals = (0..count).map(normals).collect();
-        let wanted = this.wanted(1.0);
-        this.frames = (0..count).map(|block| this.block(block).frame(&wanted)).collect();
+        let sizes = this.sizes(1.0);
+        this.frames = (0..count).map(|block| this.block(block).frame(&sizes)).collect();
         this
     }
 
-    fn block(&self, block: usize) -> Block<'_> {
-        Block {
+    fn block(&self, block: usize) -> BlockVertices<'_> {
+        BlockVertices {
             places: &self.surface.places[self.range(block)],
             middle: self.middle(block),
             normals: self.normals[block],
         }
     }
 
-    /// The vertices of a block.
+    /// Returns the vertices of a block.
     fn range(&self, block: usize) -> Range<usize> {
         block * BLOCK..self.surface.places.len().min((block + 1) * BLOCK)
     }
@@ -127,15 +130,16 @@ impl Fit {
         DVec3::from(self.middles[block / GROUP].map(|x| f64::from(x) * self.reach))
     }
 
-    fn wanted(&self, scale: f64) -> Wanted {
-        Wanted { across: self.reference.cell * scale, most_along: MOST_ALONG }
+    fn sizes(&self, scale: f64) -> CellSizes {
+        CellSizes { across: self.reference.cell * scale, max_elongation: MAX_ELONGATION }
     }
 
-    /// The attempt that comes closest from below; `None` where cells are too many.
+    /// Returns the attempt with the largest cells found within the error; `None` if there are too
+    /// many cells.
     fn search(&self) -> Option<Attempt> {
         let mut attempt = self.attempt(1.0)?;
         for _ in 0..TRIES {
-            let error = self.surface.error(&attempt.settled.moved);
+            let error = self.surface.error(&attempt.assignment.moved);
             let part = error / (AIM * self.reference.error);
             let next = (attempt.scale / part.clamp(0.25, 4.0)).clamp(1.0 / 64.0, 8.0);
             if (NEAR[0]..NEAR[1]).contains(&part) || next == attempt.scale {
@@ -146,65 +150,67 @@ impl Fit {
         Some(attempt)
     }
 
-    /// Cells `scale` times as large as the cubes.
+    /// Tries cells that are `scale` times as large as the cubic ones.
     fn attempt(&self, scale: f64) -> Option<Attempt> {
         let units = Units::around(self.reference.cell * scale);
-        let wanted = self.wanted(scale);
-        let shape = |block: usize| self.block(block).shape(self.frames[block], &units, &wanted);
-        let shapes = (0..self.frames.len()).map(shape).collect::<Option<Vec<_>>>()?;
+        let sizes = self.sizes(scale);
+        let header = |block: usize| self.block(block).header(self.frames[block], &units, &sizes);
+        let headers = (0..self.frames.len()).map(header).collect::<Option<Vec<_>>>()?;
         let grids: Vec<_> =
-            (0..).zip(&shapes).map(|(b, shape)| self.grid(b, shape, &units)).collect();
-        let mut settled = Settled::new(&self.surface);
-        settled.settle(&self.surface, &grids, &self.settling(), 0..self.surface.places.len());
-        Some(Attempt { scale, units, shapes, grids, settled })
+            (0..).zip(&headers).map(|(b, header)| self.grid(b, header, &units)).collect();
+        let mut assignment = CellAssignment::new(&self.surface);
+        assignment.assign(&self.surface, &grids, &self.options(), 0..self.surface.places.len());
+        Some(Attempt { scale, units, headers, grids, assignment })
     }
 
-    fn grid(&self, block: usize, shape: &Shape, units: &Units) -> Grid {
-        let (sides, first) = shape.cells(units);
-        let counts = shape.widths.map(|width| numbers(width) as i32);
-        Grid { sides, first: first + self.middle(block), counts }
+    fn grid(&self, block: usize, header: &BlockHeader, units: &Units) -> BlockGrid {
+        let (sides, first) = header.cells(units);
+        let counts = header.widths.map(|width| numbers(width) as i32);
+        BlockGrid { sides, first: first + self.middle(block), counts }
     }
 
-    fn settling(&self) -> Settling {
-        Settling { along: ALONG, limit: FARTHEST_ALONE * self.most(), sweeps: SWEEPS }
+    fn options(&self) -> AssignOptions {
+        AssignOptions { along: ALONG, limit: MAX_DISTANCE_ALONE * self.most(), sweeps: SWEEPS }
     }
 
-    /// The greatest distance in cubic cells. On flat meshes rounding may happen to be exact.
+    /// Returns the largest distance in cubic cells, but at least half a cell: on flat meshes
+    /// rounding may happen to be exact.
     fn most(&self) -> f64 {
         self.reference.change.max_estimate.max(0.5 * self.reference.cell)
     }
 
-    /// Makes blocks finer where vertices are too far off, or faces are turned over; how many.
+    /// Refines blocks with distant vertices or flipped faces, and returns how many were refined.
     fn refine(&self, attempt: &mut Attempt) -> Option<usize> {
         let mut finer = vec![1.0; self.frames.len()];
         let mut doubtful: Vec<usize> = (0..self.surface.places.len()).collect();
         for _ in 0..ROUNDS {
-            let Attempt { grids, settled, .. } = &mut *attempt;
+            let Attempt { grids, assignment, .. } = &mut *attempt;
             let doubts = doubtful.into_iter();
-            let far = settled.mend(&self.surface, grids, FARTHEST * self.most(), doubts);
-            // What is wrong with a vertex may be due to its neighbours.
+            let far = assignment.repair(&self.surface, grids, FARTHEST * self.most(), doubts);
+            // The cause may be a neighbour of the distant vertex.
             let far = self.surface.with_neighbours(far.into_iter());
-            let mut bad = self.blocks_of(far, &settled.moved);
+            let mut bad = self.blocks_of(far, &assignment.moved);
             bad.retain(|&block| finer[block] > FINEST);
             if bad.is_empty() {
                 break;
             }
             for &block in &bad {
                 finer[block] *= FINER;
-                let wanted = self.wanted(attempt.scale * finer[block]);
-                let shape = self.block(block).shape(self.frames[block], &attempt.units, &wanted)?;
-                attempt.grids[block] = self.grid(block, &shape, &attempt.units);
-                attempt.shapes[block] = shape;
+                let sizes = self.sizes(attempt.scale * finer[block]);
+                let header =
+                    self.block(block).header(self.frames[block], &attempt.units, &sizes)?;
+                attempt.grids[block] = self.grid(block, &header, &attempt.units);
+                attempt.headers[block] = header;
             }
-            let Attempt { grids, settled, .. } = &mut *attempt;
+            let Attempt { grids, assignment, .. } = &mut *attempt;
             let vertices = bad.iter().flat_map(|&block| self.range(block));
-            settled.settle(&self.surface, grids, &self.settling(), vertices.clone());
+            assignment.assign(&self.surface, grids, &self.options(), vertices.clone());
             doubtful = self.surface.with_neighbours(vertices);
         }
         Some(finer.iter().filter(|&&by| by < 1.0).count())
     }
 
-    /// The blocks of some vertices, and of faces that are turned over.
+    /// Returns the blocks of these vertices and of all flipped faces.
     fn blocks_of(&self, vertices: Vec<usize>, moved: &[DVec3]) -> Vec<usize> {
         let turned = self.surface.faces.iter().filter(|face| self.surface.is_flipped(face, moved));
         let corners = turned.flat_map(|face| face.corners).map(|v| v as usize);
@@ -214,28 +220,29 @@ impl Fit {
         blocks
     }
 
-    fn layout(&self, centre: DVec3, attempt: &Attempt) -> (Layout, Bits) {
-        let all = attempt.shapes.iter();
-        let widths = all.clone().map(|shape| shape.widths);
-        let steps = all.map(|shape| shape.steps);
-        let mut layout = Layout {
+    fn layout(&self, centre: DVec3, attempt: &Attempt) -> (BlockLayout, Bits) {
+        let all = attempt.headers.iter();
+        let widths = all.clone().map(|header| header.widths);
+        let steps = all.map(|header| header.steps);
+        let mut layout = BlockLayout {
             vertices: self.surface.places.len(),
             centre,
             units: attempt.units,
             reach: self.reach,
             fields: [
-                Field::of(widths.clone().flat_map(|[u, v, _]| [u, v])),
-                Field::of(widths.map(|[_, _, w]| w)),
-                Field::of(steps.clone().flat_map(|[u, v, _]| [u, v])),
-                Field::of(steps.map(|[_, _, w]| w)),
+                HeaderField::covering(widths.clone().flat_map(|[u, v, _]| [u, v])),
+                HeaderField::covering(widths.map(|[_, _, w]| w)),
+                HeaderField::covering(steps.clone().flat_map(|[u, v, _]| [u, v])),
+                HeaderField::covering(steps.map(|[_, _, w]| w)),
             ],
             groups: Vec::new(),
         };
         let mut bits = Bits::default();
-        let cells = attempt.settled.cells.chunks(BLOCK * GROUP);
-        for ((shapes, cells), &middle) in attempt.shapes.chunks(GROUP).zip(cells).zip(&self.middles)
+        let cells = attempt.assignment.cells.chunks(BLOCK * GROUP);
+        for ((headers, cells), &middle) in
+            attempt.headers.chunks(GROUP).zip(cells).zip(&self.middles)
         {
-            layout.push(&mut bits, middle, shapes, cells);
+            layout.push(&mut bits, middle, headers, cells);
         }
         (layout, bits)
     }

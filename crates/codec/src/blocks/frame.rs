@@ -1,28 +1,29 @@
-//! How a block is turned: a normal and an angle about it, in a few bits.
+//! Orientation of a block: a normal and an angle about it, in a few bits.
 
 use glam::DVec3;
 
-/// The code of three axes at right angles: two along the surface, and its normal.
+/// Quantized orthonormal frame: two axes along the surface, and its normal.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct Frame {
-    /// Where the normal is on the half of an octahedron, seen from its tip.
+    /// Point of the normal on the upper half of the octahedron, seen from its tip.
     pub(super) normal: [u32; 2],
-    /// How far the others are turned about it.
+    /// Rotation of the other two axes about the normal.
     pub(super) angle: u32,
 }
 
-/// Of each of two for the normal: half a step off lifts the end of a block by a fraction of a cell.
+/// Bits of each of the normal's two numbers. Half a step lifts the end of a block by a fraction of
+/// a cell.
 pub(super) const NORMAL_BITS: u32 = 8;
-/// Half a step off makes a block a fortieth wider.
+/// Bits of the angle. Half a step makes a block a fortieth wider.
 pub(super) const ANGLE_BITS: u32 = 5;
 
 const NORMALS: u32 = 1 << NORMAL_BITS;
 const ANGLES: u32 = 1 << ANGLE_BITS;
-/// The tangent of half of an eighth turn: from minus that on to that is a quarter turn, and then axes change places.
+/// Tangent of 22.5°. Angles cover a quarter turn, beyond which the axes only change places.
 const TAN_HALF: f64 = 0.414_213_562_373_095_05;
 
 impl Frame {
-    /// The frame whose normal is closest to a direction, not turned about it.
+    /// Returns the unrotated frame whose normal is closest to a direction.
     pub(super) fn towards(normal: DVec3) -> Self {
         let normal = if normal.z < 0.0 { -normal } else { normal };
         let sum = (normal.x.abs() + normal.y.abs() + normal.z).max(f64::MIN_POSITIVE);
@@ -34,14 +35,15 @@ impl Frame {
         Self { normal: [code(x + y), code(x - y)], angle: ANGLES / 2 }
     }
 
-    /// The axes: sums, products, quotients and roots only, which are the same on all machines.
+    /// Returns the axes. Uses only sums, products, quotients and roots, which are the same on every
+    /// machine.
     pub(super) fn axes(self) -> [DVec3; 3] {
         let [a, b] = self.normal.map(|code| f64::from(2 * code) / f64::from(NORMALS - 1) - 1.0);
         let [x, y] = [(a + b) * 0.5, (a - b) * 0.5];
         let z = (1.0 - x.abs() - y.abs()).max(0.0);
         let length = (x * x + y * y + z * z).sqrt();
         let n = DVec3::new(x / length, y / length, z / length);
-        // A pair at right angles to it, without a case where it is small.
+        // An orthogonal pair without a special case for small components.
         let along = 1.0 / (1.0 + n.z);
         let u = DVec3::new(1.0 - n.x * n.x * along, -n.x * n.y * along, -n.x);
         let v = DVec3::new(-n.x * n.y * along, 1.0 - n.y * n.y * along, -n.y);
@@ -50,12 +52,12 @@ impl Frame {
         [u * cos + v * sin, v * cos - u * sin, n]
     }
 
-    /// All that differ from it by the angle only.
+    /// Returns all frames with this normal.
     pub(super) fn turned(self) -> impl Iterator<Item = Self> {
         (0..ANGLES).map(move |angle| Self { angle, ..self })
     }
 
-    /// Those beside it: by one or two steps of the normal.
+    /// Returns the frames whose normal is `step` codes away.
     pub(super) fn tilted(self, step: i32) -> impl Iterator<Item = Self> {
         let by = [[-1, 0], [1, 0], [0, -1], [0, 1], [-1, -1], [1, 1], [-1, 1], [1, -1]];
         by.into_iter().filter_map(move |[a, b]| {

@@ -1,4 +1,4 @@
-//! What blocks hold, whatever the mesh.
+//! Properties of vertex blocks that hold for any mesh.
 
 use meshlod_fixtures::{grid, mesh, two_objects};
 use meshlod_measure::{DistanceOptions, distance};
@@ -18,7 +18,7 @@ fn meshes() -> Vec<Mesh> {
 }
 
 fn of_bits(mesh: &Mesh, bits: u32) -> (VertexBlocks, BlocksReport) {
-    VertexBlocks::new(mesh, Closeness::Bits(bits)).unwrap()
+    VertexBlocks::new(mesh, Accuracy::Bits(bits)).unwrap()
 }
 
 fn decoded(mesh: &Mesh, blocks: &VertexBlocks) -> Mesh {
@@ -84,7 +84,8 @@ fn surfaces_are_as_close_as_in_cubes_and_no_more_faces_are_turned_over() {
             assert!(report.blocks.flips <= report.cubes.flips, "{report:?}");
             assert!(report.blocks.max_estimate <= 2.0 * report.cubes.max_estimate, "{report:?}");
             let low = Bounds::of(&mesh.positions).min;
-            let round = |x: f64, low: f64| low + ((x - low) / report.cube).round() * report.cube;
+            let round =
+                |x: f64, low: f64| low + ((x - low) / report.cube_side).round() * report.cube_side;
             let mut cubes = mesh.clone();
             for place in &mut cubes.positions {
                 *place = [0, 1, 2].map(|k| round(place[k], low[k]));
@@ -92,7 +93,7 @@ fn surfaces_are_as_close_as_in_cubes_and_no_more_faces_are_turned_over() {
             let options = DistanceOptions { samples: 20_000, ..Default::default() };
             let [ours, bound] = [&decoded(&mesh, &blocks), &cubes]
                 .map(|coarse| distance(&mesh, coarse, &options).unwrap());
-            // Planes of faces tell the mean within a few percent.
+            // The estimate by planes is right within a few percent.
             assert!(ours.mean() < 1.03 * bound.mean(), "{} {}", ours.mean(), bound.mean());
             assert!(ours.max() < 2.0 * bound.max(), "{} {}", ours.max(), bound.max());
         }
@@ -103,7 +104,7 @@ fn surfaces_are_as_close_as_in_cubes_and_no_more_faces_are_turned_over() {
 fn an_error_is_kept() {
     let mesh = samples::gyroid(6000);
     for error in [1e-2, 1e-4] {
-        let (blocks, _) = VertexBlocks::new(&mesh, Closeness::Error(error)).unwrap();
+        let (blocks, _) = VertexBlocks::new(&mesh, Accuracy::Error(error)).unwrap();
         let options = DistanceOptions { samples: 20_000, ..Default::default() };
         let mean = distance(&mesh, &decoded(&mesh, &blocks), &options).unwrap().mean();
         assert!((0.5 * error..1.02 * error).contains(&mean), "{mean} for {error}");
@@ -141,7 +142,7 @@ fn bytes_that_may_be_anything_do_no_harm() {
         let mut bytes = bytes.clone();
         for _ in 0..=turn % 3 {
             state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
-            // Half of them in what all blocks have in common.
+            // Half of the changes are in the parameters that all blocks share.
             let most = if turn % 2 == 0 { 80 } else { bytes.len() };
             let at = (state >> 33) as usize % most;
             bytes[at] = (state >> 24) as u8;
@@ -160,8 +161,7 @@ fn vertices_may_be_in_any_order_within_a_block() {
     let mesh = samples::sphere(3000);
     let mut ordered = blocks_of(&mesh);
     ordered.chunks_mut(BLOCK).for_each(<[_]>::reverse);
-    let (blocks, _) = VertexBlocks::of_blocks(&mesh, ordered.clone(), Closeness::Bits(11)).unwrap();
-    assert_eq!(blocks.vertices(), ordered);
+    let (blocks, _) = VertexBlocks::from_blocks(&mesh, &ordered, Accuracy::Bits(11)).unwrap();
     let plain = of_bits(&mesh, 11).0.bytes() as f64;
     assert!((blocks.bytes() as f64 / plain - 1.0).abs() < 0.02);
 }
@@ -171,22 +171,22 @@ fn what_cannot_be_is_said() {
     let far = |x: f64| mesh(&[[x, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]], &[[0, 1, 2]]);
     let ask = |x: f64, target| VertexBlocks::new(&far(x), target).err();
     for bits in [0, 1, 25, 64, u32::MAX] {
-        assert_eq!(ask(0.0, Closeness::Bits(bits)), Some(BlocksError::Bits(bits)));
+        assert_eq!(ask(0.0, Accuracy::Bits(bits)), Some(BlocksError::Bits(bits)));
     }
     for error in [0.0, -1.0, f64::INFINITY] {
-        assert_eq!(ask(0.0, Closeness::Error(error)), Some(BlocksError::Error(error)));
+        assert_eq!(ask(0.0, Accuracy::Error(error)), Some(BlocksError::Error(error)));
     }
-    assert!(matches!(ask(0.0, Closeness::Error(f64::NAN)), Some(BlocksError::Error(_))));
-    assert!(matches!(ask(0.0, Closeness::Error(1e-30)), Some(BlocksError::TooFine(_))));
+    assert!(matches!(ask(0.0, Accuracy::Error(f64::NAN)), Some(BlocksError::Error(_))));
+    assert!(matches!(ask(0.0, Accuracy::Error(1e-30)), Some(BlocksError::TooFine(_))));
     for x in [f64::NAN, f64::INFINITY, 1e300] {
-        assert_eq!(ask(x, Closeness::Bits(11)), Some(BlocksError::NotFinite(VertexId(0))));
+        assert_eq!(ask(x, Accuracy::Bits(11)), Some(BlocksError::NotFinite(VertexId(0))));
     }
 }
 
 #[test]
 fn flat_tiny_and_far_meshes_stay_where_they_are() {
     let targets =
-        [Closeness::Bits(2), Closeness::Bits(11), Closeness::Bits(24), Closeness::Error(1e300)];
+        [Accuracy::Bits(2), Accuracy::Bits(11), Accuracy::Bits(24), Accuracy::Error(1e300)];
     for (scale, from) in
         [(1.0, 0.0), (1e30, 0.0), (1e-30, 0.0), (1.0, 1e6), (0.0, 5.0), (0.0, 1e30)]
     {
@@ -195,7 +195,7 @@ fn flat_tiny_and_far_meshes_stay_where_they_are() {
         let mesh = mesh(&corners, &[[0, 1, 2]]);
         for target in targets {
             let blocks = VertexBlocks::new(&mesh, target).unwrap().0;
-            let most = if target == Closeness::Bits(11) { scale / 256.0 } else { scale };
+            let most = if target == Accuracy::Bits(11) { scale / 256.0 } else { scale };
             for (vertex, is) in blocks.vertices().iter().zip(blocks.positions()) {
                 for (is, was) in is.iter().zip(corners[vertex.index()]) {
                     assert!((is - was).abs() <= most, "{is} for {was}, {target:?}");

@@ -1,13 +1,14 @@
 //! How headers and numbers lie in the bits.
 
-use super::shape::{BEND_BITS, COARSE, COARSE_BITS, MOST_CELLS, SLOPE_BITS, Shape, axes};
+use super::shear::{BEND_BITS, COARSE, COARSE_BITS, MOST_CELLS, SLOPE_BITS, ShearTransform, axes};
 use crate::bits::Bits;
 use crate::bytes::{Malformed, Reader};
+use crate::header_field::HeaderField;
 use crate::kd::BLOCK;
 
 /// Blocks on the lattice, in cells from the least one of the mesh on.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub(super) struct Layout {
+pub(super) struct LatticeLayout {
     pub(super) vertices: usize,
     /// The greatest cell along each axis.
     pub(super) most: [i32; 3],
@@ -16,23 +17,16 @@ pub(super) struct Layout {
     bits: Bits,
 }
 
-/// Numbers of headers: the least, and how many bits those above it take.
-#[derive(Clone, Copy, Debug, Default)]
-struct Field {
-    least: u8,
-    bits: u32,
-}
-
 /// What blocks of a group have in common.
 #[derive(Clone, Copy, Debug)]
-struct Group {
+struct GroupHeader {
     /// Where headers start.
     at: usize,
     /// The least middle along each axis, and how many bits those above it take.
     first: [i32; 3],
     bits: [u32; 3],
     /// Of spans, along blocks and across them.
-    spans: [Field; 2],
+    spans: [HeaderField; 2],
     is_bent: bool,
 }
 
@@ -53,20 +47,21 @@ const BEND_ZERO: i32 = 1 << (BEND_BITS - 1);
 /// Vertices, words, the greatest cells.
 const BYTES: usize = 2 * 4 + 3 * 4;
 
-impl Layout {
+impl LatticeLayout {
     /// Blocks of cells, in so many bits as the better of bent and plain ones takes, group by group.
     pub(super) fn new(cells: &[[i32; 3]], most: [i32; 3]) -> Self {
-        let shapes = |is_bent: bool| -> Vec<Shape> {
-            cells.chunks(BLOCK).map(|block| Shape::of(block, is_bent)).collect()
+        let transforms = |is_bent: bool| -> Vec<ShearTransform> {
+            cells.chunks(BLOCK).map(|block| ShearTransform::of(block, is_bent)).collect()
         };
-        let (plain, bent) = (shapes(false), shapes(true));
+        let (plain, bent) = (transforms(false), transforms(true));
         let mut this = Self { vertices: cells.len(), most, ..Self::default() };
         let pairs = plain.chunks(GROUP).zip(bent.chunks(GROUP));
         for ((plain, bent), cells) in pairs.zip(cells.chunks(BLOCK * GROUP)) {
-            let bits = |shapes: &[Shape], is_bent: bool| {
-                let numbers = shapes.iter().zip(cells.chunks(BLOCK));
-                let numbers = numbers.map(|(shape, cells)| shape.bits(cells.len()));
-                let headers = shapes.len() * Self::header(&Self::group_of(shapes, is_bent));
+            let bits = |transforms: &[ShearTransform], is_bent: bool| {
+                let numbers = transforms.iter().zip(cells.chunks(BLOCK));
+                let numbers = numbers.map(|(transform, cells)| transform.bits(cells.len()));
+                let headers =
+                    transforms.len() * Self::header_bits(&Self::group_of(transforms, is_bent));
                 numbers.sum::<usize>() + headers
             };
             let is_bent = bits(bent, true) < bits(plain, false);
@@ -85,39 +80,39 @@ impl Layout {
 
     /// The cell of a vertex.
     pub(super) fn cell(&self, at: usize) -> [i64; 3] {
-        let (shape, start) = self.block(at / BLOCK);
-        self.cell_in(&shape, start, at % BLOCK)
+        let (transform, start) = self.block(at / BLOCK);
+        self.cell_in(&transform, start, at % BLOCK)
     }
 
     /// The cells of all.
     pub(super) fn cells(&self) -> impl Iterator<Item = [i64; 3]> {
         (0..self.blocks()).flat_map(move |block| {
-            let (shape, start) = self.block(block);
+            let (transform, start) = self.block(block);
             let count = BLOCK.min(self.vertices - block * BLOCK);
-            (0..count).map(move |at| self.cell_in(&shape, start, at))
+            (0..count).map(move |at| self.cell_in(&transform, start, at))
         })
     }
 
-    fn cell_in(&self, shape: &Shape, start: usize, at: usize) -> [i64; 3] {
-        let (size, bits) = shape.tuple();
+    fn cell_in(&self, transform: &ShearTransform, start: usize, at: usize) -> [i64; 3] {
+        let (size, bits) = transform.tuple();
         let start = start + at / size * bits as usize;
         let low = bits.min(u64::BITS);
         let number = u128::from(self.bits.get(start, low))
             | u128::from(self.bits.get(start + low as usize, bits - low)) << low;
-        shape.cell(number, at % size)
+        transform.cell(number, at % size)
     }
 
     /// A block's header, and where its numbers start: of the headers before it only those of its group are read.
-    fn block(&self, block: usize) -> (Shape, usize) {
+    fn block(&self, block: usize) -> (ShearTransform, usize) {
         let group = self.group(block / GROUP);
         let first = block - block % GROUP;
-        let headers = GROUP.min(self.blocks() - first) * Self::header(&group);
+        let headers = GROUP.min(self.blocks() - first) * Self::header_bits(&group);
         // Only the last block of all has fewer vertices.
-        let before = (0..block % GROUP).map(|before| self.shape(&group, before).bits(BLOCK));
-        (self.shape(&group, block % GROUP), group.at + headers + before.sum::<usize>())
+        let before = (0..block % GROUP).map(|before| self.transform(&group, before).bits(BLOCK));
+        (self.transform(&group, block % GROUP), group.at + headers + before.sum::<usize>())
     }
 
-    fn group(&self, number: usize) -> Group {
+    fn group(&self, number: usize) -> GroupHeader {
         let mut at = self.starts[number] as usize * WORD;
         let mut next = |width: u32| {
             at += width as usize;
@@ -126,52 +121,61 @@ impl Layout {
         let is_bent = next(1) == 1;
         let first = self.widths().map(|width| next(width) as i32);
         let bits = first.map(|_| next(MIDDLE_BITS));
-        let spans = [0; 2].map(|_| Field { least: next(CODE_BITS) as u8, bits: next(ABOVE_BITS) });
-        Group { at, first, bits, spans, is_bent }
+        let spans =
+            [0; 2].map(|_| HeaderField { least: next(CODE_BITS) as u8, bits: next(ABOVE_BITS) });
+        GroupHeader { at, first, bits, spans, is_bent }
     }
 
     /// What the blocks have in common; where it is to be put is not known yet.
-    fn group_of(shapes: &[Shape], is_bent: bool) -> Group {
+    fn group_of(transforms: &[ShearTransform], is_bent: bool) -> GroupHeader {
         let (mut first, mut last) = ([i32::MAX; 3], [0; 3]);
-        for shape in shapes {
-            for (k, axis) in axes(shape.axis).into_iter().enumerate() {
-                first[axis] = first[axis].min(shape.middle[k]);
-                last[axis] = last[axis].max(shape.middle[k]);
+        for transform in transforms {
+            for (k, axis) in axes(transform.axis).into_iter().enumerate() {
+                first[axis] = first[axis].min(transform.middle[k]);
+                last[axis] = last[axis].max(transform.middle[k]);
             }
         }
         let bits = [0, 1, 2].map(|axis| u32::BITS - (last[axis] - first[axis]).leading_zeros());
-        let along = shapes.iter().flat_map(|shape| [shape.spans[0], shape.spans[1]]);
-        let across = shapes.iter().map(|shape| shape.spans[2]);
-        Group { at: 0, first, bits, spans: [Field::of(along), Field::of(across)], is_bent }
+        let along =
+            transforms.iter().flat_map(|transform| [transform.spans[0], transform.spans[1]]);
+        let across = transforms.iter().map(|transform| transform.spans[2]);
+        GroupHeader {
+            at: 0,
+            first,
+            bits,
+            spans: [HeaderField::covering(along), HeaderField::covering(across)],
+            is_bent,
+        }
     }
 
     /// How many bits each header of a group has.
-    fn header(group: &Group) -> usize {
+    fn header_bits(group: &GroupHeader) -> usize {
         let [along, across] = group.spans.map(|field| field.bits);
         let bends = if group.is_bent { 3 * BEND_BITS } else { 0 };
         let middle: u32 = group.bits.iter().sum();
         (AXIS_BITS + 2 * (COARSE_BITS + SLOPE_BITS) + bends + 2 * along + across + middle) as usize
     }
 
-    fn shape(&self, group: &Group, number: usize) -> Shape {
-        let mut at = group.at + number * Self::header(group);
+    fn transform(&self, group: &GroupHeader, number: usize) -> ShearTransform {
+        let mut at = group.at + number * Self::header_bits(group);
         let mut next = |width: u32| {
             at += width as usize;
             self.bits.get(at - width as usize, width) as i32
         };
-        let mut shape = Shape { axis: next(AXIS_BITS) as u8, ..Shape::default() };
+        let mut transform =
+            ShearTransform { axis: next(AXIS_BITS) as u8, ..ShearTransform::default() };
         let [s, r] = [0; 2].map(|_| (next(COARSE_BITS) - COARSE_ZERO) as i8 * COARSE);
         let [a, b] = [0; 2].map(|_| (next(SLOPE_BITS) - SLOPE_ZERO) as i8);
-        shape.slopes = [s, r, a, b];
+        transform.slopes = [s, r, a, b];
         if group.is_bent {
-            shape.bends = [0; 3].map(|_| (next(BEND_BITS) - BEND_ZERO) as i8);
+            transform.bends = [0; 3].map(|_| (next(BEND_BITS) - BEND_ZERO) as i8);
         }
-        for (k, axis) in axes(shape.axis).into_iter().enumerate() {
+        for (k, axis) in axes(transform.axis).into_iter().enumerate() {
             let field = group.spans[k / 2];
-            shape.spans[k] = field.least + next(field.bits) as u8;
-            shape.middle[k] = group.first[axis] + next(group.bits[axis]);
+            transform.spans[k] = field.least + next(field.bits) as u8;
+            transform.middle[k] = group.first[axis] + next(group.bits[axis]);
         }
-        shape
+        transform
     }
 
     /// How many bits the first middle of a group takes along each axis.
@@ -180,9 +184,9 @@ impl Layout {
     }
 
     /// Puts a group behind the others.
-    fn push(&mut self, shapes: &[Shape], is_bent: bool, cells: &[[i32; 3]]) {
+    fn push(&mut self, transforms: &[ShearTransform], is_bent: bool, cells: &[[i32; 3]]) {
         self.starts.push((self.bits.len() / WORD) as u32);
-        let group = Self::group_of(shapes, is_bent);
+        let group = Self::group_of(transforms, is_bent);
         self.bits.push(is_bent.into(), 1);
         for (first, width) in group.first.into_iter().zip(self.widths()) {
             self.bits.push(first as u64, width);
@@ -192,11 +196,11 @@ impl Layout {
             self.bits.push(field.least.into(), CODE_BITS);
             self.bits.push(field.bits.into(), ABOVE_BITS);
         }
-        shapes.iter().for_each(|shape| self.push_header(shape, &group));
-        for (shape, cells) in shapes.iter().zip(cells.chunks(BLOCK)) {
-            let (size, bits) = shape.tuple();
+        transforms.iter().for_each(|transform| self.push_header(transform, &group));
+        for (transform, cells) in transforms.iter().zip(cells.chunks(BLOCK)) {
+            let (size, bits) = transform.tuple();
             for tuple in cells.chunks(size) {
-                let (number, low) = (shape.number(tuple), bits.min(u64::BITS));
+                let (number, low) = (transform.number(tuple), bits.min(u64::BITS));
                 self.bits.push(number as u64 & u64::MAX >> (u64::BITS - low).min(63), low);
                 self.bits.push((number >> low) as u64, bits - low);
             }
@@ -205,10 +209,10 @@ impl Layout {
         self.bits.push(0, (end.next_multiple_of(WORD) - end) as u32);
     }
 
-    fn push_header(&mut self, shape: &Shape, group: &Group) {
+    fn push_header(&mut self, transform: &ShearTransform, group: &GroupHeader) {
         let bits = &mut self.bits;
-        bits.push(shape.axis.into(), AXIS_BITS);
-        let [s, r, a, b] = shape.slopes.map(i32::from);
+        bits.push(transform.axis.into(), AXIS_BITS);
+        let [s, r, a, b] = transform.slopes.map(i32::from);
         for x in [s, r] {
             bits.push((x / i32::from(COARSE) + COARSE_ZERO) as u64, COARSE_BITS);
         }
@@ -216,15 +220,15 @@ impl Layout {
             bits.push((x + SLOPE_ZERO) as u64, SLOPE_BITS);
         }
         if group.is_bent {
-            shape
+            transform
                 .bends
                 .iter()
                 .for_each(|&x| bits.push((i32::from(x) + BEND_ZERO) as u64, BEND_BITS));
         }
-        for (k, axis) in axes(shape.axis).into_iter().enumerate() {
+        for (k, axis) in axes(transform.axis).into_iter().enumerate() {
             let field = group.spans[k / 2];
-            bits.push((shape.spans[k] - field.least).into(), field.bits);
-            bits.push((shape.middle[k] - group.first[axis]) as u64, group.bits[axis]);
+            bits.push((transform.spans[k] - field.least).into(), field.bits);
+            bits.push((transform.middle[k] - group.first[axis]) as u64, group.bits[axis]);
         }
     }
 
@@ -236,7 +240,7 @@ impl Layout {
         self.bits.store(out);
     }
 
-    /// What [`Layout::store`] wrote, if nothing in it leads beyond its bits.
+    /// What [`LatticeLayout::store`] wrote, if nothing in it leads beyond its bits.
     pub(super) fn restore(reader: &mut Reader) -> Result<Self, Malformed> {
         let vertices = reader.u32()? as usize;
         let words = reader.u32()? as usize;
@@ -277,17 +281,14 @@ impl Layout {
             if group.bits.iter().any(|&bits| bits >= 20) {
                 return Err(format!("group {number} has middles of more than 19 bits"));
             }
-            let is_beyond = |field: &Field| {
-                field.bits > u8::BITS || u32::from(field.least) + (1 << field.bits) > 256
-            };
-            if group.spans.iter().any(is_beyond) {
+            if !group.spans.iter().all(|field| field.is_valid()) {
                 return Err(format!("group {number} has spans beyond their last code"));
             }
-            end = group.at + (last - first) * Self::header(&group);
+            end = group.at + (last - first) * Self::header_bits(&group);
             is_there(end)?;
             for block in first..last {
                 let count = BLOCK.min(self.vertices - block * BLOCK);
-                end += self.shape(&group, block - first).bits(count);
+                end += self.transform(&group, block - first).bits(count);
             }
             end = end.next_multiple_of(WORD);
         }
@@ -296,15 +297,5 @@ impl Layout {
         } else {
             Err(format!("{end} bits, not {}", self.bits.len()))
         }
-    }
-}
-
-impl Field {
-    /// That holds all of these, and none beyond the last code.
-    fn of(codes: impl Iterator<Item = u8> + Clone) -> Self {
-        let least = codes.clone().min().unwrap_or(0);
-        let most = codes.max().unwrap_or(0);
-        let bits = u8::BITS - (most - least).leading_zeros();
-        Self { least: least.min((256 - (1 << bits)) as u8), bits }
     }
 }

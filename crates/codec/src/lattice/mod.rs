@@ -1,14 +1,14 @@
 //! Vertices in blocks, on a lattice that meshes can share.
 
 mod layout;
-mod shape;
+mod shear;
 
 use meshlod_mesh::{Bounds, Mesh, VertexId};
 use thiserror::Error;
 
-use self::layout::Layout;
-use self::shape::MOST_CELLS;
-use crate::bytes::{Malformed, Reader};
+use self::layout::LatticeLayout;
+use self::shear::MOST_CELLS;
+use crate::bytes::{Malformed, Reader, reduction};
 use crate::kd::blocks_of;
 
 /// Cubic cells of a power of two, with a vertex of the lattice at the origin.
@@ -26,7 +26,7 @@ pub struct LatticeBlocks {
     lattice: Lattice,
     /// The least cell along each axis that has a vertex.
     first: [i64; 3],
-    layout: Layout,
+    layout: LatticeLayout,
     /// The vertex of the mesh that each is.
     vertices: Vec<VertexId>,
 }
@@ -115,13 +115,15 @@ impl LatticeBlocks {
     /// # Errors
     /// A mesh with a coordinate that is none, or too large for the lattice.
     pub fn new(mesh: &Mesh, lattice: Lattice) -> Result<Self, LatticeError> {
-        Self::of_blocks(&mesh.positions, blocks_of(mesh), lattice)
+        let ordered = blocks_of(mesh);
+        let blocks = Self::from_blocks(&mesh.positions, &ordered, lattice)?;
+        Ok(Self { vertices: ordered, ..blocks })
     }
 
     /// The same of some of the positions, every [`BLOCK`] of `ordered` a block: in whatever order within.
-    pub(crate) fn of_blocks(
+    pub(crate) fn from_blocks(
         positions: &[[f64; 3]],
-        ordered: Vec<VertexId>,
+        ordered: &[VertexId],
         lattice: Lattice,
     ) -> Result<Self, LatticeError> {
         let place = |v: VertexId| positions[v.index()];
@@ -135,7 +137,7 @@ impl LatticeBlocks {
             [0, 1, 2].map(|k| (lattice.number(place(*v)[k]) as i64 - first[k]) as i32)
         };
         let cells: Vec<_> = ordered.iter().map(cell).collect();
-        Ok(Self { lattice, first, layout: Layout::new(&cells, most), vertices: ordered })
+        Ok(Self { lattice, first, layout: LatticeLayout::new(&cells, most), vertices: Vec::new() })
     }
 
     /// The vertex of the mesh that each is, in the order of the blocks. Connectivity is renumbered by it; it is not
@@ -165,20 +167,12 @@ impl LatticeBlocks {
 
     /// How much less that is than three `f32` for each vertex, as a part; nothing of nothing.
     pub fn reduction(&self) -> f64 {
-        match self.layout.vertices {
-            0 => 0.0,
-            count => 1.0 - self.bytes() as f64 / (12 * count) as f64,
-        }
+        reduction(self.bytes(), self.layout.vertices)
     }
 
     /// How many vertices there are.
     pub(crate) fn len(&self) -> usize {
         self.layout.vertices
-    }
-
-    /// Without knowing which vertex of the mesh is which, as from a file.
-    pub(crate) fn forgetful(self) -> Self {
-        Self { vertices: Vec::new(), ..self }
     }
 
     /// Puts all but [`LatticeBlocks::vertices`] behind other bytes.
@@ -195,7 +189,7 @@ impl LatticeBlocks {
         if first.iter().any(|&x| x.unsigned_abs() > FARTHEST as u64) {
             return Err(reader.wrong("the first cell is too far away"));
         }
-        let layout = Layout::restore(reader)?;
+        let layout = LatticeLayout::restore(reader)?;
         Ok(Self { lattice, first, layout, vertices: Vec::new() })
     }
 
@@ -346,8 +340,7 @@ mod tests {
         let mut ordered = blocks_of(&mesh);
         ordered.chunks_mut(32).for_each(<[_]>::reverse);
         let lattice = Lattice::new(-9).unwrap();
-        let turned = LatticeBlocks::of_blocks(&mesh.positions, ordered.clone(), lattice).unwrap();
-        assert_eq!(turned.vertices(), ordered);
+        let turned = LatticeBlocks::from_blocks(&mesh.positions, &ordered, lattice).unwrap();
         let plain = blocks(&mesh, -9);
         assert_eq!(turned.bytes(), plain.bytes());
         assert_eq!(turned.position(0), plain.position(31));

@@ -3,11 +3,11 @@
 use meshlod_mesh::Bounds;
 
 use super::Part;
-use super::surface::Surface;
+use super::face_graph::FaceGraph;
 
 /// Where in a cell a vertex is decoded to.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Cells {
+pub enum Reconstruction {
     /// The middle: half the error of the other.
     #[default]
     Centred,
@@ -17,9 +17,9 @@ pub enum Cells {
 
 /// Cells of one size from the origin on.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Grid {
+pub(super) struct SharedGrid {
     cell: [f32; 3],
-    cells: Cells,
+    cells: Reconstruction,
 }
 
 /// The cells of a part along an axis, from its first to its last.
@@ -30,12 +30,12 @@ const FINEST: f64 = 1.0 / (1 << 22) as f64;
 /// So the cell of an offset is this many from the origin at most: twice what [`FINEST`] leaves, for what is rounded.
 pub(super) const FARTHEST: u32 = 1 << 23;
 
-impl Grid {
+impl SharedGrid {
     /// The finest in which each of these boxes has at most 256 cells along each axis.
     ///
     /// Where vertices are in the middles of cells, sides have no more significant bits than leave all that `f32`
     /// makes of a part exact: its borders are those of its neighbours, bit for bit.
-    pub(super) fn new(boxes: &[Bounds], cells: Cells) -> Self {
+    pub(super) fn new(boxes: &[Bounds], cells: Reconstruction) -> Self {
         let cell = [0, 1, 2].map(|axis| {
             let spans = boxes.iter().map(|of| [of.min[axis], of.max[axis]]);
             let longest = spans.clone().map(|[min, max]| max - min).fold(0.0, f64::max);
@@ -47,8 +47,8 @@ impl Grid {
             let least = f64::from(f32::MIN_POSITIVE);
             let cell = (longest / ACROSS).max(farthest * FINEST).max(least) as f32;
             let spare = match cells {
-                Cells::Centred => spare_bits(farthest / f64::from(cell)),
-                Cells::Truncated => 0,
+                Reconstruction::Centred => spare_bits(farthest / f64::from(cell)),
+                Reconstruction::Truncated => 0,
             };
             let mut cell = rounded_up(cell, spare);
             // Roundings may have made it too small by a little.
@@ -65,9 +65,9 @@ impl Grid {
     }
 
     /// Fills in the offset of a part, and the cells of its vertices from there on.
-    pub(super) fn quantize(&self, surface: &Surface, part: &mut Part) {
+    pub(super) fn quantize(&self, graph: &FaceGraph, part: &mut Part) {
         let cells = |&vertex| {
-            let place = surface.position(vertex);
+            let place = graph.position(vertex);
             [0, 1, 2].map(|axis| number(place[axis], self.cell[axis]) as i32)
         };
         let cells: Vec<[i32; 3]> = part.vertices.iter().map(cells).collect();
@@ -77,12 +77,12 @@ impl Grid {
     }
 
     /// A grid that was made before, if its cells have a size.
-    pub(super) fn of_cells(cell: [f32; 3], cells: Cells) -> Option<Self> {
+    pub(super) fn of_cells(cell: [f32; 3], cells: Reconstruction) -> Option<Self> {
         cell.iter().all(|side| side.is_normal() && *side > 0.0).then_some(Self { cell, cells })
     }
 
     pub(super) fn is_centred(&self) -> bool {
-        self.cells == Cells::Centred
+        self.cells == Reconstruction::Centred
     }
 
     /// Where a cell of a part is decoded to: the same place for whatever part it is told by.
@@ -105,8 +105,8 @@ impl Grid {
 
     fn within(&self) -> f64 {
         match self.cells {
-            Cells::Centred => 0.5,
-            Cells::Truncated => 0.0,
+            Reconstruction::Centred => 0.5,
+            Reconstruction::Truncated => 0.0,
         }
     }
 }

@@ -7,7 +7,7 @@ use std::collections::BinaryHeap;
 use glam::DVec3;
 use meshlod_mesh::Bounds;
 
-use super::surface::Surface;
+use super::face_graph::FaceGraph;
 
 /// So often parts are grown anew at most, and so often without getting better. Horse, feline and squirrel in
 /// parts of 70 % reduction are best after 7 to 15 rounds, 7 to 14 % better than before; from round 7 on it is
@@ -16,16 +16,16 @@ const ROUNDS: usize = 24;
 const PATIENCE: usize = 4;
 
 /// Parts whose common box is as small as was found, from given ones. All have a face.
-pub(super) fn settle(surface: &Surface, parts: Vec<u32>, count: usize) -> Vec<u32> {
-    let boxes_of = |parts: &[u32]| boxes(surface, parts, count);
+pub(super) fn relax(graph: &FaceGraph, parts: Vec<u32>, count: usize) -> Vec<u32> {
+    let boxes_of = |parts: &[u32]| boxes(graph, parts, count);
     let mut best = (cost(&boxes_of(&parts)), parts.clone());
     let (mut parts, mut from, mut worse) = (parts, Vec::new(), 0);
     for _ in 0..ROUNDS {
-        let seeds = seeds(surface, &parts, &boxes_of(&parts));
+        let seeds = seeds(graph, &parts, &boxes_of(&parts));
         if seeds == from || worse > PATIENCE {
             break;
         }
-        parts = grow(surface, &seeds);
+        parts = grow(graph, &seeds);
         from = seeds;
         let cost = cost(&boxes_of(&parts));
         worse = if cost < best.0 { 0 } else { worse + 1 };
@@ -37,10 +37,10 @@ pub(super) fn settle(surface: &Surface, parts: Vec<u32>, count: usize) -> Vec<u3
 }
 
 /// The box of each part.
-pub(super) fn boxes(surface: &Surface, parts: &[u32], count: usize) -> Vec<Bounds> {
+pub(super) fn boxes(graph: &FaceGraph, parts: &[u32], count: usize) -> Vec<Bounds> {
     let mut boxes = vec![Bounds::EMPTY; count];
     for (face, &part) in (0..).zip(parts) {
-        surface.corners(face).into_iter().for_each(|corner| boxes[part as usize].add(corner));
+        graph.corners(face).into_iter().for_each(|corner| boxes[part as usize].add(corner));
     }
     boxes
 }
@@ -52,11 +52,11 @@ pub(super) fn cost(boxes: &[Bounds]) -> f64 {
 }
 
 /// The face of each part that is closest to the middle of its box.
-fn seeds(surface: &Surface, parts: &[u32], boxes: &[Bounds]) -> Vec<u32> {
+fn seeds(graph: &FaceGraph, parts: &[u32], boxes: &[Bounds]) -> Vec<u32> {
     let middles: Vec<_> = boxes.iter().map(|of| DVec3::from(of.center())).collect();
     let mut seeds = vec![(f64::INFINITY, 0); boxes.len()];
     for (face, &part) in (0..).zip(parts) {
-        let distance = center(surface, face).distance(middles[part as usize]);
+        let distance = center(graph, face).distance(middles[part as usize]);
         let best = &mut seeds[part as usize];
         if distance < best.0 {
             *best = (distance, face);
@@ -66,14 +66,14 @@ fn seeds(surface: &Surface, parts: &[u32], boxes: &[Bounds]) -> Vec<u32> {
 }
 
 /// Each face to the seed from which it is reached with the least stretch.
-fn grow(surface: &Surface, seeds: &[u32]) -> Vec<u32> {
-    let centers: Vec<DVec3> = seeds.iter().map(|&seed| center(surface, seed)).collect();
+fn grow(graph: &FaceGraph, seeds: &[u32]) -> Vec<u32> {
+    let centers: Vec<DVec3> = seeds.iter().map(|&seed| center(graph, seed)).collect();
     let stretch = |face: u32, part: u32| {
         let from = centers[part as usize];
-        let corners = surface.corners(face).map(|corner| (DVec3::from(corner) - from).abs());
+        let corners = graph.corners(face).map(|corner| (DVec3::from(corner) - from).abs());
         corners[0].max(corners[1]).max(corners[2]).max_element()
     };
-    let mut parts = vec![NONE; surface.faces()];
+    let mut parts = vec![NONE; graph.faces()];
     // Lengths are not negative: their bits are in their order.
     let entry = |face: u32, part: u32| Reverse((stretch(face, part).to_bits(), face, part));
     let mut waiting: BinaryHeap<_> =
@@ -83,11 +83,11 @@ fn grow(surface: &Surface, seeds: &[u32]) -> Vec<u32> {
             continue;
         }
         parts[face as usize] = part;
-        let open = surface.neighbours(face).filter(|&other| parts[other as usize] == NONE);
+        let open = graph.neighbours(face).filter(|&other| parts[other as usize] == NONE);
         waiting.extend(open.map(|other| entry(other, part)));
     }
     // What no seed can reach goes to the one that is closest all the same.
-    for face in 0..surface.faces() as u32 {
+    for face in 0..graph.faces() as u32 {
         if parts[face as usize] == NONE {
             let closest = (0..seeds.len() as u32).min_by_key(|&part| stretch(face, part).to_bits());
             parts[face as usize] = closest.unwrap_or(0);
@@ -98,7 +98,7 @@ fn grow(surface: &Surface, seeds: &[u32]) -> Vec<u32> {
 
 const NONE: u32 = u32::MAX;
 
-fn center(surface: &Surface, face: u32) -> DVec3 {
-    let [a, b, c] = surface.corners(face).map(|corner| DVec3::from(corner) / 3.0);
+fn center(graph: &FaceGraph, face: u32) -> DVec3 {
+    let [a, b, c] = graph.corners(face).map(|corner| DVec3::from(corner) / 3.0);
     a + b + c
 }

@@ -7,7 +7,7 @@ use std::collections::BinaryHeap;
 
 use meshlod_mesh::Bounds;
 
-use super::surface::Surface;
+use super::face_graph::FaceGraph;
 
 /// The merges of a surface, first to last: all clusterings into any number of clusters.
 #[derive(Clone, Debug)]
@@ -21,16 +21,16 @@ impl Merges {
     /// Merges until nothing is left to merge: neighbours first, and components after all of them.
     ///
     /// Cost: O(n log n) for each doubling of a cluster.
-    pub(super) fn new(surface: &Surface) -> Self {
-        let mut forming = Forming::new(surface);
-        let neighbours = |f: u32| surface.neighbours(f).filter(move |&other| f < other);
-        let faces = 0..surface.faces() as u32;
+    pub(super) fn new(graph: &FaceGraph) -> Self {
+        let mut forming = Clusters::new(graph);
+        let neighbours = |f: u32| graph.neighbours(f).filter(move |&other| f < other);
+        let faces = 0..graph.faces() as u32;
         forming.merge(faces.clone().flat_map(|f| neighbours(f).map(move |other| [f, other])));
         // What has no neighbours any more, in an order in which near ones are mostly side by side.
         let mut apart: Vec<u32> = faces.filter(|&f| forming.root(f) == f).collect();
-        apart.sort_by_cached_key(|&f| surface.morton(forming.boxes[f as usize].center()));
+        apart.sort_by_cached_key(|&f| graph.morton(forming.boxes[f as usize].center()));
         forming.merge(apart.windows(2).map(|pair| [pair[0], pair[1]]));
-        Self { faces: surface.faces(), pairs: forming.pairs }
+        Self { faces: graph.faces(), pairs: forming.pairs }
     }
 
     /// The cluster of each face, of `count` clusters, numbered by their first faces; of fewer where there
@@ -56,19 +56,19 @@ impl Merges {
 }
 
 /// Clusters on their way.
-struct Forming {
+struct Clusters {
     parents: Vec<u32>,
     /// By the least face of each cluster.
     boxes: Vec<Bounds>,
     pairs: Vec<[u32; 2]>,
 }
 
-impl Forming {
-    fn new(surface: &Surface) -> Self {
-        let faces = 0..surface.faces() as u32;
+impl Clusters {
+    fn new(graph: &FaceGraph) -> Self {
+        let faces = 0..graph.faces() as u32;
         Self {
             parents: faces.clone().collect(),
-            boxes: faces.map(|f| Bounds::of(&surface.corners(f))).collect(),
+            boxes: faces.map(|f| Bounds::of(&graph.corners(f))).collect(),
             pairs: Vec::new(),
         }
     }
@@ -126,8 +126,8 @@ mod tests {
     #[test]
     fn there_are_as_many_clusters_as_asked() {
         for mesh in [grid(8), two_objects()] {
-            let surface = Surface::new(&mesh);
-            let merges = Merges::new(&surface);
+            let graph = FaceGraph::new(&mesh);
+            let merges = Merges::new(&graph);
             for count in [1, 2, 3, 7, mesh.faces.len(), mesh.faces.len() + 5] {
                 let clusters = merges.clusters(count);
                 let found = clusters.iter().max().unwrap() + 1;
@@ -139,12 +139,12 @@ mod tests {
     #[test]
     fn four_clusters_of_a_square_are_its_quarters() {
         let mesh = grid(8);
-        let surface = Surface::new(&mesh);
-        let clusters = Merges::new(&surface).clusters(4);
+        let graph = FaceGraph::new(&mesh);
+        let clusters = Merges::new(&graph).clusters(4);
         let whole = Bounds::of(&mesh.positions);
         for cluster in 0..4 {
             let faces = (0..).zip(&clusters).filter(|(_, of)| **of == cluster);
-            let corners: Vec<_> = faces.flat_map(|(f, _)| surface.corners(f)).collect();
+            let corners: Vec<_> = faces.flat_map(|(f, _)| graph.corners(f)).collect();
             let side = super::super::longest_side(&Bounds::of(&corners));
             assert!(side < 0.8 * super::super::longest_side(&whole), "{side}");
         }

@@ -1,28 +1,29 @@
 //! Eight bits an axis, in parts that share one grid [LCL10].
 
+mod face_graph;
 mod grid;
 mod lloyd;
 mod merge;
 mod packed;
-mod parting;
-mod surface;
+mod partitioner;
 #[cfg(test)]
 mod tests;
 
 use meshlod_mesh::{Bounds, FaceId, Mesh, VertexId};
 use thiserror::Error;
 
-pub use self::grid::Cells;
-use self::grid::Grid;
+pub use self::grid::Reconstruction;
+use self::grid::SharedGrid;
 pub(crate) use self::packed::PackedParts;
-pub use self::parting::Parting;
+pub use self::partitioner::Partitioner;
+use crate::bytes::reduction;
 
 /// The positions and faces of a mesh in parts, positions in eight bits an axis.
 ///
 /// A vertex is stored once for each part that uses it. It is in the same cell of the grid in all of them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Parts {
-    grid: Grid,
+    grid: SharedGrid,
     /// How many vertices the mesh has that faces use.
     vertices: usize,
     parts: Vec<Part>,
@@ -148,7 +149,7 @@ impl Parts {
 
     /// How much less that is than three `f32` for each vertex, as a part.
     pub fn reduction(&self) -> f64 {
-        1.0 - self.position_bytes() as f64 / (12 * self.vertices) as f64
+        reduction(self.position_bytes(), self.vertices)
     }
 
     /// How many vertices are stored again, as a part of all.

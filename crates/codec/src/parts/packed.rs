@@ -2,7 +2,7 @@
 
 use meshlod_mesh::VertexId;
 
-use super::grid::{Cells, FARTHEST, Grid};
+use super::grid::{FARTHEST, Reconstruction, SharedGrid};
 use super::{HEADER, Part, Parts, part_header};
 use crate::bytes::{Malformed, Reader};
 use crate::patch::Rows;
@@ -10,7 +10,7 @@ use crate::patch::Rows;
 /// The positions of nodes, each in a part: parts are rows.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct PackedParts {
-    grid: Grid,
+    grid: SharedGrid,
     /// How many vertices nodes are of.
     vertices: u32,
     rows: Rows,
@@ -98,8 +98,10 @@ impl PackedParts {
         }
         let (vertices, count) = (reader.u32()?, reader.u32()?);
         let cell = [reader.f32()?, reader.f32()?, reader.f32()?];
-        let cells = if flags & CENTRED == 0 { Cells::Truncated } else { Cells::Centred };
-        let grid = Grid::of_cells(cell, cells).ok_or_else(|| reader.wrong("cells of no size"))?;
+        let cells =
+            if flags & CENTRED == 0 { Reconstruction::Truncated } else { Reconstruction::Centred };
+        let grid =
+            SharedGrid::of_cells(cell, cells).ok_or_else(|| reader.wrong("cells of no size"))?;
         let (mut sizes, mut offsets) = (Vec::new(), Vec::new());
         for _ in 0..count {
             sizes.push(reader.u32()? as usize);

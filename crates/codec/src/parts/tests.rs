@@ -5,8 +5,8 @@ use meshlod_samples as samples;
 
 use super::*;
 
-fn parting(mesh: &Mesh) -> Parting<'_> {
-    Parting::new(mesh).unwrap()
+fn partitioner(mesh: &Mesh) -> Partitioner<'_> {
+    Partitioner::new(mesh).unwrap()
 }
 
 fn meshes() -> Vec<Mesh> {
@@ -33,9 +33,9 @@ fn drawn(parts: &Parts) -> Vec<[VertexId; 3]> {
 #[test]
 fn every_face_is_in_one_part_as_it_was() {
     for mesh in meshes() {
-        let parting = parting(&mesh);
+        let partitioner = partitioner(&mesh);
         for count in [1, 5, 40] {
-            let parts = parting.into_count(count, Cells::Centred);
+            let parts = partitioner.with_count(count, Reconstruction::Centred);
             let mut faces = mesh.faces.clone();
             faces.sort_unstable();
             assert_eq!(drawn(&parts), faces);
@@ -47,7 +47,7 @@ fn every_face_is_in_one_part_as_it_was() {
 #[test]
 fn a_vertex_is_in_the_same_cell_of_all_its_parts() {
     for mesh in meshes() {
-        let parts = parting(&mesh).into_count(24, Cells::Centred);
+        let parts = partitioner(&mesh).with_count(24, Reconstruction::Centred);
         let mut cells = vec![None; mesh.positions.len()];
         let mut again = 0;
         for part in parts.parts() {
@@ -64,8 +64,8 @@ fn a_vertex_is_in_the_same_cell_of_all_its_parts() {
 #[test]
 fn no_vertex_is_further_off_than_half_a_cell() {
     for mesh in meshes() {
-        for (cells, most) in [(Cells::Centred, 0.5), (Cells::Truncated, 1.0)] {
-            let parts = parting(&mesh).into_count(12, cells);
+        for (cells, most) in [(Reconstruction::Centred, 0.5), (Reconstruction::Truncated, 1.0)] {
+            let parts = partitioner(&mesh).with_count(12, cells);
             let sides = parts.cell().map(f64::from);
             for part in parts.parts() {
                 let matrix = parts.matrix(part);
@@ -88,7 +88,7 @@ fn parts_meet_bit_for_bit_by_their_matrices_in_f32() {
     for mut mesh in meshes() {
         for shift in [0.0, 0.3, -77.7, 1000.1] {
             mesh.positions.as_flattened_mut().iter_mut().for_each(|x| *x += shift);
-            let parts = parting(&mesh).into_count(24, Cells::Centred);
+            let parts = partitioner(&mesh).with_count(24, Reconstruction::Centred);
             for part in parts.parts() {
                 let matrix = parts.matrix(part);
                 for &position in &part.positions {
@@ -108,21 +108,21 @@ fn parts_meet_bit_for_bit_by_their_matrices_in_f32() {
 #[test]
 fn more_parts_have_smaller_cells_and_settling_helps() {
     let mesh = samples::gyroid(6000);
-    let parting = parting(&mesh);
-    let size = |count| parting.into_count(count, Cells::Centred).cell().map(f64::from);
+    let partitioner = partitioner(&mesh);
+    let size = |count| partitioner.with_count(count, Reconstruction::Centred).cell().map(f64::from);
     let [few, many] = [size(4), size(64)].map(|cell| cell.iter().sum::<f64>());
     assert!(many < 0.5 * few, "{few} {many}");
-    let merged = parting.merges.clusters(64);
-    let [before, after] = [merged.clone(), lloyd::settle(&parting.surface, merged, 64)]
-        .map(|parts| lloyd::cost(&lloyd::boxes(&parting.surface, &parts, 64)));
+    let merged = partitioner.merges.clusters(64);
+    let [before, after] = [merged.clone(), lloyd::relax(&partitioner.graph, merged, 64)]
+        .map(|parts| lloyd::cost(&lloyd::boxes(&partitioner.graph, &parts, 64)));
     assert!(after < before, "{before} {after}");
 }
 
 #[test]
 fn a_reduction_is_kept_by_as_many_parts_as_it_allows() {
     let mesh = samples::sphere(6000);
-    let parting = parting(&mesh);
-    let parts = parting.within_reduction(0.68, Cells::Centred).unwrap();
+    let partitioner = partitioner(&mesh);
+    let parts = partitioner.within_reduction(0.68, Reconstruction::Centred).unwrap();
     assert!((0.68..0.69).contains(&parts.reduction()), "{}", parts.reduction());
     assert!(parts.parts().len() > 3 && parts.overhead() > 0.0);
 }
@@ -130,13 +130,16 @@ fn a_reduction_is_kept_by_as_many_parts_as_it_allows() {
 #[test]
 fn cells_of_a_size_are_kept_where_they_take_less_than_floats() {
     let mesh = samples::sphere(6000);
-    let parting = parting(&mesh);
-    let parts = parting.within_cell(0.002, Cells::Centred);
+    let partitioner = partitioner(&mesh);
+    let parts = partitioner.within_cell(0.002, Reconstruction::Centred);
     assert!((0.0017..=0.002).contains(&parts.mean_side()), "{}", parts.mean_side());
-    let finest = parting.within_cell(1e-9, Cells::Centred);
+    let finest = partitioner.within_cell(1e-9, Reconstruction::Centred);
     assert!(finest.mean_side() < 0.001 && finest.reduction() > 0.0);
     let small = mesh_of_one();
-    assert_eq!(Parting::new(&small).unwrap().within_cell(1e-9, Cells::Centred).parts().len(), 1);
+    assert_eq!(
+        Partitioner::new(&small).unwrap().within_cell(1e-9, Reconstruction::Centred).parts().len(),
+        1
+    );
 }
 
 fn mesh_of_one() -> Mesh {
@@ -146,14 +149,14 @@ fn mesh_of_one() -> Mesh {
 #[test]
 fn what_cannot_be_is_said() {
     let small = mesh_of_one();
-    let too_small = parting(&small).within_reduction(0.7, Cells::Centred);
+    let too_small = partitioner(&small).within_reduction(0.7, Reconstruction::Centred);
     assert!(matches!(too_small, Err(PartsError::TooSmall { .. })));
-    let none = |part| parting(&small).within_reduction(part, Cells::Centred).err();
+    let none = |part| partitioner(&small).within_reduction(part, Reconstruction::Centred).err();
     assert_eq!(none(1.0), Some(PartsError::Reduction(1.0)));
     assert!(none(f64::NAN).is_some());
-    assert_eq!(Parting::new(&Mesh::default()).err(), Some(PartsError::Empty));
+    assert_eq!(Partitioner::new(&Mesh::default()).err(), Some(PartsError::Empty));
     let far = mesh(&[[0.0; 3], [1e300, 0.0, 0.0], [0.0, 1.0, 0.0]], &[[0, 1, 2]]);
-    assert_eq!(Parting::new(&far).err(), Some(PartsError::NotFinite(VertexId(1))));
+    assert_eq!(Partitioner::new(&far).err(), Some(PartsError::NotFinite(VertexId(1))));
 }
 
 #[test]
@@ -162,7 +165,7 @@ fn flat_tiny_and_far_meshes_stay_where_they_are() {
         let place = |x: f64, y: f64| [from + scale * x, from + scale * y, from];
         let corners = [place(0.0, 0.0), place(1.0, 0.0), place(0.0, 1.0)];
         let mesh = mesh(&corners, &[[0, 1, 2]]);
-        let decoded = parting(&mesh).into_count(1, Cells::Centred).decode();
+        let decoded = partitioner(&mesh).with_count(1, Reconstruction::Centred).decode();
         for (was, is) in corners.iter().zip(&decoded.positions) {
             for axis in 0..3 {
                 let most = (scale / 256.0).max(from / 4e6);

@@ -2,7 +2,7 @@
 
 /// An edge with a face on one side: as the face that is missing would have it. By the patch's own numbers of nodes.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Gate {
+pub(super) struct OpenEdge {
     pub(super) from: u32,
     pub(super) to: u32,
     is_open: bool,
@@ -11,7 +11,7 @@ pub(super) struct Gate {
 /// The gates of a patch, in the order in which they opened.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Front {
-    gates: Vec<Gate>,
+    gates: Vec<OpenEdge>,
     passed: usize,
     /// The last gate that opened from each node, and the last to each.
     last: Vec<Ends>,
@@ -36,7 +36,7 @@ impl Front {
     }
 
     /// The open gate that has waited longest: it is open no more.
-    pub(super) fn pass(&mut self) -> Option<Gate> {
+    pub(super) fn pass(&mut self) -> Option<OpenEdge> {
         while let Some(&gate) = self.gates.get(self.passed) {
             self.passed += 1;
             if gate.is_open {
@@ -48,12 +48,12 @@ impl Front {
     }
 
     /// The node after a gate on the border.
-    pub(super) fn next(&self, gate: Gate) -> Option<u32> {
+    pub(super) fn next(&self, gate: OpenEdge) -> Option<u32> {
         self.last[gate.to as usize].from.map(|next| self.gates[next as usize].to)
     }
 
     /// The node before it.
-    pub(super) fn previous(&self, gate: Gate) -> Option<u32> {
+    pub(super) fn previous(&self, gate: OpenEdge) -> Option<u32> {
         self.last[gate.from as usize].to.map(|previous| self.gates[previous as usize].from)
     }
 
@@ -65,7 +65,7 @@ impl Front {
     }
 
     /// A face across a gate that has been passed.
-    pub(super) fn grow(&mut self, gate: Gate, third: u32) {
+    pub(super) fn grow(&mut self, gate: OpenEdge, third: u32) {
         self.side(gate.to, third);
         self.side(third, gate.from);
     }
@@ -81,13 +81,13 @@ impl Front {
             return self.close(at as usize);
         }
         let at = Some(self.gates.len() as u32);
-        self.gates.push(Gate { from: to, to: from, is_open: true });
+        self.gates.push(OpenEdge { from: to, to: from, is_open: true });
         self.last[to as usize].from = at;
         self.last[from as usize].to = at;
     }
 
     fn close(&mut self, at: usize) {
-        let Gate { from, to, .. } = self.gates[at];
+        let OpenEdge { from, to, .. } = self.gates[at];
         self.gates[at].is_open = false;
         let forget = |end: &mut Option<u32>| {
             if *end == Some(at as u32) {

@@ -1,18 +1,18 @@
 //! Growing a patch: face after face, each across an edge of those before where one is left.
 
-use super::front::{Front, Gate};
+use super::front::{Front, OpenEdge};
 
 /// A step of a patch's growth.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Step {
+pub(super) struct GrowthStep {
     /// The nodes of the gate that it is across, or none where a face starts anew.
     pub(super) gate: Option<[u32; 2]>,
-    pub(super) finds: Finds,
+    pub(super) finds: Found,
 }
 
 /// What there is across a gate, or at a corner of a face that starts anew.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Finds {
+pub(super) enum Found {
     /// No face.
     Nothing,
     /// A node that the patch has not met.
@@ -25,27 +25,27 @@ pub(super) enum Finds {
     Known(u32),
 }
 
-impl Step {
+impl GrowthStep {
     pub(super) fn new_node(&self) -> Option<u32> {
-        if let Finds::New(node) = self.finds { Some(node) } else { None }
+        if let Found::New(node) = self.finds { Some(node) } else { None }
     }
 }
 
 /// Grows patches one after the other.
-pub(super) struct Grower {
+pub(super) struct PatchGrower {
     /// The patch's number of each node that it has met, else [`UNMET`].
     numbers: Vec<u32>,
 }
 
 const UNMET: u32 = u32::MAX;
 
-impl Grower {
+impl PatchGrower {
     pub(super) fn new(nodes: usize) -> Self {
         Self { numbers: vec![UNMET; nodes] }
     }
 
     /// The steps that make all of these faces.
-    pub(super) fn grow(&mut self, faces: &[[u32; 3]]) -> Vec<Step> {
+    pub(super) fn grow(&mut self, faces: &[[u32; 3]]) -> Vec<GrowthStep> {
         let mut sides = Sides::new(faces);
         let mut front = Front::default();
         let mut steps = Vec::with_capacity(faces.len() * 3 / 2);
@@ -55,7 +55,7 @@ impl Grower {
                 let face = faces[sides.any()];
                 let face = face.map(|node| {
                     let finds = self.corner(node, &mut front, &mut met);
-                    steps.push(Step { gate: None, finds });
+                    steps.push(GrowthStep { gate: None, finds });
                     self.numbers[node as usize]
                 });
                 front.start(face);
@@ -63,34 +63,34 @@ impl Grower {
             };
             let nodes = [gate.from, gate.to].map(|number| met[number as usize]);
             let finds = match sides.across(nodes) {
-                None => Finds::Nothing,
+                None => Found::Nothing,
                 Some(third) => {
                     let finds = self.third(third, gate, &mut front, &mut met);
                     front.grow(gate, self.numbers[third as usize]);
                     finds
                 }
             };
-            steps.push(Step { gate: Some(nodes), finds });
+            steps.push(GrowthStep { gate: Some(nodes), finds });
         }
         met.into_iter().for_each(|node| self.numbers[node as usize] = UNMET);
         steps
     }
 
-    fn corner(&mut self, node: u32, front: &mut Front, met: &mut Vec<u32>) -> Finds {
+    fn corner(&mut self, node: u32, front: &mut Front, met: &mut Vec<u32>) -> Found {
         match self.numbers[node as usize] {
             UNMET => {
                 self.numbers[node as usize] = front.meet();
                 met.push(node);
-                Finds::New(node)
+                Found::New(node)
             }
-            number => Finds::Known(number),
+            number => Found::Known(number),
         }
     }
 
-    fn third(&mut self, node: u32, gate: Gate, front: &mut Front, met: &mut Vec<u32>) -> Finds {
+    fn third(&mut self, node: u32, gate: OpenEdge, front: &mut Front, met: &mut Vec<u32>) -> Found {
         match self.corner(node, front, met) {
-            Finds::Known(number) if front.next(gate) == Some(number) => Finds::Next,
-            Finds::Known(number) if front.previous(gate) == Some(number) => Finds::Previous,
+            Found::Known(number) if front.next(gate) == Some(number) => Found::Next,
+            Found::Known(number) if front.previous(gate) == Some(number) => Found::Previous,
             finds => finds,
         }
     }

@@ -5,18 +5,18 @@
 //! each open edge there is nothing, or a face whose third corner is new, or a neighbour of the edge on the border,
 //! or any other. New nodes come in the order in which their rows have them, so most faces need no index at all.
 
+mod codes;
 mod front;
 mod grow;
-mod regrow;
-mod steps;
+mod read;
 #[cfg(test)]
 mod tests;
 
 use std::ops::Range;
 
-use self::grow::{Grower, Step};
-use self::regrow::Regrowth;
-use self::steps::{Book, Place};
+use self::codes::{NodeAddress, PatchRows};
+use self::grow::{GrowthStep, PatchGrower};
+use self::read::PatchReader;
 use crate::bits::{Bits, Cursor, width};
 use crate::bytes::{Malformed, Reader};
 
@@ -131,7 +131,7 @@ impl Patches {
         rows_per_patch: usize,
     ) -> (Self, Vec<u32>) {
         let members = members(faces, row_of, rows_per_patch, rows.div_ceil(rows_per_patch));
-        let mut grower = Grower::new(row_of.len());
+        let mut grower = PatchGrower::new(row_of.len());
         let grown: Vec<_> = members.iter().map(|faces| grower.grow(faces)).collect();
         let order = in_rows(&grown, row_of, rows, rows_per_patch);
         let rows = Rows::new(order.iter().map(Vec::len));
@@ -140,7 +140,7 @@ impl Patches {
             row.iter().zip(0..).for_each(|(&node, number)| numbers[node as usize] = number);
         });
         let place =
-            |node: u32| Place { row: row_of[node as usize], number: numbers[node as usize] };
+            |node: u32| NodeAddress { row: row_of[node as usize], number: numbers[node as usize] };
         let mut this = Self { rows, rows_per_patch, heads: Vec::new(), bits: Bits::default() };
         for (steps, faces) in grown.iter().zip(&members) {
             this.push(steps, faces.len(), place);
@@ -166,7 +166,7 @@ impl Patches {
     pub(crate) fn faces(&self, patch: usize) -> Result<Vec<[u32; 3]>, Malformed> {
         let head = self.heads[patch];
         let bits = Cursor::new(&self.bits, 8 * head.start as usize);
-        Regrowth::new(&self.rows, self.own(patch), bits)?.faces(head.faces as usize)
+        PatchReader::new(&self.rows, self.own(patch), bits)?.faces(head.faces as usize)
     }
 
     /// What they take, with all that decoding them needs, in bytes.
@@ -206,11 +206,11 @@ impl Patches {
         Ok(Self { rows, rows_per_patch, heads, bits })
     }
 
-    fn push(&mut self, steps: &[Step], faces: usize, place: impl Fn(u32) -> Place) {
+    fn push(&mut self, steps: &[GrowthStep], faces: usize, place: impl Fn(u32) -> NodeAddress) {
         let own = self.own(self.heads.len());
         self.bits.fill_byte();
         self.heads.push(Head { start: (self.bits.len() / 8) as u32, faces: faces as u32 });
-        Book::of(steps, own, &place).push(steps, place, &self.rows, &mut self.bits);
+        PatchRows::of(steps, own, &place).push(steps, place, &self.rows, &mut self.bits);
     }
 
     fn own(&self, patch: usize) -> Range<u32> {
@@ -237,7 +237,7 @@ fn members(
 
 /// The nodes of each row: as its patch comes to them, and then those that only others have.
 fn in_rows(
-    grown: &[Vec<Step>],
+    grown: &[Vec<GrowthStep>],
     row_of: &[u32],
     rows: usize,
     rows_per_patch: usize,
@@ -250,7 +250,11 @@ fn in_rows(
     };
     for (patch, steps) in grown.iter().enumerate() {
         let is_own = |node: u32| row_of[node as usize] as usize / rows_per_patch == patch;
-        steps.iter().filter_map(Step::new_node).filter(|&node| is_own(node)).for_each(&mut put);
+        steps
+            .iter()
+            .filter_map(GrowthStep::new_node)
+            .filter(|&node| is_own(node))
+            .for_each(&mut put);
     }
     for (node, _) in (0..).zip(is_in.clone()).filter(|(_, is_in)| !is_in) {
         order[row_of[node as usize] as usize].push(node);

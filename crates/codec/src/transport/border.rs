@@ -5,9 +5,9 @@
 //! both know the same of every edge.
 
 /// How many faces a block has at most.
-pub(super) const MOST_FACES: usize = 1024;
+pub(super) const MAX_FACES: usize = 1024;
 /// A face makes three nodes at most. A power of two, so that no place is outside.
-pub(super) const NODES: usize = 4 * MOST_FACES;
+pub(super) const NODES: usize = 4 * MAX_FACES;
 const MASK: usize = NODES - 1;
 
 /// What is done at an edge of the border.
@@ -16,9 +16,9 @@ pub(super) enum Step {
     /// A face to a new vertex.
     New,
     /// A face to the vertex before the edge: the first vertex of the edge is inside then.
-    Before,
+    Previous,
     /// A face to the vertex behind it: the second one is.
-    Behind,
+    Next,
     /// No face.
     Nothing,
     /// A face to some other vertex of the border.
@@ -27,7 +27,7 @@ pub(super) enum Step {
 
 impl Step {
     pub(super) const ALL: [Self; 5] =
-        [Self::New, Self::Before, Self::Behind, Self::Nothing, Self::Other];
+        [Self::New, Self::Previous, Self::Next, Self::Nothing, Self::Other];
 }
 
 /// A vertex on a loop, and the edge that leaves from it.
@@ -35,25 +35,25 @@ impl Step {
 pub(super) struct Node {
     pub(super) vertex: u16,
     pub(super) next: u16,
-    pub(super) before: u16,
+    pub(super) previous: u16,
     /// The third vertex of the face behind the edge.
     pub(super) apex: u16,
     /// The one before it, in the fan around the node's vertex.
-    pub(super) older: u16,
-    pub(super) state: State,
+    pub(super) previous_apex: u16,
+    pub(super) state: EdgeState,
 }
 
 /// What is known of a node's edge.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[repr(u8)]
-pub(super) enum State {
+pub(super) enum EdgeState {
     /// There may be a face.
     #[default]
     Open,
     /// There is none.
-    Shut,
+    Closed,
     /// The node is inside.
-    Gone,
+    Removed,
 }
 
 pub(super) struct Border {
@@ -113,7 +113,7 @@ impl Border {
     #[inline(always)]
     pub(super) fn pivot(&mut self) -> Option<u16> {
         while let Some(&at) = self.queue.get(self.taken) {
-            if self.node(at).state == State::Open {
+            if self.node(at).state == EdgeState::Open {
                 return Some(at);
             }
             self.taken += 1;
@@ -127,8 +127,15 @@ impl Border {
         for k in 0..3u16 {
             let [vertex, _, apex] = [0, 1, 2].map(|i| vertices[usize::from(k + i) % 3]);
             self.faces[usize::from(vertex) & MASK] = 0;
-            let (next, before) = (at + (k + 1) % 3, at + (k + 2) % 3);
-            self.push(Node { vertex, next, before, apex, older: apex, state: State::Open });
+            let (next, previous) = (at + (k + 1) % 3, at + (k + 2) % 3);
+            self.push(Node {
+                vertex,
+                next,
+                previous,
+                apex,
+                previous_apex: apex,
+                state: EdgeState::Open,
+            });
         }
         self.put_face(vertices);
         at
@@ -152,44 +159,44 @@ impl Border {
         let new = self.push(Node {
             vertex,
             next: second,
-            before: at,
+            previous: at,
             apex: a,
-            older: a,
-            state: State::Open,
+            previous_apex: a,
+            state: EdgeState::Open,
         });
         let node = self.node_mut(at);
-        (node.next, node.apex, node.older) = (new, b, apex);
-        self.node_mut(second).before = new;
+        (node.next, node.apex, node.previous_apex) = (new, b, apex);
+        self.node_mut(second).previous = new;
         self.put_face([b, a, vertex]);
         [b, a, vertex]
     }
 
     /// A face on an edge to the vertex before it.
     #[inline(always)]
-    pub(super) fn put_before(&mut self, at: u16) -> [u16; 3] {
-        let Node { vertex: a, next: second, before, .. } = *self.node(at);
+    pub(super) fn put_previous(&mut self, at: u16) -> [u16; 3] {
+        let Node { vertex: a, next: second, previous, .. } = *self.node(at);
         let b = self.node(second).vertex;
-        self.node_mut(at).state = State::Gone;
-        let node = self.node_mut(before);
+        self.node_mut(at).state = EdgeState::Removed;
+        let node = self.node_mut(previous);
         let c = node.vertex;
-        (node.next, node.older, node.apex) = (second, node.apex, a);
-        self.node_mut(second).before = before;
+        (node.next, node.previous_apex, node.apex) = (second, node.apex, a);
+        self.node_mut(second).previous = previous;
         self.put_face([b, a, c]);
-        self.zip(before);
+        self.zip(previous);
         [b, a, c]
     }
 
     /// A face on an edge to the vertex behind it.
     #[inline(always)]
-    pub(super) fn put_behind(&mut self, at: u16) -> [u16; 3] {
+    pub(super) fn put_next(&mut self, at: u16) -> [u16; 3] {
         let Node { vertex: a, next: second, apex, .. } = *self.node(at);
         let Node { vertex: b, next: third, .. } = *self.node(second);
-        self.node_mut(second).state = State::Gone;
+        self.node_mut(second).state = EdgeState::Removed;
         let node = self.node_mut(at);
-        (node.next, node.older, node.apex) = (third, apex, b);
+        (node.next, node.previous_apex, node.apex) = (third, apex, b);
         let node = self.node_mut(third);
         let c = node.vertex;
-        node.before = at;
+        node.previous = at;
         self.put_face([b, a, c]);
         self.zip(at);
         [b, a, c]
@@ -198,10 +205,11 @@ impl Border {
     /// Two edges that run between the same two nodes there and back are one edge.
     #[inline(always)]
     fn zip(&mut self, at: u16) {
-        let Node { next, before, state, .. } = *self.node(at);
-        if next == before && state == State::Open && self.node(next).state == State::Open {
-            self.node_mut(at).state = State::Gone;
-            self.node_mut(next).state = State::Gone;
+        let Node { next, previous, state, .. } = *self.node(at);
+        if next == previous && state == EdgeState::Open && self.node(next).state == EdgeState::Open
+        {
+            self.node_mut(at).state = EdgeState::Removed;
+            self.node_mut(next).state = EdgeState::Removed;
         }
     }
 
@@ -211,22 +219,22 @@ impl Border {
         let b = self.node(second).vertex;
         let Node { vertex: c, next: after, .. } = *self.node(other);
         let state = self.node(other).state;
-        let Node { apex: other_apex, older: other_older, .. } = *self.node(other);
+        let Node { apex: other_apex, previous_apex: other_older, .. } = *self.node(other);
         let twin = self.push(Node {
             vertex: c,
             next: after,
-            before: at,
+            previous: at,
             apex: other_apex,
-            older: other_older,
+            previous_apex: other_older,
             state,
         });
-        self.node_mut(after).before = twin;
+        self.node_mut(after).previous = twin;
         let node = self.node_mut(at);
-        (node.next, node.apex, node.older) = (twin, b, apex);
+        (node.next, node.apex, node.previous_apex) = (twin, b, apex);
         let node = self.node_mut(other);
-        (node.next, node.apex, node.older) = (second, a, a);
-        node.state = State::Open;
-        self.node_mut(second).before = other;
+        (node.next, node.apex, node.previous_apex) = (second, a, a);
+        node.state = EdgeState::Open;
+        self.node_mut(second).previous = other;
         self.queue.push(other);
         self.put_face([b, a, c]);
         [b, a, c]
@@ -234,20 +242,20 @@ impl Border {
 
     /// No face on an edge.
     #[inline(always)]
-    pub(super) fn shut(&mut self, at: u16) {
-        self.node_mut(at).state = State::Shut;
+    pub(super) fn close(&mut self, at: u16) {
+        self.node_mut(at).state = EdgeState::Closed;
     }
 
     /// A node of a vertex, where it is on the border.
     pub(super) fn find(&self, vertex: u16) -> Option<u16> {
-        let is_there = |node: &Node| node.vertex == vertex && node.state != State::Gone;
+        let is_there = |node: &Node| node.vertex == vertex && node.state != EdgeState::Removed;
         self.nodes[..self.len].iter().position(is_there).map(|at| at as u16)
     }
 
     /// The vertices that are on the border, some of them more than once.
     pub(super) fn vertices(&self) -> impl Iterator<Item = u16> {
         let nodes = self.nodes[..self.len].iter();
-        nodes.filter(|node| node.state != State::Gone).map(|node| node.vertex)
+        nodes.filter(|node| node.state != EdgeState::Removed).map(|node| node.vertex)
     }
 
     /// A node, if there is such a one; else the first.

@@ -3,12 +3,12 @@
 use glam::{BVec4A, Vec4};
 
 use super::border::{Border, NODES, Step};
-use super::encode::{CHUNK_BITS, LENGTH_BITS, WITH_BITS};
-use super::gate::{CONTEXTS, Gate, NODE_BITS, OTHERS, OTHERS_BITS, context, walk};
-use super::join::checksum;
-use super::models::{DISTANCE_BITS, FAR, MOST, Models, STEP_BITS};
-use super::predict::{Cells, Guess, LANES, SPAN, Trends};
+use super::encode::{CHUNK_BITS, JOINT_LOW_BITS, LENGTH_BITS};
+use super::gate::{CONTEXTS, Gate, NEARBY, NEARBY_BITS, NODE_BITS, context, node_at_offset};
+use super::models::{ESCAPE, MAX_RESIDUAL, Models, RESIDUAL_BITS, STEP_BITS};
+use super::predict::{CellVec, LANES, MAX_CELLS, Prediction, SpreadScales};
 use super::rans::Symbols;
+use super::weld_blocks::checksum;
 use crate::bytes::Malformed;
 
 const MASK: usize = NODES - 1;
@@ -21,7 +21,7 @@ pub(super) struct Decoder {
 /// Room for a block.
 pub(super) struct Lane {
     border: Border,
-    births: Vec<Gate>,
+    gates: Vec<Gate>,
     cells: Box<[Vec4; NODES]>,
     pub(super) faces: Vec<[u16; 3]>,
     /// Those vertices that are not what their cell says.
@@ -30,14 +30,14 @@ pub(super) struct Lane {
 
 /// The bytes of a block, and how many faces it has: at most [`super::border::MOST_FACES`].
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Sealed<'a> {
+pub(super) struct BlockBytes<'a> {
     pub(super) bytes: &'a [u8],
     pub(super) faces: usize,
 }
 
 /// Whether a vertex may be in other blocks too.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Reach {
+pub(super) enum Sharing {
     Inside,
     /// One with all of its cell that have this tag.
     Joint(u32),
@@ -51,17 +51,17 @@ impl Decoder {
     /// Decodes blocks, as many as there are lanes at most. What is wrong is told with the number of the block.
     pub(super) fn decode(
         &mut self,
-        blocks: &[Sealed],
+        blocks: &[BlockBytes],
         models: &Models,
         first_bits: [u8; 3],
     ) -> Result<&[Lane], (usize, Malformed)> {
-        let mut symbols: [Symbols; LANES] = std::array::from_fn(|_| Symbols::none());
+        let mut symbols: [Symbols; LANES] = std::array::from_fn(|_| Symbols::empty());
         for (k, block) in blocks.iter().enumerate() {
             symbols[k] = Symbols::new(block.bytes).map_err(|wrong| (k, wrong))?;
             self.lanes[k].begin(&mut symbols[k], first_bits);
         }
         for lane in &mut self.lanes[blocks.len()..] {
-            lane.births.clear();
+            lane.gates.clear();
         }
         connect(&mut self.lanes[..blocks.len()], &mut symbols, blocks, models);
         let inside = place(&mut self.lanes, &mut symbols, models);
@@ -74,7 +74,12 @@ impl Decoder {
 
 /// What faces join: a step of each block by turns, so that the processor has several to work on.
 #[inline(never)]
-fn connect(lanes: &mut [Lane], symbols: &mut [Symbols; LANES], blocks: &[Sealed], models: &Models) {
+fn connect(
+    lanes: &mut [Lane],
+    symbols: &mut [Symbols; LANES],
+    blocks: &[BlockBytes],
+    models: &Models,
+) {
     let mut is_left = true;
     while is_left {
         is_left = false;
@@ -94,37 +99,37 @@ fn place(
     symbols: &mut [Symbols; LANES],
     models: &Models,
 ) -> [bool; LANES] {
-    let mut trends = Trends::new();
+    let mut scales = SpreadScales::new();
     let mut outside = [0; LANES];
-    let longest = lanes.iter().map(|lane| lane.births.len()).max().unwrap_or(0);
+    let longest = lanes.iter().map(|lane| lane.gates.len()).max().unwrap_or(0);
     for v in 1..longest {
-        let gate = |lane: usize| lanes[lane].births.get(v).copied().unwrap_or_default();
+        let gate = |lane: usize| lanes[lane].gates.get(v).copied().unwrap_or_default();
         let gates = [gate(0), gate(1), gate(2), gate(3)];
         let at = |lane: usize, v: u16| lanes[lane].cells[usize::from(v) & MASK];
-        let guesses = trends.guess(&gates, models, at);
+        let predictions = scales.predict(&gates, models, at);
         let mut places = [Vec4::ZERO; LANES];
         for k in 0..LANES {
-            if v >= lanes[k].births.len() {
+            if v >= lanes[k].gates.len() {
                 continue;
             }
-            let guess = match gates[k].faces_a {
-                0 => Guess::start(v as u16, &gates[k], models, |v| at(k, v)),
-                _ => guesses.of(k),
+            let prediction = match gates[k].faces_a {
+                0 => Prediction::start(v as u16, &gates[k], models, |v| at(k, v)),
+                _ => predictions.of(k),
             };
-            places[k] = guess.take(|_, nearest, (class, low_bits)| {
-                let distance = distance(&mut symbols[k], models, class, low_bits);
-                let cell = nearest.wrapping_add(distance);
+            places[k] = prediction.take(|_, nearest, (class, low_bits)| {
+                let residual = residual(&mut symbols[k], models, class, low_bits);
+                let cell = nearest.wrapping_add(residual);
                 outside[k] |= cell;
-                cell & (SPAN - 1)
+                cell & (MAX_CELLS - 1)
             });
         }
         for k in 0..LANES {
             lanes[k].cells[v & MASK] = places[k];
         }
-        let is_told = gates.map(|gate| gate.faces_a > 0);
-        trends.tell(&guesses, places, BVec4A::from_array(is_told));
+        let has_gate = gates.map(|gate| gate.faces_a > 0);
+        scales.update(&predictions, places, BVec4A::from_array(has_gate));
     }
-    outside.map(|bits| (0..SPAN).contains(&bits))
+    outside.map(|bits| (0..MAX_CELLS).contains(&bits))
 }
 
 impl Lane {
@@ -132,7 +137,7 @@ impl Lane {
         let cells: Box<[Vec4]> = vec![Vec4::ZERO; NODES].into();
         Self {
             border: Border::new(),
-            births: Vec::with_capacity(NODES),
+            gates: Vec::with_capacity(NODES),
             cells: cells.try_into().expect("as many as there are"),
             faces: Vec::new(),
             tags: Vec::new(),
@@ -140,16 +145,16 @@ impl Lane {
     }
 
     /// The cells of the vertices of the last block.
-    pub(super) fn cells(&self) -> impl ExactSizeIterator<Item = Cells> {
-        self.cells[..self.births.len()].iter().map(|&cell| Cells::from_vec4(cell))
+    pub(super) fn cells(&self) -> impl ExactSizeIterator<Item = CellVec> {
+        self.cells[..self.gates.len()].iter().map(|&cell| CellVec::from_vec4(cell))
     }
 
     fn begin(&mut self, symbols: &mut Symbols, first_bits: [u8; 3]) {
         self.border.clear();
-        self.births.clear();
+        self.gates.clear();
         self.faces.clear();
         let first = first_bits.map(|bits| number(symbols, u32::from(bits)) as f32);
-        self.cells[0] = Cells::from(first).extend(0.0);
+        self.cells[0] = CellVec::from(first).extend(0.0);
     }
 
     fn finish(&mut self, symbols: &mut Symbols, is_inside: bool) -> Result<(), Malformed> {
@@ -163,17 +168,17 @@ impl Lane {
     fn step(&mut self, symbols: &mut Symbols, models: &Models) {
         let Some(at) = self.border.pivot() else { return self.start() };
         let steps = &models.steps[context(&self.border, at) % CONTEXTS];
-        let (step, size, behind) = steps.at(symbols.place(STEP_BITS));
-        symbols.pass(STEP_BITS, size, behind, 0);
+        let (step, size, offset) = steps.at(symbols.place(STEP_BITS));
+        symbols.consume(STEP_BITS, size, offset, 0);
         let face = match step {
             Step::New => {
-                let vertex = self.births.len() as u16;
-                self.births.push(Gate::at(&self.border, at));
+                let vertex = self.gates.len() as u16;
+                self.gates.push(Gate::at(&self.border, at));
                 self.border.put_new(at, vertex)
             }
-            Step::Before => self.border.put_before(at),
-            Step::Behind => self.border.put_behind(at),
-            Step::Nothing => return self.border.shut(at),
+            Step::Previous => self.border.put_previous(at),
+            Step::Next => self.border.put_next(at),
+            Step::Nothing => return self.border.close(at),
             Step::Other => {
                 let other = other(&self.border, at, symbols);
                 self.border.put_other(at, other)
@@ -185,22 +190,22 @@ impl Lane {
     /// A face apart from all others.
     #[cold]
     fn start(&mut self) {
-        let first = self.births.len() as u16;
+        let first = self.gates.len() as u16;
         let corners = [first, first + 1, first + 2];
-        self.births.extend([Gate::corner(0), Gate::corner(1), Gate::corner(2)]);
+        self.gates.extend([Gate::corner(0), Gate::corner(1), Gate::corner(2)]);
         self.border.start(corners);
         self.faces.push(corners);
     }
 
     fn read_tags(&mut self, symbols: &mut Symbols) -> Result<(), Malformed> {
         self.tags.clear();
-        if symbols.even(1) == 0 {
+        if symbols.uniform(1) == 0 {
             return Ok(());
         }
         for _ in 0..number(symbols, NODE_BITS) {
             let vertex = number(symbols, NODE_BITS) as u16;
             let tag = any(symbols);
-            if usize::from(vertex) >= self.births.len() {
+            if usize::from(vertex) >= self.gates.len() {
                 return Err(wrong("a vertex that is not there has a tag"));
             }
             self.tags.push((vertex, tag));
@@ -209,39 +214,39 @@ impl Lane {
     }
 
     /// Which vertices are in other blocks, or here again.
-    pub(super) fn reach(&self, out: &mut Vec<Reach>) {
+    pub(super) fn reach(&self, out: &mut Vec<Sharing>) {
         out.clear();
-        out.resize(self.births.len(), Reach::Inside);
+        out.resize(self.gates.len(), Sharing::Inside);
         for vertex in self.border.vertices() {
-            out[usize::from(vertex)] = Reach::Joint(0);
+            out[usize::from(vertex)] = Sharing::Joint(0);
         }
         for &(vertex, tag) in &self.tags {
-            out[usize::from(vertex)] = Reach::Joint(tag);
+            out[usize::from(vertex)] = Sharing::Joint(tag);
         }
     }
 }
 
 /// How far a coordinate is from where it is expected.
 #[inline(always)]
-fn distance(symbols: &mut Symbols, models: &Models, class: usize, low_bits: u32) -> i32 {
-    let (symbol, size, behind) = models.distances[class].at(symbols.place(DISTANCE_BITS));
-    if symbol == FAR || low_bits > u32::from(WITH_BITS) {
-        return rare(symbols, (symbol, size, behind), low_bits);
+fn residual(symbols: &mut Symbols, models: &Models, class: usize, low_bits: u32) -> i32 {
+    let (symbol, size, offset) = models.residuals[class].at(symbols.place(RESIDUAL_BITS));
+    if symbol == ESCAPE || low_bits > u32::from(JOINT_LOW_BITS) {
+        return rare(symbols, (symbol, size, offset), low_bits);
     }
-    let low = symbols.pass(DISTANCE_BITS, size, behind, low_bits);
-    ((symbol as i32 - MOST) << low_bits) + low as i32 - (1 << low_bits >> 1)
+    let low = symbols.consume(RESIDUAL_BITS, size, offset, low_bits);
+    ((symbol as i32 - MAX_RESIDUAL) << low_bits) + low as i32 - (1 << low_bits >> 1)
 }
 
 #[cold]
-fn rare(symbols: &mut Symbols, (symbol, size, behind): (usize, u32, u32), low_bits: u32) -> i32 {
-    let with = if low_bits <= u32::from(WITH_BITS) { low_bits } else { 0 };
-    let mut low = symbols.pass(DISTANCE_BITS, size, behind, with);
+fn rare(symbols: &mut Symbols, (symbol, size, offset): (usize, u32, u32), low_bits: u32) -> i32 {
+    let with = if low_bits <= u32::from(JOINT_LOW_BITS) { low_bits } else { 0 };
+    let mut low = symbols.consume(RESIDUAL_BITS, size, offset, with);
     if with < low_bits {
         low = number(symbols, low_bits);
     }
-    let mut far = symbol as i32 - MOST;
-    if symbol == FAR {
-        let is_below = symbols.even(1) == 1;
+    let mut far = symbol as i32 - MAX_RESIDUAL;
+    if symbol == ESCAPE {
+        let is_below = symbols.uniform(1) == 1;
         far = any(symbols) as i32;
         far = if is_below { far.wrapping_neg() } else { far };
     }
@@ -250,16 +255,21 @@ fn rare(symbols: &mut Symbols, (symbol, size, behind): (usize, u32, u32), low_bi
 
 #[cold]
 fn other(border: &Border, at: u16, symbols: &mut Symbols) -> u16 {
-    let place = symbols.place(OTHERS_BITS) as u16;
+    let place = symbols.place(NEARBY_BITS) as u16;
     let mut start = 0;
-    for (by, size) in OTHERS {
+    for (by, size) in NEARBY {
         if place < start + size {
-            symbols.pass(OTHERS_BITS, u32::from(size), u32::from(place - start), 0);
-            return walk(border, at, by);
+            symbols.consume(NEARBY_BITS, u32::from(size), u32::from(place - start), 0);
+            return node_at_offset(border, at, by);
         }
         start += size;
     }
-    symbols.pass(OTHERS_BITS, (1 << OTHERS_BITS) - u32::from(start), u32::from(place - start), 0);
+    symbols.consume(
+        NEARBY_BITS,
+        (1 << NEARBY_BITS) - u32::from(start),
+        u32::from(place - start),
+        0,
+    );
     border.known(number(symbols, NODE_BITS) as u16)
 }
 
@@ -268,7 +278,7 @@ fn number(symbols: &mut Symbols, bits: u32) -> u32 {
     let mut at = 0;
     while at < bits {
         let chunk = (bits - at).min(CHUNK_BITS);
-        number |= symbols.even(chunk) << at;
+        number |= symbols.uniform(chunk) << at;
         at += chunk;
     }
     number
@@ -276,7 +286,7 @@ fn number(symbols: &mut Symbols, bits: u32) -> u32 {
 
 /// A number of which nothing is known.
 fn any(symbols: &mut Symbols) -> u32 {
-    let bits = symbols.even(u32::from(LENGTH_BITS));
+    let bits = symbols.uniform(u32::from(LENGTH_BITS));
     number(symbols, bits)
 }
 

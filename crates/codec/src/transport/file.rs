@@ -2,24 +2,24 @@
 
 use meshlod_mesh::{Mesh, VertexId};
 
-use super::border::MOST_FACES;
-use super::decode::{Decoder, Lane, Reach, Sealed};
-use super::grid::{FARTHEST, Grid, MOST_BITS};
-use super::join::{Joints, key};
-use super::models::{Codes, Models};
-use super::predict::{Cells, LANES, SPAN};
+use super::border::MAX_FACES;
+use super::decode::{BlockBytes, Decoder, Lane, Sharing};
+use super::grid::{MAX_BITS, MAX_COORDINATE, QuantizationGrid};
+use super::models::{ModelCodes, Models};
+use super::predict::{CellVec, LANES, MAX_CELLS};
+use super::weld_blocks::{WeldTable, key};
 use crate::bits::Bits;
 use crate::bytes::{Malformed, Reader};
 
 /// What a file is told by, before its blocks.
 #[derive(Clone, Debug)]
 pub(super) struct Header {
-    pub(super) grid: Grid,
+    pub(super) grid: QuantizationGrid,
     /// Bits of the first vertex of a block, along each axis.
     pub(super) first_bits: [u8; 3],
     pub(super) faces: usize,
     pub(super) vertices: usize,
-    pub(super) codes: Codes,
+    pub(super) codes: ModelCodes,
     pub(super) entries: Vec<Entry>,
 }
 
@@ -76,12 +76,12 @@ impl Header {
 /// A file, of which blocks are decoded when they are asked for.
 #[derive(Clone, Debug)]
 pub struct TransportFile<'a> {
-    grid: Grid,
+    grid: QuantizationGrid,
     first_bits: [u8; 3],
     faces: usize,
     vertices: usize,
     models: Models,
-    places: Vec<Place>,
+    places: Vec<BlockSpan>,
     /// All blocks, their checksum, and where they are.
     blocks: &'a [u8],
     checksum: u32,
@@ -90,7 +90,7 @@ pub struct TransportFile<'a> {
 
 /// Where a block is among all blocks.
 #[derive(Clone, Copy, Debug)]
-struct Place {
+struct BlockSpan {
     at: usize,
     bytes: usize,
     faces: usize,
@@ -124,14 +124,14 @@ impl<'a> TransportFile<'a> {
         let (header_sum, checksum) = (reader.u32()?, reader.u32()?);
         let from = bytes.len() - reader.left();
         let origin = [reader.f64()?, reader.f64()?, reader.f64()?];
-        let grid = Grid { origin, cell: reader.f64()? };
+        let grid = QuantizationGrid { origin, cell: reader.f64()? };
         check_grid(&grid, &reader)?;
         let first_bits = [reader.u8()?, reader.u8()?, reader.u8()?];
-        if first_bits.iter().any(|&bits| u32::from(bits) > MOST_BITS) {
+        if first_bits.iter().any(|&bits| u32::from(bits) > MAX_BITS) {
             return Err(reader.wrong("more bits for a coordinate than there are"));
         }
         let [faces, vertices, blocks] = [reader.u32()?, reader.u32()?, reader.u32()?];
-        let codes = Codes::restore(&mut reader)?;
+        let codes = ModelCodes::restore(&mut reader)?;
         let places = read_index(blocks as usize, &mut reader)?;
         let at = bytes.len() - reader.left();
         if crc32fast::hash(&bytes[from..at]) != header_sum {
@@ -178,7 +178,7 @@ impl<'a> TransportFile<'a> {
         let mut decoder = Decoder::new();
         let lanes = self.decode_blocks(&self.places[block..=block], &mut decoder)?;
         let mut out = TransportBlock::default();
-        let mut gather = Gather::new(lanes[0].cells().len());
+        let mut gather = MeshBuilder::new(lanes[0].cells().len());
         gather.add(&lanes[0], |cell| out.positions.push(self.grid.place(cell)), &mut out.faces);
         Ok(out)
     }
@@ -214,7 +214,7 @@ impl<'a> TransportFile<'a> {
     /// Where a block is, from the first block on.
     #[cfg(test)]
     pub(super) fn range(&self, block: usize) -> std::ops::Range<usize> {
-        let Place { at, bytes, .. } = self.places[block];
+        let BlockSpan { at, bytes, .. } = self.places[block];
         at..at + bytes
     }
 
@@ -230,7 +230,7 @@ impl<'a> TransportFile<'a> {
 
     fn decode_all(
         &self,
-        mut place: impl FnMut(Cells),
+        mut place: impl FnMut(CellVec),
         faces: &mut Vec<[u32; 3]>,
     ) -> Result<(), Malformed> {
         if crc32fast::hash(self.blocks) != self.checksum {
@@ -238,7 +238,7 @@ impl<'a> TransportFile<'a> {
             return Err(Malformed { at: self.at, reason });
         }
         // A fifth of all faces have a border vertex of their own, more or less.
-        let mut gather = Gather::new(self.faces.min(self.blocks.len()) / 8);
+        let mut gather = MeshBuilder::new(self.faces.min(self.blocks.len()) / 8);
         let mut decoder = Decoder::new();
         for places in self.places.chunks(LANES) {
             for lane in self.decode_blocks(places, &mut decoder)? {
@@ -254,14 +254,14 @@ impl<'a> TransportFile<'a> {
 
     fn decode_blocks<'d>(
         &self,
-        places: &[Place],
+        places: &[BlockSpan],
         decoder: &'d mut Decoder,
     ) -> Result<&'d [Lane], Malformed> {
-        let seal = |place: &Place| Sealed {
+        let seal = |place: &BlockSpan| BlockBytes {
             bytes: &self.blocks[place.at..][..place.bytes],
             faces: place.faces,
         };
-        let mut blocks = [Sealed { bytes: &[], faces: 0 }; LANES];
+        let mut blocks = [BlockBytes { bytes: &[], faces: 0 }; LANES];
         blocks.iter_mut().zip(places).for_each(|(block, place)| *block = seal(place));
         let lanes = decoder.decode(&blocks[..places.len()], &self.models, self.first_bits);
         lanes.map_err(|(k, wrong)| Malformed { at: self.at + places[k].at, ..wrong })
@@ -269,26 +269,26 @@ impl<'a> TransportFile<'a> {
 }
 
 /// Makes one mesh of blocks.
-struct Gather {
-    joints: Joints,
+struct MeshBuilder {
+    welds: WeldTable,
     vertices: u32,
-    reach: Vec<Reach>,
+    reach: Vec<Sharing>,
     numbers: Vec<u32>,
 }
 
-impl Gather {
-    fn new(joints: usize) -> Self {
-        Self { joints: Joints::new(joints), vertices: 0, reach: Vec::new(), numbers: Vec::new() }
+impl MeshBuilder {
+    fn new(welds: usize) -> Self {
+        Self { welds: WeldTable::new(welds), vertices: 0, reach: Vec::new(), numbers: Vec::new() }
     }
 
     #[inline(never)]
-    fn add(&mut self, lane: &Lane, mut place: impl FnMut(Cells), faces: &mut Vec<[u32; 3]>) {
+    fn add(&mut self, lane: &Lane, mut place: impl FnMut(CellVec), faces: &mut Vec<[u32; 3]>) {
         lane.reach(&mut self.reach);
         self.numbers.clear();
         for (cell, &reach) in lane.cells().zip(&self.reach) {
             let number = match reach {
-                Reach::Inside => self.vertices,
-                Reach::Joint(tag) => *self.joints.join(key(cell), tag, self.vertices),
+                Sharing::Inside => self.vertices,
+                Sharing::Joint(tag) => *self.welds.find_or_insert(key(cell), tag, self.vertices),
             };
             if number == self.vertices {
                 self.vertices += 1;
@@ -307,23 +307,23 @@ fn header_end(bytes: &[u8]) -> Option<usize> {
     let mut reader = Reader::new(bytes.get(20..)?);
     reader.take(4 * 8 + 3 + 2 * 4).ok()?;
     let blocks = reader.u32().ok()?;
-    Codes::restore(&mut reader).ok()?;
+    ModelCodes::restore(&mut reader).ok()?;
     read_index(blocks as usize, &mut reader).ok()?;
     Some(bytes.len() - reader.left())
 }
 
 /// That all cells are numbers, also in `f32`.
-fn check_grid(grid: &Grid, reader: &Reader) -> Result<(), Malformed> {
-    let farthest = |x: f64| x.abs() <= 2.0 * FARTHEST;
+fn check_grid(grid: &QuantizationGrid, reader: &Reader) -> Result<(), Malformed> {
+    let farthest = |x: f64| x.abs() <= 2.0 * MAX_COORDINATE;
     let is_known = grid.cell > 0.0 && grid.origin.iter().all(|&x| farthest(x));
-    if is_known && farthest(grid.cell * f64::from(SPAN)) {
+    if is_known && farthest(grid.cell * f64::from(MAX_CELLS)) {
         return Ok(());
     }
     Err(reader.wrong("the cells are not anywhere"))
 }
 
 /// Where all blocks are; as many as said, and each of a size that can be.
-fn read_index(count: usize, reader: &mut Reader) -> Result<Vec<Place>, Malformed> {
+fn read_index(count: usize, reader: &mut Reader) -> Result<Vec<BlockSpan>, Malformed> {
     let mut ranges = [(0, 0); 2];
     for range in &mut ranges {
         *range = (reader.u32()?, u32::from(reader.u8()?));
@@ -343,11 +343,11 @@ fn read_index(count: usize, reader: &mut Reader) -> Result<Vec<Place>, Malformed
         let word = count * face_bits as usize + k * word_bits as usize;
         let bytes = 2 * (bits.get(word, word_bits) + u64::from(least_words));
         let (faces, bytes) = (faces as usize, bytes as usize);
-        let is_one = (1..=MOST_FACES).contains(&faces) && faces / FACES_A_BYTE <= bytes;
+        let is_one = (1..=MAX_FACES).contains(&faces) && faces / FACES_A_BYTE <= bytes;
         if !is_one || bytes > reader.left() {
             return Err(reader.wrong(format!("block {k} is of a size that no block has")));
         }
-        places.push(Place { at, bytes, faces });
+        places.push(BlockSpan { at, bytes, faces });
         at += bytes;
     }
     Ok(places)

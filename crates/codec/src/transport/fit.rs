@@ -1,11 +1,11 @@
 //! Models that fit a mesh.
 
 use super::border::Step;
-use super::encode::Told;
+use super::encode::Residual;
 use super::gate::{CONTEXTS, Gate};
-use super::models::{CLASSES, Codes, SYMBOLS, Steps, parts};
-use super::predict::{Cells, FEATURES, GATES};
-use super::walk::Walk;
+use super::models::{CLASSES, ModelCodes, SYMBOLS, StepTable, parts};
+use super::predict::{CellVec, FEATURES, GATES};
+use super::walk::BlockWalk;
 
 /// Vertices that weights are fitted to, about. With all there are, a file is a thousandth smaller.
 const SAMPLES: usize = 6000;
@@ -16,18 +16,18 @@ const FEWEST_STEPS: u32 = 40;
 struct Sample {
     kind: usize,
     /// Across the surface, of unit length, or nothing.
-    normal: Cells,
-    /// The squared sides of the face behind the edge.
+    normal: CellVec,
+    /// The squared sides of the face next the edge.
     sides: f64,
     /// The features, and what is to be guessed from them.
-    rows: [Cells; FEATURES + 1],
+    rows: [CellVec; FEATURES + 1],
 }
 
 /// All but the shapes.
-pub(super) fn fit(walks: &[Walk], cells: &[Cells]) -> Codes {
+pub(super) fn fit(walks: &[BlockWalk], cells: &[CellVec]) -> ModelCodes {
     let samples = samples(walks, cells);
     let (weights, spreads) = weights(&samples);
-    Codes {
+    ModelCodes {
         weights,
         spreads,
         start: start(walks, cells),
@@ -36,41 +36,42 @@ pub(super) fn fit(walks: &[Walk], cells: &[Cells]) -> Codes {
     }
 }
 
-fn samples(walks: &[Walk], cells: &[Cells]) -> Vec<Sample> {
-    let births: usize = walks.iter().map(|walk| walk.births.len()).sum();
-    let stride = births.div_ceil(SAMPLES).max(1);
+fn samples(walks: &[BlockWalk], cells: &[CellVec]) -> Vec<Sample> {
+    let gates: usize = walks.iter().map(|walk| walk.gates.len()).sum();
+    let stride = gates.div_ceil(SAMPLES).max(1);
     let mut skip = 0;
     let mut samples = Vec::with_capacity(SAMPLES + 1);
     for walk in walks {
         let mut at = skip;
-        while let Some(gate) = walk.births.get(at) {
+        while let Some(gate) = walk.gates.get(at) {
             if gate.faces_a > 0 {
                 samples.push(Sample::of(gate, at, walk, cells));
             }
             at += stride;
         }
-        skip = at - walk.births.len();
+        skip = at - walk.gates.len();
     }
     samples
 }
 
 impl Sample {
-    fn of(gate: &Gate, vertex: usize, walk: &Walk, cells: &[Cells]) -> Self {
+    fn of(gate: &Gate, vertex: usize, walk: &BlockWalk, cells: &[CellVec]) -> Self {
         let at = |v: u16| cells[walk.vertices[usize::from(v)] as usize];
         let [a, b, apex] = [gate.a, gate.b, gate.apex].map(at);
-        let [older, before, behind] = [gate.older, gate.before, gate.behind].map(at);
+        let [previous_apex, previous, next] =
+            [gate.previous_apex, gate.previous, gate.next].map(at);
         let (edge, spoke, rim) = (b - a, apex - a, apex - b);
         let corner = b - spoke;
         // As in `predict`.
         let rows = [
             corner - apex,
             edge,
-            corner - (a + a - older),
-            behind - b + rim,
-            before - a + spoke,
+            corner - (a + a - previous_apex),
+            next - b + rim,
+            previous - a + spoke,
             at(vertex as u16) - corner,
         ];
-        let normal = (edge.cross(spoke) + spoke.cross(older - a)).normalize_or_zero();
+        let normal = (edge.cross(spoke) + spoke.cross(previous_apex - a)).normalize_or_zero();
         let sides = edge.length_squared() + spoke.length_squared() + rim.length_squared();
         Self { kind: gate.kind(), normal, sides: f64::from(sides) + 1.0, rows }
     }
@@ -156,7 +157,7 @@ fn solve(mut rows: [[f64; FEATURES + 1]; FEATURES]) -> [f64; FEATURES] {
 }
 
 /// The variance of the second and third corner of faces that begin a block, by a code.
-fn start(walks: &[Walk], cells: &[Cells]) -> u8 {
+fn start(walks: &[BlockWalk], cells: &[CellVec]) -> u8 {
     let (mut sum, mut count) = (0.0, 0.0);
     for walk in walks {
         let at = |v: usize| cells[walk.vertices[v] as usize];
@@ -169,7 +170,7 @@ fn start(walks: &[Walk], cells: &[Cells]) -> u8 {
     (4.0 * (sum / f64::max(count, 1.0) + 0.1).log2()).round().clamp(0.0, 255.0) as u8
 }
 
-fn steps(walks: &[Walk]) -> Vec<Option<[u8; Step::ALL.len()]>> {
+fn steps(walks: &[BlockWalk]) -> Vec<Option<[u8; Step::ALL.len()]>> {
     let mut counts = [[0; Step::ALL.len()]; CONTEXTS + 1];
     for &(context, step) in walks.iter().flat_map(|walk| &walk.steps) {
         counts[usize::from(context)][step as usize] += 1;
@@ -178,15 +179,16 @@ fn steps(walks: &[Walk]) -> Vec<Option<[u8; Step::ALL.len()]>> {
     for counts in own.iter_mut().filter(|counts| counts.iter().sum::<u32>() < FEWEST_STEPS) {
         rest[0].iter_mut().zip(std::mem::take(counts)).for_each(|(all, count)| *all += count);
     }
-    let codes = |counts: &[u32; 5]| counts.iter().any(|&c| c > 0).then(|| Steps::codes(*counts));
+    let codes =
+        |counts: &[u32; 5]| counts.iter().any(|&c| c > 0).then(|| StepTable::codes(*counts));
     counts.iter().map(codes).collect()
 }
 
 /// The shape of each class that tells its distances in the fewest bits.
-pub(super) fn shapes<'a>(told: impl Iterator<Item = &'a Told>) -> [u8; CLASSES] {
+pub(super) fn shapes<'a>(residuals: impl Iterator<Item = &'a Residual>) -> [u8; CLASSES] {
     let mut counts = [[0u32; SYMBOLS]; CLASSES];
-    for told in told {
-        counts[usize::from(told.class)][told.symbol().0] += 1;
+    for residual in residuals {
+        counts[usize::from(residual.class)][residual.symbol().0] += 1;
     }
     std::array::from_fn(|class| shape(class, &counts[class]))
 }

@@ -3,30 +3,33 @@
 use glam::DVec3;
 use meshlod_mesh::{Mesh, VertexId};
 
-use super::predict::{Cells, SPAN};
-use super::{TransportError, TransportGrid};
+use super::predict::{CellVec, MAX_CELLS};
+use super::{TransportError, TransportQuantization};
 
 /// Cubic cells from an origin on.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Grid {
+pub(super) struct QuantizationGrid {
     pub(super) origin: [f64; 3],
     pub(super) cell: f64,
 }
 
 /// Sides of more bits are not told.
-pub(super) const MOST_BITS: u32 = SPAN.trailing_zeros();
+pub(super) const MAX_BITS: u32 = MAX_CELLS.trailing_zeros();
 /// What `f32` has room for, and some to spare.
-pub(super) const FARTHEST: f64 = 1e38;
+pub(super) const MAX_COORDINATE: f64 = 1e38;
 
-impl Grid {
+impl QuantizationGrid {
     /// The grid that is asked for, and the cell of each vertex that a face uses; zero for others.
     pub(super) fn of(
         mesh: &Mesh,
-        grid: TransportGrid,
-    ) -> Result<(Self, Vec<Cells>), TransportError> {
+        grid: TransportQuantization,
+    ) -> Result<(Self, Vec<CellVec>), TransportError> {
         let count = mesh.positions.len();
         let is_bad = |v: &&VertexId| {
-            !mesh.positions.get(v.index()).is_some_and(|p| p.iter().all(|x| x.abs() <= FARTHEST))
+            !mesh
+                .positions
+                .get(v.index())
+                .is_some_and(|p| p.iter().all(|x| x.abs() <= MAX_COORDINATE))
         };
         match mesh.faces.iter().flatten().find(is_bad) {
             Some(v) if v.index() < count => return Err(TransportError::NotFinite(*v)),
@@ -36,16 +39,16 @@ impl Grid {
         let bounds = mesh.bounds();
         let longest = (0..3).map(|k| bounds.max[k] - bounds.min[k]).fold(0.0, f64::max);
         let this = match grid {
-            TransportGrid::Bits(bits) if !(1..=MOST_BITS).contains(&bits) => {
+            TransportQuantization::Bits(bits) if !(1..=MAX_BITS).contains(&bits) => {
                 return Err(TransportError::Bits(bits));
             }
-            TransportGrid::Bits(bits) => {
+            TransportQuantization::Bits(bits) => {
                 let cell = longest / f64::from((1u32 << bits) - 1);
                 // Where all is in one place, any cell will do.
                 let cell = if cell > f64::MIN_POSITIVE { cell } else { 1.0 };
                 Self { origin: bounds.min, cell }
             }
-            TransportGrid::Lattice(lattice) => {
+            TransportQuantization::Lattice(lattice) => {
                 let cell = lattice.cell();
                 let origin = bounds.min.map(|x| (x / cell).round() * cell);
                 if !origin.iter().all(|x| (x / cell).abs() <= (1u64 << 52) as f64) {
@@ -54,15 +57,15 @@ impl Grid {
                 Self { origin, cell }
             }
         };
-        let is_lattice = matches!(grid, TransportGrid::Lattice(_));
+        let is_lattice = matches!(grid, TransportQuantization::Lattice(_));
         // On a lattice both ends are rounded.
         let cells = (longest / this.cell).round() + f64::from(u8::from(is_lattice));
-        if cells >= f64::from(SPAN) {
+        if cells >= f64::from(MAX_CELLS) {
             return Err(TransportError::TooFine { cells });
         }
         let used = mesh.used_vertices();
         let cell = |(p, &used): (&[f64; 3], &bool)| match (used, is_lattice) {
-            (false, _) => Cells::ZERO,
+            (false, _) => CellVec::ZERO,
             (true, true) => this.number(p),
             (true, false) => this.cell_of(p),
         };
@@ -70,20 +73,20 @@ impl Grid {
     }
 
     /// The vertex of the lattice depends on the position alone, not on where the mesh begins.
-    fn number(&self, position: &[f64; 3]) -> Cells {
+    fn number(&self, position: &[f64; 3]) -> CellVec {
         let number = |x: f64| (x / self.cell).round();
         let along = |k: usize| (number(position[k]) - number(self.origin[k])) as f32;
-        Cells::new(along(0), along(1), along(2))
+        CellVec::new(along(0), along(1), along(2))
     }
 
-    fn cell_of(&self, position: &[f64; 3]) -> Cells {
+    fn cell_of(&self, position: &[f64; 3]) -> CellVec {
         let along = |k: usize| ((position[k] - self.origin[k]) / self.cell).round() as f32;
-        Cells::new(along(0), along(1), along(2)).max(Cells::ZERO)
+        CellVec::new(along(0), along(1), along(2)).max(CellVec::ZERO)
     }
 
     /// The middle of a cell, which on a lattice is a whole number of cells, exactly.
     #[inline(always)]
-    pub(super) fn place(&self, cell: Cells) -> [f64; 3] {
+    pub(super) fn place(&self, cell: CellVec) -> [f64; 3] {
         (DVec3::from(self.origin) + self.cell * cell.as_dvec3()).to_array()
     }
 }

@@ -1,28 +1,28 @@
 //! Meshes to be sent or stored: the file `.mlz`.
 
-mod blocks;
 mod border;
 mod decode;
 mod encode;
+mod face_blocks;
 mod file;
 mod fit;
 mod gate;
 mod grid;
-mod join;
 mod models;
 mod predict;
 mod rans;
 #[cfg(test)]
 mod tests;
 mod walk;
+mod weld_blocks;
 mod write;
 
 pub use file::{TransportBlock, TransportFile};
 use meshlod_mesh::VertexId;
 use thiserror::Error;
 
-use self::border::MOST_FACES;
-use self::grid::MOST_BITS;
+use self::border::MAX_FACES;
+use self::grid::MAX_BITS;
 use crate::lattice::Lattice;
 
 /// A mesh in a file of blocks that are decoded alone.
@@ -66,14 +66,14 @@ pub struct TransportSizes {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TransportOptions {
     /// What positions are rounded to.
-    pub grid: TransportGrid,
+    pub quantization: TransportQuantization,
     /// How many faces a block has, about: some have a quarter more.
     pub block_faces: usize,
 }
 
 /// Cubic cells that positions are rounded to.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum TransportGrid {
+pub enum TransportQuantization {
     /// So many that their numbers along the longest side have these bits: 1 to 21.
     Bits(u32),
     /// Those of a lattice: what meshes share is in the same place in all of them.
@@ -82,7 +82,7 @@ pub enum TransportGrid {
 
 impl Default for TransportOptions {
     fn default() -> Self {
-        Self { grid: TransportGrid::Bits(11), block_faces: 256 }
+        Self { quantization: TransportQuantization::Bits(11), block_faces: 256 }
     }
 }
 
@@ -102,23 +102,27 @@ pub enum TransportError {
     #[error("{0} has a coordinate that is not finite, or beyond 1e38")]
     NotFinite(VertexId),
     /// Bits that cannot be.
-    #[error("{0} bits for a coordinate cannot be: take 1 to {MOST_BITS}")]
+    #[error("{0} bits for a coordinate cannot be: take 1 to {MAX_BITS}")]
     Bits(u32),
     /// More cells than are numbered.
-    #[error("the mesh spans {cells:.0} cells, more than {MOST_BITS} bits tell: take larger ones")]
+    #[error(
+        "the mesh spans {cells:.0} cells, more than {MAX_BITS} bits residuals: take larger ones"
+    )]
     TooFine {
         /// How many.
         cells: f64,
     },
-    /// Cells that are not told apart.
-    #[error("the mesh is so far from the origin that cells are not told apart: take larger ones")]
+    /// CellVec that are not told apart.
+    #[error(
+        "the mesh is so far from the origin that cells are not residuals apart: take larger ones"
+    )]
     TooFar,
     /// A block that is none.
-    #[error("blocks of {0} faces cannot be: take 16 to {most}", most = largest())]
+    #[error("blocks of {0} faces cannot be: take 16 to {most}", most = max_block_faces())]
     Block(usize),
 }
 
 /// The greatest size that is asked for.
-fn largest() -> usize {
-    MOST_FACES * 4 / 5
+fn max_block_faces() -> usize {
+    MAX_FACES * 4 / 5
 }

@@ -12,13 +12,13 @@ use super::rans::Symbol;
 use crate::bytes::{Malformed, Reader};
 
 /// Bits of the tables of distances.
-pub(super) const DISTANCE_BITS: u32 = 11;
-const DISTANCE_ALL: usize = 1 << DISTANCE_BITS;
+pub(super) const RESIDUAL_BITS: u32 = 11;
+const RESIDUAL_ALL: usize = 1 << RESIDUAL_BITS;
 /// The greatest distance that has a symbol of its own.
-pub(super) const MOST: i32 = 24;
-pub(super) const SYMBOLS: usize = 2 * MOST as usize + 2;
+pub(super) const MAX_RESIDUAL: i32 = 24;
+pub(super) const SYMBOLS: usize = 2 * MAX_RESIDUAL as usize + 2;
 /// The symbol of all others.
-pub(super) const FAR: usize = SYMBOLS - 1;
+pub(super) const ESCAPE: usize = SYMBOLS - 1;
 /// Widths have classes of a quarter of an octave, from a quarter of a cell to four cells. Greater ones have the last four, and bits below.
 pub(super) const CLASSES: usize = 16;
 
@@ -29,7 +29,7 @@ const STEPS: usize = Step::ALL.len();
 
 /// The models as a file tells them.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(super) struct Codes {
+pub(super) struct ModelCodes {
     pub(super) weights: [[i8; FEATURES]; GATES],
     pub(super) spreads: [[u8; 2]; GATES],
     pub(super) start: u8,
@@ -46,34 +46,34 @@ pub(super) struct Models {
     pub(super) gates: [[Vec4; 2]; GATES],
     /// The variance of the corners of a face that stands alone.
     pub(super) start: f32,
-    pub(super) distances: Box<[Distances; CLASSES]>,
-    pub(super) steps: Box<[Steps; CONTEXTS]>,
+    pub(super) residuals: Box<[ResidualTable; CLASSES]>,
+    pub(super) steps: Box<[StepTable; CONTEXTS]>,
 }
 
 /// How likely the distances of a class are.
 #[derive(Clone, Debug)]
-pub(super) struct Distances {
-    /// For each place: the symbol, how large it is, and how far it is behind its start.
-    places: Box<[u32; DISTANCE_ALL]>,
+pub(super) struct ResidualTable {
+    /// For each place: the symbol, how large it is, and how far it is offset its start.
+    places: Box<[u32; RESIDUAL_ALL]>,
     starts: [u16; SYMBOLS + 1],
 }
 
 /// How likely steps are: where each starts, and the end.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Steps([u16; STEPS + 1]);
+pub(super) struct StepTable([u16; STEPS + 1]);
 
-impl Distances {
-    /// The symbol at a place, its size, and how far behind its start that is.
+impl ResidualTable {
+    /// The symbol at a place, its size, and how far offset its start that is.
     #[inline(always)]
     pub(super) fn at(&self, place: usize) -> (usize, u32, u32) {
-        let entry = self.places[place % DISTANCE_ALL];
+        let entry = self.places[place % RESIDUAL_ALL];
         ((entry & 63) as usize, entry >> 6 & 0xfff, entry >> 18)
     }
 
     /// The symbol with bits below it; `None` where it is one of the others.
     pub(super) fn symbol(&self, symbol: usize, low: u16, low_bits: u8) -> Option<Symbol> {
         let (start, end) = (self.starts[symbol], self.starts[symbol + 1]);
-        let bits = DISTANCE_BITS as u8;
+        let bits = RESIDUAL_BITS as u8;
         (start < end).then(|| Symbol { start, size: end - start, bits, low_bits, low })
     }
 
@@ -85,20 +85,20 @@ impl Distances {
     fn cut(parts: &[f64; SYMBOLS]) -> Self {
         let all: f64 = parts.iter().sum();
         let mut sizes: Vec<i32> =
-            parts.iter().map(|part| (part / all * DISTANCE_ALL as f64 + 0.5) as i32).collect();
-        sizes[FAR] = sizes[FAR].max(1);
+            parts.iter().map(|part| (part / all * RESIDUAL_ALL as f64 + 0.5) as i32).collect();
+        sizes[ESCAPE] = sizes[ESCAPE].max(1);
         // The middle makes up for all rounding.
-        let middle = MOST as usize;
-        sizes[middle] += DISTANCE_ALL as i32 - sizes.iter().sum::<i32>();
+        let middle = MAX_RESIDUAL as usize;
+        sizes[middle] += RESIDUAL_ALL as i32 - sizes.iter().sum::<i32>();
         debug_assert!(sizes[middle] > 0);
         let mut starts = [0; SYMBOLS + 1];
-        let mut places = vec![0; DISTANCE_ALL];
+        let mut places = vec![0; RESIDUAL_ALL];
         for (symbol, &size) in sizes.iter().enumerate() {
             let start = starts[symbol];
             starts[symbol + 1] = start + size as u16;
-            for behind in 0..size as u32 {
-                places[usize::from(start) + behind as usize] =
-                    behind << 18 | (size as u32) << 6 | symbol as u32;
+            for offset in 0..size as u32 {
+                places[usize::from(start) + offset as usize] =
+                    offset << 18 | (size as u32) << 6 | symbol as u32;
             }
         }
         let places: Box<[u32]> = places.into();
@@ -121,14 +121,14 @@ pub(super) fn parts(class: usize, code: u8) -> [f64; SYMBOLS] {
         (at(-2) + at(2) + 4.0 * (at(-1) + at(1)) + 2.0 * at(0)) / 12.0
     };
     let mut parts = [0.0; SYMBOLS];
-    for d in 0..=MOST {
+    for d in 0..=MAX_RESIDUAL {
         let part = part(d);
-        parts[(MOST + d) as usize] = part;
-        parts[(MOST - d) as usize] = part;
+        parts[(MAX_RESIDUAL + d) as usize] = part;
+        parts[(MAX_RESIDUAL - d) as usize] = part;
     }
     // Eight at a time, as far as anything is to be expected.
-    let beyond = (0..20).map(|k| density(f64::from(MOST + 4 + 8 * k)));
-    parts[FAR] = 16.0 * beyond.sum::<f64>();
+    let beyond = (0..20).map(|k| density(f64::from(MAX_RESIDUAL + 4 + 8 * k)));
+    parts[ESCAPE] = 16.0 * beyond.sum::<f64>();
     parts
 }
 
@@ -150,13 +150,13 @@ pub(super) fn pow2(eighths: i32) -> f64 {
     whole * PARTS[eighths.rem_euclid(8) as usize]
 }
 
-impl Steps {
-    /// The step at a place, its size, and how far behind its start that is.
+impl StepTable {
+    /// The step at a place, its size, and how far offset its start that is.
     #[inline(always)]
     pub(super) fn at(&self, place: usize) -> (Step, u32, u32) {
         let place = place as u16;
-        let behind = |k: usize| usize::from(place >= self.0[k]);
-        let step = behind(1) + behind(2) + behind(3) + behind(4);
+        let offset = |k: usize| usize::from(place >= self.0[k]);
+        let step = offset(1) + offset(2) + offset(3) + offset(4);
         let start = self.0[step];
         (Step::ALL[step], u32::from(self.0[step + 1] - start), u32::from(place.wrapping_sub(start)))
     }
@@ -195,7 +195,7 @@ impl Steps {
 /// Bits of the code of a step.
 const CODE_BITS: u32 = 5;
 
-impl Codes {
+impl ModelCodes {
     pub(super) fn store(&self, out: &mut Vec<u8>) {
         out.extend(self.weights.iter().flatten().map(|&w| w as u8));
         out.extend(self.spreads.iter().flatten());
@@ -253,7 +253,7 @@ impl Codes {
 }
 
 impl Models {
-    pub(super) fn new(codes: &Codes) -> Self {
+    pub(super) fn new(codes: &ModelCodes) -> Self {
         let rest = codes.steps.last().copied().flatten().unwrap_or([6; STEPS]);
         let gate = |kind: usize| {
             let [w0, w1, w2, w3, w4] = codes.weights[kind].map(|weight| f32::from(weight) / 64.0);
@@ -263,11 +263,11 @@ impl Models {
         Self {
             gates: std::array::from_fn(gate),
             start: pow2(2 * i32::from(codes.start)) as f32,
-            distances: Box::new(std::array::from_fn(|class| {
-                Distances::of(class, codes.shapes[class])
+            residuals: Box::new(std::array::from_fn(|class| {
+                ResidualTable::of(class, codes.shapes[class])
             })),
             steps: Box::new(std::array::from_fn(|context| {
-                Steps::of(codes.steps[context].unwrap_or(rest))
+                StepTable::of(codes.steps[context].unwrap_or(rest))
             })),
         }
     }

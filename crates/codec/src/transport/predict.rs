@@ -10,10 +10,10 @@ use super::gate::Gate;
 use super::models::{CLASSES, Models};
 
 /// A place or a way, in cells.
-pub(super) type Cells = Vec3A;
+pub(super) type CellVec = Vec3A;
 
 /// Coordinates are below this.
-pub(super) const SPAN: i32 = 1 << 21;
+pub(super) const MAX_CELLS: i32 = 1 << 21;
 
 pub(super) const FEATURES: usize = 5;
 /// Gates are of so many kinds.
@@ -38,14 +38,14 @@ const GAIN: f32 = 0.1;
 
 /// A place or a way of each lane.
 #[derive(Clone, Copy, Debug)]
-struct Four {
+struct Vec3x4 {
     x: Vec4,
     y: Vec4,
     z: Vec4,
 }
 
-impl Four {
-    /// Places with anything behind them, which is dropped.
+impl Vec3x4 {
+    /// Places with anything next them, which is dropped.
     #[inline(always)]
     fn new(places: [Vec4; LANES]) -> Self {
         let [a, b, c, d] = places;
@@ -74,13 +74,13 @@ impl Four {
 
     /// The coordinates by turns: the one of the normal's greatest coordinate last, the others before it in cyclic order.
     #[inline(always)]
-    fn turned(self, last: &Last) -> [Vec4; 3] {
+    fn turned(self, last: &LastAxis) -> [Vec4; 3] {
         let Self { x, y, z } = self;
         [last.select(y, z, x), last.select(z, x, y), last.select(x, y, z)]
     }
 }
 
-impl std::ops::Add for Four {
+impl std::ops::Add for Vec3x4 {
     type Output = Self;
 
     #[inline(always)]
@@ -89,7 +89,7 @@ impl std::ops::Add for Four {
     }
 }
 
-impl std::ops::Sub for Four {
+impl std::ops::Sub for Vec3x4 {
     type Output = Self;
 
     #[inline(always)]
@@ -100,15 +100,15 @@ impl std::ops::Sub for Four {
 
 /// The axis that is told last.
 #[derive(Clone, Copy, Debug)]
-struct Last {
+struct LastAxis {
     is_x: BVec4A,
     is_y: BVec4A,
 }
 
-impl Last {
+impl LastAxis {
     #[inline(always)]
-    fn of(normal: Four) -> Self {
-        let Four { x, y, z } = normal.each(Vec4::abs);
+    fn of(normal: Vec3x4) -> Self {
+        let Vec3x4 { x, y, z } = normal.each(Vec4::abs);
         let is_y = y.cmpgt(x.max(z));
         Self { is_x: x.cmpgt(z) & !is_y, is_y }
     }
@@ -120,26 +120,26 @@ impl Last {
 }
 
 /// Where the vertices of gates are, and what may be made of them.
-struct Around {
-    corner: Four,
+struct GateGeometry {
+    corner: Vec3x4,
     /// Added to the corner by weights. In a regular mesh all but the first two are nothing.
-    features: [Four; FEATURES],
+    features: [Vec3x4; FEATURES],
     /// Across the surface, of any length.
-    normal: Four,
-    /// The squared sides of the face behind the edge.
+    normal: Vec3x4,
+    /// The squared sides of the face next the edge.
     sides: Vec4,
 }
 
-impl Around {
+impl GateGeometry {
     #[inline(always)]
     fn new(gates: &[Gate; LANES], at: impl Fn(usize, u16) -> Vec4) -> Self {
         let four = |of: fn(&Gate) -> u16| {
             let [a, b, c, d] = gates;
-            Four::new([at(0, of(a)), at(1, of(b)), at(2, of(c)), at(3, of(d))])
+            Vec3x4::new([at(0, of(a)), at(1, of(b)), at(2, of(c)), at(3, of(d))])
         };
         let (a, b) = (four(|gate| gate.a), four(|gate| gate.b));
-        let (apex, older) = (four(|gate| gate.apex), four(|gate| gate.older));
-        let (before, behind) = (four(|gate| gate.before), four(|gate| gate.behind));
+        let (apex, previous_apex) = (four(|gate| gate.apex), four(|gate| gate.previous_apex));
+        let (previous, next) = (four(|gate| gate.previous), four(|gate| gate.next));
         let (edge, spoke, rim) = (b - a, apex - a, apex - b);
         Self {
             corner: b - spoke,
@@ -147,11 +147,11 @@ impl Around {
                 b - spoke - apex,
                 edge,
                 // By how much the parallelogram before has missed.
-                (b - spoke) - (a + a - older),
-                behind - b + rim,
-                before - a + spoke,
+                (b - spoke) - (a + a - previous_apex),
+                next - b + rim,
+                previous - a + spoke,
             ],
-            normal: edge.cross(spoke) + spoke.cross(older - a),
+            normal: edge.cross(spoke) + spoke.cross(previous_apex - a),
             sides: edge.dot(edge) + spoke.dot(spoke) + rim.dot(rim) + Vec4::ONE,
         }
     }
@@ -159,15 +159,15 @@ impl Around {
 
 /// How much wider than the models say distances have been lately, and will be told by from the next vertex on.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Trends {
+pub(super) struct SpreadScales {
     now: [Vec4; 2],
     next: [Vec4; 2],
 }
 
 /// Where a vertex of each lane is expected: a normal distribution that is taken axis by axis, each given those before.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Guesses {
-    mean: Four,
+pub(super) struct Predictions {
+    mean: Vec3x4,
     /// By turns: the axis closest to the normal is the last one, by then it is nearly certain.
     turns: [[f32; LANES]; 3],
     variances: [[f32; LANES]; 3],
@@ -175,7 +175,7 @@ pub(super) struct Guesses {
     second: [f32; LANES],
     third: [[f32; LANES]; 2],
     last: [u8; LANES],
-    normal: Four,
+    normal: Vec3x4,
     /// One by the normal's squared length, or 0.
     inverse: Vec4,
     /// Along and across.
@@ -184,7 +184,7 @@ pub(super) struct Guesses {
 
 /// Of one lane.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Guess {
+pub(super) struct Prediction {
     mean: [f32; 3],
     variances: [f32; 3],
     second: f32,
@@ -195,21 +195,21 @@ pub(super) struct Guess {
 /// How much further pieces of a block are apart than corners of a face, in squares.
 const APART: f32 = 64.0;
 
-impl Trends {
+impl SpreadScales {
     pub(super) fn new() -> Self {
         Self { now: [Vec4::ONE; 2], next: [Vec4::ONE; 2] }
     }
 
     /// By the gate of each lane, and where the lane's vertices are.
     #[inline(always)]
-    pub(super) fn guess(
+    pub(super) fn predict(
         &self,
         gates: &[Gate; LANES],
         models: &Models,
         at: impl Fn(usize, u16) -> Vec4,
-    ) -> Guesses {
-        let Around { corner, features: [f0, f1, f2, f3, f4], normal, sides } =
-            Around::new(gates, at);
+    ) -> Predictions {
+        let GateGeometry { corner, features: [f0, f1, f2, f3, f4], normal, sides } =
+            GateGeometry::new(gates, at);
         let kinds = [gates[0].kind(), gates[1].kind(), gates[2].kind(), gates[3].kind()];
         let row = |half: usize| {
             let at = |lane: usize| models.gates[kinds[lane]][half];
@@ -224,19 +224,24 @@ impl Trends {
         let floor = Vec4::splat(FLOOR);
         let along = along * sides * self.now[0] + floor;
         let across = least(across * sides * self.now[1] + floor, along);
-        Guesses::across(corner + more, normal, [along, across])
+        Predictions::across(corner + more, normal, [along, across])
     }
 
     /// What the vertices of some lanes were: how far off they were counts for later ones.
     #[inline(always)]
-    pub(super) fn tell(&mut self, guesses: &Guesses, places: [Vec4; LANES], which: BVec4A) {
-        let way = Four::new(places) - guesses.mean;
-        let height = way.dot(guesses.normal);
-        let across = height * height * guesses.inverse;
+    pub(super) fn update(
+        &mut self,
+        predictions: &Predictions,
+        places: [Vec4; LANES],
+        which: BVec4A,
+    ) {
+        let way = Vec3x4::new(places) - predictions.mean;
+        let height = way.dot(predictions.normal);
+        let across = height * height * predictions.inverse;
         let squares = [0.5 * (way.dot(way) - across), across];
         let next = self.next;
         for k in 0..2 {
-            let beyond = (squares[k] + Vec4::splat(FLOOR)) / guesses.expected[k] - Vec4::ONE;
+            let beyond = (squares[k] + Vec4::splat(FLOOR)) / predictions.expected[k] - Vec4::ONE;
             let beyond = least(beyond, Vec4::splat(3.0));
             let value = next[k] + next[k] * beyond * GAIN;
             let value = least(most(value, Vec4::splat(0.05)), Vec4::splat(20.0));
@@ -246,14 +251,14 @@ impl Trends {
     }
 }
 
-impl Guesses {
+impl Predictions {
     /// The covariance is `along` − (`along` − `across`) n nᵗ; each axis is conditioned on those before.
     #[inline(always)]
-    fn across(mean: Four, normal: Four, [along, across]: [Vec4; 2]) -> Self {
+    fn across(mean: Vec3x4, normal: Vec3x4, [along, across]: [Vec4; 2]) -> Self {
         let squared = normal.dot(normal);
         let is_plane = squared.cmpgt(Vec4::ZERO);
         let inverse = Vec4::select(is_plane, Vec4::ONE / squared, Vec4::ZERO);
-        let last = Last::of(normal);
+        let last = LastAxis::of(normal);
         let [u, v, w] = normal.turned(&last);
         let (uu, vv, ww) = (u * u * inverse, v * v * inverse, w * w * inverse);
         let thin = Vec4::select(is_plane, Vec4::ONE - across / along, Vec4::ZERO);
@@ -282,10 +287,10 @@ impl Guesses {
     }
 
     #[inline(always)]
-    pub(super) fn of(&self, lane: usize) -> Guess {
+    pub(super) fn of(&self, lane: usize) -> Prediction {
         let [u, v, w] = &self.turns;
         let [var_u, var_v, var_w] = &self.variances;
-        Guess {
+        Prediction {
             mean: [u[lane], v[lane], w[lane]],
             variances: [var_u[lane], var_v[lane], var_w[lane]],
             second: self.second[lane],
@@ -298,10 +303,10 @@ impl Guesses {
 /// Where there can be cells.
 #[inline(always)]
 fn inside(mean: Vec4) -> [f32; LANES] {
-    least(most(mean, Vec4::ZERO), Vec4::splat(SPAN as f32)).to_array()
+    least(most(mean, Vec4::ZERO), Vec4::splat(MAX_CELLS as f32)).to_array()
 }
 
-impl Guess {
+impl Prediction {
     /// A corner of a face that stands alone, after others of the block: as far in all directions.
     pub(super) fn start(
         vertex: u16,
@@ -377,7 +382,7 @@ fn nearest(x: f32) -> i32 {
     // Where floats are whole numbers.
     const WHOLE: f32 = 1.5 * (1 << 23) as f32;
     let x = if x > 0.0 { x } else { 0.0 };
-    let x = if x < SPAN as f32 { x } else { SPAN as f32 };
+    let x = if x < MAX_CELLS as f32 { x } else { MAX_CELLS as f32 };
     (x + WHOLE).to_bits() as i32 - WHOLE.to_bits() as i32
 }
 

@@ -21,7 +21,7 @@ pub(super) struct Symbol {
 
 impl Symbol {
     /// One of 2^`bits` that are all as likely, at most 12 bits.
-    pub(super) fn even(number: u16, bits: u8) -> Self {
+    pub(super) fn uniform(number: u16, bits: u8) -> Self {
         Self { start: number, size: 1, bits, low_bits: 0, low: 0 }
     }
 }
@@ -66,7 +66,7 @@ impl<'a> Symbols<'a> {
         Ok(Self { state, words, at: 0 })
     }
 
-    pub(super) fn none() -> Self {
+    pub(super) fn empty() -> Self {
         Self { state: LEAST, words: &[], at: 0 }
     }
 
@@ -76,10 +76,10 @@ impl<'a> Symbols<'a> {
         (self.state & ((1 << bits) - 1)) as usize
     }
 
-    /// Passes the next symbol: its size, and by how much its place is behind its start. Gives the bits below.
+    /// Passes the next symbol: its size, and by how much its place is offset its start. Gives the bits below.
     #[inline(always)]
-    pub(super) fn pass(&mut self, bits: u32, size: u32, behind: u32, low_bits: u32) -> u32 {
-        let state = size.wrapping_mul(self.state >> bits).wrapping_add(behind);
+    pub(super) fn consume(&mut self, bits: u32, size: u32, offset: u32, low_bits: u32) -> u32 {
+        let state = size.wrapping_mul(self.state >> bits).wrapping_add(offset);
         let low = state & ((1 << low_bits) - 1);
         let state = state >> low_bits;
         let word = match self.words.get(self.at) {
@@ -94,8 +94,8 @@ impl<'a> Symbols<'a> {
 
     /// The next number of 2^`bits` that are all as likely, at most 12 bits.
     #[inline]
-    pub(super) fn even(&mut self, bits: u32) -> u32 {
-        self.pass(0, 1, 0, bits)
+    pub(super) fn uniform(&mut self, bits: u32) -> u32 {
+        self.consume(0, 1, 0, bits)
     }
 
     /// That all symbols have been passed, with nothing but zeros left, and that what they made has the checksum.

@@ -46,7 +46,7 @@ fn assert_same(mesh: &Mesh, options: &TransportOptions) {
     // Vertices come in the order in which blocks have them.
     let mut numbers = vec![None; mesh.positions.len()];
     let mut count = 0;
-    let (_, cells) = grid::Grid::of(mesh, options.grid).unwrap();
+    let (_, cells) = grid::QuantizationGrid::of(mesh, options.quantization).unwrap();
     for walk in write::walks(&mesh.faces, &cells, options.block_faces) {
         for v in walk.vertices {
             numbers[v as usize].get_or_insert_with(|| {
@@ -82,11 +82,11 @@ fn samples_come_back() {
     for name in ["sphere", "torus", "knot", "gyroid", "terrain"] {
         let mesh = samples::by_name(name, Some(3000)).unwrap();
         for bits in [1, 4, 11, 16, 21] {
-            let grid = TransportGrid::Bits(bits);
-            assert_same(&mesh, &TransportOptions { grid, ..Default::default() });
+            let quantization = TransportQuantization::Bits(bits);
+            assert_same(&mesh, &TransportOptions { quantization, ..Default::default() });
         }
         assert_same(&mesh, &options(16));
-        assert_same(&mesh, &options(largest()));
+        assert_same(&mesh, &options(max_block_faces()));
     }
 }
 
@@ -123,7 +123,10 @@ fn corners_may_be_the_same_and_faces_too() {
 fn vertices_in_one_cell_are_told_apart() {
     // All in a few cells, and all in one.
     let mut mesh = samples::sphere(3000);
-    assert_same(&mesh, &TransportOptions { grid: TransportGrid::Bits(2), block_faces: 100 });
+    assert_same(
+        &mesh,
+        &TransportOptions { quantization: TransportQuantization::Bits(2), block_faces: 100 },
+    );
     mesh.positions.fill([7.0, -2.0, 1e30]);
     assert_same(&mesh, &options(100));
 }
@@ -172,7 +175,10 @@ fn on_a_lattice_shared_vertices_are_at_one_place() {
     let lattice = crate::Lattice::new(-9).unwrap();
     let mesh = samples::knot(4000);
     let halves = mesh.faces.split_at(1500);
-    let options = TransportOptions { grid: TransportGrid::Lattice(lattice), block_faces: 200 };
+    let options = TransportOptions {
+        quantization: TransportQuantization::Lattice(lattice),
+        block_faces: 200,
+    };
     for faces in [halves.0, halves.1] {
         let part = Mesh::new(mesh.positions.clone(), faces.to_vec());
         assert_same(&part, &options);
@@ -206,8 +212,8 @@ fn what_is_left_out_is_told() {
 fn every_shape_has_a_table() {
     for class in 0..models::CLASSES {
         for code in 0..=u8::MAX {
-            let table = models::Distances::of(class, code);
-            assert!(table.symbol(models::FAR, 0, 0).is_some(), "{class} {code}");
+            let table = models::ResidualTable::of(class, code);
+            assert!(table.symbol(models::ESCAPE, 0, 0).is_some(), "{class} {code}");
             let all = (0..models::SYMBOLS).filter_map(|symbol| table.symbol(symbol, 0, 0));
             assert_eq!(all.map(|symbol| u32::from(symbol.size)).sum::<u32>(), 2048);
         }
@@ -222,7 +228,8 @@ fn bad_input_is_refused_in_words() {
     let points = Mesh::new(vec![[0.0; 3]], Vec::new());
     assert_eq!(encode(&points, options(256)), TransportError::Empty);
     for bits in [0, 22, 64] {
-        let options = TransportOptions { grid: TransportGrid::Bits(bits), ..options(256) };
+        let options =
+            TransportOptions { quantization: TransportQuantization::Bits(bits), ..options(256) };
         assert_eq!(encode(&good, options), TransportError::Bits(bits));
     }
     for size in [0, 15, 100_000] {
@@ -237,7 +244,7 @@ fn bad_input_is_refused_in_words() {
     bad.faces[1][2] = VertexId(4);
     assert_eq!(encode(&bad, options(256)), TransportError::BadVertex(VertexId(4)));
     let lattice = |exponent| TransportOptions {
-        grid: TransportGrid::Lattice(crate::Lattice::new(exponent).unwrap()),
+        quantization: TransportQuantization::Lattice(crate::Lattice::new(exponent).unwrap()),
         ..options(256)
     };
     assert!(matches!(encode(&good, lattice(-30)), TransportError::TooFine { .. }));
@@ -277,7 +284,7 @@ fn a_flipped_bit_is_told() {
             missed += usize::from((0..file.blocks()).all(|block| file.block(block).is_ok()));
         }
     }
-    // Four bytes are the checksum of all blocks, which no block alone is held to.
+    // Vec3x4 bytes are the checksum of all blocks, which no block alone is held to.
     assert!(missed <= 5, "{missed} of {}", bytes.len());
 }
 

@@ -2,20 +2,20 @@
 
 use meshlod_mesh::{Connectivity, FaceId, Side, Twin, VertexId};
 
-use super::border::{Border, State, Step};
-use super::gate::{Gate, OTHERS, context, walk};
+use super::border::{Border, EdgeState, Step};
+use super::gate::{Gate, NEARBY, context, node_at_offset};
 
 /// A block as it is told.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Walk {
+pub(super) struct BlockWalk {
     /// How many faces it has.
     pub(super) faces: usize,
     /// What is done, and the context that it is told in.
     pub(super) steps: Vec<(u8, Step)>,
-    /// The vertices that [`Step::Other`] leads to, each told by its place in [`OTHERS`] or by its node.
+    /// The vertices that [`Step::Other`] leads to, each told by its place in [`NEARBY`] or by its node.
     pub(super) others: Vec<Result<usize, u16>>,
     /// What each vertex is guessed from.
-    pub(super) births: Vec<Gate>,
+    pub(super) gates: Vec<Gate>,
     /// The vertex of the mesh that each is. Where a block's faces at a vertex are apart, it is there more than once.
     pub(super) vertices: Vec<u32>,
     /// Those that the decoder sees on the border.
@@ -36,7 +36,7 @@ pub(super) struct Walker<'a> {
 }
 
 const NONE: u16 = u16::MAX;
-const TOLD: u32 = u32::MAX;
+const DONE: u32 = u32::MAX;
 
 impl<'a> Walker<'a> {
     pub(super) fn new(
@@ -49,13 +49,13 @@ impl<'a> Walker<'a> {
     }
 
     /// A block of such faces; it is begun at the first of them, and so are pieces of it that are apart.
-    pub(super) fn walk(&mut self, block: u32, members: &[u32]) -> Walk {
-        let mut out = Walk {
+    pub(super) fn walk(&mut self, block: u32, members: &[u32]) -> BlockWalk {
+        let mut out = BlockWalk {
             faces: members.len(),
             steps: Vec::with_capacity(2 * members.len()),
-            births: Vec::with_capacity(members.len()),
+            gates: Vec::with_capacity(members.len()),
             vertices: Vec::with_capacity(members.len()),
-            ..Walk::default()
+            ..BlockWalk::default()
         };
         self.border.clear();
         self.sides.clear();
@@ -63,8 +63,8 @@ impl<'a> Walker<'a> {
         let mut left = members.len();
         while left > 0 {
             let Some(at) = self.border.pivot() else {
-                let untold = |&&f: &&u32| self.block_of[f as usize] == block;
-                let f = *rest.find(untold).expect("some are left");
+                let is_left = |&&f: &&u32| self.block_of[f as usize] == block;
+                let f = *rest.find(is_left).expect("some are left");
                 self.start(f, &mut out);
                 left -= 1;
                 continue;
@@ -84,51 +84,53 @@ impl<'a> Walker<'a> {
         out
     }
 
-    fn vertex(&mut self, v: VertexId, gate: Gate, out: &mut Walk) -> u16 {
+    fn vertex(&mut self, v: VertexId, gate: Gate, out: &mut BlockWalk) -> u16 {
         let local = out.vertices.len() as u16;
         self.local[v.index()] = local;
         out.vertices.push(v.0);
-        out.births.push(gate);
+        out.gates.push(gate);
         local
     }
 
-    fn start(&mut self, f: u32, out: &mut Walk) {
+    fn start(&mut self, f: u32, out: &mut BlockWalk) {
         let corners = self.faces[f as usize];
         let vertices = [0, 1, 2].map(|k| self.vertex(corners[k], Gate::corner(k as u8), out));
         self.border.start(vertices);
         self.sides.extend((0..3).map(|k| Side::new(FaceId(f), k)));
-        self.block_of[f as usize] = TOLD;
+        self.block_of[f as usize] = DONE;
     }
 
-    fn step(&mut self, at: u16, block: u32, out: &mut Walk) -> Step {
+    fn step(&mut self, at: u16, block: u32, out: &mut BlockWalk) -> Step {
         let Some(side) = self.across(at, block, out) else {
-            self.border.shut(at);
+            self.border.close(at);
             return Step::Nothing;
         };
         let k = side.corner();
         let apex = self.faces[side.face().index()][(k + 2) % 3];
         let to_apex = Side::new(side.face(), (k + 1) % 3);
         let from_apex = Side::new(side.face(), (k + 2) % 3);
-        self.block_of[side.face().index()] = TOLD;
+        self.block_of[side.face().index()] = DONE;
         let local = self.local[apex.index()];
         let node = *self.border.node(at);
-        let before = self.border.node(node.before);
+        let previous = self.border.node(node.previous);
         let second = self.border.node(node.next);
-        if before.vertex == local && before.state == State::Open {
-            self.border.put_before(at);
-            self.sides[usize::from(node.before)] = from_apex;
-            return Step::Before;
+        if previous.vertex == local && previous.state == EdgeState::Open {
+            self.border.put_previous(at);
+            self.sides[usize::from(node.previous)] = from_apex;
+            return Step::Previous;
         }
-        if self.border.node(second.next).vertex == local && second.state == State::Open {
-            self.border.put_behind(at);
+        if self.border.node(second.next).vertex == local && second.state == EdgeState::Open {
+            self.border.put_next(at);
             self.sides[usize::from(at)] = to_apex;
-            return Step::Behind;
+            return Step::Next;
         }
         // Most are new: no need to look for them.
         let known = if local == NONE { None } else { self.border.find(local) };
         let (step, from) = match known {
             Some(other) => {
-                let by = OTHERS.iter().position(|&(by, _)| walk(&self.border, at, by) == other);
+                let by = NEARBY
+                    .iter()
+                    .position(|&(by, _)| node_at_offset(&self.border, at, by) == other);
                 out.others.push(by.ok_or(other));
                 self.border.put_other(at, other);
                 self.sides.push(self.sides[usize::from(other)]);
@@ -148,7 +150,7 @@ impl<'a> Walker<'a> {
     }
 
     /// The side of the block's face across an edge, where it has not been told and runs the other way.
-    fn across(&self, at: u16, block: u32, out: &Walk) -> Option<Side> {
+    fn across(&self, at: u16, block: u32, out: &BlockWalk) -> Option<Side> {
         let Twin::Side(side) = self.connectivity.twin(self.sides[usize::from(at)]) else {
             return None;
         };

@@ -2,20 +2,22 @@
 
 use meshlod_mesh::{Connectivity, Mesh, VertexId};
 
-use super::blocks::blocks;
-use super::encode::{symbols, tell};
+use super::encode::{residuals, symbols};
+use super::face_blocks::face_blocks;
 use super::file::{Entry, FACES_A_BYTE, Header};
 use super::fit::{fit, shapes};
-use super::grid::Grid;
-use super::join::{Joints, checksum, key};
+use super::grid::QuantizationGrid;
 use super::models::Models;
-use super::predict::{Cells, LANES};
+use super::predict::{CellVec, LANES};
 use super::rans::{Symbol, encode};
-use super::walk::{Walk, Walker};
-use super::{LeftOut, Transport, TransportError, TransportOptions, TransportSizes, largest};
+use super::walk::{BlockWalk, Walker};
+use super::weld_blocks::{WeldTable, checksum, key};
+use super::{
+    LeftOut, Transport, TransportError, TransportOptions, TransportSizes, max_block_faces,
+};
 
 /// Faces are numbered in 32 bits, and sides of faces too.
-const MOST: usize = 1 << 30;
+const MAX_MESH_FACES: usize = 1 << 30;
 
 impl Transport {
     /// The file of a mesh: positions rounded to a grid, faces as they are, turned so that each may begin at another
@@ -28,13 +30,13 @@ impl Transport {
         if mesh.faces.is_empty() {
             return Err(TransportError::Empty);
         }
-        if mesh.faces.len() > MOST {
+        if mesh.faces.len() > MAX_MESH_FACES {
             return Err(TransportError::TooMany(mesh.faces.len()));
         }
-        if !(16..=largest()).contains(&options.block_faces) {
+        if !(16..=max_block_faces()).contains(&options.block_faces) {
             return Err(TransportError::Block(options.block_faces));
         }
-        let (grid, cells) = Grid::of(mesh, options.grid)?;
+        let (grid, cells) = QuantizationGrid::of(mesh, options.quantization)?;
         let walks = walks(&mesh.faces, &cells, options.block_faces);
         let mut this = write(grid, &cells, &walks, mesh.faces.len());
         this.left_out = left_out(mesh);
@@ -53,19 +55,24 @@ fn left_out(mesh: &Mesh) -> Vec<LeftOut> {
 }
 
 /// All blocks of faces whose vertices are in such cells.
-pub(super) fn walks(faces: &[[VertexId; 3]], cells: &[Cells], size: usize) -> Vec<Walk> {
+pub(super) fn walks(faces: &[[VertexId; 3]], cells: &[CellVec], size: usize) -> Vec<BlockWalk> {
     let connectivity = Connectivity::new(faces, cells.len());
-    let blocks = blocks(faces, cells, &connectivity, size);
+    let blocks = face_blocks(faces, cells, &connectivity, size);
     let mut walker = Walker::new(faces, &connectivity, blocks.of.clone());
     blocks.members().zip(0..).map(|(members, block)| walker.walk(block, members)).collect()
 }
 
-fn write(grid: Grid, cells: &[Cells], walks: &[Walk], faces: usize) -> Transport {
+fn write(
+    grid: QuantizationGrid,
+    cells: &[CellVec],
+    walks: &[BlockWalk],
+    faces: usize,
+) -> Transport {
     let mut codes = fit(walks, cells);
     let models = Models::new(&codes);
-    let told = walks.chunks(LANES).flat_map(|walks| tell(walks, cells, &models));
-    let told: Vec<_> = told.take(walks.len()).collect();
-    codes.shapes = shapes(told.iter().flatten());
+    let residuals = walks.chunks(LANES).flat_map(|walks| residuals(walks, cells, &models));
+    let residuals: Vec<_> = residuals.take(walks.len()).collect();
+    codes.shapes = shapes(residuals.iter().flatten());
     let models = Models::new(&codes);
     let first_bits = [0, 1, 2].map(|k| {
         let most = walks.iter().map(|walk| cells[walk.vertices[0] as usize][k] as u32).max();
@@ -75,11 +82,11 @@ fn write(grid: Grid, cells: &[Cells], walks: &[Walk], faces: usize) -> Transport
     let mut payload = Vec::new();
     let mut entries = Vec::with_capacity(walks.len());
     let mut row = Vec::new();
-    let mut bits = Bits::default();
-    for ((walk, told), tags) in walks.iter().zip(&told).zip(&tags) {
+    let mut bits = SymbolBits::default();
+    for ((walk, residuals), tags) in walks.iter().zip(&residuals).zip(&tags) {
         row.clear();
         let first = cells[walk.vertices[0] as usize];
-        let parts = symbols(walk, (first, first_bits), tags, told, &models, &mut row);
+        let parts = symbols(walk, (first, first_bits), tags, residuals, &models, &mut row);
         bits.add(&row, parts);
         let start = payload.len();
         let sum = checksum(walk.vertices.iter().map(|&v| cells[v as usize]));
@@ -99,20 +106,20 @@ fn write(grid: Grid, cells: &[Cells], walks: &[Walk], faces: usize) -> Transport
 }
 
 /// How many bits symbols take.
-struct Bits {
+struct SymbolBits {
     positions: f64,
     connectivity: f64,
     log2: Vec<f64>,
 }
 
-impl Default for Bits {
+impl Default for SymbolBits {
     fn default() -> Self {
         let log2 = (0..=4096).map(|size| f64::from(size).log2()).collect();
         Self { positions: 0.0, connectivity: 0.0, log2 }
     }
 }
 
-impl Bits {
+impl SymbolBits {
     /// First and last are the first vertex and what is joined, distances are between.
     fn add(&mut self, symbols: &[Symbol], [connectivity, positions]: [usize; 2]) {
         let bits = |symbols: &[Symbol]| -> f64 {
@@ -121,21 +128,21 @@ impl Bits {
             };
             symbols.iter().map(bits).sum()
         };
-        let told = bits(&symbols[connectivity..positions]);
+        let of_positions = bits(&symbols[connectivity..positions]);
         let all = bits(symbols);
-        self.positions += told;
-        self.connectivity += all - told;
+        self.positions += of_positions;
+        self.connectivity += all - of_positions;
     }
 }
 
 /// For each block the vertices that need a tag, and how many vertices there are.
-fn tags(walks: &[Walk], cells: &[Cells]) -> (Vec<Vec<(u16, u32)>>, usize) {
+fn tags(walks: &[BlockWalk], cells: &[CellVec]) -> (Vec<Vec<(u16, u32)>>, usize) {
     let mut uses = vec![0u8; cells.len()];
     for &v in walks.iter().flat_map(|walk| &walk.vertices) {
         uses[v as usize] = uses[v as usize].saturating_add(1);
     }
     // How many tags a cell has by now.
-    let mut joints = Joints::new(1 << 10);
+    let mut welds = WeldTable::new(1 << 10);
     let mut tag_of = vec![u32::MAX; cells.len()];
     let tags = walks.iter().map(|walk| {
         let mut tags = Vec::new();
@@ -145,7 +152,7 @@ fn tags(walks: &[Walk], cells: &[Cells]) -> (Vec<Vec<(u16, u32)>>, usize) {
                 continue;
             }
             if tag_of[v] == u32::MAX {
-                let next = joints.join(key(cells[v]), 0, 0);
+                let next = welds.find_or_insert(key(cells[v]), 0, 0);
                 tag_of[v] = *next;
                 *next += 1;
             }

@@ -6,7 +6,9 @@ mod sent;
 
 use anyhow::{Context, Result};
 use meshlod::Mesh;
-use meshlod::codec::{AttributeBounds, Cells, Compression, Parting, Scheme, Target, compress};
+use meshlod::codec::{
+    AttributeBounds, Compression, CompressionTarget, Partitioner, Reconstruction, Scheme, compress,
+};
 use meshlod::measure::{Distance, DistanceOptions, distance};
 use meshlod_bench::least_seconds;
 
@@ -30,7 +32,7 @@ const MESHES: [&str; 10] = [
     "igea.ply",
 ];
 const SCHEMES: [(&str, Scheme); 3] = [
-    ("parts", Scheme::Parts(Cells::Centred)),
+    ("parts", Scheme::Parts(Reconstruction::Centred)),
     ("blocks", Scheme::Blocks),
     ("lattice", Scheme::Lattice),
 ];
@@ -70,13 +72,14 @@ fn of_paper() -> Result<String> {
     ]);
     for name in OF_PAPER {
         let Some(mesh) = meshlod_bench::read(name)? else { continue };
-        let parting = Parting::new(&mesh)?;
+        let parting = Partitioner::new(&mesh)?;
         let mut row = vec![name.to_owned()];
         let mut ratios = Vec::new();
         let mut seconds = 0.0;
-        for (cells, rounding) in
-            [(Cells::Truncated, Rounding::Down), (Cells::Centred, Rounding::Nearest)]
-        {
+        for (cells, rounding) in [
+            (Reconstruction::Truncated, Rounding::Down),
+            (Reconstruction::Centred, Rounding::Nearest),
+        ] {
             let mut parts = None;
             seconds = least_seconds(1, || parts = Some(parting.within_reduction(0.7, cells)));
             let parts = parts.context("it has run")??;
@@ -117,7 +120,7 @@ fn schemes() -> Result<String> {
             let bounds = AttributeBounds::default();
             let mut done = None;
             let seconds = least_seconds(1, || {
-                done = Some(compress(&mesh, scheme, Target::Bits(BITS), &bounds));
+                done = Some(compress(&mesh, scheme, CompressionTarget::Bits(BITS), &bounds));
             });
             let Compression { compressed, vertices, .. } = done.context("it has run")??;
             let decoded = compressed.decode()?;

@@ -1,7 +1,7 @@
 //! `.glb`: what other programs read.
 
 use meshlod::Scene;
-use meshlod::codec::{Cells, parts_for};
+use meshlod::codec::{Reconstruction, parts_for};
 use meshlod::io::gltf::{
     Compression, CompressionReport, QuantizedPart, write_compressed_glb, write_parts_glb,
 };
@@ -55,7 +55,7 @@ impl Compress {
     /// The surface in parts, each a node with its matrix.
     fn gltf_of_parts(&self, scene: Scene) -> Result<Packed, Failure> {
         let mesh = scene.into_mesh();
-        let cells = if self.paper { Cells::Truncated } else { Cells::Centred };
+        let cells = if self.paper { Reconstruction::Truncated } else { Reconstruction::Centred };
         let done = parts_for(&mesh, cells, self.target(&mesh));
         let (parts, reached) = done.map_err(|error| self.refused(error))?;
         let quantized: Vec<_> = parts

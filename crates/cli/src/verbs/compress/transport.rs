@@ -3,7 +3,7 @@
 use meshlod::Mesh;
 use meshlod::Scene;
 use meshlod::codec::{
-    Lattice, Transport, TransportError, TransportFile, TransportGrid, TransportOptions,
+    Lattice, Transport, TransportError, TransportFile, TransportOptions, TransportQuantization,
     TransportSizes,
 };
 
@@ -13,7 +13,10 @@ use crate::failure::Failure;
 impl Compress {
     pub(super) fn transport(&self, scene: Scene) -> Result<Packed, Failure> {
         let mesh = scene.into_mesh();
-        let options = TransportOptions { grid: self.grid(&mesh)?, ..TransportOptions::default() };
+        let options = TransportOptions {
+            quantization: self.quantization(&mesh)?,
+            ..TransportOptions::default()
+        };
         let done = Transport::encode(&mesh, &options).map_err(|error| match error {
             TransportError::Bits(_) => Failure::usage(error),
             error => self.failed(error),
@@ -40,18 +43,18 @@ impl Compress {
     }
 
     /// The cells that a target asks for.
-    fn grid(&self, mesh: &Mesh) -> Result<TransportGrid, Failure> {
+    fn quantization(&self, mesh: &Mesh) -> Result<TransportQuantization, Failure> {
         let Some(cell) = self.target(mesh).cell(mesh).map_err(|error| self.refused(error))? else {
             return Err(Failure::usage("--reduction is not of .mlz; --bits and --error are"));
         };
         if self.scheme.is_some() {
             return Lattice::within(cell)
-                .map(TransportGrid::Lattice)
+                .map(TransportQuantization::Lattice)
                 .map_err(|error| self.failed(error));
         }
         let bounds = mesh.bounds();
         let longest = (0..3).map(|k| bounds.max[k] - bounds.min[k]).fold(0.0, f64::max);
-        Ok(TransportGrid::Bits(match self.goal.error {
+        Ok(TransportQuantization::Bits(match self.goal.error {
             Some(_) => ((longest / cell + 1.0).log2().ceil() as u32).max(1),
             None => self.bits(),
         }))

@@ -2,7 +2,7 @@
 
 use anyhow::Result;
 use meshlod::Mesh;
-use meshlod::codec::{AttributeBounds, Cells, Scheme, Target, compress};
+use meshlod::codec::{AttributeBounds, CompressionTarget, Reconstruction, Scheme, compress};
 use meshlod_bench::peer::meshopt_codec;
 
 use super::apart;
@@ -35,15 +35,16 @@ fn lines(mesh: &Mesh) -> Result<[Vec<Line>; 2]> {
     let (vertices, faces) = (mesh.positions.len() as f64, mesh.faces.len() as f64);
     let (mut positions, mut all) = (Vec::new(), Vec::new());
     let schemes = [
-        ("parts, as the paper", "#999999", Scheme::Parts(Cells::Truncated)),
-        ("parts", "#d9822b", Scheme::Parts(Cells::Centred)),
+        ("parts, as the paper", "#999999", Scheme::Parts(Reconstruction::Truncated)),
+        ("parts", "#d9822b", Scheme::Parts(Reconstruction::Centred)),
         ("blocks", "#c53030", Scheme::Blocks),
         ("lattice", "#2b6cb0", Scheme::Lattice),
     ];
     for (name, color, scheme) in schemes {
         let mut points = [Vec::new(), Vec::new()];
         for bits in BITS {
-            let done = compress(mesh, scheme, Target::Bits(bits), &AttributeBounds::default())?;
+            let done =
+                compress(mesh, scheme, CompressionTarget::Bits(bits), &AttributeBounds::default())?;
             let at = as_good(apart(mesh, &done.compressed.decode()?)?.mean());
             let sizes = done.compressed.sizes();
             points[0].push([at, sizes.positions as f64 / vertices]);

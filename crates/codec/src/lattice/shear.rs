@@ -6,7 +6,7 @@
 
 /// How a block is told. All is counted from its middle on.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(super) struct Shape {
+pub(super) struct ShearTransform {
     /// The axis that is flattened, `w`; those along the block follow it in cyclic order, `u` and `v`.
     pub(super) axis: u8,
     /// How much of `v` is taken off `u`, of `u` then off `v`, and of `u` and `v` off `w`: in parts of [`SLOPE`].
@@ -29,7 +29,7 @@ pub(super) const BEND_BITS: u32 = 6;
 /// So many vertices have one number together, of which all bits are used but a part of one.
 pub(super) const TUPLE: usize = 4;
 
-impl Shape {
+impl ShearTransform {
     /// The one found that takes the fewest bits; bent or not. Cells are at least 0 and below [`MOST_CELLS`].
     pub(super) fn of(cells: &[[i32; 3]], is_bent: bool) -> Self {
         // Around the middle of its box it fits whatever the box is.
@@ -38,7 +38,7 @@ impl Shape {
             let at = Search::new(cells, axis, is_bent).best();
             Self { axis, slopes: at.slopes(), bends: at.bends(), ..Self::default() }.settled(cells)
         });
-        laid.fold(plain, |best, shape| if shape.volume() < best.volume() { shape } else { best })
+        laid.fold(plain, |best, one| if one.volume() < best.volume() { one } else { best })
     }
 
     /// With the middle where it takes the least, and spans by it.
@@ -312,16 +312,16 @@ mod tests {
         for turn in 0..3 {
             let mut cells = slanted();
             cells.iter_mut().for_each(|cell| cell.rotate_left(turn));
-            let boxed = Shape::default().settled(&cells).unwrap();
-            let [plain, bent] = [false, true].map(|is_bent| Shape::of(&cells, is_bent));
+            let boxed = ShearTransform::default().settled(&cells).unwrap();
+            let [plain, bent] = [false, true].map(|is_bent| ShearTransform::of(&cells, is_bent));
             assert!(plain.volume() * 2 < boxed.volume(), "{plain:?}");
             assert!(bent.volume() * 2 < plain.volume(), "{bent:?}");
-            for shape in [boxed, plain, bent] {
-                let (size, bits) = shape.tuple();
+            for transform in [boxed, plain, bent] {
+                let (size, bits) = transform.tuple();
                 for tuple in cells.chunks(size) {
-                    let number = shape.number(tuple);
+                    let number = transform.number(tuple);
                     assert!(number >> bits == 0);
-                    let back = |at| shape.cell(number, at).map(|x| x as i32);
+                    let back = |at| transform.cell(number, at).map(|x| x as i32);
                     assert!(tuple.iter().enumerate().all(|(at, &cell)| back(at) == cell));
                 }
             }
@@ -330,12 +330,12 @@ mod tests {
 
     #[test]
     fn one_cell_takes_no_bits_and_the_widest_blocks_fit() {
-        let shape = Shape::of(&[[7, 3, 1 << 18]; 3], true);
-        assert_eq!((shape.bits(3), shape.cell(0, 2)), (0, [7, 3, 1 << 18]));
+        let transform = ShearTransform::of(&[[7, 3, 1 << 18]; 3], true);
+        assert_eq!((transform.bits(3), transform.cell(0, 2)), (0, [7, 3, 1 << 18]));
         let wide = [[0; 3], [MOST_CELLS - 1; 3], [0, MOST_CELLS - 1, 0]];
-        let shape = Shape::of(&wide, true);
+        let transform = ShearTransform::of(&wide, true);
         for cell in wide {
-            assert_eq!(shape.cell(shape.number(&[cell]), 0), cell.map(i64::from));
+            assert_eq!(transform.cell(transform.number(&[cell]), 0), cell.map(i64::from));
         }
     }
 

@@ -1,11 +1,12 @@
-//! The positions of a compressed mesh, by whatever scheme.
+//! Positions of a compressed mesh: the one place that tells the three schemes apart.
 
 use crate::blocks::VertexBlocks;
 use crate::bytes::{Malformed, Reader};
+use crate::kd::BLOCK;
 use crate::lattice::LatticeBlocks;
 use crate::parts::PackedParts;
 
-/// By parts, of each node; by the others, of each vertex.
+/// Stored positions: of each node with parts, of each vertex with the two block schemes.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Positions {
     Parts(PackedParts),
@@ -14,7 +15,7 @@ pub(super) enum Positions {
 }
 
 impl Positions {
-    /// Where all are.
+    /// Decodes all positions.
     pub(super) fn all(&self) -> Vec<[f64; 3]> {
         match self {
             Self::Parts(parts) => parts.positions(),
@@ -23,15 +24,16 @@ impl Positions {
         }
     }
 
-    /// Where one is, by its number among all.
-    pub(super) fn at(&self, number: usize) -> [f64; 3] {
+    /// Decodes one position by its index.
+    pub(super) fn at(&self, index: usize) -> [f64; 3] {
         match self {
-            Self::Parts(parts) => parts.position(number),
-            Self::Lattice(blocks) => blocks.position(number),
-            Self::Blocks(blocks) => blocks.position(number),
+            Self::Parts(parts) => parts.position(index),
+            Self::Lattice(blocks) => blocks.position(index),
+            Self::Blocks(blocks) => blocks.position(index),
         }
     }
 
+    /// Returns the number of stored positions.
     pub(super) fn len(&self) -> usize {
         match self {
             Self::Parts(parts) => parts.rows().nodes(),
@@ -40,14 +42,22 @@ impl Positions {
         }
     }
 
-    /// How many vertices have them.
+    /// Returns the number of vertices of the mesh, which parts store more than once.
     pub(super) fn vertices(&self) -> usize {
-        match self {
-            Self::Parts(parts) => parts.vertices(),
-            _ => self.len(),
-        }
+        self.parts().map_or_else(|| self.len(), PackedParts::vertices)
     }
 
+    /// Returns the number of parts or of vertex blocks.
+    pub(super) fn blocks(&self) -> usize {
+        self.parts().map_or_else(|| self.len().div_ceil(BLOCK), |parts| parts.rows().len())
+    }
+
+    /// Returns the parts, if positions are stored in parts.
+    pub(super) fn parts(&self) -> Option<&PackedParts> {
+        if let Self::Parts(parts) = self { Some(parts) } else { None }
+    }
+
+    /// Returns the stored size in bytes.
     pub(super) fn bytes(&self) -> usize {
         match self {
             Self::Parts(parts) => parts.bytes(),
@@ -56,6 +66,7 @@ impl Positions {
         }
     }
 
+    /// Returns the number that the file header has for the scheme.
     pub(super) fn tag(&self) -> u8 {
         match self {
             Self::Parts(_) => 0,
@@ -77,7 +88,7 @@ impl Positions {
             0 => PackedParts::restore(reader).map(Self::Parts),
             1 => LatticeBlocks::restore(reader).map(Self::Lattice),
             2 => VertexBlocks::restore(reader).map(Self::Blocks),
-            _ => Err(reader.wrong(format!("scheme {tag} is not known"))),
+            _ => Err(reader.wrong(format!("unknown scheme {tag}"))),
         }
     }
 }

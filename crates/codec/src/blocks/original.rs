@@ -1,39 +1,39 @@
-//! The surface that vertices in blocks span, and how far it moves with them.
+//! The original surface of blocks, and measures of how far moved vertices leave it.
 
 use std::collections::HashMap;
 
 use glam::{DMat3, DVec3};
 use meshlod_mesh::{Connectivity, FaceId, Mesh, Side, Twin, VertexId};
 
-use super::Change;
+use super::SurfaceChange;
 
-/// Faces by the places of their corners, with what moving them is judged by.
-pub(super) struct Surface {
+/// Faces at their original positions, with what is needed to judge displacements.
+pub(super) struct OriginalSurface {
     pub(super) places: Vec<DVec3>,
     pub(super) faces: Vec<Face>,
-    /// The faces around each vertex, and where in the list each one's start.
+    /// Faces around each vertex, concatenated, and the start of each vertex's list.
     ring: Vec<u32>,
     starts: Vec<u32>,
-    /// Of vertices on borders: squares of directions across them, along the surface.
-    rims: HashMap<u32, DMat3>,
+    /// For boundary vertices, the sum of squared in-surface normals of their boundary edges.
+    boundaries: HashMap<u32, DMat3>,
 }
 
-/// A face that has an area.
+/// Face with a positive area.
 pub(super) struct Face {
     pub(super) corners: [u32; 3],
     pub(super) normal: DVec3,
     pub(super) area: f64,
-    /// The least of its heights.
+    /// Shortest of the three heights.
     pub(super) height: f64,
 }
 
-/// The cosine up to which a face counts as level with its neighbours.
+/// Least cosine between the normals of faces that count as level with each other.
 const LEVEL: f64 = 0.8;
 
-/// Where so many faces meet, no more are looked at for each of them: else the apex of a cone takes the square of them.
+/// Limit on the faces examined around a vertex. Without it, the apex of a cone costs their square.
 const MANY: usize = 32;
 
-impl Surface {
+impl OriginalSurface {
     pub(super) fn new(mesh: &Mesh, ordered: &[VertexId], centre: DVec3) -> Self {
         let mut numbers = vec![0; mesh.positions.len()];
         (0..).zip(ordered).for_each(|(at, v)| numbers[v.index()] = at);
@@ -52,20 +52,20 @@ impl Surface {
                 ends[v as usize] += 1;
             }
         }
-        let rims = rims(&faces, &places);
-        Self { places, faces, ring, starts, rims }
+        let boundaries = boundaries(&faces, &places);
+        Self { places, faces, ring, starts, boundaries }
     }
 
-    /// The faces around a vertex.
-    pub(super) fn around(&self, vertex: usize) -> impl Iterator<Item = &Face> + Clone {
+    /// Returns the faces around a vertex.
+    pub(super) fn faces_around(&self, vertex: usize) -> impl Iterator<Item = &Face> + Clone {
         let ring = &self.ring[self.starts[vertex] as usize..self.starts[vertex + 1] as usize];
         ring.iter().map(|&face| &self.faces[face as usize])
     }
 
-    /// Some vertices and their neighbours, each once.
+    /// Returns the vertices and their neighbours, each once.
     pub(super) fn with_neighbours(&self, vertices: impl Iterator<Item = usize>) -> Vec<usize> {
         let near = vertices.flat_map(|v| {
-            self.around(v).flat_map(|face| face.corners).map(|v| v as usize).chain([v])
+            self.faces_around(v).flat_map(|face| face.corners).map(|v| v as usize).chain([v])
         });
         let mut all: Vec<_> = near.collect();
         all.sort_unstable();
@@ -73,19 +73,19 @@ impl Surface {
         all
     }
 
-    /// How much moving a vertex on a border matters; nothing anywhere else.
-    pub(super) fn rim(&self, vertex: usize) -> Option<&DMat3> {
-        self.rims.get(&(vertex as u32))
+    /// Returns the matrix of a boundary vertex, by which moving across the boundary is judged.
+    pub(super) fn boundary(&self, vertex: usize) -> Option<&DMat3> {
+        self.boundaries.get(&(vertex as u32))
     }
 
-    /// The mean distance by which points of faces leave the planes of these.
+    /// Returns the mean distance of the moved faces' points from the original planes.
     pub(super) fn error(&self, moved: &[DVec3]) -> f64 {
         let (mut sum, mut area) = (0.0, 0.0);
         for face in &self.faces {
             let [a, b, c] = face.corners.map(|v| face.normal.dot(moved[v as usize]));
             let corners = a.abs() + b.abs() + c.abs();
             let middles = ((a + b).abs() + (b + c).abs() + (c + a).abs()) * 0.5;
-            // Strang's seven points, of third order.
+            // Strang's seven-point rule of third order.
             let mean = corners / 20.0 + middles * (2.0 / 15.0) + (a + b + c).abs() * (9.0 / 60.0);
             sum += face.area * mean;
             area += face.area;
@@ -93,41 +93,43 @@ impl Surface {
         if area > 0.0 { sum / area } else { 0.0 }
     }
 
-    /// All that is reported.
-    pub(super) fn change(&self, moved: &[DVec3]) -> Change {
-        let farther = |most: f64, v: usize| most.max(self.apart(v, moved, most));
-        Change {
+    /// Returns all error measures of moved vertices.
+    pub(super) fn change(&self, moved: &[DVec3]) -> SurfaceChange {
+        let farther = |most: f64, v: usize| most.max(self.deviation(v, moved, most));
+        SurfaceChange {
             error_estimate: self.error(moved),
             max_estimate: (0..self.places.len()).fold(0.0, farther),
             flips: self.faces.iter().filter(|face| self.is_flipped(face, moved)).count(),
         }
     }
 
-    /// Whether a face is turned by more than a right angle.
+    /// Returns true if a face turns by more than a right angle.
     pub(super) fn is_flipped(&self, face: &Face, moved: &[DVec3]) -> bool {
         face.is_flipped(face.corners.map(|v| self.places[v as usize] + moved[v as usize]))
     }
 
-    /// How far a vertex is from the faces around it, or points of its faces and sides, they or these moved: the greatest,
-    /// if it is more than `enough`, and else nothing. Faces around its neighbours are looked at where it seems more.
-    pub(super) fn apart(&self, vertex: usize, moved: &[DVec3], enough: f64) -> f64 {
-        if self.around(vertex).next().is_none() {
-            // Of faces without an area.
+    /// Returns the largest distance between a vertex, or sample points of its edges and faces, and
+    /// the other surface, in both directions; 0 if it is at most `enough`.
+    ///
+    /// Searches the faces around the vertex, and those around its neighbours if that is not enough.
+    pub(super) fn deviation(&self, vertex: usize, moved: &[DVec3], enough: f64) -> f64 {
+        if self.faces_around(vertex).next().is_none() {
+            // All its faces have no area.
             return moved[vertex].length();
         }
-        let apart = self.apart_from(self.around(vertex), vertex, moved, enough);
-        if apart <= enough {
+        let deviation = self.deviation_from(self.faces_around(vertex), vertex, moved, enough);
+        if deviation <= enough {
             return 0.0;
         }
-        if self.around(vertex).nth(MANY).is_some() {
-            return apart;
+        if self.faces_around(vertex).nth(MANY).is_some() {
+            return deviation;
         }
-        let corners = self.around(vertex).flat_map(|face| face.corners);
-        let wide = corners.flat_map(|corner| self.around(corner as usize).take(MANY));
-        self.apart_from(wide, vertex, moved, enough).min(apart)
+        let corners = self.faces_around(vertex).flat_map(|face| face.corners);
+        let wide = corners.flat_map(|corner| self.faces_around(corner as usize).take(MANY));
+        self.deviation_from(wide, vertex, moved, enough).min(deviation)
     }
 
-    fn apart_from<'f>(
+    fn deviation_from<'f>(
         &'f self,
         faces: impl Iterator<Item = &'f Face> + Clone,
         vertex: usize,
@@ -136,15 +138,15 @@ impl Surface {
     ) -> f64 {
         let least = enough * enough;
         let v = vertex as u32;
-        // Quarters of its sides, and places in its faces.
-        let points = self.around(vertex).take(MANY).flat_map(|face| {
+        // Quarter points of its edges, and points within its faces.
+        let points = self.faces_around(vertex).take(MANY).flat_map(|face| {
             let (a, b) = (face.after(v), face.after(face.after(v)));
             [[v, v, v, a], [v, v, a, a], [v, a, a, a], [v, v, a, b], [v, a, a, b], [v, a, b, b]]
         });
-        let apart = |of: [u32; 4]| {
+        let deviation = |of: [u32; 4]| {
             let was = of.iter().map(|&v| self.places[v as usize]).sum::<DVec3>() * 0.25;
             let by = of.iter().map(|&v| moved[v as usize]).sum::<DVec3>() * 0.25;
-            // Wherever the faces are, it is no farther from where it was.
+            // It is this far from its original position at most.
             if by.length_squared() <= least {
                 return 0.0;
             }
@@ -153,37 +155,41 @@ impl Surface {
             let to_is = faces.clone().map(|face| face.corners.map(is));
             nearest(was + by, to_was, least).max(nearest(was, to_is, least))
         };
-        points.chain([[v; 4]]).map(apart).fold(0.0, f64::max).sqrt()
+        points.chain([[v; 4]]).map(deviation).fold(0.0, f64::max).sqrt()
     }
 
-    /// Whether a vertex is surely about as near to the faces around it as that: all of them moved no farther, or they
-    /// are nearly one plane, and it stays over them and near it.
+    /// Returns true if a vertex is certainly about as near to the faces around it as `most`: if
+    /// none of their corners moved farther, or if the faces are nearly level and it stays above and
+    /// near them.
     pub(super) fn is_near(&self, vertex: usize, moved: &[DVec3], most: f64) -> bool {
         let is_short = |&v: &u32| moved[v as usize].length_squared() <= most * most;
-        if self.around(vertex).all(|face| face.corners.iter().all(is_short)) {
+        if self.faces_around(vertex).all(|face| face.corners.iter().all(is_short)) {
             return true;
         }
-        let normal = self.around(vertex).map(|face| face.normal * face.area).sum::<DVec3>();
+        let normal = self.faces_around(vertex).map(|face| face.normal * face.area).sum::<DVec3>();
         let least = LEVEL * normal.length();
         let length = moved[vertex].length();
         let is_over = |face: &Face| face.normal.dot(normal) >= least && length <= face.height;
-        self.rim(vertex).is_none()
-            && self.around(vertex).all(is_over)
-            && self.leaves(vertex, moved[vertex]) <= most
+        self.boundary(vertex).is_none()
+            && self.faces_around(vertex).all(is_over)
+            && self.plane_distance(vertex, moved[vertex]) <= most
     }
 
-    /// How far a vertex leaves the planes around it, and its borders.
-    pub(super) fn leaves(&self, vertex: usize, moved: DVec3) -> f64 {
+    /// Returns the distance of a moved vertex from the planes around it, and from its boundary.
+    pub(super) fn plane_distance(&self, vertex: usize, moved: DVec3) -> f64 {
         let planes =
-            self.around(vertex).map(|face| face.normal.dot(moved).abs()).fold(0.0, f64::max);
-        let rim = self.rim(vertex).map_or(0.0, |rim| moved.dot(*rim * moved).max(0.0).sqrt());
-        planes.max(rim)
+            self.faces_around(vertex).map(|face| face.normal.dot(moved).abs()).fold(0.0, f64::max);
+        let boundary = self
+            .boundary(vertex)
+            .map_or(0.0, |boundary| moved.dot(*boundary * moved).max(0.0).sqrt());
+        planes.max(boundary)
     }
 
-    /// The squares of the normals around some vertices, by area: how much moving along each direction matters.
+    /// Returns the sum of squared normals around vertices, by area: how much moving in each
+    /// direction matters.
     pub(super) fn normals(&self, vertices: std::ops::Range<usize>) -> DMat3 {
         let mut sum = DMat3::ZERO;
-        for face in vertices.flat_map(|v| self.around(v)) {
+        for face in vertices.flat_map(|v| self.faces_around(v)) {
             sum += outer(face.normal) * face.area;
         }
         sum
@@ -191,7 +197,7 @@ impl Surface {
 }
 
 impl Face {
-    /// The corner after one of them.
+    /// Returns the corner that follows a corner.
     fn after(&self, corner: u32) -> u32 {
         let [a, b, c] = self.corners;
         if corner == a {
@@ -203,8 +209,8 @@ impl Face {
         }
     }
 
-    /// Whether other corners turn it by more than a right angle, or leave it none of its area: then which way it is
-    /// turned is for rounding to say.
+    /// Returns true if moved corners turn the face by more than a right angle or leave it (nearly)
+    /// no area, when its orientation would be decided by rounding.
     pub(super) fn is_flipped(&self, [a, b, c]: [DVec3; 3]) -> bool {
         (b - a).cross(c - a).dot(self.normal) <= NO_AREA * self.area
     }
@@ -219,14 +225,14 @@ impl Face {
     }
 }
 
-/// So much of a face's area is none.
+/// Fraction of its area below which a face counts as lost.
 const NO_AREA: f64 = 1e-9;
 
-/// The squares of the directions across a border at each of its vertices.
-fn rims(faces: &[Face], places: &[DVec3]) -> HashMap<u32, DMat3> {
+/// Computes for each boundary vertex the sum of squared directions across its boundary edges.
+fn boundaries(faces: &[Face], places: &[DVec3]) -> HashMap<u32, DMat3> {
     let triangles: Vec<_> = faces.iter().map(|face| face.corners.map(VertexId)).collect();
     let connectivity = Connectivity::new(&triangles, places.len());
-    let mut rims = HashMap::new();
+    let mut boundaries = HashMap::new();
     for (number, face) in faces.iter().enumerate() {
         for k in 0..3 {
             let side = Side::new(FaceId::new(number), k);
@@ -237,19 +243,19 @@ fn rims(faces: &[Face], places: &[DVec3]) -> HashMap<u32, DMat3> {
             let along = places[ends[1] as usize] - places[ends[0] as usize];
             let across = along.cross(face.normal).normalize_or_zero();
             for v in ends {
-                *rims.entry(v).or_insert(DMat3::ZERO) += outer(across);
+                *boundaries.entry(v).or_insert(DMat3::ZERO) += outer(across);
             }
         }
     }
-    rims
+    boundaries
 }
 
-/// The square of a vector, as a matrix.
+/// Returns the outer product of a vector with itself.
 pub(super) fn outer(v: DVec3) -> DMat3 {
     DMat3::from_cols(v * v.x, v * v.y, v * v.z)
 }
 
-/// The square of the distance to the nearest of some triangles, or to one that is near enough.
+/// Returns the squared distance to the nearest triangle, or to the first one that is near enough.
 fn nearest(p: DVec3, triangles: impl Iterator<Item = [DVec3; 3]>, enough: f64) -> f64 {
     let mut nearest = f64::INFINITY;
     for corners in triangles {
@@ -261,7 +267,7 @@ fn nearest(p: DVec3, triangles: impl Iterator<Item = [DVec3; 3]>, enough: f64) -
     nearest
 }
 
-/// The point of a triangle closest to another.
+/// Returns the point of a triangle that is closest to `p`.
 fn closest(p: DVec3, [a, b, c]: [DVec3; 3]) -> DVec3 {
     let normal = (b - a).cross(c - a);
     let inside = |a: DVec3, b: DVec3| (b - a).cross(p - a).dot(normal) >= 0.0;
@@ -271,7 +277,7 @@ fn closest(p: DVec3, [a, b, c]: [DVec3; 3]) -> DVec3 {
     let on = |a: DVec3, b: DVec3| {
         let along = b - a;
         let part = (p - a).dot(along) / along.length_squared();
-        // Also of a side that is a point.
+        // An edge of length 0 gives NaN, which ends here as 0.
         a + along * if part > 0.0 { part.min(1.0) } else { 0.0 }
     };
     let nearer = |x: DVec3, y: DVec3| {

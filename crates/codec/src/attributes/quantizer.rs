@@ -2,9 +2,9 @@
 
 use crate::bytes::{Malformed, Reader};
 
-/// Steps, and for each component the number of its least value.
+/// UniformQuantizer, and for each component the number of its least value.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Steps {
+pub(super) struct UniformQuantizer {
     exponent: i32,
     least: Vec<i32>,
 }
@@ -14,8 +14,8 @@ const F32_BITS: i32 = 23;
 /// The exponents that there are: of the least `f32`, and of the greatest.
 const EXPONENTS: [i32; 2] = [-149, 127];
 
-impl Steps {
-    /// Steps that move no value further than a bound.
+impl UniformQuantizer {
+    /// UniformQuantizer that move no value further than a bound.
     pub(super) fn new<'a>(
         values: impl Iterator<Item = &'a [f32]>,
         width: usize,

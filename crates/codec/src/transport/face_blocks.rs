@@ -6,11 +6,11 @@
 
 use meshlod_mesh::{Connectivity, FaceId, Side, Twin, VertexId};
 
-use super::predict::Cells;
+use super::predict::CellVec;
 
 /// Faces by blocks.
 #[derive(Clone, Debug)]
-pub(super) struct Blocks {
+pub(super) struct FaceBlocks {
     /// The block of each face.
     pub(super) of: Vec<u32>,
     /// The faces of each block, the one in its middle first.
@@ -18,7 +18,7 @@ pub(super) struct Blocks {
     starts: Vec<u32>,
 }
 
-impl Blocks {
+impl FaceBlocks {
     /// The faces of each block, in the order of the blocks.
     pub(super) fn members(&self) -> impl Iterator<Item = &[u32]> {
         self.starts.windows(2).map(|ends| &self.members[ends[0] as usize..ends[1] as usize])
@@ -28,14 +28,14 @@ impl Blocks {
 /// How often all faces along borders are looked at. At 11 bits 2 leave 1.2 % more bytes, 8 take .5 % off.
 const PASSES: usize = 4;
 
-/// Blocks of about so many faces. Cost: linear.
-pub(super) fn blocks(
+/// FaceBlocks of about so many faces. Cost: linear.
+pub(super) fn face_blocks(
     faces: &[[VertexId; 3]],
-    cells: &[Cells],
+    cells: &[CellVec],
     connectivity: &Connectivity,
     size: usize,
-) -> Blocks {
-    let mut parting = Parting::new(faces, cells, connectivity, size);
+) -> FaceBlocks {
+    let mut parting = Clustering::new(faces, cells, connectivity, size);
     parting.grow();
     for _ in 0..PASSES {
         parting.smooth();
@@ -43,29 +43,29 @@ pub(super) fn blocks(
     parting.finish()
 }
 
-struct Parting {
+struct Clustering {
     size: usize,
     neighbours: Vec<[u32; 3]>,
-    middles: Vec<Cells>,
+    middles: Vec<CellVec>,
     of: Vec<u32>,
-    blocks: Vec<Block>,
+    blocks: Vec<BlockShape>,
 }
 
 /// The faces of a block together.
 #[derive(Clone, Copy, Debug, Default)]
-struct Block {
+struct BlockShape {
     faces: f32,
-    middle: Cells,
+    middle: CellVec,
     /// The mean square of how far faces are from the middle, along each axis that the surface has.
     spread: f32,
 }
 
 const NONE: u32 = u32::MAX;
 
-impl Parting {
+impl Clustering {
     fn new(
         faces: &[[VertexId; 3]],
-        cells: &[Cells],
+        cells: &[CellVec],
         connectivity: &Connectivity,
         size: usize,
     ) -> Self {
@@ -85,7 +85,7 @@ impl Parting {
         }
     }
 
-    /// Blocks ring by ring; the next begins at the face that has waited longest.
+    /// FaceBlocks ring by ring; the next begins at the face that has waited longest.
     fn grow(&mut self) {
         let mut waiting = Vec::new();
         let (mut waited, mut rest) = (0, 0);
@@ -122,7 +122,7 @@ impl Parting {
             }
             count += 1;
         }
-        self.blocks = vec![Block::default(); count as usize];
+        self.blocks = vec![BlockShape::default(); count as usize];
     }
 
     /// Lets each face that is beside another block change over where that costs less.
@@ -152,7 +152,7 @@ impl Parting {
     }
 
     fn measure(&mut self) {
-        self.blocks.fill(Block::default());
+        self.blocks.fill(BlockShape::default());
         for (&block, &middle) in self.of.iter().zip(&self.middles) {
             let block = &mut self.blocks[block as usize];
             block.faces += 1.0;
@@ -177,7 +177,7 @@ impl Parting {
         /// Fuller is full, and emptier is to be emptied.
         const FULL: f32 = 1.25;
         const EMPTY: f32 = 0.25;
-        let Block { faces, middle, spread } = self.blocks[block as usize];
+        let BlockShape { faces, middle, spread } = self.blocks[block as usize];
         let way = self.middles[f] - middle;
         let spread = spread + self.blocks[own as usize].spread + f32::MIN_POSITIVE;
         let sides = beside.iter().filter(|&&other| other != block && other != NONE).count();
@@ -192,7 +192,7 @@ impl Parting {
     }
 
     /// Counts the blocks that have faces, and puts the face in the middle of each first.
-    fn finish(mut self) -> Blocks {
+    fn finish(mut self) -> FaceBlocks {
         self.measure();
         let mut numbers = vec![0; self.blocks.len()];
         let mut starts = vec![0];
@@ -219,6 +219,6 @@ impl Parting {
                 members.swap(starts[block] as usize, end);
             }
         }
-        Blocks { of: self.of, members, starts }
+        FaceBlocks { of: self.of, members, starts }
     }
 }

@@ -2,11 +2,16 @@
 
 use glam::DVec3;
 use meshlod_fixtures as fixtures;
-use meshlod_mesh::{Connectivity, Layer, LayerKind, face_components};
+use meshlod_mesh::{
+    Attributes, Connectivity, Layer, LayerKind, Mesh, VertexId, WedgeId, face_components,
+};
 use meshlod_samples as samples;
 
 use super::*;
-use crate::parts::{Cells, Parting};
+use crate::attributes::AttributeBounds;
+use crate::blocks::Accuracy;
+use crate::lattice::Lattice;
+use crate::parts::{Partitioner, Reconstruction};
 
 /// Meshes with and without attributes and seams, closed and open, and what is no surface.
 fn meshes() -> Vec<Mesh> {
@@ -45,15 +50,15 @@ fn by_schemes(mesh: &Mesh) -> Vec<Compressed> {
 
 fn compressions(mesh: &Mesh) -> Vec<Compression> {
     let bounds = AttributeBounds::default();
-    let parts = Parting::new(mesh).unwrap();
+    let parts = Partitioner::new(mesh).unwrap();
     let in_parts = |count, cells| {
-        Compressed::in_parts(mesh, &parts.into_count(count, cells), &bounds).unwrap()
+        Compressed::in_parts(mesh, &parts.with_count(count, cells), &bounds).unwrap()
     };
     vec![
-        in_parts(1, Cells::Centred),
-        in_parts(9, Cells::Truncated),
+        in_parts(1, Reconstruction::Centred),
+        in_parts(9, Reconstruction::Truncated),
         Compressed::on_lattice(mesh, Lattice::new(-7).unwrap(), &bounds).unwrap(),
-        Compressed::in_blocks(mesh, Closeness::Bits(8), &bounds).unwrap(),
+        Compressed::in_blocks(mesh, Accuracy::Bits(8), &bounds).unwrap(),
     ]
 }
 
@@ -119,8 +124,9 @@ fn soup(seed: u32) -> Mesh {
 fn what_is_written_is_read_whatever_the_cells() {
     for seed in 0..24 {
         let (mesh, bits) = (soup(seed), 2 + seed % 23);
-        for scheme in [Scheme::Parts(Cells::Centred), Scheme::Lattice, Scheme::Blocks] {
-            let done = compress(&mesh, scheme, Target::Bits(bits), &AttributeBounds::default());
+        for scheme in [Scheme::Parts(Reconstruction::Centred), Scheme::Lattice, Scheme::Blocks] {
+            let done =
+                compress(&mesh, scheme, CompressionTarget::Bits(bits), &AttributeBounds::default());
             let Ok(Compression { compressed, vertices, .. }) = done else { continue };
             let read = Compressed::from_bytes(&compressed.to_bytes()).unwrap();
             assert_eq!(read.decode().unwrap().positions.len(), vertices.len());
@@ -143,9 +149,9 @@ fn many_faces_at_one_vertex_are_compressed_too() {
 #[test]
 fn a_reduction_is_kept_or_said_not_to_be() {
     for mesh in [samples::gyroid(3000), samples::sphere(600), fixtures::grid(6)] {
-        for scheme in [Scheme::Parts(Cells::Centred), Scheme::Lattice, Scheme::Blocks] {
+        for scheme in [Scheme::Parts(Reconstruction::Centred), Scheme::Lattice, Scheme::Blocks] {
             for part in [0.5, 0.6, 0.7] {
-                let target = Target::Reduction(part);
+                let target = CompressionTarget::Reduction(part);
                 let done = compress(&mesh, scheme, target, &AttributeBounds::default()).unwrap();
                 assert_eq!(done.reached, done.compressed.reduction() >= part);
             }

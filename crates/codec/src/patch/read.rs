@@ -3,31 +3,31 @@
 use std::ops::Range;
 
 use super::Rows;
-use super::front::{Front, Gate};
-use super::steps::{Book, Code, Context, Place};
+use super::codes::{Code, Context, NodeAddress, PatchRows};
+use super::front::{Front, OpenEdge};
 use crate::bits::{Cursor, width};
 use crate::bytes::Malformed;
 
 /// A patch that grows as its bits say.
-pub(super) struct Regrowth<'a> {
+pub(super) struct PatchReader<'a> {
     rows: &'a Rows,
-    book: Book,
+    book: PatchRows,
     bits: Cursor<'a>,
     front: Front,
     /// The nodes that it has met.
-    met: Vec<Place>,
+    met: Vec<NodeAddress>,
     /// How many it has met of each row of its own.
     taken: Vec<u32>,
 }
 
-impl<'a> Regrowth<'a> {
+impl<'a> PatchReader<'a> {
     pub(super) fn new(
         rows: &'a Rows,
         own: Range<u32>,
         mut bits: Cursor<'a>,
     ) -> Result<Self, Malformed> {
         let taken = vec![0; own.len()];
-        let book = Book::next(own, rows, &mut bits)?;
+        let book = PatchRows::next(own, rows, &mut bits)?;
         Ok(Self { rows, book, bits, front: Front::default(), met: Vec::new(), taken })
     }
 
@@ -48,14 +48,14 @@ impl<'a> Regrowth<'a> {
             }
         }
         for number in faces.iter_mut().flatten() {
-            let Place { row, number: at } = self.met[*number as usize];
+            let NodeAddress { row, number: at } = self.met[*number as usize];
             *number = self.rows.first(row) + at;
         }
         Ok(faces)
     }
 
     /// The node across a gate, if there is a face.
-    fn third(&mut self, gate: Gate) -> Result<Option<u32>, Malformed> {
+    fn third(&mut self, gate: OpenEdge) -> Result<Option<u32>, Malformed> {
         let rows = [gate.from, gate.to].map(|number| self.met[number as usize].row);
         let context = self.book.context(Some(rows));
         let neighbour = match context.next_code(&mut self.bits)? {
@@ -86,17 +86,17 @@ impl<'a> Regrowth<'a> {
         Ok(self.front.meet())
     }
 
-    fn own(&mut self, context: Context) -> Result<Place, Malformed> {
+    fn own(&mut self, context: Context) -> Result<NodeAddress, Malformed> {
         let row = self.book.next_own(context, &mut self.bits)?;
         let taken = &mut self.taken[(row - self.book.own.start) as usize];
         if *taken == self.rows.size(row) {
             return Err(self.bits.wrong(format!("row {row} has no more nodes")));
         }
         *taken += 1;
-        Ok(Place { row, number: *taken - 1 })
+        Ok(NodeAddress { row, number: *taken - 1 })
     }
 
-    fn foreign(&mut self) -> Result<Place, Malformed> {
+    fn foreign(&mut self) -> Result<NodeAddress, Malformed> {
         let at = self.bits.next(width(self.book.foreign.len()))? as usize;
         let row = self.book.foreign.get(at).copied();
         let row = row.ok_or_else(|| self.bits.wrong(format!("the patch names no {at}-th row")))?;
@@ -104,7 +104,7 @@ impl<'a> Regrowth<'a> {
         if number >= self.rows.size(row) {
             return Err(self.bits.wrong(format!("row {row} has no node {number}")));
         }
-        Ok(Place { row, number })
+        Ok(NodeAddress { row, number })
     }
 
     fn known(&mut self) -> Result<u32, Malformed> {

@@ -24,13 +24,13 @@ impl Nodes {
         let mut block_of = vec![0; mesh.positions.len()];
         ordered.iter().enumerate().for_each(|(at, v)| block_of[v.index()] = at / BLOCK);
         let mut seen = vec![false; mesh.positions.len()];
-        let mut is_double = |v: &VertexId| std::mem::replace(&mut seen[v.index()], true);
-        let is_double: Vec<bool> = this.vertex_of.iter().map(&mut is_double).collect();
-        let per_block = if is_double.contains(&true) { 2 } else { 1 };
-        let row = |(v, &is_double): (&VertexId, &bool)| {
-            (per_block * block_of[v.index()] + usize::from(is_double)) as u32
+        let mut is_extra = |v: &VertexId| std::mem::replace(&mut seen[v.index()], true);
+        let is_extra: Vec<bool> = this.vertex_of.iter().map(&mut is_extra).collect();
+        let per_block = if is_extra.contains(&true) { 2 } else { 1 };
+        let row = |(v, &is_extra): (&VertexId, &bool)| {
+            (per_block * block_of[v.index()] + usize::from(is_extra)) as u32
         };
-        this.row_of = this.vertex_of.iter().zip(&is_double).map(row).collect();
+        this.row_of = this.vertex_of.iter().zip(&is_extra).map(row).collect();
         this.rows = per_block * ordered.len().div_ceil(BLOCK);
         this
     }

@@ -3,10 +3,10 @@
 //! A block has vertices on its border, and its neighbours have them too. What is on borders and in one cell is one vertex, unless it is
 //! told apart: by a tag, which is 0 if nothing else is said. Few vertices share a cell, so that takes next to nothing.
 
-use super::predict::Cells;
+use super::predict::CellVec;
 
 /// Vertices by cell and tag.
-pub(super) struct Joints {
+pub(super) struct WeldTable {
     slots: Vec<Slot>,
     len: usize,
 }
@@ -22,13 +22,13 @@ const EMPTY: u32 = u32::MAX;
 
 /// A cell as a number.
 #[inline]
-pub(super) fn key(cell: Cells) -> u64 {
+pub(super) fn key(cell: CellVec) -> u64 {
     let (x, y, z) = (cell.x as u32 as u64, cell.y as u32 as u64, cell.z as u32 as u64);
     x | y << 21 | z << 42
 }
 
 /// Of the cells of a block, in their order.
-pub(super) fn checksum(cells: impl Iterator<Item = Cells>) -> u16 {
+pub(super) fn checksum(cells: impl Iterator<Item = CellVec>) -> u16 {
     let mix = |sum: u64, cell| (sum.rotate_left(23) ^ key(cell)).wrapping_mul(MIX);
     (cells.fold(0, mix) >> 48) as u16
 }
@@ -36,7 +36,7 @@ pub(super) fn checksum(cells: impl Iterator<Item = Cells>) -> u16 {
 /// 2⁶⁴ by the golden ratio.
 const MIX: u64 = 0x9e37_79b9_7f4a_7c15;
 
-impl Joints {
+impl WeldTable {
     pub(super) fn new(capacity: usize) -> Self {
         let len = (2 * capacity).next_power_of_two().max(64);
         Self { slots: vec![Slot { key: 0, tag: 0, vertex: EMPTY }; len], len: 0 }
@@ -44,7 +44,7 @@ impl Joints {
 
     /// What there is of such a cell and tag; `vertex`, where there has been nothing. `vertex` is not the greatest number.
     #[inline]
-    pub(super) fn join(&mut self, key: u64, tag: u32, vertex: u32) -> &mut u32 {
+    pub(super) fn find_or_insert(&mut self, key: u64, tag: u32, vertex: u32) -> &mut u32 {
         if 2 * self.len >= self.slots.len() {
             self.grow();
         }

@@ -1,39 +1,40 @@
-//! Which nodes of parts are one vertex: a file of parts has it once for each part.
+//! Welding the copies of a vertex that several parts have.
 
 use meshlod_mesh::VertexId;
 
 use crate::bytes::{Malformed, Reader};
 
-/// What the rule gets wrong: a node, and the first that is the same vertex.
+/// Nodes that the welding rule assigns to the wrong vertex, each with the first node of its vertex.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub(super) struct Exceptions(Vec<[u32; 2]>);
+pub(super) struct WeldExceptions(Vec<[u32; 2]>);
 
-impl Exceptions {
-    /// What must be said beside cells, for each node to be the vertex that it is.
+impl WeldExceptions {
+    /// Collects the nodes for which the rule disagrees with `vertex_of`.
     pub(super) fn new(faces: &[[u32; 3]], cells: &[[i32; 3]], vertex_of: &[VertexId]) -> Self {
         let mut first = vec![None; vertex_of.iter().max().map_or(0, |v| v.index() + 1)];
-        let is = (0..).zip(vertex_of).map(|(node, v)| *first[v.index()].get_or_insert(node));
-        let told = by_cells(faces, cells).into_iter().zip(is).zip(0..);
-        Self(told.filter(|((told, is), _)| told != is).map(|((_, is), node)| [node, is]).collect())
+        let actual = (0..).zip(vertex_of).map(|(node, v)| *first[v.index()].get_or_insert(node));
+        let both = weld_by_cells(faces, cells).into_iter().zip(actual).zip(0..);
+        let wrong = both.filter(|((rule, actual), _)| rule != actual);
+        Self(wrong.map(|((_, actual), node)| [node, actual]).collect())
     }
 
-    /// The first node that is the same vertex, of each.
-    pub(super) fn first(
+    /// Returns for each node the first node of the same vertex.
+    pub(super) fn first_nodes(
         &self,
         faces: &[[u32; 3]],
         cells: &[[i32; 3]],
     ) -> Result<Vec<u32>, Malformed> {
         let wrong = |reason: &str| Malformed { at: 0, reason: reason.into() };
-        let mut first = by_cells(faces, cells);
+        let mut first = weld_by_cells(faces, cells);
         for &[node, is] in &self.0 {
             let node = first.get_mut(node as usize);
-            *node.ok_or_else(|| wrong("an exception of a node that there is not"))? = is;
+            *node.ok_or_else(|| wrong("a weld exception names a node that does not exist"))? = is;
         }
-        // What is first comes before, and is its own first.
-        let is_well = |(node, &is): (u32, &u32)| is <= node && first[is as usize] == is;
-        match (0..).zip(&first).all(is_well) {
+        // A first node is never after the others, and is its own first node.
+        let is_valid = |(node, &is): (u32, &u32)| is <= node && first[is as usize] == is;
+        match (0..).zip(&first).all(is_valid) {
             true => Ok(first),
-            false => Err(wrong("a vertex with no first node")),
+            false => Err(wrong("a weld exception does not lead to the first node of a vertex")),
         }
     }
 
@@ -49,15 +50,16 @@ impl Exceptions {
     pub(super) fn restore(reader: &mut Reader) -> Result<Self, Malformed> {
         let count = reader.u32()?;
         if reader.left() / 8 < count as usize {
-            return Err(reader.wrong(format!("{count} exceptions do not follow")));
+            return Err(reader.wrong(format!("too few bytes for {count} weld exceptions")));
         }
         let pairs = (0..count).map(|_| Ok([reader.u32()?, reader.u32()?]));
         pairs.collect::<Result<_, _>>().map(Self)
     }
 }
 
-/// The rule: nodes on open sides of their parts that are in one cell are one vertex.
-fn by_cells(faces: &[[u32; 3]], cells: &[[i32; 3]]) -> Vec<u32> {
+/// Welds nodes in one cell that lie on boundary edges of their parts, and returns for each node the
+/// first one that it is welded to. This rule is right for nearly all nodes.
+fn weld_by_cells(faces: &[[u32; 3]], cells: &[[i32; 3]]) -> Vec<u32> {
     let sides = faces.iter().flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]);
     let mut sides: Vec<_> = sides.collect();
     sides.sort_unstable();

@@ -3,7 +3,7 @@
 use meshlod_mesh::{Bounds, Connectivity, FaceId, Mesh, Side, Twin, VertexId};
 
 /// Faces that have three corners, their corners and their neighbours.
-pub(super) struct Surface<'m> {
+pub(super) struct FaceGraph<'m> {
     positions: &'m [[f64; 3]],
     /// The mesh's faces, without those that repeat a vertex.
     pub(super) triangles: Vec<[VertexId; 3]>,
@@ -16,7 +16,7 @@ pub(super) struct Surface<'m> {
 
 const NONE: u32 = u32::MAX;
 
-impl<'m> Surface<'m> {
+impl<'m> FaceGraph<'m> {
     pub(super) fn new(mesh: &'m Mesh) -> Self {
         let is_whole = |&[a, b, c]: &[VertexId; 3]| a != b && b != c && c != a;
         let faces = mesh.faces.iter().enumerate().filter(|(_, face)| is_whole(face));

@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use super::Rows;
-use super::grow::{Finds, Step};
+use super::grow::{Found, GrowthStep};
 use crate::bits::{Bits, Cursor, width};
 use crate::bytes::Malformed;
 
@@ -12,15 +12,15 @@ use crate::bytes::Malformed;
 pub(super) enum Code {
     /// The next node of a row of the patch's own.
     Own,
-    /// [`Finds::Next`].
+    /// [`Found::Next`].
     Next,
-    /// [`Finds::Previous`].
+    /// [`Found::Previous`].
     Previous,
-    /// [`Finds::Nothing`].
+    /// [`Found::Nothing`].
     Nothing,
     /// A node of another patch's.
     Foreign,
-    /// [`Finds::Known`].
+    /// [`Found::Known`].
     Known,
 }
 
@@ -38,14 +38,14 @@ const CODES: [&[Code]; 4] = {
 };
 
 /// The rows of a patch: its own, and those of others that it has nodes of.
-pub(super) struct Book {
+pub(super) struct PatchRows {
     pub(super) own: Range<u32>,
     pub(super) foreign: Vec<u32>,
 }
 
 /// Where a node is: in a row, by its number there.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Place {
+pub(super) struct NodeAddress {
     pub(super) row: u32,
     pub(super) number: u32,
 }
@@ -58,9 +58,13 @@ pub(super) struct Context {
     row: u32,
 }
 
-impl Book {
-    pub(super) fn of(steps: &[Step], own: Range<u32>, place: impl Fn(u32) -> Place) -> Self {
-        let rows = steps.iter().filter_map(Step::new_node).map(|node| place(node).row);
+impl PatchRows {
+    pub(super) fn of(
+        steps: &[GrowthStep],
+        own: Range<u32>,
+        place: impl Fn(u32) -> NodeAddress,
+    ) -> Self {
+        let rows = steps.iter().filter_map(GrowthStep::new_node).map(|node| place(node).row);
         let mut foreign: Vec<u32> = rows.filter(|row| !own.contains(row)).collect();
         foreign.sort_unstable();
         foreign.dedup();
@@ -82,8 +86,8 @@ impl Book {
     /// Writes itself, and then the steps.
     pub(super) fn push(
         &self,
-        steps: &[Step],
-        place: impl Fn(u32) -> Place,
+        steps: &[GrowthStep],
+        place: impl Fn(u32) -> NodeAddress,
         rows: &Rows,
         bits: &mut Bits,
     ) {
@@ -93,14 +97,14 @@ impl Book {
         for step in steps {
             let context = self.context(step.gate.map(|gate| gate.map(|node| place(node).row)));
             match step.finds {
-                Finds::Nothing => context.push_code(bits, Code::Nothing),
-                Finds::Next => context.push_code(bits, Code::Next),
-                Finds::Previous => context.push_code(bits, Code::Previous),
-                Finds::Known(number) => {
+                Found::Nothing => context.push_code(bits, Code::Nothing),
+                Found::Next => context.push_code(bits, Code::Next),
+                Found::Previous => context.push_code(bits, Code::Previous),
+                Found::Known(number) => {
                     context.push_code(bits, Code::Known);
                     bits.push(number.into(), width(known));
                 }
-                Finds::New(node) => {
+                Found::New(node) => {
                     known += 1;
                     self.push_new(context, place(node), rows, bits);
                 }
@@ -108,8 +112,8 @@ impl Book {
         }
     }
 
-    fn push_new(&self, context: Context, place: Place, rows: &Rows, bits: &mut Bits) {
-        let Place { row, number } = place;
+    fn push_new(&self, context: Context, place: NodeAddress, rows: &Rows, bits: &mut Bits) {
+        let NodeAddress { row, number } = place;
         if self.own.contains(&row) {
             context.push_code(bits, Code::Own);
             self.push_own(context, row, bits);

@@ -1,62 +1,62 @@
-//! Which cell each vertex takes: not always the one it is in.
+//! Assignment of vertices to cells, which need not be the closest ones.
 //!
-//! Where the surface is bent, a vertex that moves along its block leaves its own faces, and cells beside its own
-//! leave them by more or by less: the one is taken that leaves them by the least, together with what the
-//! neighbours do. Each vertex has its turn, with the others as they are [Bes86].
+//! Where the surface is bent, a neighbouring cell may leave the planes of a vertex's faces by less
+//! than the closest one. Each vertex takes the cell around it with the least mean square distance
+//! of its faces to their planes, with all other vertices fixed: iterated conditional modes [Bes86].
 
 use glam::{DMat3, DVec3};
 
-use super::surface::{Surface, outer};
+use super::original::{OriginalSurface, outer};
 use crate::kd::BLOCK;
 
-/// The cells of a block.
-pub(super) struct Grid {
+/// Cells of a block.
+pub(super) struct BlockGrid {
     pub(super) sides: [DVec3; 3],
-    /// The middle of the first.
+    /// Middle of the first cell.
     pub(super) first: DVec3,
-    /// How many there are along each axis.
+    /// Number of cells along each axis.
     pub(super) counts: [i32; 3],
 }
 
-/// Where vertices are put.
-pub(super) struct Settled {
+/// The cell of each vertex.
+pub(super) struct CellAssignment {
     pub(super) cells: Vec<[i32; 3]>,
-    /// From where they were.
+    /// Displacement of each vertex from its original position.
     pub(super) moved: Vec<DVec3>,
 }
 
-/// What settling heeds.
-pub(super) struct Settling {
-    /// How much moving along the surface counts, beside moving across it.
+/// Parameters of the assignment.
+pub(super) struct AssignOptions {
+    /// Cost of moving along the surface, relative to moving across it.
     pub(super) along: f64,
-    /// How far a vertex may be from the planes of its faces, before that is dear.
+    /// Distance from the planes of its faces beyond which a vertex is penalized.
     pub(super) limit: f64,
-    /// How often each vertex has its turn.
+    /// Number of passes over all vertices.
     pub(super) sweeps: usize,
 }
 
-/// How moving a vertex is judged.
-struct Judge<'s> {
-    surface: &'s Surface,
+/// Cost of moving one vertex.
+struct MoveCost<'s> {
+    surface: &'s OriginalSurface,
     vertex: usize,
-    /// The squares of distances to planes, and what neighbours do to them.
+    /// Quadratic and linear term of the squared distances to planes, given the neighbours.
     square: DMat3,
     pull: DVec3,
-    /// What a square beyond the limit costs.
+    /// Penalty for the squared distance beyond the limit.
     dear: f64,
     limit: f64,
-    /// No cell that is tried can turn a face over.
+    /// True if no candidate cell can flip a face.
     is_safe: bool,
 }
 
-/// What a cell costs: first how many faces are turned over.
+/// Cost of a cell: the number of flipped faces, then the error.
 type Cost = (usize, f64);
 
-/// Beyond the limit a vertex stays only where there is nothing else.
+/// Penalty factor beyond the limit: such a cell is a last resort.
 const DEAR: f64 = 100.0;
 
-impl Grid {
-    /// The cells around a place, with parts.
+impl BlockGrid {
+    /// Returns the fractional cell coordinates of a point.
     fn at(&self, place: DVec3) -> [f64; 3] {
         let away = place - self.first;
         self.sides.map(|side| away.dot(side) / side.length_squared())
@@ -67,26 +67,26 @@ impl Grid {
         self.first + self.sides[0] * u + self.sides[1] * v + self.sides[2] * w
     }
 
-    /// The closest number there is along an axis.
+    /// Rounds a coordinate along an axis down and clamps it to the grid.
     fn within(&self, axis: usize, x: f64) -> i32 {
         (x as i32).clamp(0, self.counts[axis] - 1)
     }
 }
 
-impl Settled {
-    /// Nowhere yet.
-    pub(super) fn new(surface: &Surface) -> Self {
+impl CellAssignment {
+    /// Starts with all vertices unassigned.
+    pub(super) fn new(surface: &OriginalSurface) -> Self {
         let count = surface.places.len();
         Self { cells: vec![[0; 3]; count], moved: vec![DVec3::ZERO; count] }
     }
 
-    /// Puts each vertex into the cell it is in, then into the one of those around that which is best for its faces,
-    /// as far as its neighbours let them.
-    pub(super) fn settle(
+    /// Assigns each vertex to its closest cell, then in several passes to the neighbouring cell
+    /// with the least cost.
+    pub(super) fn assign(
         &mut self,
-        surface: &Surface,
-        grids: &[Grid],
-        options: &Settling,
+        surface: &OriginalSurface,
+        grids: &[BlockGrid],
+        options: &AssignOptions,
         vertices: impl Iterator<Item = usize> + Clone,
     ) {
         for v in vertices.clone() {
@@ -96,16 +96,22 @@ impl Settled {
             self.moved[v] = grid.place(self.cells[v]) - place;
         }
         for v in (0..options.sweeps).flat_map(|_| vertices.clone()) {
-            self.settle_one(surface, &grids[v / BLOCK], v, options);
+            self.assign_one(surface, &grids[v / BLOCK], v, options);
         }
     }
 
-    fn settle_one(&mut self, surface: &Surface, grid: &Grid, v: usize, options: &Settling) {
-        let judge = Judge::new(surface, grid, v, &self.moved, options);
+    fn assign_one(
+        &mut self,
+        surface: &OriginalSurface,
+        grid: &BlockGrid,
+        v: usize,
+        options: &AssignOptions,
+    ) {
+        let judge = MoveCost::new(surface, grid, v, &self.moved, options);
         let place = surface.places[v];
         let at = grid.at(place);
         let mut best = (judge.cost(self.moved[v], &self.moved), self.cells[v], self.moved[v]);
-        // Faces that are turned over are worth looking farther.
+        // To mend flipped faces, look one cell farther.
         let (from, to, beside) = if best.0.0 == 0 { (0.0, 1.0, 0) } else { (-1.0, 2.0, 1) };
         let range =
             |k: usize| grid.within(k, at[k].floor() + from)..=grid.within(k, at[k].floor() + to);
@@ -128,27 +134,34 @@ impl Settled {
         (self.cells[v], self.moved[v]) = (best.1, best.2);
     }
 
-    /// Puts vertices that are farther than `most` from the surface where they are least so; which stay too far.
-    pub(super) fn mend(
+    /// Moves vertices that are farther than `most` from the surface to better cells. Returns those
+    /// that stay too far.
+    pub(super) fn repair(
         &mut self,
-        surface: &Surface,
-        grids: &[Grid],
+        surface: &OriginalSurface,
+        grids: &[BlockGrid],
         most: f64,
         vertices: impl Iterator<Item = usize>,
     ) -> Vec<usize> {
         let stays_far = |&v: &usize| {
             !surface.is_near(v, &self.moved, most)
-                && surface.apart(v, &self.moved, most) > most
-                && self.mend_one(surface, &grids[v / BLOCK], v, most) > most
+                && surface.deviation(v, &self.moved, most) > most
+                && self.repair_one(surface, &grids[v / BLOCK], v, most) > most
         };
         vertices.filter(stays_far).collect()
     }
 
-    fn mend_one(&mut self, surface: &Surface, grid: &Grid, v: usize, most: f64) -> f64 {
+    fn repair_one(
+        &mut self,
+        surface: &OriginalSurface,
+        grid: &BlockGrid,
+        v: usize,
+        most: f64,
+    ) -> f64 {
         let at = grid.at(surface.places[v]);
-        // The closest first: any that is near enough will do.
+        // The closest cells first: any that is near enough will do.
         let range = |k: usize| [0.0, 1.0, -1.0, 2.0].map(|by| grid.within(k, at[k].floor() + by));
-        let cost = |moved: &[DVec3]| (flips(surface, v, moved), surface.apart(v, moved, most));
+        let cost = |moved: &[DVec3]| (flips(surface, v, moved), surface.deviation(v, moved, most));
         let mut best = (cost(&self.moved), self.cells[v], self.moved[v]);
         let [across, along, beside] = [2, 1, 0].map(range);
         let cells = across.iter().flat_map(|&c| along.iter().map(move |&b| (b, c)));
@@ -167,18 +180,19 @@ impl Settled {
     }
 }
 
-impl<'s> Judge<'s> {
+impl<'s> MoveCost<'s> {
     fn new(
-        surface: &'s Surface,
-        grid: &Grid,
+        surface: &'s OriginalSurface,
+        grid: &BlockGrid,
         vertex: usize,
         moved: &[DVec3],
-        options: &Settling,
+        options: &AssignOptions,
     ) -> Self {
         let (mut square, mut pull, mut area) = (DMat3::ZERO, DVec3::ZERO, 0.0);
         let mut height = f64::INFINITY;
-        for face in surface.around(vertex) {
-            // The mean square over a face is (a² + b² + c² + (a + b + c)²) / 12 of its corners' distances.
+        for face in surface.faces_around(vertex) {
+            // The mean square over a face is (a² + b² + c² + (a + b + c)²) / 12 of its corners'
+            // distances.
             let others = face.corners.iter().filter(|&&corner| corner as usize != vertex);
             let distances = others.map(|&other| face.normal.dot(moved[other as usize]));
             square += outer(face.normal) * face.area;
@@ -186,16 +200,16 @@ impl<'s> Judge<'s> {
             area += face.area;
             height = height.min(face.height);
         }
-        let rim = surface.rim(vertex);
+        let boundary = surface.boundary(vertex);
         square += DMat3::from_diagonal(DVec3::splat(area * options.along));
-        square += rim.map_or(DMat3::ZERO, |rim| *rim * area);
+        square += boundary.map_or(DMat3::ZERO, |boundary| *boundary * area);
         let cell: f64 = grid.sides.iter().map(|side| side.length()).sum();
         let is_safe = height > 4.0 * cell;
         let dear = DEAR * area;
         Self { surface, vertex, square, pull, dear, limit: options.limit, is_safe }
     }
 
-    /// What moving by so much does to the mean square.
+    /// Returns the change of the summed squares for a displacement.
     fn effect(&self, moved: DVec3) -> f64 {
         moved.dot(self.square * moved + self.pull * 2.0)
     }
@@ -204,7 +218,7 @@ impl<'s> Judge<'s> {
         let flips = if self.is_safe { 0 } else { self.flips(moved, all) };
         let mut effect = self.effect(moved);
         if moved.length_squared() > self.limit * self.limit {
-            let over = (self.surface.leaves(self.vertex, moved) - self.limit).max(0.0);
+            let over = (self.surface.plane_distance(self.vertex, moved) - self.limit).max(0.0);
             effect += self.dear * over * over;
         }
         (flips, effect)
@@ -216,12 +230,12 @@ impl<'s> Judge<'s> {
             self.surface.places[v as usize] + by
         };
         self.surface
-            .around(self.vertex)
+            .faces_around(self.vertex)
             .filter(|face| face.is_flipped(face.corners.map(place)))
             .count()
     }
 
-    /// How many times `side` is best added; `None` where it makes no difference.
+    /// Returns the best multiple of `side` to add; `None` if it makes no difference.
     fn best_along(&self, side: DVec3, moved: DVec3) -> Option<f64> {
         let bend = self.square * side;
         let times = -(bend.dot(moved) + side.dot(self.pull)) / bend.dot(side);
@@ -229,7 +243,7 @@ impl<'s> Judge<'s> {
     }
 }
 
-/// How many faces around a vertex are turned over.
-fn flips(surface: &Surface, v: usize, moved: &[DVec3]) -> usize {
-    surface.around(v).filter(|face| surface.is_flipped(face, moved)).count()
+/// Returns the number of flipped faces around a vertex.
+fn flips(surface: &OriginalSurface, v: usize, moved: &[DVec3]) -> usize {
+    surface.faces_around(v).filter(|face| surface.is_flipped(face, moved)).count()
 }

@@ -1,0 +1,189 @@
+//! Reading and writing `.mlq` files: docs/formats/mlq.md.
+
+use super::weld_parts::WeldExceptions;
+use super::{BLOCKS_PER_PATCH, Compressed, MAX_VALUES, Positions, WedgeVertices};
+use crate::attributes::{PackedLayer, PackedRows};
+use crate::bytes::{Malformed, Reader};
+use crate::kd::BLOCK;
+use crate::patch::{Patches, Rows};
+
+const VERSION: u32 = 1;
+/// Size of the file header: magic bytes, version, scheme, a flag for extra wedges, number of layers,
+/// length and checksum of each of the three sections, and the checksum of the header.
+pub(super) const HEADER: usize = SUMS + 3 * SUM + 4;
+const SUMS: usize = 8 + 4 + 1 + 1 + 2;
+const SUM: usize = 8 + 4;
+
+impl Compressed {
+    /// The first eight bytes of every `.mlq` file.
+    pub const MAGIC: [u8; 8] = *b"meshlodq";
+
+    /// Encodes the mesh as an `.mlq` file.
+    pub fn to_bytes(&self) -> Vec<u8> {
+        let mut sections = [Vec::new(), Vec::new(), Vec::new()];
+        let [positions, connectivity, attributes] = &mut sections;
+        self.positions.store(positions);
+        if let WedgeVertices::Extra(numbers) = &self.wedge_vertices {
+            numbers.rows().store(connectivity);
+            numbers.store(connectivity);
+        }
+        self.patches.store(connectivity);
+        if let WedgeVertices::Parts(exceptions) = &self.wedge_vertices {
+            exceptions.store(connectivity);
+        }
+        self.layers.iter().for_each(|layer| layer.store(attributes));
+
+        let mut bytes = Vec::with_capacity(self.sizes().total);
+        bytes.extend(Self::MAGIC);
+        bytes.extend(VERSION.to_le_bytes());
+        bytes.push(self.positions.tag());
+        bytes.push(matches!(self.wedge_vertices, WedgeVertices::Extra(_)).into());
+        bytes.extend((self.layers.len() as u16).to_le_bytes());
+        for section in &sections {
+            bytes.extend((section.len() as u64).to_le_bytes());
+            bytes.extend(crc32fast::hash(section).to_le_bytes());
+        }
+        bytes.extend(crc32fast::hash(&bytes).to_le_bytes());
+        sections.iter().for_each(|section| bytes.extend(section));
+        bytes
+    }
+
+    /// Recomputes the checksums of a file that was changed, for tests of [`Compressed::from_bytes`].
+    #[doc(hidden)]
+    pub fn seal(bytes: &mut [u8]) {
+        if bytes.len() < HEADER {
+            return;
+        }
+        let mut at = HEADER;
+        for sum in (0..3).map(|section| SUMS + section * SUM) {
+            let len: [u8; 8] = bytes[sum..sum + 8].try_into().expect("eight");
+            let len = usize::try_from(u64::from_le_bytes(len)).unwrap_or(usize::MAX);
+            let end = at.saturating_add(len);
+            let hash = crc32fast::hash(bytes.get(at..end).unwrap_or_default());
+            bytes[sum + 8..sum + SUM].copy_from_slice(&hash.to_le_bytes());
+            at = end;
+        }
+        let hash = crc32fast::hash(&bytes[..HEADER - 4]);
+        bytes[HEADER - 4..HEADER].copy_from_slice(&hash.to_le_bytes());
+    }
+
+    /// Reads an `.mlq` file. Positions, faces and attributes stay compressed.
+    ///
+    /// # Errors
+    /// Bytes that are not an `.mlq` file, or are damaged.
+    pub fn from_bytes(bytes: &[u8]) -> Result<Self, Malformed> {
+        let mut reader = Reader::new(bytes);
+        if reader.take(Self::MAGIC.len())? != Self::MAGIC {
+            return Err(Malformed {
+                at: 0,
+                reason: "not an .mlq file: the magic bytes are missing".into(),
+            });
+        }
+        match reader.u32()? {
+            VERSION => {}
+            version => {
+                return Err(reader.wrong(format!(
+                    "unknown version {version}; this reader knows version {VERSION}"
+                )));
+            }
+        }
+        if bytes.len() < HEADER {
+            return Err(reader.wrong("the file ends within the header"));
+        }
+        let (head, sum) = bytes[..HEADER].split_at(HEADER - 4);
+        if crc32fast::hash(head).to_le_bytes() != sum {
+            return Err(reader.wrong("the header is damaged: its checksum does not match"));
+        }
+        let (scheme, has_extra, count) = (reader.u8()?, reader.u8()?, reader.u16()?);
+        if has_extra > 1 {
+            return Err(reader.wrong(format!("unknown flags {has_extra:#x}")));
+        }
+        let mut sums = [(0, 0); 3];
+        for sum in &mut sums {
+            *sum = (reader.u64()?, reader.u32()?);
+        }
+        reader.take(4)?;
+        let mut section =
+            |what: &str, (len, sum): (u64, u32)| {
+                let section = reader.section(usize::try_from(len).unwrap_or(usize::MAX))?;
+                match crc32fast::hash(section.rest()) == sum {
+                    true => Ok(section),
+                    false => Err(section
+                        .wrong(format!("the {what} are damaged: their checksum does not match"))),
+                }
+            };
+        let positions = section("positions", sums[0])?;
+        let faces = section("faces", sums[1])?;
+        let attributes = section("attributes", sums[2])?;
+        reader.finish()?;
+        let positions = whole(positions, |reader| Positions::restore(scheme, reader))?;
+        let (patches, wedge_vertices) =
+            whole(faces, |reader| restore_faces(reader, &positions, has_extra == 1))?;
+        let layers = whole(attributes, |reader| restore_layers(reader, count, patches.rows()))?;
+        Ok(Self { positions, patches, wedge_vertices, layers })
+    }
+}
+
+/// Reads a section and checks that nothing of it is left.
+fn whole<T>(
+    mut section: Reader,
+    read: impl FnOnce(&mut Reader) -> Result<T, Malformed>,
+) -> Result<T, Malformed> {
+    let this = read(&mut section)?;
+    section.finish()?;
+    Ok(this)
+}
+
+/// Reads the faces and the map from their nodes to vertices.
+fn restore_faces(
+    faces: &mut Reader,
+    positions: &Positions,
+    has_extra: bool,
+) -> Result<(Patches, WedgeVertices), Malformed> {
+    let count = positions.len();
+    let block = |at: usize| BLOCK.min(count - BLOCK * at);
+    let blocks = count.div_ceil(BLOCK);
+    let (mut wedge_vertices, rows, rows_per_patch) = match positions.parts() {
+        Some(_) if has_extra => return Err(faces.wrong("parts cannot have rows of extra wedges")),
+        Some(parts) => (WedgeVertices::Identity, parts.rows().clone(), 1),
+        None if has_extra => {
+            let extra = Rows::restore(blocks, faces)?;
+            if count + extra.nodes() > u32::MAX as usize {
+                return Err(faces.wrong("the wedges are too many for 32-bit indices"));
+            }
+            let rows = (0..blocks).flat_map(|at| [block(at), extra.range(at).len()]);
+            let rows = Rows::new(rows);
+            let extra = WedgeVertices::Extra(PackedRows::restore(extra, 1, faces)?);
+            (extra, rows, 2 * BLOCKS_PER_PATCH)
+        }
+        None => (WedgeVertices::Identity, Rows::new((0..blocks).map(block)), BLOCKS_PER_PATCH),
+    };
+    let patches = Patches::restore(rows, rows_per_patch, faces)?;
+    // Every node is at some corner. Since a face takes bits, this bounds memory by the file size.
+    if patches.rows().nodes() > 3 * patches.face_count() {
+        return Err(faces.wrong("there are more nodes than face corners"));
+    }
+    if positions.parts().is_some() {
+        wedge_vertices = WedgeVertices::Parts(WeldExceptions::restore(faces)?);
+    }
+    Ok((patches, wedge_vertices))
+}
+
+fn restore_layers(
+    attributes: &mut Reader,
+    count: u16,
+    rows: &Rows,
+) -> Result<Vec<PackedLayer>, Malformed> {
+    let (mut layers, mut values) = (Vec::new(), 0);
+    for _ in 0..count {
+        let layer = PackedLayer::restore(rows.clone(), attributes)?;
+        values += layer.width();
+        if values > MAX_VALUES {
+            return Err(
+                attributes.wrong(format!("a wedge has more than {MAX_VALUES} attribute values"))
+            );
+        }
+        layers.push(layer);
+    }
+    Ok(layers)
+}

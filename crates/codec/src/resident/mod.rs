@@ -1,0 +1,95 @@
+//! Meshes that stay compressed in memory: positions by one of three schemes, faces in patches,
+//! attributes in the same rows.
+
+mod decode;
+mod encode;
+mod error;
+mod file;
+mod nodes;
+mod positions;
+mod target;
+#[cfg(test)]
+mod tests;
+mod wedge_vertices;
+mod weld_parts;
+
+pub use self::error::CompressError;
+use self::positions::Positions;
+pub use self::target::{Compression, CompressionTarget, Scheme, compress, parts_for};
+use self::wedge_vertices::WedgeVertices;
+use crate::attributes::{LayerReport, PackedLayer};
+use crate::bytes::reduction;
+use crate::patch::Patches;
+
+/// Compressed mesh of which any block of vertices and any patch of faces can be decoded alone.
+///
+/// It holds the faces and what they use, in an order of its own, but no materials or objects.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Compressed {
+    positions: Positions,
+    patches: Patches,
+    wedge_vertices: WedgeVertices,
+    layers: Vec<PackedLayer>,
+}
+
+/// Size of a compressed mesh by content, in bytes.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct CompressedSizes {
+    /// Positions, with everything needed to decode them.
+    pub positions: usize,
+    /// Faces, and the vertex of each corner.
+    pub connectivity: usize,
+    /// All attribute layers.
+    pub attributes: usize,
+    /// The whole file: the three above and the file header.
+    pub total: usize,
+}
+
+/// Limit on the attribute values of a wedge over all layers. Without it a small file of constant
+/// values could claim a mesh of unlimited size.
+const MAX_VALUES: usize = 255;
+/// Limit on the number of faces, chosen so that their bits take less than 4 GB in any case.
+const MAX_FACES: usize = 1 << 27;
+/// Blocks of vertices per patch, which gives about 256 faces. Twice as many save half a bit per face.
+const BLOCKS_PER_PATCH: usize = 4;
+
+impl Compressed {
+    /// Returns the sizes of positions, connectivity, attributes and the whole file.
+    pub fn sizes(&self) -> CompressedSizes {
+        let positions = self.positions.bytes();
+        let connectivity = self.patches.bytes() + self.wedge_vertices.bytes();
+        let attributes = self.layers.iter().map(PackedLayer::bytes).sum();
+        let total = file::HEADER + positions + connectivity + attributes;
+        CompressedSizes { positions, connectivity, attributes, total }
+    }
+
+    /// Returns the number of vertices.
+    pub fn vertices(&self) -> usize {
+        self.positions.vertices()
+    }
+
+    /// Returns the number of faces.
+    pub fn faces(&self) -> usize {
+        self.patches.face_count()
+    }
+
+    /// Returns the number of patches, for [`Compressed::patch`].
+    pub fn patches(&self) -> usize {
+        self.patches.len()
+    }
+
+    /// Returns the number of parts with [`Scheme::Parts`], else the number of vertex blocks.
+    pub fn blocks(&self) -> usize {
+        self.positions.blocks()
+    }
+
+    /// Returns the fraction by which positions are smaller than three `f32` for each vertex.
+    pub fn reduction(&self) -> f64 {
+        reduction(self.positions.bytes(), self.vertices())
+    }
+
+    /// Returns the size and the error of each attribute layer.
+    pub fn layers(&self) -> Vec<LayerReport> {
+        self.layers.iter().map(PackedLayer::report).collect()
+    }
+}
