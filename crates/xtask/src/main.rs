@@ -13,7 +13,7 @@ use std::process::ExitCode;
 use project::Project;
 
 const USAGE: &str = "usage: cargo xtask VERB
-  check    keys of references, arrows between crates, lengths of files
+  check    references, arrows between crates, imports, names of types, phrases, lengths of files
   doc      the documentation of all crates, warnings being errors
   results [SECTION...]  every figure of docs/RESULTS.md; or prints the sections with such titles
   textured [MODEL...]  image errors of levels beside meshoptimizer's

@@ -1,20 +1,20 @@
-//! No file is long without a reason.
+//! Long files give a reason for their length.
 
 use crate::project::Text;
 
-/// Lines above which a file is listed, and above which it must give a reason.
+/// Number of lines above which a file is listed, and above which it must give a reason.
 const LONG: usize = 300;
 const TOO_LONG: usize = 600;
-/// How the reason begins, and within how many lines of the file's start.
+/// Start of the line that gives the reason, and the number of leading lines searched for it.
 const REASON: &str = "//! Long because ";
 const REASON_WITHIN: usize = 10;
 
-/// What was found.
+/// Long files, in two grades.
 #[derive(Debug, Default, PartialEq)]
 pub struct Lengths {
-    /// Long, which may be.
+    /// Files that are long, which is allowed.
     pub notes: Vec<String>,
-    /// Too long without a reason.
+    /// Files that are too long and give no reason.
     pub errors: Vec<String>,
 }
 
@@ -27,9 +27,9 @@ pub fn check(sources: &[Text]) -> Lengths {
         let reason = source.text.lines().take(REASON_WITHIN).any(|line| line.starts_with(REASON));
         if lines > TOO_LONG && !reason {
             let path = &source.path;
-            found
-                .errors
-                .push(format!("{path}: {lines} lines; split it, or begin it with `{REASON}…`"));
+            found.errors.push(format!(
+                "{path}: {lines} lines: split the file, or begin it with `{REASON}…`"
+            ));
         } else if lines > LONG {
             found.notes.push(format!("{}: {lines} lines", source.path));
         }

@@ -4,11 +4,10 @@ use std::collections::BTreeMap;
 
 use crate::project::Text;
 
-/// Where the keys live, from the root.
+/// The page that defines the keys, from the root.
 pub const PAGE: &str = "docs/REFERENCES.md";
 
-/// Compares the keys cited in comments of sources and in pages with those that the page of
-/// references defines.
+/// Lists keys that are cited in comments or pages but not defined, defined twice, or never cited.
 pub fn check(sources: &[Text], pages: &[Text]) -> Vec<String> {
     let Some(page) = pages.iter().find(|page| page.path == PAGE) else {
         return vec![format!("{PAGE} is missing")];
@@ -17,7 +16,7 @@ pub fn check(sources: &[Text], pages: &[Text]) -> Vec<String> {
     let mut defined = BTreeMap::new();
     for (line, key) in definitions(&page.text) {
         if defined.insert(key, line).is_some() {
-            errors.push(format!("{PAGE}:{line}: [{key}] is there twice"));
+            errors.push(format!("{PAGE}:{line}: [{key}] is defined twice"));
         }
     }
     let cited = citations(sources, pages);
@@ -28,18 +27,18 @@ pub fn check(sources: &[Text], pages: &[Text]) -> Vec<String> {
     }
     for (key, line) in defined {
         if !cited.contains_key(key) {
-            errors.push(format!("{PAGE}:{line}: [{key}] is cited nowhere"));
+            errors.push(format!("{PAGE}:{line}: [{key}] is never cited"));
         }
     }
     errors
 }
 
-/// The keys that a page of references defines.
+/// Lists the keys that a page of references defines.
 pub fn keys_of(page: &Text) -> Vec<&str> {
     definitions(&page.text).map(|(_, key)| key).collect()
 }
 
-/// Line and key of each entry: a line of a list that begins with its key.
+/// Line number and key of each entry, a list item that begins with its key.
 fn definitions(page: &str) -> impl Iterator<Item = (usize, &str)> {
     page.lines().enumerate().filter_map(|(i, line)| {
         let key = line.strip_prefix("- **[")?.split_once("]**")?.0;
@@ -47,7 +46,7 @@ fn definitions(page: &str) -> impl Iterator<Item = (usize, &str)> {
     })
 }
 
-/// Every key cited, and where first.
+/// Maps every cited key to the place that cites it first.
 fn citations<'a>(sources: &'a [Text], pages: &'a [Text]) -> BTreeMap<&'a str, String> {
     let comments = sources.iter().flat_map(|source| {
         let lines = source.text.lines().enumerate();
@@ -65,7 +64,7 @@ fn citations<'a>(sources: &'a [Text], pages: &'a [Text]) -> BTreeMap<&'a str, St
     cited
 }
 
-/// What stands in square brackets on a line, except what begins a link: `[x](y)`, `[x]: y`.
+/// Texts in square brackets on a line, except those that begin a link: `[x](y)`, `[x]: y`.
 fn bracketed(line: &str) -> impl Iterator<Item = &str> {
     line.split('[').skip(1).filter_map(|rest| {
         let (inside, after) = rest.split_once(']')?;
@@ -74,7 +73,8 @@ fn bracketed(line: &str) -> impl Iterator<Item = &str> {
     })
 }
 
-/// Two or more letters of the authors beginning with a capital, two digits of the year, perhaps a letter more.
+/// Returns true for two or more letters of the authors, the first a capital, two digits of the year,
+/// and an optional lower-case letter.
 fn is_key(text: &str) -> bool {
     let text = text.strip_suffix(|c: char| c.is_ascii_lowercase()).unwrap_or(text);
     let authors = text.trim_end_matches(|c: char| c.is_ascii_digit());
@@ -120,16 +120,16 @@ mod tests {
     }
 
     #[test]
-    fn an_entry_that_nobody_cites_is_named() {
+    fn an_uncited_entry_is_named() {
         let page = text(PAGE, "# References\n- **[GH97]** Garland and Heckbert.");
-        assert_eq!(check(&[], &[page]), [format!("{PAGE}:2: [GH97] is cited nowhere")]);
+        assert_eq!(check(&[], &[page]), [format!("{PAGE}:2: [GH97] is never cited")]);
     }
 
     #[test]
     fn an_entry_twice_is_named() {
         let page = text(PAGE, "- **[GH97]** One.\n- **[GH97]** Two.");
         let errors = check(&[text("a.rs", "// [GH97]")], &[page]);
-        assert_eq!(errors, [format!("{PAGE}:2: [GH97] is there twice")]);
+        assert_eq!(errors, [format!("{PAGE}:2: [GH97] is defined twice")]);
     }
 
     #[test]
