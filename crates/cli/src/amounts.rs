@@ -82,8 +82,8 @@ pub fn ratio(text: &str) -> Result<f64, String> {
     };
     match ratio {
         _ if (0.0..=1.0).contains(&ratio) => Ok(ratio),
-        _ if text.ends_with('%') => Err("a part goes from 0% to 100%".into()),
-        _ => Err(format!("a part goes from 0 to 1; is {text}% meant?")),
+        _ if text.ends_with('%') => Err("it must be between 0% and 100%".into()),
+        _ => Err(format!("it must be between 0 and 1; did you mean {text}%?")),
     }
 }
 
@@ -118,14 +118,14 @@ pub fn weight(text: &str) -> Result<f64, String> {
 
 /// A whole number.
 pub fn whole(text: &str) -> Result<usize, String> {
-    text.parse().map_err(|_| "it must be a whole number, at least 0".into())
+    text.parse().map_err(|_| "it must be a whole number of at least 0".into())
 }
 
 /// A whole number above 0.
 pub fn positive(text: &str) -> Result<usize, String> {
     match text.parse() {
         Ok(number) if number > 0 => Ok(number),
-        _ => Err("it must be a whole number above 0".into()),
+        _ => Err("it must be a whole number of at least 1".into()),
     }
 }
 
@@ -145,7 +145,10 @@ pub fn pixels(text: &str) -> Result<[u32; 2], String> {
     let allowed = 1..=meshlod::picture::MAX_SIDE;
     match sides {
         Some((Ok(w), Ok(h))) if allowed.contains(&w) && allowed.contains(&h) => Ok([w, h]),
-        _ => Err(format!("write 640x480; sides go to {}", allowed.end())),
+        _ => Err(format!(
+            "expected a size like 640x480, with sides of up to {} pixels",
+            allowed.end()
+        )),
     }
 }
 
@@ -165,24 +168,24 @@ pub fn look(text: &str) -> Result<Look, String> {
     let numbers: Result<Vec<f64>, String> = text.split(',').map(number).collect();
     match numbers.as_deref() {
         Ok(&[x, y, z]) if [x, y, z] != [0.0; 3] => Ok(Look::Along([x, y, z])),
-        _ => Err("write front, back, left, right, top, bottom, or a direction x,y,z".into()),
+        _ => Err("expected front, back, left, right, top, bottom or a direction x,y,z".into()),
     }
 }
 
 /// A method by name.
 pub fn method(text: &str) -> Result<Method, String> {
-    Method::by_name(text).ok_or_else(|| format!("known are {}", names()))
+    Method::by_name(text).ok_or_else(|| format!("the methods are {}", names()))
 }
 
 /// What help says of methods.
 pub fn methods() -> String {
-    format!("The algorithm: {}; compare shows which suits a mesh", names())
+    format!("Simplification method: {}; the verb compare shows which suits a mesh", names())
 }
 
 /// The same where one is chosen if none is named.
 pub fn methods_or_suited() -> String {
     let [one, other] = [Method::LindstromTurk, Method::Qem].map(Method::name);
-    let exception = "where attributes meet ties or pieces that may vanish";
+    let exception = "for attributes together with ties or removable components";
     format!("{} [default: {one}; {other} {exception}]", methods())
 }
 
@@ -193,7 +196,7 @@ fn names() -> String {
 /// A format by its suffix.
 pub fn format(text: &str) -> Result<Format, String> {
     let known = || Format::ALL.map(|(suffix, _)| suffix).join(", ");
-    Format::of_suffix(text).ok_or_else(|| format!("known are {}", known()))
+    Format::of_suffix(text).ok_or_else(|| format!("the formats are {}", known()))
 }
 
 /// `f32` or `f64`.
@@ -201,14 +204,14 @@ pub fn precision(text: &str) -> Result<Precision, String> {
     match text {
         "f32" => Ok(Precision::F32),
         "f64" => Ok(Precision::F64),
-        _ => Err("write f32 or f64".into()),
+        _ => Err("it must be f32 or f64".into()),
     }
 }
 
 fn at_most(most: usize, text: &str) -> Result<usize, String> {
     match positive(text)? {
         number if number <= most => Ok(number),
-        _ => Err(format!("at most {}", count(most))),
+        _ => Err(format!("it must be at most {}", count(most))),
     }
 }
 

@@ -18,7 +18,8 @@ use crate::verbs::{
 
 /// Level of detail for triangle meshes.
 ///
-/// Formats go by suffix: .ply .obj .stl .off .smf .gltf .glb; - is standard input or output.
+/// The suffix selects the format: .ply .obj .stl .off .smf .gltf .glb. A path of - means standard
+/// input or output, with the format given by --format.
 #[derive(Parser)]
 #[command(name = "meshlod", version, max_term_width = 100)]
 pub struct Cli {
@@ -31,14 +32,14 @@ pub struct Cli {
 /// Options of every verb.
 #[derive(Args)]
 pub struct Global {
-    /// Print one JSON object on standard output, and nothing else there
+    /// Print one JSON object to standard output and nothing else; messages go to standard error
     #[arg(long, global = true)]
     pub json: bool,
-    /// Threads to work with [default: one per core]
+    /// Number of threads [default: one per core]
     #[arg(long, global = true, value_name = "N", value_parser = amounts::threads,
         allow_negative_numbers = true)]
     pub threads: Option<usize>,
-    /// The format of -, as a suffix: ply, glb, …
+    /// Format of standard input and output (-), as a suffix: ply, glb, …
     #[arg(long, global = true, value_name = "SUFFIX", value_parser = amounts::format)]
     pub format: Option<Format>,
 }
@@ -46,37 +47,37 @@ pub struct Global {
 /// What to do.
 #[derive(Subcommand)]
 pub enum Verb {
-    /// Say what is in a file: counts, bounds, area, volume, closed or not
+    /// Print what a file contains: counts, bounds, area, volume, closed or open
     Info(info::Info),
-    /// Say what is wrong with a mesh and where its objects meet; exit 1 for errors
+    /// Find defects of a mesh and contacts between its objects; exit with 1 on errors
     Check(check::Check),
-    /// Mend what can be mended safely, and say what was done
+    /// Repair the defects that can be repaired safely, and report every step
     Repair(repair::Repair),
-    /// Make a mesh coarser
+    /// Reduce a mesh to fewer faces
     Simplify(simplify::Simplify),
-    /// Give back any level that simplify --sequence has kept
+    /// Restore any level recorded by simplify --sequence
     Replay(replay::Replay),
-    /// Make a chain of coarser levels, as glTF with MSFT_lod or one file each
+    /// Write a chain of coarser levels, as glTF with MSFT_lod or one file per level
     Lods(lods::Lods),
-    /// Write all levels of a mesh into one multiresolution file
+    /// Write all levels of a mesh to one multiresolution file (.mlod)
     Build(build::Build),
-    /// Take one mesh out of a multiresolution file: fine where it is looked at, coarse elsewhere
+    /// Extract one mesh from a multiresolution file: fine where it is needed, coarse elsewhere
     Extract(extract::Extract),
-    /// Draw a mesh and its levels as triangle strips, and say what is sent
+    /// Convert a mesh and its levels to triangle strips, and count the vertices they send
     Strip(strip::Strip),
-    /// Write a mesh in few bytes, to draw from or to send
+    /// Compress a mesh for rendering or transmission
     Compress(compress::Compress),
-    /// Give back the mesh of a compressed file
+    /// Decode a compressed file (.mlq or .mlz) to a mesh
     Decompress(decompress::Decompress),
-    /// Run all methods on one mesh: a table, and a page with pictures and heat maps
+    /// Run all methods on one mesh: a table, and a page with pictures and error heat maps
     Compare(Compare),
-    /// Measure how far two meshes are apart, both ways
+    /// Measure the distance between two meshes, both ways
     Measure(measure::Measure),
     /// Write a procedural mesh of any size
     Sample(sample::Sample),
-    /// Draw a picture
+    /// Render a picture of a mesh
     Render(render::Render),
-    /// Run the whole line on samples, and write a page of it with pictures
+    /// Simplify sample meshes by several methods, and write a report page with pictures
     Demo(Demo),
 }
 
@@ -106,10 +107,10 @@ impl Verb {
 /// Options of every verb that reads meshes.
 #[derive(Args)]
 pub struct Reading {
-    /// Keep vertices apart that glTF and STL have apart
+    /// Do not weld vertices at identical positions when reading glTF and STL
     #[arg(long, conflicts_with = "weld")]
     no_weld: bool,
-    /// Make one vertex of those within EPS of each other, in model units
+    /// Weld vertices within EPS of each other, in model units
     #[arg(long, value_name = "EPS", value_parser = amounts::length,
         allow_negative_numbers = true)]
     weld: Option<f64>,
@@ -134,8 +135,8 @@ impl Reading {
 /// Options of every verb that writes meshes.
 #[derive(Args)]
 pub struct Writing {
-    /// Of coordinates in PLY, OBJ, OFF and SMF: f32 or f64; f32 if not said, but f64 where repair and extract
-    /// need it
+    /// Coordinate type in PLY, OBJ, OFF and SMF: f32 or f64
+    /// [default: f32; f64 where repair or extract need it]
     #[arg(long, value_name = "TYPE", value_parser = amounts::precision)]
     precision: Option<Precision>,
 }
@@ -181,11 +182,11 @@ fn read_again(x: f64, precision: Precision, format: Format) -> f64 {
 /// How a distance is sampled.
 #[derive(Args)]
 pub struct Sampling {
-    /// Samples each way, beside all vertices
+    /// Number of samples each way, in addition to all vertices
     #[arg(long, value_name = "N", default_value_t = 500_000, value_parser = amounts::samples,
         allow_negative_numbers = true)]
     samples: usize,
-    /// What the samples are drawn by
+    /// Seed of the random samples
     #[arg(long, value_name = "N", default_value_t = 0, allow_negative_numbers = true)]
     seed: u64,
 }
@@ -199,10 +200,11 @@ impl Sampling {
 /// Where a mesh is seen from.
 #[derive(Args)]
 pub struct Viewpoint {
-    /// Where to look from: front, back, left, right, top, bottom; or the direction to look in, x,y,z
+    /// Side to look from: front, back, left, right, top or bottom; or the viewing direction x,y,z
+    /// [default: three-quarter view]
     #[arg(long, value_name = "DIR", value_parser = amounts::look, allow_hyphen_values = true)]
     view: Option<Look>,
-    /// The axis that is up
+    /// Axis that points up
     #[arg(long, value_name = "AXIS", default_value = "y")]
     up: Axis,
 }

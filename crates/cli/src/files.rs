@@ -25,7 +25,7 @@ pub fn name(path: &Path) -> String {
 pub fn read(path: &Path, reading: &Reading, session: &Session) -> Result<Scene, Failure> {
     session.progress.stage(&format!("reading {}", name(path)));
     if let Some(verb) = opened_by(path) {
-        let reason = format_args!("meshlod {verb} gives the mesh that it holds");
+        let reason = format_args!("not a mesh file; use meshlod {verb} to get the mesh it holds");
         return Err(Failure::at(path, reason));
     }
     if !is_pipe(path) {
@@ -64,7 +64,7 @@ pub fn check_output(path: &Path, session: &Session) -> Result<Format, Failure> {
     check_stdout(session)?;
     match pipe_format(session)? {
         Format::Gltf => {
-            Err(Failure::usage("-: .gltf keeps its buffer beside it; use --format glb"))
+            Err(Failure::usage("-: .gltf needs a separate buffer file; use --format glb"))
         }
         format => Ok(format),
     }
@@ -77,7 +77,7 @@ pub fn check_picture(path: &Path, session: &Session) -> Result<(), Failure> {
     }
     match path.extension() {
         Some(suffix) if suffix.eq_ignore_ascii_case("png") => check_place(path),
-        _ => Err(Failure::usage(format_args!("{}: pictures are .png", name(path)))),
+        _ => Err(Failure::usage(format_args!("{}: a picture file must end in .png", name(path)))),
     }
 }
 
@@ -98,7 +98,10 @@ pub fn check_place(path: &Path) -> Result<(), Failure> {
 pub fn check_apart(path: &Path, others: &[&Path]) -> Result<(), Failure> {
     let same = |other: &&&Path| !is_pipe(other) && place_of(other) == place_of(path);
     match others.iter().find(same).filter(|_| !is_pipe(path)) {
-        Some(_) => Err(Failure::usage(format_args!("{}: is named twice", name(path)))),
+        Some(_) => Err(Failure::usage(format_args!(
+            "{}: is given for two files of the same run",
+            name(path)
+        ))),
         None => Ok(()),
     }
 }
@@ -199,11 +202,13 @@ fn write_pipe(
 
 fn check_stdout(session: &Session) -> Result<(), Failure> {
     match session.json {
-        true => Err(Failure::usage("-: --json has standard output to itself; name a file")),
+        true => Err(Failure::usage("-: standard output is taken by --json; name a file")),
         false => Ok(()),
     }
 }
 
 fn pipe_format(session: &Session) -> Result<Format, Failure> {
-    session.format.ok_or_else(|| Failure::usage("-: a pipe has no suffix; give --format"))
+    session
+        .format
+        .ok_or_else(|| Failure::usage("-: standard input and output have no suffix; give --format"))
 }

@@ -11,9 +11,8 @@ use crate::session::Session;
 /// What is made one.
 #[derive(Args)]
 pub struct Fusing {
-    /// Make one surface of closed objects that pass through each other: cut them where they meet,
-    /// leave out what is inside, join the rest; the objects stay as labels. Sizes of levels are
-    /// parts of the faces before
+    /// Fuse closed objects that intersect into one surface: cut them where they meet, remove the parts
+    /// inside, join the rest. Object labels are kept, and ratios refer to the faces before fusing
     #[arg(long)]
     pub fuse: bool,
 }
@@ -66,7 +65,7 @@ impl Done {
     pub fn to_text(&self) -> String {
         let Fused { imprint, buried, joined } = self.fused;
         format!(
-            "fused: {} to {} ({} cut, {} piece{} inside left out, {} edge{} joined)\n",
+            "fused: {} to {} ({} cut, {} inner piece{} removed, {} edge{} joined)\n",
             faces(self.before),
             count(self.after),
             count(imprint.faces),

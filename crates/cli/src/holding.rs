@@ -17,19 +17,19 @@ use crate::session::Session;
 /// What must stay.
 #[derive(Args)]
 pub struct Holding {
-    /// Keep every vertex of a boundary edge where it is
+    /// Lock every vertex of a boundary edge in place
     #[arg(long)]
     lock_boundary: bool,
-    /// Keep objects together where they meet: what shares a place moves together, what crosses or only
-    /// touches goes late
+    /// Keep objects together where they meet: coincident vertices move together, and vertices where
+    /// objects cross or merely touch are contracted late
     #[arg(long)]
     lock_contacts: bool,
-    /// Keep what a file says, as check --locks writes it
+    /// Apply the vertex locks in a file written by check --locks
     #[arg(long, value_name = "FILE.json", conflicts_with_all = ["lock_contacts", "fuse"])]
     locks: Option<PathBuf>,
-    /// Connected pieces at least this large are never removed, in model units or 5% of the diagonal;
-    /// smaller ones go as a whole where that costs least. Without a size, as without the option:
-    /// none goes. The size of what goes counts as its error: with --error none above that goes
+    /// Allow a connected component to be removed as a whole if the diagonal of its bounding box is
+    /// below SIZE: a length in model units, or 5% of the model's diagonal. That diagonal counts as
+    /// error, so --error limits it too [default: none is removed, as with no SIZE]
     #[arg(long, value_name = "SIZE", num_args = 0..=1, default_missing_value = "0",
         require_equals = true, value_parser = amounts::bound, allow_negative_numbers = true)]
     keep_objects: Option<Bound>,

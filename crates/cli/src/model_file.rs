@@ -21,7 +21,10 @@ pub fn is_model(path: &Path) -> bool {
 /// Refuses an output that could not be written, before any work is done.
 pub fn check_output(path: &Path) -> Result<(), Failure> {
     if !is_model(path) {
-        return Err(Failure::usage(format_args!("{}: name it .{SUFFIX}", files::name(path))));
+        return Err(Failure::usage(format_args!(
+            "{}: a multiresolution file must end in .{SUFFIX}",
+            files::name(path)
+        )));
     }
     files::check_place(path)
 }
@@ -29,7 +32,9 @@ pub fn check_output(path: &Path) -> Result<(), Failure> {
 /// Opens a file, and says if it is cut off.
 pub fn open(path: &Path, session: &Session) -> Result<ModelFile<File>, Failure> {
     if files::is_pipe(path) {
-        return Err(Failure::usage("-: of such a file only parts are read; name it"));
+        return Err(Failure::usage(
+            "-: a multiresolution file is read in parts and cannot be a pipe; name a file",
+        ));
     }
     session.progress.stage(&format!("reading {}", files::name(path)));
     let file = File::open(path).map_err(|error| Failure::at(path, error))?;
@@ -38,7 +43,7 @@ pub fn open(path: &Path, session: &Session) -> Result<ModelFile<File>, Failure> 
         && archive.complete_chunks() < archive.chunk_count()
     {
         let (there, all) = (archive.complete_chunks(), archive.chunk_count());
-        let reason = format_args!("the file is cut off: {there} of its {all} chunks are there");
+        let reason = format_args!("the file is truncated: {there} of its {all} chunks are present");
         session.warn(Failure::at(path, reason));
     }
     Ok(model)
@@ -53,7 +58,7 @@ pub fn certificate_text(certificate: &Certificate) -> String {
     let mut text =
         format!("proved: no cut of {} update{} has a crack", count(sound), plural(sound));
     if non_manifold > 0 {
-        text += &format!("; {} beside what is not manifold in the input", count(non_manifold));
+        text += &format!("; {} next to non-manifold parts of the input", count(non_manifold));
     }
     text
 }
@@ -65,8 +70,8 @@ pub fn fit_json(fit: &Fit) -> Value {
 /// How far the finest level of a height field may be from the mesh.
 pub fn fit_text(fit: &Fit) -> String {
     format!(
-        "the finest is off the mesh by up to {} where a cell has its other diagonal, {} where vertices are \
-         off the grid; bounds of errors are from the finest",
+        "the finest level is off the mesh by up to {} where a cell is split along its other diagonal, \
+         and by up to {} where vertices are off the grid; error bounds refer to the finest level",
         value(fit.turned),
         value(fit.moved),
     )

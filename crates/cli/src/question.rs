@@ -32,8 +32,11 @@ pub struct Question {
 impl Question {
     /// The query, of a model with this diagonal.
     pub fn query(&self, diagonal: f64) -> Result<Query<'static>, Failure> {
-        let camera =
-            || self.camera.ok_or_else(|| Failure::usage("pixels and frustum: give --camera"));
+        let camera = || {
+            self.camera.ok_or_else(|| {
+                Failure::usage("errors in pixels and the focus frustum need --camera")
+            })
+        };
         let focus = match &self.focus {
             None => Focus::Everything,
             Some(Where::Here(focus)) => focus.clone(),
@@ -66,8 +69,8 @@ pub fn focus(text: &str) -> Result<Where, String> {
         ("box", Ok(&[a, b, c, x, y, z])) => Focus::Box([[a, b, c], [x, y, z]]),
         ("sphere", Ok(&[x, y, z, radius])) => Focus::Sphere { center: [x, y, z], radius },
         _ => {
-            return Err("write point=x,y,z, segment=x,y,z,x,y,z, box=x,y,z,x,y,z with the least \
-                        corner first, sphere=x,y,z,r or frustum"
+            return Err("expected point=x,y,z, segment=x,y,z,x,y,z, box=x,y,z,x,y,z with the \
+                        minimum corner first, sphere=x,y,z,r or frustum"
                 .into());
         }
     };
@@ -76,8 +79,8 @@ pub fn focus(text: &str) -> Result<Where, String> {
 
 /// `eye=x,y,z look=x,y,z fov=45 1920x1080`, and maybe `up=x,y,z`.
 pub fn camera(text: &str) -> Result<ViewCamera, String> {
-    const FORM: &str = "write \"eye=x,y,z look=x,y,z fov=45 1920x1080\", with degrees from the lower \
-                        edge to the upper one, and up=x,y,z if it is not y";
+    const FORM: &str = "expected \"eye=x,y,z look=x,y,z fov=45 1920x1080\" with the vertical field \
+                        of view in degrees, and up=x,y,z unless y is up";
     let (mut eye, mut look, mut up, mut fov, mut viewport) = (None, None, None, None, None);
     for word in text.split_whitespace() {
         match word.split_once('=') {
@@ -99,7 +102,7 @@ pub fn camera(text: &str) -> Result<ViewCamera, String> {
 
 fn triple(text: &str) -> Result<[f64; 3], String> {
     let numbers: Vec<f64> = text.split(',').map(amounts::number).collect::<Result<_, _>>()?;
-    numbers.try_into().map_err(|_| format!("{text:?} is not three numbers with commas"))
+    numbers.try_into().map_err(|_| format!("{text:?} is not three numbers separated by commas"))
 }
 
 #[cfg(test)]

@@ -9,7 +9,7 @@ use meshlod::{Mesh, Options, Report, Scene, SceneError, SceneSimplifier, Target}
 use serde_json::{Map, Value, json};
 
 use crate::failure::Failure;
-use crate::numbers::{count, faces, plural, value};
+use crate::numbers::{count, faces, value};
 use crate::session::Session;
 
 /// A level of a scene.
@@ -41,7 +41,7 @@ impl<'s> Engine<'s> {
         path: &'s Path,
         session: &'s Session,
     ) -> Result<Self, Failure> {
-        session.progress.stage("connecting");
+        session.progress.stage("building connectivity");
         let start = Instant::now();
         let simplifier = SceneSimplifier::new(scene, options).map_err(|e| at(path, &e))?;
         let what = "simplifying".into();
@@ -139,7 +139,7 @@ pub fn report_json(report: &Report) -> Value {
 /// One line that says why there are more faces than wanted.
 pub fn why_not_reached(report: &Report) -> String {
     format!(
-        "target not reached: nothing more may be contracted at {} (refused: {})",
+        "target not reached: no further contraction is possible at {} (refused: {})",
         faces(report.output_faces),
         report.refusals,
     )
@@ -148,21 +148,21 @@ pub fn why_not_reached(report: &Report) -> String {
 /// Lines that say what was left out or kept in place; none for a clean mesh.
 pub fn oddities(report: &Report) -> String {
     let mut text = String::new();
-    let mut line = |number: usize, what: &str| {
+    let mut line = |number: usize, nouns: [&str; 2], what: &str| {
+        let noun = nouns[usize::from(number != 1)];
         if number > 0 {
-            text.push_str(&format!("{} {what}\n", count(number)));
+            text.push_str(&format!("{} {noun} {what}\n", count(number)));
         }
     };
-    let faces = plural(report.degenerate_faces);
-    line(report.degenerate_faces, &format!("degenerate face{faces} left out"));
-    let faces = plural(report.duplicate_faces);
-    line(report.duplicate_faces, &format!("duplicate face{faces} left out"));
-    line(report.non_manifold_vertices, "vertices kept in place: not manifold there");
-    line(report.held.locked, "vertices locked");
-    line(report.held.protected, "vertices protected");
-    line(report.held.tied, "vertices tied to others");
-    let components = plural(report.vanished);
-    line(report.vanished, &format!("small component{components} removed"));
+    line(report.degenerate_faces, ["degenerate face", "degenerate faces"], "left out");
+    line(report.duplicate_faces, ["duplicate face", "duplicate faces"], "left out");
+    let vertices = ["vertex", "vertices"];
+    let non_manifold = ["non-manifold vertex", "non-manifold vertices"];
+    line(report.non_manifold_vertices, non_manifold, "kept in place");
+    line(report.held.locked, vertices, "locked");
+    line(report.held.protected, vertices, "protected");
+    line(report.held.tied, vertices, "tied to others");
+    line(report.vanished, ["small component", "small components"], "removed");
     text
 }
 

@@ -15,7 +15,7 @@ use crate::session::Session;
 /// Refuses a sequence that could not be kept in a file, before any work is done.
 pub fn check(path: &Path, input: &Path, output: &Path) -> Result<(), Failure> {
     if files::is_pipe(path) {
-        return Err(Failure::usage("--sequence: name a file"));
+        return Err(Failure::usage("--sequence needs a file, not standard output"));
     }
     files::check_apart(path, &[input, output])?;
     files::check_place(path)
@@ -30,7 +30,7 @@ pub fn check_scene(scene: &Scene, input: &Path, session: &Session) -> Result<(),
     let moved = scene.instances().iter().any(|placed| placed.transform != unmoved);
     if moved || !scene.materials.is_empty() {
         session.warn(format_args!(
-            "--sequence keeps no nodes and no materials; replay with --scene {} to have them back",
+            "--sequence does not store nodes and materials; replay --scene {} restores them",
             files::name(input)
         ));
     }
@@ -39,7 +39,7 @@ pub fn check_scene(scene: &Scene, input: &Path, session: &Session) -> Result<(),
 
 /// Why there is no sequence of a scene.
 pub fn several_meshes(input: &Path) -> Failure {
-    Failure::at(input, "has several meshes; --sequence keeps the levels of one")
+    Failure::at(input, "--sequence needs an input with exactly one mesh")
 }
 
 /// Writes a sequence and what goes with it: where that fails, no new file of the sequence stays.
@@ -61,13 +61,16 @@ pub fn write_with(
 /// Puts the level at hand in the place of the mesh that the sequence was made of.
 pub fn put_into(scene: &mut Scene, sequence: &Progressive, path: &Path) -> Result<(), Failure> {
     let [only] = &scene.meshes[..] else {
-        return Err(Failure::at(path, "has no single mesh; a sequence is of one"));
+        return Err(Failure::at(
+            path,
+            "does not hold exactly one mesh, as the input of the sequence did",
+        ));
     };
     let level = sequence.level();
     if !is_of(&only.mesh, sequence, &level) {
         return Err(Failure::at(
             path,
-            "is not the file that the sequence was made of, or not welded as it was",
+            "is not the file that the sequence was recorded from, or is welded differently",
         ));
     }
     reduce::replace(scene, vec![level]);

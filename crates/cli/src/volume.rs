@@ -23,7 +23,7 @@ fn with_bounds(some: &Unconserved) -> Value {
 /// What a method that conserves the volume could not conserve; nothing where there is no more to
 /// say than the method's name does.
 pub fn unconserved_text(method: Method, loss: &VolumeLoss) -> Option<String> {
-    let kinds = [(&loss.open, "at boundaries"), (&loss.held, "held by seams or locks")];
+    let kinds = [(&loss.open, "at boundaries"), (&loss.held, "constrained by seams or locks")];
     let some = kinds.iter().filter(|(some, _)| some.contractions > 0);
     let texts: Vec<String> = some.map(|(some, what)| place(some, what)).collect();
     (method.conserves_volume() && !texts.is_empty())
@@ -33,7 +33,7 @@ pub fn unconserved_text(method: Method, loss: &VolumeLoss) -> Option<String> {
 fn place(some: &Unconserved, what: &str) -> String {
     let point = |point: [f64; 3]| point.map(value).join(" ");
     format!(
-        "{} contraction{} {what}, between {} and {}",
+        "{} contraction{} {what}, within the box from {} to {}",
         count(some.contractions),
         plural(some.contractions),
         point(some.bounds.min),
@@ -52,8 +52,8 @@ mod tests {
         let bounds = Bounds { min: [0.0, -1.0, 0.5], max: [1.0; 3] };
         let loss =
             VolumeLoss { held: Unconserved { contractions: 1, bounds }, ..VolumeLoss::default() };
-        let text = "volume not conserved by 1 contraction held by seams or locks, between 0 -1 0.5 \
-                    and 1 1 1";
+        let text = "volume not conserved by 1 contraction constrained by seams or locks, within the \
+                    box from 0 -1 0.5 to 1 1 1";
         assert_eq!(unconserved_text(Method::LeeJang, &loss).as_deref(), Some(text));
         assert_eq!(unconserved_text(Method::Qem, &loss), None);
         assert_eq!(unconserved_text(Method::LeeJang, &VolumeLoss::default()), None);

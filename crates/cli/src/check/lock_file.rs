@@ -34,13 +34,13 @@ impl Rows {
     /// Vertices joined within a distance, which leaves no rows to speak of.
     pub fn of(path: &Path, scene: &Scene, weld: Weld) -> Result<Self, Failure> {
         if files::is_pipe(path) {
-            return Err(Failure::usage("locks are of a file: no pipe will do"));
+            return Err(Failure::usage("--locks: the input must be a file, not standard input"));
         }
         let format = Format::of_path(path).map_err(Failure::usage)?;
         let torn = match (weld, format) {
             (Weld::Within(_), _) => {
                 return Err(Failure::usage(
-                    "locks are of the vertices of the file: they do not go with --weld",
+                    "--locks refers to the vertices of the input file and does not go with --weld",
                 ));
             }
             (Weld::Exact, Format::Glb | Format::Gltf | Format::Stl) => {
@@ -167,16 +167,16 @@ pub fn read(path: &Path, scene: &Scene, rows: &Rows) -> Result<Vec<Locks>, Failu
     let bytes = files::read_all(path)?;
     let json: Value = serde_json::from_slice(&bytes).map_err(|error| wrong(error.to_string()))?;
     if json["format"] != FORMAT {
-        return Err(wrong("is no file of locks; meshlod check IN --locks FILE makes one".into()));
+        return Err(wrong("is not a lock file; meshlod check IN --locks FILE writes one".into()));
     }
     if json["version"] != VERSION {
         let version = &json["version"];
-        return Err(wrong(format!("is of version {version}; this program reads {VERSION}")));
+        return Err(wrong(format!("has version {version}; this program reads version {VERSION}")));
     }
     let meshes = json["meshes"].as_array().map_or(&[][..], Vec::as_slice);
     if meshes.len() != scene.meshes.len() {
         let (found, expected) = (meshes.len(), scene.meshes.len());
-        return Err(wrong(format!("has locks of {found} meshes where {expected} are needed")));
+        return Err(wrong(format!("has locks for {found} meshes, but the input has {expected}")));
     }
     let marks = rows.marks(scene);
     let locks = meshes.iter().zip(&rows.of_meshes).zip(&scene.meshes).zip(&marks).enumerate();
@@ -198,14 +198,16 @@ impl Twin<'_> {
     fn locks(&self, json: &Value) -> Result<Locks, String> {
         let ties = match json.get("ties") {
             None => &[],
-            Some(ties) => ties.as_array().ok_or("\"ties\" is no list")?.as_slice(),
+            Some(ties) => ties.as_array().ok_or("\"ties\" is not a list")?.as_slice(),
         };
         let of_vertex = self.flags(json)?;
         match json.get("positions") {
             // Those who write flags of their own need no mark.
             None => (),
             Some(mark) if *mark == self.mark => (),
-            Some(_) => return Err("is of vertices at other places; make the locks anew".into()),
+            Some(_) => {
+                return Err("the locks are for vertices at other positions; write them again".into());
+            }
         }
         let ties = ties.iter().enumerate().map(|(i, tie)| self.tie(i, tie));
         let ties: Vec<Vec<VertexId>> = ties.collect::<Result<_, _>>()?;
@@ -218,13 +220,13 @@ impl Twin<'_> {
         let flags = json["flags"].as_array().ok_or("has no flags")?;
         if flags.len() != self.rows.len() {
             let (found, expected) = (flags.len(), self.rows.len());
-            return Err(format!("has flags of {found} vertices where the input has {expected}"));
+            return Err(format!("has flags for {found} vertices, but the input has {expected}"));
         }
         let mut of_vertex = vec![Lock::Free; self.positions.len()];
         for (row, (flag, v)) in flags.iter().zip(self.rows).enumerate() {
             let known = FLAGS.iter().find(|(_, known, _)| flag.as_u64() == Some((*known).into()));
             let &(lock, ..) =
-                known.ok_or_else(|| format!("flag {row} is {flag}; 0, 1 and 2 are known"))?;
+                known.ok_or_else(|| format!("flag {row} is {flag}; it must be 0, 1 or 2"))?;
             of_vertex[v.index()] = lock.max(of_vertex[v.index()]);
         }
         Ok(of_vertex)
@@ -232,21 +234,21 @@ impl Twin<'_> {
 
     /// The vertices of a tie, each once.
     fn tie(&self, i: usize, tie: &Value) -> Result<Vec<VertexId>, String> {
-        let members = tie.as_array().ok_or_else(|| format!("tie {i} is no list"))?;
+        let members = tie.as_array().ok_or_else(|| format!("tie {i} is not a list"))?;
         if members.len() < 2 {
-            return Err(format!("tie {i} is of {} vertices; two are the least", members.len()));
+            return Err(format!("tie {i} has {} vertices; it needs at least 2", members.len()));
         }
         let vertex = |row: &Value| {
             let index = row.as_u64().and_then(|row| usize::try_from(row).ok());
             let vertex = index.and_then(|index| self.rows.get(index).copied());
-            vertex.ok_or_else(|| format!("tie {i} names {row}, which is not there"))
+            vertex.ok_or_else(|| format!("tie {i} names vertex {row}, which does not exist"))
         };
         let mut tie: Vec<VertexId> = members.iter().map(vertex).collect::<Result<_, _>>()?;
         let place = |v: VertexId| bits(&self.positions[v.index()]);
         if let Some(apart) = tie.iter().position(|&v| place(v) != place(tie[0])) {
             let [first, apart] = [&members[0], &members[apart]];
             return Err(format!(
-                "tie {i} is of vertices at one place; {first} and {apart} are apart"
+                "tie {i} has vertices at different positions: {first} and {apart}"
             ));
         }
         tie.sort_unstable();

@@ -49,10 +49,10 @@ impl Mark {
             Self::Broken => "degenerate or duplicate face",
             Self::NonManifold => "non-manifold edge or vertex",
             Self::Crossing => "face that crosses or overlaps another object",
-            Self::SelfCrossing => "face that meets another of its own object",
+            Self::SelfCrossing => "face that intersects its own object",
             Self::Touching => "face that touches another object",
-            Self::Inconsistent => "edge of two faces that disagree on what is outside",
-            Self::InsideOut => "component that looks inwards",
+            Self::Inconsistent => "edge whose faces are inconsistently oriented",
+            Self::InsideOut => "component that is inside out",
             Self::Boundary => "boundary",
         }
     }

@@ -70,7 +70,7 @@ fn lead(inspection: &Inspection) -> String {
     let objects = inspection.objects.names.len();
     let of = format!("{} object{}", count(objects), plural(objects));
     match inspection.summary.total() {
-        0 => format!("Nothing was found in {of}."),
+        0 => format!("No findings in {of}."),
         _ => format!("{} in {of}.", text::verdict(inspection)),
     }
 }
@@ -79,8 +79,8 @@ fn lead(inspection: &Inspection) -> String {
 fn pictures(title: &str, mesh: &Mesh, marks: &Marks) -> Result<Markup, Failure> {
     let used = marks.used();
     let parts: &[(Part, &str)] = match used[..] {
-        [] => &[(Part::Whole, "as it is")],
-        _ => &[(Part::Whole, "as it is"), (Part::Marked, "what is marked alone")],
+        [] => &[(Part::Whole, "the whole mesh")],
+        _ => &[(Part::Whole, "the whole mesh"), (Part::Marked, "the marked parts only")],
     };
     let drawings: Vec<(Drawing, &str)> =
         parts.iter().map(|&(part, about)| (Drawing::new(mesh, marks, part), about)).collect();
@@ -95,9 +95,9 @@ fn pictures(title: &str, mesh: &Mesh, marks: &Marks) -> Result<Markup, Failure> 
     }
     Ok(html! {
         section id="pictures" {
-            h2 { "Where" }
+            h2 { "Pictures" }
             @if parts.len() > 1 {
-                p { "Above as it is; below, what is marked alone, so that what is inside is seen." }
+                p { "Above: the whole mesh. Below: the marked parts only, so that those inside show too." }
             }
             (legend(&used))
             div.strip.wrap style="--columns: 4" tabindex="0" role="region" aria-label=(title) {
@@ -157,8 +157,8 @@ fn contact_table(inspection: &Inspection) -> Markup {
         section id="contacts" {
             h2 { "Contacts" }
             p {
-                (count(pairs.len())) " pair" (plural(pairs.len())) " of objects meet. Depth is how far a face "
-                "would have to move until it only touches, at least, in model units."
+                (count(pairs.len())) " pair" (plural(pairs.len())) " of objects meet. Depth is the least distance, in model "
+                "units, that a face would have to move until it only touches the other."
             }
             div.scroll tabindex="0" role="region" aria-label="Contacts" { table {
                 thead { tr {

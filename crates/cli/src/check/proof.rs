@@ -45,7 +45,7 @@ fn prove_contractions(
         "certificate": model_file::certificate_json(&certificate),
     });
     let text = format!(
-        "{}: {} to {}, {there} of {chunks} chunk{}, {kind}s of errors; {}\n{}\n",
+        "{}: {} to {}, {there} of {chunks} chunk{}, error {kind}s; {}\n{}\n",
         files::name(path),
         count(model.base_faces()),
         faces(model.full_faces()),

@@ -66,7 +66,7 @@ pub fn first(inspection: &Inspection, sites: &Sites, finding: &Finding) -> Strin
     let ids = match finding {
         Finding::BadAttributes { error } => return error.to_string(),
         Finding::Crowded { found } => {
-            return format!("given up after {} pairs that meet", count(*found));
+            return format!("stopped after {} pairs of faces that meet", count(*found));
         }
         Finding::NonFiniteVertex { vertex }
         | Finding::UnusedVertex { vertex }
@@ -86,7 +86,7 @@ pub fn first(inspection: &Inspection, sites: &Sites, finding: &Finding) -> Strin
             edge.map(|v| sites.vertex(v)).join(" to ")
         }
         Finding::DuplicateFace { face, of } => {
-            format!("{} of {}", sites.face(*face), sites.face(*of))
+            format!("{} duplicates {}", sites.face(*face), sites.face(*of))
         }
         Finding::SelfIntersection { faces, .. } | Finding::Contact { faces, .. } => {
             faces.map(|f| sites.face(f)).join(" and ")
@@ -115,7 +115,7 @@ fn contacts(inspection: &Inspection) -> String {
     let more = pairs.len().saturating_sub(MOST_PAIRS);
     let more = if more > 0 { format!("  and {} more\n", count(more)) } else { String::new() };
     format!(
-        "contacts, {} pair{} of objects\n{table}{more}",
+        "contacts between {} pair{} of objects\n{table}{more}",
         count(pairs.len()),
         plural(pairs.len())
     )

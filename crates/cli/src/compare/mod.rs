@@ -29,18 +29,18 @@ use output::Output;
 
 #[derive(Args)]
 pub struct Compare {
-    /// File to read, or -
+    /// Mesh to read, or -
     #[arg(value_name = "IN")]
     input: PathBuf,
     #[command(flatten)]
     sizes: Sizes,
-    /// Folder to write to; made where it is not there
+    /// Folder to write to; created if missing
     #[arg(long, value_name = "DIR")]
     out: PathBuf,
-    /// Only these methods [default: all]
+    /// Methods to compare [default: all]
     #[arg(long, value_name = "NAMES", value_delimiter = ',', value_parser = amounts::method)]
     methods: Vec<Method>,
-    /// Draw nothing: the page has the figures alone
+    /// Draw no pictures: the page has figures only
     #[arg(long)]
     no_pictures: bool,
     #[command(flatten)]
@@ -55,11 +55,11 @@ pub struct Compare {
 #[derive(Args)]
 #[group(required = true, multiple = false)]
 struct Sizes {
-    /// To these parts of the faces: 10%,1%
-    #[arg(long, value_name = "PARTS", value_delimiter = ',', value_parser = amounts::ratio,
+    /// Target ratios of the faces: 10%,1%
+    #[arg(long, value_name = "RATIOS", value_delimiter = ',', value_parser = amounts::ratio,
         allow_hyphen_values = true)]
     ratio: Vec<f64>,
-    /// To these numbers of faces: 5000,500
+    /// Target numbers of faces: 5000,500
     #[arg(long, value_name = "NUMBERS", value_delimiter = ',', value_parser = amounts::whole,
         allow_negative_numbers = true)]
     faces: Vec<usize>,

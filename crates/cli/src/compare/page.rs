@@ -32,10 +32,10 @@ fn header(contest: &Contest<'_>) -> Markup {
     html! {
         h1 id="top" { (contest.subject.title) }
         p.lead {
-            "Taken down by " (contest.methods.len()) " method" (plural(contest.methods.len()))
-            ", each by itself, and each level held against the original: every vertex and "
-            (count(contest.options.samples)) " samples each way, to the exact closest point. "
-            "Times are of one run with " (threads) " thread" (plural(threads))
+            "Simplified by " (contest.methods.len()) " method" (plural(contest.methods.len()))
+            ", independently of each other. Each level is measured against the original: from every "
+            "vertex and " (count(contest.options.samples)) " samples each way to the exact closest "
+            "point. Times are for one run on " (threads) " thread" (plural(threads))
             ", without reading and writing."
         }
     }
@@ -75,12 +75,12 @@ fn files(contest: &Contest<'_>, outcome: &Outcome) -> Markup {
     let levels = || outcome.entries.iter().flat_map(|entry| &entry.chain.levels);
     html! {
         section id="files" {
-            h2 { "Files beside this page" }
-            p { a href="compare.json" { "compare.json" } " has all figures; the levels are:" }
+            h2 { "Files next to this page" }
+            p { a href="compare.json" { "compare.json" } " holds all figures. The levels:" }
             ul.names { @for level in levels() { li { a href=(level.file) { (level.file) } } } }
             @if let Some(level) = levels().next() {
                 @if level.file.ends_with(".glb") {
-                    p { "glTF holds 32 bits a coordinate: measured again, the last digits differ." }
+                    p { "glTF stores coordinates in 32 bits, so the last digits differ when measured again." }
                 }
                 pre { code { "meshlod measure " (contest.subject.title) " " (level.file) } }
             }

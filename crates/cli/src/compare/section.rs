@@ -84,7 +84,7 @@ fn figures(contest: &Contest<'_>, outcome: &Outcome, size: usize) -> Markup {
         columns.iter().map(|column| column.winners(input, &levels)).collect();
     html! {
         // Before the table and not its caption: that would scroll with it.
-        p.about { (columns::legend(input, &columns).join(" ")) " The best of a column is marked." }
+        p.about { (columns::legend(input, &columns).join(" ")) " The best value of each column is marked." }
         div.scroll tabindex="0" role="region" aria-label="Figures" { table {
             (table::heads("Method", &columns))
             tbody {
@@ -140,11 +140,11 @@ fn refusals(outcome: &Outcome, size: usize) -> Markup {
     let reasons: Vec<Refusal> = Refusal::ALL.into_iter().filter(met).collect();
     html! {
         table {
-            caption { "How often contractions were refused, by reason; one tried again counts again." }
+            caption { "Refused contractions by reason; every retry counts again." }
             thead { tr {
                 th scope="col" { "Method" }
                 @for reason in &reasons { th scope="col" { (words(*reason)) } }
-                th scope="col" { "in all" }
+                th scope="col" { "total" }
             } }
             tbody { @for (entry, level) in outcome.at(size) { (reasons_of(entry, level, &reasons)) } }
         }

@@ -55,7 +55,7 @@ pub fn text(contest: &Contest<'_>, outcome: &Outcome, output: &Output) -> String
     for about in legend(input, &Column::of(input, levels)) {
         text += &format!("{about}\n");
     }
-    text += "* the best of those that reached their size\n";
+    text += "* the best of the levels that reached their size\n";
     text + &format!("{}\n", files::name(&output.folder.join("index.html")))
 }
 

@@ -26,7 +26,7 @@ use exhibit::Exhibit;
 
 #[derive(Args)]
 pub struct Demo {
-    /// Folder to write to; made where it is not there
+    /// Folder to write to; created if missing
     #[arg(value_name = "DIR")]
     folder: PathBuf,
 }

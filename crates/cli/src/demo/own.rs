@@ -7,12 +7,12 @@ use crate::demo::exhibit::Exhibit;
 /// A step, and the line that does it.
 const STEPS: [(&str, &str); 7] = [
     ("Look inside", "meshlod info your.ply"),
-    ("Make it coarser", "meshlod simplify your.ply small.ply --ratio 10%"),
-    ("Say how far off it may be", "meshlod simplify your.ply small.ply --error 0.1% --measured"),
-    ("Measure what became of it", "meshlod measure your.ply small.ply"),
-    ("See which method suits it", "meshlod compare your.ply --ratio 10% --out compared"),
+    ("Simplify it", "meshlod simplify your.ply small.ply --ratio 10%"),
+    ("Bound the error", "meshlod simplify your.ply small.ply --error 0.1% --measured"),
+    ("Measure the result", "meshlod measure your.ply small.ply"),
+    ("Compare the methods", "meshlod compare your.ply --ratio 10% --out compared"),
     ("Put all levels in one file", "meshlod lods your.ply your.glb --levels 50%,25%,10%,3%"),
-    ("Draw it, and the error on it", "meshlod render your.ply error.png --heat-against small.ply"),
+    ("Render the error", "meshlod render your.ply error.png --heat-against small.ply"),
 ];
 
 /// The commands to do each step on a mesh of one's own.
@@ -21,8 +21,9 @@ pub fn commands() -> Markup {
         section id="own" {
             h2 { "On your own mesh" }
             p {
-                "PLY, OBJ, STL, OFF, SMF, glTF and GLB, in and out. " code { "--json" }
-                " gives every figure to a program; " code { "meshlod help" } " has the rest."
+                "Reads and writes PLY, OBJ, STL, OFF, SMF, glTF and GLB. With " code { "--json" }
+                ", every verb prints its figures for programs; " code { "meshlod help" }
+                " lists the rest."
             }
             ol.steps {
                 @for (what, line) in STEPS {
@@ -37,7 +38,7 @@ pub fn commands() -> Markup {
 pub fn files(exhibits: &[Exhibit]) -> Markup {
     html! {
         section id="files" {
-            h2 { "Files beside this page" }
+            h2 { "Files next to this page" }
             div.files {
                 @for exhibit in exhibits {
                     div {

@@ -14,7 +14,7 @@ pub fn page(exhibits: &[Exhibit], hero: &Hero) -> Markup {
         exhibits.iter().map(|exhibit| (exhibit.sample.name.into(), exhibit.subject.title.clone()));
     let rest = [("own", "Your mesh"), ("files", "Files")].map(|(a, b)| (a.into(), b.into()));
     document(Document {
-        title: "meshlod demo: coarser, and by how much",
+        title: "meshlod demo: fewer triangles, measured",
         links: samples.chain(rest).collect(),
         header: header(exhibits, hero),
         main: html! {
@@ -30,12 +30,12 @@ fn header(exhibits: &[Exhibit], hero: &Hero) -> Markup {
         exhibits.iter().flat_map(|exhibit| &exhibit.chains).map(|chain| chain.levels.len()).sum();
     let methods: Vec<&str> = exhibits[0].chains.iter().map(|chain| chain.method.name()).collect();
     html! {
-        h1 id="top" { "Fewer triangles, and how far off they are" }
+        h1 id="top" { "Fewer triangles, measurably close" }
         p.lead {
             (levels) " coarser levels of " (exhibits.len()) " meshes, by "
-            (listed(&methods)) ", each held against its original: every vertex and " (count(SAMPLES))
-            " samples each way, to the exact closest point. Every picture and every figure "
-            "here was made by the command that wrote this page."
+            (listed(&methods)) ", each measured against its original: from every vertex and "
+            (count(SAMPLES)) " samples each way to the exact closest point. Every picture and every "
+            "figure here was made by the command that wrote this page."
         }
         figure.hero {
             img src=(hero.plate.uri) alt=(hero.plate.alt)

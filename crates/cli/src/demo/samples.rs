@@ -35,8 +35,8 @@ pub const ALL: [Sample; 3] = [
         name: "fish",
         title: "Fish",
         about: "One closed surface with colours, normals and texture coordinates. Thin fins, round \
-                eyes and a mouth need their faces; the flanks can do with few. Colours and normals \
-                go along from level to level, and seams stay shut.",
+                eyes and the mouth need their faces; the flanks get by with few. Colours and normals \
+                carry over from level to level, and seams stay closed.",
         faces: 20_000,
         coat: Coat::Colors,
         normals: Normals::FromMesh,
@@ -59,8 +59,8 @@ pub const ALL: [Sample; 3] = [
     Sample {
         name: "faceted-torus",
         title: "Faceted torus",
-        about: "Seventy-two flat facets that meet in creases, each split finely. All but 144 faces \
-                could go at no error at all; no crease may blur.",
+        about: "Seventy-two flat facets that meet in creases, each finely subdivided. All but 144 \
+                faces could go without any error; no crease may blur.",
         faces: 10_000,
         coat: Coat::Plain([150, 182, 200]),
         normals: Normals::Creased { crease_rad: CREASE_RAD },

@@ -101,7 +101,7 @@ fn figures(exhibit: &Exhibit) -> Markup {
 /// Why contractions were refused on the way to the last level.
 fn refusals(chain: &Chain) -> Markup {
     let last = chain.levels.last().map(|level| level.report.refusals);
-    html! { @if let Some(refusals) = last { small { "refused in all: " (refusals) } } }
+    html! { @if let Some(refusals) = last { small { "refused: " (refusals) } } }
 }
 
 /// Whether the levels hang together as the input does, and are as small as asked for.
@@ -120,7 +120,7 @@ fn verdict(exhibit: &Exhibit) -> String {
         _ => "",
     };
     format!(
-        "{whole} are as whole as the input: {}{tunnels}. {reached} reached their size.",
+        "{whole} have the topology of the input: {}{tunnels}. {reached} reached their size.",
         shape(input)
     )
 }

@@ -58,7 +58,8 @@ pub fn text(show: &Show) -> String {
         }
     }
     format!(
-        "{}RMS, max: measured, of the diagonal\nin {:.1} s, {:.1} MB\n{}\n",
+        "{}RMS, max: measured distance from the input, in % of the diagonal\n\
+         done in {:.1} s, page of {:.1} MB\n{}\n",
         aligned(&rows),
         show.seconds,
         show.page_bytes as f64 / 1e6,

@@ -49,7 +49,7 @@ pub fn chart(chart: &Chart) -> Markup {
                         span.series { (key(series.method)) (series.method.name()) } " "
                     }
                 }
-                p { (chart.caption) " Both axes go by decades." }
+                p { (chart.caption) " Both axes are logarithmic." }
             }
         }
     }

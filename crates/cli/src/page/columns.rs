@@ -65,7 +65,7 @@ pub const COLUMNS: [Column; 11] = [
     },
     Column {
         head: "Estimate",
-        about: "Estimate: the method’s own of the max.",
+        about: "Estimate: the method’s own estimate of the maximum.",
         value: |input, level| Some(100.0 * level.report.error_estimate / input.diagonal),
         text: digits,
         // The nearest to the truth would be, and that is in the column before.
@@ -73,15 +73,15 @@ pub const COLUMNS: [Column; 11] = [
     },
     Column {
         head: "Volume",
-        about: "Volume: its change in percent.",
+        about: "Volume: change in percent.",
         value: |input, level| level.volume_change(input),
         text: drift,
         best: Some(Best::NearestZero { rounding: |_| 100.0 * ROUNDING }),
     },
     Column {
         head: "Sum",
-        about: "Sum: volume after less volume before, over all contractions with a closed ring, in \
-                cubic units.",
+        about: "Sum: change of the volume summed over all contractions with a closed ring, in cubic \
+                units.",
         // Its sign is that of the column before; the report's is that of the paper.
         value: |_, level| Some(0.0 - level.report.volume.running_sum),
         text: power_of_ten,
@@ -89,14 +89,14 @@ pub const COLUMNS: [Column; 11] = [
     },
     Column {
         head: "Shape",
-        about: "Shape: 1 where all triangles are equilateral.",
+        about: "Shape: mean triangle quality, 1 if all triangles are equilateral.",
         value: |_, level| level.quality.map(|quality| quality.mean),
         text: |mean| format!("{mean:.2}"),
         best: Some(Best::Greatest),
     },
     Column {
         head: "FLIP",
-        about: "FLIP: how different it looks from twelve sides, in pictures of 256 by 256; 0 for not at all.",
+        about: "FLIP: perceived difference in twelve views of 256 by 256 pixels, 0 if there is none.",
         value: |_, level| level.flip,
         text: |flip| format!("{flip:.4}"),
         best: Some(Best::Least),

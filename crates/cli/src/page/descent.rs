@@ -71,7 +71,7 @@ impl<'s> Descent<'s> {
         let Bench { subject, original, options, session } = bench;
         let path = Path::new(&subject.name);
         let manner = Options { method: Some(method), ..Options::default() };
-        session.progress.stage(&format!("{what}: connecting"));
+        session.progress.stage(&format!("{what}: building connectivity"));
         let engine = Engine::start(&subject.scene, &manner, path, session)?;
         Ok(Self { subject, original, options, engine, session, what })
     }

@@ -18,7 +18,7 @@ pub fn facts(counts: &Counts) -> Markup {
             (number("closed", html! { @if counts.closed { "yes" } @else { "no" } }))
             @if let Some(genus) = counts.genus { (number("tunnels (genus)", whole(genus))) }
             (number("area", figure(counts.area, &short(counts.area))))
-            @let volume = if counts.closed { "volume" } else { "volume, of no closed surface" };
+            @let volume = if counts.closed { "volume" } else { "volume (not closed)" };
             (number(volume, figure(counts.volume, &short(counts.volume))))
         }
     }

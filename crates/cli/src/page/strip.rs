@@ -68,7 +68,7 @@ fn image(plate: &Plate) -> Markup {
 fn legend() -> Markup {
     html! {
         div.legend {
-            p { b { "Error" } " How far the level is from the input, in percent of the diagonal." }
+            p { b { "Error" } " Distance of the level from the input, in percent of the diagonal." }
             div.bar style=(format!("background: {}", heat::gradient())) {}
             div.ticks { @for tick in heat::ticks() { span { (tick) } } }
         }

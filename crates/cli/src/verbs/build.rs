@@ -24,32 +24,33 @@ use crate::session::Session;
 
 #[derive(Args)]
 pub struct Build {
-    /// File to read, or -
+    /// Mesh to read, or -
     #[arg(value_name = "IN")]
     input: PathBuf,
     /// File to write
     #[arg(value_name = "OUT.mlod")]
     output: PathBuf,
-    /// What the levels are made by
+    /// How the levels are made
     #[arg(long, value_name = "MODEL", default_value = "contractions")]
     model: Model,
     #[arg(long, value_name = "NAME", default_value = Method::LindstromTurk.name(),
         value_parser = amounts::method, help = amounts::methods())]
     method: Method,
-    /// Prove bounds of the errors, in place of the method's estimates, which are evened out; takes some
-    /// times as long. Errors of right triangles are bounds in any case
+    /// Compute proven error bounds in place of the method's smoothed estimates; this takes several times
+    /// as long. The errors of right triangles are bounds in any case
     #[arg(long)]
     bounds: bool,
-    /// By how much a vertex may be moved to take less room: 0.001 in model units, 0.005% of the
-    /// diagonal; a cell or two more where a triangle would lose its area
+    /// How far rounding may move a vertex: 0.001 in model units, or 0.005% of the diagonal; by a cell or
+    /// two more where a triangle would lose its area
     #[arg(long, value_name = "BOUND", value_parser = amounts::bound, default_value = "0.005%",
         allow_hyphen_values = true)]
     rounding: Bound,
-    /// Keep the vertices of the mesh where they are, to the bit, and bring all its faces back at --error 0;
-    /// vertices of coarser levels are moved by about 0.002% of the diagonal
+    /// Keep the vertices of the mesh bit for bit, so that extract --error 0 restores all its faces;
+    /// vertices of coarser levels move by about 0.002% of the diagonal
     #[arg(long, conflicts_with = "rounding")]
     lossless: bool,
-    /// About how many vertices are read at once: fewer make a larger file, of which queries read less
+    /// Approximate number of vertices in a chunk, the unit of reading: smaller chunks make a larger file
+    /// of which a query reads less
     #[arg(long, value_name = "N", value_parser = amounts::positive, default_value_t = 4096,
         allow_negative_numbers = true)]
     in_chunk: usize,
@@ -59,9 +60,9 @@ pub struct Build {
 
 #[derive(Clone, Copy, PartialEq, ValueEnum)]
 enum Model {
-    /// Contractions of any mesh
+    /// Edge contractions, for any mesh
     Contractions,
-    /// Right triangles of a height field on a regular grid
+    /// Right-triangle hierarchy, for a height field on a regular grid
     RightTriangles,
 }
 
@@ -94,7 +95,7 @@ impl Build {
         model_file::check_output(&self.output)?;
         if self.lossless && self.model == Model::RightTriangles {
             return Err(Failure::usage(
-                "--lossless: right triangles move vertices to a grid; --rounding 0 keeps their heights",
+                "--lossless does not go with right-triangles, which move vertices to a grid; use --rounding 0 to keep the heights",
             ));
         }
         let scene = files::read(&self.input, &self.reading, session)?;
@@ -119,12 +120,12 @@ impl Build {
         let alone = mesh.positions.len() - vertex_count(mesh);
         if alone > 0 {
             let some = if alone == 1 { "vertex" } else { "vertices" };
-            let reason = format_args!("left out: {} {some} without faces", count(alone));
+            let reason = format_args!("left out: {} unused {some}", count(alone));
             session.warn(Failure::at(&self.input, reason));
         }
         let odd = mesh.faces.len() - built.faces;
         if odd > 0 {
-            let reason = format_args!("left out: {} that repeat a corner or a face", faces(odd));
+            let reason = format_args!("left out: {}, degenerate or duplicate", faces(odd));
             session.warn(Failure::at(&self.input, reason));
         }
     }
@@ -226,7 +227,7 @@ impl Build {
     fn text(&self, mesh: &Mesh, built: &Built, time: Duration) -> String {
         let vertices = vertex_count(mesh);
         let mut text = format!(
-            "{}: all levels of {} in {} bytes, {:.2} a vertex; {}\n",
+            "{}: all levels of {} in {} bytes, {:.2} per vertex; {}\n",
             files::name(&self.output),
             faces(built.faces),
             count(built.bytes.len()),
@@ -235,7 +236,7 @@ impl Build {
         );
         text += &match &built.levels {
             Levels::Contractions { updates, base_faces, certificate, error_kind } => format!(
-                "{} updates by {} down to {}, with {error_kind}s of errors; {}\n",
+                "{} updates by {} down to {}, with error {error_kind}s; {}\n",
                 count(*updates),
                 self.method.name(),
                 faces(*base_faces),
@@ -253,7 +254,7 @@ impl Build {
 /// The mesh with nothing that a model leaves behind.
 fn bare(mesh: Mesh, session: &Session) -> Mesh {
     if mesh.attributes.is_some() || mesh.materials.is_some() {
-        session.warn("attributes and materials are left behind: the file holds the surface alone");
+        session.warn("attributes and materials are left out: the file holds the surface only");
     }
     Mesh::new(mesh.positions, mesh.faces)
 }

@@ -22,32 +22,32 @@ use crate::session::Session;
 
 #[derive(Args)]
 pub struct Check {
-    /// File to read, or -; of a .mlod file it is proved that no cut has a crack
+    /// Mesh to read, or -; or a .mlod file, to prove that none of its cuts has a crack
     #[arg(value_name = "IN")]
     input: PathBuf,
-    /// What an object is; auto takes the names of the file where it has two or more
+    /// What counts as an object; auto takes named objects if there are two or more, else components
     #[arg(long, value_name = "BY", default_value = "auto")]
     objects: By,
-    /// Exit with 1 for these too
+    /// Also exit with 1 on findings of this severity
     #[arg(long, value_name = "WHAT")]
     deny: Option<Deny>,
-    /// How many findings of each kind, and pairs of objects, are listed
+    /// Maximum number of findings listed of each kind, and of pairs of objects
     #[arg(long, value_name = "N", default_value_t = 100, value_parser = amounts::whole,
         allow_negative_numbers = true)]
     limit: usize,
     /// What finds the faces that may meet; the findings are the same
     #[arg(long, value_name = "NET", default_value = "tree")]
     net: Search,
-    /// Do not look for faces that meet; --locks has to
+    /// Skip the search for faces that meet, which --locks needs
     #[arg(long, conflicts_with = "locks")]
     no_intersections: bool,
-    /// Write what must stay where components meet: for simplify --locks, and for other programs
+    /// Write vertex locks for the places where components meet, for simplify --locks and other programs
     #[arg(long, value_name = "FILE.json")]
     locks: Option<PathBuf>,
-    /// Have the boundary locked in that file too
+    /// Lock the boundary in that file too
     #[arg(long, requires = "locks")]
     lock_boundary: bool,
-    /// Folder for a page with pictures; made where it is not there
+    /// Folder for a report page with pictures; created if missing
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     #[command(flatten)]
@@ -78,7 +78,7 @@ impl Check {
     pub fn run(self, session: &Session) -> Result<Answer, Failure> {
         if model_file::is_model(&self.input) {
             if self.locks.is_some() || self.out.is_some() {
-                return Err(Failure::usage("--locks and --out: of a mesh, not of a .mlod file"));
+                return Err(Failure::usage("--locks and --out need a mesh, not a .mlod file"));
             }
             return proof::prove(&self.input, session);
         }
@@ -113,7 +113,9 @@ impl Check {
     fn refuse_early(&self) -> Result<(), Failure> {
         if let Some(path) = &self.locks {
             if files::is_pipe(&self.input) || files::is_pipe(path) {
-                return Err(Failure::usage("--locks: name two files; no pipe will do"));
+                return Err(Failure::usage(
+                    "--locks: neither file can be standard input or output",
+                ));
             }
             files::check_place(path)?;
             let page = self.out.as_ref().map(|folder| folder.join("index.html"));

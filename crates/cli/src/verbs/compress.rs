@@ -23,26 +23,27 @@ use crate::session::Session;
 
 #[derive(Args)]
 pub struct Compress {
-    /// File to read, or -
+    /// Mesh to read, or -
     #[arg(value_name = "IN")]
     input: PathBuf,
-    /// File to write: .mlq is drawn from as it is, .mlz is for sending, .glb is what other programs read
+    /// File to write: .mlq to render from directly, .mlz to send, .glb for other programs
     #[arg(value_name = "OUT")]
     output: PathBuf,
     #[command(flatten)]
     goal: Goal,
-    /// How positions are told. In .mlq blocks if it is not said; .mlz can have a lattice, .glb parts
+    /// How positions are encoded: any scheme in .mlq [default: blocks], lattice in .mlz, parts in .glb
     #[arg(long, value_name = "SCHEME")]
     scheme: Option<SchemeName>,
-    /// Parts as in the paper: vertices at the least corners of their cells, and held against truncated bits
+    /// Use --scheme parts as in the paper: vertices at the minimum corners of their cells, measured
+    /// against truncated bits
     #[arg(long)]
     paper: bool,
-    /// In .glb: only what a GPU takes as it is (KHR_mesh_quantization, and no EXT_meshopt_compression)
+    /// Write .glb that a GPU reads directly: KHR_mesh_quantization without EXT_meshopt_compression
     #[arg(long)]
     resident: bool,
     #[command(flatten)]
     attributes: AttributeGoals,
-    /// Exit with 1 when the target is out of reach
+    /// Exit with 1 if the target is out of reach
     #[arg(long)]
     strict: bool,
     #[command(flatten)]
@@ -53,36 +54,36 @@ pub struct Compress {
 #[derive(Args)]
 #[group(multiple = false)]
 struct Goal {
-    /// As well as this many bits an axis do for the whole mesh; 11 if nothing is said
+    /// As accurate as a grid of this many bits per axis over the whole mesh [default: 11]
     #[arg(long, value_name = "BITS", allow_negative_numbers = true)]
     bits: Option<u32>,
-    /// The mean distance between the surfaces: 0.005% of the diagonal, 0.1 in model units
+    /// Mean distance between the surfaces: 0.005% of the diagonal, or 0.1 in model units
     #[arg(long, value_name = "BOUND", value_parser = amounts::bound, allow_hyphen_values = true)]
     error: Option<Bound>,
-    /// How much less than three f32 a vertex positions take: 70%
-    #[arg(long, value_name = "PART", value_parser = amounts::ratio, allow_hyphen_values = true)]
+    /// Reduction of positions against three f32 per vertex: 70%
+    #[arg(long, value_name = "RATIO", value_parser = amounts::ratio, allow_hyphen_values = true)]
     reduction: Option<f64>,
 }
 
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
 enum SchemeName {
-    /// Eight bits an axis, one matrix a part; what parts share is stored in each
+    /// Eight bits per axis and one matrix per part; vertices shared by parts are stored in each
     Parts,
-    /// Each vertex in one block, in cells that lie as the surface does
+    /// Each vertex in one block, in cells aligned with the surface
     Blocks,
-    /// Each vertex in one block, on a lattice with cells of a power of two: the same for all meshes
+    /// Each vertex in one block, on a lattice of power-of-two cells that all meshes share
     Lattice,
 }
 
 #[derive(Args)]
 struct AttributeGoals {
-    /// How far normals and tangents may turn, in degrees
+    /// Largest error of normals and tangents, in degrees
     #[arg(long, value_name = "DEGREES", value_parser = amounts::length, allow_hyphen_values = true)]
     normal_error: Option<f64>,
-    /// How far texture coordinates may be off; 1 is the whole texture
+    /// Largest error of texture coordinates, where 1 is the whole texture
     #[arg(long, value_name = "BOUND", value_parser = amounts::length, allow_hyphen_values = true)]
     uv_error: Option<f64>,
-    /// How far colours may be off, from 0 to 1
+    /// Largest error of colours, from 0 to 1
     #[arg(long, value_name = "BOUND", value_parser = amounts::length, allow_hyphen_values = true)]
     color_error: Option<f64>,
 }
@@ -128,7 +129,7 @@ impl Compress {
         }
         if !packed.reached {
             let best = percent(100.0 * packed.reduction());
-            let reason = format_args!("what is asked is out of reach; the reduction is {best}");
+            let reason = format_args!("the target is out of reach; the reduction is {best}");
             session.warn(Failure::at(&self.input, reason));
         }
         session.progress.stage(&format!("writing {}", files::name(&self.output)));
@@ -148,21 +149,22 @@ impl Compress {
             Some("glb") => (Kind::Gltf, &[SchemeName::Parts]),
             _ => {
                 let name = files::name(&self.output);
-                let reason = format_args!("{name}: compressed meshes are .mlq, .mlz or .glb");
+                let reason =
+                    format_args!("{name}: a compressed file must end in .mlq, .mlz or .glb");
                 return Err(Failure::usage(reason));
             }
         };
         let name = files::name(&self.output);
         if self.scheme.is_some_and(|scheme| !schemes.contains(&scheme)) {
             return Err(Failure::usage(format_args!(
-                "{name}: such files do not have this --scheme"
+                "{name}: this format does not support that --scheme"
             )));
         }
         if self.paper && self.scheme != Some(SchemeName::Parts) {
-            return Err(Failure::usage("--paper is of --scheme parts"));
+            return Err(Failure::usage("--paper needs --scheme parts"));
         }
         if self.resident && kind != Kind::Gltf {
-            return Err(Failure::usage("--resident is of .glb"));
+            return Err(Failure::usage("--resident needs a .glb file"));
         }
         let AttributeGoals { normal_error, uv_error, color_error } = &self.attributes;
         let bounds = match (kind, self.scheme) {
@@ -172,7 +174,7 @@ impl Compress {
         };
         if bounds.is_some() {
             return Err(Failure::usage(format_args!(
-                "{name}: such files do not bound such an error"
+                "{name}: this format does not support that bound on attribute errors"
             )));
         }
         files::check_place(&self.output).map(|()| kind)
@@ -227,10 +229,15 @@ impl Compress {
 
     fn text(&self, packed: &Packed, time: Duration) -> String {
         let (what, pieces) = packed.pieces;
+        let what = match (what, pieces) {
+            ("meshes", 1) => "mesh",
+            (many, 1) => many.trim_end_matches('s'),
+            (many, _) => many,
+        };
         let [positions, connectivity, attributes] = packed.sizes.map(count);
         let mut text = format!(
-            "{}: {} in {} bytes, {:.2} a triangle; {} {what}\n\
-             positions {positions} ({} less than f32), faces {connectivity}, attributes {attributes}\n",
+            "{}: {} in {} bytes, {:.2} per triangle; {} {what}\n\
+             bytes: positions {positions} ({} less than f32), faces {connectivity}, attributes {attributes}\n",
             files::name(&self.output),
             faces(packed.faces),
             count(packed.bytes.len()),
@@ -240,7 +247,7 @@ impl Compress {
         );
         for layer in &packed.layers {
             let (bytes, error) = (count(layer.bytes), value(layer.max_error));
-            text += &format!("{}: {bytes} bytes, off by up to {error}\n", layer.name);
+            text += &format!("{}: {bytes} bytes, largest error {error}\n", layer.name);
         }
         text + &format!("encode_seconds: {}\n", value(time.as_secs_f64()))
     }
@@ -279,14 +286,14 @@ fn left_out(mesh: &Mesh, faces_there: usize) -> Vec<String> {
     let alone = mesh.used_vertices().iter().filter(|&&used| !used).count();
     if alone > 0 {
         let some = if alone == 1 { "vertex" } else { "vertices" };
-        left_out.push(format!("left out: {} {some} without faces", count(alone)));
+        left_out.push(format!("left out: {} unused {some}", count(alone)));
     }
     let odd = mesh.faces.len() - faces_there;
     if odd > 0 {
-        left_out.push(format!("left out: {} that repeat a corner", faces(odd)));
+        left_out.push(format!("left out: {}, degenerate", faces(odd)));
     }
     if mesh.materials.is_some() || mesh.objects.is_some() {
-        left_out.push("left out: materials and objects; the file has one surface".into());
+        left_out.push("left out: materials and objects; the file holds a single surface".into());
     }
     left_out
 }

@@ -65,10 +65,7 @@ fn decode(bytes: &[u8]) -> Result<Mesh, Malformed> {
         return TransportFile::open(bytes)?.decode();
     }
     if !bytes.starts_with(&Compressed::MAGIC) {
-        return Err(Malformed {
-            at: 0,
-            reason: "neither an .mlq nor an .mlz file begins so".into(),
-        });
+        return Err(Malformed { at: 0, reason: "not an .mlq or .mlz file".into() });
     }
     Compressed::from_bytes(bytes)?.decode()
 }

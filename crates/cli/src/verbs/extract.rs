@@ -23,7 +23,7 @@ use crate::session::Session;
 
 #[derive(Args)]
 pub struct Extract {
-    /// File to read
+    /// Multiresolution file to read
     #[arg(value_name = "IN.mlod")]
     input: PathBuf,
     /// File to write, or -
@@ -31,15 +31,15 @@ pub struct Extract {
     output: PathBuf,
     #[command(flatten)]
     goal: Goal,
-    /// The camera that pixels are of: "eye=x,y,z look=x,y,z fov=45 1920x1080", and up=x,y,z if it is
-    /// not y
+    /// Camera for errors in pixels and the focus frustum: "eye=x,y,z look=x,y,z fov=45 1920x1080", with
+    /// up=x,y,z unless y is up
     #[arg(long, value_name = "CAMERA", value_parser = question::camera)]
     camera: Option<ViewCamera>,
-    /// Where it has to be so good, coarse elsewhere: point=x,y,z, segment=x,y,z,x,y,z,
-    /// box=x,y,z,x,y,z, sphere=x,y,z,r, or frustum: what the camera sees
+    /// Region where the error counts, coarse elsewhere: point=x,y,z, segment=x,y,z,x,y,z,
+    /// box=x,y,z,x,y,z, sphere=x,y,z,r, or frustum for what the camera sees [default: everywhere]
     #[arg(long, value_name = "FOCUS", value_parser = question::focus, allow_hyphen_values = true)]
     focus: Option<Where>,
-    /// Leave out the faces that do not meet the focus
+    /// Leave out faces that do not intersect the focus
     #[arg(long, requires = "focus")]
     only: bool,
     #[command(flatten)]
@@ -50,11 +50,11 @@ pub struct Extract {
 #[derive(Args)]
 #[group(required = true, multiple = false)]
 struct Goal {
-    /// No face further off than this, by the errors of the file (estimates, or bounds): 1px of the
-    /// camera, 0.01% of the diagonal, 0.5 in model units; at 0 only what changes nothing is left out
+    /// Largest error, by the estimates or bounds in the file: 1px as the camera sees it, 0.01% of the
+    /// diagonal, or 0.5 in model units; 0 leaves out only detail that changes nothing
     #[arg(long, value_name = "BOUND", value_parser = question::allowed, allow_hyphen_values = true)]
     error: Option<Allowed>,
-    /// The best with at most so many faces: for the camera if there is one, or for all sides
+    /// The best mesh of at most N faces: for the camera if there is one, else from all sides
     #[arg(long, value_name = "N", value_parser = amounts::whole, allow_negative_numbers = true)]
     faces: Option<usize>,
 }
@@ -84,7 +84,7 @@ impl Extract {
         let time = start.elapsed();
         let mesh = taken.level.mesh();
         if mesh.faces.is_empty() {
-            return Err(Failure::at(&self.input, "no face meets the focus"));
+            return Err(Failure::at(&self.input, "no face intersects the focus"));
         }
         let counts = [mesh.positions.len(), mesh.faces.len()];
         if self.goal.faces.is_some_and(|most| taken.level.faces.len() > most) {

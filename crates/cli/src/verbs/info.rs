@@ -18,7 +18,7 @@ use crate::table::aligned;
 
 #[derive(Args)]
 pub struct Info {
-    /// File to read, or -
+    /// Mesh to read, or -
     #[arg(value_name = "IN")]
     input: PathBuf,
     #[command(flatten)]
@@ -28,7 +28,7 @@ pub struct Info {
 impl Info {
     pub fn run(self, session: &Session) -> Result<Answer, Failure> {
         let scene = files::read(&self.input, &self.reading, session)?;
-        session.progress.stage("looking");
+        session.progress.stage("inspecting");
         let meshes = scene.meshes.len();
         let mesh = scene.into_mesh();
         let facts = Facts::of(&mesh);
@@ -106,7 +106,7 @@ impl<'m> Facts<'m> {
                 rows.push(number(name, amount));
             }
         };
-        odd(&mut rows, "  in no face", self.unreferenced);
+        odd(&mut rows, "  unused", self.unreferenced);
         rows.push(number("faces", mesh.faces.len()));
         odd(&mut rows, "  degenerate", connectivity.degenerate_faces());
         rows.push(number("edges", connectivity.edge_count()));
@@ -136,7 +136,7 @@ impl<'m> Facts<'m> {
         }
         if let Some(attributes) = &self.mesh.attributes {
             let names = self.attributes().join(", ");
-            text += &format!("  attributes  {names} on {} wedges\n", count(attributes.wedge_count));
+            text += &format!("  attributes  {names} at {} wedges\n", count(attributes.wedge_count));
         }
         if let Some(labels) = &self.mesh.materials {
             text += &format!("  materials   {}\n", labels.names.join(", "));

@@ -26,19 +26,19 @@ use crate::verbs::simplify::Manner;
 
 #[derive(Args)]
 pub struct Lods {
-    /// File to read, or -
+    /// Mesh to read, or -
     #[arg(value_name = "IN")]
     input: PathBuf,
-    /// .glb or .gltf for all levels in one; another suffix for NAME_LOD1, NAME_LOD2, …
+    /// .glb or .gltf for one file with all levels; any other suffix for NAME_LOD1, NAME_LOD2, …
     #[arg(value_name = "OUT")]
     output: PathBuf,
-    /// Sizes of the levels, finest first: 50% or 0.5 of the faces, or a number of them
+    /// Level sizes, finest first: 50% or 0.5 of the faces, or a number of faces
     #[arg(long, value_name = "SIZES", value_delimiter = ',', default_value = "50%,25%,10%",
         value_parser = amounts::size, allow_hyphen_values = true)]
     levels: Vec<Size>,
     #[command(flatten)]
     manner: Manner,
-    /// Exit with 1 when a level is out of reach
+    /// Exit with 1 if a level is out of reach
     #[arg(long)]
     strict: bool,
     #[command(flatten)]
@@ -61,7 +61,7 @@ const SCREEN_LINES: f64 = 1080.0;
 impl Lods {
     pub fn run(self, session: &Session) -> Result<Answer, Failure> {
         if files::is_pipe(&self.output) {
-            return Err(Failure::usage("-: levels need a file to go to"));
+            return Err(Failure::usage("-: levels cannot go to standard output; name a file"));
         }
         let format = files::check_output(&self.output, session)?;
         if !holds_levels(format) {
@@ -186,7 +186,7 @@ impl Lods {
 
     fn text(&self, chain: &[Link], input_faces: usize, time: Duration) -> String {
         let mut rows = vec![
-            ["level", "wanted", "faces", "mean", "RMS", "max", "from"].map(String::from),
+            ["level", "target", "faces", "mean", "RMS", "max", "coverage"].map(String::from),
             ["LOD0", "", &count(input_faces), "", "", "", ""].map(String::from),
         ];
         for (i, link) in chain.iter().enumerate() {
@@ -206,9 +206,9 @@ impl Lods {
         }
         let oddities = chain.last().map(|link| reduce::oddities(&link.reduced.report));
         let mut text = aligned(&rows);
-        text +=
-            "mean, RMS, max: measured, of the diagonal; from: the part of the screen below which\n";
-        text += &format!("the level is within one pixel of {SCREEN_LINES} lines\n");
+        text += "mean, RMS, max: measured distance from the input, in % of the diagonal\n";
+        text += "coverage: the fraction of the screen below which the level is within one pixel of the\n";
+        text += &format!("input, on a screen of {SCREEN_LINES} lines\n");
         text += &oddities.unwrap_or_default();
         for file in written(chain) {
             text += &format!("{}\n", files::name(file));
@@ -231,7 +231,7 @@ fn check_order(levels: &[Size], input_faces: usize) -> Result<(), Failure> {
     match levels.windows(2).find(|pair| faces(pair[1]) >= faces(pair[0])) {
         None => Ok(()),
         Some(pair) => Err(Failure::usage(format_args!(
-            "--levels: {} is not coarser than {}; write the finest first",
+            "--levels: {} is not coarser than {}; list the finest first",
             pair[1], pair[0]
         ))),
     }

@@ -18,10 +18,10 @@ use crate::table::aligned;
 
 #[derive(Args)]
 pub struct Measure {
-    /// The original; forward is from here, percentages are of its diagonal
+    /// The original: forward distances start on it, and percentages refer to its diagonal
     #[arg(value_name = "A")]
     a: PathBuf,
-    /// What is held against it
+    /// The mesh to compare with it
     #[arg(value_name = "B")]
     b: PathBuf,
     #[command(flatten)]
@@ -33,7 +33,7 @@ pub struct Measure {
 impl Measure {
     pub fn run(self, session: &Session) -> Result<Answer, Failure> {
         if files::is_pipe(&self.a) && files::is_pipe(&self.b) {
-            return Err(Failure::usage("-: only one of the two can come through a pipe"));
+            return Err(Failure::usage("-: only one of the two meshes can be standard input"));
         }
         let [a, b] = [&self.a, &self.b].map(|path| -> Result<Mesh, Failure> {
             let scene = files::read(path, &self.reading, session)?;
@@ -85,8 +85,8 @@ fn relative([before, after]: [f64; 2]) -> Option<f64> {
 fn open_note(closed: [bool; 2]) -> &'static str {
     match closed {
         [true, true] => "",
-        [false, true] => "A is open: its volume is of no closed surface\n",
-        [true, false] => "B is open: its volume is of no closed surface\n",
-        [false, false] => "both are open: the volumes are of no closed surface\n",
+        [false, true] => "A is open: its volume is not that of a closed surface\n",
+        [true, false] => "B is open: its volume is not that of a closed surface\n",
+        [false, false] => "both are open: the volumes are not those of closed surfaces\n",
     }
 }

@@ -22,7 +22,7 @@ use crate::session::Session;
 
 #[derive(Args)]
 pub struct Render {
-    /// File to read, or -
+    /// Mesh to read, or -
     #[arg(value_name = "IN")]
     input: PathBuf,
     /// PNG to write, or -
@@ -36,13 +36,13 @@ pub struct Render {
     /// Draw the edges of all faces
     #[arg(long)]
     wireframe: bool,
-    /// Shade every face flat
+    /// Use flat shading
     #[arg(long)]
     flat: bool,
-    /// A checkerboard over the uvs, whatever the textures
+    /// Draw a checkerboard in texture coordinates in place of textures
     #[arg(long, conflicts_with = "heat_against")]
     checker: bool,
-    /// Colour by the distance of every vertex from this mesh
+    /// Colour every vertex by its distance from this mesh
     #[arg(long, value_name = "B")]
     heat_against: Option<PathBuf>,
     #[command(flatten)]
@@ -89,7 +89,7 @@ impl Render {
         let mut text = format!("{file}: {width} x {height}\n");
         if let Some(Heat { max, max_percent, .. }) = heat {
             let (max, part) = (value(max), percent(max_percent));
-            text += &format!("darkest at a distance of {max} ({part} of the diagonal)\n");
+            text += &format!("heat map: darkest at a distance of {max} ({part} of the diagonal)\n");
         }
         Ok(Answer { file_on_stdout: files::is_pipe(&self.output), ..Answer::new(json, text) })
     }

@@ -21,15 +21,15 @@ use crate::numbers::{count, faces, plural, value};
 use crate::session::Session;
 use crate::table::aligned;
 
-/// Mend what can be mended safely, and say what was done.
+/// Repair the defects that can be repaired safely, and report every step.
 ///
-/// Steps, in this order: drop what cannot be; --weld; drop doubles; drop faces without area; split what
-/// is not manifold; turn faces until they agree; stitch borders; --holes; turn closed shells outwards;
-/// drop unused vertices. --fuse comes next, and these steps once more. Then OUT is read again, and the
-/// errors that check finds in it are told.
+/// The steps, in order: drop invalid data; --weld; drop duplicate faces; drop faces without area; split
+/// non-manifold edges and vertices; orient faces consistently; stitch borders; close --holes; turn closed
+/// shells outwards; drop unused vertices. Then --fuse, followed by the same steps once more. At the end
+/// OUT is read back, and the errors that check still finds in it are reported.
 #[derive(Args)]
 pub struct Repair {
-    /// File to read, or -
+    /// Mesh to read, or -
     #[arg(value_name = "IN")]
     input: PathBuf,
     /// File to write, or -
@@ -48,34 +48,34 @@ pub struct Repair {
 /// What is mended beside, and what is not.
 #[derive(Args)]
 struct Steps {
-    /// Join borders that lie within EPS of each other, in model units
+    /// Stitch borders that lie within EPS of each other, in model units
     #[arg(long, value_name = "EPS", default_value_t = 0.0, value_parser = amounts::length,
         allow_negative_numbers = true)]
     stitch: f64,
-    /// Close holes of at most N edges, 256 at most; where there are too many large ones, the
-    /// smallest first, and a second run goes on
+    /// Close holes of up to N edges, at most 256. If too many are large, the smallest are closed
+    /// first; run again to go on
     #[arg(long, value_name = "N", value_parser = amounts::whole, allow_negative_numbers = true)]
     holes: Option<usize>,
-    /// Close holes of at most this length around, in model units
+    /// Close only holes whose perimeter is at most LENGTH, in model units
     #[arg(long, value_name = "LENGTH", value_parser = amounts::length, requires = "holes",
         allow_negative_numbers = true)]
     hole_length: Option<f64>,
-    /// Keep faces that are there twice
+    /// Keep duplicate faces
     #[arg(long)]
     no_duplicates: bool,
     /// Keep faces without area
     #[arg(long)]
     no_degenerate: bool,
-    /// Leave edges of three faces or more, and vertices of several fans
+    /// Do not split non-manifold edges and vertices
     #[arg(long)]
     no_split: bool,
-    /// Turn no face over
+    /// Do not flip faces
     #[arg(long)]
     no_orient: bool,
-    /// Join no borders
+    /// Do not stitch borders
     #[arg(long, conflicts_with = "stitch")]
     no_stitch: bool,
-    /// Keep vertices that no face uses
+    /// Keep unused vertices
     #[arg(long)]
     no_unused: bool,
 }
@@ -113,7 +113,7 @@ impl Repair {
         let time = start.elapsed();
         let after = Size::of(&scene);
         if after.faces == 0 {
-            return Err(Failure::at(&self.input, "no face is left that has an area"));
+            return Err(Failure::at(&self.input, "no face with an area is left"));
         }
         // Rounding could undo what was mended.
         self.writing = self.writing.within(0.0, &scene, format);
@@ -131,23 +131,24 @@ impl Repair {
     fn warn(&self, format: Format, done: &Done, session: &Session) {
         let shells = done.report.count(RepairStep::NotOrientable);
         if shells > 0 {
-            let reason = format!("shells that have one side only, left as they are: {shells}");
+            let reason = format!("non-orientable shells, left unchanged: {shells}");
             session.warn(Failure::at(&self.input, reason));
         }
         let untried = done.report.count(RepairStep::HolesUntried);
         if untried > 0 {
-            let reason = format!("too many large holes for one run; left for the next: {untried}");
+            let reason =
+                format!("too many large holes for one run; run again to close the other {untried}");
             session.warn(Failure::at(&self.input, reason));
         }
         if done.left.total() > 0 {
             let joins = matches!(format, Format::Glb | Format::Gltf | Format::Stl)
                 && done.report.count(RepairStep::SplitVertices) > 0;
             let how = match joins {
-                true => "; what was split is one again when this format is read, but for --no-weld",
+                true => "; reading this format without --no-weld joins what was split",
                 false => "",
             };
             let (errors, s) = (count(done.left.total()), plural(done.left.total()));
-            let reason = format!("read again, it has {errors} error{s}{how}");
+            let reason = format!("has {errors} error{s} when it is read back{how}");
             session.warn(Failure::at(&self.output, reason));
         }
     }
@@ -180,8 +181,8 @@ impl Repair {
             .collect();
         let nothing = match (report.is_nothing(), left.total()) {
             (false, _) => "",
-            (true, 0) => "  nothing to mend\n",
-            (true, _) => "  nothing mended\n",
+            (true, 0) => "  nothing to repair\n",
+            (true, _) => "  nothing repaired\n",
         };
         let left: Vec<[String; 2]> = left
             .found()

@@ -18,7 +18,7 @@ use crate::session::Session;
 
 #[derive(Args)]
 pub struct Replay {
-    /// File that simplify --sequence has written, or -
+    /// File written by simplify --sequence, or -
     #[arg(value_name = "FILE")]
     input: PathBuf,
     /// File to write, or -
@@ -26,8 +26,8 @@ pub struct Replay {
     output: PathBuf,
     #[command(flatten)]
     goal: Goal,
-    /// The file that was simplified, read as it was then: nodes, materials and textures are as
-    /// there; without it OUT has the geometry and its attributes alone
+    /// The input of that simplify, to be read with the same options: OUT gets its nodes, materials and
+    /// textures [default: OUT has geometry and attributes only]
     #[arg(long, value_name = "IN")]
     scene: Option<PathBuf>,
     #[command(flatten)]
@@ -40,11 +40,11 @@ pub struct Replay {
 #[derive(Args)]
 #[group(required = true, multiple = false)]
 struct Goal {
-    /// The finest of at most this many faces
+    /// The finest level of at most N faces
     #[arg(long, value_name = "N", value_parser = amounts::whole, allow_negative_numbers = true)]
     faces: Option<usize>,
-    /// The finest of at most this part of all faces: 10% or 0.1
-    #[arg(long, value_name = "PART", value_parser = amounts::ratio, allow_hyphen_values = true)]
+    /// The finest level of at most this ratio of all faces: 10% or 0.1
+    #[arg(long, value_name = "RATIO", value_parser = amounts::ratio, allow_hyphen_values = true)]
     ratio: Option<f64>,
 }
 
@@ -83,13 +83,18 @@ impl Replay {
             "file": files::name(&self.output),
         });
         let out = files::name(&self.output);
-        let text = format!("{out}: {} of {} to {}\n", faces(found), count(base), count(full));
+        let text = format!(
+            "{out}: {}; the sequence has levels of {} to {}\n",
+            faces(found),
+            count(base),
+            count(full)
+        );
         Ok(Answer { file_on_stdout: files::is_pipe(&self.output), ..Answer::new(json, text) })
     }
 
     fn check_paths(&self) -> Result<(), Failure> {
         if files::is_pipe(&self.input) && self.scene.as_deref().is_some_and(files::is_pipe) {
-            return Err(Failure::usage("-: only one of the two can come through a pipe"));
+            return Err(Failure::usage("-: only one of the two files can be standard input"));
         }
         files::check_apart(&self.output, &[&self.input])
     }

@@ -18,13 +18,13 @@ use crate::session::Session;
 
 #[derive(Args)]
 pub struct Sample {
-    /// Which
+    /// Name of the sample
     #[arg(value_name = "NAME", value_parser = PossibleValuesParser::new(samples::NAMES))]
     name: String,
     /// File to write, or -
     #[arg(value_name = "OUT")]
     output: PathBuf,
-    /// About how many faces [default: what shows it well]
+    /// Approximate number of faces [default: enough to show the sample well]
     #[arg(long, value_name = "N", value_parser = faces, allow_negative_numbers = true)]
     faces: Option<usize>,
     #[command(flatten)]
@@ -34,7 +34,7 @@ pub struct Sample {
 impl Sample {
     pub fn run(self, session: &Session) -> Result<Answer, Failure> {
         files::check_output(&self.output, session)?;
-        session.progress.stage("making it");
+        session.progress.stage("generating");
         let mesh = samples::by_name(&self.name, self.faces)
             .ok_or_else(|| Failure::usage(format_args!("no sample is called {}", self.name)))?;
         let (vertices, faces) = (mesh.positions.len(), mesh.faces.len());
@@ -55,6 +55,6 @@ impl Sample {
 fn faces(text: &str) -> Result<usize, String> {
     match amounts::positive(text)? {
         faces if faces <= samples::MAX_FACES => Ok(faces),
-        _ => Err(format!("at most {}", samples::MAX_FACES)),
+        _ => Err(format!("it must be at most {}", count(samples::MAX_FACES))),
     }
 }

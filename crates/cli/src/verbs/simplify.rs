@@ -27,7 +27,7 @@ use crate::within::Search;
 
 #[derive(Args)]
 pub struct Simplify {
-    /// File to read, or -
+    /// Mesh to read, or -
     #[arg(value_name = "IN")]
     input: PathBuf,
     /// File to write, or -
@@ -37,18 +37,19 @@ pub struct Simplify {
     goal: Goal,
     #[command(flatten)]
     manner: Manner,
-    /// Measure the result; with --error, go on until the greatest distance measured is within
+    /// Measure the result; with --error, find the coarsest level whose measured maximum is within the
+    /// bound
     #[arg(long)]
     measured: bool,
-    /// Keep all levels on the way in FILE, for the verb replay, which needs --scene IN to give back
-    /// nodes and materials; of a file with one mesh
+    /// Record all levels on the way in FILE, for the verb replay, which needs --scene IN to restore
+    /// nodes and materials; the input must hold exactly one mesh
     #[arg(long, value_name = "FILE", conflicts_with_all = ["measured", "fuse"])]
     sequence: Option<PathBuf>,
-    /// Move vertices by their last digits until each mesh has its volume again, as it is written;
-    /// closed meshes only
+    /// Adjust the last digits of vertices until every closed mesh has its original volume in the
+    /// precision that is written
     #[arg(long, conflicts_with = "sequence")]
     exact_volume: bool,
-    /// Exit with 1 when the target is out of reach
+    /// Exit with 1 if the target is out of reach
     #[arg(long)]
     strict: bool,
     #[command(flatten)]
@@ -61,13 +62,13 @@ pub struct Simplify {
 #[derive(Args)]
 #[group(required = true, multiple = false)]
 struct Goal {
-    /// To this many faces
+    /// Target number of faces
     #[arg(long, value_name = "N", value_parser = amounts::whole, allow_negative_numbers = true)]
     faces: Option<usize>,
-    /// To this part of the faces: 10% or 0.1
-    #[arg(long, value_name = "PART", value_parser = amounts::ratio, allow_hyphen_values = true)]
+    /// Target ratio of the faces: 10% or 0.1
+    #[arg(long, value_name = "RATIO", value_parser = amounts::ratio, allow_hyphen_values = true)]
     ratio: Option<f64>,
-    /// As far as the estimated error stays within: 0.5 in model units, 0.1% of the diagonal
+    /// Largest error by the method's own estimate: 0.5 in model units, or 0.1% of the diagonal
     #[arg(long, value_name = "BOUND", value_parser = amounts::bound, allow_hyphen_values = true)]
     error: Option<Bound>,
 }
@@ -82,7 +83,7 @@ pub struct Manner {
     pub fusing: Fusing,
     #[command(flatten)]
     holding: Holding,
-    /// What it costs to move a boundary, 0: nothing; without it 9 with lindstrom-turk, 2 with qem
+    /// Cost weight of boundaries, where 0 means none [default: 9 for lindstrom-turk, 2 for qem]
     #[arg(long, value_name = "WEIGHT", value_parser = amounts::weight, allow_negative_numbers = true)]
     boundary: Option<f64>,
     #[command(flatten)]
@@ -94,18 +95,18 @@ const WEIGHTS: AttributeWeights = AttributeWeights::DEFAULT;
 /// What attributes count, where the method counts them.
 #[derive(Args)]
 struct Weights {
-    /// What a normal that is off by one counts, as a part of the diagonal; 0: nothing;
-    /// with lindstrom-turk, qem and qem-endpoint
+    /// Weight of normals: a deviation of 1 counts like this fraction of the diagonal, where 0 means
+    /// not at all; for lindstrom-turk, qem and qem-endpoint
     #[arg(long, value_name = "W", default_value_t = WEIGHTS.normal, value_parser = amounts::weight,
         allow_negative_numbers = true)]
     weight_normal: f64,
-    /// What a texture that slides by a length counts, as a part of it; 0: nothing;
-    /// with lindstrom-turk, qem and qem-endpoint
+    /// Weight of texture coordinates: a texture that slides by a length counts like this fraction of
+    /// it, where 0 means not at all; for lindstrom-turk, qem and qem-endpoint
     #[arg(long, value_name = "W", default_value_t = WEIGHTS.uv, value_parser = amounts::weight,
         allow_negative_numbers = true)]
     weight_uv: f64,
-    /// What a colour that is off by one counts, as a part of the diagonal; 0: nothing;
-    /// with lindstrom-turk, qem and qem-endpoint
+    /// Weight of colours: a deviation of 1 counts like this fraction of the diagonal, where 0 means
+    /// not at all; for lindstrom-turk, qem and qem-endpoint
     #[arg(long, value_name = "W", default_value_t = WEIGHTS.color, value_parser = amounts::weight,
         allow_negative_numbers = true)]
     weight_color: f64,
@@ -133,12 +134,14 @@ impl Manner {
         if self.weights() != WEIGHTS && !report.method.counts_attributes() {
             let method = report.method.name();
             session.warn(format_args!(
-                "--weight-…: {method} does not count attributes; lindstrom-turk does"
+                "--weight-…: {method} ignores attributes; use lindstrom-turk, qem or qem-endpoint"
             ));
         }
         if self.boundary.is_some() && !report.method.weighs_boundaries() {
             let method = report.method.name();
-            session.warn(format_args!("--boundary: {method} has no weight of boundaries; qem has"));
+            session.warn(format_args!(
+                "--boundary: {method} has no boundary weight; use lindstrom-turk or qem"
+            ));
         }
     }
 }

@@ -24,32 +24,32 @@ use crate::session::Session;
 
 #[derive(Args)]
 pub struct Strip {
-    /// File to read, or -
+    /// Mesh to read, or -
     #[arg(value_name = "IN")]
     input: PathBuf,
-    /// Sizes of the levels: 10% or 0.1 of the faces, or a number of them
+    /// Level sizes: 10% or 0.1 of the faces, or a number of faces
     #[arg(long, visible_alias = "level", value_name = "SIZES", value_delimiter = ',',
         default_value = "100%", value_parser = amounts::size, allow_hyphen_values = true)]
     levels: Vec<Size>,
-    /// Lead the strips of the whole mesh down to each level, and shorten them there so; if it is not
-    /// said, each level gets strips of its own
+    /// Carry the strips of the whole mesh down to each level and shorten them by this filter
+    /// [default: each level gets strips of its own]
     #[arg(long, value_name = "FILTER")]
     filter: Option<Shortened>,
-    /// How good strips of a mesh or a level are to be
+    /// Quality of the strips of the mesh or of a level
     #[arg(long, value_name = "QUALITY", default_value = "fast")]
     quality: Quality,
-    /// How much the quality best and the filter repair try
+    /// Effort of --quality best and --filter repair
     #[arg(long, value_name = "EFFORT", default_value = "thorough")]
     effort: Tried,
-    /// .gltf for the levels as meshes of strips, the finest first, linked by MSFT_lod; .json for lists of
-    /// vertices
+    /// File to write: .gltf for the levels as meshes of strips, finest first, linked by MSFT_lod; .json
+    /// for lists of vertices
     #[arg(long, value_name = "FILE")]
     out: Option<PathBuf>,
-    /// Hold what is drawn against the faces of the level as simplification leaves them; exit with 1 if
-    /// they are not the same
+    /// Compare the triangles drawn with the faces of an independently simplified level; exit with 1 if
+    /// they differ
     #[arg(long)]
     verify: bool,
-    /// Exit with 1 when a level is out of reach
+    /// Exit with 1 if a level is out of reach
     #[arg(long)]
     strict: bool,
     #[command(flatten)]
@@ -58,29 +58,29 @@ pub struct Strip {
 
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
 enum Shortened {
-    /// Not at all: each vertex is sent as what it has become
+    /// No shortening: each vertex is sent as the vertex it was contracted to
     None,
-    /// The simple triangle strip scanner
+    /// Simple triangle strip scanner
     Stss,
-    /// The degenerate-triangle-free filter
+    /// Degenerate-triangle-free filter
     Dtff,
-    /// What dtff leaves, made better where the level changed
+    /// The strips of dtff, improved where the level changed
     Repair,
 }
 
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
 enum Quality {
-    /// In one pass
+    /// One pass
     Fast,
-    /// With as few vertices as are found
+    /// As few vertices as the search finds
     Best,
 }
 
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
 enum Tried {
-    /// What a second is enough for
+    /// Fast enough for levels that change often
     Quick,
-    /// What a level that is kept is worth
+    /// For levels that are made once and kept
     Thorough,
 }
 
@@ -124,7 +124,7 @@ impl Strip {
                 .map_err(|error| Failure::at(&self.input, error))?;
         }
         for level in levels.iter().filter(|level| !level.reached) {
-            let reason = format_args!("{}: no more can be contracted", level.size);
+            let reason = format_args!("{}: no further contraction is possible", level.size);
             session.warn(Failure::at(&self.input, reason));
         }
         if let Some(out) = &self.out {
@@ -134,7 +134,7 @@ impl Strip {
         let missed = self.strict && levels.iter().any(|level| !level.reached);
         let wrong = levels.iter().any(|level| level.is_wrong());
         if wrong {
-            session.warn(Failure::at(&self.input, "the strips do not draw the level"));
+            session.warn(Failure::at(&self.input, "the strips do not draw the faces of the level"));
         }
         Ok(Answer {
             missed: missed || wrong,
@@ -265,7 +265,7 @@ fn check_sizes(sizes: &[Size], faces: usize) -> Result<(), Failure> {
     match sizes.iter().find(|size| !is_level(size)) {
         None => Ok(()),
         Some(size) => Err(Failure::usage(format_args!(
-            "--levels: {size} is out of range; write more than 0%, up to 100%, or 1 to {faces} faces"
+            "--levels: {size} is out of range; use more than 0% and up to 100%, or 1 to {faces} faces"
         ))),
     }
 }

@@ -221,16 +221,16 @@ fn locks_of_another_mesh_are_refused() {
     write(&run, "moved.obj", &CROSSING.replace("v 4 0 0", "v 4 0 1"));
     run.json(&["check", "moved.obj", "--locks", "moved.json"]);
     for (name, reason) in [
-        ("ball.json", "vertices where the input has 8"),
-        ("list.json", "is no file of locks"),
+        ("ball.json", "vertices, but the input has 8"),
+        ("list.json", "is not a lock file"),
         ("cut.json", "EOF"),
         ("new.json", "version 2"),
-        ("none.json", "has locks of 0 meshes where 1 are needed"),
+        ("none.json", "has locks for 0 meshes, but the input has 1"),
         ("flag.json", "flag 2 is 7"),
-        ("tie.json", "tie 0 names 99"),
-        ("one.json", "tie 1 is of 1 vertices"),
-        ("torn.json", "tie 1 is of vertices at one place; 3 and 5 are apart"),
-        ("moved.json", "mesh 0: is of vertices at other places"),
+        ("tie.json", "tie 0 names vertex 99"),
+        ("one.json", "tie 1 has 1 vertices"),
+        ("torn.json", "tie 1 has vertices at different positions: 3 and 5"),
+        ("moved.json", "mesh 0: the locks are for vertices at other positions"),
     ] {
         let arguments = ["simplify", "in.obj", "out.obj", "--ratio", "50%", "--locks", name];
         let done = run.run(&arguments);
@@ -294,7 +294,7 @@ fn the_page_has_pictures_a_legend_and_the_tables() {
     run.json(&["check", "ball.ply", "--out", "out"]);
     let page = std::fs::read_to_string(run.path("out/index.html")).unwrap();
     assert_eq!(page.matches("data:image/png").count(), 4, "there is nothing to mark");
-    assert!(page.contains("Nothing was found"));
+    assert!(page.contains("No findings in"));
 }
 
 #[test]

@@ -193,8 +193,8 @@ fn what_is_left_out_is_said() {
     write(&run, "in.obj", b"v 0 0 0\nv 1 0 0\nv 0 1 0\nv 5 5 5\nf 1 2 3\nf 2 3 1\nf 1 1 2\n");
     let built = run.run(&["build", "in.obj", "out.mlod"]);
     assert_eq!(built.code, 0, "{built:?}");
-    assert!(built.err.contains("left out: 1 vertex without faces"), "{built:?}");
-    assert!(built.err.contains("left out: 2 faces that repeat a corner or a face"), "{built:?}");
+    assert!(built.err.contains("left out: 1 unused vertex"), "{built:?}");
+    assert!(built.err.contains("left out: 2 faces, degenerate or duplicate"), "{built:?}");
     assert!(built.text().contains("all levels of 1 face in"), "{built:?}");
 }
 
@@ -299,7 +299,10 @@ fn a_focus_is_fine_and_the_rest_coarse() {
                 run.run(&[&["extract", file, "only.ply", "--json"], &arguments[..]].concat());
             if focus.starts_with("point") || focus.starts_with("segment") {
                 // There may be no face in so small a place.
-                assert!(done.code == 0 || done.only_line().contains("no face meets"), "{done:?}");
+                assert!(
+                    done.code == 0 || done.only_line().contains("no face intersects"),
+                    "{done:?}"
+                );
                 continue;
             }
             let only = number(&done.json()["faces"]);
@@ -503,7 +506,7 @@ fn what_is_there_of_a_file_is_a_mesh() {
     for end in [pieces[1].end, pieces[2].end, pieces[3].end + 9, pieces[last].end - 1] {
         write(&run, "part.mlod", &whole[..end]);
         let whole_chunks = pieces[2..].iter().filter(|piece| piece.end <= end).count();
-        let told = format!("{whole_chunks} of its {} chunks are there", last - 1);
+        let told = format!("{whole_chunks} of its {} chunks are present", last - 1);
         for arguments in [&["--error", "0"][..], &["--faces", "100000", "--camera", CAMERA]] {
             let done = run.run(&[&["extract", "part.mlod", "a.ply", "--json"], arguments].concat());
             assert!(done.code == 0 && done.only_line().contains(&told), "{done:?}");

@@ -148,7 +148,10 @@ fn a_level_out_of_reach_is_said_and_is_strict_if_asked() {
     let run = Run::new();
     run.sample("sphere", 100, "in.ply");
     let done = run.run(&["strip", "in.ply", "--level", "1"]);
-    assert!(done.code == 0 && done.only_line().contains("1 face: no more"), "{done:?}");
+    assert!(
+        done.code == 0 && done.only_line().contains("1 face: no further contraction"),
+        "{done:?}"
+    );
     let done = run.run(&["strip", "in.ply", "--level", "1", "--strict", "--json"]);
     assert!(done.code == 1 && done.json()["levels"][0]["reached"] == false, "{done:?}");
 }

@@ -61,11 +61,11 @@ fn amounts_below_zero_get_the_reason_of_their_option() {
     let cases: [(&[&str], &str); 7] = [
         (&["simplify", "a.ply", "b.ply", "--error", "-1"], "at least 0"),
         (&["simplify", "a.ply", "b.ply", "--error", "-1%"], "at least 0"),
-        (&["simplify", "a.ply", "b.ply", "--ratio", "-10%"], "from 0% to 100%"),
+        (&["simplify", "a.ply", "b.ply", "--ratio", "-10%"], "between 0% and 100%"),
         (&["simplify", "a.ply", "b.ply", "--faces", "-1"], "a whole number"),
-        (&["lods", "a.ply", "b.glb", "--levels", "-50%"], "from 0% to 100%"),
-        (&["measure", "a.ply", "b.ply", "--samples", "-5"], "above 0"),
-        (&["info", "a.ply", "--threads", "-2"], "above 0"),
+        (&["lods", "a.ply", "b.glb", "--levels", "-50%"], "between 0% and 100%"),
+        (&["measure", "a.ply", "b.ply", "--samples", "-5"], "at least 1"),
+        (&["info", "a.ply", "--threads", "-2"], "at least 1"),
     ];
     for (arguments, reason) in cases {
         let done = run.run(arguments);

@@ -20,7 +20,9 @@ impl Compress {
     /// The scene with all that is in it, quantized.
     fn small_gltf(&self, scene: &Scene) -> Result<Packed, Failure> {
         if self.goal.error.is_some() || self.goal.reduction.is_some() {
-            return Err(Failure::usage("--error and --reduction are not of .glb; --bits is"));
+            return Err(Failure::usage(
+                "--error and --reduction need --scheme parts in .glb; use --bits",
+            ));
         }
         let (bytes, report) = write_compressed_glb(scene, &[], &self.gltf_compression()?)
             .map_err(|error| self.failed(error))?;
@@ -42,7 +44,9 @@ impl Compress {
         let default = Compression::default();
         let bits = self.bits();
         if !(1..=16).contains(&bits) {
-            return Err(Failure::usage(format_args!("{bits} bits are not of glTF: take 1 to 16")));
+            return Err(Failure::usage(format_args!(
+                "--bits must be between 1 and 16 in .glb, not {bits}"
+            )));
         }
         Ok(Compression {
             position_bits: bits,
@@ -71,7 +75,7 @@ impl Compress {
         let faces = parts.parts().iter().map(|part| part.faces.len()).sum();
         let mut left_out = left_out(&mesh, faces);
         if mesh.attributes.is_some() {
-            left_out.push("left out: attributes; parts are the surface alone".into());
+            left_out.push("left out: attributes; parts hold the surface only".into());
         }
         // Positions are padded to four bytes, and a part has a matrix.
         let positions: usize =

@@ -24,7 +24,7 @@ impl Compress {
         let file = TransportFile::open(&done.bytes).map_err(|error| self.failed(error))?;
         let mut left_out = left_out(&mesh, file.faces());
         if mesh.attributes.is_some() {
-            left_out.push("left out: attributes; .mlz has the surface alone".into());
+            left_out.push("left out: attributes; .mlz holds the surface only".into());
         }
         let TransportSizes { positions, connectivity, headers } = done.sizes;
         // Tables, index and states of the coder are what decoding needs, for both: by what they are for.
@@ -45,7 +45,7 @@ impl Compress {
     /// The cells that a target asks for.
     fn quantization(&self, mesh: &Mesh) -> Result<TransportQuantization, Failure> {
         let Some(cell) = self.target(mesh).cell(mesh).map_err(|error| self.refused(error))? else {
-            return Err(Failure::usage("--reduction is not of .mlz; --bits and --error are"));
+            return Err(Failure::usage("--reduction does not go with .mlz; use --bits or --error"));
         };
         if self.scheme.is_some() {
             return Lattice::within(cell)

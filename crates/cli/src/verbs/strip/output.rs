@@ -23,11 +23,13 @@ const ELEMENT_ARRAY_BUFFER: u32 = 34963;
 /// Refuses a file that could not be written.
 pub(super) fn check(out: &Path, input: &Path) -> Result<(), Failure> {
     if files::is_pipe(out) {
-        return Err(Failure::usage("-: strips need a file to go to"));
+        return Err(Failure::usage("-: strips cannot go to standard output; name a file"));
     }
     if !is_gltf(out) && !has_suffix(out, "json") {
         let name = files::name(out);
-        return Err(Failure::usage(format_args!("{name}: strips go to .gltf or .json")));
+        return Err(Failure::usage(format_args!(
+            "{name}: a file of strips must end in .gltf or .json"
+        )));
     }
     files::check_place(out)?;
     files::check_apart(out, &[input])

@@ -12,7 +12,7 @@ impl Strip {
             "level",
             "triangles",
             "vertices",
-            "a triangle",
+            "per triangle",
             "indices",
             "strips",
             "swaps",
@@ -23,22 +23,22 @@ impl Strip {
         let mut rows = vec![headings.map(String::from)];
         rows.extend(levels.iter().map(row));
         let mut text = aligned(&rows);
-        text += "vertices: sent where each strip is drawn by itself; indices: with a restart between them;\n";
-        text += "ACMR: what a cache of the last 16 or 32 has to fetch, a triangle\n";
+        text += "vertices: sent when each strip is drawn by itself; indices: sent with restarts between strips;\n";
+        text += "ACMR: vertices fetched per triangle with a FIFO cache of 16 or 32\n";
         if self.verify {
             let wrong: Vec<_> = levels.iter().filter(|level| level.is_wrong()).collect();
             for Level { size, difference, .. } in &wrong {
                 let (missing, extra) = difference.map_or((0, 0), |d| (d.missing, d.extra));
-                text += &format!("{size}: {missing} triangles missing, {extra} too many\n");
+                text += &format!("{size}: {missing} missing and {extra} extra triangles\n");
             }
             if wrong.is_empty() {
-                text += "verified: each level is drawn as it is\n";
+                text += "verified: the strips draw exactly the faces of each level\n";
             }
         }
         let left_out = origin.mesh.faces.len() - origin.tree.faces().len();
         if left_out > 0 {
             text += &format!(
-                "left out: {} that repeat a vertex or another face\n",
+                "left out: {}, degenerate or duplicate\n",
                 crate::numbers::faces(left_out)
             );
         }
