@@ -206,7 +206,9 @@ impl Twin<'_> {
             None => (),
             Some(mark) if *mark == self.mark => (),
             Some(_) => {
-                return Err("the locks are for vertices at other positions; write them again".into());
+                return Err(
+                    "the locks are for vertices at other positions; write them again".into()
+                );
             }
         }
         let ties = ties.iter().enumerate().map(|(i, tie)| self.tie(i, tie));
