@@ -491,7 +491,7 @@ fn a_file_without_its_coarsest_mesh_is_refused() {
     for end in [9, 40, 87, 89, pieces[0].end, pieces[1].end - 1] {
         write(&run, "short.mlod", &whole[..end]);
         let lines = refused_by_all(&run, "short.mlod");
-        assert!(lines[0].contains(&format!("cut off at byte {end}")), "{lines:?}");
+        assert!(lines[0].contains(&format!("truncated at byte {end}")), "{lines:?}");
     }
 }
 
@@ -545,7 +545,7 @@ fn a_damaged_piece_is_named() {
             chunk => format!("chunk {}", chunk - 2),
         };
         let lines = refused_by_all(&run, "wrong.mlod");
-        let told = format!("the checksum of {what} is wrong");
+        let told = format!("the checksum of {what} does not match");
         assert!(lines.iter().all(|line| line.contains(&told)), "{lines:?}");
     }
     // What is not read is not missed.

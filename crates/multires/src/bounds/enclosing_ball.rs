@@ -1,8 +1,8 @@
-//! Balls, and the smallest around others.
+//! Balls, and a small ball that encloses others.
 
 use glam::DVec3;
 
-/// A ball that holds the points of the finest mesh that are paired with a vertex.
+/// Ball that encloses the points of the finest mesh paired with a vertex.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct EnclosingBall {
     pub(super) center: DVec3,
@@ -10,26 +10,27 @@ pub(super) struct EnclosingBall {
 }
 
 impl EnclosingBall {
-    /// Of a point of the finest mesh: itself.
+    /// The ball of a leaf: a point of the finest mesh, paired with itself.
     pub(super) fn point(point: DVec3) -> Self {
         Self { center: point, radius: 0.0 }
     }
 
-    /// How far anything in it can be from a point.
+    /// Returns the greatest distance from a point to anything in the ball.
     pub(super) fn reach(&self, from: DVec3) -> f64 {
         self.center.distance(from) + self.radius
     }
 }
 
-/// How often the ball around others is made smaller. Faces of the bunny's and the horse's cut to 1 % of
-/// the diagonal for 8, 16 and 32: 2553, 2501, 2443 and 2434, 2132, 2082; 32 takes half as long again.
+/// Number of iterations. With 8, 16 and 32, cuts with an error of 1 % of the diagonal have 2553,
+/// 2501 and 2443 faces for the bunny, and 2434, 2132 and 2082 for the horse; 32 takes half as long
+/// again.
 const STEPS: usize = 16;
 
-/// A small ball that holds all these: none is much smaller. Radii may be negative; then the ball's
-/// surface may pass nearer to their centers by so much.
+/// Returns a ball that encloses the given ones and is little larger than the smallest such ball.
+/// Radii may be negative: the surface may then pass within that distance of the center.
 ///
 /// # References
-/// [BC03]: from step to step a shorter way to the one that is farthest.
+/// [BC03]: in each iteration, the center moves a shorter way towards the farthest ball.
 pub(super) fn enclosing_ball(balls: &[EnclosingBall]) -> EnclosingBall {
     let mut center = balls.iter().map(|ball| ball.center).sum::<DVec3>() / balls.len() as f64;
     let mut best = EnclosingBall { center, radius: f64::INFINITY };

@@ -1,149 +1,155 @@
-//! The two sides of an update laid over each other in a plane: which points are paired, and what
-//! shadow that asks of the new vertex.
+//! Planar overlay of both sides of an update: it determines which points are paired, and which ball
+//! the new vertex needs for that.
 
 use glam::{DVec2, DVec3, Vec3};
 
 use super::enclosing_ball::{EnclosingBall, enclosing_ball};
 use super::plane_triangle::{Constraint, PlaneCorner, PlaneTriangle, add_constraints};
 
-/// An update's sides.
+/// Contraction of one update: the faces of its fine side, and the vertices involved.
 pub(super) struct Fragment<'f> {
-    /// The faces of its fine side.
+    /// Faces of the fine side.
     pub(super) fine: &'f [[u32; 3]],
     pub(super) children: [u32; 2],
     pub(super) node: u32,
     pub(super) positions: &'f [[f32; 3]],
 }
 
-/// Room for overlays, one after the other.
+/// Reusable buffers for the overlays of one contraction after the other.
 #[derive(Debug, Default)]
 pub(super) struct Overlay {
     coarse: Vec<[u32; 3]>,
     fine_triangles: Vec<PlaneTriangle>,
     coarse_triangles: Vec<PlaneTriangle>,
     constraints: Vec<Constraint>,
-    /// What the shadow of the new vertex must hold.
+    /// Balls that the ball of the new vertex must contain.
     balls: Vec<EnclosingBall>,
-    /// By how much shadows around have to grow.
+    /// Ring vertices whose balls have to grow, and by how much.
     growth: Vec<(u32, f64)>,
 }
 
-/// What is added for rounding, in sizes of the sides.
+/// Allowance for rounding errors, relative to the size of the update.
 const SLACK: f64 = 1.0 / (1 << 28) as f64;
 
-/// Where the new vertex counts less than this, shadows around it grow instead: there its own would have
-/// to grow by several times what lacks. Faces of the bunny's and the horse's cut to 1 % of the diagonal
-/// for 0.02, 0.15, 0.25, 0.35 and 0.5: 3118, 2738, 2682, 2501, 2992 and 2364, 2328, 2334, 2132, 2478.
+/// Where the new vertex has a smaller weight than this, the balls of ring vertices grow instead,
+/// because its own ball would have to grow by several times what is missing. With 0.02, 0.15, 0.25,
+/// 0.35 and 0.5, cuts with an error of 1 % of the diagonal have 3118, 2738, 2682, 2501 and 2992
+/// faces for the bunny, and 2364, 2328, 2334, 2132 and 2478 for the horse.
 const MIN_SHARE: f64 = 0.35;
 
-/// Sides of more faces are not laid into a plane: it costs the square.
+/// Updates with more faces are not overlaid, because that costs the square of their number.
 const MAX_FACES: usize = 64;
 
-/// Where the place beyond open edges is laid, in sizes of the sides.
+/// Distance at which the point beyond all open edges is placed, relative to the size of the update.
 const FAR: f64 = 16.0;
 
 impl Overlay {
-    /// The shadow of the new vertex. Those around it may have to grow.
+    /// Returns the ball of the new vertex, after growing those of ring vertices where that is
+    /// cheaper.
     pub(super) fn contract(
         &mut self,
-        of: &Fragment<'_>,
-        shadows: &mut [EnclosingBall],
+        fragment: &Fragment<'_>,
+        vertex_balls: &mut [EnclosingBall],
     ) -> EnclosingBall {
         self.coarse.clear();
-        let coarse = of.fine.iter().filter(|face| !of.is_collapsed(face));
-        self.coarse.extend(coarse.map(|face| face.map(|v| of.contracted(v))));
-        let (place, size) = (of.place(of.node), of.size());
-        let moved = self.ball_by_vertex_motion(of, shadows, size);
-        if of.fine.len() > MAX_FACES {
-            return moved;
+        let coarse = fragment.fine.iter().filter(|face| !fragment.is_collapsed(face));
+        self.coarse.extend(coarse.map(|face| face.map(|v| fragment.contracted(v))));
+        let (place, size) = (fragment.place(fragment.node), fragment.size());
+        let by_motion = self.ball_by_vertex_motion(fragment, vertex_balls, size);
+        if fragment.fine.len() > MAX_FACES {
+            return by_motion;
         }
-        for direction in of.directions(&self.coarse) {
-            if self.project(of, direction, size, shadows).is_none() {
+        for direction in fragment.directions(&self.coarse) {
+            if self.project(fragment, direction, size, vertex_balls).is_none() {
                 continue;
             }
-            let laid = self.fit_ball(place, size * SLACK);
+            let fitted = self.fit_ball(place, size * SLACK);
             let growth = self.growth.iter().map(|grown| grown.1).fold(0.0, f64::max);
-            if laid.reach(place) + growth < moved.reach(place) {
+            if fitted.reach(place) + growth < by_motion.reach(place) {
                 for (node, by) in self.growth.drain(..) {
-                    shadows[node as usize].radius += by;
+                    vertex_balls[node as usize].radius += by;
                 }
-                return laid;
+                return fitted;
             }
         }
-        moved
+        by_motion
     }
 
-    /// The shadow if each face is paired with what becomes of it, point by point.
+    /// Returns the ball needed if each face is paired, point by point, with the face or edge it
+    /// becomes.
     fn ball_by_vertex_motion(
         &mut self,
-        of: &Fragment<'_>,
-        shadows: &[EnclosingBall],
+        fragment: &Fragment<'_>,
+        vertex_balls: &[EnclosingBall],
         size: f64,
     ) -> EnclosingBall {
         if self.coarse.is_empty() {
-            return EnclosingBall { center: of.place(of.node), radius: f64::INFINITY };
+            return EnclosingBall { center: fragment.place(fragment.node), radius: f64::INFINITY };
         }
         self.balls.clear();
-        self.balls.extend(of.children.map(|child| shadows[child as usize]));
-        // A face that would become an edge of no face is paired with the new vertex.
-        let is_left = |v: u32| self.coarse.iter().any(|face| face.contains(&of.contracted(v)));
-        let dying = of.fine.iter().filter(|face| of.is_collapsed(face)).flatten();
-        self.balls.extend(dying.filter(|&&v| !is_left(v)).map(|&v| shadows[v as usize]));
+        self.balls.extend(fragment.children.map(|child| vertex_balls[child as usize]));
+        // A face that would become an edge without any face is paired with the new vertex.
+        let is_left =
+            |v: u32| self.coarse.iter().any(|face| face.contains(&fragment.contracted(v)));
+        let collapsed = fragment.fine.iter().filter(|face| fragment.is_collapsed(face)).flatten();
+        self.balls.extend(collapsed.filter(|&&v| !is_left(v)).map(|&v| vertex_balls[v as usize]));
         let ball = enclosing_ball(&self.balls);
         EnclosingBall { radius: ball.radius + size * SLACK, ..ball }
     }
 
-    /// Lays both sides into the plane at right angles to a direction; none where a triangle is turned
-    /// over or thin there.
+    /// Projects both sides onto the plane orthogonal to a direction. Returns `None` if a triangle
+    /// is flipped or too thin there.
     fn project(
         &mut self,
-        of: &Fragment<'_>,
+        fragment: &Fragment<'_>,
         direction: DVec3,
         size: f64,
-        shadows: &[EnclosingBall],
+        vertex_balls: &[EnclosingBall],
     ) -> Option<()> {
         let (right, up) = direction.any_orthonormal_pair();
-        let origin = of.place(of.node);
-        let laid = |node: u32| {
-            let from_here = of.place(node) - origin;
+        let origin = fragment.place(fragment.node);
+        let projected = |node: u32| {
+            let from_here = fragment.place(node) - origin;
             let at = DVec2::new(right.dot(from_here), up.dot(from_here));
-            if node == of.node {
+            if node == fragment.node {
                 return PlaneCorner { node, at, share: 1.0, ..PlaneCorner::default() };
             }
-            let EnclosingBall { center, radius } = shadows[node as usize];
+            let EnclosingBall { center, radius } = vertex_balls[node as usize];
             PlaneCorner { node, at, center: center - origin, radius, share: 0.0 }
         };
         let sides = [
-            (of.fine, &of.children[..], &mut self.fine_triangles),
-            (&self.coarse[..], &[of.node][..], &mut self.coarse_triangles),
+            (fragment.fine, &fragment.children[..], &mut self.fine_triangles),
+            (&self.coarse[..], &[fragment.node][..], &mut self.coarse_triangles),
         ];
         let mut open = [const { Vec::new() }; 2];
-        for ((faces, inner, cells), open) in sides.into_iter().zip(&mut open) {
-            cells.clear();
+        for ((faces, inner, triangles), open) in sides.into_iter().zip(&mut open) {
+            triangles.clear();
             for face in faces {
-                cells.push(PlaneTriangle::new(face.map(laid), false)?);
+                triangles.push(PlaneTriangle::new(face.map(projected), false)?);
             }
             *open = open_edges(faces, inner);
         }
-        // All open edges of the coarse side turn the same way about a place far enough outside.
-        let along = |&[a, b]: &[u32; 2]| (laid(a).at - laid(b).at).normalize_or_zero();
+        // Seen from a point far enough outside, all open edges of the coarse side run the same way
+        // around it.
+        let along = |&[a, b]: &[u32; 2]| (projected(a).at - projected(b).at).normalize_or_zero();
         let outside = open[1].iter().map(along).sum::<DVec2>().perp().normalize_or_zero();
         let beyond = |[a, b]: [u32; 2], inner: &[u32]| {
-            let edge = [b, a].map(laid);
+            let edge = [b, a].map(projected);
             let inner = edge.iter().filter(|corner| inner.contains(&corner.node));
             let end = PlaneCorner::between(inner.copied(), outside * (FAR * size));
             PlaneTriangle::new([edge[0], edge[1], end], true)
         };
         for &edge in &open[0] {
-            self.fine_triangles.push(beyond(edge, &of.children)?);
+            self.fine_triangles.push(beyond(edge, &fragment.children)?);
         }
         for &edge in &open[1] {
-            self.coarse_triangles.push(beyond(edge, &[of.node])?);
+            self.coarse_triangles.push(beyond(edge, &[fragment.node])?);
         }
         Some(())
     }
 
-    /// The shadow that the new vertex must have, and by how much those around it must grow.
+    /// Returns the smallest ball found for the new vertex, and collects the growth of the ring's
+    /// balls in `growth`.
     fn fit_ball(&mut self, place: DVec3, slack: f64) -> EnclosingBall {
         self.constraints.clear();
         for fine in &self.fine_triangles {
@@ -164,8 +170,8 @@ impl Overlay {
         self.growth.clear();
         for constraint in self.constraints.iter().filter(|constraint| constraint.share < MIN_SHARE)
         {
-            let Constraint { ball: asked, share, coarse } = constraint;
-            let lack = asked.reach(share * ball.center) - share * radius + slack;
+            let Constraint { ball: required, share, coarse } = constraint;
+            let lack = required.reach(share * ball.center) - share * radius + slack;
             let others = self.coarse_triangles[*coarse].corners.iter().filter(|c| c.share == 0.0);
             for other in others {
                 grow(&mut self.growth, other.node, lack / (1.0 - share));
@@ -180,24 +186,24 @@ impl Fragment<'_> {
         Vec3::from(self.positions[node as usize]).as_dvec3()
     }
 
-    /// What a node of the fine side becomes.
+    /// Maps a node of the fine side to the coarse side.
     fn contracted(&self, node: u32) -> u32 {
         if self.children.contains(&node) { self.node } else { node }
     }
 
-    /// Whether a face of the fine side becomes an edge.
+    /// Returns true if a face of the fine side collapses to an edge.
     fn is_collapsed(&self, face: &[u32; 3]) -> bool {
         self.children.iter().all(|child| face.contains(child))
     }
 
-    /// How far its vertices are from the new one.
+    /// Returns the greatest distance from the new vertex to a vertex of the fine side.
     fn size(&self) -> f64 {
         let to = self.place(self.node);
         self.fine.iter().flatten().map(|&v| self.place(v).distance(to)).fold(0.0, f64::max)
     }
 
-    /// From where all its triangles may be seen from outside: their normals' mean by area, and that of
-    /// all alike.
+    /// Returns two directions from which all triangles may face the viewer: the area-weighted and
+    /// the unweighted mean of their normals.
     fn directions(&self, coarse: &[[u32; 3]]) -> impl Iterator<Item = DVec3> + use<> {
         let normals = self.fine.iter().chain(coarse).map(|face| {
             let [a, b, c] = face.map(|v| self.place(v));
@@ -211,7 +217,7 @@ impl Fragment<'_> {
     }
 }
 
-/// The edges at some inner nodes that have no face behind, from end to end as their face has them.
+/// Returns the boundary edges at the inner nodes, directed as in their faces.
 fn open_edges(faces: &[[u32; 3]], inner: &[u32]) -> Vec<[u32; 2]> {
     let mut open: Vec<[u32; 2]> = Vec::new();
     for &[a, b, c] in faces {
@@ -228,7 +234,7 @@ fn open_edges(faces: &[[u32; 3]], inner: &[u32]) -> Vec<[u32; 2]> {
     open
 }
 
-/// Lets a shadow grow, if it does not yet as much.
+/// Records the growth of a ball, keeping the largest value per node.
 fn grow(growth: &mut Vec<(u32, f64)>, node: u32, by: f64) {
     if by <= 0.0 {
         return;
@@ -245,43 +251,47 @@ mod tests {
     use super::*;
     use crate::tests::walks::{Dice, each};
 
-    /// Places in a cell, on its edges and at its corners too.
-    fn places<'c>(cell: &'c PlaneTriangle, dice: &'c mut Dice) -> impl Iterator<Item = DVec2> + 'c {
+    /// Sample points inside a triangle, on its edges and at its corners.
+    fn places<'c>(
+        triangle: &'c PlaneTriangle,
+        dice: &'c mut Dice,
+    ) -> impl Iterator<Item = DVec2> + 'c {
         (0..12).map(|i| {
             let mut weights = [0; 3].map(|_| dice.roll());
             weights[i % 3] *= f64::from(u8::from(i > 2));
             weights[(i + 1) % 3] *= f64::from(u8::from(i > 5));
             let all: f64 = weights.iter().sum::<f64>().max(1e-9);
-            cell.corners.iter().zip(weights).map(|(corner, w)| corner.at * (w / all)).sum()
+            triangle.corners.iter().zip(weights).map(|(corner, w)| corner.at * (w / all)).sum()
         })
     }
 
-    fn covers(cell: &PlaneTriangle, place: DVec2) -> bool {
-        cell.weights.iter().all(|(slope, rest)| slope.dot(place) + rest > -1e-9)
+    fn covers(triangle: &PlaneTriangle, place: DVec2) -> bool {
+        triangle.weights.iter().all(|(slope, rest)| slope.dot(place) + rest > -1e-9)
     }
 
-    /// Each place of each triangle is covered by the other side, and wherever both are, the shadow on
-    /// the coarse side holds that on the fine side.
-    fn check(overlay: &Overlay, place: DVec3, shadows: &[EnclosingBall], dice: &mut Dice) {
+    /// Checks that every sample point is covered by the other side, and that the ball on the coarse
+    /// side contains that on the fine side wherever both cover it.
+    fn check(overlay: &Overlay, place: DVec3, vertex_balls: &[EnclosingBall], dice: &mut Dice) {
         let mut coarse = overlay.coarse_triangles.clone();
-        for corner in coarse.iter_mut().flat_map(|cell| &mut cell.corners) {
-            let EnclosingBall { center, radius } = shadows[corner.node as usize];
+        for corner in coarse.iter_mut().flat_map(|triangle| &mut triangle.corners) {
+            let EnclosingBall { center, radius } = vertex_balls[corner.node as usize];
             (corner.center, corner.radius) = (center - place, radius);
         }
         let sides = [(&overlay.fine_triangles, &coarse), (&coarse, &overlay.fine_triangles)];
         for (i, (from, to)) in sides.into_iter().enumerate() {
-            for cell in from.iter().filter(|cell| !cell.is_virtual) {
-                for place in places(cell, dice) {
+            for triangle in from.iter().filter(|triangle| !triangle.is_virtual) {
+                for place in places(triangle, dice) {
                     let mut pairs = 0;
                     for other in to.iter().filter(|other| covers(other, place)) {
                         pairs += 1;
-                        let [fine, coarse] = if i == 0 { [cell, other] } else { [other, cell] };
+                        let [fine, coarse] =
+                            if i == 0 { [triangle, other] } else { [other, triangle] };
                         let ((center, radius, _), (around, most, _)) =
                             (fine.at(place), coarse.at(place));
                         let lack = center.distance(around) + radius - most;
                         assert!(lack < 1e-9, "{lack:e}");
                     }
-                    assert!(pairs > 0, "{place} of {cell:?} has no pair");
+                    assert!(pairs > 0, "{place} of {triangle:?} has no pair");
                 }
             }
         }
@@ -293,20 +303,20 @@ mod tests {
             let mut dice = Dice(1);
             let mut stars = Stars::new(forest);
             let mut overlay = Overlay::default();
-            let mut shadows: Vec<EnclosingBall> = (0..forest.vertices as u32)
-                .map(|leaf| EnclosingBall::point(forest.place(leaf)))
+            let mut vertex_balls: Vec<EnclosingBall> = (0..forest.vertices as u32)
+                .map(|leaf| EnclosingBall::point(forest.stored_point(leaf)))
                 .collect();
             let mut count = [0; 2];
             for u in 0..forest.updates.len() {
                 let (node, children) = (forest.node(u) as u32, forest.updates[u].children);
                 let fine = stars.contract(children, node);
                 let fragment = Fragment { fine, children, node, positions: &forest.positions };
-                let before = shadows.clone();
-                let shadow = overlay.contract(&fragment, &mut shadows);
-                shadows.push(shadow);
-                if shadow != overlay.ball_by_vertex_motion(&fragment, &before, fragment.size()) {
-                    // What it was laid in last is what it has taken.
-                    check(&overlay, fragment.place(node), &shadows, &mut dice);
+                let before = vertex_balls.clone();
+                let ball = overlay.contract(&fragment, &mut vertex_balls);
+                vertex_balls.push(ball);
+                if ball != overlay.ball_by_vertex_motion(&fragment, &before, fragment.size()) {
+                    // The last projection tried is the accepted one.
+                    check(&overlay, fragment.place(node), &vertex_balls, &mut dice);
                     count[0] += 1;
                     count[1] += usize::from(overlay.fine_triangles.iter().any(|c| c.is_virtual));
                 }
@@ -324,9 +334,10 @@ mod tests {
         let positions = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.5, 9.0, 0.0], [0.0, 1.0, 0.0]];
         let positions: Vec<_> = positions.into_iter().chain([[-1.0, 0.0, 0.0], [0.5; 3]]).collect();
         let of = |fine| Fragment { fine, children: [0, 1], node: 5, positions: &positions };
-        let shadows: Vec<EnclosingBall> =
+        let vertex_balls: Vec<EnclosingBall> =
             (0..5).map(|node| EnclosingBall::point(of(&[]).place(node))).collect();
-        let radius = |fine| Overlay::default().contract(&of(fine), &mut shadows.clone()).radius;
+        let radius =
+            |fine| Overlay::default().contract(&of(fine), &mut vertex_balls.clone()).radius;
         assert!(radius(&[[0, 1, 2], [0, 3, 4]]) > 4.5);
         assert!(radius(&[[0, 1, 3], [0, 3, 4]]) < 0.6);
         assert_eq!(radius(&[[0, 1, 2]]), f64::INFINITY);

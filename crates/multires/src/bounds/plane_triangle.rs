@@ -1,48 +1,51 @@
-//! Triangles laid into a plane, with shadows on them, and what two of them share.
+//! Triangles projected to the plane, the balls on them, and the intersection of two.
 
 use glam::{DVec2, DVec3};
 
 use super::enclosing_ball::EnclosingBall;
 
-/// A triangle laid into the plane.
+/// Triangle projected to the plane.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct PlaneTriangle {
     pub(super) corners: [PlaneCorner; 3],
-    /// The weight of each corner at a place is linear: a slope, and what is there at the origin.
+    /// Barycentric coordinate of each corner as a linear function: its gradient, and its value at
+    /// the origin.
     pub(super) weights: [(DVec2, f64); 3],
-    /// It is no triangle of the mesh: all of it stands for one open edge.
+    /// True if this is no triangle of the mesh but stands for one open edge.
     pub(super) is_virtual: bool,
 }
 
-/// Where a vertex is laid, and what of its shadow is known.
+/// Projected vertex with the known part of its ball.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct PlaneCorner {
     pub(super) node: u32,
     pub(super) at: DVec2,
-    /// The shadow, about the new vertex's place.
+    /// Center of the ball, relative to the position of the new vertex.
     pub(super) center: DVec3,
     pub(super) radius: f64,
-    /// Of the new vertex's shadow, which is not yet known: all or nothing.
+    /// Weight of the new vertex's ball, which is unknown so far: 0 or 1 at a vertex.
     pub(super) share: f64,
 }
 
-/// What must hold at a corner of a piece: the shadow on the fine side is in that on the coarse side.
+/// Constraint at a corner of an intersection: the ball on the coarse side contains the one on the
+/// fine side.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Constraint {
-    /// The shadow on the fine side without what the ring gives to that on the coarse side.
+    /// Ball on the fine side, minus the contribution of ring vertices to the ball on the coarse
+    /// side.
     pub(super) ball: EnclosingBall,
-    /// How much the new vertex's shadow counts there.
+    /// Weight of the new vertex's ball at this point.
     pub(super) share: f64,
-    /// The triangle on the coarse side.
+    /// Index of the triangle on the coarse side.
     pub(super) coarse: usize,
 }
 
-/// Triangles must be wider than this part of their length in the plane. Then rounding moves nothing by
-/// more than 2⁻³² of the sides.
+/// Least ratio of a triangle's height to its longest edge. Rounding then moves nothing by more than
+/// 2⁻³² of the update's size.
 const MIN_RELATIVE_WIDTH: f64 = 1.0 / 65536.0;
 
 impl PlaneCorner {
-    /// The middle of one or two others, laid elsewhere.
+    /// Returns the mean of one or two corners, placed elsewhere.
     pub(super) fn between(others: impl Iterator<Item = Self> + Clone, at: DVec2) -> Self {
         let part = 1.0 / others.clone().count() as f64;
         let start = Self { at, ..Self::default() };
@@ -57,7 +60,7 @@ impl PlaneCorner {
 }
 
 impl PlaneTriangle {
-    /// None where it is thin or turned over.
+    /// Returns `None` if the triangle is thin or flipped.
     pub(super) fn new(corners: [PlaneCorner; 3], is_virtual: bool) -> Option<Self> {
         let [a, b, c] = corners.map(|corner| corner.at);
         let longest =
@@ -66,7 +69,7 @@ impl PlaneTriangle {
         if twice_area.is_nan() || twice_area <= MIN_RELATIVE_WIDTH * longest {
             return None;
         }
-        // One at a corner, none at the two others.
+        // The function is 1 at one corner and 0 at the two others.
         let weight = |from: DVec2, to: DVec2| {
             let slope = (to - from).perp() / twice_area;
             (slope, -slope.dot(from))
@@ -74,7 +77,7 @@ impl PlaneTriangle {
         Some(Self { corners, weights: [weight(b, c), weight(c, a), weight(a, b)], is_virtual })
     }
 
-    /// The shadow at a place, as far as it is known, and how much the unknown one counts.
+    /// Interpolates the known part of the ball at a point, and the weight of the unknown one.
     pub(super) fn at(&self, place: DVec2) -> (DVec3, f64, f64) {
         let mut sum = (DVec3::ZERO, 0.0, 0.0);
         for (corner, (slope, rest)) in self.corners.iter().zip(&self.weights) {
@@ -86,7 +89,7 @@ impl PlaneTriangle {
         sum
     }
 
-    /// Whether another lies behind one of its edges.
+    /// Returns true if `other` lies entirely behind one of the edges.
     fn is_apart(&self, other: &Self) -> bool {
         self.weights.iter().any(|(slope, rest)| {
             other.corners.iter().all(|corner| slope.dot(corner.at) + rest <= TOUCH_TOLERANCE)
@@ -94,15 +97,17 @@ impl PlaneTriangle {
     }
 }
 
-/// What overlaps by less than this part of a triangle's width touches it only.
+/// Overlaps below this fraction of a triangle's height count as mere contact.
 const TOUCH_TOLERANCE: f64 = 1e-12;
 
-/// Three cuts make six corners of three; nine, were each corner by rounding on the other side than both
-/// its neighbours.
+/// Three clips give a triangle at most six corners. Rounding could give nine, if each corner came
+/// to lie on the other side than both its neighbours.
 const MAX_CORNERS: usize = 9;
 
-/// What the corners of the piece that two triangles have in common ask for. On the piece everything is
-/// linear but a distance, which is convex, so it holds all over where it holds there.
+/// Adds the constraints at the corners of the intersection of two triangles.
+///
+/// Over the intersection everything is linear except for a distance, which is convex: constraints
+/// that hold at the corners hold everywhere.
 pub(super) fn add_constraints(
     fine: &PlaneTriangle,
     coarse: &PlaneTriangle,
@@ -126,7 +131,7 @@ pub(super) fn add_constraints(
     }
 }
 
-/// What of a convex polygon lies where a weight is positive.
+/// Clips a convex polygon to the half-plane where a weight is positive.
 fn clip(polygon: &[DVec2], (slope, rest): &(DVec2, f64)) -> ([DVec2; MAX_CORNERS], usize) {
     let (mut left, mut count) = ([DVec2::ZERO; MAX_CORNERS], 0);
     let mut keep = |corner: DVec2| {

@@ -1,19 +1,19 @@
-//! The faces around every vertex while the forest's contractions are done again.
+//! Faces around every vertex while the contractions of a forest are replayed.
 
 use crate::forest::{Forest, NONE};
 
-/// The faces there are, by the nodes that show their corners.
+/// Faces of the current mesh, with the corners at each node.
 ///
-/// The corners at a node are a chain, so that a contraction joins two.
+/// The corners at a node form a linked list, so that a contraction joins two lists.
 #[derive(Debug)]
 pub(super) struct Stars {
-    /// Those that are gone have [`NONE`] for a first node.
+    /// Faces by their nodes; the first node of a removed face is [`NONE`].
     faces: Vec<[u32; 3]>,
-    /// By node: the first and the last corner of its chain. Corner `k` of face `f` is `3 f + k`.
+    /// First and last corner of each node's list. Corner `k` of face `f` is `3 f + k`.
     ends: Vec<[u32; 2]>,
-    /// By corner: the next in its chain.
+    /// By corner: the next one in its list.
     next: Vec<u32>,
-    /// What was contracted last, as it was before.
+    /// Fine side of the last contraction.
     fine: Vec<[u32; 3]>,
 }
 
@@ -31,7 +31,8 @@ impl Stars {
         this
     }
 
-    /// Makes a node of its two children; the faces around them as they were before.
+    /// Replaces two children by their parent node. Returns the faces around the children as they
+    /// were before.
     pub(super) fn contract(&mut self, children: [u32; 2], node: u32) -> &[[u32; 3]] {
         self.fine.clear();
         for (child, other) in [(children[0], children[1]), (children[1], children[0])] {

@@ -1,4 +1,4 @@
-//! Bounds hold, are monotone, and are not much too large.
+//! Bounds hold, are monotone, and are reasonably tight.
 
 use meshlod_fixtures as fixtures;
 use meshlod_measure::{Surface, vertex_errors};
@@ -10,7 +10,7 @@ use crate::forest::NONE;
 use crate::tests::walks::{Dice, each, forest, query, soup};
 use crate::{Cut, ErrorKind, Forest, Implicit, Level, Model, UpdateLimits};
 
-/// How far rounding to `f32` takes a vertex of a mesh of diagonal 1, twice.
+/// Twice the distance that rounding to `f32` moves a vertex of a mesh of diagonal 1.
 const ROUNDED: f64 = 2e-7;
 
 fn bounded(mut forest: Forest) -> Forest {
@@ -18,7 +18,8 @@ fn bounded(mut forest: Forest) -> Forest {
     forest
 }
 
-/// Corners, edges and insides of a mesh's faces, and the face of each.
+/// Sample points at the corners, on the edges and inside the faces of a mesh, with the face of
+/// each.
 fn points(mesh: &Mesh) -> (Mesh, Vec<usize>) {
     const STEPS: u32 = 5;
     let (mut points, mut faces) = (Mesh::default(), Vec::new());
@@ -35,12 +36,12 @@ fn points(mesh: &Mesh) -> (Mesh, Vec<usize>) {
     (points, faces)
 }
 
-/// By how much a level is further off the mesh than its updates' errors times a factor say, or the mesh
-/// off it; in diagonals.
+/// Largest amount by which a level is farther from the mesh than its updates' errors times a
+/// factor, or the mesh from it, in diagonals.
 fn excess(mesh: &Mesh, mt: &Implicit, level: &Level, factor: f64) -> f64 {
     let diagonal = mesh.bounds().diagonal();
     let found = level.mesh();
-    // Two of the smallest samples go down to faces without area, which have no surface.
+    // Two of the smallest samples are reduced to faces without area, which have no surface.
     let (Ok(finest), Ok(coarse)) = (Surface::new(mesh), Surface::new(&found)) else { return -1.0 };
     let error = |v: u32| {
         let update = mt.update_of(level.nodes[v as usize]);
@@ -70,10 +71,10 @@ fn every_triangle_is_within_its_bound_and_the_mesh_within_the_greatest() {
             assert!(excess < ROUNDED, "{what} {query:?}: {excess:e}");
         }
     });
-    // What is not manifold, not oriented, or open all over.
+    // Meshes that are not manifold, not oriented, or open everywhere.
     let mut dice = Dice(11);
     for mut mesh in (0..10).map(soup).chain([fixtures::moebius(60)]) {
-        // Those are left out from the start.
+        // Degenerate faces are left out of a simplification from the start.
         mesh.faces.retain(|[a, b, c]| a != b && b != c && c != a);
         for method in [Method::Qem, Method::LeeJang] {
             let mt = Implicit::new(&bounded(forest(&mesh, method))).unwrap();
@@ -103,7 +104,7 @@ fn smaller_ones_would_not_hold() {
     };
     assert!(worst(&bounds, 1.0) < ROUNDED);
     assert!(worst(&bounds, 0.7) > 10.0 * ROUNDED, "{:e}", worst(&bounds, 0.7));
-    assert!(worst(&estimates, 1.0) > 10.0 * ROUNDED, "estimates are none");
+    assert!(worst(&estimates, 1.0) > 10.0 * ROUNDED, "estimates are no bounds");
 }
 
 #[test]
@@ -121,7 +122,8 @@ fn bounds_never_grow_along_needs() {
     });
 }
 
-/// Its boundary is moved inwards by a little, no more: placement is pulled to the middle of edges.
+/// The boundary moves inwards by a little and no more, because placement is pulled to the midpoints
+/// of edges.
 #[test]
 fn what_is_flat_costs_nothing() {
     let estimates = forest(&fixtures::grid(16), Method::Qem);

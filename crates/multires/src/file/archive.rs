@@ -1,4 +1,4 @@
-//! Reads a file: all of it, its first part, or what a query needs.
+//! Reading of a `.mlod` file: the whole file, a prefix of it, or the chunks that a query needs.
 
 use super::decoder_state::DecoderState;
 use super::header::{self, FIXED_LEN, Header, Section};
@@ -13,42 +13,44 @@ use crate::model::Model;
 use crate::query::Criterion;
 use crate::query::Query;
 
-/// A `.mlod` file: all levels of a mesh, the coarsest first.
+/// A `.mlod` file of contractions, opened for reading: all levels of a mesh, coarsest first.
 #[derive(Debug)]
 pub struct Archive<S> {
     source: S,
     pub(super) header: Header,
-    /// How many of its chunks are complete.
+    /// Number of chunks that are present in full.
     complete: usize,
 }
 
-/// What a query reads of a file.
+/// Result of a query on a file, with what was read to answer it.
 #[derive(Clone, Debug)]
 pub struct Extract {
-    /// The answer.
+    /// Mesh that answers the query.
     pub level: Level,
-    /// How many chunks were read for it.
+    /// Number of chunks read.
     pub chunks: usize,
-    /// How many updates those have.
+    /// Number of updates in those chunks.
     pub updates: usize,
-    /// How many bytes of the file were read.
+    /// Number of bytes read from the file.
     pub bytes: u64,
 }
 
 impl Archive<Vec<u8>> {
-    /// The bytes of a `.mlod` file with all levels, and the proof that none of them has a crack.
+    /// Encodes a forest as the bytes of a `.mlod` file and certifies that none of its cuts has a
+    /// crack.
     ///
-    /// Vertices are moved to a lattice, as far as the storage says; those of the input stay where they are
-    /// where the forest keeps them [to the bit](Forest::lossless). Errors are rounded up, by a sixteenth at
-    /// most. Cost: linear.
+    /// Vertices are rounded to a lattice as fine as `storage` demands. If the forest is
+    /// [lossless](Forest::lossless), the input's vertices keep their exact positions. Errors are
+    /// rounded up by at most a sixteenth. Cost: linear.
     /// # Errors
-    /// More vertices than are numbered; a rounding below 0 or beyond the diagonal. What has no certificate is
-    /// not written.
+    /// Too many vertices, or a rounding that is negative or larger than the diagonal. A model that
+    /// cannot be certified is not written.
     pub fn write(forest: &Forest, storage: &Storage) -> Result<(Vec<u8>, Certificate), FileError> {
         write::write(forest, storage)
     }
 
-    /// Writes the checksums that fit into bytes that were changed, for tests of [`Archive::read`].
+    /// Recomputes all checksums of modified bytes, so that tests of [`Archive::read`] get past
+    /// them.
     #[doc(hidden)]
     pub fn rewrite_checksums(bytes: &mut [u8]) {
         header::rewrite_checksums(bytes);
@@ -56,9 +58,9 @@ impl Archive<Vec<u8>> {
 }
 
 impl<S: Source> Archive<S> {
-    /// Reads what a file starts with.
+    /// Opens a file and reads its header and index.
     /// # Errors
-    /// One that is something else, damaged, or ends before its coarsest mesh does.
+    /// A file of another format, a damaged header, or a file that ends before its base mesh does.
     pub fn open(source: S) -> Result<Self, FileError> {
         let length = source.length()?;
         let start = read_range(&source, 0, FIXED_LEN as u64, "the header")?;
@@ -74,17 +76,18 @@ impl<S: Source> Archive<S> {
         }
     }
 
-    /// How many chunks of updates the file is to have.
+    /// Returns the number of chunks listed in the index, including those cut off.
     pub fn chunk_count(&self) -> usize {
         self.header.chunks.len()
     }
 
-    /// How many of its chunks are there; the rest is cut off, and only missing.
+    /// Returns the number of chunks present in full; in a truncated file this is less than
+    /// [`chunk_count`](Self::chunk_count).
     pub fn complete_chunks(&self) -> usize {
         self.complete
     }
 
-    /// Where the coarsest mesh ends, and each chunk.
+    /// Returns the byte offset at which the base mesh ends, then the end of each chunk.
     pub fn chunk_ends(&self) -> impl Iterator<Item = u64> + '_ {
         let base = self.header.len() + u64::from(self.header.base.bytes);
         let sizes = self.header.chunks.iter().map(|chunk| u64::from(chunk.stored.bytes));
@@ -95,56 +98,60 @@ impl<S: Source> Archive<S> {
         std::iter::once(base).chain(ends)
     }
 
-    /// How many updates the file is to have.
+    /// Returns the number of updates listed in the index, including those cut off.
     pub fn update_count(&self) -> usize {
         self.header.updates()
     }
 
-    /// What the errors of its updates are.
+    /// Returns whether the errors of the updates are estimates or proven bounds.
     pub fn error_kind(&self) -> ErrorKind {
         self.header.about.error_kind
     }
 
-    /// How many faces the coarsest mesh has.
+    /// Returns the number of faces of the coarsest mesh.
     pub fn base_faces(&self) -> usize {
         self.header.base_faces as usize
     }
 
-    /// Where its bytes are.
+    /// Returns the underlying source of bytes.
     pub fn into_source(self) -> S {
         self.source
     }
 
-    /// The diagonal of the finest mesh, in model units.
+    /// Returns the bounding-box diagonal of the finest mesh, in model units.
     pub fn diagonal(&self) -> f64 {
         self.header.diagonal
     }
 
-    /// Whether the vertices of the finest mesh are where they were in the input, to the bit: that level is
-    /// off by 0, whatever [`rounding`](Self::rounding) says. Those of other levels are if they are of the
-    /// finest, too.
+    /// Returns true if the vertices of the finest mesh have the input's positions to the bit.
+    ///
+    /// The error of that level is then 0, whatever [`rounding`](Self::rounding) returns. In coarser
+    /// levels, vertices that belong to the finest mesh are exact too.
     pub fn is_lossless(&self) -> bool {
         self.header.lossless
     }
 
-    /// By how much a vertex was moved to the file's lattice at most, in model units. In a
-    /// [lossless](Self::is_lossless) file those of the input were not moved: it is the others', which only
-    /// coarser levels have.
+    /// Returns the largest distance that a vertex was moved to the file's lattice, in model units.
+    ///
+    /// In a [lossless](Self::is_lossless) file this concerns only vertices of coarser levels that
+    /// are not vertices of the input.
     pub fn rounding(&self) -> f64 {
         self.header.rounding
     }
 
-    /// All levels, and the proof that none has a crack.
+    /// Reads all complete chunks and certifies that no cut of the model has a crack.
     /// # Errors
-    /// A file that is damaged, or made to mislead.
+    /// A file that is damaged or was crafted to mislead.
     pub fn read(&self) -> Result<(Implicit, Certificate), FileError> {
         self.read_chunks(self.complete)
     }
 
-    /// The levels of so many chunks from the start, and the proof that none has a crack. Of all chunks of a
-    /// lossless file, that the finest has its positions to the bit.
+    /// Reads the first `count` chunks and certifies that no cut of the resulting model has a crack.
+    ///
+    /// If these are all chunks of a lossless file, it also checks that every vertex of the finest
+    /// mesh has its exact position.
     /// # Errors
-    /// A file that is damaged, or made to mislead.
+    /// A file that is damaged or was crafted to mislead.
     pub fn read_chunks(&self, count: usize) -> Result<(Implicit, Certificate), FileError> {
         let state = self.load(&(0..count.min(self.complete)).collect::<Vec<_>>())?;
         let updates = state.updates.len();
@@ -152,7 +159,7 @@ impl<S: Source> Archive<S> {
         if model.update_count() != updates {
             return Err(FileError::Section {
                 section: "the updates".into(),
-                why: "some split what another splits".into(),
+                why: "a node is split by more than one update".into(),
             });
         }
         if count.min(self.complete) == self.header.chunks.len() {
@@ -162,7 +169,7 @@ impl<S: Source> Archive<S> {
         Ok((model, certificate))
     }
 
-    /// Whether what is lossless has the position of every vertex of the finest mesh.
+    /// Checks that every leaf of a complete lossless model has an exact position.
     fn check_lossless(&self, model: &Implicit) -> Result<(), FileError> {
         let is_leaf = |&node: &u32| model.update_of(node).is_none();
         let leaves = (0..model.node_count() as u32).filter(is_leaf);
@@ -170,21 +177,23 @@ impl<S: Source> Archive<S> {
         if !self.is_lossless() || bare == 0 {
             return Ok(());
         }
-        let why = format!("{bare} of its vertices have no position to the bit in a lossless file");
+        let why = format!("{bare} of its vertices lack the exact position of a lossless file");
         Err(FileError::Section { section: "the finest mesh".into(), why })
     }
 
-    /// The best cut with at most so many faces, as [`Extractor::at_most`](crate::Extractor::at_most).
-    /// Of a uniform query only those chunks are read that may have a part in it.
+    /// Extracts the best cut with at most `faces` faces, like
+    /// [`Extractor::at_most`](crate::Extractor::at_most).
+    ///
+    /// For a uniform query, only chunks that may contribute to the answer are read.
     /// # Errors
-    /// A query that is none; a file that is damaged, or made to mislead.
+    /// An invalid query, or a file that is damaged or was crafted to mislead.
     pub fn extract_at_most(&self, faces: usize, query: &Query<'_>) -> Result<Extract, FileError> {
         let is_uniform = Criterion::new(query, &self.header.about.frame)?.is_uniform();
         let mut chunks = if is_uniform { self.chunks_for_faces(faces) } else { self.complete };
         loop {
             let model = Model::from_certified(&self.read_chunks(chunks)?.0);
             let level = model.extractor().at_most(faces, query)?.clone();
-            // What is as urgent as something that was made may be in chunks further on.
+            // Later chunks may hold updates with errors as large as that of an applied one.
             let least = model.implicit().least_error_above(&level.nodes).get();
             let rest = &self.header.chunks[chunks..self.complete];
             let urgent = rest.iter().rposition(|chunk| chunk.area.error >= least);
@@ -197,7 +206,7 @@ impl<S: Source> Archive<S> {
         }
     }
 
-    /// How many chunks it takes to have so many faces.
+    /// Returns the number of leading chunks that together reach the given number of faces.
     fn chunks_for_faces(&self, faces: usize) -> usize {
         let mut all = self.header.base_faces as usize;
         let chunks = self.header.chunks[..self.complete].iter();
@@ -209,12 +218,13 @@ impl<S: Source> Archive<S> {
         needed.count()
     }
 
-    /// The answer to a query. Reads only what it takes: chunks whose area the query wants.
+    /// Extracts the mesh that answers a query, reading only the chunks whose area the query may
+    /// refine.
     ///
-    /// Nothing is proved here: a file that was made to mislead, with checksums that fit, may give a mesh
-    /// with cracks. [`Archive::read`] finds that out.
+    /// Nothing is certified: a file crafted to mislead, with matching checksums, may give a mesh
+    /// with cracks. [`Archive::read`] detects that.
     /// # Errors
-    /// A query that is none; a file that is damaged.
+    /// An invalid query, or a damaged file.
     pub fn extract(&self, query: &Query<'_>) -> Result<Extract, FileError> {
         let criterion = Criterion::new(query, &self.header.about.frame)?;
         let wanted = |&chunk: &usize| criterion.may_refine_in(&self.header.chunks[chunk].area);
@@ -233,7 +243,7 @@ impl<S: Source> Archive<S> {
         Implicit::assemble(self.header.about, base, &updates, &exact)
     }
 
-    /// The base and some chunks, by rising numbers.
+    /// Decodes the base and the given chunks, which are in ascending order.
     fn load(&self, chunks: &[usize]) -> Result<DecoderState, FileError> {
         let mut state = self.read_base()?;
         let (mut first, mut wanted) = (0, chunks.iter().peekable());
@@ -256,7 +266,7 @@ impl<S: Source> Archive<S> {
         read.map_err(|why| FileError::Section { section: name(), why: why.to_string() })
     }
 
-    /// A piece of the file that is what was written.
+    /// Reads a section and verifies its checksum.
     fn read_section(
         &self,
         offset: u64,

@@ -1,21 +1,21 @@
-//! The coarsest mesh as bytes: vertices and faces, each told by the one before.
+//! Coding of the coarsest mesh: vertices and faces, each as the difference from its predecessor.
 
 use std::io;
 
 use thiserror::Error;
 
 use super::decoder_state::DecoderState;
-use super::exact_positions::{self, Deltas};
+use super::exact_coding::{self, Deltas};
 use super::header::{Header, UNKNOWN_FLAGS};
 use super::streams::{Packer, Unpacker};
 use crate::implicit::{BaseMesh, has_three_corners};
 use crate::pack::ExactPositions;
 
-/// Why the coarsest mesh is none.
+/// Reason why the coarsest mesh cannot be decoded.
 #[derive(Debug, Error)]
 pub(super) enum BaseError {
-    /// It cannot be unpacked, or ends too early.
-    #[error("it cannot be unpacked")]
+    /// The compressed data is malformed or ends too early.
+    #[error("its compressed data is malformed or ends too early")]
     Decompress(#[from] io::Error),
     #[error("{0}")]
     Invalid(&'static str),
@@ -25,8 +25,8 @@ pub(super) fn write(state: &DecoderState) -> io::Result<Vec<u8>> {
     let BaseMesh { positions, faces } = &state.base;
     let mut packer = Packer::new()?;
     for k in 0..3 {
-        let places = positions.iter().map(|&p| state.lattice.round(p)[k]);
-        packer.signed(places.scan(0, |last, x| Some(x - std::mem::replace(last, x))))?;
+        let cells = positions.iter().map(|&p| state.lattice.round(p)[k]);
+        packer.signed(cells.scan(0, |last, x| Some(x - std::mem::replace(last, x))))?;
     }
     for k in 0..3 {
         let corners = faces.iter().map(|face| face[k] as i32);
@@ -37,7 +37,7 @@ pub(super) fn write(state: &DecoderState) -> io::Result<Vec<u8>> {
         packer.bytes(&flags.collect::<Vec<u8>>())?;
         let pair =
             |root| state.exact_position(root).map(|exact| [exact, state.predicted_position(root)]);
-        exact_positions::write(
+        exact_coding::write(
             &(0..state.root_count()).filter_map(pair).collect::<Vec<_>>(),
             &mut packer,
         )?;
@@ -51,15 +51,17 @@ pub(super) fn read(header: &Header, bytes: &[u8]) -> Result<DecoderState, BaseEr
     let (roots, faces) = (header.roots as usize, header.base_faces as usize);
     let mut input = Unpacker::new(bytes)?;
     let [x, y, z, a, b, c] = unpack(&mut input, roots, faces)?;
-    let place = |i| lattice.place([x[i], y[i], z[i]]).filter(|&place| about.frame.holds(place));
-    let places: Option<Vec<_>> = (0..roots).map(place).collect();
-    let positions = places.ok_or(BaseError::Invalid("a vertex is out of reach"))?;
+    let position = |i| {
+        lattice.checked_position([x[i], y[i], z[i]]).filter(|&position| about.frame.holds(position))
+    };
+    let positions: Option<Vec<_>> = (0..roots).map(position).collect();
+    let positions = positions.ok_or(BaseError::Invalid("a vertex is out of range"))?;
     let corner = |v: i64| u32::try_from(v).ok().filter(|&v| (v as usize) < roots);
     let face = |i: usize| Some([corner(a[i])?, corner(b[i])?, corner(c[i])?]);
     let faces: Option<Vec<_>> = (0..faces).map(face).collect();
-    let faces = faces.ok_or(BaseError::Invalid("a face has a vertex that is not there"))?;
+    let faces = faces.ok_or(BaseError::Invalid("a face refers to a missing vertex"))?;
     if !faces.iter().all(has_three_corners) {
-        return Err(BaseError::Invalid("a face has a vertex twice"));
+        return Err(BaseError::Invalid("a face repeats a vertex"));
     }
     let exact = if lossless { ExactPositions::lossless() } else { ExactPositions::default() };
     let mut state = DecoderState::new(about.frame, lattice, BaseMesh { positions, faces }, exact);
@@ -82,7 +84,7 @@ fn unpack(input: &mut Unpacker<'_>, roots: usize, faces: usize) -> io::Result<[V
     Ok(all)
 }
 
-/// The positions to the bit of those roots that have them.
+/// Decodes the exact positions of the roots that are vertices of the finest mesh.
 fn read_exact(state: &mut DecoderState, input: &mut Unpacker<'_>) -> Result<(), BaseError> {
     let flags = input.bytes(state.root_count() as usize)?;
     if flags.iter().any(|&flag| flag > 1) {

@@ -1,5 +1,5 @@
-//! Where the two children of a node are: told by how far apart they are, and by how far their middle is from
-//! their parent.
+//! Positions of the two children of a node, coded as the vector between them and the offset of
+//! their midpoint from the parent.
 
 use std::io;
 
@@ -11,35 +11,36 @@ use super::streams::Unpacker;
 use crate::frame::Length16;
 use crate::pack::radius8;
 
-/// Where the two children of a node are.
+/// Positions of the two children of a node relative to their parent, in cells of the lattice.
 pub(super) struct ChildOffsets {
-    /// From the first to the second.
-    pub(super) apart: [i32; 3],
-    /// From the parent to their middle, without what `apart` tells.
-    pub(super) middle: [i32; 3],
+    /// Vector from the first child to the second.
+    pub(super) difference: [i32; 3],
+    /// Vector from the parent to the midpoint of the children, without the half cells implied by
+    /// the parity of `apart`.
+    pub(super) midpoint: [i32; 3],
 }
 
-/// Many of them, and how much larger their balls are than they have to be, by codes.
+/// Decoded streams of child offsets, and the differences of ball radii from their prediction.
 pub(super) struct OffsetStreams {
-    apart: [Vec<i32>; 3],
-    middle: [Vec<i32>; 3],
+    difference: [Vec<i32>; 3],
+    midpoint: [Vec<i32>; 3],
     pub(super) radii: Vec<i32>,
 }
 
 impl OffsetStreams {
     pub(super) fn read(input: &mut Unpacker<'_>, count: usize) -> io::Result<Self> {
-        let (mut apart, mut middle) = <([Vec<i32>; 3], [Vec<i32>; 3])>::default();
+        let (mut difference, mut midpoint) = <([Vec<i32>; 3], [Vec<i32>; 3])>::default();
         for k in 0..3 {
-            apart[k] = input.signed(count)?;
-            middle[k] = input.signed(count)?;
+            difference[k] = input.signed(count)?;
+            midpoint[k] = input.signed(count)?;
         }
-        Ok(Self { apart, middle, radii: input.signed(count)? })
+        Ok(Self { difference, midpoint, radii: input.signed(count)? })
     }
 
     pub(super) fn offsets(&self, at: usize) -> ChildOffsets {
         ChildOffsets {
-            apart: [0, 1, 2].map(|k| self.apart[k][at]),
-            middle: [0, 1, 2].map(|k| self.middle[k][at]),
+            difference: [0, 1, 2].map(|k| self.difference[k][at]),
+            midpoint: [0, 1, 2].map(|k| self.midpoint[k][at]),
         }
     }
 }
@@ -48,36 +49,44 @@ impl ChildOffsets {
     pub(super) fn of(lattice: Lattice, parent: Vec3, children: [Vec3; 2]) -> Self {
         let parent = lattice.round(parent);
         let [a, b] = children.map(|child| lattice.round(child));
-        let apart = [0, 1, 2].map(|k| b[k] - a[k]);
-        // Their sum is odd where their difference is.
-        let middle = [0, 1, 2].map(|k| (a[k] + b[k] - 2 * parent[k] - (apart[k] & 1)) / 2);
-        Self { apart, middle }
+        let difference = [0, 1, 2].map(|k| b[k] - a[k]);
+        // The sum of the children's coordinates is odd where their difference is.
+        let midpoint = [0, 1, 2].map(|k| (a[k] + b[k] - 2 * parent[k] - (difference[k] & 1)) / 2);
+        Self { difference, midpoint }
     }
 
     pub(super) fn encoded(&self, predictor: &NormalPredictor) -> Self {
-        Self { apart: predictor.encode(self.apart), middle: predictor.encode(self.middle) }
+        Self {
+            difference: predictor.encode(self.difference),
+            midpoint: predictor.encode(self.midpoint),
+        }
     }
 
     pub(super) fn decoded(&self, predictor: &NormalPredictor) -> Self {
-        Self { apart: predictor.decode(self.apart), middle: predictor.decode(self.middle) }
+        Self {
+            difference: predictor.decode(self.difference),
+            midpoint: predictor.decode(self.midpoint),
+        }
     }
 
-    /// None where they would be out of reach.
+    /// Returns the positions of both children, or `None` if one lies outside the lattice.
     pub(super) fn children(&self, lattice: Lattice, parent: Vec3) -> Option<[Vec3; 2]> {
         let parent = lattice.round(parent);
         let ends = [-1, 1].map(|side| {
-            lattice.place([0, 1, 2].map(|k| {
-                let apart = i64::from(self.apart[k]);
-                let sum = 2 * (i64::from(self.middle[k]) + i64::from(parent[k])) + (apart & 1);
-                (sum + side * apart) / 2
+            lattice.checked_position([0, 1, 2].map(|k| {
+                let difference = i64::from(self.difference[k]);
+                let sum =
+                    2 * (i64::from(self.midpoint[k]) + i64::from(parent[k])) + (difference & 1);
+                (sum + side * difference) / 2
             }))
         });
         Some([ends[0]?, ends[1]?])
     }
 
-    /// What a ball around them would take at least, about.
+    /// Returns the code of the distance between the children, which predicts the radius of their
+    /// parent's ball.
     pub(super) fn predicted_radius8(&self, lattice: Lattice) -> u8 {
-        let squared: f64 = self.apart.iter().map(|&x| f64::from(x) * f64::from(x)).sum();
+        let squared: f64 = self.difference.iter().map(|&x| f64::from(x) * f64::from(x)).sum();
         radius8(Length16::up(squared.sqrt() * lattice.cell()))
     }
 }

@@ -1,8 +1,8 @@
-//! A chunk of updates as bytes: a stream for each of their fields.
+//! Coding of a chunk of updates, with one stream per field.
 //!
-//! Numbers are told by what is known when they are read: a node by the one before, a radius by how far
-//! apart the children are, and the children's places by their difference and by how far their middle is
-//! from their parent.
+//! Each value is predicted from what the decoder already knows: a node from the previous one, a
+//! radius from the distance between the children, and the children's positions from their
+//! difference and the offset of their midpoint from the parent.
 
 use std::io;
 use std::ops::Range;
@@ -12,7 +12,7 @@ use thiserror::Error;
 
 use super::child_offsets::{ChildOffsets, OffsetStreams};
 use super::decoder_state::DecoderState;
-use super::exact_positions::{self, Deltas};
+use super::exact_coding::{self, Deltas};
 use super::header::UNKNOWN_FLAGS;
 use super::streams::{Packer, Unpacker};
 use crate::forest::{NONE, NonFanSplit};
@@ -20,25 +20,26 @@ use crate::frame::Length16;
 use crate::implicit::{DetachedUpdate, has_three_corners};
 use crate::pack::{error9, error16, radius8, radius16};
 
-/// Why a chunk is none.
+/// Reason why a chunk cannot be decoded.
 #[derive(Debug, Error)]
 pub(super) enum ChunkError {
-    /// It cannot be unpacked, or ends too early.
-    #[error("it cannot be unpacked")]
+    /// The compressed data is malformed or ends too early.
+    #[error("its compressed data is malformed or ends too early")]
     Decompress(#[from] io::Error),
-    /// An update of it cannot be.
-    #[error("its update {update}: {why}")]
+    /// An update has an invalid field.
+    #[error("its update {update} is invalid: {why}")]
     Update { update: usize, why: &'static str },
-    #[error("it goes on behind its last update")]
+    /// Data follows the last update.
+    #[error("unexpected data after its last update")]
     TrailingData,
 }
 
-/// Bits of an update's flags.
+/// Flag bits of an update.
 const OPEN: u8 = 1;
 const FUSED: u8 = 2;
 const NON_FAN: u8 = 4;
-/// The first child, or the second, is of the finest mesh: its position is there to the bit. Only in lossless
-/// files.
+/// Set if the first or the second child is a vertex of the finest mesh and has an exact position.
+/// Only in lossless files.
 const EXACT: [u8; 2] = [8, 16];
 
 /// Encodes a run of updates. Everything before it must be known to the decoder.
@@ -62,7 +63,7 @@ pub(super) fn write(state: &DecoderState, run: Range<usize>) -> io::Result<Vec<u
         packer.bytes(&updates.iter().map(|u| u.wings[side]).collect::<Vec<_>>())?;
     }
     write_errors(updates, &mut packer)?;
-    write_places(state, updates, &mut packer)?;
+    write_offsets(state, updates, &mut packer)?;
     for non_fan in updates.iter().filter_map(|u| u.non_fan.as_deref()) {
         write_non_fan(non_fan, &mut packer)?;
     }
@@ -70,12 +71,13 @@ pub(super) fn write(state: &DecoderState, run: Range<usize>) -> io::Result<Vec<u
         let pair =
             |node| state.exact_position(node).map(|exact| [exact, state.predicted_position(node)]);
         let pairs = run.flat_map(|at| state.children(at)).filter_map(pair);
-        exact_positions::write(&pairs.collect::<Vec<_>>(), &mut packer)?;
+        exact_coding::write(&pairs.collect::<Vec<_>>(), &mut packer)?;
     }
     packer.finish()
 }
 
-/// Errors above the least, and levels above the least of those with the same error.
+/// Encodes errors relative to the least one, and levels relative to the least level with the same
+/// error.
 fn write_errors(updates: &[DetachedUpdate], packer: &mut Packer) -> io::Result<()> {
     let errors = || updates.iter().map(|u| error9(u.error));
     let least = errors().min().unwrap_or(0);
@@ -95,26 +97,26 @@ fn write_errors(updates: &[DetachedUpdate], packer: &mut Packer) -> io::Result<(
     packer.numbers(&above)
 }
 
-fn write_places(
+fn write_offsets(
     state: &DecoderState,
     updates: &[DetachedUpdate],
     packer: &mut Packer,
 ) -> io::Result<()> {
     let lattice = state.lattice;
-    let families: Vec<_> = updates
+    let offsets: Vec<_> = updates
         .iter()
         .map(|u| ChildOffsets::of(lattice, state.stored_position(u.parent), u.children))
         .collect();
-    let folded: Vec<_> = updates
+    let encoded: Vec<_> = updates
         .iter()
-        .zip(&families)
+        .zip(&offsets)
         .map(|(u, f)| f.encoded(&state.normal_predictor(u.parent)))
         .collect();
     for k in 0..3 {
-        packer.signed(folded.iter().map(|family| family.apart[k]))?;
-        packer.signed(folded.iter().map(|family| family.middle[k]))?;
+        packer.signed(encoded.iter().map(|offset| offset.difference[k]))?;
+        packer.signed(encoded.iter().map(|offset| offset.midpoint[k]))?;
     }
-    let radii = updates.iter().zip(&families);
+    let radii = updates.iter().zip(&offsets);
     packer.signed(
         radii.map(|(u, f)| i32::from(radius8(u.radius)) - i32::from(f.predicted_radius8(lattice))),
     )
@@ -127,8 +129,9 @@ fn write_non_fan(non_fan: &NonFanSplit, packer: &mut Packer) -> io::Result<()> {
     packer.numbers(non_fan.created_faces.as_flattened())
 }
 
-/// Adds a chunk of so many updates, the first of which has this number in the file. Those whose node
-/// is not known come without it.
+/// Decodes a chunk of `count` updates, the first of which has the number `first` in the file.
+///
+/// Updates that split a node of a chunk not loaded are kept with [`NONE`] for their parent.
 pub(super) fn read(
     state: &mut DecoderState,
     bytes: &[u8],
@@ -150,32 +153,32 @@ pub(super) fn read(
         }
         let made = state.root_count() + 2 * (first + at as u32);
         let parent = gaps[at].checked_add(next).filter(|&parent| parent < made);
-        let parent = parent.ok_or(bad("it splits a node that is not there yet"))?;
+        let parent = parent.ok_or(bad("it splits a node that does not exist yet"))?;
         next = parent + 1;
         let parent = match state.local_node(parent) {
-            // What is below something unknown is unknown.
+            // A descendant of a node that is not loaded cannot be used either.
             node if node != NONE && state.creator(node).is_none_or(|up| up.parent != NONE) => node,
             _ => NONE,
         };
         let mut update = DetachedUpdate {
             parent,
-            level: u16::try_from(levels[at]).map_err(|_| bad("its level is too high"))?,
+            level: u16::try_from(levels[at]).map_err(|_| bad("its level is out of range"))?,
             wings: [wings[0][at], wings[1][at]],
             radius: Length16::default(),
-            error: error16(errors[at]).ok_or(bad("its error is no length"))?,
+            error: error16(errors[at]).ok_or(bad("its error is out of range"))?,
             is_open: flags[at] & OPEN != 0,
             fused_with_child: flags[at] & FUSED != 0,
             non_fan: None,
             children: [Vec3::ZERO; 2],
         };
         if parent != NONE {
-            let family = offsets.offsets(at).decoded(&state.normal_predictor(parent));
-            let children = family.children(state.lattice, state.stored_position(parent));
+            let offset = offsets.offsets(at).decoded(&state.normal_predictor(parent));
+            let children = offset.children(state.lattice, state.stored_position(parent));
             let children = children.filter(|children| state.are_finite(children));
-            update.children = children.ok_or(bad("its children are out of reach"))?;
+            update.children = children.ok_or(bad("its children are out of range"))?;
             let radius =
-                i64::from(family.predicted_radius8(state.lattice)) + i64::from(offsets.radii[at]);
-            let radius = u8::try_from(radius).map_err(|_| bad("its radius is no length"))?;
+                i64::from(offset.predicted_radius8(state.lattice)) + i64::from(offsets.radii[at]);
+            let radius = u8::try_from(radius).map_err(|_| bad("its radius is out of range"))?;
             update.radius = radius16(radius);
             update.trouble(state.creator(parent)).map_or(Ok(()), |why| Err(bad(why)))?;
         }
@@ -184,7 +187,7 @@ pub(super) fn read(
     let nodes = state.root_count() + 2 * (first + count as u32);
     let start = state.updates.len() - count;
     for at in (0..count).filter(|&at| flags[at] & NON_FAN != 0) {
-        let bad = ChunkError::Update { update: at, why: "it brings what is no face, or too many" };
+        let bad = ChunkError::Update { update: at, why: "the faces it creates are invalid" };
         let non_fan =
             read_non_fan(&mut input, nodes)?.ok_or(bad)?.renumbered(|node| state.local_node(node));
         state.updates[start + at].non_fan = Some(Box::new(non_fan));
@@ -195,13 +198,13 @@ pub(super) fn read(
     if input.is_at_end()? { Ok(()) } else { Err(ChunkError::TrailingData) }
 }
 
-/// The flags that an update may have.
+/// Returns the flags that an update of this file may have.
 fn flags_of(state: &DecoderState) -> u8 {
     let of_all = OPEN | FUSED | NON_FAN;
     if state.is_lossless() { of_all | EXACT[0] | EXACT[1] } else { of_all }
 }
 
-/// The positions of those children that have them, of the updates from `start` on.
+/// Decodes the exact positions of the children that have one, for the updates from `start` on.
 fn read_exact(
     state: &mut DecoderState,
     input: &mut Unpacker<'_>,
@@ -215,7 +218,7 @@ fn read_exact(
     let nodes: Vec<_> = (0..flags.len()).flat_map(of).collect();
     let steps = Deltas::read(nodes.len(), input)?;
     for (i, (at, node)) in nodes.into_iter().enumerate() {
-        // What is not known is nowhere.
+        // Without its parent, a child has no position to correct.
         if state.updates[start + at].parent != NONE {
             let added = state.add_exact_position(node, &steps, i);
             added.map_err(|why| ChunkError::Update { update: at, why })?;
@@ -226,16 +229,16 @@ fn read_exact(
         if parent != NONE && state.exact_position(parent).is_some() {
             return Err(ChunkError::Update {
                 update: at,
-                why: "it splits what is of the finest mesh",
+                why: "it splits a vertex of the finest mesh",
             });
         }
     }
     Ok(())
 }
 
-/// Errors and levels, as large as they may be told.
+/// Decodes errors and levels; the caller checks their range.
 fn read_errors(input: &mut Unpacker<'_>, count: usize) -> io::Result<(Vec<u32>, Vec<u32>)> {
-    let [least, steps] = input.numbers(2)?[..] else { unreachable!("two are two") };
+    let [least, steps] = input.numbers(2)?[..] else { unreachable!("two numbers were requested") };
     let least_levels = input.numbers(steps as usize)?;
     let mut errors: Vec<u32> = input.numbers(count)?;
     let mut levels: Vec<u32> = input.numbers(count)?;
@@ -247,7 +250,8 @@ fn read_errors(input: &mut Unpacker<'_>, count: usize) -> io::Result<(Vec<u32>, 
     Ok((errors, levels))
 }
 
-/// What wings cannot tell, by nodes of the file: so many are made up to this chunk's end.
+/// Decodes a split whose faces are not separated by wings. Its nodes, in the file's numbering, must
+/// be below `nodes`.
 fn read_non_fan(input: &mut Unpacker<'_>, nodes: u32) -> Result<Option<NonFanSplit>, io::Error> {
     let mut list = |size: usize| -> io::Result<Vec<u32>> {
         let count = input.numbers::<u32>(1)?[0] as usize;
@@ -257,7 +261,7 @@ fn read_non_fan(input: &mut Unpacker<'_>, nodes: u32) -> Result<Option<NonFanSpl
     let are_made = second.iter().chain(&created_faces).all(|&node| node < nodes);
     let (second, created_faces) =
         (second.as_chunks().0.to_vec(), created_faces.as_chunks().0.to_vec());
-    // No edge with more than two faces is contracted.
+    // An edge with more than two faces is never contracted.
     let are_faces = created_faces.len() <= 2 && created_faces.iter().all(has_three_corners);
     Ok((are_made && are_faces).then_some(NonFanSplit { second, created_faces }))
 }

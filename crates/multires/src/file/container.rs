@@ -1,11 +1,11 @@
-//! What kind of model a file holds, told by how it starts.
+//! Detection of the kind of model a file holds, by its first bytes.
 
 use super::archive::Archive;
 use super::source::{Source, read_range};
 use super::{FileError, VERSION};
 use crate::rtin::{HeightField, HeightPrecision};
 
-/// A multiresolution file of any kind.
+/// A multiresolution file of either kind.
 #[derive(Debug)]
 pub enum ModelFile<S> {
     /// The contractions of a mesh.
@@ -14,18 +14,19 @@ pub enum ModelFile<S> {
     HeightField(HeightField),
 }
 
-/// How a file with a height field starts.
+/// Magic bytes of a file that holds a height field.
 const FIELD_MAGIC: &[u8; 8] = b"meshlodh";
-/// Where the checksum is, and what it is of starts.
+/// Offset of the checksum, which covers everything from `LENGTH` on.
 const CHECKSUM: usize = 12;
-/// Where the length of the rest is.
+/// Offset of the length of the body.
 const LENGTH: usize = 16;
 const BODY: usize = 24;
 
 impl<S: Source> ModelFile<S> {
-    /// Reads a height field, or what a file of contractions starts with.
+    /// Opens a multiresolution file: reads a height field whole, or the header and index of
+    /// contractions.
     /// # Errors
-    /// A file that is something else, damaged, or cut off too early.
+    /// A file of another format, a damaged file, or one that ends too early.
     pub fn open(source: S) -> Result<Self, FileError> {
         let length = source.length()?;
         if length < BODY as u64 || read_range(&source, 0, 8, "its first word")? != FIELD_MAGIC {
@@ -49,9 +50,9 @@ impl<S: Source> ModelFile<S> {
 }
 
 impl HeightField {
-    /// The bytes of a `.mlod` file of right triangles.
+    /// Encodes the height field as the bytes of a `.mlod` file.
     /// # Errors
-    /// A bound that is none.
+    /// A precision with an invalid error bound.
     pub fn to_file(&self, precision: HeightPrecision) -> Result<Vec<u8>, FileError> {
         let body = self.to_bytes(precision)?;
         let rest = [&(body.len() as u64).to_le_bytes()[..], &body].concat();

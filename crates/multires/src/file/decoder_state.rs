@@ -1,8 +1,8 @@
-//! What is known of a file while it is read or written: nodes, and the updates that make them.
+//! State shared by decoder and encoder: the nodes decoded so far and the updates that create them.
 
 use glam::Vec3;
 
-use super::exact_positions::Deltas;
+use super::exact_coding::Deltas;
 use super::lattice::Lattice;
 use super::normal_predictor::NormalPredictor;
 use crate::forest::NONE;
@@ -10,15 +10,16 @@ use crate::frame::Frame;
 use crate::implicit::{BaseMesh, DetachedUpdate};
 use crate::pack::ExactPositions;
 
-/// The base and some runs of updates. Those of a file that was read in part are numbered without gaps.
+/// Base mesh and runs of consecutive updates. If only some chunks are loaded, their updates are
+/// renumbered without gaps.
 pub(super) struct DecoderState {
     frame: Frame,
     pub(super) lattice: Lattice,
     pub(super) base: BaseMesh,
     pub(super) updates: Vec<DetachedUpdate>,
-    /// Of the finest mesh's vertices, by the numbers here, where they are kept to the bit.
+    /// Exact positions of vertices of the finest mesh, by local node.
     exact: ExactPositions,
-    /// By run of updates: its first in the file, and its first here.
+    /// First update of each run, by its number in the file and by its local number.
     runs: Vec<[u32; 2]>,
 }
 
@@ -32,12 +33,12 @@ impl DecoderState {
         Self { frame, lattice, base, updates: Vec::new(), exact, runs: Vec::new() }
     }
 
-    /// What comes next are the updates of the file from this one on.
+    /// Starts a run: the updates pushed next have consecutive numbers in the file from `update` on.
     pub(super) fn begin_run(&mut self, update: u32) {
         self.runs.push([update, self.updates.len() as u32]);
     }
 
-    /// The number here of a node of the file; [`NONE`] if it is not here.
+    /// Returns the local number of a node of the file, or [`NONE`] if its update is not loaded.
     pub(super) fn local_node(&self, node: u32) -> u32 {
         let roots = self.root_count();
         let Some(child) = node.checked_sub(roots) else { return node };
@@ -49,73 +50,73 @@ impl DecoderState {
         if update < end { roots + 2 * update + child % 2 } else { NONE }
     }
 
-    /// The update that makes a node; none for a root.
+    /// Returns the update that creates a node, or `None` for a root.
     pub(super) fn creator(&self, node: u32) -> Option<&DetachedUpdate> {
         let child = node.checked_sub(self.root_count());
         child.map(|child| &self.updates[child as usize / 2])
     }
 
-    /// Where a node is.
+    /// Returns the position of a node on the lattice, in stored units.
     pub(super) fn stored_position(&self, node: u32) -> Vec3 {
         let side = node.wrapping_sub(self.root_count()) as usize % 2;
         self.creator(node).map_or_else(|| self.base.positions[node as usize], |u| u.children[side])
     }
 
-    /// The nodes that an update makes.
+    /// Returns the two nodes that an update creates.
     pub(super) fn children(&self, update: usize) -> [u32; 2] {
         let first = self.root_count() + 2 * update as u32;
         [first, first + 1]
     }
 
-    /// Where a node is to the bit, if known.
+    /// Returns the exact position of a node, if it has one.
     pub(super) fn exact_position(&self, node: u32) -> Option<[f64; 3]> {
         self.exact.get(node)
     }
 
-    /// Whether positions of the finest mesh's vertices are kept to the bit.
+    /// Returns true if the vertices of the finest mesh have exact positions.
     pub(super) fn is_lossless(&self) -> bool {
         self.exact.is_lossless()
     }
 
-    /// Adds where a node is to the bit, by the steps from its place, or says why it cannot be; nodes come by
-    /// rising numbers.
+    /// Corrects the predicted position of a node by the delta at index `at` and records the result.
+    /// Nodes must come in ascending order.
     pub(super) fn add_exact_position(
         &mut self,
         node: u32,
-        steps: &Deltas,
+        deltas: &Deltas,
         at: usize,
     ) -> Result<(), &'static str> {
-        let position = steps.position(at, self.predicted_position(node));
-        let position = position.ok_or("a position of it is no number")?;
+        let position = deltas.position(at, self.predicted_position(node));
+        let position = position.ok_or("one of its exact positions is not finite")?;
         let is_near =
-            self.lattice.is_place_of(self.stored_position(node), self.frame.point(position.into()));
+            self.lattice.rounds_to(self.stored_position(node), self.frame.point(position.into()));
         is_near
             .then(|| self.exact.push(node, position))
-            .ok_or("a position of it is not at its place")
+            .ok_or("one of its exact positions is outside the lattice cell of its vertex")
     }
 
-    /// The model so far: its base, its updates, and the positions to the bit.
+    /// Returns the base mesh, the updates and the exact positions.
     pub(super) fn into_parts(self) -> (BaseMesh, Vec<DetachedUpdate>, ExactPositions) {
         (self.base, self.updates, self.exact)
     }
 
-    /// Whether places are numbers in model units.
-    pub(super) fn are_finite(&self, places: &[Vec3]) -> bool {
-        places.iter().all(|&place| self.frame.holds(place))
+    /// Returns true if stored positions are finite in model units.
+    pub(super) fn are_finite(&self, positions: &[Vec3]) -> bool {
+        positions.iter().all(|&position| self.frame.holds(position))
     }
 
-    /// Where a node is by the lattice, in model units.
+    /// Returns the lattice position of a node in model units, the prediction of its exact position.
     pub(super) fn predicted_position(&self, node: u32) -> [f64; 3] {
         self.frame.model(self.stored_position(node).into())
     }
 
-    /// How the surface leans at a node.
+    /// Returns the surface-normal predictor at a node, from the children of the updates above it.
     pub(super) fn normal_predictor(&self, node: u32) -> NormalPredictor {
         let mut node = Some(node);
-        NormalPredictor::of(std::array::from_fn(|_| {
-            let above = self.creator(node?)?;
-            node = Some(above.parent);
-            Some(above.children)
+        NormalPredictor::from_ancestors(std::array::from_fn(|_| {
+            let creator = self.creator(node?)?;
+            node = Some(creator.parent);
+            Some(creator.children)
         }))
     }
 

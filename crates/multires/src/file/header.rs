@@ -1,4 +1,4 @@
-//! What a file starts with: what it holds, and where.
+//! Header and index of a file of contractions.
 
 use glam::{DVec3, Vec3};
 
@@ -9,16 +9,16 @@ use crate::frame::Frame;
 use crate::implicit::ModelInfo;
 use crate::query::Area;
 
-/// What a file holds, without the updates.
+/// Decoded header of a file, with the index of its chunks.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Header {
     pub(super) about: ModelInfo,
     pub(super) lattice: Lattice,
-    /// Whether the vertices of the finest mesh have positions to the bit.
+    /// True if the vertices of the finest mesh have exact positions.
     pub(super) lossless: bool,
-    /// Of the finest mesh, in model units.
+    /// Bounding-box diagonal of the finest mesh, in model units.
     pub(super) diagonal: f64,
-    /// By how much a vertex was moved at most that has no position to the bit, in model units.
+    /// Largest distance that a vertex without an exact position was moved, in model units.
     pub(super) rounding: f64,
     pub(super) roots: u32,
     pub(super) base_faces: u32,
@@ -26,28 +26,29 @@ pub(super) struct Header {
     pub(super) chunks: Vec<ChunkEntry>,
 }
 
-/// A piece of a file.
+/// Length and checksum of a section of the file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Section {
     pub(super) bytes: u32,
     pub(super) checksum: u32,
 }
 
-/// A chunk as the index has it.
+/// Entry of the index for one chunk.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct ChunkEntry {
     pub(super) stored: Section,
     pub(super) updates: u32,
-    /// How many faces its updates bring.
+    /// Number of faces that its updates create.
     pub(super) faces: u32,
-    /// Around all of its updates and all that need any of them; the greatest error.
+    /// Bounds of its updates and of all updates that depend on them, with the greatest error among
+    /// these.
     pub(super) area: Area,
 }
 
 /// Length of the header without its index, in bytes.
 pub(super) const FIXED_LEN: usize = 88;
 const ENTRY_LEN: usize = 44;
-/// Where the checksum is, and what it is of starts.
+/// Offset of the checksum, followed by the offset from which it covers the header.
 const CHECKSUM_AT: usize = 12;
 const BODY_AT: usize = 16;
 
@@ -58,12 +59,12 @@ impl Section {
 }
 
 impl Header {
-    /// How many bytes it takes itself.
+    /// Length of the header and its index, in bytes.
     pub(super) fn len(&self) -> u64 {
         (FIXED_LEN + ENTRY_LEN * self.chunks.len()) as u64
     }
 
-    /// How many updates all chunks have.
+    /// Total number of updates in all chunks.
     pub(super) fn updates(&self) -> usize {
         self.chunks.iter().map(|chunk| chunk.updates as usize).sum()
     }
@@ -87,7 +88,7 @@ impl Header {
         for ChunkEntry { stored, updates, faces, area } in &self.chunks {
             let words = [stored.bytes, stored.checksum, *updates, *faces];
             out.extend(words.iter().flat_map(|word| word.to_le_bytes()));
-            // Far beyond everything, but a number.
+            // Infinite bounds become finite ones beyond everything.
             let [min, max] =
                 [area.min, area.max].map(|x| x.clamp(DVec3::splat(-FAR), DVec3::splat(FAR)));
             let numbers = [-round_up(-min), round_up(max)].map(|corner| corner.to_array());
@@ -99,7 +100,7 @@ impl Header {
         out
     }
 
-    /// How long the header is that starts like this, at least [`FIXED_LEN`] bytes.
+    /// Returns the length of a header, given at least its first [`FIXED_LEN`] bytes.
     pub(super) fn length(start: &[u8]) -> Result<usize, FileError> {
         if !start.starts_with(MAGIC) {
             return Err(FileError::Magic);
@@ -111,7 +112,7 @@ impl Header {
         Ok(FIXED_LEN + ENTRY_LEN * u32_at(start, 36) as usize)
     }
 
-    /// Of as many bytes as [`Header::length`] says.
+    /// Decodes a header of exactly the length that [`Header::length`] returned.
     pub(super) fn from_bytes(bytes: &[u8]) -> Result<Self, FileError> {
         if crc32fast::hash(&bytes[BODY_AT..]) != u32_at(bytes, CHECKSUM_AT) {
             return Err(FileError::Checksum("the header".into()));
@@ -122,14 +123,15 @@ impl Header {
         let bad = |why| FileError::Header(why);
         let this = Self {
             about: ModelInfo {
-                frame: frame.ok_or(bad("its frame is no place"))?,
+                frame: frame
+                    .ok_or(bad("its origin is not finite or its unit is no power of two"))?,
                 error_kind: match bytes[BODY_AT + 2] {
                     0 => ErrorKind::Estimate,
                     1 => ErrorKind::Bound,
-                    _ => return Err(bad("its errors are of no kind")),
+                    _ => return Err(bad("it has an unknown kind of errors")),
                 },
             },
-            lattice: lattice.ok_or(bad("its lattice is none"))?,
+            lattice: lattice.ok_or(bad("the cell size of its lattice is out of range"))?,
             lossless: bytes[BODY_AT + 3] & LOSSLESS != 0,
             diagonal: f64_at(bytes, 72),
             rounding: f64_at(bytes, 80),
@@ -145,27 +147,27 @@ impl Header {
             return Err(bad(UNKNOWN_FLAGS));
         }
         if this.updates() > MAX_UPDATES || this.roots as usize > MAX_UPDATES {
-            return Err(bad("it has more updates than can be numbered"));
+            return Err(bad("it has too many updates"));
         }
         let is_length = |length: f64| length >= 0.0 && length.is_finite();
         if !is_length(this.diagonal) || !is_length(this.rounding) {
-            return Err(bad("its diagonal or its rounding is no length"));
+            return Err(bad("its diagonal or rounding is negative or not finite"));
         }
         let is_area = |a: &Area| a.min.is_finite() && a.max.is_finite() && a.error >= 0.0;
         if !this.chunks.iter().all(|chunk| is_area(&chunk.area)) {
-            return Err(bad("a chunk is nowhere"));
+            return Err(bad("a chunk has invalid bounds"));
         }
         Ok(this)
     }
 }
 
-/// In units: the bounds of areas that have none.
+/// Limit of the bounds written to the index, in stored units.
 const FAR: f64 = 1e30;
-/// The one flag that there is.
+/// The only flag defined so far.
 const LOSSLESS: u8 = 1;
-/// What is wrong with others, here and elsewhere.
-pub(super) const UNKNOWN_FLAGS: &str = "it has flags that this program does not know";
-/// Nodes are numbered up to 2³¹: roots, and two an update.
+/// Message for any other flag.
+pub(super) const UNKNOWN_FLAGS: &str = "it has flags unknown to this program";
+/// Upper limit on updates and on roots, so that roots and two nodes per update stay below 2³¹.
 const MAX_UPDATES: usize = 1 << 29;
 
 impl ChunkEntry {
@@ -184,7 +186,7 @@ impl ChunkEntry {
     }
 }
 
-/// Writes the checksums that fit.
+/// Recomputes the checksums of the header, the base and all chunks that are present.
 pub(super) fn rewrite_checksums(bytes: &mut [u8]) {
     let Some(index) = bytes.get(..FIXED_LEN).and_then(|start| Header::length(start).ok()) else {
         return;
@@ -192,7 +194,7 @@ pub(super) fn rewrite_checksums(bytes: &mut [u8]) {
     if bytes.len() < index {
         return;
     }
-    // Of the base, whose size and checksum are in the header, and of each chunk.
+    // Length and checksum of the base are in the header, those of a chunk in its index entry.
     let mut from = index;
     for at in std::iter::once(28).chain((FIXED_LEN..index).step_by(ENTRY_LEN)) {
         let size = u32_at(bytes, at) as usize;
@@ -213,7 +215,7 @@ fn f64_at(bytes: &[u8], at: usize) -> f64 {
     f64::from_le_bytes(std::array::from_fn(|k| bytes[at + k]))
 }
 
-/// The least of `f32` that are no less.
+/// Rounds each coordinate up to the next `f32`.
 fn round_up(x: DVec3) -> Vec3 {
     let near = x.as_vec3();
     Vec3::select(near.as_dvec3().cmplt(x), near.map(f32::next_up), near)

@@ -1,8 +1,9 @@
-//! The `.mlod` file: a base mesh, and then all updates, the ones that matter most first.
+//! The `.mlod` file: the base mesh, followed by all updates in order of importance.
 //!
-//! Updates stand in chunks. All chunks up to any one are a cut: so a file is good from its start on, and
-//! what has not come yet is only missing. An index near the front tells of each chunk where it is and how
-//! coarse things are without it: a query reads what it needs. docs/formats/mlod.md has the bytes.
+//! Updates are grouped into chunks, and the chunks up to any point form a cut. A truncated file is
+//! therefore usable: it only lacks its finer levels. The index near the front gives the position of
+//! each chunk and the error that remains without it, so a query reads only the chunks it needs.
+//! docs/formats/mlod.md specifies the bytes.
 
 mod archive;
 mod base;
@@ -11,7 +12,7 @@ mod chunk;
 mod chunk_plan;
 mod container;
 mod decoder_state;
-mod exact_positions;
+mod exact_coding;
 mod header;
 mod lattice;
 mod normal_predictor;
@@ -40,59 +41,59 @@ use crate::rtin::FieldBytesError;
 const MAGIC: &[u8; 8] = b"meshlodm";
 const VERSION: u32 = 1;
 
-/// Why a file gives no model.
+/// Reason why a multiresolution file cannot be read or written.
 #[derive(Debug, Error)]
 pub enum FileError {
-    /// It cannot be read.
+    /// The file cannot be read.
     #[error(transparent)]
     Io(#[from] io::Error),
-    /// It starts otherwise.
-    #[error("this is no multiresolution file: it does not start with \"meshlodm\"")]
+    /// The file does not start with the magic bytes.
+    #[error("not a multiresolution file: it does not start with \"meshlodm\"")]
     Magic,
-    /// It was written by a later version.
-    #[error("version {0} of multiresolution files; this program reads version {VERSION}")]
+    /// The file has a version that this program does not support.
+    #[error("file version {0} is not supported: this program reads version {VERSION}")]
     Version(u32),
-    /// It ends before its coarsest mesh does.
-    #[error("the file is cut off at byte {at}, before the end of {what}")]
+    /// The file ends before its base mesh or height field is complete.
+    #[error("the file is truncated at byte {at}, before the end of {what}")]
     Truncated {
-        /// How long it is.
+        /// Length of the file in bytes.
         at: u64,
-        /// What is not there as a whole.
+        /// Section that is incomplete.
         what: &'static str,
     },
-    /// It is not what was written.
-    #[error("the checksum of {0} is wrong: the file is damaged")]
+    /// The checksum of a section does not match its bytes.
+    #[error("the checksum of {0} does not match: the file is damaged")]
     Checksum(String),
-    /// It goes on.
-    #[error("byte {at}: the last chunk is over, the file goes on")]
+    /// Data follows the last chunk.
+    #[error("unexpected data after the last chunk, at byte {at}")]
     TrailingData {
-        /// Where it should end.
+        /// Offset at which the file should end.
         at: u64,
     },
-    /// Its header cannot be.
-    #[error("the header: {0}")]
+    /// The header has an invalid field.
+    #[error("invalid header: {0}")]
     Header(&'static str),
-    /// A piece of it cannot be.
+    /// A section decodes to invalid data.
     #[error("{section}: {why}")]
     Section {
-        /// Which.
+        /// Name of the section.
         section: String,
-        /// What is wrong with it.
+        /// Description of the problem.
         why: String,
     },
-    /// Its meshes would have cracks.
+    /// Some cut of the model would have a crack.
     #[error(transparent)]
     NotCertified(#[from] CertifyError),
-    /// A rounding below 0, beyond the diagonal, or none.
-    #[error("vertices cannot be moved by up to {0}: give at least 0 and at most the diagonal")]
+    /// The requested rounding is negative, larger than the diagonal or not a number.
+    #[error("the rounding must be between 0 and the diagonal of the mesh, not {0}")]
     Rounding(f64),
-    /// There is no model to write.
+    /// The model could not be built from the simplification.
     #[error(transparent)]
     Build(#[from] BuildError),
-    /// A height field that cannot be written, or is none.
+    /// The height field cannot be encoded, or its bytes are invalid.
     #[error(transparent)]
     Field(#[from] FieldBytesError),
-    /// Not the file is wrong but the question.
+    /// The query is invalid; the file itself may be sound.
     #[error(transparent)]
     Query(#[from] QueryError),
 }

@@ -1,4 +1,4 @@
-//! What a file keeps of a forest: the same cuts, in numbers that take less room.
+//! Quantization of a forest for a file: the same cuts, with numbers of fewer bits.
 
 use glam::{DVec3, Vec3};
 
@@ -12,32 +12,34 @@ use crate::implicit::{Implicit, Order};
 use crate::pack::{ERRORS, error9, error16, radius8, radius16};
 use crate::query::SLACK;
 
-/// A forest as a file keeps it.
+/// Forest with quantized positions, balls, errors and levels.
 pub(super) struct Quantized {
     pub(super) forest: Forest,
-    /// By how much a node was moved at most that is not kept to the bit, in stored units.
-    pub(super) moved: f64,
+    /// Largest distance that a node without an exact position was moved, in stored units.
+    pub(super) max_displacement: f64,
 }
 
-/// How far nodes were moved at most, in stored units.
+/// Largest distances that nodes were moved, in stored units.
 #[derive(Clone, Copy, Debug, Default)]
 struct Displacement {
     all: f64,
-    /// Those that are not kept to the bit.
+    /// Among nodes without an exact position.
     rounded: f64,
-    /// Those that are, by what puts them in their places again: from where they were measured.
+    /// Among nodes with one: from the recorded position to the exact one.
     restored: f64,
 }
 
 impl Forest {
-    /// With places on the lattice, balls around that and errors in fewer steps, rounded up and nested
-    /// again; with levels that tell little beside the error; with siblings in an order that tells little.
+    /// Quantizes the forest for a file.
+    ///
+    /// Positions are moved to the lattice. Balls and errors are rounded up to shorter codes and
+    /// nested again. Levels are renumbered, and siblings ordered, so that they compress well.
     /// # Errors
-    /// More nodes than are numbered.
+    /// Too many nodes.
     pub(super) fn quantized(&self, lattice: Lattice) -> Result<Quantized, BuildError> {
         let mut this = self.clone();
         let moved = this.snap_to(lattice)?;
-        // A bound holds for where things are now, and where the input is that is kept to the bit.
+        // A bound must hold between the moved vertices and the exact input.
         let rounding = match self.error_kind {
             ErrorKind::Bound => moved.all.max(moved.restored) + moved.restored,
             ErrorKind::Estimate => 0.0,
@@ -45,7 +47,7 @@ impl Forest {
         for u in 0..this.updates.len() {
             let update = &this.updates[u];
             let ball = this.ball(u);
-            // Its own place may have moved, and what is around.
+            // Both the center of the ball and its contents may have moved.
             let own = ball.radius + 2.0 * moved.all;
             let below = update.children.iter().filter_map(|&child| this.update_of(child));
             let balls = below.map(|below| this.ball(below));
@@ -61,11 +63,11 @@ impl Forest {
         }
         this.orient_siblings();
         this.level_by_error();
-        Ok(Quantized { forest: this, moved: moved.rounded })
+        Ok(Quantized { forest: this, max_displacement: moved.rounded })
     }
 
-    /// Puts all nodes on the lattice, and says how far. Those that are kept to the bit are seen where they
-    /// are; triangles have to have an area with them there.
+    /// Moves all nodes to the lattice and returns by how much. Exact positions take part unrounded
+    /// where triangles are kept from losing their area.
     fn snap_to(&mut self, lattice: Lattice) -> Result<Displacement, BuildError> {
         let order = Order::new(self);
         let mt = Implicit::in_order(self, &order)?;
@@ -84,7 +86,7 @@ impl Forest {
         let mut moved = Displacement::default();
         for (node, place) in nodes().zip(places) {
             let at = if is_free(node) { place.map(|x| x as i32) } else { cell(node) };
-            let (from, to) = (before(node).as_dvec3(), lattice.put(at));
+            let (from, to) = (before(node).as_dvec3(), lattice.position(at));
             let far = from.distance(to.as_dvec3());
             moved.all = moved.all.max(far);
             if is_free(node) {
@@ -97,34 +99,38 @@ impl Forest {
         Ok(moved)
     }
 
-    /// Lets the second of two siblings be the one that is further along, where that is free: then a
-    /// sign less is to be told.
+    /// Swaps siblings where that is free, so that the leading component of the vector between them
+    /// is not negative. Its sign then compresses to nothing.
     fn orient_siblings(&mut self) {
         let parents = self.parents();
         for u in 0..self.updates.len() {
-            let family = self.family(u);
+            let children = self.child_positions(u);
             let mut at = self.node(u);
-            let slant = NormalPredictor::of(std::array::from_fn(|_| {
+            let predictor = NormalPredictor::from_ancestors(std::array::from_fn(|_| {
                 let above = Some(parents[at]).filter(|&up| up != NONE)? as usize;
                 at = self.node(above);
-                Some(self.family(above))
+                Some(self.child_positions(above))
             }));
             let update = &mut self.updates[u];
-            let apart = family[1].as_dvec3() - family[0].as_dvec3();
-            if slant.is_backwards(apart) && update.children_swappable && !update.fused_with_child {
+            let difference = children[1].as_dvec3() - children[0].as_dvec3();
+            if predictor.is_lead_negative(difference)
+                && update.children_swappable
+                && !update.fused_with_child
+            {
                 update.children.reverse();
                 update.wings.reverse();
             }
         }
     }
 
-    /// Where the children of an update are.
-    fn family(&self, update: usize) -> [Vec3; 2] {
+    /// Returns the positions of an update's children.
+    fn child_positions(&self, update: usize) -> [Vec3; 2] {
         self.updates[update].children.map(|child| self.positions[child as usize].into())
     }
 
-    /// Counts levels within each step of the error, and the steps one above the other: what needs
-    /// something has no greater error. Leaves them as they are if that takes too many.
+    /// Renumbers levels from the errors: the ranges of levels for different errors are stacked,
+    /// with the greatest errors on top. Dependencies hold because an update never has a greater
+    /// error than one it depends on. If this takes too many levels, they stay unchanged.
     fn level_by_error(&mut self) {
         let step = |update: usize| error9(self.updates[update].error) as usize;
         let mut heights: Vec<u16> = Vec::with_capacity(self.updates.len());
@@ -155,10 +161,10 @@ fn has_area([a, b, c]: [DVec3; 3]) -> bool {
     (b - a).cross(c - a).length_squared() > 0.0
 }
 
-/// How many octaves there are.
+/// Number of powers of two that a [`Length16`] covers.
 pub(super) const OCTAVES: usize = 32;
 
-/// The power of two that an error is in.
+/// Returns the exponent of an error.
 pub(super) fn octave(error: Length16) -> usize {
     (usize::from(error.0) * OCTAVES) >> u16::BITS
 }

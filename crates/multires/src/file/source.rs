@@ -1,21 +1,21 @@
-//! Where the bytes of a file are.
+//! Random access to the bytes of a file.
 
 use std::fs::File;
 use std::io::{self, Read};
 
 use super::FileError;
 
-/// Bytes that can be read from any place on, by several at once: a file, a piece of memory, a range
-/// request.
+/// Bytes that several threads can read at any offset: a file, a buffer in memory, or a server that
+/// answers range requests.
 pub trait Source {
-    /// How many there are.
+    /// Returns the total number of bytes.
     /// # Errors
-    /// Of the place where they are.
+    /// Any I/O error of the underlying storage.
     fn length(&self) -> io::Result<u64>;
 
-    /// Fills `bytes` with those from `at` on.
+    /// Fills `bytes` with the bytes from offset `at` on.
     /// # Errors
-    /// Fewer bytes, or of the place where they are.
+    /// Fewer bytes than requested, or any I/O error of the underlying storage.
     fn read_at(&self, at: u64, bytes: &mut [u8]) -> io::Result<()>;
 }
 
@@ -56,7 +56,7 @@ impl Source for Vec<u8> {
     }
 }
 
-/// So many bytes, which are not asked for before they are known to be there.
+/// Reads `count` bytes, and allocates nothing before it knows that they exist.
 pub(super) fn read_range(
     source: &impl Source,
     at: u64,

@@ -1,19 +1,21 @@
-//! Numbers as streams of bytes that compress well: like with like.
+//! Streams of bytes and numbers that compress well, because each holds values of one kind.
 
 use std::io::{self, Read, Write};
 use std::ops::{BitOrAssign, Shl};
 
 use crate::pack::{unzigzag, zigzag};
 
-/// How hard to press: beyond this the dragon takes twice the time for half a percent.
+/// Compression level of zstandard. On the dragon, higher levels take twice the time and save half a
+/// percent.
 const COMPRESSION_LEVEL: i32 = 9;
-/// At most so many numbers are read from a byte, so that a short file cannot fill the memory; real ones
-/// have up to 20.
+/// Upper limit on the numbers read per compressed byte, so that a short file cannot exhaust the
+/// memory. Real files have up to 20.
 const MAX_NUMBERS_PER_BYTE: usize = 64;
-/// What a file may take that has more: a frame without content, and how long that is.
+/// Magic number of a skippable zstandard frame, which pads data that compresses below that limit.
 const SKIPPABLE_FRAME: [u8; 4] = 0x184D_2A50u32.to_le_bytes();
 
-/// Streams one after the other, each in blocks of its own, so that each has its own code.
+/// Compresses streams one after the other. Each is flushed, so it gets blocks and entropy codes of
+/// its own.
 pub(super) struct Packer {
     encoder: zstd::Encoder<'static, Vec<u8>>,
     numbers: usize,
@@ -26,15 +28,15 @@ impl Packer {
         Ok(Self { encoder, numbers: 0 })
     }
 
-    /// A stream of bytes, whose number the reader must know.
+    /// Appends a stream of bytes. Its length is not stored.
     pub(super) fn bytes(&mut self, bytes: &[u8]) -> io::Result<()> {
         self.numbers += bytes.len();
         self.encoder.write_all(bytes)?;
         self.encoder.flush()
     }
 
-    /// A stream of numbers: all least bytes, then all next ones. Ahead stands how many bytes the
-    /// greatest takes.
+    /// Appends a stream of numbers by byte planes, the lowest bytes first, after a byte with the
+    /// number of planes.
     pub(super) fn numbers<N: Copy + Into<u64>>(&mut self, numbers: &[N]) -> io::Result<()> {
         let most = numbers.iter().map(|&n| n.into()).max().unwrap_or(0);
         let planes = (u64::BITS - most.leading_zeros()).div_ceil(8);
@@ -47,7 +49,7 @@ impl Packer {
         Ok(())
     }
 
-    /// The same of numbers with a sign.
+    /// Appends a stream of signed numbers, mapped to unsigned ones by [`zigzag`].
     pub(super) fn signed(&mut self, numbers: impl Iterator<Item = i32>) -> io::Result<()> {
         let folded: Vec<u32> = numbers.map(|n| zigzag(n.into()) as u32).collect();
         self.numbers(&folded)
@@ -66,10 +68,10 @@ impl Packer {
     }
 }
 
-/// Reads what a [`Packer`] wrote. What it gives is never larger than was asked for.
+/// Reads the streams of a [`Packer`], and never allocates more than was asked for.
 pub(super) struct Unpacker<'b> {
     decoder: zstd::Decoder<'static, &'b [u8]>,
-    /// How many more numbers there may be.
+    /// Number of further values that the input may hold.
     left: usize,
 }
 
@@ -92,7 +94,7 @@ impl<'b> Unpacker<'b> {
         Ok(())
     }
 
-    /// Numbers of four bytes, or of eight.
+    /// Reads a stream of `count` numbers of type `u32` or `u64`.
     pub(super) fn numbers<N>(&mut self, count: usize) -> io::Result<Vec<N>>
     where
         N: Copy + From<u8> + BitOrAssign + Shl<usize, Output = N>,
@@ -119,7 +121,7 @@ impl<'b> Unpacker<'b> {
         Ok(self.numbers(count)?.into_iter().map(unfold).collect())
     }
 
-    /// Whether there is nothing more.
+    /// Returns true if all data has been read.
     pub(super) fn is_at_end(&mut self) -> io::Result<bool> {
         Ok(self.decoder.read(&mut [0])? == 0)
     }

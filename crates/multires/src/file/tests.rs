@@ -1,4 +1,4 @@
-//! What comes back of a file: of a whole one, of its start, of what a query needs, and of a damaged one.
+//! Round trips of whole files, prefixes and queries, and the refusal of damaged files.
 
 mod lossless;
 mod wrong;
@@ -12,12 +12,12 @@ use super::*;
 use crate::tests::walks::{Dice, each_by, forest, query, topology};
 use crate::{Cut, Forest, Implicit, Level, Model, Query, UpdateLimits};
 
-/// With chunks so small that a little mesh has many.
+/// Options with chunks so small that even a small mesh has many.
 fn small() -> Storage {
     Storage { updates_per_chunk: 20, ..Storage::default() }
 }
 
-/// Contractions of edges, and of faces.
+/// Runs a check on edge contractions and on face contractions.
 fn each(check: impl FnMut(&str, &Mesh, &Forest)) {
     each_by(&[Method::Qem, Method::LeeJang], check);
 }
@@ -26,13 +26,13 @@ fn bytes(forest: &Forest) -> Vec<u8> {
     Archive::write(forest, &small()).unwrap().0
 }
 
-/// A mesh by where its corners are, whatever their numbers.
+/// Faces of a level by the positions of their corners, independent of numbering.
 fn by_place(level: &Level) -> Vec<[[u32; 3]; 3]> {
     let corner = |v: u32| level.positions[v as usize].map(f32::to_bits);
     in_order(level.faces.iter().map(|face| face.map(corner)))
 }
 
-/// Faces in order, each from its least corner.
+/// Sorts faces, each rotated to start at its least corner.
 fn in_order<C: Ord>(faces: impl Iterator<Item = [C; 3]>) -> Vec<[C; 3]> {
     let mut faces: Vec<_> = faces.collect();
     for face in &mut faces {
@@ -70,7 +70,7 @@ fn what_was_read_can_be_narrow_and_answers_alike() {
         let narrow = read.compacted().unwrap_or_else(|| panic!("{what}"));
         assert_eq!(narrow.certify(), read.certify(), "{what}");
         let fewer = (40 - 22) * read.update_count() + 6 * read.root_count();
-        // A table of 512 least levels, and where roots are.
+        // Allows for a table of 512 least levels and for the roots' positions.
         assert!(narrow.bytes() <= read.bytes() - fewer + 1024 + 8 * read.root_count(), "{what}");
         let [mut was, mut is] = [&read, &narrow].map(Cut::new);
         let mut dice = Dice(23);
@@ -152,7 +152,8 @@ fn every_start_of_a_file_is_a_cut() {
     });
 }
 
-/// With tens of chunks a band: an answer that stopped within one would be fine on one side only.
+/// With tens of chunks per band: an answer that stopped within a band would be fine on one side
+/// only.
 #[test]
 fn as_much_is_read_as_it_takes() {
     let forest = forest(&samples::knot(4000), Method::Qem);
@@ -167,7 +168,7 @@ fn as_much_is_read_as_it_takes() {
         assert_eq!(part.level.faces.len(), whole.faces.len());
         let least = |level: &Level, mt: &Implicit| mt.least_error_above(&level.nodes);
         let read = archive.read_chunks(part.chunks).unwrap().0;
-        // Which of those with equal errors are made is open, but not how small errors are.
+        // Updates with equal errors may be applied in any order, but their error is determined.
         let of_part = least(&part.level, Model::from_implicit(&read).unwrap().implicit());
         assert_eq!(of_part, least(whole, model.implicit()), "{faces}");
         spared += archive.chunk_count() - part.chunks;
@@ -202,7 +203,7 @@ fn what_is_damaged_is_refused() {
     for at in 0..bytes.len() {
         let mut wrong = bytes.clone();
         wrong[at] ^= 1 << (at % 8);
-        assert!(open(&wrong).is_err(), "byte {at} may be another");
+        assert!(open(&wrong).is_err(), "a change of byte {at} is not detected");
     }
     let mut longer = bytes.clone();
     longer.push(0);
@@ -213,7 +214,7 @@ fn what_is_damaged_is_refused() {
     }
 }
 
-/// What has the right checksums and cannot be is refused too, or gives sound meshes.
+/// Malformed data with matching checksums is refused or gives sound meshes.
 #[test]
 fn what_is_made_to_mislead_does_no_harm() {
     let mesh: Mesh = samples::terrain(200);
@@ -243,7 +244,7 @@ fn what_is_made_to_mislead_does_no_harm() {
     assert!(refused > 500 && passed > 100, "{refused} refused, {passed} passed");
 }
 
-/// On a lattice so coarse that half the triangles would have none.
+/// On a lattice so coarse that half of the triangles would be degenerate.
 #[test]
 fn no_triangle_loses_its_area() {
     let mesh = samples::knot(4000);

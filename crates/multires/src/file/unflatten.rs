@@ -1,29 +1,32 @@
-//! Keeps triangles from collapsing on the lattice: what is smaller than a cell would have no area.
+//! Repair of triangles that rounding to the lattice has collapsed to a line or a point.
 
 use crate::implicit::Implicit;
 
-/// In cells of the lattice: whole numbers below 2²⁵, so that nothing is rounded here, but for what is kept to
-/// the bit. With such a corner products may be rounded: a sliver that is taken for flat moves a vertex by a
-/// few cells for nothing, and what is flat and taken for a sliver has an area for whoever computes it so.
+/// Position in cells of the lattice.
+///
+/// Coordinates are whole numbers below 2²⁵, for which the arithmetic here is exact. Only an exact
+/// position of the input has others. With such a corner, a sliver may be taken for degenerate,
+/// which moves a vertex by a few cells without need, or a degenerate triangle for a sliver, which
+/// then has an area for anyone who computes it in the same way.
 type CellPosition = [f64; 3];
 
-/// Moves of so many cells along each axis are tried, the least first.
+/// Offsets tried along each axis, in cells.
 const OFFSETS: [f64; 5] = [-2.0, -1.0, 0.0, 1.0, 2.0];
-/// How often all flat triangles are gone through.
+/// Upper limit on the passes over all movable nodes.
 const MAX_ROUNDS: usize = 16;
 
-/// Moves nodes from the cells they were rounded to, so that no triangle of any cut is without area there
-/// that has one without rounding; as far as a few cells do.
+/// Moves nodes by up to a few cells so that, where possible, no triangle of any cut loses its area
+/// to rounding.
 ///
-/// `places` are those of all nodes; `is_free` says which may be moved, `had_area` whether a triangle is to
-/// have one.
+/// `places` holds the positions of all nodes, `is_free` tells which of them may be moved, and
+/// `had_area` whether a triangle had an area before rounding.
 pub(super) fn unflatten(
     mt: &Implicit,
     places: &mut [CellPosition],
     is_free: impl Fn(u32) -> bool,
     had_area: impl Fn([u32; 3]) -> bool,
 ) {
-    // To keep them takes less time than to make them once more.
+    // Storing the triangles is faster than enumerating them twice.
     let mut all = Vec::new();
     mt.each_triangle(|nodes| all.push(nodes));
     let mut is_movable = vec![false; places.len()];
@@ -41,7 +44,7 @@ pub(super) fn unflatten(
     solve(&at, places);
 }
 
-/// Moves nodes one by one while that makes the triangles at them less flat.
+/// Moves nodes one by one until no move makes their triangles less degenerate.
 fn solve(at: &[(u32, [u32; 3])], places: &mut [CellPosition]) {
     let movable: Vec<MovableNode<'_>> = at
         .chunk_by(|a, b| a.0 == b.0)
@@ -56,14 +59,15 @@ fn solve(at: &[(u32, [u32; 3])], places: &mut [CellPosition]) {
     }
 }
 
-/// A node that may move, with all triangles at it.
+/// Node that may move, with all its triangles.
 struct MovableNode<'t> {
     home: CellPosition,
     triangles: &'t [(u32, [u32; 3])],
 }
 
 impl MovableNode<'_> {
-    /// Moves the node to the closest place where its triangles are least flat, if that is less than now.
+    /// Moves the node to the closest position at which its triangles are least degenerate. Returns
+    /// true if that is an improvement.
     fn improve(&self, offsets: &[CellPosition], places: &mut [CellPosition]) -> bool {
         let node = self.triangles[0].0 as usize;
         let (mut best, mut least) = (places[node], self.flatness(places, u32::MAX));
@@ -82,7 +86,7 @@ impl MovableNode<'_> {
         least < before
     }
 
-    /// How flat all triangles are; no more is added up than `most`.
+    /// Sums the degeneracy of all triangles, and stops once it reaches `most`.
     fn flatness(&self, places: &[CellPosition], most: u32) -> u32 {
         let mut all = 0;
         for (_, nodes) in self.triangles {
@@ -95,7 +99,7 @@ impl MovableNode<'_> {
     }
 }
 
-/// All moves, the least first.
+/// Returns all combinations of offsets, shortest first.
 fn offsets() -> Vec<CellPosition> {
     let all = OFFSETS.into_iter().flat_map(|x| OFFSETS.map(|y| [x, y]));
     let mut all: Vec<CellPosition> = all.flat_map(|[x, y]| OFFSETS.map(|z| [x, y, z])).collect();
@@ -104,7 +108,8 @@ fn offsets() -> Vec<CellPosition> {
     all
 }
 
-/// 0 for a triangle with an area, 1 where its corners are on a line, more where some are at one place.
+/// Degree of degeneracy: 0 for a triangle with an area, 1 if its corners are collinear, more if
+/// some coincide.
 fn flatness([a, b, c]: [CellPosition; 3]) -> u32 {
     match [a == b, b == c, c == a].into_iter().filter(|&same| same).count() {
         0 => u32::from(are_collinear([a, b, c])),

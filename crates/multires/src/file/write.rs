@@ -1,4 +1,4 @@
-//! Writes a model as a file.
+//! Encoding of a forest as a `.mlod` file.
 
 use std::io;
 
@@ -15,15 +15,15 @@ use crate::cut::Certificate;
 use crate::forest::Forest;
 use crate::implicit::{Dependencies, DetachedUpdate, Implicit, ModelInfo, Order, SplitRule};
 
-/// How a model is stored.
+/// Options for writing a `.mlod` file.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Storage {
-    /// By how much a vertex may be moved, in model units; 0.005 % of the diagonal if nothing is said. Those
-    /// of a [lossless](Forest::lossless) forest that are the input's are not moved; others by 0.002 % if
-    /// nothing is said.
+    /// Largest distance that a vertex may be moved, in model units. The default is 0.005 % of the
+    /// diagonal; for a [lossless](Forest::lossless) forest it is 0.002 %, and vertices of the input
+    /// are not moved at all.
     pub rounding: Option<f64>,
-    /// About how many updates a chunk has: more are a little smaller on disk, fewer are read in smaller
-    /// parts. At least 1.
+    /// Approximate number of updates in a chunk, at least 1. Larger chunks make the file a little
+    /// smaller, smaller ones let a query read less.
     pub updates_per_chunk: usize,
 }
 
@@ -33,14 +33,15 @@ impl Default for Storage {
     }
 }
 
-/// Of the diagonal.
+/// Default rounding, as a fraction of the diagonal.
 const ROUNDING: f64 = 5e-5;
-/// The same for what is not kept to the bit where the rest is: fine levels are not to be off by more than
-/// they say, and what is read can be [narrow](Implicit::narrowed). The dragon takes 11.1 bytes a vertex at
+/// Default rounding of a lossless forest, for vertices without an exact position. It is finer, so
+/// that fine levels stay within their stated errors; a model read back can still be
+/// [packed](Implicit::compacted) into 22 bytes a vertex. The dragon takes 11.1 bytes a vertex at
 /// `ROUNDING`, 11.6 at this, 12.4 at a quarter of it and 14.0 in single precision.
 const LOSSLESS_ROUNDING: f64 = 2e-5;
 
-/// What [`Archive::write`](super::Archive::write) gives.
+/// Encodes a forest; see [`Archive::write`](super::Archive::write).
 pub(super) fn write(
     forest: &Forest,
     storage: &Storage,
@@ -50,50 +51,58 @@ pub(super) fn write(
         return Err(FileError::Rounding(rounding));
     }
     let lattice = lattice(forest, storage, diagonal);
-    let Quantized { forest, moved } = forest.quantized(lattice)?;
+    let Quantized { forest, max_displacement } = forest.quantized(lattice)?;
     let order = Order::new(&forest);
     let mt = Implicit::in_order(&forest, &order)?;
-    let (certificate, packed) = rayon::join(
+    let (certificate, sections) = rayon::join(
         || mt.certify(),
         || {
             let links = Dependencies::in_order(&forest, &order, SplitRule::Strict);
-            pack(&mt, &plan_chunks(&mt, &links, storage.updates_per_chunk.max(1)), lattice)
+            encode_sections(
+                &mt,
+                &plan_chunks(&mt, &links, storage.updates_per_chunk.max(1)),
+                lattice,
+            )
         },
     );
-    let (certificate, packed) = (certificate?, packed?);
+    let (certificate, sections) = (certificate?, sections?);
     let header = Header {
         about: ModelInfo { frame: forest.frame, error_kind: forest.error_kind },
         lattice,
         lossless: forest.exact.is_lossless(),
         diagonal,
-        rounding: forest.frame.length_of_model(moved),
+        rounding: forest.frame.length_of_model(max_displacement),
         roots: mt.root_count() as u32,
         base_faces: mt.base_faces() as u32,
-        base: Section::of(&packed.base),
-        chunks: packed.chunks,
+        base: Section::of(&sections.base),
+        chunks: sections.chunks,
     };
-    let bytes = [header.to_bytes(), packed.base, packed.bodies.concat()].concat();
+    let bytes = [header.to_bytes(), sections.base, sections.bodies.concat()].concat();
     Ok((bytes, certificate))
 }
 
-/// All that stands behind the header, and the index.
-struct Packed {
+/// Encoded sections, with the index of the chunks.
+struct EncodedSections {
     base: Vec<u8>,
     chunks: Vec<ChunkEntry>,
     bodies: Vec<Vec<u8>>,
 }
 
-fn pack(mt: &Implicit, plan: &ChunkPlan, lattice: Lattice) -> io::Result<Packed> {
+fn encode_sections(
+    mt: &Implicit,
+    plan: &ChunkPlan,
+    lattice: Lattice,
+) -> io::Result<EncodedSections> {
     let nodes = (0..mt.root_count() as u32)
         .chain(plan.order.iter().flat_map(|&update| mt.children(update)));
     let exact = mt.exact().select(nodes);
     let mut state = DecoderState::new(*mt.frame(), lattice, mt.base_mesh(), exact);
     state.begin_run(0);
     state.updates.extend(plan.order.iter().map(|&update| {
-        let loose = mt.detached(update);
-        let number = |node| file_node(mt, &plan.place, node);
-        let non_fan = loose.non_fan.map(|non_fan| Box::new(non_fan.renumbered(number)));
-        DetachedUpdate { parent: number(loose.parent), non_fan, ..loose }
+        let update = mt.detached(update);
+        let number = |node| file_node(mt, &plan.file_index, node);
+        let non_fan = update.non_fan.map(|non_fan| Box::new(non_fan.renumbered(number)));
+        DetachedUpdate { parent: number(update.parent), non_fan, ..update }
     }));
     let write = |chunk: &PlannedChunk| {
         let body = chunk::write(&state, chunk.updates.clone())?;
@@ -108,17 +117,18 @@ fn pack(mt: &Implicit, plan: &ChunkPlan, lattice: Lattice) -> io::Result<Packed>
     };
     let written: io::Result<Vec<_>> = plan.chunks.par_iter().map(write).collect();
     let (chunks, bodies) = written?.into_iter().unzip();
-    Ok(Packed { base: base::write(&state)?, chunks, bodies })
+    Ok(EncodedSections { base: base::write(&state)?, chunks, bodies })
 }
 
-/// The coarsest that is fine enough for a mesh of this diagonal.
+/// Returns the coarsest lattice that meets the requested rounding, or the default one for this
+/// diagonal.
 pub(super) fn lattice(forest: &Forest, storage: &Storage, diagonal: f64) -> Lattice {
     let part = if forest.exact.is_lossless() { LOSSLESS_ROUNDING } else { ROUNDING };
     let most = storage.rounding.unwrap_or(part * diagonal);
     Lattice::within(forest.frame.length(most))
 }
 
-/// Of the finest mesh, in model units.
+/// Returns the bounding-box diagonal of the finest mesh, in model units.
 pub(super) fn diagonal(forest: &Forest) -> f64 {
     let leaves = forest.faces.iter().flatten().map(|&leaf| forest.positions[leaf as usize]);
     let places: Vec<_> = leaves.map(|p| p.map(f64::from)).collect();

@@ -1,4 +1,4 @@
-//! What is kept to the bit comes back so, by every way there is.
+//! Exact positions survive every way of reading and querying a model.
 
 use std::collections::BTreeSet;
 
@@ -10,10 +10,10 @@ use meshlod_simplify::{Method, Options};
 use super::{Dice, in_order, query, small};
 use crate::{Archive, Cut, Explicit, Focus, Forest, Implicit, Level, Model, Query, Storage};
 
-/// Meshes with positions that no `f32` holds: far away, large, small, and hardly there.
+/// Meshes with positions that no `f32` represents: far away, huge, tiny and subnormal.
 fn meshes() -> Vec<(&'static str, Mesh)> {
     let far = |x: f64, k: usize| [431_234.1, 5_412_345.7, 0.3][k] + 123.4567 * x;
-    // Signs of nothing, and what is close to it.
+    // Negative zeros and subnormal numbers.
     let fine = |x: f64, k: usize| match (k, x) {
         (2, _) if x.abs() < 0.1 => -0.0 * x,
         (0, _) if x.abs() < 0.1 => x * 1e-310,
@@ -57,7 +57,7 @@ fn bits(position: [f64; 3]) -> Bits {
     position.map(f64::to_bits)
 }
 
-/// Faces by the bits of their corners.
+/// Faces by the bits of their corners' positions.
 fn by_bits(mesh: &Mesh) -> Vec<[Bits; 3]> {
     let corners = |face: &[VertexId; 3]| face.map(|v| mesh.positions[v.index()]);
     in_order(mesh.faces.iter().map(|face| corners(face).map(bits)))
@@ -79,7 +79,7 @@ fn the_finest_level_is_the_input() {
         let within = cut.level().within(&Focus::Everything).unwrap();
         assert!(is_input(&within), "{what}: within");
         assert!(is_input(&cut.level_within(&Focus::Everything).unwrap()), "{what}: cut within");
-        // Some have a vertex too far out for that.
+        // Some models have a vertex too far out for that.
         if let Some(narrow) = read.compacted() {
             assert!(is_input(&Cut::at(&narrow, &all).unwrap().level()), "{what}: narrow");
             narrow_ones += 1;
@@ -154,7 +154,7 @@ fn every_start_of_a_lossless_file_is_a_cut() {
     });
 }
 
-/// Whoever asks at a vertex of the input finds its faces, though places are rounded.
+/// A point query at a vertex of the input finds its faces, although stored positions are rounded.
 #[test]
 fn a_vertex_is_found_where_it_is() {
     each(|what, mesh, forest, archive| {
@@ -177,15 +177,15 @@ fn a_vertex_is_found_where_it_is() {
                 let cut = Cut::at(model, &query).unwrap();
                 assert!(has_all(&cut.level_within(&focus).unwrap()), "{what}: {vertex:?} {way}");
                 let found = cut.locate(vertex).unwrap();
-                // What comes back from stored units may lose the last bits.
+                // Conversion from stored units may lose the last bits.
                 assert!(found.distance <= 1e-15 * mesh.bounds().diagonal(), "{what}: {found:?}");
             }
         }
     });
 }
 
-/// Else whoever asks at a vertex would not be led to it. So small, single precision moves vertices by as
-/// much as balls have room.
+/// Otherwise a point query at a vertex would not reach it. At this size, rounding to single
+/// precision moves vertices by as much as the balls have slack.
 #[test]
 fn balls_are_around_vertices_where_they_are() {
     let mut mesh = placed(samples::sphere(2000), |x, k| 0.3 + 1e-4 * x * [1.0, 0.9, 1.1][k]);
@@ -206,7 +206,7 @@ fn balls_are_around_vertices_where_they_are() {
     }
 }
 
-/// A level tells of each vertex by its node, in whatever order.
+/// A level identifies each vertex by its node, in whatever order.
 #[test]
 fn vertices_of_a_level_can_change_places() {
     each(|what, mesh, _, archive| {
@@ -232,7 +232,7 @@ fn what_is_not_of_the_input_moves_as_little_as_asked() {
     }
 }
 
-/// On a lattice so coarse that what replaces the input's vertices would fall on each other.
+/// On a lattice so coarse that the vertices replacing the input's would coincide.
 #[test]
 fn no_triangle_beside_the_input_loses_its_area() {
     let mesh = samples::knot(4000);
@@ -259,7 +259,7 @@ fn a_lossless_file_that_is_damaged_is_refused() {
         let mut wrong = bytes.clone();
         wrong[at] ^= 1 << (at % 8);
         let open = |bytes| Archive::open(bytes).and_then(|archive| archive.read());
-        assert!(open(wrong.clone()).is_err(), "byte {at} may be another");
+        assert!(open(wrong.clone()).is_err(), "a change of byte {at} is not detected");
         Archive::rewrite_checksums(&mut wrong);
         match Archive::open(wrong).and_then(|archive| {
             archive.extract(&query(&mut dice, &mesh))?;

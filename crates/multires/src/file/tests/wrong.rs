@@ -1,4 +1,4 @@
-//! Files with the right checksums that say what must not be.
+//! Malformed files with matching checksums.
 
 use meshlod_fixtures as fixtures;
 use meshlod_mesh::Mesh;
@@ -9,8 +9,8 @@ use super::small;
 use crate::pack::ExactPositions;
 use crate::{Archive, Forest};
 
-/// Where the header has the length of the base, and where the index starts, which has that of each chunk;
-/// how long an entry is.
+/// Offset of the base's length in the header, offset of the index, and length of its entries, which
+/// start with the length of a chunk.
 const BASE: usize = 28;
 const INDEX: usize = 88;
 const ENTRY_LEN: usize = 44;
@@ -27,7 +27,7 @@ fn lossy(mesh: &Mesh) -> Forest {
     Forest::new(mesh, &Options::default()).unwrap()
 }
 
-/// Why a file cannot be read.
+/// Returns the message with which a file is refused.
 fn refusal(bytes: Vec<u8>) -> String {
     let read = Archive::open(bytes).and_then(|archive| archive.read());
     let why = read.map(|_| ()).unwrap_err().to_string();
@@ -35,7 +35,7 @@ fn refusal(bytes: Vec<u8>) -> String {
     why
 }
 
-/// A file with a piece that says something else: the base if there is no number, or that chunk.
+/// Returns a file with the contents of one section changed: a chunk, or the base for `None`.
 fn changed(bytes: &[u8], chunk: Option<usize>, change: impl FnOnce(&mut Vec<u8>)) -> Vec<u8> {
     let archive = Archive::open(bytes.to_vec()).unwrap();
     let ends: Vec<usize> = archive.chunk_ends().map(|end| end as usize).collect();
@@ -52,7 +52,7 @@ fn changed(bytes: &[u8], chunk: Option<usize>, change: impl FnOnce(&mut Vec<u8>)
     all
 }
 
-/// The first flag behind streams of so many numbers each.
+/// Returns the first flag byte after streams with the given numbers of elements.
 fn first_flag<'c>(content: &'c mut [u8], numbers: &[usize]) -> &'c mut u8 {
     let at = numbers.iter().fold(0, |at, count| at + 1 + usize::from(content[at]) * count);
     &mut content[at]
@@ -68,7 +68,7 @@ fn flags_that_are_not_known_are_refused() {
         for flag in flags {
             let wrong = changed(bytes, Some(0), |all| *first_flag(all, &[updates]) |= flag);
             let why = refusal(wrong);
-            assert!(why.contains("update 0: it has flags"), "{flag}: {why}");
+            assert!(why.contains("update 0 is invalid: it has flags"), "{flag}: {why}");
         }
         assert!(Archive::open(changed(bytes, Some(0), |_| ())).unwrap().read().is_ok());
     }
@@ -80,7 +80,7 @@ fn flags_that_are_not_known_are_refused() {
     let mut wrong = lossy;
     wrong[19] = 2;
     Archive::rewrite_checksums(&mut wrong);
-    assert!(refusal(wrong).contains("the header: it has flags"));
+    assert!(refusal(wrong).contains("invalid header: it has flags"));
 }
 
 #[test]
@@ -95,9 +95,9 @@ fn every_vertex_of_the_finest_mesh_has_its_position() {
         let why = archive.read().unwrap_err().to_string();
         assert_eq!(
             why,
-            "the finest mesh: 1 of its vertices have no position to the bit in a lossless file"
+            "the finest mesh: 1 of its vertices lack the exact position of a lossless file"
         );
-        // Nobody can tell before the end.
+        // This cannot be known before the last chunk.
         assert!(archive.read_chunks(archive.chunk_count() - 1).is_ok());
     }
 }
@@ -115,7 +115,8 @@ fn a_position_is_where_its_place_is() {
         }
         forest.exact = exact;
         let why = refusal(written(&forest));
-        assert!(why.ends_with("a position of it is not at its place"), "{off}: {why}");
+        let expected = "one of its exact positions is outside the lattice cell of its vertex";
+        assert!(why.ends_with(expected), "{off}: {why}");
     }
 }
 
@@ -126,6 +127,6 @@ fn places_are_numbers() {
         wrong[40..48].copy_from_slice(&f64::MAX.to_le_bytes());
         wrong[64..72].copy_from_slice(&1000f64.exp2().to_le_bytes());
         Archive::rewrite_checksums(&mut wrong);
-        assert!(refusal(wrong).contains("out of reach"));
+        assert!(refusal(wrong).contains("out of range"));
     }
 }

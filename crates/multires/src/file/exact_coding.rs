@@ -1,26 +1,27 @@
-//! Positions to the bit: each coordinate by how many numbers lie between it and a guess.
+//! Lossless coding of `f64` positions: each coordinate as its distance from a prediction, counted
+//! in representable numbers.
 //!
-//! Numbers are counted without the last bits that none of a list has: what was once single precision is
-//! counted in that.
+//! Trailing bits that are zero in all coordinates of a list are left out of the count, so values
+//! that were single precision once are counted in steps of that.
 
 use std::io;
 
 use super::streams::{Packer, Unpacker};
 use crate::pack::{unzigzag, zigzag};
 
-/// By axis, how far positions are from their guesses.
+/// Distances of positions from their predictions, by axis.
 pub(super) struct Deltas([AxisDeltas; 3]);
 
 struct AxisDeltas {
-    /// So many last bits are 0.
+    /// Number of trailing bits that are zero in every coordinate of this axis.
     zero_bits: u8,
     deltas: Vec<i64>,
 }
 
-/// All bits of a number but its sign.
+/// All bits of an `f64` but its sign.
 const MAGNITUDE: i64 = i64::MAX;
 
-/// Writes positions, each beside its guess.
+/// Encodes pairs of an exact position and its prediction.
 pub(super) fn write(pairs: &[[[f64; 3]; 2]], packer: &mut Packer) -> io::Result<()> {
     for k in 0..3 {
         // The shift drops the sign bit; 0 has 63 zero bits.
@@ -36,7 +37,7 @@ pub(super) fn write(pairs: &[[[f64; 3]; 2]], packer: &mut Packer) -> io::Result<
 }
 
 impl Deltas {
-    /// Of so many positions.
+    /// Decodes the deltas of `count` positions.
     pub(super) fn read(count: usize, input: &mut Unpacker<'_>) -> io::Result<Self> {
         let mut axis = || {
             let zero_bits = input.bytes(1)?[0];
@@ -49,7 +50,7 @@ impl Deltas {
         Ok(Self([axis()?, axis()?, axis()?]))
     }
 
-    /// One of the positions; `None` where it is no number.
+    /// Returns the position at index `at`, given its prediction, or `None` if it is not finite.
     pub(super) fn position(&self, at: usize, guess: [f64; 3]) -> Option<[f64; 3]> {
         let coordinate = |k: usize| {
             let AxisDeltas { zero_bits, deltas } = &self.0[k];
@@ -59,14 +60,15 @@ impl Deltas {
     }
 }
 
-/// The place of a number among those without so many last bits, towards 0; what is below 0 from -1 on.
+/// Rank of a number among those with the given number of trailing zero bits, rounding towards 0.
+/// Negative numbers, −0 included, have the ranks from −1 down.
 fn ordinal(x: f64, zero_bits: u8) -> i64 {
     let bits = x.to_bits() as i64;
     let magnitude = (bits & MAGNITUDE) >> zero_bits;
     if bits < 0 { !magnitude } else { magnitude }
 }
 
-/// The number of a rank, if it is one.
+/// Returns the number of a given rank, or `None` if there is none or it is not finite.
 fn from_ordinal(rank: i64, zero_bits: u8) -> Option<f64> {
     let (magnitude, sign) = if rank < 0 { (!rank, !MAGNITUDE) } else { (rank, 0) };
     let is_there = magnitude <= MAGNITUDE >> zero_bits;
