@@ -1,7 +1,7 @@
-//! How good cuts are: against simplifying straight, with and without rules, by estimates and bounds.
+//! Quality of cuts: compared with plain simplification, by split rule, with estimates and bounds.
 //!
-//! `cargo run --release -p meshlod-multires --example quality [MESH.ply [METHOD]]`; without a mesh it
-//! is the shared dragon.
+//! `cargo run --release -p meshlod-multires --example quality [MESH.ply [METHOD]]`; the default is
+//! the shared dragon.
 
 use std::error::Error;
 
@@ -16,11 +16,11 @@ type Failure = Box<dyn Error + Send + Sync>;
 /// Tolerances of uniform cuts, in diagonals, finest first.
 const TOLERANCES: [f64; 6] = [3e-5, 1e-4, 3e-4, 1e-3, 3e-3, 1e-2];
 
-/// Where the ranges of aspects end. The aspect of a triangle is its longest side over the height on
-/// it, in those of an equilateral one.
+/// Bounds of the aspect ranges. A triangle's aspect is its longest side over the height on it,
+/// relative to an equilateral triangle.
 const ASPECTS: [f64; 5] = [1.5, 2.0, 4.0, 8.0, 16.0];
 
-/// Enough for means within a quarter of a percent.
+/// Enough samples for means within a quarter of a percent.
 const MEASURE: DistanceOptions = DistanceOptions { samples: 200_000, seed: 0 };
 
 fn main() -> Result<(), Failure> {
@@ -42,30 +42,27 @@ fn main() -> Result<(), Failure> {
     bounded.measure_bounds();
     let measured = start.elapsed().as_secs_f64();
     println!("{}: recorded in {recorded:.2} s, bounds in {measured:.2} s", method.name());
-    let mut evened = forest.clone();
-    evened.smooth_errors();
+    let mut smoothed = forest.clone();
+    smoothed.smooth_errors();
     let original = Surface::new(&mesh)?;
-    let straight = straight(&mesh, &options, &original)?;
-    let models = [("estimates", &forest), ("evened", &evened), ("bounds", &bounded)];
+    let plain = plain(&mesh, &options, &original)?;
+    let models = [("estimates", &forest), ("smoothed", &smoothed), ("bounds", &bounded)];
     for (name, forest) in models {
-        uniform(name, &Model::new(forest)?, &original, &straight)?;
+        uniform(name, &Model::new(forest)?, &original, &plain)?;
     }
     by_rule(&forest, &mesh.bounds())
 }
 
-/// A level of simplifying straight.
-struct Straight {
+/// A level of plain simplification.
+struct Plain {
     faces: f64,
     apart: Distance,
     aspects: String,
 }
 
-/// Levels in steps of three percent while the mean is still close to nothing, then of a tenth.
-fn straight(
-    mesh: &Mesh,
-    options: &Options,
-    original: &Surface<'_>,
-) -> Result<Vec<Straight>, Failure> {
+/// Returns levels in steps of three percent while the mean error is close to zero, then of ten
+/// percent.
+fn plain(mesh: &Mesh, options: &Options, original: &Surface<'_>) -> Result<Vec<Plain>, Failure> {
     let mut simplifier = Simplifier::new(mesh, options)?;
     let mut levels = Vec::new();
     let mut target = mesh.faces.len() as f64 * 0.98;
@@ -73,7 +70,7 @@ fn straight(
         simplifier.run(Target::Faces(target as usize), &mut ())?;
         let level = simplifier.level();
         let apart = distance(original, &level)?;
-        levels.push(Straight { faces: level.faces.len() as f64, apart, aspects: aspects(&level) });
+        levels.push(Plain { faces: level.faces.len() as f64, apart, aspects: aspects(&level) });
         target *= if target > 0.7 * mesh.faces.len() as f64 { 0.97 } else { 0.9 };
     }
     Ok(levels)
@@ -83,9 +80,8 @@ fn distance(original: &Surface<'_>, level: &Mesh) -> Result<Distance, Failure> {
     Ok(surface_distance(original, &Surface::new(level)?, &MEASURE)?)
 }
 
-/// How many faces simplifying straight takes, by what it is measured by: between the last level that
-/// is as good and the next.
-fn as_good(levels: &[Straight], value: f64, of: impl Fn(&Distance) -> f64) -> Option<f64> {
+/// Interpolates the number of faces at which plain simplification reaches the given error.
+fn as_good(levels: &[Plain], value: f64, of: impl Fn(&Distance) -> f64) -> Option<f64> {
     let worse = levels.iter().position(|level| of(&level.apart) > value)?;
     let [good, bad] = [worse.checked_sub(1)?, worse].map(|i| &levels[i]);
     let [from, to] = [good, bad].map(|level| of(&level.apart));
@@ -93,12 +89,12 @@ fn as_good(levels: &[Straight], value: f64, of: impl Fn(&Distance) -> f64) -> Op
     Some(good.faces * (bad.faces / good.faces).powf(share))
 }
 
-/// Uniform cuts: what tolerances come to, and what simplifying straight takes to come to the same.
+/// Prints uniform cuts and the faces that plain simplification takes for the same error.
 fn uniform(
     name: &str,
     model: &Model,
     original: &Surface<'_>,
-    straight: &[Straight],
+    plain: &[Plain],
 ) -> Result<(), Failure> {
     println!("by {name}; aspects in % of the faces");
     let mut extractor = model.extractor();
@@ -106,14 +102,14 @@ fn uniform(
         let tolerance = part * original.diagonal();
         let cut = extractor.uniform(tolerance)?.mesh();
         let (faces, apart) = (cut.faces.len() as f64, distance(original, &cut)?);
-        let by_mean = as_good(straight, apart.mean(), Distance::mean);
-        let by_max = as_good(straight, apart.max(), Distance::max);
-        let against = |straight: Option<f64>| match straight {
-            Some(straight) => format!("{straight:.0}, ratio {:.3}", faces / straight),
+        let by_mean = as_good(plain, apart.mean(), Distance::mean);
+        let by_max = as_good(plain, apart.max(), Distance::max);
+        let against = |plain: Option<f64>| match plain {
+            Some(plain) => format!("{plain:.0}, ratio {:.3}", faces / plain),
             None => "nearly all".into(),
         };
         println!(
-            "  {part:e}: {faces} faces, mean {:.4} %, max {:.4} %, tolerance / max {:.2}; straight to the \
+            "  {part:e}: {faces} faces, mean {:.4} %, max {:.4} %, tolerance / max {:.2}; plain to the \
              mean {}; to the max {}",
             apart.percent(apart.mean()),
             apart.percent(apart.max()),
@@ -122,14 +118,14 @@ fn uniform(
             against(by_max),
         );
         println!("    aspects      {}", aspects(&cut));
-        if let Some(near) = straight.iter().find(|level| Some(level.faces) <= by_mean) {
-            println!("    of straight  {}", near.aspects);
+        if let Some(near) = plain.iter().find(|level| Some(level.faces) <= by_mean) {
+            println!("    of plain     {}", near.aspects);
         }
     }
     Ok(())
 }
 
-/// How many faces are in each range of aspects.
+/// Returns the share of faces in each range of aspects.
 fn aspects(mesh: &Mesh) -> String {
     let mut counts = [0; ASPECTS.len() + 1];
     for &face in &mesh.faces {
@@ -145,26 +141,26 @@ fn aspects(mesh: &Mesh) -> String {
     columns.collect::<Vec<_>>().join(", ")
 }
 
-/// What needs cost where a camera asks.
+/// Prints the faces that dependencies add to camera cuts.
 fn by_rule(forest: &Forest, bounds: &Bounds) -> Result<(), Failure> {
-    println!("camera cuts: what is wanted alone, and with what each rule needs");
+    println!("camera cuts: the required updates alone, and with the dependencies of each rule");
     let models = [SplitRule::Strict, SplitRule::Wings].map(|rule| Model::with_rule(forest, rule));
     for pixels in [1.0, 0.5, 0.25, 0.1] {
         let query = Query::pixels(camera(bounds), pixels);
         let mut report = format!("{pixels} px:");
         for (rule, model) in ["strict", "wings"].into_iter().zip(&models) {
             let mut extractor = model.as_ref().map_err(Clone::clone)?.extractor();
-            let wanted = extractor.wanted(&query)?.faces.len();
+            let required = extractor.required(&query)?.faces.len();
             let exact = extractor.exact(&query)?.faces.len();
-            let more = 100.0 * (exact as f64 / wanted as f64 - 1.0);
-            report += &format!(" wanted {wanted}, {rule} {exact}, {more:+.2} %;");
+            let more = 100.0 * (exact as f64 / required as f64 - 1.0);
+            report += &format!(" required {required}, {rule} {exact}, {more:+.2} %;");
         }
         println!("{report}");
     }
     Ok(())
 }
 
-/// Where figures are taken from.
+/// Returns the camera of the figures.
 fn camera(bounds: &Bounds) -> ViewCamera {
     let center = bounds.center();
     let eye = [center[0], center[1], center[2] + 1.2 * bounds.diagonal()];

@@ -1,7 +1,7 @@
-//! Times and sizes of the right triangles of a height field.
+//! Times and sizes of the RTIN of a height field.
 //!
-//! `cargo run --release -p meshlod-multires --example rtin [MESH.ply]`; without a mesh it is
-//! the shared terrain.
+//! `cargo run --release -p meshlod-multires --example rtin [MESH.ply]`; the default is the shared
+//! terrain.
 
 use std::error::Error;
 
@@ -22,7 +22,7 @@ fn main() -> Result<(), Failure> {
     let (seconds, field) = best(|| HeightField::from_mesh(&mesh));
     let field = field?;
     let [columns, rows] = field.size();
-    println!("{columns} x {rows}, {:?}; found in {:.1} ms", field.fit(), seconds * 1e3);
+    println!("{columns} x {rows}, {:?}; recognized in {:.1} ms", field.fit(), seconds * 1e3);
     let (seconds, model) = best(|| Rtin::new(&field));
     let vertices = field.heights().len() as f64;
     println!(
@@ -44,7 +44,7 @@ fn timed<T>(work: impl FnOnce() -> T) -> (f64, T) {
     (start.elapsed().as_secs_f64(), result)
 }
 
-/// The best of many runs: others share the machine.
+/// Returns the fastest of many runs, as the machine is shared.
 fn best<T>(mut work: impl FnMut() -> T) -> (f64, T) {
     let mut best = timed(&mut work);
     let mut all = best.0;
@@ -81,17 +81,18 @@ fn extractions(model: &Rtin, bounds: &Bounds) -> Result<(), Failure> {
     let mut extractor = RtinExtractor::new(model);
     let diagonal = bounds.diagonal();
     let [x, y, z] = bounds.center();
-    // Above a corner, over the field.
+    // Above a corner, looking across the field.
     let eye = [bounds.min[0], bounds.min[1], z + 0.05 * diagonal];
     let (look, up) = ([x, y, z], [0.0, 0.0, 1.0]);
     let camera = ViewCamera { eye, look, up, fov_rad: 0.8, viewport: [1920, 1080] };
     let uniform = [0.1, 1e-2, 3e-3, 1e-3, 3e-4, 0.0];
-    let uniform = uniform.map(|part| (format!("{part:e} of it"), Query::uniform(part * diagonal)));
+    let uniform =
+        uniform.map(|part| (format!("{part:e} of the diagonal"), Query::uniform(part * diagonal)));
     let pixels = [4.0, 2.0, 1.0, 0.5, 0.25];
     let everything = pixels.map(|most| (format!("{most} px"), Query::pixels(camera, most)));
     let seen = pixels.map(|most| {
         let tolerance = Tolerance::Pixels { camera, pixels: most };
-        (format!("{most} px, seen"), Query { focus: Focus::Frustum(camera), tolerance })
+        (format!("{most} px in the frustum"), Query { focus: Focus::Frustum(camera), tolerance })
     });
     for (name, query) in uniform.into_iter().chain(everything).chain(seen) {
         let (exact, smallest) = best(|| extractor.exact(&query).map(|level| level.faces.len()));

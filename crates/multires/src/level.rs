@@ -1,4 +1,4 @@
-//! What an extraction gives.
+//! The mesh that an extraction returns.
 
 use glam::{DVec3, Vec3};
 use meshlod_mesh::{Mesh, VertexId};
@@ -8,29 +8,29 @@ use crate::pack::ExactPositions;
 use crate::query::Region;
 use crate::query::{Focus, QueryError};
 
-/// The cosine between two normals below which an edge is a fold.
+/// Cosine of the angle between two face normals below which their common edge counts as folded.
 const FOLD: f64 = -0.7;
 
-/// Where fewer than one node in so many is there, they are searched for: a table of all would cost
-/// more than the level.
+/// If fewer than one node in this many is in the level, nodes are looked up by binary search: a
+/// table over all nodes would cost more than the level itself.
 const SPARSE: usize = 64;
 
-/// A mesh out of a multiresolution model.
+/// A mesh extracted from a multiresolution model.
 ///
-/// It shares with the model the positions that are kept to the bit, and finds them by `nodes`: what is
-/// put in another order has to take its node along.
+/// A level of a lossless model shares its table of exact positions and looks them up through
+/// `nodes`, so code that reorders vertices must reorder `nodes` with them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Level {
     frame: Frame,
-    /// What each vertex is in the model: the same vertex of another level has the same number. Not to be
-    /// changed: a vertex of the input is where its node is.
+    /// Node of the model that each vertex shows: a vertex has the same number in every level. Do
+    /// not change the numbers, as exact positions are found by them.
     pub nodes: Vec<u32>,
-    /// Where each vertex is, in stored units and single precision: see [`Level::mesh`] for those of the
-    /// model.
+    /// Vertex positions in stored units and single precision; [`Level::mesh`] gives them in model
+    /// units.
     pub positions: Vec<[f32; 3]>,
-    /// Three vertices each, counter-clockwise seen from outside.
+    /// Vertex indices of each face, counter-clockwise seen from outside.
     pub faces: Vec<[u32; 3]>,
-    /// Of the model's nodes, where the input is kept as it was.
+    /// Exact positions by node of the model, if the model is lossless.
     pub(crate) exact: ExactPositions,
 }
 
@@ -45,7 +45,7 @@ impl Level {
         }
     }
 
-    /// Forgets the mesh and keeps the room.
+    /// Empties the mesh but keeps its memory.
     pub(crate) fn clear(&mut self) {
         self.nodes.clear();
         self.positions.clear();
@@ -53,7 +53,7 @@ impl Level {
         self.exact = ExactPositions::default();
     }
 
-    /// Of faces by nodes, of which there are `count`, and where each is.
+    /// Builds a level from faces over `count` nodes, whose positions `place` returns.
     pub(crate) fn from_nodes(
         frame: Frame,
         count: usize,
@@ -75,17 +75,20 @@ impl Level {
         Self { frame, nodes, positions, faces, exact: ExactPositions::default() }
     }
 
-    /// With the positions to the bit of those of the model's nodes that have one.
+    /// Attaches the exact positions of the model's nodes.
     pub(crate) fn with_exact(self, exact: &ExactPositions) -> Self {
         Self { exact: exact.clone(), ..self }
     }
 
-    /// The faces that meet a focus, with their vertices: those that have a point in it, up to the
-    /// rounding of positions; for a segment and a frustum maybe some that only come close.
+    /// Returns the faces that intersect a focus, with their vertices.
     ///
-    /// Cost: linear. [`Cut::level_within`](crate::Cut::level_within) looks at what is there only.
+    /// Intersection is exact up to the rounding of positions, except for segments and frusta, which
+    /// may also return faces that only come close.
+    ///
+    /// Cost: linear. [`Cut::level_within`](crate::Cut::level_within) visits only what is near the
+    /// focus.
     /// # Errors
-    /// A focus that is none.
+    /// The focus is invalid.
     pub fn within(&self, focus: &Focus) -> Result<Self, QueryError> {
         focus.validate()?;
         let region = Region::new(focus, &self.frame);
@@ -94,20 +97,20 @@ impl Level {
         let (count, place) = (self.positions.len(), |v: u32| self.positions[v as usize]);
         let level = Self::from_nodes(self.frame, count, place, faces.copied().collect());
         let mut level = level.with_exact(&self.exact);
-        // They were told by their places here.
+        // The faces were numbered by vertices of this level.
         level.nodes.iter_mut().for_each(|node| *node = self.nodes[*node as usize]);
         Ok(level)
     }
 
-    /// Where a vertex is, in stored units: to the bit if that is known.
+    /// Returns the position of a vertex in stored units, exact if the model is lossless.
     fn exact_stored(&self, v: u32) -> DVec3 {
         let rounded = || Vec3::from(self.positions[v as usize]).as_dvec3();
         let exact = self.exact.get(self.nodes[v as usize]);
         exact.map_or_else(rounded, |exact| self.frame.point(exact.into()))
     }
 
-    /// In model units; vertices of the input to the bit, where the model [keeps](crate::Forest::lossless)
-    /// them.
+    /// Converts the level to a mesh in model units. Vertices of the input come back exactly if the
+    /// model is [lossless](crate::Forest::lossless).
     pub fn mesh(&self) -> Mesh {
         let position = |(&node, &rounded): (&u32, &[f32; 3])| {
             self.exact.get(node).unwrap_or_else(|| self.frame.model(rounded))
@@ -118,10 +121,9 @@ impl Level {
         )
     }
 
-    /// How many edges have two faces that turn back on each other: whose normals are more than 134°
-    /// apart.
+    /// Counts the folded edges: those whose two face normals are more than 134° apart.
     ///
-    /// Cost: n log n.
+    /// Cost: O(n log n).
     pub fn folds(&self) -> usize {
         let normal = |face: &[u32; 3]| {
             let [a, b, c] = face.map(|v| self.exact_stored(v));
@@ -141,8 +143,8 @@ impl Level {
         faces.filter(fold).count()
     }
 
-    /// The faces by what their vertices are in the model, each from its least, in order: equal for
-    /// equal meshes.
+    /// Returns the faces as triples of model nodes in a canonical order, so that equal meshes
+    /// compare equal.
     pub fn canonical(&self) -> Vec<[u32; 3]> {
         let mut faces: Vec<_> =
             self.faces.iter().map(|f| f.map(|v| self.nodes[v as usize])).collect();

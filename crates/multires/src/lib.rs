@@ -1,23 +1,24 @@
-//! Every level of a triangle mesh in one structure, asked where it matters.
+//! Multiresolution triangle meshes: every level in one structure, as fine as each query needs.
 //!
-//! An **update** is a local change between a coarse side and a fine side with the same boundary. Updates
-//! need each other: what takes a triangle away comes after what makes it. A set of updates that has with
-//! each all that it needs is a **cut**, and gives one mesh without a crack. That partial order is the MT
-//! ([`Explicit`] stores it as it is, triangles and all).
+//! An **update** is a local change between a coarse side and a fine side with the same boundary.
+//! One update depends on another if it replaces a triangle that the other creates. A set of updates
+//! that contains all its dependencies is a **cut**, and gives one mesh without cracks. This partial
+//! order is the multi-triangulation, or MT ([`Explicit`] stores it literally, with all triangles).
 //!
-//! A simplification is such an order read backwards: its contractions are the updates. [`Forest`] is the
-//! record of one; [`Implicit`] packs it into 40 bytes a vertex, or 22, and stores no triangle but the coarsest;
-//! [`Model`] adds the lists that make extraction fast. Asked with a [`Query`], it answers in several ways:
+//! A simplification is such an order read backwards: its contractions are the updates. [`Forest`]
+//! records one. [`Implicit`] packs it into 40 bytes per vertex, or 22, and stores no triangles but
+//! the coarsest. [`Model`] adds tables for fast extraction. A [`Query`] can be answered in several
+//! ways:
 //!
-//! | | gives | for |
+//! | | result | use |
 //! |---|---|---|
-//! | [`Cut`] | the smallest cut, changed by the next query | what moves; what has no room for more |
+//! | [`Cut`] | the smallest cut, updated by each query | moving viewpoints; least memory |
 //! | [`Extractor::exact`] | the smallest cut | any query, from scratch |
-//! | [`Extractor::saturated`] | a cut a few percent larger | cameras, faster: no update asks for others |
-//! | [`Extractor::uniform`] | the smallest cut | one tolerance everywhere: only errors are looked at |
-//! | [`Extractor::at_most`] | the best cut of so many faces | budgets |
+//! | [`Extractor::saturated`] | a cut a few percent larger | cameras, faster |
+//! | [`Extractor::uniform`] | the smallest cut | one tolerance everywhere: only errors matter |
+//! | [`Extractor::at_most`] | the best cut within a face budget | budgets |
 //!
-//! What a [`Cut`] has at a place, [`Cut::level_within`] and [`Cut::locate`] find.
+//! [`Cut::level_within`] and [`Cut::locate`] answer spatial queries on a cut.
 //!
 //! ```
 //! use meshlod_samples as samples;
@@ -29,7 +30,7 @@
 //! let model = Model::new(&forest)?;
 //! assert_eq!(model.implicit().certify()?.sound, forest.update_count());
 //!
-//! // Near the camera fine, far from it coarse.
+//! // Fine near the camera, coarse far from it.
 //! let near = ViewCamera {
 //!     eye: [2.0, 0.0, 1.0],
 //!     look: [0.0; 3],
@@ -41,26 +42,27 @@
 //! cut.update(&Query::pixels(near, 1.0), &UpdateLimits::default())?;
 //! let faces = cut.face_count();
 //!
-//! // A step back: what changes is told triangle by triangle.
+//! // A step back: the changes come triangle by triangle.
 //! let far = ViewCamera { eye: [4.0, 0.0, 2.0], ..near };
 //! cut.update(&Query::pixels(far, 1.0), &UpdateLimits::default())?;
 //! assert!(cut.face_count() < faces && cut.patches().count() > 0);
 //!
-//! // The same mesh at once, by the face list.
+//! // One tolerance everywhere, by the face list.
 //! let level = model.extractor().uniform(0.01)?.mesh();
 //! assert!(level.faces.len() < mesh.faces.len());
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! [`Archive`] is all of it as a `.mlod` file, of which a query reads what it needs.
+//! [`Archive`] stores all of this in a `.mlod` file, of which a query reads only what it needs.
 //!
-//! A mesh that is a height field on a grid needs no record: [`Rtin`] has its levels by
-//! arithmetic, in ten bytes a vertex, with errors that are bounds. docs/notes/rtin.md tells how.
+//! A mesh that is a height field on a grid needs no recorded simplification: [`Rtin`] derives its
+//! levels by arithmetic, in ten bytes per vertex, with proven error bounds (docs/notes/rtin.md).
 //!
-//! Positions are kept as `f32` about the middle of the mesh, those of the input to the bit where that is
-//! asked for ([`Forest::lossless`]); errors are the simplification's estimates,
-//! made monotone, maybe evened out ([`Forest::even_out`]), or proven bounds ([`Forest::measure_bounds`]). docs/notes/multires.md has the rules,
-//! and why they suffice.
+//! Positions are stored as `f32` relative to the middle of the mesh; on request the input's are
+//! kept exactly ([`Forest::lossless`]). Errors are the simplification's estimates made monotone, and
+//! optionally smoothed ([`Forest::smooth_errors`]) or replaced by proven bounds
+//! ([`Forest::measure_bounds`]).
+//! docs/notes/multires.md has the rules, and the proof that they suffice.
 #![forbid(unsafe_code)]
 
 mod bounds;

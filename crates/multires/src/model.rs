@@ -1,4 +1,4 @@
-//! All that the several ways to extract a mesh want, of one forest.
+//! Everything the extraction algorithms need, built from one forest.
 
 use std::sync::OnceLock;
 
@@ -9,63 +9,64 @@ use crate::implicit::{
 };
 use crate::query::QueryError;
 
-/// An [`Implicit`] model with what makes static extraction fast: the finest faces, and what updates
-/// need of each other.
+/// An [`Implicit`] model plus the tables that make static extraction fast: the face list of the
+/// finest mesh and the dependencies between updates.
 ///
-/// It never changes once it is made: any number of threads may have a [`Cut`] or an [`Extractor`] of it.
-/// Where there is room for the implicit model alone, [`Cut::new`] takes that.
+/// A model is immutable, so any number of threads can each hold a [`Cut`] or an [`Extractor`] of
+/// it. Where memory is short, [`Cut::new`] works on the implicit model alone.
 #[derive(Clone, Debug)]
 pub struct Model {
     implicit: Implicit,
     faces: Faces,
     dependencies: Dependencies,
-    /// Balls that nest, by the range of tolerances for which they do.
+    /// Bounding balls that nest along dependencies, one set per range of tolerances.
     saturated: Vec<SaturatedBalls>,
-    /// How many faces each update brings, once somebody asks for the best of so many.
+    /// Number of faces created by each update, computed when a face budget is first asked for.
     weights: OnceLock<Vec<Weight>>,
 }
 
-/// What a [`Model`] takes in memory, in bytes.
+/// Memory used by a [`Model`], in bytes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ModelBytes {
-    /// The implicit model, which is enough for a [`Cut`].
+    /// The implicit model, which is all that a [`Cut`] needs.
     pub implicit: usize,
     /// The face list.
     pub faces: usize,
-    /// What updates need.
+    /// The dependencies between updates.
     pub dependencies: usize,
-    /// The balls of all ranges that were asked for.
+    /// The nested balls of every range requested so far.
     pub saturated: usize,
 }
 
 impl Model {
-    /// All levels of a simplification.
+    /// Builds a model of all levels of a simplification.
     ///
     /// Cost: linear.
     /// # Errors
-    /// More than 2³¹ nodes: half as many vertices.
+    /// More than 2³¹ nodes, which is half as many vertices.
     pub fn new(forest: &Forest) -> Result<Self, BuildError> {
         Self::with_rule(forest, SplitRule::default())
     }
 
-    /// All levels of a model that was read from a file.
+    /// Builds a model from an implicit one, for example one that was read from a file.
     ///
-    /// Cost: linear; every update is made once.
+    /// Cost: linear; every update is applied once.
     /// # Errors
-    /// One that has no certificate.
+    /// The model fails [`Implicit::certify`].
     pub fn from_implicit(implicit: &Implicit) -> Result<Self, CertifyError> {
         implicit.certify()?;
         Ok(Self::from_certified(implicit))
     }
 
-    /// The same of one that has a certificate.
+    /// Builds a model from an implicit one that has been certified.
     pub(crate) fn from_certified(implicit: &Implicit) -> Self {
         Self::new(&Forest::from_implicit(implicit)).expect("its nodes were numbered before")
     }
 
-    /// The same, whose [`Extractor`] obeys another rule. A [`Cut`] obeys the strict one in any case.
+    /// Builds a model whose [`Extractor`] follows the given split rule. A [`Cut`] always follows
+    /// the strict one.
     /// # Errors
-    /// As [`Model::new`].
+    /// As for [`Model::new`].
     pub fn with_rule(forest: &Forest, rule: SplitRule) -> Result<Self, BuildError> {
         let order = Order::new(forest);
         Ok(Self {
@@ -77,41 +78,45 @@ impl Model {
         })
     }
 
-    /// Nests the balls for cameras with tolerances a unit of distance between these, so that
-    /// [`Extractor::saturated`] answers them: `most` pixels are `most * camera.pixel()`. A range of
-    /// four is good; wider ones make larger cuts. There may be many ranges, at 8 bytes an update each.
+    /// Prepares nested balls so that [`Extractor::saturated`] can answer camera queries over the
+    /// whole model.
+    ///
+    /// `slopes` is the range of tolerances per unit of distance to support; a tolerance of `p`
+    /// pixels has the slope `p * camera.pixel()`. A range of a factor of four works well; wider
+    /// ranges give larger cuts. Call it again for further ranges, at 8 bytes per update each.
     ///
     /// Cost: linear.
     /// # Errors
-    /// A range that is none.
+    /// The range is empty, or not positive and finite.
     pub fn saturate(&mut self, slopes: [f64; 2]) -> Result<(), QueryError> {
         self.saturated.push(SaturatedBalls::new(&self.implicit, &self.dependencies, slopes)?);
         Ok(())
     }
 
-    /// Makes the implicit model [narrow](Implicit::narrowed), if it can be; says whether it is.
+    /// Replaces the implicit model by its [compact form](Implicit::compacted) if it has one, and
+    /// returns true if so.
     pub fn compact(&mut self) -> bool {
         let Some(compact) = self.implicit.compacted() else { return false };
         self.implicit = compact;
         true
     }
 
-    /// A cut that follows its queries, from the base mesh.
+    /// Returns a cut at the base mesh, ready to follow a sequence of queries.
     pub fn cut(&self) -> Cut<'_> {
         Cut::new(&self.implicit)
     }
 
-    /// Meshes one after the other, from scratch each.
+    /// Returns an extractor, which answers each query from scratch.
     pub fn extractor(&self) -> Extractor<'_> {
         Extractor::new(self)
     }
 
-    /// The model without its lists.
+    /// Returns the implicit model, without the extraction tables.
     pub fn implicit(&self) -> &Implicit {
         &self.implicit
     }
 
-    /// What it takes in memory.
+    /// Returns the memory used by each part.
     pub fn bytes(&self) -> ModelBytes {
         ModelBytes {
             implicit: self.implicit.bytes(),
@@ -129,15 +134,15 @@ impl Model {
         &self.dependencies
     }
 
-    /// The balls that were nested for such a tolerance a unit of distance, and well within their
-    /// range: they are tightest in its middle.
+    /// Returns the nested balls for a tolerance of `slope` per unit of distance. Balls are tightest
+    /// in the middle of their range, so the range that holds `slope` best wins.
     pub(crate) fn saturated_at(&self, slope: f64) -> Option<&SaturatedBalls> {
-        let inside = |balls: &&SaturatedBalls| balls.inside(slope);
-        let best = self.saturated.iter().max_by(|a, b| inside(a).total_cmp(&inside(b)));
-        best.filter(|balls| balls.inside(slope) >= 1.0 - 1e-9)
+        let margin = |balls: &&SaturatedBalls| balls.margin(slope);
+        let best = self.saturated.iter().max_by(|a, b| margin(a).total_cmp(&margin(b)));
+        best.filter(|balls| balls.margin(slope) >= 1.0 - 1e-9)
     }
 
-    /// How many faces each update brings.
+    /// Returns the number of faces created by each update.
     pub(crate) fn weights(&self) -> &[Weight] {
         self.weights.get_or_init(|| Weight::all(&self.implicit, &self.faces))
     }

@@ -1,4 +1,4 @@
-//! What every encoding must hold, on random walks through queries.
+//! Properties that every encoding must have, on random walks through queries.
 
 mod certificates;
 mod locate;

@@ -1,8 +1,8 @@
-//! A proof that all cuts of a packed model are sound, in one pass.
+//! Proof, in one pass, that every cut of a packed model is sound.
 //!
-//! Every update is made once, those of high levels first. At each the triangles around its vertex are
-//! held against those that replace them, and its level against those of all around. The notes show why
-//! what holds here once holds in every cut.
+//! Each update is applied once, in the order of falling levels. The triangles around its vertex are
+//! compared with those that replace them, and its level with those of its neighbours.
+//! docs/notes/multires.md shows why what holds here once holds in every cut.
 
 use thiserror::Error;
 
@@ -12,75 +12,75 @@ use crate::forest::MAX_LEVELS;
 use crate::forest::by_level;
 use crate::implicit::{Implicit, Wing, has_three_corners};
 
-/// What was proved of every cut of a model, whatever is asked of it.
+/// Statement proved about every cut of a model.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Certificate {
-    /// Updates whose two sides have one boundary and whose wings are two vertices: no cut has a crack
-    /// there or is less manifold than the input.
+    /// Number of updates whose two sides have the same boundary and whose wings are distinct: no
+    /// cut has a crack there or is less manifold than the input.
     pub sound: usize,
-    /// Updates next to what is not manifold, or not oriented, in the input already. Their levels were
-    /// proved, so they are the same in every cut; and that on both sides, the children taken for one,
-    /// the same edges have an odd number of faces. Nothing is said of how manifold they are.
+    /// Number of updates where the input is already non-manifold or inconsistently oriented. Their
+    /// levels are proved, so they are the same in every cut; and with the children identified, both
+    /// sides have the same edges of an odd number of faces. Manifoldness is not proved.
     pub non_manifold: usize,
 }
 
-/// Why a model is not sound.
+/// Reasons why a model cannot be certified.
 #[derive(Clone, Copy, Debug, Error, PartialEq, Eq)]
 pub enum CertifyError {
-    /// Some cut has a flaw.
+    /// An update has a flaw that shows in some cut.
     #[error("update {update} is not sound: {why}")]
     Update {
         /// The update.
         update: u32,
-        /// What does not hold.
+        /// The flaw.
         why: Flaw,
     },
-    /// The finest mesh is another.
+    /// The finest mesh has the wrong number of faces.
     #[error("the finest mesh has {found} faces where the model says {expected}")]
     FullFaces {
-        /// How many faces all updates make.
+        /// Number of faces after all updates.
         found: usize,
-        /// How many there should be.
+        /// Number of faces that the model states.
         expected: usize,
     },
 }
 
-/// What does not hold of an update.
+/// Flaws of an update.
 #[derive(Clone, Copy, Debug, Error, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Flaw {
-    /// It may be made before its vertex is there.
-    #[error("its vertex is made by an update of no higher level")]
+    /// It may be applied before its vertex exists.
+    #[error("its vertex is created by an update of the same or a lower level")]
     VertexLater,
-    /// It may be made before what is around it is as it was recorded.
-    #[error("something around it is made by an update of no higher level")]
+    /// It may be applied before its ring is the recorded one.
+    #[error("a neighbour of its vertex is created by an update of the same or a lower level")]
     NeighbourLater,
-    /// It may be made after what is around it is not as it was recorded any more.
-    #[error("something around it is split by an update of a higher level")]
+    /// It may be applied after its ring has changed again.
+    #[error("a neighbour of its vertex is split by an update of a higher level")]
     NeighbourEarlier,
-    /// It is one with the next update, which cannot be made.
-    #[error("what should be split in the same go cannot be")]
-    Torn,
-    /// A triangle with two corners at one vertex.
-    #[error("it makes a triangle without area")]
-    NoArea,
+    /// It is fused with the next update, which cannot be applied.
+    #[error("it is fused with a split that cannot follow it")]
+    FusedBlocked,
+    /// It creates a triangle with two corners at one vertex.
+    #[error("it creates a triangle with a repeated corner")]
+    RepeatedCorner,
     /// A wing is not around its vertex.
-    #[error("it brings fewer faces than it says, or loses some")]
+    #[error("it creates fewer faces than stated, or removes some")]
     NoWing,
-    /// Three faces at an edge, or two that are turned against each other.
-    #[error("it makes an edge with two faces on one side")]
-    TwoOnOneSide,
-    /// A crack.
-    #[error("its two sides have not the same boundary")]
-    Boundary,
+    /// It creates an edge with three faces, or with two of opposite orientation.
+    #[error("it creates a non-manifold or inconsistently oriented edge")]
+    BadEdge,
+    /// It opens a crack.
+    #[error("its two sides have different boundaries")]
+    Crack,
 }
 
 impl Implicit {
-    /// Proves that no cut has a crack and that each is as manifold as the input, but beside what is
-    /// [`odd`](Certificate::odd).
+    /// Proves that no cut has a crack, and that each is as manifold as the input except at
+    /// [`non_manifold`](Certificate::non_manifold) updates.
     ///
     /// Cost: linear.
     /// # Errors
-    /// The first update of which that cannot be said.
+    /// The first update that fails.
     pub fn certify(&self) -> Result<Certificate, CertifyError> {
         let mut proof = Proof::new(self);
         let mut certificate = Certificate::default();
@@ -99,14 +99,14 @@ impl Implicit {
     }
 }
 
-/// A cut that is refined, and room for the two sides of the update made last.
+/// A cut under refinement, and the two sides of the last update.
 struct Proof<'m> {
     front: Front<'m>,
     coarse: Side,
     fine: Side,
-    /// The places of the coarse side's triangles.
+    /// Slots of the coarse side's triangles.
     around: Vec<u32>,
-    /// What should have been made first: nothing.
+    /// Missing dependencies; stays empty if the update may be applied.
     first: Vec<u32>,
 }
 
@@ -121,14 +121,14 @@ impl<'m> Proof<'m> {
         }
     }
 
-    /// Makes an update and says whether it is an ordinary one.
+    /// Applies an update and checks it; returns true if it is manifold.
     fn check(&mut self, update: u32) -> Result<bool, Flaw> {
-        self.make(update)?;
+        self.apply(update)?;
         let Self { front, coarse, fine, .. } = self;
         let mt = front.mt;
         let (node, children) = (mt.parent(update), mt.children(update));
         if !fine.triangles.iter().all(has_three_corners) {
-            return Err(Flaw::NoArea);
+            return Err(Flaw::RepeatedCorner);
         }
         let has_both = |t: &&[u32; 3]| children.iter().all(|child| t.contains(child));
         let between = fine.triangles.iter().filter(has_both).count();
@@ -140,13 +140,13 @@ impl<'m> Proof<'m> {
         if mt.non_fan_split(update).is_some() || !coarse.find_open() {
             coarse.find_odd(up);
             fine.find_odd(up);
-            return if coarse.edges == fine.edges { Ok(false) } else { Err(Flaw::Boundary) };
+            return if coarse.edges == fine.edges { Ok(false) } else { Err(Flaw::Crack) };
         }
         if !fine.find_open() {
-            return Err(Flaw::TwoOnOneSide);
+            return Err(Flaw::BadEdge);
         }
-        // The same edges around, and at the vertex the same open ends, between which only the edge of
-        // the children may have come.
+        // Both sides must have the same surrounding edges, and the same open ends at the vertex,
+        // between which only the edge of the children may be new.
         let is_open = coarse.edges.iter().any(|edge| edge.ends().contains(&node));
         let all = fine.edges.len();
         fine.edges.retain_mut(|edge| {
@@ -157,13 +157,13 @@ impl<'m> Proof<'m> {
         let between = all - fine.edges.len();
         fine.edges.sort_unstable();
         if coarse.edges != fine.edges || between > usize::from(is_open) {
-            return Err(Flaw::Boundary);
+            return Err(Flaw::Crack);
         }
         Ok(true)
     }
 
-    /// Makes an update, if it may be made, and keeps the triangles of its two sides.
-    fn make(&mut self, update: u32) -> Result<(), Flaw> {
+    /// Applies an update if its dependencies are met, and keeps the triangles of both sides.
+    fn apply(&mut self, update: u32) -> Result<(), Flaw> {
         let Self { front, coarse, fine, around, first } = self;
         let mt = front.mt;
         let (node, level) = (mt.parent(update), mt.level(update));
@@ -181,7 +181,7 @@ impl<'m> Proof<'m> {
             return Err(Flaw::NeighbourEarlier);
         }
         around.clear();
-        // What has two corners at the vertex is met at both.
+        // A triangle with two corners at the vertex is met at both.
         let is_first = |spoke: &&Spoke| {
             let (t, k) = (spoke.triangle(), spoke.corner as usize % 3);
             !front.triangles.nodes(t)[..k].contains(&node)
@@ -189,21 +189,21 @@ impl<'m> Proof<'m> {
         around.extend(star.iter().filter(is_first).map(Spoke::triangle));
         coarse.take(front, around.iter().copied());
         let created = front.triangles.slots() as u32;
-        front.make(update);
+        front.apply(update);
         let created = created..front.triangles.slots() as u32;
         fine.take(front, around.iter().copied().chain(created));
         if mt.is_fused_with_child(update) {
             let is_next = mt.update_of(mt.children(update)[0]) == Some(update + 1);
             let are_two = !mt.is_fused_with_parent(update) && !mt.is_fused_with_child(update + 1);
             if !is_next || !are_two || !front.may_split(update + 1, first) {
-                return Err(Flaw::Torn);
+                return Err(Flaw::FusedBlocked);
             }
         }
         Ok(())
     }
 }
 
-/// How many faces an update brings.
+/// Returns the number of faces that an update creates.
 fn created(mt: &Implicit, update: u32) -> usize {
     let wings = || mt.wings(update).iter().filter(|&&wing| wing != Wing::None).count();
     mt.non_fan_split(update).map_or_else(wings, |non_fan| non_fan.created_faces.len())
@@ -213,9 +213,9 @@ fn created(mt: &Implicit, update: u32) -> usize {
 #[derive(Default)]
 struct Side {
     triangles: Vec<[u32; 3]>,
-    /// Those of its edges that are looked for, in order.
+    /// Edges that were searched for, sorted.
     edges: Vec<Edge>,
-    /// Room for all of them.
+    /// Scratch memory for all edges.
     all: Vec<Edge>,
 }
 
@@ -225,12 +225,12 @@ impl Side {
         self.triangles.extend(places.map(|t| front.triangles.nodes(t)));
     }
 
-    /// Finds the directed edges without an opposite one; false where one is there twice.
+    /// Finds the directed edges without an opposite one, or returns false if an edge occurs twice.
     fn find_open(&mut self) -> bool {
         self.sort(|end| end);
         self.edges.clear();
         let mut all = self.all.as_slice();
-        // An edge and its opposite stand side by side.
+        // An edge and its opposite are adjacent after sorting.
         while let [edge, rest @ ..] = all {
             all = match rest {
                 [next, ..] if next == edge => return false,
@@ -244,8 +244,8 @@ impl Side {
         true
     }
 
-    /// Finds the edges with an odd number of faces after moving up; what is within one vertex then is
-    /// none.
+    /// Finds the edges with an odd number of faces after mapping nodes by `up`. Edges that collapse
+    /// to a vertex do not count.
     fn find_odd(&mut self, up: impl Fn(u32) -> u32) {
         self.sort(up);
         self.edges.clear();
@@ -263,7 +263,8 @@ impl Side {
     }
 }
 
-/// A directed edge in one number: its lesser node, its greater one, and whether it comes from that.
+/// A directed edge in one number: its lesser node, its greater node, and whether it starts at the
+/// greater one.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 struct Edge(u64);
 
@@ -280,12 +281,12 @@ impl Edge {
         if self.0 & 1 == 0 { [low, high] } else { [high, low] }
     }
 
-    /// The same, wherever it goes.
+    /// Returns the edge without its direction.
     fn undirected(self) -> Self {
         Self(self.0 & !1)
     }
 
-    /// Whether both join the same nodes.
+    /// Returns true if both edges join the same nodes.
     #[inline]
     fn is_beside(self, other: Self) -> bool {
         self.0 | 1 == other.0 | 1

@@ -1,4 +1,4 @@
-//! The triangles of all cuts.
+//! Enumeration of the triangles of all cuts.
 
 use super::front::Front;
 use crate::forest::MAX_LEVELS;
@@ -6,14 +6,15 @@ use crate::forest::by_level;
 use crate::implicit::Implicit;
 
 impl Implicit {
-    /// Calls `visit` with each triangle that some cut has, by its nodes: those of the base, and those
-    /// that an update makes. As far as a model without a certificate lets it.
+    /// Calls `visit` with the nodes of each triangle that occurs in some cut: those of the base
+    /// mesh and those that updates create. Stops early if an uncertified model cannot be refined
+    /// further.
     ///
     /// Cost: linear.
     pub(crate) fn each_triangle(&self, mut visit: impl FnMut([u32; 3])) {
         let mut front = Front::new(self);
         self.base().iter().for_each(|&face| visit(face));
-        // The parts of one that is glued stay together.
+        // Fused updates stay together.
         let order = by_level(self.update_count(), |update| {
             MAX_LEVELS
                 - self.level(if self.is_fused_with_parent(update) { update - 1 } else { update })

@@ -1,57 +1,57 @@
-//! The surface of a cut: splits and merges, each with the rule that it must obey.
+//! The surface of a cut, with guarded splits and merges.
 
 use super::triangles::{MAX_SEARCHED, NEXT, Spoke, Triangles};
 use crate::forest::MAX_RANKED;
 use crate::forest::{MAX_LEVELS, NONE};
 use crate::implicit::{Implicit, Wing};
 
-/// The corner of a vertex that is not there yet.
+/// Corner list of a vertex that does not exist yet.
 const ABSENT: u32 = NONE - 1;
-/// That of one that has been split.
+/// Corner list of a vertex that has been split.
 const SPLIT: u32 = NONE - 2;
 
 /// The active vertices and the triangles between them.
 #[derive(Clone, Debug)]
 pub(super) struct Front<'m> {
     pub(super) mt: &'m Implicit,
-    /// By node.
+    /// State of each node.
     vertices: Vec<Vertex>,
     pub(super) triangles: Triangles,
-    /// How many vertices are there.
+    /// Number of active vertices.
     active: usize,
-    /// Room for what is around a vertex.
+    /// Scratch memory for the star of a vertex.
     star: Vec<Spoke>,
-    /// Room for the nodes around, each once and in order.
+    /// Scratch memory for the neighbours of a vertex.
     ring: Vec<u32>,
 }
 
-/// What is wanted of the vertices around a split or a merge, beside the list of its corners.
+/// State of a node: its list of corners, and the levels that splits and merges compare.
 #[derive(Clone, Copy, Debug)]
 struct Vertex {
-    /// Its first corner; [`ABSENT`] or [`SPLIT`] where it is not there.
+    /// Head of its list of corners, or [`ABSENT`] or [`SPLIT`] if it is not active.
     corner: u32,
-    /// The level of the update that splits it; 0 for a leaf. In the highest bit whether that update
-    /// is on the schedule, which outlives the vertex.
+    /// Level of the update that splits it, 0 for a leaf. The highest bit is set while that update
+    /// is on the schedule, which may outlive the vertex.
     level: u16,
-    /// The level of the update that made it; the highest for a root.
+    /// Level of the update that created it, the maximum for a root.
     above: u16,
 }
 
 const SCHEDULED: u16 = MAX_LEVELS;
 
-/// How a vertex stands.
+/// State of a vertex relative to the cut.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum VertexState {
-    /// Not there: above it some vertex has not been split.
+    /// Not reached: an ancestor has not been split.
     Absent,
-    /// There.
+    /// Part of the mesh.
     Active,
-    /// Not there: it has been split.
+    /// Replaced by its children.
     Split,
 }
 
 impl<'m> Front<'m> {
-    /// The base mesh.
+    /// Starts at the base mesh.
     pub(super) fn new(mt: &'m Implicit) -> Self {
         let absent = Vertex { corner: ABSENT, level: 0, above: 0 };
         let mut this = Self {
@@ -63,7 +63,7 @@ impl<'m> Front<'m> {
             ring: Vec::new(),
         };
         for (root, _) in mt.roots() {
-            this.enter(root, u16::MAX);
+            this.activate(root, u16::MAX);
         }
         for &face in mt.base() {
             this.add(face);
@@ -71,7 +71,7 @@ impl<'m> Front<'m> {
         this
     }
 
-    /// How many vertices there are.
+    /// Returns the number of vertices.
     pub(super) fn vertex_count(&self) -> usize {
         self.active
     }
@@ -96,57 +96,57 @@ impl<'m> Front<'m> {
         *level = *level & !SCHEDULED | if is_scheduled { SCHEDULED } else { 0 };
     }
 
-    /// Whether all around an update's node, which must be there, is coarse enough to split it; adds to
-    /// `first` the updates that must come first.
+    /// Returns true if all neighbours of an update's node, which must be active, have low enough
+    /// levels to split it; otherwise appends the updates that have to come first to `first`.
     pub(super) fn may_split(&mut self, update: u32, first: &mut Vec<u32>) -> bool {
         let (node, level) = (self.mt.parent(update), self.mt.level(update));
         let Self { mt, vertices, star, .. } = self;
         star.clear();
         self.triangles.gather(vertices[node as usize].corner, star);
-        let waiting = first.len();
-        let mut look = |n: u32| {
+        let known = first.len();
+        let mut check = |n: u32| {
             if vertices[n as usize].level & !SCHEDULED > level {
                 first.push(mt.update_of(n).expect("a leaf's level is 0"));
             }
         };
-        star.iter().for_each(|spoke| look(spoke.a));
+        star.iter().for_each(|spoke| check(spoke.a));
         if mt.is_open(update) {
-            // Somebody is around whom no face follows.
-            star.iter().for_each(|spoke| look(spoke.b));
+            // There is a neighbour that no face follows.
+            star.iter().for_each(|spoke| check(spoke.b));
         }
-        first.len() == waiting
+        first.len() == known
     }
 
-    /// Splits an update's node, which must be there, if all around it is coarse enough; else adds to
-    /// `first` the updates that must come first.
+    /// Splits an update's node, which must be active, if its neighbours allow it; otherwise appends
+    /// the updates that have to come first to `first`.
     pub(super) fn split(&mut self, update: u32, first: &mut Vec<u32>) -> bool {
         let may_split = self.may_split(update, first);
         if may_split {
-            self.make(update);
+            self.apply(update);
         }
         may_split
     }
 
-    /// Makes an update that [`may_split`](Self::may_split) was just asked for.
-    pub(super) fn make(&mut self, update: u32) {
+    /// Applies an update right after [`may_split`](Self::may_split) accepted it.
+    pub(super) fn apply(&mut self, update: u32) {
         let (node, level) = (self.mt.parent(update), self.mt.level(update));
         let [first, second] = self.mt.children(update);
         self.vertices[node as usize].corner = SPLIT;
         self.active -= 1;
-        self.enter(first, level);
-        self.enter(second, level);
-        let (run, created) = self.part(update);
+        self.activate(first, level);
+        self.activate(second, level);
+        let (run, created) = self.partition_star(update);
         for i in 0..self.star.len() {
             let child = if i < run { second } else { first };
             let Vertex { corner, .. } = &mut self.vertices[child as usize];
-            self.triangles.give(self.star[i].corner, child, corner);
+            self.triangles.attach(self.star[i].corner, child, corner);
         }
         created.into_iter().flatten().for_each(|face| self.add(face));
         if created == [None; 2]
             && let Some(non_fan) = self.mt.non_fan_split(update)
         {
             for &face in &non_fan.created_faces {
-                // Of a file that nobody has proved it may be anything.
+                // In an uncertified file a face may have any nodes.
                 if face.iter().all(|&node| self.is_active(node)) {
                     self.add(face);
                 }
@@ -154,9 +154,9 @@ impl<'m> Front<'m> {
         }
     }
 
-    /// Moves the triangles of the second child to the front of the star; how many those are, and the
-    /// triangles that wings bring.
-    fn part(&mut self, update: u32) -> (usize, [Option<[u32; 3]>; 2]) {
+    /// Moves the triangles of the second child to the front of the star. Returns their number and
+    /// the triangles created at the wings.
+    fn partition_star(&mut self, update: u32) -> (usize, [Option<[u32; 3]>; 2]) {
         let Self { mt, star, .. } = self;
         let mut run = 0;
         let wings = mt.wings(update);
@@ -171,7 +171,7 @@ impl<'m> Front<'m> {
             }
             return (run, [None; 2]);
         }
-        let [start, end] = find(star, wings);
+        let [start, end] = resolve_wings(star, wings);
         let (mut at, stop, backwards) = match (start, end) {
             (Some(start), end) => (start, end, false),
             (None, end) => (end.unwrap_or(NONE), None, true),
@@ -188,9 +188,10 @@ impl<'m> Front<'m> {
         (run, created)
     }
 
-    /// Undoes a split if nothing depends on it: all around is as it was recorded; false else.
+    /// Undoes a split and returns true, if no other update depends on it: its neighbourhood is the
+    /// recorded one.
     ///
-    /// An update that is glued goes back whole.
+    /// Fused updates are undone together.
     pub(super) fn merge(&mut self, update: u32) -> bool {
         let fused_with_child = self.mt.is_fused_with_child(update);
         let [first, second] = self.mt.children(update);
@@ -201,7 +202,7 @@ impl<'m> Front<'m> {
         }
         let level = self.mt.level(update);
         let is_needed = |n: u32| !parts.contains(&n) && !self.is_made_above(n, level);
-        // Most that are held are held by one of the first few.
+        // A vertex that cannot be merged mostly shows it at one of its first triangles.
         let is_held = |&child: &u32| {
             let mut around = self.triangles.around(self.vertices[child as usize].corner);
             around.any(|spoke| is_needed(spoke.a) || is_needed(spoke.b))
@@ -210,14 +211,14 @@ impl<'m> Front<'m> {
             return false;
         }
         if fused_with_child {
-            self.join(update + 1);
+            self.undo(update + 1);
         }
-        self.join(update);
+        self.undo(update);
         true
     }
 
-    /// Makes one of an update's children again.
-    fn join(&mut self, update: u32) {
+    /// Replaces both children of an update by its node.
+    fn undo(&mut self, update: u32) {
         let node = self.mt.parent(update);
         let [first, second] = self.mt.children(update);
         let above = self.mt.creator(node).map_or(u16::MAX, |up| self.mt.level(up));
@@ -227,16 +228,16 @@ impl<'m> Front<'m> {
             self.vertices[child as usize].corner = ABSENT;
         }
         self.active -= 2;
-        self.enter(node, above);
+        self.activate(node, above);
         for i in 0..self.star.len() {
             let Spoke { corner, a, b } = self.star[i];
             let mut others = [a, b].into_iter().filter(|&n| n != first && n != second);
             match (others.next(), others.next()) {
                 (Some(_), Some(_)) => {
                     let Vertex { corner: list, .. } = &mut self.vertices[node as usize];
-                    self.triangles.give(corner, node, list);
+                    self.triangles.attach(corner, node, list);
                 }
-                // It is met from both ends and goes with the first.
+                // It is met from both ends; the first removes it.
                 (Some(wing), None) if self.is_first(i) => {
                     self.remove(corner / 3, wing, [first, second, node]);
                 }
@@ -245,19 +246,19 @@ impl<'m> Front<'m> {
         }
     }
 
-    /// Takes away a triangle that is at no vertex any more but one. `joined` are those whose lists are
-    /// not what they should be just now.
-    fn remove(&mut self, t: u32, wing: u32, joined: [u32; 3]) {
+    /// Removes a triangle that is left in the list of one vertex only. `joined` are vertices whose
+    /// lists are invalid at this point.
+    fn remove(&mut self, t: u32, wing: u32, invalid: [u32; 3]) {
         let Self { triangles, vertices, .. } = self;
         let list = &mut vertices[wing as usize].corner;
         if triangles.unlink(t, list, MAX_SEARCHED) {
             triangles.remove(t);
             return;
         }
-        // At a hub, to search the whole list for each would take time by the square of its length. But
-        // one from its start may go where the triangle was, for the other two lists that it is in are
-        // short.
-        let Some(other) = triangles.take(list, joined) else {
+        // At a hub, searching the whole list for each removal would take quadratic time. Instead a
+        // triangle from the start of the list takes the removed one's slot, as its other two lists
+        // are short.
+        let Some(other) = triangles.unlink_without(list, invalid) else {
             triangles.unlink(t, list, usize::MAX);
             triangles.remove(t);
             return;
@@ -273,34 +274,34 @@ impl<'m> Front<'m> {
         triangles.remove(other / 3);
     }
 
-    /// Whether a triangle of the star has not been met before.
+    /// Returns true if no earlier entry of the star has the same triangle.
     fn is_first(&self, place: usize) -> bool {
         let t = self.star[place].corner / 3;
         self.star[..place].iter().all(|spoke| spoke.corner / 3 != t)
     }
 
-    /// What was around the vertex that was split last, or that may be split now.
+    /// Returns the star gathered by the last split or by the last test for one.
     pub(super) fn last_star(&self) -> &[Spoke] {
         &self.star
     }
 
-    /// Whether a vertex is there.
+    /// Returns true if a vertex is part of the mesh.
     pub(super) fn is_active(&self, node: u32) -> bool {
         self.state(node) == VertexState::Active
     }
 
-    /// Whether a vertex, which must be there, is a root or was made by an update of a higher level.
+    /// Returns true if an active vertex is a root or was created by an update of a higher level.
     #[inline]
     pub(super) fn is_made_above(&self, node: u32, level: u16) -> bool {
         self.vertices[node as usize].above > level
     }
 
-    /// Appends the triangles around a vertex, which must be there, to `star`.
+    /// Appends the star of an active vertex to `star`.
     pub(super) fn gather(&self, node: u32, star: &mut Vec<Spoke>) {
         self.triangles.gather(self.vertices[node as usize].corner, star);
     }
 
-    /// The nodes around a vertex, each once or twice.
+    /// Returns the neighbours of a vertex, each once or twice.
     pub(super) fn around(&mut self, node: u32) -> &[u32] {
         let Self { star, ring, triangles, vertices, .. } = self;
         star.clear();
@@ -310,7 +311,7 @@ impl<'m> Front<'m> {
         ring
     }
 
-    fn enter(&mut self, node: u32, above: u16) {
+    fn activate(&mut self, node: u32, above: u16) {
         let level = self.mt.update_of(node).map_or(0, |update| self.mt.level(update));
         let vertex = &mut self.vertices[node as usize];
         *vertex = Vertex { corner: NONE, level: vertex.level & SCHEDULED | level, above };
@@ -321,20 +322,20 @@ impl<'m> Front<'m> {
         let t = self.triangles.add();
         for (k, &node) in face.iter().enumerate() {
             let Vertex { corner, .. } = &mut self.vertices[node as usize];
-            self.triangles.give(3 * t + k as u32, node, corner);
+            self.triangles.attach(3 * t + k as u32, node, corner);
         }
     }
 }
 
-/// The nodes around a star that wings are; none where so many are around that there are no ranks.
+/// Resolves the wings of a star to nodes; `None` if the star is too large for ranks.
 #[inline]
-pub(super) fn find(star: &[Spoke], wings: [Wing; 2]) -> [Option<u32>; 2] {
+pub(super) fn resolve_wings(star: &[Spoke], wings: [Wing; 2]) -> [Option<u32>; 2] {
     let ranks = wings.map(|wing| if let Wing::Rank(rank) = wing { rank.into() } else { NONE });
     let mut found = [None; 2];
     if star.len() > MAX_RANKED {
         return found;
     }
-    // Counting all is quicker than sorting these few, or than stopping early.
+    // Counting them all is faster than sorting these few or stopping early.
     for spoke in star {
         let below: u32 = star.iter().map(|other| u32::from(other.a < spoke.a)).sum();
         for (found, rank) in found.iter_mut().zip(ranks) {

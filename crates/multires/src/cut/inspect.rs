@@ -1,15 +1,15 @@
-//! What the cut looks at: what is due, or everything there is.
+//! Inspection of updates: those that are due by the schedule, or all.
 
 use super::front::VertexState;
 use super::schedule::ScheduleEntry;
 use super::{Criteria, Cut, Meter};
 
 impl Cut<'_> {
-    /// Begins to look at every update whose vertex is there, or was and has been split.
+    /// Starts to inspect every update whose vertex is active or has been split.
     ///
-    /// Cost: of what is on the schedule.
+    /// Cost: linear in the entries on the schedule.
     pub(super) fn restart(&mut self) {
-        // Also what is not there: it may come back.
+        // This includes vertices that do not exist now, as they may return.
         self.schedule.clear(|node| self.front.set_scheduled(node, false));
         self.to_split.clear();
         self.to_merge.clear();
@@ -17,7 +17,8 @@ impl Cut<'_> {
         self.uninspected.extend(self.front.mt.roots().map(|(root, _)| root));
     }
 
-    /// Looks at what is due and goes on with what is yet to be seen, coarse before fine.
+    /// Inspects the updates that are due, then continues with those not yet seen, coarse before
+    /// fine.
     pub(super) fn inspect_pending(&mut self, criteria: &Criteria<'_>, meter: &mut Meter) {
         while let Some(entry) = self.schedule.due.pop() {
             self.inspect_due(entry, criteria);
@@ -31,7 +32,7 @@ impl Cut<'_> {
             if self.front.state(node) == VertexState::Split {
                 self.uninspected.extend(mt.children(update));
             }
-            // It may have been split, and seen, since it was put here.
+            // It may have been split and inspected since it was queued.
             if mt.is_fused_with_parent(update) || self.front.is_scheduled(node) {
                 continue;
             }
@@ -42,7 +43,7 @@ impl Cut<'_> {
         }
     }
 
-    /// Looks at what is due.
+    /// Inspects an update that is due, or puts it back if its decision cannot have changed.
     #[inline]
     fn inspect_due(&mut self, entry: ScheduleEntry, criteria: &Criteria<'_>) {
         if !self.schedule.add_again(entry) {
@@ -51,7 +52,8 @@ impl Cut<'_> {
         }
     }
 
-    /// Puts an update on the list that its need asks for; and looks again when that may have turned.
+    /// Queues an update for a split or a merge as the criteria demand, and schedules its next
+    /// inspection.
     fn inspect(&mut self, update: u32, node: u32, criteria: &Criteria<'_>) {
         let ball = self.front.mt.ball_at(update, node);
         let wanted = criteria.wanted(&ball);
@@ -68,7 +70,7 @@ impl Cut<'_> {
         }
     }
 
-    /// Looks at the children of a split for the first time.
+    /// Inspects the children of a split for the first time.
     pub(super) fn inspect_children(&mut self, update: u32, criteria: &Criteria<'_>) {
         let mt = self.front.mt;
         let first_is_gone = usize::from(mt.is_fused_with_child(update));

@@ -1,8 +1,8 @@
-//! What of a cut is at a place: found from the roots down, where balls nest, not by looking at all.
+//! Spatial queries on a cut by descending the nested balls, without visiting the whole mesh.
 //!
-//! A triangle lies in the ball of its corner of the highest level; one between leaves only in those of
-//! the updates that made them. So whoever goes down to every vertex above which all balls reach the
-//! place, and looks at the triangles there, has met all that do.
+//! A triangle lies in the ball of its corner of the highest level; one between leaves lies in the
+//! balls of the updates that created them. Descending to every vertex whose ancestors' balls all
+//! meet the target, and testing the triangles there, therefore finds all that qualify.
 
 use glam::DVec3;
 use meshlod_spatial::closest_point;
@@ -14,20 +14,20 @@ use crate::level::Level;
 use crate::query::Region;
 use crate::query::{Focus, QueryError};
 
-/// The triangle of a cut that is closest to a place.
+/// The triangle of a cut closest to a point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Located {
-    /// Its place in the list of triangles.
+    /// Its slot in the list of triangles.
     pub slot: u32,
     /// Its nodes.
     pub nodes: [u32; 3],
     /// Its closest point, in model units.
     pub closest: [f64; 3],
-    /// How far away that is, in model units.
+    /// Distance to that point, in model units.
     pub distance: f64,
 }
 
-/// A triangle, and in stored units the point that is closest and the square of its distance.
+/// A triangle with its closest point and the squared distance, in stored units.
 struct Candidate {
     slot: u32,
     point: DVec3,
@@ -35,12 +35,14 @@ struct Candidate {
 }
 
 impl Cut<'_> {
-    /// The triangles that meet a focus: those that have a point in it, up to the rounding of positions;
-    /// for a segment and a frustum maybe some that only come close.
+    /// Returns the triangles that intersect a focus.
     ///
-    /// Cost: of what is around the focus.
+    /// Intersection is exact up to the rounding of positions, except for segments and frusta, which
+    /// may also return triangles that only come close.
+    ///
+    /// Cost: proportional to the mesh near the focus.
     /// # Errors
-    /// A focus that is none.
+    /// The focus is invalid.
     pub fn level_within(&self, focus: &Focus) -> Result<Level, QueryError> {
         focus.validate()?;
         let mt = self.front.mt;
@@ -66,12 +68,12 @@ impl Cut<'_> {
         Ok(mt.level_from_faces(faces.collect()))
     }
 
-    /// The triangle closest to a place, in model units: the one that it lies in, if it lies in one.
-    /// `None` where there are no triangles or the place has a coordinate that is not finite.
+    /// Returns the triangle closest to a point in model units, which contains the point if any
+    /// triangle does. Returns `None` if the cut has no triangles or a coordinate is not finite.
     ///
-    /// Where several are equally close, as at a corner, it is the one of the least nodes.
+    /// Ties, as at a corner, go to the triangle with the least nodes.
     ///
-    /// Cost: of what is as close as that triangle, and of the roots.
+    /// Cost: proportional to the roots and the vertices as close as that triangle.
     pub fn locate(&self, point: [f64; 3]) -> Option<Located> {
         let mt = self.front.mt;
         let at = mt.frame().point(point.into());
@@ -80,10 +82,10 @@ impl Cut<'_> {
         }
         let mut best: Option<Candidate> = None;
         let mut star = Vec::new();
-        // Nodes, and how close what is below them may be.
+        // Nodes, with a lower bound of the distance to the triangles below them.
         let mut stack: Vec<(f64, u32)> =
             mt.roots().map(|(root, _)| (self.bound(root, at), root)).collect();
-        // The closest come last, and are gone down first.
+        // The closest come last and are descended first.
         stack.sort_by(|a, b| b.0.total_cmp(&a.0));
         while let Some((bound, node)) = stack.pop() {
             if best.as_ref().is_some_and(|best| bound * bound > best.squared) {
@@ -126,7 +128,8 @@ impl Cut<'_> {
         order.then_with(|| sorted(one).cmp(&sorted(other))).is_lt()
     }
 
-    /// How close a triangle may be of which a node, or one below it, is the corner of the highest level.
+    /// Returns a lower bound of the distance to a triangle whose corner of the highest level is the
+    /// node or below it.
     fn bound(&self, node: u32, at: DVec3) -> f64 {
         let mt = self.front.mt;
         mt.update_of(node).map_or(0.0, |update| {

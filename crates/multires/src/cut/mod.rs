@@ -1,4 +1,4 @@
-//! A cut that follows its query: refined and coarsened where the query has moved, and nowhere else.
+//! A cut that follows a sequence of queries, refined and coarsened only where the query has moved.
 
 mod certificate;
 mod each_triangle;
@@ -23,63 +23,65 @@ use crate::level::Level;
 use crate::query::{Ball, Criterion, QueryKey};
 use crate::query::{Query, QueryError};
 
-/// A mesh out of an [`Implicit`] MT, which the next query changes.
+/// A mesh extracted from an [`Implicit`] MT that follows a sequence of queries.
 ///
-/// Whatever stops it and whenever, it is one of the MT's meshes: no cracks, as manifold as the input.
+/// Whenever an update is interrupted, the mesh is one of the MT's: without cracks and as manifold
+/// as the input.
 #[derive(Clone, Debug)]
 pub struct Cut<'m> {
     front: Front<'m>,
     schedule: Schedule,
-    /// What was asked last, where it can be told whether it is asked again.
+    /// Identity of the last query, to recognize it when it comes again.
     last_key: Option<QueryKey>,
-    /// Nodes whose updates, and all below, are yet to be looked at.
+    /// Nodes whose updates, with all below, are still to be inspected.
     uninspected: VecDeque<u32>,
-    /// Updates that are wanted.
+    /// Updates that the criterion requires.
     to_split: Vec<u32>,
-    /// Updates that may be taken back.
+    /// Updates that may be undone.
     to_merge: Vec<u32>,
     hysteresis: Option<f64>,
 }
 
-/// The clock is read after so many looks, of some dozen nanoseconds each.
+/// Number of inspections, at a few dozen nanoseconds each, between two readings of the clock.
 const INSPECTIONS_PER_CLOCK: usize = 256;
 
-/// How much a [`Cut`] may do at once.
+/// Limits on the work of one [`Cut::update`].
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct UpdateLimits {
-    /// At most so many splits and merges; `None`: as many as it takes.
+    /// Largest number of splits and merges; `None` for no limit.
     pub changes: Option<usize>,
-    /// Nothing is begun after so long, and nothing is looked at after half of that. A question of
-    /// another kind forgets the schedule of the last one first: some nanoseconds a vertex that is there.
+    /// Time after which no further change is begun; inspections stop after half of it. A query of
+    /// another kind first clears the schedule of the last one, which takes a few nanoseconds per
+    /// vertex.
     pub time: Option<Duration>,
 }
 
-/// What a query did to a [`Cut`].
+/// Summary of the changes that an update made to a [`Cut`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct CutChange {
-    /// Vertices that were split.
+    /// Number of vertices split.
     pub splits: usize,
-    /// Vertices that were merged again.
+    /// Number of vertices merged.
     pub merges: usize,
-    /// Updates that were looked at.
+    /// Number of updates inspected.
     pub inspected: usize,
-    /// Whether the cut answers the query now; else there was no time.
+    /// True if the cut answers the query; false if a limit was reached first.
     pub done: bool,
 }
 
-/// A place in the list of triangles whose content changed.
+/// A slot in the list of triangles whose content has changed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Patch {
-    /// The place.
+    /// Index of the slot.
     pub slot: u32,
-    /// The triangle that was there, by its nodes.
+    /// Nodes of the triangle that was there.
     pub old: Option<[u32; 3]>,
-    /// The triangle that is there now.
+    /// Nodes of the triangle that is there now.
     pub new: Option<[u32; 3]>,
 }
 
 impl<'m> Cut<'m> {
-    /// The base mesh.
+    /// Starts at the base mesh.
     pub fn new(mt: &'m Implicit) -> Self {
         let mut this = Self {
             front: Front::new(mt),
@@ -94,21 +96,24 @@ impl<'m> Cut<'m> {
         this
     }
 
-    /// The answer to a query, from the base.
+    /// Refines the base mesh to the answer of a query.
+    /// # Errors
+    /// The query is invalid.
     pub fn at(mt: &'m Implicit, query: &Query<'_>) -> Result<Self, QueryError> {
         let mut cut = Self::new(mt);
         cut.update(query, &UpdateLimits::default())?;
         Ok(cut)
     }
 
-    /// Lets what is there stay until the tolerance is larger by this part of it, so that a query that
-    /// trembles changes nothing. None to begin with: then the answer does not depend on the way to it.
+    /// Sets the hysteresis: vertices stay split until the tolerance exceeds their error by this
+    /// fraction, so that a trembling query changes nothing. By default there is none, and the
+    /// answer does not depend on earlier queries.
     ///
     /// # Errors
-    /// What is below 0 or not finite.
+    /// The fraction is negative or not finite.
     pub fn set_hysteresis(&mut self, part: Option<f64>) -> Result<(), QueryError> {
         if let Some(value) = part.filter(|part| !(*part >= 0.0 && part.is_finite())) {
-            return Err(QueryError::BadLength { what: "a hysteresis", value });
+            return Err(QueryError::BadHysteresis(value));
         }
         self.hysteresis = part;
         self.schedule.forget();
@@ -116,15 +121,15 @@ impl<'m> Cut<'m> {
         Ok(())
     }
 
-    /// Goes from the answer of the last query to that of this one.
+    /// Moves from the answer of the last query to that of this one.
     ///
-    /// The result is the smallest cut that meets the query, or one on the way there if there was not
-    /// enough time; the next call goes on.
+    /// The result is the smallest cut that satisfies the query, or an intermediate one if a limit
+    /// was reached; the next call continues from there.
     ///
-    /// Cost: of what changes, where only the eye has moved of a camera that looks at everything, or
-    /// where the query is the last one; else of a look at every vertex besides.
+    /// Cost: proportional to the changes if the query is the last one again, or if only the eye of
+    /// a camera that looks at everything has moved. Otherwise every vertex is inspected as well.
     /// # Errors
-    /// A query that is none; the cut is as it was.
+    /// The query is invalid; the cut is unchanged.
     pub fn update(
         &mut self,
         query: &Query<'_>,
@@ -149,32 +154,32 @@ impl<'m> Cut<'m> {
         Ok(meter.change)
     }
 
-    /// How many faces there are.
+    /// Returns the number of faces.
     pub fn face_count(&self) -> usize {
         self.front.triangles.len()
     }
 
-    /// How many vertices there are.
+    /// Returns the number of vertices.
     pub fn vertex_count(&self) -> usize {
         self.front.vertex_count()
     }
 
-    /// How long a list of triangles by [`Patch::place`] has to be.
+    /// Returns the number of slots, which is the length of a list indexed by [`Patch::slot`].
     pub fn slots(&self) -> usize {
         self.front.triangles.slots()
     }
 
-    /// The triangles by place and nodes.
+    /// Iterates over the triangles by slot and nodes.
     pub fn triangles(&self) -> impl Iterator<Item = (u32, [u32; 3])> + '_ {
         self.front.triangles.iter()
     }
 
-    /// What the last update changed, in no order.
+    /// Iterates over the slots that the last update changed, in no particular order.
     pub fn patches(&self) -> impl Iterator<Item = Patch> + '_ {
         self.front.triangles.changes().map(|(slot, old, new)| Patch { slot, old, new })
     }
 
-    /// The mesh.
+    /// Returns the current mesh.
     pub fn level(&self) -> Level {
         self.front
             .mt
@@ -182,7 +187,8 @@ impl<'m> Cut<'m> {
     }
 }
 
-/// A query, and the tighter one by which what is there may stay.
+/// The criterion of a query, and a tighter one that applied updates have to fail before they are
+/// undone.
 struct Criteria<'f> {
     refine: Criterion<'f>,
     keep: Option<Criterion<'f>>,
@@ -196,14 +202,14 @@ impl<'f> Criteria<'f> {
         Ok(Self { refine, keep })
     }
 
-    /// Whether an update is wanted, and whether it may stay.
+    /// Returns whether an update is required, and whether it may stay.
     #[inline]
     fn wanted(&self, ball: &Ball) -> [bool; 2] {
         let is_wanted = self.refine.refines(ball);
         [is_wanted, is_wanted || self.keep.as_ref().is_some_and(|keep| keep.refines(ball))]
     }
 
-    /// From how far away an update is wanted as it is, or not.
+    /// Returns the distances of the viewpoint between which a decision holds.
     fn span(&self, ball: &Ball, wanted: [bool; 2]) -> Span {
         let reach = |need: &Criterion<'f>| need.viewpoint().and_then(|eye| eye.reach(ball));
         let Some(least) = reach(&self.refine) else { return Span::NEVER_TURNS };
@@ -215,17 +221,17 @@ impl<'f> Criteria<'f> {
         }
     }
 
-    /// Whether an update may stay.
+    /// Returns true if an applied update may stay.
     fn may_stay(&self, ball: &Ball) -> bool {
         self.keep.as_ref().unwrap_or(&self.refine).refines(ball)
     }
 }
 
-/// Counts what is done, and says when it is enough.
+/// Counts the work done against the limits.
 struct Meter {
     change: CutChange,
     most: usize,
-    /// When to stop, and before that when to stop looking.
+    /// Times at which to stop everything and, before that, to stop inspecting.
     until: Option<[Instant; 2]>,
 }
 
@@ -245,7 +251,7 @@ impl Meter {
             && self.until.is_none_or(|[until, _]| Instant::now() < until)
     }
 
-    /// Counts a look; whether there may be another.
+    /// Counts an inspection and returns true if another one is allowed.
     #[inline]
     fn may_inspect_more(&mut self) -> bool {
         self.change.inspected += 1;

@@ -1,15 +1,16 @@
-//! How the cut changes: what is wanted is split, and what is neither wanted nor needed is merged.
+//! Refinement and coarsening: required updates are applied, and those neither required nor depended
+//! on are undone.
 
 use super::front::VertexState;
 use super::{Criteria, Cut, Meter};
 use crate::implicit::Implicit;
 
 impl Cut<'_> {
-    /// Splits what is wanted, and what must be split for it.
+    /// Applies the queued updates with their dependencies.
     pub(super) fn refine(&mut self, criteria: &Criteria<'_>, meter: &mut Meter) {
         let mut stack = Vec::new();
         while let Some(update) = self.to_split.pop() {
-            // It may have been forced, or merged with all around it.
+            // It may have been forced already, or merged with its surroundings.
             if self.front.state(self.front.mt.parent(update)) != VertexState::Active {
                 continue;
             }
@@ -24,7 +25,7 @@ impl Cut<'_> {
         }
     }
 
-    /// Splits the last update of a chain, or finds what must come before it.
+    /// Applies the last update of a chain, or pushes the updates that have to come first.
     fn advance(
         &mut self,
         next: u32,
@@ -52,17 +53,17 @@ impl Cut<'_> {
         meter.change.splits += 1;
         let is_forced = !stack.is_empty();
         if is_forced && !criteria.may_stay(&mt.ball_at(next, node)) {
-            // It may go as soon as nothing holds it.
+            // It may go as soon as no update depends on it.
             self.to_merge.push(next);
         }
-        // What is around the whole is around its part, if the model has a certificate.
+        // In a certified model the neighbours of the whole are also those of its part.
         if mt.is_fused_with_child(next) && self.front.split(next + 1, stack) {
             self.inspect_children(next + 1, criteria);
         }
         self.inspect_children(next, criteria);
     }
 
-    /// Merges what is not wanted and not needed, and what that frees.
+    /// Undoes updates that are neither required nor depended on, and then those that become free.
     pub(super) fn coarsen(&mut self, criteria: &Criteria<'_>, meter: &mut Meter) {
         while meter.may_change_more() {
             let Some(update) = self.to_merge.pop() else { return };
@@ -83,7 +84,7 @@ impl Cut<'_> {
     }
 }
 
-/// The update that is glued to this one and goes first, or itself.
+/// Returns the first of two fused updates, or the update itself.
 fn outer(mt: &Implicit, update: u32) -> u32 {
     if mt.is_fused_with_parent(update) { update - 1 } else { update }
 }

@@ -1,102 +1,104 @@
-//! When to look at an update again: after the eye has travelled as far as it must before its need can
-//! turn.
+//! Schedule of the inspections: an update need not be inspected again before the viewpoint has
+//! travelled far enough to change its decision.
 //!
-//! A need turns where the eye crosses a sphere about the ball. Until then nothing has to be looked at,
-//! so a frame costs what is close to turning and not what is there.
+//! A decision changes where the viewpoint crosses a sphere about the ball. Until it could have done
+//! so the update is left alone, so the cost of a frame depends on the updates close to a change and
+//! not on the size of the mesh.
 
 use glam::Vec3;
 
 use crate::query::Viewpoint;
 
-/// A unit of the way has 2³⁰ of the finest steps.
+/// The finest step is 2⁻³⁰ units of distance.
 const FINEST_EXPONENT: u64 = 30;
 const PER_FINEST: f64 = (1u64 << FINEST_EXPONENT) as f64;
-/// How many octaves of leeway are told apart; what has more is looked at when that is used up.
+/// Number of octaves of slack; entries with more are inspected again when it is used up.
 const OCTAVES: usize = 48;
-/// Into how many steps an octave of leeway is parted: an entry is early by one of 16 to 32 at most.
+/// Steps per octave of slack: an entry is early by one part in 16 to 32 at most.
 const STEPS: i64 = 16;
 /// An octave's entries are up to 32 steps ahead.
 const RING: usize = 64;
-/// A longer way begins anew, in stored units: then what is added to it is not lost in it.
-const LONGEST: f64 = 1e3;
-/// Of the way and the distance: an entry is early by so much, for rounding.
+/// Distance, in stored units, after which the schedule starts anew, so that short steps are not
+/// lost in the sum.
+const LONGEST_PATH: f64 = 1e3;
+/// Fraction of the way and the distance by which an entry is early, to allow for rounding.
 const SLACK: f64 = 1e-12;
 
-/// An update that was looked at, with all that it takes to see that nothing has turned: most looks end
-/// there, and go nowhere else in memory.
+/// An inspected update with all that is needed to confirm its decision, so that most inspections
+/// touch no other memory.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct ScheduleEntry {
     pub(super) update: u32,
-    /// The node that it splits.
+    /// Node that the update splits.
     pub(super) node: u32,
     pub(super) center: [f32; 3],
-    /// Between which distances the eye sees nothing turn.
+    /// Distances between which the decision does not change.
     pub(super) span: Span,
 }
 
-/// More than the first and less than the second, rounded inwards.
+/// Open interval of distances, rounded inwards.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Span(f32, f32);
 
 impl Span {
     pub(super) const NEVER_TURNS: Self = Self(f32::NEG_INFINITY, f32::INFINITY);
 
-    /// While the eye is closer.
+    /// Distances less than the given one.
     pub(super) fn below(distance: f64) -> Self {
         Self::NEVER_TURNS.and_below(distance)
     }
 
-    /// While the eye is further away.
+    /// Distances greater than the given one.
     pub(super) fn above(distance: f64) -> Self {
-        // Infinity does not get larger.
+        // `next_up` leaves infinity as it is.
         Self((distance as f32).next_up(), f32::INFINITY)
     }
 
-    /// And closer than this.
+    /// Restricts the interval to distances less than the given one.
     pub(super) fn and_below(self, distance: f64) -> Self {
         let most = if distance.is_finite() { (distance as f32).next_down() } else { f32::INFINITY };
         Self(self.0, most)
     }
 }
 
-/// Updates by the way of the eye at which they are due.
+/// Updates by the length of the viewpoint's path at which they are due.
 ///
-/// An octave of leeway has steps of a length of its own, and a ring of lists, one for each step.
+/// Each octave of slack has its own step length and a ring buffer of lists, one per step.
 #[derive(Clone, Debug)]
 pub(super) struct Schedule {
-    eye: Option<Viewpoint>,
-    /// How far the eye has come.
-    way: f64,
+    viewpoint: Option<Viewpoint>,
+    /// Length of the path so far.
+    path: f64,
     rings: Vec<Vec<ScheduleEntry>>,
-    /// How many entries each octave has.
+    /// Number of entries in each octave.
     counts: [usize; OCTAVES],
-    /// What is due now.
+    /// Entries due now.
     pub(super) due: Vec<ScheduleEntry>,
 }
 
 impl Default for Schedule {
     fn default() -> Self {
         let rings = vec![Vec::new(); OCTAVES * RING];
-        Self { eye: None, way: 0.0, rings, counts: [0; OCTAVES], due: Vec::new() }
+        Self { viewpoint: None, path: 0.0, rings, counts: [0; OCTAVES], due: Vec::new() }
     }
 }
 
 impl Schedule {
-    /// Goes where the eye is now and collects what is due; false where it is another eye, or where it
-    /// is not the eye that matters: then all must be looked at.
-    pub(super) fn follow(&mut self, eye: Option<Viewpoint>) -> bool {
-        let last = std::mem::replace(&mut self.eye, eye);
-        let (Some(last), Some(eye)) = (last, eye) else { return false };
-        if last.slope != eye.slope {
+    /// Moves the viewpoint and collects the entries that are due. Returns false if the query is of
+    /// another kind, or the path too long, so that everything has to be inspected.
+    pub(super) fn follow(&mut self, viewpoint: Option<Viewpoint>) -> bool {
+        let last = std::mem::replace(&mut self.viewpoint, viewpoint);
+        let (Some(last), Some(viewpoint)) = (last, viewpoint) else { return false };
+        if last.slope != viewpoint.slope {
             return false;
         }
-        let from = self.way;
-        let step = last.at.distance(eye.at);
+        let from = self.path;
+        let step = last.at.distance(viewpoint.at);
         if step > 0.0 {
-            // Rather too far than not far enough, however many and short the steps are.
-            self.way = (self.way + step * (1.0 + SLACK)).next_up();
+            // Rounded up at every step, however many and short they are.
+            self.path = (self.path + step * (1.0 + SLACK)).next_up();
         }
-        if self.way.is_nan() || self.way > LONGEST {
+        if self.path.is_nan() || self.path > LONGEST_PATH {
             return false;
         }
         for octave in 0..OCTAVES {
@@ -107,61 +109,62 @@ impl Schedule {
         true
     }
 
-    /// Makes the next query look at everything.
+    /// Makes the next query inspect everything.
     pub(super) fn forget(&mut self) {
-        self.eye = None;
+        self.viewpoint = None;
     }
 
-    /// Takes out everything, and tells the nodes.
+    /// Removes all entries and reports their nodes.
     pub(super) fn clear(&mut self, mut out: impl FnMut(u32)) {
-        self.way = 0.0;
+        self.path = 0.0;
         self.counts = [0; OCTAVES];
         let all = self.rings.iter_mut().chain([&mut self.due]);
         all.flat_map(|list| list.drain(..)).for_each(|entry| out(entry.node));
     }
 
-    /// Enters an update that has just been looked at, if it may turn.
+    /// Schedules an update that has just been inspected. Returns false if its decision never
+    /// changes.
     pub(super) fn add(&mut self, entry: ScheduleEntry) -> bool {
-        let Some(leeway) = self.leeway(&entry) else { return false };
-        if leeway < f64::INFINITY {
-            self.enter(entry, leeway.max(0.0));
+        let Some(slack) = self.slack(&entry) else { return false };
+        if slack < f64::INFINITY {
+            self.enter(entry, slack.max(0.0));
         }
-        leeway < f64::INFINITY
+        slack < f64::INFINITY
     }
 
-    /// Enters an update again if it cannot have turned.
+    /// Reschedules an update and returns true, if its decision cannot have changed.
     #[inline]
     pub(super) fn add_again(&mut self, entry: ScheduleEntry) -> bool {
-        let leeway = self.leeway(&entry).filter(|leeway| *leeway > 0.0);
-        if let Some(leeway) = leeway {
-            self.enter(entry, leeway);
+        let slack = self.slack(&entry).filter(|slack| *slack > 0.0);
+        if let Some(slack) = slack {
+            self.enter(entry, slack);
         }
-        leeway.is_some()
+        slack.is_some()
     }
 
-    /// How far the eye may move before an update may turn.
+    /// Returns the distance that the viewpoint may move before the decision can change.
     #[inline]
-    fn leeway(&self, entry: &ScheduleEntry) -> Option<f64> {
-        let distance = self.eye?.at.distance(Vec3::from(entry.center).as_dvec3());
+    fn slack(&self, entry: &ScheduleEntry) -> Option<f64> {
+        let distance = self.viewpoint?.at.distance(Vec3::from(entry.center).as_dvec3());
         let Span(least, most) = entry.span;
-        let leeway = (distance - f64::from(least)).min(f64::from(most) - distance);
-        Some(leeway - SLACK * (distance + self.way))
+        let slack = (distance - f64::from(least)).min(f64::from(most) - distance);
+        Some(slack - SLACK * (distance + self.path))
     }
 
     #[inline]
-    fn enter(&mut self, entry: ScheduleEntry, leeway: f64) {
-        let steps = leeway * (PER_FINEST / STEPS as f64);
+    fn enter(&mut self, entry: ScheduleEntry, slack: f64) {
+        let steps = slack * (PER_FINEST / STEPS as f64);
         let octave = ((steps as i64).max(1).ilog2() as usize).min(OCTAVES - 1);
         let most = (2 * STEPS) as f64 / per_length(octave);
-        let at = step(self.way + leeway.min(most), octave);
+        let at = step(self.path + slack.min(most), octave);
         self.rings[slot(octave, at)].push(entry);
         self.counts[octave] += 1;
     }
 
-    /// Collects what became due on the way to here.
+    /// Collects the entries that became due since `from`.
     fn collect(&mut self, octave: usize, from: f64) {
-        let (from, to) = (step(from, octave), step(self.way, octave));
-        // Only the finest steps are so long that an entry may be in the one that it was made in.
+        let (from, to) = (step(from, octave), step(self.path, octave));
+        // Only in the finest octave can an entry be in the step in which it was added.
         let from = if octave == 0 { from } else { from + 1 };
         for at in from.max(to - RING as i64 + 1)..=to {
             let list = &mut self.rings[slot(octave, at)];
@@ -171,15 +174,15 @@ impl Schedule {
     }
 }
 
-/// How many of an octave's steps a unit of the way has: a power of two.
+/// Returns the number of steps of an octave per unit of distance, a power of two.
 #[inline]
 fn per_length(octave: usize) -> f64 {
     f64::from_bits((1023 + FINEST_EXPONENT - octave as u64) << 52)
 }
 
 #[inline]
-fn step(way: f64, octave: usize) -> i64 {
-    (way * per_length(octave)) as i64
+fn step(path: f64, octave: usize) -> i64 {
+    (path * per_length(octave)) as i64
 }
 
 #[inline]
@@ -194,12 +197,12 @@ mod tests {
     use super::*;
 
     #[test]
-    fn nobody_is_late_and_few_are_early() {
-        let eye = |x: f64| Some(Viewpoint { at: DVec3::new(x, 0.0, 0.0), slope: 0.01 });
+    fn no_entry_is_late_and_few_are_early() {
+        let viewpoint = |x: f64| Some(Viewpoint { at: DVec3::new(x, 0.0, 0.0), slope: 0.01 });
         let mut schedule = Schedule::default();
-        assert!(!schedule.follow(eye(0.0)), "the first look is at everything");
+        assert!(!schedule.follow(viewpoint(0.0)), "the first look is at everything");
         schedule.clear(|_| {});
-        // Update i turns when the eye has come to about x = i³ / 1000.
+        // The decision on update i changes once the viewpoint is at about x = i³ / 1000.
         let center = |i: u32| [(f64::from(i).powi(3) / 1000.0 + 1.0) as f32, 0.0, 0.0];
         let at = |i: u32| f64::from(center(i)[0]) - 1.0;
         let entry =
@@ -209,7 +212,7 @@ mod tests {
         let mut x = 0.0;
         for frame in 0..200 {
             x += 0.001 * f64::from(frame);
-            assert!(schedule.follow(eye(x)));
+            assert!(schedule.follow(viewpoint(x)));
             for ScheduleEntry { update, .. } in std::mem::take(&mut schedule.due) {
                 looks += 1;
                 if at(update) <= x {
@@ -219,26 +222,27 @@ mod tests {
             }
             assert!(schedule.rings.iter().flatten().all(|e| at(e.update) > x), "late at {x}");
         }
-        // Each about as often as its leeway has sixteenths to be early by, again and again.
+        // Each is inspected about as often as its slack, again and again, has sixteenths to be
+        // early by.
         assert!(looks < 60 * 12, "{looks}");
     }
 
     #[test]
-    fn a_long_way_swallows_no_short_steps() {
-        let eye = |x: f64| Some(Viewpoint { at: DVec3::new(x, 0.0, 0.0), slope: 0.01 });
+    fn a_long_path_swallows_no_short_steps() {
+        let viewpoint = |x: f64| Some(Viewpoint { at: DVec3::new(x, 0.0, 0.0), slope: 0.01 });
         let mut schedule = Schedule::default();
-        schedule.follow(eye(0.0));
+        schedule.follow(viewpoint(0.0));
         schedule.clear(|_| {});
         let start = 1.1e-7;
-        assert!(schedule.follow(eye(499.0)) && schedule.follow(eye(start)));
+        assert!(schedule.follow(viewpoint(499.0)) && schedule.follow(viewpoint(start)));
         let [from, to] = [Span::above(1.0), Span::below(1.0)].map(|span| [span.0, span.1]);
         assert!(from[0] > 1.0 && to[1] < 1.0, "rounded inwards");
         let center = [1.0 + 2.0 * f32::EPSILON, 0.0, 0.0];
         let entry = ScheduleEntry { update: 0, node: 0, center, span: Span::above(1.0) };
         assert!(schedule.add(entry));
-        // A leeway of 9e-9, in steps of which each is lost when it is added to so long a way.
+        // A slack of 9e-9, in steps that would each be lost if added to so long a path.
         let steps = (0..400_000).take_while(|&i| {
-            assert!(schedule.follow(eye(start + 5e-14 * f64::from(i))));
+            assert!(schedule.follow(viewpoint(start + 5e-14 * f64::from(i))));
             schedule.due.is_empty()
         });
         let steps = steps.count();
@@ -246,21 +250,24 @@ mod tests {
     }
 
     #[test]
-    fn a_way_that_is_too_long_begins_anew() {
-        let eye = |x: f64| Some(Viewpoint { at: DVec3::new(x, 0.0, 0.0), slope: 0.01 });
+    fn a_path_that_is_too_long_starts_anew() {
+        let viewpoint = |x: f64| Some(Viewpoint { at: DVec3::new(x, 0.0, 0.0), slope: 0.01 });
         let mut schedule = Schedule::default();
-        schedule.follow(eye(0.0));
-        assert!(schedule.follow(eye(0.5 * LONGEST)) && !schedule.follow(eye(2.0 * LONGEST)));
+        schedule.follow(viewpoint(0.0));
+        assert!(
+            schedule.follow(viewpoint(0.5 * LONGEST_PATH))
+                && !schedule.follow(viewpoint(2.0 * LONGEST_PATH))
+        );
         schedule.clear(|_| {});
-        assert!(schedule.follow(eye(2.5 * LONGEST)));
+        assert!(schedule.follow(viewpoint(2.5 * LONGEST_PATH)));
     }
 
     #[test]
-    fn another_slope_is_another_question() {
+    fn another_slope_is_another_query() {
         let mut schedule = Schedule::default();
-        let eye = Viewpoint { at: DVec3::ZERO, slope: 0.01 };
-        assert!(!schedule.follow(Some(eye)) && schedule.follow(Some(eye)));
-        assert!(!schedule.follow(Some(Viewpoint { slope: 0.02, ..eye })));
-        assert!(!schedule.follow(None) && !schedule.follow(Some(eye)));
+        let viewpoint = Viewpoint { at: DVec3::ZERO, slope: 0.01 };
+        assert!(!schedule.follow(Some(viewpoint)) && schedule.follow(Some(viewpoint)));
+        assert!(!schedule.follow(Some(Viewpoint { slope: 0.02, ..viewpoint })));
+        assert!(!schedule.follow(None) && !schedule.follow(Some(viewpoint)));
     }
 }

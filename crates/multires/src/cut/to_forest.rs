@@ -1,26 +1,26 @@
-//! The forest that a packed model could have been made of.
+//! Reconstruction of a forest from a packed model.
 
-use super::front::{Front, find};
+use super::front::{Front, resolve_wings};
 use super::triangles::Spoke;
 use crate::forest::by_level;
 use crate::forest::{Forest, NONE, Update};
 use crate::implicit::Implicit;
 
-/// Who is who in the forest.
+/// Maps between the numbers of the forest and those of the model.
 struct Numbers {
-    /// The forest's updates, first to last.
+    /// Model update of each forest update, first to last.
     updates: Vec<u32>,
-    /// The forest's node of each of the model's.
+    /// Forest node of each model node.
     nodes: Vec<u32>,
-    /// The model's leaves, which are the forest's first nodes.
+    /// Leaves of the model, which become the first nodes of the forest.
     leaves: Vec<u32>,
 }
 
 impl Forest {
-    /// A simplification that gives a model: its updates, the last to be made first.
+    /// Builds a forest that packs to the given model, which must be certified.
     ///
-    /// Every update is made once to see what is around it. Cost: linear. The model must have a
-    /// certificate.
+    /// Every update is applied once to see its ring.
+    /// Cost: linear.
     pub(crate) fn from_implicit(mt: &Implicit) -> Self {
         let numbers = Numbers::new(mt);
         let mut positions = vec![[0.0; 3]; mt.node_count()];
@@ -40,7 +40,7 @@ impl Forest {
             non_fan_splits: Default::default(),
         };
         let mut front = Front::new(mt);
-        // What it meets last is recorded first.
+        // Refinement meets the updates in reverse.
         let (mut rings, mut room, mut first) = (Vec::new(), Default::default(), Vec::new());
         for (u, &update) in numbers.updates.iter().enumerate().rev() {
             let is_split = front.split(update, &mut first);
@@ -72,7 +72,7 @@ impl Numbers {
         let mut updates = by_level(mt.update_count(), |update| {
             mt.level(if mt.is_fused_with_parent(update) { update - 1 } else { update })
         });
-        // The parts of one that is glued stay together, the inner one first.
+        // Fused updates stay together, the inner one first.
         let mut at = 0;
         while at < updates.len() {
             let is_fused_with_child = mt.is_fused_with_child(updates[at]);
@@ -89,14 +89,14 @@ impl Numbers {
         Self { updates, nodes, leaves }
     }
 
-    /// An update without its ring, by what was at its node before it was split.
+    /// Converts an update, except for its ring, given the star of its node before the split.
     fn update(&self, mt: &Implicit, update: u32, star: &[Spoke]) -> Update {
         let number = |node: u32| self.nodes[node as usize];
         let ball = mt.packed_ball(update, mt.parent(update));
         let wings = if mt.non_fan_split(update).is_some() {
             [None; 2]
         } else {
-            find(star, mt.wings(update))
+            resolve_wings(star, mt.wings(update))
         };
         Update {
             children: mt.children(update).map(number),
@@ -111,7 +111,8 @@ impl Numbers {
         }
     }
 
-    /// Appends those around what was split: first those whom a face follows, each in its order.
+    /// Appends the ring of a split: first the nodes that a face follows, then the others, each
+    /// sorted.
     fn append_ring(
         &self,
         star: &[Spoke],

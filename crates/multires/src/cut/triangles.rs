@@ -1,38 +1,38 @@
-//! The triangles of a cut, and those around each vertex.
+//! The triangles of a cut, with lists of corners around each vertex.
 //!
-//! A corner links to the next corner at the same vertex, so a change moves nothing. What changed since
-//! a mark is known: that is what a renderer is told.
+//! Each corner links to the next corner at the same vertex, so that a change moves no memory. Slots
+//! that changed since a mark are recorded for renderers.
 
 use crate::forest::NONE;
 
-/// A triangle that is not there.
+/// An empty slot.
 const HOLE: [u32; 3] = [NONE; 3];
 
-/// So far lists are searched for a triangle: only hubs have longer ones.
+/// Longest search in a list of corners; only hubs have longer lists.
 pub(super) const MAX_SEARCHED: usize = 128;
 
-/// Triangles by corners: corner `3 t + k` is the `k`-th of triangle `t`.
+/// Triangles by slot. Corner `3 t + k` is the `k`-th of triangle `t`.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Triangles {
     all: Vec<Triangle>,
     holes: Vec<u32>,
     mark: u32,
-    /// What was changed since the mark, as it was then.
+    /// Slots changed since the mark, with their content at that time.
     changed: Vec<(u32, [u32; 3])>,
 }
 
-/// On one line of cache: whoever meets one wants all of it.
+/// Aligned to a cache line, since all its fields are used together.
 #[derive(Clone, Copy, Debug)]
 #[repr(align(32))]
 struct Triangle {
     nodes: [u32; 3],
-    /// The next corner at each of the nodes.
+    /// Next corner at each of the nodes.
     next: [u32; 3],
-    /// The mark at which it was last changed.
+    /// Mark at which it was last changed.
     changed_at: u32,
 }
 
-/// A triangle at a vertex: the corner there, and the two nodes that follow.
+/// A triangle seen from a vertex: its corner there and the next two nodes.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Spoke {
     pub(super) corner: u32,
@@ -41,7 +41,7 @@ pub(super) struct Spoke {
 }
 
 impl Spoke {
-    /// The triangle.
+    /// Returns the triangle's slot.
     #[inline]
     pub(super) fn triangle(&self) -> u32 {
         self.corner / 3
@@ -49,34 +49,34 @@ impl Spoke {
 }
 
 impl Triangles {
-    /// How many there are.
+    /// Returns the number of triangles.
     pub(super) fn len(&self) -> usize {
         self.all.len() - self.holes.len()
     }
 
-    /// A triangle by its nodes.
+    /// Returns the nodes of a triangle.
     pub(super) fn nodes(&self, t: u32) -> [u32; 3] {
         self.all[t as usize].nodes
     }
 
-    /// Those there are, by their places and nodes.
+    /// Iterates over the triangles by slot and nodes.
     pub(super) fn iter(&self) -> impl Iterator<Item = (u32, [u32; 3])> + '_ {
         let all = self.all.iter().enumerate().map(|(t, triangle)| (t as u32, triangle.nodes));
         all.filter(|&(_, nodes)| nodes != HOLE)
     }
 
-    /// All places, also those without a triangle.
+    /// Returns the number of slots, including empty ones.
     pub(super) fn slots(&self) -> usize {
         self.all.len()
     }
 
-    /// Forgets what changed until now.
+    /// Starts a new record of changes.
     pub(super) fn mark(&mut self) {
         self.mark = self.mark.wrapping_add(1);
         self.changed.clear();
     }
 
-    /// What changed since the mark: the place, what was there, and what is there now.
+    /// Returns the slots changed since the mark, with their old and new content.
     pub(super) fn changes(
         &self,
     ) -> impl Iterator<Item = (u32, Option<[u32; 3]>, Option<[u32; 3]>)> {
@@ -85,13 +85,13 @@ impl Triangles {
         all.filter(|(_, was, is)| was != is).map(move |(t, was, is)| (t, real(was), real(is)))
     }
 
-    /// Appends what is around a vertex to `star`; `first` is its first corner.
+    /// Appends the star of a vertex to `star`, given its first corner.
     #[inline]
     pub(super) fn gather(&self, first: u32, star: &mut Vec<Spoke>) {
         star.extend(self.around(first));
     }
 
-    /// What is around a vertex, by its first corner.
+    /// Iterates over the star of a vertex, given its first corner.
     #[inline]
     pub(super) fn around(&self, first: u32) -> impl Iterator<Item = Spoke> + '_ {
         let mut corner = first;
@@ -104,15 +104,15 @@ impl Triangles {
         })
     }
 
-    /// Gives a corner to a vertex, whose first corner it becomes.
+    /// Inserts a corner at the head of a vertex's list.
     #[inline]
-    pub(super) fn give(&mut self, corner: u32, node: u32, first: &mut u32) {
-        let triangle = self.touch(corner / 3);
+    pub(super) fn attach(&mut self, corner: u32, node: u32, first: &mut u32) {
+        let triangle = self.record(corner / 3);
         triangle.nodes[corner as usize % 3] = node;
         triangle.next[corner as usize % 3] = std::mem::replace(first, corner);
     }
 
-    /// A place for a triangle whose corners are all to be given.
+    /// Returns a slot for a triangle whose corners are still to be inserted.
     pub(super) fn add(&mut self) -> u32 {
         if let Some(t) = self.holes.pop() {
             return t;
@@ -122,14 +122,14 @@ impl Triangles {
         self.all.len() as u32 - 1
     }
 
-    /// Takes a triangle away; its corners must be in nobody's list any more.
+    /// Frees the slot of a triangle that is in no list any more.
     pub(super) fn remove(&mut self, t: u32) {
-        self.touch(t).nodes = HOLE;
+        self.record(t).nodes = HOLE;
         self.holes.push(t);
     }
 
-    /// Takes a triangle's corner out of the list of another vertex that it is at; false where it is not
-    /// among so many.
+    /// Removes a triangle's corner from a vertex's list, or returns false if it is not among the
+    /// first `among`.
     pub(super) fn unlink(&mut self, t: u32, first: &mut u32, among: usize) -> bool {
         if *first / 3 == t {
             *first = self.after(*first);
@@ -147,9 +147,9 @@ impl Triangles {
         false
     }
 
-    /// Takes out of the list of a vertex a corner near its start, of a triangle without any of some
-    /// nodes.
-    pub(super) fn take(&mut self, first: &mut u32, without: [u32; 3]) -> Option<u32> {
+    /// Removes a corner near the start of a vertex's list whose triangle has none of the nodes
+    /// `without`.
+    pub(super) fn unlink_without(&mut self, first: &mut u32, without: [u32; 3]) -> Option<u32> {
         let (mut before, mut at) = (NONE, *first);
         for _ in 0..MAX_SEARCHED {
             if self.nodes(at / 3).iter().all(|node| !without.contains(node)) {
@@ -162,7 +162,7 @@ impl Triangles {
         None
     }
 
-    /// Puts another corner in the stead of one in the list of its vertex.
+    /// Puts corner `by` in the place of another in the list of its vertex.
     pub(super) fn replace(&mut self, corner: u32, by: u32, node: u32, first: &mut u32) {
         let next = self.after(corner);
         if *first == corner {
@@ -174,12 +174,12 @@ impl Triangles {
             }
             *self.after_mut(at) = by;
         }
-        let triangle = self.touch(by / 3);
+        let triangle = self.record(by / 3);
         triangle.nodes[by as usize % 3] = node;
         triangle.next[by as usize % 3] = next;
     }
 
-    /// The next corner at the same vertex.
+    /// Returns the next corner at the same vertex.
     #[inline]
     fn after(&self, corner: u32) -> u32 {
         self.all[corner as usize / 3].next[corner as usize % 3]
@@ -190,9 +190,9 @@ impl Triangles {
         &mut self.all[corner as usize / 3].next[corner as usize % 3]
     }
 
-    /// A triangle that is about to change.
+    /// Records a triangle before it changes.
     #[inline]
-    fn touch(&mut self, t: u32) -> &mut Triangle {
+    fn record(&mut self, t: u32) -> &mut Triangle {
         let triangle = &mut self.all[t as usize];
         if triangle.changed_at != self.mark {
             triangle.changed_at = self.mark;

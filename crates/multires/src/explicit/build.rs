@@ -1,12 +1,12 @@
-//! Contracts again, and keeps every triangle.
+//! Builds the explicit MT by replaying the contractions.
 
 use super::{Explicit, ExplicitTriangle, ExplicitUpdate};
 use crate::forest::Forest;
 
 impl Explicit {
-    /// All triangles that a simplification had at any time.
+    /// Collects every triangle that the simplification ever had.
     ///
-    /// Cost: linear, but for the stars of the vertices.
+    /// Cost: linear, apart from scanning the stars of vertices.
     pub fn new(forest: &Forest) -> Self {
         let mut stars = vec![Vec::new(); forest.positions.len()];
         let mut this = Self {
@@ -34,15 +34,16 @@ impl Explicit {
         this
     }
 
-    /// A triangle that a contraction makes, and its update refines.
+    /// Adds a triangle that is created by a contraction and removed again by the matching
+    /// refinement.
     fn add(&mut self, nodes: [u32; 3], refiner: Option<u32>, stars: &mut [Vec<u32>]) -> u32 {
         let id = self.triangles.len() as u32;
-        self.triangles.push(ExplicitTriangle { nodes, maker: None, refiner });
+        self.triangles.push(ExplicitTriangle { nodes, creator: None, refiner });
         nodes.iter().for_each(|&node| stars[node as usize].push(id));
         id
     }
 
-    /// Makes a forest's update of the triangles around its children.
+    /// Replays one contraction on the triangles around its children.
     fn contract(&mut self, forest: &Forest, of: usize, children: &[u32], stars: &mut [Vec<u32>]) {
         let id = self.updates.len() as u32;
         let node = forest.node(of) as u32;
@@ -53,7 +54,7 @@ impl Explicit {
         let mut coarse = Vec::new();
         for &triangle in &fine {
             let nodes = self.triangles[triangle as usize].nodes;
-            self.triangles[triangle as usize].maker = Some(id);
+            self.triangles[triangle as usize].creator = Some(id);
             for &other in nodes.iter().filter(|other| !children.contains(other)) {
                 stars[other as usize].retain(|&t| t != triangle);
             }
@@ -67,11 +68,11 @@ impl Explicit {
         self.updates.push(ExplicitUpdate { coarse, fine, needs: Vec::new(), ball });
     }
 
-    /// Finds what each update needs, from the triangles on its arcs.
+    /// Derives the dependencies of each update from the triangles on its arcs.
     fn link(&mut self) {
         for update in &mut self.updates {
-            let makers = update.coarse.iter().filter_map(|&t| self.triangles[t as usize].maker);
-            update.needs = makers.collect();
+            let creators = update.coarse.iter().filter_map(|&t| self.triangles[t as usize].creator);
+            update.needs = creators.collect();
             update.needs.sort_unstable();
             update.needs.dedup();
         }

@@ -1,4 +1,4 @@
-//! The two algorithms of extraction, as they were published.
+//! Static and dynamic extraction as published.
 
 use std::collections::{BTreeSet, VecDeque};
 
@@ -7,18 +7,20 @@ use crate::level::Level;
 use crate::query::Criterion;
 use crate::query::{Query, QueryError};
 
-/// A mesh out of an [`Explicit`] MT, which the next query changes.
+/// A mesh extracted from an [`Explicit`] MT that follows a sequence of queries.
 #[derive(Clone, Debug)]
 pub struct ExplicitCut<'m> {
     mt: &'m Explicit,
-    /// Which updates have been made.
+    /// True for each applied update.
     applied: Vec<bool>,
-    /// The triangles there are.
+    /// Triangles of the current mesh.
     present: BTreeSet<u32>,
 }
 
 impl Explicit {
-    /// The smallest mesh in which every triangle that meets the focus is good enough.
+    /// Returns the smallest mesh in which every triangle satisfies the query.
+    /// # Errors
+    /// The query is invalid.
     pub fn extract(&self, query: &Query<'_>) -> Result<Level, QueryError> {
         let mut cut = ExplicitCut::new(self);
         cut.refine(&Criterion::new(query, &self.frame)?);
@@ -28,7 +30,7 @@ impl Explicit {
 
 #[cfg(test)]
 impl Explicit {
-    /// The mesh where exactly these nodes are split, if that is a cut.
+    /// Returns the mesh in which exactly these nodes are split, if that is a cut.
     pub(crate) fn cut_of(&self, split: &BTreeSet<u32>) -> Option<Level> {
         let mut cut = ExplicitCut::new(self);
         let updates: Vec<u32> =
@@ -40,15 +42,18 @@ impl Explicit {
 }
 
 impl<'m> ExplicitCut<'m> {
-    /// The base mesh.
+    /// Starts at the base mesh.
     pub fn new(mt: &'m Explicit) -> Self {
-        let is_base = |&t: &u32| mt.triangles[t as usize].maker.is_none();
-        // What is never made and never refined is of all levels.
+        let is_base = |&t: &u32| mt.triangles[t as usize].creator.is_none();
+        // Triangles that are never created belong to the base; those never refined either are in
+        // all levels.
         let present = (0..mt.triangles.len() as u32).filter(is_base).collect();
         Self { mt, applied: vec![false; mt.updates.len()], present }
     }
 
-    /// Goes to the answer of another query from here.
+    /// Moves from the answer of the last query to that of this one.
+    /// # Errors
+    /// The query is invalid.
     pub fn update(&mut self, query: &Query<'_>) -> Result<(), QueryError> {
         let criterion = Criterion::new(query, &self.mt.frame)?;
         self.refine(&criterion);
@@ -56,7 +61,7 @@ impl<'m> ExplicitCut<'m> {
         Ok(())
     }
 
-    /// The mesh.
+    /// Returns the current mesh.
     pub fn level(&self) -> Level {
         let faces = self.present.iter().map(|&t| self.mt.triangles[t as usize].nodes);
         let place = |node: u32| self.mt.positions[node as usize];
@@ -64,13 +69,13 @@ impl<'m> ExplicitCut<'m> {
         Level::from_nodes(self.mt.frame, count, place, faces.collect()).with_exact(&self.mt.exact)
     }
 
-    /// Makes a single update with all that it needs.
+    /// Applies a single update with all its dependencies.
     #[cfg(test)]
     pub(crate) fn force(&mut self, update: u32) {
         self.apply(update);
     }
 
-    /// Static extraction: breadth first over triangles, from those there are.
+    /// Static extraction: a breadth-first search over triangles, starting from the current ones.
     fn refine(&mut self, criterion: &Criterion<'_>) {
         let mut queue: VecDeque<u32> = self.present.iter().copied().collect();
         while let Some(triangle) = queue.pop_front() {
@@ -83,7 +88,7 @@ impl<'m> ExplicitCut<'m> {
         }
     }
 
-    /// Makes an update after those that it needs; the triangles that all of them made.
+    /// Applies an update after its dependencies and returns the triangles they all create.
     fn apply(&mut self, update: u32) -> Vec<u32> {
         let mut made = Vec::new();
         let mut stack = vec![update];
@@ -106,7 +111,7 @@ impl<'m> ExplicitCut<'m> {
         made
     }
 
-    /// Takes back every update that nobody needs and without which the mesh is good enough still.
+    /// Undoes every update that no other depends on and that the criterion does not require.
     fn coarsen(&mut self, criterion: &Criterion<'_>) {
         let mut leaves: Vec<u32> = (0..self.applied.len() as u32).collect();
         while let Some(leaf) = leaves.pop() {

@@ -1,7 +1,7 @@
-//! The explicit MT: triangles stored, dependencies stored. The oracle for everything else.
+//! The explicit MT, with stored triangles and dependencies: the oracle for everything else.
 //!
-//! Every triangle of every level is there once, between two updates: the one that makes it and the one
-//! that takes it away for finer ones. That pair is the arc that it lies on. Nothing is clever here, and
+//! Every triangle of every level is stored once, between the update that creates it and the one
+//! that replaces it by finer ones; that pair is the arc it lies on. Nothing here is clever, and
 //! nothing is fast.
 
 mod build;
@@ -13,28 +13,28 @@ use crate::query::{Ball, Criterion};
 
 pub use extract::ExplicitCut;
 
-/// All triangles of all levels, and the updates between them.
+/// All triangles of all levels and the updates between them.
 #[derive(Clone, Debug)]
 pub struct Explicit {
     frame: Frame,
     positions: Vec<[f32; 3]>,
-    /// Of the input's vertices, where they are kept as they were.
+    /// Exact positions of the input's vertices, if the forest is lossless.
     exact: ExactPositions,
     updates: Vec<ExplicitUpdate>,
-    /// By their nodes.
+    /// Triangles, by their nodes.
     triangles: Vec<ExplicitTriangle>,
-    /// The update that splits each node; `None` for leaves.
+    /// Update that splits each node; `None` for leaves.
     splits: Vec<Option<u32>>,
 }
 
 /// A local change.
 #[derive(Clone, Debug)]
 struct ExplicitUpdate {
-    /// The triangles it takes away, all around one node.
+    /// Triangles that the update removes, the star of one node.
     coarse: Vec<u32>,
-    /// The triangles it makes instead, with the same boundary.
+    /// Triangles that replace them, with the same boundary.
     fine: Vec<u32>,
-    /// The updates that make its coarse triangles: they must come first.
+    /// Updates that create the coarse triangles and so have to come first.
     needs: Vec<u32>,
     ball: Ball,
 }
@@ -42,24 +42,24 @@ struct ExplicitUpdate {
 #[derive(Clone, Copy, Debug)]
 struct ExplicitTriangle {
     nodes: [u32; 3],
-    /// The update that makes it; `None` for those of the base.
-    maker: Option<u32>,
-    /// The update that refines it; `None` for the finest.
+    /// Update that creates it; `None` in the base mesh.
+    creator: Option<u32>,
+    /// Update that refines it; `None` in the finest mesh.
     refiner: Option<u32>,
 }
 
 impl Explicit {
-    /// How many updates there are.
+    /// Returns the number of updates.
     pub fn update_count(&self) -> usize {
         self.updates.len()
     }
 
-    /// How many triangles all levels have together.
+    /// Returns the number of triangles of all levels together.
     pub fn triangle_count(&self) -> usize {
         self.triangles.len()
     }
 
-    /// What it takes in memory: its vectors, as they are.
+    /// Returns the memory used by its vectors, in bytes.
     pub fn bytes(&self) -> usize {
         let lists = |u: &ExplicitUpdate| 4 * (u.coarse.len() + u.fine.len() + u.needs.len());
         size_of_val(&self.positions[..])
@@ -70,8 +70,9 @@ impl Explicit {
             + size_of_val(&self.splits[..])
     }
 
-    /// Whether a triangle is good enough for a query: no corner's own update is wanted. The triangle
-    /// lies in the ball of one of them, that of the update that refines it.
+    /// Returns true if a triangle satisfies the criterion: no update that splits one of its corners
+    /// is required. The triangle lies in the ball of one of them, that of the update that refines
+    /// it.
     fn is_valid(&self, criterion: &Criterion<'_>, triangle: u32) -> bool {
         let wanted = |&node: &u32| {
             let update = self.splits[node as usize];

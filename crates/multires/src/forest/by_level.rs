@@ -1,7 +1,6 @@
-//! Updates in the order of their levels.
+//! Counting sort of updates by level.
 
-/// So many updates in the order of some number that has to do with their levels; what is alike in their
-/// own order.
+/// Returns the indices `0..count` sorted by the number that `number` gives each, in a stable order.
 ///
 /// Cost: linear.
 pub(crate) fn by_level(count: usize, number: impl Fn(u32) -> u16) -> Vec<u32> {

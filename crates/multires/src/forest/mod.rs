@@ -1,4 +1,4 @@
-//! What a simplification did, as a forest: the source that both encodings are made of.
+//! The contraction forest recorded from a simplification, from which both encodings are built.
 
 mod by_level;
 mod recorder;
@@ -21,107 +21,113 @@ pub(crate) use by_level::by_level;
 pub(crate) use recorder::MAX_RANKED;
 pub use recorder::Recorder;
 
-/// Levels stay below this.
+/// Upper bound of levels, exclusive.
 pub(crate) const MAX_LEVELS: u16 = 1 << 15;
 
-/// No node, or no update.
+/// Marks a missing node or update.
 pub(crate) const NONE: u32 = u32::MAX;
 
-/// All contractions of a simplification, first to last.
+/// The full sequence of contractions of a simplification, first to last.
 ///
-/// Nodes are the vertices of all levels: the input's are the leaves, numbered as there; update `u`
-/// makes node `vertices + u` of its children. Refining undoes updates, last to first.
+/// Nodes are the vertices of all levels. The input's vertices are the leaves and keep their
+/// numbers; update `u` contracts its two children into node `vertices + u`. Refinement undoes
+/// updates, last to first.
 #[derive(Clone, Debug)]
 pub struct Forest {
     pub(crate) frame: Frame,
-    /// What the updates' errors are.
+    /// Meaning of the updates' errors.
     pub(crate) error_kind: ErrorKind,
-    /// How many leaves, also those that no face uses.
+    /// Number of leaves, including those that no face uses.
     pub(crate) vertices: usize,
-    /// Of every node, in stored units.
+    /// Position of every node, in stored units.
     pub(crate) positions: Vec<[f32; 3]>,
-    /// Of leaves, where the input is kept to the bit.
+    /// Exact positions of the leaves, if the forest is lossless.
     pub(crate) exact: ExactPositions,
     pub(crate) updates: Vec<Update>,
-    /// The nodes around each update's node just after its contraction, one update after the other;
-    /// where the fan is open, its last node is the last.
+    /// Rings of all updates, concatenated: the nodes around an update's node just after its
+    /// contraction. If the fan is open, the node that no face follows comes last.
     pub(crate) rings: Vec<u32>,
-    /// The faces that the simplification began with, by leaves.
+    /// Faces of the input, by leaves.
     pub(crate) faces: Vec<[u32; 3]>,
-    /// The update that brings each face back; [`NONE`] for those of the base.
+    /// Update whose refinement creates each face; [`NONE`] for faces of the base mesh.
     pub(crate) created_by: Vec<u32>,
-    /// What wings cannot tell, by update.
+    /// Splits that wings cannot describe, by update.
     pub(crate) non_fan_splits: BTreeMap<u32, NonFanSplit>,
 }
 
-/// An update whose faces do not part at wings: the surface is not manifold there, or not oriented.
+/// Explicit faces of a split whose star is not divided at two wings, because the surface is
+/// non-manifold or not consistently oriented there.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct NonFanSplit {
-    /// The two other nodes of each face that its second child takes, as they follow it.
+    /// Faces that go to the second child, each by its two other nodes in order.
     pub(crate) second: Vec<[u32; 2]>,
-    /// The faces that it brings.
+    /// Faces that the split creates.
     pub(crate) created_faces: Vec<[u32; 3]>,
 }
 
-/// A contraction of an edge; see the notes for what its numbers promise.
+/// An edge contraction. docs/notes/multires.md states the invariants of its fields.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Update {
-    /// The nodes that become one. The second's faces are one run of the fan around the new node.
+    /// Nodes that are contracted. The faces of the second form one run of the fan around the new
+    /// node.
     pub(crate) children: [u32; 2],
-    /// The nodes where that run starts and where it ends, counter-clockwise; [`NONE`] for an end on
-    /// the boundary. Both are `NONE` where an [`Odd`] tells instead.
+    /// Nodes where that run starts and ends, counter-clockwise; [`NONE`] for an end on the
+    /// boundary. Both are `NONE` if a [`NonFanSplit`] describes the faces instead.
     pub(crate) wings: [u32; 2],
-    /// Where its ring starts.
+    /// Start of its ring in [`Forest::rings`].
     pub(crate) ring: u32,
-    /// Above those of its children and of all around; below 2¹⁵.
+    /// Greater than the levels of its children and of its ring, and below 2¹⁵.
     pub(crate) level: u16,
-    /// Of its coarse side, never less than that of an update that needs it.
+    /// Error of its coarse side, at least the error of every update that depends on it.
     pub(crate) error: Length16,
-    /// Of a ball about its node, around both its sides and the balls of its children.
+    /// Radius of a ball about its node that holds both sides and its children's balls.
     pub(crate) radius: Length16,
-    /// Its fan is open: it has a last node with no face behind.
+    /// True if its fan is open, so that no face follows the last node of its ring.
     pub(crate) is_open: bool,
-    /// The first child's faces are one run too: the two could change places.
+    /// True if the first child's faces form one run as well, so that the children could be swapped.
     pub(crate) children_swappable: bool,
-    /// It and the update of its first child are one, the contraction of a face.
+    /// True if it forms one face contraction together with its first child's update.
     pub(crate) fused_with_child: bool,
 }
 
-/// Why there is no multiresolution model of a mesh.
+/// Reasons why no multiresolution model can be built from a mesh.
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum BuildError {
-    /// It cannot be simplified.
+    /// The mesh cannot be simplified.
     #[error(transparent)]
     Simplify(#[from] SimplifyError),
-    /// A chain of updates that need each other is too long.
-    #[error("some update needs a chain of more than {MAX_LEVELS} others")]
+    /// The dependency graph of the updates is too deep.
+    #[error("the updates depend on each other in a chain of more than {MAX_LEVELS}")]
     TooDeep,
-    /// More vertices than are numbered.
-    #[error("the mesh has too many vertices: about 2^29 can be numbered")]
+    /// The mesh has more vertices than can be numbered.
+    #[error("the mesh has too many vertices: about 2^29 are supported")]
     TooLarge,
-    /// Components vanished: nothing would bring them back.
-    #[error("components vanished; build without letting them")]
+    /// Components vanished, and no update could bring them back.
+    #[error("components vanished, which no update can undo: simplify with `vanish_below: None`")]
     Vanished,
-    /// Some surface was contracted before the recorder was there.
-    #[error("the simplification was not recorded from its start")]
+    /// The recorder was attached after the first contraction.
+    #[error("the recorder missed the start of the simplification")]
     NotFromStart,
 }
 
 impl Forest {
-    /// Simplifies a mesh as far as its method goes and records how.
+    /// Simplifies a mesh to exhaustion and records every contraction.
     ///
-    /// Positions only: attributes are left behind. Components do not vanish, whatever the options say.
+    /// Only positions are kept; attributes are dropped. Components never vanish, whatever the
+    /// options say.
     /// # Errors
-    /// A mesh that simplification does not take.
+    /// The mesh cannot be simplified.
     pub fn new(mesh: &Mesh, options: &Options) -> Result<Self, BuildError> {
         Self::by(mesh, options, Recorder::new)
     }
 
-    /// The same, which keeps the positions of the mesh to the bit: levels have those of its vertices, and
-    /// rounded ones where some have become one. No error is 0, so that to ask for none is to ask for the
-    /// mesh. 24 bytes a vertex, and two bits a node.
+    /// Simplifies a mesh to exhaustion and keeps the exact positions of its vertices.
+    ///
+    /// Levels show an uncontracted input vertex exactly where it was, and rounded positions
+    /// elsewhere. No error is zero, so a tolerance of zero returns the input mesh. Costs 24 bytes
+    /// per vertex and two bits per node more.
     /// # Errors
-    /// As [`Forest::new`].
+    /// As for [`Forest::new`].
     pub fn lossless(mesh: &Mesh, options: &Options) -> Result<Self, BuildError> {
         Self::by(mesh, options, Recorder::lossless)
     }
@@ -138,60 +144,61 @@ impl Forest {
         recorder.into_forest()
     }
 
-    /// How many faces the finest level has.
+    /// Returns the number of faces of the finest level.
     pub fn full_faces(&self) -> usize {
         self.faces.len()
     }
 
-    /// How many contractions of an edge there were; that of a face counts as two.
+    /// Returns the number of edge contractions; a face contraction counts as two.
     pub fn update_count(&self) -> usize {
         self.updates.len()
     }
 
-    /// What the errors of its updates are.
+    /// Returns the meaning of the updates' errors.
     pub fn error_kind(&self) -> ErrorKind {
         self.error_kind
     }
 
-    /// The node that an update makes.
+    /// Returns the node that an update contracts its children into.
     #[inline]
     pub(crate) fn node(&self, update: usize) -> usize {
         self.vertices + update
     }
 
-    /// The update that made a node; none for a leaf.
+    /// Returns the update whose contraction made a node, or `None` for a leaf.
     #[inline]
     pub(crate) fn update_of(&self, node: u32) -> Option<usize> {
         (node as usize).checked_sub(self.vertices)
     }
 
-    /// The nodes around an update's node just after its contraction.
+    /// Returns the nodes around an update's node just after its contraction.
     pub(crate) fn ring(&self, update: usize) -> &[u32] {
         let end = self.updates.get(update + 1).map_or(self.rings.len(), |next| next.ring as usize);
         &self.rings[self.updates[update].ring as usize..end]
     }
 
-    /// What an update's need is judged by.
+    /// Returns the ball and error by which queries judge an update.
     pub(crate) fn ball(&self, update: usize) -> Ball {
         let (radius, error) = (self.updates[update].radius, self.error(update));
         PackedBall { center: self.positions[self.node(update)], radius, error }.unpack()
     }
 
-    /// How far off an update's coarse side is. What changes no surface takes vertices away still: where
-    /// the input is kept no error is 0, and to ask for none is to ask for every vertex.
+    /// Returns the error of an update's coarse side. A contraction that leaves the surface
+    /// unchanged still removes a vertex, so errors of a lossless forest are at least [`MIN_ERROR`]
+    /// and a tolerance of zero asks for every vertex.
     #[inline]
     pub(crate) fn error(&self, update: usize) -> Length16 {
         let error = self.updates[update].error;
         if self.exact.is_lossless() { error.max(MIN_ERROR) } else { error }
     }
 
-    /// Where a node is in stored units: to the bit if that is kept.
+    /// Returns the position of a node in stored units, exact if it is known.
     pub(crate) fn exact_stored(&self, node: u32) -> DVec3 {
         let rounded = || Vec3::from(self.positions[node as usize]).as_dvec3();
         self.exact.get(node).map_or_else(rounded, |exact| self.frame.point(exact.into()))
     }
 
-    /// The update that contracts each node; [`NONE`] for roots.
+    /// Returns the update that contracts each node, or [`NONE`] for roots.
     pub(crate) fn parents(&self) -> Vec<u32> {
         let mut parents = vec![NONE; self.positions.len()];
         for (u, update) in self.updates.iter().enumerate() {

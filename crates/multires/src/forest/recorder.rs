@@ -1,8 +1,8 @@
-//! Writes the forest down while the engine contracts.
+//! Records the contraction forest while the engine runs.
 //!
-//! What must hold along every dependency is made to hold here, on the way up, in constant time a
-//! neighbour: an update comes after all that need it, so each vertex carries what those around it
-//! ask of the update that will contract it.
+//! Everything that must be monotone along dependencies is made so here, on the way up and in
+//! constant time per neighbour. An update is recorded before the updates it depends on, so each
+//! vertex carries the requirements of its neighbours to the update that will contract it.
 
 use std::collections::BTreeMap;
 
@@ -15,37 +15,37 @@ use crate::frame::{Frame, Length16};
 use crate::pack::ExactPositions;
 use crate::query::SLACK;
 
-/// An observer of a [`Simplifier`], there from its first contraction on.
+/// Observer that records a [`Simplifier`] from its first contraction on.
 #[derive(Debug)]
 pub struct Recorder {
     forest: Forest,
-    /// By vertex of the input: what stands there now.
-    now: Vec<LiveNode>,
-    /// By face of the input: its place among the forest's faces, or [`NONE`].
+    /// Live node by input vertex.
+    live: Vec<LiveNode>,
+    /// Index among the forest's faces by input face, or [`NONE`].
     place: Vec<u32>,
-    /// How many faces are left.
+    /// Number of faces left.
     live_faces: usize,
-    /// The next edges are those of a face: how many are to come.
-    of_face: u8,
-    trouble: Option<BuildError>,
+    /// Number of edge contractions still to come of a face contraction.
+    face_edges_left: u8,
+    failure: Option<BuildError>,
 }
 
-/// A node that stands, and what is asked of the update that will contract it.
+/// A live node, and what the update that contracts it has to satisfy.
 #[derive(Clone, Copy, Debug)]
 struct LiveNode {
     node: u32,
-    /// Its update's; 0 for a leaf.
+    /// Level of its update; 0 for a leaf.
     level: u16,
-    /// The greatest error of the updates that will need it to be split.
+    /// Greatest error of the recorded updates that depend on the split creating this node.
     error: Length16,
     radius: Length16,
 }
 
-/// Wings are stored as ranks among so many at most.
+/// Largest ring within which wings are stored as ranks.
 pub(crate) const MAX_RANKED: usize = 250;
 
 impl Recorder {
-    /// Ready to observe; nothing must have been contracted yet.
+    /// Attaches to a simplifier, which must not have contracted anything yet.
     pub fn new(simplifier: &Simplifier<'_>) -> Self {
         let surface = simplifier.surface();
         let vertices = surface.vertex_count();
@@ -66,11 +66,11 @@ impl Recorder {
         let mut positions = Vec::with_capacity(2 * vertices);
         positions.extend((0..vertices).map(at));
         Self {
-            now: (0..vertices).map(standing).collect(),
+            live: (0..vertices).map(standing).collect(),
             place,
             live_faces: faces.len(),
-            of_face: 0,
-            trouble: None,
+            face_edges_left: 0,
+            failure: None,
             forest: Forest {
                 frame,
                 error_kind: ErrorKind::Estimate,
@@ -86,7 +86,8 @@ impl Recorder {
         }
     }
 
-    /// The same, which keeps the positions of all vertices to the bit ([`Forest::lossless`]).
+    /// Attaches to a simplifier and keeps the exact positions of all vertices, as
+    /// [`Forest::lossless`] does.
     pub fn lossless(simplifier: &Simplifier<'_>) -> Self {
         let mut this = Self::new(simplifier);
         let surface = simplifier.surface();
@@ -97,21 +98,21 @@ impl Recorder {
         this
     }
 
-    /// What was recorded.
+    /// Returns the recorded forest.
     /// # Errors
-    /// What has made it useless on the way.
+    /// What made the record unusable on the way.
     pub fn into_forest(self) -> Result<Forest, BuildError> {
-        self.trouble.map_or(Ok(self.forest), Err)
+        self.failure.map_or(Ok(self.forest), Err)
     }
 
-    fn is_in_step(&mut self, surface: &Surface) -> bool {
+    fn is_complete(&mut self, surface: &Surface) -> bool {
         if surface.live_faces() != self.live_faces {
-            self.trouble.get_or_insert(BuildError::NotFromStart);
+            self.failure.get_or_insert(BuildError::NotFromStart);
         }
-        self.trouble.is_none()
+        self.failure.is_none()
     }
 
-    /// The numbers of an update, and what it asks of those around.
+    /// Records an update, and passes its requirements on to its ring.
     fn record(
         &mut self,
         hood: &Neighbourhood,
@@ -121,29 +122,29 @@ impl Recorder {
     ) {
         let owner = run.map_or(1 - placed.kept, |run| run.owner);
         let [first, second] = [1 - owner, owner].map(|i| hood.contracted()[i]);
-        let both = [self.now[first.index()], self.now[second.index()]];
+        let both = [self.live[first.index()], self.live[second.index()]];
         let ring = || hood.ring().iter().map(|r| r.id);
-        let below = ring().map(|v| self.now[v.index()].level).max().unwrap_or(0);
+        let below = ring().map(|v| self.live[v.index()].level).max().unwrap_or(0);
         let level = below.max(both[0].level).max(both[1].level) + 1;
         if level == MAX_LEVELS {
-            self.trouble = Some(BuildError::TooDeep);
+            self.failure = Some(BuildError::TooDeep);
             return;
         }
         let Ok(start) = u32::try_from(self.forest.rings.len()) else {
-            self.trouble = Some(BuildError::TooLarge);
+            self.failure = Some(BuildError::TooLarge);
             return;
         };
         let radius = self.radius(hood, placed, &both);
-        let Self { forest, now, .. } = self;
+        let Self { forest, live, .. } = self;
         let position = forest.frame.store(placed.position);
         let own = Length16::up(forest.frame.length(placed.error_estimate));
         let error = own.max(both[0].error).max(both[1].error);
-        forest.rings.extend(ring().map(|v| now[v.index()].node));
+        forest.rings.extend(ring().map(|v| live[v.index()].node));
         if let Some(end) = open_end {
             forest.rings[start as usize..].swap(end, hood.ring().len() - 1);
         }
         let wing = |place: Option<usize>| {
-            place.map_or(NONE, |place| now[hood.ring()[place].id.index()].node)
+            place.map_or(NONE, |place| live[hood.ring()[place].id.index()].node)
         };
         let update = Update {
             children: both.map(|s| s.node),
@@ -153,45 +154,45 @@ impl Recorder {
             error,
             radius,
             is_open: open_end.is_some(),
-            children_swappable: run.is_some_and(|run| run.turned().takes_all(hood)),
-            fused_with_child: self.of_face == 1
+            children_swappable: run.is_some_and(|run| run.other_end().holds_its_faces(hood)),
+            fused_with_child: self.face_edges_left == 1
                 && both[0].node as usize + 1 == forest.positions.len(),
         };
         let node = forest.positions.len() as u32;
         forest.updates.push(update);
         forest.positions.push(position.into());
         if update.fused_with_child {
-            // One update of two contractions is needed as a whole.
+            // The two contractions of a face are judged as one.
             let inner = forest.updates.len() - 2;
             (forest.updates[inner].error, forest.updates[inner].radius) = (error, radius);
         }
         for v in ring() {
-            let standing = &mut now[v.index()];
+            let standing = &mut live[v.index()];
             standing.error = standing.error.max(error);
         }
         let kept = hood.contracted()[placed.kept];
-        now[kept.index()] = LiveNode { node, level, error, radius };
+        live[kept.index()] = LiveNode { node, level, error, radius };
         for dying in hood.dying() {
             forest.created_by[self.place[dying.face.index()] as usize] =
                 node - forest.vertices as u32;
         }
     }
 
-    /// Of a ball about the new node, around its ring and what became one, with the balls of that; around
-    /// vertices of the input where they are kept to the bit, not where they are rounded to.
+    /// Returns the radius of the update's ball: about the new node, around its ring and the balls
+    /// of both children, and around exact positions where they are known.
     fn radius(&self, hood: &Neighbourhood, placed: &Placed, both: &[LiveNode; 2]) -> Length16 {
         let center = self.forest.frame.store(placed.position).as_dvec3();
         let reach = |node: u32| center.distance_squared(self.forest.exact_stored(node));
-        let ring = hood.ring().iter().map(|r| reach(self.now[r.id.index()].node));
+        let ring = hood.ring().iter().map(|r| reach(self.live[r.id.index()].node));
         let ring = ring.fold(0.0, f64::max).sqrt();
         let balls = both.iter().map(|s| reach(s.node).sqrt() + s.radius.get());
         Length16::up(balls.fold(ring, f64::max) * SLACK)
     }
 
-    /// Keeps what wings cannot tell.
-    fn write_out(&mut self, surface: &Surface, hood: &Neighbourhood, owner: usize) {
-        let Self { forest, now, .. } = self;
-        let node = |v: VertexId| now[v.index()].node;
+    /// Keeps the faces of a split that wings cannot describe.
+    fn record_non_fan(&mut self, surface: &Surface, hood: &Neighbourhood, owner: usize) {
+        let Self { forest, live, .. } = self;
+        let node = |v: VertexId| live[v.index()].node;
         let own = hood.spokes().iter().filter(|spoke| spoke.owner() == owner);
         let around =
             own.map(|spoke| [spoke.a, spoke.b].map(|at| node(hood.ring()[at as usize].id)));
@@ -205,30 +206,30 @@ impl Recorder {
 
 impl Observe for Recorder {
     fn face(&mut self) {
-        self.of_face = 2;
+        self.face_edges_left = 2;
     }
 
     fn before(&mut self, surface: &Surface, hood: &Neighbourhood, placed: &Placed) {
-        if !self.is_in_step(surface) {
+        if !self.is_complete(surface) {
             return;
         }
         self.live_faces -= hood.dying().len();
         let fan = open_end(hood);
         let run = fan.and_then(|_| Run::of(surface, hood, placed.kept));
         if run.is_none() {
-            self.write_out(surface, hood, 1 - placed.kept);
+            self.record_non_fan(surface, hood, 1 - placed.kept);
         }
         self.record(hood, placed, run.as_ref(), fan.flatten());
-        self.of_face = self.of_face.saturating_sub(1);
+        self.face_edges_left = self.face_edges_left.saturating_sub(1);
     }
 
     fn vanish(&mut self, _: &Surface, _: &[FaceId]) {
-        self.trouble.get_or_insert(BuildError::Vanished);
+        self.failure.get_or_insert(BuildError::Vanished);
     }
 }
 
-/// The place in the ring of the one node behind which no face follows, if there is one: the fan is
-/// open there. `None` where that does not describe the faces that are left, or they are too many.
+/// Returns the ring index of the node that no face follows, at which the fan is open, or an inner
+/// `None` for a closed fan. Returns an outer `None` if the remaining faces are no fan, or too many.
 fn open_end(hood: &Neighbourhood) -> Option<Option<usize>> {
     let around = hood.ring().len();
     if around > MAX_RANKED || around > hood.spokes().len() + 1 {
@@ -243,38 +244,37 @@ fn open_end(hood: &Neighbourhood) -> Option<Option<usize>> {
     Some(followed[..around].iter().position(|&followed| !followed))
 }
 
-/// Which of the two ends of an edge has its faces in one run of the new fan, and between which places
-/// of the ring.
+/// Contiguous run of the new fan that holds exactly the faces of one end of the edge.
 struct Run {
     owner: usize,
-    /// Its start and its end, counter-clockwise; none where it starts or ends on the boundary.
+    /// Ring indices of its start and its end, counter-clockwise; `None` at the boundary.
     wings: [Option<usize>; 2],
 }
 
 impl Run {
-    /// Preferably the end that goes. None where neither has, as next to an edge of three faces or
-    /// where faces look to different sides.
+    /// Finds the run of one end, the removed one if possible. Returns `None` if neither end has
+    /// one, as next to an edge of three faces or where orientations disagree.
     fn of(surface: &Surface, hood: &Neighbourhood, kept: usize) -> Option<Self> {
         let &[v0, v1] = &hood.contracted()[..] else { return None };
         [1 - kept, kept].into_iter().find_map(|owner| {
             let ends = if owner == 1 { [v0, v1] } else { [v1, v0] };
             let run = Self { owner, wings: wings(surface, hood, ends)? };
-            run.takes_all(hood).then_some(run)
+            run.holds_its_faces(hood).then_some(run)
         })
     }
 
-    /// The other end's, if its faces are one run too.
-    fn turned(&self) -> Self {
+    /// Returns the run of the other end, assuming that its faces form one.
+    fn other_end(&self) -> Self {
         Self { owner: 1 - self.owner, wings: [self.wings[1], self.wings[0]] }
     }
 
-    /// Whether its end's faces are the run, and no others.
-    fn takes_all(&self, hood: &Neighbourhood) -> bool {
+    /// Returns true if the run holds exactly the faces of its end.
+    fn holds_its_faces(&self, hood: &Neighbourhood) -> bool {
         let own = hood.spokes().iter().filter(|spoke| spoke.owner() == self.owner).count();
         self.length(hood) == Some(own)
     }
 
-    /// How many faces a walk along the run meets before it ends; none where it meets others.
+    /// Returns the number of faces along the run, or `None` if it meets faces of the other end.
     fn length(&self, hood: &Neighbourhood) -> Option<usize> {
         let [start, end] = self.wings;
         let (mut at, stop, backwards) = match (start, end) {
@@ -298,7 +298,8 @@ impl Run {
     }
 }
 
-/// Where the faces of the second end start and end, by the turn of the faces that go.
+/// Returns the ring indices between which the second end's faces lie, from the orientation of the
+/// removed faces.
 fn wings(
     surface: &Surface,
     hood: &Neighbourhood,

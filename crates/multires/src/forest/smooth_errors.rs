@@ -1,30 +1,32 @@
-//! Estimates drawn half way to what is usual when their contraction's turn comes.
+//! Isotonic smoothing of error estimates.
 
 use crate::bounds::ErrorKind;
 use crate::forest::Forest;
 use crate::frame::Length16;
 
 impl Forest {
-    /// Draws estimates of errors together: each becomes the geometric mean of itself and of what is usual
-    /// at its place in the sequence of contractions.
+    /// Smooths the error estimates: each becomes the geometric mean of itself and of the trend at
+    /// its place in the contraction sequence.
     ///
-    /// A simplification contracts first what adds least to the mean error; estimates are of the greatest.
-    /// A cut to one tolerance keeps places of great errors that simplifying straight would have given up
-    /// long before, and pays with its mean. Evened out, it takes fewer faces to the same mean; a few
-    /// places are further off than the tolerance. The notes have figures. Errors stay monotone along
-    /// needs. Bounds are left as they are.
+    /// Simplification contracts first what adds least to the mean error, while estimates bound the
+    /// maximum. A cut at one tolerance therefore keeps small places of great error that plain
+    /// simplification would have given up long before, and pays for it in faces. Smoothed, a cut
+    /// needs fewer faces for the same mean error; a few places exceed the tolerance.
+    /// docs/notes/multires.md has figures. Errors stay monotone along dependencies. Proven bounds
+    /// are left unchanged.
     ///
     /// Cost: linear.
     pub fn smooth_errors(&mut self) {
         if self.error_kind == ErrorKind::Bound {
             return;
         }
-        let usual = rising(self.updates.iter().map(|update| update.error.get().max(LEAST).ln()));
-        for (u, usual) in usual.into_iter().enumerate() {
+        let trend =
+            isotonic(self.updates.iter().map(|update| update.error.get().max(ERROR_FLOOR).ln()));
+        for (u, trend) in trend.into_iter().enumerate() {
             let error = self.updates[u].error.get();
-            // What is exact stays so.
-            let drawn = if error > 0.0 { (error * usual.exp()).sqrt() } else { 0.0 };
-            self.updates[u].error = Length16::up(drawn);
+            // Exact updates stay exact.
+            let smoothed = if error > 0.0 { (error * trend.exp()).sqrt() } else { 0.0 };
+            self.updates[u].error = Length16::up(smoothed);
             if self.updates[u].fused_with_child {
                 self.updates[u - 1].error = self.updates[u].error;
             }
@@ -32,14 +34,14 @@ impl Forest {
     }
 }
 
-/// Errors below this count as this, in stored units: it is the rounding of positions.
-const LEAST: f64 = 1e-8;
+/// Smallest error that counts, in stored units: the rounding of positions.
+const ERROR_FLOOR: f64 = 1e-8;
 
-/// The sequence that never falls and is closest to this one, by squares.
+/// Returns the non-decreasing sequence closest to the input in the least-squares sense.
 ///
 /// # References
-/// [ABERS55]: neighbours that fall are pooled.
-fn rising(values: impl Iterator<Item = f64>) -> Vec<f64> {
+/// [ABERS55]: adjacent violators are pooled.
+fn isotonic(values: impl Iterator<Item = f64>) -> Vec<f64> {
     let mut pools: Vec<(f64, usize)> = Vec::new();
     for value in values {
         let mut pool = (value, 1);
@@ -63,8 +65,8 @@ mod tests {
     use crate::tests::walks::{each, forest};
 
     #[test]
-    fn what_falls_is_pooled() {
-        let of = |values: &[f64]| rising(values.iter().copied());
+    fn falling_values_are_pooled() {
+        let of = |values: &[f64]| isotonic(values.iter().copied());
         assert_eq!(of(&[1.0, 2.0, 3.0]), [1.0, 2.0, 3.0]);
         assert_eq!(of(&[1.0, 4.0, 2.0, 5.0]), [1.0, 3.0, 3.0, 5.0]);
         assert_eq!(of(&[3.0, 2.0, 1.0]), [2.0; 3]);
@@ -72,7 +74,7 @@ mod tests {
     }
 
     #[test]
-    fn evened_errors_never_grow_along_needs() {
+    fn smoothed_errors_never_grow_along_dependencies() {
         each(|what, _, forest| {
             let mut forest = forest.clone();
             forest.smooth_errors();
@@ -89,9 +91,9 @@ mod tests {
     #[test]
     fn great_errors_shrink_small_ones_grow_and_bounds_stay() {
         let estimates = forest(&samples::gyroid(2000), Method::Qem);
-        let mut evened = estimates.clone();
-        evened.smooth_errors();
-        let pairs = || estimates.updates.iter().zip(&evened.updates);
+        let mut smoothed = estimates.clone();
+        smoothed.smooth_errors();
+        let pairs = || estimates.updates.iter().zip(&smoothed.updates);
         assert!(pairs().any(|(before, after)| after.error < before.error));
         assert!(pairs().any(|(before, after)| after.error > before.error));
         let mut bounds = estimates.clone();

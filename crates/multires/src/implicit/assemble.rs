@@ -1,4 +1,4 @@
-//! Updates one by one, and a model of such: how it goes into a file and comes back.
+//! Conversion of a packed model to detached updates and back, as files need it.
 
 use std::collections::BTreeMap;
 
@@ -13,25 +13,26 @@ use crate::forest::{MAX_LEVELS, NONE, NonFanSplit};
 use crate::frame::{Frame, Length16};
 use crate::pack::ExactPositions;
 
-/// An update on its own, in some numbering of nodes: roots first, then the children of each update.
+/// An update taken out of its model. Nodes are numbered roots first, then the children of each
+/// update.
 #[derive(Clone, Debug)]
 pub(crate) struct DetachedUpdate {
-    /// The node that it splits; [`NONE`] if that is unknown.
+    /// Node that the update splits, or [`NONE`] if unknown.
     pub(crate) parent: u32,
     pub(crate) level: u16,
-    /// As they are stored.
+    /// Encoded wings.
     pub(crate) wings: [u8; 2],
     pub(crate) radius: Length16,
     pub(crate) error: Length16,
     pub(crate) is_open: bool,
-    /// The first child is split in the same go.
+    /// True if the first child's split forms one face split with this one.
     pub(crate) fused_with_child: bool,
     pub(crate) non_fan: Option<Box<NonFanSplit>>,
-    /// Where its children are, in stored units.
+    /// Positions of the children, in stored units.
     pub(crate) children: [Vec3; 2],
 }
 
-/// What holds for all of a model.
+/// Properties of a model as a whole.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct ModelInfo {
     pub(crate) frame: Frame,
@@ -46,7 +47,7 @@ pub(crate) struct BaseMesh {
 }
 
 impl Implicit {
-    /// An update by the numbers of this model.
+    /// Returns an update in this model's numbering of nodes.
     pub(crate) fn detached(&self, update: u32) -> DetachedUpdate {
         let (parent, local) = (self.splits.parent(update), self.splits.local(update));
         let Local { radius, error, level, wings } = local;
@@ -63,17 +64,17 @@ impl Implicit {
         }
     }
 
-    /// The coarsest mesh.
+    /// Returns the coarsest mesh.
     pub(crate) fn base_mesh(&self) -> BaseMesh {
         let roots = (0..self.roots).map(|root| self.stored_position(root).into());
         BaseMesh { positions: roots.collect(), faces: self.base.clone() }
     }
 
-    /// A model of loose updates, without those whose node nobody makes; with the positions of some nodes
-    /// to the bit. Each node may be split once.
+    /// Builds a model from detached updates and exact positions, leaving out updates whose node no
+    /// other one creates. Each node may be split only once.
     ///
-    /// Wings stay what they are: in every set of updates with all above them, nodes are in the same
-    /// order.
+    /// Wings need no change: in every set of updates that is closed upwards, nodes keep their
+    /// relative order.
     pub(crate) fn assemble(
         about: ModelInfo,
         base: BaseMesh,
@@ -103,7 +104,7 @@ impl Implicit {
             let below = numbers_of_children(u).map(|child| {
                 children(child).map(|(update, _)| order.index_of_update[update as usize])
             });
-            // Only what is split can go in the same go.
+            // A child that is never split cannot be fused with its parent.
             let fused_with_child = update.fused_with_child && below[0].is_some();
             splits.push(Split {
                 parent: order.index_of_node[update.parent as usize]
@@ -118,7 +119,7 @@ impl Implicit {
             });
             full_faces += update.created_face_count();
             if let Some(non_fan) = &update.non_fan {
-                // What is unknown stays unknown.
+                // Unknown nodes stay unknown.
                 let place =
                     |node: u32| order.index_of_node.get(node as usize).copied().unwrap_or(NONE);
                 let mut non_fan = non_fan.renumbered(place);
@@ -142,22 +143,22 @@ impl Implicit {
 }
 
 impl DetachedUpdate {
-    /// How many faces it brings.
+    /// Returns the number of faces that the update creates.
     pub(crate) fn created_face_count(&self) -> usize {
         let wings = self.wings.iter().filter(|&&wing| wing != NO_WING).count();
         self.non_fan.as_ref().map_or(wings, |non_fan| non_fan.created_faces.len())
     }
 
-    /// Why it cannot be below an update, or whatever is around.
+    /// Returns the reason why the update cannot be below the given one, or cannot exist at all.
     pub(crate) fn trouble(&self, above: Option<&Self>) -> Option<&'static str> {
         let most = above.map_or(MAX_LEVELS, |above| above.level);
         let is_rank = |wing: u8| usize::from(wing) < MAX_RANKED || wing >= LAST_WING;
         if self.level == 0 || self.level >= most {
-            Some("its level is not between 0 and that of the update above")
+            Some("its level is not between 0 and that of the update above it")
         } else if above.is_some_and(|above| above.error < self.error) {
-            Some("its error is more than that of the update above")
+            Some("its error exceeds that of the update above it")
         } else if !self.wings.iter().all(|&wing| is_rank(wing)) {
-            Some("a wing has no rank that there is")
+            Some("the rank of a wing is out of range")
         } else {
             None
         }
@@ -165,7 +166,7 @@ impl DetachedUpdate {
 }
 
 impl NonFanSplit {
-    /// The same with other numbers for nodes.
+    /// Returns the split with its nodes renumbered.
     pub(crate) fn renumbered(&self, number: impl Fn(u32) -> u32) -> Self {
         Self {
             second: self.second.iter().map(|pair| pair.map(&number)).collect(),
@@ -174,7 +175,7 @@ impl NonFanSplit {
     }
 }
 
-/// Whether no two corners of a face are one node.
+/// Returns true if the three corners of a face are distinct nodes.
 pub(crate) fn has_three_corners(&[a, b, c]: &[u32; 3]) -> bool {
     a != b && b != c && c != a
 }

@@ -1,8 +1,8 @@
-//! The best cut of at most so many faces.
+//! The best cut within a face budget.
 //!
-//! Every update has an urgency: by how much its error exceeds the tolerance, and no less than that of
-//! an update that needs it. Making the most urgent first is making cuts all the way, so choosing is
-//! finding where to stop.
+//! The priority of an update is its error relative to the tolerance, and at least that of every
+//! update that depends on it. Applying updates by falling priority therefore passes through cuts
+//! only, and choosing the best one means finding where to stop.
 
 use std::cmp::Reverse;
 
@@ -12,39 +12,41 @@ use crate::model::Model;
 use crate::query::Criterion;
 use crate::query::{Query, QueryError};
 
-/// Urgencies of one bucket differ in these bits only: by a hundredth at most.
+/// Low bits ignored by the bucket of a priority, so that priorities in one bucket differ by one
+/// percent at most.
 const LOW_BITS: u32 = 16;
-/// Their highest bit is a sign, and none has it.
+/// Number of buckets; the sign bit of a priority is never set.
 const BUCKETS: usize = 1 << (u32::BITS - 1 - LOW_BITS);
 
-/// The urgency of each update, as bits: those are in the order of the numbers.
+/// Priority of each update, as the bits of a float, whose order is that of the numbers.
 struct Priorities<'m> {
     model: &'m Model,
     of: Vec<u32>,
 }
 
-/// Where the most urgent updates end that bring at most so many faces.
+/// Where to stop along the falling priorities.
 #[derive(Clone, Copy)]
 struct Limit {
-    /// All of this bucket and those above it fit, and of the one below a part.
+    /// This bucket and all above it fit; the one below it fits in part.
     bucket: usize,
-    /// How many faces may come of that part.
+    /// Number of faces that the partial bucket may add.
     room: usize,
 }
 
-/// How many faces an update brings, with the one that goes with it.
+/// Number of faces created by an update together with the one fused to it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Weight(u8);
 
 impl Extractor<'_> {
-    /// The answer to the query whose tolerance is, everywhere, so many times as large that there are
-    /// at most so many faces, or so many times smaller that there are no fewer than need be. What the
-    /// query does not focus on stays as coarse as it can be, and so does what is exact when coarse; the
-    /// base is there in any case.
+    /// Returns the best cut of at most `faces` faces: the answer to the query with its tolerance
+    /// scaled, by one factor everywhere, as the budget allows.
     ///
-    /// Cost: of choosing, linear in the updates however many faces are asked for; and of extraction.
+    /// Outside the focus the mesh stays as coarse as possible, and exact updates are never applied.
+    /// The base mesh is returned even if it exceeds the budget.
+    ///
+    /// Cost: linear in the updates for choosing, whatever the budget, plus extraction.
     /// # Errors
-    /// A query that is none.
+    /// The query is invalid.
     pub fn at_most(&mut self, faces: usize, query: &Query<'_>) -> Result<&Level, QueryError> {
         let criterion = Criterion::new(query, self.model.implicit().frame())?;
         let room = faces.saturating_sub(self.model.faces().base_faces());
@@ -58,7 +60,7 @@ impl Extractor<'_> {
 }
 
 impl Weight {
-    /// It goes with the one before it.
+    /// Marks an update that is counted with the one before it.
     const INNER: Self = Self(u8::MAX);
 
     pub(crate) fn all(mt: &Implicit, faces: &Faces) -> Vec<Self> {
@@ -77,21 +79,21 @@ impl Weight {
 }
 
 impl<'m> Priorities<'m> {
-    /// As the updates' own balls have them.
+    /// Computes the priorities from the updates' own balls.
     fn new(model: &'m Model, criterion: &Criterion<'_>) -> Self {
         let mt = model.implicit();
         let balls = (0..mt.update_count() as u32).map(|update| mt.ball(update));
         Self { model, of: criterion.priorities(balls).into_iter().map(f32::to_bits).collect() }
     }
 
-    /// Where those end that bring so many faces.
+    /// Returns the point where the budget is used up.
     fn limit(&self, room: usize) -> Limit {
         let mut buckets = vec![0u32; BUCKETS];
         for (&priority, weight) in self.of.iter().zip(self.model.weights()) {
             buckets[bucket(priority)] += weight.faces();
         }
         let mut limit = Limit { bucket: BUCKETS, room };
-        // The lowest holds what is not urgent at all.
+        // The lowest bucket holds the updates of priority 0.
         while limit.bucket > 1 && buckets[limit.bucket - 1] as usize <= limit.room {
             limit.bucket -= 1;
             limit.room -= buckets[limit.bucket] as usize;
@@ -99,9 +101,10 @@ impl<'m> Priorities<'m> {
         limit
     }
 
-    /// Chooses the most urgent that bring at most so many faces; none that is not urgent.
+    /// Chooses the updates of highest priority whose faces fit into `room`, without those of
+    /// priority 0.
     ///
-    /// All of some buckets fit, none of others, and one has to be sorted.
+    /// All of some buckets fit and none of others, so only one bucket has to be sorted.
     fn choose(&self, room: usize, chosen: &mut Vec<bool>) {
         let (mt, weights) = (self.model.implicit(), self.model.weights());
         let mut limit = self.limit(room);
@@ -120,7 +123,7 @@ impl<'m> Priorities<'m> {
                 chosen[update] = chosen[update - 1];
             }
         }
-        // What is needed is of a higher level, and no less urgent.
+        // A dependency has a higher level and at least the same priority.
         let key = |update: u32| Reverse((self.of[update as usize], mt.level(update)));
         tight.sort_unstable_by_key(|&update| (key(update), update));
         for update in tight {

@@ -1,9 +1,10 @@
 //! Updates in 10 bytes each.
 //!
-//! In depth-first order the node that an update splits is a child of the update before it, or the second
-//! child of one that is not far behind; and its own second child's updates are not far ahead. So both are
-//! told by a distance in 16 bits. Few are farther: the updates of roots, and those that have 65,534 others or
-//! more between their children. Levels are told within those of the same error, as a file has them.
+//! In depth-first order an update splits the first child of the update before it, or the second
+//! child of one not far behind, and its second child's updates are not far ahead. Both are stored
+//! as 16-bit distances. The exceptions go to side tables: the updates of roots, and those with
+//! 65,534 or more updates between their children. Levels are stored relative to the least level of
+//! the same error, as in a file.
 
 use super::splits::{Local, Split};
 use super::{FLAG, OPEN};
@@ -14,25 +15,25 @@ use crate::pack::{ERRORS, error9, error16, radius8, radius16};
 pub(super) struct CompactSplits {
     roots: u32,
     splits: Vec<CompactSplit>,
-    /// The least level of an update, by its error.
+    /// Least level of an update by its error.
     bottoms: Box<[u16; ERRORS]>,
-    /// By update, what is too far away for a distance, in order.
+    /// Updates whose parent is too far for a distance, in order.
     far_parents: Vec<[u32; 2]>,
     far_seconds: Vec<[u32; 2]>,
 }
 
 #[derive(Clone, Copy, Debug)]
 struct CompactSplit {
-    /// Zero where it splits the first child of the update before it; else it splits the second child
-    /// of the one so far behind; or [`FAR`].
+    /// 0 if it splits the first child of the update before it; otherwise the distance back to the
+    /// update whose second child it splits, or [`FAR`].
     behind: u16,
-    /// How many updates are below its first child; or [`FAR`].
+    /// Number of updates below its first child, or [`FAR`].
     below: u16,
     wings: [u8; 2],
     radius: u8,
-    /// The low bits of its height above the least level of its error.
+    /// Low bits of its level above the least one of its error.
     height: u8,
-    /// Nine bits of error, four more of its height, and what is so or not.
+    /// Nine bits of error, four high bits of its relative level, and three flags.
     more: u16,
 }
 
@@ -45,8 +46,8 @@ const SECOND: u16 = 1 << 14;
 const IS_OPEN: u16 = 1 << 15;
 
 impl CompactSplits {
-    /// `None` where a radius or an error is more exact than a file has them, or levels of one error are
-    /// 4,096 or more.
+    /// Packs all updates, or returns `None` if a radius or an error has more bits than the compact
+    /// form keeps or an error has 4,096 levels or more.
     pub(super) fn new(splits: &[Split], roots: u32) -> Option<Self> {
         let level = |split: &Split| split.local.level & !OPEN;
         let mut bottoms = Box::new([u16::MAX; ERRORS]);
@@ -69,7 +70,7 @@ impl CompactSplits {
         (0..).zip(splits).all(is_the_same).then_some(this)
     }
 
-    /// Rounds what is too exact.
+    /// Packs an update, rounding whatever has too many bits.
     fn pack(&mut self, update: u32, split: &Split) -> Option<CompactSplit> {
         let (parent, second, local) = (split.parent & !FLAG, split.second & !FLAG, split.local);
         let behind = match parent.checked_sub(self.roots) {
@@ -155,7 +156,7 @@ impl CompactSplits {
     }
 }
 
-/// A distance that is told as such.
+/// Returns a distance as stored, or `None` if it is too large.
 fn near(distance: u32) -> Option<u16> {
     u16::try_from(distance).ok().filter(|&near| near != FAR)
 }
@@ -170,8 +171,8 @@ fn find(far: &[[u32; 2]], update: u32) -> u32 {
 mod tests {
     use super::*;
 
-    /// A root with a long chain of first children under its first child, and an update under its
-    /// second.
+    /// A root whose first child starts a long chain of first children, and whose second child has
+    /// one update.
     fn chain(length: u32) -> Vec<Split> {
         let local = |level: u16| Local {
             radius: radius16(9),
@@ -191,19 +192,19 @@ mod tests {
     }
 
     #[test]
-    fn near_and_far_are_told_alike() {
+    fn short_and_long_distances_come_back() {
         for length in [1, 2, 1000, 65_534, 65_535, 65_536, 70_000] {
             let splits = chain(length);
-            let narrow = CompactSplits::new(&splits, 1).unwrap();
-            let same = |(update, split): (u32, &Split)| narrow.split(update) == *split;
+            let compact = CompactSplits::new(&splits, 1).unwrap();
+            let same = |(update, split): (u32, &Split)| compact.split(update) == *split;
             assert!((0..).zip(&splits).all(same), "{length}");
-            let far = narrow.far_parents.len() + narrow.far_seconds.len();
+            let far = compact.far_parents.len() + compact.far_seconds.len();
             assert_eq!(far > 1, length >= 65_535, "{length}: {far}");
         }
     }
 
     #[test]
-    fn what_would_not_be_the_same_is_not_narrow() {
+    fn what_would_change_is_not_compacted() {
         let mut splits = chain(2);
         splits[1].local.radius.0 += 1;
         assert!(CompactSplits::new(&splits, 1).is_none(), "a radius of more bits");

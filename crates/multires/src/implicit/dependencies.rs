@@ -1,101 +1,104 @@
-//! What updates need, written out: for exact answers by the face list, where no neighbours are met.
+//! Dependencies between updates as explicit lists, for exact answers by the face list, where no
+//! neighbours are visited.
 
 use super::{Implicit, Order};
 use crate::forest::by_level;
 use crate::forest::{Forest, NONE};
 
-/// What must hold for an update to be made.
+/// Condition under which an update may be applied.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum SplitRule {
-    /// All around the vertex is as it was recorded: the cuts are those of the explicit MT.
+    /// The star of the vertex is the recorded one, so the cuts are those of the explicit MT.
     #[default]
     Strict,
-    /// The two wings are not shown by one vertex. That is what keeps a cut manifold and no more, so
-    /// cuts are smaller; but triangles may appear that no contraction has seen, and fold.
+    /// Both wings are shown by different vertices. This is just what keeps a cut manifold, so cuts
+    /// are smaller; but triangles can appear that no contraction has checked, and fold over.
     Wings,
 }
 
-/// For each update the one that makes its node, and those that it needs beside the ones above it, as
-/// far as they do not need each other anyway.
+/// For each update, the one that creates its node and those it depends on besides its ancestors,
+/// reduced by the dependencies that others imply.
 #[derive(Clone, Debug)]
 pub(crate) struct Dependencies {
-    /// All updates, each before those that it needs, as [`HEAD`]s with what they need behind them.
+    /// All updates, each before its dependencies: a number with [`HEAD`] set, followed by its
+    /// dependencies.
     lists: Vec<u32>,
-    /// Where in the lists each update's needs start.
+    /// Start of each update's dependencies in the lists.
     starts: Vec<u32>,
 }
 
-/// Set where a list begins: there are no more than half of 2³¹ updates. Places in the lists are 32 bits too: rings,
-/// which are longer, were numbered so.
+/// Marks the head of a list. There are fewer than 2³⁰ updates, so the bit is free; list positions
+/// fit 32 bits because the rings, which are longer, do.
 const HEAD: u32 = 1 << 31;
 
 impl Dependencies {
-    /// Those of the forest, in the order of the model.
+    /// Collects the dependencies of a forest's updates, in the order of the model.
     pub(crate) fn in_order(forest: &Forest, order: &Order, rule: SplitRule) -> Self {
-        let mut finder = Finder::new(Makers::new(forest, order));
-        let (mut needs, mut ends, mut found) = (Vec::new(), Vec::new(), Vec::new());
+        let mut finder = Finder::new(Creators::new(forest, order));
+        let (mut dependencies, mut ends, mut found) = (Vec::new(), Vec::new(), Vec::new());
         for (at, &update) in (0..).zip(&order.updates) {
             let of = &forest.updates[update as usize];
             found.clear();
             if rule == SplitRule::Strict || of.wings == [NONE; 2] {
                 finder.around(at, &mut found);
             } else if !of.wings.contains(&NONE) {
-                let wings = of.wings.map(|wing| order.maker(wing));
-                found.extend(finder.makers.lowest_common(wings));
+                let wings = of.wings.map(|wing| order.creator(wing));
+                found.extend(finder.creators.lowest_common(wings));
             }
-            needs.extend(finder.makers.family(at));
+            dependencies.extend(finder.creators.parent(at));
             reduce(order, at, &mut found);
-            needs.append(&mut found);
-            ends.push(needs.len() as u32);
+            dependencies.append(&mut found);
+            ends.push(dependencies.len() as u32);
         }
         let level = |at: u32| forest.updates[order.updates[at as usize] as usize].level;
-        Self::of_needs(&needs, &ends, by_level(ends.len(), level))
+        Self::from_lists(&dependencies, &ends, by_level(ends.len(), level))
     }
 
-    /// The needs of each update, to where they end; low levels first: what they need is above them.
-    fn of_needs(needs: &[u32], ends: &[u32], updates: Vec<u32>) -> Self {
+    /// Builds the lists from concatenated dependencies and their ends. Low levels go first, as
+    /// dependencies have higher ones.
+    fn from_lists(dependencies: &[u32], ends: &[u32], updates: Vec<u32>) -> Self {
         let mut this = Self {
-            lists: Vec::with_capacity(needs.len() + ends.len()),
+            lists: Vec::with_capacity(dependencies.len() + ends.len()),
             starts: vec![NONE; ends.len()],
         };
         for update in updates {
             let start = update.checked_sub(1).map_or(0, |before| ends[before as usize]);
             this.lists.push(update | HEAD);
             this.starts[update as usize] = this.lists.len() as u32;
-            this.lists.extend(&needs[start as usize..ends[update as usize] as usize]);
+            this.lists.extend(&dependencies[start as usize..ends[update as usize] as usize]);
         }
         this
     }
 
-    /// What it takes in memory.
+    /// Returns the memory used.
     pub(crate) fn bytes(&self) -> usize {
         4 * (self.starts.len() + self.lists.len())
     }
 
-    /// What an update needs, but for what that needs in turn.
+    /// Returns the direct dependencies of an update.
     #[inline]
     pub(crate) fn of(&self, update: u32) -> impl Iterator<Item = u32> + '_ {
         let behind = &self.lists[self.starts[update as usize] as usize..];
-        behind.iter().copied().take_while(|need| need & HEAD == 0)
+        behind.iter().copied().take_while(|dependency| dependency & HEAD == 0)
     }
 
-    /// All updates, each before those that it needs.
+    /// Returns all updates, each before its dependencies.
     pub(crate) fn dependents_first(&self) -> impl Iterator<Item = u32> + '_ {
         self.lists.iter().filter(|entry| **entry & HEAD != 0).map(|entry| entry & !HEAD)
     }
 
-    /// Makes the number of each update at least as great as those of the updates that need it.
+    /// Raises the number of each update to at least those of its dependents.
     pub(crate) fn raise(&self, numbers: &mut [u32]) {
         let mut own = 0;
         for &entry in &self.lists {
             let number = &mut numbers[(entry & !HEAD) as usize];
-            // A list has two or three entries: to choose is quicker than to jump.
+            // Lists have two or three entries, so a conditional move beats a branch.
             own = if entry & HEAD != 0 { *number } else { own };
             *number = own.max(*number);
         }
     }
 
-    /// Chooses all that the chosen updates need.
+    /// Adds all dependencies of the chosen updates.
     pub(crate) fn close(&self, mt: &Implicit, chosen: &mut [bool]) {
         let mut waiting: Vec<u32> = Vec::new();
         for update in 0..chosen.len() as u32 {
@@ -103,15 +106,15 @@ impl Dependencies {
                 waiting.push(update);
             }
             while let Some(update) = waiting.pop() {
-                for need in self.of(update) {
-                    if std::mem::replace(&mut chosen[need as usize], true) {
+                for dependency in self.of(update) {
+                    if std::mem::replace(&mut chosen[dependency as usize], true) {
                         continue;
                     }
-                    waiting.push(need);
-                    if mt.is_fused_with_child(need)
-                        && !std::mem::replace(&mut chosen[need as usize + 1], true)
+                    waiting.push(dependency);
+                    if mt.is_fused_with_child(dependency)
+                        && !std::mem::replace(&mut chosen[dependency as usize + 1], true)
                     {
-                        waiting.push(need + 1);
+                        waiting.push(dependency + 1);
                     }
                 }
             }
@@ -119,14 +122,14 @@ impl Dependencies {
     }
 }
 
-/// Takes out what is above the update or above another of those that it needs.
+/// Removes ancestors of the update and ancestors of its other dependencies.
 fn reduce(order: &Order, update: u32, found: &mut Vec<u32>) {
     found.sort_unstable();
     let is_above = |up: u32, down: u32| up < down && down < order.ends[up as usize];
     let mut kept = 0;
     for i in 0..found.len() {
         let up = found[i];
-        // Those under it come right behind it.
+        // Descendants come right behind their ancestor.
         let next = found.get(i + 1);
         if !is_above(up, update) && !next.is_some_and(|&next| is_above(up, next)) {
             found[kept] = up;
@@ -136,34 +139,34 @@ fn reduce(order: &Order, update: u32, found: &mut Vec<u32>) {
     found.truncate(kept);
 }
 
-/// Of each update the one that makes its node, and those that make its ring, by the model's numbers: side by
-/// side, where the forest would be asked about node after node.
-struct Makers {
+/// For each update the one that creates its node and those that create its ring, by the model's
+/// numbers. Kept side by side, so that the forest is not searched node by node.
+struct Creators {
     lists: Vec<u32>,
-    /// Where each update's list starts, and the last ends.
+    /// Start of each update's list, and the end of the last one.
     starts: Vec<u32>,
-    /// [`NONE`] for those of roots.
-    families: Vec<u32>,
+    /// Update that creates each update's node; [`NONE`] for roots.
+    parents: Vec<u32>,
 }
 
-impl Makers {
+impl Creators {
     fn new(forest: &Forest, order: &Order) -> Self {
         let mut this = Self {
             lists: Vec::with_capacity(forest.rings.len()),
             starts: vec![0],
-            families: Vec::with_capacity(order.updates.len()),
+            parents: Vec::with_capacity(order.updates.len()),
         };
         for &update in &order.updates {
             let update = update as usize;
-            this.lists.extend(forest.ring(update).iter().filter_map(|&node| order.maker(node)));
+            this.lists.extend(forest.ring(update).iter().filter_map(|&node| order.creator(node)));
             this.starts.push(this.lists.len() as u32);
-            this.families.push(order.maker(forest.node(update) as u32).unwrap_or(NONE));
+            this.parents.push(order.creator(forest.node(update) as u32).unwrap_or(NONE));
         }
         this
     }
 
-    fn family(&self, update: u32) -> Option<u32> {
-        Some(self.families[update as usize]).filter(|&up| up != NONE)
+    fn parent(&self, update: u32) -> Option<u32> {
+        Some(self.parents[update as usize]).filter(|&up| up != NONE)
     }
 
     fn around(&self, update: u32) -> &[u32] {
@@ -171,47 +174,49 @@ impl Makers {
         &self.lists[start..end]
     }
 
-    /// The last update that has both nodes under it, by the updates that make them.
-    fn lowest_common(&self, mut makers: [Option<u32>; 2]) -> Option<u32> {
-        // Updates above have lower numbers.
+    /// Returns the lowest update that is an ancestor of both nodes, given the updates that create
+    /// them.
+    fn lowest_common(&self, mut creators: [Option<u32>; 2]) -> Option<u32> {
+        // Ancestors have lower numbers.
         loop {
-            let [a, b] = [makers[0]?, makers[1]?];
+            let [a, b] = [creators[0]?, creators[1]?];
             if a == b {
                 return Some(a);
             }
             let lower = usize::from(b > a);
-            makers[lower] = self.family(a.max(b));
+            creators[lower] = self.parent(a.max(b));
         }
     }
 }
 
-/// Finds what updates need for the sake of their rings.
+/// Finds the dependencies of updates on their rings.
 struct Finder {
-    makers: Makers,
-    /// By update: the last that was found to need it.
+    creators: Creators,
+    /// Last update found to depend on each one.
     needed_by: Vec<u32>,
 }
 
-/// Longer rings are not searched for what their updates need: a hub is in the rings of all around it.
+/// Longest ring that is searched for implied dependencies: a hub is in the rings of all its
+/// neighbours.
 const MAX_SEARCHED: usize = 64;
 
 impl Finder {
-    fn new(makers: Makers) -> Self {
-        let needed_by = vec![NONE; makers.families.len()];
-        Self { makers, needed_by }
+    fn new(creators: Creators) -> Self {
+        let needed_by = vec![NONE; creators.parents.len()];
+        Self { creators, needed_by }
     }
 
-    /// The updates that make the ring of another, without those that others of them need: of two
-    /// neighbours in the ring the one that was contracted first had the other around it. A third is
-    /// left.
+    /// Finds the updates that create the ring of another, without those that are implied. Of two
+    /// neighbours in the ring, the one contracted first had the other around it, so its update
+    /// depends on the other's. About a third is left.
     fn around(&mut self, by: u32, found: &mut Vec<u32>) {
-        let Self { makers, needed_by } = self;
-        for &up in makers.around(by) {
+        let Self { creators, needed_by } = self;
+        for &up in creators.around(by) {
             if std::mem::replace(&mut needed_by[up as usize], by) != by {
                 found.push(up);
             }
         }
-        let searched = found.iter().map(|&up| makers.around(up));
+        let searched = found.iter().map(|&up| creators.around(up));
         for &up in searched.filter(|ring| ring.len() <= MAX_SEARCHED).flatten() {
             needed_by[up as usize] = NONE;
         }

@@ -7,25 +7,25 @@ use crate::model::Model;
 use crate::query::Criterion;
 use crate::query::{Query, QueryError};
 
-/// Meshes out of a [`Model`] by its face list, one after the other in the same room.
+/// Extracts meshes from a [`Model`] by its face list, reusing its memory.
 #[derive(Clone, Debug)]
 pub struct Extractor<'m> {
     pub(super) model: &'m Model,
     level: Level,
-    /// What stands above each leaf, as the level numbers it.
+    /// Vertex of the level that shows each leaf.
     above: Vec<u32>,
-    /// The updates made, as a walk down meets them.
+    /// Updates to apply, in the order in which the descent meets them.
     made: Vec<u32>,
     stack: Vec<Subtree>,
-    /// By update: whether it is to be made.
+    /// True for each update to apply.
     pub(super) chosen: Vec<bool>,
 }
 
-/// So many nodes are judged before any of them is gone down from: their loads overlap, where one by
-/// one each would wait for memory before the next is known. Million faces a second on the dragon by
-/// one tolerance, for 1, 4 and 16: 2.7k faces 13.8, 15.8, 17.4; 17.5k faces 8.9, 7.4, 17.6; 174k faces
-/// 13.8, 9.5, 10.7, where order counts for more.
-const AT_ONCE: usize = 16;
+/// Number of nodes that are tested before any of them is descended from. Their memory loads
+/// overlap, whereas one by one each would wait for the next. Million faces per second on the dragon
+/// at one tolerance, for 1, 4 and 16: 2.7k faces 13.8, 15.8, 17.4; 17.5k faces 8.9, 7.4, 17.6; 174k
+/// faces 13.8, 9.5, 10.7, where order counts for more.
+const BATCH: usize = 16;
 
 impl<'m> Extractor<'m> {
     pub(crate) fn new(model: &'m Model) -> Self {
@@ -39,27 +39,28 @@ impl<'m> Extractor<'m> {
         }
     }
 
-    /// The mesh of one tolerance everywhere, in model units: the answer of [`Query::uniform`], but
-    /// nothing is looked at but errors, which are monotone along every dependency.
+    /// Returns the mesh at one tolerance everywhere, in model units. The answer is that of
+    /// [`Query::uniform`], but only errors are looked at, since they are monotone along
+    /// dependencies.
     ///
-    /// Each face is there from the error of the update that brings it down to zero.
+    /// A face is present at every tolerance below the error of the update that creates it.
     /// # Errors
-    /// What is below 0 or no number.
+    /// The tolerance is negative or NaN.
     pub fn uniform(&mut self, tolerance: f64) -> Result<&Level, QueryError> {
         Query::uniform(tolerance).validate()?;
         let mt = self.model.implicit();
         let most = mt.frame().length(tolerance);
-        // The greatest code that is within: codes are in the order of lengths.
+        // The greatest code within the tolerance: codes are in the order of lengths.
         let within = Length16::up(most);
         let within = if within.get() > most { within.0.checked_sub(1) } else { Some(within.0) };
         Ok(self.write(|update, _| Some(mt.error(update).0) > within))
     }
 
-    /// A cut that meets the query, found without looking at any neighbour.
+    /// Returns a cut that satisfies the query, found without visiting any neighbour.
     ///
-    /// It is not the smallest: the notes say by how much.
+    /// It is not the smallest one; docs/notes/multires.md has figures.
     /// # Errors
-    /// A query that is none, or that the model was not [saturated](Model::saturate) for.
+    /// The query is invalid, or the model has no nested balls for it: see [`Model::saturate`].
     pub fn saturated(&mut self, query: &Query<'_>) -> Result<&Level, QueryError> {
         let mt = self.model.implicit();
         let criterion = Criterion::new(query, mt.frame())?;
@@ -70,27 +71,29 @@ impl<'m> Extractor<'m> {
         }))
     }
 
-    /// The smallest cut that meets the query, by what updates need of each other.
+    /// Returns the smallest cut that satisfies the query, by closing the set of required updates
+    /// under dependencies.
     /// # Errors
-    /// A query that is none.
+    /// The query is invalid.
     pub fn exact(&mut self, query: &Query<'_>) -> Result<&Level, QueryError> {
         let criterion = Criterion::new(query, self.model.implicit().frame())?;
-        self.choose_wanted(&criterion);
+        self.choose_required(&criterion);
         self.model.dependencies().close(self.model.implicit(), &mut self.chosen);
         Ok(self.write_chosen())
     }
 
-    /// What the wanted updates give alone, without what they need: how small a cut could be at best. It
-    /// is there to measure rules by; faces of it may meet in edges of four or lie on each other.
+    /// Returns the mesh of the required updates alone, without their dependencies, as a lower bound
+    /// on the size of a cut. It serves to compare split rules: its faces may overlap, or meet four
+    /// at an edge.
     /// # Errors
-    /// A query that is none.
-    pub fn wanted(&mut self, query: &Query<'_>) -> Result<&Level, QueryError> {
+    /// The query is invalid.
+    pub fn required(&mut self, query: &Query<'_>) -> Result<&Level, QueryError> {
         let criterion = Criterion::new(query, self.model.implicit().frame())?;
-        self.choose_wanted(&criterion);
+        self.choose_required(&criterion);
         Ok(self.write_chosen())
     }
 
-    /// The mesh of the chosen updates, which must hold all above each of them.
+    /// Writes the mesh of the chosen updates, which must be closed upwards.
     pub(super) fn write_chosen(&mut self) -> &Level {
         let chosen = std::mem::take(&mut self.chosen);
         self.write(|update, _| chosen[update as usize]);
@@ -98,8 +101,8 @@ impl<'m> Extractor<'m> {
         &self.level
     }
 
-    /// Chooses what the need wants: the balls nest down the forest.
-    fn choose_wanted(&mut self, criterion: &Criterion<'_>) {
+    /// Chooses the updates that the criterion refines, using that balls nest down the forest.
+    fn choose_required(&mut self, criterion: &Criterion<'_>) {
         let mt = self.model.implicit();
         let mut chosen = std::mem::take(&mut self.chosen);
         chosen.clear();
@@ -115,8 +118,8 @@ impl<'m> Extractor<'m> {
         self.chosen = chosen;
     }
 
-    /// The mesh after the updates of which `is_made` says so. It is asked about an update and its node
-    /// where those above are made.
+    /// Writes the mesh after the updates that `is_made` accepts. It is called with an update and
+    /// its node once the updates above are accepted.
     fn write(&mut self, is_made: impl FnMut(u32, u32) -> bool) -> &Level {
         let mt = self.model.implicit();
         let (mut level, mut above, mut made) = (
@@ -142,7 +145,7 @@ impl<'m> Extractor<'m> {
         &self.level
     }
 
-    /// Goes down from the roots as far as `is_made` lets it, and tells of every node on the way.
+    /// Descends from the roots as far as `is_made` accepts, and visits every node on the way.
     fn descend(
         &mut self,
         mut is_made: impl FnMut(u32, u32) -> bool,
@@ -154,13 +157,13 @@ impl<'m> Extractor<'m> {
         for (node, [start, end]) in mt.roots() {
             stack.push(Subtree { node, start, end, leaf });
             leaf += end - start + 1;
-            if stack.len() < AT_ONCE && node as usize + 1 < mt.root_count() {
+            if stack.len() < BATCH && node as usize + 1 < mt.root_count() {
                 continue;
             }
             while !stack.is_empty() {
-                let from = stack.len().saturating_sub(AT_ONCE);
+                let from = stack.len().saturating_sub(BATCH);
                 let count = stack.len() - from;
-                let mut batch = [(Subtree::default(), false); AT_ONCE];
+                let mut batch = [(Subtree::default(), false); BATCH];
                 for (slot, below) in batch.iter_mut().zip(stack.drain(from..)) {
                     *slot = (below, below.start < below.end && is_made(below.start, below.node));
                 }

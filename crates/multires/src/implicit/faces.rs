@@ -1,36 +1,38 @@
-//! The face list: every face of the finest mesh by three leaves, under the update that brings it.
+//! The face list: each face of the finest mesh as three leaves, filed under the update that creates
+//! it.
 //!
-//! A face of a cut is a finest face with each corner moved up to the vertex that is there. So a cut is
-//! written by two loops without any neighbourhood: one goes down the forest and notes for each run of
-//! leaves what stands above it, one looks three leaves up for each face of each update made.
+//! A face of a cut is a face of the finest mesh with each corner moved up to the active node above
+//! it. So a cut is written in two loops without any neighbourhood: one descends the forest and
+//! notes for each run of leaves the vertex that shows it, the other looks up three leaves for each
+//! face of each applied update.
 
 use super::Order;
 use crate::forest::{Forest, NONE};
 
-/// The faces of the finest mesh, in 16 bytes an update up to two million vertices, in 24 beyond.
+/// Faces of the finest mesh, in 16 bytes per update up to two million vertices and 24 beyond.
 #[derive(Clone, Debug)]
 pub(crate) struct Faces {
     leaves: u32,
-    /// The faces that are always there.
+    /// Faces of the base mesh.
     base: Vec<[u32; 3]>,
     created: CreatedFaces,
 }
 
-/// Two places for faces an update.
+/// Up to two faces per update.
 #[derive(Clone, Debug)]
 enum CreatedFaces {
-    /// Three times 21 bits.
+    /// Three indices of 21 bits.
     Small(Vec<[u64; 2]>),
     Large(Vec<[[u32; 3]; 2]>),
 }
 
 const BITS: u32 = 21;
 const SMALL: u32 = 1 << BITS;
-/// No face: a bit that no face has.
+/// Marks a missing face, with a bit that no face sets.
 const NO_FACE: u64 = 1 << 63;
 
 impl Faces {
-    /// Those of the forest, in the order of the model.
+    /// Collects the faces of a forest, in the order of the model.
     pub(crate) fn in_order(forest: &Forest, order: &Order) -> Self {
         let mut leaf_of = vec![NONE; forest.vertices];
         let leaves = order.leaves.len() as u32;
@@ -55,7 +57,7 @@ impl Faces {
         Self { leaves, base, created }
     }
 
-    /// What it takes in memory.
+    /// Returns the memory used.
     pub(crate) fn bytes(&self) -> usize {
         size_of_val(&self.base[..])
             + match &self.created {
@@ -64,12 +66,12 @@ impl Faces {
             }
     }
 
-    /// How many faces there are always.
+    /// Returns the number of faces of the base mesh.
     pub(crate) fn base_faces(&self) -> usize {
         self.base.len()
     }
 
-    /// How many faces an update brings.
+    /// Returns the number of faces that an update creates.
     #[inline]
     pub(crate) fn created_count(&self, update: u32) -> usize {
         match &self.created {
@@ -82,7 +84,8 @@ impl Faces {
         }
     }
 
-    /// Writes the faces of the base and of these updates, with what stands above each leaf.
+    /// Appends the faces of the base mesh and of the given updates, with the vertex that shows each
+    /// leaf.
     pub(super) fn write(&self, made: &[u32], above: &[u32], to: &mut Vec<[u32; 3]>) {
         let shown = |face: [u32; 3]| face.map(|leaf| above[leaf as usize]);
         to.extend(self.base.iter().map(|&face| shown(face)));
@@ -104,7 +107,7 @@ impl Faces {
         }
     }
 
-    /// How many leaves there are.
+    /// Returns the number of leaves.
     pub(super) fn leaves(&self) -> usize {
         self.leaves as usize
     }
@@ -127,7 +130,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn faces_come_back_as_they_were() {
+    fn faces_come_back_unchanged() {
         for face in [[0, 1, 2], [SMALL - 1, 0, SMALL - 1], [7, SMALL - 1, 12345]] {
             assert_eq!(unpack(pack(face)), face);
             assert_ne!(pack(face), NO_FACE);

@@ -8,16 +8,16 @@ use super::{FLAG, Implicit, LAST_WING, NO_WING, OPEN, Order};
 use crate::forest::{BuildError, Forest, NONE, NonFanSplit};
 
 impl Implicit {
-    /// All levels of a simplification.
+    /// Builds a model of all levels of a simplification.
     ///
     /// Cost: linear.
     /// # Errors
-    /// More than 2³¹ nodes: half as many vertices.
+    /// More than 2³¹ nodes, which is half as many vertices.
     pub fn new(forest: &Forest) -> Result<Self, BuildError> {
         Self::in_order(forest, &Order::new(forest))
     }
 
-    /// The same in an order that others share.
+    /// Builds a model in an order that its tables share.
     pub(crate) fn in_order(forest: &Forest, order: &Order) -> Result<Self, BuildError> {
         if order.nodes.len() >= FLAG as usize {
             return Err(BuildError::TooLarge);
@@ -60,9 +60,9 @@ impl Implicit {
     }
 }
 
-/// The faces that no update brings.
+/// Returns the faces that no update creates.
 fn base(forest: &Forest, order: &Order) -> Vec<[u32; 3]> {
-    // Up from the leaves, an update after its children's.
+    // Bottom up, so that an update comes after those of its children.
     let mut root: Vec<u32> = (0..forest.positions.len() as u32).collect();
     for (u, update) in forest.updates.iter().enumerate().rev() {
         let above = root[forest.node(u)];
@@ -74,7 +74,7 @@ fn base(forest: &Forest, order: &Order) -> Vec<[u32; 3]> {
         .collect()
 }
 
-/// The rank of a wing among the nodes around that a face follows.
+/// Returns the rank of a wing among the ring nodes that a face follows.
 fn rank(forest: &Forest, order: &Order, update: usize, wing: u32) -> u8 {
     if wing == NONE {
         return NO_WING;
@@ -89,7 +89,7 @@ fn rank(forest: &Forest, order: &Order, update: usize, wing: u32) -> u8 {
         followed = rest;
     }
     let place = order.index_of_node[wing as usize];
-    // Fewer than both codes, or the recorder would have written the faces out.
+    // Below both codes, or the recorder would have listed the faces.
     followed.iter().filter(|&&other| order.index_of_node[other as usize] < place).count() as u8
 }
 

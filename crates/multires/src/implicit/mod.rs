@@ -1,18 +1,18 @@
-//! The implicit MT: the contractions alone, packed. No triangle is stored but those of the base.
+//! The implicit MT: the packed contractions, with no triangles but those of the base mesh.
 //!
-//! A split is told by two wings, each by its rank among the vertices around: where the run of faces
-//! starts that go to the second child, and where it ends. What a split needs first is told by levels
-//! (see the notes): a vertex may be split when all around it are of lower levels, and then exactly the
-//! recorded ones are around it. That is also what makes ranks enough for wings.
+//! A split is described by two wings, between which the faces of the second child lie; each is
+//! stored as a rank among the vertices around. Dependencies are expressed by levels: a vertex may
+//! be split once all vertices around it have lower levels, and these are then exactly the recorded
+//! ones. That is also why ranks suffice for wings. docs/notes/multires.md has the proof.
 //!
-//! | bytes an update | |
+//! | bytes per update | |
 //! |--:|---|
 //! | 24 | positions of its two children |
-//! | 8 | the node it splits, and where the updates of the second child start |
+//! | 8 | the node it splits, and the start of the second child's updates |
 //! | 4 | radius and error |
 //! | 4 | level and wings |
 //!
-//! [Narrow](Implicit::narrowed), the same takes 12 bytes for places and 10 for the rest.
+//! The [compact form](Implicit::compacted) takes 12 bytes for positions and 10 for the rest.
 
 mod assemble;
 mod budget;
@@ -49,35 +49,36 @@ pub(crate) use saturated::SaturatedBalls;
 use self::positions::StoredPositions;
 use self::splits::{Local, Splits};
 
-/// All levels of a mesh, in 40 bytes a vertex or in 22.
+/// All levels of a mesh, in 40 bytes per vertex or 22 in compact form.
 ///
-/// Nodes are the vertices of all levels: first the roots, then the children of update 0, of update 1…
+/// Nodes are the vertices of all levels: first the roots, then the children of update 0, of update
+/// 1…
 #[derive(Clone, Debug)]
 pub struct Implicit {
     frame: Frame,
     error_kind: ErrorKind,
     roots: u32,
-    /// Where the updates below each root start, and the last of them end.
+    /// Start of the updates below each root, and the end of the last.
     trees: Vec<u32>,
     positions: StoredPositions,
-    /// Of the input's vertices, where they are kept as they were.
+    /// Exact positions of the input's vertices, if the model is lossless.
     exact: ExactPositions,
     splits: Splits,
-    /// The coarsest faces, by roots.
+    /// Faces of the base mesh, by roots.
     base: Vec<[u32; 3]>,
-    /// What wings cannot tell, by update, in nodes of this model.
+    /// Splits that wings cannot describe, by update, in nodes of this model.
     non_fan_splits: BTreeMap<u32, NonFanSplit>,
     full_faces: usize,
 }
 
-/// A vertex around another, as an update stores it.
+/// A wing as an update stores it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Wing {
-    /// There is none: the run of faces starts or ends on the boundary.
+    /// No wing: the run of faces starts or ends on the boundary.
     None,
-    /// Its rank among the nodes around that a face follows, counter-clockwise.
+    /// Rank among the surrounding nodes that a face follows counter-clockwise.
     Rank(u8),
-    /// The one node around that no face follows.
+    /// The one surrounding node that no face follows.
     Last,
 }
 
@@ -87,60 +88,62 @@ const NO_WING: u8 = u8::MAX;
 const LAST_WING: u8 = u8::MAX - 1;
 
 impl Implicit {
-    /// How many updates there are.
+    /// Returns the number of updates.
     pub fn update_count(&self) -> usize {
         self.splits.len()
     }
 
-    /// How many vertices the coarsest mesh has.
+    /// Returns the number of vertices of the base mesh.
     pub fn root_count(&self) -> usize {
         self.roots as usize
     }
 
-    /// How many faces the coarsest mesh has.
+    /// Returns the number of faces of the base mesh.
     pub fn base_faces(&self) -> usize {
         self.base.len()
     }
 
-    /// How many faces the finest mesh has.
+    /// Returns the number of faces of the finest mesh.
     pub fn full_faces(&self) -> usize {
         self.full_faces
     }
 
-    /// What the errors of its updates are.
+    /// Returns the meaning of the updates' errors.
     pub fn error_kind(&self) -> ErrorKind {
         self.error_kind
     }
 
-    /// Where a node is, in model units; [`Patch`](crate::Patch) and [`Level`](crate::Level) tell of
-    /// vertices by their nodes.
+    /// Returns the position of a node in model units, exact if it is known. Vertices of a
+    /// [`Patch`](crate::Patch) or a [`Level`](crate::Level) are identified by their nodes.
     ///
     /// # Panics
-    /// Nodes are numbered below [`node_count`](Self::node_count).
+    /// `node` is not below [`node_count`](Self::node_count).
     pub fn position(&self, node: u32) -> [f64; 3] {
         self.exact.get(node).unwrap_or_else(|| self.frame.model(self.stored_position(node)))
     }
 
-    /// The nodes that a node is split into, which have higher numbers; `None` for those of the finest level.
+    /// Returns the two nodes that a node is split into, which have higher numbers, or `None` for a
+    /// vertex of the finest level.
     ///
     /// # Panics
-    /// As [`position`](Self::position).
+    /// As for [`position`](Self::position).
     pub fn children_of(&self, node: u32) -> Option<[u32; 2]> {
         self.update_of(node).map(|update| self.children(update))
     }
 
-    /// How many nodes there are, the vertices of all levels.
+    /// Returns the number of nodes, which are the vertices of all levels.
     pub fn node_count(&self) -> usize {
         self.positions.len()
     }
 
-    /// The same model in 22 bytes a vertex: the places of two children in 12, all else of an update in 10.
+    /// Returns the model in its compact form of 22 bytes per vertex: 12 for the positions of two
+    /// children and 10 for the rest of an update.
     ///
-    /// It answers everything alike, and extraction goes through half the memory. `None` where something
-    /// would not be the same: radii, errors or places that are more exact than those of a file, as of a
-    /// [`Forest`](crate::Forest); places further out than 32,767 cells, which no file has that moves
-    /// vertices by .0017 % of the diagonal or more, unless a contraction left its box; 4,096 levels of one
-    /// error.
+    /// The compact model gives the same answers, and extraction reads half the memory. Returns
+    /// `None` if anything would change: if radii, errors or positions are more precise than those
+    /// of a file, as in a fresh [`Forest`](crate::Forest); if a position is beyond 32,767 cells,
+    /// which does not happen in files with a rounding of .0017 % of the diagonal or more, unless a
+    /// contraction left the bounding box; or if there are 4,096 levels of one error.
     pub fn compacted(&self) -> Option<Self> {
         let (positions, splits) = (self.positions.compacted()?, self.splits.compacted(self.roots)?);
         let (trees, base, non_fan_splits) =
@@ -149,7 +152,7 @@ impl Implicit {
         Some(Self { positions, splits, trees, base, non_fan_splits, exact, ..*self })
     }
 
-    /// What it takes in memory.
+    /// Returns the memory used, in bytes.
     pub fn bytes(&self) -> usize {
         let non_fan = |o: &NonFanSplit| {
             size_of::<NonFanSplit>()
@@ -168,25 +171,25 @@ impl Implicit {
         &self.frame
     }
 
-    /// Where a node is, in stored units.
+    /// Returns the stored position of a node.
     #[inline]
     pub(crate) fn stored_position(&self, node: u32) -> [f32; 3] {
         self.positions.at(node)
     }
 
-    /// The same of a node that is kept to the bit where that is, not rounded to what is stored.
+    /// Returns the position of a node in stored units, exact if it is known.
     pub(crate) fn exact_stored(&self, node: u32) -> DVec3 {
         let rounded = || Vec3::from(self.stored_position(node)).as_dvec3();
         self.exact.get(node).map_or_else(rounded, |exact| self.frame.point(exact.into()))
     }
 
-    /// The mesh of some faces.
+    /// Builds a level from faces over the model's nodes.
     pub(crate) fn level_from_faces(&self, faces: Vec<[u32; 3]>) -> Level {
         Level::from_nodes(self.frame, self.node_count(), |node| self.stored_position(node), faces)
             .with_exact(&self.exact)
     }
 
-    /// The positions that nothing has rounded, by node.
+    /// Returns the exact positions by node.
     pub(crate) fn exact(&self) -> &ExactPositions {
         &self.exact
     }
@@ -195,20 +198,20 @@ impl Implicit {
         &self.base
     }
 
-    /// The nodes that an update splits its node into.
+    /// Returns the nodes that an update splits its node into.
     #[inline]
     pub(crate) fn children(&self, update: u32) -> [u32; 2] {
         let first = self.roots + 2 * update;
         [first, first + 1]
     }
 
-    /// The update that a node is a child of; `None` for roots.
+    /// Returns the update that creates a node, or `None` for a root.
     #[inline]
     pub(crate) fn creator(&self, node: u32) -> Option<u32> {
         node.checked_sub(self.roots).map(|child| child / 2)
     }
 
-    /// The update that splits a node; `None` for leaves.
+    /// Returns the update that splits a node, or `None` for a leaf.
     #[inline]
     pub(crate) fn update_of(&self, node: u32) -> Option<u32> {
         let Some(child) = node.checked_sub(self.roots) else {
@@ -224,68 +227,71 @@ impl Implicit {
         is_there.then_some(at)
     }
 
-    /// The node that an update splits.
+    /// Returns the node that an update splits.
     #[inline]
     pub(crate) fn parent(&self, update: u32) -> u32 {
         self.splits.parent(update) & !FLAG
     }
 
-    /// Whether the first child is split in the same go, by the next update.
+    /// Returns true if the update forms one face split with the next one, which splits its first
+    /// child.
     #[inline]
     pub(crate) fn is_fused_with_child(&self, update: u32) -> bool {
         self.splits.parent(update) & FLAG != 0
     }
 
-    /// Whether an update goes in the same go as the one before it, which splits its node's parent.
+    /// Returns true if the update forms one face split with the one before it, whose first child it
+    /// splits.
     #[inline]
     pub(crate) fn is_fused_with_parent(&self, update: u32) -> bool {
         update.checked_sub(1).is_some_and(|before| self.is_fused_with_child(before))
     }
 
-    /// Above those of all that it needs first.
+    /// Returns the level of an update, which is below those of all its dependencies.
     #[inline]
     pub(crate) fn level(&self, update: u32) -> u16 {
         self.splits.local(update).level & !OPEN
     }
 
-    /// Whether around an update's vertex may be one whom no face follows.
+    /// Returns true if the vertex may have a neighbour that no face follows.
     #[inline]
     pub(crate) fn is_open(&self, update: u32) -> bool {
         self.splits.local(update).level & OPEN != 0
     }
 
-    /// The error of an update's coarse side.
+    /// Returns the error of an update's coarse side.
     #[inline]
     pub(crate) fn error(&self, update: u32) -> Length16 {
         self.splits.local(update).error
     }
 
-    /// The least error of the updates that were made to come to these nodes; infinite for none.
+    /// Returns the least error of the updates that create the given nodes, or infinity if they are
+    /// all roots.
     pub(crate) fn least_error_above(&self, nodes: &[u32]) -> Length16 {
         let made = nodes.iter().filter_map(|&node| self.creator(node));
         made.map(|update| self.error(update)).min().unwrap_or(Length16::INFINITE)
     }
 
-    /// What an update's need is judged by.
+    /// Returns the ball and error by which queries judge an update.
     #[inline]
     pub(crate) fn ball(&self, update: u32) -> Ball {
         self.ball_at(update, self.parent(update))
     }
 
-    /// The same where the node is known.
+    /// Returns the ball of an update whose node is known.
     #[inline]
     pub(crate) fn ball_at(&self, update: u32, node: u32) -> Ball {
         self.packed_ball(update, node).unpack()
     }
 
-    /// The same as it is stored.
+    /// Returns the ball of an update as it is stored.
     #[inline]
     pub(crate) fn packed_ball(&self, update: u32, node: u32) -> PackedBall {
         let Local { radius, error, .. } = self.splits.local(update);
         PackedBall { center: self.stored_position(node), radius, error }
     }
 
-    /// The wings of an update.
+    /// Returns the wings of an update.
     #[inline]
     pub(crate) fn wings(&self, update: u32) -> [Wing; 2] {
         self.splits.local(update).wings.map(|wing| match wing {
@@ -295,23 +301,23 @@ impl Implicit {
         })
     }
 
-    /// What the wings of an update cannot tell.
+    /// Returns the explicit faces of a split that wings cannot describe.
     pub(crate) fn non_fan_split(&self, update: u32) -> Option<&NonFanSplit> {
         self.non_fan_splits.get(&update)
     }
 
-    /// Each root, and the run of updates below it.
+    /// Returns each root with the range of updates below it.
     pub(crate) fn roots(&self) -> impl Iterator<Item = (u32, [u32; 2])> + '_ {
         (0..self.roots)
             .map(|root| (root, [self.trees[root as usize], self.trees[root as usize + 1]]))
     }
 
-    /// The children of a node that is split, the second one first.
+    /// Returns the subtrees of both children of a split node, the second one first.
     #[inline]
     fn below(&self, Subtree { start, end, leaf, .. }: Subtree) -> [Subtree; 2] {
         let [first, second] = self.children(start);
         let middle = self.splits.second(start) & !FLAG;
-        // There is a leaf more than updates below the first child.
+        // A subtree has one leaf more than updates.
         let next = leaf + middle - start;
         [
             Subtree { node: second, start: middle, end, leaf: next },
@@ -322,11 +328,11 @@ impl Implicit {
 
 #[cfg(test)]
 impl Implicit {
-    /// Copies with something of an update changed.
+    /// Returns copies in which one field of an update is changed.
     pub(crate) fn corrupted(&self, update: u32) -> Vec<Self> {
         let corrupt = |change: &dyn Fn(&mut Local)| {
             let mut wrong = self.clone();
-            let Splits::Full(splits) = &mut wrong.splits else { unreachable!("none is narrow") };
+            let Splits::Full(splits) = &mut wrong.splits else { unreachable!("never compacted") };
             change(&mut splits[update as usize].local);
             wrong
         };
@@ -342,8 +348,8 @@ impl Implicit {
         ]
     }
 
-    /// Copies in which an odd update brings a face to another place: with a child's corner at a node
-    /// that is around, or at one that is mostly not there yet.
+    /// Returns copies in which a non-fan split creates a wrong face: a child's corner is moved to a
+    /// surrounding node, or to one that is mostly not active yet.
     pub(crate) fn corrupted_non_fan(&self) -> Vec<Self> {
         let mut all = Vec::new();
         for (&update, non_fan) in &self.non_fan_splits {
@@ -365,11 +371,11 @@ impl Implicit {
     }
 }
 
-/// A node to go down from.
+/// A node with the updates below it.
 #[derive(Clone, Copy, Debug, Default)]
 struct Subtree {
     node: u32,
-    /// The run of updates below it, of which the first splits it.
+    /// Start of the range of updates below it; the first one splits it.
     start: u32,
     end: u32,
     /// Its first leaf.

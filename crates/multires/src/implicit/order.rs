@@ -2,23 +2,23 @@
 
 use crate::forest::{Forest, NONE};
 
-/// Roots first, then the children of each update side by side; updates as a walk meets them that
-/// goes down first children first. So the updates below a node are one run, and the nodes too.
+/// Nodes are numbered roots first, then the children of each update side by side; updates in
+/// preorder, first children first. So the updates below a node are one range, and so are the nodes.
 #[derive(Debug)]
 pub(crate) struct Order {
-    /// The forest's node of each.
+    /// Forest node of each model node.
     pub(crate) nodes: Vec<u32>,
-    /// The place of each of the forest's nodes; [`NONE`] for a vertex without faces.
+    /// Model node of each forest node; [`NONE`] for a vertex without faces.
     pub(crate) index_of_node: Vec<u32>,
-    /// The forest's leaves that are below roots, as a walk meets them.
+    /// Forest leaves below the roots, in preorder.
     pub(crate) leaves: Vec<u32>,
-    /// The forest's update of each.
+    /// Forest update of each model update.
     pub(crate) updates: Vec<u32>,
-    /// The place of each of the forest's updates.
+    /// Model update of each forest update.
     pub(crate) index_of_update: Vec<u32>,
-    /// How many updates are below each root and those before it; one more than roots.
+    /// Number of updates below all roots before each one, and the total at the end.
     pub(crate) trees: Vec<u32>,
-    /// Behind the last update below each update.
+    /// End of the range of updates below each update.
     pub(crate) ends: Vec<u32>,
 }
 
@@ -29,7 +29,8 @@ impl Order {
         Self::of(roots(forest), forest.positions.len(), forest.updates.len(), children)
     }
 
-    /// That of the trees below some roots, by the update that splits a node and its children.
+    /// Orders the trees below the given roots. `children` returns the update that splits a node,
+    /// with its two children.
     pub(crate) fn of(
         roots: Vec<u32>,
         nodes: usize,
@@ -58,13 +59,13 @@ impl Order {
         this
     }
 
-    /// The model's update that makes a node of the forest; `None` for roots.
-    pub(super) fn maker(&self, node: u32) -> Option<u32> {
+    /// Returns the model update that creates a node of the forest, or `None` for a root.
+    pub(super) fn creator(&self, node: u32) -> Option<u32> {
         let roots = self.trees.len() as u32 - 1;
         self.index_of_node[node as usize].checked_sub(roots).map(|child| child / 2)
     }
 
-    /// Numbers the updates below a node, and the leaves.
+    /// Numbers the updates and leaves below a node.
     fn walk(
         &mut self,
         root: u32,
@@ -97,15 +98,15 @@ impl Order {
         }
     }
 
-    /// Where the updates below the second child of an update start, and whether there are any, by
-    /// the updates of its children.
+    /// Returns the start of the updates below the second child, flagged if there are any, given the
+    /// updates of both children.
     pub(super) fn second(&self, at: usize, [first, second]: [Option<u32>; 2]) -> u32 {
         let start = first.map_or(at as u32 + 1, |first| self.ends[first as usize]);
         start | if second.is_some() { super::FLAG } else { 0 }
     }
 }
 
-/// The nodes that nothing contracts and that have faces, in the forest's order.
+/// Returns the nodes that have faces and are never contracted, in the forest's order.
 fn roots(forest: &Forest) -> Vec<u32> {
     let mut is_root = vec![false; forest.positions.len()];
     forest.faces.iter().flatten().for_each(|&leaf| is_root[leaf as usize] = true);

@@ -1,18 +1,17 @@
-//! Where the nodes are: anywhere, in 12 bytes each, or on a lattice of 65,536 cells a side, in 6.
+//! Positions of the nodes: arbitrary in 12 bytes each, or on a lattice of 65,536 cells a side in 6.
 
-/// The place of each node, in stored units.
+/// Position of each node, in stored units.
 #[derive(Clone, Debug)]
 pub(super) enum StoredPositions {
     Float(Vec<[f32; 3]>),
     Lattice {
-        /// The side of a cell.
+        /// Side of a lattice cell.
         side: f32,
         cells: Vec<[i16; 3]>,
     },
 }
 
-/// What every place on a lattice is a multiple of, at the finest: as far out as nodes are, `f32` holds
-/// each of them.
+/// Finest lattice step: `f32` is exact for its multiples as far out as nodes are.
 const STEP: f32 = 1.0 / (1 << 23) as f32;
 
 impl StoredPositions {
@@ -20,7 +19,7 @@ impl StoredPositions {
     pub(super) fn at(&self, node: u32) -> [f32; 3] {
         match self {
             Self::Float(places) => places[node as usize],
-            // Exact: it is the number that it was made of.
+            // Exact: the product is the number that was divided.
             Self::Lattice { side, cells } => cells[node as usize].map(|x| f32::from(x) * side),
         }
     }
@@ -39,7 +38,8 @@ impl StoredPositions {
         }
     }
 
-    /// The same on the coarsest lattice that has all of them; `None` where that has too many cells.
+    /// Returns the positions on the coarsest lattice that contains them all, or `None` if that has
+    /// too many cells.
     pub(super) fn compacted(&self) -> Option<Self> {
         let Self::Float(places) = self else { return Some(self.clone()) };
         let mut side = 0u32;
@@ -72,18 +72,18 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_lies_on_a_lattice_comes_back_exactly() {
+    fn lattice_positions_come_back_exactly() {
         let places = vec![[0.75, -0.375, 0.0], [-0.1875, 0.5625, 12.0 * STEP]];
-        let narrow = StoredPositions::Float(places.clone()).compacted();
-        assert!(narrow.is_none(), "12 steps and three quarters are too far apart");
+        let compact = StoredPositions::Float(places.clone()).compacted();
+        assert!(compact.is_none(), "12 steps and three quarters are too far apart");
         let places = vec![[0.75, -0.375, 0.0], [-0.1875, 0.5625, 1200.0 * 48.0 * STEP]];
-        let narrow = StoredPositions::Float(places.clone()).compacted().unwrap();
-        assert_eq!(narrow.bytes(), 12);
-        assert_eq!([0, 1].map(|node| narrow.at(node)).to_vec(), places);
+        let compact = StoredPositions::Float(places.clone()).compacted().unwrap();
+        assert_eq!(compact.bytes(), 12);
+        assert_eq!([0, 1].map(|node| compact.at(node)).to_vec(), places);
     }
 
     #[test]
-    fn what_lies_on_none_stays_as_it_is() {
+    fn positions_off_any_lattice_are_not_compacted() {
         for x in [0.1 * STEP, 3.0, f32::NAN, f32::INFINITY] {
             assert!(StoredPositions::Float(vec![[0.0, x, 0.5]]).compacted().is_none(), "{x}");
         }

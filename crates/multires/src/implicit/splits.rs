@@ -1,4 +1,4 @@
-//! What updates are, from their coarse sides: 16 bytes each, or 10.
+//! Updates seen from their coarse sides, in 16 bytes each or 10.
 
 use super::compact::CompactSplits;
 use crate::frame::Length16;
@@ -10,23 +10,23 @@ pub(super) enum Splits {
     Compact(CompactSplits),
 }
 
-/// An update, from its coarse side.
+/// An update seen from its coarse side.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Split {
-    /// The node; its highest bit is set where the first child is split in the same go.
+    /// Node that is split; the highest bit marks an update fused with the split of its first child.
     pub(super) parent: u32,
-    /// The update behind those of the first child; its highest bit is set where it is the second
-    /// child's.
+    /// First update after those of the first child; the highest bit is set if it belongs to the
+    /// second child.
     pub(super) second: u32,
     pub(super) local: Local,
 }
 
-/// What an update tells beside its place in the forest.
+/// Attributes of an update besides its place in the forest.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Local {
     pub(super) radius: Length16,
     pub(super) error: Length16,
-    /// Its highest bit is set where around the vertex is one whom no face follows.
+    /// Level; the highest bit is set if a neighbour has no face after it.
     pub(super) level: u16,
     pub(super) wings: [u8; 2],
 }
@@ -70,7 +70,7 @@ impl Splits {
         }
     }
 
-    /// The same in less room; `None` where numbers are too large for that.
+    /// Returns the updates in compact form, or `None` if some number does not fit.
     pub(super) fn compacted(&self, roots: u32) -> Option<Self> {
         match self {
             Self::Full(splits) => CompactSplits::new(splits, roots).map(Self::Compact),

@@ -1,41 +1,41 @@
-//! Positions as they were given, to the bit, of the nodes that have one.
+//! Exact input positions of the nodes that have one.
 
 use std::sync::Arc;
 
-/// The positions of some nodes in model units, or word that none is kept. A node has one or it has none:
-/// for each there are two bits that say so, and where its position is. Copies share the room.
+/// Exact positions of some nodes in model units, or a note that the model keeps none. A
+/// rank-indexed bit set finds them at two bits per node. Clones share the table.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct ExactPositions(Option<Arc<Table>>);
 
 #[derive(Clone, Debug, Default, PartialEq)]
 struct Table {
-    /// By 64 nodes.
+    /// One block per 64 nodes.
     blocks: Vec<Block>,
-    /// Of those that have one, in the order of their numbers.
+    /// Positions of the nodes that have one, by rising node.
     positions: Vec<[f64; 3]>,
 }
 
-/// Which of 64 nodes have a position.
+/// Bit set over 64 nodes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Block {
-    /// A bit each.
+    /// Set bits mark the nodes with a position.
     nodes: u64,
-    /// How many nodes before them have one.
+    /// Number of positions before this block.
     before: u32,
 }
 
 impl ExactPositions {
-    /// Where positions are kept, of no node yet.
+    /// Creates the table of a lossless model, still empty.
     pub(crate) fn lossless() -> Self {
         Self(Some(Arc::default()))
     }
 
-    /// Whether positions are kept, if only of nodes that are not here: whether a model is lossless.
+    /// Returns true if the model is lossless, even if the table is empty.
     pub(crate) fn is_lossless(&self) -> bool {
         self.0.is_some()
     }
 
-    /// Adds the position of a node; nodes come by rising numbers.
+    /// Adds the position of a node; nodes must come in rising order.
     pub(crate) fn push(&mut self, node: u32, position: [f64; 3]) {
         let (block, bit) = place(node);
         let Table { blocks, positions } = Arc::make_mut(self.0.get_or_insert_default());
@@ -47,7 +47,7 @@ impl ExactPositions {
         positions.push(position);
     }
 
-    /// Where a node is, if it has a position.
+    /// Returns the exact position of a node, if it has one.
     #[inline]
     pub(crate) fn get(&self, node: u32) -> Option<[f64; 3]> {
         let Table { blocks, positions } = &**self.0.as_ref()?;
@@ -57,7 +57,7 @@ impl ExactPositions {
         (nodes & bit != 0).then(|| positions[rank as usize])
     }
 
-    /// The positions of a list of nodes, by their places in the list.
+    /// Returns the positions of the listed nodes, renumbered by their indices in the list.
     pub(crate) fn select(&self, nodes: impl IntoIterator<Item = u32>) -> Self {
         if !self.is_lossless() {
             return Self::default();
@@ -71,7 +71,7 @@ impl ExactPositions {
         selected
     }
 
-    /// What it takes in memory.
+    /// Returns the memory used.
     pub(crate) fn bytes(&self) -> usize {
         let bytes =
             |table: &Arc<Table>| size_of_val(&table.blocks[..]) + size_of_val(&table.positions[..]);
@@ -79,7 +79,7 @@ impl ExactPositions {
     }
 }
 
-/// The block of a node, and its bit there.
+/// Returns the block of a node and its bit there.
 fn place(node: u32) -> (usize, u64) {
     (node as usize / 64, 1 << (node % 64))
 }
@@ -89,7 +89,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn those_that_have_a_position_have_their_own() {
+    fn each_node_has_its_own_position() {
         let is_there = |node: u32| node.is_multiple_of(7) && !(200..500).contains(&node);
         let position = |node: u32| [f64::from(node), -0.0, f64::from_bits(node.into())];
         let mut exact = ExactPositions::default();
@@ -106,7 +106,7 @@ mod tests {
     }
 
     #[test]
-    fn what_keeps_no_position_yet_keeps_them_still() {
+    fn an_empty_table_is_still_lossless() {
         let mut exact = ExactPositions::lossless();
         exact.push(7, [1.0; 3]);
         assert!(
@@ -114,7 +114,7 @@ mod tests {
                 && !ExactPositions::default().select([7]).is_lossless()
         );
         assert_eq!((exact.select([1, 2]).get(0), ExactPositions::default().get(7)), (None, None));
-        // 64 nodes are 16 bytes.
+        // Two bits per node: 16 bytes for 64.
         exact.push(1023, [2.0; 3]);
         assert_eq!(exact.bytes(), 2 * 24 + 1024 / 4);
     }

@@ -1,35 +1,36 @@
-//! Lengths in a byte or nine bits: what a file keeps of them, and a narrow model.
+//! Radii in eight bits and errors in nine, as files and compact models store them.
 
 use crate::frame::Length16;
 
-/// Steps an octave of a radius, as a power of two: 3 bits of mantissa. 2 bits save .1 byte a vertex, and give
-/// cameras 1 % more faces, small focuses up to 9.
+/// Low bits dropped from a radius, leaving 3 bits of mantissa. With 2 bits files shrink by .1 byte
+/// per vertex, but cameras get 1 % more faces and small focuses up to 9 %.
 const RADIUS: u32 = 8;
-/// Steps an octave of an error: 4 bits of mantissa. 3 bits cost queries 3 % more faces and save .1 byte.
+/// Low bits dropped from an error, leaving 4 bits of mantissa. With 3 bits files shrink by .1 byte
+/// per vertex, but queries get 3 % more faces.
 const ERROR: u32 = 7;
 
-/// How many errors there are.
+/// Number of distinct errors.
 pub(crate) const ERRORS: usize = 1 << (u16::BITS - ERROR);
 
-/// The least error that is not 0.
+/// Smallest error above 0.
 pub(crate) const MIN_ERROR: Length16 = Length16(1 << ERROR);
 
-/// A radius as a byte.
+/// Encodes a radius, rounded up, in a byte.
 pub(crate) fn radius8(radius: Length16) -> u8 {
     (up(radius, RADIUS).0 >> RADIUS) as u8
 }
 
-/// A byte as a radius.
+/// Decodes a radius from a byte.
 pub(crate) fn radius16(code: u8) -> Length16 {
     if code == u8::MAX { Length16::INFINITE } else { Length16(u16::from(code) << RADIUS) }
 }
 
-/// An error as nine bits.
+/// Encodes an error, rounded up, in nine bits.
 pub(crate) fn error9(error: Length16) -> u32 {
     u32::from(up(error, ERROR).0 >> ERROR)
 }
 
-/// Nine bits as an error.
+/// Decodes an error from nine bits, or returns `None` for a larger number.
 pub(crate) fn error16(code: u32) -> Option<Length16> {
     match code {
         ..511 => Some(Length16((code as u16) << ERROR)),
@@ -38,7 +39,7 @@ pub(crate) fn error16(code: u32) -> Option<Length16> {
     }
 }
 
-/// The next length without the last bits.
+/// Rounds a length up to the next one whose low bits are 0.
 fn up(length: Length16, bits: u32) -> Length16 {
     let rest = (1 << bits) - 1;
     let rounded = length.0.checked_add(rest).map_or(u16::MAX, |code| code & !rest);

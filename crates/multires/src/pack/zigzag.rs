@@ -1,11 +1,11 @@
-//! Numbers with a sign as numbers without one: 0, -1, 1, -2… are 0, 1, 2, 3…
+//! Zigzag coding of signed integers: 0, -1, 1, -2… become 0, 1, 2, 3…
 
-/// The number of one with a sign. What fits 32 bits with a sign does without.
+/// Encodes a signed integer. Values that fit in 32 bits signed fit in 32 bits unsigned.
 pub(crate) fn zigzag(x: i64) -> u64 {
     ((x << 1) ^ (x >> 63)) as u64
 }
 
-/// The one with a sign that has this number.
+/// Decodes a signed integer.
 pub(crate) fn unzigzag(x: u64) -> i64 {
     (x >> 1) as i64 ^ -((x & 1) as i64)
 }

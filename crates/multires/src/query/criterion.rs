@@ -1,4 +1,4 @@
-//! Whether a query needs an update: the one question that every algorithm here asks.
+//! The refinement criterion: whether a query requires an update.
 
 use glam::{DVec3, Vec3};
 
@@ -6,12 +6,11 @@ use crate::frame::{Frame, Length16};
 use crate::query::Region;
 use crate::query::{Query, QueryError, Tolerance};
 
-/// By how much a ball is drawn larger than it has to be, so that rounding in a query cannot make it
-/// miss what a ball within it meets.
+/// Factor by which balls are enlarged, so that rounding in a query cannot make a ball miss
+/// something that a ball inside it meets.
 pub(crate) const SLACK: f64 = 1.0 + 1e-6;
 
-/// What an update is judged by, in stored units: a ball around both its sides and the error of the
-/// coarse one.
+/// Bounding ball of both sides of an update and the error of its coarse side, in stored units.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Ball {
     pub(crate) center: DVec3,
@@ -19,7 +18,7 @@ pub(crate) struct Ball {
     pub(crate) error: f64,
 }
 
-/// A box around many updates, with the greatest of their errors, in stored units.
+/// Bounding box of a set of updates and the greatest of their errors, in stored units.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Area {
     pub(crate) min: DVec3,
@@ -28,11 +27,11 @@ pub(crate) struct Area {
 }
 
 impl Area {
-    /// Around nothing.
+    /// The box that holds nothing.
     pub(crate) const EMPTY: Self =
         Self { min: DVec3::INFINITY, max: DVec3::NEG_INFINITY, error: 0.0 };
 
-    /// Grows around another.
+    /// Extends the box to hold another one.
     pub(crate) fn join(&mut self, other: &Self) {
         self.min = self.min.min(other.min);
         self.max = self.max.max(other.max);
@@ -61,17 +60,18 @@ impl PackedBall {
 
 /// A query in stored units.
 ///
-/// It is monotone: what it wants of a ball it wants of every ball around that with at least its error.
+/// The criterion is monotone: if it refines a ball, it refines every ball that contains it with at
+/// least its error.
 pub(crate) struct Criterion<'f> {
     region: Region,
-    most: StoredTolerance<'f>,
+    tolerance: StoredTolerance<'f>,
 }
 
 enum StoredTolerance<'f> {
     Uniform(f64),
-    /// So much of the distance from the eye.
+    /// A fraction of the distance from the viewpoint.
     Perspective(Viewpoint),
-    /// A part of the field.
+    /// A fraction of a field.
     Field {
         field: &'f dyn Fn([f64; 3], f64) -> f64,
         part: f64,
@@ -79,15 +79,15 @@ enum StoredTolerance<'f> {
     },
 }
 
-/// A camera, as far as it matters how large it sees an error.
+/// The part of a camera that determines how large an error appears.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Viewpoint {
     pub(crate) at: DVec3,
-    /// The tolerance a unit of distance.
+    /// Tolerance per unit of distance.
     pub(crate) slope: f64,
 }
 
-/// A need that can be told from others: of any but a field.
+/// Identity of a query, to recognize it when it comes again. Fields have none.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct QueryKey {
     region: Region,
@@ -99,7 +99,7 @@ impl<'f> Criterion<'f> {
     pub(crate) fn new(query: &Query<'f>, frame: &Frame) -> Result<Self, QueryError> {
         query.validate()?;
         let region = Region::new(&query.focus, frame);
-        let most = match query.tolerance {
+        let tolerance = match query.tolerance {
             Tolerance::Uniform(most) => StoredTolerance::Uniform(frame.length(most)),
             Tolerance::Pixels { camera, pixels } => StoredTolerance::Perspective(Viewpoint {
                 at: frame.point(camera.eye.into()),
@@ -107,20 +107,20 @@ impl<'f> Criterion<'f> {
             }),
             Tolerance::Field(field) => StoredTolerance::Field { field, part: 1.0, frame: *frame },
         };
-        Ok(Self { region, most })
+        Ok(Self { region, tolerance })
     }
 
-    /// Whether the ball meets the focus with more than the least tolerance in it.
+    /// Returns true if the ball meets the focus and its error exceeds the least tolerance in it.
     #[inline]
     pub(crate) fn refines(&self, ball: &Ball) -> bool {
         self.exceeds(ball) && self.meets(ball)
     }
 
-    /// How many times the least tolerance in each ball its error is; 0 where the focus is not met or
-    /// the ball has none. It is monotone too.
+    /// Returns the priority of each ball: its error over the least tolerance in it, or 0 if it
+    /// misses the focus or is exact. Priorities are monotone like the criterion.
     pub(crate) fn priorities(&self, balls: impl Iterator<Item = Ball>) -> Vec<f32> {
-        match (&self.region, &self.most) {
-            // The common ones, with nothing to decide in the loop.
+        match (&self.region, &self.tolerance) {
+            // The common cases, without a branch in the loop.
             (Region::Everything, StoredTolerance::Uniform(most)) => {
                 balls.map(|ball| times(ball.error, *most)).collect()
             }
@@ -135,26 +135,26 @@ impl<'f> Criterion<'f> {
         if self.meets(ball) { times(ball.error, self.least(ball)) } else { 0.0 }
     }
 
-    /// The least tolerance in a ball.
+    /// Returns the least tolerance within a ball.
     fn least(&self, ball: &Ball) -> f64 {
-        match &self.most {
+        match &self.tolerance {
             StoredTolerance::Uniform(most) => *most,
             StoredTolerance::Perspective(eye) => eye.least(ball),
             StoredTolerance::Field { field, part, frame } => {
                 let center = frame.model(ball.center.as_vec3().into());
                 let most = field(center, frame.length_of_model(ball.radius));
-                // What is no tolerance tolerates nothing: `max` prefers a number.
+                // An invalid tolerance counts as 0: `max` prefers the number over NaN.
                 frame.length(part * most.max(0.0))
             }
         }
     }
 
-    /// Whether it may want something with this error that lies in the box.
+    /// Returns false only if no update within the box and with at most its error can be refined.
     pub(crate) fn may_refine_in(&self, area: &Area) -> bool {
         let Area { min, max, error } = *area;
         let ball = Ball { center: 0.5 * (min + max), radius: 0.5 * min.distance(max), error };
         let squared = |from: DVec3| from.distance_squared(from.clamp(min, max));
-        let exceeds = match &self.most {
+        let exceeds = match &self.tolerance {
             StoredTolerance::Perspective(eye) => {
                 eye.slope * eye.slope * squared(eye.at) < error * error
             }
@@ -171,7 +171,7 @@ impl<'f> Criterion<'f> {
 
     #[inline]
     fn exceeds(&self, ball: &Ball) -> bool {
-        match &self.most {
+        match &self.tolerance {
             StoredTolerance::Uniform(most) => ball.error > *most,
             StoredTolerance::Perspective(eye) => eye.exceeded_by(ball),
             StoredTolerance::Field { .. } => ball.error > self.least(ball),
@@ -183,9 +183,9 @@ impl<'f> Criterion<'f> {
         self.region.meets_ball(ball.center, ball.radius)
     }
 
-    /// The same with a part of the tolerance.
+    /// Returns the criterion with its tolerance multiplied by `by`.
     pub(crate) fn scaled(mut self, by: f64) -> Self {
-        match &mut self.most {
+        match &mut self.tolerance {
             StoredTolerance::Uniform(most) => *most *= by,
             StoredTolerance::Perspective(eye) => eye.slope *= by,
             StoredTolerance::Field { part, .. } => *part *= by,
@@ -193,9 +193,9 @@ impl<'f> Criterion<'f> {
         self
     }
 
-    /// What it is known by; a field is not known.
+    /// Returns the identity of the query, or `None` for a field.
     pub(crate) fn key(&self) -> Option<QueryKey> {
-        let (everywhere, eye) = match self.most {
+        let (everywhere, eye) = match self.tolerance {
             StoredTolerance::Uniform(most) => (Some(most), None),
             StoredTolerance::Perspective(eye) => (None, Some(eye)),
             StoredTolerance::Field { .. } => return None,
@@ -203,14 +203,14 @@ impl<'f> Criterion<'f> {
         Some(QueryKey { region: self.region.clone(), everywhere, eye })
     }
 
-    /// Whether it is one tolerance everywhere.
+    /// Returns true if the tolerance is the same everywhere.
     pub(crate) fn is_uniform(&self) -> bool {
-        matches!((&self.region, &self.most), (Region::Everything, StoredTolerance::Uniform(_)))
+        matches!((&self.region, &self.tolerance), (Region::Everything, StoredTolerance::Uniform(_)))
     }
 
-    /// The eye, where it is all that the need depends on.
+    /// Returns the viewpoint if the criterion depends on nothing else.
     pub(crate) fn viewpoint(&self) -> Option<Viewpoint> {
-        match (&self.region, &self.most) {
+        match (&self.region, &self.tolerance) {
             (Region::Everything, StoredTolerance::Perspective(eye)) => Some(*eye),
             _ => None,
         }
@@ -218,7 +218,7 @@ impl<'f> Criterion<'f> {
 }
 
 impl Viewpoint {
-    /// The least tolerance in a ball.
+    /// Returns the least tolerance within a ball.
     #[inline]
     fn least(&self, ball: &Ball) -> f64 {
         self.slope * (self.at.distance(ball.center) - ball.radius)
@@ -226,20 +226,22 @@ impl Viewpoint {
 
     #[inline]
     fn exceeded_by(&self, ball: &Ball) -> bool {
-        // Most error a unit of distance, at the ball's closest place.
+        // Compared at the point of the ball closest to the viewpoint.
         let reach = ball.error + self.slope * ball.radius;
         let squared = self.slope * self.slope * self.at.distance_squared(ball.center);
         ball.error > 0.0 && (squared < reach * reach || self.slope == 0.0)
     }
 
-    /// How close the eye must be to want an update; `None` where it never turns.
+    /// Returns the distance below which the viewpoint refines an update, or `None` if that never
+    /// changes.
     pub(crate) fn reach(&self, ball: &Ball) -> Option<f64> {
         let reach = ball.radius + ball.error / self.slope;
         (ball.error > 0.0 && reach.is_finite()).then_some(reach)
     }
 }
 
-/// How many times a tolerance an error is; one of nothing makes everything as urgent as its error.
+/// Returns an error in multiples of a tolerance. With a tolerance of 0 priorities are in the order
+/// of the errors.
 #[inline]
 fn times(error: f64, most: f64) -> f32 {
     let least = f64::from(f32::MIN_POSITIVE);
@@ -258,7 +260,7 @@ mod tests {
         Criterion::new(&Query { focus, tolerance }, &frame).unwrap()
     }
 
-    /// A ball in model units of a frame of unit 4.
+    /// A ball given in model units, for a frame whose unit is 4.
     fn ball(center: [f64; 3], radius: f64, error: f64) -> Ball {
         Ball { center: DVec3::from(center) / 4.0, radius: radius / 4.0, error: error / 4.0 }
     }
@@ -274,7 +276,7 @@ mod tests {
     }
 
     #[test]
-    fn a_focus_is_met_by_balls_that_reach_it() {
+    fn a_focus_meets_the_balls_that_reach_it() {
         let reached = |focus: Focus, center| {
             let criterion = criterion(focus, Tolerance::Uniform(0.0));
             [0.9, 1.1].map(|radius| criterion.refines(&ball(center, radius, 1.0)))
@@ -286,7 +288,8 @@ mod tests {
         assert_eq!(reached(Focus::Segment([[1.0, 0.0, 0.0]; 2]), at), [false, true]);
         assert_eq!(reached(Focus::Box([[-1.0; 3], [1.0; 3]]), at), [false, true]);
         assert_eq!(reached(Focus::Sphere { center: [0.0; 3], radius: 1.0 }, at), [false, true]);
-        // The picture is twice as wide as high: its upper side rises by one a unit of distance.
+        // The viewport is twice as wide as high, so its upper side rises by one per unit of
+        // distance.
         let above = [0.0, 5.0 + 2f64.sqrt(), 0.0];
         assert_eq!(reached(Focus::Frustum(camera()), above), [false, true]);
         assert_eq!(reached(Focus::Frustum(camera()), [9.0, 0.0, 0.0]), [true, true]);
@@ -302,7 +305,7 @@ mod tests {
             !criterion.refines(&ball([0.0; 3], 0.0, 0.099))
                 && criterion.refines(&ball([0.0; 3], 0.0, 0.101))
         );
-        // What reaches half the way is seen from there.
+        // A ball that reaches half-way to the viewpoint is judged from there.
         assert!(
             criterion.refines(&ball([0.0; 3], 2.5, 0.051))
                 && !criterion.refines(&ball([0.0; 3], 2.5, 0.049))
@@ -313,7 +316,7 @@ mod tests {
     }
 
     #[test]
-    fn a_field_is_asked_in_model_units() {
+    fn a_field_is_evaluated_in_model_units() {
         let field = |center: [f64; 3], radius: f64| (center[0].abs() - radius).max(0.0);
         let criterion = criterion(Focus::Everything, Tolerance::Field(&field));
         assert!(criterion.refines(&ball([1.0, 0.0, 0.0], 0.5, 0.6)));
@@ -321,7 +324,7 @@ mod tests {
     }
 
     #[test]
-    fn a_field_without_a_tolerance_tolerates_nothing() {
+    fn an_invalid_field_value_counts_as_zero() {
         for none in [f64::NAN, -1.0, f64::NEG_INFINITY] {
             let field = |_: [f64; 3], _: f64| none;
             let criterion = criterion(Focus::Everything, Tolerance::Field(&field));
@@ -333,7 +336,7 @@ mod tests {
     }
 
     #[test]
-    fn questions_that_are_none_are_refused() {
+    fn invalid_queries_are_refused() {
         let frame = Frame::new(&Bounds { min: [-1.0; 3], max: [1.0; 3] });
         let ask = |focus, tolerance| Criterion::new(&Query { focus, tolerance }, &frame).err();
         let fine = || Tolerance::Uniform(0.1);

@@ -1,4 +1,4 @@
-//! What is asked: where, and how fine.
+//! Queries: where a mesh must be fine, and how fine.
 
 mod criterion;
 mod region;
@@ -9,119 +9,130 @@ use thiserror::Error;
 pub(crate) use criterion::{Area, Ball, Criterion, PackedBall, QueryKey, SLACK, Viewpoint};
 pub(crate) use region::Region;
 
-/// A question: within the focus no triangle may be further from the surface than the tolerance.
+/// A request for a mesh: within the focus no triangle may deviate from the surface by more than the
+/// tolerance.
 #[derive(Clone, Debug)]
 pub struct Query<'f> {
-    /// Where the tolerance must hold; elsewhere the mesh is as coarse as it can be.
+    /// Region where the tolerance must hold; elsewhere the mesh is as coarse as possible.
     pub focus: Focus,
-    /// How far off triangles may be.
+    /// Largest deviation allowed within the focus.
     pub tolerance: Tolerance<'f>,
 }
 
-/// A set in space, in model units.
+/// Region of interest, in model units.
 #[derive(Clone, Debug, Default)]
 pub enum Focus {
-    /// All of it.
+    /// The whole model.
     #[default]
     Everything,
-    /// One place.
+    /// A single point.
     Point([f64; 3]),
-    /// Between two places.
+    /// The segment between two points.
     Segment([[f64; 3]; 2]),
-    /// From the least corner to the greatest.
+    /// An axis-aligned box, given by its least and its greatest corner.
     Box([[f64; 3]; 2]),
-    /// All within a distance.
+    /// A ball.
     Sphere {
-        /// Its middle.
+        /// Center of the ball.
         center: [f64; 3],
-        /// The distance.
+        /// Radius of the ball.
         radius: f64,
     },
-    /// What a camera sees, however far.
+    /// The view frustum of a camera, without a far plane.
     Frustum(ViewCamera),
 }
 
-/// How far off a triangle may be.
+/// Largest deviation allowed for a triangle.
 #[derive(Clone)]
 pub enum Tolerance<'f> {
-    /// The same everywhere, in model units.
+    /// One tolerance everywhere, in model units.
     Uniform(f64),
-    /// What a camera cannot tell.
+    /// A screen-space tolerance.
     Pixels {
-        /// The camera.
+        /// The camera that sees the mesh.
         camera: ViewCamera,
-        /// How many of its pixels the error may span where it is closest to the camera: pixels as
-        /// they are in the middle of the picture, so that it does not matter where the camera looks.
-        /// Away from the middle as much as [`ViewCamera::stretch`] times as many.
+        /// Number of pixels that the error may span at the triangle's closest point to the camera.
+        /// Pixels are measured in the middle of the picture, so the viewing direction does not
+        /// matter; towards the corners an error can span up to [`ViewCamera::stretch`] times as
+        /// many.
         pixels: f64,
     },
-    /// The least tolerance in a ball, by its center and its radius in model units. Of a ball within
-    /// another it must not be less than of that. What is below 0 or no number is as 0: as fine as can
-    /// be.
+    /// Least tolerance within a ball, given by its center and radius in model units. It must not
+    /// decrease from a ball to a ball inside it. Negative values and NaN count as 0, the finest
+    /// level.
     Field(&'f dyn Fn([f64; 3], f64) -> f64),
 }
 
 /// A perspective camera.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ViewCamera {
-    /// Where it is.
+    /// Position of the camera.
     pub eye: [f64; 3],
-    /// What it looks at.
+    /// Point that the camera looks at.
     pub look: [f64; 3],
-    /// A direction that is up in the picture.
+    /// Direction that points up in the picture.
     pub up: [f64; 3],
-    /// From the lower edge of the picture to the upper one.
+    /// Vertical field of view.
     pub fov_rad: f64,
-    /// Width and height of the picture in pixels.
+    /// Width and height of the picture, in pixels.
     pub viewport: [u32; 2],
 }
 
-/// Why a question cannot be asked.
+/// Reasons why a query is invalid.
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum QueryError {
-    /// A coordinate of the focus or the camera is not a number.
-    #[error("the {0} has a coordinate that is not finite")]
+    /// A coordinate of the focus or the camera is not finite.
+    #[error("a coordinate of the {0} is not finite")]
     NotFinite(&'static str),
-    /// A length below zero, or none at all.
-    #[error("{what} of {value} is none: give at least 0")]
+    /// A length is negative or NaN.
+    #[error("{what} must be at least 0, not {value}")]
     BadLength {
-        /// What it is of.
+        /// Name of the length.
         what: &'static str,
-        /// The value.
+        /// The invalid value.
         value: f64,
     },
-    /// A box from a corner to a lesser one.
-    #[error("the box is inside out: its first corner must be the least")]
+    /// The range of tolerances to prepare is empty, or not positive and finite.
+    #[error("a range of tolerances must rise from above 0 to a finite end, not from {0} to {1}")]
+    BadRange(f64, f64),
+    /// The hysteresis is negative or not finite.
+    #[error("the hysteresis must be finite and at least 0, not {0}")]
+    BadHysteresis(f64),
+    /// The first corner of a box is not the least one.
+    #[error("the box is inside out: give its least corner first")]
     InsideOut,
-    /// A query that balls were not nested for.
-    #[error("the balls nest for cameras that look at everything, within a range of tolerances")]
+    /// The model has no nested balls for this query.
+    #[error(
+        "only camera queries over the whole model, within a prepared range of tolerances, can be \
+         saturated: use `exact`, or call `Model::saturate` first"
+    )]
     NotSaturated,
-    /// A camera without a picture.
+    /// The camera is degenerate.
     #[error("the camera sees nothing: {0}")]
     Blind(&'static str),
 }
 
 impl Query<'static> {
-    /// The whole surface to a tolerance in model units.
+    /// Asks for the whole surface within a tolerance in model units.
     pub fn uniform(tolerance: f64) -> Self {
         Self { focus: Focus::Everything, tolerance: Tolerance::Uniform(tolerance) }
     }
 
-    /// The whole surface as a camera needs it.
+    /// Asks for the whole surface within a number of pixels of a camera.
     pub fn pixels(camera: ViewCamera, pixels: f64) -> Self {
         Self { focus: Focus::Everything, tolerance: Tolerance::Pixels { camera, pixels } }
     }
 }
 
 impl Query<'_> {
-    /// Whether it can be asked.
+    /// Checks that the query is valid.
     pub(crate) fn validate(&self) -> Result<(), QueryError> {
         self.focus.validate()?;
         match &self.tolerance {
-            Tolerance::Uniform(most) => length("a tolerance", *most),
+            Tolerance::Uniform(most) => length("the tolerance", *most),
             Tolerance::Pixels { camera, pixels } => {
                 camera.validate()?;
-                length("a tolerance", *pixels)
+                length("the tolerance", *pixels)
             }
             Tolerance::Field(_) => Ok(()),
         }
@@ -129,7 +140,7 @@ impl Query<'_> {
 }
 
 impl Focus {
-    /// Whether it is one.
+    /// Checks that the focus is valid.
     pub(crate) fn validate(&self) -> Result<(), QueryError> {
         match self {
             Self::Everything => Ok(()),
@@ -142,7 +153,7 @@ impl Focus {
             }
             Self::Sphere { center, radius } => {
                 finite("sphere", &[*center])?;
-                length("a radius", *radius)
+                length("the radius", *radius)
             }
             Self::Frustum(camera) => camera.validate(),
         }
@@ -150,23 +161,24 @@ impl Focus {
 }
 
 impl ViewCamera {
-    /// How much of the distance a pixel spans in the middle of the picture.
+    /// Returns the fraction of the distance that a pixel spans in the middle of the picture.
     pub fn pixel(&self) -> f64 {
         2.0 * (0.5 * self.fov_rad).tan() / f64::from(self.viewport[1])
     }
 
-    /// How many times as many pixels the same error may span in a corner of the picture: for pixels
-    /// that hold everywhere, divide by this. 1.7 for a wide picture 45° high.
+    /// Returns the factor by which an error in a corner of the picture can span more pixels than in
+    /// its middle. Divide a pixel tolerance by it to make it hold everywhere. It is 1.7 for a wide
+    /// picture 45° high.
     ///
-    /// A picture is flat: at an angle from its middle it is further away, and the line of sight meets
-    /// it at that angle. Both stretch what is seen by the inverse of its cosine.
+    /// A picture is flat: at an angle from its middle it is further away, and the line of sight
+    /// meets it at that angle. Both stretch what is seen by the inverse of its cosine.
     pub fn stretch(&self) -> f64 {
         let [width, height] = self.viewport.map(f64::from);
         let high = (0.5 * self.fov_rad).tan();
         1.0 + high * high * (1.0 + (width / height) * (width / height))
     }
 
-    /// Forward, right and up, at right angles and of length one.
+    /// Returns the orthonormal directions forward, right and up.
     pub(crate) fn axes(&self) -> [DVec3; 3] {
         let forward = (DVec3::from(self.look) - DVec3::from(self.eye)).normalize_or_zero();
         let right = forward.cross(self.up.into()).normalize_or_zero();
@@ -182,7 +194,9 @@ impl ViewCamera {
             return Err(QueryError::Blind("its picture has no pixels"));
         }
         if self.axes().contains(&DVec3::ZERO) {
-            return Err(QueryError::Blind("it looks at itself, or along its up"));
+            return Err(QueryError::Blind(
+                "it looks at its own position, or along its up direction",
+            ));
         }
         Ok(())
     }
@@ -213,9 +227,9 @@ fn length(what: &'static str, value: f64) -> Result<(), QueryError> {
 mod tests {
     use super::*;
 
-    /// Errors of one pixel's length are turned into every direction at places all over the picture.
+    /// Turns errors of one pixel's length in all directions, at points all over the picture.
     #[test]
-    fn errors_are_stretched_away_from_the_middle_and_no_more() {
+    fn stretch_bounds_the_span_of_an_error() {
         let camera = ViewCamera {
             eye: [1.0, 2.0, 3.0],
             look: [4.0, 3.0, 1.0],

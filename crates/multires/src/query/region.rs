@@ -1,4 +1,4 @@
-//! The set that a query looks at, in stored units.
+//! The focus of a query in stored units, with its intersection tests.
 
 use glam::DVec3;
 use meshlod_spatial::closest_point;
@@ -6,22 +6,22 @@ use meshlod_spatial::closest_point;
 use crate::frame::Frame;
 use crate::query::{Focus, ViewCamera};
 
-/// A focus, ready to be asked what meets it.
+/// A focus prepared for intersection tests.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Region {
     Everything,
     Segment([DVec3; 2]),
     Box([DVec3; 2]),
     Sphere(DVec3, f64),
-    /// Planes with the inside where `normal · x` is at least the number.
+    /// Half-spaces `normal · x >= offset` whose intersection is the region.
     Planes([(DVec3, f64); 5]),
 }
 
-/// Positions are stored to a 2²⁴th of the unit: so far off a triangle meets a set still.
+/// Slack of the triangle tests: positions are rounded to 2⁻²⁴ of the unit.
 const ROUNDING: f64 = 1.0 / (1u64 << 22) as f64;
 
 impl Region {
-    /// Of a focus that is one.
+    /// Converts a valid focus to stored units.
     pub(crate) fn new(focus: &Focus, frame: &Frame) -> Self {
         let point = |p: [f64; 3]| frame.point(p.into());
         match focus {
@@ -34,7 +34,7 @@ impl Region {
         }
     }
 
-    /// Whether a ball has something of it.
+    /// Returns true if a ball intersects the region.
     #[inline]
     pub(crate) fn meets_ball(&self, center: DVec3, radius: f64) -> bool {
         let squared = match self {
@@ -51,8 +51,9 @@ impl Region {
         squared <= radius * radius
     }
 
-    /// Whether a triangle has something of it. For a segment and a frustum it may say so of triangles
-    /// that only come close: whose ball meets it, or that are beyond two of its planes, but no one.
+    /// Returns true if a triangle intersects the region. The tests against segments and frusta are
+    /// conservative: they compare with the triangle's bounding ball, and accept triangles that are
+    /// outside but not beyond any single plane.
     pub(crate) fn meets_triangle(&self, corners: [DVec3; 3]) -> bool {
         match self {
             Self::Everything => true,
@@ -75,8 +76,9 @@ impl Region {
     }
 }
 
-/// Whether a triangle meets the box of half the sides about the origin: no axis parts them, of the box,
-/// of the triangle, or at right angles to an edge of each.
+/// Returns true if a triangle intersects the box of the given half sides about the origin: no face
+/// normal of the box, the normal of the triangle or cross product of their edges is a separating
+/// axis.
 fn meets_box(corners: [DVec3; 3], half: DVec3) -> bool {
     let [a, b, c] = corners;
     let edges = [b - a, c - b, a - c];
@@ -98,7 +100,7 @@ fn closest(to: DVec3, [a, b]: [DVec3; 2]) -> DVec3 {
     a + t * along
 }
 
-/// In front of the eye, and within the four sides of the picture.
+/// Returns the near plane through the eye and the four sides of the view frustum.
 fn planes(camera: &ViewCamera, eye: DVec3) -> [(DVec3, f64); 5] {
     let [forward, right, up] = camera.axes();
     let [width, height] = camera.viewport.map(f64::from);
@@ -121,10 +123,10 @@ fn planes(camera: &ViewCamera, eye: DVec3) -> [(DVec3, f64); 5] {
 mod tests {
     use super::*;
 
-    /// Held against many places of each triangle: what has one inside meets the set, and what meets it
-    /// has one close to it.
+    /// Compares with many points of each triangle: a triangle with a point inside intersects the
+    /// region, and one that intersects has a point close to it.
     #[test]
-    fn triangles_meet_what_their_places_are_in() {
+    fn triangle_tests_agree_with_sampled_points() {
         let mut seed = 1u64;
         let mut roll = || {
             seed = seed.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
@@ -151,7 +153,7 @@ mod tests {
                 let is_met = place.meets_triangle(corners);
                 let within = |reach: f64| inner.iter().any(|&p| place.meets_ball(p, reach));
                 assert!(is_met || !within(0.0), "{place:?} {corners:?}");
-                // Places of a triangle are a sixtieth of its edges apart, at most √3 of which is 1.8.
+                // Sample points are a sixtieth of an edge apart, and an edge is at most √3.
                 assert!(!is_met || !is_exact || within(0.03), "{place:?} {corners:?}");
                 met[usize::from(is_met)] += 1;
             }

@@ -1,8 +1,8 @@
-//! The best level of at most so many faces.
+//! The best level within a face budget.
 //!
-//! Every vertex has an urgency: by how much its error exceeds the tolerance, and no less than that of a
-//! vertex that needs it. Inserting the most urgent first is making cuts all the way, so choosing is
-//! finding where to stop.
+//! The priority of a vertex is its error relative to the tolerance, and at least that of every
+//! vertex that depends on it. Inserting vertices by falling priority therefore passes through cuts
+//! only, and choosing the best one means finding where to stop.
 
 use std::cmp::Reverse;
 
@@ -12,40 +12,43 @@ use crate::level::Level;
 use crate::query::Criterion;
 use crate::query::{Query, QueryError};
 
-/// Urgencies of one bucket differ in these bits only: by a hundredth at most.
+/// Low bits ignored by the bucket of a priority, so that priorities in one bucket differ by one
+/// percent at most.
 const LOW_BITS: u32 = 16;
-/// Their highest bit is a sign, and none has it.
+/// Number of buckets; the sign bit of a priority is never set.
 const BUCKETS: usize = 1 << (u32::BITS - 1 - LOW_BITS);
 
 impl RtinExtractor<'_> {
-    /// The answer to the query whose tolerance is, everywhere, so many times as large that there are
-    /// at most so many faces, or so many times smaller that there are no fewer than need be. What the
-    /// query does not focus on stays as coarse as it can be; the coarsest level is there in any case.
+    /// Returns the best level of at most `faces` faces: the answer to the query with its tolerance
+    /// scaled, by one factor everywhere, as the budget allows.
     ///
-    /// Cost: of choosing, linear in the field however many faces are asked for; and of extraction.
+    /// Outside the focus the mesh stays as coarse as possible. The coarsest level is returned even
+    /// if it exceeds the budget.
+    ///
+    /// Cost: linear in the field for choosing, whatever the budget, plus extraction.
     /// # Errors
-    /// A query that is none.
+    /// The query is invalid.
     pub fn at_most(&mut self, faces: usize, query: &Query<'_>) -> Result<&Level, QueryError> {
         let criterion = Criterion::new(query, self.model.frame())?;
         self.forget_chosen();
         let base = self.write_chosen().faces.len();
         let priorities = self.model.priorities(&criterion);
-        self.choose_most_urgent(&priorities, faces.saturating_sub(base));
+        self.choose_by_priority(&priorities, faces.saturating_sub(base));
         Ok(self.write_chosen())
     }
 
-    /// Chooses the most urgent vertices that bring at most so many faces; none that is not urgent.
+    /// Chooses the vertices of highest priority whose faces fit into `room`, without those of
+    /// priority 0.
     ///
-    /// Urgencies are sorted into buckets by their leading bits. All of some buckets fit, none of
-    /// others, and one has to be sorted.
-    fn choose_most_urgent(&mut self, priorities: &[u32], mut room: usize) {
+    /// All of some buckets fit and none of others, so only one bucket has to be sorted.
+    fn choose_by_priority(&mut self, priorities: &[u32], mut room: usize) {
         let grid = &self.model.grid;
         let mut weights = vec![0usize; BUCKETS];
         for (index, priority) in priorities.iter().enumerate() {
             weights[(priority >> LOW_BITS) as usize] += grid.created_faces(grid.place(index));
         }
         let mut last = BUCKETS;
-        // The lowest holds what is not urgent at all.
+        // The lowest bucket holds the vertices of priority 0.
         while last > 1 && weights[last - 1] <= room {
             last -= 1;
             room -= weights[last];
@@ -61,7 +64,7 @@ impl RtinExtractor<'_> {
                 tight.push(index);
             }
         }
-        // What is needed is inserted earlier, and no less urgent.
+        // A dependency is inserted earlier and has at least the same priority.
         let key = |index: usize| (Reverse(priorities[index]), grid.depth_of(grid.place(index)));
         tight.sort_unstable_by_key(|&index| (key(index), index));
         for index in tight {
@@ -74,8 +77,8 @@ impl RtinExtractor<'_> {
 }
 
 impl Rtin {
-    /// The urgency of each vertex, as bits: those are in the order of the numbers. What is in every
-    /// level has none.
+    /// Returns the priority of each vertex, as the bits of a float, whose order is that of the
+    /// numbers. Vertices of the coarsest level get 0.
     fn priorities(&self, criterion: &Criterion<'_>) -> Vec<u32> {
         let all = self.vertices.iter().zip(&self.radii).enumerate();
         let balls =
@@ -85,7 +88,7 @@ impl Rtin {
         for (priority, vertex) in priorities.iter_mut().zip(&self.vertices) {
             *priority *= u32::from(!vertex.is_forced());
         }
-        // Errors are monotone as they are.
+        // Errors are monotone already.
         if criterion.is_uniform() {
             return priorities;
         }

@@ -1,4 +1,5 @@
-//! Errors and radii: the finest vertices first, each handing on to those that it needs.
+//! Computes errors and radii from the finest vertices up, each passing its own on to its
+//! dependencies.
 
 use super::field::{GridPlacement, HeightField};
 use super::grid::{Extent, Grid, GridPoint, RightTriangle};
@@ -7,9 +8,9 @@ use crate::frame::{Frame, Length16};
 use crate::query::SLACK;
 
 impl Rtin {
-    /// Measures all triangles of all levels at all vertices under them.
+    /// Builds the hierarchy, measuring each triangle of each level against all vertices under it.
     ///
-    /// Cost: n log n.
+    /// Cost: O(n log n).
     pub fn new(field: &HeightField) -> Self {
         let mut this = Self::without_errors(field);
         for depth in (0..this.grid.depth()).rev() {
@@ -43,7 +44,7 @@ impl Rtin {
         });
         let mut fit = field.fit;
         fit.rounded += lost.fold(0.0, f64::max);
-        // Nothing inserts the corners of the square.
+        // The corners of the square are never inserted.
         for corner in field.grid.roots().iter().flat_map(RightTriangle::corners) {
             if field.grid.holds(corner) {
                 vertices[field.grid.index(corner)].error = Length16::INFINITE;
@@ -53,7 +54,8 @@ impl Rtin {
         Self { frame, grid: field.grid, placement, vertices, radii, fit }
     }
 
-    /// Of a vertex of which all that need it have told what they ask of it.
+    /// Completes a vertex once all vertices that depend on it are done, and passes its requirements
+    /// on.
     fn finish(&mut self, place: GridPoint) {
         let index = self.grid.index(place);
         let asked = self.vertices[index];
@@ -72,7 +74,7 @@ impl Rtin {
         }
     }
 
-    /// Around the triangles that a vertex takes away.
+    /// Returns the radius of the ball around the triangles that an insertion removes.
     pub(super) fn own_radius(&self, place: GridPoint) -> Length16 {
         let center = self.nested_ball(place).center;
         let around = self.grid.diamond(place).into_iter().flat_map(|d| d.corners());
@@ -81,7 +83,8 @@ impl Rtin {
         Length16::up(squared.fold(0.0, f64::max).sqrt() * SLACK)
     }
 
-    /// Of the triangles that a vertex takes away; infinite if one lies across the border.
+    /// Returns the error of the triangles that an insertion removes, or infinity if one lies across
+    /// the border.
     pub(super) fn own_error(&self, place: GridPoint) -> Length16 {
         let Some(diamond) = self.grid.diamond(place) else { return Length16(0) };
         let mut most = 0.0;
@@ -95,7 +98,7 @@ impl Rtin {
         Length16::up(most)
     }
 
-    /// How far a triangle is from the vertices under it, at most, along the axis.
+    /// Returns the greatest vertical distance between a triangle and the vertices under it.
     fn deviation(&self, triangle: &RightTriangle) -> f64 {
         let Self { grid, vertices, .. } = self;
         let plane = Plane::of(grid, vertices, triangle);
@@ -117,13 +120,13 @@ impl Rtin {
     }
 }
 
-/// The heights of a triangle, and of its plane.
+/// The plane of a triangle as a height function.
 struct Plane {
     from: GridPoint,
     height: f64,
-    /// From a column to the next.
+    /// Slope per column.
     across: f64,
-    /// From a row to the next.
+    /// Slope per row.
     along: f64,
 }
 

@@ -1,8 +1,8 @@
-//! A height field as bytes: what a container holds of it.
+//! Serialization of a height field, as stored in a container.
 //!
-//! Heights come in the order of insertion, each as what it differs from the middle of its hypotenuse.
-//! So what is coarse comes first, and the heights that a prefix lacks are guessed with no more than it
-//! has. docs/notes/rtin.md has the layout.
+//! Heights come in the order of insertion, each as its difference from a prediction at the middle
+//! of its hypotenuse. So coarse heights come first, and a prediction uses only heights that precede
+//! it. docs/notes/rtin.md has the layout.
 
 use thiserror::Error;
 
@@ -10,77 +10,78 @@ use super::field::{Fit, GridPlacement, HeightField};
 use super::grid::{Grid, GridPoint};
 use crate::pack::{unzigzag, zigzag};
 
-/// How exact the heights of a field are kept.
+/// Precision with which heights are stored.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum HeightPrecision {
-    /// As they are.
+    /// Bit for bit.
     Exact,
-    /// Rounded by no more than this, in model units; above 0.
+    /// Within this distance in model units, which must be positive.
     Within(f64),
 }
 
-/// Why a field cannot be written, or bytes are none.
+/// Reasons why a field cannot be written or read.
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum FieldBytesError {
-    /// A bound that is none.
-    #[error("heights cannot be kept within {0}: give a length above 0")]
+    /// The bound on rounding is not a positive length.
+    #[error("the bound on rounding must be a length above 0, not {0}")]
     BadBound(f64),
-    /// The bytes end early.
+    /// The data end early.
     #[error(
-        "the height field is cut off: {needed} more bytes of its {what} are needed, {found} are there"
+        "the height field is truncated: {needed} more bytes of its {what} are needed, only {found} are left"
     )]
     Short {
-        /// What is cut off.
+        /// Name of the truncated part.
         what: &'static str,
-        /// Its length.
+        /// Bytes needed.
         needed: usize,
-        /// What is there of it.
+        /// Bytes available.
         found: usize,
     },
-    /// A value that cannot be.
-    #[error("the height field is damaged: its {0} cannot be")]
+    /// A value is invalid.
+    #[error("the height field is damaged: invalid {0}")]
     Bad(&'static str),
-    /// A part that cannot be unpacked, or not to the length that it must have.
+    /// A part cannot be decompressed, or not to its expected length.
     #[error("part {part} of the heights is damaged: {why}")]
     Heights {
-        /// Which, from 0.
+        /// Index of the part, from 0.
         part: u32,
-        /// What the unpacker says.
+        /// Message of the decompressor.
         why: String,
     },
 }
 
-/// Of the layout.
+/// Version of the layout.
 const VERSION: u8 = 1;
 const HEADER: usize = 72;
-/// A field has a byte at least for so many heights, if need be of padding. So the header of a short
-/// file cannot ask for much room, and flat fields of millions of heights take kilobytes.
+/// Largest number of heights per byte; shorter fields are padded. It keeps the header of a short
+/// file from requesting much memory, while flat fields of millions of heights still take only
+/// kilobytes.
 const MAX_PER_BYTE: usize = 256;
-/// Zstandard's. The exact heights of the shared terrain take the same at 3, 9, 15 and 19, to a third of
-/// a percent; in cells of 4 m they take 2 % more at 3 and 7 % less at 19.
+/// Zstandard level. Exact heights of the shared terrain take the same space at 3, 9, 15 and 19, to
+/// a third of a percent; in cells of 4 m they take 2 % more at 3 and 7 % less at 19.
 const EFFORT: i32 = 9;
-/// Multiples of the cell up to this are exact in `f64`.
+/// Largest multiple of a cell that is exact in `f64`.
 const MAX_CELLS: f64 = (1u64 << 52) as f64;
 
-/// Cells are at least the least `f64`, and at most what leaves room for multiples.
+/// Range of cell exponents: from the smallest `f64` to where multiples would overflow.
 const MIN_POWER: i16 = -1074;
 const MAX_POWER: i16 = 900;
-/// Coordinates stay below this, so that distances can be squared.
+/// Limit of coordinates, so that squared distances are finite.
 pub(super) const MAX_COORDINATE: f64 = 1e150;
 
-/// How heights are whole numbers.
+/// Mapping of heights to integers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Scale {
-    /// Multiples of 2 to this power.
+    /// Multiples of this power of two.
     Cells(i16),
-    /// The bits of the `f64`, in the order of the numbers.
+    /// Bit patterns of `f64`, reordered to sort like the numbers.
     Bits,
 }
 
 impl HeightField {
-    /// The field as bytes, little-endian, without a checksum of its header.
+    /// Encodes the field in little-endian bytes, without a checksum of its header.
     /// # Errors
-    /// A bound that is none.
+    /// The bound on rounding is not a positive length.
     pub fn to_bytes(&self, precision: HeightPrecision) -> Result<Vec<u8>, FieldBytesError> {
         let scale = Scale::for_heights(&self.heights, precision)?;
         let codes: Vec<i64> = self.heights.iter().map(|&height| scale.code(height)).collect();
@@ -101,11 +102,11 @@ impl HeightField {
         Ok(bytes)
     }
 
-    /// What [`HeightField::to_bytes`] wrote.
+    /// Decodes a field written by [`HeightField::to_bytes`].
     ///
-    /// Takes memory in proportion to the bytes, whatever they say.
+    /// Memory use is proportional to the number of bytes, whatever they contain.
     /// # Errors
-    /// What is cut off or damaged.
+    /// The data are truncated or damaged.
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, FieldBytesError> {
         let mut reader = ByteReader { bytes };
         let (mut this, scale) = read_header(&mut reader)?;
@@ -124,7 +125,7 @@ impl HeightField {
         }
         let is_padding = reader.bytes.iter().all(|&byte| byte == 0) && bytes.len() == least;
         if !(is_padding || reader.bytes.is_empty()) {
-            return Err(FieldBytesError::Bad("end"));
+            return Err(FieldBytesError::Bad("length"));
         }
         this.heights = codes.iter().map(|&code| scale.height(code)).collect();
         if !scale.holds(&codes) || !this.heights.iter().all(|height| height.abs() < MAX_COORDINATE)
@@ -136,7 +137,8 @@ impl HeightField {
 }
 
 impl Grid {
-    /// The corners of the square in part 0, then what is inserted after so many halvings and one.
+    /// Iterates over a part: the corners of the square in part 0, and in part k the vertices
+    /// inserted after k − 1 halvings.
     fn part(&self, part: u32) -> impl Iterator<Item = GridPoint> + use<> {
         let grid = *self;
         let side = self.side;
@@ -147,8 +149,8 @@ impl Grid {
         corners.chain(inserted.into_iter().flatten())
     }
 
-    /// What a height should be by those of earlier parts: the middle of its hypotenuse, or what is known
-    /// of that.
+    /// Predicts a height from earlier parts: the middle of its hypotenuse, or as much of that as is
+    /// known.
     fn guess(&self, place: GridPoint, codes: &[i64]) -> i64 {
         let Some(diamond) = self.diamond(place) else {
             return if place == GridPoint::default() { 0 } else { codes[0] };
@@ -194,13 +196,13 @@ impl Scale {
         }
     }
 
-    /// Whether these are codes that it gives.
+    /// Returns true if the codes are in the range of the scale.
     fn holds(self, codes: &[i64]) -> bool {
         self == Self::Bits || codes.iter().all(|code| code.unsigned_abs() <= MAX_CELLS as u64)
     }
 }
 
-/// The power of two that is the last bit of a number, which must not be 0.
+/// Returns the exponent of the lowest set bit of a nonzero number.
 fn last_bit(x: f64) -> i16 {
     let bits = x.to_bits();
     let exponent = (bits >> 52 & 0x7ff) as i16;
@@ -208,7 +210,7 @@ fn last_bit(x: f64) -> i16 {
     exponent.max(1) - 1075 + mantissa.trailing_zeros() as i16
 }
 
-/// Bits of an `f64` as a number in the same order, and back.
+/// Maps the bits of an `f64` to an integer in the same order, and back.
 fn in_order(bits: i64) -> i64 {
     bits ^ ((bits >> 63) as u64 >> 1) as i64
 }
@@ -228,7 +230,7 @@ fn header(grid: &Grid, placement: &GridPlacement, fit: &Fit, scale: Scale) -> Ve
     bytes
 }
 
-/// A field without its heights.
+/// Reads a field without its heights.
 fn read_header(reader: &mut ByteReader<'_>) -> Result<(HeightField, Scale), FieldBytesError> {
     use FieldBytesError::Bad;
     let what = "header";
@@ -260,14 +262,14 @@ fn read_header(reader: &mut ByteReader<'_>) -> Result<(HeightField, Scale), Fiel
     let is_placement = [x, y].into_iter().chain(last).all(is_place) && dx > 0.0 && dy > 0.0;
     if !is_placement || ![moved, turned, rounded].iter().all(|x| (0.0..MAX_COORDINATE).contains(x))
     {
-        return Err(Bad("lattice"));
+        return Err(Bad("grid placement"));
     }
     let fit = Fit { moved, turned, rounded };
     Ok((HeightField { grid, placement, heights: Vec::new(), fit }, scale))
 }
 
-/// How many bytes each number takes, how many all take packed, and those: first the least byte of
-/// each, then the next of each, and so on.
+/// Writes the width of the numbers, their compressed length and the compressed bytes: first the low
+/// byte of each number, then the next of each, and so on.
 fn write_part(residuals: &[u64], bytes: &mut Vec<u8>) -> std::io::Result<()> {
     let greatest = residuals.iter().copied().max().unwrap_or(0);
     let width = (u64::BITS - greatest.leading_zeros()).div_ceil(8);
@@ -297,21 +299,21 @@ fn read_part(
     let length = u32::from_le_bytes(reader.array("heights")?) as usize;
     let packed = reader.take(length, "heights")?;
     if width > 8 || (width == 0) != packed.is_empty() {
-        return Err(damaged("they have an impossible width"));
+        return Err(damaged("invalid width"));
     }
     let planes = match width {
         0 => Vec::new(),
         _ => zstd::bulk::decompress(packed, count * width).map_err(|e| damaged(&e.to_string()))?,
     };
     if planes.len() != count * width {
-        return Err(damaged("they are too few"));
+        return Err(damaged("too few values"));
     }
     Ok((0..count).map(move |i| {
         (0..width).map(|k| u64::from(planes[k * count + i]) << (8 * k)).fold(0, |x, byte| x | byte)
     }))
 }
 
-/// What is left to read.
+/// The bytes not yet read.
 struct ByteReader<'b> {
     bytes: &'b [u8],
 }

@@ -1,4 +1,4 @@
-//! Holds everything stored against what it promises.
+//! Verification of all that a hierarchy stores.
 
 use thiserror::Error;
 
@@ -7,44 +7,45 @@ use super::grid::GridPoint;
 use crate::frame::Length16;
 use crate::query::Ball;
 
-/// Why right triangles may be further off than their levels promise.
+/// Reasons why a hierarchy cannot be certified.
 #[derive(Clone, Copy, Debug, Error, PartialEq, Eq)]
 #[error("the vertex at column {column}, row {row} is not sound: {why}")]
 pub struct RtinCertifyError {
-    /// Its column.
+    /// Column of the vertex.
     pub column: u32,
-    /// Its row.
+    /// Row of the vertex.
     pub row: u32,
-    /// What does not hold.
+    /// The flaw.
     pub why: RtinFlaw,
 }
 
-/// What does not hold of a vertex.
+/// Flaws of a vertex.
 #[derive(Clone, Copy, Debug, Error, PartialEq, Eq, PartialOrd, Ord)]
 pub enum RtinFlaw {
-    /// A level without it would go beyond the border.
-    #[error("what it takes away lies across the border, and it is not in every level")]
+    /// A level without it would extend beyond the border.
+    #[error("it removes triangles across the border but is not in every level")]
     NotForced,
-    /// A triangle is further off.
-    #[error("its error is less than what it takes away is off by")]
+    /// A triangle deviates by more than the error.
+    #[error("its error is less than the deviation of the triangles it removes")]
     NoBound,
-    /// It might not be looked for where it counts.
-    #[error("its ball is not around what it takes away")]
+    /// A query might miss it.
+    #[error("its ball does not contain the triangles it removes")]
     SmallBall,
-    /// A level might have it without what it needs.
-    #[error("the ball or the error of what it needs is less than its own")]
+    /// A level might contain it without its dependencies.
+    #[error("its dependencies have smaller errors or balls")]
     NotNested,
 }
 
 impl Rtin {
-    /// Proves that errors bound, that errors and balls nest along needs, and that what lies across the
-    /// border is in every level; gives the number of insertions.
+    /// Proves that errors are bounds, that errors and balls nest along dependencies, and that
+    /// triangles across the border are split in every level; returns the number of insertions.
     ///
-    /// That no level has a crack needs no looking: both sides of an insertion have the boundary of one
-    /// diamond, whatever is stored.
-    /// Cost: n log n.
+    /// No level can have a crack, whatever is stored: both sides of an insertion have the boundary
+    /// of one diamond.
+    ///
+    /// Cost: O(n log n).
     /// # Errors
-    /// The first vertex of which that cannot be said.
+    /// The first vertex that fails.
     pub fn certify(&self) -> Result<usize, RtinCertifyError> {
         let mut sound = 0;
         for depth in 0..self.grid.depth() {

@@ -1,4 +1,4 @@
-//! Levels by recursion over triangles, each halved while its vertex is in the cut.
+//! Extraction by recursion over triangles, each bisected while its vertex is in the cut.
 
 use super::Rtin;
 use super::grid::{Extent, Grid, GridPoint, RightTriangle, middle};
@@ -7,23 +7,24 @@ use crate::level::Level;
 use crate::query::Criterion;
 use crate::query::{Query, QueryError};
 
-/// Levels out of one model, one after the other in the same room.
+/// Extracts levels from a hierarchy, reusing its memory.
 ///
-/// Cost: linear in what comes out, whatever the size of the field, but for [`RtinExtractor::at_most`].
+/// Cost: linear in the result, whatever the size of the field, except for
+/// [`RtinExtractor::at_most`].
 #[derive(Clone, Debug)]
 pub struct RtinExtractor<'m> {
     pub(super) model: &'m Rtin,
     level: Level,
-    /// By vertex, its number in the level.
+    /// Index of each vertex in the level.
     numbers: Vec<u32>,
-    /// By vertex: whether it is in the cut.
+    /// True for the vertices in the cut.
     pub(super) chosen: Vec<bool>,
-    /// All that are.
+    /// All vertices marked in `chosen`.
     pub(super) all_chosen: Vec<u32>,
 }
 
 impl<'m> RtinExtractor<'m> {
-    /// With nothing extracted yet.
+    /// Creates an extractor with tables as long as the field.
     pub fn new(model: &'m Rtin) -> Self {
         let count = model.vertices.len();
         Self {
@@ -35,9 +36,10 @@ impl<'m> RtinExtractor<'m> {
         }
     }
 
-    /// The smallest level that meets the query: the vertices that it wants, and what those need.
+    /// Returns the smallest level that satisfies the query: the required vertices and their
+    /// dependencies.
     /// # Errors
-    /// A query that is none.
+    /// The query is invalid.
     pub fn exact(&mut self, query: &Query<'_>) -> Result<&Level, QueryError> {
         let criterion = Criterion::new(query, &self.model.frame)?;
         if criterion.is_uniform() {
@@ -45,25 +47,25 @@ impl<'m> RtinExtractor<'m> {
         }
         self.forget_chosen();
         let Self { model, chosen, all_chosen, .. } = self;
-        // What is wanted is wanted also by nested balls, and those make a cut: it lies above that.
+        // The nested balls give a larger cut, so the walk meets every required vertex.
         let mut chooser = Chooser { model, criterion: &criterion, chosen, all_chosen };
         model.grid.walk(&mut chooser);
         Ok(self.write_chosen())
     }
 
-    /// A level that meets the query, each vertex judged by itself: balls and errors nest, so what is
-    /// wanted is a cut already.
+    /// Returns a level that satisfies the query, judging each vertex by itself: since balls and
+    /// errors nest, the required vertices already form a cut.
     ///
-    /// It is not the smallest: the notes say by how much.
+    /// It is not the smallest one; docs/notes/rtin.md has figures.
     /// # Errors
-    /// A query that is none.
+    /// The query is invalid.
     pub fn saturated(&mut self, query: &Query<'_>) -> Result<&Level, QueryError> {
         let criterion = Criterion::new(query, &self.model.frame)?;
         let model = self.model;
         Ok(self.write(|place, _| criterion.refines(&model.nested_ball(place))))
     }
 
-    /// The level of the chosen vertices, which must be a cut.
+    /// Writes the level of the chosen vertices, which must form a cut.
     pub(super) fn write_chosen(&mut self) -> &Level {
         let chosen = std::mem::take(&mut self.chosen);
         self.write(|_, index| chosen[index]);
@@ -71,7 +73,7 @@ impl<'m> RtinExtractor<'m> {
         &self.level
     }
 
-    /// The level of the vertices of which `is_in` says so; those that are in every level are not asked.
+    /// Writes the level of the vertices that `is_in` accepts, plus those that are in every level.
     fn write(&mut self, is_in: impl FnMut(GridPoint, usize) -> bool) -> &Level {
         let Self { model, level, numbers, .. } = self;
         level.nodes.iter().for_each(|&node| numbers[node as usize] = NONE);
@@ -86,12 +88,12 @@ impl<'m> RtinExtractor<'m> {
     }
 }
 
-/// What is to be done on a walk over the triangles.
+/// Visitor of the triangles.
 trait Visit {
-    /// Of a vertex that is in the cut, its number in the level; `apex` is one of those that it needs.
+    /// Returns the number of a vertex if it is in the cut; `apex` is one of its dependencies.
     fn number(&mut self, place: GridPoint, apex: GridPoint) -> Option<u32>;
 
-    /// A triangle of the level.
+    /// Receives a triangle of the level.
     fn show(&mut self, corners: [u32; 3]);
 }
 
@@ -99,12 +101,12 @@ trait Visit {
 #[derive(Clone, Copy)]
 struct Numbered {
     triangle: RightTriangle,
-    /// The right angle first.
+    /// Numbers of the corners, the right angle first.
     numbers: [u32; 3],
 }
 
 impl Grid {
-    /// Halves triangles while their vertex has a number, and shows the others.
+    /// Bisects triangles while their vertex has a number, and shows the others.
     fn walk(&self, visit: &mut impl Visit) {
         for triangle in self.roots() {
             let numbers = triangle.corners().map(|p| self.number(p, p, visit).unwrap_or(NONE));
@@ -112,7 +114,8 @@ impl Grid {
         }
     }
 
-    /// Of a place outside the field, nothing.
+    /// Returns the number of a vertex, or a dummy outside the field, where triangles are bisected
+    /// on.
     fn number(&self, place: GridPoint, apex: GridPoint, visit: &mut impl Visit) -> Option<u32> {
         if self.holds(place) { visit.number(place, apex) } else { Some(NONE) }
     }
@@ -180,7 +183,7 @@ impl<F: FnMut(GridPoint, usize) -> bool> Visit for Writer<'_, F> {
     }
 }
 
-/// Chooses what is wanted and what that needs.
+/// Visitor that collects the required vertices and their dependencies.
 struct Chooser<'a, 'f> {
     model: &'a Rtin,
     criterion: &'a Criterion<'f>,
@@ -189,7 +192,7 @@ struct Chooser<'a, 'f> {
 }
 
 impl Chooser<'_, '_> {
-    /// Whether it is in the cut so far.
+    /// Returns true if a vertex is in the cut so far.
     #[inline]
     fn has(&self, index: usize) -> bool {
         self.chosen[index] || self.model.vertices[index].is_forced()
@@ -201,7 +204,7 @@ impl Chooser<'_, '_> {
         self.all_chosen.push(index as u32);
     }
 
-    /// And what it needs; that of what is in every level is, too.
+    /// Adds a vertex with its dependencies. Vertices of the coarsest level have theirs already.
     fn choose(&mut self, place: GridPoint) {
         let index = self.model.grid.index(place);
         if !self.has(index) {
@@ -212,7 +215,7 @@ impl Chooser<'_, '_> {
 }
 
 impl Visit for Chooser<'_, '_> {
-    /// The walk meets each vertex once with each of those that it needs.
+    /// The walk meets each vertex once with each of its dependencies.
     #[inline(always)]
     fn number(&mut self, place: GridPoint, apex: GridPoint) -> Option<u32> {
         let (model, criterion) = (self.model, self.criterion);

@@ -1,50 +1,51 @@
-//! Heights over a lattice.
+//! Heights over a regular grid.
 
 use glam::DVec3;
 use meshlod_mesh::Bounds;
 
 use super::grid::{Grid, GridPoint};
 
-/// Heights over a regular lattice in a plane across one of the axes.
+/// Heights over a regular grid in a plane perpendicular to a coordinate axis.
 ///
-/// Its surface are the right triangles that halve each cell, the diagonals of neighbours across each
-/// other. A mesh that halves them otherwise has the same vertices; [`Fit`] says by how much it differs.
+/// Its surface consists of right triangles that halve each cell, with diagonals alternating between
+/// neighbours. A mesh that halves cells otherwise has the same vertices; [`Fit`] bounds the
+/// difference.
 #[derive(Clone, Debug, PartialEq)]
 pub struct HeightField {
     pub(super) grid: Grid,
     pub(super) placement: GridPlacement,
-    /// Row by row, in model units along the axis.
+    /// Heights row by row, in model units.
     pub(super) heights: Vec<f64>,
     pub(super) fit: Fit,
 }
 
-/// How far a mesh may be from the height field that was made of it, in model units.
+/// Largest differences between a mesh and the height field made from it, in model units.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Fit {
-    /// Most that a vertex was moved in the plane to its place on the lattice.
+    /// Largest distance by which a vertex was moved onto the grid, within the plane.
     pub moved: f64,
-    /// Most that a cell was raised or lowered by having its other diagonal.
+    /// Largest change of height where a cell got the other diagonal.
     pub turned: f64,
-    /// Most that a height was rounded by.
+    /// Largest rounding of a height.
     pub rounded: f64,
 }
 
-/// Where the places of the grid are.
+/// Position and spacing of the grid.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct GridPlacement {
-    /// The axis that heights are along: 0, 1 or 2. Columns go along the next one, rows along the one
-    /// after that.
+    /// Axis of the heights: 0, 1 or 2. Columns advance along the next axis, rows along the one
+    /// after.
     pub(super) up: u8,
-    /// Faces look towards lesser heights.
+    /// True if faces look towards lesser heights.
     pub(super) looks_down: bool,
-    /// Of the first column and row.
+    /// Coordinates of the first column and row.
     pub(super) origin: [f64; 2],
-    /// From a column to the next, and from a row to the next; above 0.
+    /// Distances between columns and between rows, which are positive.
     pub(super) step: [f64; 2],
 }
 
 impl GridPlacement {
-    /// The axes of columns, rows and heights.
+    /// Returns the axes of columns, rows and heights.
     #[inline]
     pub(super) fn axes(up: u8) -> [usize; 3] {
         let up = usize::from(up);
@@ -63,37 +64,38 @@ impl GridPlacement {
 }
 
 impl HeightField {
-    /// How many vertices in a row, and how many rows.
+    /// Returns the number of columns and of rows.
     pub fn size(&self) -> [u32; 2] {
         [self.grid.columns, self.grid.rows]
     }
 
-    /// The axis that heights are along: 0 for x, 1 for y, 2 for z.
+    /// Returns the axis of the heights: 0 for x, 1 for y, 2 for z.
     pub fn axis(&self) -> usize {
         self.placement.up.into()
     }
 
-    /// In model units, row by row. Columns go along the axis after that of the heights, rows along
-    /// the next one.
+    /// Returns the heights row by row, in model units. Columns advance along the axis after that of
+    /// the heights, rows along the one after.
     pub fn heights(&self) -> &[f64] {
         &self.heights
     }
 
-    /// The point of a column and a row, in model units.
+    /// Returns the point at a column and a row, in model units.
     ///
-    /// Panics outside the field.
+    /// # Panics
+    /// The point is outside the field.
     pub fn point(&self, column: u32, row: u32) -> [f64; 3] {
         let place = GridPoint { column, row };
         assert!(self.grid.holds(place), "column {column}, row {row} is outside the field");
         self.placement.point(place, self.heights[self.grid.index(place)]).into()
     }
 
-    /// How far it may be from what it was made of.
+    /// Returns the bounds on the difference to the source.
     pub fn fit(&self) -> Fit {
         self.fit
     }
 
-    /// The box around all points.
+    /// Returns the bounding box of all points.
     pub fn bounds(&self) -> Bounds {
         let low = self.heights.iter().copied().fold(f64::INFINITY, f64::min);
         let high = self.heights.iter().copied().fold(f64::NEG_INFINITY, f64::max);

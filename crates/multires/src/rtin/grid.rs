@@ -1,34 +1,35 @@
-//! Which vertices and triangles there are and what needs what, by arithmetic of places alone.
+//! Arithmetic of the hierarchy: which vertices and triangles exist, and what depends on what.
 //!
-//! The field lies in the corner of a square with 2ᵏ cells a side. Two triangles halve the square, and
-//! each triangle is halved from its right angle to the middle of its hypotenuse, down to half cells.
+//! The field lies in the corner of a square with 2ᵏ cells a side. Two triangles halve the square,
+//! and each triangle is bisected from its right angle to the middle of its hypotenuse, down to half
+//! cells.
 
-/// A place on the grid.
+/// A vertex of the grid.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) struct GridPoint {
     pub(crate) column: u32,
     pub(crate) row: u32,
 }
 
-/// Half of a square, counter-clockwise where columns go to the right and rows up.
+/// Half of a square, counter-clockwise where columns advance to the right and rows upwards.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct RightTriangle {
-    /// At the right angle. Its insertion made the triangle.
+    /// Vertex at the right angle, whose insertion created the triangle.
     pub(crate) apex: GridPoint,
-    /// The hypotenuse. What is inserted at its middle takes the triangle away.
+    /// Ends of the hypotenuse. Inserting its midpoint removes the triangle.
     pub(crate) ends: [GridPoint; 2],
 }
 
-/// What lies around a vertex when it is inserted.
+/// Triangles around a vertex at its insertion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Diamond {
-    /// Of the hypotenuse in whose middle it is.
+    /// Ends of the hypotenuse with the vertex at its middle.
     pub(crate) ends: [GridPoint; 2],
-    /// Of the triangles on both sides of that; one on the side of the square.
+    /// Right angles on both sides of the hypotenuse; only one at the side of the square.
     pub(crate) apexes: [Option<GridPoint>; 2],
 }
 
-/// How much of a triangle lies in the field.
+/// Position of a triangle relative to the field.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Extent {
     Inside,
@@ -36,17 +37,17 @@ pub(crate) enum Extent {
     Outside,
 }
 
-/// A field of so many vertices, at least two each way and less than 2³¹ in all.
+/// Size of a field, with at least two vertices each way and fewer than 2³¹ in all.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Grid {
     pub(crate) columns: u32,
     pub(crate) rows: u32,
-    /// The number of cells along a side of the square.
+    /// Number of cells along a side of the square.
     pub(crate) side: u32,
 }
 
 impl Grid {
-    /// None for more or fewer vertices than can be numbered.
+    /// Returns `None` if the number of vertices is out of range.
     pub(crate) fn new(columns: u32, rows: u32) -> Option<Self> {
         let count = columns.checked_mul(rows)?;
         let fits = columns >= 2 && rows >= 2 && count < 1 << 31;
@@ -72,12 +73,12 @@ impl Grid {
         GridPoint { column: index % self.columns, row: index / self.columns }
     }
 
-    /// How often the halves of the square are halved until they are half cells.
+    /// Returns the number of bisections from the halves of the square to half cells.
     pub(crate) fn depth(&self) -> u32 {
         2 * self.side.ilog2()
     }
 
-    /// The halves of the square.
+    /// Returns the halves of the square.
     pub(crate) fn roots(&self) -> [RightTriangle; 2] {
         let side = self.side;
         let at = |column, row| GridPoint { column, row };
@@ -88,7 +89,8 @@ impl Grid {
         ]
     }
 
-    /// What lies around a vertex when it is inserted; none at the corners of the square.
+    /// Returns the triangles around a vertex at its insertion, or `None` at the corners of the
+    /// square.
     #[inline]
     pub(crate) fn diamond(&self, place: GridPoint) -> Option<Diamond> {
         let GridPoint { column, row } = place;
@@ -99,8 +101,8 @@ impl Grid {
         }
         let at = |column, row| GridPoint { column, row };
         if column & row & step != 0 {
-            // In the middle of a cell of twice the step. Those halved along the rising diagonal and
-            // along the falling one take turns, as on a chessboard.
+            // In the middle of a cell of twice the step. Cells halved along the rising and along
+            // the falling diagonal alternate as on a chessboard.
             let rising = [at(column - step, row - step), at(column + step, row + step)];
             let falling = [at(column + step, row - step), at(column - step, row + step)];
             let is_rising = (column ^ row) & (2 * step) == 0;
@@ -109,7 +111,7 @@ impl Grid {
         }
         // In the middle of a side, between two cells or at the side of the square.
         let (across, along) = if column & step != 0 { (step, 0) } else { (0, step) };
-        // Where the apexes differ.
+        // The coordinate in which the apexes differ.
         let beside = if column & step != 0 { row } else { column };
         let before = at(column.wrapping_sub(along), row.wrapping_sub(across));
         let after = at(column + along, row + across);
@@ -119,7 +121,7 @@ impl Grid {
         })
     }
 
-    /// The vertices of the field that a vertex needs.
+    /// Returns the vertices of the field that a vertex depends on.
     #[inline]
     pub(crate) fn parents(&self, place: GridPoint) -> impl Iterator<Item = GridPoint> + use<> {
         let grid = *self;
@@ -127,14 +129,16 @@ impl Grid {
         apexes.into_iter().flatten().filter(move |&apex| grid.holds(apex))
     }
 
-    /// How many halvings come before a vertex is inserted, which must not be a corner of the square.
+    /// Returns the number of bisections before a vertex is inserted, which must not be a corner of
+    /// the square.
     pub(crate) fn depth_of(&self, GridPoint { column, row }: GridPoint) -> u32 {
         let finer = (column | row).trailing_zeros();
         let is_side = (column & row) >> finer & 1 == 0;
         self.depth() - 2 * (finer + 1) + u32::from(is_side)
     }
 
-    /// How many triangles more there are with a vertex that nothing across the border is at.
+    /// Returns the number of triangles that an insertion adds, if none of them lies across the
+    /// border.
     #[inline]
     pub(crate) fn created_faces(&self, GridPoint { column, row }: GridPoint) -> usize {
         let is_border =
@@ -142,7 +146,7 @@ impl Grid {
         if is_border { 1 } else { 2 }
     }
 
-    /// How much of a triangle lies in the field.
+    /// Returns the position of a triangle relative to the field.
     #[inline]
     pub(crate) fn extent(&self, triangle: &RightTriangle) -> Extent {
         let corners = triangle.corners();
@@ -150,16 +154,16 @@ impl Grid {
         if corners.iter().all(|p| p.column <= right && p.row <= top) {
             return Extent::Inside;
         }
-        // Between two convex sets that do not overlap is a side of one of them: here one of the field's,
-        // or a falling hypotenuse.
+        // Two disjoint convex polygons are separated by a side of one of them: here by a side of
+        // the field or a falling hypotenuse.
         let is_outside = corners.iter().all(|p| p.column >= right)
             || corners.iter().all(|p| p.row >= top)
             || corners.iter().all(|p| p.column + p.row >= right + top);
         if is_outside { Extent::Outside } else { Extent::Across }
     }
 
-    /// The vertices of the field that are inserted after so many halvings, row by row: middles of
-    /// cells for even numbers, of their sides for odd ones.
+    /// Returns the vertices of the field inserted after `depth` bisections, row by row: middles of
+    /// cells for even depths, middles of their sides for odd ones.
     pub(crate) fn inserted_at(&self, depth: u32) -> impl Iterator<Item = GridPoint> + use<> {
         let step = self.side >> (depth / 2 + 1);
         let is_side = depth % 2 == 1;
@@ -175,7 +179,7 @@ impl Grid {
 }
 
 impl Diamond {
-    /// The triangles that an insertion takes away.
+    /// Returns the triangles that the insertion removes.
     pub(crate) fn coarse(&self) -> impl Iterator<Item = RightTriangle> + use<> {
         let [a, b] = self.ends;
         self.apexes.into_iter().flatten().map(move |apex| {
@@ -184,20 +188,20 @@ impl Diamond {
         })
     }
 
-    /// All its corners that are there.
+    /// Returns all corners that exist.
     pub(crate) fn corners(&self) -> impl Iterator<Item = GridPoint> + use<> {
         self.ends.into_iter().chain(self.apexes.into_iter().flatten())
     }
 }
 
 impl RightTriangle {
-    /// The right angle first.
+    /// Returns the corners, the right angle first.
     #[inline]
     pub(crate) fn corners(&self) -> [GridPoint; 3] {
         [self.apex, self.ends[0], self.ends[1]]
     }
 
-    /// Twice its area, in cells.
+    /// Returns twice the signed area, in cells.
     pub(crate) fn turn(&self) -> i64 {
         let from = |p: GridPoint| {
             let [column, row] = [p.column, p.row].map(i64::from);
@@ -207,7 +211,7 @@ impl RightTriangle {
         ax * by - ay * bx
     }
 
-    /// The first and the last of its columns in a row, which must meet it.
+    /// Returns the first and the last column within the triangle in a row that it meets.
     #[inline]
     pub(crate) fn columns(&self, row: u32) -> [u32; 2] {
         let [a, b, c] = self.corners();
@@ -236,7 +240,7 @@ impl RightTriangle {
     }
 }
 
-/// Half the way.
+/// Returns the midpoint.
 #[inline]
 pub(crate) fn middle([a, b]: [GridPoint; 2]) -> GridPoint {
     GridPoint { column: (a.column + b.column) / 2, row: (a.row + b.row) / 2 }

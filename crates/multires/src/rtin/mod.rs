@@ -1,8 +1,8 @@
-//! A height field as a hierarchy of right triangles: the regular MT.
+//! A right-triangulated irregular network (RTIN) over a height field: the regular MT [EKT01].
 //!
-//! An update inserts one vertex of the grid in the middle of a hypotenuse and so halves the one or two
-//! triangles that share it. What it needs are the vertices at their right angles. All that is arithmetic;
-//! stored is what no arithmetic knows: a height, an error and two radii, ten bytes a vertex.
+//! An update inserts one vertex of the grid in the middle of a hypotenuse and so bisects the one or
+//! two triangles that share it. It depends on the vertices at their right angles. All of that is
+//! arithmetic; stored are only a height, an error and two radii, ten bytes per vertex.
 
 mod budget;
 mod build;
@@ -30,41 +30,42 @@ pub use self::extract::RtinExtractor;
 pub use self::field::{Fit, HeightField};
 pub use self::recognize::HeightFieldError;
 
-/// All levels of a height field, from as few right triangles as its outline lets to all of them.
+/// All levels of a height field as a right-triangulated irregular network.
 ///
-/// The nodes of its levels are vertices of the grid, row by row. Each level covers the rectangle of the
-/// field exactly; where that is no square of 2ᵏ cells, triangles along its far sides are small in all.
+/// The nodes of its levels are vertices of the grid, row by row. Each level covers the rectangle of
+/// the field exactly. If that is not a square of 2ᵏ cells, triangles along its far sides are small
+/// in every level.
 ///
-/// Errors are **bounds** of the distance along the axis between a triangle and the finest level: a
-/// triangle is a union of finest ones, over each of which both are linear, so that the distance is
-/// greatest at a vertex, and there it was measured. [`Rtin::fit`] says how far the finest
-/// level may be from the mesh.
+/// Errors are **bounds** of the distance along the axis between a triangle and the finest level. A
+/// triangle is a union of finest ones, over each of which both are linear, so the distance is
+/// greatest at a vertex, and there it was measured. [`Rtin::fit`] bounds the distance from the
+/// finest level to the mesh.
 #[derive(Clone, Debug)]
 pub struct Rtin {
     frame: Frame,
     grid: Grid,
-    /// In stored units.
+    /// Placement of the grid in stored units.
     placement: GridPlacement,
     vertices: Vec<GridVertex>,
-    /// Of a ball about each vertex, around the triangles that its insertion takes away and no more.
+    /// Radius of a ball about each vertex that holds just the triangles its insertion removes.
     radii: Vec<Length16>,
     fit: Fit,
 }
 
-/// What is stored of a vertex.
+/// Stored data of a vertex.
 #[derive(Clone, Copy, Debug, Default)]
 struct GridVertex {
     height: f32,
-    /// Of the triangles that its insertion takes away, never less than that of a vertex that needs it.
-    /// Infinite where one of them lies across the border of the field: such are in every level.
+    /// Error of the triangles that its insertion removes, at least that of every vertex depending
+    /// on it. Infinite if one of them lies across the border, as such vertices are in every level.
     error: Length16,
-    /// Of a ball about it, around the triangles that its insertion takes away and the balls of the
-    /// vertices that need it.
+    /// Radius of a ball about it that holds the triangles its insertion removes and the balls of
+    /// all vertices depending on it.
     radius: Length16,
 }
 
 impl GridVertex {
-    /// It is there in every level.
+    /// Returns true if the vertex is in every level.
     #[inline]
     fn is_forced(&self) -> bool {
         self.error == Length16::INFINITE
@@ -72,49 +73,50 @@ impl GridVertex {
 }
 
 impl Rtin {
-    /// The smallest level that meets the query.
+    /// Returns the smallest level that satisfies the query.
     ///
-    /// Cost: what a [`RtinExtractor`] saves where several levels are asked for is a table as long as the
-    /// field.
+    /// Cost: allocates tables as long as the field; for several levels use an [`RtinExtractor`],
+    /// which keeps them.
     /// # Errors
-    /// A query that is none.
+    /// The query is invalid.
     pub fn level(&self, query: &Query<'_>) -> Result<Level, QueryError> {
         RtinExtractor::new(self).exact(query).cloned()
     }
 
-    /// How many vertices in a row, and how many rows.
+    /// Returns the number of columns and of rows.
     pub fn size(&self) -> [u32; 2] {
         [self.grid.columns, self.grid.rows]
     }
 
-    /// How many faces the finest level has.
+    /// Returns the number of faces of the finest level.
     pub fn full_faces(&self) -> usize {
         2 * (self.grid.columns as usize - 1) * (self.grid.rows as usize - 1)
     }
 
-    /// Where it is, and the unit of what is stored.
+    /// Returns the frame of the stored units.
     pub fn frame(&self) -> &Frame {
         &self.frame
     }
 
-    /// How far the finest level may be from what it was made of.
+    /// Returns the bounds on the distance from the finest level to the source.
     pub fn fit(&self) -> Fit {
         self.fit
     }
 
-    /// What it takes in memory: its vectors, as they are.
+    /// Returns the memory used by its vectors, in bytes.
     pub fn bytes(&self) -> usize {
         size_of_val(&self.vertices[..]) + size_of_val(&self.radii[..])
     }
 
-    /// About a vertex, around the triangles that it takes away and the balls of those that need it.
+    /// Returns the ball of a vertex that holds the triangles it removes and the balls of its
+    /// dependents.
     #[inline]
     fn nested_ball(&self, place: GridPoint) -> Ball {
         let vertex = &self.vertices[self.grid.index(place)];
         self.ball(place, vertex, vertex.radius)
     }
 
-    /// About a vertex, around the triangles that it takes away and no more.
+    /// Returns the ball of a vertex that holds just the triangles it removes.
     #[inline]
     fn own_ball(&self, place: GridPoint) -> Ball {
         let index = self.grid.index(place);

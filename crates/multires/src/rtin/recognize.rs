@@ -1,4 +1,4 @@
-//! Finds the height field that a mesh is.
+//! Recognition of meshes that are height fields.
 
 use std::cmp::Ordering;
 
@@ -9,105 +9,107 @@ use super::bytes::MAX_COORDINATE;
 use super::field::{Fit, GridPlacement, HeightField};
 use super::grid::{Grid, GridPoint};
 
-/// Why a mesh is no height field.
+/// Reasons why a mesh is not a height field.
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum HeightFieldError {
-    /// It is no mesh either.
+    /// The mesh is invalid.
     #[error(transparent)]
     Mesh(#[from] MeshError),
-    /// Its vertices do not lie in columns and rows, whichever axis is up.
+    /// Its vertices do not lie in columns and rows along any axis.
     #[error(
-        "the mesh is no height field: seen along {axis}, its {vertices} vertices lie in {columns} columns and \
-         {rows} rows; a model of any mesh is what `Forest` records"
+        "the mesh is not a height field: seen along {axis}, its {vertices} vertices lie in {columns} columns \
+         and {rows} rows; use contractions (`Forest`), which take any mesh"
     )]
-    NoLattice {
-        /// The axis along which it is most like one.
+    NoGrid {
+        /// Axis along which it comes closest.
         axis: char,
-        /// How many columns.
+        /// Number of columns.
         columns: usize,
-        /// How many rows.
+        /// Number of rows.
         rows: usize,
-        /// How many vertices its faces use.
+        /// Number of vertices that faces use.
         vertices: usize,
     },
-    /// A vertex beside the lattice of the others.
+    /// A vertex is off the regular grid.
     #[error(
-        "{vertex} at {position:?} is {by:.3} of a step beside column {column}, row {row}: the spacing is not regular"
+        "{vertex} at {position:?} is {by:.3} steps off column {column}, row {row}: the spacing is not regular"
     )]
-    Beside {
+    OffGrid {
         /// The vertex.
         vertex: VertexId,
-        /// Where it is.
+        /// Its position.
         position: [f64; 3],
         /// The nearest column.
         column: u32,
         /// The nearest row.
         row: u32,
-        /// How far, in columns or rows, whichever is more.
+        /// Distance in columns or rows, whichever is more.
         by: f64,
     },
-    /// Two vertices above each other.
-    #[error(
-        "{first} and {second} are both at column {column}, row {row}: weld them or take one away"
-    )]
-    Twice {
-        /// One of them.
+    /// Two vertices are at the same grid point.
+    #[error("{first} and {second} are both at column {column}, row {row}: weld them or remove one")]
+    SamePoint {
+        /// One of the vertices.
         first: VertexId,
-        /// The other.
+        /// The other vertex.
         second: VertexId,
         /// Their column.
         column: u32,
         /// Their row.
         row: u32,
     },
-    /// A place without a vertex.
+    /// A grid point has no vertex.
     #[error(
         "the grid has a hole: no vertex at column {column}, row {row}, near {near:?}; fill it first"
     )]
     Hole {
-        /// Its column.
+        /// Column of the point.
         column: u32,
-        /// Its row.
+        /// Row of the point.
         row: u32,
-        /// Where that is; the height is 0.
+        /// Position of the point, with height 0.
         near: [f64; 3],
     },
-    /// A face that is more than half a cell, or less.
-    #[error("{0} is not half of a cell of the grid")]
-    NotHalf(FaceId),
-    /// A face that looks the other way.
-    #[error("{0} looks down where {first} looks up, or the other way round", first = FaceId(0))]
-    Turned(FaceId),
-    /// A cell whose faces are not its two halves.
-    #[error("the cell from column {column}, row {row} on is not two halves; it has {faces} faces")]
+    /// A face is not half of a grid cell.
+    #[error("{0} is not half of a grid cell")]
+    NotHalfCell(FaceId),
+    /// A face is oriented against the others.
+    #[error("{0} is oriented against {first}", first = FaceId(0))]
+    FlippedFace(FaceId),
+    /// A cell is not covered by its two halves.
+    #[error(
+        "the cell at column {column}, row {row} is not covered by its two halves: faces in it: {faces}"
+    )]
     Cell {
-        /// Its first column.
+        /// First column of the cell.
         column: u32,
-        /// Its first row.
+        /// First row of the cell.
         row: u32,
-        /// How many of the mesh's faces are in it.
+        /// Number of faces in the cell.
         faces: usize,
     },
-    /// More places than are numbered, or numbers that are.
+    /// The grid has too many points, or too large coordinates.
     #[error(
-        "the grid is too large: less than 2^31 vertices, with coordinates below 1e150, can be kept"
+        "the grid is too large: at most 2^31 - 1 vertices with coordinates below 1e150 are supported"
     )]
     TooLarge,
 }
 
-/// How far beside its place a vertex may be, in steps. Coordinates in `f32` of a grid of metres a
-/// hundred kilometres from the origin are off by up to 0.004.
+/// Largest offset of a vertex from the grid, in steps. In a grid of metres a hundred kilometres
+/// from the origin, rounding to `f32` moves coordinates by up to 0.004.
 const MAX_OFFSET: f64 = 0.01;
 
 impl HeightField {
-    /// Of a mesh whose vertices are a full grid of columns and rows seen along one of the axes, in any
-    /// order, and whose faces halve the cells, each along either diagonal.
+    /// Builds a height field from a mesh whose vertices form a full grid of columns and rows seen
+    /// along a coordinate axis, in any order, and whose faces halve the cells along either
+    /// diagonal.
     ///
-    /// Spacing may vary by a hundredth of a step, as rounded coordinates do; the points of the field
-    /// are regular. Attributes and vertices that no face uses are left behind.
+    /// The spacing may vary by a hundredth of a step, as rounded coordinates do; the points of the
+    /// field are regular. Attributes and unused vertices are dropped.
+    ///
     /// Cost: sorting the vertices.
     /// # Errors
-    /// What is not so, and where.
+    /// The first deviation found, with its place.
     pub fn from_mesh(mesh: &Mesh) -> Result<Self, HeightFieldError> {
         mesh.validate()?;
         let bounds = mesh.bounds();
@@ -126,7 +128,7 @@ impl HeightField {
         };
         let mut axes = [2, 1, 0];
         axes.sort_by(|&a, &b| likely(a).partial_cmp(&likely(b)).unwrap_or(Ordering::Equal));
-        // What fails along the likeliest is told, unless another will do.
+        // If all axes fail, the error along the likeliest one is returned.
         let mut found =
             axes.into_iter().map(|up| FieldReader { mesh, ids: &ids, lines: &lines, up }.read());
         let first = found.next().expect("there are three");
@@ -134,18 +136,18 @@ impl HeightField {
     }
 }
 
-/// The columns or rows that coordinates lie in.
+/// Regular lines, columns or rows, fitted to coordinates.
 #[derive(Clone, Copy, Debug)]
 struct Lines {
     count: usize,
     first: f64,
     step: f64,
-    /// How far the worst coordinate is from one, in steps.
+    /// Greatest offset of a coordinate from its line, in steps.
     beside: f64,
 }
 
 impl Lines {
-    /// A gap of more than half the greatest is one between columns, the others are within.
+    /// Gaps of more than half the greatest one separate lines.
     fn of(mesh: &Mesh, ids: &[u32], axis: usize) -> Self {
         let mut coordinates: Vec<f64> =
             ids.iter().map(|&v| mesh.positions[v as usize][axis]).collect();
@@ -180,7 +182,7 @@ impl FieldReader<'_> {
         let (points, vertices) = (columns * rows, self.ids.len());
         if columns < 2 || rows < 2 || points < vertices / 2 || points / 2 > vertices {
             let axis = ['x', 'y', 'z'][up];
-            return Err(HeightFieldError::NoLattice { axis, columns, rows, vertices });
+            return Err(HeightFieldError::NoGrid { axis, columns, rows, vertices });
         }
         let grid = u32::try_from(columns).ok().zip(u32::try_from(rows).ok());
         let grid = grid.and_then(|(columns, rows)| Grid::new(columns, rows));
@@ -206,7 +208,7 @@ impl FieldReader<'_> {
         Ok(HeightField { grid, placement, heights, fit: Fit { moved, turned, rounded: 0.0 } })
     }
 
-    /// The vertex at each place, and how far the farthest is from it.
+    /// Returns the vertex at each grid point and the greatest offset.
     fn place(
         &self,
         grid: &Grid,
@@ -223,26 +225,26 @@ impl FieldReader<'_> {
             let by = by[0].max(by[1]);
             let [column, row] = steps.map(|x| x.round() as u32);
             if by > MAX_OFFSET {
-                return Err(HeightFieldError::Beside { vertex, position, column, row, by });
+                return Err(HeightFieldError::OffGrid { vertex, position, column, row, by });
             }
             let place = GridPoint { column, row };
             let exact = placement.point(place, 0.0).to_array();
             let off = [across, along].map(|axis| position[axis] - exact[axis]);
             moved = moved.max(off[0].hypot(off[1]));
             if let Some(first) = at[grid.index(place)].replace(vertex) {
-                return Err(HeightFieldError::Twice { first, second: vertex, column, row });
+                return Err(HeightFieldError::SamePoint { first, second: vertex, column, row });
             }
         }
         Ok((at, moved))
     }
 }
 
-/// What the faces are in the cells.
+/// Faces by grid cell.
 struct Cells {
-    /// By cell, a bit for each corner that one of its faces leaves out: 1 and 2 in the first row, 4
-    /// and 8 above them.
+    /// A bit per cell corner left out by one of its faces: 1 and 2 in the first row, 4 and 8 in the
+    /// second.
     left_out: Vec<u8>,
-    /// By cell.
+    /// Number of faces of each cell.
     faces: Vec<u8>,
     look_down: bool,
 }
@@ -259,9 +261,9 @@ impl Cells {
         for (f, face) in mesh.faces.iter().enumerate() {
             let id = FaceId::new(f);
             let corners = face.map(|v| points[v.index()]);
-            let half = Half::of(corners).ok_or(HeightFieldError::NotHalf(id))?;
+            let half = Half::of(corners).ok_or(HeightFieldError::NotHalfCell(id))?;
             if *look_down.get_or_insert(half.looks_down) != half.looks_down {
-                return Err(HeightFieldError::Turned(id));
+                return Err(HeightFieldError::FlippedFace(id));
             }
             let cell = grid.index(half.cell);
             left_out[cell] |= 1 << half.left_out;
@@ -270,7 +272,7 @@ impl Cells {
         Ok(Self { left_out, faces, look_down: look_down == Some(true) })
     }
 
-    /// By how much the middle of a cell with the other diagonal is higher or lower, at most.
+    /// Returns the greatest change of height in the middle of a cell whose diagonal is flipped.
     fn turned(&self, grid: &Grid, heights: &[f64]) -> Result<f64, HeightFieldError> {
         let mut most = 0f64;
         for row in 0..grid.rows - 1 {
@@ -297,9 +299,10 @@ impl Cells {
 
 /// A face as half of a cell.
 struct Half {
-    /// Its first corner.
+    /// First corner of the cell.
     cell: GridPoint,
-    /// The corner that is not the face's: 0 and 1 in the first row, 2 and 3 above them.
+    /// Corner of the cell that the face leaves out: 0 and 1 in the first row, 2 and 3 in the
+    /// second.
     left_out: u32,
     looks_down: bool,
 }
@@ -320,7 +323,7 @@ impl Half {
             *number = 2 * up + right;
             there |= 1 << *number;
         }
-        // Three different ones.
+        // Three distinct corners.
         (there.count_ones() == 3).then(|| {
             let around = numbers.map(|n| [0, 1, 3, 2][n as usize]);
             let [second, third] = [1, 2].map(|k| (around[k] + 4 - around[0]) % 4);

@@ -1,4 +1,4 @@
-//! Certificates: what has one is sound, and what is not has none.
+//! Certified models are sound, and unsound ones are not certified.
 
 use std::collections::BTreeSet;
 
@@ -11,7 +11,7 @@ use super::walks::{Dice, each, forest, query, topology};
 use crate::{Certificate, CertifyError, Cut, Flaw, Implicit, Query};
 
 #[test]
-fn what_is_built_has_a_certificate() {
+fn built_models_are_certified() {
     each(|what, _, forest| {
         let mt = Implicit::new(forest).unwrap();
         let certificate = mt.certify().unwrap_or_else(|why| panic!("{what}: {why}"));
@@ -20,7 +20,7 @@ fn what_is_built_has_a_certificate() {
 }
 
 #[test]
-fn only_what_is_not_manifold_is_odd() {
+fn only_non_manifold_updates_count_as_such() {
     let certify = |mesh: &Mesh, method| Implicit::new(&forest(mesh, method)).unwrap().certify();
     for method in [Method::Qem, Method::LeeJang] {
         let sound = certify(&samples::terrain(600), method).unwrap();
@@ -30,10 +30,10 @@ fn only_what_is_not_manifold_is_odd() {
     assert!(turned.non_manifold > 0, "a strip of one side is not oriented somewhere: {turned:?}");
 }
 
-/// Changes one field of one update at a time. Whatever passes must give only sound cuts: another level
-/// may do as well, and wings the other way round are another surface without a crack.
+/// Changes one field of one update at a time. Models that still pass must give sound cuts only:
+/// another level can be equally valid, and swapped wings give another surface without a crack.
 #[test]
-fn what_has_a_certificate_is_sound() {
+fn certified_models_are_sound() {
     let mesh = samples::terrain(160);
     let expected = topology(&mesh);
     let mut dice = Dice(3);
@@ -64,14 +64,14 @@ fn what_has_a_certificate_is_sound() {
 }
 
 #[test]
-fn a_face_at_the_wrong_place_is_found_beside_what_is_not_manifold_too() {
+fn wrong_faces_of_non_fan_splits_are_found() {
     let mt = Implicit::new(&forest(&fixtures::moebius(60), Method::Qem)).unwrap();
     let all = mt.corrupted_non_fan();
     assert!(!all.is_empty());
     for changed in all {
         let found = changed.certify();
         assert!(matches!(found, Err(CertifyError::Update { why: Flaw::NoWing, .. })), "{found:?}");
-        // Without a proof there may be cracks, but no face whose corners are not there.
+        // An uncertified model may have cracks, but no face with missing corners.
         let level = Cut::at(&changed, &Query::uniform(0.0)).unwrap().level();
         assert!(level.mesh().validate().is_ok());
     }

@@ -1,4 +1,4 @@
-//! What of a cut is at a place: held against looking at every triangle.
+//! Spatial queries on a cut, compared with a search over all triangles.
 
 use glam::{DVec3, Vec3};
 use meshlod_samples as samples;
@@ -8,7 +8,7 @@ use super::walks::{Dice, each, forest, query};
 use crate::{Cut, Focus, Implicit, UpdateLimits};
 
 #[test]
-fn what_is_within_a_focus_is_found() {
+fn triangles_within_a_focus_are_found() {
     each(|what, mesh, forest| {
         let mt = Implicit::new(forest).unwrap();
         let (mut cut, mut dice) = (Cut::new(&mt), Dice(17));
@@ -18,7 +18,7 @@ fn what_is_within_a_focus_is_found() {
             let found = cut.level_within(&focus).unwrap();
             let expected = cut.level().within(&focus).unwrap();
             assert_eq!(found.canonical(), expected.canonical(), "{what} {focus:?}");
-            // Places on the surface are in a triangle at least.
+            // Points on the surface are in at least one triangle.
             let is_on_it = matches!(focus, Focus::Point(_) | Focus::Segment(_));
             assert!(!is_on_it || cut.face_count() < mt.full_faces() || !found.faces.is_empty());
         }
@@ -50,7 +50,7 @@ fn the_closest_triangle_is_found() {
 }
 
 #[test]
-fn a_small_focus_has_a_small_part() {
+fn a_small_focus_gives_few_faces() {
     let mt = Implicit::new(&forest(&samples::torus(5000), Default::default())).unwrap();
     let cut = Cut::at(&mt, &crate::Query::uniform(0.0)).unwrap();
     let at = mt.position(cut.triangles().next().unwrap().1[0]);

@@ -1,4 +1,5 @@
-//! Long walks: focus and tolerance move a little at every step, and change their kinds now and then.
+//! Long walks in which focus and tolerance change a little at every step and their kinds now and
+//! then.
 
 use meshlod_mesh::Mesh;
 use meshlod_samples as samples;
@@ -7,12 +8,12 @@ use super::walks::{Dice, METHODS, forest, in_forest, topology};
 use crate::implicit::Order;
 use crate::{Explicit, Focus, Model, Query, Tolerance, UpdateLimits, ViewCamera};
 
-/// Somebody who goes about a mesh and asks.
+/// A viewer that moves about a mesh.
 struct Walker {
     dice: Dice,
-    /// In diagonals of the mesh from its middle.
+    /// Position relative to the mesh's center, in diagonals.
     at: [f64; 3],
-    /// How large the focus is and how great the tolerance, as powers of two of the diagonal.
+    /// Size of the focus and tolerance, as powers of two of the diagonal.
     size: f64,
     coarse: f64,
     focus: usize,
@@ -25,7 +26,7 @@ impl Walker {
         Self { dice: Dice(seed), at, size: -3.0, coarse: -6.0, focus: 0, by_pixels: true }
     }
 
-    /// A number that moves a little and stays between two.
+    /// Moves a number a little, between two bounds.
     fn wander(&mut self, x: f64, by: f64, [least, most]: [f64; 2]) -> f64 {
         (x + by * (self.dice.roll() - 0.5)).clamp(least, most)
     }
@@ -69,9 +70,9 @@ impl Walker {
     }
 }
 
-/// What every encoding gives, all the way, and what is there when it is interrupted.
+/// Compares all encodings all the way, also when interrupted.
 #[test]
-fn a_thousand_steps_in_every_way_of_building() {
+fn a_thousand_steps_with_every_method() {
     for (seed, method) in (31..).zip(METHODS) {
         for mesh in [samples::terrain(300), samples::torus(300)] {
             let forest = forest(&mesh, method);

@@ -1,4 +1,4 @@
-//! Cuts that follow a moving eye, within their means, and tell what they change.
+//! Cuts that follow a moving viewpoint within limits and report their changes.
 
 use std::time::Duration;
 
@@ -9,7 +9,7 @@ use meshlod_simplify::Method;
 use super::walks::{Dice, cone, forest, topology};
 use crate::{Cut, Implicit, Query, Tolerance, UpdateLimits, ViewCamera};
 
-/// The view of an eye that wanders around a mesh, in steps of very different lengths.
+/// A viewpoint that wanders around a mesh in steps of very different lengths.
 struct Wanderer {
     dice: Dice,
     eye: [f64; 3],
@@ -22,7 +22,7 @@ impl Wanderer {
 
     fn next(&mut self, pixels: f64) -> Query<'static> {
         let step = (-9.0 * self.dice.roll()).exp2();
-        // Drawn home from afar.
+        // Pulled back towards the mesh.
         self.eye = self.eye.map(|x| 0.97 * x + step * (self.dice.roll() - 0.5));
         let camera = ViewCamera {
             eye: self.eye,
@@ -40,7 +40,7 @@ fn model(mesh: &Mesh, method: Method) -> Implicit {
 }
 
 #[test]
-fn a_thousand_steps_later_it_is_the_static_answer() {
+fn a_thousand_steps_give_the_static_answer() {
     for method in [Method::Qem, Method::LeeJang] {
         let mt = model(&samples::torus(3000), method);
         let (mut cut, mut wanderer) = (Cut::new(&mt), Wanderer::new());
@@ -57,13 +57,13 @@ fn a_thousand_steps_later_it_is_the_static_answer() {
             }
         }
         assert!(changes > 500, "{changes}");
-        // Looking at all that is there would be some hundred thousands.
+        // Inspecting the whole cut every time would be several hundred thousand.
         assert!(looks < 200_000, "{looks}");
     }
 }
 
 #[test]
-fn what_went_under_another_question_is_looked_at_when_it_comes_back() {
+fn changing_the_kind_of_query_loses_no_update() {
     let mt = model(&samples::torus(3000), Method::Qem);
     let (mut cut, mut wanderer) = (Cut::new(&mt), Wanderer::new());
     for step in 0..600 {
@@ -95,7 +95,7 @@ fn patches_lead_from_frame_to_frame() {
     }
 }
 
-/// A renderer's list of triangles.
+/// A renderer's copy of the triangles.
 struct Mirror(std::collections::BTreeMap<u32, [u32; 3]>);
 
 impl Mirror {
@@ -114,7 +114,7 @@ impl Mirror {
 }
 
 #[test]
-fn interrupted_anywhere_it_is_a_mesh_and_gets_there_in_the_end() {
+fn an_interrupted_update_is_a_mesh_and_finishes_later() {
     for method in [Method::QemEndpoint, Method::LeeJang] {
         let mesh = samples::terrain(800);
         let mt = model(&mesh, method);
@@ -137,7 +137,7 @@ fn interrupted_anywhere_it_is_a_mesh_and_gets_there_in_the_end() {
 }
 
 #[test]
-fn without_time_it_gets_there_piece_by_piece() {
+fn updates_without_time_finish_piece_by_piece() {
     let mesh = samples::terrain(3000);
     let mt = model(&mesh, Method::Qem);
     let expected = topology(&mesh);
@@ -148,7 +148,7 @@ fn without_time_it_gets_there_piece_by_piece() {
         let (fine, mut looks) = (cut.face_count(), 0);
         let mut query = wanderer.next(2.0);
         for _ in 0..step {
-            // Half of the eyes stand still.
+            // In half of the runs the viewpoint stands still.
             if step % 2 == 0 {
                 query = wanderer.next(2.0);
             }
@@ -165,7 +165,7 @@ fn without_time_it_gets_there_piece_by_piece() {
 }
 
 #[test]
-fn with_hysteresis_it_lies_between_two_answers() {
+fn hysteresis_lies_between_two_answers() {
     let mt = model(&samples::knot(3000), Method::Qem);
     let (mut cut, mut still) = (Cut::new(&mt), Cut::new(&mt));
     cut.set_hysteresis(Some(0.5)).unwrap();

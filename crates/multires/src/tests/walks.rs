@@ -1,4 +1,4 @@
-//! Queries that wander, and what their answers must be.
+//! Random walks through queries, and the properties of the answers.
 
 use std::collections::BTreeSet;
 
@@ -51,13 +51,13 @@ pub(crate) fn each_by(methods: &[Method], mut check: impl FnMut(&str, &Mesh, &Fo
     }
 }
 
-/// Numbers from a seed.
+/// Pseudo-random numbers.
 pub(crate) struct Dice(pub(crate) u64);
 
 impl Dice {
-    /// From 0 to 1.
+    /// Returns a number from 0 to 1.
     pub(crate) fn roll(&mut self) -> f64 {
-        // A linear congruence; its high bits are good enough for this.
+        // A linear congruential generator; its high bits are good enough here.
         self.0 = self.0.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
         (self.0 >> 40) as f64 / (1u64 << 24) as f64
     }
@@ -68,7 +68,7 @@ impl Dice {
     }
 }
 
-/// A query like others and then again not.
+/// Returns a random query.
 pub(crate) fn query(dice: &mut Dice, mesh: &Mesh) -> Query<'static> {
     let diagonal = mesh.bounds().diagonal();
     let camera = ViewCamera {
@@ -97,7 +97,7 @@ pub(crate) fn query(dice: &mut Dice, mesh: &Mesh) -> Query<'static> {
     Query { focus, tolerance }
 }
 
-/// What no cut may change or make worse.
+/// Topological properties that no cut may change for the worse.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Topology {
     euler: i64,
@@ -108,7 +108,7 @@ pub(crate) struct Topology {
 }
 
 impl Topology {
-    /// Whether it has fewer places that are not manifold: those are contracted too.
+    /// Returns true if it has fewer non-manifold elements; contractions may remove some.
     pub(crate) fn is_simpler_than(&self, other: &Self) -> bool {
         self.non_manifold_edges < other.non_manifold_edges || self.pinched < other.pinched
     }
@@ -126,14 +126,14 @@ pub(crate) fn topology(mesh: &Mesh) -> Topology {
     }
 }
 
-/// The faces of a level by the forest's nodes.
+/// Returns the faces of a level by the forest's nodes.
 pub(crate) fn in_forest(level: &Level, order: &Order) -> Vec<[u32; 3]> {
     let mut level = level.clone();
     level.nodes.iter_mut().for_each(|node| *node = order.nodes[*node as usize]);
     level.canonical()
 }
 
-/// The forest's nodes above those of a level.
+/// Returns the forest's nodes above those of a level.
 fn split_nodes(level: &Level, mt: &Implicit, order: &Order) -> BTreeSet<u32> {
     let mut above = BTreeSet::new();
     for &node in &level.nodes {
@@ -162,7 +162,7 @@ fn the_finest_cut_is_the_input() {
 }
 
 #[test]
-fn every_encoding_gives_the_same_cuts_by_any_way() {
+fn all_encodings_give_the_same_cuts() {
     each(|what, mesh, forest| {
         let order = Order::new(forest);
         let explicit = Explicit::new(forest);
@@ -187,14 +187,14 @@ fn every_encoding_gives_the_same_cuts_by_any_way() {
             let smaller = weaker.exact(&query).unwrap();
             assert!(smaller.faces.len() <= level.faces.len(), "{what} {query:?}");
             assert_eq!(topology(&smaller.mesh()), topology(mesh), "{what} {query:?}");
-            // Asked for as many faces as the answer has, the best are the answer.
+            // With the answer's own number of faces as the budget, the answer comes back.
             let best = extractor.at_most(level.faces.len(), &query).unwrap();
             assert_eq!(in_forest(best, &order), level.canonical(), "{what} {query:?}");
             let all = extractor.at_most(usize::MAX, &query).unwrap().faces.len();
             let most = (dice.roll() * mesh.faces.len() as f64) as usize;
             let best = extractor.at_most(most, &query).unwrap();
             assert!(best.faces.len() <= most.max(implicit.base_faces()), "{what} {query:?}");
-            // The next update would be too much: that of a face brings up to four.
+            // The next update would exceed the budget; a face split creates up to four faces.
             assert!(best.faces.len() == all || best.faces.len() + 4 > most, "{what} {query:?}");
             assert!(explicit.cut_of(&split_nodes(best, implicit, &order)).is_some(), "{what}");
             if let (Focus::Everything, Tolerance::Pixels { camera, pixels }) =
@@ -220,7 +220,7 @@ fn every_encoding_gives_the_same_cuts_by_any_way() {
     });
 }
 
-/// A closed chain of the right Euler number may still lie folded in itself: areas and volumes tell.
+/// A closed mesh of the right Euler number may still be folded, which shows in its area and volume.
 #[test]
 fn cuts_cover_the_surface_once() {
     let mesh = samples::torus(4000);
@@ -252,9 +252,9 @@ fn cuts_cover_the_surface_once() {
     }
 }
 
-/// What wings cannot tell: edges of three faces, faces turned against each other, and hubs.
+/// Non-fan splits: edges of three faces, inconsistent orientations, and hubs.
 #[test]
-fn odd_places_are_told_face_by_face() {
+fn non_fan_splits_list_their_faces() {
     let soups = (0..30).map(soup);
     for mesh in [cone(400), fixtures::moebius(60)].into_iter().chain(soups) {
         for method in METHODS {
@@ -275,7 +275,7 @@ fn odd_places_are_told_face_by_face() {
     }
 }
 
-/// A vertex with many others around.
+/// Returns a cone whose apex has many neighbours.
 pub(crate) fn cone(around: u32) -> Mesh {
     let rim = (0..around).map(|i| {
         let (sin, cos) = (f64::from(i) / f64::from(around) * std::f64::consts::TAU).sin_cos();
@@ -286,7 +286,7 @@ pub(crate) fn cone(around: u32) -> Mesh {
     fixtures::mesh(&positions, &sides)
 }
 
-/// Faces between any three of a few points.
+/// Returns faces between random triples of a few points.
 pub(crate) fn soup(seed: u64) -> Mesh {
     let mut dice = Dice(seed);
     let points = 8 + seed % 20;

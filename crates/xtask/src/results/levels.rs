@@ -27,7 +27,7 @@ pub fn section(_: &Project) -> Result<String> {
     let mut room = Table::new([
         "bytes a vertex",
         "in memory",
-        "narrow",
+        "compact",
         "face list",
         "explicit",
         "file: 1,024 a chunk",
@@ -59,7 +59,7 @@ pub fn section(_: &Project) -> Result<String> {
         ".25 px",
         ".02 px",
         "from the base, 0",
-        "narrow",
+        "compact",
     ]);
     let mut more = Table::new([
         "more faces than exact, %",
@@ -134,11 +134,11 @@ fn in_bytes(file: &str, mesh: &Mesh, forest: &Forest) -> Result<Vec<String>> {
     let vertices = mesh.used_vertices().iter().filter(|&&used| used).count() as f64;
     let each = |bytes: usize| format!("{:.1}", bytes as f64 / vertices);
     let bytes = Model::new(forest)?.bytes();
-    let narrow = narrowed(forest)?.map_or("–".into(), |narrow| each(narrow.bytes()));
+    let compact = compacted(forest)?.map_or("–".into(), |compact| each(compact.bytes()));
     let mut row = vec![
         file.to_owned(),
         each(bytes.implicit),
-        narrow,
+        compact,
         each(bytes.faces),
         each(Explicit::new(forest).bytes()),
     ];
@@ -190,13 +190,13 @@ fn answered(file: &str, bounds: &Bounds, forest: &Forest) -> Result<Vec<String>>
     }
     let all = Query::uniform(0.0);
     rate(&mut || Cut::at(model.implicit(), &all).ok().map(|cut| cut.face_count()));
-    let narrow = narrowed(forest)?;
-    rate(&mut || narrow.as_ref().and_then(|mt| Some(Cut::at(mt, &all).ok()?.face_count())));
+    let compact = compacted(forest)?;
+    rate(&mut || compact.as_ref().and_then(|mt| Some(Cut::at(mt, &all).ok()?.face_count())));
     Ok(row)
 }
 
 /// The model as a file gives it back, in half the memory.
-fn narrowed(forest: &Forest) -> Result<Option<Implicit>> {
+fn compacted(forest: &Forest) -> Result<Option<Implicit>> {
     let bytes = Archive::write(forest, &Storage::default())?.0;
     Ok(Archive::open(bytes)?.read()?.0.compacted())
 }

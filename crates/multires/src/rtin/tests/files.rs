@@ -1,4 +1,4 @@
-//! Fields as bytes.
+//! Serialization of fields.
 
 use meshlod_mesh::Mesh;
 
@@ -9,7 +9,7 @@ fn bytes_of(field: &HeightField, precision: HeightPrecision) -> Vec<u8> {
     field.to_bytes(precision).unwrap()
 }
 
-/// A field of these heights, two in a row.
+/// Returns a field of the given heights, two in a row.
 fn strip(heights: &[f64]) -> HeightField {
     let mut mesh: Mesh = Sample::new([2, heights.len() as u32 / 2]).mesh();
     mesh.positions.iter_mut().zip(heights).for_each(|(p, &height)| p[2] = height);
@@ -17,7 +17,7 @@ fn strip(heights: &[f64]) -> HeightField {
 }
 
 #[test]
-fn heights_come_back_as_they_were() {
+fn heights_come_back_unchanged() {
     for size in SIZES {
         for (up, looks_down) in [(0, true), (1, false), (2, false)] {
             let field = Sample { up, looks_down, ..Sample::new(size) }.field();
@@ -49,7 +49,7 @@ fn heights_are_rounded_within_their_bound() {
     for bound in [0.0, -1.0, f64::NAN, f64::INFINITY] {
         assert!(field.to_bytes(HeightPrecision::Within(bound)).is_err());
     }
-    // Finer than numbers are.
+    // Finer than the numbers themselves.
     let heights = [1e140, 1e-140, 3.0, 0.1];
     let bytes = bytes_of(&strip(&heights), HeightPrecision::Within(1e-150));
     assert_eq!(HeightField::from_bytes(&bytes).unwrap().heights(), heights);
@@ -64,7 +64,7 @@ fn cut_off_bytes_are_errors() {
             assert!(matches!(read, Err(FieldBytesError::Short { .. })), "{length}: {read:?}");
         }
         let longer = [&bytes[..], &[0]].concat();
-        assert_eq!(HeightField::from_bytes(&longer), Err(FieldBytesError::Bad("end")));
+        assert_eq!(HeightField::from_bytes(&longer), Err(FieldBytesError::Bad("length")));
     }
 }
 
@@ -77,7 +77,7 @@ fn damaged_bytes_are_errors_or_fields() {
             let mut damaged = bytes.clone();
             damaged[at] ^= 1 << bit;
             match HeightField::from_bytes(&damaged) {
-                // The header has no checksum: where the lattice is may have changed.
+                // The header has no checksum, so the placement of the grid may have changed.
                 Ok(read) => {
                     assert!(at < 72 || read == field, "byte {at} may not change unseen");
                     assert!(read.bounds().diagonal().is_finite());

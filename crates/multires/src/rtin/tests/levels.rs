@@ -1,4 +1,4 @@
-//! What each level is: one sheet over the whole rectangle, and as near as was asked.
+//! Properties of each level: a single sheet over the rectangle, within the tolerance.
 
 use meshlod_fixtures as fixtures;
 use meshlod_mesh::{Connectivity, Mesh};
@@ -9,8 +9,8 @@ use crate::rtin::{HeightField, Rtin, RtinExtractor};
 use crate::tests::walks::{Dice, query};
 use crate::{Level, Query, ViewCamera};
 
-/// One disc without folds, exactly over the rectangle of the field: as much area as that, and no edge
-/// open but along its sides. So no vertex lies on an edge of others.
+/// Checks that a level is a disc without folds, exactly over the rectangle of the field: of the
+/// same area, with no open edge but along its sides. So there are no T-junctions.
 fn assert_covers(level: &Level, model: &Rtin, looks_down: bool) {
     let size = model.size();
     let place = |node: u32| [node % size[0], node / size[0]].map(i64::from);
@@ -41,8 +41,8 @@ fn assert_covers(level: &Level, model: &Rtin, looks_down: bool) {
     }
 }
 
-/// For each face, how far it is along the axis from the vertices under it, and the least distance
-/// from the eye to one of those.
+/// Returns for each face the greatest distance along the axis to the vertices under it, and the
+/// least distance from the eye to one of these.
 fn distances(level: &Level, field: &HeightField, eye: [f64; 3]) -> Vec<[f64; 2]> {
     let columns = field.size()[0];
     let [across, along, up] = [1, 2, 3].map(|k| (field.axis() + k) % 3);
@@ -109,7 +109,7 @@ fn every_level_covers_the_field_once() {
 }
 
 #[test]
-fn triangles_are_as_near_as_was_asked() {
+fn triangles_are_within_the_tolerance() {
     for size in [[9, 9], [12, 17], [40, 23]] {
         let sample = Sample::new(size);
         let (mesh, field, model) = (sample.mesh(), sample.field(), sample.model());
@@ -148,7 +148,7 @@ fn a_budget_is_kept_and_used_up() {
         assert!(found <= faces && found + 2 > faces, "{found} of {faces}");
     }
     assert_eq!(extractor.at_most(usize::MAX, &query).unwrap().canonical(), full.canonical());
-    // What one tolerance gives is the best of its size.
+    // The level at one tolerance is the best of its size.
     for tolerance in [0.2, 0.7, 1.5] {
         let level = extractor.exact(&Query::uniform(tolerance)).unwrap().clone();
         let same = extractor.at_most(level.faces.len(), &query).unwrap();
@@ -157,7 +157,7 @@ fn a_budget_is_kept_and_used_up() {
 }
 
 #[test]
-fn a_certificate_misses_no_lesser_error_and_no_lesser_radius() {
+fn certification_finds_every_reduced_error_and_radius() {
     for size in [[9, 9], [12, 17]] {
         let model = Sample::new(size).model();
         assert_eq!(model.certify().unwrap() + corners(&model), model.grid.count());
@@ -181,15 +181,15 @@ fn a_certificate_misses_no_lesser_error_and_no_lesser_radius() {
     }
 }
 
-/// Of the square, as many as are in the field.
+/// Returns how many corners of the square are in the field.
 fn corners(model: &Rtin) -> usize {
     let all = (0..model.grid.count()).map(|index| model.grid.place(index));
     all.filter(|&place| model.grid.diamond(place).is_none()).count()
 }
 
-/// Skips, and says so, where the shared meshes are not.
+/// Skips with a note if the shared meshes are missing.
 #[test]
-fn the_shared_terrain_if_there_keeps_to_its_tolerances() {
+fn the_shared_terrain_if_there_keeps_its_tolerances() {
     let Some(path) = fixtures::shared_mesh("terrain-jacksboro.ply") else {
         return eprintln!("skipped: no terrain-jacksboro.ply");
     };

@@ -1,4 +1,4 @@
-//! Which meshes are height fields.
+//! Recognition of height fields.
 
 use meshlod_fixtures as fixtures;
 use meshlod_mesh::{FaceId, Mesh, VertexId};
@@ -8,7 +8,7 @@ use super::{SIZES, Sample};
 use crate::rtin::{HeightField, HeightFieldError};
 use crate::tests::walks::Dice;
 
-/// The same mesh with its vertices in another order, and one that no face uses.
+/// Shuffles the vertices of a mesh and adds one that no face uses.
 fn shuffled(mesh: &Mesh, dice: &mut Dice) -> Mesh {
     let mut order: Vec<usize> = (0..mesh.positions.len()).collect();
     for i in (1..order.len()).rev() {
@@ -27,7 +27,7 @@ fn fields_are_found_along_each_axis_in_any_order() {
         for (up, looks_down) in [(0, false), (1, true), (2, false), (2, true)] {
             let mesh = Sample { up, looks_down, ..Sample::new(size) }.mesh();
             let field = HeightField::from_mesh(&shuffled(&mesh, &mut Dice(5))).unwrap();
-            // Two by two may look like one along several axes.
+            // Two by two vertices may look like a grid along several axes.
             if size != [2, 2] {
                 assert_eq!((field.size(), field.axis()), (size, up));
                 assert_eq!(field.placement.looks_down, looks_down);
@@ -46,7 +46,7 @@ fn fields_are_found_along_each_axis_in_any_order() {
 }
 
 #[test]
-fn rounded_coordinates_are_those_of_a_lattice() {
+fn rounded_coordinates_fit_a_grid() {
     let mut mesh = Sample::new([12, 17]).mesh();
     for p in &mut mesh.positions {
         *p = p.map(|x| f64::from((x / 3.0 + 4e3) as f32));
@@ -57,8 +57,8 @@ fn rounded_coordinates_are_those_of_a_lattice() {
 }
 
 #[test]
-fn other_diagonals_are_told() {
-    // Three corners at 0, one at 1: the middle is at 0 or at one half.
+fn flipped_diagonals_are_measured() {
+    // With three corners at 0 and one at 1, the middle is at 0 or at one half.
     let corners = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [1.0, 1.0, 1.0]];
     let turned = |faces: [[u32; 3]; 2]| {
         HeightField::from_mesh(&fixtures::mesh(&corners, &faces)).unwrap().fit().turned
@@ -68,7 +68,7 @@ fn other_diagonals_are_told() {
 }
 
 #[test]
-fn what_is_no_field_is_told_where() {
+fn errors_name_the_place() {
     use HeightFieldError as E;
     let fails = |change: &dyn Fn(&mut Mesh)| {
         let mut mesh = Sample::new([6, 5]).mesh();
@@ -85,18 +85,21 @@ fn what_is_no_field_is_told_where() {
     let cell = fails(&|mesh| mesh.faces.push(mesh.faces[7]));
     assert!(matches!(cell, E::Cell { column: 3, row: 0, faces: 3 }), "{cell}");
     let turned = fails(&|mesh| mesh.faces[4].swap(0, 1));
-    assert_eq!(turned, E::Turned(FaceId(4)));
+    assert_eq!(turned, E::FlippedFace(FaceId(4)));
     let wide = fails(&|mesh| mesh.faces[4] = [0, 2, 8].map(VertexId));
-    assert_eq!(wide, E::NotHalf(FaceId(4)));
+    assert_eq!(wide, E::NotHalfCell(FaceId(4)));
     let thin = fails(&|mesh| mesh.faces[4] = [2, 3, 3].map(VertexId));
-    assert_eq!(thin, E::NotHalf(FaceId(4)));
+    assert_eq!(thin, E::NotHalfCell(FaceId(4)));
     let beside = fails(&|mesh| mesh.positions[8][0] += 0.02);
-    assert!(matches!(beside, E::Beside { vertex: VertexId(8), column: 2, row: 1, .. }), "{beside}");
+    assert!(
+        matches!(beside, E::OffGrid { vertex: VertexId(8), column: 2, row: 1, .. }),
+        "{beside}"
+    );
     let twice = fails(&|mesh| {
         mesh.positions.push(mesh.positions[8]);
         mesh.faces.push([30, 9, 14].map(VertexId));
     });
-    assert!(matches!(twice, E::Twice { column: 2, row: 1, .. }), "{twice}");
+    assert!(matches!(twice, E::SamePoint { column: 2, row: 1, .. }), "{twice}");
     let bad = fails(&|mesh| mesh.positions[3][2] = f64::NAN);
     assert!(matches!(bad, E::Mesh(_)), "{bad}");
     for mesh in

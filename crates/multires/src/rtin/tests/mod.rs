@@ -1,4 +1,4 @@
-//! What must hold of right triangles.
+//! Properties of the RTIN.
 
 mod files;
 mod levels;
@@ -10,12 +10,12 @@ use meshlod_mesh::{Mesh, VertexId};
 use super::{HeightField, Rtin};
 use crate::tests::walks::Dice;
 
-/// Sizes that are squares of 2ᵏ cells, and others.
+/// Squares of 2ᵏ cells and other sizes.
 const SIZES: [[u32; 2]; 9] =
     [[2, 2], [3, 3], [5, 5], [9, 9], [2, 9], [6, 4], [7, 12], [17, 11], [12, 17]];
 
-/// A field as a mesh: heights along an axis, faces that look along it or against it, each cell halved
-/// as dice have it.
+/// A field as a mesh, with heights along an axis, faces that look along it or against it, and
+/// random diagonals.
 struct Sample {
     size: [u32; 2],
     up: usize,
@@ -28,7 +28,7 @@ impl Sample {
         Self { size, up: 2, looks_down: false, seed: 7 }
     }
 
-    /// Heights are multiples of 1/64 with some plains among them, steps 1 and 1/2.
+    /// Heights are multiples of 1/64 with a few plains, steps are 1 and 1/2.
     fn mesh(&self) -> Mesh {
         let [columns, rows] = self.size;
         let mut dice = Dice(self.seed);

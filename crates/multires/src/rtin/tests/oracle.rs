@@ -1,4 +1,4 @@
-//! The explicit MT of a field: all triangles written down, updates found by equal hypotenuses.
+//! The explicit MT of a field, with all triangles stored and updates found by equal hypotenuses.
 
 use std::cmp::Reverse;
 use std::collections::{BTreeMap, BTreeSet};
@@ -10,16 +10,16 @@ use crate::rtin::grid::{Extent, GridPoint};
 use crate::rtin::{Rtin, RtinExtractor};
 use crate::tests::walks::{Dice, query};
 
-/// The right angle first.
+/// Corners of a triangle, the right angle first.
 type Corners = [GridPoint; 3];
 
 struct Oracle<'m> {
     model: &'m Rtin,
-    /// By the vertex that each inserts.
+    /// Updates by the vertex that each inserts.
     updates: BTreeMap<GridPoint, Insertion>,
-    /// The two halves of each triangle that has some.
+    /// The two halves of each triangle that is bisected.
     halves: BTreeMap<Corners, [Corners; 2]>,
-    /// How many of the finest triangles in each are inside and outside the field.
+    /// Numbers of finest triangles inside and outside the field.
     extents: BTreeMap<Corners, [usize; 2]>,
 }
 
@@ -27,8 +27,8 @@ struct Oracle<'m> {
 struct Insertion {
     depth: u32,
     coarse: Vec<Corners>,
-    /// What made each of those.
-    makers: Vec<Option<GridPoint>>,
+    /// Vertices that created the coarse triangles.
+    creators: Vec<Option<GridPoint>>,
 }
 
 impl<'m> Oracle<'m> {
@@ -42,13 +42,13 @@ impl<'m> Oracle<'m> {
         };
         let mut coarser = Vec::new();
         for depth in 0..model.grid.depth() {
-            for (corners, maker) in std::mem::take(&mut level) {
+            for (corners, creator) in std::mem::take(&mut level) {
                 let [apex, a, b] = corners;
                 let at = middle(a, b);
                 let update = this.updates.entry(at).or_default();
                 update.depth = depth;
                 update.coarse.push(corners);
-                update.makers.push(maker);
+                update.creators.push(creator);
                 let halves = [[at, apex, a], [at, b, apex]];
                 this.halves.insert(corners, halves);
                 coarser.push(corners);
@@ -76,20 +76,21 @@ impl<'m> Oracle<'m> {
         !self.extents[corners].contains(&0)
     }
 
-    /// What an update needs: what made the triangles that it takes away and that are not outside.
+    /// Returns the dependencies of an update: the vertices that created the triangles it removes,
+    /// except those outside the field.
     fn needs(&self, update: &Insertion) -> Vec<GridPoint> {
-        let coarse = update.coarse.iter().zip(&update.makers);
-        coarse.filter(|(c, _)| !self.is_outside(c)).filter_map(|(_, &maker)| maker).collect()
+        let coarse = update.coarse.iter().zip(&update.creators);
+        coarse.filter(|(c, _)| !self.is_outside(c)).filter_map(|(_, &creator)| creator).collect()
     }
 
-    /// Updates, those that need others first.
+    /// Returns all updates, each before its dependencies.
     fn finest_first(&self) -> Vec<GridPoint> {
         let mut all: Vec<GridPoint> = self.updates.keys().copied().collect();
         all.sort_by_key(|at| Reverse(self.updates[at].depth));
         all
     }
 
-    /// These updates and all they need, with what lies across the border.
+    /// Returns the required updates with their dependencies and those forced across the border.
     fn close(&self, wanted: impl Fn(GridPoint) -> bool) -> BTreeSet<GridPoint> {
         let forced = |update: &Insertion| update.coarse.iter().any(|c| self.is_across(c));
         let seeds = self.updates.iter().filter(|&(&at, update)| forced(update) || wanted(at));
@@ -103,7 +104,7 @@ impl<'m> Oracle<'m> {
         cut
     }
 
-    /// The triangles of a cut, by indices, each from its least corner.
+    /// Returns the triangles of a cut by indices, each from its least corner.
     fn shown(&self, cut: &BTreeSet<GridPoint>) -> Vec<[u32; 3]> {
         let mut shown: BTreeSet<Corners> = self.model.grid.roots().map(|t| t.corners()).into();
         for at in self.finest_first().iter().rev().filter(|at| cut.contains(at)) {
@@ -126,7 +127,7 @@ impl<'m> Oracle<'m> {
         faces
     }
 
-    /// How far a triangle is from the vertices under it, by barycentric coordinates.
+    /// Returns the distance from a triangle to the vertices under it, by barycentric coordinates.
     fn deviation(&self, corners: &Corners) -> f64 {
         let grid = self.model.grid;
         let height = |p: GridPoint| f64::from(self.model.vertices[grid.index(p)].height);
@@ -148,7 +149,7 @@ impl<'m> Oracle<'m> {
 }
 
 #[test]
-fn arithmetic_is_that_of_halved_triangles() {
+fn grid_arithmetic_matches_bisected_triangles() {
     for size in SIZES {
         let model = Sample::new(size).model();
         let grid = model.grid;
@@ -173,7 +174,7 @@ fn arithmetic_is_that_of_halved_triangles() {
                 assert_eq!(grid.depth_of(at), update.depth);
                 let mut parents: Vec<GridPoint> = grid.parents(at).collect();
                 let mut needs = oracle.needs(update);
-                // The corners of the square are made by nothing.
+                // The corners of the square are never created.
                 parents.retain(|parent| grid.diamond(*parent).is_some());
                 needs.retain(|&need| grid.holds(need));
                 parents.sort_unstable();
