@@ -1,4 +1,4 @@
-//! What a verb has to say when it is done.
+//! Result of a verb: text for people, JSON for programs, and the exit code.
 
 use std::io::{self, ErrorKind, Write};
 use std::process::ExitCode;
@@ -7,16 +7,17 @@ use serde_json::Value;
 
 use crate::failure::Failure;
 
-/// The outcome of a verb, for programs and for people.
+/// Result of a verb, for programs and for people.
 pub struct Answer {
-    /// The object that `--json` prints.
+    /// Object printed with `--json`.
     pub json: Value,
-    /// What people read: whole lines.
+    /// Text for people, in whole lines.
     pub text: String,
-    /// Whether standard output holds a mesh or a picture, so that text has to go elsewhere.
+    /// True if standard output carries a mesh or a picture, so that the text goes to standard
+    /// error.
     pub file_on_stdout: bool,
-    /// Whether the exit code tells of a failure though there is an answer: the user was strict about
-    /// a target that was not reached, or a check found errors.
+    /// True if the exit code reports failure in spite of the answer: a target was missed under
+    /// `--strict`, or a check found errors.
     pub missed: bool,
 }
 
@@ -25,9 +26,9 @@ impl Answer {
         Self { json, text, file_on_stdout: false, missed: false }
     }
 
-    /// Prints itself where it belongs, and gives the exit code.
+    /// Prints the answer and returns the exit code.
     ///
-    /// A reader that has closed the pipe has seen enough: that is no failure.
+    /// A closed pipe counts as success: its reader has seen enough.
     pub fn print(&self, json: bool) -> Result<ExitCode, Failure> {
         let written = if json {
             write_all(&mut io::stdout(), &format!("{:#}\n", self.json))

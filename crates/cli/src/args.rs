@@ -1,122 +1,41 @@
-//! What may be written on the command line, but for the options of single verbs.
+//! Option groups that several verbs share.
 
-use clap::{Args, Parser, Subcommand, ValueEnum};
+use clap::{Args, ValueEnum};
 use meshlod::io::{Precision, Weld};
 use meshlod::picture::{UpAxis, View};
 use meshlod::{Format, ReadOptions, Scene, WriteOptions};
 
-use crate::amounts::{self, Look};
-use crate::answer::Answer;
-use crate::compare::Compare;
-use crate::demo::Demo;
-use crate::failure::Failure;
-use crate::session::Session;
-use crate::verbs::{
-    build, check, compress, decompress, extract, info, lods, measure, render, repair, replay,
-    sample, simplify, strip,
-};
-
-/// Level of detail for triangle meshes.
-///
-/// The suffix selects the format: .ply .obj .stl .off .smf .gltf .glb. A path of - means standard
-/// input or output, with the format given by --format.
-#[derive(Parser)]
-#[command(name = "meshlod", version, max_term_width = 100)]
-pub struct Cli {
-    #[command(flatten)]
-    pub global: Global,
-    #[command(subcommand)]
-    pub verb: Verb,
-}
+use crate::parse::{self, ViewDirection};
 
 /// Options of every verb.
 #[derive(Args)]
-pub struct Global {
+#[command(next_help_heading = "Global options")]
+pub struct GlobalArgs {
     /// Print one JSON object to standard output and nothing else; messages go to standard error
     #[arg(long, global = true)]
     pub json: bool,
     /// Number of threads [default: one per core]
-    #[arg(long, global = true, value_name = "N", value_parser = amounts::threads,
+    #[arg(long, global = true, value_name = "N", value_parser = parse::threads,
         allow_negative_numbers = true)]
     pub threads: Option<usize>,
     /// Format of standard input and output (-), as a suffix: ply, glb, …
-    #[arg(long, global = true, value_name = "SUFFIX", value_parser = amounts::format)]
+    #[arg(long, global = true, value_name = "SUFFIX", value_parser = parse::format)]
     pub format: Option<Format>,
-}
-
-/// What to do.
-#[derive(Subcommand)]
-pub enum Verb {
-    /// Print what a file contains: counts, bounds, area, volume, closed or open
-    Info(info::Info),
-    /// Find defects of a mesh and contacts between its objects; exit with 1 on errors
-    Check(check::Check),
-    /// Repair the defects that can be repaired safely, and report every step
-    Repair(repair::Repair),
-    /// Reduce a mesh to fewer faces
-    Simplify(simplify::Simplify),
-    /// Restore any level recorded by simplify --sequence
-    Replay(replay::Replay),
-    /// Write a chain of coarser levels, as glTF with MSFT_lod or one file per level
-    Lods(lods::Lods),
-    /// Write all levels of a mesh to one multiresolution file (.mlod)
-    Build(build::Build),
-    /// Extract one mesh from a multiresolution file: fine where it is needed, coarse elsewhere
-    Extract(extract::Extract),
-    /// Convert a mesh and its levels to triangle strips, and count the vertices they send
-    Strip(strip::Strip),
-    /// Compress a mesh for rendering or transmission
-    Compress(compress::Compress),
-    /// Decode a compressed file (.mlq or .mlz) to a mesh
-    Decompress(decompress::Decompress),
-    /// Run all methods on one mesh: a table, and a page with pictures and error heat maps
-    Compare(Compare),
-    /// Measure the distance between two meshes, both ways
-    Measure(measure::Measure),
-    /// Write a procedural mesh of any size
-    Sample(sample::Sample),
-    /// Render a picture of a mesh
-    Render(render::Render),
-    /// Simplify sample meshes by several methods, and write a report page with pictures
-    Demo(Demo),
-}
-
-impl Verb {
-    pub fn run(self, session: &Session) -> Result<Answer, Failure> {
-        match self {
-            Self::Info(verb) => verb.run(session),
-            Self::Check(verb) => verb.run(session),
-            Self::Repair(verb) => verb.run(session),
-            Self::Simplify(verb) => verb.run(session),
-            Self::Replay(verb) => verb.run(session),
-            Self::Lods(verb) => verb.run(session),
-            Self::Build(verb) => verb.run(session),
-            Self::Extract(verb) => verb.run(session),
-            Self::Strip(verb) => verb.run(session),
-            Self::Compress(verb) => verb.run(session),
-            Self::Decompress(verb) => verb.run(session),
-            Self::Compare(verb) => verb.run(session),
-            Self::Measure(verb) => verb.run(session),
-            Self::Sample(verb) => verb.run(session),
-            Self::Render(verb) => verb.run(session),
-            Self::Demo(verb) => verb.run(session),
-        }
-    }
 }
 
 /// Options of every verb that reads meshes.
 #[derive(Args)]
-pub struct Reading {
+pub struct ReadArgs {
     /// Do not weld vertices at identical positions when reading glTF and STL
     #[arg(long, conflicts_with = "weld")]
     no_weld: bool,
     /// Weld vertices within EPS of each other, in model units
-    #[arg(long, value_name = "EPS", value_parser = amounts::length,
+    #[arg(long, value_name = "EPS", value_parser = parse::length,
         allow_negative_numbers = true)]
     weld: Option<f64>,
 }
 
-impl Reading {
+impl ReadArgs {
     pub fn options(&self) -> ReadOptions {
         let weld = match self.weld {
             Some(epsilon) => Weld::Within(epsilon),
@@ -126,7 +45,7 @@ impl Reading {
         ReadOptions { weld }
     }
 
-    /// The distance of --weld, for a verb that welds by itself: what is read then is not welded so.
+    /// Takes the distance of `--weld` for a verb that welds by itself, so that reading does not.
     pub fn take_weld(&mut self) -> Option<f64> {
         self.weld.take()
     }
@@ -134,20 +53,20 @@ impl Reading {
 
 /// Options of every verb that writes meshes.
 #[derive(Args)]
-pub struct Writing {
+pub struct WriteArgs {
     /// Coordinate type in PLY, OBJ, OFF and SMF: f32 or f64
     /// [default: f32; f64 where repair or extract need it]
-    #[arg(long, value_name = "TYPE", value_parser = amounts::precision)]
+    #[arg(long, value_name = "TYPE", value_parser = parse::precision)]
     precision: Option<Precision>,
 }
 
-impl Writing {
+impl WriteArgs {
     pub fn options(&self) -> WriteOptions {
         WriteOptions { precision: self.precision.unwrap_or(Precision::F32) }
     }
 
-    /// The same, but where nothing is said as precise as it takes for whoever reads the file to find every
-    /// position within `most` of where it is, in model units.
+    /// Switches to `f64`, unless `--precision` is given, if the default would move a coordinate by
+    /// more than `most`, in model units.
     pub fn within(mut self, most: f64, scene: &Scene, format: Format) -> Self {
         if self.moves(scene, format) > most {
             self.precision.get_or_insert(Precision::F64);
@@ -155,7 +74,7 @@ impl Writing {
         self
     }
 
-    /// How far from where it is a coordinate is read again, at most.
+    /// Returns the largest distance that writing and reading moves a coordinate.
     pub fn moves(&self, scene: &Scene, format: Format) -> f64 {
         let precision = self.options().precision;
         let positions = scene.meshes.iter().flat_map(|mesh| mesh.mesh.positions.as_flattened());
@@ -164,14 +83,14 @@ impl Writing {
     }
 }
 
-/// What is read where a coordinate was written.
+/// Returns the value that is read back for a written coordinate.
 fn read_again(x: f64, precision: Precision, format: Format) -> f64 {
     let short = x as f32;
     match (format, precision) {
         (Format::Stl | Format::Gltf | Format::Glb, _) | (Format::Ply, Precision::F32) => {
             short.into()
         }
-        // The shortest decimal of an `f32` is mostly another number as an `f64`.
+        // The shortest decimal of an `f32` usually parses to a different `f64`.
         (Format::Obj | Format::Off | Format::Smf, Precision::F32) => {
             short.to_string().parse().unwrap_or(f64::NAN)
         }
@@ -179,11 +98,11 @@ fn read_again(x: f64, precision: Precision, format: Format) -> f64 {
     }
 }
 
-/// How a distance is sampled.
+/// Options for sampling a distance.
 #[derive(Args)]
-pub struct Sampling {
+pub struct SamplingArgs {
     /// Number of samples each way, in addition to all vertices
-    #[arg(long, value_name = "N", default_value_t = 500_000, value_parser = amounts::samples,
+    #[arg(long, value_name = "N", default_value_t = 500_000, value_parser = parse::samples,
         allow_negative_numbers = true)]
     samples: usize,
     /// Seed of the random samples
@@ -191,19 +110,19 @@ pub struct Sampling {
     seed: u64,
 }
 
-impl Sampling {
+impl SamplingArgs {
     pub fn options(&self) -> meshlod::measure::DistanceOptions {
         meshlod::measure::DistanceOptions { samples: self.samples, seed: self.seed }
     }
 }
 
-/// Where a mesh is seen from.
+/// Options for the viewing direction.
 #[derive(Args)]
-pub struct Viewpoint {
+pub struct ViewArgs {
     /// Side to look from: front, back, left, right, top or bottom; or the viewing direction x,y,z
     /// [default: three-quarter view]
-    #[arg(long, value_name = "DIR", value_parser = amounts::look, allow_hyphen_values = true)]
-    view: Option<Look>,
+    #[arg(long, value_name = "DIR", value_parser = parse::view_direction, allow_hyphen_values = true)]
+    view: Option<ViewDirection>,
     /// Axis that points up
     #[arg(long, value_name = "AXIS", default_value = "y")]
     up: Axis,
@@ -215,8 +134,8 @@ enum Axis {
     Z,
 }
 
-impl Viewpoint {
-    /// The direction and what is up; the rest is left as it is by default.
+impl ViewArgs {
+    /// Returns the view with this direction and up axis, and defaults for the rest.
     pub fn view(&self) -> View {
         let up = match self.up {
             Axis::Y => UpAxis::Y,
@@ -225,22 +144,10 @@ impl Viewpoint {
         let view = View::three_quarter(up);
         let direction = match (self.view, up) {
             (None, _) => view.direction,
-            (Some(Look::Along(direction) | Look::From(direction)), UpAxis::Y)
-            | (Some(Look::Along(direction)), UpAxis::Z) => direction,
-            (Some(Look::From([x, y, z])), UpAxis::Z) => [x, -z, y],
+            (Some(ViewDirection::Along(direction) | ViewDirection::From(direction)), UpAxis::Y)
+            | (Some(ViewDirection::Along(direction)), UpAxis::Z) => direction,
+            (Some(ViewDirection::From([x, y, z])), UpAxis::Z) => [x, -z, y],
         };
         View { direction, ..view }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use clap::CommandFactory;
-
-    use super::*;
-
-    #[test]
-    fn the_command_line_is_sound() {
-        Cli::command().debug_assert();
     }
 }

@@ -1,4 +1,4 @@
-//! Measured distances: of scenes, as JSON, as text.
+//! Measured distances between scenes, and their JSON and text.
 
 use std::path::Path;
 
@@ -12,7 +12,8 @@ use crate::failure::Failure;
 use crate::numbers;
 use crate::table::aligned;
 
-/// The bare surface that a scene shows in world space, or would show with other meshes.
+/// Builds the surface of a scene in world space with the given meshes in place of its own, without
+/// attributes.
 pub fn surface_of<'m>(scene: &Scene, meshes: impl IntoIterator<Item = &'m Mesh>) -> Mesh {
     let bare = |mesh: &Mesh| Mesh::new(mesh.positions.clone(), mesh.faces.clone());
     let meshes = meshes.into_iter().map(|m| SceneMesh { mesh: bare(m), ..SceneMesh::default() });
@@ -25,17 +26,17 @@ pub fn surface_of<'m>(scene: &Scene, meshes: impl IntoIterator<Item = &'m Mesh>)
     .into_mesh()
 }
 
-/// The meshes of a scene, as they are.
+/// Iterates over the meshes of a scene.
 pub fn meshes(scene: &Scene) -> impl Iterator<Item = &Mesh> {
     scene.meshes.iter().map(|mesh| &mesh.mesh)
 }
 
-/// The mesh of a file, ready to be measured.
+/// Prepares the mesh of a file for measurement.
 pub fn ready<'m>(mesh: &'m Mesh, path: &Path) -> Result<Surface<'m>, Failure> {
     Surface::new(mesh).map_err(|error| Failure::at(path, error))
 }
 
-/// The distance of a level of a scene from the original.
+/// Measures the distance between the original and a level of its scene.
 pub fn of_level(
     original: &Surface<'_>,
     scene: &Scene,
@@ -46,7 +47,7 @@ pub fn of_level(
     surface_distance(original, &level, &DistanceOptions::default())
 }
 
-/// Both ways and what they come to, in model units and in percent of the diagonal.
+/// Returns the distances each way and combined as JSON, in model units and percent of the diagonal.
 pub fn to_json(distance: &Distance) -> Value {
     let lengths = |mean: f64, rms: f64, max: f64| {
         json!({
@@ -71,7 +72,7 @@ pub fn to_json(distance: &Distance) -> Value {
     json
 }
 
-/// Both ways and what they come to, as a table.
+/// Formats the distances each way and combined as a table.
 pub fn to_table(distance: &Distance) -> String {
     let row = |name: &str, mean: f64, rms: f64, max: f64| {
         let cell = |length| {

@@ -1,4 +1,4 @@
-//! Why a verb could not: one line, and the exit code that goes with it.
+//! Failure of a verb: one line and an exit code.
 
 use std::fmt;
 use std::path::Path;
@@ -8,7 +8,7 @@ use meshlod::IoError;
 
 use crate::files;
 
-/// A reason to stop, as one line: `FILE: place: reason`.
+/// Reason why a verb failed, as one line: `FILE: place: reason`.
 #[derive(Debug)]
 pub struct Failure {
     line: String,
@@ -20,12 +20,12 @@ impl Failure {
         Self { line: line.to_string(), wrong_usage: false }
     }
 
-    /// Something about a file.
+    /// Creates a failure that names a file.
     pub fn at(path: &Path, reason: impl fmt::Display) -> Self {
         Self::new(format_args!("{}: {reason}", files::name(path)))
     }
 
-    /// Options that do not go together, where the parser of the command line could not tell.
+    /// Creates a usage error that the command-line parser cannot detect.
     pub fn usage(line: impl fmt::Display) -> Self {
         Self { wrong_usage: true, ..Self::new(line) }
     }
@@ -37,7 +37,7 @@ impl Failure {
 
 impl fmt::Display for Failure {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        // A file's name or contents may bring line ends into a reason.
+        // A file name or file contents may bring line ends into the reason.
         f.write_str(&self.line.replace(['\n', '\r'], " "))
     }
 }

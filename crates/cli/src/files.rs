@@ -1,4 +1,4 @@
-//! Meshes in and out, pictures out, by path or through a pipe.
+//! Reading and writing meshes and pictures, by path or through a pipe.
 
 use std::fs;
 use std::io::{self, BufWriter, Read, Write};
@@ -7,22 +7,22 @@ use std::path::{Path, PathBuf};
 use meshlod::io::{gltf, obj, off, ply, read_bytes, smf, stl, write_file};
 use meshlod::{Format, ReadOptions, Scene, WriteOptions};
 
-use crate::args::{Reading, Writing};
+use crate::args::{ReadArgs, WriteArgs};
 use crate::failure::Failure;
 use crate::session::Session;
 
-/// Whether a path stands for standard input or output.
+/// Returns true if a path stands for standard input or output.
 pub fn is_pipe(path: &Path) -> bool {
     path == Path::new("-")
 }
 
-/// A path as messages name it.
+/// Formats a path for messages.
 pub fn name(path: &Path) -> String {
     if is_pipe(path) { "-".into() } else { path.display().to_string() }
 }
 
-/// Reads a mesh file, or standard input.
-pub fn read(path: &Path, reading: &Reading, session: &Session) -> Result<Scene, Failure> {
+/// Reads a mesh from a file or standard input.
+pub fn read(path: &Path, reading: &ReadArgs, session: &Session) -> Result<Scene, Failure> {
     session.progress.stage(&format!("reading {}", name(path)));
     if let Some(verb) = opened_by(path) {
         let reason = format_args!("not a mesh file; use meshlod {verb} to get the mesh it holds");
@@ -33,19 +33,19 @@ pub fn read(path: &Path, reading: &Reading, session: &Session) -> Result<Scene, 
     }
     let format = pipe_format(session)?;
     let bytes = read_all(path)?;
-    // What a pipe names beside itself is not there.
+    // Files referenced by a piped mesh are not available.
     read_bytes(&bytes, format, &mut |_| None, &reading.options())
         .map_err(|error| Failure::at(path, error))
 }
 
-/// The verb for our own files, which are no meshes by themselves.
+/// Returns the verb that opens one of our own file formats, which are not meshes themselves.
 fn opened_by(path: &Path) -> Option<&'static str> {
     let suffix = path.extension()?.to_str()?;
     let verbs = [("mlq", "decompress"), ("mlz", "decompress"), ("mlod", "extract")];
     verbs.into_iter().find(|(of, _)| suffix.eq_ignore_ascii_case(of)).map(|(_, verb)| verb)
 }
 
-/// The bytes of a file, or of standard input.
+/// Reads all bytes of a file or standard input.
 pub fn read_all(path: &Path) -> Result<Vec<u8>, Failure> {
     let mut bytes = Vec::new();
     let read = match is_pipe(path) {
@@ -55,7 +55,7 @@ pub fn read_all(path: &Path) -> Result<Vec<u8>, Failure> {
     read.map_err(|error| Failure::at(path, error))
 }
 
-/// Refuses an output that could not be written, before any work is done.
+/// Refuses an output that cannot be written, before any work is done.
 pub fn check_output(path: &Path, session: &Session) -> Result<Format, Failure> {
     if !is_pipe(path) {
         let format = Format::of_path(path).map_err(Failure::usage)?;
@@ -70,7 +70,7 @@ pub fn check_output(path: &Path, session: &Session) -> Result<Format, Failure> {
     }
 }
 
-/// Refuses a picture that could not be written, before any work is done.
+/// Refuses a picture that cannot be written, before any work is done.
 pub fn check_picture(path: &Path, session: &Session) -> Result<(), Failure> {
     if is_pipe(path) {
         return check_stdout(session);
@@ -81,7 +81,7 @@ pub fn check_picture(path: &Path, session: &Session) -> Result<(), Failure> {
     }
 }
 
-/// Refuses a file that has no folder to be in, or whose place a folder has.
+/// Refuses a path whose parent folder is missing, or that is itself a folder.
 pub fn check_place(path: &Path) -> Result<(), Failure> {
     if path.is_dir() {
         return Err(Failure::at(path, "is a folder; name a file to write"));
@@ -106,7 +106,7 @@ pub fn check_apart(path: &Path, others: &[&Path]) -> Result<(), Failure> {
     }
 }
 
-/// Where a file is or would be, by whichever way the path goes there.
+/// Returns the canonical path of a file that may not exist yet.
 fn place_of(path: &Path) -> PathBuf {
     fs::canonicalize(path).unwrap_or_else(|_| {
         let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
@@ -116,7 +116,7 @@ fn place_of(path: &Path) -> PathBuf {
     })
 }
 
-/// Makes a folder to write to, where it is not there; refuses one that nothing can be written to.
+/// Creates a folder if it is missing, and refuses one that is not writable.
 pub fn make_folder(folder: &Path) -> Result<(), Failure> {
     check_folder(folder)?;
     let tried = folder.join(format!(".{}", std::process::id()));
@@ -126,7 +126,7 @@ pub fn make_folder(folder: &Path) -> Result<(), Failure> {
         .map_err(|error| Failure::at(folder, error))
 }
 
-/// Refuses a folder whose place a file has.
+/// Refuses a folder path that is a file.
 pub fn check_folder(folder: &Path) -> Result<(), Failure> {
     match folder.exists() && !folder.is_dir() {
         true => Err(Failure::at(folder, "is a file; name a folder to write to")),
@@ -134,7 +134,7 @@ pub fn check_folder(folder: &Path) -> Result<(), Failure> {
     }
 }
 
-/// Writes a PNG file, or standard output.
+/// Writes a PNG to a file or standard output.
 pub fn write_picture(path: &Path, png: &[u8]) -> Result<(), Failure> {
     if !is_pipe(path) {
         return Ok(write_file(path, png)?);
@@ -143,11 +143,11 @@ pub fn write_picture(path: &Path, png: &[u8]) -> Result<(), Failure> {
     out.write_all(png).and_then(|()| out.flush()).map_err(|error| Failure::at(path, error))
 }
 
-/// Writes a mesh file, or standard output.
+/// Writes a mesh to a file or standard output.
 pub fn write(
     path: &Path,
     scene: &Scene,
-    writing: &Writing,
+    writing: &WriteArgs,
     session: &Session,
 ) -> Result<(), Failure> {
     session.progress.stage(&format!("writing {}", name(path)));
@@ -160,11 +160,11 @@ pub fn write(
     out.flush().map_err(|error| Failure::at(path, error))
 }
 
-/// What anybody will read of a file that was just written with [`write()`].
+/// Reads back a file just written with [`write()`], with default options.
 pub fn read_again(
     path: &Path,
     scene: &Scene,
-    writing: &Writing,
+    writing: &WriteArgs,
     session: &Session,
 ) -> Result<Scene, Failure> {
     session.progress.stage(&format!("reading {} again", name(path)));

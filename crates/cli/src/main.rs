@@ -1,48 +1,49 @@
 //! The command `meshlod`: level of detail for triangle meshes, one verb at a time.
 //!
-//! A verb takes its arguments and the [`Session`] and gives an [`Answer`] or a [`Failure`]; only
-//! this file prints answers and decides on exit codes. 0 is done, 1 could not, 2 wrong usage.
+//! A verb takes its arguments and the [`Session`] and returns an [`Answer`] or a [`Failure`]; only
+//! this file prints answers and sets exit codes: 0 for success, 1 for failure, 2 for wrong usage.
 #![forbid(unsafe_code)]
 
-mod amounts;
 mod answer;
 mod args;
 mod check;
+mod command;
 mod compare;
 mod demo;
 mod distance;
 mod failure;
 mod files;
-mod fusing;
-mod holding;
+mod fuse;
+mod locks;
+mod measured_bound;
 mod model_file;
 mod numbers;
 mod page;
+mod parse;
 mod progress;
-mod question;
+mod query_args;
 mod reduce;
 mod sequence;
 mod session;
 mod table;
 mod verbs;
 mod volume;
-mod within;
 
 use std::process::{ExitCode, exit};
 
 use clap::Parser;
 
 use crate::answer::Answer;
-use crate::args::Cli;
+use crate::command::{Cli, Verb};
 use crate::failure::Failure;
 use crate::session::Session;
 
-/// What shells report of a program that Ctrl-C has ended; said of SIGTERM and SIGHUP too.
+/// Exit code that shells report for Ctrl-C; also used for SIGTERM and SIGHUP.
 const INTERRUPTED: i32 = 130;
 
 fn main() -> ExitCode {
     let cli = Cli::parse();
-    // Without a handler signals still end the program; it only might leave a temporary file.
+    // Without a handler, signals still end the program but may leave a temporary file.
     let _ = ctrlc::set_handler(|| {
         meshlod::io::abandon_files();
         exit(INTERRUPTED);
@@ -59,7 +60,7 @@ fn main() -> ExitCode {
     }
 }
 
-fn answer(verb: args::Verb, session: &Session) -> Result<Answer, Failure> {
+fn answer(verb: Verb, session: &Session) -> Result<Answer, Failure> {
     session.start_threads()?;
     verb.run(session)
 }

@@ -1,6 +1,6 @@
-//! Numbers as people read them.
+//! Numbers formatted for people.
 
-/// A count with commas: 871,414.
+/// Formats a count with commas: 871,414.
 pub fn count(number: usize) -> String {
     let digits = number.to_string();
     let mut text = String::new();
@@ -13,27 +13,27 @@ pub fn count(number: usize) -> String {
     text
 }
 
-/// A count of faces: 1 face, 2 faces.
+/// Formats a number of faces: 1 face, 2 faces.
 pub fn faces(number: usize) -> String {
     format!("{} face{}", count(number), plural(number))
 }
 
-/// What a word takes on beside a count: nothing for one.
+/// Returns the plural ending of a noun: nothing for 1, else `s`.
 pub fn plural(number: usize) -> &'static str {
     if number == 1 { "" } else { "s" }
 }
 
-/// Six digits that matter: 0.00123457, 12.3457, 1.23457e12.
+/// Formats six significant digits: 0.00123457, 12.3457, 1.23457e12.
 pub fn value(number: f64) -> String {
     digits(number, 6)
 }
 
-/// A percentage with four digits that matter: 0.01235%.
+/// Formats a percentage with four significant digits: 0.01235%.
 pub fn percent(number: f64) -> String {
     if number.is_finite() { format!("{}%", digits(number, 4)) } else { "-".into() }
 }
 
-/// What became of a quantity, in percent with its sign; a dash where there was none.
+/// Formats a relative change as a signed percentage; a dash if the quantity was zero.
 pub fn change(before: f64, after: f64) -> String {
     let change = 100.0 * (after - before) / before.abs();
     match change {

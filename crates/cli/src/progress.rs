@@ -1,4 +1,4 @@
-//! Signs of life on a terminal, and nothing elsewhere.
+//! Progress display on a terminal; nothing elsewhere.
 
 use std::io::IsTerminal;
 use std::time::Duration;
@@ -6,7 +6,7 @@ use std::time::Duration;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use meshlod::simplify::Observe;
 
-/// A line on standard error that says what is being done.
+/// Progress line on standard error.
 pub struct Progress {
     bar: ProgressBar,
 }
@@ -23,13 +23,13 @@ impl Progress {
         Self { bar }
     }
 
-    /// Work whose length is not known begins.
+    /// Starts a stage of unknown length.
     pub fn stage(&self, what: &str) {
         self.bar.set_style(ProgressStyle::default_spinner());
         self.bar.set_message(what.to_owned());
     }
 
-    /// Contractions begin; `faces` are to go where that is known.
+    /// Starts a simplification that removes `faces` faces, if the number is known.
     pub fn contractions(&self, what: &str, faces: Option<usize>) -> Watch<'_> {
         self.stage(what);
         if let Some(faces) = faces {
@@ -41,7 +41,7 @@ impl Progress {
         Watch { bar: &self.bar, gone: 0, shown: 0 }
     }
 
-    /// Does something with the line out of the way.
+    /// Runs `act` with the progress line hidden.
     pub fn suspend(&self, act: impl FnOnce()) {
         self.bar.suspend(act);
     }
@@ -51,15 +51,15 @@ impl Progress {
     }
 }
 
-/// Counts the faces that contractions take away.
+/// Observer that advances the bar by the faces that contractions remove.
 pub struct Watch<'p> {
     bar: &'p ProgressBar,
     gone: u64,
-    /// As many as the bar shows.
+    /// Number of removed faces that the bar shows.
     shown: u64,
 }
 
-/// Faces between two looks at the bar, which costs more than a contraction.
+/// Faces removed between two updates of the bar, each of which costs more than a contraction.
 const FACES_A_LOOK: u64 = 8192;
 
 impl Observe for Watch<'_> {

@@ -1,4 +1,4 @@
-//! A scene made coarser, with the time it took and what it was measured to be off.
+//! Simplification of a scene, with its time, report and measured distance.
 
 use std::path::Path;
 use std::time::{Duration, Instant};
@@ -12,29 +12,29 @@ use crate::failure::Failure;
 use crate::numbers::{count, faces, value};
 use crate::session::Session;
 
-/// A level of a scene.
-pub struct Reduced {
+/// Simplified scene with its report.
+pub struct Simplified {
     pub meshes: Vec<Mesh>,
     pub report: Report,
     pub measured: Option<Distance>,
-    /// All levels on the way, where they are wanted.
+    /// Progressive mesh of all levels, if it was recorded.
     pub sequence: Option<Progressive>,
 }
 
-/// A simplifier and how long it has been at work.
-pub struct Engine<'s> {
+/// Scene simplifier with its progress label and elapsed time.
+pub struct SimplifyRun<'s> {
     simplifier: SceneSimplifier<'s>,
     session: &'s Session,
     path: &'s Path,
-    /// What it does, as the terminal says.
-    what: String,
+    /// Label shown on the terminal.
+    label: String,
     time: Duration,
-    /// All contractions, where they are wanted.
+    /// Recorded contractions, if wanted.
     history: Option<History>,
 }
 
-impl<'s> Engine<'s> {
-    /// Connects the meshes of `scene`, read from `path`.
+impl<'s> SimplifyRun<'s> {
+    /// Builds the connectivity of the meshes of `scene`, read from `path`.
     pub fn start(
         scene: &'s Scene,
         options: &Options,
@@ -44,27 +44,28 @@ impl<'s> Engine<'s> {
         session.progress.stage("building connectivity");
         let start = Instant::now();
         let simplifier = SceneSimplifier::new(scene, options).map_err(|e| at(path, &e))?;
-        let what = "simplifying".into();
-        Ok(Self { simplifier, session, path, what, time: start.elapsed(), history: None })
+        let label = "simplifying".into();
+        Ok(Self { simplifier, session, path, label, time: start.elapsed(), history: None })
     }
 
-    /// What the terminal says from here on.
-    pub fn call(&mut self, what: String) {
-        self.what = what;
+    /// Sets the label shown on the terminal.
+    pub fn set_label(&mut self, label: String) {
+        self.label = label;
     }
 
-    /// Takes down every contraction from now on, for [`Self::into_sequence`].
+    /// Records every contraction from now on, for [`Self::into_sequence`].
     pub fn record(&mut self) {
         self.history = Some(History::default());
     }
 
-    /// All levels that were passed; `None` unless the scene has one mesh and all was taken down.
+    /// Returns all recorded levels as a progressive mesh; `None` unless the scene has one mesh and
+    /// every contraction was recorded.
     pub fn into_sequence(self) -> Option<Progressive> {
         Progressive::new(self.simplifier.into_only()?, self.history?)
     }
 
-    /// Goes on to a target.
-    pub fn run(&mut self, target: Target) -> Result<Report, Failure> {
+    /// Simplifies further, to the given target.
+    pub fn simplify_to(&mut self, target: Target) -> Result<Report, Failure> {
         let now = self.simplifier.live_faces();
         let to_go = match target {
             Target::Faces(faces) => Some(now.saturating_sub(faces)),
@@ -73,7 +74,7 @@ impl<'s> Engine<'s> {
             }
             Target::Error(_) => None,
         };
-        let mut watch = self.session.progress.contractions(&self.what, to_go);
+        let mut watch = self.session.progress.contractions(&self.label, to_go);
         let start = Instant::now();
         let report = match &mut self.history {
             Some(history) => self.simplifier.run(target, &mut (watch, history)),
@@ -83,23 +84,23 @@ impl<'s> Engine<'s> {
         report.map_err(|error| at(self.path, &error.into()))
     }
 
-    /// Faces that the scene showed at first.
+    /// Returns the number of faces of the input scene.
     pub fn input_faces(&self) -> usize {
         self.simplifier.input_faces()
     }
 
-    /// The meshes as they are now.
+    /// Returns the meshes at their current level.
     pub fn level(&self) -> Vec<Mesh> {
         self.simplifier.level()
     }
 
-    /// Time spent in connecting and contracting, by the wall clock.
+    /// Returns the wall-clock time spent on connectivity and contractions.
     pub fn time(&self) -> Duration {
         self.time
     }
 }
 
-/// Measures a level against the original, where that can be done.
+/// Measures a level against the original; warns and returns `None` if that is not possible.
 pub fn measure(
     original: Option<&Surface<'_>>,
     scene: &Scene,
@@ -113,20 +114,20 @@ pub fn measure(
         .ok()
 }
 
-/// Puts the meshes of a level in the place of those of the scene.
+/// Replaces the meshes of a scene by those of a level.
 pub fn replace(scene: &mut Scene, level: Vec<Mesh>) {
     for (mesh, level) in scene.meshes.iter_mut().zip(level) {
         mesh.mesh = level;
     }
 }
 
-/// Why contractions were refused, and how often.
+/// Returns the number of refused contractions by reason as JSON.
 pub fn refusals_json(report: &Report) -> Value {
     let entry = |refusal: Refusal| (refusal.name().into(), report.refusals.count(refusal).into());
     Value::Object(Refusal::ALL.into_iter().map(entry).collect::<Map<String, Value>>())
 }
 
-/// The fields of a report that every verb gives.
+/// Returns the report fields that every verb prints as JSON.
 pub fn report_json(report: &Report) -> Value {
     json!({
         "input_faces": report.input_faces,
@@ -136,7 +137,7 @@ pub fn report_json(report: &Report) -> Value {
     })
 }
 
-/// One line that says why there are more faces than wanted.
+/// Formats a line that explains why the target was not reached.
 pub fn why_not_reached(report: &Report) -> String {
     format!(
         "target not reached: no further contraction is possible at {} (refused: {})",
@@ -145,7 +146,7 @@ pub fn why_not_reached(report: &Report) -> String {
     )
 }
 
-/// Lines that say what was left out or kept in place; none for a clean mesh.
+/// Formats lines on faces left out and vertices kept in place; empty for a clean mesh.
 pub fn oddities(report: &Report) -> String {
     let mut text = String::new();
     let mut line = |number: usize, nouns: [&str; 2], what: &str| {
@@ -166,7 +167,7 @@ pub fn oddities(report: &Report) -> String {
     text
 }
 
-/// Seconds as the verbs print them.
+/// Formats the line with the simplification time.
 pub fn seconds_line(time: Duration) -> String {
     format!("simplify_seconds: {}\n", value(time.as_secs_f64()))
 }

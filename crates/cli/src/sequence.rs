@@ -1,4 +1,4 @@
-//! Files that keep all levels of a run, and the scenes that their levels belong in.
+//! Files of progressive meshes, and the scenes into which their levels are put.
 
 use std::fs;
 use std::path::Path;
@@ -12,7 +12,7 @@ use crate::files;
 use crate::reduce;
 use crate::session::Session;
 
-/// Refuses a sequence that could not be kept in a file, before any work is done.
+/// Refuses a sequence file that cannot be written, before any work is done.
 pub fn check(path: &Path, input: &Path, output: &Path) -> Result<(), Failure> {
     if files::is_pipe(path) {
         return Err(Failure::usage("--sequence needs a file, not standard output"));
@@ -21,7 +21,7 @@ pub fn check(path: &Path, input: &Path, output: &Path) -> Result<(), Failure> {
     files::check_place(path)
 }
 
-/// Refuses a scene of several meshes, and says what a sequence of this one will not hold.
+/// Refuses a scene without exactly one mesh, and warns of what the sequence will not store.
 pub fn check_scene(scene: &Scene, input: &Path, session: &Session) -> Result<(), Failure> {
     if scene.meshes.len() != 1 {
         return Err(several_meshes(input));
@@ -37,12 +37,12 @@ pub fn check_scene(scene: &Scene, input: &Path, session: &Session) -> Result<(),
     Ok(())
 }
 
-/// Why there is no sequence of a scene.
+/// Creates the failure for a scene without exactly one mesh.
 pub fn several_meshes(input: &Path) -> Failure {
     Failure::at(input, "--sequence needs an input with exactly one mesh")
 }
 
-/// Writes a sequence and what goes with it: where that fails, no new file of the sequence stays.
+/// Writes a sequence, then runs `rest`; if that fails, a newly created sequence file is removed.
 pub fn write_with(
     path: &Path,
     sequence: &Progressive,
@@ -52,13 +52,13 @@ pub fn write_with(
     write_file(path, &sequence.to_bytes())?;
     rest().inspect_err(|_| {
         if is_new {
-            // What failed first is what there is to tell.
+            // The first failure is the one to report.
             let _ = fs::remove_file(path);
         }
     })
 }
 
-/// Puts the level at hand in the place of the mesh that the sequence was made of.
+/// Replaces the mesh of a scene by the current level of its sequence.
 pub fn put_into(scene: &mut Scene, sequence: &Progressive, path: &Path) -> Result<(), Failure> {
     let [only] = &scene.meshes[..] else {
         return Err(Failure::at(
@@ -77,10 +77,10 @@ pub fn put_into(scene: &mut Scene, sequence: &Progressive, path: &Path) -> Resul
     Ok(())
 }
 
-/// Whether a sequence can be of a mesh, as far as its faces and what they are labelled tell.
+/// Returns true if a sequence may come from a mesh, judging by face count and material names.
 fn is_of(mesh: &Mesh, sequence: &Progressive, level: &Mesh) -> bool {
     let names = |mesh: &Mesh| mesh.materials.as_ref().map(|labels| labels.names.clone());
-    // Degenerate and duplicate faces are left out of a sequence; only few meshes have some.
+    // A sequence leaves out degenerate and duplicate faces, so the slow count is rarely needed.
     let as_many = |faces: usize| faces == sequence.full_faces();
     let cleaned =
         || Simplifier::new(mesh, &Options::default()).map(|simplifier| simplifier.live_faces());

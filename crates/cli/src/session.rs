@@ -1,26 +1,26 @@
-//! What all verbs share: how to talk to the user, and the threads.
+//! State shared by all verbs: output format, messages and threads.
 
 use std::fmt;
 use std::io::Write;
 
 use meshlod::Format;
 
-use crate::args::Global;
+use crate::args::GlobalArgs;
 use crate::failure::Failure;
 use crate::progress::Progress;
 
 /// One run of the program.
 pub struct Session {
     pub json: bool,
-    /// The format of `-`.
+    /// Format of `-`.
     pub format: Option<Format>,
     pub progress: Progress,
     threads: Option<usize>,
 }
 
 impl Session {
-    pub fn new(global: Global) -> Self {
-        let Global { json, threads, format } = global;
+    pub fn new(global: GlobalArgs) -> Self {
+        let GlobalArgs { json, threads, format } = global;
         Self { json, format, progress: Progress::new(), threads }
     }
 
@@ -30,18 +30,18 @@ impl Session {
         pool.build_global().map_err(|error| Failure::new(format_args!("--threads: {error}")))
     }
 
-    /// Tells the user something that does not stop the work.
+    /// Prints a warning.
     pub fn warn(&self, line: impl fmt::Display) {
         self.progress.suspend(|| say(format_args!("warning: {line}")));
     }
 
-    /// Tells the user why the work stopped.
+    /// Prints the reason why a verb failed.
     pub fn complain(&self, failure: &Failure) {
         say(failure);
     }
 }
 
 fn say(line: impl fmt::Display) {
-    // With standard error closed there is nobody left to tell.
+    // If standard error is closed, nobody is left to tell.
     let _ = writeln!(std::io::stderr(), "meshlod: {line}");
 }

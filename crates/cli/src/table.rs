@@ -1,7 +1,7 @@
-//! Text in columns.
+//! Tables in plain text.
 
-/// Rows of cells as lines: the first column flush left, the others right, two spaces between.
-/// Cells that a row lacks are empty.
+/// Formats rows as lines: the first column is left-aligned, the others are right-aligned, with two
+/// spaces between them. Missing cells are empty.
 pub fn aligned<R: AsRef<[String]>>(rows: &[R]) -> String {
     let mut widths = Vec::new();
     for row in rows.iter().map(AsRef::as_ref) {

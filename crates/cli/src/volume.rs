@@ -1,4 +1,4 @@
-//! What became of the volume on the way down: as JSON, as a line.
+//! Volume that a simplification could not conserve, as JSON and text.
 
 use meshlod::Method;
 use meshlod::simplify::{Unconserved, VolumeLoss};
@@ -6,8 +6,8 @@ use serde_json::{Value, json};
 
 use crate::numbers::{count, plural, value};
 
-/// What contractions did that could not choose their place by the volume, and where; `null` for a
-/// method that does not choose it so.
+/// Returns the contractions that could not conserve the volume as JSON; `null` for a method that
+/// does not conserve it.
 pub fn unconserved_json(method: Method, loss: &VolumeLoss) -> Value {
     let json =
         || json!({ "at_boundaries": with_bounds(&loss.open), "held": with_bounds(&loss.held) });
@@ -20,8 +20,8 @@ fn with_bounds(some: &Unconserved) -> Value {
     json!({ "contractions": some.contractions, "bounds": bounds })
 }
 
-/// What a method that conserves the volume could not conserve; nothing where there is no more to
-/// say than the method's name does.
+/// Describes the contractions in which a volume-conserving method could not conserve the volume;
+/// `None` if there are none.
 pub fn unconserved_text(method: Method, loss: &VolumeLoss) -> Option<String> {
     let kinds = [(&loss.open, "at boundaries"), (&loss.held, "constrained by seams or locks")];
     let some = kinds.iter().filter(|(some, _)| some.contractions > 0);

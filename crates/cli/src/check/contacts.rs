@@ -1,22 +1,22 @@
-//! Contacts by the pair of objects that meet.
+//! Contacts grouped by pairs of objects.
 
 use std::collections::BTreeMap;
 
 use meshlod::check::{ObjectId, Touch, TouchKind};
 use meshlod::mesh::FaceId;
 
-/// How two objects meet.
+/// Contacts between two objects.
 #[derive(Clone, Debug)]
-pub struct Pair {
-    /// Pairs of faces by the kind of their touch: vertex, edge, crossing, overlap.
+pub struct ObjectPair {
+    /// Number of face pairs by kind of touch: vertex, edge, crossing, overlap.
     pub counts: [usize; 4],
-    /// The deepest of all, or the first where none is deep.
+    /// Deepest touch, or the first if none has depth.
     pub deepest: Touch,
-    /// Its faces.
+    /// Faces of the deepest touch.
     pub faces: [FaceId; 2],
 }
 
-/// Every kind of touch, in the order of [`Pair::counts`].
+/// Every kind of touch, in the order of [`ObjectPair::counts`].
 pub const KINDS: [(TouchKind, &str); 4] = [
     (TouchKind::Vertex, "vertex"),
     (TouchKind::Edge, "edge"),
@@ -26,11 +26,11 @@ pub const KINDS: [(TouchKind, &str); 4] = [
 
 /// All pairs of objects that meet.
 #[derive(Clone, Debug, Default)]
-pub struct Contacts(BTreeMap<[ObjectId; 2], Pair>);
+pub struct Contacts(BTreeMap<[ObjectId; 2], ObjectPair>);
 
 impl Contacts {
     pub fn add(&mut self, objects: [ObjectId; 2], faces: [FaceId; 2], touch: Touch) {
-        let new = || Pair { counts: [0; 4], deepest: touch, faces };
+        let new = || ObjectPair { counts: [0; 4], deepest: touch, faces };
         let pair = self.0.entry(objects).or_insert_with(new);
         pair.counts[touch.kind as usize] += 1;
         if touch.depth > pair.deepest.depth {
@@ -38,21 +38,21 @@ impl Contacts {
         }
     }
 
-    /// How many pairs of objects.
+    /// Returns the number of object pairs.
     pub fn len(&self) -> usize {
         self.0.len()
     }
 
-    /// Those with the most face pairs first; of equal ones the lower objects.
-    pub fn by_size(&self) -> Vec<([ObjectId; 2], &Pair)> {
+    /// Returns the pairs with the most face pairs first; ties by object ids.
+    pub fn by_size(&self) -> Vec<([ObjectId; 2], &ObjectPair)> {
         let mut pairs: Vec<_> = self.0.iter().map(|(&objects, pair)| (objects, pair)).collect();
         pairs.sort_by_key(|(_, pair)| std::cmp::Reverse(pair.faces()));
         pairs
     }
 }
 
-impl Pair {
-    /// How many pairs of faces.
+impl ObjectPair {
+    /// Returns the number of face pairs.
     pub fn faces(&self) -> usize {
         self.counts.iter().sum()
     }

@@ -12,13 +12,13 @@ use crate::check::marks::{Mark, Marks};
 /// Width and height of a picture.
 pub const SIZE: [u32; 2] = [576, 480];
 
-/// What is not marked.
+/// Colour of unmarked faces.
 const PLAIN: [u8; 3] = [214, 216, 219];
 
-/// Half the width of a line, as a part of the diagonal.
+/// Half the width of a line, as a fraction of the diagonal.
 const LINE: f64 = 0.002;
 
-/// Where a mesh is looked at from: what the picture is called, and the direction to look in.
+/// Returns the views of a mesh: their names and viewing directions.
 pub fn views() -> [(&'static str, [f64; 3]); 4] {
     let [x, y, z] = View::three_quarter(UpAxis::Y).direction;
     [
@@ -29,16 +29,16 @@ pub fn views() -> [(&'static str, [f64; 3]); 4] {
     ]
 }
 
-/// How much of the mesh is drawn.
+/// Part of the mesh to draw.
 #[derive(Clone, Copy, PartialEq)]
 pub enum Part {
-    /// All of it.
+    /// Whole mesh.
     Whole,
-    /// What is marked alone, so that what is inside is seen.
+    /// Marked parts only, so that those inside are visible.
     Marked,
 }
 
-/// A mesh with its marks as colours and lines.
+/// Mesh with its marks as colours and lines.
 pub struct Drawing {
     mesh: Mesh,
     colors: Vec<[u8; 3]>,
@@ -71,8 +71,11 @@ impl Drawing {
         this
     }
 
+    /// Renders the drawing.
+    ///
     /// # Errors
-    /// As for [`render`].
+    ///
+    /// The errors of [`render`].
     pub fn picture(&self, camera: &Camera) -> Result<Picture, PictureError> {
         let style = Style {
             size: SIZE,
@@ -85,7 +88,7 @@ impl Drawing {
         render(&self.mesh, camera, &style)
     }
 
-    /// Adds a prism of three sides around a line.
+    /// Adds a three-sided prism around a line.
     fn line(&mut self, [a, b]: [[f64; 3]; 2], width: f64, color: [u8; 3]) {
         let along = [0, 1, 2].map(|axis| b[axis] - a[axis]);
         let first = VertexId::new(self.mesh.positions.len());
@@ -105,7 +108,7 @@ impl Drawing {
     }
 }
 
-/// Three directions across a line, a third of a turn apart, one long.
+/// Returns three unit vectors across a line, a third of a turn apart.
 fn corners(along: [f64; 3]) -> [[f64; 3]; 3] {
     let least = (0..3).min_by(|&i, &j| along[i].abs().total_cmp(&along[j].abs())).unwrap_or(0);
     let mut axis = [0.0; 3];
@@ -121,7 +124,7 @@ fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
     [0, 1, 2].map(|i| a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3])
 }
 
-/// A vector one long; nothing for one of no length.
+/// Normalizes a vector; the zero vector stays zero.
 fn unit(v: [f64; 3]) -> [f64; 3] {
     let length = v.iter().map(|x| x * x).sum::<f64>().sqrt();
     if length > 0.0 { v.map(|x| x / length) } else { [0.0; 3] }

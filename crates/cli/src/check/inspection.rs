@@ -1,4 +1,4 @@
-//! What is kept of a check.
+//! Collected results of a check.
 
 use std::ops::ControlFlow;
 
@@ -10,33 +10,33 @@ use meshlod::check::{
 use crate::check::contacts::Contacts;
 use crate::check::marks::Marks;
 
-/// A mesh, and what a check has found in it.
+/// Mesh with the findings of a check.
 pub struct Inspection {
     pub mesh: Mesh,
     pub objects: Objects,
     pub summary: Summary,
-    /// The first findings of each kind, as many as were asked for and at least one.
+    /// First findings of each kind: as many as requested, and at least one.
     pub findings: Vec<Finding>,
-    /// How many findings of each kind that were found may be listed.
+    /// Largest number of findings listed of each kind.
     pub limit: usize,
     pub contacts: Contacts,
-    /// What a page shows of the findings, if there shall be one.
+    /// Marks for the pictures of a page, if one is wanted.
     pub marks: Option<Marks>,
     pub kinds: Kinds,
 }
 
-/// How a mesh is inspected.
-pub struct Order {
+/// Options of an inspection.
+pub struct InspectionOptions {
     pub options: CheckOptions,
-    /// Findings of each kind that are listed.
+    /// Largest number of findings listed of each kind.
     pub limit: usize,
-    /// Whether there will be a page.
+    /// True if marks for a page are collected.
     pub marks: bool,
 }
 
 impl Inspection {
-    pub fn of(mesh: Mesh, order: Order) -> Self {
-        let Order { options, limit, marks } = order;
+    pub fn of(mesh: Mesh, order: InspectionOptions) -> Self {
+        let InspectionOptions { options, limit, marks } = order;
         let mut this = Self {
             objects: Objects::of(&mesh, options.objects),
             summary: Summary::default(),
@@ -67,17 +67,17 @@ impl Inspection {
         }
     }
 
-    /// The first of a kind.
+    /// Returns the first finding of a kind.
     pub fn first(&self, kind: Kind) -> Option<&Finding> {
         self.findings.iter().find(|finding| finding.kind() == kind)
     }
 
-    /// The findings that are listed.
+    /// Iterates over the findings to list.
     pub fn listed(&self) -> impl Iterator<Item = &Finding> {
         self.findings.iter().filter(|_| self.limit > 0)
     }
 
-    /// How many of a kind are found and not listed.
+    /// Returns the number of findings of a kind that are not listed.
     pub fn left_out(&self, kind: Kind) -> usize {
         self.summary.count(kind).saturating_sub(self.limit)
     }
@@ -90,13 +90,13 @@ impl Inspection {
         self.summary.of(Severity::Warning)
     }
 
-    /// The mesh's own name of an object.
+    /// Returns the name of an object.
     pub fn name(&self, object: meshlod::check::ObjectId) -> &str {
         self.objects.names.get(object.0 as usize).map_or("", String::as_str)
     }
 }
 
-/// Where a finding is, in the world; `None` for one that is at no place.
+/// Returns the position of a finding in world space; `None` for one without a position.
 pub fn place(mesh: &Mesh, finding: &Finding) -> Option<[f64; 3]> {
     let vertex = |v: meshlod::mesh::VertexId| mesh.positions.get(v.index()).copied();
     let face = |f: meshlod::mesh::FaceId| {

@@ -1,6 +1,6 @@
-//! Locks as a file: flags of vertices in the order of the input file, and ties.
+//! Lock files: flags of vertices in the order of the input file, and ties.
 //!
-//! The form is told in docs/notes/locks.md.
+//! The format is described in docs/notes/locks.md.
 
 use std::path::Path;
 
@@ -16,22 +16,23 @@ use crate::files;
 const FORMAT: &str = "meshlod-locks";
 const VERSION: u64 = 1;
 
-/// Lock flags as meshoptimizer's `vertex_lock` has them.
+/// Lock flags, with the values of meshoptimizer's `vertex_lock`.
 const FLAGS: [(Lock, u8, &str); 3] =
     [(Lock::Free, 0, "free"), (Lock::Locked, 1, "lock"), (Lock::Protected, 2, "protect")];
 
-/// The vertices of a file's own numbering: for each mesh of a scene, its vertex at every row.
-pub struct Rows {
+/// Map from the vertex numbering of a file to the vertices of each mesh of its scene.
+pub struct FileRows {
     of_meshes: Vec<Vec<VertexId>>,
-    /// The file as it is, where reading joins vertices of it.
+    /// Scene read without welding, if reading welds vertices.
     torn: Option<Scene>,
 }
 
-impl Rows {
-    /// The rows of the file that a scene was read from, with the joining of `weld`.
+impl FileRows {
+    /// Builds the map for the file that a scene was read from with `weld`.
     ///
     /// # Errors
-    /// Vertices joined within a distance, which leaves no rows to speak of.
+    ///
+    /// Fails for vertices welded within a distance, which no row of the file corresponds to.
     pub fn of(path: &Path, scene: &Scene, weld: Weld) -> Result<Self, Failure> {
         if files::is_pipe(path) {
             return Err(Failure::usage("--locks: the input must be a file, not standard input"));
@@ -61,14 +62,15 @@ impl Rows {
         Ok(Self { of_meshes, torn })
     }
 
-    /// A [`mark`] of the rows of each mesh.
+    /// Returns the [`mark`] of the rows of each mesh.
     fn marks(&self, scene: &Scene) -> Vec<String> {
         let meshes = &self.torn.as_ref().unwrap_or(scene).meshes;
         meshes.iter().map(|mesh| mark(&mesh.mesh.positions)).collect()
     }
 }
 
-/// For each mesh the vertex at the place of each row of its torn twin; `None` where one has none.
+/// Returns for each mesh the vertex at the position of every unwelded row; `None` if a row has
+/// none.
 fn of_scene(torn: &Scene, scene: &Scene) -> Option<Vec<Vec<VertexId>>> {
     let positions = |mesh: usize| Some(&scene.meshes.get(mesh)?.mesh.positions[..]);
     let meshes = torn.meshes.iter().enumerate();
@@ -76,20 +78,20 @@ fn of_scene(torn: &Scene, scene: &Scene) -> Option<Vec<Vec<VertexId>>> {
     rows.collect::<Option<Vec<_>>>().filter(|rows| rows.len() == scene.meshes.len())
 }
 
-/// The vertex at the place of each row.
+/// Returns the vertex at the position of each row.
 fn at_places(rows: &[[f64; 3]], welded: &[[f64; 3]]) -> Option<Vec<VertexId>> {
     let places: std::collections::HashMap<_, _> =
         welded.iter().enumerate().map(|(v, p)| (bits(p), VertexId::new(v))).collect();
     rows.iter().map(|row| places.get(&bits(row)).copied()).collect()
 }
 
-/// What is equal where positions are at one place: -0 is 0.
+/// Returns bits that are equal for equal positions: -0 becomes 0.
 fn bits(position: &[f64; 3]) -> [u64; 3] {
     position.map(|x| (x + 0.0).to_bits())
 }
 
-/// A mark of positions in their order, by which a file of locks knows its mesh: the 64-bit hash
-/// FNV-1a of the coordinates' bytes, least first.
+/// Hashes positions in order, so that a lock file recognises its mesh: 64-bit FNV-1a of the
+/// coordinates' bytes, little-endian.
 fn mark(positions: &[[f64; 3]]) -> String {
     let bytes = positions.iter().flat_map(bits).flat_map(u64::to_le_bytes);
     let hash = bytes.fold(0xcbf2_9ce4_8422_2325_u64, |hash, byte| {
@@ -98,8 +100,8 @@ fn mark(positions: &[[f64; 3]]) -> String {
     format!("{hash:016x}")
 }
 
-/// The locks of all meshes of a scene as a file.
-pub fn to_json(path: &Path, scene: &Scene, rows: &Rows, lockings: &[Locking]) -> Value {
+/// Returns the locks of all meshes of a scene in the JSON of a lock file.
+pub fn to_json(path: &Path, scene: &Scene, rows: &FileRows, lockings: &[Locking]) -> Value {
     let file = path.file_name().map(|name| name.to_string_lossy().into_owned());
     let source = rows.torn.as_ref().unwrap_or(scene).source.as_ref();
     let marks = rows.marks(scene);
@@ -158,11 +160,12 @@ fn mesh_json(rows: &[VertexId], Locking { locks, reasons }: &Locking) -> Value {
     })
 }
 
-/// The locks in a file, for the meshes of the scene that they were made of.
+/// Reads the locks in a file for the meshes of the scene they were made from.
 ///
 /// # Errors
-/// One line that names the file and the mesh: no file of this form, one of another mesh.
-pub fn read(path: &Path, scene: &Scene, rows: &Rows) -> Result<Vec<Locks>, Failure> {
+///
+/// One line that names the file and the mesh, for a file of another format or of another mesh.
+pub fn read(path: &Path, scene: &Scene, rows: &FileRows) -> Result<Vec<Locks>, Failure> {
     let wrong = |reason: String| Failure::at(path, reason);
     let bytes = files::read_all(path)?;
     let json: Value = serde_json::from_slice(&bytes).map_err(|error| wrong(error.to_string()))?;
@@ -181,20 +184,20 @@ pub fn read(path: &Path, scene: &Scene, rows: &Rows) -> Result<Vec<Locks>, Failu
     let marks = rows.marks(scene);
     let locks = meshes.iter().zip(&rows.of_meshes).zip(&scene.meshes).zip(&marks).enumerate();
     let locks = locks.map(|(i, (((json, rows), mesh), mark))| {
-        let twin = Twin { rows, positions: &mesh.mesh.positions, mark };
+        let twin = LockTarget { rows, positions: &mesh.mesh.positions, mark };
         twin.locks(json).map_err(|reason| wrong(format!("mesh {i}: {reason}")))
     });
     locks.collect()
 }
 
-/// The mesh that locks are read for.
-struct Twin<'a> {
+/// Mesh for which locks are read.
+struct LockTarget<'a> {
     rows: &'a [VertexId],
     positions: &'a [[f64; 3]],
     mark: &'a str,
 }
 
-impl Twin<'_> {
+impl LockTarget<'_> {
     fn locks(&self, json: &Value) -> Result<Locks, String> {
         let ties = match json.get("ties") {
             None => &[],
@@ -202,7 +205,7 @@ impl Twin<'_> {
         };
         let of_vertex = self.flags(json)?;
         match json.get("positions") {
-            // Those who write flags of their own need no mark.
+            // Flags written by other programs need no mark.
             None => (),
             Some(mark) if *mark == self.mark => (),
             Some(_) => {
@@ -213,7 +216,7 @@ impl Twin<'_> {
         }
         let ties = ties.iter().enumerate().map(|(i, tie)| self.tie(i, tie));
         let ties: Vec<Vec<VertexId>> = ties.collect::<Result<_, _>>()?;
-        // Rows that are one vertex need no tie.
+        // Rows of the same vertex need no tie.
         let ties = ties.into_iter().filter(|tie| tie.len() > 1).collect();
         Ok(Locks { of_vertex, ties })
     }
@@ -234,7 +237,7 @@ impl Twin<'_> {
         Ok(of_vertex)
     }
 
-    /// The vertices of a tie, each once.
+    /// Returns the vertices of a tie, each once.
     fn tie(&self, i: usize, tie: &Value) -> Result<Vec<VertexId>, String> {
         let members = tie.as_array().ok_or_else(|| format!("tie {i} is not a list"))?;
         if members.len() < 2 {

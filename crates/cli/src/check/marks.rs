@@ -1,10 +1,10 @@
-//! What pictures show of findings: faces and edges in the colour of their trouble.
+//! Marks on the pictures of a check: faces and edges coloured by their defect.
 
 use meshlod::Mesh;
 use meshlod::check::{Finding, Objects, TouchKind};
 use meshlod::mesh::{FaceId, VertexId};
 
-/// What a colour stands for.
+/// Defect or contact that has a colour.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Mark {
     Broken,
@@ -18,7 +18,7 @@ pub enum Mark {
 }
 
 impl Mark {
-    /// Every mark; where a face has several, the first is seen.
+    /// Every mark, in order of precedence on a face.
     pub const ALL: [Self; 8] = [
         Self::Broken,
         Self::NonManifold,
@@ -43,7 +43,7 @@ impl Mark {
         }
     }
 
-    /// What a legend says.
+    /// Returns the text of the legend.
     pub fn about(self) -> &'static str {
         match self {
             Self::Broken => "degenerate or duplicate face",
@@ -58,14 +58,14 @@ impl Mark {
     }
 }
 
-/// Marks of a mesh.
+/// Marks on the faces, edges and vertices of a mesh.
 pub struct Marks {
     pub of_face: Vec<Option<Mark>>,
     pub edges: Vec<([VertexId; 2], Mark)>,
     pub vertices: Vec<(VertexId, Mark)>,
 }
 
-/// More edges than this are not drawn: no picture could show them.
+/// Limit of drawn edges; no picture could show more.
 const MOST_EDGES: usize = 200_000;
 
 impl Marks {
@@ -117,7 +117,7 @@ impl Marks {
         }
     }
 
-    /// The marks that there are, in the order of [`Mark::ALL`].
+    /// Returns the marks in use, in the order of [`Mark::ALL`].
     pub fn used(&self) -> Vec<Mark> {
         let of_edges = self.edges.iter().map(|(_, mark)| *mark);
         let of_vertices = self.vertices.iter().map(|(_, mark)| *mark);

@@ -1,8 +1,8 @@
-//! What `check` says: findings gathered in one pass, told as JSON, as text, as a page.
+//! Output of `check`: findings collected in one pass, shown as JSON, as text and as a page.
 //!
-//! An [`Inspection`](inspection::Inspection) is all that is kept of a check; [`report`], [`text`] and
-//! [`page`] tell of it. [`Sites`](sites::Sites) turn ids of the flattened scene into those of its
-//! meshes. [`lock_file`] is beside them: locks as a file, out and in.
+//! An [`Inspection`](inspection::Inspection) holds the results; [`report`], [`text`] and [`page`]
+//! show them. [`Sites`](sites::Sites) map ids of the flattened scene to those of its meshes.
+//! [`lock_file`] writes and reads locks.
 
 mod contacts;
 mod drawing;

@@ -1,4 +1,4 @@
-//! The page of a check.
+//! Report page of a check.
 
 use std::path::Path;
 
@@ -21,12 +21,12 @@ use crate::page::counts::Counts;
 use crate::page::document::{Document, document};
 use crate::page::facts::facts;
 use crate::page::figures::{figure, whole};
-use crate::page::studio::{uri, view_from};
+use crate::page::renderer::{uri, view_from};
 
-/// Pairs of objects in the table; JSON has more.
+/// Limit of object pairs in the table; the JSON has more.
 const MOST_PAIRS: usize = 60;
 
-/// Writes the page to a folder that is there, and gives its path.
+/// Writes the page to an existing folder and returns its path.
 pub fn write(
     folder: &Path,
     name: &str,
@@ -75,7 +75,7 @@ fn lead(inspection: &Inspection) -> String {
     }
 }
 
-/// The mesh from all sides, and below it what is marked alone.
+/// Draws the mesh from all sides, and below it the marked parts only.
 fn pictures(title: &str, mesh: &Mesh, marks: &Marks) -> Result<Markup, Failure> {
     let used = marks.used();
     let parts: &[(Part, &str)] = match used[..] {

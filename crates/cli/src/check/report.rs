@@ -1,4 +1,4 @@
-//! A check for programs.
+//! JSON of a check.
 
 use meshlod::check::{Degeneracy, Finding, Kind, ObjectId, Severity, Touch};
 use serde_json::{Value, json};
@@ -7,7 +7,7 @@ use crate::check::contacts::KINDS;
 use crate::check::inspection::{Inspection, place};
 use crate::check::sites::Sites;
 
-/// One object: counts by kind, what is listed, contacts by pair of objects.
+/// Returns the JSON object of a check: counts by kind, findings, contacts by object pair.
 pub fn json(inspection: &Inspection, sites: &Sites) -> Value {
     let Inspection { mesh, objects, summary, limit, .. } = inspection;
     let looked_for = || Kind::ALL.into_iter().filter(|&kind| inspection.kinds.contains(kind));
@@ -46,7 +46,7 @@ pub fn json(inspection: &Inspection, sites: &Sites) -> Value {
     })
 }
 
-/// A finding with its kind, its place and its ids.
+/// Returns the JSON of a finding with its kind, position and ids.
 fn of(inspection: &Inspection, finding: &Finding) -> Value {
     let mut json = ids(inspection, finding);
     json["kind"] = finding.kind().name().into();

@@ -1,17 +1,17 @@
-//! Where the vertices and faces of a flattened scene come from.
+//! Map from ids of a flattened scene to its nodes and meshes.
 
 use meshlod::Scene;
 use meshlod::mesh::{FaceId, VertexId};
 use serde_json::{Value, json};
 
-/// The meshes that a scene shows, in the order in which [`Scene::flatten`] puts them.
+/// Placed meshes of a scene, in the order of [`Scene::flatten`].
 pub struct Sites(Vec<Site>);
 
-/// A mesh where a node shows it.
+/// Mesh placed by a node.
 struct Site {
     node: usize,
     mesh: usize,
-    /// The node's name, else the mesh's, else its number.
+    /// Name of the node, else of the mesh, else the node's number.
     name: String,
     first_vertex: usize,
     vertices: usize,
@@ -36,7 +36,7 @@ impl Sites {
         Self(sites.collect())
     }
 
-    /// A face as people find it: with its node where there are several.
+    /// Formats a face id, with its node if there are several.
     pub fn face(&self, face: FaceId) -> String {
         let site = self.0.iter().rfind(|site| site.first_face <= face.index());
         match site.filter(|_| self.0.len() > 1) {
@@ -45,7 +45,7 @@ impl Sites {
         }
     }
 
-    /// A vertex likewise.
+    /// Formats a vertex id, with its node if there are several.
     pub fn vertex(&self, vertex: VertexId) -> String {
         let site = self.0.iter().rfind(|site| site.first_vertex <= vertex.index());
         match site.filter(|_| self.0.len() > 1) {
@@ -54,7 +54,7 @@ impl Sites {
         }
     }
 
-    /// Which ids are of which node and mesh; `null` where all are of one.
+    /// Returns the id ranges of nodes and meshes as JSON; `null` if there is only one.
     pub fn json(&self) -> Value {
         let json = |site: &Site| {
             json!({

@@ -1,20 +1,20 @@
-//! A check for people.
+//! Text of a check.
 
 use meshlod::check::{Finding, Kind};
 
-use crate::check::contacts::{KINDS, Pair};
+use crate::check::contacts::{KINDS, ObjectPair};
 use crate::check::inspection::{Inspection, place};
 use crate::check::report::severity;
 use crate::check::sites::Sites;
 use crate::numbers::{count, faces, plural, value};
 use crate::table::aligned;
 
-/// Pairs of objects in the table on a terminal; JSON and page have more.
+/// Limit of object pairs on a terminal; JSON and page have more.
 const MOST_PAIRS: usize = 12;
-/// Longer names of objects are cut.
+/// Length at which names of objects are cut.
 const LONGEST_NAME: usize = 28;
 
-/// A table of kinds with the first place of each, a table of contacts, the sum.
+/// Formats a table of kinds with the first finding of each, a table of contacts, and the totals.
 pub fn text(inspection: &Inspection, sites: &Sites) -> String {
     let objects = inspection.objects.names.len();
     let components = inspection.objects.components;
@@ -31,7 +31,7 @@ pub fn text(inspection: &Inspection, sites: &Sites) -> String {
     text + &format!("{}\n", verdict(inspection))
 }
 
-/// How many findings of either severity.
+/// Formats the numbers of errors and warnings.
 pub fn verdict(inspection: &Inspection) -> String {
     let (errors, warnings) = (inspection.errors(), inspection.warnings());
     match (errors, warnings) {
@@ -61,7 +61,7 @@ fn kinds(inspection: &Inspection, sites: &Sites) -> String {
     lines.collect()
 }
 
-/// Where a finding is, by ids and by place.
+/// Describes where a finding is, by ids and position.
 pub fn first(inspection: &Inspection, sites: &Sites, finding: &Finding) -> String {
     let ids = match finding {
         Finding::BadAttributes { error } => return error.to_string(),
@@ -98,7 +98,7 @@ pub fn first(inspection: &Inspection, sites: &Sites, finding: &Finding) -> Strin
     }
 }
 
-/// Pairs of objects and how they meet; those with the most faces at it.
+/// Formats the table of object pairs, those with the most face pairs first.
 fn contacts(inspection: &Inspection) -> String {
     let pairs = inspection.contacts.by_size();
     if pairs.is_empty() {
@@ -121,7 +121,7 @@ fn contacts(inspection: &Inspection) -> String {
     )
 }
 
-fn row(name: String, pair: &Pair) -> Vec<String> {
+fn row(name: String, pair: &ObjectPair) -> Vec<String> {
     let some = |number: usize| if number == 0 { "-".into() } else { count(number) };
     let depth = if pair.deepest.depth > 0.0 { value(pair.deepest.depth) } else { "-".into() };
     let counts = [pair.faces()].into_iter().chain(pair.counts).map(some);

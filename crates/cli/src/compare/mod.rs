@@ -1,9 +1,9 @@
-//! `compare`: every method on one mesh, as a table, files, and a page with pictures.
+//! `compare`: runs every method on one mesh and writes a table, files, and a page with pictures.
 //!
-//! [`contest`] makes and measures the levels, [`output`] keeps them; [`page`] and [`summary`] tell
-//! of it, from the same figures.
+//! [`comparison`] builds and measures the levels, and [`output`] writes them; [`page`] and
+//! [`summary`] show the same figures on a page and on the terminal.
 
-mod contest;
+mod comparison;
 mod output;
 mod page;
 mod section;
@@ -16,17 +16,18 @@ use meshlod::Method;
 use meshlod::io::write_file;
 use meshlod::picture::View;
 
-use crate::amounts::{self, Size};
 use crate::answer::Answer;
-use crate::args::{Reading, Sampling, Viewpoint};
+use crate::args::{ReadArgs, SamplingArgs, ViewArgs};
 use crate::failure::Failure;
 use crate::files;
-use crate::page::look::{self, Coat, Look};
+use crate::page::style::{self, OwnedPaint, SubjectStyle};
 use crate::page::subject::Subject;
+use crate::parse::{self, LevelSize};
 use crate::session::Session;
-use contest::Contest;
+use comparison::Comparison;
 use output::Output;
 
+/// Run all methods on one mesh: a table, and a page with pictures and error heat maps
 #[derive(Args)]
 pub struct Compare {
     /// Mesh to read, or -
@@ -38,43 +39,47 @@ pub struct Compare {
     #[arg(long, value_name = "DIR")]
     out: PathBuf,
     /// Methods to compare [default: all]
-    #[arg(long, value_name = "NAMES", value_delimiter = ',', value_parser = amounts::method)]
+    #[arg(long, value_name = "NAMES", value_delimiter = ',', value_parser = parse::method)]
     methods: Vec<Method>,
     /// Draw no pictures: the page has figures only
     #[arg(long)]
     no_pictures: bool,
     #[command(flatten)]
-    viewpoint: Viewpoint,
+    viewpoint: ViewArgs,
     #[command(flatten)]
-    sampling: Sampling,
+    sampling: SamplingArgs,
     #[command(flatten)]
-    reading: Reading,
+    reading: ReadArgs,
 }
 
-/// How far to go.
+/// Sizes of the levels.
 #[derive(Args)]
 #[group(required = true, multiple = false)]
 struct Sizes {
     /// Target ratios of the faces: 10%,1%
-    #[arg(long, value_name = "RATIOS", value_delimiter = ',', value_parser = amounts::ratio,
+    #[arg(long, value_name = "RATIOS", value_delimiter = ',', value_parser = parse::ratio,
         allow_hyphen_values = true)]
     ratio: Vec<f64>,
     /// Target numbers of faces: 5000,500
-    #[arg(long, value_name = "NUMBERS", value_delimiter = ',', value_parser = amounts::whole,
+    #[arg(long, value_name = "NUMBERS", value_delimiter = ',', value_parser = parse::whole,
         allow_negative_numbers = true)]
     faces: Vec<usize>,
 }
 
 impl Sizes {
-    /// Each once, the finest first, as one run meets them.
-    fn sorted(&self) -> Vec<Size> {
+    /// Returns the sizes without duplicates, finest first.
+    fn sorted(&self) -> Vec<LevelSize> {
         let mut ratios = self.ratio.clone();
         ratios.sort_by(|a, b| b.total_cmp(a));
         ratios.dedup();
         let mut faces = self.faces.clone();
         faces.sort_unstable_by(|a, b| b.cmp(a));
         faces.dedup();
-        ratios.into_iter().map(Size::Ratio).chain(faces.into_iter().map(Size::Faces)).collect()
+        ratios
+            .into_iter()
+            .map(LevelSize::Ratio)
+            .chain(faces.into_iter().map(LevelSize::Faces))
+            .collect()
     }
 }
 
@@ -84,7 +89,7 @@ impl Compare {
         let (subject, output) = self.read(session)?;
         let original = subject.surface()?;
         files::make_folder(&self.out)?;
-        let contest = Contest {
+        let comparison = Comparison {
             subject: &subject,
             original: &original,
             options: self.sampling.options(),
@@ -92,29 +97,31 @@ impl Compare {
             methods: self.methods(),
             pictures: !self.no_pictures,
         };
-        let outcome = contest.run(&output, session)?;
+        let outcome = comparison.run(&output, session)?;
 
         session.progress.stage("writing the page");
-        let json = summary::json(&contest, &outcome, &output);
+        let json = summary::json(&comparison, &outcome, &output);
         write_file(&self.out.join("compare.json"), format!("{json:#}\n").as_bytes())?;
-        let page = page::page(&contest, &outcome).into_string();
+        let page = page::page(&comparison, &outcome).into_string();
         write_file(&self.out.join("index.html"), page.as_bytes())?;
         outcome.warn(&subject.name, session);
-        Ok(Answer::new(json, summary::text(&contest, &outcome, &output)))
+        Ok(Answer::new(json, summary::text(&comparison, &outcome, &output)))
     }
 
     fn read(&self, session: &Session) -> Result<(Subject, Output), Failure> {
         let scene = files::read(&self.input, &self.reading, session)?;
         let output = Output::new(&self.out, &self.input, &scene, session);
-        let materials = look::materials(&scene, &self.input, session);
+        let materials = style::materials(&scene, &self.input, session);
         let View { direction, up, .. } = self.viewpoint.view();
         let name = files::name(&self.input);
         let title = self.input.file_name().unwrap_or_default().to_string_lossy();
-        let look = |mesh: &_| Look::new(Coat::comparison(mesh, materials), mesh, direction, up);
-        Ok((Subject::new([&name, &title], scene, look), output))
+        let style = |mesh: &_| {
+            SubjectStyle::new(OwnedPaint::comparison(mesh, materials), mesh, direction, up)
+        };
+        Ok((Subject::new([&name, &title], scene, style), output))
     }
 
-    /// Each once, in the order of the house.
+    /// Returns the methods without duplicates, in the order of [`Method::ALL`].
     fn methods(&self) -> Vec<Method> {
         let wanted = |method: &Method| self.methods.is_empty() || self.methods.contains(method);
         Method::ALL.into_iter().filter(wanted).collect()

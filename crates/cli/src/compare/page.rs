@@ -1,64 +1,64 @@
-//! The page of a comparison.
+//! Report page of a comparison.
 
 use maud::{Markup, html};
 use meshlod::measure::Distance;
 
-use crate::compare::contest::{Contest, Entry, Outcome};
+use crate::compare::comparison::{Comparison, ComparisonResult, MethodResult};
 use crate::compare::section::{anchor, section};
 use crate::numbers::{count, plural};
+use crate::page::chain::Level;
 use crate::page::chart::{Across, Chart, Series, chart};
-use crate::page::descent::Level;
 use crate::page::document::{Document, document};
 use crate::page::facts::facts;
 
-/// The whole document.
-pub fn page(contest: &Contest<'_>, outcome: &Outcome) -> Markup {
-    let sizes = || (0..contest.sizes.len()).filter(|&size| outcome.at(size).next().is_some());
-    let links = sizes().map(|size| (anchor(size), contest.sizes[size].to_string()));
+/// Builds the whole document.
+pub fn page(comparison: &Comparison<'_>, outcome: &ComparisonResult) -> Markup {
+    let sizes = || (0..comparison.sizes.len()).filter(|&size| outcome.at(size).next().is_some());
+    let links = sizes().map(|size| (anchor(size), comparison.sizes[size].to_string()));
     document(Document {
-        title: &format!("meshlod compare: {}", contest.subject.title),
+        title: &format!("meshlod compare: {}", comparison.subject.title),
         links: links.chain([("files".into(), "Files".into())]).collect(),
-        header: header(contest),
+        header: header(comparison),
         main: html! {
-            (overview(contest, outcome))
-            @for size in sizes() { (section(contest, outcome, size)) }
-            (files(contest, outcome))
+            (overview(comparison, outcome))
+            @for size in sizes() { (section(comparison, outcome, size)) }
+            (files(comparison, outcome))
         },
     })
 }
 
-fn header(contest: &Contest<'_>) -> Markup {
+fn header(comparison: &Comparison<'_>) -> Markup {
     let threads = rayon::current_num_threads();
     html! {
-        h1 id="top" { (contest.subject.title) }
+        h1 id="top" { (comparison.subject.title) }
         p.lead {
-            "Simplified by " (contest.methods.len()) " method" (plural(contest.methods.len()))
+            "Simplified by " (comparison.methods.len()) " method" (plural(comparison.methods.len()))
             ", independently of each other. Each level is measured against the original: from every "
-            "vertex and " (count(contest.options.samples)) " samples each way to the exact closest "
+            "vertex and " (count(comparison.options.samples)) " samples each way to the exact closest "
             "point. Times are for one run on " (threads) " thread" (plural(threads))
             ", without reading and writing."
         }
     }
 }
 
-/// The input, and how errors grow where there is more than one size.
-fn overview(contest: &Contest<'_>, outcome: &Outcome) -> Markup {
+/// Shows the input, and a chart of the errors if there are several sizes.
+fn overview(comparison: &Comparison<'_>, outcome: &ComparisonResult) -> Markup {
     html! {
         section id="input" {
             h2 { "Input" }
             div.intro {
-                (facts(&contest.subject.counts))
-                @if contest.sizes.len() > 1 { (chart(&errors(outcome))) }
+                (facts(&comparison.subject.counts))
+                @if comparison.sizes.len() > 1 { (chart(&errors(outcome))) }
             }
         }
     }
 }
 
-fn errors(outcome: &Outcome) -> Chart {
+fn errors(outcome: &ComparisonResult) -> Chart {
     let point = |level: &Level| {
         level.percent(Distance::rms).map(|rms| [level.report.output_faces as f64, rms])
     };
-    let series = |entry: &Entry| Series {
+    let series = |entry: &MethodResult| Series {
         method: entry.chain.method,
         points: entry.chain.levels.iter().filter_map(point).collect(),
     };
@@ -70,8 +70,8 @@ fn errors(outcome: &Outcome) -> Chart {
     }
 }
 
-/// What lies beside the page, and how to measure it again.
-fn files(contest: &Contest<'_>, outcome: &Outcome) -> Markup {
+/// Lists the files next to the page, and the command that measures them again.
+fn files(comparison: &Comparison<'_>, outcome: &ComparisonResult) -> Markup {
     let levels = || outcome.entries.iter().flat_map(|entry| &entry.chain.levels);
     html! {
         section id="files" {
@@ -82,7 +82,7 @@ fn files(contest: &Contest<'_>, outcome: &Outcome) -> Markup {
                 @if level.file.ends_with(".glb") {
                     p { "glTF stores coordinates in 32 bits, so the last digits differ when measured again." }
                 }
-                pre { code { "meshlod measure " (contest.subject.title) " " (level.file) } }
+                pre { code { "meshlod measure " (comparison.subject.title) " " (level.file) } }
             }
         }
     }

@@ -1,25 +1,25 @@
-//! One size on the page: what every method made of it.
+//! Section of the comparison page for one size.
 
 use maud::{Markup, html};
 use meshlod::measure::Distance;
 use meshlod::simplify::Refusal;
 
-use crate::compare::contest::{Contest, Entry, Outcome};
+use crate::compare::comparison::{Comparison, ComparisonResult, MethodResult};
+use crate::page::chain::Level;
 use crate::page::chart::{Across, Chart, Series, chart};
 use crate::page::columns::{self, Column};
-use crate::page::descent::Level;
 use crate::page::figures::{percent, whole};
 use crate::page::key::key;
-use crate::page::strip::{Layout, Stand, strip};
+use crate::page::picture_row::{Layout, PictureColumn, picture_row};
 use crate::page::table;
 
-/// Pictures, figures and refusals.
-pub fn section(contest: &Contest<'_>, outcome: &Outcome, size: usize) -> Markup {
+/// Builds the section: pictures, figures and refusals.
+pub fn section(comparison: &Comparison<'_>, outcome: &ComparisonResult, size: usize) -> Markup {
     html! {
         section id=(anchor(size)) {
-            h2 { "At " (contest.sizes[size]) }
-            (pictures(contest, outcome, size))
-            (figures(contest, outcome, size))
+            h2 { "At " (comparison.sizes[size]) }
+            (pictures(comparison, outcome, size))
+            (figures(comparison, outcome, size))
             (unconserved(outcome, size))
             div.measured {
                 (chart(&trade(outcome, size)))
@@ -31,25 +31,28 @@ pub fn section(contest: &Contest<'_>, outcome: &Outcome, size: usize) -> Markup 
     }
 }
 
-/// Where a size is on the page.
+/// Returns the anchor of a size.
 pub fn anchor(size: usize) -> String {
     format!("size-{}", size + 1)
 }
 
-fn pictures(contest: &Contest<'_>, outcome: &Outcome, size: usize) -> Markup {
-    let stands: Vec<Stand> = outcome
+fn pictures(comparison: &Comparison<'_>, outcome: &ComparisonResult, size: usize) -> Markup {
+    let columns: Vec<PictureColumn> = outcome
         .at(size)
         .filter_map(|(entry, level)| {
-            Some(Stand { caption: caption(entry, level), shots: entry.shots.get(size)? })
+            Some(PictureColumn {
+                caption: caption(entry, level),
+                pictures: entry.pictures.get(size)?,
+            })
         })
         .collect();
     match &outcome.input {
-        Some(input) => strip(contest.subject, input, &stands, Layout::Wrap),
+        Some(input) => picture_row(comparison.subject, input, &columns, Layout::Wrap),
         None => html! {},
     }
 }
 
-fn caption(entry: &Entry, level: &Level) -> Markup {
+fn caption(entry: &MethodResult, level: &Level) -> Markup {
     html! {
         b { (key(entry.chain.method)) (entry.chain.method.name()) }
         span { (whole(level.report.output_faces)) " faces" }
@@ -62,9 +65,9 @@ fn not_reached(level: &Level) -> Markup {
     html! { @if !level.report.reached { span.mark { "not reached" } } }
 }
 
-/// What a method takes and what it gives: time and error.
-fn trade(outcome: &Outcome, size: usize) -> Chart {
-    let series = |(entry, level): (&Entry, &Level)| {
+/// Charts error against time, one mark per method.
+fn trade(outcome: &ComparisonResult, size: usize) -> Chart {
+    let series = |(entry, level): (&MethodResult, &Level)| {
         let point = level.percent(Distance::rms).map(|rms| [level.time.as_secs_f64(), rms]);
         Series { method: entry.chain.method, points: point.into_iter().collect() }
     };
@@ -76,14 +79,14 @@ fn trade(outcome: &Outcome, size: usize) -> Chart {
     }
 }
 
-fn figures(contest: &Contest<'_>, outcome: &Outcome, size: usize) -> Markup {
-    let input = &contest.subject.counts;
+fn figures(comparison: &Comparison<'_>, outcome: &ComparisonResult, size: usize) -> Markup {
+    let input = &comparison.subject.counts;
     let levels: Vec<&Level> = outcome.at(size).map(|(_, level)| level).collect();
     let columns = Column::of(input, levels.iter().copied());
     let wins: Vec<Vec<bool>> =
         columns.iter().map(|column| column.winners(input, &levels)).collect();
     html! {
-        // Before the table and not its caption: that would scroll with it.
+        // Placed before the table, because a caption would scroll with it.
         p.about { (columns::legend(input, &columns).join(" ")) " The best value of each column is marked." }
         div.scroll tabindex="0" role="region" aria-label="Figures" { table {
             (table::heads("Method", &columns))
@@ -100,8 +103,8 @@ fn figures(contest: &Contest<'_>, outcome: &Outcome, size: usize) -> Markup {
     }
 }
 
-/// What methods that conserve the volume could not conserve, and where.
-fn unconserved(outcome: &Outcome, size: usize) -> Markup {
+/// Lists where volume-conserving methods could not conserve the volume.
+fn unconserved(outcome: &ComparisonResult, size: usize) -> Markup {
     let lines = outcome.unconserved(size);
     html! {
         @if !lines.is_empty() {
@@ -112,7 +115,7 @@ fn unconserved(outcome: &Outcome, size: usize) -> Markup {
     }
 }
 
-fn name(entry: &Entry, level: &Level) -> Markup {
+fn name(entry: &MethodResult, level: &Level) -> Markup {
     let method = entry.chain.method;
     html! {
         (key(method)) a href=(level.file) { (method.name()) }
@@ -121,19 +124,19 @@ fn name(entry: &Entry, level: &Level) -> Markup {
     }
 }
 
-fn failed(entry: &Entry, columns: usize) -> Markup {
+fn failed(entry: &MethodResult, columns: usize) -> Markup {
     let method = entry.chain.method;
-    let trouble = entry.trouble.as_ref().map(ToString::to_string).unwrap_or_default();
+    let failure = entry.failure.as_ref().map(ToString::to_string).unwrap_or_default();
     html! {
         tr {
             th scope="row" { (key(method)) (method.name()) }
-            td.mark colspan=(columns) { (trouble) }
+            td.mark colspan=(columns) { (failure) }
         }
     }
 }
 
-/// Why contractions were refused on the way here: the reasons that any method met.
-fn refusals(outcome: &Outcome, size: usize) -> Markup {
+/// Tabulates refused contractions by the reasons that any method met.
+fn refusals(outcome: &ComparisonResult, size: usize) -> Markup {
     let met = |refusal: &Refusal| {
         outcome.at(size).any(|(_, level)| level.report.refusals.count(*refusal) > 0)
     };
@@ -151,7 +154,7 @@ fn refusals(outcome: &Outcome, size: usize) -> Markup {
     }
 }
 
-fn reasons_of(entry: &Entry, level: &Level, reasons: &[Refusal]) -> Markup {
+fn reasons_of(entry: &MethodResult, level: &Level, reasons: &[Refusal]) -> Markup {
     let method = entry.chain.method;
     html! {
         tr {

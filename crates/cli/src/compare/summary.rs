@@ -1,38 +1,38 @@
-//! What the command itself says: the figures of the page, for programs and for people.
+//! Output of `compare`: the figures of the page as JSON and text.
 
 use serde_json::{Value, json};
 
-use crate::compare::contest::{COMPARED_SIDE, Contest, Entry, Outcome};
+use crate::compare::comparison::{COMPARED_SIDE, Comparison, ComparisonResult, MethodResult};
 use crate::compare::output::Output;
 use crate::files;
 use crate::numbers;
+use crate::page::chain::{Chain, Level};
 use crate::page::columns::{Column, legend};
-use crate::page::descent::{Chain, Level};
 use crate::page::level_json::level_json;
 use crate::table::aligned;
 
-/// All figures; files are named by where they are in the folder.
-pub fn json(contest: &Contest<'_>, outcome: &Outcome, output: &Output) -> Value {
-    let input = &contest.subject.counts;
+/// Returns all figures as JSON, with files relative to the folder.
+pub fn json(comparison: &Comparison<'_>, outcome: &ComparisonResult, output: &Output) -> Value {
+    let input = &comparison.subject.counts;
     let level = |method, level: &Level| {
         let mut json = level_json(method, level, input);
         json["file"] = level.file.clone().into();
         json
     };
-    let entry = |entry: &Entry| {
+    let entry = |entry: &MethodResult| {
         let Chain { method, levels } = &entry.chain;
         json!({
             "method": method.name(),
             "levels": levels.iter().map(|made| level(*method, made)).collect::<Vec<_>>(),
-            "failed": entry.trouble.as_ref().map(ToString::to_string),
+            "failed": entry.failure.as_ref().map(ToString::to_string),
         })
     };
     json!({
-        "input": contest.subject.name,
+        "input": comparison.subject.name,
         "counts": input.json(),
-        "samples_each_way": contest.options.samples,
-        "seed": contest.options.seed,
-        "flip_picture_side": contest.pictures.then_some(COMPARED_SIDE),
+        "samples_each_way": comparison.options.samples,
+        "seed": comparison.options.seed,
+        "flip_picture_side": comparison.pictures.then_some(COMPARED_SIDE),
         "threads": rayon::current_num_threads(),
         "folder": files::name(&output.folder),
         "page": "index.html",
@@ -40,12 +40,12 @@ pub fn json(contest: &Contest<'_>, outcome: &Outcome, output: &Output) -> Value 
     })
 }
 
-/// A table for each size, and the path of the page last.
-pub fn text(contest: &Contest<'_>, outcome: &Outcome, output: &Output) -> String {
-    let input = &contest.subject.counts;
-    let mut text = format!("{}: {}\n", contest.subject.name, numbers::faces(input.faces));
-    for (i, size) in contest.sizes.iter().enumerate() {
-        text += &format!("\n{size}\n{}", table(contest, outcome, i));
+/// Formats a table for each size, and the path of the page.
+pub fn text(comparison: &Comparison<'_>, outcome: &ComparisonResult, output: &Output) -> String {
+    let input = &comparison.subject.counts;
+    let mut text = format!("{}: {}\n", comparison.subject.name, numbers::faces(input.faces));
+    for (i, size) in comparison.sizes.iter().enumerate() {
+        text += &format!("\n{size}\n{}", table(comparison, outcome, i));
         for (method, line) in outcome.unconserved(i) {
             text += &format!("{}: {line}\n", method.name());
         }
@@ -59,8 +59,8 @@ pub fn text(contest: &Contest<'_>, outcome: &Outcome, output: &Output) -> String
     text + &format!("{}\n", files::name(&output.folder.join("index.html")))
 }
 
-fn table(contest: &Contest<'_>, outcome: &Outcome, size: usize) -> String {
-    let input = &contest.subject.counts;
+fn table(comparison: &Comparison<'_>, outcome: &ComparisonResult, size: usize) -> String {
+    let input = &comparison.subject.counts;
     let levels: Vec<&Level> = outcome.at(size).map(|(_, level)| level).collect();
     let columns = Column::of(input, levels.iter().copied());
     let heads = columns.iter().map(|column| format!("{} ", column.head.to_lowercase()));

@@ -1,15 +1,15 @@
-//! `demo`: the whole line on samples, as files and one page with pictures.
+//! `demo`: simplifies samples and writes the levels and one page with pictures.
 //!
-//! [`samples`] says what is shown, [`exhibit`] makes and measures it; [`page`] and [`summary`] tell
-//! of it, from the same figures.
+//! [`samples`] lists the meshes, and [`sample_report`] simplifies and measures them; [`page`] and
+//! [`summary`] show the same figures on a page and on the terminal.
 
-mod exhibit;
-mod hero;
-mod own;
+mod next_steps;
 mod page;
+mod sample_report;
 mod samples;
 mod section;
 mod summary;
+mod title_picture;
 
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -22,8 +22,9 @@ use crate::answer::Answer;
 use crate::failure::Failure;
 use crate::files;
 use crate::session::Session;
-use exhibit::Exhibit;
+use sample_report::SampleReport;
 
+/// Simplify sample meshes by several methods, and write a report page with pictures
 #[derive(Args)]
 pub struct Demo {
     /// Folder to write to; created if missing
@@ -31,17 +32,17 @@ pub struct Demo {
     folder: PathBuf,
 }
 
-/// All that a run made.
-struct Show {
-    exhibits: Vec<Exhibit>,
-    /// The first sample at several levels, side by side.
-    hero: hero::Hero,
+/// Results of a demo run.
+struct DemoResult {
+    reports: Vec<SampleReport>,
+    /// First sample at several levels, side by side.
+    title_picture: title_picture::TitlePicture,
     page: PathBuf,
     page_bytes: usize,
     seconds: f64,
 }
 
-impl Show {
+impl DemoResult {
     fn folder(&self) -> &Path {
         self.page.parent().unwrap_or(Path::new(""))
     }
@@ -51,24 +52,23 @@ impl Demo {
     pub fn run(self, session: &Session) -> Result<Answer, Failure> {
         let start = Instant::now();
         files::make_folder(&self.folder)?;
-        let make = |sample| Exhibit::make(sample, &self.folder, session);
-        let exhibits: Vec<Exhibit> = samples::ALL.iter().map(make).collect::<Result<_, _>>()?;
+        let make = |sample| SampleReport::make(sample, &self.folder, session);
+        let reports: Vec<SampleReport> = samples::ALL.iter().map(make).collect::<Result<_, _>>()?;
         session.progress.stage("drawing the picture and writing the page");
-        let hero = hero::Hero::make(&exhibits[0], &self.folder)?;
+        let title_picture = title_picture::TitlePicture::make(&reports[0], &self.folder)?;
         let page = self.folder.join("index.html");
-        let html = page::page(&exhibits, &hero).into_string();
+        let html = page::page(&reports, &title_picture).into_string();
         write_file(&page, html.as_bytes())?;
         let seconds = start.elapsed().as_secs_f64();
-        let show = Show { exhibits, hero, page, page_bytes: html.len(), seconds };
-        Ok(Answer::new(summary::json(&show), summary::text(&show)))
+        let result = DemoResult { reports, title_picture, page, page_bytes: html.len(), seconds };
+        Ok(Answer::new(summary::json(&result), summary::text(&result)))
     }
 }
 
-/// The method whose levels are drawn: that of `simplify` where none is named.
+/// Returns the method whose levels are drawn, the default of `simplify`.
 fn main_method() -> Method {
     Method::default()
 }
 
-/// Methods worth a look beside each other: edges by quadrics, edges by volume, faces. More would make
-/// the page slow.
+/// Methods compared: edges by quadrics, edges by volume, faces. More would make the page slow.
 const METHODS: [Method; 3] = [Method::Qem, Method::LindstromTurk, Method::LeeJang];

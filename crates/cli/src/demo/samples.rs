@@ -1,89 +1,93 @@
-//! What is shown, and why.
+//! Samples of the demo, and how they are shown.
 
 use meshlod::Scene;
 use meshlod::picture::{Normals, Wireframe};
 use meshlod::samples;
 
-use crate::page::look::{Coat, Look};
+use crate::page::style::{OwnedPaint, SubjectStyle};
 use crate::page::subject::Subject;
 
-/// A sample and how it is shown.
-pub struct Sample {
-    /// Its name as a sample, and that of its files.
+/// Sample with its title and style.
+pub struct DemoSample {
+    /// Name of the sample and of its files.
     pub name: &'static str,
     pub title: &'static str,
-    /// Why it is here: what to look for.
+    /// Description: what to look for.
     pub about: &'static str,
-    /// Faces to ask for.
+    /// Number of faces to generate.
     pub faces: usize,
-    pub coat: Coat,
+    pub paint: OwnedPaint,
     pub normals: Normals,
-    /// The colour of edges, to be seen on the coat.
-    pub lines: [u8; 3],
-    /// How much of the coat they hide.
+    /// Colour of edges, visible against the paint.
+    pub line_color: [u8; 3],
+    /// Opacity of edges.
     pub line_opacity: f32,
-    /// Where to look.
+    /// Viewing direction.
     pub direction: [f64; 3],
 }
 
-/// Faces that bend by more than this meet in a crease: in radians, about 20°.
+/// Dihedral angle, in radians, above which an edge is a crease: about 20°.
 const CREASE_RAD: f64 = 0.35;
 
-/// In the order of the page; the first is its picture.
-pub const ALL: [Sample; 3] = [
-    Sample {
+/// Samples in the order of the page; the first is its title picture.
+pub const ALL: [DemoSample; 3] = [
+    DemoSample {
         name: "fish",
         title: "Fish",
         about: "One closed surface with colours, normals and texture coordinates. Thin fins, round \
                 eyes and the mouth need their faces; the flanks get by with few. Colours and normals \
                 carry over from level to level, and seams stay closed.",
         faces: 20_000,
-        coat: Coat::Colors,
+        paint: OwnedPaint::Colors,
         normals: Normals::FromMesh,
-        lines: [158, 190, 216],
+        line_color: [158, 190, 216],
         line_opacity: 0.55,
         direction: [0.62, -0.28, -1.0],
     },
-    Sample {
+    DemoSample {
         name: "gyroid",
         title: "Gyroid",
         about: "A ball cut out of a surface full of tunnels. However few faces are left, no \
                 tunnel may close and no bridge may break.",
         faces: 40_000,
-        coat: Coat::Plain([214, 186, 150]),
+        paint: OwnedPaint::Plain([214, 186, 150]),
         normals: Normals::Smooth,
-        lines: [40, 34, 28],
+        line_color: [40, 34, 28],
         line_opacity: 0.8,
         direction: [-0.5, -0.4, -1.0],
     },
-    Sample {
+    DemoSample {
         name: "faceted-torus",
         title: "Faceted torus",
         about: "Seventy-two flat facets that meet in creases, each finely subdivided. All but 144 \
                 faces could go without any error; no crease may blur.",
         faces: 10_000,
-        coat: Coat::Plain([150, 182, 200]),
+        paint: OwnedPaint::Plain([150, 182, 200]),
         normals: Normals::Creased { crease_rad: CREASE_RAD },
-        lines: [24, 32, 46],
+        line_color: [24, 32, 46],
         line_opacity: 0.8,
         direction: [0.4, 0.8, 0.75],
     },
 ];
 
-impl Sample {
-    /// Makes it.
+impl DemoSample {
+    /// Generates the sample.
     pub fn subject(&self) -> Subject {
         let mesh = samples::by_name(self.name, Some(self.faces)).expect("every one is a sample");
         let scene = Scene::from_mesh(self.name, mesh);
-        Subject::new([self.name, self.title], scene, |_| self.look())
+        Subject::new([self.name, self.title], scene, |_| self.style())
     }
 
-    fn look(&self) -> Look {
-        Look {
-            coat: self.coat.clone(),
+    fn style(&self) -> SubjectStyle {
+        SubjectStyle {
+            paint: self.paint.clone(),
             normals: self.normals,
-            under_lines: self.coat.clone(),
-            lines: Wireframe { color: self.lines, width_px: 0.9, opacity: self.line_opacity },
+            wire_paint: self.paint.clone(),
+            wireframe: Wireframe {
+                color: self.line_color,
+                width_px: 0.9,
+                opacity: self.line_opacity,
+            },
             direction: self.direction,
             up: [0.0, 1.0, 0.0],
         }

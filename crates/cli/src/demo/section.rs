@@ -1,49 +1,49 @@
-//! One exhibit on the page.
+//! Section of the demo page for one sample.
 
 use maud::{Markup, html};
 use meshlod::measure::Distance;
 
-use crate::demo::exhibit::Exhibit;
+use crate::demo::sample_report::SampleReport;
+use crate::page::chain::{Chain, Level};
 use crate::page::chart::{Across, Chart, Series, chart};
 use crate::page::columns::{self, Column};
-use crate::page::descent::{Chain, Level};
 use crate::page::facts::{facts, shape};
 use crate::page::figures::{percent, whole};
 use crate::page::key::key;
-use crate::page::strip::{Layout, Stand, strip};
+use crate::page::picture_row::{Layout, PictureColumn, picture_row};
 use crate::page::table;
 
-/// What it is, how it looks, what was measured.
-pub fn section(exhibit: &Exhibit) -> Markup {
+/// Builds the section: description, pictures and measurements.
+pub fn section(report: &SampleReport) -> Markup {
     html! {
-        section id=(exhibit.sample.name) {
+        section id=(report.sample.name) {
             div.intro {
                 div {
-                    h2 { (exhibit.subject.title) }
-                    p { (exhibit.sample.about) }
+                    h2 { (report.subject.title) }
+                    p { (report.sample.about) }
                 }
-                (facts(&exhibit.subject.counts))
+                (facts(&report.subject.counts))
             }
-            (pictures(exhibit))
+            (pictures(report))
             div.measured {
-                (chart(&errors(exhibit)))
-                (figures(exhibit))
+                (chart(&errors(report)))
+                (figures(report))
             }
-            p.verdict { (verdict(exhibit)) }
+            p.verdict { (verdict(report)) }
         }
     }
 }
 
-/// A column for the input and for each level of the main chain.
-fn pictures(exhibit: &Exhibit) -> Markup {
-    let stands: Vec<Stand> = exhibit
+/// Shows a column for the input and for each level of the main chain.
+fn pictures(report: &SampleReport) -> Markup {
+    let columns: Vec<PictureColumn> = report
         .main_chain()
         .levels
         .iter()
-        .zip(&exhibit.shots)
-        .map(|(level, shots)| Stand { caption: caption(level), shots })
+        .zip(&report.pictures)
+        .map(|(level, pictures)| PictureColumn { caption: caption(level), pictures })
         .collect();
-    strip(&exhibit.subject, &exhibit.input, &stands, Layout::Scroll)
+    picture_row(&report.subject, &report.input, &columns, Layout::Scroll)
 }
 
 fn caption(level: &Level) -> Markup {
@@ -54,8 +54,8 @@ fn caption(level: &Level) -> Markup {
     }
 }
 
-/// One line a method: faces and RMS error in percent of the diagonal.
-fn errors(exhibit: &Exhibit) -> Chart {
+/// Charts RMS error in percent of the diagonal against faces, one line per method.
+fn errors(report: &SampleReport) -> Chart {
     let point = |level: &Level| {
         level.percent(Distance::rms).map(|rms| [level.report.output_faces as f64, rms])
     };
@@ -64,23 +64,23 @@ fn errors(exhibit: &Exhibit) -> Chart {
         points: chain.levels.iter().filter_map(point).collect(),
     };
     Chart {
-        alt: format!("RMS error against faces, {}: one line per method", exhibit.subject.title),
+        alt: format!("RMS error against faces, {}: one line per method", report.subject.title),
         caption: "RMS error in percent of the diagonal, against faces.",
         across: Across::Faces,
-        series: exhibit.chains.iter().map(series).collect(),
+        series: report.chains.iter().map(series).collect(),
     }
 }
 
-/// All figures of an exhibit's levels.
-fn figures(exhibit: &Exhibit) -> Markup {
-    let input = &exhibit.subject.counts;
-    let columns = Column::of(input, exhibit.chains.iter().flat_map(|chain| &chain.levels));
+/// Tabulates all figures of the levels.
+fn figures(report: &SampleReport) -> Markup {
+    let input = &report.subject.counts;
+    let columns = Column::of(input, report.chains.iter().flat_map(|chain| &chain.levels));
     html! {
         div {
             p.about { (columns::legend(input, &columns).join(" ")) }
             div.scroll tabindex="0" role="region" aria-label="Figures" { table {
                 (table::heads("Level", &columns))
-                @for chain in &exhibit.chains {
+                @for chain in &report.chains {
                     tbody {
                         tr.method {
                             th colspan=(columns.len() + 1) scope="rowgroup" {
@@ -98,16 +98,16 @@ fn figures(exhibit: &Exhibit) -> Markup {
     }
 }
 
-/// Why contractions were refused on the way to the last level.
+/// Shows the refused contractions on the way to the last level.
 fn refusals(chain: &Chain) -> Markup {
     let last = chain.levels.last().map(|level| level.report.refusals);
     html! { @if let Some(refusals) = last { small { "refused: " (refusals) } } }
 }
 
-/// Whether the levels hang together as the input does, and are as small as asked for.
-fn verdict(exhibit: &Exhibit) -> String {
-    let input = &exhibit.subject.counts;
-    let levels = || exhibit.chains.iter().flat_map(|chain| &chain.levels);
+/// Counts the levels that kept the input's topology and that reached their target.
+fn verdict(report: &SampleReport) -> String {
+    let input = &report.subject.counts;
+    let levels = || report.chains.iter().flat_map(|chain| &chain.levels);
     let all = levels().count();
     let share = |part: usize| {
         if part == all { format!("All {all} levels") } else { format!("{part} of {all} levels") }

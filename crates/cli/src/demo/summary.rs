@@ -1,39 +1,39 @@
-//! What the command itself says: the figures of the page for programs, a few for people.
+//! Output of `demo`: all figures as JSON, the main ones as text.
 
 use std::path::Path;
 
 use meshlod::measure::Distance;
 use serde_json::{Value, json};
 
-use crate::demo::Show;
-use crate::demo::exhibit::{Exhibit, SAMPLES};
+use crate::demo::DemoResult;
+use crate::demo::sample_report::{SAMPLES, SampleReport};
 use crate::files;
 use crate::numbers::{count, percent, value};
-use crate::page::descent::{Chain, Level};
+use crate::page::chain::{Chain, Level};
 use crate::page::level_json::level_json;
 use crate::table::aligned;
 
-/// All figures and the paths of all files.
-pub fn json(show: &Show) -> Value {
+/// Returns all figures and file paths as JSON.
+pub fn json(result: &DemoResult) -> Value {
     json!({
-        "page": files::name(&show.page),
-        "page_bytes": show.page_bytes,
-        "picture": files::name(&show.hero.file),
-        "seconds": show.seconds,
+        "page": files::name(&result.page),
+        "page_bytes": result.page_bytes,
+        "picture": files::name(&result.title_picture.file),
+        "seconds": result.seconds,
         "samples_each_way": SAMPLES,
-        "samples": show.exhibits.iter().map(|exhibit| of_exhibit(exhibit, show.folder())).collect::<Vec<_>>(),
+        "samples": result.reports.iter().map(|report| of_report(report, result.folder())).collect::<Vec<_>>(),
     })
 }
 
-fn of_exhibit(exhibit: &Exhibit, folder: &Path) -> Value {
-    let mut json = exhibit.subject.counts.json();
-    json["sample"] = exhibit.sample.name.into();
-    json["file"] = files::name(&folder.join(exhibit.sample.input_file())).into();
-    json["lods"] = files::name(&folder.join(exhibit.sample.lods_file())).into();
+fn of_report(report: &SampleReport, folder: &Path) -> Value {
+    let mut json = report.subject.counts.json();
+    json["sample"] = report.sample.name.into();
+    json["file"] = files::name(&folder.join(report.sample.input_file())).into();
+    json["lods"] = files::name(&folder.join(report.sample.lods_file())).into();
     let chain = |chain: &Chain| {
         let method = chain.method;
         let level = |level: &Level| {
-            let mut json = level_json(method, level, &exhibit.subject.counts);
+            let mut json = level_json(method, level, &report.subject.counts);
             json["file"] = files::name(&folder.join(&level.file)).into();
             json
         };
@@ -42,18 +42,18 @@ fn of_exhibit(exhibit: &Exhibit, folder: &Path) -> Value {
             "levels": chain.levels.iter().map(level).collect::<Vec<_>>(),
         })
     };
-    json["chains"] = exhibit.chains.iter().map(chain).collect();
+    json["chains"] = report.chains.iter().map(chain).collect();
     json
 }
 
-/// A line a level, and the path of the page last.
-pub fn text(show: &Show) -> String {
+/// Formats one line per level, and the path of the page.
+pub fn text(result: &DemoResult) -> String {
     let head = ["", "level", "faces", "RMS", "max", "seconds"].map(String::from);
     let mut rows = vec![head];
-    for exhibit in &show.exhibits {
-        let faces = count(exhibit.subject.counts.faces);
-        rows.push([exhibit.sample.name, "", &faces, "", "", ""].map(String::from));
-        for chain in &exhibit.chains {
+    for report in &result.reports {
+        let faces = count(report.subject.counts.faces);
+        rows.push([report.sample.name, "", &faces, "", "", ""].map(String::from));
+        for chain in &report.chains {
             rows.extend(chain.levels.iter().map(|level| row(chain, level)));
         }
     }
@@ -61,9 +61,9 @@ pub fn text(show: &Show) -> String {
         "{}RMS, max: measured distance from the input, in % of the diagonal\n\
          done in {:.1} s, page of {:.1} MB\n{}\n",
         aligned(&rows),
-        show.seconds,
-        show.page_bytes as f64 / 1e6,
-        files::name(&show.page),
+        result.seconds,
+        result.page_bytes as f64 / 1e6,
+        files::name(&result.page),
     )
 }
 

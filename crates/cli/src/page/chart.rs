@@ -1,4 +1,4 @@
-//! Errors as a drawing within the page; both axes go by decades.
+//! Charts of errors as inline SVG, with logarithmic axes.
 
 use maud::{Markup, html};
 use meshlod::Method;
@@ -6,35 +6,35 @@ use meshlod::Method;
 use crate::page::figures::ROUNDING_PERCENT;
 use crate::page::key::{class, key, shape};
 
-/// A drawing of errors against something.
+/// Chart of errors against faces or time.
 pub struct Chart {
-    /// What it shows, for those who cannot see it.
+    /// Alternative text.
     pub alt: String,
-    /// What it shows, below it.
+    /// Caption below the chart.
     pub caption: &'static str,
     pub across: Across,
     pub series: Vec<Series>,
 }
 
-/// What goes from left to right.
+/// Quantity on the horizontal axis.
 #[derive(Clone, Copy)]
 pub enum Across {
     Faces,
     Seconds,
 }
 
-/// The points of a method: something above 0, and its error in percent.
+/// Points of a method: a positive abscissa and the error in percent.
 pub struct Series {
     pub method: Method,
     pub points: Vec<[f64; 2]>,
 }
 
-/// Width and height in its own units.
+/// Width and height in SVG units.
 const SIZE: [f64; 2] = [440.0, 330.0];
-/// Left, right, top, bottom of the plot within.
+/// Left, right, top and bottom of the plot area.
 const PLOT: [f64; 4] = [58.0, 428.0, 12.0, 288.0];
 
-/// One line a method, or one mark where there is but one level.
+/// Draws one line per method, or one mark if there is only one level.
 pub fn chart(chart: &Chart) -> Markup {
     let axes = Axes::of(chart);
     html! {
@@ -55,12 +55,12 @@ pub fn chart(chart: &Chart) -> Markup {
     }
 }
 
-/// The logarithms that the sides of the plot stand for: least and greatest.
+/// Axis ranges as decimal logarithms: minimum and maximum.
 struct Axes([[f64; 2]; 2]);
 
-/// How far the outermost points stay from the sides, in decades.
+/// Margin between the outermost points and the sides, in decades.
 const MARGIN: f64 = 0.08;
-/// What an axis spans at least, in decades: differences of a few percent shall not look large.
+/// Smallest span of an axis, in decades, so that differences of a few percent do not look large.
 const LEAST_SPAN: f64 = 0.7;
 
 impl Axes {
@@ -90,7 +90,7 @@ impl Axes {
         PLOT[3] - (logarithm - low) / (high - low) * (PLOT[3] - PLOT[2])
     }
 
-    /// Lines at round numbers, and what they stand for.
+    /// Draws grid lines at round numbers with their labels.
     fn grid(&self, across: Across) -> Markup {
         html! {
             @for error in round_numbers(self.0[1]) {
@@ -142,23 +142,23 @@ impl Across {
     }
 }
 
-/// 1, 2, 5, 10, … between two logarithms; powers of ten alone where that would be many.
+/// Iterates over 1, 2, 5, 10, … between two logarithms; only powers of ten on a long range.
 fn round_numbers([low, high]: [f64; 2]) -> impl Iterator<Item = f64> {
     let steps: &[u32] = if high - low < 2.5 { &[1, 2, 5] } else { &[1] };
     let decades = low.floor() as i32..=high.ceil() as i32;
     decades
         .flat_map(move |decade| steps.iter().map(move |step| format!("{step}e{decade}")))
-        // From the text, since a product would have a tail: 0.30000000000000004.
+        // Parsed from text, since a product would give 0.30000000000000004.
         .filter_map(|text| text.parse().ok())
         .filter(move |number: &f64| (low..=high).contains(&number.log10()))
 }
 
-/// An error of nothing but rounding stands at the foot of the others.
+/// Iterates over the points as logarithms, with rounding errors raised to a floor.
 fn logarithms(series: &Series) -> impl Iterator<Item = [f64; 2]> {
     series.points.iter().map(|[x, error]| [x.log10(), error.max(ROUNDING_PERCENT).log10()])
 }
 
-/// A tenth of a unit is finer than a screen.
+/// Formats a length to a tenth of a unit, which is finer than a screen.
 fn short(length: f64) -> String {
     format!("{length:.1}")
 }

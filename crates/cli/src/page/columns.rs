@@ -1,39 +1,39 @@
-//! The figures of a level as columns: one list for pages and for the terminal.
+//! Columns of figures of a level, shared by pages and terminal.
 
 use meshlod::measure::Distance;
 
 use crate::numbers::count;
+use crate::page::chain::Level;
 use crate::page::counts::Counts;
-use crate::page::descent::Level;
 use crate::page::figures::{digits, drift, power_of_ten, seconds};
 
-/// A figure that every level has, or may have.
+/// Figure that a level may have.
 pub struct Column {
     pub head: &'static str,
-    /// By the counts of the input; `None` where there is no such thing.
+    /// Value for a level, given the counts of the input; `None` if it has none.
     pub value: fn(&Counts, &Level) -> Option<f64>,
-    /// What it is, where the head does not say.
+    /// Explanation, if the head needs one.
     pub about: &'static str,
-    /// As people read it.
+    /// Formatter of the value.
     pub text: fn(f64) -> String,
     pub best: Option<Best>,
 }
 
-/// Which value is the best of a column.
+/// Criterion for the best value of a column.
 #[derive(Clone, Copy)]
 pub enum Best {
     Least,
     Greatest,
-    /// Those below what rounding makes of this input are equally good.
+    /// Smallest magnitude; values below the rounding error of this input are equally good.
     NearestZero {
         rounding: fn(&Counts) -> f64,
     },
 }
 
-/// A part of the volume that summing up a million faces rounds away.
+/// Relative rounding error of the volume summed over a million faces.
 const ROUNDING: f64 = 1e-12;
 
-/// What levels are compared by.
+/// Columns by which levels are compared.
 pub const COLUMNS: [Column; 11] = [
     Column {
         head: "Faces",
@@ -68,7 +68,7 @@ pub const COLUMNS: [Column; 11] = [
         about: "Estimate: the method’s own estimate of the maximum.",
         value: |input, level| Some(100.0 * level.report.error_estimate / input.diagonal),
         text: digits,
-        // The nearest to the truth would be, and that is in the column before.
+        // The best estimate is the one nearest to the column before.
         best: None,
     },
     Column {
@@ -82,7 +82,7 @@ pub const COLUMNS: [Column; 11] = [
         head: "Sum",
         about: "Sum: change of the volume summed over all contractions with a closed ring, in cubic \
                 units.",
-        // Its sign is that of the column before; the report's is that of the paper.
+        // Signed like the column before; the report uses the paper's sign.
         value: |_, level| Some(0.0 - level.report.volume.running_sum),
         text: power_of_ten,
         best: Some(Best::NearestZero { rounding: |input| ROUNDING * input.volume.abs() }),
@@ -117,7 +117,7 @@ pub const COLUMNS: [Column; 11] = [
     },
 ];
 
-/// What the heads mean, and why one is missing: a sentence each.
+/// Returns sentences that explain the heads, and why one is missing.
 pub fn legend(input: &Counts, columns: &[&Column]) -> Vec<&'static str> {
     let abouts = columns.iter().map(|column| column.about).filter(|about| !about.is_empty());
     let open = (!input.closed).then_some("The input is open and encloses no volume.");
@@ -125,7 +125,7 @@ pub fn legend(input: &Counts, columns: &[&Column]) -> Vec<&'static str> {
 }
 
 impl Column {
-    /// Those that at least one of the levels has a figure for.
+    /// Returns the columns for which at least one level has a value.
     pub fn of<'l>(
         input: &Counts,
         levels: impl Iterator<Item = &'l Level> + Clone,
@@ -135,15 +135,15 @@ impl Column {
         COLUMNS.iter().filter(some).collect()
     }
 
-    /// What a level has here.
+    /// Returns the value of a level with its text.
     pub fn cell(&self, input: &Counts, level: &Level) -> Option<(f64, String)> {
         (self.value)(input, level).map(|value| (value, (self.text)(value)))
     }
 
-    /// For each of the levels, whether none has a better figure here, as far as the texts tell.
+    /// Returns for each level whether its text equals that of the best value.
     ///
-    /// Only levels that reached their size compete: any method is near the input where it has done
-    /// nothing. Nobody wins where all are equal.
+    /// Only levels that reached their size compete, since any method is near the input if it has
+    /// done nothing. Nobody wins if all are equal.
     pub fn winners(&self, input: &Counts, levels: &[&Level]) -> Vec<bool> {
         let Some(best) = self.best else { return vec![false; levels.len()] };
         let of = |level: &&Level| {
@@ -165,7 +165,7 @@ impl Column {
 }
 
 impl Best {
-    /// What of a value counts.
+    /// Returns the part of a value that counts in the comparison.
     fn size(self, value: f64, input: &Counts) -> f64 {
         match self {
             Self::Least | Self::Greatest => value,
@@ -174,7 +174,7 @@ impl Best {
     }
 }
 
-/// How often a contraction was refused on the way to a level.
+/// Returns the number of refused contractions on the way to a level.
 pub fn refused(level: &Level) -> u64 {
     level.report.refusals.iter().map(|(_, count)| count).sum()
 }

@@ -1,11 +1,11 @@
-//! What a mesh is made of, and whether it is whole.
+//! Counts, measures and topology of a mesh.
 
 use meshlod::Mesh;
 use meshlod::measure::{area, volume};
 use meshlod::mesh::{Connectivity, face_components};
 use serde_json::{Value, json};
 
-/// What there is to count and to check.
+/// Counts, measures and topology of a mesh.
 pub struct Counts {
     pub vertices: usize,
     pub faces: usize,
@@ -13,7 +13,7 @@ pub struct Counts {
     pub non_manifold_edges: usize,
     pub components: usize,
     pub closed: bool,
-    /// Tunnels of a closed manifold surface, all components together.
+    /// Genus of a closed manifold surface, summed over its components.
     pub genus: Option<usize>,
     pub diagonal: f64,
     pub area: f64,
@@ -21,7 +21,7 @@ pub struct Counts {
 }
 
 impl Counts {
-    /// Of a mesh; vertices that no face uses do not count.
+    /// Counts a mesh; unused vertices are left out.
     pub fn of(mesh: &Mesh) -> Self {
         let vertices = used(mesh);
         let connectivity = Connectivity::new(&mesh.faces, mesh.positions.len());
@@ -62,7 +62,7 @@ fn used(mesh: &Mesh) -> usize {
     used.into_iter().filter(|&used| used).count()
 }
 
-/// From Euler's formula: vertices - edges + faces = 2 components - 2 genus.
+/// Computes the genus by Euler's formula: vertices - edges + faces = 2 components - 2 genus.
 fn genus(
     vertices: usize,
     faces: usize,

@@ -1,19 +1,19 @@
-//! A page: one file, nothing else needed.
+//! HTML document in one self-contained file.
 
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 const STYLE: &str = include_str!("style.css");
 
-/// The parts of a page.
+/// Parts of a page.
 pub struct Document<'a> {
     pub title: &'a str,
-    /// Where to go on the page: an anchor's name and what is there.
+    /// Navigation links: anchor and text.
     pub links: Vec<(String, String)>,
     pub header: Markup,
     pub main: Markup,
 }
 
-/// The whole document.
+/// Builds the whole document.
 pub fn document(document: Document<'_>) -> Markup {
     let Document { title, links, header, main } = document;
     html! {

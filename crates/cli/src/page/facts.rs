@@ -1,11 +1,11 @@
-//! What is said of an input: its counts.
+//! List of the counts of an input.
 
 use maud::{Markup, html};
 
 use crate::page::counts::Counts;
 use crate::page::figures::{figure, whole};
 
-/// The counts of an input, each with its name.
+/// Lists the counts of an input, each with its name.
 pub fn facts(counts: &Counts) -> Markup {
     let number = |name: &str, markup: Markup| html! { div { dt { (name) } dd { (markup) } } };
     html! {
@@ -24,7 +24,7 @@ pub fn facts(counts: &Counts) -> Markup {
     }
 }
 
-/// Whether the input hangs together, and in how many pieces.
+/// Describes whether the input is closed, and its number of components.
 pub fn shape(counts: &Counts) -> String {
     let closed = if counts.closed { "closed" } else { "open" };
     match counts.components {
@@ -33,7 +33,7 @@ pub fn shape(counts: &Counts) -> String {
     }
 }
 
-/// Five digits: enough to know a mesh by.
+/// Formats about five digits, enough to recognise a mesh.
 fn short(number: f64) -> String {
     match number.abs() {
         size if (0.01..1000.0).contains(&size) || size == 0.0 => format!("{number:.4}"),

@@ -1,30 +1,30 @@
-//! Figures on the page: as people read them, with the exact values for machines.
+//! Figures on a page, with their exact values for programs.
 
 use maud::{Markup, html};
 
 use crate::numbers;
 
-/// A figure: `text` is seen, `exact` is what it stands for, as in the JSON.
+/// Shows `text` with the exact value that the JSON has.
 pub fn figure(exact: f64, text: &str) -> Markup {
-    // A real minus is as wide as a plus.
+    // A true minus sign is as wide as a plus.
     let minus = text.strip_prefix('-').map(|size| format!("−{size}"));
     html! { data value=(exact) { (minus.as_deref().unwrap_or(text)) } }
 }
 
-/// A whole number.
+/// Shows a whole number.
 pub fn whole(number: usize) -> Markup {
     html! { data value=(number) { (numbers::count(number)) } }
 }
 
-/// A percentage, without its sign.
+/// Shows a percentage without the percent sign.
 pub fn percent(percent: f64) -> Markup {
     figure(percent, &digits(percent))
 }
 
-/// Below this many percent of a length there is nothing but rounding.
+/// Percentage of a length below which there is only rounding error.
 pub const ROUNDING_PERCENT: f64 = 5e-6;
 
-/// Three digits that matter, but never more than five places.
+/// Formats three significant digits, with at most five decimal places.
 pub fn digits(percent: f64) -> String {
     match percent.abs() {
         size if size < ROUNDING_PERCENT => "0".into(),
@@ -35,8 +35,8 @@ pub fn digits(percent: f64) -> String {
     }
 }
 
-/// A change in percent, with its sign; one that is nearly nothing by its power of ten, since how
-/// near tells methods that conserve from those that do not.
+/// Formats a signed change in percent. One near zero is shown by its power of ten, which tells
+/// methods that conserve a quantity from those that do not.
 pub fn drift(percent: f64) -> String {
     match percent.abs() {
         size if size < 0.001 => power_of_ten(percent),
@@ -45,12 +45,12 @@ pub fn drift(percent: f64) -> String {
     }
 }
 
-/// A quantity with its sign of which only the size tells something.
+/// Formats a signed quantity of which only the order of magnitude matters.
 pub fn power_of_ten(number: f64) -> String {
     if number == 0.0 { "0".into() } else { format!("{number:+.0e}") }
 }
 
-/// A time in milliseconds; from one second on in seconds.
+/// Formats a time in milliseconds, or in seconds from one second on.
 pub fn seconds(seconds: f64) -> String {
     match seconds {
         _ if seconds < 0.0995 => format!("{:.1} ms", 1000.0 * seconds),

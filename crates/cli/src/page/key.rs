@@ -1,10 +1,10 @@
-//! What stands for a method in charts and tables: a colour and a shape of its own, so that those
-//! who tell the colours apart badly have the shapes.
+//! Legend key of a method in charts and tables: a colour and a shape, so that colour-blind readers
+//! can rely on the shapes.
 
 use maud::{Markup, html};
 use meshlod::Method;
 
-/// Shapes within a circle of radius 5 around the origin, about equally large.
+/// Shapes within a circle of radius 5 around the origin, of about equal size.
 const SHAPES: [&str; 9] = [
     "M-4 0a4 4 0 1 0 8 0a4 4 0 1 0-8 0z",
     "M-3.5-3.5h7v7h-7z",
@@ -17,17 +17,17 @@ const SHAPES: [&str; 9] = [
     "M0-5L1.4-1.6L5-1.5L2.2.8L3.1 4.3L0 2.3L-3.1 4.3L-2.2.8L-5-1.5L-1.4-1.6z",
 ];
 
-/// The shape of a method, to be put somewhere in a drawing.
+/// Returns the shape of a method as an SVG path around the origin.
 pub fn shape(method: Method) -> &'static str {
     SHAPES[place(method)]
 }
 
-/// The class that gives a method's colour to what is in it.
+/// Returns the CSS class that sets a method's colour.
 pub fn class(method: Method) -> String {
     format!("m{}", place(method))
 }
 
-/// The mark of a method in a line of text.
+/// Draws the key of a method in a line of text.
 pub fn key(method: Method) -> Markup {
     html! {
         svg class=(format!("key {}", class(method))) viewBox="-5 -5 10 10" aria-hidden="true" {
@@ -36,7 +36,7 @@ pub fn key(method: Method) -> Markup {
     }
 }
 
-/// Its place among all, so that it looks the same on every page.
+/// Returns the index of a method among all, so that it looks the same on every page.
 fn place(method: Method) -> usize {
     let place = Method::ALL.iter().position(|&other| other == method).unwrap_or(0);
     place % SHAPES.len()

@@ -1,24 +1,24 @@
-//! The figures of a level, for programs.
+//! JSON of the figures of a level.
 
 use meshlod::Method;
 use serde_json::{Value, json};
 
-use crate::amounts::Size;
 use crate::distance;
+use crate::page::chain::Level;
 use crate::page::counts::Counts;
-use crate::page::descent::Level;
+use crate::parse::LevelSize;
 use crate::reduce::refusals_json;
 use crate::volume::unconserved_json;
 
-/// All of them; the volume's change is `null` where the input is open, and what a
-/// method could not conserve where it does not conserve any.
+/// Returns the figures of a level as JSON. The change of volume is `null` if the input is open, and
+/// the unconserved volume if the method does not conserve it.
 pub fn level_json(method: Method, level: &Level, input: &Counts) -> Value {
     let report = &level.report;
     json!({
         "size": level.size.to_string(),
         "ratio": match level.size {
-            Size::Ratio(ratio) => Some(ratio),
-            Size::Faces(_) => None,
+            LevelSize::Ratio(ratio) => Some(ratio),
+            LevelSize::Faces(_) => None,
         },
         "faces": report.output_faces,
         "reached": report.reached,

@@ -1,9 +1,9 @@
-//! A mesh cut finely enough that colours at its vertices tell of the whole surface.
+//! Refinement of a mesh, so that colours at its vertices represent the whole surface.
 
 use meshlod::Mesh;
 use meshlod::mesh::VertexId;
 
-/// Most cuts along a side of a face: one face alone gives no more than a million.
+/// Limit of cuts along a side of a face, so that one face gives at most a million.
 const MOST_CUTS: usize = 1000;
 
 /// The same surface of smaller faces: no edge is longer than `step`, as far as that goes.

@@ -1,43 +1,43 @@
-//! What is held up to view.
+//! Subject of a page: a scene with its style.
 
 use meshlod::measure::Surface;
 use meshlod::{Mesh, Scene};
 
 use crate::failure::Failure;
 use crate::page::counts::Counts;
-use crate::page::look::Look;
+use crate::page::style::SubjectStyle;
 
-/// A scene, and how it is shown.
+/// Scene with its counts and style.
 pub struct Subject {
-    /// As messages name it: a sample, or the path of a file.
+    /// Name in messages: a sample, or the path of a file.
     pub name: String,
-    /// What stands over it.
+    /// Title on the page.
     pub title: String,
     pub scene: Scene,
-    /// All that the scene shows, in world space.
+    /// Flattened scene, in world space.
     pub mesh: Mesh,
     pub counts: Counts,
-    pub look: Look,
+    pub style: SubjectStyle,
 }
 
 impl Subject {
-    /// `named` is its name and its title.
-    pub fn new(named: [&str; 2], scene: Scene, look: impl FnOnce(&Mesh) -> Look) -> Self {
+    /// Creates a subject; `named` holds its name and title.
+    pub fn new(named: [&str; 2], scene: Scene, style: impl FnOnce(&Mesh) -> SubjectStyle) -> Self {
         let mesh = scene.flatten();
-        let (counts, look) = (Counts::of(&mesh), look(&mesh));
+        let (counts, style) = (Counts::of(&mesh), style(&mesh));
         let [name, title] = named.map(String::from);
-        Self { name, title, scene, mesh, counts, look }
+        Self { name, title, scene, mesh, counts, style }
     }
 
-    /// The mesh, ready to be measured against.
+    /// Prepares the mesh for measurement.
     pub fn surface(&self) -> Result<Surface<'_>, Failure> {
         Surface::new(&self.mesh)
             .map_err(|error| Failure::new(format_args!("{}: {error}", self.name)))
     }
 
-    /// All that the scene would show with these meshes in the place of its own.
+    /// Flattens the scene with the given meshes in place of its own.
     pub fn shown_with(&self, level: &[Mesh]) -> Mesh {
-        // Without the document that it came from and its images, which no picture asks it for.
+        // The source document and its images are not needed for pictures.
         let mut scene = Scene {
             meshes: self.scene.meshes.iter().map(bare).collect(),
             nodes: self.scene.nodes.clone(),

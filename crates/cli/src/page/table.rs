@@ -2,12 +2,12 @@
 
 use maud::{Markup, html};
 
+use crate::page::chain::Level;
 use crate::page::columns::Column;
 use crate::page::counts::Counts;
-use crate::page::descent::Level;
 use crate::page::figures::figure;
 
-/// The row of heads; `first` is over the names.
+/// Builds the row of heads; `first` is the head of the names.
 pub fn heads(first: &str, columns: &[&Column]) -> Markup {
     html! {
         thead { tr {
@@ -17,7 +17,7 @@ pub fn heads(first: &str, columns: &[&Column]) -> Markup {
     }
 }
 
-/// The figures of a level; `wins` marks the best of their columns and may be shorter.
+/// Builds the row of a level; `wins` marks the best values and may be shorter than `columns`.
 pub fn row(
     name: &Markup,
     level: &Level,

@@ -1,4 +1,4 @@
-//! `build`: all levels of a mesh in one file.
+//! `build`: writes all levels of a mesh to one file.
 
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
@@ -13,15 +13,16 @@ use meshlod::simplify::Simplifier;
 use meshlod::{Mesh, Method, Options, Target};
 use serde_json::{Value, json};
 
-use crate::amounts::{self, Bound};
 use crate::answer::Answer;
-use crate::args::Reading;
+use crate::args::ReadArgs;
 use crate::failure::Failure;
 use crate::files;
 use crate::model_file;
 use crate::numbers::{count, faces, percent, value};
+use crate::parse::{self, Bound};
 use crate::session::Session;
 
+/// Write all levels of a mesh to one multiresolution file (.mlod)
 #[derive(Args)]
 pub struct Build {
     /// Mesh to read, or -
@@ -32,47 +33,47 @@ pub struct Build {
     output: PathBuf,
     /// How the levels are made
     #[arg(long, value_name = "MODEL", default_value = "contractions")]
-    model: Model,
+    model: ModelArg,
     #[arg(long, value_name = "NAME", default_value = Method::LindstromTurk.name(),
-        value_parser = amounts::method, help = amounts::methods())]
+        value_parser = parse::method, help = parse::methods())]
     method: Method,
-    /// Compute proven error bounds in place of the method's smoothed estimates; this takes several times
-    /// as long. The errors of right triangles are bounds in any case
+    /// Compute proven error bounds in place of the method's smoothed estimates; this takes several
+    /// times as long. The errors of right triangles are bounds in any case
     #[arg(long)]
     bounds: bool,
-    /// How far rounding may move a vertex: 0.001 in model units, or 0.005% of the diagonal; by a cell or
-    /// two more where a triangle would lose its area
-    #[arg(long, value_name = "BOUND", value_parser = amounts::bound, default_value = "0.005%",
+    /// How far rounding may move a vertex: 0.001 in model units, or 0.005% of the diagonal; by a
+    /// cell or two more where a triangle would lose its area
+    #[arg(long, value_name = "BOUND", value_parser = parse::bound, default_value = "0.005%",
         allow_hyphen_values = true)]
     rounding: Bound,
     /// Keep the vertices of the mesh bit for bit, so that extract --error 0 restores all its faces;
     /// vertices of coarser levels move by about 0.002% of the diagonal
     #[arg(long, conflicts_with = "rounding")]
     lossless: bool,
-    /// Approximate number of vertices in a chunk, the unit of reading: smaller chunks make a larger file
-    /// of which a query reads less
-    #[arg(long, value_name = "N", value_parser = amounts::positive, default_value_t = 4096,
+    /// Approximate number of vertices in a chunk, the unit of reading: smaller chunks make a larger
+    /// file of which a query reads less
+    #[arg(long, value_name = "N", value_parser = parse::positive, default_value_t = 4096,
         allow_negative_numbers = true)]
     in_chunk: usize,
     #[command(flatten)]
-    reading: Reading,
+    reading: ReadArgs,
 }
 
 #[derive(Clone, Copy, PartialEq, ValueEnum)]
-enum Model {
+enum ModelArg {
     /// Edge contractions, for any mesh
     Contractions,
     /// Right-triangle hierarchy, for a height field on a regular grid
     RightTriangles,
 }
 
-/// A file, and what is to be said of it.
+/// File contents with the figures to report.
 struct Built {
     bytes: Vec<u8>,
-    /// Of the finest level.
+    /// Number of faces of the finest level.
     faces: usize,
     rounding: f64,
-    /// The same in words.
+    /// Displacement of vertices in words.
     moved: String,
     levels: Levels,
 }
@@ -93,7 +94,7 @@ enum Levels {
 impl Build {
     pub fn run(self, session: &Session) -> Result<Answer, Failure> {
         model_file::check_output(&self.output)?;
-        if self.lossless && self.model == Model::RightTriangles {
+        if self.lossless && self.model == ModelArg::RightTriangles {
             return Err(Failure::usage(
                 "--lossless does not go with right-triangles, which move vertices to a grid; use --rounding 0 to keep the heights",
             ));
@@ -105,8 +106,8 @@ impl Build {
         }
         let start = Instant::now();
         let built = match self.model {
-            Model::Contractions => self.contractions(&mesh, session)?,
-            Model::RightTriangles => self.right_triangles(&mesh)?,
+            ModelArg::Contractions => self.contractions(&mesh, session)?,
+            ModelArg::RightTriangles => self.right_triangles(&mesh)?,
         };
         self.warn(&mesh, &built, session);
         session.progress.stage(&format!("writing {}", files::name(&self.output)));
@@ -115,7 +116,7 @@ impl Build {
         Ok(Answer::new(self.json(&mesh, &built, time), self.text(&mesh, &built, time)))
     }
 
-    /// Says what of the mesh is not in the file.
+    /// Warns of vertices and faces that are not in the file.
     fn warn(&self, mesh: &Mesh, built: &Built, session: &Session) {
         let alone = mesh.positions.len() - vertex_count(mesh);
         if alone > 0 {
@@ -144,7 +145,7 @@ impl Build {
         session.progress.stage("measuring errors");
         match self.bounds {
             true => forest.measure_bounds(),
-            // The greatest errors alone would keep cuts from being good on the whole.
+            // With unsmoothed maxima, cuts would be worse on the whole.
             false => forest.smooth_errors(),
         }
         session.progress.stage("proving and packing");
@@ -251,7 +252,7 @@ impl Build {
     }
 }
 
-/// The mesh with nothing that a model leaves behind.
+/// Returns the mesh without attributes and materials, with a warning if it has any.
 fn bare(mesh: Mesh, session: &Session) -> Mesh {
     if mesh.attributes.is_some() || mesh.materials.is_some() {
         session.warn("attributes and materials are left out: the file holds the surface only");
@@ -259,7 +260,7 @@ fn bare(mesh: Mesh, session: &Session) -> Mesh {
     Mesh::new(mesh.positions, mesh.faces)
 }
 
-/// Those that faces use.
+/// Returns the number of vertices used by faces.
 fn vertex_count(mesh: &Mesh) -> usize {
     mesh.used_vertices().iter().filter(|&&used| used).count()
 }

@@ -1,4 +1,4 @@
-//! `check`: what is wrong with a mesh, and where its objects meet.
+//! `check`: finds defects of a mesh and contacts between its objects.
 
 use std::path::{Path, PathBuf};
 
@@ -8,18 +8,19 @@ use meshlod::io::write_file;
 use meshlod::mesh::Lock;
 use meshlod::{Scene, scene_locks};
 
-use crate::amounts;
 use crate::answer::Answer;
-use crate::args::Reading;
-use crate::check::inspection::{Inspection, Order};
-use crate::check::lock_file::{self, Rows};
+use crate::args::ReadArgs;
+use crate::check::inspection::{Inspection, InspectionOptions};
+use crate::check::lock_file::{self, FileRows};
 use crate::check::sites::Sites;
 use crate::check::{page, proof, report, text};
 use crate::failure::Failure;
 use crate::files;
 use crate::model_file;
+use crate::parse;
 use crate::session::Session;
 
+/// Find defects of a mesh and contacts between its objects; exit with 1 on errors
 #[derive(Args)]
 pub struct Check {
     /// Mesh to read, or -; or a .mlod file, to prove that none of its cuts has a crack
@@ -32,7 +33,7 @@ pub struct Check {
     #[arg(long, value_name = "WHAT")]
     deny: Option<Deny>,
     /// Maximum number of findings listed of each kind, and of pairs of objects
-    #[arg(long, value_name = "N", default_value_t = 100, value_parser = amounts::whole,
+    #[arg(long, value_name = "N", default_value_t = 100, value_parser = parse::whole,
         allow_negative_numbers = true)]
     limit: usize,
     /// What finds the faces that may meet; the findings are the same
@@ -41,7 +42,8 @@ pub struct Check {
     /// Skip the search for faces that meet, which --locks needs
     #[arg(long, conflicts_with = "locks")]
     no_intersections: bool,
-    /// Write vertex locks for the places where components meet, for simplify --locks and other programs
+    /// Write vertex locks for the places where components meet, for simplify --locks and other
+    /// programs
     #[arg(long, value_name = "FILE.json")]
     locks: Option<PathBuf>,
     /// Lock the boundary in that file too
@@ -51,7 +53,7 @@ pub struct Check {
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     #[command(flatten)]
-    reading: Reading,
+    reading: ReadArgs,
 }
 
 #[derive(Clone, Copy, ValueEnum)]
@@ -91,7 +93,11 @@ impl Check {
         }
         session.progress.stage("checking");
         let sites = Sites::of(&scene);
-        let order = Order { options: self.options(), limit: self.limit, marks: self.out.is_some() };
+        let order = InspectionOptions {
+            options: self.options(),
+            limit: self.limit,
+            marks: self.out.is_some(),
+        };
         let inspection = Inspection::of(scene.into_mesh(), order);
         if let Some(folder) = &self.out {
             session.progress.stage("drawing the page");
@@ -109,7 +115,7 @@ impl Check {
         Ok(Answer { missed, ..Answer::new(json, text) })
     }
 
-    /// What cannot be written is told before any work is done.
+    /// Refuses outputs that cannot be written, before any work is done.
     fn refuse_early(&self) -> Result<(), Failure> {
         if let Some(path) = &self.locks {
             if files::is_pipe(&self.input) || files::is_pipe(path) {
@@ -146,7 +152,7 @@ impl Check {
     }
 
     fn write_locks(&self, path: &Path, scene: &Scene) -> Result<String, Failure> {
-        let rows = Rows::of(&self.input, scene, self.reading.options().weld)?;
+        let rows = FileRows::of(&self.input, scene, self.reading.options().weld)?;
         let boundary = if self.lock_boundary { Lock::Locked } else { Lock::Free };
         let lockings = scene_locks(scene, &LockOptions { contacts: true, boundary });
         let json = lock_file::to_json(&self.input, scene, &rows, &lockings);

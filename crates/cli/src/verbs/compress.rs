@@ -1,4 +1,4 @@
-//! `compress`: a mesh in few bytes, to draw from or to send.
+//! `compress`: writes a compressed mesh for rendering or transmission.
 
 mod gltf;
 mod resident;
@@ -13,14 +13,15 @@ use meshlod::codec::{AttributeBounds, CompressionTarget, LayerReport, Reconstruc
 use meshlod::io::write_file;
 use serde_json::{Value, json};
 
-use crate::amounts::{self, Bound};
 use crate::answer::Answer;
-use crate::args::Reading;
+use crate::args::ReadArgs;
 use crate::failure::Failure;
 use crate::files;
 use crate::numbers::{count, faces, percent, value};
+use crate::parse::{self, Bound};
 use crate::session::Session;
 
+/// Compress a mesh for rendering or transmission
 #[derive(Args)]
 pub struct Compress {
     /// Mesh to read, or -
@@ -30,10 +31,11 @@ pub struct Compress {
     #[arg(value_name = "OUT")]
     output: PathBuf,
     #[command(flatten)]
-    goal: Goal,
-    /// How positions are encoded: any scheme in .mlq [default: blocks], lattice in .mlz, parts in .glb
+    target: CompressTarget,
+    /// How positions are encoded: any scheme in .mlq [default: blocks], lattice in .mlz, parts in
+    /// .glb
     #[arg(long, value_name = "SCHEME")]
-    scheme: Option<SchemeName>,
+    scheme: Option<SchemeArg>,
     /// Use --scheme parts as in the paper: vertices at the minimum corners of their cells, measured
     /// against truncated bits
     #[arg(long)]
@@ -42,31 +44,31 @@ pub struct Compress {
     #[arg(long)]
     resident: bool,
     #[command(flatten)]
-    attributes: AttributeGoals,
+    attributes: AttributeErrorArgs,
     /// Exit with 1 if the target is out of reach
     #[arg(long)]
     strict: bool,
     #[command(flatten)]
-    reading: Reading,
+    reading: ReadArgs,
 }
 
-/// How well, or in how little.
+/// Target of the compression: accuracy or size.
 #[derive(Args)]
 #[group(multiple = false)]
-struct Goal {
+struct CompressTarget {
     /// As accurate as a grid of this many bits per axis over the whole mesh [default: 11]
     #[arg(long, value_name = "BITS", allow_negative_numbers = true)]
     bits: Option<u32>,
     /// Mean distance between the surfaces: 0.005% of the diagonal, or 0.1 in model units
-    #[arg(long, value_name = "BOUND", value_parser = amounts::bound, allow_hyphen_values = true)]
+    #[arg(long, value_name = "BOUND", value_parser = parse::bound, allow_hyphen_values = true)]
     error: Option<Bound>,
     /// Reduction of positions against three f32 per vertex: 70%
-    #[arg(long, value_name = "RATIO", value_parser = amounts::ratio, allow_hyphen_values = true)]
+    #[arg(long, value_name = "RATIO", value_parser = parse::ratio, allow_hyphen_values = true)]
     reduction: Option<f64>,
 }
 
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum SchemeName {
+enum SchemeArg {
     /// Eight bits per axis and one matrix per part; vertices shared by parts are stored in each
     Parts,
     /// Each vertex in one block, in cells aligned with the surface
@@ -76,19 +78,19 @@ enum SchemeName {
 }
 
 #[derive(Args)]
-struct AttributeGoals {
+struct AttributeErrorArgs {
     /// Largest error of normals and tangents, in degrees
-    #[arg(long, value_name = "DEGREES", value_parser = amounts::length, allow_hyphen_values = true)]
+    #[arg(long, value_name = "DEGREES", value_parser = parse::length, allow_hyphen_values = true)]
     normal_error: Option<f64>,
     /// Largest error of texture coordinates, where 1 is the whole texture
-    #[arg(long, value_name = "BOUND", value_parser = amounts::length, allow_hyphen_values = true)]
+    #[arg(long, value_name = "BOUND", value_parser = parse::length, allow_hyphen_values = true)]
     uv_error: Option<f64>,
     /// Largest error of colours, from 0 to 1
-    #[arg(long, value_name = "BOUND", value_parser = amounts::length, allow_hyphen_values = true)]
+    #[arg(long, value_name = "BOUND", value_parser = parse::length, allow_hyphen_values = true)]
     color_error: Option<f64>,
 }
 
-/// What a file is for.
+/// Purpose of the output file, by its suffix.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Kind {
     Resident,
@@ -96,18 +98,18 @@ enum Kind {
     Gltf,
 }
 
-/// A compressed file, and what is to be said of it.
-struct Packed {
+/// Compressed file with the figures to report.
+struct CompressedFile {
     bytes: Vec<u8>,
-    /// Of positions, connectivity and attributes.
+    /// Bytes of positions, connectivity and attributes.
     sizes: [usize; 3],
     vertices: usize,
     faces: usize,
-    /// Blocks, parts or meshes, and how many.
+    /// Kind and number of pieces: blocks, parts or meshes.
     pieces: (&'static str, usize),
     layers: Vec<LayerReport>,
     reached: bool,
-    /// What of the input is not there, or not compressed.
+    /// Messages on data of the input that is left out or not compressed.
     left_out: Vec<String>,
 }
 
@@ -140,13 +142,14 @@ impl Compress {
         })
     }
 
-    /// Refuses a file that could not be written, and options that it has no use for, before any work is done.
+    /// Refuses an output that cannot be written and options that do not apply to it, before any
+    /// work is done.
     fn check_output(&self) -> Result<Kind, Failure> {
         let suffix = self.output.extension().map(|suffix| suffix.to_ascii_lowercase());
-        let (kind, schemes): (_, &[SchemeName]) = match suffix.as_ref().and_then(|of| of.to_str()) {
-            Some("mlq") => (Kind::Resident, SchemeName::value_variants()),
-            Some("mlz") => (Kind::Transport, &[SchemeName::Lattice]),
-            Some("glb") => (Kind::Gltf, &[SchemeName::Parts]),
+        let (kind, schemes): (_, &[SchemeArg]) = match suffix.as_ref().and_then(|of| of.to_str()) {
+            Some("mlq") => (Kind::Resident, SchemeArg::value_variants()),
+            Some("mlz") => (Kind::Transport, &[SchemeArg::Lattice]),
+            Some("glb") => (Kind::Gltf, &[SchemeArg::Parts]),
             _ => {
                 let name = files::name(&self.output);
                 let reason =
@@ -160,13 +163,13 @@ impl Compress {
                 "{name}: this format does not support that --scheme"
             )));
         }
-        if self.paper && self.scheme != Some(SchemeName::Parts) {
+        if self.paper && self.scheme != Some(SchemeArg::Parts) {
             return Err(Failure::usage("--paper needs --scheme parts"));
         }
         if self.resident && kind != Kind::Gltf {
             return Err(Failure::usage("--resident needs a .glb file"));
         }
-        let AttributeGoals { normal_error, uv_error, color_error } = &self.attributes;
+        let AttributeErrorArgs { normal_error, uv_error, color_error } = &self.attributes;
         let bounds = match (kind, self.scheme) {
             (Kind::Resident, _) => None,
             (Kind::Gltf, None) => *color_error,
@@ -181,7 +184,7 @@ impl Compress {
     }
 
     fn target(&self, mesh: &Mesh) -> CompressionTarget {
-        match (self.goal.error, self.goal.reduction) {
+        match (self.target.error, self.target.reduction) {
             (Some(error), _) => CompressionTarget::Error(error.length(mesh.bounds().diagonal())),
             (None, Some(part)) => CompressionTarget::Reduction(part),
             (None, None) => CompressionTarget::Bits(self.bits()),
@@ -189,24 +192,24 @@ impl Compress {
     }
 
     fn bits(&self) -> u32 {
-        self.goal.bits.unwrap_or(11)
+        self.target.bits.unwrap_or(11)
     }
 
     fn scheme(&self) -> Scheme {
         match self.scheme {
-            Some(SchemeName::Parts) if self.paper => Scheme::Parts(Reconstruction::Truncated),
-            Some(SchemeName::Parts) => Scheme::Parts(Reconstruction::Centred),
-            Some(SchemeName::Lattice) => Scheme::Lattice,
-            Some(SchemeName::Blocks) | None => Scheme::Blocks,
+            Some(SchemeArg::Parts) if self.paper => Scheme::Parts(Reconstruction::Truncated),
+            Some(SchemeArg::Parts) => Scheme::Parts(Reconstruction::Centred),
+            Some(SchemeArg::Lattice) => Scheme::Lattice,
+            Some(SchemeArg::Blocks) | None => Scheme::Blocks,
         }
     }
 
-    /// A failure of the mesh.
+    /// Creates a failure that names the input.
     fn failed(&self, error: impl std::fmt::Display) -> Failure {
         Failure::at(&self.input, error)
     }
 
-    fn json(&self, packed: &Packed, time: Duration) -> Value {
+    fn json(&self, packed: &CompressedFile, time: Duration) -> Value {
         let [positions, connectivity, attributes] = packed.sizes;
         let mut json = json!({
             "file": files::name(&self.output),
@@ -227,7 +230,7 @@ impl Compress {
         json
     }
 
-    fn text(&self, packed: &Packed, time: Duration) -> String {
+    fn text(&self, packed: &CompressedFile, time: Duration) -> String {
         let (what, pieces) = packed.pieces;
         let what = match (what, pieces) {
             ("meshes", 1) => "mesh",
@@ -253,13 +256,13 @@ impl Compress {
     }
 }
 
-impl Packed {
+impl CompressedFile {
     fn reduction(&self) -> f64 {
         1.0 - self.sizes[0] as f64 / (12 * self.vertices) as f64
     }
 }
 
-impl AttributeGoals {
+impl AttributeErrorArgs {
     fn bounds(&self) -> AttributeBounds {
         let default = AttributeBounds::default();
         AttributeBounds {
@@ -280,7 +283,7 @@ fn layer_json(layer: &LayerReport) -> Value {
     })
 }
 
-/// What a file of one surface leaves out of a mesh.
+/// Lists what a file with a single surface leaves out of a mesh.
 fn left_out(mesh: &Mesh, faces_there: usize) -> Vec<String> {
     let mut left_out = Vec::new();
     let alone = mesh.used_vertices().iter().filter(|&&used| !used).count();

@@ -1,4 +1,4 @@
-//! `decompress`: the mesh that a compressed file holds.
+//! `decompress`: decodes a compressed file to a mesh.
 
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
@@ -9,12 +9,13 @@ use meshlod::{Mesh, Scene};
 use serde_json::{Value, json};
 
 use crate::answer::Answer;
-use crate::args::Writing;
+use crate::args::WriteArgs;
 use crate::failure::Failure;
 use crate::files;
 use crate::numbers::{faces, value};
 use crate::session::Session;
 
+/// Decode a compressed file (.mlq or .mlz) to a mesh
 #[derive(Args)]
 pub struct Decompress {
     /// File to read, .mlq or .mlz, or -
@@ -24,7 +25,7 @@ pub struct Decompress {
     #[arg(value_name = "OUT")]
     output: PathBuf,
     #[command(flatten)]
-    writing: Writing,
+    writing: WriteArgs,
 }
 
 impl Decompress {
@@ -59,7 +60,7 @@ impl Decompress {
     }
 }
 
-/// What a file begins with says which it is.
+/// Decodes a file, choosing the decoder by its first bytes.
 fn decode(bytes: &[u8]) -> Result<Mesh, Malformed> {
     if bytes.starts_with(&TransportFile::MAGIC) {
         return TransportFile::open(bytes)?.decode();

@@ -1,4 +1,4 @@
-//! `extract`: one mesh out of a multiresolution file.
+//! `extract`: takes one mesh out of a multiresolution file.
 
 use std::fs::File;
 use std::path::PathBuf;
@@ -11,16 +11,17 @@ use meshlod::multires::{
 };
 use serde_json::{Value, json};
 
-use crate::amounts::{self, Bound};
 use crate::answer::Answer;
-use crate::args::Writing;
+use crate::args::WriteArgs;
 use crate::failure::Failure;
 use crate::files;
 use crate::model_file;
 use crate::numbers::{count, faces, plural, value};
-use crate::question::{self, Allowed, Question, Where};
+use crate::parse::{self, Bound};
+use crate::query_args::{self, ErrorLimit, FocusArg, QueryRequest};
 use crate::session::Session;
 
+/// Extract one mesh from a multiresolution file: fine where it is needed, coarse elsewhere
 #[derive(Args)]
 pub struct Extract {
     /// Multiresolution file to read
@@ -30,43 +31,43 @@ pub struct Extract {
     #[arg(value_name = "OUT")]
     output: PathBuf,
     #[command(flatten)]
-    goal: Goal,
-    /// Camera for errors in pixels and the focus frustum: "eye=x,y,z look=x,y,z fov=45 1920x1080", with
-    /// up=x,y,z unless y is up
-    #[arg(long, value_name = "CAMERA", value_parser = question::camera)]
+    target: ExtractTarget,
+    /// Camera for errors in pixels and the focus frustum: "eye=x,y,z look=x,y,z fov=45 1920x1080",
+    /// with up=x,y,z unless y is up
+    #[arg(long, value_name = "CAMERA", value_parser = query_args::camera)]
     camera: Option<ViewCamera>,
     /// Region where the error counts, coarse elsewhere: point=x,y,z, segment=x,y,z,x,y,z,
     /// box=x,y,z,x,y,z, sphere=x,y,z,r, or frustum for what the camera sees [default: everywhere]
-    #[arg(long, value_name = "FOCUS", value_parser = question::focus, allow_hyphen_values = true)]
-    focus: Option<Where>,
+    #[arg(long, value_name = "FOCUS", value_parser = query_args::focus, allow_hyphen_values = true)]
+    focus: Option<FocusArg>,
     /// Leave out faces that do not intersect the focus
     #[arg(long, requires = "focus")]
     only: bool,
     #[command(flatten)]
-    writing: Writing,
+    writing: WriteArgs,
 }
 
-/// How fine.
+/// Target of the extraction: an error or a number of faces.
 #[derive(Args)]
 #[group(required = true, multiple = false)]
-struct Goal {
-    /// Largest error, by the estimates or bounds in the file: 1px as the camera sees it, 0.01% of the
-    /// diagonal, or 0.5 in model units; 0 leaves out only detail that changes nothing
-    #[arg(long, value_name = "BOUND", value_parser = question::allowed, allow_hyphen_values = true)]
-    error: Option<Allowed>,
+struct ExtractTarget {
+    /// Largest error, by the estimates or bounds in the file: 1px as the camera sees it, 0.01% of
+    /// the diagonal, or 0.5 in model units; 0 leaves out only detail that changes nothing
+    #[arg(long, value_name = "BOUND", value_parser = query_args::allowed, allow_hyphen_values = true)]
+    error: Option<ErrorLimit>,
     /// The best mesh of at most N faces: for the camera if there is one, else from all sides
-    #[arg(long, value_name = "N", value_parser = amounts::whole, allow_negative_numbers = true)]
+    #[arg(long, value_name = "N", value_parser = parse::whole, allow_negative_numbers = true)]
     faces: Option<usize>,
 }
 
-/// A mesh, and what was read for it.
-struct Taken {
+/// Extracted level with the figures on what was read.
+struct Extracted {
     level: Level,
-    /// By how much its vertices were moved before, at most.
+    /// Largest displacement of its vertices when the file was built.
     rounding: f64,
     lossless: bool,
     error_kind: &'static str,
-    /// Read, there, and in all.
+    /// Chunks read, present and in total.
     chunks: [usize; 3],
     updates: usize,
     bytes: u64,
@@ -87,7 +88,7 @@ impl Extract {
             return Err(Failure::at(&self.input, "no face intersects the focus"));
         }
         let counts = [mesh.positions.len(), mesh.faces.len()];
-        if self.goal.faces.is_some_and(|most| taken.level.faces.len() > most) {
+        if self.target.faces.is_some_and(|most| taken.level.faces.len() > most) {
             let reason = format_args!("its coarsest level has {}", faces(counts[1]));
             session.warn(Failure::at(&self.input, reason));
         }
@@ -103,9 +104,9 @@ impl Extract {
         Ok(Answer { file_on_stdout: files::is_pipe(&self.output), ..Answer::new(json, text) })
     }
 
-    fn take_contractions(&self, archive: &Archive<File>) -> Result<Taken, Failure> {
+    fn take_contractions(&self, archive: &Archive<File>) -> Result<Extracted, Failure> {
         let query = self.query(archive.diagonal())?;
-        let taken = match self.goal.faces {
+        let taken = match self.target.faces {
             None => archive.extract(&query),
             Some(faces) => archive.extract_at_most(faces, &query),
         };
@@ -113,7 +114,7 @@ impl Extract {
             FileError::Query(error) => Failure::usage(error),
             error => Failure::at(&self.input, error),
         })?;
-        Ok(Taken {
+        Ok(Extracted {
             level: self.cut_out(taken.level, &query)?,
             rounding: model_file::rounding(archive),
             lossless: archive.is_lossless(),
@@ -124,17 +125,17 @@ impl Extract {
         })
     }
 
-    fn take_field(&self, field: &HeightField) -> Result<Taken, Failure> {
+    fn take_field(&self, field: &HeightField) -> Result<Extracted, Failure> {
         let query = self.query(field.bounds().diagonal())?;
         let model = Rtin::new(field);
-        let level = match self.goal.faces {
+        let level = match self.target.faces {
             None => model.level(&query),
             Some(faces) => RtinExtractor::new(&model).at_most(faces, &query).cloned(),
         };
         let level = level.map_err(Failure::usage)?;
         let bytes = std::fs::metadata(&self.input).map_or(0, |data| data.len());
         let updates = field.heights().len();
-        Ok(Taken {
+        Ok(Extracted {
             level: self.cut_out(level, &query)?,
             rounding: field.fit().rounded,
             lossless: false,
@@ -146,13 +147,13 @@ impl Extract {
     }
 
     fn query(&self, diagonal: f64) -> Result<Query<'static>, Failure> {
-        // A number of faces is shared out as for one pixel, or alike.
+        // A number of faces is spread as for an error of one pixel, or evenly.
         let alike = match self.camera {
-            Some(_) => Allowed::Pixels(1.0),
-            None => Allowed::Length(Bound::OfDiagonal(1.0)),
+            Some(_) => ErrorLimit::Pixels(1.0),
+            None => ErrorLimit::Length(Bound::OfDiagonal(1.0)),
         };
-        let allowed = self.goal.error.unwrap_or(alike);
-        Question { allowed, focus: self.focus.clone(), camera: self.camera }.query(diagonal)
+        let allowed = self.target.error.unwrap_or(alike);
+        QueryRequest { allowed, focus: self.focus.clone(), camera: self.camera }.query(diagonal)
     }
 
     fn cut_out(&self, level: Level, query: &Query<'_>) -> Result<Level, Failure> {
@@ -162,7 +163,7 @@ impl Extract {
         }
     }
 
-    fn json(&self, taken: &Taken, [vertices, faces]: [usize; 2], time: Duration) -> Value {
+    fn json(&self, taken: &Extracted, [vertices, faces]: [usize; 2], time: Duration) -> Value {
         json!({
             "file": files::name(&self.output),
             "vertices": vertices,
@@ -178,7 +179,7 @@ impl Extract {
         })
     }
 
-    fn text(&self, taken: &Taken, [vertices, all]: [usize; 2], time: Duration) -> String {
+    fn text(&self, taken: &Extracted, [vertices, all]: [usize; 2], time: Duration) -> String {
         let [read, _, chunks] = taken.chunks;
         format!(
             "{}: {} vertices, {}\nread {read} of {chunks} chunk{}, {} bytes\nextract_seconds: {}\n",
@@ -192,7 +193,7 @@ impl Extract {
     }
 }
 
-/// What a file is called without its suffix.
+/// Returns the file name without its suffix.
 fn name(path: &std::path::Path) -> String {
     path.file_stem().unwrap_or_default().to_string_lossy().into_owned()
 }

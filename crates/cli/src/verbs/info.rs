@@ -1,4 +1,4 @@
-//! `info`: what is in a file.
+//! `info`: prints what a file contains.
 
 use std::path::PathBuf;
 
@@ -9,20 +9,21 @@ use meshlod::mesh::{Connectivity, LayerKind, face_components};
 use serde_json::{Value, json};
 
 use crate::answer::Answer;
-use crate::args::Reading;
+use crate::args::ReadArgs;
 use crate::failure::Failure;
 use crate::files;
 use crate::numbers::{count, value};
 use crate::session::Session;
 use crate::table::aligned;
 
+/// Print what a file contains: counts, bounds, area, volume, closed or open
 #[derive(Args)]
 pub struct Info {
     /// Mesh to read, or -
     #[arg(value_name = "IN")]
     input: PathBuf,
     #[command(flatten)]
-    reading: Reading,
+    reading: ReadArgs,
 }
 
 impl Info {
@@ -40,7 +41,7 @@ impl Info {
     }
 }
 
-/// All there is to say about what a scene shows.
+/// Counts and measurements of a flattened scene.
 struct Facts<'m> {
     mesh: &'m Mesh,
     connectivity: Connectivity,
@@ -54,7 +55,7 @@ struct Facts<'m> {
 impl<'m> Facts<'m> {
     fn of(mesh: &'m Mesh) -> Self {
         let components = face_components(&mesh.faces, mesh.positions.len()).1;
-        // Objects are those that the file names, else what hangs together.
+        // Objects are the named ones of the file, else connected components.
         let objects = mesh.objects.as_ref().map_or(components, labels_in_use);
         Self {
             mesh,
@@ -100,7 +101,7 @@ impl<'m> Facts<'m> {
         let Self { mesh, connectivity, .. } = self;
         let number = |name: &str, number: usize| [format!("  {name}"), count(number)];
         let mut rows = vec![number("vertices", mesh.positions.len())];
-        // What a sound mesh has none of is told only where there is some.
+        // Defects are listed only if there are any.
         let odd = |rows: &mut Vec<_>, name: &str, amount: usize| {
             if amount > 0 {
                 rows.push(number(name, amount));
@@ -126,7 +127,7 @@ impl<'m> Facts<'m> {
         aligned(&rows) + &self.lines()
     }
 
-    /// Bounds, attributes and materials, which fit no column.
+    /// Formats bounds, attributes and materials, which do not fit into columns.
     fn lines(&self) -> String {
         let bounds = self.mesh.bounds();
         let corner = |corner: [f64; 3]| corner.map(value).join(" ");

@@ -1,4 +1,4 @@
-//! `measure`: how far two meshes are apart, and what became of area and volume.
+//! `measure`: measures the distance between two meshes and the change of area and volume.
 
 use std::path::PathBuf;
 
@@ -8,7 +8,7 @@ use meshlod::measure::{area, surface_distance, volume};
 use meshlod::mesh::Connectivity;
 
 use crate::answer::Answer;
-use crate::args::{Reading, Sampling};
+use crate::args::{ReadArgs, SamplingArgs};
 use crate::distance;
 use crate::failure::Failure;
 use crate::files;
@@ -16,6 +16,7 @@ use crate::numbers::{change, value};
 use crate::session::Session;
 use crate::table::aligned;
 
+/// Measure the distance between two meshes, both ways
 #[derive(Args)]
 pub struct Measure {
     /// The original: forward distances start on it, and percentages refer to its diagonal
@@ -25,9 +26,9 @@ pub struct Measure {
     #[arg(value_name = "B")]
     b: PathBuf,
     #[command(flatten)]
-    sampling: Sampling,
+    sampling: SamplingArgs,
     #[command(flatten)]
-    reading: Reading,
+    reading: ReadArgs,
 }
 
 impl Measure {
@@ -75,13 +76,13 @@ fn is_closed(mesh: &Mesh) -> bool {
     Connectivity::new(&mesh.faces, mesh.positions.len()).is_closed()
 }
 
-/// What became of a quantity, as a part of what it was; `None` where there was none.
+/// Returns the relative change of a quantity; `None` if it was zero.
 fn relative([before, after]: [f64; 2]) -> Option<f64> {
     let change = (after - before) / before.abs();
     change.is_finite().then_some(change)
 }
 
-/// A line that says whose volume is that of no closed surface.
+/// Returns a line that names the meshes that are not closed.
 fn open_note(closed: [bool; 2]) -> &'static str {
     match closed {
         [true, true] => "",

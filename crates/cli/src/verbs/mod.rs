@@ -1,4 +1,4 @@
-//! The verbs, one a file: arguments, work, answer.
+//! Verbs, one per file: arguments, work, answer.
 
 pub mod build;
 pub mod check;

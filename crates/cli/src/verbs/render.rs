@@ -1,4 +1,4 @@
-//! `render`: a picture.
+//! `render`: draws a picture of a mesh.
 
 use std::path::PathBuf;
 
@@ -10,16 +10,17 @@ use meshlod::picture::{
 };
 use serde_json::json;
 
-use crate::amounts;
 use crate::answer::Answer;
-use crate::args::{Reading, Viewpoint};
+use crate::args::{ReadArgs, ViewArgs};
 use crate::distance;
 use crate::failure::Failure;
 use crate::files;
 use crate::numbers::{percent, value};
-use crate::page::look::{self, Coat, normals_of};
+use crate::page::style::{self, OwnedPaint, normals_of};
+use crate::parse;
 use crate::session::Session;
 
+/// Render a picture of a mesh
 #[derive(Args)]
 pub struct Render {
     /// Mesh to read, or -
@@ -29,10 +30,10 @@ pub struct Render {
     #[arg(value_name = "OUT.png")]
     output: PathBuf,
     /// Width and height in pixels
-    #[arg(long, value_name = "WxH", default_value = "1024x1024", value_parser = amounts::pixels)]
+    #[arg(long, value_name = "WxH", default_value = "1024x1024", value_parser = parse::pixels)]
     size: [u32; 2],
     #[command(flatten)]
-    viewpoint: Viewpoint,
+    viewpoint: ViewArgs,
     /// Draw the edges of all faces
     #[arg(long)]
     wireframe: bool,
@@ -46,13 +47,13 @@ pub struct Render {
     #[arg(long, value_name = "B")]
     heat_against: Option<PathBuf>,
     #[command(flatten)]
-    reading: Reading,
+    reading: ReadArgs,
 }
 
-/// Of the checkerboard, along a unit of uv.
+/// Squares of the checkerboard per unit of uv.
 const SQUARES: u32 = 16;
 
-/// Distances of a mesh's vertices from another mesh.
+/// Distances of the vertices of a mesh from another mesh.
 struct Heat {
     values: Vec<f32>,
     max: f64,
@@ -63,14 +64,14 @@ impl Render {
     pub fn run(self, session: &Session) -> Result<Answer, Failure> {
         files::check_picture(&self.output, session)?;
         let scene = files::read(&self.input, &self.reading, session)?;
-        let coat = Coat::of(&scene, look::materials(&scene, &self.input, session));
+        let paint = OwnedPaint::of(&scene, style::materials(&scene, &self.input, session));
         let mesh = scene.into_mesh();
         if mesh.faces.is_empty() {
             return Err(Failure::at(&self.input, "the mesh has no faces"));
         }
         let heat = self.heat(&mesh, session)?;
         session.progress.stage("drawing");
-        let style = self.style(&mesh, &coat, heat.as_ref());
+        let style = self.style(&mesh, &paint, heat.as_ref());
         let picture = render(&mesh, &self.camera(&mesh), &style)
             .map_err(|error| Failure::at(&self.input, error))?;
         files::write_picture(&self.output, &picture.png())?;
@@ -82,7 +83,7 @@ impl Render {
             "width": width,
             "height": height,
             "faces": mesh.faces.len(),
-            "textures": coat.textures(),
+            "textures": paint.textures(),
             "heat_max": heat.as_ref().map(|heat| heat.max),
             "heat_max_percent": heat.as_ref().map(|heat| heat.max_percent),
         });
@@ -105,14 +106,14 @@ impl Render {
         Ok(Some(Heat { values, max, max_percent: 100.0 * max / against.diagonal() }))
     }
 
-    fn style<'a>(&self, mesh: &Mesh, coat: &'a Coat, heat: Option<&'a Heat>) -> Style<'a> {
+    fn style<'a>(&self, mesh: &Mesh, paint: &'a OwnedPaint, heat: Option<&'a Heat>) -> Style<'a> {
         let paint = match heat {
             Some(Heat { values, max, .. }) => {
                 let range = [0.0, *max as f32];
                 Paint::VertexValues(Values { values, map: ColorMap::Heat, range })
             }
             None if self.checker => Paint::Checker { squares: SQUARES },
-            None => coat.paint(),
+            None => paint.as_paint(),
         };
         Style {
             size: self.size,

@@ -1,4 +1,4 @@
-//! `repair`: what can be mended safely.
+//! `repair`: repairs the defects that can be repaired safely.
 
 use std::ops::ControlFlow;
 use std::path::PathBuf;
@@ -11,22 +11,22 @@ use meshlod::check::{
 use meshlod::{Format, Scene, repair_scene};
 use serde_json::{Map, Value, json};
 
-use crate::amounts;
 use crate::answer::Answer;
-use crate::args::{Reading, Writing};
+use crate::args::{ReadArgs, WriteArgs};
 use crate::failure::Failure;
 use crate::files;
-use crate::fusing::{self, Fusing};
+use crate::fuse::{self, FuseArgs};
 use crate::numbers::{count, faces, plural, value};
+use crate::parse;
 use crate::session::Session;
 use crate::table::aligned;
 
 /// Repair the defects that can be repaired safely, and report every step.
 ///
-/// The steps, in order: drop invalid data; --weld; drop duplicate faces; drop faces without area; split
-/// non-manifold edges and vertices; orient faces consistently; stitch borders; close --holes; turn closed
-/// shells outwards; drop unused vertices. Then --fuse, followed by the same steps once more. At the end
-/// OUT is read back, and the errors that check still finds in it are reported.
+/// The steps, in order: drop invalid data; --weld; drop duplicate faces; drop faces without area;
+/// split non-manifold edges and vertices; orient faces consistently; stitch borders; close --holes;
+/// turn closed shells outwards; drop unused vertices. Then --fuse, followed by the same steps once
+/// more. At the end OUT is read back, and the errors that check still finds in it are reported.
 #[derive(Args)]
 pub struct Repair {
     /// Mesh to read, or -
@@ -36,28 +36,28 @@ pub struct Repair {
     #[arg(value_name = "OUT")]
     output: PathBuf,
     #[command(flatten)]
-    steps: Steps,
+    steps: StepArgs,
     #[command(flatten)]
-    fusing: Fusing,
+    fuse: FuseArgs,
     #[command(flatten)]
-    reading: Reading,
+    reading: ReadArgs,
     #[command(flatten)]
-    writing: Writing,
+    writing: WriteArgs,
 }
 
-/// What is mended beside, and what is not.
+/// Options that add or skip repair steps.
 #[derive(Args)]
-struct Steps {
+struct StepArgs {
     /// Stitch borders that lie within EPS of each other, in model units
-    #[arg(long, value_name = "EPS", default_value_t = 0.0, value_parser = amounts::length,
+    #[arg(long, value_name = "EPS", default_value_t = 0.0, value_parser = parse::length,
         allow_negative_numbers = true)]
     stitch: f64,
     /// Close holes of up to N edges, at most 256. If too many are large, the smallest are closed
     /// first; run again to go on
-    #[arg(long, value_name = "N", value_parser = amounts::whole, allow_negative_numbers = true)]
+    #[arg(long, value_name = "N", value_parser = parse::whole, allow_negative_numbers = true)]
     holes: Option<usize>,
     /// Close only holes whose perimeter is at most LENGTH, in model units
-    #[arg(long, value_name = "LENGTH", value_parser = amounts::length, requires = "holes",
+    #[arg(long, value_name = "LENGTH", value_parser = parse::length, requires = "holes",
         allow_negative_numbers = true)]
     hole_length: Option<f64>,
     /// Keep duplicate faces
@@ -80,7 +80,7 @@ struct Steps {
     no_unused: bool,
 }
 
-impl Steps {
+impl StepArgs {
     fn options(&self, weld: Option<f64>) -> RepairOptions {
         let length = self.hole_length.unwrap_or(f64::INFINITY);
         RepairOptions {
@@ -101,25 +101,25 @@ impl Repair {
         let format = files::check_output(&self.output, session)?;
         let options = self.steps.options(self.reading.take_weld());
         let mut scene = files::read(&self.input, &self.reading, session)?;
-        let before = Size::of(&scene);
+        let before = MeshSize::of(&scene);
         session.progress.stage("repairing");
         let start = Instant::now();
         let mut report = repair_scene(&mut scene, &options);
-        let fused = self.fusing.apply(&mut scene, session);
+        let fused = self.fuse.apply(&mut scene, session);
         if fused.is_some() {
-            // Where cuts are close, rounding leaves faces without area.
+            // Where cuts are close together, rounding leaves faces without area.
             report = report.then(&repair_scene(&mut scene, &options));
         }
         let time = start.elapsed();
-        let after = Size::of(&scene);
+        let after = MeshSize::of(&scene);
         if after.faces == 0 {
             return Err(Failure::at(&self.input, "no face with an area is left"));
         }
-        // Rounding could undo what was mended.
+        // Rounding could undo repairs.
         self.writing = self.writing.within(0.0, &scene, format);
         files::write(&self.output, &scene, &self.writing, session)?;
         let left = errors(files::read_again(&self.output, &scene, &self.writing, session)?);
-        let done = Done { report, fused, left, before, after, time };
+        let done = Repaired { report, fused, left, before, after, time };
         self.warn(format, &done, session);
         Ok(Answer {
             file_on_stdout: files::is_pipe(&self.output),
@@ -127,8 +127,8 @@ impl Repair {
         })
     }
 
-    /// Says what is left.
-    fn warn(&self, format: Format, done: &Done, session: &Session) {
+    /// Warns of defects that are left.
+    fn warn(&self, format: Format, done: &Repaired, session: &Session) {
         let shells = done.report.count(RepairStep::NotOrientable);
         if shells > 0 {
             let reason = format!("non-orientable shells, left unchanged: {shells}");
@@ -153,7 +153,7 @@ impl Repair {
         }
     }
 
-    fn json(&self, done: &Done) -> Value {
+    fn json(&self, done: &Repaired) -> Value {
         let all = RepairStep::ALL.into_iter();
         let steps: Map<String, Value> =
             all.map(|step| (step.name().into(), done.report.count(step).into())).collect();
@@ -166,15 +166,15 @@ impl Repair {
             "output_faces": done.after.faces,
             "output_vertices": done.after.vertices,
             "steps": steps,
-            "fused": fusing::to_json(done.fused.as_ref()),
+            "fused": fuse::to_json(done.fused.as_ref()),
             "errors_left": done.left.total(),
             "errors_left_by_kind": Value::Object(left.collect()),
             "repair_seconds": done.time.as_secs_f64(),
         })
     }
 
-    fn text(&self, done: &Done) -> String {
-        let Done { report, fused, left, before, after, time } = done;
+    fn text(&self, done: &Repaired) -> String {
+        let Repaired { report, fused, left, before, after, time } = done;
         let steps: Vec<[String; 2]> = report
             .told()
             .map(|(step, number)| [format!("  {}", step.name()), count(number)])
@@ -196,14 +196,14 @@ impl Repair {
             count(before.vertices),
             count(after.vertices),
             aligned(&steps),
-            fusing::to_text(fused.as_ref()),
+            fuse::to_text(fused.as_ref()),
             aligned(&left),
             value(time.as_secs_f64()),
         )
     }
 }
 
-/// The errors of a scene.
+/// Counts the errors of a scene.
 fn errors(scene: Scene) -> Summary {
     let options = CheckOptions { kinds: Kinds::errors(), ..CheckOptions::default() };
     let mut errors = Summary::default();
@@ -214,23 +214,23 @@ fn errors(scene: Scene) -> Summary {
     errors
 }
 
-struct Done {
+struct Repaired {
     report: RepairReport,
-    fused: Option<fusing::Done>,
-    /// The errors in what was written.
+    fused: Option<fuse::FuseReport>,
+    /// Errors in the file that was written.
     left: Summary,
-    before: Size,
-    after: Size,
+    before: MeshSize,
+    after: MeshSize,
     time: Duration,
 }
 
-/// How large all meshes are.
-struct Size {
+/// Total size of all meshes.
+struct MeshSize {
     vertices: usize,
     faces: usize,
 }
 
-impl Size {
+impl MeshSize {
     fn of(scene: &Scene) -> Self {
         let meshes = || scene.meshes.iter().map(|mesh| &mesh.mesh);
         Self {

@@ -1,4 +1,4 @@
-//! `replay`: any level of a run that was kept.
+//! `replay`: restores a level of a recorded run.
 
 use std::path::PathBuf;
 
@@ -7,15 +7,16 @@ use meshlod::simplify::Progressive;
 use meshlod::{Scene, Target};
 use serde_json::json;
 
-use crate::amounts;
 use crate::answer::Answer;
-use crate::args::{Reading, Writing};
+use crate::args::{ReadArgs, WriteArgs};
 use crate::failure::Failure;
 use crate::files;
 use crate::numbers::{count, faces};
+use crate::parse;
 use crate::sequence;
 use crate::session::Session;
 
+/// Restore any level recorded by simplify --sequence
 #[derive(Args)]
 pub struct Replay {
     /// File written by simplify --sequence, or -
@@ -25,31 +26,31 @@ pub struct Replay {
     #[arg(value_name = "OUT")]
     output: PathBuf,
     #[command(flatten)]
-    goal: Goal,
-    /// The input of that simplify, to be read with the same options: OUT gets its nodes, materials and
-    /// textures [default: OUT has geometry and attributes only]
+    level: LevelArgs,
+    /// The input of that simplify, to be read with the same options: OUT gets its nodes, materials
+    /// and textures [default: OUT has geometry and attributes only]
     #[arg(long, value_name = "IN")]
     scene: Option<PathBuf>,
     #[command(flatten)]
-    reading: Reading,
+    reading: ReadArgs,
     #[command(flatten)]
-    writing: Writing,
+    writing: WriteArgs,
 }
 
-/// Which level.
+/// Level to restore.
 #[derive(Args)]
 #[group(required = true, multiple = false)]
-struct Goal {
+struct LevelArgs {
     /// The finest level of at most N faces
-    #[arg(long, value_name = "N", value_parser = amounts::whole, allow_negative_numbers = true)]
+    #[arg(long, value_name = "N", value_parser = parse::whole, allow_negative_numbers = true)]
     faces: Option<usize>,
     /// The finest level of at most this ratio of all faces: 10% or 0.1
-    #[arg(long, value_name = "RATIO", value_parser = amounts::ratio, allow_hyphen_values = true)]
+    #[arg(long, value_name = "RATIO", value_parser = parse::ratio, allow_hyphen_values = true)]
     ratio: Option<f64>,
 }
 
-impl Goal {
-    /// The most faces that the level may have, of a finest one with `full`.
+impl LevelArgs {
+    /// Returns the face limit of the level, if the finest has `full` faces.
     fn most_faces(&self, full: usize) -> usize {
         match (self.faces, self.ratio) {
             (Some(faces), _) => faces,
@@ -64,7 +65,7 @@ impl Replay {
         self.check_paths()?;
         let mut sequence = self.read(session)?;
         let (base, full) = (sequence.live_faces(), sequence.full_faces());
-        let wanted = self.goal.most_faces(full);
+        let wanted = self.level.most_faces(full);
         sequence.go_to(wanted);
         let (found, splits) = (sequence.live_faces(), sequence.len());
         let reached = found <= wanted;
@@ -105,7 +106,7 @@ impl Replay {
         Progressive::from_bytes(&bytes).map_err(|error| Failure::at(&self.input, error))
     }
 
-    /// The level at hand, where it belongs.
+    /// Builds the scene of the current level: that of `--scene`, or a new one.
     fn scene_of(&self, sequence: &Progressive, session: &Session) -> Result<Scene, Failure> {
         if let Some(path) = &self.scene {
             let mut scene = files::read(path, &self.reading, session)?;

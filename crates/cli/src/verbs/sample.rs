@@ -1,4 +1,4 @@
-//! `sample`: procedural meshes.
+//! `sample`: writes a procedural mesh.
 
 use std::path::PathBuf;
 
@@ -8,14 +8,15 @@ use meshlod::Scene;
 use meshlod::samples;
 use serde_json::json;
 
-use crate::amounts;
 use crate::answer::Answer;
-use crate::args::Writing;
+use crate::args::WriteArgs;
 use crate::failure::Failure;
 use crate::files;
 use crate::numbers::{self, count};
+use crate::parse;
 use crate::session::Session;
 
+/// Write a procedural mesh of any size
 #[derive(Args)]
 pub struct Sample {
     /// Name of the sample
@@ -28,7 +29,7 @@ pub struct Sample {
     #[arg(long, value_name = "N", value_parser = faces, allow_negative_numbers = true)]
     faces: Option<usize>,
     #[command(flatten)]
-    writing: Writing,
+    writing: WriteArgs,
 }
 
 impl Sample {
@@ -53,7 +54,7 @@ impl Sample {
 }
 
 fn faces(text: &str) -> Result<usize, String> {
-    match amounts::positive(text)? {
+    match parse::positive(text)? {
         faces if faces <= samples::MAX_FACES => Ok(faces),
         _ => Err(format!("it must be at most {}", count(samples::MAX_FACES))),
     }

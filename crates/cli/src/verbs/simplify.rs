@@ -1,4 +1,4 @@
-//! `simplify`: one coarser mesh.
+//! `simplify`: reduces a mesh to fewer faces.
 
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
@@ -10,21 +10,22 @@ use meshlod::{
 };
 use serde_json::{Value, json};
 
-use crate::amounts::{self, Bound};
 use crate::answer::Answer;
-use crate::args::{Reading, Writing};
+use crate::args::{ReadArgs, WriteArgs};
 use crate::distance;
 use crate::failure::Failure;
 use crate::files;
-use crate::fusing::{self, Fusing};
-use crate::holding::{self, Holding, Origin};
+use crate::fuse::{self, FuseArgs};
+use crate::locks::{self, InputScene, LockArgs};
+use crate::measured_bound::BoundSearch;
 use crate::numbers::{count, faces, percent, value};
-use crate::reduce::{self, Engine, Reduced};
+use crate::parse::{self, Bound};
+use crate::reduce::{self, Simplified, SimplifyRun};
 use crate::sequence;
 use crate::session::Session;
 use crate::volume;
-use crate::within::Search;
 
+/// Reduce a mesh to fewer faces
 #[derive(Args)]
 pub struct Simplify {
     /// Mesh to read, or -
@@ -34,11 +35,11 @@ pub struct Simplify {
     #[arg(value_name = "OUT")]
     output: PathBuf,
     #[command(flatten)]
-    goal: Goal,
+    target: TargetArgs,
     #[command(flatten)]
-    manner: Manner,
-    /// Measure the result; with --error, find the coarsest level whose measured maximum is within the
-    /// bound
+    method: MethodArgs,
+    /// Measure the result; with --error, find the coarsest level whose measured maximum is within
+    /// the bound
     #[arg(long)]
     measured: bool,
     /// Record all levels on the way in FILE, for the verb replay, which needs --scene IN to restore
@@ -53,83 +54,83 @@ pub struct Simplify {
     #[arg(long)]
     strict: bool,
     #[command(flatten)]
-    reading: Reading,
+    reading: ReadArgs,
     #[command(flatten)]
-    writing: Writing,
+    writing: WriteArgs,
 }
 
-/// How far to go.
+/// Target of the simplification.
 #[derive(Args)]
 #[group(required = true, multiple = false)]
-struct Goal {
+struct TargetArgs {
     /// Target number of faces
-    #[arg(long, value_name = "N", value_parser = amounts::whole, allow_negative_numbers = true)]
+    #[arg(long, value_name = "N", value_parser = parse::whole, allow_negative_numbers = true)]
     faces: Option<usize>,
     /// Target ratio of the faces: 10% or 0.1
-    #[arg(long, value_name = "RATIO", value_parser = amounts::ratio, allow_hyphen_values = true)]
+    #[arg(long, value_name = "RATIO", value_parser = parse::ratio, allow_hyphen_values = true)]
     ratio: Option<f64>,
     /// Largest error by the method's own estimate: 0.5 in model units, or 0.1% of the diagonal
-    #[arg(long, value_name = "BOUND", value_parser = amounts::bound, allow_hyphen_values = true)]
+    #[arg(long, value_name = "BOUND", value_parser = parse::bound, allow_hyphen_values = true)]
     error: Option<Bound>,
 }
 
-/// How contractions are done.
+/// Method and its options.
 #[derive(Args)]
-pub struct Manner {
-    #[arg(long, value_name = "NAME", value_parser = amounts::method,
-        help = amounts::methods_or_suited())]
+pub struct MethodArgs {
+    #[arg(long, value_name = "NAME", value_parser = parse::method,
+        help = parse::methods_or_suited())]
     method: Option<Method>,
     #[command(flatten)]
-    pub fusing: Fusing,
+    pub fuse: FuseArgs,
     #[command(flatten)]
-    holding: Holding,
+    locks: LockArgs,
     /// Cost weight of boundaries, where 0 means none [default: 9 for lindstrom-turk, 2 for qem]
-    #[arg(long, value_name = "WEIGHT", value_parser = amounts::weight, allow_negative_numbers = true)]
+    #[arg(long, value_name = "WEIGHT", value_parser = parse::weight, allow_negative_numbers = true)]
     boundary: Option<f64>,
     #[command(flatten)]
-    weights: Weights,
+    weights: WeightArgs,
 }
 
 const WEIGHTS: AttributeWeights = AttributeWeights::DEFAULT;
 
-/// What attributes count, where the method counts them.
+/// Weights of attributes in the cost of a contraction.
 #[derive(Args)]
-struct Weights {
+struct WeightArgs {
     /// Weight of normals: a deviation of 1 counts like this fraction of the diagonal, where 0 means
     /// not at all; for lindstrom-turk, qem and qem-endpoint
-    #[arg(long, value_name = "W", default_value_t = WEIGHTS.normal, value_parser = amounts::weight,
+    #[arg(long, value_name = "W", default_value_t = WEIGHTS.normal, value_parser = parse::weight,
         allow_negative_numbers = true)]
     weight_normal: f64,
-    /// Weight of texture coordinates: a texture that slides by a length counts like this fraction of
-    /// it, where 0 means not at all; for lindstrom-turk, qem and qem-endpoint
-    #[arg(long, value_name = "W", default_value_t = WEIGHTS.uv, value_parser = amounts::weight,
+    /// Weight of texture coordinates: a texture that slides by a length counts like this fraction
+    /// of it, where 0 means not at all; for lindstrom-turk, qem and qem-endpoint
+    #[arg(long, value_name = "W", default_value_t = WEIGHTS.uv, value_parser = parse::weight,
         allow_negative_numbers = true)]
     weight_uv: f64,
     /// Weight of colours: a deviation of 1 counts like this fraction of the diagonal, where 0 means
     /// not at all; for lindstrom-turk, qem and qem-endpoint
-    #[arg(long, value_name = "W", default_value_t = WEIGHTS.color, value_parser = amounts::weight,
+    #[arg(long, value_name = "W", default_value_t = WEIGHTS.color, value_parser = parse::weight,
         allow_negative_numbers = true)]
     weight_color: f64,
 }
 
-impl Manner {
-    /// The options for a scene.
-    pub fn options(&self, origin: &Origin<'_>, session: &Session) -> Result<Options, Failure> {
+impl MethodArgs {
+    /// Builds the simplification options for a scene.
+    pub fn options(&self, origin: &InputScene<'_>, session: &Session) -> Result<Options, Failure> {
         let options = Options {
             method: self.method,
             weights: self.weights(),
             boundary_weight: self.boundary,
             ..Options::default()
         };
-        self.holding.hold(options, origin, session)
+        self.locks.apply(options, origin, session)
     }
 
     fn weights(&self) -> AttributeWeights {
-        let Weights { weight_normal, weight_uv, weight_color } = self.weights;
+        let WeightArgs { weight_normal, weight_uv, weight_color } = self.weights;
         AttributeWeights { normal: weight_normal, uv: weight_uv, color: weight_color }
     }
 
-    /// Says which of the options have no part in what the method does.
+    /// Warns of options that the method ignores.
     pub fn warn(&self, report: &Report, session: &Session) {
         if self.weights() != WEIGHTS && !report.method.counts_attributes() {
             let method = report.method.name();
@@ -146,8 +147,8 @@ impl Manner {
     }
 }
 
-impl Goal {
-    /// The target, with an error in world units.
+impl TargetArgs {
+    /// Returns the target, with an error in world units.
     fn target(&self, scene: &Scene) -> Target {
         match (self.faces, self.ratio, self.error) {
             (Some(faces), ..) => Target::Faces(faces),
@@ -160,7 +161,7 @@ impl Goal {
     }
 }
 
-/// What is to be done.
+/// Scene with its target and options.
 struct Task<'s> {
     scene: &'s Scene,
     target: Target,
@@ -177,11 +178,11 @@ impl Simplify {
         if self.sequence.is_some() {
             sequence::check_scene(&scene, &self.input, session)?;
         }
-        let fused = self.manner.fusing.apply(&mut scene, session);
-        let target = self.goal.target(&scene);
+        let fused = self.method.fuse.apply(&mut scene, session);
+        let target = self.target.target(&scene);
         let target = fused.as_ref().map_or(target, |fused| fused.target(target));
-        let origin = Origin { scene: &scene, path: &self.input, reading: &self.reading };
-        let options = self.manner.options(&origin, session)?;
+        let origin = InputScene { scene: &scene, path: &self.input, reading: &self.reading };
+        let options = self.method.options(&origin, session)?;
         let task = Task { scene: &scene, target, options };
         let (mut done, mut time) = match target {
             Target::Error(_) => self.measured_run(&task, session)?,
@@ -203,7 +204,7 @@ impl Simplify {
             (Some(path), Some(sequence)) => sequence::write_with(path, sequence, write)?,
             _ => write()?,
         }
-        self.manner.warn(&done.report, session);
+        self.method.warn(&done.report, session);
         if !done.report.reached {
             let reason = Failure::at(&self.input, reduce::why_not_reached(&done.report));
             session.warn(reason);
@@ -221,8 +222,8 @@ impl Simplify {
         })
     }
 
-    /// Gives the levels the volumes of their meshes. How far the worst is off, in parts of its volume;
-    /// `None` where none has a volume.
+    /// Restores the volumes of the levels. Returns the largest relative deviation, or `None` if no
+    /// mesh has a volume.
     fn conserve(
         &self,
         task: &Task<'_>,
@@ -246,29 +247,29 @@ impl Simplify {
         &self,
         task: &Task<'_>,
         session: &Session,
-    ) -> Result<(Reduced, Duration), Failure> {
-        let mut engine = Engine::start(task.scene, &task.options, &self.input, session)?;
+    ) -> Result<(Simplified, Duration), Failure> {
+        let mut run = SimplifyRun::start(task.scene, &task.options, &self.input, session)?;
         if self.sequence.is_some() {
-            engine.record();
+            run.record();
         }
-        let report = engine.run(task.target)?;
-        let (meshes, time) = (engine.level(), engine.time());
+        let report = run.simplify_to(task.target)?;
+        let (meshes, time) = (run.level(), run.time());
         let sequence = match self.sequence {
             Some(_) => {
-                let all = engine.into_sequence();
+                let all = run.into_sequence();
                 Some(all.ok_or_else(|| sequence::several_meshes(&self.input))?)
             }
             None => None,
         };
-        Ok((Reduced { meshes, report, measured: None, sequence }, time))
+        Ok((Simplified { meshes, report, measured: None, sequence }, time))
     }
 
-    /// A run that is measured, or led by what is measured.
+    /// Simplifies with a measurement afterwards, or with one after every step for a measured bound.
     fn measured_run(
         &self,
         task: &Task<'_>,
         session: &Session,
-    ) -> Result<(Reduced, Duration), Failure> {
+    ) -> Result<(Simplified, Duration), Failure> {
         let &Task { scene, target, ref options } = task;
         let original = distance::surface_of(scene, distance::meshes(scene));
         let surface = match distance::ready(&original, &self.input) {
@@ -278,14 +279,14 @@ impl Simplify {
         };
         if let (Target::Error(bound), Some(original), true) = (target, &surface, self.measured) {
             let path = &self.input;
-            return Search { scene, options, original, bound, path, session }.run();
+            return BoundSearch { scene, options, original, bound, path, session }.run();
         }
         let (reduced, time) = self.plain_run(task, session)?;
         let measured = reduce::measure(surface.as_ref(), scene, &reduced.meshes, session);
-        Ok((Reduced { measured, ..reduced }, time))
+        Ok((Simplified { measured, ..reduced }, time))
     }
 
-    fn json(&self, done: &Reduced, fused: Option<&fusing::Done>, time: Duration) -> Value {
+    fn json(&self, done: &Simplified, fused: Option<&fuse::FuseReport>, time: Duration) -> Value {
         let report = &done.report;
         let mut json = json!({ "method": report.method.name() });
         for (key, value) in reduce::report_json(report).as_object().into_iter().flatten() {
@@ -298,21 +299,21 @@ impl Simplify {
         json["degenerate_faces"] = report.degenerate_faces.into();
         json["duplicate_faces"] = report.duplicate_faces.into();
         json["non_manifold_vertices"] = report.non_manifold_vertices.into();
-        json["fused"] = fusing::to_json(fused);
-        json["held"] = holding::to_json(report);
+        json["fused"] = fuse::to_json(fused);
+        json["held"] = locks::to_json(report);
         json["vanished"] = report.vanished.into();
         json["refusals"] = reduce::refusals_json(report);
         json["file"] = files::name(&self.output).into();
         json
     }
 
-    fn text(&self, done: &Reduced, fused: Option<&fusing::Done>, time: Duration) -> String {
+    fn text(&self, done: &Simplified, fused: Option<&fuse::FuseReport>, time: Duration) -> String {
         let report = &done.report;
         let input_faces = fused.map_or(report.input_faces, |fused| fused.before);
         let part = 100.0 * report.output_faces as f64 / input_faces as f64;
         let mut text = format!(
             "{}{}: {} to {} ({})\n{}",
-            fusing::to_text(fused),
+            fuse::to_text(fused),
             files::name(&self.output),
             faces(input_faces),
             count(report.output_faces),

@@ -1,4 +1,4 @@
-//! `strip`: triangle strips of a mesh at any level, and what they send.
+//! `strip`: converts levels of a mesh to triangle strips and counts what they send.
 
 mod output;
 mod table;
@@ -15,13 +15,14 @@ use meshlod::strip::{
 };
 use serde_json::{Value, json};
 
-use crate::amounts::{self, Size};
 use crate::answer::Answer;
-use crate::args::Reading;
+use crate::args::ReadArgs;
 use crate::failure::Failure;
 use crate::files;
+use crate::parse::{self, LevelSize};
 use crate::session::Session;
 
+/// Convert a mesh and its levels to triangle strips, and count the vertices they send
 #[derive(Args)]
 pub struct Strip {
     /// Mesh to read, or -
@@ -29,35 +30,35 @@ pub struct Strip {
     input: PathBuf,
     /// Level sizes: 10% or 0.1 of the faces, or a number of faces
     #[arg(long, visible_alias = "level", value_name = "SIZES", value_delimiter = ',',
-        default_value = "100%", value_parser = amounts::size, allow_hyphen_values = true)]
-    levels: Vec<Size>,
+        default_value = "100%", value_parser = parse::size, allow_hyphen_values = true)]
+    levels: Vec<LevelSize>,
     /// Carry the strips of the whole mesh down to each level and shorten them by this filter
     /// [default: each level gets strips of its own]
     #[arg(long, value_name = "FILTER")]
-    filter: Option<Shortened>,
+    filter: Option<FilterArg>,
     /// Quality of the strips of the mesh or of a level
     #[arg(long, value_name = "QUALITY", default_value = "fast")]
-    quality: Quality,
+    quality: QualityArg,
     /// Effort of --quality best and --filter repair
     #[arg(long, value_name = "EFFORT", default_value = "thorough")]
-    effort: Tried,
-    /// File to write: .gltf for the levels as meshes of strips, finest first, linked by MSFT_lod; .json
-    /// for lists of vertices
+    effort: EffortArg,
+    /// File to write: .gltf for the levels as meshes of strips, finest first, linked by MSFT_lod;
+    /// .json for lists of vertices
     #[arg(long, value_name = "FILE")]
     out: Option<PathBuf>,
-    /// Compare the triangles drawn with the faces of an independently simplified level; exit with 1 if
-    /// they differ
+    /// Compare the triangles drawn with the faces of an independently simplified level; exit with 1
+    /// if they differ
     #[arg(long)]
     verify: bool,
     /// Exit with 1 if a level is out of reach
     #[arg(long)]
     strict: bool,
     #[command(flatten)]
-    reading: Reading,
+    reading: ReadArgs,
 }
 
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum Shortened {
+enum FilterArg {
     /// No shortening: each vertex is sent as the vertex it was contracted to
     None,
     /// Simple triangle strip scanner
@@ -69,7 +70,7 @@ enum Shortened {
 }
 
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum Quality {
+enum QualityArg {
     /// One pass
     Fast,
     /// As few vertices as the search finds
@@ -77,16 +78,16 @@ enum Quality {
 }
 
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum Tried {
+enum EffortArg {
     /// Fast enough for levels that change often
     Quick,
     /// For levels that are made once and kept
     Thorough,
 }
 
-/// The strips of a level.
-struct Level {
-    size: Size,
+/// Strips of a level with their statistics.
+struct StrippedLevel {
+    size: LevelSize,
     reached: bool,
     triangles: usize,
     strips: Strips,
@@ -95,12 +96,12 @@ struct Level {
     difference: Option<Difference>,
 }
 
-/// What all levels come from.
-struct Origin {
+/// Mesh and contractions that all levels come from.
+struct StripSource {
     mesh: Mesh,
     tree: MergeTree,
     simplify_time: Duration,
-    /// The strips that filters shorten.
+    /// Strips of the whole mesh that filters shorten.
     skip: Option<SkipStrip>,
     strip_time: Duration,
 }
@@ -142,8 +143,8 @@ impl Strip {
         })
     }
 
-    /// The mesh with the contractions to its coarsest level, and its strips if levels are made of them.
-    fn origin(&self, mesh: Mesh, session: &Session) -> Result<Origin, Failure> {
+    /// Records the contractions down to the coarsest level, and strips the whole mesh for a filter.
+    fn origin(&self, mesh: Mesh, session: &Session) -> Result<StripSource, Failure> {
         let whole = MergeTree::new(&mesh);
         let targets = self.levels.iter().map(|size| size.target());
         let coarsest = targets.clone().map(|target| target.faces_of(mesh.faces.len())).min();
@@ -160,11 +161,11 @@ impl Strip {
         session.progress.stage("stripping");
         let start = Instant::now();
         let skip = self.filter.map(|_| SkipStrip::new(tree.clone(), self.stripify(tree.faces())));
-        Ok(Origin { mesh, tree, simplify_time, skip, strip_time: start.elapsed() })
+        Ok(StripSource { mesh, tree, simplify_time, skip, strip_time: start.elapsed() })
     }
 
-    fn level(&self, origin: &mut Origin, size: Size) -> Level {
-        let Origin { mesh, tree, skip, .. } = origin;
+    fn level(&self, origin: &mut StripSource, size: LevelSize) -> StrippedLevel {
+        let StripSource { mesh, tree, skip, .. } = origin;
         let faces = size.target().faces_of(mesh.faces.len());
         let contractions = tree.contractions_to(faces);
         let own = skip.is_none().then(|| tree.level(contractions));
@@ -173,10 +174,10 @@ impl Strip {
             (Some(skip), Some(filter)) => {
                 skip.set_level(contractions);
                 match filter {
-                    Shortened::None => skip.display(Filter::None),
-                    Shortened::Stss => skip.display(Filter::Stss),
-                    Shortened::Dtff => skip.display(Filter::Dtff),
-                    Shortened::Repair => skip.repaired(self.effort.into()),
+                    FilterArg::None => skip.display(Filter::None),
+                    FilterArg::Stss => skip.display(Filter::Stss),
+                    FilterArg::Dtff => skip.display(Filter::Dtff),
+                    FilterArg::Repair => skip.repaired(self.effort.into()),
                 }
             }
             _ => self.stripify(&own.unwrap_or_default()),
@@ -185,19 +186,19 @@ impl Strip {
         let triangles = tree.faces_left(contractions);
         let sent = StripStatistics::new(&strips);
         let reached = triangles <= faces;
-        Level { size, reached, triangles, strips, sent, time, difference: None }
+        StrippedLevel { size, reached, triangles, strips, sent, time, difference: None }
     }
 
     fn stripify(&self, faces: &[[VertexId; 3]]) -> Strips {
         let quality = match (self.quality, self.effort) {
-            (Quality::Fast, _) => strip::Quality::Fast,
-            (Quality::Best, Tried::Quick) => strip::Quality::QUICK,
-            (Quality::Best, Tried::Thorough) => strip::Quality::THOROUGH,
+            (QualityArg::Fast, _) => strip::Quality::Fast,
+            (QualityArg::Best, EffortArg::Quick) => strip::Quality::QUICK,
+            (QualityArg::Best, EffortArg::Thorough) => strip::Quality::THOROUGH,
         };
         strip::stripify(faces, &strip::Options { quality, ..strip::Options::default() })
     }
 
-    fn json(&self, origin: &Origin, levels: &[Level]) -> Value {
+    fn json(&self, origin: &StripSource, levels: &[StrippedLevel]) -> Value {
         let connectivity = Connectivity::new(&origin.mesh.faces, origin.mesh.positions.len());
         let degenerate = connectivity.degenerate_faces();
         let left_out = origin.mesh.faces.len() - origin.tree.faces().len();
@@ -214,16 +215,16 @@ impl Strip {
             "filter": name(&|| self.filter.as_ref()?.to_possible_value()),
             "quality": name(&|| self.quality.to_possible_value()),
             "effort": name(&|| self.effort.to_possible_value()),
-            "levels": levels.iter().map(Level::json).collect::<Vec<_>>(),
+            "levels": levels.iter().map(StrippedLevel::json).collect::<Vec<_>>(),
             "simplify_seconds": origin.simplify_time.as_secs_f64(),
             "strip_seconds": origin.skip.as_ref().map(|_| origin.strip_time.as_secs_f64()),
-            "verified": self.verify.then(|| !levels.iter().any(Level::is_wrong)),
+            "verified": self.verify.then(|| !levels.iter().any(StrippedLevel::is_wrong)),
             "out": self.out.as_deref().map(files::name),
         })
     }
 }
 
-impl Level {
+impl StrippedLevel {
     fn is_wrong(&self) -> bool {
         self.difference.is_some_and(|difference| difference != Difference::default())
     }
@@ -247,20 +248,20 @@ impl Level {
     }
 }
 
-impl From<Tried> for Effort {
-    fn from(tried: Tried) -> Self {
+impl From<EffortArg> for Effort {
+    fn from(tried: EffortArg) -> Self {
         match tried {
-            Tried::Quick => Self::Quick,
-            Tried::Thorough => Self::Thorough,
+            EffortArg::Quick => Self::Quick,
+            EffortArg::Thorough => Self::Thorough,
         }
     }
 }
 
-/// Refuses levels that are none.
-fn check_sizes(sizes: &[Size], faces: usize) -> Result<(), Failure> {
-    let is_level = |size: &&Size| match size {
-        Size::Faces(count) => (1..=faces).contains(count),
-        Size::Ratio(ratio) => *ratio > 0.0,
+/// Refuses level sizes that are out of range.
+fn check_sizes(sizes: &[LevelSize], faces: usize) -> Result<(), Failure> {
+    let is_level = |size: &&LevelSize| match size {
+        LevelSize::Faces(count) => (1..=faces).contains(count),
+        LevelSize::Ratio(ratio) => *ratio > 0.0,
     };
     match sizes.iter().find(|size| !is_level(size)) {
         None => Ok(()),

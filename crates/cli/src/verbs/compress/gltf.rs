@@ -1,4 +1,4 @@
-//! `.glb`: what other programs read.
+//! Compressed `.glb` files for other programs.
 
 use meshlod::Scene;
 use meshlod::codec::{Reconstruction, parts_for};
@@ -6,20 +6,20 @@ use meshlod::io::gltf::{
     Compression, CompressionReport, QuantizedPart, write_compressed_glb, write_parts_glb,
 };
 
-use super::{Compress, Packed, SchemeName, left_out};
+use super::{Compress, CompressedFile, SchemeArg, left_out};
 use crate::failure::Failure;
 
 impl Compress {
-    pub(super) fn gltf(&self, scene: Scene) -> Result<Packed, Failure> {
+    pub(super) fn gltf(&self, scene: Scene) -> Result<CompressedFile, Failure> {
         match self.scheme {
-            Some(SchemeName::Parts) => self.gltf_of_parts(scene),
+            Some(SchemeArg::Parts) => self.gltf_of_parts(scene),
             _ => self.small_gltf(&scene),
         }
     }
 
-    /// The scene with all that is in it, quantized.
-    fn small_gltf(&self, scene: &Scene) -> Result<Packed, Failure> {
-        if self.goal.error.is_some() || self.goal.reduction.is_some() {
+    /// Writes the whole scene with quantized attributes.
+    fn small_gltf(&self, scene: &Scene) -> Result<CompressedFile, Failure> {
+        if self.target.error.is_some() || self.target.reduction.is_some() {
             return Err(Failure::usage(
                 "--error and --reduction need --scheme parts in .glb; use --bits",
             ));
@@ -28,7 +28,7 @@ impl Compress {
             .map_err(|error| self.failed(error))?;
         let CompressionReport { positions, connectivity, attributes, .. } = report;
         let meshes = scene.meshes.iter().map(|mesh| &mesh.mesh);
-        Ok(Packed {
+        Ok(CompressedFile {
             sizes: [positions, connectivity, attributes].map(|bytes| bytes.stored),
             vertices: meshes.clone().map(|mesh| mesh.positions.len()).sum(),
             faces: meshes.map(|mesh| mesh.faces.len()).sum(),
@@ -56,8 +56,8 @@ impl Compress {
         })
     }
 
-    /// The surface in parts, each a node with its matrix.
-    fn gltf_of_parts(&self, scene: Scene) -> Result<Packed, Failure> {
+    /// Writes the surface in parts, each a node with its own matrix.
+    fn gltf_of_parts(&self, scene: Scene) -> Result<CompressedFile, Failure> {
         let mesh = scene.into_mesh();
         let cells = if self.paper { Reconstruction::Truncated } else { Reconstruction::Centred };
         let done = parts_for(&mesh, cells, self.target(&mesh));
@@ -77,12 +77,12 @@ impl Compress {
         if mesh.attributes.is_some() {
             left_out.push("left out: attributes; parts hold the surface only".into());
         }
-        // Positions are padded to four bytes, and a part has a matrix.
+        // Positions are padded to four bytes, and each part has a matrix.
         let positions: usize =
             quantized.iter().map(|part| 4 * part.positions.len() + size_of_val(&part.matrix)).sum();
         let index = |part: &QuantizedPart| if part.positions.len() < 65_536 { 2 } else { 4 };
         let indices: usize = quantized.iter().map(|part| 3 * part.faces.len() * index(part)).sum();
-        Ok(Packed {
+        Ok(CompressedFile {
             sizes: [positions, indices.min(bytes.len().saturating_sub(positions)), 0],
             vertices: parts.vertices(),
             faces,
@@ -95,13 +95,14 @@ impl Compress {
     }
 }
 
-/// The least bits of a component that turn no normal further than so many degrees: half a step along each of three axes.
+/// Returns the smallest number of bits per component that keeps normals within an angle: half a
+/// step along each of three axes.
 fn normal_bits(degrees: f64) -> u32 {
     let turns = |bits: u32| 3f64.sqrt() / 2.0 / f64::from((1u32 << (bits - 1)) - 1);
     (2..16).find(|&bits| turns(bits) <= degrees.to_radians()).unwrap_or(16)
 }
 
-/// The least bits of a texture that move no coordinate further.
+/// Returns the smallest number of bits that keeps texture coordinates within an error.
 fn uv_bits(error: f64) -> u32 {
     (1..16).find(|&bits| 0.5 / f64::from((1u32 << bits) - 1) <= error).unwrap_or(16)
 }

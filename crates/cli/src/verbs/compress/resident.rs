@@ -1,20 +1,20 @@
-//! `.mlq`: drawn from as it is.
+//! Compressed `.mlq` files, which stay compressed in GPU memory.
 
 use meshlod::Scene;
 use meshlod::codec::{CompressError, compress};
 
-use super::{Compress, Packed, SchemeName, left_out};
+use super::{Compress, CompressedFile, SchemeArg, left_out};
 use crate::failure::Failure;
 
 impl Compress {
-    pub(super) fn resident(&self, scene: Scene) -> Result<Packed, Failure> {
+    pub(super) fn resident(&self, scene: Scene) -> Result<CompressedFile, Failure> {
         let mesh = scene.into_mesh();
         let bounds = self.attributes.bounds();
         let done = compress(&mesh, self.scheme(), self.target(&mesh), &bounds);
         let done = done.map_err(|error| self.refused(error))?;
         let (sizes, compressed) = (done.compressed.sizes(), done.compressed);
-        let pieces = if self.scheme == Some(SchemeName::Parts) { "parts" } else { "blocks" };
-        Ok(Packed {
+        let pieces = if self.scheme == Some(SchemeArg::Parts) { "parts" } else { "blocks" };
+        Ok(CompressedFile {
             sizes: [sizes.positions, sizes.connectivity, sizes.attributes],
             vertices: compressed.vertices(),
             faces: compressed.faces(),
@@ -26,7 +26,8 @@ impl Compress {
         })
     }
 
-    /// A target that is none is wrong usage, else it is the mesh.
+    /// Creates the failure for a compression error: wrong usage for an invalid target, else a
+    /// failure that names the input.
     pub(super) fn refused(&self, error: CompressError) -> Failure {
         match error {
             CompressError::Bits(_) | CompressError::Error(_) | CompressError::Reduction(_) => {

@@ -1,4 +1,4 @@
-//! `.mlz`: for sending.
+//! Compressed `.mlz` files for transmission.
 
 use meshlod::Mesh;
 use meshlod::Scene;
@@ -7,11 +7,11 @@ use meshlod::codec::{
     TransportSizes,
 };
 
-use super::{Compress, Packed, left_out};
+use super::{Compress, CompressedFile, left_out};
 use crate::failure::Failure;
 
 impl Compress {
-    pub(super) fn transport(&self, scene: Scene) -> Result<Packed, Failure> {
+    pub(super) fn transport(&self, scene: Scene) -> Result<CompressedFile, Failure> {
         let mesh = scene.into_mesh();
         let options = TransportOptions {
             quantization: self.quantization(&mesh)?,
@@ -27,10 +27,10 @@ impl Compress {
             left_out.push("left out: attributes; .mlz holds the surface only".into());
         }
         let TransportSizes { positions, connectivity, headers } = done.sizes;
-        // Tables, index and states of the coder are what decoding needs, for both: by what they are for.
+        // Tables, index and coder states serve both parts, so they are shared out in proportion.
         let of_positions = headers * positions / (positions + connectivity);
         let positions = (positions + of_positions).round() as usize;
-        Ok(Packed {
+        Ok(CompressedFile {
             sizes: [positions, done.bytes.len() - positions, 0],
             vertices: file.vertices(),
             faces: file.faces(),
@@ -42,7 +42,7 @@ impl Compress {
         })
     }
 
-    /// The cells that a target asks for.
+    /// Returns the quantization grid for the target.
     fn quantization(&self, mesh: &Mesh) -> Result<TransportQuantization, Failure> {
         let Some(cell) = self.target(mesh).cell(mesh).map_err(|error| self.refused(error))? else {
             return Err(Failure::usage("--reduction does not go with .mlz; use --bits or --error"));
@@ -54,7 +54,7 @@ impl Compress {
         }
         let bounds = mesh.bounds();
         let longest = (0..3).map(|k| bounds.max[k] - bounds.min[k]).fold(0.0, f64::max);
-        Ok(TransportQuantization::Bits(match self.goal.error {
+        Ok(TransportQuantization::Bits(match self.target.error {
             Some(_) => ((longest / cell + 1.0).log2().ceil() as u32).max(1),
             None => self.bits(),
         }))

@@ -1,4 +1,4 @@
-//! Strips as files: glTF, or lists of vertices.
+//! Writes strips to files: glTF, or lists of vertices in JSON.
 
 use std::cmp::Reverse;
 use std::path::Path;
@@ -9,18 +9,18 @@ use meshlod::io::write_file;
 use meshlod::mesh::Bounds;
 use serde_json::{Value, json};
 
-use super::Level;
+use super::StrippedLevel;
 use crate::failure::Failure;
 use crate::files;
 
-/// Component types, modes and targets of glTF by their numbers.
+/// glTF constants: component types, primitive modes and buffer targets.
 const FLOAT: u32 = 5126;
 const UNSIGNED_INT: u32 = 5125;
 const TRIANGLE_STRIP: u32 = 5;
 const ARRAY_BUFFER: u32 = 34962;
 const ELEMENT_ARRAY_BUFFER: u32 = 34963;
 
-/// Refuses a file that could not be written.
+/// Refuses an output that cannot be written.
 pub(super) fn check(out: &Path, input: &Path) -> Result<(), Failure> {
     if files::is_pipe(out) {
         return Err(Failure::usage("-: strips cannot go to standard output; name a file"));
@@ -35,7 +35,11 @@ pub(super) fn check(out: &Path, input: &Path) -> Result<(), Failure> {
     files::check_apart(out, &[input])
 }
 
-pub(super) fn write(out: &Path, positions: &[[f64; 3]], levels: &[Level]) -> Result<(), Failure> {
+pub(super) fn write(
+    out: &Path,
+    positions: &[[f64; 3]],
+    levels: &[StrippedLevel],
+) -> Result<(), Failure> {
     let json = if is_gltf(out) { gltf(positions, levels) } else { lists(levels) };
     Ok(write_file(out, format!("{json:#}\n").as_bytes())?)
 }
@@ -48,9 +52,9 @@ fn has_suffix(path: &Path, suffix: &str) -> bool {
     path.extension().is_some_and(|found| found.eq_ignore_ascii_case(suffix))
 }
 
-/// Each strip as the list of its vertices, by their numbers in the input.
-fn lists(levels: &[Level]) -> Value {
-    let strips = |level: &Level| {
+/// Builds JSON lists of the vertices of each strip, numbered as in the input.
+fn lists(levels: &[StrippedLevel]) -> Value {
+    let strips = |level: &StrippedLevel| {
         let lists = level.strips.iter().map(|strip| strip.iter().map(|v| v.0).collect::<Vec<_>>());
         json!({
             "size": level.size.to_string(),
@@ -61,16 +65,17 @@ fn lists(levels: &[Level]) -> Value {
     json!({ "levels": levels.iter().map(strips).collect::<Vec<_>>() })
 }
 
-/// A document with its buffer in it: the vertices once, and each level as a mesh of one primitive. The strips of a
-/// level are one, joined by triangles without area, for glTF knows no restart.
-fn gltf(positions: &[[f64; 3]], levels: &[Level]) -> Value {
+/// Builds a glTF document with an embedded buffer: shared vertices, and each level as a mesh with
+/// one primitive. The strips of a level are joined by degenerate triangles, since glTF has no
+/// restart.
+fn gltf(positions: &[[f64; 3]], levels: &[StrippedLevel]) -> Value {
     let mut drawn: Vec<_> = levels.iter().filter(|level| !level.strips.is_empty()).collect();
     drawn.sort_by_key(|level| Reverse(level.triangles));
     let asset = json!({ "version": "2.0", "generator": "meshlod" });
     if drawn.is_empty() {
         return json!({ "asset": asset, "scene": 0, "scenes": [{}] });
     }
-    let mut document = Document::default();
+    let mut document = GltfBuffers::default();
     let places: Vec<[f32; 3]> = positions.iter().map(|p| p.map(|x| x as f32)).collect();
     let shown: Vec<_> = places.iter().map(|p| p.map(f64::from)).collect();
     let Bounds { min, max } = Bounds::of(&shown);
@@ -111,16 +116,16 @@ fn gltf(positions: &[[f64; 3]], levels: &[Level]) -> Value {
     document.finish(json)
 }
 
-/// The buffer of a document, and what tells its parts.
+/// Buffer of a glTF document with its views and accessors.
 #[derive(Default)]
-struct Document {
+struct GltfBuffers {
     buffer: Vec<u8>,
     views: Vec<Value>,
     accessors: Vec<Value>,
 }
 
-impl Document {
-    /// Appends an array of words of four bytes; the number of its accessor.
+impl GltfBuffers {
+    /// Appends an array of four-byte words and returns the index of its accessor.
     fn accessor(&mut self, bytes: Vec<u8>, target: u32, mut accessor: Value) -> usize {
         self.views.push(json!({
             "buffer": 0, "byteOffset": self.buffer.len(), "byteLength": bytes.len(),

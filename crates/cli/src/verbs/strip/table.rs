@@ -1,13 +1,13 @@
-//! The figures of all levels, for people.
+//! Table of the figures of all levels.
 
 use crate::numbers::count;
 use crate::reduce;
 use crate::table::aligned;
 
-use super::{Level, Origin, Strip};
+use super::{Strip, StripSource, StrippedLevel};
 
 impl Strip {
-    pub(super) fn text(&self, origin: &Origin, levels: &[Level]) -> String {
+    pub(super) fn text(&self, origin: &StripSource, levels: &[StrippedLevel]) -> String {
         let headings = [
             "level",
             "triangles",
@@ -27,7 +27,7 @@ impl Strip {
         text += "ACMR: vertices fetched per triangle with a FIFO cache of 16 or 32\n";
         if self.verify {
             let wrong: Vec<_> = levels.iter().filter(|level| level.is_wrong()).collect();
-            for Level { size, difference, .. } in &wrong {
+            for StrippedLevel { size, difference, .. } in &wrong {
                 let (missing, extra) = difference.map_or((0, 0), |d| (d.missing, d.extra));
                 text += &format!("{size}: {missing} missing and {extra} extra triangles\n");
             }
@@ -49,8 +49,8 @@ impl Strip {
     }
 }
 
-fn row(level: &Level) -> [String; 10] {
-    let Level { sent, triangles, .. } = level;
+fn row(level: &StrippedLevel) -> [String; 10] {
+    let StrippedLevel { sent, triangles, .. } = level;
     let each = sent.vertices_sent as f64 / (*triangles).max(1) as f64;
     [
         level.size.to_string(),

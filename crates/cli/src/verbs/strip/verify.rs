@@ -1,4 +1,4 @@
-//! Whether strips draw their levels, by a simplification of its own.
+//! Verification of strips against an independent simplification.
 
 use std::cmp::Reverse;
 
@@ -7,16 +7,16 @@ use meshlod::simplify::Simplifier;
 use meshlod::strip::difference;
 use meshlod::{Mesh, Method, Options, SimplifyError, Target};
 
-use super::Level;
+use super::StrippedLevel;
 
-/// Holds each level against the faces that simplifying to it leaves; one of all faces against `whole`, those of
-/// the mesh but for what is left out.
+/// Compares each level with the faces left by simplifying to it, and levels with all faces with
+/// `whole`, the cleaned faces of the mesh.
 pub(super) fn compare(
     mesh: &Mesh,
     whole: &[[VertexId; 3]],
-    levels: &mut [Level],
+    levels: &mut [StrippedLevel],
 ) -> Result<(), SimplifyError> {
-    let mut levels: Vec<&mut Level> = levels.iter_mut().collect();
+    let mut levels: Vec<&mut StrippedLevel> = levels.iter_mut().collect();
     levels.sort_by_key(|level| Reverse(level.triangles));
     let finest = levels.partition_point(|level| level.triangles == whole.len());
     let (finest, coarser) = levels.split_at_mut(finest);

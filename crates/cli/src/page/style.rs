@@ -1,4 +1,4 @@
-//! How a mesh looks best: by what came with it.
+//! Drawing style of a mesh, by the attributes and materials it came with.
 
 use meshlod::mesh::LayerKind;
 use meshlod::picture::{Materials, Normals, Paint, Style, Wireframe};
@@ -7,41 +7,41 @@ use meshlod::{Mesh, Scene, materials_of};
 use crate::failure::Failure;
 use crate::session::Session;
 
-/// What a mesh and its levels are drawn with.
+/// Drawing style of a mesh and its levels.
 #[derive(Clone, Debug)]
-pub struct Look {
-    pub coat: Coat,
+pub struct SubjectStyle {
+    pub paint: OwnedPaint,
     pub normals: Normals,
-    /// What is below the lines where edges are drawn.
-    pub under_lines: Coat,
-    pub lines: Wireframe,
-    /// Where to look.
+    /// Paint under the wireframe.
+    pub wire_paint: OwnedPaint,
+    pub wireframe: Wireframe,
+    /// Viewing direction.
     pub direction: [f64; 3],
     pub up: [f64; 3],
 }
 
-/// Where the colours come from.
+/// Source of colours; an owned [`Paint`].
 #[derive(Clone, Debug)]
-pub enum Coat {
+pub enum OwnedPaint {
     Plain([u8; 3]),
-    /// Of vertices or faces.
+    /// Colours of vertices or faces.
     Colors,
     Materials(Materials),
-    /// Over the uvs.
+    /// Checkerboard over the uvs.
     Checker {
-        /// Along a unit of uv.
+        /// Squares per unit of uv.
         squares: u32,
     },
 }
 
-/// Edges that bend by more than this, in radians, are sharp where a file has no normals.
+/// Dihedral angle, in radians, above which edges are sharp if a file has no normals.
 const CREASE_RAD: f64 = 1.0;
 
-/// Light, to see lines on.
-const CLAY: Coat = Coat::Plain([226, 208, 186]);
+/// Light colour on which lines are visible.
+const CLAY: OwnedPaint = OwnedPaint::Plain([226, 208, 186]);
 
-impl Coat {
-    /// Of all that a scene shows, as it is meant to look; `materials` are the scene's.
+impl OwnedPaint {
+    /// Returns the paint with which a scene is meant to be seen; `materials` are the scene's.
     pub fn of(scene: &Scene, materials: Materials) -> Self {
         let white = |material: &meshlod::io::Material| material.base_color[..3] == [1.0; 3];
         let colors = |mesh: &meshlod::io::SceneMesh| has(&mesh.mesh, LayerKind::Color(0));
@@ -54,20 +54,20 @@ impl Coat {
         }
     }
 
-    /// That in which a mesh is compared with its levels, by the eye as by the image error; see
-    /// [`Paint::comparison`].
+    /// Returns the paint in which a mesh is compared with its levels, by eye and by image error;
+    /// see [`Paint::comparison`].
     pub fn comparison(mesh: &Mesh, materials: Materials) -> Self {
         match Paint::comparison(mesh, &materials) {
             Paint::Materials(_) => Self::Materials(materials),
             Paint::Checker { squares } => Self::Checker { squares },
             Paint::Colors => Self::Colors,
             Paint::Plain(color) => Self::Plain(color),
-            // Values and colours of faces are never what a file came with.
+            // A file never comes with values or face colours.
             Paint::FaceColors(_) | Paint::FaceValues(_) | Paint::VertexValues(_) => CLAY,
         }
     }
 
-    pub fn paint(&self) -> Paint<'_> {
+    pub fn as_paint(&self) -> Paint<'_> {
         match self {
             Self::Plain(color) => Paint::Plain(*color),
             Self::Colors => Paint::Colors,
@@ -76,7 +76,7 @@ impl Coat {
         }
     }
 
-    /// How many images it needs.
+    /// Returns the number of textures.
     pub fn textures(&self) -> usize {
         match self {
             Self::Materials(materials) => materials.textures.len(),
@@ -85,36 +85,36 @@ impl Coat {
     }
 }
 
-impl Look {
-    /// Of a file: as it is, and in clay where its edges are drawn.
-    pub fn new(coat: Coat, mesh: &Mesh, direction: [f64; 3], up: [f64; 3]) -> Self {
+impl SubjectStyle {
+    /// Returns the style for a mesh: its own paint, and clay under the wireframe.
+    pub fn new(paint: OwnedPaint, mesh: &Mesh, direction: [f64; 3], up: [f64; 3]) -> Self {
         Self {
-            coat,
+            paint,
             normals: normals_of(mesh),
-            under_lines: CLAY,
-            lines: Wireframe { width_px: 0.9, ..Wireframe::default() },
+            wire_paint: CLAY,
+            wireframe: Wireframe { width_px: 0.9, ..Wireframe::default() },
             direction,
             up,
         }
     }
 
-    /// As it is.
+    /// Returns the style for shaded pictures.
     pub fn shaded(&self) -> Style<'_> {
-        Style { paint: self.coat.paint(), normals: self.normals, ..Style::default() }
+        Style { paint: self.paint.as_paint(), normals: self.normals, ..Style::default() }
     }
 
-    /// With every face shown.
+    /// Returns the style for pictures with a wireframe.
     pub fn wired(&self) -> Style<'_> {
         Style {
-            paint: self.under_lines.paint(),
+            paint: self.wire_paint.as_paint(),
             normals: Normals::Flat,
-            wireframe: Some(self.lines),
+            wireframe: Some(self.wireframe),
             ..Style::default()
         }
     }
 }
 
-/// The materials of a scene; images that cannot be read are named `of` the file.
+/// Returns the materials of a scene, with a warning for each image of the file that cannot be read.
 pub fn materials(scene: &Scene, of: &std::path::Path, session: &Session) -> Materials {
     let (materials, unread) = materials_of(scene);
     for image in unread {
@@ -124,7 +124,7 @@ pub fn materials(scene: &Scene, of: &std::path::Path, session: &Session) -> Mate
     materials
 }
 
-/// The normals that came with it, or creases where it bends sharply.
+/// Returns the normals of the mesh if it has any, else normals with creases.
 pub fn normals_of(mesh: &Mesh) -> Normals {
     match has(mesh, LayerKind::Normal) {
         true => Normals::FromMesh,
@@ -149,7 +149,7 @@ mod tests {
         let red = [1.0, 0.0, 0.0, 1.0];
         scene.materials = vec![meshlod::io::Material { base_color: red, ..Default::default() }];
         let materials = || materials_of(&scene).0;
-        assert!(matches!(Coat::comparison(&mesh, materials()), Coat::Checker { .. }));
-        assert!(matches!(Coat::of(&scene, materials()), Coat::Materials(_)));
+        assert!(matches!(OwnedPaint::comparison(&mesh, materials()), OwnedPaint::Checker { .. }));
+        assert!(matches!(OwnedPaint::of(&scene, materials()), OwnedPaint::Materials(_)));
     }
 }

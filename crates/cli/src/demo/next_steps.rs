@@ -1,10 +1,10 @@
-//! The end of the page: how to do it oneself, and what lies beside.
+//! End of the demo page: commands to try, and the files written.
 
 use maud::{Markup, html};
 
-use crate::demo::exhibit::Exhibit;
+use crate::demo::sample_report::SampleReport;
 
-/// A step, and the line that does it.
+/// Steps with their commands.
 const STEPS: [(&str, &str); 7] = [
     ("Look inside", "meshlod info your.ply"),
     ("Simplify it", "meshlod simplify your.ply small.ply --ratio 10%"),
@@ -15,7 +15,7 @@ const STEPS: [(&str, &str); 7] = [
     ("Render the error", "meshlod render your.ply error.png --heat-against small.ply"),
 ];
 
-/// The commands to do each step on a mesh of one's own.
+/// Lists the commands for each step on the reader's own mesh.
 pub fn commands() -> Markup {
     html! {
         section id="own" {
@@ -34,19 +34,19 @@ pub fn commands() -> Markup {
     }
 }
 
-/// What was written beside the page.
-pub fn files(exhibits: &[Exhibit]) -> Markup {
+/// Lists the files written next to the page.
+pub fn files(reports: &[SampleReport]) -> Markup {
     html! {
         section id="files" {
             h2 { "Files next to this page" }
             div.files {
-                @for exhibit in exhibits {
+                @for report in reports {
                     div {
-                        h3 { (exhibit.subject.title) }
+                        h3 { (report.subject.title) }
                         ul {
-                            (file(&exhibit.sample.input_file(), "the input"))
-                            (file(&exhibit.sample.lods_file(), "input and levels, linked by MSFT_lod"))
-                            @for chain in &exhibit.chains {
+                            (file(&report.sample.input_file(), "the input"))
+                            (file(&report.sample.lods_file(), "input and levels, linked by MSFT_lod"))
+                            @for chain in &report.chains {
                                 @for level in &chain.levels {
                                     (file(&level.file, ""))
                                 }

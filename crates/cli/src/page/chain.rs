@@ -1,4 +1,4 @@
-//! The way down from a mesh by one method, with a level at every stop.
+//! Chain of levels of one mesh by one method, with measurements.
 
 use std::path::Path;
 use std::time::Duration;
@@ -6,81 +6,81 @@ use std::time::Duration;
 use meshlod::measure::{Distance, DistanceOptions, Quality, Surface, quality, surface_distance};
 use meshlod::{Mesh, Method, Options, Report};
 
-use crate::amounts::Size;
 use crate::failure::Failure;
 use crate::page::counts::Counts;
 use crate::page::subject::Subject;
-use crate::reduce::Engine;
+use crate::parse::LevelSize;
+use crate::reduce::SimplifyRun;
 use crate::session::Session;
 
-/// A subject that is being made coarser.
-pub struct Descent<'s> {
+/// Builder of a chain of levels.
+pub struct ChainBuilder<'s> {
     subject: &'s Subject,
     original: &'s Surface<'s>,
     options: DistanceOptions,
-    engine: Engine<'s>,
+    run: SimplifyRun<'s>,
     session: &'s Session,
-    /// What the terminal says is at work.
+    /// Label shown on the terminal.
     what: String,
 }
 
-/// Levels of one subject by one method, finest first; each is made of the one before.
+/// Levels of one subject by one method, finest first; each is made from the one before.
 pub struct Chain {
     pub method: Method,
     pub levels: Vec<Level>,
 }
 
-/// All figures of a level.
+/// Figures of a level.
 pub struct Level {
-    /// What was asked for.
-    pub size: Size,
+    /// Requested size.
+    pub size: LevelSize,
     pub counts: Counts,
     pub report: Report,
-    /// Its distance from the input, or why there is none.
+    /// Distance from the input, or the reason why it was not measured.
     pub measured: Result<Distance, String>,
     pub quality: Option<Quality>,
-    /// How different it looks, where pictures were compared.
+    /// FLIP image error, if pictures were compared.
     pub flip: Option<f64>,
-    /// From the input to here: connecting and contracting, by the wall clock.
+    /// Wall-clock time from the input to this level, for connectivity and contractions.
     pub time: Duration,
-    /// The name of its file, in the folder of the page.
+    /// File name in the folder of the page.
     pub file: String,
 }
 
-/// A level and its geometry.
-pub struct Made {
+/// Level with its geometry.
+pub struct LevelMesh {
     pub level: Level,
-    /// In the place of the scene's.
+    /// Meshes that replace those of the scene.
     pub meshes: Vec<Mesh>,
-    /// What the scene shows with them.
+    /// Flattened scene with these meshes.
     pub shown: Mesh,
 }
 
-/// What is measured, and how.
+/// Subject to simplify, and the options to measure it with.
 #[derive(Clone, Copy)]
-pub struct Bench<'s> {
+pub struct ChainSetup<'s> {
     pub subject: &'s Subject,
     pub original: &'s Surface<'s>,
     pub options: DistanceOptions,
     pub session: &'s Session,
 }
 
-impl<'s> Descent<'s> {
-    /// Connects the subject's meshes; `what` is at work, as the terminal shall say.
-    pub fn start(bench: Bench<'s>, method: Method, what: String) -> Result<Self, Failure> {
-        let Bench { subject, original, options, session } = bench;
+impl<'s> ChainBuilder<'s> {
+    /// Builds the connectivity of the subject's meshes; `what` labels the progress line.
+    pub fn start(setup: ChainSetup<'s>, method: Method, what: String) -> Result<Self, Failure> {
+        let ChainSetup { subject, original, options, session } = setup;
         let path = Path::new(&subject.name);
-        let manner = Options { method: Some(method), ..Options::default() };
+        let simplify = Options { method: Some(method), ..Options::default() };
         session.progress.stage(&format!("{what}: building connectivity"));
-        let engine = Engine::start(&subject.scene, &manner, path, session)?;
-        Ok(Self { subject, original, options, engine, session, what })
+        let run = SimplifyRun::start(&subject.scene, &simplify, path, session)?;
+        Ok(Self { subject, original, options, run, session, what })
     }
 
-    /// Goes on to a size; `file` is where the level will be.
-    pub fn go_on(&mut self, size: Size, file: String) -> Result<Made, Failure> {
-        self.engine.call(format!("{} to {size}", self.what));
-        let report = self.engine.run(size.target())?;
-        let meshes = self.engine.level();
+    /// Simplifies to the next size and measures the level; `file` is the name it will have.
+    pub fn next_level(&mut self, size: LevelSize, file: String) -> Result<LevelMesh, Failure> {
+        self.run.set_label(format!("{} to {size}", self.what));
+        let report = self.run.simplify_to(size.target())?;
+        let meshes = self.run.level();
         self.session.progress.stage(&format!("{}: measuring", self.what));
         let shown = self.subject.shown_with(&meshes);
         let level = Level {
@@ -90,10 +90,10 @@ impl<'s> Descent<'s> {
             measured: self.distance_of(&shown),
             quality: quality(&shown),
             flip: None,
-            time: self.engine.time(),
+            time: self.run.time(),
             file,
         };
-        Ok(Made { level, meshes, shown })
+        Ok(LevelMesh { level, meshes, shown })
     }
 
     fn distance_of(&self, shown: &Mesh) -> Result<Distance, String> {
@@ -103,20 +103,19 @@ impl<'s> Descent<'s> {
 }
 
 impl Level {
-    /// What became of the volume, in percent of the input's; `None` where the input is open and has
-    /// none.
+    /// Returns the change of volume in percent; `None` if the input is open.
     pub fn volume_change(&self, input: &Counts) -> Option<f64> {
         let change = 100.0 * (self.counts.volume - input.volume) / input.volume.abs();
         (input.closed && change.is_finite()).then_some(change)
     }
 
-    /// Whether the surface hangs together as the input's does.
+    /// Returns true if closedness, genus and number of components are those of the input.
     pub fn is_as_whole_as(&self, input: &Counts) -> bool {
         let of = |counts: &Counts| (counts.closed, counts.genus, counts.components);
         of(&self.counts) == of(input)
     }
 
-    /// A measured length in percent of the diagonal.
+    /// Returns a measured length in percent of the diagonal.
     pub fn percent(&self, length: fn(&Distance) -> f64) -> Option<f64> {
         self.measured.as_ref().ok().map(|distance| distance.percent(length(distance)))
     }

@@ -1,36 +1,36 @@
-//! Where to look, and how fine: words of the command line that become queries.
+//! Arguments of a multiresolution query: error limit, focus and camera.
 
 use meshlod::multires::{Focus, Query, Tolerance, ViewCamera};
 
-use crate::amounts::{self, Bound};
 use crate::failure::Failure;
+use crate::parse::{self, Bound};
 
-/// How far off triangles may be.
+/// Largest error allowed in the focus.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Allowed {
+pub enum ErrorLimit {
     Length(Bound),
-    /// As the camera sees it.
+    /// Error in pixels as the camera sees it.
     Pixels(f64),
 }
 
-/// Where the answer has to be good.
+/// Region in which the error is limited.
 #[derive(Clone, Debug)]
-pub enum Where {
-    Here(Focus),
-    /// In what the camera sees.
-    InSight,
+pub enum FocusArg {
+    Region(Focus),
+    /// View frustum of the camera.
+    Frustum,
 }
 
-/// A question as it was asked.
+/// Query as given on the command line.
 #[derive(Clone, Debug)]
-pub struct Question {
-    pub allowed: Allowed,
-    pub focus: Option<Where>,
+pub struct QueryRequest {
+    pub allowed: ErrorLimit,
+    pub focus: Option<FocusArg>,
     pub camera: Option<ViewCamera>,
 }
 
-impl Question {
-    /// The query, of a model with this diagonal.
+impl QueryRequest {
+    /// Converts the arguments to a query of a model with the given diagonal.
     pub fn query(&self, diagonal: f64) -> Result<Query<'static>, Failure> {
         let camera = || {
             self.camera.ok_or_else(|| {
@@ -39,31 +39,31 @@ impl Question {
         };
         let focus = match &self.focus {
             None => Focus::Everything,
-            Some(Where::Here(focus)) => focus.clone(),
-            Some(Where::InSight) => Focus::Frustum(camera()?),
+            Some(FocusArg::Region(focus)) => focus.clone(),
+            Some(FocusArg::Frustum) => Focus::Frustum(camera()?),
         };
         let tolerance = match self.allowed {
-            Allowed::Length(bound) => Tolerance::Uniform(bound.length(diagonal)),
-            Allowed::Pixels(pixels) => Tolerance::Pixels { camera: camera()?, pixels },
+            ErrorLimit::Length(bound) => Tolerance::Uniform(bound.length(diagonal)),
+            ErrorLimit::Pixels(pixels) => Tolerance::Pixels { camera: camera()?, pixels },
         };
         Ok(Query { focus, tolerance })
     }
 }
 
-/// `1px`, `0.1%` or `0.5`.
-pub fn allowed(text: &str) -> Result<Allowed, String> {
+/// Parses an error limit: `1px`, `0.1%` or `0.5`.
+pub fn allowed(text: &str) -> Result<ErrorLimit, String> {
     match text.strip_suffix("px") {
-        Some(pixels) => amounts::length(pixels).map(Allowed::Pixels),
-        None => amounts::bound(text).map(Allowed::Length),
+        Some(pixels) => parse::length(pixels).map(ErrorLimit::Pixels),
+        None => parse::bound(text).map(ErrorLimit::Length),
     }
 }
 
-/// `box=x0,y0,z0,x1,y1,z1` and others.
-pub fn focus(text: &str) -> Result<Where, String> {
+/// Parses a focus such as `box=x0,y0,z0,x1,y1,z1`.
+pub fn focus(text: &str) -> Result<FocusArg, String> {
     let (name, rest) = text.split_once('=').unwrap_or((text, ""));
-    let numbers = || rest.split(',').map(amounts::number).collect::<Result<Vec<_>, _>>();
+    let numbers = || rest.split(',').map(parse::number).collect::<Result<Vec<_>, _>>();
     let focus = match (name, numbers().as_deref()) {
-        ("frustum", _) if rest.is_empty() => return Ok(Where::InSight),
+        ("frustum", _) if rest.is_empty() => return Ok(FocusArg::Frustum),
         ("point", Ok(&[x, y, z])) => Focus::Point([x, y, z]),
         ("segment", Ok(&[a, b, c, x, y, z])) => Focus::Segment([[a, b, c], [x, y, z]]),
         ("box", Ok(&[a, b, c, x, y, z])) => Focus::Box([[a, b, c], [x, y, z]]),
@@ -74,10 +74,10 @@ pub fn focus(text: &str) -> Result<Where, String> {
                 .into());
         }
     };
-    Ok(Where::Here(focus))
+    Ok(FocusArg::Region(focus))
 }
 
-/// `eye=x,y,z look=x,y,z fov=45 1920x1080`, and maybe `up=x,y,z`.
+/// Parses a camera: `eye=x,y,z look=x,y,z fov=45 1920x1080`, with an optional `up=x,y,z`.
 pub fn camera(text: &str) -> Result<ViewCamera, String> {
     const FORM: &str = "expected \"eye=x,y,z look=x,y,z fov=45 1920x1080\" with the vertical field \
                         of view in degrees, and up=x,y,z unless y is up";
@@ -87,8 +87,8 @@ pub fn camera(text: &str) -> Result<ViewCamera, String> {
             Some(("eye", place)) => eye = Some(triple(place)?),
             Some(("look", place)) => look = Some(triple(place)?),
             Some(("up", direction)) => up = Some(triple(direction)?),
-            Some(("fov", degrees)) => fov = Some(amounts::number(degrees)?.to_radians()),
-            None => viewport = Some(amounts::pixels(word)?),
+            Some(("fov", degrees)) => fov = Some(parse::number(degrees)?.to_radians()),
+            None => viewport = Some(parse::pixels(word)?),
             Some(_) => return Err(FORM.into()),
         }
     }
@@ -101,7 +101,7 @@ pub fn camera(text: &str) -> Result<ViewCamera, String> {
 }
 
 fn triple(text: &str) -> Result<[f64; 3], String> {
-    let numbers: Vec<f64> = text.split(',').map(amounts::number).collect::<Result<_, _>>()?;
+    let numbers: Vec<f64> = text.split(',').map(parse::number).collect::<Result<_, _>>()?;
     numbers.try_into().map_err(|_| format!("{text:?} is not three numbers separated by commas"))
 }
 
@@ -124,9 +124,12 @@ mod tests {
 
     #[test]
     fn a_focus_has_a_shape() {
-        assert!(matches!(focus("frustum"), Ok(Where::InSight)));
-        assert!(matches!(focus("point=1,2,3"), Ok(Where::Here(Focus::Point([1.0, 2.0, 3.0])))));
-        assert!(matches!(focus("sphere=1,2,3,4"), Ok(Where::Here(Focus::Sphere { .. }))));
+        assert!(matches!(focus("frustum"), Ok(FocusArg::Frustum)));
+        assert!(matches!(
+            focus("point=1,2,3"),
+            Ok(FocusArg::Region(Focus::Point([1.0, 2.0, 3.0])))
+        ));
+        assert!(matches!(focus("sphere=1,2,3,4"), Ok(FocusArg::Region(Focus::Sphere { .. }))));
         for bad in ["box=1,2,3", "ball=1,2,3,4", "", "point=1,2,x", "frustum=1"] {
             assert!(focus(bad).is_err(), "{bad}");
         }
@@ -134,9 +137,9 @@ mod tests {
 
     #[test]
     fn errors_are_pixels_parts_or_lengths() {
-        assert_eq!(allowed("1px"), Ok(Allowed::Pixels(1.0)));
-        assert_eq!(allowed("0.01%"), Ok(Allowed::Length(Bound::OfDiagonal(0.0001))));
-        assert_eq!(allowed("0"), Ok(Allowed::Length(Bound::Length(0.0))));
+        assert_eq!(allowed("1px"), Ok(ErrorLimit::Pixels(1.0)));
+        assert_eq!(allowed("0.01%"), Ok(ErrorLimit::Length(Bound::OfDiagonal(0.0001))));
+        assert_eq!(allowed("0"), Ok(ErrorLimit::Length(Bound::Length(0.0))));
         assert!(allowed("-1px").is_err() && allowed("px").is_err());
     }
 }

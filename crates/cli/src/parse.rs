@@ -1,4 +1,4 @@
-//! Words of the command line that become values. Errors say what would be right.
+//! Parsers of command-line values. Every error says what is expected.
 
 use std::fmt;
 
@@ -7,17 +7,17 @@ use meshlod::{Format, Method, Target};
 
 use crate::numbers::{count, plural};
 
-/// A bound of the error.
+/// Length given in model units or relative to the diagonal.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Bound {
-    /// In model units.
+    /// Length in model units.
     Length(f64),
-    /// As a part of the diagonal of what the scene shows.
+    /// Fraction of the diagonal of the scene.
     OfDiagonal(f64),
 }
 
 impl Bound {
-    /// The bound in model units.
+    /// Returns the length in model units.
     pub fn length(self, diagonal: f64) -> f64 {
         match self {
             Self::Length(length) => length,
@@ -26,16 +26,16 @@ impl Bound {
     }
 }
 
-/// How large a level shall be.
+/// Requested size of a level.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Size {
-    /// So many faces.
+pub enum LevelSize {
+    /// Number of faces.
     Faces(usize),
-    /// This part of the input's.
+    /// Ratio of the input's faces.
     Ratio(f64),
 }
 
-impl Size {
+impl LevelSize {
     pub fn target(self) -> Target {
         match self {
             Self::Faces(faces) => Target::Faces(faces),
@@ -43,38 +43,38 @@ impl Size {
         }
     }
 
-    /// Itself in the name of a file: `10` for 10%, `500-faces`.
+    /// Formats the size for a file name: `10` for 10%, `500-faces`.
     pub fn in_file_names(self) -> String {
         self.to_string().replace('%', "").replace(' ', "-")
     }
 }
 
-impl fmt::Display for Size {
+impl fmt::Display for LevelSize {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Faces(faces) => write!(f, "{faces} face{}", plural(*faces)),
-            // What a user wrote as 12.5% shall not come back as 12.500000000000002%.
+            // Rounded so that 12.5% does not print as 12.500000000000002%.
             Self::Ratio(ratio) => write!(f, "{}%", (ratio * 1e8).round() / 1e6),
         }
     }
 }
 
-/// Where to look.
+/// Viewing direction, by name or by components.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Look {
-    /// From a side of the model: the direction if y is up.
+pub enum ViewDirection {
+    /// Direction seen from a named side, if y is up.
     From([f64; 3]),
-    /// In this direction.
+    /// Direction given by its components.
     Along([f64; 3]),
 }
 
-/// More threads than any machine has use for, fewer than would choke one.
+/// Upper limit of `--threads`: more than machines can use, fewer than would exhaust one.
 const MAX_THREADS: usize = 256;
 
-/// Samples that fit in the memory of a common machine.
+/// Upper limit of `--samples`: these fit in the memory of a common machine.
 const MAX_SAMPLES: usize = 100_000_000;
 
-/// `10%` or `0.1`.
+/// Parses a ratio: `10%` or `0.1`.
 pub fn ratio(text: &str) -> Result<f64, String> {
     let ratio = match text.strip_suffix('%') {
         Some(percent) => number(percent)? / 100.0,
@@ -87,7 +87,7 @@ pub fn ratio(text: &str) -> Result<f64, String> {
     }
 }
 
-/// `0.5` in model units, or `0.1%` of the diagonal.
+/// Parses a length: `0.5` in model units, or `0.1%` of the diagonal.
 pub fn bound(text: &str) -> Result<Bound, String> {
     match text.strip_suffix('%') {
         Some(percent) => Ok(Bound::OfDiagonal(length(percent)? / 100.0)),
@@ -95,15 +95,15 @@ pub fn bound(text: &str) -> Result<Bound, String> {
     }
 }
 
-/// `50%` or `0.5` of the faces, or `5000` faces.
-pub fn size(text: &str) -> Result<Size, String> {
+/// Parses a level size: `50%` or `0.5` of the faces, or `5000` faces.
+pub fn size(text: &str) -> Result<LevelSize, String> {
     match text.parse() {
-        Ok(faces) => Ok(Size::Faces(faces)),
-        Err(_) => ratio(text).map(Size::Ratio),
+        Ok(faces) => Ok(LevelSize::Faces(faces)),
+        Err(_) => ratio(text).map(LevelSize::Ratio),
     }
 }
 
-/// A length: finite, at least 0.
+/// Parses a finite length of at least 0.
 pub fn length(text: &str) -> Result<f64, String> {
     match number(text)? {
         length if length >= 0.0 => Ok(length),
@@ -111,17 +111,17 @@ pub fn length(text: &str) -> Result<f64, String> {
     }
 }
 
-/// What something counts, at least 0.
+/// Parses a weight of at least 0.
 pub fn weight(text: &str) -> Result<f64, String> {
     length(text)
 }
 
-/// A whole number.
+/// Parses a whole number of at least 0.
 pub fn whole(text: &str) -> Result<usize, String> {
     text.parse().map_err(|_| "it must be a whole number of at least 0".into())
 }
 
-/// A whole number above 0.
+/// Parses a whole number of at least 1.
 pub fn positive(text: &str) -> Result<usize, String> {
     match text.parse() {
         Ok(number) if number > 0 => Ok(number),
@@ -129,17 +129,17 @@ pub fn positive(text: &str) -> Result<usize, String> {
     }
 }
 
-/// A number of threads.
+/// Parses a number of threads.
 pub fn threads(text: &str) -> Result<usize, String> {
     at_most(MAX_THREADS, text)
 }
 
-/// A number of samples.
+/// Parses a number of samples.
 pub fn samples(text: &str) -> Result<usize, String> {
     at_most(MAX_SAMPLES, text)
 }
 
-/// `640x480`.
+/// Parses a picture size: `640x480`.
 pub fn pixels(text: &str) -> Result<[u32; 2], String> {
     let sides = text.split_once('x').map(|(width, height)| (width.parse(), height.parse()));
     let allowed = 1..=meshlod::picture::MAX_SIDE;
@@ -152,8 +152,8 @@ pub fn pixels(text: &str) -> Result<[u32; 2], String> {
     }
 }
 
-/// A side of the model by name, or `x,y,z`: the direction to look in.
-pub fn look(text: &str) -> Result<Look, String> {
+/// Parses a side of the model by name, or a viewing direction `x,y,z`.
+pub fn view_direction(text: &str) -> Result<ViewDirection, String> {
     const NAMED: [(&str, [f64; 3]); 6] = [
         ("front", [0.0, 0.0, -1.0]),
         ("back", [0.0, 0.0, 1.0]),
@@ -163,26 +163,26 @@ pub fn look(text: &str) -> Result<Look, String> {
         ("bottom", [0.0, 1.0, 0.0]),
     ];
     if let Some((_, direction)) = NAMED.iter().find(|(name, _)| *name == text) {
-        return Ok(Look::From(*direction));
+        return Ok(ViewDirection::From(*direction));
     }
     let numbers: Result<Vec<f64>, String> = text.split(',').map(number).collect();
     match numbers.as_deref() {
-        Ok(&[x, y, z]) if [x, y, z] != [0.0; 3] => Ok(Look::Along([x, y, z])),
+        Ok(&[x, y, z]) if [x, y, z] != [0.0; 3] => Ok(ViewDirection::Along([x, y, z])),
         _ => Err("expected front, back, left, right, top, bottom or a direction x,y,z".into()),
     }
 }
 
-/// A method by name.
+/// Parses the name of a method.
 pub fn method(text: &str) -> Result<Method, String> {
     Method::by_name(text).ok_or_else(|| format!("the methods are {}", names()))
 }
 
-/// What help says of methods.
+/// Returns the help text of `--method`.
 pub fn methods() -> String {
     format!("Simplification method: {}; the verb compare shows which suits a mesh", names())
 }
 
-/// The same where one is chosen if none is named.
+/// Returns the help text of `--method` where the default depends on the mesh.
 pub fn methods_or_suited() -> String {
     let [one, other] = [Method::LindstromTurk, Method::Qem].map(Method::name);
     let exception = "for attributes together with ties or removable components";
@@ -193,13 +193,13 @@ fn names() -> String {
     Method::ALL.map(Method::name).join(", ")
 }
 
-/// A format by its suffix.
+/// Parses a format by its suffix.
 pub fn format(text: &str) -> Result<Format, String> {
     let known = || Format::ALL.map(|(suffix, _)| suffix).join(", ");
     Format::of_suffix(text).ok_or_else(|| format!("the formats are {}", known()))
 }
 
-/// `f32` or `f64`.
+/// Parses a precision: `f32` or `f64`.
 pub fn precision(text: &str) -> Result<Precision, String> {
     match text {
         "f32" => Ok(Precision::F32),
@@ -215,7 +215,7 @@ fn at_most(most: usize, text: &str) -> Result<usize, String> {
     }
 }
 
-/// A number that is finite.
+/// Parses a finite number.
 pub fn number(text: &str) -> Result<f64, String> {
     match text.trim().parse::<f64>() {
         Ok(number) if number.is_finite() => Ok(number),
@@ -250,7 +250,7 @@ mod tests {
         }
         assert_eq!(size("5000").unwrap().to_string(), "5000 faces");
         assert_eq!(size("1").unwrap().to_string(), "1 face");
-        assert_eq!(size("0.25"), Ok(Size::Ratio(0.25)));
+        assert_eq!(size("0.25"), Ok(LevelSize::Ratio(0.25)));
     }
 
     #[test]
@@ -263,10 +263,10 @@ mod tests {
 
     #[test]
     fn directions_have_names_or_numbers() {
-        assert_eq!(look("top"), Ok(Look::From([0.0, -1.0, 0.0])));
-        assert_eq!(look("1,-2,0.5"), Ok(Look::Along([1.0, -2.0, 0.5])));
+        assert_eq!(view_direction("top"), Ok(ViewDirection::From([0.0, -1.0, 0.0])));
+        assert_eq!(view_direction("1,-2,0.5"), Ok(ViewDirection::Along([1.0, -2.0, 0.5])));
         for bad in ["0,0,0", "1,2", "1,2,3,4", "up", "1,nan,2"] {
-            assert!(look(bad).is_err(), "{bad}");
+            assert!(view_direction(bad).is_err(), "{bad}");
         }
     }
 }

@@ -1,4 +1,4 @@
-//! Pictures of a subject and its levels, all from one place.
+//! Pictures of a subject and its levels from one viewpoint.
 
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
@@ -11,72 +11,73 @@ use meshlod::picture::{
 use crate::failure::Failure;
 use crate::numbers;
 use crate::page::heat;
-use crate::page::look::Look;
 use crate::page::refine::refined;
+use crate::page::style::SubjectStyle;
 use crate::page::subject::Subject;
 
-/// Width and height of the pictures on the page: twice what they are shown at, for fine screens.
+/// Width and height of the pictures on the page: twice their displayed size, for high-resolution
+/// screens.
 pub const SIZE: [u32; 2] = [384, 320];
 
-/// A picture that is part of the page.
-pub struct Plate {
-    /// The whole PNG.
+/// Picture embedded in the page.
+pub struct InlinePicture {
+    /// Data URI of the PNG.
     pub uri: String,
-    /// What it shows, for those who cannot see it.
+    /// Alternative text.
     pub alt: String,
 }
 
-/// The pictures of a subject or of one of its levels.
-pub struct Shots {
-    pub shaded: Plate,
-    pub wired: Plate,
-    /// Of a level: how far it is from the input.
-    pub heat: Option<Plate>,
+/// Pictures of a subject or of one of its levels.
+pub struct LevelPictures {
+    pub shaded: InlinePicture,
+    pub wired: InlinePicture,
+    /// Heat map of the distance from the input, for a level.
+    pub heat: Option<InlinePicture>,
 }
 
-/// A camera before a subject.
-pub struct Studio<'s> {
+/// Renderer of a subject with a fixed camera.
+pub struct SubjectRenderer<'s> {
     subject: &'s Subject,
     original: &'s Surface<'s>,
     camera: Camera,
 }
 
-impl<'s> Studio<'s> {
+impl<'s> SubjectRenderer<'s> {
     pub fn new(subject: &'s Subject, original: &'s Surface<'s>) -> Self {
-        let camera = Camera::fit_mesh(&subject.mesh, &view(&subject.look, SIZE, 0.94));
+        let camera = Camera::fit_mesh(&subject.mesh, &view(&subject.style, SIZE, 0.94));
         Self { subject, original, camera }
     }
 
-    /// The pictures of the subject.
-    pub fn input(&self) -> Result<Shots, Failure> {
-        self.shots(&self.subject.mesh, "")
+    /// Draws the pictures of the subject.
+    pub fn input(&self) -> Result<LevelPictures, Failure> {
+        self.pictures(&self.subject.mesh, "")
     }
 
-    /// The pictures of a level; `by` says whose.
-    pub fn level(&self, shown: &Mesh, by: &str) -> Result<Shots, Failure> {
+    /// Draws the pictures of a level; `by` names its method.
+    pub fn level(&self, shown: &Mesh, by: &str) -> Result<LevelPictures, Failure> {
         let heat = Some(self.heat(shown, by)?);
-        Ok(Shots { heat, ..self.shots(shown, by)? })
+        Ok(LevelPictures { heat, ..self.pictures(shown, by)? })
     }
 
-    fn shots(&self, mesh: &Mesh, by: &str) -> Result<Shots, Failure> {
+    fn pictures(&self, mesh: &Mesh, by: &str) -> Result<LevelPictures, Failure> {
         let (title, faces) = (&self.subject.title, faces(mesh, by));
-        Ok(Shots {
-            shaded: self.plate(
+        Ok(LevelPictures {
+            shaded: self.picture(
                 mesh,
-                self.subject.look.shaded(),
+                self.subject.style.shaded(),
                 format!("{title}, shaded, {faces}"),
             )?,
-            wired: self.plate(
+            wired: self.picture(
                 mesh,
-                self.subject.look.wired(),
+                self.subject.style.wired(),
                 format!("{title} with its edges drawn, {faces}"),
             )?,
             heat: None,
         })
     }
 
-    /// The level, coloured by how far it is from the input.
-    fn heat(&self, level: &Mesh, by: &str) -> Result<Plate, Failure> {
+    /// Draws the level coloured by its distance from the input.
+    fn heat(&self, level: &Mesh, by: &str) -> Result<InlinePicture, Failure> {
         let diagonal = self.original.diagonal();
         let mesh = refined(level, diagonal * HEAT_STEP);
         let values = heat::values(&vertex_errors(&mesh, self.original), diagonal);
@@ -88,37 +89,48 @@ impl<'s> Studio<'s> {
         };
         let title = &self.subject.title;
         let alt = format!("Heat map of the error of {title} at {}", faces(level, by));
-        self.plate(&mesh, style, alt)
+        self.picture(&mesh, style, alt)
     }
 
-    /// The page shows behind it.
-    fn plate(&self, mesh: &Mesh, style: Style<'_>, alt: String) -> Result<Plate, Failure> {
+    /// Renders with a transparent background.
+    fn picture(
+        &self,
+        mesh: &Mesh,
+        style: Style<'_>,
+        alt: String,
+    ) -> Result<InlinePicture, Failure> {
         let style = Style { size: SIZE, background: Background::Transparent, ..style };
         let picture = render(mesh, &self.camera, &style).map_err(Failure::new)?;
-        Ok(Plate { uri: uri(&picture), alt })
+        Ok(InlinePicture { uri: uri(&picture), alt })
     }
 }
 
-/// Errors are looked up this close, as a part of the diagonal: some three pixels.
+/// Spacing of error samples on the surface, as a fraction of the diagonal: about three pixels.
 const HEAT_STEP: f64 = 0.01;
 
-/// The angle that the shorter side sees, in radians: about 20°, as of a long lens.
+/// Field of view of the shorter side, in radians: about 20°, like a long lens.
 const FOV_RAD: f64 = 0.35;
 
-/// Where a look wants to be seen from, in a picture of a size; `fill` as in [`View`].
-pub fn view(look: &Look, size: [u32; 2], fill: f64) -> View {
+/// Returns the view of a style for a picture size; `fill` as in [`View`].
+pub fn view(style: &SubjectStyle, size: [u32; 2], fill: f64) -> View {
     let [width, height] = size.map(f64::from);
-    View { direction: look.direction, up: look.up, fov_rad: FOV_RAD, fill, aspect: width / height }
+    View {
+        direction: style.direction,
+        up: style.up,
+        fov_rad: FOV_RAD,
+        fill,
+        aspect: width / height,
+    }
 }
 
-/// The same in a direction, y up.
+/// Returns the view in a direction with y up.
 pub fn view_from(direction: [f64; 3], size: [u32; 2]) -> View {
     let [width, height] = size.map(f64::from);
     let view = View { direction, fov_rad: FOV_RAD, fill: 0.94, ..View::default() };
     View { aspect: width / height, ..view }
 }
 
-/// A picture as part of a page.
+/// Encodes a picture as a data URI.
 pub fn uri(picture: &Picture) -> String {
     format!("data:image/png;base64,{}", STANDARD.encode(picture.png()))
 }

@@ -1,4 +1,4 @@
-//! Objects made one before they are made coarser.
+//! Fusing of objects before they are simplified.
 
 use clap::Args;
 use meshlod::check::Fused;
@@ -8,41 +8,42 @@ use serde_json::{Value, json};
 use crate::numbers::{count, faces, plural};
 use crate::session::Session;
 
-/// What is made one.
+/// Option to fuse objects.
 #[derive(Args)]
-pub struct Fusing {
-    /// Fuse closed objects that intersect into one surface: cut them where they meet, remove the parts
-    /// inside, join the rest. Object labels are kept, and ratios refer to the faces before fusing
+pub struct FuseArgs {
+    /// Fuse closed objects that intersect into one surface: cut them where they meet, remove the
+    /// parts inside, join the rest. Object labels are kept, and ratios refer to the faces before
+    /// fusing
     #[arg(long)]
     pub fuse: bool,
 }
 
-/// What fusing a scene did, and to how many faces that it shows.
-pub struct Done {
+/// Result of fusing a scene.
+pub struct FuseReport {
     pub before: usize,
     after: usize,
     fused: Fused,
 }
 
-impl Fusing {
-    /// Fuses a scene, if that is wanted.
-    pub fn apply(&self, scene: &mut Scene, session: &Session) -> Option<Done> {
+impl FuseArgs {
+    /// Fuses a scene if `--fuse` is given.
+    pub fn apply(&self, scene: &mut Scene, session: &Session) -> Option<FuseReport> {
         self.fuse.then(|| {
             session.progress.stage("fusing");
             let before = shown_faces(scene);
             let fused = fuse_scene(scene);
-            Done { before, after: shown_faces(scene), fused }
+            FuseReport { before, after: shown_faces(scene), fused }
         })
     }
 }
 
-impl Done {
-    /// Whether anything met.
+impl FuseReport {
+    /// Returns true if any objects met.
     pub fn is_change(&self) -> bool {
         self.fused != Fused::default()
     }
 
-    /// The target with parts of the faces that there were before.
+    /// Converts a ratio to a number of faces, relative to the faces before fusing.
     pub fn target(&self, target: Target) -> Target {
         match target {
             Target::Ratio(ratio) => Target::Faces((self.before as f64 * ratio) as usize),
@@ -61,7 +62,7 @@ impl Done {
         })
     }
 
-    /// One line.
+    /// Formats the result as one line.
     pub fn to_text(&self) -> String {
         let Fused { imprint, buried, joined } = self.fused;
         format!(
@@ -77,14 +78,14 @@ impl Done {
     }
 }
 
-/// The JSON of what was done, or null.
-pub fn to_json(done: Option<&Done>) -> Value {
-    done.map_or(Value::Null, Done::to_json)
+/// Returns the JSON of a fusing step, or null if there was none.
+pub fn to_json(done: Option<&FuseReport>) -> Value {
+    done.map_or(Value::Null, FuseReport::to_json)
 }
 
-/// The line of what was done, or nothing.
-pub fn to_text(done: Option<&Done>) -> String {
-    done.map_or(String::new(), Done::to_text)
+/// Returns the line of a fusing step, or an empty string if there was none.
+pub fn to_text(done: Option<&FuseReport>) -> String {
+    done.map_or(String::new(), FuseReport::to_text)
 }
 
 fn shown_faces(scene: &Scene) -> usize {

@@ -1,33 +1,38 @@
-//! Pictures side by side: the input first, then levels, a column for each.
+//! Pictures side by side: a column for the input, then one for each level.
 
 use maud::{Markup, html};
 
 use crate::page::figures::whole;
 use crate::page::heat;
-use crate::page::studio::{Plate, SIZE, Shots};
+use crate::page::renderer::{InlinePicture, LevelPictures, SIZE};
 use crate::page::subject::Subject;
 
-/// A column: what is said of it, and its pictures.
-pub struct Stand<'p> {
+/// Column of pictures with its caption.
+pub struct PictureColumn<'p> {
     pub caption: Markup,
-    pub shots: &'p Shots,
+    pub pictures: &'p LevelPictures,
 }
 
-/// How columns that find no room are reached.
+/// Placement of columns that do not fit.
 #[derive(Clone, Copy)]
 pub enum Layout {
-    /// By moving them sideways: the order tells something.
+    /// Scroll sideways, to keep the order visible.
     Scroll,
-    /// In the next row.
+    /// Wrap to the next row.
     Wrap,
 }
 
-/// The pictures of a subject and of what was made of it.
-pub fn strip(subject: &Subject, input: &Shots, stands: &[Stand<'_>], layout: Layout) -> Markup {
+/// Shows the pictures of a subject and of its levels.
+pub fn picture_row(
+    subject: &Subject,
+    input: &LevelPictures,
+    levels: &[PictureColumn<'_>],
+    layout: Layout,
+) -> Markup {
     let label = format!("{}: the input and its levels", subject.title);
     let (class, columns) = match layout {
         Layout::Scroll => ("strip", None),
-        Layout::Wrap => ("strip wrap", Some(format!("--columns: {}", columns(stands.len() + 1)))),
+        Layout::Wrap => ("strip wrap", Some(format!("--columns: {}", columns(levels.len() + 1)))),
     };
     html! {
         div class=(class) style=[columns] tabindex="0" role="region" aria-label=(label) {
@@ -40,19 +45,20 @@ pub fn strip(subject: &Subject, input: &Shots, stands: &[Stand<'_>], layout: Lay
                 (image(&input.wired))
                 (legend())
             }
-            @for Stand { caption, shots } in stands {
+            @for PictureColumn { caption, pictures } in levels {
                 figure {
                     figcaption { (caption) }
-                    (image(&shots.shaded))
-                    (image(&shots.wired))
-                    @if let Some(heat) = &shots.heat { (image(heat)) }
+                    (image(&pictures.shaded))
+                    (image(&pictures.wired))
+                    @if let Some(heat) = &pictures.heat { (image(heat)) }
                 }
             }
         }
     }
 }
 
-/// Columns on a wide page: rows of about one length, neither too small nor too large to see.
+/// Returns the number of columns on a wide page, so that rows are of about equal length and
+/// pictures of readable size.
 fn columns(pictures: usize) -> usize {
     let rows = pictures.div_ceil(MOST_COLUMNS);
     pictures.div_ceil(rows).clamp(4, MOST_COLUMNS)
@@ -60,11 +66,11 @@ fn columns(pictures: usize) -> usize {
 
 const MOST_COLUMNS: usize = 6;
 
-fn image(plate: &Plate) -> Markup {
-    html! { img src=(plate.uri) alt=(plate.alt) width=(SIZE[0]) height=(SIZE[1]) loading="lazy"; }
+fn image(picture: &InlinePicture) -> Markup {
+    html! { img src=(picture.uri) alt=(picture.alt) width=(SIZE[0]) height=(SIZE[1]) loading="lazy"; }
 }
 
-/// The scale of the heat maps, in the place where the input’s would be.
+/// Shows the scale of the heat maps, in place of one for the input.
 fn legend() -> Markup {
     html! {
         div.legend {

@@ -1,4 +1,4 @@
-//! What must stay: the options that say it, and what comes of them.
+//! Options that keep vertices and objects in place.
 
 use std::path::{Path, PathBuf};
 
@@ -8,15 +8,15 @@ use meshlod::mesh::{Lock, Locks};
 use meshlod::{Options, Report, Scene, join_locks, scene_locks, world_bounds};
 use serde_json::{Value, json};
 
-use crate::amounts::{self, Bound};
-use crate::args::Reading;
-use crate::check::lock_file::{self, Rows};
+use crate::args::ReadArgs;
+use crate::check::lock_file::{self, FileRows};
 use crate::failure::Failure;
+use crate::parse::{self, Bound};
 use crate::session::Session;
 
-/// What must stay.
+/// Options that keep vertices and objects in place.
 #[derive(Args)]
-pub struct Holding {
+pub struct LockArgs {
     /// Lock every vertex of a boundary edge in place
     #[arg(long)]
     lock_boundary: bool,
@@ -31,23 +31,23 @@ pub struct Holding {
     /// below SIZE: a length in model units, or 5% of the model's diagonal. That diagonal counts as
     /// error, so --error limits it too [default: none is removed, as with no SIZE]
     #[arg(long, value_name = "SIZE", num_args = 0..=1, default_missing_value = "0",
-        require_equals = true, value_parser = amounts::bound, allow_negative_numbers = true)]
+        require_equals = true, value_parser = parse::bound, allow_negative_numbers = true)]
     keep_objects: Option<Bound>,
 }
 
-/// A scene and where it came from.
-pub struct Origin<'o> {
+/// Scene with the path and options it was read with.
+pub struct InputScene<'o> {
     pub scene: &'o Scene,
     pub path: &'o Path,
-    pub reading: &'o Reading,
+    pub reading: &'o ReadArgs,
 }
 
-impl Holding {
-    /// Puts what must stay of a scene into options.
-    pub fn hold(
+impl LockArgs {
+    /// Adds the locks of a scene to simplification options.
+    pub fn apply(
         &self,
         options: Options,
-        origin: &Origin<'_>,
+        origin: &InputScene<'_>,
         session: &Session,
     ) -> Result<Options, Failure> {
         let size = |size: Bound| size.length(world_bounds(origin.scene).diagonal());
@@ -59,10 +59,10 @@ impl Holding {
         })
     }
 
-    fn locks(&self, origin: &Origin<'_>, session: &Session) -> Result<Locks, Failure> {
+    fn locks(&self, origin: &InputScene<'_>, session: &Session) -> Result<Locks, Failure> {
         let of_meshes = match &self.locks {
             Some(path) => {
-                let rows = Rows::of(origin.path, origin.scene, origin.reading.options().weld)?;
+                let rows = FileRows::of(origin.path, origin.scene, origin.reading.options().weld)?;
                 lock_file::read(path, origin.scene, &rows)?
             }
             None if self.lock_contacts => {
@@ -77,7 +77,7 @@ impl Holding {
     }
 }
 
-/// How many vertices are held, by how.
+/// Returns the numbers of locked, protected and tied vertices as JSON.
 pub fn to_json(report: &Report) -> Value {
     let held = &report.held;
     json!({ "locked": held.locked, "protected": held.protected, "tied": held.tied })

@@ -1,4 +1,4 @@
-//! One picture for the top of the page: a sample at several levels, side by side.
+//! Title picture of the page: a sample at several levels, side by side.
 
 use std::path::{Path, PathBuf};
 
@@ -6,32 +6,32 @@ use meshlod::Mesh;
 use meshlod::io::write_file;
 use meshlod::picture::{Background, Camera, Style, beside, render};
 
-use crate::demo::exhibit::Exhibit;
+use crate::demo::sample_report::SampleReport;
 use crate::failure::Failure;
 use crate::numbers::count;
-use crate::page::studio;
+use crate::page::renderer;
 
-/// Width and height of one of the four in it.
+/// Width and height of one of its four tiles.
 const SIZE: [u32; 2] = [400, 320];
 
-/// The picture, on the page and as a file.
-pub struct Hero {
+/// Title picture, inline and as a file.
+pub struct TitlePicture {
     pub file: PathBuf,
-    pub plate: studio::Plate,
+    pub picture: renderer::InlinePicture,
     pub size: [u32; 2],
-    /// Of each fish in it.
+    /// Number of faces of each tile.
     pub faces: Vec<usize>,
 }
 
-impl Hero {
+impl TitlePicture {
     /// Draws the input and the levels from the second on.
-    pub fn make(exhibit: &Exhibit, folder: &Path) -> Result<Self, Failure> {
-        let subject = &exhibit.subject;
-        let levels = exhibit.shown.iter().skip(1);
+    pub fn make(report: &SampleReport, folder: &Path) -> Result<Self, Failure> {
+        let subject = &report.subject;
+        let levels = report.shown.iter().skip(1);
         let meshes: Vec<&Mesh> = std::iter::once(&subject.mesh).chain(levels).collect();
-        let camera = Camera::fit_mesh(meshes[0], &studio::view(&subject.look, SIZE, 0.96));
+        let camera = Camera::fit_mesh(meshes[0], &renderer::view(&subject.style, SIZE, 0.96));
         let style =
-            Style { size: SIZE, background: Background::Transparent, ..subject.look.wired() };
+            Style { size: SIZE, background: Background::Transparent, ..subject.style.wired() };
         let draw = |mesh: &&Mesh| render(mesh, &camera, &style);
         let tiles: Vec<_> =
             meshes.iter().map(draw).collect::<Result<_, _>>().map_err(Failure::new)?;
@@ -41,7 +41,7 @@ impl Hero {
         let faces: Vec<usize> = meshes.iter().map(|mesh| mesh.faces.len()).collect();
         let counts: Vec<String> = faces.iter().map(|&faces| count(faces)).collect();
         let alt = format!("{} with {} faces", subject.title, counts.join(", "));
-        let plate = studio::Plate { uri: studio::uri(&picture), alt };
-        Ok(Self { file, plate, size: [picture.width(), picture.height()], faces })
+        let inline = renderer::InlinePicture { uri: renderer::uri(&picture), alt };
+        Ok(Self { file, size: [picture.width(), picture.height()], picture: inline, faces })
     }
 }

@@ -1,0 +1,83 @@
+//! The command line: global options and one subcommand per verb.
+
+use clap::{Parser, Subcommand};
+
+use crate::answer::Answer;
+use crate::args::GlobalArgs;
+use crate::compare::Compare;
+use crate::demo::Demo;
+use crate::failure::Failure;
+use crate::session::Session;
+use crate::verbs::{
+    build, check, compress, decompress, extract, info, lods, measure, render, repair, replay,
+    sample, simplify, strip,
+};
+
+/// Level of detail for triangle meshes.
+///
+/// The suffix selects the format: .ply .obj .stl .off .smf .gltf .glb. A path of - means standard
+/// input or output, with the format given by --format.
+#[derive(Parser)]
+#[command(name = "meshlod", version, max_term_width = 100)]
+pub struct Cli {
+    #[command(flatten)]
+    pub global: GlobalArgs,
+    #[command(subcommand)]
+    pub verb: Verb,
+}
+
+/// Verb with its arguments; the documentation of each type is the help text of the verb.
+#[derive(Subcommand)]
+pub enum Verb {
+    Info(info::Info),
+    Check(check::Check),
+    Repair(repair::Repair),
+    Simplify(simplify::Simplify),
+    Replay(replay::Replay),
+    Lods(lods::Lods),
+    Build(build::Build),
+    Extract(extract::Extract),
+    Strip(strip::Strip),
+    Compress(compress::Compress),
+    Decompress(decompress::Decompress),
+    Compare(Compare),
+    Measure(measure::Measure),
+    Sample(sample::Sample),
+    Render(render::Render),
+    Demo(Demo),
+}
+
+impl Verb {
+    pub fn run(self, session: &Session) -> Result<Answer, Failure> {
+        match self {
+            Self::Info(verb) => verb.run(session),
+            Self::Check(verb) => verb.run(session),
+            Self::Repair(verb) => verb.run(session),
+            Self::Simplify(verb) => verb.run(session),
+            Self::Replay(verb) => verb.run(session),
+            Self::Lods(verb) => verb.run(session),
+            Self::Build(verb) => verb.run(session),
+            Self::Extract(verb) => verb.run(session),
+            Self::Strip(verb) => verb.run(session),
+            Self::Compress(verb) => verb.run(session),
+            Self::Decompress(verb) => verb.run(session),
+            Self::Compare(verb) => verb.run(session),
+            Self::Measure(verb) => verb.run(session),
+            Self::Sample(verb) => verb.run(session),
+            Self::Render(verb) => verb.run(session),
+            Self::Demo(verb) => verb.run(session),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use clap::CommandFactory;
+
+    use super::*;
+
+    #[test]
+    fn the_command_line_is_sound() {
+        Cli::command().debug_assert();
+    }
+}

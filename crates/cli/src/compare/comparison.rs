@@ -1,0 +1,168 @@
+//! Comparison of methods on one mesh, each run independently.
+
+use meshlod::Method;
+use meshlod::measure::{DistanceOptions, Surface};
+use meshlod::picture::ReferenceImages;
+
+use crate::compare::output::Output;
+use crate::failure::Failure;
+use crate::page::chain::{Chain, ChainBuilder, ChainSetup, Level};
+use crate::page::renderer::{LevelPictures, SubjectRenderer};
+use crate::page::subject::Subject;
+use crate::parse::LevelSize;
+use crate::reduce;
+use crate::session::Session;
+use crate::volume::unconserved_text;
+
+/// Mesh, sizes and methods to compare.
+pub struct Comparison<'s> {
+    pub subject: &'s Subject,
+    pub original: &'s Surface<'s>,
+    pub options: DistanceOptions,
+    /// Sizes of the levels, finest first.
+    pub sizes: Vec<LevelSize>,
+    pub methods: Vec<Method>,
+    pub pictures: bool,
+}
+
+/// Result of a comparison.
+pub struct ComparisonResult {
+    /// Results, one per method.
+    pub entries: Vec<MethodResult>,
+    /// Pictures of the input, if wanted.
+    pub input: Option<LevelPictures>,
+}
+
+/// Levels that one method made of the mesh.
+pub struct MethodResult {
+    pub chain: Chain,
+    /// Pictures of every level, if wanted.
+    pub pictures: Vec<LevelPictures>,
+    /// Reason why there are no more levels.
+    pub failure: Option<Failure>,
+}
+
+/// Renderer, output and session that all methods use.
+struct RunContext<'c> {
+    tools: Option<PictureTools<'c>>,
+    output: &'c Output,
+    session: &'c Session,
+}
+
+/// Renderer of the page's pictures, and reference images to compare with.
+struct PictureTools<'c> {
+    renderer: SubjectRenderer<'c>,
+    reference: ReferenceImages<'c>,
+}
+
+/// Width and height of the pictures compared: a sixteenth of the protocol's pixels, so that a level
+/// costs a fraction of a second.
+pub const COMPARED_SIDE: u32 = 256;
+
+impl Comparison<'_> {
+    /// Builds, measures, draws and writes all levels. The geometry of a level is freed before the
+    /// next is built, which is as large.
+    ///
+    /// A method that fails becomes an entry with its failure. It is an error only if all methods
+    /// fail.
+    pub fn run(&self, output: &Output, session: &Session) -> Result<ComparisonResult, Failure> {
+        let tools = self.pictures.then(|| self.picture_tools()).transpose()?;
+        let context = RunContext { tools, output, session };
+        let mut entries = Vec::new();
+        for (i, &method) in self.methods.iter().enumerate() {
+            let what = format!("{} ({} of {})", method.name(), i + 1, self.methods.len());
+            let chain = Chain { method, levels: Vec::new() };
+            let mut entry = MethodResult { chain, pictures: Vec::new(), failure: None };
+            self.descend(&mut entry, &what, &context)?;
+            entries.push(entry);
+        }
+        if entries.iter().all(|entry| entry.chain.levels.is_empty())
+            && let Some(failure) = entries.iter_mut().find_map(|entry| entry.failure.take())
+        {
+            return Err(failure);
+        }
+        let input = context.tools.map(|tools| tools.renderer.input()).transpose()?;
+        Ok(ComparisonResult { entries, input })
+    }
+
+    fn picture_tools(&self) -> Result<PictureTools<'_>, Failure> {
+        let Self { subject, original, .. } = self;
+        let reference =
+            ReferenceImages::of_side(&subject.mesh, &subject.style.paint.as_paint(), COMPARED_SIDE);
+        let reference =
+            reference.map_err(|error| Failure::new(format_args!("{}: {error}", subject.name)))?;
+        Ok(PictureTools { renderer: SubjectRenderer::new(subject, original), reference })
+    }
+
+    /// Runs a method through all sizes. Fails only if a picture or a file does.
+    fn descend(
+        &self,
+        entry: &mut MethodResult,
+        what: &str,
+        context: &RunContext<'_>,
+    ) -> Result<(), Failure> {
+        let Self { subject, original, options, .. } = *self;
+        let RunContext { tools, output, session } = context;
+        let method = entry.chain.method;
+        let setup = ChainSetup { subject, original, options, session };
+        let mut builder = match ChainBuilder::start(setup, method, what.into()) {
+            Ok(builder) => builder,
+            Err(failure) => {
+                entry.failure = Some(failure);
+                return Ok(());
+            }
+        };
+        for &size in &self.sizes {
+            let mut made = match builder.next_level(size, output.file(method, size)) {
+                Ok(made) => made,
+                Err(failure) => {
+                    entry.failure = Some(failure);
+                    return Ok(());
+                }
+            };
+            if let Some(PictureTools { renderer, reference }) = tools {
+                session.progress.stage(&format!("{what}: drawing"));
+                entry.pictures.push(renderer.level(&made.shown, method.name())?);
+                let seen = reference.error_of(&made.shown).map_err(Failure::new)?;
+                made.level.flip = Some(seen.flip);
+            }
+            session.progress.stage(&format!("{what}: writing"));
+            let mut scene = subject.scene.clone();
+            reduce::replace(&mut scene, made.meshes);
+            output.write(&made.level.file, &scene)?;
+            entry.chain.levels.push(made.level);
+        }
+        Ok(())
+    }
+}
+
+impl ComparisonResult {
+    /// Iterates over the levels of one size with their entries.
+    pub fn at(&self, size: usize) -> impl Iterator<Item = (&MethodResult, &Level)> + Clone {
+        self.entries.iter().filter_map(move |entry| Some((entry, entry.chain.levels.get(size)?)))
+    }
+
+    /// Returns the volume-conserving methods that could not conserve it at a size, with a
+    /// description.
+    pub fn unconserved(&self, size: usize) -> Vec<(Method, String)> {
+        let line = |(entry, level): (&MethodResult, &Level)| {
+            let method = entry.chain.method;
+            Some((method, unconserved_text(method, &level.report.volume)?))
+        };
+        self.at(size).filter_map(line).collect()
+    }
+
+    /// Warns of methods that failed and targets that were not reached.
+    pub fn warn(&self, name: &str, session: &Session) {
+        for MethodResult { chain, failure, .. } in &self.entries {
+            let method = chain.method.name();
+            for level in chain.levels.iter().filter(|level| !level.report.reached) {
+                let reason = reduce::why_not_reached(&level.report);
+                session.warn(format_args!("{name}: {method}, {}: {reason}", level.size));
+            }
+            if let Some(failure) = failure {
+                session.warn(format_args!("{method}: {failure}"));
+            }
+        }
+    }
+}
