@@ -7,8 +7,8 @@ use meshlod::measure::Surface;
 use meshlod::{Options, Report, Scene, Target};
 
 use crate::failure::Failure;
-use crate::reduce::{Simplified, SimplifyRun, measure};
 use crate::session::Session;
+use crate::simplify_run::{Simplified, SimplifyRun, measure};
 
 /// Search for the coarsest level within a measured bound.
 pub struct BoundSearch<'s> {

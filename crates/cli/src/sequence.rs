@@ -9,8 +9,8 @@ use meshlod::{Mesh, Options, Scene};
 
 use crate::failure::Failure;
 use crate::files;
-use crate::reduce;
 use crate::session::Session;
+use crate::simplify_run;
 
 /// Refuses a sequence file that cannot be written, before any work is done.
 pub fn check(path: &Path, input: &Path, output: &Path) -> Result<(), Failure> {
@@ -73,7 +73,7 @@ pub fn put_into(scene: &mut Scene, sequence: &Progressive, path: &Path) -> Resul
             "is not the file that the sequence was recorded from, or is welded differently",
         ));
     }
-    reduce::replace(scene, vec![level]);
+    simplify_run::replace(scene, vec![level]);
     Ok(())
 }
 

@@ -10,8 +10,9 @@ use crate::page::chain::{Chain, ChainBuilder, ChainSetup, Level};
 use crate::page::renderer::{LevelPictures, SubjectRenderer};
 use crate::page::subject::Subject;
 use crate::parse::LevelSize;
-use crate::reduce;
 use crate::session::Session;
+use crate::simplify_report;
+use crate::simplify_run;
 use crate::volume::unconserved_text;
 
 /// Mesh, sizes and methods to compare.
@@ -73,7 +74,7 @@ impl Comparison<'_> {
             let what = format!("{} ({} of {})", method.name(), i + 1, self.methods.len());
             let chain = Chain { method, levels: Vec::new() };
             let mut entry = MethodResult { chain, pictures: Vec::new(), failure: None };
-            self.descend(&mut entry, &what, &context)?;
+            self.run_method(&mut entry, &what, &context)?;
             entries.push(entry);
         }
         if entries.iter().all(|entry| entry.chain.levels.is_empty())
@@ -95,7 +96,7 @@ impl Comparison<'_> {
     }
 
     /// Runs a method through all sizes. Fails only if a picture or a file does.
-    fn descend(
+    fn run_method(
         &self,
         entry: &mut MethodResult,
         what: &str,
@@ -128,7 +129,7 @@ impl Comparison<'_> {
             }
             session.progress.stage(&format!("{what}: writing"));
             let mut scene = subject.scene.clone();
-            reduce::replace(&mut scene, made.meshes);
+            simplify_run::replace(&mut scene, made.meshes);
             output.write(&made.level.file, &scene)?;
             entry.chain.levels.push(made.level);
         }
@@ -157,7 +158,7 @@ impl ComparisonResult {
         for MethodResult { chain, failure, .. } in &self.entries {
             let method = chain.method.name();
             for level in chain.levels.iter().filter(|level| !level.report.reached) {
-                let reason = reduce::why_not_reached(&level.report);
+                let reason = simplify_report::why_not_reached(&level.report);
                 session.warn(format_args!("{name}: {method}, {}: {reason}", level.size));
             }
             if let Some(failure) = failure {

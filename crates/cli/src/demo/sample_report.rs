@@ -13,8 +13,8 @@ use crate::page::chain::{Chain, ChainBuilder, ChainSetup, Level, LevelMesh};
 use crate::page::renderer::{LevelPictures, SubjectRenderer};
 use crate::page::subject::Subject;
 use crate::parse::LevelSize;
-use crate::reduce;
 use crate::session::Session;
+use crate::simplify_run;
 use crate::verbs::lods::screen_coverage;
 
 /// Levels of a chain, as ratios of the input's faces.
@@ -109,7 +109,7 @@ impl SampleFiles<'_> {
             let file = self.sample.level_file(method, LevelSize::Ratio(ratio));
             let made = builder.next_level(LevelSize::Ratio(ratio), file)?;
             let mut scene = setup.subject.scene.clone();
-            reduce::replace(&mut scene, made.meshes.clone());
+            simplify_run::replace(&mut scene, made.meshes.clone());
             self.write(&made.level.file, &scene)?;
             Ok(made)
         };

@@ -112,7 +112,7 @@ fn verdict(report: &SampleReport) -> String {
     let share = |part: usize| {
         if part == all { format!("All {all} levels") } else { format!("{part} of {all} levels") }
     };
-    let whole = share(levels().filter(|level| level.is_as_whole_as(input)).count());
+    let whole = share(levels().filter(|level| level.has_topology_of(input)).count());
     let reached = share(levels().filter(|level| level.report.reached).count());
     let tunnels = match input.genus {
         Some(1) => ", with one tunnel",

@@ -10,8 +10,8 @@ use crate::failure::Failure;
 use crate::page::counts::Counts;
 use crate::page::subject::Subject;
 use crate::parse::LevelSize;
-use crate::reduce::SimplifyRun;
 use crate::session::Session;
+use crate::simplify_run::SimplifyRun;
 
 /// Builder of a chain of levels.
 pub struct ChainBuilder<'s> {
@@ -110,7 +110,7 @@ impl Level {
     }
 
     /// Returns true if closedness, genus and number of components are those of the input.
-    pub fn is_as_whole_as(&self, input: &Counts) -> bool {
+    pub fn has_topology_of(&self, input: &Counts) -> bool {
         let of = |counts: &Counts| (counts.closed, counts.genus, counts.components);
         of(&self.counts) == of(input)
     }

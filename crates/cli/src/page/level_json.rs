@@ -7,7 +7,7 @@ use crate::distance;
 use crate::page::chain::Level;
 use crate::page::counts::Counts;
 use crate::parse::LevelSize;
-use crate::reduce::refusals_json;
+use crate::simplify_report::refusals_json;
 use crate::volume::unconserved_json;
 
 /// Returns the figures of a level as JSON. The change of volume is `null` if the input is open, and

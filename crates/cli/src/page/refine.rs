@@ -6,10 +6,9 @@ use meshlod::mesh::VertexId;
 /// Limit of cuts along a side of a face, so that one face gives at most a million.
 const MOST_CUTS: usize = 1000;
 
-/// The same surface of smaller faces: no edge is longer than `step`, as far as that goes.
+/// Subdivides the faces so that no edge is longer than `step`, up to a limit of cuts.
 ///
-/// Every face is cut by itself, so that vertices on edges are there more than once. Attributes are
-/// left behind.
+/// Every face is cut by itself, so vertices on shared edges are duplicated. Attributes are dropped.
 pub fn refined(mesh: &Mesh, step: f64) -> Mesh {
     let (mut positions, mut faces) = (Vec::new(), Vec::new());
     for &face in &mesh.faces {
@@ -28,7 +27,7 @@ pub fn refined(mesh: &Mesh, step: f64) -> Mesh {
     Mesh::new(positions, faces)
 }
 
-/// The faces between rows of vertices: row `r` begins `r (r + 1) / 2` behind the first.
+/// Returns the faces between rows of vertices: row `r` begins `r (r + 1) / 2` after the first.
 ///
 /// ```text
 ///  0

@@ -31,7 +31,7 @@ pub struct Build {
     /// File to write
     #[arg(value_name = "OUT.mlod")]
     output: PathBuf,
-    /// How the levels are made
+    /// Kind of model, by which the levels are made
     #[arg(long, value_name = "MODEL", default_value = "contractions")]
     model: ModelArg,
     #[arg(long, value_name = "NAME", default_value = Method::LindstromTurk.name(),
@@ -41,8 +41,8 @@ pub struct Build {
     /// times as long. The errors of right triangles are bounds in any case
     #[arg(long)]
     bounds: bool,
-    /// How far rounding may move a vertex: 0.001 in model units, or 0.005% of the diagonal; by a
-    /// cell or two more where a triangle would lose its area
+    /// Largest displacement of a vertex by rounding: 0.001 in model units, or 0.005% of the
+    /// diagonal; by a cell or two more where a triangle would lose its area
     #[arg(long, value_name = "BOUND", value_parser = parse::bound, default_value = "0.005%",
         allow_hyphen_values = true)]
     rounding: Bound,

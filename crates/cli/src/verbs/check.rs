@@ -26,7 +26,7 @@ pub struct Check {
     /// Mesh to read, or -; or a .mlod file, to prove that none of its cuts has a crack
     #[arg(value_name = "IN")]
     input: PathBuf,
-    /// What counts as an object; auto takes named objects if there are two or more, else components
+    /// Definition of an object; auto takes named objects if there are two or more, else components
     #[arg(long, value_name = "BY", default_value = "auto")]
     objects: By,
     /// Also exit with 1 on findings of this severity

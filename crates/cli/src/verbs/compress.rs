@@ -32,8 +32,7 @@ pub struct Compress {
     output: PathBuf,
     #[command(flatten)]
     target: CompressTarget,
-    /// How positions are encoded: any scheme in .mlq [default: blocks], lattice in .mlz, parts in
-    /// .glb
+    /// Encoding of positions: any scheme in .mlq [default: blocks], lattice in .mlz, parts in .glb
     #[arg(long, value_name = "SCHEME")]
     scheme: Option<SchemeArg>,
     /// Use --scheme parts as in the paper: vertices at the minimum corners of their cells, measured

@@ -19,8 +19,9 @@ use crate::fuse;
 use crate::locks::{self, InputScene};
 use crate::numbers::{count, percent, value};
 use crate::parse::{self, LevelSize};
-use crate::reduce::{self, Simplified, SimplifyRun};
 use crate::session::Session;
+use crate::simplify_report;
+use crate::simplify_run::{self, Simplified, SimplifyRun};
 use crate::table::aligned;
 use crate::verbs::simplify::MethodArgs;
 
@@ -76,7 +77,7 @@ impl Lods {
         let input_faces = chain.first().map_or(0, |level| level.simplified.report.input_faces);
         self.write(format, &mut scene, &mut chain, session)?;
         for level in chain.iter().filter(|level| !level.simplified.report.reached) {
-            let reason = reduce::why_not_reached(&level.simplified.report);
+            let reason = simplify_report::why_not_reached(&level.simplified.report);
             session.warn(Failure::at(&self.input, format_args!("{}: {reason}", level.size)));
         }
         if let Some(level) = chain.last() {
@@ -111,7 +112,7 @@ impl Lods {
             let target = size.target();
             let report = run.simplify_to(fused.map_or(target, |fused| fused.target(target)))?;
             let meshes = run.level();
-            let measured = reduce::measure(surface.as_ref(), scene, &meshes, session);
+            let measured = simplify_run::measure(surface.as_ref(), scene, &meshes, session);
             let finer = chain.last().map_or(1.0, |level| level.screen_coverage);
             chain.push(LodLevel {
                 size,
@@ -141,7 +142,7 @@ impl Lods {
         let meshes = |level: &mut LodLevel| std::mem::take(&mut level.simplified.meshes);
         if !holds_levels(format) {
             for level in chain {
-                reduce::replace(scene, meshes(level));
+                simplify_run::replace(scene, meshes(level));
                 files::write(&level.file, scene, &self.writing, session)?;
             }
             return Ok(());
@@ -181,7 +182,7 @@ impl Lods {
             "non_manifold_vertices": report.map(|report| report.non_manifold_vertices),
             "held": report.map(locks::to_json),
             "vanished": report.map(|report| report.vanished),
-            "refusals": report.map(reduce::refusals_json),
+            "refusals": report.map(simplify_report::refusals_json),
         })
     }
 
@@ -205,16 +206,16 @@ impl Lods {
                 value(level.screen_coverage),
             ]);
         }
-        let oddities = chain.last().map(|level| reduce::oddities(&level.simplified.report));
+        let notes = chain.last().map(|level| simplify_report::mesh_notes(&level.simplified.report));
         let mut text = aligned(&rows);
         text += "mean, RMS, max: measured distance from the input, in % of the diagonal\n";
         text += "coverage: the fraction of the screen below which the level is within one pixel of the\n";
         text += &format!("input, on a screen of {SCREEN_LINES} lines\n");
-        text += &oddities.unwrap_or_default();
+        text += &notes.unwrap_or_default();
         for file in written(chain) {
             text += &format!("{}\n", files::name(file));
         }
-        text + &reduce::seconds_line(time)
+        text + &simplify_report::seconds_line(time)
     }
 }
 

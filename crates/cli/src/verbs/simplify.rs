@@ -20,9 +20,10 @@ use crate::locks::{self, InputScene, LockArgs};
 use crate::measured_bound::BoundSearch;
 use crate::numbers::{count, faces, percent, value};
 use crate::parse::{self, Bound};
-use crate::reduce::{self, Simplified, SimplifyRun};
 use crate::sequence;
 use crate::session::Session;
+use crate::simplify_report;
+use crate::simplify_run::{self, Simplified, SimplifyRun};
 use crate::volume;
 
 /// Reduce a mesh to fewer faces
@@ -198,7 +199,7 @@ impl Simplify {
         } else {
             None
         };
-        reduce::replace(&mut scene, std::mem::take(&mut done.meshes));
+        simplify_run::replace(&mut scene, std::mem::take(&mut done.meshes));
         let write = || files::write(&self.output, &scene, &self.writing, session);
         match (&self.sequence, &done.sequence) {
             (Some(path), Some(sequence)) => sequence::write_with(path, sequence, write)?,
@@ -206,7 +207,7 @@ impl Simplify {
         }
         self.method.warn(&done.report, session);
         if !done.report.reached {
-            let reason = Failure::at(&self.input, reduce::why_not_reached(&done.report));
+            let reason = Failure::at(&self.input, simplify_report::why_not_reached(&done.report));
             session.warn(reason);
         }
         let mut json = self.json(&done, fused.as_ref(), time);
@@ -282,14 +283,14 @@ impl Simplify {
             return BoundSearch { scene, options, original, bound, path, session }.run();
         }
         let (reduced, time) = self.plain_run(task, session)?;
-        let measured = reduce::measure(surface.as_ref(), scene, &reduced.meshes, session);
+        let measured = simplify_run::measure(surface.as_ref(), scene, &reduced.meshes, session);
         Ok((Simplified { measured, ..reduced }, time))
     }
 
     fn json(&self, done: &Simplified, fused: Option<&fuse::FuseReport>, time: Duration) -> Value {
         let report = &done.report;
         let mut json = json!({ "method": report.method.name() });
-        for (key, value) in reduce::report_json(report).as_object().into_iter().flatten() {
+        for (key, value) in simplify_report::report_json(report).as_object().into_iter().flatten() {
             json[key] = value.clone();
         }
         json["error_measured"] = done.measured.as_ref().map(distance::to_json).into();
@@ -302,7 +303,7 @@ impl Simplify {
         json["fused"] = fuse::to_json(fused);
         json["held"] = locks::to_json(report);
         json["vanished"] = report.vanished.into();
-        json["refusals"] = reduce::refusals_json(report);
+        json["refusals"] = simplify_report::refusals_json(report);
         json["file"] = files::name(&self.output).into();
         json
     }
@@ -318,7 +319,7 @@ impl Simplify {
             faces(input_faces),
             count(report.output_faces),
             percent(part),
-            reduce::oddities(report),
+            simplify_report::mesh_notes(report),
         );
         text += &format!("error_estimate: {}\n", value(report.error_estimate));
         if let Some(distance) = &done.measured {
@@ -327,6 +328,6 @@ impl Simplify {
         if let Some(line) = volume::unconserved_text(report.method, &report.volume) {
             text += &format!("{line}\n");
         }
-        text + &reduce::seconds_line(time)
+        text + &simplify_report::seconds_line(time)
     }
 }

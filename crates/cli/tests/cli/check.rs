@@ -1,4 +1,4 @@
-//! What a check says, its exit codes, its page, its locks.
+//! Findings, exit codes, page and locks of `check`.
 
 use std::path::Path;
 
@@ -10,7 +10,7 @@ use crate::run::{Done, Run};
 /// Three faces on one edge.
 const BOOK: &str = "v 0 0 0\nv 0 0 1\nv 1 0 0\nv 0 1 0\nv -1 0 0\nf 1 2 3\nf 1 2 4\nf 2 1 5\n";
 
-/// A square that lies, and a triangle that stands through it; a vertex that no face uses first.
+/// A horizontal square crossed by a vertical triangle, after one unused vertex.
 const CROSSING: &str = "v 9 9 9\no floor\nv 0 0 0\nv 4 0 0\nv 4 4 0\nv 0 4 0\nf 2 3 4\nf 2 4 5\n\
     o blade\nv 2 1 -1\nv 3 1 -1\nv 2.5 1 1\nf 6 7 8\n";
 
@@ -114,8 +114,8 @@ fn locks_are_in_the_order_of_the_file() {
     let locks = read_json(&run, "locks.json");
     assert_eq!((&locks["format"], &locks["version"]), (&json!("meshlod-locks"), &json!(1)));
     let mesh = &locks["meshes"][0];
-    // The first vertex of the file is in no face, the far corner of the floor not in the face that is
-    // crossed.
+    // The first vertex of the file is unused, and the far corner of the floor is not in the face
+    // that is crossed.
     assert_eq!(mesh["flags"], json!([0, 2, 2, 2, 0, 2, 2, 2]));
     assert_eq!(mesh["counts"], json!({ "free": 2, "lock": 0, "protect": 6 }));
     assert_eq!(mesh["ties"], json!([]));
@@ -124,7 +124,7 @@ fn locks_are_in_the_order_of_the_file() {
 #[test]
 fn locks_of_stl_are_by_corner_and_tie_rows() {
     let run = Run::new();
-    // Two squares side by side, with corners of their own.
+    // Two adjacent squares that share no vertices.
     let squares = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 1 0 0\nv 2 0 0\nv 2 1 0\nv 1 1 0\n\
         f 1 2 3\nf 1 3 4\nf 5 6 7\nf 5 7 8\n";
     write(&run, "in.obj", squares);
@@ -133,7 +133,7 @@ fn locks_of_stl_are_by_corner_and_tie_rows() {
     assert_eq!(flags("obj.json"), json!([1, 1, 1, 1, 1, 1, 1, 1]), "all are at the boundary");
     run.json(&["check", "in.obj", "--locks", "obj.json"]);
     assert_eq!(read_json(&run, "obj.json")["meshes"][0]["ties"], json!([[1, 4], [2, 7]]));
-    // What is one vertex to STL is one component: nothing meets.
+    // STL welds the shared corners, so there is one component and no contact.
     let done = run.run(&["simplify", "in.obj", "in.stl", "--ratio", "100%"]);
     assert_eq!(done.code, 0, "{done:?}");
     run.json(&["check", "in.stl", "--locks", "stl.json"]);
@@ -217,7 +217,7 @@ fn locks_of_another_mesh_are_refused() {
     write(&run, "tie.json", &ties("[1,99]"));
     write(&run, "one.json", &ties("[1,1],[99]"));
     write(&run, "torn.json", &ties("[2,2],[3,3,5]"));
-    // As many vertices at other places.
+    // The same number of vertices at other positions.
     write(&run, "moved.obj", &CROSSING.replace("v 4 0 0", "v 4 0 1"));
     run.json(&["check", "moved.obj", "--locks", "moved.json"]);
     for (name, reason) in [
@@ -261,7 +261,7 @@ fn a_real_model_is_checked_and_held_together() {
     let fish = fish.to_str().unwrap();
     let found = run.json(&["check", fish]);
     assert_eq!((&found["components"], &found["errors"]), (&json!(10), &json!(0)));
-    // PLY would tear the seams.
+    // PLY would split vertices at seams.
     let held = run.json(&["simplify", fish, "f.obj", "--ratio", "10%", "--lock-contacts"]);
     assert!(held["held"]["protected"].as_u64() > Some(0), "{held}");
     let info = run.json(&["info", "f.obj"]);

@@ -1,10 +1,10 @@
-//! All methods on one mesh: a table, a page, files.
+//! Table, page and files of `compare`.
 
 use serde_json::Value;
 
 use crate::run::{Done, Run};
 
-/// A comparison that shall be quick: `options` without the folder, which is `out`.
+/// Runs a quick comparison with `options`, to the folder `out`.
 fn compare(run: &Run, options: &[&str]) -> Done {
     run.run(&[&["compare"], options, &["--out", "out", "--samples", "5000"]].concat())
 }
@@ -35,7 +35,7 @@ fn in_out(run: &Run) -> Vec<String> {
     names
 }
 
-/// A sheet that bends: open, without attributes.
+/// A curved sheet: open, without attributes.
 fn write_sheet(run: &Run, name: &str) {
     let mut obj = String::new();
     for (x, y) in (0..12).flat_map(|y| (0..12).map(move |x| (x, y))) {

@@ -1,4 +1,4 @@
-//! Compressed meshes, there and back.
+//! Round trips of compressed meshes.
 
 use serde_json::Value;
 
@@ -211,7 +211,7 @@ fn odd_meshes_have_clear_outcomes() {
         std::fs::write(run.path("in.off"), text).unwrap();
         for scheme in SCHEMES {
             let done = run.run(&["compress", "in.off", "out.mlq", "--scheme", scheme]);
-            // A lattice has no limit but that of its cells.
+            // A lattice is limited only by its cells.
             if (name, scheme) == ("beyond f32", "lattice") {
                 continue;
             }

@@ -1,4 +1,4 @@
-//! The demo: a page, its pictures, its files.
+//! Page, pictures and files of the demo.
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -8,13 +8,13 @@ use serde_json::Value;
 
 use crate::run::Run;
 
-/// What a run said, and the files that it wrote.
+/// Output of a run, with the files it wrote.
 struct Demo {
     json: Value,
     files: BTreeMap<String, Vec<u8>>,
 }
 
-/// One run for all tests. Its folder is gone: what is never dropped would leave it behind.
+/// One run shared by all tests. Its folder is already removed, since a static is never dropped.
 static DEMO: LazyLock<Demo> = LazyLock::new(|| demo(&[]));
 
 fn demo(options: &[&str]) -> Demo {
@@ -138,7 +138,7 @@ fn again_with_one_thread_all_but_the_seconds_is_the_same() {
     assert!(unclocked(&DEMO.files) == unclocked(&again.files));
 }
 
-/// Without what the clock has a say in.
+/// Removes the fields that depend on the clock.
 fn timeless(mut json: Value) -> Value {
     match &mut json {
         Value::Object(fields) => {

@@ -6,7 +6,8 @@ use meshlod_fixtures::shared_broken;
 
 use crate::run::{Done, Run};
 
-/// Runs a verb that writes `out`, and holds what it did against the rule.
+/// Runs a verb that writes `out`, and checks that it either succeeded or failed with one line and
+/// no output.
 fn check(run: &Run, arguments: &[&str], input: &Path, out: &str) -> Done {
     let done = run.run(arguments);
     let name = input.display();

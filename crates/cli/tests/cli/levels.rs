@@ -4,7 +4,7 @@ use serde_json::Value;
 
 use crate::run::Run;
 
-/// The document of a GLB.
+/// Returns the JSON document of a GLB.
 fn document(bytes: &[u8]) -> Value {
     let length = u32::from_le_bytes(bytes[12..16].try_into().unwrap()) as usize;
     serde_json::from_slice(&bytes[20..20 + length]).unwrap()
@@ -79,7 +79,7 @@ fn a_sequence_gives_every_level_back_to_the_byte() {
     assert!(done.code == 0 && done.only_line().contains("coarsest"), "{done:?}");
 }
 
-/// A fish of a colour, at a hundredth of its size.
+/// Writes a glTF scene of a coloured fish scaled to a hundredth.
 fn write_small_fish(run: &Run) {
     run.sample("fish", 1_000, "in.gltf");
     let path = run.path("in.gltf");

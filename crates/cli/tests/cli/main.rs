@@ -1,4 +1,4 @@
-//! The program as its users meet it: exit codes, streams, files.
+//! Tests of the program from outside: exit codes, streams, files.
 
 mod check;
 mod compare;

@@ -1,4 +1,4 @@
-//! Multiresolution files: built, proved, and asked for meshes.
+//! Multiresolution files: built, proved, and extracted from.
 
 use std::ops::Range;
 
@@ -13,16 +13,16 @@ const CAMERA: &str = "eye=3,0.5,0.4 look=0,0,0 up=0,0,1 fov=40 640x480";
 const TEXTURED: &str = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0.5 0.5 0\nvt 0 0\nvt 1 1\n\
     f 1/1 2/2 5/1\nf 2/1 3/2 5/1\nf 3/1 4/2 5/1\nf 4/1 1/2 5/1\n";
 
-/// How many faces a torus of about 2000 has.
+/// Number of faces of a torus of about 2000.
 const TORUS: u64 = 2_016;
 
-/// A torus in chunks of 64 updates.
+/// Builds a torus in chunks of 64 updates.
 fn torus(run: &Run) {
     run.sample("torus", 2_000, "torus.ply");
     run.json(&["build", "torus.ply", "torus.mlod", "--in-chunk", "64"]);
 }
 
-/// A height field of so many faces as right triangles.
+/// Builds a height field as right triangles.
 fn terrain(run: &Run, faces: usize) {
     run.sample("terrain", faces, "terrain.ply");
     run.json(&["build", "terrain.ply", "terrain.mlod", "--model", "right-triangles"]);
@@ -48,7 +48,8 @@ fn word(bytes: &[u8], at: usize) -> usize {
     u32::from_le_bytes(bytes[at..at + 4].try_into().unwrap()) as usize
 }
 
-/// Where a file of contractions (docs/formats/mlod.md) has its index, its coarsest mesh, and each chunk.
+/// Returns the offsets of the index, the coarsest mesh and each chunk in a file of contractions
+/// (docs/formats/mlod.md).
 fn pieces(bytes: &[u8]) -> Vec<Range<usize>> {
     let index = 88 + 44 * word(bytes, 36);
     let sizes = std::iter::once(28).chain((88..index).step_by(44)).map(|at| word(bytes, at));
@@ -59,7 +60,7 @@ fn pieces(bytes: &[u8]) -> Vec<Range<usize>> {
     std::iter::once(0..index).chain(ends).collect()
 }
 
-/// A run that could not: one line, nothing on standard output, nothing written.
+/// Runs a command that must fail: one line, nothing on standard output, nothing written.
 fn refused(run: &Run, arguments: &[&str], code: i32) -> Done {
     let before = run.files();
     let done = run.run(arguments);
@@ -95,7 +96,7 @@ fn all_levels_of_a_mesh_are_in_one_file() {
     assert!(far <= built["rounding"].as_f64(), "{far:?}");
 }
 
-/// A hilly field far from the origin, as an OBJ file whose numbers no `f32` holds.
+/// A hilly field far from the origin, as an OBJ file with coordinates that `f32` cannot hold.
 fn far_hills() -> String {
     hills([431_234.1, 5_412_345.7], |x| x)
 }
@@ -116,7 +117,7 @@ fn hills(at: [f64; 2], exact: impl Fn(f64) -> f64) -> String {
     (0..SIDE * SIDE).map(vertex).chain(cells.map(face)).collect()
 }
 
-/// Faces of an OBJ file by the bits of their corners, each from its least.
+/// Returns the faces of an OBJ file as the bits of their corners, each starting at its smallest.
 fn by_bits(text: &str) -> Vec<[[u64; 3]; 3]> {
     let of = |key: &str| {
         let rows = text.lines().filter_map(|line| line.strip_prefix(key));
@@ -152,7 +153,7 @@ fn a_lossless_file_gives_the_mesh_back_to_the_bit() {
         let back = String::from_utf8(bytes(&run, "back.obj")).unwrap();
         assert!(by_bits(&back) == by_bits(&text), "{goal:?}");
     }
-    // What is left of it in a level is where it was.
+    // Vertices that remain in a level have not moved.
     extract(&run, "out.mlod", "part.obj", &["--faces", "400"]);
     let part = String::from_utf8(bytes(&run, "part.obj")).unwrap();
     let all = by_bits(&text);
@@ -168,7 +169,7 @@ fn a_lossless_file_gives_the_mesh_back_to_the_bit() {
 #[test]
 fn a_lossless_file_gives_text_files_to_the_bit_and_says_what_others_round() {
     let run = Run::new();
-    // Of an `f32` in thirds the shortest decimal is another `f64`.
+    // For thirds, the shortest decimal of an `f32` is a different `f64`.
     let text = hills([0.0; 2], |x| f64::from(x as f32));
     write(&run, "in.obj", text.as_bytes());
     run.json(&["build", "in.obj", "out.mlod", "--lossless"]);
@@ -298,7 +299,7 @@ fn a_focus_is_fine_and_the_rest_coarse() {
             let done =
                 run.run(&[&["extract", file, "only.ply", "--json"], &arguments[..]].concat());
             if focus.starts_with("point") || focus.starts_with("segment") {
-                // There may be no face in so small a place.
+                // So small a region may contain no face.
                 assert!(
                     done.code == 0 || done.only_line().contains("no face intersects"),
                     "{done:?}"
@@ -432,7 +433,7 @@ fn wrong_builds_are_2_and_write_nothing() {
     assert!(done.only_line().contains("folder.mlod: is a folder"), "{done:?}");
 }
 
-/// Asks every verb that reads such files; none may take it.
+/// Runs every verb that reads such files; all must refuse it.
 fn refused_by_all(run: &Run, input: &str) -> Vec<String> {
     let verbs: [&[&str]; 3] = [
         &["check", input],
@@ -463,7 +464,7 @@ fn a_file_that_is_none_is_1_and_one_line() {
         refused_by_all(&run, name);
     }
     refused_by_all(&run, "absent.mlod");
-    // Whoever names it otherwise is told by what is in it.
+    // A file with another suffix is recognised by its contents.
     write(&run, "mesh.ply", &mesh);
     refused(&run, &["extract", "mesh.ply", "out.ply", "--error", "0"], 1);
 }
@@ -535,7 +536,7 @@ fn a_damaged_piece_is_named() {
     let whole = bytes(&run, "torus.mlod");
     for (i, piece) in pieces(&whole).into_iter().enumerate() {
         let mut wrong = whole.clone();
-        // Not in the first words, which have errors of their own.
+        // Not in the first words, which have their own errors.
         let at = if i == 0 { piece.end - 10 } else { (piece.start + piece.end) / 2 };
         wrong[at] ^= 0x10;
         write(&run, "wrong.mlod", &wrong);
@@ -548,7 +549,7 @@ fn a_damaged_piece_is_named() {
         let told = format!("the checksum of {what} does not match");
         assert!(lines.iter().all(|line| line.contains(&told)), "{lines:?}");
     }
-    // What is not read is not missed.
+    // Damage in parts that are not read goes unnoticed.
     let mut wrong = whole.clone();
     *wrong.last_mut().unwrap() ^= 1;
     write(&run, "wrong.mlod", &wrong);

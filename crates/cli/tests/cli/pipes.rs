@@ -80,7 +80,7 @@ fn an_interrupted_run_leaves_nothing() {
         std::thread::sleep(std::time::Duration::from_millis(50));
         let killed = Command::new("kill").args([signal, &child.id().to_string()]).status();
         assert!(killed.is_ok_and(|status| status.success()));
-        // It may have been done before; then the file is there, and whole.
+        // The run may have finished first; then the file is there and complete.
         if child.wait().unwrap().code() == Some(0) {
             assert_eq!(run.json(&["info", "out.ply"])["closed"], true);
             std::fs::remove_file(run.path("out.ply")).unwrap();

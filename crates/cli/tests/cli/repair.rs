@@ -1,10 +1,10 @@
-//! What `repair` mends, says and keeps.
+//! Repairs of `repair`, its report, and what it leaves alone.
 
 use meshlod_fixtures::shared_mesh;
 
 use crate::run::Run;
 
-/// A cube of two objects with a face turned, one doubled and one without area, and no top.
+/// A cube of two objects without a top, with one flipped, one duplicate and one degenerate face.
 const HURT: &str = "v 9 9 9\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nv 0 0 1\nv 1 0 1\nv 0 1 1\nv 1 1 1\n\
     o sides\nf 2 3 7\nf 2 6 7\nf 3 5 9 7\nf 5 4 8 9\nf 4 2 6 8\n\
     o base\nf 2 4 5 3\nf 2 4 5\nf 2 3 3\n";

@@ -1,4 +1,4 @@
-//! The program run in a folder of its own.
+//! Runs of the program in a temporary folder.
 
 use std::io::Write;
 use std::path::PathBuf;
@@ -7,12 +7,12 @@ use std::process::{Command, Output, Stdio};
 use serde_json::Value;
 use tempfile::TempDir;
 
-/// A folder that goes away, and the program run in it.
+/// Temporary folder in which the program runs.
 pub struct Run {
     pub folder: TempDir,
 }
 
-/// What a run left on its streams.
+/// Exit code and streams of a finished run.
 #[derive(Debug)]
 pub struct Done {
     pub code: i32,
@@ -39,30 +39,30 @@ impl Run {
         self.run_with(arguments, b"")
     }
 
-    /// With bytes on standard input.
+    /// Runs the program with bytes on standard input.
     pub fn run_with(&self, arguments: &[&str], input: &[u8]) -> Done {
         let mut command = self.command(arguments);
         command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
         let mut child = command.spawn().expect("the program starts");
-        // It may end without reading.
+        // The program may end without reading its input.
         let _ = child.stdin.take().expect("a pipe").write_all(input);
         Done::of(child.wait_with_output().expect("the program ends"))
     }
 
-    /// A run that must be done, with `--json`: the object.
+    /// Runs a command that must succeed, with `--json`, and returns the object.
     pub fn json(&self, arguments: &[&str]) -> Value {
         let done = self.run(&[arguments, &["--json"]].concat());
         assert_eq!(done.code, 0, "{arguments:?}: {done:?}");
         done.json()
     }
 
-    /// A sample, written to a file of that name.
+    /// Writes a sample to a file.
     pub fn sample(&self, sample: &str, faces: usize, file: &str) {
         let done = self.run(&["sample", sample, file, "--faces", &faces.to_string()]);
         assert_eq!(done.code, 0, "{done:?}");
     }
 
-    /// The names of the files in the folder, in order.
+    /// Returns the sorted names of the files in the folder.
     pub fn files(&self) -> Vec<String> {
         let entries = std::fs::read_dir(self.folder.path()).expect("a folder");
         let name = |entry: std::io::Result<std::fs::DirEntry>| entry.expect("a file").file_name();
@@ -86,14 +86,14 @@ impl Done {
         std::str::from_utf8(&self.out).expect("text")
     }
 
-    /// Standard output as one JSON object and nothing else.
+    /// Parses standard output as a single JSON object.
     pub fn json(&self) -> Value {
         let value: Value = serde_json::from_slice(&self.out).expect("JSON and nothing else");
         assert!(value.is_object(), "{value}");
         value
     }
 
-    /// The only line on standard error.
+    /// Returns the only line on standard error.
     pub fn only_line(&self) -> &str {
         let line = self.err.strip_suffix('\n').expect("a whole line");
         assert!(!line.contains('\n') && line.starts_with("meshlod: "), "{line}");

@@ -1,11 +1,11 @@
-//! Strips at any level, and the files they go to.
+//! Strips at any level, and the files they are written to.
 
 use meshlod_fixtures::{shared_broken, shared_mesh};
 use serde_json::{Value, json};
 
 use crate::run::Run;
 
-/// What every level tells.
+/// Checks the figures of every level.
 const FIELDS: [&str; 8] = [
     "triangles",
     "vertices_sent",
@@ -91,7 +91,7 @@ fn strips_in_gltf_are_read_back() {
         assert_eq!(mesh["primitives"][0]["mode"], 5);
     }
     assert_eq!(document["extensionsUsed"], json!(["MSFT_lod"]));
-    // What is shown is the finest level, whichever was named first.
+    // The finest level is shown, whichever was listed first.
     let [original, back] = ["in.ply", "out.gltf"].map(|file| run.json(&["info", file]));
     for field in ["faces", "edges", "boundary_edges", "area", "volume", "closed"] {
         let [a, b] = [&original[field], &back[field]];
@@ -202,7 +202,7 @@ fn damaged_files_are_stripped_or_named() {
 
 #[test]
 fn the_papers_figures_are_bettered() {
-    // [KY05, table 2]: what DTFF saves of eight's independent triangles at 10 % to 50 %.
+    // [KY05, table 2]: savings of DTFF against the independent triangles of eight, at 10 % to 50 %.
     const PAPER: [f64; 5] = [18.4, 32.0, 39.9, 45.9, 50.3];
     let Some(path) = shared_mesh("eight.off") else { return };
     let run = Run::new();

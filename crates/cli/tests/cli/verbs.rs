@@ -1,4 +1,4 @@
-//! What the verbs answer.
+//! Results of the verbs.
 
 use serde_json::{Value, json};
 
@@ -11,7 +11,7 @@ fn number(value: &Value) -> f64 {
 #[test]
 fn info_knows_a_cube() {
     let run = Run::new();
-    // A cube of quads, a point that no face uses, two objects.
+    // A cube of quads with an unused vertex and two objects.
     let obj = "v 9 9 9\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nv 0 0 1\nv 1 0 1\nv 0 1 1\nv 1 1 1\n\
         o sides\nf 2 3 7 6\nf 3 5 9 7\nf 5 4 8 9\nf 4 2 6 8\no caps\nf 2 4 5 3\nf 6 7 9 8\n";
     std::fs::write(run.path("cube.obj"), obj).unwrap();
@@ -42,7 +42,7 @@ fn simplify_reaches_a_ratio_and_says_so() {
     let measured = &report["error_measured"];
     let again = run.json(&["measure", "in.ply", "out.ply"]);
     for field in ["mean", "rms", "max", "max_percent"] {
-        // The file holds 32 bits, and samples fall elsewhere.
+        // The file holds 32 bits, so the samples differ.
         let (in_report, of_file) = (number(&measured[field]), number(&again[field]));
         assert!((in_report / of_file - 1.0).abs() < 0.02, "{field}: {in_report}, {of_file}");
     }
@@ -262,7 +262,7 @@ fn render_draws_in_every_way() {
     }
 }
 
-/// A box of eight squares a side and a smaller one on it, as OBJ.
+/// A box with eight squares per side and a smaller one on top, as OBJ.
 fn two_boxes() -> String {
     let mut text = String::new();
     let mut start = 1;
@@ -323,7 +323,7 @@ fn objects_that_cross_are_fused_and_keep_their_names() {
     let after = run.json(&["info", "one.obj"]);
     assert_eq!((&after["components"], &after["closed"]), (&json!(1), &json!(true)));
     assert!(after["volume"].as_f64() < before["volume"].as_f64());
-    // A part of the faces before; and both are still there.
+    // The ratio refers to the faces before fusing, and both objects are still there.
     let level =
         ["simplify", "balls.obj", "level.obj", "--ratio", "20%", "--fuse", "--lock-contacts"];
     let level = run.json(&level);
@@ -352,7 +352,7 @@ fn what_touches_is_held_where_contacts_are_locked() {
 fn small_objects_go_where_that_is_allowed() {
     let run = Run::new();
     std::fs::write(run.path("boxes.obj"), two_boxes()).unwrap();
-    // A corner of ten, and one of one, 25.3 from end to end.
+    // Two tetrahedra with legs of 10 and 1; the diagonal is 25.3.
     let apart = "v 0 0 0\nv 10 0 0\nv 0 10 0\nv 0 0 10\nv 20 0 0\nv 21 0 0\nv 20 1 0\nv 20 0 1\n\
         f 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\nf 5 7 6\nf 5 6 8\nf 5 8 7\nf 6 7 8\n";
     std::fs::write(run.path("apart.obj"), apart).unwrap();
@@ -365,9 +365,9 @@ fn small_objects_go_where_that_is_allowed() {
     assert_eq!(vanished("apart.obj", &["--keep-objects=1.7"]), 0.0);
     assert_eq!(vanished("apart.obj", &["--keep-objects=1.8"]), 1.0);
     assert_eq!(vanished("apart.obj", &["--keep-objects=50%"]), 1.0);
-    // What touches is one piece, and larger than that.
+    // Boxes that touch are one component, which is larger than that.
     assert_eq!(vanished("boxes.obj", &["--keep-objects=7"]), 0.0);
-    // An error bounds what goes, beside the size.
+    // An error limit also bounds what is removed.
     let within = |error: &str| {
         let options = ["simplify", "apart.obj", "a.obj", "--error", error, "--keep-objects=50%"];
         let report = run.json(&options);

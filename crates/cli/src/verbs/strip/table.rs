@@ -1,7 +1,7 @@
 //! Table of the figures of all levels.
 
 use crate::numbers::count;
-use crate::reduce;
+use crate::simplify_report;
 use crate::table::aligned;
 
 use super::{Strip, StripSource, StrippedLevel};
@@ -43,7 +43,7 @@ impl Strip {
             );
         }
         if !origin.simplify_time.is_zero() {
-            text += &reduce::seconds_line(origin.simplify_time);
+            text += &simplify_report::seconds_line(origin.simplify_time);
         }
         text
     }

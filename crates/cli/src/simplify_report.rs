@@ -1,0 +1,60 @@
+//! Reports of a simplification, as JSON and text.
+
+use std::time::Duration;
+
+use meshlod::Report;
+use meshlod::simplify::Refusal;
+use serde_json::{Map, Value, json};
+
+use crate::numbers::{count, faces, value};
+
+/// Returns the number of refused contractions by reason as JSON.
+pub fn refusals_json(report: &Report) -> Value {
+    let entry = |refusal: Refusal| (refusal.name().into(), report.refusals.count(refusal).into());
+    Value::Object(Refusal::ALL.into_iter().map(entry).collect::<Map<String, Value>>())
+}
+
+/// Returns the report fields that every verb prints as JSON.
+pub fn report_json(report: &Report) -> Value {
+    json!({
+        "input_faces": report.input_faces,
+        "output_faces": report.output_faces,
+        "reached": report.reached,
+        "error_estimate": report.error_estimate,
+    })
+}
+
+/// Formats a line that explains why the target was not reached.
+pub fn why_not_reached(report: &Report) -> String {
+    format!(
+        "target not reached: no further contraction is possible at {} (refused: {})",
+        faces(report.output_faces),
+        report.refusals,
+    )
+}
+
+/// Formats lines on faces left out and vertices kept in place; empty for a clean mesh.
+pub fn mesh_notes(report: &Report) -> String {
+    let mut text = String::new();
+    let mut line = |number: usize, nouns: [&str; 2], what: &str| {
+        let noun = nouns[usize::from(number != 1)];
+        if number > 0 {
+            text.push_str(&format!("{} {noun} {what}\n", count(number)));
+        }
+    };
+    line(report.degenerate_faces, ["degenerate face", "degenerate faces"], "left out");
+    line(report.duplicate_faces, ["duplicate face", "duplicate faces"], "left out");
+    let vertices = ["vertex", "vertices"];
+    let non_manifold = ["non-manifold vertex", "non-manifold vertices"];
+    line(report.non_manifold_vertices, non_manifold, "kept in place");
+    line(report.held.locked, vertices, "locked");
+    line(report.held.protected, vertices, "protected");
+    line(report.held.tied, vertices, "tied to others");
+    line(report.vanished, ["small component", "small components"], "removed");
+    text
+}
+
+/// Formats the line with the simplification time.
+pub fn seconds_line(time: Duration) -> String {
+    format!("simplify_seconds: {}\n", value(time.as_secs_f64()))
+}
