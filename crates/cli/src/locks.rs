@@ -27,9 +27,9 @@ pub struct LockArgs {
     /// Apply the vertex locks in a file written by check --locks
     #[arg(long, value_name = "FILE.json", conflicts_with_all = ["lock_contacts", "fuse"])]
     locks: Option<PathBuf>,
-    /// Allow a connected component to be removed as a whole if the diagonal of its bounding box is
-    /// below SIZE: a length in model units, or 5% of the model's diagonal. That diagonal counts as
-    /// error, so --error limits it too [default: none is removed, as with no SIZE]
+    /// Keep every connected component whose bounding box has a diagonal of at least SIZE: a length
+    /// in model units, or 5% of the model's diagonal. Smaller ones may be removed as a whole, at an
+    /// error of their size, which --error limits [default: all are kept, as with no SIZE]
     #[arg(long, value_name = "SIZE", num_args = 0..=1, default_missing_value = "0",
         require_equals = true, value_parser = parse::bound, allow_negative_numbers = true)]
     keep_objects: Option<Bound>,
@@ -47,33 +47,33 @@ impl LockArgs {
     pub fn apply(
         &self,
         options: Options,
-        origin: &InputScene<'_>,
+        input: &InputScene<'_>,
         session: &Session,
     ) -> Result<Options, Failure> {
-        let size = |size: Bound| size.length(world_bounds(origin.scene).diagonal());
+        let size = |size: Bound| size.length(world_bounds(input.scene).diagonal());
         Ok(Options {
             lock_boundary: self.lock_boundary,
-            locks: self.locks(origin, session)?,
+            locks: self.locks(input, session)?,
             vanish_below: self.keep_objects.map(size),
             ..options
         })
     }
 
-    fn locks(&self, origin: &InputScene<'_>, session: &Session) -> Result<Locks, Failure> {
+    fn locks(&self, input: &InputScene<'_>, session: &Session) -> Result<Locks, Failure> {
         let of_meshes = match &self.locks {
             Some(path) => {
-                let rows = FileRows::of(origin.path, origin.scene, origin.reading.options().weld)?;
-                lock_file::read(path, origin.scene, &rows)?
+                let rows = FileRows::of(input.path, input.scene, input.reading.options().weld)?;
+                lock_file::read(path, input.scene, &rows)?
             }
             None if self.lock_contacts => {
                 session.progress.stage("looking for contacts");
                 let contacts = LockOptions { contacts: true, boundary: Lock::Free };
-                let lockings = scene_locks(origin.scene, &contacts);
+                let lockings = scene_locks(input.scene, &contacts);
                 lockings.into_iter().map(|locking| locking.locks).collect()
             }
             None => return Ok(Locks::default()),
         };
-        join_locks(origin.scene, &of_meshes).map_err(Failure::new)
+        join_locks(input.scene, &of_meshes).map_err(Failure::new)
     }
 }
 

@@ -24,7 +24,7 @@ pub enum FocusArg {
 /// Query as given on the command line.
 #[derive(Clone, Debug)]
 pub struct QueryRequest {
-    pub allowed: ErrorLimit,
+    pub error: ErrorLimit,
     pub focus: Option<FocusArg>,
     pub camera: Option<ViewCamera>,
 }
@@ -42,7 +42,7 @@ impl QueryRequest {
             Some(FocusArg::Region(focus)) => focus.clone(),
             Some(FocusArg::Frustum) => Focus::Frustum(camera()?),
         };
-        let tolerance = match self.allowed {
+        let tolerance = match self.error {
             ErrorLimit::Length(bound) => Tolerance::Uniform(bound.length(diagonal)),
             ErrorLimit::Pixels(pixels) => Tolerance::Pixels { camera: camera()?, pixels },
         };
@@ -51,7 +51,7 @@ impl QueryRequest {
 }
 
 /// Parses an error limit: `1px`, `0.1%` or `0.5`.
-pub fn allowed(text: &str) -> Result<ErrorLimit, String> {
+pub fn error_limit(text: &str) -> Result<ErrorLimit, String> {
     match text.strip_suffix("px") {
         Some(pixels) => parse::length(pixels).map(ErrorLimit::Pixels),
         None => parse::bound(text).map(ErrorLimit::Length),
@@ -137,9 +137,9 @@ mod tests {
 
     #[test]
     fn errors_are_pixels_parts_or_lengths() {
-        assert_eq!(allowed("1px"), Ok(ErrorLimit::Pixels(1.0)));
-        assert_eq!(allowed("0.01%"), Ok(ErrorLimit::Length(Bound::OfDiagonal(0.0001))));
-        assert_eq!(allowed("0"), Ok(ErrorLimit::Length(Bound::Length(0.0))));
-        assert!(allowed("-1px").is_err() && allowed("px").is_err());
+        assert_eq!(error_limit("1px"), Ok(ErrorLimit::Pixels(1.0)));
+        assert_eq!(error_limit("0.01%"), Ok(ErrorLimit::Length(Bound::OfDiagonal(0.0001))));
+        assert_eq!(error_limit("0"), Ok(ErrorLimit::Length(Bound::Length(0.0))));
+        assert!(error_limit("-1px").is_err() && error_limit("px").is_err());
     }
 }

@@ -53,7 +53,7 @@ pub struct Extract {
 struct ExtractTarget {
     /// Largest error, by the estimates or bounds in the file: 1px as the camera sees it, 0.01% of
     /// the diagonal, or 0.5 in model units; 0 leaves out only detail that changes nothing
-    #[arg(long, value_name = "BOUND", value_parser = query_args::allowed, allow_hyphen_values = true)]
+    #[arg(long, value_name = "BOUND", value_parser = query_args::error_limit, allow_hyphen_values = true)]
     error: Option<ErrorLimit>,
     /// The best mesh of at most N faces: for the camera if there is one, else from all sides
     #[arg(long, value_name = "N", value_parser = parse::whole, allow_negative_numbers = true)]
@@ -152,8 +152,8 @@ impl Extract {
             Some(_) => ErrorLimit::Pixels(1.0),
             None => ErrorLimit::Length(Bound::OfDiagonal(1.0)),
         };
-        let allowed = self.target.error.unwrap_or(alike);
-        QueryRequest { allowed, focus: self.focus.clone(), camera: self.camera }.query(diagonal)
+        let error = self.target.error.unwrap_or(alike);
+        QueryRequest { error, focus: self.focus.clone(), camera: self.camera }.query(diagonal)
     }
 
     fn cut_out(&self, level: Level, query: &Query<'_>) -> Result<Level, Failure> {

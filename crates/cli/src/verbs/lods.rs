@@ -71,8 +71,8 @@ impl Lods {
         }
         let mut scene = files::read(&self.input, &self.reading, session)?;
         let fused = self.method.fuse.apply(&mut scene, session);
-        let origin = InputScene { scene: &scene, path: &self.input, reading: &self.reading };
-        let options = self.method.options(&origin, session)?;
+        let input = InputScene { scene: &scene, path: &self.input, reading: &self.reading };
+        let options = self.method.options(&input, session)?;
         let (mut chain, time) = self.chain(&scene, fused.as_ref(), &options, session)?;
         let input_faces = chain.first().map_or(0, |level| level.simplified.report.input_faces);
         self.write(format, &mut scene, &mut chain, session)?;

@@ -116,14 +116,14 @@ struct WeightArgs {
 
 impl MethodArgs {
     /// Builds the simplification options for a scene.
-    pub fn options(&self, origin: &InputScene<'_>, session: &Session) -> Result<Options, Failure> {
+    pub fn options(&self, input: &InputScene<'_>, session: &Session) -> Result<Options, Failure> {
         let options = Options {
             method: self.method,
             weights: self.weights(),
             boundary_weight: self.boundary,
             ..Options::default()
         };
-        self.locks.apply(options, origin, session)
+        self.locks.apply(options, input, session)
     }
 
     fn weights(&self) -> AttributeWeights {
@@ -182,8 +182,8 @@ impl Simplify {
         let fused = self.method.fuse.apply(&mut scene, session);
         let target = self.target.target(&scene);
         let target = fused.as_ref().map_or(target, |fused| fused.target(target));
-        let origin = InputScene { scene: &scene, path: &self.input, reading: &self.reading };
-        let options = self.method.options(&origin, session)?;
+        let input = InputScene { scene: &scene, path: &self.input, reading: &self.reading };
+        let options = self.method.options(&input, session)?;
         let task = Task { scene: &scene, target, options };
         let (mut done, mut time) = match target {
             Target::Error(_) => self.measured_run(&task, session)?,
