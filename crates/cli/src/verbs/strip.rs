@@ -113,15 +113,15 @@ impl Strip {
         }
         let mesh = files::read(&self.input, &self.reading, session)?.into_mesh();
         check_sizes(&self.levels, mesh.faces.len())?;
-        let mut origin = self.origin(mesh, session)?;
+        let mut source = self.prepare(mesh, session)?;
         let mut levels = Vec::new();
         for &size in &self.levels {
             session.progress.stage(&format!("stripping {size}"));
-            levels.push(self.level(&mut origin, size));
+            levels.push(self.level(&mut source, size));
         }
         if self.verify {
             session.progress.stage("verifying");
-            verify::compare(&origin.mesh, origin.tree.faces(), &mut levels)
+            verify::compare(&source.mesh, source.tree.faces(), &mut levels)
                 .map_err(|error| Failure::at(&self.input, error))?;
         }
         for level in levels.iter().filter(|level| !level.reached) {
@@ -130,7 +130,7 @@ impl Strip {
         }
         if let Some(out) = &self.out {
             session.progress.stage(&format!("writing {}", files::name(out)));
-            output::write(out, &origin.mesh.positions, &levels)?;
+            output::write(out, &source.mesh.positions, &levels)?;
         }
         let missed = self.strict && levels.iter().any(|level| !level.reached);
         let wrong = levels.iter().any(|level| level.is_wrong());
@@ -139,12 +139,12 @@ impl Strip {
         }
         Ok(Answer {
             missed: missed || wrong,
-            ..Answer::new(self.json(&origin, &levels), self.text(&origin, &levels))
+            ..Answer::new(self.json(&source, &levels), self.text(&source, &levels))
         })
     }
 
     /// Records the contractions down to the coarsest level, and strips the whole mesh for a filter.
-    fn origin(&self, mesh: Mesh, session: &Session) -> Result<StripSource, Failure> {
+    fn prepare(&self, mesh: Mesh, session: &Session) -> Result<StripSource, Failure> {
         let whole = MergeTree::new(&mesh);
         let targets = self.levels.iter().map(|size| size.target());
         let coarsest = targets.clone().map(|target| target.faces_of(mesh.faces.len())).min();
@@ -164,8 +164,8 @@ impl Strip {
         Ok(StripSource { mesh, tree, simplify_time, skip, strip_time: start.elapsed() })
     }
 
-    fn level(&self, origin: &mut StripSource, size: LevelSize) -> StrippedLevel {
-        let StripSource { mesh, tree, skip, .. } = origin;
+    fn level(&self, source: &mut StripSource, size: LevelSize) -> StrippedLevel {
+        let StripSource { mesh, tree, skip, .. } = source;
         let faces = size.target().faces_of(mesh.faces.len());
         let contractions = tree.contractions_to(faces);
         let own = skip.is_none().then(|| tree.level(contractions));
@@ -198,16 +198,16 @@ impl Strip {
         strip::stripify(faces, &strip::Options { quality, ..strip::Options::default() })
     }
 
-    fn json(&self, origin: &StripSource, levels: &[StrippedLevel]) -> Value {
-        let connectivity = Connectivity::new(&origin.mesh.faces, origin.mesh.positions.len());
+    fn json(&self, source: &StripSource, levels: &[StrippedLevel]) -> Value {
+        let connectivity = Connectivity::new(&source.mesh.faces, source.mesh.positions.len());
         let degenerate = connectivity.degenerate_faces();
-        let left_out = origin.mesh.faces.len() - origin.tree.faces().len();
+        let left_out = source.mesh.faces.len() - source.tree.faces().len();
         let name = |value: &dyn Fn() -> Option<clap::builder::PossibleValue>| {
             value().map(|value| value.get_name().to_owned())
         };
         json!({
             "file": files::name(&self.input),
-            "input_faces": origin.mesh.faces.len(),
+            "input_faces": source.mesh.faces.len(),
             "degenerate_faces": degenerate,
             "duplicate_faces": left_out - degenerate,
             "non_manifold_edges": connectivity.non_manifold_edges(),
@@ -216,8 +216,8 @@ impl Strip {
             "quality": name(&|| self.quality.to_possible_value()),
             "effort": name(&|| self.effort.to_possible_value()),
             "levels": levels.iter().map(StrippedLevel::json).collect::<Vec<_>>(),
-            "simplify_seconds": origin.simplify_time.as_secs_f64(),
-            "strip_seconds": origin.skip.as_ref().map(|_| origin.strip_time.as_secs_f64()),
+            "simplify_seconds": source.simplify_time.as_secs_f64(),
+            "strip_seconds": source.skip.as_ref().map(|_| source.strip_time.as_secs_f64()),
             "verified": self.verify.then(|| !levels.iter().any(StrippedLevel::is_wrong)),
             "out": self.out.as_deref().map(files::name),
         })

@@ -7,7 +7,7 @@ use crate::table::aligned;
 use super::{Strip, StripSource, StrippedLevel};
 
 impl Strip {
-    pub(super) fn text(&self, origin: &StripSource, levels: &[StrippedLevel]) -> String {
+    pub(super) fn text(&self, source: &StripSource, levels: &[StrippedLevel]) -> String {
         let headings = [
             "level",
             "triangles",
@@ -35,15 +35,15 @@ impl Strip {
                 text += "verified: the strips draw exactly the faces of each level\n";
             }
         }
-        let left_out = origin.mesh.faces.len() - origin.tree.faces().len();
+        let left_out = source.mesh.faces.len() - source.tree.faces().len();
         if left_out > 0 {
             text += &format!(
                 "left out: {}, degenerate or duplicate\n",
                 crate::numbers::faces(left_out)
             );
         }
-        if !origin.simplify_time.is_zero() {
-            text += &simplify_report::seconds_line(origin.simplify_time);
+        if !source.simplify_time.is_zero() {
+            text += &simplify_report::seconds_line(source.simplify_time);
         }
         text
     }
