@@ -56,15 +56,15 @@ impl Cut<'_> {
     /// inspection.
     fn inspect(&mut self, update: u32, node: u32, criteria: &Criteria<'_>) {
         let ball = self.front.mt.ball_at(update, node);
-        let wanted = criteria.wanted(&ball);
-        match (self.front.state(node), wanted) {
+        let required = criteria.required(&ball);
+        match (self.front.state(node), required) {
             (VertexState::Split, [_, false]) => self.to_merge.push(update),
             (VertexState::Active, [true, _]) => self.to_split.push(update),
             (VertexState::Split | VertexState::Active, _) => {}
             (VertexState::Absent, _) => return,
         }
         let center = self.front.mt.stored_position(node);
-        let entry = ScheduleEntry { update, node, center, span: criteria.span(&ball, wanted) };
+        let entry = ScheduleEntry { update, node, center, span: criteria.span(&ball, required) };
         if self.schedule.add(entry) {
             self.front.set_scheduled(node, true);
         }
@@ -78,7 +78,7 @@ impl Cut<'_> {
             let Some(update) = mt.update_of(node) else { continue };
             if !self.front.is_scheduled(node) {
                 self.inspect(update, node, criteria);
-            } else if criteria.refine.refines(&mt.ball_at(update, node)) {
+            } else if criteria.refine.requires(&mt.ball_at(update, node)) {
                 self.to_split.push(update);
             }
         }

@@ -133,16 +133,16 @@ impl<'m> Cut<'m> {
     pub fn update(
         &mut self,
         query: &Query<'_>,
-        effort: &UpdateLimits,
+        limits: &UpdateLimits,
     ) -> Result<CutChange, QueryError> {
         let criteria = Criteria::new(query, self.front.mt, self.hysteresis)?;
         self.front.triangles.mark();
-        let mut meter = Meter::new(effort);
+        let mut meter = Meter::new(limits);
         let last_key = criteria.refine.key();
         let is_same = last_key.is_some() && last_key == self.last_key;
         self.last_key = last_key;
         if self.schedule.follow(criteria.refine.viewpoint()) || is_same {
-            self.to_split.retain(|&update| criteria.refine.refines(&self.front.mt.ball(update)));
+            self.to_split.retain(|&update| criteria.refine.requires(&self.front.mt.ball(update)));
         } else {
             self.restart();
         }
@@ -197,24 +197,27 @@ struct Criteria<'f> {
 impl<'f> Criteria<'f> {
     fn new(query: &Query<'f>, mt: &Implicit, hysteresis: Option<f64>) -> Result<Self, QueryError> {
         let refine = Criterion::new(query, mt.frame())?;
-        let tighter = |part| Criterion::new(query, mt.frame()).map(|need| need.scaled(part));
+        let tighter =
+            |part| Criterion::new(query, mt.frame()).map(|criterion| criterion.scaled(part));
         let keep = hysteresis.map(|part| tighter(1.0 / (1.0 + part))).transpose()?;
         Ok(Self { refine, keep })
     }
 
     /// Returns whether an update is required, and whether it may stay.
     #[inline]
-    fn wanted(&self, ball: &Ball) -> [bool; 2] {
-        let is_wanted = self.refine.refines(ball);
-        [is_wanted, is_wanted || self.keep.as_ref().is_some_and(|keep| keep.refines(ball))]
+    fn required(&self, ball: &Ball) -> [bool; 2] {
+        let is_required = self.refine.requires(ball);
+        [is_required, is_required || self.keep.as_ref().is_some_and(|keep| keep.requires(ball))]
     }
 
     /// Returns the distances of the viewpoint between which a decision holds.
-    fn span(&self, ball: &Ball, wanted: [bool; 2]) -> Span {
-        let reach = |need: &Criterion<'f>| need.viewpoint().and_then(|eye| eye.reach(ball));
+    fn span(&self, ball: &Ball, required: [bool; 2]) -> Span {
+        let reach = |criterion: &Criterion<'f>| {
+            criterion.viewpoint().and_then(|viewpoint| viewpoint.reach(ball))
+        };
         let Some(least) = reach(&self.refine) else { return Span::NEVER_TURNS };
         let most = self.keep.as_ref().and_then(reach).unwrap_or(least);
-        match wanted {
+        match required {
             [true, _] => Span::below(least),
             [false, true] => Span::above(least).and_below(most),
             [false, false] => Span::above(most),
@@ -223,7 +226,7 @@ impl<'f> Criteria<'f> {
 
     /// Returns true if an applied update may stay.
     fn may_stay(&self, ball: &Ball) -> bool {
-        self.keep.as_ref().unwrap_or(&self.refine).refines(ball)
+        self.keep.as_ref().unwrap_or(&self.refine).requires(ball)
     }
 }
 
@@ -236,12 +239,12 @@ struct Meter {
 }
 
 impl Meter {
-    fn new(effort: &UpdateLimits) -> Self {
+    fn new(limits: &UpdateLimits) -> Self {
         let now = Instant::now();
-        let until = effort.time.map(|time| [time, time / 2].map(|part| now.checked_add(part)));
+        let until = limits.time.map(|time| [time, time / 2].map(|part| now.checked_add(part)));
         Self {
             change: CutChange::default(),
-            most: effort.changes.unwrap_or(usize::MAX),
+            most: limits.changes.unwrap_or(usize::MAX),
             until: until.and_then(|[all, inspecting]| Some([all?, inspecting?])),
         }
     }

@@ -76,7 +76,7 @@ impl Explicit {
     fn is_valid(&self, criterion: &Criterion<'_>, triangle: u32) -> bool {
         let wanted = |&node: &u32| {
             let update = self.splits[node as usize];
-            update.is_some_and(|u| criterion.refines(&self.updates[u as usize].ball))
+            update.is_some_and(|u| criterion.requires(&self.updates[u as usize].ball))
         };
         !self.triangles[triangle as usize].nodes.iter().any(wanted)
     }

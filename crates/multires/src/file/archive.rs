@@ -227,7 +227,7 @@ impl<S: Source> Archive<S> {
     /// An invalid query, or a damaged file.
     pub fn extract(&self, query: &Query<'_>) -> Result<Extract, FileError> {
         let criterion = Criterion::new(query, &self.header.about.frame)?;
-        let wanted = |&chunk: &usize| criterion.may_refine_in(&self.header.chunks[chunk].area);
+        let wanted = |&chunk: &usize| criterion.may_require_in(&self.header.chunks[chunk].area);
         let chunks: Vec<usize> = (0..self.complete).filter(wanted).collect();
         let state = self.load(&chunks)?;
         let stored = chunks.iter().map(|&chunk| u64::from(self.header.chunks[chunk].stored.bytes));

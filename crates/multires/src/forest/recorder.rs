@@ -22,7 +22,7 @@ pub struct Recorder {
     /// Live node by input vertex.
     live: Vec<LiveNode>,
     /// Index among the forest's faces by input face, or [`NONE`].
-    place: Vec<u32>,
+    forest_face: Vec<u32>,
     /// Number of faces left.
     live_faces: usize,
     /// Number of edge contractions still to come of a face contraction.
@@ -51,8 +51,8 @@ impl Recorder {
         let vertices = surface.vertex_count();
         let ids = (0..surface.face_count()).map(FaceId::new);
         let alive: Vec<FaceId> = ids.filter(|&face| surface.is_alive(face)).collect();
-        let mut place = vec![NONE; surface.face_count()];
-        alive.iter().enumerate().for_each(|(i, face)| place[face.index()] = i as u32);
+        let mut forest_face = vec![NONE; surface.face_count()];
+        alive.iter().enumerate().for_each(|(i, face)| forest_face[face.index()] = i as u32);
         let faces: Vec<_> = alive.iter().map(|&face| surface.face(face).map(|v| v.0)).collect();
         let corners = faces.iter().flatten().map(|&v| surface.position(VertexId(v)).to_array());
         let frame = Frame::new(&Bounds::of(&corners.collect::<Vec<_>>()));
@@ -67,7 +67,7 @@ impl Recorder {
         positions.extend((0..vertices).map(at));
         Self {
             live: (0..vertices).map(standing).collect(),
-            place,
+            forest_face,
             live_faces: faces.len(),
             face_edges_left: 0,
             failure: None,
@@ -173,7 +173,7 @@ impl Recorder {
         let kept = hood.contracted()[placed.kept];
         live[kept.index()] = LiveNode { node, level, error, radius };
         for dying in hood.dying() {
-            forest.created_by[self.place[dying.face.index()] as usize] =
+            forest.created_by[self.forest_face[dying.face.index()] as usize] =
                 node - forest.vertices as u32;
         }
     }

@@ -67,7 +67,7 @@ impl<'m> Extractor<'m> {
         let balls = criterion.viewpoint().and_then(|eye| self.model.saturated_at(eye.slope));
         let balls = balls.ok_or(QueryError::NotSaturated)?;
         Ok(self.write(|update, node| {
-            mt.is_fused_with_parent(update) || criterion.refines(&balls.ball(mt, update, node))
+            mt.is_fused_with_parent(update) || criterion.requires(&balls.ball(mt, update, node))
         }))
     }
 
@@ -101,16 +101,16 @@ impl<'m> Extractor<'m> {
         &self.level
     }
 
-    /// Chooses the updates that the criterion refines, using that balls nest down the forest.
+    /// Chooses the updates that the criterion requires, using that balls nest down the forest.
     fn choose_required(&mut self, criterion: &Criterion<'_>) {
         let mt = self.model.implicit();
         let mut chosen = std::mem::take(&mut self.chosen);
         chosen.clear();
         chosen.resize(mt.update_count(), false);
-        let refines = |update, node| {
-            mt.is_fused_with_parent(update) || criterion.refines(&mt.ball_at(update, node))
+        let requires = |update, node| {
+            mt.is_fused_with_parent(update) || criterion.requires(&mt.ball_at(update, node))
         };
-        self.descend(refines, |below, is_wanted| {
+        self.descend(requires, |below, is_wanted| {
             if is_wanted {
                 chosen[below.start as usize] = true;
             }

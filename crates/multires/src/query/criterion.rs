@@ -60,7 +60,7 @@ impl PackedBall {
 
 /// A query in stored units.
 ///
-/// The criterion is monotone: if it refines a ball, it refines every ball that contains it with at
+/// The criterion is monotone: if it requires a ball, it requires every ball that contains it with at
 /// least its error.
 pub(crate) struct Criterion<'f> {
     region: Region,
@@ -91,8 +91,8 @@ pub(crate) struct Viewpoint {
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct QueryKey {
     region: Region,
-    everywhere: Option<f64>,
-    eye: Option<Viewpoint>,
+    uniform: Option<f64>,
+    viewpoint: Option<Viewpoint>,
 }
 
 impl<'f> Criterion<'f> {
@@ -110,9 +110,9 @@ impl<'f> Criterion<'f> {
         Ok(Self { region, tolerance })
     }
 
-    /// Returns true if the ball meets the focus and its error exceeds the least tolerance in it.
+    /// Returns true if the ball's update is required: it meets the focus and its error exceeds the least tolerance in it.
     #[inline]
-    pub(crate) fn refines(&self, ball: &Ball) -> bool {
+    pub(crate) fn requires(&self, ball: &Ball) -> bool {
         self.exceeds(ball) && self.meets(ball)
     }
 
@@ -124,8 +124,8 @@ impl<'f> Criterion<'f> {
             (Region::Everything, StoredTolerance::Uniform(most)) => {
                 balls.map(|ball| times(ball.error, *most)).collect()
             }
-            (Region::Everything, StoredTolerance::Perspective(eye)) => {
-                balls.map(|ball| times(ball.error, eye.least(&ball))).collect()
+            (Region::Everything, StoredTolerance::Perspective(viewpoint)) => {
+                balls.map(|ball| times(ball.error, viewpoint.least(&ball))).collect()
             }
             _ => balls.map(|ball| self.priority(&ball)).collect(),
         }
@@ -139,7 +139,7 @@ impl<'f> Criterion<'f> {
     fn least(&self, ball: &Ball) -> f64 {
         match &self.tolerance {
             StoredTolerance::Uniform(most) => *most,
-            StoredTolerance::Perspective(eye) => eye.least(ball),
+            StoredTolerance::Perspective(viewpoint) => viewpoint.least(ball),
             StoredTolerance::Field { field, part, frame } => {
                 let center = frame.model(ball.center.as_vec3().into());
                 let most = field(center, frame.length_of_model(ball.radius));
@@ -149,14 +149,14 @@ impl<'f> Criterion<'f> {
         }
     }
 
-    /// Returns false only if no update within the box and with at most its error can be refined.
-    pub(crate) fn may_refine_in(&self, area: &Area) -> bool {
+    /// Returns false only if no update within the box and with at most its error is required.
+    pub(crate) fn may_require_in(&self, area: &Area) -> bool {
         let Area { min, max, error } = *area;
         let ball = Ball { center: 0.5 * (min + max), radius: 0.5 * min.distance(max), error };
         let squared = |from: DVec3| from.distance_squared(from.clamp(min, max));
         let exceeds = match &self.tolerance {
-            StoredTolerance::Perspective(eye) => {
-                eye.slope * eye.slope * squared(eye.at) < error * error
+            StoredTolerance::Perspective(viewpoint) => {
+                viewpoint.slope * viewpoint.slope * squared(viewpoint.at) < error * error
             }
             StoredTolerance::Uniform(_) | StoredTolerance::Field { .. } => self.exceeds(&ball),
         };
@@ -173,7 +173,7 @@ impl<'f> Criterion<'f> {
     fn exceeds(&self, ball: &Ball) -> bool {
         match &self.tolerance {
             StoredTolerance::Uniform(most) => ball.error > *most,
-            StoredTolerance::Perspective(eye) => eye.exceeded_by(ball),
+            StoredTolerance::Perspective(viewpoint) => viewpoint.exceeded_by(ball),
             StoredTolerance::Field { .. } => ball.error > self.least(ball),
         }
     }
@@ -187,7 +187,7 @@ impl<'f> Criterion<'f> {
     pub(crate) fn scaled(mut self, by: f64) -> Self {
         match &mut self.tolerance {
             StoredTolerance::Uniform(most) => *most *= by,
-            StoredTolerance::Perspective(eye) => eye.slope *= by,
+            StoredTolerance::Perspective(viewpoint) => viewpoint.slope *= by,
             StoredTolerance::Field { part, .. } => *part *= by,
         }
         self
@@ -195,12 +195,12 @@ impl<'f> Criterion<'f> {
 
     /// Returns the identity of the query, or `None` for a field.
     pub(crate) fn key(&self) -> Option<QueryKey> {
-        let (everywhere, eye) = match self.tolerance {
+        let (uniform, viewpoint) = match self.tolerance {
             StoredTolerance::Uniform(most) => (Some(most), None),
-            StoredTolerance::Perspective(eye) => (None, Some(eye)),
+            StoredTolerance::Perspective(viewpoint) => (None, Some(viewpoint)),
             StoredTolerance::Field { .. } => return None,
         };
-        Some(QueryKey { region: self.region.clone(), everywhere, eye })
+        Some(QueryKey { region: self.region.clone(), uniform, viewpoint })
     }
 
     /// Returns true if the tolerance is the same everywhere.
@@ -211,7 +211,7 @@ impl<'f> Criterion<'f> {
     /// Returns the viewpoint if the criterion depends on nothing else.
     pub(crate) fn viewpoint(&self) -> Option<Viewpoint> {
         match (&self.region, &self.tolerance) {
-            (Region::Everything, StoredTolerance::Perspective(eye)) => Some(*eye),
+            (Region::Everything, StoredTolerance::Perspective(viewpoint)) => Some(*viewpoint),
             _ => None,
         }
     }
@@ -232,7 +232,7 @@ impl Viewpoint {
         ball.error > 0.0 && (squared < reach * reach || self.slope == 0.0)
     }
 
-    /// Returns the distance below which the viewpoint refines an update, or `None` if that never
+    /// Returns the distance below which the viewpoint requires an update, or `None` if that never
     /// changes.
     pub(crate) fn reach(&self, ball: &Ball) -> Option<f64> {
         let reach = ball.radius + ball.error / self.slope;
@@ -279,7 +279,7 @@ mod tests {
     fn a_focus_meets_the_balls_that_reach_it() {
         let reached = |focus: Focus, center| {
             let criterion = criterion(focus, Tolerance::Uniform(0.0));
-            [0.9, 1.1].map(|radius| criterion.refines(&ball(center, radius, 1.0)))
+            [0.9, 1.1].map(|radius| criterion.requires(&ball(center, radius, 1.0)))
         };
         let at = [2.0, 0.0, 0.0];
         assert_eq!(reached(Focus::Everything, at), [true, true]);
@@ -302,15 +302,15 @@ mod tests {
         let criterion =
             criterion(Focus::Everything, Tolerance::Pixels { camera: camera(), pixels: 1.0 });
         assert!(
-            !criterion.refines(&ball([0.0; 3], 0.0, 0.099))
-                && criterion.refines(&ball([0.0; 3], 0.0, 0.101))
+            !criterion.requires(&ball([0.0; 3], 0.0, 0.099))
+                && criterion.requires(&ball([0.0; 3], 0.0, 0.101))
         );
         // A ball that reaches half-way to the viewpoint is judged from there.
         assert!(
-            criterion.refines(&ball([0.0; 3], 2.5, 0.051))
-                && !criterion.refines(&ball([0.0; 3], 2.5, 0.049))
+            criterion.requires(&ball([0.0; 3], 2.5, 0.051))
+                && !criterion.requires(&ball([0.0; 3], 2.5, 0.049))
         );
-        assert!(!criterion.refines(&ball([0.0; 3], 9.0, 0.0)), "what is exact is fine enough");
+        assert!(!criterion.requires(&ball([0.0; 3], 9.0, 0.0)), "what is exact is fine enough");
         let reach = criterion.viewpoint().unwrap().reach(&ball([0.0; 3], 2.0, 0.02)).unwrap();
         assert!((4.0 * reach - 3.0).abs() < 1e-12, "2 + 1: {reach}");
     }
@@ -319,8 +319,8 @@ mod tests {
     fn a_field_is_evaluated_in_model_units() {
         let field = |center: [f64; 3], radius: f64| (center[0].abs() - radius).max(0.0);
         let criterion = criterion(Focus::Everything, Tolerance::Field(&field));
-        assert!(criterion.refines(&ball([1.0, 0.0, 0.0], 0.5, 0.6)));
-        assert!(!criterion.refines(&ball([1.0, 0.0, 0.0], 0.5, 0.4)));
+        assert!(criterion.requires(&ball([1.0, 0.0, 0.0], 0.5, 0.6)));
+        assert!(!criterion.requires(&ball([1.0, 0.0, 0.0], 0.5, 0.4)));
     }
 
     #[test]
@@ -328,8 +328,8 @@ mod tests {
         for none in [f64::NAN, -1.0, f64::NEG_INFINITY] {
             let field = |_: [f64; 3], _: f64| none;
             let criterion = criterion(Focus::Everything, Tolerance::Field(&field));
-            assert!(criterion.refines(&ball([0.0; 3], 0.1, 1e-6)), "{none}");
-            assert!(!criterion.refines(&ball([0.0; 3], 0.1, 0.0)), "what is exact is fine enough");
+            assert!(criterion.requires(&ball([0.0; 3], 0.1, 1e-6)), "{none}");
+            assert!(!criterion.requires(&ball([0.0; 3], 0.1, 0.0)), "what is exact is fine enough");
             let priorities = criterion.priorities([ball([0.0; 3], 0.1, 1e-6)].into_iter());
             assert!(priorities[0] > 1e20, "{none}: {priorities:?}");
         }

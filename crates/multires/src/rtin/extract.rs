@@ -62,7 +62,7 @@ impl<'m> RtinExtractor<'m> {
     pub fn saturated(&mut self, query: &Query<'_>) -> Result<&Level, QueryError> {
         let criterion = Criterion::new(query, &self.model.frame)?;
         let model = self.model;
-        Ok(self.write(|place, _| criterion.refines(&model.nested_ball(place))))
+        Ok(self.write(|place, _| criterion.requires(&model.nested_ball(place))))
     }
 
     /// Writes the level of the chosen vertices, which must form a cut.
@@ -224,10 +224,10 @@ impl Visit for Chooser<'_, '_> {
             return Some(NONE);
         }
         if !self.chosen[index] {
-            if !criterion.refines(&model.nested_ball(place)) {
+            if !criterion.requires(&model.nested_ball(place)) {
                 return None;
             }
-            if !criterion.refines(&model.own_ball(place)) {
+            if !criterion.requires(&model.own_ball(place)) {
                 return Some(NONE);
             }
             self.add(index);

@@ -238,13 +238,13 @@ fn levels_are_cuts_of_the_explicit_mt() {
         for _ in 0..150 {
             let query = query(&mut dice, &mesh);
             let criterion = Criterion::new(&query, model.frame()).unwrap();
-            let refines = |at: GridPoint, ball: &dyn Fn(GridPoint) -> Ball| {
-                model.grid.holds(at) && criterion.refines(&ball(at))
+            let requires = |at: GridPoint, ball: &dyn Fn(GridPoint) -> Ball| {
+                model.grid.holds(at) && criterion.requires(&ball(at))
             };
-            let smallest = oracle.close(|at| refines(at, &|at| model.own_ball(at)));
+            let smallest = oracle.close(|at| requires(at, &|at| model.own_ball(at)));
             let found = extractor.exact(&query).unwrap().canonical();
             assert_eq!(found, oracle.shown(&smallest), "{size:?}, {query:?}");
-            let nested = oracle.close(|at| refines(at, &|at| model.nested_ball(at)));
+            let nested = oracle.close(|at| requires(at, &|at| model.nested_ball(at)));
             let more = extractor.saturated(&query).unwrap().canonical();
             assert_eq!(more, oracle.shown(&nested), "{size:?}, {query:?}");
             assert!(smallest.is_subset(&nested) && found.len() <= more.len());
