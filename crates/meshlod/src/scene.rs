@@ -93,10 +93,7 @@ impl<'s> SceneSimplifier<'s> {
     pub fn new(scene: &'s Scene, options: &Options) -> Result<Self, SceneError> {
         let locks = locks::split(scene, &options.locks)?;
         let shown = shown(scene);
-        // Costs of different methods are not to be compared.
-        let is_shown = |(mesh, _): &(usize, &SceneMesh)| shown[*mesh].0 > 0;
-        let meshes = scene.meshes.iter().enumerate().filter(is_shown);
-        let method = options.method_for(meshes.map(|(_, mesh)| &mesh.mesh));
+        let method = options.method.unwrap_or_default();
         let mut this = Self { scene, method, parts: Vec::new(), still_faces: 0 };
         let mut still = None;
         for ((index, (copies, scale)), locks) in shown.into_iter().enumerate().zip(locks) {

@@ -54,7 +54,7 @@ fn both_engines_are_as_near_and_keep_the_volume() {
         ] {
             let options = Options { method: Some(method), ..Options::default() };
             let fast = Simplifier::new(&mesh, &options).unwrap();
-            let general = Simplifier::with_general_engine(&mesh, &options).unwrap();
+            let general = Simplifier::on_policy_engine(&mesh, &options).unwrap();
             let [fast, general] = [fast, general].map(|engine| figures(&mesh, engine, ratio));
             if method.conserves_volume() {
                 assert!(fast[1].abs() < 1e-6 && general[1].abs() < 1e-12);

@@ -1,6 +1,6 @@
 //! What a user may ask for, and what comes back beside the mesh.
 
-use meshlod_mesh::{Locks, Mesh, MeshError, VertexId};
+use meshlod_mesh::{Locks, MeshError, VertexId};
 use thiserror::Error;
 
 use crate::locks::Held;
@@ -72,9 +72,6 @@ impl Method {
     }
 
     /// Whether attributes count in its costs, by [`Options::weights`]. All methods place them.
-    ///
-    /// `lindstrom-turk` counts them where the fast engine does it: without ties or components that may
-    /// vanish.
     pub fn counts_attributes(self) -> bool {
         matches!(self, Self::Qem | Self::QemEndpoint | Self::LindstromTurk)
     }
@@ -146,7 +143,7 @@ impl Target {
 /// How to simplify.
 #[derive(Clone, Debug, Default)]
 pub struct Options {
-    /// The algorithm; `None` for the one that suits the mesh, see [`Self::method_for`].
+    /// The algorithm; `None` for [`Method::default`].
     pub method: Option<Method>,
     /// How much attributes count where the method counts them, see [`Method::counts_attributes`].
     pub weights: AttributeWeights,
@@ -174,27 +171,6 @@ impl Options {
             Some(weight) => Err(SimplifyError::BadWeight(weight)),
             None => Ok(()),
         }
-    }
-
-    /// The method that is named, or else suits these meshes, which share a target: the most accurate
-    /// one, [`Method::LindstromTurk`].
-    ///
-    /// Its fast engine counts attributes, but knows no ties, and no components that may vanish. Where
-    /// any of these is asked for and any mesh has attributes it is [`Method::Qem`]: FLIP of six models at
-    /// 25 % of the faces, the mean by factors, is .75 of that of the general engine's `lindstrom-turk`,
-    /// which does not count them; at 10 % .89.
-    pub fn method_for<'m>(&self, meshes: impl IntoIterator<Item = &'m Mesh>) -> Method {
-        let counts = |mesh: &Mesh| !self.needs_general_engine() || mesh.attributes.is_none();
-        let suited = || match meshes.into_iter().all(counts) {
-            true => Method::LindstromTurk,
-            false => Method::Qem,
-        };
-        self.method.unwrap_or_else(suited)
-    }
-
-    /// Whether something is asked for that the fast engine does not do.
-    pub(crate) fn needs_general_engine(&self) -> bool {
-        !self.locks.ties.is_empty() || self.vanish_below.is_some()
     }
 }
 

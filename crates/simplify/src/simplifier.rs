@@ -4,7 +4,7 @@ use meshlod_mesh::{Bounds, Mesh, VertexId};
 
 use crate::clean;
 use crate::engine::{Ready, Run, Tally};
-use crate::kernel;
+use crate::kernel::{self, PlaneDistance, SweptVolume};
 use crate::locks::{self, Held};
 use crate::methods;
 use crate::options::{Method, Options, Report, SimplifyError, Target};
@@ -39,41 +39,32 @@ pub(crate) type Started<'m> = (Box<dyn Run + 'm>, Input);
 impl<'m> Simplifier<'m> {
     /// Connects the mesh and costs its candidates; nothing is contracted yet.
     ///
-    /// The fast engine works where it can: without ties or components that may vanish, for
-    /// `lindstrom-turk`, and for `qem` on a mesh without attributes and of one material and object. The
-    /// general one does the rest.
+    /// The method alone decides what runs it: the kernel contracts by [`Method::LindstromTurk`] and
+    /// [`Method::Qem`], the policy engine by the others.
+    ///
+    /// # Errors
+    /// The mesh, its extent, the locks or an option is invalid, or no face has three different vertices.
     pub fn new(mesh: &'m Mesh, options: &Options) -> Result<Self, SimplifyError> {
         let bounds = validate(mesh, options)?;
-        match kernel::start(mesh, &bounds, options)? {
-            Some((engine, input)) => {
-                Ok(Self { mesh, engine, method: options.method_for([mesh]), input })
-            }
-            None => Self::generally(mesh, options),
-        }
+        let method = options.method.unwrap_or_default();
+        let (engine, input) = match method {
+            Method::LindstromTurk => kernel::start(SweptVolume, mesh, &bounds, options)?,
+            Method::Qem => kernel::start(PlaneDistance, mesh, &bounds, options)?,
+            _ => by_policies(mesh, method, options)?,
+        };
+        Ok(Self { mesh, engine, method, input })
     }
 
-    /// The same with the general engine in any case: the fast one's oracle.
-    #[doc(hidden)]
-    pub fn with_general_engine(mesh: &'m Mesh, options: &Options) -> Result<Self, SimplifyError> {
+    /// Runs any method on the policy engine: for the kernel's two, the general versions that tests hold
+    /// it against.
+    ///
+    /// # Errors
+    /// As [`Self::new`].
+    #[cfg(feature = "oracle")]
+    pub fn on_policy_engine(mesh: &'m Mesh, options: &Options) -> Result<Self, SimplifyError> {
         validate(mesh, options)?;
-        Self::generally(mesh, options)
-    }
-
-    fn generally(mesh: &'m Mesh, options: &Options) -> Result<Self, SimplifyError> {
-        let (connectivity, duplicate_faces) = clean::connect(mesh);
-        let degenerate_faces = connectivity.degenerate_faces() - duplicate_faces;
-        if connectivity.edge_count() == 0 {
-            return Err(SimplifyError::AllDegenerate(mesh.faces.len()));
-        }
-        let non_manifold_vertices = (0..mesh.positions.len())
-            .filter(|&v| connectivity.marks(VertexId::new(v)).non_manifold())
-            .count();
-        let mut surface = Surface::new(mesh, &connectivity);
-        let method = options.method_for([mesh]);
-        let held = locks::apply(options, method, &connectivity, &mut surface);
-        let input = Input { degenerate_faces, duplicate_faces, non_manifold_vertices, held };
-        let vanishing = Vanishing::new(&surface, method, options.vanish_below);
-        let engine = methods::start(method, options, Ready { surface, connectivity, vanishing });
+        let method = options.method.unwrap_or_default();
+        let (engine, input) = by_policies(mesh, method, options)?;
         Ok(Self { mesh, engine, method, input })
     }
 
@@ -175,4 +166,26 @@ fn validate(mesh: &Mesh, options: &Options) -> Result<Bounds, SimplifyError> {
         return Err(SimplifyError::BadSize(size));
     }
     Ok(bounds)
+}
+
+/// Sets the policy engine to work on a valid mesh.
+fn by_policies<'m>(
+    mesh: &'m Mesh,
+    method: Method,
+    options: &Options,
+) -> Result<Started<'m>, SimplifyError> {
+    let (connectivity, duplicate_faces) = clean::connect(mesh);
+    let degenerate_faces = connectivity.degenerate_faces() - duplicate_faces;
+    if connectivity.edge_count() == 0 {
+        return Err(SimplifyError::AllDegenerate(mesh.faces.len()));
+    }
+    let non_manifold_vertices = (0..mesh.positions.len())
+        .filter(|&v| connectivity.marks(VertexId::new(v)).non_manifold())
+        .count();
+    let mut surface = Surface::new(mesh, &connectivity);
+    let held = locks::apply(options, method, &connectivity, &mut surface);
+    let input = Input { degenerate_faces, duplicate_faces, non_manifold_vertices, held };
+    let vanishing = Vanishing::new(&surface, method, options.vanish_below);
+    let engine = methods::start(method, options, Ready { surface, connectivity, vanishing });
+    Ok((engine, input))
 }

@@ -40,6 +40,40 @@ impl Ties {
     }
 }
 
+/// A surface with ties, as the rule for them sees it.
+pub(crate) trait TiedSurface {
+    /// Whether a vertex is in a tie.
+    fn is_tied(&self, vertex: VertexId) -> bool;
+
+    /// The vertices of its tie, itself among them; none for one that is in no tie.
+    fn tie_of(&self, vertex: VertexId) -> &[VertexId];
+
+    /// Whether there is an edge between two vertices.
+    fn are_joined(&self, a: VertexId, b: VertexId) -> bool;
+
+    /// Whether too many faces are around these vertices for a contraction.
+    fn is_crowded(&self, vertices: &[VertexId]) -> bool;
+}
+
+impl TiedSurface for Surface {
+    fn is_tied(&self, vertex: VertexId) -> bool {
+        self.flags(vertex).any(Flags::TIED)
+    }
+
+    fn tie_of(&self, vertex: VertexId) -> &[VertexId] {
+        self.ties.with(vertex)
+    }
+
+    fn are_joined(&self, a: VertexId, b: VertexId) -> bool {
+        let [fewer, other] = if self.valence(a) <= self.valence(b) { [a, b] } else { [b, a] };
+        self.star(fewer).any(|face| self.face(face).contains(&other))
+    }
+
+    fn is_crowded(&self, vertices: &[VertexId]) -> bool {
+        Self::is_crowded(self, vertices)
+    }
+}
+
 /// What ties make of the contraction of an edge: how free it is by them, and in `partners` the edges
 /// that have to go with it, with their ends in the order of its own.
 ///
@@ -47,18 +81,18 @@ impl Ties {
 /// edge between the two, one at most at each vertex. A vertex without such an edge stays where it is,
 /// so all go there: if that is at both ends, none may.
 pub(crate) fn partners(
-    surface: &Surface,
+    surface: &impl TiedSurface,
     [v0, v1]: [VertexId; 2],
     partners: &mut Vec<[VertexId; 2]>,
 ) -> Result<Freedom, Refusal> {
     partners.clear();
-    match [v0, v1].map(|v| surface.flags(v).any(Flags::TIED)) {
+    match [v0, v1].map(|v| surface.is_tied(v)) {
         [false, false] => return Ok(Freedom::Free),
         [true, false] => return Ok(Freedom::At(0)),
         [false, true] => return Ok(Freedom::At(1)),
         [true, true] => {}
     }
-    let [firsts, seconds] = [v0, v1].map(|v| surface.ties.with(v));
+    let [firsts, seconds] = [v0, v1].map(|v| surface.tie_of(v));
     if surface.is_crowded(firsts) || surface.is_crowded(seconds) {
         return Err(Refusal::Valence);
     }
@@ -67,9 +101,9 @@ pub(crate) fn partners(
     }
     let mut joined = 0;
     for &first in firsts {
-        let mut met = seconds.iter().filter(|&&second| are_joined(surface, first, second));
+        let mut met = seconds.iter().filter(|&&second| surface.are_joined(first, second));
         let Some(&second) = met.next() else { continue };
-        let alone = firsts.iter().all(|&v| v == first || !are_joined(surface, v, second));
+        let alone = firsts.iter().all(|&v| v == first || !surface.are_joined(v, second));
         if met.next().is_some() || !alone {
             return Err(Refusal::Tied);
         }
@@ -88,18 +122,12 @@ pub(crate) fn partners(
 
 /// Whether an edge between two ties has others with it.
 pub(crate) fn is_contact(surface: &Surface, edge: [VertexId; 2]) -> bool {
-    if !edge.iter().all(|&v| surface.flags(v).any(Flags::TIED)) {
+    if !edge.iter().all(|&v| surface.is_tied(v)) {
         return false;
     }
-    let [firsts, seconds] = edge.map(|v| surface.ties.with(v));
-    let joined = |a: VertexId| seconds.iter().any(|&b| b != edge[1] && are_joined(surface, a, b));
+    let [firsts, seconds] = edge.map(|v| surface.tie_of(v));
+    let joined = |a: VertexId| seconds.iter().any(|&b| b != edge[1] && surface.are_joined(a, b));
     firsts.iter().any(|&a| a != edge[0] && joined(a))
-}
-
-/// Whether there is an edge between two vertices.
-fn are_joined(surface: &Surface, a: VertexId, b: VertexId) -> bool {
-    let [fewer, other] = if surface.valence(a) <= surface.valence(b) { [a, b] } else { [b, a] };
-    surface.star(fewer).any(|face| surface.face(face).contains(&other))
 }
 
 #[cfg(test)]

@@ -57,7 +57,7 @@ impl Vanishing {
         }
         let mut this = Self { waiting: waiting.into_iter().flatten().collect(), ..Self::default() };
         for component in &mut this.waiting {
-            component.cost = cost(surface, method, component);
+            component.cost = cost_on(surface, method, component);
         }
         this.sort();
         this
@@ -112,17 +112,22 @@ fn components(surface: &Surface, corners: &[[VertexId; 3]]) -> (Vec<u32>, usize)
 const SHRINKAGE: f64 = 0.3;
 
 /// What it costs that a component goes, in the terms of a method: as if all of it moved so far.
-fn cost(surface: &Surface, method: Method, component: &Component) -> f64 {
-    let Component { size, faces, .. } = component;
-    let area = || 0.5 * faces.iter().map(|&f| surface.area_normal(f).length()).sum::<f64>();
+pub(crate) fn cost(method: Method, size: f64, area: f64, faces: usize) -> f64 {
     let cost = match method {
-        Method::Qem | Method::QemEndpoint | Method::KimJang => area() * size * size,
-        Method::LindstromTurk | Method::LindstromTurkFaces => (area() * size).powi(2),
+        Method::Qem | Method::QemEndpoint | Method::KimJang => area * size * size,
+        Method::LindstromTurk | Method::LindstromTurkFaces => (area * size).powi(2),
         // A sample a face, nearly.
-        Method::Pm => faces.len() as f64 * size * size,
-        Method::LeeJang | Method::Wu | Method::Spr => *size,
+        Method::Pm => faces as f64 * size * size,
+        Method::LeeJang | Method::Wu | Method::Spr => size,
     };
-    let cost = cost * SHRINKAGE.powi(method.cost_power());
+    cost * SHRINKAGE.powi(method.cost_power())
+}
+
+/// The cost of a component of a surface, more where a vertex of it is protected.
+fn cost_on(surface: &Surface, method: Method, component: &Component) -> f64 {
+    let Component { size, faces, .. } = component;
+    let area = 0.5 * faces.iter().map(|&f| surface.area_normal(f).length()).sum::<f64>();
+    let cost = cost(method, *size, area, faces.len());
     let is_protected =
         |f: &FaceId| surface.face(*f).iter().any(|&v| surface.flags(v).any(Flags::PROTECTED));
     if faces.iter().any(is_protected) { cost * surface.protection } else { cost }

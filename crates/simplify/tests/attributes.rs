@@ -322,7 +322,7 @@ fn attributes_that_count_for_nothing_change_no_position() {
     let flat = with_layers(bare.clone(), &[(LayerKind::Color(0), |[x, ..]| vec![x as f32; 3])]);
     let [with, without] = [&flat, &bare].map(|mesh| {
         // Where there are none at all, the fast one would go another way.
-        let mut simplifier = Simplifier::with_general_engine(mesh, &options).unwrap();
+        let mut simplifier = Simplifier::on_policy_engine(mesh, &options).unwrap();
         simplifier.run(Target::Ratio(0.1), &mut ()).unwrap();
         simplifier.level()
     });

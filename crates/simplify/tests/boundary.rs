@@ -38,7 +38,7 @@ fn hills() -> Mesh {
 fn a_higher_weight_keeps_a_boundary_closer() {
     let mesh = hills();
     let slips = |is_fast: bool, options: &Options| {
-        let start = if is_fast { Simplifier::new } else { Simplifier::with_general_engine };
+        let start = if is_fast { Simplifier::new } else { Simplifier::on_policy_engine };
         let mut simplifier = start(&mesh, options).unwrap();
         assert!(simplifier.run(Target::Ratio(0.05), &mut ()).unwrap().reached);
         slipped(&mesh, &simplifier.level())

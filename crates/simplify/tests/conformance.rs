@@ -88,7 +88,7 @@ impl Way {
     fn start<'m>(self, mesh: &'m Mesh, options: &Options) -> Result<Simplifier<'m>, SimplifyError> {
         let options = Options { method: Some(self.method), ..options.clone() };
         match self.general {
-            true => Simplifier::with_general_engine(mesh, &options),
+            true => Simplifier::on_policy_engine(mesh, &options),
             false => Simplifier::new(mesh, &options),
         }
     }

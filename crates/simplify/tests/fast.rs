@@ -360,7 +360,7 @@ fn what_was_found_in_the_input_is_told_as_by_the_general_engine() {
                     (faces, report.non_manifold_vertices, report.held, simplifier.level())
                 };
                 let fast = found(Simplifier::new(&mesh, &options).unwrap());
-                assert_eq!(fast, found(Simplifier::with_general_engine(&mesh, &options).unwrap()));
+                assert_eq!(fast, found(Simplifier::on_policy_engine(&mesh, &options).unwrap()));
             }
         }
     }

@@ -350,7 +350,7 @@ fn both_engines_protect_as_much() {
     for (method, ratio) in cases {
         let options = Options { method: Some(method), locks: locks.clone(), ..Options::default() };
         let [fast, general] = [true, false].map(|is_fast| {
-            let start = if is_fast { Simplifier::new } else { Simplifier::with_general_engine };
+            let start = if is_fast { Simplifier::new } else { Simplifier::on_policy_engine };
             let mut simplifier = start(&mesh, &options).unwrap();
             simplifier.run(Target::Ratio(ratio), &mut ()).unwrap();
             let level = simplifier.level();

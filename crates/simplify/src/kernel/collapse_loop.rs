@@ -10,7 +10,8 @@ use crate::kernel::attributes::AttributeModel;
 use crate::kernel::bound::{BoundPart, BoundedStep};
 use crate::kernel::collapse::edge_ring::EdgeRing;
 use crate::kernel::collapse::{Collapse, Ends};
-use crate::kernel::contraction_log::LoggedContraction;
+use crate::kernel::components::Components;
+use crate::kernel::contraction_log::{Logged, LoggedContraction};
 use crate::kernel::mesh::one_ring::{GHOST, MOST, Vertices};
 use crate::kernel::mesh::vertex::{NOBODY, RING, Vertex, VertexFlags};
 use crate::kernel::metric::edge_quadric_f64::EdgeQuadricF64;
@@ -22,6 +23,7 @@ use crate::kernel::schedule::edge_costs::{Cheapest, Rank, cheapest};
 use crate::kernel::simd::{SimdTask, widest};
 use crate::kernel::volume::VolumeTally;
 use crate::refusal::{Refusal, Refusals};
+use crate::ties::Ties;
 
 /// How many buckets behind the front a new vertex is put, not looked at: many are gone before they come
 /// up. Mean error of horse-97k at 10 % and 1 %, and millions of instructions of both: looked at at once
@@ -31,12 +33,12 @@ const REST: u16 = 6;
 /// By how many buckets a contraction waits that turns a face over in its texture. Those turned in the
 /// flight helmet at 25 and 10 %, FLIP of pirate at 5 %, which has few faces left to go: 0 95, 111, .314;
 /// 4 44, 51, .324; 8 21, 41, .348; 16 .348; refused for good 9, 20, .393. Else FLIP is the same.
-const TURNED: u16 = 8;
+pub(crate) const TURNED: u16 = 8;
 
 /// A part of a surface at work, with what it looks like.
-pub(crate) struct CollapseLoop<'v, L> {
+pub(crate) struct CollapseLoop<'v, A> {
     pub(crate) vertices: Vertices<'v>,
-    model: &'v mut L,
+    pub(crate) model: &'v mut A,
     pub(crate) live_faces: usize,
     /// The square of the greatest estimate so far, in the frame's units.
     pub(crate) error: f64,
@@ -45,14 +47,18 @@ pub(crate) struct CollapseLoop<'v, L> {
     pub(crate) refusals: Refusals,
     pub(crate) volume: VolumeTally,
     /// What was done, where that is wanted.
-    pub(crate) log: Option<Vec<LoggedContraction>>,
+    pub(crate) log: Option<Vec<Logged>>,
+    /// What vertices are tied to, where any are.
+    pub(crate) ties: Option<&'v mut Ties>,
+    /// The components that may vanish, where any may.
+    pub(crate) components: Option<&'v mut Components>,
     pub(crate) queue: &'v mut BucketQueue,
-    edge_ring: &'v mut EdgeRing,
-    pace: &'v mut Deferral,
+    pub(crate) edge_ring: &'v mut EdgeRing,
+    pub(crate) deferral: &'v mut Deferral,
 }
 
 /// Why the edge at the front was not contracted.
-enum Rejection {
+pub(crate) enum Rejection {
     /// It costs so much by now.
     TooDear(u16),
     /// It takes the surface too far for now, or turns a texture, but may go in this bucket.
@@ -72,13 +78,13 @@ struct PricedEdge {
     bucket: u16,
 }
 
-impl<'v, L: AttributeModel> CollapseLoop<'v, L> {
+impl<'v, A: AttributeModel> CollapseLoop<'v, A> {
     pub(crate) fn new(
         vertices: Vertices<'v>,
-        model: &'v mut L,
+        model: &'v mut A,
         queue: &'v mut BucketQueue,
         edge_ring: &'v mut EdgeRing,
-        pace: &'v mut Deferral,
+        deferral: &'v mut Deferral,
     ) -> Self {
         Self {
             vertices,
@@ -89,9 +95,11 @@ impl<'v, L: AttributeModel> CollapseLoop<'v, L> {
             refusals: Refusals::default(),
             volume: VolumeTally::default(),
             log: None,
+            ties: None,
+            components: None,
             queue,
             edge_ring,
-            pace,
+            deferral,
         }
     }
 
@@ -108,8 +116,16 @@ impl<'v, L: AttributeModel> CollapseLoop<'v, L> {
 
     #[inline(always)]
     fn contract_all(&mut self, faces: usize, last: u16) {
-        while self.live_faces > faces && self.take_batch(last) {
+        while self.live_faces > faces {
+            let is_ready = self.take_batch(last);
             let (_, bucket) = self.queue.next();
+            if self.components.is_some() && self.vanish_up_to(if is_ready { bucket } else { last })
+            {
+                continue;
+            }
+            if !is_ready {
+                return;
+            }
             if let Some(v) = self.pop() {
                 self.try_collapse(v, bucket);
             }
@@ -169,14 +185,14 @@ impl<'v, L: AttributeModel> CollapseLoop<'v, L> {
         }
         changed.cost_all(&self.vertices, self.model, |[v, _], cost| {
             dear[count] = v;
-            count += usize::from(bucket(cost) > front.saturating_add(L::Metric::SLACK));
+            count += usize::from(bucket(cost) > front.saturating_add(A::Metric::SLACK));
         });
         for &v in &dear[..count] {
             self.vertices.refresh(v);
             let Cheapest { bucket, target } = cheapest(&self.vertices, self.model, v);
             let vertex = self.vertices.get_mut(v);
             vertex.target = target;
-            if bucket > front.saturating_add(L::Metric::SLACK) {
+            if bucket > front.saturating_add(A::Metric::SLACK) {
                 vertex.bucket = bucket;
                 self.queue.push(v, bucket);
             }
@@ -185,6 +201,17 @@ impl<'v, L: AttributeModel> CollapseLoop<'v, L> {
 
     /// The bucket of what comes next.
     pub(crate) fn next_bucket(&mut self) -> Option<u16> {
+        let of_component = self.components.as_ref().and_then(|components| components.next_bucket());
+        self.next_edge_bucket().into_iter().chain(of_component).min()
+    }
+
+    /// A bucket that nothing comes before.
+    pub(crate) fn lowest_bucket(&self) -> usize {
+        let of_component = self.components.as_ref().and_then(|components| components.next_bucket());
+        self.queue.lowest().min(of_component.map_or(usize::MAX, usize::from))
+    }
+
+    fn next_edge_bucket(&mut self) -> Option<u16> {
         while self.take_batch(last_bucket()) {
             let (next, bucket) = self.queue.next();
             if next.last().is_some_and(|&v| self.is_due(v, bucket)) {
@@ -204,6 +231,7 @@ impl<'v, L: AttributeModel> CollapseLoop<'v, L> {
 
     /// Lets all edges try again that were refused.
     pub(crate) fn wake_all(&mut self) {
+        self.components.iter_mut().for_each(|components| components.wake_all());
         self.queue.put_back();
         for v in self.vertices.ids() {
             let vertex = self.vertices.get(v);
@@ -251,7 +279,11 @@ impl<'v, L: AttributeModel> CollapseLoop<'v, L> {
     #[inline(always)]
     fn try_collapse(&mut self, v: u32, front: u16) {
         let Some(target) = self.target(v) else { return self.look(v, front, None) };
-        match self.contract(v, target, front) {
+        let done = match self.ties {
+            Some(_) if self.are_tied([v, target]) => self.collapse_together([v, target], front),
+            _ => self.contract(v, target, front),
+        };
+        match done {
             Ok(kept) => self.defer(kept, front + REST),
             Err(Rejection::TooFar(bucket)) => self.defer(v, bucket),
             Err(Rejection::TooDear(bucket)) => self.look(v, front, Some((target, bucket))),
@@ -262,6 +294,19 @@ impl<'v, L: AttributeModel> CollapseLoop<'v, L> {
                 vertex.floor = bucket.max(front).max(vertex.floor.saturating_add(1));
                 self.look(v, front, None);
             }
+        }
+    }
+
+    #[inline]
+    fn are_tied(&self, edge: [u32; 2]) -> bool {
+        edge.iter().all(|&v| self.vertices.get(v).flags.any(VertexFlags::TIED))
+    }
+
+    /// Wakes a vertex whose edges were refused: it may have others now.
+    pub(crate) fn wake(&mut self, v: u32, front: u16) {
+        let vertex = self.vertices.get_mut(v);
+        if vertex.floor > 0 && !vertex.flags.any(ASIDE) {
+            wake(vertex, v, self.queue, front);
         }
     }
 
@@ -350,23 +395,23 @@ impl<'v, L: AttributeModel> CollapseLoop<'v, L> {
         let Ends { v0, v1, free, .. } = ends;
         edge_ring.gather(vertices, v0, v1).map_err(refused)?;
         let (end0, end1) = (vertices.get(v0), vertices.get(v1));
-        let swept = L::Metric::swept(edge_ring, end0, end1);
+        let swept = A::Metric::swept(edge_ring, end0, end1);
         let whole = if free { model.whole(&ends, swept) } else { swept };
-        let best = if free { L::Metric::best(&whole) } else { -swept.half };
+        let best = if free { A::Metric::best(&whole) } else { -swept.half };
         let looked = if free { 0.0 } else { f64::from(model.onto(vertices, &ends)) };
         let cost = whole.at(best) + looked;
         if !cost.is_finite() {
             return Err(refused(Refusal::Volume));
         }
         let short =
-            f64::from(L::Metric::SHORT_FIRST) * whole.weight() * swept.half.length_squared();
+            f64::from(A::Metric::SHORT_FIRST) * whole.weight() * swept.half.length_squared();
         let mut cost = (cost.max(0.0) + short) as f32;
         if VertexFlags(end0.flags.0 | end1.flags.0).any(VertexFlags::PROTECTED) {
-            cost *= protection::<L::Metric>();
+            cost *= protection::<A::Metric>();
         }
         match bucket(cost) {
             NONE => Err(refused(Refusal::Volume)),
-            bucket if bucket > front.saturating_add(L::Metric::SLACK) => {
+            bucket if bucket > front.saturating_add(A::Metric::SLACK) => {
                 Err(Rejection::TooDear(bucket))
             }
             bucket => Ok(PricedEdge { ends, swept, best, bucket }),
@@ -378,7 +423,7 @@ impl<'v, L: AttributeModel> CollapseLoop<'v, L> {
     fn contract(&mut self, v: u32, target: u32, front: u16) -> Result<u32, Rejection> {
         let PricedEdge { ends, swept, best, bucket } = self.price(v, target, front)?;
         let Ends { v0, v1, free, .. } = ends;
-        let Self { vertices, model, edge_ring, pace, .. } = self;
+        let Self { vertices, model, edge_ring, deferral, .. } = self;
         let (end0, end1) = (vertices.get(v0), vertices.get(v1));
         let refused = |refusal| Rejection::Refused(refusal, bucket);
         if free && best.length_squared() > f64::from(edge_ring.reach()) {
@@ -392,7 +437,7 @@ impl<'v, L: AttributeModel> CollapseLoop<'v, L> {
         let swept_over = swept.at(best).max(0.0) / swept.weight().max(f64::MIN_POSITIVE);
         let now = edge_ring.apart(place - from).max(swept_over as f32);
         let mut moved = now + end0.moved.max(end1.moved);
-        if let Some(bucket) = pace.wait(now, moved, front) {
+        if let Some(bucket) = deferral.wait(now, moved, front) {
             return Err(Rejection::TooFar(bucket));
         }
         let placed = Collapse { ends, half: swept.half, best, place, by: place - from };
@@ -405,18 +450,36 @@ impl<'v, L: AttributeModel> CollapseLoop<'v, L> {
             let step = BoundedStep { edge_ring, ends: [v0, v1], from, by: place - from, now };
             moved = within.admit(&step, moved).ok_or_else(|| refused(Refusal::Error))?;
         }
+        self.commit(&placed, &swept, moved, front);
+        Ok(v0)
+    }
+
+    /// Writes a contraction that may be made, and takes it down.
+    #[inline(always)]
+    pub(crate) fn commit(
+        &mut self,
+        collapse: &Collapse,
+        quadric: &EdgeQuadricF64,
+        moved: f32,
+        front: u16,
+    ) {
+        let Ends { v0, v1, free, .. } = collapse.ends;
+        let Collapse { place, by, .. } = *collapse;
         self.error = self.error.max(moved.into());
-        let to = (place - from).as_dvec3() - swept.half;
-        let lost = swept.level - swept.normal.dot(to);
-        self.volume.add(place, lost, edge_ring.is_open(end0), free);
+        let lost = quadric.level - quadric.normal.dot(by.as_dvec3() - quadric.half);
+        let is_open = self.edge_ring.is_open(&self.vertices, v0);
+        self.volume.add(place, lost, is_open, free);
         if let Some(log) = &mut self.log {
-            log.push(LoggedContraction { kept: v0, gone: v1, place, moved, front });
+            let done = LoggedContraction { kept: v0, gone: v1, place, moved, front };
+            log.push(Logged::Contraction(done));
         }
-        self.apply(&placed, &swept, moved, front);
+        self.apply(collapse, quadric, moved, front);
         if self.log.is_some() {
             self.model.record(v0);
         }
-        Ok(v0)
+        if self.ties.is_some() {
+            self.wake_tied(v0, front);
+        }
     }
 
     /// Writes a contraction that may be.
@@ -427,7 +490,7 @@ impl<'v, L: AttributeModel> CollapseLoop<'v, L> {
         self.live_faces -=
             [0, edge_ring.of_v0].iter().filter(|&&wing| edge_ring.ghost != Some(wing)).count();
         let constraints = model.contract(vertices, edge_ring, placed);
-        let mut quadric = L::Metric::merge(vertices, edge_ring, swept, placed);
+        let mut quadric = A::Metric::merge(vertices, edge_ring, swept, placed);
         quadric.star.add(&constraints);
         let (first, second) = edge_ring.dying();
         let mut last = edge_ring.changes[edge_ring.len - 1];
@@ -436,10 +499,10 @@ impl<'v, L: AttributeModel> CollapseLoop<'v, L> {
             let id = edge_ring.ids[i];
             if id != GHOST {
                 let vertex = vertices.get_mut(id);
-                L::Metric::renew(vertex, [&last, &change], v0);
+                A::Metric::renew(vertex, [&last, &change], v0);
                 let mut woken = vertex.floor > 0;
                 if i == 0 || i == edge_ring.of_v0 {
-                    L::Metric::lose(vertex, if i == 0 { first } else { second });
+                    A::Metric::lose(vertex, if i == 0 { first } else { second });
                     woken |= vertex.lose(v1);
                 } else if i > edge_ring.of_v0 {
                     vertex.swap(v1, v0);
@@ -464,9 +527,9 @@ impl<'v, L: AttributeModel> CollapseLoop<'v, L> {
 }
 
 /// A first look at all vertices.
-struct CostAll<'e, 'v, L>(&'e mut CollapseLoop<'v, L>);
+struct CostAll<'e, 'v, A>(&'e mut CollapseLoop<'v, A>);
 
-impl<L: AttributeModel> SimdTask for CostAll<'_, '_, L> {
+impl<A: AttributeModel> SimdTask for CostAll<'_, '_, A> {
     type Output = ();
 
     #[inline(always)]
@@ -476,13 +539,13 @@ impl<L: AttributeModel> SimdTask for CostAll<'_, '_, L> {
 }
 
 /// Contractions, see [`CollapseLoop::run`].
-struct ContractAll<'e, 'v, L> {
-    engine: &'e mut CollapseLoop<'v, L>,
+struct ContractAll<'e, 'v, A> {
+    engine: &'e mut CollapseLoop<'v, A>,
     faces: usize,
     last: u16,
 }
 
-impl<L: AttributeModel> SimdTask for ContractAll<'_, '_, L> {
+impl<A: AttributeModel> SimdTask for ContractAll<'_, '_, A> {
     type Output = ();
 
     #[inline(always)]

@@ -4,10 +4,11 @@
 //! checks, all of which is decided.
 
 use glam::Vec3;
-use meshlod_mesh::{Mesh, VertexId};
+use meshlod_mesh::{FaceId, Mesh, VertexId};
 
 use crate::contracted::Freedom;
 use crate::kernel::attributes::RecordedValues;
+use crate::kernel::components::Component;
 use crate::kernel::mesh::local_frame::Frame;
 use crate::kernel::mesh::one_ring::VertexStore;
 use crate::kernel::setup::vertex_order::Order;
@@ -26,6 +27,14 @@ pub(crate) struct LoggedContraction {
     pub(crate) moved: f32,
     /// The bucket that it came from.
     pub(crate) front: u16,
+}
+
+/// A step as it is taken down.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Logged {
+    Contraction(LoggedContraction),
+    /// The component of this number among those that have vanished.
+    Vanished(usize),
 }
 
 /// From the engine's ids and places to the input's.
@@ -52,12 +61,14 @@ impl InputNames<'_> {
 }
 
 /// What parts have done side by side as if one had: by cost, each part in its order.
-pub(crate) fn merge(logs: impl Iterator<Item = Vec<LoggedContraction>>) -> Vec<LoggedContraction> {
-    let mut merged: Vec<(u16, LoggedContraction)> = Vec::new();
+pub(crate) fn merge(logs: impl Iterator<Item = Vec<Logged>>) -> Vec<Logged> {
+    let mut merged: Vec<(u16, Logged)> = Vec::new();
     for log in logs {
         let mut front = 0;
         merged.extend(log.into_iter().map(|done| {
-            front = front.max(done.front);
+            if let Logged::Contraction(done) = &done {
+                front = front.max(done.front);
+            }
             (front, done)
         }));
     }
@@ -67,8 +78,8 @@ pub(crate) fn merge(logs: impl Iterator<Item = Vec<LoggedContraction>>) -> Vec<L
 
 /// Makes contractions again on a surface, before the eyes of the observer.
 pub(crate) fn replay(
-    log: &[LoggedContraction],
-    values: &[RecordedValues],
+    (log, values): (&[Logged], &[RecordedValues]),
+    components: &[Component],
     names: InputNames<'_>,
     surface: &mut Surface,
     observer: &mut dyn Observe,
@@ -76,6 +87,13 @@ pub(crate) fn replay(
     let mut edge_ring = Neighbourhood::default();
     let mut values = values.iter().peekable();
     for (number, done) in log.iter().enumerate() {
+        let done = match done {
+            Logged::Contraction(done) => done,
+            Logged::Vanished(component) => {
+                vanish(&components[*component], names, surface, observer);
+                continue;
+            }
+        };
         let [kept, gone] = [done.kept, done.gone].map(|v| names.input(v));
         let position = names.position(kept, done.place).into();
         let stays = position == surface.position(kept);
@@ -91,4 +109,20 @@ pub(crate) fn replay(
         }
         observer.after(surface, &edge_ring, &placed);
     }
+}
+
+/// Takes a component out of a surface, before the eyes of the observer.
+fn vanish(
+    component: &Component,
+    names: InputNames<'_>,
+    surface: &mut Surface,
+    observer: &mut dyn Observe,
+) {
+    let inputs = component.vertices.iter().map(|&v| names.input(v));
+    let mut faces: Vec<FaceId> = inputs.flat_map(|v| surface.star(v).collect::<Vec<_>>()).collect();
+    faces.sort_unstable();
+    faces.dedup();
+    faces.retain(|&face| surface.is_alive(face));
+    observer.vanish(surface, &faces);
+    surface.take_out(&faces);
 }

@@ -16,13 +16,15 @@ use crate::kernel::attributes::AttributeModel;
 use crate::kernel::bound::ErrorBound;
 use crate::kernel::collapse::edge_ring::EdgeRing;
 use crate::kernel::collapse_loop::CollapseLoop;
-use crate::kernel::contraction_log::{LoggedContraction, merge};
+use crate::kernel::components::Components;
+use crate::kernel::contraction_log::{Logged, merge};
 use crate::kernel::mesh::one_ring::{GHOST, LongRing, VertexStore, Vertices};
 use crate::kernel::mesh::vertex::VertexFlags;
 use crate::kernel::schedule::bucket_queue::{BucketQueue, last_bucket};
 use crate::kernel::schedule::deferral::Deferral;
 use crate::kernel::volume::VolumeTally;
 use crate::refusal::Refusals;
+use crate::ties::Ties;
 
 /// The most vertices of a part in the first round: 6 MB of records. Smaller meshes are one part: in four
 /// parts of 12,000, horse-97k has .00734 and .0583 at 10 % and 1 % instead of .00722 and .0571.
@@ -51,18 +53,33 @@ const FEW: usize = 4;
 /// How many faces go in a surface of one part before it is said how many have gone.
 const FACES_A_CALL: usize = 8192;
 
+/// What needs the surface in one part: ties and components that may vanish.
+#[derive(Default)]
+pub(crate) struct Whole {
+    pub(crate) ties: Option<Ties>,
+    pub(crate) components: Option<Components>,
+}
+
+impl Whole {
+    fn is_none(&self) -> bool {
+        self.ties.is_none() && self.components.is_none()
+    }
+}
+
 /// A surface at work.
-pub(crate) struct Partition<L> {
+pub(crate) struct Partition<A> {
     pub(crate) store: VertexStore,
     /// What each part looks like.
-    pub(crate) model: Vec<L>,
+    pub(crate) model: Vec<A>,
     pub(crate) live_faces: usize,
     /// The square of the greatest estimate so far, in the frame's units.
     pub(crate) error: f64,
     pub(crate) refusals: Refusals,
     pub(crate) volume: VolumeTally,
+    /// What moves together, and what may vanish, where anything does.
+    pub(crate) whole: Whole,
     /// What was done, where that is wanted.
-    pub(crate) log: Option<Vec<LoggedContraction>>,
+    pub(crate) log: Option<Vec<Logged>>,
     parts: Vec<PartState>,
 }
 
@@ -73,20 +90,21 @@ struct PartState {
     long: Vec<LongRing>,
     /// Room to work in, made once: simplification may go on step by step.
     edge_ring: Box<EdgeRing>,
-    pace: Deferral,
+    deferral: Deferral,
     /// Those with neighbours in other parts.
     waiting: Vec<u32>,
 }
 
-impl<L: AttributeModel> Partition<L> {
-    pub(crate) fn new(store: VertexStore, model: L, live_faces: usize) -> Self {
-        Self::of_at_most(PART, store, model, live_faces)
+impl<A: AttributeModel> Partition<A> {
+    pub(crate) fn new(store: VertexStore, model: A, live_faces: usize, whole: Whole) -> Self {
+        let part = if whole.is_none() { PART } else { usize::MAX };
+        Self { whole, ..Self::of_at_most(part, store, model, live_faces) }
     }
 
     /// In parts of at most so many vertices.
-    fn of_at_most(part: usize, mut store: VertexStore, model: L, live_faces: usize) -> Self {
+    fn of_at_most(part: usize, mut store: VertexStore, model: A, live_faces: usize) -> Self {
         let mut count = 1;
-        while L::IN_PARTS && store.own().div_ceil(count) > part {
+        while A::IN_PARTS && store.own().div_ceil(count) > part {
             count *= JOINED;
         }
         let long = std::mem::take(&mut store.long);
@@ -98,6 +116,7 @@ impl<L: AttributeModel> Partition<L> {
             error: 0.0,
             refusals: Refusals::default(),
             volume: VolumeTally::default(),
+            whole: Whole::default(),
             log: None,
         };
         parts.hand_out(long);
@@ -164,7 +183,7 @@ impl<L: AttributeModel> Partition<L> {
         let stop = (faces + LEFT_OVER * waiting).max(FACES_A_WAITING * waiting);
         let mut live = self.live_faces;
         let mut log = self.log.take();
-        let mut engines: Vec<CollapseLoop<'_, L>> =
+        let mut engines: Vec<CollapseLoop<'_, A>> =
             self.engines().into_iter().map(|(engine, _)| engine).collect();
         if let Some(bound) = bound {
             let lengths: Vec<usize> = engines.iter().map(|e| e.vertices.all.len()).collect();
@@ -202,7 +221,7 @@ impl<L: AttributeModel> Partition<L> {
             for part in &mut *parts {
                 joined.queue.append(std::mem::take(&mut part.queue));
                 joined.waiting.append(&mut part.waiting);
-                joined.pace.join(&part.pace);
+                joined.deferral.join(&part.deferral);
             }
             lists.push(parts.iter_mut().map(|part| std::mem::take(&mut part.long)).collect());
         }
@@ -221,18 +240,22 @@ impl<L: AttributeModel> Partition<L> {
     }
 
     /// An engine for each part, and its vertices that wait.
-    fn engines(&mut self) -> Vec<(CollapseLoop<'_, L>, &mut Vec<u32>)> {
+    fn engines(&mut self) -> Vec<(CollapseLoop<'_, A>, &mut Vec<u32>)> {
         let first_copy = self.store.own() as u32;
-        let VertexStore { all, copied, .. } = &mut self.store;
+        let VertexStore { all, copied, split, .. } = &mut self.store;
         let mut rest = &mut all[..];
         let mut engines = Vec::with_capacity(self.parts.len());
         for (part, model) in self.parts.iter_mut().zip(&mut self.model) {
-            let PartState { vertices, queue, long, edge_ring, pace, waiting } = part;
+            let PartState { vertices, queue, long, edge_ring, deferral, waiting } = part;
             let (all, others) = rest.split_at_mut(vertices.len());
             rest = others;
             let base = vertices.start as u32;
-            let vertices = Vertices { all, base, long, copied, first_copy };
-            engines.push((CollapseLoop::new(vertices, model, queue, edge_ring, pace), waiting));
+            let vertices = Vertices { all, base, long, copied, split, first_copy };
+            engines.push((CollapseLoop::new(vertices, model, queue, edge_ring, deferral), waiting));
+        }
+        if let [(engine, _)] = &mut engines[..] {
+            engine.ties = self.whole.ties.as_mut();
+            engine.components = self.whole.components.as_mut();
         }
         engines
     }
@@ -258,7 +281,7 @@ fn cut(store: &VertexStore, count: usize) -> Vec<PartState> {
         queue: BucketQueue::default(),
         long: Vec::new(),
         edge_ring: Box::new(EdgeRing::new(store.boundary_weight)),
-        pace: Deferral::default(),
+        deferral: Deferral::default(),
         waiting: Vec::new(),
     };
     (0..count).map(part).collect()
@@ -280,13 +303,13 @@ struct CostStep {
 impl CostStep {
     /// The next step up to the bucket `last`, in which no more than `excess` faces go; `None` where no
     /// part has anything to do.
-    fn new<L: AttributeModel>(
-        engines: &[CollapseLoop<'_, L>],
+    fn new<A: AttributeModel>(
+        engines: &[CollapseLoop<'_, A>],
         excess: usize,
         last: u16,
     ) -> Option<Self> {
         if let [engine] = engines {
-            let is_idle = engine.queue.lowest() > usize::from(last.min(last_bucket()));
+            let is_idle = engine.lowest_bucket() > usize::from(last.min(last_bucket()));
             return (!is_idle).then(|| Self { last, shares: Vec::new() });
         }
         let mut entries = vec![0; usize::from(last.min(last_bucket())) + 1];
@@ -302,16 +325,16 @@ impl CostStep {
         }
         let until = until?;
         let own =
-            |engine: &CollapseLoop<'_, L>| engine.queue.lengths().take(until + 1).sum::<usize>();
+            |engine: &CollapseLoop<'_, A>| engine.queue.lengths().take(until + 1).sum::<usize>();
         let share = |engine| (excess as u64 * own(engine) as u64 / total as u64) as usize;
         let shares = engines.iter().map(share).collect();
         Some(Self { last: until as u16, shares })
     }
 
     /// Goes so far from `live` faces, but not below `stop`; gives what is left.
-    fn run<L: AttributeModel>(
+    fn run<A: AttributeModel>(
         &self,
-        engines: &mut [CollapseLoop<'_, L>],
+        engines: &mut [CollapseLoop<'_, A>],
         live: usize,
         stop: usize,
     ) -> usize {
@@ -331,8 +354,8 @@ impl CostStep {
 }
 
 /// Lets one part go from `live` to `stop` faces of all; gives how many are left.
-fn run<L: AttributeModel>(
-    engine: &mut CollapseLoop<'_, L>,
+fn run<A: AttributeModel>(
+    engine: &mut CollapseLoop<'_, A>,
     live: usize,
     stop: usize,
     last: u16,

@@ -6,21 +6,21 @@ use crate::kernel::attributes::bare::NoAttributes;
 use crate::kernel::attributes::corners::Corners;
 use crate::kernel::attributes::layers::AttributeLayers;
 use crate::kernel::attributes::wedge_quadrics::WedgeQuadrics;
+use crate::kernel::components::{Components, Pieces};
 use crate::kernel::mesh::local_frame::Frame;
 use crate::kernel::mesh::one_ring::GHOST;
 use crate::kernel::mesh::vertex::VertexFlags;
 use crate::kernel::metric::Metric;
-use crate::kernel::metric::swept_volume::SweptVolume;
-use crate::kernel::partition::Partition;
+use crate::kernel::partition::{Partition, Whole};
 use crate::kernel::run::{KernelInput, KernelRun};
 use crate::kernel::setup::build_rings::Fans;
 use crate::kernel::setup::split_non_manifold;
-use crate::kernel::setup::split_non_manifold::SplitFaces;
 use crate::kernel::setup::vertex_order::{Order, numbers};
 use crate::locks::Held;
 use crate::options::{AttributeWeights, Options};
 use crate::simplifier::Input;
 use crate::surface::MOST_FACES;
+use crate::ties::{MOST_MEMBERS, Ties};
 use meshlod_mesh::{Bounds, Lock, Mesh, VertexId};
 
 use crate::clean;
@@ -32,8 +32,8 @@ const MOST_CHANNELS: usize = 8;
 const MOST_BOUNDARY_WEIGHT: f64 = 1e9;
 
 /// A mesh about to be simplified.
-pub(crate) struct Prepared<'m, R> {
-    rule: R,
+pub(crate) struct Prepared<'m, M> {
+    metric: M,
     mesh: &'m Mesh,
     frame: Frame,
     order: Order,
@@ -41,67 +41,119 @@ pub(crate) struct Prepared<'m, R> {
     /// The faces on copies of vertices, or without those that repeat another, where there are any.
     faces: Option<Vec<[u32; 3]>>,
     input: Input,
+    whole: Whole,
 }
 
-impl<'m, R: Metric + 'm> Prepared<'m, R> {
-    /// `None` where copies of vertices do not make it manifold, or a vertex has copies with more faces
-    /// than anybody looks at.
-    pub(crate) fn new(rule: R, mesh: &'m Mesh, bounds: &Bounds, options: &Options) -> Option<Self> {
+impl<'m, M: Metric + 'm> Prepared<'m, M> {
+    /// Vertices where the surface is not manifold are split into copies that stay where they are, until
+    /// every copy has one fan of faces.
+    pub(crate) fn new(metric: M, mesh: &'m Mesh, bounds: &Bounds, options: &Options) -> Self {
         let frame = Frame::new(mesh, bounds);
         let (order, mut places) = Order::new(mesh, &frame);
         let count = mesh.faces.len();
         let face = |i: usize| order.face(&mesh.faces[i]);
-        let weight = options.boundary_weight.map_or(R::BOUNDARY_WEIGHT, boundary_weight);
-        let mut fans = Fans::new::<R>((&places, Vec::new()), count, face, weight);
+        let weight = options.boundary_weight.map_or(M::BOUNDARY_WEIGHT, boundary_weight);
+        let mut fans = Fans::new::<M>((&places, Vec::new()), count, face, weight);
         let degenerate_faces = count - fans.faces;
         let (mut faces, mut duplicate_faces) = (None, 0);
         if !fans.irregular.is_empty() {
             let mut all: Vec<_> = (0..count).map(face).collect();
             duplicate_faces = split_non_manifold::drop_duplicates(&mut all, &fans.irregular);
             if duplicate_faces > 0 {
-                fans = Fans::new::<R>((&places, Vec::new()), count, |i| all[i], weight);
+                fans = Fans::new::<M>((&places, Vec::new()), count, |i| all[i], weight);
             }
             faces = Some(all);
         }
-        let irregular = std::mem::take(&mut fans.irregular);
-        if let Some(all) = faces.as_mut().filter(|_| !irregular.is_empty()) {
-            let SplitFaces { faces, copied } =
-                split_non_manifold::split(std::mem::take(all), &irregular, places.len());
-            let copies: Vec<_> = copied.iter().map(|&v| places[v as usize]).collect();
-            places.extend(copies);
-            fans = Fans::new::<R>((&places, copied), count, |i| faces[i], weight);
-            *all = faces;
-            if !fans.irregular.is_empty() || is_crowded(&mut fans, &irregular) {
-                return None;
+        let non_manifold_vertices = fans.irregular.len();
+        let mut copied: Vec<u32> = Vec::new();
+        while let Some(all) = faces.as_mut().filter(|_| !fans.irregular.is_empty()) {
+            let copies = split_non_manifold::split(all, &fans.irregular, places.len());
+            let own = places.len() - copied.len();
+            for v in copies {
+                let origin = (v as usize).checked_sub(own).map_or(v, |copy| copied[copy]);
+                places.push(places[v as usize]);
+                copied.push(origin);
+            }
+            fans = Fans::new::<M>((&places, copied.clone()), count, |i| all[i], weight);
+        }
+        let held = Held::default();
+        let input = Input { degenerate_faces, duplicate_faces, non_manifold_vertices, held };
+        let whole = Whole::default();
+        let mut prepared = Self { metric, mesh, frame, order, fans, faces, input, whole };
+        prepared.pin();
+        let is_held = prepared.lock(options);
+        prepared.tie(options);
+        if let Some(below) = options.vanish_below {
+            prepared.find_components(is_held, options, below);
+        }
+        prepared
+    }
+
+    /// Holds the copies of vertices together; where they have too many faces, nothing goes into them
+    /// either: each time, whoever observes would look at all.
+    fn pin(&mut self) {
+        let store = &mut self.fans.store;
+        let own = store.own() as u32;
+        let split = std::mem::take(&mut store.split);
+        let mut faces: Vec<usize> =
+            split.iter().map(|&v| store.whole().neighbours(v).len()).collect();
+        let of = |copied: &u32| split.binary_search(copied).expect("what has copies is split");
+        for (i, at) in store.copied.clone().iter().map(of).enumerate() {
+            faces[at] += store.whole().neighbours(own + i as u32).len();
+        }
+        let pins = |at: usize| match faces[at] > MOST_FACES {
+            true => VertexFlags(VertexFlags::PINNED.0 | VertexFlags::BARRED.0),
+            false => VertexFlags::PINNED,
+        };
+        for (at, &v) in split.iter().enumerate() {
+            store.all[v as usize].flags.set(pins(at));
+        }
+        for (i, at) in store.copied.iter().map(of).enumerate() {
+            store.all[own as usize + i].flags.set(pins(at));
+        }
+        store.split = split;
+    }
+
+    /// Ties vertices; where a tie has too many of them they stay.
+    fn tie(&mut self, options: &Options) {
+        let mut ties = Vec::new();
+        let store = &mut self.fans.store;
+        for tie in options.locks.ties.iter().filter(|tie| tie.len() > 1) {
+            let few = tie.len() <= MOST_MEMBERS;
+            let flag = if few { VertexFlags::TIED } else { VertexFlags::PINNED };
+            let members: Vec<VertexId> = tie.iter().map(|v| VertexId(self.order.id(*v))).collect();
+            members.iter().for_each(|v| store.all[v.index()].flags.set(flag));
+            if few {
+                self.input.held.tied += tie.len();
+                ties.push(members);
+            } else {
+                self.input.held.locked += tie.len();
             }
         }
-        let input = Input {
-            degenerate_faces,
-            duplicate_faces,
-            non_manifold_vertices: irregular.len(),
-            held: Held::default(),
-        };
-        let mut prepared = Self { rule, mesh, frame, order, fans, faces, input };
-        prepared.pin(&irregular);
-        prepared.lock(options);
-        Some(prepared)
+        self.whole.ties = (!ties.is_empty()).then(|| Ties::new(ties));
     }
 
-    /// Holds the copies of vertices together.
-    fn pin(&mut self, irregular: &[u32]) {
-        let store = &mut self.fans.store;
-        let copies = store.own() as u32..store.all.len() as u32;
-        for v in irregular.iter().copied().chain(copies) {
-            let flags = &mut store.all[v as usize].flags;
-            flags.set(VertexFlags::PINNED);
-            flags.set(VertexFlags::SPLIT);
+    /// Finds the components that may vanish.
+    fn find_components(&mut self, mut is_held: Vec<bool>, options: &Options, below: f64) {
+        for v in options.locks.ties.iter().filter(|tie| tie.len() > 1).flatten() {
+            is_held[v.index()] = true;
         }
+        let faces = numbers(self.mesh, &self.order, self.faces.as_deref());
+        let pieces = Pieces {
+            mesh: self.mesh,
+            frame: &self.frame,
+            vertices: &self.fans.store.whole(),
+            is_held: &is_held,
+        };
+        self.whole.components = Some(Components::new::<M>(&pieces, faces, below));
     }
 
-    fn lock(&mut self, options: &Options) {
+    /// Flags what locks hold; gives by vertex of the input whether it is locked.
+    fn lock(&mut self, options: &Options) -> Vec<bool> {
+        let mut is_locked = vec![false; self.mesh.positions.len()];
         let locks = &options.locks.of_vertex;
         if locks.is_empty() && !options.lock_boundary {
-            return;
+            return is_locked;
         }
         // Where copies end, the surface may go on.
         let with_copies = options.lock_boundary && self.input.non_manifold_vertices > 0;
@@ -125,6 +177,7 @@ impl<'m, R: Metric + 'm> Prepared<'m, R> {
                 }
                 Lock::Locked => {
                     flags.set(VertexFlags::PINNED);
+                    is_locked[input.index()] = true;
                     self.input.held.locked += 1;
                 }
             }
@@ -133,6 +186,7 @@ impl<'m, R: Metric + 'm> Prepared<'m, R> {
             let of = vertices.get(vertices.origin(copy)).flags;
             vertices.get_mut(copy).flags.set(VertexFlags(of.0 & VertexFlags::PROTECTED.0));
         }
+        is_locked
     }
 
     /// What was found in the input.
@@ -145,60 +199,43 @@ impl<'m, R: Metric + 'm> Prepared<'m, R> {
         self.fans.faces
     }
 
-    /// Costs all vertices of a mesh without attributes.
-    pub(crate) fn start_bare(self) -> Box<dyn Run + 'm> {
-        let rule = self.rule;
-        self.work(NoAttributes(rule))
-    }
-
-    fn work<L: AttributeModel + 'm>(self, model: L) -> Box<dyn Run + 'm> {
-        let Self { mesh, frame, order, fans, faces, .. } = self;
-        let parts = Partition::new(fans.store, model, fans.faces);
+    fn run<A: AttributeModel + 'm>(self, model: A) -> Box<dyn Run + 'm> {
+        let Self { mesh, frame, order, fans, faces, whole, .. } = self;
+        let parts = Partition::new(fans.store, model, fans.faces, whole);
         Box::new(KernelRun::new(KernelInput { mesh, frame, order, faces }, parts))
     }
 }
 
-impl<'m> Prepared<'m, SweptVolume> {
+impl<'m, M: Metric + 'm> Prepared<'m, M> {
     /// Costs all vertices, and what is at them.
     pub(crate) fn start(self, weights: &AttributeWeights) -> Box<dyn Run + 'm> {
         let faces = numbers(self.mesh, &self.order, self.faces.as_deref());
         let Some(corners) = Corners::new(self.mesh, faces, self.fans.store.all.len()) else {
-            return self.start_bare();
+            let metric = self.metric;
+            return self.run(NoAttributes(metric));
         };
         let layers = AttributeLayers::new(self.mesh, &self.frame, weights, MOST_CHANNELS);
         match layers.channels() {
-            0..=2 => self.paint::<2>(layers, corners),
-            3 => self.paint::<3>(layers, corners),
-            4..=5 => self.paint::<5>(layers, corners),
-            _ => self.paint::<MOST_CHANNELS>(layers, corners),
+            // Code for fewer channels is only worth its size where the costs are the default's.
+            0..=2 if M::IS_MEMORYLESS => self.with_attributes::<2>(layers, corners),
+            3 if M::IS_MEMORYLESS => self.with_attributes::<3>(layers, corners),
+            0..=5 => self.with_attributes::<5>(layers, corners),
+            _ => self.with_attributes::<MOST_CHANNELS>(layers, corners),
         }
     }
 
-    fn paint<const K: usize>(
+    fn with_attributes<const K: usize>(
         mut self,
         layers: AttributeLayers<'m>,
         corners: Corners<'m>,
     ) -> Box<dyn Run + 'm> {
         let faces = numbers(self.mesh, &self.order, self.faces.as_deref());
-        let model = WedgeQuadrics::<K>::new(layers, corners, &mut self.fans.store.whole(), faces);
-        self.work(model)
+        let vertices = &mut self.fans.store.whole();
+        let model = WedgeQuadrics::<M, K>::new(layers, corners, vertices, faces);
+        self.run(model)
     }
 }
 
 fn boundary_weight(asked: f64) -> f32 {
     asked.min(MOST_BOUNDARY_WEIGHT) as f32
-}
-
-/// Whether all copies of some vertex have more faces together than the general engine looks at: each
-/// time that one of them takes another vertex in, whoever observes would look at all.
-fn is_crowded(fans: &mut Fans, irregular: &[u32]) -> bool {
-    let first_copy = fans.store.own() as u32;
-    let vertices = fans.store.whole();
-    let mut faces: Vec<usize> = irregular.iter().map(|&v| vertices.neighbours(v).len()).collect();
-    for (copy, of) in (first_copy..).zip(vertices.copied) {
-        if let Ok(at) = irregular.binary_search(of) {
-            faces[at] += vertices.neighbours(copy).len();
-        }
-    }
-    faces.iter().any(|&faces| faces > MOST_FACES)
 }

@@ -9,6 +9,7 @@ use crate::engine::{Run, Tally};
 use crate::kernel::attributes::AttributeModel;
 use crate::kernel::bound::ErrorBound;
 use crate::kernel::bound::input_surface::InputSurface;
+use crate::kernel::components::Component;
 use crate::kernel::contraction_log::{InputNames, replay};
 use crate::kernel::level::{level, workspace};
 use crate::kernel::mesh::local_frame::Frame;
@@ -31,9 +32,9 @@ pub(crate) struct KernelInput<'m> {
 }
 
 /// A mesh at work.
-pub(crate) struct KernelRun<'m, L> {
+pub(crate) struct KernelRun<'m, A> {
     source: KernelInput<'m>,
-    parts: Partition<L>,
+    parts: Partition<A>,
     /// The narrowest bound of the error that has refused an edge since all were awake.
     refused_above: f64,
     /// The input, if a bound of the error has been asked for.
@@ -42,8 +43,8 @@ pub(crate) struct KernelRun<'m, L> {
     surface: OnceCell<Surface>,
 }
 
-impl<'m, L: AttributeModel> KernelRun<'m, L> {
-    pub(crate) fn new(source: KernelInput<'m>, parts: Partition<L>) -> Self {
+impl<'m, A: AttributeModel> KernelRun<'m, A> {
+    pub(crate) fn new(source: KernelInput<'m>, parts: Partition<A>) -> Self {
         let (refused_above, surface) = (f64::INFINITY, OnceCell::new());
         Self { source, parts, refused_above, original: OnceCell::new(), surface }
     }
@@ -53,9 +54,14 @@ impl<'m, L: AttributeModel> KernelRun<'m, L> {
         InputNames { mesh, frame, order, store: &self.parts.store }
     }
 
+    /// The components that have vanished.
+    fn vanished(&self) -> &[Component] {
+        self.parts.whole.components.as_ref().map_or(&[], |all| &all.vanished)
+    }
+
     /// What the engine's costs are multiplied by in model units.
     fn cost_unit(&self) -> f64 {
-        self.source.frame.unit.powi(L::Metric::POWER)
+        self.source.frame.unit.powi(A::Metric::METHOD.cost_power())
     }
 
     /// The last bucket with something that costs no more than this. The cost of a bucket is the least
@@ -89,7 +95,7 @@ impl<'m, L: AttributeModel> KernelRun<'m, L> {
         }
         self.try_again_within(stop.error);
         let last = self.last_bucket(stop.cost);
-        let refused = |parts: &Partition<L>| parts.refusals.count(Refusal::Error);
+        let refused = |parts: &Partition<A>| parts.refusals.count(Refusal::Error);
         let (refused_before, at_first) = (refused(&self.parts), self.parts.live_faces);
         let Self { source, parts, original, .. } = &mut *self;
         let is_bounded = stop.error < f64::INFINITY;
@@ -101,7 +107,8 @@ impl<'m, L: AttributeModel> KernelRun<'m, L> {
         match (self.parts.log.take(), self.surface.take()) {
             (Some(log), Some(mut surface)) => {
                 let values = self.parts.model[0].recorded();
-                replay(&log, &values, self.names(), &mut surface, observer);
+                let components = self.vanished();
+                replay((&log, &values), components, self.names(), &mut surface, observer);
                 self.surface = surface.into();
             }
             (_, surface) if self.parts.live_faces == at_first => {
@@ -128,7 +135,7 @@ fn bound<'o>(
     ErrorBound::new((error / frame.unit) as f32, original, store)
 }
 
-impl<L: AttributeModel> Run for KernelRun<'_, L> {
+impl<A: AttributeModel> Run for KernelRun<'_, A> {
     fn run(&mut self, stop: &Stop, observer: &mut dyn Observe) {
         self.advance(stop.faces, stop, observer);
     }
@@ -170,7 +177,7 @@ impl<L: AttributeModel> Run for KernelRun<'_, L> {
 
     fn tally(&self) -> Tally {
         Tally {
-            vanished: 0,
+            vanished: self.vanished().len(),
             refusals: self.parts.refusals,
             error_estimate: self.parts.error.sqrt() * self.source.frame.unit,
             volume: self.parts.volume.loss(&self.source.frame),

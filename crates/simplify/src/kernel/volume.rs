@@ -43,6 +43,18 @@ impl VolumeTally {
         }
     }
 
+    /// Counts a component that vanishes, of vertices at `places` around a sixth of `sixfold`.
+    pub(crate) fn add_component(&mut self, places: &[Vec3], sixfold: f64, is_open: bool) {
+        let kind = if is_open { &mut self.open } else { &mut self.held };
+        kind.contractions += 1;
+        for &place in places {
+            (kind.min, kind.max) = (kind.min.min(place), kind.max.max(place));
+        }
+        if !is_open {
+            self.sixfold += sixfold;
+        }
+    }
+
     /// Counts what another part has lost.
     pub(crate) fn join(&mut self, other: &Self) {
         self.sixfold += other.sixfold;

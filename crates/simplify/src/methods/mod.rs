@@ -40,8 +40,10 @@ use crate::options::{Method, Options};
 pub(crate) fn start(method: Method, options: &Options, ready: Ready) -> Box<dyn Run> {
     let surface = &ready.surface;
     match method {
+        #[cfg(feature = "oracle")]
         Method::Qem => by_quadrics(options, Optimal, ready),
         Method::QemEndpoint => by_quadrics(options, Endpoint, ready),
+        #[cfg(feature = "oracle")]
         Method::LindstromTurk => Algorithm {
             candidates: Edges,
             memory: Stars::new(surface),
@@ -49,6 +51,8 @@ pub(crate) fn start(method: Method, options: &Options, ready: Ready) -> Box<dyn 
             placement: Memoryless::new(options.boundary_weight),
         }
         .start(ready),
+        #[cfg(not(feature = "oracle"))]
+        Method::Qem | Method::LindstromTurk => unreachable!("the kernel runs these"),
         Method::LindstromTurkFaces => Algorithm {
             candidates: FacesAndEdges,
             memory: Stars::new(surface),

@@ -8,6 +8,7 @@
 
 use glam::{DMat3, DVec3, Vec3, Vec4};
 
+use crate::kernel::metric::Metric;
 use crate::kernel::metric::edge_quadric::{
     EdgeQuadric, EdgeQuadrics, EdgeSide, SymmetricMatrix, lane_of,
 };
@@ -41,13 +42,13 @@ impl<const K: usize> AttributeQuadric<K> {
     /// One face, its corners at the origin, `a` and `b`, where the channels are `to_a` and `to_b`
     /// more; it comes to the same from every corner.
     #[inline(always)]
-    pub(crate) fn face(a: Vec3, b: Vec3, to_a: [f32; K], to_b: [f32; K]) -> Self {
+    pub(crate) fn face<M: Metric>(a: Vec3, b: Vec3, to_a: [f32; K], to_b: [f32; K]) -> Self {
         let normal = a.cross(b);
-        let weight = normal.length_squared();
+        let (weight, per_square) = M::face_weight(normal.length_squared());
         let (along_a, along_b) = (b.cross(normal).extend(0.0), normal.cross(a).extend(0.0));
         let mut field = Self::EMPTY;
         for (k, channel) in field.channels.iter_mut().enumerate() {
-            let slope = along_a * to_a[k] + along_b * to_b[k];
+            let slope = (along_a * to_a[k] + along_b * to_b[k]) * per_square;
             let [x, y, z, _] = slope.to_array();
             field.squares[0] += Vec4::new(x, y, z, x) * Vec4::new(x, y, z, y);
             field.squares[1] += Vec4::new(x, y, 0.0, 0.0) * Vec4::new(z, z, 0.0, 0.0);

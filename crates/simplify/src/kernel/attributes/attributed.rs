@@ -9,15 +9,15 @@ use crate::kernel::collapse::edge_ring::EdgeRing;
 use crate::kernel::collapse::{Collapse, Ends};
 use crate::kernel::mesh::one_ring::Vertices;
 use crate::kernel::mesh::vertex::VertexQuadric;
+use crate::kernel::metric::Metric;
 use crate::kernel::metric::edge_quadric::{Costs, EdgeQuadrics, EdgeSide};
 use crate::kernel::metric::edge_quadric_f64::EdgeQuadricF64;
-use crate::kernel::metric::swept_volume::SweptVolume;
 use crate::kernel::simd::{LANES, widest};
 use crate::refusal::Refusal;
 use meshlod_mesh::Attributes;
 
-impl<const K: usize> AttributeModel for WedgeQuadrics<'_, K> {
-    type Metric = SweptVolume;
+impl<M: Metric, const K: usize> AttributeModel for WedgeQuadrics<'_, M, K> {
+    type Metric = M;
 
     const IN_PARTS: bool = false;
 
@@ -101,6 +101,10 @@ impl<const K: usize> AttributeModel for WedgeQuadrics<'_, K> {
         if self.corners.are_given {
             self.record_values(vertex);
         }
+        self.logged += 1;
+    }
+
+    fn skip_record(&mut self) {
         self.logged += 1;
     }
 

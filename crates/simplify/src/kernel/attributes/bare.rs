@@ -4,7 +4,7 @@ use crate::kernel::attributes::{AttributeModel, RecordedValues};
 use crate::kernel::collapse::edge_ring::EdgeRing;
 use crate::kernel::collapse::{Collapse, Ends};
 use crate::kernel::mesh::one_ring::Vertices;
-use crate::kernel::mesh::vertex::{VertexFlags, VertexQuadric};
+use crate::kernel::mesh::vertex::VertexQuadric;
 use crate::kernel::metric::Metric;
 use crate::kernel::metric::edge_quadric::{Costs, EdgeQuadrics, EdgeSide};
 use crate::kernel::metric::edge_quadric_f64::EdgeQuadricF64;
@@ -14,10 +14,10 @@ use meshlod_mesh::Attributes;
 
 /// No attributes, and what costs by this rule.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct NoAttributes<R>(pub(crate) R);
+pub(crate) struct NoAttributes<M>(pub(crate) M);
 
-impl<R: Metric> AttributeModel for NoAttributes<R> {
-    type Metric = R;
+impl<M: Metric> AttributeModel for NoAttributes<M> {
+    type Metric = M;
 
     const IN_PARTS: bool = true;
 
@@ -74,16 +74,19 @@ impl<R: Metric> AttributeModel for NoAttributes<R> {
     #[inline(always)]
     fn record(&mut self, _: u32) {}
 
+    fn skip_record(&mut self) {}
+
     fn recorded(&mut self) -> Vec<RecordedValues> {
         Vec::new()
     }
 }
 
-/// What goes where, if pins alone decide.
+/// Which end goes into which, if pins and ties alone decide: what is in a tie stays where the other
+/// end is in none.
 #[inline(always)]
 pub(crate) fn by_pins(vertices: &Vertices, v: u32, target: u32) -> Result<Ends, Refusal> {
-    let pinned = |v: u32| vertices.get(v).flags.any(VertexFlags::PINNED);
-    match (pinned(v), pinned(target)) {
+    let [first, second] = [v, target].map(|v| vertices.get(v).flags);
+    match (first.stays_beside(second), second.stays_beside(first)) {
         (false, false) => Ok(Ends::free(v, target)),
         (true, false) => Ok(Ends { free: false, ..Ends::free(v, target) }),
         (false, true) => Ok(Ends { free: false, ..Ends::free(target, v) }),

@@ -1,5 +1,8 @@
 //! Wedges from the corners of faces, and back.
 
+use crate::kernel::metric::Metric;
+use std::marker::PhantomData;
+
 use meshlod_mesh::{Attributes, WedgeId};
 
 use crate::kernel::attributes::RecordedValues;
@@ -8,11 +11,11 @@ use crate::kernel::attributes::corners::{Corners, is_face};
 use crate::kernel::attributes::layers::{AttributeLayers, SurvivingWedge};
 use crate::kernel::attributes::scratch::Scratch;
 use crate::kernel::attributes::seam_sectors::SeamSectors;
-use crate::kernel::attributes::wedge_quadrics::{SEAM_WEIGHT, WedgeQuadrics};
+use crate::kernel::attributes::wedge_quadrics::WedgeQuadrics;
 use crate::kernel::mesh::one_ring::{GHOST, Vertices};
-use crate::kernel::mesh::vertex::{NOBODY, VertexFlags, VertexQuadric};
+use crate::kernel::mesh::vertex::{NOBODY, VertexFlags};
 
-impl<'m, const K: usize> WedgeQuadrics<'m, K> {
+impl<'m, M: Metric, const K: usize> WedgeQuadrics<'m, M, K> {
     /// The quadrics of a mesh whose rings are made; flags the vertices on seams, and puts the squares of
     /// seams in their stars.
     pub(crate) fn new(
@@ -29,6 +32,7 @@ impl<'m, const K: usize> WedgeQuadrics<'m, K> {
         };
         let quadrics: Vec<AttributeQuadric<K>> = wedges.iter().map(values).collect();
         let mut wedges = Self {
+            metric: PhantomData,
             heirs: vec![NOBODY; quadrics.len()],
             quadrics,
             seams: SeamSectors::default(),
@@ -68,7 +72,7 @@ impl<'m, const K: usize> WedgeQuadrics<'m, K> {
             to_b[k] -= own;
             to_c[k] -= own;
         }
-        let face = AttributeQuadric::face(place(b) - from, place(c) - from, to_b, to_c);
+        let face = AttributeQuadric::face::<M>(place(b) - from, place(c) - from, to_b, to_c);
         for slot in slots {
             self.quadrics[slot as usize].add(&face);
         }
@@ -110,10 +114,7 @@ impl<'m, const K: usize> WedgeQuadrics<'m, K> {
             }
         }
         for (v, w) in constraints {
-            let constraint = VertexQuadric::boundary(
-                vertices.get(w).place() - vertices.get(v).place(),
-                SEAM_WEIGHT,
-            );
+            let constraint = M::seam(vertices.get(w).place() - vertices.get(v).place());
             vertices.get_mut(v).quadric.add(&constraint);
         }
     }

@@ -82,6 +82,9 @@ pub(crate) trait AttributeModel: Sized + Send + Sync {
     /// Takes down the values that a contraction has given to a vertex: the next of those that are logged.
     fn record(&mut self, vertex: u32);
 
+    /// Counts a logged step that gives no vertex new values.
+    fn skip_record(&mut self);
+
     /// What was taken down.
     fn recorded(&mut self) -> Vec<RecordedValues>;
 }

@@ -8,9 +8,10 @@ use crate::kernel::attributes::attribute_quadric::{AttributeQuadric, best_values
 use crate::kernel::attributes::scratch::NewValues;
 use crate::kernel::attributes::wedge_quadrics::WedgeQuadrics;
 use crate::kernel::collapse::{Collapse, WedgePairs};
+use crate::kernel::metric::Metric;
 use glam::Vec3;
 
-impl<const K: usize> WedgeQuadrics<'_, K> {
+impl<M: Metric, const K: usize> WedgeQuadrics<'_, M, K> {
     /// The values of the wedge that two become.
     pub(crate) fn values(&self, placed: &Collapse, [s0, s1]: [u32; 2]) -> [f32; K] {
         let (f0, f1) = (self.field(s0), self.field(s1));

@@ -14,11 +14,10 @@ use crate::kernel::mesh::vertex::{NOBODY, VertexFlags};
 use crate::kernel::metric::edge_quadric::{
     Costs, EdgeQuadric, EdgeQuadrics, EdgeSide, SymmetricMatrix, VertexQuadrics, lane_of,
 };
-use crate::kernel::metric::swept_volume::SweptVolume;
 use crate::kernel::metric::{Metric, edges_between, least_costs};
 use crate::kernel::simd::{LANES, Row, Row3, SimdTask, widest};
 
-impl<const K: usize> WedgeQuadrics<'_, K> {
+impl<M: Metric, const K: usize> WedgeQuadrics<'_, M, K> {
     /// What eight edges cost if any of their vertices is on a seam. Of those without such an end, what
     /// they cost if both may go anywhere.
     #[inline(always)]
@@ -54,13 +53,13 @@ impl<const K: usize> WedgeQuadrics<'_, K> {
 }
 
 /// The costs of eight edges.
-struct CostsAtSeams<'a, 'm, 'v, const K: usize> {
-    wedges: &'a WedgeQuadrics<'m, K>,
+struct CostsAtSeams<'a, 'm, 'v, M, const K: usize> {
+    wedges: &'a WedgeQuadrics<'m, M, K>,
     vertices: &'a Vertices<'v>,
     edges: (EdgeSide<u32>, &'a [u32; LANES]),
 }
 
-impl<const K: usize> SimdTask for CostsAtSeams<'_, '_, '_, K> {
+impl<M: Metric, const K: usize> SimdTask for CostsAtSeams<'_, '_, '_, M, K> {
     type Output = Row;
 
     #[inline(always)]
@@ -112,9 +111,9 @@ impl SeamBatch {
     }
 
     #[inline(always)]
-    fn lay<const K: usize>(
+    fn lay<M: Metric, const K: usize>(
         &mut self,
-        wedges: &WedgeQuadrics<'_, K>,
+        wedges: &WedgeQuadrics<'_, M, K>,
         vertices: &Vertices,
         us: EdgeSide<u32>,
         vs: &[u32; LANES],
@@ -175,11 +174,15 @@ impl SeamBatch {
     }
 
     #[inline(always)]
-    fn costs<const K: usize>(&self, wedges: &WedgeQuadrics<'_, K>, vertices: &Vertices) -> Row {
+    fn costs<M: Metric, const K: usize>(
+        &self,
+        wedges: &WedgeQuadrics<'_, M, K>,
+        vertices: &Vertices,
+    ) -> Row {
         let first = VertexQuadrics::of(vertices, EdgeSide::Each(self.ends[0]));
         let second = VertexQuadrics::of(vertices, EdgeSide::Each(self.ends[1]));
-        let mut edges = edges_between::<SweptVolume>(&first, &second);
-        let mut onto = onto_first(&second, &edges.half);
+        let mut edges = edges_between::<M>(&first, &second);
+        let mut onto = onto_first::<M>(&first, &second, &edges.half);
         for &lane in &self.lent[..self.lent_len] {
             edges.set(lane, &EdgeQuadric::NONE);
             onto[lane] = 0.0;
@@ -195,7 +198,7 @@ impl SeamBatch {
             self.join_rest(wedges, &mut edges, &mut onto);
         }
         self.join_alone(wedges, &mut edges, &mut onto);
-        let mut costs = least_costs::<SweptVolume>(&edges);
+        let mut costs = least_costs::<M>(&edges);
         for lane in 0..LANES {
             costs[lane] = match self.ways[lane] {
                 Motion::Not => f32::INFINITY,
@@ -208,9 +211,9 @@ impl SeamBatch {
 
     /// Joins the other sides that no lane was lent to, each in that of its edge.
     #[inline(always)]
-    fn join_rest<const K: usize>(
+    fn join_rest<M: Metric, const K: usize>(
         &self,
-        wedges: &WedgeQuadrics<'_, K>,
+        wedges: &WedgeQuadrics<'_, M, K>,
         edges: &mut EdgeQuadrics,
         onto: &mut Row,
     ) {
@@ -232,9 +235,9 @@ impl SeamBatch {
 
     /// Joins what meets nothing, one by one: there is little of it.
     #[inline(always)]
-    fn join_alone<const K: usize>(
+    fn join_alone<M: Metric, const K: usize>(
         &self,
-        wedges: &WedgeQuadrics<'_, K>,
+        wedges: &WedgeQuadrics<'_, M, K>,
         edges: &mut EdgeQuadrics,
         onto: &mut Row,
     ) {
@@ -254,14 +257,14 @@ impl SeamBatch {
     }
 }
 
-/// What the stars of second ends cost by themselves if they go to the first ones.
+/// What the second ends cost by their geometry alone if they go to the first ones.
 #[inline(always)]
-fn onto_first(stars: &VertexQuadrics, half: &Row3) -> Row {
+fn onto_first<M: Metric>(first: &VertexQuadrics, second: &VertexQuadrics, half: &Row3) -> Row {
     let mut costs = [0.0; LANES];
     for (lane, cost) in costs.iter_mut().enumerate() {
-        let (h, squares) = (half.get(lane), SymmetricMatrix(lane_of(&stars.squares, lane)));
-        let short = SweptVolume::SHORT_FIRST * squares.trace() * h.dot(h);
-        *cost = 4.0 * (h.dot(squares.apply(h)) + short);
+        let (h, squares) = (half.get(lane), SymmetricMatrix(lane_of(&second.squares, lane)));
+        let short = M::SHORT_FIRST * squares.trace() * h.dot(h);
+        *cost = 4.0 * (h.dot(squares.apply(h)) + short) + M::offsets_onto(first, second, lane, h);
     }
     costs
 }

@@ -1,5 +1,6 @@
 //! What no channel holds of attributes: it moves along, from the closest point of the faces as they were.
 
+use crate::kernel::metric::Metric;
 use glam::{DVec3, Vec3};
 use meshlod_mesh::WedgeId;
 use meshlod_spatial::closest_point;
@@ -11,7 +12,7 @@ use crate::kernel::collapse::edge_ring::EdgeRing;
 use crate::kernel::collapse::{Collapse, Ends};
 use crate::kernel::mesh::vertex::NOBODY;
 
-impl<const K: usize> WedgeQuadrics<'_, K> {
+impl<M: Metric, const K: usize> WedgeQuadrics<'_, M, K> {
     /// Gives the wedges that become one what is closest on the faces that they stand for. Without `slots`
     /// vertices are slots.
     #[inline(always)]

@@ -3,23 +3,24 @@
 use crate::kernel::attributes::attribute_quadric::AttributeQuadric;
 use crate::kernel::attributes::face_wedges::FaceWedges;
 use crate::kernel::attributes::update_smooth::dying;
-use crate::kernel::attributes::wedge_quadrics::{SEAM_WEIGHT, WedgeQuadrics};
+use crate::kernel::attributes::wedge_quadrics::WedgeQuadrics;
 use crate::kernel::collapse::edge_ring::EdgeRing;
 use crate::kernel::collapse::{Collapse, Ends};
 use crate::kernel::mesh::one_ring::{GHOST, Vertices, is_seam};
 use crate::kernel::mesh::vertex::{VertexFlags, VertexQuadric};
+use crate::kernel::metric::Metric;
 use crate::kernel::simd::SimdTask;
 use glam::Vec3;
 
 /// A contraction where something around has a seam, see [`WedgeQuadrics::contract_by_slots`].
-pub(crate) struct UpdateAtSeams<'a, 'm, 'v, const K: usize> {
-    pub(crate) wedges: &'a mut WedgeQuadrics<'m, K>,
+pub(crate) struct UpdateAtSeams<'a, 'm, 'v, M, const K: usize> {
+    pub(crate) wedges: &'a mut WedgeQuadrics<'m, M, K>,
     pub(crate) vertices: &'a mut Vertices<'v>,
     pub(crate) edge_ring: &'a EdgeRing,
     pub(crate) placed: &'a Collapse,
 }
 
-impl<const K: usize> SimdTask for UpdateAtSeams<'_, '_, '_, K> {
+impl<M: Metric, const K: usize> SimdTask for UpdateAtSeams<'_, '_, '_, M, K> {
     type Output = VertexQuadric;
 
     #[inline(always)]
@@ -28,7 +29,7 @@ impl<const K: usize> SimdTask for UpdateAtSeams<'_, '_, '_, K> {
     }
 }
 
-impl<const K: usize> WedgeQuadrics<'_, K> {
+impl<M: Metric, const K: usize> WedgeQuadrics<'_, M, K> {
     /// Where something around has a seam. Gives what the new star has of seams.
     #[inline(always)]
     fn contract_by_slots(
@@ -40,7 +41,9 @@ impl<const K: usize> WedgeQuadrics<'_, K> {
         let Ends { v0, v1, met, .. } = placed.ends;
         let slots = std::mem::take(&mut self.scratch.slots);
         self.move_rest(edge_ring, placed, Some(&slots));
-        self.remove_constraints(vertices, edge_ring, placed);
+        if M::IS_MEMORYLESS {
+            self.remove_constraints(vertices, edge_ring, placed);
+        }
         self.join_charts(&met);
         let constraint = self.add_constraints(vertices, edge_ring, placed, &slots);
         self.renew_fields(edge_ring, placed, &slots);
@@ -52,7 +55,7 @@ impl<const K: usize> WedgeQuadrics<'_, K> {
         }
         self.renew_sectors(vertices, edge_ring, [v0, v1], &slots.apexes);
         self.scratch.slots = slots;
-        constraint
+        M::renewed_seams(constraint, edge_ring.ghost.is_some())
     }
 
     /// Brings up to date what the faces that change have added to all quadrics around.
@@ -60,11 +63,11 @@ impl<const K: usize> WedgeQuadrics<'_, K> {
     fn renew_fields(&mut self, edge_ring: &EdgeRing, placed: &Collapse, slots: &FaceWedges) {
         let Self { quadrics, scratch, .. } = self;
         let apexes = &slots.apexes;
-        scratch.change::<true>(edge_ring, placed.by, [&[0.0; K]; 3]);
+        scratch.change::<M, true>(edge_ring, placed.by, [&[0.0; K]; 3]);
         for (wing, of) in [0, edge_ring.of_v0].into_iter().zip(slots.dying) {
             if edge_ring.ghost != Some(wing) {
                 let [v0, v1, other] = of.map(|slot| quadrics[slot as usize].values());
-                quadrics[of[2] as usize].take(&dying(edge_ring, wing, [&v0, &v1, &other]));
+                quadrics[of[2] as usize].take(&dying::<M, K>(edge_ring, wing, [&v0, &v1, &other]));
             }
         }
         for (i, &slot) in apexes.iter().enumerate() {
@@ -97,7 +100,7 @@ impl<const K: usize> WedgeQuadrics<'_, K> {
             let near = [i <= edge_ring.of_v0, i >= edge_ring.of_v0 || i == 0];
             for (apex, at, near) in [(v0, Vec3::ZERO, near[0]), (v1, edge_ring.along, near[1])] {
                 if near && self.is_cut_edge(apex, w) {
-                    let constraint = VertexQuadric::boundary(edge_ring.seen(i) - at, SEAM_WEIGHT);
+                    let constraint = M::seam(edge_ring.seen(i) - at);
                     vertices.get_mut(w).quadric.take(&constraint);
                 }
             }
@@ -121,9 +124,10 @@ impl<const K: usize> WedgeQuadrics<'_, K> {
             if edge_ring.is_face(before)
                 && (differ(apexes[before], apexes[i]) || differ(last, first))
             {
-                let constraint =
-                    VertexQuadric::boundary(edge_ring.seen(i) - placed.by, SEAM_WEIGHT);
-                vertices.get_mut(edge_ring.ids[i]).quadric.add(&constraint);
+                let constraint = M::seam(edge_ring.seen(i) - placed.by);
+                if M::IS_MEMORYLESS {
+                    vertices.get_mut(edge_ring.ids[i]).quadric.add(&constraint);
+                }
                 sum.add(&constraint);
             }
         }

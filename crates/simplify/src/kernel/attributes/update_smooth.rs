@@ -6,11 +6,12 @@ use crate::kernel::attributes::wedge_quadrics::WedgeQuadrics;
 use crate::kernel::collapse::edge_ring::{EdgeRing, ROOM, chunk, row3};
 use crate::kernel::collapse::{Collapse, Ends, edge_ring};
 use crate::kernel::mesh::one_ring::GHOST;
+use crate::kernel::metric::Metric;
 use crate::kernel::metric::edge_quadric::outer;
 use crate::kernel::simd::{LANES, Row, Row3, TINY, sum_of, transpose_back};
 use glam::{Vec3, Vec4};
 
-impl<const K: usize> WedgeQuadrics<'_, K> {
+impl<M: Metric, const K: usize> WedgeQuadrics<'_, M, K> {
     /// Where nothing around has a seam: slots are vertices. As looked ahead to.
     #[inline(always)]
     pub(crate) fn contract_smooth(&mut self, edge_ring: &EdgeRing, placed: &Collapse) {
@@ -18,7 +19,7 @@ impl<const K: usize> WedgeQuadrics<'_, K> {
         let (of_v0, of_v1) = (self.field(v0).values(), self.field(v1).values());
         let Self { quadrics, scratch, .. } = self;
         let values = scratch.values;
-        let mut new = scratch.change::<false>(edge_ring, placed.by, [&of_v0, &of_v1, &values]);
+        let mut new = scratch.change::<M, false>(edge_ring, placed.by, [&of_v0, &of_v1, &values]);
         for (channel, value) in new.channels.iter_mut().zip(values) {
             channel.w = value;
         }
@@ -36,7 +37,7 @@ impl<const K: usize> WedgeQuadrics<'_, K> {
         for wing in [0, edge_ring.of_v0] {
             if edge_ring.ghost != Some(wing) {
                 let field = &mut quadrics[edge_ring.ids[wing] as usize];
-                field.take(&dying(edge_ring, wing, [&of_v0, &of_v1, &field.values()]));
+                field.take(&dying::<M, K>(edge_ring, wing, [&of_v0, &of_v1, &field.values()]));
             }
         }
         quadrics[v0 as usize] = new;
@@ -52,7 +53,7 @@ impl<const K: usize> Scratch<K> {
     /// seams, each new one where there are. `values` are those of both ends and of the new vertex, which
     /// without seams are those of all apexes.
     #[inline(always)]
-    pub(crate) fn change<const SEAMS: bool>(
+    pub(crate) fn change<M: Metric, const SEAMS: bool>(
         &mut self,
         edge_ring: &EdgeRing,
         by: Vec3,
@@ -63,12 +64,12 @@ impl<const K: usize> Scratch<K> {
         for start in edge_ring.starts() {
             let spokes = edge_ring.spokes(start);
             let at_v1 = spokes.of_v1;
-            let old = GradientFaces::new(
+            let old = GradientFaces::new::<M>(
                 &spokes,
                 |lane| edge_ring.along * at_v1[lane],
                 row3(&edge_ring.old, start),
             );
-            let new = GradientFaces::new(&spokes, |_| by, row3(&edge_ring.new, start));
+            let new = GradientFaces::new::<M>(&spokes, |_| by, row3(&edge_ring.new, start));
             let (mut changes, mut news) = ([[none; 3]; K], [[none; 3]; K]);
             let (mut was, mut now) = ([none; 6], [none; 6]);
             for k in 0..K {
@@ -169,22 +170,34 @@ struct GradientFaces {
     weight: Row,
     /// The weight's inverse.
     scale: Row,
+    /// The weight by the square of the normal.
+    per_square: Row,
 }
 
 impl GradientFaces {
     /// No face where the normal is zero.
     #[inline(always)]
-    fn new(spokes: &edge_ring::Spokes, apex: impl Fn(usize) -> Vec3, normals: Row3) -> Self {
+    fn new<M: Metric>(
+        spokes: &edge_ring::Spokes,
+        apex: impl Fn(usize) -> Vec3,
+        normals: Row3,
+    ) -> Self {
         let none = [0.0; LANES];
-        let mut faces =
-            Self { along_a: Row3::ZERO, along_b: Row3::ZERO, weight: none, scale: none };
+        let mut faces = Self {
+            along_a: Row3::ZERO,
+            along_b: Row3::ZERO,
+            weight: none,
+            scale: none,
+            per_square: none,
+        };
         for lane in 0..LANES {
             let (apex, normal) = (apex(lane), normals.get(lane));
-            let weight = normal.dot(normal);
+            let (weight, per_square) = M::face_weight(normal.dot(normal));
             faces.along_a.set(lane, (spokes.b.get(lane) - apex).cross(normal));
             faces.along_b.set(lane, normal.cross(spokes.a.get(lane) - apex));
             faces.weight[lane] = weight;
             faces.scale[lane] = (weight + TINY).recip();
+            faces.per_square[lane] = per_square;
         }
         faces
     }
@@ -192,12 +205,12 @@ impl GradientFaces {
     /// The slope by the weight.
     #[inline(always)]
     fn slope(&self, lane: usize, to_a: f32, to_b: f32) -> Vec3 {
-        self.along_a.get(lane) * to_a + self.along_b.get(lane) * to_b
+        (self.along_a.get(lane) * to_a + self.along_b.get(lane) * to_b) * self.per_square[lane]
     }
 }
 
 /// The field of the face of the edge and a wing, by the values at both ends and at the wing.
-pub(crate) fn dying<const K: usize>(
+pub(crate) fn dying<M: Metric, const K: usize>(
     edge_ring: &EdgeRing,
     wing: usize,
     [v0, v1, other]: [&[f32; K]; 3],
@@ -206,5 +219,5 @@ pub(crate) fn dying<const K: usize>(
     for k in 0..K {
         (to_v1[k], to_wing[k]) = (v1[k] - v0[k], other[k] - v0[k]);
     }
-    AttributeQuadric::face(edge_ring.along, edge_ring.seen(wing), to_v1, to_wing)
+    AttributeQuadric::face::<M>(edge_ring.along, edge_ring.seen(wing), to_v1, to_wing)
 }

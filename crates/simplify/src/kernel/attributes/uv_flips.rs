@@ -9,6 +9,7 @@ use crate::kernel::attributes::wedge_quadrics::WedgeQuadrics;
 use crate::kernel::collapse::edge_ring::{EdgeRing, chunk, row3};
 use crate::kernel::collapse::{Collapse, Ends};
 use crate::kernel::mesh::one_ring::{Vertices, is_seam};
+use crate::kernel::metric::Metric;
 use crate::kernel::simd::{LANES, Row, SimdTask};
 
 /// The square of the area in the texture, as a part of that on the surface, that is none; where a length in
@@ -23,14 +24,14 @@ fn flat(weight: f32) -> f32 {
 }
 
 /// A look ahead where something around has a seam.
-pub(crate) struct UvFlipsAtSeams<'a, 'm, 'v, const K: usize> {
-    pub(crate) wedges: &'a mut WedgeQuadrics<'m, K>,
+pub(crate) struct UvFlipsAtSeams<'a, 'm, 'v, M, const K: usize> {
+    pub(crate) wedges: &'a mut WedgeQuadrics<'m, M, K>,
     pub(crate) vertices: &'a Vertices<'v>,
     pub(crate) edge_ring: &'a EdgeRing,
     pub(crate) placed: &'a Collapse,
 }
 
-impl<const K: usize> SimdTask for UvFlipsAtSeams<'_, '_, '_, K> {
+impl<M: Metric, const K: usize> SimdTask for UvFlipsAtSeams<'_, '_, '_, M, K> {
     type Output = bool;
 
     #[inline(always)]
@@ -39,7 +40,7 @@ impl<const K: usize> SimdTask for UvFlipsAtSeams<'_, '_, '_, K> {
     }
 }
 
-impl<const K: usize> WedgeQuadrics<'_, K> {
+impl<M: Metric, const K: usize> WedgeQuadrics<'_, M, K> {
     /// Whether anything around has a seam.
     #[inline(always)]
     pub(crate) fn has_seam(&self, vertices: &Vertices, edge_ring: &EdgeRing, ends: Ends) -> bool {

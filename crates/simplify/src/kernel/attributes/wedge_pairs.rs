@@ -5,21 +5,22 @@ use crate::kernel::attributes::seam_sectors::Sector;
 use crate::kernel::attributes::wedge_quadrics::WedgeQuadrics;
 use crate::kernel::collapse::{Ends, WedgePairs};
 use crate::kernel::mesh::one_ring::{Vertices, is_seam};
-use crate::kernel::mesh::vertex::VertexFlags;
+use crate::kernel::metric::Metric;
 use crate::refusal::Refusal;
 
-impl<const K: usize> WedgeQuadrics<'_, K> {
+impl<M: Metric, const K: usize> WedgeQuadrics<'_, M, K> {
     /// Which end of an edge goes into which, and what meets.
     #[inline(always)]
     pub(crate) fn ends(&self, vertices: &Vertices, v: u32, target: u32) -> Result<Ends, Refusal> {
         if !is_seam(vertices, v) && !is_seam(vertices, target) {
             return by_pins(vertices, v, target);
         }
+        let flags = [v, target].map(|v| vertices.get(v).flags);
         let at0 = self.seams.sides(vertices, v, target);
         let at1 = self.seams.sides(vertices, target, v);
         let mut met = WedgePairs::new(at0, at1, [false; 2]);
-        let leaves = self.may_leave(vertices, &mut met, (0, v));
-        let goes = self.may_leave(vertices, &mut met, (1, target));
+        let leaves = self.may_leave(&mut met, (0, v)) && !flags[0].stays_beside(flags[1]);
+        let goes = self.may_leave(&mut met, (1, target)) && !flags[1].stays_beside(flags[0]);
         if !leaves && !goes {
             return Err(Refusal::Seam);
         }
@@ -48,7 +49,7 @@ impl<const K: usize> WedgeQuadrics<'_, K> {
     /// Whether the charts of an end of an edge all have one at the other end to go to, and only one.
     /// Takes down whether it has slots that meet none.
     #[inline(always)]
-    fn may_leave(&self, vertices: &Vertices, met: &mut WedgePairs, (end, v): (usize, u32)) -> bool {
+    fn may_leave(&self, met: &mut WedgePairs, (end, v): (usize, u32)) -> bool {
         let [[a, s], [b, t]] = met.pairs;
         let (own, other) = if end == 0 { ([a, b], [s, t]) } else { ([s, t], [a, b]) };
         let [first, second] = [self.chart(own[0]), self.chart(own[1])];
@@ -62,7 +63,7 @@ impl<const K: usize> WedgeQuadrics<'_, K> {
             }
         }
         met.has_alone[end] = any_alone & !self.charts.is_empty();
-        all_go && !(first == second && parts()) && !vertices.get(v).flags.any(VertexFlags::PINNED)
+        all_go && !(first == second && parts())
     }
 
     /// The slots of an end that do not meet any along the edge. They stay with their faces.

@@ -6,21 +6,20 @@
 //! SeamSectors are contracted along themselves, both sides at once; a vertex that has no seam goes into one
 //! that has, which stays where it is. So do the ends of seams, and where several meet.
 
+use std::marker::PhantomData;
+
 use crate::kernel::attributes::RecordedValues;
 use crate::kernel::attributes::attribute_quadric::AttributeQuadric;
 use crate::kernel::attributes::corners::Corners;
 use crate::kernel::attributes::layers::AttributeLayers;
 use crate::kernel::attributes::scratch::Scratch;
 use crate::kernel::attributes::seam_sectors::SeamSectors;
-
-/// What an edge of a seam counts, which otherwise would cost nothing to move across the surface. The
-/// mean of the logarithms of FLIP over pirate, spot, duck and the flight helmet at 25, 10, 3 and 1 % of
-/// the faces: 0.5 -3.214, -2.362, -1.378, -.749; 1.5 -3.209, -2.349, -1.380, -.854; 4.5 -3.202, -2.337,
-/// -1.378, -.850; 9 -3.191, -2.331, -1.341, -.806.
-pub(crate) const SEAM_WEIGHT: f32 = 1.5;
+use crate::kernel::metric::Metric;
 
 /// All wedges of a surface.
-pub(crate) struct WedgeQuadrics<'m, const K: usize> {
+pub(crate) struct WedgeQuadrics<'m, M, const K: usize> {
+    /// The metric of the geometry, which weighs faces for attributes too.
+    pub(crate) metric: PhantomData<M>,
     /// By slot.
     pub(crate) quadrics: Vec<AttributeQuadric<K>>,
     /// By slot: the one that it has become part of; itself if it has new values, `NOBODY` if it has
@@ -40,7 +39,7 @@ pub(crate) struct WedgeQuadrics<'m, const K: usize> {
     pub(crate) none: AttributeQuadric<K>,
 }
 
-impl<const K: usize> WedgeQuadrics<'_, K> {
+impl<M: Metric, const K: usize> WedgeQuadrics<'_, M, K> {
     #[inline(always)]
     pub(crate) fn field(&self, slot: u32) -> &AttributeQuadric<K> {
         self.quadrics.get(slot as usize).unwrap_or(&self.none)

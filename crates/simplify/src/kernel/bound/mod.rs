@@ -109,21 +109,36 @@ pub(crate) struct BoundedStep<'a> {
 }
 
 impl BoundPart<'_> {
+    /// The bound, in the frame's units.
+    pub(crate) fn most(&self) -> f32 {
+        self.most
+    }
+
     /// The square of how far the surface is from the input after a step, or `estimate` where that cannot
     /// be near the bound; `None` if it is beyond. The step is taken for carried out.
     pub(crate) fn admit(&mut self, step: &BoundedStep<'_>, estimate: f32) -> Option<f32> {
+        let (way, moved) = self.judge(step, estimate)?;
+        self.carry_out(step.ends, way);
+        Some(moved)
+    }
+
+    /// How far the surface moves in all by a step, and what [`Self::admit`] gives.
+    pub(crate) fn judge(&mut self, step: &BoundedStep<'_>, estimate: f32) -> Option<(f32, f32)> {
         let [v0, v1] = step.ends.map(|v| self.slot(v));
         let before = self.ways[v0].max(self.ways[v1]);
         let way = before + step.now.max(step.edge_ring.off_planes(step.by)).sqrt();
-        let (way, moved) = if way <= SURE * self.most {
-            (way, estimate)
-        } else {
-            let farthest = self.measure(step, before)?;
-            (farthest, farthest * farthest)
-        };
+        if way <= SURE * self.most {
+            return Some((way, estimate));
+        }
+        let farthest = self.measure(step, before)?;
+        Some((farthest, farthest * farthest))
+    }
+
+    /// Takes a step for carried out that moves the surface so far in all.
+    pub(crate) fn carry_out(&mut self, ends: [u32; 2], way: f32) {
+        let [v0, v1] = ends.map(|v| self.slot(v));
         self.ways[v0] = way;
         self.next.swap(v0, v1);
-        Some(moved)
     }
 
     /// How far the surface is from the input after a step; `None` if beyond the bound.

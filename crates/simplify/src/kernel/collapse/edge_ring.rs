@@ -13,7 +13,7 @@ use std::ops::Range;
 use glam::{DVec3, Vec3, Vec4};
 
 use crate::kernel::mesh::one_ring::{GHOST, MOST, Vertices, place_in, place_of};
-use crate::kernel::mesh::vertex::{RING, Vertex, VertexFlags, VertexQuadric};
+use crate::kernel::mesh::vertex::{RING, VertexFlags, VertexQuadric};
 use crate::kernel::simd::{LANES, Row, Row3, most, sum_of, transpose, transpose_back};
 use crate::refusal::Refusal;
 
@@ -134,7 +134,7 @@ impl EdgeRing {
             return Err(Refusal::Link);
         }
         for (end, others) in [(ends[0], self.of_v0 + 1..self.len), (ends[1], 1..self.of_v0)] {
-            if !vertices.get(end).flags.any(VertexFlags::SPLIT) {
+            if !vertices.is_split(end) {
                 continue;
             }
             let copy_of_end = |w: &u32| vertices.origin(*w) == vertices.origin(end);
@@ -143,8 +143,7 @@ impl EdgeRing {
                 // Nor between copies, of which others may have the edge, nor to a hub, whose list may
                 // name dead vertices.
                 let vertex = vertices.get(w);
-                let unclear =
-                    vertex.flags.any(VertexFlags::SPLIT) || vertex.flags.any(VertexFlags::BARRED);
+                let unclear = vertices.is_split(w) || vertex.flags.any(VertexFlags::BARRED);
                 if unclear || vertices.neighbours(w).iter().any(copy_of_end) {
                     return Err(Refusal::NonManifold);
                 }
@@ -324,9 +323,9 @@ impl EdgeRing {
     /// Whether the surface ends here. Around a vertex that stands for one fan of several it ends only
     /// where it does around the other end: the other fans go on.
     #[inline(always)]
-    pub(crate) fn is_open(&self, end0: &Vertex) -> bool {
+    pub(crate) fn is_open(&self, vertices: &Vertices, v0: u32) -> bool {
         match self.ghost {
-            Some(at) if end0.flags.any(VertexFlags::SPLIT) => at == 0 || at >= self.of_v0,
+            Some(at) if vertices.is_split(v0) => at == 0 || at >= self.of_v0,
             ghost => ghost.is_some(),
         }
     }

@@ -39,6 +39,8 @@ pub(crate) struct VertexStore {
     pub(crate) long: Vec<LongRing>,
     /// The vertices that the last ones are copies of.
     pub(crate) copied: Vec<u32>,
+    /// The vertices that have copies, in order.
+    pub(crate) split: Vec<u32>,
     /// What a boundary edge counts.
     pub(crate) boundary_weight: f32,
 }
@@ -57,6 +59,7 @@ pub(crate) struct Vertices<'v> {
     pub(crate) long: &'v mut Vec<LongRing>,
     /// The vertices that those from `first_copy` on are copies of.
     pub(crate) copied: &'v [u32],
+    pub(crate) split: &'v [u32],
     pub(crate) first_copy: u32,
 }
 
@@ -70,14 +73,17 @@ impl VertexStore {
         let mut long = Vec::new();
         let mut vertices = Vertices::new(&mut all, 0, &mut long);
         lists.into_iter().for_each(|lists| vertices.adopt(lists));
-        Self { all, long, copied, boundary_weight }
+        let mut split = copied.clone();
+        split.sort_unstable();
+        split.dedup();
+        Self { all, long, copied, split, boundary_weight }
     }
 
     /// All of the vertices.
     pub(crate) fn whole(&mut self) -> Vertices<'_> {
         let first_copy = self.own() as u32;
-        let Self { all, long, copied, .. } = self;
-        Vertices { all, base: 0, long, copied, first_copy }
+        let Self { all, long, copied, split, .. } = self;
+        Vertices { all, base: 0, long, copied, split, first_copy }
     }
 
     /// How many of the vertices are the input's.
@@ -114,7 +120,7 @@ impl VertexStore {
 impl<'v> Vertices<'v> {
     /// Vertices of which none is a copy.
     pub(crate) fn new(all: &'v mut [Vertex], base: u32, long: &'v mut Vec<LongRing>) -> Self {
-        Self { all, base, long, copied: &[], first_copy: GHOST }
+        Self { all, base, long, copied: &[], split: &[], first_copy: GHOST }
     }
 
     /// Their ids.
@@ -153,6 +159,11 @@ impl<'v> Vertices<'v> {
             return v;
         }
         self.copied[(v - self.first_copy) as usize]
+    }
+
+    /// Whether it is one of several copies of a vertex where the surface is not manifold.
+    pub(crate) fn is_split(&self, v: u32) -> bool {
+        (v >= self.first_copy && v != GHOST) || self.split.binary_search(&v).is_ok()
     }
 
     /// The live vertex that this one is or has gone into.

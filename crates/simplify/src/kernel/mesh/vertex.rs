@@ -76,19 +76,29 @@ impl VertexFlags {
     pub(crate) const OUTER: Self = Self(64);
     /// No edge to it may be contracted, as things are.
     pub(crate) const SHUT: Self = Self(Self::BARRED.0 | Self::OUTER.0);
-    /// One of the copies of a vertex where the surface is not manifold.
-    pub(crate) const SPLIT: Self = Self(16);
+    /// It moves together with the others of its tie, or not at all.
+    pub(crate) const TIED: Self = Self(16);
     /// It goes late: what moves it costs [more](crate::kernel::rule::protection).
     pub(crate) const PROTECTED: Self = Self(128);
     /// It has several wedges, or another slot than that of its own number.
     pub(crate) const SEAM: Self = Self(32);
 
+    /// Not free by itself.
+    pub(crate) const HELD: Self = Self(Self::PINNED.0 | Self::TIED.0);
+
     /// What makes a cost other than that of a free edge.
-    pub(crate) const SPECIAL: Self = Self(Self::PINNED.0 | Self::SHUT.0 | Self::PROTECTED.0);
+    pub(crate) const SPECIAL: Self =
+        Self(Self::PINNED.0 | Self::SHUT.0 | Self::PROTECTED.0 | Self::TIED.0);
 
     #[inline(always)]
     pub(crate) fn any(self, of: Self) -> bool {
         self.0 & of.0 != 0
+    }
+
+    /// Whether a vertex stays where it is if an edge to one of these flags is contracted.
+    #[inline(always)]
+    pub(crate) fn stays_beside(self, other: Self) -> bool {
+        self.any(Self::PINNED) || (self.any(Self::TIED) && !other.any(Self::TIED))
     }
 
     #[inline(always)]

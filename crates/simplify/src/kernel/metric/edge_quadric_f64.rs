@@ -28,6 +28,18 @@ impl EdgeQuadricF64 {
         x.dot(self.sum * x) - 2.0 * self.slope.dot(x) + self.at_middle
     }
 
+    /// Together with another edge between the same two places.
+    pub(crate) fn with(&self, other: &Self) -> Self {
+        Self {
+            half: self.half,
+            sum: self.sum + other.sum,
+            slope: self.slope + other.slope,
+            at_middle: self.at_middle + other.at_middle,
+            normal: self.normal + other.normal,
+            level: self.level + other.level,
+        }
+    }
+
     /// The sum of the faces' weights.
     pub(crate) fn weight(&self) -> f64 {
         self.sum.x_axis.x + self.sum.y_axis.y + self.sum.z_axis.z

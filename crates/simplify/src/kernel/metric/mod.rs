@@ -23,11 +23,15 @@ use crate::kernel::simd::{LANES, Row};
 use glam::{DVec3, Vec3};
 
 use crate::locks;
+use crate::options::Method;
 
 /// A method, by its squares.
 pub(crate) trait Metric: Copy + Send + Sync {
-    /// With which power of a length costs grow.
-    const POWER: i32;
+    /// Whether a vertex has nothing but the squares of the faces and lines around it as they are.
+    const IS_MEMORYLESS: bool;
+
+    /// The method by its name.
+    const METHOD: Method;
 
     /// What a boundary edge counts, unless another weight is asked for.
     const BOUNDARY_WEIGHT: f32;
@@ -52,6 +56,27 @@ pub(crate) trait Metric: Copy + Send + Sync {
         first: &VertexQuadrics,
         second: &VertexQuadrics,
     );
+
+    /// The weight of a face for attributes, by the square of twice its area, and that weight by the
+    /// square: in the terms of [`Self::face`].
+    fn face_weight(squared: f32) -> (f32, f32);
+
+    /// What an edge between two charts adds to both of its ends, which otherwise would cost nothing
+    /// to move across the surface.
+    fn seam(along: Vec3) -> VertexQuadric;
+
+    /// What of [`Self::seam`] a new vertex takes beside what [`Self::merge`] keeps, where the sum over
+    /// its own edges is `seams`; `open` where the surface ends at it.
+    fn renewed_seams(seams: VertexQuadric, open: bool) -> VertexQuadric;
+
+    /// What one of eight edges costs beside planes through its second end, where that goes to the
+    /// place of the first: `half` is half the edge.
+    fn offsets_onto(
+        first: &VertexQuadrics,
+        second: &VertexQuadrics,
+        lane: usize,
+        half: Vec3,
+    ) -> f32;
 
     /// What they are at their least.
     fn least(edges: &EdgeQuadrics, lane: usize) -> f32;
@@ -82,12 +107,12 @@ pub(crate) trait Metric: Copy + Send + Sync {
 }
 
 /// What an edge to a protected vertex costs, times: as if all moved so much farther.
-pub(crate) fn protection<R: Metric>() -> f32 {
-    locks::PROTECTION.powi(R::POWER) as f32
+pub(crate) fn protection<M: Metric>() -> f32 {
+    locks::PROTECTION.powi(M::METHOD.cost_power()) as f32
 }
 
 #[inline(always)]
-pub(crate) fn edges_between<R: Metric>(
+pub(crate) fn edges_between<M: Metric>(
     first: &VertexQuadrics,
     second: &VertexQuadrics,
 ) -> EdgeQuadrics {
@@ -103,19 +128,19 @@ pub(crate) fn edges_between<R: Metric>(
         edges.half.set(lane, h);
         edges.slope.set(lane, a1h - a0h);
         edges.at_middle[lane] = (a1h + a0h).dot(h);
-        R::complete(&mut edges, lane, first, second);
+        M::complete(&mut edges, lane, first, second);
     }
     edges
 }
 
 /// What each costs.
 #[inline(always)]
-pub(crate) fn least_costs<R: Metric>(edges: &EdgeQuadrics) -> Row {
+pub(crate) fn least_costs<M: Metric>(edges: &EdgeQuadrics) -> Row {
     let mut costs = [0.0; LANES];
     for (lane, cost) in costs.iter_mut().enumerate() {
         let h = edges.half.get(lane);
         let trace = SymmetricMatrix(lane_of(&edges.sum, lane)).trace();
-        *cost = R::least(edges, lane) + R::SHORT_FIRST * trace * h.dot(h);
+        *cost = M::least(edges, lane) + M::SHORT_FIRST * trace * h.dot(h);
     }
     costs
 }

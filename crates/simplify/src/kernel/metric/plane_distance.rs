@@ -23,6 +23,10 @@ use crate::kernel::metric::edge_quadric::{
 use crate::kernel::metric::edge_quadric_f64::{EdgeQuadricF64, matrix};
 use crate::kernel::simd::{LANES, TINY, most, sum_of};
 use crate::methods::qem::{BOUNDARY_WEIGHT, MEMORY};
+use crate::options::Method;
+
+/// What an edge between two charts counts, as in the general engine.
+const SEAM_WEIGHT: f32 = 1.0;
 
 /// Remembers a part of what faces have been.
 #[derive(Clone, Copy, Debug)]
@@ -48,7 +52,9 @@ impl PlaneDistance {
 }
 
 impl Metric for PlaneDistance {
-    const POWER: i32 = 4;
+    const IS_MEMORYLESS: bool = false;
+
+    const METHOD: Method = Method::Qem;
 
     const BOUNDARY_WEIGHT: f32 = BOUNDARY_WEIGHT as f32;
 
@@ -102,6 +108,39 @@ impl Metric for PlaneDistance {
         let y = y - l21 * x;
         let z = z - l31 * x - l32 * y;
         edges.at_middle[lane] - (x * x * d1 + y * y * d2 + z * z * d3)
+    }
+
+    /// The area.
+    #[inline(always)]
+    fn face_weight(squared: f32) -> (f32, f32) {
+        let per_square = 0.5 * (squared + TINY).sqrt().recip();
+        (squared * per_square, per_square)
+    }
+
+    /// The square of the distance from the edge's line.
+    fn seam(along: Vec3) -> VertexQuadric {
+        let [xx, yy, zz, xy, xz, yz] = outer(along);
+        let squared = along.length_squared();
+        let across = [squared - xx, squared - yy, squared - zz, -xy, -xz, -yz];
+        VertexQuadric::new(Vec3::ZERO, across.map(|x| SEAM_WEIGHT * x))
+    }
+
+    /// As of its faces: where the surface ends all is remembered, elsewhere most is forgotten.
+    #[inline(always)]
+    fn renewed_seams(seams: VertexQuadric, open: bool) -> VertexQuadric {
+        let share = if open { 0.0 } else { (1.0 - MEMORY) as f32 };
+        VertexQuadric(seams.0.map(|four| four * share))
+    }
+
+    #[inline(always)]
+    fn offsets_onto(
+        first: &VertexQuadrics,
+        second: &VertexQuadrics,
+        lane: usize,
+        half: Vec3,
+    ) -> f32 {
+        let linear = 4.0 * second.vector.get(lane).dot(half);
+        linear + (first.constant[lane] + second.constant[lane])
     }
 
     fn onto(end0: &Vertex, end1: &Vertex) -> f32 {

@@ -18,6 +18,7 @@ use crate::kernel::metric::edge_quadric::{
 };
 use crate::kernel::metric::edge_quadric_f64::{EdgeQuadricF64, matrix};
 use crate::kernel::simd::{TINY, most};
+use crate::options::Method;
 
 /// Forgets all that faces have been.
 #[derive(Clone, Copy, Debug)]
@@ -41,8 +42,16 @@ impl SweptVolume {
     }
 }
 
+/// What an edge of a seam counts. The
+/// mean of the logarithms of FLIP over pirate, spot, duck and the flight helmet at 25, 10, 3 and 1 % of
+/// the faces: 0.5 -3.214, -2.362, -1.378, -.749; 1.5 -3.209, -2.349, -1.380, -.854; 4.5 -3.202, -2.337,
+/// -1.378, -.850; 9 -3.191, -2.331, -1.341, -.806.
+const SEAM_WEIGHT: f32 = 1.5;
+
 impl Metric for SweptVolume {
-    const POWER: i32 = 6;
+    const IS_MEMORYLESS: bool = true;
+
+    const METHOD: Method = Method::LindstromTurk;
 
     /// [LT99]
     const BOUNDARY_WEIGHT: f32 = 9.0;
@@ -98,6 +107,26 @@ impl Metric for SweptVolume {
         let determinant = most(m11 * m22 - m12 * m12, 1e-36);
         let gain = rise * rise * m11 / determinant * trace;
         there - gain
+    }
+
+    #[inline(always)]
+    fn face_weight(squared: f32) -> (f32, f32) {
+        (squared, 1.0)
+    }
+
+    #[inline(always)]
+    fn seam(along: Vec3) -> VertexQuadric {
+        VertexQuadric::boundary(along, SEAM_WEIGHT)
+    }
+
+    #[inline(always)]
+    fn renewed_seams(seams: VertexQuadric, _: bool) -> VertexQuadric {
+        seams
+    }
+
+    #[inline(always)]
+    fn offsets_onto(_: &VertexQuadrics, _: &VertexQuadrics, _: usize, _: Vec3) -> f32 {
+        0.0
     }
 
     fn onto(end0: &Vertex, end1: &Vertex) -> f32 {

@@ -95,9 +95,9 @@ impl Rank {
 /// What eight edges cost; infinite where an edge may not be contracted, or costs no more than has been
 /// refused at its first end.
 #[inline(always)]
-pub(crate) fn costs<L: AttributeModel>(
+pub(crate) fn costs<A: AttributeModel>(
     vertices: &Vertices,
-    model: &L,
+    model: &A,
     us: EdgeSide<u32>,
     vs: &[u32; LANES],
 ) -> Row {
@@ -108,11 +108,11 @@ pub(crate) fn costs<L: AttributeModel>(
                 VertexQuadrics::of(vertices, us),
                 VertexQuadrics::of(vertices, EdgeSide::Each(*vs)),
             );
-            let mut edges = edges_between::<L::Metric>(&first, &second);
+            let mut edges = edges_between::<A::Metric>(&first, &second);
             model.join([us, EdgeSide::Each(*vs)], &mut edges);
             let any_special = VertexFlags(first.flags | second.flags).any(VertexFlags::SPECIAL)
                 || first.floor > 0;
-            Costs { costs: least_costs::<L::Metric>(&edges), any_special }
+            Costs { costs: least_costs::<A::Metric>(&edges), any_special }
         }
     };
     if found.any_special {
@@ -124,10 +124,10 @@ pub(crate) fn costs<L: AttributeModel>(
 /// Costs of edges with an end that stays where it is or goes late, or that may not be contracted, or
 /// not now.
 #[cold]
-fn correct<L: AttributeModel>(
+fn correct<A: AttributeModel>(
     costs: &mut Row,
     vertices: &Vertices,
-    model: &L,
+    model: &A,
     us: EdgeSide<u32>,
     vs: &[u32; LANES],
 ) {
@@ -142,20 +142,21 @@ fn correct<L: AttributeModel>(
             *cost = f32::INFINITY;
             continue;
         }
-        if flags.any(VertexFlags::PINNED) && !flags.any(VertexFlags::SEAM) {
+        if flags.any(VertexFlags::HELD) && !flags.any(VertexFlags::SEAM) {
             *cost = match model.order(vertices, u, v) {
                 Err(_) => f32::INFINITY,
+                Ok(ends) if ends.free => *cost,
                 Ok(ends) => {
                     let (end0, end1) = (vertices.get(ends.v0), vertices.get(ends.v1));
                     let weight = SymmetricMatrix(end1.quadric.squares()).trace();
                     let length = end0.place().distance_squared(end1.place());
-                    let short = L::Metric::SHORT_FIRST * weight * length;
-                    L::Metric::onto(end0, end1) + short + model.onto(vertices, &ends)
+                    let short = A::Metric::SHORT_FIRST * weight * length;
+                    A::Metric::onto(end0, end1) + short + model.onto(vertices, &ends)
                 }
             };
         }
         if flags.any(VertexFlags::PROTECTED) {
-            *cost *= protection::<L::Metric>();
+            *cost *= protection::<A::Metric>();
         }
         if floor > 0 && bucket(*cost) <= floor {
             *cost = f32::INFINITY;

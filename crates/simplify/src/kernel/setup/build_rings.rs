@@ -23,7 +23,7 @@ pub(crate) struct Fans {
 
 impl Fans {
     /// Rings of vertices at these places, the last of them copies, from `count` faces.
-    pub(crate) fn new<R: Metric>(
+    pub(crate) fn new<M: Metric>(
         (places, copied): (&[Vec3], Vec<u32>),
         count: usize,
         face: impl Fn(usize) -> [u32; 3] + Sync,
@@ -31,7 +31,7 @@ impl Fans {
     ) -> Self {
         let cells = CellFaces::new(places.len(), count, face);
         let mut all: Vec<Vertex> = places.par_iter().map(|&place| Vertex::at(place)).collect();
-        let close = |(number, all)| close::<R>((number, all), places, &cells, boundary_weight);
+        let close = |(number, all)| close::<M>((number, all), places, &cells, boundary_weight);
         let closed: Vec<_> = all.par_chunks_mut(CELL).enumerate().map(close).collect();
         let (mut long, mut irregular) = (Vec::new(), Vec::new());
         for (lists, odd) in closed {
@@ -44,7 +44,7 @@ impl Fans {
 }
 
 /// Makes the rings of a cell; gives those that are long, and the vertices that have none.
-fn close<R: Metric>(
+fn close<M: Metric>(
     (number, all): (usize, &mut [Vertex]),
     places: &[Vec3],
     cells: &CellFaces,
@@ -53,7 +53,7 @@ fn close<R: Metric>(
     let mut long = Vec::new();
     let vertices = Vertices::new(all, (number * CELL) as u32, &mut long);
     let mut cell = Cell { number, vertices, places, boundary_weight, irregular: Vec::new() };
-    cell.close::<R>(cells);
+    cell.close::<M>(cells);
     let irregular = cell.irregular;
     (long, irregular)
 }
@@ -69,8 +69,8 @@ struct Cell<'c> {
 }
 
 impl Cell<'_> {
-    fn close<R: Metric>(&mut self, cells: &CellFaces) {
-        let mut beyond = self.collect::<R>(cells);
+    fn close<M: Metric>(&mut self, cells: &CellFaces) {
+        let mut beyond = self.collect::<M>(cells);
         beyond.sort_by_key(|&(v, _)| v);
         let mut beyond = &beyond[..];
         let mut pairs = Vec::new();
@@ -82,25 +82,25 @@ impl Cell<'_> {
             }
             let more = beyond.iter().take_while(|(of, _)| *of == v).count();
             if more == 0 {
-                self.ring_of::<R>(v, len);
+                self.ring_of::<M>(v, len);
             } else {
                 pairs.clear();
                 pairs.extend_from_slice(vertex.ring.as_chunks().0);
                 pairs.extend(beyond[..more].iter().map(|&(_, pair)| pair));
                 beyond = &beyond[more..];
-                self.ring_of_many::<R>(v, &mut pairs);
+                self.ring_of_many::<M>(v, &mut pairs);
             }
         }
     }
 
     /// Gives each vertex its faces' star and pairs; those that it has no room for are given back.
-    fn collect<R: Metric>(&mut self, cells: &CellFaces) -> Vec<(u32, Pair)> {
+    fn collect<M: Metric>(&mut self, cells: &CellFaces) -> Vec<(u32, Pair)> {
         let (places, first) = (self.places, self.vertices.base);
         let all = &mut *self.vertices.all;
         let mut beyond = Vec::new();
         for &[a, b, c] in cells.of(self.number).flatten() {
             let place = |v: u32| places[v as usize];
-            let star = R::face((place(b) - place(a)).cross(place(c) - place(a)));
+            let star = M::face((place(b) - place(a)).cross(place(c) - place(a)));
             for (v, pair) in [(a, [b, c]), (b, [c, a]), (c, [a, b])] {
                 let Some(vertex) = all.get_mut(v.wrapping_sub(first) as usize) else { continue };
                 vertex.quadric.add(&star);
@@ -118,31 +118,31 @@ impl Cell<'_> {
 
     /// Of a vertex whose pairs are all in the place of its ring.
     #[inline(always)]
-    fn ring_of<R: Metric>(&mut self, v: u32, len: usize) {
+    fn ring_of<M: Metric>(&mut self, v: u32, len: usize) {
         let vertex = self.vertices.get_mut(v);
         let ring = vertex.ring;
         match closed(&ring, len) {
             Some(closed) => vertex.ring = closed,
-            None => self.ring_not_closed::<R>(v, &mut ring.as_chunks().0[..len].to_vec()),
+            None => self.ring_not_closed::<M>(v, &mut ring.as_chunks().0[..len].to_vec()),
         }
     }
 
     #[cold]
-    fn ring_not_closed<R: Metric>(&mut self, v: u32, pairs: &mut [Pair]) {
+    fn ring_not_closed<M: Metric>(&mut self, v: u32, pairs: &mut [Pair]) {
         match chain_open(pairs) {
-            Some(()) => self.open::<R>(v, pairs),
+            Some(()) => self.open::<M>(v, pairs),
             None => self.irregular(v),
         }
     }
 
     /// Of a vertex with many faces, by sorting: a search for each would cost the square of them.
-    fn ring_of_many<R: Metric>(&mut self, v: u32, pairs: &mut Vec<Pair>) {
+    fn ring_of_many<M: Metric>(&mut self, v: u32, pairs: &mut Vec<Pair>) {
         match chain_many(pairs) {
             Some(Chain::Closed) => {
                 let ring: Vec<u32> = pairs.iter().map(|pair| pair[0]).collect();
                 self.vertices.set_ring(v, &ring);
             }
-            Some(Chain::Open) => self.open::<R>(v, pairs),
+            Some(Chain::Open) => self.open::<M>(v, pairs),
             None => self.irregular(v),
         }
     }
@@ -153,14 +153,14 @@ impl Cell<'_> {
     }
 
     /// A ring through the ghost, and the edges to it.
-    fn open<R: Metric>(&mut self, v: u32, pairs: &[Pair]) {
+    fn open<M: Metric>(&mut self, v: u32, pairs: &[Pair]) {
         let (first, last) = (pairs[0][0], pairs[pairs.len() - 1][1]);
         let mut ring: Vec<u32> = pairs.iter().map(|pair| pair[0]).collect();
         ring.extend([last, GHOST]);
         self.vertices.set_ring(v, &ring);
         let along = |w: u32| self.places[w as usize] - self.places[v as usize];
         for (end, [a, b]) in [(first, pairs[0]), (last, pairs[pairs.len() - 1])] {
-            let edge = R::boundary(along(end), along(a).cross(along(b)), self.boundary_weight);
+            let edge = M::boundary(along(end), along(a).cross(along(b)), self.boundary_weight);
             self.vertices.get_mut(v).quadric.add(&edge);
         }
     }

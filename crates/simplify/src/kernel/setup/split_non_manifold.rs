@@ -6,14 +6,6 @@ use rustc_hash::FxHashMap;
 /// The two other corners of a face, in its turn.
 pub(crate) type Pair = [u32; 2];
 
-/// Faces on copies of vertices.
-pub(crate) struct SplitFaces {
-    /// As many as were given.
-    pub(crate) faces: Vec<[u32; 3]>,
-    /// The vertices that the copies are of. The copies' ids follow those of all vertices.
-    pub(crate) copied: Vec<u32>,
-}
-
 /// A corner of a face at a vertex.
 #[derive(Clone, Copy)]
 struct Corner {
@@ -22,15 +14,19 @@ struct Corner {
     pair: Pair,
 }
 
-/// Gives each fan around the irregular vertices a vertex of its own: the first keeps the id.
-pub(crate) fn split(mut faces: Vec<[u32; 3]>, irregular: &[u32], vertices: usize) -> SplitFaces {
-    let stars = stars(&faces, irregular);
+/// Gives each fan around the irregular vertices a vertex of its own: the first keeps the id. Where a
+/// vertex has one fan only, which is no ring, each of its faces gets one.
+///
+/// Returns the vertices that the copies are of; their ids follow those of all `vertices`.
+pub(crate) fn split(faces: &mut [[u32; 3]], irregular: &[u32], vertices: usize) -> Vec<u32> {
+    let stars = stars(faces, irregular);
     let mut copied = Vec::new();
     for (&v, star) in irregular.iter().zip(&stars) {
-        for (i, fan) in fans(star).into_iter().enumerate() {
-            if i == 0 {
-                continue;
-            }
+        let mut fans = fans(star);
+        if fans.len() == 1 {
+            fans = star.iter().map(|&corner| vec![corner]).collect();
+        }
+        for fan in fans.into_iter().skip(1) {
             let copy = (vertices + copied.len()) as u32;
             copied.push(v);
             for corner in fan {
@@ -38,7 +34,7 @@ pub(crate) fn split(mut faces: Vec<[u32; 3]>, irregular: &[u32], vertices: usize
             }
         }
     }
-    SplitFaces { faces, copied }
+    copied
 }
 
 /// The corners of faces at each of these vertices.

@@ -1,0 +1,263 @@
+//! Edges between the same two ties: contracted in one step, to one place, or not at all.
+
+use glam::DVec3;
+use meshlod_mesh::VertexId;
+
+use crate::contracted::Freedom;
+use crate::kernel::attributes::AttributeModel;
+use crate::kernel::bound::BoundedStep;
+use crate::kernel::collapse::edge_ring::EdgeRing;
+use crate::kernel::collapse::{Collapse, Ends};
+use crate::kernel::collapse_loop::{CollapseLoop, Rejection, TURNED};
+use crate::kernel::mesh::one_ring::{GHOST, Vertices};
+use crate::kernel::mesh::vertex::VertexFlags;
+use crate::kernel::metric::edge_quadric_f64::EdgeQuadricF64;
+use crate::kernel::metric::{Metric, protection};
+use crate::kernel::schedule::bucket_queue::{NONE, bucket, last_bucket};
+use crate::refusal::Refusal;
+use crate::ties::{TiedSurface, Ties, partners};
+
+/// The surface at work with its ties.
+struct Tied<'a, 'v> {
+    vertices: &'a Vertices<'v>,
+    ties: &'a Ties,
+}
+
+impl TiedSurface for Tied<'_, '_> {
+    fn is_tied(&self, vertex: VertexId) -> bool {
+        self.vertices.get(vertex.0).flags.any(VertexFlags::TIED)
+    }
+
+    fn tie_of(&self, vertex: VertexId) -> &[VertexId] {
+        self.ties.with(vertex)
+    }
+
+    fn are_joined(&self, a: VertexId, b: VertexId) -> bool {
+        self.vertices.neighbours(a.0).contains(&b.0)
+    }
+
+    /// Where no edge may be contracted for the length of its ring, or for where its vertices are.
+    fn is_crowded(&self, vertices: &[VertexId]) -> bool {
+        vertices.iter().any(|v| self.vertices.get(v.0).flags.any(VertexFlags::SHUT))
+    }
+}
+
+/// One of the edges that are contracted together.
+struct TiedEdge {
+    ends: Ends,
+    ring: Box<EdgeRing>,
+    /// By its geometry alone.
+    quadric: EdgeQuadricF64,
+}
+
+/// The edges of one step, and what they cost together.
+struct Joint {
+    edges: Vec<TiedEdge>,
+    /// Where their vertices go, as seen from the middle.
+    best: DVec3,
+    bucket: u16,
+}
+
+impl<A: AttributeModel> CollapseLoop<'_, A> {
+    /// Contracts an edge between two ties with all others between them; gives the vertex that stays.
+    ///
+    /// All checks of all edges come first. For the history these are as many contractions, one after
+    /// the other.
+    #[cold]
+    pub(crate) fn collapse_together(
+        &mut self,
+        edge: [u32; 2],
+        front: u16,
+    ) -> Result<u32, Rejection> {
+        let ends =
+            self.ends_together(edge).map_err(|refusal| Rejection::Refused(refusal, front))?;
+        let Joint { mut edges, best, bucket } = self.price_together(&ends, front)?;
+        let refused = |refusal| Rejection::Refused(refusal, bucket);
+        let first = &edges[0];
+        let from = self.vertices.get(first.ends.v0).place();
+        let place = match first.ends.free {
+            true => (from.as_dvec3() + best + first.quadric.half).as_vec3(),
+            false => from,
+        };
+        let mut steps = Vec::with_capacity(edges.len());
+        for edge in &mut edges {
+            steps.push(self.step_of(edge, place).map_err(refused)?);
+        }
+        let now = steps.iter().map(|step| step.1).fold(0.0, f32::max);
+        let moved = steps.iter().map(|step| step.2).fold(0.0, f32::max);
+        if let Some(bucket) = self.deferral.wait(now, moved, front) {
+            return Err(Rejection::TooFar(bucket));
+        }
+        let later = bucket.saturating_add(TURNED).min(last_bucket());
+        for (edge, (collapse, ..)) in edges.iter().zip(&steps) {
+            let turns = self.model.look_ahead(&self.vertices, &edge.ring, collapse);
+            if turns && front < later {
+                return Err(Rejection::TooFar(later));
+            }
+        }
+        self.admit_together(&edges, &mut steps).map_err(refused)?;
+        for (mut edge, (collapse, _, moved)) in edges.into_iter().zip(steps) {
+            std::mem::swap(self.edge_ring, &mut *edge.ring);
+            self.model.look_ahead(&self.vertices, self.edge_ring, &collapse);
+            self.commit(&collapse, &edge.quadric, moved, front);
+            if let Some(ties) = &mut self.ties {
+                ties.leave(VertexId(collapse.ends.v1));
+            }
+        }
+        Ok(ends[0].v0)
+    }
+
+    /// Which end of each edge between two ties goes into which: all move, or all stay at one end.
+    fn ends_together(&mut self, edge: [u32; 2]) -> Result<Vec<Ends>, Refusal> {
+        let Self { vertices, model, ties, .. } = self;
+        let Some(ties) = ties else { return Err(Refusal::Tied) };
+        for v in edge {
+            ties.with(VertexId(v)).iter().for_each(|member| vertices.refresh(member.0));
+        }
+        let mut others = Vec::new();
+        let tied = Tied { vertices, ties };
+        let mut freedom = partners(&tied, edge.map(VertexId), &mut others)?;
+        let edges: Vec<[u32; 2]> =
+            std::iter::once(edge).chain(others.into_iter().map(|edge| edge.map(|v| v.0))).collect();
+        let mut all = Vec::with_capacity(edges.len());
+        for &[a, b] in &edges {
+            let ends = model.order(vertices, a, b)?;
+            let own = match ends.free {
+                true => Freedom::Free,
+                false => Freedom::At(usize::from(ends.v0 == b)),
+            };
+            freedom = freedom.and(own).ok_or(Refusal::Tied)?;
+            all.push(ends);
+        }
+        if let Freedom::At(kept) = freedom {
+            for (ends, edge) in all.iter_mut().zip(&edges) {
+                let (stays, goes) = (edge[kept], edge[1 - kept]);
+                let on_seam = [stays, goes].map(|v| vertices.get(v).flags);
+                if ends.v0 != stays && on_seam.iter().any(|f| f.any(VertexFlags::SEAM)) {
+                    return Err(Refusal::Seam);
+                }
+                *ends = match ends.v0 == stays {
+                    true => Ends { free: false, ..*ends },
+                    false => Ends { free: false, ..Ends::free(stays, goes) },
+                };
+            }
+        }
+        Ok(all)
+    }
+
+    /// Gathers what is around the edges, and finds what they cost together and where they go.
+    fn price_together(&mut self, ends: &[Ends], front: u16) -> Result<Joint, Rejection> {
+        let refused = |refusal| Rejection::Refused(refusal, front);
+        let Self { vertices, model, edge_ring, .. } = self;
+        let mut edges: Vec<TiedEdge> = Vec::with_capacity(ends.len());
+        let mut joint: Option<EdgeQuadricF64> = None;
+        let (mut onto, mut flags) = (0.0, VertexFlags::default());
+        for &ends in ends {
+            let mut ring = Box::new(EdgeRing::new(edge_ring.boundary_weight));
+            ring.gather(vertices, ends.v0, ends.v1).map_err(refused)?;
+            let [end0, end1] = [ends.v0, ends.v1].map(|v| vertices.get(v));
+            flags.set(end0.flags);
+            flags.set(end1.flags);
+            let quadric = A::Metric::swept(&ring, end0, end1);
+            let whole = if ends.free { model.whole(&ends, quadric) } else { quadric };
+            if !ends.free {
+                onto += whole.at(-quadric.half) + f64::from(model.onto(vertices, &ends));
+            }
+            joint = Some(joint.map_or(whole, |joint| joint.with(&whole)));
+            edges.push(TiedEdge { ends, ring, quadric });
+        }
+        if !are_apart(&edges) {
+            return Err(refused(Refusal::Tied));
+        }
+        let Some(joint) = joint else { return Err(refused(Refusal::Tied)) };
+        let free = ends[0].free;
+        let best = if free { A::Metric::best(&joint) } else { -joint.half };
+        let cost = if free { joint.at(best) } else { onto };
+        if !cost.is_finite() {
+            return Err(refused(Refusal::Volume));
+        }
+        let short =
+            f64::from(A::Metric::SHORT_FIRST) * joint.weight() * joint.half.length_squared();
+        let mut cost = (cost.max(0.0) + short) as f32;
+        if flags.any(VertexFlags::PROTECTED) {
+            cost *= protection::<A::Metric>();
+        }
+        let reaches = |edge: &TiedEdge| best.length_squared() <= f64::from(edge.ring.reach());
+        match bucket(cost) {
+            NONE => Err(refused(Refusal::Volume)),
+            _ if free && !edges.iter().all(reaches) => Err(refused(Refusal::Volume)),
+            // Costed alone the edge was cheaper, and would be tried again at once.
+            bucket if bucket > front.saturating_add(A::Metric::SLACK) => {
+                Err(Rejection::TooFar(bucket))
+            }
+            bucket => Ok(Joint { edges, best, bucket }),
+        }
+    }
+
+    /// The contraction of one of the edges to `place`, the square of how far it takes the surface by
+    /// itself, and with all that was before.
+    fn step_of(
+        &self,
+        edge: &mut TiedEdge,
+        place: glam::Vec3,
+    ) -> Result<(Collapse, f32, f32), Refusal> {
+        let TiedEdge { ends, ring, quadric } = edge;
+        let [end0, end1] = [ends.v0, ends.v1].map(|v| self.vertices.get(v));
+        let by = place - end0.place();
+        ring.put(by)?;
+        let best = by.as_dvec3() - quadric.half;
+        let swept_over = quadric.at(best).max(0.0) / quadric.weight().max(f64::MIN_POSITIVE);
+        let now = ring.apart(by).max(swept_over as f32);
+        let collapse = Collapse { ends: *ends, half: quadric.half, best, place, by };
+        Ok((collapse, now, now + end0.moved.max(end1.moved)))
+    }
+
+    /// Holds all of the edges against the bound, if there is one, before any counts as contracted.
+    fn admit_together(
+        &mut self,
+        edges: &[TiedEdge],
+        steps: &mut [(Collapse, f32, f32)],
+    ) -> Result<(), Refusal> {
+        let Some(within) = &mut self.within else { return Ok(()) };
+        let mut ways = Vec::with_capacity(edges.len());
+        for (edge, (collapse, now, moved)) in edges.iter().zip(steps) {
+            let Ends { v0, v1, .. } = collapse.ends;
+            let from = self.vertices.get(v0).place();
+            let step = BoundedStep {
+                edge_ring: &edge.ring,
+                ends: [v0, v1],
+                from,
+                by: collapse.by,
+                now: *now,
+            };
+            let (way, farthest) = within.judge(&step, *moved).ok_or(Refusal::Error)?;
+            *moved = farthest;
+            ways.push(([v0, v1], way));
+        }
+        ways.into_iter().for_each(|(ends, way)| within.carry_out(ends, way));
+        Ok(())
+    }
+
+    /// Wakes what is tied to vertices around that have changed: its edges may have partners now.
+    #[cold]
+    pub(crate) fn wake_tied(&mut self, kept: u32, front: u16) {
+        let Some(ties) = &self.ties else { return };
+        let ring = self.edge_ring.ids().iter().copied().filter(|&v| v != GHOST);
+        let changed =
+            ring.chain([kept]).filter(|&v| self.vertices.get(v).flags.any(VertexFlags::TIED));
+        let others: Vec<u32> =
+            changed.flat_map(|v| ties.with(VertexId(v)).iter().map(|other| other.0)).collect();
+        for v in others {
+            self.wake(v, front);
+        }
+    }
+}
+
+/// Whether no face is around two of the edges.
+fn are_apart(edges: &[TiedEdge]) -> bool {
+    let touches = |edge: &TiedEdge, other: &TiedEdge| {
+        edge.ring.ids().iter().any(|&v| v == other.ends.v0 || v == other.ends.v1)
+    };
+    let mut pairs = (0..edges.len()).flat_map(|i| (0..edges.len()).map(move |j| (i, j)));
+    pairs.all(|(i, j)| i == j || !touches(&edges[i], &edges[j]))
+}
