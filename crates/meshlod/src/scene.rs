@@ -1,6 +1,6 @@
 //! Scenes simplified as a whole: one budget or one bound for all their meshes.
 
-use meshlod_io::{Scene, SceneMesh};
+use meshlod_io::Scene;
 use meshlod_mesh::Mesh;
 use meshlod_simplify::{
     Held, Method, Observe, Options, Refusals, Report, Simplifier, SimplifyError, Target, VolumeLoss,

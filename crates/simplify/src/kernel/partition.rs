@@ -491,6 +491,7 @@ mod tests {
         assert!(fine > 500 && test.parts.live_faces <= 100);
         for done in test.parts.log.unwrap() {
             live -= 1;
+            let Logged::Contraction(done) = done else { continue };
             for v in [done.kept, done.gone] {
                 fine -= usize::from(std::mem::take(&mut untouched[v as usize]));
             }

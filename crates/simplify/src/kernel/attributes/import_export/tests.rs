@@ -9,7 +9,7 @@ use crate::kernel::mesh::one_ring::is_seam;
 use crate::kernel::metric::Metric;
 use crate::kernel::metric::edge_quadric::EdgeSide;
 use crate::kernel::metric::swept_volume::SweptVolume;
-use crate::kernel::partition::Partition;
+use crate::kernel::partition::{Partition, Whole};
 use crate::kernel::schedule::edge_costs::costs;
 use crate::kernel::setup::build_rings::Fans;
 use crate::kernel::setup::vertex_order::Order;
@@ -57,7 +57,7 @@ pub(in crate::kernel) fn faceted(mesh: Mesh) -> Mesh {
 }
 
 /// A surface at work: the engine's names, the rings, and what it looks like in so many channels.
-fn start<const K: usize>(mesh: &Mesh) -> (Order, Fans, WedgeQuadrics<'_, K>) {
+fn start<const K: usize>(mesh: &Mesh) -> (Order, Fans, WedgeQuadrics<'_, SweptVolume, K>) {
     let frame = Frame::new(mesh, &mesh.bounds());
     let (order, places) = Order::new(mesh, &frame);
     let face = |i: usize| order.face(&mesh.faces[i]);
@@ -74,7 +74,7 @@ fn start<const K: usize>(mesh: &Mesh) -> (Order, Fans, WedgeQuadrics<'_, K>) {
 fn check_fields(mesh: &Mesh, faces: usize) {
     let (order, fans, wedges) = start::<2>(mesh);
     let numbers = || mesh.faces.iter().map(|face| order.face(face));
-    let mut parts = Partition::new(fans.store, wedges, fans.faces);
+    let mut parts = Partition::new(fans.store, wedges, fans.faces, Whole::default());
     parts.run(faces, u16::MAX, None, &mut |_| ());
     assert!(parts.live_faces <= faces && parts.live_faces > faces / 2);
     let Partition { mut store, mut model, .. } = parts;
@@ -82,6 +82,7 @@ fn check_fields(mesh: &Mesh, faces: usize) {
     let vertices = store.whole();
     let live = model.live();
     let mut again = WedgeQuadrics {
+        metric: PhantomData::<SweptVolume>,
         quadrics: model
             .quadrics
             .iter()
@@ -138,7 +139,7 @@ fn check_fields(mesh: &Mesh, faces: usize) {
 }
 
 /// What an edge costs, one by one and in doubles.
-fn cost_of(vertices: &Vertices, wedges: &WedgeQuadrics<'_, 5>, u: u32, v: u32) -> f64 {
+fn cost_of(vertices: &Vertices, wedges: &WedgeQuadrics<'_, SweptVolume, 5>, u: u32, v: u32) -> f64 {
     let Ok(ends) = wedges.order(vertices, u, v) else { return f64::INFINITY };
     let (end0, end1) = (vertices.get(ends.v0), vertices.get(ends.v1));
     if !ends.free {
