@@ -9,7 +9,7 @@
 use std::time::Instant;
 
 use anyhow::{Context, Result};
-use meshlod::measure::{DistanceOptions, Surface, surface_distance};
+use meshlod::measure::{DistanceOptions, PreparedSurface, surface_distance};
 use meshlod::mesh::{Mesh, VertexId};
 use meshlod::simplify::{Method, Options, Target, simplify};
 use meshlod_bench::read;
@@ -44,11 +44,11 @@ fn line(name: &str, [mesh, scrambled]: [&Mesh; 2], ratio: f64, rounds: usize) ->
     }
     print!("{name} {ratio} | {:.3} | ", median(seconds));
     print!("{:.2} | {:.2} |", median(faster), median(slower));
-    let original = Surface::new(mesh)?;
+    let original = PreparedSurface::new(mesh)?;
     let options = DistanceOptions { samples: 200_000, seed: 0 };
     for mesh in [mesh, scrambled] {
         let (_, level) = timed(mesh, ratio);
-        let apart = surface_distance(&original, &Surface::new(&level)?, &options)?;
+        let apart = surface_distance(&original, &PreparedSurface::new(&level)?, &options)?;
         print!(" {:.5}", apart.percent(apart.mean()));
     }
     println!();

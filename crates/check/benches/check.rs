@@ -1,7 +1,7 @@
 //! What checking takes: all kinds, what meets, and the net by which it is found.
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
-use meshlod_check::{CheckOptions, Kind, Kinds, Net, findings};
+use meshlod_check::{BroadPhase, CheckOptions, Kind, Kinds, findings};
 use meshlod_samples as samples;
 
 fn check(criterion: &mut Criterion) {
@@ -10,12 +10,12 @@ fn check(criterion: &mut Criterion) {
     group.throughput(Throughput::Elements(mesh.faces.len() as u64));
     group.sample_size(10);
     let meeting = Kinds::NONE.with(Kind::SelfIntersection).with(Kind::Contact);
-    for (name, kinds, net) in [
-        ("all kinds", Kinds::ALL, Net::Tree),
-        ("what meets", meeting, Net::Tree),
-        ("what meets, by cubes", meeting, Net::Cubes),
+    for (name, kinds, broad_phase) in [
+        ("all kinds", Kinds::ALL, BroadPhase::Tree),
+        ("what meets", meeting, BroadPhase::Tree),
+        ("what meets, by cubes", meeting, BroadPhase::Octree),
     ] {
-        let options = CheckOptions { kinds, net, ..CheckOptions::default() };
+        let options = CheckOptions { kinds, broad_phase, ..CheckOptions::default() };
         group.bench_function(name, |bencher| bencher.iter(|| findings(&mesh, &options)));
     }
     group.finish();

@@ -1,13 +1,13 @@
-//! The check: every kind of finding in turn, told to a visitor.
+//! The check: finds every kind of finding in turn and passes it to a visitor.
 
 pub(crate) mod boundary;
 pub(crate) mod edges;
 pub(crate) mod faces;
 mod fans;
-mod meets;
+mod intersections;
 pub(crate) mod shells;
-mod sound;
 pub(crate) mod subject;
+mod validity;
 mod vertices;
 
 use std::ops::ControlFlow;
@@ -15,33 +15,33 @@ use std::ops::ControlFlow;
 use meshlod_mesh::Mesh;
 
 use crate::finding::{Finding, Kind};
-use crate::intersect::Net;
+use crate::intersect::BroadPhase;
 use crate::kinds::Kinds;
 use crate::objects::ObjectsBy;
 use subject::Subject;
 
-/// What to look for.
+/// Options of a check.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct CheckOptions {
-    /// The kinds to find; others cost nothing.
+    /// Kinds to find; others cost nothing.
     pub kinds: Kinds,
-    /// What an object is, where contacts are told from self-intersections.
+    /// Definition of an object, which distinguishes contacts from self-intersections.
     pub objects: ObjectsBy,
-    /// What finds the faces that may meet; the findings are the same.
-    pub net: Net,
+    /// Broad phase of the search for intersecting faces; the findings do not depend on it.
+    pub broad_phase: BroadPhase,
 }
 
-/// What is told of findings, one at a time; it may end the check.
+/// Visitor of findings, which may end the check.
 pub(crate) type Visit<'a> = dyn FnMut(&Finding) -> ControlFlow<()> + 'a;
 
-/// Tells `visit` all that is found in `mesh`, kind by kind in the order of [`Kind::ALL`], within a
-/// kind by the lowest ids, until it breaks.
+/// Passes all findings of `mesh` to `visit`, in the order of [`Kind::ALL`] and within a kind by lowest
+/// ids, until it breaks.
 ///
-/// Takes any value, also one that [`Mesh::validate`] refuses: that is what the first kinds say.
-/// A face that names a vertex that is not there, or not finite, has no part in the kinds that follow.
+/// Accepts any mesh, even one that [`Mesh::validate`] refuses: the first kinds report that. A face
+/// with a missing or non-finite vertex is excluded from the kinds that follow.
 ///
-/// Breaks where `visit` did. Cost: linear, beside what meets; a kind that is not asked for, or not
-/// reached, costs nothing of its own.
+/// Returns `Break` if `visit` broke. Cost: linear, apart from the search for intersecting faces;
+/// kinds that are not requested or not reached cost nothing.
 pub fn check(
     mesh: &Mesh,
     options: &CheckOptions,
@@ -54,15 +54,15 @@ pub fn check(
     ControlFlow::Continue(())
 }
 
-/// Whether none of the kinds asked for is found; stops at the first.
+/// Returns true if no requested kind is found; stops at the first finding.
 ///
-/// With `kinds: Kinds::errors()` this is what the exit code of `meshlod check` says.
+/// With `kinds: Kinds::errors()` this corresponds to the exit code of `meshlod check`.
 pub fn is_clean(mesh: &Mesh, options: &CheckOptions) -> bool {
     check(mesh, options, &mut |_| ControlFlow::Break(())).is_continue()
 }
 
-/// The first finding, in the order of [`check`]; stops there.
-pub fn first(mesh: &Mesh, options: &CheckOptions) -> Option<Finding> {
+/// Returns the first finding in the order of [`check`] and stops there.
+pub fn first_finding(mesh: &Mesh, options: &CheckOptions) -> Option<Finding> {
     let mut found = None;
     let _ = check(mesh, options, &mut |finding| {
         found = Some(finding.clone());
@@ -71,7 +71,7 @@ pub fn first(mesh: &Mesh, options: &CheckOptions) -> Option<Finding> {
     found
 }
 
-/// All findings, in the order of [`check`].
+/// Returns all findings in the order of [`check`].
 pub fn findings(mesh: &Mesh, options: &CheckOptions) -> Vec<Finding> {
     let mut found = Vec::new();
     let _ = check(mesh, options, &mut |finding| {
@@ -81,12 +81,12 @@ pub fn findings(mesh: &Mesh, options: &CheckOptions) -> Vec<Finding> {
     found
 }
 
-/// Which code finds which kind.
+/// Dispatches a kind to the function that finds it.
 fn find(kind: Kind, subject: &Subject, visit: &mut Visit) -> ControlFlow<()> {
     match kind {
-        Kind::NonFiniteVertex => sound::non_finite_vertices(subject, visit),
-        Kind::BadIndex => sound::bad_indices(subject, visit),
-        Kind::BadAttributes => sound::bad_attributes(subject, visit),
+        Kind::NonFiniteVertex => validity::non_finite_vertices(subject, visit),
+        Kind::BadIndex => validity::bad_indices(subject, visit),
+        Kind::BadAttributes => validity::bad_attributes(subject, visit),
         Kind::UnusedVertex => vertices::unused(subject, visit),
         Kind::CoincidentVertices => vertices::coincident(subject, visit),
         Kind::DegenerateFace => faces::degenerate(subject, visit),
@@ -96,9 +96,9 @@ fn find(kind: Kind, subject: &Subject, visit: &mut Visit) -> ControlFlow<()> {
         Kind::NonManifoldEdge => edges::non_manifold(subject, visit),
         Kind::NonManifoldVertex => fans::non_manifold_vertices(subject, visit),
         Kind::InsideOut => shells::inside_out(subject, visit),
-        Kind::SelfIntersection => meets::self_intersections(subject, visit),
-        Kind::Contact => meets::contacts(subject, visit),
-        Kind::Crowded => meets::crowded(subject, visit),
+        Kind::SelfIntersection => intersections::self_intersections(subject, visit),
+        Kind::Contact => intersections::contacts(subject, visit),
+        Kind::Crowded => intersections::crowded(subject, visit),
     }
 }
 

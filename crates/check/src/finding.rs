@@ -1,153 +1,153 @@
-//! What a check finds: one type, a variant for each kind, with the ids and the place.
+//! Findings of a check: one variant for each kind, with ids and positions.
 
 use meshlod_mesh::{FaceId, MeshError, VertexId};
 
 use crate::objects::ObjectId;
 
-/// One thing that is wrong, or worth knowing, and where it is.
+/// A defect or noteworthy feature of a mesh and where it is.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Finding {
-    /// A coordinate is NaN or infinite. Faces at it have no part in what follows.
+    /// A vertex with a NaN or infinite coordinate. Its faces are excluded from the kinds that follow.
     NonFiniteVertex {
-        /// The vertex.
+        /// Vertex concerned.
         vertex: VertexId,
     },
-    /// A face names a vertex that is not there. It has no part in what follows.
+    /// A face with a missing vertex. It is excluded from the kinds that follow.
     BadIndex {
-        /// The face.
+        /// Face concerned.
         face: FaceId,
-        /// What it names.
+        /// Id of the missing vertex.
         vertex: VertexId,
     },
-    /// Attributes, materials or objects do not fit the faces. Labels that do not fit name no objects.
+    /// Attributes, materials or objects that do not match the faces. Mismatched labels are ignored.
     BadAttributes {
-        /// The first that does not fit.
+        /// First mismatch.
         error: MeshError,
     },
-    /// No face uses a vertex.
+    /// A vertex that no face uses.
     UnusedVertex {
-        /// The vertex.
+        /// Vertex concerned.
         vertex: VertexId,
     },
-    /// Used vertices at one place, to the bit.
+    /// Used vertices at bitwise the same position.
     CoincidentVertices {
-        /// Two or more, lowest id first.
+        /// Vertices at the position, two or more, lowest id first.
         vertices: Vec<VertexId>,
     },
-    /// A face without an inside.
+    /// A degenerate face.
     DegenerateFace {
-        /// The face.
+        /// Face concerned.
         face: FaceId,
-        /// How it is degenerate.
+        /// Kind of degeneracy.
         shape: Degeneracy,
     },
     /// A face with the same three vertices as an earlier one.
     DuplicateFace {
-        /// The face.
+        /// Face concerned.
         face: FaceId,
-        /// The first with these vertices.
+        /// First face with these vertices.
         of: FaceId,
     },
-    /// Two faces that run along their edge the same way.
+    /// An edge that its two faces traverse in the same direction.
     InconsistentEdge {
-        /// Its ends, lowest id first.
+        /// Ends of the edge, lowest id first.
         edge: [VertexId; 2],
-        /// The two, lowest id first.
+        /// Faces of the edge, lowest id first.
         faces: [FaceId; 2],
     },
-    /// A loop of edges with one face each.
+    /// A loop of boundary edges.
     BoundaryLoop {
-        /// Its vertices, in their order along the faces where these agree, the lowest id first.
-        /// None comes twice: a boundary that is pinched is several loops.
+        /// Vertices in order along the faces if these agree, starting with the lowest id. None occurs
+        /// twice: a pinched boundary is several loops.
         vertices: Vec<VertexId>,
-        /// Whether the last vertex is joined to the first. It is not where a non-manifold edge ends
-        /// the boundary; then the lower end is first.
+        /// True if the last vertex is connected to the first. False if a non-manifold edge ends the
+        /// boundary; the lower end is then first.
         closed: bool,
     },
     /// An edge with three faces or more.
     NonManifoldEdge {
-        /// Its ends, lowest id first.
+        /// Ends of the edge, lowest id first.
         edge: [VertexId; 2],
-        /// Its faces, lowest id first.
+        /// Faces of the edge, lowest id first.
         faces: Vec<FaceId>,
     },
-    /// A vertex whose faces form more than one fan: through edges at it they do not all hang
-    /// together.
+    /// A vertex whose faces form more than one fan: edges at the vertex do not connect them all.
     NonManifoldVertex {
-        /// The vertex.
+        /// Vertex concerned.
         vertex: VertexId,
-        /// How many fans.
+        /// Number of fans.
         fans: usize,
     },
-    /// A shell, that is faces that hang together through edges, that is closed, consistently
-    /// oriented, and looks inwards.
+    /// A closed, consistently oriented shell whose faces point inwards. A shell is a set of faces
+    /// connected through edges.
     InsideOut {
-        /// Its first face.
+        /// First face of the shell.
         face: FaceId,
-        /// What it encloses, below 0, in cubed model units.
+        /// Signed enclosed volume, below 0, in cubed model units.
         volume: f64,
     },
-    /// Two faces of one object that meet beyond what they share.
+    /// Two faces of one object that intersect beyond what they share.
     SelfIntersection {
-        /// The object.
+        /// Object of both faces.
         object: ObjectId,
-        /// The two, lowest id first.
+        /// Intersecting faces, lowest id first.
         faces: [FaceId; 2],
-        /// How they meet.
-        touch: Touch,
+        /// Intersection of the faces.
+        intersection: Intersection,
     },
-    /// Two faces of two objects that meet.
+    /// Faces of two objects that intersect or touch.
     Contact {
-        /// The objects, lowest id first.
+        /// Objects, lowest id first.
         objects: [ObjectId; 2],
-        /// A face of each, in the order of the objects.
+        /// A face of each object, in the order of `objects`.
         faces: [FaceId; 2],
-        /// How they meet.
-        touch: Touch,
+        /// Intersection of the faces.
+        intersection: Intersection,
     },
-    /// So many faces are close to so many others that the search for what meets was given up: there
-    /// may be more self-intersections and contacts than are told.
+    /// The search for intersecting faces was given up because too many pairs are close: there may be
+    /// more self-intersections and contacts than reported.
     Crowded {
-        /// How many pairs of faces were found until then.
+        /// Number of intersecting pairs found before giving up.
         found: usize,
     },
 }
 
-/// How a face has no inside.
+/// Way in which a face is degenerate.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Degeneracy {
-    /// It names a vertex twice.
+    /// Two corners are the same vertex.
     RepeatedVertex,
-    /// Its corners are on one line, exactly.
+    /// The corners are exactly collinear.
     ZeroArea,
 }
 
-/// How two faces meet.
+/// Intersection of two faces.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Touch {
-    /// What they have in common.
-    pub kind: TouchKind,
-    /// A point of it, in model units.
-    pub place: [f64; 3],
-    /// How far one of the faces would have to move along the normal of the other until it is on one
-    /// side of it, at least, in model units; 0 for those that only touch, or lie in one plane.
+pub struct Intersection {
+    /// Kind of the intersection.
+    pub kind: IntersectionKind,
+    /// A point of the intersection, in model units.
+    pub point: [f64; 3],
+    /// Penetration depth in model units: the least distance that one face would have to move along
+    /// the normal of the other until it is on one side of it; 0 for faces that only touch or are
+    /// coplanar.
     pub depth: f64,
 }
 
-/// What two faces have in common, exactly.
+/// Kind of the intersection of two faces, exact.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub enum TouchKind {
-    /// One point, and neither passes through the other.
-    Vertex,
-    /// A segment, and neither passes through the other.
-    Edge,
-    /// They pass through each other.
+pub enum IntersectionKind {
+    /// A single point, and neither face passes through the other.
+    Point,
+    /// A segment, and neither face passes through the other.
+    Segment,
+    /// The faces pass through each other.
     Crossing,
-    /// An area: they lie in one plane.
+    /// An area: the faces are coplanar.
     Overlap,
 }
 
-/// What kind of finding it is.
+/// Kind of a finding.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Kind {
     /// [`Finding::NonFiniteVertex`]
@@ -182,17 +182,17 @@ pub enum Kind {
     Crowded,
 }
 
-/// How bad a kind of finding is.
+/// Severity of a kind of finding.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Severity {
-    /// Worth knowing: the mesh can be used.
+    /// Noteworthy, but the mesh is usable.
     Warning,
-    /// Most programs will refuse the mesh or do wrong things with it.
+    /// Most programs refuse the mesh or process it incorrectly.
     Error,
 }
 
 impl Kind {
-    /// Every kind, in the order in which they are found.
+    /// All kinds, in the order in which they are checked.
     pub const ALL: [Self; 15] = [
         Self::NonFiniteVertex,
         Self::BadIndex,
@@ -211,7 +211,7 @@ impl Kind {
         Self::Crowded,
     ];
 
-    /// Its name in reports.
+    /// Returns the name used in reports.
     pub fn name(self) -> &'static str {
         match self {
             Self::NonFiniteVertex => "non-finite-vertex",
@@ -232,7 +232,7 @@ impl Kind {
         }
     }
 
-    /// How bad it is.
+    /// Returns the severity of the kind.
     pub fn severity(self) -> Severity {
         match self {
             Self::NonFiniteVertex
@@ -255,7 +255,7 @@ impl Kind {
 }
 
 impl Finding {
-    /// What kind it is.
+    /// Returns the kind of the finding.
     pub fn kind(&self) -> Kind {
         match self {
             Self::NonFiniteVertex { .. } => Kind::NonFiniteVertex,

@@ -1,6 +1,6 @@
-//! Fusing: components that pass through each other become one surface, without what is inside.
+//! Fusing: the union of closed components that pass through each other, as one surface.
 
-mod balance;
+mod closed_groups;
 mod patches;
 mod solids;
 #[cfg(test)]
@@ -8,26 +8,26 @@ mod tests;
 
 use meshlod_mesh::{FaceId, Labels, Mesh};
 
-use crate::imprint::{Imprint, Imprinted, at_fitting_size, imprinted};
+use crate::imprint::{Imprint, Imprinted, at_safe_scale, imprinted};
 use crate::objects::{Objects, ObjectsBy};
 use crate::repair::{drop_unused, retain_faces, stitch};
-use balance::Groups;
+use closed_groups::SolidGroups;
 use patches::patches;
 use solids::Solids;
 
-/// What fusing did.
+/// Counts of what fusing did.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Fused {
-    /// Where components met.
+    /// Counts of the imprint along which components were cut.
     pub imprint: Imprint,
-    /// Pieces of faces that were left out, since they were inside.
+    /// Pieces of faces removed because they were inside.
     pub buried: usize,
-    /// Edges along which what is left was joined.
+    /// Edges along which the rest was joined.
     pub joined: usize,
 }
 
 impl Fused {
-    /// Counts another mesh in.
+    /// Adds the counts of another mesh.
     pub fn add(&mut self, other: &Self) {
         self.imprint.pairs += other.imprint.pairs;
         self.imprint.faces += other.imprint.faces;
@@ -37,38 +37,40 @@ impl Fused {
     }
 }
 
-/// Makes one surface of closed components that pass through each other: cuts them along the lines
-/// where they meet, as [`imprint`](crate::imprint()) does, leaves out what is inside, and joins what is
-/// left.
+/// Merges closed components that pass through each other into one surface.
 ///
-/// A patch between lines goes if a closed shell of another component has it inside, or on its surface:
-/// of two that lie on each other and look one way, the first stays; of two that look against each
-/// other, none. What meets nothing stays, also inside. `solid` tells of the faces of `mesh` that they
-/// cannot be seen through; a shell with another hides nothing, nor does one that is inside out. Open
-/// components hide nothing either; they are cut, lose what is inside closed ones, and are not joined
-/// to them.
+/// Components are cut along their intersections as in [`imprint`](crate::imprint()), what is inside
+/// is removed, and the rest is joined.
 ///
-/// Labels of objects tell afterwards which face is of what; where there are less than two, they are
-/// named by component. Where nothing meets, the mesh is what it was.
+/// A patch between intersections is removed if it lies inside a closed shell of another component or
+/// on its surface. Of two coincident patches of equal orientation the first stays, of two of opposite
+/// orientation neither. Components that intersect nothing stay, even inside others. `solid` returns
+/// true for opaque faces of `mesh`: a shell with any other face hides nothing, nor does one that is
+/// inside out. Open components hide nothing either: they are cut and lose what is inside closed ones,
+/// but are not joined to them.
 ///
-/// Closed components that meet are closed together afterwards; where that would not be so, since
-/// faces lie in one plane only up to rounding, they are only cut.
+/// Object labels of the result show where each face came from; with fewer than two objects they are
+/// named by component. If nothing intersects, the mesh is returned unchanged.
 ///
-/// Takes a mesh that has passed [`Mesh::validate`]. Cost: that of [`imprint`](crate::imprint()), and
-/// for each patch up to 128 times the faces of each shell in whose box it is, up to 2^28 in all; what
-/// is beyond that stays.
+/// Closed components that intersect are closed together afterwards. If they would not be, because
+/// faces are coplanar only up to rounding, they are only cut.
+///
+/// The mesh must have passed [`Mesh::validate`]. Cost: that of [`imprint`](crate::imprint()), and for
+/// each patch up to 128 times the faces of each shell whose box contains it, at most 2^28 in all;
+/// patches beyond that limit stay.
+///
 /// # References
-/// [JKSH13]: winding numbers tell what is inside; here of closed shells, beside each face.
+/// [JKSH13]: winding numbers decide what is inside; here those of closed shells, next to each face.
 pub fn fuse(mesh: &Mesh, solid: impl Fn(FaceId) -> bool) -> (Mesh, Fused) {
-    at_fitting_size(mesh, |mesh| fuse_fitting(mesh, solid))
+    at_safe_scale(mesh, |mesh| fuse_scaled(mesh, solid))
 }
 
-fn fuse_fitting(mesh: &Mesh, solid: impl Fn(FaceId) -> bool) -> (Mesh, Fused) {
-    let Imprinted { mesh: mut fused, imprint, parents, lines } = imprinted(mesh);
+fn fuse_scaled(mesh: &Mesh, solid: impl Fn(FaceId) -> bool) -> (Mesh, Fused) {
+    let Imprinted { mesh: mut fused, imprint, parents, contact_edges } = imprinted(mesh);
     let objects = Objects::of(mesh, ObjectsBy::Auto);
     let component: Vec<u32> =
         parents.iter().map(|parent| objects.component_of_face[parent.index()]).collect();
-    let patches = patches(&fused, &component, &lines);
+    let patches = patches(&fused, &component, &contact_edges);
     if patches.is_empty() {
         return (fused, Fused { imprint, ..Fused::default() });
     }
@@ -81,12 +83,12 @@ fn fuse_fitting(mesh: &Mesh, solid: impl Fn(FaceId) -> bool) -> (Mesh, Fused) {
         }
     }
     let is_solid = solids.components(&objects.component_of_face);
-    let groups = Groups::of(&fused, &component, &is_solid);
+    let groups = SolidGroups::of(&fused, &component, &is_solid);
     keep_closed(&fused, &groups, &mut is_buried);
     let of_face = parents.iter().map(|parent| objects.of_face[parent.index()].0).collect();
     fused.objects = Some(Labels { names: objects.names, of_face });
     let buried = retain_faces(&mut fused, |face| !is_buried[face]);
-    // What is left of several objects is joined, too.
+    // Without labels, the remains of different objects are joined too.
     let labels = fused.objects.take();
     let joined = stitch(&mut fused, 0.0);
     fused.objects = labels;
@@ -94,9 +96,9 @@ fn fuse_fitting(mesh: &Mesh, solid: impl Fn(FaceId) -> bool) -> (Mesh, Fused) {
     (fused, Fused { imprint, buried, joined })
 }
 
-/// Leaves solid components alone that would not be closed together: where faces lie in one plane but
-/// for rounding, it cannot be told what is inside.
-fn keep_closed(mesh: &Mesh, groups: &Groups, is_buried: &mut [bool]) {
+/// Keeps all of the solid components that would not be closed together: if faces are coplanar only up
+/// to rounding, inside and outside cannot be decided.
+fn keep_closed(mesh: &Mesh, groups: &SolidGroups, is_buried: &mut [bool]) {
     let closed = groups.closed(mesh, |face| !is_buried[face]);
     for (face, is_buried) in is_buried.iter_mut().enumerate() {
         *is_buried &= groups.of_face(face).is_none_or(|group| closed[group]);

@@ -1,4 +1,4 @@
-//! Sets of kinds: what to look for.
+//! Sets of kinds of findings.
 
 use crate::finding::{Kind, Severity};
 
@@ -7,34 +7,34 @@ use crate::finding::{Kind, Severity};
 pub struct Kinds(u16);
 
 impl Kinds {
-    /// Every kind.
+    /// Set of all kinds.
     pub const ALL: Self = Self((1 << Kind::ALL.len()) - 1);
-    /// None.
+    /// Empty set.
     pub const NONE: Self = Self(0);
 
-    /// The kinds that most programs cannot live with.
+    /// Returns the kinds of severity [`Severity::Error`].
     pub fn errors() -> Self {
         Kind::ALL.into_iter().filter(|kind| kind.severity() == Severity::Error).collect()
     }
 
-    /// These and one more.
+    /// Returns the set with `kind` added.
     #[must_use]
     pub fn with(self, kind: Kind) -> Self {
         Self(self.0 | Self::bit(kind))
     }
 
-    /// These but one.
+    /// Returns the set with `kind` removed.
     #[must_use]
     pub fn without(self, kind: Kind) -> Self {
         Self(self.0 & !Self::bit(kind))
     }
 
-    /// Whether it is among them.
+    /// Returns true if the set contains `kind`.
     pub fn contains(self, kind: Kind) -> bool {
         self.0 & Self::bit(kind) != 0
     }
 
-    /// Whether any of these is among them.
+    /// Returns true if the set contains any of `kinds`.
     pub fn any_of(self, kinds: &[Kind]) -> bool {
         kinds.iter().any(|&kind| self.contains(kind))
     }

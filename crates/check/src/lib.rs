@@ -1,30 +1,36 @@
-//! What is wrong with a mesh, where its objects touch, what can be mended, what must not move.
+//! Checks triangle meshes for defects and contacts between objects, repairs them, and finds the
+//! vertices that simplification must keep.
+//!
+//! [`check`](check()) reports [`Finding`]s by kind, [`repair`](repair()) mends what can be mended
+//! safely, [`imprint`](imprint()) and [`fuse`](fuse()) treat components that pass through each
+//! other, and [`locks`](locks()) holds vertices at contacts and boundaries.
 #![forbid(unsafe_code)]
 
+mod box_blocks;
 mod check;
-mod cubes;
 mod finding;
 mod fuse;
 mod imprint;
 mod intersect;
-mod joined;
 mod kinds;
 mod locks;
+mod object_octree;
 mod objects;
-mod places;
 mod repair;
 mod summary;
+mod union_find;
+mod unique_positions;
 mod zero_area;
 
-pub use check::{CheckOptions, check, findings, first, is_clean};
-pub use cubes::{Cubes, MarkedCube};
-pub use finding::{Degeneracy, Finding, Kind, Severity, Touch, TouchKind};
+pub use check::{CheckOptions, check, findings, first_finding, is_clean};
+pub use finding::{Degeneracy, Finding, Intersection, IntersectionKind, Kind, Severity};
 pub use fuse::{Fused, fuse};
 pub use imprint::{Imprint, imprint};
-pub use intersect::Net;
+pub use intersect::BroadPhase;
 pub use kinds::Kinds;
-pub use locks::{LockOptions, LockReason, Locking, locks};
+pub use locks::{LockOptions, LockReason, VertexLocks, locks};
+pub use object_octree::{ObjectLeaf, ObjectOctree};
 pub use objects::{ObjectId, Objects, ObjectsBy};
-pub use places::Places;
 pub use repair::{HoleLimits, RepairOptions, RepairReport, RepairStep, repair};
 pub use summary::Summary;
+pub use unique_positions::UniquePositions;

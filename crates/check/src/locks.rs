@@ -1,4 +1,4 @@
-//! What must stay when a mesh is coarsened: where components meet, and where the surface ends.
+//! Locks for simplification: vertices where components meet and where the surface ends.
 
 use std::ops::ControlFlow;
 
@@ -7,83 +7,83 @@ use meshlod_mesh::{Connectivity, FaceId, Lock, Locks, Mesh, Side, Twin, VertexId
 use robust::{Coord3D, orient3d};
 
 use crate::check::{CheckOptions, check};
-use crate::finding::{Finding, Kind, Touch, TouchKind};
+use crate::finding::{Finding, Intersection, IntersectionKind, Kind};
 use crate::kinds::Kinds;
 use crate::objects::ObjectsBy;
-use crate::places::Places;
+use crate::unique_positions::UniquePositions;
 
-/// What shall stay.
+/// Options of [`locks`](locks()).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct LockOptions {
-    /// Where components meet, of one object or of two: components are what moves apart.
+    /// Hold vertices where components meet, also within an object, since components can drift apart.
     pub contacts: bool,
-    /// What the vertices of boundary edges are; [`Lock::Free`] for nothing of their own.
+    /// Lock of the vertices of boundary edges; [`Lock::Free`] for none.
     pub boundary: Lock,
 }
 
-/// Why a vertex is not free.
+/// Reason why a vertex is held.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum LockReason {
-    /// A face at it passes through one of another component: protected.
+    /// A face at the vertex passes through one of another component: protected.
     Crossing,
-    /// A face at it lies in one plane with one of another component, over it: protected.
+    /// A face at the vertex overlaps a coplanar face of another component: protected.
     Overlap,
-    /// It, or a face at it, touches another component elsewhere than at its vertices: protected.
+    /// The vertex or a face at it touches another component elsewhere than at its vertices: protected.
     Touching,
-    /// Faces of two objects share it: protected.
+    /// Faces of two objects share the vertex: protected.
     SharedVertex,
-    /// It is at the place of other vertices: tied to them.
-    SharedPlace,
-    /// It is at a boundary edge: what [`LockOptions::boundary`] says.
+    /// Other vertices are at the same position: tied to them.
+    SharedPosition,
+    /// The vertex is on a boundary edge: locked as [`LockOptions::boundary`] says.
     Boundary,
 }
 
 impl LockReason {
-    /// Every reason, the stronger first.
+    /// All reasons, strongest first.
     pub const ALL: [Self; 6] = [
         Self::Crossing,
         Self::Overlap,
         Self::Touching,
         Self::SharedVertex,
-        Self::SharedPlace,
+        Self::SharedPosition,
         Self::Boundary,
     ];
 
-    /// Its name in reports.
+    /// Returns the name used in reports.
     pub fn name(self) -> &'static str {
         match self {
             Self::Crossing => "crossing",
             Self::Overlap => "overlap",
             Self::Touching => "touching",
             Self::SharedVertex => "shared-vertex",
-            Self::SharedPlace => "shared-place",
+            Self::SharedPosition => "shared-place",
             Self::Boundary => "boundary",
         }
     }
 }
 
-/// What must stay, and why.
+/// Locks of the vertices of a mesh, with the reason for each.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Locking {
-    /// For the simplifier.
+pub struct VertexLocks {
+    /// Locks for the simplifier.
     pub locks: Locks,
-    /// The strongest reason of every vertex that is not free.
+    /// Strongest reason for holding each vertex; `None` if it is free.
     pub reasons: Vec<Option<LockReason>>,
 }
 
-impl Locking {
-    /// So many vertices, all free.
+impl VertexLocks {
+    /// Creates locks that leave the given number of vertices free.
     pub fn free(vertices: usize) -> Self {
         let locks = Locks { of_vertex: vec![Lock::Free; vertices], ties: Vec::new() };
         Self { locks, reasons: vec![None; vertices] }
     }
 
-    /// How many vertices are not free for this reason before all others.
+    /// Returns the number of vertices whose strongest reason is `reason`.
     pub fn count(&self, reason: LockReason) -> usize {
         self.reasons.iter().filter(|of| **of == Some(reason)).count()
     }
 
-    /// Holds a vertex at least as much as this, and keeps the stronger reason.
+    /// Raises the lock of a vertex to at least `lock` and keeps the stronger reason.
     pub fn hold(&mut self, vertex: VertexId, lock: Lock, reason: Option<LockReason>) {
         let of = &mut self.locks.of_vertex[vertex.index()];
         *of = lock.max(*of);
@@ -91,9 +91,9 @@ impl Locking {
         *known = [*known, reason].into_iter().flatten().min();
     }
 
-    /// Makes the vertices of a tie as little free as the least free of them, drops the ties of what
-    /// is locked, and those that are there twice.
-    pub fn settle_ties(&mut self) {
+    /// Raises the locks of tied vertices to the strictest in each tie and drops the ties of locked
+    /// vertices and duplicate ties.
+    pub fn resolve_ties(&mut self) {
         let of_vertex = &mut self.locks.of_vertex;
         self.locks.ties.retain(|tie| {
             let worst = tie.iter().map(|v| of_vertex[v.index()]).max().unwrap_or_default();
@@ -105,34 +105,35 @@ impl Locking {
     }
 }
 
-/// What must stay of a mesh that has passed [`Mesh::validate`].
+/// Finds the vertices to hold during simplification of a mesh that has passed [`Mesh::validate`].
 ///
-/// Vertices at one place are tied, of two components or of one. Vertices that named objects share and
-/// those of faces that pass through those of another component, or lie over them in one plane, are
-/// protected, so that the line where they meet moves late and little; so is a vertex that touches
-/// another component elsewhere, and what it touches. None of these is locked: where a target is tight,
-/// what is locked is paid for by all else, and more comes through there than locks save.
+/// Vertices at one position are tied, whether of one component or of two. Vertices that named
+/// objects share are protected, as are those of faces that pass through, or overlap in a plane with,
+/// a face of another component, so that the contact line moves late and little. A vertex that
+/// touches another component elsewhere is protected together with what it touches. None of these is
+/// locked: if the target is tight, the rest of the mesh pays for locked vertices, and more
+/// components then break through there than the locks prevent.
 ///
-/// Cost: that of [`check`] for what meets, with contacts; else linear.
-pub fn locks(mesh: &Mesh, options: &LockOptions) -> Locking {
-    let mut hold = Hold { mesh, locking: Locking::free(mesh.positions.len()) };
+/// Cost: that of [`check`] for contacts if `contacts` is set; else linear.
+pub fn locks(mesh: &Mesh, options: &LockOptions) -> VertexLocks {
+    let mut hold = Hold { mesh, locking: VertexLocks::free(mesh.positions.len()) };
     if options.contacts {
-        let places = Places::of(&mesh.positions);
-        hold.contacts(&places);
+        let unique = UniquePositions::of(&mesh.positions);
+        hold.contacts(&unique);
         hold.shared_vertices();
-        hold.shared_places(&places);
+        hold.shared_positions(&unique);
     }
     if options.boundary != Lock::Free {
         hold.boundary(options.boundary);
     }
-    hold.locking.settle_ties();
+    hold.locking.resolve_ties();
     hold.locking
 }
 
-/// Locks as they are found.
+/// Collects the locks.
 struct Hold<'m> {
     mesh: &'m Mesh,
-    locking: Locking,
+    locking: VertexLocks,
 }
 
 impl Hold<'_> {
@@ -140,7 +141,7 @@ impl Hold<'_> {
         self.locking.hold(vertex, lock, Some(reason));
     }
 
-    fn contacts(&mut self, places: &Places) {
+    fn contacts(&mut self, unique: &UniquePositions) {
         let options = CheckOptions {
             kinds: Kinds::NONE.with(Kind::Contact),
             objects: ObjectsBy::Components,
@@ -148,42 +149,42 @@ impl Hold<'_> {
         };
         let mesh = self.mesh;
         let _ = check(mesh, &options, &mut |finding| {
-            if let Finding::Contact { faces, touch, .. } = finding {
-                self.contact(*faces, touch, places);
+            if let Finding::Contact { faces, intersection, .. } = finding {
+                self.contact(*faces, intersection, unique);
             }
             ControlFlow::Continue(())
         });
     }
 
-    fn contact(&mut self, faces: [FaceId; 2], touch: &Touch, places: &Places) {
+    fn contact(&mut self, faces: [FaceId; 2], found: &Intersection, unique: &UniquePositions) {
         let corners = faces.map(|face| self.mesh.faces[face.index()]);
-        let [a, b] = corners.map(|face| face.map(|v| places.first(v)));
+        let [a, b] = corners.map(|face| face.map(|v| unique.representative(v)));
         let shared = a.iter().filter(|v| b.contains(v)).count();
-        let reason = match touch.kind {
-            TouchKind::Crossing => LockReason::Crossing,
-            TouchKind::Overlap if shared == 3 => return,
-            TouchKind::Overlap => LockReason::Overlap,
-            // What is shared at vertices, ties keep.
-            TouchKind::Vertex if shared == 1 => return,
-            TouchKind::Edge if shared == 2 => return,
-            TouchKind::Vertex | TouchKind::Edge => {
-                self.touch(corners, DVec3::from(touch.place));
+        let reason = match found.kind {
+            IntersectionKind::Crossing => LockReason::Crossing,
+            IntersectionKind::Overlap if shared == 3 => return,
+            IntersectionKind::Overlap => LockReason::Overlap,
+            // Ties hold what is shared at vertices.
+            IntersectionKind::Point if shared == 1 => return,
+            IntersectionKind::Segment if shared == 2 => return,
+            IntersectionKind::Point | IntersectionKind::Segment => {
+                self.touch(corners, DVec3::from(found.point));
                 return;
             }
         };
         corners.into_iter().flatten().for_each(|v| self.hold(v, reason, Lock::Protected));
     }
 
-    /// The corners of each face with which it touches the other; all three where it is the inside
-    /// of a face or an edge that is touched.
-    fn touch(&mut self, [a, b]: [[VertexId; 3]; 2], place: DVec3) {
+    /// Protects the corners with which each face touches the other; all three if its interior or an
+    /// edge is touched.
+    fn touch(&mut self, [a, b]: [[VertexId; 3]; 2], point: DVec3) {
         for (one, other) in [(a, b), (b, a)] {
             let at = |v: VertexId| DVec3::from(self.mesh.positions[v.index()]);
             let plane = other.map(at);
             let touching: Vec<_> = one.into_iter().filter(|&v| in_plane(&plane, at(v))).collect();
             let by_corners = match touching[..] {
                 [] => false,
-                [only] => at(only) == place,
+                [only] => at(only) == point,
                 _ => true,
             };
             let held = if by_corners { &touching[..] } else { &one };
@@ -191,7 +192,7 @@ impl Hold<'_> {
         }
     }
 
-    /// Protects the vertices that faces of two named objects use.
+    /// Protects the vertices that faces of two named objects share.
     fn shared_vertices(&mut self) {
         let Some(objects) = &self.mesh.objects else { return };
         let mut of_vertex = vec![None; self.mesh.positions.len()];
@@ -204,13 +205,13 @@ impl Hold<'_> {
         }
     }
 
-    /// Ties the vertices at each place with more than one that faces use.
-    fn shared_places(&mut self, places: &Places) {
+    /// Ties the used vertices at each position that has more than one.
+    fn shared_positions(&mut self, unique: &UniquePositions) {
         let used = self.mesh.used_vertices();
-        let ties = places.shared(|v| used[v.index()]);
+        let ties = unique.groups(|v| used[v.index()]);
         for &v in ties.iter().flatten() {
-            // As free as its tie will be.
-            self.hold(v, LockReason::SharedPlace, Lock::Free);
+            // Its tie decides the lock.
+            self.hold(v, LockReason::SharedPosition, Lock::Free);
         }
         self.locking.locks.ties = ties;
     }
@@ -227,7 +228,7 @@ impl Hold<'_> {
     }
 }
 
-/// Whether a point is in the plane of a triangle, exactly.
+/// Returns true if a point is exactly in the plane of a triangle.
 fn in_plane(&[a, b, c]: &[DVec3; 3], p: DVec3) -> bool {
     let coord = |p: DVec3| Coord3D { x: p.x, y: p.y, z: p.z };
     orient3d(coord(a), coord(b), coord(c), coord(p)) == 0.0

@@ -1,40 +1,40 @@
-//! Which faces belong together: the named objects of the file, or its connected components.
+//! Objects of a mesh: the named objects of the file, or the connected components.
 
 use meshlod_mesh::{Labels, Mesh, VertexId, face_components};
 
-/// An object of a mesh.
+/// Index of an object of a mesh.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct ObjectId(pub u32);
 
-/// What makes an object.
+/// Definition of an object.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum ObjectsBy {
-    /// The names that the file gives, where it gives two or more; else components.
+    /// Named objects of the file if it has two or more, else components.
     #[default]
     Auto,
-    /// The names that the file gives; all faces are one object where it gives none.
+    /// Named objects of the file; a single object if it names none.
     Names,
-    /// Faces that share vertices, whatever they are named.
+    /// Components: faces connected through shared vertices, regardless of names.
     Components,
 }
 
-/// The objects of a mesh, and the components, which move apart when a mesh is coarsened.
+/// Objects and connected components of a mesh. Components can drift apart when it is simplified.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Objects {
-    /// The object of every face.
+    /// Object of every face.
     pub of_face: Vec<ObjectId>,
-    /// The name of every object; components are `component 0` and so on, in the order of their
-    /// first faces, after the name of the file's object that the first face is in.
+    /// Name of every object. Components are called `component 0` and so on, in the order of their
+    /// first faces, prefixed by the name of the file's object that contains the first face.
     pub names: Vec<String>,
-    /// The component of every face.
+    /// Component of every face.
     pub component_of_face: Vec<u32>,
-    /// How many components there are.
+    /// Number of components.
     pub components: usize,
 }
 
 impl Objects {
-    /// The objects of any mesh. Names that do not fit the faces are no names; faces that name
-    /// vertices that are not there are one component.
+    /// Finds the objects of any mesh. Labels that do not match the faces are ignored; faces with
+    /// missing vertices form one component.
     pub fn of(mesh: &Mesh, by: ObjectsBy) -> Self {
         let (component_of_face, components) = components(mesh);
         let labels = labels(mesh).filter(|labels| match by {
@@ -52,21 +52,21 @@ impl Objects {
     }
 }
 
-/// The components, as far as indices are in range.
+/// Labels the components; faces with indices out of range form one more.
 fn components(mesh: &Mesh) -> (Vec<u32>, usize) {
     let count = mesh.positions.len();
-    let sound = |face: &[VertexId; 3]| face.iter().all(|v| v.index() < count);
-    if mesh.faces.iter().all(sound) {
+    let valid = |face: &[VertexId; 3]| face.iter().all(|v| v.index() < count);
+    if mesh.faces.iter().all(valid) {
         return face_components(&mesh.faces, count);
     }
-    // All others are at one more vertex.
+    // Faces with a missing vertex move to an extra vertex.
     let elsewhere = [VertexId::new(count); 3];
     let faces: Vec<_> =
-        mesh.faces.iter().map(|face| if sound(face) { *face } else { elsewhere }).collect();
+        mesh.faces.iter().map(|face| if valid(face) { *face } else { elsewhere }).collect();
     face_components(&faces, count + 1)
 }
 
-/// The names of objects, where every face has one.
+/// Returns the object labels if every face has a valid one.
 fn labels(mesh: &Mesh) -> Option<&Labels> {
     let fits = |labels: &&Labels| {
         let count = labels.names.len();
@@ -76,13 +76,13 @@ fn labels(mesh: &Mesh) -> Option<&Labels> {
     mesh.objects.as_ref().filter(fits)
 }
 
-/// How many different names faces have, as far as it matters: none, one, or two for more.
+/// Returns the number of different names in use, at most 2.
 fn used_names(of_face: &[u32]) -> usize {
     let Some(first) = of_face.first() else { return 0 };
     1 + usize::from(of_face.iter().any(|name| name != first))
 }
 
-/// A name for every component.
+/// Returns a name for every component.
 fn component_names(mesh: &Mesh, component_of_face: &[u32]) -> Vec<String> {
     let labels = labels(mesh);
     let mut names = Vec::new();

@@ -1,20 +1,20 @@
-//! Repair: what can be mended safely, step by step, each counted.
+//! Repair: mends what can be mended safely, step by step.
 
 mod attributes;
 mod degenerate;
 mod duplicate;
 mod edit;
 mod holes;
-mod meeting;
+mod intersecting;
+mod invalid;
 mod orient;
 mod outward;
-mod patch;
+mod pair_sides;
 mod report;
-mod sound;
+mod reverse;
 mod split;
-mod split_pairs;
 mod stitch;
-mod turn;
+mod triangulate;
 
 use meshlod_mesh::{Mesh, weld};
 
@@ -23,30 +23,28 @@ pub use holes::HoleLimits;
 pub use report::{RepairReport, RepairStep};
 pub(crate) use stitch::stitch;
 
-/// What is mended.
+/// Options of [`repair`](repair()).
 ///
-/// What is on by default leaves the surface where it is: nothing that was seen goes, nothing that
-/// was not there comes.
+/// The steps on by default preserve the visible surface: they neither remove nor add any of it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RepairOptions {
-    /// Make one vertex of those within this of each other, in model units, wherever they are; 0
-    /// for those at one place. Off by default: what only touches would grow together.
+    /// Weld vertices within this distance of each other, in model units; 0 welds those at the same
+    /// position. Off by default, as parts that only touch would be joined.
     pub weld: Option<f64>,
-    /// Leave out faces without an area; on by default.
+    /// Remove faces of zero area; on by default.
     pub degenerate: bool,
-    /// Leave out faces that are there twice, the same way round; on by default.
+    /// Remove duplicate faces of the same orientation; on by default.
     pub duplicates: bool,
-    /// Take apart edges of three faces or more, and vertices of several fans; on by default.
+    /// Split non-manifold edges and non-manifold vertices; on by default.
     pub split: bool,
-    /// Join borders whose edges lie within this of each other, in model units, where that makes a
-    /// manifold; 0, the default, for those at one place.
+    /// Stitch boundary edges within this distance of each other, in model units, if the result is
+    /// manifold; 0, the default, stitches those at the same position.
     pub stitch: Option<f64>,
-    /// Turn faces until neighbours agree, and closed shells until they look outwards; on by
-    /// default.
+    /// Reverse faces until neighbours agree, and closed shells that point inwards; on by default.
     pub orient: bool,
-    /// Close holes; off by default, since what closes them was not there.
+    /// Fill holes; off by default, since it adds surface.
     pub holes: Option<HoleLimits>,
-    /// Leave out vertices that no face uses; on by default.
+    /// Remove vertices that no face uses; on by default.
     pub unused: bool,
 }
 
@@ -65,24 +63,24 @@ impl Default for RepairOptions {
     }
 }
 
-/// Mends what `options` say, and tells what was done.
+/// Repairs a mesh as `options` say and reports what was done.
 ///
-/// Takes any value, also one that [`Mesh::validate`] refuses; what it gives back passes. Faces that
-/// name a vertex that is not there, or not finite, are always left out. Steps follow each other in the
-/// order of [`RepairStep::ALL`]; each gives the next what it needs. Faces and vertices keep their
-/// order; a vertex that is taken apart keeps its id for its first faces.
+/// Accepts any mesh, even one that [`Mesh::validate`] refuses; the result passes. Faces with missing
+/// or non-finite vertices are always removed. Steps run in the order of [`RepairStep::ALL`], each
+/// preparing the next. Faces and vertices keep their order; a vertex that is split keeps its id for
+/// its first faces.
 ///
-/// With the default options no finding of [`Severity::Error`](crate::Severity) is left, but the
-/// inconsistent edges of shells that cannot be oriented, which the report counts; and repairing
-/// again changes nothing.
+/// With the default options the only findings of [`Severity::Error`](crate::Severity) left are
+/// inconsistent edges of shells that cannot be oriented, which the report counts; repairing again
+/// changes nothing.
 ///
-/// Cost: linear, but for the sorting of what is mended.
+/// Cost: linear, apart from sorting what is repaired.
 pub fn repair(mesh: &Mesh, options: &RepairOptions) -> (Mesh, RepairReport) {
     let mut mesh = mesh.clone();
     let mut report = RepairReport::default();
     let mut add = |step, count| report.add(step, count);
-    add(RepairStep::BadAttributes, attributes::mend(&mut mesh));
-    let sound::Dropped { faces, vertices } = sound::drop_bad(&mut mesh);
+    add(RepairStep::BadAttributes, attributes::repair(&mut mesh));
+    let invalid::Dropped { faces, vertices } = invalid::drop_invalid(&mut mesh);
     add(RepairStep::BadFaces, faces);
     add(RepairStep::BadVertices, vertices);
     if let Some(epsilon) = options.weld {
@@ -92,7 +90,7 @@ pub fn repair(mesh: &Mesh, options: &RepairOptions) -> (Mesh, RepairReport) {
         add(RepairStep::Duplicates, duplicate::drop_duplicates(&mut mesh));
     }
     if options.degenerate {
-        let degenerate::Mended { flipped, dropped } = degenerate::mend(&mut mesh);
+        let degenerate::Removed { flipped, dropped } = degenerate::remove(&mut mesh);
         add(RepairStep::FlippedEdges, flipped);
         add(RepairStep::Degenerate, dropped);
     }

@@ -1,8 +1,8 @@
-//! How many findings of each kind there are.
+//! Counts of findings by kind.
 
 use crate::finding::{Finding, Kind, Severity};
 
-/// Findings counted by kind; grows by visiting.
+/// Counts of findings by kind, filled while visiting.
 ///
 /// ```
 /// use std::ops::ControlFlow;
@@ -22,32 +22,32 @@ pub struct Summary {
 }
 
 impl Summary {
-    /// Counts one more.
+    /// Counts a finding.
     pub fn add(&mut self, finding: &Finding) {
         self.counts[finding.kind() as usize] += 1;
     }
 
-    /// How many there are of a kind.
+    /// Returns the number of findings of a kind.
     pub fn count(&self, kind: Kind) -> usize {
         self.counts[kind as usize]
     }
 
-    /// How many there are of a severity.
-    pub fn of(&self, severity: Severity) -> usize {
+    /// Returns the number of findings of a severity.
+    pub fn of_severity(&self, severity: Severity) -> usize {
         self.found().filter(|(kind, _)| kind.severity() == severity).map(|(_, count)| count).sum()
     }
 
-    /// How many there are.
+    /// Returns the number of all findings.
     pub fn total(&self) -> usize {
         self.counts.iter().sum()
     }
 
-    /// The worst of all; `None` where nothing was found.
+    /// Returns the worst severity found; `None` without findings.
     pub fn worst(&self) -> Option<Severity> {
         self.found().map(|(kind, _)| kind.severity()).max()
     }
 
-    /// The kinds that were found, in the order of [`Kind::ALL`], and how many of each.
+    /// Iterates over the kinds found, in the order of [`Kind::ALL`], with their counts.
     pub fn found(&self) -> impl Iterator<Item = (Kind, usize)> + '_ {
         Kind::ALL.into_iter().map(|kind| (kind, self.count(kind))).filter(|&(_, count)| count > 0)
     }
@@ -71,9 +71,15 @@ mod tests {
     fn one_error_outweighs_warnings() {
         let unused = Finding::UnusedVertex { vertex: VertexId(1) };
         let mut summary: Summary = [&unused, &unused].into_iter().collect();
-        assert_eq!((summary.worst(), summary.of(Severity::Error)), (Some(Severity::Warning), 0));
+        assert_eq!(
+            (summary.worst(), summary.of_severity(Severity::Error)),
+            (Some(Severity::Warning), 0)
+        );
         summary.add(&Finding::NonFiniteVertex { vertex: VertexId(0) });
-        assert_eq!((summary.worst(), summary.of(Severity::Error)), (Some(Severity::Error), 1));
+        assert_eq!(
+            (summary.worst(), summary.of_severity(Severity::Error)),
+            (Some(Severity::Error), 1)
+        );
         let found = [(Kind::NonFiniteVertex, 1), (Kind::UnusedVertex, 2)];
         assert!(summary.found().eq(found) && summary.total() == 3);
     }

@@ -1,30 +1,30 @@
-//! Faces without area, exactly.
+//! Exact test for faces of zero area.
 
 use robust::{Coord, orient2d};
 
-/// Whether three points are on one line, exactly.
+/// Returns true if three points are exactly collinear.
 ///
-/// They are where their shadows on the three coordinate planes are. Rounding is bounded first, so
-/// that nearly all faces never see exact arithmetic.
+/// They are if their projections onto the three coordinate planes are. A bound on the rounding error
+/// spares nearly all faces exact arithmetic.
 #[inline]
 pub(crate) fn has_zero_area(corners: [[f64; 3]; 3]) -> bool {
     let [a, b, c] = corners;
-    // Differences of two numbers are rounded once, products and their difference once each.
+    // Each difference, each product and the final difference is rounded once.
     const BOUND: f64 = 4.0 * f64::EPSILON;
-    let sure = |x: usize, y: usize| {
+    let certain = |x: usize, y: usize| {
         let left = (b[x] - a[x]) * (c[y] - a[y]);
         let right = (b[y] - a[y]) * (c[x] - a[x]);
         let magnitude = left.abs() + right.abs();
-        // Below this, products lose bits to underflow.
+        // Smaller products lose bits to underflow.
         (left - right).abs() > magnitude * BOUND && magnitude > 1e-280
     };
-    !(sure(0, 1) || sure(1, 2) || sure(2, 0)) && is_flat(corners)
+    !(certain(0, 1) || certain(1, 2) || certain(2, 0)) && is_collinear(corners)
 }
 
 #[cold]
-fn is_flat(corners: [[f64; 3]; 3]) -> bool {
-    // Scaling an axis by a power of two moves no point on or off a line, and keeps products of
-    // very large or very small coordinates in range.
+fn is_collinear(corners: [[f64; 3]; 3]) -> bool {
+    // Scaling an axis by a power of two preserves collinearity and keeps products of very large or
+    // very small coordinates in range.
     let mut scaled = corners;
     for axis in 0..3 {
         let greatest = corners.iter().fold(0.0, |most: f64, p| most.max(p[axis].abs()));
@@ -37,7 +37,7 @@ fn is_flat(corners: [[f64; 3]; 3]) -> bool {
     })
 }
 
-/// The greatest power of two that is not above `x`; 1 for 0 and for numbers below the normal ones.
+/// Returns the greatest power of two that is not above `x`; 1 for zero and subnormal numbers.
 fn power_of_two_below(x: f64) -> f64 {
     if x.is_normal() { f64::from_bits(x.to_bits() & 0x7ff0_0000_0000_0000) } else { 1.0 }
 }

@@ -5,10 +5,12 @@
 
 use std::collections::BTreeMap;
 
-use meshlod_check::{CheckOptions, Finding, Kind, Kinds, Net, ObjectId, TouchKind, findings};
+use meshlod_check::{
+    BroadPhase, CheckOptions, Finding, IntersectionKind, Kind, Kinds, ObjectId, findings,
+};
 use meshlod_mesh::{Labels, Mesh, VertexId};
 
-const NETS: [Net; 2] = [Net::Tree, Net::Cubes];
+const BROAD_PHASES: [BroadPhase; 2] = [BroadPhase::Tree, BroadPhase::Octree];
 const SCENES: u64 = 200;
 /// How far near misses are apart: 1e-9 of solids about one wide.
 const GAP: f64 = 1.0 / (1 << 30) as f64;
@@ -24,7 +26,7 @@ struct Solid {
 struct Recipe {
     name: &'static str,
     solids: [Solid; 2],
-    expected: &'static [(TouchKind, usize)],
+    expected: &'static [(IntersectionKind, usize)],
 }
 
 impl Solid {
@@ -113,7 +115,7 @@ fn ridge_across() -> Solid {
 }
 
 fn recipes() -> Vec<Recipe> {
-    use TouchKind::{Crossing, Edge, Overlap, Vertex};
+    use IntersectionKind::{Crossing, Overlap, Point, Segment};
     let up = [0.0, 0.0, GAP];
     let cube = Solid::cuboid([0.0; 3], [1.0; 3]);
     let beside = Solid::cuboid([1.0, 1.0, 0.0], [2.0, 2.0, 1.0]);
@@ -130,12 +132,12 @@ fn recipes() -> Vec<Recipe> {
             "tips at one place",
             &Solid::octahedron([0.0, 0.0, -1.0], 1.0),
             &tips(),
-            &[(Vertex, 1)],
+            &[(Point, 1)],
         ),
-        recipe("an edge at one place", &cube, &beside, &[(Edge, 1)]),
-        recipe("a tip on a face", &table(), &tip(), &[(Vertex, 3)]),
-        recipe("a ridge on a face", &table(), &ridge(), &[(Vertex, 4), (Edge, 2)]),
-        recipe("ridges that cross", &ridge_across(), &ridge(), &[(Vertex, 4)]),
+        recipe("an edge at one place", &cube, &beside, &[(Segment, 1)]),
+        recipe("a tip on a face", &table(), &tip(), &[(Point, 3)]),
+        recipe("a ridge on a face", &table(), &ridge(), &[(Point, 4), (Segment, 2)]),
+        recipe("ridges that cross", &ridge_across(), &ridge(), &[(Point, 4)]),
         recipe(
             "a tip through a face",
             &table(),
@@ -143,7 +145,7 @@ fn recipes() -> Vec<Recipe> {
             &[(Crossing, 3)],
         ),
         recipe("a tip just through", &table(), &tip().moved([0.0, 0.0, -GAP]), &[(Crossing, 3)]),
-        recipe("a side on a side", &table(), &brick, &[(Vertex, 4), (Edge, 4), (Overlap, 2)]),
+        recipe("a side on a side", &table(), &brick, &[(Point, 4), (Segment, 4), (Overlap, 2)]),
         recipe("a tip just off a face", &table(), &tip().moved(up), &[]),
         recipe("a ridge just off a face", &table(), &ridge().moved(up), &[]),
         recipe("ridges just apart", &ridge_across(), &ridge().moved(up), &[]),
@@ -185,7 +187,7 @@ fn turn(random: &mut Random) -> [[f64; 3]; 3] {
 }
 
 /// How many findings there are of two objects, by how they meet.
-type Counts = BTreeMap<([u32; 2], TouchKind), usize>;
+type Counts = BTreeMap<([u32; 2], IntersectionKind), usize>;
 
 /// Five recipes side by side, faces in any order, and what is to be found.
 fn scene(seed: u64) -> (Mesh, Counts) {
@@ -220,30 +222,41 @@ fn scene(seed: u64) -> (Mesh, Counts) {
 }
 
 /// What is found, counted; every finding is of the faces of its objects.
-fn counted(mesh: &Mesh, net: Net) -> Counts {
+fn counted(mesh: &Mesh, broad_phase: BroadPhase) -> Counts {
     let kinds = Kinds::NONE.with(Kind::Contact).with(Kind::SelfIntersection);
     let labels = &mesh.objects.as_ref().unwrap().of_face;
     let mut counts = Counts::new();
-    for finding in findings(mesh, &CheckOptions { kinds, net, ..CheckOptions::default() }) {
-        let (objects, faces, touch) = match finding {
-            Finding::Contact { objects, faces, touch } => (objects, faces, touch),
-            Finding::SelfIntersection { object, faces, touch } => ([object; 2], faces, touch),
+    for finding in findings(mesh, &CheckOptions { kinds, broad_phase, ..CheckOptions::default() }) {
+        let (objects, faces, intersection) = match finding {
+            Finding::Contact { objects, faces, intersection } => (objects, faces, intersection),
+            Finding::SelfIntersection { object, faces, intersection } => {
+                ([object; 2], faces, intersection)
+            }
             other => panic!("{other:?} was not asked for"),
         };
         assert_eq!(faces.map(|face| ObjectId(labels[face.index()])), objects);
-        assert!(touch.place.iter().all(|x| x.is_finite()) && touch.depth >= 0.0, "{touch:?}");
-        *counts.entry((objects.map(|object| object.0), touch.kind)).or_default() += 1;
+        assert!(
+            intersection.point.iter().all(|x| x.is_finite()) && intersection.depth >= 0.0,
+            "{intersection:?}"
+        );
+        *counts.entry((objects.map(|object| object.0), intersection.kind)).or_default() += 1;
     }
     counts
 }
 
 #[test]
 fn every_contact_is_found_and_none_invented() {
-    for (seed, net) in (0..SCENES).flat_map(|seed| NETS.map(|net| (seed, net))) {
+    for (seed, broad_phase) in
+        (0..SCENES).flat_map(|seed| BROAD_PHASES.map(|broad_phase| (seed, broad_phase)))
+    {
         let (mesh, expected) = scene(seed);
         let first = 5 * seed as usize;
         let names: Vec<_> = (0..5).map(|i| recipes()[(first + i) % recipes().len()].name).collect();
-        assert_eq!(counted(&mesh, net), expected, "{net:?}, scene {seed}: {names:?}");
+        assert_eq!(
+            counted(&mesh, broad_phase),
+            expected,
+            "{broad_phase:?}, scene {seed}: {names:?}"
+        );
     }
 }
 
@@ -264,8 +277,8 @@ fn within_one_object_what_is_shared_by_place_is_no_finding() {
         labels.of_face.iter_mut().for_each(|object| *object /= 2);
         let expected =
             expected.into_iter().map(|((o, kind), n)| (([o[0] / 2; 2], kind), n)).collect();
-        for net in NETS {
-            assert_eq!(counted(&mesh, net), expected, "{net:?}, scene {seed}");
+        for broad_phase in BROAD_PHASES {
+            assert_eq!(counted(&mesh, broad_phase), expected, "{broad_phase:?}, scene {seed}");
         }
     }
 }

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use meshlod::measure::{
-    Distance, DistanceOptions, MeasureError, OneWay, Surface, surface_distance,
+    Distance, DistanceOptions, MeasureError, OneSidedDistance, PreparedSurface, surface_distance,
 };
 use meshlod::{Mesh, Scene, io::SceneMesh};
 use serde_json::{Value, json};
@@ -32,18 +32,18 @@ pub fn meshes(scene: &Scene) -> impl Iterator<Item = &Mesh> {
 }
 
 /// Prepares the mesh of a file for measurement.
-pub fn ready<'m>(mesh: &'m Mesh, path: &Path) -> Result<Surface<'m>, Failure> {
-    Surface::new(mesh).map_err(|error| Failure::at(path, error))
+pub fn ready<'m>(mesh: &'m Mesh, path: &Path) -> Result<PreparedSurface<'m>, Failure> {
+    PreparedSurface::new(mesh).map_err(|error| Failure::at(path, error))
 }
 
 /// Measures the distance between the original and a level of its scene.
 pub fn of_level(
-    original: &Surface<'_>,
+    original: &PreparedSurface<'_>,
     scene: &Scene,
     level: &[Mesh],
 ) -> Result<Distance, MeasureError> {
     let level = surface_of(scene, level);
-    let level = Surface::new(&level).map_err(MeasureError::Second)?;
+    let level = PreparedSurface::new(&level).map_err(MeasureError::Second)?;
     surface_distance(original, &level, &DistanceOptions::default())
 }
 
@@ -59,7 +59,7 @@ pub fn to_json(distance: &Distance) -> Value {
             "max_percent": distance.percent(max),
         })
     };
-    let way = |way: &OneWay| {
+    let way = |way: &OneSidedDistance| {
         let mut json = lengths(way.mean, way.rms, way.max);
         json["place"] =
             json!({ "from": way.place.from, "to": way.place.to, "face": way.place.face.0 });
@@ -81,7 +81,7 @@ pub fn to_table(distance: &Distance) -> String {
         let ([a, b], [c, d], [e, f]) = (cell(mean), cell(rms), cell(max));
         [name.into(), a, b, c, d, e, f]
     };
-    let way = |name, way: &OneWay| row(name, way.mean, way.rms, way.max);
+    let way = |name, way: &OneSidedDistance| row(name, way.mean, way.rms, way.max);
     aligned(&[
         ["", "mean", "", "RMS", "", "max", ""].map(String::from),
         way("forward", &distance.forward),

@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::time::Duration;
 
-use meshlod::measure::Surface;
+use meshlod::measure::PreparedSurface;
 use meshlod::{Options, Report, Scene, Target};
 
 use crate::failure::Failure;
@@ -14,8 +14,8 @@ use crate::simplify_run::{Simplified, SimplifyRun, measure};
 pub struct BoundSearch<'s> {
     pub scene: &'s Scene,
     pub options: &'s Options,
-    /// Surface of the scene.
-    pub original: &'s Surface<'s>,
+    /// PreparedSurface of the scene.
+    pub original: &'s PreparedSurface<'s>,
     /// Largest measured distance allowed, in world units.
     pub bound: f64,
     pub path: &'s Path,

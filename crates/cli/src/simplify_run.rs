@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-use meshlod::measure::{Distance, Surface};
+use meshlod::measure::{Distance, PreparedSurface};
 use meshlod::simplify::{History, Progressive, SimplifyError};
 use meshlod::{Mesh, Options, Report, Scene, SceneError, SceneSimplifier, Target};
 
@@ -100,7 +100,7 @@ impl<'s> SimplifyRun<'s> {
 
 /// Measures a level against the original; warns and returns `None` if that is not possible.
 pub fn measure(
-    original: Option<&Surface<'_>>,
+    original: Option<&PreparedSurface<'_>>,
     scene: &Scene,
     level: &[Mesh],
     session: &Session,

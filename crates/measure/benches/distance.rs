@@ -1,7 +1,7 @@
-//! A knot against a coarser one: making ready, and half a million samples each way.
+//! Preparing a knot and measuring its distance from a coarser one, half a million samples each way.
 
 use criterion::{Criterion, criterion_group, criterion_main};
-use meshlod_measure::{DistanceOptions, Surface, quality, surface_distance, volume};
+use meshlod_measure::{DistanceOptions, PreparedSurface, quality, surface_distance, volume};
 use meshlod_samples as samples;
 
 fn measures(criterion: &mut Criterion) {
@@ -9,10 +9,10 @@ fn measures(criterion: &mut Criterion) {
     let options = DistanceOptions::default();
     let mut group = criterion.benchmark_group("a knot of 400,000 faces");
     group.sample_size(10);
-    group.bench_function("made ready", |b| {
-        b.iter_with_large_drop(|| Surface::new(&fine).unwrap());
+    group.bench_function("prepared", |b| {
+        b.iter_with_large_drop(|| PreparedSurface::new(&fine).unwrap());
     });
-    let (a, b) = (Surface::new(&fine).unwrap(), Surface::new(&coarse).unwrap());
+    let (a, b) = (PreparedSurface::new(&fine).unwrap(), PreparedSurface::new(&coarse).unwrap());
     group.bench_function("distance to 40,000 faces", |bencher| {
         bencher.iter(|| surface_distance(&a, &b, &options).unwrap());
     });

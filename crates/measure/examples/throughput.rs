@@ -1,14 +1,14 @@
-//! How many closest points a second, on one thread, for samples near the surface.
+//! Measures closest point queries per second, on one thread, for samples near the surface.
 //!
 //! `cargo run --release -p meshlod-measure --example throughput [A.ply [B.ply]]`: without B, A is
-//! held against itself with every vertex moved by up to 0.1 % of the diagonal; without A, A is the
+//! compared with itself after moving each vertex by up to 0.1 % of the diagonal; without A, A is the
 //! shared dragon.
 
 use std::error::Error;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use meshlod_measure::{DistanceOptions, Surface, surface_distance};
+use meshlod_measure::{DistanceOptions, PreparedSurface, surface_distance};
 use meshlod_mesh::Mesh;
 
 type Failure = Box<dyn Error + Send + Sync>;
@@ -16,7 +16,7 @@ type Failure = Box<dyn Error + Send + Sync>;
 fn main() -> Result<(), Failure> {
     let mut files = std::env::args_os().skip(1).map(PathBuf::from);
     let first = files.next().or_else(|| meshlod_fixtures::shared_mesh("dragon.ply"));
-    let first = first.ok_or("the shared dragon.ply is not here: name a PLY file")?;
+    let first = first.ok_or("the shared dragon.ply was not found: give a PLY file")?;
     let a = read(&first)?;
     let b = match files.next() {
         Some(second) => read(&second)?,
@@ -29,7 +29,7 @@ fn read(path: &Path) -> Result<Mesh, Failure> {
     Ok(meshlod_io::ply::read(&std::fs::read(path)?)?)
 }
 
-/// A copy with every vertex somewhere in the cube of `reach` around its place.
+/// Copies a mesh and displaces each coordinate by up to `reach`.
 fn shaken(mesh: &Mesh, reach: f64) -> Mesh {
     let mut shaken = mesh.clone();
     for (i, x) in shaken.positions.iter_mut().flatten().enumerate() {
@@ -42,7 +42,7 @@ fn shaken(mesh: &Mesh, reach: f64) -> Mesh {
 fn measure(a: &Mesh, b: &Mesh) -> Result<(), Failure> {
     let options = DistanceOptions::default();
     let start = Instant::now();
-    let (from, to) = (Surface::new(a)?, Surface::new(b)?);
+    let (from, to) = (PreparedSurface::new(a)?, PreparedSurface::new(b)?);
     println!(
         "ready: {:.3} s for {} faces",
         start.elapsed().as_secs_f64(),

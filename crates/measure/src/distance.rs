@@ -1,19 +1,20 @@
-//! The distance of two surfaces, both ways.
+//! Two-sided distance between surfaces.
 
 use meshlod_mesh::{FaceId, Mesh};
-use meshlod_spatial::Closest;
+use meshlod_spatial::ClosestPoint;
 use rayon::prelude::*;
 use thiserror::Error;
 
+use crate::prepared::{PreparedSurface, SurfaceError};
 use crate::sample::samples;
-use crate::surface::{Surface, SurfaceError};
 
-/// How to measure a distance.
+/// Options of a distance measurement.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct DistanceOptions {
-    /// Samples each way, spread evenly by area. Half a million leave the mean within about 0.1 %.
+    /// Number of samples on each surface, spread evenly by area. Half a million give the mean to
+    /// within about 0.1 %.
     pub samples: usize,
-    /// What the samples are drawn by.
+    /// Seed of the random sample positions.
     pub seed: u64,
 }
 
@@ -23,45 +24,45 @@ impl Default for DistanceOptions {
     }
 }
 
-/// How far two surfaces, A and B, are apart. All lengths in model units.
+/// Measured distance between two surfaces A and B, both ways, in model units.
 ///
-/// These are measured values: the mean and the RMS are those of the samples, and the maximum is a
-/// lower bound of the true one, sharp where it is at a vertex.
+/// Mean and RMS are taken over the samples. The maximum is a lower bound of the true one, and exact
+/// if that is attained at a vertex.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Distance {
-    /// Points of A against B.
-    pub forward: OneWay,
-    /// Points of B against A.
-    pub backward: OneWay,
-    /// The length of the diagonal of A's box.
+    /// Distance of points of A from B.
+    pub forward: OneSidedDistance,
+    /// Distance of points of B from A.
+    pub backward: OneSidedDistance,
+    /// Length of the diagonal of A's bounding box.
     pub diagonal: f64,
 }
 
-/// How far points of one surface are from another. All lengths in model units.
+/// Measured distance of the points of one surface from another surface, in model units.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct OneWay {
-    /// Mean of the samples.
+pub struct OneSidedDistance {
+    /// Mean distance of the samples.
     pub mean: f64,
-    /// Square root of the mean square of the samples.
+    /// Root mean square distance of the samples.
     pub rms: f64,
-    /// The greatest of samples and used vertices.
+    /// Maximum distance over the samples and the used vertices.
     pub max: f64,
-    /// Where that is.
+    /// Location of the maximum.
     pub place: Place,
 }
 
-/// A point and its closest on the other surface.
+/// A point of one surface and its closest point on the other.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Place {
-    /// The point.
+    /// Point of the measured surface.
     pub from: [f64; 3],
-    /// The closest point of the other surface.
+    /// Closest point of the other surface.
     pub to: [f64; 3],
-    /// The face of the other surface that is on.
+    /// Face of the other surface that `to` lies on.
     pub face: FaceId,
 }
 
-/// Why there is no distance.
+/// Reason why a distance cannot be measured.
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum MeasureError {
     /// The first mesh cannot be measured.
@@ -70,56 +71,58 @@ pub enum MeasureError {
     /// The second mesh cannot be measured.
     #[error("the second mesh: {0}")]
     Second(SurfaceError),
-    /// Without samples there is no mean.
-    #[error("no samples were asked for; take at least one")]
+    /// The number of samples is 0.
+    #[error("the number of samples must be at least 1, not 0")]
     NoSamples,
 }
 
 impl Distance {
-    /// The average of both ways.
+    /// Returns the average of the mean distances of both directions.
     pub fn mean(&self) -> f64 {
         (self.forward.mean + self.backward.mean) * 0.5
     }
 
-    /// The quadratic mean of both ways.
+    /// Returns the quadratic mean of the RMS distances of both directions.
     pub fn rms(&self) -> f64 {
         ((self.forward.rms.powi(2) + self.backward.rms.powi(2)) * 0.5).sqrt()
     }
 
-    /// The larger of both ways: the Hausdorff distance, as far as the samples see it.
+    /// Returns the larger maximum of both directions, a lower bound of the Hausdorff distance.
     pub fn max(&self) -> f64 {
         self.forward.max.max(self.backward.max)
     }
 
-    /// A length as a percentage of A's diagonal.
+    /// Converts a length to a percentage of A's diagonal.
     pub fn percent(&self, length: f64) -> f64 {
         100.0 * length / self.diagonal
     }
 }
 
-/// The distance of two meshes.
+/// Measures the distance between two meshes, both ways.
 ///
-/// Every sample and every used vertex is held against the exact closest point of the other mesh.
-/// Same meshes and options, same answer to the bit, for any number of threads.
+/// Each sample and each used vertex is compared with the exact closest point of the other mesh. The
+/// result is the same to the bit for any number of threads.
 ///
 /// Cost: O((samples + vertices + faces) log faces); in parallel.
+///
 /// # Errors
-/// A mesh that is none or has no area; no samples.
+/// A mesh that is invalid or has zero area; no samples.
+///
 /// # References
 /// [CRS98]; differs: samples in strata of equal area, not by face or by grid.
 pub fn distance(a: &Mesh, b: &Mesh, options: &DistanceOptions) -> Result<Distance, MeasureError> {
-    let a = Surface::new(a).map_err(MeasureError::First)?;
-    let b = Surface::new(b).map_err(MeasureError::Second)?;
+    let a = PreparedSurface::new(a).map_err(MeasureError::First)?;
+    let b = PreparedSurface::new(b).map_err(MeasureError::Second)?;
     surface_distance(&a, &b, options)
 }
 
-/// [`distance`] of surfaces that are ready, for when one is measured more than once.
+/// Measures the [`distance`] between two prepared surfaces, for surfaces measured more than once.
 ///
 /// # Errors
 /// No samples.
 pub fn surface_distance(
-    a: &Surface<'_>,
-    b: &Surface<'_>,
+    a: &PreparedSurface<'_>,
+    b: &PreparedSurface<'_>,
     options: &DistanceOptions,
 ) -> Result<Distance, MeasureError> {
     if options.samples == 0 {
@@ -129,11 +132,11 @@ pub fn surface_distance(
     Ok(Distance { forward, backward, diagonal: a.diagonal })
 }
 
-/// The distance of every vertex of `a`, used or not, from the surface `b`, in model units.
+/// Computes the distance of each vertex of `a`, used or not, from the surface `b`, in model units.
 ///
-/// One value per position; NaN for a position that is not finite. Cost: O(n log f), n = vertices
-/// of `a`, f = faces of `b`; in parallel.
-pub fn vertex_errors(a: &Mesh, b: &Surface<'_>) -> Vec<f64> {
+/// Returns one value per position; NaN for a position that is not finite. Cost: O(n log f), n =
+/// vertices of `a`, f = faces of `b`; in parallel.
+pub fn vertex_errors(a: &Mesh, b: &PreparedSurface<'_>) -> Vec<f64> {
     let chunks = a.positions.par_chunks(CHUNK);
     chunks
         .flat_map_iter(|chunk| {
@@ -142,34 +145,38 @@ pub fn vertex_errors(a: &Mesh, b: &Surface<'_>) -> Vec<f64> {
         .collect()
 }
 
-/// Points that one task takes after one another, each answer the hint for the next. Fixed, as the
-/// sums are rounded chunk by chunk.
+/// Points that a task processes in sequence, each answer being the hint for the next. Fixed, since
+/// the rounding of the sums depends on it.
 const CHUNK: usize = 2048;
 
-fn one_way(from: &Surface<'_>, to: &Surface<'_>, options: &DistanceOptions) -> OneWay {
+fn one_way(
+    from: &PreparedSurface<'_>,
+    to: &PreparedSurface<'_>,
+    options: &DistanceOptions,
+) -> OneSidedDistance {
     let count = options.samples;
     let vertices = from.vertices.par_chunks(CHUNK).map(|chunk| {
         let points = chunk.iter().map(|v| from.mesh.positions[v.index()]);
-        Part::of(closest_to_each(points, to))
+        ChunkSums::of(closest_to_each(points, to))
     });
     let samples = (0..count.div_ceil(CHUNK)).into_par_iter().map(|i| {
         let range = i * CHUNK..((i + 1) * CHUNK).min(count);
-        Part::of(closest_to_each(samples(from, count, options.seed, range), to))
+        ChunkSums::of(closest_to_each(samples(from, count, options.seed, range), to))
     });
-    // Vertices first: where a sample is as far, the vertex is the place.
-    let vertices: Vec<Part> = vertices.collect();
-    let samples: Vec<Part> = samples.collect();
-    let worst = vertices.iter().chain(&samples).map(|part| part.worst).reduce(farther);
+    // Vertices first: at equal distance, the vertex wins over a sample.
+    let vertices: Vec<ChunkSums> = vertices.collect();
+    let samples: Vec<ChunkSums> = samples.collect();
+    let worst = vertices.iter().chain(&samples).map(|chunk| chunk.worst).reduce(farther);
     let (max, place) = worst.expect("there are samples");
-    let mean = samples.iter().map(|part| part.sum).sum::<f64>() / count as f64;
-    let square = samples.iter().map(|part| part.sum_of_squares).sum::<f64>() / count as f64;
-    OneWay { mean, rms: square.sqrt(), max, place }
+    let mean = samples.iter().map(|chunk| chunk.sum).sum::<f64>() / count as f64;
+    let square = samples.iter().map(|chunk| chunk.sum_of_squares).sum::<f64>() / count as f64;
+    OneSidedDistance { mean, rms: square.sqrt(), max, place }
 }
 
 fn closest_to_each(
     points: impl Iterator<Item = [f64; 3]>,
-    to: &Surface<'_>,
-) -> impl Iterator<Item = ([f64; 3], Closest)> {
+    to: &PreparedSurface<'_>,
+) -> impl Iterator<Item = ([f64; 3], ClosestPoint)> {
     let mut hint = None;
     points.map(move |point| {
         let closest = to.bvh.closest(point, hint);
@@ -178,33 +185,33 @@ fn closest_to_each(
     })
 }
 
-fn length(closest: &Closest) -> f64 {
+fn length(closest: &ClosestPoint) -> f64 {
     closest.distance_squared.sqrt()
 }
 
-/// What one chunk of points adds.
-struct Part {
+/// Partial sums and maximum over a chunk of points.
+struct ChunkSums {
     sum: f64,
     sum_of_squares: f64,
     worst: (f64, Place),
 }
 
-impl Part {
-    fn of(closest: impl Iterator<Item = ([f64; 3], Closest)>) -> Self {
+impl ChunkSums {
+    fn of(closest: impl Iterator<Item = ([f64; 3], ClosestPoint)>) -> Self {
         let nowhere = Place { from: [f64::NAN; 3], to: [f64::NAN; 3], face: FaceId(0) };
-        let mut part = Self { sum: 0.0, sum_of_squares: 0.0, worst: (-1.0, nowhere) };
+        let mut sums = Self { sum: 0.0, sum_of_squares: 0.0, worst: (-1.0, nowhere) };
         for (from, closest) in closest {
             let length = length(&closest);
-            part.sum += length;
-            part.sum_of_squares += closest.distance_squared;
+            sums.sum += length;
+            sums.sum_of_squares += closest.distance_squared;
             let place = Place { from, to: closest.point, face: closest.face };
-            part.worst = farther(part.worst, (length, place));
+            sums.worst = farther(sums.worst, (length, place));
         }
-        part
+        sums
     }
 }
 
-/// The farther of two; the first where they are equal.
+/// Returns the farther of two; the first if they are equal.
 fn farther(first: (f64, Place), second: (f64, Place)) -> (f64, Place) {
     if second.0 > first.0 { second } else { first }
 }
@@ -222,7 +229,7 @@ mod tests {
     fn concentric_spheres_are_their_radii_apart() {
         let (inner, outer) = (sphere(100, 1.0), sphere(80, 1.25));
         let apart = distance(&inner, &outer, &options(20_000)).unwrap();
-        // A chord of a turn t is r (1 - cos(t / 2)) inside; across a face two of them add up.
+        // A chord of angle t is r (1 - cos(t / 2)) inside; across a face two of them add up.
         let sag = |n: f64, r: f64| 2.0 * r * (1.0 - (std::f64::consts::PI / n / 2.0).cos());
         let (low, high) = (0.25 - sag(80.0, 1.25), 0.25 + sag(100.0, 1.0));
         for way in [apart.forward, apart.backward] {
@@ -243,7 +250,7 @@ mod tests {
 
     #[test]
     fn a_ramp_has_the_moments_of_its_height() {
-        // Against the wide plane below, the height is all: 0 to 1, evenly.
+        // The distance from the wide plane below is the height, uniform from 0 to 1.
         let mut ramp = plane(9, 0.0);
         ramp.positions.iter_mut().for_each(|position| position[2] = position[0]);
         let ground = moved(&scaled(&plane(1, 0.0), 8.0), -4.0);
@@ -263,7 +270,9 @@ mod tests {
         let mesh = moved(&sphere(20, 1.0), 1e6);
         let apart = distance(&mesh, &mesh, &options(5_000)).unwrap();
         assert!(apart.max() < 1e-9 && apart.mean() < 1e-9, "{apart:?}");
-        assert!(vertex_errors(&mesh, &Surface::new(&mesh).unwrap()).iter().all(|&e| e == 0.0));
+        assert!(
+            vertex_errors(&mesh, &PreparedSurface::new(&mesh).unwrap()).iter().all(|&e| e == 0.0)
+        );
     }
 
     #[test]
@@ -278,15 +287,15 @@ mod tests {
         assert_eq!(apart.forward.place.to, [0.5, 0.5, 0.0]);
         assert!(flat.faces[apart.forward.place.face.index()].iter().any(|v| v.index() == tip));
         assert!(apart.backward.max < 0.2, "{:?}", apart.backward);
-        let errors = vertex_errors(&spiked, &Surface::new(&flat).unwrap());
+        let errors = vertex_errors(&spiked, &PreparedSurface::new(&flat).unwrap());
         assert!(errors.iter().enumerate().all(|(v, &e)| e == if v == tip { 3.0 } else { 0.0 }));
     }
 
     #[test]
     fn both_ways_are_joined_as_named() {
         let place = Place { from: [0.0; 3], to: [0.0; 3], face: FaceId(0) };
-        let forward = OneWay { mean: 1.0, rms: 1.0, max: 4.0, place };
-        let backward = OneWay { mean: 3.0, rms: 7.0, max: 9.0, place };
+        let forward = OneSidedDistance { mean: 1.0, rms: 1.0, max: 4.0, place };
+        let backward = OneSidedDistance { mean: 3.0, rms: 7.0, max: 9.0, place };
         let apart = Distance { forward, backward, diagonal: 50.0 };
         assert_eq!((apart.mean(), apart.rms(), apart.max()), (2.0, 5.0, 9.0));
         assert_eq!(apart.percent(apart.max()), 18.0);

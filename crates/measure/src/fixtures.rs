@@ -1,4 +1,4 @@
-//! Meshes for the tests.
+//! Meshes for tests.
 
 use meshlod_mesh::{Mesh, VertexId};
 
@@ -31,7 +31,7 @@ pub fn cube() -> Mesh {
     mesh(positions, faces)
 }
 
-/// A sphere about the origin of `n` rings and `2n` sectors; its vertices are on the round sphere.
+/// Builds a sphere about the origin with `n` rings and `2n` sectors, its vertices on the exact sphere.
 pub fn sphere(n: usize, radius: f64) -> Mesh {
     let turn = std::f64::consts::PI / n as f64;
     let mut positions = vec![[0.0, 0.0, radius]];
@@ -43,7 +43,7 @@ pub fn sphere(n: usize, radius: f64) -> Mesh {
         }));
     }
     positions.push([0.0, 0.0, -radius]);
-    // The poles stand for whole rings.
+    // Each pole stands for a whole ring.
     let south = positions.len() - 1;
     let vertex = |ring: usize, sector: usize| match ring {
         0 => VertexId(0),
@@ -59,7 +59,7 @@ pub fn sphere(n: usize, radius: f64) -> Mesh {
     Mesh::new(positions, faces.filter(|[a, b, c]| a != b && b != c && c != a).collect())
 }
 
-/// The square from 0 to 1 at height `z`, in `n` by `n` squares.
+/// Builds the unit square at height `z` from `n` by `n` squares.
 pub fn plane(n: usize, z: f64) -> Mesh {
     let at = |i: usize| i as f64 / n as f64;
     let vertex = |x: usize, y: usize| VertexId::new(y * (n + 1) + x);

@@ -1,10 +1,11 @@
-//! Measures of triangle meshes: surface distance both ways, area, volume, triangle quality.
+//! Measures of triangle meshes: two-sided surface distance, area, volume and triangle quality.
 //!
-//! [`distance`] measures how far two meshes are apart, by samples spread evenly over each. To
-//! measure many against one, make a [`Surface`] of each and use [`surface_distance`].
+//! [`distance`] measures how far two meshes are apart, by samples spread evenly over both. To
+//! measure many meshes against one, build a [`PreparedSurface`] of each and call
+//! [`surface_distance`].
 //!
 //! ```
-//! use meshlod_measure::{DistanceOptions, Surface, distance, surface_distance, volume};
+//! use meshlod_measure::{DistanceOptions, PreparedSurface, distance, surface_distance, volume};
 //! use meshlod_mesh::{Mesh, VertexId};
 //!
 //! let square = |z: f64| {
@@ -18,8 +19,8 @@
 //! assert_eq!((apart.mean(), apart.rms(), apart.max()), (0.5, 0.5, 0.5));
 //! assert_eq!(apart.percent(apart.max()), 10.0);
 //!
-//! let target = Surface::new(&original).unwrap();
-//! let again = surface_distance(&target, &Surface::new(&level).unwrap(), &options).unwrap();
+//! let target = PreparedSurface::new(&original).unwrap();
+//! let again = surface_distance(&target, &PreparedSurface::new(&level).unwrap(), &options).unwrap();
 //! assert_eq!(again, apart);
 //! assert_eq!(volume(&level), 0.0);
 //! ```
@@ -28,15 +29,15 @@
 mod distance;
 #[cfg(test)]
 mod fixtures;
+mod prepared;
 mod quality;
 mod sample;
 mod size;
-mod surface;
 
 pub use distance::{
-    Distance, DistanceOptions, MeasureError, OneWay, Place, distance, surface_distance,
+    Distance, DistanceOptions, MeasureError, OneSidedDistance, Place, distance, surface_distance,
     vertex_errors,
 };
+pub use prepared::{PreparedSurface, SurfaceError};
 pub use quality::{QUALITY_BINS, Quality, quality};
 pub use size::{area, volume};
-pub use surface::{Surface, SurfaceError};

@@ -1,29 +1,29 @@
-//! The shape of triangles.
+//! Triangle quality.
 
 use glam::DVec3;
 use meshlod_mesh::Mesh;
-use meshlod_spatial::Sum;
+use meshlod_spatial::CompensatedSum;
 
-/// Bins of the histogram.
+/// Number of bins of the quality histogram.
 pub const QUALITY_BINS: usize = 10;
 
-/// At or below this a triangle's area is nothing but rounding.
+/// Quality at or below which a triangle's area is only rounding error.
 const DEGENERATE: f64 = 1e-15;
 
-/// How good the shapes of the faces are: 1 for equilateral, 0 for without area.
+/// Statistics of triangle quality: 1 for an equilateral triangle, 0 for a degenerate one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Quality {
-    /// Faces by quality: from 0 to below 0.1, and so on; the last bin includes 1.
+    /// Number of faces by quality: below 0.1, below 0.2 and so on; the last bin includes 1.
     pub histogram: [usize; QUALITY_BINS],
-    /// The worst.
+    /// Quality of the worst face.
     pub min: f64,
-    /// The mean over the faces.
+    /// Mean quality of the faces.
     pub mean: f64,
-    /// How many faces have no area, but for rounding; they are in the histogram too.
+    /// Number of faces whose area is zero up to rounding; the histogram includes them.
     pub degenerate: usize,
 }
 
-/// The quality of all faces; `None` without faces.
+/// Computes the quality statistics of all faces; `None` for a mesh without faces.
 ///
 /// Indices must be in range and positions finite. Cost: O(faces).
 pub fn quality(mesh: &Mesh) -> Option<Quality> {
@@ -31,7 +31,7 @@ pub fn quality(mesh: &Mesh) -> Option<Quality> {
         return None;
     }
     let mut all = Quality { histogram: [0; QUALITY_BINS], min: 1.0, mean: 0.0, degenerate: 0 };
-    let mut sum = Sum::default();
+    let mut sum = CompensatedSum::default();
     for &face in &mesh.faces {
         let quality = triangle_quality(mesh.triangle(face));
         let bin = (quality * QUALITY_BINS as f64) as usize;
@@ -44,9 +44,9 @@ pub fn quality(mesh: &Mesh) -> Option<Quality> {
     Some(all)
 }
 
-/// 4√3 times the area over the sum of the squared edges, in [0, 1].
+/// Returns 4√3 times the area over the sum of the squared edge lengths, in [0, 1].
 fn triangle_quality([a, b, c]: [DVec3; 3]) -> f64 {
-    // Halved first, then at a size of 1, so that no finite triangle overflows.
+    // Halved first, then scaled to size 1, so that no finite triangle overflows.
     let [a, b, c] = [a * 0.5, b * 0.5, c * 0.5];
     let edges = [b - a, c - b, a - c];
     let size = edges.iter().map(|edge| edge.abs().max_element()).fold(0.0, f64::max);

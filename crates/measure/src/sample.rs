@@ -1,24 +1,24 @@
-//! Points spread evenly over a surface, the same for every number of threads.
+//! Stratified sampling of a surface, independent of the number of threads.
 
 use std::ops::Range;
 
-use crate::surface::Surface;
+use crate::prepared::PreparedSurface;
 
-/// Samples of the range `which` of `count`, which divide the surface into equal areas: each is a
-/// random point of its part.
+/// Iterates over the samples in the range `which` of `count`, each a random point of its own stratum
+/// of equal area.
 ///
-/// The surface is walked face after face in the order of the hierarchy, and each face along a curve
-/// that fills it, so the parts are compact patches and neighbouring samples are near each other. A
-/// sample depends on `seed` and its own number only.
+/// Strata follow the faces in leaf order and each face along a triangle-filling curve, so they are
+/// compact and neighbouring samples are near each other. A sample depends only on `seed` and its
+/// index.
 pub(crate) fn samples<'s>(
-    surface: &'s Surface<'_>,
+    surface: &'s PreparedSurface<'_>,
     count: usize,
     seed: u64,
     which: Range<usize>,
 ) -> impl Iterator<Item = [f64; 3]> + 's {
     let up_to = &surface.area_up_to;
     let total = up_to[up_to.len() - 1];
-    // Rounding could step past the end: the last face with area takes those.
+    // Rounding could step past the end: the last face with area takes those samples.
     let last = up_to.partition_point(|&area| area < total);
     let start = total * (which.start as f64 / count as f64);
     let mut slot = up_to.partition_point(|&area| area <= start).min(last);
@@ -29,22 +29,24 @@ pub(crate) fn samples<'s>(
         }
         let before = if slot == 0 { 0.0 } else { up_to[slot - 1] };
         let [s, t] = along_triangle((target - before) / (up_to[slot] - before));
-        let face = surface.bvh.faces_in_order()[slot];
+        let face = surface.bvh.faces_in_leaf_order()[slot];
         let [a, b, c] = surface.mesh.triangle(surface.mesh.faces[face.index()]);
         (a + (b - a) * s + (c - a) * t).into()
     })
 }
 
-/// Where a curve that fills the triangle (0, 0), (1, 0), (0, 1) is after a `part` of its way: equal
-/// parts cover equal areas.
+/// Returns the point at the fraction `part` of a curve that fills the triangle (0, 0), (1, 0),
+/// (0, 1); equal fractions cover equal areas.
 ///
-/// Each two bits of `part` choose one of four smaller triangles; after 32 bits it is the middle.
+/// Each two bits of `part` choose one of four smaller triangles; after 32 bits the point is the
+/// centroid.
+///
 /// # References
-/// [BO15], the triangular van der Corput points; differs: the order of the four.
+/// [BO15], the triangular van der Corput points; differs: the order of the four triangles.
 fn along_triangle(part: f64) -> [f64; 2] {
-    // Out of range by rounding, the cast stops at the ends.
+    // The cast saturates if rounding leaves the range.
     let mut bits = (part * 2f64.powi(32)) as u32;
-    // The right angle and the signed length of the legs.
+    // The corner at the right angle and the signed length of the legs.
     let (mut s, mut t, mut leg) = (0.0, 0.0, 1.0);
     for _ in 0..16 {
         let half = leg * 0.5;
@@ -60,18 +62,18 @@ fn along_triangle(part: f64) -> [f64; 2] {
     [s + leg / 3.0, t + leg / 3.0]
 }
 
-/// Evenly from [0, 1), by number `index` of the sequence of `seed`.
+/// Returns number `index` of the pseudorandom sequence of `seed`, uniform in [0, 1).
 ///
 /// # References
-/// [SLF14], the generator SplitMix64, whose every state is known in advance.
+/// [SLF14], the generator SplitMix64, which can jump to any index.
 fn random_unit(seed: u64, index: u64) -> f64 {
-    // Hashed, so that neighbouring seeds do not share the sequence but for a step.
+    // Hashed, so that the sequences of neighbouring seeds are not shifts of each other.
     let start = hash(seed.wrapping_add(STEP));
     let state = start.wrapping_add(STEP.wrapping_mul(index.wrapping_add(1)));
     (hash(state) >> 11) as f64 / (1u64 << 53) as f64
 }
 
-/// What the generator adds at each step: 2^64 over the golden ratio.
+/// Increment of the generator: 2^64 over the golden ratio.
 const STEP: u64 = 0x9E37_79B9_7F4A_7C15;
 
 fn hash(state: u64) -> u64 {
@@ -120,7 +122,7 @@ mod tests {
         mesh.positions.extend(cube.positions);
         let sides = cube.faces.into_iter().skip(2).map(|face| face.map(|v| VertexId(v.0 + shift)));
         mesh.faces.extend(sides);
-        let surface = Surface::new(&mesh).unwrap();
+        let surface = PreparedSurface::new(&mesh).unwrap();
         let bottom = samples(&surface, 6000, 1, 0..6000).filter(|point| point[2] == 0.0).count();
         assert!((950..=1050).contains(&bottom), "{bottom}");
     }
@@ -130,7 +132,7 @@ mod tests {
         // Faces smaller than the cells, and faces that hold many.
         for squares in [40, 1] {
             let mesh = plane(squares, 0.0);
-            let surface = Surface::new(&mesh).unwrap();
+            let surface = PreparedSurface::new(&mesh).unwrap();
             let mut cells = [0usize; 64];
             for [x, y, _] in samples(&surface, 6400, 7, 0..6400) {
                 cells[(x * 8.0) as usize * 8 + (y * 8.0) as usize] += 1;
@@ -144,7 +146,7 @@ mod tests {
     #[test]
     fn ranges_give_what_the_whole_gives() {
         let mesh = sphere(10, 1.0);
-        let surface = Surface::new(&mesh).unwrap();
+        let surface = PreparedSurface::new(&mesh).unwrap();
         let whole: Vec<_> = samples(&surface, 1000, 3, 0..1000).collect();
         let parts = (0..10).flat_map(|i| samples(&surface, 1000, 3, i * 100..(i + 1) * 100));
         assert!(parts.eq(whole.iter().copied()));
@@ -160,7 +162,7 @@ mod tests {
         let corner = mesh.faces[0][0];
         mesh.faces.splice(0..0, [[corner, tip, tip], [corner, corner, tip]]);
         mesh.faces.push([tip, tip, corner]);
-        let surface = Surface::new(&mesh).unwrap();
+        let surface = PreparedSurface::new(&mesh).unwrap();
         assert!(samples(&surface, 500, 0, 0..500).all(|point| point[2] == 0.0));
     }
 }

@@ -1,30 +1,32 @@
-//! Area and volume.
+//! Surface area and enclosed volume.
 
 use glam::DVec3;
 use meshlod_mesh::Mesh;
-use meshlod_spatial::{Frame, Sum};
+use meshlod_spatial::{CompensatedSum, Frame};
 
-/// The area of all faces, in square model units; 0 without faces.
+/// Computes the total area of the faces, in squared model units; 0 without faces.
 ///
-/// Indices must be in range and positions finite. Infinite only when the area is beyond `f64`.
+/// Indices must be in range and positions finite. Infinite only if the area exceeds `f64`.
 /// Cost: O(faces).
 pub fn area(mesh: &Mesh) -> f64 {
     let frame = Frame::of(&mesh.bounds());
-    let sum: Sum = local_triangles(mesh, frame).map(|triangle| triangle_area(&triangle)).collect();
+    let sum: CompensatedSum =
+        local_triangles(mesh, frame).map(|triangle| triangle_area(&triangle)).collect();
     frame.model_squared(sum.value())
 }
 
-/// The signed volume, in cubic model units: positive where faces look outwards; 0 without faces.
+/// Computes the signed volume, in cubed model units: positive if faces point outwards; 0 without
+/// faces.
 ///
-/// For a closed mesh this is the volume inside, each region as often as the surface winds around
-/// it. For an open one it is the volume of the cones from the middle of the box to the faces.
-/// Good to about 1e-15 of the volume of the box, wherever the mesh stands. Indices must be in range
-/// and positions finite. Cost: O(faces).
+/// For a closed mesh this is the enclosed volume, each region weighted by its winding number. For
+/// an open mesh it is the volume of the cones from the centre of the bounding box to the faces.
+/// Accurate to about 1e-15 of the volume of the box, wherever the mesh lies. Indices must be in
+/// range and positions finite. Cost: O(faces).
 pub fn volume(mesh: &Mesh) -> f64 {
     let frame = Frame::of(&mesh.bounds());
-    // From edges, not corners: the product of two long corner vectors of a small face would leave
-    // little of its digits.
-    let sum: Sum =
+    // From edges, not corners: the product of two long corner vectors of a small face would lose most
+    // of its digits.
+    let sum: CompensatedSum =
         local_triangles(mesh, frame).map(|[a, b, c]| a.dot((b - a).cross(c - a))).collect();
     frame.model_squared(sum.value() / 6.0) / frame.scale()
 }
@@ -71,7 +73,7 @@ mod tests {
 
     #[test]
     fn far_away_nothing_changes() {
-        // On a grid of 2^-20 the move itself rounds nothing.
+        // On a grid of 2^-20 the translation itself is exact.
         let mut near = sphere(100, 2.0);
         for x in near.positions.iter_mut().flatten() {
             *x = (*x * 1_048_576.0).round() / 1_048_576.0;
@@ -83,8 +85,8 @@ mod tests {
 
     #[test]
     fn one_part_in_ten_to_the_thirteen_shows() {
-        // Pulling one vertex of a sphere in the direction of the area vector of its ring changes
-        // the volume by a third of that vector's length per unit.
+        // Moving a vertex along the area vector of its one-ring changes the volume by a third of that
+        // vector's length per unit.
         let mut mesh = sphere(200, 1.0);
         let before = volume(&mesh);
         let vertex = mesh.faces[mesh.faces.len() / 2][0];

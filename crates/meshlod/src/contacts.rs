@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use glam::{DMat3, DMat4};
-use meshlod_check::{LockOptions, LockReason, Locking, locks};
+use meshlod_check::{LockOptions, LockReason, VertexLocks, locks};
 use meshlod_io::{MeshInstance, Scene, SceneMesh};
 use meshlod_mesh::{Labels, Lock, Mesh, VertexId, first_near};
 
@@ -17,10 +17,10 @@ use meshlod_mesh::{Labels, Lock, Mesh, VertexId, first_near};
 /// point, as a scale of 0 does: there all of it meets itself. So is what it takes beyond all numbers.
 ///
 /// Cost: that of [`locks`] for [`Scene::flatten`].
-pub fn scene_locks(scene: &Scene, options: &LockOptions) -> Vec<Locking> {
+pub fn scene_locks(scene: &Scene, options: &LockOptions) -> Vec<VertexLocks> {
     let vertices = |mesh: &SceneMesh| mesh.mesh.positions.len();
-    let mut of_meshes: Vec<Locking> =
-        scene.meshes.iter().map(|mesh| Locking::free(vertices(mesh))).collect();
+    let mut of_meshes: Vec<VertexLocks> =
+        scene.meshes.iter().map(|mesh| VertexLocks::free(vertices(mesh))).collect();
     let world = World::of(scene);
     let flat = locks(&world.mesh, options);
     for (i, home) in world.homes.iter().enumerate() {
@@ -41,12 +41,12 @@ pub fn scene_locks(scene: &Scene, options: &LockOptions) -> Vec<Locking> {
     if options.contacts {
         world.near_across_nodes().iter().for_each(|home| lock(&mut of_meshes, home));
     }
-    of_meshes.iter_mut().for_each(Locking::settle_ties);
+    of_meshes.iter_mut().for_each(VertexLocks::resolve_ties);
     of_meshes
 }
 
-fn lock(of_meshes: &mut [Locking], home: &Home) {
-    of_meshes[home.mesh].hold(home.vertex, Lock::Locked, Some(LockReason::SharedPlace));
+fn lock(of_meshes: &mut [VertexLocks], home: &Home) {
+    of_meshes[home.mesh].hold(home.vertex, Lock::Locked, Some(LockReason::SharedPosition));
 }
 
 /// All that a scene shows, without what is squeezed.
@@ -187,7 +187,7 @@ mod tests {
             let meshes = vec![samples::sphere(500); 3];
             scene_locks(&scene(meshes, vec![at(0.0, 0), at(x, 1)]), &CONTACTS)
         };
-        let held = |of: &Locking| of.locks.of_vertex.contains(&Lock::Protected);
+        let held = |of: &VertexLocks| of.locks.of_vertex.contains(&Lock::Protected);
         assert_eq!(balls(1.5).iter().map(held).collect::<Vec<_>>(), [true, true, false]);
         assert_eq!(balls(2.5).iter().map(held).collect::<Vec<_>>(), [false; 3]);
     }
@@ -198,7 +198,7 @@ mod tests {
         // Side by side: the right side of one at the left side of the other.
         assert_eq!(held[0].locks.of_vertex, [Lock::Locked; 4]);
         assert!(held[0].locks.ties.is_empty());
-        assert_eq!(held[0].count(LockReason::SharedPlace), 4);
+        assert_eq!(held[0].count(LockReason::SharedPosition), 4);
     }
 
     #[test]
@@ -240,7 +240,7 @@ mod tests {
             far.positions.iter_mut().for_each(|p| p[2] += 1e6);
             let nodes = vec![at(x, 0), at(x + 1.0, 1), at(0.0, 2)];
             let held = scene_locks(&scene(vec![square(), right, far], nodes), &CONTACTS);
-            held.iter().map(|of| of.count(LockReason::SharedPlace)).collect::<Vec<_>>()
+            held.iter().map(|of| of.count(LockReason::SharedPosition)).collect::<Vec<_>>()
         };
         let ulp = f64::from(f32::EPSILON);
         assert_eq!(held(100.0, 64.0 * ulp), [2, 2, 0]);
@@ -270,6 +270,6 @@ mod tests {
         mesh.positions.extend(other.positions);
         let held = &scene_locks(&scene(vec![mesh], vec![at(1e9, 0)]), &CONTACTS)[0];
         assert!(held.locks.ties.is_empty());
-        assert_eq!(held.count(LockReason::SharedPlace), 4);
+        assert_eq!(held.count(LockReason::SharedPosition), 4);
     }
 }

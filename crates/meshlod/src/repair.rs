@@ -13,7 +13,7 @@ pub fn repair_scene(scene: &mut Scene, options: &RepairOptions) -> RepairReport 
     for mesh in &mut scene.meshes {
         let (repaired, report) = repair(&mesh.mesh, options);
         mesh.mesh = repaired;
-        report.told().for_each(|(step, count)| all.add(step, count));
+        report.nonzero().for_each(|(step, count)| all.add(step, count));
     }
     all
 }

@@ -1,6 +1,6 @@
 //! The fast engine and the general one, on the same methods: the same accuracy, and the same volume.
 
-use meshlod::measure::{DistanceOptions, Surface, surface_distance, volume};
+use meshlod::measure::{DistanceOptions, PreparedSurface, surface_distance, volume};
 use meshlod::samples;
 use meshlod::simplify::Simplifier;
 use meshlod::{Mesh, Method, Options, Target};
@@ -9,7 +9,7 @@ use meshlod::{Mesh, Method, Options, Target};
 fn figures(mesh: &Mesh, mut simplifier: Simplifier<'_>, ratio: f64) -> [f64; 2] {
     simplifier.run(Target::Ratio(ratio), &mut ()).unwrap();
     let level = simplifier.level();
-    let surfaces = [mesh, &level].map(|mesh| Surface::new(mesh).unwrap());
+    let surfaces = [mesh, &level].map(|mesh| PreparedSurface::new(mesh).unwrap());
     let options = DistanceOptions { samples: 100_000, ..DistanceOptions::default() };
     let apart = surface_distance(&surfaces[0], &surfaces[1], &options).unwrap();
     [apart.percent(apart.mean()), 1.0 - volume(&level) / volume(mesh)]

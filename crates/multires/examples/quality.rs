@@ -6,7 +6,7 @@
 use std::error::Error;
 
 use cpu_time::ThreadTime;
-use meshlod_measure::{Distance, DistanceOptions, Surface, surface_distance};
+use meshlod_measure::{Distance, DistanceOptions, PreparedSurface, surface_distance};
 use meshlod_mesh::{Bounds, Mesh};
 use meshlod_multires::{Forest, Model, Query, SplitRule, ViewCamera};
 use meshlod_simplify::{Method, Options, Simplifier, Target};
@@ -44,7 +44,7 @@ fn main() -> Result<(), Failure> {
     println!("{}: recorded in {recorded:.2} s, bounds in {measured:.2} s", method.name());
     let mut smoothed = forest.clone();
     smoothed.smooth_errors();
-    let original = Surface::new(&mesh)?;
+    let original = PreparedSurface::new(&mesh)?;
     let plain = plain(&mesh, &options, &original)?;
     let models = [("estimates", &forest), ("smoothed", &smoothed), ("bounds", &bounded)];
     for (name, forest) in models {
@@ -62,7 +62,11 @@ struct Plain {
 
 /// Returns levels in steps of three percent while the mean error is close to zero, then of ten
 /// percent.
-fn plain(mesh: &Mesh, options: &Options, original: &Surface<'_>) -> Result<Vec<Plain>, Failure> {
+fn plain(
+    mesh: &Mesh,
+    options: &Options,
+    original: &PreparedSurface<'_>,
+) -> Result<Vec<Plain>, Failure> {
     let mut simplifier = Simplifier::new(mesh, options)?;
     let mut levels = Vec::new();
     let mut target = mesh.faces.len() as f64 * 0.98;
@@ -76,8 +80,8 @@ fn plain(mesh: &Mesh, options: &Options, original: &Surface<'_>) -> Result<Vec<P
     Ok(levels)
 }
 
-fn distance(original: &Surface<'_>, level: &Mesh) -> Result<Distance, Failure> {
-    Ok(surface_distance(original, &Surface::new(level)?, &MEASURE)?)
+fn distance(original: &PreparedSurface<'_>, level: &Mesh) -> Result<Distance, Failure> {
+    Ok(surface_distance(original, &PreparedSurface::new(level)?, &MEASURE)?)
 }
 
 /// Interpolates the number of faces at which plain simplification reaches the given error.
@@ -93,7 +97,7 @@ fn as_good(levels: &[Plain], value: f64, of: impl Fn(&Distance) -> f64) -> Optio
 fn uniform(
     name: &str,
     model: &Model,
-    original: &Surface<'_>,
+    original: &PreparedSurface<'_>,
     plain: &[Plain],
 ) -> Result<(), Failure> {
     println!("by {name}; aspects in % of the faces");

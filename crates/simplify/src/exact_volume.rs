@@ -8,7 +8,7 @@
 
 use glam::DVec3;
 use meshlod_mesh::{Connectivity, Lock, Locks, Mesh};
-use meshlod_spatial::{Frame, Sum};
+use meshlod_spatial::{CompensatedSum, LocalFrame};
 use rustc_hash::FxHashMap;
 use thiserror::Error;
 
@@ -103,7 +103,7 @@ pub fn conserve_volume(
     locks: &Locks,
 ) -> Result<VolumeResidual, ExactVolumeError> {
     let bounds = mesh.bounds();
-    let frame = Frame::of(&bounds);
+    let frame = LocalFrame::of(&bounds);
     let wanted = Sixfold::of(mesh, &mesh.positions, &frame);
     if !wanted.is_closed() {
         return Err(ExactVolumeError::OpenMesh);
@@ -131,8 +131,8 @@ struct Sixfold {
 }
 
 impl Sixfold {
-    fn of(mesh: &Mesh, positions: &[[f64; 3]], frame: &Frame) -> Self {
-        let mut sum = Sum::default();
+    fn of(mesh: &Mesh, positions: &[[f64; 3]], frame: &LocalFrame) -> Self {
+        let mut sum = CompensatedSum::default();
         let (mut terms, mut normal, mut lengths) = (0.0, DVec3::ZERO, 0.0);
         for face in &mesh.faces {
             let [a, b, c] = face.map(|v| frame.local(positions[v.index()]));
@@ -168,7 +168,7 @@ fn free(level: &Mesh, mesh: &Mesh, locks: &Locks) -> Vec<bool> {
 /// A level on its way.
 struct Settling<'l> {
     level: &'l mut Mesh,
-    frame: Frame,
+    frame: LocalFrame,
     /// Six times the volume that it is to have.
     wanted: f64,
     free: Vec<bool>,
@@ -321,7 +321,7 @@ mod tests {
 
     /// What is left as whoever reads the file finds it, about a corner of its box.
     fn as_read(level: &Mesh, mesh: &Mesh) -> f64 {
-        let frame = Frame::of(&meshlod_mesh::Bounds {
+        let frame = LocalFrame::of(&meshlod_mesh::Bounds {
             min: mesh.bounds().min,
             max: mesh.bounds().min.map(|x| x + 1.0),
         });
@@ -357,7 +357,7 @@ mod tests {
         for x in level.positions.iter().flatten() {
             assert_eq!((*x as f32).to_string().parse(), Ok(*x));
         }
-        let frame = Frame::of(&mesh.bounds());
+        let frame = LocalFrame::of(&mesh.bounds());
         let volume = |of: &Mesh| Sixfold::of(of, &of.positions, &frame).volume;
         assert!((volume(&level) / volume(&mesh) - 1.0).abs() < 1e-13);
     }

@@ -1,10 +1,10 @@
-//! A box in `f32`.
+//! Axis-aligned boxes in `f32`.
 
 use glam::Vec3;
 
 use crate::triangle::Triangle;
 
-/// Least and greatest corner; nothing where the least is above the greatest.
+/// Axis-aligned box given by its least and greatest corners; empty if the least is above.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Box3 {
     pub(crate) lo: Vec3,
@@ -14,7 +14,7 @@ pub(crate) struct Box3 {
 impl Box3 {
     pub(crate) const EMPTY: Self = Self { lo: Vec3::INFINITY, hi: Vec3::NEG_INFINITY };
 
-    /// The least `f32` box that holds a triangle.
+    /// Returns the least `f32` box that contains a triangle.
     #[inline]
     pub(crate) fn around(&[a, b, c]: &Triangle) -> Self {
         let (lo, hi) = (a.min(b).min(c), a.max(b).max(c));
@@ -29,13 +29,13 @@ impl Box3 {
         Self { lo: self.lo.min(other.lo), hi: self.hi.max(other.hi) }
     }
 
-    /// Twice the centre: enough to compare.
+    /// Returns twice the centre, which compares as the centre does.
     #[inline]
     pub(crate) fn center(&self) -> Vec3 {
         self.lo + self.hi
     }
 
-    /// Half the surface area; 0 for the empty box.
+    /// Returns half the surface area; 0 for the empty box.
     #[inline]
     pub(crate) fn area(&self) -> f32 {
         let size = (self.hi - self.lo).max(Vec3::ZERO);
@@ -43,13 +43,13 @@ impl Box3 {
     }
 }
 
-/// The greatest `f32` not above `x`.
+/// Returns the greatest `f32` that is not above `x`.
 pub(crate) fn round_down(x: f64) -> f32 {
     let nearest = x as f32;
     if f64::from(nearest) > x { nearest.next_down() } else { nearest }
 }
 
-/// The least `f32` not below `x`.
+/// Returns the least `f32` that is not below `x`.
 pub(crate) fn round_up(x: f64) -> f32 {
     let nearest = x as f32;
     if f64::from(nearest) < x { nearest.next_up() } else { nearest }

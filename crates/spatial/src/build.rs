@@ -1,4 +1,4 @@
-//! Building: top down, splitting where the binned surface area cost is least.
+//! Top-down construction of the hierarchy by binned surface area cost.
 
 use glam::{Vec3, Vec4};
 use meshlod_mesh::FaceId;
@@ -8,16 +8,17 @@ use crate::box3::Box3;
 use crate::bvh::{INNER, Node};
 use crate::triangle::Triangle;
 
-/// Most triangles of a leaf. On the dragon, 871,000 faces, against 2: with 1 queries gain 7 % and
-/// building takes 15 % longer; with 4 queries lose 15 % and building takes 20 % less.
+/// Most triangles of a leaf. On the dragon (871,000 faces), compared with 2: a limit of 1 makes
+/// queries 7 % faster and building 15 % slower, a limit of 4 queries 15 % slower and building 20 %
+/// faster.
 const LEAF: usize = 2;
-/// Bins along the longest axis. With 16, queries are the same and building takes 5 % longer.
+/// Bins along the longest axis. With 16, queries are as fast and building is 5 % slower.
 const BINS: usize = 8;
-/// Ranges at least this long build their children in parallel, each in nodes of its own.
+/// Ranges at least this long build their children in parallel, each into its own vector.
 const GRAIN: usize = 1 << 13;
-/// Below this many levels ranges are halved instead: hostile meshes must not make the tree deep.
+/// Depth from which ranges are halved by count, so that adversarial meshes cannot make the tree deep.
 const MAX_COSTED_DEPTH: usize = 40;
-/// Bound of the depth: after `MAX_COSTED_DEPTH`, each level halves at most 2^32 faces.
+/// Bound on the depth: beyond `MAX_COSTED_DEPTH` each level halves at most 2^32 faces.
 pub(crate) const MAX_DEPTH: usize = MAX_COSTED_DEPTH + 32;
 
 /// A face and its box, rounded outwards.
@@ -27,15 +28,15 @@ struct Item {
     face: FaceId,
 }
 
-/// A run of items that becomes one child of a node.
+/// Consecutive items that become one child of a node.
 struct Run<'a> {
     items: &'a mut [Item],
-    /// Where its first item stands among all items.
+    /// Index of its first item among all items.
     first: usize,
     bounds: Box3,
 }
 
-/// The nodes, root first, and the faces in the order of the leaves.
+/// Builds the nodes, root first, and returns them with the faces in leaf order.
 pub(crate) fn build(
     count: usize,
     triangle: impl Fn(FaceId) -> Triangle + Sync,
@@ -52,7 +53,7 @@ pub(crate) fn build(
     (nodes, items.iter().map(|item| item.face).collect())
 }
 
-/// The nodes of a run, its top node first; inner children are counted from it.
+/// Builds the nodes of a run, its root first; indices of inner children are relative to it.
 fn build_nodes(run: Run<'_>, depth: usize) -> Vec<Node> {
     let parallel = run.items.len() >= GRAIN;
     let runs = split_in_four(run, depth);
@@ -78,7 +79,7 @@ fn build_nodes(run: Run<'_>, depth: usize) -> Vec<Node> {
     nodes
 }
 
-/// Appends the nodes of a run, its top node first; inner children are counted from the start.
+/// Appends the nodes of a run, its root first; indices of inner children are absolute.
 fn append_nodes(nodes: &mut Vec<Node>, run: Run<'_>, depth: usize) {
     let top = nodes.len();
     let runs = split_in_four(run, depth);
@@ -91,7 +92,7 @@ fn append_nodes(nodes: &mut Vec<Node>, run: Run<'_>, depth: usize) {
     }
 }
 
-/// Splits a run, then the larger of its parts, until there are four or all are leaves.
+/// Splits a run, then the part of largest area, until there are four parts or only leaves.
 fn split_in_four(run: Run<'_>, depth: usize) -> Vec<Run<'_>> {
     let mut runs = Vec::with_capacity(4);
     runs.push(run);
@@ -107,7 +108,8 @@ fn split_in_four(run: Run<'_>, depth: usize) -> Vec<Run<'_>> {
     runs
 }
 
-/// Two parts, neither empty: where count × area is least, or in the middle when that cannot be told.
+/// Splits a run into two nonempty parts where count × area is least, or by count if no bin boundary
+/// separates the items.
 fn split(run: Run<'_>, depth: usize) -> (Run<'_>, Run<'_>) {
     let Run { items, first, bounds } = run;
     let cheapest = if depth < MAX_COSTED_DEPTH { Binning::of(&bounds).split(items) } else { None };
@@ -119,15 +121,14 @@ fn split(run: Run<'_>, depth: usize) -> (Run<'_>, Run<'_>) {
     )
 }
 
-/// Where a run is parted, and the boxes of the parts.
+/// Split position of a run and the boxes of both parts.
 struct Cut {
     middle: usize,
     left: Box3,
     right: Box3,
 }
 
-/// As many items on the left as on the right, by their centres along the axis where these differ
-/// most.
+/// Splits the items in half by their centres along the axis on which these are spread widest.
 fn halve(items: &mut [Item]) -> Cut {
     let centers = items.iter().map(|item| item.bounds.center());
     let (lo, hi) = centers.fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(lo, hi), center| {
@@ -143,7 +144,7 @@ fn halve(items: &mut [Item]) -> Cut {
     Cut { middle, left: union(left), right: union(right) }
 }
 
-/// Equal bins along the longest axis of a box, by the centres of boxes in it.
+/// Equal bins along the longest axis of a box, into which items fall by their centres.
 struct Binning {
     axis: usize,
     start: f32,
@@ -160,7 +161,7 @@ impl Binning {
     fn of(bounds: &Box3) -> Self {
         let extent = bounds.hi - bounds.lo;
         let axis = extent.max_position();
-        // Centres are doubled, and so is their range. Without extent all are in one bin.
+        // Centres are doubled, and so is their range. Without extent all fall into one bin.
         let per_unit = BINS as f32 / (2.0 * extent[axis]).max(f32::MIN_POSITIVE * BINS as f32);
         Self { axis, start: 2.0 * bounds.lo[axis], per_unit }
     }
@@ -170,14 +171,14 @@ impl Binning {
         (at as usize).min(BINS - 1)
     }
 
-    /// Parts the items at the cheapest bound between bins; `None` when all are in one bin.
+    /// Partitions the items at the cheapest bin boundary; `None` if all are in one bin.
     fn split(&self, items: &mut [Item]) -> Option<Cut> {
         let empty = Bin { bounds: Box3::EMPTY, count: 0 };
         let mut bins = [empty; BINS];
         for item in items.iter() {
             bins[self.bin(item)].add(&Bin { bounds: item.bounds, count: 1 });
         }
-        // `after[i]` holds all bins from i on.
+        // `after[i]` covers all bins from i on.
         let mut after = bins;
         for i in (0..BINS - 1).rev() {
             let next = after[i + 1];
@@ -211,7 +212,7 @@ impl Bin {
     }
 }
 
-/// Moves the items that are `left` to the front.
+/// Moves the items for which `left` holds to the front.
 fn partition(items: &mut [Item], left: impl Fn(&Item) -> bool) {
     let (mut i, mut j) = (0, items.len());
     loop {
@@ -228,15 +229,15 @@ fn partition(items: &mut [Item], left: impl Fn(&Item) -> bool) {
     }
 }
 
-/// The box around all items.
+/// Returns the box around all items.
 fn union(items: &[Item]) -> Box3 {
     items.iter().fold(Box3::EMPTY, |all, item| all.merged(&item.bounds))
 }
 
 impl Node {
-    /// The node over up to four runs, leaves where they are small enough.
+    /// Returns the node over up to four runs, the small ones being leaves.
     fn of(runs: &[Run<'_>]) -> Self {
-        // A child that is not there is infinitely far, and a leaf of nothing.
+        // A missing child is an empty leaf, infinitely far away.
         let mut lo = [Vec4::INFINITY; 3];
         let mut hi = [Vec4::NEG_INFINITY; 3];
         let (mut first, mut count) = ([0; 4], [0; 4]);
@@ -251,7 +252,7 @@ impl Node {
         Self { lo, hi, first, count }
     }
 
-    /// The same node where `base` nodes stand before its tree.
+    /// Shifts the indices of inner children by `base`, the number of nodes before its subtree.
     fn moved(mut self, base: u32) -> Self {
         for child in 0..4 {
             if self.count[child] == INNER {

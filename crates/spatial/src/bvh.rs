@@ -1,4 +1,4 @@
-//! The hierarchy: four boxes a node, triangles in the order of the leaves.
+//! The bounding volume hierarchy: four boxes a node, triangles in leaf order.
 
 use glam::Vec4;
 use meshlod_mesh::{FaceId, Mesh, MeshError};
@@ -9,49 +9,49 @@ use crate::build::build;
 use crate::frame::Frame;
 use crate::triangle::Triangle;
 
-/// A bounding volume hierarchy over the faces of a mesh, which it does not keep.
+/// A bounding volume hierarchy over the faces of a mesh. It copies the triangles it needs.
 ///
-/// Size: about 120 bytes a face. The same for any number of threads.
+/// Size: about 120 bytes a face. Building gives the same result for any number of threads.
 #[derive(Clone, Debug)]
 pub struct Bvh {
     pub(crate) frame: Frame,
     pub(crate) nodes: Vec<Node>,
-    /// In the order of the leaves, in local coordinates.
+    /// Triangles in leaf order, in local coordinates.
     pub(crate) triangles: Vec<Triangle>,
-    /// The face of each triangle.
+    /// Face of each triangle.
     pub(crate) faces: Vec<FaceId>,
-    /// Where each face stands in `triangles`.
+    /// Index of each face in `triangles`.
     pub(crate) slots: Vec<u32>,
 }
 
-/// Why there is no hierarchy.
+/// Reason why a hierarchy cannot be built.
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum BvhError {
-    /// There is nothing to be close to.
+    /// The mesh has no faces.
     #[error("the mesh has no faces")]
     Empty,
-    /// The mesh breaks its own rules.
+    /// The mesh is invalid.
     #[error(transparent)]
     Mesh(#[from] MeshError),
 }
 
-/// Four children, each an inner node or a run of triangles; two cache lines.
+/// Node with four children, each an inner node or a leaf; two cache lines.
 ///
-/// Boxes are axis by axis, one lane a child, so that one pass looks at all four.
+/// Boxes are stored by axis, one SIMD lane a child, so that all four are tested together.
 #[derive(Clone, Debug)]
 #[repr(align(64))]
 pub(crate) struct Node {
-    /// Least corners, rounded down: x of all four, then y, then z.
+    /// Least corners, rounded down: x of all four children, then y, then z.
     pub(crate) lo: [Vec4; 3],
     /// Greatest corners, rounded up.
     pub(crate) hi: [Vec4; 3],
-    /// An inner child's node, a leaf's first triangle.
+    /// Index of an inner child's node or of a leaf's first triangle.
     pub(crate) first: [u32; 4],
-    /// How many triangles a leaf has, or [`INNER`]; a child that is not there has none.
+    /// Number of triangles of a leaf, or [`INNER`]; 0 for a missing child.
     pub(crate) count: [u8; 4],
 }
 
-/// The count that marks a child as an inner node.
+/// Count that marks a child as an inner node.
 pub(crate) const INNER: u8 = u8::MAX;
 
 impl Bvh {
@@ -78,11 +78,11 @@ impl Bvh {
         Ok(Self { frame, nodes, triangles, faces, slots })
     }
 
-    /// All faces in an order in which neighbours follow one another: the order of the leaves.
+    /// Returns all faces in leaf order, in which neighbours follow one another.
     ///
-    /// Queries made in such an order find each other's memory warm, and each other's answers are
-    /// good hints.
-    pub fn faces_in_order(&self) -> &[FaceId] {
+    /// Queries made in this order find the nodes they need in the cache, and each answer is a good
+    /// hint for the next query.
+    pub fn faces_in_leaf_order(&self) -> &[FaceId] {
         &self.faces
     }
 }

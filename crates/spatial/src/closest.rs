@@ -1,4 +1,4 @@
-//! Closest points: boxes in `f32`, never too far; triangles in `f64`.
+//! Closest point queries: conservative box tests in `f32`, triangle distances in `f64`.
 
 use glam::{DVec3, Vec4};
 use meshlod_mesh::FaceId;
@@ -9,53 +9,56 @@ use crate::build::MAX_DEPTH;
 use crate::bvh::{INNER, Node};
 use crate::triangle::closest_point;
 
-/// The point of a mesh closest to a point.
+/// The point of a mesh closest to a query point.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Closest {
-    /// Where it is, in model units.
+pub struct ClosestPoint {
+    /// Position of the closest point, in model units.
     pub point: [f64; 3],
-    /// The face it is on: where several are equally close, the one of lowest id.
+    /// Face that it lies on; the one of lowest id if several are equally close.
     pub face: FaceId,
-    /// The square of its distance, in square model units.
+    /// Squared distance to the query point, in squared model units.
     pub distance_squared: f64,
 }
 
-/// What the answers allow themselves, in local coordinates, where the mesh is about 4 wide: a box
-/// is entered although it seems this much too far, relative and absolute, in squared distance.
+/// Tolerance on squared distances, relative and absolute, by which a box may seem too far and is
+/// entered all the same. In local coordinates, where the mesh is about 4 wide.
 ///
 /// Box distances round to within five parts in 2^24 of themselves. Triangle distances are off by
 /// up to 1e-15, and (d + 1e-15)² is at most d² (1 + 2^-21) + 1e-23.
 const SLACK_RELATIVE: f64 = 1.0 + 1.0 / (1 << 20) as f64;
 const SLACK: f64 = 1e-23;
 
-/// Three children of every node on the way may be waiting.
+/// Size of the stack: three children of every node on the path may be waiting.
 const STACK: usize = 3 * MAX_DEPTH + 4;
 
 impl Bvh {
-    /// The point of the mesh closest to `point`, which must be finite.
+    /// Returns the point of the mesh closest to `point`, which must be finite.
     ///
     /// `hint` is a face thought to be near, such as the answer to a neighbouring query: a good one
-    /// saves time, no hint changes the answer. Exact but for the rounding of `f64`, relative to the
-    /// size of the mesh. Where distances come out equal, the face of lowest id answers.
+    /// saves time, and none changes the answer. Exact up to `f64` rounding relative to the size of
+    /// the mesh. Among equal distances the face of lowest id wins.
     ///
     /// Cost: O(log n) for points near the surface, n = faces.
-    pub fn closest(&self, point: [f64; 3], hint: Option<FaceId>) -> Closest {
+    pub fn closest(&self, point: [f64; 3], hint: Option<FaceId>) -> ClosestPoint {
         let p = self.frame.local(point);
         let mut best = self.first(p, hint);
         self.descend::<false>(p, &mut best, [0.0; 2]);
         self.in_model(&best)
     }
 
-    /// A point of the mesh within `most` of `point`, which must be finite: any that is within `enough`,
-    /// else the closest; `None` if there is none. `hint` as in [`Self::closest`]. Lengths in model units.
+    /// Returns a point of the mesh within the distance `most` of `point`, which must be finite;
+    /// `None` if there is none.
     ///
-    /// Cost: that of [`Self::closest`] or less.
+    /// The search stops at any point within `enough`, else it returns the closest. `hint` works as
+    /// in [`Self::closest`]. Lengths are in model units.
+    ///
+    /// Cost: at most that of [`Self::closest`].
     pub fn near(
         &self,
         point: [f64; 3],
         hint: Option<FaceId>,
         [enough, most]: [f64; 2],
-    ) -> Option<Closest> {
+    ) -> Option<ClosestPoint> {
         let p = self.frame.local(point);
         let squared = |length: f64| (length * self.frame.scale()).powi(2);
         let (enough, most) = (squared(enough.min(most)), squared(most));
@@ -71,8 +74,8 @@ impl Bvh {
         self.candidate(p, start as usize)
     }
 
-    fn in_model(&self, found: &Candidate) -> Closest {
-        Closest {
+    fn in_model(&self, found: &Candidate) -> ClosestPoint {
+        ClosestPoint {
             point: self.frame.model(found.point),
             face: found.face,
             distance_squared: self.frame.model_squared(found.distance_squared),
@@ -84,8 +87,11 @@ impl Bvh {
         Candidate { point, face: self.faces[slot], distance_squared: p.distance_squared(point) }
     }
 
-    /// Improves `best` to the closest of all: nearest boxes first, no box beyond the best so far. With
-    /// limits until it is within `enough`, and no box beyond `most`; squares.
+    /// Improves `best` to the closest point of all, visiting near boxes first and none beyond the
+    /// best so far.
+    ///
+    /// If `LIMITED`, stops once `best` is within `enough` and visits no box beyond `most`; both are
+    /// squared.
     fn descend<const LIMITED: bool>(
         &self,
         p: DVec3,
@@ -110,7 +116,7 @@ impl Bvh {
                 let distance_squared = distances[child];
                 if node.count[child] == INNER {
                     let mut i = waiting;
-                    // Farthest at the bottom: the nearest is taken first.
+                    // Farthest at the bottom, so that the nearest is popped first.
                     while i > bottom && stack[i - 1].0 < distance_squared {
                         stack[i] = stack[i - 1];
                         i -= 1;
@@ -133,7 +139,7 @@ impl Bvh {
     }
 }
 
-/// A closest point in local coordinates.
+/// Candidate for the closest point, in local coordinates.
 struct Candidate {
     point: DVec3,
     face: FaceId,
@@ -141,7 +147,7 @@ struct Candidate {
 }
 
 impl Candidate {
-    /// Becomes `other` if that is nearer, or as near and of lower id.
+    /// Becomes `other` if that is nearer, or as near and on a face of lower id; returns true if so.
     #[inline]
     fn improve(&mut self, other: Self) -> bool {
         let nearer = other.distance_squared < self.distance_squared
@@ -153,13 +159,13 @@ impl Candidate {
     }
 }
 
-/// The greatest squared box distance at which something as near as `distance_squared` may be.
+/// Returns the greatest squared box distance at which a point as near as `distance_squared` may be.
 #[inline]
 fn reach(distance_squared: f64) -> f32 {
     round_up(distance_squared * SLACK_RELATIVE + SLACK)
 }
 
-/// The children at most `reach` away.
+/// Iterates over the children at most `reach` away.
 #[inline]
 fn within(distances_squared: Vec4, reach: f32) -> impl Iterator<Item = usize> {
     let mut mask = distances_squared.cmple(Vec4::splat(reach)).bitmask();
@@ -170,7 +176,7 @@ fn within(distances_squared: Vec4, reach: f32) -> impl Iterator<Item = usize> {
     })
 }
 
-/// A point between two `f32` points, each coordinate in four lanes.
+/// Query point bracketed by two `f32` points, each coordinate in four lanes.
 struct Query {
     below: [Vec4; 3],
     above: [Vec4; 3],
@@ -184,7 +190,7 @@ impl Query {
         }
     }
 
-    /// Squared distances to the four boxes, too small rather than too large.
+    /// Returns lower bounds on the squared distances to the four boxes of a node.
     #[inline]
     fn distances_squared(&self, node: &Node) -> Vec4 {
         let along = |axis: usize| {

@@ -1,24 +1,24 @@
-//! Coordinates to calculate in: about the middle of a box, at a size near 1.
+//! Local coordinates for computing: centred on a box, at a size near 1.
 
 use glam::DVec3;
 use meshlod_mesh::Bounds;
 
-/// Local coordinates: the middle of the box at the origin, the box between -2 and 2, or -4 and 4 at
-/// the very end of the range of `f64`.
+/// Local coordinates with the centre of a box at the origin and the box between -2 and 2, or -4 and
+/// 4 at the very end of the range of `f64`.
 ///
-/// The scale is a power of two, so scaling rounds nothing. Far-away and extremely large or small
-/// meshes then fit the `f32` boxes, and fourth powers of lengths fit an `f64`.
+/// The scale is a power of two, so scaling is exact. In local coordinates far-away and extremely
+/// large or small meshes fit `f32` boxes, and fourth powers of lengths fit an `f64`.
 #[derive(Clone, Copy, Debug)]
 pub struct Frame {
     origin: DVec3,
     scale: f64,
 }
 
-/// Bound of the exponent of the scale: keeps it and its inverse finite, and normal.
+/// Bound on the exponent of the scale, which keeps the scale and its inverse finite and normal.
 const MAX_EXPONENT: f64 = 1022.0;
 
 impl Frame {
-    /// The frame of a box that is finite; an empty or pointlike box keeps the model's units.
+    /// Returns the frame of a finite box; an empty or pointlike box keeps the model's units.
     pub fn of(bounds: &Bounds) -> Self {
         let half = DVec3::from(bounds.max) * 0.5 - DVec3::from(bounds.min) * 0.5;
         let half = half.max_element();
@@ -31,25 +31,25 @@ impl Frame {
         Self { origin: bounds.center().into(), scale }
     }
 
-    /// Local units to one model unit: a power of two.
+    /// Returns the number of local units in a model unit, a power of two.
     #[inline]
     pub fn scale(&self) -> f64 {
         self.scale
     }
 
-    /// A point of the model in local coordinates.
+    /// Converts a point of the model to local coordinates.
     #[inline]
     pub fn local(&self, point: [f64; 3]) -> DVec3 {
         (DVec3::from(point) - self.origin) * self.scale
     }
 
-    /// A local point in the model.
+    /// Converts a local point to model coordinates.
     #[inline]
     pub fn model(&self, local: DVec3) -> [f64; 3] {
         (local / self.scale + self.origin).into()
     }
 
-    /// A squared local length, or an area, in squared model units.
+    /// Converts a squared length or an area from local to squared model units.
     #[inline]
     pub fn model_squared(&self, local: f64) -> f64 {
         local / self.scale / self.scale

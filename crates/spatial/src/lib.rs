@@ -1,7 +1,8 @@
-//! What several crates search meshes with: a bounding volume hierarchy ([`Bvh`]) over triangles.
+//! Spatial search over triangle meshes: closest points by a bounding volume hierarchy ([`Bvh`]), an
+//! octree of triangles ([`Octree`]) and sorting along a space-filling curve ([`curve_order`]).
 //!
-//! Boxes are compact and rounded outwards; answers are computed from the triangles in `f64` and do
-//! not depend on the tree, the hint or the number of threads.
+//! The hierarchy's boxes are compact and rounded outwards. Answers are computed from the triangles
+//! in `f64` and do not depend on the tree, the hint or the number of threads.
 //!
 //! ```
 //! use meshlod_mesh::{FaceId, Mesh, VertexId};
@@ -17,7 +18,6 @@
 //! ```
 #![forbid(unsafe_code)]
 
-mod blocks;
 mod box3;
 mod build;
 mod bvh;
@@ -30,11 +30,10 @@ mod sum;
 mod tests;
 mod triangle;
 
-pub use blocks::{BoxBlocks, Corners, LANES, Row, lanes};
 pub use bvh::{Bvh, BvhError};
-pub use closest::Closest;
+pub use closest::ClosestPoint;
 pub use curve::curve_order;
 pub use frame::Frame;
-pub use octree::{Cube, Octree};
-pub use sum::Sum;
+pub use octree::{Octree, OctreeLeaf};
+pub use sum::CompensatedSum;
 pub use triangle::{Triangle, closest_point};

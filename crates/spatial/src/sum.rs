@@ -1,17 +1,17 @@
-//! Sums that do not lose their small terms.
+//! Compensated summation.
 
-/// A compensated sum: the rounding of each addition is kept and added at the end.
+/// A compensated sum, which accumulates the rounding error of each addition and adds it at the end.
 ///
-/// Good to within a few ulp of the sum, unless terms cancel by more than fifteen digits.
+/// Accurate to a few ulp of the sum unless terms cancel by more than fifteen digits.
 /// # References
 /// [Neu74] algorithm IV.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Sum {
+pub struct CompensatedSum {
     total: f64,
     lost: f64,
 }
 
-impl Sum {
+impl CompensatedSum {
     /// Adds a term.
     #[inline]
     pub fn add(&mut self, term: f64) {
@@ -24,13 +24,13 @@ impl Sum {
         self.total = total;
     }
 
-    /// What it comes to.
+    /// Returns the value of the sum.
     pub fn value(self) -> f64 {
         self.total + self.lost
     }
 }
 
-impl FromIterator<f64> for Sum {
+impl FromIterator<f64> for CompensatedSum {
     fn from_iter<I: IntoIterator<Item = f64>>(terms: I) -> Self {
         let mut sum = Self::default();
         terms.into_iter().for_each(|term| sum.add(term));
@@ -45,6 +45,6 @@ mod tests {
     #[test]
     fn small_terms_survive_large_ones() {
         let terms = [1.0, 1e100, 1.0, -1e100];
-        assert_eq!(terms.into_iter().collect::<Sum>().value(), 2.0);
+        assert_eq!(terms.into_iter().collect::<CompensatedSum>().value(), 2.0);
     }
 }

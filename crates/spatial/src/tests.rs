@@ -6,9 +6,9 @@ use proptest::prelude::*;
 
 use crate::bvh::INNER;
 use crate::triangle::closest_point;
-use crate::{Bvh, BvhError, Closest};
+use crate::{Bvh, BvhError, ClosestPoint};
 
-/// Every face asked, lowest id first.
+/// Tests every face, lowest id first.
 fn naive(bvh: &Bvh, point: [f64; 3]) -> (FaceId, f64) {
     let p = bvh.frame.local(point);
     let mut best = (FaceId(0), f64::INFINITY);
@@ -22,7 +22,7 @@ fn naive(bvh: &Bvh, point: [f64; 3]) -> (FaceId, f64) {
     (best.0, bvh.frame.model_squared(best.1))
 }
 
-fn check(bvh: &Bvh, point: [f64; 3], hint: Option<FaceId>) -> Closest {
+fn check(bvh: &Bvh, point: [f64; 3], hint: Option<FaceId>) -> ClosestPoint {
     let found = bvh.closest(point, hint);
     assert_eq!((found.face, found.distance_squared), naive(bvh, point), "{point:?} {hint:?}");
     found
@@ -152,7 +152,7 @@ fn a_million_times_the_same_triangle_is_no_trouble() {
     assert_eq!(bvh.closest([0.0, 0.5, 1.0], Some(FaceId(9_000))).face, FaceId(0));
 }
 
-/// Levels of nodes below and with `node`.
+/// Returns the number of levels of the subtree at `node`.
 fn depth(bvh: &Bvh, node: u32) -> usize {
     let node = &bvh.nodes[node as usize];
     let inner = (0..4).filter(|&child| node.count[child] == INNER);
@@ -161,7 +161,7 @@ fn depth(bvh: &Bvh, node: u32) -> usize {
 
 #[test]
 fn shrinking_steps_do_not_make_the_tree_deep() {
-    // Towards the origin along the axes: taken one by one, 1200 points would be 400 levels.
+    // Points approach the origin along the axes: split off one by one, they would make 400 levels.
     let position = |i: usize| {
         let mut position = [0.0; 3];
         position[i % 3] = 1.2f64.powi(-(i as i32 / 3));
@@ -178,11 +178,11 @@ fn shrinking_steps_do_not_make_the_tree_deep() {
 fn the_order_holds_every_face_once_and_follows_the_surface() {
     let mesh = grid(64);
     let bvh = Bvh::new(&mesh).unwrap();
-    let mut seen = bvh.faces_in_order().to_vec();
+    let mut seen = bvh.faces_in_leaf_order().to_vec();
     seen.sort();
     assert!(seen.iter().enumerate().all(|(i, face)| face.index() == i));
     let first_corner = |face: &FaceId| mesh.triangle(mesh.faces[face.index()])[0];
-    let steps = bvh.faces_in_order().windows(2);
+    let steps = bvh.faces_in_leaf_order().windows(2);
     let walked: f64 = steps.map(|w| first_corner(&w[0]).distance(first_corner(&w[1]))).sum();
     assert!(walked / mesh.faces.len() as f64 <= 3.0 / 64.0, "{walked}");
 }

@@ -1,32 +1,33 @@
-//! The point of a triangle closest to a point, in `f64`, for any triangle.
+//! Closest point on a triangle in `f64`, robust for slivers and degenerate triangles.
 
 use glam::DVec3;
 
-/// Three corners.
+/// A triangle given by its three corners.
 pub type Triangle = [DVec3; 3];
 
-/// Squared sine of the first corner's angle below which the normal is not trusted alone.
+/// Squared sine of the first corner's angle below which the normal alone is not trusted.
 ///
 /// At a sine of 1e-6 the normal still has ten good digits.
 const SLIVER: f64 = 1e-12;
 
-/// The point of the triangle closest to `p`.
+/// Returns the point of the triangle closest to `p`.
 ///
-/// Where the projection of `p` falls inside, it is the weighted mean of the corners; else it is on
-/// one of the edges that `p` lies beyond. Slivers, whose normal is uncertain, and degenerate
-/// triangles are also asked edge by edge, so the answer is always a point of the triangle. A corner
-/// is given back bit for bit.
+/// If the projection of `p` falls inside, the result is a barycentric combination of the corners,
+/// else a point on one of the edges that `p` lies beyond. Slivers, whose normal is uncertain, and
+/// degenerate triangles are also tested edge by edge, so the result is always a point of the
+/// triangle. A closest point that is a corner equals it bit for bit.
 ///
-/// Where the least sine of the corners is s, rounding may cost 2e-16 / s of the triangle's size,
-/// and 1e-8 at most: there may be a point nearer by that.
+/// If s is the least sine of the angles, rounding may cost 2e-16 / s of the triangle's size and at
+/// most 1e-8: a point nearer by that much may exist.
+///
 /// # References
-/// [Eri05] section 5.1.5; differs: weights from the normal, which keep their digits in narrow
-/// triangles, and edges where these leave doubt.
+/// [Eri05] section 5.1.5; differs: barycentric weights from the normal, which keep their digits in
+/// narrow triangles, and edge tests where the weights are in doubt.
 #[inline]
 pub fn closest_point(p: DVec3, &[a, b, c]: &Triangle) -> DVec3 {
     let (ab, bc, ca) = (b - a, c - b, a - c);
     let normal = ca.cross(ab);
-    // Each is the area of the part opposite the corner, times twice the normal's square.
+    // Each is proportional to the area of the part opposite the corner.
     let wa = bc.cross(p - b).dot(normal);
     let wb = ca.cross(p - c).dot(normal);
     let wc = ab.cross(p - a).dot(normal);
@@ -49,7 +50,7 @@ pub fn closest_point(p: DVec3, &[a, b, c]: &Triangle) -> DVec3 {
     nearest.point
 }
 
-/// The best point so far.
+/// Nearest point so far.
 struct Nearest {
     point: DVec3,
     distance_squared: f64,
@@ -84,8 +85,8 @@ mod tests {
 
     use super::*;
 
-    /// The distance by search: that to the slice parallel to `bc` is a convex function of where
-    /// the slice is.
+    /// Returns the distance by ternary search: the distance to a slice parallel to `bc` is a convex
+    /// function of the slice's position.
     fn searched(p: DVec3, &[a, b, c]: &Triangle) -> f64 {
         let distance = |t: f64| p.distance(closest_on_segment(p, a + (b - a) * t, a + (c - a) * t));
         let (mut lo, mut hi) = (0.0, 1.0);
@@ -96,26 +97,26 @@ mod tests {
         [lo, hi, 0.0, 1.0].map(distance).into_iter().fold(f64::INFINITY, f64::min)
     }
 
-    /// How far `q` is from being a weighted mean of the corners.
+    /// Returns the distance of `q` from the triangle.
     fn off(q: DVec3, triangle: &Triangle) -> f64 {
         let apart = |from: DVec3, to: DVec3| closest_on_segment(q, from, to).distance(q);
         let [a, b, c] = *triangle;
-        // Of two long sides of a narrow triangle, rounding would turn the normal.
+        // The two long sides of a narrow triangle would give an inaccurate normal.
         let [short, middle, _] = sides(triangle);
         let normal = short.cross(middle).normalize_or_zero();
         let edges = apart(a, b).min(apart(b, c)).min(apart(c, a));
         (q - a).dot(normal).abs().min(edges)
     }
 
-    /// The sides, shortest first.
+    /// Returns the sides, shortest first.
     fn sides(&[a, b, c]: &Triangle) -> [DVec3; 3] {
         let mut sides = [b - a, c - b, a - c];
         sides.sort_by(|u, v| u.length_squared().total_cmp(&v.length_squared()));
         sides
     }
 
-    /// How much farther than the nearest a point may be: the narrower the triangle, the more digits
-    /// the cancelling of its long sides takes. In one without area, an edge answers.
+    /// Returns the tolerated error: the narrower the triangle, the more digits are lost to the
+    /// cancellation of its long sides. Without area, the edges are exact.
     fn allowance(triangle: &Triangle) -> f64 {
         let [short, middle, long] = sides(triangle);
         let sine = short.cross(middle).length() / (middle.length() * long.length());
@@ -139,7 +140,7 @@ mod tests {
             prop_assert!(off(q, &triangle) < 1e-14, "{q} is not on it");
             let (found, searched) = (p.distance(q), searched(p, &triangle));
             let most = searched + allowance(&triangle);
-            prop_assert!(found <= most, "{found} where {searched} can be had");
+            prop_assert!(found <= most, "{found}, but {searched} is possible");
         }
 
         #[test]

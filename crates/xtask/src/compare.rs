@@ -4,7 +4,7 @@
 //! core, CPU time, files excluded.
 
 use anyhow::{Context, Result, bail, ensure};
-use meshlod::measure::{DistanceOptions, Surface, surface_distance, volume};
+use meshlod::measure::{DistanceOptions, PreparedSurface, surface_distance, volume};
 use meshlod::mesh::{Connectivity, Mesh};
 use meshlod::simplify::{Method, Options, Target, simplify};
 use meshlod_bench::peer::{Indexed, simplify_with_update};
@@ -120,7 +120,7 @@ fn row(name: &str, mesh: &Mesh, ratio: f64, rounds: usize) -> Result<Row> {
     let faces = target.faces_of(mesh.faces.len());
     let ours = || simplify(mesh, target, &options).expect("it can be simplified").0;
     let theirs = || simplify_with_update(&indexed, faces);
-    let original = Surface::new(mesh)?;
+    let original = PreparedSurface::new(mesh)?;
     Ok(Row {
         mesh: name.to_owned(),
         ratio,
@@ -132,9 +132,9 @@ fn row(name: &str, mesh: &Mesh, ratio: f64, rounds: usize) -> Result<Row> {
 }
 
 impl Side {
-    fn of(mesh: &Mesh, original: &Surface<'_>, level: &Mesh) -> Result<Self> {
+    fn of(mesh: &Mesh, original: &PreparedSurface<'_>, level: &Mesh) -> Result<Self> {
         let options = DistanceOptions { samples: SAMPLES, seed: 0 };
-        let apart = surface_distance(original, &Surface::new(level)?, &options)?;
+        let apart = surface_distance(original, &PreparedSurface::new(level)?, &options)?;
         let closed = Connectivity::new(&mesh.faces, mesh.positions.len()).is_closed();
         let mut written = level.clone();
         written.positions.iter_mut().flatten().for_each(|x| *x = f64::from(*x as f32));

@@ -1,4 +1,4 @@
-//! Boundary loops: a walk over the edges of one face.
+//! Boundary loops, traced along the boundary edges.
 
 use std::ops::ControlFlow;
 
@@ -13,43 +13,44 @@ pub fn loops(subject: &Subject, visit: &mut Visit) -> ControlFlow<()> {
         return ControlFlow::Continue(());
     }
     let boundary = Boundary::of(&subject.faces, subject.connectivity());
-    for line in boundary.lines_in_order() {
-        let vertices = boundary.vertices(line).to_vec();
-        visit(&Finding::BoundaryLoop { vertices, closed: line.closed })?;
+    for polyline in boundary.sorted_polylines() {
+        let vertices = boundary.vertices(polyline).to_vec();
+        visit(&Finding::BoundaryLoop { vertices, closed: polyline.closed })?;
     }
     ControlFlow::Continue(())
 }
 
-/// The boundary of a mesh, taken apart into lines: each edge of one face is in one of them.
+/// The boundary of a mesh, split into polylines that cover each boundary edge once.
 pub(crate) struct Boundary {
     vertices: Vec<VertexId>,
-    lines: Vec<Line>,
+    polylines: Vec<BoundaryPolyline>,
 }
 
-/// A loop, or a path between non-manifold edges. No vertex comes twice.
+/// A boundary loop, or a path between non-manifold edges. No vertex occurs twice.
 #[derive(Clone, Copy)]
-pub(crate) struct Line {
+pub(crate) struct BoundaryPolyline {
     start: u32,
     len: u32,
     pub closed: bool,
 }
 
-impl Line {
-    /// How many vertices it has.
+impl BoundaryPolyline {
+    /// Returns the number of vertices.
     pub fn len(self) -> usize {
         self.len as usize
     }
 }
 
 impl Boundary {
-    /// Takes the boundary of `faces` apart. Cost: linear, however many loops meet in a vertex.
+    /// Splits the boundary of `faces` into polylines. Cost: linear, however many loops meet in a
+    /// vertex.
     pub fn of(faces: &[[VertexId; 3]], connectivity: &Connectivity) -> Self {
-        let mut walk = Walk::new(faces, connectivity);
+        let mut walk = BoundaryWalk::new(faces, connectivity);
         let starts: Vec<VertexId> = (0..walk.reached.len())
             .map(|v| VertexId(v as u32))
             .filter(|&v| connectivity.marks(v).boundary())
             .collect();
-        // Paths have ends. Once these are walked, only loops are left.
+        // Paths have ends. Once these are walked, only loops remain.
         if connectivity.non_manifold_edges() > 0 {
             for &start in &starts {
                 if walk.is_end(start) {
@@ -63,49 +64,50 @@ impl Boundary {
         walk.found
     }
 
-    pub fn vertices(&self, line: Line) -> &[VertexId] {
-        &self.vertices[line.start as usize..][..line.len as usize]
+    pub fn vertices(&self, of: BoundaryPolyline) -> &[VertexId] {
+        &self.vertices[of.start as usize..][..of.len as usize]
     }
 
-    /// Every line, by its vertices.
-    pub fn lines_in_order(&self) -> Vec<Line> {
-        let mut lines = self.lines.clone();
-        lines.sort_by(|&a, &b| self.vertices(a).cmp(self.vertices(b)));
-        lines
+    /// Returns all polylines, sorted by their vertices.
+    pub fn sorted_polylines(&self) -> Vec<BoundaryPolyline> {
+        let mut polylines = self.polylines.clone();
+        polylines.sort_by(|&a, &b| self.vertices(a).cmp(self.vertices(b)));
+        polylines
     }
 
-    /// Keeps a line, turned so that the lowest vertex of a loop, or the lower end of a path, is
-    /// first.
-    fn keep(&mut self, vertices: &[VertexId], closed: bool) {
+    /// Adds a polyline, rotated so that a loop starts at its lowest vertex, or reversed so that a path
+    /// starts at its lower end.
+    fn add(&mut self, vertices: &[VertexId], closed: bool) {
         let start = self.vertices.len();
         self.vertices.extend_from_slice(vertices);
-        let line = &mut self.vertices[start..];
+        let added = &mut self.vertices[start..];
         if closed {
-            let lowest = (0..line.len()).min_by_key(|&i| line[i]).unwrap_or(0);
-            line.rotate_left(lowest);
-        } else if line.first() > line.last() {
-            line.reverse();
+            let lowest = (0..added.len()).min_by_key(|&i| added[i]).unwrap_or(0);
+            added.rotate_left(lowest);
+        } else if added.first() > added.last() {
+            added.reverse();
         }
-        self.lines.push(Line { start: start as u32, len: vertices.len() as u32, closed });
+        let len = vertices.len() as u32;
+        self.polylines.push(BoundaryPolyline { start: start as u32, len, closed });
     }
 }
 
-/// A walk along the boundary that cuts off a loop whenever it comes back to itself.
-struct Walk<'a> {
+/// A walk along the boundary that cuts off a loop whenever it returns to its own path.
+struct BoundaryWalk<'a> {
     faces: &'a [[VertexId; 3]],
     connectivity: &'a Connectivity,
-    /// Which sides were walked.
+    /// Flag per side: true once walked.
     walked: Vec<bool>,
-    /// How far the star of each vertex is searched for sides that leave it, and that arrive: every
-    /// star is searched once, however often the walk comes through.
+    /// Number of faces of each vertex's star already searched for sides that leave it, and for sides
+    /// that arrive. Each star is searched once, however often the walk passes through.
     searched: [Vec<u32>; 2],
-    /// One more than the place of each vertex on the path; 0 where it is not on it.
+    /// Index of each vertex on the path, plus one; 0 if it is not on the path.
     reached: Vec<u32>,
     path: Vec<VertexId>,
     found: Boundary,
 }
 
-impl<'a> Walk<'a> {
+impl<'a> BoundaryWalk<'a> {
     fn new(faces: &'a [[VertexId; 3]], connectivity: &'a Connectivity) -> Self {
         let vertices = connectivity.vertex_count();
         Self {
@@ -115,11 +117,11 @@ impl<'a> Walk<'a> {
             searched: [vec![0; vertices], vec![0; vertices]],
             reached: vec![0; vertices],
             path: Vec::new(),
-            found: Boundary { vertices: Vec::new(), lines: Vec::new() },
+            found: Boundary { vertices: Vec::new(), polylines: Vec::new() },
         }
     }
 
-    /// Whether an odd number of boundary edges is left there.
+    /// Returns true if an odd number of unwalked boundary edges remains at a vertex.
     fn is_end(&self, vertex: VertexId) -> bool {
         let star = self.connectivity.star(vertex).iter();
         let left = star
@@ -133,18 +135,18 @@ impl<'a> Walk<'a> {
             && !self.walked[side.face().index() * 3 + side.corner()]
     }
 
-    /// Walks from a vertex until no way is left there.
+    /// Walks from a vertex until no unwalked boundary edge remains there.
     fn from(&mut self, start: VertexId) {
         self.step_to(start);
         while let Some(&at) = self.path.last() {
             if let Some(next) = self.next(at) {
                 match self.reached[next.index()] {
                     0 => self.step_to(next),
-                    place => self.cut_loop(place as usize - 1),
+                    index => self.cut_loop(index as usize - 1),
                 }
             } else {
                 if self.path.len() > 1 {
-                    self.found.keep(&self.path, false);
+                    self.found.add(&self.path, false);
                 }
                 self.path.drain(..).for_each(|v| self.reached[v.index()] = 0);
             }
@@ -156,14 +158,14 @@ impl<'a> Walk<'a> {
         self.reached[vertex.index()] = self.path.len() as u32;
     }
 
-    /// The path from `place` on, which is back there now, is a loop.
-    fn cut_loop(&mut self, place: usize) {
-        self.found.keep(&self.path[place..], true);
-        self.path.drain(place + 1..).for_each(|v| self.reached[v.index()] = 0);
+    /// Cuts off the loop that the path forms from `index` on.
+    fn cut_loop(&mut self, index: usize) {
+        self.found.add(&self.path[index..], true);
+        self.path.drain(index + 1..).for_each(|v| self.reached[v.index()] = 0);
     }
 
-    /// Takes a boundary edge at a vertex and gives its other end. Along its face where there is
-    /// such an edge, against it where faces disagree.
+    /// Takes an unwalked boundary edge at a vertex and returns its other end. Prefers an edge in the
+    /// direction of its face; if faces disagree, takes one against it.
     fn next(&mut self, vertex: VertexId) -> Option<VertexId> {
         (0..2).find_map(|arriving| {
             let star = self.connectivity.star(vertex);

@@ -1,4 +1,4 @@
-//! Faces without an inside, faces that are there twice.
+//! Degenerate and duplicate faces.
 
 use std::ops::ControlFlow;
 
@@ -10,7 +10,7 @@ use crate::finding::{Degeneracy, Finding};
 use crate::zero_area::has_zero_area;
 
 pub fn degenerate(subject: &Subject, visit: &mut Visit) -> ControlFlow<()> {
-    for (face, [a, b, c]) in subject.sound() {
+    for (face, [a, b, c]) in subject.valid_faces() {
         let at = |v: VertexId| subject.mesh.positions[v.index()];
         let shape = if a == b || b == c || c == a {
             Degeneracy::RepeatedVertex
@@ -31,15 +31,15 @@ pub fn duplicate(subject: &Subject, visit: &mut Visit) -> ControlFlow<()> {
     ControlFlow::Continue(())
 }
 
-/// Every face with the vertices of an earlier one, whichever way round, lowest id first; and the
-/// first with these vertices. Faces that repeat a vertex are not among them.
+/// Returns each face with the vertices of an earlier one in either orientation, lowest id first,
+/// paired with the first such face. Faces that repeat a vertex are not included.
 pub(crate) fn duplicates(
     faces: &[[VertexId; 3]],
     connectivity: &Connectivity,
 ) -> Vec<(FaceId, FaceId)> {
     let mut suspects: Vec<([VertexId; 3], FaceId)> = (0..faces.len())
         .map(|f| FaceId(f as u32))
-        .filter(|&face| may_have_double(connectivity, face))
+        .filter(|&face| may_have_duplicate(connectivity, face))
         .map(|face| {
             let mut vertices = faces[face.index()];
             vertices.sort_unstable();
@@ -55,10 +55,10 @@ pub(crate) fn duplicates(
     found
 }
 
-/// Whether another face may have the same vertices. Such a face is across each of the three sides,
-/// alone or as one of several.
+/// Returns true if another face may have the same vertices. Such a face lies across each of the three
+/// sides, alone or among several.
 #[inline]
-fn may_have_double(connectivity: &Connectivity, face: FaceId) -> bool {
+fn may_have_duplicate(connectivity: &Connectivity, face: FaceId) -> bool {
     let mut other = None;
     (0..3).all(|k| match connectivity.twin(Side::new(face, k)) {
         Twin::NonManifold => true,

@@ -1,4 +1,4 @@
-//! Closed shells that look inwards.
+//! Closed shells whose faces point inwards.
 
 use std::borrow::Cow;
 use std::ops::ControlFlow;
@@ -12,7 +12,7 @@ use crate::finding::Finding;
 
 pub fn inside_out(subject: &Subject, visit: &mut Visit) -> ControlFlow<()> {
     let connectivity = subject.connectivity();
-    let labels = if hangs_by_vertices(connectivity) {
+    let labels = if shells_are_components(connectivity) {
         Cow::Borrowed(&subject.objects().component_of_face[..])
     } else {
         Cow::Owned(labels(connectivity, subject.faces.len()))
@@ -25,19 +25,19 @@ pub fn inside_out(subject: &Subject, visit: &mut Visit) -> ControlFlow<()> {
     ControlFlow::Continue(())
 }
 
-/// The shells of a mesh: faces that hang together through edges of two faces.
+/// The shells of a mesh: sets of faces connected through manifold edges.
 pub(crate) struct Shells<'a> {
-    /// The shell of every face, by its place in `all`; beyond its end where a face repeats a vertex.
+    /// Shell of every face, an index into `all`; out of range if the face repeats a vertex.
     pub of_face: Cow<'a, [u32]>,
-    /// By their first faces.
+    /// Shells in the order of their first faces.
     pub all: Vec<Shell>,
 }
 
-/// A shell, and what it takes to know its volume.
+/// A shell with the sums that give its volume.
 pub(crate) struct Shell {
-    /// Its first face.
+    /// First face of the shell.
     pub first: FaceId,
-    /// A vertex of it, since far from the origin of coordinates the terms would drown the sum.
+    /// A vertex of the shell: relative to a far-away origin, cancellation would swamp the volume.
     origin: DVec3,
     closed: bool,
     sum: f64,
@@ -45,7 +45,7 @@ pub(crate) struct Shell {
 }
 
 impl Shells<'static> {
-    /// The shells of a mesh whose indices are in range.
+    /// Finds the shells of a mesh whose indices are in range.
     pub fn of_mesh(mesh: &Mesh) -> Self {
         let connectivity = Connectivity::new(&mesh.faces, mesh.positions.len());
         let labels = Cow::Owned(labels(&connectivity, mesh.faces.len()));
@@ -82,8 +82,9 @@ impl<'a> Shells<'a> {
 }
 
 impl Shell {
-    /// A volume below this part of the sum of its terms' magnitudes is rounding: 2^-52 for each of
-    /// a million terms added in line would be 2e-10; errors of random sign stay far below.
+    /// Volume, relative to the sum of the magnitudes of its terms, below which it counts as rounding
+    /// error. Adding a million terms with an error of 2^-52 each could give 2e-10; errors of random
+    /// sign stay far below.
     const ROUNDING: f64 = 1e-12;
 
     fn from(first: FaceId, origin: DVec3) -> Self {
@@ -99,23 +100,23 @@ impl Shell {
         self.closed &= closed;
     }
 
-    /// What it encloses, in cubed model units. `None` where it is open, its faces disagree, or
-    /// rounding may have made the sign.
+    /// Returns the signed enclosed volume, in cubed model units; `None` if the shell is open or
+    /// inconsistently oriented, or if rounding may have decided the sign.
     pub fn volume(&self) -> Option<f64> {
-        let clear = self.sum.abs() > self.magnitude * Self::ROUNDING;
-        (self.closed && clear).then_some(self.sum / 6.0)
+        let certain = self.sum.abs() > self.magnitude * Self::ROUNDING;
+        (self.closed && certain).then_some(self.sum / 6.0)
     }
 }
 
-/// The shell of a face that has none.
+/// Shell of a face that belongs to none.
 const NONE: u32 = u32::MAX;
 
-/// Whether faces that share vertices are one shell: where every vertex has one fan, they are.
-fn hangs_by_vertices(connectivity: &Connectivity) -> bool {
+/// Returns true if shells are the components by shared vertices: every vertex has a single fan.
+fn shells_are_components(connectivity: &Connectivity) -> bool {
     connectivity.degenerate_faces() == 0 && connectivity.pinched_vertices() == 0
 }
 
-/// The shell of every face, numbered by their first faces.
+/// Labels every face with its shell; shells are numbered in the order of their first faces.
 fn labels(connectivity: &Connectivity, faces: usize) -> Vec<u32> {
     let mut labels = vec![NONE; faces];
     let mut count = 0;

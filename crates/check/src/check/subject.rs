@@ -1,4 +1,4 @@
-//! What the kinds share: the faces that take part, and what is derived from them once.
+//! The mesh under check with derived data that several kinds share.
 
 use std::borrow::Cow;
 use std::cell::OnceCell;
@@ -6,42 +6,42 @@ use std::cell::OnceCell;
 use meshlod_mesh::{Connectivity, FaceId, Mesh, VertexId};
 
 use super::CheckOptions;
-use crate::intersect::{Ground, Meetings};
+use crate::intersect::{IntersectingPairs, SearchInput};
 use crate::objects::Objects;
-use crate::places::Places;
+use crate::unique_positions::UniquePositions;
 
-/// A mesh under check. What is derived is made when the first kind asks for it.
+/// A mesh under check. Derived data is computed when first needed.
 pub struct Subject<'a> {
     pub mesh: &'a Mesh,
     options: &'a CheckOptions,
-    /// The faces that take part. Those that cannot stand here as [`LEFT_OUT`], so that ids stay.
+    /// Faces of the mesh; invalid ones are replaced by [`EXCLUDED`], so that ids are kept.
     pub faces: Cow<'a, [[VertexId; 3]]>,
-    /// Whether all faces take part.
-    pub all_sound: bool,
+    /// True if all faces are valid.
+    pub all_valid: bool,
     connectivity: OnceCell<Connectivity>,
-    places: OnceCell<Places>,
+    unique: OnceCell<UniquePositions>,
     used: OnceCell<Vec<bool>>,
     objects: OnceCell<Objects>,
-    meetings: OnceCell<Meetings>,
+    intersecting_pairs: OnceCell<IntersectingPairs>,
 }
 
-/// What stands for a face that takes no part: it repeats a vertex, so that [`Connectivity`] leaves
-/// it out, and no mesh has that vertex.
-pub const LEFT_OUT: [VertexId; 3] = [VertexId(u32::MAX); 3];
+/// Stand-in for an excluded face: it repeats a vertex, so that [`Connectivity`] skips it, and no mesh
+/// has that vertex.
+pub const EXCLUDED: [VertexId; 3] = [VertexId(u32::MAX); 3];
 
 impl<'a> Subject<'a> {
     pub fn of(mesh: &'a Mesh, options: &'a CheckOptions) -> Self {
-        let faces = sound_faces(mesh);
+        let faces = valid_faces(mesh);
         Self {
             mesh,
             options,
-            all_sound: matches!(faces, Cow::Borrowed(_)),
+            all_valid: matches!(faces, Cow::Borrowed(_)),
             faces,
             connectivity: OnceCell::new(),
-            places: OnceCell::new(),
+            unique: OnceCell::new(),
             used: OnceCell::new(),
             objects: OnceCell::new(),
-            meetings: OnceCell::new(),
+            intersecting_pairs: OnceCell::new(),
         }
     }
 
@@ -49,28 +49,28 @@ impl<'a> Subject<'a> {
         self.connectivity.get_or_init(|| Connectivity::new(&self.faces, self.mesh.positions.len()))
     }
 
-    pub fn places(&self) -> &Places {
-        self.places.get_or_init(|| Places::of(&self.mesh.positions))
+    pub fn unique_positions(&self) -> &UniquePositions {
+        self.unique.get_or_init(|| UniquePositions::of(&self.mesh.positions))
     }
 
     pub fn objects(&self) -> &Objects {
         self.objects.get_or_init(|| Objects::of(self.mesh, self.options.objects))
     }
 
-    pub fn meetings(&self) -> &Meetings {
-        self.meetings.get_or_init(|| {
-            let ground = Ground {
+    pub fn intersecting_pairs(&self) -> &IntersectingPairs {
+        self.intersecting_pairs.get_or_init(|| {
+            let input = SearchInput {
                 positions: &self.mesh.positions,
                 faces: &self.faces,
                 connectivity: self.connectivity(),
-                places: self.places(),
+                unique: self.unique_positions(),
                 objects: self.objects(),
             };
-            Meetings::of(&ground, self.options.net)
+            IntersectingPairs::of(&input, self.options.broad_phase)
         })
     }
 
-    /// One flag per vertex: does any face name it, also one that takes no part?
+    /// Returns a flag per vertex: true if any face uses it, even an excluded one.
     pub fn used(&self) -> &[bool] {
         self.used.get_or_init(|| {
             let mut used = vec![false; self.mesh.positions.len()];
@@ -83,24 +83,24 @@ impl<'a> Subject<'a> {
         })
     }
 
-    /// The faces that take part, with their ids.
-    pub fn sound(&self) -> impl Iterator<Item = (FaceId, [VertexId; 3])> + '_ {
+    /// Iterates over the valid faces with their ids.
+    pub fn valid_faces(&self) -> impl Iterator<Item = (FaceId, [VertexId; 3])> + '_ {
         let faces = self.faces.iter().enumerate();
-        faces.filter(|(_, face)| **face != LEFT_OUT).map(|(f, &face)| (FaceId(f as u32), face))
+        faces.filter(|(_, face)| **face != EXCLUDED).map(|(f, &face)| (FaceId(f as u32), face))
     }
 }
 
-/// The faces of a mesh, those that name a vertex that is not there or not finite replaced by
-/// [`LEFT_OUT`].
-fn sound_faces(mesh: &Mesh) -> Cow<'_, [[VertexId; 3]]> {
+/// Returns the faces of a mesh, with those that have a missing or non-finite vertex replaced by
+/// [`EXCLUDED`].
+fn valid_faces(mesh: &Mesh) -> Cow<'_, [[VertexId; 3]]> {
     let count = mesh.positions.len();
     let finite = |v: &[f64; 3]| v.iter().all(|x| x.is_finite());
     let all_finite = mesh.positions.iter().all(finite);
     if all_finite && mesh.faces.iter().flatten().all(|v| v.index() < count) {
         return Cow::Borrowed(&mesh.faces);
     }
-    let sound = |face: &[VertexId; 3]| {
+    let valid = |face: &[VertexId; 3]| {
         face.iter().all(|v| mesh.positions.get(v.index()).is_some_and(finite))
     };
-    mesh.faces.iter().map(|face| if sound(face) { *face } else { LEFT_OUT }).collect()
+    mesh.faces.iter().map(|face| if valid(face) { *face } else { EXCLUDED }).collect()
 }

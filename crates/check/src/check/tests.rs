@@ -211,7 +211,7 @@ fn kinds_come_in_their_order_and_the_first_ends_it() {
     mesh.faces.push(vertices([0, 0, 1]));
     let all = findings(&mesh, &CheckOptions::default());
     assert!(all.is_sorted_by_key(Finding::kind) && all.len() > 4);
-    assert_eq!(first(&mesh, &CheckOptions::default()).as_ref(), all.first());
+    assert_eq!(first_finding(&mesh, &CheckOptions::default()).as_ref(), all.first());
     let mut told = 0;
     let _ = check(&mesh, &CheckOptions::default(), &mut |_| {
         told += 1;

@@ -1,4 +1,4 @@
-//! Vertices that no face uses, vertices at one place.
+//! Unused and coincident vertices.
 
 use std::ops::ControlFlow;
 
@@ -18,7 +18,7 @@ pub fn unused(subject: &Subject, visit: &mut Visit) -> ControlFlow<()> {
 pub fn coincident(subject: &Subject, visit: &mut Visit) -> ControlFlow<()> {
     let used = subject.used();
     let finite = |v: VertexId| subject.mesh.positions[v.index()].iter().all(|x| x.is_finite());
-    for vertices in subject.places().shared(|v| used[v.index()] && finite(v)) {
+    for vertices in subject.unique_positions().groups(|v| used[v.index()] && finite(v)) {
         visit(&Finding::CoincidentVertices { vertices })?;
     }
     ControlFlow::Continue(())

@@ -1,23 +1,28 @@
-//! What lines of contact part a surface into.
+//! Splits a surface into patches along its intersections.
 
 use meshlod_mesh::{Connectivity, FaceId, Mesh, Side, Twin, VertexId};
 use rustc_hash::{FxHashMap, FxHashSet};
 
 use crate::check::edges::lowest_first;
-use crate::places::Places;
+use crate::unique_positions::UniquePositions;
 
-/// Faces that hang together without crossing a line, and are bounded by one; at least one face.
+/// Faces connected without crossing an intersection, and bounded by one; at least one face.
 pub struct Patch {
     pub faces: Vec<FaceId>,
 }
 
-/// The patches of a mesh between lines, by their first faces; what no line bounds is none. An edge
-/// that two components have at the same two places is a line too.
-pub fn patches(mesh: &Mesh, component: &[u32], lines: &FxHashSet<[VertexId; 2]>) -> Vec<Patch> {
+/// Splits a mesh into patches along contact edges, in the order of their first faces. Parts that no
+/// contact edge bounds are omitted. An edge that two components have at the same positions also counts
+/// as a contact edge.
+pub fn patches(
+    mesh: &Mesh,
+    component: &[u32],
+    contact_edges: &FxHashSet<[VertexId; 2]>,
+) -> Vec<Patch> {
     let shared = SharedEdges::of(mesh, component);
     let connectivity = Connectivity::new(&mesh.faces, mesh.positions.len());
-    let on_line = |side: Side| {
-        lines.contains(&lowest_first(side.ends(&mesh.faces))) || shared.hold(mesh, side)
+    let is_contact = |side: Side| {
+        contact_edges.contains(&lowest_first(side.ends(&mesh.faces))) || shared.contain(mesh, side)
     };
     let mut seen = vec![false; mesh.faces.len()];
     let mut patches = Vec::new();
@@ -29,7 +34,7 @@ pub fn patches(mesh: &Mesh, component: &[u32], lines: &FxHashSet<[VertexId; 2]>)
         while let Some(&face) = faces.get(next) {
             next += 1;
             for side in [0, 1, 2].map(|k| Side::new(face, k)) {
-                if on_line(side) {
+                if is_contact(side) {
                     bounded = true;
                 } else if let Twin::Side(twin) = connectivity.twin(side)
                     && !std::mem::replace(&mut seen[twin.face().index()], true)
@@ -45,34 +50,34 @@ pub fn patches(mesh: &Mesh, component: &[u32], lines: &FxHashSet<[VertexId; 2]>)
     patches
 }
 
-/// The edges, as pairs of places, that faces of two components have.
+/// Edges, as pairs of positions, that faces of two components share.
 struct SharedEdges {
-    places: Places,
-    /// The one component, or none where there are several.
-    of: FxHashMap<[VertexId; 2], Option<u32>>,
+    unique: UniquePositions,
+    /// Component of each edge; `None` if there are several.
+    component: FxHashMap<[VertexId; 2], Option<u32>>,
 }
 
 impl SharedEdges {
     fn of(mesh: &Mesh, component: &[u32]) -> Self {
-        let places = Places::of(&mesh.positions);
-        let mut doubled = vec![false; mesh.positions.len()];
-        places.doubles().for_each(|v| doubled[places.first(v).index()] = true);
-        let mut of = FxHashMap::default();
+        let unique = UniquePositions::of(&mesh.positions);
+        let mut duplicated = vec![false; mesh.positions.len()];
+        unique.duplicates().for_each(|v| duplicated[unique.representative(v).index()] = true);
+        let mut components = FxHashMap::default();
         for (face, &component) in mesh.faces.iter().zip(component) {
             for k in 0..3 {
-                let ends = [face[k], face[(k + 1) % 3]].map(|v| places.first(v));
-                // Only between places of several vertices.
-                if ends.iter().all(|v| doubled[v.index()]) {
-                    let first = of.entry(lowest_first(ends)).or_insert(Some(component));
+                let ends = [face[k], face[(k + 1) % 3]].map(|v| unique.representative(v));
+                // Only positions of several vertices can be shared.
+                if ends.iter().all(|v| duplicated[v.index()]) {
+                    let first = components.entry(lowest_first(ends)).or_insert(Some(component));
                     *first = first.filter(|first| *first == component);
                 }
             }
         }
-        Self { places, of }
+        Self { unique, component: components }
     }
 
-    fn hold(&self, mesh: &Mesh, side: Side) -> bool {
-        let ends = side.ends(&mesh.faces).map(|v| self.places.first(v));
-        self.of.get(&lowest_first(ends)).is_some_and(Option::is_none)
+    fn contain(&self, mesh: &Mesh, side: Side) -> bool {
+        let ends = side.ends(&mesh.faces).map(|v| self.unique.representative(v));
+        self.component.get(&lowest_first(ends)).is_some_and(Option::is_none)
     }
 }

@@ -1,4 +1,4 @@
-//! What is inside closed shells.
+//! Decides what is inside closed shells.
 
 use std::f64::consts::TAU;
 
@@ -8,10 +8,10 @@ use meshlod_mesh::{Bounds, FaceId, Mesh};
 use super::patches::Patch;
 use crate::check::shells::Shells;
 
-/// The closed shells of a mesh that cannot be seen through.
+/// Closed opaque shells of a mesh.
 pub struct Solids {
     solids: Vec<Solid>,
-    /// Faces that may still be looked at.
+    /// Face tests that remain.
     budget: usize,
 }
 
@@ -21,18 +21,18 @@ struct Solid {
     triangles: Vec<[DVec3; 3]>,
 }
 
-/// A point of a face, and its normal.
+/// A point of a face with its normal.
 #[derive(Clone, Copy)]
 struct Sample {
     point: DVec3,
     normal: DVec3,
 }
 
-/// How many of the largest faces of a patch must agree, and how many of the others.
+/// Number of samples of a patch, which must all agree: its largest faces, and others spread over it.
 const SAMPLES: [usize; 2] = [16, 48];
 
-/// How far before and behind a face is looked, against the size of the solid.
-const ASIDE: f64 = 1e-7;
+/// Offset of the test points on both sides of a face, relative to the size of the solid.
+const OFFSET: f64 = 1e-7;
 
 impl Solids {
     pub fn of(mesh: &Mesh, component: &[u32], solid: impl Fn(FaceId) -> bool) -> Self {
@@ -40,7 +40,7 @@ impl Solids {
         let closed = shells.all.iter().map(|shell| {
             let component = component[shell.first.index()];
             let empty = Solid { component, bounds: Bounds::EMPTY, triangles: Vec::new() };
-            // What is inside out does not tell where its inside is.
+            // An inside-out shell has no well-defined inside.
             shell.volume().filter(|&volume| volume > 0.0).map(|_| empty)
         });
         let mut slots: Vec<Option<Solid>> = closed.collect();
@@ -56,7 +56,7 @@ impl Solids {
         Self { solids: slots.into_iter().flatten().collect(), budget: 1 << 28 }
     }
 
-    /// A flag per component: whether all of it is solid.
+    /// Returns a flag per component: true if all of it is solid.
     pub fn components(&self, component: &[u32]) -> Vec<bool> {
         let count = component.iter().max().map_or(0, |&most| most as usize + 1);
         let mut faces = vec![0; count];
@@ -67,7 +67,7 @@ impl Solids {
         faces.iter().map(|&others| others == 0).collect()
     }
 
-    /// Whether one of another component hides a patch of a component, as far as that can be told.
+    /// Returns true if a shell of another component hides a patch of `component`, within the budget.
     pub fn hide(&mut self, mesh: &Mesh, patch: &Patch, component: u32) -> bool {
         let samples = samples(mesh, patch);
         let Self { solids, budget } = self;
@@ -79,24 +79,26 @@ impl Solids {
 }
 
 impl Solid {
-    /// Whether a face of another component at this point is inside or lies on the surface: there the
-    /// two may look one way, and the first component's is seen, or against each other, and none is.
+    /// Returns true if the solid hides a face of `component` at a sample point.
+    ///
+    /// The face is hidden if it is inside. Of two coincident faces of equal orientation, that of the
+    /// first component is visible; of opposite orientation, neither is.
     fn hides(&self, sample: &Sample, component: u32, budget: &mut usize) -> bool {
-        let looks = 2 * self.triangles.len();
-        if !holds(&self.bounds, sample.point) || *budget < looks {
+        let tests = 2 * self.triangles.len();
+        if !contains(&self.bounds, sample.point) || *budget < tests {
             return false;
         }
-        *budget -= looks;
-        let aside = sample.normal * (ASIDE * self.bounds.diagonal());
+        *budget -= tests;
+        let offset = sample.normal * (OFFSET * self.bounds.diagonal());
         let is_inside = |point: DVec3| self.winding(point).abs() > 0.5;
         let before = self.component < component;
-        is_inside(sample.point + aside) || (before && is_inside(sample.point - aside))
+        is_inside(sample.point + offset) || (before && is_inside(sample.point - offset))
     }
 
-    /// How often the surface goes around a point.
+    /// Returns the winding number of the surface around a point.
     ///
     /// # References
-    /// [VOS83]: the solid angle of a triangle by one arc tangent.
+    /// [VOS83]: the solid angle of a triangle with a single arctangent.
     fn winding(&self, point: DVec3) -> f64 {
         let angle = |triangle: &[DVec3; 3]| {
             let [a, b, c] = triangle.map(|corner| corner - point);
@@ -108,7 +110,7 @@ impl Solid {
     }
 }
 
-/// The middles of the largest faces of a patch, and of others from all over it.
+/// Samples the centres of the largest faces of a patch, and of others spread over it.
 fn samples(mesh: &Mesh, patch: &Patch) -> Vec<Sample> {
     let mut faces: Vec<(Sample, f64)> = patch
         .faces
@@ -127,7 +129,7 @@ fn samples(mesh: &Mesh, patch: &Patch) -> Vec<Sample> {
     chosen.map(|(_, (sample, _))| *sample).collect()
 }
 
-fn holds(bounds: &Bounds, point: DVec3) -> bool {
+fn contains(bounds: &Bounds, point: DVec3) -> bool {
     let [min, max] = [bounds.min, bounds.max].map(DVec3::from);
     point.cmpge(min).all() && point.cmple(max).all()
 }

@@ -1,73 +1,78 @@
-//! Two triangles in one plane.
+//! Intersection of two coplanar triangles.
 
 use glam::{DVec2, DVec3};
 
-use super::exact::{open_axis, turn, without};
-use super::meet::Triangle;
-use crate::{Touch, TouchKind};
+use super::exact::{orientation, project, projection_axis};
+use super::triangle_pair::Triangle;
+use crate::{Intersection, IntersectionKind};
 
-/// What two triangles in one plane have in common; `None` where they are apart, or one has no area.
+/// Intersects two coplanar triangles; `None` if they are disjoint or one has zero area.
 ///
-/// Seen along an axis that the plane does not hold, where every turn is exact.
-pub(super) fn meet(a: &Triangle, b: &Triangle) -> Option<Touch> {
-    let (axis, _) = open_axis(a)?;
-    let (a, b) = (Flat::of(a, axis)?, Flat::of(b, axis)?);
-    // Two convex shapes do not overlap when an edge of one has the other beyond it.
+/// Works in a projection along a coordinate axis, in which all orientations are exact.
+pub(super) fn intersect(a: &Triangle, b: &Triangle) -> Option<Intersection> {
+    let (axis, _) = projection_axis(a)?;
+    let (a, b) = (Projected::of(a, axis)?, Projected::of(b, axis)?);
+    // Two convex shapes do not overlap if an edge of one has the other beyond it.
     for (one, other) in [(&a, &b), (&b, &a)] {
         for i in 0..3 {
-            let turns = other.seen.map(|p| turn(one.seen[i], one.seen[(i + 1) % 3], p));
-            if turns.iter().all(|&turn| turn <= 0.0) {
+            let (from, to) = (one.projected[i], one.projected[(i + 1) % 3]);
+            let sides = other.projected.map(|p| orientation(from, to, p));
+            if sides.iter().all(|&side| side <= 0.0) {
                 let edge = [one.corners[i], one.corners[(i + 1) % 3]];
-                return on_line(edge, &other.corners, turns);
+                return on_line(edge, &other.corners, sides);
             }
         }
     }
-    Some(Touch { kind: TouchKind::Overlap, place: inside_both(&a, &b).into(), depth: 0.0 })
+    Some(Intersection {
+        kind: IntersectionKind::Overlap,
+        point: inside_both(&a, &b).into(),
+        depth: 0.0,
+    })
 }
 
-/// A triangle, and as it is seen along an axis: counter-clockwise.
-struct Flat {
+/// A triangle and its projection along an axis, counter-clockwise.
+struct Projected {
     corners: Triangle,
-    seen: [DVec2; 3],
+    projected: [DVec2; 3],
 }
 
-impl Flat {
+impl Projected {
     fn of(triangle: &Triangle, axis: usize) -> Option<Self> {
         let [a, b, c] = *triangle;
-        let sign = turn(without(axis, a), without(axis, b), without(axis, c));
+        let sign = orientation(project(axis, a), project(axis, b), project(axis, c));
         let corners = if sign < 0.0 { [a, c, b] } else { [a, b, c] };
-        (sign != 0.0).then(|| Self { corners, seen: corners.map(|p| without(axis, p)) })
+        (sign != 0.0).then(|| Self { corners, projected: corners.map(|p| project(axis, p)) })
     }
 
-    fn holds(&self, p: DVec2) -> bool {
-        (0..3).all(|i| turn(self.seen[i], self.seen[(i + 1) % 3], p) >= 0.0)
+    fn contains(&self, p: DVec2) -> bool {
+        (0..3).all(|i| orientation(self.projected[i], self.projected[(i + 1) % 3], p) >= 0.0)
     }
 }
 
-/// What an edge has in common with a triangle beyond its line.
-fn on_line(edge: [DVec3; 2], other: &Triangle, turns: [f64; 3]) -> Option<Touch> {
-    let touching = || other.iter().zip(turns).filter(|&(_, turn)| turn == 0.0).map(|(&p, _)| p);
+/// Intersects an edge with a triangle that lies beyond the edge's line or touches it.
+fn on_line(edge: [DVec3; 2], other: &Triangle, sides: [f64; 3]) -> Option<Intersection> {
+    let touching = || other.iter().zip(sides).filter(|&(_, side)| side == 0.0).map(|(&p, _)| p);
     let least = |p: DVec3, q: DVec3| if before(p, q) { p } else { q };
     let greatest = |p: DVec3, q: DVec3| if before(p, q) { q } else { p };
     let start = greatest(least(edge[0], edge[1]), touching().reduce(least)?);
     let end = least(greatest(edge[0], edge[1]), touching().reduce(greatest)?);
-    let (kind, place) = if start == end {
-        (TouchKind::Vertex, start)
+    let (kind, point) = if start == end {
+        (IntersectionKind::Point, start)
     } else if before(start, end) {
-        (TouchKind::Edge, (start + end) * 0.5)
+        (IntersectionKind::Segment, (start + end) * 0.5)
     } else {
         return None;
     };
-    Some(Touch { kind, place: place.into(), depth: 0.0 })
+    Some(Intersection { kind, point: point.into(), depth: 0.0 })
 }
 
-/// An order of points that runs along every line.
+/// Orders points lexicographically, which is monotone along every line.
 fn before(p: DVec3, q: DVec3) -> bool {
     p.to_array() < q.to_array()
 }
 
-/// The mean of the corners of what two overlapping triangles have in common.
-fn inside_both(a: &Flat, b: &Flat) -> DVec3 {
+/// Returns the mean of the corners of the intersection polygon of two overlapping triangles.
+fn inside_both(a: &Projected, b: &Projected) -> DVec3 {
     let mut sum = DVec3::ZERO;
     let mut count = 0.0;
     let mut add = |p: DVec3| {
@@ -75,18 +80,19 @@ fn inside_both(a: &Flat, b: &Flat) -> DVec3 {
         count += 1.0;
     };
     for (one, other) in [(a, b), (b, a)] {
-        for (i, &p) in one.seen.iter().enumerate() {
-            if other.holds(p) {
+        for (i, &p) in one.projected.iter().enumerate() {
+            if other.contains(p) {
                 add(one.corners[i]);
             }
         }
     }
     for i in 0..3 {
-        let (from, to) = (a.seen[i], a.seen[(i + 1) % 3]);
+        let (from, to) = (a.projected[i], a.projected[(i + 1) % 3]);
         for j in 0..3 {
-            let (p, q) = (b.seen[j], b.seen[(j + 1) % 3]);
-            let (at_p, at_q) = (turn(from, to, p), turn(from, to, q));
-            let crosses = opposite(at_p, at_q) && opposite(turn(p, q, from), turn(p, q, to));
+            let (p, q) = (b.projected[j], b.projected[(j + 1) % 3]);
+            let (at_p, at_q) = (orientation(from, to, p), orientation(from, to, q));
+            let crosses =
+                opposite(at_p, at_q) && opposite(orientation(p, q, from), orientation(p, q, to));
             if crosses {
                 let along = at_p / (at_p - at_q);
                 add(b.corners[j] + (b.corners[(j + 1) % 3] - b.corners[j]) * along);

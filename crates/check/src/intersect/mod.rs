@@ -1,204 +1,220 @@
-//! All pairs of faces that meet beyond what they share, exactly.
+//! Finds all pairs of faces that intersect beyond what they share, exactly.
 //!
-//! Three steps. Faces around a vertex are most of the pairs that are close, and are certified ring
-//! by ring ([`rings`]); the rings that fail are tested pair by pair. Pairs that share nothing come
-//! from a net ([`Net`]), pass a filter in `f64` ([`filter`]), and are decided by exact signs
-//! ([`meet`]).
+//! Most close pairs are faces around a common vertex. These are certified ring by ring ([`rings`]),
+//! and the rings that fail are tested pair by pair ([`shared_vertex`]). Pairs that share no vertex
+//! come from a broad phase ([`BroadPhase`]). Every tested pair passes a filter in `f64`
+//! ([`filter`]), and what remains is decided by exact signs ([`triangle_pair`]).
 
+mod broad_phase;
 mod coplanar;
-mod ends;
 mod exact;
 mod filter;
-mod hub;
-mod meet;
-mod net;
 mod rings;
-mod shares;
+mod segment_end;
+mod shared_by_objects;
+mod shared_vertex;
 mod soup;
 #[cfg(test)]
 mod tests;
+mod triangle_pair;
 
 use std::ops::ControlFlow;
 
 use meshlod_mesh::{FaceId, Mesh, VertexId};
 use rustc_hash::FxHashMap;
 
-use crate::{Touch, TouchKind};
+use crate::{Intersection, IntersectionKind};
 use filter::{Pair, surely_only_share};
-use meet::meet;
-use rings::Certified;
-use soup::{Soup, whole};
+use rings::CertifiedRings;
+use soup::{TriangleSoup, has_distinct_corners};
+use triangle_pair::intersect;
 
-pub(crate) use ends::{End, On};
-pub(crate) use exact::{open_axis, turn, without};
-pub(crate) use soup::{Ground, Points};
+pub(crate) use exact::{orientation, project, projection_axis};
+pub(crate) use segment_end::{Feature, SegmentEnd};
+pub(crate) use soup::{ScaledPositions, SearchInput};
 
-/// What finds the pairs of faces that may meet. The findings are the same with either.
+/// Broad phase that finds the pairs of faces whose boxes overlap. The findings do not depend on it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-pub enum Net {
-    /// A hierarchy of boxes, against itself: fast.
+pub enum BroadPhase {
+    /// Bounding volume hierarchy tested against itself: fast.
     #[default]
     Tree,
-    /// An octree of cubes, and the pairs that pass through a cube: as [`crate::Cubes`] shows it.
-    Cubes,
+    /// Octree, of which pairs in a common leaf are tested; see [`crate::ObjectOctree`].
+    Octree,
 }
 
-/// The pairs of faces that meet beyond what they share.
+/// The pairs of faces that intersect beyond what they share.
 #[derive(Debug)]
-pub(crate) struct Meetings {
+pub(crate) struct IntersectingPairs {
     pairs: Vec<[FaceId; 2]>,
     complete: bool,
-    /// What positions are scaled with.
+    /// Factor by which positions are scaled for exact signs.
     scale: f64,
 }
 
-/// What a search may cost. Real meshes need a hundredth of it: a few pairs to the face are close.
+/// Limits on the work of a search. Real meshes need a hundredth of it: a few close pairs a face.
 #[derive(Clone, Copy, Debug)]
 struct Limits {
-    /// Pairs of faces, and of a face and a block, that may be looked at.
-    looks: usize,
+    /// Tests of two faces, or of a face and a block, that remain.
+    tests: usize,
     /// Pairs that may be kept.
     kept: usize,
 }
 
 impl Limits {
     fn of(faces: usize) -> Self {
-        Self { looks: 1000 * faces + (1 << 24), kept: 32 * faces + (1 << 20) }
+        Self { tests: 1000 * faces + (1 << 24), kept: 32 * faces + (1 << 20) }
     }
 }
 
-impl Meetings {
-    /// All pairs of faces that meet beyond what they share.
+impl IntersectingPairs {
+    /// Finds all pairs of faces that intersect beyond what they share.
     ///
-    /// Corners at one place are shared, whatever their vertices. Between two objects sharing is a
-    /// meeting too: one for each edge that they share, and one for each place at which they share
-    /// no edge. Faces without area have no part, nor has one at the places of an earlier one of its
-    /// object, beyond the meeting of these two when their vertices are others.
+    /// Corners at one position are shared even if their vertices differ. Between two objects,
+    /// sharing counts as a contact: one pair for each shared edge, and one for each shared position
+    /// without a shared edge. Faces of zero area are excluded, and so is a face at the same three
+    /// positions as an earlier one of its object, apart from the pair of these two if their
+    /// vertices differ.
     ///
-    /// Gives up where all faces are close to all others, and then is not complete: after looking at
-    /// 1,000 pairs for each face and 17 million, or keeping 32 for each face and a million.
-    pub(crate) fn of(ground: &Ground<'_>, net: Net) -> Self {
-        Self::within(ground, net, Limits::of(ground.faces.len()))
+    /// If all faces are close to all others, the search gives up and the result is incomplete: after
+    /// 1,000 tests a face plus 17 million, or 32 pairs a face plus a million.
+    pub(crate) fn of(input: &SearchInput<'_>, broad_phase: BroadPhase) -> Self {
+        Self::within(input, broad_phase, Limits::of(input.faces.len()))
     }
 
-    fn within(ground: &Ground<'_>, net: Net, limits: Limits) -> Self {
-        let soup = Soup::of(ground);
-        let certified = Certified::of(ground, &soup);
+    fn within(input: &SearchInput<'_>, broad_phase: BroadPhase, limits: Limits) -> Self {
+        let soup = TriangleSoup::of(input);
+        let certified = CertifiedRings::of(input, &soup);
         let mut search =
-            Search { ground, soup: &soup, certified: &certified, limits, found: Vec::new() };
-        let left_out = search.left_out();
-        let counts = |f: FaceId| !left_out[f.index()];
-        let around = search.around_places(counts);
-        let complete = around.is_continue() && search.apart(net, counts).is_continue();
+            Search { input, soup: &soup, certified: &certified, limits, found: Vec::new() };
+        let excluded = search.excluded();
+        let counts = |f: FaceId| !excluded[f.index()];
+        let rings = search.test_rings(counts);
+        let complete =
+            rings.is_continue() && search.test_disjoint(broad_phase, counts).is_continue();
         search.merge_found();
-        Self { pairs: search.found, complete, scale: soup.points.scale() }
+        Self { pairs: search.found, complete, scale: soup.positions.scale() }
     }
 
-    /// Whether all were found.
+    /// Returns true if the search was not cut short.
     pub(crate) fn complete(&self) -> bool {
         self.complete
     }
 
-    /// The lower face of each first; lowest first.
+    /// Returns the pairs in ascending order, the lower face of each first.
     pub(crate) fn pairs(&self) -> &[[FaceId; 2]] {
         &self.pairs
     }
 
-    /// How the faces of a pair meet. `None` is left to coordinates that are too far apart in size
-    /// for exact signs.
-    pub(crate) fn touch(&self, mesh: &Mesh, pair: [FaceId; 2]) -> Option<Touch> {
-        let points = Points::new(&mesh.positions, self.scale);
-        let [a, b] = pair.map(|f| points.triangle(mesh.faces[f.index()]));
-        let touch = meet(&a, &b)?;
-        let (place, depth) = (points.place(touch.place), points.length(touch.depth));
-        Some(Touch { place, depth, ..touch })
+    /// Computes how the faces of a pair intersect. `None` only occurs if coordinates differ too much
+    /// in magnitude for exact signs.
+    pub(crate) fn intersection(&self, mesh: &Mesh, pair: [FaceId; 2]) -> Option<Intersection> {
+        let positions = ScaledPositions::new(&mesh.positions, self.scale);
+        let [a, b] = pair.map(|f| positions.triangle(mesh.faces[f.index()]));
+        let found = intersect(&a, &b)?;
+        let point = positions.unscaled(found.point);
+        Some(Intersection { point, depth: positions.unscaled_length(found.depth), ..found })
     }
 
-    /// Where what two triangles in different planes have in common ends; see [`meet::ends`].
-    pub(crate) fn ends(&self, mesh: &Mesh, corners: [[VertexId; 3]; 2]) -> Option<[End; 2]> {
-        let points = Points::new(&mesh.positions, self.scale);
-        let [a, b] = corners.map(|corners| corners.map(|v| points.at(v)));
-        let place = |end: End| End { place: points.place(end.place.into()).into(), ..end };
-        Some(meet::ends(&a, &b)?.map(place))
+    /// Computes the end points of the intersection of two triangles in different planes; see
+    /// [`triangle_pair::segment_ends`].
+    pub(crate) fn segment_ends(
+        &self,
+        mesh: &Mesh,
+        corners: [[VertexId; 3]; 2],
+    ) -> Option<[SegmentEnd; 2]> {
+        let positions = ScaledPositions::new(&mesh.positions, self.scale);
+        let [a, b] = corners.map(|corners| corners.map(|v| positions.at(v)));
+        let unscaled = |end: SegmentEnd| SegmentEnd {
+            position: positions.unscaled(end.position.into()).into(),
+            ..end
+        };
+        Some(triangle_pair::segment_ends(&a, &b)?.map(unscaled))
     }
 }
 
-/// What a search has at hand, and what it has found.
+/// State of a search: its input and the pairs found so far.
 struct Search<'a> {
-    ground: &'a Ground<'a>,
-    soup: &'a Soup<'a>,
-    certified: &'a Certified,
-    /// What is left of them.
+    input: &'a SearchInput<'a>,
+    soup: &'a TriangleSoup<'a>,
+    certified: &'a CertifiedRings,
+    /// Limits that remain.
     limits: Limits,
     found: Vec<[FaceId; 2]>,
 }
 
-/// A search goes on until it has cost too much.
-type Step = ControlFlow<()>;
+/// Control flow of a search, which breaks once its limits are exhausted.
+type Flow = ControlFlow<()>;
 
 impl Search<'_> {
-    /// The faces that have no part: without area, or at the places of an earlier one.
-    fn left_out(&mut self) -> Vec<bool> {
+    /// Flags the excluded faces: those of zero area and those at the positions of an earlier one.
+    fn excluded(&mut self) -> Vec<bool> {
         let mut seen = FxHashMap::default();
-        let mut left_out = vec![false; self.soup.corners.len()];
+        let mut excluded = vec![false; self.soup.corners.len()];
         for (f, corners) in self.soup.corners.iter().enumerate() {
             let face = FaceId::new(f);
-            // Around a certified place no two faces are at the same places, and all have area.
-            if whole(corners) && corners.iter().any(|&v| self.certified.holds(v)) {
+            // In a certified ring no two faces coincide, and all have area.
+            if has_distinct_corners(corners) && corners.iter().any(|&v| self.certified.contains(v))
+            {
                 continue;
             }
             if !self.soup.counts(face) {
-                left_out[f] = true;
+                excluded[f] = true;
                 continue;
             }
-            let key = (sorted(corners), self.ground.objects.of_face[f]);
+            let key = (sorted(corners), self.input.objects.of_face[f]);
             let first = *seen.entry(key).or_insert(face);
-            left_out[f] = first != face;
+            excluded[f] = first != face;
             if first != face
-                && sorted(&self.ground.faces[f]) != sorted(&self.ground.faces[first.index()])
+                && sorted(&self.input.faces[f]) != sorted(&self.input.faces[first.index()])
             {
                 self.found.push([first, face]);
             }
         }
-        left_out
+        excluded
     }
 
-    /// Tests the faces that share places, and adds what objects share.
-    fn around_places(&mut self, counts: impl Fn(FaceId) -> bool) -> Step {
-        let places = self.ground.places;
+    /// Tests the faces that share vertices, and adds the pairs of objects that share any.
+    fn test_rings(&mut self, counts: impl Fn(FaceId) -> bool) -> Flow {
+        let unique = self.input.unique;
         let joined = self.objects_join();
-        let mut doubles: Vec<_> = places.doubles().map(|v| (places.first(v), v)).collect();
-        doubles.sort_unstable();
-        let mut doubles = doubles.as_slice();
+        let mut duplicates: Vec<_> =
+            unique.duplicates().map(|v| (unique.representative(v), v)).collect();
+        duplicates.sort_unstable();
+        let mut duplicates = duplicates.as_slice();
         let mut star = Vec::new();
-        for place in (0..self.ground.positions.len()).map(VertexId::new) {
-            let here = doubles.iter().take_while(|(first, _)| *first == place).count();
-            let (doubles_here, later) = doubles.split_at(here);
-            doubles = later;
-            let certified = self.certified.holds(place);
-            let may_be_shared = joined || here > 0;
-            if places.first(place) != place || (certified && !may_be_shared) {
+        for vertex in (0..self.input.positions.len()).map(VertexId::new) {
+            let count = duplicates.iter().take_while(|(first, _)| *first == vertex).count();
+            let (here, later) = duplicates.split_at(count);
+            duplicates = later;
+            let certified = self.certified.contains(vertex);
+            let may_be_shared = joined || count > 0;
+            if unique.representative(vertex) != vertex || (certified && !may_be_shared) {
                 continue;
             }
             star.clear();
-            for v in [place].into_iter().chain(doubles_here.iter().map(|&(_, v)| v)) {
-                let faces = self.ground.connectivity.star(v).iter().copied();
-                star.extend(faces.filter(|&f| whole(&self.soup.corners[f.index()]) && counts(f)));
+            for v in [vertex].into_iter().chain(here.iter().map(|&(_, v)| v)) {
+                let faces = self.input.connectivity.star(v).iter().copied();
+                star.extend(
+                    faces.filter(|&f| {
+                        has_distinct_corners(&self.soup.corners[f.index()]) && counts(f)
+                    }),
+                );
             }
             star.sort_unstable();
             if may_be_shared {
-                self.add_sharing(&star, place)?;
+                self.add_sharing(&star, vertex)?;
             }
             if !certified {
-                self.test_ring(&star, place)?;
+                self.test_ring(&star, vertex)?;
             }
         }
         ControlFlow::Continue(())
     }
 
-    /// Whether a component is in two objects, so that any vertex may be.
+    /// Returns true if some component belongs to two objects, so that any vertex may be shared.
     fn objects_join(&self) -> bool {
-        let objects = self.ground.objects;
+        let objects = self.input.objects;
         let mut of_component = vec![None; objects.components];
         let mut faces = objects.component_of_face.iter().zip(&objects.of_face);
         faces.any(|(&component, &object)| {
@@ -206,47 +222,47 @@ impl Search<'_> {
         })
     }
 
-    /// Whether faces that share no place meet.
+    /// Returns true if two faces that share no vertex intersect.
     #[inline]
-    fn meet_apart(&self, [f, g]: [[VertexId; 3]; 2]) -> bool {
-        let triangles = [self.soup.points.triangle(f), self.soup.points.triangle(g)];
-        let pair = Pair { triangles: &triangles, alone: [[true; 3]; 2] };
-        !surely_only_share(&pair) && meet(&triangles[0], &triangles[1]).is_some()
+    fn disjoint_intersect(&self, [f, g]: [[VertexId; 3]; 2]) -> bool {
+        let triangles = [self.soup.positions.triangle(f), self.soup.positions.triangle(g)];
+        let pair = Pair { triangles: &triangles, unshared: [[true; 3]; 2] };
+        !surely_only_share(&pair) && intersect(&triangles[0], &triangles[1]).is_some()
     }
 
-    /// Adds a pair of faces that share places if they have more in common.
-    fn test_sharing(&mut self, f: FaceId, g: FaceId) -> Step {
+    /// Adds a pair of faces that share corners if they have more in common.
+    fn test_sharing(&mut self, f: FaceId, g: FaceId) -> Flow {
         let triangles = [self.soup.triangle(f), self.soup.triangle(g)];
         let [f_at, g_at] = [f, g].map(|face| self.soup.corners[face.index()]);
-        let alone = [f_at.map(|v| !g_at.contains(&v)), g_at.map(|v| !f_at.contains(&v))];
-        let pair = Pair { triangles: &triangles, alone };
-        // A shared corner is a point in common, a shared edge a segment, and no more.
-        let more = match alone[0].iter().filter(|alone| **alone).count() {
-            2 => TouchKind::Edge,
-            _ => TouchKind::Crossing,
+        let unshared = [f_at.map(|v| !g_at.contains(&v)), g_at.map(|v| !f_at.contains(&v))];
+        let pair = Pair { triangles: &triangles, unshared };
+        // A shared corner alone gives a point, a shared edge a segment.
+        let more = match unshared[0].iter().filter(|unshared| **unshared).count() {
+            2 => IntersectionKind::Segment,
+            _ => IntersectionKind::Crossing,
         };
         if !surely_only_share(&pair)
-            && meet(&triangles[0], &triangles[1]).is_some_and(|touch| touch.kind >= more)
+            && intersect(&triangles[0], &triangles[1]).is_some_and(|found| found.kind >= more)
         {
             self.keep([f, g])?;
         }
         ControlFlow::Continue(())
     }
 
-    /// Counts one more pair that is looked at.
+    /// Counts one more test against the limit.
     #[inline]
-    fn look(&mut self) -> Step {
-        if self.limits.looks == 0 {
+    fn count_test(&mut self) -> Flow {
+        if self.limits.tests == 0 {
             return ControlFlow::Break(());
         }
-        self.limits.looks -= 1;
+        self.limits.tests -= 1;
         ControlFlow::Continue(())
     }
 
-    /// Adds a pair.
-    fn keep(&mut self, pair: [FaceId; 2]) -> Step {
+    /// Adds a pair, unless that exceeds the limit.
+    fn keep(&mut self, pair: [FaceId; 2]) -> Flow {
         if self.found.len() >= self.limits.kept {
-            // Cubes and shared places find pairs several times.
+            // Octree leaves and shared vertices find pairs several times.
             self.merge_found();
             if self.found.len() > self.limits.kept / 2 {
                 return ControlFlow::Break(());
@@ -256,7 +272,7 @@ impl Search<'_> {
         ControlFlow::Continue(())
     }
 
-    /// Brings the pairs in their order, each once.
+    /// Sorts the pairs and removes duplicates.
     fn merge_found(&mut self) {
         for pair in &mut self.found {
             pair.sort_unstable();

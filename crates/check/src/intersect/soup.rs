@@ -1,4 +1,4 @@
-//! The faces as the search sees them: corners by place, coordinates that cannot overflow.
+//! The triangle soup that is searched: corners merged by position, coordinates that cannot overflow.
 
 use std::borrow::Cow;
 use std::ops::Range;
@@ -6,89 +6,91 @@ use std::ops::Range;
 use glam::DVec3;
 use meshlod_mesh::{Connectivity, FaceId, VertexId};
 
-use super::exact::open_axis;
-use super::meet::Triangle;
-use crate::{Objects, Places};
+use super::exact::projection_axis;
+use super::triangle_pair::Triangle;
+use crate::{Objects, UniquePositions};
 
-/// What a search for meetings looks at.
+/// Input of a search for intersecting faces.
 #[derive(Clone, Copy)]
-pub(crate) struct Ground<'a> {
+pub(crate) struct SearchInput<'a> {
     pub(crate) positions: &'a [[f64; 3]],
-    /// A face that has no part repeats a vertex; all others name finite positions.
+    /// Faces; an excluded one repeats a vertex, all others have finite positions.
     pub(crate) faces: &'a [[VertexId; 3]],
-    /// Of these faces.
+    /// Connectivity of these faces.
     pub(crate) connectivity: &'a Connectivity,
-    pub(crate) places: &'a Places,
+    pub(crate) unique: &'a UniquePositions,
     pub(crate) objects: &'a Objects,
 }
 
-/// Faces whose corners are places: vertices at one place are one.
-pub(crate) struct Soup<'a> {
+/// Faces whose corners are merged by position: of the vertices at one position, the lowest stands for
+/// all.
+pub(crate) struct TriangleSoup<'a> {
     pub(crate) corners: Cow<'a, [[VertexId; 3]]>,
-    pub(crate) points: Points<'a>,
+    pub(crate) positions: ScaledPositions<'a>,
 }
 
-impl<'a> Soup<'a> {
-    pub(crate) fn of(ground: &Ground<'a>) -> Self {
-        let corners = match ground.places.doubles().next() {
-            None => Cow::Borrowed(ground.faces),
-            Some(_) => ground.faces.iter().map(|face| at_places(face, ground.places)).collect(),
+impl<'a> TriangleSoup<'a> {
+    pub(crate) fn of(input: &SearchInput<'a>) -> Self {
+        let corners = match input.unique.duplicates().next() {
+            None => Cow::Borrowed(input.faces),
+            Some(_) => input.faces.iter().map(|face| merged_corners(face, input.unique)).collect(),
         };
-        let points = Points::of(ground.positions, &corners);
-        Self { corners, points }
+        let positions = ScaledPositions::of(input.positions, &corners);
+        Self { corners, positions }
     }
 
     #[inline]
     pub(crate) fn triangle(&self, face: FaceId) -> Triangle {
-        self.points.triangle(self.corners[face.index()])
+        self.positions.triangle(self.corners[face.index()])
     }
 
-    /// Whether a face has a part: three places, and some area.
+    /// Returns true if a face takes part: three distinct positions and an area.
     pub(crate) fn counts(&self, face: FaceId) -> bool {
-        whole(&self.corners[face.index()]) && open_axis(&self.triangle(face)).is_some()
+        has_distinct_corners(&self.corners[face.index()])
+            && projection_axis(&self.triangle(face)).is_some()
     }
 }
 
-/// Whether a face has three different corners.
+/// Returns true if a face has three different corners.
 #[inline]
-pub(crate) fn whole(&[a, b, c]: &[VertexId; 3]) -> bool {
+pub(crate) fn has_distinct_corners(&[a, b, c]: &[VertexId; 3]) -> bool {
     a != b && b != c && c != a
 }
 
-fn at_places(face: &[VertexId; 3], places: &Places) -> [VertexId; 3] {
-    if whole(face) { face.map(|v| places.first(v)) } else { *face }
+fn merged_corners(face: &[VertexId; 3], unique: &UniquePositions) -> [VertexId; 3] {
+    if has_distinct_corners(face) { face.map(|v| unique.representative(v)) } else { *face }
 }
 
-/// Positions, scaled by a power of two where their products would leave the range of `f64`.
+/// Positions scaled by a power of two if their products would leave the range of `f64`.
 ///
-/// Determinants of them are exact as long as no coordinate other than 0 is less than 1e-88 of the
-/// greatest: coordinates are then multiples of 2^-358, and products of three of 2^-1074, the least
-/// number there is.
+/// Their determinants are exact as long as no nonzero coordinate is less than 1e-88 of the greatest:
+/// coordinates are then multiples of 2^-358, and products of three are multiples of 2^-1074, the
+/// least positive `f64`.
 #[derive(Clone, Copy)]
-pub(crate) struct Points<'a> {
+pub(crate) struct ScaledPositions<'a> {
     positions: &'a [[f64; 3]],
     scale: f64,
 }
 
-/// Where the greatest coordinate needs no scaling: products of three do not overflow, nor do those
-/// of what is 1e-88 of it underflow.
+/// Range of the greatest coordinate that needs no scaling: products of three coordinates neither
+/// overflow nor, down to 1e-88 of it, underflow.
 const FITTING: Range<f64> = 1e-3..1e60;
 
-impl<'a> Points<'a> {
+impl<'a> ScaledPositions<'a> {
     pub(crate) fn of(positions: &'a [[f64; 3]], corners: &[[VertexId; 3]]) -> Self {
         let size = |p: &[f64; 3]| DVec3::from(*p).abs().max_element();
         let fits = |size: f64| size == 0.0 || FITTING.contains(&size);
         if fits(positions.iter().map(size).fold(0.0, f64::max)) {
             return Self { positions, scale: 1.0 };
         }
-        // Only vertices of faces count; the others may be anywhere.
-        let used = corners.iter().filter(|face| whole(face)).flatten();
+        // Vertices that no face uses may be anywhere.
+        let used = corners.iter().filter(|face| has_distinct_corners(face)).flatten();
         let greatest = used.map(|v| size(&positions[v.index()])).fold(0.0, f64::max);
         let exponent = if fits(greatest) { 0.0 } else { -greatest.log2().floor() };
         Self { positions, scale: 2f64.powi(exponent.clamp(-1022.0, 1022.0) as i32) }
     }
 
-    /// The same points as those with this scale.
+    /// Scales positions by a given scale.
     pub(crate) fn new(positions: &'a [[f64; 3]], scale: f64) -> Self {
         Self { positions, scale }
     }
@@ -107,13 +109,13 @@ impl<'a> Points<'a> {
         [self.at(a), self.at(b), self.at(c)]
     }
 
-    /// A place found among these points, in model units.
-    pub(crate) fn place(&self, place: [f64; 3]) -> [f64; 3] {
-        place.map(|x| x / self.scale)
+    /// Converts a scaled point to model coordinates.
+    pub(crate) fn unscaled(&self, point: [f64; 3]) -> [f64; 3] {
+        point.map(|x| x / self.scale)
     }
 
-    /// A length found among these points, in model units.
-    pub(crate) fn length(&self, length: f64) -> f64 {
+    /// Converts a scaled length to model units.
+    pub(crate) fn unscaled_length(&self, length: f64) -> f64 {
         length / self.scale
     }
 }

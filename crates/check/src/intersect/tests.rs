@@ -6,7 +6,7 @@ use meshlod_mesh::{Connectivity, Labels, Mesh};
 use meshlod_samples as samples;
 
 use super::*;
-use crate::{CheckOptions, Finding, Kind, Kinds, Places, findings};
+use crate::{CheckOptions, Finding, Kind, Kinds, UniquePositions, findings};
 
 /// Random numbers, the same on every run [SLF14].
 pub(super) struct Random(pub(super) u64);
@@ -22,9 +22,9 @@ impl Random {
 }
 
 /// The pairs that the check finds.
-fn found(mesh: &Mesh, net: Net) -> BTreeSet<[FaceId; 2]> {
+fn found(mesh: &Mesh, broad_phase: BroadPhase) -> BTreeSet<[FaceId; 2]> {
     let kinds = Kinds::NONE.with(Kind::SelfIntersection).with(Kind::Contact);
-    let options = CheckOptions { kinds, net, ..CheckOptions::default() };
+    let options = CheckOptions { kinds, broad_phase, ..CheckOptions::default() };
     let faces = |finding: Finding| match finding {
         Finding::SelfIntersection { mut faces, .. } | Finding::Contact { mut faces, .. } => {
             faces.sort_unstable();
@@ -36,16 +36,16 @@ fn found(mesh: &Mesh, net: Net) -> BTreeSet<[FaceId; 2]> {
 }
 
 /// Two faces of a mesh without regard to others: the places they share, and what they have in common.
-fn seen_alone(mesh: &Mesh, [f, g]: [usize; 2]) -> (usize, Option<TouchKind>) {
+fn seen_alone(mesh: &Mesh, [f, g]: [usize; 2]) -> (usize, Option<IntersectionKind>) {
     let [a, b] = [f, g].map(|f| mesh.triangle(mesh.faces[f]));
     let shared = a.iter().filter(|p| b.contains(p)).count();
-    (shared, meet(&a, &b).map(|touch| touch.kind))
+    (shared, intersect(&a, &b).map(|found| found.kind))
 }
 
 /// Compares with all pairs of faces, none of which may be double.
 fn compare(mesh: &Mesh) {
-    let found = found(mesh, Net::Tree);
-    assert_eq!(found, self::found(mesh, Net::Cubes));
+    let found = found(mesh, BroadPhase::Tree);
+    assert_eq!(found, self::found(mesh, BroadPhase::Octree));
     let objects = crate::Objects::of(mesh, crate::ObjectsBy::Auto).of_face;
     let mut expected_objects = BTreeSet::new();
     for f in 0..mesh.faces.len() {
@@ -54,8 +54,8 @@ fn compare(mesh: &Mesh) {
             let (shared, kind) = seen_alone(mesh, [f, g]);
             let more = match shared {
                 0 => kind.is_some(),
-                1 => kind > Some(TouchKind::Vertex),
-                _ => kind > Some(TouchKind::Edge),
+                1 => kind > Some(IntersectionKind::Point),
+                _ => kind > Some(IntersectionKind::Segment),
             };
             let apart = objects[f] == objects[g];
             if more || (apart && found.contains(&pair)) {
@@ -127,7 +127,7 @@ fn real_meshes_are_searched_alike_by_both_nets() {
     {
         let Some(path) = meshlod_fixtures::shared_mesh(name) else { continue };
         let mesh = meshlod_io::read(&path, &Default::default()).unwrap().flatten();
-        assert_eq!(found(&mesh, Net::Tree), found(&mesh, Net::Cubes), "{name}");
+        assert_eq!(found(&mesh, BroadPhase::Tree), found(&mesh, BroadPhase::Octree), "{name}");
     }
 }
 
@@ -135,7 +135,7 @@ fn real_meshes_are_searched_alike_by_both_nets() {
 fn samples_do_not_meet_themselves() {
     for (name, faces) in [("sphere", 3000), ("torus", 3000), ("knot", 6000), ("gyroid", 9000)] {
         let mesh = samples::by_name(name, Some(faces)).unwrap();
-        assert!(found(&mesh, Net::Tree).is_empty(), "{name}");
+        assert!(found(&mesh, BroadPhase::Tree).is_empty(), "{name}");
     }
 }
 
@@ -158,27 +158,27 @@ fn many_faces_at_one_place_are_searched_as_all_pairs_would_be() {
     for (seed, width, least) in [(1, 1e-3, 0), (2, 0.3, 100), (3, 2.0, 1000)] {
         let mesh = star(seed, 300, width);
         compare(&mesh);
-        assert!(found(&mesh, Net::Tree).len() >= least);
+        assert!(found(&mesh, BroadPhase::Tree).len() >= least);
     }
 }
 
 /// What is found within some limits, and whether that is all.
 fn searched(mesh: &Mesh, limits: Limits) -> (Vec<[FaceId; 2]>, bool) {
     let objects = crate::Objects::of(mesh, crate::ObjectsBy::Auto);
-    let ground = Ground {
+    let ground = SearchInput {
         positions: &mesh.positions,
         faces: &mesh.faces,
         connectivity: &Connectivity::new(&mesh.faces, mesh.positions.len()),
-        places: &Places::of(&mesh.positions),
+        unique: &UniquePositions::of(&mesh.positions),
         objects: &objects,
     };
-    let meetings = Meetings::within(&ground, Net::Tree, limits);
+    let meetings = IntersectingPairs::within(&ground, BroadPhase::Tree, limits);
     (meetings.pairs().to_vec(), meetings.complete())
 }
 
 #[test]
 fn a_hub_of_many_faces_costs_little() {
-    let few = Limits { looks: 3_000_000, kept: 100_000 };
+    let few = Limits { tests: 3_000_000, kept: 100_000 };
     // Round a cone, and in all directions: one ring is certified, the other is not.
     let count = 60_000;
     let turn = |i: u32| std::f64::consts::TAU * f64::from(i) / f64::from(count);
@@ -198,7 +198,7 @@ fn where_all_cross_all_the_search_gives_up_and_says_so() {
     mesh.objects = None;
     let (all, complete) = searched(&mesh, Limits::of(2000));
     assert!(complete && all.len() > 50_000);
-    for limits in [Limits { looks: 1000, kept: 1 << 20 }, Limits { looks: 1 << 40, kept: 2000 }] {
+    for limits in [Limits { tests: 1000, kept: 1 << 20 }, Limits { tests: 1 << 40, kept: 2000 }] {
         let (some, complete) = searched(&mesh, limits);
         assert!(!complete && !some.is_empty() && some.len() <= 2000);
         assert!(some.iter().all(|pair| all.binary_search(pair).is_ok()));
@@ -208,14 +208,14 @@ fn where_all_cross_all_the_search_gives_up_and_says_so() {
 #[test]
 fn size_does_not_matter() {
     let mesh = soup(11, 100, 12, 200);
-    let pairs = found(&mesh, Net::Tree);
+    let pairs = found(&mesh, BroadPhase::Tree);
     assert!(pairs.len() > 10);
     for exponent in [-1000, -500, -200, 200, 500, 1000] {
         let mut scaled = mesh.clone();
         for x in scaled.positions.iter_mut().flatten() {
             *x *= 2f64.powi(exponent);
         }
-        assert_eq!(found(&scaled, Net::Tree), pairs, "2^{exponent}");
-        assert_eq!(found(&scaled, Net::Cubes), pairs, "2^{exponent}");
+        assert_eq!(found(&scaled, BroadPhase::Tree), pairs, "2^{exponent}");
+        assert_eq!(found(&scaled, BroadPhase::Octree), pairs, "2^{exponent}");
     }
 }

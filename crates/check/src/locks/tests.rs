@@ -53,7 +53,7 @@ fn squares_side_by_side_are_tied() {
     let locking = locks(&both(square(0.0, 1.0, 0.0), &square(1.0, 1.0, 0.0)), &CONTACTS);
     assert_eq!(locking.locks.ties, [[1, 4], [2, 7]].map(|tie| tie.map(VertexId)));
     assert_eq!(locking.locks.of_vertex, [Lock::Free; 8]);
-    assert_eq!(locking.count(LockReason::SharedPlace), 4);
+    assert_eq!(locking.count(LockReason::SharedPosition), 4);
 }
 
 #[test]
@@ -94,7 +94,7 @@ fn one_in_the_other_and_one_on_the_other_in_one_plane() {
     // The same face twice moves as one.
     let locking = locks(&both(square(0.0, 1.0, 0.0), &square(0.0, 1.0, 0.0)), &CONTACTS);
     assert_eq!(locking.locks.ties.len(), 4);
-    assert_eq!(locking.count(LockReason::SharedPlace), 8);
+    assert_eq!(locking.count(LockReason::SharedPosition), 8);
 }
 
 #[test]

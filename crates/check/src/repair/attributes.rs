@@ -1,12 +1,14 @@
-//! Attributes and labels that do not fit the faces.
+//! Repairs attributes and labels that do not match the faces.
 
 use meshlod_mesh::{Attributes, Labels, Mesh};
 
 use super::edit::own_wedges;
 
-/// Leaves out what does not fit: all attributes where corners do not, else single layers, and
-/// labels; gives a wedge that stands at several vertices to each. Says how many of these there were.
-pub fn mend(mesh: &mut Mesh) -> usize {
+/// Removes mismatched attributes and labels, and splits wedges used by several vertices; returns the
+/// number of repairs.
+///
+/// All attributes are removed if the corners do not match the faces, else only mismatched layers.
+pub fn repair(mesh: &mut Mesh) -> usize {
     let faces = mesh.faces.len();
     let mut count = 0;
     if mesh.attributes.as_ref().is_some_and(|attributes| !corners_fit(attributes, faces)) {
@@ -37,7 +39,7 @@ fn drop_bad_layers(attributes: &mut Attributes) -> usize {
             && layer.kind.width().is_none_or(|width| width == layer.width)
     });
     if attributes.layers.iter().all(|layer| layer.values.is_empty()) {
-        // Nothing here is as long as the count says; what corners name is.
+        // No layer determines the number of wedges, so the corners do.
         let named = attributes.corners.as_flattened().iter().max();
         attributes.wedge_count = named.map_or(0, |w| w.index() + 1);
     }

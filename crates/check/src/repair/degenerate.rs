@@ -1,36 +1,36 @@
-//! Faces without an area.
+//! Removes faces of zero area.
 
 use glam::DVec3;
 use meshlod_mesh::{Connectivity, FaceId, LayerKind, Mesh, Side, Twin, VertexId, WedgeId};
 use rustc_hash::FxHashSet;
 
 use super::edit::{labels, retain_faces};
-use crate::imprint::blend::to_unit_length;
+use crate::imprint::interpolate::normalize;
 use crate::zero_area::has_zero_area;
 
-/// How often flipping starts anew: each round takes one face of a row of slivers that lie on each
-/// other, and two or three rounds are what meshes need.
+/// Maximum number of rounds of flips. Each round fixes one face of a stack of slivers; meshes need two
+/// or three.
 const ROUNDS: usize = 16;
 
-/// The greatest star that is searched for an edge.
-const MOST_AROUND: usize = 256;
+/// Largest star that is searched for an existing edge.
+const MOST_STAR: usize = 256;
 
-/// What was done.
+/// Counts of what was done.
 #[derive(Debug, Default, PartialEq)]
-pub struct Mended {
-    /// Edges flipped, each of which gave one face an area.
+pub struct Removed {
+    /// Edges flipped, each of which gave a face an area.
     pub flipped: usize,
-    /// Faces left out.
+    /// Faces removed.
     pub dropped: usize,
 }
 
-/// Rids a mesh of faces without an area.
+/// Removes the faces of zero area.
 ///
-/// One whose middle corner lies on the opposite edge shares that edge with a neighbour: the two are
-/// divided anew, from the middle corner to the neighbour's tip, and the surface stays whole and
-/// where it is. What cannot be helped so is left out; that a corner repeats a place leaves borders
-/// on each other, which are for stitching.
-pub fn mend(mesh: &mut Mesh) -> Mended {
+/// If a corner lies on the opposite edge, that edge is flipped: the face and its neighbour become the
+/// two halves of the neighbour, split from the middle corner to the neighbour's tip, and the surface
+/// stays unchanged. Other faces of zero area are dropped. Where two corners coincide, dropping the
+/// face leaves coincident boundary edges for stitching.
+pub fn remove(mesh: &mut Mesh) -> Removed {
     let repeats = |[a, b, c]: [VertexId; 3]| a == b || b == c || c == a;
     let faces = std::mem::take(&mut mesh.faces);
     let dropped = {
@@ -39,31 +39,31 @@ pub fn mend(mesh: &mut Mesh) -> Mended {
     };
     let mut flipped = 0;
     for _ in 0..ROUNDS {
-        let empty = without_area(mesh);
-        let helped = if empty.is_empty() { 0 } else { flip_round(mesh, &empty) };
-        flipped += helped;
-        if helped == 0 {
+        let empty = zero_area_faces(mesh);
+        let count = if empty.is_empty() { 0 } else { flip_round(mesh, &empty) };
+        flipped += count;
+        if count == 0 {
             break;
         }
     }
-    let empty: FxHashSet<FaceId> = without_area(mesh).into_iter().collect();
-    Mended {
+    let empty: FxHashSet<FaceId> = zero_area_faces(mesh).into_iter().collect();
+    Removed {
         flipped,
         dropped: dropped + retain_faces(mesh, |face| !empty.contains(&FaceId(face as u32))),
     }
 }
 
-fn without_area(mesh: &Mesh) -> Vec<FaceId> {
+fn zero_area_faces(mesh: &Mesh) -> Vec<FaceId> {
     let corners = |face: &[VertexId; 3]| face.map(|v| mesh.positions[v.index()]);
     let faces = mesh.faces.iter().enumerate();
     faces.filter(|(_, face)| has_zero_area(corners(face))).map(|(f, _)| FaceId::new(f)).collect()
 }
 
-/// Flips what can be flipped at once, and says how many.
+/// Flips the edges that can be flipped independently; returns their number.
 fn flip_round(mesh: &mut Mesh, empty: &[FaceId]) -> usize {
     let connectivity = Connectivity::new(&mesh.faces, mesh.positions.len());
     let mut touched: FxHashSet<FaceId> = FxHashSet::default();
-    let mut drawn: FxHashSet<[VertexId; 2]> = FxHashSet::default();
+    let mut new_edges: FxHashSet<[VertexId; 2]> = FxHashSet::default();
     let before = touched.len();
     for &face in empty {
         let Some(flip) = Flip::of(mesh, &connectivity, face) else { continue };
@@ -71,7 +71,7 @@ fn flip_round(mesh: &mut Mesh, empty: &[FaceId]) -> usize {
         if touched.contains(&face) || touched.contains(&flip.neighbour) {
             continue;
         }
-        if drawn.insert([b.min(d), b.max(d)]) {
+        if new_edges.insert([b.min(d), b.max(d)]) {
             flip.apply(mesh);
             touched.extend([face, flip.neighbour]);
         }
@@ -79,21 +79,22 @@ fn flip_round(mesh: &mut Mesh, empty: &[FaceId]) -> usize {
     (touched.len() - before) / 2
 }
 
-/// A face whose corner `middle` lies on its opposite edge, and the face across that edge.
+/// Flip of an edge that contains the opposite corner `middle` of a face.
 struct Flip {
     face: FaceId,
-    /// Which corner of the face the middle is.
+    /// Index of the middle corner in the face.
     corner: usize,
     middle: VertexId,
     neighbour: FaceId,
-    /// Which corner of the neighbour lies opposite.
+    /// Index of the neighbour's corner opposite the edge.
     tip_corner: usize,
     tip: VertexId,
 }
 
 impl Flip {
-    /// `None` where no corner lies strictly within the opposite edge, that edge has not two faces,
-    /// the neighbour has no area either, or the new edge is there already.
+    /// Finds the flip for a face; `None` if no corner lies strictly inside the opposite edge, that
+    /// edge does not have two faces, the neighbour also has zero area, or the new edge exists
+    /// already.
     fn of(mesh: &Mesh, connectivity: &Connectivity, face: FaceId) -> Option<Self> {
         let corners = mesh.faces[face.index()];
         let corner = (0..3).find(|&k| is_between(mesh.triangle(corners), k))?;
@@ -105,14 +106,14 @@ impl Flip {
         let tip_corner = (twin.corner() + 2) % 3;
         let (middle, tip) = (corners[corner], across[tip_corner]);
         let star = connectivity.star(middle);
-        let fits = star.len() <= MOST_AROUND
+        let fits = star.len() <= MOST_STAR
             && !has_zero_area(across.map(|v| mesh.positions[v.index()]))
             && !star.iter().any(|face| mesh.faces[face.index()].contains(&tip));
         fits.then_some(Self { face, corner, middle, neighbour, tip_corner, tip })
     }
 
-    /// The two faces become the neighbour's halves: each has the middle in the place of one end of
-    /// the edge between them.
+    /// Replaces both faces by the halves of the neighbour, each with the middle corner in place of
+    /// one end of the edge between them.
     fn apply(&self, mesh: &mut Mesh) {
         let across = mesh.faces[self.neighbour.index()];
         let ends = [(self.tip_corner + 1) % 3, (self.tip_corner + 2) % 3];
@@ -133,8 +134,8 @@ impl Flip {
         }
     }
 
-    /// The wedge of the middle in the neighbour's halves: its own, or where a seam runs along the
-    /// edge, a new one with what the neighbour has there.
+    /// Returns the wedge of the middle corner in the neighbour's halves: its own or, if the edge is a
+    /// seam, a new one interpolated from the neighbour's.
     fn wedge(&self, mesh: &mut Mesh, ends: [usize; 2]) -> Option<WedgeId> {
         let across = mesh.faces[self.neighbour.index()];
         let own = mesh.faces[self.face.index()];
@@ -161,7 +162,7 @@ impl Flip {
     }
 }
 
-/// Whether corner `k` of three on a line lies between the others, at neither.
+/// Returns true if corner `k` of three collinear ones lies strictly between the others.
 fn is_between(corners: [DVec3; 3], k: usize) -> bool {
     let [at, from, to] = [corners[k], corners[(k + 1) % 3], corners[(k + 2) % 3]];
     let within = (0..3).all(|axis| {
@@ -171,14 +172,14 @@ fn is_between(corners: [DVec3; 3], k: usize) -> bool {
     within && at != from && at != to
 }
 
-/// Values between two wedges: of joints, those of the nearer.
+/// Interpolates the values of two wedges; joints come from the nearer one.
 fn between(kind: LayerKind, a: &[f32], b: &[f32], part: f32) -> Vec<f32> {
     if let LayerKind::Joints(_) = kind {
         return if part <= 0.5 { a.to_vec() } else { b.to_vec() };
     }
     let mut values: Vec<f32> = a.iter().zip(b).map(|(a, b)| a + (b - a) * part).collect();
     if let LayerKind::Normal | LayerKind::Tangent = kind {
-        to_unit_length(&mut values[..3]);
+        normalize(&mut values[..3]);
         values[3..].copy_from_slice(&a[3..]);
     }
     values

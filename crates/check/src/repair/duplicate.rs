@@ -1,4 +1,4 @@
-//! Faces that are there twice.
+//! Removes duplicate faces.
 
 use meshlod_mesh::{Connectivity, FaceId, Mesh, VertexId};
 use rustc_hash::FxHashSet;
@@ -6,25 +6,26 @@ use rustc_hash::FxHashSet;
 use super::edit::retain_faces;
 use crate::check::faces::duplicates;
 
-/// Leaves out faces with the same vertices, the same way round, as an earlier one; says how many.
+/// Removes faces with the same vertices and orientation as an earlier one; returns their number.
 ///
-/// A face that is there both ways round is the two sides of a sheet, or the wall between two rooms:
-/// taking one away would open the other. What splits edges takes these apart.
+/// Two faces of opposite orientation are the sides of a sheet, or a wall between two rooms: removing
+/// one would open the other. Splitting non-manifold edges separates them.
 pub fn drop_duplicates(mesh: &mut Mesh) -> usize {
     let connectivity = Connectivity::new(&mesh.faces, mesh.positions.len());
-    // By the first face with the vertices: has it been the other way round already?
+    // First faces of which a copy of opposite orientation has been seen.
     let mut reversed: FxHashSet<FaceId> = FxHashSet::default();
     let dropped: FxHashSet<FaceId> = duplicates(&mesh.faces, &connectivity)
         .into_iter()
         .filter(|&(face, of)| {
-            same_way(mesh.faces[face.index()], mesh.faces[of.index()]) || !reversed.insert(of)
+            same_orientation(mesh.faces[face.index()], mesh.faces[of.index()])
+                || !reversed.insert(of)
         })
         .map(|(face, _)| face)
         .collect();
     retain_faces(mesh, |face| !dropped.contains(&FaceId(face as u32)))
 }
 
-/// Whether two faces with the same vertices go round the same way.
-fn same_way(a: [VertexId; 3], b: [VertexId; 3]) -> bool {
+/// Returns true if two faces with the same vertices have the same orientation.
+fn same_orientation(a: [VertexId; 3], b: [VertexId; 3]) -> bool {
     (0..3).any(|k| [b[k], b[(k + 1) % 3], b[(k + 2) % 3]] == a)
 }

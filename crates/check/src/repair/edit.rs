@@ -1,9 +1,9 @@
-//! What steps do to a mesh and all that hangs on it.
+//! Edits of a mesh together with its attributes and labels.
 
 use meshlod_mesh::{Labels, Mesh, VertexId, WedgeId};
 use rustc_hash::FxHashMap;
 
-/// Leaves out the faces that are not kept, with their corners and labels; says how many.
+/// Removes the faces that are not kept, with their corners and labels; returns their number.
 pub fn retain_faces(mesh: &mut Mesh, keeps: impl Fn(usize) -> bool) -> usize {
     let before = mesh.faces.len();
     if (0..before).all(&keeps) {
@@ -27,22 +27,22 @@ fn retain<T>(items: &mut Vec<T>, keeps: impl Fn(usize) -> bool) {
     });
 }
 
-/// Materials and objects, where there are some.
+/// Iterates over the materials and objects, if present.
 pub fn labels(mesh: &mut Mesh) -> impl Iterator<Item = &mut Labels> {
     mesh.materials.iter_mut().chain(mesh.objects.iter_mut())
 }
 
-/// Gives every vertex that a wedge stands at a wedge of its own with the same values, and says how
-/// many are new. The first vertex in the order of faces keeps the wedge.
+/// Copies wedges used by several vertices so that each vertex has its own; returns the number of
+/// copies. The first vertex in the order of faces keeps the original.
 pub fn own_wedges(mesh: &mut Mesh) -> usize {
     let Some(attributes) = &mut mesh.attributes else { return 0 };
     let before = attributes.wedge_count;
-    let mut home: Vec<Option<VertexId>> = vec![None; before];
+    let mut owner: Vec<Option<VertexId>> = vec![None; before];
     let mut others: FxHashMap<(WedgeId, VertexId), WedgeId> = FxHashMap::default();
     let mut copied: Vec<WedgeId> = Vec::new();
     let faces = mesh.faces.as_flattened().iter();
     for (wedge, &vertex) in attributes.corners.as_flattened_mut().iter_mut().zip(faces) {
-        if *home[wedge.index()].get_or_insert(vertex) != vertex {
+        if *owner[wedge.index()].get_or_insert(vertex) != vertex {
             *wedge = *others.entry((*wedge, vertex)).or_insert_with(|| {
                 copied.push(*wedge);
                 WedgeId::new(before + copied.len() - 1)
@@ -59,7 +59,7 @@ pub fn own_wedges(mesh: &mut Mesh) -> usize {
     copied.len()
 }
 
-/// Leaves out vertices and wedges that no face uses; says how many vertices.
+/// Removes vertices and wedges that no face uses; returns the number of vertices.
 pub fn drop_unused(mesh: &mut Mesh) -> usize {
     let before = mesh.positions.len();
     mesh.compact();

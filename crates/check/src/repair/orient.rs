@@ -1,32 +1,32 @@
-//! Making neighbours agree which side is out.
+//! Makes the orientation of neighbouring faces consistent.
 
 use meshlod_mesh::{Connectivity, FaceId, Mesh, Side, Twin};
 
-use super::turn::turn;
+use super::reverse::reverse_faces;
 
-/// What came of it.
+/// Counts of what was done.
 #[derive(Debug, Default, PartialEq)]
 pub struct Oriented {
-    /// Faces turned.
+    /// Faces reversed.
     pub turned: usize,
-    /// Shells that cannot be oriented, and stay as they are.
+    /// Shells that cannot be oriented and stay unchanged.
     pub impossible: usize,
 }
 
-/// Turns faces until those on two sides of an edge agree, in every shell as few as it takes; where
-/// that is half of them, the first face stays.
+/// Reverses faces until neighbours agree, in every shell as few as possible; in a tie the first face
+/// keeps its orientation.
 pub fn agree(mesh: &mut Mesh) -> Oriented {
     let connectivity = Connectivity::new(&mesh.faces, mesh.positions.len());
     if connectivity.inconsistent_edges() == 0 {
         return Oriented::default();
     }
-    let mut walk = Walk::new(mesh, &connectivity);
+    let mut walk = OrientationWalk::new(mesh, &connectivity);
     let mut impossible = 0;
     for face in (0..mesh.faces.len()).map(|f| FaceId(f as u32)) {
         impossible += usize::from(!walk.orient_shell(face));
     }
     let turned: Vec<bool> = walk.state.iter().map(|&state| state == State::Turned).collect();
-    turn(mesh, &turned);
+    reverse_faces(mesh, &turned);
     Oriented { turned: turned.iter().filter(|turned| **turned).count(), impossible }
 }
 
@@ -37,20 +37,20 @@ enum State {
     Turned,
 }
 
-struct Walk<'a> {
+struct OrientationWalk<'a> {
     mesh: &'a Mesh,
     connectivity: &'a Connectivity,
     state: Vec<State>,
     shell: Vec<FaceId>,
 }
 
-impl<'a> Walk<'a> {
+impl<'a> OrientationWalk<'a> {
     fn new(mesh: &'a Mesh, connectivity: &'a Connectivity) -> Self {
         let state = vec![State::Unseen; mesh.faces.len()];
         Self { mesh, connectivity, state, shell: Vec::new() }
     }
 
-    /// Orients the shell of a face, if it is still to be done; false where that cannot be.
+    /// Orients the shell of a face unless done already; returns false if it cannot be oriented.
     fn orient_shell(&mut self, first: FaceId) -> bool {
         if self.state[first.index()] != State::Unseen {
             return true;
@@ -70,7 +70,8 @@ impl<'a> Walk<'a> {
         possible
     }
 
-    /// Gathers a shell and turns what disagrees with `first`; false where some always will.
+    /// Gathers a shell and marks the faces that disagree with `first`; returns false if the marks
+    /// contradict each other.
     fn flood(&mut self, first: FaceId) -> bool {
         self.shell.clear();
         self.shell.push(first);

@@ -1,17 +1,17 @@
-//! Closed shells that look inwards are turned over.
+//! Reverses closed shells that point inwards.
 
 use meshlod_mesh::{Bounds, Mesh};
 
-use super::turn::turn;
+use super::reverse::reverse_faces;
 use crate::check::shells::Shells;
 
-/// The most shells that are asked whether they go around another. Beyond, the largest are.
-const MOST_AROUND: usize = 512;
+/// Limit on the shells considered as enclosing others; the largest are taken.
+const MOST_ENCLOSING: usize = 512;
 
-/// Turns every closed shell over that looks inwards, and says how many.
+/// Reverses every closed shell that points inwards; returns their number.
 ///
-/// But not one that another closed shell may go around: it may be the wall of a hollow, which does
-/// look inwards. Boxes decide that, so that some stay which could be turned.
+/// A shell that another closed shell may enclose is kept, since it may be the wall of a cavity, which
+/// rightly points inwards. Bounding boxes decide, so some shells are kept that could be reversed.
 pub fn turn_outward(mesh: &mut Mesh) -> usize {
     let shells = Shells::of_mesh(mesh);
     let volumes: Vec<Option<f64>> = shells.all.iter().map(|shell| shell.volume()).collect();
@@ -25,11 +25,11 @@ pub fn turn_outward(mesh: &mut Mesh) -> usize {
         }
     }
     let closed = (0..boxes.len()).filter(|&shell| volumes[shell].is_some());
-    let mut around: Vec<usize> = closed.collect();
-    around.sort_by(|&a, &b| boxes[b].diagonal().total_cmp(&boxes[a].diagonal()));
-    around.truncate(MOST_AROUND);
+    let mut enclosing: Vec<usize> = closed.collect();
+    enclosing.sort_by(|&a, &b| boxes[b].diagonal().total_cmp(&boxes[a].diagonal()));
+    enclosing.truncate(MOST_ENCLOSING);
     let in_another = |shell: usize| {
-        around.iter().any(|&other| other != shell && holds(&boxes[other], &boxes[shell]))
+        enclosing.iter().any(|&other| other != shell && contains(&boxes[other], &boxes[shell]))
     };
     let turns: Vec<bool> = (0..boxes.len())
         .map(|shell| volumes[shell].is_some_and(|volume| volume < 0.0) && !in_another(shell))
@@ -37,10 +37,10 @@ pub fn turn_outward(mesh: &mut Mesh) -> usize {
     let of_face = shells.of_face.iter();
     let turned: Vec<bool> =
         of_face.map(|&shell| turns.get(shell as usize).copied().unwrap_or(false)).collect();
-    turn(mesh, &turned);
+    reverse_faces(mesh, &turned);
     turns.iter().filter(|turns| **turns).count()
 }
 
-fn holds(outer: &Bounds, inner: &Bounds) -> bool {
+fn contains(outer: &Bounds, inner: &Bounds) -> bool {
     (0..3).all(|axis| outer.min[axis] <= inner.min[axis] && inner.max[axis] <= outer.max[axis])
 }

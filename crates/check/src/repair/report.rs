@@ -1,48 +1,48 @@
-//! What a repair did: one count for each step.
+//! Report of a repair: one count for each step.
 
-/// A count of what was done.
+/// A step of a repair or a defect it left, with a count in the report.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum RepairStep {
-    /// Layers, labels and corners left out that do not fit, and wedges that stood at two vertices.
+    /// Mismatched layers, labels and corners removed, and wedges of several vertices split.
     BadAttributes,
-    /// Faces left out that name a vertex that is not there, or not finite.
+    /// Faces removed that had a missing or non-finite vertex.
     BadFaces,
-    /// Vertices left out that are not finite.
+    /// Non-finite vertices removed.
     BadVertices,
-    /// Vertices that became one with another.
+    /// Vertices welded to another.
     Welded,
-    /// Faces left out that were there twice, the same way round.
+    /// Duplicate faces of the same orientation removed.
     Duplicates,
-    /// Edges flipped to give a face without area some of its neighbour's.
+    /// Edges flipped to give a face of zero area some of its neighbour's.
     FlippedEdges,
-    /// Faces left out that had no area.
+    /// Faces of zero area removed.
     Degenerate,
-    /// Edges of three faces or more that were taken apart.
+    /// Non-manifold edges split.
     SplitEdges,
-    /// Vertices that came from taking edges and vertices apart.
+    /// Vertices added by splitting edges and vertices.
     SplitVertices,
-    /// Faces turned to agree with their neighbours.
+    /// Faces reversed to agree with their neighbours.
     TurnedFaces,
-    /// Shells left as they are, since their faces cannot all agree.
+    /// Shells left unchanged because they cannot be oriented.
     NotOrientable,
-    /// Pairs of border edges that became one edge each.
+    /// Pairs of boundary edges stitched.
     Stitched,
-    /// Holes closed.
+    /// Holes filled.
     FilledHoles,
-    /// Faces that close them.
+    /// Faces added to fill holes.
     FillingFaces,
-    /// Holes within the limits left open, since no filling fits.
+    /// Holes within the limits left open because no filling is valid.
     HolesLeft,
-    /// Holes within the limits left open, since there are so many: the largest.
+    /// Largest holes within the limits left open because the work budget was used up.
     HolesUntried,
-    /// Closed shells turned to look outwards.
+    /// Closed shells reversed to point outwards.
     TurnedShells,
-    /// Vertices left out that no face uses.
+    /// Unused vertices removed.
     Unused,
 }
 
 impl RepairStep {
-    /// Every step, in the order in which they are done.
+    /// All steps, in the order in which they run.
     pub const ALL: [Self; 18] = [
         Self::BadAttributes,
         Self::BadFaces,
@@ -64,7 +64,7 @@ impl RepairStep {
         Self::Unused,
     ];
 
-    /// Its name in reports.
+    /// Returns the name used in reports.
     pub fn name(self) -> &'static str {
         match self {
             Self::BadFaces => "bad-faces",
@@ -88,28 +88,29 @@ impl RepairStep {
         }
     }
 
-    /// Whether it counts what was left as it was, rather than what was done.
-    pub fn is_left(self) -> bool {
+    /// Returns true if the step counts defects that were left rather than repairs.
+    pub fn is_unresolved(self) -> bool {
         matches!(self, Self::NotOrientable | Self::HolesLeft | Self::HolesUntried)
     }
 }
 
-/// What a repair did: one count for each step.
+/// Counts of what a repair did, one for each step.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct RepairReport {
     counts: [usize; RepairStep::ALL.len()],
 }
 
 impl RepairReport {
-    /// Counts more of a step; so reports of several meshes become one.
+    /// Adds to the count of a step.
     pub fn add(&mut self, step: RepairStep, count: usize) {
         self.counts[step as usize] += count;
     }
 
-    /// This and then another: what was done is summed, what is left is what the other left.
+    /// Combines this report with that of a second repair of the same mesh: repairs are summed, defects
+    /// left are those that the second left.
     pub fn then(mut self, other: &Self) -> Self {
         for step in RepairStep::ALL {
-            match step.is_left() {
+            match step.is_unresolved() {
                 true => self.counts[step as usize] = other.count(step),
                 false => self.add(step, other.count(step)),
             }
@@ -117,21 +118,21 @@ impl RepairReport {
         self
     }
 
-    /// The count of a step.
+    /// Returns the count of a step.
     pub fn count(&self, step: RepairStep) -> usize {
         self.counts[step as usize]
     }
 
-    /// The steps with something to tell, in their order, and their counts.
-    pub fn told(&self) -> impl Iterator<Item = (RepairStep, usize)> + '_ {
+    /// Iterates over the steps with a nonzero count, in order, with their counts.
+    pub fn nonzero(&self) -> impl Iterator<Item = (RepairStep, usize)> + '_ {
         RepairStep::ALL
             .into_iter()
             .map(|step| (step, self.count(step)))
             .filter(|&(_, count)| count > 0)
     }
 
-    /// Whether nothing was changed.
-    pub fn is_nothing(&self) -> bool {
-        self.told().all(|(step, _)| step.is_left())
+    /// Returns true if the repair changed nothing.
+    pub fn is_unchanged(&self) -> bool {
+        self.nonzero().all(|(step, _)| step.is_unresolved())
     }
 }

@@ -18,8 +18,8 @@ fn repaired(mesh: &Mesh) -> (Mesh, Vec<(RepairStep, usize)>) {
     let (repaired, report) = repair(mesh, &RepairOptions::default());
     assert_eq!(repaired.validate(), Ok(()));
     let (again, nothing) = repair(&repaired, &RepairOptions::default());
-    assert!(again == repaired && nothing.is_nothing(), "repaired twice: {nothing:?}");
-    (repaired, report.told().collect())
+    assert!(again == repaired && nothing.is_unchanged(), "repaired twice: {nothing:?}");
+    (repaired, report.nonzero().collect())
 }
 
 fn of_kind(mesh: &Mesh, kind: Kind) -> usize {
@@ -355,7 +355,7 @@ fn holes_within_the_limits_are_closed() {
     assert!(Connectivity::new(&closed.faces, closed.positions.len()).is_closed());
     assert!(closed.faces.len() == 12 && is_clean(&closed, &CheckOptions::default()));
     let (same, report) = repair(&open, &holes(3));
-    assert!(same == open && report.is_nothing());
+    assert!(same == open && report.is_unchanged());
     let short = RepairOptions {
         holes: Some(HoleLimits { edges: 100, length: 3.9 }),
         ..RepairOptions::default()
@@ -421,7 +421,7 @@ fn where_time_is_short_the_largest_holes_wait() {
         };
         (filled.untried, open.iter().map(first).collect::<Vec<_>>())
     };
-    let weighed = |edges: &[usize]| edges.iter().map(|&n| patch::triangles_weighed(n)).sum();
+    let weighed = |edges: &[usize]| edges.iter().map(|&n| triangulate::triangles_weighed(n)).sum();
     // The first vertices of the rims: 1, 11, 17, 27, 32.
     assert_eq!(filled(weighed(&[9, 5, 9, 4, 9])), (0, vec![]));
     assert_eq!(filled(weighed(&[9, 5, 9, 4, 9]) - 1), (1, vec![32]));
@@ -450,7 +450,7 @@ fn what_hangs_together_far_away_may_touch_a_filling() {
 fn holes_that_wait_are_told_as_left() {
     let mut report = RepairReport::default();
     report.add(RepairStep::HolesUntried, 3);
-    assert!(report.is_nothing());
+    assert!(report.is_unchanged());
 }
 
 #[test]
@@ -494,7 +494,7 @@ proptest! {
     #[test]
     fn what_meets_the_last_faces_is_found_as_among_all(soup in soup(), old in 0..40_usize) {
         let first = old.min(soup.faces.len());
-        let found: BTreeSet<FaceId> = meeting::meeting(&soup, first).unwrap().into_iter().collect();
+        let found: BTreeSet<FaceId> = intersecting::intersecting(&soup, first).unwrap().into_iter().collect();
         let kinds = Kinds::NONE.with(Kind::SelfIntersection).with(Kind::Contact);
         let by_components = CheckOptions { kinds, objects: ObjectsBy::Components, ..CheckOptions::default() };
         let pairs = findings(&soup, &by_components).into_iter().map(|found| match found {

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use meshlod::check::{ObjectId, Touch, TouchKind};
+use meshlod::check::{Intersection, IntersectionKind, ObjectId};
 use meshlod::mesh::FaceId;
 
 /// Contacts between two objects.
@@ -11,17 +11,17 @@ pub struct ObjectPair {
     /// Number of face pairs by kind of touch: vertex, edge, crossing, overlap.
     pub counts: [usize; 4],
     /// Deepest touch, or the first if none has depth.
-    pub deepest: Touch,
+    pub deepest: Intersection,
     /// Faces of the deepest touch.
     pub faces: [FaceId; 2],
 }
 
 /// Every kind of touch, in the order of [`ObjectPair::counts`].
-pub const KINDS: [(TouchKind, &str); 4] = [
-    (TouchKind::Vertex, "vertex"),
-    (TouchKind::Edge, "edge"),
-    (TouchKind::Crossing, "crossing"),
-    (TouchKind::Overlap, "overlap"),
+pub const KINDS: [(IntersectionKind, &str); 4] = [
+    (IntersectionKind::Point, "vertex"),
+    (IntersectionKind::Segment, "edge"),
+    (IntersectionKind::Crossing, "crossing"),
+    (IntersectionKind::Overlap, "overlap"),
 ];
 
 /// All pairs of objects that meet.
@@ -29,7 +29,7 @@ pub const KINDS: [(TouchKind, &str); 4] = [
 pub struct Contacts(BTreeMap<[ObjectId; 2], ObjectPair>);
 
 impl Contacts {
-    pub fn add(&mut self, objects: [ObjectId; 2], faces: [FaceId; 2], touch: Touch) {
+    pub fn add(&mut self, objects: [ObjectId; 2], faces: [FaceId; 2], touch: Intersection) {
         let new = || ObjectPair { counts: [0; 4], deepest: touch, faces };
         let pair = self.0.entry(objects).or_insert_with(new);
         pair.counts[touch.kind as usize] += 1;

@@ -4,7 +4,7 @@ use std::ops::ControlFlow;
 
 use meshlod::Mesh;
 use meshlod::check::{
-    CheckOptions, Finding, Kind, Kinds, Objects, Severity, Summary, Touch, check,
+    CheckOptions, Finding, Intersection, Kind, Kinds, Objects, Severity, Summary, check,
 };
 
 use crate::check::contacts::Contacts;
@@ -59,8 +59,8 @@ impl Inspection {
         if self.summary.count(finding.kind()) <= self.limit.max(1) {
             self.findings.push(finding.clone());
         }
-        if let &Finding::Contact { objects, faces, touch } = finding {
-            self.contacts.add(objects, faces, touch);
+        if let &Finding::Contact { objects, faces, intersection } = finding {
+            self.contacts.add(objects, faces, intersection);
         }
         if let Some(marks) = &mut self.marks {
             marks.add(mesh, &self.objects, finding);
@@ -83,11 +83,11 @@ impl Inspection {
     }
 
     pub fn errors(&self) -> usize {
-        self.summary.of(Severity::Error)
+        self.summary.of_severity(Severity::Error)
     }
 
     pub fn warnings(&self) -> usize {
-        self.summary.of(Severity::Warning)
+        self.summary.of_severity(Severity::Warning)
     }
 
     /// Returns the name of an object.
@@ -120,8 +120,8 @@ pub fn place(mesh: &Mesh, finding: &Finding) -> Option<[f64; 3]> {
         | Finding::DegenerateFace { face: f, .. }
         | Finding::DuplicateFace { face: f, .. }
         | Finding::InsideOut { face: f, .. } => face(*f),
-        Finding::SelfIntersection { touch: Touch { place, .. }, .. }
-        | Finding::Contact { touch: Touch { place, .. }, .. } => Some(*place),
+        Finding::SelfIntersection { intersection: Intersection { point, .. }, .. }
+        | Finding::Contact { intersection: Intersection { point, .. }, .. } => Some(*point),
         Finding::BadAttributes { .. } | Finding::Crowded { .. } => None,
     }
 }

@@ -4,7 +4,7 @@
 
 use std::path::Path;
 
-use meshlod::check::{LockReason, Locking};
+use meshlod::check::{LockReason, VertexLocks};
 use meshlod::io::Weld;
 use meshlod::mesh::{Lock, Locks, VertexId};
 use meshlod::{Format, ReadOptions, Scene};
@@ -101,7 +101,7 @@ fn mark(positions: &[[f64; 3]]) -> String {
 }
 
 /// Returns the locks of all meshes of a scene in the JSON of a lock file.
-pub fn to_json(path: &Path, scene: &Scene, rows: &FileRows, lockings: &[Locking]) -> Value {
+pub fn to_json(path: &Path, scene: &Scene, rows: &FileRows, lockings: &[VertexLocks]) -> Value {
     let file = path.file_name().map(|name| name.to_string_lossy().into_owned());
     let source = rows.torn.as_ref().unwrap_or(scene).source.as_ref();
     let marks = rows.marks(scene);
@@ -130,7 +130,7 @@ pub fn to_json(path: &Path, scene: &Scene, rows: &FileRows, lockings: &[Locking]
     })
 }
 
-fn mesh_json(rows: &[VertexId], Locking { locks, reasons }: &Locking) -> Value {
+fn mesh_json(rows: &[VertexId], VertexLocks { locks, reasons }: &VertexLocks) -> Value {
     let lock = |v: &VertexId| locks.of_vertex.get(v.index()).copied().unwrap_or_default();
     let flag = |lock| FLAGS.iter().find(|(of, ..)| *of == lock).map_or(0, |&(_, flag, _)| flag);
     let flags: Vec<u8> = rows.iter().map(|v| flag(lock(v))).collect();

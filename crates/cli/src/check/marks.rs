@@ -1,7 +1,7 @@
 //! Marks on the pictures of a check: faces and edges coloured by their defect.
 
 use meshlod::Mesh;
-use meshlod::check::{Finding, Objects, TouchKind};
+use meshlod::check::{Finding, IntersectionKind, Objects};
 use meshlod::mesh::{FaceId, VertexId};
 
 /// Defect or contact that has a colour.
@@ -101,10 +101,10 @@ impl Marks {
             Finding::SelfIntersection { faces, .. } => {
                 faces.iter().for_each(|face| self.face(*face, Mark::SelfCrossing));
             }
-            Finding::Contact { faces, touch, .. } => {
-                let mark = match touch.kind {
-                    TouchKind::Crossing | TouchKind::Overlap => Mark::Crossing,
-                    TouchKind::Vertex | TouchKind::Edge => Mark::Touching,
+            Finding::Contact { faces, intersection, .. } => {
+                let mark = match intersection.kind {
+                    IntersectionKind::Crossing | IntersectionKind::Overlap => Mark::Crossing,
+                    IntersectionKind::Point | IntersectionKind::Segment => Mark::Touching,
                 };
                 faces.iter().for_each(|face| self.face(*face, mark));
             }

@@ -1,6 +1,6 @@
 //! JSON of a check.
 
-use meshlod::check::{Degeneracy, Finding, Kind, ObjectId, Severity, Touch};
+use meshlod::check::{Degeneracy, Finding, Intersection, Kind, ObjectId, Severity};
 use serde_json::{Value, json};
 
 use crate::check::contacts::KINDS;
@@ -93,20 +93,20 @@ fn ids(inspection: &Inspection, finding: &Finding) -> Value {
             json!({ "vertices": [vertex.0], "fans": fans })
         }
         Finding::InsideOut { face, volume } => json!({ "faces": [face.0], "volume": volume }),
-        Finding::SelfIntersection { object, faces, touch: how } => json!({
+        Finding::SelfIntersection { object, faces, intersection } => json!({
             "objects": [object.0], "names": [inspection.name(*object)],
-            "faces": faces.map(|f| f.0), "touch": touch(how),
+            "faces": faces.map(|f| f.0), "touch": touch(intersection),
         }),
-        Finding::Contact { objects, faces, touch: how } => json!({
+        Finding::Contact { objects, faces, intersection } => json!({
             "objects": objects.map(|ObjectId(object)| object),
             "names": objects.map(|object| inspection.name(object)),
-            "faces": faces.map(|f| f.0), "touch": touch(how),
+            "faces": faces.map(|f| f.0), "touch": touch(intersection),
         }),
         Finding::Crowded { found } => json!({ "found": found }),
     }
 }
 
-fn touch(touch: &Touch) -> Value {
+fn touch(touch: &Intersection) -> Value {
     let name = KINDS.iter().find(|(kind, _)| *kind == touch.kind).map(|(_, name)| name);
-    json!({ "kind": name, "depth": touch.depth, "place": touch.place })
+    json!({ "kind": name, "depth": touch.depth, "place": touch.point })
 }

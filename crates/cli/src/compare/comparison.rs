@@ -1,7 +1,7 @@
 //! Comparison of methods on one mesh, each run independently.
 
 use meshlod::Method;
-use meshlod::measure::{DistanceOptions, Surface};
+use meshlod::measure::{DistanceOptions, PreparedSurface};
 use meshlod::picture::ReferenceImages;
 
 use crate::compare::output::Output;
@@ -18,7 +18,7 @@ use crate::volume::unconserved_text;
 /// Mesh, sizes and methods to compare.
 pub struct Comparison<'s> {
     pub subject: &'s Subject,
-    pub original: &'s Surface<'s>,
+    pub original: &'s PreparedSurface<'s>,
     pub options: DistanceOptions,
     /// Sizes of the levels, finest first.
     pub sizes: Vec<LevelSize>,

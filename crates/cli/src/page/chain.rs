@@ -3,7 +3,9 @@
 use std::path::Path;
 use std::time::Duration;
 
-use meshlod::measure::{Distance, DistanceOptions, Quality, Surface, quality, surface_distance};
+use meshlod::measure::{
+    Distance, DistanceOptions, PreparedSurface, Quality, quality, surface_distance,
+};
 use meshlod::{Mesh, Method, Options, Report};
 
 use crate::failure::Failure;
@@ -16,7 +18,7 @@ use crate::simplify_run::SimplifyRun;
 /// Builder of a chain of levels.
 pub struct ChainBuilder<'s> {
     subject: &'s Subject,
-    original: &'s Surface<'s>,
+    original: &'s PreparedSurface<'s>,
     options: DistanceOptions,
     run: SimplifyRun<'s>,
     session: &'s Session,
@@ -60,7 +62,7 @@ pub struct LevelMesh {
 #[derive(Clone, Copy)]
 pub struct ChainSetup<'s> {
     pub subject: &'s Subject,
-    pub original: &'s Surface<'s>,
+    pub original: &'s PreparedSurface<'s>,
     pub options: DistanceOptions,
     pub session: &'s Session,
 }
@@ -97,7 +99,7 @@ impl<'s> ChainBuilder<'s> {
     }
 
     fn distance_of(&self, shown: &Mesh) -> Result<Distance, String> {
-        let surface = Surface::new(shown).map_err(|error| error.to_string())?;
+        let surface = PreparedSurface::new(shown).map_err(|error| error.to_string())?;
         surface_distance(self.original, &surface, &self.options).map_err(|error| error.to_string())
     }
 }

@@ -3,7 +3,7 @@
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use meshlod::Mesh;
-use meshlod::measure::{Surface, vertex_errors};
+use meshlod::measure::{PreparedSurface, vertex_errors};
 use meshlod::picture::{
     Background, Camera, Lighting, Normals, Paint, Picture, Style, View, render,
 };
@@ -38,12 +38,12 @@ pub struct LevelPictures {
 /// Renderer of a subject with a fixed camera.
 pub struct SubjectRenderer<'s> {
     subject: &'s Subject,
-    original: &'s Surface<'s>,
+    original: &'s PreparedSurface<'s>,
     camera: Camera,
 }
 
 impl<'s> SubjectRenderer<'s> {
-    pub fn new(subject: &'s Subject, original: &'s Surface<'s>) -> Self {
+    pub fn new(subject: &'s Subject, original: &'s PreparedSurface<'s>) -> Self {
         let camera = Camera::fit_mesh(&subject.mesh, &view(&subject.style, SIZE, 0.94));
         Self { subject, original, camera }
     }

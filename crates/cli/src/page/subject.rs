@@ -1,6 +1,6 @@
 //! Subject of a page: a scene with its style.
 
-use meshlod::measure::Surface;
+use meshlod::measure::PreparedSurface;
 use meshlod::{Mesh, Scene};
 
 use crate::failure::Failure;
@@ -30,8 +30,8 @@ impl Subject {
     }
 
     /// Prepares the mesh for measurement.
-    pub fn surface(&self) -> Result<Surface<'_>, Failure> {
-        Surface::new(&self.mesh)
+    pub fn surface(&self) -> Result<PreparedSurface<'_>, Failure> {
+        PreparedSurface::new(&self.mesh)
             .map_err(|error| Failure::new(format_args!("{}: {error}", self.name)))
     }
 

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
-use meshlod::check::{CheckOptions, Kind, Kinds, LockOptions, Net, ObjectsBy};
+use meshlod::check::{BroadPhase, CheckOptions, Kind, Kinds, LockOptions, ObjectsBy};
 use meshlod::io::write_file;
 use meshlod::mesh::Lock;
 use meshlod::{Scene, scene_locks};
@@ -36,10 +36,10 @@ pub struct Check {
     #[arg(long, value_name = "N", default_value_t = 100, value_parser = parse::whole,
         allow_negative_numbers = true)]
     limit: usize,
-    /// What finds the faces that may meet; the findings are the same
-    #[arg(long, value_name = "NET", default_value = "tree")]
-    net: Search,
-    /// Skip the search for faces that meet, which --locks needs
+    /// How to find pairs of faces that may intersect; the findings are the same
+    #[arg(long, alias = "net", value_name = "METHOD", default_value = "tree")]
+    broad_phase: PairSearch,
+    /// Skip the search for faces that intersect, which --locks needs
     #[arg(long, conflicts_with = "locks")]
     no_intersections: bool,
     /// Write vertex locks for the places where components meet, for simplify --locks and other
@@ -64,11 +64,12 @@ enum By {
 }
 
 #[derive(Clone, Copy, ValueEnum)]
-enum Search {
-    /// A hierarchy of boxes: fast
+enum PairSearch {
+    /// Bounding volume hierarchy: fast
     Tree,
-    /// An octree of cubes
-    Cubes,
+    /// Octree: nine times slower
+    #[value(alias = "cubes")]
+    Octree,
 }
 
 #[derive(Clone, Copy, PartialEq, ValueEnum)]
@@ -144,11 +145,11 @@ impl Check {
             By::Names => ObjectsBy::Names,
             By::Components => ObjectsBy::Components,
         };
-        let net = match self.net {
-            Search::Tree => Net::Tree,
-            Search::Cubes => Net::Cubes,
+        let broad_phase = match self.broad_phase {
+            PairSearch::Tree => BroadPhase::Tree,
+            PairSearch::Octree => BroadPhase::Octree,
         };
-        CheckOptions { kinds, objects, net }
+        CheckOptions { kinds, objects, broad_phase }
     }
 
     fn write_locks(&self, path: &Path, scene: &Scene) -> Result<String, Failure> {

@@ -160,7 +160,7 @@ impl Repair {
         let left = done.left.found().map(|(kind, count)| (kind.name().into(), count.into()));
         json!({
             "file": files::name(&self.output),
-            "changed": !done.report.is_nothing() || done.fused.as_ref().is_some_and(|f| f.is_change()),
+            "changed": !done.report.is_unchanged() || done.fused.as_ref().is_some_and(|f| f.is_change()),
             "input_faces": done.before.faces,
             "input_vertices": done.before.vertices,
             "output_faces": done.after.faces,
@@ -176,10 +176,10 @@ impl Repair {
     fn text(&self, done: &Repaired) -> String {
         let Repaired { report, fused, left, before, after, time } = done;
         let steps: Vec<[String; 2]> = report
-            .told()
+            .nonzero()
             .map(|(step, number)| [format!("  {}", step.name()), count(number)])
             .collect();
-        let nothing = match (report.is_nothing(), left.total()) {
+        let nothing = match (report.is_unchanged(), left.total()) {
             (false, _) => "",
             (true, 0) => "  nothing to repair\n",
             (true, _) => "  nothing repaired\n",

@@ -269,14 +269,18 @@ fn a_real_model_is_checked_and_held_together() {
 }
 
 #[test]
-fn both_nets_say_the_same() {
+fn both_broad_phases_find_the_same() {
     let run = Run::new();
     let Some(fish) = shared_mesh("fish-clown.obj") else {
         println!("skipped: the fish is not there");
         return;
     };
-    let with = |net| run.json(&["check", fish.to_str().unwrap(), "--net", net, "--limit", "9999"]);
-    assert_eq!(with("tree"), with("cubes"));
+    let fish = fish.to_str().unwrap();
+    let with = |option, method| run.json(&["check", fish, option, method, "--limit", "9999"]);
+    let by_tree = with("--broad-phase", "tree");
+    assert_eq!(by_tree, with("--broad-phase", "octree"));
+    // The former names still work.
+    assert_eq!(by_tree, with("--net", "cubes"));
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! Bounds hold, are monotone, and are reasonably tight.
 
 use meshlod_fixtures as fixtures;
-use meshlod_measure::{Surface, vertex_errors};
+use meshlod_measure::{PreparedSurface, vertex_errors};
 use meshlod_mesh::{Mesh, VertexId};
 use meshlod_samples as samples;
 use meshlod_simplify::Method;
@@ -42,7 +42,10 @@ fn excess(mesh: &Mesh, mt: &Implicit, level: &Level, factor: f64) -> f64 {
     let diagonal = mesh.bounds().diagonal();
     let found = level.mesh();
     // Two of the smallest samples are reduced to faces without area, which have no surface.
-    let (Ok(finest), Ok(coarse)) = (Surface::new(mesh), Surface::new(&found)) else { return -1.0 };
+    let (Ok(finest), Ok(coarse)) = (PreparedSurface::new(mesh), PreparedSurface::new(&found))
+    else {
+        return -1.0;
+    };
     let error = |v: u32| {
         let update = mt.update_of(level.nodes[v as usize]);
         update.map_or(0.0, |u| mt.frame().length_of_model(mt.error(u).get()) * factor)
@@ -145,7 +148,8 @@ fn bounds_of_a_smooth_surface_are_a_few_times_what_is_measured() {
     let mut extractor = model.extractor();
     for (tolerance, most) in [(0.01, 2.0), (0.03, 3.0), (0.1, 4.0)] {
         let found = extractor.uniform(tolerance).unwrap().mesh();
-        let (finest, coarse) = (Surface::new(&mesh).unwrap(), Surface::new(&found).unwrap());
+        let (finest, coarse) =
+            (PreparedSurface::new(&mesh).unwrap(), PreparedSurface::new(&found).unwrap());
         let here = vertex_errors(&points(&found).0, &finest).into_iter().fold(0.0, f64::max);
         let there = vertex_errors(&points(&mesh).0, &coarse).into_iter().fold(0.0, f64::max);
         let ratio = tolerance / here.max(there);

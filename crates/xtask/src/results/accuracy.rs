@@ -1,7 +1,7 @@
 //! How near the levels are to their meshes, beside the peers.
 
 use anyhow::Result;
-use meshlod::measure::{Distance, DistanceOptions, Surface, surface_distance};
+use meshlod::measure::{Distance, DistanceOptions, PreparedSurface, surface_distance};
 use meshlod::mesh::Mesh;
 use meshlod::simplify::{Method, Options, Target, simplify};
 use meshlod_bench::peer::{Indexed, simplify_with_update};
@@ -53,7 +53,7 @@ pub fn section(_: &Project) -> Result<String> {
     let mut table = Table::new(["mesh, ratio, method", "faces", "mean %", "RMS %", "max %"]);
     for file in FILES {
         let Some(mesh) = meshlod_bench::read(file)? else { continue };
-        let surface = Surface::new(&mesh)?;
+        let surface = PreparedSurface::new(&mesh)?;
         for ratio in RATIOS {
             add_rows(&mut table, file, &mesh, &surface, ratio)?;
         }
@@ -70,7 +70,7 @@ fn add_rows(
     table: &mut Table,
     file: &str,
     mesh: &Mesh,
-    surface: &Surface<'_>,
+    surface: &PreparedSurface<'_>,
     ratio: f64,
 ) -> Result<()> {
     let what = |method: &str| format!("{file}, {:.0} %, {method}", ratio * 100.0);
@@ -92,9 +92,9 @@ fn add_rows(
     Ok(())
 }
 
-fn row(what: &str, level: &Mesh, surface: &Surface<'_>) -> Result<[String; 5]> {
+fn row(what: &str, level: &Mesh, surface: &PreparedSurface<'_>) -> Result<[String; 5]> {
     let options = DistanceOptions::default();
-    let d: Distance = surface_distance(surface, &Surface::new(level)?, &options)?;
+    let d: Distance = surface_distance(surface, &PreparedSurface::new(level)?, &options)?;
     let figures = [d.mean(), d.rms(), d.max()].map(|x| format!("{:.5}", d.percent(x)));
     let [mean, rms, max] = figures;
     Ok([what.to_owned(), level.faces.len().to_string(), mean, rms, max])

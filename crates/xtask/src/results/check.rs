@@ -1,7 +1,7 @@
 //! What checking takes, from a hundred thousand faces to four million.
 
 use anyhow::Result;
-use meshlod::check::{CheckOptions, Kind, Kinds, Net, findings};
+use meshlod::check::{BroadPhase, CheckOptions, Kind, Kinds, findings};
 use meshlod::mesh::{Connectivity, FaceId, Mesh, Side, Twin, VertexId};
 use meshlod_bench::{least_seconds, one_core};
 
@@ -18,8 +18,12 @@ pub fn section(_: &Project) -> Result<String> {
     let of_pairs = [Kind::SelfIntersection, Kind::Contact, Kind::Crowded];
     let meeting = of_pairs.into_iter().fold(Kinds::NONE, Kinds::with);
     let other = of_pairs.into_iter().fold(Kinds::ALL, Kinds::without);
-    let columns =
-        [(Kinds::ALL, Net::Tree), (other, Net::Tree), (meeting, Net::Tree), (meeting, Net::Cubes)];
+    let columns = [
+        (Kinds::ALL, BroadPhase::Tree),
+        (other, BroadPhase::Tree),
+        (meeting, BroadPhase::Tree),
+        (meeting, BroadPhase::Octree),
+    ];
     let mut table = Table::new([
         "mesh, s for a million faces",
         "faces",
@@ -37,10 +41,10 @@ pub fn section(_: &Project) -> Result<String> {
         let name =
             if times == 0 { file.to_owned() } else { format!("{file} in {}", 1 << (2 * times)) };
         let mut row = vec![name, faces.to_string()];
-        for (kinds, net) in columns {
-            let options = CheckOptions { kinds, net, ..CheckOptions::default() };
+        for (kinds, broad_phase) in columns {
+            let options = CheckOptions { kinds, broad_phase, ..CheckOptions::default() };
             // Cubes take nine times as long: one round tells.
-            let rounds = if net == Net::Cubes { 1 } else { ROUNDS };
+            let rounds = if broad_phase == BroadPhase::Octree { 1 } else { ROUNDS };
             let seconds = one_core(|| least_seconds(rounds, || findings(&mesh, &options)));
             row.push(format!("{:.3}", seconds / faces as f64 * 1e6));
         }

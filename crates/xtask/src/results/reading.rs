@@ -3,7 +3,7 @@
 use std::time::Instant;
 
 use anyhow::{Context, Result};
-use meshlod::measure::{DistanceOptions, Surface, surface_distance};
+use meshlod::measure::{DistanceOptions, PreparedSurface, surface_distance};
 use meshlod::simplify::{Options, Target, simplify};
 use meshlod_bench::{alternate, one_core};
 
@@ -34,7 +34,7 @@ pub fn section(_: &Project) -> Result<String> {
         }
         if let Some(mesh) = meshlod_bench::read("dragon.ply")? {
             let (level, _) = simplify(&mesh, Target::Ratio(0.1), &Options::default())?;
-            let (fine, coarse) = (Surface::new(&mesh)?, Surface::new(&level)?);
+            let (fine, coarse) = (PreparedSurface::new(&mesh)?, PreparedSurface::new(&level)?);
             let options = DistanceOptions { samples: 500_000, seed: 1 };
             let start = Instant::now();
             let distance = surface_distance(&fine, &coarse, &options)?;

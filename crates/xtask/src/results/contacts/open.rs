@@ -126,7 +126,7 @@ mod tests {
     #[test]
     fn what_comes_apart_is_newly_open_and_what_was_open_is_not() {
         let mesh = halves(12);
-        let ties = meshlod::check::Places::of(&mesh.positions).shared(|_| true);
+        let ties = meshlod::check::UniquePositions::of(&mesh.positions).groups(|_| true);
         let tied = meshlod::mesh::Locks { ties, ..Default::default() };
         assert_eq!(newly_open_by(tied), 0);
         assert!(newly_open_by(Default::default()) > 6);

@@ -1,23 +1,27 @@
-//! Wedges of new vertices.
+//! Interpolation of wedges for new vertices.
 
 use meshlod_mesh::{Attributes, LayerKind, WedgeId};
 
-/// A new wedge between those of a face, by their parts.
-pub fn blend(attributes: &mut Attributes, corners: [WedgeId; 3], parts: [f64; 3]) -> WedgeId {
-    let nearest = (0..3).max_by(|&i, &j| parts[i].total_cmp(&parts[j])).expect("three parts");
+/// Appends a wedge interpolated between those of a face by barycentric weights.
+pub fn interpolate_wedge(
+    attributes: &mut Attributes,
+    corners: [WedgeId; 3],
+    weights: [f64; 3],
+) -> WedgeId {
+    let nearest = (0..3).max_by(|&i, &j| weights[i].total_cmp(&weights[j])).expect("three weights");
     for layer in &mut attributes.layers {
         let mut values = layer.of(corners[nearest]).to_vec();
-        // Weights are those of the joints beside them.
+        // Joints and their weights are copied together from the nearest corner.
         if !matches!(layer.kind, LayerKind::Joints(_) | LayerKind::Weights(_)) {
-            // The hand of a tangent is not blended.
+            // The handedness of a tangent is not interpolated.
             let width = if layer.kind == LayerKind::Tangent { 3 } else { layer.width };
             for (k, value) in values.iter_mut().enumerate().take(width) {
-                let part = |i: usize| parts[i] * f64::from(layer.of(corners[i])[k]);
-                *value = (part(0) + part(1) + part(2)) as f32;
+                let term = |i: usize| weights[i] * f64::from(layer.of(corners[i])[k]);
+                *value = (term(0) + term(1) + term(2)) as f32;
             }
         }
         if matches!(layer.kind, LayerKind::Normal | LayerKind::Tangent) {
-            to_unit_length(&mut values[..3]);
+            normalize(&mut values[..3]);
         }
         layer.values.extend(values);
     }
@@ -25,8 +29,8 @@ pub fn blend(attributes: &mut Attributes, corners: [WedgeId; 3], parts: [f64; 3]
     WedgeId::new(attributes.wedge_count - 1)
 }
 
-/// Makes a direction of values, unless they are all 0.
-pub fn to_unit_length(values: &mut [f32]) {
+/// Normalizes a vector unless it is zero.
+pub fn normalize(values: &mut [f32]) {
     let length = values.iter().map(|x| x * x).sum::<f32>().sqrt();
     if length > 0.0 {
         values.iter_mut().for_each(|x| *x /= length);

@@ -1,4 +1,4 @@
-//! What keeps a mesh from being one: places that are none, names of nothing, arrays that do not fit.
+//! Invalid data: non-finite positions, indices out of range, arrays of the wrong size.
 
 use std::ops::ControlFlow;
 
@@ -17,7 +17,7 @@ pub fn non_finite_vertices(subject: &Subject, visit: &mut Visit) -> ControlFlow<
 }
 
 pub fn bad_indices(subject: &Subject, visit: &mut Visit) -> ControlFlow<()> {
-    if subject.all_sound {
+    if subject.all_valid {
         return ControlFlow::Continue(());
     }
     for (f, face) in subject.mesh.faces.iter().enumerate() {

@@ -1,43 +1,47 @@
-//! The triangles between the points of a ring that bend least.
+//! Minimum-bend triangulation of a hole.
 
 use glam::DVec3;
 
 use crate::zero_area::has_zero_area;
 
-/// A ring of points, and what lies across its edges.
-pub struct Ring {
-    /// In the order in which triangles go round.
+/// Vertices around a hole and what lies across its edges.
+pub struct HoleOutline {
+    /// Positions in the order in which the new triangles traverse them.
     pub points: Vec<[f64; 3]>,
-    /// The tip of the triangle across the edge from each point to the next.
+    /// Tip of the triangle across the edge from each point to the next.
     pub tips: Vec<[f64; 3]>,
 }
 
-/// What a choice of triangles costs: the sharpest bend between neighbours, those across the ring
-/// included, then the area [Lie03].
+/// Cost of a triangulation: the sharpest bend between neighbours, including those across the outline,
+/// then the area [Lie03].
 #[derive(Clone, Copy, PartialEq, PartialOrd)]
 struct Cost {
-    /// 1 less the cosine of the angle between normals, 0 where it is flat.
+    /// 1 minus the cosine of the angle between normals; 0 if flat.
     bend: f64,
     area: f64,
 }
 
-/// The triangles that close a ring, as places around it: of all ways to use only its points, the one
-/// that bends least where it bends most, and of these the one of least area.
+/// Triangulates a hole without new points and returns the triangles as indices around the outline.
 ///
-/// No edge between points that are not next to each other is one of which `is_edge` says that it is
-/// there already, and no triangle is without area. `None` where there is no such way.
+/// Minimizes the sharpest bend and, among equals, the area. No inner edge is one for which `is_edge`
+/// returns true, as it exists already, and no triangle has zero area. `None` if there is no such
+/// triangulation.
 ///
-/// Cost: O(n³), by going from short spans of the ring to long ones [BS95]; see [`triangles_weighed`].
-pub fn patch(ring: &Ring, is_edge: impl Fn(usize, usize) -> bool) -> Option<Vec<[usize; 3]>> {
-    let n = ring.points.len();
+/// Cost: O(n³), by dynamic programming from short spans of the outline to long ones [BS95]; see
+/// [`triangles_weighed`].
+pub fn triangulate(
+    outline: &HoleOutline,
+    is_edge: impl Fn(usize, usize) -> bool,
+) -> Option<Vec<[usize; 3]>> {
+    let n = outline.points.len();
     if n < 3 {
         return None;
     }
-    let mut spans = Spans { ring, n, best: vec![None; n * n] };
+    let mut spans = Spans { outline, n, best: vec![None; n * n] };
     for length in 2..n {
         for from in 0..n - length {
             let to = from + length;
-            // The longest span is an edge of the ring.
+            // The longest span is closed by an edge of the outline.
             if length < n - 1 && is_edge(from, to) {
                 continue;
             }
@@ -47,32 +51,33 @@ pub fn patch(ring: &Ring, is_edge: impl Fn(usize, usize) -> bool) -> Option<Vec<
     spans.triangles()
 }
 
-/// How many triangles [`patch`] weighs for a ring of so many points: what its time grows with.
+/// Returns the number of triangles that [`triangulate`] weighs for an outline of `points` points, which
+/// determines its time.
 pub fn triangles_weighed(points: usize) -> usize {
     points * points.saturating_sub(1) * points.saturating_sub(2) / 6
 }
 
-/// For each span of the ring, from one place to a later one, the best triangles between its points.
+/// Best triangulations of all spans, a span being the points from one index to a later one.
 struct Spans<'a> {
-    ring: &'a Ring,
+    outline: &'a HoleOutline,
     n: usize,
-    /// By both ends, either first: so that those from one place, and those to one, lie side by side.
+    /// Indexed by both ends in either order, so that spans from one end and to one end are contiguous.
     best: Vec<Option<Span>>,
 }
 
-/// The best triangles between the points of a span.
+/// Best triangulation of a span.
 #[derive(Clone, Copy)]
 struct Span {
     cost: Cost,
-    /// The third corner of the triangle at the edge that closes the span.
+    /// Third corner of the triangle at the edge that closes the span.
     middle: u32,
-    /// Its normal.
+    /// Normal of that triangle.
     normal: DVec3,
 }
 
 impl Spans<'_> {
-    fn at(&self, place: usize) -> DVec3 {
-        self.ring.points[place].into()
+    fn at(&self, index: usize) -> DVec3 {
+        self.outline.points[index].into()
     }
 
     fn choose(&mut self, from: usize, to: usize) {
@@ -86,16 +91,17 @@ impl Spans<'_> {
         self.best[to * self.n + from] = best;
     }
 
-    /// A triangle and the best of both spans beside it, if that costs less than `least`.
+    /// Combines a triangle with the best triangulations of both spans beside it, if that costs less
+    /// than `least`.
     fn span(&self, [from, middle, to]: [usize; 3], least: Option<Cost>) -> Option<Span> {
         let is_less = |cost: Cost| least.is_none_or(|least| cost < least);
         let [before, after] = [self.cost(from, middle)?, self.cost(to, middle)?];
-        // Of most, the sides alone cost too much; of what is flat, the area.
+        // For most triangles the spans beside them already cost too much; in flat holes the area does.
         let sides = Cost { bend: before.bend.max(after.bend), area: before.area + after.area };
         if !is_less(sides) {
             return None;
         }
-        let corners = [from, middle, to].map(|place| self.at(place));
+        let corners = [from, middle, to].map(|index| self.at(index));
         let cross = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
         let area = sides.area + 0.5 * cross.length();
         if !area.is_finite() || !is_less(Cost { bend: sides.bend, area }) {
@@ -105,7 +111,7 @@ impl Spans<'_> {
         let bends = [self.bend(normal, from, middle), self.bend(normal, middle, to)];
         let mut bend = sides.bend.max(bends[0]).max(bends[1]);
         if to - from == self.n - 1 {
-            let across = normal_across([self.at(to), self.at(from)], self.ring.tips[to].into());
+            let across = normal_across([self.at(to), self.at(from)], self.outline.tips[to].into());
             bend = bend.max(1.0 - normal.dot(across));
         }
         let cost = Cost { bend, area };
@@ -113,7 +119,7 @@ impl Spans<'_> {
         fits.then_some(Span { cost, middle: middle as u32, normal })
     }
 
-    /// The cost of the span between two places; an edge of the ring costs nothing.
+    /// Returns the cost of the span between two indices; an edge of the outline costs nothing.
     fn cost(&self, one: usize, other: usize) -> Option<Cost> {
         if one.abs_diff(other) == 1 {
             return Some(Cost { bend: 0.0, area: 0.0 });
@@ -121,11 +127,11 @@ impl Spans<'_> {
         self.best[one * self.n + other].map(|span| span.cost)
     }
 
-    /// The bend between a triangle and what lies across its edge from one place to a later one.
+    /// Returns the bend between a triangle and what lies across its edge from one index to a later one.
     fn bend(&self, normal: DVec3, from: usize, to: usize) -> f64 {
         let across = match self.best[from * self.n + to] {
             Some(span) => span.normal,
-            None => normal_across([self.at(from), self.at(to)], self.ring.tips[from].into()),
+            None => normal_across([self.at(from), self.at(to)], self.outline.tips[from].into()),
         };
         1.0 - normal.dot(across)
     }
@@ -144,7 +150,7 @@ impl Spans<'_> {
     }
 }
 
-/// The normal of the triangle across an edge, which it runs along the other way.
+/// Returns the normal of the triangle across an edge, which it traverses in the other direction.
 fn normal_across([from, to]: [DVec3; 2], tip: DVec3) -> DVec3 {
     (from - to).cross(tip - to).normalize_or_zero()
 }
@@ -155,18 +161,18 @@ mod tests {
 
     use super::*;
 
-    /// The best of a span by trying all, each as [`Spans`] does: the cost, and the triangles, the one
-    /// at the closing edge last.
-    fn by_trying(ring: &Ring, from: usize, to: usize) -> Option<(Cost, Vec<[usize; 3]>)> {
+    /// Finds the best triangulation of a span by exhaustive search, with the cost of [`Spans`]; the
+    /// triangle at the closing edge comes last.
+    fn by_trying(outline: &HoleOutline, from: usize, to: usize) -> Option<(Cost, Vec<[usize; 3]>)> {
         if to == from + 1 {
             return Some((Cost { bend: 0.0, area: 0.0 }, Vec::new()));
         }
-        let at = |place: usize| DVec3::from(ring.points[place]);
+        let at = |place: usize| DVec3::from(outline.points[place]);
         let cross = |[a, b, c]: [DVec3; 3]| (b - a).cross(c - a);
         let normal = |corners| cross(corners).normalize_or_zero();
         let mut best: Option<(Cost, Vec<[usize; 3]>)> = None;
         for middle in from + 1..to {
-            let sides = [[from, middle], [middle, to]].map(|[a, b]| by_trying(ring, a, b));
+            let sides = [[from, middle], [middle, to]].map(|[a, b]| by_trying(outline, a, b));
             let [Some(before), Some(after)] = sides else { continue };
             let corners = [from, middle, to].map(at);
             if has_zero_area(corners.map(Into::into)) {
@@ -176,12 +182,12 @@ mod tests {
             for ((_, triangles), [a, b]) in [(&before, [from, middle]), (&after, [middle, to])] {
                 let across = match triangles.last() {
                     Some(triangle) => normal(triangle.map(at)),
-                    None => normal([at(b), at(a), ring.tips[a].into()]),
+                    None => normal([at(b), at(a), outline.tips[a].into()]),
                 };
                 bend = bend.max(1.0 - normal(corners).dot(across));
             }
-            if to - from == ring.points.len() - 1 {
-                let across = normal([at(from), at(to), ring.tips[to].into()]);
+            if to - from == outline.points.len() - 1 {
+                let across = normal([at(from), at(to), outline.tips[to].into()]);
                 bend = bend.max(1.0 - normal(corners).dot(across));
             }
             let area = before.0.area + after.0.area + 0.5 * cross(corners).length();
@@ -194,7 +200,7 @@ mod tests {
     }
 
     proptest! {
-        /// On a small lattice, where many triangles are as good or have no area, and off it.
+        /// On a small lattice, where many triangles are equally good or have no area, and off it.
         #[test]
         fn the_triangles_are_those_found_by_trying_all(
             points in prop::collection::vec(prop::array::uniform3(-2..3_i8), 3..9),
@@ -206,7 +212,7 @@ mod tests {
                 let shift = if shifts { shift[i] } else { 0.0 };
                 p.map(|x| f64::from(x) + shift * f64::from(x).sin())
             };
-            let ring = Ring {
+            let outline = HoleOutline {
                 points: points.iter().enumerate().map(place).collect(),
                 tips: tips.iter().enumerate().map(place).take(points.len()).collect(),
             };
@@ -214,8 +220,8 @@ mod tests {
                 triangles.sort_unstable();
                 triangles
             };
-            let found = patch(&ring, |_, _| false).map(sorted);
-            prop_assert_eq!(found, by_trying(&ring, 0, points.len() - 1).map(|(_, all)| sorted(all)));
+            let found = triangulate(&outline, |_, _| false).map(sorted);
+            prop_assert_eq!(found, by_trying(&outline, 0, points.len() - 1).map(|(_, all)| sorted(all)));
         }
     }
 }

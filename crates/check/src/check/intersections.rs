@@ -1,4 +1,4 @@
-//! Faces that meet beyond what they share.
+//! Self-intersections and contacts: faces that intersect beyond what they share.
 
 use std::ops::ControlFlow;
 
@@ -12,9 +12,10 @@ use crate::objects::ObjectId;
 pub fn self_intersections(subject: &Subject, visit: &mut Visit) -> ControlFlow<()> {
     for (faces, [object, other]) in pairs(subject) {
         if object == other
-            && let Some(touch) = subject.meetings().touch(subject.mesh, faces)
+            && let Some(intersection) =
+                subject.intersecting_pairs().intersection(subject.mesh, faces)
         {
-            visit(&Finding::SelfIntersection { object, faces, touch })?;
+            visit(&Finding::SelfIntersection { object, faces, intersection })?;
         }
     }
     ControlFlow::Continue(())
@@ -27,24 +28,25 @@ pub fn contacts(subject: &Subject, visit: &mut Visit) -> ControlFlow<()> {
             objects.reverse();
         }
         if objects[0] < objects[1]
-            && let Some(touch) = subject.meetings().touch(subject.mesh, faces)
+            && let Some(intersection) =
+                subject.intersecting_pairs().intersection(subject.mesh, faces)
         {
-            visit(&Finding::Contact { objects, faces, touch })?;
+            visit(&Finding::Contact { objects, faces, intersection })?;
         }
     }
     ControlFlow::Continue(())
 }
 
 pub fn crowded(subject: &Subject, visit: &mut Visit) -> ControlFlow<()> {
-    match subject.meetings().complete() {
+    match subject.intersecting_pairs().complete() {
         true => ControlFlow::Continue(()),
-        false => visit(&Finding::Crowded { found: subject.meetings().pairs().len() }),
+        false => visit(&Finding::Crowded { found: subject.intersecting_pairs().pairs().len() }),
     }
 }
 
-/// The pairs of faces that meet, and their objects.
+/// Iterates over the pairs of intersecting faces with their objects.
 fn pairs<'a>(subject: &'a Subject) -> impl Iterator<Item = ([FaceId; 2], [ObjectId; 2])> + 'a {
     let of_face = &subject.objects().of_face;
-    let pairs = subject.meetings().pairs().iter();
+    let pairs = subject.intersecting_pairs().pairs().iter();
     pairs.map(|&faces| (faces, faces.map(|face| of_face[face.index()])))
 }

@@ -1,27 +1,29 @@
-//! What two triangles have in common, exactly: every decision is the sign of a determinant that
-//! `robust` computes exactly [She97].
+//! Exact intersection of two triangles: every decision is the sign of a determinant that `robust`
+//! computes exactly [She97].
 
 use std::cmp::Ordering;
 
 use glam::DVec3;
 
 use super::coplanar;
-use super::ends::{End, On};
 use super::exact::side;
-use crate::{Touch, TouchKind};
+use super::segment_end::{Feature, SegmentEnd};
+use crate::{Intersection, IntersectionKind};
 
-/// Three corners, not on one line.
+/// A triangle given by its three corners.
 pub(crate) type Triangle = [DVec3; 3];
 
-/// What the closed triangles have in common, all of it: also corners and edges that they share.
-/// `None` where they are apart.
+/// Intersects two closed triangles, including the corners and edges they share; `None` if they are
+/// disjoint.
 ///
-/// The kind is exact where the signs of [`super::exact`] are. Place and depth are rounded; a place
-/// that is a corner of a triangle is that corner. A triangle without area meets nothing.
+/// The kind is exact wherever the signs of [`super::exact`] are. Point and depth are rounded, but a
+/// point that is a corner equals it exactly. A triangle of zero area intersects nothing.
+///
 /// # References
-/// [GD03]: two triangles across each other's planes cut the common line in two intervals, compared
-/// by determinants of corners; differs: every sign may be zero, and the answer tells how they meet.
-pub(crate) fn meet(a: &Triangle, b: &Triangle) -> Option<Touch> {
+/// [GD03]: two triangles that cross each other's planes cut the common line in two intervals, which
+/// determinants of corners compare; differs: every sign may be zero, and the result classifies the
+/// intersection.
+pub(crate) fn intersect(a: &Triangle, b: &Triangle) -> Option<Intersection> {
     let heights_a = a.map(|p| side(b, p));
     if same_side(&heights_a) {
         return None;
@@ -31,25 +33,25 @@ pub(crate) fn meet(a: &Triangle, b: &Triangle) -> Option<Touch> {
         return None;
     }
     if heights_a == [0.0; 3] || heights_b == [0.0; 3] {
-        return coplanar::meet(a, b);
+        return coplanar::intersect(a, b);
     }
     let (chord_a, chord_b) = (Chord::of(a, heights_a), Chord::of(b, heights_b).reversed());
-    // Along the line that the planes have in common.
+    // Along the common line of both planes.
     let first = order(chord_a.end, chord_b.start);
     let last = order(chord_a.start, chord_b.end);
     match (first, last) {
         (Ordering::Less, _) | (_, Ordering::Greater) => None,
         (Ordering::Equal, _) => Some(at_point(chord_a.end, chord_b.start)),
         (_, Ordering::Equal) => Some(at_point(chord_a.start, chord_b.end)),
-        _ => Some(along(&chord_a, &chord_b, || depth(a, heights_a, b, heights_b))),
+        _ => Some(overlap(&chord_a, &chord_b, || depth(a, heights_a, b, heights_b))),
     }
 }
 
-/// The ends of what two triangles in different planes have in common; one point twice where that is
-/// all. `None` where they are apart, or in one plane.
+/// Returns the end points of the intersection of two triangles in different planes, equal if it is a
+/// point; `None` if they are disjoint or coplanar.
 ///
-/// What the ends are on is exact, as [`meet`] is.
-pub(crate) fn ends(a: &Triangle, b: &Triangle) -> Option<[End; 2]> {
+/// The features of the ends are exact, as the kind of [`intersect`] is.
+pub(crate) fn segment_ends(a: &Triangle, b: &Triangle) -> Option<[SegmentEnd; 2]> {
     let (heights_a, heights_b) = (a.map(|p| side(b, p)), b.map(|p| side(a, p)));
     let apart = same_side(&heights_a) || same_side(&heights_b);
     if apart || heights_a == [0.0; 3] || heights_b == [0.0; 3] {
@@ -65,7 +67,7 @@ pub(crate) fn ends(a: &Triangle, b: &Triangle) -> Option<[End; 2]> {
             by if by == inner => [of_a.on, chord_b.on(|of_b| order(of_a, of_b))],
             _ => [chord_a.on(|of_a| order(of_a, of_b)), of_b.on],
         };
-        End::new(on, [a, b])
+        SegmentEnd::new(on, [a, b])
     };
     Some([
         end(chord_a.start, chord_b.start, Ordering::Greater),
@@ -73,42 +75,42 @@ pub(crate) fn ends(a: &Triangle, b: &Triangle) -> Option<[End; 2]> {
     ])
 }
 
-/// Where the boundary of a triangle crosses the plane of another: between two corners, not both in
-/// that plane.
+/// Crossing of a triangle's boundary through the plane of another, between two corners that are not
+/// both in that plane.
 #[derive(Clone, Copy)]
 struct Crossing {
     above: DVec3,
     below: DVec3,
-    /// The part of the way from `above` to `below`; 0 or 1 exactly where one of them is in the plane.
+    /// Parameter from `above` to `below`; exactly 0 or 1 if one of them is in the plane.
     at: f64,
-    on: On,
+    on: Feature,
 }
 
-/// What a triangle has in common with the plane of another: a segment, or a point when both ends are.
+/// Intersection of a triangle with the plane of another: a segment, or a point if both ends coincide.
 #[derive(Clone, Copy)]
 struct Chord {
     start: Crossing,
     end: Crossing,
-    /// Whether the triangle is on both sides of the plane.
+    /// True if the triangle has corners on both sides of the plane.
     through: bool,
-    /// Whether it only touches the plane with a corner.
+    /// True if it only touches the plane with a corner.
     point: bool,
 }
 
 impl Chord {
-    /// The chord of a triangle whose corners have these heights over the plane, from where its
-    /// boundary rises through the plane to where it falls.
+    /// Returns the chord of a triangle whose corners have the given heights over the plane, from
+    /// where its boundary rises through the plane to where it falls.
     fn of(triangle: &Triangle, heights: [f64; 3]) -> Self {
-        // With nothing below, the plane itself counts as below.
+        // Without a corner below, the plane itself counts as below.
         let any_below = heights.iter().any(|&h| h < 0.0);
         let below = |i: usize| if any_below { heights[i] < 0.0 } else { heights[i] <= 0.0 };
         let crossing = |from: usize, to: usize| {
             let (i, j) = if below(from) { (to, from) } else { (from, to) };
             let at = heights[i] / (heights[i] - heights[j]);
             let on = match [heights[i] == 0.0, heights[j] == 0.0] {
-                [true, _] => On::Corner(i),
-                [_, true] => On::Corner(j),
-                _ => On::edge(i, j),
+                [true, _] => Feature::Corner(i),
+                [_, true] => Feature::Corner(j),
+                _ => Feature::edge(i, j),
             };
             Crossing { above: triangle[i], below: triangle[j], at, on }
         };
@@ -130,19 +132,20 @@ impl Chord {
         Self { start: self.end, end: self.start, ..self }
     }
 
-    /// What a point of the chord is on, by how its ends are to the point.
-    fn on(&self, to_point: impl Fn(Crossing) -> Ordering) -> On {
+    /// Returns the feature that contains a point of the chord, given the order of the chord's ends
+    /// relative to the point.
+    fn on(&self, to_point: impl Fn(Crossing) -> Ordering) -> Feature {
         let at_end = [self.start, self.end].into_iter().find(|&end| to_point(end).is_eq());
         match (at_end, self.start.on, self.end.on) {
             (Some(end), ..) => end.on,
-            (None, On::Corner(i), On::Corner(j)) => On::edge(i, j),
-            _ => On::Inside,
+            (None, Feature::Corner(i), Feature::Corner(j)) => Feature::edge(i, j),
+            _ => Feature::Inside,
         }
     }
 }
 
 impl Crossing {
-    fn place(&self) -> DVec3 {
+    fn position(&self) -> DVec3 {
         match self.at {
             0.0 => self.above,
             1.0 => self.below,
@@ -155,41 +158,42 @@ impl Crossing {
     }
 }
 
-/// Whether all three are above the plane, or all below.
+/// Returns true if all three corners are above the plane, or all below.
 fn same_side(heights: &[f64; 3]) -> bool {
     heights.iter().all(|&h| h > 0.0) || heights.iter().all(|&h| h < 0.0)
 }
 
-/// How a crossing of triangle a and one of triangle b follow each other along the common line, in
-/// the direction of the product of the normals of a and b.
+/// Orders a crossing of triangle a and one of triangle b along the common line, in the direction of
+/// the cross product of the normals of a and b.
 fn order(a: Crossing, b: Crossing) -> Ordering {
     let sign = side(&[b.above, b.below, a.above], a.below);
-    // The line from a's upper to its lower corner passes that of b on one side or the other.
+    // The sign says on which side the line through a's corners passes the line through b's.
     0.0.partial_cmp(&sign).unwrap_or(Ordering::Equal)
 }
 
-fn at_point(a: Crossing, b: Crossing) -> Touch {
-    let place = if a.at_corner() { a.place() } else { b.place() };
-    Touch { kind: TouchKind::Vertex, place: place.into(), depth: 0.0 }
+fn at_point(a: Crossing, b: Crossing) -> Intersection {
+    let point = if a.at_corner() { a.position() } else { b.position() };
+    Intersection { kind: IntersectionKind::Point, point: point.into(), depth: 0.0 }
 }
 
-/// The meeting of two chords that overlap, or of one with a point inside it.
-fn along(a: &Chord, b: &Chord, depth: impl FnOnce() -> f64) -> Touch {
+/// Intersects two chords that overlap, or of which one is a point inside the other.
+fn overlap(a: &Chord, b: &Chord, depth: impl FnOnce() -> f64) -> Intersection {
     let start = if order(a.start, b.start).is_lt() { b.start } else { a.start };
     let end = if order(a.end, b.end).is_gt() { b.end } else { a.end };
     if a.point || b.point {
         return at_point(if a.point { a.start } else { b.start }, start);
     }
-    let place = (start.place() + end.place()) * 0.5;
+    let point = (start.position() + end.position()) * 0.5;
     let through = a.through && b.through;
-    Touch {
-        kind: if through { TouchKind::Crossing } else { TouchKind::Edge },
-        place: place.into(),
+    Intersection {
+        kind: if through { IntersectionKind::Crossing } else { IntersectionKind::Segment },
+        point: point.into(),
         depth: if through { depth() } else { 0.0 },
     }
 }
 
-/// The least way along either normal until one triangle is no longer on both sides of the other.
+/// Returns the penetration depth: the least translation along either normal after which one triangle
+/// is on one side of the other.
 fn depth(a: &Triangle, heights_a: [f64; 3], b: &Triangle, heights_b: [f64; 3]) -> f64 {
     let least = |heights: [f64; 3], of: &Triangle| {
         let above = heights.iter().fold(0.0, |most: f64, &h| most.max(h));

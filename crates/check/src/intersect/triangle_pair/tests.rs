@@ -2,9 +2,9 @@
 
 use glam::DVec3;
 
-use super::{Triangle, meet};
-use crate::TouchKind;
-use crate::intersect::exact::open_axis;
+use super::{Triangle, intersect};
+use crate::IntersectionKind;
+use crate::intersect::exact::projection_axis;
 use crate::intersect::filter::{Pair, surely_only_share};
 use crate::intersect::tests::Random;
 
@@ -93,7 +93,7 @@ fn pierces(p: [i128; 3], q: [i128; 3], t: &Whole) -> Option<Ratio> {
 }
 
 /// The corners of what two triangles have in common, maybe some more of its points, and its kind.
-fn oracle(a: &Whole, b: &Whole) -> Option<(TouchKind, Vec<Ratio>)> {
+fn oracle(a: &Whole, b: &Whole) -> Option<(IntersectionKind, Vec<Ratio>)> {
     let mut points: Vec<Ratio> = a.iter().chain(b).map(|&p| Ratio::new(p, 1)).collect();
     let edges = |t: &Whole| [[t[0], t[1]], [t[1], t[2]], [t[2], t[0]]];
     for [p, q] in edges(a) {
@@ -106,16 +106,16 @@ fn oracle(a: &Whole, b: &Whole) -> Option<(TouchKind, Vec<Ratio>)> {
     points.retain(|p| depth_in(p, a) >= 0 && depth_in(p, b) >= 0);
     let &first = points.first()?;
     let Some(&second) = points.iter().find(|p| !p.same(&first)) else {
-        return Some((TouchKind::Vertex, points));
+        return Some((IntersectionKind::Point, points));
     };
     let way = |p: &Ratio| minus(p.over.map(|x| x * first.under), first.over.map(|x| x * p.under));
     let flat = points.iter().all(|p| cross(way(p), way(&second)) == [0; 3]);
     let ends = points.iter().flat_map(|p| points.iter().map(move |q| p.middle(q)));
     let inside = ends.into_iter().any(|p| depth_in(&p, a) > 0 && depth_in(&p, b) > 0);
     let kind = match (flat, inside) {
-        (false, _) => TouchKind::Overlap,
-        (true, true) => TouchKind::Crossing,
-        (true, false) => TouchKind::Edge,
+        (false, _) => IntersectionKind::Overlap,
+        (true, true) => IntersectionKind::Crossing,
+        (true, false) => IntersectionKind::Segment,
     };
     Some((kind, points))
 }
@@ -144,20 +144,20 @@ fn in_box(place: DVec3, points: &[Ratio]) -> bool {
 
 fn compare(a: &Whole, b: &Whole) {
     let expected = oracle(a, b);
-    let found = meet(&float(a), &float(b));
+    let found = intersect(&float(a), &float(b));
     let kind = expected.as_ref().map(|(kind, _)| *kind);
-    assert_eq!(found.map(|touch| touch.kind), kind, "{a:?} and {b:?}");
-    if let (Some(touch), Some((kind, points))) = (found, expected) {
-        assert!(in_box(touch.place.into(), &points), "{a:?} and {b:?} at {:?}", touch.place);
-        assert_eq!(touch.depth > 0.0, kind == TouchKind::Crossing, "{a:?} and {b:?}");
+    assert_eq!(found.map(|found| found.kind), kind, "{a:?} and {b:?}");
+    if let (Some(found), Some((kind, points))) = (found, expected) {
+        assert!(in_box(found.point.into(), &points), "{a:?} and {b:?} at {:?}", found.point);
+        assert_eq!(found.depth > 0.0, kind == IntersectionKind::Crossing, "{a:?} and {b:?}");
     }
-    let alone = [a.map(|p| !b.contains(&p)), b.map(|p| !a.contains(&p))];
-    let pair = Pair { triangles: &[float(a), float(b)], alone };
+    let unshared = [a.map(|p| !b.contains(&p)), b.map(|p| !a.contains(&p))];
+    let pair = Pair { triangles: &[float(a), float(b)], unshared };
     if surely_only_share(&pair) {
-        let most = match alone[0].iter().filter(|alone| **alone).count() {
+        let most = match unshared[0].iter().filter(|unshared| **unshared).count() {
             3 => None,
-            2 => Some(TouchKind::Vertex),
-            _ => Some(TouchKind::Edge),
+            2 => Some(IntersectionKind::Point),
+            _ => Some(IntersectionKind::Segment),
         };
         assert!(kind <= most, "{a:?} and {b:?}");
     }
@@ -193,7 +193,7 @@ fn far_from_the_origin_nothing_changes() {
         let [a, b] = [0, 1].map(|_| triangle(&mut random, [4; 3]));
         let moved = |t: &Whole| float(&t.map(|p| std::array::from_fn(|i| p[i] + far[i])));
         let expected = oracle(&a, &b).map(|(kind, _)| kind);
-        assert_eq!(meet(&moved(&a), &moved(&b)).map(|touch| touch.kind), expected);
+        assert_eq!(intersect(&moved(&a), &moved(&b)).map(|found| found.kind), expected);
     }
 }
 
@@ -203,10 +203,10 @@ fn a_triangle_without_area_meets_nothing_and_does_not_panic() {
     for _ in 0..3000 {
         let a: Triangle = float(&std::array::from_fn(|_| [2; 3].map(|n| random.below(n) as i128)));
         let b: Triangle = float(&std::array::from_fn(|_| [2; 3].map(|n| random.below(n) as i128)));
-        if open_axis(&a).is_none() && open_axis(&b).is_none() {
-            assert_eq!(meet(&a, &b), None);
+        if projection_axis(&a).is_none() && projection_axis(&b).is_none() {
+            assert_eq!(intersect(&a, &b), None);
         } else {
-            meet(&a, &b);
+            intersect(&a, &b);
         }
     }
 }

@@ -1,25 +1,26 @@
-//! Whether what is left of closed components is closed.
+//! Tests whether the remains of closed components are closed.
 
 use glam::{DMat3, DVec3};
 use meshlod_mesh::{Mesh, VertexId};
 use rustc_hash::FxHashMap;
 
-use crate::joined::Joined;
-use crate::places::Places;
+use crate::union_find::UnionFind;
+use crate::unique_positions::UniquePositions;
 
-/// Groups of solid components that have places in common.
-pub struct Groups {
-    /// Of each face; none of components that are not solid.
+/// Groups of solid components connected through common positions.
+pub struct SolidGroups {
+    /// Group of each face; `None` if its component is not solid.
     of_face: Vec<Option<u32>>,
     count: usize,
 }
 
-/// Sums over faces that tell a closed surface by the theorem of divergence: its normals, each as long
-/// as its face is large, sum to nothing, and their products with the faces' middles to the volume,
-/// the same along every axis, and nothing across. Where edges of one face end within those of
-/// another, sides could not be counted.
+/// Sums over faces that identify a closed surface by the divergence theorem.
+///
+/// The area vectors of a closed surface sum to zero, and their products with the face centres to the
+/// volume, equal along all axes, with zero off the diagonal. Counting sides would fail where edges of
+/// one face end within those of another.
 #[derive(Clone, Copy, Default)]
-struct Balance {
+struct DivergenceSums {
     origin: DVec3,
     normals: DVec3,
     products: DMat3,
@@ -27,24 +28,25 @@ struct Balance {
     reach: f64,
 }
 
-/// What rounding may leave, as part of areas and lengths.
+/// Rounding tolerance relative to area and size.
 const ROUNDING: f64 = 1e-9;
 
-impl Groups {
-    /// `is_solid` has a flag per component.
+impl SolidGroups {
+    /// Builds the groups; `is_solid` has a flag per component.
     pub fn of(mesh: &Mesh, component: &[u32], is_solid: &[bool]) -> Self {
-        let places = Places::of(&mesh.positions);
+        let unique = UniquePositions::of(&mesh.positions);
         let solid = component.iter().map(|&own| Some(own).filter(|_| is_solid[own as usize]));
         let mut of_face: Vec<Option<u32>> = solid.collect();
-        let mut joined = Joined::new(is_solid.len());
+        let mut groups = UnionFind::new(is_solid.len());
         let mut first: FxHashMap<VertexId, u32> = FxHashMap::default();
         for (face, component) in mesh.faces.iter().zip(&of_face) {
             let Some(component) = *component else { continue };
             for &v in face {
-                joined.join(*first.entry(places.first(v)).or_insert(component), component);
+                groups
+                    .union(*first.entry(unique.representative(v)).or_insert(component), component);
             }
         }
-        of_face.iter_mut().flatten().for_each(|group| *group = joined.least(*group));
+        of_face.iter_mut().flatten().for_each(|group| *group = groups.find(*group));
         Self { of_face, count: is_solid.len() }
     }
 
@@ -52,20 +54,20 @@ impl Groups {
         self.of_face[face].map(|group| group as usize)
     }
 
-    /// Which groups are closed if only some faces are kept.
+    /// Returns a flag per group: true if the kept faces form a closed surface.
     pub fn closed(&self, mesh: &Mesh, keeps: impl Fn(usize) -> bool) -> Vec<bool> {
-        let mut sums: Vec<Option<Balance>> = vec![None; self.count];
+        let mut sums: Vec<Option<DivergenceSums>> = vec![None; self.count];
         for (f, &face) in mesh.faces.iter().enumerate().filter(|(f, _)| keeps(*f)) {
             let Some(group) = self.of_face(f) else { continue };
             let triangle = mesh.triangle(face);
-            let start = || Balance { origin: triangle[0], ..Balance::default() };
+            let start = || DivergenceSums { origin: triangle[0], ..DivergenceSums::default() };
             sums[group].get_or_insert_with(start).add(&triangle);
         }
         sums.into_iter().map(|sum| sum.is_none_or(|sum| sum.is_closed())).collect()
     }
 }
 
-impl Balance {
+impl DivergenceSums {
     fn add(&mut self, triangle: &[DVec3; 3]) {
         let [a, b, c] = triangle.map(|corner| corner - self.origin);
         let normal = (b - a).cross(c - a);

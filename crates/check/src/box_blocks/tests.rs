@@ -2,7 +2,7 @@ use std::collections::BTreeSet;
 
 use super::*;
 
-/// A number from 0 to 1 that depends on its arguments alone.
+/// Hashes the arguments to a number from 0 to 1.
 fn hashed(a: u32, b: u32) -> f64 {
     let mut z = (u64::from(a) << 32 | u64::from(b)).wrapping_mul(0x9e37_79b9_7f4a_7c15);
     z = (z ^ z >> 30).wrapping_mul(0xbf58_476d_1ce4_e5b9);
@@ -22,13 +22,12 @@ fn overlap([a, b]: Corners, [c, d]: Corners) -> bool {
     a.cmple(d).all() && c.cmple(b).all()
 }
 
-/// The pairs that are visited, lower item first; none of them twice.
+/// Collects the visited pairs, lower item first, and asserts that none comes twice.
 fn visited(blocks: &BoxBlocks) -> BTreeSet<[u32; 2]> {
     let mut pairs = BTreeSet::new();
-    let _ = blocks.pairs(&mut |row: Row| {
-        for lane in lanes(row.lanes) {
-            let mut pair = [row.one, row.block * LANES as u32 + lane as u32]
-                .map(|place| blocks.items()[place as usize]);
+    let _ = blocks.pairs(&mut |row: OverlapRow| {
+        for other in row.others() {
+            let mut pair = [row.slot, other].map(|slot| blocks.items()[slot]);
             pair.sort_unstable();
             assert!(pairs.insert(pair) && pair[0] < pair[1], "{pair:?}");
         }

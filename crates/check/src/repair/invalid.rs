@@ -1,18 +1,17 @@
-//! What cannot be: vertices that are nowhere, faces that name what is not there.
+//! Removes non-finite vertices and faces with missing vertices.
 
 use meshlod_mesh::Mesh;
 
 use super::edit::retain_faces;
 
-/// How much was left out.
+/// Counts of what was removed.
 pub struct Dropped {
     pub faces: usize,
     pub vertices: usize,
 }
 
-/// Leaves out vertices that are not finite, and the faces that name one or a vertex that is not
-/// there.
-pub fn drop_bad(mesh: &mut Mesh) -> Dropped {
+/// Removes non-finite vertices and the faces with a non-finite or missing vertex.
+pub fn drop_invalid(mesh: &mut Mesh) -> Dropped {
     let mut kept = 0;
     let moved: Vec<Option<u32>> = mesh
         .positions
@@ -25,9 +24,9 @@ pub fn drop_bad(mesh: &mut Mesh) -> Dropped {
         .collect();
     let to = |v: usize| moved.get(v).copied().flatten();
     let faces = {
-        let sound: Vec<bool> =
+        let valid: Vec<bool> =
             mesh.faces.iter().map(|face| face.iter().all(|v| to(v.index()).is_some())).collect();
-        retain_faces(mesh, |face| sound[face])
+        retain_faces(mesh, |face| valid[face])
     };
     let vertices = mesh.positions.len() - kept as usize;
     if vertices > 0 {

@@ -1,4 +1,4 @@
-//! A mesh made ready to be measured.
+//! A mesh prepared for repeated distance measurements.
 
 use meshlod_mesh::{FaceId, Mesh, VertexId};
 use meshlod_spatial::{Bvh, BvhError, Frame};
@@ -6,41 +6,42 @@ use thiserror::Error;
 
 use crate::size::triangle_area;
 
-/// A mesh made ready to be measured from and against, as often as needed.
+/// A mesh with the search structure and the sampling table that distance measurements need.
 #[derive(Clone, Debug)]
-pub struct Surface<'m> {
+pub struct PreparedSurface<'m> {
     pub(crate) mesh: &'m Mesh,
     pub(crate) bvh: Bvh,
-    /// In the order of the hierarchy: the area up to and with each face, in local units.
+    /// Cumulative area up to and including each face, in leaf order and in local units.
     pub(crate) area_up_to: Vec<f64>,
-    /// The vertices that faces use, in the order of the hierarchy.
+    /// Vertices used by faces, in leaf order.
     pub(crate) vertices: Vec<VertexId>,
     pub(crate) diagonal: f64,
 }
 
-/// Why a mesh cannot be measured.
+/// Reason why a mesh cannot be measured.
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum SurfaceError {
-    /// It has no faces, or is not a mesh.
+    /// The mesh has no faces or is invalid.
     #[error(transparent)]
     Mesh(#[from] BvhError),
-    /// There is no area to take samples of.
+    /// All faces have zero area, so there is nothing to sample.
     #[error("all faces have zero area")]
     ZeroArea,
-    /// Squared distances would leave the range of `f64`.
-    #[error("its diagonal, {diagonal:e}, is outside 1e-140 to 1e140: scale it first")]
+    /// The mesh is so large or small that squared distances would leave the range of `f64`.
+    #[error("the diagonal {diagonal:e} must be between 1e-140 and 1e140: scale the mesh first")]
     Extent {
-        /// The length of the diagonal of its box.
+        /// Length of the diagonal of the bounding box.
         diagonal: f64,
     },
 }
 
-impl<'m> Surface<'m> {
-    /// Builds what searching and sampling `mesh` need.
+impl<'m> PreparedSurface<'m> {
+    /// Builds the structures for searching and sampling `mesh`.
     ///
-    /// Cost: O(n log n), n = faces; in parallel. About 130 bytes a face.
+    /// Cost: O(n log n), n = faces; in parallel. Size: about 130 bytes a face.
+    ///
     /// # Errors
-    /// No faces, invalid faces or positions, no area, or an extent near the end of the floats.
+    /// No faces, invalid faces or positions, zero area, or an extent near the limits of `f64`.
     pub fn new(mesh: &'m Mesh) -> Result<Self, SurfaceError> {
         let bvh = Bvh::new(mesh)?;
         let bounds = mesh.bounds();
@@ -51,7 +52,7 @@ impl<'m> Surface<'m> {
             total += triangle_area(&corners);
             total
         };
-        let area_up_to: Vec<f64> = bvh.faces_in_order().iter().map(area_of).collect();
+        let area_up_to: Vec<f64> = bvh.faces_in_leaf_order().iter().map(area_of).collect();
         if total <= 0.0 {
             return Err(SurfaceError::ZeroArea);
         }
@@ -59,26 +60,26 @@ impl<'m> Surface<'m> {
         if !(1e-140..=1e140).contains(&diagonal) {
             return Err(SurfaceError::Extent { diagonal });
         }
-        let vertices = used_in_order(mesh, bvh.faces_in_order());
+        let vertices = used_in_order(mesh, bvh.faces_in_leaf_order());
         Ok(Self { mesh, bvh, area_up_to, vertices, diagonal })
     }
 
-    /// The length of the diagonal of the box around the used vertices, in model units.
+    /// Returns the diagonal of the bounding box of the used vertices, in model units.
     pub fn diagonal(&self) -> f64 {
         self.diagonal
     }
 
-    /// The hierarchy over its faces.
+    /// Returns the bounding volume hierarchy over the faces.
     pub fn bvh(&self) -> &Bvh {
         &self.bvh
     }
 }
 
-/// The vertices of some faces, each once, as they are met.
+/// Returns the vertices of the faces, each once, in the order of first use.
 fn used_in_order(mesh: &Mesh, faces: &[FaceId]) -> Vec<VertexId> {
-    let mut met = vec![false; mesh.positions.len()];
+    let mut seen = vec![false; mesh.positions.len()];
     let corners = faces.iter().flat_map(|face| mesh.faces[face.index()]);
-    corners.filter(|v| !std::mem::replace(&mut met[v.index()], true)).collect()
+    corners.filter(|v| !std::mem::replace(&mut seen[v.index()], true)).collect()
 }
 
 #[cfg(test)]
@@ -92,13 +93,13 @@ mod tests {
     fn only_used_vertices_count() {
         let mut mesh = cube();
         mesh.positions.push([9.0; 3]);
-        let surface = Surface::new(&mesh).unwrap();
+        let surface = PreparedSurface::new(&mesh).unwrap();
         assert_eq!((surface.vertices.len(), surface.diagonal()), (8, 3f64.sqrt()));
     }
 
     #[test]
     fn what_cannot_be_measured_is_named() {
-        let error = |mesh: &Mesh| Surface::new(mesh).unwrap_err();
+        let error = |mesh: &Mesh| PreparedSurface::new(mesh).unwrap_err();
         assert_eq!(error(&Mesh::default()), SurfaceError::Mesh(BvhError::Empty));
         let mut flat = plane(1, 0.0);
         flat.positions.iter_mut().for_each(|position| position[1] = 0.0);
