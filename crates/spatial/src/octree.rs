@@ -218,7 +218,7 @@ mod tests {
 
     #[test]
     fn points_and_empty_input_have_leaves_too() {
-        assert!(Octree::new(0, |_| [DVec3::ZERO; 3]).cubes().is_empty());
+        assert!(Octree::new(0, |_| [DVec3::ZERO; 3]).leaves().is_empty());
         let octree = Octree::new(40, |_| [DVec3::ONE; 3]);
         assert!(octree.leaves().iter().all(|leaf| leaf.triangles.len() == 40));
     }
