@@ -1,4 +1,4 @@
-//! What checking takes: all kinds, what meets, and the net by which it is found.
+//! Times the check: all kinds, and intersections by either broad phase.
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use meshlod_check::{BroadPhase, CheckOptions, Kind, Kinds, findings};

@@ -34,8 +34,8 @@ pub struct CheckOptions {
 /// Visitor of findings, which may end the check.
 pub(crate) type Visit<'a> = dyn FnMut(&Finding) -> ControlFlow<()> + 'a;
 
-/// Passes all findings of `mesh` to `visit`, in the order of [`Kind::ALL`] and within a kind by lowest
-/// ids, until it breaks.
+/// Passes all findings of `mesh` to `visit`, in the order of [`Kind::ALL`] and within a kind by
+/// lowest ids, until it breaks.
 ///
 /// Accepts any mesh, even one that [`Mesh::validate`] refuses: the first kinds report that. A face
 /// with a missing or non-finite vertex is excluded from the kinds that follow.

@@ -7,7 +7,8 @@ use crate::objects::ObjectId;
 /// A defect or noteworthy feature of a mesh and where it is.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Finding {
-    /// A vertex with a NaN or infinite coordinate. Its faces are excluded from the kinds that follow.
+    /// A vertex with a NaN or infinite coordinate. Its faces are excluded from the kinds that
+    /// follow.
     NonFiniteVertex {
         /// Vertex concerned.
         vertex: VertexId,
@@ -57,8 +58,8 @@ pub enum Finding {
     },
     /// A loop of boundary edges.
     BoundaryLoop {
-        /// Vertices in order along the faces if these agree, starting with the lowest id. None occurs
-        /// twice: a pinched boundary is several loops.
+        /// Vertices in order along the faces if these agree, starting with the lowest id. None
+        /// occurs twice: a pinched boundary is several loops.
         vertices: Vec<VertexId>,
         /// True if the last vertex is connected to the first. False if a non-manifold edge ends the
         /// boundary; the lower end is then first.
@@ -104,8 +105,8 @@ pub enum Finding {
         /// Intersection of the faces.
         intersection: Intersection,
     },
-    /// The search for intersecting faces was given up because too many pairs are close: there may be
-    /// more self-intersections and contacts than reported.
+    /// The search for intersecting faces was given up because too many pairs are close: there may
+    /// be more self-intersections and contacts than reported.
     Crowded {
         /// Number of intersecting pairs found before giving up.
         found: usize,

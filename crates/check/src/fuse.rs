@@ -42,12 +42,12 @@ impl Fused {
 /// Components are cut along their intersections as in [`imprint`](crate::imprint()), what is inside
 /// is removed, and the rest is joined.
 ///
-/// A patch between intersections is removed if it lies inside a closed shell of another component or
-/// on its surface. Of two coincident patches of equal orientation the first stays, of two of opposite
-/// orientation neither. Components that intersect nothing stay, even inside others. `solid` returns
-/// true for opaque faces of `mesh`: a shell with any other face hides nothing, nor does one that is
-/// inside out. Open components hide nothing either: they are cut and lose what is inside closed ones,
-/// but are not joined to them.
+/// A patch between intersections is removed if it lies inside a closed shell of another component
+/// or on its surface. Of two coincident patches of equal orientation the first stays, of two of
+/// opposite orientation neither. Components that intersect nothing stay, even inside others.
+/// `solid` returns true for opaque faces of `mesh`: a shell with any other face hides nothing, nor
+/// does one that is inside out. Open components hide nothing either: they are cut and lose what is
+/// inside closed ones, but are not joined to them.
 ///
 /// Object labels of the result show where each face came from; with fewer than two objects they are
 /// named by component. If nothing intersects, the mesh is returned unchanged.
@@ -55,9 +55,9 @@ impl Fused {
 /// Closed components that intersect are closed together afterwards. If they would not be, because
 /// faces are coplanar only up to rounding, they are only cut.
 ///
-/// The mesh must have passed [`Mesh::validate`]. Cost: that of [`imprint`](crate::imprint()), and for
-/// each patch up to 128 times the faces of each shell whose box contains it, at most 2^28 in all;
-/// patches beyond that limit stay.
+/// The mesh must have passed [`Mesh::validate`]. Cost: that of [`imprint`](crate::imprint()), and
+/// for each patch up to 128 times the faces of each shell whose box contains it, at most 2^28 in
+/// all; patches beyond that limit stay.
 ///
 /// # References
 /// [JKSH13]: winding numbers decide what is inside; here those of closed shells, next to each face.
@@ -96,8 +96,8 @@ fn fuse_scaled(mesh: &Mesh, solid: impl Fn(FaceId) -> bool) -> (Mesh, Fused) {
     (fused, Fused { imprint, buried, joined })
 }
 
-/// Keeps all of the solid components that would not be closed together: if faces are coplanar only up
-/// to rounding, inside and outside cannot be decided.
+/// Keeps all of the solid components that would not be closed together: if faces are coplanar only
+/// up to rounding, inside and outside cannot be decided.
 fn keep_closed(mesh: &Mesh, groups: &SolidGroups, is_buried: &mut [bool]) {
     let closed = groups.closed(mesh, |face| !is_buried[face]);
     for (face, is_buried) in is_buried.iter_mut().enumerate() {

@@ -50,8 +50,8 @@ pub fn imprint(mesh: &Mesh) -> (Mesh, Imprint) {
     (done, imprint)
 }
 
-/// Applies `act` to a mesh scaled so that powers of its coordinates neither overflow nor underflow, and
-/// scales the result back.
+/// Applies `act` to a mesh scaled so that powers of its coordinates neither overflow nor underflow,
+/// and scales the result back.
 pub(crate) fn at_safe_scale<T>(mesh: &Mesh, act: impl FnOnce(&Mesh) -> (Mesh, T)) -> (Mesh, T) {
     let scale = ScaledPositions::of(&mesh.positions, &mesh.faces).scale();
     if scale == 1.0 {

@@ -15,7 +15,8 @@ use crate::unique_positions::UniquePositions;
 /// Options of [`locks`](locks()).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct LockOptions {
-    /// Hold vertices where components meet, also within an object, since components can drift apart.
+    /// Hold vertices where components meet, also within an object, since components can drift
+    /// apart.
     pub contacts: bool,
     /// Lock of the vertices of boundary edges; [`Lock::Free`] for none.
     pub boundary: Lock,
@@ -28,7 +29,8 @@ pub enum LockReason {
     Crossing,
     /// A face at the vertex overlaps a coplanar face of another component: protected.
     Overlap,
-    /// The vertex or a face at it touches another component elsewhere than at its vertices: protected.
+    /// The vertex or a face at it touches another component elsewhere than at its vertices:
+    /// protected.
     Touching,
     /// Faces of two objects share the vertex: protected.
     SharedVertex,
@@ -108,8 +110,8 @@ impl VertexLocks {
 /// Finds the vertices to hold during simplification of a mesh that has passed [`Mesh::validate`].
 ///
 /// Vertices at one position are tied, whether of one component or of two. Vertices that named
-/// objects share are protected, as are those of faces that pass through, or overlap in a plane with,
-/// a face of another component, so that the contact line moves late and little. A vertex that
+/// objects share are protected, as are those of faces that pass through, or overlap in a plane
+/// with, a face of another component, so that the contact line moves late and little. A vertex that
 /// touches another component elsewhere is protected together with what it touches. None of these is
 /// locked: if the target is tight, the rest of the mesh pays for locked vertices, and more
 /// components then break through there than the locks prevent.

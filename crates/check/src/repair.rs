@@ -1,4 +1,4 @@
-//! Repair: mends what can be mended safely, step by step.
+//! Repair: removes defects that can be removed safely, step by step.
 
 mod attributes;
 mod degenerate;
@@ -65,10 +65,10 @@ impl Default for RepairOptions {
 
 /// Repairs a mesh as `options` say and reports what was done.
 ///
-/// Accepts any mesh, even one that [`Mesh::validate`] refuses; the result passes. Faces with missing
-/// or non-finite vertices are always removed. Steps run in the order of [`RepairStep::ALL`], each
-/// preparing the next. Faces and vertices keep their order; a vertex that is split keeps its id for
-/// its first faces.
+/// Accepts any mesh, even one that [`Mesh::validate`] refuses; the result passes. Faces with
+/// missing or non-finite vertices are always removed. Steps run in the order of
+/// [`RepairStep::ALL`], each preparing the next. Faces and vertices keep their order; a vertex that
+/// is split keeps its id for its first faces.
 ///
 /// With the default options the only findings of [`Severity::Error`](crate::Severity) left are
 /// inconsistent edges of shells that cannot be oriented, which the report counts; repairing again

@@ -12,7 +12,7 @@ impl UnionFind {
         sets
     }
 
-    /// Makes a set of each number below `count` anew.
+    /// Resets to one set for each number below `count`.
     pub(crate) fn reset(&mut self, count: usize) {
         self.0.clear();
         self.0.extend(0..count as u32);

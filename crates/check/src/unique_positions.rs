@@ -44,8 +44,8 @@ impl UniquePositions {
         vertices.filter(|&v| self.representative(v) != v)
     }
 
-    /// Returns the groups with two vertices or more among those for which `counts` holds. Groups and
-    /// the vertices in them are sorted.
+    /// Returns the groups with two vertices or more among those for which `counts` holds. Groups
+    /// and the vertices in them are sorted.
     pub fn groups(&self, counts: impl Fn(VertexId) -> bool) -> Vec<Vec<VertexId>> {
         let mut groups: HashMap<VertexId, Vec<VertexId>, FxBuildHasher> = HashMap::default();
         // Only positions with a duplicate can have two vertices that count.
@@ -62,8 +62,8 @@ impl UniquePositions {
     }
 }
 
-/// Table entries read ahead of use, to overlap cache misses: a table of millions fits no cache. One at
-/// a time, a mesh of 4.3 million faces takes 2.3 times as long as with 16 or 64, and one of 0.27
+/// Table entries read ahead of use, to overlap cache misses: a table of millions fits no cache. One
+/// at a time, a mesh of 4.3 million faces takes 2.3 times as long as with 16 or 64, and one of 0.27
 /// million 2.4 times as long as with 16 and three times as long as with 64.
 const BATCH: usize = 64;
 
@@ -85,7 +85,8 @@ struct Probe {
 
 impl<'a> Seen<'a> {
     fn new(positions: &'a [[f64; 3]]) -> Self {
-        // Random keys prevent hash flooding by chosen positions. The result does not depend on them.
+        // Random keys prevent hash flooding by chosen positions. The result does not depend on
+        // them.
         let keys = std::array::from_fn(|i| RandomState::new().hash_one(i));
         Self {
             positions,
@@ -100,7 +101,8 @@ impl<'a> Seen<'a> {
         Probe { hash, entry: self.table[hash as usize & (self.table.len() - 1)] }
     }
 
-    /// Returns the first vertex seen at the position of `vertex`, which is added if it is the first.
+    /// Returns the first vertex seen at the position of `vertex`, which is added if it is the
+    /// first.
     #[inline]
     fn find_or_add(&mut self, vertex: VertexId, Probe { hash, entry }: Probe) -> VertexId {
         let key = self.key(vertex);

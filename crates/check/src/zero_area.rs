@@ -4,8 +4,8 @@ use robust::{Coord, orient2d};
 
 /// Returns true if three points are exactly collinear.
 ///
-/// They are if their projections onto the three coordinate planes are. A bound on the rounding error
-/// spares nearly all faces exact arithmetic.
+/// They are if their projections onto the three coordinate planes are. A bound on the rounding
+/// error spares nearly all faces exact arithmetic.
 #[inline]
 pub(crate) fn has_zero_area(corners: [[f64; 3]; 3]) -> bool {
     let [a, b, c] = corners;

@@ -1,4 +1,4 @@
-//! Real meshes, whose defects others have counted.
+//! Real meshes with reference counts of defects from other programs.
 
 use std::path::Path;
 
@@ -10,7 +10,7 @@ use meshlod_fixtures::{shared_broken, shared_mesh};
 use meshlod_io::{ReadOptions, read};
 use meshlod_mesh::Mesh;
 
-/// File, boundary edges, edges of three faces or more.
+/// File, number of boundary edges, number of non-manifold edges.
 const EDGES: [(&str, usize, usize); 31] = [
     ("bishop.obj", 0, 0),
     ("eight.off", 0, 0),
@@ -45,7 +45,7 @@ const EDGES: [(&str, usize, usize); 31] = [
     ("broken/mask-cone-touching.off", 124, 0),
 ];
 
-/// File, kind, how many.
+/// File, kind of finding, number of findings.
 const COUNTS: [(&str, Kind, usize); 13] = [
     ("cow-2904.off", Kind::CoincidentVertices, 1),
     ("cow-2904.off", Kind::NonManifoldVertex, 0),
@@ -62,13 +62,13 @@ const COUNTS: [(&str, Kind, usize); 13] = [
     ("broken/cow-flipped-edges.ply", Kind::InconsistentEdge, 12),
 ];
 
-/// All but what meets, which has tests of its own.
+/// All kinds except intersections, which have their own tests.
 fn found(mesh: &Mesh) -> Vec<Finding> {
     let kinds = Kinds::ALL.without(Kind::SelfIntersection).without(Kind::Contact);
     findings(mesh, &CheckOptions { kinds, ..CheckOptions::default() })
 }
 
-/// The mesh of a file, which must be readable where it is here.
+/// Reads a shared mesh; `None` if it is not available.
 fn shared(name: &str) -> Option<Mesh> {
     let path = shared_mesh(name)?;
     Some(read(&path, &ReadOptions::default()).expect("a mesh").flatten())
@@ -124,7 +124,7 @@ fn repaired_meshes_have_no_errors_and_stay() {
 }
 
 fn repaired_has_no_errors(path: &Path) {
-    // Of the broken, those that can be read.
+    // Only those broken files that can be read.
     let Ok(scene) = read(path, &ReadOptions::default()) else { return };
     for mesh in scene.meshes {
         let (mended, report) = repair(&mesh.mesh, &RepairOptions::default());

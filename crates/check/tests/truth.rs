@@ -1,7 +1,7 @@
-//! Two hundred scenes whose contacts are known by how they were made: all are found, none invented.
+//! Two hundred scenes whose contacts are known by construction: all are found and none invented.
 //!
-//! Coordinates are small multiples of 2^-30, and are turned by whole-number matrices and scaled by
-//! powers of two, so that what touches touches to the last bit wherever it stands.
+//! Coordinates are small multiples of 2^-30, transformed by integer matrices and powers of two, so
+//! that solids that touch do so to the last bit.
 
 use std::collections::BTreeMap;
 
@@ -12,7 +12,7 @@ use meshlod_mesh::{Labels, Mesh, VertexId};
 
 const BROAD_PHASES: [BroadPhase; 2] = [BroadPhase::Tree, BroadPhase::Octree];
 const SCENES: u64 = 200;
-/// How far near misses are apart: 1e-9 of solids about one wide.
+/// Gap of near misses: 1e-9 for solids about 1 wide.
 const GAP: f64 = 1.0 / (1 << 30) as f64;
 
 /// A closed solid.
@@ -22,7 +22,7 @@ struct Solid {
     faces: Vec<[u32; 3]>,
 }
 
-/// What two solids have in common, and how many findings of each kind say so.
+/// Two solids and the expected number of findings of each kind.
 struct Recipe {
     name: &'static str,
     solids: [Solid; 2],
@@ -34,7 +34,8 @@ impl Solid {
         Self { points: points.to_vec(), faces: faces.to_vec() }
     }
 
-    /// Four corners; outwards where the first three turn left seen from off the fourth.
+    /// Builds a tetrahedron; it points outwards if the first three corners are counter-clockwise
+    /// seen from the side opposite the fourth.
     fn tetrahedron(points: [[f64; 3]; 4]) -> Self {
         Self::new(points, &[[0, 1, 2], [0, 3, 1], [1, 3, 2], [2, 3, 0]])
     }
@@ -50,7 +51,7 @@ impl Solid {
         Self::new([a, b, c, d, e, f, g, h], &faces)
     }
 
-    /// Six points about a centre, `radius` along the axes.
+    /// Builds an octahedron with its corners at `radius` along the axes.
     fn octahedron([x, y, z]: [f64; 3], radius: f64) -> Self {
         let [l, r] = [[x - radius, y, z], [x + radius, y, z]];
         let [n, s] = [[x, y - radius, z], [x, y + radius, z]];
@@ -70,7 +71,7 @@ impl Solid {
     }
 }
 
-/// A table to stand on: its upper side is two large triangles at z = 0, parted by x = y.
+/// Builds a table whose upper side is two large triangles at z = 0, separated by x = y.
 fn table() -> Solid {
     Solid::cuboid([-1.0, -1.0, -0.5], [1.0, 1.0, 0.0])
 }
@@ -161,7 +162,7 @@ fn recipes() -> Vec<Recipe> {
     ]
 }
 
-/// A stream of numbers that is the same everywhere: splitmix64.
+/// Pseudorandom numbers by SplitMix64.
 struct Random(u64);
 
 impl Random {
@@ -173,7 +174,7 @@ impl Random {
     }
 }
 
-/// Three times a rotation, or once, with its axes and signs exchanged at random.
+/// Returns a rotation, scaled by three or one, with its axes and signs permuted at random.
 fn turn(random: &mut Random) -> [[f64; 3]; 3] {
     let rows = [
         [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
@@ -186,16 +187,16 @@ fn turn(random: &mut Random) -> [[f64; 3]; 3] {
     rows.map(|row| [0, 1, 2].map(|i| signs[i] * row[i]))
 }
 
-/// How many findings there are of two objects, by how they meet.
+/// Number of findings by pair of objects and kind of intersection.
 type Counts = BTreeMap<([u32; 2], IntersectionKind), usize>;
 
-/// Five recipes side by side, faces in any order, and what is to be found.
+/// Builds five recipes side by side, faces in random order, with the expected findings.
 fn scene(seed: u64) -> (Mesh, Counts) {
     let (mut random, recipes) = (Random(seed), recipes());
     let scale = 2.0_f64.powi(random.below(40) as i32 - 20);
     let (mut points, mut faces, mut expected) = (Vec::new(), Vec::new(), Counts::new());
     for stand in 0..5 {
-        // Every recipe comes up, whatever the seeds.
+        // Every recipe occurs, whatever the seeds.
         let recipe = &recipes[(5 * seed as usize + stand) % recipes.len()];
         let turn = turn(&mut random);
         let at = [64 * stand, random.below(64), random.below(64)].map(|x| x as f64);
@@ -221,7 +222,7 @@ fn scene(seed: u64) -> (Mesh, Counts) {
     (Mesh { objects, ..Mesh::new(points, faces) }, expected)
 }
 
-/// What is found, counted; every finding is of the faces of its objects.
+/// Counts the findings and asserts that their faces belong to their objects.
 fn counted(mesh: &Mesh, broad_phase: BroadPhase) -> Counts {
     let kinds = Kinds::NONE.with(Kind::Contact).with(Kind::SelfIntersection);
     let labels = &mesh.objects.as_ref().unwrap().of_face;
@@ -232,7 +233,7 @@ fn counted(mesh: &Mesh, broad_phase: BroadPhase) -> Counts {
             Finding::SelfIntersection { object, faces, intersection } => {
                 ([object; 2], faces, intersection)
             }
-            other => panic!("{other:?} was not asked for"),
+            other => panic!("{other:?} was not requested"),
         };
         assert_eq!(faces.map(|face| ObjectId(labels[face.index()])), objects);
         assert!(
@@ -260,10 +261,10 @@ fn every_contact_is_found_and_none_invented() {
     }
 }
 
-/// The same faces as one object: what crosses or lies over is a self-intersection, what is shared by
-/// place is not.
+/// As a single object, faces that cross or overlap are self-intersections, and faces that share
+/// positions are not.
 #[test]
-fn within_one_object_what_is_shared_by_place_is_no_finding() {
+fn within_one_object_shared_positions_are_no_finding() {
     for seed in 0..20 {
         let (mut mesh, mut expected) = scene(seed);
         let recipes = recipes();

@@ -1,8 +1,8 @@
 //! Measures closest point queries per second, on one thread, for samples near the surface.
 //!
 //! `cargo run --release -p meshlod-measure --example throughput [A.ply [B.ply]]`: without B, A is
-//! compared with itself after moving each vertex by up to 0.1 % of the diagonal; without A, A is the
-//! shared dragon.
+//! compared with itself after moving each vertex by up to 0.1 % of the diagonal; without A, A is
+//! the shared dragon.
 
 use std::error::Error;
 use std::path::{Path, PathBuf};

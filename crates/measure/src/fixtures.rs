@@ -31,7 +31,8 @@ pub fn cube() -> Mesh {
     mesh(positions, faces)
 }
 
-/// Builds a sphere about the origin with `n` rings and `2n` sectors, its vertices on the exact sphere.
+/// Builds a sphere about the origin with `n` rings and `2n` sectors, its vertices on the exact
+/// sphere.
 pub fn sphere(n: usize, radius: f64) -> Mesh {
     let turn = std::f64::consts::PI / n as f64;
     let mut positions = vec![[0.0, 0.0, radius]];

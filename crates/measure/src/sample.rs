@@ -4,8 +4,8 @@ use std::ops::Range;
 
 use crate::prepared::PreparedSurface;
 
-/// Iterates over the samples in the range `which` of `count`, each a random point of its own stratum
-/// of equal area.
+/// Iterates over the samples in the range `which` of `count`, each a random point of its own
+/// stratum of equal area.
 ///
 /// Strata follow the faces in leaf order and each face along a triangle-filling curve, so they are
 /// compact and neighbouring samples are near each other. A sample depends only on `seed` and its

@@ -2,14 +2,14 @@
 
 use glam::DVec3;
 use meshlod_mesh::Mesh;
-use meshlod_spatial::{CompensatedSum, Frame};
+use meshlod_spatial::{CompensatedSum, LocalFrame};
 
 /// Computes the total area of the faces, in squared model units; 0 without faces.
 ///
 /// Indices must be in range and positions finite. Infinite only if the area exceeds `f64`.
 /// Cost: O(faces).
 pub fn area(mesh: &Mesh) -> f64 {
-    let frame = Frame::of(&mesh.bounds());
+    let frame = LocalFrame::of(&mesh.bounds());
     let sum: CompensatedSum =
         local_triangles(mesh, frame).map(|triangle| triangle_area(&triangle)).collect();
     frame.model_squared(sum.value())
@@ -23,15 +23,15 @@ pub fn area(mesh: &Mesh) -> f64 {
 /// Accurate to about 1e-15 of the volume of the box, wherever the mesh lies. Indices must be in
 /// range and positions finite. Cost: O(faces).
 pub fn volume(mesh: &Mesh) -> f64 {
-    let frame = Frame::of(&mesh.bounds());
-    // From edges, not corners: the product of two long corner vectors of a small face would lose most
-    // of its digits.
+    let frame = LocalFrame::of(&mesh.bounds());
+    // From edges, not corners: the product of two long corner vectors of a small face would lose
+    // most of its digits.
     let sum: CompensatedSum =
         local_triangles(mesh, frame).map(|[a, b, c]| a.dot((b - a).cross(c - a))).collect();
     frame.model_squared(sum.value() / 6.0) / frame.scale()
 }
 
-fn local_triangles(mesh: &Mesh, frame: Frame) -> impl Iterator<Item = [DVec3; 3]> {
+fn local_triangles(mesh: &Mesh, frame: LocalFrame) -> impl Iterator<Item = [DVec3; 3]> {
     mesh.faces.iter().map(move |face| face.map(|v| frame.local(mesh.positions[v.index()])))
 }
 
@@ -85,8 +85,8 @@ mod tests {
 
     #[test]
     fn one_part_in_ten_to_the_thirteen_shows() {
-        // Moving a vertex along the area vector of its one-ring changes the volume by a third of that
-        // vector's length per unit.
+        // Moving a vertex along the area vector of its one-ring changes the volume by a third of
+        // that vector's length per unit.
         let mut mesh = sphere(200, 1.0);
         let before = volume(&mesh);
         let vertex = mesh.faces[mesh.faces.len() / 2][0];

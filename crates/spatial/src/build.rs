@@ -16,7 +16,8 @@ const LEAF: usize = 2;
 const BINS: usize = 8;
 /// Ranges at least this long build their children in parallel, each into its own vector.
 const GRAIN: usize = 1 << 13;
-/// Depth from which ranges are halved by count, so that adversarial meshes cannot make the tree deep.
+/// Depth from which ranges are halved by count, so that adversarial meshes cannot make the tree
+/// deep.
 const MAX_COSTED_DEPTH: usize = 40;
 /// Bound on the depth: beyond `MAX_COSTED_DEPTH` each level halves at most 2^32 faces.
 pub(crate) const MAX_DEPTH: usize = MAX_COSTED_DEPTH + 32;

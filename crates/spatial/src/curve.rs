@@ -3,8 +3,8 @@
 use glam::Vec3;
 use rayon::prelude::*;
 
-/// Bits of a key per axis and bits of a radix digit, so that a key takes three passes. Two passes of
-/// 15 bits sort a million keys in 1.4 times the time.
+/// Bits of a key per axis and bits of a radix digit, so that a key takes three passes. Two passes
+/// of 15 bits sort a million keys in 1.4 times the time.
 const BITS: u32 = 10;
 const CELLS: f32 = (1u32 << BITS) as f32;
 /// Runs of equal keys at least this long are sorted again at a finer scale.
@@ -87,8 +87,8 @@ struct Step {
     state: u8,
 }
 
-/// Number of states: three times the corner where the curve enters a cube, plus the axis along which
-/// it leaves.
+/// Number of states: three times the corner where the curve enters a cube, plus the axis along
+/// which it leaves.
 const STATES: usize = 24;
 const STEPS: [[Step; 8]; STATES] = steps();
 

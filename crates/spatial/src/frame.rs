@@ -9,7 +9,7 @@ use meshlod_mesh::Bounds;
 /// The scale is a power of two, so scaling is exact. In local coordinates far-away and extremely
 /// large or small meshes fit `f32` boxes, and fourth powers of lengths fit an `f64`.
 #[derive(Clone, Copy, Debug)]
-pub struct Frame {
+pub struct LocalFrame {
     origin: DVec3,
     scale: f64,
 }
@@ -17,7 +17,7 @@ pub struct Frame {
 /// Bound on the exponent of the scale, which keeps the scale and its inverse finite and normal.
 const MAX_EXPONENT: f64 = 1022.0;
 
-impl Frame {
+impl LocalFrame {
     /// Returns the frame of a finite box; an empty or pointlike box keeps the model's units.
     pub fn of(bounds: &Bounds) -> Self {
         let half = DVec3::from(bounds.max) * 0.5 - DVec3::from(bounds.min) * 0.5;
@@ -60,8 +60,8 @@ impl Frame {
 mod tests {
     use super::*;
 
-    fn frame(min: f64, max: f64) -> Frame {
-        Frame::of(&Bounds { min: [min; 3], max: [max; 3] })
+    fn frame(min: f64, max: f64) -> LocalFrame {
+        LocalFrame::of(&Bounds { min: [min; 3], max: [max; 3] })
     }
 
     #[test]

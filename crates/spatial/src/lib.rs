@@ -33,7 +33,7 @@ mod triangle;
 pub use bvh::{Bvh, BvhError};
 pub use closest::ClosestPoint;
 pub use curve::curve_order;
-pub use frame::Frame;
+pub use frame::LocalFrame;
 pub use octree::{Octree, OctreeLeaf};
 pub use sum::CompensatedSum;
 pub use triangle::{Triangle, closest_point};

@@ -11,7 +11,8 @@ const MAX_LEVEL: u8 = 16;
 /// Splitting ends when the cells together hold this many entries per triangle, as long triangles
 /// pass through many cells.
 const MOST_ENTRIES: usize = 64;
-/// Tolerance of the overlap test for rounding, relative to the root: some units of 2^-52 and a margin.
+/// Tolerance of the overlap test for rounding, relative to the root: some units of 2^-52 and a
+/// margin.
 const SLACK: f64 = 1e-14;
 
 /// The leaves of an octree over triangles.

@@ -75,8 +75,8 @@ impl Boundary {
         polylines
     }
 
-    /// Adds a polyline, rotated so that a loop starts at its lowest vertex, or reversed so that a path
-    /// starts at its lower end.
+    /// Adds a polyline, rotated so that a loop starts at its lowest vertex, or reversed so that a
+    /// path starts at its lower end.
     fn add(&mut self, vertices: &[VertexId], closed: bool) {
         let start = self.vertices.len();
         self.vertices.extend_from_slice(vertices);
@@ -98,8 +98,8 @@ struct BoundaryWalk<'a> {
     connectivity: &'a Connectivity,
     /// Flag per side: true once walked.
     walked: Vec<bool>,
-    /// Number of faces of each vertex's star already searched for sides that leave it, and for sides
-    /// that arrive. Each star is searched once, however often the walk passes through.
+    /// Number of faces of each vertex's star already searched for sides that leave it, and for
+    /// sides that arrive. Each star is searched once, however often the walk passes through.
     searched: [Vec<u32>; 2],
     /// Index of each vertex on the path, plus one; 0 if it is not on the path.
     reached: Vec<u32>,
@@ -164,8 +164,8 @@ impl<'a> BoundaryWalk<'a> {
         self.path.drain(index + 1..).for_each(|v| self.reached[v.index()] = 0);
     }
 
-    /// Takes an unwalked boundary edge at a vertex and returns its other end. Prefers an edge in the
-    /// direction of its face; if faces disagree, takes one against it.
+    /// Takes an unwalked boundary edge at a vertex and returns its other end. Prefers an edge in
+    /// the direction of its face; if faces disagree, takes one against it.
     fn next(&mut self, vertex: VertexId) -> Option<VertexId> {
         (0..2).find_map(|arriving| {
             let star = self.connectivity.star(vertex);

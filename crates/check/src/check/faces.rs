@@ -55,8 +55,8 @@ pub(crate) fn duplicates(
     found
 }
 
-/// Returns true if another face may have the same vertices. Such a face lies across each of the three
-/// sides, alone or among several.
+/// Returns true if another face may have the same vertices. Such a face lies across each of the
+/// three sides, alone or among several.
 #[inline]
 fn may_have_duplicate(connectivity: &Connectivity, face: FaceId) -> bool {
     let mut other = None;

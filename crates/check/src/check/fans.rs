@@ -12,8 +12,8 @@ use crate::union_find::UnionFind;
 pub fn non_manifold_vertices(subject: &Subject, visit: &mut Visit) -> ControlFlow<()> {
     let mut fans = Fans::default();
     for vertex in (0..subject.mesh.positions.len()).map(|v| VertexId(v as u32)) {
-        // Connectivity treats the faces of a non-manifold edge as unconnected, so it marks a superset
-        // of these vertices.
+        // Connectivity treats the faces of a non-manifold edge as unconnected, so it marks a
+        // superset of these vertices.
         if subject.connectivity().marks(vertex).pinched() {
             let fans = fans.count(subject, vertex);
             if fans > 1 {
@@ -27,7 +27,8 @@ pub fn non_manifold_vertices(subject: &Subject, visit: &mut Visit) -> ControlFlo
 /// Counts the fans of a vertex by union-find over its faces.
 #[derive(Default)]
 struct Fans {
-    /// Two spokes for each face of the star: a neighbour vertex and the index of the face in the star.
+    /// Two spokes for each face of the star: a neighbour vertex and the index of the face in the
+    /// star.
     spokes: Vec<(VertexId, u32)>,
     sets: UnionFind,
 }

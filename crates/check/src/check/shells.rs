@@ -82,9 +82,9 @@ impl<'a> Shells<'a> {
 }
 
 impl Shell {
-    /// Volume, relative to the sum of the magnitudes of its terms, below which it counts as rounding
-    /// error. Adding a million terms with an error of 2^-52 each could give 2e-10; errors of random
-    /// sign stay far below.
+    /// Volume, relative to the sum of the magnitudes of its terms, below which it counts as
+    /// rounding error. Adding a million terms with an error of 2^-52 each could give 2e-10; errors
+    /// of random sign stay far below.
     const ROUNDING: f64 = 1e-12;
 
     fn from(first: FaceId, origin: DVec3) -> Self {

@@ -25,8 +25,8 @@ pub struct Subject<'a> {
     intersecting_pairs: OnceCell<IntersectingPairs>,
 }
 
-/// Stand-in for an excluded face: it repeats a vertex, so that [`Connectivity`] skips it, and no mesh
-/// has that vertex.
+/// Stand-in for an excluded face: it repeats a vertex, so that [`Connectivity`] skips it, and no
+/// mesh has that vertex.
 pub const EXCLUDED: [VertexId; 3] = [VertexId(u32::MAX); 3];
 
 impl<'a> Subject<'a> {

@@ -1,4 +1,4 @@
-//! Every kind on the least mesh that has it.
+//! Each kind on the smallest mesh that has it.
 
 use meshlod_fixtures::{cube, fan, grid, hourglass, mesh, moebius, tetrahedron, two_objects};
 use meshlod_mesh::{Attributes, FaceId, Labels, MeshError, VertexId};
@@ -8,7 +8,7 @@ use super::*;
 use crate::finding::Degeneracy;
 use crate::summary::Summary;
 
-/// All findings beside what meets, which has its own tests.
+/// Returns all findings except intersections, which have their own tests.
 fn found(mesh: &Mesh) -> Vec<Finding> {
     let meeting = [Kind::SelfIntersection, Kind::Contact, Kind::Crowded];
     let kinds = meeting.into_iter().fold(Kinds::ALL, Kinds::without);
@@ -36,7 +36,7 @@ fn nothing_is_found_where_nothing_is_wrong() {
 }
 
 #[test]
-fn a_vertex_that_is_nowhere_takes_its_faces_out() {
+fn a_non_finite_vertex_excludes_its_faces() {
     for x in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
         let mut mesh = tetrahedron();
         mesh.positions[3][1] = x;
@@ -46,7 +46,7 @@ fn a_vertex_that_is_nowhere_takes_its_faces_out() {
 }
 
 #[test]
-fn a_name_of_nothing_takes_its_face_out() {
+fn a_missing_vertex_excludes_its_face() {
     let mut mesh = tetrahedron();
     mesh.faces[1][2] = VertexId(u32::MAX);
     let bad = Finding::BadIndex { face: FaceId(1), vertex: VertexId(u32::MAX) };
@@ -57,7 +57,7 @@ fn a_name_of_nothing_takes_its_face_out() {
 }
 
 #[test]
-fn arrays_that_do_not_fit_are_named() {
+fn mismatched_arrays_are_reported() {
     let mut mesh = tetrahedron();
     mesh.attributes = Some(Attributes::default());
     let error = MeshError::BadLength { what: "attribute corners".into(), found: 0, expected: 4 };
@@ -82,7 +82,7 @@ fn unused_and_coincident_vertices_are_told_apart() {
 }
 
 #[test]
-fn faces_without_an_inside_are_found() {
+fn degenerate_faces_are_found() {
     let mesh = mesh(
         &[[0.0; 3], [1.0; 3], [2.0; 3], [0.0, 1.0, 0.0]],
         &[[0, 1, 3], [0, 1, 2], [1, 3, 1], [3, 3, 3]],
@@ -105,8 +105,8 @@ fn duplicates_are_found_whichever_way_round() {
     mesh.faces.push(vertices([1, 2, 0]));
     let double = |face| Finding::DuplicateFace { face: FaceId(face), of: FaceId(0) };
     assert_eq!(of_kind(&mesh, Kind::DuplicateFace), [double(4), double(5)]);
-    // Two that are alone with each other, and the four faces of a closed mesh that share all
-    // vertices but not three.
+    // Two faces on their own, and the four faces of a closed mesh, no two of which share three
+    // vertices.
     mesh.faces = vec![vertices([0, 1, 2]), vertices([0, 2, 1])];
     assert_eq!(of_kind(&mesh, Kind::DuplicateFace).len(), 1);
     assert_eq!(of_kind(&fan(), Kind::DuplicateFace), []);
@@ -140,7 +140,7 @@ fn a_fan_of_three_has_an_edge_a_loop_and_a_path() {
         closed,
     };
     assert_eq!(lines, [line(&[0, 2, 1, 3], true), line(&[0, 4, 1], false)]);
-    // The edge says it: its ends have no fan that hangs by nothing.
+    // Only the edge is reported: the faces at its ends are connected.
     assert_eq!(of_kind(&fan(), Kind::NonManifoldVertex), []);
 }
 
@@ -153,7 +153,7 @@ fn a_vertex_in_which_shells_only_touch_has_two_fans() {
 #[test]
 fn a_pinched_boundary_is_several_loops() {
     let mut mesh = grid(3);
-    // Without the upper left and the lower right quad around vertex 5, two holes meet in it.
+    // Without the upper left and the lower right quad around vertex 5, two holes meet there.
     mesh.faces.drain(8..10);
     mesh.faces.drain(0..2);
     let loops = of_kind(&mesh, Kind::BoundaryLoop);
@@ -230,7 +230,7 @@ fn clean_is_what_was_asked_for() {
 
 #[test]
 fn millions_of_loops_in_one_vertex_are_walked_in_one_go() {
-    // Every face is a loop of its own, all pinched in v0.
+    // Every face is a loop of its own, all pinched at v0.
     const FACES: u32 = 200_000;
     let faces: Vec<_> = (0..FACES).map(|f| [0, 2 * f + 1, 2 * f + 2]).collect();
     let positions: Vec<_> =

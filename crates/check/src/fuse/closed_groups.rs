@@ -16,9 +16,9 @@ pub struct SolidGroups {
 
 /// Sums over faces that identify a closed surface by the divergence theorem.
 ///
-/// The area vectors of a closed surface sum to zero, and their products with the face centres to the
-/// volume, equal along all axes, with zero off the diagonal. Counting sides would fail where edges of
-/// one face end within those of another.
+/// The area vectors of a closed surface sum to zero, and their products with the face centres to
+/// the volume, equal along all axes, with zero off the diagonal. Counting sides would fail where
+/// edges of one face end within those of another.
 #[derive(Clone, Copy, Default)]
 struct DivergenceSums {
     origin: DVec3,

@@ -12,8 +12,8 @@ pub struct Patch {
 }
 
 /// Splits a mesh into patches along contact edges, in the order of their first faces. Parts that no
-/// contact edge bounds are omitted. An edge that two components have at the same positions also counts
-/// as a contact edge.
+/// contact edge bounds are omitted. An edge that two components have at the same positions also
+/// counts as a contact edge.
 pub fn patches(
     mesh: &Mesh,
     component: &[u32],

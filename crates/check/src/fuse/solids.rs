@@ -28,7 +28,8 @@ struct Sample {
     normal: DVec3,
 }
 
-/// Number of samples of a patch, which must all agree: its largest faces, and others spread over it.
+/// Number of samples of a patch, which must all agree: its largest faces, and others spread over
+/// it.
 const SAMPLES: [usize; 2] = [16, 48];
 
 /// Offset of the test points on both sides of a face, relative to the size of the solid.
@@ -67,7 +68,8 @@ impl Solids {
         faces.iter().map(|&others| others == 0).collect()
     }
 
-    /// Returns true if a shell of another component hides a patch of `component`, within the budget.
+    /// Returns true if a shell of another component hides a patch of `component`, within the
+    /// budget.
     pub fn hide(&mut self, mesh: &Mesh, patch: &Patch, component: u32) -> bool {
         let samples = samples(mesh, patch);
         let Self { solids, budget } = self;
@@ -81,8 +83,8 @@ impl Solids {
 impl Solid {
     /// Returns true if the solid hides a face of `component` at a sample point.
     ///
-    /// The face is hidden if it is inside. Of two coincident faces of equal orientation, that of the
-    /// first component is visible; of opposite orientation, neither is.
+    /// The face is hidden if it is inside. Of two coincident faces of equal orientation, that of
+    /// the first component is visible; of opposite orientation, neither is.
     fn hides(&self, sample: &Sample, component: u32, budget: &mut usize) -> bool {
         let tests = 2 * self.triangles.len();
         if !contains(&self.bounds, sample.point) || *budget < tests {

@@ -5,7 +5,7 @@ use meshlod_mesh::{Connectivity, VertexId};
 
 use super::*;
 
-/// A closed box from one corner to another, as 12 faces that look outwards.
+/// Builds a closed box from one corner to another with 12 faces that point outwards.
 fn block(from: [f64; 3], to: [f64; 3]) -> Mesh {
     let corner = |i: usize| {
         std::array::from_fn(|axis| if i >> axis & 1 == 0 { from[axis] } else { to[axis] })
@@ -62,7 +62,7 @@ fn two_blocks_become_one() {
 }
 
 #[test]
-fn what_meets_nothing_stays() {
+fn components_that_intersect_nothing_stay() {
     let apart = together([block([0.0; 3], [4.0; 3]), block([1.0; 3], [2.0; 3])]);
     assert_eq!(fuse(&apart, |_| true), (apart.clone(), Fused::default()));
 }
@@ -71,7 +71,7 @@ fn what_meets_nothing_stays() {
 fn glass_hides_nothing() {
     let blocks = together([block([0.0; 3], [2.0; 3]), block([1.0; 3], [3.0; 3])]);
     let (fused, report) = fuse(&blocks, |face| face.index() >= 12);
-    // What is left is the glass without what is in the other, and all of the other.
+    // What is left is the glass without its part inside the other, and all of the other.
     assert!(report.buried > 0);
     assert!((area(&fused) - (24.0 - 3.0 + 24.0)).abs() < 1e-12);
     let (fused, report) = fuse(&blocks, |_| false);
@@ -79,7 +79,7 @@ fn glass_hides_nothing() {
     assert!((area(&fused) - 48.0).abs() < 1e-12);
 }
 
-/// Numbers that look random, the same for the same seed.
+/// Pseudorandom numbers of a seed.
 struct Random(u64);
 
 impl Random {
@@ -89,7 +89,7 @@ impl Random {
     }
 }
 
-/// Some blocks with corners at whole places, and the cells that they cover.
+/// Builds blocks with integer corners and returns the cells that they cover.
 fn blocks_on_a_grid(seed: u64) -> (Mesh, BTreeSet<[u64; 3]>) {
     let mut random = Random(seed);
     let count = 2 + random.below(4);
@@ -107,7 +107,7 @@ fn blocks_on_a_grid(seed: u64) -> (Mesh, BTreeSet<[u64; 3]>) {
     (together(blocks.collect::<Vec<_>>()), cells)
 }
 
-/// How many sides of cells have no cell beyond.
+/// Returns the number of cell sides without a neighbour cell.
 fn open_sides(cells: &BTreeSet<[u64; 3]>) -> usize {
     let beside = |cell: &[u64; 3], axis: usize, step: i64| {
         let mut beside = *cell;
@@ -122,7 +122,7 @@ fn open_sides(cells: &BTreeSet<[u64; 3]>) -> usize {
 
 #[test]
 fn blocks_on_a_grid_fuse_to_the_cells_that_they_cover() {
-    // Most corners lie in faces and on edges of others, and many sides in one plane.
+    // Most corners lie on faces and edges of others, and many sides are coplanar.
     for seed in 0..200 {
         let (blocks, cells) = blocks_on_a_grid(seed);
         let (fused, _) = fuse(&blocks, |_| true);
@@ -132,7 +132,7 @@ fn blocks_on_a_grid_fuse_to_the_cells_that_they_cover() {
     }
 }
 
-/// The same blocks, each turned by its own angle, or all by one.
+/// Rotates blocks, each by its own angle or all by one.
 fn turned(blocks: &Mesh, angle: impl Fn(usize) -> f64) -> Mesh {
     let mut turned = blocks.clone();
     for (v, p) in turned.positions.iter_mut().enumerate() {
@@ -156,7 +156,7 @@ fn blocks_turned_apart_stay_closed() {
 }
 
 #[test]
-fn where_planes_are_one_but_for_rounding_nothing_seen_is_lost() {
+fn nothing_visible_is_lost_if_planes_coincide_up_to_rounding() {
     for seed in 0..100 {
         let (blocks, cells) = blocks_on_a_grid(seed);
         let blocks = turned(&blocks, |_| 0.3);
@@ -168,7 +168,7 @@ fn where_planes_are_one_but_for_rounding_nothing_seen_is_lost() {
 }
 
 #[test]
-fn of_a_block_and_the_same_inside_out_one_stays() {
+fn of_a_block_and_its_inside_out_copy_one_stays() {
     for inner in [0, 1] {
         let mut blocks = [block([0.0; 3], [1.0; 3]), block([0.0; 3], [1.0; 3])];
         blocks[inner].faces.iter_mut().for_each(|face| face.reverse());

@@ -7,8 +7,8 @@ use rustc_hash::FxHashMap;
 use super::points::{EndPoint, IntersectionPoints, IntersectionSegment, PointId, rounding};
 use crate::intersect::{orientation, project, projection_axis};
 
-/// Distance, in multiples of the rounding error, within which two faces may place the same crossing:
-/// segments that cross at narrow angles amplify the rounding of their ends.
+/// Distance, in multiples of the rounding error, within which two faces may place the same
+/// crossing: segments that cross at narrow angles amplify the rounding of their ends.
 const SPREAD: f64 = 1e4;
 
 /// Splits intersection segments where they cross in a face. Three faces that meet at a point have a
@@ -97,7 +97,8 @@ fn crossings(triangle: &[DVec3; 3], segments: &[[DVec3; 2]]) -> Vec<Crossing> {
     found
 }
 
-/// Returns the parameters at which two segments cross; `None` if they do not cross between their ends.
+/// Returns the parameters at which two segments cross; `None` if they do not cross between their
+/// ends.
 fn cross([[a, b], [c, d]]: [[DVec2; 2]; 2]) -> Option<[f64; 2]> {
     let [of_c, of_d] = [c, d].map(|p| orientation(a, b, p));
     let [of_a, of_b] = [a, b].map(|p| orientation(c, d, p));

@@ -25,8 +25,8 @@ pub struct FaceCuts {
     pub segments: Vec<[usize; 2]>,
 }
 
-/// Number of grid steps along an edge, as fine as `f64` allows. The grid only serves to triangulate:
-/// positions in space are not rounded to it.
+/// Number of grid steps along an edge, as fine as `f64` allows. The grid only serves to
+/// triangulate: positions in space are not rounded to it.
 const STEPS: u64 = 1 << 52;
 
 /// Triangulation of a cut face.
@@ -64,17 +64,19 @@ pub fn triangulate(cuts: &FaceCuts) -> FaceTriangulation {
     FaceTriangulation { triangles, segments: segments.collect() }
 }
 
-/// Returns the numbers below `count` in bit-reversed order, which bisects the range again and again.
+/// Returns the numbers below `count` in bit-reversed order, which bisects the range again and
+/// again.
 ///
-/// Inserted in sequence, each point would flip many edges again: 10,000 parallel segments took 16 s,
-/// and take 1 s in this order.
+/// Inserted in sequence, each point would flip many edges again: 10,000 parallel segments took 16
+/// s, and take 1 s in this order.
 fn bisecting_order(count: usize) -> Vec<usize> {
     let mut order: Vec<usize> = (0..count).collect();
     order.sort_by_key(|i| i.reverse_bits());
     order
 }
 
-/// Rounds the points to distinct grid points, keeping those on an edge on it and those inside inside.
+/// Rounds the points to distinct grid points, keeping those on an edge on it and those inside
+/// inside.
 fn grid_points(cuts: &FaceCuts) -> Vec<[u64; 2]> {
     let mut points = vec![[0, 0], [STEPS, 0], [0, STEPS]];
     for (edge, along) in cuts.along.iter().enumerate() {

@@ -59,8 +59,8 @@ fn ones_if(condition: bool) -> u32 {
 /// Octree leaves with more faces are searched by a box hierarchy of their own.
 const CROWD: usize = 64;
 
-/// Number of faces from which a vertex is high-valence: the boxes of its faces all overlap, and none
-/// of their pairs is of interest here.
+/// Number of faces from which a vertex is high-valence: the boxes of its faces all overlap, and
+/// none of their pairs is of interest here.
 const HIGH_VALENCE: u32 = 256;
 
 impl Search<'_> {

@@ -23,8 +23,8 @@ pub(crate) fn orientation(a: DVec2, b: DVec2, p: DVec2) -> f64 {
     orient2d(coord(a), coord(b), coord(p))
 }
 
-/// Projects a point along an axis. Triangles that are counter-clockwise seen from the axis's positive
-/// end stay so.
+/// Projects a point along an axis. Triangles that are counter-clockwise seen from the axis's
+/// positive end stay so.
 #[inline]
 pub(crate) fn project(axis: usize, p: DVec3) -> DVec2 {
     match axis {
@@ -34,8 +34,8 @@ pub(crate) fn project(axis: usize, p: DVec3) -> DVec2 {
     }
 }
 
-/// Returns the axis along which the projected triangle is largest, and its orientation there; `None`
-/// for a triangle of zero area.
+/// Returns the axis along which the projected triangle is largest, and its orientation there;
+/// `None` for a triangle of zero area.
 pub(crate) fn projection_axis(triangle: &[DVec3; 3]) -> Option<(usize, f64)> {
     let areas = [0, 1, 2].map(|axis| {
         let [a, b, c] = triangle.map(|p| project(axis, p));

@@ -39,8 +39,8 @@ fn beyond_plane(a: &Triangle, b: &Triangle, unshared: &[bool; 3]) -> bool {
     heights.excludes_zero(ERROR_3D * size + TINY)
 }
 
-/// Returns true if, in the projection along an axis, a line through an edge of one triangle separates
-/// its third corner from the unshared corners of the other.
+/// Returns true if, in the projection along an axis, a line through an edge of one triangle
+/// separates its third corner from the unshared corners of the other.
 #[cold]
 fn beyond_line(pair: &Pair) -> bool {
     let [a, b] = pair.triangles;
@@ -103,7 +103,8 @@ impl Interval {
 /// [She97, section 4.3], each at most the product of the largest components, so 42 × 2^-53 of that.
 /// The rest covers the rounding of the bound itself.
 const ERROR_3D: f64 = 64.0 / (1u64 << 53) as f64;
-/// Relative error bound of a height over a line: at most 3 × 2^-53 of its two products, and a margin.
+/// Relative error bound of a height over a line: at most 3 × 2^-53 of its two products, and a
+/// margin.
 const ERROR_2D: f64 = 4.0 / (1u64 << 53) as f64;
 /// Height below which digits may have been lost to underflow.
 const TINY: f64 = 1e-290;

@@ -33,13 +33,13 @@ pub(crate) use exact::{orientation, project, projection_axis};
 pub(crate) use segment_end::{Feature, SegmentEnd};
 pub(crate) use soup::{ScaledPositions, SearchInput};
 
-/// Broad phase that finds the pairs of faces whose boxes overlap. The findings do not depend on it.
+/// Method that finds the pairs of faces that may intersect. The findings do not depend on it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum BroadPhase {
     /// Bounding volume hierarchy tested against itself: fast.
     #[default]
     Tree,
-    /// Octree, of which pairs in a common leaf are tested; see [`crate::ObjectOctree`].
+    /// Octree: pairs of faces in a common leaf; see [`crate::ObjectOctree`].
     Octree,
 }
 
@@ -76,8 +76,8 @@ impl IntersectingPairs {
     /// positions as an earlier one of its object, apart from the pair of these two if their
     /// vertices differ.
     ///
-    /// If all faces are close to all others, the search gives up and the result is incomplete: after
-    /// 1,000 tests a face plus 17 million, or 32 pairs a face plus a million.
+    /// If all faces are close to all others, the search gives up and the result is incomplete:
+    /// after 1,000 tests a face plus 17 million, or 32 pairs a face plus a million.
     pub(crate) fn of(input: &SearchInput<'_>, broad_phase: BroadPhase) -> Self {
         Self::within(input, broad_phase, Limits::of(input.faces.len()))
     }
@@ -106,8 +106,8 @@ impl IntersectingPairs {
         &self.pairs
     }
 
-    /// Computes how the faces of a pair intersect. `None` only occurs if coordinates differ too much
-    /// in magnitude for exact signs.
+    /// Computes how the faces of a pair intersect. `None` only occurs if coordinates differ too
+    /// much in magnitude for exact signs.
     pub(crate) fn intersection(&self, mesh: &Mesh, pair: [FaceId; 2]) -> Option<Intersection> {
         let positions = ScaledPositions::new(&mesh.positions, self.scale);
         let [a, b] = pair.map(|f| positions.triangle(mesh.faces[f.index()]));

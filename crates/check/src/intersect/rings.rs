@@ -9,9 +9,9 @@ use super::soup::{SearchInput, TriangleSoup, has_distinct_corners};
 ///
 /// The proof: in the projection along an axis, all faces around an interior vertex have the same
 /// orientation and wind around it once. Then each direction from the vertex is in one face, and two
-/// faces of the ring can only meet in the vertex or their common edge. Orientations are the signs of
-/// the components of the normals; the winding number is how often the rim of the ring rises through
-/// the height of the vertex. One pass over the faces covers all rings.
+/// faces of the ring can only meet in the vertex or their common edge. Orientations are the signs
+/// of the components of the normals; the winding number is how often the rim of the ring rises
+/// through the height of the vertex. One pass over the faces covers all rings.
 pub(crate) struct CertifiedRings(Vec<bool>);
 
 /// Summary of a ring: the common signs of its normals, and the rises of its rim.
@@ -29,8 +29,8 @@ struct RingSummary {
 const UP_OR_DOWN: u8 = 0x3f;
 const UP: u8 = 1;
 const DOWN: u8 = 2;
-/// Magnitude, relative to its terms, from which the sign of a computed 2 × 2 determinant is certain:
-/// three rounded operations [She97, section 4.2] and a margin.
+/// Magnitude, relative to its terms, from which the sign of a computed 2 × 2 determinant is
+/// certain: three rounded operations [She97, section 4.2] and a margin.
 const CERTAIN: f64 = 4.5e-16;
 /// Product below which digits may have been lost to underflow.
 const TINY: f64 = 1e-290;

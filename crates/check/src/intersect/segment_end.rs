@@ -41,8 +41,8 @@ impl SegmentEnd {
     }
 }
 
-/// Returns the intersection of an edge with the plane of another triangle; `None` if the edge lies in
-/// the plane.
+/// Returns the intersection of an edge with the plane of another triangle; `None` if the edge lies
+/// in the plane.
 fn passing(of: &Triangle, edge: usize, plane: &Triangle) -> Option<DVec3> {
     let [from, to] = [of[edge], of[(edge + 1) % 3]];
     let [up, down] = [from, to].map(|p| side(plane, p));
@@ -71,8 +71,8 @@ fn clamped(triangle: &Triangle, [from, to]: [DVec3; 2], t: f64) -> f64 {
 /// Barycentric distance by which a point may be outside a triangle through rounding.
 const OUTSIDE: f64 = 1e-9;
 
-/// Returns the intersection of an edge with a plane that it is known to cross; the edge's midpoint if
-/// rounding hides where.
+/// Returns the intersection of an edge with a plane that it is known to cross; the edge's midpoint
+/// if rounding hides where.
 fn crossing(of: &Triangle, edge: usize, plane: &Triangle) -> DVec3 {
     passing(of, edge, plane).unwrap_or_else(|| of[edge].midpoint(of[(edge + 1) % 3]))
 }

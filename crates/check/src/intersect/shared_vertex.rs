@@ -71,8 +71,8 @@ impl Search<'_> {
     }
 }
 
-/// Squared length of the sum of two unit vectors 177 degrees apart, from where on the box is the whole
-/// sphere's.
+/// Squared length of the sum of two unit vectors 177 degrees apart, from where on the box is the
+/// whole sphere's.
 const WIDE: f64 = 0.002;
 /// Bound on the rounding error of a direction.
 const SLACK: f64 = 1e-9;

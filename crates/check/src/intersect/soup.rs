@@ -1,4 +1,5 @@
-//! The triangle soup that is searched: corners merged by position, coordinates that cannot overflow.
+//! The triangle soup that is searched: corners merged by position, coordinates that cannot
+//! overflow.
 
 use std::borrow::Cow;
 use std::ops::Range;
@@ -22,8 +23,8 @@ pub(crate) struct SearchInput<'a> {
     pub(crate) objects: &'a Objects,
 }
 
-/// Faces whose corners are merged by position: of the vertices at one position, the lowest stands for
-/// all.
+/// Faces whose corners are merged by position: of the vertices at one position, the lowest stands
+/// for all.
 pub(crate) struct TriangleSoup<'a> {
     pub(crate) corners: Cow<'a, [[VertexId; 3]]>,
     pub(crate) positions: ScaledPositions<'a>,
@@ -63,9 +64,9 @@ fn merged_corners(face: &[VertexId; 3], unique: &UniquePositions) -> [VertexId; 
 
 /// Positions scaled by a power of two if their products would leave the range of `f64`.
 ///
-/// Their determinants are exact as long as no nonzero coordinate is less than 1e-88 of the greatest:
-/// coordinates are then multiples of 2^-358, and products of three are multiples of 2^-1074, the
-/// least positive `f64`.
+/// Their determinants are exact as long as no nonzero coordinate is less than 1e-88 of the
+/// greatest: coordinates are then multiples of 2^-358, and products of three are multiples of
+/// 2^-1074, the least positive `f64`.
 #[derive(Clone, Copy)]
 pub(crate) struct ScaledPositions<'a> {
     positions: &'a [[f64; 3]],

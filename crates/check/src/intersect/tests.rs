@@ -1,4 +1,4 @@
-//! The search against all pairs.
+//! Compares the search with testing all pairs.
 
 use std::collections::BTreeSet;
 
@@ -8,7 +8,7 @@ use meshlod_samples as samples;
 use super::*;
 use crate::{CheckOptions, Finding, Kind, Kinds, UniquePositions, findings};
 
-/// Random numbers, the same on every run [SLF14].
+/// Pseudorandom numbers, the same on every run [SLF14].
 pub(super) struct Random(pub(super) u64);
 
 impl Random {
@@ -21,7 +21,7 @@ impl Random {
     }
 }
 
-/// The pairs that the check finds.
+/// Returns the pairs that the check finds.
 fn found(mesh: &Mesh, broad_phase: BroadPhase) -> BTreeSet<[FaceId; 2]> {
     let kinds = Kinds::NONE.with(Kind::SelfIntersection).with(Kind::Contact);
     let options = CheckOptions { kinds, broad_phase, ..CheckOptions::default() };
@@ -35,14 +35,14 @@ fn found(mesh: &Mesh, broad_phase: BroadPhase) -> BTreeSet<[FaceId; 2]> {
     findings(mesh, &options).into_iter().map(faces).collect()
 }
 
-/// Two faces of a mesh without regard to others: the places they share, and what they have in common.
-fn seen_alone(mesh: &Mesh, [f, g]: [usize; 2]) -> (usize, Option<IntersectionKind>) {
+/// Returns the number of positions that two faces share, and the kind of their intersection.
+fn intersected(mesh: &Mesh, [f, g]: [usize; 2]) -> (usize, Option<IntersectionKind>) {
     let [a, b] = [f, g].map(|f| mesh.triangle(mesh.faces[f]));
     let shared = a.iter().filter(|p| b.contains(p)).count();
     (shared, intersect(&a, &b).map(|found| found.kind))
 }
 
-/// Compares with all pairs of faces, none of which may be double.
+/// Compares the findings with tests of all pairs of faces, which must not contain duplicates.
 fn compare(mesh: &Mesh) {
     let found = found(mesh, BroadPhase::Tree);
     assert_eq!(found, self::found(mesh, BroadPhase::Octree));
@@ -51,7 +51,7 @@ fn compare(mesh: &Mesh) {
     for f in 0..mesh.faces.len() {
         for g in f + 1..mesh.faces.len() {
             let pair = [f, g].map(FaceId::new);
-            let (shared, kind) = seen_alone(mesh, [f, g]);
+            let (shared, kind) = intersected(mesh, [f, g]);
             let more = match shared {
                 0 => kind.is_some(),
                 1 => kind > Some(IntersectionKind::Point),
@@ -78,7 +78,7 @@ fn compare(mesh: &Mesh) {
     assert_eq!(met, expected_objects);
 }
 
-/// Faces without order on points of a grid; `spread` vertices at random of its points.
+/// Builds a triangle soup with `spread` vertices at random points of a grid.
 fn soup(seed: u64, faces: usize, grid: u64, spread: usize) -> Mesh {
     let mut random = Random(seed);
     let positions: Vec<[f64; 3]> =
@@ -122,7 +122,7 @@ fn rough_surfaces_are_searched_as_all_pairs_would_be() {
 }
 
 #[test]
-fn real_meshes_are_searched_alike_by_both_nets() {
+fn both_broad_phases_agree_on_real_meshes() {
     for name in ["fish-clown.obj", "skyscraper.obj", "squirrel-20k.obj", "cow-2903.obj", "city.glb"]
     {
         let Some(path) = meshlod_fixtures::shared_mesh(name) else { continue };
@@ -132,14 +132,15 @@ fn real_meshes_are_searched_alike_by_both_nets() {
 }
 
 #[test]
-fn samples_do_not_meet_themselves() {
+fn samples_do_not_intersect_themselves() {
     for (name, faces) in [("sphere", 3000), ("torus", 3000), ("knot", 6000), ("gyroid", 9000)] {
         let mesh = samples::by_name(name, Some(faces)).unwrap();
         assert!(found(&mesh, BroadPhase::Tree).is_empty(), "{name}");
     }
 }
 
-/// `count` faces with one corner at the origin, each with two vertices of its own, at most `width` apart.
+/// Builds `count` faces with one corner at the origin and two vertices of their own, at most
+/// `width` apart.
 fn star(seed: u64, count: u32, width: f64) -> Mesh {
     let mut random = Random(seed);
     let mut number = || random.below(1 << 20) as f64 / f64::from(1 << 19) - 1.0;
@@ -154,7 +155,7 @@ fn star(seed: u64, count: u32, width: f64) -> Mesh {
 }
 
 #[test]
-fn many_faces_at_one_place_are_searched_as_all_pairs_would_be() {
+fn many_faces_around_a_vertex_are_searched_as_all_pairs_would_be() {
     for (seed, width, least) in [(1, 1e-3, 0), (2, 0.3, 100), (3, 2.0, 1000)] {
         let mesh = star(seed, 300, width);
         compare(&mesh);
@@ -162,7 +163,7 @@ fn many_faces_at_one_place_are_searched_as_all_pairs_would_be() {
     }
 }
 
-/// What is found within some limits, and whether that is all.
+/// Returns the pairs found within some limits and whether the search was complete.
 fn searched(mesh: &Mesh, limits: Limits) -> (Vec<[FaceId; 2]>, bool) {
     let objects = crate::Objects::of(mesh, crate::ObjectsBy::Auto);
     let ground = SearchInput {
@@ -177,9 +178,9 @@ fn searched(mesh: &Mesh, limits: Limits) -> (Vec<[FaceId; 2]>, bool) {
 }
 
 #[test]
-fn a_hub_of_many_faces_costs_little() {
+fn a_high_valence_vertex_costs_little() {
     let few = Limits { tests: 3_000_000, kept: 100_000 };
-    // Round a cone, and in all directions: one ring is certified, the other is not.
+    // Around a cone and in all directions: the first ring is certified, the second is not.
     let count = 60_000;
     let turn = |i: u32| std::f64::consts::TAU * f64::from(i) / f64::from(count);
     let rim = (0..count).map(|i| [turn(i).cos(), turn(i).sin(), -0.5]);
@@ -192,7 +193,7 @@ fn a_hub_of_many_faces_costs_little() {
 }
 
 #[test]
-fn where_all_cross_all_the_search_gives_up_and_says_so() {
+fn if_all_faces_cross_the_search_gives_up_and_reports_it() {
     // Long faces through one ball.
     let mut mesh = soup(7, 2000, 1000, 6000);
     mesh.objects = None;

@@ -47,8 +47,8 @@ pub(crate) fn intersect(a: &Triangle, b: &Triangle) -> Option<Intersection> {
     }
 }
 
-/// Returns the end points of the intersection of two triangles in different planes, equal if it is a
-/// point; `None` if they are disjoint or coplanar.
+/// Returns the end points of the intersection of two triangles in different planes, equal if it is
+/// a point; `None` if they are disjoint or coplanar.
 ///
 /// The features of the ends are exact, as the kind of [`intersect`] is.
 pub(crate) fn segment_ends(a: &Triangle, b: &Triangle) -> Option<[SegmentEnd; 2]> {
@@ -61,7 +61,7 @@ pub(crate) fn segment_ends(a: &Triangle, b: &Triangle) -> Option<[SegmentEnd; 2]
     if order(chord_a.end, chord_b.start).is_lt() || order(chord_a.start, chord_b.end).is_gt() {
         return None;
     }
-    let end = |of_a: Crossing, of_b: Crossing, inner: Ordering| {
+    let end = |of_a: PlaneCrossing, of_b: PlaneCrossing, inner: Ordering| {
         let on = match order(of_a, of_b) {
             Ordering::Equal => [of_a.on, of_b.on],
             by if by == inner => [of_a.on, chord_b.on(|of_b| order(of_a, of_b))],
@@ -78,7 +78,7 @@ pub(crate) fn segment_ends(a: &Triangle, b: &Triangle) -> Option<[SegmentEnd; 2]
 /// Crossing of a triangle's boundary through the plane of another, between two corners that are not
 /// both in that plane.
 #[derive(Clone, Copy)]
-struct Crossing {
+struct PlaneCrossing {
     above: DVec3,
     below: DVec3,
     /// Parameter from `above` to `below`; exactly 0 or 1 if one of them is in the plane.
@@ -86,11 +86,12 @@ struct Crossing {
     on: Feature,
 }
 
-/// Intersection of a triangle with the plane of another: a segment, or a point if both ends coincide.
+/// Intersection of a triangle with the plane of another: a segment, or a point if both ends
+/// coincide.
 #[derive(Clone, Copy)]
 struct Chord {
-    start: Crossing,
-    end: Crossing,
+    start: PlaneCrossing,
+    end: PlaneCrossing,
     /// True if the triangle has corners on both sides of the plane.
     through: bool,
     /// True if it only touches the plane with a corner.
@@ -112,7 +113,7 @@ impl Chord {
                 [_, true] => Feature::Corner(j),
                 _ => Feature::edge(i, j),
             };
-            Crossing { above: triangle[i], below: triangle[j], at, on }
+            PlaneCrossing { above: triangle[i], below: triangle[j], at, on }
         };
         let step = |rises: bool| {
             (0..3).map(|i| (i, (i + 1) % 3)).find(|&(i, j)| below(i) == rises && below(j) != rises)
@@ -134,7 +135,7 @@ impl Chord {
 
     /// Returns the feature that contains a point of the chord, given the order of the chord's ends
     /// relative to the point.
-    fn on(&self, to_point: impl Fn(Crossing) -> Ordering) -> Feature {
+    fn on(&self, to_point: impl Fn(PlaneCrossing) -> Ordering) -> Feature {
         let at_end = [self.start, self.end].into_iter().find(|&end| to_point(end).is_eq());
         match (at_end, self.start.on, self.end.on) {
             (Some(end), ..) => end.on,
@@ -144,7 +145,7 @@ impl Chord {
     }
 }
 
-impl Crossing {
+impl PlaneCrossing {
     fn position(&self) -> DVec3 {
         match self.at {
             0.0 => self.above,
@@ -165,13 +166,13 @@ fn same_side(heights: &[f64; 3]) -> bool {
 
 /// Orders a crossing of triangle a and one of triangle b along the common line, in the direction of
 /// the cross product of the normals of a and b.
-fn order(a: Crossing, b: Crossing) -> Ordering {
+fn order(a: PlaneCrossing, b: PlaneCrossing) -> Ordering {
     let sign = side(&[b.above, b.below, a.above], a.below);
     // The sign says on which side the line through a's corners passes the line through b's.
     0.0.partial_cmp(&sign).unwrap_or(Ordering::Equal)
 }
 
-fn at_point(a: Crossing, b: Crossing) -> Intersection {
+fn at_point(a: PlaneCrossing, b: PlaneCrossing) -> Intersection {
     let point = if a.at_corner() { a.position() } else { b.position() };
     Intersection { kind: IntersectionKind::Point, point: point.into(), depth: 0.0 }
 }
@@ -192,8 +193,8 @@ fn overlap(a: &Chord, b: &Chord, depth: impl FnOnce() -> f64) -> Intersection {
     }
 }
 
-/// Returns the penetration depth: the least translation along either normal after which one triangle
-/// is on one side of the other.
+/// Returns the penetration depth: the least translation along either normal after which one
+/// triangle is on one side of the other.
 fn depth(a: &Triangle, heights_a: [f64; 3], b: &Triangle, heights_b: [f64; 3]) -> f64 {
     let least = |heights: [f64; 3], of: &Triangle| {
         let above = heights.iter().fold(0.0, |most: f64, &h| most.max(h));

@@ -4,7 +4,7 @@ use super::*;
 
 const CONTACTS: LockOptions = LockOptions { contacts: true, boundary: Lock::Free };
 
-/// Both meshes as two components of one.
+/// Merges two meshes as components of one.
 fn both(mut a: Mesh, b: &Mesh) -> Mesh {
     let base = a.positions.len();
     a.positions.extend(&b.positions);
@@ -12,7 +12,7 @@ fn both(mut a: Mesh, b: &Mesh) -> Mesh {
     a
 }
 
-/// The square from (x, 0) to (x + side, side) at a height, as two faces.
+/// Builds the square from (x, 0) to (x + side, side) at a height, with two faces.
 fn square(x: f64, side: f64, z: f64) -> Mesh {
     let positions = [[0.0, 0.0], [side, 0.0], [side, side], [0.0, side]];
     let faces = [[0, 1, 2], [0, 2, 3]].map(|face| face.map(VertexId));
@@ -59,7 +59,7 @@ fn squares_side_by_side_are_tied() {
 #[test]
 fn a_tie_with_a_protected_vertex_is_protected() {
     let squares = both(square(0.0, 1.0, 0.0), &square(1.0, 1.0, 0.0));
-    // A third stands in the middle of the second, across its diagonal.
+    // A third square stands in the middle of the second, across its diagonal.
     let mut third = square(1.2, 0.2, 0.0);
     third.positions = third.positions.iter().map(|&[x, y, _]| [x, 0.25, y - 0.1]).collect();
     let locking = locks(&both(squares, &third), &CONTACTS);
@@ -73,7 +73,7 @@ fn a_tie_with_a_protected_vertex_is_protected() {
 #[test]
 fn a_box_on_the_ground_holds_its_foot_and_the_ground() {
     let ground = square(0.0, 10.0, 0.0);
-    // A face upright, its lower edge in the ground's first face.
+    // An upright face with its lower edge in the ground's first face.
     let wall = Mesh::new(
         vec![[4.0, 1.0, 0.0], [5.0, 1.0, 0.0], [4.5, 1.0, 1.0]],
         vec![[0, 1, 2].map(VertexId)],
@@ -91,7 +91,7 @@ fn one_in_the_other_and_one_on_the_other_in_one_plane() {
     let free = |v: &usize| locking.locks.of_vertex[*v] == Lock::Free;
     assert_eq!((0..8).filter(free).collect::<Vec<_>>(), [3], "{locking:?}");
     assert_eq!(locking.count(LockReason::Overlap), 7);
-    // The same face twice moves as one.
+    // Two copies of a face move as one.
     let locking = locks(&both(square(0.0, 1.0, 0.0), &square(0.0, 1.0, 0.0)), &CONTACTS);
     assert_eq!(locking.locks.ties.len(), 4);
     assert_eq!(locking.count(LockReason::SharedPosition), 8);

@@ -4,8 +4,8 @@ use meshlod_mesh::{Attributes, Labels, Mesh};
 
 use super::edit::own_wedges;
 
-/// Removes mismatched attributes and labels, and splits wedges used by several vertices; returns the
-/// number of repairs.
+/// Removes mismatched attributes and labels, and splits wedges used by several vertices; returns
+/// the number of repairs.
 ///
 /// All attributes are removed if the corners do not match the faces, else only mismatched layers.
 pub fn repair(mesh: &mut Mesh) -> usize {

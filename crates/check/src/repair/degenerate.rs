@@ -8,8 +8,8 @@ use super::edit::{labels, retain_faces};
 use crate::imprint::interpolate::normalize;
 use crate::zero_area::has_zero_area;
 
-/// Maximum number of rounds of flips. Each round fixes one face of a stack of slivers; meshes need two
-/// or three.
+/// Maximum number of rounds of flips. Each round fixes one face of a stack of slivers; meshes need
+/// two or three.
 const ROUNDS: usize = 16;
 
 /// Largest star that is searched for an existing edge.
@@ -26,10 +26,10 @@ pub struct Removed {
 
 /// Removes the faces of zero area.
 ///
-/// If a corner lies on the opposite edge, that edge is flipped: the face and its neighbour become the
-/// two halves of the neighbour, split from the middle corner to the neighbour's tip, and the surface
-/// stays unchanged. Other faces of zero area are dropped. Where two corners coincide, dropping the
-/// face leaves coincident boundary edges for stitching.
+/// If a corner lies on the opposite edge, that edge is flipped: the face and its neighbour become
+/// the two halves of the neighbour, split from the middle corner to the neighbour's tip, and the
+/// surface stays unchanged. Other faces of zero area are dropped. Where two corners coincide,
+/// dropping the face leaves coincident boundary edges for stitching.
 pub fn remove(mesh: &mut Mesh) -> Removed {
     let repeats = |[a, b, c]: [VertexId; 3]| a == b || b == c || c == a;
     let faces = std::mem::take(&mut mesh.faces);
@@ -134,8 +134,8 @@ impl Flip {
         }
     }
 
-    /// Returns the wedge of the middle corner in the neighbour's halves: its own or, if the edge is a
-    /// seam, a new one interpolated from the neighbour's.
+    /// Returns the wedge of the middle corner in the neighbour's halves: its own or, if the edge is
+    /// a seam, a new one interpolated from the neighbour's.
     fn wedge(&self, mesh: &mut Mesh, ends: [usize; 2]) -> Option<WedgeId> {
         let across = mesh.faces[self.neighbour.index()];
         let own = mesh.faces[self.face.index()];

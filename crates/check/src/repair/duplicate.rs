@@ -8,8 +8,8 @@ use crate::check::faces::duplicates;
 
 /// Removes faces with the same vertices and orientation as an earlier one; returns their number.
 ///
-/// Two faces of opposite orientation are the sides of a sheet, or a wall between two rooms: removing
-/// one would open the other. Splitting non-manifold edges separates them.
+/// Two faces of opposite orientation are the sides of a sheet, or a wall between two rooms:
+/// removing one would open the other. Splitting non-manifold edges separates them.
 pub fn drop_duplicates(mesh: &mut Mesh) -> usize {
     let connectivity = Connectivity::new(&mesh.faces, mesh.positions.len());
     // First faces of which a copy of opposite orientation has been seen.

@@ -18,7 +18,8 @@ pub struct HoleLimits {
 }
 
 impl HoleLimits {
-    /// Maximum number of edges of a hole, whatever the limits: time grows with its cube, to 0.2 s here.
+    /// Maximum number of edges of a hole, whatever the limits: time grows with its cube, to 0.2 s
+    /// here.
     pub const MOST_EDGES: usize = 256;
 
     /// Budget of triangles weighed for all holes of a mesh: enough for 48 holes of 256 edges or a
@@ -40,13 +41,13 @@ pub struct Filled {
     pub untried: usize,
 }
 
-/// Fills the holes within `limits`, each with the triangles between its own vertices that bend least
-/// ([`triangulate`]).
+/// Fills the holes within `limits`, each with the triangles between its own vertices that bend
+/// least ([`triangulate`]).
 ///
-/// A hole is left open if it is the outline of a sheet, so that its filling would be about as large as
-/// the component it bounds; if its faces are not consistently oriented; if no triangulation keeps
-/// all edges manifold and all faces nondegenerate; or if the filling would intersect other faces.
-/// Corners get the wedges of the boundary, and faces the labels of the first boundary face.
+/// A hole is left open if it is the outline of a sheet, so that its filling would be about as large
+/// as the component it bounds; if its faces are not consistently oriented; if no triangulation
+/// keeps all edges manifold and all faces nondegenerate; or if the filling would intersect other
+/// faces. Corners get the wedges of the boundary, and faces the labels of the first boundary face.
 ///
 /// The largest holes are not tried if all together would exceed the budget of `most_weighed`
 /// triangles.

@@ -13,8 +13,8 @@ pub struct Oriented {
     pub impossible: usize,
 }
 
-/// Reverses faces until neighbours agree, in every shell as few as possible; in a tie the first face
-/// keeps its orientation.
+/// Reverses faces until neighbours agree, in every shell as few as possible; in a tie the first
+/// face keeps its orientation.
 pub fn agree(mesh: &mut Mesh) -> Oriented {
     let connectivity = Connectivity::new(&mesh.faces, mesh.positions.len());
     if connectivity.inconsistent_edges() == 0 {

@@ -10,8 +10,9 @@ const MOST_ENCLOSING: usize = 512;
 
 /// Reverses every closed shell that points inwards; returns their number.
 ///
-/// A shell that another closed shell may enclose is kept, since it may be the wall of a cavity, which
-/// rightly points inwards. Bounding boxes decide, so some shells are kept that could be reversed.
+/// A shell that another closed shell may enclose is kept, since it may be the wall of a cavity,
+/// which rightly points inwards. Bounding boxes decide, so some shells are kept that could be
+/// reversed.
 pub fn turn_outward(mesh: &mut Mesh) -> usize {
     let shells = Shells::of_mesh(mesh);
     let volumes: Vec<Option<f64>> = shells.all.iter().map(|shell| shell.volume()).collect();

@@ -20,9 +20,9 @@ struct EdgeFace {
 
 /// Pairs the sides of one edge; some may stay unpaired.
 ///
-/// If the faces around the edge alternate in orientation, each pair encloses one part of the inside,
-/// so that solids that touch along the edge are separated. Else the flattest pairs are taken first.
-/// Only consistently oriented faces are paired.
+/// If the faces around the edge alternate in orientation, each pair encloses one part of the
+/// inside, so that solids that touch along the edge are separated. Else the flattest pairs are
+/// taken first. Only consistently oriented faces are paired.
 pub fn pair_sides(mesh: &Mesh, edge: &[Side]) -> Vec<[Side; 2]> {
     let mut edge_faces = edge_faces(mesh, edge);
     // At equal angles a closing face comes before an opening one, so that two coincident walls each

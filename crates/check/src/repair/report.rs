@@ -106,8 +106,8 @@ impl RepairReport {
         self.counts[step as usize] += count;
     }
 
-    /// Combines this report with that of a second repair of the same mesh: repairs are summed, defects
-    /// left are those that the second left.
+    /// Combines this report with that of a second repair of the same mesh: repairs are summed,
+    /// defects left are those that the second left.
     pub fn then(mut self, other: &Self) -> Self {
         for step in RepairStep::ALL {
             match step.is_unresolved() {

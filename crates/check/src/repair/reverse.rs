@@ -5,9 +5,9 @@ use meshlod_mesh::{LayerKind, Mesh};
 
 /// Reverses the flagged faces.
 ///
-/// Wedges stay with their corners. A normal may have been right all along: it is reversed only if all
-/// faces at its wedge are reversed and it agreed with them before. The tangent there then changes its
-/// handedness.
+/// Wedges stay with their corners. A normal may have been right all along: it is reversed only if
+/// all faces at its wedge are reversed and it agreed with them before. The tangent there then
+/// changes its handedness.
 pub fn reverse_faces(mesh: &mut Mesh, reversed: &[bool]) {
     reverse_normals(mesh, reversed);
     let each = mesh.faces.iter_mut().zip(reversed);

@@ -19,9 +19,9 @@ pub struct Split {
 
 /// Splits all non-manifold edges and all non-manifold vertices.
 ///
-/// At each non-manifold edge sides are paired ([`pair_sides`]); an unpaired side becomes a boundary.
-/// A vertex of the result is a set of corners connected across paired sides [GTLH98]. Nothing moves;
-/// new vertices have their own wedges with the same values.
+/// At each non-manifold edge sides are paired ([`pair_sides`]); an unpaired side becomes a
+/// boundary. A vertex of the result is a set of corners connected across paired sides [GTLH98].
+/// Nothing moves; new vertices have their own wedges with the same values.
 pub fn split(mesh: &mut Mesh) -> Split {
     let connectivity = Connectivity::new(&mesh.faces, mesh.positions.len());
     let duplicate_faces = duplicates(&mesh.faces, &connectivity);
@@ -100,10 +100,11 @@ impl Pairs {
         fans
     }
 
-    /// Separates pairs of one edge that still connect the same two fans and would be one edge again.
+    /// Separates pairs of one edge that still connect the same two fans and would be one edge
+    /// again.
     ///
-    /// All but the first are cut off from the fan at the lower end. That opens slits, but it is rare:
-    /// it takes a fan that passes the edge twice.
+    /// All but the first are cut off from the fan at the lower end. That opens slits, but it is
+    /// rare: it takes a fan that passes the edge twice.
     fn separate_merged_edges(&mut self, faces: &[[VertexId; 3]], edges: &[Vec<Side>]) {
         let mut fans = self.fans(faces);
         let mut cut = Vec::new();
@@ -152,8 +153,8 @@ impl Pairs {
         }
     }
 
-    /// Gives every fan its own vertex, the first fan of each vertex keeping it; returns the number of
-    /// new vertices.
+    /// Gives every fan its own vertex, the first fan of each vertex keeping it; returns the number
+    /// of new vertices.
     fn give_vertices(&self, mesh: &mut Mesh) -> usize {
         let before = mesh.positions.len();
         let mut fans = self.fans(&mesh.faces);

@@ -9,8 +9,9 @@ use crate::union_find::UnionFind;
 use crate::unique_positions::UniquePositions;
 use crate::zero_area::has_zero_area;
 
-/// Limit on rounds before stitching within a distance is given up. If vertices do not move, the second
-/// round finds nothing more to undo; a boundary of a hundred edges undone one by one still converges.
+/// Limit on rounds before stitching within a distance is given up. If vertices do not move, the
+/// second round finds nothing more to undo; a boundary of a hundred edges undone one by one still
+/// converges.
 const ROUNDS: usize = 64;
 
 /// Stitches boundary edges that run in opposite directions between the same two positions; returns
@@ -39,8 +40,8 @@ pub fn stitch(mesh: &mut Mesh, epsilon: f64) -> usize {
     count
 }
 
-/// Drops pairs until none does harm; returns the number left and the vertex that each vertex becomes.
-/// `None` if that does not converge.
+/// Drops pairs until none does harm; returns the number left and the vertex that each vertex
+/// becomes. `None` if that does not converge.
 fn resolve(
     mesh: &Mesh,
     connectivity: &Connectivity,
@@ -77,8 +78,8 @@ fn candidates(mesh: &Mesh, connectivity: &Connectivity, epsilon: f64) -> Vec<[Si
     for v in (0..merged.len()).filter(|&v| connectivity.marks(VertexId(v as u32)).boundary()) {
         at_boundary[merged[v] as usize] = true;
     }
-    // Interior sides count too, or else a filled hole would make a pair of two out of three coincident
-    // boundaries.
+    // Interior sides count too, or else a filled hole would make a pair of two out of three
+    // coincident boundaries.
     let mut sides: Vec<([u32; 2], Side)> = (0..mesh.faces.len())
         .flat_map(|f| [0, 1, 2].map(|k| Side::new(FaceId(f as u32), k)))
         .filter(|&side| connectivity.twin(side) != Twin::Degenerate)

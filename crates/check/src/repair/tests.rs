@@ -1,4 +1,4 @@
-//! Every step on the least mesh that needs it, and all of them on soups.
+//! Each step on the smallest mesh that needs it, and all steps on triangle soups.
 
 use std::collections::BTreeSet;
 
@@ -13,7 +13,7 @@ use crate::{CheckOptions, Finding, Kind, Kinds, ObjectsBy, findings, is_clean};
 const ERRORS: fn() -> CheckOptions =
     || CheckOptions { kinds: Kinds::errors(), ..CheckOptions::default() };
 
-/// Repairs, and holds the result to what is promised of every result.
+/// Repairs a mesh and asserts what holds for every result.
 fn repaired(mesh: &Mesh) -> (Mesh, Vec<(RepairStep, usize)>) {
     let (repaired, report) = repair(mesh, &RepairOptions::default());
     assert_eq!(repaired.validate(), Ok(()));
@@ -26,7 +26,7 @@ fn of_kind(mesh: &Mesh, kind: Kind) -> usize {
     findings(mesh, &CheckOptions { kinds: Kinds::NONE.with(kind), ..CheckOptions::default() }).len()
 }
 
-/// The same faces, each with vertices of its own.
+/// Gives each face its own vertices.
 fn torn(mesh: &Mesh) -> Mesh {
     let positions = mesh.faces.iter().flatten().map(|v| mesh.positions[v.index()]).collect();
     let faces = (0..mesh.faces.len() as u32).map(|f| [0, 1, 2].map(|k| VertexId(3 * f + k)));
@@ -38,7 +38,7 @@ fn turn_over(mesh: &mut Mesh, faces: impl IntoIterator<Item = usize>) {
 }
 
 #[test]
-fn a_sound_mesh_stays_as_it_is() {
+fn a_valid_mesh_is_unchanged() {
     for mesh in [cube(), grid(3), seam_strip(), samples::fish(2000), Mesh::default()] {
         let (same, report) = repaired(&mesh);
         assert_eq!((same, report), (mesh, vec![]));
@@ -46,7 +46,7 @@ fn a_sound_mesh_stays_as_it_is() {
 }
 
 #[test]
-fn what_cannot_be_goes_first() {
+fn invalid_data_is_removed_first() {
     let mut mesh = tetrahedron();
     mesh.positions[0][0] = f64::NAN;
     mesh.faces.push([1, 2, 99].map(VertexId));
@@ -60,7 +60,7 @@ fn what_cannot_be_goes_first() {
 }
 
 #[test]
-fn misfitting_layers_go_and_others_stay() {
+fn mismatched_layers_are_removed_and_others_kept() {
     let mut mesh = seam_strip();
     let attributes = mesh.attributes.as_mut().unwrap();
     let short =
@@ -74,7 +74,7 @@ fn misfitting_layers_go_and_others_stay() {
 }
 
 #[test]
-fn a_count_of_wedges_that_nothing_backs_is_no_memory() {
+fn an_unbacked_wedge_count_allocates_nothing() {
     let mut mesh = tetrahedron();
     let corners = mesh.faces.iter().map(|face| face.map(|v| WedgeId(v.0))).collect();
     mesh.attributes = Some(Attributes { corners, wedge_count: usize::MAX, layers: vec![] });
@@ -82,7 +82,7 @@ fn a_count_of_wedges_that_nothing_backs_is_no_memory() {
 }
 
 #[test]
-fn doubles_go_the_same_way_round_only() {
+fn only_duplicates_of_equal_orientation_are_removed() {
     let mut mesh = tetrahedron();
     mesh.faces.push([2, 1, 0].map(VertexId));
     let (left, report) = repaired(&mesh);
@@ -91,7 +91,7 @@ fn doubles_go_the_same_way_round_only() {
 
 #[test]
 fn two_rooms_with_a_wall_on_each_side_come_apart_whole() {
-    // Two tetrahedra on one triangle, both with it: the wall is there both ways round.
+    // Two tetrahedra on one triangle, which both contain: the wall exists in both orientations.
     let two = mesh(
         &[[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.2, 0.2, 1.0], [0.2, 0.2, -1.0]],
         &[[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3], [0, 1, 2], [1, 0, 4], [2, 1, 4], [0, 2, 4]],
@@ -175,7 +175,7 @@ fn faces_are_turned_to_agree_with_most() {
 }
 
 #[test]
-fn what_looks_inwards_is_turned_unless_it_may_be_a_hollow() {
+fn inward_shells_are_reversed_unless_they_may_be_cavities() {
     let mut inward = cube();
     turn_over(&mut inward, 0..12);
     assert_eq!(repaired(&inward).1, [(RepairStep::TurnedShells, 1)]);
@@ -204,7 +204,7 @@ fn normals_are_turned_where_they_agreed_with_the_faces() {
 }
 
 #[test]
-fn what_cannot_be_oriented_is_told_and_left() {
+fn shells_that_cannot_be_oriented_are_reported_and_kept() {
     let (same, report) = repaired(&moebius(8));
     assert_eq!((same, report), (moebius(8), vec![(RepairStep::NotOrientable, 1)]));
 }
@@ -230,8 +230,9 @@ fn borders_within_the_tolerance_are_stitched() {
     assert!(Connectivity::new(&stitched.faces, stitched.positions.len()).is_closed());
 }
 
-/// Two rows of faces whose borders lie 1 apart. The last vertex of the second row stays where it is;
-/// then the face before it has no area, so that its other vertex must stay as well, and so on.
+/// Builds two rows of faces whose boundaries are 1 apart. The last vertex of the second row stays
+/// in place, so the face before it loses its area, so its other vertex must stay as well, and so
+/// on.
 fn unravelling(faces: u32) -> Mesh {
     let places = (0..faces).map(f64::from);
     let above = (0..faces).map(|i| [10.0 * f64::from(i), 1.0, 0.0]);
@@ -247,7 +248,7 @@ fn unravelling(faces: u32) -> Mesh {
     Mesh::new(positions, upper.chain(lower).collect())
 }
 
-/// Two faces of which the second begins so high over the edge of the first.
+/// Builds two faces, the second starting at a height over the edge of the first.
 fn pair_of_faces(height: f64) -> Mesh {
     let first = [[-90.0, 0.0, 0.0], [-80.0, 0.0, 0.0], [-85.0, 9.0, 0.0]];
     let second = [[-90.0, 0.0, height], [-80.0, 0.0, height], [-85.0, -9.0, 0.0]];
@@ -256,7 +257,7 @@ fn pair_of_faces(height: f64) -> Mesh {
 
 #[test]
 fn stitching_that_unravels_step_by_step_is_given_up() {
-    // What goes back to edges at one place leaves apart what is only near.
+    // Falling back to edges at equal positions leaves apart those that are only near.
     for (faces, height, expected) in [(40, 1.0, 1), (400, 1.0, 0), (400, 0.0, 1)] {
         let mut mesh = unravelling(faces);
         append(&mut mesh, &pair_of_faces(height));
@@ -296,8 +297,8 @@ fn borders_of_two_objects_stay_apart() {
 }
 
 #[test]
-fn stitching_stops_where_it_would_make_doubles() {
-    // Two faces back to back with vertices of their own: joined they would be one face twice.
+fn stitching_stops_where_it_would_make_duplicates() {
+    // Two faces back to back with vertices of their own: stitched they would be duplicates.
     let card = mesh(
         &[[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]],
         &[[0, 1, 2], [3, 5, 4]],
@@ -307,7 +308,7 @@ fn stitching_stops_where_it_would_make_doubles() {
 
 #[test]
 fn a_sliver_gives_its_place_to_its_neighbour_s_halves() {
-    // A square whose lower edge is bent by a face without area: v4 lies on it.
+    // A square whose lower edge has a face of zero area: v4 lies on the edge.
     let mut square = mesh(
         &[[0.0; 3], [2.0, 0.0, 0.0], [2.0, 2.0, 0.0], [0.0, 2.0, 0.0], [1.0, 0.0, 0.0]],
         &[[0, 1, 2], [0, 2, 3], [1, 0, 4]],
@@ -319,7 +320,7 @@ fn a_sliver_gives_its_place_to_its_neighbour_s_halves() {
     let (mended, report) = repaired(&square);
     assert_eq!(report, [(RepairStep::FlippedEdges, 1)]);
     assert_eq!(mended.faces.len(), 3);
-    // With a seam along the edge the middle gets what the neighbour has there.
+    // With a seam along the edge the middle corner gets the neighbour's values there.
     let attributes = square.attributes.as_mut().unwrap();
     attributes.corners[2] = [5, 6, 4].map(WedgeId);
     attributes.wedge_count = 7;
@@ -334,7 +335,7 @@ fn a_sliver_gives_its_place_to_its_neighbour_s_halves() {
 
 #[test]
 fn slivers_on_each_other_are_mended_in_turns() {
-    // Four points on the lower edge of a triangle, joined up by three slivers.
+    // Four points on the lower edge of a triangle, connected by three slivers.
     let positions = [[0.0; 3], [4.0, 0.0, 0.0], [2.0, 3.0, 0.0], [1.0, 0.0, 0.0], [2.0, 0.0, 0.0]];
     let slivers = mesh(&positions, &[[0, 1, 2], [1, 0, 3], [1, 3, 4]]);
     let (mended, report) = repaired(&slivers);
@@ -364,7 +365,7 @@ fn holes_within_the_limits_are_closed() {
 }
 
 #[test]
-fn a_hole_is_left_where_filling_it_would_meet_something() {
+fn a_hole_is_left_open_if_the_filling_would_intersect_something() {
     let mut open = cube();
     open.faces.drain(2..4);
     let spike = tetrahedron();
@@ -383,7 +384,7 @@ fn a_lone_face_has_no_hole_behind_it() {
     assert_eq!((same, report.count(RepairStep::HolesLeft)), (lone, 1));
 }
 
-/// Tall cones in a row, each of so many faces and open below.
+/// Builds tall cones in a row, open below, with the given numbers of faces.
 fn cones(edges: &[u32]) -> Mesh {
     let mut cones = Mesh::default();
     for (i, &edges) in edges.iter().enumerate() {
@@ -401,7 +402,7 @@ fn cones(edges: &[u32]) -> Mesh {
 }
 
 #[test]
-fn where_time_is_short_the_largest_holes_wait() {
+fn beyond_the_budget_the_largest_holes_are_left() {
     let edges = [9, 5, 9, 4, 9];
     let filled = |most_weighed| {
         let mut mesh = cones(&edges);
@@ -430,9 +431,9 @@ fn where_time_is_short_the_largest_holes_wait() {
 }
 
 #[test]
-fn what_hangs_together_far_away_may_touch_a_filling() {
+fn faces_connected_far_away_may_touch_a_filling() {
     let mut cone = cones(&[4]);
-    // A face below, with vertices of its own at both ends of the edge that halves the hole.
+    // A face below, with its own vertices at both ends of the edge that halves the hole.
     let below = [cone.positions[1], cone.positions[3], [0.0, 0.0, -1.0]];
     cone.positions.extend(below);
     cone.faces.push([5, 6, 7].map(VertexId));
@@ -447,14 +448,14 @@ fn what_hangs_together_far_away_may_touch_a_filling() {
 }
 
 #[test]
-fn holes_that_wait_are_told_as_left() {
+fn holes_beyond_the_budget_are_reported_as_left() {
     let mut report = RepairReport::default();
     report.add(RepairStep::HolesUntried, 3);
     assert!(report.is_unchanged());
 }
 
 #[test]
-fn welding_is_asked_for() {
+fn welding_is_off_by_default() {
     let mut near = tetrahedron();
     near.positions.push([1e-9, 0.0, 0.0]);
     near.faces[1][0] = VertexId(4);
@@ -463,7 +464,7 @@ fn welding_is_asked_for() {
     assert_eq!((welded, report.count(RepairStep::Welded)), (tetrahedron(), 1));
 }
 
-/// Faces over few vertices on a small lattice, where nearly everything goes wrong.
+/// Generates faces over few vertices on a small lattice, where nearly every defect occurs.
 fn soup() -> impl Strategy<Value = Mesh> {
     let point = prop::array::uniform3(-2..3_i8).prop_map(|p| p.map(f64::from));
     let points = prop::collection::vec(point, 4..24);

@@ -12,8 +12,8 @@ pub struct HoleOutline {
     pub tips: Vec<[f64; 3]>,
 }
 
-/// Cost of a triangulation: the sharpest bend between neighbours, including those across the outline,
-/// then the area [Lie03].
+/// Cost of a triangulation: the sharpest bend between neighbours, including those across the
+/// outline, then the area [Lie03].
 #[derive(Clone, Copy, PartialEq, PartialOrd)]
 struct Cost {
     /// 1 minus the cosine of the angle between normals; 0 if flat.
@@ -23,9 +23,9 @@ struct Cost {
 
 /// Triangulates a hole without new points and returns the triangles as indices around the outline.
 ///
-/// Minimizes the sharpest bend and, among equals, the area. No inner edge is one for which `is_edge`
-/// returns true, as it exists already, and no triangle has zero area. `None` if there is no such
-/// triangulation.
+/// Minimizes the sharpest bend and, among equals, the area. No inner edge is one for which
+/// `is_edge` returns true, as it exists already, and no triangle has zero area. `None` if there is
+/// no such triangulation.
 ///
 /// Cost: O(n³), by dynamic programming from short spans of the outline to long ones [BS95]; see
 /// [`triangles_weighed`].
@@ -51,8 +51,8 @@ pub fn triangulate(
     spans.triangles()
 }
 
-/// Returns the number of triangles that [`triangulate`] weighs for an outline of `points` points, which
-/// determines its time.
+/// Returns the number of triangles that [`triangulate`] weighs for an outline of `points` points,
+/// which determines its time.
 pub fn triangles_weighed(points: usize) -> usize {
     points * points.saturating_sub(1) * points.saturating_sub(2) / 6
 }
@@ -61,7 +61,8 @@ pub fn triangles_weighed(points: usize) -> usize {
 struct Spans<'a> {
     outline: &'a HoleOutline,
     n: usize,
-    /// Indexed by both ends in either order, so that spans from one end and to one end are contiguous.
+    /// Indexed by both ends in either order, so that spans from one end and to one end are
+    /// contiguous.
     best: Vec<Option<Span>>,
 }
 
@@ -96,7 +97,8 @@ impl Spans<'_> {
     fn span(&self, [from, middle, to]: [usize; 3], least: Option<Cost>) -> Option<Span> {
         let is_less = |cost: Cost| least.is_none_or(|least| cost < least);
         let [before, after] = [self.cost(from, middle)?, self.cost(to, middle)?];
-        // For most triangles the spans beside them already cost too much; in flat holes the area does.
+        // For most triangles the spans beside them already cost too much; in flat holes the area
+        // does.
         let sides = Cost { bend: before.bend.max(after.bend), area: before.area + after.area };
         if !is_less(sides) {
             return None;
@@ -127,7 +129,8 @@ impl Spans<'_> {
         self.best[one * self.n + other].map(|span| span.cost)
     }
 
-    /// Returns the bend between a triangle and what lies across its edge from one index to a later one.
+    /// Returns the bend between a triangle and what lies across its edge from one index to a later
+    /// one.
     fn bend(&self, normal: DVec3, from: usize, to: usize) -> f64 {
         let across = match self.best[from * self.n + to] {
             Some(span) => span.normal,

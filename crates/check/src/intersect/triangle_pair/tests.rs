@@ -1,4 +1,4 @@
-//! Two triangles against an oracle in whole numbers.
+//! Compares triangle intersection with an oracle in integers.
 
 use glam::DVec3;
 
@@ -8,7 +8,7 @@ use crate::intersect::exact::projection_axis;
 use crate::intersect::filter::{Pair, surely_only_share};
 use crate::intersect::tests::Random;
 
-/// A point with a common denominator, above 0.
+/// A rational point with a common positive denominator.
 #[derive(Clone, Copy)]
 struct Ratio {
     over: [i128; 3],
@@ -41,7 +41,7 @@ impl Ratio {
         }
     }
 
-    /// The way from a whole point, times the denominator.
+    /// Returns the vector from an integer point, times the denominator.
     fn from(&self, a: [i128; 3]) -> [i128; 3] {
         minus(self.over, a.map(|x| x * self.under))
     }
@@ -60,7 +60,7 @@ impl Ratio {
     }
 }
 
-/// How a point lies in a triangle: at least 0 in it, above 0 in its inside, below outside.
+/// Locates a point relative to a triangle: positive inside, 0 on the boundary, negative outside.
 fn depth_in(p: &Ratio, t: &Whole) -> i128 {
     let normal = cross(minus(t[1], t[0]), minus(t[2], t[0]));
     if dot(p.from(t[0]), normal) != 0 {
@@ -70,7 +70,7 @@ fn depth_in(p: &Ratio, t: &Whole) -> i128 {
     (0..3).map(along).min().unwrap()
 }
 
-/// The one point where two edges cross, if there is one.
+/// Returns the single point where two edges cross, if any.
 fn edges_cross(p: [i128; 3], q: [i128; 3], r: [i128; 3], s: [i128; 3]) -> Option<Ratio> {
     let (u, v, w) = (minus(q, p), minus(s, r), minus(r, p));
     let n = cross(u, v);
@@ -84,7 +84,7 @@ fn edges_cross(p: [i128; 3], q: [i128; 3], r: [i128; 3], s: [i128; 3]) -> Option
         .then(|| Ratio::new(std::array::from_fn(over), nn))
 }
 
-/// Where an edge pierces the plane of a triangle.
+/// Returns the point where an edge pierces the plane of a triangle.
 fn pierces(p: [i128; 3], q: [i128; 3], t: &Whole) -> Option<Ratio> {
     let normal = cross(minus(t[1], t[0]), minus(t[2], t[0]));
     let (at_p, at_q) = (dot(minus(p, t[0]), normal), dot(minus(q, t[0]), normal));
@@ -92,7 +92,8 @@ fn pierces(p: [i128; 3], q: [i128; 3], t: &Whole) -> Option<Ratio> {
     (at_p.signum() * at_q.signum() < 0).then(|| Ratio::new(std::array::from_fn(over), at_p - at_q))
 }
 
-/// The corners of what two triangles have in common, maybe some more of its points, and its kind.
+/// Returns the kind of the intersection of two triangles and its corners, possibly with more of its
+/// points.
 fn oracle(a: &Whole, b: &Whole) -> Option<(IntersectionKind, Vec<Ratio>)> {
     let mut points: Vec<Ratio> = a.iter().chain(b).map(|&p| Ratio::new(p, 1)).collect();
     let edges = |t: &Whole| [[t[0], t[1]], [t[1], t[2]], [t[2], t[0]]];
@@ -120,7 +121,7 @@ fn oracle(a: &Whole, b: &Whole) -> Option<(IntersectionKind, Vec<Ratio>)> {
     Some((kind, points))
 }
 
-/// A triangle with area, of points of a grid.
+/// Returns a triangle of nonzero area on grid points.
 fn triangle(random: &mut Random, grid: [u64; 3]) -> Whole {
     loop {
         let t: Whole = std::array::from_fn(|_| grid.map(|n| random.below(n) as i128));
@@ -134,7 +135,7 @@ fn float(t: &Whole) -> Triangle {
     t.map(|p| DVec3::from(p.map(|x| x as f64)))
 }
 
-/// How far a point is from the nearest of a convex set of points, at most, along the axes.
+/// Returns true if a point is in the bounding box of some points, up to rounding.
 fn in_box(place: DVec3, points: &[Ratio]) -> bool {
     let places = points.iter().map(Ratio::place);
     let lo = places.clone().fold(DVec3::INFINITY, DVec3::min) - 1e-12;
@@ -164,7 +165,7 @@ fn compare(a: &Whole, b: &Whole) {
 }
 
 #[test]
-fn small_triangles_meet_as_the_oracle_says() {
+fn small_triangles_intersect_as_in_the_oracle() {
     let mut random = Random(1);
     for grid in [[2, 2, 2], [3, 3, 3], [4, 4, 4], [4, 4, 1], [1, 5, 5], [3, 1, 3], [7, 7, 2]] {
         for _ in 0..8000 {
@@ -175,7 +176,7 @@ fn small_triangles_meet_as_the_oracle_says() {
 }
 
 #[test]
-fn all_kinds_are_met() {
+fn all_kinds_occur() {
     let mut random = Random(2);
     let mut met = [0; 5];
     for _ in 0..2000 {
@@ -198,7 +199,7 @@ fn far_from_the_origin_nothing_changes() {
 }
 
 #[test]
-fn a_triangle_without_area_meets_nothing_and_does_not_panic() {
+fn a_triangle_of_zero_area_intersects_nothing_and_does_not_panic() {
     let mut random = Random(4);
     for _ in 0..3000 {
         let a: Triangle = float(&std::array::from_fn(|_| [2; 3].map(|n| random.below(n) as i128)));
