@@ -41,9 +41,8 @@ impl SolidGroups {
         let mut first: FxHashMap<VertexId, u32> = FxHashMap::default();
         for (face, component) in mesh.faces.iter().zip(&of_face) {
             let Some(component) = *component else { continue };
-            for &v in face {
-                groups
-                    .union(*first.entry(unique.representative(v)).or_insert(component), component);
+            for v in face.map(|v| unique.representative(v)) {
+                groups.union(*first.entry(v).or_insert(component), component);
             }
         }
         of_face.iter_mut().flatten().for_each(|group| *group = groups.find(*group));
