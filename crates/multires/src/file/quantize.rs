@@ -100,7 +100,7 @@ impl Forest {
     }
 
     /// Swaps siblings where that is free, so that the leading component of the vector between them
-    /// is not negative. Its sign then compresses to nothing.
+    /// is not negative. Its sign then costs almost nothing to encode.
     fn orient_siblings(&mut self) {
         let parents = self.parents();
         for u in 0..self.updates.len() {
