@@ -298,7 +298,7 @@ mod tests {
     }
 
     #[test]
-    fn sides_that_are_laid_cover_each_other_and_shadows_hold_what_is_paired() {
+    fn projected_sides_cover_each_other_and_balls_hold_what_is_paired() {
         each(|what, _, forest| {
             let mut dice = Dice(1);
             let mut stars = Stars::new(forest);
