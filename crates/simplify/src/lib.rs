@@ -14,48 +14,30 @@
 //! surface is as manifold, as closed and as oriented as before.
 #![deny(unsafe_code)]
 
-mod candidates;
-mod charts;
-mod checks;
 mod clean;
-mod contracted;
 mod engine;
-mod estimate;
-mod exact_volume;
 mod history;
-mod interpolate;
 mod kernel;
-mod level;
-mod locks;
 mod methods;
-mod nearest;
-mod neighbourhood;
 mod options;
-mod policy;
-mod progressive;
-mod queue;
 mod refusal;
 mod simplifier;
 mod surface;
-mod ties;
-mod vanishing;
-mod volume;
-mod wedges;
 
 use meshlod_mesh::Mesh;
 
-pub use contracted::{Contracted, Freedom};
-pub use exact_volume::{Digits, ExactVolumeError, VolumeResidual, conserve_volume};
+pub use engine::locks::Held;
+pub use engine::policy::Observe;
+pub use history::exact_volume::{Digits, ExactVolumeError, VolumeResidual, conserve_volume};
+pub use history::progressive::{Progressive, ProgressiveError};
+pub use history::volume::{Unconserved, VolumeLoss};
 pub use history::{Contraction, History};
-pub use locks::Held;
-pub use neighbourhood::{Dying, Neighbourhood, RingVertex, Spoke};
 pub use options::{AttributeWeights, Method, Options, Report, SimplifyError, Target};
-pub use policy::Observe;
-pub use progressive::{Progressive, ProgressiveError};
 pub use refusal::{Refusal, Refusals};
 pub use simplifier::Simplifier;
+pub use surface::contracted::{Contracted, Freedom};
+pub use surface::neighbourhood::{Dying, Neighbourhood, RingVertex, Spoke};
 pub use surface::{Placed, Surface};
-pub use volume::{Unconserved, VolumeLoss};
 
 /// A coarser mesh, and what was done to get it.
 ///

@@ -3,9 +3,9 @@
 use meshlod_mesh::{Locks, MeshError, VertexId};
 use thiserror::Error;
 
-use crate::locks::Held;
+use crate::engine::locks::Held;
+use crate::history::volume::VolumeLoss;
 use crate::refusal::Refusals;
-use crate::volume::VolumeLoss;
 
 /// An algorithm by name.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]

@@ -3,14 +3,14 @@
 use meshlod_mesh::{Bounds, Mesh, VertexId};
 
 use crate::clean;
+use crate::engine::locks::{self, Held};
+use crate::engine::policy::{Observe, Stop};
+use crate::engine::vanishing::Vanishing;
 use crate::engine::{Ready, Run, Tally};
 use crate::kernel::{self, PlaneDistance, SweptVolume};
-use crate::locks::{self, Held};
 use crate::methods;
 use crate::options::{Method, Options, Report, SimplifyError, Target};
-use crate::policy::{Observe, Stop};
 use crate::surface::Surface;
-use crate::vanishing::Vanishing;
 
 /// The diagonals that can be worked with. Costs go with up to the sixth power of a length, checks with
 /// the eighth; beyond, doubles would run out.

@@ -1,13 +1,13 @@
 //! Edges between the same two ties: contracted in one step, to one place, or not at all.
 
-use crate::checks::{flip, topology};
-use crate::contracted::{Contracted, Freedom};
 use crate::engine::Engine;
-use crate::estimate::estimate;
-use crate::neighbourhood::Neighbourhood;
-use crate::policy::{Candidates, Memory, Observe, Placement, Priority, Stop};
+use crate::engine::checks::{flip, topology};
+use crate::engine::estimate::estimate;
+use crate::engine::policy::{Candidates, Memory, Observe, Placement, Priority, Stop};
 use crate::refusal::Refusal;
 use crate::surface::Placed;
+use crate::surface::contracted::{Contracted, Freedom};
+use crate::surface::neighbourhood::Neighbourhood;
 
 impl<C, M, P, L> Engine<C, M, P, L>
 where

@@ -1,9 +1,9 @@
 //! Components that vanish as a whole.
 
 use crate::engine::Engine;
-use crate::policy::{Candidates, Memory, Observe, Placement, Priority, Stop};
+use crate::engine::policy::{Candidates, Memory, Observe, Placement, Priority, Stop};
+use crate::engine::vanishing::Component;
 use crate::refusal::Refusal;
-use crate::vanishing::Component;
 
 impl<C, M, P, L> Engine<C, M, P, L>
 where

@@ -3,9 +3,9 @@
 use meshlod_mesh::VertexId;
 use rustc_hash::FxHashMap;
 
-use crate::candidates::CandidateId;
-use crate::policy::Books;
-use crate::queue::{Entry, Queue};
+use crate::engine::candidates::CandidateId;
+use crate::engine::policy::Books;
+use crate::engine::queue::{Entry, Queue};
 use crate::surface::{Flags, State, Surface};
 
 /// The candidates that wait: in the queue, or parked until their neighbourhood changes.

@@ -23,7 +23,7 @@ use crate::kernel::schedule::edge_costs::{Cheapest, Rank, cheapest};
 use crate::kernel::simd::{SimdTask, widest};
 use crate::kernel::volume::VolumeTally;
 use crate::refusal::{Refusal, Refusals};
-use crate::ties::Ties;
+use crate::surface::ties::Ties;
 
 /// How many buckets behind the front a new vertex is put, not looked at: many are gone before they come
 /// up. Mean error of horse-97k at 10 % and 1 %, and millions of instructions of both: looked at at once

@@ -2,12 +2,12 @@
 
 use meshlod_mesh::{Bounds, Mesh, VertexId, face_components, first_near};
 
+use crate::engine::vanishing;
 use crate::kernel::mesh::local_frame::Frame;
 use crate::kernel::mesh::one_ring::Vertices;
 use crate::kernel::mesh::vertex::VertexFlags;
 use crate::kernel::metric::{Metric, protection};
 use crate::kernel::schedule::bucket_queue::{bucket, last_bucket};
-use crate::vanishing;
 
 /// A component that may vanish.
 #[derive(Clone, Debug)]

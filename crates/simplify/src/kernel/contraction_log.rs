@@ -6,14 +6,14 @@
 use glam::Vec3;
 use meshlod_mesh::{FaceId, Mesh, VertexId};
 
-use crate::contracted::Freedom;
+use crate::engine::policy::Observe;
 use crate::kernel::attributes::RecordedValues;
 use crate::kernel::components::Component;
 use crate::kernel::mesh::local_frame::Frame;
 use crate::kernel::mesh::one_ring::VertexStore;
 use crate::kernel::setup::vertex_order::Order;
-use crate::neighbourhood::Neighbourhood;
-use crate::policy::Observe;
+use crate::surface::contracted::Freedom;
+use crate::surface::neighbourhood::Neighbourhood;
 use crate::surface::{Placed, Surface};
 
 /// A contraction as it is taken down: 28 bytes.

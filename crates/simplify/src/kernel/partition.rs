@@ -24,7 +24,7 @@ use crate::kernel::schedule::bucket_queue::{BucketQueue, last_bucket};
 use crate::kernel::schedule::deferral::Deferral;
 use crate::kernel::volume::VolumeTally;
 use crate::refusal::Refusals;
-use crate::ties::Ties;
+use crate::surface::ties::Ties;
 
 /// The most vertices of a part in the first round: 6 MB of records. Smaller meshes are one part: in four
 /// parts of 12,000, horse-97k has .00734 and .0583 at 10 % and 1 % instead of .00722 and .0571.

@@ -1,6 +1,7 @@
 //! From a mesh to vertices with rings, in the engine's frame.
 
 use crate::engine::Run;
+use crate::engine::locks::Held;
 use crate::kernel::attributes::AttributeModel;
 use crate::kernel::attributes::bare::NoAttributes;
 use crate::kernel::attributes::corners::Corners;
@@ -16,11 +17,10 @@ use crate::kernel::run::{KernelInput, KernelRun};
 use crate::kernel::setup::build_rings::Fans;
 use crate::kernel::setup::split_non_manifold;
 use crate::kernel::setup::vertex_order::{Order, numbers};
-use crate::locks::Held;
 use crate::options::{AttributeWeights, Options};
 use crate::simplifier::Input;
 use crate::surface::MOST_FACES;
-use crate::ties::{MOST_MEMBERS, Ties};
+use crate::surface::ties::{MOST_MEMBERS, Ties};
 use meshlod_mesh::{Bounds, Lock, Mesh, VertexId};
 
 use crate::clean;

@@ -5,6 +5,7 @@ use std::cell::OnceCell;
 use meshlod_mesh::Mesh;
 
 use crate::clean;
+use crate::engine::policy::{Observe, Stop};
 use crate::engine::{Run, Tally};
 use crate::kernel::attributes::AttributeModel;
 use crate::kernel::bound::ErrorBound;
@@ -18,7 +19,6 @@ use crate::kernel::metric::Metric;
 use crate::kernel::partition::Partition;
 use crate::kernel::schedule::bucket_queue::{NONE, bucket, least_of};
 use crate::kernel::setup::vertex_order::{Order, numbers};
-use crate::policy::{Observe, Stop};
 use crate::refusal::Refusal;
 use crate::surface::Surface;
 

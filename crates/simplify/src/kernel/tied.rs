@@ -3,7 +3,6 @@
 use glam::DVec3;
 use meshlod_mesh::VertexId;
 
-use crate::contracted::Freedom;
 use crate::kernel::attributes::AttributeModel;
 use crate::kernel::bound::BoundedStep;
 use crate::kernel::collapse::edge_ring::EdgeRing;
@@ -15,7 +14,8 @@ use crate::kernel::metric::edge_quadric_f64::EdgeQuadricF64;
 use crate::kernel::metric::{Metric, protection};
 use crate::kernel::schedule::bucket_queue::{NONE, bucket, last_bucket};
 use crate::refusal::Refusal;
-use crate::ties::{TiedSurface, Ties, partners};
+use crate::surface::contracted::Freedom;
+use crate::surface::ties::{TiedSurface, Ties, partners};
 
 /// The surface at work with its ties.
 struct Tied<'a, 'v> {

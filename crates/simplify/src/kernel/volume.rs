@@ -3,8 +3,8 @@
 use glam::Vec3;
 use meshlod_mesh::Bounds;
 
+use crate::history::volume::{Unconserved, VolumeLoss};
 use crate::kernel::mesh::local_frame::Frame;
-use crate::volume::{Unconserved, VolumeLoss};
 
 /// The volume lost, and the contractions that could not choose their place by it, in the frame.
 ///

@@ -1,9 +1,9 @@
 //! What quadrics may know of attributes, as the methods see it.
 
-use crate::contracted::Contracted;
+use crate::engine::policy::Memory;
 use crate::methods::quadric::Quadric;
-use crate::policy::Memory;
 use crate::surface::Surface;
+use crate::surface::contracted::Contracted;
 
 /// What quadrics know of attributes: `()` for nothing.
 pub(crate) trait Appearance: Memory {

@@ -10,7 +10,7 @@ use meshlod_mesh::{FaceId, Layer, LayerKind, WedgeId};
 
 use crate::options::AttributeWeights;
 use crate::surface::Surface;
-use crate::wedges::Wedges;
+use crate::surface::wedges::Wedges;
 
 /// A layer that counts.
 struct Counted {

@@ -9,9 +9,9 @@ use glam::{DVec3, Vec3};
 use meshlod_mesh::{FaceId, VertexId};
 use rayon::prelude::*;
 
-use crate::contracted::Contracted;
-use crate::neighbourhood::Neighbourhood;
-use crate::policy::Memory;
+use crate::engine::policy::Memory;
+use crate::surface::contracted::Contracted;
+use crate::surface::neighbourhood::Neighbourhood;
 use crate::surface::{Flags, Placed, Surface};
 
 /// A hub is known by as many of its faces.

@@ -10,15 +10,15 @@
 use glam::DVec3;
 use meshlod_mesh::{FaceId, VertexId, WedgeId};
 
-use crate::contracted::Contracted;
+use crate::engine::policy::Memory;
 use crate::methods::appearance::Appearance;
 use crate::methods::channels::Channels;
 use crate::methods::quadric::Quadric;
 use crate::methods::slopes::Slopes;
-use crate::neighbourhood::Neighbourhood;
-use crate::policy::Memory;
+use crate::surface::contracted::Contracted;
+use crate::surface::neighbourhood::Neighbourhood;
+use crate::surface::wedges::Wedges;
 use crate::surface::{Placed, Surface};
-use crate::wedges::Wedges;
 
 /// How much of what was expected a new wedge remembers; the rest is its faces as they are. FLIP at
 /// 10 % of the faces, by views of 512 pixels, with weights of 0.01 and 0.3:

@@ -2,10 +2,10 @@
 
 use meshlod_mesh::FaceId;
 
-use crate::contracted::{Contracted, Freedom};
+use crate::engine::policy::Priority;
 use crate::methods::creases::Creases;
-use crate::policy::Priority;
 use crate::surface::Surface;
+use crate::surface::contracted::{Contracted, Freedom};
 
 /// wb: what turns count against balance. Mean error of horse-97k at 10 % and 1 %, by [LJ05]: 0.5
 /// .0230, .146; 0.7 .0223, .149; 0.8 .0216, .167; 0.9 .0217, .183; 0.95 .0230, .207.

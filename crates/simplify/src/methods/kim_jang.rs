@@ -2,12 +2,12 @@
 
 use glam::DVec3;
 
-use crate::contracted::Freedom;
+use crate::engine::policy::Placement;
 use crate::methods::qem::{Optimal, Quadrics};
 use crate::methods::volume::VolumePlane;
-use crate::neighbourhood::Neighbourhood;
-use crate::policy::Placement;
 use crate::refusal::Refusal;
+use crate::surface::contracted::Freedom;
+use crate::surface::neighbourhood::Neighbourhood;
 use crate::surface::{Placed, Surface};
 
 /// How far, in mean spokes of its own, the optimum may be moved along the line from the middle of

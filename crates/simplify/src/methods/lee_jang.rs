@@ -2,13 +2,13 @@
 
 use glam::DVec3;
 
-use crate::contracted::Freedom;
+use crate::engine::policy::Placement;
 use crate::methods::creases::{Creases, Turns};
 use crate::methods::lindstrom_turk;
 use crate::methods::volume::{VolumePlane, old_faces};
-use crate::neighbourhood::Neighbourhood;
-use crate::policy::Placement;
 use crate::refusal::Refusal;
+use crate::surface::contracted::Freedom;
+use crate::surface::neighbourhood::Neighbourhood;
 use crate::surface::{Placed, Surface};
 
 /// How far the ratio of the volumes may be from 1; beyond, the face is postponed and its shortest
@@ -83,8 +83,8 @@ mod tests {
     use meshlod_mesh::{Connectivity, Mesh, VertexId};
 
     use super::*;
-    use crate::contracted::Contracted;
     use crate::methods::wu;
+    use crate::surface::contracted::Contracted;
 
     /// A regular pyramid without its base: the tip is vertex 0.
     fn pyramid() -> Mesh {

@@ -8,14 +8,14 @@
 use glam::DVec3;
 use meshlod_mesh::{FaceId, VertexId};
 
-use crate::contracted::{Contracted, Freedom};
+use crate::engine::policy::{Memory, Placement, Priority};
 use crate::methods::outline::outlines;
 use crate::methods::qem::SHORT_FIRST;
 use crate::methods::quadric::{Quadric, Symmetric};
 use crate::methods::volume::{VolumePlane, old_faces};
-use crate::neighbourhood::Neighbourhood;
-use crate::policy::{Memory, Placement, Priority};
 use crate::refusal::Refusal;
+use crate::surface::contracted::{Contracted, Freedom};
+use crate::surface::neighbourhood::Neighbourhood;
 use crate::surface::{Flags, Placed, Surface};
 
 /// How strongly the optimum is pulled to the middle of the edge; it decides along flats. Mean error

@@ -19,7 +19,7 @@ mod spr;
 mod volume;
 mod wu;
 
-use crate::candidates::{Edges, FacesAndEdges};
+use crate::engine::candidates::{Edges, FacesAndEdges};
 use crate::engine::{Algorithm, Ready, Run};
 use crate::methods::appearance::Appearance;
 use crate::methods::channels::Channels;

@@ -2,8 +2,8 @@
 
 use meshlod_mesh::{FaceId, Side, VertexId};
 
+use crate::surface::ties::is_contact;
 use crate::surface::{Flags, Surface};
-use crate::ties::is_contact;
 
 /// An edge that is seen in silhouettes, textures or contacts wherever it goes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -12,13 +12,13 @@ use std::cell::RefCell;
 
 use glam::DVec3;
 
-use crate::contracted::{Contracted, Freedom};
+use crate::engine::policy::{Placement, Priority};
 use crate::methods::fan::{Fan, Nearest};
 use crate::methods::quadric::Symmetric;
 use crate::methods::samples::Samples;
-use crate::neighbourhood::Neighbourhood;
-use crate::policy::{Placement, Priority};
 use crate::refusal::Refusal;
+use crate::surface::contracted::{Contracted, Freedom};
+use crate::surface::neighbourhood::Neighbourhood;
 use crate::surface::{Placed, Surface};
 
 /// What the squared lengths of the edges around the new vertex count against squared distances.
@@ -199,7 +199,7 @@ mod tests {
     use meshlod_spatial::closest_point;
 
     use super::*;
-    use crate::policy::Memory;
+    use crate::engine::policy::Memory;
 
     fn start(mesh: &Mesh) -> (Surface, Samples) {
         let connectivity = Connectivity::new(&mesh.faces, mesh.positions.len());

@@ -11,13 +11,13 @@
 use glam::DVec3;
 use meshlod_mesh::{Connectivity, FaceId, Side, Twin, VertexId};
 
-use crate::contracted::{Contracted, Freedom};
+use crate::engine::policy::{Memory, Placement, Priority};
 use crate::methods::appearance::Appearance;
 use crate::methods::outline::is_line;
 use crate::methods::quadric::Quadric;
-use crate::neighbourhood::Neighbourhood;
-use crate::policy::{Memory, Placement, Priority};
 use crate::refusal::Refusal;
+use crate::surface::contracted::{Contracted, Freedom};
+use crate::surface::neighbourhood::Neighbourhood;
 use crate::surface::{Flags, Placed, Surface};
 
 /// How strongly the optimum is pulled to the middle of the edge. Of 1e-9 … 1e-3, 1e-5 gave the least

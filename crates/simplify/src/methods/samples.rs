@@ -6,10 +6,10 @@
 use glam::DVec3;
 use meshlod_mesh::{Connectivity, FaceId, Side, Twin, VertexId};
 
+use crate::engine::policy::Memory;
 use crate::methods::fan::{Fan, Rim};
 use crate::methods::outline::is_line;
-use crate::neighbourhood::{Neighbourhood, Spoke};
-use crate::policy::Memory;
+use crate::surface::neighbourhood::{Neighbourhood, Spoke};
 use crate::surface::{Placed, Surface};
 
 /// Random samples for each face of the input, beside one at each vertex and one in the middle of

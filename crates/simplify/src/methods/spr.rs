@@ -11,10 +11,10 @@
 use glam::DVec3;
 use meshlod_mesh::{FaceId, VertexId};
 
-use crate::contracted::{Contracted, Freedom};
-use crate::neighbourhood::Neighbourhood;
-use crate::policy::{Placement, Priority};
+use crate::engine::policy::{Placement, Priority};
 use crate::refusal::Refusal;
+use crate::surface::contracted::{Contracted, Freedom};
+use crate::surface::neighbourhood::Neighbourhood;
 use crate::surface::{Flags, Placed, Surface};
 
 /// What counts of the length where nothing turns. Without it a flat is taken in the order of its ids

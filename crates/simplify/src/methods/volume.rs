@@ -5,8 +5,8 @@
 
 use glam::DVec3;
 
-use crate::neighbourhood::Neighbourhood;
 use crate::surface::Surface;
+use crate::surface::neighbourhood::Neighbourhood;
 
 /// The plane `normal`·x = `level`, x an offset from the origin that was given.
 #[derive(Clone, Copy, Debug, Default)]

@@ -2,12 +2,12 @@
 
 use glam::DVec3;
 
-use crate::contracted::Freedom;
+use crate::engine::policy::Placement;
 use crate::methods::creases::{Creases, Turns};
 use crate::methods::lindstrom_turk;
-use crate::neighbourhood::Neighbourhood;
-use crate::policy::Placement;
 use crate::refusal::Refusal;
+use crate::surface::contracted::Freedom;
+use crate::surface::neighbourhood::Neighbourhood;
 use crate::surface::{Placed, Surface};
 
 /// VAR: weighs a vertex by how its edges differ (eq. 2 of [LJ05]). One whose edges are all alike

@@ -1,7 +1,7 @@
 //! The wedges at the corners of faces, as the input has them.
 
 use crate::kernel::mesh::vertex::NOBODY;
-use crate::wedges::labels;
+use crate::surface::wedges::labels;
 use meshlod_mesh::{Layer, Mesh, WedgeId};
 use rustc_hash::FxHashMap;
 use std::borrow::Cow;

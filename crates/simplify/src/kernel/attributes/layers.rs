@@ -6,10 +6,10 @@ use std::ops::Range;
 use glam::{DVec3, Vec3};
 use meshlod_mesh::{Layer, LayerKind, Mesh, WedgeId};
 
-use crate::charts::is_shading;
-use crate::interpolate::{Place, interpolate};
 use crate::kernel::mesh::local_frame::Frame;
 use crate::options::AttributeWeights;
+use crate::surface::charts::is_shading;
+use crate::surface::interpolate::{Place, interpolate};
 
 /// No attribute counts for more, in the frame's units.
 const MOST_LENGTH: f64 = 1e9;

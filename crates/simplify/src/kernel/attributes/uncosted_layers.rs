@@ -5,12 +5,12 @@ use glam::{DVec3, Vec3};
 use meshlod_mesh::WedgeId;
 use meshlod_spatial::closest_point;
 
-use crate::interpolate::{Place, shares};
 use crate::kernel::attributes::face_wedges::FaceWedges;
 use crate::kernel::attributes::wedge_quadrics::WedgeQuadrics;
 use crate::kernel::collapse::edge_ring::EdgeRing;
 use crate::kernel::collapse::{Collapse, Ends};
 use crate::kernel::mesh::vertex::NOBODY;
+use crate::surface::interpolate::{Place, shares};
 
 impl<M: Metric, const K: usize> WedgeQuadrics<'_, M, K> {
     /// Gives the wedges that become one what is closest on the faces that they stand for. Without `slots`

@@ -22,7 +22,7 @@ use crate::kernel::metric::edge_quadric_f64::EdgeQuadricF64;
 use crate::kernel::simd::{LANES, Row};
 use glam::{DVec3, Vec3};
 
-use crate::locks;
+use crate::engine::locks;
 use crate::options::Method;
 
 /// A method, by its squares.

@@ -3,8 +3,8 @@
 use meshlod_mesh::VertexId;
 use rustc_hash::FxHashMap;
 
-use crate::contracted::Freedom;
 use crate::refusal::Refusal;
+use crate::surface::contracted::Freedom;
 use crate::surface::{Flags, Surface};
 
 /// Ties of more are locked: an edge between two ties is looked for from each of their vertices.

@@ -6,7 +6,7 @@
 use std::cmp::{Ordering, Reverse};
 use std::collections::BinaryHeap;
 
-use crate::candidates::CandidateId;
+use crate::engine::candidates::CandidateId;
 
 /// A cost as the queue orders it: the leading 32 bits of a non-negative double, which sort as it
 /// does and keep 20 bits of its mantissa at any scale.

@@ -4,7 +4,7 @@ use glam::DVec3;
 use meshlod_mesh::VertexId;
 use meshlod_spatial::closest_point;
 
-use crate::neighbourhood::{Neighbourhood, Spoke};
+use crate::surface::neighbourhood::{Neighbourhood, Spoke};
 use crate::surface::{Placed, Surface};
 
 /// The larger of what the placement says of itself and how far the contracted vertices end up from

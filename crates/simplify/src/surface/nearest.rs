@@ -8,10 +8,10 @@ use glam::DVec3;
 use meshlod_mesh::{FaceId, WedgeId};
 use meshlod_spatial::{Triangle, closest_point};
 
-use crate::interpolate::{Place, shares};
-use crate::neighbourhood::Neighbourhood;
+use crate::surface::interpolate::{Place, shares};
+use crate::surface::neighbourhood::Neighbourhood;
+use crate::surface::wedges::Wedges;
 use crate::surface::{Placed, Surface};
-use crate::wedges::Wedges;
 
 /// A face around, as it was.
 struct Near {

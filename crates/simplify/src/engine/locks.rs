@@ -3,8 +3,8 @@
 use meshlod_mesh::{Connectivity, Lock, Locks, Mesh, VertexId};
 
 use crate::options::{Method, Options, SimplifyError};
+use crate::surface::ties::{MOST_MEMBERS, Ties};
 use crate::surface::{Flags, Surface};
-use crate::ties::{MOST_MEMBERS, Ties};
 
 /// How many vertices of the input are held, and how.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -1,11 +1,15 @@
 //! Every contraction written down, so that each can be undone exactly.
 
+pub(crate) mod exact_volume;
+pub(crate) mod progressive;
+pub(crate) mod volume;
+
 use meshlod_mesh::{FaceId, WedgeId};
 
-use crate::candidates::CandidateId;
-use crate::contracted::Contracted;
-use crate::neighbourhood::Neighbourhood;
-use crate::policy::Observe;
+use crate::engine::candidates::CandidateId;
+use crate::engine::policy::Observe;
+use crate::surface::contracted::Contracted;
+use crate::surface::neighbourhood::Neighbourhood;
 use crate::surface::{Placed, Surface};
 
 /// One contraction. Its lists run to the starts of the next one's.

@@ -3,9 +3,9 @@
 use glam::{DMat3, DMat4, DVec3};
 use meshlod_mesh::{Bounds, FaceId};
 
-use crate::contracted::Freedom;
-use crate::neighbourhood::{Neighbourhood, Spoke};
-use crate::policy::Observe;
+use crate::engine::policy::Observe;
+use crate::surface::contracted::Freedom;
+use crate::surface::neighbourhood::{Neighbourhood, Spoke};
 use crate::surface::{Flags, Placed, Surface};
 
 /// The volume that contractions lost, and those that no method can make conserve it. All are of edges:

@@ -12,10 +12,10 @@
 
 use meshlod_mesh::{Connectivity, FaceId, VertexId};
 
-use crate::candidates::CandidateId;
-use crate::contracted::{Contracted, Freedom};
-use crate::neighbourhood::Neighbourhood;
+use crate::engine::candidates::CandidateId;
 use crate::refusal::Refusal;
+use crate::surface::contracted::{Contracted, Freedom};
+use crate::surface::neighbourhood::Neighbourhood;
 use crate::surface::{Placed, Surface};
 
 /// What may be contracted.

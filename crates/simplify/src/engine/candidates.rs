@@ -2,9 +2,9 @@
 
 use meshlod_mesh::{Connectivity, FaceId, VertexId};
 
-use crate::contracted::Contracted;
-use crate::neighbourhood::{Neighbourhood, Spoke};
-use crate::policy::{Books, Candidates};
+use crate::engine::policy::{Books, Candidates};
+use crate::surface::contracted::Contracted;
+use crate::surface::neighbourhood::{Neighbourhood, Spoke};
 use crate::surface::{Flags, Surface};
 
 /// A candidate by number: side k of face f, from corner k to corner k + 1, is 4f + k; the face

@@ -5,26 +5,33 @@
 //! of eager renewal, at about half the evaluations.
 //! A refused candidate waits until the neighbourhood of one of its vertices changes.
 
+pub(crate) mod candidates;
+pub(crate) mod checks;
+pub(crate) mod estimate;
+pub(crate) mod locks;
+pub(crate) mod policy;
+pub(crate) mod queue;
 mod together;
 mod vanish;
+pub(crate) mod vanishing;
 mod waiting;
 
 use meshlod_mesh::{Connectivity, Mesh, VertexId};
 use rayon::prelude::*;
 
 use self::waiting::{Desk, Waiting};
-use crate::candidates::CandidateId;
-use crate::checks::{flip, topology};
-use crate::contracted::{Contracted, Freedom};
-use crate::estimate::estimate;
-use crate::level::level;
-use crate::neighbourhood::{Neighbourhood, freedom};
-use crate::policy::{Candidates, Memory, Observe, Placement, Priority, Stop};
-use crate::queue::{Entry, Key};
+use crate::engine::candidates::CandidateId;
+use crate::engine::checks::{flip, topology};
+use crate::engine::estimate::estimate;
+use crate::engine::policy::{Candidates, Memory, Observe, Placement, Priority, Stop};
+use crate::engine::queue::{Entry, Key};
+use crate::engine::vanishing::Vanishing;
+use crate::history::volume::VolumeLoss;
 use crate::refusal::{Refusal, Refusals};
+use crate::surface::contracted::{Contracted, Freedom};
+use crate::surface::level::level;
+use crate::surface::neighbourhood::{Neighbourhood, freedom};
 use crate::surface::{Flags, Placed, State, Surface};
-use crate::vanishing::Vanishing;
-use crate::volume::VolumeLoss;
 
 /// An algorithm: a choice of policies. What stops it and who observes come with each run.
 pub(crate) struct Algorithm<C, M, P, L> {

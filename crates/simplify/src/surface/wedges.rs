@@ -7,12 +7,12 @@
 use meshlod_mesh::{Attributes, FaceId, Labels, Layer, Mesh, VertexId, WedgeId};
 use rustc_hash::FxHashMap;
 
-use crate::charts::{charts, is_shading};
-use crate::contracted::Freedom;
-use crate::interpolate::interpolate;
-use crate::nearest::Nearby;
-use crate::neighbourhood::Neighbourhood;
 use crate::refusal::Refusal;
+use crate::surface::charts::{charts, is_shading};
+use crate::surface::contracted::Freedom;
+use crate::surface::interpolate::interpolate;
+use crate::surface::nearest::Nearby;
+use crate::surface::neighbourhood::Neighbourhood;
 use crate::surface::{Flags, Placed, Surface};
 
 /// The wedges of a surface: those of its mesh, split further where the material changes or the

@@ -11,7 +11,7 @@ use thiserror::Error;
 
 use super::check::check;
 use super::{Progressive, Split, Splits};
-use crate::candidates::CandidateId;
+use crate::engine::candidates::CandidateId;
 
 const MAGIC: &[u8; 8] = b"meshlodp";
 const VERSION: u32 = 1;

@@ -11,10 +11,10 @@
 use glam::DVec3;
 use meshlod_mesh::{FaceId, VertexId, WedgeId};
 
-use crate::contracted::{Contracted, Freedom};
 use crate::refusal::Refusal;
+use crate::surface::contracted::{Contracted, Freedom};
+use crate::surface::ties;
 use crate::surface::{Flags, Surface, corner_of};
-use crate::ties;
 
 /// A face that survives the contraction: one corner is contracted, two are on the ring.
 #[derive(Clone, Copy, Debug)]

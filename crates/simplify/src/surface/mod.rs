@@ -4,13 +4,22 @@
 //! side; a vertex's position, star and flags are one record, since they are wanted together.
 //! Nothing here needs the surface to be manifold.
 
+pub(crate) mod charts;
+pub(crate) mod contracted;
+pub(crate) mod interpolate;
+pub(crate) mod level;
+pub(crate) mod nearest;
+pub(crate) mod neighbourhood;
+pub(crate) mod ties;
+pub(crate) mod wedges;
+
 use glam::DVec3;
 use meshlod_mesh::{Connectivity, FaceId, Mesh, VertexId};
 
-use crate::candidates::CandidateId;
-use crate::neighbourhood::Neighbourhood;
-use crate::ties::Ties;
-use crate::wedges::Wedges;
+use crate::engine::candidates::CandidateId;
+use crate::surface::neighbourhood::Neighbourhood;
+use crate::surface::ties::Ties;
+use crate::surface::wedges::Wedges;
 
 /// Where a contraction puts its vertex, and which of the contracted lives on as it.
 #[derive(Clone, Copy, Debug, PartialEq)]

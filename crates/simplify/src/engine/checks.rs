@@ -3,8 +3,8 @@
 use glam::DVec3;
 use meshlod_mesh::VertexId;
 
-use crate::neighbourhood::Neighbourhood;
 use crate::refusal::Refusal;
+use crate::surface::neighbourhood::Neighbourhood;
 use crate::surface::{Flags, Surface};
 
 /// The rules that do not ask for the new place, the cheapest and most often met first.

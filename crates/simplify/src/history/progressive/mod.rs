@@ -10,7 +10,7 @@ use meshlod_mesh::{Attributes, FaceId, Mesh, VertexId, WedgeId};
 
 pub use bytes::ProgressiveError;
 
-use crate::candidates::CandidateId;
+use crate::engine::candidates::CandidateId;
 use crate::history::History;
 use crate::simplifier::Simplifier;
 use crate::surface::Surface;
