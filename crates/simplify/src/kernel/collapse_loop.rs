@@ -12,8 +12,8 @@ use crate::kernel::collapse::edge_ring::EdgeRing;
 use crate::kernel::collapse::{Collapse, Ends};
 use crate::kernel::components::Components;
 use crate::kernel::contraction_log::{Logged, LoggedContraction};
-use crate::kernel::mesh::one_ring::{GHOST, MOST, Vertices};
-use crate::kernel::mesh::vertex::{NOBODY, RING, Vertex, VertexFlags};
+use crate::kernel::mesh::one_ring::{GHOST, MAX_RING, Vertices};
+use crate::kernel::mesh::vertex::{NO_VERTEX, RING, Vertex, VertexFlags};
 use crate::kernel::metric::edge_quadric_f64::EdgeQuadricF64;
 use crate::kernel::metric::{Metric, protection};
 use crate::kernel::schedule::batch::Batch;
@@ -28,12 +28,12 @@ use crate::surface::ties::Ties;
 /// How many buckets behind the front a new vertex is put, not looked at: many are gone before they come
 /// up. Mean error of horse-97k at 10 % and 1 %, and millions of instructions of both: looked at at once
 /// .00723, .0572, 849; 4 .00721, .0580; 6 .00720, .0578, 789; 8 .00723, .0586, 766; 10 .00727, .0583.
-const REST: u16 = 6;
+const NEW_VERTEX_DELAY: u16 = 6;
 
 /// By how many buckets a contraction waits that turns a face over in its texture. Those turned in the
 /// flight helmet at 25 and 10 %, FLIP of pirate at 5 %, which has few faces left to go: 0 95, 111, .314;
 /// 4 44, 51, .324; 8 21, 41, .348; 16 .348; refused for good 9, 20, .393. Else FLIP is the same.
-pub(crate) const TURNED: u16 = 8;
+pub(crate) const UV_FLIP_DELAY: u16 = 8;
 
 /// A part of a surface at work, with what it looks like.
 pub(crate) struct CollapseLoop<'v, A> {
@@ -60,9 +60,9 @@ pub(crate) struct CollapseLoop<'v, A> {
 /// Why the edge at the front was not contracted.
 pub(crate) enum Rejection {
     /// It costs so much by now.
-    TooDear(u16),
+    CostRose(u16),
     /// It takes the surface too far for now, or turns a texture, but may go in this bucket.
-    TooFar(u16),
+    Deferred(u16),
     /// It may not be, at a cost in this bucket.
     Refused(Refusal, u16),
 }
@@ -71,9 +71,9 @@ pub(crate) enum Rejection {
 struct PricedEdge {
     ends: Ends,
     /// By its geometry alone.
-    swept: EdgeQuadricF64,
+    quadric: EdgeQuadricF64,
     /// Where its vertex goes, as seen from the middle.
-    best: DVec3,
+    from_middle: DVec3,
     /// Of the cost.
     bucket: u16,
 }
@@ -111,7 +111,7 @@ impl<'v, A: AttributeModel> CollapseLoop<'v, A> {
     /// Contracts until no more than `faces` are left, or what comes next is in a bucket behind `last`,
     /// or nothing more may be contracted.
     pub(crate) fn run(&mut self, faces: usize, last: u16) {
-        widest(ContractAll { engine: self, faces, last });
+        widest(ContractAll { collapse_loop: self, faces, last });
     }
 
     #[inline(always)]
@@ -156,14 +156,14 @@ impl<'v, A: AttributeModel> CollapseLoop<'v, A> {
             return false;
         }
         self.prefetch();
-        self.look_ahead();
+        self.recost_batch();
         true
     }
 
     /// AttributeModel at those of the next that have changed: first only at the edges that they would go by, of
     /// all of them at once. Who costs too much by now is queued again.
     #[inline(always)]
-    fn look_ahead(&mut self) {
+    fn recost_batch(&mut self) {
         let (taken, front) = self.queue.next();
         let (mut next, len) = ([0; AHEAD], taken.len());
         next[..len].copy_from_slice(taken);
@@ -226,7 +226,7 @@ impl<'v, A: AttributeModel> CollapseLoop<'v, A> {
     #[inline(always)]
     fn is_due(&self, v: u32, bucket: u16) -> bool {
         let vertex = self.vertices.get(v);
-        vertex.bucket == bucket && !vertex.flags.any(ASIDE)
+        vertex.bucket == bucket && !vertex.flags.any(INACTIVE)
     }
 
     /// Lets all edges try again that were refused.
@@ -235,7 +235,7 @@ impl<'v, A: AttributeModel> CollapseLoop<'v, A> {
         self.queue.put_back();
         for v in self.vertices.ids() {
             let vertex = self.vertices.get(v);
-            if vertex.floor > 0 && !vertex.flags.any(ASIDE) {
+            if vertex.floor > 0 && !vertex.flags.any(INACTIVE) {
                 self.put_first(v);
             }
         }
@@ -251,7 +251,7 @@ impl<'v, A: AttributeModel> CollapseLoop<'v, A> {
     fn put_first(&mut self, v: u32) {
         let vertex = self.vertices.get_mut(v);
         vertex.floor = 0;
-        vertex.target = NOBODY;
+        vertex.target = NO_VERTEX;
         vertex.bucket = 0;
         self.queue.push(v, 0);
     }
@@ -278,21 +278,21 @@ impl<'v, A: AttributeModel> CollapseLoop<'v, A> {
 
     #[inline(always)]
     fn try_collapse(&mut self, v: u32, front: u16) {
-        let Some(target) = self.target(v) else { return self.look(v, front, None) };
+        let Some(target) = self.target(v) else { return self.requeue(v, front, None) };
         let done = match self.ties {
             Some(_) if self.are_tied([v, target]) => self.collapse_together([v, target], front),
             _ => self.contract(v, target, front),
         };
         match done {
-            Ok(kept) => self.defer(kept, front + REST),
-            Err(Rejection::TooFar(bucket)) => self.defer(v, bucket),
-            Err(Rejection::TooDear(bucket)) => self.look(v, front, Some((target, bucket))),
+            Ok(kept) => self.defer(kept, front + NEW_VERTEX_DELAY),
+            Err(Rejection::Deferred(bucket)) => self.defer(v, bucket),
+            Err(Rejection::CostRose(bucket)) => self.requeue(v, front, Some((target, bucket))),
             Err(Rejection::Refused(refusal, bucket)) => {
                 self.refusals.add(refusal);
                 let vertex = self.vertices.get_mut(v);
                 // It must rise, or the edge would be tried for ever.
                 vertex.floor = bucket.max(front).max(vertex.floor.saturating_add(1));
-                self.look(v, front, None);
+                self.requeue(v, front, None);
             }
         }
     }
@@ -305,7 +305,7 @@ impl<'v, A: AttributeModel> CollapseLoop<'v, A> {
     /// Wakes a vertex whose edges were refused: it may have others now.
     pub(crate) fn wake(&mut self, v: u32, front: u16) {
         let vertex = self.vertices.get_mut(v);
-        if vertex.floor > 0 && !vertex.flags.any(ASIDE) {
+        if vertex.floor > 0 && !vertex.flags.any(INACTIVE) {
             wake(vertex, v, self.queue, front);
         }
     }
@@ -314,11 +314,11 @@ impl<'v, A: AttributeModel> CollapseLoop<'v, A> {
     #[inline(always)]
     fn target(&mut self, v: u32) -> Option<u32> {
         let mut target = self.vertices.get(v).target;
-        if target == NOBODY {
+        if target == NO_VERTEX {
             return None;
         }
         if self.vertices.get(target).flags.any(VertexFlags::DEAD) {
-            target = self.vertices.heir(target);
+            target = self.vertices.live_vertex(target);
             let vertex = self.vertices.get_mut(v);
             vertex.target = target;
             vertex.flags.set(VertexFlags::STALE);
@@ -333,20 +333,20 @@ impl<'v, A: AttributeModel> CollapseLoop<'v, A> {
         let Self { vertices, model, queue, .. } = self;
         let first = vertices.base;
         let mut least = vec![Rank::LAST; vertices.all.len()];
-        let mut tell = |[v, w]: [u32; 2], cost: f32| {
+        let mut report = |[v, w]: [u32; 2], cost: f32| {
             let least = &mut least[(v - first) as usize];
             *least = (*least).min(Rank::new(cost, w));
         };
-        let mut batch = Batch::<{ 4 * MOST }>::new();
+        let mut batch = Batch::<{ 4 * MAX_RING }>::new();
         for v in vertices.ids() {
-            for &w in vertices.neighbours(v).iter().take(MOST) {
+            for &w in vertices.neighbours(v).iter().take(MAX_RING) {
                 batch.push(v, w, w > v && w != GHOST);
             }
-            if !batch.has_room(MOST) {
-                batch.cost_all(vertices, *model, &mut tell);
+            if !batch.has_room(MAX_RING) {
+                batch.cost_all(vertices, *model, &mut report);
             }
         }
-        batch.cost_all(vertices, *model, tell);
+        batch.cost_all(vertices, *model, report);
         for (v, least) in vertices.ids().zip(least) {
             let vertex = vertices.get_mut(v);
             if vertex.len > 0 && !vertex.flags.any(VertexFlags::OUTER) {
@@ -361,10 +361,10 @@ impl<'v, A: AttributeModel> CollapseLoop<'v, A> {
     /// AttributeModel for the cheapest edge of a vertex and queues it, at the front or behind. What has just
     /// been seen of an edge is not doubted: another rounding must not bring it back to the front.
     #[inline(always)]
-    fn look(&mut self, v: u32, front: u16, quadric: Option<(u32, u16)>) {
+    fn requeue(&mut self, v: u32, front: u16, known: Option<(u32, u16)>) {
         self.vertices.refresh(v);
         let Cheapest { mut bucket, target } = cheapest(&self.vertices, self.model, v);
-        if let Some((of, least)) = quadric
+        if let Some((of, least)) = known
             && of == target
         {
             bucket = bucket.max(least);
@@ -381,7 +381,7 @@ impl<'v, A: AttributeModel> CollapseLoop<'v, A> {
     #[inline(always)]
     fn defer(&mut self, v: u32, bucket: u16) {
         let vertex = self.vertices.get_mut(v);
-        vertex.target = NOBODY;
+        vertex.target = NO_VERTEX;
         vertex.bucket = last_bucket().min(bucket);
         self.queue.push(v, vertex.bucket);
     }
@@ -391,20 +391,20 @@ impl<'v, A: AttributeModel> CollapseLoop<'v, A> {
     fn price(&mut self, v: u32, target: u32, front: u16) -> Result<PricedEdge, Rejection> {
         let Self { vertices, model, edge_ring, .. } = self;
         let refused = |refusal| Rejection::Refused(refusal, front);
-        let ends = model.order(vertices, v, target).map_err(refused)?;
+        let ends = model.orient(vertices, v, target).map_err(refused)?;
         let Ends { v0, v1, free, .. } = ends;
         edge_ring.gather(vertices, v0, v1).map_err(refused)?;
         let (end0, end1) = (vertices.get(v0), vertices.get(v1));
-        let swept = A::Metric::swept(edge_ring, end0, end1);
-        let whole = if free { model.whole(&ends, swept) } else { swept };
-        let best = if free { A::Metric::best(&whole) } else { -swept.half };
-        let looked = if free { 0.0 } else { f64::from(model.onto(vertices, &ends)) };
-        let cost = whole.at(best) + looked;
+        let quadric = A::Metric::edge_quadric(edge_ring, end0, end1);
+        let whole = if free { model.with_attributes(&ends, quadric) } else { quadric };
+        let from_middle = if free { A::Metric::optimum(&whole) } else { -quadric.half };
+        let offsets = if free { 0.0 } else { f64::from(model.cost_onto(vertices, &ends)) };
+        let cost = whole.at(from_middle) + offsets;
         if !cost.is_finite() {
             return Err(refused(Refusal::Volume));
         }
         let short =
-            f64::from(A::Metric::SHORT_FIRST) * whole.weight() * swept.half.length_squared();
+            f64::from(A::Metric::SHORT_FIRST) * whole.weight() * quadric.half.length_squared();
         let mut cost = (cost.max(0.0) + short) as f32;
         if VertexFlags(end0.flags.0 | end1.flags.0).any(VertexFlags::PROTECTED) {
             cost *= protection::<A::Metric>();
@@ -412,45 +412,49 @@ impl<'v, A: AttributeModel> CollapseLoop<'v, A> {
         match bucket(cost) {
             NONE => Err(refused(Refusal::Volume)),
             bucket if bucket > front.saturating_add(A::Metric::SLACK) => {
-                Err(Rejection::TooDear(bucket))
+                Err(Rejection::CostRose(bucket))
             }
-            bucket => Ok(PricedEdge { ends, swept, best, bucket }),
+            bucket => Ok(PricedEdge { ends, quadric, from_middle, bucket }),
         }
     }
 
     /// Contracts an edge; gives the vertex that stays.
     #[inline(always)]
     fn contract(&mut self, v: u32, target: u32, front: u16) -> Result<u32, Rejection> {
-        let PricedEdge { ends, swept, best, bucket } = self.price(v, target, front)?;
+        let PricedEdge { ends, quadric, from_middle, bucket } = self.price(v, target, front)?;
         let Ends { v0, v1, free, .. } = ends;
         let Self { vertices, model, edge_ring, deferral, .. } = self;
         let (end0, end1) = (vertices.get(v0), vertices.get(v1));
         let refused = |refusal| Rejection::Refused(refusal, bucket);
-        if free && best.length_squared() > f64::from(edge_ring.reach()) {
+        if free && from_middle.length_squared() > f64::from(edge_ring.reach()) {
             return Err(refused(Refusal::Volume));
         }
         // The place as it will be read back, so that normals are those of the faces as they are.
         let from = end0.place();
-        let place = if free { (from.as_dvec3() + best + swept.half).as_vec3() } else { from };
-        edge_ring.put(place - from).map_err(refused)?;
+        let place =
+            if free { (from.as_dvec3() + from_middle + quadric.half).as_vec3() } else { from };
+        edge_ring.try_place(place - from).map_err(refused)?;
         // A length: attributes have no part in it.
-        let swept_over = swept.at(best).max(0.0) / swept.weight().max(f64::MIN_POSITIVE);
-        let now = edge_ring.apart(place - from).max(swept_over as f32);
+        let mean_square =
+            quadric.at(from_middle).max(0.0) / quadric.weight().max(f64::MIN_POSITIVE);
+        let now = edge_ring.deviation(place - from).max(mean_square as f32);
         let mut moved = now + end0.moved.max(end1.moved);
         if let Some(bucket) = deferral.wait(now, moved, front) {
-            return Err(Rejection::TooFar(bucket));
+            return Err(Rejection::Deferred(bucket));
         }
-        let placed = Collapse { ends, half: swept.half, best, place, by: place - from };
-        let turns = model.look_ahead(vertices, edge_ring, &placed);
-        let later = bucket.saturating_add(TURNED).min(last_bucket());
+        let collapse =
+            Collapse { ends, half: quadric.half, from_middle, place, displacement: place - from };
+        let turns = model.preview(vertices, edge_ring, &collapse);
+        let later = bucket.saturating_add(UV_FLIP_DELAY).min(last_bucket());
         if turns && front < later {
-            return Err(Rejection::TooFar(later));
+            return Err(Rejection::Deferred(later));
         }
         if let Some(within) = &mut self.within {
-            let step = BoundedStep { edge_ring, ends: [v0, v1], from, by: place - from, now };
+            let step =
+                BoundedStep { edge_ring, ends: [v0, v1], from, displacement: place - from, now };
             moved = within.admit(&step, moved).ok_or_else(|| refused(Refusal::Error))?;
         }
-        self.commit(&placed, &swept, moved, front);
+        self.commit(&collapse, &quadric, moved, front);
         Ok(v0)
     }
 
@@ -464,9 +468,9 @@ impl<'v, A: AttributeModel> CollapseLoop<'v, A> {
         front: u16,
     ) {
         let Ends { v0, v1, free, .. } = collapse.ends;
-        let Collapse { place, by, .. } = *collapse;
+        let Collapse { place, displacement, .. } = *collapse;
         self.error = self.error.max(moved.into());
-        let lost = quadric.level - quadric.normal.dot(by.as_dvec3() - quadric.half);
+        let lost = quadric.level - quadric.normal.dot(displacement.as_dvec3() - quadric.half);
         let is_open = self.edge_ring.is_open(&self.vertices, v0);
         self.volume.add(place, lost, is_open, free);
         if let Some(log) = &mut self.log {
@@ -484,28 +488,28 @@ impl<'v, A: AttributeModel> CollapseLoop<'v, A> {
 
     /// Writes a contraction that may be.
     #[inline(always)]
-    fn apply(&mut self, placed: &Collapse, swept: &EdgeQuadricF64, moved: f32, front: u16) {
-        let Ends { v0, v1, .. } = placed.ends;
+    fn apply(&mut self, collapse: &Collapse, quadric: &EdgeQuadricF64, moved: f32, front: u16) {
+        let Ends { v0, v1, .. } = collapse.ends;
         let Self { vertices, model, edge_ring, queue, .. } = self;
         self.live_faces -=
             [0, edge_ring.of_v0].iter().filter(|&&wing| edge_ring.ghost != Some(wing)).count();
-        let constraints = model.contract(vertices, edge_ring, placed);
-        let mut quadric = A::Metric::merge(vertices, edge_ring, swept, placed);
-        quadric.star.add(&constraints);
-        let (first, second) = edge_ring.dying();
+        let constraints = model.apply(vertices, edge_ring, collapse);
+        let mut merged = A::Metric::merged_quadric(vertices, edge_ring, quadric, collapse);
+        merged.star.add(&constraints);
+        let (first, second) = edge_ring.dying_normals();
         let mut last = edge_ring.changes[edge_ring.len - 1];
         for i in 0..edge_ring.len {
             let change = edge_ring.changes[i];
             let id = edge_ring.ids[i];
             if id != GHOST {
                 let vertex = vertices.get_mut(id);
-                A::Metric::renew(vertex, [&last, &change], v0);
+                A::Metric::update_neighbour(vertex, [&last, &change], v0);
                 let mut woken = vertex.floor > 0;
                 if i == 0 || i == edge_ring.of_v0 {
-                    A::Metric::lose(vertex, if i == 0 { first } else { second });
-                    woken |= vertex.lose(v1);
+                    A::Metric::remove_face(vertex, if i == 0 { first } else { second });
+                    woken |= vertex.remove_neighbour(v1);
                 } else if i > edge_ring.of_v0 {
-                    vertex.swap(v1, v0);
+                    vertex.replace_neighbour(v1, v0);
                 }
                 if woken {
                     wake(vertex, id, queue, front);
@@ -519,7 +523,7 @@ impl<'v, A: AttributeModel> CollapseLoop<'v, A> {
         let protected = gone.flags.0 & VertexFlags::PROTECTED.0;
         vertices.set_ring_of(v0, &edge_ring.ids, edge_ring.len);
         let kept = vertices.get_mut(v0);
-        kept.put(placed.place, quadric);
+        kept.put(collapse.place, merged);
         kept.moved = moved;
         kept.flags.set(VertexFlags(protected));
         kept.floor = 0;
@@ -540,7 +544,7 @@ impl<A: AttributeModel> SimdTask for CostAll<'_, '_, A> {
 
 /// Contractions, see [`CollapseLoop::run`].
 struct ContractAll<'e, 'v, A> {
-    engine: &'e mut CollapseLoop<'v, A>,
+    collapse_loop: &'e mut CollapseLoop<'v, A>,
     faces: usize,
     last: u16,
 }
@@ -550,19 +554,19 @@ impl<A: AttributeModel> SimdTask for ContractAll<'_, '_, A> {
 
     #[inline(always)]
     fn work(self) {
-        self.engine.contract_all(self.faces, self.last);
+        self.collapse_loop.contract_all(self.faces, self.last);
     }
 }
 
 /// Vertices that do not wait for anything.
-const ASIDE: VertexFlags = VertexFlags(VertexFlags::DEAD.0 | VertexFlags::SHUT.0);
+const INACTIVE: VertexFlags = VertexFlags(VertexFlags::DEAD.0 | VertexFlags::SHUT.0);
 
 /// A vertex whose edges were refused may have others now.
 #[cold]
 fn wake(vertex: &mut Vertex, id: u32, queue: &mut BucketQueue, front: u16) {
     vertex.floor = 0;
     if vertex.bucket == NONE {
-        vertex.target = NOBODY;
+        vertex.target = NO_VERTEX;
         vertex.bucket = front;
         queue.push(id, front);
     }

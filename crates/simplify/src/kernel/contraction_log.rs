@@ -56,7 +56,7 @@ impl InputNames<'_> {
     /// The position of a vertex of the input at a place.
     #[inline]
     pub(crate) fn position(&self, input: VertexId, place: Vec3) -> [f64; 3] {
-        self.frame.leave_from(self.mesh.positions[input.index()], place)
+        self.frame.to_model_or_input(self.mesh.positions[input.index()], place)
     }
 }
 

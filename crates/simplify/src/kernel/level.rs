@@ -15,12 +15,12 @@ pub(crate) fn level(
     split: Option<&[[u32; 3]]>,
 ) -> Mesh {
     let InputNames { mesh, order, store, .. } = names;
-    let heirs = store.heirs();
+    let live = store.live_vertices();
     let of_input = |i: usize| match split {
         Some(split) => split[i],
         None => order.face(&mesh.faces[i]),
     };
-    let faces = live(mesh.faces.len(), of_input, &heirs);
+    let faces = live_faces(mesh.faces.len(), of_input, &live);
     let mut ids = vec![u32::MAX; mesh.positions.len()];
     let mut level = Mesh::default();
     for (_, corners) in &faces {
@@ -49,8 +49,8 @@ pub(crate) fn workspace(
     split: Option<&[[u32; 3]]>,
 ) -> Mesh {
     let InputNames { mesh, order, store, .. } = names;
-    let heirs = store.heirs();
-    let now = |v: u32| names.input(heirs[v as usize]);
+    let live = store.live_vertices();
+    let now = |v: u32| names.input(live[v as usize]);
     let now = |[a, b, c]: [u32; 3]| [now(a), now(b), now(c)];
     let place = |v: VertexId| names.position(v, store.all[order.id(v) as usize].place());
     let faces = numbers(mesh, order, split);
@@ -64,12 +64,12 @@ pub(crate) fn workspace(
 }
 
 /// The faces whose corners are still three, by what the corners have become.
-fn live(
+fn live_faces(
     count: usize,
     face: impl Fn(usize) -> [u32; 3] + Sync,
-    heirs: &[u32],
+    live: &[u32],
 ) -> Vec<(u32, [u32; 3])> {
-    let heir = |v: u32| heirs[v as usize];
+    let heir = |v: u32| live[v as usize];
     let now = |i: usize| {
         let [a, b, c] = face(i);
         (i as u32, [heir(a), heir(b), heir(c)])

@@ -2,7 +2,7 @@
 //!
 //! It answers to the same rules as the general engine, which is its oracle, by other means: rings
 //! instead of stars of faces, one queue entry a vertex instead of one an edge, floats, and costs from
-//! nine numbers a vertex, or ten. docs/notes/fast-simplify.md tells why each of these.
+//! nine numbers a vertex, or ten. docs/notes/kernel.md tells why each of these.
 
 // Lanes go by their number, in one row as in the next.
 #![allow(clippy::needless_range_loop)]

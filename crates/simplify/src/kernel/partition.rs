@@ -70,7 +70,7 @@ impl Whole {
 pub(crate) struct Partition<A> {
     pub(crate) store: VertexStore,
     /// What each part looks like.
-    pub(crate) model: Vec<A>,
+    pub(crate) models: Vec<A>,
     pub(crate) live_faces: usize,
     /// The square of the greatest estimate so far, in the frame's units.
     pub(crate) error: f64,
@@ -108,10 +108,10 @@ impl<A: AttributeModel> Partition<A> {
             count *= JOINED;
         }
         let long = std::mem::take(&mut store.long);
-        let mut parts = Self {
+        let mut partition = Self {
             parts: cut(&store, count),
             store,
-            model: model.side_by_side(count),
+            models: model.for_parts(count),
             live_faces,
             error: 0.0,
             refusals: Refusals::default(),
@@ -119,20 +119,20 @@ impl<A: AttributeModel> Partition<A> {
             whole: Whole::default(),
             log: None,
         };
-        parts.hand_out(long);
-        parts.cost_all_vertices();
-        parts
+        partition.hand_out(long);
+        partition.cost_all_vertices();
+        partition
     }
 
     /// AttributeModel at all vertices for the first time, but for those that wait.
     fn cost_all_vertices(&mut self) {
-        self.engines().into_par_iter().for_each(|(mut engine, waiting)| {
-            let vertices = &mut engine.vertices;
+        self.loops().into_par_iter().for_each(|(mut collapse_loop, waiting)| {
+            let vertices = &mut collapse_loop.vertices;
             waiting.extend(vertices.ids().filter(|&v| has_far_neighbours(vertices, v)));
             for &v in &*waiting {
                 vertices.get_mut(v).flags.set(VertexFlags::OUTER);
             }
-            engine.cost_all_vertices();
+            collapse_loop.cost_all_vertices();
         });
     }
 
@@ -150,24 +150,24 @@ impl<A: AttributeModel> Partition<A> {
             if self.live_faces <= faces || self.parts.len() == 1 {
                 return;
             }
-            self.join();
+            self.merge_parts();
         }
     }
 
     /// The bucket of what comes next where there is one part.
     pub(crate) fn next_bucket(&mut self) -> Option<u16> {
-        self.engines().iter_mut().filter_map(|(engine, _)| engine.next_bucket()).min()
+        self.loops().iter_mut().filter_map(|(collapse_loop, _)| collapse_loop.next_bucket()).min()
     }
 
     /// Lets all edges try again that were refused.
     pub(crate) fn wake_all(&mut self) {
-        self.engines().into_par_iter().for_each(|(mut engine, _)| engine.wake_all());
+        self.loops().into_par_iter().for_each(|(mut collapse_loop, _)| collapse_loop.wake_all());
     }
 
     /// All parts become one.
     pub(crate) fn unite(&mut self) {
         while self.parts.len() > 1 {
-            self.join();
+            self.merge_parts();
         }
     }
 
@@ -183,37 +183,42 @@ impl<A: AttributeModel> Partition<A> {
         let stop = (faces + LEFT_OVER * waiting).max(FACES_A_WAITING * waiting);
         let mut live = self.live_faces;
         let mut log = self.log.take();
-        let mut engines: Vec<CollapseLoop<'_, A>> =
-            self.engines().into_iter().map(|(engine, _)| engine).collect();
+        let mut loops: Vec<CollapseLoop<'_, A>> =
+            self.loops().into_iter().map(|(collapse_loop, _)| collapse_loop).collect();
         if let Some(bound) = bound {
-            let lengths: Vec<usize> = engines.iter().map(|e| e.vertices.all.len()).collect();
+            let lengths: Vec<usize> = loops.iter().map(|e| e.vertices.all.len()).collect();
             let all = bound.split(&lengths);
-            engines.iter_mut().zip(all).for_each(|(engine, part)| engine.within = Some(part));
+            loops
+                .iter_mut()
+                .zip(all)
+                .for_each(|(collapse_loop, part)| collapse_loop.within = Some(part));
         }
         while live > stop {
-            let Some(step) = CostStep::new(&engines, live - stop, last) else { break };
+            let Some(step) = CostStep::new(&loops, live - stop, last) else { break };
             let before = live;
             if let Some(log) = &mut log {
-                engines.iter_mut().for_each(|engine| engine.log = Some(Vec::new()));
-                live = step.run(&mut engines, live, stop);
-                log.extend(merge(engines.iter_mut().filter_map(|engine| engine.log.take())));
+                loops.iter_mut().for_each(|collapse_loop| collapse_loop.log = Some(Vec::new()));
+                live = step.run(&mut loops, live, stop);
+                log.extend(merge(
+                    loops.iter_mut().filter_map(|collapse_loop| collapse_loop.log.take()),
+                ));
             } else {
-                live = step.run(&mut engines, live, stop);
+                live = step.run(&mut loops, live, stop);
             }
             gone(before - live);
         }
-        let done: Vec<_> = engines.iter().map(|e| (e.error, e.refusals, e.volume)).collect();
+        let done: Vec<_> = loops.iter().map(|e| (e.error, e.refusals, e.volume)).collect();
         for (error, refusals, volume) in done {
             self.error = self.error.max(error);
             self.refusals += refusals;
-            self.volume.join(&volume);
+            self.volume.merge(&volume);
         }
         self.live_faces = live;
         self.log = log;
     }
 
     /// A few parts at a time become one; vertices that need not wait any more are queued.
-    fn join(&mut self) {
+    fn merge_parts(&mut self) {
         let mut parts = std::mem::take(&mut self.parts);
         self.parts = cut(&self.store, parts.len() / JOINED);
         let mut lists = Vec::new();
@@ -221,43 +226,43 @@ impl<A: AttributeModel> Partition<A> {
             for part in &mut *parts {
                 joined.queue.append(std::mem::take(&mut part.queue));
                 joined.waiting.append(&mut part.waiting);
-                joined.deferral.join(&part.deferral);
+                joined.deferral.merge(&part.deferral);
             }
             lists.push(parts.iter_mut().map(|part| std::mem::take(&mut part.long)).collect());
         }
-        let work = self.engines().into_par_iter().zip(lists);
-        work.for_each(|((mut engine, waiting), lists): (_, Vec<_>)| {
-            lists.into_iter().for_each(|lists| engine.vertices.adopt(lists));
+        let work = self.loops().into_par_iter().zip(lists);
+        work.for_each(|((mut collapse_loop, waiting), lists): (_, Vec<_>)| {
+            lists.into_iter().for_each(|lists| collapse_loop.vertices.adopt(lists));
             let all = std::mem::take(waiting);
             for v in all {
-                if has_far_neighbours(&engine.vertices, v) {
+                if has_far_neighbours(&collapse_loop.vertices, v) {
                     waiting.push(v);
                 } else {
-                    engine.release(v);
+                    collapse_loop.release(v);
                 }
             }
         });
     }
 
     /// An engine for each part, and its vertices that wait.
-    fn engines(&mut self) -> Vec<(CollapseLoop<'_, A>, &mut Vec<u32>)> {
+    fn loops(&mut self) -> Vec<(CollapseLoop<'_, A>, &mut Vec<u32>)> {
         let first_copy = self.store.own() as u32;
         let VertexStore { all, copied, split, .. } = &mut self.store;
         let mut rest = &mut all[..];
-        let mut engines = Vec::with_capacity(self.parts.len());
-        for (part, model) in self.parts.iter_mut().zip(&mut self.model) {
+        let mut loops = Vec::with_capacity(self.parts.len());
+        for (part, model) in self.parts.iter_mut().zip(&mut self.models) {
             let PartState { vertices, queue, long, edge_ring, deferral, waiting } = part;
             let (all, others) = rest.split_at_mut(vertices.len());
             rest = others;
             let base = vertices.start as u32;
             let vertices = Vertices { all, base, long, copied, split, first_copy };
-            engines.push((CollapseLoop::new(vertices, model, queue, edge_ring, deferral), waiting));
+            loops.push((CollapseLoop::new(vertices, model, queue, edge_ring, deferral), waiting));
         }
-        if let [(engine, _)] = &mut engines[..] {
-            engine.ties = self.whole.ties.as_mut();
-            engine.components = self.whole.components.as_mut();
+        if let [(collapse_loop, _)] = &mut loops[..] {
+            collapse_loop.ties = self.whole.ties.as_mut();
+            collapse_loop.components = self.whole.components.as_mut();
         }
-        engines
+        loops
     }
 
     /// Gives the long rings to the parts that their vertices are in.
@@ -304,17 +309,20 @@ impl CostStep {
     /// The next step up to the bucket `last`, in which no more than `excess` faces go; `None` where no
     /// part has anything to do.
     fn new<A: AttributeModel>(
-        engines: &[CollapseLoop<'_, A>],
+        loops: &[CollapseLoop<'_, A>],
         excess: usize,
         last: u16,
     ) -> Option<Self> {
-        if let [engine] = engines {
-            let is_idle = engine.lowest_bucket() > usize::from(last.min(last_bucket()));
+        if let [collapse_loop] = loops {
+            let is_idle = collapse_loop.lowest_bucket() > usize::from(last.min(last_bucket()));
             return (!is_idle).then(|| Self { last, shares: Vec::new() });
         }
         let mut entries = vec![0; usize::from(last.min(last_bucket())) + 1];
-        for engine in engines {
-            entries.iter_mut().zip(engine.queue.lengths()).for_each(|(sum, more)| *sum += more);
+        for collapse_loop in loops {
+            entries
+                .iter_mut()
+                .zip(collapse_loop.queue.lengths())
+                .for_each(|(sum, more)| *sum += more);
         }
         let (mut total, mut until) = (0, None);
         for (bucket, &more) in entries.iter().enumerate().filter(|(_, more)| **more > 0) {
@@ -324,30 +332,38 @@ impl CostStep {
             }
         }
         let until = until?;
-        let own =
-            |engine: &CollapseLoop<'_, A>| engine.queue.lengths().take(until + 1).sum::<usize>();
-        let share = |engine| (excess as u64 * own(engine) as u64 / total as u64) as usize;
-        let shares = engines.iter().map(share).collect();
+        let own = |collapse_loop: &CollapseLoop<'_, A>| {
+            collapse_loop.queue.lengths().take(until + 1).sum::<usize>()
+        };
+        let share =
+            |collapse_loop| (excess as u64 * own(collapse_loop) as u64 / total as u64) as usize;
+        let shares = loops.iter().map(share).collect();
         Some(Self { last: until as u16, shares })
     }
 
     /// Goes so far from `live` faces, but not below `stop`; gives what is left.
     fn run<A: AttributeModel>(
         &self,
-        engines: &mut [CollapseLoop<'_, A>],
+        loops: &mut [CollapseLoop<'_, A>],
         live: usize,
         stop: usize,
     ) -> usize {
-        if let [engine] = engines {
-            return run(engine, live, stop.max(live.saturating_sub(FACES_A_CALL)), self.last);
+        if let [collapse_loop] = loops {
+            return run(
+                collapse_loop,
+                live,
+                stop.max(live.saturating_sub(FACES_A_CALL)),
+                self.last,
+            );
         }
-        if live - stop <= engines.len() * FEW {
-            let engines = engines.iter_mut();
-            return engines.fold(live, |live, engine| run(engine, live, stop, self.last));
+        if live - stop <= loops.len() * FEW {
+            let loops = loops.iter_mut();
+            return loops
+                .fold(live, |live, collapse_loop| run(collapse_loop, live, stop, self.last));
         }
-        let gone = engines.par_iter_mut().zip(&self.shares).map(|(engine, share)| {
+        let gone = loops.par_iter_mut().zip(&self.shares).map(|(collapse_loop, share)| {
             // The last contraction may take one face more.
-            live - run(engine, live, live - share.saturating_sub(1), self.last)
+            live - run(collapse_loop, live, live - share.saturating_sub(1), self.last)
         });
         live - gone.sum::<usize>()
     }
@@ -355,14 +371,14 @@ impl CostStep {
 
 /// Lets one part go from `live` to `stop` faces of all; gives how many are left.
 fn run<A: AttributeModel>(
-    engine: &mut CollapseLoop<'_, A>,
+    collapse_loop: &mut CollapseLoop<'_, A>,
     live: usize,
     stop: usize,
     last: u16,
 ) -> usize {
-    engine.live_faces = live;
-    engine.run(stop, last);
-    engine.live_faces
+    collapse_loop.live_faces = live;
+    collapse_loop.run(stop, last);
+    collapse_loop.live_faces
 }
 
 #[cfg(test)]
@@ -383,7 +399,7 @@ mod tests {
     struct Test {
         mesh: Mesh,
         order: Order,
-        parts: Partition<NoAttributes<SweptVolume>>,
+        partition: Partition<NoAttributes<SweptVolume>>,
     }
 
     impl Test {
@@ -394,29 +410,30 @@ mod tests {
             let (count, weight) = (mesh.faces.len(), SweptVolume::BOUNDARY_WEIGHT);
             let fans = Fans::new::<SweptVolume>((&places, Vec::new()), count, face, weight);
             assert!(fans.irregular.is_empty());
-            let parts =
+            let partition =
                 Partition::of_at_most(part, fans.store, NoAttributes(SweptVolume), fans.faces);
-            Self { mesh, order, parts }
+            Self { mesh, order, partition }
         }
 
         /// The faces that are left, by what rings say and by what has become of the input's.
         fn check(&mut self) {
-            let heirs = self.parts.store.heirs();
-            let face = |face: &[VertexId; 3]| self.order.face(face).map(|v| heirs[v as usize]);
+            let live_vertices = self.partition.store.live_vertices();
+            let face =
+                |face: &[VertexId; 3]| self.order.face(face).map(|v| live_vertices[v as usize]);
             let faces = self.mesh.faces.iter().map(face);
             let mut left = faces.filter(|[a, b, c]| a != b && b != c && c != a).collect::<Vec<_>>();
-            assert_eq!(left.len(), self.parts.live_faces);
+            assert_eq!(left.len(), self.partition.live_faces);
             left.iter_mut().for_each(|face| {
                 let least = (0..3).min_by_key(|&i| face[i]).unwrap();
                 face.rotate_left(least);
             });
             left.sort_unstable();
             let mut ringed = Vec::new();
-            for (mut engine, _) in self.parts.engines() {
-                for v in engine.vertices.ids() {
-                    engine.vertices.refresh(v);
-                    let ring = engine.vertices.neighbours(v);
-                    if heirs[v as usize] != v {
+            for (mut collapse_loop, _) in self.partition.loops() {
+                for v in collapse_loop.vertices.ids() {
+                    collapse_loop.vertices.refresh(v);
+                    let ring = collapse_loop.vertices.neighbours(v);
+                    if live_vertices[v as usize] != v {
                         continue;
                     }
                     for i in 0..ring.len() {
@@ -448,19 +465,19 @@ mod tests {
         for mesh in meshes() {
             let faces = mesh.faces.len();
             let mut test = Test::new(mesh, 100);
-            assert!(test.parts.parts.len() > 4);
+            assert!(test.partition.parts.len() > 4);
             test.check();
             loop {
-                test.parts.round(faces / 20, NONE, None, &mut |_| ());
+                test.partition.round(faces / 20, NONE, None, &mut |_| ());
                 test.check();
-                if test.parts.parts.len() == 1 {
+                if test.partition.parts.len() == 1 {
                     break;
                 }
-                test.parts.join();
+                test.partition.merge_parts();
                 test.check();
             }
-            assert!(test.parts.live_faces.abs_diff(faces / 20) <= 1);
-            assert!(test.parts.store.all.iter().all(|v| !v.flags.any(VertexFlags::OUTER)));
+            assert!(test.partition.live_faces.abs_diff(faces / 20) <= 1);
+            assert!(test.partition.store.all.iter().all(|v| !v.flags.any(VertexFlags::OUTER)));
         }
     }
 
@@ -470,8 +487,9 @@ mod tests {
             let faces = mesh.faces.len() / 10;
             let [one, several] = [usize::MAX, 300].map(|part| {
                 let mut test = Test::new(mesh.clone(), part);
-                test.parts.run(faces, NONE, None, &mut |_| ());
-                let used = test.parts.store.all.iter().filter(|v| !v.flags.any(VertexFlags::DEAD));
+                test.partition.run(faces, NONE, None, &mut |_| ());
+                let used =
+                    test.partition.store.all.iter().filter(|v| !v.flags.any(VertexFlags::DEAD));
                 used.map(|v| f64::from(v.moved).sqrt()).sum::<f64>()
             });
             assert!(several < 1.05 * one, "{several} {one}");
@@ -481,15 +499,15 @@ mod tests {
     #[test]
     fn levels_on_the_way_have_few_vertices_that_wait() {
         let mut test = Test::new(samples::sphere(160_000), 20_000);
-        let all = &test.parts.store.all;
+        let all = &test.partition.store.all;
         let mut untouched: Vec<bool> =
             all.iter().map(|v| v.flags.any(VertexFlags::OUTER)).collect();
         let mut fine = untouched.iter().filter(|&&is| is).count();
         let mut live = all.len();
-        test.parts.log = Some(Vec::new());
-        test.parts.run(100, NONE, None, &mut |_| ());
-        assert!(fine > 500 && test.parts.live_faces <= 100);
-        for done in test.parts.log.unwrap() {
+        test.partition.log = Some(Vec::new());
+        test.partition.run(100, NONE, None, &mut |_| ());
+        assert!(fine > 500 && test.partition.live_faces <= 100);
+        for done in test.partition.log.unwrap() {
             live -= 1;
             let Logged::Contraction(done) = done else { continue };
             for v in [done.kept, done.gone] {
@@ -503,9 +521,12 @@ mod tests {
     fn a_target_in_the_midst_of_a_round_is_met_and_gone_on_from() {
         let mut test = Test::new(samples::sphere(4000), 200);
         for faces in [3901, 3900, 3300, 2000, 1999, 500, 50] {
-            test.parts.run(faces, NONE, None, &mut |_| ());
+            test.partition.run(faces, NONE, None, &mut |_| ());
             test.check();
-            assert!(test.parts.live_faces.abs_diff(faces) <= 1 && test.parts.live_faces <= faces);
+            assert!(
+                test.partition.live_faces.abs_diff(faces) <= 1
+                    && test.partition.live_faces <= faces
+            );
         }
     }
 }

@@ -26,10 +26,10 @@ use meshlod_mesh::{Bounds, Lock, Mesh, VertexId};
 use crate::clean;
 
 /// As many channels of attributes count at most; the rest of them only moves along.
-const MOST_CHANNELS: usize = 8;
+const MAX_CHANNELS: usize = 8;
 
 /// No boundary counts for more: floats would run out, and nothing changes any more.
-const MOST_BOUNDARY_WEIGHT: f64 = 1e9;
+const MAX_BOUNDARY_WEIGHT: f64 = 1e9;
 
 /// A mesh about to be simplified.
 pub(crate) struct Prepared<'m, M> {
@@ -201,8 +201,8 @@ impl<'m, M: Metric + 'm> Prepared<'m, M> {
 
     fn run<A: AttributeModel + 'm>(self, model: A) -> Box<dyn Run + 'm> {
         let Self { mesh, frame, order, fans, faces, whole, .. } = self;
-        let parts = Partition::new(fans.store, model, fans.faces, whole);
-        Box::new(KernelRun::new(KernelInput { mesh, frame, order, faces }, parts))
+        let partition = Partition::new(fans.store, model, fans.faces, whole);
+        Box::new(KernelRun::new(KernelInput { mesh, frame, order, faces }, partition))
     }
 }
 
@@ -214,13 +214,13 @@ impl<'m, M: Metric + 'm> Prepared<'m, M> {
             let metric = self.metric;
             return self.run(NoAttributes(metric));
         };
-        let layers = AttributeLayers::new(self.mesh, &self.frame, weights, MOST_CHANNELS);
+        let layers = AttributeLayers::new(self.mesh, &self.frame, weights, MAX_CHANNELS);
         match layers.channels() {
             // Code for fewer channels is only worth its size where the costs are the default's.
             0..=2 if M::IS_MEMORYLESS => self.with_attributes::<2>(layers, corners),
             3 if M::IS_MEMORYLESS => self.with_attributes::<3>(layers, corners),
             0..=5 => self.with_attributes::<5>(layers, corners),
-            _ => self.with_attributes::<MOST_CHANNELS>(layers, corners),
+            _ => self.with_attributes::<MAX_CHANNELS>(layers, corners),
         }
     }
 
@@ -237,5 +237,5 @@ impl<'m, M: Metric + 'm> Prepared<'m, M> {
 }
 
 fn boundary_weight(asked: f64) -> f32 {
-    asked.min(MOST_BOUNDARY_WEIGHT) as f32
+    asked.min(MAX_BOUNDARY_WEIGHT) as f32
 }

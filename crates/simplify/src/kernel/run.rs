@@ -17,7 +17,7 @@ use crate::kernel::mesh::local_frame::Frame;
 use crate::kernel::mesh::one_ring::VertexStore;
 use crate::kernel::metric::Metric;
 use crate::kernel::partition::Partition;
-use crate::kernel::schedule::bucket_queue::{NONE, bucket, least_of};
+use crate::kernel::schedule::bucket_queue::{NONE, bucket, min_cost_in};
 use crate::kernel::setup::vertex_order::{Order, numbers};
 use crate::refusal::Refusal;
 use crate::surface::Surface;
@@ -34,29 +34,29 @@ pub(crate) struct KernelInput<'m> {
 /// A mesh at work.
 pub(crate) struct KernelRun<'m, A> {
     source: KernelInput<'m>,
-    parts: Partition<A>,
+    partition: Partition<A>,
     /// The narrowest bound of the error that has refused an edge since all were awake.
     refused_above: f64,
     /// The input, if a bound of the error has been asked for.
-    original: OnceCell<InputSurface>,
+    input: OnceCell<InputSurface>,
     /// As it is now, if anybody has looked since it last changed unseen.
     surface: OnceCell<Surface>,
 }
 
 impl<'m, A: AttributeModel> KernelRun<'m, A> {
-    pub(crate) fn new(source: KernelInput<'m>, parts: Partition<A>) -> Self {
+    pub(crate) fn new(source: KernelInput<'m>, partition: Partition<A>) -> Self {
         let (refused_above, surface) = (f64::INFINITY, OnceCell::new());
-        Self { source, parts, refused_above, original: OnceCell::new(), surface }
+        Self { source, partition, refused_above, input: OnceCell::new(), surface }
     }
 
     fn names(&self) -> InputNames<'_> {
         let KernelInput { mesh, frame, order, .. } = &self.source;
-        InputNames { mesh, frame, order, store: &self.parts.store }
+        InputNames { mesh, frame, order, store: &self.partition.store }
     }
 
     /// The components that have vanished.
     fn vanished(&self) -> &[Component] {
-        self.parts.whole.components.as_ref().map_or(&[], |all| &all.vanished)
+        self.partition.whole.components.as_ref().map_or(&[], |all| &all.vanished)
     }
 
     /// What the engine's costs are multiplied by in model units.
@@ -68,7 +68,7 @@ impl<'m, A: AttributeModel> KernelRun<'m, A> {
     /// in it, so that what [`Run::next_cost`] tells is always enough to go on.
     fn last_bucket(&self, cost: f64) -> u16 {
         let unit = self.cost_unit();
-        let costs_at_most = |bucket: u16| f64::from(least_of(bucket)) * unit <= cost;
+        let costs_at_most = |bucket: u16| f64::from(min_cost_in(bucket)) * unit <= cost;
         // The division may have rounded either way.
         let about = bucket((cost / unit) as f32);
         let near = [about.saturating_add(1), about, about.saturating_sub(1)];
@@ -82,7 +82,7 @@ impl<'m, A: AttributeModel> KernelRun<'m, A> {
     fn try_again_within(&mut self, error: f64) {
         if error > self.refused_above {
             self.refused_above = f64::INFINITY;
-            self.parts.wake_all();
+            self.partition.wake_all();
         }
     }
 
@@ -91,27 +91,27 @@ impl<'m, A: AttributeModel> KernelRun<'m, A> {
         let is_shown = observer.needs_surface();
         if is_shown {
             self.surface();
-            self.parts.log = Some(Vec::new());
+            self.partition.log = Some(Vec::new());
         }
         self.try_again_within(stop.error);
         let last = self.last_bucket(stop.cost);
-        let refused = |parts: &Partition<A>| parts.refusals.count(Refusal::Error);
-        let (refused_before, at_first) = (refused(&self.parts), self.parts.live_faces);
-        let Self { source, parts, original, .. } = &mut *self;
+        let refused = |partition: &Partition<A>| partition.refusals.count(Refusal::Error);
+        let (refused_before, at_first) = (refused(&self.partition), self.partition.live_faces);
+        let Self { source, partition, input, .. } = &mut *self;
         let is_bounded = stop.error < f64::INFINITY;
-        let mut bound = is_bounded.then(|| bound(stop.error, source, &parts.store, original));
-        parts.run(faces, last, bound.as_mut(), &mut |gone| observer.gone(gone));
-        if refused(&self.parts) > refused_before {
+        let mut bound = is_bounded.then(|| bound(stop.error, source, &partition.store, input));
+        partition.run(faces, last, bound.as_mut(), &mut |gone| observer.gone(gone));
+        if refused(&self.partition) > refused_before {
             self.refused_above = self.refused_above.min(stop.error);
         }
-        match (self.parts.log.take(), self.surface.take()) {
+        match (self.partition.log.take(), self.surface.take()) {
             (Some(log), Some(mut surface)) => {
-                let values = self.parts.model[0].recorded();
+                let values = self.partition.models[0].recorded();
                 let components = self.vanished();
                 replay((&log, &values), components, self.names(), &mut surface, observer);
                 self.surface = surface.into();
             }
-            (_, surface) if self.parts.live_faces == at_first => {
+            (_, surface) if self.partition.live_faces == at_first => {
                 self.surface = surface.map_or_else(OnceCell::new, OnceCell::from);
             }
             _ => {}
@@ -124,15 +124,15 @@ fn bound<'o>(
     error: f64,
     source: &KernelInput<'_>,
     store: &VertexStore,
-    original: &'o OnceCell<InputSurface>,
+    input: &'o OnceCell<InputSurface>,
 ) -> ErrorBound<'o> {
     let KernelInput { mesh, frame, order, faces } = source;
-    let original = original.get_or_init(|| {
-        let place = |v: u32| frame.enter(mesh.positions[order.input(store.origin(v)) as usize]);
+    let input = input.get_or_init(|| {
+        let place = |v: u32| frame.to_local(mesh.positions[order.input(store.origin(v)) as usize]);
         let places = (0..store.all.len() as u32).map(place).collect();
         InputSurface::new(mesh, *frame, places, numbers(mesh, order, faces.as_deref()))
     });
-    ErrorBound::new((error / frame.unit) as f32, original, store)
+    ErrorBound::new((error / frame.unit) as f32, input, store)
 }
 
 impl<A: AttributeModel> Run for KernelRun<'_, A> {
@@ -141,30 +141,31 @@ impl<A: AttributeModel> Run for KernelRun<'_, A> {
     }
 
     fn step(&mut self, stop: &Stop, observer: &mut dyn Observe) -> bool {
-        self.parts.unite();
-        let before = self.parts.live_faces;
+        self.partition.unite();
+        let before = self.partition.live_faces;
         self.advance(before.saturating_sub(1), stop, observer);
-        self.parts.live_faces < before
+        self.partition.live_faces < before
     }
 
     fn next_cost(&mut self) -> Option<f64> {
         self.try_again_within(f64::INFINITY);
-        self.parts.unite();
-        let bucket = self.parts.next_bucket()?;
-        Some(f64::from(least_of(bucket)) * self.cost_unit())
+        self.partition.unite();
+        let bucket = self.partition.next_bucket()?;
+        Some(f64::from(min_cost_in(bucket)) * self.cost_unit())
     }
 
     fn live_faces(&self) -> usize {
-        self.parts.live_faces
+        self.partition.live_faces
     }
 
     fn level(&self, _: &Mesh) -> Mesh {
-        level(self.names(), &self.parts.model[0], self.source.faces.as_deref())
+        level(self.names(), &self.partition.models[0], self.source.faces.as_deref())
     }
 
     fn surface(&self) -> &Surface {
         self.surface.get_or_init(|| {
-            let mesh = workspace(self.names(), &self.parts.model[0], self.source.faces.as_deref());
+            let mesh =
+                workspace(self.names(), &self.partition.models[0], self.source.faces.as_deref());
             let (connectivity, _) = clean::connect(&mesh);
             Surface::new(&mesh, &connectivity)
         })
@@ -178,9 +179,9 @@ impl<A: AttributeModel> Run for KernelRun<'_, A> {
     fn tally(&self) -> Tally {
         Tally {
             vanished: self.vanished().len(),
-            refusals: self.parts.refusals,
-            error_estimate: self.parts.error.sqrt() * self.source.frame.unit,
-            volume: self.parts.volume.loss(&self.source.frame),
+            refusals: self.partition.refusals,
+            error_estimate: self.partition.error.sqrt() * self.source.frame.unit,
+            volume: self.partition.volume.loss(&self.source.frame),
         }
     }
 }

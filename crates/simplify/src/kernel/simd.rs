@@ -48,15 +48,15 @@ pub(crate) fn transpose(rows: [Vec4; LANES]) -> [Row; 4] {
     let (left, right) = (Mat4::from_cols(a, b, c, d), Mat4::from_cols(e, f, g, h));
     let (left, right) = (left.transpose(), right.transpose());
     [
-        side_by_side(left.x_axis, right.x_axis),
-        side_by_side(left.y_axis, right.y_axis),
-        side_by_side(left.z_axis, right.z_axis),
-        side_by_side(left.w_axis, right.w_axis),
+        concat(left.x_axis, right.x_axis),
+        concat(left.y_axis, right.y_axis),
+        concat(left.z_axis, right.z_axis),
+        concat(left.w_axis, right.w_axis),
     ]
 }
 
 #[inline(always)]
-fn side_by_side(left: Vec4, right: Vec4) -> Row {
+fn concat(left: Vec4, right: Vec4) -> Row {
     let ([a, b, c, d], [e, f, g, h]) = (left.to_array(), right.to_array());
     [a, b, c, d, e, f, g, h]
 }
@@ -81,13 +81,13 @@ pub(crate) fn sum_of(&[a, b, c, d, e, f, g, h]: &Row) -> f32 {
 
 /// The lesser of two; where one is no number, the second.
 #[inline(always)]
-pub(crate) fn least(a: f32, b: f32) -> f32 {
+pub(crate) fn select_min(a: f32, b: f32) -> f32 {
     if a < b { a } else { b }
 }
 
 /// The greater of two; where one is no number, the second.
 #[inline(always)]
-pub(crate) fn most(a: f32, b: f32) -> f32 {
+pub(crate) fn select_max(a: f32, b: f32) -> f32 {
     if a > b { a } else { b }
 }
 
@@ -179,7 +179,7 @@ mod tests {
 
     #[test]
     fn what_is_no_number_gives_way() {
-        assert_eq!((least(f32::NAN, 1.0), most(f32::NAN, 1.0)), (1.0, 1.0));
-        assert_eq!((least(2.0, 1.0), most(2.0, 1.0)), (1.0, 2.0));
+        assert_eq!((select_min(f32::NAN, 1.0), select_max(f32::NAN, 1.0)), (1.0, 1.0));
+        assert_eq!((select_min(2.0, 1.0), select_max(2.0, 1.0)), (1.0, 2.0));
     }
 }

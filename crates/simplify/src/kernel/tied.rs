@@ -7,7 +7,7 @@ use crate::kernel::attributes::AttributeModel;
 use crate::kernel::bound::BoundedStep;
 use crate::kernel::collapse::edge_ring::EdgeRing;
 use crate::kernel::collapse::{Collapse, Ends};
-use crate::kernel::collapse_loop::{CollapseLoop, Rejection, TURNED};
+use crate::kernel::collapse_loop::{CollapseLoop, Rejection, UV_FLIP_DELAY};
 use crate::kernel::mesh::one_ring::{GHOST, Vertices};
 use crate::kernel::mesh::vertex::VertexFlags;
 use crate::kernel::metric::edge_quadric_f64::EdgeQuadricF64;
@@ -54,7 +54,7 @@ struct TiedEdge {
 struct Joint {
     edges: Vec<TiedEdge>,
     /// Where their vertices go, as seen from the middle.
-    best: DVec3,
+    from_middle: DVec3,
     bucket: u16,
 }
 
@@ -71,12 +71,12 @@ impl<A: AttributeModel> CollapseLoop<'_, A> {
     ) -> Result<u32, Rejection> {
         let ends =
             self.ends_together(edge).map_err(|refusal| Rejection::Refused(refusal, front))?;
-        let Joint { mut edges, best, bucket } = self.price_together(&ends, front)?;
+        let Joint { mut edges, from_middle, bucket } = self.price_together(&ends, front)?;
         let refused = |refusal| Rejection::Refused(refusal, bucket);
         let first = &edges[0];
         let from = self.vertices.get(first.ends.v0).place();
         let place = match first.ends.free {
-            true => (from.as_dvec3() + best + first.quadric.half).as_vec3(),
+            true => (from.as_dvec3() + from_middle + first.quadric.half).as_vec3(),
             false => from,
         };
         let mut steps = Vec::with_capacity(edges.len());
@@ -86,19 +86,19 @@ impl<A: AttributeModel> CollapseLoop<'_, A> {
         let now = steps.iter().map(|step| step.1).fold(0.0, f32::max);
         let moved = steps.iter().map(|step| step.2).fold(0.0, f32::max);
         if let Some(bucket) = self.deferral.wait(now, moved, front) {
-            return Err(Rejection::TooFar(bucket));
+            return Err(Rejection::Deferred(bucket));
         }
-        let later = bucket.saturating_add(TURNED).min(last_bucket());
+        let later = bucket.saturating_add(UV_FLIP_DELAY).min(last_bucket());
         for (edge, (collapse, ..)) in edges.iter().zip(&steps) {
-            let turns = self.model.look_ahead(&self.vertices, &edge.ring, collapse);
+            let turns = self.model.preview(&self.vertices, &edge.ring, collapse);
             if turns && front < later {
-                return Err(Rejection::TooFar(later));
+                return Err(Rejection::Deferred(later));
             }
         }
         self.admit_together(&edges, &mut steps).map_err(refused)?;
         for (mut edge, (collapse, _, moved)) in edges.into_iter().zip(steps) {
             std::mem::swap(self.edge_ring, &mut *edge.ring);
-            self.model.look_ahead(&self.vertices, self.edge_ring, &collapse);
+            self.model.preview(&self.vertices, self.edge_ring, &collapse);
             self.commit(&collapse, &edge.quadric, moved, front);
             if let Some(ties) = &mut self.ties {
                 ties.leave(VertexId(collapse.ends.v1));
@@ -121,7 +121,7 @@ impl<A: AttributeModel> CollapseLoop<'_, A> {
             std::iter::once(edge).chain(others.into_iter().map(|edge| edge.map(|v| v.0))).collect();
         let mut all = Vec::with_capacity(edges.len());
         for &[a, b] in &edges {
-            let ends = model.order(vertices, a, b)?;
+            let ends = model.orient(vertices, a, b)?;
             let own = match ends.free {
                 true => Freedom::Free,
                 false => Freedom::At(usize::from(ends.v0 == b)),
@@ -158,10 +158,10 @@ impl<A: AttributeModel> CollapseLoop<'_, A> {
             let [end0, end1] = [ends.v0, ends.v1].map(|v| vertices.get(v));
             flags.set(end0.flags);
             flags.set(end1.flags);
-            let quadric = A::Metric::swept(&ring, end0, end1);
-            let whole = if ends.free { model.whole(&ends, quadric) } else { quadric };
+            let quadric = A::Metric::edge_quadric(&ring, end0, end1);
+            let whole = if ends.free { model.with_attributes(&ends, quadric) } else { quadric };
             if !ends.free {
-                onto += whole.at(-quadric.half) + f64::from(model.onto(vertices, &ends));
+                onto += whole.at(-quadric.half) + f64::from(model.cost_onto(vertices, &ends));
             }
             joint = Some(joint.map_or(whole, |joint| joint.with(&whole)));
             edges.push(TiedEdge { ends, ring, quadric });
@@ -171,8 +171,8 @@ impl<A: AttributeModel> CollapseLoop<'_, A> {
         }
         let Some(joint) = joint else { return Err(refused(Refusal::Tied)) };
         let free = ends[0].free;
-        let best = if free { A::Metric::best(&joint) } else { -joint.half };
-        let cost = if free { joint.at(best) } else { onto };
+        let from_middle = if free { A::Metric::optimum(&joint) } else { -joint.half };
+        let cost = if free { joint.at(from_middle) } else { onto };
         if !cost.is_finite() {
             return Err(refused(Refusal::Volume));
         }
@@ -182,15 +182,16 @@ impl<A: AttributeModel> CollapseLoop<'_, A> {
         if flags.any(VertexFlags::PROTECTED) {
             cost *= protection::<A::Metric>();
         }
-        let reaches = |edge: &TiedEdge| best.length_squared() <= f64::from(edge.ring.reach());
+        let reaches =
+            |edge: &TiedEdge| from_middle.length_squared() <= f64::from(edge.ring.reach());
         match bucket(cost) {
             NONE => Err(refused(Refusal::Volume)),
             _ if free && !edges.iter().all(reaches) => Err(refused(Refusal::Volume)),
             // Costed alone the edge was cheaper, and would be tried again at once.
             bucket if bucket > front.saturating_add(A::Metric::SLACK) => {
-                Err(Rejection::TooFar(bucket))
+                Err(Rejection::Deferred(bucket))
             }
-            bucket => Ok(Joint { edges, best, bucket }),
+            bucket => Ok(Joint { edges, from_middle, bucket }),
         }
     }
 
@@ -203,12 +204,14 @@ impl<A: AttributeModel> CollapseLoop<'_, A> {
     ) -> Result<(Collapse, f32, f32), Refusal> {
         let TiedEdge { ends, ring, quadric } = edge;
         let [end0, end1] = [ends.v0, ends.v1].map(|v| self.vertices.get(v));
-        let by = place - end0.place();
-        ring.put(by)?;
-        let best = by.as_dvec3() - quadric.half;
-        let swept_over = quadric.at(best).max(0.0) / quadric.weight().max(f64::MIN_POSITIVE);
-        let now = ring.apart(by).max(swept_over as f32);
-        let collapse = Collapse { ends: *ends, half: quadric.half, best, place, by };
+        let displacement = place - end0.place();
+        ring.try_place(displacement)?;
+        let from_middle = displacement.as_dvec3() - quadric.half;
+        let mean_square =
+            quadric.at(from_middle).max(0.0) / quadric.weight().max(f64::MIN_POSITIVE);
+        let now = ring.deviation(displacement).max(mean_square as f32);
+        let collapse =
+            Collapse { ends: *ends, half: quadric.half, from_middle, place, displacement };
         Ok((collapse, now, now + end0.moved.max(end1.moved)))
     }
 
@@ -227,7 +230,7 @@ impl<A: AttributeModel> CollapseLoop<'_, A> {
                 edge_ring: &edge.ring,
                 ends: [v0, v1],
                 from,
-                by: collapse.by,
+                displacement: collapse.displacement,
                 now: *now,
             };
             let (way, farthest) = within.judge(&step, *moved).ok_or(Refusal::Error)?;

@@ -19,7 +19,7 @@ impl<A: AttributeModel> CollapseLoop<'_, A> {
             let faces = self.faces_of(&component);
             if faces.len() >= self.live_faces {
                 self.refusals.add(Refusal::LastFaces);
-            } else if self.within.as_ref().is_some_and(|bound| component.size > bound.most()) {
+            } else if self.within.as_ref().is_some_and(|bound| component.size > bound.max_error()) {
                 self.refusals.add(Refusal::Error);
                 self.components.iter_mut().for_each(|all| all.refused.push(component.clone()));
             } else {

@@ -56,18 +56,18 @@ impl VolumeTally {
     }
 
     /// Counts what another part has lost.
-    pub(crate) fn join(&mut self, other: &Self) {
+    pub(crate) fn merge(&mut self, other: &Self) {
         self.sixfold += other.sixfold;
-        self.open.join(&other.open);
-        self.held.join(&other.held);
+        self.open.merge(&other.open);
+        self.held.merge(&other.held);
     }
 
     /// The same in model units.
     pub(crate) fn loss(&self, frame: &Frame) -> VolumeLoss {
         VolumeLoss {
             running_sum: self.sixfold * frame.unit.powi(3) / 6.0,
-            open: self.open.leave(frame),
-            held: self.held.leave(frame),
+            open: self.open.to_model(frame),
+            held: self.held.to_model(frame),
         }
     }
 }
@@ -79,16 +79,16 @@ impl Unchosen {
         (self.min, self.max) = (self.min.min(place), self.max.max(place));
     }
 
-    fn join(&mut self, other: &Self) {
+    fn merge(&mut self, other: &Self) {
         self.contractions += other.contractions;
         (self.min, self.max) = (self.min.min(other.min), self.max.max(other.max));
     }
 
-    fn leave(&self, frame: &Frame) -> Unconserved {
+    fn to_model(&self, frame: &Frame) -> Unconserved {
         let Self { contractions, min, max } = *self;
         let mut bounds = Bounds::EMPTY;
         if contractions > 0 {
-            [min, max].iter().for_each(|&corner| bounds.add(frame.leave(corner)));
+            [min, max].iter().for_each(|&corner| bounds.add(frame.to_model(corner)));
         }
         Unconserved { contractions, bounds }
     }
@@ -111,6 +111,6 @@ mod tests {
         let loss = volume.loss(&frame);
         assert!((loss.running_sum / frame.unit.powi(3) - 2.0).abs() < 1e-12);
         assert_eq!([loss.open.contractions, loss.held.contractions], [1, 1]);
-        assert_eq!(loss.held.bounds.min, frame.leave(Vec3::ONE));
+        assert_eq!(loss.held.bounds.min, frame.to_model(Vec3::ONE));
     }
 }

@@ -32,11 +32,11 @@ impl<const K: usize> AttributeQuadric<K> {
 
     /// A wedge of these values that has no faces yet.
     pub(crate) fn of_values(values: [f32; K]) -> Self {
-        let mut field = Self::EMPTY;
-        for (channel, value) in field.channels.iter_mut().zip(values) {
+        let mut quadric = Self::EMPTY;
+        for (channel, value) in quadric.channels.iter_mut().zip(values) {
             channel.w = value;
         }
-        field
+        quadric
     }
 
     /// One face, its corners at the origin, `a` and `b`, where the channels are `to_a` and `to_b`
@@ -46,19 +46,19 @@ impl<const K: usize> AttributeQuadric<K> {
         let normal = a.cross(b);
         let (weight, per_square) = M::face_weight(normal.length_squared());
         let (along_a, along_b) = (b.cross(normal).extend(0.0), normal.cross(a).extend(0.0));
-        let mut field = Self::EMPTY;
-        for (k, channel) in field.channels.iter_mut().enumerate() {
+        let mut quadric = Self::EMPTY;
+        for (k, channel) in quadric.channels.iter_mut().enumerate() {
             let slope = (along_a * to_a[k] + along_b * to_b[k]) * per_square;
             let [x, y, z, _] = slope.to_array();
-            field.squares[0] += Vec4::new(x, y, z, x) * Vec4::new(x, y, z, y);
-            field.squares[1] += Vec4::new(x, y, 0.0, 0.0) * Vec4::new(z, z, 0.0, 0.0);
+            quadric.squares[0] += Vec4::new(x, y, z, x) * Vec4::new(x, y, z, y);
+            quadric.squares[1] += Vec4::new(x, y, 0.0, 0.0) * Vec4::new(z, z, 0.0, 0.0);
             *channel = slope;
         }
         let scale = 1.0 / (weight + TINY);
-        field.squares[0] *= scale;
-        field.squares[1] *= scale;
-        field.squares[1].z = weight;
-        field
+        quadric.squares[0] *= scale;
+        quadric.squares[1] *= scale;
+        quadric.squares[1].z = weight;
+        quadric
     }
 
     #[inline(always)]
@@ -106,7 +106,7 @@ impl<const K: usize> AttributeQuadric<K> {
     }
 
     /// What it costs if the wedge goes to a place `by` further, and takes these values there.
-    pub(crate) fn onto(&self, by: Vec3, values: &[f32; K]) -> f32 {
+    pub(crate) fn cost_onto(&self, by: Vec3, values: &[f32; K]) -> f32 {
         let by4 = by.extend(0.0);
         let squares = by.as_dvec3().dot(self.matrix() * by.as_dvec3()) as f32;
         let each = self.channels.iter().zip(values).map(|(own, value)| {
@@ -126,36 +126,36 @@ impl<const K: usize> AttributeQuadric<K> {
 /// Adds to what eight edges sweep what the best value of each channel leaves of their squares: seen
 /// from the middle they are x'Sx − 2 q·x + c, and this adds to S, q and c.
 #[inline(always)]
-pub(crate) fn join<'f, const K: usize>(
+pub(crate) fn add_attribute_quadrics<'f, const K: usize>(
     sides: [EdgeSide<u32>; 2],
-    field: impl Fn(u32) -> &'f AttributeQuadric<K>,
+    quadric: impl Fn(u32) -> &'f AttributeQuadric<K>,
     edges: &mut EdgeQuadrics,
 ) {
-    join_all::<K, false>(sides, field, edges, &mut [0.0; LANES]);
+    add_all_channels::<K, false>(sides, quadric, edges, &mut [0.0; LANES]);
 }
 
 /// The same; and adds to `onto` what each second end costs if it goes to the place of the first and takes
 /// its values.
 #[inline(always)]
-pub(crate) fn join_and_onto<'f, const K: usize>(
+pub(crate) fn add_attribute_quadrics_and_onto<'f, const K: usize>(
     sides: [EdgeSide<u32>; 2],
-    field: impl Fn(u32) -> &'f AttributeQuadric<K>,
+    quadric: impl Fn(u32) -> &'f AttributeQuadric<K>,
     edges: &mut EdgeQuadrics,
     onto: &mut Row,
 ) {
-    join_all::<K, true>(sides, field, edges, onto);
+    add_all_channels::<K, true>(sides, quadric, edges, onto);
 }
 
 #[inline(always)]
-fn join_all<'f, const K: usize, const ONTO: bool>(
+fn add_all_channels<'f, const K: usize, const ONTO: bool>(
     sides: [EdgeSide<u32>; 2],
-    field: impl Fn(u32) -> &'f AttributeQuadric<K>,
+    quadric: impl Fn(u32) -> &'f AttributeQuadric<K>,
     edges: &mut EdgeQuadrics,
     onto: &mut Row,
 ) {
-    let [first, second] = sides.map(|side| side.map(&field));
+    let [first, second] = sides.map(|side| side.map(&quadric));
     let squares_of = |side: EdgeSide<&AttributeQuadric<K>>| {
-        let row = |k: usize| side.map(|field| field.squares[k]).rows();
+        let row = |k: usize| side.map(|quadric| quadric.squares[k]).rows();
         let ([xx, yy, zz, xy], [xz, yz, weights, _]) = (row(0), row(1));
         ([xx, yy, zz, xy, xz, yz], weights)
     };
@@ -176,9 +176,9 @@ fn join_all<'f, const K: usize, const ONTO: bool>(
     }
     for k in 0..K {
         let channel =
-            |side: EdgeSide<&AttributeQuadric<K>>| side.map(|field| field.channels[k]).rows();
+            |side: EdgeSide<&AttributeQuadric<K>>| side.map(|quadric| quadric.channels[k]).rows();
         let channels = [channel(first), channel(second)];
-        join_channel(&channels, [&w0, &w1], edges);
+        add_channel(&channels, [&w0, &w1], edges);
         if ONTO {
             channel_onto(&channels, &w1, edges, onto);
         }
@@ -187,7 +187,7 @@ fn join_all<'f, const K: usize, const ONTO: bool>(
 
 /// One channel of it.
 #[inline(always)]
-fn join_channel([c0, c1]: &[[Row; 4]; 2], [w0, w1]: [&Row; 2], edges: &mut EdgeQuadrics) {
+fn add_channel([c0, c1]: &[[Row; 4]; 2], [w0, w1]: [&Row; 2], edges: &mut EdgeQuadrics) {
     for lane in 0..LANES {
         let h = edges.half.get(lane);
         let (b0, b1) = (slope_of(c0, lane), slope_of(c1, lane));
@@ -227,10 +227,13 @@ fn slope_of([x, y, z, _]: &[Row; 4], lane: usize) -> Vec3 {
 
 /// The same for a wedge at one end of an edge that moves without another: `from` is its place as seen from
 /// the middle.
-pub(crate) fn alone<const K: usize>(field: &AttributeQuadric<K>, from: Vec3) -> EdgeQuadric {
-    let share = 1.0 / (field.weight() + TINY);
-    let mut squares = field.squares();
-    for channel in &field.channels {
+pub(crate) fn unpaired_quadric<const K: usize>(
+    quadric: &AttributeQuadric<K>,
+    from: Vec3,
+) -> EdgeQuadric {
+    let share = 1.0 / (quadric.weight() + TINY);
+    let mut squares = quadric.squares();
+    for channel in &quadric.channels {
         let [x, y, z, _] = channel.to_array();
         let [px, py, pz] = [x * share, y * share, z * share];
         let products = [x * px, y * py, z * pz, x * py, x * pz, y * pz];
@@ -244,44 +247,44 @@ pub(crate) fn alone<const K: usize>(field: &AttributeQuadric<K>, from: Vec3) -> 
 }
 
 /// The same for one edge, in doubles, G with it.
-pub(crate) fn join_one<const K: usize>(
-    swept: &mut EdgeQuadricF64,
+pub(crate) fn add_pair_f64<const K: usize>(
+    quadric: &mut EdgeQuadricF64,
     v0: &AttributeQuadric<K>,
     v1: &AttributeQuadric<K>,
 ) {
-    let h = swept.half;
+    let h = quadric.half;
     let (g0, g1) = (v0.matrix(), v1.matrix());
     let [w0, w1] = [v0, v1].map(|v| f64::from(v.weight()));
     let weight = w0 + w1;
-    swept.sum += g0 + g1;
-    swept.slope += (g1 - g0) * h;
-    swept.at_middle += h.dot((g0 + g1) * h);
+    quadric.sum += g0 + g1;
+    quadric.slope += (g1 - g0) * h;
+    quadric.at_middle += h.dot((g0 + g1) * h);
     for (c0, c1) in v0.channels.iter().zip(&v1.channels) {
-        let JoinedChannel { both, less, change, off } = JoinedChannel::new(*c0, *c1, [w0, w1], h);
+        let PairedChannel { both, less, change, off } = PairedChannel::new(*c0, *c1, [w0, w1], h);
         let part = both / (weight + f64::from(TINY));
-        swept.sum -= DMat3::from_cols(both * part.x, both * part.y, both * part.z);
-        swept.slope += less * change + part * off;
-        swept.at_middle += change * (weight * change - 2.0 * both.dot(h));
-        swept.at_middle -= off * off / (weight + f64::from(TINY));
+        quadric.sum -= DMat3::from_cols(both * part.x, both * part.y, both * part.z);
+        quadric.slope += less * change + part * off;
+        quadric.at_middle += change * (weight * change - 2.0 * both.dot(h));
+        quadric.at_middle -= off * off / (weight + f64::from(TINY));
     }
 }
 
 /// The same for a wedge that moves without another, from a place seen from the middle.
-pub(crate) fn join_alone<const K: usize>(
-    swept: &mut EdgeQuadricF64,
-    field: &AttributeQuadric<K>,
+pub(crate) fn add_unpaired_f64<const K: usize>(
+    edge: &mut EdgeQuadricF64,
+    wedge: &AttributeQuadric<K>,
     from: DVec3,
 ) {
-    let share = 1.0 / f64::from(field.weight() + TINY);
-    let mut squares = field.matrix();
-    for channel in &field.channels {
+    let share = 1.0 / f64::from(wedge.weight() + TINY);
+    let mut squares = wedge.matrix();
+    for channel in &wedge.channels {
         let b = channel.truncate().as_dvec3();
         let part = b * share;
         squares -= DMat3::from_cols(b * part.x, b * part.y, b * part.z);
     }
-    swept.sum += squares;
-    swept.slope += squares * from;
-    swept.at_middle += from.dot(squares * from);
+    edge.sum += squares;
+    edge.slope += squares * from;
+    edge.at_middle += from.dot(squares * from);
 }
 
 /// The values that fit best at `x` from the middle of an edge.
@@ -296,7 +299,7 @@ pub(crate) fn best_values<const K: usize>(
     let mut values = [0.0; K];
     for (k, value) in values.iter_mut().enumerate() {
         let (c0, c1) = (v0.channels[k], v1.channels[k]);
-        let JoinedChannel { both, off, .. } = JoinedChannel::new(c0, c1, weights, h);
+        let PairedChannel { both, off, .. } = PairedChannel::new(c0, c1, weights, h);
         let middle = 0.5 * (f64::from(c0.w) + f64::from(c1.w));
         *value = (middle + (both.dot(x) + off) / (weight + f64::from(TINY))) as f32;
     }
@@ -304,7 +307,7 @@ pub(crate) fn best_values<const K: usize>(
 }
 
 /// A channel of two wedges that become one.
-struct JoinedChannel {
+struct PairedChannel {
     both: DVec3,
     less: DVec3,
     /// Half the change along the edge.
@@ -313,7 +316,7 @@ struct JoinedChannel {
     off: f64,
 }
 
-impl JoinedChannel {
+impl PairedChannel {
     #[inline(always)]
     fn new(c0: Vec4, c1: Vec4, [w0, w1]: [f64; 2], h: DVec3) -> Self {
         let (b0, b1) = (c0.truncate().as_dvec3(), c1.truncate().as_dvec3());

@@ -1,6 +1,8 @@
 //! Attributes in the costs and contractions of the kernel.
 
-use crate::kernel::attributes::attribute_quadric::{join, join_alone, join_one};
+use crate::kernel::attributes::attribute_quadric::{
+    add_attribute_quadrics, add_pair_f64, add_unpaired_f64,
+};
 use crate::kernel::attributes::update_at_seams::UpdateAtSeams;
 use crate::kernel::attributes::uv_flips::UvFlipsAtSeams;
 use crate::kernel::attributes::wedge_quadrics::WedgeQuadrics;
@@ -21,72 +23,77 @@ impl<M: Metric, const K: usize> AttributeModel for WedgeQuadrics<'_, M, K> {
 
     const IN_PARTS: bool = false;
 
-    fn side_by_side(self, _: usize) -> Vec<Self> {
+    fn for_parts(self, _: usize) -> Vec<Self> {
         vec![self]
     }
 
     #[inline(always)]
-    fn join(&self, sides: [EdgeSide<u32>; 2], edges: &mut EdgeQuadrics) {
-        join(sides, |slot| self.field(slot), edges);
+    fn add_attribute_quadrics(&self, sides: [EdgeSide<u32>; 2], edges: &mut EdgeQuadrics) {
+        add_attribute_quadrics(sides, |slot| self.quadric(slot), edges);
     }
 
     #[inline(always)]
-    fn order(&self, vertices: &Vertices, v: u32, target: u32) -> Result<Ends, Refusal> {
+    fn orient(&self, vertices: &Vertices, v: u32, target: u32) -> Result<Ends, Refusal> {
         self.ends(vertices, v, target)
     }
 
     #[inline(always)]
-    fn at_seams(&self, vertices: &Vertices, us: EdgeSide<u32>, vs: &[u32; LANES]) -> Option<Costs> {
+    fn seam_costs(
+        &self,
+        vertices: &Vertices,
+        us: EdgeSide<u32>,
+        vs: &[u32; LANES],
+    ) -> Option<Costs> {
         self.costs_at_seams(vertices, us, vs)
     }
 
     #[inline(always)]
-    fn whole(&self, ends: &Ends, mut swept: EdgeQuadricF64) -> EdgeQuadricF64 {
-        for &[s0, s1] in ends.met.pairs() {
-            join_one(&mut swept, self.field(s0), self.field(s1));
+    fn with_attributes(&self, ends: &Ends, mut quadric: EdgeQuadricF64) -> EdgeQuadricF64 {
+        for &[s0, s1] in ends.wedge_pairs.pairs() {
+            add_pair_f64(&mut quadric, self.quadric(s0), self.quadric(s1));
         }
-        let half = swept.half;
+        let half = quadric.half;
         for (end, from) in [(0, -half), (1, half)] {
-            for slot in self.alone(ends, end) {
-                join_alone(&mut swept, self.field(slot), from);
+            for slot in self.unpaired(ends, end) {
+                add_unpaired_f64(&mut quadric, self.quadric(slot), from);
             }
         }
-        swept
+        quadric
     }
 
-    fn onto(&self, vertices: &Vertices, ends: &Ends) -> f32 {
+    fn cost_onto(&self, vertices: &Vertices, ends: &Ends) -> f32 {
         let by = vertices.get(ends.v0).place() - vertices.get(ends.v1).place();
-        let to = |&[s0, s1]: &[u32; 2]| self.field(s1).onto(by, &self.field(s0).values());
-        ends.met.pairs().iter().map(to).sum::<f32>() + self.alone_onto(ends, by)
+        let to = |&[s0, s1]: &[u32; 2]| self.quadric(s1).cost_onto(by, &self.quadric(s0).values());
+        ends.wedge_pairs.pairs().iter().map(to).sum::<f32>() + self.unpaired_onto(ends, by)
     }
 
     #[inline(always)]
-    fn look_ahead(&mut self, vertices: &Vertices, edge_ring: &EdgeRing, placed: &Collapse) -> bool {
-        match self.has_seam(vertices, edge_ring, placed.ends) {
-            true => widest(UvFlipsAtSeams { wedges: self, vertices, edge_ring, placed }),
-            false => self.look_ahead_smooth(edge_ring, placed),
+    fn preview(&mut self, vertices: &Vertices, edge_ring: &EdgeRing, collapse: &Collapse) -> bool {
+        match self.has_seam(vertices, edge_ring, collapse.ends) {
+            true => widest(UvFlipsAtSeams { wedges: self, vertices, edge_ring, collapse }),
+            false => self.preview_smooth(edge_ring, collapse),
         }
     }
 
     #[inline(always)]
-    fn contract(
+    fn apply(
         &mut self,
         vertices: &mut Vertices,
         edge_ring: &EdgeRing,
-        placed: &Collapse,
+        collapse: &Collapse,
     ) -> VertexQuadric {
-        if self.has_seam(vertices, edge_ring, placed.ends) {
-            return widest(UpdateAtSeams { wedges: self, vertices, edge_ring, placed });
+        if self.has_seam(vertices, edge_ring, collapse.ends) {
+            return widest(UpdateAtSeams { wedges: self, vertices, edge_ring, collapse });
         }
-        self.move_rest(edge_ring, placed, None);
-        self.contract_smooth(edge_ring, placed);
+        self.move_uncosted(edge_ring, collapse, None);
+        self.apply_smooth(edge_ring, collapse);
         VertexQuadric::default()
     }
 
     #[inline(always)]
     fn prefetch(&self, v: u32) -> u32 {
-        let field = self.field(v);
-        field.squares[0].x.to_bits() ^ field.channels.last().map_or(0, |last| last.w.to_bits())
+        let quadric = self.quadric(v);
+        quadric.squares[0].x.to_bits() ^ quadric.channels.last().map_or(0, |last| last.w.to_bits())
     }
 
     fn attributes(&self, faces: impl Iterator<Item = (u32, [u32; 3])>) -> Option<Attributes> {

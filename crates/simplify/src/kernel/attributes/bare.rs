@@ -21,40 +21,40 @@ impl<M: Metric> AttributeModel for NoAttributes<M> {
 
     const IN_PARTS: bool = true;
 
-    fn side_by_side(self, parts: usize) -> Vec<Self> {
+    fn for_parts(self, parts: usize) -> Vec<Self> {
         vec![self; parts]
     }
 
     #[inline(always)]
-    fn join(&self, _: [EdgeSide<u32>; 2], _: &mut EdgeQuadrics) {}
+    fn add_attribute_quadrics(&self, _: [EdgeSide<u32>; 2], _: &mut EdgeQuadrics) {}
 
     #[inline(always)]
-    fn at_seams(&self, _: &Vertices, _: EdgeSide<u32>, _: &[u32; LANES]) -> Option<Costs> {
+    fn seam_costs(&self, _: &Vertices, _: EdgeSide<u32>, _: &[u32; LANES]) -> Option<Costs> {
         None
     }
 
     #[inline(always)]
-    fn order(&self, vertices: &Vertices, v: u32, target: u32) -> Result<Ends, Refusal> {
+    fn orient(&self, vertices: &Vertices, v: u32, target: u32) -> Result<Ends, Refusal> {
         by_pins(vertices, v, target)
     }
 
     #[inline(always)]
-    fn whole(&self, _: &Ends, geometry: EdgeQuadricF64) -> EdgeQuadricF64 {
+    fn with_attributes(&self, _: &Ends, geometry: EdgeQuadricF64) -> EdgeQuadricF64 {
         geometry
     }
 
     #[inline(always)]
-    fn onto(&self, _: &Vertices, _: &Ends) -> f32 {
+    fn cost_onto(&self, _: &Vertices, _: &Ends) -> f32 {
         0.0
     }
 
     #[inline(always)]
-    fn look_ahead(&mut self, _: &Vertices, _: &EdgeRing, _: &Collapse) -> bool {
+    fn preview(&mut self, _: &Vertices, _: &EdgeRing, _: &Collapse) -> bool {
         false
     }
 
     #[inline(always)]
-    fn contract(&mut self, _: &mut Vertices, _: &EdgeRing, _: &Collapse) -> VertexQuadric {
+    fn apply(&mut self, _: &mut Vertices, _: &EdgeRing, _: &Collapse) -> VertexQuadric {
         VertexQuadric::default()
     }
 

@@ -1,6 +1,6 @@
 //! The wedges at the corners of faces, as the input has them.
 
-use crate::kernel::mesh::vertex::NOBODY;
+use crate::kernel::mesh::vertex::NO_VERTEX;
 use crate::surface::wedges::labels;
 use meshlod_mesh::{Layer, Mesh, WedgeId};
 use rustc_hash::FxHashMap;
@@ -45,7 +45,7 @@ impl<'m> Corners<'m> {
             own,
             labels: Vec::new(),
             are_given: mesh.attributes.is_some(),
-            first: vec![NOBODY; vertices],
+            first: vec![NO_VERTEX; vertices],
             others: Vec::new(),
         };
         if let Some(labels) = labels {
@@ -82,7 +82,7 @@ impl<'m> Corners<'m> {
         for (face, wedges) in faces.zip(&*self.of_face).filter(|(face, _)| is_face(*face)) {
             for (v, wedge) in face.into_iter().zip(wedges) {
                 let first = &mut self.first[v as usize];
-                if *first == NOBODY {
+                if *first == NO_VERTEX {
                     *first = wedge.0;
                 } else if *first != wedge.0 {
                     self.others.push((v, wedge.0));
@@ -157,7 +157,7 @@ impl<'m> Corners<'m> {
     /// The wedge of the input that one is, or is split from.
     pub(crate) fn source(&self, wedge: u32) -> u32 {
         match (wedge as usize).checked_sub(self.own) {
-            Some(split) if wedge != NOBODY => self.split[split],
+            Some(split) if wedge != NO_VERTEX => self.split[split],
             _ => wedge,
         }
     }

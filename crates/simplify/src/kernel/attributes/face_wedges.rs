@@ -31,8 +31,8 @@ impl FaceWedges {
         edge_ring: &EdgeRing,
         ends: &Ends,
     ) {
-        let Ends { v0, v1, met, .. } = ends;
-        let (v0, v1, [at0, at1]) = (*v0, *v1, met.sides);
+        let Ends { v0, v1, wedge_pairs, .. } = ends;
+        let (v0, v1, [at0, at1]) = (*v0, *v1, wedge_pairs.sides);
         let ends_are_seams = [is_seam(vertices, v0), is_seam(vertices, v1)];
         let Self { spokes, dying, .. } = self;
         spokes.clear();
@@ -71,17 +71,17 @@ impl FaceWedges {
                 dying[1][2] = sides[1].after;
             }
         }
-        self.find_apexes(edge_ring, met);
+        self.find_apexes(edge_ring, wedge_pairs);
     }
 
-    fn find_apexes(&mut self, edge_ring: &EdgeRing, met: &WedgePairs) {
+    fn find_apexes(&mut self, edge_ring: &EdgeRing, wedge_pairs: &WedgePairs) {
         let Self { spokes, apexes, .. } = self;
         apexes.clear();
         apexes.resize(edge_ring.len, 0);
         for (i, apex) in apexes.iter_mut().enumerate() {
             *apex = spokes[i][0];
             if i >= edge_ring.of_v0 {
-                let pair = met.pairs().iter().find(|pair| pair[1] == *apex);
+                let pair = wedge_pairs.pairs().iter().find(|pair| pair[1] == *apex);
                 *apex = pair.map_or(*apex, |pair| pair[0]);
             }
         }

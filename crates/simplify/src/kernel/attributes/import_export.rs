@@ -13,7 +13,7 @@ use crate::kernel::attributes::scratch::Scratch;
 use crate::kernel::attributes::seam_sectors::SeamSectors;
 use crate::kernel::attributes::wedge_quadrics::WedgeQuadrics;
 use crate::kernel::mesh::one_ring::{GHOST, Vertices};
-use crate::kernel::mesh::vertex::{NOBODY, VertexFlags};
+use crate::kernel::mesh::vertex::{NO_VERTEX, VertexFlags};
 
 impl<'m, M: Metric, const K: usize> WedgeQuadrics<'m, M, K> {
     /// The quadrics of a mesh whose rings are made; flags the vertices on seams, and puts the squares of
@@ -27,13 +27,13 @@ impl<'m, M: Metric, const K: usize> WedgeQuadrics<'m, M, K> {
         let wedges: Vec<u32> = corners.wedges().map(|wedge| corners.source(wedge)).collect();
         layers.fill(&wedges);
         let values = |&wedge: &u32| match wedge {
-            NOBODY => AttributeQuadric::EMPTY,
+            NO_VERTEX => AttributeQuadric::EMPTY,
             wedge => AttributeQuadric::of_values(layers.channels_of(wedge)),
         };
         let quadrics: Vec<AttributeQuadric<K>> = wedges.iter().map(values).collect();
         let mut wedges = Self {
             metric: PhantomData,
-            heirs: vec![NOBODY; quadrics.len()],
+            merged_into: vec![NO_VERTEX; quadrics.len()],
             quadrics,
             seams: SeamSectors::default(),
             charts: corners.charts(layers.textures().as_deref()),
@@ -67,7 +67,7 @@ impl<'m, M: Metric, const K: usize> WedgeQuadrics<'m, M, K> {
     fn add_face(&mut self, vertices: &Vertices, [a, b, c]: [u32; 3], slots: [u32; 3]) {
         let place = |v: u32| vertices.get(v).place();
         let from = place(a);
-        let [own, mut to_b, mut to_c] = slots.map(|slot| self.field(slot).values());
+        let [own, mut to_b, mut to_c] = slots.map(|slot| self.quadric(slot).values());
         for (k, own) in own.into_iter().enumerate() {
             to_b[k] -= own;
             to_c[k] -= own;
@@ -89,7 +89,8 @@ impl<'m, M: Metric, const K: usize> WedgeQuadrics<'m, M, K> {
                 found.ok().map(|at| faces[at].2)
             };
             let ring = vertices.neighbours(v);
-            let mut slots: Vec<u32> = ring.iter().map(|&w| begins(w).unwrap_or(NOBODY)).collect();
+            let mut slots: Vec<u32> =
+                ring.iter().map(|&w| begins(w).unwrap_or(NO_VERTEX)).collect();
             // The ghost's faces go with those beside them.
             let count = slots.len();
             if let Some(ghost) = ring.iter().position(|&w| w == GHOST) {
@@ -121,7 +122,7 @@ impl<'m, M: Metric, const K: usize> WedgeQuadrics<'m, M, K> {
 
     /// The attributes of faces, by their numbers and corners in the input; wedges in the input's order.
     pub(crate) fn to_attributes(&self, faces: impl Iterator<Item = (u32, [u32; 3])>) -> Attributes {
-        let live = self.live();
+        let live = self.live_slots();
         let slots = |(i, face): (u32, [u32; 3])| {
             let [a, b, c] = self.corners.slots(i as usize, face);
             [live[a as usize], live[b as usize], live[c as usize]]
@@ -131,7 +132,7 @@ impl<'m, M: Metric, const K: usize> WedgeQuadrics<'m, M, K> {
         let mut used: Vec<u32> = of_faces.as_flattened().to_vec();
         used.sort_unstable_by_key(|&slot| (wedges[slot as usize], slot));
         used.dedup();
-        let mut ids = vec![NOBODY; self.quadrics.len()];
+        let mut ids = vec![NO_VERTEX; self.quadrics.len()];
         let mut left: Vec<SurvivingWedge<K>> = Vec::with_capacity(used.len());
         for slot in used {
             let next = self.left(slot, wedges[slot as usize]);
@@ -150,7 +151,7 @@ impl<'m, M: Metric, const K: usize> WedgeQuadrics<'m, M, K> {
 
     /// The attributes of all faces, wedges as in the input; what is no face has one more.
     pub(crate) fn to_all_attributes(&self, faces: impl Iterator<Item = [u32; 3]>) -> Attributes {
-        let live = self.live();
+        let live = self.live_slots();
         let wedges: Vec<u32> = self.corners.wedges().collect();
         let count = self.corners.own + self.corners.split.len();
         let none = WedgeId::new(count);
@@ -160,8 +161,8 @@ impl<'m, M: Metric, const K: usize> WedgeQuadrics<'m, M, K> {
             if is_face(face) { [corner(a), corner(b), corner(c)] } else { [none; 3] }
         });
         let corners = corners.collect();
-        let mut slots = vec![NOBODY; count + 1];
-        for (slot, &wedge) in wedges.iter().enumerate().filter(|(_, wedge)| **wedge != NOBODY) {
+        let mut slots = vec![NO_VERTEX; count + 1];
+        for (slot, &wedge) in wedges.iter().enumerate().filter(|(_, wedge)| **wedge != NO_VERTEX) {
             slots[wedge as usize] = slot as u32;
         }
         let left = |(wedge, &slot): (usize, &u32)| self.left(slot, wedge as u32);
@@ -172,13 +173,13 @@ impl<'m, M: Metric, const K: usize> WedgeQuadrics<'m, M, K> {
     /// What is in a slot, or the input's values of a wedge that no slot has.
     fn left(&self, slot: u32, own: u32) -> SurvivingWedge<K> {
         let is_wedge = (own as usize) < self.corners.own + self.corners.split.len();
-        let wedge = if is_wedge { self.corners.source(own) } else { NOBODY };
-        if slot == NOBODY {
+        let wedge = if is_wedge { self.corners.source(own) } else { NO_VERTEX };
+        if slot == NO_VERTEX {
             return SurvivingWedge { slot: 0, own, wedge, moved: !is_wedge, channels: [0.0; K] };
         }
         // What no face has used has nothing to keep.
-        let moved = self.heirs[slot as usize] == slot || !is_wedge;
-        SurvivingWedge { slot, own, wedge, moved, channels: self.field(slot).values() }
+        let moved = self.merged_into[slot as usize] == slot || !is_wedge;
+        SurvivingWedge { slot, own, wedge, moved, channels: self.quadric(slot).values() }
     }
 
     /// Takes down what a contraction has made of the wedges of a vertex.
@@ -190,7 +191,7 @@ impl<'m, M: Metric, const K: usize> WedgeQuadrics<'m, M, K> {
         }
         slots.sort_unstable();
         slots.dedup();
-        for slot in slots.into_iter().filter(|&slot| self.heirs[slot as usize] == slot) {
+        for slot in slots.into_iter().filter(|&slot| self.merged_into[slot as usize] == slot) {
             let own = self.corners.wedge(slot);
             let layers = self.layers.layers(&[self.left(slot, own)]);
             let values = layers.into_iter().flat_map(|layer| layer.values).collect();
@@ -199,9 +200,9 @@ impl<'m, M: Metric, const K: usize> WedgeQuadrics<'m, M, K> {
     }
 
     /// The slot that each is or has become part of.
-    fn live(&self) -> Vec<u32> {
-        let of = |(slot, &heir): (u32, &u32)| if heir == NOBODY { slot } else { heir };
-        let mut live: Vec<u32> = (0..).zip(&self.heirs).map(of).collect();
+    fn live_slots(&self) -> Vec<u32> {
+        let of = |(slot, &target): (u32, &u32)| if target == NO_VERTEX { slot } else { target };
+        let mut live: Vec<u32> = (0..).zip(&self.merged_into).map(of).collect();
         for slot in 0..live.len() {
             let mut last = live[slot];
             while live[last as usize] != last {

@@ -12,7 +12,7 @@ use crate::surface::charts::is_shading;
 use crate::surface::interpolate::{Place, interpolate};
 
 /// No attribute counts for more, in the frame's units.
-const MOST_LENGTH: f64 = 1e9;
+const MAX_LENGTH: f64 = 1e9;
 
 /// A layer that counts, or the part of it that does.
 #[derive(Clone, Debug)]
@@ -31,13 +31,13 @@ struct CostedLayer {
 /// The layers of a mesh.
 pub(crate) struct AttributeLayers<'m> {
     layers: &'m [Layer],
-    counted: Vec<CostedLayer>,
+    costed: Vec<CostedLayer>,
     /// What lengths in textures count, as on the surface.
     pub(crate) uv_weight: f32,
     /// Layers that channels do not hold, or not all of, by slot.
-    rest: Vec<Layer>,
+    uncosted: Vec<Layer>,
     /// Which layers they are.
-    rest_of: Vec<usize>,
+    uncosted_of: Vec<usize>,
 }
 
 /// A slot that is left: whose wedge of the input it was, and whether that one's values are still its.
@@ -60,7 +60,7 @@ impl<'m> AttributeLayers<'m> {
         most: usize,
     ) -> Self {
         let layers = mesh.attributes.as_ref().map_or(&[][..], |all| &all.layers);
-        let mut counted: Vec<CostedLayer> = Vec::new();
+        let mut costed: Vec<CostedLayer> = Vec::new();
         let diagonal = mesh.bounds().diagonal();
         for (i, layer) in layers.iter().enumerate() {
             let (width, scale) = match layer.kind {
@@ -70,33 +70,33 @@ impl<'m> AttributeLayers<'m> {
                 _ => continue,
             };
             let scale = scale / frame.unit;
-            let start = counted.last().map_or(0, |last| last.channels.end);
+            let start = costed.last().map_or(0, |last| last.channels.end);
             let fits = layer.width >= width && start + width <= most;
             if fits && scale > 0.0 && scale.is_finite() {
                 let channels = start..start + width;
                 let range = range(layer, width, scale);
                 let is_normal = layer.kind == LayerKind::Normal;
                 let is_uv = width == 2;
-                counted.push(CostedLayer { layer: i, channels, scale, range, is_normal, is_uv });
+                costed.push(CostedLayer { layer: i, channels, scale, range, is_normal, is_uv });
             }
         }
         let uv_weight = weights.uv as f32;
-        Self { layers, counted, uv_weight, rest: Vec::new(), rest_of: Vec::new() }
+        Self { layers, costed, uv_weight, uncosted: Vec::new(), uncosted_of: Vec::new() }
     }
 
     /// How many channels count.
     pub(crate) fn channels(&self) -> usize {
-        self.counted.last().map_or(0, |last| last.channels.end)
+        self.costed.last().map_or(0, |last| last.channels.end)
     }
 
     /// The channels of textures' places: each time the first of two.
     pub(crate) fn uvs(&self) -> impl Iterator<Item = usize> + '_ {
-        self.counted.iter().filter(|counted| counted.is_uv).map(|counted| counted.channels.start)
+        self.costed.iter().filter(|costed| costed.is_uv).map(|costed| costed.channels.start)
     }
 
     /// Whether something moves along that no channel holds.
-    pub(crate) fn has_rest(&self) -> bool {
-        !self.rest.is_empty()
+    pub(crate) fn has_uncosted(&self) -> bool {
+        !self.uncosted.is_empty()
     }
 
     /// Takes what channels do not hold of these wedges, as the values of the slots. A slot without a
@@ -104,17 +104,16 @@ impl<'m> AttributeLayers<'m> {
     pub(crate) fn fill(&mut self, wedges: &[u32]) {
         for (i, layer) in self.layers.iter().enumerate() {
             let width = layer.width;
-            let holds =
-                |counted: &CostedLayer| counted.layer == i && counted.channels.len() == width;
-            if self.counted.iter().any(holds) {
+            let holds = |costed: &CostedLayer| costed.layer == i && costed.channels.len() == width;
+            if self.costed.iter().any(holds) {
                 continue;
             }
             let mut values = vec![0.0; width * wedges.len()];
             for (slot, &wedge) in wedges.iter().enumerate().filter(|(_, w)| **w != u32::MAX) {
                 values[slot * width..][..width].copy_from_slice(layer.of(WedgeId(wedge)));
             }
-            self.rest.push(Layer { kind: layer.kind, name: String::new(), width, values });
-            self.rest_of.push(i);
+            self.uncosted.push(Layer { kind: layer.kind, name: String::new(), width, values });
+            self.uncosted_of.push(i);
         }
     }
 
@@ -122,10 +121,10 @@ impl<'m> AttributeLayers<'m> {
     /// have room for the squares of.
     pub(crate) fn channels_of<const K: usize>(&self, wedge: u32) -> [f32; K] {
         let mut channels = [0.0; K];
-        for CostedLayer { layer, channels: at, scale, .. } in &self.counted {
+        for CostedLayer { layer, channels: at, scale, .. } in &self.costed {
             let values = self.layers[*layer].of(WedgeId(wedge));
             for (channel, &x) in channels[at.clone()].iter_mut().zip(values) {
-                let length = (f64::from(x) * scale).clamp(-MOST_LENGTH, MOST_LENGTH);
+                let length = (f64::from(x) * scale).clamp(-MAX_LENGTH, MAX_LENGTH);
                 *channel = if x.is_finite() { length as f32 } else { 0.0 };
             }
         }
@@ -135,9 +134,8 @@ impl<'m> AttributeLayers<'m> {
     /// Makes of channels that fit best such as may be: normals of their length, all in the range of the
     /// input. `before` stands in for directions that cancel.
     #[inline(always)]
-    pub(crate) fn settle<const K: usize>(&self, channels: &mut [f32; K], before: &[f32; K]) {
-        for CostedLayer { channels: at, scale, range: [low, high], is_normal, .. } in &self.counted
-        {
+    pub(crate) fn clamp_values<const K: usize>(&self, channels: &mut [f32; K], before: &[f32; K]) {
+        for CostedLayer { channels: at, scale, range: [low, high], is_normal, .. } in &self.costed {
             let values = &mut channels[at.clone()];
             if *is_normal {
                 let unit = Vec3::new(values[0], values[1], values[2]).normalize_or_zero();
@@ -152,15 +150,15 @@ impl<'m> AttributeLayers<'m> {
     }
 
     /// Takes textures, all that is no normal, from other channels.
-    pub(crate) fn follow<const K: usize>(&self, channels: &mut [f32; K], other: &[f32; K]) {
-        for CostedLayer { channels: at, .. } in self.counted.iter().filter(|c| !c.is_normal) {
+    pub(crate) fn copy_textures<const K: usize>(&self, channels: &mut [f32; K], other: &[f32; K]) {
+        for CostedLayer { channels: at, .. } in self.costed.iter().filter(|c| !c.is_normal) {
             channels[at.clone()].copy_from_slice(&other[at.clone()]);
         }
     }
 
     /// The same of what channels do not hold, from slot to slot.
-    pub(crate) fn follow_rest(&mut self, slot: u32, other: u32) {
-        for layer in self.rest.iter_mut().filter(|layer| !is_shading(layer)) {
+    pub(crate) fn copy_uncosted(&mut self, slot: u32, other: u32) {
+        for layer in self.uncosted.iter_mut().filter(|layer| !is_shading(layer)) {
             let from = other as usize * layer.width;
             layer.values.copy_within(from..from + layer.width, slot as usize * layer.width);
         }
@@ -174,13 +172,13 @@ impl<'m> AttributeLayers<'m> {
     }
 
     /// Adds what channels do not hold at a place between slots.
-    pub(crate) fn rest_at(&self, place: &Place, values: &mut Vec<f32>) {
-        interpolate(&self.rest, place, values);
+    pub(crate) fn uncosted_at(&self, place: &Place, values: &mut Vec<f32>) {
+        interpolate(&self.uncosted, place, values);
     }
 
     /// Gives a slot the first of what [`Self::rest_at`] found; gives what is left.
-    pub(crate) fn set_rest<'v>(&mut self, slot: u32, mut values: &'v [f32]) -> &'v [f32] {
-        for layer in &mut self.rest {
+    pub(crate) fn set_uncosted<'v>(&mut self, slot: u32, mut values: &'v [f32]) -> &'v [f32] {
+        for layer in &mut self.uncosted {
             let (these, others) = values.split_at(layer.width);
             layer.of_mut(WedgeId(slot)).copy_from_slice(these);
             values = others;
@@ -191,8 +189,9 @@ impl<'m> AttributeLayers<'m> {
     /// The layers over the slots that are left.
     pub(crate) fn layers<const K: usize>(&self, left: &[SurvivingWedge<K>]) -> Vec<Layer> {
         let of_layer = |(i, layer): (usize, &Layer)| {
-            let counted = self.counted.iter().find(|counted| counted.layer == i);
-            let rest = self.rest_of.iter().position(|&of| of == i).map(|r| &self.rest[r]);
+            let costed = self.costed.iter().find(|costed| costed.layer == i);
+            let uncosted =
+                self.uncosted_of.iter().position(|&of| of == i).map(|r| &self.uncosted[r]);
             let mut values = Vec::with_capacity(left.len() * layer.width);
             for SurvivingWedge { slot, wedge, moved, channels, .. } in left {
                 if !moved {
@@ -200,11 +199,11 @@ impl<'m> AttributeLayers<'m> {
                     continue;
                 }
                 let start = values.len();
-                match rest {
-                    Some(rest) => values.extend_from_slice(rest.of(WedgeId(*slot))),
+                match uncosted {
+                    Some(uncosted) => values.extend_from_slice(uncosted.of(WedgeId(*slot))),
                     None => values.resize(start + layer.width, 0.0),
                 }
-                if let Some(CostedLayer { channels: at, scale, .. }) = counted {
+                if let Some(CostedLayer { channels: at, scale, .. }) = costed {
                     let own = channels[at.clone()].iter().map(|&x| (f64::from(x) / scale) as f32);
                     values[start..].iter_mut().zip(own).for_each(|(value, x)| *value = x);
                 }
@@ -217,8 +216,8 @@ impl<'m> AttributeLayers<'m> {
 
 /// The least and the greatest of the first `width` values of each wedge, as channels.
 fn range(layer: &Layer, width: usize, scale: f64) -> [f32; 2] {
-    let counted = layer.values.chunks_exact(layer.width).flat_map(|values| &values[..width]);
-    let finite = counted.copied().filter(|x| x.is_finite());
+    let costed = layer.values.chunks_exact(layer.width).flat_map(|values| &values[..width]);
+    let finite = costed.copied().filter(|x| x.is_finite());
     let [low, high] =
         finite.fold([f32::INFINITY, f32::NEG_INFINITY], |[low, high], x| [low.min(x), high.max(x)]);
     // Values that are no numbers count as zero.

@@ -39,35 +39,40 @@ pub(crate) trait AttributeModel: Sized + Send + Sync {
     const IN_PARTS: bool;
 
     /// What each of so many parts looks like.
-    fn side_by_side(self, parts: usize) -> Vec<Self>;
+    fn for_parts(self, parts: usize) -> Vec<Self>;
 
     /// Adds to the squares of edges what attributes leave of them where they are best.
-    fn join(&self, sides: [EdgeSide<u32>; 2], edges: &mut EdgeQuadrics);
+    fn add_attribute_quadrics(&self, sides: [EdgeSide<u32>; 2], edges: &mut EdgeQuadrics);
 
     /// What eight edges cost if any of their vertices is on a seam. Of those without such an end,
     /// what they cost if both may go anywhere.
-    fn at_seams(&self, vertices: &Vertices, us: EdgeSide<u32>, vs: &[u32; LANES]) -> Option<Costs>;
+    fn seam_costs(
+        &self,
+        vertices: &Vertices,
+        us: EdgeSide<u32>,
+        vs: &[u32; LANES],
+    ) -> Option<Costs>;
 
     /// Which end of an edge goes into which.
-    fn order(&self, vertices: &Vertices, v: u32, target: u32) -> Result<Ends, Refusal>;
+    fn orient(&self, vertices: &Vertices, v: u32, target: u32) -> Result<Ends, Refusal>;
 
     /// The squares of an edge with free ends, by those of the geometry.
-    fn whole(&self, ends: &Ends, geometry: EdgeQuadricF64) -> EdgeQuadricF64;
+    fn with_attributes(&self, ends: &Ends, geometry: EdgeQuadricF64) -> EdgeQuadricF64;
 
     /// What attributes cost where `v1` goes to the place of `v0`.
-    fn onto(&self, vertices: &Vertices, ends: &Ends) -> f32;
+    fn cost_onto(&self, vertices: &Vertices, ends: &Ends) -> f32;
 
     /// Finds what a contraction that may be otherwise makes of attributes; whether it turns a face over
     /// in its texture.
-    fn look_ahead(&mut self, vertices: &Vertices, edge_ring: &EdgeRing, placed: &Collapse) -> bool;
+    fn preview(&mut self, vertices: &Vertices, edge_ring: &EdgeRing, collapse: &Collapse) -> bool;
 
     /// Carries out what was last looked ahead to, before the vertices themselves change; gives what the
     /// star of the new vertex has beside its faces.
-    fn contract(
+    fn apply(
         &mut self,
         vertices: &mut Vertices,
         edge_ring: &EdgeRing,
-        placed: &Collapse,
+        collapse: &Collapse,
     ) -> VertexQuadric;
 
     /// Reads what is wanted of a vertex soon.

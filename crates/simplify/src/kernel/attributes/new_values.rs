@@ -13,14 +13,14 @@ use glam::Vec3;
 
 impl<M: Metric, const K: usize> WedgeQuadrics<'_, M, K> {
     /// The values of the wedge that two become.
-    pub(crate) fn values(&self, placed: &Collapse, [s0, s1]: [u32; 2]) -> [f32; K] {
-        let (f0, f1) = (self.field(s0), self.field(s1));
+    pub(crate) fn values(&self, collapse: &Collapse, [s0, s1]: [u32; 2]) -> [f32; K] {
+        let (f0, f1) = (self.quadric(s0), self.quadric(s1));
         let before = f0.values();
-        if placed.by == Vec3::ZERO {
+        if collapse.displacement == Vec3::ZERO {
             return before;
         }
-        let mut values = best_values(f0, f1, placed.half, placed.best);
-        self.layers.settle(&mut values, &before);
+        let mut values = best_values(f0, f1, collapse.half, collapse.from_middle);
+        self.layers.clamp_values(&mut values, &before);
         values
     }
 
@@ -28,41 +28,41 @@ impl<M: Metric, const K: usize> WedgeQuadrics<'_, M, K> {
     ///
     /// Where `v0` stays, its values do; but if others come to it they are all written again, for what
     /// becomes of a value in channels and back may be off by its last digit.
-    pub(crate) fn find_values(&mut self, placed: &Collapse) {
+    pub(crate) fn find_values(&mut self, collapse: &Collapse) {
         let mut renewed = std::mem::take(&mut self.scratch.renewed);
         renewed.clear();
-        let (ends, met) = (&placed.ends, &placed.ends.met);
-        let stays = placed.by == Vec3::ZERO;
-        if !stays || self.alone(ends, 1).next().is_some() {
-            let weight = |field: &AttributeQuadric<K>| if stays { 0.0 } else { field.weight() };
-            for (i, &[s0, s1]) in met.pairs().iter().enumerate() {
-                if met.pairs()[..i].iter().all(|before| before[0] != s0) {
-                    let weight = weight(self.field(s0)) + weight(self.field(s1));
-                    let values = self.values(placed, [s0, s1]);
+        let (ends, wedge_pairs) = (&collapse.ends, &collapse.ends.wedge_pairs);
+        let stays = collapse.displacement == Vec3::ZERO;
+        if !stays || self.unpaired(ends, 1).next().is_some() {
+            let weight = |quadric: &AttributeQuadric<K>| if stays { 0.0 } else { quadric.weight() };
+            for (i, &[s0, s1]) in wedge_pairs.pairs().iter().enumerate() {
+                if wedge_pairs.pairs()[..i].iter().all(|before| before[0] != s0) {
+                    let weight = weight(self.quadric(s0)) + weight(self.quadric(s1));
+                    let values = self.values(collapse, [s0, s1]);
                     renewed.push(NewValues { slot: s0, values, leader: s0, weight });
                 }
             }
-            for (end, from) in [(0, -placed.half), (1, placed.half)] {
-                for slot in self.alone(ends, end) {
-                    let field = self.field(slot);
-                    let mut values = field.values();
+            for (end, from) in [(0, -collapse.half), (1, collapse.half)] {
+                for slot in self.unpaired(ends, end) {
+                    let quadric = self.quadric(slot);
+                    let mut values = quadric.values();
                     if end == 1 || !stays {
-                        values = field.best_values(placed.best - from);
-                        self.layers.settle(&mut values, &field.values());
+                        values = quadric.best_values(collapse.from_middle - from);
+                        self.layers.clamp_values(&mut values, &quadric.values());
                     }
-                    let leader = if end == 0 { slot } else { self.leader(met, slot) };
-                    renewed.push(NewValues { slot, values, leader, weight: weight(field) });
+                    let leader = if end == 0 { slot } else { self.leader(wedge_pairs, slot) };
+                    renewed.push(NewValues { slot, values, leader, weight: weight(quadric) });
                 }
             }
         }
         if !self.charts.is_empty() && renewed.len() > 1 {
-            self.settle_charts(&mut renewed);
+            self.unify_charts(&mut renewed);
         }
         self.scratch.renewed = renewed;
     }
 
     /// Gives slots of one chart one place in the textures.
-    fn settle_charts(&self, renewed: &mut [NewValues<K>]) {
+    fn unify_charts(&self, renewed: &mut [NewValues<K>]) {
         for i in 0..renewed.len() {
             let chart = self.chart(renewed[i].leader);
             let is_of = |other: &NewValues<K>| self.chart(other.leader) == chart;
@@ -82,12 +82,12 @@ impl<M: Metric, const K: usize> WedgeQuadrics<'_, M, K> {
                 false => renewed[i].values,
             };
             let others = renewed[i..].iter_mut().filter(|other| is_of(other));
-            others.for_each(|other| self.layers.follow(&mut other.values, &mean));
+            others.for_each(|other| self.layers.copy_textures(&mut other.values, &mean));
         }
     }
 
     /// Gives slots that go to another chart that one, and what no channel holds of its textures.
-    pub(crate) fn join_charts(&mut self, met: &WedgePairs) {
+    pub(crate) fn update_charts(&mut self, wedge_pairs: &WedgePairs) {
         let Self { scratch, charts, layers, .. } = self;
         if charts.is_empty() {
             return;
@@ -95,9 +95,9 @@ impl<M: Metric, const K: usize> WedgeQuadrics<'_, M, K> {
         for &NewValues { slot, leader, .. } in &scratch.renewed {
             let chart = charts[leader as usize];
             charts[slot as usize] = chart;
-            let mut leaders = met.pairs().iter().map(|pair| pair[0]);
+            let mut leaders = wedge_pairs.pairs().iter().map(|pair| pair[0]);
             if let Some(other) = leaders.find(|&other| charts[other as usize] == chart) {
-                layers.follow_rest(slot, other);
+                layers.copy_uncosted(slot, other);
             }
         }
     }

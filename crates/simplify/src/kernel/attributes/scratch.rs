@@ -25,7 +25,7 @@ pub(crate) struct Scratch<const K: usize> {
     pub(crate) renewed: Vec<NewValues<K>>,
     pub(crate) slots: FaceWedges,
     /// What slots take over that no channel holds.
-    pub(crate) rest: Vec<f32>,
+    pub(crate) uncosted: Vec<f32>,
 }
 
 impl<const K: usize> Scratch<K> {
@@ -43,7 +43,7 @@ impl<const K: usize> Scratch<K> {
             values,
             renewed,
             slots,
-            rest: Vec::new(),
+            uncosted: Vec::new(),
         })
     }
 }

@@ -6,11 +6,13 @@
 
 use glam::Vec3;
 
-use crate::kernel::attributes::attribute_quadric::{alone, join_and_onto};
+use crate::kernel::attributes::attribute_quadric::{
+    add_attribute_quadrics_and_onto, unpaired_quadric,
+};
 use crate::kernel::attributes::wedge_quadrics::WedgeQuadrics;
 use crate::kernel::collapse::Ends;
 use crate::kernel::mesh::one_ring::Vertices;
-use crate::kernel::mesh::vertex::{NOBODY, VertexFlags};
+use crate::kernel::mesh::vertex::{NO_VERTEX, VertexFlags};
 use crate::kernel::metric::edge_quadric::{
     Costs, EdgeQuadric, EdgeQuadrics, EdgeSide, SymmetricMatrix, VertexQuadrics, lane_of,
 };
@@ -41,14 +43,17 @@ impl<M: Metric, const K: usize> WedgeQuadrics<'_, M, K> {
     }
 
     /// What slots of `v1` cost that meet none, if it goes to the place of `v0`: `by` from its own.
-    pub(crate) fn alone_onto(&self, ends: &Ends, by: Vec3) -> f32 {
+    pub(crate) fn unpaired_onto(&self, ends: &Ends, by: Vec3) -> f32 {
         let cost = |slot: u32| {
-            let field = self.field(slot);
-            let mut values = field.best_values(by.as_dvec3());
-            self.layers.follow(&mut values, &self.field(self.leader(&ends.met, slot)).values());
-            field.onto(by, &values)
+            let quadric = self.quadric(slot);
+            let mut values = quadric.best_values(by.as_dvec3());
+            self.layers.copy_textures(
+                &mut values,
+                &self.quadric(self.leader(&ends.wedge_pairs, slot)).values(),
+            );
+            quadric.cost_onto(by, &values)
         };
-        self.alone(ends, 1).map(cost).sum()
+        self.unpaired(ends, 1).map(cost).sum()
     }
 }
 
@@ -86,7 +91,7 @@ struct SeamBatch {
     slots: [[u32; LANES]; 2],
     ways: [Motion; LANES],
     /// EdgeQuadrics with slots that meet none.
-    alone: [Option<Ends>; LANES],
+    unpaired: [Option<Ends>; LANES],
     /// On the other side of an edge, if there are others: which edge's, and the slots.
     others: [(usize, [u32; 2]); LANES],
     others_len: usize,
@@ -100,10 +105,10 @@ impl SeamBatch {
     fn new() -> Self {
         Self {
             ends: [[0; LANES]; 2],
-            slots: [[NOBODY; LANES]; 2],
+            slots: [[NO_VERTEX; LANES]; 2],
             ways: [Motion::Not; LANES],
-            alone: [None; LANES],
-            others: [(0, [NOBODY; 2]); LANES],
+            unpaired: [None; LANES],
+            others: [(0, [NO_VERTEX; 2]); LANES],
             others_len: 0,
             lent: [0; LANES],
             lent_len: 0,
@@ -124,13 +129,13 @@ impl SeamBatch {
             // Lanes beyond the end look at the first one again.
             let again = lane > 0 && (u, v) == (us.get(0), vs[0]);
             if flags.any(VertexFlags::SHUT) || again {
-                self.put(lane, [u, v], [NOBODY; 2], Motion::Not);
+                self.put(lane, [u, v], [NO_VERTEX; 2], Motion::Not);
             } else if !flags.any(VertexFlags::SEAM) {
                 self.put(lane, [u, v], [u, v], Motion::Free);
             } else if let Ok(ends) = wedges.ends(vertices, u, v) {
                 self.put_ends(lane, &ends);
             } else {
-                self.put(lane, [u, v], [NOBODY; 2], Motion::Not);
+                self.put(lane, [u, v], [NO_VERTEX; 2], Motion::Not);
             }
         }
     }
@@ -144,14 +149,19 @@ impl SeamBatch {
 
     #[inline(always)]
     fn put_ends(&mut self, lane: usize, ends: &Ends) {
-        let Ends { v0, v1, free, met } = ends;
-        self.put(lane, [*v0, *v1], met.pairs()[0], if *free { Motion::Free } else { Motion::Onto });
-        if let Some(other) = met.other() {
+        let Ends { v0, v1, free, wedge_pairs } = ends;
+        self.put(
+            lane,
+            [*v0, *v1],
+            wedge_pairs.pairs()[0],
+            if *free { Motion::Free } else { Motion::Onto },
+        );
+        if let Some(other) = wedge_pairs.other() {
             self.others[self.others_len] = (lane, other);
             self.others_len += 1;
         }
-        if met.has_alone[1] || (*free && met.has_alone[0]) {
-            self.alone[lane] = Some(*ends);
+        if wedge_pairs.has_unpaired[1] || (*free && wedge_pairs.has_unpaired[0]) {
+            self.unpaired[lane] = Some(*ends);
         }
     }
 
@@ -188,16 +198,16 @@ impl SeamBatch {
             onto[lane] = 0.0;
         }
         let slots = [EdgeSide::Each(self.slots[0]), EdgeSide::Each(self.slots[1])];
-        join_and_onto(slots, |slot| wedges.field(slot), &mut edges, &mut onto);
+        add_attribute_quadrics_and_onto(slots, |slot| wedges.quadric(slot), &mut edges, &mut onto);
         for (&lane, &(of, _)) in self.lent[..self.lent_len].iter().zip(&self.others) {
             let part = edges.part(lane);
             edges.add(of, &part);
             onto[of] += onto[lane];
         }
         if self.lent_len < self.others_len {
-            self.join_rest(wedges, &mut edges, &mut onto);
+            self.add_other_sides(wedges, &mut edges, &mut onto);
         }
-        self.join_alone(wedges, &mut edges, &mut onto);
+        self.add_unpaired(wedges, &mut edges, &mut onto);
         let mut costs = least_costs::<M>(&edges);
         for lane in 0..LANES {
             costs[lane] = match self.ways[lane] {
@@ -211,14 +221,14 @@ impl SeamBatch {
 
     /// Joins the other sides that no lane was lent to, each in that of its edge.
     #[inline(always)]
-    fn join_rest<M: Metric, const K: usize>(
+    fn add_other_sides<M: Metric, const K: usize>(
         &self,
         wedges: &WedgeQuadrics<'_, M, K>,
         edges: &mut EdgeQuadrics,
         onto: &mut Row,
     ) {
         let rest = &self.others[self.lent_len..self.others_len];
-        let mut slots = [[NOBODY; LANES]; 2];
+        let mut slots = [[NO_VERTEX; LANES]; 2];
         for &(of, [s0, s1]) in rest {
             (slots[0][of], slots[1][of]) = (s0, s1);
         }
@@ -226,7 +236,12 @@ impl SeamBatch {
         parts.half = edges.half;
         let slots = [EdgeSide::Each(slots[0]), EdgeSide::Each(slots[1])];
         let mut part_onto = [0.0; LANES];
-        join_and_onto(slots, |slot| wedges.field(slot), &mut parts, &mut part_onto);
+        add_attribute_quadrics_and_onto(
+            slots,
+            |slot| wedges.quadric(slot),
+            &mut parts,
+            &mut part_onto,
+        );
         for &(of, _) in rest {
             edges.add(of, &parts.part(of));
             onto[of] += part_onto[of];
@@ -235,22 +250,22 @@ impl SeamBatch {
 
     /// Joins what meets nothing, one by one: there is little of it.
     #[inline(always)]
-    fn join_alone<M: Metric, const K: usize>(
+    fn add_unpaired<M: Metric, const K: usize>(
         &self,
         wedges: &WedgeQuadrics<'_, M, K>,
         edges: &mut EdgeQuadrics,
         onto: &mut Row,
     ) {
-        for (lane, ends) in self.alone.iter().enumerate() {
+        for (lane, ends) in self.unpaired.iter().enumerate() {
             let Some(ends) = ends else { continue };
             let half = edges.half.get(lane);
             if !ends.free {
-                onto[lane] += wedges.alone_onto(ends, -2.0 * half);
+                onto[lane] += wedges.unpaired_onto(ends, -2.0 * half);
                 continue;
             }
             for (end, from) in [(0, -half), (1, half)] {
-                for slot in wedges.alone(ends, end) {
-                    edges.add(lane, &alone(wedges.field(slot), from));
+                for slot in wedges.unpaired(ends, end) {
+                    edges.add(lane, &unpaired_quadric(wedges.quadric(slot), from));
                 }
             }
         }

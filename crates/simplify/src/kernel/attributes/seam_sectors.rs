@@ -4,7 +4,7 @@
 //! others are flagged, and have a list of sectors: runs of faces with one wedge, counter-clockwise.
 
 use crate::kernel::collapse::WedgeSides;
-use crate::kernel::mesh::one_ring::{LONG, Vertices, place_in, place_of};
+use crate::kernel::mesh::one_ring::{LONG, Vertices, index_in, index_in_ring};
 use crate::kernel::mesh::vertex::{RING, VertexFlags};
 
 /// A run of faces around a vertex that have one wedge: from this neighbour on, counter-clockwise.
@@ -142,7 +142,7 @@ fn parted(sectors: &[Sector], neighbour: u32) -> Option<[u32; 2]> {
 /// The slot at a neighbour in the midst of a sector: of that which begins next before.
 #[inline(always)]
 fn within(ring: &[u32; RING], len: usize, sectors: &[Sector], neighbour: u32) -> u32 {
-    let at = |w: u32| place_of(ring, len, w).unwrap_or(0) as u32;
+    let at = |w: u32| index_in_ring(ring, len, w).unwrap_or(0) as u32;
     let (here, mut least) = (at(neighbour), u64::MAX);
     for sector in sectors {
         let there = at(sector.from);
@@ -155,7 +155,7 @@ fn within(ring: &[u32; RING], len: usize, sectors: &[Sector], neighbour: u32) ->
 #[cold]
 fn within_long(vertices: &Vertices, sectors: &[Sector], v: u32, neighbour: u32) -> u32 {
     let ring = vertices.neighbours(v);
-    let at = |w: u32| vertices.place_of(ring, w).unwrap_or(0);
+    let at = |w: u32| vertices.index_of_live(ring, w).unwrap_or(0);
     let here = at(neighbour);
     let back = |sector: &&Sector| (here + ring.len() - at(sector.from)) % ring.len();
     sectors.iter().min_by_key(back).map_or(v, |sector| sector.slot)
@@ -163,15 +163,15 @@ fn within_long(vertices: &Vertices, sectors: &[Sector], v: u32, neighbour: u32) 
 
 impl Vertices<'_> {
     /// Where in a ring a live vertex is, or one that it has taken the place of.
-    pub(crate) fn place_of(&self, ring: &[u32], v: u32) -> Option<usize> {
-        place_in(ring, v).or_else(|| {
+    pub(crate) fn index_of_live(&self, ring: &[u32], v: u32) -> Option<usize> {
+        index_in(ring, v).or_else(|| {
             ring.iter()
-                .position(|&w| self.get(w).flags.any(VertexFlags::DEAD) && self.heir_of(w) == v)
+                .position(|&w| self.get(w).flags.any(VertexFlags::DEAD) && self.find_live(w) == v)
         })
     }
 
     /// The live vertex that this one is or has gone into; nothing is shortened on the way.
-    fn heir_of(&self, mut v: u32) -> u32 {
+    fn find_live(&self, mut v: u32) -> u32 {
         while self.get(v).flags.any(VertexFlags::DEAD) {
             v = self.get(v).target;
         }

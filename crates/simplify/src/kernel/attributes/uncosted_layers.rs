@@ -9,52 +9,52 @@ use crate::kernel::attributes::face_wedges::FaceWedges;
 use crate::kernel::attributes::wedge_quadrics::WedgeQuadrics;
 use crate::kernel::collapse::edge_ring::EdgeRing;
 use crate::kernel::collapse::{Collapse, Ends};
-use crate::kernel::mesh::vertex::NOBODY;
+use crate::kernel::mesh::vertex::NO_VERTEX;
 use crate::surface::interpolate::{Place, shares};
 
 impl<M: Metric, const K: usize> WedgeQuadrics<'_, M, K> {
     /// Gives the wedges that become one what is closest on the faces that they stand for. Without `slots`
     /// vertices are slots.
     #[inline(always)]
-    pub(crate) fn move_rest(
+    pub(crate) fn move_uncosted(
         &mut self,
         edge_ring: &EdgeRing,
-        placed: &Collapse,
+        collapse: &Collapse,
         slots: Option<&FaceWedges>,
     ) {
-        if self.layers.has_rest() && placed.by != Vec3::ZERO {
-            self.move_all_rest(edge_ring, placed, slots);
+        if self.layers.has_uncosted() && collapse.displacement != Vec3::ZERO {
+            self.move_all_uncosted(edge_ring, collapse, slots);
         }
     }
 
-    fn move_all_rest(
+    fn move_all_uncosted(
         &mut self,
         edge_ring: &EdgeRing,
-        placed: &Collapse,
+        collapse: &Collapse,
         slots: Option<&FaceWedges>,
     ) {
-        let mut values = std::mem::take(&mut self.scratch.rest);
+        let mut values = std::mem::take(&mut self.scratch.uncosted);
         values.clear();
-        let squares = edge_ring.squares_to_old(placed.by);
-        let mut taken = [NOBODY; 2];
-        for (taken, pair) in taken.iter_mut().zip(placed.ends.met.pairs()) {
+        let squares = edge_ring.squared_distances_to_old(collapse.displacement);
+        let mut taken = [NO_VERTEX; 2];
+        for (taken, pair) in taken.iter_mut().zip(collapse.ends.wedge_pairs.pairs()) {
             let stands_for = |i: usize| slots.is_none_or(|slots| pair.contains(&slots.face(i)[0]));
             let is_one = |&i: &usize| is_face(edge_ring, i) && stands_for(i);
             let nearest = (0..edge_ring.len + 2)
                 .filter(is_one)
                 .min_by(|&i, &k| squares[i].total_cmp(&squares[k]));
             if let Some(i) = nearest {
-                let place = place(edge_ring, placed, i, slots);
-                self.layers.rest_at(&place, &mut values);
+                let place = place(edge_ring, collapse, i, slots);
+                self.layers.uncosted_at(&place, &mut values);
                 *taken = pair[0];
             }
         }
         // Only now: the values before were still wanted.
         let mut left = &values[..];
-        for slot in taken.into_iter().filter(|&slot| slot != NOBODY) {
-            left = self.layers.set_rest(slot, left);
+        for slot in taken.into_iter().filter(|&slot| slot != NO_VERTEX) {
+            left = self.layers.set_uncosted(slot, left);
         }
-        self.scratch.rest = values;
+        self.scratch.uncosted = values;
     }
 }
 
@@ -67,25 +67,25 @@ fn is_face(edge_ring: &EdgeRing, i: usize) -> bool {
 }
 
 /// The new place's closest on one of the old faces.
-fn place(edge_ring: &EdgeRing, placed: &Collapse, i: usize, slots: Option<&FaceWedges>) -> Place {
-    let Ends { v0, v1, .. } = placed.ends;
+fn place(edge_ring: &EdgeRing, collapse: &Collapse, i: usize, slots: Option<&FaceWedges>) -> Place {
+    let Ends { v0, v1, .. } = collapse.ends;
     let (corners, own) = match i.checked_sub(edge_ring.len) {
         None => {
             let next = (i + 1) % edge_ring.len;
             let (apex, v) =
                 if i < edge_ring.of_v0 { (Vec3::ZERO, v0) } else { (edge_ring.along, v1) };
             (
-                [apex, edge_ring.seen(i), edge_ring.seen(next)],
+                [apex, edge_ring.relative(i), edge_ring.relative(next)],
                 [v, edge_ring.ids[i], edge_ring.ids[next]],
             )
         }
         Some(dying) => {
             let wing = edge_ring.wing(dying);
-            ([Vec3::ZERO, edge_ring.along, edge_ring.seen(wing)], [v0, v1, edge_ring.ids[wing]])
+            ([Vec3::ZERO, edge_ring.along, edge_ring.relative(wing)], [v0, v1, edge_ring.ids[wing]])
         }
     };
     let triangle: [DVec3; 3] = corners.map(|corner| corner.as_dvec3());
-    let closest = closest_point(placed.by.as_dvec3(), &triangle);
+    let closest = closest_point(collapse.displacement.as_dvec3(), &triangle);
     let wedges = slots.map_or(own, |slots| slots.face(i)).map(WedgeId);
     Place { wedges, shares: shares(closest, &triangle) }
 }

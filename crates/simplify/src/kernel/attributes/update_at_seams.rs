@@ -2,7 +2,7 @@
 
 use crate::kernel::attributes::attribute_quadric::AttributeQuadric;
 use crate::kernel::attributes::face_wedges::FaceWedges;
-use crate::kernel::attributes::update_smooth::dying;
+use crate::kernel::attributes::update_smooth::dying_quadric;
 use crate::kernel::attributes::wedge_quadrics::WedgeQuadrics;
 use crate::kernel::collapse::edge_ring::EdgeRing;
 use crate::kernel::collapse::{Collapse, Ends};
@@ -17,7 +17,7 @@ pub(crate) struct UpdateAtSeams<'a, 'm, 'v, M, const K: usize> {
     pub(crate) wedges: &'a mut WedgeQuadrics<'m, M, K>,
     pub(crate) vertices: &'a mut Vertices<'v>,
     pub(crate) edge_ring: &'a EdgeRing,
-    pub(crate) placed: &'a Collapse,
+    pub(crate) collapse: &'a Collapse,
 }
 
 impl<M: Metric, const K: usize> SimdTask for UpdateAtSeams<'_, '_, '_, M, K> {
@@ -25,49 +25,53 @@ impl<M: Metric, const K: usize> SimdTask for UpdateAtSeams<'_, '_, '_, M, K> {
 
     #[inline(always)]
     fn work(self) -> VertexQuadric {
-        self.wedges.contract_by_slots(self.vertices, self.edge_ring, self.placed)
+        self.wedges.apply_at_seams(self.vertices, self.edge_ring, self.collapse)
     }
 }
 
 impl<M: Metric, const K: usize> WedgeQuadrics<'_, M, K> {
     /// Where something around has a seam. Gives what the new star has of seams.
     #[inline(always)]
-    fn contract_by_slots(
+    fn apply_at_seams(
         &mut self,
         vertices: &mut Vertices,
         edge_ring: &EdgeRing,
-        placed: &Collapse,
+        collapse: &Collapse,
     ) -> VertexQuadric {
-        let Ends { v0, v1, met, .. } = placed.ends;
+        let Ends { v0, v1, wedge_pairs, .. } = collapse.ends;
         let slots = std::mem::take(&mut self.scratch.slots);
-        self.move_rest(edge_ring, placed, Some(&slots));
+        self.move_uncosted(edge_ring, collapse, Some(&slots));
         if M::IS_MEMORYLESS {
-            self.remove_constraints(vertices, edge_ring, placed);
+            self.remove_constraints(vertices, edge_ring, collapse);
         }
-        self.join_charts(&met);
-        let constraint = self.add_constraints(vertices, edge_ring, placed, &slots);
-        self.renew_fields(edge_ring, placed, &slots);
-        for &[s0, s1] in met.pairs() {
-            self.heirs[s1 as usize] = s0;
+        self.update_charts(&wedge_pairs);
+        let constraint = self.add_constraints(vertices, edge_ring, collapse, &slots);
+        self.update_quadrics(edge_ring, collapse, &slots);
+        for &[s0, s1] in wedge_pairs.pairs() {
+            self.merged_into[s1 as usize] = s0;
         }
         for renewed in &self.scratch.renewed {
-            self.heirs[renewed.slot as usize] = renewed.slot;
+            self.merged_into[renewed.slot as usize] = renewed.slot;
         }
-        self.renew_sectors(vertices, edge_ring, [v0, v1], &slots.apexes);
+        self.update_sectors(vertices, edge_ring, [v0, v1], &slots.apexes);
         self.scratch.slots = slots;
         M::renewed_seams(constraint, edge_ring.ghost.is_some())
     }
 
     /// Brings up to date what the faces that change have added to all quadrics around.
     #[inline(always)]
-    fn renew_fields(&mut self, edge_ring: &EdgeRing, placed: &Collapse, slots: &FaceWedges) {
+    fn update_quadrics(&mut self, edge_ring: &EdgeRing, collapse: &Collapse, slots: &FaceWedges) {
         let Self { quadrics, scratch, .. } = self;
         let apexes = &slots.apexes;
-        scratch.change::<M, true>(edge_ring, placed.by, [&[0.0; K]; 3]);
+        scratch.quadric_changes::<M, true>(edge_ring, collapse.displacement, [&[0.0; K]; 3]);
         for (wing, of) in [0, edge_ring.of_v0].into_iter().zip(slots.dying) {
             if edge_ring.ghost != Some(wing) {
                 let [v0, v1, other] = of.map(|slot| quadrics[slot as usize].values());
-                quadrics[of[2] as usize].take(&dying::<M, K>(edge_ring, wing, [&v0, &v1, &other]));
+                quadrics[of[2] as usize].take(&dying_quadric::<M, K>(
+                    edge_ring,
+                    wing,
+                    [&v0, &v1, &other],
+                ));
             }
         }
         for (i, &slot) in apexes.iter().enumerate() {
@@ -89,8 +93,13 @@ impl<M: Metric, const K: usize> WedgeQuadrics<'_, M, K> {
     }
 
     /// Takes the squares of cuts that change out of the stars around.
-    fn remove_constraints(&self, vertices: &mut Vertices, edge_ring: &EdgeRing, placed: &Collapse) {
-        let Ends { v0, v1, .. } = placed.ends;
+    fn remove_constraints(
+        &self,
+        vertices: &mut Vertices,
+        edge_ring: &EdgeRing,
+        collapse: &Collapse,
+    ) {
+        let Ends { v0, v1, .. } = collapse.ends;
         let any = is_seam(vertices, v0) || is_seam(vertices, v1);
         for i in (0..edge_ring.len).filter(|&i| edge_ring.ghost != Some(i)) {
             let w = edge_ring.ids[i];
@@ -100,7 +109,7 @@ impl<M: Metric, const K: usize> WedgeQuadrics<'_, M, K> {
             let near = [i <= edge_ring.of_v0, i >= edge_ring.of_v0 || i == 0];
             for (apex, at, near) in [(v0, Vec3::ZERO, near[0]), (v1, edge_ring.along, near[1])] {
                 if near && self.is_cut_edge(apex, w) {
-                    let constraint = M::seam(edge_ring.seen(i) - at);
+                    let constraint = M::seam(edge_ring.relative(i) - at);
                     vertices.get_mut(w).quadric.take(&constraint);
                 }
             }
@@ -112,7 +121,7 @@ impl<M: Metric, const K: usize> WedgeQuadrics<'_, M, K> {
         &self,
         vertices: &mut Vertices,
         edge_ring: &EdgeRing,
-        placed: &Collapse,
+        collapse: &Collapse,
         slots: &FaceWedges,
     ) -> VertexQuadric {
         let apexes = &slots.apexes;
@@ -124,7 +133,7 @@ impl<M: Metric, const K: usize> WedgeQuadrics<'_, M, K> {
             if edge_ring.is_face(before)
                 && (differ(apexes[before], apexes[i]) || differ(last, first))
             {
-                let constraint = M::seam(edge_ring.seen(i) - placed.by);
+                let constraint = M::seam(edge_ring.relative(i) - collapse.displacement);
                 if M::IS_MEMORYLESS {
                     vertices.get_mut(edge_ring.ids[i]).quadric.add(&constraint);
                 }
@@ -143,7 +152,7 @@ impl<M: Metric, const K: usize> WedgeQuadrics<'_, M, K> {
         self.is_cut(v, w) || self.is_cut(w, v)
     }
 
-    fn renew_sectors(
+    fn update_sectors(
         &mut self,
         vertices: &mut Vertices,
         edge_ring: &EdgeRing,

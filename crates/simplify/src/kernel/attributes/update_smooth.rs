@@ -14,12 +14,16 @@ use glam::{Vec3, Vec4};
 impl<M: Metric, const K: usize> WedgeQuadrics<'_, M, K> {
     /// Where nothing around has a seam: slots are vertices. As looked ahead to.
     #[inline(always)]
-    pub(crate) fn contract_smooth(&mut self, edge_ring: &EdgeRing, placed: &Collapse) {
-        let Ends { v0, v1, .. } = placed.ends;
-        let (of_v0, of_v1) = (self.field(v0).values(), self.field(v1).values());
+    pub(crate) fn apply_smooth(&mut self, edge_ring: &EdgeRing, collapse: &Collapse) {
+        let Ends { v0, v1, .. } = collapse.ends;
+        let (of_v0, of_v1) = (self.quadric(v0).values(), self.quadric(v1).values());
         let Self { quadrics, scratch, .. } = self;
         let values = scratch.values;
-        let mut new = scratch.change::<M, false>(edge_ring, placed.by, [&of_v0, &of_v1, &values]);
+        let mut new = scratch.quadric_changes::<M, false>(
+            edge_ring,
+            collapse.displacement,
+            [&of_v0, &of_v1, &values],
+        );
         for (channel, value) in new.channels.iter_mut().zip(values) {
             channel.w = value;
         }
@@ -28,22 +32,26 @@ impl<M: Metric, const K: usize> WedgeQuadrics<'_, M, K> {
             let change = scratch.changes[i];
             let id = edge_ring.ids[i];
             if id != GHOST {
-                let field = &mut quadrics[id as usize];
-                field.add(&last);
-                field.add(&change);
+                let quadric = &mut quadrics[id as usize];
+                quadric.add(&last);
+                quadric.add(&change);
             }
             last = change;
         }
         for wing in [0, edge_ring.of_v0] {
             if edge_ring.ghost != Some(wing) {
-                let field = &mut quadrics[edge_ring.ids[wing] as usize];
-                field.take(&dying::<M, K>(edge_ring, wing, [&of_v0, &of_v1, &field.values()]));
+                let quadric = &mut quadrics[edge_ring.ids[wing] as usize];
+                quadric.take(&dying_quadric::<M, K>(
+                    edge_ring,
+                    wing,
+                    [&of_v0, &of_v1, &quadric.values()],
+                ));
             }
         }
         quadrics[v0 as usize] = new;
-        self.heirs[v1 as usize] = v0;
-        if placed.by != Vec3::ZERO {
-            self.heirs[v0 as usize] = v0;
+        self.merged_into[v1 as usize] = v0;
+        if collapse.displacement != Vec3::ZERO {
+            self.merged_into[v0 as usize] = v0;
         }
     }
 }
@@ -53,7 +61,7 @@ impl<const K: usize> Scratch<K> {
     /// seams, each new one where there are. `values` are those of both ends and of the new vertex, which
     /// without seams are those of all apexes.
     #[inline(always)]
-    pub(crate) fn change<M: Metric, const SEAMS: bool>(
+    pub(crate) fn quadric_changes<M: Metric, const SEAMS: bool>(
         &mut self,
         edge_ring: &EdgeRing,
         by: Vec3,
@@ -61,7 +69,7 @@ impl<const K: usize> Scratch<K> {
     ) -> AttributeQuadric<K> {
         let none = [0.0; LANES];
         let (mut sums, mut squares) = ([[none; 3]; K], [none; 7]);
-        for start in edge_ring.starts() {
+        for start in edge_ring.lane_starts() {
             let spokes = edge_ring.spokes(start);
             let at_v1 = spokes.of_v1;
             let old = GradientFaces::new::<M>(
@@ -116,15 +124,15 @@ impl<const K: usize> Scratch<K> {
             }
         }
         let [xx, yy, zz, xy, xz, yz, weight] = &squares;
-        let mut field = AttributeQuadric::EMPTY;
-        field.squares = [
+        let mut quadric = AttributeQuadric::EMPTY;
+        quadric.squares = [
             Vec4::new(sum_of(xx), sum_of(yy), sum_of(zz), sum_of(xy)),
             Vec4::new(sum_of(xz), sum_of(yz), sum_of(weight), 0.0),
         ];
-        for (channel, [x, y, z]) in field.channels.iter_mut().zip(&sums) {
+        for (channel, [x, y, z]) in quadric.channels.iter_mut().zip(&sums) {
             *channel = Vec4::new(sum_of(x), sum_of(y), sum_of(z), 0.0);
         }
-        field
+        quadric
     }
 }
 
@@ -210,7 +218,7 @@ impl GradientFaces {
 }
 
 /// The field of the face of the edge and a wing, by the values at both ends and at the wing.
-pub(crate) fn dying<M: Metric, const K: usize>(
+pub(crate) fn dying_quadric<M: Metric, const K: usize>(
     edge_ring: &EdgeRing,
     wing: usize,
     [v0, v1, other]: [&[f32; K]; 3],
@@ -219,5 +227,5 @@ pub(crate) fn dying<M: Metric, const K: usize>(
     for k in 0..K {
         (to_v1[k], to_wing[k]) = (v1[k] - v0[k], other[k] - v0[k]);
     }
-    AttributeQuadric::face::<M>(edge_ring.along, edge_ring.seen(wing), to_v1, to_wing)
+    AttributeQuadric::face::<M>(edge_ring.along, edge_ring.relative(wing), to_v1, to_wing)
 }

@@ -28,7 +28,7 @@ pub(crate) struct UvFlipsAtSeams<'a, 'm, 'v, M, const K: usize> {
     pub(crate) wedges: &'a mut WedgeQuadrics<'m, M, K>,
     pub(crate) vertices: &'a Vertices<'v>,
     pub(crate) edge_ring: &'a EdgeRing,
-    pub(crate) placed: &'a Collapse,
+    pub(crate) collapse: &'a Collapse,
 }
 
 impl<M: Metric, const K: usize> SimdTask for UvFlipsAtSeams<'_, '_, '_, M, K> {
@@ -36,7 +36,7 @@ impl<M: Metric, const K: usize> SimdTask for UvFlipsAtSeams<'_, '_, '_, M, K> {
 
     #[inline(always)]
     fn work(self) -> bool {
-        self.wedges.look_ahead_by_slots(self.vertices, self.edge_ring, self.placed)
+        self.wedges.preview_at_seams(self.vertices, self.edge_ring, self.collapse)
     }
 }
 
@@ -50,15 +50,15 @@ impl<M: Metric, const K: usize> WedgeQuadrics<'_, M, K> {
 
     /// Where nothing around has a seam: slots are vertices. Whether a face turns over in its texture.
     #[inline(always)]
-    pub(crate) fn look_ahead_smooth(&mut self, edge_ring: &EdgeRing, placed: &Collapse) -> bool {
-        let Ends { v0, v1, .. } = placed.ends;
-        self.scratch.values = self.values(placed, [v0, v1]);
-        let (of_v0, of_v1) = (self.field(v0).values(), self.field(v1).values());
+    pub(crate) fn preview_smooth(&mut self, edge_ring: &EdgeRing, collapse: &Collapse) -> bool {
+        let Ends { v0, v1, .. } = collapse.ends;
+        self.scratch.values = self.values(collapse, [v0, v1]);
+        let (of_v0, of_v1) = (self.quadric(v0).values(), self.quadric(v1).values());
         let Self { quadrics, scratch, none, layers, .. } = self;
         for i in 0..=edge_ring.len.next_multiple_of(LANES) {
             let id = edge_ring.ids[if i < edge_ring.len { i } else { 0 }];
-            let field = quadrics.get(id as usize).unwrap_or(none);
-            for (row, channel) in scratch.first.iter_mut().zip(&field.channels) {
+            let quadric = quadrics.get(id as usize).unwrap_or(none);
+            for (row, channel) in scratch.first.iter_mut().zip(&quadric.channels) {
                 row[i] = channel.w;
             }
         }
@@ -68,14 +68,14 @@ impl<M: Metric, const K: usize> WedgeQuadrics<'_, M, K> {
 
     /// The same where something has.
     #[inline(always)]
-    fn look_ahead_by_slots(
+    fn preview_at_seams(
         &mut self,
         vertices: &Vertices,
         edge_ring: &EdgeRing,
-        placed: &Collapse,
+        collapse: &Collapse,
     ) -> bool {
-        self.scratch.slots.find(&self.seams, vertices, edge_ring, &placed.ends);
-        self.find_values(placed);
+        self.scratch.slots.find(&self.seams, vertices, edge_ring, &collapse.ends);
+        self.find_values(collapse);
         let Self { quadrics, scratch, none, layers, .. } = self;
         for i in 0..edge_ring.len {
             let of = |slot: u32| quadrics.get(slot as usize).unwrap_or(none).values();
@@ -106,7 +106,7 @@ impl<const K: usize> Scratch<K> {
         ends: [&[f32; K]; 2],
     ) -> bool {
         let (mut before, mut after) = (UvOrientations::default(), UvOrientations::default());
-        for start in edge_ring.starts() {
+        for start in edge_ring.lane_starts() {
             let corners = |k: usize| -> [Row; 4] {
                 if SEAMS {
                     let (first, second) = (&self.first[k], &self.second[k]);

@@ -18,70 +18,71 @@ impl<M: Metric, const K: usize> WedgeQuadrics<'_, M, K> {
         let flags = [v, target].map(|v| vertices.get(v).flags);
         let at0 = self.seams.sides(vertices, v, target);
         let at1 = self.seams.sides(vertices, target, v);
-        let mut met = WedgePairs::new(at0, at1, [false; 2]);
-        let leaves = self.may_leave(&mut met, (0, v)) && !flags[0].stays_beside(flags[1]);
-        let goes = self.may_leave(&mut met, (1, target)) && !flags[1].stays_beside(flags[0]);
+        let mut wedge_pairs = WedgePairs::new(at0, at1, [false; 2]);
+        let leaves = self.may_leave(&mut wedge_pairs, (0, v)) && !flags[0].stays_beside(flags[1]);
+        let goes =
+            self.may_leave(&mut wedge_pairs, (1, target)) && !flags[1].stays_beside(flags[0]);
         if !leaves && !goes {
             return Err(Refusal::Seam);
         }
         // Where two of one end meet one of the other not all may be one: that other end goes.
-        let [[a, _], [b, _]] = met.pairs;
-        let one_meets_two = met.are_two && a == b;
+        let [[a, _], [b, _]] = wedge_pairs.pairs;
+        let one_meets_two = wedge_pairs.are_two && a == b;
         let turns = if leaves && goes { one_meets_two } else { leaves };
         let (v0, v1) = if turns { (target, v) } else { (v, target) };
-        let met = if turns { met.turned() } else { met };
-        Ok(Ends { v0, v1, free: leaves && goes, met: self.one_each(met) })
+        let wedge_pairs = if turns { wedge_pairs.turned() } else { wedge_pairs };
+        Ok(Ends { v0, v1, free: leaves && goes, wedge_pairs: self.one_each(wedge_pairs) })
     }
 
     /// One of `v1` that meets two goes into that of the lower wedge.
     #[inline(always)]
-    fn one_each(&self, mut met: WedgePairs) -> WedgePairs {
-        let [[a, s], [b, t]] = met.pairs;
-        if met.are_two && s == t {
+    fn one_each(&self, mut wedge_pairs: WedgePairs) -> WedgePairs {
+        let [[a, s], [b, t]] = wedge_pairs.pairs;
+        if wedge_pairs.are_two && s == t {
             let [first, second] = [self.corners.wedge(a), self.corners.wedge(b)];
-            met.pairs[0][0] = if first <= second { a } else { b };
-            met.are_two = false;
-            met.has_alone[0] = !self.charts.is_empty();
+            wedge_pairs.pairs[0][0] = if first <= second { a } else { b };
+            wedge_pairs.are_two = false;
+            wedge_pairs.has_unpaired[0] = !self.charts.is_empty();
         }
-        met
+        wedge_pairs
     }
 
     /// Whether the charts of an end of an edge all have one at the other end to go to, and only one.
     /// Takes down whether it has slots that meet none.
     #[inline(always)]
-    fn may_leave(&self, met: &mut WedgePairs, (end, v): (usize, u32)) -> bool {
-        let [[a, s], [b, t]] = met.pairs;
+    fn may_leave(&self, wedge_pairs: &mut WedgePairs, (end, v): (usize, u32)) -> bool {
+        let [[a, s], [b, t]] = wedge_pairs.pairs;
         let (own, other) = if end == 0 { ([a, b], [s, t]) } else { ([s, t], [a, b]) };
         let [first, second] = [self.chart(own[0]), self.chart(own[1])];
         let parts = || self.chart(other[0]) != self.chart(other[1]);
-        let (mut all_go, mut any_alone) = (true, false);
+        let (mut all_go, mut any_unpaired) = (true, false);
         for sector in self.seams.of(v) {
-            if met.is_alone(end, sector.slot) {
+            if wedge_pairs.is_unpaired(end, sector.slot) {
                 let chart = self.chart(sector.slot);
                 all_go &= (chart == first) | (chart == second);
-                any_alone = true;
+                any_unpaired = true;
             }
         }
-        met.has_alone[end] = any_alone & !self.charts.is_empty();
+        wedge_pairs.has_unpaired[end] = any_unpaired & !self.charts.is_empty();
         all_go && !(first == second && parts())
     }
 
     /// The slots of an end that do not meet any along the edge. They stay with their faces.
     #[inline(always)]
-    pub(crate) fn alone(&self, ends: &Ends, end: usize) -> impl Iterator<Item = u32> + '_ {
-        let (v, met) = ([ends.v0, ends.v1][end], ends.met);
-        let sectors = if met.has_alone[end] { self.seams.of(v) } else { &[] };
+    pub(crate) fn unpaired(&self, ends: &Ends, end: usize) -> impl Iterator<Item = u32> + '_ {
+        let (v, wedge_pairs) = ([ends.v0, ends.v1][end], ends.wedge_pairs);
+        let sectors = if wedge_pairs.has_unpaired[end] { self.seams.of(v) } else { &[] };
         let first = move |(i, sector): (usize, &Sector)| {
             let is_first = || sectors[..i].iter().all(|other| other.slot != sector.slot);
-            (met.is_alone(end, sector.slot) && is_first()).then_some(sector.slot)
+            (wedge_pairs.is_unpaired(end, sector.slot) && is_first()).then_some(sector.slot)
         };
         sectors.iter().enumerate().filter_map(first)
     }
 
     /// The slot of `v0` whose chart that of a slot of `v1` becomes.
-    pub(crate) fn leader(&self, met: &WedgePairs, slot: u32) -> u32 {
+    pub(crate) fn leader(&self, wedge_pairs: &WedgePairs, slot: u32) -> u32 {
         let chart = self.chart(slot);
-        let found = met.pairs().iter().find(|pair| self.chart(pair[1]) == chart);
+        let found = wedge_pairs.pairs().iter().find(|pair| self.chart(pair[1]) == chart);
         found.map_or(slot, |pair| pair[0])
     }
 }

@@ -24,7 +24,7 @@ pub(crate) struct WedgeQuadrics<'m, M, const K: usize> {
     pub(crate) quadrics: Vec<AttributeQuadric<K>>,
     /// By slot: the one that it has become part of; itself if it has new values, `NOBODY` if it has
     /// those of the input.
-    pub(crate) heirs: Vec<u32>,
+    pub(crate) merged_into: Vec<u32>,
     pub(crate) seams: SeamSectors,
     /// By slot: the chart that it is of, see [`WedgeQuadrics::chart`]; empty where each is its own.
     pub(crate) charts: Vec<u32>,
@@ -41,7 +41,7 @@ pub(crate) struct WedgeQuadrics<'m, M, const K: usize> {
 
 impl<M: Metric, const K: usize> WedgeQuadrics<'_, M, K> {
     #[inline(always)]
-    pub(crate) fn field(&self, slot: u32) -> &AttributeQuadric<K> {
+    pub(crate) fn quadric(&self, slot: u32) -> &AttributeQuadric<K> {
         self.quadrics.get(slot as usize).unwrap_or(&self.none)
     }
 

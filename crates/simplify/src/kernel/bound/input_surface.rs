@@ -32,7 +32,7 @@ const SHARP: f32 = 0.97;
 const CLOSED: f32 = 1e-3;
 
 /// So many points are taken of an edge at most.
-const MOST_POINTS: usize = 32;
+const MAX_EDGE_POINTS: usize = 32;
 
 impl InputSurface {
     /// That of a valid mesh with faces; `faces` and `places` are as the engine has them.
@@ -56,25 +56,25 @@ impl InputSurface {
     /// How far a place is from the input, in the frame: something up to `enough` if it is no farther,
     /// `None` beyond `most`. `near` is a face thought to be.
     #[inline]
-    pub(crate) fn apart(
+    pub(crate) fn distance(
         &self,
         place: Vec3,
         near: &mut Option<FaceId>,
-        [enough, most]: [f32; 2],
+        [enough, max_error]: [f32; 2],
     ) -> Option<f32> {
         let unit = self.frame.unit;
-        let limits = [f64::from(enough) * unit, f64::from(most) * unit];
-        let found = self.faces.near(self.frame.leave(place), *near, limits)?;
+        let limits = [f64::from(enough) * unit, f64::from(max_error) * unit];
+        let found = self.faces.near(self.frame.to_model(place), *near, limits)?;
         *near = Some(found.face);
         Some((found.distance_squared.sqrt() / unit) as f32)
     }
 
     /// Points along the edges that stand out, no farther from each other than this, or few.
-    pub(crate) fn between(&self, apart: f32) -> EdgeSamples {
+    pub(crate) fn between(&self, spacing: f32) -> EdgeSamples {
         let mut found = Vec::new();
         for &[u, v] in &self.rims {
             let [from, to] = [u, v].map(|v| self.places[v as usize]);
-            let count = ((from.distance(to) / apart) as usize).min(MOST_POINTS);
+            let count = ((from.distance(to) / spacing) as usize).min(MAX_EDGE_POINTS);
             for i in 1..=count {
                 let t = i as f32 / (count + 1) as f32;
                 found.push((if t < 0.5 { u } else { v }, from.lerp(to, t)));

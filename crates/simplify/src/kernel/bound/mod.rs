@@ -29,26 +29,26 @@ const EDGE_POINTS: usize = 3;
 
 /// A bound of the error, and what it takes to hold it.
 pub(crate) struct ErrorBound<'m> {
-    original: &'m InputSurface,
+    input: &'m InputSurface,
     between: EdgeSamples,
     /// In the frame's units.
-    most: f32,
+    max_error: f32,
     /// Which vertices of the input have gone into which: of each the next, in a ring through the one
     /// that lives.
     next: Vec<u32>,
     /// How far the surface has moved at each vertex, all steps added up.
-    ways: Vec<f32>,
+    travelled: Vec<f32>,
 }
 
 /// A part of the surface as it is held within a bound.
 pub(crate) struct BoundPart<'v> {
-    original: &'v InputSurface,
+    input: &'v InputSurface,
     between: &'v EdgeSamples,
-    most: f32,
+    max_error: f32,
     /// The id of the first vertex.
     base: u32,
     next: &'v mut [u32],
-    ways: &'v mut [f32],
+    travelled: &'v mut [f32],
     /// Room for the faces around an edge, before and after.
     old: FaceFan,
     new: FaceFan,
@@ -58,36 +58,36 @@ impl<'m> ErrorBound<'m> {
     /// `most` in the frame's units, for the surface as it is now.
     ///
     /// Cost: O(n), n = vertices of the input.
-    pub(crate) fn new(most: f32, original: &'m InputSurface, store: &VertexStore) -> Self {
+    pub(crate) fn new(max_error: f32, input: &'m InputSurface, store: &VertexStore) -> Self {
         let mut next: Vec<u32> = (0..store.all.len() as u32).collect();
-        for (v, heir) in store.heirs().into_iter().enumerate().rev() {
+        for (v, heir) in store.live_vertices().into_iter().enumerate().rev() {
             if heir as usize != v {
                 next[v] = std::mem::replace(&mut next[heir as usize], v as u32);
             }
         }
-        let ways = store.all.iter().map(|vertex| vertex.moved.sqrt()).collect();
-        Self { original, between: original.between(most), most, next, ways }
+        let travelled = store.all.iter().map(|vertex| vertex.moved.sqrt()).collect();
+        Self { input, between: input.between(max_error), max_error, next, travelled }
     }
 
     /// That of each of some runs of the vertices, by their lengths.
     pub(crate) fn split(&mut self, lengths: &[usize]) -> Vec<BoundPart<'_>> {
-        let Self { original, between, most, next, ways } = self;
-        let (mut next, mut ways, mut base) = (&mut next[..], &mut ways[..], 0);
+        let Self { input, between, max_error, next, travelled } = self;
+        let (mut next, mut travelled, mut base) = (&mut next[..], &mut travelled[..], 0);
         let mut parts = Vec::with_capacity(lengths.len());
         for &len in lengths {
             let (own_next, other_next) = next.split_at_mut(len);
-            let (own_ways, other_ways) = ways.split_at_mut(len);
+            let (own_travelled, other_travelled) = travelled.split_at_mut(len);
             parts.push(BoundPart {
-                original,
+                input,
                 between,
-                most: *most,
+                max_error: *max_error,
                 base,
                 next: own_next,
-                ways: own_ways,
+                travelled: own_travelled,
                 old: FaceFan::default(),
                 new: FaceFan::default(),
             });
-            (next, ways) = (other_next, other_ways);
+            (next, travelled) = (other_next, other_travelled);
             base += len as u32;
         }
         parts
@@ -103,15 +103,15 @@ pub(crate) struct BoundedStep<'a> {
     /// Where `v0` was.
     pub(crate) from: Vec3,
     /// The new place as seen from there.
-    pub(crate) by: Vec3,
+    pub(crate) displacement: Vec3,
     /// The square of how far the surface goes.
     pub(crate) now: f32,
 }
 
 impl BoundPart<'_> {
     /// The bound, in the frame's units.
-    pub(crate) fn most(&self) -> f32 {
-        self.most
+    pub(crate) fn max_error(&self) -> f32 {
+        self.max_error
     }
 
     /// The square of how far the surface is from the input after a step, or `estimate` where that cannot
@@ -125,9 +125,9 @@ impl BoundPart<'_> {
     /// How far the surface moves in all by a step, and what [`Self::admit`] gives.
     pub(crate) fn judge(&mut self, step: &BoundedStep<'_>, estimate: f32) -> Option<(f32, f32)> {
         let [v0, v1] = step.ends.map(|v| self.slot(v));
-        let before = self.ways[v0].max(self.ways[v1]);
-        let way = before + step.now.max(step.edge_ring.off_planes(step.by)).sqrt();
-        if way <= SURE * self.most {
+        let before = self.travelled[v0].max(self.travelled[v1]);
+        let way = before + step.now.max(step.edge_ring.off_planes(step.displacement)).sqrt();
+        if way <= SURE * self.max_error {
             return Some((way, estimate));
         }
         let farthest = self.measure(step, before)?;
@@ -137,19 +137,19 @@ impl BoundPart<'_> {
     /// Takes a step for carried out that moves the surface so far in all.
     pub(crate) fn carry_out(&mut self, ends: [u32; 2], way: f32) {
         let [v0, v1] = ends.map(|v| self.slot(v));
-        self.ways[v0] = way;
+        self.travelled[v0] = way;
         self.next.swap(v0, v1);
     }
 
     /// How far the surface is from the input after a step; `None` if beyond the bound.
     fn measure(&mut self, step: &BoundedStep<'_>, before: f32) -> Option<f32> {
-        if step.now.sqrt() > TOO_FAR * self.most {
+        if step.now.sqrt() > TOO_FAR * self.max_error {
             return None;
         }
         let of_new = self.of_new(step)?;
         self.old.lay_old(step.edge_ring);
-        self.new.lay_new(step.edge_ring, step.by);
-        if self.of_edges(step.edge_ring) > self.most + before {
+        self.new.lay_new(step.edge_ring, step.displacement);
+        if self.of_edges(step.edge_ring) > self.max_error + before {
             return None;
         }
         Some(of_new.max(self.of_old(step)?))
@@ -157,20 +157,20 @@ impl BoundPart<'_> {
 
     /// The farthest of some points of the new faces from the input; `None` if beyond the bound.
     fn of_new(&self, step: &BoundedStep<'_>) -> Option<f32> {
-        let &BoundedStep { edge_ring, from, by, .. } = step;
-        let mut probe = Probe::new(self.original, self.most);
-        let apex = (from + by, probe.at(from + by)?);
+        let &BoundedStep { edge_ring, from, displacement, .. } = step;
+        let mut probe = Probe::new(self.input, self.max_error);
+        let apex = (from + displacement, probe.at(from + displacement)?);
         for i in 0..edge_ring.len {
-            let to = from + edge_ring.seen(i);
+            let to = from + edge_ring.relative(i);
             let at_end = if edge_ring.ids[i] == GHOST {
                 0.0
             } else {
-                let at_end = self.ways[self.slot(edge_ring.ids[i])].min(self.most);
+                let at_end = self.travelled[self.slot(edge_ring.ids[i])].min(self.max_error);
                 probe.along([apex, (to, at_end)])?;
                 at_end
             };
             if edge_ring.is_face(i) {
-                probe.along([apex, (to.midpoint(from + edge_ring.seen(i + 1)), at_end)])?;
+                probe.along([apex, (to.midpoint(from + edge_ring.relative(i + 1)), at_end)])?;
             }
         }
         Some(probe.farthest())
@@ -180,11 +180,12 @@ impl BoundPart<'_> {
     /// the new faces may be nearer to the input.
     fn of_edges(&self, edge_ring: &EdgeRing) -> f32 {
         let spokes = (0..edge_ring.len).filter(|&i| edge_ring.ids[i] != GHOST);
-        let spokes = spokes.map(|i| (edge_ring.along * edge_ring.of_v1[i], edge_ring.seen(i)));
+        let spokes = spokes.map(|i| (edge_ring.along * edge_ring.of_v1[i], edge_ring.relative(i)));
         // What the spokes do not have of the dying faces.
         let is_face = |wing: usize| edge_ring.ghost != Some(wing);
-        let first = is_face(0).then(|| (edge_ring.along, edge_ring.seen(0)));
-        let last = is_face(edge_ring.of_v0).then(|| (Vec3::ZERO, edge_ring.seen(edge_ring.of_v0)));
+        let first = is_face(0).then(|| (edge_ring.along, edge_ring.relative(0)));
+        let last =
+            is_face(edge_ring.of_v0).then(|| (Vec3::ZERO, edge_ring.relative(edge_ring.of_v0)));
         let edges = spokes.chain(first).chain(last).chain([(Vec3::ZERO, edge_ring.along)]);
         let part = |k: usize| k as f32 / (EDGE_POINTS + 1) as f32;
         let points = edges.flat_map(|(a, b)| (1..=EDGE_POINTS).map(move |k| a.lerp(b, part(k))));
@@ -195,17 +196,17 @@ impl BoundPart<'_> {
     /// within the bound of the old faces and is not within that of the new ones.
     fn of_old(&mut self, step: &BoundedStep<'_>) -> Option<f32> {
         let &BoundedStep { edge_ring, ends, from, .. } = step;
-        let most = self.most * self.most;
+        let max_error = self.max_error * self.max_error;
         let mut farthest = 0.0f32;
         let ring = edge_ring.ids().iter().copied().filter(|&v| v != GHOST);
         for (i, head) in ends.into_iter().chain(ring).enumerate() {
             let (mut last, mut at) = (head, head);
             loop {
-                let here = [self.original.place(at)];
+                let here = [self.input.place(at)];
                 for &place in here.iter().chain(self.between.of(at)) {
                     let apart = self.new.squared(place - from);
-                    if apart > most {
-                        if self.old.squared(place - from) <= most {
+                    if apart > max_error {
+                        if self.old.squared(place - from) <= max_error {
                             self.put_first(head, last, at);
                             return None;
                         }

@@ -18,8 +18,8 @@ const CALM: f32 = 0.4;
 
 /// Finds how far places are from the input, one near the other.
 pub(crate) struct Probe<'v> {
-    original: &'v InputSurface,
-    most: f32,
+    input: &'v InputSurface,
+    max_error: f32,
     near: Option<FaceId>,
     farthest: f32,
 }
@@ -29,8 +29,8 @@ pub(crate) type Probed = (Vec3, f32);
 
 impl<'v> Probe<'v> {
     /// `most` is the bound, in the frame's units.
-    pub(crate) fn new(original: &'v InputSurface, most: f32) -> Self {
-        Self { original, most, near: None, farthest: 0.0 }
+    pub(crate) fn new(input: &'v InputSurface, max_error: f32) -> Self {
+        Self { input, max_error, near: None, farthest: 0.0 }
     }
 
     /// The farthest place yet.
@@ -40,8 +40,8 @@ impl<'v> Probe<'v> {
 
     /// How far a place is from the input, at most; `None` if beyond the bound.
     pub(crate) fn at(&mut self, place: Vec3) -> Option<f32> {
-        let limits = [CALM * self.most, self.most];
-        let apart = self.original.apart(place, &mut self.near, limits)?;
+        let limits = [CALM * self.max_error, self.max_error];
+        let apart = self.input.distance(place, &mut self.near, limits)?;
         self.farthest = self.farthest.max(apart);
         Some(apart)
     }
@@ -54,12 +54,12 @@ impl<'v> Probe<'v> {
     fn halve(&mut self, [a, b]: [Probed; 2], times: u32) -> Option<()> {
         // Distance does not change faster than the place does.
         let highest = (a.1 + b.1 + a.0.distance(b.0)) / 2.0;
-        if times == 0 || highest <= OVER * self.most {
+        if times == 0 || highest <= OVER * self.max_error {
             return Some(());
         }
         let place = a.0.midpoint(b.0);
         let middle = (place, self.at(place)?);
-        let is_calm = a.1.max(b.1).max(middle.1) <= CALM * self.most;
+        let is_calm = a.1.max(b.1).max(middle.1) <= CALM * self.max_error;
         if is_calm && times < HALVINGS {
             return Some(());
         }

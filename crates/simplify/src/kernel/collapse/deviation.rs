@@ -7,45 +7,45 @@
 use glam::Vec3;
 
 use crate::kernel::collapse::edge_ring::{EdgeRing, ROOM, Spokes, row3};
-use crate::kernel::simd::{LANES, Row3, TINY, least, most};
+use crate::kernel::simd::{LANES, Row3, TINY, select_max, select_min};
 
 impl EdgeRing {
     /// The square of the greatest of the three distances. `place` as seen from v0; the new faces are
     /// those last put.
     #[inline(always)]
-    pub(crate) fn apart(&self, place: Vec3) -> f32 {
+    pub(crate) fn deviation(&self, place: Vec3) -> f32 {
         let beyond = [f32::INFINITY; LANES];
         let (mut of_v0, mut of_v1, mut of_new) = (beyond, beyond, beyond);
         let along = self.along;
-        for start in self.starts() {
+        for start in self.lane_starts() {
             let Spokes { a, b, of_v1: at_v1 } = self.spokes(start);
             let (old, new) = (row3(&self.old, start), row3(&self.new, start));
             for lane in 0..LANES {
                 let (a, b) = (a.get(lane), b.get(lane));
                 let face = CornerFace::new(a - place, b - place, new.get(lane));
-                of_v0[lane] = least(face.squared(-place), of_v0[lane]);
-                of_v1[lane] = least(face.squared(along - place), of_v1[lane]);
+                of_v0[lane] = select_min(face.squared(-place), of_v0[lane]);
+                of_v1[lane] = select_min(face.squared(along - place), of_v1[lane]);
                 let apex = along * at_v1[lane];
                 let face = CornerFace::new(a - apex, b - apex, old.get(lane));
-                of_new[lane] = least(face.squared(place - apex), of_new[lane]);
+                of_new[lane] = select_min(face.squared(place - apex), of_new[lane]);
             }
         }
         for [a, b, normal] in self.dying_faces() {
-            of_new[0] = least(CornerFace::new(a, b, normal).squared(place), of_new[0]);
+            of_new[0] = select_min(CornerFace::new(a, b, normal).squared(place), of_new[0]);
         }
         let mut nearest = [of_v0[0], of_v1[0], of_new[0]];
         for lane in 1..LANES {
-            nearest[0] = least(of_v0[lane], nearest[0]);
-            nearest[1] = least(of_v1[lane], nearest[1]);
-            nearest[2] = least(of_new[lane], nearest[2]);
+            nearest[0] = select_min(of_v0[lane], nearest[0]);
+            nearest[1] = select_min(of_v1[lane], nearest[1]);
+            nearest[2] = select_min(of_new[lane], nearest[2]);
         }
-        most(nearest[0], most(nearest[1], nearest[2]))
+        select_max(nearest[0], select_max(nearest[1], nearest[2]))
     }
 
     /// The squares of how far a place is from each of the old faces: the spokes, then those that go.
-    pub(crate) fn squares_to_old(&self, place: Vec3) -> [f32; ROOM] {
+    pub(crate) fn squared_distances_to_old(&self, place: Vec3) -> [f32; ROOM] {
         let mut squares = [0.0; ROOM];
-        for start in self.starts() {
+        for start in self.lane_starts() {
             let (Spokes { a, b, of_v1 }, old) = (self.spokes(start), row3(&self.old, start));
             for lane in 0..LANES {
                 let apex = self.along * of_v1[lane];
@@ -63,13 +63,13 @@ impl EdgeRing {
     /// The square of how far a place is from the planes of the old faces that stay, at most.
     pub(crate) fn off_planes(&self, place: Vec3) -> f32 {
         let mut farthest = 0.0;
-        for start in self.starts() {
+        for start in self.lane_starts() {
             let (old, of_v1) = (row3(&self.old, start), self.spokes(start).of_v1);
             for lane in 0..LANES {
                 let normal = old.get(lane);
                 let height = normal.dot(place - self.along * of_v1[lane]);
                 let to_unit = (normal.dot(normal) + TINY).recip();
-                farthest = most(height * height * to_unit, farthest);
+                farthest = select_max(height * height * to_unit, farthest);
             }
         }
         farthest
@@ -78,8 +78,8 @@ impl EdgeRing {
     /// The dying faces: two corners as seen from v0, and the normal.
     #[inline(always)]
     fn dying_faces(&self) -> [[Vec3; 3]; 2] {
-        let (first, last) = self.dying();
-        [[self.along, self.seen(0), first], [self.seen(self.of_v0), self.along, last]]
+        let (first, last) = self.dying_normals();
+        [[self.along, self.relative(0), first], [self.relative(self.of_v0), self.along, last]]
     }
 }
 
@@ -122,7 +122,7 @@ impl FaceFan {
         normals: &[[f32; ROOM]; 3],
         apex: impl Fn(f32) -> Vec3,
     ) {
-        for start in edge_ring.starts() {
+        for start in edge_ring.lane_starts() {
             let Spokes { mut a, mut b, of_v1 } = edge_ring.spokes(start);
             let mut apices = Row3::ZERO;
             for lane in 0..LANES {
@@ -142,12 +142,12 @@ impl FaceFan {
         for FaceRows { apex, a, b, normal } in &self.0 {
             for lane in 0..LANES {
                 let face = CornerFace::new(a.get(lane), b.get(lane), normal.get(lane));
-                let quadric = point - apex.get(lane);
-                let squared = least(face.squared(quadric), face.squared_of_rim(quadric));
-                nearest[lane] = least(squared, nearest[lane]);
+                let relative = point - apex.get(lane);
+                let squared = select_min(face.squared(relative), face.squared_of_rim(relative));
+                nearest[lane] = select_min(squared, nearest[lane]);
             }
         }
-        nearest.into_iter().fold(f32::INFINITY, least)
+        nearest.into_iter().fold(f32::INFINITY, select_min)
     }
 }
 
@@ -181,8 +181,8 @@ impl CornerFace {
         let (u, v) = (pa * self.bb - pb * self.ab, pb * self.aa - pa * self.ab);
         let is_over = (u >= 0.0) & (v >= 0.0) & (u + v <= self.nn) & (self.nn > 0.0);
         let height = point.dot(self.normal);
-        let t = least(most(pa * self.to_a, 0.0), 1.0);
-        let edge = most(point.dot(point) - t * (pa + pa - t * self.aa), 0.0);
+        let t = select_min(select_max(pa * self.to_a, 0.0), 1.0);
+        let edge = select_max(point.dot(point) - t * (pa + pa - t * self.aa), 0.0);
         if is_over { height * height * self.to_unit } else { edge }
     }
 
@@ -190,9 +190,9 @@ impl CornerFace {
     #[inline(always)]
     fn squared_of_all(&self, point: Vec3) -> f32 {
         let pb = point.dot(self.b);
-        let t = least(most(pb * (self.bb + TINY).recip(), 0.0), 1.0);
-        let second = most(point.dot(point) - t * (pb + pb - t * self.bb), 0.0);
-        least(least(self.squared(point), second), self.squared_of_rim(point))
+        let t = select_min(select_max(pb * (self.bb + TINY).recip(), 0.0), 1.0);
+        let second = select_max(point.dot(point) - t * (pb + pb - t * self.bb), 0.0);
+        select_min(select_min(self.squared(point), second), self.squared_of_rim(point))
     }
 
     /// The square of the distance of a point from the outer edge, where the face has an area.
@@ -200,7 +200,7 @@ impl CornerFace {
     fn squared_of_rim(&self, point: Vec3) -> f32 {
         let (along, from_a) = (self.b - self.a, point - self.a);
         let t = from_a.dot(along) * (along.dot(along) + TINY).recip();
-        let apart = from_a - along * least(most(t, 0.0), 1.0);
+        let apart = from_a - along * select_min(select_max(t, 0.0), 1.0);
         if self.nn > 0.0 { apart.dot(apart) } else { f32::INFINITY }
     }
 }

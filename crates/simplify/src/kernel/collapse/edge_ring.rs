@@ -12,16 +12,16 @@ use std::ops::Range;
 
 use glam::{DVec3, Vec3, Vec4};
 
-use crate::kernel::mesh::one_ring::{GHOST, MOST, Vertices, place_in, place_of};
+use crate::kernel::mesh::one_ring::{GHOST, MAX_RING, Vertices, index_in, index_in_ring};
 use crate::kernel::mesh::vertex::{RING, VertexFlags, VertexQuadric};
-use crate::kernel::simd::{LANES, Row, Row3, most, sum_of, transpose, transpose_back};
+use crate::kernel::simd::{LANES, Row, Row3, select_max, sum_of, transpose, transpose_back};
 use crate::refusal::Refusal;
 
 /// Room for a ring and the lanes beyond its end.
-pub(crate) const ROOM: usize = MOST + 2 * LANES;
+pub(crate) const ROOM: usize = MAX_RING + 2 * LANES;
 
 /// The least cosine between a face's normal before and after, as in the general engine.
-const LEAST_COSINE: f32 = 0.2;
+const MIN_COSINE: f32 = 0.2;
 
 /// What is around an edge.
 pub(crate) struct EdgeRing {
@@ -88,7 +88,7 @@ impl EdgeRing {
         if len < 3 || ring0.len().min(ring1.len()) < 3 {
             return Err(Refusal::LastFaces);
         }
-        if len > MOST {
+        if len > MAX_RING {
             return Err(Refusal::Valence);
         }
         self.len = len;
@@ -100,7 +100,7 @@ impl EdgeRing {
             return Err(Refusal::NonManifold);
         }
         self.link(vertices, [v0, v1])?;
-        self.see(vertices, v0, v1);
+        self.load_positions(vertices, v0, v1);
         Ok(())
     }
 
@@ -154,11 +154,11 @@ impl EdgeRing {
 
     /// AttributeModel up where the ring is, and what its faces are now.
     #[inline(always)]
-    fn see(&mut self, vertices: &Vertices, v0: u32, v1: u32) {
+    fn load_positions(&mut self, vertices: &Vertices, v0: u32, v1: u32) {
         let (from, to) = (vertices.get(v0).place(), vertices.get(v1).place());
         self.along = to - from;
-        for start in self.starts() {
-            self.see_some(vertices, start, from);
+        for start in self.lane_starts() {
+            self.load_lanes(vertices, start, from);
         }
         // The ring closes; the lanes beyond are faces of one point.
         for x in &mut self.ring {
@@ -168,7 +168,7 @@ impl EdgeRing {
         if let Some(ghost) = self.ghost {
             self.place_ghost(ghost);
         }
-        for start in self.starts() {
+        for start in self.lane_starts() {
             let (spokes, mut old) = (self.spokes(start), Row3::ZERO);
             for lane in 0..LANES {
                 old.set(lane, spokes.normal(lane, self.along * spokes.of_v1[lane]));
@@ -182,16 +182,16 @@ impl EdgeRing {
 
     /// AttributeModel up where eight of the ring are, and whose spokes theirs are.
     #[inline(always)]
-    fn see_some(&mut self, vertices: &Vertices, start: usize, from: Vec3) {
+    fn load_lanes(&mut self, vertices: &Vertices, start: usize, from: Vec3) {
         let first = self.ids[0];
         let ids: &mut [u32; LANES] = chunk_mut(&mut self.ids, start);
         let (len, of_v0) = ((self.len - start) as u32, self.of_v0.saturating_sub(start) as u32);
         for (lane, id) in (0..).zip(&mut *ids) {
             *id = if lane < len { *id } else { first };
         }
-        let see = |lane: usize| vertices.get(ids[lane]).quadric.0[0] - from.extend(0.0);
+        let load = |lane: usize| vertices.get(ids[lane]).quadric.0[0] - from.extend(0.0);
         let [x, y, z, _] =
-            transpose([see(0), see(1), see(2), see(3), see(4), see(5), see(6), see(7)]);
+            transpose([load(0), load(1), load(2), load(3), load(4), load(5), load(6), load(7)]);
         write(&mut self.ring, start, &Row3 { x, y, z });
         let mut of_v1 = [0.0; LANES];
         for (lane, of_v1) in (0..).zip(&mut of_v1) {
@@ -214,15 +214,15 @@ impl EdgeRing {
 
     /// Where each eight spokes begin.
     #[inline(always)]
-    pub(crate) fn starts(&self) -> impl Iterator<Item = usize> + use<> {
+    pub(crate) fn lane_starts(&self) -> impl Iterator<Item = usize> + use<> {
         (0..self.len).step_by(LANES)
     }
 
     /// Puts the new vertex at `place`, as seen from v0. Whether no face turns over, or by more than a
     /// limit, or loses its area.
     #[inline(always)]
-    pub(crate) fn put(&mut self, place: Vec3) -> Result<(), Refusal> {
-        for start in self.starts() {
+    pub(crate) fn try_place(&mut self, place: Vec3) -> Result<(), Refusal> {
+        for start in self.lane_starts() {
             let (spokes, mut new) = (self.spokes(start), Row3::ZERO);
             for lane in 0..LANES {
                 new.set(lane, spokes.normal(lane, place));
@@ -233,12 +233,12 @@ impl EdgeRing {
             clear(&mut self.new, ghost, self.len);
         }
         let mut turned = 0;
-        for start in self.starts() {
+        for start in self.lane_starts() {
             let (old, new) = (row3(&self.old, start), row3(&self.new, start));
             for lane in 0..LANES {
                 let (old, new) = (old.get(lane), new.get(lane));
                 let (turn, before) = (old.dot(new), old.dot(old));
-                let least = LEAST_COSINE * LEAST_COSINE * before * new.dot(new);
+                let least = MIN_COSINE * MIN_COSINE * before * new.dot(new);
                 let kept = (turn > 0.0) & (turn * turn > least);
                 turned |= u32::from(!kept & (before > 0.0));
             }
@@ -248,22 +248,22 @@ impl EdgeRing {
 
     /// The dying faces' normals, in the order of the wings they have.
     #[inline(always)]
-    pub(crate) fn dying(&self) -> (Vec3, Vec3) {
+    pub(crate) fn dying_normals(&self) -> (Vec3, Vec3) {
         let (mut first, mut last) = (Vec3::ZERO, Vec3::ZERO);
         if self.ghost != Some(0) {
-            first = self.along.cross(self.seen(0));
+            first = self.along.cross(self.relative(0));
         }
         if self.ghost != Some(self.of_v0) {
-            last = self.seen(self.of_v0).cross(self.along);
+            last = self.relative(self.of_v0).cross(self.along);
         }
         (first, last)
     }
 
     /// What each spoke's star becomes, less what it was, and the new vertex's star but for boundaries.
     #[inline(always)]
-    pub(crate) fn change(&mut self) -> VertexQuadric {
+    pub(crate) fn quadric_changes(&mut self) -> VertexQuadric {
         let mut sums = [[0.0; LANES]; 9];
-        for start in self.starts() {
+        for start in self.lane_starts() {
             let (old, new) = (row3(&self.old, start), row3(&self.new, start));
             let mut change = [[0.0; LANES]; 9];
             for lane in 0..LANES {
@@ -298,7 +298,7 @@ impl EdgeRing {
     /// The sum of n over the faces as they are, each once, and what n·x is where the volume stays, seen
     /// from the middle; by the normals of the dying faces.
     #[inline(always)]
-    pub(crate) fn volume(&self, (first, last): (Vec3, Vec3)) -> (DVec3, f64) {
+    pub(crate) fn volume_plane(&self, (first, last): (Vec3, Vec3)) -> (DVec3, f64) {
         let (n0, n1) = self.sums();
         let half = self.along.as_dvec3() * 0.5;
         ((n0 + n1 + first + last).as_dvec3(), (n1 - n0).as_dvec3().dot(half))
@@ -308,7 +308,7 @@ impl EdgeRing {
     #[inline(always)]
     fn sums(&self) -> (Vec3, Vec3) {
         let (mut of_v0, mut of_v1) = (Row3::ZERO, Row3::ZERO);
-        for start in self.starts() {
+        for start in self.lane_starts() {
             let (old, part): (_, &Row) = (row3(&self.old, start), chunk(&self.of_v1, start));
             for lane in 0..LANES {
                 let old = old.get(lane);
@@ -347,7 +347,7 @@ impl EdgeRing {
 
     /// A vertex of the ring as seen from v0.
     #[inline(always)]
-    pub(crate) fn seen(&self, i: usize) -> Vec3 {
+    pub(crate) fn relative(&self, i: usize) -> Vec3 {
         one(&self.ring, i)
     }
 
@@ -362,15 +362,15 @@ impl EdgeRing {
     pub(crate) fn reach(&self) -> f32 {
         let half = self.along * 0.5;
         let mut reach = [half.length_squared(); LANES];
-        for start in self.starts() {
+        for start in self.lane_starts() {
             let ring = row3(&self.ring, start);
             for lane in 0..LANES {
-                reach[lane] = most(ring.get(lane).distance_squared(half), reach[lane]);
+                reach[lane] = select_max(ring.get(lane).distance_squared(half), reach[lane]);
             }
         }
         let mut farthest = reach[0];
         for lane in reach {
-            farthest = most(lane, farthest);
+            farthest = select_max(lane, farthest);
         }
         farthest
     }
@@ -449,7 +449,7 @@ fn write_after(
     if len > RING {
         return write_long_after(&mut to[start..], vertices.neighbours(v), end);
     }
-    let Some(at) = place_of(&vertex.ring, len, end) else { return false };
+    let Some(at) = index_in_ring(&vertex.ring, len, end) else { return false };
     let mut twice = [0; 2 * RING];
     *chunk_mut(&mut twice, 0) = vertex.ring;
     *chunk_mut(&mut twice, len) = vertex.ring;
@@ -459,7 +459,7 @@ fn write_after(
 
 #[cold]
 fn write_long_after(to: &mut [u32], ring: &[u32], end: u32) -> bool {
-    let Some(at) = place_in(ring, end) else { return false };
+    let Some(at) = index_in(ring, end) else { return false };
     let turned = ring[at + 1..].iter().chain(&ring[..at]);
     to.iter_mut().zip(turned).for_each(|(to, &w)| *to = w);
     true

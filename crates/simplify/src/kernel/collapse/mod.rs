@@ -13,14 +13,14 @@ pub(crate) struct Ends {
     /// Whether the new vertex may go anywhere, or is where `v0` is.
     pub(crate) free: bool,
     /// Which of their slots become one.
-    pub(crate) met: WedgePairs,
+    pub(crate) wedge_pairs: WedgePairs,
 }
 
 impl Ends {
     /// Where nothing is in the way.
     #[inline(always)]
     pub(crate) fn free(v0: u32, v1: u32) -> Self {
-        Self { v0, v1, free: true, met: WedgePairs::smooth(v0, v1) }
+        Self { v0, v1, free: true, wedge_pairs: WedgePairs::smooth(v0, v1) }
     }
 }
 
@@ -31,11 +31,11 @@ pub(crate) struct Collapse {
     /// Half the edge.
     pub(crate) half: DVec3,
     /// The new place as seen from the middle.
-    pub(crate) best: DVec3,
+    pub(crate) from_middle: DVec3,
     /// The new place, as rounded.
     pub(crate) place: Vec3,
     /// The same as seen from `v0`.
-    pub(crate) by: Vec3,
+    pub(crate) displacement: Vec3,
 }
 
 /// The slots that meet along an edge, of `v0` and of `v1`.
@@ -47,7 +47,7 @@ pub(crate) struct WedgePairs {
     /// Whether the second pair is another than the first.
     pub(crate) are_two: bool,
     /// Whether an end has slots that are in no pair.
-    pub(crate) has_alone: [bool; 2],
+    pub(crate) has_unpaired: [bool; 2],
 }
 
 impl WedgePairs {
@@ -55,14 +55,14 @@ impl WedgePairs {
     #[inline(always)]
     pub(crate) fn smooth(v0: u32, v1: u32) -> Self {
         let sides = [WedgeSides { before: v0, after: v0 }, WedgeSides { before: v1, after: v1 }];
-        Self { sides, pairs: [[v0, v1]; 2], are_two: false, has_alone: [false; 2] }
+        Self { sides, pairs: [[v0, v1]; 2], are_two: false, has_unpaired: [false; 2] }
     }
 
     /// Where one side has no face, it has the slots of the other.
     #[inline(always)]
-    pub(crate) fn new(at0: WedgeSides, at1: WedgeSides, has_alone: [bool; 2]) -> Self {
+    pub(crate) fn new(at0: WedgeSides, at1: WedgeSides, has_unpaired: [bool; 2]) -> Self {
         let pairs = [[at0.after, at1.before], [at0.before, at1.after]];
-        Self { sides: [at0, at1], pairs, are_two: pairs[0] != pairs[1], has_alone }
+        Self { sides: [at0, at1], pairs, are_two: pairs[0] != pairs[1], has_unpaired }
     }
 
     /// One pair, or one on each side.
@@ -79,14 +79,14 @@ impl WedgePairs {
 
     /// Whether a slot of an end is in no pair.
     #[inline(always)]
-    pub(crate) fn is_alone(&self, end: usize, slot: u32) -> bool {
+    pub(crate) fn is_unpaired(&self, end: usize, slot: u32) -> bool {
         slot != self.pairs[0][end] && !(self.are_two && slot == self.pairs[1][end])
     }
 
     /// As seen from the other end.
     #[inline(always)]
     pub(crate) fn turned(&self) -> Self {
-        let ([at0, at1], [of_v0, of_v1]) = (self.sides, self.has_alone);
+        let ([at0, at1], [of_v0, of_v1]) = (self.sides, self.has_unpaired);
         Self::new(at1, at0, [of_v1, of_v0])
     }
 }

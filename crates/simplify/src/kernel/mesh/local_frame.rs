@@ -23,19 +23,19 @@ impl Frame {
 
     /// A place in it.
     #[inline]
-    pub(crate) fn enter(&self, position: [f64; 3]) -> Vec3 {
+    pub(crate) fn to_local(&self, position: [f64; 3]) -> Vec3 {
         ((DVec3::from(position) - self.center) / self.unit).as_vec3()
     }
 
     /// A position out of it.
     #[inline]
-    pub(crate) fn leave(&self, place: Vec3) -> [f64; 3] {
+    pub(crate) fn to_model(&self, place: Vec3) -> [f64; 3] {
         (place.as_dvec3() * self.unit + self.center).to_array()
     }
 
     /// The position of a vertex: as it was in the input if it is there still.
     #[inline]
-    pub(crate) fn leave_from(&self, input: [f64; 3], place: Vec3) -> [f64; 3] {
-        if self.enter(input) == place { input } else { self.leave(place) }
+    pub(crate) fn to_model_or_input(&self, input: [f64; 3], place: Vec3) -> [f64; 3] {
+        if self.to_local(input) == place { input } else { self.to_model(place) }
     }
 }

@@ -7,7 +7,7 @@
 use glam::Vec4;
 use rayon::prelude::*;
 
-use crate::kernel::mesh::vertex::{Bf16, NOBODY, RING, Vertex, VertexFlags, VertexQuadric};
+use crate::kernel::mesh::vertex::{Bf16, NO_VERTEX, RING, Vertex, VertexFlags, VertexQuadric};
 use std::ops::Range;
 
 /// The length of a ring that is in a list, by the first number in its place; the second is a count.
@@ -15,7 +15,7 @@ pub(crate) const LONG: u8 = u8::MAX;
 
 /// No edge is contracted to make a ring longer than this; a vertex whose ring is, waits until its
 /// neighbours have become fewer. Costs grow with the square of it.
-pub(crate) const MOST: usize = 64;
+pub(crate) const MAX_RING: usize = 64;
 
 /// The vertex that closes the rings of boundary vertices. It has no record of its own.
 pub(crate) const GHOST: u32 = u32::MAX - 1;
@@ -23,14 +23,14 @@ pub(crate) const GHOST: u32 = u32::MAX - 1;
 /// What the ghost looks like, and vertices of other parts: edges to them are not contracted.
 static ELSEWHERE: Vertex = Vertex {
     quadric: VertexQuadric([Vec4::ZERO; 3]),
-    target: NOBODY,
+    target: NO_VERTEX,
     moved: 0.0,
     bucket: 0,
     floor: 0,
     flags: VertexFlags::BARRED,
     len: 0,
     constant: Bf16::NONE,
-    ring: [NOBODY; RING],
+    ring: [NO_VERTEX; RING],
 };
 
 /// All vertices, dead ones too, and the rings that they have no room for.
@@ -97,23 +97,23 @@ impl VertexStore {
     }
 
     /// The live vertex that each is or has gone into.
-    pub(crate) fn heirs(&self) -> Vec<u32> {
+    pub(crate) fn live_vertices(&self) -> Vec<u32> {
         let next = |(v, vertex): (usize, &Vertex)| match vertex.flags.any(VertexFlags::DEAD) {
             true => vertex.target,
             false => v as u32,
         };
-        let mut heirs: Vec<u32> = self.all.par_iter().enumerate().map(next).collect();
-        for v in 0..heirs.len() {
-            let mut last = heirs[v];
-            while heirs[last as usize] != last {
-                last = heirs[last as usize];
+        let mut live: Vec<u32> = self.all.par_iter().enumerate().map(next).collect();
+        for v in 0..live.len() {
+            let mut last = live[v];
+            while live[last as usize] != last {
+                last = live[last as usize];
             }
             let mut at = v;
-            while heirs[at] != last {
-                at = std::mem::replace(&mut heirs[at], last) as usize;
+            while live[at] != last {
+                at = std::mem::replace(&mut live[at], last) as usize;
             }
         }
-        heirs
+        live
     }
 }
 
@@ -167,7 +167,7 @@ impl<'v> Vertices<'v> {
     }
 
     /// The live vertex that this one is or has gone into.
-    pub(crate) fn heir(&mut self, mut v: u32) -> u32 {
+    pub(crate) fn live_vertex(&mut self, mut v: u32) -> u32 {
         while self.get(v).flags.any(VertexFlags::DEAD) {
             let next = self.get(v).target;
             let beyond = *self.get(next);
@@ -183,7 +183,7 @@ impl<'v> Vertices<'v> {
     #[inline(always)]
     pub(crate) fn refresh(&mut self, v: u32) {
         if self.get(v).len == LONG {
-            self.settle(v);
+            self.refresh_long(v);
         }
     }
 
@@ -198,10 +198,10 @@ impl<'v> Vertices<'v> {
     }
 
     #[cold]
-    fn settle(&mut self, v: u32) {
+    fn refresh_long(&mut self, v: u32) {
         let slot = self.get(v).ring[0] as usize;
         let mut list = std::mem::take(&mut self.long[slot].ring);
-        list.iter_mut().for_each(|w| *w = self.heir(*w));
+        list.iter_mut().for_each(|w| *w = self.live_vertex(*w));
         list.dedup();
         while list.len() > 1 && list.first() == list.last() {
             list.pop();
@@ -249,7 +249,7 @@ impl<'v> Vertices<'v> {
         let vertex = self.get_mut(v);
         vertex.len = LONG;
         vertex.ring[..2].copy_from_slice(&[slot as u32, ring.len() as u32]);
-        if ring.len() > MOST {
+        if ring.len() > MAX_RING {
             vertex.flags.set(VertexFlags::BARRED);
         }
     }
@@ -258,17 +258,17 @@ impl<'v> Vertices<'v> {
 impl Vertex {
     /// Takes a neighbour out; true if that has made a hub into a vertex like others.
     #[inline(always)]
-    pub(crate) fn lose(&mut self, neighbour: u32) -> bool {
+    pub(crate) fn remove_neighbour(&mut self, neighbour: u32) -> bool {
         if self.len == LONG {
             self.ring[1] = self.ring[1].saturating_sub(1);
-            let shrunk = self.flags.any(VertexFlags::BARRED) && self.ring[1] as usize <= MOST;
+            let shrunk = self.flags.any(VertexFlags::BARRED) && self.ring[1] as usize <= MAX_RING;
             if shrunk {
                 self.flags.clear(VertexFlags::BARRED);
             }
             return shrunk;
         }
         let len = self.len as usize;
-        if let Some(at) = place_of(&self.ring, len, neighbour) {
+        if let Some(at) = index_in_ring(&self.ring, len, neighbour) {
             // All of it, always: a move of unknown length is a call.
             for i in 0..RING - 1 {
                 let (here, next) = (self.ring[i], self.ring[i + 1]);
@@ -281,7 +281,7 @@ impl Vertex {
 
     /// Puts a neighbour in the place of another.
     #[inline(always)]
-    pub(crate) fn swap(&mut self, gone: u32, kept: u32) {
+    pub(crate) fn replace_neighbour(&mut self, gone: u32, kept: u32) {
         if self.len != LONG {
             for w in &mut self.ring {
                 *w = if *w == gone { kept } else { *w };
@@ -292,7 +292,7 @@ impl Vertex {
 
 /// Where it is among the first `len` of a ring, found without a guess.
 #[inline(always)]
-pub(crate) fn place_of(ring: &[u32; RING], len: usize, v: u32) -> Option<usize> {
+pub(crate) fn index_in_ring(ring: &[u32; RING], len: usize, v: u32) -> Option<usize> {
     let (len, mut beyond) = (len as u32, 0);
     for (i, &w) in (1..).zip(ring) {
         beyond += if (w == v) & (i <= len) { i } else { 0 };
@@ -302,7 +302,7 @@ pub(crate) fn place_of(ring: &[u32; RING], len: usize, v: u32) -> Option<usize> 
 
 /// Where it is in a ring.
 #[inline(always)]
-pub(crate) fn place_in(ring: &[u32], v: u32) -> Option<usize> {
+pub(crate) fn index_in(ring: &[u32], v: u32) -> Option<usize> {
     ring.iter().position(|&w| w == v)
 }
 

@@ -10,7 +10,7 @@ use glam::{Vec3, Vec4};
 pub(crate) const RING: usize = 16;
 
 /// No vertex.
-pub(crate) const NOBODY: u32 = u32::MAX;
+pub(crate) const NO_VERTEX: u32 = u32::MAX;
 
 /// A live vertex, or one that has gone into another.
 #[derive(Clone, Copy, Debug)]
@@ -186,14 +186,14 @@ impl Vertex {
     pub(crate) fn at(place: Vec3) -> Self {
         Self {
             quadric: VertexQuadric([place.extend(0.0), Vec4::ZERO, Vec4::ZERO]),
-            target: NOBODY,
+            target: NO_VERTEX,
             moved: 0.0,
             bucket: 0,
             floor: 0,
             flags: VertexFlags::default(),
             len: 0,
             constant: Bf16::NONE,
-            ring: [NOBODY; RING],
+            ring: [NO_VERTEX; RING],
         }
     }
 

@@ -50,7 +50,7 @@ pub(crate) trait Metric: Copy + Send + Sync {
     fn boundary(along: Vec3, normal: Vec3, weight: f32) -> VertexQuadric;
 
     /// Adds to the squares of one of eight edges what the ends have beside planes through them.
-    fn complete(
+    fn add_linear_terms(
         edges: &mut EdgeQuadrics,
         lane: usize,
         first: &VertexQuadrics,
@@ -79,31 +79,31 @@ pub(crate) trait Metric: Copy + Send + Sync {
     ) -> f32;
 
     /// What they are at their least.
-    fn least(edges: &EdgeQuadrics, lane: usize) -> f32;
+    fn min_cost(edges: &EdgeQuadrics, lane: usize) -> f32;
 
     /// What they are where `end1` goes to the place of `end0`.
-    fn onto(end0: &Vertex, end1: &Vertex) -> f32;
+    fn cost_onto(end0: &Vertex, end1: &Vertex) -> f32;
 
     /// Those of a gathered edge, in doubles.
-    fn swept(edge_ring: &EdgeRing, end0: &Vertex, end1: &Vertex) -> EdgeQuadricF64;
+    fn edge_quadric(edge_ring: &EdgeRing, end0: &Vertex, end1: &Vertex) -> EdgeQuadricF64;
 
     /// Where they are least, as seen from the middle; not a number where there is no such place.
-    fn best(swept: &EdgeQuadricF64) -> DVec3;
+    fn optimum(quadric: &EdgeQuadricF64) -> DVec3;
 
     /// What the vertex of a contraction has from now on, before any has moved. Boundary edges around
     /// that move with it are brought up to date.
-    fn merge(
+    fn merged_quadric(
         vertices: &mut Vertices,
         edge_ring: &mut EdgeRing,
-        swept: &EdgeQuadricF64,
-        placed: &Collapse,
+        quadric: &EdgeQuadricF64,
+        collapse: &Collapse,
     ) -> FullQuadric;
 
     /// Does to a vertex of the ring what the spokes on its two sides change; `kept` is the new vertex.
-    fn renew(vertex: &mut Vertex, changes: [&VertexQuadric; 2], kept: u32);
+    fn update_neighbour(vertex: &mut Vertex, changes: [&VertexQuadric; 2], kept: u32);
 
     /// Takes a face that goes out of a vertex of the ring.
-    fn lose(vertex: &mut Vertex, normal: Vec3);
+    fn remove_face(vertex: &mut Vertex, normal: Vec3);
 }
 
 /// What an edge to a protected vertex costs, times: as if all moved so much farther.
@@ -128,7 +128,7 @@ pub(crate) fn edges_between<M: Metric>(
         edges.half.set(lane, h);
         edges.slope.set(lane, a1h - a0h);
         edges.at_middle[lane] = (a1h + a0h).dot(h);
-        M::complete(&mut edges, lane, first, second);
+        M::add_linear_terms(&mut edges, lane, first, second);
     }
     edges
 }
@@ -140,7 +140,7 @@ pub(crate) fn least_costs<M: Metric>(edges: &EdgeQuadrics) -> Row {
     for (lane, cost) in costs.iter_mut().enumerate() {
         let h = edges.half.get(lane);
         let trace = SymmetricMatrix(lane_of(&edges.sum, lane)).trace();
-        *cost = M::least(edges, lane) + M::SHORT_FIRST * trace * h.dot(h);
+        *cost = M::min_cost(edges, lane) + M::SHORT_FIRST * trace * h.dot(h);
     }
     costs
 }

@@ -21,7 +21,7 @@ use crate::kernel::metric::edge_quadric::{
     EdgeQuadrics, PULL, SymmetricMatrix, VertexQuadrics, lane_of, outer,
 };
 use crate::kernel::metric::edge_quadric_f64::{EdgeQuadricF64, matrix};
-use crate::kernel::simd::{LANES, TINY, most, sum_of};
+use crate::kernel::simd::{LANES, TINY, select_max, sum_of};
 use crate::methods::qem::{BOUNDARY_WEIGHT, MEMORY};
 use crate::options::Method;
 
@@ -79,7 +79,7 @@ impl Metric for PlaneDistance {
     }
 
     #[inline(always)]
-    fn complete(
+    fn add_linear_terms(
         edges: &mut EdgeQuadrics,
         lane: usize,
         first: &VertexQuadrics,
@@ -95,16 +95,16 @@ impl Metric for PlaneDistance {
     /// By S = L D L', with a pull to the middle on the diagonal. No part of D is less than that, so
     /// rounding cannot make one too small.
     #[inline(always)]
-    fn least(edges: &EdgeQuadrics, lane: usize) -> f32 {
+    fn min_cost(edges: &EdgeQuadrics, lane: usize) -> f32 {
         let [xx, yy, zz, xy, xz, yz] = lane_of(&edges.sum, lane);
         let Vec3 { x, y, z } = edges.slope.get(lane);
         let pull = PULL * (xx + yy + zz) + TINY;
         let d1 = (xx + pull).recip();
         let (l21, l31) = (xy * d1, xz * d1);
-        let d2 = most(yy + pull - l21 * xy, pull).recip();
+        let d2 = select_max(yy + pull - l21 * xy, pull).recip();
         let left = yz - l21 * xz;
         let l32 = left * d2;
-        let d3 = most(zz + pull - l31 * xz - l32 * left, pull).recip();
+        let d3 = select_max(zz + pull - l31 * xz - l32 * left, pull).recip();
         let y = y - l21 * x;
         let z = z - l31 * x - l32 * y;
         edges.at_middle[lane] - (x * x * d1 + y * y * d2 + z * z * d3)
@@ -143,65 +143,65 @@ impl Metric for PlaneDistance {
         linear + (first.constant[lane] + second.constant[lane])
     }
 
-    fn onto(end0: &Vertex, end1: &Vertex) -> f32 {
+    fn cost_onto(end0: &Vertex, end1: &Vertex) -> f32 {
         let (to, quadric) = (end0.place() - end1.place(), &end1.quadric);
         let moved = SymmetricMatrix(quadric.squares()).at(to) - 2.0 * quadric.vector().dot(to);
         moved + (end0.constant.get() + end1.constant.get())
     }
 
     #[inline(always)]
-    fn swept(edge_ring: &EdgeRing, end0: &Vertex, end1: &Vertex) -> EdgeQuadricF64 {
-        let (normal, level) = edge_ring.volume(edge_ring.dying());
+    fn edge_quadric(edge_ring: &EdgeRing, end0: &Vertex, end1: &Vertex) -> EdgeQuadricF64 {
+        let (normal, level) = edge_ring.volume_plane(edge_ring.dying_normals());
         EdgeQuadricF64 { normal, level, ..Self::along(end0, end1) }
     }
 
     /// Anywhere; the middle where there are no planes.
     #[inline(always)]
-    fn best(swept: &EdgeQuadricF64) -> DVec3 {
-        let pull = f64::from(PULL) * swept.weight();
+    fn optimum(quadric: &EdgeQuadricF64) -> DVec3 {
+        let pull = f64::from(PULL) * quadric.weight();
         if pull <= f64::MIN_POSITIVE {
             return DVec3::ZERO;
         }
-        (swept.sum + DMat3::from_diagonal(DVec3::splat(pull))).inverse() * swept.slope
+        (quadric.sum + DMat3::from_diagonal(DVec3::splat(pull))).inverse() * quadric.slope
     }
 
     /// Where the surface ends all is remembered: the planes there are not in the faces around.
     #[inline(always)]
-    fn merge(
+    fn merged_quadric(
         _: &mut Vertices,
         edge_ring: &mut EdgeRing,
-        swept: &EdgeQuadricF64,
-        placed: &Collapse,
+        quadric: &EdgeQuadricF64,
+        collapse: &Collapse,
     ) -> FullQuadric {
-        let x = placed.by.as_dvec3() - swept.half;
+        let x = collapse.displacement.as_dvec3() - quadric.half;
         let memory = if edge_ring.ghost.is_some() { 1.0 } else { MEMORY };
-        let slope = (swept.slope - swept.sum * x) * memory;
-        let DMat3 { x_axis, y_axis, z_axis } = swept.sum * memory;
+        let slope = (quadric.slope - quadric.sum * x) * memory;
+        let DMat3 { x_axis, y_axis, z_axis } = quadric.sum * memory;
         let squares = [x_axis.x, y_axis.y, z_axis.z, x_axis.y, x_axis.z, y_axis.z];
         let mut star = VertexQuadric::new(slope.as_vec3(), squares.map(|x| x as f32));
         if edge_ring.ghost.is_none() {
             star.add(&faces(edge_ring, (1.0 - MEMORY) as f32));
         }
-        FullQuadric { star, constant: Bf16::new((swept.at(x) * memory) as f32) }
+        FullQuadric { star, constant: Bf16::new((quadric.at(x) * memory) as f32) }
     }
 
     /// Only its edge to the new vertex has changed.
     #[inline(always)]
-    fn renew(vertex: &mut Vertex, _: [&VertexQuadric; 2], kept: u32) {
+    fn update_neighbour(vertex: &mut Vertex, _: [&VertexQuadric; 2], kept: u32) {
         if vertex.target == kept {
             vertex.flags.set(VertexFlags::STALE);
         }
     }
 
     #[inline(always)]
-    fn lose(_: &mut Vertex, _: Vec3) {}
+    fn remove_face(_: &mut Vertex, _: Vec3) {}
 }
 
 /// The planes of the faces that a contraction leaves around its vertex, so many times.
 #[inline(always)]
 fn faces(edge_ring: &EdgeRing, weight: f32) -> VertexQuadric {
     let mut sums = [[0.0; LANES]; 6];
-    for start in edge_ring.starts() {
+    for start in edge_ring.lane_starts() {
         let new = row3(&edge_ring.new, start);
         for lane in 0..LANES {
             let squares = plane(new.get(lane));
@@ -272,14 +272,18 @@ mod tests {
     fn an_edge_has_the_squares_of_all_planes_of_its_ends() {
         for planes in cases() {
             let (end0, end1) = (vertex(ENDS[0], &planes[0]), vertex(ENDS[1], &planes[1]));
-            let swept = PlaneDistance::along(&end0, &end1);
+            let quadric = PlaneDistance::along(&end0, &end1);
             let middle = (ENDS[0] + ENDS[1]).as_dvec3() / 2.0;
             for x in [DVec3::ZERO, DVec3::X, DVec3::new(-1.0, 2.0, 0.5)] {
                 let expected = squares(&planes.concat(), middle + x);
-                assert!((swept.at(x) / expected - 1.0).abs() < 0.01, "{} {expected}", swept.at(x));
+                assert!(
+                    (quadric.at(x) / expected - 1.0).abs() < 0.01,
+                    "{} {expected}",
+                    quadric.at(x)
+                );
             }
             let expected = squares(&planes.concat(), ENDS[0].into());
-            let onto = f64::from(PlaneDistance::onto(&end0, &end1));
+            let onto = f64::from(PlaneDistance::cost_onto(&end0, &end1));
             assert!((onto - expected).abs() < 0.01 * expected + 1e-5, "{onto} {expected}");
         }
     }
@@ -288,9 +292,10 @@ mod tests {
     fn rows_come_to_the_same_least_as_doubles() {
         for planes in cases() {
             let mut all = [0, 1].map(|end| vertex(ENDS[end], &planes[end]));
-            let swept = PlaneDistance::along(&all[0], &all[1]);
-            let short = f64::from(PlaneDistance::SHORT_FIRST) * swept.weight();
-            let least = swept.at(PlaneDistance::best(&swept)) + short * swept.half.length_squared();
+            let quadric = PlaneDistance::along(&all[0], &all[1]);
+            let short = f64::from(PlaneDistance::SHORT_FIRST) * quadric.weight();
+            let least = quadric.at(PlaneDistance::optimum(&quadric))
+                + short * quadric.half.length_squared();
             let mut long = Vec::new();
             let vertices = Vertices::new(&mut all, 0, &mut long);
             let rows = costs(&vertices, &NoAttributes(PlaneDistance), EdgeSide::Of(0), &[1; LANES]);
@@ -306,7 +311,7 @@ mod tests {
         let planes = [Vec3::X, Vec3::Y, Vec3::Z].map(|normal| (normal, corner));
         let best = |planes: [&[Plane]; 2]| {
             let [end0, end1] = [0, 1].map(|end| vertex(ENDS[end], planes[end]));
-            PlaneDistance::best(&PlaneDistance::along(&end0, &end1))
+            PlaneDistance::optimum(&PlaneDistance::along(&end0, &end1))
         };
         let middle = (ENDS[0] + ENDS[1]) / 2.0;
         let found = best([&planes[..2], &planes[2..]]);

@@ -17,7 +17,7 @@ use crate::kernel::metric::edge_quadric::{
     EdgeQuadrics, PULL, SymmetricMatrix, VertexQuadrics, lane_of,
 };
 use crate::kernel::metric::edge_quadric_f64::{EdgeQuadricF64, matrix};
-use crate::kernel::simd::{TINY, most};
+use crate::kernel::simd::{TINY, select_max};
 use crate::options::Method;
 
 /// Forgets all that faces have been.
@@ -71,7 +71,7 @@ impl Metric for SweptVolume {
     }
 
     #[inline(always)]
-    fn complete(
+    fn add_linear_terms(
         edges: &mut EdgeQuadrics,
         lane: usize,
         first: &VertexQuadrics,
@@ -83,7 +83,7 @@ impl Metric for SweptVolume {
     }
 
     #[inline(always)]
-    fn least(edges: &EdgeQuadrics, lane: usize) -> f32 {
+    fn min_cost(edges: &EdgeQuadrics, lane: usize) -> f32 {
         let (g, q) = (edges.normal.get(lane), edges.slope.get(lane));
         let sum = SymmetricMatrix(lane_of(&edges.sum, lane));
         let trace = sum.trace();
@@ -104,7 +104,7 @@ impl Metric for SweptVolume {
         let (a2, long2) = (sum.apply(e2), e2.dot(e2));
         let m12 = e1.dot(a2) * scale;
         let m22 = e2.dot(a2) * scale + PULL * long2;
-        let determinant = most(m11 * m22 - m12 * m12, 1e-36);
+        let determinant = select_max(m11 * m22 - m12 * m12, 1e-36);
         let gain = rise * rise * m11 / determinant * trace;
         there - gain
     }
@@ -129,19 +129,19 @@ impl Metric for SweptVolume {
         0.0
     }
 
-    fn onto(end0: &Vertex, end1: &Vertex) -> f32 {
+    fn cost_onto(end0: &Vertex, end1: &Vertex) -> f32 {
         let to = end0.place() - end1.place();
         SymmetricMatrix(end1.quadric.squares()).at(to)
     }
 
     /// Each face once.
     #[inline(always)]
-    fn swept(edge_ring: &EdgeRing, end0: &Vertex, end1: &Vertex) -> EdgeQuadricF64 {
+    fn edge_quadric(edge_ring: &EdgeRing, end0: &Vertex, end1: &Vertex) -> EdgeQuadricF64 {
         let (a0, a1) = (end0.quadric, end1.quadric);
         let (mut both, mut less) = (a0, a1);
         both.add(&a1);
         less.take(&a0);
-        let (first, last) = edge_ring.dying();
+        let (first, last) = edge_ring.dying_normals();
         let mut once = both;
         for (wing, normal) in [(0, first), (edge_ring.of_v0, last)] {
             once.take(&match edge_ring.ghost == Some(wing) {
@@ -150,7 +150,7 @@ impl Metric for SweptVolume {
             });
         }
         let half = edge_ring.along.as_dvec3() * 0.5;
-        let (normal, level) = edge_ring.volume((first, last));
+        let (normal, level) = edge_ring.volume_plane((first, last));
         EdgeQuadricF64 {
             half,
             sum: matrix(&once),
@@ -163,8 +163,8 @@ impl Metric for SweptVolume {
 
     /// On the plane of equal volumes.
     #[inline(always)]
-    fn best(swept: &EdgeQuadricF64) -> DVec3 {
-        let EdgeQuadricF64 { sum, slope, normal, level, .. } = *swept;
+    fn optimum(quadric: &EdgeQuadricF64) -> DVec3 {
+        let EdgeQuadricF64 { sum, slope, normal, level, .. } = *quadric;
         let squared = normal.length_squared();
         if squared <= f64::MIN_POSITIVE {
             return DVec3::ZERO;
@@ -172,7 +172,7 @@ impl Metric for SweptVolume {
         let up = normal / squared.sqrt();
         let on_plane = normal * (level / squared);
         let (e1, e2) = up.any_orthonormal_pair();
-        let pull = f64::from(PULL) * swept.weight();
+        let pull = f64::from(PULL) * quadric.weight();
         let (a1, a2) = (sum * e1, sum * e2);
         let (m11, m12, m22) = (e1.dot(a1) + pull, e1.dot(a2), e2.dot(a2) + pull);
         let slope = slope - sum * on_plane;
@@ -187,28 +187,28 @@ impl Metric for SweptVolume {
     }
 
     #[inline(always)]
-    fn merge(
+    fn merged_quadric(
         vertices: &mut Vertices,
         edge_ring: &mut EdgeRing,
         _: &EdgeQuadricF64,
-        placed: &Collapse,
+        collapse: &Collapse,
     ) -> FullQuadric {
-        let mut star = edge_ring.change();
+        let mut star = edge_ring.quadric_changes();
         if edge_ring.ghost.is_some() {
-            star.add(&renew_boundary(vertices, edge_ring, placed));
+            star.add(&renew_boundary(vertices, edge_ring, collapse));
         }
         FullQuadric { star, constant: Bf16::NONE }
     }
 
     #[inline(always)]
-    fn renew(vertex: &mut Vertex, [before, after]: [&VertexQuadric; 2], _: u32) {
+    fn update_neighbour(vertex: &mut Vertex, [before, after]: [&VertexQuadric; 2], _: u32) {
         vertex.quadric.add(before);
         vertex.quadric.add(after);
         vertex.flags.set(VertexFlags::STALE);
     }
 
     #[inline(always)]
-    fn lose(vertex: &mut Vertex, normal: Vec3) {
+    fn remove_face(vertex: &mut Vertex, normal: Vec3) {
         vertex.quadric.take(&VertexQuadric::face(normal));
     }
 }
@@ -218,16 +218,16 @@ impl Metric for SweptVolume {
 fn renew_boundary(
     vertices: &mut Vertices,
     edge_ring: &EdgeRing,
-    placed: &Collapse,
+    collapse: &Collapse,
 ) -> VertexQuadric {
-    let Ends { v0, v1, .. } = placed.ends;
+    let Ends { v0, v1, .. } = collapse.ends;
     let mut sum = VertexQuadric::default();
     let ends = [vertices.get(v0).place(), vertices.get(v1).place()];
     for (i, of_v1) in edge_ring.boundary() {
         let vertex = vertices.get_mut(edge_ring.ids[i]);
         let edge =
             |apex: Vec3| VertexQuadric::boundary(vertex.place() - apex, edge_ring.boundary_weight);
-        let (old, new) = (edge(ends[usize::from(of_v1)]), edge(placed.place));
+        let (old, new) = (edge(ends[usize::from(of_v1)]), edge(collapse.place));
         vertex.quadric.add(&new);
         vertex.quadric.take(&old);
         sum.add(&new);

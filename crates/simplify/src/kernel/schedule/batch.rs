@@ -37,7 +37,7 @@ impl<const ROOM: usize> Batch<ROOM> {
         &mut self,
         vertices: &Vertices,
         model: &impl AttributeModel,
-        mut tell: impl FnMut([u32; 2], f32),
+        mut report: impl FnMut([u32; 2], f32),
     ) {
         let mut start = 0;
         while start < self.len {
@@ -48,7 +48,7 @@ impl<const ROOM: usize> Batch<ROOM> {
             }
             let costs = costs(vertices, model, EdgeSide::Each(us), &vs);
             for lane in 0..LANES.min(self.len - start) {
-                tell([us[lane], vs[lane]], costs[lane]);
+                report([us[lane], vs[lane]], costs[lane]);
             }
             start += LANES;
         }

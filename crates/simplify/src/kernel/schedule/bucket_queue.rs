@@ -35,7 +35,7 @@ pub(crate) fn bucket(cost: f32) -> u16 {
 }
 
 /// The least cost in a bucket.
-pub(crate) fn least_of(bucket: u16) -> f32 {
+pub(crate) fn min_cost_in(bucket: u16) -> f32 {
     f32::from_bits(u32::from(bucket) << BELOW)
 }
 
@@ -168,6 +168,6 @@ mod tests {
     fn four_buckets_are_an_octave() {
         assert_eq!(bucket(2.0) - bucket(1.0), 4);
         assert!(bucket(f32::MAX) < NONE && bucket(-1.0) == 0);
-        assert_eq!([bucket(least_of(77)), bucket(least_of(77).next_down())], [77, 76]);
+        assert_eq!([bucket(min_cost_in(77)), bucket(min_cost_in(77).next_down())], [77, 76]);
     }
 }

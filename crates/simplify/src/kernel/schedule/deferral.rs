@@ -4,7 +4,7 @@
 //! nothing, however long it is. Whoever goes much farther than is usual by now waits until it is not
 //! much any more. So the order changes, and no target is missed.
 
-use crate::kernel::schedule::bucket_queue::{bucket, last_bucket, least_of};
+use crate::kernel::schedule::bucket_queue::{bucket, last_bucket, min_cost_in};
 
 /// How many times the square of the usual way is too far. Greatest distances of igea and armadillo-173k
 /// at 10 % and 1 %, mean of the latter: 6 .075, .365, .157, .80, .0795; 8 .074, .433, .180, 1.11, .0780;
@@ -15,10 +15,10 @@ const FAR: f32 = 6.0;
 const MEMORY: f32 = 64.0;
 
 /// The square of a way that is none, in the frame: all ways are rounding where a surface is flat.
-const NONE_AT_ALL: f32 = 1e-8;
+const NEGLIGIBLE: f32 = 1e-8;
 
 /// How many buckets further back one waits at least: an octave.
-const WAIT: u16 = 4;
+const MIN_DELAY: u16 = 4;
 
 /// The usual way at the front, squared, in the frame's units.
 #[derive(Clone, Copy, Debug, Default)]
@@ -35,15 +35,15 @@ impl Deferral {
     /// One that has to wait counts too: the usual way would stay behind the front.
     #[inline(always)]
     pub(crate) fn wait(&mut self, now: f32, moved: f32, front: u16) -> Option<u16> {
-        let most = FAR * self.usual.max(NONE_AT_ALL);
-        self.usual += (now.min(most) - self.usual) / MEMORY;
+        let limit = FAR * self.usual.max(NEGLIGIBLE);
+        self.usual += (now.min(limit) - self.usual) / MEMORY;
         self.front = self.front.max(front);
-        let excess = moved / (FAR * self.usual.max(NONE_AT_ALL));
+        let excess = moved / (FAR * self.usual.max(NEGLIGIBLE));
         if excess > 1.0 { later(self.front, excess) } else { None }
     }
 
     /// Goes on where the farther one of two has been.
-    pub(crate) fn join(&mut self, other: &Self) {
+    pub(crate) fn merge(&mut self, other: &Self) {
         self.usual = self.usual.max(other.usual);
         self.front = self.front.max(other.front);
     }
@@ -52,7 +52,7 @@ impl Deferral {
 /// Where the front is when costs are so many times as high; `None` if it never is.
 #[cold]
 fn later(front: u16, times: f32) -> Option<u16> {
-    let to = bucket(least_of(front).max(f32::MIN_POSITIVE) * times).max(front + WAIT);
+    let to = bucket(min_cost_in(front).max(f32::MIN_POSITIVE) * times).max(front + MIN_DELAY);
     (to < last_bucket()).then_some(to)
 }
 
@@ -62,28 +62,29 @@ mod tests {
 
     #[test]
     fn who_goes_much_farther_than_others_waits() {
-        let (mut pace, front) = (Deferral::default(), bucket(1.0));
+        let (mut deferral, front) = (Deferral::default(), bucket(1.0));
         for _ in 0..1000 {
-            pace.wait(0.01, 0.01, front);
+            deferral.wait(0.01, 0.01, front);
         }
-        assert_eq!(pace.wait(0.01, 0.05, front), None);
-        let waits = |pace: &mut Deferral, moved| pace.wait(moved, moved, front).unwrap() - front;
-        assert_eq!(waits(&mut pace, 0.1), WAIT);
-        assert!(waits(&mut pace, 10.0) > 20);
-        assert_eq!(pace.wait(0.01, 0.01, front), None);
+        assert_eq!(deferral.wait(0.01, 0.05, front), None);
+        let waits =
+            |deferral: &mut Deferral, moved| deferral.wait(moved, moved, front).unwrap() - front;
+        assert_eq!(waits(&mut deferral, 0.1), MIN_DELAY);
+        assert!(waits(&mut deferral, 10.0) > 20);
+        assert_eq!(deferral.wait(0.01, 0.01, front), None);
         // As far behind the front, from wherever it is tried anew.
-        assert!(pace.wait(10.0, 10.0, 0).unwrap() > front + 16);
+        assert!(deferral.wait(10.0, 10.0, 0).unwrap() > front + 16);
         let mut joined = Deferral::default();
-        joined.join(&pace);
+        joined.merge(&deferral);
         assert_eq!(joined.wait(0.01, 0.05, 0), None);
     }
 
     #[test]
     fn waiting_ends() {
-        let mut pace = Deferral::default();
+        let mut deferral = Deferral::default();
         let mut front = 0;
         for _ in 0..u16::MAX {
-            match pace.wait(1.0, f32::INFINITY, front) {
+            match deferral.wait(1.0, f32::INFINITY, front) {
                 Some(to) => front = to,
                 None => return,
             }
@@ -93,7 +94,7 @@ mod tests {
 
     #[test]
     fn flats_do_not_wait_for_their_rounding() {
-        let mut pace = Deferral::default();
-        assert_eq!(pace.wait(1e-14, 1e-12, 0), None);
+        let mut deferral = Deferral::default();
+        assert_eq!(deferral.wait(1e-14, 1e-12, 0), None);
     }
 }

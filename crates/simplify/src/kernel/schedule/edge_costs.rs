@@ -6,12 +6,12 @@
 //! rule adds the rest.
 
 use crate::kernel::attributes::AttributeModel;
-use crate::kernel::mesh::one_ring::{LONG, MOST, Vertices};
-use crate::kernel::mesh::vertex::{NOBODY, VertexFlags};
+use crate::kernel::mesh::one_ring::{LONG, MAX_RING, Vertices};
+use crate::kernel::mesh::vertex::{NO_VERTEX, VertexFlags};
 use crate::kernel::metric::edge_quadric::{Costs, EdgeSide, SymmetricMatrix, VertexQuadrics};
 use crate::kernel::metric::{Metric, edges_between, least_costs, protection};
 use crate::kernel::schedule::bucket_queue::{NONE, bucket};
-use crate::kernel::simd::{LANES, Row, most};
+use crate::kernel::simd::{LANES, Row, select_max};
 
 /// A vertex's cheapest edge.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -34,10 +34,10 @@ pub(crate) fn cheapest(vertices: &Vertices, model: &impl AttributeModel, u: u32)
 
 #[cold]
 fn cheapest_of_many(vertices: &Vertices, model: &impl AttributeModel, u: u32) -> Cheapest {
-    let mut ring = [NOBODY; MOST];
+    let mut ring = [NO_VERTEX; MAX_RING];
     let all = vertices.neighbours(u);
     ring.iter_mut().zip(all).for_each(|(to, &w)| *to = w);
-    cheapest_of(vertices, model, u, &ring, all.len().min(MOST))
+    cheapest_of(vertices, model, u, &ring, all.len().min(MAX_RING))
 }
 
 #[inline(always)]
@@ -79,14 +79,14 @@ impl Rank {
     /// What is no number costs more than anything.
     #[inline(always)]
     pub(crate) fn new(cost: f32, to: u32) -> Self {
-        let cost = if cost < f32::INFINITY { most(cost, 0.0) } else { f32::INFINITY };
+        let cost = if cost < f32::INFINITY { select_max(cost, 0.0) } else { f32::INFINITY };
         Self((u64::from(cost.to_bits()) << 32) | u64::from(to))
     }
 
     #[inline(always)]
     pub(crate) fn cheapest(self) -> Cheapest {
         match bucket(f32::from_bits((self.0 >> 32) as u32)) {
-            NONE => Cheapest { bucket: NONE, target: NOBODY },
+            NONE => Cheapest { bucket: NONE, target: NO_VERTEX },
             bucket => Cheapest { bucket, target: self.0 as u32 },
         }
     }
@@ -101,7 +101,7 @@ pub(crate) fn costs<A: AttributeModel>(
     us: EdgeSide<u32>,
     vs: &[u32; LANES],
 ) -> Row {
-    let mut found = match model.at_seams(vertices, us, vs) {
+    let mut found = match model.seam_costs(vertices, us, vs) {
         Some(found) => found,
         None => {
             let (first, second) = (
@@ -109,7 +109,7 @@ pub(crate) fn costs<A: AttributeModel>(
                 VertexQuadrics::of(vertices, EdgeSide::Each(*vs)),
             );
             let mut edges = edges_between::<A::Metric>(&first, &second);
-            model.join([us, EdgeSide::Each(*vs)], &mut edges);
+            model.add_attribute_quadrics([us, EdgeSide::Each(*vs)], &mut edges);
             let any_special = VertexFlags(first.flags | second.flags).any(VertexFlags::SPECIAL)
                 || first.floor > 0;
             Costs { costs: least_costs::<A::Metric>(&edges), any_special }
@@ -143,7 +143,7 @@ fn correct<A: AttributeModel>(
             continue;
         }
         if flags.any(VertexFlags::HELD) && !flags.any(VertexFlags::SEAM) {
-            *cost = match model.order(vertices, u, v) {
+            *cost = match model.orient(vertices, u, v) {
                 Err(_) => f32::INFINITY,
                 Ok(ends) if ends.free => *cost,
                 Ok(ends) => {
@@ -151,7 +151,7 @@ fn correct<A: AttributeModel>(
                     let weight = SymmetricMatrix(end1.quadric.squares()).trace();
                     let length = end0.place().distance_squared(end1.place());
                     let short = A::Metric::SHORT_FIRST * weight * length;
-                    A::Metric::onto(end0, end1) + short + model.onto(vertices, &ends)
+                    A::Metric::cost_onto(end0, end1) + short + model.cost_onto(vertices, &ends)
                 }
             };
         }
@@ -175,7 +175,7 @@ mod tests {
             rank(-1.0) == rank(0.0) && rank(0.0) < rank(1e-30) && rank(2.0) < Rank::new(2.0, 8)
         );
         for cost in [f32::NAN, f32::INFINITY] {
-            assert_eq!(rank(cost).cheapest(), Cheapest { bucket: NONE, target: NOBODY });
+            assert_eq!(rank(cost).cheapest(), Cheapest { bucket: NONE, target: NO_VERTEX });
             assert!(rank(f32::MAX) < rank(cost));
         }
     }

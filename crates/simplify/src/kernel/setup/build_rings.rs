@@ -2,7 +2,7 @@
 //! open; an open one is closed by the ghost.
 
 use crate::kernel::mesh::one_ring::{GHOST, LONG, LongRing, VertexStore, Vertices};
-use crate::kernel::mesh::vertex::{NOBODY, RING, Vertex};
+use crate::kernel::mesh::vertex::{NO_VERTEX, RING, Vertex};
 use crate::kernel::metric::Metric;
 use crate::kernel::setup::face_blocks::{CELL, CellFaces};
 use crate::kernel::setup::split_non_manifold::Pair;
@@ -187,7 +187,7 @@ const FIRSTS: [u32; RING] = {
 /// wrong where it ends as often as not.
 #[inline(always)]
 fn closed(pairs: &[u32; RING], len: usize) -> Option<[u32; RING]> {
-    let (mut ring, mut next) = ([NOBODY; RING], pairs[1]);
+    let (mut ring, mut next) = ([NO_VERTEX; RING], pairs[1]);
     ring[0] = pairs[0];
     for slot in ring.iter_mut().take(len).skip(1) {
         let mut found = 0;
@@ -214,11 +214,11 @@ fn chain_open(pairs: &mut [Pair]) -> Option<()> {
         let found = sorted + pairs[sorted..].iter().position(|pair| pair[0] == want)?;
         pairs.swap(sorted, found);
     }
-    distinct(pairs).then_some(())
+    are_distinct(pairs).then_some(())
 }
 
 /// Whether no neighbour stands twice in an open fan.
-fn distinct(pairs: &[Pair]) -> bool {
+fn are_distinct(pairs: &[Pair]) -> bool {
     let mut all: Vec<u32> = pairs.iter().map(|pair| pair[0]).collect();
     all.push(pairs[pairs.len() - 1][1]);
     all.sort_unstable();
@@ -248,7 +248,7 @@ fn chain_many(pairs: &mut Vec<Pair>) -> Option<Chain> {
             return None;
         }
     }
-    (pairs.len() == sorted.len() && distinct(pairs)).then_some(Chain::Open)
+    (pairs.len() == sorted.len() && are_distinct(pairs)).then_some(Chain::Open)
 }
 
 const _: () = assert!(PAIRS < LONG as usize);

@@ -25,13 +25,13 @@ impl Order {
         let within = Vec3::splat((mesh.faces.len() as f32).sqrt());
         let near = |p: Vec3| p.clamp(-within, within).to_array();
         let keys: Vec<[f32; 3]> =
-            mesh.positions.par_iter().map(|&p| near(frame.enter(p))).collect();
+            mesh.positions.par_iter().map(|&p| near(frame.to_local(p))).collect();
         let inputs = curve_order(&keys);
         let mut ids = vec![0; inputs.len()];
         for (id, &input) in (0..).zip(&inputs) {
             ids[input as usize] = id;
         }
-        let place = |&input: &u32| frame.enter(mesh.positions[input as usize]);
+        let place = |&input: &u32| frame.to_local(mesh.positions[input as usize]);
         let places = inputs.par_iter().map(place).collect();
         (Self { ids, inputs }, places)
     }

@@ -71,24 +71,24 @@ fn start<const K: usize>(mesh: &Mesh) -> (Order, Fans, WedgeQuadrics<'_, SweptVo
 }
 
 /// What all quadrics come to by the faces as they are, and by the contractions.
-fn check_fields(mesh: &Mesh, faces: usize) {
+fn check_quadrics(mesh: &Mesh, faces: usize) {
     let (order, fans, wedges) = start::<2>(mesh);
     let numbers = || mesh.faces.iter().map(|face| order.face(face));
-    let mut parts = Partition::new(fans.store, wedges, fans.faces, Whole::default());
-    parts.run(faces, u16::MAX, None, &mut |_| ());
-    assert!(parts.live_faces <= faces && parts.live_faces > faces / 2);
-    let Partition { mut store, mut model, .. } = parts;
-    let (model, heirs) = (model.remove(0), store.heirs());
+    let mut partition = Partition::new(fans.store, wedges, fans.faces, Whole::default());
+    partition.run(faces, u16::MAX, None, &mut |_| ());
+    assert!(partition.live_faces <= faces && partition.live_faces > faces / 2);
+    let Partition { mut store, mut models, .. } = partition;
+    let (model, live_vertices) = (models.remove(0), store.live_vertices());
     let vertices = store.whole();
-    let live = model.live();
+    let live = model.live_slots();
     let mut again = WedgeQuadrics {
         metric: PhantomData::<SweptVolume>,
         quadrics: model
             .quadrics
             .iter()
-            .map(|field| AttributeQuadric::of_values(field.values()))
+            .map(|quadric| AttributeQuadric::of_values(quadric.values()))
             .collect(),
-        heirs: Vec::new(),
+        merged_into: Vec::new(),
         seams: SeamSectors::default(),
         charts: Vec::new(),
         layers: AttributeLayers::new(
@@ -105,7 +105,7 @@ fn check_fields(mesh: &Mesh, faces: usize) {
     };
     let mut seam_faces = 0;
     for (i, face) in numbers().enumerate() {
-        let now = face.map(|v| heirs[v as usize]);
+        let now = face.map(|v| live_vertices[v as usize]);
         if is_face(now) {
             let slots = model.corners.slots(i, face).map(|slot| live[slot as usize]);
             again.add_face(&vertices, now, slots);
@@ -117,10 +117,10 @@ fn check_fields(mesh: &Mesh, faces: usize) {
         }
     }
     assert!(seam_faces > 0);
-    for v in (0..vertices.all.len() as u32).filter(|&v| heirs[v as usize] == v) {
+    for v in (0..vertices.all.len() as u32).filter(|&v| live_vertices[v as usize] == v) {
         let slots: Vec<u32> = model.seams.of(v).iter().map(|sector| sector.slot).collect();
         for pair in slots.windows(2).filter(|p| model.chart(p[0]) == model.chart(p[1])) {
-            let [a, b] = [pair[0], pair[1]].map(|slot| model.field(slot).values());
+            let [a, b] = [pair[0], pair[1]].map(|slot| model.quadric(slot).values());
             assert_eq!(a, b, "one place in the textures");
         }
     }
@@ -140,13 +140,13 @@ fn check_fields(mesh: &Mesh, faces: usize) {
 
 /// What an edge costs, one by one and in doubles.
 fn cost_of(vertices: &Vertices, wedges: &WedgeQuadrics<'_, SweptVolume, 5>, u: u32, v: u32) -> f64 {
-    let Ok(ends) = wedges.order(vertices, u, v) else { return f64::INFINITY };
+    let Ok(ends) = wedges.orient(vertices, u, v) else { return f64::INFINITY };
     let (end0, end1) = (vertices.get(ends.v0), vertices.get(ends.v1));
     if !ends.free {
-        return (SweptVolume::onto(end0, end1) + wedges.onto(vertices, &ends)).into();
+        return (SweptVolume::cost_onto(end0, end1) + wedges.cost_onto(vertices, &ends)).into();
     }
-    let whole = wedges.whole(&ends, SweptVolume::along(end0, end1));
-    whole.at(SweptVolume::best(&whole))
+    let whole = wedges.with_attributes(&ends, SweptVolume::along(end0, end1));
+    whole.at(SweptVolume::optimum(&whole))
 }
 
 #[test]
@@ -161,13 +161,13 @@ fn eight_edges_at_seams_cost_what_each_does() {
             for &w in vertices.neighbours(v).iter().filter(|&&w| w != GHOST) {
                 let found = costs(&vertices, &wedges, EdgeSide::Of(v), &[w; 8])[0];
                 let wanted = cost_of(&vertices, &wedges, v, w);
-                if let Ok(ends) = wedges.order(&vertices, v, w) {
+                if let Ok(ends) = wedges.orient(&vertices, v, w) {
                     free += usize::from(ends.free);
                     held += usize::from(!ends.free);
                 }
                 // What the pull to the middle takes is counted another way, and floats round.
                 let apart = (f64::from(found) - wanted).abs();
-                let weight = wedges.field(v).weight() + wedges.field(w).weight();
+                let weight = wedges.quadric(v).weight() + wedges.quadric(w).weight();
                 let is_near = apart < 1e-2 * wanted + f64::from(1e-3 * weight);
                 assert!(is_near || f64::from(found) == wanted, "{found} {wanted}");
                 all.push((v, w, found));
@@ -208,10 +208,11 @@ fn a_crease_that_ends_is_not_forgotten() {
     for v in vertices.ids().filter(|&v| is_seam(&vertices, v)) {
         for &w in vertices.neighbours(v).iter() {
             for (v, w) in [(v, w), (w, v)] {
-                let Ok(Ends { free: true, met, .. }) = wedges.order(&vertices, v, w) else {
+                let Ok(Ends { free: true, wedge_pairs, .. }) = wedges.orient(&vertices, v, w)
+                else {
                     continue;
                 };
-                let [of_v0, of_v1] = met.sides.map(|sides| sides.before != sides.after);
+                let [of_v0, of_v1] = wedge_pairs.sides.map(|sides| sides.before != sides.after);
                 // The end of the crease goes into one of its wedges, not both of them into its end.
                 assert!(of_v0 || !of_v1);
                 at_the_end += usize::from(of_v0 && !of_v1);
@@ -223,9 +224,9 @@ fn a_crease_that_ends_is_not_forgotten() {
 
 #[test]
 fn fields_and_sectors_stay_those_of_the_faces_as_they_are() {
-    check_fields(&halved(samples::torus(3000)), 600);
-    check_fields(&halved(samples::knot(3000)), 1500);
-    check_fields(&halved(meshlod_fixtures::grid(30)), 300);
-    check_fields(&faceted(samples::torus(2000)), 500);
-    check_fields(&faceted(meshlod_fixtures::grid(20)), 200);
+    check_quadrics(&halved(samples::torus(3000)), 600);
+    check_quadrics(&halved(samples::knot(3000)), 1500);
+    check_quadrics(&halved(meshlod_fixtures::grid(30)), 300);
+    check_quadrics(&faceted(samples::torus(2000)), 500);
+    check_quadrics(&faceted(meshlod_fixtures::grid(20)), 200);
 }
