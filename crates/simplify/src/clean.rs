@@ -1,18 +1,19 @@
-//! What is left out before the first contraction: faces that repeat a vertex or another face.
+//! Faces left out before the first contraction: those that repeat a vertex or another face.
 
 use meshlod_mesh::{Connectivity, FaceId, Mesh, Side, Twin, VertexId};
 
-/// The connectivity of a mesh without the duplicates among its faces, and how many those were.
+/// Builds the connectivity of a mesh without its duplicate faces, and returns the number of
+/// duplicates.
 ///
-/// Two faces on the same vertices in the same turn are one face twice. The same vertices in the
-/// opposite turn are the two sides of a leaf and stay.
+/// Two faces are duplicates if they have the same vertices in the same orientation. Opposite
+/// orientations are the two sides of a thin sheet and stay.
 pub(crate) fn connect(mesh: &Mesh) -> (Connectivity, usize) {
     let connectivity = Connectivity::new(&mesh.faces, mesh.positions.len());
     let duplicates = duplicates(&mesh.faces, &connectivity);
     if duplicates.is_empty() {
         return (connectivity, 0);
     }
-    // A face that repeats a vertex is left out by the connectivity, and ids stay as they are.
+    // Connectivity leaves out a face that repeats a vertex, so ids stay as they are.
     let mut faces = mesh.faces.clone();
     for face in &duplicates {
         faces[face.index()] = [VertexId(0); 3];
@@ -20,7 +21,7 @@ pub(crate) fn connect(mesh: &Mesh) -> (Connectivity, usize) {
     (Connectivity::new(&faces, mesh.positions.len()), duplicates.len())
 }
 
-/// Every face that repeats one with a lower id.
+/// Returns the faces that repeat one with a lower id.
 fn duplicates(faces: &[[VertexId; 3]], connectivity: &Connectivity) -> Vec<FaceId> {
     let suspect = |face: FaceId| {
         (0..3).all(|k| match connectivity.twin(Side::new(face, k)) {

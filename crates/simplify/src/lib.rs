@@ -1,4 +1,4 @@
-//! Coarser triangle meshes: one contraction engine, algorithms as sets of policies.
+//! Simplifies triangle meshes by contraction, with nine published algorithms.
 //!
 //! ```
 //! use meshlod_samples as samples;
@@ -10,8 +10,12 @@
 //! # Ok::<(), meshlod_simplify::SimplifyError>(())
 //! ```
 //!
-//! Same input, same options, same bytes out, for any number of threads. After every contraction the
-//! surface is as manifold, as closed and as oriented as before.
+//! Two engines run them: the kernel runs [`Method::LindstromTurk`] and [`Method::Qem`], and the
+//! policy engine runs the other papers' methods, each as a set of policies. The method alone
+//! decides.
+//!
+//! The output depends on the input and the options alone, byte for byte, for any number of threads.
+//! After every contraction the surface is as manifold, as closed and as oriented as before.
 #![deny(unsafe_code)]
 
 mod clean;
@@ -39,10 +43,13 @@ pub use surface::contracted::{Contracted, Freedom};
 pub use surface::neighbourhood::{Dying, Neighbourhood, RingVertex, Spoke};
 pub use surface::{Placed, Surface};
 
-/// A coarser mesh, and what was done to get it.
+/// Simplifies a mesh and returns the result with a report.
 ///
-/// The result holds only what its faces use. A target out of reach is approached as far as the
-/// rules allow; the report says so, and why.
+/// The result holds only what its faces use. If the target is out of reach, the mesh is reduced as
+/// far as the rules allow, and the report says so and counts the reasons.
+///
+/// # Errors
+/// The mesh, the target or an option is invalid, see [`SimplifyError`].
 pub fn simplify(
     mesh: &Mesh,
     target: Target,

@@ -1,4 +1,4 @@
-//! What a user may ask for, and what comes back beside the mesh.
+//! Options, targets, errors and the report of a run.
 
 use meshlod_mesh::{Locks, MeshError, VertexId};
 use thiserror::Error;
@@ -7,32 +7,34 @@ use crate::engine::locks::Held;
 use crate::history::volume::VolumeLoss;
 use crate::refusal::Refusals;
 
-/// An algorithm by name.
+/// Simplification algorithm.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Method {
     /// Quadric error metrics with optimal placement [GH97].
     Qem,
-    /// The same, but every vertex of the result is one of the input: half-edge contraction.
+    /// Quadric error metrics with half-edge contraction: every vertex of the result is a vertex of
+    /// the input [GH97].
     QemEndpoint,
-    /// Memoryless, with the volume conserved exactly [LT98].
+    /// Memoryless simplification: edge contraction by swept volume, conserving the volume [LT98].
     #[default]
     LindstromTurk,
-    /// The same of faces instead of edges.
+    /// Memoryless simplification by face contraction, conserving the volume [LT98].
     LindstromTurkFaces,
-    /// Face constriction with the volume conserved exactly [LJ05].
+    /// Face constriction that conserves the volume [LJ05].
     LeeJang,
-    /// Face constriction to the mean of the corners [Wu01].
+    /// Face constriction to the weighted mean of the corners [Wu01].
     Wu,
-    /// Edges in the order of quadrics, with the volume conserved exactly [KJ04].
+    /// Edge contraction ordered by quadrics, with positions moved to conserve the volume [KJ04].
     KimJang,
-    /// Progressive meshes [Hop96]: the energy of samples, at its least for every contraction.
+    /// Progressive meshes: minimizes the distance energy of surface samples [Hop96].
     Pm,
-    /// Simple polygon reduction [Mel98]: length times turn, onto vertices of the input.
+    /// Simple polygon reduction: edge length times turning angle, onto vertices of the input
+    /// [Mel98].
     Spr,
 }
 
 impl Method {
-    /// Every method.
+    /// All methods, in a fixed order.
     pub const ALL: [Self; 9] = [
         Self::Qem,
         Self::QemEndpoint,
@@ -45,7 +47,7 @@ impl Method {
         Self::Spr,
     ];
 
-    /// Its name on the command line and in reports.
+    /// Returns the method's name on the command line and in reports.
     pub fn name(self) -> &'static str {
         match self {
             Self::Qem => "qem",
@@ -60,8 +62,10 @@ impl Method {
         }
     }
 
-    /// With which power of a length its costs grow: those of quadrics are squared distances times
-    /// areas, those of swept volumes squared volumes, those of samples squared distances.
+    /// Returns the power of a length that the method's costs scale with.
+    ///
+    /// Quadrics give squared distances times areas, swept volumes squared volumes, and samples
+    /// squared distances.
     pub fn cost_power(self) -> i32 {
         match self {
             Self::Qem | Self::QemEndpoint | Self::KimJang => 4,
@@ -71,12 +75,14 @@ impl Method {
         }
     }
 
-    /// Whether attributes count in its costs, by [`Options::weights`]. All methods place them.
+    /// Returns true if the method's costs include attributes, weighted by [`Options::weights`].
+    /// Every method carries attributes along.
     pub fn counts_attributes(self) -> bool {
         matches!(self, Self::Qem | Self::QemEndpoint | Self::LindstromTurk)
     }
 
-    /// Whether what boundaries move has a weight of its own in its costs, [`Options::boundary_weight`].
+    /// Returns true if the method's costs weigh the movement of boundaries by
+    /// [`Options::boundary_weight`].
     pub fn weighs_boundaries(self) -> bool {
         match self {
             Self::Qem | Self::QemEndpoint | Self::KimJang => true,
@@ -85,8 +91,8 @@ impl Method {
         }
     }
 
-    /// Whether every contraction with a closed ring that is free to choose its place conserves the
-    /// volume.
+    /// Returns true if every contraction with a closed ring that may choose its position freely
+    /// conserves the volume.
     pub fn conserves_volume(self) -> bool {
         match self {
             Self::LindstromTurk | Self::LindstromTurkFaces | Self::LeeJang | Self::KimJang => true,
@@ -94,29 +100,31 @@ impl Method {
         }
     }
 
-    /// The method of that name.
+    /// Returns the method with this name, if there is one.
     pub fn by_name(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|method| method.name() == name)
     }
 }
 
-/// How far to go.
+/// Target at which a run stops.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Target {
-    /// To this many faces or the next number below that contractions reach.
+    /// At most this many faces; contractions may stop a few faces below.
     Faces(usize),
-    /// To this part of the input's faces, between 0 and 1.
+    /// At most this fraction of the input's faces, between 0 and 1.
     Ratio(f64),
-    /// As far as the error stays within this, in model units: by the algorithm's own estimate, and in
-    /// the fast engine by distances from the input, both ways.
+    /// As few faces as possible while the error stays within this, in model units.
+    ///
+    /// For [`Method::LindstromTurk`] and [`Method::Qem`] the error is checked against the input
+    /// itself, at samples in both directions. The other methods rely on their own estimate.
     Error(f64),
 }
 
 impl Target {
-    /// Itself, if it is one.
+    /// Checks the target and returns it unchanged.
     ///
     /// # Errors
-    /// A ratio outside 0 to 1, an error below 0, NaN.
+    /// The ratio is outside 0 to 1, or the error is negative or NaN.
     pub fn valid(self) -> Result<Self, SimplifyError> {
         match self {
             Self::Ratio(ratio) if !(0.0..=1.0).contains(&ratio) => {
@@ -129,42 +137,49 @@ impl Target {
         }
     }
 
-    /// The number of faces to go to from `all`; 0 for an error, which sets none.
+    /// Returns the target number of faces for a mesh of `all` faces, and 0 for an error target,
+    /// which sets no number.
     pub fn faces_of(self, all: usize) -> usize {
         match self {
             Self::Faces(faces) => faces,
-            // Never more than asked for, but 29 % of 100 is 29.
+            // Rounds down, with a margin for rounding errors: 29 % of 100 is 29.
             Self::Ratio(ratio) => (all as f64 * ratio + 1e-6).floor() as usize,
             Self::Error(_) => 0,
         }
     }
 }
 
-/// How to simplify.
+/// Options of a simplification.
 #[derive(Clone, Debug, Default)]
 pub struct Options {
-    /// The algorithm; `None` for [`Method::default`].
+    /// Algorithm; `None` selects [`Method::default`].
     pub method: Option<Method>,
-    /// How much attributes count where the method counts them, see [`Method::counts_attributes`].
+    /// Weights of the attributes in the costs of methods for which [`Method::counts_attributes`] is
+    /// true.
     pub weights: AttributeWeights,
-    /// Keep every vertex of a boundary edge where it is.
+    /// True to keep every vertex of a boundary edge in place.
     pub lock_boundary: bool,
-    /// What it costs to move a boundary, where the method counts that, see
-    /// [`Method::weighs_boundaries`]: a factor, 0 for nothing, more than 1e9 as 1e9. Of squared areas under
-    /// the boundary against squared volumes in `lindstrom-turk`, of planes on boundary edges against
-    /// those of faces in `qem`. `None` for the method's own, which is 9 in `lindstrom-turk`, 2 in `qem`.
+    /// Factor on the cost of moving a boundary, for methods for which [`Method::weighs_boundaries`]
+    /// is true.
+    ///
+    /// Zero makes boundaries free to move; the kernel counts values above 1e9 as 1e9.
+    /// `lindstrom-turk` and `lindstrom-turk-faces` weigh squared areas under the boundary against
+    /// squared volumes, the methods based on quadrics weigh planes on boundary edges against planes
+    /// of faces. `None` selects the method's own factor: 9 for the former, 2 for the latter.
     pub boundary_weight: Option<f64>,
-    /// What must stay, or move together. Where vertices of a tie do not find edges to move along
-    /// together, they stay.
+    /// Vertices that stay in place, cost more to move, or move together as ties. Tied vertices
+    /// without edges to move along together stay in place.
     pub locks: Locks,
-    /// A connected component whose box has a shorter diagonal than this, in model units, may vanish
-    /// as a whole, where nothing of it can be spared for less; not one with a vertex that a lock or a
-    /// tie holds, and not the last. Its size then counts as an error. `None`: none ever vanishes.
+    /// Length of the bounding-box diagonal, in model units, below which a connected component may
+    /// vanish as a whole; `None` keeps every component.
+    ///
+    /// A component vanishes when that costs less than contracting it further. Its size then counts
+    /// as an error. The last component never vanishes, nor does one with a locked or tied vertex.
     pub vanish_below: Option<f64>,
 }
 
 impl Options {
-    /// Refuses weights that are none.
+    /// Checks all weights.
     pub(crate) fn validate(&self) -> Result<(), SimplifyError> {
         self.weights.validate()?;
         match self.boundary_weight.filter(|weight| !weight.is_finite() || *weight < 0.0) {
@@ -174,14 +189,15 @@ impl Options {
     }
 }
 
-/// How much an error in an attribute counts against an error in distance; 0 not at all.
+/// Weights of attribute errors against distance; 0 ignores an attribute.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AttributeWeights {
-    /// A normal that is off by one counts like this part of the diagonal.
+    /// Weight of normals: a deviation of one counts as this fraction of the bounding-box diagonal.
     pub normal: f64,
-    /// A texture that slides by a length counts like this part of that length.
+    /// Weight of texture coordinates: a texture sliding by a length counts as this fraction of that
+    /// length.
     pub uv: f64,
-    /// A colour that is off by one counts like this part of the diagonal.
+    /// Weight of colours: a deviation of one counts as this fraction of the bounding-box diagonal.
     pub color: f64,
 }
 
@@ -192,10 +208,10 @@ impl Default for AttributeWeights {
 }
 
 impl AttributeWeights {
-    /// Those of [`Default`], where a constant is wanted.
+    /// Default weights, as a constant.
     pub const DEFAULT: Self = Self { normal: 0.005, uv: 0.5, color: 0.005 };
 
-    /// Attributes count for nothing: quadrics are those of the geometry alone.
+    /// Weights of zero: costs depend on the geometry alone.
     pub const NONE: Self = Self { normal: 0.0, uv: 0.0, color: 0.0 };
 
     fn all(&self) -> [f64; 3] {
@@ -210,96 +226,104 @@ impl AttributeWeights {
     }
 }
 
-/// Why a mesh cannot be simplified at all.
+/// Error of a simplification that cannot start.
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum SimplifyError {
-    /// It breaks a rule of [`meshlod_mesh::Mesh::validate`].
+    /// The mesh is invalid, see [`meshlod_mesh::Mesh::validate`].
     #[error(transparent)]
     Mesh(#[from] MeshError),
-    /// It has no faces.
+    /// The mesh has no faces.
     #[error("the mesh has no faces")]
     NoFaces,
-    /// None of its faces has three different vertices.
+    /// None of the faces has three different vertices.
     #[error("none of the {0} faces has three different vertices")]
     AllDegenerate(usize),
-    /// It is too small or too large to compute with.
-    #[error("the mesh is {diagonal:e} from corner to corner; scale it to between 1e-30 and 1e30")]
+    /// The mesh is too small or too large to compute with.
+    #[error(
+        "the diagonal of the mesh must be between 1e-30 and 1e30, not {diagonal:e}: scale the mesh"
+    )]
     Extent {
-        /// Of its box.
+        /// Diagonal of the bounding box, in model units.
         diagonal: f64,
     },
-    /// The locks are for another mesh.
-    #[error("the locks are of {found} vertices, the mesh has {expected}")]
+    /// The locks have a different number of vertices than the mesh.
+    #[error("the locks cover {found} vertices, but the mesh has {expected}")]
     BadMask {
-        /// Its length.
+        /// Number of vertices in the locks.
         found: usize,
-        /// The number of vertices.
+        /// Number of vertices of the mesh.
         expected: usize,
     },
-    /// A tie names a vertex that is not there.
-    #[error("tie {tie} names vertex {vertex} of {count}")]
+    /// A tie refers to a vertex that does not exist.
+    #[error("tie {tie} names vertex {vertex}, but the mesh has only {count} vertices")]
     BadTie {
-        /// The tie.
+        /// Index of the tie.
         tie: usize,
-        /// What it names.
+        /// Vertex that does not exist.
         vertex: VertexId,
-        /// The number of vertices.
+        /// Number of vertices of the mesh.
         count: usize,
     },
-    /// A vertex is tied and tied again.
-    #[error("tie {tie} names vertex {vertex}, which has been tied before")]
+    /// A vertex occurs twice in the ties.
+    #[error("tie {tie} names vertex {vertex}, which is already tied")]
     TiedTwice {
-        /// The second tie, or the one that names it twice.
+        /// Index of the second tie, or of the tie that contains the vertex twice.
         tie: usize,
-        /// The vertex.
+        /// Vertex that occurs twice.
         vertex: VertexId,
     },
-    /// What a tie holds together is apart.
-    #[error("tie {tie} is torn: vertices {} and {} are at two places", vertices[0], vertices[1])]
+    /// The vertices of a tie are not at one position.
+    #[error(
+        "the vertices of tie {tie} must share one position, but {} and {} do not",
+        vertices[0],
+        vertices[1]
+    )]
     TornTie {
-        /// The tie.
+        /// Index of the tie.
         tie: usize,
-        /// Two of its vertices.
+        /// Two vertices of the tie at different positions.
         vertices: [VertexId; 2],
     },
-    /// A weight that is no weight.
-    #[error("{0} is not a weight: give a number of at least 0")]
+    /// A weight is negative or not finite.
+    #[error("the weight must be a number of at least 0, not {0}")]
     BadWeight(f64),
-    /// A size below which components may vanish that is no size.
-    #[error("{0} is not a size: give a length of at least 0")]
+    /// The size below which components may vanish is negative or NaN.
+    #[error("the size below which components may vanish must be at least 0, not {0}")]
     BadSize(f64),
-    /// A target that is no target.
-    #[error("{0} is not a target: give a ratio between 0 and 1 or an error of at least 0")]
+    /// The target is out of range.
+    #[error("the target must be a ratio between 0 and 1 or an error of at least 0, not {0}")]
     BadTarget(f64),
 }
 
-/// What a run did.
+/// Report of a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Report {
-    /// The algorithm, also where none was named.
+    /// Algorithm that ran, also if none was chosen.
     pub method: Method,
-    /// Faces of the input, all of them.
+    /// Number of faces of the input.
     pub input_faces: usize,
-    /// Faces of the input left out because they repeat a vertex.
+    /// Number of input faces left out because they repeat a vertex.
     pub degenerate_faces: usize,
-    /// Faces of the input left out because they repeat another face.
+    /// Number of input faces left out because they repeat another face.
     pub duplicate_faces: usize,
-    /// Vertices of the input that are kept in place because the surface is not manifold there.
+    /// Number of non-manifold input vertices, which are kept in place.
     pub non_manifold_vertices: usize,
-    /// Vertices of the input that locks hold.
+    /// Number of input vertices held by locks, by kind.
     pub held: Held,
-    /// Faces that are left.
+    /// Number of faces left after the run.
     pub output_faces: usize,
-    /// Components that have vanished.
+    /// Number of components that have vanished.
     pub vanished: usize,
-    /// Whether the target was reached.
+    /// True if the target was reached.
     pub reached: bool,
-    /// The greatest distance that the algorithm estimates for any contraction, in model units: an
-    /// estimate of the maximum that `measure` finds, not a bound of it. A component that has
-    /// vanished counts with its size; how far it was from what is left is not looked at.
+    /// Greatest distance estimated for any contraction, in model units.
+    ///
+    /// This estimates the maximum that `measure` finds and is not an upper bound of it. A component
+    /// that has vanished counts with its size; its distance to the remaining surface is not
+    /// measured.
     pub error_estimate: f64,
-    /// Why candidates were refused, and how often.
+    /// Number of refused candidates, by reason.
     pub refusals: Refusals,
-    /// What became of the volume.
+    /// Change of the enclosed volume.
     pub volume: VolumeLoss,
 }

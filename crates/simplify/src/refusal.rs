@@ -1,38 +1,39 @@
-//! Why a contraction may not happen, and how often each reason was met.
+//! Reasons to refuse a contraction, and their counts.
 
 use std::fmt;
 use std::ops::AddAssign;
 
-/// Why a contraction may not happen.
+/// Reason why a contraction is refused.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 #[repr(u8)]
 pub enum Refusal {
-    /// The edge has three faces or more.
+    /// The edge has three or more faces.
     NonManifold,
-    /// It would join two boundaries across the surface, or take a boundary off its course.
+    /// The contraction would join two boundaries across the surface, or move a vertex off its
+    /// boundary.
     Boundary,
-    /// Its ends have a common neighbour other than its wings [DEGN99].
+    /// The ends have a common neighbour other than the wings, so the link condition fails [DEGN99].
     Link,
-    /// A face would turn over or lose its area.
+    /// A face would flip or lose its area.
     Flip,
-    /// Two of its vertices are locked.
+    /// Two of the contracted vertices are locked.
     Locked,
-    /// Vertices that are tied to its own cannot go with them.
+    /// The vertices tied to the contracted ones cannot move along.
     Tied,
-    /// Attributes on one side of a seam would have nowhere to go.
+    /// An attribute chart would be lost: the contraction does not follow the seam.
     Seam,
-    /// It would remove the last faces of a component.
+    /// The contraction would remove the last faces of a component.
     LastFaces,
-    /// More faces meet in its ends than are looked at.
+    /// Too many faces meet at the contracted vertices.
     Valence,
-    /// No place among the vertices around conserves the volume; by `qem`, none costs least.
+    /// No suitable position conserves the volume or, in `qem`, minimizes the cost.
     Volume,
-    /// It would move the surface further than the target error.
+    /// The contraction would exceed the target error.
     Error,
 }
 
 impl Refusal {
-    /// Every reason, in the order of [`Refusals`].
+    /// All reasons, in the order of [`Refusals`].
     pub const ALL: [Self; 11] = [
         Self::NonManifold,
         Self::Boundary,
@@ -47,7 +48,7 @@ impl Refusal {
         Self::Error,
     ];
 
-    /// Its name in reports.
+    /// Returns the name of the reason in reports.
     pub fn name(self) -> &'static str {
         match self {
             Self::NonManifold => "non_manifold",
@@ -65,17 +66,17 @@ impl Refusal {
     }
 }
 
-/// How often each reason was met. A candidate tried again counts again.
+/// Number of refusals by reason. A candidate that is tried again counts again.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Refusals([u64; Refusal::ALL.len()]);
 
 impl Refusals {
-    /// How often this reason was met.
+    /// Returns the number of refusals for this reason.
     pub fn count(&self, refusal: Refusal) -> u64 {
         self.0[refusal as usize]
     }
 
-    /// The reasons that were met, and how often.
+    /// Iterates over the reasons that occurred, with their counts.
     pub fn iter(&self) -> impl Iterator<Item = (Refusal, u64)> + '_ {
         Refusal::ALL.into_iter().map(|r| (r, self.count(r))).filter(|&(_, count)| count > 0)
     }

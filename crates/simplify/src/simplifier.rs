@@ -1,4 +1,4 @@
-//! A mesh being simplified: run it to a target, take the level, run on.
+//! Incremental simplification: run to a target, take the level, run on.
 
 use meshlod_mesh::{Bounds, Mesh, VertexId};
 
@@ -6,41 +6,42 @@ use crate::clean;
 use crate::engine::locks::{self, Held};
 use crate::engine::policy::{Observe, Stop};
 use crate::engine::vanishing::Vanishing;
-use crate::engine::{Ready, Run, Tally};
+use crate::engine::{PreparedSurface, Run, Tally};
 use crate::kernel::{self, PlaneDistance, SweptVolume};
 use crate::methods;
 use crate::options::{Method, Options, Report, SimplifyError, Target};
 use crate::surface::Surface;
 
-/// The diagonals that can be worked with. Costs go with up to the sixth power of a length, checks with
-/// the eighth; beyond, doubles would run out.
+/// Bounding-box diagonals that can be worked with. Costs grow with up to the sixth power of a
+/// length and checks with the eighth; outside this range doubles would overflow or underflow.
 const EXTENTS: std::ops::RangeInclusive<f64> = 1e-30..=1e30;
 
-/// A mesh at work. Levels taken from one run are nested: each comes from the one before.
+/// Incremental simplification of one mesh. Successive levels are nested: each is made from the one
+/// before.
 pub struct Simplifier<'m> {
     mesh: &'m Mesh,
     engine: Box<dyn Run + 'm>,
     method: Method,
-    input: Input,
+    input: InputSummary,
 }
 
-/// What was found in the input.
+/// Findings in the input: faces left out, and vertices held in place.
 #[derive(Clone, Copy)]
-pub(crate) struct Input {
+pub(crate) struct InputSummary {
     pub(crate) degenerate_faces: usize,
     pub(crate) duplicate_faces: usize,
     pub(crate) non_manifold_vertices: usize,
     pub(crate) held: Held,
 }
 
-/// An engine at work, and what was found in its mesh.
-pub(crate) type Started<'m> = (Box<dyn Run + 'm>, Input);
+/// Running engine, and the findings in its mesh.
+pub(crate) type Started<'m> = (Box<dyn Run + 'm>, InputSummary);
 
 impl<'m> Simplifier<'m> {
-    /// Connects the mesh and costs its candidates; nothing is contracted yet.
+    /// Connects the mesh and costs its candidates, without contracting any.
     ///
-    /// The method alone decides what runs it: the kernel contracts by [`Method::LindstromTurk`] and
-    /// [`Method::Qem`], the policy engine by the others.
+    /// The method alone decides which engine runs: the kernel for [`Method::LindstromTurk`] and
+    /// [`Method::Qem`], the policy engine for the others.
     ///
     /// # Errors
     /// The mesh, its extent, the locks or an option is invalid, or no face has three different vertices.
@@ -55,8 +56,8 @@ impl<'m> Simplifier<'m> {
         Ok(Self { mesh, engine, method, input })
     }
 
-    /// Runs any method on the policy engine: for the kernel's two, the general versions that tests hold
-    /// it against.
+    /// Prepares any method on the policy engine, including the general versions of the two kernel
+    /// methods that tests compare the kernel with.
     ///
     /// # Errors
     /// As [`Self::new`].
@@ -68,7 +69,10 @@ impl<'m> Simplifier<'m> {
         Ok(Self { mesh, engine, method, input })
     }
 
-    /// Contracts until the target is reached or nothing more may be contracted.
+    /// Contracts until the target is reached or no contraction is allowed.
+    ///
+    /// # Errors
+    /// The target is out of range.
     pub fn run(
         &mut self,
         target: Target,
@@ -79,34 +83,35 @@ impl<'m> Simplifier<'m> {
         Ok(self.report(target, &stop))
     }
 
-    /// Makes the one next contraction that costs at most `most_cost`; false when none may be made.
+    /// Makes the next contraction that costs at most `most_cost`. Returns false if none is
+    /// possible.
     pub fn step(&mut self, most_cost: f64, observer: &mut dyn Observe) -> bool {
         let stop = Stop { cost: most_cost, ..Stop::NEVER };
         self.engine.step(&stop, observer)
     }
 
-    /// The cost of the candidate that is tried next, in the method's own terms, see
-    /// [`Method::cost_power`](crate::Method::cost_power); `None` when no candidate is left.
+    /// Returns the cost of the next candidate in the method's own units, see
+    /// [`Method::cost_power`](crate::Method::cost_power); `None` if no candidate is left.
     ///
-    /// It may turn out refused: the contraction that is made next costs this or more.
+    /// The candidate may still be refused, so the next contraction costs at least this.
     pub fn next_cost(&mut self) -> Option<f64> {
         self.engine.next_cost()
     }
 
-    /// The surface as it is now, in the ids of the input.
+    /// Returns the current surface, in the ids of the input.
     ///
-    /// The fast engine makes one when it is asked, and keeps it while observers see it change; a face
-    /// that went before has what its corners have become.
+    /// The kernel builds it on the first call and then keeps it up to date while observers watch.
+    /// In a removed face, each corner is the vertex that it was merged into.
     pub fn surface(&self) -> &Surface {
         self.engine.surface()
     }
 
-    /// How many faces are left.
+    /// Returns the number of faces left.
     pub fn live_faces(&self) -> usize {
         self.engine.live_faces()
     }
 
-    /// What was done so far.
+    /// Builds the report of the run so far.
     fn report(&self, target: Target, stop: &Stop) -> Report {
         let output_faces = self.live_faces();
         let Tally { vanished, refusals, error_estimate, volume } = self.engine.tally();
@@ -134,12 +139,12 @@ impl<'m> Simplifier<'m> {
         })
     }
 
-    /// The mesh as it is now: unused vertices and wedges left out, the rest in the input's order.
+    /// Returns the current mesh without unused vertices and wedges, in the order of the input.
     pub fn level(&self) -> Mesh {
         self.engine.level(self.mesh)
     }
 
-    /// How many faces there were before the first contraction.
+    /// Returns the number of faces before the first contraction.
     pub(crate) fn first_faces(&self) -> usize {
         self.mesh.faces.len() - self.input.degenerate_faces - self.input.duplicate_faces
     }
@@ -149,7 +154,7 @@ impl<'m> Simplifier<'m> {
     }
 }
 
-/// The box of a mesh; refuses meshes and options that no method could work with.
+/// Returns the bounding box of the mesh; refuses meshes and options that no method can work with.
 fn validate(mesh: &Mesh, options: &Options) -> Result<Bounds, SimplifyError> {
     mesh.validate()?;
     if mesh.faces.is_empty() {
@@ -168,7 +173,7 @@ fn validate(mesh: &Mesh, options: &Options) -> Result<Bounds, SimplifyError> {
     Ok(bounds)
 }
 
-/// Sets the policy engine to work on a valid mesh.
+/// Starts the policy engine on a valid mesh.
 fn by_policies<'m>(
     mesh: &'m Mesh,
     method: Method,
@@ -184,8 +189,9 @@ fn by_policies<'m>(
         .count();
     let mut surface = Surface::new(mesh, &connectivity);
     let held = locks::apply(options, method, &connectivity, &mut surface);
-    let input = Input { degenerate_faces, duplicate_faces, non_manifold_vertices, held };
+    let input = InputSummary { degenerate_faces, duplicate_faces, non_manifold_vertices, held };
     let vanishing = Vanishing::new(&surface, method, options.vanish_below);
-    let engine = methods::start(method, options, Ready { surface, connectivity, vanishing });
+    let engine =
+        methods::start(method, options, PreparedSurface { surface, connectivity, vanishing });
     Ok((engine, input))
 }

@@ -2,7 +2,7 @@
 
 use meshlod_mesh::{Connectivity, FaceId, VertexId};
 
-use crate::engine::policy::{Books, Candidates};
+use crate::engine::policy::{CandidateSink, Candidates};
 use crate::surface::contracted::Contracted;
 use crate::surface::neighbourhood::{Neighbourhood, Spoke};
 use crate::surface::{Flags, Surface};
@@ -49,9 +49,9 @@ impl CandidateId {
 /// A side lives as long as its face, whatever becomes of its vertices. So a contraction moves no
 /// candidate; it only ends those of the dying faces, and where two edges fall together it keeps one
 /// side of the two.
-pub(crate) struct Edges;
+pub(crate) struct EdgeCandidates;
 
-impl Candidates for Edges {
+impl Candidates for EdgeCandidates {
     fn seed(&self, _: &Surface, connectivity: &Connectivity) -> Vec<CandidateId> {
         connectivity.edges().map(|side| CandidateId::side(side.face(), side.corner())).collect()
     }
@@ -61,10 +61,10 @@ impl Candidates for Edges {
         id.vertices(surface)
     }
 
-    fn settle(&self, hood: &Neighbourhood, _: VertexId, books: &mut dyn Books) {
-        close_dying(hood, books);
-        for wing in hood.dying.iter().filter_map(|dying| dying.apex()) {
-            keep_one(hood, wing as u32, books);
+    fn update(&self, neighbourhood: &Neighbourhood, _: VertexId, sink: &mut dyn CandidateSink) {
+        close_dying(neighbourhood, sink);
+        for wing in neighbourhood.dying.iter().filter_map(|dying| dying.apex()) {
+            keep_one(neighbourhood, wing as u32, sink);
         }
     }
 }
@@ -73,9 +73,9 @@ impl Candidates for Edges {
 ///
 /// A face whose corners are inside a chart, off every boundary and free to move, is contracted as a
 /// whole; onto a corner that is not; and where two are not, it is left to its edges.
-pub(crate) struct FacesAndEdges;
+pub(crate) struct FaceAndEdgeCandidates;
 
-impl Candidates for FacesAndEdges {
+impl Candidates for FaceAndEdgeCandidates {
     fn seed(&self, surface: &Surface, connectivity: &Connectivity) -> Vec<CandidateId> {
         let faces = (0..surface.face_count())
             .map(FaceId::new)
@@ -96,24 +96,24 @@ impl Candidates for FacesAndEdges {
         id.vertices(surface)
     }
 
-    fn refused(&self, id: CandidateId, books: &mut dyn Books) {
+    fn refused(&self, id: CandidateId, sink: &mut dyn CandidateSink) {
         if id.slot() == 3 {
-            let surface = books.surface();
+            let surface = sink.surface();
             let corners = surface.face(id.face()).map(|v| surface.position(v));
             let length = |k: usize| corners[k].distance_squared(corners[(k + 1) % 3]);
             let shortest = (0..3).min_by(|&k, &l| length(k).total_cmp(&length(l)));
             let side = CandidateId::side(id.face(), shortest.unwrap_or(0));
-            if !books.is_open(side) {
-                books.open(side);
+            if !sink.is_open(side) {
+                sink.open(side);
             }
         }
     }
 
-    fn settle(&self, hood: &Neighbourhood, kept: VertexId, books: &mut dyn Books) {
-        close_dying(hood, books);
-        for (place, r) in hood.ring.iter().enumerate() {
-            if [kept, r.id].iter().any(|&v| special(books.surface(), v)) {
-                keep_one(hood, place as u32, books);
+    fn update(&self, neighbourhood: &Neighbourhood, kept: VertexId, sink: &mut dyn CandidateSink) {
+        close_dying(neighbourhood, sink);
+        for (place, r) in neighbourhood.ring.iter().enumerate() {
+            if [kept, r.id].iter().any(|&v| special(sink.surface(), v)) {
+                keep_one(neighbourhood, place as u32, sink);
             }
         }
     }
@@ -125,29 +125,29 @@ fn special(surface: &Surface, v: VertexId) -> bool {
     surface.flags(v).any(Flags::BOUNDARY.or(Flags::PINNED).or(Flags::SEAM).or(Flags::TIED))
 }
 
-fn close_dying(hood: &Neighbourhood, books: &mut dyn Books) {
-    for dying in &hood.dying {
-        (0..3).for_each(|k| books.close(CandidateId::side(dying.face, k)));
-        books.close(CandidateId::whole(dying.face));
+fn close_dying(neighbourhood: &Neighbourhood, sink: &mut dyn CandidateSink) {
+    for dying in &neighbourhood.dying {
+        (0..3).for_each(|k| sink.close(CandidateId::side(dying.face, k)));
+        sink.close(CandidateId::whole(dying.face));
     }
 }
 
 /// Leaves one open side on the edge from the new vertex to one on the ring.
-fn keep_one(hood: &Neighbourhood, ring: u32, books: &mut dyn Books) {
+fn keep_one(neighbourhood: &Neighbourhood, ring: u32, sink: &mut dyn CandidateSink) {
     let side = |spoke: &Spoke| {
         let k = if spoke.a == ring { spoke.corner() } else { (spoke.corner() + 2) % 3 };
         (spoke.a == ring || spoke.b == ring).then(|| CandidateId::side(spoke.face, k))
     };
     let mut first = None;
     let mut open = false;
-    for side in hood.spokes.iter().filter_map(side) {
+    for side in neighbourhood.spokes.iter().filter_map(side) {
         first = first.or(Some(side));
         if open {
-            books.close(side);
+            sink.close(side);
         }
-        open |= books.is_open(side);
+        open |= sink.is_open(side);
     }
     if let (Some(side), false) = (first, open) {
-        books.open(side);
+        sink.open(side);
     }
 }

@@ -14,8 +14,8 @@ const OF_TOPOLOGY: [Check; 3] = [shape, link, closing];
 type Check = fn(&Surface, &Neighbourhood) -> Result<(), Refusal>;
 
 /// Whether what is around may become one vertex at all.
-pub(crate) fn topology(surface: &Surface, hood: &Neighbourhood) -> Result<(), Refusal> {
-    OF_TOPOLOGY.iter().try_for_each(|check| check(surface, hood))
+pub(crate) fn topology(surface: &Surface, neighbourhood: &Neighbourhood) -> Result<(), Refusal> {
+    OF_TOPOLOGY.iter().try_for_each(|check| check(surface, neighbourhood))
 }
 
 /// The least cosine between a face's normal before and after; found on bunny, horse and dragon:
@@ -24,44 +24,51 @@ const LEAST_COSINE: f64 = 0.2;
 
 /// An edge of at most two faces, or a face with as many neighbours as sides; not one that joins two
 /// boundaries across the surface; not the last of what hangs together.
-fn shape(surface: &Surface, hood: &Neighbourhood) -> Result<(), Refusal> {
-    let inner = if hood.contracted.len() == 2 { 2 } else { 4 };
-    if hood.dying.len() > inner {
+fn shape(surface: &Surface, neighbourhood: &Neighbourhood) -> Result<(), Refusal> {
+    let inner = if neighbourhood.contracted.len() == 2 { 2 } else { 4 };
+    if neighbourhood.dying.len() > inner {
         return Err(Refusal::NonManifold);
     }
     let on_boundary = |&v: &VertexId| surface.flags(v).any(Flags::BOUNDARY);
-    if hood.dying.len() == inner && hood.contracted.iter().all(on_boundary) {
+    if neighbourhood.dying.len() == inner && neighbourhood.contracted.iter().all(on_boundary) {
         return Err(Refusal::Boundary);
     }
-    lasting(hood)
+    lasting(neighbourhood)
 }
 
 /// Something is left, and every wing still hangs on it by a face.
-fn lasting(hood: &Neighbourhood) -> Result<(), Refusal> {
+fn lasting(neighbourhood: &Neighbourhood) -> Result<(), Refusal> {
     let hangs_on = |wing: usize| {
-        hood.spokes.iter().any(|spoke| spoke.a as usize == wing || spoke.b as usize == wing)
+        neighbourhood
+            .spokes
+            .iter()
+            .any(|spoke| spoke.a as usize == wing || spoke.b as usize == wing)
     };
-    let mut wings = hood.dying.iter().filter_map(|dying| dying.apex());
-    if wings.all(hangs_on) && !hood.spokes.is_empty() { Ok(()) } else { Err(Refusal::LastFaces) }
+    let mut wings = neighbourhood.dying.iter().filter_map(|dying| dying.apex());
+    if wings.all(hangs_on) && !neighbourhood.spokes.is_empty() {
+        Ok(())
+    } else {
+        Err(Refusal::LastFaces)
+    }
 }
 
 /// The link condition for vertices [DEGN99]: a common neighbour of contracted vertices is the apex
 /// of a dying face on just these.
-fn link(_: &Surface, hood: &Neighbourhood) -> Result<(), Refusal> {
+fn link(_: &Surface, neighbourhood: &Neighbourhood) -> Result<(), Refusal> {
     let apart = |adjacent: u8, wing: u8| adjacent.count_ones() < 2 || adjacent == wing;
-    let ok = hood.ring.iter().all(|r| {
-        apart(r.adjacent, r.wing) && (r.adjacent.count_ones() < 3 || hood.dying.len() == 1)
+    let ok = neighbourhood.ring.iter().all(|r| {
+        apart(r.adjacent, r.wing) && (r.adjacent.count_ones() < 3 || neighbourhood.dying.len() == 1)
     });
     if ok { Ok(()) } else { Err(Refusal::Link) }
 }
 
 /// The link condition for edges: no two surviving faces on the same two wings, or they would
 /// become one face twice. So does a tetrahedron end.
-fn closing(_: &Surface, hood: &Neighbourhood) -> Result<(), Refusal> {
-    let shared = |place: u32| hood.ring[place as usize].adjacent.count_ones() > 1;
-    let across = hood.spokes.iter().filter(|spoke| shared(spoke.a) && shared(spoke.b));
+fn closing(_: &Surface, neighbourhood: &Neighbourhood) -> Result<(), Refusal> {
+    let shared = |place: u32| neighbourhood.ring[place as usize].adjacent.count_ones() > 1;
+    let across = neighbourhood.spokes.iter().filter(|spoke| shared(spoke.a) && shared(spoke.b));
     // The two sides of a leaf have one apex: with them would go what closes the edges to it.
-    let leaf = matches!(hood.dying[..], [a, b] if a.apex() == b.apex());
+    let leaf = matches!(neighbourhood.dying[..], [a, b] if a.apex() == b.apex());
     if across.count() < 2 && !leaf { Ok(()) } else { Err(Refusal::Link) }
 }
 
@@ -69,12 +76,15 @@ fn closing(_: &Surface, hood: &Neighbourhood) -> Result<(), Refusal> {
 /// before may do as it likes.
 pub(crate) fn flip(
     surface: &Surface,
-    hood: &Neighbourhood,
+    neighbourhood: &Neighbourhood,
     position: DVec3,
 ) -> Result<(), Refusal> {
-    for spoke in &hood.spokes {
-        let (a, b) = (hood.ring[spoke.a as usize].position, hood.ring[spoke.b as usize].position);
-        let old = surface.position(hood.contracted[spoke.owner()]);
+    for spoke in &neighbourhood.spokes {
+        let (a, b) = (
+            neighbourhood.ring[spoke.a as usize].position,
+            neighbourhood.ring[spoke.b as usize].position,
+        );
+        let old = surface.position(neighbourhood.contracted[spoke.owner()]);
         let before = (a - old).cross(b - old);
         let after = (a - position).cross(b - position);
         let turn = before.dot(after);

@@ -10,29 +10,30 @@ use crate::surface::{Placed, Surface};
 /// The larger of what the placement says of itself and how far the contracted vertices end up from
 /// the new faces, on top of what was moved there before, in model units. The two are taken as
 /// independent.
-pub(crate) fn estimate(surface: &Surface, hood: &Neighbourhood, placed: &Placed) -> f64 {
-    let now = placed.error_estimate.max(stand_off(surface, hood, placed.position));
-    now.hypot(surface.moved(hood.contracted()))
+pub(crate) fn estimate(surface: &Surface, neighbourhood: &Neighbourhood, placed: &Placed) -> f64 {
+    let now = placed.error_estimate.max(stand_off(surface, neighbourhood, placed.position));
+    now.hypot(surface.moved(neighbourhood.contracted()))
 }
 
 /// How far the contracted vertices are from the faces they had and that now meet in `position`; one
 /// that had none but dying ones, from all that survive. Quadrics do not see the tip of a spike: its
 /// planes all pass close by its foot.
-fn stand_off(surface: &Surface, hood: &Neighbourhood, position: DVec3) -> f64 {
-    let ring = |place: u32| hood.ring()[place as usize].position;
+fn stand_off(surface: &Surface, neighbourhood: &Neighbourhood, position: DVec3) -> f64 {
+    let ring = |place: u32| neighbourhood.ring()[place as usize].position;
     let squared = |v: DVec3, spoke: &Spoke| {
         v.distance_squared(closest_point(v, &[position, ring(spoke.a), ring(spoke.b)]))
     };
     let mut nearest = [f64::INFINITY; 3];
-    for spoke in hood.spokes() {
-        let v = surface.position(hood.contracted()[spoke.owner()]);
+    for spoke in neighbourhood.spokes() {
+        let v = surface.position(neighbourhood.contracted()[spoke.owner()]);
         let nearest = &mut nearest[spoke.owner()];
         *nearest = nearest.min(squared(v, spoke));
     }
     let of_one = |(&v, own): (&VertexId, f64)| {
         let v = surface.position(v);
-        let all = || hood.spokes().iter().map(|spoke| squared(v, spoke)).fold(own, f64::min);
+        let all =
+            || neighbourhood.spokes().iter().map(|spoke| squared(v, spoke)).fold(own, f64::min);
         if own.is_finite() { own } else { all() }
     };
-    hood.contracted().iter().zip(nearest).map(of_one).fold(0.0, f64::max).sqrt()
+    neighbourhood.contracted().iter().zip(nearest).map(of_one).fold(0.0, f64::max).sqrt()
 }

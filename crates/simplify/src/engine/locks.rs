@@ -1,4 +1,4 @@
-//! Locks as the engine obeys them: flags of vertices, and ties.
+//! Locks as vertex flags and ties.
 
 use meshlod_mesh::{Connectivity, Lock, Locks, Mesh, VertexId};
 
@@ -6,19 +6,19 @@ use crate::options::{Method, Options, SimplifyError};
 use crate::surface::ties::{MOST_MEMBERS, Ties};
 use crate::surface::{Flags, Surface};
 
-/// How many vertices of the input are held, and how.
+/// Number of input vertices held by locks, by kind.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Held {
-    /// Locked, by the mask or as part of a boundary.
+    /// Number of vertices locked by the mask or as part of a boundary.
     pub locked: usize,
-    /// Protected and not locked.
+    /// Number of protected vertices that are not locked.
     pub protected: usize,
-    /// In a tie, locked or not.
+    /// Number of tied vertices, locked or not.
     pub tied: usize,
 }
 
 impl Held {
-    /// Counts another mesh in, `copies` times.
+    /// Adds the counts of another mesh, `copies` times.
     pub fn add(&mut self, other: &Self, copies: usize) {
         self.locked += copies * other.locked;
         self.protected += copies * other.protected;
@@ -26,9 +26,9 @@ impl Held {
     }
 }
 
-/// A protected vertex that moves counts as one that moves so many times as far. Pixels over 24 views
-/// that show what the original hides, by `qem`: fish-clown.obj with its crossings protected, at 25 and
-/// 10 %, and fused with its lines protected; suzanne.obj at 50 %:
+/// Factor on the distance that a protected vertex moves. Pixels over 24 views that show what the
+/// original hides, with `qem`: fish-clown.obj with its crossings protected, at 25 and 10 %, and
+/// fused with its lines protected; suzanne.obj at 50 %:
 ///
 /// | factor | 25 % | 10 % | fused 25 % | fused 10 % | suzanne |
 /// |---|--:|--:|--:|--:|--:|
@@ -37,10 +37,10 @@ impl Held {
 /// | 3 | 6,546 | 23,601 | 1,856 | 11,509 | 143 |
 /// | 5 | 6,294 | 96,156 | | | 376 |
 ///
-/// From 5 on what is not protected goes first, whatever that costs.
+/// From 5 on everything unprotected is contracted first, whatever the cost.
 pub(crate) const PROTECTION: f64 = 2.0;
 
-/// Refuses locks that are not for this mesh.
+/// Checks that the locks match the mesh.
 pub(crate) fn validate(locks: &Locks, mesh: &Mesh) -> Result<(), SimplifyError> {
     let (found, expected) = (locks.of_vertex.len(), mesh.positions.len());
     if found != 0 && found != expected {
@@ -64,7 +64,7 @@ pub(crate) fn validate(locks: &Locks, mesh: &Mesh) -> Result<(), SimplifyError> 
     Ok(())
 }
 
-/// Flags what locks hold, and ties what they tie.
+/// Flags locked and protected vertices, and stores the ties.
 pub(crate) fn apply(
     options: &Options,
     method: Method,

@@ -19,7 +19,7 @@ mod waiting;
 use meshlod_mesh::{Connectivity, Mesh, VertexId};
 use rayon::prelude::*;
 
-use self::waiting::{Desk, Waiting};
+use self::waiting::{SurfaceCandidates, Waiting};
 use crate::engine::candidates::CandidateId;
 use crate::engine::checks::{flip, topology};
 use crate::engine::estimate::estimate;
@@ -45,7 +45,7 @@ pub(crate) struct Algorithm<C, M, P, L> {
 pub(crate) struct Engine<C, M, P, L> {
     algorithm: Algorithm<C, M, P, L>,
     surface: Surface,
-    hood: Neighbourhood,
+    neighbourhood: Neighbourhood,
     /// Room for one of the edges that a face goes by.
     part: Neighbourhood,
     /// Room for those that ties make go with one.
@@ -72,8 +72,8 @@ where
     P: Priority<M>,
     L: Placement<M>,
 {
-    fn new(algorithm: Algorithm<C, M, P, L>, ready: Ready) -> Self {
-        let Ready { mut surface, connectivity, vanishing } = ready;
+    fn new(algorithm: Algorithm<C, M, P, L>, ready: PreparedSurface) -> Self {
+        let PreparedSurface { mut surface, connectivity, vanishing } = ready;
         let seeds = algorithm.candidates.seed(&surface, &connectivity);
         // Its room is wanted for the queue.
         drop(connectivity);
@@ -83,7 +83,7 @@ where
         Self {
             algorithm,
             surface,
-            hood: Neighbourhood::default(),
+            neighbourhood: Neighbourhood::default(),
             part: Neighbourhood::default(),
             mates: Vec::new(),
             waiting,
@@ -100,7 +100,7 @@ where
 
     /// Wakes everybody where a narrower bound than this has refused somebody.
     #[inline]
-    fn try_again_within(&mut self, error: f64) {
+    fn retry_within(&mut self, error: f64) {
         if error > self.refused_above {
             self.refused_above = f64::INFINITY;
             self.waiting.wake_all(&mut self.surface);
@@ -109,15 +109,15 @@ where
     }
 
     /// Takes the cheapest candidate off the queue.
-    fn next_fresh(&mut self) -> Option<Entry> {
+    fn next_up_to_date(&mut self) -> Option<Entry> {
         loop {
             let Some(entry) = self.waiting.queue.pop() else {
                 let bucket = self.waiting.queue.next_bucket()?;
-                self.freshen_all(bucket);
+                self.refresh_bucket(bucket);
                 continue;
             };
             if let Some(vertices) = self.take(entry) {
-                let entry = self.freshen(entry, &vertices);
+                let entry = self.refresh(entry, &vertices);
                 if self.waiting.queue.peek().is_none_or(|next| entry <= next) {
                     return Some(entry);
                 }
@@ -128,17 +128,17 @@ where
 
     /// Costs the stale entries of a bucket again, in loops whose loads do not wait for each other:
     /// met one by one between contractions, they would cost a memory latency each.
-    fn freshen_all(&mut self, bucket: Vec<Entry>) {
+    fn refresh_bucket(&mut self, bucket: Vec<Entry>) {
         let mut taken = std::mem::take(&mut self.taken);
         taken.extend(bucket.into_iter().filter_map(|entry| Some((entry, self.take(entry)?))));
         for (entry, vertices) in taken.drain(..) {
-            let entry = self.freshen(entry, &vertices);
+            let entry = self.refresh(entry, &vertices);
             self.waiting.put(entry, &mut self.surface);
         }
         self.taken = taken;
     }
 
-    /// The vertices of an entry that has left the queue; nothing if its candidate is off the books.
+    /// The vertices of an entry that has left the queue; nothing if its candidate is off the sink.
     #[inline]
     fn take(&mut self, entry: Entry) -> Option<Contracted> {
         let state = self.surface.state(entry.id);
@@ -151,7 +151,7 @@ where
 
     /// The entry, costed again if its vertices have changed.
     #[inline]
-    fn freshen(&self, entry: Entry, vertices: &Contracted) -> Entry {
+    fn refresh(&self, entry: Entry, vertices: &Contracted) -> Entry {
         if entry.stamp == self.surface.stamp(vertices) {
             return entry;
         }
@@ -164,49 +164,49 @@ where
         stop: &Stop,
         observer: &mut dyn Observe,
     ) -> Result<(), Refusal> {
-        let Self { algorithm, surface, hood, .. } = self;
+        let Self { algorithm, surface, neighbourhood, .. } = self;
         let contracted = algorithm.candidates.vertices(surface, entry.id);
-        hood.gather(surface, contracted)?;
-        topology(surface, hood)?;
-        if !hood.partners.is_empty() {
+        neighbourhood.gather(surface, contracted)?;
+        topology(surface, neighbourhood)?;
+        if !neighbourhood.partners.is_empty() {
             return self.contract_together(stop, observer);
         }
-        let mut placed = algorithm.placement.place(surface, &algorithm.memory, hood)?;
-        placed.error_estimate = estimate(surface, hood, &placed);
+        let mut placed = algorithm.placement.place(surface, &algorithm.memory, neighbourhood)?;
+        placed.error_estimate = estimate(surface, neighbourhood, &placed);
         if placed.error_estimate > stop.error {
             return Err(Refusal::Error);
         }
-        flip(surface, hood, placed.position)?;
-        self.carry_out(&placed, observer);
+        flip(surface, neighbourhood, placed.position)?;
+        self.apply(&placed, observer);
         Ok(())
     }
 
     /// Contracts what is gathered, and brings all that is kept up to date.
-    fn carry_out(&mut self, placed: &Placed, observer: &mut dyn Observe) {
-        let Self { algorithm, surface, hood, part, volume, .. } = self;
+    fn apply(&mut self, placed: &Placed, observer: &mut dyn Observe) {
+        let Self { algorithm, surface, neighbourhood, part, volume, .. } = self;
         let observer = &mut (volume, observer);
-        algorithm.memory.merge(surface, hood, placed);
-        match hood.contracted[..] {
-            [_, _] => change(surface, hood, placed, observer),
-            _ => follow(surface, hood, part, placed, observer),
+        algorithm.memory.merge(surface, neighbourhood, placed);
+        match neighbourhood.contracted[..] {
+            [_, _] => contract_edge(surface, neighbourhood, placed, observer),
+            _ => contract_face(surface, neighbourhood, part, placed, observer),
         }
-        algorithm.memory.renew(surface, hood, placed);
+        algorithm.memory.renew(surface, neighbourhood, placed);
         if M::KNOWS_RING {
-            hood.ring.iter().for_each(|r| surface.touch(r.id));
+            neighbourhood.ring.iter().for_each(|r| surface.touch(r.id));
         }
         self.error_estimate = self.error_estimate.max(placed.error_estimate);
-        self.renew(placed);
+        self.update_candidates(placed);
     }
 
     /// Opens what may go in the place of a refused candidate.
-    fn instead(&mut self, entry: Entry) {
+    fn open_alternatives(&mut self, entry: Entry) {
         let Self { algorithm, surface, opened, .. } = self;
-        algorithm.candidates.refused(entry.id, &mut Desk { surface, opened });
-        self.admit();
+        algorithm.candidates.refused(entry.id, &mut SurfaceCandidates { surface, opened });
+        self.enqueue_opened();
     }
 
     /// Puts the candidates that were opened in the queue.
-    fn admit(&mut self) {
+    fn enqueue_opened(&mut self) {
         let Self { algorithm, surface, waiting, opened, .. } = self;
         for id in opened.drain(..) {
             let entry = algorithm.entry(surface, id);
@@ -214,14 +214,20 @@ where
         }
     }
 
-    /// Brings the books up to date after a contraction, and wakes those who waited for a change.
-    fn renew(&mut self, placed: &Placed) {
-        let Self { algorithm, surface, hood, opened, .. } = self;
-        let kept = hood.contracted[placed.kept];
-        algorithm.candidates.settle(hood, kept, &mut Desk { surface, opened });
-        self.admit();
-        let Self { surface, hood, waiting, .. } = self;
-        for v in hood.contracted.iter().copied().chain(hood.ring.iter().map(|r| r.id)) {
+    /// Brings the sink up to date after a contraction, and wakes those who waited for a change.
+    fn update_candidates(&mut self, placed: &Placed) {
+        let Self { algorithm, surface, neighbourhood, opened, .. } = self;
+        let kept = neighbourhood.contracted[placed.kept];
+        algorithm.candidates.update(
+            neighbourhood,
+            kept,
+            &mut SurfaceCandidates { surface, opened },
+        );
+        self.enqueue_opened();
+        let Self { surface, neighbourhood, waiting, .. } = self;
+        for v in
+            neighbourhood.contracted.iter().copied().chain(neighbourhood.ring.iter().map(|r| r.id))
+        {
             let flags = surface.flags(v);
             if flags.any(Flags::AWAITED) {
                 waiting.wake(v, surface);
@@ -236,33 +242,33 @@ where
 }
 
 /// Contracts an edge before the eyes of the observer.
-fn change(
+fn contract_edge(
     surface: &mut Surface,
-    hood: &Neighbourhood,
+    neighbourhood: &Neighbourhood,
     placed: &Placed,
     observer: &mut dyn Observe,
 ) {
-    observer.before(surface, hood, placed);
-    surface.contract(hood, placed);
-    observer.after(surface, hood, placed);
-    observer.gone(hood.dying.len());
+    observer.before(surface, neighbourhood, placed);
+    surface.contract(neighbourhood, placed);
+    observer.after(surface, neighbourhood, placed);
+    observer.gone(neighbourhood.dying.len());
 }
 
 /// Contracts a face as two edges: its other corners follow each other into the kept one. So wedges,
 /// the history and all that is built on it know of edges only.
-fn follow(
+fn contract_face(
     surface: &mut Surface,
-    hood: &Neighbourhood,
+    neighbourhood: &Neighbourhood,
     part: &mut Neighbourhood,
     placed: &Placed,
     observer: &mut dyn Observe,
 ) {
-    let kept = hood.contracted[placed.kept];
+    let kept = neighbourhood.contracted[placed.kept];
     observer.face();
-    for &gone in hood.contracted.iter().filter(|&&v| v != kept) {
+    for &gone in neighbourhood.contracted.iter().filter(|&&v| v != kept) {
         part.gather(surface, Contracted::edge([kept, gone]))
             .expect("what may be contracted as a face may be as its edges");
-        change(surface, part, &Placed { kept: 0, ..*placed }, observer);
+        contract_edge(surface, part, &Placed { kept: 0, ..*placed }, observer);
     }
 }
 
@@ -297,7 +303,7 @@ pub(crate) struct Tally {
 }
 
 /// What an algorithm is set to work on.
-pub(crate) struct Ready {
+pub(crate) struct PreparedSurface {
     pub(crate) surface: Surface,
     pub(crate) connectivity: Connectivity,
     pub(crate) vanishing: Vanishing,
@@ -315,9 +321,9 @@ where
     }
 
     fn step(&mut self, stop: &Stop, observer: &mut dyn Observe) -> bool {
-        self.try_again_within(stop.error);
+        self.retry_within(stop.error);
         loop {
-            let next = self.next_fresh();
+            let next = self.next_up_to_date();
             let most = next.map_or(f64::INFINITY, |entry| entry.key.cost()).min(stop.cost);
             if let Some(component) = self.vanishing.take_up_to(most) {
                 next.into_iter().for_each(|entry| self.waiting.put(entry, &mut self.surface));
@@ -337,7 +343,7 @@ where
                     self.refusals.add(refusal);
                     let vertices = self.algorithm.candidates.vertices(&self.surface, entry.id);
                     self.waiting.park(entry, &vertices, &mut self.surface);
-                    self.instead(entry);
+                    self.open_alternatives(entry);
                     if refusal == Refusal::Error {
                         self.refused_above = self.refused_above.min(stop.error);
                     }
@@ -347,8 +353,8 @@ where
     }
 
     fn next_cost(&mut self) -> Option<f64> {
-        self.try_again_within(f64::INFINITY);
-        let next = self.next_fresh();
+        self.retry_within(f64::INFINITY);
+        let next = self.next_up_to_date();
         next.into_iter().for_each(|entry| self.waiting.put(entry, &mut self.surface));
         let costs =
             next.map(|entry| entry.key.cost()).into_iter().chain(self.vanishing.next_cost());
@@ -381,7 +387,7 @@ where
     L: Placement<M> + 'static,
 {
     /// Sets it to work.
-    pub(crate) fn start(self, ready: Ready) -> Box<dyn Run> {
+    pub(crate) fn start(self, ready: PreparedSurface) -> Box<dyn Run> {
         Box::new(Engine::new(self, ready))
     }
 }

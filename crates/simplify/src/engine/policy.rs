@@ -1,14 +1,14 @@
-//! The policies. An algorithm is a choice of them; the engine asks, they answer.
+//! Policies that define an algorithm for the engine.
 //!
-//! | policy | answers |
+//! | policy | decides |
 //! |---|---|
-//! | [`Candidates`] | what may be contracted, and what to ask again after a contraction |
-//! | [`Priority`] | the cost of a candidate, or "never" |
-//! | [`Placement`] | where the new vertex goes, or "cannot" |
-//! | [`Stop`] | enough |
-//! | [`Observe`] | hooks before and after |
+//! | [`Candidates`] | which edges and faces may be contracted, initially and after each contraction |
+//! | [`Priority`] | the cost of a candidate, or that it is never contracted |
+//! | [`Placement`] | the position of the new vertex, or a refusal |
+//! | [`Stop`] | when the run ends |
+//! | [`Observe`] | nothing: it watches contractions before and after |
 //!
-//! Priority and placement share a [`Memory`]: what the algorithm keeps per vertex.
+//! Priority and placement share a [`Memory`]: the data that the algorithm keeps per vertex.
 
 use meshlod_mesh::{Connectivity, FaceId, VertexId};
 
@@ -18,118 +18,125 @@ use crate::surface::contracted::{Contracted, Freedom};
 use crate::surface::neighbourhood::Neighbourhood;
 use crate::surface::{Placed, Surface};
 
-/// What may be contracted.
+/// Policy that chooses the edges and faces that may be contracted.
 pub(crate) trait Candidates: Sync {
-    /// The candidates of an untouched surface, each once.
+    /// Returns the candidates of an untouched surface, each once.
     fn seed(&self, surface: &Surface, connectivity: &Connectivity) -> Vec<CandidateId>;
 
-    /// The vertices that the candidate would make one.
+    /// Returns the vertices that contracting the candidate would merge.
     fn vertices(&self, surface: &Surface, id: CandidateId) -> Contracted;
 
-    /// After a refusal: opens what may go in its place.
-    fn refused(&self, id: CandidateId, books: &mut dyn Books) {
-        let _ = (id, books);
+    /// Opens alternatives to a refused candidate.
+    fn refused(&self, id: CandidateId, sink: &mut dyn CandidateSink) {
+        let _ = (id, sink);
     }
 
-    /// After a contraction: closes the candidates that went with their faces, and sees to it that
-    /// each of the others is on the books once.
-    fn settle(&self, hood: &Neighbourhood, kept: VertexId, books: &mut dyn Books);
+    /// Updates the candidates after a contraction: closes those of removed faces, and ensures that
+    /// each remaining one is open exactly once.
+    fn update(&self, neighbourhood: &Neighbourhood, kept: VertexId, sink: &mut dyn CandidateSink);
 }
 
-/// The engine's books of which candidates are waiting.
-pub(crate) trait Books {
-    /// The surface that they are on.
+/// Set of open candidates, as a [`Candidates`] policy updates it.
+pub(crate) trait CandidateSink {
+    /// Returns the surface of the candidates.
     fn surface(&self) -> &Surface;
-    /// Whether the candidate is waiting.
+    /// Returns true if the candidate is open.
     fn is_open(&self, id: CandidateId) -> bool;
-    /// Puts a candidate on the books.
+    /// Opens a candidate.
     fn open(&mut self, id: CandidateId);
-    /// Takes a candidate off the books.
+    /// Closes a candidate.
     fn close(&mut self, id: CandidateId);
 }
 
-/// What an algorithm keeps per vertex, such as quadrics. `()` for the memoryless.
+/// Data that an algorithm keeps per vertex, such as quadrics; `()` if it keeps none.
 pub(crate) trait Memory: Sync {
-    /// Whether what is kept of a vertex changes with the faces around it, so that a contraction
-    /// makes costs stale all along its ring.
+    /// True if a vertex's data changes with the faces around it, so that a contraction makes the
+    /// costs along its whole ring stale.
     const KNOWS_RING: bool = false;
 
-    /// Told of a contraction just before the surface changes.
-    fn merge(&mut self, surface: &Surface, hood: &Neighbourhood, placed: &Placed) {
-        let _ = (surface, hood, placed);
+    /// Updates the data just before a contraction changes the surface.
+    fn merge(&mut self, surface: &Surface, neighbourhood: &Neighbourhood, placed: &Placed) {
+        let _ = (surface, neighbourhood, placed);
     }
 
-    /// Told of it again just after. `hood` is as it was gathered before.
-    fn renew(&mut self, surface: &Surface, hood: &Neighbourhood, placed: &Placed) {
-        let _ = (surface, hood, placed);
+    /// Updates the data just after a contraction; `neighbourhood` is as gathered before it.
+    fn renew(&mut self, surface: &Surface, neighbourhood: &Neighbourhood, placed: &Placed) {
+        let _ = (surface, neighbourhood, placed);
     }
 }
 
 impl Memory for () {}
 
-/// The order of contractions.
+/// Policy that orders the contractions.
 pub(crate) trait Priority<M>: Sync {
-    /// The cost of a candidate, lowest first; `None` is never. Between contractions the cost of a
-    /// candidate may rise unseen; if it falls, that may be noticed late.
+    /// Returns the cost of a candidate, which is contracted lowest first; `None` means never.
+    ///
+    /// Between contractions the cost of a candidate may rise unnoticed. If it falls, that may be
+    /// noticed late.
     fn cost(&self, surface: &Surface, memory: &M, of: &Contracted, freedom: Freedom)
     -> Option<f64>;
 }
 
-/// The place of the new vertex.
+/// Policy that positions the new vertex.
 pub(crate) trait Placement<M>: Sync {
-    /// Where the new vertex goes, within the neighbourhood's freedom. Its error is what the method
-    /// itself says of this contraction alone; the engine adds what it sees.
-    fn place(&self, surface: &Surface, memory: &M, hood: &Neighbourhood)
-    -> Result<Placed, Refusal>;
+    /// Places the new vertex within the neighbourhood's freedom. The error estimate covers this
+    /// contraction alone; the engine adds the accumulated error.
+    fn place(
+        &self,
+        surface: &Surface,
+        memory: &M,
+        neighbourhood: &Neighbourhood,
+    ) -> Result<Placed, Refusal>;
 }
 
-/// When to stop.
+/// Limits at which a run stops.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Stop {
-    /// Enough when no more faces than this are left.
+    /// Face count at which the run stops.
     pub(crate) faces: usize,
-    /// Contractions estimated to move the surface further than this, in model units, are refused.
+    /// Limit of the estimated error in model units; contractions above it are refused.
     pub(crate) error: f64,
-    /// Enough when the next contraction costs more than this.
+    /// Limit of the cost of the next contraction.
     pub(crate) cost: f64,
 }
 
 impl Stop {
-    /// Goes on while anything may be contracted.
+    /// Limits that never stop a run.
     pub(crate) const NEVER: Self = Self { faces: 0, error: f64::INFINITY, cost: f64::INFINITY };
 }
 
-/// Hooks into the engine's loop. All do nothing unless written.
+/// Observer of the contractions of a run. Every method does nothing by default.
 ///
-/// They see edges only: a face is contracted as two edges, the second through the first's vertex.
-/// They see them in their order, with the surface as it was at each; an engine that keeps no surface
-/// shows all of a run at its end.
+/// Observers see edges only: a face is contracted as two edges, the second through the vertex of
+/// the first. They see the contractions in order, each with the surface as it was at that moment.
+/// The kernel shows all contractions of a run at its end.
 pub trait Observe {
-    /// Whether it wants to see contractions. If not, only [`gone`](Self::gone) may be called: the fast
-    /// engine spares making a surface to show.
+    /// Returns true if the observer needs to see contractions. Otherwise only [`gone`](Self::gone)
+    /// may be called, and the kernel need not build a surface to show.
     fn needs_surface(&self) -> bool {
         true
     }
 
-    /// So many faces more are gone, by one contraction or by several.
+    /// Called when `faces` more faces are gone, by one contraction or several.
     fn gone(&mut self, faces: usize) {
         let _ = faces;
     }
 
-    /// A face is about to be contracted: the next two contractions are its edges, to one place.
+    /// Called before a face is contracted: the next two contractions are its edges, to one
+    /// position.
     fn face(&mut self) {}
 
-    /// A contraction is about to change `surface`.
-    fn before(&mut self, surface: &Surface, hood: &Neighbourhood, placed: &Placed) {
-        let _ = (surface, hood, placed);
+    /// Called before a contraction changes `surface`.
+    fn before(&mut self, surface: &Surface, neighbourhood: &Neighbourhood, placed: &Placed) {
+        let _ = (surface, neighbourhood, placed);
     }
 
-    /// The contraction is done.
-    fn after(&mut self, surface: &Surface, hood: &Neighbourhood, placed: &Placed) {
-        let _ = (surface, hood, placed);
+    /// Called after a contraction has changed `surface`.
+    fn after(&mut self, surface: &Surface, neighbourhood: &Neighbourhood, placed: &Placed) {
+        let _ = (surface, neighbourhood, placed);
     }
 
-    /// A component is about to vanish as a whole: these are the faces that are left of it.
+    /// Called before a component vanishes as a whole; `faces` are its remaining faces.
     fn vanish(&mut self, surface: &Surface, faces: &[FaceId]) {
         let _ = (surface, faces);
     }
@@ -156,14 +163,14 @@ impl<A: Observe, B: Observe> Observe for (A, B) {
         self.1.face();
     }
 
-    fn before(&mut self, surface: &Surface, hood: &Neighbourhood, placed: &Placed) {
-        self.0.before(surface, hood, placed);
-        self.1.before(surface, hood, placed);
+    fn before(&mut self, surface: &Surface, neighbourhood: &Neighbourhood, placed: &Placed) {
+        self.0.before(surface, neighbourhood, placed);
+        self.1.before(surface, neighbourhood, placed);
     }
 
-    fn after(&mut self, surface: &Surface, hood: &Neighbourhood, placed: &Placed) {
-        self.0.after(surface, hood, placed);
-        self.1.after(surface, hood, placed);
+    fn after(&mut self, surface: &Surface, neighbourhood: &Neighbourhood, placed: &Placed) {
+        self.0.after(surface, neighbourhood, placed);
+        self.1.after(surface, neighbourhood, placed);
     }
 
     fn vanish(&mut self, surface: &Surface, faces: &[FaceId]) {
@@ -185,12 +192,12 @@ impl<O: Observe + ?Sized> Observe for &mut O {
         (**self).face();
     }
 
-    fn before(&mut self, surface: &Surface, hood: &Neighbourhood, placed: &Placed) {
-        (**self).before(surface, hood, placed);
+    fn before(&mut self, surface: &Surface, neighbourhood: &Neighbourhood, placed: &Placed) {
+        (**self).before(surface, neighbourhood, placed);
     }
 
-    fn after(&mut self, surface: &Surface, hood: &Neighbourhood, placed: &Placed) {
-        (**self).after(surface, hood, placed);
+    fn after(&mut self, surface: &Surface, neighbourhood: &Neighbourhood, placed: &Placed) {
+        (**self).after(surface, neighbourhood, placed);
     }
 
     fn vanish(&mut self, surface: &Surface, faces: &[FaceId]) {

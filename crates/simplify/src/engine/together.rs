@@ -25,46 +25,47 @@ where
         observer: &mut dyn Observe,
     ) -> Result<(), Refusal> {
         self.gather_mates()?;
-        let count = self.hood.partners.len();
+        let count = self.neighbourhood.partners.len();
         let placed = self.place_together(count)?;
-        let Self { surface, hood, mates, .. } = self;
-        let all = || std::iter::once(&*hood).chain(&mates[..count]);
-        let errors: Vec<f64> = all().map(|hood| estimate(surface, hood, &placed)).collect();
+        let Self { surface, neighbourhood, mates, .. } = self;
+        let all = || std::iter::once(&*neighbourhood).chain(&mates[..count]);
+        let errors: Vec<f64> =
+            all().map(|neighbourhood| estimate(surface, neighbourhood, &placed)).collect();
         if errors.iter().any(|&error| error > stop.error) {
             return Err(Refusal::Error);
         }
-        all().try_for_each(|hood| flip(surface, hood, placed.position))?;
+        all().try_for_each(|neighbourhood| flip(surface, neighbourhood, placed.position))?;
         // Each is as it was gathered, since no face is around two of them.
         for (i, error_estimate) in errors.into_iter().enumerate() {
             if let Some(mate) = i.checked_sub(1) {
-                std::mem::swap(&mut self.hood, &mut self.mates[mate]);
+                std::mem::swap(&mut self.neighbourhood, &mut self.mates[mate]);
                 // Its place is not its own choice.
-                self.hood.freedom = Freedom::At(placed.kept);
+                self.neighbourhood.freedom = Freedom::At(placed.kept);
             }
-            self.carry_out(&Placed { error_estimate, ..placed }, observer);
+            self.apply(&Placed { error_estimate, ..placed }, observer);
         }
         Ok(())
     }
 
     /// Gathers what is around the partners, and leaves all of them the freedom that each has.
     fn gather_mates(&mut self) -> Result<(), Refusal> {
-        let Self { surface, hood, mates, .. } = self;
-        let partners = std::mem::take(&mut hood.partners);
+        let Self { surface, neighbourhood, mates, .. } = self;
+        let partners = std::mem::take(&mut neighbourhood.partners);
         if mates.len() < partners.len() {
             mates.resize_with(partners.len(), Neighbourhood::default);
         }
         let mates = &mut mates[..partners.len()];
-        let mut freedom = hood.freedom;
+        let mut freedom = neighbourhood.freedom;
         for (mate, &edge) in mates.iter_mut().zip(&partners) {
             mate.gather(surface, Contracted::edge(edge))?;
             topology(surface, mate)?;
             freedom = freedom.and(mate.freedom).ok_or(Refusal::Tied)?;
         }
-        hood.partners = partners;
-        if !are_apart(hood, mates) {
+        neighbourhood.partners = partners;
+        if !are_apart(neighbourhood, mates) {
             return Err(Refusal::Tied);
         }
-        hood.freedom = freedom;
+        neighbourhood.freedom = freedom;
         mates.iter_mut().for_each(|mate| mate.freedom = freedom);
         Ok(())
     }
@@ -73,13 +74,15 @@ where
     ///
     /// The error of it is the greatest that the method finds anywhere.
     fn place_together(&self, count: usize) -> Result<Placed, Refusal> {
-        let Self { algorithm, surface, hood, mates, .. } = self;
-        let all = || std::iter::once(hood).chain(&mates[..count]);
-        let place = |hood| algorithm.placement.place(surface, &algorithm.memory, hood);
+        let Self { algorithm, surface, neighbourhood, mates, .. } = self;
+        let all = || std::iter::once(neighbourhood).chain(&mates[..count]);
+        let place =
+            |neighbourhood| algorithm.placement.place(surface, &algorithm.memory, neighbourhood);
         let places = all().map(place).collect::<Result<Vec<Placed>, _>>()?;
         let error_estimate = places.iter().map(|p| p.error_estimate).fold(0.0, f64::max);
-        let farthest =
-            |placed: &Placed| all().map(|hood| estimate(surface, hood, placed)).fold(0.0, f64::max);
+        let farthest = |placed: &Placed| {
+            all().map(|neighbourhood| estimate(surface, neighbourhood, placed)).fold(0.0, f64::max)
+        };
         let scored = places.into_iter().map(|placed| {
             let placed = Placed { error_estimate: 0.0, ..placed };
             (farthest(&placed), placed)
@@ -90,14 +93,14 @@ where
 }
 
 /// Whether no face is around two of the edges.
-fn are_apart(hood: &Neighbourhood, mates: &[Neighbourhood]) -> bool {
-    let all = || std::iter::once(hood).chain(mates);
-    let at = |hood: &Neighbourhood, other: &Neighbourhood| {
-        hood.ring.iter().any(|r| other.contracted.contains(&r.id))
+fn are_apart(neighbourhood: &Neighbourhood, mates: &[Neighbourhood]) -> bool {
+    let all = || std::iter::once(neighbourhood).chain(mates);
+    let at = |neighbourhood: &Neighbourhood, other: &Neighbourhood| {
+        neighbourhood.ring.iter().any(|r| other.contracted.contains(&r.id))
     };
-    all()
-        .enumerate()
-        .all(|(i, hood)| all().enumerate().all(|(j, other)| i == j || !at(hood, other)))
+    all().enumerate().all(|(i, neighbourhood)| {
+        all().enumerate().all(|(j, other)| i == j || !at(neighbourhood, other))
+    })
 }
 
 #[cfg(test)]
@@ -115,14 +118,14 @@ mod tests {
         let connectivity = Connectivity::new(&mesh.faces, mesh.positions.len());
         let surface = Surface::new(&mesh, &connectivity);
         let around = |edge: [u32; 2]| {
-            let mut hood = Neighbourhood::default();
-            hood.gather(&surface, Contracted::edge(edge.map(VertexId))).unwrap();
-            hood
+            let mut neighbourhood = Neighbourhood::default();
+            neighbourhood.gather(&surface, Contracted::edge(edge.map(VertexId))).unwrap();
+            neighbourhood
         };
-        let hood = around([8, 9]);
+        let neighbourhood = around([8, 9]);
         // One row up, and two, where only the rings meet.
-        assert!(!are_apart(&hood, &[around([15, 16])]));
-        assert!(are_apart(&hood, &[around([22, 23])]));
-        assert!(!are_apart(&hood, &[around([29, 30]), around([22, 23])]));
+        assert!(!are_apart(&neighbourhood, &[around([15, 16])]));
+        assert!(are_apart(&neighbourhood, &[around([22, 23])]));
+        assert!(!are_apart(&neighbourhood, &[around([29, 30]), around([22, 23])]));
     }
 }

@@ -2,7 +2,7 @@
 
 use crate::engine::Engine;
 use crate::engine::policy::{Candidates, Memory, Observe, Placement, Priority, Stop};
-use crate::engine::vanishing::Component;
+use crate::engine::vanishing::VanishingComponent;
 use crate::refusal::Refusal;
 
 impl<C, M, P, L> Engine<C, M, P, L>
@@ -15,7 +15,7 @@ where
     /// Takes a component out, unless it is all that is left or larger than the bound of the error.
     pub(super) fn vanish(
         &mut self,
-        component: Component,
+        component: VanishingComponent,
         stop: &Stop,
         observer: &mut dyn Observe,
     ) -> bool {

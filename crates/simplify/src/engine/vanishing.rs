@@ -9,7 +9,7 @@ use crate::options::Method;
 use crate::surface::{Flags, Surface};
 
 /// A component that may vanish.
-pub(crate) struct Component {
+pub(crate) struct VanishingComponent {
     /// What it costs, in the terms of contractions.
     pub(crate) cost: f64,
     /// The diagonal of its box in the input, in model units: that far the surface is moved, as if it
@@ -23,9 +23,9 @@ pub(crate) struct Component {
 #[derive(Default)]
 pub(crate) struct Vanishing {
     /// The cheapest last.
-    waiting: Vec<Component>,
+    waiting: Vec<VanishingComponent>,
     /// Those too large for the bound of the error.
-    refused: Vec<Component>,
+    refused: Vec<VanishingComponent>,
 }
 
 impl Vanishing {
@@ -46,10 +46,10 @@ impl Vanishing {
         }
         let small = |(bounds, is_held): (Bounds, bool)| {
             let size = bounds.diagonal();
-            let component = Component { cost: 0.0, size, faces: Vec::new() };
+            let component = VanishingComponent { cost: 0.0, size, faces: Vec::new() };
             (size < below && !is_held).then_some(component)
         };
-        let mut waiting: Vec<Option<Component>> = boxes.into_iter().map(small).collect();
+        let mut waiting: Vec<Option<VanishingComponent>> = boxes.into_iter().map(small).collect();
         for (face, component) in alive.into_iter().zip(of_face) {
             if let Some(component) = &mut waiting[component as usize] {
                 component.faces.push(face);
@@ -65,7 +65,7 @@ impl Vanishing {
 
     /// The cheapest, taken out, if it costs no more than this.
     #[inline]
-    pub(crate) fn take_up_to(&mut self, cost: f64) -> Option<Component> {
+    pub(crate) fn take_up_to(&mut self, cost: f64) -> Option<VanishingComponent> {
         self.waiting.pop_if(|component| component.cost <= cost)
     }
 
@@ -76,7 +76,7 @@ impl Vanishing {
     }
 
     /// Puts one aside until the bound of the error is wider.
-    pub(crate) fn refuse(&mut self, component: Component) {
+    pub(crate) fn refuse(&mut self, component: VanishingComponent) {
         self.refused.push(component);
     }
 
@@ -89,7 +89,7 @@ impl Vanishing {
     }
 
     fn sort(&mut self) {
-        let first = |component: &Component| component.faces.first().copied();
+        let first = |component: &VanishingComponent| component.faces.first().copied();
         self.waiting
             .sort_by(|a, b| b.cost.total_cmp(&a.cost).then_with(|| first(b).cmp(&first(a))));
     }
@@ -124,8 +124,8 @@ pub(crate) fn cost(method: Method, size: f64, area: f64, faces: usize) -> f64 {
 }
 
 /// The cost of a component of a surface, more where a vertex of it is protected.
-fn cost_on(surface: &Surface, method: Method, component: &Component) -> f64 {
-    let Component { size, faces, .. } = component;
+fn cost_on(surface: &Surface, method: Method, component: &VanishingComponent) -> f64 {
+    let VanishingComponent { size, faces, .. } = component;
     let area = 0.5 * faces.iter().map(|&f| surface.area_normal(f).length()).sum::<f64>();
     let cost = cost(method, *size, area, faces.len());
     let is_protected =

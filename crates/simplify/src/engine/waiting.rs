@@ -1,10 +1,10 @@
-//! The candidates that wait, and the books that a candidates policy keeps of them.
+//! The candidates that wait, and the sink that a candidates policy keeps of them.
 
 use meshlod_mesh::VertexId;
 use rustc_hash::FxHashMap;
 
 use crate::engine::candidates::CandidateId;
-use crate::engine::policy::Books;
+use crate::engine::policy::CandidateSink;
 use crate::engine::queue::{Entry, Queue};
 use crate::surface::{Flags, State, Surface};
 
@@ -68,13 +68,13 @@ impl Waiting {
     }
 }
 
-/// The books, as a candidates policy sees them after a contraction.
-pub(super) struct Desk<'a> {
+/// The sink, as a candidates policy sees them after a contraction.
+pub(super) struct SurfaceCandidates<'a> {
     pub(super) surface: &'a mut Surface,
     pub(super) opened: &'a mut Vec<CandidateId>,
 }
 
-impl Books for Desk<'_> {
+impl CandidateSink for SurfaceCandidates<'_> {
     fn surface(&self) -> &Surface {
         self.surface
     }

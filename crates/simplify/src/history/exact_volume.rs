@@ -1,10 +1,10 @@
-//! A level with the volume of its mesh, in the digits that it is written with.
+//! Corrects a level to the exact volume of its mesh, at the precision of the output file.
 //!
 //! Rounding to `f32` alone changes a volume by 1e-9 of it and more. The volume is linear in each
-//! vertex: a step of one along an axis changes six times the volume by that part of the vertex's
-//! normal, the sum of its faces' normals, twice their areas long. So the volume is brought about
-//! with vertices moved along their normals, all by the same factor, and what rounding then leaves
-//! with steps of one unit in the last place: there are as many sizes of step as coordinates.
+//! vertex: a unit step along an axis changes six times the volume by that component of the vertex's
+//! normal, which is the sum of its faces' normals, each twice the area long. Vertices are therefore
+//! moved along their normals, all by the same factor, and what rounding then leaves is removed by
+//! steps of one unit in the last place, which come in as many sizes as there are coordinates.
 
 use glam::DVec3;
 use meshlod_mesh::{Connectivity, Lock, Locks, Mesh};
@@ -12,33 +12,34 @@ use meshlod_spatial::{CompensatedSum, LocalFrame};
 use rustc_hash::FxHashMap;
 use thiserror::Error;
 
-/// How far a vertex may be moved, in parts of the diagonal.
+/// Largest displacement of a vertex, as a fraction of the diagonal.
 const FARTHEST: f64 = 1e-5;
 
-/// Sums of normals and of terms of the volume below this part of their lengths' sum are rounding.
+/// Sums of normals and of volume terms below this fraction of the sum of their magnitudes are
+/// rounding errors.
 const CANCELLED: f64 = 1e-9;
 
-/// What is left is rounding at this part of the volume: no step is so small.
+/// Fraction of the volume below which a residual is rounding error; no step is that small.
 const ENOUGH: f64 = 1e-15;
 
-/// How often units in the last place are added. Two steps at one edge count together too, for about
-/// 1e-15 of the volume; the second time mends that.
+/// Number of rounds of last-place steps. Two steps on one edge also interact, by about 1e-15 of the
+/// volume, which the next round corrects.
 const ROUNDS: usize = 4;
 
-/// The numbers that positions are written as.
+/// Number format in which positions are written.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Digits {
-    /// 32-bit floats: in all binary files but those that are asked for more.
+    /// 32-bit floats, as in binary files by default.
     #[default]
     F32,
-    /// The shortest decimals of 32-bit floats, read as doubles: in text.
+    /// Shortest decimals of 32-bit floats, which are read as doubles, as in text files.
     Decimal,
-    /// All that the level has.
+    /// 64-bit floats: the full precision of the level.
     F64,
 }
 
 impl Digits {
-    /// What is read again where a float was written.
+    /// Returns the value that a reader obtains for a written float.
     fn read(self, x: f32) -> f64 {
         match self {
             Self::Decimal => x.to_string().parse().unwrap_or(f64::NAN),
@@ -47,55 +48,55 @@ impl Digits {
     }
 }
 
-/// How far the volume of a level, as written, is from that of its mesh.
+/// Relative difference of volume between a level as written and its mesh.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct VolumeResidual {
-    /// Before it was corrected, in parts of the mesh's volume.
+    /// Difference before the correction, as a fraction of the mesh's volume.
     pub before: f64,
-    /// Now.
+    /// Difference after the correction, as a fraction of the mesh's volume.
     pub after: f64,
-    /// How far a vertex was moved at most, in model units, with its rounding.
+    /// Greatest displacement of a vertex including its rounding, in model units.
     pub farthest: f64,
 }
 
-/// Why a level cannot have the volume of its mesh.
+/// Error of a volume correction.
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
 pub enum ExactVolumeError {
-    /// What is open has none.
+    /// The mesh is open and encloses no volume.
     #[error("the mesh is not a closed, oriented surface and has no volume: see `meshlod check`")]
     OpenMesh,
-    /// Not what a method of this crate makes of a closed mesh.
+    /// The level is open, which no method of this crate makes of a closed mesh.
     #[error("the level is not a closed, oriented surface and has no volume")]
     OpenLevel,
-    /// Nothing to be a part of.
-    #[error("the mesh has no volume, or as much inside out")]
+    /// The mesh encloses no volume.
+    #[error("the mesh encloses no volume, or parts of opposite orientation cancel")]
     Flat,
-    /// Vertices would have to be moved visibly.
+    /// The correction would move vertices visibly.
     #[error(
-        "the level's volume is off by {relative:e}: to mend that would move vertices by more than \
-         1e-5 of the diagonal; take a method that conserves the volume, or fewer locks"
+        "the level's volume is off by {relative:e}, and correcting it would move vertices by more \
+         than 1e-5 of the diagonal: use a method that conserves the volume, or fewer locks"
     )]
     TooFar {
-        /// In parts of the mesh's volume.
+        /// Difference of volume, as a fraction of the mesh's volume.
         relative: f64,
     },
-    /// `f32` has no such number.
-    #[error("positions do not fit f32: write f64")]
+    /// A position is out of the range of `f32`.
+    #[error("the positions are out of the range of f32: write f64")]
     Unwritable,
 }
 
-/// Moves vertices of `level`, a closed mesh made of `mesh`, until its volume as written is the mesh's.
+/// Moves vertices of `level`, a closed mesh made from `mesh`, until its volume as written matches.
 ///
-/// Vertices move by parts of a millionth of the diagonal, and stand on numbers of `digits` then. Those
-/// that are locked in `mesh`, and those that share their place with others, stay. What is left is
-/// about 1e-14 of the volume for levels of five hundred vertices; the fewer there are, the fewer steps
-/// there are to choose from. The residual says what it came to. Each component may exchange volume
-/// with others.
+/// Vertices move by fractions of a millionth of the diagonal and end on numbers of the format
+/// `digits`. Vertices locked in `mesh`, and those that share a position with others, stay. The
+/// remaining difference is about 1e-14 of the volume for levels of five hundred vertices; with
+/// fewer vertices there are fewer steps to choose from. The residual states it. Components may
+/// exchange volume.
 ///
-/// Cost: O(faces of the mesh), a few percent of what it takes to make the level.
+/// Cost: O(faces of the mesh), a few percent of the time to make the level.
 /// # Errors
-/// Open meshes, meshes without volume, and levels that would have to be moved visibly: these are left
-/// as they are.
+/// Open meshes, meshes without volume, and levels that would have to move visibly. The level is
+/// then unchanged.
 pub fn conserve_volume(
     level: &mut Mesh,
     mesh: &Mesh,
@@ -104,7 +105,7 @@ pub fn conserve_volume(
 ) -> Result<VolumeResidual, ExactVolumeError> {
     let bounds = mesh.bounds();
     let frame = LocalFrame::of(&bounds);
-    let wanted = Sixfold::of(mesh, &mesh.positions, &frame);
+    let wanted = VolumeSums::of(mesh, &mesh.positions, &frame);
     if !wanted.is_closed() {
         return Err(ExactVolumeError::OpenMesh);
     }
@@ -115,22 +116,22 @@ pub fn conserve_volume(
     if wanted.volume.abs() <= CANCELLED * wanted.terms {
         return Err(ExactVolumeError::Flat);
     }
-    let mut settling = Settling { level, frame, wanted: wanted.volume, free: Vec::new() };
-    settling.free = free(settling.level, mesh, locks);
-    settling.settle(digits, FARTHEST * bounds.diagonal())
+    let mut correction = VolumeCorrection { level, frame, wanted: wanted.volume, free: Vec::new() };
+    correction.free = free(correction.level, mesh, locks);
+    correction.correct(digits, FARTHEST * bounds.diagonal())
 }
 
-/// Six times the volume that faces enclose, in a frame's units.
-struct Sixfold {
+/// Sums over the faces of a mesh for six times its volume, in a frame's units.
+struct VolumeSums {
     volume: f64,
-    /// The sum of its terms as if all had one sign.
+    /// Sum of the absolute values of the terms.
     terms: f64,
-    /// The sum of the faces' normals: nothing where no boundary is.
+    /// Sum of the faces' normals, zero for a closed surface.
     normal: DVec3,
     lengths: f64,
 }
 
-impl Sixfold {
+impl VolumeSums {
     fn of(mesh: &Mesh, positions: &[[f64; 3]], frame: &LocalFrame) -> Self {
         let mut sum = CompensatedSum::default();
         let (mut terms, mut normal, mut lengths) = (0.0, DVec3::ZERO, 0.0);
@@ -151,7 +152,7 @@ impl Sixfold {
     }
 }
 
-/// Which vertices of a level may be moved: none that is locked, none that meets another.
+/// Marks the vertices of a level that may move: neither locked nor at the same position as another.
 fn free(level: &Mesh, mesh: &Mesh, locks: &Locks) -> Vec<bool> {
     let key = |p: &[f64; 3]| p.map(|x| (x + 0.0).to_bits());
     let mut at = FxHashMap::<_, u32>::default();
@@ -165,25 +166,25 @@ fn free(level: &Mesh, mesh: &Mesh, locks: &Locks) -> Vec<bool> {
     level.positions.iter().map(|position| at[&key(position)] == 1).collect()
 }
 
-/// A level on its way.
-struct Settling<'l> {
+/// Volume correction in progress.
+struct VolumeCorrection<'l> {
     level: &'l mut Mesh,
     frame: LocalFrame,
-    /// Six times the volume that it is to have.
+    /// Six times the target volume.
     wanted: f64,
     free: Vec<bool>,
 }
 
-/// A step of one coordinate to its next number.
-struct Step {
-    /// By how much six times the volume changes, either way.
+/// Step of one coordinate to the next representable number.
+struct CoordinateStep {
+    /// Absolute change of six times the volume.
     gain: f64,
     coordinate: usize,
     to: f64,
 }
 
-impl Settling<'_> {
-    fn settle(
+impl VolumeCorrection<'_> {
+    fn correct(
         &mut self,
         digits: Digits,
         farthest: f64,
@@ -192,7 +193,7 @@ impl Settling<'_> {
         let mut written = round(&unmoved, digits)?;
         let before = self.residual(&written);
         let mut places = unmoved.clone();
-        self.spread(&mut places);
+        self.move_along_normals(&mut places);
         let most = self.farthest(&unmoved, &places);
         if most.is_nan() || most > farthest {
             return Err(ExactVolumeError::TooFar { relative: before / self.wanted });
@@ -201,7 +202,7 @@ impl Settling<'_> {
         let mut after = self.residual(&written);
         for _ in 0..if digits == Digits::F64 { 0 } else { ROUNDS } {
             let mut next = written.clone();
-            self.grade(&mut next, after, digits);
+            self.step_coordinates(&mut next, after, digits);
             let left = self.residual(&next);
             if left.abs() >= after.abs() {
                 break;
@@ -222,7 +223,7 @@ impl Settling<'_> {
     }
 
     fn residual(&self, positions: &[[f64; 3]]) -> f64 {
-        Sixfold::of(self.level, positions, &self.frame).volume - self.wanted
+        VolumeSums::of(self.level, positions, &self.frame).volume - self.wanted
     }
 
     fn farthest(&self, from: &[[f64; 3]], to: &[[f64; 3]]) -> f64 {
@@ -233,7 +234,7 @@ impl Settling<'_> {
         moved.map(apart).fold(0.0, f64::max).sqrt()
     }
 
-    /// The sums of the normals around each free vertex; zero of others.
+    /// Returns the normal sum of each free vertex, and zero for the others.
     fn normals(&self, positions: &[[f64; 3]]) -> Vec<DVec3> {
         let mut normals = vec![DVec3::ZERO; positions.len()];
         for face in &self.level.faces {
@@ -249,9 +250,9 @@ impl Settling<'_> {
         normals
     }
 
-    /// Brings the volume about by moving all vertices along their normals, each by the same part.
-    fn spread(&self, positions: &mut [[f64; 3]]) {
-        // Newton: quadratic in a step that is small from the start.
+    /// Moves all free vertices along their normals by a common factor until the volume matches.
+    fn move_along_normals(&self, positions: &mut [[f64; 3]]) {
+        // Newton's method converges quadratically from this small step.
         for _ in 0..3 {
             let residual = self.residual(positions);
             let normals = self.normals(positions);
@@ -266,8 +267,8 @@ impl Settling<'_> {
         }
     }
 
-    /// Takes the residual down by the greatest steps that do not go past it, each coordinate by one.
-    fn grade(&self, written: &mut [[f64; 3]], residual: f64, digits: Digits) {
+    /// Reduces the residual by the largest steps that do not overshoot it, one per coordinate.
+    fn step_coordinates(&self, written: &mut [[f64; 3]], residual: f64, digits: Digits) {
         let least = 0.1 * ENOUGH * self.wanted.abs();
         let mut steps = Vec::new();
         for (v, normal) in self.normals(written).into_iter().enumerate() {
@@ -277,11 +278,11 @@ impl Settling<'_> {
                 let to = digits.read(to);
                 let gain = (slope * (to - written[v][axis])).abs();
                 if gain > least && gain.is_finite() {
-                    steps.push(Step { gain, coordinate: 3 * v + axis, to });
+                    steps.push(CoordinateStep { gain, coordinate: 3 * v + axis, to });
                 }
             }
         }
-        let order = |a: &Step, b: &Step| {
+        let order = |a: &CoordinateStep, b: &CoordinateStep| {
             b.gain.total_cmp(&a.gain).then_with(|| a.coordinate.cmp(&b.coordinate))
         };
         steps.sort_unstable_by(order);
@@ -295,7 +296,7 @@ impl Settling<'_> {
     }
 }
 
-/// Positions as they are written.
+/// Rounds positions to the written format.
 fn round(positions: &[[f64; 3]], digits: Digits) -> Result<Vec<[f64; 3]>, ExactVolumeError> {
     let written: Vec<[f64; 3]> = match digits {
         Digits::F64 => positions.to_vec(),
@@ -319,15 +320,15 @@ mod tests {
         simplify(mesh, Target::Ratio(ratio), &options).unwrap().0
     }
 
-    /// What is left as whoever reads the file finds it, about a corner of its box.
+    /// Returns the residual as a reader of the file computes it, relative to a corner of the box.
     fn as_read(level: &Mesh, mesh: &Mesh) -> f64 {
         let frame = LocalFrame::of(&meshlod_mesh::Bounds {
             min: mesh.bounds().min,
             max: mesh.bounds().min.map(|x| x + 1.0),
         });
         let read = round(&level.positions, Digits::F32).unwrap();
-        let wanted = Sixfold::of(mesh, &mesh.positions, &frame).volume;
-        Sixfold::of(level, &read, &frame).volume / wanted - 1.0
+        let wanted = VolumeSums::of(mesh, &mesh.positions, &frame).volume;
+        VolumeSums::of(level, &read, &frame).volume / wanted - 1.0
     }
 
     #[test]
@@ -358,7 +359,7 @@ mod tests {
             assert_eq!((*x as f32).to_string().parse(), Ok(*x));
         }
         let frame = LocalFrame::of(&mesh.bounds());
-        let volume = |of: &Mesh| Sixfold::of(of, &of.positions, &frame).volume;
+        let volume = |of: &Mesh| VolumeSums::of(of, &of.positions, &frame).volume;
         assert!((volume(&level) / volume(&mesh) - 1.0).abs() < 1e-13);
     }
 

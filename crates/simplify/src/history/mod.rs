@@ -1,4 +1,4 @@
-//! Every contraction written down, so that each can be undone exactly.
+//! Record of all contractions, so that each can be undone exactly.
 
 pub(crate) mod exact_volume;
 pub(crate) mod progressive;
@@ -12,42 +12,43 @@ use crate::surface::contracted::Contracted;
 use crate::surface::neighbourhood::Neighbourhood;
 use crate::surface::{Placed, Surface};
 
-/// One contraction. Its lists run to the starts of the next one's.
+/// Recorded contraction of an edge, or removal of a component.
 #[derive(Clone, Copy, Debug)]
 pub struct Contraction {
-    /// What became one.
+    /// Contracted vertices.
     pub contracted: Contracted,
-    /// Which of them stayed, by its place among them.
+    /// Index of the vertex that stays, among the contracted ones.
     pub kept: u8,
-    /// Where the kept one was before, in model units.
+    /// Position of the kept vertex before, in model units.
     pub from: [f64; 3],
-    /// Where it is after.
+    /// Position of the kept vertex after, in model units.
     pub to: [f64; 3],
     moved: u32,
     died: u32,
     blended: u32,
 }
 
-/// A face corner that went from a removed vertex to the kept one.
+/// Face corner that moved from a removed vertex to the kept one.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Moved {
     pub(crate) corner: CandidateId,
-    /// Its wedge before; any where the surface has none.
+    /// Wedge of the corner before; arbitrary if the surface has none.
     pub(crate) wedge: WedgeId,
 }
 
-/// All contractions of a run, an observer. About 140 bytes a contraction, more with attributes.
+/// History of a run, recorded as an observer. About 140 bytes per contraction, more with
+/// attributes.
 #[derive(Clone, Debug, Default)]
 pub struct History {
     contractions: Vec<Contraction>,
     moved: Vec<Moved>,
     died: Vec<FaceId>,
     blended: Vec<WedgeId>,
-    /// The values of the blended wedges before, all layers of one after the other.
+    /// Values of the blended wedges before, all layers of a wedge in sequence.
     values: Vec<f32>,
 }
 
-/// What the contractions' lists run through.
+/// Lists that the contractions refer to by their start indices.
 pub(crate) struct Lists {
     pub(crate) moved: Vec<Moved>,
     pub(crate) died: Vec<FaceId>,
@@ -56,25 +57,26 @@ pub(crate) struct Lists {
 }
 
 impl Contraction {
-    /// Where its moved corners, its dead faces and its blended wedges start.
+    /// Returns the starts of the moved corners, removed faces and blended wedges; each list ends
+    /// where the next contraction's starts.
     pub(crate) fn starts(&self) -> [u32; 3] {
         [self.moved, self.died, self.blended]
     }
 }
 
 impl History {
-    /// The contractions, first to last.
+    /// Returns the contractions in order.
     pub fn contractions(&self) -> &[Contraction] {
         &self.contractions
     }
 
-    /// The faces that went with each contraction, first to last.
+    /// Returns the faces removed by the contraction at `index`.
     pub fn died(&self, index: usize) -> &[FaceId] {
         let end = self.contractions.get(index + 1).map_or(self.died.len(), |c| c.died as usize);
         &self.died[self.contractions[index].died as usize..end]
     }
 
-    /// How many faces went in all.
+    /// Returns the number of faces removed in total.
     pub(crate) fn all_died(&self) -> usize {
         self.died.len()
     }
@@ -86,10 +88,10 @@ impl History {
 }
 
 impl Observe for History {
-    fn before(&mut self, surface: &Surface, hood: &Neighbourhood, placed: &Placed) {
-        let kept = hood.contracted()[placed.kept];
+    fn before(&mut self, surface: &Surface, neighbourhood: &Neighbourhood, placed: &Placed) {
+        let kept = neighbourhood.contracted()[placed.kept];
         self.contractions.push(Contraction {
-            contracted: *hood.contracted(),
+            contracted: *neighbourhood.contracted(),
             kept: placed.kept as u8,
             from: surface.position(kept).into(),
             to: placed.position.into(),
@@ -97,21 +99,22 @@ impl Observe for History {
             died: self.died.len() as u32,
             blended: self.blended.len() as u32,
         });
-        let moved = hood.spokes().iter().filter(|spoke| spoke.owner() != placed.kept);
+        let moved = neighbourhood.spokes().iter().filter(|spoke| spoke.owner() != placed.kept);
         self.moved.extend(moved.map(|spoke| Moved {
             corner: CandidateId::side(spoke.face, spoke.corner()),
             wedge: surface.wedges.as_ref().map_or(WedgeId(0), |w| w.at(spoke.face, spoke.corner())),
         }));
-        self.died.extend(hood.dying().iter().map(|dying| dying.face));
+        self.died.extend(neighbourhood.dying().iter().map(|dying| dying.face));
         if let Some(wedges) = &surface.wedges {
-            for wedge in wedges.changing(hood, placed.kept) {
+            for wedge in wedges.changing(neighbourhood, placed.kept) {
                 self.blended.push(wedge);
                 self.values.extend(wedges.values(wedge));
             }
         }
     }
 
-    /// Written down as the contraction of an edge with all faces, after which nothing has moved.
+    /// Records the removal as the contraction of an edge in which all faces disappear and nothing
+    /// moves.
     fn vanish(&mut self, surface: &Surface, faces: &[FaceId]) {
         let Some(&first) = faces.first() else { return };
         let [v0, v1, _] = surface.face(first);

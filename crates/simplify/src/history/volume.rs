@@ -1,4 +1,4 @@
-//! What contractions did to the volume, an observer.
+//! Observer of the enclosed volume.
 
 use glam::{DMat3, DMat4, DVec3};
 use meshlod_mesh::{Bounds, FaceId};
@@ -8,32 +8,32 @@ use crate::surface::contracted::Freedom;
 use crate::surface::neighbourhood::{Neighbourhood, Spoke};
 use crate::surface::{Flags, Placed, Surface};
 
-/// The volume that contractions lost, and those that no method can make conserve it. All are of edges:
-/// a face counts as the two that it is contracted as.
+/// Volume lost by contractions, and the contractions that no method can make conserve it. A
+/// contracted face counts as two edges.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct VolumeLoss {
-    /// The sum over all contractions with a closed ring of the volume before less the volume after,
-    /// in model units cubed: table 2 of [LJ05].
+    /// Sum over all contractions with a closed ring of the volume before minus the volume after, in
+    /// cubic model units: table 2 of [LJ05].
     pub running_sum: f64,
-    /// Contractions with a vertex on the boundary, and open components that vanished: there is no
-    /// volume, and they are not in the sum.
+    /// Contractions at a boundary, and open components that vanished: no volume is defined there,
+    /// so the sum leaves them out.
     pub open: Unconserved,
-    /// Contractions that a lock, a tie or a seam held to one place, and closed components that
-    /// vanished, each as one. They are in the sum.
+    /// Contractions held to one position by a lock, a tie or a seam, and closed components that
+    /// vanished, each counted once. The sum includes them.
     pub held: Unconserved,
 }
 
-/// Contractions that could not choose their place by the volume.
+/// Contractions that could not choose a position that conserves the volume.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Unconserved {
-    /// How many.
+    /// Number of contractions.
     pub contractions: usize,
-    /// The box of where they were.
+    /// Bounding box of their positions.
     pub bounds: Bounds,
 }
 
 impl VolumeLoss {
-    /// Counts another in, of a mesh that is shown through `transform` (columns, as glTF has them).
+    /// Adds the loss of another mesh that is placed by `transform` (columns, as in glTF).
     pub fn add(&mut self, other: &Self, transform: &[[f64; 4]; 4]) {
         let transform = DMat4::from_cols_array_2d(transform);
         self.running_sum += other.running_sum * DMat3::from_mat4(transform).determinant().abs();
@@ -62,22 +62,23 @@ impl Unconserved {
 }
 
 impl Observe for VolumeLoss {
-    fn before(&mut self, surface: &Surface, hood: &Neighbourhood, placed: &Placed) {
-        if !hood.is_closed(surface) {
+    fn before(&mut self, surface: &Surface, neighbourhood: &Neighbourhood, placed: &Placed) {
+        if !neighbourhood.is_closed(surface) {
             return self.open.add(placed.position);
         }
-        if hood.freedom() != Freedom::Free {
+        if neighbourhood.freedom() != Freedom::Free {
             self.held.add(placed.position);
         }
-        // Seen from the kept vertex, which is a corner of nearly all the faces before.
-        let kept = surface.position(hood.contracted()[placed.kept]);
+        // Relative to the kept vertex, which is a corner of nearly all old faces.
+        let kept = surface.position(neighbourhood.contracted()[placed.kept]);
         let to = placed.position - kept;
         let sixfold = |spoke: &Spoke| {
-            let [a, b] = [spoke.a, spoke.b].map(|r| hood.ring()[r as usize].position - kept);
-            let from = surface.position(hood.contracted()[spoke.owner()]) - kept;
+            let [a, b] =
+                [spoke.a, spoke.b].map(|r| neighbourhood.ring()[r as usize].position - kept);
+            let from = surface.position(neighbourhood.contracted()[spoke.owner()]) - kept;
             a.cross(b).dot(from - to)
         };
-        self.running_sum += hood.spokes().iter().map(sixfold).sum::<f64>() / 6.0;
+        self.running_sum += neighbourhood.spokes().iter().map(sixfold).sum::<f64>() / 6.0;
     }
 
     fn vanish(&mut self, surface: &Surface, faces: &[FaceId]) {

@@ -18,7 +18,7 @@ use crate::kernel::setup::build_rings::Fans;
 use crate::kernel::setup::split_non_manifold;
 use crate::kernel::setup::vertex_order::{Order, numbers};
 use crate::options::{AttributeWeights, Options};
-use crate::simplifier::Input;
+use crate::simplifier::InputSummary;
 use crate::surface::MOST_FACES;
 use crate::surface::ties::{MOST_MEMBERS, Ties};
 use meshlod_mesh::{Bounds, Lock, Mesh, VertexId};
@@ -40,7 +40,7 @@ pub(crate) struct Prepared<'m, M> {
     fans: Fans,
     /// The faces on copies of vertices, or without those that repeat another, where there are any.
     faces: Option<Vec<[u32; 3]>>,
-    input: Input,
+    input: InputSummary,
     whole: Whole,
 }
 
@@ -77,7 +77,7 @@ impl<'m, M: Metric + 'm> Prepared<'m, M> {
             fans = Fans::new::<M>((&places, copied.clone()), count, |i| all[i], weight);
         }
         let held = Held::default();
-        let input = Input { degenerate_faces, duplicate_faces, non_manifold_vertices, held };
+        let input = InputSummary { degenerate_faces, duplicate_faces, non_manifold_vertices, held };
         let whole = Whole::default();
         let mut prepared = Self { metric, mesh, frame, order, fans, faces, input, whole };
         prepared.pin();
@@ -190,7 +190,7 @@ impl<'m, M: Metric + 'm> Prepared<'m, M> {
     }
 
     /// What was found in the input.
-    pub(crate) fn input(&self) -> Input {
+    pub(crate) fn input(&self) -> InputSummary {
         self.input
     }
 

@@ -114,12 +114,12 @@ impl Creases {
 impl Memory for Creases {
     const KNOWS_RING: bool = true;
 
-    fn renew(&mut self, surface: &Surface, hood: &Neighbourhood, placed: &Placed) {
-        for spoke in hood.spokes() {
+    fn renew(&mut self, surface: &Surface, neighbourhood: &Neighbourhood, placed: &Placed) {
+        for spoke in neighbourhood.spokes() {
             self.normals[spoke.face.index()] = unit_normal(surface, spoke.face);
         }
-        let kept = hood.contracted()[placed.kept];
-        for v in hood.ring().iter().map(|r| r.id).chain([kept]) {
+        let kept = neighbourhood.contracted()[placed.kept];
+        for v in neighbourhood.ring().iter().map(|r| r.id).chain([kept]) {
             self.found[v.index()] = Cached::default();
         }
     }

@@ -17,30 +17,33 @@ const REACH: f64 = 0.5;
 /// The optimum of the quadrics, moved along the line from the middle of the ring to where it
 /// conserves the volume; by the shortest way where that line hardly leaves the surface. An open ring
 /// has no volume; there it is the optimum.
-pub(crate) struct Conserving;
+pub(crate) struct VolumeConserving;
 
-impl Placement<Quadrics> for Conserving {
+impl Placement<Quadrics> for VolumeConserving {
     fn place(
         &self,
         surface: &Surface,
         memory: &Quadrics,
-        hood: &Neighbourhood,
+        neighbourhood: &Neighbourhood,
     ) -> Result<Placed, Refusal> {
-        let placed = Optimal.place(surface, memory, hood)?;
-        if hood.freedom() != Freedom::Free || !hood.is_closed(surface) || hood.ring().is_empty() {
+        let placed = Optimal.place(surface, memory, neighbourhood)?;
+        if neighbourhood.freedom() != Freedom::Free
+            || !neighbourhood.is_closed(surface)
+            || neighbourhood.ring().is_empty()
+        {
             return Ok(placed);
         }
-        let ring = hood.ring();
+        let ring = neighbourhood.ring();
         let base = ring.iter().map(|r| r.position).sum::<DVec3>() / ring.len() as f64;
         let spoke = ring.iter().map(|r| r.position.distance(base)).sum::<f64>() / ring.len() as f64;
-        let plane = VolumePlane::new(surface, hood, base);
+        let plane = VolumePlane::new(surface, neighbourhood, base);
         let optimum = placed.position - base;
         // N = E + (Vol_b / Vol_c)(C − E), E being where offsets start.
         let along = optimum * (plane.level / plane.normal.dot(optimum));
         let offset =
             if along.distance(optimum) <= REACH * spoke { along } else { plane.nearest(optimum) };
         // Where the faces nearly cancel, as in folds, that plane can be anywhere.
-        if offset.length() > hood.radius(base) {
+        if offset.length() > neighbourhood.radius(base) {
             return Err(Refusal::Volume);
         }
         Ok(Placed { position: base + offset, ..placed })

@@ -32,11 +32,11 @@ impl Placement<Creases> for Constriction {
         &self,
         surface: &Surface,
         creases: &Creases,
-        hood: &Neighbourhood,
+        neighbourhood: &Neighbourhood,
     ) -> Result<Placed, Refusal> {
-        match (hood.freedom(), hood.contracted().len()) {
-            (Freedom::Free, 3) => constrict(surface, creases, hood),
-            _ => lindstrom_turk::place(surface, hood),
+        match (neighbourhood.freedom(), neighbourhood.contracted().len()) {
+            (Freedom::Free, 3) => constrict(surface, creases, neighbourhood),
+            _ => lindstrom_turk::place(surface, neighbourhood),
         }
     }
 }
@@ -44,17 +44,17 @@ impl Placement<Creases> for Constriction {
 fn constrict(
     surface: &Surface,
     creases: &Creases,
-    hood: &Neighbourhood,
+    neighbourhood: &Neighbourhood,
 ) -> Result<Placed, Refusal> {
-    let corners = [0, 1, 2].map(|i| surface.position(hood.contracted()[i]));
+    let corners = [0, 1, 2].map(|i| surface.position(neighbourhood.contracted()[i]));
     let [a, b, c] = corners;
     let centroid = (a + b + c) / 3.0;
     let depth = (a.distance(b) + b.distance(c) + c.distance(a)) / 3.0;
-    let inward = direction(creases, hood, (b - a).cross(c - a).normalize_or_zero());
+    let inward = direction(creases, neighbourhood, (b - a).cross(c - a).normalize_or_zero());
     let base = centroid - depth * inward;
     let mut volume = VolumePlane::default();
     let mut seen = true;
-    old_faces(surface, hood, base, |normal, corner| {
+    old_faces(surface, neighbourhood, base, |normal, corner| {
         volume.add(normal, corner);
         seen &= normal.dot(corner) >= 0.0;
     });
@@ -69,8 +69,12 @@ fn constrict(
 
 /// The mean direction out of the patch: that of the face, and of each other as much as it differs
 /// (eq. 10).
-fn direction(creases: &Creases, hood: &Neighbourhood, normal: DVec3) -> DVec3 {
-    let faces = hood.spokes().iter().map(|s| s.face).chain(hood.dying().iter().map(|d| d.face));
+fn direction(creases: &Creases, neighbourhood: &Neighbourhood, normal: DVec3) -> DVec3 {
+    let faces = neighbourhood
+        .spokes()
+        .iter()
+        .map(|s| s.face)
+        .chain(neighbourhood.dying().iter().map(|d| d.face));
     let sum = faces.fold(normal, |sum, face| {
         let other = creases.normal(face);
         sum + (1.0 - normal.dot(other)) * other

@@ -9,7 +9,7 @@ use glam::DVec3;
 use meshlod_mesh::{FaceId, VertexId};
 
 use crate::engine::policy::{Memory, Placement, Priority};
-use crate::methods::outline::outlines;
+use crate::methods::feature_edges::feature_edges;
 use crate::methods::qem::SHORT_FIRST;
 use crate::methods::quadric::{Quadric, Symmetric};
 use crate::methods::volume::{VolumePlane, old_faces};
@@ -23,9 +23,9 @@ use crate::surface::{Flags, Placed, Surface};
 /// .00764, .0580. Of igea: .00437, .0307; .00437, .0308; .00443, .0310; .00486, .0317.
 const PULL: f64 = 1e-5;
 
-/// What an area on an outline counts against a volume over the length of the edge: both squared, a
+/// What an area on an feature_edge counts against a volume over the length of the edge: both squared, a
 /// half and a sixth of what the products of vectors give. Of a boundary, unless another is asked for.
-const OUTLINE_WEIGHT: f64 = 9.0;
+const FEATURE_WEIGHT: f64 = 9.0;
 
 /// The least sine of the angle between a direction and a plane that may fix each other [LT98].
 const COMPATIBLE: f64 = 0.017;
@@ -73,12 +73,12 @@ impl Stars {
 impl Memory for Stars {
     const KNOWS_RING: bool = true;
 
-    fn merge(&mut self, surface: &Surface, hood: &Neighbourhood, placed: &Placed) {
+    fn merge(&mut self, surface: &Surface, neighbourhood: &Neighbourhood, placed: &Placed) {
         let mut joined = Star::default();
-        for spoke in hood.spokes() {
-            let ends = [spoke.a, spoke.b].map(|place| &hood.ring()[place as usize]);
+        for spoke in neighbourhood.spokes() {
+            let ends = [spoke.a, spoke.b].map(|place| &neighbourhood.ring()[place as usize]);
             let normal = |from: DVec3| (ends[0].position - from).cross(ends[1].position - from);
-            let old = normal(surface.position(hood.contracted()[spoke.owner()]));
+            let old = normal(surface.position(neighbourhood.contracted()[spoke.owner()]));
             let new = normal(placed.position);
             joined.add(new);
             for r in ends {
@@ -87,12 +87,13 @@ impl Memory for Stars {
                 star.add(new);
             }
         }
-        for dying in hood.dying() {
+        for dying in neighbourhood.dying() {
             if let Some(apex) = dying.apex() {
-                self.0[hood.ring()[apex].id.index()].remove(surface.area_normal(dying.face));
+                self.0[neighbourhood.ring()[apex].id.index()]
+                    .remove(surface.area_normal(dying.face));
             }
         }
-        self.0[hood.contracted()[placed.kept].index()] = joined;
+        self.0[neighbourhood.contracted()[placed.kept].index()] = joined;
     }
 }
 
@@ -105,7 +106,7 @@ pub(crate) struct Memoryless {
 
 impl Memoryless {
     pub(crate) fn new(boundary_weight: Option<f64>) -> Self {
-        Self { boundary: boundary_weight.unwrap_or(OUTLINE_WEIGHT) }
+        Self { boundary: boundary_weight.unwrap_or(FEATURE_WEIGHT) }
     }
 }
 
@@ -118,8 +119,8 @@ impl Priority<Stars> for Memoryless {
         of: &Contracted,
         freedom: Freedom,
     ) -> Option<f64> {
-        if of.iter().any(|&v| surface.flags(v).any(Flags::LINED)) {
-            return cost_at_outline(surface, of, self.boundary);
+        if of.iter().any(|&v| surface.flags(v).any(Flags::FEATURE)) {
+            return cost_at_feature(surface, of, self.boundary);
         }
         let origin = surface.position(of[0]);
         let offset = |v: VertexId| surface.position(v) - origin;
@@ -152,37 +153,46 @@ fn middle(surface: &Surface, of: &Contracted) -> DVec3 {
     of.iter().map(|&v| surface.position(v) - origin).sum::<DVec3>() / of.len() as f64
 }
 
-/// The cost of an edge with an end on an outline, from all the faces around. Few edges have one.
-fn cost_at_outline(surface: &Surface, of: &Contracted, boundary: f64) -> Option<f64> {
-    let mut hood = Neighbourhood::default();
-    hood.gather(surface, *of).ok()?;
-    let choice = choose(surface, &hood, boundary);
+/// The cost of an edge with an end on an feature_edge, from all the faces around. Few edges have one.
+fn cost_at_feature(surface: &Surface, of: &Contracted, boundary: f64) -> Option<f64> {
+    let mut neighbourhood = Neighbourhood::default();
+    neighbourhood.gather(surface, *of).ok()?;
+    let choice = choose(surface, &neighbourhood, boundary);
     let length = surface.position(of[0]).distance_squared(surface.position(of[1]));
     Some(choice.swept.at(choice.offset) + SHORT_FIRST * choice.swept.mean_of(length))
 }
 
 impl Placement<Stars> for Memoryless {
-    fn place(&self, surface: &Surface, _: &Stars, hood: &Neighbourhood) -> Result<Placed, Refusal> {
-        place_with(surface, hood, self.boundary)
+    fn place(
+        &self,
+        surface: &Surface,
+        _: &Stars,
+        neighbourhood: &Neighbourhood,
+    ) -> Result<Placed, Refusal> {
+        place_with(surface, neighbourhood, self.boundary)
     }
 }
 
 /// The place of any gathered contraction, from the faces around as they are. Where these nearly
 /// cancel, as in folds, the place that conserves the volume can be far outside of them.
-pub(crate) fn place(surface: &Surface, hood: &Neighbourhood) -> Result<Placed, Refusal> {
-    place_with(surface, hood, OUTLINE_WEIGHT)
+pub(crate) fn place(surface: &Surface, neighbourhood: &Neighbourhood) -> Result<Placed, Refusal> {
+    place_with(surface, neighbourhood, FEATURE_WEIGHT)
 }
 
-fn place_with(surface: &Surface, hood: &Neighbourhood, boundary: f64) -> Result<Placed, Refusal> {
-    let Choice { offset, swept, middle } = choose(surface, hood, boundary);
+fn place_with(
+    surface: &Surface,
+    neighbourhood: &Neighbourhood,
+    boundary: f64,
+) -> Result<Placed, Refusal> {
+    let SweptPlacement { offset, swept, middle } = choose(surface, neighbourhood, boundary);
     let error_estimate = swept.distance(swept.at(offset));
-    let origin = surface.position(hood.contracted()[0]);
-    match hood.freedom() {
+    let origin = surface.position(neighbourhood.contracted()[0]);
+    match neighbourhood.freedom() {
         Freedom::At(kept) => {
-            let position = surface.position(hood.contracted()[kept]);
+            let position = surface.position(neighbourhood.contracted()[kept]);
             Ok(Placed { position, kept, error_estimate })
         }
-        Freedom::Free if offset.distance(middle) > hood.radius(origin + middle) => {
+        Freedom::Free if offset.distance(middle) > neighbourhood.radius(origin + middle) => {
             Err(Refusal::Volume)
         }
         Freedom::Free => Ok(Placed { position: origin + offset, kept: 0, error_estimate }),
@@ -190,60 +200,64 @@ fn place_with(surface: &Surface, hood: &Neighbourhood, boundary: f64) -> Result<
 }
 
 /// Where the vertex goes, from the first of the contracted, and what it sweeps over wherever it goes.
-struct Choice {
+struct SweptPlacement {
     offset: DVec3,
     swept: Quadric,
     /// Of the contracted, from the first.
     middle: DVec3,
 }
 
-fn choose(surface: &Surface, hood: &Neighbourhood, boundary_weight: f64) -> Choice {
-    let place = |i: usize| surface.position(hood.contracted()[i]);
+fn choose(
+    surface: &Surface,
+    neighbourhood: &Neighbourhood,
+    boundary_weight: f64,
+) -> SweptPlacement {
+    let place = |i: usize| surface.position(neighbourhood.contracted()[i]);
     let (origin, along) = (place(0), place(1) - place(0));
-    let middle = middle(surface, hood.contracted());
+    let middle = middle(surface, neighbourhood.contracted());
     let mut volume = VolumePlane::default();
     let mut swept = Quadric::default();
-    old_faces(surface, hood, origin, |normal, corner| {
+    old_faces(surface, neighbourhood, origin, |normal, corner| {
         volume.add(normal, corner);
         swept = swept + Quadric::squared_plane(normal, normal.dot(corner));
     });
-    let mut boundary = Boundary::default();
-    for outline in outlines(surface, hood.contracted()) {
-        let [from, to] = outline.ends.map(|v| surface.position(v) - origin);
+    let mut boundary = BoundarySums::default();
+    for feature_edge in feature_edges(surface, neighbourhood.contracted()) {
+        let [from, to] = feature_edge.ends.map(|v| surface.position(v) - origin);
         let edge = to - from;
         let across = Symmetric::scalar(edge.length_squared()) + Symmetric::outer(edge) * -1.0;
-        let weight = if outline.is_boundary { boundary_weight } else { OUTLINE_WEIGHT };
+        let weight = if feature_edge.is_boundary { boundary_weight } else { FEATURE_WEIGHT };
         let weight = weight * along.length_squared();
         swept = swept + Quadric::squared(across * weight, from).as_constraint();
-        if outline.is_boundary {
+        if feature_edge.is_boundary {
             boundary.add(from, to);
         }
     }
-    let offset = match hood.freedom() {
+    let offset = match neighbourhood.freedom() {
         Freedom::At(i) => place(i) - origin,
         Freedom::Free => match boundary.line() {
-            Some(line) => line.best(&volume, &swept, middle, hood.radius(origin + middle)),
+            Some(line) => line.best(&volume, &swept, middle, neighbourhood.radius(origin + middle)),
             None => swept.optimum_on(volume.normal, volume.level, middle, PULL),
         },
     };
-    Choice { offset, swept, middle }
+    SweptPlacement { offset, swept, middle }
 }
 
 /// The boundary edges around: sums of their directions and of the products of their ends.
 #[derive(Clone, Copy, Debug, Default)]
-struct Boundary {
+struct BoundarySums {
     directions: DVec3,
     products: DVec3,
     squares: f64,
 }
 
 /// The places that leave the area under a boundary as it is.
-struct Line {
+struct AreaLine {
     start: DVec3,
     direction: DVec3,
 }
 
-impl Boundary {
+impl BoundarySums {
     fn add(&mut self, from: DVec3, to: DVec3) {
         self.directions += to - from;
         self.products += from.cross(to);
@@ -252,14 +266,14 @@ impl Boundary {
 
     /// Where the sum of the areas between the boundary and a vertex is least; `None` where there is
     /// no boundary, or all of a closed one.
-    fn line(&self) -> Option<Line> {
+    fn line(&self) -> Option<AreaLine> {
         let (e, squared) = (self.directions, self.directions.length_squared());
         let start = e.cross(self.products) / squared;
-        (squared > CANCELLED * self.squares).then_some(Line { start, direction: e })
+        (squared > CANCELLED * self.squares).then_some(AreaLine { start, direction: e })
     }
 }
 
-impl Line {
+impl AreaLine {
     /// The place on it that conserves the volume too, where it crosses that plane at an angle and
     /// within `reach` of `toward`; else the one that sweeps over least.
     fn best(&self, volume: &VolumePlane, swept: &Quadric, toward: DVec3, reach: f64) -> DVec3 {

@@ -1,15 +1,15 @@
 //! The methods as sets of policies: the table of the house.
 
-mod appearance;
+mod attribute_metric;
+mod attribute_quadrics;
 mod channels;
 mod creases;
-mod expectations;
 mod face_order;
 mod fan;
+mod feature_edges;
 mod kim_jang;
 mod lee_jang;
 mod lindstrom_turk;
-mod outline;
 mod pm;
 pub(crate) mod qem;
 mod quadric;
@@ -19,25 +19,25 @@ mod spr;
 mod volume;
 mod wu;
 
-use crate::engine::candidates::{Edges, FacesAndEdges};
-use crate::engine::{Algorithm, Ready, Run};
-use crate::methods::appearance::Appearance;
+use crate::engine::candidates::{EdgeCandidates, FaceAndEdgeCandidates};
+use crate::engine::{Algorithm, PreparedSurface, Run};
+use crate::methods::attribute_metric::AttributeMetric;
+use crate::methods::attribute_quadrics::AttributeQuadrics;
 use crate::methods::channels::Channels;
 use crate::methods::creases::Creases;
-use crate::methods::expectations::Expectations;
 use crate::methods::face_order::FaceOrder;
-use crate::methods::kim_jang::Conserving;
+use crate::methods::kim_jang::VolumeConserving;
 use crate::methods::lee_jang::Constriction;
 use crate::methods::lindstrom_turk::{Memoryless, Stars};
 use crate::methods::pm::Energy;
-use crate::methods::qem::{Endpoint, Optimal, Quadrics, Rule};
+use crate::methods::qem::{Endpoint, Optimal, PlacementRule, Quadrics};
 use crate::methods::samples::Samples;
 use crate::methods::spr::Turn;
 use crate::methods::wu::WeightedMean;
 use crate::options::{Method, Options};
 
 /// Sets a method to work.
-pub(crate) fn start(method: Method, options: &Options, ready: Ready) -> Box<dyn Run> {
+pub(crate) fn start(method: Method, options: &Options, ready: PreparedSurface) -> Box<dyn Run> {
     let surface = &ready.surface;
     match method {
         #[cfg(feature = "oracle")]
@@ -45,7 +45,7 @@ pub(crate) fn start(method: Method, options: &Options, ready: Ready) -> Box<dyn 
         Method::QemEndpoint => by_quadrics(options, Endpoint, ready),
         #[cfg(feature = "oracle")]
         Method::LindstromTurk => Algorithm {
-            candidates: Edges,
+            candidates: EdgeCandidates,
             memory: Stars::new(surface),
             priority: Memoryless::new(options.boundary_weight),
             placement: Memoryless::new(options.boundary_weight),
@@ -54,65 +54,71 @@ pub(crate) fn start(method: Method, options: &Options, ready: Ready) -> Box<dyn 
         #[cfg(not(feature = "oracle"))]
         Method::Qem | Method::LindstromTurk => unreachable!("the kernel runs these"),
         Method::LindstromTurkFaces => Algorithm {
-            candidates: FacesAndEdges,
+            candidates: FaceAndEdgeCandidates,
             memory: Stars::new(surface),
             priority: Memoryless::new(options.boundary_weight),
             placement: Memoryless::new(options.boundary_weight),
         }
         .start(ready),
         Method::LeeJang => Algorithm {
-            candidates: FacesAndEdges,
+            candidates: FaceAndEdgeCandidates,
             memory: Creases::new(surface, lee_jang::weight),
             priority: FaceOrder::new(surface),
             placement: Constriction,
         }
         .start(ready),
         Method::Wu => Algorithm {
-            candidates: FacesAndEdges,
+            candidates: FaceAndEdgeCandidates,
             memory: Creases::new(surface, wu::weight),
             priority: FaceOrder::new(surface),
             placement: WeightedMean,
         }
         .start(ready),
         Method::KimJang => Algorithm {
-            candidates: Edges,
+            candidates: EdgeCandidates,
             memory: Quadrics::new(surface, &ready.connectivity, options.boundary_weight, ()),
             priority: Optimal,
-            placement: Conserving,
+            placement: VolumeConserving,
         }
         .start(ready),
         Method::Pm => Algorithm {
-            candidates: Edges,
+            candidates: EdgeCandidates,
             memory: Samples::new(surface, &ready.connectivity),
             priority: Energy,
             placement: Energy,
         }
         .start(ready),
-        Method::Spr => Algorithm { candidates: Edges, memory: (), priority: Turn, placement: Turn }
-            .start(ready),
+        Method::Spr => {
+            Algorithm { candidates: EdgeCandidates, memory: (), priority: Turn, placement: Turn }
+                .start(ready)
+        }
     }
 }
 
 /// Quadrics with attributes, where there are any that count.
-fn by_quadrics<R: Rule + Copy + 'static>(options: &Options, rule: R, ready: Ready) -> Box<dyn Run> {
+fn by_quadrics<R: PlacementRule + Copy + 'static>(
+    options: &Options,
+    rule: R,
+    ready: PreparedSurface,
+) -> Box<dyn Run> {
     let surface = &ready.surface;
     let channels = Channels::new(surface, &options.weights);
     match (channels, &surface.wedges) {
         (Some(channels), Some(wedges)) => {
-            let appearance = Expectations::new(surface, wedges, channels);
-            with_appearance(appearance, options, rule, ready)
+            let attributes = AttributeQuadrics::new(surface, wedges, channels);
+            with_attributes(attributes, options, rule, ready)
         }
-        _ => with_appearance((), options, rule, ready),
+        _ => with_attributes((), options, rule, ready),
     }
 }
 
-fn with_appearance<A: Appearance + 'static, R: Rule + Copy + 'static>(
-    appearance: A,
+fn with_attributes<A: AttributeMetric + 'static, R: PlacementRule + Copy + 'static>(
+    attributes: A,
     options: &Options,
     rule: R,
-    ready: Ready,
+    ready: PreparedSurface,
 ) -> Box<dyn Run> {
-    let Ready { surface, connectivity, .. } = &ready;
-    let memory = Quadrics::new(surface, connectivity, options.boundary_weight, appearance);
-    Algorithm { candidates: Edges, memory, priority: rule, placement: rule }.start(ready)
+    let PreparedSurface { surface, connectivity, .. } = &ready;
+    let memory = Quadrics::new(surface, connectivity, options.boundary_weight, attributes);
+    Algorithm { candidates: EdgeCandidates, memory, priority: rule, placement: rule }.start(ready)
 }

@@ -45,9 +45,9 @@ impl Priority<Samples> for Energy {
         of: &Contracted,
         _: Freedom,
     ) -> Option<f64> {
-        ROOM.with_borrow_mut(|Room { hood, desk }| {
-            hood.gather(surface, *of).ok()?;
-            Some(desk.solve(surface, samples, hood)?.cost)
+        SCRATCH.with_borrow_mut(|PmScratch { neighbourhood, fit }| {
+            neighbourhood.gather(surface, *of).ok()?;
+            Some(fit.solve(surface, samples, neighbourhood)?.cost)
         })
     }
 }
@@ -57,31 +57,32 @@ impl Placement<Samples> for Energy {
         &self,
         surface: &Surface,
         samples: &Samples,
-        hood: &Neighbourhood,
+        neighbourhood: &Neighbourhood,
     ) -> Result<Placed, Refusal> {
-        let best = ROOM.with_borrow_mut(|room| room.desk.solve(surface, samples, hood));
+        let best =
+            SCRATCH.with_borrow_mut(|scratch| scratch.fit.solve(surface, samples, neighbourhood));
         let best = best.ok_or(Refusal::LastFaces)?;
         // Samples know how far they have come in all; what the engine will add is taken out.
-        let before = surface.moved(hood.contracted()).powi(2);
+        let before = surface.moved(neighbourhood.contracted()).powi(2);
         let error_estimate = (best.worst - before).max(0.0).sqrt();
         Ok(Placed { position: best.position, kept: best.kept, error_estimate })
     }
 }
 
 thread_local! {
-    static ROOM: RefCell<Room> = RefCell::default();
+    static SCRATCH: RefCell<PmScratch> = RefCell::default();
 }
 
-/// Room for the contractions that a thread looks at.
+/// PmScratch for the contractions that a thread looks at.
 #[derive(Default)]
-struct Room {
-    hood: Neighbourhood,
-    desk: Desk,
+struct PmScratch {
+    neighbourhood: Neighbourhood,
+    fit: SampleFit,
 }
 
 /// One contraction, seen from the first of its vertices.
 #[derive(Default)]
-struct Desk {
+struct SampleFit {
     fan: Fan,
     points: Vec<Point>,
 }
@@ -93,7 +94,7 @@ struct Point {
 }
 
 /// Where a contraction puts its vertex.
-struct Best {
+struct FittedPlace {
     position: DVec3,
     kept: usize,
     cost: f64,
@@ -103,7 +104,7 @@ struct Best {
 
 /// What the samples say of a place.
 #[derive(Clone, Copy)]
-struct View {
+struct Evaluation {
     place: DVec3,
     /// The sum of squared distances, and the springs.
     energy: f64,
@@ -113,29 +114,29 @@ struct View {
     better: DVec3,
 }
 
-impl Desk {
+impl SampleFit {
     /// The best place for the new vertex; none where no face is left for the samples.
     fn solve(
         &mut self,
         surface: &Surface,
         samples: &Samples,
-        hood: &Neighbourhood,
-    ) -> Option<Best> {
-        if hood.spokes().is_empty() {
+        neighbourhood: &Neighbourhood,
+    ) -> Option<FittedPlace> {
+        if neighbourhood.spokes().is_empty() {
             return None;
         }
-        let [v0, v1] = [0, 1].map(|i| surface.position(hood.contracted()[i]));
-        samples.fan(surface, hood, v0, &mut self.fan);
+        let [v0, v1] = [0, 1].map(|i| surface.position(neighbourhood.contracted()[i]));
+        samples.fan(surface, neighbourhood, v0, &mut self.fan);
         self.points.clear();
         let mut before = 0.0;
-        samples.moving(hood, |sample| {
+        samples.moving(neighbourhood, |sample| {
             before += sample.squared;
             self.points.push(Point { place: sample.point - v0, on_rim: sample.on_rim() });
         });
-        let (ends, kept) = ([DVec3::ZERO, v1 - v0], hood.freedom());
+        let (ends, kept) = ([DVec3::ZERO, v1 - v0], neighbourhood.freedom());
         let view = match kept {
-            Freedom::At(kept) => self.look(ends[kept]),
-            Freedom::Free => self.least([ends[0], ends[1], ends[1] * 0.5]),
+            Freedom::At(kept) => self.evaluate(ends[kept]),
+            Freedom::Free => self.descend([ends[0], ends[1], ends[1] * 0.5]),
         };
         // An end keeps its position to the bit.
         let position = match ends.iter().position(|&end| end == view.place) {
@@ -143,12 +144,17 @@ impl Desk {
             None => v0 + view.place,
         };
         let kept = if let Freedom::At(kept) = kept { kept } else { 0 };
-        Some(Best { position, kept, cost: (view.energy - before).max(0.0), worst: view.worst })
+        Some(FittedPlace {
+            position,
+            kept,
+            cost: (view.energy - before).max(0.0),
+            worst: view.worst,
+        })
     }
 
     /// The best of these places, moved on as long as that lowers the energy.
-    fn least(&mut self, starts: [DVec3; 3]) -> View {
-        let [first, second, third] = starts.map(|start| self.look(start));
+    fn descend(&mut self, starts: [DVec3; 3]) -> Evaluation {
+        let [first, second, third] = starts.map(|start| self.evaluate(start));
         let mut best = first;
         for other in [second, third] {
             if other.energy < best.energy {
@@ -156,7 +162,7 @@ impl Desk {
             }
         }
         for _ in 0..ROUNDS {
-            let next = self.look(best.better);
+            let next = self.evaluate(best.better);
             if next.energy < best.energy {
                 best = next;
             } else {
@@ -167,7 +173,7 @@ impl Desk {
     }
 
     /// Projects all samples to the faces around `place`.
-    fn look(&mut self, place: DVec3) -> View {
+    fn evaluate(&mut self, place: DVec3) -> Evaluation {
         self.fan.place(place);
         let (mut energy, mut worst) = (SPRING * self.fan.squared_lengths(), 0.0f64);
         let (mut squares, mut pull, mut weights) = (Symmetric::default(), DVec3::ZERO, 0.0);
@@ -188,7 +194,7 @@ impl Desk {
         }
         let step = (squares + Symmetric::scalar(HOLD * weights)).solve(pull);
         let better = if step.is_finite() { place + step } else { place };
-        View { place, energy, worst, better }
+        Evaluation { place, energy, worst, better }
     }
 }
 
@@ -209,15 +215,15 @@ mod tests {
     }
 
     /// The same sum by brute force: every sample of the faces around against every new face.
-    fn by_brute_force(samples: &Samples, hood: &Neighbourhood, position: DVec3) -> f64 {
-        let ring = |place: u32| hood.ring()[place as usize].position;
+    fn by_brute_force(samples: &Samples, neighbourhood: &Neighbourhood, position: DVec3) -> f64 {
+        let ring = |place: u32| neighbourhood.ring()[place as usize].position;
         let mut sum = 0.0;
-        samples.moving(hood, |sample| {
+        samples.moving(neighbourhood, |sample| {
             let squared = |spoke: &crate::Spoke| {
                 let triangle = [position, ring(spoke.a), ring(spoke.b)];
                 sample.point.distance_squared(closest_point(sample.point, &triangle))
             };
-            sum += hood.spokes().iter().map(squared).fold(f64::INFINITY, f64::min);
+            sum += neighbourhood.spokes().iter().map(squared).fold(f64::INFINITY, f64::min);
         });
         sum
     }
@@ -226,25 +232,27 @@ mod tests {
     fn the_energy_is_that_of_brute_force() {
         let mesh = samples::knot(600);
         let (mut surface, mut samples) = start(&mesh);
-        let (mut hood, mut desk, mut contracted) = (Neighbourhood::default(), Desk::default(), 0);
+        let (mut neighbourhood, mut fit, mut contracted) =
+            (Neighbourhood::default(), SampleFit::default(), 0);
         for face in (0..mesh.faces.len()).step_by(3).map(FaceId::new) {
             let [v0, v1, _] = surface.face(face);
-            if !surface.is_alive(face) || hood.gather(&surface, Contracted::edge([v0, v1])).is_err()
+            if !surface.is_alive(face)
+                || neighbourhood.gather(&surface, Contracted::edge([v0, v1])).is_err()
             {
                 continue;
             }
-            let best = desk.solve(&surface, &samples, &hood).unwrap();
-            let view = desk.look(best.position - surface.position(v0));
-            let distances = view.energy - SPRING * desk.fan.squared_lengths();
-            let expected = by_brute_force(&samples, &hood, best.position);
+            let best = fit.solve(&surface, &samples, &neighbourhood).unwrap();
+            let view = fit.evaluate(best.position - surface.position(v0));
+            let distances = view.energy - SPRING * fit.fan.squared_lengths();
+            let expected = by_brute_force(&samples, &neighbourhood, best.position);
             assert!((distances - expected).abs() <= 1e-9 * expected + 1e-20, "{face}");
             for end in [v0, v1] {
-                let at_end = desk.look(surface.position(end) - surface.position(v0));
+                let at_end = fit.evaluate(surface.position(end) - surface.position(v0));
                 assert!(view.energy <= at_end.energy * (1.0 + 1e-12), "{face}");
             }
             let placed = Placed { position: best.position, kept: 0, error_estimate: 0.0 };
-            samples.merge(&surface, &hood, &placed);
-            surface.contract(&hood, &placed);
+            samples.merge(&surface, &neighbourhood, &placed);
+            surface.contract(&neighbourhood, &placed);
             contracted += 1;
         }
         assert!(contracted > 100, "{contracted}");

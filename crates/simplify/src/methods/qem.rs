@@ -12,8 +12,8 @@ use glam::DVec3;
 use meshlod_mesh::{Connectivity, FaceId, Side, Twin, VertexId};
 
 use crate::engine::policy::{Memory, Placement, Priority};
-use crate::methods::appearance::Appearance;
-use crate::methods::outline::is_line;
+use crate::methods::attribute_metric::AttributeMetric;
+use crate::methods::feature_edges::is_feature;
 use crate::methods::quadric::Quadric;
 use crate::refusal::Refusal;
 use crate::surface::contracted::{Contracted, Freedom};
@@ -47,12 +47,12 @@ pub(crate) const MEMORY: f64 = 0.1;
 pub(crate) const BOUNDARY_WEIGHT: f64 = 2.0;
 
 /// The weight of the plane of a seam or a contact likewise.
-const LINE_WEIGHT: f64 = 1.0;
+const FEATURE_WEIGHT: f64 = 1.0;
 
 /// A quadric per vertex, and what is known of attributes.
 pub(crate) struct Quadrics<A = ()> {
     quadrics: Vec<Quadric>,
-    appearance: A,
+    attributes: A,
 }
 
 impl<A> Quadrics<A> {
@@ -60,7 +60,7 @@ impl<A> Quadrics<A> {
         surface: &Surface,
         connectivity: &Connectivity,
         boundary_weight: Option<f64>,
-        appearance: A,
+        attributes: A,
     ) -> Self {
         let boundary_weight = boundary_weight.unwrap_or(BOUNDARY_WEIGHT);
         let mut quadrics = vec![Quadric::default(); surface.vertex_count()];
@@ -70,7 +70,7 @@ impl<A> Quadrics<A> {
                 add_face(&mut quadrics, surface, (face, connectivity), boundary_weight);
             }
         }
-        Self { quadrics, appearance }
+        Self { quadrics, attributes }
     }
 
     /// The sum of the contracted vertices' quadrics, seen from the first.
@@ -85,29 +85,30 @@ impl<A> Quadrics<A> {
     }
 }
 
-impl<A: Appearance> Memory for Quadrics<A> {
-    fn merge(&mut self, surface: &Surface, hood: &Neighbourhood, placed: &Placed) {
-        let origin = surface.position(hood.contracted()[0]);
-        let sum = self.sum(surface, hood.contracted());
+impl<A: AttributeMetric> Memory for Quadrics<A> {
+    fn merge(&mut self, surface: &Surface, neighbourhood: &Neighbourhood, placed: &Placed) {
+        let origin = surface.position(neighbourhood.contracted()[0]);
+        let sum = self.sum(surface, neighbourhood.contracted());
         let mut merged = sum.seen_from(placed.position - origin);
         // Fences are not in the faces around: where one stands, all is remembered.
-        let fenced = |&v: &VertexId| surface.flags(v).any(Flags::LINED);
-        if !hood.contracted().iter().any(fenced) {
-            merged = merged * MEMORY + star(hood, placed.position) * (1.0 - MEMORY);
+        let on_feature = |&v: &VertexId| surface.flags(v).any(Flags::FEATURE);
+        if !neighbourhood.contracted().iter().any(on_feature) {
+            merged = merged * MEMORY + star(neighbourhood, placed.position) * (1.0 - MEMORY);
         }
-        self.quadrics[hood.contracted()[placed.kept].index()] = merged;
-        self.appearance.merge(surface, hood, placed);
+        self.quadrics[neighbourhood.contracted()[placed.kept].index()] = merged;
+        self.attributes.merge(surface, neighbourhood, placed);
     }
 
-    fn renew(&mut self, surface: &Surface, hood: &Neighbourhood, placed: &Placed) {
-        self.appearance.renew(surface, hood, placed);
+    fn renew(&mut self, surface: &Surface, neighbourhood: &Neighbourhood, placed: &Placed) {
+        self.attributes.renew(surface, neighbourhood, placed);
     }
 }
 
 /// The planes of the surviving faces, with their vertex at `position`, seen from there.
-fn star(hood: &Neighbourhood, position: DVec3) -> Quadric {
-    let at = |place: u32| hood.ring()[place as usize].position - position;
-    hood.spokes()
+fn star(neighbourhood: &Neighbourhood, position: DVec3) -> Quadric {
+    let at = |place: u32| neighbourhood.ring()[place as usize].position - position;
+    neighbourhood
+        .spokes()
         .iter()
         .fold(Quadric::default(), |sum, spoke| sum + Quadric::face(at(spoke.a).cross(at(spoke.b))))
 }
@@ -128,22 +129,23 @@ fn add_face(
     for k in 0..3 {
         let weight = match connectivity.twin(Side::new(face, k)) {
             Twin::Boundary => boundary_weight,
-            Twin::Side(twin) if is_line(surface, Side::new(face, k), twin) => LINE_WEIGHT,
+            Twin::Side(twin) if is_feature(surface, Side::new(face, k), twin) => FEATURE_WEIGHT,
             _ => continue,
         };
         let ends = [corners[k], corners[(k + 1) % 3]];
         let along = surface.position(ends[1]) - surface.position(ends[0]);
         if let Some(across) = along.cross(normal).try_normalize() {
-            let fence = Quadric::plane(across, weight * along.length_squared()).as_constraint();
+            let constraint =
+                Quadric::plane(across, weight * along.length_squared()).as_constraint();
             for v in ends {
-                quadrics[v.index()] = quadrics[v.index()] + fence;
+                quadrics[v.index()] = quadrics[v.index()] + constraint;
             }
         }
     }
 }
 
 /// Where a rule of placement puts the vertex, and what that costs.
-pub(crate) struct Choice {
+pub(crate) struct CostedPlacement {
     /// From the first of the contracted.
     offset: DVec3,
     kept: usize,
@@ -159,55 +161,55 @@ pub(crate) struct Optimal;
 pub(crate) struct Endpoint;
 
 /// What a choice is made by.
-pub(crate) struct Sum<'a, A> {
+pub(crate) struct EdgeSum<'a, A> {
     /// Seen from the first of the contracted.
     geometry: Quadric,
-    appearance: &'a A,
+    attributes: &'a A,
     surface: &'a Surface,
     of: &'a Contracted,
 }
 
-impl<'a, A: Appearance> Sum<'a, A> {
+impl<'a, A: AttributeMetric> EdgeSum<'a, A> {
     #[inline]
     fn new(memory: &'a Quadrics<A>, surface: &'a Surface, of: &'a Contracted) -> Self {
         let geometry = memory.sum(surface, of);
-        Self { geometry, appearance: &memory.appearance, surface, of }
+        Self { geometry, attributes: &memory.attributes, surface, of }
     }
 
     /// The place of one of the contracted.
     #[inline]
-    fn at(&self, kept: usize) -> Choice {
+    fn at(&self, kept: usize) -> CostedPlacement {
         let Self { geometry, surface, of, .. } = *self;
         let offset = surface.position(of[kept]) - surface.position(of[0]);
-        let whole = self.appearance.staying(geometry, surface, of, kept);
-        Choice { offset, kept, cost: whole.at(offset) }
+        let whole = self.attributes.staying(geometry, surface, of, kept);
+        CostedPlacement { offset, kept, cost: whole.at(offset) }
     }
 }
 
 /// A rule of placement.
-pub(crate) trait Rule: Sync {
-    fn choose<A: Appearance>(sum: &Sum<'_, A>, freedom: Freedom) -> Choice;
+pub(crate) trait PlacementRule: Sync {
+    fn choose<A: AttributeMetric>(sum: &EdgeSum<'_, A>, freedom: Freedom) -> CostedPlacement;
 }
 
-impl Rule for Optimal {
+impl PlacementRule for Optimal {
     #[inline]
-    fn choose<A: Appearance>(sum: &Sum<'_, A>, freedom: Freedom) -> Choice {
+    fn choose<A: AttributeMetric>(sum: &EdgeSum<'_, A>, freedom: Freedom) -> CostedPlacement {
         if let Freedom::At(kept) = freedom {
             return sum.at(kept);
         }
-        let Sum { geometry, surface, of, .. } = *sum;
+        let EdgeSum { geometry, surface, of, .. } = *sum;
         let origin = surface.position(of[0]);
         let middle =
             of.iter().map(|&v| surface.position(v) - origin).sum::<DVec3>() / of.len() as f64;
-        let whole = sum.appearance.free(geometry, surface, of);
+        let whole = sum.attributes.free(geometry, surface, of);
         let offset = whole.optimum(middle, PULL);
-        Choice { offset, kept: 0, cost: whole.at(offset) }
+        CostedPlacement { offset, kept: 0, cost: whole.at(offset) }
     }
 }
 
-impl Rule for Endpoint {
+impl PlacementRule for Endpoint {
     #[inline]
-    fn choose<A: Appearance>(sum: &Sum<'_, A>, freedom: Freedom) -> Choice {
+    fn choose<A: AttributeMetric>(sum: &EdgeSum<'_, A>, freedom: Freedom) -> CostedPlacement {
         match freedom {
             Freedom::At(kept) => sum.at(kept),
             Freedom::Free => (0..sum.of.len())
@@ -218,7 +220,7 @@ impl Rule for Endpoint {
     }
 }
 
-impl<R: Rule, A: Appearance> Priority<Quadrics<A>> for R {
+impl<R: PlacementRule, A: AttributeMetric> Priority<Quadrics<A>> for R {
     #[inline]
     fn cost(
         &self,
@@ -227,25 +229,25 @@ impl<R: Rule, A: Appearance> Priority<Quadrics<A>> for R {
         of: &Contracted,
         freedom: Freedom,
     ) -> Option<f64> {
-        let sum = Sum::new(memory, surface, of);
+        let sum = EdgeSum::new(memory, surface, of);
         let [from, to] = [of[0], of[of.len() - 1]].map(|v| surface.position(v));
         let tie_break = SHORT_FIRST * sum.geometry.mean_of(from.distance_squared(to));
         Some(R::choose(&sum, freedom).cost + tie_break)
     }
 }
 
-impl<R: Rule, A: Appearance> Placement<Quadrics<A>> for R {
+impl<R: PlacementRule, A: AttributeMetric> Placement<Quadrics<A>> for R {
     fn place(
         &self,
         surface: &Surface,
         memory: &Quadrics<A>,
-        hood: &Neighbourhood,
+        neighbourhood: &Neighbourhood,
     ) -> Result<Placed, Refusal> {
-        let sum = Sum::new(memory, surface, hood.contracted());
-        let choice = R::choose(&sum, hood.freedom());
+        let sum = EdgeSum::new(memory, surface, neighbourhood.contracted());
+        let choice = R::choose(&sum, neighbourhood.freedom());
         // An end keeps its position to the bit.
-        let origin = surface.position(hood.contracted()[0]);
-        let kept = surface.position(hood.contracted()[choice.kept]);
+        let origin = surface.position(neighbourhood.contracted()[0]);
+        let kept = surface.position(neighbourhood.contracted()[choice.kept]);
         let position = if choice.offset == kept - origin { kept } else { origin + choice.offset };
         // A length: attributes have no part in it.
         let error_estimate = sum.geometry.distance(sum.geometry.at(choice.offset));

@@ -1,14 +1,14 @@
 //! Points of the first surface, each on the face that stands for it now.
 //!
 //! Samples lie in one array, linked from face to face. A sample of a rim, which is a boundary edge or
-//! a seam, stays on rims: it is what holds outlines and the borders of textures.
+//! a seam, stays on rims: it is what holds feature_edges and the borders of textures.
 
 use glam::DVec3;
 use meshlod_mesh::{Connectivity, FaceId, Side, Twin, VertexId};
 
 use crate::engine::policy::Memory;
 use crate::methods::fan::{Fan, Rim};
-use crate::methods::outline::is_line;
+use crate::methods::feature_edges::is_feature;
 use crate::surface::neighbourhood::{Neighbourhood, Spoke};
 use crate::surface::{Placed, Surface};
 
@@ -86,7 +86,7 @@ impl Samples {
             let side = Side::new(face, k);
             let is_rim = match connectivity.twin(side) {
                 Twin::Boundary => true,
-                Twin::Side(twin) => is_line(surface, side, twin),
+                Twin::Side(twin) => is_feature(surface, side, twin),
                 _ => false,
             };
             if is_rim {
@@ -119,19 +119,19 @@ impl Samples {
     }
 
     /// Calls `each` with every sample that a contraction sets in motion.
-    pub(crate) fn moving(&self, hood: &Neighbourhood, mut each: impl FnMut(&Sample)) {
-        self.moving_ids(hood, |i| each(&self.samples[i as usize]));
+    pub(crate) fn moving(&self, neighbourhood: &Neighbourhood, mut each: impl FnMut(&Sample)) {
+        self.moving_ids(neighbourhood, |i| each(&self.samples[i as usize]));
     }
 
-    fn moving_ids(&self, hood: &Neighbourhood, mut each: impl FnMut(u32)) {
-        for spoke in hood.spokes() {
+    fn moving_ids(&self, neighbourhood: &Neighbourhood, mut each: impl FnMut(u32)) {
+        for spoke in neighbourhood.spokes() {
             // What is on the rim across from the contracted corner stays there.
             let across = ((spoke.corner() + 1) % 3) as u8;
             self.of_face(spoke.face)
                 .filter(|&i| self.samples[i as usize].side != Some(across))
                 .for_each(&mut each);
         }
-        for dying in hood.dying() {
+        for dying in neighbourhood.dying() {
             self.of_face(dying.face).for_each(&mut each);
         }
     }
@@ -146,23 +146,23 @@ impl Samples {
     pub(crate) fn fan(
         &self,
         surface: &Surface,
-        hood: &Neighbourhood,
+        neighbourhood: &Neighbourhood,
         origin: DVec3,
         fan: &mut Fan,
     ) {
         fan.clear();
-        let ring = |place: u32| hood.ring()[place as usize].position - origin;
-        for spoke in hood.spokes() {
+        let ring = |place: u32| neighbourhood.ring()[place as usize].position - origin;
+        for spoke in neighbourhood.spokes() {
             fan.add_spoke([ring(spoke.a), ring(spoke.b)]);
         }
         let mut on_rim = |place: u32| {
             let leads = |spoke: &Spoke| spoke.a == place || spoke.b == place;
-            let Some(spoke) = hood.spokes().iter().position(leads) else { return };
+            let Some(spoke) = neighbourhood.spokes().iter().position(leads) else { return };
             if fan.rims().iter().all(|rim| rim.place != place) {
                 fan.add_rim(Rim { place, end: ring(place), spoke: spoke as u32 });
             }
         };
-        for spoke in hood.spokes() {
+        for spoke in neighbourhood.spokes() {
             let rims = self.rims(spoke.face);
             if rims != 0 {
                 let is_rim = |side: usize| rims >> (side % 3) & 1 != 0;
@@ -174,9 +174,9 @@ impl Samples {
                 }
             }
         }
-        for dying in hood.dying().iter().filter(|dying| self.rims(dying.face) != 0) {
+        for dying in neighbourhood.dying().iter().filter(|dying| self.rims(dying.face) != 0) {
             let Some(apex) = dying.apex() else { continue };
-            let corner = surface.corner(dying.face, hood.ring()[apex].id);
+            let corner = surface.corner(dying.face, neighbourhood.ring()[apex].id);
             let at_apex = 1 << corner | 1 << ((corner + 2) % 3);
             if self.rims(dying.face) & at_apex != 0 {
                 on_rim(apex as u32);
@@ -188,19 +188,19 @@ impl Samples {
 impl Memory for Samples {
     const KNOWS_RING: bool = true;
 
-    fn merge(&mut self, surface: &Surface, hood: &Neighbourhood, placed: &Placed) {
+    fn merge(&mut self, surface: &Surface, neighbourhood: &Neighbourhood, placed: &Placed) {
         let (mut fan, mut moving) =
             (std::mem::take(&mut self.fan), std::mem::take(&mut self.moving));
         let origin = placed.position;
-        self.fan(surface, hood, origin, &mut fan);
+        self.fan(surface, neighbourhood, origin, &mut fan);
         fan.place(DVec3::ZERO);
         moving.clear();
-        self.moving_ids(hood, |i| moving.push(i));
-        self.unlink(hood);
+        self.moving_ids(neighbourhood, |i| moving.push(i));
+        self.unlink(neighbourhood);
         for &i in &moving {
             let sample = self.samples[i as usize];
             let found = fan.nearest(sample.point - origin, sample.on_rim());
-            let spoke = &hood.spokes()[found.spoke];
+            let spoke = &neighbourhood.spokes()[found.spoke];
             let side = found.rim.map(|rim| {
                 let first = fan.rims()[rim].place == spoke.a;
                 (if first { spoke.corner() } else { (spoke.corner() + 2) % 3 }) as u8
@@ -210,17 +210,17 @@ impl Memory for Samples {
             self.samples[i as usize] = Sample { squared: found.squared, side, next, ..sample };
         }
         (self.fan, self.moving) = (fan, moving);
-        self.mark_rims(hood);
+        self.mark_rims(neighbourhood);
     }
 }
 
 impl Samples {
     /// Leaves on the faces around only what does not move.
-    fn unlink(&mut self, hood: &Neighbourhood) {
-        for dying in hood.dying() {
+    fn unlink(&mut self, neighbourhood: &Neighbourhood) {
+        for dying in neighbourhood.dying() {
             self.first[dying.face.index()] = NONE;
         }
-        for spoke in hood.spokes() {
+        for spoke in neighbourhood.spokes() {
             let across = ((spoke.corner() + 1) % 3) as u8;
             let mut next = std::mem::replace(&mut self.first[spoke.face.index()], NONE);
             while next != NONE {
@@ -235,10 +235,10 @@ impl Samples {
     }
 
     /// Gives the sides of the new faces their marks; `fan` is of this contraction.
-    fn mark_rims(&mut self, hood: &Neighbourhood) {
+    fn mark_rims(&mut self, neighbourhood: &Neighbourhood) {
         let fan = std::mem::take(&mut self.fan);
         for rim in fan.rims() {
-            for spoke in hood.spokes() {
+            for spoke in neighbourhood.spokes() {
                 if spoke.a == rim.place {
                     self.rims[spoke.face.index()] |= 1 << spoke.corner();
                 }

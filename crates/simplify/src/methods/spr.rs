@@ -4,7 +4,7 @@
 //! cost(u→v) = |u−v| · max over the faces f at u of min over the faces n on uv of (1 − f·n) / 2.
 //!
 //! The inner minimum lets a crease be shortened along itself. Our choices: a boundary edge stands as
-//! a face at right angles to its own, so that the same formula keeps outlines and their corners; both
+//! a face at right angles to its own, so that the same formula keeps feature_edges and their corners; both
 //! directions are looked at and the cheaper is taken; and a little of the length always counts, so
 //! that flats are taken short edges first.
 
@@ -35,9 +35,14 @@ impl Priority<()> for Turn {
 }
 
 impl Placement<()> for Turn {
-    fn place(&self, surface: &Surface, _: &(), hood: &Neighbourhood) -> Result<Placed, Refusal> {
-        let (kept, _) = cheaper(surface, hood.contracted(), hood.freedom());
-        let position = surface.position(hood.contracted()[kept]);
+    fn place(
+        &self,
+        surface: &Surface,
+        _: &(),
+        neighbourhood: &Neighbourhood,
+    ) -> Result<Placed, Refusal> {
+        let (kept, _) = cheaper(surface, neighbourhood.contracted(), neighbourhood.freedom());
+        let position = surface.position(neighbourhood.contracted()[kept]);
         Ok(Placed { position, kept, error_estimate: 0.0 })
     }
 }

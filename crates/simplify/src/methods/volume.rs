@@ -20,9 +20,9 @@ pub(crate) struct VolumePlane {
 impl VolumePlane {
     /// The plane for a gathered contraction, seen from `origin`, which should be near: volumes of
     /// what is far away cancel badly.
-    pub(crate) fn new(surface: &Surface, hood: &Neighbourhood, origin: DVec3) -> Self {
+    pub(crate) fn new(surface: &Surface, neighbourhood: &Neighbourhood, origin: DVec3) -> Self {
         let mut plane = Self::default();
-        old_faces(surface, hood, origin, |normal, corner| plane.add(normal, corner));
+        old_faces(surface, neighbourhood, origin, |normal, corner| plane.add(normal, corner));
         plane
     }
 
@@ -51,20 +51,20 @@ impl VolumePlane {
 #[inline]
 pub(crate) fn old_faces(
     surface: &Surface,
-    hood: &Neighbourhood,
+    neighbourhood: &Neighbourhood,
     origin: DVec3,
     mut each: impl FnMut(DVec3, DVec3),
 ) {
     let mut contracted = [DVec3::ZERO; 3];
-    for (slot, &v) in contracted.iter_mut().zip(hood.contracted().iter()) {
+    for (slot, &v) in contracted.iter_mut().zip(neighbourhood.contracted().iter()) {
         *slot = surface.position(v) - origin;
     }
-    let ring = |place: u32| hood.ring()[place as usize].position - origin;
-    for spoke in hood.spokes() {
+    let ring = |place: u32| neighbourhood.ring()[place as usize].position - origin;
+    for spoke in neighbourhood.spokes() {
         let corner = contracted[spoke.owner()];
         each((ring(spoke.a) - corner).cross(ring(spoke.b) - corner), corner);
     }
-    for dying in hood.dying() {
+    for dying in neighbourhood.dying() {
         let [a, b, c] = surface.face(dying.face).map(|v| surface.position(v) - origin);
         each((b - a).cross(c - a), a);
     }

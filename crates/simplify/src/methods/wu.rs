@@ -24,13 +24,14 @@ impl Placement<Creases> for WeightedMean {
         &self,
         surface: &Surface,
         creases: &Creases,
-        hood: &Neighbourhood,
+        neighbourhood: &Neighbourhood,
     ) -> Result<Placed, Refusal> {
-        if hood.freedom() != Freedom::Free || hood.contracted().len() == 2 {
-            return lindstrom_turk::place(surface, hood);
+        if neighbourhood.freedom() != Freedom::Free || neighbourhood.contracted().len() == 2 {
+            return lindstrom_turk::place(surface, neighbourhood);
         }
         let corners = || {
-            hood.contracted()
+            neighbourhood
+                .contracted()
                 .iter()
                 .map(|&v| (surface.position(v), f64::from(creases.at(surface, v).weight)))
         };

@@ -36,7 +36,7 @@ pub struct Placed {
 pub(crate) const MOST_FACES: usize = 256;
 
 /// The largest star that is searched for each face that leaves it.
-const SEARCHED: u32 = 32;
+const MOST_SEARCHED: u32 = 32;
 
 /// What is known of a candidate.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -55,7 +55,7 @@ pub(crate) enum State {
 
 /// A face, and how the candidates on it stand: whoever wants one wants the other.
 #[derive(Clone, Copy, Debug)]
-struct Face {
+struct FaceRecord {
     vertices: [VertexId; 3],
     alive: bool,
     states: States,
@@ -83,7 +83,7 @@ impl States {
 }
 
 #[derive(Clone, Copy, Debug)]
-struct Vertex {
+struct VertexRecord {
     position: DVec3,
     star: u32,
     /// Faces in the star, those that are gone but not yet taken out among them.
@@ -116,7 +116,7 @@ impl Flags {
     pub(crate) const HELD: Self = Self(64);
 
     /// It may be on a line that is seen: a boundary, a seam, a contact.
-    pub(crate) const LINED: Self = Self::BOUNDARY.or(Self::SEAM).or(Self::TIED);
+    pub(crate) const FEATURE: Self = Self::BOUNDARY.or(Self::SEAM).or(Self::TIED);
 
     #[inline]
     pub(crate) fn any(self, of: Self) -> bool {
@@ -131,8 +131,8 @@ impl Flags {
 
 /// A surface that contractions change in place. Ids stay those of the input mesh.
 pub struct Surface {
-    vertices: Vec<Vertex>,
-    faces: Vec<Face>,
+    vertices: Vec<VertexRecord>,
+    faces: Vec<FaceRecord>,
     stars: Vec<FaceId>,
     live_faces: usize,
     pub(crate) wedges: Option<Wedges>,
@@ -144,9 +144,12 @@ pub struct Surface {
 impl Surface {
     /// The surface of the faces that `connectivity` connects; others are not alive in it.
     pub(crate) fn new(mesh: &Mesh, connectivity: &Connectivity) -> Self {
-        let face =
-            |&vertices: &[VertexId; 3]| Face { vertices, alive: false, states: States::default() };
-        let mut faces: Vec<Face> = mesh.faces.iter().map(face).collect();
+        let face = |&vertices: &[VertexId; 3]| FaceRecord {
+            vertices,
+            alive: false,
+            states: States::default(),
+        };
+        let mut faces: Vec<FaceRecord> = mesh.faces.iter().map(face).collect();
         let mut stars = Vec::with_capacity(mesh.faces.len() * 3 + mesh.faces.len() / 2 + 64);
         let vertices = (0..mesh.positions.len())
             .map(|v| {
@@ -162,7 +165,7 @@ impl Surface {
                 if marks.non_manifold() {
                     flags = flags.or(Flags::PINNED);
                 }
-                Vertex {
+                VertexRecord {
                     position: mesh.positions[v].into(),
                     star: start,
                     valence: star.len() as u32,
@@ -232,7 +235,7 @@ impl Surface {
     /// The faces around a vertex, in no order.
     #[inline]
     pub fn star(&self, vertex: VertexId) -> impl Iterator<Item = FaceId> + '_ {
-        let Vertex { star, valence, .. } = self.vertices[vertex.index()];
+        let VertexRecord { star, valence, .. } = self.vertices[vertex.index()];
         let star = &self.stars[star as usize..(star + valence) as usize];
         star.iter().copied().filter(|face| self.faces[face.index()].alive)
     }
@@ -240,7 +243,7 @@ impl Surface {
     /// How many faces are around a vertex.
     #[inline]
     pub fn valence(&self, vertex: VertexId) -> usize {
-        let Vertex { valence, gone, .. } = self.vertices[vertex.index()];
+        let VertexRecord { valence, gone, .. } = self.vertices[vertex.index()];
         (valence - gone) as usize
     }
 
@@ -311,29 +314,29 @@ impl Surface {
         vertices.iter().fold(0, |sum, v| sum.wrapping_add(self.vertices[v.index()].version))
     }
 
-    /// Makes one vertex of the contracted ones, at `placed`, exactly as `hood` was gathered.
-    pub(crate) fn contract(&mut self, hood: &Neighbourhood, placed: &Placed) {
-        let kept = hood.contracted[placed.kept];
+    /// Makes one vertex of the contracted ones, at `placed`, exactly as `neighbourhood` was gathered.
+    pub(crate) fn contract(&mut self, neighbourhood: &Neighbourhood, placed: &Placed) {
+        let kept = neighbourhood.contracted[placed.kept];
         if let Some(mut wedges) = self.wedges.take() {
-            wedges.contract(self, hood, placed);
+            wedges.contract(self, neighbourhood, placed);
             self.wedges = Some(wedges);
         }
-        for spoke in hood.spokes.iter().filter(|spoke| spoke.owner() != placed.kept) {
+        for spoke in neighbourhood.spokes.iter().filter(|spoke| spoke.owner() != placed.kept) {
             self.faces[spoke.face.index()].vertices[spoke.corner()] = kept;
         }
-        for dying in &hood.dying {
+        for dying in &neighbourhood.dying {
             self.faces[dying.face.index()].alive = false;
             if let Some(apex) = dying.apex() {
-                self.a_face_left(hood.ring[apex].id);
+                self.remove_from_star(neighbourhood.ring[apex].id);
             }
         }
-        self.live_faces -= hood.dying.len();
-        for &gone in hood.contracted.iter().filter(|&&v| v != kept) {
+        self.live_faces -= neighbourhood.dying.len();
+        for &gone in neighbourhood.contracted.iter().filter(|&&v| v != kept) {
             if self.flags(gone).any(Flags::TIED) {
                 self.ties.leave(gone);
             }
         }
-        self.join(hood, kept, placed);
+        self.join(neighbourhood, kept, placed);
     }
 
     /// Ends all of a component at once: these are its faces, those that are gone among them.
@@ -356,17 +359,17 @@ impl Surface {
     }
 
     /// Gives `kept` the surviving faces, the flags and a version above all the contracted.
-    fn join(&mut self, hood: &Neighbourhood, kept: VertexId, placed: &Placed) {
-        let mut joined = Vertex {
+    fn join(&mut self, neighbourhood: &Neighbourhood, kept: VertexId, placed: &Placed) {
+        let mut joined = VertexRecord {
             position: placed.position,
             moved: placed.error_estimate as f32,
-            valence: hood.spokes.len() as u32,
+            valence: neighbourhood.spokes.len() as u32,
             gone: 0,
             version: 1,
             ..self.vertices[kept.index()]
         };
         let mut room = 0;
-        for v in hood.contracted.iter() {
+        for v in neighbourhood.contracted.iter() {
             let vertex = &mut self.vertices[v.index()];
             joined.flags = joined.flags.or(vertex.flags);
             joined.version = joined.version.wrapping_add(vertex.version);
@@ -376,13 +379,15 @@ impl Surface {
             (vertex.valence, vertex.gone) = (0, 0);
         }
         if joined.valence > room {
-            if self.stars.len() + hood.spokes.len() > self.stars.capacity() {
-                self.pack_stars(hood.spokes.len());
+            if self.stars.len() + neighbourhood.spokes.len() > self.stars.capacity() {
+                self.pack_stars(neighbourhood.spokes.len());
             }
             joined.star = self.stars.len() as u32;
-            self.stars.extend(hood.spokes.iter().map(|spoke| spoke.face));
+            self.stars.extend(neighbourhood.spokes.iter().map(|spoke| spoke.face));
         } else {
-            for (slot, spoke) in self.stars[joined.star as usize..].iter_mut().zip(&hood.spokes) {
+            for (slot, spoke) in
+                self.stars[joined.star as usize..].iter_mut().zip(&neighbourhood.spokes)
+            {
                 *slot = spoke.face;
             }
         }
@@ -391,10 +396,10 @@ impl Surface {
 
     /// A face that is gone leaves a star: at once a small one, together with others a large one,
     /// which would take too long to search each time.
-    fn a_face_left(&mut self, vertex: VertexId) {
-        let Vertex { star, valence, gone, .. } = &mut self.vertices[vertex.index()];
+    fn remove_from_star(&mut self, vertex: VertexId) {
+        let VertexRecord { star, valence, gone, .. } = &mut self.vertices[vertex.index()];
         *gone += 1;
-        if *valence > SEARCHED && *gone * 2 < *valence {
+        if *valence > MOST_SEARCHED && *gone * 2 < *valence {
             return;
         }
         let mut kept = *star as usize;

@@ -33,7 +33,7 @@ impl Nearby {
     pub(crate) fn new(
         wedges: &Wedges,
         surface: &Surface,
-        hood: &Neighbourhood,
+        neighbourhood: &Neighbourhood,
         placed: &Placed,
     ) -> Self {
         let near = |face: FaceId, wedge: Option<WedgeId>, chart: WedgeId| {
@@ -43,15 +43,16 @@ impl Nearby {
             Near { wedge, chart, triangle, wedges: wedges.of(face), closest, distance_squared }
         };
         let kept = placed.kept;
-        let spokes = hood.spokes.iter().map(|spoke| {
+        let spokes = neighbourhood.spokes.iter().map(|spoke| {
             let (end, own) = (spoke.owner(), wedges.at(spoke.face, spoke.corner()));
-            let becomes = hood.wedge_pairs.iter().find(|pair| pair[end] == own);
-            let follows = hood.wedge_pairs.iter().find(|pair| wedges.same_chart(pair[end], own));
+            let becomes = neighbourhood.wedge_pairs.iter().find(|pair| pair[end] == own);
+            let follows =
+                neighbourhood.wedge_pairs.iter().find(|pair| wedges.same_chart(pair[end], own));
             let chart = becomes.or(follows).map_or(own, |pair| pair[kept]);
             near(spoke.face, becomes.map(|pair| pair[kept]), wedges.chart(chart))
         });
-        let dying = hood.dying.iter().map(|dying| {
-            let corner = surface.corner(dying.face, hood.contracted[kept]);
+        let dying = neighbourhood.dying.iter().map(|dying| {
+            let corner = surface.corner(dying.face, neighbourhood.contracted[kept]);
             let own = wedges.at(dying.face, corner);
             near(dying.face, Some(own), wedges.chart(own))
         });

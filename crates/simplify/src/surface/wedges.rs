@@ -152,14 +152,14 @@ impl Wedges {
     /// The wedges whose values a contraction changes; some may come more than once.
     pub(crate) fn changing<'a>(
         &'a self,
-        hood: &'a Neighbourhood,
+        neighbourhood: &'a Neighbourhood,
         kept: usize,
     ) -> impl Iterator<Item = WedgeId> + 'a {
-        let paired = hood.wedge_pairs.iter().map(move |pair| pair[kept]);
-        let alone = hood.spokes.iter().filter_map(|spoke| {
+        let paired = neighbourhood.wedge_pairs.iter().map(move |pair| pair[kept]);
+        let alone = neighbourhood.spokes.iter().filter_map(|spoke| {
             let wedge = self.at(spoke.face, spoke.corner());
             let meets = |pair: &[WedgeId; 2]| pair[spoke.owner()] == wedge;
-            (!hood.wedge_pairs.iter().any(meets)).then_some(wedge)
+            (!neighbourhood.wedge_pairs.iter().any(meets)).then_some(wedge)
         });
         paired.chain(alone)
     }
@@ -167,13 +167,18 @@ impl Wedges {
     /// Makes one set of wedges of the two ends', before `surface` itself changes. Those that meet
     /// along the edge become one. The rest stay with their faces and their shading, and take their
     /// textures from the wedge that their chart became.
-    pub(crate) fn contract(&mut self, surface: &Surface, hood: &Neighbourhood, placed: &Placed) {
-        let (pairs, kept) = (&hood.wedge_pairs, placed.kept);
+    pub(crate) fn contract(
+        &mut self,
+        surface: &Surface,
+        neighbourhood: &Neighbourhood,
+        placed: &Placed,
+    ) {
+        let (pairs, kept) = (&neighbourhood.wedge_pairs, placed.kept);
         // An end that stays where it is keeps its values to the bit.
-        if placed.position != surface.position(hood.contracted[kept]) {
-            self.take_values(&Nearby::new(self, surface, hood, placed), pairs, kept);
+        if placed.position != surface.position(neighbourhood.contracted[kept]) {
+            self.take_values(&Nearby::new(self, surface, neighbourhood, placed), pairs, kept);
         }
-        for spoke in &hood.spokes {
+        for spoke in &neighbourhood.spokes {
             let wedge = self.at(spoke.face, spoke.corner());
             let end = spoke.owner();
             let met = pairs.iter().filter(|pair| pair[end] == wedge);

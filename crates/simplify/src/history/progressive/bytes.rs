@@ -1,8 +1,8 @@
-//! A progressive mesh as bytes: the base first, then the splits.
+//! Byte format of progressive meshes: the base first, then the splits.
 //!
-//! Little-endian. `meshlodp`, version and checksum; counts; the arrays of the mesh as its base has
-//! them, with what is gone as it was last; the splits, and then their lists. Nothing is reserved that
-//! the bytes at hand do not hold, and what is read has been refined once to see that it can be.
+//! Little-endian. The layout is `meshlodp`, version and checksum; counts; the arrays of the mesh at
+//! its base, where removed elements keep their last state; the splits; their lists. No memory is
+//! reserved beyond what the bytes hold, and a mesh that is read is refined once to check it.
 
 use meshlod_mesh::{
     Attributes, FaceId, Labels, Layer, LayerKind, Mesh, MeshError, VertexId, WedgeId,
@@ -10,58 +10,60 @@ use meshlod_mesh::{
 use thiserror::Error;
 
 use super::check::check;
-use super::{Progressive, Split, Splits};
+use super::{Progressive, VertexSplit, VertexSplits};
 use crate::engine::candidates::CandidateId;
 
 const MAGIC: &[u8; 8] = b"meshlodp";
 const VERSION: u32 = 1;
-/// Where the checksum is, and what it is of starts.
+/// Offset of the checksum. It covers everything from `BODY` on.
 const CHECKSUM: usize = 12;
 const BODY: usize = 20;
 
-/// Why bytes are not a progressive mesh.
+/// Error of reading a progressive mesh.
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum ProgressiveError {
-    /// They start otherwise.
-    #[error("this is no progressive mesh: it does not start with \"meshlodp\"")]
+    /// The magic number is missing.
+    #[error("this is not a progressive mesh: it does not start with \"meshlodp\"")]
     Magic,
-    /// They were written by a later version.
-    #[error("version {0} of progressive meshes; this program reads version 1")]
+    /// The format version is unknown.
+    #[error(
+        "version {0} of the progressive mesh format is not supported: only version 1 can be read"
+    )]
     Version(u32),
-    /// They are not what was written.
-    #[error("the checksum is wrong: the file is damaged")]
+    /// The checksum does not match.
+    #[error("the checksum does not match: the file is damaged")]
     Checksum,
-    /// They end too early.
-    #[error("byte {at}: {what} would go on past the end")]
+    /// The data ends too early.
+    #[error("byte {at}: the file ends within {what}")]
     Truncated {
-        /// Where what is cut off starts.
+        /// Offset at which the incomplete part starts.
         at: usize,
-        /// What is cut off.
+        /// Name of the incomplete part.
         what: &'static str,
     },
-    /// They go on.
-    #[error("byte {at}: the mesh is over, the file goes on")]
+    /// Data follows the end of the mesh.
+    #[error("byte {at}: data follows the end of the mesh")]
     Rest {
-        /// Where it should end.
+        /// Offset at which the file should end.
         at: usize,
     },
-    /// Something in them cannot be.
-    #[error("{what} {index} cannot be: {why}")]
+    /// An element is invalid.
+    #[error("{what} {index} is invalid: {why}")]
     Bad {
-        /// A split, a layer, a name.
+        /// Kind of element: a split, a layer, a name.
         what: &'static str,
-        /// Its number.
+        /// Index of the element.
         index: usize,
-        /// What is wrong with it.
+        /// Explanation of the defect.
         why: &'static str,
     },
-    /// The base is not a mesh.
+    /// The base mesh is invalid.
     #[error(transparent)]
     Mesh(#[from] MeshError),
 }
 
 impl Progressive {
-    /// All levels as bytes, whichever is at hand: read again, it is the base.
+    /// Encodes all levels, whichever is current; decoding starts at the base.
     pub fn to_bytes(&self) -> Vec<u8> {
         let mut base = self.clone();
         while base.coarsen() {}
@@ -85,7 +87,7 @@ impl Progressive {
         out
     }
 
-    /// Writes the checksum that fits into bytes that were changed, for tests of [`Self::from_bytes`].
+    /// Updates the checksum of modified bytes, for tests of [`Self::from_bytes`].
     pub fn seal(bytes: &mut [u8]) {
         if bytes.len() >= BODY {
             let sum = checksum(&bytes[BODY..]);
@@ -93,17 +95,17 @@ impl Progressive {
         }
     }
 
-    /// The levels that [`Self::to_bytes`] wrote; the base is at hand.
+    /// Decodes what [`Self::to_bytes`] wrote, positioned at the base.
     ///
-    /// Takes any bytes. Every level of what is given back is a valid mesh.
+    /// Accepts arbitrary bytes. Every level of the result is a valid mesh.
     ///
     /// # Errors
-    /// Bytes that are something else, cut, damaged, or made to mislead.
+    /// The bytes are of another format, incomplete, damaged or malicious.
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, ProgressiveError> {
         if !bytes.starts_with(MAGIC) {
             return Err(ProgressiveError::Magic);
         }
-        let mut input = Input { bytes, at: MAGIC.len() };
+        let mut input = ByteReader { bytes, at: MAGIC.len() };
         let version = input.number("the version")?;
         if version != VERSION {
             return Err(ProgressiveError::Version(version));
@@ -183,7 +185,7 @@ fn put_labels(out: &mut Vec<u8>, labels: Option<&Labels>) {
     }
 }
 
-fn put_splits(out: &mut Vec<u8>, splits: &Splits) {
+fn put_splits(out: &mut Vec<u8>, splits: &VertexSplits) {
     for (i, split) in splits.splits.iter().enumerate() {
         put(out, split.kept.0);
         put(out, split.removed.0);
@@ -199,7 +201,7 @@ fn put_splits(out: &mut Vec<u8>, splits: &Splits) {
     put_floats(out, &splits.values);
 }
 
-/// A kind of layer, and its set.
+/// Encodes the kind of a layer and its set.
 fn code(kind: LayerKind) -> [u8; 2] {
     match kind {
         LayerKind::Normal => [0, 0],
@@ -225,13 +227,13 @@ fn kind([code, set]: [u8; 2]) -> Option<LayerKind> {
     })
 }
 
-/// Bytes and how far they are read.
-struct Input<'b> {
+/// Reader over bytes.
+struct ByteReader<'b> {
     bytes: &'b [u8],
     at: usize,
 }
 
-impl<'b> Input<'b> {
+impl<'b> ByteReader<'b> {
     fn take(&mut self, count: usize, what: &'static str) -> Result<&'b [u8], ProgressiveError> {
         let end = self.at.checked_add(count).filter(|&end| end <= self.bytes.len());
         let end = end.ok_or(ProgressiveError::Truncated { at: self.at, what })?;
@@ -298,7 +300,8 @@ impl<'b> Input<'b> {
         faces: usize,
     ) -> Result<Attributes, ProgressiveError> {
         let corners = self.triples(faces, "the wedges of a face")?;
-        // Every wedge of a corner has its four bytes; without a layer nothing else shows a count.
+        // Each corner stores its wedge in four bytes; without a layer nothing else bounds the
+        // count.
         if wedge_count > self.bytes.len() {
             return Err(ProgressiveError::Truncated { at: self.at, what: "the wedges" });
         }
@@ -312,7 +315,7 @@ impl<'b> Input<'b> {
 
     fn layer(&mut self, index: usize, wedges: usize) -> Result<Layer, ProgressiveError> {
         let bad = |why| ProgressiveError::Bad { what: "layer", index, why };
-        let kind = kind(self.array("a layer")?).ok_or(bad("there is no such kind"))?;
+        let kind = kind(self.array("a layer")?).ok_or(bad("its kind is unknown"))?;
         let name = self.text(index)?;
         let width = self.number("a layer")? as usize;
         let count = width.checked_mul(wedges).ok_or(bad("it has too many values"))?;
@@ -329,15 +332,15 @@ impl<'b> Input<'b> {
         &mut self,
         count: usize,
         attributes: Option<&Attributes>,
-    ) -> Result<Splits, ProgressiveError> {
+    ) -> Result<VertexSplits, ProgressiveError> {
         let records = self.arrays::<44>(count, "a split")?;
         let (mut splits, mut starts) = (Vec::with_capacity(count), [0u32; 3]);
         for (index, record) in records.iter().enumerate() {
-            let mut record = Input { bytes: record, at: 0 };
+            let mut record = ByteReader { bytes: record, at: 0 };
             let [kept, removed] = [record.number("a split")?, record.number("a split")?];
             let position = record.doubles(1)?[0];
             let [moved, died, blended] = starts;
-            splits.push(Split {
+            splits.push(VertexSplit {
                 kept: VertexId(kept),
                 removed: VertexId(removed),
                 position,
@@ -355,7 +358,7 @@ impl<'b> Input<'b> {
         let width = attributes.map_or(0, |a| a.layers.iter().map(|layer| layer.width).sum());
         let own = if attributes.is_some() { moved } else { 0 };
         let values = blended.saturating_mul(width);
-        Ok(Splits {
+        Ok(VertexSplits {
             splits,
             moved: self.numbers(moved, "moved corners")?.into_iter().map(CandidateId).collect(),
             wedges: self.numbers(own, "wedges of corners")?.into_iter().map(WedgeId).collect(),

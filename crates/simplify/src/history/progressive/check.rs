@@ -1,28 +1,28 @@
-//! Whether splits that were read can be made, and give meshes.
+//! Checks that decoded splits can be applied and yield valid meshes.
 
 use meshlod_mesh::{FaceId, MeshError, VertexId, WedgeId};
 
 use super::{Progressive, ProgressiveError};
 
-/// Refines the base to the finest level and comes back, looking at every split before it is made.
+/// Refines the base to the finest level and back, checking every split before it is applied.
 ///
 /// Cost: linear.
 pub(super) fn check(read: &mut Progressive) -> Result<(), ProgressiveError> {
     ranges(read)?;
     read.level().validate()?;
-    let mut homes = Homes::new(read);
+    let mut wedge_vertices = WedgeVertices::new(read);
     for index in (0..read.len()).rev() {
         fits(read, index)
-            .and_then(|()| homes.refine(read, index))
+            .and_then(|()| wedge_vertices.refine(read, index))
             .map_err(|why| ProgressiveError::Bad { what: "split", index, why })?;
     }
-    // What a face is labelled with never changes.
+    // Labels of faces never change.
     read.level().validate()?;
     while read.coarsen() {}
     Ok(())
 }
 
-/// Everything that is an index is one, also of what is gone; every position is finite.
+/// Checks that every index is in range, also in removed elements, and every position is finite.
 fn ranges(read: &Progressive) -> Result<(), ProgressiveError> {
     let (mesh, splits) = (&read.mesh, &read.splits);
     let count = mesh.positions.len();
@@ -47,7 +47,7 @@ fn ranges(read: &Progressive) -> Result<(), ProgressiveError> {
     for (index, split) in splits.splits.iter().enumerate() {
         let ends = [split.kept, split.removed];
         if ends.iter().any(|v| v.index() >= count) || split.kept == split.removed {
-            return bad(index, "its ends are no two vertices");
+            return bad(index, "its ends must be two different vertices");
         }
         if !split.position.iter().all(|x| x.is_finite()) {
             return bad(index, "its position is not finite");
@@ -55,72 +55,72 @@ fn ranges(read: &Progressive) -> Result<(), ProgressiveError> {
         let is_face = |face: FaceId| face.index() < mesh.faces.len();
         let corners = &splits.moved[splits.moved_range(index)];
         if !corners.iter().all(|corner| is_face(corner.face()) && corner.slot() < 3) {
-            return bad(index, "it moves a corner that is not there");
+            return bad(index, "it moves a corner that does not exist");
         }
         if !splits.died[splits.died_range(index)].iter().all(|&face| is_face(face)) {
-            return bad(index, "it has a face that is not there");
+            return bad(index, "it adds a face that does not exist");
         }
         if splits.blended[splits.blended_range(index)].iter().any(|w| w.index() >= wedges) {
-            return bad(index, "it blends a wedge that is not there");
+            return bad(index, "it blends a wedge that does not exist");
         }
     }
     match splits.wedges.iter().position(|w| w.index() >= wedges) {
         Some(corner) => Err(ProgressiveError::Bad {
             what: "moved corner",
             index: corner,
-            why: "its wedge is not there",
+            why: "its wedge does not exist",
         }),
         None => Ok(()),
     }
 }
 
-/// Whether a split's corners are at the vertex that it splits, and its faces are yet to come.
+/// Checks that a split's corners are at the vertex that it splits and its faces are not alive yet.
 fn fits(read: &Progressive, index: usize) -> Result<(), &'static str> {
     let (mesh, splits) = (&read.mesh, &read.splits);
     let kept = splits.splits[index].kept;
     let corners = &splits.moved[splits.moved_range(index)];
     let died = &splits.died[splits.died_range(index)];
     if corners.len() > MOST_CORNERS {
-        return Err("it moves more corners than any contraction");
+        return Err("it moves more corners than a contraction can");
     }
     for (i, corner) in corners.iter().enumerate() {
         let face = corner.face().index();
         if !read.alive[face] || mesh.faces[face][corner.slot()] != kept {
-            return Err("it moves a corner that is elsewhere");
+            return Err("it moves a corner of another vertex");
         }
         if corners[..i].contains(corner) {
             return Err("it moves a corner twice");
         }
     }
-    // A component that vanished may have had many.
+    // A component that vanished may have many faces.
     let mut died = died.to_vec();
     died.sort_unstable();
     let there = died.iter().any(|face| read.alive[face.index()]);
     let twice = died.windows(2).any(|pair| pair[0] == pair[1]);
-    if there || twice { Err("it brings a face that is there") } else { Ok(()) }
+    if there || twice { Err("it adds a face that is already alive") } else { Ok(()) }
 }
 
-/// More corners than any contraction is allowed to look at.
+/// Upper limit of the corners that a contraction moves.
 const MOST_CORNERS: usize = 256;
 
-/// The vertex of every wedge, and how many corners use it: a wedge belongs to one vertex.
-struct Homes(Vec<(VertexId, u32)>);
+/// Vertex of every wedge, and the number of corners that use it: a wedge belongs to one vertex.
+struct WedgeVertices(Vec<(VertexId, u32)>);
 
-impl Homes {
-    /// Those of the base, which is a valid mesh.
+impl WedgeVertices {
+    /// Collects the wedges of the base, which is a valid mesh.
     fn new(read: &Progressive) -> Self {
         let wedges = read.mesh.attributes.as_ref().map_or(0, |a| a.wedge_count);
         let mut this = Self(vec![(VertexId(0), 0); wedges]);
         for face in (0..read.alive.len()).filter(|&face| read.alive[face]) {
             for slot in 0..3 {
-                // Of a valid mesh none is refused.
+                // A valid mesh has no conflict.
                 let _ = this.enter(read, face, slot);
             }
         }
         this
     }
 
-    /// Makes a split that fits.
+    /// Applies a split that passed the checks.
     fn refine(&mut self, read: &mut Progressive, index: usize) -> Result<(), &'static str> {
         let corners = read.splits.moved_range(index);
         for i in corners.clone() {
@@ -144,12 +144,12 @@ impl Homes {
     fn enter(&mut self, read: &Progressive, face: usize, slot: usize) -> Result<(), &'static str> {
         let Some(wedge) = wedge(read, face, slot) else { return Ok(()) };
         let vertex = read.mesh.faces[face][slot];
-        let (home, uses) = &mut self.0[wedge.index()];
+        let (owner, uses) = &mut self.0[wedge.index()];
         if *uses == 0 {
-            *home = vertex;
+            *owner = vertex;
         }
         *uses += 1;
-        if *home == vertex { Ok(()) } else { Err("a wedge would be at two vertices") }
+        if *owner == vertex { Ok(()) } else { Err("a wedge would be at two vertices") }
     }
 }
 

@@ -1,7 +1,7 @@
-//! A progressive mesh [Hop96]: a base mesh and the splits that refine it, up and down at will.
+//! Progressive mesh [Hop96]: a base mesh and vertex splits that refine it and can be undone.
 //!
-//! What a contraction changed and how it was before are swapped at every step, so that one record
-//! leads both ways, and every level comes back to the bit.
+//! Each step swaps the changed values with the record of the split, so that one record serves both
+//! directions and every level is restored exactly.
 
 mod bytes;
 mod check;
@@ -15,43 +15,44 @@ use crate::history::History;
 use crate::simplifier::Simplifier;
 use crate::surface::Surface;
 
-/// All levels of a run of a [`Simplifier`], by any method; one of them is at hand.
+/// Progressive mesh: all levels of a run of a [`Simplifier`], positioned at one of them.
 ///
-/// Its levels are those that [`Simplifier::level`] gave on the way, to the bit: positions,
-/// attributes, materials, and the order of all. The finest is the input without unused vertices and
-/// without the faces that the simplifier left out; a wedge that two materials shared is two.
+/// Its levels are exactly those that [`Simplifier::level`] returned on the way: positions,
+/// attributes, materials, and the order of all. The finest level is the input without unused
+/// vertices and without the faces that the simplifier left out; a wedge shared by two materials
+/// becomes two.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Progressive {
-    /// All that the input had, as it is now; what is gone, as it was last.
+    /// Everything the input had, in its current state; removed elements keep their last state.
     mesh: Mesh,
     alive: Vec<bool>,
     live_faces: usize,
-    splits: Splits,
-    /// How many splits are undone; they are in the order of the contractions.
+    splits: VertexSplits,
+    /// Number of splits undone; splits are in the order of the contractions.
     coarsened: usize,
 }
 
 /// All splits, in the order of the contractions that they undo.
 #[derive(Clone, Debug, Default, PartialEq)]
-struct Splits {
-    splits: Vec<Split>,
-    /// The face corners that go from one end to the other.
+struct VertexSplits {
+    splits: Vec<VertexSplit>,
+    /// Face corners that move from one end to the other.
     moved: Vec<CandidateId>,
-    /// Their wedges on the other side of the split; none without attributes.
+    /// Wedges of those corners on the other side of the split; empty without attributes.
     wedges: Vec<WedgeId>,
     died: Vec<FaceId>,
-    /// The wedges whose values change.
+    /// Wedges whose values change.
     blended: Vec<WedgeId>,
-    /// Their values on the other side of the split, all layers of one after the other.
+    /// Values of those wedges on the other side of the split, all layers of a wedge in sequence.
     values: Vec<f32>,
 }
 
-/// One split. Its lists run to the starts of the next one's.
+/// Vertex split. Its lists end where those of the next split start.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Split {
+struct VertexSplit {
     kept: VertexId,
     removed: VertexId,
-    /// Where the kept one is on the other side of the split.
+    /// Position of the kept vertex on the other side of the split.
     position: [f64; 3],
     moved: u32,
     died: u32,
@@ -59,15 +60,15 @@ struct Split {
 }
 
 impl Progressive {
-    /// The levels from the input to where the simplifier is, which is the one at hand; `None` where
-    /// the history has not observed all its contractions.
+    /// Builds the progressive mesh from the input down to the simplifier's current level, which
+    /// stays current. Returns `None` if the history has not observed every contraction.
     pub fn new(simplifier: Simplifier<'_>, history: History) -> Option<Self> {
         if simplifier.live_faces() + history.all_died() != simplifier.first_faces() {
             return None;
         }
         let (mesh, surface) = simplifier.into_surface();
         let attributes = mesh.attributes.is_some();
-        let splits = Splits::new(history, attributes);
+        let splits = VertexSplits::new(history, attributes);
         Some(Self {
             mesh: workspace(mesh, &surface),
             alive: (0..mesh.faces.len()).map(|f| surface.is_alive(FaceId::new(f))).collect(),
@@ -77,12 +78,12 @@ impl Progressive {
         })
     }
 
-    /// How many faces the level at hand has.
+    /// Returns the number of faces of the current level.
     pub fn live_faces(&self) -> usize {
         self.live_faces
     }
 
-    /// How many faces the finest level has.
+    /// Returns the number of faces of the finest level.
     pub fn full_faces(&self) -> usize {
         let undone = &self.splits.splits[self.coarsened..];
         let to_come = undone.first().map_or(0, |s| self.splits.died.len() - s.died as usize);
@@ -90,17 +91,17 @@ impl Progressive {
         self.live_faces + self.splits.died.len() - to_come
     }
 
-    /// How many splits there are in all.
+    /// Returns the number of splits.
     pub fn len(&self) -> usize {
         self.splits.splits.len()
     }
 
-    /// Whether there is only one level.
+    /// Returns true if there is only one level.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
-    /// One split towards the finest level; false there.
+    /// Applies one split towards the finest level. Returns false there.
     pub fn refine(&mut self) -> bool {
         let Some(last) = self.coarsened.checked_sub(1) else { return false };
         self.coarsened = last;
@@ -113,7 +114,7 @@ impl Progressive {
         true
     }
 
-    /// One contraction towards the base; false there.
+    /// Applies one contraction towards the base. Returns false there.
     pub fn coarsen(&mut self) -> bool {
         let Some(&split) = self.splits.splits.get(self.coarsened) else { return false };
         self.swap(self.coarsened, split.kept);
@@ -125,7 +126,7 @@ impl Progressive {
         true
     }
 
-    /// Goes to the finest level of at most so many faces, or to the base.
+    /// Moves to the finest level with at most `faces` faces, or to the base.
     pub fn go_to(&mut self, faces: usize) {
         while self.live_faces > faces && self.coarsen() {}
         while let Some(last) = self.coarsened.checked_sub(1) {
@@ -136,7 +137,7 @@ impl Progressive {
         }
     }
 
-    /// The level at hand, as [`Simplifier::level`] gave it.
+    /// Returns the current level, exactly as [`Simplifier::level`] returned it.
     pub fn level(&self) -> Mesh {
         let kept: Vec<u32> =
             (0..self.alive.len() as u32).filter(|&f| self.alive[f as usize]).collect();
@@ -155,7 +156,7 @@ impl Progressive {
         level
     }
 
-    /// Exchanges what a split changes with its record; its corners go to `vertex`.
+    /// Swaps the values that a split changes with its record, and moves its corners to `vertex`.
     fn swap(&mut self, index: usize, vertex: VertexId) {
         let splits = &mut self.splits;
         let moved = splits.moved_range(index);
@@ -169,7 +170,7 @@ impl Progressive {
         for (&corner, wedge) in splits.moved[moved.clone()].iter().zip(&mut splits.wedges[moved]) {
             std::mem::swap(&mut attributes.corners[corner.face().index()][corner.slot()], wedge);
         }
-        // A wedge that is there twice gets back its first value last.
+        // A wedge that occurs twice gets back its first value last.
         let places = (0..blended.len()).map(|i| if forward { i } else { blended.len() - 1 - i });
         let width: usize = attributes.layers.iter().map(|layer| layer.width).sum();
         for place in places.map(|i| blended.start + i) {
@@ -184,12 +185,12 @@ impl Progressive {
     }
 }
 
-impl Splits {
+impl VertexSplits {
     fn new(history: History, attributes: bool) -> Self {
         let splits = history.contractions().iter().map(|contraction| {
             let kept = usize::from(contraction.kept);
             let [moved, died, blended] = contraction.starts();
-            Split {
+            VertexSplit {
                 kept: contraction.contracted[kept],
                 removed: contraction.contracted[1 - kept],
                 position: contraction.from,
@@ -212,7 +213,7 @@ impl Splits {
     fn range(
         &self,
         index: usize,
-        start: impl Fn(&Split) -> u32,
+        start: impl Fn(&VertexSplit) -> u32,
         end: usize,
     ) -> std::ops::Range<usize> {
         let next = self.splits.get(index + 1).map_or(end, |next| start(next) as usize);
@@ -232,7 +233,7 @@ impl Splits {
     }
 }
 
-/// Everything that the surface holds, alive or not.
+/// Collects the whole state of the surface, including removed elements.
 fn workspace(mesh: &Mesh, surface: &Surface) -> Mesh {
     let all: Vec<u32> = (0..mesh.faces.len() as u32).collect();
     let wedges = mesh.attributes.as_ref().and(surface.wedges.as_ref());

@@ -7,7 +7,7 @@ use crate::surface::{Flags, Surface};
 
 /// An edge that is seen in silhouettes, textures or contacts wherever it goes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Outline {
+pub(crate) struct FeatureEdge {
     /// Its ends, as its face goes round; of a line within the surface, one of its two faces.
     pub(crate) ends: [VertexId; 2],
     pub(crate) is_boundary: bool,
@@ -16,10 +16,10 @@ pub(crate) struct Outline {
 /// The boundary edges and lines at some vertices, each once.
 ///
 /// Cost: the square of a vertex's faces, but only of those that are on one.
-pub(crate) fn outlines(surface: &Surface, vertices: &[VertexId]) -> Vec<Outline> {
+pub(crate) fn feature_edges(surface: &Surface, vertices: &[VertexId]) -> Vec<FeatureEdge> {
     let mut found = Vec::new();
     for (i, &v) in vertices.iter().enumerate() {
-        if !surface.flags(v).any(Flags::LINED) {
+        if !surface.flags(v).any(Flags::FEATURE) {
             continue;
         }
         let sides: Vec<_> = surface.star(v).flat_map(|face| sides_at(surface, face, v)).collect();
@@ -30,9 +30,9 @@ pub(crate) fn outlines(surface: &Surface, vertices: &[VertexId]) -> Vec<Outline>
                 continue;
             }
             let twin = sides[place + 1..].iter().find(same);
-            if twin.is_none_or(|&(_, twin)| is_line(surface, side, twin)) {
+            if twin.is_none_or(|&(_, twin)| is_feature(surface, side, twin)) {
                 let is_boundary = twin.is_none();
-                found.push(Outline { ends: ends(surface, side), is_boundary });
+                found.push(FeatureEdge { ends: ends(surface, side), is_boundary });
             }
         }
     }
@@ -48,7 +48,7 @@ fn sides_at(surface: &Surface, face: FaceId, v: VertexId) -> [(VertexId, Side); 
 
 /// Whether an edge with two faces is seen as a line: a seam, or where a tied surface has it too.
 #[inline]
-pub(super) fn is_line(surface: &Surface, side: Side, twin: Side) -> bool {
+pub(super) fn is_feature(surface: &Surface, side: Side, twin: Side) -> bool {
     is_seam(surface, side, twin) || is_contact(surface, ends(surface, side))
 }
 

@@ -11,7 +11,7 @@ use glam::DVec3;
 use meshlod_mesh::{FaceId, VertexId, WedgeId};
 
 use crate::engine::policy::Memory;
-use crate::methods::appearance::Appearance;
+use crate::methods::attribute_metric::AttributeMetric;
 use crate::methods::channels::Channels;
 use crate::methods::quadric::Quadric;
 use crate::methods::slopes::Slopes;
@@ -30,7 +30,7 @@ use crate::surface::{Placed, Surface};
 /// | 0.1 | .0504 | .1561 | .2167 | .1723 | .1653 |
 /// | 0 | .0511 | .1547 | .2182 | .1764 | .1664 |
 ///
-/// Seams and boundaries forget as well: a face's expectations need no fence.
+/// Seams and boundaries forget as well: a face's attribute_quadrics need no fence.
 const MEMORY: f64 = 0.1;
 
 /// One channel of a wedge: at `x` from its vertex the faces around expect, in the mean,
@@ -51,13 +51,13 @@ impl Channel {
 
 /// What the faces around a wedge expect, and their weight: that of their areas.
 #[derive(Clone, Debug, Default)]
-struct Expected {
+struct WedgeQuadric {
     weight: f64,
     channels: Vec<Channel>,
 }
 
 /// Attributes of a surface in quadrics.
-pub(crate) struct Expectations {
+pub(crate) struct AttributeQuadrics {
     channels: Channels,
     count: usize,
     /// By wedge.
@@ -67,20 +67,20 @@ pub(crate) struct Expectations {
     /// By vertex: how far the faces around each of its wedges are from their mean.
     spreads: Vec<Quadric>,
     /// By vertex: its wedge, if it has one only.
-    sole: Vec<Option<WedgeId>>,
+    single_wedge: Vec<Option<WedgeId>>,
     merged: Merged,
 }
 
 /// What a contraction makes, from before the surface changes until after.
 #[derive(Default)]
 struct Merged {
-    wedges: Vec<(WedgeId, Expected)>,
+    wedges: Vec<(WedgeId, WedgeQuadric)>,
     spread: Quadric,
     /// What both are seen from.
     at: DVec3,
 }
 
-impl Expectations {
+impl AttributeQuadrics {
     pub(crate) fn new(surface: &Surface, wedges: &Wedges, channels: Channels) -> Self {
         let count = channels.count();
         let value = |value| Channel { value, ..Channel::default() };
@@ -91,13 +91,13 @@ impl Expectations {
             weights: vec![0.0; wedges.count()],
             expected,
             spreads: vec![Quadric::default(); surface.vertex_count()],
-            sole: vec![None; surface.vertex_count()],
+            single_wedge: vec![None; surface.vertex_count()],
             merged: Merged::default(),
             channels,
         };
         for v in (0..surface.vertex_count()).map(VertexId::new) {
             let corners = || surface.star(v).map(|face| (face, surface.corner(face, v)));
-            this.sole[v.index()] = only(corners().map(|(face, k)| wedges.at(face, k)));
+            this.single_wedge[v.index()] = only(corners().map(|(face, k)| wedges.at(face, k)));
             for (face, k) in corners() {
                 this.add_face(wedges, surface, (v, face, k), 1.0);
             }
@@ -159,7 +159,7 @@ impl Expectations {
     /// What the value of `kept` at its vertex costs by what `gone` expects, whose vertex is `by`
     /// further.
     #[inline]
-    fn misfit(&self, kept: WedgeId, gone: WedgeId, by: DVec3) -> f64 {
+    fn residual(&self, kept: WedgeId, gone: WedgeId, by: DVec3) -> f64 {
         let off = |(kept, gone): (&Channel, &Channel)| {
             (gone.value - kept.value + gone.off - gone.slope.dot(by)).powi(2)
         };
@@ -168,7 +168,7 @@ impl Expectations {
 
     /// What the value of a wedge that stays costs by its own faces.
     #[inline]
-    fn own_misfit(&self, wedge: WedgeId) -> f64 {
+    fn own_residual(&self, wedge: WedgeId) -> f64 {
         self.weights[wedge.index()] * self.of(wedge).iter().map(|c| c.off * c.off).sum::<f64>()
     }
 
@@ -187,8 +187,8 @@ impl Expectations {
     }
 
     #[inline]
-    fn sole_pair(&self, [v0, v1]: [VertexId; 2]) -> Option<[WedgeId; 2]> {
-        Some([self.sole[v0.index()]?, self.sole[v1.index()]?])
+    fn single_wedge_pair(&self, [v0, v1]: [VertexId; 2]) -> Option<[WedgeId; 2]> {
+        Some([self.single_wedge[v0.index()]?, self.single_wedge[v1.index()]?])
     }
 
     /// What the wedges of an edge expect where they become those of its end `kept`; and the spread
@@ -198,13 +198,13 @@ impl Expectations {
         surface: &Surface,
         pairs: &[[WedgeId; 2]],
         ends: [VertexId; 2],
-    ) -> (Vec<(WedgeId, Expected)>, Quadric) {
+    ) -> (Vec<(WedgeId, WedgeQuadric)>, Quadric) {
         let (mut spread, by) = self.spread(surface, ends);
-        let mut joined: Vec<(WedgeId, Expected)> = Vec::with_capacity(pairs.len());
+        let mut joined: Vec<(WedgeId, WedgeQuadric)> = Vec::with_capacity(pairs.len());
         for (i, &[kept, gone]) in pairs.iter().enumerate() {
             if joined.iter().all(|(wedge, _)| *wedge != kept) {
                 let channels = self.of(kept).to_vec();
-                joined.push((kept, Expected { weight: self.weights[kept.index()], channels }));
+                joined.push((kept, WedgeQuadric { weight: self.weights[kept.index()], channels }));
             }
             // One that meets several becomes the first.
             if pairs[..i].iter().all(|before| before[1] != gone) {
@@ -216,7 +216,7 @@ impl Expectations {
     }
 
     /// Adds what `gone` expects, whose vertex is `by` further.
-    fn absorb(&self, into: &mut Expected, gone: WedgeId, by: DVec3, spread: &mut Quadric) {
+    fn absorb(&self, into: &mut WedgeQuadric, gone: WedgeId, by: DVec3, spread: &mut Quadric) {
         let weight = self.weights[gone.index()];
         let between = harmonic(into.weight, weight);
         into.weight += weight;
@@ -231,11 +231,11 @@ impl Expectations {
     }
 }
 
-impl Appearance for Expectations {
+impl AttributeMetric for AttributeQuadrics {
     #[inline]
     fn free(&self, geometry: Quadric, surface: &Surface, of: &Contracted) -> Quadric {
         let &[v0, v1] = &of[..] else { return geometry };
-        if let Some([a, b]) = self.sole_pair([v0, v1]) {
+        if let Some([a, b]) = self.single_wedge_pair([v0, v1]) {
             let (mut sum, by) = self.spread(surface, [v0, v1]);
             self.between(&mut sum, a, b, by);
             return geometry + sum;
@@ -255,39 +255,39 @@ impl Appearance for Expectations {
         let &[v0, v1] = &of[..] else { return geometry };
         let (sum, by) = self.spread(surface, [v0, v1]);
         let by = if kept == 0 { by } else { -by };
-        let pairs = match self.sole_pair([v0, v1]) {
+        let pairs = match self.single_wedge_pair([v0, v1]) {
             Some(pair) => &[pair][..],
             None => &self.pairs(surface, [v0, v1]),
         };
-        let misfit = |(i, pair): (usize, &[WedgeId; 2])| {
+        let residual = |(i, pair): (usize, &[WedgeId; 2])| {
             let (stays, goes) = (pair[kept], pair[1 - kept]);
             let first = |end: usize| pairs[..i].iter().all(|before| before[end] != pair[end]);
-            let own = if first(kept) { self.own_misfit(stays) } else { 0.0 };
-            own + if first(1 - kept) { self.misfit(stays, goes, by) } else { 0.0 }
+            let own = if first(kept) { self.own_residual(stays) } else { 0.0 };
+            own + if first(1 - kept) { self.residual(stays, goes, by) } else { 0.0 }
         };
-        let misfit: f64 = pairs.iter().enumerate().map(misfit).sum();
-        (geometry + sum).raised(misfit)
+        let residual: f64 = pairs.iter().enumerate().map(residual).sum();
+        (geometry + sum).raised(residual)
     }
 }
 
-impl Memory for Expectations {
-    fn merge(&mut self, surface: &Surface, hood: &Neighbourhood, placed: &Placed) {
-        let &[v0, v1] = &hood.contracted()[..] else { return };
+impl Memory for AttributeQuadrics {
+    fn merge(&mut self, surface: &Surface, neighbourhood: &Neighbourhood, placed: &Placed) {
+        let &[v0, v1] = &neighbourhood.contracted()[..] else { return };
         let swap = placed.kept == 1;
         let ends = if swap { [v1, v0] } else { [v0, v1] };
         let turn = |&[a, b]: &[WedgeId; 2]| if swap { [b, a] } else { [a, b] };
-        let pairs: Vec<_> = hood.wedge_pairs.iter().map(turn).collect();
+        let pairs: Vec<_> = neighbourhood.wedge_pairs.iter().map(turn).collect();
         let (wedges, spread) = self.join(surface, &pairs, ends);
         self.merged = Merged { wedges, spread, at: surface.position(ends[0]) };
     }
 
-    fn renew(&mut self, surface: &Surface, hood: &Neighbourhood, placed: &Placed) {
+    fn renew(&mut self, surface: &Surface, neighbourhood: &Neighbourhood, placed: &Placed) {
         let Some(wedges) = &surface.wedges else { return };
-        let v = hood.contracted()[placed.kept];
+        let v = neighbourhood.contracted()[placed.kept];
         let Merged { wedges: merged, spread, at } = std::mem::take(&mut self.merged);
         let by = placed.position - at;
-        let corners = || hood.spokes().iter().map(|spoke| (spoke.face, spoke.corner()));
-        self.sole[v.index()] = only(corners().map(|(face, k)| wedges.at(face, k)));
+        let corners = || neighbourhood.spokes().iter().map(|spoke| (spoke.face, spoke.corner()));
+        self.single_wedge[v.index()] = only(corners().map(|(face, k)| wedges.at(face, k)));
         self.spreads[v.index()] = spread.seen_from(by) * MEMORY;
         // One that met no other keeps no memory.
         for (face, k) in corners() {
@@ -306,7 +306,7 @@ impl Memory for Expectations {
     }
 }
 
-impl Expectations {
+impl AttributeQuadrics {
     /// Gives a wedge its values as they are now, and nothing that is expected of it.
     fn start(&mut self, wedges: &Wedges, wedge: WedgeId) {
         self.weights[wedge.index()] = 0.0;
@@ -339,7 +339,7 @@ mod tests {
     use crate::options::AttributeWeights;
 
     /// A torus with uvs of its positions.
-    fn torus(uv: fn([f64; 3]) -> [f64; 2]) -> (Surface, Expectations) {
+    fn torus(uv: fn([f64; 3]) -> [f64; 2]) -> (Surface, AttributeQuadrics) {
         let mut mesh = samples::torus(300);
         let values = mesh.positions.iter().flat_map(|&p| uv(p)).map(|x| x as f32).collect();
         mesh.attributes = Some(Attributes {
@@ -350,17 +350,18 @@ mod tests {
         start(&mesh)
     }
 
-    fn start(mesh: &Mesh) -> (Surface, Expectations) {
+    fn start(mesh: &Mesh) -> (Surface, AttributeQuadrics) {
         let surface = Surface::new(mesh, &Connectivity::new(&mesh.faces, mesh.positions.len()));
         let weights = AttributeWeights { normal: 0.0, uv: 1.0, color: 0.0 };
         let channels = Channels::new(&surface, &weights).unwrap();
-        let expectations = Expectations::new(&surface, surface.wedges.as_ref().unwrap(), channels);
-        (surface, expectations)
+        let attribute_quadrics =
+            AttributeQuadrics::new(&surface, surface.wedges.as_ref().unwrap(), channels);
+        (surface, attribute_quadrics)
     }
 
     /// What each face around the vertices expects at `x` in a channel, with its area.
     fn expected(
-        (surface, this): &(Surface, Expectations),
+        (surface, this): &(Surface, AttributeQuadrics),
         ends: [VertexId; 2],
         channel: usize,
         x: DVec3,

@@ -6,7 +6,7 @@ use crate::surface::Surface;
 use crate::surface::contracted::Contracted;
 
 /// What quadrics know of attributes: `()` for nothing.
-pub(crate) trait Appearance: Memory {
+pub(crate) trait AttributeMetric: Memory {
     /// The cost of a contraction as a function of the position, seen from the first of the
     /// contracted, where the values may be what fits best.
     fn free(&self, geometry: Quadric, surface: &Surface, of: &Contracted) -> Quadric;
@@ -21,7 +21,7 @@ pub(crate) trait Appearance: Memory {
     ) -> Quadric;
 }
 
-impl Appearance for () {
+impl AttributeMetric for () {
     #[inline]
     fn free(&self, geometry: Quadric, _: &Surface, _: &Contracted) -> Quadric {
         geometry
