@@ -1,4 +1,4 @@
-//! Vertex blocks at the surface error of 11 bits for the whole mesh, measured.
+//! Measures vertex blocks at the surface error of 11 bits for the whole mesh.
 
 use std::time::Instant;
 
@@ -54,7 +54,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     Ok(())
 }
 
-/// Cubic cells, from the least corner on, rounded.
+/// Rounds vertices to cubic cells from the least corner on.
 fn in_cubes(mesh: &Mesh, cell: f64) -> Mesh {
     let low = Bounds::of(&mesh.positions).min;
     let mut coarse = mesh.clone();
@@ -64,7 +64,7 @@ fn in_cubes(mesh: &Mesh, cell: f64) -> Mesh {
     coarse
 }
 
-/// The mean angle by which faces are turned, by area.
+/// Returns the mean angle by which faces are turned, weighted by area.
 fn turned(mesh: &Mesh, coarse: &Mesh) -> f64 {
     let (mut sum, mut area) = (0.0, 0.0);
     for face in &mesh.faces {

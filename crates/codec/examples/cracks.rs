@@ -1,7 +1,8 @@
-//! Whether background shows through closed meshes: each part put where its `f32` matrix puts it, and looked at from all
-//! round, against the same mesh with every vertex once.
+//! Looks for cracks: renders closed meshes with each part placed by its `f32` matrix, from all
+//! around, and compares with the mesh that has every vertex once.
 //!
-//! `cargo run --release -p meshlod-codec --example cracks [VIEWS [SIDE]]`: 100 views at 2048 x 2048 if not said.
+//! `cargo run --release -p meshlod-codec --example cracks [VIEWS [SIDE]]`; default: 100 views at
+//! 2048 × 2048.
 
 use std::f64::consts::{FRAC_PI_4, PI};
 
@@ -44,7 +45,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     Ok(())
 }
 
-/// The parts as a GPU has them: each with vertices of its own.
+/// Returns the parts as a GPU has them, each with its own vertices.
 fn drawn(parts: &Parts) -> Mesh {
     let mut mesh = Mesh::default();
     for part in parts.parts() {
@@ -59,7 +60,7 @@ fn drawn(parts: &Parts) -> Mesh {
     mesh
 }
 
-/// The same parts, each with 256 cells of its own along its own box: what cracks.
+/// Returns the same parts, each with 256 cells along its own box, which cracks.
 fn naive(parts: &Parts, mesh: &Mesh) -> Mesh {
     let mut naive = Mesh::default();
     for part in parts.parts() {
@@ -77,7 +78,8 @@ fn naive(parts: &Parts, mesh: &Mesh) -> Mesh {
     naive
 }
 
-/// The pixels of all views in which a mesh in parts shows background, and the whole one a face there and all round.
+/// Counts the pixels of all views that show background in the parts, but a face in the whole mesh,
+/// there and on all eight sides.
 fn cracks(
     whole: &Mesh,
     parts: &Mesh,
@@ -107,7 +109,7 @@ fn background(whole: &Visibility, parts: &Visibility, side: usize) -> usize {
     parts.faces().enumerate().filter(|&(at, face)| face.is_none() && is_within(at)).count()
 }
 
-/// Directions that are spread evenly.
+/// Returns evenly spread directions.
 fn all_round(count: u32) -> impl Iterator<Item = [f64; 3]> {
     let golden = PI * (3.0 - 5f64.sqrt());
     (0..count).map(move |i| {

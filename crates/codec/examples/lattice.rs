@@ -1,4 +1,4 @@
-//! What positions take on lattices of 11 bits and a little more.
+//! Measures the size of positions on lattices of 11 bits and slightly more.
 
 use meshlod_codec::{Lattice, LatticeBlocks};
 use meshlod_fixtures::shared_mesh;

@@ -1,4 +1,4 @@
-//! Parts at 70 % reduction beside 11 bits for the whole mesh: the table of the paper, again.
+//! Compares parts at a reduction of 70 % with 11 bits for the whole mesh: the table of [LCL10].
 
 use std::path::Path;
 use std::time::Instant;
@@ -45,7 +45,7 @@ fn read(path: &Path) -> Result<Mesh, meshlod_io::IoError> {
     Ok(meshlod_io::read(path, &Default::default())?.flatten())
 }
 
-/// Cubic cells, 2047 along the longest side; rounded down, or with a half to the next.
+/// Rounds vertices to cubic cells, 2047 along the longest side; down, or to the nearest with .5.
 fn in_11_bits(mesh: &Mesh, rounding: f64) -> Mesh {
     let bounds = Bounds::of(&mesh.positions);
     let longest = (0..3).map(|k| bounds.max[k] - bounds.min[k]).fold(0.0, f64::max);

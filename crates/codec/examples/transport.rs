@@ -1,4 +1,4 @@
-//! What the file `.mlz` takes at 11 bits, and how long it takes.
+//! Measures the size of `.mlz` files at 11 bits, and the speed of encoding and decoding.
 
 use std::time::{Duration, Instant};
 
@@ -6,7 +6,8 @@ use meshlod_codec::{Transport, TransportFile, TransportOptions};
 use meshlod_fixtures::shared_mesh;
 use meshlod_mesh::Mesh;
 
-/// The meshes, and what Draco takes of a triangle at 11 bits and compression level 7, in bytes, without random access.
+/// Meshes, and Draco's bytes per triangle at 11 bits and compression level 7, without random
+/// access.
 const MESHES: [(&str, f64); 10] = [
     ("igea.ply", 0.567),
     ("horse-97k.ply", 0.645),
@@ -19,7 +20,7 @@ const MESHES: [(&str, f64); 10] = [
     ("horse.ply", 1.036),
     ("squirrel-20k.obj", 1.210),
 ];
-/// The least time of so many is told.
+/// Number of runs, of which the fastest counts.
 const ROUNDS: usize = 9;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -37,7 +38,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     Ok(())
 }
 
-/// Prints what a mesh takes, and gives it back.
+/// Prints the row of a mesh and returns its bytes per triangle.
 fn row(mesh: &Mesh, name: &str, draco: f64) -> Result<f64, Box<dyn std::error::Error>> {
     let faces = mesh.faces.len() as f64;
     let options = TransportOptions::default();

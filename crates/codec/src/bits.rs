@@ -1,8 +1,8 @@
-//! Numbers of any width, one after the other.
+//! Numbers of any bit width, packed without gaps.
 
 use crate::bytes::{Malformed, Reader};
 
-/// A row of bits that numbers are put behind and read from anywhere.
+/// Bit buffer: numbers are appended, and read at any place.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Bits {
     words: Vec<u64>,
@@ -10,7 +10,7 @@ pub(crate) struct Bits {
 }
 
 impl Bits {
-    /// Puts the low `width` bits of a number behind all others, at most 64.
+    /// Appends the low `width` bits of a number, at most 64.
     pub(crate) fn push(&mut self, number: u64, width: u32) {
         debug_assert!(width == 64 || number >> width == 0, "{number} has more than {width} bits");
         if width == 0 {
@@ -28,15 +28,15 @@ impl Bits {
         self.len += width as usize;
     }
 
-    /// Zeros until the last byte is full.
+    /// Appends zeros up to a whole byte.
     pub(crate) fn fill_byte(&mut self) {
         self.push(0, (8 - self.len as u32 % 8) % 8);
     }
 
-    /// The number in the `width` bits from a place on.
+    /// Returns the number in the `width` bits from `at` on.
     ///
     /// # Panics
-    /// Bits that are not there.
+    /// If the bits end before.
     #[inline]
     pub(crate) fn get(&self, at: usize, width: u32) -> u64 {
         if width == 0 {
@@ -50,32 +50,32 @@ impl Bits {
         if width < u64::BITS { number & ((1 << width) - 1) } else { number }
     }
 
-    /// Puts them behind other bytes, the last filled up with zeros.
+    /// Appends the bits to `out`, the last byte filled with zeros.
     pub(crate) fn store(&self, out: &mut Vec<u8>) {
         let end = out.len() + self.len.div_ceil(8);
         out.extend(self.words.iter().flat_map(|word| word.to_le_bytes()));
         out.truncate(end);
     }
 
-    /// So many bits of those that follow.
+    /// Reads `len` bits from bytes.
     pub(crate) fn restore(len: usize, reader: &mut Reader) -> Result<Self, Malformed> {
         let word =
             |bytes: &[u8]| bytes.iter().rev().fold(0, |word, &byte| word << 8 | u64::from(byte));
         Ok(Self { words: reader.take(len.div_ceil(8))?.chunks(8).map(word).collect(), len })
     }
 
-    /// How many there are.
+    /// Returns the number of bits.
     pub(crate) fn len(&self) -> usize {
         self.len
     }
 }
 
-/// How many bits tell one of so many.
+/// Returns how many bits tell `count` values apart.
 pub(crate) fn width(count: usize) -> u32 {
     usize::BITS - count.saturating_sub(1).leading_zeros()
 }
 
-/// Reads numbers one after the other, and none past the last.
+/// Reader of consecutive numbers that stops at the end.
 #[derive(Clone, Debug)]
 pub(crate) struct Cursor<'a> {
     bits: &'a Bits,
@@ -91,14 +91,14 @@ impl<'a> Cursor<'a> {
     pub(crate) fn next(&mut self, width: u32) -> Result<u64, Malformed> {
         let end = self.at + width as usize;
         if end > self.bits.len {
-            return Err(self.wrong("the bits end here"));
+            return Err(self.wrong("the bits end early"));
         }
         let number = self.bits.get(self.at, width);
         self.at = end;
         Ok(number)
     }
 
-    /// That what was read last is not what it should be.
+    /// Returns an error at the current place.
     pub(crate) fn wrong(&self, reason: impl Into<String>) -> Malformed {
         Malformed { at: self.at / 8, reason: reason.into() }
     }

@@ -1,14 +1,14 @@
-//! Whole numbers and floats from bytes that may be anything, little-endian.
+//! Little-endian numbers from untrusted bytes.
 
 use thiserror::Error;
 
-/// What is wrong with bytes that were to be decoded.
+/// Error in bytes that were to be decoded.
 #[derive(Clone, Debug, Error, PartialEq, Eq)]
 #[error("byte {at}: {reason}")]
 pub struct Malformed {
-    /// How many bytes before it are well.
+    /// Offset of the error in bytes.
     pub at: usize,
-    /// What was expected, and what is there.
+    /// What is wrong.
     pub reason: String,
 }
 
@@ -20,7 +20,7 @@ pub(crate) fn reduction(bytes: usize, vertices: usize) -> f64 {
     }
 }
 
-/// Reads bytes from the first on, and never past the last.
+/// Reader of consecutive bytes that stops at the end.
 #[derive(Clone, Debug)]
 pub(crate) struct Reader<'a> {
     bytes: &'a [u8],
@@ -43,42 +43,42 @@ impl<'a> Reader<'a> {
 
     numbers!(u8, u16, u32, u64, i32, f32, f64);
 
-    /// The next bytes.
+    /// Takes the next `count` bytes.
     pub(crate) fn take(&mut self, count: usize) -> Result<&'a [u8], Malformed> {
         let rest = &self.bytes[self.at..];
         let Some(taken) = rest.get(..count) else {
-            return Err(self.wrong(format!("{count} bytes should follow, {} do", rest.len())));
+            return Err(self.wrong(format!("expected {count} more bytes, found {}", rest.len())));
         };
         self.at += count;
         Ok(taken)
     }
 
-    /// The next bytes to read alone, each at its own place.
+    /// Takes the next bytes as a reader of their own, which reports errors at their true offset.
     pub(crate) fn section(&mut self, len: usize) -> Result<Reader<'a>, Malformed> {
         let at = self.at;
         self.take(len)?;
         Ok(Reader { bytes: &self.bytes[..self.at], at })
     }
 
-    /// All that is left.
+    /// Returns all remaining bytes.
     pub(crate) fn rest(&self) -> &'a [u8] {
         &self.bytes[self.at..]
     }
 
-    /// How many bytes are left: what says that more follow need not be believed.
+    /// Returns the number of remaining bytes, by which claimed counts can be checked.
     pub(crate) fn left(&self) -> usize {
         self.bytes.len() - self.at
     }
 
-    /// That there is nothing left.
+    /// Checks that nothing is left.
     pub(crate) fn finish(&self) -> Result<(), Malformed> {
         match self.left() {
             0 => Ok(()),
-            left => Err(self.wrong(format!("{left} bytes too many"))),
+            left => Err(self.wrong(format!("{left} unexpected bytes at the end"))),
         }
     }
 
-    /// That what was read last is not what it should be.
+    /// Returns an error at the current place.
     pub(crate) fn wrong(&self, reason: impl Into<String>) -> Malformed {
         Malformed { at: self.at, reason: reason.into() }
     }
@@ -94,7 +94,10 @@ mod tests {
         assert_eq!(reader.u8(), Ok(1));
         assert_eq!(reader.u32(), Ok(0x0504_0302));
         assert_eq!(reader.u32().unwrap_err().at, 5);
-        assert_eq!(reader.finish().unwrap_err().to_string(), "byte 5: 2 bytes too many");
+        assert_eq!(
+            reader.finish().unwrap_err().to_string(),
+            "byte 5: 2 unexpected bytes at the end"
+        );
         assert_eq!(reader.take(usize::MAX).unwrap_err().at, 5);
         assert_eq!(reader.u16(), Ok(0x0706));
         assert_eq!((reader.left(), reader.finish()), (0, Ok(())));

@@ -1,17 +1,17 @@
-//! Vertices in blocks of one size, each close together.
+//! Vertices in blocks of equal size, each close together.
 
 use std::f64::consts::FRAC_1_SQRT_2;
 
 use glam::{DMat3, DVec3};
 use meshlod_mesh::{Bounds, Mesh, VertexId};
 
-/// How many vertices a block has: more share a header, fewer lie closer together. On the lattice, before blocks
-/// were bent, 24 took as much on the mean of ten meshes, and 48 took 1.3 % more.
+/// Vertices per block. More would share a header, fewer would lie closer together. On the lattice,
+/// before blocks were bent, 24 took as much on the mean of ten meshes, and 48 took 1.3 % more.
 pub(crate) const BLOCK: usize = 32;
 
-/// The vertices that faces use, every [`BLOCK`] in a row close together.
+/// Orders the vertices that faces use, so that every [`BLOCK`] of them are close together.
 ///
-/// Coordinates that are no numbers have no place; the others do not suffer from them.
+/// Coordinates that are not finite do not affect the order of the others.
 /// Cost: O(n log n).
 pub(crate) fn blocks_of(mesh: &Mesh) -> Vec<VertexId> {
     let used = mesh.used_vertices();
@@ -21,8 +21,8 @@ pub(crate) fn blocks_of(mesh: &Mesh) -> Vec<VertexId> {
     vertices.into_iter().map(VertexId).collect()
 }
 
-/// The vertices in an order in which every `size` of them in a row are close together: halved again and again, across
-/// the direction in which they are longest, at last across the one that leaves the smallest boxes.
+/// Orders vertices so that every `size` of them are close together: halved recursively across the
+/// longest direction, and finally across the one that leaves the smallest boxes.
 ///
 /// Cost: O(n log n).
 fn in_blocks(places: &[[f64; 3]], vertices: &mut [u32], size: usize) {
@@ -31,18 +31,19 @@ fn in_blocks(places: &[[f64; 3]], vertices: &mut [u32], size: usize) {
     halving.halve(vertices);
 }
 
-/// What stays the same from half to half.
+/// Parameters of the recursion.
 struct Halving<'p> {
     places: &'p [[f64; 3]],
     size: usize,
-    /// Thinner boxes count as if they were so thick.
+    /// Least thickness that counts for a box.
     grain: f64,
 }
 
-/// As a part of the mesh: a cell of 11 bits or so.
+/// Grain relative to the mesh: about a cell of 11 bits.
 const GRAIN: f64 = 1.0 / 4096.0;
-/// So many blocks or fewer are halved across the best of several directions: from 8 on down they take 2.3 % less on
-/// the lattice, on the mean of ten meshes, than where only the longest is looked at, from 64 on down 2.6 %.
+/// Number of blocks up to which several directions are tried. From 8 on down, they take 2.3 % less
+/// on the lattice, on the mean of ten meshes, than with the longest direction only; from 64 on down
+/// 2.6 %.
 const FEW: usize = 64;
 
 impl Halving<'_> {
@@ -75,13 +76,13 @@ impl Halving<'_> {
         DVec3::from(self.places[v as usize])
     }
 
-    /// Puts the farther ones behind the first so many.
+    /// Partitions vertices about the `middle`-th along a direction.
     fn part(&self, vertices: &mut [u32], middle: usize, along: DVec3) {
         let far = |v: u32| self.place(v).dot(along);
         vertices.select_nth_unstable_by(middle, |&a, &b| far(a).total_cmp(&far(b)).then(a.cmp(&b)));
     }
 
-    /// About the volume of the smallest box around vertices.
+    /// Estimates the volume of the smallest box around vertices.
     fn volume(&self, vertices: &[u32]) -> f64 {
         let [along, across, normal] = self.axes(vertices);
         let mut low = [f64::INFINITY; TURNS.len() + 1];
@@ -101,7 +102,7 @@ impl Halving<'_> {
         area * reach(TURNS.len())
     }
 
-    /// About the directions of the greatest spread, of the greatest across it, and of the least.
+    /// Estimates the principal directions, by decreasing spread.
     fn axes(&self, vertices: &[u32]) -> [DVec3; 3] {
         let mean = vertices.iter().map(|&v| self.place(v)).sum::<DVec3>() / vertices.len() as f64;
         let mut spread = DMat3::ZERO;
@@ -109,7 +110,7 @@ impl Halving<'_> {
             spread += DMat3::from_cols(away * away.x, away * away.y, away * away.z);
         }
         let along = greatest(&spread);
-        // What is left across it.
+        // The spread that is left across it.
         let flat =
             DMat3::IDENTITY - DMat3::from_cols(along * along.x, along * along.y, along * along.z);
         let across = greatest(&(flat * spread * flat));
@@ -119,7 +120,7 @@ impl Halving<'_> {
     }
 }
 
-/// Cosines and sines of eighths of a half turn: written down, for all machines to part alike.
+/// Cosines and sines of eighths of a half turn, as constants so that all machines agree.
 const TURNS: [[f64; 2]; 8] = [
     [1.0, 0.0],
     [0.923_879_532_511_286_7, 0.382_683_432_365_089_8],
@@ -131,15 +132,15 @@ const TURNS: [[f64; 2]; 8] = [
     [-0.923_879_532_511_286_7, 0.382_683_432_365_089_8],
 ];
 
-/// A direction is turned by the spread so often: it need not be exact.
+/// Power iterations: the direction need not be exact.
 const STEPS: usize = 8;
 
-/// About the direction in which a spread is greatest.
+/// Estimates the direction of greatest spread.
 fn greatest(spread: &DMat3) -> DVec3 {
     let longer = |a: DVec3, b: DVec3| if b.length_squared() > a.length_squared() { b } else { a };
     let mut along = longer(longer(spread.x_axis, spread.y_axis), spread.z_axis);
     for _ in 0..STEPS {
-        // Of no spread any is as good.
+        // For a zero matrix any direction will do.
         along = *spread * along.try_normalize().unwrap_or(DVec3::X);
     }
     along.try_normalize().unwrap_or(DVec3::X)

@@ -1,4 +1,4 @@
-//! Attributes in whole numbers, by the rows that positions lie in, each within a bound.
+//! Attributes as integers, in the same rows as positions, each within an error bound.
 
 mod octahedral;
 mod packed;
@@ -15,24 +15,25 @@ use self::quantizer::UniformQuantizer;
 use crate::bytes::{Malformed, Reader};
 use crate::patch::Rows;
 
-/// How far attributes may be from what they were.
+/// Error bounds of attributes.
 ///
-/// What `f32` does not tell apart is not asked for: a bound of zero is met as closely as that.
+/// A bound below the resolution of `f32` is met as closely as `f32` allows.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AttributeBounds {
-    /// Normals and tangents, in radians. Directions have at most 16 bits twice: .00004. One of no length becomes any.
+    /// Normals and tangents, in radians, down to .00004 (16 bits twice). A direction of zero length
+    /// decodes to any.
     pub direction_rad: f64,
-    /// Texture coordinates: 1 is the whole texture.
+    /// Texture coordinates; 1 is the whole texture.
     pub uv: f64,
     /// Colours, from 0 to 1.
     pub color: f64,
-    /// Weights of joints, from 0 to 1.
+    /// Joint weights, from 0 to 1.
     pub weight: f64,
-    /// All others, as a part of the range of their values.
+    /// All other layers, as a fraction of the range of their values.
     pub other: f64,
 }
 
-/// One layer, and how its values are told.
+/// Compressed attribute layer.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct PackedLayer {
     kind: LayerKind,
@@ -46,28 +47,28 @@ pub(crate) struct PackedLayer {
 
 #[derive(Clone, Debug, PartialEq)]
 enum Coding {
-    /// Directions in so many bits twice; of tangents the sign besides.
+    /// Octahedral directions with this number of bits twice; tangents also have a sign.
     Directions { bits: u32 },
-    /// Values in quantizer.
+    /// Uniformly quantized values.
     Values(UniformQuantizer),
 }
 
-/// What a layer takes, and what it has lost.
+/// Size and error of a compressed attribute layer.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LayerReport {
-    /// What its values mean.
+    /// Kind of the values.
     pub kind: LayerKind,
-    /// The file's name of it.
+    /// Name of the layer in its file.
     pub name: String,
-    /// With all that decoding it needs.
+    /// Size in bytes, with everything needed to decode the layer.
     pub bytes: usize,
-    /// The furthest that a value is off: radians for directions, else the unit of the values.
+    /// Largest error of a value: radians for directions, else the unit of the values.
     pub max_error: f64,
 }
 
 impl Default for AttributeBounds {
-    /// Directions to a third of a degree, texture coordinates to half a texel of 4096, colours and weights to what
-    /// 8 bits tell, and all others to 16 bits.
+    /// Directions to a third of a degree, texture coordinates to half a texel of 4096, colours and
+    /// weights to 8 bits, all others to 16 bits.
     fn default() -> Self {
         Self {
             direction_rad: 0.006,
@@ -79,11 +80,11 @@ impl Default for AttributeBounds {
     }
 }
 
-/// Directions have so many bits twice, at least and at most.
+/// Least and greatest number of bits, twice, of a direction.
 const DIRECTION_BITS: [u32; 2] = [3, 16];
 
 impl PackedLayer {
-    /// A layer of wedges, of which these are the nodes in the order of the rows.
+    /// Compresses a layer; `wedges` are those of the nodes, in the order of the rows.
     pub(crate) fn new(
         layer: &Layer,
         wedges: &[WedgeId],
@@ -109,19 +110,19 @@ impl PackedLayer {
         this
     }
 
-    /// Whether files can tell what a layer is.
+    /// Returns true if the file format can hold the layer.
     pub(crate) fn is_storable(layer: &Layer) -> bool {
         let is_name = u16::try_from(layer.name.len()).is_ok();
         is_name && (1..=usize::from(u8::MAX)).contains(&layer.width)
     }
 
-    /// The values of all nodes.
+    /// Decodes the values of all nodes.
     pub(crate) fn decode(&self) -> Layer {
         let numbers = self.numbers.all();
         self.layer(numbers.chunks_exact(self.numbers.components()))
     }
 
-    /// The values of some nodes, each given by its row and its number there.
+    /// Decodes the values of some nodes, each given by its row and its number there.
     pub(crate) fn decode_some(&self, places: &[(usize, usize)]) -> Layer {
         self.layer(places.iter().map(|&(row, number)| self.numbers.get(row, number)))
     }
@@ -132,7 +133,7 @@ impl PackedLayer {
         Layer { kind: self.kind, name: self.name.clone(), width: self.width, values }
     }
 
-    /// How many values a node has.
+    /// Returns the number of values per node.
     pub(crate) fn width(&self) -> usize {
         self.width
     }
@@ -151,7 +152,7 @@ impl PackedLayer {
             Coding::Directions { .. } => 1,
             Coding::Values(quantizer) => quantizer.bytes(),
         };
-        // Its kind, set and width, how far it is off, and how long its name is.
+        // Kind, set, width, largest error, and length of the name.
         13 + self.name.len() + coding + self.numbers.bytes()
     }
 
@@ -171,18 +172,20 @@ impl PackedLayer {
     pub(crate) fn restore(rows: Rows, reader: &mut Reader) -> Result<Self, Malformed> {
         let (kind, set, width) = (reader.u8()?, reader.u8()?, usize::from(reader.u8()?));
         let kind = untag(kind, set);
-        let kind = kind.ok_or_else(|| reader.wrong("a layer of no kind that is known"))?;
+        let kind = kind.ok_or_else(|| reader.wrong("a layer has an unknown kind"))?;
         if width == 0 || kind.width().is_some_and(|only| only != width) {
-            return Err(reader.wrong(format!("a layer of {kind:?} is not {width} wide")));
+            return Err(
+                reader.wrong(format!("a layer of kind {kind:?} cannot have {width} values"))
+            );
         }
         let max_error = reader.f64()?;
         let name = usize::from(reader.u16()?);
         let name = String::from_utf8(reader.take(name)?.to_vec());
-        let name = name.map_err(|_| reader.wrong("a name that is not UTF-8"))?;
+        let name = name.map_err(|_| reader.wrong("the name of a layer is not UTF-8"))?;
         let coding = if is_direction(kind) {
             let bits = u32::from(reader.u8()?);
             if !(DIRECTION_BITS[0]..=DIRECTION_BITS[1]).contains(&bits) {
-                return Err(reader.wrong(format!("directions of {bits} bits")));
+                return Err(reader.wrong(format!("directions cannot have {bits} bits")));
             }
             Coding::Directions { bits }
         } else {
@@ -194,10 +197,10 @@ impl PackedLayer {
 }
 
 impl Coding {
-    /// How many numbers values of that width are.
+    /// Returns how many integers encode values of a width.
     fn components(&self, width: usize) -> usize {
         match self {
-            // Tangents have their sign besides.
+            // Tangents also have a sign.
             Self::Directions { .. } => width.min(4) - 1,
             Self::Values(_) => width,
         }
@@ -216,7 +219,7 @@ impl Coding {
     fn values(&self, numbers: &[u32], values: &mut Vec<f32>) {
         match self {
             Self::Directions { bits } => {
-                // What is out of range is of spoilt bytes.
+                // Only damaged data is out of range.
                 let last = (1 << bits) - 1;
                 let is = unfold([numbers[0].min(last), numbers[1].min(last)], *bits);
                 values.extend(is.to_array().map(|x| x as f32));
@@ -228,14 +231,14 @@ impl Coding {
 }
 
 impl AttributeBounds {
-    /// The bound of a layer over these wedges, in its own unit.
+    /// Returns the bound of a layer over these wedges, in the layer's unit.
     fn of(&self, layer: &Layer, wedges: &[WedgeId]) -> f64 {
         match layer.kind {
             LayerKind::Normal | LayerKind::Tangent => self.direction_rad,
             LayerKind::Uv(_) => self.uv,
             LayerKind::Color(_) => self.color,
             LayerKind::Weights(_) => self.weight,
-            // Whole numbers.
+            // Integers.
             LayerKind::Joints(_) => 0.5,
             LayerKind::Other => {
                 let values = wedges.iter().flat_map(|&wedge| layer.of(wedge));
@@ -248,7 +251,7 @@ impl AttributeBounds {
     }
 }
 
-/// The least number of bits that turn no direction further.
+/// Returns the least number of bits that keep directions within a bound.
 fn direction_bits(bound_rad: f64) -> u32 {
     let [least, most] = DIRECTION_BITS;
     (least..most).find(|&bits| most_turn_rad(bits) <= bound_rad).unwrap_or(most)
@@ -262,7 +265,7 @@ fn direction(values: &[f32]) -> DVec3 {
     DVec3::new(values[0].into(), values[1].into(), values[2].into())
 }
 
-/// How far a value is from what it was; a direction of no length was none.
+/// Returns the error of a decoded value; 0 for a direction of zero length.
 fn apart(kind: LayerKind, was: &[f32], is: &[f32]) -> f64 {
     if is_direction(kind) {
         let was = direction(was);
@@ -271,7 +274,7 @@ fn apart(kind: LayerKind, was: &[f32], is: &[f32]) -> f64 {
     was.iter().zip(is).map(|(&was, &is)| (f64::from(was) - f64::from(is)).abs()).fold(0.0, f64::max)
 }
 
-/// The bytes that tell a kind.
+/// Returns the bytes that encode a kind.
 fn tag(kind: LayerKind) -> (u8, u8) {
     match kind {
         LayerKind::Normal => (0, 0),

@@ -1,10 +1,10 @@
-//! Directions as two whole numbers: the octahedron, unfolded [CDE14].
+//! Directions on the unfolded octahedron [CDE14].
 
 use glam::DVec3;
 
-/// The numbers of a direction, each of so many bits: of the four that are close, those that are closest.
+/// Encodes a direction in twice `bits` bits, as the best of the four nearest codes.
 ///
-/// No direction is taken for the first axis.
+/// A direction of zero length becomes the first axis.
 pub(crate) fn fold(direction: DVec3, bits: u32) -> [u32; 2] {
     let direction = direction.try_normalize().unwrap_or(DVec3::X);
     let most = last(bits);
@@ -15,7 +15,7 @@ pub(crate) fn fold(direction: DVec3, bits: u32) -> [u32; 2] {
     near.into_iter().min_by(|a, b| apart(a).total_cmp(&apart(b))).expect("there are four")
 }
 
-/// The direction that they tell: the same on every machine.
+/// Decodes a direction, identically on every machine.
 pub(crate) fn unfold(at: [u32; 2], bits: u32) -> DVec3 {
     let [x, y] = at.map(|x| f64::from(x) / last(bits) * 2.0 - 1.0);
     let z = 1.0 - x.abs() - y.abs();
@@ -23,11 +23,12 @@ pub(crate) fn unfold(at: [u32; 2], bits: u32) -> DVec3 {
     DVec3::new(x - over.copysign(x), y - over.copysign(y), z).normalize()
 }
 
-/// No direction is turned further.
+/// Returns the largest error of a direction, in radians.
 ///
-/// Cells are squares of side `s` = 2 / (2^bits - 1). Where the octahedron is closest to its centre a step along their diagonal
-/// turns three times as far as it is long, across it √3 times: corners of cells are a lattice of triangles of side √6 s
-/// there, and nothing is further from all of them than √6 s / √3.
+/// Cells are squares of side `s` = 2 / (2^bits - 1). Where the octahedron is closest to its centre,
+/// a step along their diagonal turns three times as far as it is long, and across it √3 times:
+/// corners of cells form a lattice of triangles with side √6 s there, and no direction is farther
+/// from all of them than √6 s / √3.
 pub(crate) fn most_turn_rad(bits: u32) -> f64 {
     2.0 * 2f64.sqrt() / last(bits)
 }
@@ -36,7 +37,7 @@ fn last(bits: u32) -> f64 {
     f64::from((1u32 << bits) - 1)
 }
 
-/// Where a direction is on the unfolded octahedron, from -1 to 1.
+/// Projects a direction to the unfolded octahedron, from -1 to 1.
 fn flat(direction: DVec3) -> [f64; 2] {
     let DVec3 { x, y, z } = direction / direction.abs().element_sum();
     if z >= 0.0 {

@@ -1,30 +1,30 @@
-//! Whole numbers of nodes, in the rows that nodes lie in: each row tells its least, and as many bits as it needs.
+//! Integers of nodes packed by rows: each row has its own minimum and number of bits.
 
 use crate::bits::{Bits, width};
 use crate::bytes::{Malformed, Reader};
 use crate::patch::Rows;
 
-/// So many numbers of each node.
+/// Packed integers, a fixed number of components for each node.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct PackedRows {
-    /// The nodes of each row, as sums.
+    /// Nodes of each row.
     rows: Rows,
-    /// How many bits the least of a row takes, of each component.
+    /// Bits of a row's minimum, for each component.
     widths: Vec<u32>,
-    /// Of each row and component its least, and how many bits say what is added to it.
+    /// Minimum of each row and component, and the bits of the offsets from it.
     heads: Bits,
     numbers: Bits,
-    /// The bit at which the numbers of every [`STRIDE`]-th row start.
+    /// Bit at which the numbers of every [`STRIDE`]-th row start.
     starts: Vec<u64>,
 }
 
-/// So many rows share the place where they start.
+/// Rows per stored start.
 const STRIDE: usize = 16;
-/// Numbers have at most 32 bits.
+/// Bits of a width, which is at most 32.
 const WIDTH_BITS: u32 = 6;
 
 impl PackedRows {
-    /// The numbers of nodes, `components` each, in the order of the rows.
+    /// Packs integers, `components` for each node, in the order of the rows.
     pub(crate) fn new(rows: Rows, components: usize, numbers: &[u32]) -> Self {
         let most = |k: usize| numbers.iter().skip(k).step_by(components).max().copied();
         let widths = (0..components).map(|k| width(most(k).map_or(0, |most| most as usize + 1)));
@@ -69,12 +69,12 @@ impl PackedRows {
         &self.rows
     }
 
-    /// How many numbers a node has.
+    /// Returns the number of integers per node.
     pub(crate) fn components(&self) -> usize {
         self.widths.len()
     }
 
-    /// The numbers of a node, by its row and its number there: no others are decoded.
+    /// Decodes the integers of one node, given by its row and its number there.
     pub(crate) fn get(&self, row: usize, number: usize) -> Vec<u32> {
         let stride = row - row % STRIDE;
         let before = (stride..row).map(|row| self.rows.range(row).len() * self.row_bits(row));
@@ -84,7 +84,7 @@ impl PackedRows {
         numbers
     }
 
-    /// The numbers of all.
+    /// Decodes all integers.
     pub(crate) fn all(&self) -> Vec<u32> {
         let mut numbers = Vec::with_capacity(self.components() * self.rows.nodes());
         let mut at = 0;
@@ -96,7 +96,7 @@ impl PackedRows {
         numbers
     }
 
-    /// Reads a node's numbers from a bit on, and gives back where they end.
+    /// Decodes a node's integers from a bit on, and returns where they end.
     fn read(&self, row: usize, mut at: usize, numbers: &mut Vec<u32>) -> usize {
         for (least, width) in self.spans(row) {
             numbers.push(least.wrapping_add(self.numbers.get(at, width) as u32));
@@ -105,7 +105,7 @@ impl PackedRows {
         at
     }
 
-    /// Of each component of a row: the least number, and how many bits the others take.
+    /// Returns for each component of a row its minimum, and the bits of the offsets.
     fn spans(&self, row: usize) -> impl Iterator<Item = (u32, u32)> {
         let mut at = row * self.head_bits();
         let mut next = move |width: u32| {
@@ -123,13 +123,13 @@ impl PackedRows {
         self.spans(row).map(|(_, width)| width as usize).sum()
     }
 
-    /// What they take, with all that decoding them needs, in bytes.
+    /// Returns the size in bytes, with everything needed to decode them.
     pub(crate) fn bytes(&self) -> usize {
         let bits = self.heads.len().div_ceil(8) + self.numbers.len().div_ceil(8);
         self.widths.len() + size_of_val(&self.starts[..]) + bits
     }
 
-    /// All but the rows and how many components there are.
+    /// Appends everything but the rows and the number of components.
     pub(crate) fn store(&self, out: &mut Vec<u8>) {
         out.extend(self.widths.iter().map(|&width| width as u8));
         self.heads.store(out);
@@ -144,7 +144,7 @@ impl PackedRows {
     ) -> Result<Self, Malformed> {
         let widths: Vec<u32> = reader.take(components)?.iter().map(|&width| width.into()).collect();
         if widths.iter().any(|&width| width > u32::BITS) {
-            return Err(reader.wrong("numbers have at most 32 bits"));
+            return Err(reader.wrong("a row has a minimum of more than 32 bits"));
         }
         let (heads, numbers, starts) = (Bits::default(), Bits::default(), Vec::new());
         let mut this = Self { rows, widths, heads, numbers, starts };
@@ -157,7 +157,7 @@ impl PackedRows {
             if row % STRIDE == 0 {
                 this.starts.push(end as u64);
                 if reader.u64()? != end as u64 {
-                    return Err(reader.wrong(format!("row {row} starts elsewhere")));
+                    return Err(reader.wrong(format!("row {row} has a wrong start")));
                 }
             }
             end += this.rows.range(row).len() * this.row_bits(row);

@@ -1,21 +1,22 @@
-//! Values in steps of a power of two, from zero on: the same value is the same number in every mesh.
+//! Uniform quantization with power-of-two steps from zero on, so that equal values are equal
+//! integers in every mesh.
 
 use crate::bytes::{Malformed, Reader};
 
-/// UniformQuantizer, and for each component the number of its least value.
+/// Power-of-two step, and the least integer of each component.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct UniformQuantizer {
     exponent: i32,
     least: Vec<i32>,
 }
 
-/// No step is smaller than what `f32` tells apart at the greatest value.
+/// Bits by which a step may be smaller than the greatest value, the precision of `f32`.
 const F32_BITS: i32 = 23;
-/// The exponents that there are: of the least `f32`, and of the greatest.
+/// Least and greatest exponent of `f32`.
 const EXPONENTS: [i32; 2] = [-149, 127];
 
 impl UniformQuantizer {
-    /// UniformQuantizer that move no value further than a bound.
+    /// Chooses the largest step that keeps values within a bound.
     pub(super) fn new<'a>(
         values: impl Iterator<Item = &'a [f32]>,
         width: usize,
@@ -46,7 +47,7 @@ impl UniformQuantizer {
     pub(super) fn values(&self, numbers: &[u32], values: &mut Vec<f32>) {
         values.extend(numbers.iter().zip(&self.least).map(|(&number, &least)| {
             let value = (f64::from(number) + f64::from(least)) * step(self.exponent);
-            // Only spoilt bytes tell more.
+            // Only damaged data leads beyond.
             value.clamp(f32::MIN.into(), f32::MAX.into()) as f32
         }));
     }
@@ -63,7 +64,7 @@ impl UniformQuantizer {
     pub(super) fn restore(width: usize, reader: &mut Reader) -> Result<Self, Malformed> {
         let exponent = i32::from(reader.u16()? as i16);
         if !(EXPONENTS[0]..=EXPONENTS[1]).contains(&exponent) {
-            return Err(reader.wrong(format!("steps of 2^{exponent}, which f32 has not")));
+            return Err(reader.wrong(format!("a step of 2^{exponent} is out of range for f32")));
         }
         let least = (0..width).map(|_| reader.i32()).collect::<Result<_, _>>()?;
         Ok(Self { exponent, least })
@@ -75,7 +76,7 @@ fn step(exponent: i32) -> f64 {
     2f64.powi(exponent)
 }
 
-/// The exponent of the power of two next below a number, if it is positive.
+/// Returns the exponent of the greatest power of two not above a positive number.
 fn floor_log2(x: f64) -> Option<i32> {
     let is_positive = x.is_normal() && x > 0.0;
     is_positive.then(|| (x.to_bits() >> (f64::MANTISSA_DIGITS - 1)) as i32 - (f64::MAX_EXP - 1))

@@ -14,7 +14,7 @@ const KINDS: [(LayerKind, usize); 9] = [
     (LayerKind::Other, 5),
 ];
 
-/// Values over the points of a sphere: directions, or their coordinates again and again.
+/// Attribute values on a sphere: directions, or repeated coordinates.
 fn layer(kind: LayerKind, width: usize, scale: f32) -> (Layer, Vec<WedgeId>) {
     let points = samples::sphere(2000).positions;
     let value = |p: &[f64; 3], k: usize| match kind {

@@ -148,7 +148,11 @@ impl BlockLayout {
         let mut length = |low: f64| {
             let x = reader.f64()?;
             let is_one = (low..FARTHEST).contains(&x);
-            if is_one { Ok(x) } else { Err(reader.wrong(format!("{x} is no length that can be"))) }
+            if is_one {
+                Ok(x)
+            } else {
+                Err(reader.wrong(format!("{x} is out of range for a length")))
+            }
         };
         let centre = DVec3::new(length(-FARTHEST)?, length(-FARTHEST)?, length(-FARTHEST)?);
         let (cell, reach) = (length(f64::MIN_POSITIVE)?, length(0.0)?);
@@ -157,7 +161,7 @@ impl BlockLayout {
         for field in &mut fields {
             *field = HeaderField { least: reader.u8()?, bits: reader.u8()?.into() };
             if !field.is_valid() {
-                return Err(reader.wrong("headers have numbers beyond 255"));
+                return Err(reader.wrong("a header field has numbers above 255"));
             }
         }
         let mut this = Self { vertices, centre, units, reach, fields, groups: Vec::new() };
@@ -178,25 +182,29 @@ impl BlockLayout {
         let mut end = 0;
         for (number, group) in self.groups.iter().enumerate() {
             if group.start as usize * WORD != end || group.bits.iter().any(|&width| width > 31) {
-                return Err(format!("group {number} should start at word {}", end / WORD));
+                return Err(format!("group {number} does not start at word {}", end / WORD));
             }
             let first = number * GROUP;
             let last = (first + GROUP).min(self.blocks());
             end += (last - first) * self.header_bits(group);
             for block in first..last {
                 if end > bits.len() {
-                    return Err(format!("the headers of group {number} are beyond the end"));
+                    return Err(format!("the headers of group {number} end beyond the data"));
                 }
                 let count = BLOCK.min(self.vertices - block * BLOCK);
                 let header = self.header(bits, block);
                 if header.widths.iter().any(|&width| width > WIDEST) {
-                    return Err(format!("block {block} has a width beyond {WIDEST}"));
+                    return Err(format!("block {block} has a width above {WIDEST}"));
                 }
                 end += header.bits() as usize * count.div_ceil(2);
             }
             end = end.next_multiple_of(WORD);
         }
-        if end == bits.len() { Ok(()) } else { Err(format!("{end} bits, not {}", bits.len())) }
+        if end == bits.len() {
+            Ok(())
+        } else {
+            Err(format!("expected {end} bits, found {}", bits.len()))
+        }
     }
 
     /// Returns the number of bits of each header in a group.

@@ -83,16 +83,16 @@ pub struct SurfaceChange {
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum BlocksError {
     /// A coordinate is infinite, NaN, or too large for `f32`.
-    #[error("{0} has a coordinate that is not finite, or beyond 1e38")]
+    #[error("{0} has a coordinate that is not finite or is beyond 1e38")]
     NotFinite(VertexId),
     /// The number of bits is out of range.
-    #[error("{0} bits are not matched: ask for 2 to 24")]
+    #[error("bits must be between 2 and 24, not {0}")]
     Bits(u32),
     /// The distance is not positive and finite.
-    #[error("a distance of {0} cannot be kept: give a positive one, in model units")]
+    #[error("the mean error must be a positive distance, not {0}")]
     Error(f64),
     /// The distance would take more cells than can be numbered.
-    #[error("a distance of {0:e} takes more than 24 bits an axis: allow a larger one")]
+    #[error("a mean error of {0:e} would take more than 24 bits per axis: allow a larger error")]
     TooFine(f64),
 }
 

@@ -1,4 +1,4 @@
-//! How headers and numbers lie in the bits.
+//! Bit layout of block headers and cell numbers, in memory and in files.
 
 use super::shear::{BEND_BITS, COARSE, COARSE_BITS, MOST_CELLS, SLOPE_BITS, ShearTransform, axes};
 use crate::bits::Bits;
@@ -6,49 +6,49 @@ use crate::bytes::{Malformed, Reader};
 use crate::header_field::HeaderField;
 use crate::kd::BLOCK;
 
-/// Blocks on the lattice, in cells from the least one of the mesh on.
+/// Blocks on the lattice, in cells relative to the mesh's least one.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct LatticeLayout {
     pub(super) vertices: usize,
-    /// The greatest cell along each axis.
+    /// Greatest cell along each axis.
     pub(super) most: [i32; 3],
-    /// Where each group's bits start, in words of 32.
+    /// Start of each group's bits, in 32-bit words.
     starts: Vec<u32>,
     bits: Bits,
 }
 
-/// What blocks of a group have in common.
+/// Header of a group of blocks.
 #[derive(Clone, Copy, Debug)]
 struct GroupHeader {
-    /// Where headers start.
+    /// Start of the block headers.
     at: usize,
-    /// The least middle along each axis, and how many bits those above it take.
+    /// Least middle along each axis, and the bits of those above it.
     first: [i32; 3],
     bits: [u32; 3],
-    /// Of spans, along blocks and across them.
+    /// Span codes along blocks and across them.
     spans: [HeaderField; 2],
     is_bent: bool,
 }
 
-/// So many blocks have their middles told from one cell on.
+/// Blocks per group.
 const GROUP: usize = 32;
 const WORD: usize = 32;
-/// Of the bits that a middle takes, of the least code of a span, and of the bits of what is above it.
+/// Bits of the size of a middle, of the least span code, and of the size of codes above it.
 const MIDDLE_BITS: u32 = 5;
 const CODE_BITS: u32 = 8;
 const ABOVE_BITS: u32 = 4;
-/// Of a group beside its first middle.
+/// Bits of a group header without its first middle.
 const GROUP_BITS: u32 = 1 + 3 * MIDDLE_BITS + 2 * (CODE_BITS + ABOVE_BITS);
 const AXIS_BITS: u32 = 2;
-/// What is told in place of a slope or bend of zero.
+/// Code of a zero slope or bend.
 const SLOPE_ZERO: i32 = 1 << (SLOPE_BITS - 1);
 const COARSE_ZERO: i32 = 1 << (COARSE_BITS - 1);
 const BEND_ZERO: i32 = 1 << (BEND_BITS - 1);
-/// Vertices, words, the greatest cells.
+/// Size of vertices, words and the greatest cells.
 const BYTES: usize = 2 * 4 + 3 * 4;
 
 impl LatticeLayout {
-    /// Blocks of cells, in so many bits as the better of bent and plain ones takes, group by group.
+    /// Packs cells, with bent or plain blocks in each group, whichever take fewer bits.
     pub(super) fn new(cells: &[[i32; 3]], most: [i32; 3]) -> Self {
         let transforms = |is_bent: bool| -> Vec<ShearTransform> {
             cells.chunks(BLOCK).map(|block| ShearTransform::of(block, is_bent)).collect()
@@ -78,13 +78,13 @@ impl LatticeLayout {
         self.vertices.div_ceil(BLOCK)
     }
 
-    /// The cell of a vertex.
+    /// Decodes the cell of a vertex.
     pub(super) fn cell(&self, at: usize) -> [i64; 3] {
         let (transform, start) = self.block(at / BLOCK);
         self.cell_in(&transform, start, at % BLOCK)
     }
 
-    /// The cells of all.
+    /// Decodes all cells.
     pub(super) fn cells(&self) -> impl Iterator<Item = [i64; 3]> {
         (0..self.blocks()).flat_map(move |block| {
             let (transform, start) = self.block(block);
@@ -102,12 +102,13 @@ impl LatticeLayout {
         transform.cell(number, at % size)
     }
 
-    /// A block's header, and where its numbers start: of the headers before it only those of its group are read.
+    /// Returns a block's transform and where its numbers start. Of the headers before it, only
+    /// those of its group are read.
     fn block(&self, block: usize) -> (ShearTransform, usize) {
         let group = self.group(block / GROUP);
         let first = block - block % GROUP;
         let headers = GROUP.min(self.blocks() - first) * Self::header_bits(&group);
-        // Only the last block of all has fewer vertices.
+        // All blocks but the last one have the full number of vertices.
         let before = (0..block % GROUP).map(|before| self.transform(&group, before).bits(BLOCK));
         (self.transform(&group, block % GROUP), group.at + headers + before.sum::<usize>())
     }
@@ -126,7 +127,7 @@ impl LatticeLayout {
         GroupHeader { at, first, bits, spans, is_bent }
     }
 
-    /// What the blocks have in common; where it is to be put is not known yet.
+    /// Builds the group header for blocks, without its place in the bits.
     fn group_of(transforms: &[ShearTransform], is_bent: bool) -> GroupHeader {
         let (mut first, mut last) = ([i32::MAX; 3], [0; 3]);
         for transform in transforms {
@@ -148,7 +149,7 @@ impl LatticeLayout {
         }
     }
 
-    /// How many bits each header of a group has.
+    /// Returns the number of bits of each block header in a group.
     fn header_bits(group: &GroupHeader) -> usize {
         let [along, across] = group.spans.map(|field| field.bits);
         let bends = if group.is_bent { 3 * BEND_BITS } else { 0 };
@@ -178,12 +179,12 @@ impl LatticeLayout {
         transform
     }
 
-    /// How many bits the first middle of a group takes along each axis.
+    /// Returns the number of bits of a group's first middle along each axis.
     fn widths(&self) -> [u32; 3] {
         self.most.map(|most| u32::BITS - most.leading_zeros())
     }
 
-    /// Puts a group behind the others.
+    /// Appends a group.
     fn push(&mut self, transforms: &[ShearTransform], is_bent: bool, cells: &[[i32; 3]]) {
         self.starts.push((self.bits.len() / WORD) as u32);
         let group = Self::group_of(transforms, is_bent);
@@ -240,13 +241,14 @@ impl LatticeLayout {
         self.bits.store(out);
     }
 
-    /// What [`LatticeLayout::store`] wrote, if nothing in it leads beyond its bits.
+    /// Reads what [`LatticeLayout::store`] wrote, and checks that nothing in it leads beyond its
+    /// bits.
     pub(super) fn restore(reader: &mut Reader) -> Result<Self, Malformed> {
         let vertices = reader.u32()? as usize;
         let words = reader.u32()? as usize;
         let most = [reader.i32()?, reader.i32()?, reader.i32()?];
         if !most.iter().all(|most| (0..MOST_CELLS).contains(most)) {
-            return Err(reader.wrong(format!("{most:?} are no greatest cells")));
+            return Err(reader.wrong(format!("the greatest cells {most:?} are out of range")));
         }
         let groups = vertices.div_ceil(BLOCK).div_ceil(GROUP);
         let starts = reader.take(4 * groups)?.chunks_exact(4);
@@ -258,7 +260,7 @@ impl LatticeLayout {
         Ok(this)
     }
 
-    /// That groups follow each other to the end.
+    /// Checks that the groups follow each other up to the end.
     fn check(&self) -> Result<(), String> {
         let mut end = 0;
         for (number, &start) in self.starts.iter().enumerate() {
@@ -266,23 +268,19 @@ impl LatticeLayout {
             let last = (first + GROUP).min(self.blocks());
             let widths: u32 = self.widths().iter().sum();
             let is_there = |end: usize| {
-                let beyond = || {
-                    format!(
-                        "group {number} should end before bit {end}, its start is wrong or it is cut"
-                    )
-                };
+                let beyond = || format!("group {number} ends at bit {end}, beyond the data");
                 if end <= self.bits.len() { Ok(()) } else { Err(beyond()) }
             };
             is_there(end + (widths + GROUP_BITS) as usize)?;
             if start as usize * WORD != end {
-                return Err(format!("group {number} should start at word {}", end / WORD));
+                return Err(format!("group {number} does not start at word {}", end / WORD));
             }
             let group = self.group(number);
             if group.bits.iter().any(|&bits| bits >= 20) {
                 return Err(format!("group {number} has middles of more than 19 bits"));
             }
             if !group.spans.iter().all(|field| field.is_valid()) {
-                return Err(format!("group {number} has spans beyond their last code"));
+                return Err(format!("group {number} has span codes above 255"));
             }
             end = group.at + (last - first) * Self::header_bits(&group);
             is_there(end)?;
@@ -295,7 +293,7 @@ impl LatticeLayout {
         if end == self.bits.len() {
             Ok(())
         } else {
-            Err(format!("{end} bits, not {}", self.bits.len()))
+            Err(format!("expected {end} bits, found {}", self.bits.len()))
         }
     }
 }

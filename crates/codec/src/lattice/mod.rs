@@ -1,4 +1,4 @@
-//! Vertices in blocks, on a lattice that meshes can share.
+//! Vertices in blocks, rounded to a lattice that meshes can share.
 
 mod layout;
 mod shear;
@@ -11,58 +11,56 @@ use self::shear::MOST_CELLS;
 use crate::bytes::{Malformed, Reader, reduction};
 use crate::kd::blocks_of;
 
-/// Cubic cells of a power of two, with a vertex of the lattice at the origin.
+/// Lattice of cubic cells whose side is a power of two, with a vertex at the origin.
 ///
-/// What lies in one place before is in one place afterwards, whatever mesh it is in and whatever machine it is on:
-/// cells are told by whole numbers, and decoding rounds once.
+/// Equal positions stay equal, in whatever mesh and on whatever machine: a cell is stored as
+/// integers, and decoding rounds once.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Lattice {
     exponent: i32,
 }
 
-/// The positions of a mesh on a lattice, in blocks of which each is decoded alone.
+/// Positions of a mesh on a lattice, in blocks of 32 vertices that can be decoded independently.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LatticeBlocks {
     lattice: Lattice,
-    /// The least cell along each axis that has a vertex.
+    /// Least cell along each axis.
     first: [i64; 3],
     layout: LatticeLayout,
-    /// The vertex of the mesh that each is.
+    /// The mesh vertex that each stored vertex is; empty after decoding.
     vertices: Vec<VertexId>,
 }
 
-/// Why positions are not put on a lattice.
+/// Reason why positions cannot be rounded to a lattice.
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum LatticeError {
-    /// A number that is none.
+    /// A coordinate is infinite or NaN.
     #[error("{0} has a coordinate that is not finite")]
     NotFinite(VertexId),
-    /// More cells than are numbered.
-    #[error(
-        "the mesh spans {cells:.0} cells: more than {MOST_CELLS} are not numbered; take larger ones"
-    )]
+    /// The mesh spans more cells than the format can number.
+    #[error("the mesh spans {cells:.0} cells, more than {MOST_CELLS}: use larger cells")]
     TooFine {
-        /// How many.
+        /// Number of cells along the longest side.
         cells: f64,
     },
-    /// Cells that are too far away.
-    #[error("the mesh is so far from the origin that cells of 2^{exponent} are not told apart")]
+    /// The mesh is so far from the origin that `f64` does not have every cell.
+    #[error("the mesh is too far from the origin for cells of 2^{exponent}: use larger cells")]
     TooFar {
-        /// The power of two.
+        /// Exponent of the lattice.
         exponent: i32,
     },
-    /// A cell that is no number.
-    #[error("cells of 2^{0} cannot be: take an exponent from -960 to 960")]
+    /// The exponent is out of range.
+    #[error("the cell's exponent must be between -960 and 960, not {0}")]
     Exponent(i32),
 }
 
-/// The lattice's exponent, and the least cell.
+/// Size of the lattice's exponent and the least cell.
 const HEADER: usize = 4 + 3 * 8;
-/// Beyond, `f64` does not have every whole number of cells.
+/// Limit on cell numbers, up to which `f64` has every integer.
 const FARTHEST: f64 = (1u64 << 52) as f64;
 
 impl Lattice {
-    /// Cells of 2^`exponent` model units.
+    /// Creates a lattice with cells of 2^`exponent` model units.
     /// # Errors
     /// An exponent below -960 or above 960.
     pub fn new(exponent: i32) -> Result<Self, LatticeError> {
@@ -70,35 +68,35 @@ impl Lattice {
         if is_one { Ok(Self { exponent }) } else { Err(LatticeError::Exponent(exponent)) }
     }
 
-    /// The coarsest with cells no larger than that.
+    /// Creates the coarsest lattice whose cells are no larger than `cell`.
     /// # Errors
     /// A size that is not positive, or too large or small.
     pub fn within(cell: f64) -> Result<Self, LatticeError> {
         let exponent = cell.log2().floor();
-        // Also of what is no number.
+        // Also false for NaN.
         Self::new(if exponent.abs() <= 960.0 { exponent as i32 } else { i32::MAX })
     }
 
-    /// With cells twice as large.
+    /// Returns the lattice with cells twice as large.
     /// # Errors
     /// As [`Lattice::new`].
     pub fn coarser(self) -> Result<Self, LatticeError> {
         Self::new(self.exponent + 1)
     }
 
-    /// With cells half as large.
+    /// Returns the lattice with cells half as large.
     /// # Errors
     /// As [`Lattice::new`].
     pub fn finer(self) -> Result<Self, LatticeError> {
         Self::new(self.exponent - 1)
     }
 
-    /// The side of a cell, in model units.
+    /// Returns the side of a cell, in model units.
     pub fn cell(self) -> f64 {
         f64::from(self.exponent).exp2()
     }
 
-    /// The number of the lattice's vertex closest to a place, along an axis.
+    /// Returns the index of the lattice vertex closest to a coordinate.
     fn number(self, x: f64) -> f64 {
         (x / self.cell()).round()
     }
@@ -109,18 +107,19 @@ impl Lattice {
 }
 
 impl LatticeBlocks {
-    /// The positions that faces of a mesh use, moved to the closest vertices of a lattice.
+    /// Encodes the vertices that faces use, rounded to the lattice.
     ///
     /// Cost: O(n log n).
     /// # Errors
-    /// A mesh with a coordinate that is none, or too large for the lattice.
+    /// A coordinate that is not finite, or too large for the lattice.
     pub fn new(mesh: &Mesh, lattice: Lattice) -> Result<Self, LatticeError> {
         let ordered = blocks_of(mesh);
         let blocks = Self::from_blocks(&mesh.positions, &ordered, lattice)?;
         Ok(Self { vertices: ordered, ..blocks })
     }
 
-    /// The same of some of the positions, every [`BLOCK`] of `ordered` a block: in whatever order within.
+    /// Encodes vertices in a given order, each [`BLOCK`] of them a block, without keeping their
+    /// ids.
     pub(crate) fn from_blocks(
         positions: &[[f64; 3]],
         ordered: &[VertexId],
@@ -140,49 +139,51 @@ impl LatticeBlocks {
         Ok(Self { lattice, first, layout: LatticeLayout::new(&cells, most), vertices: Vec::new() })
     }
 
-    /// The vertex of the mesh that each is, in the order of the blocks. Connectivity is renumbered by it; it is not
-    /// part of what is stored.
+    /// Returns the mesh vertex of each stored vertex, in block order.
+    ///
+    /// Use it to renumber the connectivity. It is not part of the stored data.
     pub fn vertices(&self) -> &[VertexId] {
         &self.vertices
     }
 
-    /// Where a vertex is, by its place among [`LatticeBlocks::vertices`]: no other block is decoded.
+    /// Decodes the position of one vertex, given by its index in [`LatticeBlocks::vertices`].
     ///
     /// # Panics
-    /// A place that there is not.
+    /// If there is no such vertex.
     pub fn position(&self, at: usize) -> [f64; 3] {
         assert!(at < self.layout.vertices, "there are {} vertices", self.layout.vertices);
         self.place(self.layout.cell(at))
     }
 
-    /// Where all vertices are.
+    /// Decodes all positions.
     pub fn positions(&self) -> Vec<[f64; 3]> {
         self.layout.cells().map(|cell| self.place(cell)).collect()
     }
 
-    /// What positions take, with all that decoding them needs, in bytes.
+    /// Returns the size of the positions in bytes, with everything needed to decode them.
     pub fn bytes(&self) -> usize {
         HEADER + self.layout.bytes()
     }
 
-    /// How much less that is than three `f32` for each vertex, as a part; nothing of nothing.
+    /// Returns the fraction by which positions are smaller than three `f32` for each vertex; 0 for
+    /// an empty mesh.
     pub fn reduction(&self) -> f64 {
         reduction(self.bytes(), self.layout.vertices)
     }
 
-    /// How many vertices there are.
+    /// Returns the number of vertices.
     pub(crate) fn len(&self) -> usize {
         self.layout.vertices
     }
 
-    /// Puts all but [`LatticeBlocks::vertices`] behind other bytes.
+    /// Appends everything but [`LatticeBlocks::vertices`] to `out`.
     pub(crate) fn store(&self, out: &mut Vec<u8>) {
         out.extend(self.lattice.exponent.to_le_bytes());
         self.first.iter().for_each(|first| out.extend(first.to_le_bytes()));
         self.layout.store(out);
     }
 
-    /// What was stored: it does not say which vertex is which.
+    /// Reads what [`LatticeBlocks::store`] wrote. The vertices of the mesh are unknown then.
     pub(crate) fn restore(reader: &mut Reader) -> Result<Self, Malformed> {
         let lattice = Lattice::new(reader.i32()?).map_err(|why| reader.wrong(why.to_string()))?;
         let first = [reader.u64()?, reader.u64()?, reader.u64()?].map(u64::cast_signed);
@@ -198,7 +199,7 @@ impl LatticeBlocks {
     }
 }
 
-/// Cells from the first to the last along each axis: the number of the first, and how many follow it.
+/// Returns the range of cells along each axis: the first, and how many follow it.
 fn range(bounds: &Bounds, lattice: Lattice) -> Result<([i64; 3], [i32; 3]), LatticeError> {
     let (mut first, mut most) = ([0; 3], [0; 3]);
     if bounds.is_empty() {
@@ -262,7 +263,7 @@ mod tests {
         }
     }
 
-    /// Cut in slabs: one after the other along an axis, each again along the next.
+    /// Cuts a mesh into slabs along each axis in turn.
     fn tiled(mesh: &Mesh, tiles: usize) -> Vec<Mesh> {
         let mut parts = vec![mesh.faces.clone()];
         for axis in (0..3).cycle().take(tiles.ilog2() as usize) {
@@ -306,14 +307,14 @@ mod tests {
             let mut bytes = bytes.clone();
             for _ in 0..=turn % 3 {
                 state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
-                // Half of them in what all blocks have in common.
+                // Half of the changes are in the parameters that all blocks share.
                 let most = if turn % 2 == 0 { 70 } else { bytes.len() };
                 bytes[(state >> 33) as usize % most] = (state >> 24) as u8;
             }
             let blocks = restored(&bytes);
             is_well[usize::from(blocks.is_ok())] += 1;
             if let Ok(blocks) = blocks {
-                // So far away, and with cells so large, that they are without end is what was asked for.
+                // With the largest exponents, damaged data may decode to infinite positions.
                 let is_near = blocks.lattice.exponent < 900;
                 assert!(!is_near || blocks.positions().iter().flatten().all(|x| x.is_finite()));
             }

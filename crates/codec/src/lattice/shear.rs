@@ -1,38 +1,41 @@
-//! How the vertices of a block lie on the lattice: laid flat, and how far they reach then.
+//! Integer shear transforms that lay a block flat and upright, so that it spans fewer cells.
 //!
-//! Along the axis that is closest to the normal, each vertex loses the whole part of where a bent plane is above it;
-//! along the two others a block is sheared upright. Integers in, integers out, each step by what stays as it is, so
-//! nothing is lost [BE92]. What is left spans a few cells.
+//! Along the axis closest to the normal, a quadratic height field is subtracted from each vertex;
+//! along the other two, the block is sheared. Each lifting step depends only on coordinates that it
+//! leaves alone, so it is undone exactly [BE92].
 
-/// How a block is told. All is counted from its middle on.
+/// Shear transform of a block, with the box of the result. Everything is relative to the middle.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct ShearTransform {
-    /// The axis that is flattened, `w`; those along the block follow it in cyclic order, `u` and `v`.
+    /// Axis `w` that is flattened; `u` and `v` along the block follow it in cyclic order.
     pub(super) axis: u8,
-    /// How much of `v` is taken off `u`, of `u` then off `v`, and of `u` and `v` off `w`: in parts of [`SLOPE`].
+    /// Slopes in units of 1 / [`SLOPE`]: of `v` subtracted from `u`, of `u` then from `v`, of `u`
+    /// and `v` from `w`.
     pub(super) slopes: [i8; 4],
-    /// How much of `u²`, `uv` and `v²` is taken off `w`, in parts of [`BEND`] by the span of `u`, `u` and `v`.
+    /// Bends in units of 1 / [`BEND`]: of `u²`, `uv` and `v²` subtracted from `w`, divided by the
+    /// spans of `u`, `u` and `v`.
     pub(super) bends: [i8; 3],
-    /// Where the middle is, along `u`, `v` and `w`.
+    /// Middle of the block, along `u`, `v` and `w`.
     pub(super) middle: [i32; 3],
-    /// How many cells each spans then, as a code of [`span`].
+    /// Number of cells spanned along each axis, as a code of [`span`].
     pub(super) spans: [u8; 3],
 }
 
 const SLOPE: i64 = 64;
-/// Slopes across a block have so many bits, with a sign; those along it are less fine.
+/// Bits of slopes across a block, with sign; slopes along it are coarser.
 pub(super) const SLOPE_BITS: u32 = 7;
 pub(super) const COARSE_BITS: u32 = 5;
 pub(super) const COARSE: i8 = 1 << (SLOPE_BITS - COARSE_BITS);
 const BEND: i64 = 64;
 pub(super) const BEND_BITS: u32 = 6;
-/// So many vertices have one number together, of which all bits are used but a part of one.
+/// Vertices that share one number, so that less than a bit is lost for all of them.
 pub(super) const TUPLE: usize = 4;
 
 impl ShearTransform {
-    /// The one found that takes the fewest bits; bent or not. Cells are at least 0 and below [`MOST_CELLS`].
+    /// Finds the transform with the fewest bits, with or without bends. Cells must be at least 0
+    /// and below [`MOST_CELLS`].
     pub(super) fn of(cells: &[[i32; 3]], is_bent: bool) -> Self {
-        // Around the middle of its box it fits whatever the box is.
+        // Around the middle of its box, every block fits without shears.
         let plain = Self::default().settled(cells).unwrap_or_default();
         let laid = (0..3).filter_map(|axis| {
             let at = Search::new(cells, axis, is_bent).best();
@@ -41,7 +44,7 @@ impl ShearTransform {
         laid.fold(plain, |best, one| if one.volume() < best.volume() { one } else { best })
     }
 
-    /// With the middle where it takes the least, and spans by it.
+    /// Moves the middle to where the box is smallest, and sets the spans.
     fn settled(mut self, cells: &[[i32; 3]]) -> Option<Self> {
         let of = centre(cells);
         let middle = axes(self.axis).map(|axis| of[axis]);
@@ -52,7 +55,7 @@ impl ShearTransform {
             if best.is_none_or(|best| fitted.volume() < best.volume()) {
                 best = Some(fitted);
             }
-            // Bends are by spans.
+            // Bends are relative to spans.
             self.spans = fitted.spans;
             let [low, high] = fitted.reach(cells);
             let by = [0, 1, 2].map(|k| (low[k] + high[k] + 1).div_euclid(2));
@@ -68,18 +71,18 @@ impl ShearTransform {
         best
     }
 
-    /// Around a middle.
+    /// Sets the middle, and the spans around it; `None` if one is too large.
     fn fitted(mut self, cells: &[[i32; 3]], middle: [i32; 3]) -> Option<Self> {
         self.middle = middle;
         for k in 0..3 {
-            // What the last axis loses depends on the spans of the others.
+            // The last axis depends on the spans of the others.
             let [low, high] = self.reach(cells);
             self.spans[k] = span_code((-2 * low[k]).max(2 * high[k] + 1).max(1) as u64)?;
         }
         Some(self)
     }
 
-    /// The least and the greatest along each axis.
+    /// Returns the least and greatest transformed coordinates.
     fn reach(&self, cells: &[[i32; 3]]) -> [[i64; 3]; 2] {
         let laid = cells.iter().map(|&cell| self.laid(cell));
         laid.fold([[0; 3]; 2], |[low, high], x| {
@@ -91,24 +94,24 @@ impl ShearTransform {
         self.spans.map(span).into_iter().product()
     }
 
-    /// How many vertices have a number together, and how many bits that has.
+    /// Returns how many vertices share a number, and its number of bits.
     pub(super) fn tuple(&self) -> (usize, u32) {
         let volume = u128::from(self.volume());
         let bits = |most: u128| u128::BITS - (most - 1).leading_zeros();
-        // A single one has fewer than 64 bits in any case.
+        // A single vertex always has fewer than 64 bits.
         match volume.checked_pow(TUPLE as u32) {
             Some(most) => (TUPLE, bits(most)),
             None => (1, bits(volume)),
         }
     }
 
-    /// How many bits so many vertices take.
+    /// Returns the number of bits of this many vertices.
     pub(super) fn bits(&self, vertices: usize) -> usize {
         let (size, bits) = self.tuple();
         vertices.div_ceil(size) * bits as usize
     }
 
-    /// Cells of the block as one number: as many as a tuple has, or fewer.
+    /// Packs the cells of a tuple into one number.
     pub(super) fn number(&self, cells: &[[i32; 3]]) -> u128 {
         let volume = u128::from(self.volume());
         cells.iter().rev().fold(0, |number, &cell| {
@@ -120,7 +123,7 @@ impl ShearTransform {
         })
     }
 
-    /// The cell of a place in a tuple.
+    /// Unpacks one cell of a tuple.
     pub(super) fn cell(&self, number: u128, at: usize) -> [i64; 3] {
         let volume = u128::from(self.volume());
         // Below the volume, which is below 2^58.
@@ -139,7 +142,7 @@ impl ShearTransform {
         cell
     }
 
-    /// Along `u`, `v` and `w`, from the middle on: upright and flat.
+    /// Transforms a cell.
     fn laid(&self, cell: [i32; 3]) -> [i64; 3] {
         let axes = axes(self.axis);
         let [u, v, w] = [0, 1, 2].map(|k| i64::from(cell[axes[k]]) - i64::from(self.middle[k]));
@@ -148,7 +151,7 @@ impl ShearTransform {
         [u, v - shear(self.slopes[1], u), w]
     }
 
-    /// How high the bent plane is.
+    /// Returns the height to subtract from `w`.
     fn height(&self, u: i64, v: i64) -> i64 {
         let [uu, uv, vv] = self.bends.map(i64::from);
         let plane = shear(self.slopes[2], u) + shear(self.slopes[3], v);
@@ -160,21 +163,21 @@ impl ShearTransform {
     }
 }
 
-/// So often the middle is moved.
+/// Limit on moves of the middle.
 const TRIES: usize = 6;
 
-/// `u`, `v` and `w` of an axis that is flattened.
+/// Returns the axes `u`, `v` and `w`, given the flattened one.
 pub(super) fn axes(flattened: u8) -> [usize; 3] {
     let axis = usize::from(flattened);
     [(axis + 1) % 3, (axis + 2) % 3, axis % 3]
 }
 
-/// A slope times a number, rounded down: the same on every machine.
+/// Multiplies by a slope, rounding down, which is the same on every machine.
 fn shear(slope: i8, by: i64) -> i64 {
     (i64::from(slope) * by).div_euclid(SLOPE)
 }
 
-/// Half way between the ends, rounded up.
+/// Returns the middle of the bounding box, rounded up.
 fn centre(cells: &[[i32; 3]]) -> [i32; 3] {
     [0, 1, 2].map(|k| {
         let along = cells.iter().map(|cell| cell[k]);
@@ -183,11 +186,11 @@ fn centre(cells: &[[i32; 3]]) -> [i32; 3] {
     })
 }
 
-/// A search for slopes and bends, without rounding.
+/// Search for slopes and bends, without rounding.
 struct Search {
-    /// Along `u`, `v` and `w`, from about the middle on.
+    /// Coordinates along `u`, `v` and `w`, from about the middle on.
     cells: Vec<[f64; 3]>,
-    /// Half of about how far they reach.
+    /// Approximate half spans of `u` and `v`.
     half: [f64; 2],
     /// Four slopes and three bends.
     at: [i32; 7],
@@ -202,13 +205,13 @@ impl Search {
         let half = [0, 1].map(|k| cells.iter().fold(1.0, |most: f64, x| most.max(x[k].abs())));
         let mut this = Self { cells, half, at: [0; 7], is_bent };
         let [a, b] = this.plane().map(|slope| (slope * SLOPE as f64).round());
-        // Steeper ones, and none at all, are cut off; another axis does better.
+        // Steep or undefined planes are clamped: another axis does better.
         (this.at[2], this.at[3]) = (a as i32, b as i32);
         this.at = this.at.map(|x| x.clamp(-STEEPEST, STEEPEST));
         this
     }
 
-    /// The slopes of the plane closest along `w`.
+    /// Fits a plane by least squares and returns its slopes.
     fn plane(&self) -> [f64; 2] {
         let mean =
             |k: usize| self.cells.iter().map(|x| x[k]).sum::<f64>() / self.cells.len() as f64;
@@ -226,7 +229,7 @@ impl Search {
         }
     }
 
-    /// Steps along one of the numbers, as long as any makes the volume less.
+    /// Changes one parameter at a time as long as the volume shrinks.
     fn best(mut self) -> Self {
         let mut smallest = self.volume();
         for step in [16, 8, 4, 2, 1, 2, 1] {
@@ -278,7 +281,8 @@ impl Search {
 const STEEPEST: i32 = (1 << (SLOPE_BITS - 1)) - 1;
 const MOST_BENT: i32 = (1 << (BEND_BITS - 1)) - 1;
 
-/// How many cells a code spans: four bits of mantissa and four of exponent, at most a sixteenth more than need be.
+/// Decodes a span: four bits of mantissa and four of exponent, at most a sixteenth more than
+/// needed.
 pub(super) fn span(code: u8) -> u64 {
     let (exponent, mantissa) = (u32::from(code >> 4), u64::from(code & 15));
     match exponent {
@@ -287,19 +291,19 @@ pub(super) fn span(code: u8) -> u64 {
     }
 }
 
-/// The code of the least span of at least so many cells.
+/// Returns the code of the least span of at least `cells`.
 fn span_code(cells: u64) -> Option<u8> {
     (0..=u8::MAX).find(|&code| span(code) >= cells)
 }
 
-/// What a plain block can span in any case.
+/// Number of cells that a plain block can always span.
 pub(super) const MOST_CELLS: i32 = 1 << 19;
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    /// A bent piece of a slanted plane, sheared along itself.
+    /// Bent piece of a slanted plane, sheared along itself.
     fn slanted() -> Vec<[i32; 3]> {
         let at = |i: i32| [i % 8 * 9 + i / 8 * 5 + 300, i / 8 * 11 + 4000];
         let height =

@@ -1,15 +1,15 @@
-//! The faces of a mesh with their neighbours, as parts are made of them.
+//! Faces and their neighbours, for partitioning.
 
 use meshlod_mesh::{Bounds, Connectivity, FaceId, Mesh, Side, Twin, VertexId};
 
-/// Faces that have three corners, their corners and their neighbours.
+/// Dual graph of the faces with three different corners.
 pub(super) struct FaceGraph<'m> {
     positions: &'m [[f64; 3]],
-    /// The mesh's faces, without those that repeat a vertex.
+    /// Faces of the mesh, without those that repeat a vertex.
     pub(super) triangles: Vec<[VertexId; 3]>,
-    /// The face of the mesh that each is.
+    /// Mesh face of each triangle.
     pub(super) ids: Vec<FaceId>,
-    /// Across each side; [`NONE`] where there is not exactly one face.
+    /// Face across each side; [`NONE`] if there is not exactly one.
     across: Vec<[u32; 3]>,
     bounds: Bounds,
 }
@@ -46,17 +46,17 @@ impl<'m> FaceGraph<'m> {
         self.triangles[face as usize].map(|vertex| self.position(vertex))
     }
 
-    /// The faces across its sides.
+    /// Returns the faces across the sides of a face.
     pub(super) fn neighbours(&self, face: u32) -> impl Iterator<Item = u32> {
         self.across[face as usize].into_iter().filter(|&other| other != NONE)
     }
 
-    /// Where a place is along a curve through all the surface's box: near ones are mostly near along it.
+    /// Returns the Morton code of a point in the bounding box.
     pub(super) fn morton(&self, place: [f64; 3]) -> u64 {
         let side = super::longest_side(&self.bounds).max(f64::MIN_POSITIVE);
         let spread = |x: u64| (0..21).fold(0, |bits, i| bits | (x >> i & 1) << (3 * i));
         (0..3).fold(0, |code, axis| {
-            // Saturating: whatever lies outside is at an end.
+            // Points outside saturate to the ends.
             let x = ((place[axis] - self.bounds.min[axis]) / side * f64::from(1 << 21)) as u64;
             code | spread(x.min((1 << 21) - 1)) << axis
         })

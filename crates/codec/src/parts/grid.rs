@@ -1,40 +1,40 @@
-//! One grid for all parts: the size of its cells, and what is in them.
+//! The grid that all parts share.
 
 use meshlod_mesh::Bounds;
 
 use super::Part;
 use super::face_graph::FaceGraph;
 
-/// Where in a cell a vertex is decoded to.
+/// Point of a cell to which a vertex is decoded.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Reconstruction {
-    /// The middle: half the error of the other.
+    /// The middle, which halves the error.
     #[default]
     Centred,
-    /// The least corner, as in [LCL10]: every vertex is half a cell too low.
+    /// The least corner, as in [LCL10]: every vertex is half a cell too low on average.
     Truncated,
 }
 
-/// Cells of one size from the origin on.
+/// Grid of equal cells from the origin on.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct SharedGrid {
     cell: [f32; 3],
     cells: Reconstruction,
 }
 
-/// The cells of a part along an axis, from its first to its last.
+/// Cells of a part along an axis, from the first to the last.
 const ACROSS: f64 = 255.0;
-/// No cell is smaller than this part of how far from the origin the mesh goes: `f32` tells the middles of
-/// cells apart so far, and no further.
+/// Least side of a cell, relative to the mesh's largest absolute coordinate: `f32` cannot tell the
+/// middles of smaller cells apart.
 const FINEST: f64 = 1.0 / (1 << 22) as f64;
-/// So the cell of an offset is this many from the origin at most: twice what [`FINEST`] leaves, for what is rounded.
+/// Largest offset of a part: twice what [`FINEST`] allows, to leave room for rounding.
 pub(super) const FARTHEST: u32 = 1 << 23;
 
 impl SharedGrid {
-    /// The finest in which each of these boxes has at most 256 cells along each axis.
+    /// Finds the finest grid in which each of the boxes spans at most 256 cells along each axis.
     ///
-    /// Where vertices are in the middles of cells, sides have no more significant bits than leave all that `f32`
-    /// makes of a part exact: its borders are those of its neighbours, bit for bit.
+    /// With vertices in the middles of cells, sides have so few significant bits that `f32` decodes
+    /// parts exactly: borders match those of the neighbours bit for bit.
     pub(super) fn new(boxes: &[Bounds], cells: Reconstruction) -> Self {
         let cell = [0, 1, 2].map(|axis| {
             let spans = boxes.iter().map(|of| [of.min[axis], of.max[axis]]);
@@ -51,7 +51,7 @@ impl SharedGrid {
                 Reconstruction::Truncated => 0,
             };
             let mut cell = rounded_up(cell, spare);
-            // Roundings may have made it too small by a little.
+            // Rounding may have made it slightly too small.
             while !fits(cell) {
                 cell = rounded_up(cell.next_up(), spare);
             }
@@ -64,7 +64,7 @@ impl SharedGrid {
         self.cell
     }
 
-    /// Fills in the offset of a part, and the cells of its vertices from there on.
+    /// Sets the offset of a part, and the local cells of its vertices.
     pub(super) fn quantize(&self, graph: &FaceGraph, part: &mut Part) {
         let cells = |&vertex| {
             let place = graph.position(vertex);
@@ -76,7 +76,7 @@ impl SharedGrid {
         part.positions = cells.iter().map(from_offset).collect();
     }
 
-    /// A grid that was made before, if its cells have a size.
+    /// Restores a grid; `None` if a side is not a positive normal number.
     pub(super) fn of_cells(cell: [f32; 3], cells: Reconstruction) -> Option<Self> {
         cell.iter().all(|side| side.is_normal() && *side > 0.0).then_some(Self { cell, cells })
     }
@@ -85,7 +85,7 @@ impl SharedGrid {
         self.cells == Reconstruction::Centred
     }
 
-    /// Where a cell of a part is decoded to: the same place for whatever part it is told by.
+    /// Returns where a cell of a part is decoded to, which is the same from every part.
     pub(super) fn place(&self, offset: [i32; 3], position: [u8; 3]) -> [f64; 3] {
         [0, 1, 2].map(|axis| {
             let cell = offset[axis] + i32::from(position[axis]);
@@ -93,7 +93,7 @@ impl SharedGrid {
         })
     }
 
-    /// What a GPU multiplies the positions of a part with.
+    /// Returns the matrix that decodes the positions of a part on the GPU.
     pub(super) fn matrix(&self, part: &Part) -> [[f32; 4]; 3] {
         [0, 1, 2].map(|axis| {
             let mut row = [0.0; 4];
@@ -111,20 +111,20 @@ impl SharedGrid {
     }
 }
 
-/// How many of the last bits of a side are to be zeros, for products with so many halves of cells to be exact.
+/// Returns how many trailing bits of a side must be zero for products with half cells to be exact.
 fn spare_bits(cells: f64) -> u32 {
-    // One more for the halves, one for the cells that a part goes on beyond.
+    // One bit for the halves, and room for the cells of the last part.
     let bits = (2.0 * cells + 2.0 * ACROSS).log2().ceil() as u32;
     bits.min(f32::MANTISSA_DIGITS - 1)
 }
 
-/// The next number up, or the same, whose last bits are zeros.
+/// Rounds a side up so that its trailing bits are zero.
 fn rounded_up(side: f32, spare: u32) -> f32 {
     let ones = (1u32 << spare) - 1;
     f32::from_bits((side.to_bits() + ones) & !ones)
 }
 
-/// The number of the cell that a place along an axis is in.
+/// Returns the index of the cell that contains a coordinate.
 fn number(x: f64, cell: f32) -> f64 {
     (x / f64::from(cell)).floor()
 }

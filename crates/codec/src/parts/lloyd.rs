@@ -1,5 +1,5 @@
-//! Parts that are grown anew from their middles, again and again [Llo82], in the distance whose ball is a
-//! cube [LCL10].
+//! Lloyd relaxation: parts are grown again from their middles, several times [Llo82], with a
+//! distance whose ball is a cube [LCL10].
 
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
@@ -9,13 +9,13 @@ use meshlod_mesh::Bounds;
 
 use super::face_graph::FaceGraph;
 
-/// So often parts are grown anew at most, and so often without getting better. Horse, feline and squirrel in
-/// parts of 70 % reduction are best after 7 to 15 rounds, 7 to 14 % better than before; from round 7 on it is
-/// 1 %.
+/// Limits on all rounds and on rounds without improvement. Horse, feline and squirrel, in parts of
+/// 70 % reduction, are best after 7 to 15 rounds, 7 to 14 % better than before; from round 7 on the
+/// gain is 1 %.
 const ROUNDS: usize = 24;
 const PATIENCE: usize = 4;
 
-/// Parts whose common box is as small as was found, from given ones. All have a face.
+/// Improves a partition until its common box shrinks no further. Every part keeps a face.
 pub(super) fn relax(graph: &FaceGraph, parts: Vec<u32>, count: usize) -> Vec<u32> {
     let boxes_of = |parts: &[u32]| boxes(graph, parts, count);
     let mut best = (cost(&boxes_of(&parts)), parts.clone());
@@ -36,7 +36,7 @@ pub(super) fn relax(graph: &FaceGraph, parts: Vec<u32>, count: usize) -> Vec<u32
     best.1
 }
 
-/// The box of each part.
+/// Returns the box of each part.
 pub(super) fn boxes(graph: &FaceGraph, parts: &[u32], count: usize) -> Vec<Bounds> {
     let mut boxes = vec![Bounds::EMPTY; count];
     for (face, &part) in (0..).zip(parts) {
@@ -45,13 +45,14 @@ pub(super) fn boxes(graph: &FaceGraph, parts: &[u32], count: usize) -> Vec<Bound
     boxes
 }
 
-/// The mean square of the error, but for a factor: that of the sides of the least box that all fit into.
+/// Returns the squared diagonal of the least box that all boxes fit into, to which the mean squared
+/// error is proportional.
 pub(super) fn cost(boxes: &[Bounds]) -> f64 {
     let sides = boxes.iter().map(|of| DVec3::from(of.max) - DVec3::from(of.min));
     sides.fold(DVec3::ZERO, DVec3::max).length_squared()
 }
 
-/// The face of each part that is closest to the middle of its box.
+/// Returns the face of each part that is closest to the middle of its box.
 fn seeds(graph: &FaceGraph, parts: &[u32], boxes: &[Bounds]) -> Vec<u32> {
     let middles: Vec<_> = boxes.iter().map(|of| DVec3::from(of.center())).collect();
     let mut seeds = vec![(f64::INFINITY, 0); boxes.len()];
@@ -65,7 +66,7 @@ fn seeds(graph: &FaceGraph, parts: &[u32], boxes: &[Bounds]) -> Vec<u32> {
     seeds.into_iter().map(|(_, face)| face).collect()
 }
 
-/// Each face to the seed from which it is reached with the least stretch.
+/// Assigns each face to the seed from which it is reached with the least distance.
 fn grow(graph: &FaceGraph, seeds: &[u32]) -> Vec<u32> {
     let centers: Vec<DVec3> = seeds.iter().map(|&seed| center(graph, seed)).collect();
     let stretch = |face: u32, part: u32| {
@@ -74,7 +75,7 @@ fn grow(graph: &FaceGraph, seeds: &[u32]) -> Vec<u32> {
         corners[0].max(corners[1]).max(corners[2]).max_element()
     };
     let mut parts = vec![NONE; graph.faces()];
-    // Lengths are not negative: their bits are in their order.
+    // Non-negative floats sort by their bits.
     let entry = |face: u32, part: u32| Reverse((stretch(face, part).to_bits(), face, part));
     let mut waiting: BinaryHeap<_> =
         seeds.iter().zip(0..).map(|(&seed, part)| Reverse((0, seed, part))).collect();
@@ -86,7 +87,7 @@ fn grow(graph: &FaceGraph, seeds: &[u32]) -> Vec<u32> {
         let open = graph.neighbours(face).filter(|&other| parts[other as usize] == NONE);
         waiting.extend(open.map(|other| entry(other, part)));
     }
-    // What no seed can reach goes to the one that is closest all the same.
+    // Faces that no seed reaches go to the closest one.
     for face in 0..graph.faces() as u32 {
         if parts[face as usize] == NONE {
             let closest = (0..seeds.len() as u32).min_by_key(|&part| stretch(face, part).to_bits());

@@ -1,6 +1,5 @@
-//! Faces merged into ever fewer clusters, each time those whose common box is smallest.
-//!
-//! Hierarchical face clustering [GWH01], by the longest side of the box of two clusters together [LCL10].
+//! Hierarchical face clustering [GWH01]: the two clusters with the smallest common box merge next,
+//! by its longest side [LCL10].
 
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
@@ -9,16 +8,16 @@ use meshlod_mesh::Bounds;
 
 use super::face_graph::FaceGraph;
 
-/// The merges of a surface, first to last: all clusterings into any number of clusters.
+/// Sequence of merges, which contains a clustering for every number of clusters.
 #[derive(Clone, Debug)]
 pub(super) struct Merges {
     faces: usize,
-    /// Two faces of the two clusters that become one.
+    /// One face of each of the two clusters that merge.
     pairs: Vec<[u32; 2]>,
 }
 
 impl Merges {
-    /// Merges until nothing is left to merge: neighbours first, and components after all of them.
+    /// Merges until one cluster is left: neighbours first, then connected components.
     ///
     /// Cost: O(n log n) for each doubling of a cluster.
     pub(super) fn new(graph: &FaceGraph) -> Self {
@@ -26,15 +25,15 @@ impl Merges {
         let neighbours = |f: u32| graph.neighbours(f).filter(move |&other| f < other);
         let faces = 0..graph.faces() as u32;
         forming.merge(faces.clone().flat_map(|f| neighbours(f).map(move |other| [f, other])));
-        // What has no neighbours any more, in an order in which near ones are mostly side by side.
+        // The remaining components, in Morton order so that near ones are mostly adjacent.
         let mut apart: Vec<u32> = faces.filter(|&f| forming.root(f) == f).collect();
         apart.sort_by_cached_key(|&f| graph.morton(forming.boxes[f as usize].center()));
         forming.merge(apart.windows(2).map(|pair| [pair[0], pair[1]]));
         Self { faces: graph.faces(), pairs: forming.pairs }
     }
 
-    /// The cluster of each face, of `count` clusters, numbered by their first faces; of fewer where there
-    /// are fewer faces.
+    /// Returns the cluster of each face, numbered by first faces, for `count` clusters or as many
+    /// as there are faces.
     pub(super) fn clusters(&self, count: usize) -> Vec<u32> {
         let mut parents: Vec<u32> = (0..self.faces as u32).collect();
         for &[a, b] in &self.pairs[..self.faces.saturating_sub(count.max(1))] {
@@ -55,10 +54,10 @@ impl Merges {
     }
 }
 
-/// Clusters on their way.
+/// Clusters while they are merged.
 struct Clusters {
     parents: Vec<u32>,
-    /// By the least face of each cluster.
+    /// Box of each cluster, at the index of its least face.
     boxes: Vec<Bounds>,
     pairs: Vec<[u32; 2]>,
 }
@@ -77,7 +76,7 @@ impl Clusters {
         root(&mut self.parents, face)
     }
 
-    /// Merges what is paired, the smallest first, until each pair is in one cluster.
+    /// Merges pairs, the smallest common box first, until each pair is in one cluster.
     fn merge(&mut self, pairs: impl Iterator<Item = [u32; 2]>) {
         let pairs: Vec<_> = pairs.map(|pair| Reverse((self.side(pair), pair))).collect();
         let mut waiting = BinaryHeap::from(pairs);
@@ -86,7 +85,7 @@ impl Clusters {
             if a == b {
                 continue;
             }
-            // Boxes only grow: what is still as small as it was is the smallest.
+            // Boxes only grow: if this one has not, it is the smallest.
             let now = self.side([a, b]);
             if now > side {
                 waiting.push(Reverse((now, [a, b])));
@@ -100,7 +99,7 @@ impl Clusters {
         }
     }
 
-    /// The longest side of the box of two clusters, as bits, which are in the order of lengths.
+    /// Returns the longest side of two clusters' common box, as bits, which sort like lengths.
     fn side(&self, [a, b]: [u32; 2]) -> u64 {
         let mut both = self.boxes[a as usize];
         both.merge(&self.boxes[b as usize]);

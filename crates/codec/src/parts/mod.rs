@@ -1,4 +1,4 @@
-//! Eight bits an axis, in parts that share one grid [LCL10].
+//! Positions in 8 bits per axis, in parts that share one grid [LCL10].
 
 mod face_graph;
 mod grid;
@@ -18,86 +18,86 @@ pub(crate) use self::packed::PackedParts;
 pub use self::partitioner::Partitioner;
 use crate::bytes::reduction;
 
-/// The positions and faces of a mesh in parts, positions in eight bits an axis.
+/// Mesh partitioned into parts, with positions in 8 bits per axis.
 ///
-/// A vertex is stored once for each part that uses it. It is in the same cell of the grid in all of them.
+/// Each part stores all its vertices. A vertex is in the same grid cell in all parts that have it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Parts {
     grid: SharedGrid,
-    /// How many vertices the mesh has that faces use.
+    /// Number of mesh vertices that faces use.
     vertices: usize,
     parts: Vec<Part>,
 }
 
-/// A part: at most 256 cells along each axis.
+/// Part of a mesh that spans at most 256 grid cells along each axis.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Part {
-    /// The cell of the grid in which its own cell `[0; 3]` is.
+    /// Grid cell of the part's local cell `[0; 3]`.
     pub offset: [i32; 3],
-    /// The cells of its vertices, from its offset on.
+    /// Local cell of each vertex, relative to the offset.
     pub positions: Vec<[u8; 3]>,
-    /// The vertex of the mesh that each is.
+    /// Mesh vertex of each local vertex.
     pub vertices: Vec<VertexId>,
-    /// By places in these lists.
+    /// Faces as local vertex indices.
     pub faces: Vec<[u32; 3]>,
-    /// The face of the mesh that each is.
+    /// Mesh face of each face.
     pub ids: Vec<FaceId>,
 }
 
-/// Why a mesh is not made parts.
+/// Reason why a mesh cannot be partitioned.
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum PartsError {
-    /// No face has three corners.
-    #[error("the mesh has no faces to part")]
+    /// The mesh has no face with three different corners.
+    #[error("the mesh has no faces to partition")]
     Empty,
-    /// A number that is none.
-    #[error("{0} has a coordinate that is not finite, or too large")]
+    /// A coordinate is infinite, NaN, or too large for `f32`.
+    #[error("{0} has a coordinate that is not finite or is too large for f32")]
     NotFinite(VertexId),
-    /// Not a part between nothing and all.
-    #[error("a reduction of {0} is none: give a part between 0 and 1")]
+    /// The reduction is not between 0 and 1.
+    #[error("the reduction must be between 0 and 1, not {0}")]
     Reduction(f64),
-    /// The mesh is too small for its headers.
-    #[error("so small a mesh is reduced by {best:.3} at most, in one part")]
+    /// The mesh is too small for the requested reduction, because of the headers.
+    #[error("the mesh is too small: the largest possible reduction is {best:.3}, in one part")]
     TooSmall {
-        /// What there is.
+        /// Largest reduction that is possible.
         best: f64,
     },
 }
 
-/// Of a file: its flags, how many vertices and parts it has, and the sides of a cell.
+/// Size of the header in a file: flags, number of vertices and parts, and the sides of a cell.
 const HEADER: usize = 1 + 2 * 4 + 3 * 4;
-/// Of a part: how many vertices it has, and its offset in 16 bits an axis or in 32.
+/// Size of a part's number of vertices; its offset takes 16 or 32 bits per axis.
 const PART: usize = 4;
 
 impl Parts {
-    /// The parts.
+    /// Returns the parts.
     pub fn parts(&self) -> &[Part] {
         &self.parts
     }
 
-    /// How many vertices of the mesh they have.
+    /// Returns the number of mesh vertices that faces use.
     pub fn vertices(&self) -> usize {
         self.vertices
     }
 
-    /// The sides of a cell, in model units.
+    /// Returns the sides of a cell, in model units.
     pub fn cell(&self) -> [f32; 3] {
         self.grid.cell()
     }
 
-    /// Their mean.
+    /// Returns the mean side of a cell.
     pub(crate) fn mean_side(&self) -> f64 {
         self.cell().iter().map(|&side| f64::from(side)).sum::<f64>() / 3.0
     }
 
-    /// What puts a part's positions where they belong: three rows of four, model units.
+    /// Returns the matrix that maps a part's local cells to model units, as three rows of four.
     pub fn matrix(&self, part: &Part) -> [[f32; 4]; 3] {
         self.grid.matrix(part)
     }
 
-    /// The mesh of all parts: each vertex where its cell is, each once.
+    /// Decodes the mesh, with each vertex once.
     ///
-    /// Vertices are in the order in which parts have them; faces part by part.
+    /// Vertices are in the order of their first part; faces come part by part.
     pub fn decode(&self) -> Mesh {
         let most = self.parts.iter().flat_map(|part| &part.vertices).max();
         let mut numbers = vec![None; most.map_or(0, |v| v.index() + 1)];
@@ -119,7 +119,7 @@ impl Parts {
         mesh
     }
 
-    /// What positions take, with all that decoding them needs, in bytes.
+    /// Returns the size of the positions in bytes, with everything needed to decode them.
     pub fn position_bytes(&self) -> usize {
         HEADER + self.parts.len() * self.part_header() + 3 * self.stored()
     }
@@ -129,13 +129,13 @@ impl Parts {
         part_header(&offsets)
     }
 
-    /// How many vertices all parts have together.
+    /// Returns the number of vertices of all parts together.
     fn stored(&self) -> usize {
         self.parts.iter().map(|part| part.positions.len()).sum()
     }
 
-    /// How many parts would leave a reduction, as far as these tell: vertices are stored again along borders,
-    /// whose length grows as the root of the number of parts.
+    /// Estimates how many parts would give a reduction. Vertices are repeated along borders, whose
+    /// length grows as the square root of the number of parts.
     fn count_for(&self, reduction: f64) -> usize {
         let (count, header) = (self.parts.len() as f64, self.part_header() as f64);
         let again = (self.stored() - self.vertices).max(1) as f64 / count.sqrt();
@@ -147,24 +147,24 @@ impl Parts {
         (root * root) as usize
     }
 
-    /// How much less that is than three `f32` for each vertex, as a part.
+    /// Returns the fraction by which positions are smaller than three `f32` for each vertex.
     pub fn reduction(&self) -> f64 {
         reduction(self.position_bytes(), self.vertices)
     }
 
-    /// How many vertices are stored again, as a part of all.
+    /// Returns the number of repeated vertices, as a fraction of all.
     pub fn overhead(&self) -> f64 {
         self.stored() as f64 / self.vertices as f64 - 1.0
     }
 }
 
-/// What each part takes beside its positions.
+/// Returns the size of a part's header.
 fn part_header(offsets: &[[i32; 3]]) -> usize {
     let is_short = offsets.as_flattened().iter().all(|&x| i16::try_from(x).is_ok());
     PART + if is_short { 6 } else { 12 }
 }
 
-/// The longest side of a box.
+/// Returns the longest side of a box.
 fn longest_side(bounds: &Bounds) -> f64 {
     (0..3).map(|axis| bounds.max[axis] - bounds.min[axis]).fold(0.0, f64::max)
 }

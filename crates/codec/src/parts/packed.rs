@@ -1,4 +1,4 @@
-//! The positions of parts alone, in an order that others give: as files have them.
+//! Positions of parts as files store them, in a given order.
 
 use meshlod_mesh::VertexId;
 
@@ -7,27 +7,27 @@ use super::{HEADER, Part, Parts, part_header};
 use crate::bytes::{Malformed, Reader};
 use crate::patch::Rows;
 
-/// The positions of nodes, each in a part: parts are rows.
+/// Positions of nodes; each part is a row.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct PackedParts {
     grid: SharedGrid,
-    /// How many vertices nodes are of.
+    /// Number of vertices that the nodes belong to.
     vertices: u32,
     rows: Rows,
     offsets: Vec<[i32; 3]>,
     positions: Vec<[u8; 3]>,
 }
 
-/// Vertices are in the middles of their cells.
+/// Flag: vertices are in the middles of their cells.
 const CENTRED: u8 = 1;
-/// Offsets have 32 bits an axis.
+/// Flag: offsets have 32 bits per axis.
 const LONG: u8 = 2;
 
 impl PackedParts {
-    /// The positions of nodes, given as vertices in the order of the parts.
+    /// Packs the positions of nodes, given as vertices in the order of the parts.
     ///
     /// # Panics
-    /// A node that its part has not.
+    /// If a part does not have its node.
     pub(crate) fn new(parts: &Parts, rows: Rows, nodes: &[VertexId]) -> Self {
         let position = |(row, part): (usize, &Part)| {
             let of =
@@ -43,22 +43,22 @@ impl PackedParts {
         self.vertices as usize
     }
 
-    /// The nodes of each part.
+    /// Returns the nodes of each part.
     pub(crate) fn rows(&self) -> &Rows {
         &self.rows
     }
 
-    /// The cell of the common grid that each node is in.
+    /// Returns the grid cell of each node.
     pub(crate) fn cells(&self) -> Vec<[i32; 3]> {
         self.each(|offset, position| [0, 1, 2].map(|k| offset[k] + i32::from(position[k])))
     }
 
-    /// Where each node is.
+    /// Decodes the position of each node.
     pub(crate) fn positions(&self) -> Vec<[f64; 3]> {
         self.each(|offset, position| self.grid.place(offset, position))
     }
 
-    /// Where one is.
+    /// Decodes the position of one node.
     pub(crate) fn position(&self, node: usize) -> [f64; 3] {
         let (part, _) = self.rows.place(node as u32);
         self.grid.place(self.offsets[part], self.positions[node])
@@ -94,14 +94,14 @@ impl PackedParts {
     pub(crate) fn restore(reader: &mut Reader) -> Result<Self, Malformed> {
         let flags = reader.u8()?;
         if flags & !(CENTRED | LONG) != 0 {
-            return Err(reader.wrong(format!("flags {flags:#x} are not known")));
+            return Err(reader.wrong(format!("unknown flags {flags:#x}")));
         }
         let (vertices, count) = (reader.u32()?, reader.u32()?);
         let cell = [reader.f32()?, reader.f32()?, reader.f32()?];
         let cells =
             if flags & CENTRED == 0 { Reconstruction::Truncated } else { Reconstruction::Centred };
-        let grid =
-            SharedGrid::of_cells(cell, cells).ok_or_else(|| reader.wrong("cells of no size"))?;
+        let grid = SharedGrid::of_cells(cell, cells)
+            .ok_or_else(|| reader.wrong("the cells have no size"))?;
         let (mut sizes, mut offsets) = (Vec::new(), Vec::new());
         for _ in 0..count {
             sizes.push(reader.u32()? as usize);
@@ -111,14 +111,14 @@ impl PackedParts {
             };
             let offset = [axis()?, axis()?, axis()?];
             if offset.iter().any(|x| x.abs_diff(0) > FARTHEST) {
-                return Err(reader.wrong("a part further off than f32 tells"));
+                return Err(reader.wrong("a part is too far from the origin for f32"));
             }
             offsets.push(offset);
         }
         let nodes: u64 = sizes.iter().map(|&size| size as u64).sum();
         if nodes > u32::MAX.into() || u64::from(vertices) > nodes || (vertices == 0) != (nodes == 0)
         {
-            return Err(reader.wrong(format!("{vertices} vertices in {nodes} positions")));
+            return Err(reader.wrong(format!("{vertices} vertices cannot have {nodes} positions")));
         }
         let size = usize::try_from(3 * nodes).unwrap_or(usize::MAX);
         let (positions, _) = reader.take(size)?.as_chunks();

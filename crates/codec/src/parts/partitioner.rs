@@ -1,4 +1,4 @@
-//! How a mesh falls into parts, in any number of them.
+//! Partition of a mesh into any number of parts.
 
 use meshlod_mesh::{Mesh, VertexId};
 
@@ -7,29 +7,29 @@ use super::grid::{Reconstruction, SharedGrid};
 use super::merge::Merges;
 use super::{Part, Parts, PartsError, lloyd};
 
-/// What all numbers of parts of a mesh have in common.
+/// Hierarchical clustering of a mesh's faces, from which partitions of any size are made.
 pub struct Partitioner<'m> {
     pub(super) graph: FaceGraph<'m>,
     pub(super) merges: Merges,
     vertices: usize,
 }
 
-/// Where the search for a number of parts begins, and how often it is tried.
+/// First number of parts to try, and the limit on tries.
 const FIRST_COUNT: usize = 64;
 const MOST_COUNTS: usize = 10;
-/// What is as close as this below the cells that were asked for is good.
+/// Ratio of cell to requested cell at which the search stops.
 const CLOSE_CELL: f64 = 0.97;
-/// So that the next try rather keeps what was asked for.
+/// Factor on the next number of parts, so that it is more likely to meet the request.
 const SLIGHTLY_MORE: f64 = 1.01;
-/// What is as close as this to the reduction that was asked for is good.
+/// Excess of the reduction at which the search stops.
 const CLOSE: f64 = 5e-4;
 
 impl<'m> Partitioner<'m> {
-    /// Looks how a mesh falls into parts. Faces that repeat a vertex are left out.
+    /// Clusters the faces of a mesh. Faces that repeat a vertex are left out.
     ///
     /// Cost: O(n log² n), n = faces.
     /// # Errors
-    /// A mesh without faces, or with coordinates that are none.
+    /// A mesh without faces, or a coordinate that is not finite.
     pub fn new(mesh: &'m Mesh) -> Result<Self, PartsError> {
         let graph = FaceGraph::new(mesh);
         if graph.faces() == 0 {
@@ -45,7 +45,7 @@ impl<'m> Partitioner<'m> {
         Ok(Self { graph, merges, vertices: used.iter().filter(|&&used| used).count() })
     }
 
-    /// In so many parts, or as many as there are faces.
+    /// Partitions the mesh into `count` parts, or as many as there are faces.
     ///
     /// Cost: some dozen times O(n log n).
     pub fn with_count(&self, count: usize, cells: Reconstruction) -> Parts {
@@ -57,13 +57,13 @@ impl<'m> Partitioner<'m> {
         Parts { grid, vertices: self.vertices, parts }
     }
 
-    /// In about as many parts as leave this reduction of what positions take, a part between 0 and 1: more
-    /// parts have smaller cells and store more vertices twice.
+    /// Partitions the mesh into about as many parts as still give a reduction of the positions
+    /// between 0 and 1: more parts have smaller cells but repeat more vertices.
     ///
-    /// The reduction is kept, and exceeded by little: on closed meshes of some thousand vertices by less than
-    /// a thousandth. Cost: of some [`Partitioner::with_count`].
+    /// The reduction is kept, and exceeded by little: by less than a thousandth on closed meshes of
+    /// some thousand vertices. Cost: that of several [`Partitioner::with_count`].
     /// # Errors
-    /// A reduction that is none, or that the mesh is too small for.
+    /// A reduction out of range, or one that the mesh is too small for.
     pub fn within_reduction(
         &self,
         reduction: f64,
@@ -95,10 +95,10 @@ impl<'m> Partitioner<'m> {
         Ok(best)
     }
 
-    /// In as few parts as are found whose cells have sides of this length in the mean; or, where those would take more
-    /// than the positions do, in about as many as take less.
+    /// Partitions the mesh into the fewest parts found whose cells have this mean side. If those
+    /// would take more than uncompressed positions, returns about as many parts as take less.
     ///
-    /// Cost: of some [`Partitioner::with_count`].
+    /// Cost: that of several [`Partitioner::with_count`].
     pub fn within_cell(&self, cell: f64, cells: Reconstruction) -> Parts {
         let (mut few, mut many): (Option<Parts>, Option<Parts>) = (None, None);
         let mut next = 1;
@@ -115,7 +115,7 @@ impl<'m> Partitioner<'m> {
             if least > most || (CLOSE_CELL..=1.0).contains(&ratio) {
                 break;
             }
-            // Sides of a surface's parts shrink as the root of how many there are.
+            // Sides of a surface's parts shrink as the square root of their number.
             let wanted = match is_small {
                 true => next as f64 * ratio * ratio * SLIGHTLY_MORE,
                 false => (least as f64 * most as f64).sqrt(),
@@ -127,13 +127,13 @@ impl<'m> Partitioner<'m> {
         enough.unwrap_or_else(|| self.with_count(1, cells))
     }
 
-    /// The parts with their own numbers for vertices, not yet in cells.
+    /// Collects the parts with local vertex indices, not yet quantized.
     fn members(&self, of_faces: &[u32], count: usize) -> Vec<Part> {
         let mut parts = vec![Part::default(); count];
         let faces = self.graph.triangles.iter().zip(&self.graph.ids);
         for ((face, &id), &part) in faces.zip(of_faces) {
             let part = &mut parts[part as usize];
-            // By the mesh's numbers, for now.
+            // Mesh indices, for now.
             part.faces.push(face.map(|vertex| vertex.0));
             part.ids.push(id);
         }

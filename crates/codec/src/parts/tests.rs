@@ -1,4 +1,4 @@
-//! What parts hold, whatever the mesh.
+//! Properties of parts that hold for any mesh.
 
 use meshlod_fixtures::{grid, mesh, two_objects};
 use meshlod_samples as samples;
@@ -19,7 +19,7 @@ fn meshes() -> Vec<Mesh> {
     ]
 }
 
-/// The faces with what their corners were, each from its least.
+/// Faces in terms of mesh vertices, sorted.
 fn drawn(parts: &Parts) -> Vec<[VertexId; 3]> {
     let of_part = |part: &'_ Part| {
         let face = |face: &[u32; 3]| face.map(|local| part.vertices[local as usize]);

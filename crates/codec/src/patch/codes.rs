@@ -1,4 +1,4 @@
-//! The steps of a patch in bits.
+//! Encoding of a patch's steps in bits.
 
 use std::ops::Range;
 
@@ -7,10 +7,10 @@ use super::grow::{Found, GrowthStep};
 use crate::bits::{Bits, Cursor, width};
 use crate::bytes::Malformed;
 
-/// What the bits of a step say first.
+/// Prefix code at the start of a step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Code {
-    /// The next node of a row of the patch's own.
+    /// Next node of one of the patch's own rows.
     Own,
     /// [`Found::Next`].
     Next,
@@ -18,15 +18,15 @@ pub(super) enum Code {
     Previous,
     /// [`Found::Nothing`].
     Nothing,
-    /// A node of another patch's.
+    /// Node of another patch.
     Foreign,
     /// [`Found::Known`].
     Known,
 }
 
-/// From the most frequent on, by how many ends of the gate are not the patch's own, and at last where there is no gate:
-/// each is so many ones, and a zero but for the last. On ten meshes steps take 3.2 bits a face so, 4.0 by
-/// one list for all.
+/// Codes by decreasing frequency, for 0, 1 and 2 ends of the gate in foreign rows, and for no gate.
+/// Each is written in unary: as many ones as its index, and a zero except for the last. On ten
+/// meshes steps take 3.2 bits per face, and 4.0 with one list for all.
 const CODES: [&[Code]; 4] = {
     use Code::*;
     [
@@ -37,24 +37,24 @@ const CODES: [&[Code]; 4] = {
     ]
 };
 
-/// The rows of a patch: its own, and those of others that it has nodes of.
+/// Rows of a patch: its own, and the foreign ones that it has nodes of.
 pub(super) struct PatchRows {
     pub(super) own: Range<u32>,
     pub(super) foreign: Vec<u32>,
 }
 
-/// Where a node is: in a row, by its number there.
+/// Row of a node, and its number there.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct NodeAddress {
     pub(super) row: u32,
     pub(super) number: u32,
 }
 
-/// What is known before a step.
+/// Context of a step.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Context {
     codes: &'static [Code],
-    /// The row that a new node is likely in.
+    /// Most likely row of a new node.
     row: u32,
 }
 
@@ -71,7 +71,7 @@ impl PatchRows {
         Self { own, foreign }
     }
 
-    /// Of a step across a gate between nodes of these rows, if there is one.
+    /// Returns the context of a step, given the rows of the gate's nodes.
     pub(super) fn context(&self, gate: Option<[u32; 2]>) -> Context {
         let Some([from, to]) = gate else {
             return Context { codes: CODES[3], row: self.own.start };
@@ -83,7 +83,7 @@ impl PatchRows {
         }
     }
 
-    /// Writes itself, and then the steps.
+    /// Writes the foreign rows, and then the steps.
     pub(super) fn push(
         &self,
         steps: &[GrowthStep],
@@ -125,7 +125,7 @@ impl PatchRows {
         }
     }
 
-    /// A row of its own: a zero says that it is the likely one.
+    /// Writes one of the patch's own rows; a zero stands for the likely one.
     fn push_own(&self, context: Context, row: u32, bits: &mut Bits) {
         if self.own.len() > 1 {
             bits.push((row != context.row).into(), 1);
@@ -141,19 +141,23 @@ impl PatchRows {
         }
         let at = bits.next(width(self.own.len()))? as usize;
         let row = self.own.clone().nth(at);
-        row.ok_or_else(|| bits.wrong(format!("the patch has no {at}-th row")))
+        row.ok_or_else(|| bits.wrong(format!("the patch has no row {at} of its own")))
     }
 
     pub(super) fn next(own: Range<u32>, rows: &Rows, bits: &mut Cursor) -> Result<Self, Malformed> {
         let count = next_count(bits)?;
         if count > (rows.len() - own.len()) as u64 {
-            return Err(bits.wrong(format!("there are no {count} rows of others")));
+            return Err(
+                bits.wrong(format!("the patch names {count} foreign rows, more than there are"))
+            );
         }
         let mut foreign = Vec::new();
         for _ in 0..count {
             let row = bits.next(width(rows.len()))? as u32;
             if row as usize >= rows.len() {
-                return Err(bits.wrong(format!("there are {} rows, and no row {row}", rows.len())));
+                return Err(
+                    bits.wrong(format!("row {row} does not exist: there are {} rows", rows.len()))
+                );
             }
             foreign.push(row);
         }
@@ -177,7 +181,7 @@ impl Context {
     }
 }
 
-/// So many bits tell how many bits a count has.
+/// Bits of the length of a count.
 const COUNT_WIDTH: u32 = 5;
 
 fn push_count(bits: &mut Bits, count: u64) {

@@ -1,19 +1,20 @@
-//! The open edges that a patch grows over: the same for who writes it and who reads it.
+//! Front of open edges over which a patch grows, in step for writer and reader.
 
-/// An edge with a face on one side: as the face that is missing would have it. By the patch's own numbers of nodes.
+/// Gate: edge with a face on one side, in the direction of the missing face, between nodes numbered
+/// by the patch.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct OpenEdge {
+pub(super) struct PatchGate {
     pub(super) from: u32,
     pub(super) to: u32,
     is_open: bool,
 }
 
-/// The gates of a patch, in the order in which they opened.
+/// Gates of a patch, in the order in which they opened.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Front {
-    gates: Vec<OpenEdge>,
+    gates: Vec<PatchGate>,
     passed: usize,
-    /// The last gate that opened from each node, and the last to each.
+    /// Last gate that opened from each node, and last to each.
     last: Vec<Ends>,
 }
 
@@ -24,19 +25,19 @@ struct Ends {
 }
 
 impl Front {
-    /// How many nodes are known.
+    /// Returns the number of known nodes.
     pub(super) fn known(&self) -> u32 {
         self.last.len() as u32
     }
 
-    /// One more, and its number.
+    /// Adds a node and returns its number.
     pub(super) fn meet(&mut self) -> u32 {
         self.last.push(Ends::default());
         self.known() - 1
     }
 
-    /// The open gate that has waited longest: it is open no more.
-    pub(super) fn pass(&mut self) -> Option<OpenEdge> {
+    /// Closes and returns the open gate that has waited longest.
+    pub(super) fn pass(&mut self) -> Option<PatchGate> {
         while let Some(&gate) = self.gates.get(self.passed) {
             self.passed += 1;
             if gate.is_open {
@@ -47,30 +48,30 @@ impl Front {
         None
     }
 
-    /// The node after a gate on the border.
-    pub(super) fn next(&self, gate: OpenEdge) -> Option<u32> {
+    /// Returns the node after a gate on the border.
+    pub(super) fn next(&self, gate: PatchGate) -> Option<u32> {
         self.last[gate.to as usize].from.map(|next| self.gates[next as usize].to)
     }
 
-    /// The node before it.
-    pub(super) fn previous(&self, gate: OpenEdge) -> Option<u32> {
+    /// Returns the node before a gate on the border.
+    pub(super) fn previous(&self, gate: PatchGate) -> Option<u32> {
         self.last[gate.from as usize].to.map(|previous| self.gates[previous as usize].from)
     }
 
-    /// A face that starts anew.
+    /// Adds a face that is not adjacent to the front.
     pub(super) fn start(&mut self, [a, b, c]: [u32; 3]) {
         self.side(a, b);
         self.side(b, c);
         self.side(c, a);
     }
 
-    /// A face across a gate that has been passed.
-    pub(super) fn grow(&mut self, gate: OpenEdge, third: u32) {
+    /// Adds a face across a gate that has been passed.
+    pub(super) fn grow(&mut self, gate: PatchGate, third: u32) {
         self.side(gate.to, third);
         self.side(third, gate.from);
     }
 
-    /// A side of a face: what waited for it is closed, else a gate opens.
+    /// Adds a side of a face: closes the gate that it matches, or opens one.
     fn side(&mut self, from: u32, to: u32) {
         let waits = [self.last[from as usize].from, self.last[to as usize].to];
         let is_it = |&at: &u32| {
@@ -81,13 +82,13 @@ impl Front {
             return self.close(at as usize);
         }
         let at = Some(self.gates.len() as u32);
-        self.gates.push(OpenEdge { from: to, to: from, is_open: true });
+        self.gates.push(PatchGate { from: to, to: from, is_open: true });
         self.last[to as usize].from = at;
         self.last[from as usize].to = at;
     }
 
     fn close(&mut self, at: usize) {
-        let OpenEdge { from, to, .. } = self.gates[at];
+        let PatchGate { from, to, .. } = self.gates[at];
         self.gates[at].is_open = false;
         let forget = |end: &mut Option<u32>| {
             if *end == Some(at as u32) {

@@ -1,27 +1,27 @@
-//! Growing a patch: face after face, each across an edge of those before where one is left.
+//! Growing a patch face by face, across open edges as long as there are any.
 
-use super::front::{Front, OpenEdge};
+use super::front::{Front, PatchGate};
 
-/// A step of a patch's growth.
+/// Step in the growth of a patch.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct GrowthStep {
-    /// The nodes of the gate that it is across, or none where a face starts anew.
+    /// Nodes of the gate that it crosses; `None` for a corner of a face that starts anew.
     pub(super) gate: Option<[u32; 2]>,
     pub(super) finds: Found,
 }
 
-/// What there is across a gate, or at a corner of a face that starts anew.
+/// Node that a step finds across a gate, or at a corner of a face that starts anew.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Found {
-    /// No face.
+    /// No face, and so no node.
     Nothing,
-    /// A node that the patch has not met.
+    /// Node that the patch has not met before.
     New(u32),
-    /// The node after the gate on the border.
+    /// Node after the gate on the border.
     Next,
-    /// The node before it.
+    /// Node before the gate on the border.
     Previous,
-    /// Any that the patch has met, by its number there.
+    /// Any other node that the patch has met, by its number there.
     Known(u32),
 }
 
@@ -44,7 +44,7 @@ impl PatchGrower {
         Self { numbers: vec![UNMET; nodes] }
     }
 
-    /// The steps that make all of these faces.
+    /// Returns the steps that produce all these faces.
     pub(super) fn grow(&mut self, faces: &[[u32; 3]]) -> Vec<GrowthStep> {
         let mut sides = Sides::new(faces);
         let mut front = Front::default();
@@ -87,7 +87,13 @@ impl PatchGrower {
         }
     }
 
-    fn third(&mut self, node: u32, gate: OpenEdge, front: &mut Front, met: &mut Vec<u32>) -> Found {
+    fn third(
+        &mut self,
+        node: u32,
+        gate: PatchGate,
+        front: &mut Front,
+        met: &mut Vec<u32>,
+    ) -> Found {
         match self.corner(node, front, met) {
             Found::Known(number) if front.next(gate) == Some(number) => Found::Next,
             Found::Known(number) if front.previous(gate) == Some(number) => Found::Previous,
@@ -96,16 +102,16 @@ impl PatchGrower {
     }
 }
 
-/// The sides of faces that are not made yet.
+/// Sides of faces that are not yet made.
 struct Sides<'a> {
     faces: &'a [[u32; 3]],
     is_made: Vec<bool>,
     left: usize,
-    /// Before this all are made.
+    /// All faces before this one are made.
     first: usize,
-    /// From, to, and the corner `3 face + k` that it starts at; in order.
+    /// Start and end of each side, and the corner `3 face + k` at its start; sorted.
     sides: Vec<([u32; 2], u32)>,
-    /// Of the first of sides with the same ends: how many of them are made for certain.
+    /// For the first of several sides with equal ends: how many of them are certainly made.
     passed: Vec<u32>,
 }
 
@@ -126,14 +132,14 @@ impl<'a> Sides<'a> {
         }
     }
 
-    /// A face that is not made yet, and now is.
+    /// Makes any face that is not yet made.
     fn any(&mut self) -> usize {
         let rest = &self.is_made[self.first..];
         self.first += rest.iter().position(|is_made| !is_made).expect("some are left");
         self.make(self.first)
     }
 
-    /// What is across from a side of a face that is not made yet, and now is.
+    /// Makes a face that has this side and returns its third corner; `None` if there is none.
     fn across(&mut self, ends: [u32; 2]) -> Option<u32> {
         let first = self.sides.partition_point(|&(side, _)| side < ends);
         loop {

@@ -1,9 +1,11 @@
-//! Faces in patches, each decoded alone: told by how they grow from one another.
+//! Faces in patches that can be decoded independently, coded by how they grow from one another.
 //!
-//! What faces have at their corners, *nodes*, lies in rows; so many rows in a row belong to a patch, and faces are in
-//! the first patch that has one of their corners: so of two patches only one has nodes of the other. A patch grows over its edges as a cut-border machine does [GS98]: across
-//! each open edge there is nothing, or a face whose third corner is new, or a neighbour of the edge on the border,
-//! or any other. New nodes come in the order in which their rows have them, so most faces need no index at all.
+//! *Nodes* are what faces have at their corners; they lie in rows. Several consecutive rows belong
+//! to a patch, and a face belongs to the first patch that has one of its corners, so of two patches
+//! only one refers to nodes of the other. A patch grows over its open edges as a cut-border machine
+//! does [GS98]: across each there is nothing, or a face whose third corner is new, adjacent on the
+//! border, or any other. New nodes come in the order of their rows, so most faces need no index at
+//! all.
 
 mod codes;
 mod front;
@@ -20,13 +22,13 @@ use self::read::PatchReader;
 use crate::bits::{Bits, Cursor, width};
 use crate::bytes::{Malformed, Reader};
 
-/// How many nodes each row has, as sums.
+/// Number of nodes in each row, as prefix sums.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Rows {
     starts: Vec<u32>,
 }
 
-/// The faces of a mesh in patches.
+/// Faces of a mesh in patches.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Patches {
     rows: Rows,
@@ -35,22 +37,22 @@ pub(crate) struct Patches {
     bits: Bits,
 }
 
-/// Which byte a patch's bits start at, and how many faces it has.
+/// First byte of a patch's bits, and its number of faces.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Head {
     start: u32,
     faces: u32,
 }
 
-/// Of a file: how many bytes the bits of all take. Of a patch: [`Head`].
+/// Size of the header in a file, the length of all bits, and of a patch's [`Head`].
 const HEADER: usize = 4;
 const PATCH: usize = 8;
 
 impl Rows {
-    /// Rows of that many nodes each.
+    /// Creates rows with the given numbers of nodes.
     ///
     /// # Panics
-    /// More nodes than are numbered.
+    /// If there are more nodes than a `u32` can number.
     pub(crate) fn new(sizes: impl IntoIterator<Item = usize>) -> Self {
         let mut starts = vec![0];
         let mut end = 0;
@@ -65,12 +67,12 @@ impl Rows {
         self.starts.len() - 1
     }
 
-    /// How many nodes all have.
+    /// Returns the number of nodes in all rows.
     pub(crate) fn nodes(&self) -> usize {
         self.starts[self.len()] as usize
     }
 
-    /// What they take in bytes: a width, and as many bits for each.
+    /// Returns the stored size in bytes: a width, and that many bits for each row.
     pub(crate) fn bytes(&self) -> usize {
         1 + (self.len() * self.width() as usize).div_ceil(8)
     }
@@ -85,12 +87,12 @@ impl Rows {
     pub(crate) fn restore(count: usize, reader: &mut Reader) -> Result<Self, Malformed> {
         let width = u32::from(reader.u8()?);
         if width > u32::BITS {
-            return Err(reader.wrong("rows with more nodes than are numbered"));
+            return Err(reader.wrong("a row has more nodes than 32 bits can number"));
         }
         let bits = Bits::restore(count.saturating_mul(width as usize), reader)?;
         let sizes = (0..count).map(|row| bits.get(row * width as usize, width));
         if sizes.clone().sum::<u64>() > u32::MAX.into() {
-            return Err(reader.wrong("more nodes than are numbered"));
+            return Err(reader.wrong("the rows have more nodes than 32 bits can number"));
         }
         Ok(Self::new(sizes.map(|size| size as usize)))
     }
@@ -100,12 +102,12 @@ impl Rows {
         width(most.unwrap_or(0) + 1)
     }
 
-    /// The nodes of one.
+    /// Returns the nodes of a row.
     pub(crate) fn range(&self, row: usize) -> Range<usize> {
         self.starts[row] as usize..self.starts[row + 1] as usize
     }
 
-    /// The row of a node, and its number there.
+    /// Returns the row of a node, and its number there.
     pub(crate) fn place(&self, node: u32) -> (usize, usize) {
         let row = self.starts.partition_point(|&start| start <= node) - 1;
         (row, (node - self.starts[row]) as usize)
@@ -121,7 +123,8 @@ impl Rows {
 }
 
 impl Patches {
-    /// The faces in patches, and the nodes in the order of the rows: within a row as its patch comes to them.
+    /// Encodes faces in patches, and returns the nodes in row order. Within a row they are in the
+    /// order in which its patch meets them.
     ///
     /// `row_of` is the row of each node. A patch has `rows_per_patch` rows.
     pub(crate) fn new(
@@ -153,7 +156,7 @@ impl Patches {
         &self.rows
     }
 
-    /// How many patches there are.
+    /// Returns the number of patches.
     pub(crate) fn len(&self) -> usize {
         self.heads.len()
     }
@@ -162,14 +165,14 @@ impl Patches {
         self.heads.iter().map(|head| head.faces as usize).sum()
     }
 
-    /// The faces of one, by nodes in the order of the rows: no other is decoded.
+    /// Decodes the faces of one patch, as nodes in row order.
     pub(crate) fn faces(&self, patch: usize) -> Result<Vec<[u32; 3]>, Malformed> {
         let head = self.heads[patch];
         let bits = Cursor::new(&self.bits, 8 * head.start as usize);
         PatchReader::new(&self.rows, self.own(patch), bits)?.faces(head.faces as usize)
     }
 
-    /// What they take, with all that decoding them needs, in bytes.
+    /// Returns the size in bytes, with everything needed to decode them.
     pub(crate) fn bytes(&self) -> usize {
         HEADER + PATCH * self.heads.len() + self.bits.len() / 8
     }
@@ -183,7 +186,8 @@ impl Patches {
         self.bits.store(out);
     }
 
-    /// Patches of so many rows each, from bytes; their bits are looked at when they are decoded.
+    /// Reads patches of `rows_per_patch` rows each. Their bits are only checked when they are
+    /// decoded.
     pub(crate) fn restore(
         rows: Rows,
         rows_per_patch: usize,
@@ -195,11 +199,11 @@ impl Patches {
             heads.push(Head { start: reader.u32()?, faces: reader.u32()? });
         }
         for (at, head) in heads.iter().enumerate() {
-            // A face takes a bit at least, and no two patches the same.
+            // A face takes at least a bit, and patches do not share bits.
             let end = u64::from(heads.get(at + 1).map_or(len, |next| next.start));
             let room = 8 * end.saturating_sub(head.start.into());
             if end > len.into() || u64::from(head.faces) > room {
-                return Err(reader.wrong(format!("patch {at} has no room for its faces")));
+                return Err(reader.wrong(format!("patch {at} has too few bits for its faces")));
             }
         }
         let bits = Bits::restore(8 * len as usize, reader)?;
@@ -219,8 +223,8 @@ impl Patches {
     }
 }
 
-/// The faces of each patch: those with a corner there, and none in one before. By the majority of corners patches have
-/// twice as many nodes of others, and faces take 1.3 bits more.
+/// Assigns each face to the first patch that has one of its corners. By the majority of corners,
+/// patches have twice as many foreign nodes, and faces take 1.3 bits more.
 fn members(
     faces: &[[u32; 3]],
     row_of: &[u32],
@@ -235,7 +239,8 @@ fn members(
     members
 }
 
-/// The nodes of each row: as its patch comes to them, and then those that only others have.
+/// Orders the nodes of each row: first as its patch meets them, then those that only other patches
+/// have.
 fn in_rows(
     grown: &[Vec<GrowthStep>],
     row_of: &[u32],

@@ -1,22 +1,22 @@
-//! Reading a patch: face after face, as it has grown.
+//! Reading a patch face by face, as it grew.
 
 use std::ops::Range;
 
 use super::Rows;
 use super::codes::{Code, Context, NodeAddress, PatchRows};
-use super::front::{Front, OpenEdge};
+use super::front::{Front, PatchGate};
 use crate::bits::{Cursor, width};
 use crate::bytes::Malformed;
 
-/// A patch that grows as its bits say.
+/// Reader that grows a patch as its bits say.
 pub(super) struct PatchReader<'a> {
     rows: &'a Rows,
     book: PatchRows,
     bits: Cursor<'a>,
     front: Front,
-    /// The nodes that it has met.
+    /// Nodes met so far.
     met: Vec<NodeAddress>,
-    /// How many it has met of each row of its own.
+    /// Number of nodes met in each of the patch's own rows.
     taken: Vec<u32>,
 }
 
@@ -31,7 +31,7 @@ impl<'a> PatchReader<'a> {
         Ok(Self { rows, book, bits, front: Front::default(), met: Vec::new(), taken })
     }
 
-    /// So many faces.
+    /// Reads `count` faces.
     pub(super) fn faces(mut self, count: usize) -> Result<Vec<[u32; 3]>, Malformed> {
         let mut faces = Vec::with_capacity(count);
         while faces.len() < count {
@@ -54,8 +54,8 @@ impl<'a> PatchReader<'a> {
         Ok(faces)
     }
 
-    /// The node across a gate, if there is a face.
-    fn third(&mut self, gate: OpenEdge) -> Result<Option<u32>, Malformed> {
+    /// Reads the node across a gate; `None` if there is no face.
+    fn third(&mut self, gate: PatchGate) -> Result<Option<u32>, Malformed> {
         let rows = [gate.from, gate.to].map(|number| self.met[number as usize].row);
         let context = self.book.context(Some(rows));
         let neighbour = match context.next_code(&mut self.bits)? {
@@ -64,11 +64,12 @@ impl<'a> PatchReader<'a> {
             Code::Previous => self.front.previous(gate),
             code => Some(self.node(code, context)?),
         };
-        let neighbour = neighbour.ok_or_else(|| self.bits.wrong("the border goes no further"))?;
+        let neighbour =
+            neighbour.ok_or_else(|| self.bits.wrong("the border does not continue at a gate"))?;
         Ok(Some(neighbour))
     }
 
-    /// A corner of a face that starts anew.
+    /// Reads a corner of a face that starts anew.
     fn corner(&mut self) -> Result<u32, Malformed> {
         let context = self.book.context(None);
         let code = context.next_code(&mut self.bits)?;
@@ -99,7 +100,8 @@ impl<'a> PatchReader<'a> {
     fn foreign(&mut self) -> Result<NodeAddress, Malformed> {
         let at = self.bits.next(width(self.book.foreign.len()))? as usize;
         let row = self.book.foreign.get(at).copied();
-        let row = row.ok_or_else(|| self.bits.wrong(format!("the patch names no {at}-th row")))?;
+        let row =
+            row.ok_or_else(|| self.bits.wrong(format!("the patch has no foreign row {at}")))?;
         let number = self.bits.next(width(self.rows.size(row) as usize))? as u32;
         if number >= self.rows.size(row) {
             return Err(self.bits.wrong(format!("row {row} has no node {number}")));

@@ -5,7 +5,7 @@ use meshlod_samples as samples;
 use super::*;
 use crate::kd::{BLOCK, blocks_of};
 
-/// Each face from its least node on, all in order.
+/// Rotates faces to start at their least node, and sorts them.
 fn normal(faces: impl IntoIterator<Item = [u32; 3]>) -> Vec<[u32; 3]> {
     let turned = |[a, b, c]: [u32; 3]| [[a, b, c], [b, c, a], [c, a, b]].into_iter().min();
     let mut faces: Vec<_> = faces.into_iter().filter_map(turned).collect();

@@ -1,24 +1,24 @@
-//! What faces have at their corners: vertices, or wedges where there are attributes.
+//! Nodes: what faces have at their corners, which are vertices, or wedges if there are attributes.
 
 use meshlod_mesh::{FaceId, Mesh, VertexId};
 
 use crate::kd::BLOCK;
 use crate::parts::Parts;
 
-/// The nodes of a mesh, each in a row.
+/// Nodes of a mesh, each in a row.
 pub(super) struct Nodes {
     pub(super) faces: Vec<[u32; 3]>,
-    /// The vertex that each node is, or is a wedge of.
+    /// Vertex of each node.
     pub(super) vertex_of: Vec<VertexId>,
-    /// Its vertex or wedge.
+    /// Vertex or wedge of each node.
     pub(super) corner_of: Vec<u32>,
     pub(super) row_of: Vec<u32>,
     pub(super) rows: usize,
 }
 
 impl Nodes {
-    /// Nodes in rows of the blocks that vertices are in. Where a vertex has several wedges, a block has two rows: of
-    /// the first wedges of its vertices, and of the others.
+    /// Creates nodes in one row per block of vertices. If a vertex has several wedges, each block
+    /// has two rows: the first wedges of its vertices, and all others.
     pub(super) fn of_blocks(mesh: &Mesh, ordered: &[VertexId]) -> Self {
         let mut this = Self::of_groups(mesh, [(0..mesh.faces.len()).map(FaceId::new)]);
         let mut block_of = vec![0; mesh.positions.len()];
@@ -35,12 +35,12 @@ impl Nodes {
         this
     }
 
-    /// Nodes in a row for each part: what several parts have is several nodes.
+    /// Creates nodes in one row per part. A vertex in several parts has a node in each.
     pub(super) fn of_parts(mesh: &Mesh, parts: &Parts) -> Self {
         Self::of_groups(mesh, parts.parts().iter().map(|part| part.ids.iter().copied()))
     }
 
-    /// Nodes in a row for each group of faces.
+    /// Creates nodes in one row per group of faces.
     fn of_groups<I: Iterator<Item = FaceId>>(
         mesh: &Mesh,
         groups: impl IntoIterator<Item = I>,

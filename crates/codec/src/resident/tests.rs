@@ -1,4 +1,4 @@
-//! What every scheme must hold, on every kind of mesh.
+//! Properties that every scheme must have, on every kind of mesh.
 
 use glam::DVec3;
 use meshlod_fixtures as fixtures;
@@ -13,7 +13,7 @@ use crate::blocks::Accuracy;
 use crate::lattice::Lattice;
 use crate::parts::{Partitioner, Reconstruction};
 
-/// Meshes with and without attributes and seams, closed and open, and what is no surface.
+/// Meshes with and without attributes and seams, closed, open and non-manifold.
 fn meshes() -> Vec<Mesh> {
     let mut seamed = samples::terrain(1500);
     // Each face has wedges of its own.
@@ -43,7 +43,7 @@ fn meshes() -> Vec<Mesh> {
     ]
 }
 
-/// A mesh by every scheme.
+/// A mesh compressed by every scheme.
 fn by_schemes(mesh: &Mesh) -> Vec<Compressed> {
     compressions(mesh).into_iter().map(|done| done.compressed).collect()
 }
@@ -62,7 +62,7 @@ fn compressions(mesh: &Mesh) -> Vec<Compression> {
     ]
 }
 
-/// The faces of a mesh by where their corners are and the values there, from the least corner on, in order.
+/// Faces of a mesh as positions and values of their corners, from the least corner on, sorted.
 fn drawn(mesh: &Mesh, at: impl Fn(f64) -> f64) -> Vec<[String; 3]> {
     let corner = |face: usize, k: usize| {
         let place = mesh.positions[mesh.faces[face][k].index()].map(&at);
@@ -105,7 +105,7 @@ fn every_scheme_gives_the_mesh_back_from_bytes() {
     }
 }
 
-/// Triangles anywhere, some of them far larger than others.
+/// Random triangles, some of them far larger than others.
 fn soup(seed: u32) -> Mesh {
     let number = |i: u32| {
         let hashed = (i ^ seed.wrapping_mul(0x9e37_79b9)).wrapping_mul(0x85eb_ca6b);

@@ -1,27 +1,30 @@
-//! The border of what is known of a block, which faces are put on one by one.
+//! Border of the part of a block that is already known, to which faces are added one by one.
 //!
-//! Border edges form loops. The edge of a node runs from its vertex to that of the node that follows, in the direction in which
-//! the face behind it has it; a new face is put on from the other side [GS98]. Encoder and decoder do the same steps here, so
-//! both know the same of every edge.
+//! Border edges form loops. The edge of a node runs from the node's vertex to the next node's
+//! vertex, in its direction within the known face on it; a new face is added on the other side, as
+//! in a cut-border machine [GS98]. Encoder and decoder make the same steps here, so both know the
+//! same about every edge.
 
-/// How many faces a block has at most.
+/// Greatest number of faces in a block.
 pub(super) const MAX_FACES: usize = 1024;
-/// A face makes three nodes at most. A power of two, so that no place is outside.
+/// Capacity for nodes: a face makes at most three. A power of two, so that masked indices are in
+/// bounds.
 pub(super) const NODES: usize = 4 * MAX_FACES;
 const MASK: usize = NODES - 1;
 
-/// What is done at an edge of the border.
+/// Operation on a border edge.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Step {
-    /// A face to a new vertex.
+    /// Add a face with a new vertex.
     New,
-    /// A face to the vertex before the edge: the first vertex of the edge is inside then.
+    /// Add a face with the vertex before the edge, which completes the fan of the edge's first
+    /// vertex.
     Previous,
-    /// A face to the vertex behind it: the second one is.
+    /// Add a face with the vertex after the edge, which completes the fan of its second vertex.
     Next,
-    /// No face.
+    /// Add no face.
     Nothing,
-    /// A face to some other vertex of the border.
+    /// Add a face with any other vertex of the border.
     Other,
 }
 
@@ -30,39 +33,39 @@ impl Step {
         [Self::New, Self::Previous, Self::Next, Self::Nothing, Self::Other];
 }
 
-/// A vertex on a loop, and the edge that leaves from it.
+/// Vertex on a border loop, with the edge that leaves from it.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Node {
     pub(super) vertex: u16,
     pub(super) next: u16,
     pub(super) previous: u16,
-    /// The third vertex of the face behind the edge.
+    /// Third vertex of the known face on the edge.
     pub(super) apex: u16,
-    /// The one before it, in the fan around the node's vertex.
+    /// Apex before this one in the fan around the node's vertex.
     pub(super) previous_apex: u16,
     pub(super) state: EdgeState,
 }
 
-/// What is known of a node's edge.
+/// State of a node's edge.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[repr(u8)]
 pub(super) enum EdgeState {
-    /// There may be a face.
+    /// There may be a face on the other side.
     #[default]
     Open,
-    /// There is none.
+    /// There is no face on the other side.
     Closed,
-    /// The node is inside.
+    /// The node is no longer on the border.
     Removed,
 }
 
 pub(super) struct Border {
     nodes: Box<[Node; NODES]>,
     len: usize,
-    /// Nodes whose edges are to be looked at, in the order in which they came.
+    /// Nodes whose edges are still to be processed, in order of creation.
     queue: Vec<u16>,
     taken: usize,
-    /// How many faces each vertex has.
+    /// Number of known faces at each vertex.
     faces: Box<[u8; NODES]>,
 }
 
@@ -95,21 +98,21 @@ impl Border {
         &mut self.nodes[usize::from(at) & MASK]
     }
 
-    /// How many faces a vertex has by now.
+    /// Returns the number of known faces at a vertex.
     #[inline(always)]
     pub(super) fn faces_at(&self, vertex: u16) -> u8 {
         self.faces[usize::from(vertex) & MASK]
     }
 
     #[inline(always)]
-    fn put_face(&mut self, corners: [u16; 3]) {
+    fn add_face(&mut self, corners: [u16; 3]) {
         for v in corners {
             let count = &mut self.faces[usize::from(v) & MASK];
             *count = count.saturating_add(1);
         }
     }
 
-    /// The first node whose edge is open, in the order in which they came.
+    /// Returns the first node in the queue whose edge is open.
     #[inline(always)]
     pub(super) fn pivot(&mut self) -> Option<u16> {
         while let Some(&at) = self.queue.get(self.taken) {
@@ -121,7 +124,7 @@ impl Border {
         None
     }
 
-    /// A face apart from all others, with new vertices; its first node.
+    /// Adds a separate face with three new vertices and returns its first node.
     pub(super) fn start(&mut self, vertices: [u16; 3]) -> u16 {
         let at = self.len as u16;
         for k in 0..3u16 {
@@ -137,7 +140,7 @@ impl Border {
                 state: EdgeState::Open,
             });
         }
-        self.put_face(vertices);
+        self.add_face(vertices);
         at
     }
 
@@ -150,9 +153,9 @@ impl Border {
         at
     }
 
-    /// A face on an edge to a new vertex, which has a node then, between the edge's.
+    /// Adds a face on an edge to a new vertex, and a node for it between the edge's two.
     #[inline(always)]
-    pub(super) fn put_new(&mut self, at: u16, vertex: u16) -> [u16; 3] {
+    pub(super) fn add_new(&mut self, at: u16, vertex: u16) -> [u16; 3] {
         let Node { vertex: a, next: second, apex, .. } = *self.node(at);
         let b = self.node(second).vertex;
         self.faces[usize::from(vertex) & MASK] = 0;
@@ -167,13 +170,13 @@ impl Border {
         let node = self.node_mut(at);
         (node.next, node.apex, node.previous_apex) = (new, b, apex);
         self.node_mut(second).previous = new;
-        self.put_face([b, a, vertex]);
+        self.add_face([b, a, vertex]);
         [b, a, vertex]
     }
 
-    /// A face on an edge to the vertex before it.
+    /// Adds a face on an edge to the vertex before it.
     #[inline(always)]
-    pub(super) fn put_previous(&mut self, at: u16) -> [u16; 3] {
+    pub(super) fn add_previous(&mut self, at: u16) -> [u16; 3] {
         let Node { vertex: a, next: second, previous, .. } = *self.node(at);
         let b = self.node(second).vertex;
         self.node_mut(at).state = EdgeState::Removed;
@@ -181,14 +184,14 @@ impl Border {
         let c = node.vertex;
         (node.next, node.previous_apex, node.apex) = (second, node.apex, a);
         self.node_mut(second).previous = previous;
-        self.put_face([b, a, c]);
+        self.add_face([b, a, c]);
         self.zip(previous);
         [b, a, c]
     }
 
-    /// A face on an edge to the vertex behind it.
+    /// Adds a face on an edge to the vertex after it.
     #[inline(always)]
-    pub(super) fn put_next(&mut self, at: u16) -> [u16; 3] {
+    pub(super) fn add_next(&mut self, at: u16) -> [u16; 3] {
         let Node { vertex: a, next: second, apex, .. } = *self.node(at);
         let Node { vertex: b, next: third, .. } = *self.node(second);
         self.node_mut(second).state = EdgeState::Removed;
@@ -197,12 +200,13 @@ impl Border {
         let node = self.node_mut(third);
         let c = node.vertex;
         node.previous = at;
-        self.put_face([b, a, c]);
+        self.add_face([b, a, c]);
         self.zip(at);
         [b, a, c]
     }
 
-    /// Two edges that run between the same two nodes there and back are one edge.
+    /// Removes two edges that run back and forth between the same two nodes: they are one inner
+    /// edge.
     #[inline(always)]
     fn zip(&mut self, at: u16) {
         let Node { next, previous, state, .. } = *self.node(at);
@@ -213,8 +217,8 @@ impl Border {
         }
     }
 
-    /// A face on an edge to the vertex of any node, which parts a loop or makes one of two.
-    pub(super) fn put_other(&mut self, at: u16, other: u16) -> [u16; 3] {
+    /// Adds a face on an edge to the vertex of any other node, which splits a loop or joins two.
+    pub(super) fn add_other(&mut self, at: u16, other: u16) -> [u16; 3] {
         let Node { vertex: a, next: second, apex, .. } = *self.node(at);
         let b = self.node(second).vertex;
         let Node { vertex: c, next: after, .. } = *self.node(other);
@@ -236,29 +240,29 @@ impl Border {
         node.state = EdgeState::Open;
         self.node_mut(second).previous = other;
         self.queue.push(other);
-        self.put_face([b, a, c]);
+        self.add_face([b, a, c]);
         [b, a, c]
     }
 
-    /// No face on an edge.
+    /// Marks an edge as having no face.
     #[inline(always)]
     pub(super) fn close(&mut self, at: u16) {
         self.node_mut(at).state = EdgeState::Closed;
     }
 
-    /// A node of a vertex, where it is on the border.
+    /// Returns a node of a vertex, if the vertex is on the border.
     pub(super) fn find(&self, vertex: u16) -> Option<u16> {
         let is_there = |node: &Node| node.vertex == vertex && node.state != EdgeState::Removed;
         self.nodes[..self.len].iter().position(is_there).map(|at| at as u16)
     }
 
-    /// The vertices that are on the border, some of them more than once.
+    /// Returns the vertices on the border, possibly more than once.
     pub(super) fn vertices(&self) -> impl Iterator<Item = u16> {
         let nodes = self.nodes[..self.len].iter();
         nodes.filter(|node| node.state != EdgeState::Removed).map(|node| node.vertex)
     }
 
-    /// A node, if there is such a one; else the first.
+    /// Returns `at` if there is such a node, else the first node.
     pub(super) fn known(&self, at: u16) -> u16 {
         if usize::from(at) < self.len { at } else { 0 }
     }

@@ -1,4 +1,4 @@
-//! Blocks from bytes that may be anything.
+//! Decoding of blocks from untrusted bytes.
 
 use glam::{BVec4A, Vec4};
 
@@ -13,34 +13,34 @@ use crate::bytes::Malformed;
 
 const MASK: usize = NODES - 1;
 
-/// Room for four blocks at a time.
+/// Decoder state for four blocks at a time.
 pub(super) struct Decoder {
     lanes: [Lane; LANES],
 }
 
-/// Room for a block.
+/// Decoder state for one block.
 pub(super) struct Lane {
     border: Border,
     gates: Vec<Gate>,
     cells: Box<[Vec4; NODES]>,
     pub(super) faces: Vec<[u16; 3]>,
-    /// Those vertices that are not what their cell says.
+    /// Tags of vertices that are not welded by cell alone.
     tags: Vec<(u16, u32)>,
 }
 
-/// The bytes of a block, and how many faces it has: at most [`super::border::MOST_FACES`].
+/// Bytes of a block, and its number of faces: at most [`super::border::MAX_FACES`].
 #[derive(Clone, Copy, Debug)]
 pub(super) struct BlockBytes<'a> {
     pub(super) bytes: &'a [u8],
     pub(super) faces: usize,
 }
 
-/// Whether a vertex may be in other blocks too.
+/// Whether a vertex may also be in other blocks.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Sharing {
     Inside,
-    /// One with all of its cell that have this tag.
-    Joint(u32),
+    /// Welded with all vertices in its cell that have this tag.
+    Shared(u32),
 }
 
 impl Decoder {
@@ -48,7 +48,8 @@ impl Decoder {
         Self { lanes: std::array::from_fn(|_| Lane::new()) }
     }
 
-    /// Decodes blocks, as many as there are lanes at most. What is wrong is told with the number of the block.
+    /// Decodes at most as many blocks as there are lanes. An error comes with the index of its
+    /// block.
     pub(super) fn decode(
         &mut self,
         blocks: &[BlockBytes],
@@ -72,7 +73,8 @@ impl Decoder {
     }
 }
 
-/// What faces join: a step of each block by turns, so that the processor has several to work on.
+/// Decodes the connectivity, one step of each block in turn, so that the processor can overlap
+/// them.
 #[inline(never)]
 fn connect(
     lanes: &mut [Lane],
@@ -92,7 +94,8 @@ fn connect(
     }
 }
 
-/// Where all vertices but the first are; false for a lane with one where none can be.
+/// Decodes the positions of all vertices but the first. Returns false for lanes with a vertex out
+/// of range.
 #[inline(never)]
 fn place(
     lanes: &mut [Lane; LANES],
@@ -144,7 +147,7 @@ impl Lane {
         }
     }
 
-    /// The cells of the vertices of the last block.
+    /// Returns the cells of the decoded vertices.
     pub(super) fn cells(&self) -> impl ExactSizeIterator<Item = CellVec> {
         self.cells[..self.gates.len()].iter().map(|&cell| CellVec::from_vec4(cell))
     }
@@ -160,10 +163,10 @@ impl Lane {
     fn finish(&mut self, symbols: &mut Symbols, is_inside: bool) -> Result<(), Malformed> {
         self.read_tags(symbols)?;
         symbols.finish(checksum(self.cells()))?;
-        if is_inside { Ok(()) } else { Err(wrong("a vertex is outside of all cells")) }
+        if is_inside { Ok(()) } else { Err(wrong("a vertex is outside the grid")) }
     }
 
-    /// One step at the border.
+    /// Decodes one step at the border.
     #[inline(always)]
     fn step(&mut self, symbols: &mut Symbols, models: &Models) {
         let Some(at) = self.border.pivot() else { return self.start() };
@@ -174,20 +177,20 @@ impl Lane {
             Step::New => {
                 let vertex = self.gates.len() as u16;
                 self.gates.push(Gate::at(&self.border, at));
-                self.border.put_new(at, vertex)
+                self.border.add_new(at, vertex)
             }
-            Step::Previous => self.border.put_previous(at),
-            Step::Next => self.border.put_next(at),
+            Step::Previous => self.border.add_previous(at),
+            Step::Next => self.border.add_next(at),
             Step::Nothing => return self.border.close(at),
             Step::Other => {
                 let other = other(&self.border, at, symbols);
-                self.border.put_other(at, other)
+                self.border.add_other(at, other)
             }
         };
         self.faces.push(face);
     }
 
-    /// A face apart from all others.
+    /// Adds a separate face.
     #[cold]
     fn start(&mut self) {
         let first = self.gates.len() as u16;
@@ -204,29 +207,29 @@ impl Lane {
         }
         for _ in 0..number(symbols, NODE_BITS) {
             let vertex = number(symbols, NODE_BITS) as u16;
-            let tag = any(symbols);
+            let tag = any_number(symbols);
             if usize::from(vertex) >= self.gates.len() {
-                return Err(wrong("a vertex that is not there has a tag"));
+                return Err(wrong("a tag names a vertex that does not exist"));
             }
             self.tags.push((vertex, tag));
         }
         Ok(())
     }
 
-    /// Which vertices are in other blocks, or here again.
-    pub(super) fn reach(&self, out: &mut Vec<Sharing>) {
+    /// Lists which vertices may also be in other blocks, or in this one again.
+    pub(super) fn sharing(&self, out: &mut Vec<Sharing>) {
         out.clear();
         out.resize(self.gates.len(), Sharing::Inside);
         for vertex in self.border.vertices() {
-            out[usize::from(vertex)] = Sharing::Joint(0);
+            out[usize::from(vertex)] = Sharing::Shared(0);
         }
         for &(vertex, tag) in &self.tags {
-            out[usize::from(vertex)] = Sharing::Joint(tag);
+            out[usize::from(vertex)] = Sharing::Shared(tag);
         }
     }
 }
 
-/// How far a coordinate is from where it is expected.
+/// Decodes the difference of a coordinate from its prediction.
 #[inline(always)]
 fn residual(symbols: &mut Symbols, models: &Models, class: usize, low_bits: u32) -> i32 {
     let (symbol, size, offset) = models.residuals[class].at(symbols.place(RESIDUAL_BITS));
@@ -247,7 +250,7 @@ fn rare(symbols: &mut Symbols, (symbol, size, offset): (usize, u32, u32), low_bi
     let mut far = symbol as i32 - MAX_RESIDUAL;
     if symbol == ESCAPE {
         let is_below = symbols.uniform(1) == 1;
-        far = any(symbols) as i32;
+        far = any_number(symbols) as i32;
         far = if is_below { far.wrapping_neg() } else { far };
     }
     far.wrapping_shl(low_bits).wrapping_add(low as i32).wrapping_sub(1 << low_bits >> 1)
@@ -284,8 +287,8 @@ fn number(symbols: &mut Symbols, bits: u32) -> u32 {
     number
 }
 
-/// A number of which nothing is known.
-fn any(symbols: &mut Symbols) -> u32 {
+/// Decodes a number of any length.
+fn any_number(symbols: &mut Symbols) -> u32 {
     let bits = symbols.uniform(u32::from(LENGTH_BITS));
     number(symbols, bits)
 }

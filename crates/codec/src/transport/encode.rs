@@ -1,4 +1,4 @@
-//! Blocks as symbols, and as bytes.
+//! Encoding of blocks as symbols.
 
 use glam::{BVec4A, Vec4};
 
@@ -9,7 +9,7 @@ use super::predict::{CellVec, LANES, Prediction, SpreadScales};
 use super::rans::Symbol;
 use super::walk::BlockWalk;
 
-/// How far a coordinate is from where it is expected.
+/// Difference of a coordinate from its prediction.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Residual {
     value: i32,
@@ -18,7 +18,8 @@ pub(super) struct Residual {
 }
 
 impl Residual {
-    /// The symbol in the table of the class, how far it is, and the bits below.
+    /// Returns the symbol in the table of the class, the value without its low bits, and the low
+    /// bits.
     pub(super) fn symbol(&self) -> (usize, i32, u16) {
         let raised = self.value + (1 << self.low_bits >> 1);
         let far = raised >> self.low_bits;
@@ -44,11 +45,11 @@ impl Residual {
     }
 }
 
-/// So many bits below are in one go with their symbol.
+/// Greatest number of low bits that are coded together with their symbol.
 pub(super) const JOINT_LOW_BITS: u8 = 5;
-/// Bits of the number of bits of a number.
+/// Bits of the length of a number of any length.
 pub(super) const LENGTH_BITS: u8 = 5;
-/// Numbers are told so many bits at a time.
+/// Greatest number of bits that are coded at once.
 pub(super) const CHUNK_BITS: u32 = 12;
 
 fn push_number(number: u32, bits: u32, symbols: &mut Vec<Symbol>) {
@@ -60,20 +61,20 @@ fn push_number(number: u32, bits: u32, symbols: &mut Vec<Symbol>) {
     }
 }
 
-/// A number of which nothing is known.
+/// Encodes a number of any length.
 fn push_any(number: u32, symbols: &mut Vec<Symbol>) {
     let bits = u32::BITS - number.leading_zeros();
     symbols.push(Symbol::uniform(bits as u16, LENGTH_BITS));
     push_number(number, bits, symbols);
 }
 
-/// How far all vertices but the first are from where they are expected, of four blocks at most.
+/// Computes the residuals of all vertices but the first, for up to four blocks.
 pub(super) fn residuals(
     walks: &[BlockWalk],
     cells: &[CellVec],
     models: &Models,
 ) -> [Vec<Residual>; LANES] {
-    // Side by side as in the decoder: each is asked for some six times.
+    // Gathered as in the decoder: each position is used some six times.
     let placed: [Vec<Vec4>; LANES] = std::array::from_fn(|lane| {
         let vertices = walks.get(lane).map_or(&[][..], |walk| &walk.vertices);
         vertices.iter().map(|&v| cells[v as usize].extend(0.0)).collect()
@@ -107,7 +108,7 @@ pub(super) fn residuals(
     residuals
 }
 
-/// All symbols of a block.
+/// Appends all symbols of a block. Returns where the residuals start and end.
 pub(super) fn symbols(
     walk: &BlockWalk,
     (first, first_bits): (CellVec, [u8; 3]),

@@ -1,34 +1,36 @@
-//! Faces in blocks of about one size, with short borders.
+//! Partition of faces into blocks of about equal size with short borders.
 //!
-//! What is on a border is told by all blocks that have it, so borders are to be short: blocks round, and smooth along their edges.
-//! They are grown one by one, each from where others have ended, and then faces along borders change sides as long as that is
-//! better.
+//! Vertices on a border are stored by all blocks that share them, so borders should be short:
+//! blocks should be round and have smooth outlines. They are grown one by one, each from where
+//! others have ended. Then faces along borders change over to neighbouring blocks wherever that
+//! costs less.
 
 use meshlod_mesh::{Connectivity, FaceId, Side, Twin, VertexId};
 
 use super::predict::CellVec;
 
-/// Faces by blocks.
+/// Faces grouped by blocks.
 #[derive(Clone, Debug)]
 pub(super) struct FaceBlocks {
-    /// The block of each face.
+    /// Block of each face.
     pub(super) of: Vec<u32>,
-    /// The faces of each block, the one in its middle first.
+    /// Faces of each block, the one closest to its middle first.
     members: Vec<u32>,
     starts: Vec<u32>,
 }
 
 impl FaceBlocks {
-    /// The faces of each block, in the order of the blocks.
+    /// Returns the faces of each block, in order of the blocks.
     pub(super) fn members(&self) -> impl Iterator<Item = &[u32]> {
         self.starts.windows(2).map(|ends| &self.members[ends[0] as usize..ends[1] as usize])
     }
 }
 
-/// How often all faces along borders are looked at. At 11 bits 2 leave 1.2 % more bytes, 8 take .5 % off.
+/// Passes over all faces along borders. At 11 bits 2 passes leave 1.2 % more bytes, 8 take .5 %
+/// off.
 const PASSES: usize = 4;
 
-/// FaceBlocks of about so many faces. Cost: linear.
+/// Partitions faces into blocks of about `size` faces. Cost: linear.
 pub(super) fn face_blocks(
     faces: &[[VertexId; 3]],
     cells: &[CellVec],
@@ -51,12 +53,12 @@ struct Clustering {
     blocks: Vec<BlockShape>,
 }
 
-/// The faces of a block together.
+/// Size, middle and spread of a block.
 #[derive(Clone, Copy, Debug, Default)]
 struct BlockShape {
     faces: f32,
     middle: CellVec,
-    /// The mean square of how far faces are from the middle, along each axis that the surface has.
+    /// Mean squared distance of faces from the middle, per axis of the surface.
     spread: f32,
 }
 
@@ -85,7 +87,7 @@ impl Clustering {
         }
     }
 
-    /// FaceBlocks ring by ring; the next begins at the face that has waited longest.
+    /// Grows blocks ring by ring. The next one begins at the face that has waited longest.
     fn grow(&mut self) {
         let mut waiting = Vec::new();
         let (mut waited, mut rest) = (0, 0);
@@ -125,7 +127,7 @@ impl Clustering {
         self.blocks = vec![BlockShape::default(); count as usize];
     }
 
-    /// Lets each face that is beside another block change over where that costs less.
+    /// Moves faces on borders to a neighbouring block where that costs less.
     fn smooth(&mut self) {
         self.measure();
         for f in 0..self.of.len() {
@@ -168,13 +170,15 @@ impl Clustering {
         }
     }
 
-    /// What it costs that a face is in a block: how far off it is, sides to others, and how full the block is.
+    /// Returns the cost of a face in a block: its distance from the middle, its sides to other
+    /// blocks, and how full the block is.
     ///
-    /// Tuned on ten meshes at 11 bits: half and twice the weight of sides leave as many bytes, ±.5 %.
+    /// Tuned on ten meshes at 11 bits: half and twice the weight of sides leave as many bytes, ±.5
+    /// %.
     #[inline]
     fn cost(&self, f: usize, block: u32, own: u32, beside: [u32; 3]) -> f32 {
         const SIDE: f32 = 0.4;
-        /// Fuller is full, and emptier is to be emptied.
+        /// Fill above which a block takes no more faces, and below which it should dissolve.
         const FULL: f32 = 1.25;
         const EMPTY: f32 = 0.25;
         let BlockShape { faces, middle, spread } = self.blocks[block as usize];
@@ -191,7 +195,7 @@ impl Clustering {
         0.5 * way.length_squared() / spread + SIDE * sides as f32 + fill_cost
     }
 
-    /// Counts the blocks that have faces, and puts the face in the middle of each first.
+    /// Drops empty blocks, and puts the face closest to the middle of each block first.
     fn finish(mut self) -> FaceBlocks {
         self.measure();
         let mut numbers = vec![0; self.blocks.len()];

@@ -1,4 +1,5 @@
-//! The bytes of a file: what they are, and what is in them.
+//! Reading and writing the header of a transport file, and decoding its blocks:
+//! docs/formats/mlz.md.
 
 use meshlod_mesh::{Mesh, VertexId};
 
@@ -11,11 +12,11 @@ use super::weld_blocks::{WeldTable, key};
 use crate::bits::Bits;
 use crate::bytes::{Malformed, Reader};
 
-/// What a file is told by, before its blocks.
+/// Header of a file, with the index of its blocks.
 #[derive(Clone, Debug)]
 pub(super) struct Header {
     pub(super) grid: QuantizationGrid,
-    /// Bits of the first vertex of a block, along each axis.
+    /// Bits of the first vertex of each block, along each axis.
     pub(super) first_bits: [u8; 3],
     pub(super) faces: usize,
     pub(super) vertices: usize,
@@ -23,7 +24,7 @@ pub(super) struct Header {
     pub(super) entries: Vec<Entry>,
 }
 
-/// What the index tells of a block.
+/// Index entry of a block.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Entry {
     pub(super) faces: usize,
@@ -31,13 +32,13 @@ pub(super) struct Entry {
 }
 
 const VERSION: u32 = 1;
-/// The coder's state.
+/// Bytes of the coder's state, which every block begins with.
 const LEAST_BYTES: usize = 4;
-/// A block has a byte for so many faces, and so a short file does not ask for much memory.
-pub(super) const FACES_A_BYTE: usize = 16;
+/// Faces per byte of a block at most, so that a short file cannot ask for much memory.
+pub(super) const FACES_PER_BYTE: usize = 16;
 
 impl Header {
-    /// The header of a file of such blocks.
+    /// Encodes the header of a file with these blocks.
     pub(super) fn store(&self, blocks: &[u8]) -> Vec<u8> {
         let mut out = Vec::new();
         for x in self.grid.origin.into_iter().chain([self.grid.cell]) {
@@ -73,7 +74,7 @@ impl Header {
     }
 }
 
-/// A file, of which blocks are decoded when they are asked for.
+/// Opened `.mlz` file, whose blocks are decoded on request.
 #[derive(Clone, Debug)]
 pub struct TransportFile<'a> {
     grid: QuantizationGrid,
@@ -82,13 +83,13 @@ pub struct TransportFile<'a> {
     vertices: usize,
     models: Models,
     places: Vec<BlockSpan>,
-    /// All blocks, their checksum, and where they are.
+    /// Bytes of all blocks, their checksum, and their offset in the file.
     blocks: &'a [u8],
     checksum: u32,
     at: usize,
 }
 
-/// Where a block is among all blocks.
+/// Place of a block among all blocks.
 #[derive(Clone, Copy, Debug)]
 struct BlockSpan {
     at: usize,
@@ -96,30 +97,31 @@ struct BlockSpan {
     faces: usize,
 }
 
-/// A block by itself.
+/// Decoded block.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct TransportBlock {
-    /// Its vertices, those on its border too, in model units.
+    /// Positions of its vertices, including those on its border, in model units.
     pub positions: Vec<[f64; 3]>,
-    /// By places in this list, counter-clockwise.
+    /// Faces as indices into the positions, counter-clockwise.
     pub faces: Vec<[u32; 3]>,
 }
 
 impl<'a> TransportFile<'a> {
-    /// What every such file begins with.
+    /// The first eight bytes of every `.mlz` file.
     pub const MAGIC: [u8; 8] = *b"meshlodz";
 
-    /// Reads the header and the index; no block.
+    /// Reads the header and the index, but no block.
     /// # Errors
-    /// Bytes that are no such file, or damaged.
+    /// Bytes that are not an `.mlz` file, or are damaged.
     pub fn open(bytes: &'a [u8]) -> Result<Self, Malformed> {
         let mut reader = Reader::new(bytes);
         if reader.take(Self::MAGIC.len())? != Self::MAGIC {
-            return Err(reader.wrong("not an .mlz file: it begins otherwise"));
+            return Err(reader.wrong("not an .mlz file: the magic bytes are missing"));
         }
         let version = reader.u32()?;
         if version != VERSION {
-            return Err(reader.wrong(format!("version {version} is not known, only {VERSION} is")));
+            return Err(reader
+                .wrong(format!("unknown version {version}; this reader knows version {VERSION}")));
         }
         let (header_sum, checksum) = (reader.u32()?, reader.u32()?);
         let from = bytes.len() - reader.left();
@@ -128,52 +130,53 @@ impl<'a> TransportFile<'a> {
         check_grid(&grid, &reader)?;
         let first_bits = [reader.u8()?, reader.u8()?, reader.u8()?];
         if first_bits.iter().any(|&bits| u32::from(bits) > MAX_BITS) {
-            return Err(reader.wrong("more bits for a coordinate than there are"));
+            return Err(reader.wrong("a coordinate has too many bits"));
         }
         let [faces, vertices, blocks] = [reader.u32()?, reader.u32()?, reader.u32()?];
         let codes = ModelCodes::restore(&mut reader)?;
         let places = read_index(blocks as usize, &mut reader)?;
         let at = bytes.len() - reader.left();
         if crc32fast::hash(&bytes[from..at]) != header_sum {
-            return Err(reader.wrong("the header is damaged: its checksum is another"));
+            return Err(reader.wrong("the header is damaged: its checksum does not match"));
         }
         let last = places.last().map_or(0, |place| place.at + place.bytes);
         let blocks = reader.take(last)?;
         reader.finish()?;
         if places.iter().map(|place| place.faces).sum::<usize>() != faces as usize {
-            return Err(reader.wrong("blocks have more faces than the mesh, or fewer"));
+            return Err(reader.wrong("the faces of the blocks do not add up to those of the mesh"));
         }
         let (faces, vertices) = (faces as usize, vertices as usize);
         let models = Models::new(&codes);
         Ok(Self { grid, first_bits, faces, vertices, models, places, blocks, checksum, at })
     }
 
-    /// How many blocks there are.
+    /// Returns the number of blocks.
     pub fn blocks(&self) -> usize {
         self.places.len()
     }
 
-    /// How many vertices the mesh has.
+    /// Returns the number of vertices of the mesh.
     pub fn vertices(&self) -> usize {
         self.vertices
     }
 
-    /// How many faces the mesh has.
+    /// Returns the number of faces of the mesh.
     pub fn faces(&self) -> usize {
         self.faces
     }
 
-    /// The side of a cell, in model units: positions are off by half of it at most, along each axis.
+    /// Returns the side of a cell in model units. Positions are off by at most half of it along
+    /// each axis.
     pub fn cell(&self) -> f64 {
         self.grid.cell
     }
 
-    /// A block by itself: no byte of another is looked at.
+    /// Decodes one block, from its own bytes and the header alone.
     ///
     /// # Errors
-    /// A block that is damaged.
+    /// A damaged block.
     /// # Panics
-    /// A block that there is not.
+    /// If there is no such block.
     pub fn block(&self, block: usize) -> Result<TransportBlock, Malformed> {
         let mut decoder = Decoder::new();
         let lanes = self.decode_blocks(&self.places[block..=block], &mut decoder)?;
@@ -183,20 +186,21 @@ impl<'a> TransportFile<'a> {
         Ok(out)
     }
 
-    /// The mesh: each vertex once, faces as they were, block by block.
+    /// Decodes the mesh, with each vertex once and the faces block by block.
     ///
     /// # Errors
-    /// A file that is damaged.
+    /// A damaged file.
     pub fn decode(&self) -> Result<Mesh, Malformed> {
         let (mut positions, mut faces) = (Vec::new(), Vec::new());
         self.decode_all(|cell| positions.push(self.grid.place(cell)), &mut faces)?;
         Ok(Mesh::new(positions, faces.iter().map(|face| face.map(VertexId)).collect()))
     }
 
-    /// The mesh as a GPU wants it, put in place of what is there. Positions are those of [`TransportFile::decode`], rounded once.
+    /// Decodes the mesh into GPU buffers, replacing their contents. Positions are those of
+    /// [`TransportFile::decode`], rounded to `f32`.
     ///
     /// # Errors
-    /// A file that is damaged.
+    /// A damaged file.
     pub fn decode_into(
         &self,
         positions: &mut Vec<[f32; 3]>,
@@ -211,14 +215,14 @@ impl<'a> TransportFile<'a> {
         self.decode_all(place, faces)
     }
 
-    /// Where a block is, from the first block on.
+    /// Returns the byte range of a block, from the first block on.
     #[cfg(test)]
     pub(super) fn range(&self, block: usize) -> std::ops::Range<usize> {
         let BlockSpan { at, bytes, .. } = self.places[block];
         at..at + bytes
     }
 
-    /// Puts the checksums right that bytes have where the header of a file would be, for tests of what they do not tell.
+    /// Recomputes the checksums of a file that was changed, for tests of [`TransportFile::open`].
     #[doc(hidden)]
     pub fn seal(bytes: &mut [u8]) {
         let Some(header) = header_end(bytes) else { return };
@@ -234,10 +238,10 @@ impl<'a> TransportFile<'a> {
         faces: &mut Vec<[u32; 3]>,
     ) -> Result<(), Malformed> {
         if crc32fast::hash(self.blocks) != self.checksum {
-            let reason = "a block is damaged: the checksum of all is another".into();
+            let reason = "a block is damaged: the checksum of all blocks does not match".into();
             return Err(Malformed { at: self.at, reason });
         }
-        // A fifth of all faces have a border vertex of their own, more or less.
+        // About one border vertex for every five faces.
         let mut gather = MeshBuilder::new(self.faces.min(self.blocks.len()) / 8);
         let mut decoder = Decoder::new();
         for places in self.places.chunks(LANES) {
@@ -248,7 +252,7 @@ impl<'a> TransportFile<'a> {
         if gather.vertices as usize == self.vertices {
             return Ok(());
         }
-        let reason = format!("{} vertices where {} should be", gather.vertices, self.vertices);
+        let reason = format!("expected {} vertices, found {}", self.vertices, gather.vertices);
         Err(Malformed { at: self.at, reason })
     }
 
@@ -268,27 +272,27 @@ impl<'a> TransportFile<'a> {
     }
 }
 
-/// Makes one mesh of blocks.
+/// Builds one mesh from blocks by welding their borders.
 struct MeshBuilder {
     welds: WeldTable,
     vertices: u32,
-    reach: Vec<Sharing>,
+    sharing: Vec<Sharing>,
     numbers: Vec<u32>,
 }
 
 impl MeshBuilder {
     fn new(welds: usize) -> Self {
-        Self { welds: WeldTable::new(welds), vertices: 0, reach: Vec::new(), numbers: Vec::new() }
+        Self { welds: WeldTable::new(welds), vertices: 0, sharing: Vec::new(), numbers: Vec::new() }
     }
 
     #[inline(never)]
     fn add(&mut self, lane: &Lane, mut place: impl FnMut(CellVec), faces: &mut Vec<[u32; 3]>) {
-        lane.reach(&mut self.reach);
+        lane.sharing(&mut self.sharing);
         self.numbers.clear();
-        for (cell, &reach) in lane.cells().zip(&self.reach) {
-            let number = match reach {
+        for (cell, &sharing) in lane.cells().zip(&self.sharing) {
+            let number = match sharing {
                 Sharing::Inside => self.vertices,
-                Sharing::Joint(tag) => *self.welds.find_or_insert(key(cell), tag, self.vertices),
+                Sharing::Shared(tag) => *self.welds.find_or_insert(key(cell), tag, self.vertices),
             };
             if number == self.vertices {
                 self.vertices += 1;
@@ -302,7 +306,7 @@ impl MeshBuilder {
     }
 }
 
-/// Where the blocks begin, if all before can be read.
+/// Returns where the blocks begin, if everything before can be read.
 fn header_end(bytes: &[u8]) -> Option<usize> {
     let mut reader = Reader::new(bytes.get(20..)?);
     reader.take(4 * 8 + 3 + 2 * 4).ok()?;
@@ -312,17 +316,17 @@ fn header_end(bytes: &[u8]) -> Option<usize> {
     Some(bytes.len() - reader.left())
 }
 
-/// That all cells are numbers, also in `f32`.
+/// Checks that all cells have finite positions, also in `f32`.
 fn check_grid(grid: &QuantizationGrid, reader: &Reader) -> Result<(), Malformed> {
     let farthest = |x: f64| x.abs() <= 2.0 * MAX_COORDINATE;
     let is_known = grid.cell > 0.0 && grid.origin.iter().all(|&x| farthest(x));
     if is_known && farthest(grid.cell * f64::from(MAX_CELLS)) {
         return Ok(());
     }
-    Err(reader.wrong("the cells are not anywhere"))
+    Err(reader.wrong("the cells have no finite positions"))
 }
 
-/// Where all blocks are; as many as said, and each of a size that can be.
+/// Reads the places of all blocks, and checks their number and sizes.
 fn read_index(count: usize, reader: &mut Reader) -> Result<Vec<BlockSpan>, Malformed> {
     let mut ranges = [(0, 0); 2];
     for range in &mut ranges {
@@ -332,7 +336,7 @@ fn read_index(count: usize, reader: &mut Reader) -> Result<Vec<BlockSpan>, Malfo
         }
     }
     if count > reader.left() / LEAST_BYTES {
-        return Err(reader.wrong(format!("{count} blocks are more than the file has bytes for")));
+        return Err(reader.wrong(format!("too few bytes for {count} blocks")));
     }
     let [(least_faces, face_bits), (least_words, word_bits)] = ranges;
     let bits = Bits::restore(count * (face_bits + word_bits) as usize, reader)?;
@@ -343,9 +347,9 @@ fn read_index(count: usize, reader: &mut Reader) -> Result<Vec<BlockSpan>, Malfo
         let word = count * face_bits as usize + k * word_bits as usize;
         let bytes = 2 * (bits.get(word, word_bits) + u64::from(least_words));
         let (faces, bytes) = (faces as usize, bytes as usize);
-        let is_one = (1..=MAX_FACES).contains(&faces) && faces / FACES_A_BYTE <= bytes;
+        let is_one = (1..=MAX_FACES).contains(&faces) && faces / FACES_PER_BYTE <= bytes;
         if !is_one || bytes > reader.left() {
-            return Err(reader.wrong(format!("block {k} is of a size that no block has")));
+            return Err(reader.wrong(format!("block {k} has an impossible size")));
         }
         places.push(BlockSpan { at, bytes, faces });
         at += bytes;

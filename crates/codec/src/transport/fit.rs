@@ -1,4 +1,4 @@
-//! Models that fit a mesh.
+//! Fitting the models to a mesh.
 
 use super::border::Step;
 use super::encode::Residual;
@@ -7,23 +7,24 @@ use super::models::{CLASSES, ModelCodes, SYMBOLS, StepTable, parts};
 use super::predict::{CellVec, FEATURES, GATES};
 use super::walk::BlockWalk;
 
-/// Vertices that weights are fitted to, about. With all there are, a file is a thousandth smaller.
+/// Approximate number of vertices that weights are fitted to. Using all makes a file smaller by a
+/// thousandth.
 const SAMPLES: usize = 6000;
-/// A context with fewer steps shares a table: its own would take more than it saves.
+/// Contexts with fewer steps share a table: a table of their own would take more than it saves.
 const FEWEST_STEPS: u32 = 40;
 
-/// One vertex that weights are to guess well.
+/// Vertex that the weights should predict well.
 struct Sample {
     kind: usize,
-    /// Across the surface, of unit length, or nothing.
+    /// Unit normal of the surface, or zero.
     normal: CellVec,
-    /// The squared sides of the face next the edge.
+    /// Sum of the squared sides of the known face on the gate, plus 1.
     sides: f64,
-    /// The features, and what is to be guessed from them.
+    /// The features, and last the vector to be predicted from them.
     rows: [CellVec; FEATURES + 1],
 }
 
-/// All but the shapes.
+/// Fits all model parameters but the shapes.
 pub(super) fn fit(walks: &[BlockWalk], cells: &[CellVec]) -> ModelCodes {
     let samples = samples(walks, cells);
     let (weights, spreads) = weights(&samples);
@@ -62,7 +63,7 @@ impl Sample {
             [gate.previous_apex, gate.previous, gate.next].map(at);
         let (edge, spoke, rim) = (b - a, apex - a, apex - b);
         let corner = b - spoke;
-        // As in `predict`.
+        // The same features as in `predict`.
         let rows = [
             corner - apex,
             edge,
@@ -76,7 +77,7 @@ impl Sample {
         Self { kind: gate.kind(), normal, sides: f64::from(sides) + 1.0, rows }
     }
 
-    /// What is missed, by squares along the surface and across.
+    /// Returns the squared prediction error along the surface and across it.
     fn missed(&self, weights: &[f64; FEATURES]) -> [f64; 2] {
         let mut missed = self.rows[FEATURES];
         for (row, &weight) in self.rows.iter().zip(weights) {
@@ -87,7 +88,8 @@ impl Sample {
     }
 }
 
-/// Least squares, again and again with less weight for what is missed by far: bits go with the logarithm.
+/// Fits weights by iteratively reweighted least squares: large errors count less each round, since
+/// bits grow with the logarithm of an error.
 fn weights(samples: &[Sample]) -> ([[i8; FEATURES]; GATES], [[u8; 2]; GATES]) {
     const ROUNDS: usize = 3;
     let mut weights = [[0.0; FEATURES]; GATES];
@@ -113,7 +115,7 @@ fn weights(samples: &[Sample]) -> ([[i8; FEATURES]; GATES], [[u8; 2]; GATES]) {
             sums.map(|sums| solve(sums).map(|x| (x * 64.0).round().clamp(-127.0, 127.0) / 64.0));
     }
     let codes = weights.map(|weights| weights.map(|x| (x * 64.0) as i8));
-    // The mean of what is far off too, as it mostly is for such a logarithmic mean.
+    // Arithmetic mean / logarithmic mean, typically.
     const WIDER: [f64; 2] = [2.5, 3.0];
     let spreads = typical(samples, &weights).map(|typical| {
         [0, 1]
@@ -122,7 +124,7 @@ fn weights(samples: &[Sample]) -> ([[i8; FEATURES]; GATES], [[u8; 2]; GATES]) {
     (codes, spreads)
 }
 
-/// The logarithmic mean of what is missed, in parts of the squared sides.
+/// Returns the logarithmic mean of the squared errors, relative to the squared sides.
 fn typical(samples: &[Sample], weights: &[[f64; FEATURES]; GATES]) -> [[f64; 2]; GATES] {
     let mut sums = [[0.0; 2]; GATES];
     let mut counts = [0.0; GATES];
@@ -137,7 +139,7 @@ fn typical(samples: &[Sample], weights: &[[f64; FEATURES]; GATES]) -> [[f64; 2];
     std::array::from_fn(|kind| sums[kind].map(|sum| (sum / f64::max(counts[kind], 1.0)).exp2()))
 }
 
-/// Gauss's elimination of what is symmetric and, with a little more on the diagonal, regular.
+/// Solves a symmetric system by Gaussian elimination, with a small ridge on the diagonal.
 fn solve(mut rows: [[f64; FEATURES + 1]; FEATURES]) -> [f64; FEATURES] {
     let more = 1e-4 * (0..FEATURES).map(|i| rows[i][i]).sum::<f64>() + 1e-9;
     let above = rows;
@@ -156,7 +158,7 @@ fn solve(mut rows: [[f64; FEATURES + 1]; FEATURES]) -> [f64; FEATURES] {
     rows.map(|row| row[FEATURES])
 }
 
-/// The variance of the second and third corner of faces that begin a block, by a code.
+/// Returns the code of the variance of second and third corners of separate faces.
 fn start(walks: &[BlockWalk], cells: &[CellVec]) -> u8 {
     let (mut sum, mut count) = (0.0, 0.0);
     for walk in walks {
@@ -184,7 +186,7 @@ fn steps(walks: &[BlockWalk]) -> Vec<Option<[u8; Step::ALL.len()]>> {
     counts.iter().map(codes).collect()
 }
 
-/// The shape of each class that tells its distances in the fewest bits.
+/// Returns for each class the shape that codes its residuals in the fewest bits.
 pub(super) fn shapes<'a>(residuals: impl Iterator<Item = &'a Residual>) -> [u8; CLASSES] {
     let mut counts = [[0u32; SYMBOLS]; CLASSES];
     for residual in residuals {
@@ -193,7 +195,7 @@ pub(super) fn shapes<'a>(residuals: impl Iterator<Item = &'a Residual>) -> [u8; 
     std::array::from_fn(|class| shape(class, &counts[class]))
 }
 
-/// Downhill from a shape that is seldom far off.
+/// Descends from a usual shape to the best one nearby.
 fn shape(class: usize, counts: &[u32; SYMBOLS]) -> u8 {
     let cost = |[freedom, width]: [i32; 2]| {
         if !(0..8).contains(&freedom) || !(0..32).contains(&width) {
@@ -202,7 +204,7 @@ fn shape(class: usize, counts: &[u32; SYMBOLS]) -> u8 {
         let parts = parts(class, (freedom << 5 | width) as u8);
         let all: f64 = parts.iter().sum();
         let bits = |(&count, &part): (&u32, &f64)| {
-            // Below, it is one of the others.
+            // A rarer symbol gets no place in the table and is escaped.
             let rare = if part / all < 0.5 / 2048.0 { 24.0 } else { -(part / all).log2() };
             f64::from(count) * rare
         };

@@ -1,8 +1,12 @@
-//! What is known where a face is put on the border, before it is told.
+//! Gates: edges at which a face is added, with what both encoder and decoder know there.
 
 use super::border::{Border, EdgeState};
 
-/// What a vertex is guessed from: the edge that its first face was put on, and what is around.
+/// Gate: border edge from `a` to `b` at which a vertex is decoded, as in Edgebreaker and [TG98],
+/// with the vertices around it from which the new one is predicted.
+///
+/// `apex` is the third vertex of the known face on the edge, `previous_apex` the one before it in
+/// the fan around `a`, `previous` and `next` the neighbours of the edge on the border.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Gate {
     pub(super) a: u16,
@@ -11,7 +15,8 @@ pub(super) struct Gate {
     pub(super) previous_apex: u16,
     pub(super) previous: u16,
     pub(super) next: u16,
-    /// None where there is no edge, for a corner of a face that stands alone; then the other is the corner's number.
+    /// Number of known faces at `a`; 0 for a corner of a separate face, which has no edge. Then
+    /// `faces_b` is the corner's number.
     pub(super) faces_a: u8,
     pub(super) faces_b: u8,
 }
@@ -38,7 +43,7 @@ impl Gate {
     }
 }
 
-/// What a step is guessed from.
+/// Returns the context in which the step at an edge is coded.
 #[inline(always)]
 pub(super) fn context(border: &Border, at: u16) -> usize {
     let node = border.node(at);
@@ -51,15 +56,16 @@ pub(super) fn context(border: &Border, at: u16) -> usize {
 }
 pub(super) const CONTEXTS: usize = 7 * 6 * 4;
 
-/// By how many nodes the vertex of [`Step::Other`](super::border::Step::Other) is next the edge's first one, or previous; and
-/// how many of 256 are so far. Of ten meshes' 13,000 nine of ten are two before.
+/// Frequent targets of [`Step::Other`](super::border::Step::Other): offset along the loop from the
+/// edge's first node, and frequency of 256. Nine of ten of 13,000 on ten meshes are two nodes
+/// before.
 pub(super) const NEARBY: [(i32, u16); 7] =
     [(-2, 222), (-3, 18), (-4, 5), (3, 4), (4, 2), (-5, 2), (5, 1)];
-/// What is left, for all others: their nodes are told.
+/// Bits of the table. What the frequencies leave is the escape to a node's index.
 pub(super) const NEARBY_BITS: u32 = 8;
 pub(super) const NODE_BITS: u32 = 12;
 
-/// The node so many next another, or before.
+/// Returns the node at an offset along the loop.
 pub(super) fn node_at_offset(border: &Border, at: u16, by: i32) -> u16 {
     let next = |at, _| border.node(at).next;
     let previous = |at, _| border.node(at).previous;

@@ -1,4 +1,4 @@
-//! The cells that positions are rounded to.
+//! Quantization of positions to cubic cells.
 
 use glam::DVec3;
 use meshlod_mesh::{Mesh, VertexId};
@@ -6,20 +6,21 @@ use meshlod_mesh::{Mesh, VertexId};
 use super::predict::{CellVec, MAX_CELLS};
 use super::{TransportError, TransportQuantization};
 
-/// Cubic cells from an origin on.
+/// Grid of cubic cells from an origin on.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct QuantizationGrid {
     pub(super) origin: [f64; 3],
     pub(super) cell: f64,
 }
 
-/// Sides of more bits are not told.
+/// Greatest number of bits of a coordinate.
 pub(super) const MAX_BITS: u32 = MAX_CELLS.trailing_zeros();
-/// What `f32` has room for, and some to spare.
+/// Limit on coordinates, which leaves some room in `f32`.
 pub(super) const MAX_COORDINATE: f64 = 1e38;
 
 impl QuantizationGrid {
-    /// The grid that is asked for, and the cell of each vertex that a face uses; zero for others.
+    /// Builds the requested grid, and finds the cell of each vertex that a face uses; zero for the
+    /// others.
     pub(super) fn of(
         mesh: &Mesh,
         grid: TransportQuantization,
@@ -44,7 +45,7 @@ impl QuantizationGrid {
             }
             TransportQuantization::Bits(bits) => {
                 let cell = longest / f64::from((1u32 << bits) - 1);
-                // Where all is in one place, any cell will do.
+                // If all vertices are in one place, any cell will do.
                 let cell = if cell > f64::MIN_POSITIVE { cell } else { 1.0 };
                 Self { origin: bounds.min, cell }
             }
@@ -72,7 +73,7 @@ impl QuantizationGrid {
         Ok((this, mesh.positions.iter().zip(&used).map(cell).collect()))
     }
 
-    /// The vertex of the lattice depends on the position alone, not on where the mesh begins.
+    /// Returns the cell on a lattice, which depends on the position alone and not on the origin.
     fn number(&self, position: &[f64; 3]) -> CellVec {
         let number = |x: f64| (x / self.cell).round();
         let along = |k: usize| (number(position[k]) - number(self.origin[k])) as f32;
@@ -84,7 +85,7 @@ impl QuantizationGrid {
         CellVec::new(along(0), along(1), along(2)).max(CellVec::ZERO)
     }
 
-    /// The middle of a cell, which on a lattice is a whole number of cells, exactly.
+    /// Returns the position of a cell, which on a lattice is exact.
     #[inline(always)]
     pub(super) fn place(&self, cell: CellVec) -> [f64; 3] {
         (DVec3::from(self.origin) + self.cell * cell.as_dvec3()).to_array()

@@ -1,4 +1,4 @@
-//! Meshes to be sent or stored: the file `.mlz`.
+//! Entropy-coded meshes for sending and storing: `.mlz` files.
 
 mod border;
 mod decode;
@@ -25,58 +25,58 @@ use self::border::MAX_FACES;
 use self::grid::MAX_BITS;
 use crate::lattice::Lattice;
 
-/// A mesh in a file of blocks that are decoded alone.
+/// Encoded `.mlz` file, whose blocks can be decoded independently.
 #[derive(Clone, Debug)]
 pub struct Transport {
-    /// The file.
+    /// Bytes of the file.
     pub bytes: Vec<u8>,
-    /// How many blocks there are.
+    /// Number of blocks.
     pub blocks: usize,
-    /// What takes how much of it.
+    /// Size of the file by content.
     pub sizes: TransportSizes,
-    /// What of the mesh is not in the file.
+    /// Parts of the input mesh that the file does not hold.
     pub left_out: Vec<LeftOut>,
 }
 
-/// What a mesh has and the file has not.
+/// Part of a mesh that a transport file does not hold.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LeftOut {
-    /// Normals, uvs and whatever else wedges have.
+    /// Normals, texture coordinates and all other attributes of wedges.
     Attributes,
-    /// The materials of faces.
+    /// Materials of faces.
     Materials,
-    /// The objects of faces.
+    /// Objects of faces.
     Objects,
     /// Vertices that no face uses.
     UnusedVertices,
 }
 
-/// Parts of a file, in bytes; together they are all of it.
+/// Size of a transport file by content, in bytes; the three add up to the file.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TransportSizes {
-    /// Where vertices are.
+    /// Positions of vertices.
     pub positions: f64,
-    /// What faces join, and which vertices of different blocks are one.
+    /// Vertices of faces, and the welding of blocks.
     pub connectivity: f64,
-    /// Header, index, models, and the coder's state of each block.
+    /// Header, index, models, and the coder's final state of each block.
     pub headers: f64,
 }
 
-/// How a mesh is put into a file.
+/// Options of [`Transport::encode`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TransportOptions {
-    /// What positions are rounded to.
+    /// Grid that positions are rounded to.
     pub quantization: TransportQuantization,
-    /// How many faces a block has, about: some have a quarter more.
+    /// Approximate number of faces per block; some blocks have a quarter more.
     pub block_faces: usize,
 }
 
-/// Cubic cells that positions are rounded to.
+/// Grid of cubic cells that positions are rounded to.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum TransportQuantization {
-    /// So many that their numbers along the longest side have these bits: 1 to 21.
+    /// Uniform grid over the mesh with 2^bits − 1 cells along the longest side, for 1 to 21 bits.
     Bits(u32),
-    /// Those of a lattice: what meshes share is in the same place in all of them.
+    /// Cells of a lattice: vertices that meshes share decode to the same place in all of them.
     Lattice(Lattice),
 }
 
@@ -86,43 +86,41 @@ impl Default for TransportOptions {
     }
 }
 
-/// Why a mesh is not put into a file.
+/// Reason why a mesh cannot be encoded for transport.
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum TransportError {
-    /// Nothing to be sent.
-    #[error("the mesh has no faces: there is nothing to put into blocks")]
+    /// The mesh has no faces.
+    #[error("the mesh has no faces to encode")]
     Empty,
-    /// More than are numbered.
-    #[error("{0} faces are too many for one file: cut the mesh")]
+    /// The mesh has more faces than the format can number.
+    #[error("the mesh has {0} faces, too many for one file: split the mesh")]
     TooMany(usize),
-    /// A face of what is not there.
-    #[error("a face has {0}, which is not there")]
+    /// A face uses a vertex that does not exist.
+    #[error("a face uses {0}, which does not exist")]
     BadVertex(VertexId),
-    /// A coordinate that `f32` does not have.
-    #[error("{0} has a coordinate that is not finite, or beyond 1e38")]
+    /// A coordinate is infinite, NaN, or too large for `f32`.
+    #[error("{0} has a coordinate that is not finite or is beyond 1e38")]
     NotFinite(VertexId),
-    /// Bits that cannot be.
-    #[error("{0} bits for a coordinate cannot be: take 1 to {MAX_BITS}")]
+    /// The number of bits is out of range.
+    #[error("bits must be between 1 and {MAX_BITS}, not {0}")]
     Bits(u32),
-    /// More cells than are numbered.
+    /// The mesh spans more cells than the format can number.
     #[error(
-        "the mesh spans {cells:.0} cells, more than {MAX_BITS} bits residuals: take larger ones"
+        "the mesh spans {cells:.0} cells, more than {MAX_BITS} bits can number: use larger cells"
     )]
     TooFine {
-        /// How many.
+        /// Number of cells along the longest side.
         cells: f64,
     },
-    /// CellVec that are not told apart.
-    #[error(
-        "the mesh is so far from the origin that cells are not residuals apart: take larger ones"
-    )]
+    /// The mesh is so far from the origin that neighbouring cells cannot be told apart.
+    #[error("the mesh is too far from the origin for cells of this size: use larger cells")]
     TooFar,
-    /// A block that is none.
-    #[error("blocks of {0} faces cannot be: take 16 to {most}", most = max_block_faces())]
+    /// The number of faces per block is out of range.
+    #[error("faces per block must be between 16 and {most}, not {0}", most = max_block_faces())]
     Block(usize),
 }
 
-/// The greatest size that is asked for.
+/// Returns the largest block size that can be requested.
 fn max_block_faces() -> usize {
     MAX_FACES * 4 / 5
 }

@@ -1,7 +1,7 @@
-//! What all blocks of a file share: how likely steps and distances are, and what vertices are guessed from.
+//! Probability and prediction models that all blocks of a file share.
 //!
-//! All that a block needs is here from its first symbol on: nothing is learnt on the way, and blocks stay apart. A file tells
-//! its models in some hundred bytes.
+//! Nothing is learnt while decoding, so that every block can be decoded alone. The models take some
+//! hundred bytes of a file.
 
 use glam::Vec4;
 
@@ -11,15 +11,16 @@ use super::predict::{FEATURES, GATES};
 use super::rans::Symbol;
 use crate::bytes::{Malformed, Reader};
 
-/// Bits of the tables of distances.
+/// Bits of the tables of residuals.
 pub(super) const RESIDUAL_BITS: u32 = 11;
 const RESIDUAL_ALL: usize = 1 << RESIDUAL_BITS;
-/// The greatest distance that has a symbol of its own.
+/// Greatest residual that has a symbol of its own.
 pub(super) const MAX_RESIDUAL: i32 = 24;
 pub(super) const SYMBOLS: usize = 2 * MAX_RESIDUAL as usize + 2;
-/// The symbol of all others.
+/// Symbol that escapes to larger residuals.
 pub(super) const ESCAPE: usize = SYMBOLS - 1;
-/// Widths have classes of a quarter of an octave, from a quarter of a cell to four cells. Greater ones have the last four, and bits below.
+/// Classes of widths: a quarter of an octave each, from a quarter of a cell to four cells. Larger
+/// widths use the last four, and low bits.
 pub(super) const CLASSES: usize = 16;
 
 /// Bits of the tables of steps.
@@ -27,50 +28,50 @@ pub(super) const STEP_BITS: u32 = 12;
 const STEP_ALL: u32 = 1 << STEP_BITS;
 const STEPS: usize = Step::ALL.len();
 
-/// The models as a file tells them.
+/// Model parameters as stored in a file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct ModelCodes {
     pub(super) weights: [[i8; FEATURES]; GATES],
     pub(super) spreads: [[u8; 2]; GATES],
     pub(super) start: u8,
     pub(super) shapes: [u8; CLASSES],
-    /// Of each context that has a table of its own; the last one is what all others have.
+    /// Step frequencies of each context that has its own table; the last table serves all others.
     pub(super) steps: Vec<Option<[u8; STEPS]>>,
 }
 
-/// The models as they are used.
+/// Models expanded for use.
 #[derive(Clone, Debug)]
 pub(super) struct Models {
-    /// For each kind of gate the weights of the features, then the variances along the surface and across, in parts of the
-    /// gate's squared sides.
+    /// For each kind of gate the feature weights, then the variances along the surface and across
+    /// it relative to the gate's squared sides.
     pub(super) gates: [[Vec4; 2]; GATES],
-    /// The variance of the corners of a face that stands alone.
+    /// Variance of the corners of a separate face.
     pub(super) start: f32,
     pub(super) residuals: Box<[ResidualTable; CLASSES]>,
     pub(super) steps: Box<[StepTable; CONTEXTS]>,
 }
 
-/// How likely the distances of a class are.
+/// Probability table of the residuals of a class.
 #[derive(Clone, Debug)]
 pub(super) struct ResidualTable {
-    /// For each place: the symbol, how large it is, and how far it is offset its start.
+    /// For each slot the symbol, its size, and the slot's offset from the symbol's start.
     places: Box<[u32; RESIDUAL_ALL]>,
     starts: [u16; SYMBOLS + 1],
 }
 
-/// How likely steps are: where each starts, and the end.
+/// Probability table of steps: the start of each, and the end.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct StepTable([u16; STEPS + 1]);
 
 impl ResidualTable {
-    /// The symbol at a place, its size, and how far offset its start that is.
+    /// Returns the symbol at a slot, its size, and the slot's offset from its start.
     #[inline(always)]
     pub(super) fn at(&self, place: usize) -> (usize, u32, u32) {
         let entry = self.places[place % RESIDUAL_ALL];
         ((entry & 63) as usize, entry >> 6 & 0xfff, entry >> 18)
     }
 
-    /// The symbol with bits below it; `None` where it is one of the others.
+    /// Returns a symbol with low bits; `None` if it has no slots and must be escaped.
     pub(super) fn symbol(&self, symbol: usize, low: u16, low_bits: u8) -> Option<Symbol> {
         let (start, end) = (self.starts[symbol], self.starts[symbol + 1]);
         let bits = RESIDUAL_BITS as u8;
@@ -81,13 +82,13 @@ impl ResidualTable {
         Self::cut(&parts(class, code))
     }
 
-    /// Parts as whole numbers of all; what is too small for one is left to the others.
+    /// Distributes the slots in proportion. Symbols too rare for a slot are left to the escape.
     fn cut(parts: &[f64; SYMBOLS]) -> Self {
         let all: f64 = parts.iter().sum();
         let mut sizes: Vec<i32> =
             parts.iter().map(|part| (part / all * RESIDUAL_ALL as f64 + 0.5) as i32).collect();
         sizes[ESCAPE] = sizes[ESCAPE].max(1);
-        // The middle makes up for all rounding.
+        // The most likely symbol makes up for all rounding.
         let middle = MAX_RESIDUAL as usize;
         sizes[middle] += RESIDUAL_ALL as i32 - sizes.iter().sum::<i32>();
         debug_assert!(sizes[middle] > 0);
@@ -106,7 +107,8 @@ impl ResidualTable {
     }
 }
 
-/// Student's distribution, its width and its degrees of freedom by a code, cut into cells: what each symbol has, and all others.
+/// Integrates Student's t-distribution over the cell of each symbol, with the width and the degrees
+/// of freedom of a shape code.
 pub(super) fn parts(class: usize, code: u8) -> [f64; SYMBOLS] {
     let width = pow2(2 * class as i32 - 15 + i32::from(code & 31) - 16);
     let freedom = FREEDOM[usize::from(code >> 5)];
@@ -115,7 +117,7 @@ pub(super) fn parts(class: usize, code: u8) -> [f64; SYMBOLS] {
         let part = 1.0 / (1.0 + x * x * scale);
         (0..freedom.div_ceil(2)).fold(1.0, |product, _| product * part)
     };
-    // A cell's part by Simpson's rule, in halves.
+    // Simpson's rule on the two halves of a cell.
     let part = |d: i32| {
         let at = |quarters: i32| density(f64::from(d) + f64::from(quarters) / 4.0);
         (at(-2) + at(2) + 4.0 * (at(-1) + at(1)) + 2.0 * at(0)) / 12.0
@@ -126,7 +128,7 @@ pub(super) fn parts(class: usize, code: u8) -> [f64; SYMBOLS] {
         parts[(MAX_RESIDUAL + d) as usize] = part;
         parts[(MAX_RESIDUAL - d) as usize] = part;
     }
-    // Eight at a time, as far as anything is to be expected.
+    // The tail in steps of eight cells, as far as residuals are to be expected.
     let beyond = (0..20).map(|k| density(f64::from(MAX_RESIDUAL + 4 + 8 * k)));
     parts[ESCAPE] = 16.0 * beyond.sum::<f64>();
     parts
@@ -134,7 +136,7 @@ pub(super) fn parts(class: usize, code: u8) -> [f64; SYMBOLS] {
 
 /// Degrees of freedom, all odd.
 const FREEDOM: [u32; 8] = [1, 3, 5, 7, 9, 13, 19, 31];
-/// 2 to the power of `eighths` / 8, the same on every machine.
+/// Returns 2^(`eighths` / 8), the same on every machine.
 pub(super) fn pow2(eighths: i32) -> f64 {
     const PARTS: [f64; 8] = [
         1.0,
@@ -151,7 +153,7 @@ pub(super) fn pow2(eighths: i32) -> f64 {
 }
 
 impl StepTable {
-    /// The step at a place, its size, and how far offset its start that is.
+    /// Returns the step at a slot, its size, and the slot's offset from its start.
     #[inline(always)]
     pub(super) fn at(&self, place: usize) -> (Step, u32, u32) {
         let place = place as u16;
@@ -167,7 +169,7 @@ impl StepTable {
         Symbol { start, size, bits: STEP_BITS as u8, low_bits: 0, low: 0 }
     }
 
-    /// Parts are powers of the cube root of ½; each has some.
+    /// Builds a table. A code is a power of the cube root of ½; every step gets at least one slot.
     fn of(codes: [u8; STEPS]) -> Self {
         const THIRDS: [u32; 3] = [1 << 16, 52_016, 41_285];
         let part = |code: u8| (THIRDS[usize::from(code) % 3] >> (code / 3)).max(1);
@@ -182,7 +184,7 @@ impl StepTable {
         Self(starts)
     }
 
-    /// The codes closest to how often there were steps.
+    /// Returns the codes closest to the observed counts.
     pub(super) fn codes(counts: [u32; STEPS]) -> [u8; STEPS] {
         let all: u32 = counts.iter().sum();
         counts.map(|count| {
@@ -192,7 +194,7 @@ impl StepTable {
     }
 }
 
-/// Bits of the code of a step.
+/// Bits of a step's code.
 const CODE_BITS: u32 = 5;
 
 impl ModelCodes {

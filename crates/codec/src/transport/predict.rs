@@ -1,28 +1,30 @@
-//! Where vertices are expected, and how far from there: of four blocks at a time.
+//! Prediction of vertices and of the spread around the prediction, for four blocks at a time.
 //!
-//! A parallelogram [TG98], corrected by what else is known around; more surely across the surface than along it. Each number is a lane
-//! of four, so that the processor has four blocks to work on. Sums, products and quotients of `f32`, each rounded by
-//! itself: the same on every machine, whichever blocks are side by side.
+//! The prediction is a parallelogram [TG98] corrected by weighted features of its surroundings. It
+//! is more certain across the surface than along it. Each number is one lane of four, so that the
+//! processor works on four blocks at once. All operations are `f32` sums, products and quotients,
+//! each rounded by itself: the results are the same on every machine, whichever blocks are side by
+//! side.
 
 use glam::{BVec4A, Mat4, Vec3A, Vec4};
 
 use super::gate::Gate;
 use super::models::{CLASSES, Models};
 
-/// A place or a way, in cells.
+/// Point or vector, in cells.
 pub(super) type CellVec = Vec3A;
 
-/// Coordinates are below this.
+/// Upper limit of cell coordinates.
 pub(super) const MAX_CELLS: i32 = 1 << 21;
 
 pub(super) const FEATURES: usize = 5;
-/// Gates are of so many kinds.
+/// Number of kinds of gates.
 pub(super) const GATES: usize = 5 * 4;
-/// Blocks that are taken at a time.
+/// Number of blocks processed at a time.
 pub(super) const LANES: usize = 4;
 
 impl Gate {
-    /// By how many faces the ends of the edge have by now.
+    /// Returns the kind of the gate, by the numbers of known faces at its ends.
     #[inline(always)]
     pub(super) fn kind(&self) -> usize {
         let a = usize::from(self.faces_a.clamp(1, 5)) - 1;
@@ -31,12 +33,14 @@ impl Gate {
     }
 }
 
-/// What places are rounded by, a variance. Of .1 to .3, .15 takes the least.
+/// Least variance, which stands for the rounding of positions. Of .1 to .3, .15 takes the fewest
+/// bytes.
 const FLOOR: f32 = 0.15;
-/// How much a vertex counts for the trend: .08 and .125 take as much, .18 and .06 some thousandths more.
+/// Weight of a new vertex in the spread scale: .08 and .125 take as much, .18 and .06 some
+/// thousandths more.
 const GAIN: f32 = 0.1;
 
-/// A place or a way of each lane.
+/// Point or vector of each lane.
 #[derive(Clone, Copy, Debug)]
 struct Vec3x4 {
     x: Vec4,
@@ -45,7 +49,7 @@ struct Vec3x4 {
 }
 
 impl Vec3x4 {
-    /// Places with anything next them, which is dropped.
+    /// Transposes points, dropping their fourth components.
     #[inline(always)]
     fn new(places: [Vec4; LANES]) -> Self {
         let [a, b, c, d] = places;
@@ -72,7 +76,8 @@ impl Vec3x4 {
         Self { x: by(self.x), y: by(self.y), z: by(self.z) }
     }
 
-    /// The coordinates by turns: the one of the normal's greatest coordinate last, the others before it in cyclic order.
+    /// Returns the coordinates in coding order: cyclic, with the axis of the normal's greatest
+    /// component last.
     #[inline(always)]
     fn turned(self, last: &LastAxis) -> [Vec4; 3] {
         let Self { x, y, z } = self;
@@ -98,7 +103,7 @@ impl std::ops::Sub for Vec3x4 {
     }
 }
 
-/// The axis that is told last.
+/// Axis that is coded last.
 #[derive(Clone, Copy, Debug)]
 struct LastAxis {
     is_x: BVec4A,
@@ -119,14 +124,14 @@ impl LastAxis {
     }
 }
 
-/// Where the vertices of gates are, and what may be made of them.
+/// Geometry around the gates of all lanes.
 struct GateGeometry {
     corner: Vec3x4,
-    /// Added to the corner by weights. In a regular mesh all but the first two are nothing.
+    /// Vectors added to the corner by weights. In a regular mesh all but the first two are zero.
     features: [Vec3x4; FEATURES],
-    /// Across the surface, of any length.
+    /// Normal of the surface, of any length.
     normal: Vec3x4,
-    /// The squared sides of the face next the edge.
+    /// Sum of the squared sides of the known face on the gate, plus 1.
     sides: Vec4,
 }
 
@@ -146,7 +151,7 @@ impl GateGeometry {
             features: [
                 b - spoke - apex,
                 edge,
-                // By how much the parallelogram before has missed.
+                // The error of the previous parallelogram.
                 (b - spoke) - (a + a - previous_apex),
                 next - b + rim,
                 previous - a + spoke,
@@ -157,32 +162,34 @@ impl GateGeometry {
     }
 }
 
-/// How much wider than the models say distances have been lately, and will be told by from the next vertex on.
+/// Running ratio of observed to modelled variances; an update takes effect one vertex later.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct SpreadScales {
     now: [Vec4; 2],
     next: [Vec4; 2],
 }
 
-/// Where a vertex of each lane is expected: a normal distribution that is taken axis by axis, each given those before.
+/// Predicted normal distribution of a vertex in each lane, factored into one conditional
+/// distribution per axis.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Predictions {
     mean: Vec3x4,
-    /// By turns: the axis closest to the normal is the last one, by then it is nearly certain.
+    /// Coordinates in coding order. The axis closest to the normal is last, and nearly certain by
+    /// then.
     turns: [[f32; LANES]; 3],
     variances: [[f32; LANES]; 3],
-    /// What the second axis takes of the first; the third of both.
+    /// Dependence of the second axis on the first, and of the third on both.
     second: [f32; LANES],
     third: [[f32; LANES]; 2],
     last: [u8; LANES],
     normal: Vec3x4,
-    /// One by the normal's squared length, or 0.
+    /// 1 / squared length of the normal, or 0.
     inverse: Vec4,
-    /// Along and across.
+    /// Variances along the surface and across it.
     expected: [Vec4; 2],
 }
 
-/// Of one lane.
+/// Prediction of one lane.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Prediction {
     mean: [f32; 3],
@@ -192,7 +199,7 @@ pub(super) struct Prediction {
     last: u8,
 }
 
-/// How much further pieces of a block are apart than corners of a face, in squares.
+/// Variance of the first corner of a separate face, relative to that of its other corners.
 const APART: f32 = 64.0;
 
 impl SpreadScales {
@@ -200,7 +207,7 @@ impl SpreadScales {
         Self { now: [Vec4::ONE; 2], next: [Vec4::ONE; 2] }
     }
 
-    /// By the gate of each lane, and where the lane's vertices are.
+    /// Predicts a vertex in each lane from its gate, given the vertices before.
     #[inline(always)]
     pub(super) fn predict(
         &self,
@@ -227,7 +234,7 @@ impl SpreadScales {
         Predictions::across(corner + more, normal, [along, across])
     }
 
-    /// What the vertices of some lanes were: how far off they were counts for later ones.
+    /// Updates the scales of the chosen lanes by how far their vertices were from the predictions.
     #[inline(always)]
     pub(super) fn update(
         &mut self,
@@ -252,7 +259,7 @@ impl SpreadScales {
 }
 
 impl Predictions {
-    /// The covariance is `along` − (`along` − `across`) n nᵗ; each axis is conditioned on those before.
+    /// Conditions each axis on those before. The covariance is `along` − (`along` − `across`) n nᵗ.
     #[inline(always)]
     fn across(mean: Vec3x4, normal: Vec3x4, [along, across]: [Vec4; 2]) -> Self {
         let squared = normal.dot(normal);
@@ -300,14 +307,15 @@ impl Predictions {
     }
 }
 
-/// Where there can be cells.
+/// Clamps a prediction to the range of cells.
 #[inline(always)]
 fn inside(mean: Vec4) -> [f32; LANES] {
     least(most(mean, Vec4::ZERO), Vec4::splat(MAX_CELLS as f32)).to_array()
 }
 
 impl Prediction {
-    /// A corner of a face that stands alone, after others of the block: as far in all directions.
+    /// Predicts a corner of a separate face from earlier vertices, with equal spread in all
+    /// directions.
     pub(super) fn start(
         vertex: u16,
         gate: &Gate,
@@ -327,8 +335,8 @@ impl Prediction {
         }
     }
 
-    /// Takes the coordinates by turns from what gives one for the closest cell to where it is expected and the class of the
-    /// width with the bits below; gives the place.
+    /// Lets `cell` code the coordinates in order, given the turn, the nearest cell, and the class
+    /// with its low bits. Returns the vertex.
     #[inline(always)]
     pub(super) fn take(&self, mut cell: impl FnMut(usize, i32, (usize, u32)) -> i32) -> Vec4 {
         let [u, v, w] = self.mean;
@@ -339,7 +347,7 @@ impl Prediction {
         let off_v = second - v;
         let third = nearest(w + (self.third[0] * off_u + self.third[1] * off_v));
         let third = cell(2, third, class(self.variances[2])) as f32;
-        // Looked up, since a branch would be guessed wrong wherever the surface turns.
+        // A table, since a branch would be mispredicted wherever the surface turns.
         const TURNS: [[u8; 3]; 4] = [[2, 0, 1], [1, 2, 0], [0, 1, 2], [0, 1, 2]];
         let by_turn = [first, second, third, 0.0];
         let [x, y, z] = TURNS[usize::from(self.last % 4)];
@@ -347,16 +355,16 @@ impl Prediction {
         Vec4::new(by_turn(x), by_turn(y), by_turn(z), 0.0)
     }
 
-    /// The axis of each turn.
+    /// Returns the axis of each turn.
     pub(super) fn axes(&self) -> [usize; 3] {
         [[1, 2, 0], [2, 0, 1], [0, 1, 2]][usize::from(self.last)]
     }
 }
 
-/// The class of a variance, and how many bits of a distance are below.
+/// Returns the class of a variance, and the number of low bits of a residual.
 #[inline(always)]
 fn class(variance: f32) -> (usize, u32) {
-    // Exponent and first bit of the mantissa are half octaves of the variance.
+    // Exponent and first mantissa bit count half octaves of the variance.
     const FIRST: i32 = (0.0625f32.to_bits() >> 22) as i32;
     let octaves = ((variance.to_bits() >> 22) as i32 - FIRST).clamp(0, WIDEST as i32);
     let (class, low_bits) = WIDTHS[octaves as usize % WIDTHS.len()];
@@ -364,7 +372,7 @@ fn class(variance: f32) -> (usize, u32) {
 }
 
 const WIDEST: usize = CLASSES + 4 * 15 - 1;
-/// Of each half octave.
+/// Class and low bits of each half octave.
 const WIDTHS: [(u8, u8); 128] = {
     let mut widths = [(0, 0); 128];
     let mut octaves = 0;
@@ -376,10 +384,10 @@ const WIDTHS: [(u8, u8); 128] = {
     widths
 };
 
-/// The closest cell, where there can be one.
+/// Returns the cell nearest to a coordinate.
 #[inline(always)]
 fn nearest(x: f32) -> i32 {
-    // Where floats are whole numbers.
+    // At this magnitude floats are integers.
     const WHOLE: f32 = 1.5 * (1 << 23) as f32;
     let x = if x > 0.0 { x } else { 0.0 };
     let x = if x < MAX_CELLS as f32 { x } else { MAX_CELLS as f32 };

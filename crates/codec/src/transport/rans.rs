@@ -1,17 +1,17 @@
-//! Symbols of known frequencies as one number, range asymmetric numeral systems [Dud13].
+//! Entropy coding by range asymmetric numeral systems [Dud13].
 //!
-//! The last symbol encoded is the first decoded. Encoding has to start from some state, and decoding ends there: 16 bits that
-//! cost nothing, for a checksum.
+//! The last symbol encoded is the first decoded. The encoder must start from some state, and the
+//! decoder ends in it, so 16 of its bits hold a checksum for free.
 
 use crate::bytes::Malformed;
 
-/// The state is below 2³² and at least this.
+/// Least state between symbols; states are below 2³².
 const LEAST: u32 = 1 << 16;
 
-/// A symbol of those of a table: its part of all, and bits below that are as likely one as the other.
+/// Symbol of a table: its share, and equally likely bits below it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Symbol {
-    /// Where its part begins, and how large it is, of 2^`bits`.
+    /// Start and size of its share, of 2^`bits`.
     pub(super) start: u16,
     pub(super) size: u16,
     pub(super) bits: u8,
@@ -20,13 +20,13 @@ pub(super) struct Symbol {
 }
 
 impl Symbol {
-    /// One of 2^`bits` that are all as likely, at most 12 bits.
+    /// Returns one of 2^`bits` equally likely numbers, for at most 12 bits.
     pub(super) fn uniform(number: u16, bits: u8) -> Self {
         Self { start: number, size: 1, bits, low_bits: 0, low: 0 }
     }
 }
 
-/// The bytes of symbols, which are decoded in their order, and of a checksum, which is known by then.
+/// Encodes symbols, to be decoded in the same order, and a checksum that the decoder knows by then.
 pub(super) fn encode(symbols: &[Symbol], checksum: u16, out: &mut Vec<u8>) {
     let mut state = LEAST | u32::from(checksum);
     let from = out.len();
@@ -34,7 +34,7 @@ pub(super) fn encode(symbols: &[Symbol], checksum: u16, out: &mut Vec<u8>) {
         let Symbol { start, size, bits, low_bits, low } = *symbol;
         let (start, size) = (u32::from(start), u32::from(size));
         if u64::from(state) >= u64::from(size) << (32 - bits - low_bits) {
-            // Read backwards: the greater byte goes first here.
+            // All bytes are reversed below, so big-endian becomes little-endian.
             out.extend((state as u16).to_be_bytes());
             state >>= 16;
         }
@@ -45,7 +45,7 @@ pub(super) fn encode(symbols: &[Symbol], checksum: u16, out: &mut Vec<u8>) {
     out[from..].reverse();
 }
 
-/// What is left of the symbols of a block.
+/// Reader of the symbols of a block.
 #[derive(Clone, Debug)]
 pub(super) struct Symbols<'a> {
     state: u32,
@@ -54,9 +54,10 @@ pub(super) struct Symbols<'a> {
 }
 
 impl<'a> Symbols<'a> {
-    /// From bytes of [`encode`], of an even number that is at least 4.
+    /// Starts reading bytes from [`encode`]. They must be an even number of at least four.
     pub(super) fn new(bytes: &'a [u8]) -> Result<Self, Malformed> {
-        let wrong = || Malformed { at: 0, reason: "no block has these bytes".into() };
+        let wrong =
+            || Malformed { at: 0, reason: "the bytes of a block have no valid coder state".into() };
         let (state, words) = bytes.split_first_chunk().ok_or_else(wrong)?;
         let (words, rest) = words.as_chunks();
         let state = u32::from_le_bytes(*state);
@@ -70,13 +71,14 @@ impl<'a> Symbols<'a> {
         Self { state: LEAST, words: &[], at: 0 }
     }
 
-    /// The place of the next symbol in a table of 2^`bits`.
+    /// Returns the slot of the next symbol in a table of 2^`bits`.
     #[inline(always)]
     pub(super) fn place(&self, bits: u32) -> usize {
         (self.state & ((1 << bits) - 1)) as usize
     }
 
-    /// Passes the next symbol: its size, and by how much its place is offset its start. Gives the bits below.
+    /// Consumes the next symbol, given its size and the slot's offset from its start. Returns its
+    /// low bits.
     #[inline(always)]
     pub(super) fn consume(&mut self, bits: u32, size: u32, offset: u32, low_bits: u32) -> u32 {
         let state = size.wrapping_mul(self.state >> bits).wrapping_add(offset);
@@ -92,19 +94,19 @@ impl<'a> Symbols<'a> {
         low
     }
 
-    /// The next number of 2^`bits` that are all as likely, at most 12 bits.
+    /// Reads one of 2^`bits` equally likely numbers, for at most 12 bits.
     #[inline]
     pub(super) fn uniform(&mut self, bits: u32) -> u32 {
         self.consume(0, 1, 0, bits)
     }
 
-    /// That all symbols have been passed, with nothing but zeros left, and that what they made has the checksum.
+    /// Checks that all symbols are read, that only zeros are left, and that the checksum matches.
     pub(super) fn finish(&self, checksum: u16) -> Result<(), Malformed> {
         let rest = self.words.get(self.at..).is_some_and(|rest| rest.iter().all(|w| *w == [0; 2]));
-        // What a fuzzer makes of a block is to be looked at.
+        // Let a fuzzer sharing what follows.
         if cfg!(fuzzing) || (self.state == LEAST | u32::from(checksum) && rest) {
             return Ok(());
         }
-        Err(Malformed { at: 0, reason: "a block is damaged: its checksum is another".into() })
+        Err(Malformed { at: 0, reason: "a block is damaged: its checksum does not match".into() })
     }
 }

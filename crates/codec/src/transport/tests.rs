@@ -7,7 +7,7 @@ use meshlod_samples as samples;
 use super::*;
 use crate::Malformed;
 
-/// Numbers that look random, always the same ones.
+/// Deterministic pseudo-random numbers.
 struct Numbers(u64);
 
 impl Numbers {
@@ -22,7 +22,7 @@ fn options(block_faces: usize) -> TransportOptions {
     TransportOptions { block_faces, ..TransportOptions::default() }
 }
 
-/// Faces that begin at their least corner, in order.
+/// Rotates faces to start at their least corner, and sorts them.
 fn turned(faces: impl Iterator<Item = [u32; 3]>) -> Vec<[u32; 3]> {
     let turn = |mut face: [u32; 3]| {
         let least = (0..3).min_by_key(|&k| (face[k], face[(k + 1) % 3])).unwrap();
@@ -34,7 +34,7 @@ fn turned(faces: impl Iterator<Item = [u32; 3]>) -> Vec<[u32; 3]> {
     faces
 }
 
-/// That a file has the same faces over the same vertices, close to where they were.
+/// Checks that a file has the same faces over the same vertices, close to where they were.
 fn assert_same(mesh: &Mesh, options: &TransportOptions) {
     let file = Transport::encode(mesh, options).unwrap();
     let file = TransportFile::open(&file.bytes).unwrap();
@@ -43,7 +43,7 @@ fn assert_same(mesh: &Mesh, options: &TransportOptions) {
     file.decode_into(&mut positions, &mut corners).unwrap();
     assert_eq!((file.vertices(), file.faces()), (positions.len(), corners.len()));
 
-    // Vertices come in the order in which blocks have them.
+    // Vertices come in the order of their first block.
     let mut numbers = vec![None; mesh.positions.len()];
     let mut count = 0;
     let (_, cells) = grid::QuantizationGrid::of(mesh, options.quantization).unwrap();
@@ -69,7 +69,7 @@ fn assert_same(mesh: &Mesh, options: &TransportOptions) {
     }
 }
 
-/// Faces that join whatever there is.
+/// Returns faces that join random vertices.
 fn soup(vertices: usize, faces: usize, seed: u64) -> Mesh {
     let mut numbers = Numbers(seed);
     let positions = (0..vertices).map(|_| [0; 3].map(|_| numbers.next(50) as f64)).collect();
@@ -121,7 +121,7 @@ fn corners_may_be_the_same_and_faces_too() {
 
 #[test]
 fn vertices_in_one_cell_are_told_apart() {
-    // All in a few cells, and all in one.
+    // A few cells, and then a single one.
     let mut mesh = samples::sphere(3000);
     assert_same(
         &mesh,
@@ -152,7 +152,7 @@ fn a_block_is_decoded_alone() {
     assert!(blocks > 15);
     let mut from = 0;
     for k in 0..blocks {
-        // All others are lost.
+        // Erase all other blocks.
         let file = TransportFile::open(&bytes).unwrap();
         let range = file.range(k);
         let mut bytes = bytes.clone();
@@ -253,7 +253,7 @@ fn bad_input_is_refused_in_words() {
     assert_eq!(encode(&far, lattice(-15)), TransportError::TooFar);
 }
 
-/// A file, its header's checksum and its blocks' as they should be.
+/// Recomputes the checksums of header and blocks.
 fn seal(bytes: &mut [u8]) {
     TransportFile::seal(bytes);
 }
@@ -279,12 +279,12 @@ fn a_flipped_bit_is_told() {
         let mut bytes = bytes.clone();
         bytes[at] ^= 1 << (at % 8);
         assert!(decode_all(&bytes).is_err(), "byte {at}");
-        // A block by itself is told by how it ends.
+        // A single block detects damage by the checksum in its final state.
         if let Ok(file) = TransportFile::open(&bytes) {
             missed += usize::from((0..file.blocks()).all(|block| file.block(block).is_ok()));
         }
     }
-    // Vec3x4 bytes are the checksum of all blocks, which no block alone is held to.
+    // Four bytes are the checksum of all blocks, which a single block does not check.
     assert!(missed <= 5, "{missed} of {}", bytes.len());
 }
 

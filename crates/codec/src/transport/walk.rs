@@ -1,37 +1,38 @@
-//! How the encoder walks a block from face to face.
+//! Walk of the encoder over a block, from face to face.
 
 use meshlod_mesh::{Connectivity, FaceId, Side, Twin, VertexId};
 
 use super::border::{Border, EdgeState, Step};
 use super::gate::{Gate, NEARBY, context, node_at_offset};
 
-/// A block as it is told.
+/// Block as a sequence of steps.
 #[derive(Clone, Debug, Default)]
 pub(super) struct BlockWalk {
-    /// How many faces it has.
+    /// Number of faces.
     pub(super) faces: usize,
-    /// What is done, and the context that it is told in.
+    /// Each step, with the context in which it is coded.
     pub(super) steps: Vec<(u8, Step)>,
-    /// The vertices that [`Step::Other`] leads to, each told by its place in [`NEARBY`] or by its node.
+    /// Target of each [`Step::Other`]: its index in [`NEARBY`], else its node.
     pub(super) others: Vec<Result<usize, u16>>,
-    /// What each vertex is guessed from.
+    /// Gate from which each vertex is predicted.
     pub(super) gates: Vec<Gate>,
-    /// The vertex of the mesh that each is. Where a block's faces at a vertex are apart, it is there more than once.
+    /// Mesh vertex of each block vertex. One where the block's faces are not connected appears more
+    /// than once.
     pub(super) vertices: Vec<u32>,
-    /// Those that the decoder sees on the border.
+    /// Whether the decoder sees each vertex on the final border.
     pub(super) borders: Vec<bool>,
 }
 
-/// Walks block after block.
+/// Walks over blocks, one after the other.
 pub(super) struct Walker<'a> {
     faces: &'a [[VertexId; 3]],
     connectivity: &'a Connectivity,
-    /// The block of each face that has not been told.
+    /// Block of each face that has not been visited.
     block_of: Vec<u32>,
     border: Border,
-    /// The side of the face behind each node's edge.
+    /// Side of the known face on each node's edge.
     sides: Vec<Side>,
-    /// The vertex of the block that one of the mesh was last.
+    /// Latest block vertex of each mesh vertex.
     local: Vec<u16>,
 }
 
@@ -48,7 +49,8 @@ impl<'a> Walker<'a> {
         Self { faces, connectivity, block_of, border: Border::new(), sides: Vec::new(), local }
     }
 
-    /// A block of such faces; it is begun at the first of them, and so are pieces of it that are apart.
+    /// Walks over a block. It starts at the first of its faces; disconnected pieces start at the
+    /// first face left.
     pub(super) fn walk(&mut self, block: u32, members: &[u32]) -> BlockWalk {
         let mut out = BlockWalk {
             faces: members.len(),
@@ -115,16 +117,16 @@ impl<'a> Walker<'a> {
         let previous = self.border.node(node.previous);
         let second = self.border.node(node.next);
         if previous.vertex == local && previous.state == EdgeState::Open {
-            self.border.put_previous(at);
+            self.border.add_previous(at);
             self.sides[usize::from(node.previous)] = from_apex;
             return Step::Previous;
         }
         if self.border.node(second.next).vertex == local && second.state == EdgeState::Open {
-            self.border.put_next(at);
+            self.border.add_next(at);
             self.sides[usize::from(at)] = to_apex;
             return Step::Next;
         }
-        // Most are new: no need to look for them.
+        // Most vertices are new and need not be searched for.
         let known = if local == NONE { None } else { self.border.find(local) };
         let (step, from) = match known {
             Some(other) => {
@@ -132,14 +134,14 @@ impl<'a> Walker<'a> {
                     .iter()
                     .position(|&(by, _)| node_at_offset(&self.border, at, by) == other);
                 out.others.push(by.ok_or(other));
-                self.border.put_other(at, other);
+                self.border.add_other(at, other);
                 self.sides.push(self.sides[usize::from(other)]);
                 (Step::Other, other)
             }
             None => {
                 let gate = Gate::at(&self.border, at);
                 let vertex = self.vertex(apex, gate, out);
-                self.border.put_new(at, vertex);
+                self.border.add_new(at, vertex);
                 self.sides.push(from_apex);
                 (Step::New, self.sides.len() as u16 - 1)
             }
@@ -149,7 +151,7 @@ impl<'a> Walker<'a> {
         step
     }
 
-    /// The side of the block's face across an edge, where it has not been told and runs the other way.
+    /// Returns the side of the block's unvisited face across an edge, if it runs the opposite way.
     fn across(&self, at: u16, block: u32, out: &BlockWalk) -> Option<Side> {
         let Twin::Side(side) = self.connectivity.twin(self.sides[usize::from(at)]) else {
             return None;

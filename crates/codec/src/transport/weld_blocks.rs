@@ -1,11 +1,12 @@
-//! Which vertices of different blocks are one.
+//! Welding of the vertices that different blocks share.
 //!
-//! A block has vertices on its border, and its neighbours have them too. What is on borders and in one cell is one vertex, unless it is
-//! told apart: by a tag, which is 0 if nothing else is said. Few vertices share a cell, so that takes next to nothing.
+//! Each block stores the vertices on its border. Border vertices in one cell are one vertex unless
+//! their tags differ; a tag is 0 unless stated otherwise. Few different vertices share a cell, so
+//! tags take hardly any space.
 
 use super::predict::CellVec;
 
-/// Vertices by cell and tag.
+/// Hash table from cell and tag to a vertex.
 pub(super) struct WeldTable {
     slots: Vec<Slot>,
     len: usize,
@@ -20,20 +21,20 @@ struct Slot {
 
 const EMPTY: u32 = u32::MAX;
 
-/// A cell as a number.
+/// Packs a cell into a number.
 #[inline]
 pub(super) fn key(cell: CellVec) -> u64 {
     let (x, y, z) = (cell.x as u32 as u64, cell.y as u32 as u64, cell.z as u32 as u64);
     x | y << 21 | z << 42
 }
 
-/// Of the cells of a block, in their order.
+/// Computes a checksum over the cells of a block, in order.
 pub(super) fn checksum(cells: impl Iterator<Item = CellVec>) -> u16 {
     let mix = |sum: u64, cell| (sum.rotate_left(23) ^ key(cell)).wrapping_mul(MIX);
     (cells.fold(0, mix) >> 48) as u16
 }
 
-/// 2⁶⁴ by the golden ratio.
+/// 2⁶⁴ / golden ratio.
 const MIX: u64 = 0x9e37_79b9_7f4a_7c15;
 
 impl WeldTable {
@@ -42,7 +43,8 @@ impl WeldTable {
         Self { slots: vec![Slot { key: 0, tag: 0, vertex: EMPTY }; len], len: 0 }
     }
 
-    /// What there is of such a cell and tag; `vertex`, where there has been nothing. `vertex` is not the greatest number.
+    /// Returns the entry of a cell and tag, inserting `vertex` if there is none. `vertex` must not
+    /// be `u32::MAX`.
     #[inline]
     pub(super) fn find_or_insert(&mut self, key: u64, tag: u32, vertex: u32) -> &mut u32 {
         if 2 * self.len >= self.slots.len() {

@@ -1,10 +1,10 @@
-//! The file of a mesh.
+//! Writing a mesh as a transport file.
 
 use meshlod_mesh::{Connectivity, Mesh, VertexId};
 
 use super::encode::{residuals, symbols};
 use super::face_blocks::face_blocks;
-use super::file::{Entry, FACES_A_BYTE, Header};
+use super::file::{Entry, FACES_PER_BYTE, Header};
 use super::fit::{fit, shapes};
 use super::grid::QuantizationGrid;
 use super::models::Models;
@@ -16,16 +16,17 @@ use super::{
     LeftOut, Transport, TransportError, TransportOptions, TransportSizes, max_block_faces,
 };
 
-/// Faces are numbered in 32 bits, and sides of faces too.
+/// Greatest number of faces, for 32-bit numbers of faces and of their sides.
 const MAX_MESH_FACES: usize = 1 << 30;
 
 impl Transport {
-    /// The file of a mesh: positions rounded to a grid, faces as they are, turned so that each may begin at another
-    /// corner.
+    /// Encodes a mesh: positions rounded to a grid, faces unchanged except for the corner they
+    /// start at.
     ///
-    /// Every vertex that a face uses is there, once; no other is, and nothing that hangs on faces: [`Transport::left_out`] tells. Cost: O(n).
+    /// Each vertex that a face uses is stored once. [`Transport::left_out`] lists what is not
+    /// stored: attributes, materials, objects and unused vertices. Cost: O(n).
     /// # Errors
-    /// A mesh without faces or with positions that are none, and options that cannot be.
+    /// A mesh without faces, an invalid position or vertex index, or an option out of range.
     pub fn encode(mesh: &Mesh, options: &TransportOptions) -> Result<Self, TransportError> {
         if mesh.faces.is_empty() {
             return Err(TransportError::Empty);
@@ -54,7 +55,7 @@ fn left_out(mesh: &Mesh) -> Vec<LeftOut> {
     is_left.into_iter().filter(|(is_left, _)| *is_left).map(|(_, what)| what).collect()
 }
 
-/// All blocks of faces whose vertices are in such cells.
+/// Partitions faces into blocks and walks over each.
 pub(super) fn walks(faces: &[[VertexId; 3]], cells: &[CellVec], size: usize) -> Vec<BlockWalk> {
     let connectivity = Connectivity::new(faces, cells.len());
     let blocks = face_blocks(faces, cells, &connectivity, size);
@@ -91,7 +92,7 @@ fn write(
         let start = payload.len();
         let sum = checksum(walk.vertices.iter().map(|&v| cells[v as usize]));
         encode(&row, sum, &mut payload);
-        let least = (walk.faces / FACES_A_BYTE).next_multiple_of(2);
+        let least = (walk.faces / FACES_PER_BYTE).next_multiple_of(2);
         payload.resize(payload.len().max(start + least), 0);
         entries.push(Entry { faces: walk.faces, bytes: payload.len() - start });
     }
@@ -105,7 +106,7 @@ fn write(
     Transport { bytes, blocks: walks.len(), sizes, left_out: Vec::new() }
 }
 
-/// How many bits symbols take.
+/// Counts the bits of symbols.
 struct SymbolBits {
     positions: f64,
     connectivity: f64,
@@ -120,7 +121,8 @@ impl Default for SymbolBits {
 }
 
 impl SymbolBits {
-    /// First and last are the first vertex and what is joined, distances are between.
+    /// Adds the symbols of a block. Residuals of positions are in the given range, all else is
+    /// connectivity.
     fn add(&mut self, symbols: &[Symbol], [connectivity, positions]: [usize; 2]) {
         let bits = |symbols: &[Symbol]| -> f64 {
             let bits = |s: &Symbol| {
@@ -135,13 +137,13 @@ impl SymbolBits {
     }
 }
 
-/// For each block the vertices that need a tag, and how many vertices there are.
+/// Returns the vertices of each block that need a tag, and the number of vertices of the mesh.
 fn tags(walks: &[BlockWalk], cells: &[CellVec]) -> (Vec<Vec<(u16, u32)>>, usize) {
     let mut uses = vec![0u8; cells.len()];
     for &v in walks.iter().flat_map(|walk| &walk.vertices) {
         uses[v as usize] = uses[v as usize].saturating_add(1);
     }
-    // How many tags a cell has by now.
+    // Number of tags used in each cell so far.
     let mut welds = WeldTable::new(1 << 10);
     let mut tag_of = vec![u32::MAX; cells.len()];
     let tags = walks.iter().map(|walk| {
