@@ -22,7 +22,7 @@ const MESHES: [&str; 10] = [
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     println!(
-        "| | bytes a vertex | reduction, % | mean : 11 bits | max : 11 bits | turned over | in 11 bits | normals : 11 bits | finer blocks, % | seconds |"
+        "| | bytes per vertex | reduction, % | mean : 11 bits | max : 11 bits | flipped | in 11 bits | normals : 11 bits | refined blocks, % | seconds |"
     );
     println!("|---|--:|--:|--:|--:|--:|--:|--:|--:|--:|");
     for name in MESHES {

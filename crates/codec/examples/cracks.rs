@@ -18,7 +18,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let views = numbers.next().transpose()?.unwrap_or(100);
     let side = numbers.next().transpose()?.unwrap_or(2048);
     println!(
-        "| | parts | background in {views} views | truncated, as the paper | boxes of their own |"
+        "| | parts | background in {views} views | truncated, as in the paper | a grid per box |"
     );
     println!("|---|--:|--:|--:|--:|");
     for name in MESHES {

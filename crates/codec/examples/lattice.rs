@@ -18,7 +18,7 @@ const MESHES: [&str; 10] = [
 ];
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    println!("| | cells along its longest side | bytes a vertex | reduction, % |");
+    println!("| | cells along the longest side | bytes per vertex | reduction, % |");
     println!("|---|--:|--:|--:|");
     for name in MESHES {
         let Some(path) = shared_mesh(name) else { continue };

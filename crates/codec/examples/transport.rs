@@ -25,7 +25,7 @@ const ROUNDS: usize = 9;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     println!(
-        "| | connectivity | positions | headers | bytes a triangle | of Draco's | Mtri/s in | MB/s out |"
+        "| | connectivity | positions | headers | bytes per triangle | ratio to Draco | Mtri/s in | MB/s out |"
     );
     println!("|---|--:|--:|--:|--:|--:|--:|--:|");
     let mut sum = 0.0;
@@ -34,7 +34,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let mesh = meshlod_io::read(&path, &Default::default())?.flatten();
         sum += row(&mesh, name, draco)?;
     }
-    println!("mean {:.3} bytes a triangle", sum / MESHES.len() as f64);
+    println!("mean {:.3} bytes per triangle", sum / MESHES.len() as f64);
     Ok(())
 }
 

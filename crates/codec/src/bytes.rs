@@ -8,11 +8,11 @@ use thiserror::Error;
 pub struct Malformed {
     /// Offset of the error in bytes.
     pub at: usize,
-    /// What is wrong.
+    /// Description of the error.
     pub reason: String,
 }
 
-/// Returns the fraction by which `bytes` is smaller than three `f32` for each vertex; 0 for no vertices.
+/// Returns the fraction by which `bytes` is less than three `f32` per vertex; 0 for no vertices.
 pub(crate) fn reduction(bytes: usize, vertices: usize) -> f64 {
     match vertices {
         0 => 0.0,

@@ -167,7 +167,7 @@ mod tests {
     }
 
     #[test]
-    fn vertices_in_one_place_are_parted_all_the_same() {
+    fn coincident_vertices_are_still_split_into_blocks() {
         let mut vertices: Vec<u32> = (0..100).collect();
         in_blocks(&[[1.0; 3]; 100], &mut vertices, 32);
         vertices.sort_unstable();

@@ -3,13 +3,13 @@
 //! Four ways to store positions:
 //!
 //! - [`Parts`]: 8 bits per axis, decoded by the vertex transform alone [LCL10]. The mesh is
-//!   partitioned into parts with boxes of about equal size. All parts share one grid of equal cells,
-//!   and each part has a matrix that places its cells, so that common vertices coincide.
+//!   partitioned into parts with boxes of about equal size. All parts share one grid of equal
+//!   cells, and each part has a matrix that places its cells, so that common vertices coincide.
 //! - [`LatticeBlocks`]: each vertex in one block of 32, on a [`Lattice`] that several meshes can
 //!   share. Common vertices decode to the same bits in every mesh.
-//! - [`VertexBlocks`]: each vertex in one block of 32, with an oriented frame per block and cells as
-//!   large as the surface allows. Fewest bits for a given distance between the surfaces; one matrix
-//!   per block decodes them.
+//! - [`VertexBlocks`]: each vertex in one block of 32, with an oriented frame per block and cells
+//!   as large as the surface allows. Fewest bits for a given distance between the surfaces; one
+//!   matrix per block decodes them.
 //! - [`Transport`]: an entropy-coded mesh for sending and storing, in blocks that a
 //!   [`TransportFile`] decodes independently.
 //!

@@ -9,7 +9,7 @@ mod tests;
 use glam::DVec3;
 use meshlod_mesh::{Layer, LayerKind, WedgeId};
 
-use self::octahedral::{fold, most_turn_rad, unfold};
+use self::octahedral::{fold, max_error_rad, unfold};
 pub(crate) use self::packed::PackedRows;
 use self::quantizer::UniformQuantizer;
 use crate::bytes::{Malformed, Reader};
@@ -105,8 +105,8 @@ impl PackedLayer {
         let mut this = Self { kind, name, width, coding, numbers, max_error: 0.0 };
         let decoded = this.decode();
         let values = decoded.values.chunks_exact(width);
-        let apart = wedges.iter().zip(values).map(|(&wedge, is)| apart(kind, layer.of(wedge), is));
-        this.max_error = apart.fold(0.0, f64::max);
+        let error = wedges.iter().zip(values).map(|(&wedge, is)| error(kind, layer.of(wedge), is));
+        this.max_error = error.fold(0.0, f64::max);
         this
     }
 
@@ -254,7 +254,7 @@ impl AttributeBounds {
 /// Returns the least number of bits that keep directions within a bound.
 fn direction_bits(bound_rad: f64) -> u32 {
     let [least, most] = DIRECTION_BITS;
-    (least..most).find(|&bits| most_turn_rad(bits) <= bound_rad).unwrap_or(most)
+    (least..most).find(|&bits| max_error_rad(bits) <= bound_rad).unwrap_or(most)
 }
 
 fn is_direction(kind: LayerKind) -> bool {
@@ -266,7 +266,7 @@ fn direction(values: &[f32]) -> DVec3 {
 }
 
 /// Returns the error of a decoded value; 0 for a direction of zero length.
-fn apart(kind: LayerKind, was: &[f32], is: &[f32]) -> f64 {
+fn error(kind: LayerKind, was: &[f32], is: &[f32]) -> f64 {
     if is_direction(kind) {
         let was = direction(was);
         return if was.length() > 0.0 { was.angle_between(direction(is)) } else { 0.0 };

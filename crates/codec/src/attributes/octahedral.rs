@@ -11,8 +11,8 @@ pub(crate) fn fold(direction: DVec3, bits: u32) -> [u32; 2] {
     let [x, y] = flat(direction).map(|x| ((x + 1.0) / 2.0 * most).floor());
     let near = [[x, y], [x + 1.0, y], [x, y + 1.0], [x + 1.0, y + 1.0]];
     let near = near.map(|at| at.map(|x| x.min(most) as u32));
-    let apart = |at: &[u32; 2]| unfold(*at, bits).distance_squared(direction);
-    near.into_iter().min_by(|a, b| apart(a).total_cmp(&apart(b))).expect("there are four")
+    let distance = |at: &[u32; 2]| unfold(*at, bits).distance_squared(direction);
+    near.into_iter().min_by(|a, b| distance(a).total_cmp(&distance(b))).expect("there are four")
 }
 
 /// Decodes a direction, identically on every machine.
@@ -29,7 +29,7 @@ pub(crate) fn unfold(at: [u32; 2], bits: u32) -> DVec3 {
 /// a step along their diagonal turns three times as far as it is long, and across it √3 times:
 /// corners of cells form a lattice of triangles with side √6 s there, and no direction is farther
 /// from all of them than √6 s / √3.
-pub(crate) fn most_turn_rad(bits: u32) -> f64 {
+pub(crate) fn max_error_rad(bits: u32) -> f64 {
     2.0 * 2f64.sqrt() / last(bits)
 }
 
@@ -62,13 +62,13 @@ mod tests {
             samples::sphere(20_000).positions.iter().map(turn).fold(0.0, f64::max)
         };
         for bits in [4, 8, 12, 16] {
-            let bound = most_turn_rad(bits);
+            let bound = max_error_rad(bits);
             assert!((0.8 * bound..bound).contains(&worst(bits)), "{bits}: {}", worst(bits));
         }
     }
 
     #[test]
-    fn the_axes_and_what_is_no_direction_are_told() {
+    fn axes_and_zero_vectors_have_a_code() {
         for axis in [DVec3::X, DVec3::NEG_X, DVec3::Y, DVec3::NEG_Y, DVec3::Z, DVec3::NEG_Z] {
             assert!(unfold(fold(axis, 10), 10).angle_between(axis) < 2e-3);
         }

@@ -180,7 +180,7 @@ mod tests {
     }
 
     #[test]
-    fn numbers_come_back_all_together_and_each_alone() {
+    fn numbers_decode_together_and_alone() {
         let (numbers, packed) = packed();
         assert_eq!(packed.all(), numbers);
         let mut all = numbers.chunks(3);
@@ -192,7 +192,7 @@ mod tests {
     }
 
     #[test]
-    fn bytes_are_what_they_say_and_spoilt_ones_do_no_harm() {
+    fn sizes_are_as_reported_and_damaged_bytes_do_no_harm() {
         let (_, packed) = packed();
         let mut bytes = Vec::new();
         packed.store(&mut bytes);
@@ -202,16 +202,16 @@ mod tests {
         assert_eq!(restore(&bytes), Ok(packed.clone()));
         assert!(restore(&bytes[..bytes.len() - 1]).is_err());
         for bit in 0..8 * bytes.len() {
-            let mut spoilt = bytes.clone();
-            spoilt[bit / 8] ^= 1 << (bit % 8);
-            if let Ok(packed) = restore(&spoilt) {
+            let mut damaged = bytes.clone();
+            damaged[bit / 8] ^= 1 << (bit % 8);
+            if let Ok(packed) = restore(&damaged) {
                 assert_eq!(packed.all().len(), 3 * packed.rows.nodes());
             }
         }
     }
 
     #[test]
-    fn what_is_the_same_all_over_a_row_takes_no_bits() {
+    fn equal_values_in_a_row_take_no_bits() {
         let same = PackedRows::new(Rows::new([1000]), 1, &[u32::MAX; 1000]);
         assert!(same.bytes() < 20);
         assert_eq!(same.get(0, 999), [u32::MAX]);

@@ -30,9 +30,9 @@ impl UniformQuantizer {
                 most = most.max(f64::from(x).abs());
             }
         }
-        let told = floor_log2(most).map_or(EXPONENTS[0], |exponent| exponent - F32_BITS);
+        let finest = floor_log2(most).map_or(EXPONENTS[0], |exponent| exponent - F32_BITS);
         let asked = floor_log2(2.0 * bound).unwrap_or(EXPONENTS[0]);
-        let exponent = told.max(asked).clamp(EXPONENTS[0], EXPONENTS[1]);
+        let exponent = finest.max(asked).clamp(EXPONENTS[0], EXPONENTS[1]);
         let number = |x: f64| if x.is_finite() { (x / step(exponent)).round() as i32 } else { 0 };
         Self { exponent, least: least.into_iter().map(number).collect() }
     }

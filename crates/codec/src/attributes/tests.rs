@@ -56,7 +56,7 @@ fn every_kind_is_within_its_bound_and_comes_back_from_bytes() {
 }
 
 #[test]
-fn eight_bits_of_colour_are_told_exactly() {
+fn eight_bits_of_colour_are_exact() {
     let values: Vec<f32> = (0..256).flat_map(|i| [i as f32 / 255.0; 3]).collect();
     let layer = Layer { kind: LayerKind::Color(0), name: String::new(), width: 3, values };
     let wedges: Vec<_> = (0..256).map(WedgeId::new).collect();
@@ -81,7 +81,7 @@ fn values_of_any_size_are_as_close_as_f32_tells() {
 }
 
 #[test]
-fn spoilt_bytes_are_told_or_give_numbers() {
+fn damaged_bytes_are_refused_or_decode_to_finite_values() {
     for (kind, width) in KINDS {
         let (layer, wedges) = layer(kind, width, 1.0);
         let wedges = &wedges[..200];
@@ -89,9 +89,9 @@ fn spoilt_bytes_are_told_or_give_numbers() {
         let mut bytes = Vec::new();
         packed.store(&mut bytes);
         for bit in (0..8 * bytes.len()).step_by(3) {
-            let mut spoilt = bytes.clone();
-            spoilt[bit / 8] ^= 1 << (bit % 8);
-            if let Ok(packed) = PackedLayer::restore(rows(200), &mut Reader::new(&spoilt)) {
+            let mut damaged = bytes.clone();
+            damaged[bit / 8] ^= 1 << (bit % 8);
+            if let Ok(packed) = PackedLayer::restore(rows(200), &mut Reader::new(&damaged)) {
                 assert!(packed.decode().values.iter().all(|x| x.is_finite()));
             }
         }

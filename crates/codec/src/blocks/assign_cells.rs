@@ -43,7 +43,7 @@ struct MoveCost<'s> {
     square: DMat3,
     pull: DVec3,
     /// Penalty for the squared distance beyond the limit.
-    dear: f64,
+    penalty: f64,
     limit: f64,
     /// True if no candidate cell can flip a face.
     is_safe: bool,
@@ -53,7 +53,7 @@ struct MoveCost<'s> {
 type Cost = (usize, f64);
 
 /// Penalty factor beyond the limit: such a cell is a last resort.
-const DEAR: f64 = 100.0;
+const PENALTY: f64 = 100.0;
 
 impl BlockGrid {
     /// Returns the fractional cell coordinates of a point.
@@ -67,7 +67,7 @@ impl BlockGrid {
         self.first + self.sides[0] * u + self.sides[1] * v + self.sides[2] * w
     }
 
-    /// Rounds a coordinate along an axis down and clamps it to the grid.
+    /// Converts a rounded coordinate along an axis to a cell of the grid, by clamping.
     fn within(&self, axis: usize, x: f64) -> i32 {
         (x as i32).clamp(0, self.counts[axis] - 1)
     }
@@ -205,8 +205,8 @@ impl<'s> MoveCost<'s> {
         square += boundary.map_or(DMat3::ZERO, |boundary| *boundary * area);
         let cell: f64 = grid.sides.iter().map(|side| side.length()).sum();
         let is_safe = height > 4.0 * cell;
-        let dear = DEAR * area;
-        Self { surface, vertex, square, pull, dear, limit: options.limit, is_safe }
+        let penalty = PENALTY * area;
+        Self { surface, vertex, square, pull, penalty, limit: options.limit, is_safe }
     }
 
     /// Returns the change of the summed squares for a displacement.
@@ -219,7 +219,7 @@ impl<'s> MoveCost<'s> {
         let mut effect = self.effect(moved);
         if moved.length_squared() > self.limit * self.limit {
             let over = (self.surface.plane_distance(self.vertex, moved) - self.limit).max(0.0);
-            effect += self.dear * over * over;
+            effect += self.penalty * over * over;
         }
         (flips, effect)
     }

@@ -16,7 +16,7 @@ use crate::bits::Bits;
 use crate::header_field::HeaderField;
 use crate::kd::BLOCK;
 
-/// What stays the same while cell sizes are tried.
+/// Mesh data that stays the same while cell sizes are tried.
 struct Fit {
     surface: OriginalSurface,
     reference: CubicReference,
@@ -48,9 +48,9 @@ const TRIES: usize = 6;
 const ROUNDS: usize = 8;
 const FINER: f64 = 0.6;
 const FINEST: f64 = 1.0 / 8.0;
-/// How many times as long as high a cell may be where the surface is flat. With 5, squirrel-20k and
-/// dragon-100k take as much and the bunny 1.3 % less; with 3 they take .6 % more, as much, and 1.6
-/// % more.
+/// Limit on the length of a cell relative to its height, which is used where the surface is flat.
+/// With 5, squirrel-20k and dragon-100k take as much and the bunny 1.3 % less; with 3 they take
+/// .6 % more, as much, and 1.6 % more.
 const MAX_ELONGATION: f64 = 4.0;
 /// Cost of moving along the surface, relative to moving across it. At .01 these three meshes take 2
 /// to 3 % less, and faces turn 2 to 5 % farther; at .1 they take 2 % more, and faces turn 3 to 5 %
@@ -60,7 +60,7 @@ const ALONG: f64 = 0.03;
 const SWEEPS: usize = 2;
 /// Limits on a vertex's distance, relative to the largest distance in cubic cells: the final one,
 /// and the lower one used while neighbours still move.
-const FARTHEST: f64 = 1.9;
+const MAX_DISTANCE: f64 = 1.9;
 const MAX_DISTANCE_ALONE: f64 = 1.5;
 
 /// Fits blocks to a target accuracy and packs them, in the fewest bits found.
@@ -186,7 +186,7 @@ impl Fit {
         for _ in 0..ROUNDS {
             let Attempt { grids, assignment, .. } = &mut *attempt;
             let doubts = doubtful.into_iter();
-            let far = assignment.repair(&self.surface, grids, FARTHEST * self.most(), doubts);
+            let far = assignment.repair(&self.surface, grids, MAX_DISTANCE * self.most(), doubts);
             // The cause may be a neighbour of the distant vertex.
             let far = self.surface.with_neighbours(far.into_iter());
             let mut bad = self.blocks_of(far, &assignment.moved);

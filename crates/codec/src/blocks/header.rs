@@ -48,7 +48,7 @@ pub(super) struct CellSizes {
 /// Greatest number of bits that two vertices may take along an axis.
 pub(super) const WIDEST: u8 = 56;
 /// Greatest distance of a block from the middle of its group, in anchor units.
-const FARTHEST: f64 = (1 << 30) as f64;
+const MAX_ANCHOR: f64 = (1 << 30) as f64;
 
 /// Factor by which cells may exceed the desired size: half the jump to the next width, and a step.
 const LARGER: f64 = 1.3;
@@ -202,7 +202,7 @@ fn first([low, high]: [f64; 2], count: f64, cell: f64, anchor: f64) -> Option<i3
     let least = ((high - (count - 0.5) * cell) / anchor).ceil();
     let most = ((low + 0.5 * cell) / anchor).floor();
     let found = ((least + most) * 0.5).round().min(most);
-    (least <= most && found.abs() < FARTHEST).then_some(found as i32)
+    (least <= most && found.abs() < MAX_ANCHOR).then_some(found as i32)
 }
 
 impl BlockHeader {

@@ -43,7 +43,7 @@ const WORD: usize = 32;
 const BYTES: usize = 2 * 4 + 3 * 8 + 2 * 8 + 2 + 4 * 2;
 const GROUP_BYTES: usize = 4 + 3 + 3;
 /// Limit on lengths in a file, so that sums and squares stay finite.
-const FARTHEST: f64 = 1e60;
+const MAX_LENGTH: f64 = 1e60;
 
 impl BlockLayout {
     pub(super) fn blocks(&self) -> usize {
@@ -147,14 +147,14 @@ impl BlockLayout {
         let words = reader.u32()? as usize;
         let mut length = |low: f64| {
             let x = reader.f64()?;
-            let is_one = (low..FARTHEST).contains(&x);
-            if is_one {
+            let is_valid = (low..MAX_LENGTH).contains(&x);
+            if is_valid {
                 Ok(x)
             } else {
                 Err(reader.wrong(format!("{x} is out of range for a length")))
             }
         };
-        let centre = DVec3::new(length(-FARTHEST)?, length(-FARTHEST)?, length(-FARTHEST)?);
+        let centre = DVec3::new(length(-MAX_LENGTH)?, length(-MAX_LENGTH)?, length(-MAX_LENGTH)?);
         let (cell, reach) = (length(f64::MIN_POSITIVE)?, length(0.0)?);
         let units = Units { cell, anchors: [reader.u8()?, reader.u8()?] };
         let mut fields = [HeaderField::default(); 4];

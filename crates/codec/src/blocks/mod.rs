@@ -34,7 +34,7 @@ pub struct VertexBlocks {
     vertices: Vec<VertexId>,
 }
 
-/// How accurate decoded positions should be.
+/// Requested accuracy of decoded positions.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Accuracy {
     /// As accurate as this many bits per axis for the whole mesh: rounding to cubic cells, 2^bits −
@@ -120,7 +120,8 @@ impl VertexBlocks {
         ordered: &[VertexId],
         target: Accuracy,
     ) -> Result<(Self, BlocksReport), BlocksError> {
-        let is_far = |v: &&VertexId| !mesh.positions[v.index()].iter().all(|x| x.abs() < MOST);
+        let is_far =
+            |v: &&VertexId| !mesh.positions[v.index()].iter().all(|x| x.abs() < MAX_COORDINATE);
         if let Some(&v) = ordered.iter().find(is_far) {
             return Err(BlocksError::NotFinite(v));
         }
@@ -229,7 +230,7 @@ impl VertexBlocks {
 }
 
 /// Limit on coordinates: below it, fourth powers are finite in `f64`, and so is the `f32`.
-const MOST: f64 = 1e38;
+const MAX_COORDINATE: f64 = 1e38;
 
 fn placed(sides: &[DVec3; 3], first: DVec3, cell: [u32; 3]) -> [f64; 3] {
     let [u, v, w] = cell.map(f64::from);

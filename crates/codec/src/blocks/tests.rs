@@ -43,7 +43,7 @@ fn stored(blocks: &VertexBlocks) -> Vec<u8> {
 }
 
 #[test]
-fn each_vertex_is_found_alone_where_its_matrix_puts_it() {
+fn each_vertex_decodes_alone_as_its_matrix_says() {
     for mesh in meshes() {
         let (blocks, _) = of_bits(&mesh, 10);
         let places = blocks.positions();
@@ -60,7 +60,7 @@ fn each_vertex_is_found_alone_where_its_matrix_puts_it() {
 }
 
 #[test]
-fn faces_that_are_turned_over_or_lost_are_told_as_they_are_decoded() {
+fn flipped_and_lost_faces_are_counted_as_they_decode() {
     for mesh in [samples::gyroid(20_000), samples::terrain(20_000)] {
         let (blocks, report) = of_bits(&mesh, 6);
         let decoded = decoded(&mesh, &blocks);
@@ -77,7 +77,7 @@ fn faces_that_are_turned_over_or_lost_are_told_as_they_are_decoded() {
 }
 
 #[test]
-fn surfaces_are_as_close_as_in_cubes_and_no_more_faces_are_turned_over() {
+fn surfaces_are_as_close_as_in_cubes_with_no_more_flips() {
     for mesh in [samples::sphere(6000), samples::gyroid(6000), samples::terrain(4000)] {
         for bits in [8, 11] {
             let (blocks, report) = of_bits(&mesh, bits);
@@ -101,7 +101,7 @@ fn surfaces_are_as_close_as_in_cubes_and_no_more_faces_are_turned_over() {
 }
 
 #[test]
-fn an_error_is_kept() {
+fn a_requested_error_is_kept() {
     let mesh = samples::gyroid(6000);
     for error in [1e-2, 1e-4] {
         let (blocks, _) = VertexBlocks::new(&mesh, Accuracy::Error(error)).unwrap();
@@ -118,7 +118,7 @@ fn smooth_meshes_shrink_to_less_than_a_fifth() {
 }
 
 #[test]
-fn what_is_stored_comes_back_as_large_as_was_said() {
+fn stored_data_comes_back_and_has_the_reported_size() {
     for mesh in meshes().into_iter().chain([Mesh::default()]) {
         let (blocks, _) = of_bits(&mesh, 11);
         let bytes = stored(&blocks);
@@ -131,7 +131,7 @@ fn what_is_stored_comes_back_as_large_as_was_said() {
 }
 
 #[test]
-fn bytes_that_may_be_anything_do_no_harm() {
+fn damaged_bytes_do_no_harm() {
     let bytes = stored(&of_bits(&samples::gyroid(3000), 9).0);
     for length in (0..bytes.len()).step_by(7) {
         assert!(restored(&bytes[..length]).is_err());
@@ -167,7 +167,7 @@ fn vertices_may_be_in_any_order_within_a_block() {
 }
 
 #[test]
-fn what_cannot_be_is_said() {
+fn impossible_requests_are_refused() {
     let far = |x: f64| mesh(&[[x, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]], &[[0, 1, 2]]);
     let ask = |x: f64, target| VertexBlocks::new(&far(x), target).err();
     for bits in [0, 1, 25, 64, u32::MAX] {

@@ -1,6 +1,7 @@
 //! Bit layout of block headers and cell numbers, in memory and in files.
 
-use super::shear::{BEND_BITS, COARSE, COARSE_BITS, MOST_CELLS, SLOPE_BITS, ShearTransform, axes};
+use super::search::{BEND_BITS, COARSE, COARSE_BITS, SLOPE_BITS, axes};
+use super::shear::{MAX_CELLS, ShearTransform};
 use crate::bits::Bits;
 use crate::bytes::{Malformed, Reader};
 use crate::header_field::HeaderField;
@@ -247,7 +248,7 @@ impl LatticeLayout {
         let vertices = reader.u32()? as usize;
         let words = reader.u32()? as usize;
         let most = [reader.i32()?, reader.i32()?, reader.i32()?];
-        if !most.iter().all(|most| (0..MOST_CELLS).contains(most)) {
+        if !most.iter().all(|most| (0..MAX_CELLS).contains(most)) {
             return Err(reader.wrong(format!("the greatest cells {most:?} are out of range")));
         }
         let groups = vertices.div_ceil(BLOCK).div_ceil(GROUP);

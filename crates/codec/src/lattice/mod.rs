@@ -1,13 +1,14 @@
 //! Vertices in blocks, rounded to a lattice that meshes can share.
 
 mod layout;
+mod search;
 mod shear;
 
 use meshlod_mesh::{Bounds, Mesh, VertexId};
 use thiserror::Error;
 
 use self::layout::LatticeLayout;
-use self::shear::MOST_CELLS;
+use self::shear::MAX_CELLS;
 use crate::bytes::{Malformed, Reader, reduction};
 use crate::kd::blocks_of;
 
@@ -38,7 +39,7 @@ pub enum LatticeError {
     #[error("{0} has a coordinate that is not finite")]
     NotFinite(VertexId),
     /// The mesh spans more cells than the format can number.
-    #[error("the mesh spans {cells:.0} cells, more than {MOST_CELLS}: use larger cells")]
+    #[error("the mesh spans {cells:.0} cells, more than {MAX_CELLS}: use larger cells")]
     TooFine {
         /// Number of cells along the longest side.
         cells: f64,
@@ -57,15 +58,15 @@ pub enum LatticeError {
 /// Size of the lattice's exponent and the least cell.
 const HEADER: usize = 4 + 3 * 8;
 /// Limit on cell numbers, up to which `f64` has every integer.
-const FARTHEST: f64 = (1u64 << 52) as f64;
+const MAX_NUMBER: f64 = (1u64 << 52) as f64;
 
 impl Lattice {
     /// Creates a lattice with cells of 2^`exponent` model units.
     /// # Errors
     /// An exponent below -960 or above 960.
     pub fn new(exponent: i32) -> Result<Self, LatticeError> {
-        let is_one = (-960..=960).contains(&exponent);
-        if is_one { Ok(Self { exponent }) } else { Err(LatticeError::Exponent(exponent)) }
+        let is_valid = (-960..=960).contains(&exponent);
+        if is_valid { Ok(Self { exponent }) } else { Err(LatticeError::Exponent(exponent)) }
     }
 
     /// Creates the coarsest lattice whose cells are no larger than `cell`.
@@ -187,7 +188,7 @@ impl LatticeBlocks {
     pub(crate) fn restore(reader: &mut Reader) -> Result<Self, Malformed> {
         let lattice = Lattice::new(reader.i32()?).map_err(|why| reader.wrong(why.to_string()))?;
         let first = [reader.u64()?, reader.u64()?, reader.u64()?].map(u64::cast_signed);
-        if first.iter().any(|&x| x.unsigned_abs() > FARTHEST as u64) {
+        if first.iter().any(|&x| x.unsigned_abs() > MAX_NUMBER as u64) {
             return Err(reader.wrong("the first cell is too far away"));
         }
         let layout = LatticeLayout::restore(reader)?;
@@ -207,10 +208,10 @@ fn range(bounds: &Bounds, lattice: Lattice) -> Result<([i64; 3], [i32; 3]), Latt
     }
     for k in 0..3 {
         let [low, high] = [bounds.min[k], bounds.max[k]].map(|x| lattice.number(x));
-        if high - low >= f64::from(MOST_CELLS) {
+        if high - low >= f64::from(MAX_CELLS) {
             return Err(LatticeError::TooFine { cells: high - low });
         }
-        if low.abs().max(high.abs()) > FARTHEST {
+        if low.abs().max(high.abs()) > MAX_NUMBER {
             return Err(LatticeError::TooFar { exponent: lattice.exponent });
         }
         (first[k], most[k]) = (low as i64, (high - low) as i32);
@@ -230,7 +231,7 @@ mod tests {
     }
 
     #[test]
-    fn vertices_are_at_the_closest_of_the_lattice_and_each_is_found_alone() {
+    fn vertices_decode_alone_to_the_closest_lattice_vertex() {
         for mesh in [samples::sphere(5000), samples::gyroid(3000), samples::terrain(2000)] {
             let blocks = blocks(&mesh, -9);
             let positions = blocks.positions();
@@ -245,7 +246,7 @@ mod tests {
     }
 
     #[test]
-    fn what_tiles_share_is_the_same_in_all_of_them() {
+    fn shared_vertices_of_tiles_decode_equally() {
         let mesh = samples::gyroid(6000);
         for tiles in [2, 8, 64] {
             let mut places = vec![None; mesh.positions.len()];
@@ -281,7 +282,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_stored_comes_back_as_large_as_was_said() {
+    fn stored_data_comes_back_and_has_the_reported_size() {
         for mesh in [samples::sphere(5000), samples::terrain(2000), Mesh::default()] {
             for exponent in [-4, -11] {
                 let blocks = blocks(&mesh, exponent);
@@ -296,7 +297,7 @@ mod tests {
     }
 
     #[test]
-    fn bytes_that_may_be_anything_do_no_harm() {
+    fn damaged_bytes_do_no_harm() {
         let bytes = stored(&blocks(&samples::gyroid(3000), -8));
         for length in (0..bytes.len()).step_by(7) {
             assert!(restored(&bytes[..length]).is_err());
@@ -355,7 +356,7 @@ mod tests {
     }
 
     #[test]
-    fn what_cannot_be_is_said() {
+    fn impossible_requests_are_refused() {
         let far = |x: f64| mesh(&[[x, 0.0, 0.0], [x + 1.0, 0.0, 0.0], [x, 1.0, 0.0]], &[[0, 1, 2]]);
         let ask =
             |mesh: &Mesh, exponent| LatticeBlocks::new(mesh, Lattice::new(exponent).unwrap()).err();

@@ -4,6 +4,8 @@
 //! along the other two, the block is sheared. Each lifting step depends only on coordinates that it
 //! leaves alone, so it is undone exactly [BE92].
 
+use super::search::{BEND, SLOPE, Search, axes, centre};
+
 /// Shear transform of a block, with the box of the result. Everything is relative to the middle.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct ShearTransform {
@@ -21,31 +23,24 @@ pub(super) struct ShearTransform {
     pub(super) spans: [u8; 3],
 }
 
-const SLOPE: i64 = 64;
-/// Bits of slopes across a block, with sign; slopes along it are coarser.
-pub(super) const SLOPE_BITS: u32 = 7;
-pub(super) const COARSE_BITS: u32 = 5;
-pub(super) const COARSE: i8 = 1 << (SLOPE_BITS - COARSE_BITS);
-const BEND: i64 = 64;
-pub(super) const BEND_BITS: u32 = 6;
 /// Vertices that share one number, so that less than a bit is lost for all of them.
 pub(super) const TUPLE: usize = 4;
 
 impl ShearTransform {
     /// Finds the transform with the fewest bits, with or without bends. Cells must be at least 0
-    /// and below [`MOST_CELLS`].
+    /// and below [`MAX_CELLS`].
     pub(super) fn of(cells: &[[i32; 3]], is_bent: bool) -> Self {
         // Around the middle of its box, every block fits without shears.
-        let plain = Self::default().settled(cells).unwrap_or_default();
-        let laid = (0..3).filter_map(|axis| {
+        let plain = Self::default().centred(cells).unwrap_or_default();
+        let sheared = (0..3).filter_map(|axis| {
             let at = Search::new(cells, axis, is_bent).best();
-            Self { axis, slopes: at.slopes(), bends: at.bends(), ..Self::default() }.settled(cells)
+            Self { axis, slopes: at.slopes(), bends: at.bends(), ..Self::default() }.centred(cells)
         });
-        laid.fold(plain, |best, one| if one.volume() < best.volume() { one } else { best })
+        sheared.fold(plain, |best, one| if one.volume() < best.volume() { one } else { best })
     }
 
     /// Moves the middle to where the box is smallest, and sets the spans.
-    fn settled(mut self, cells: &[[i32; 3]]) -> Option<Self> {
+    fn centred(mut self, cells: &[[i32; 3]]) -> Option<Self> {
         let of = centre(cells);
         let middle = axes(self.axis).map(|axis| of[axis]);
         let mut best = None::<Self>;
@@ -63,7 +58,7 @@ impl ShearTransform {
             let u = by[0] + shear(self.slopes[0], v);
             let w = by[2] + shear(self.slopes[2], u) + shear(self.slopes[3], v);
             let next = [(0, u), (1, v), (2, w)].map(|(k, by)| at[k] + by as i32);
-            if next == at || next.iter().any(|&x| !(0..MOST_CELLS).contains(&x)) {
+            if next == at || next.iter().any(|&x| !(0..MAX_CELLS).contains(&x)) {
                 break;
             }
             at = next;
@@ -84,8 +79,8 @@ impl ShearTransform {
 
     /// Returns the least and greatest transformed coordinates.
     fn reach(&self, cells: &[[i32; 3]]) -> [[i64; 3]; 2] {
-        let laid = cells.iter().map(|&cell| self.laid(cell));
-        laid.fold([[0; 3]; 2], |[low, high], x| {
+        let cells = cells.iter().map(|&cell| self.transformed(cell));
+        cells.fold([[0; 3]; 2], |[low, high], x| {
             [[0, 1, 2].map(|k| low[k].min(x[k])), [0, 1, 2].map(|k| high[k].max(x[k]))]
         })
     }
@@ -115,7 +110,7 @@ impl ShearTransform {
     pub(super) fn number(&self, cells: &[[i32; 3]]) -> u128 {
         let volume = u128::from(self.volume());
         cells.iter().rev().fold(0, |number, &cell| {
-            let cell = self.laid(cell);
+            let cell = self.transformed(cell);
             let [u, v, w] = self.spans.map(span);
             let digit = |k: usize| (cell[k] + span(self.spans[k]) as i64 / 2) as u64;
             debug_assert!(digit(0) < u && digit(1) < v && digit(2) < w);
@@ -143,7 +138,7 @@ impl ShearTransform {
     }
 
     /// Transforms a cell.
-    fn laid(&self, cell: [i32; 3]) -> [i64; 3] {
+    fn transformed(&self, cell: [i32; 3]) -> [i64; 3] {
         let axes = axes(self.axis);
         let [u, v, w] = [0, 1, 2].map(|k| i64::from(cell[axes[k]]) - i64::from(self.middle[k]));
         let w = w - self.height(u, v);
@@ -166,120 +161,10 @@ impl ShearTransform {
 /// Limit on moves of the middle.
 const TRIES: usize = 6;
 
-/// Returns the axes `u`, `v` and `w`, given the flattened one.
-pub(super) fn axes(flattened: u8) -> [usize; 3] {
-    let axis = usize::from(flattened);
-    [(axis + 1) % 3, (axis + 2) % 3, axis % 3]
-}
-
 /// Multiplies by a slope, rounding down, which is the same on every machine.
 fn shear(slope: i8, by: i64) -> i64 {
     (i64::from(slope) * by).div_euclid(SLOPE)
 }
-
-/// Returns the middle of the bounding box, rounded up.
-fn centre(cells: &[[i32; 3]]) -> [i32; 3] {
-    [0, 1, 2].map(|k| {
-        let along = cells.iter().map(|cell| cell[k]);
-        let [low, high] = [along.clone().min(), along.max()].map(|end| end.unwrap_or(0));
-        high - (high - low) / 2
-    })
-}
-
-/// Search for slopes and bends, without rounding.
-struct Search {
-    /// Coordinates along `u`, `v` and `w`, from about the middle on.
-    cells: Vec<[f64; 3]>,
-    /// Approximate half spans of `u` and `v`.
-    half: [f64; 2],
-    /// Four slopes and three bends.
-    at: [i32; 7],
-    is_bent: bool,
-}
-
-impl Search {
-    fn new(cells: &[[i32; 3]], axis: u8, is_bent: bool) -> Self {
-        let (axes, centre) = (axes(axis), centre(cells));
-        let away = |cell: &[i32; 3]| axes.map(|k| f64::from(cell[k] - centre[k]));
-        let cells: Vec<_> = cells.iter().map(away).collect();
-        let half = [0, 1].map(|k| cells.iter().fold(1.0, |most: f64, x| most.max(x[k].abs())));
-        let mut this = Self { cells, half, at: [0; 7], is_bent };
-        let [a, b] = this.plane().map(|slope| (slope * SLOPE as f64).round());
-        // Steep or undefined planes are clamped: another axis does better.
-        (this.at[2], this.at[3]) = (a as i32, b as i32);
-        this.at = this.at.map(|x| x.clamp(-STEEPEST, STEEPEST));
-        this
-    }
-
-    /// Fits a plane by least squares and returns its slopes.
-    fn plane(&self) -> [f64; 2] {
-        let mean =
-            |k: usize| self.cells.iter().map(|x| x[k]).sum::<f64>() / self.cells.len() as f64;
-        let mean = [mean(0), mean(1), mean(2)];
-        let product = |i: usize, j: usize| {
-            self.cells.iter().map(|x| (x[i] - mean[i]) * (x[j] - mean[j])).sum::<f64>()
-        };
-        let (uu, uv, vv) = (product(0, 0), product(0, 1), product(1, 1));
-        let (uw, vw) = (product(0, 2), product(1, 2));
-        let det = uu * vv - uv * uv;
-        if det > 1e-9 * uu * vv {
-            [(uw * vv - vw * uv) / det, (vw * uu - uw * uv) / det]
-        } else {
-            [if uu > 0.0 { uw / uu } else { 0.0 }, 0.0]
-        }
-    }
-
-    /// Changes one parameter at a time as long as the volume shrinks.
-    fn best(mut self) -> Self {
-        let mut smallest = self.volume();
-        for step in [16, 8, 4, 2, 1, 2, 1] {
-            for number in 0..if self.is_bent { 7 } else { 4 } {
-                let least_step = if number < 2 { i32::from(COARSE) } else { 1 };
-                let by = step.max(least_step);
-                for by in [-by, by] {
-                    let was = self.at[number];
-                    let most = if number < 4 { STEEPEST } else { MOST_BENT };
-                    let most = most / least_step * least_step;
-                    self.at[number] = (was + by).clamp(-most, most);
-                    let volume = self.volume();
-                    if volume < smallest {
-                        smallest = volume;
-                    } else {
-                        self.at[number] = was;
-                    }
-                }
-            }
-        }
-        self
-    }
-
-    fn volume(&self) -> f64 {
-        let [s, r, a, b] = [0, 1, 2, 3].map(|k| f64::from(self.at[k]) / SLOPE as f64);
-        let bend = |k: usize, half: f64| f64::from(self.at[k]) / (BEND as f64 * 2.0 * half);
-        let [uu, uv, vv] = [bend(4, self.half[0]), bend(5, self.half[0]), bend(6, self.half[1])];
-        let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
-        for &[u, v, w] in &self.cells {
-            let w = w - a * u - b * v - u * (uu * u + uv * v) - vv * v * v;
-            let u = u - s * v;
-            for (k, x) in [u, v - r * u, w].into_iter().enumerate() {
-                low[k] = low[k].min(x);
-                high[k] = high[k].max(x);
-            }
-        }
-        (0..3).map(|k| high[k] - low[k] + 1.0).product()
-    }
-
-    fn slopes(&self) -> [i8; 4] {
-        [0, 1, 2, 3].map(|k| self.at[k] as i8)
-    }
-
-    fn bends(&self) -> [i8; 3] {
-        [4, 5, 6].map(|k| self.at[k] as i8)
-    }
-}
-
-const STEEPEST: i32 = (1 << (SLOPE_BITS - 1)) - 1;
-const MOST_BENT: i32 = (1 << (BEND_BITS - 1)) - 1;
 
 /// Decodes a span: four bits of mantissa and four of exponent, at most a sixteenth more than
 /// needed.
@@ -297,7 +182,7 @@ fn span_code(cells: u64) -> Option<u8> {
 }
 
 /// Number of cells that a plain block can always span.
-pub(super) const MOST_CELLS: i32 = 1 << 19;
+pub(super) const MAX_CELLS: i32 = 1 << 19;
 
 #[cfg(test)]
 mod tests {
@@ -312,11 +197,11 @@ mod tests {
     }
 
     #[test]
-    fn every_cell_comes_back_and_laid_flat_they_are_fewer() {
+    fn every_cell_comes_back_and_shears_shrink_the_box() {
         for turn in 0..3 {
             let mut cells = slanted();
             cells.iter_mut().for_each(|cell| cell.rotate_left(turn));
-            let boxed = ShearTransform::default().settled(&cells).unwrap();
+            let boxed = ShearTransform::default().centred(&cells).unwrap();
             let [plain, bent] = [false, true].map(|is_bent| ShearTransform::of(&cells, is_bent));
             assert!(plain.volume() * 2 < boxed.volume(), "{plain:?}");
             assert!(bent.volume() * 2 < plain.volume(), "{bent:?}");
@@ -336,7 +221,7 @@ mod tests {
     fn one_cell_takes_no_bits_and_the_widest_blocks_fit() {
         let transform = ShearTransform::of(&[[7, 3, 1 << 18]; 3], true);
         assert_eq!((transform.bits(3), transform.cell(0, 2)), (0, [7, 3, 1 << 18]));
-        let wide = [[0; 3], [MOST_CELLS - 1; 3], [0, MOST_CELLS - 1, 0]];
+        let wide = [[0; 3], [MAX_CELLS - 1; 3], [0, MAX_CELLS - 1, 0]];
         let transform = ShearTransform::of(&wide, true);
         for cell in wide {
             assert_eq!(transform.cell(transform.number(&[cell]), 0), cell.map(i64::from));
@@ -344,7 +229,7 @@ mod tests {
     }
 
     #[test]
-    fn spans_are_in_order_and_little_more_than_need_be() {
+    fn spans_increase_and_are_hardly_larger_than_needed() {
         assert!((0..u8::MAX).all(|code| span(code) < span(code + 1)));
         for cells in (1..2000).chain([1 << 16, 1 << 19]) {
             let found = span(span_code(cells).unwrap());

@@ -28,7 +28,7 @@ const ACROSS: f64 = 255.0;
 /// middles of smaller cells apart.
 const FINEST: f64 = 1.0 / (1 << 22) as f64;
 /// Largest offset of a part: twice what [`FINEST`] allows, to leave room for rounding.
-pub(super) const FARTHEST: u32 = 1 << 23;
+pub(super) const MAX_OFFSET: u32 = 1 << 23;
 
 impl SharedGrid {
     /// Finds the finest grid in which each of the boxes spans at most 256 cells along each axis.

@@ -2,7 +2,7 @@
 
 use meshlod_mesh::VertexId;
 
-use super::grid::{FARTHEST, Reconstruction, SharedGrid};
+use super::grid::{MAX_OFFSET, Reconstruction, SharedGrid};
 use super::{HEADER, Part, Parts, part_header};
 use crate::bytes::{Malformed, Reader};
 use crate::patch::Rows;
@@ -110,7 +110,7 @@ impl PackedParts {
                 _ => reader.i32(),
             };
             let offset = [axis()?, axis()?, axis()?];
-            if offset.iter().any(|x| x.abs_diff(0) > FARTHEST) {
+            if offset.iter().any(|x| x.abs_diff(0) > MAX_OFFSET) {
                 return Err(reader.wrong("a part is too far from the origin for f32"));
             }
             offsets.push(offset);

@@ -16,7 +16,7 @@ pub struct Partitioner<'m> {
 
 /// First number of parts to try, and the limit on tries.
 const FIRST_COUNT: usize = 64;
-const MOST_COUNTS: usize = 10;
+const MAX_TRIES: usize = 10;
 /// Ratio of cell to requested cell at which the search stops.
 const CLOSE_CELL: f64 = 0.97;
 /// Factor on the next number of parts, so that it is more likely to meet the request.
@@ -77,7 +77,7 @@ impl<'m> Partitioner<'m> {
             return Err(PartsError::TooSmall { best: best.reduction() });
         }
         let (mut fails, mut next) = (self.graph.faces() + 1, FIRST_COUNT);
-        for _ in 0..MOST_COUNTS {
+        for _ in 0..MAX_TRIES {
             next = next.clamp(best.parts.len(), fails - 1);
             if next == best.parts.len() || best.reduction() - reduction < CLOSE {
                 break;
@@ -102,7 +102,7 @@ impl<'m> Partitioner<'m> {
     pub fn within_cell(&self, cell: f64, cells: Reconstruction) -> Parts {
         let (mut few, mut many): (Option<Parts>, Option<Parts>) = (None, None);
         let mut next = 1;
-        for _ in 0..MOST_COUNTS {
+        for _ in 0..MAX_TRIES {
             let parts = self.with_count(next, cells);
             let ratio = parts.mean_side() / cell;
             let is_small = parts.reduction() > 0.0;

@@ -106,7 +106,7 @@ fn parts_meet_bit_for_bit_by_their_matrices_in_f32() {
 }
 
 #[test]
-fn more_parts_have_smaller_cells_and_settling_helps() {
+fn more_parts_have_smaller_cells_and_relaxation_helps() {
     let mesh = samples::gyroid(6000);
     let partitioner = partitioner(&mesh);
     let size = |count| partitioner.with_count(count, Reconstruction::Centred).cell().map(f64::from);
@@ -119,7 +119,7 @@ fn more_parts_have_smaller_cells_and_settling_helps() {
 }
 
 #[test]
-fn a_reduction_is_kept_by_as_many_parts_as_it_allows() {
+fn a_reduction_is_kept_with_as_many_parts_as_possible() {
     let mesh = samples::sphere(6000);
     let partitioner = partitioner(&mesh);
     let parts = partitioner.within_reduction(0.68, Reconstruction::Centred).unwrap();
@@ -128,7 +128,7 @@ fn a_reduction_is_kept_by_as_many_parts_as_it_allows() {
 }
 
 #[test]
-fn cells_of_a_size_are_kept_where_they_take_less_than_floats() {
+fn a_cell_size_is_kept_where_it_saves_space() {
     let mesh = samples::sphere(6000);
     let partitioner = partitioner(&mesh);
     let parts = partitioner.within_cell(0.002, Reconstruction::Centred);
@@ -147,7 +147,7 @@ fn mesh_of_one() -> Mesh {
 }
 
 #[test]
-fn what_cannot_be_is_said() {
+fn impossible_requests_are_refused() {
     let small = mesh_of_one();
     let too_small = partitioner(&small).within_reduction(0.7, Reconstruction::Centred);
     assert!(matches!(too_small, Err(PartsError::TooSmall { .. })));

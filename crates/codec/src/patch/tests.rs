@@ -59,7 +59,7 @@ fn every_face_comes_back_as_it_was_turned() {
 }
 
 #[test]
-fn a_smooth_mesh_takes_less_than_seven_bits_a_face() {
+fn a_smooth_mesh_takes_less_than_seven_bits_per_face() {
     let mesh = samples::sphere(20_000);
     let patches = assert_same(&faces_of(&mesh), &rows_of(&mesh), 4);
     let bits = 8.0 * patches.bytes() as f64 / mesh.faces.len() as f64;
@@ -67,7 +67,7 @@ fn a_smooth_mesh_takes_less_than_seven_bits_a_face() {
 }
 
 #[test]
-fn faces_that_are_no_surface_come_back_too() {
+fn non_manifold_faces_come_back_too() {
     let pinched = [[0, 1, 2], [0, 3, 4], [0, 5, 6]];
     let book = [[0, 1, 2], [0, 1, 3], [1, 0, 4], [0, 1, 5]];
     let odd = [[0, 0, 0], [1, 1, 2], [2, 1, 1], [3, 4, 5], [3, 4, 5], [5, 4, 3], [6, 6, 7]];
@@ -86,30 +86,30 @@ fn faces_that_are_no_surface_come_back_too() {
 }
 
 #[test]
-fn many_faces_on_one_edge_are_no_work_for_long() {
+fn many_faces_on_one_edge_take_linear_time() {
     let faces: Vec<_> = (2..60_000).map(|c| [0, 1, c]).collect();
     assert_same(&faces, &vec![0; 60_000], 1);
     assert_same(&[[0, 1, 2]; 60_000], &[0; 3], 1);
 }
 
 #[test]
-fn spoilt_bits_are_told_or_give_other_faces() {
+fn damaged_bits_are_refused_or_give_other_faces() {
     let mesh = samples::gyroid(3000);
     let row_of = rows_of(&mesh);
     let rows = row_of.iter().max().map_or(0, |&row| row as usize + 1);
     let (patches, _) = Patches::new(&faces_of(&mesh), &row_of, rows, 4);
     let mut bytes = Vec::new();
     patches.store(&mut bytes);
-    let mut told = 0;
+    let mut refused = 0;
     for bit in (0..8 * bytes.len()).step_by(13) {
-        let mut spoilt = bytes.clone();
-        spoilt[bit / 8] ^= 1 << (bit % 8);
-        let read = Patches::restore(patches.rows.clone(), 4, &mut Reader::new(&spoilt));
+        let mut damaged = bytes.clone();
+        damaged[bit / 8] ^= 1 << (bit % 8);
+        let read = Patches::restore(patches.rows.clone(), 4, &mut Reader::new(&damaged));
         let read = read.and_then(|patches| all_faces(&patches));
-        told += usize::from(read.is_err());
+        refused += usize::from(read.is_err());
         for face in read.unwrap_or_default() {
             assert!(face.iter().all(|&node| (node as usize) < mesh.positions.len()));
         }
     }
-    assert!(told > 100, "{told}");
+    assert!(refused > 100, "{refused}");
 }

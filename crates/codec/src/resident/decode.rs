@@ -7,8 +7,8 @@ use crate::attributes::PackedLayer;
 use crate::bytes::Malformed;
 
 impl Compressed {
-    /// Decodes the whole mesh with each vertex once. Faces come patch by patch, with the wedges that
-    /// the input had.
+    /// Decodes the whole mesh with each vertex once. Faces come patch by patch, with the wedges
+    /// that the input had.
     ///
     /// # Errors
     /// Damaged data that the checksums did not catch.

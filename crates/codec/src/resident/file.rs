@@ -8,8 +8,8 @@ use crate::kd::BLOCK;
 use crate::patch::{Patches, Rows};
 
 const VERSION: u32 = 1;
-/// Size of the file header: magic bytes, version, scheme, a flag for extra wedges, number of layers,
-/// length and checksum of each of the three sections, and the checksum of the header.
+/// Size of the file header: magic bytes, version, scheme, a flag for extra wedges, number of
+/// layers, length and checksum of each of the three sections, and the checksum of the header.
 pub(super) const HEADER: usize = SUMS + 3 * SUM + 4;
 const SUMS: usize = 8 + 4 + 1 + 1 + 2;
 const SUM: usize = 8 + 4;
@@ -48,7 +48,8 @@ impl Compressed {
         bytes
     }
 
-    /// Recomputes the checksums of a file that was changed, for tests of [`Compressed::from_bytes`].
+    /// Recomputes the checksums of a file that was changed, for tests of
+    /// [`Compressed::from_bytes`].
     #[doc(hidden)]
     pub fn seal(bytes: &mut [u8]) {
         if bytes.len() < HEADER {

@@ -50,7 +50,8 @@ pub struct CompressedSizes {
 const MAX_VALUES: usize = 255;
 /// Limit on the number of faces, chosen so that their bits take less than 4 GB in any case.
 const MAX_FACES: usize = 1 << 27;
-/// Blocks of vertices per patch, which gives about 256 faces. Twice as many save half a bit per face.
+/// Blocks of vertices per patch, which gives about 256 faces. Twice as many save half a bit per
+/// face.
 const BLOCKS_PER_PATCH: usize = 4;
 
 impl Compressed {

@@ -9,7 +9,7 @@ use crate::blocks::{Accuracy, BlocksError, VertexBlocks};
 use crate::lattice::{Lattice, LatticeBlocks};
 use crate::parts::{Partitioner, Parts, PartsError, Reconstruction};
 
-/// How positions are stored.
+/// Storage scheme of positions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Scheme {
     /// 8 bits per axis, in parts that share one grid [LCL10].
@@ -25,8 +25,8 @@ pub enum Scheme {
 pub enum CompressionTarget {
     /// Bits per axis, from 2 to 24, of a uniform grid over the whole mesh that is as accurate.
     ///
-    /// The grid has cubic cells of the longest side / (2^bits - 1) and puts each vertex in the middle
-    /// of its cell. [`Reconstruction::Truncated`] is compared with the same grid, truncated.
+    /// The grid has cubic cells of the longest side / (2^bits - 1) and puts each vertex in the
+    /// middle of its cell. [`Reconstruction::Truncated`] is compared with the same grid, truncated.
     Bits(u32),
     /// Mean distance between the surfaces, in model units.
     Error(f64),
@@ -51,8 +51,8 @@ pub struct Compression {
 /// them by √1/2 of that, and the mean is √(2/π) of that: .163. Seven meshes of
 /// docs/notes/compression.md have .156 to .168.
 const MEAN_OF_CELL: f64 = 1.0 / 6.0;
-/// As [`MEAN_OF_CELL`] with vertices at the least corners of their cells: the same meshes have .42 to
-/// .48, and flat ones .51.
+/// As [`MEAN_OF_CELL`] with vertices at the least corners of their cells: the same meshes have .42
+/// to .48, and flat ones .51.
 const MEAN_OF_TRUNCATED: f64 = 0.45;
 const BITS: std::ops::RangeInclusive<u32> = 2..=24;
 
@@ -133,7 +133,8 @@ fn extent(bounds: &Bounds) -> (f64, f64) {
     (longest, farthest)
 }
 
-/// Partitions a mesh as [`compress`] does for [`Scheme::Parts`], and reports whether the target is met.
+/// Partitions a mesh as [`compress`] does for [`Scheme::Parts`], and reports whether the target is
+/// met.
 ///
 /// # Errors
 /// An invalid target, a mesh without faces, or a coordinate that is not finite.
@@ -181,7 +182,8 @@ fn on_lattice(
     };
     let mut done = Compressed::on_lattice(mesh, lattice, bounds)?;
     if let (CompressionTarget::Reduction(part), true) = (target, reached) {
-        // The order within blocks has changed since the estimate, and with it the size by a few bits.
+        // The order within blocks has changed since the estimate, and with it the size by a few
+        // bits.
         if done.compressed.reduction() < part {
             done = Compressed::on_lattice(mesh, lattice.coarser()?, bounds)?;
         }
@@ -189,7 +191,8 @@ fn on_lattice(
     Ok(Compression { reached, ..done })
 }
 
-/// Returns the finest lattice that gives a reduction, or else one of a few cells, and whether it does.
+/// Returns the finest lattice that gives a reduction, or else one of a few cells, and whether it
+/// does.
 fn finest(mesh: &Mesh, part: f64) -> Result<(Lattice, bool), CompressError> {
     let (longest, farthest) = extent(&mesh.bounds());
     // The whole mesh in a few cells.
@@ -220,7 +223,8 @@ fn in_blocks(
     };
     let mut done = Compressed::in_blocks(mesh, accuracy, bounds)?;
     if let (CompressionTarget::Reduction(part), true) = (target, reached) {
-        // The order within blocks has changed since the estimate, and with it the size by a few bits.
+        // The order within blocks has changed since the estimate, and with it the size by a few
+        // bits.
         while done.compressed.reduction() < part {
             let Some(coarser) = accuracy.coarser() else { break };
             accuracy = coarser;

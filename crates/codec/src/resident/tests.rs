@@ -121,7 +121,7 @@ fn soup(seed: u32) -> Mesh {
 }
 
 #[test]
-fn what_is_written_is_read_whatever_the_cells() {
+fn written_files_can_be_read_with_any_cells() {
     for seed in 0..24 {
         let (mesh, bits) = (soup(seed), 2 + seed % 23);
         for scheme in [Scheme::Parts(Reconstruction::Centred), Scheme::Lattice, Scheme::Blocks] {
@@ -147,7 +147,7 @@ fn many_faces_at_one_vertex_are_compressed_too() {
 }
 
 #[test]
-fn a_reduction_is_kept_or_said_not_to_be() {
+fn a_reduction_is_reached_or_reported_as_missed() {
     for mesh in [samples::gyroid(3000), samples::sphere(600), fixtures::grid(6)] {
         for scheme in [Scheme::Parts(Reconstruction::Centred), Scheme::Lattice, Scheme::Blocks] {
             for part in [0.5, 0.6, 0.7] {
@@ -160,7 +160,7 @@ fn a_reduction_is_kept_or_said_not_to_be() {
 }
 
 #[test]
-fn faces_are_where_the_lattice_puts_them_with_their_values() {
+fn faces_and_values_match_the_lattice() {
     for mut mesh in meshes() {
         let bounds = AttributeBounds::default();
         let compressed = Compressed::on_lattice(&mesh, Lattice::new(-7).unwrap(), &bounds).unwrap();
@@ -186,7 +186,7 @@ fn patches_decoded_alone_are_the_mesh() {
 }
 
 #[test]
-fn every_vertex_is_told_which_it_was() {
+fn every_vertex_has_the_right_source() {
     for mesh in meshes() {
         for Compression { compressed, vertices, .. } in compressions(&mesh) {
             let decoded = compressed.decode().unwrap();
@@ -200,7 +200,7 @@ fn every_vertex_is_told_which_it_was() {
 }
 
 #[test]
-fn what_cannot_be_is_said() {
+fn impossible_requests_are_refused() {
     let lattice = Lattice::new(-7).unwrap();
     let ask = |mesh: &Mesh| {
         Compressed::on_lattice(mesh, lattice, &AttributeBounds::default()).map(|_| ()).unwrap_err()
@@ -219,14 +219,14 @@ fn what_cannot_be_is_said() {
 }
 
 #[test]
-fn spoilt_bytes_are_told() {
+fn damaged_bytes_are_refused() {
     for mesh in [samples::gyroid(1000), fixtures::seam_strip()] {
         for compressed in by_schemes(&mesh) {
             let bytes = compressed.to_bytes();
             for bit in (0..8 * bytes.len()).step_by(bytes.len() / 40) {
-                let mut spoilt = bytes.clone();
-                spoilt[bit / 8] ^= 1 << (bit % 8);
-                assert!(Compressed::from_bytes(&spoilt).is_err(), "bit {bit}");
+                let mut damaged = bytes.clone();
+                damaged[bit / 8] ^= 1 << (bit % 8);
+                assert!(Compressed::from_bytes(&damaged).is_err(), "bit {bit}");
             }
             for len in (0..bytes.len()).step_by(bytes.len() / 40) {
                 assert!(Compressed::from_bytes(&bytes[..len]).is_err());
@@ -236,16 +236,16 @@ fn spoilt_bytes_are_told() {
 }
 
 #[test]
-fn what_sums_do_not_tell_does_no_harm() {
+fn damage_with_valid_checksums_does_no_harm() {
     let mut read = 0;
     for mesh in [samples::gyroid(600), meshes().remove(3)] {
         for compressed in by_schemes(&mesh) {
             let bytes = compressed.to_bytes();
             for bit in (0..8 * bytes.len()).step_by(1 + bytes.len() / 30) {
-                let mut spoilt = bytes.clone();
-                spoilt[bit / 8] ^= 1 << (bit % 8);
-                Compressed::seal(&mut spoilt);
-                let decoded = Compressed::from_bytes(&spoilt).and_then(|of| of.decode());
+                let mut damaged = bytes.clone();
+                damaged[bit / 8] ^= 1 << (bit % 8);
+                Compressed::seal(&mut damaged);
+                let decoded = Compressed::from_bytes(&damaged).and_then(|of| of.decode());
                 read += usize::from(decoded.is_ok());
                 decoded.map_or(Ok(()), |mesh| mesh.validate()).unwrap();
             }

@@ -35,7 +35,7 @@ pub(super) struct BlockBytes<'a> {
     pub(super) faces: usize,
 }
 
-/// Whether a vertex may also be in other blocks.
+/// Scope of a vertex: inside its block, or shared with other blocks.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Sharing {
     Inside,

@@ -347,8 +347,8 @@ fn read_index(count: usize, reader: &mut Reader) -> Result<Vec<BlockSpan>, Malfo
         let word = count * face_bits as usize + k * word_bits as usize;
         let bytes = 2 * (bits.get(word, word_bits) + u64::from(least_words));
         let (faces, bytes) = (faces as usize, bytes as usize);
-        let is_one = (1..=MAX_FACES).contains(&faces) && faces / FACES_PER_BYTE <= bytes;
-        if !is_one || bytes > reader.left() {
+        let is_valid = (1..=MAX_FACES).contains(&faces) && faces / FACES_PER_BYTE <= bytes;
+        if !is_valid || bytes > reader.left() {
             return Err(reader.wrong(format!("block {k} has an impossible size")));
         }
         places.push(BlockSpan { at, bytes, faces });

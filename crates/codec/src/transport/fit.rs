@@ -63,7 +63,7 @@ impl Sample {
             [gate.previous_apex, gate.previous, gate.next].map(at);
         let (edge, spoke, rim) = (b - a, apex - a, apex - b);
         let corner = b - spoke;
-        // The same features as in `predict`.
+        // Features as in `predict`.
         let rows = [
             corner - apex,
             edge,

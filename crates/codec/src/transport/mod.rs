@@ -112,7 +112,7 @@ pub enum TransportError {
         /// Number of cells along the longest side.
         cells: f64,
     },
-    /// The mesh is so far from the origin that neighbouring cells cannot be told apart.
+    /// The mesh is so far from the origin that neighbouring cells coincide in `f64`.
     #[error("the mesh is too far from the origin for cells of this size: use larger cells")]
     TooFar,
     /// The number of faces per block is out of range.

@@ -91,7 +91,7 @@ fn samples_come_back() {
 }
 
 #[test]
-fn what_is_not_manifold_comes_back() {
+fn non_manifold_meshes_come_back() {
     for mesh in [tetrahedron(), cube(), grid(3), seam_strip(), two_objects(), fan(), hourglass()] {
         assert_same(&mesh, &options(16));
     }
@@ -120,7 +120,7 @@ fn corners_may_be_the_same_and_faces_too() {
 }
 
 #[test]
-fn vertices_in_one_cell_are_told_apart() {
+fn vertices_in_one_cell_stay_separate() {
     // A few cells, and then a single one.
     let mut mesh = samples::sphere(3000);
     assert_same(
@@ -171,7 +171,7 @@ fn a_block_is_decoded_alone() {
 }
 
 #[test]
-fn on_a_lattice_shared_vertices_are_at_one_place() {
+fn on_a_lattice_shared_vertices_coincide() {
     let lattice = crate::Lattice::new(-9).unwrap();
     let mesh = samples::knot(4000);
     let halves = mesh.faces.split_at(1500);
@@ -200,7 +200,7 @@ fn on_a_lattice_shared_vertices_are_at_one_place() {
 }
 
 #[test]
-fn what_is_left_out_is_told() {
+fn left_out_parts_are_listed() {
     let left_out = |mesh: &Mesh| Transport::encode(mesh, &options(256)).unwrap().left_out;
     assert_eq!(left_out(&tetrahedron()), []);
     let mut mesh = seam_strip();
@@ -271,7 +271,7 @@ fn decode_all(bytes: &[u8]) -> Result<Mesh, Malformed> {
 }
 
 #[test]
-fn a_flipped_bit_is_told() {
+fn a_flipped_bit_is_detected() {
     let mesh = samples::knot(2000);
     let bytes = Transport::encode(&mesh, &options(256)).unwrap().bytes;
     let mut missed = 0;
@@ -289,7 +289,7 @@ fn a_flipped_bit_is_told() {
 }
 
 #[test]
-fn any_bytes_are_taken() {
+fn any_bytes_are_survived() {
     let meshes = [samples::sphere(700), soup(60, 300, 5), hourglass(), grid(9)];
     let mut numbers = Numbers(1);
     for mesh in meshes {

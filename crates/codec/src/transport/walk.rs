@@ -19,7 +19,7 @@ pub(super) struct BlockWalk {
     /// Mesh vertex of each block vertex. One where the block's faces are not connected appears more
     /// than once.
     pub(super) vertices: Vec<u32>,
-    /// Whether the decoder sees each vertex on the final border.
+    /// True for vertices that the decoder sees on the final border.
     pub(super) borders: Vec<bool>,
 }
 

@@ -23,7 +23,7 @@ impl Transport {
     /// Encodes a mesh: positions rounded to a grid, faces unchanged except for the corner they
     /// start at.
     ///
-    /// Each vertex that a face uses is stored once. [`Transport::left_out`] lists what is not
+    /// Every vertex that a face uses comes back once. [`Transport::left_out`] lists what is not
     /// stored: attributes, materials, objects and unused vertices. Cost: O(n).
     /// # Errors
     /// A mesh without faces, an invalid position or vertex index, or an option out of range.
