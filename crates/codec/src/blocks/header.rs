@@ -197,7 +197,7 @@ impl BlockVertices<'_> {
     }
 }
 
-/// Returns an anchor from which the cells cover a range; `None` if there is none.
+/// Returns an anchor from which the cells cover a range; `None` if none exists.
 fn first([low, high]: [f64; 2], count: f64, cell: f64, anchor: f64) -> Option<i32> {
     let least = ((high - (count - 0.5) * cell) / anchor).ceil();
     let most = ((low + 0.5 * cell) / anchor).floor();

@@ -139,7 +139,7 @@ impl<'a> Sides<'a> {
         self.make(self.first)
     }
 
-    /// Makes a face that has this side and returns its third corner; `None` if there is none.
+    /// Makes a face that has this side and returns its third corner; `None` if none exists.
     fn across(&mut self, ends: [u32; 2]) -> Option<u32> {
         let first = self.sides.partition_point(|&(side, _)| side < ends);
         loop {

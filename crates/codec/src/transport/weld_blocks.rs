@@ -43,7 +43,7 @@ impl WeldTable {
         Self { slots: vec![Slot { key: 0, tag: 0, vertex: EMPTY }; len], len: 0 }
     }
 
-    /// Returns the entry of a cell and tag, inserting `vertex` if there is none. `vertex` must not
+    /// Returns the entry of a cell and tag, inserting `vertex` if it is new. `vertex` must not
     /// be `u32::MAX`.
     #[inline]
     pub(super) fn find_or_insert(&mut self, key: u64, tag: u32, vertex: u32) -> &mut u32 {
