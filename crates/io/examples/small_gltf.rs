@@ -1,4 +1,4 @@
-//! Writes scenes as plain and as small glTF side by side, for another program to compare.
+//! Writes scenes as plain and as compressed glTF, for another program to compare.
 //!
 //! `cargo run --release -p meshlod-io --example small_gltf -- DIR [FILE …]` puts `NAME.plain.glb`
 //! and `NAME.*.glb` into DIR, for samples and for each file; every vertex has a number in
@@ -30,7 +30,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// A mesh with normals, colours, and texture coordinates within the square and beyond it.
+/// Mesh with normals, colours, and texture coordinates inside and outside the unit square.
 fn dressed(mut mesh: Mesh) -> Scene {
     let radius = mesh.bounds().diagonal();
     let layer = |kind, width, value: &dyn Fn([f64; 3]) -> Vec<f64>| Layer {
@@ -81,7 +81,7 @@ fn write_both(folder: &Path, name: &str, mut scene: Scene) -> Result<(), Box<dyn
     Ok(())
 }
 
-/// Gives each wedge of all meshes a number.
+/// Numbers all wedges of all meshes.
 fn number(scene: &mut Scene) {
     let mut first = 0;
     for mesh in scene.meshes.iter_mut().map(|mesh| &mut mesh.mesh) {
@@ -97,7 +97,8 @@ fn number(scene: &mut Scene) {
     }
 }
 
-/// A mesh in runs of its faces, each with 256 cells along its longest side, and the same as floats.
+/// Splits a mesh into runs of faces, each quantized to 256 cells along its longest side, and in
+/// floats for comparison.
 fn write_parts(folder: &Path, mesh: &Mesh) -> Result<(), Box<dyn Error>> {
     let mut plain = Scene::default();
     let mut parts = Vec::new();

@@ -1,17 +1,17 @@
-//! What can be wrong with a file, and where.
+//! Errors of reading and writing, with the place in the file.
 
 use std::path::{Path, PathBuf};
 
 use thiserror::Error;
 
-/// A place in a file.
+/// Location in a file that an error refers to.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum FileLocation {
-    /// A line of a text file, counted from 1.
+    /// Line of a text file, counted from 1.
     Line(usize),
-    /// A byte of a binary file, counted from 0.
+    /// Byte offset in a binary file, counted from 0.
     Byte(usize),
-    /// A named part: `header`, `accessor 7`, `node 3`.
+    /// Named part of the file: `header`, `accessor 7`, `node 3`.
     Part(String),
 }
 
@@ -25,99 +25,99 @@ impl std::fmt::Display for FileLocation {
     }
 }
 
-/// What a parser found wrong: the place and the reason, without the file's name.
+/// Parse error: location and reason, without the file name.
 #[derive(Clone, Debug, Error, PartialEq, Eq)]
 #[error("{location}: {reason}")]
 pub struct ParseError {
-    /// Where.
+    /// Location of the error.
     pub location: FileLocation,
-    /// What is wrong there, and what to do where that is clear.
+    /// What is wrong there and, where that is clear, what to do about it.
     pub reason: String,
 }
 
 impl ParseError {
-    /// Wrong at a line, counted from 1.
+    /// Creates an error at a line, counted from 1.
     pub fn line(line: usize, reason: impl Into<String>) -> Self {
         Self { location: FileLocation::Line(line), reason: reason.into() }
     }
 
-    /// Wrong at a byte, counted from 0.
+    /// Creates an error at a byte offset, counted from 0.
     pub fn byte(byte: usize, reason: impl Into<String>) -> Self {
         Self { location: FileLocation::Byte(byte), reason: reason.into() }
     }
 
-    /// Wrong in a named part.
+    /// Creates an error in a named part of the file.
     pub fn part(part: impl Into<String>, reason: impl Into<String>) -> Self {
         Self { location: FileLocation::Part(part.into()), reason: reason.into() }
     }
 }
 
-/// What of a scene a format cannot hold: the part and the reason, without the file's name.
+/// Part of a scene that the output format cannot store, without the file name.
 #[derive(Clone, Debug, Error, PartialEq, Eq)]
 #[error("{part}: {reason}")]
 pub struct Unsupported {
-    /// Which part: `mesh 3`, `v12`.
+    /// Name of the part: `mesh 3`, `v12`.
     pub part: String,
-    /// Why, and what to do where that is clear.
+    /// Why it cannot be stored and, where that is clear, what to do about it.
     pub reason: String,
 }
 
 impl Unsupported {
-    /// A part that does not fit, and why.
+    /// Creates an error from the name of the part and the reason.
     pub fn new(part: impl Into<String>, reason: impl Into<String>) -> Self {
         Self { part: part.into(), reason: reason.into() }
     }
 }
 
-/// Why a file was not read or written. Prints as one line that names the file.
+/// Reason why a file could not be read or written. Prints as one line that starts with the file.
 #[derive(Debug, Error)]
 pub enum IoError {
-    /// The operating system refused.
+    /// The operating system reported an error.
     #[error("{}: {source}", path.display())]
     System {
-        /// The file.
+        /// Path of the file.
         path: PathBuf,
-        /// Its reason.
+        /// Error of the operating system.
         source: std::io::Error,
     },
-    /// The contents are wrong.
+    /// The contents are invalid.
     #[error("{}: {source}", path.display())]
     Parse {
-        /// The file.
+        /// Path of the file.
         path: PathBuf,
-        /// Where and why.
+        /// Location and reason.
         source: ParseError,
     },
-    /// The format cannot hold the scene.
+    /// The format cannot store the scene.
     #[error("{}: {source}", path.display())]
     Unsupported {
-        /// The file.
+        /// Path of the file.
         path: PathBuf,
-        /// What does not fit.
+        /// Part that cannot be stored, and why.
         source: Unsupported,
     },
-    /// No format goes with the suffix.
-    #[error("{}: unknown suffix; known are {known}", path.display())]
+    /// The suffix is missing or belongs to no known format.
+    #[error("{}: unknown suffix; supported are {known}", path.display())]
     UnknownFormat {
-        /// The file.
+        /// Path of the file.
         path: PathBuf,
-        /// The suffixes that would do.
+        /// The supported suffixes, separated by spaces.
         known: &'static str,
     },
 }
 
 impl IoError {
-    /// A system error at a path.
+    /// Wraps a system error with the path of the file.
     pub fn system(path: &Path, source: std::io::Error) -> Self {
         Self::System { path: path.to_owned(), source }
     }
 
-    /// A parse error at a path.
+    /// Wraps a parse error with the path of the file.
     pub fn parse(path: &Path, source: ParseError) -> Self {
         Self::Parse { path: path.to_owned(), source }
     }
 
-    /// A scene that does not fit a format, at a path.
+    /// Wraps an [`Unsupported`] with the path of the file.
     pub fn unsupported(path: &Path, source: Unsupported) -> Self {
         Self::Unsupported { path: path.to_owned(), source }
     }

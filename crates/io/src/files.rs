@@ -1,4 +1,4 @@
-//! Files by path: the suffix decides on the format.
+//! Reading and writing by path; the suffix decides on the format.
 
 use std::fs;
 use std::io::{self, Write};
@@ -12,43 +12,45 @@ use crate::{
     stl, weld,
 };
 
-/// How vertices at the same place are treated on reading.
+/// Policy for merging vertices at equal or close positions when a file is read.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Weld {
-    /// As the file has them.
+    /// Keeps the vertices of the file as they are.
     Off,
-    /// glTF and STL tear vertices at seams: there those at bit-identical places become one, with a
-    /// wedge for each set of attributes. Other formats say themselves what is one.
+    /// Merges vertices at bit-identical positions in glTF and STL, which split vertices at seams.
+    /// Each set of attributes of a merged vertex becomes a wedge. Other formats index their
+    /// vertices and are left as they are.
     #[default]
     Exact,
-    /// Those within this distance become one, in model units, in any format.
+    /// Merges vertices within this distance, in model units, in every format.
     Within(f64),
 }
 
-/// How a file is read.
+/// Options for [`read()`].
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ReadOptions {
-    /// What becomes one vertex.
+    /// Which vertices are merged into one.
     pub weld: Weld,
 }
 
-/// How a file is written.
+/// Options for [`write()`].
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct WriteOptions {
-    /// Of coordinates in PLY, OBJ, OFF and SMF; STL and glTF have 32 bits always.
+    /// Precision of coordinates in PLY, OBJ, OFF and SMF; STL and glTF always use 32 bits.
     pub precision: Precision,
 }
 
-/// Finds the files that a file names, such as buffers, images and material libraries.
+/// Callback that loads the files a mesh file refers to: buffers, images, material libraries.
 ///
-/// It is given the name as the file has it, `%20` and the like decoded; `None` means not there.
+/// It receives the name as the file has it, with `%20` and other escapes decoded, and returns
+/// `None` if there is no such file.
 pub type Resolve<'a> = &'a mut dyn FnMut(&str) -> Option<Vec<u8>>;
 
-/// Reads a mesh file and the files that it names, relative to its folder.
+/// Reads a mesh file together with the files that it refers to, relative to its folder.
 ///
 /// # Errors
-/// One line that names the file, the place in it and the reason: an unknown suffix, a file that
-/// is not there, wrong contents.
+/// One line that names the file, the location in it and the reason: an unknown suffix, a missing
+/// file, or invalid contents.
 pub fn read(path: &Path, options: &ReadOptions) -> Result<Scene, IoError> {
     let format = Format::of_path(path)?;
     let bytes = fs::read(path).map_err(|error| IoError::system(path, error))?;
@@ -65,10 +67,10 @@ pub fn read(path: &Path, options: &ReadOptions) -> Result<Scene, IoError> {
     Ok(scene)
 }
 
-/// Reads a mesh file that is in memory; `resolve` gives the files that it names.
+/// Reads a mesh file from memory; `resolve` loads the files that it refers to.
 ///
 /// # Errors
-/// The place and the reason when the contents are wrong.
+/// The location and the reason if the contents are invalid.
 pub fn read_bytes(
     bytes: &[u8],
     format: Format,
@@ -93,15 +95,15 @@ pub fn read_bytes(
     Ok(scene)
 }
 
-/// Writes a scene; files that go with it (`.bin`, `.mtl`, images) come beside.
+/// Writes a scene and, next to it, the files that belong to it (`.bin`, `.mtl`, images).
 ///
-/// Each file is written under another name in the same folder and renamed when complete, the one
-/// at `path` last. PLY, STL, OFF and SMF hold one mesh: that of [`Scene::flatten`]. An image that
-/// is there already with other bytes is not overwritten.
+/// Each file is written under a temporary name in the same folder and renamed when complete, the
+/// one at `path` last. PLY, STL, OFF and SMF store a single mesh: the result of [`Scene::flatten`].
+/// An existing image with different contents is not overwritten.
 ///
 /// # Errors
-/// One line that names the file: an unknown suffix, a refusal of the system, or what of the scene
-/// the format cannot hold. Then what was at `path` before is still there.
+/// One line that names the file: an unknown suffix, an error of the system, or the part of the
+/// scene that the format cannot store. A file that was at `path` before is then still there.
 pub fn write(path: &Path, scene: &Scene, options: &WriteOptions) -> Result<(), IoError> {
     let precision = options.precision;
     match Format::of_path(path)? {
@@ -118,7 +120,8 @@ pub fn write(path: &Path, scene: &Scene, options: &WriteOptions) -> Result<(), I
 /// [`gltf::write_glb`].
 ///
 /// # Errors
-/// As for [`write()`]; also another suffix, and levels with another number of meshes than the scene.
+/// Those of [`write()`]; also any other suffix, and levels whose number of meshes differs from the
+/// scene's.
 pub fn write_lods(path: &Path, scene: &Scene, levels: &[gltf::Level]) -> Result<(), IoError> {
     let unsupported = |error| IoError::unsupported(path, error);
     match Format::of_path(path)? {
@@ -131,15 +134,16 @@ pub fn write_lods(path: &Path, scene: &Scene, levels: &[gltf::Level]) -> Result<
         }
         _ => Err(unsupported(Unsupported::new(
             "levels",
-            "only .glb and .gltf hold levels; use one of those",
+            "only .glb and .gltf can store levels of detail; use one of those",
         ))),
     }
 }
 
-/// Writes a scene as small glTF or GLB and tells what that came to; see [`gltf::write_compressed_glb`].
+/// Writes a scene as compressed glTF or GLB and reports the sizes and the error; see
+/// [`gltf::write_compressed_glb`].
 ///
 /// # Errors
-/// As for [`write()`]; also another suffix, and bits that cannot be.
+/// Those of [`write()`]; also any other suffix, and bit counts out of range.
 pub fn write_compressed(
     path: &Path,
     scene: &Scene,
@@ -161,13 +165,13 @@ pub fn write_compressed(
         }
         _ => Err(unsupported(Unsupported::new(
             "file",
-            "only .glb and .gltf are written small; use one of those",
+            "only .glb and .gltf can be compressed; use one of those",
         ))),
     }
 }
 
-/// Writes a document and what goes with it, the document last.
-fn write_gltf(path: &Path, written: &gltf::Written) -> Result<(), IoError> {
+/// Writes a glTF document after the images and the buffer that it refers to.
+fn write_gltf(path: &Path, written: &gltf::GltfFiles) -> Result<(), IoError> {
     for image in &written.images {
         write_image(path, image)?;
     }
@@ -177,7 +181,7 @@ fn write_gltf(path: &Path, written: &gltf::Written) -> Result<(), IoError> {
     write_one(path, |out| out.write_all(&written.document))
 }
 
-/// Gives every corner a vertex of its own, as STL has them.
+/// Gives every corner a vertex of its own, as STL files have them.
 fn unweld(mesh: &mut Mesh) {
     mesh.positions = mesh.faces.iter().flatten().map(|v| mesh.positions[v.index()]).collect();
     for (i, vertex) in mesh.faces.iter_mut().flatten().enumerate() {
@@ -208,14 +212,14 @@ fn write_one(
     replace(path, fill).map_err(|error| IoError::system(path, error))
 }
 
-/// Writes an image under its name beside `path`, unless it is there; one that differs is not ours
-/// to overwrite.
+/// Writes an image under its name in the folder of `path`, unless it is already there. An existing
+/// file with different contents is not overwritten.
 fn write_image(path: &Path, image: &Image) -> Result<(), IoError> {
     let Some(name) = inner_path(&image.name) else {
         if is_beside(path, image) {
             return Ok(());
         }
-        let reason = "its name leads out of the folder; write .glb, which holds images inside";
+        let reason = "its name points outside the folder; write .glb, which embeds images";
         return Err(IoError::unsupported(
             path,
             Unsupported::new(format!("image {:?}", image.name), reason),
@@ -225,7 +229,7 @@ fn write_image(path: &Path, image: &Image) -> Result<(), IoError> {
     match fs::read(&target) {
         Ok(found) if found == image.bytes => return Ok(()),
         Ok(_) => {
-            let reason = "another image of that name is there already; move it, or write .glb";
+            let reason = "another image of that name already exists; move it, or write .glb";
             return Err(IoError::unsupported(&target, Unsupported::new("image", reason)));
         }
         Err(_) => {}
@@ -236,8 +240,8 @@ fn write_image(path: &Path, image: &Image) -> Result<(), IoError> {
     write_one(&target, |out| out.write_all(&image.bytes))
 }
 
-/// The file name alone of an image whose name leads out of the folder, unless it leads to that
-/// image from `path`, too.
+/// Returns the bare file name of an image whose name points outside the folder, unless the name
+/// also leads to that image from `path`.
 fn plain_name(path: &Path, image: &Image) -> Option<String> {
     if inner_path(&image.name).is_some() || is_beside(path, image) {
         return None;
@@ -245,26 +249,27 @@ fn plain_name(path: &Path, image: &Image) -> Option<String> {
     Path::new(&image.name).file_name().map(|name| name.to_string_lossy().into_owned())
 }
 
-/// Whether the name of an image leads from the folder of `path` to a file of the same bytes.
+/// Reports whether the image's name, relative to the folder of `path`, leads to a file of equal
+/// bytes.
 fn is_beside(path: &Path, image: &Image) -> bool {
     let folder = path.parent().unwrap_or(Path::new(""));
     read_beside(folder, &image.name).is_some_and(|found| found == image.bytes)
 }
 
-/// A name as a path that stays within the folder that it is joined to.
+/// Returns a name as a path if joining it to a folder stays within that folder.
 pub(crate) fn inner_path(name: &str) -> Option<PathBuf> {
     let path = Path::new(name);
     let inside = path.components().all(|part| matches!(part, Component::Normal(_)));
     (inside && !name.is_empty()).then(|| path.to_owned())
 }
 
-/// The file of a name relative to a folder; an absolute one names none, as no file that is passed
-/// on can know where things are here.
+/// Reads the file of that name relative to a folder. Absolute names are rejected: they say nothing
+/// on a machine that the file was copied to.
 fn read_beside(folder: &Path, name: &str) -> Option<Vec<u8>> {
     // Exporters on Windows write backslashes.
     let names = [name.to_owned(), name.replace('\\', "/")];
     let relative = names.iter().filter(|name| is_relative(Path::new(name)));
-    // A device would be read without end.
+    // Only regular files: reading a device might never end.
     let file = relative.map(|name| folder.join(name)).find(|path| path.is_file());
     fs::read(file?).ok()
 }

@@ -1,4 +1,4 @@
-//! A scene as one mesh in world space.
+//! Merging a scene into one mesh in world space.
 
 use std::borrow::Cow;
 
@@ -8,40 +8,40 @@ use meshlod_mesh::{Attributes, Labels, Layer, LayerKind, Mesh, VertexId, WedgeId
 use crate::Scene;
 use crate::scene::IDENTITY;
 
-/// A mesh at a place in the world.
+/// Occurrence of a mesh in the scene, with its transform to world space.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MeshInstance {
-    /// The node that shows it.
+    /// Node that shows the mesh.
     pub node: usize,
-    /// The mesh, by index into `Scene::meshes`.
+    /// Index of the mesh in [`Scene::meshes`].
     pub mesh: usize,
-    /// Column-major 4×4: the mesh's space to the world's.
+    /// Column-major 4×4 matrix from mesh space to world space.
     pub transform: [[f64; 4]; 4],
 }
 
 impl MeshInstance {
-    /// The transform without its translation. A last row, which only a perspective has, counts for
-    /// nothing.
+    /// Linear part of the transform. The last row, which only a perspective transform uses, is
+    /// ignored.
     fn linear(&self) -> DMat3 {
         DMat3::from_mat4(DMat4::from_cols_array_2d(&self.transform))
     }
 
-    /// Whether it turns faces over.
+    /// Reports whether the transform reverses orientation.
     fn mirrors(&self) -> bool {
         self.linear().determinant() < 0.0
     }
 }
 
 impl Scene {
-    /// The meshes that the scene shows, depth first from the roots. One that several nodes show
-    /// comes several times.
+    /// Lists the mesh instances of the scene, depth first from the roots. A mesh shown by several
+    /// nodes appears once for each.
     pub fn instances(&self) -> Vec<MeshInstance> {
         let mut instances = Vec::new();
         let mut seen = vec![false; self.nodes.len()];
         let mut stack: Vec<(usize, DMat4)> =
             self.roots.iter().rev().map(|&root| (root, DMat4::IDENTITY)).collect();
         while let Some((node, parent)) = stack.pop() {
-            // A scene made by hand may have a cycle; each node is visited once at most.
+            // A scene built in code may contain a cycle, so each node is visited at most once.
             if std::mem::replace(&mut seen[node], true) {
                 continue;
             }
@@ -55,14 +55,15 @@ impl Scene {
         instances
     }
 
-    /// All that the scene shows as one mesh in world space.
+    /// Merges everything that the scene shows into one mesh in world space.
     ///
-    /// Normals go by the inverse transpose and stay unit; a mirroring node flips winding and
-    /// tangents. Layers are the union over the meshes, with zeros where a mesh lacks one. Material
-    /// label `i` is `Scene::materials[i]`, one more named "" for faces without. Objects are those of
-    /// the mesh, else its node; a nameless single node names no object.
+    /// Normals are transformed by the inverse transpose and stay unit vectors; a mirroring node
+    /// flips winding and tangents. The layers are the union over all meshes, with zeros where a
+    /// mesh lacks one. Material label `i` is `Scene::materials[i]`; faces without a material share
+    /// one more label, named "". Objects are taken from the mesh, or else each node becomes one; a
+    /// single node without a name gives no objects.
     ///
-    /// Cost: linear in what is shown.
+    /// Cost: linear in the size of the result.
     pub fn flatten(&self) -> Mesh {
         let instances = self.instances();
         let mut flat = Mesh::default();
@@ -81,7 +82,7 @@ impl Scene {
         flat
     }
 
-    /// [`Scene::flatten`] without a copy where one mesh is shown as it is.
+    /// Flattens the scene like [`Scene::flatten`], moving a single untransformed mesh out uncopied.
     pub fn into_mesh(mut self) -> Mesh {
         let Some(only) = self.only_mesh() else { return self.flatten() };
         let instances = self.instances();
@@ -94,8 +95,8 @@ impl Scene {
         mesh
     }
 
-    /// What is shown, for formats without materials and objects: borrowed where it is one mesh as
-    /// it is.
+    /// Returns the flattened mesh for formats without materials and objects, borrowed if the scene
+    /// shows a single untransformed mesh.
     pub(crate) fn shown_mesh(&self) -> Cow<'_, Mesh> {
         match self.only_mesh() {
             Some(only) => Cow::Borrowed(&self.meshes[only].mesh),
@@ -103,7 +104,7 @@ impl Scene {
         }
     }
 
-    /// The mesh that is all the scene shows, if its node leaves it where it is.
+    /// Returns the index of the only mesh shown, if its instance has the identity transform.
     fn only_mesh(&self) -> Option<usize> {
         match self.instances()[..] {
             [only] if only.transform == IDENTITY => Some(only.mesh),
@@ -187,7 +188,8 @@ impl Scene {
     }
 }
 
-/// Every layer of any mesh, once and empty; of colours the wider.
+/// Collects every distinct layer of the meshes, without values; colours get the largest width
+/// found.
 fn union_of_layers<'a>(meshes: impl Iterator<Item = &'a Mesh>) -> Vec<Layer> {
     let mut union: Vec<Layer> = Vec::new();
     for layer in meshes.filter_map(|mesh| mesh.attributes.as_ref()).flat_map(|a| &a.layers) {
@@ -215,7 +217,7 @@ fn append_attributes(flat: &mut Attributes, mesh: &Mesh, instance: &MeshInstance
             own.corners.iter().for_each(|corners| push(corners.map(WedgeId::index)));
             own.wedge_count
         }
-        // Zeros need wedges too, and no wedge has two vertices.
+        // Zero values need wedges too, and no two vertices share a wedge.
         None => {
             mesh.faces.iter().for_each(|face| push(face.map(VertexId::index)));
             mesh.positions.len()
@@ -236,7 +238,7 @@ fn append_attributes(flat: &mut Attributes, mesh: &Mesh, instance: &MeshInstance
     }
 }
 
-/// The values of `own`; where `layer` is wider (a colour with alpha), filled with ones.
+/// Appends the values of `own`; missing components (alpha) are filled with ones.
 fn append_values(layer: &mut Layer, own: &Layer) {
     if layer.width == own.width {
         return layer.values.extend_from_slice(&own.values);
@@ -247,7 +249,7 @@ fn append_values(layer: &mut Layer, own: &Layer) {
     }
 }
 
-/// How directions of a mesh turn with its node.
+/// Matrices that rotate the normals and tangents of a mesh with its node.
 struct Directions {
     tangents: DMat3,
     normals: DMat3,
@@ -259,8 +261,8 @@ impl Directions {
         let DMat3 { x_axis: x, y_axis: y, z_axis: z } = linear;
         let mirrored = linear.determinant() < 0.0;
         let sign = if mirrored { -1.0 } else { 1.0 };
-        // The cofactors are the inverse transpose times the determinant: the same direction, and
-        // there where the matrix has no inverse.
+        // The cofactor matrix is the inverse transpose times the determinant: the same directions,
+        // and defined for singular matrices too.
         let normals = DMat3::from_cols(y.cross(z), z.cross(x), x.cross(y)) * sign;
         Self { tangents: linear, normals, handedness: sign as f32 }
     }
@@ -325,7 +327,8 @@ mod tests {
         assert_eq!(of(LayerKind::Tangent), [-1.0, 0.0, 0.0, -1.0]);
     }
 
-    /// Found by the fuzzer: a matrix that only its last row turns over flipped faces, but not wedges.
+    /// Found by the fuzzer: a matrix that only its last row turns over flipped faces, but not
+    /// wedges.
     #[test]
     fn a_perspective_row_does_not_mirror() {
         let mut scene = Scene::from_mesh("t", triangle([0.0, 0.0, 1.0]));

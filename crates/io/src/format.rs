@@ -1,30 +1,30 @@
-//! The formats and their suffixes.
+//! Supported file formats and their suffixes.
 
 use std::path::Path;
 
 use crate::IoError;
 
-/// A file format.
+/// Mesh file format.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Format {
-    /// Stanford polygon file, ascii or binary.
+    /// Stanford polygon file (PLY), text or binary.
     Ply,
-    /// Wavefront object with its material library.
+    /// Wavefront OBJ with its material library.
     Obj,
-    /// Stereolithography, ascii or binary.
+    /// Stereolithography file (STL), text or binary.
     Stl,
-    /// Object file format, with COFF and NOFF.
+    /// Object File Format (OFF), including its COFF and NOFF variants.
     Off,
-    /// Simple model format of Garland's QSlim.
+    /// Simple Model Format (SMF) of Garland's QSlim.
     Smf,
-    /// glTF 2.0 as JSON, with its buffers beside or in it.
+    /// glTF 2.0 as JSON, with buffers in separate files or embedded.
     Gltf,
-    /// glTF 2.0 in one binary file.
+    /// glTF 2.0 in a single binary file.
     Glb,
 }
 
 impl Format {
-    /// Every format with its suffix.
+    /// All formats with their suffixes.
     pub const ALL: [(&str, Self); 7] = [
         ("ply", Self::Ply),
         ("obj", Self::Obj),
@@ -35,16 +35,16 @@ impl Format {
         ("glb", Self::Glb),
     ];
 
-    /// The format that goes with a suffix (`ply`, `GLB`), whatever its case.
+    /// Returns the format of a suffix such as `ply` or `GLB`, ignoring case.
     pub fn of_suffix(suffix: &str) -> Option<Self> {
         let found = Self::ALL.iter().find(|(known, _)| known.eq_ignore_ascii_case(suffix));
         found.map(|&(_, format)| format)
     }
 
-    /// The format that the suffix of a path names.
+    /// Returns the format that the suffix of a path names.
     ///
     /// # Errors
-    /// [`IoError::UnknownFormat`] when there is no suffix, or an unknown one.
+    /// [`IoError::UnknownFormat`] if the suffix is missing or unknown.
     pub fn of_path(path: &Path) -> Result<Self, IoError> {
         let suffix = path.extension().and_then(|suffix| suffix.to_str());
         suffix.and_then(Self::of_suffix).ok_or_else(|| IoError::UnknownFormat {

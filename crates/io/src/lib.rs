@@ -1,8 +1,8 @@
-//! Mesh files in and out, one format a module: bytes in, typed errors out.
+//! Reads and writes mesh files: bytes in, typed errors out, one module per format.
 //!
-//! [`read()`] and [`write()`] go by path, and the suffix decides. What a file holds is a [`Scene`];
-//! [`Scene::flatten`] makes one mesh of it. A scene from glTF keeps its document, so that writing
-//! it as glTF changes geometry alone.
+//! [`read()`] and [`write()`] choose the format by the file's suffix. The contents of a file are a
+//! [`Scene`], and [`Scene::flatten`] merges it into one mesh. A scene read from glTF keeps its
+//! document, so that writing it back as glTF replaces only the geometry.
 //!
 //! ```
 //! use meshlod_io::{Format, ReadOptions, read_bytes};
@@ -42,12 +42,12 @@ pub use meshlod_mesh::{merge_equal_wedges, weld};
 pub use replace::{abandon_files, write_file};
 pub use scene::{Image, Material, Node, Scene, SceneMesh};
 
-/// How coordinates are written.
+/// Floating-point type that coordinates are written with.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Precision {
-    /// As 32-bit floats: what most programs read.
+    /// 32-bit floats, which most programs read.
     #[default]
     F32,
-    /// As 64-bit floats, bit for bit.
+    /// 64-bit floats, which keep every coordinate bit for bit.
     F64,
 }

@@ -1,17 +1,17 @@
-//! Text out: lines of words and numbers.
+//! Buffered text output: lines of words and numbers.
 
 use std::fmt::Write as _;
 use std::io::{self, Write};
 
 use crate::Precision;
 
-/// Full lines go on to `out` in pieces of about this many bytes.
+/// The buffer is passed on to `out` when it exceeds this many bytes.
 const PIECE: usize = 1 << 16;
 
-/// Writes lines of words, each with a space before it but the first.
+/// Writes lines of words separated by single spaces.
 ///
-/// Numbers are the shortest that read back as the same `f32` or `f64`. What is left at the end
-/// must be sent by [`LineWriter::finish`].
+/// Numbers are written in the shortest form that reads back as the same `f32` or `f64`. Call
+/// [`LineWriter::finish`] at the end to write what is still buffered.
 pub(crate) struct LineWriter<'a> {
     out: &'a mut dyn Write,
     precision: Precision,
@@ -24,22 +24,22 @@ impl<'a> LineWriter<'a> {
         Self { out, precision, buffer: String::with_capacity(PIECE + 1024), at_start: true }
     }
 
-    /// A word as it is.
+    /// Appends a word verbatim.
     pub(crate) fn word(&mut self, word: &str) {
         self.blank();
         self.buffer.push_str(word);
     }
 
-    /// A whole number.
+    /// Appends a non-negative integer.
     pub(crate) fn integer(&mut self, number: usize) {
         self.blank();
         push_integer(&mut self.buffer, number);
     }
 
-    /// A position, in this writer's precision; `vertex` is for the message.
+    /// Appends a position in this writer's precision; `vertex` is named in the error.
     ///
     /// # Errors
-    /// Where a coordinate is not finite, or too large for 32 bits.
+    /// If a coordinate is not finite, or too large for 32 bits.
     pub(crate) fn position(&mut self, vertex: usize, position: [f64; 3]) -> io::Result<()> {
         for x in position {
             self.blank();
@@ -48,14 +48,14 @@ impl<'a> LineWriter<'a> {
                 Precision::F64 => push_f64(&mut self.buffer, x),
             };
             if !done {
-                let reason = format!("v{vertex} does not fit {}", self.precision.advice());
+                let reason = format!("v{vertex} {}", self.precision.reason_not_written());
                 return Err(io::Error::new(io::ErrorKind::InvalidData, reason));
             }
         }
         Ok(())
     }
 
-    /// Values that hang on a point; what is not finite is written as 0.
+    /// Appends attribute values; a value that is not finite is written as 0.
     pub(crate) fn attributes(&mut self, values: &[f32]) {
         for &x in values {
             self.blank();
@@ -75,7 +75,7 @@ impl<'a> LineWriter<'a> {
         if self.buffer.len() < PIECE { Ok(()) } else { self.flush() }
     }
 
-    /// Sends what is left.
+    /// Writes what is still buffered.
     ///
     /// # Errors
     /// Those of `out`.
@@ -83,7 +83,7 @@ impl<'a> LineWriter<'a> {
         self.flush()
     }
 
-    /// Appends to the word before, with no blank between.
+    /// Appends a mark and a number to the last word, with no space in between.
     pub(crate) fn glue(&mut self, mark: char, number: Option<usize>) {
         self.buffer.push(mark);
         if let Some(number) = number {
@@ -105,10 +105,13 @@ impl<'a> LineWriter<'a> {
 }
 
 impl Precision {
-    fn advice(self) -> &'static str {
+    /// Reason given for a coordinate that cannot be written in this precision.
+    fn reason_not_written(self) -> &'static str {
         match self {
-            Self::F32 => "32-bit floats; write it with 64 bits, or scale it down",
-            Self::F64 => "a number: a coordinate is not finite",
+            Self::F32 => {
+                "does not fit in 32-bit floats; write with 64 bits, or scale the model down"
+            }
+            Self::F64 => "has a coordinate that is not finite",
         }
     }
 }
@@ -118,7 +121,7 @@ fn push_integer(buffer: &mut String, number: usize) {
     let _ = write!(buffer, "{number}");
 }
 
-/// False, and nothing done, where `x` is not finite.
+/// Appends a float; if it is not finite, appends nothing and returns false.
 fn push_f32(buffer: &mut String, x: f32) -> bool {
     let plain = x == 0.0 || (1e-5..1e9).contains(&x.abs());
     let _ = match (plain, x.is_finite()) {
@@ -129,7 +132,7 @@ fn push_f32(buffer: &mut String, x: f32) -> bool {
     true
 }
 
-/// False, and nothing done, where `x` is not finite.
+/// Appends a double; if it is not finite, appends nothing and returns false.
 fn push_f64(buffer: &mut String, x: f64) -> bool {
     let plain = x == 0.0 || (1e-5..1e17).contains(&x.abs());
     let _ = match (plain, x.is_finite()) {
@@ -166,7 +169,7 @@ mod tests {
     #[test]
     fn what_does_not_fit_is_refused_by_name() {
         let message = written(Precision::F32, [0.0, 1e300, 0.0]).unwrap_err();
-        assert!(message.starts_with("v7 does not fit 32-bit floats"), "{message}");
+        assert!(message.starts_with("v7 does not fit in 32-bit floats"), "{message}");
         assert!(written(Precision::F64, [f64::NAN, 0.0, 0.0]).is_err());
     }
 }

@@ -1,31 +1,30 @@
-//! Polygons to triangles: always `n - 2` of them, concave-safe, in time linear in what was asked.
+//! Polygon triangulation: always `n - 2` triangles, concave polygons included, with bounded work.
 
 use std::ops::RangeInclusive;
 
 use glam::{DVec2, DVec3};
 use meshlod_mesh::Buckets;
 
-/// Tips, cells and points that may be looked at, per corner of the polygon, before the rest becomes
-/// a fan. Only a polygon made to be slow meets the limit; 10^5 such corners then take about 0.5 s.
+/// Budget of tips, cells and points to examine per corner of the polygon; once it is spent, the
+/// rest becomes a fan. Only adversarial polygons reach it: 10^5 corners then take about 0.5 s.
 const LOOKS_PER_CORNER: usize = 1000;
 
 /// A quad is split along corners 1–3 only when that diagonal is clearly the shorter one, so that
 /// the rounding of a regular grid does not turn its diagonals at random.
 const CLEARLY_SHORTER: f64 = 1.0 - 1e-6;
 
-/// Splits a polygon and appends `n - 2` triangles to `out`, each as three *places in `polygon`*
+/// Splits a polygon and appends `n - 2` triangles to `out`, each as three *positions in `polygon`*
 /// (`0..n`, not vertex indices), so that a corner's attributes can follow.
 ///
-/// Every triangle keeps the polygon's orientation and its first corner comes first where possible.
-/// A triangle passes through as `[0, 1, 2]`. A quad is split by its shorter diagonal if that one
-/// lies inside, else by the other. A larger polygon is split by ear clipping in the coordinate
-/// plane it is most parallel to; collinear corners and repeated vertices keep their triangles
-/// (which then may have no area), keyholes are followed. What is self-intersecting or has no area
-/// ends as a fan. Fewer than three corners give nothing.
+/// Every triangle keeps the polygon's orientation, and its first corner comes first where possible.
+/// A triangle passes through as `[0, 1, 2]`. A quad is split along its shorter diagonal if that one
+/// lies inside, else along the other. A larger polygon is split by ear clipping in the coordinate
+/// plane it is most parallel to. Collinear corners and repeated vertices keep their triangles
+/// (possibly of zero area), and keyholes are followed. A self-intersecting or zero-area remainder
+/// becomes a fan. Fewer than three corners give nothing.
 ///
-/// Every entry of `polygon` must be an index into `positions`.
-/// Cost: O(n) for convex polygons, about O(n log n) for usual ones, never above
-/// `LOOKS_PER_CORNER`·n.
+/// Every entry of `polygon` must be an index into `positions`. Cost: O(n) for convex polygons,
+/// about O(n log n) for usual ones, never above `LOOKS_PER_CORNER`·n.
 /// # References
 /// [Mei75] (two ears); [Ebe02] for the reflex-only containment test; differs: a grid over the
 /// reflex corners, a limit on the work, no corner is dropped.
@@ -41,7 +40,7 @@ pub(crate) fn triangulate(positions: &[[f64; 3]], polygon: &[u32], out: &mut Vec
     }
 }
 
-/// The two triangles of a quad: by the shorter diagonal that does not fold it over.
+/// Splits a quad along the shorter diagonal that does not fold it over.
 fn split_quad(q: [DVec3; 4]) -> [[u32; 3]; 2] {
     let normal = (q[2] - q[0]).cross(q[3] - q[1]);
     let faces_up = |[a, b, c]: [usize; 3]| (q[b] - q[a]).cross(q[c] - q[a]).dot(normal) > 0.0;
@@ -55,16 +54,16 @@ fn split_quad(q: [DVec3; 4]) -> [[u32; 3]; 2] {
     }
 }
 
-/// How much an ear may overlook. Tried in this order; each clip goes back to the first.
+/// Strictness of the ear test. Levels are tried in this order; each clip returns to the first.
 #[derive(Clone, Copy, PartialEq)]
 enum Care {
-    /// A convex tip, and no corner inside its triangle or on its diagonal.
+    /// Convex tip with no corner inside its triangle or on its diagonal.
     Strict,
-    /// A tip without area: a repeated vertex, a spike, a collinear corner.
+    /// Tip of zero area: a repeated vertex, a spike, a collinear corner.
     Flat,
-    /// Any convex tip: the polygon crosses itself.
+    /// Any convex tip; needed where the polygon crosses itself.
     Convex,
-    /// Any tip: what is left has no inside.
+    /// Any tip; the remaining polygon has no interior.
     Any,
 }
 
@@ -78,13 +77,14 @@ impl Care {
     }
 }
 
-/// A polygon as a ring of corners from which ears are cut.
+/// Polygon as a doubly linked ring of corners from which ears are clipped.
 struct EarClipper {
     points: Vec<DVec2>,
     spatial: Vec<DVec3>,
     previous: Vec<u32>,
     next: Vec<u32>,
-    /// Whether a corner is still in the ring and not convex: only such a corner can lie in an ear.
+    /// True for a reflex or flat corner that is still in the ring: only such a corner can block an
+    /// ear.
     blocks: Vec<bool>,
     grid: ReflexGrid,
     looks_left: usize,
@@ -115,7 +115,7 @@ impl EarClipper {
         let mut left = self.points.len();
         let mut tip = 1;
         let mut care = Care::Strict;
-        // How many tips in a row were no ears: a whole round of them asks for less care.
+        // Consecutive tips that were not ears: after a full round the test is relaxed.
         let mut refused = 0;
         while left > 4 {
             self.looks_left = self.looks_left.saturating_sub(1);
@@ -128,7 +128,7 @@ impl EarClipper {
                 self.cut(tip);
                 left -= 1;
                 (care, refused) = (Care::Strict, 0);
-                // Skipping one corner keeps ears from all sharing a vertex: fewer slivers.
+                // Skipping one corner keeps ears from sharing one vertex, which would make slivers.
                 tip = self.next[following as usize];
             } else {
                 refused += 1;
@@ -147,7 +147,7 @@ impl EarClipper {
         out.extend(quad.map(|triangle| triangle.map(|i| ring[i as usize])));
     }
 
-    /// Whether the triangle at `tip` may be cut off.
+    /// Reports whether the triangle at `tip` may be clipped.
     fn is_ear(&mut self, tip: u32, care: Care) -> bool {
         let ends = [self.previous[tip as usize], self.next[tip as usize]];
         let [a, c] = ends.map(|end| self.points[end as usize]);
@@ -161,8 +161,8 @@ impl EarClipper {
         }
     }
 
-    /// Whether a corner of the ring lies in a triangle, or on its border without being equal to
-    /// one of its corners (keyholes pass through the same point twice).
+    /// Reports whether a corner of the ring lies inside a triangle or on its border. Corners equal
+    /// to one of the triangle's own do not count: keyholes pass through the same point twice.
     fn is_blocked(&mut self, triangle: [DVec2; 3]) -> bool {
         let [a, b, c] = triangle;
         let (low, high) = (a.min(b).min(c), a.max(b).max(c));
@@ -189,7 +189,7 @@ impl EarClipper {
         false
     }
 
-    /// Takes `tip` out of the ring; its neighbours may have become convex.
+    /// Removes `tip` from the ring; its neighbours may have become convex.
     fn cut(&mut self, tip: u32) {
         let (before, after) = (self.previous[tip as usize], self.next[tip as usize]);
         self.next[before as usize] = after;
@@ -203,7 +203,7 @@ impl EarClipper {
         }
     }
 
-    /// The least corner among the last four.
+    /// Returns the smallest of the last four corners.
     fn first_in_ring(&self, corner: u32) -> u32 {
         let mut first = corner;
         let mut at = self.next[corner as usize];
@@ -215,15 +215,15 @@ impl EarClipper {
     }
 }
 
-/// Reflex corners by place: about one a cell, in rows and columns of the polygon's box.
+/// Uniform grid of the reflex corners over the polygon's bounding box, about one corner per cell.
 struct ReflexGrid {
     frame: Frame,
-    /// For each cell, places in `corners`.
+    /// For each cell, indices into `corners`.
     cells: Buckets,
     corners: Vec<u32>,
 }
 
-/// Where the cells lie.
+/// Origin and resolution of the grid.
 struct Frame {
     low: DVec2,
     cells_per_unit: DVec2,
@@ -252,22 +252,22 @@ impl ReflexGrid {
         (left..=right, bottom..=top)
     }
 
-    /// The corners in a cell, as places in `corners`.
+    /// Returns the corners in a cell, as indices into `corners`.
     fn cell(&self, column: usize, row: usize) -> &[u32] {
         self.cells.of(row * self.frame.side + column)
     }
 }
 
 impl Frame {
-    /// Column and row of a point; `as` saturates, so nothing falls outside.
+    /// Returns the column and row of a point; `as` saturates, so nothing falls outside.
     fn place(&self, p: DVec2) -> [usize; 2] {
         let cell = (p - self.low) * self.cells_per_unit;
         [cell.x, cell.y].map(|x| (x as usize).min(self.side - 1))
     }
 }
 
-/// The polygon in the coordinate plane it is most parallel to, turned so that it runs
-/// counter-clockwise. Dropping an axis keeps the coordinates' bits: equal points stay equal.
+/// Projects the polygon to the coordinate plane it is most parallel to, so that it runs
+/// counter-clockwise. Dropping an axis keeps the coordinates' bits, so equal points stay equal.
 fn project(points: &[DVec3]) -> Vec<DVec2> {
     let origin = points[0];
     // Newell's normal about a local origin: twice the area in each coordinate plane.
@@ -290,7 +290,7 @@ fn project(points: &[DVec3]) -> Vec<DVec2> {
     points.iter().map(flatten).collect()
 }
 
-/// Twice the signed area; positive when counter-clockwise.
+/// Returns twice the signed area of a triangle; positive if counter-clockwise.
 fn area(a: DVec2, b: DVec2, c: DVec2) -> f64 {
     (b - a).perp_dot(c - a)
 }
@@ -299,7 +299,7 @@ fn is_convex(turn: f64) -> bool {
     turn > 0.0
 }
 
-/// The same triangle, least corner first.
+/// Rotates a triangle so that its smallest corner comes first.
 fn rotated([a, b, c]: [u32; 3]) -> [u32; 3] {
     if a < b && a < c {
         [a, b, c]

@@ -1,4 +1,4 @@
-//! Files written whole or not at all: beside the target first, then renamed into place.
+//! Atomic file replacement: write a temporary file in the same folder, then rename it.
 
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, BufWriter, ErrorKind, Write};
@@ -8,7 +8,7 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use crate::IoError;
 
-/// Writes a file, whole or not at all: what was at `path` stays until the new bytes are complete.
+/// Writes a file atomically: the old contents of `path` stay until the new ones are complete.
 ///
 /// # Errors
 /// Those of the system, with the path.
@@ -16,23 +16,22 @@ pub fn write_file(path: &Path, bytes: &[u8]) -> Result<(), IoError> {
     replace(path, |out| out.write_all(bytes)).map_err(|error| IoError::system(path, error))
 }
 
-/// Removes the unfinished files of this process: for a program that is about to end before its
-/// time, as by Ctrl-C.
+/// Removes the temporary files of this process; for programs about to exit early, as on Ctrl-C.
 ///
-/// Threads that are writing go on without a file to finish, so end the process next.
+/// Threads that are still writing then have no file to finish, so end the process right after.
 pub fn abandon_files() {
     for path in unfinished().drain(..) {
-        // Nobody is left to be told.
+        // Nothing could be done about a failure here.
         let _ = fs::remove_file(path);
     }
 }
 
 /// Writes a file with `fill`; the old one stays as it is until the new one is complete.
 ///
-/// What is no regular file (a pipe, a device) is written in place.
+/// A target that is not a regular file (a pipe, a device) is written in place.
 ///
 /// # Errors
-/// Those of the system, and those of `fill`; then nothing is left behind.
+/// Those of the system and those of `fill`; no temporary file is left behind.
 pub(crate) fn replace<E: From<io::Error>>(
     path: &Path,
     fill: impl FnOnce(&mut dyn Write) -> Result<(), E>,
@@ -43,8 +42,8 @@ pub(crate) fn replace<E: From<io::Error>>(
     }
     let (temporary, file) = Temporary::beside(&target)?;
     if let Ok(found) = fs::metadata(&target) {
-        // Before the first byte, as what was private stays so; some network drives know no such
-        // thing, and the file is worth more.
+        // Set before the first byte, so that private contents stay private. Some network drives
+        // have no permissions; writing the file matters more.
         let _ = file.set_permissions(found.permissions());
     }
     fill_file(file, fill)?;
@@ -62,11 +61,11 @@ fn fill_file<E: From<io::Error>>(
     Ok(())
 }
 
-/// Temporary files that exist now.
+/// Temporary files that currently exist.
 static UNFINISHED: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
 
 fn unfinished() -> MutexGuard<'static, Vec<PathBuf>> {
-    // A list of paths is whole at any time.
+    // A panic cannot leave a list of paths half-changed.
     UNFINISHED.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
@@ -74,7 +73,7 @@ fn forget(path: &Path) {
     unfinished().retain(|other| other != path);
 }
 
-/// A file that goes away unless it is renamed.
+/// Temporary file, deleted on drop unless it was renamed.
 struct Temporary(Option<PathBuf>);
 
 impl Temporary {
@@ -84,7 +83,7 @@ impl Temporary {
         loop {
             let number = NEXT.fetch_add(1, Ordering::Relaxed);
             let path = target.with_file_name(format!(".{name}.{}-{number}", std::process::id()));
-            // Held while the file is made, so that none is missed.
+            // Locked while the file is created, so that `abandon_files` misses none.
             let mut unfinished = unfinished();
             match OpenOptions::new().write(true).create_new(true).open(&path) {
                 Ok(file) => {
@@ -109,7 +108,7 @@ impl Temporary {
 impl Drop for Temporary {
     fn drop(&mut self) {
         if let Some(path) = self.0.take() {
-            // The error that brought us here is the one worth telling.
+            // The error that led here is the one to report.
             let _ = fs::remove_file(&path);
             forget(&path);
         }

@@ -1,76 +1,76 @@
-//! What a file holds: nodes that place meshes, materials, images.
+//! Contents of a file: meshes, the nodes that place them, materials and images.
 
 use meshlod_mesh::Mesh;
 
 use crate::gltf::SourceDocument;
 
-/// A file's contents. A format without nodes gives one mesh under one root.
+/// Contents of a mesh file. Formats without nodes give one mesh under one root.
 #[derive(Clone, Debug, Default)]
 pub struct Scene {
     /// Meshes, each in its own space.
     pub meshes: Vec<SceneMesh>,
-    /// Nodes; children by index. No node has two parents.
+    /// Nodes, which refer to their children by index. No node has two parents.
     pub nodes: Vec<Node>,
-    /// The nodes without a parent that the scene shows.
+    /// Root nodes that the scene shows.
     pub roots: Vec<usize>,
     /// Materials of all meshes.
     pub materials: Vec<Material>,
     /// Images of the materials, still encoded.
     pub images: Vec<Image>,
-    /// The glTF document that the scene came from, if it came from one.
+    /// glTF document that the scene was read from, if any.
     ///
-    /// A scene with a source is written to glTF as that document with the geometry of
-    /// [`Scene::meshes`] in it; changes to the other fields do not show there. Set to `None` to
-    /// write the fields alone.
+    /// A scene with a source is written to glTF as that document with its geometry replaced by
+    /// [`Scene::meshes`]; changes to the other fields are ignored. Set this to `None` to write the
+    /// fields instead.
     pub source: Option<SourceDocument>,
 }
 
-/// A mesh, its name and its materials.
+/// Mesh of a scene with its name and materials.
 #[derive(Clone, Debug, Default)]
 pub struct SceneMesh {
-    /// The file's name of it, or "".
+    /// Name in the file, or "".
     pub name: String,
-    /// The geometry. From glTF, its `materials` labels are the primitives, in the file's order.
+    /// Geometry. From glTF, the `materials` labels are the primitives, in the order of the file.
     pub mesh: Mesh,
-    /// For each name of `mesh.materials` (for the whole mesh where it has none: one entry), the
-    /// index into `Scene::materials`.
+    /// Index into `Scene::materials` for each label of `mesh.materials`; a mesh without labels has
+    /// one entry for all its faces.
     pub materials: Vec<Option<usize>>,
 }
 
-/// A place in the scene.
+/// Node of the scene graph.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Node {
-    /// The file's name of it, or "".
+    /// Name in the file, or "".
     pub name: String,
-    /// Column-major 4×4: this node's space to its parent's.
+    /// Column-major 4×4 matrix from this node's space to its parent's.
     pub transform: [[f64; 4]; 4],
-    /// The mesh it shows.
+    /// Mesh that the node shows, by index into `Scene::meshes`.
     pub mesh: Option<usize>,
-    /// Its children.
+    /// Child nodes, by index into `Scene::nodes`.
     pub children: Vec<usize>,
 }
 
-/// What of a material a picture needs.
+/// Base colour of a material; other properties are kept only in the glTF source.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Material {
-    /// The file's name of it, or "".
+    /// Name in the file, or "".
     pub name: String,
-    /// Linear RGBA.
+    /// Base colour, linear RGBA.
     pub base_color: [f32; 4],
-    /// The image that multiplies it, by index into `Scene::images`.
+    /// Image that multiplies the base colour, by index into `Scene::images`.
     pub base_color_image: Option<usize>,
 }
 
-/// An image as the file has it.
+/// Encoded image.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Image {
-    /// File name or the file's name of it.
+    /// File name, or the name that the document gives the image.
     pub name: String,
-    /// Encoded bytes, PNG or JPEG as a rule; empty where the file that holds them is not there.
+    /// Encoded bytes, usually PNG or JPEG; empty if the image file was not found.
     pub bytes: Vec<u8>,
 }
 
-/// The transform that moves nothing.
+/// Identity transform.
 pub(crate) const IDENTITY: [[f64; 4]; 4] =
     [[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0], [0.0, 0.0, 0.0, 1.0]];
 
@@ -87,8 +87,8 @@ impl Default for Material {
 }
 
 impl Scene {
-    /// One mesh of that name under one nameless root; each of its material labels becomes a
-    /// white material.
+    /// Wraps a mesh in a scene: one unnamed root shows it under `name`, and each of its material
+    /// labels becomes a white material.
     pub fn from_mesh(name: impl Into<String>, mesh: Mesh) -> Self {
         let labels = mesh.materials.as_ref().map_or(&[][..], |labels| &labels.names);
         let materials: Vec<Material> = labels

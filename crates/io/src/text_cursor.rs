@@ -1,11 +1,12 @@
-//! TextCursor formats: one pass over the bytes, line by line, numbers read where they stand.
+//! Cursor for text formats: one pass over the bytes, line by line, numbers parsed in place.
 
 use crate::ParseError;
 
-/// A cursor over the lines of a text.
+/// Cursor over the lines of a text.
 ///
-/// Lines end with LF, CR LF or CR; the end of the text ends the last one. Blanks are all bytes up
-/// to the space; a backslash at the end of a line makes the next one part of it.
+/// Lines end with LF, CR LF or CR; the end of the text ends the last one. Every byte up to and
+/// including the space counts as blank. A backslash at the end of a line continues the statement on
+/// the next one.
 #[derive(Clone)]
 pub(crate) struct TextCursor<'a> {
     bytes: &'a [u8],
@@ -14,10 +15,10 @@ pub(crate) struct TextCursor<'a> {
 }
 
 impl<'a> TextCursor<'a> {
-    /// At the first line, behind a byte order mark.
+    /// Creates a cursor at the first line, after a byte order mark if there is one.
     ///
     /// # Errors
-    /// Where the bytes are no text of one byte a character: empty, UTF-16, or with a NUL.
+    /// If the text is empty, is UTF-16 or contains a NUL byte.
     pub(crate) fn new(bytes: &'a [u8]) -> Result<Self, ParseError> {
         if bytes.is_empty() {
             return Err(ParseError::byte(0, "the file is empty"));
@@ -32,30 +33,30 @@ impl<'a> TextCursor<'a> {
         Ok(Self { bytes, at, line: 1 })
     }
 
-    /// The line that the cursor is in, counted from 1.
+    /// Returns the current line, counted from 1.
     pub(crate) fn line(&self) -> usize {
         self.line
     }
 
-    /// How many bytes are left: what a count in a header cannot exceed.
+    /// Returns the number of bytes left, an upper bound for every count in a header.
     pub(crate) fn left(&self) -> usize {
         self.bytes.len() - self.at
     }
 
-    /// An error at this line.
+    /// Creates an error at the current line.
     #[cold]
     pub(crate) fn error(&self, reason: impl Into<String>) -> ParseError {
         ParseError::line(self.line, reason)
     }
 
-    /// An error at this line: the word at the cursor is not `what`.
+    /// Creates an error at the current line: the word at the cursor is not `what`.
     #[cold]
     pub(crate) fn refuse(&self, what: &str) -> ParseError {
         self.error(format!("{} is not {what}", quoted(self.here())))
     }
 
-    /// Moves to the next byte that is no blank; false where the line, its statement or the text
-    /// ends there. A `#` ends the statement.
+    /// Moves to the next byte that is not blank; returns false if the statement ends before one.
+    /// A statement ends with its line, with the text or at a `#`.
     #[inline]
     pub(crate) fn more(&mut self) -> bool {
         loop {
@@ -68,7 +69,7 @@ impl<'a> TextCursor<'a> {
         }
     }
 
-    /// The bytes up to the next blank; empty where the statement ends.
+    /// Reads the bytes up to the next blank; empty if the statement has ended.
     pub(crate) fn word(&mut self) -> &'a [u8] {
         if !self.more() {
             return &[];
@@ -78,7 +79,7 @@ impl<'a> TextCursor<'a> {
         word
     }
 
-    /// Moves behind the words that are left of the statement, and says how many they were.
+    /// Skips the remaining words of the statement and returns their number.
     pub(crate) fn words_left(&mut self) -> usize {
         let mut count = 0;
         while !self.word().is_empty() {
@@ -87,7 +88,7 @@ impl<'a> TextCursor<'a> {
         count
     }
 
-    /// What is left of the line without the blanks around it, `#` and all: a name.
+    /// Reads the rest of the line as a name, trimmed, with any `#` in it.
     pub(crate) fn name(&mut self) -> String {
         let rest = &self.bytes[self.at..];
         let end = rest.iter().position(|&b| is_line_end(b)).unwrap_or(rest.len());
@@ -95,14 +96,14 @@ impl<'a> TextCursor<'a> {
         String::from_utf8_lossy(rest[..end].trim_ascii()).into_owned()
     }
 
-    /// Moves to the start of the next line, over all that is left of the statement; false at the
-    /// end of the text.
+    /// Moves to the start of the next line, skipping the rest of the statement; returns false at
+    /// the end of the text.
     #[inline]
     pub(crate) fn next_line(&mut self) -> bool {
         while self.more() {
             self.at += self.here().len();
         }
-        // A comment: the backslash at its end continues nothing.
+        // In a comment, a backslash at the end of the line does not continue it.
         while !is_line_end(self.byte()) {
             self.at += 1;
         }
@@ -113,7 +114,7 @@ impl<'a> TextCursor<'a> {
         self.at < self.bytes.len()
     }
 
-    /// Moves over blanks, line ends and comments; false at the end of the text.
+    /// Skips blanks, line ends and comments; returns false at the end of the text.
     pub(crate) fn more_anywhere(&mut self) -> bool {
         loop {
             if self.more() {
@@ -125,10 +126,10 @@ impl<'a> TextCursor<'a> {
         }
     }
 
-    /// A finite number.
+    /// Reads a finite number.
     ///
     /// # Errors
-    /// `need` where the statement ends; else what stands there instead.
+    /// `need` if the statement ends first; otherwise the word that is not a finite number.
     #[inline]
     pub(crate) fn number(&mut self, need: &str) -> Result<f64, ParseError> {
         match self.any_number(need)? {
@@ -137,10 +138,11 @@ impl<'a> TextCursor<'a> {
         }
     }
 
-    /// A number that hangs on a point, rounded once; what is not finite (`nan`) is 0.
+    /// Reads an attribute value, rounded once to `f32`; a value that is not finite (`nan`) becomes
+    /// 0.
     ///
     /// # Errors
-    /// As [`TextCursor::number`], but for what is not finite.
+    /// Those of [`TextCursor::number`], except for values that are not finite.
     #[inline]
     pub(crate) fn attribute(&mut self, need: &str) -> Result<f32, ParseError> {
         let start = self.at;
@@ -157,7 +159,7 @@ impl<'a> TextCursor<'a> {
         Ok(if rounded.is_finite() { rounded } else { 0.0 })
     }
 
-    /// A finite number; `None`, and the cursor before it, where it says that it is none.
+    /// Reads a finite number; returns `None`, without moving, for NaN and infinities.
     #[inline]
     fn any_number(&mut self, need: &str) -> Result<Option<f64>, ParseError> {
         if !self.more() {
@@ -186,10 +188,10 @@ impl<'a> TextCursor<'a> {
         }
     }
 
-    /// A whole number, which may be followed by anything that is no digit.
+    /// Reads an integer, which may be followed directly by any byte that is not a digit.
     ///
     /// # Errors
-    /// `need` where the statement ends; else what stands there instead.
+    /// `need` if the statement ends first; otherwise the word that is not an integer.
     #[inline]
     pub(crate) fn integer(&mut self, need: &str) -> Result<i64, ParseError> {
         if !self.more() {
@@ -204,7 +206,7 @@ impl<'a> TextCursor<'a> {
             value = value.wrapping_mul(10).wrapping_add(digit as i64);
             at += 1;
         }
-        // 18 digits fit, and no file has more of anything.
+        // 18 digits fit in an i64, and no valid index or count has more.
         if at == first || at - first > 18 {
             return Err(self.refuse("a whole number"));
         }
@@ -212,7 +214,7 @@ impl<'a> TextCursor<'a> {
         Ok(if negative { -value } else { value })
     }
 
-    /// Moves over `byte` if it comes next, with no blank before it.
+    /// Moves past `byte` if it is the very next one.
     #[inline]
     pub(crate) fn take(&mut self, byte: u8) -> bool {
         let found = self.at < self.bytes.len() && self.bytes[self.at] == byte;
@@ -220,31 +222,31 @@ impl<'a> TextCursor<'a> {
         found
     }
 
-    /// Moves over these bytes if they come next, with no blank before them.
+    /// Moves past these bytes if they come next, with no blank before them.
     pub(crate) fn take_word(&mut self, word: &[u8]) -> bool {
         let found = self.bytes[self.at..].starts_with(word);
         self.at += if found { word.len() } else { 0 };
         found
     }
 
-    /// Whether a digit or a sign comes next.
+    /// Reports whether a digit or a sign comes next.
     pub(crate) fn comes_digit(&self) -> bool {
         self.byte().is_ascii_digit() || matches!(self.byte(), b'-' | b'+')
     }
 
-    /// Whether `byte` comes next.
+    /// Reports whether `byte` comes next.
     #[inline]
     pub(crate) fn comes(&self, byte: u8) -> bool {
         self.byte() == byte
     }
 
-    /// Whether a blank, a comment, a line end or the end comes next.
+    /// Reports whether a blank, a comment, a line end or the end of the text comes next.
     #[inline]
     pub(crate) fn at_blank(&self) -> bool {
         ends_word(self.byte()) || self.continues()
     }
 
-    /// The word that begins at the cursor.
+    /// Returns the word that begins at the cursor.
     fn here(&self) -> &'a [u8] {
         let rest = &self.bytes[self.at..];
         let end = rest.iter().position(|&b| ends_word(b)).unwrap_or(rest.len());
@@ -252,30 +254,30 @@ impl<'a> TextCursor<'a> {
         &rest[..end - usize::from(glued)]
     }
 
-    /// The byte at the cursor; a line end behind the last.
+    /// Returns the byte at the cursor, or a line end past the last one.
     #[inline]
     fn byte(&self) -> u8 {
         self.bytes.get(self.at).copied().unwrap_or(b'\n')
     }
 
-    /// Whether a backslash at the cursor is the last of its line.
+    /// Reports whether the cursor is at a backslash that ends its line.
     #[inline]
     fn continues(&self) -> bool {
         self.byte() == b'\\' && self.bytes.get(self.at + 1).is_some_and(|&b| is_line_end(b))
     }
 
-    /// Moves behind the line end at the cursor, or behind the backslash and the line end there.
+    /// Moves past the line end at the cursor, and past a backslash before it.
     #[inline]
     fn end_line(&mut self) {
         self.at += usize::from(self.bytes[self.at] == b'\\');
         let pair = self.bytes[self.at..].starts_with(b"\r\n");
         self.at += 1 + usize::from(pair);
-        // Behind the last line end there is no further line.
+        // The last line end starts no further line.
         self.line += usize::from(self.at < self.bytes.len());
     }
 }
 
-/// A word for a message: quoted, short, without control characters.
+/// Formats a word for a message: quoted, shortened, control characters escaped.
 pub(crate) fn quoted(word: &[u8]) -> String {
     const MOST: usize = 32;
     let text = String::from_utf8_lossy(&word[..word.len().min(MOST)]);
@@ -299,16 +301,16 @@ fn digit(bytes: &[u8], at: usize) -> Option<u64> {
     (digit < 10).then_some(u64::from(digit))
 }
 
-/// Powers of ten that `f64` holds exactly.
+/// Powers of ten that `f64` represents exactly.
 const TEN_TO: [f64; 23] = [
     1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15, 1e16,
     1e17, 1e18, 1e19, 1e20, 1e21, 1e22,
 ];
 
-/// A number that one exact multiplication or division gives, and where it ends.
+/// Parses a number that one exact multiplication or division yields; returns it and its end.
 ///
-/// Digits up to 2^53 and a power of ten up to 22 are both exact, so their product or quotient is
-/// rounded once, as it must be. `None` for all else, also for what is no number.
+/// Digits up to 2^53 and powers of ten up to 22 are both exact, so their product or quotient is
+/// rounded once, as it must be. Returns `None` for anything else, including what is not a number.
 /// # References
 /// [Cli90], section 3.
 #[inline]
@@ -368,8 +370,8 @@ fn short_exponent(bytes: &[u8], start: usize) -> Option<(i32, usize)> {
     (at > first).then_some((if sign == b'-' { -value } else { value }, at))
 }
 
-/// Whether rounding `x` to `f32` could differ from rounding the decimal that `x` stands for: when
-/// `x` lies just between two of them, or where `f32` has fewer bits.
+/// Reports whether rounding `x` to `f32` could differ from rounding the decimal it was parsed from:
+/// if `x` lies halfway between two floats, or where `f32` is subnormal.
 #[inline]
 fn rounds_twice(x: f64) -> bool {
     x.to_bits() & 0x1fff_ffff == 0x1000_0000 || (x != 0.0 && x.abs() < f64::from(f32::MIN_POSITIVE))

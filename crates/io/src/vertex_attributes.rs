@@ -1,9 +1,9 @@
-//! Attributes in formats that have one set of them per vertex.
+//! Attributes for formats with one set of them per vertex.
 
 use meshlod_mesh::{Attributes, Layer, LayerKind, Mesh, VertexId, WedgeId};
 
-/// Attributes with one wedge per vertex: `layers` have a value for each vertex. `None` without
-/// layers.
+/// Builds attributes with one wedge per vertex; every layer has a value for each vertex. Returns
+/// `None` if there are no layers.
 pub(crate) fn per_vertex(
     vertices: usize,
     faces: &[[VertexId; 3]],
@@ -13,7 +13,7 @@ pub(crate) fn per_vertex(
     (!layers.is_empty()).then(|| Attributes { corners: corners(), wedge_count: vertices, layers })
 }
 
-/// A layer of a known kind under its usual name.
+/// Creates a layer with the conventional name of its kind.
 pub(crate) fn named_layer(kind: LayerKind, width: usize, values: Vec<f32>) -> Layer {
     let name = match kind {
         LayerKind::Normal => "normal",
@@ -24,29 +24,29 @@ pub(crate) fn named_layer(kind: LayerKind, width: usize, values: Vec<f32>) -> La
     Layer { kind, name: name.to_owned(), width, values }
 }
 
-/// Brings colours to [0, 1]: where any is above 1, all are taken to be of 255.
+/// Scales colours to [0, 1]: if any component exceeds 1, all are taken to be out of 255.
 pub(crate) fn normalize_colors(colors: &mut [f32]) {
     if colors.iter().any(|&c| c > 1.0) {
         colors.iter_mut().for_each(|c| *c /= 255.0);
     }
 }
 
-/// A vertex as a file has it.
+/// Vertex of a file with one set of attributes per vertex.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct SplitVertex {
     pub(crate) vertex: VertexId,
-    /// The attributes of it; none where no face uses the vertex.
+    /// Wedge that holds its attributes; `None` if no face uses the vertex.
     pub(crate) wedge: Option<WedgeId>,
 }
 
-/// The vertices and faces of a file in which a vertex has one set of attributes.
+/// Vertices and faces of a mesh with one set of attributes per vertex.
 pub(crate) struct SplitMesh {
     pub(crate) vertices: Vec<SplitVertex>,
     pub(crate) faces: Vec<[u32; 3]>,
 }
 
-/// Tears a mesh at its seams: the vertices in order, each with its first wedge, then one more for
-/// each further wedge. Where there are no seams, vertices and faces are those of the mesh.
+/// Splits the vertices of a mesh at its seams: all vertices in order, each with its first wedge,
+/// then one more for every further wedge. A mesh without seams keeps its vertices and faces.
 pub(crate) fn split_at_seams(mesh: &Mesh) -> SplitMesh {
     let mut vertices: Vec<SplitVertex> = (0..mesh.positions.len())
         .map(|v| SplitVertex { vertex: VertexId::new(v), wedge: None })

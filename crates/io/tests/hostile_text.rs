@@ -1,5 +1,4 @@
-//! OBJ, OFF and SMF from bytes that were changed, cut or made up: a mesh or an error, never a
-//! panic.
+//! OBJ, OFF and SMF from changed, truncated or invented bytes: a mesh or an error, never a panic.
 
 use meshlod_io::{Precision, Scene, obj, off, smf};
 use proptest::prelude::*;
@@ -13,7 +12,7 @@ const SMF: &str = "#$SMF 1.0\nbegin\ntrans 1 2 3\nrot x 45\nv 0 0 0\nv 1 0 0\nv 
     set vertex_correction 0\nf 1 2 3 4\nt 1 2 -1\nbind c face\nc 1 0 0\nc 9 9 9\nbind n vertex\n\
     n 0 0 1\nn 1 0 0\nn 0 1 0\nn 0 1 1\nbind r vertex\nt_scale 2 2\nr 0 0\nr 1 0\nr 0 1\nr 1 1\nend\n";
 
-/// A place, how many bytes go there, and what comes instead.
+/// Edits: position, number of bytes removed, bytes inserted.
 fn edits() -> impl Strategy<Value = Vec<(usize, usize, Vec<u8>)>> {
     let words: Vec<Vec<u8>> = [
         "\n",
@@ -59,7 +58,7 @@ fn edited(text: &str, edits: &[(usize, usize, Vec<u8>)]) -> Vec<u8> {
     bytes
 }
 
-/// What was read holds together, and goes through all writers and back.
+/// Checks that the scene is valid and survives all writers and readers.
 fn check(scene: &Scene) {
     let mesh = &scene.meshes[0].mesh;
     assert_eq!(mesh.validate(), Ok(()));

@@ -1,4 +1,4 @@
-//! OBJ, OFF and SMF: every shared file of them, against its known counts and against tobj.
+//! OBJ, OFF and SMF: the shared files against known counts and against tobj.
 
 use std::fs;
 
@@ -68,7 +68,7 @@ fn shared_meshes_have_their_known_counts() {
     }
 }
 
-/// Boundary edges and non-manifold ones.
+/// Counts boundary edges and non-manifold edges.
 fn edge_counts(mesh: &Mesh) -> (usize, usize) {
     let connectivity = Connectivity::new(&mesh.faces, mesh.positions.len());
     (connectivity.boundary_edges(), connectivity.non_manifold_edges())
@@ -112,16 +112,19 @@ fn broken_files_give_one_line_with_the_place() {
     for (name, message) in [
         ("zero-bytes.obj", "byte 0: the file is empty"),
         ("zero-bytes.off", "byte 0: the file is empty"),
-        ("malformed-index.obj", "line 28: a face names vertex 0, but they count from 1"),
+        ("malformed-index.obj", "line 28: a face refers to vertex 0, but indices start at 1"),
         ("utf16-be.obj", "byte 0: this is UTF-16 text; save it as UTF-8"),
         ("number-formats.obj", "line 11: \"3.1+e2\" is not a number"),
         ("points-only.obj", "line 11: the file ends without faces (8 vertices)"),
         ("wireframe-only.obj", "line 23: the file ends without faces (8 vertices)"),
-        ("not-enough-indices.obj", "line 9: a face needs three corners, this has 2"),
+        (
+            "not-enough-indices.obj",
+            "line 9: a face needs at least three corners, but this one has 2",
+        ),
         ("inf-nan.obj", "line 1: \"inf\" is not a finite number"),
         (
             "huge-count.off",
-            "line 2: the header counts 353535235358 vertices and 6 faces, but only 289 bytes follow",
+            "line 2: the header declares 353535235358 vertices and 6 faces, but only 289 bytes follow",
         ),
         ("bunny-damaged.smf", "byte 1901: a zero byte: this is not a text file"),
     ] {
@@ -131,8 +134,7 @@ fn broken_files_give_one_line_with_the_place() {
     }
 }
 
-/// What tobj makes of a file: positions, faces of each polygon's corners, and the uvs and normals
-/// at those.
+/// Compares the positions, uvs and normals of all corners with those that tobj reads.
 #[test]
 fn obj_says_the_same_as_tobj() {
     for (name, ..) in GOOD {
@@ -149,7 +151,7 @@ fn obj_says_the_same_as_tobj() {
         let mut theirs: Vec<String> = models.iter().flat_map(|m| their_corners(&m.mesh)).collect();
         for corners in [&mut ours, &mut theirs] {
             corners.sort();
-            // Polygons have other numbers of corners than their triangles.
+            // Triangulation repeats corners of polygons.
             corners.dedup();
         }
         assert_eq!(ours.len(), theirs.len(), "{name}");
@@ -159,7 +161,7 @@ fn obj_says_the_same_as_tobj() {
     }
 }
 
-/// Position, uv and normal of every corner, as 32-bit text.
+/// Formats position, uv and normal of every corner, rounded to 32 bits.
 fn corners(mesh: &Mesh) -> Vec<String> {
     let layer = |kind| mesh.attributes.as_ref().and_then(|attributes| attributes.layer(kind));
     let (uvs, normals) = (layer(LayerKind::Uv(0)), layer(LayerKind::Normal));

@@ -1,6 +1,6 @@
 //! Draws mesh files in every style: `cargo run --release --example gallery -- OUT.png MESH...`
 //!
-//! One row a mesh: shaded, lined, height as a heat map, uv checker, turned faces in red.
+//! One row per mesh: shaded, wireframe, height as a heat map, uv checker, back faces in red.
 
 use std::error::Error;
 use std::path::Path;
@@ -12,7 +12,7 @@ use meshlod_picture::{
     View, Wireframe, grid, render,
 };
 
-/// Pictures a row.
+/// Pictures per row.
 const COLUMNS: usize = 5;
 
 fn main() -> Result<(), Box<dyn Error>> {

@@ -1,4 +1,4 @@
-//! The colour of a surface before light.
+//! Albedo: the colour of a surface before lighting.
 
 use glam::{Vec2, Vec3};
 use meshlod_mesh::{Layer, LayerKind, Mesh, WedgeId};
@@ -9,7 +9,7 @@ use crate::facet::Fragment;
 use crate::srgb;
 use crate::{Materials, Paint, PictureError, Texture, Values};
 
-/// A [`Paint`] checked against its mesh, ready to be looked up.
+/// [`Paint`] checked against its mesh and prepared for look-ups.
 pub(crate) enum Albedo<'a> {
     Plain(Vec3),
     FaceColors(&'a [[u8; 3]]),
@@ -20,14 +20,14 @@ pub(crate) enum Albedo<'a> {
     Checker(Texture, OverWedges<'a>),
 }
 
-/// A layer with the wedges at the corners of faces.
+/// Attribute layer with the wedges at the corners of faces.
 #[derive(Clone, Copy)]
 pub(crate) struct OverWedges<'a> {
     layer: &'a Layer,
     corners: &'a [[WedgeId; 3]],
 }
 
-/// The surface where a paint finds no layer to go by.
+/// Surface colour if the mesh lacks the layer that a paint needs.
 const BARE: [u8; 3] = [205, 205, 205];
 
 impl<'a> Albedo<'a> {
@@ -62,7 +62,7 @@ impl<'a> Albedo<'a> {
         })
     }
 
-    /// Linear light of a fragment.
+    /// Returns the linear colour at a fragment.
     pub(crate) fn color(&self, mesh: &Mesh, fragment: &Fragment) -> Vec3 {
         let face = fragment.face;
         match self {
@@ -99,7 +99,7 @@ impl<'a> OverWedges<'a> {
         Some(Self { layer: attributes.layer(kind)?, corners: &attributes.corners })
     }
 
-    /// The colour of a texture at a fragment, with this layer as uv.
+    /// Samples a texture at a fragment, with this layer as uv.
     fn sample(&self, texture: &Texture, fragment: &Fragment) -> Vec3 {
         let uv = self.corners[fragment.face].map(|w| Vec2::from_slice(self.layer.of(w)));
         // Differences first: uvs may be far from zero, and pixels small.

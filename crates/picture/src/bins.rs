@@ -1,24 +1,24 @@
-//! Which faces each tile of the picture has to look at.
+//! Binning of faces by picture tile.
 
 use meshlod_mesh::Mesh;
 use rayon::prelude::*;
 
 use crate::camera::Lens;
 use crate::clip::clip;
-use crate::project::{Point, Projected, beyond, project};
+use crate::project::{Point, Projected, outcode, project};
 use crate::raster::SampleRect;
 
-/// A face over more tiles than this is kept once and looked at by all tiles, which bounds the
-/// memory of a face.
-const MOST_TILES: i32 = 16;
+/// A face that touches more tiles than this is stored once and tested by every tile, which bounds
+/// the memory per face.
+const MAX_TILES: i32 = 16;
 
-/// Faces binned by one task at a time, at least.
+/// Minimum number of faces binned by one task.
 const CHUNK: usize = 1 << 16;
 
-/// A picture's grid of samples, cut into square tiles.
+/// Grid of samples of a picture, cut into square tiles.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Tiling {
-    /// Samples across and down.
+    /// Number of samples across and down.
     pub size: [u32; 2],
     /// Side of a tile, in samples.
     pub side: u32,
@@ -33,7 +33,7 @@ impl Tiling {
         (self.columns() * self.size[1].div_ceil(self.side)) as usize
     }
 
-    /// The samples of a tile; tiles go row by row.
+    /// Returns the samples of a tile; tiles are numbered row by row.
     pub(crate) fn window(&self, tile: usize) -> SampleRect {
         let [column, row] = [tile as u32 % self.columns(), tile as u32 / self.columns()];
         let start = [column * self.side, row * self.side];
@@ -46,9 +46,9 @@ impl Tiling {
     }
 }
 
-/// The faces of a mesh, projected and sorted by tile.
+/// Faces of a mesh, projected and binned by tile.
 ///
-/// Memory: 16 bytes a vertex, 4 bytes a face and tile for small faces, 40 bytes for a large one.
+/// Memory: 16 bytes a vertex, 4 bytes per face and tile for small faces, 40 bytes for a large one.
 pub(crate) struct Bins<'a> {
     mesh: &'a Mesh,
     tiling: Tiling,
@@ -56,19 +56,19 @@ pub(crate) struct Bins<'a> {
     chunks: Vec<Chunk>,
 }
 
-/// The bins of some consecutive faces.
+/// Bins of a range of consecutive faces.
 struct Chunk {
-    /// Of each tile: where its faces start.
+    /// Start of each tile's faces in `faces`.
     starts: Vec<u32>,
     faces: Vec<u32>,
-    /// Large faces and pieces of clipped ones, with the face they are of.
+    /// Large faces and pieces of clipped ones, with the index of the face.
     loose: Vec<(u32, [Point; 3])>,
 }
 
 impl<'a> Bins<'a> {
     pub(crate) fn new(mesh: &'a Mesh, lens: &Lens, tiling: Tiling) -> Self {
         let vertices = project(&mesh.positions, lens, tiling.size);
-        // As many faces as tiles at least, so that `starts` stays small beside `faces`.
+        // At least as many faces as tiles, so that `starts` stays small beside `faces`.
         let length = CHUNK.max(tiling.count());
         let chunk_of = |i: usize| {
             let faces = i * length..mesh.faces.len().min((i + 1) * length);
@@ -79,18 +79,18 @@ impl<'a> Bins<'a> {
         Self { mesh, tiling, vertices, chunks }
     }
 
-    /// Gives every triangle that may touch a tile, with its face.
-    pub(crate) fn visit(&self, tile: usize, mut give: impl FnMut(u32, &[Point; 3])) {
+    /// Visits every triangle that may touch a tile, with its face.
+    pub(crate) fn visit(&self, tile: usize, mut visit: impl FnMut(u32, &[Point; 3])) {
         let window = self.tiling.window(tile);
         for chunk in &self.chunks {
             for &face in &chunk.faces[chunk.starts[tile] as usize..chunk.starts[tile + 1] as usize]
             {
                 let corners = self.mesh.faces[face as usize];
-                give(face, &corners.map(|v| self.vertices[v.index()].point));
+                visit(face, &corners.map(|v| self.vertices[v.index()].point));
             }
             for (face, triangle) in &chunk.loose {
-                if !window.around(triangle).is_empty() {
-                    give(*face, triangle);
+                if !window.clipped_to(triangle).is_empty() {
+                    visit(*face, triangle);
                 }
             }
         }
@@ -110,23 +110,23 @@ impl Chunk {
         for face in faces {
             let corners = mesh.faces[face];
             let [a, b, c] = corners.map(|v| vertices[v.index()]);
-            if a.beyond & b.beyond & c.beyond != 0 {
+            if a.outcode & b.outcode & c.outcode != 0 {
                 continue;
             }
-            if (a.beyond | b.beyond | c.beyond) & beyond::CLIP != 0 {
+            if (a.outcode | b.outcode | c.outcode) & outcode::CLIP != 0 {
                 let corners = mesh.triangle(corners).map(|p| lens.project(p));
                 clip(corners, lens.near(), |piece| loose.push((face as u32, piece)));
                 continue;
             }
             let triangle = [a.point, b.point, c.point];
-            let samples = whole.around(&triangle);
+            let samples = whole.clipped_to(&triangle);
             if samples.is_empty() {
                 continue;
             }
             let side = tiling.side as i32;
             let [left, top] = samples.start.map(|s| s / side);
             let [right, bottom] = samples.end.map(|s| (s - 1) / side);
-            if (right - left + 1) * (bottom - top + 1) > MOST_TILES {
+            if (right - left + 1) * (bottom - top + 1) > MAX_TILES {
                 loose.push((face as u32, triangle));
                 continue;
             }
@@ -139,7 +139,8 @@ impl Chunk {
     }
 }
 
-/// Values by key, in their order: where each key's values start, and the values.
+/// Groups values by key, keeping their order; returns where each key's values start, and the
+/// values.
 fn group(pairs: &[(u32, u32)], keys: usize) -> (Vec<u32>, Vec<u32>) {
     let mut starts = vec![0; keys + 1];
     for &(key, _) in pairs {

@@ -1,11 +1,11 @@
-//! Where the eye is, and how it finds its place.
+//! Cameras, and fitting them to a mesh.
 
 use glam::DVec3;
 use meshlod_mesh::{Bounds, Mesh};
 
 use crate::trigonometry::tangent;
 
-/// A perspective camera with square pixels.
+/// Perspective camera with square pixels.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Camera {
     eye: DVec3,
@@ -16,29 +16,29 @@ pub struct Camera {
     near: f64,
 }
 
-/// How [`Camera::fit`] looks at its object.
+/// Viewing direction and framing for [`Camera::fit`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct View {
-    /// Where to look, of any length.
+    /// Viewing direction, of any length.
     pub direction: [f64; 3],
-    /// What shall be up in the picture, of any length.
+    /// Direction that points up in the picture, of any length.
     pub up: [f64; 3],
-    /// The angle that the shorter side of the picture sees, in radians.
+    /// Field of view along the shorter side of the picture, in radians.
     pub fov_rad: f64,
-    /// How much of the frame the object fills, 0 to 1: of its width or its height, whichever is
-    /// reached first.
+    /// Fraction of the frame that the object fills, 0 to 1, in width or height, whichever is
+    /// larger.
     pub fill: f64,
-    /// Width by height of the picture.
+    /// Aspect ratio of the picture, width by height.
     pub aspect: f64,
 }
 
-/// The axis that points up in the model.
+/// Axis of the model that points up.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum UpAxis {
-    /// As in glTF and most scans.
+    /// The y axis, as in glTF and most scans.
     #[default]
     Y,
-    /// As in CAD and terrains.
+    /// The z axis, as in CAD and terrain models.
     Z,
 }
 
@@ -49,7 +49,7 @@ impl Default for View {
 }
 
 impl View {
-    /// From the front, a little from the right and above: a good first look at anything.
+    /// Returns a view from the front, slightly from the right and above, which suits most models.
     pub fn three_quarter(up: UpAxis) -> Self {
         let (direction, up) = match up {
             UpAxis::Y => ([-0.5, -0.4, -1.0], [0.0, 1.0, 0.0]),
@@ -60,9 +60,10 @@ impl View {
 }
 
 impl Camera {
-    /// A camera at `eye` that looks at `target`; `fov_rad` is what the picture's shorter side sees.
+    /// Creates a camera at `eye` that looks at `target`; `fov_rad` is the field of view along the
+    /// picture's shorter side.
     ///
-    /// What is nearer than a thousandth of the way to the target is not shown.
+    /// The near plane is at a thousandth of the distance to the target.
     pub fn look_at(eye: [f64; 3], target: [f64; 3], up: [f64; 3], fov_rad: f64) -> Self {
         let (eye, target) = (DVec3::from(eye), DVec3::from(target));
         let [right, up, forward] = frame(target - eye, up.into());
@@ -70,8 +71,8 @@ impl Camera {
         Self { eye, right, up, forward, tan_half_fov: half_tangent(fov_rad), near: near(distance) }
     }
 
-    /// A camera that sees a whole box, as large as `view.fill` lets it be. An empty box counts as
-    /// a point at the origin.
+    /// Creates a camera that sees a whole box, framed as `view.fill` asks. An empty box counts as a
+    /// point at the origin.
     pub fn fit(bounds: &Bounds, view: &View) -> Self {
         let corner = |i: usize| {
             let pick = |axis: usize| {
@@ -83,8 +84,8 @@ impl Camera {
         Self::fit_points(corners.map(corner), view)
     }
 
-    /// A camera that sees a whole mesh, as large as `view.fill` lets it be: closer than
-    /// [`Camera::fit`] of its box. Vertices that no face uses do not count.
+    /// Creates a camera that sees a whole mesh, framed as `view.fill` asks; closer than
+    /// [`Camera::fit`] of its bounding box. Unused vertices are ignored.
     ///
     /// Cost: O(n), n = faces.
     pub fn fit_mesh(mesh: &Mesh, view: &View) -> Self {
@@ -92,21 +93,21 @@ impl Camera {
         Self::fit_points(points, view)
     }
 
-    /// The twelve views in which pictures of two meshes are compared: from the corners of an
-    /// icosahedron, the mesh filling 80% of a square frame, 45°.
+    /// Returns the twelve standard cameras for comparing two meshes: at the corners of an
+    /// icosahedron, with the mesh filling 80% of a square frame and a field of view of 45°.
     ///
     /// Use the cameras of the reference mesh for both pictures.
     pub fn icosahedron_views(mesh: &Mesh) -> [Self; 12] {
         Self::cyclic_views(mesh, [1.0, GOLDEN])
     }
 
-    /// Twelve more, from the corners of the icosahedron that is the first one turned by a right
-    /// angle: together they look from 24 sides.
+    /// Returns twelve more cameras, at the corners of the same icosahedron turned by a right angle,
+    /// for 24 in total.
     pub fn other_icosahedron_views(mesh: &Mesh) -> [Self; 12] {
         Self::cyclic_views(mesh, [GOLDEN, 1.0])
     }
 
-    /// Views from (0, ±a, ±b) and its turns of the coordinates.
+    /// Returns cameras at the cyclic permutations of (0, ±a, ±b).
     fn cyclic_views(mesh: &Mesh, [a, b]: [f64; 2]) -> [Self; 12] {
         std::array::from_fn(|i| {
             let a = if i & 1 == 0 { a } else { -a };
@@ -120,33 +121,33 @@ impl Camera {
         })
     }
 
-    /// Where the eye is.
+    /// Returns the position of the eye.
     pub fn eye(&self) -> [f64; 3] {
         self.eye.into()
     }
 
-    /// Where it looks: a unit vector.
+    /// Returns the viewing direction, a unit vector.
     pub fn forward(&self) -> [f64; 3] {
         self.forward.into()
     }
 
-    /// The depth along [`Camera::forward`] before which nothing is shown, in model units.
+    /// Returns the depth of the near plane along [`Camera::forward`], in model units.
     pub fn near(&self) -> f64 {
         self.near
     }
 
-    /// The same camera with another near plane, which must be above zero.
+    /// Returns this camera with another near plane, which must be above zero.
     pub fn with_near(self, near: f64) -> Self {
         Self { near: near.max(f64::MIN_POSITIVE), ..self }
     }
 
-    /// The width of a pixel at a depth of 1, in a picture of that shorter side.
+    /// Returns the width of a pixel at depth 1, in a picture with the given shorter side.
     pub(crate) fn pixel_width(&self, side: u32) -> f64 {
         2.0 * self.tan_half_fov / f64::from(side)
     }
 
-    /// Every side of the frame bounds the eye by one linear inequality per point, so that four
-    /// maxima give the closest eye, in the middle of what is left free.
+    /// Fits the camera to points. Each side of the frame bounds the eye by one linear inequality
+    /// per point, so four maxima give the closest eye, centred in the remaining space.
     fn fit_points(points: impl Iterator<Item = DVec3>, view: &View) -> Self {
         let [right, up, forward] = frame(view.direction.into(), view.up.into());
         let tan_half_fov = half_tangent(view.fov_rad);
@@ -164,15 +165,15 @@ impl Camera {
         }
         let by_width = -(sides[0] + sides[1]) / (2.0 * wide);
         let by_height = -(sides[2] + sides[3]) / (2.0 * high);
-        let z = by_width.min(by_height).min(depths[0] - LEAST_GAP * (depths[1] - depths[0]));
-        // A single point has no size to go by.
+        let z = by_width.min(by_height).min(depths[0] - MIN_GAP * (depths[1] - depths[0]));
+        // A single point has no extent to derive a distance from.
         let z = if z < depths[0] { z } else { depths[0] - 1.0 };
         let (x, y) = ((sides[0] - sides[1]) / 2.0, (sides[2] - sides[3]) / 2.0);
         let eye = right * x + up * y + forward * z;
         Self { eye, right, up, forward, tan_half_fov, near: near(depths[0] - z) }
     }
 
-    /// The camera over a grid of `width` by `height` cells: pixels or samples.
+    /// Maps the camera to a grid of `width` by `height` cells: pixels or samples.
     pub(crate) fn lens(&self, width: u32, height: u32) -> Lens {
         let middle = [f64::from(width) * 0.5, f64::from(height) * 0.5];
         let focal = middle[0].min(middle[1]) / self.tan_half_fov;
@@ -180,25 +181,26 @@ impl Camera {
     }
 }
 
-/// The golden ratio, (1 + √5) / 2.
+/// Golden ratio, (1 + √5) / 2.
 const GOLDEN: f64 = 1.618033988749895;
 
-/// How far the eye stays before what it fits into the frame, by how deep that is: a needle that
-/// points at the eye would else touch it.
-const LEAST_GAP: f64 = 0.05;
+/// Minimum distance from the eye to the fitted object, relative to the object's depth: otherwise a
+/// needle pointing at the eye would touch it.
+const MIN_GAP: f64 = 0.05;
 
-/// A camera over a grid of cells, pixels or samples.
+/// Camera mapped to a grid of cells, pixels or samples.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Lens {
     camera: Camera,
-    /// Where the optical axis meets the grid.
+    /// Point where the optical axis meets the grid.
     middle: [f64; 2],
-    /// Distance of the picture plane, in cells.
+    /// Distance of the image plane, in cells.
     focal: f64,
 }
 
 impl Lens {
-    /// Homogeneous grid coordinates [x w, y w, w] of a point; w is its depth, y goes down.
+    /// Projects a point to homogeneous grid coordinates [x w, y w, w]; w is its depth, y points
+    /// down.
     #[inline]
     pub(crate) fn project(&self, point: DVec3) -> DVec3 {
         let Camera { eye, right, up, forward, .. } = self.camera;
@@ -209,14 +211,14 @@ impl Lens {
         DVec3::new(x, y, depth)
     }
 
-    /// The way from the eye through a place of the grid, 1 deep.
+    /// Returns the ray from the eye through a point of the grid, scaled to depth 1.
     #[inline]
     pub(crate) fn ray(&self, x: f64, y: f64) -> DVec3 {
         let [dx, dy] = self.ray_steps();
         self.camera.forward + dx * (x - self.middle[0]) + dy * (y - self.middle[1])
     }
 
-    /// What a step of one cell, to the right and down, adds to the ray.
+    /// Returns the change of the ray per cell to the right and per cell down.
     #[inline]
     pub(crate) fn ray_steps(&self) -> [DVec3; 2] {
         [self.camera.right / self.focal, self.camera.up / -self.focal]
@@ -227,7 +229,7 @@ impl Lens {
         self.camera.eye
     }
 
-    /// Unit vectors to the right, up and into the picture.
+    /// Returns unit vectors to the right, up and into the picture.
     pub(crate) fn axes(&self) -> [DVec3; 3] {
         [self.camera.right, self.camera.up, self.camera.forward]
     }
@@ -237,8 +239,8 @@ impl Lens {
     }
 }
 
-/// Right, up, forward as unit vectors; another "up" is taken where the wanted one lies along the
-/// direction.
+/// Builds an orthonormal frame of right, up and forward; picks another "up" if the given one is
+/// parallel to the direction.
 fn frame(direction: DVec3, up: DVec3) -> [DVec3; 3] {
     let forward = direction.try_normalize().unwrap_or(DVec3::NEG_Z);
     let right = [up, DVec3::Y, DVec3::Z]
@@ -251,7 +253,7 @@ fn frame(direction: DVec3, up: DVec3) -> [DVec3; 3] {
     [right, right.cross(forward), forward]
 }
 
-/// Between 1° and 150° whatever is asked for.
+/// Returns the tangent of half the field of view, which is clamped to 1° to 150°.
 fn half_tangent(fov_rad: f64) -> f64 {
     let asked = if fov_rad.is_nan() { std::f64::consts::FRAC_PI_4 } else { fov_rad };
     tangent(asked.clamp(1f64.to_radians(), 150f64.to_radians()) * 0.5)

@@ -1,18 +1,18 @@
-//! Faces that reach behind the near plane or very far out, cut to what fixed point can hold.
+//! Clipping of faces that cross the near plane or exceed the range of fixed point.
 
 use glam::DVec3;
 
 use crate::project::{GUARD, Point, snap};
 
-/// A triangle and five planes leave at most eight corners.
-const MOST_CORNERS: usize = 8;
+/// Maximum number of corners of a triangle clipped by five planes.
+const MAX_CORNERS: usize = 8;
 
-/// Cuts a triangle, given in homogeneous grid coordinates, at the near plane and the guard, and
-/// hands out what is left as triangles of the same orientation.
+/// Clips a triangle in homogeneous grid coordinates at the near plane and the guard band, and emits
+/// the rest as triangles of the same orientation.
 ///
-/// Faces that share an edge cut it at the same points: every cut is computed from the inner to the
-/// outer end, which are the same for both.
-pub(crate) fn clip(corners: [DVec3; 3], near: f64, mut give: impl FnMut([Point; 3])) {
+/// Faces with a common edge are clipped at identical points: every intersection is computed from
+/// the inner to the outer end, which are the same for both.
+pub(crate) fn clip(corners: [DVec3; 3], near: f64, mut emit: impl FnMut([Point; 3])) {
     if !corners.iter().all(|corner| corner.is_finite()) {
         return;
     }
@@ -25,13 +25,13 @@ pub(crate) fn clip(corners: [DVec3; 3], near: f64, mut give: impl FnMut([Point; 
     polygon = polygon.cut(|p| GUARD * p.z + p.y);
     let corners = polygon.corners();
     for i in 2..corners.len() {
-        give([corners[0], corners[i - 1], corners[i]].map(|corner| snap(corner, near)));
+        emit([corners[0], corners[i - 1], corners[i]].map(|corner| snap(corner, near)));
     }
 }
 
 #[derive(Default)]
 struct Polygon {
-    corners: [DVec3; MOST_CORNERS],
+    corners: [DVec3; MAX_CORNERS],
     len: usize,
 }
 
@@ -41,15 +41,15 @@ impl Polygon {
     }
 
     fn push(&mut self, corner: DVec3) {
-        // Rounding can make a sliver cross a plane once more than a convex shape may; what is
-        // dropped is below the resolution of the coordinates.
-        if self.len < MOST_CORNERS {
+        // Through rounding, a sliver can cross a plane once more than a convex shape may; what is
+        // dropped then is below the resolution of the coordinates.
+        if self.len < MAX_CORNERS {
             self.corners[self.len] = corner;
             self.len += 1;
         }
     }
 
-    /// What lies where `inside` is not negative ([SH74]).
+    /// Clips to the half-space where `inside` is not negative ([SH74]).
     fn cut(&self, inside: impl Fn(DVec3) -> f64) -> Self {
         let mut kept = Self::default();
         let corners = self.corners();

@@ -1,27 +1,27 @@
-//! Colours for numbers: maps that step evenly to the eye.
+//! Perceptually uniform colour maps.
 
 use glam::Vec3;
 
 use crate::{Picture, PictureError, srgb};
 
-/// A way from numbers to colours.
+/// Colour map from numbers to colours.
 ///
-/// All are drawn in Oklab [Ott20], where equal steps look equally large, through a few points.
+/// All maps are interpolated in Oklab [Ott20], where equal steps look equally large.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum ColorMap {
-    /// From pale grey (none) over yellow and red to deep purple (most): errors on a surface.
+    /// From pale grey (zero) over yellow and red to deep purple (maximum), for errors on a surface.
     #[default]
     Heat,
-    /// From deep violet over green to yellow, evenly lighter: any quantity.
+    /// From deep violet over green to yellow, with evenly rising lightness, for any quantity.
     Sequential,
-    /// From blue over near-white to red: signed quantities, with zero in the middle.
+    /// From blue over near-white to red, for signed quantities with zero in the middle.
     Diverging,
 }
 
-/// Entries of a map's table.
+/// Number of entries in a look-up table.
 const STEPS: usize = 256;
 
-/// Lightness, green to red, blue to yellow; evenly spaced.
+/// Oklab coordinates: lightness, green to red, blue to yellow. Control points are evenly spaced.
 type Oklab = [f32; 3];
 
 const HEAT: [Oklab; 6] = [
@@ -51,7 +51,7 @@ const DIVERGING: [Oklab; 5] = [
 ];
 
 impl ColorMap {
-    /// The sRGB colour at `t` from 0 to 1; beyond them the ends. Grey for NaN.
+    /// Returns the sRGB colour at `t`, clamped to [0, 1]; grey for NaN.
     pub fn color(self, t: f32) -> [u8; 3] {
         if t.is_nan() {
             return NOT_A_NUMBER;
@@ -59,11 +59,10 @@ impl ColorMap {
         self.linear(t).to_array().map(srgb::encode)
     }
 
-    /// The map as a picture, from its least colour at the left to its greatest at the right: a
-    /// legend to set numbers under.
+    /// Draws the map as a horizontal bar, minimum at the left, for use as a legend.
     ///
     /// # Errors
-    /// An impossible size.
+    /// A width or height out of range.
     pub fn bar(self, width: u32, height: u32) -> Result<Picture, PictureError> {
         crate::error::check_size(width.into(), height.into())?;
         let pixel = |x: u32| {
@@ -89,7 +88,7 @@ impl ColorMap {
 
 const NOT_A_NUMBER: [u8; 3] = [128, 128, 128];
 
-/// A map over a range of values, ready for many look-ups.
+/// Colour map over a range of values, prepared for many look-ups.
 pub(crate) struct Scale {
     table: Vec<Vec3>,
     low: f32,
@@ -105,7 +104,7 @@ impl Scale {
         Self { table, low, per_value }
     }
 
-    /// Linear light of a value's colour.
+    /// Returns the linear colour of a value.
     pub(crate) fn color(&self, value: f32) -> Vec3 {
         if value.is_nan() {
             return srgb::decode(NOT_A_NUMBER);
@@ -115,7 +114,7 @@ impl Scale {
     }
 }
 
-/// [Ott20], the two matrices there.
+/// Converts Oklab to linear sRGB with the two matrices of [Ott20].
 #[allow(clippy::excessive_precision)]
 fn linear_rgb(lab: Vec3) -> Vec3 {
     let [lightness, a, b] = lab.to_array();

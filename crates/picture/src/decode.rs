@@ -8,30 +8,30 @@ use zune_core::options::DecoderOptions;
 use crate::error::check_size;
 use crate::{MAX_SIDE, PictureError, Texture};
 
-/// What every JPEG begins with.
+/// First bytes of every JPEG file.
 const JPEG_START: [u8; 2] = [0xff, 0xd8];
 
-/// Bytes that one byte of a deflate stream can become.
-const DEFLATE_AT_BEST: usize = 1032;
+/// Maximum number of bytes that one byte of a deflate stream can expand to.
+const MAX_DEFLATE_RATIO: usize = 1032;
 
-/// Pixels that one byte of a JPEG can become: every block of 8 by 8 takes a bit.
-const JPEG_AT_BEST: usize = 8 * 64;
+/// Maximum number of pixels per byte of a JPEG: every block of 8 by 8 takes at least a bit.
+const MAX_JPEG_RATIO: usize = 8 * 64;
 
 impl Texture {
-    /// Reads the bytes of a PNG or a JPEG file, told apart by how they begin.
+    /// Decodes a PNG or JPEG file, detected by its first bytes.
     ///
-    /// Grey, palette and 16-bit images become 8-bit colour.
+    /// Grey, palette and 16-bit images are converted to 8-bit colour.
     ///
     /// # Errors
-    /// Damaged or cut files, and images larger than [`MAX_SIDE`] a side.
+    /// Damaged or truncated files, and images with a side above [`MAX_SIDE`].
     pub fn decode(bytes: &[u8]) -> Result<Self, PictureError> {
         if bytes.starts_with(&JPEG_START) { Self::from_jpeg(bytes) } else { Self::from_png(bytes) }
     }
 
-    /// Reads the bytes of a PNG file.
+    /// Decodes a PNG file.
     ///
     /// # Errors
-    /// As for [`Texture::decode`].
+    /// Those of [`Texture::decode`].
     pub fn from_png(bytes: &[u8]) -> Result<Self, PictureError> {
         let wrong = |e: png::DecodingError| damaged("png", e);
         let mut decoder = png::Decoder::new(Cursor::new(bytes));
@@ -39,9 +39,9 @@ impl Texture {
         let mut reader = decoder.read_info().map_err(wrong)?;
         let (width, height) = (reader.info().width, reader.info().height);
         check_size(width.into(), height.into())?;
-        check_plausible("png", reader.info().raw_bytes(), DEFLATE_AT_BEST, bytes)?;
+        check_plausible("png", reader.info().raw_bytes(), MAX_DEFLATE_RATIO, bytes)?;
         let length = reader.output_buffer_size();
-        let length = length.ok_or_else(|| damaged("png", "the size does not fit memory"))?;
+        let length = length.ok_or_else(|| damaged("png", "the image does not fit in memory"))?;
         let mut pixels = vec![0; length];
         let frame = reader.next_frame(&mut pixels).map_err(wrong)?;
         let rgba = match frame.color_type {
@@ -54,10 +54,10 @@ impl Texture {
         Self::new(width, height, &rgba)
     }
 
-    /// Reads the bytes of a JPEG file.
+    /// Decodes a JPEG file.
     ///
     /// # Errors
-    /// As for [`Texture::decode`].
+    /// Those of [`Texture::decode`].
     pub fn from_jpeg(bytes: &[u8]) -> Result<Self, PictureError> {
         let options = DecoderOptions::default()
             .set_max_width(MAX_SIDE as usize)
@@ -66,15 +66,15 @@ impl Texture {
         let mut decoder = zune_jpeg::JpegDecoder::new_with_options(Cursor::new(bytes), options);
         let wrong = |e: zune_jpeg::errors::DecodeErrors| damaged("jpeg", format!("{e:?}"));
         decoder.decode_headers().map_err(wrong)?;
-        let size = decoder.dimensions().ok_or_else(|| damaged("jpeg", "it has no size"))?;
+        let size = decoder.dimensions().ok_or_else(|| damaged("jpeg", "the size is missing"))?;
         check_size(size.0 as u64, size.1 as u64)?;
-        check_plausible("jpeg", size.0 * size.1, JPEG_AT_BEST, bytes)?;
+        check_plausible("jpeg", size.0 * size.1, MAX_JPEG_RATIO, bytes)?;
         let pixels = decoder.decode().map_err(wrong)?;
         Self::new(size.0 as u32, size.1 as u32, &pixels)
     }
 }
 
-/// Refuses a file too short to hold what its header claims, before memory is taken for it.
+/// Rejects a file too short for the size in its header, before memory is allocated for it.
 fn check_plausible(
     kind: &'static str,
     claimed: usize,
@@ -84,7 +84,7 @@ fn check_plausible(
     if claimed / per_byte <= bytes.len() {
         return Ok(());
     }
-    Err(damaged(kind, format!("{} bytes cannot hold the size it claims", bytes.len())))
+    Err(damaged(kind, format!("{} bytes cannot hold an image of the declared size", bytes.len())))
 }
 
 fn rgba(pixels: &[u8], width: usize, widen: impl Fn(&[u8]) -> [u8; 4]) -> Vec<u8> {

@@ -1,60 +1,63 @@
-//! What can be wrong with a picture, a texture or an order for one.
+//! Errors of pictures and textures.
 
 use meshlod_mesh::MeshError;
 use thiserror::Error;
 
 use crate::Picture;
 
-/// Why there is no picture, or no texture.
+/// Reason why a picture or texture could not be made.
 #[derive(Debug, Error)]
 pub enum PictureError {
-    /// The mesh breaks a rule of meshes.
+    /// The mesh is invalid.
     #[error(transparent)]
     Mesh(#[from] MeshError),
     /// Width or height is zero or too large.
     #[error(
-        "a picture of {width} x {height} pixels is not possible; sides go from 1 to {MAX_SIDE}"
+        "a picture cannot have {width} x {height} pixels; sides must be between 1 and {MAX_SIDE}"
     )]
     Size {
-        /// The width.
+        /// Requested width.
         width: u64,
-        /// The height.
+        /// Requested height.
         height: u64,
     },
-    /// Two pictures that shall be compared have different sizes.
-    #[error("{0} x {1} pixels cannot be compared with {2} x {3}", a[0], a[1], b[0], b[1])]
+    /// Two pictures to be compared have different sizes.
+    #[error(
+        "cannot compare pictures of different sizes: {0} x {1} and {2} x {3} pixels",
+        a[0], a[1], b[0], b[1]
+    )]
     DifferentSizes {
-        /// Width and height of the first.
+        /// Width and height of the first picture.
         a: [u32; 2],
-        /// Width and height of the second.
+        /// Width and height of the second picture.
         b: [u32; 2],
     },
-    /// A list that goes with another has the wrong length.
-    #[error("{what}: {found} entries where {expected} are needed")]
+    /// A list does not have the length that the mesh or the size requires.
+    #[error("{what}: expected {expected} entries, found {found}")]
     Length {
-        /// Which list.
+        /// Contents of the list.
         what: &'static str,
-        /// Its length.
+        /// Length of the list.
         found: usize,
-        /// The length it must have.
+        /// Required length.
         expected: usize,
     },
-    /// A material names a texture that is not there.
-    #[error("material {material} names texture {texture}, but there are only {count}")]
+    /// A material refers to a texture that does not exist.
+    #[error("material {material} refers to texture {texture}, but there are only {count}")]
     NoTexture {
-        /// The material.
+        /// Index of the material.
         material: usize,
-        /// The texture it names.
+        /// Index of the texture it refers to.
         texture: usize,
-        /// How many there are.
+        /// Number of textures.
         count: usize,
     },
-    /// An image file is damaged, or of another kind.
+    /// An image file is damaged or not of the expected type.
     #[error("{kind} image: {reason}")]
     Decode {
-        /// Which decoder spoke.
+        /// Image type that was expected, `png` or `jpeg`.
         kind: &'static str,
-        /// Its reason.
+        /// Reason given by the decoder.
         reason: String,
     },
     /// The PNG could not be written.
@@ -62,10 +65,10 @@ pub enum PictureError {
     Encode(#[from] png::EncodingError),
 }
 
-/// The longest side of a picture or a texture, in pixels.
+/// Maximum width and height of a picture or a texture, in pixels.
 pub const MAX_SIDE: u32 = 16_384;
 
-/// Refuses sides of zero and above [`MAX_SIDE`].
+/// Checks that both sides are between 1 and [`MAX_SIDE`].
 pub(crate) fn check_size(width: u64, height: u64) -> Result<(), PictureError> {
     let sides = 1..=u64::from(MAX_SIDE);
     if sides.contains(&width) && sides.contains(&height) {
@@ -74,7 +77,7 @@ pub(crate) fn check_size(width: u64, height: u64) -> Result<(), PictureError> {
     Err(PictureError::Size { width, height })
 }
 
-/// Refuses pictures of different sizes.
+/// Checks that two pictures have the same size.
 pub(crate) fn check_same_size(a: &Picture, b: &Picture) -> Result<(), PictureError> {
     let [a, b] = [a, b].map(|picture| [picture.width(), picture.height()]);
     if a == b {
@@ -83,7 +86,7 @@ pub(crate) fn check_same_size(a: &Picture, b: &Picture) -> Result<(), PictureErr
     Err(PictureError::DifferentSizes { a, b })
 }
 
-/// Refuses a list of another length.
+/// Checks the length of a list.
 pub(crate) fn check_length(
     what: &'static str,
     found: usize,

@@ -1,4 +1,4 @@
-//! A face as the eye sees it, and places on it.
+//! Visible faces, and points on them.
 
 use glam::{DVec3, Vec3};
 use meshlod_mesh::Mesh;
@@ -6,25 +6,25 @@ use meshlod_mesh::Mesh;
 use crate::camera::Lens;
 use crate::normals::{CornerNormals, face_normal};
 
-/// A face that is seen, with what all its pixels share.
+/// Visible face, with the data that all its pixels share.
 #[derive(Clone, Copy)]
 pub(crate) struct Facet {
     pub face: usize,
-    /// Normals at its corners, to the side that is seen.
+    /// Normals at its corners, on the visible side.
     normals: [Vec3; 3],
-    /// Seen from the side where its corners go clockwise.
+    /// True if seen from the side where its corners run clockwise.
     pub from_behind: bool,
-    /// For a ray d, `volumes[i] · d` is in proportion to the weight of corner `i` ([OG97]): right in
-    /// perspective, and at home before and behind the near plane.
+    /// For a ray d, `volumes[i] · d` is proportional to the weight of corner `i` ([OG97]):
+    /// perspective-correct, and valid on both sides of the near plane.
     volumes: [DVec3; 3],
 }
 
-/// A place on a face.
+/// Point on a face.
 pub(crate) struct Fragment {
     pub face: usize,
-    /// Weights of the corners; they add up to 1.
+    /// Barycentric weights of the corners, which sum to 1.
     pub weights: Vec3,
-    /// What a step of a pixel to the right and down adds to the weights.
+    /// Change of the weights per pixel to the right and per pixel down.
     pub steps: [Vec3; 2],
 }
 
@@ -42,9 +42,9 @@ impl Facet {
         Self { face, normals, from_behind, volumes }
     }
 
-    /// The place that the middle of a pixel, or whatever place of the pixel grid, sees.
+    /// Returns the point of the face seen at a pixel centre, or at any point of the pixel grid.
     ///
-    /// A place a little outside of the face counts as on its edge.
+    /// A point slightly outside the face is moved to its edge.
     pub(crate) fn at(&self, lens: &Lens, x: f64, y: f64) -> Fragment {
         let along = |way: DVec3| DVec3::from(self.volumes.map(|volume| volume.dot(way)));
         let raw = along(lens.ray(x, y));
@@ -55,7 +55,7 @@ impl Facet {
             let weights = Vec3::splat(1.0 / 3.0);
             return Fragment { face: self.face, weights, steps: [Vec3::ZERO; 2] };
         }
-        // The quotient rule.
+        // Quotient rule.
         let steps = lens.ray_steps().map(|step| {
             let change = along(step);
             ((change - raw * (change.element_sum() / sum)) / sum).as_vec3()
@@ -63,23 +63,24 @@ impl Facet {
         Fragment { face: self.face, weights: weights / total, steps }
     }
 
-    /// The unit normal at a place, to the side that is seen.
+    /// Returns the unit normal at a point, on the visible side.
     pub(crate) fn normal(&self, fragment: &Fragment) -> Vec3 {
         fragment.blend(self.normals).try_normalize().unwrap_or(self.normals[0])
     }
 }
 
 impl Fragment {
-    /// The mean of three values by the weights.
+    /// Interpolates values at the corners by the weights.
     pub(crate) fn blend(&self, corners: [Vec3; 3]) -> Vec3 {
         let [a, b, c] = self.weights.to_array();
         corners[0] * a + corners[1] * b + corners[2] * c
     }
 
-    /// How much of this place an edge line covers, 0 to 1.
+    /// Returns how much of this point an edge line covers, 0 to 1.
     ///
-    /// A weight by its slope over the picture is the distance from the edge, in pixels. A line that
-    /// would hide most of its face is thinned out, so that dense meshes become darker, not black.
+    /// A weight divided by its slope in the picture is the distance from the edge, in pixels. A
+    /// line that would hide most of its face is faded, so that dense meshes become darker, not
+    /// black.
     pub(crate) fn line(&self, width_px: f32) -> f32 {
         let half = 0.5 * width_px;
         let (mut covered, mut narrowest) = (0f32, f32::INFINITY);
@@ -92,8 +93,8 @@ impl Fragment {
             covered = covered.max((half + 0.5 - self.weights[corner] / slope).clamp(0.0, 1.0));
             narrowest = narrowest.min(1.0 / slope);
         }
-        // The height of the face in pixels against the part of it that lines take: tuned by eye on
-        // the bunny from 500 to 69,451 faces; 3 leaves dense parts too dark, 8 thins coarse ones.
+        // Height of the face in pixels against the share that lines take: tuned by eye on the bunny
+        // from 500 to 69,451 faces; 3 leaves dense parts too dark, 8 thins coarse ones.
         covered * (narrowest / (5.0 * width_px.max(0.1))).min(1.0)
     }
 }

@@ -1,28 +1,28 @@
-//! FLIP: the difference that an eye sees when two pictures take turns in one place.
+//! FLIP: the difference perceived when two pictures alternate in place.
 
 use glam::Vec3;
 use rayon::prelude::*;
 
 use crate::error::check_same_size;
 use crate::lab::{from_opponent, hunt_lab, hyab, to_opponent};
-use crate::plane::{Plane, balanced, bell};
+use crate::plane::{Plane, gaussian, normalized};
 use crate::srgb::decode;
 use crate::{Picture, PictureError};
 
-/// Pixels in a degree of sight: a screen of 3840 pixels, 0.7 m wide, from 0.7 m away.
+/// Pixels per degree of visual angle: a screen of 3840 pixels, 0.7 m wide, seen from 0.7 m.
 pub const PIXELS_PER_DEGREE: f64 = 67.0;
 
-/// The FLIP error of each pixel, row after row from the top: 0 for none, 1 at most.
+/// Computes the FLIP error of each pixel, row after row from the top, from 0 (equal) to 1.
 ///
-/// The eye is [`PIXELS_PER_DEGREE`] away. Alpha is not looked at. The same for any number of
-/// threads; machines may differ in the last bits.
+/// The viewing distance is given by [`PIXELS_PER_DEGREE`]. Alpha is ignored. The result does not
+/// depend on the number of threads; machines may differ in the last bits.
 ///
 /// Cost: O(pixels); a picture of 1024 by 1024 takes some 0.2 s of one core.
 ///
 /// # Errors
 /// Pictures of different sizes.
 /// # References
-/// [ANA20]; the values of their constants are those of their program.
+/// [ANA20]; the constants are those of their program.
 pub fn flip(reference: &Picture, test: &Picture) -> Result<Vec<f32>, PictureError> {
     check_same_size(reference, test)?;
     let filters = Filters::new();
@@ -33,18 +33,19 @@ pub fn flip(reference: &Picture, test: &Picture) -> Result<Vec<f32>, PictureErro
         let edges = (reference.edges[i] - test.edges[i]).abs();
         let points = (reference.points[i] - test.points[i]).abs();
         let feature = (edges.max(points) * std::f32::consts::FRAC_1_SQRT_2).sqrt().min(1.0);
-        // A difference in form makes one in colour count for more.
+        // A difference in features amplifies one in colour.
         color.powf(1.0 - feature)
     };
     Ok((0..reference.colors.len()).into_par_iter().with_min_len(1024).map(error).collect())
 }
 
-/// What the eye makes of a picture.
+/// Picture as perceived by the eye.
 struct PerceivedImage {
-    /// L a b, without the detail that is too fine for it.
+    /// CIE L*a*b* colours, without detail too fine to be seen.
     colors: Vec<Vec3>,
-    /// How much of an edge, and of a point or line, each pixel is.
-    edges: Vec<f32>,
+    /// Strength of the edge at each pixel.
+    /// Strength of the point or line at each pixel.
+    points: Vec<f32>,
     points: Vec<f32>,
 }
 
@@ -75,58 +76,58 @@ impl PerceivedImage {
     }
 }
 
-/// All filters, for an eye at [`PIXELS_PER_DEGREE`].
+/// All filters, for a viewing distance of [`PIXELS_PER_DEGREE`].
 struct Filters {
     light: Sensitivity,
     red_green: Sensitivity,
     blue_yellow: Sensitivity,
-    /// A bell curve and its first two derivatives.
+    /// Gaussian and its first two derivatives.
     feature: [Vec<f32>; 3],
 }
 
-/// How the eye blurs one channel: a sum of bell curves, each with its part of the whole.
+/// Blur of one channel by the eye: a sum of Gaussians with their weights.
 struct Sensitivity(Vec<(f32, Vec<f32>)>);
 
-/// A term of contrast sensitivity: `a sqrt(π/b) exp(-π² d²/b)` at a distance of d degrees.
+/// Term of the contrast sensitivity function: `a sqrt(π/b) exp(-π² d²/b)` at d degrees.
 struct Term {
     a: f64,
     b: f64,
 }
 
-/// [ANA20] table 1: light, red to green, blue to yellow.
+/// Terms of [ANA20] table 1: light, red to green, blue to yellow.
 const LIGHT: [Term; 1] = [Term { a: 1.0, b: 0.0047 }];
 const RED_GREEN: [Term; 1] = [Term { a: 1.0, b: 0.0053 }];
 const BLUE_YELLOW: [Term; 2] = [Term { a: 34.1, b: 0.04 }, Term { a: 13.5, b: 0.025 }];
 
-/// The widest `b` of them: three of its deviations bound all filters.
+/// Largest `b` of all terms: three of its standard deviations bound all filters.
 const WIDEST: f64 = 0.04;
 
-/// Width of the edge detector, in degrees: [ANA20] § 4.2.
+/// Width of the feature detector, in degrees: [ANA20] § 4.2.
 const FEATURE_WIDTH: f64 = 0.082;
 
 impl Filters {
     fn new() -> Self {
         let deviation = 0.5 * FEATURE_WIDTH * PIXELS_PER_DEGREE;
         let radius = (3.0 * deviation).ceil() as usize;
-        let bell = bell(deviation, radius);
+        let gaussian = gaussian(deviation, radius);
         let derived = |of: fn(f64) -> f64| -> Vec<f32> {
             let at = |i: usize| (i as f64 - radius as f64) / deviation;
-            balanced(&bell.iter().enumerate().map(|(i, g)| of(at(i)) * g).collect::<Vec<_>>())
+            normalized(&gaussian.iter().enumerate().map(|(i, g)| of(at(i)) * g).collect::<Vec<_>>())
         };
         Self {
             light: Sensitivity::new(&LIGHT),
             red_green: Sensitivity::new(&RED_GREEN),
             blue_yellow: Sensitivity::new(&BLUE_YELLOW),
-            feature: [balanced(&bell), derived(|x| -x), derived(|x| x * x - 1.0)],
+            feature: [normalized(&gaussian), derived(|x| -x), derived(|x| x * x - 1.0)],
         }
     }
 
-    /// Strength of edges and of points at each pixel of the light channel.
+    /// Computes the strength of edges and of points at each pixel of the light channel.
     fn features(&self, light: &Plane) -> (Vec<f32>, Vec<f32>) {
-        let [bell, first, second] = &self.feature;
-        let flat = light.along_rows(bell);
+        let [gaussian, first, second] = &self.feature;
+        let flat = light.along_rows(gaussian);
         let strength = |derivative: &[f32]| -> Vec<f32> {
-            let across = light.along_rows(derivative).down_columns(bell).values;
+            let across = light.along_rows(derivative).down_columns(gaussian).values;
             let down = flat.down_columns(derivative).values;
             across.iter().zip(down).map(|(x, y)| (x * x + y * y).sqrt()).collect()
         };
@@ -140,18 +141,23 @@ impl Sensitivity {
         let deviation = |b: f64| (b / 2.0).sqrt() / PI * PIXELS_PER_DEGREE;
         let radius = (3.0 * deviation(WIDEST)).ceil() as usize;
         let curves = terms.iter().map(|Term { a, b }| {
-            let bell = bell(deviation(*b), radius);
-            let volume = a * (PI / b).sqrt() * bell.iter().sum::<f64>().powi(2);
-            (volume, balanced(&bell))
+            let gaussian = gaussian(deviation(*b), radius);
+            let volume = a * (PI / b).sqrt() * gaussian.iter().sum::<f64>().powi(2);
+            (volume, normalized(&gaussian))
         });
         let curves: Vec<_> = curves.collect();
         let whole: f64 = curves.iter().map(|(volume, _)| volume).sum();
-        Self(curves.into_iter().map(|(volume, bell)| ((volume / whole) as f32, bell)).collect())
+        Self(
+            curves
+                .into_iter()
+                .map(|(volume, gaussian)| ((volume / whole) as f32, gaussian))
+                .collect(),
+        )
     }
 
     fn apply(&self, channel: &Plane) -> Plane {
-        let blurred = self.0.iter().map(|(part, bell)| {
-            let mut plane = channel.filtered(bell, bell);
+        let blurred = self.0.iter().map(|(part, gaussian)| {
+            let mut plane = channel.filtered(gaussian, gaussian);
             plane.values.iter_mut().for_each(|value| *value *= part);
             plane
         });
@@ -163,14 +169,15 @@ impl Sensitivity {
     }
 }
 
-/// Differences of colour, and how they go to [0, 1].
+/// Mapping from colour differences to [0, 1].
 struct ColorScale {
-    /// Of green and blue, the two that are farthest apart.
+    /// Difference of green and blue, the largest of all.
     most: f32,
 }
 
 impl ColorScale {
-    /// [ANA20] § 4.1: the exponent, and the part of the range that takes all but the greatest differences.
+    /// Constants of [ANA20] § 4.1: the exponent, and the knee that leaves the top of the range to
+    /// the largest differences.
     const EXPONENT: f32 = 0.7;
     const KNEE: [f32; 2] = [0.4, 0.95];
 

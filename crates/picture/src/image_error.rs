@@ -1,4 +1,4 @@
-//! The error of a level as the eye sees it: pictures from twelve sides, compared.
+//! Perceived error of a level: pictures from twelve sides, compared with the original's.
 
 use std::ops::Range;
 
@@ -6,48 +6,50 @@ use meshlod_mesh::Mesh;
 
 use crate::{Camera, Paint, Picture, PictureError, Style, flip, render, ssim, visibility};
 
-/// How a level's pictures differ from those of its original.
+/// Difference between pictures of a level and of its original.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ImageError {
-    /// Mean [`flip`](crate::flip()) of the twelve views: 0 for no difference, 1 at most.
+    /// Mean [`flip`](crate::flip()) over the twelve views, from 0 (equal) to 1.
     pub flip: f64,
-    /// Mean [`ssim`](crate::ssim()) of the twelve views: 1 for no difference.
+    /// Mean [`ssim`](crate::ssim()) over the twelve views; 1 if equal.
     pub ssim: f64,
-    /// ReferenceImage by view, in the order of [`Camera::icosahedron_views`].
+    /// Errors of the single views, in the order of [`Camera::icosahedron_views`].
     pub views: [ViewError; 12],
 }
 
-/// The same of one view.
+/// Difference between a level and its original in one view.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ViewError {
-    /// Mean over the pixels that show the original or the level.
+    /// Mean FLIP error over the pixels that show the original or the level.
     pub flip: f64,
-    /// Mean over the same.
+    /// Mean SSIM over these pixels.
     pub ssim: f64,
-    /// How many pixels those are.
+    /// Number of these pixels.
     pub pixels: usize,
 }
 
-/// An original in its twelve pictures, to compare levels with.
+/// Twelve pictures of an original, to compare levels with.
 pub struct ReferenceImages<'a> {
     style: Style<'a>,
     views: Vec<ReferenceImage>,
 }
 
-/// One picture of a portrait.
+/// Picture of the original from one side, and the pixels that show it.
 struct ReferenceImage {
     camera: Camera,
     picture: Picture,
     shown: Vec<bool>,
 }
 
-/// Compares pictures of a level with those of its original, both from twelve sides by the cameras
-/// of the original, in [`Style::comparison`] with this paint, which must suit both meshes.
+/// Compares pictures of a level with those of its original, from twelve sides.
 ///
-/// Cost: that of 24 pictures of 1024 by 1024 and their comparison: two to six seconds of one core.
+/// The cameras are those of the original, the style is [`Style::comparison`] with this paint, which
+/// must suit both meshes.
+///
+/// Cost: 24 pictures of 1024 by 1024 and their comparison, two to six seconds of one core.
 ///
 /// # Errors
-/// As for [`render`].
+/// Those of [`render`].
 pub fn image_error(
     original: &Mesh,
     level: &Mesh,
@@ -57,19 +59,19 @@ pub fn image_error(
 }
 
 impl<'a> ReferenceImages<'a> {
-    /// The twelve pictures of an original. They take 60 MB.
+    /// Draws the twelve pictures of an original, which take 60 MB.
     ///
     /// # Errors
-    /// As for [`render`].
+    /// Those of [`render`].
     pub fn new(original: &Mesh, paint: &Paint<'a>) -> Result<Self, PictureError> {
         Self::with_style(original, Style { paint: paint.clone(), ..Style::comparison() })
     }
 
-    /// The same in smaller pictures, `side` pixels wide and high: quicker, and less strict, since
-    /// what is small is not seen. Name the side beside such a figure.
+    /// Draws smaller pictures of an original, `side` pixels wide and high. Comparison is faster but
+    /// less strict, as small differences are not visible; state the side along with such a figure.
     ///
     /// # Errors
-    /// As for [`render`].
+    /// Those of [`render`].
     pub fn of_side(original: &Mesh, paint: &Paint<'a>, side: u32) -> Result<Self, PictureError> {
         let style = Style { paint: paint.clone(), size: [side; 2], ..Style::comparison() };
         Self::with_style(original, style)
@@ -84,10 +86,10 @@ impl<'a> ReferenceImages<'a> {
         Ok(Self { views: views.into_iter().collect::<Result<_, PictureError>>()?, style })
     }
 
-    /// How a level differs from the original.
+    /// Compares a level with the original.
     ///
     /// # Errors
-    /// As for [`render`].
+    /// Those of [`render`].
     pub fn error_of(&self, level: &Mesh) -> Result<ImageError, PictureError> {
         let mut views = [ViewError::default(); 12];
         for (error, view) in views.iter_mut().zip(&self.views) {
@@ -103,12 +105,12 @@ impl ReferenceImage {
         let (picture, shown) = draw(level, &self.camera, style)?;
         let union: Vec<bool> = self.shown.iter().zip(&shown).map(|(&a, &b)| a || b).collect();
         let width = picture.width();
-        let Some(window) = Crop::around(&union, width) else {
+        let Some(crop) = Crop::around(&union, width) else {
             return Ok(ViewError { flip: 0.0, ssim: 1.0, pixels: 0 });
         };
-        let [reference, test] = [&self.picture, &picture].map(|picture| window.cut(picture));
+        let [reference, test] = [&self.picture, &picture].map(|picture| crop.apply(picture));
         let (reference, test) = (reference?, test?);
-        let inside: Vec<bool> = window.rows(width).flat_map(|row| union[row].to_vec()).collect();
+        let inside: Vec<bool> = crop.rows(width).flat_map(|row| union[row].to_vec()).collect();
         let pixels = inside.iter().filter(|&&inside| inside).count();
         let mean = |values: Vec<f32>| {
             let counted = values.iter().zip(&inside).filter(|(_, inside)| **inside);
@@ -119,7 +121,7 @@ impl ReferenceImage {
     }
 }
 
-/// A picture of a mesh, and which pixels show it.
+/// Draws a mesh and marks the pixels that show it.
 fn draw(
     mesh: &Mesh,
     camera: &Camera,
@@ -130,15 +132,16 @@ fn draw(
     Ok((picture, shown))
 }
 
-/// A part of a picture, in pixels.
+/// Rectangle of pixels in a picture.
 struct Crop {
     start: [usize; 2],
     end: [usize; 2],
 }
 
 impl Crop {
-    /// Around marked pixels, with a margin of background: as filters go on with the outermost
-    /// pixels, all values inside are those of the whole picture. None without a mark.
+    /// Returns the rectangle around the marked pixels, or `None` if there are none. A margin of
+    /// background makes filters, which repeat the outermost pixels, give the values of the whole
+    /// picture.
     fn around(marks: &[bool], width: u32) -> Option<Self> {
         const MARGIN: usize = 2;
         let width = width as usize;
@@ -149,21 +152,21 @@ impl Crop {
             start = [0, 1].map(|axis| start[axis].min(at[axis]));
             end = [0, 1].map(|axis| end[axis].max(at[axis] + 1));
         }
-        let window = Self {
+        let crop = Self {
             start: start.map(|s| s.saturating_sub(MARGIN)),
             end: [0, 1].map(|axis| (end[axis] + MARGIN).min(size[axis])),
         };
-        (end != [0, 0]).then_some(window)
+        (end != [0, 0]).then_some(crop)
     }
 
-    /// Its rows as ranges of the pixels of a picture of some width.
+    /// Returns its rows as ranges of pixel indices in a picture of the given width.
     fn rows(&self, width: u32) -> impl Iterator<Item = Range<usize>> {
         let [left, right] = [self.start[0], self.end[0]];
         let width = width as usize;
         (self.start[1]..self.end[1]).map(move |y| y * width + left..y * width + right)
     }
 
-    fn cut(&self, picture: &Picture) -> Result<Picture, PictureError> {
+    fn apply(&self, picture: &Picture) -> Result<Picture, PictureError> {
         let [width, height] = [0, 1].map(|axis| (self.end[axis] - self.start[axis]) as u32);
         let rows = self.rows(picture.width());
         let rgba = rows.flat_map(|row| &picture.rgba()[4 * row.start..4 * row.end]);
@@ -213,8 +216,8 @@ mod tests {
     #[test]
     fn the_object_fills_the_frame_and_its_surroundings_do_not_count() {
         for view in portrait(&ball(4)).views {
-            let window = Crop::around(&view.shown, 160).unwrap();
-            let sides = [0, 1].map(|axis| window.end[axis] - window.start[axis] - 4);
+            let crop = Crop::around(&view.shown, 160).unwrap();
+            let sides = [0, 1].map(|axis| crop.end[axis] - crop.start[axis] - 4);
             assert!(sides.iter().all(|side| (126..=128).contains(side)), "{sides:?}");
             let disc = std::f64::consts::PI * 64.0 * 64.0;
             let shown = view.shown.iter().filter(|&&shown| shown).count() as f64;
@@ -242,10 +245,10 @@ mod tests {
         assert!(matches!(style.background, Background::Plain(_)));
         let camera = Camera::icosahedron_views(&mesh)[3];
         let [a, b] = [&mesh, &ball(1)].map(|mesh| draw(mesh, &camera, &style).unwrap());
-        let window = Crop::around(&a.1, 160).unwrap();
+        let crop = Crop::around(&a.1, 160).unwrap();
         let whole = flip(&a.0, &b.0).unwrap();
-        let part = flip(&window.cut(&a.0).unwrap(), &window.cut(&b.0).unwrap()).unwrap();
-        let expected: Vec<f32> = window.rows(160).flat_map(|row| whole[row].to_vec()).collect();
+        let part = flip(&crop.apply(&a.0).unwrap(), &crop.apply(&b.0).unwrap()).unwrap();
+        let expected: Vec<f32> = crop.rows(160).flat_map(|row| whole[row].to_vec()).collect();
         assert_eq!(part, expected);
         assert!(part.iter().any(|&error| error > 0.1));
     }

@@ -1,34 +1,34 @@
-//! Colours as the eye tells them apart.
+//! Perceptual colour spaces and distances.
 
 use glam::{Mat3, Vec3};
 
-/// Linear sRGB to CIE XYZ, each as a part of that of white.
+/// Linear sRGB to CIE XYZ, relative to the white point.
 const TO_XYZ: Mat3 = Mat3::from_cols(
     Vec3::new(0.4338954, 0.2126368, 0.0177524),
     Vec3::new(0.3762424, 0.715183, 0.1094656),
     Vec3::new(0.1898622, 0.0721802, 0.8727819),
 );
 
-/// The way back.
+/// CIE XYZ, relative to the white point, to linear sRGB.
 const FROM_XYZ: Mat3 = Mat3::from_cols(
     Vec3::new(3.080342, -0.9211784, 0.0528813),
     Vec3::new(-1.537399, 1.87593, -0.2040112),
     Vec3::new(-0.542943, 0.0452484, 1.1511299),
 );
 
-/// Linear sRGB as light, red against green, blue against yellow: YCxCz but for the scale.
+/// Converts linear sRGB to light, red-green and blue-yellow: YCxCz except for the scale.
 pub(crate) fn to_opponent(rgb: Vec3) -> Vec3 {
     let xyz = TO_XYZ * rgb;
     Vec3::new(xyz.y, xyz.x - xyz.y, xyz.y - xyz.z)
 }
 
-/// The way back.
+/// Converts light, red-green and blue-yellow back to linear sRGB.
 pub(crate) fn from_opponent(opponent: Vec3) -> Vec3 {
     let [light, red_green, blue_yellow] = opponent.to_array();
     FROM_XYZ * Vec3::new(light + red_green, light, light - blue_yellow)
 }
 
-/// CIE L a b of linear sRGB; a and b fade in the dark, as colours do to the eye.
+/// Converts linear sRGB to CIE L*a*b*, with a and b fading in the dark (Hunt effect).
 ///
 /// # References
 /// [ANA20] eq. 2.
@@ -39,7 +39,7 @@ pub(crate) fn hunt_lab(rgb: Vec3) -> Vec3 {
     Vec3::new(lightness, fade * 500.0 * (x - y), fade * 200.0 * (y - z))
 }
 
-/// Distance of two such colours: of lightness, plus of hue and chroma together.
+/// Returns the HyAB distance of two colours: lightness difference plus distance in a and b.
 ///
 /// # References
 /// [ANA20] eq. 3.
@@ -48,7 +48,7 @@ pub(crate) fn hyab(a: Vec3, b: Vec3) -> f32 {
     d.x.abs() + (d.y * d.y + d.z * d.z).sqrt()
 }
 
-/// A cube root with a straight start.
+/// Cube root with a linear section near zero, as in the definition of L*a*b*.
 fn lab_curve(t: f32) -> f32 {
     const DELTA: f32 = 6.0 / 29.0;
     if t > DELTA * DELTA * DELTA { t.cbrt() } else { t / (3.0 * DELTA * DELTA) + 4.0 / 29.0 }

@@ -1,8 +1,8 @@
-//! Pictures of triangle meshes, drawn on the CPU: for reports, for the error that the eye sees, for
-//! finding cracks. The same pixels on every machine and for any number of threads.
+//! Renders triangle meshes on the CPU, for reports, perceptual error and crack detection. Pixels
+//! are the same on every machine and for any number of threads.
 //!
-//! A [`Camera`] finds its place by itself; a [`Style`] says how the surface looks; [`render`] gives
-//! a [`Picture`], which becomes a PNG:
+//! A [`Camera`] can be fitted to the mesh, a [`Style`] describes the look, and [`render`] returns a
+//! [`Picture`] that can be saved as PNG:
 //!
 //! ```
 //! use meshlod_samples as samples;
@@ -10,26 +10,26 @@
 //!
 //! let mesh = samples::torus(2_000);
 //! let camera = Camera::fit_mesh(&mesh, &View::default());
-//! let style = Style { wireframe: Some(Wireframe::default()), size: [256, 256], ..Style::default() };
-//! let picture = render(&mesh, &camera, &style)?;
-//! assert_eq!(&picture.png()[1..4], b"PNG");
+//! let style = Style { wireframe: Some(Wireframe::default()), size: [256, 256], ..Style::default()
+//! }; let picture = render(&mesh, &camera, &style)?; assert_eq!(&picture.png()[1..4], b"PNG");
 //! # Ok::<(), meshlod_picture::PictureError>(())
 //! ```
 //!
-//! [`Paint`] colours it: plainly, by materials and textures, by one colour a face, or by numbers
-//! through a [`ColorMap`], as in a heat map of errors. [`visibility()`] tells which face each pixel
-//! sees, without any shading.
+//! [`Paint`] colours the surface: plainly, by materials and textures, with one colour per face, or
+//! by numbers through a [`ColorMap`], as in a heat map of errors. [`visibility()`] finds the face
+//! that each pixel sees, without shading.
 //!
-//! [`image_error`] is what a level looks wrong by: its pictures from twelve sides beside those of
-//! its original, compared as the eye does ([`flip()`]) and by structure ([`ssim()`]). A [`ReferenceVisibility`]
-//! finds the pixels where a level shows what its original hides.
+//! [`image_error`] measures how different a level looks: it compares pictures from twelve sides
+//! with those of the original, perceptually ([`flip()`]) and structurally ([`ssim()`]). A
+//! [`ReferenceVisibility`] finds the pixels where a level shows what its original hides.
 //!
 //! # How it works
-//! Vertices are projected once, to fixed point. Faces are sorted into tiles; each tile finds the
-//! nearest face of every sample by integer edge functions, so that faces with a common edge neither
-//! overlap nor leave a gap; then it shades what is seen. Tiles know nothing of each other, and of
-//! equally near faces the lower id wins: order and threads leave no trace. Only + - * / and square
-//! roots are used, which are the same on all machines; comparing pictures also takes roots and powers of the library.
+//! Vertices are projected once, to fixed point. Faces are binned by tile. Each tile finds the
+//! nearest face of every sample with integer edge functions, so that faces with a common edge
+//! neither overlap nor leave a gap, and then shades what is visible. Tiles are independent, and of
+//! equally near faces the one with the lowest id wins, so the result depends neither on order nor
+//! on threads. Only + - * / and square roots are used, which give the same results on all machines;
+//! comparing pictures also uses roots and powers of the standard library.
 #![forbid(unsafe_code)]
 
 mod albedo;
@@ -65,7 +65,7 @@ pub use color_map::ColorMap;
 pub use error::{MAX_SIDE, PictureError};
 pub use flip::{PIXELS_PER_DEGREE, flip};
 pub use image_error::{ImageError, ReferenceImages, ViewError, image_error};
-pub use picture::{Picture, beside, grid};
+pub use picture::{Picture, grid, side_by_side};
 pub use render::render;
 pub use see_through::{
     LabelledMesh, ReferenceVisibility, SeeThrough, SeeThroughCounts, SeeThroughOptions,

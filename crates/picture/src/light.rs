@@ -1,10 +1,10 @@
-//! Light on a surface.
+//! Lighting of a surface.
 
 use glam::{DVec3, Vec3};
 
 use crate::Lighting;
 
-/// The lights of a picture, which go with its camera.
+/// Lights of a picture, which move with the camera.
 pub(crate) struct Lights {
     lighting: Lighting,
     to_key: Vec3,
@@ -12,14 +12,14 @@ pub(crate) struct Lights {
 }
 
 impl Lights {
-    /// `axes` are the camera's: right, up, forward.
+    /// Creates the lights; `axes` are the camera's right, up and forward.
     pub(crate) fn new(lighting: Lighting, axes: [DVec3; 3]) -> Self {
         let [right, up, forward] = axes.map(|axis| axis.as_vec3());
         let to_key = (up * 0.75 - right * 0.6 - forward * 0.8).normalize_or_zero();
         Self { lighting, to_key, up }
     }
 
-    /// Linear light from a surface of some colour; `normal` and `to_eye` are unit vectors.
+    /// Returns the linear light reflected by a surface; `normal` and `to_eye` are unit vectors.
     pub(crate) fn on(&self, color: Vec3, normal: Vec3, to_eye: Vec3) -> Vec3 {
         let facing = normal.dot(to_eye).max(0.0);
         match self.lighting {
@@ -30,8 +30,8 @@ impl Lights {
         }
     }
 
-    /// A key light from the upper left, a weak one from the eye so that no form is lost in the
-    /// dark, a cool sky over a warm ground, a soft gloss. The numbers are tuned by eye.
+    /// Studio lighting: a key light from the upper left, a weak one from the eye so that dark sides
+    /// keep their shape, a cool sky over a warm ground, a soft gloss. The numbers are tuned by eye.
     fn studio(&self, color: Vec3, normal: Vec3, to_eye: Vec3, facing: f32) -> Vec3 {
         const SKY: Vec3 = Vec3::new(0.21, 0.235, 0.27);
         const GROUND: Vec3 = Vec3::new(0.075, 0.066, 0.06);

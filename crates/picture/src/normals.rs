@@ -1,4 +1,4 @@
-//! Normals at the corners of faces.
+//! Shading normals at the corners of faces.
 
 use glam::{DVec3, Vec3};
 use meshlod_mesh::{Layer, LayerKind, Mesh, VertexId, WedgeId};
@@ -7,32 +7,33 @@ use rayon::prelude::*;
 use crate::Normals;
 use crate::trigonometry::{cosine, rough_arc_cosine};
 
-/// Where the normals of a face's corners come from.
+/// Source of the normals at a face's corners.
 pub(crate) enum CornerNormals<'a> {
     Flat,
-    /// A layer of the mesh, over its wedges.
+    /// Normal layer of the mesh, with its wedges.
     Layer(&'a Layer, &'a [[WedgeId; 3]]),
-    /// One per vertex.
+    /// One normal per vertex.
     Smooth(Vec<Vec3>),
-    /// Worked out for each face that is seen, from the faces around its corners.
+    /// Computed for each visible face from the faces around its corners.
     Creased {
         rings: Rings,
         crease_cosine: f64,
     },
 }
 
-/// The faces around every vertex.
+/// Faces around every vertex.
 pub(crate) struct Rings {
     starts: Vec<u32>,
     faces: Vec<u32>,
 }
 
-/// Faces whose weights are worked out in parallel before they are added up in order.
+/// Number of faces whose weights are computed in parallel before they are summed in order.
 const BLOCK: usize = 1 << 15;
 
-/// A vertex of more faces has no one normal; and a fan of a million faces, each asking for the
-/// whole ring, would never end.
-const MOST_AROUND: usize = 1 << 10;
+/// Limit on the faces around a vertex for creased normals. A vertex with more has no meaningful
+/// normal, and in a fan of a million faces, visiting the whole ring for each face would take
+/// quadratic time.
+const MAX_AROUND: usize = 1 << 10;
 
 impl<'a> CornerNormals<'a> {
     pub(crate) fn new(mesh: &'a Mesh, normals: Normals) -> Self {
@@ -53,7 +54,7 @@ impl<'a> CornerNormals<'a> {
         }
     }
 
-    /// The normals at a face's corners; `flat` is the face's own and stands in for what is missing.
+    /// Returns the normals at a face's corners; `flat`, the face's own, replaces missing ones.
     pub(crate) fn of(&self, mesh: &Mesh, face: usize, flat: Vec3) -> [Vec3; 3] {
         let normals = match self {
             Self::Flat => [flat; 3],
@@ -67,16 +68,16 @@ impl<'a> CornerNormals<'a> {
     }
 }
 
-/// The unit normal of a face; none where it has no area.
+/// Returns the unit normal of a face, or `None` if it has no area.
 pub(crate) fn face_normal(corners: [DVec3; 3]) -> Option<DVec3> {
     let [a, b, c] = corners;
-    // Edges are scaled first, so that neither tiny nor huge faces leave the range of squares.
+    // Edges are scaled first, so that the squares of tiny or huge faces stay in range.
     let (ab, ac) = (b - a, c - a);
     let scale = ab.abs().max(ac.abs()).max_element();
     (ab / scale).cross(ac / scale).try_normalize()
 }
 
-/// Sums of face normals around each vertex, weighted by the angle of the face there ([TW98]).
+/// Sums the face normals around each vertex, weighted by the angle of the face there ([TW98]).
 fn smooth(mesh: &Mesh) -> Vec<Vec3> {
     let mut normals = vec![Vec3::ZERO; mesh.positions.len()];
     let mut weighted = Vec::new();
@@ -94,22 +95,22 @@ fn smooth(mesh: &Mesh) -> Vec<Vec3> {
     normals
 }
 
-/// The normal of a triangle times its angle at each corner.
+/// Returns the normal of a triangle times its angle at each corner.
 fn weighted_normals(corners: [DVec3; 3]) -> [Vec3; 3] {
     let Some(normal) = face_normal(corners) else { return [Vec3::ZERO; 3] };
     [0, 1, 2].map(|i| (normal * angle(corners, i)).as_vec3())
 }
 
-/// The angle of a triangle at a corner, in radians.
+/// Returns the angle of a triangle at a corner, in radians.
 fn angle(corners: [DVec3; 3], at: usize) -> f64 {
     let side = |to: usize| (corners[to % 3] - corners[at]).normalize_or_zero();
     rough_arc_cosine(side(at + 1).dot(side(at + 2)))
 }
 
-/// The normal at vertex `v` of a face with normal `flat`, from those faces of its ring that bend
-/// away from it by no more than the crease.
+/// Computes the normal at vertex `v` of a face with normal `flat`, from those faces around `v`
+/// whose normals deviate from it by no more than the crease angle.
 fn creased(mesh: &Mesh, v: VertexId, ring: &[u32], flat: Vec3, crease_cosine: f64) -> Vec3 {
-    if ring.len() > MOST_AROUND {
+    if ring.len() > MAX_AROUND {
         return flat;
     }
     let flat = flat.as_dvec3();

@@ -1,11 +1,11 @@
-//! Pixels, and how they become a file.
+//! Pictures, and saving them as PNG.
 
 use std::io::Write;
 
 use crate::PictureError;
 use crate::error::{check_length, check_size};
 
-/// An image of sRGB pixels with straight alpha, rows from the top.
+/// Image of sRGB pixels with straight alpha, rows from the top.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Picture {
     width: u32,
@@ -14,7 +14,7 @@ pub struct Picture {
 }
 
 impl Picture {
-    /// A picture of given pixels: four bytes each, row after row from the top.
+    /// Creates a picture from its pixels: four bytes each, row after row from the top.
     ///
     /// # Errors
     /// A side of zero or above [`MAX_SIDE`](crate::MAX_SIDE), or not `4 * width * height` bytes.
@@ -24,32 +24,32 @@ impl Picture {
         Ok(Self { width, height, rgba })
     }
 
-    /// Pixels in a row.
+    /// Returns the width in pixels.
     pub fn width(&self) -> u32 {
         self.width
     }
 
-    /// Rows.
+    /// Returns the height in pixels.
     pub fn height(&self) -> u32 {
         self.height
     }
 
-    /// All pixels: four bytes each, row after row from the top.
+    /// Returns all pixels: four bytes each, row after row from the top.
     pub fn rgba(&self) -> &[u8] {
         &self.rgba
     }
 
-    /// One pixel, `x` from the left and `y` from the top. Panics outside of the picture.
+    /// Returns a pixel, `x` from the left and `y` from the top. Panics outside the picture.
     pub fn pixel(&self, x: u32, y: u32) -> [u8; 4] {
         assert!(x < self.width && y < self.height, "({x}, {y}) is outside of the picture");
         let at = 4 * (y as usize * self.width as usize + x as usize);
         [self.rgba[at], self.rgba[at + 1], self.rgba[at + 2], self.rgba[at + 3]]
     }
 
-    /// Writes a PNG: RGB where every pixel is opaque, else RGBA. The same bytes every time.
+    /// Writes a PNG: RGB if every pixel is opaque, else RGBA. The bytes are reproducible.
     ///
     /// # Errors
-    /// What the writer says.
+    /// Those of the encoder and of `out`.
     pub fn write_png(&self, out: &mut impl Write) -> Result<(), PictureError> {
         let mut encoder = png::Encoder::new(out, self.width, self.height);
         encoder.set_depth(png::BitDepth::Eight);
@@ -66,7 +66,7 @@ impl Picture {
         Ok(())
     }
 
-    /// The picture as the bytes of a PNG file.
+    /// Encodes the picture as PNG.
     pub fn png(&self) -> Vec<u8> {
         let mut bytes = Vec::new();
         self.write_png(&mut bytes).expect("a whole picture is always written to memory");
@@ -74,18 +74,18 @@ impl Picture {
     }
 }
 
-/// Sets pictures side by side, aligned at the top; what they do not cover is transparent.
+/// Places pictures side by side, aligned at the top; the rest is transparent.
 ///
 /// # Errors
-/// None given, or too wide in all.
-pub fn beside(pictures: &[Picture]) -> Result<Picture, PictureError> {
+/// An empty list, or a result that is too wide.
+pub fn side_by_side(pictures: &[Picture]) -> Result<Picture, PictureError> {
     grid(pictures, pictures.len())
 }
 
-/// Sets pictures in rows of `columns`; every cell has the size of the widest and the highest.
+/// Arranges pictures in rows of `columns`; every cell is as large as the largest picture.
 ///
 /// # Errors
-/// None given, no columns, or too large in all.
+/// An empty list, zero columns, or a result that is too large.
 pub fn grid(pictures: &[Picture], columns: usize) -> Result<Picture, PictureError> {
     let columns = columns.min(pictures.len());
     let rows = pictures.len().checked_div(columns).unwrap_or(0)
@@ -148,7 +148,7 @@ mod tests {
 
     #[test]
     fn no_pictures_make_no_grid() {
-        assert!(beside(&[]).is_err());
+        assert!(side_by_side(&[]).is_err());
         assert!(grid(&[plain(1, 1, [0; 4])], 0).is_err());
     }
 }

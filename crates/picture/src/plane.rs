@@ -1,8 +1,8 @@
-//! One number per pixel, and separable filters over them.
+//! Single-channel images and separable filters.
 
 use rayon::prelude::*;
 
-/// One number per pixel, row after row from the top.
+/// Single-channel image, row after row from the top.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Plane {
     width: usize,
@@ -10,21 +10,21 @@ pub(crate) struct Plane {
 }
 
 impl Plane {
-    /// `of(i)` is the value of pixel `i`.
+    /// Creates an image in which pixel `i` has the value `of(i)`.
     pub(crate) fn from_fn(size: [u32; 2], of: impl Fn(usize) -> f32 + Sync + Send) -> Self {
         let [width, height] = size.map(|side| side as usize);
         let values = (0..width * height).into_par_iter().with_min_len(width).map(of).collect();
         Self { width, values }
     }
 
-    /// Each pixel's neighbours weighed by `along` in its row, then by `down` in its column. Both
-    /// have an odd number of weights, the middle one for the pixel itself. Beyond its edges the
-    /// picture goes on with its outermost pixels.
+    /// Filters each row by `along`, then each column by `down`. Both have an odd number of weights,
+    /// the middle one for the pixel itself. Beyond its edges, the image repeats its outermost
+    /// pixels.
     pub(crate) fn filtered(&self, along: &[f32], down: &[f32]) -> Self {
         self.along_rows(along).down_columns(down)
     }
 
-    /// The first half of [`Plane::filtered`], which several filters may share.
+    /// Filters each row: the first half of [`Plane::filtered`], which several filters may share.
     pub(crate) fn along_rows(&self, weights: &[f32]) -> Self {
         let radius = weights.len() / 2;
         let mut filtered = vec![0.0; self.values.len()];
@@ -42,7 +42,7 @@ impl Plane {
         Self { width: self.width, values: filtered }
     }
 
-    /// The second half of [`Plane::filtered`].
+    /// Filters each column: the second half of [`Plane::filtered`].
     pub(crate) fn down_columns(&self, weights: &[f32]) -> Self {
         let radius = weights.len() / 2;
         let last = self.values.len() / self.width - 1;
@@ -63,14 +63,14 @@ fn add_scaled(sum: &mut [f32], weight: f32, values: &[f32]) {
     }
 }
 
-/// Values of a bell curve, not scaled, at whole distances up to `radius` on both sides.
-pub(crate) fn bell(deviation: f64, radius: usize) -> Vec<f64> {
+/// Samples an unnormalised Gaussian at integer distances up to `radius` on both sides.
+pub(crate) fn gaussian(deviation: f64, radius: usize) -> Vec<f64> {
     let at = |i: usize| (i as f64 - radius as f64) / deviation;
     (0..=2 * radius).map(|i| (-0.5 * at(i) * at(i)).exp()).collect()
 }
 
-/// The weights scaled so that those above zero add up to 1 and those below to -1.
-pub(crate) fn balanced(weights: &[f64]) -> Vec<f32> {
+/// Scales weights so that the positive ones sum to 1 and the negative ones to -1.
+pub(crate) fn normalized(weights: &[f64]) -> Vec<f32> {
     let above: f64 = weights.iter().filter(|&&w| w > 0.0).sum();
     let below: f64 = weights.iter().filter(|&&w| w < 0.0).sum();
     weights.iter().map(|&w| (w / if w > 0.0 { above } else { -below }) as f32).collect()
@@ -91,8 +91,8 @@ mod tests {
 
     #[test]
     fn balanced_weights_add_up_to_one_on_each_side() {
-        assert_eq!(balanced(&[-3.0, -1.0, 0.0, 2.0]), [-0.75, -0.25, 0.0, 1.0]);
-        let bell = balanced(&bell(1.5, 5));
-        assert!((bell.iter().sum::<f32>() - 1.0).abs() < 1e-6 && bell[5] > bell[4]);
+        assert_eq!(normalized(&[-3.0, -1.0, 0.0, 2.0]), [-0.75, -0.25, 0.0, 1.0]);
+        let gaussian = normalized(&gaussian(1.5, 5));
+        assert!((gaussian.iter().sum::<f32>() - 1.0).abs() < 1e-6 && gaussian[5] > gaussian[4]);
     }
 }

@@ -1,8 +1,8 @@
-//! Which samples a triangle covers, exactly.
+//! Exact rasterization of triangles.
 
 use crate::project::{Point, SUBSTEPS};
 
-/// A rectangle of samples; `end` is not in it.
+/// Rectangle of samples; `end` is exclusive.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct SampleRect {
     pub start: [i32; 2],
@@ -10,10 +10,10 @@ pub(crate) struct SampleRect {
 }
 
 impl SampleRect {
-    /// The samples of this window that the box around a triangle holds: none where `start` is not
-    /// below `end`.
+    /// Intersects the rectangle with the bounding box of a triangle; empty if `start` is not below
+    /// `end`.
     #[inline]
-    pub(crate) fn around(&self, triangle: &[Point; 3]) -> Self {
+    pub(crate) fn clipped_to(&self, triangle: &[Point; 3]) -> Self {
         let [a, b, c] = triangle;
         let half = SUBSTEPS / 2;
         let first = |low: i32| (low + half - 1).div_euclid(SUBSTEPS);
@@ -36,10 +36,11 @@ impl SampleRect {
     }
 }
 
-/// Gives every sample of the window that the triangle covers, with its nearness.
+/// Visits every sample in the rectangle that the triangle covers, with its nearness.
 ///
-/// Samples on an edge belong to the triangle whose top or left edge it is: triangles that share an
-/// edge cover each of its samples exactly once. Either orientation is covered.
+/// Top-left rule: a sample on an edge belongs to the triangle for which it is a top or left edge,
+/// so triangles with a common edge cover each of its samples exactly once. Either orientation is
+/// drawn.
 ///
 /// # References
 /// [Pin88] edge functions.
@@ -47,9 +48,9 @@ impl SampleRect {
 pub(crate) fn cover(
     triangle: &[Point; 3],
     window: &SampleRect,
-    mut give: impl FnMut(i32, i32, f32),
+    mut visit: impl FnMut(i32, i32, f32),
 ) {
-    let window = window.around(triangle);
+    let window = window.clipped_to(triangle);
     if window.is_empty() {
         return;
     }
@@ -67,9 +68,9 @@ pub(crate) fn cover(
     for y in window.start[1]..window.end[1] {
         let mut here = row;
         for x in window.start[0]..window.end[0] {
-            // The sign bit of the union is set where any of them is negative.
+            // The sign bit of the union is set if any of the three is negative.
             if here[0] | here[1] | here[2] >= 0 {
-                give(x, y, slope.at(x, y));
+                visit(x, y, slope.at(x, y));
             }
             for (value, edge) in here.iter_mut().zip(&edges) {
                 *value += edge.step_x;
@@ -81,7 +82,7 @@ pub(crate) fn cover(
     }
 }
 
-/// Twice the area of a triangle, in square substeps; positive clockwise as seen.
+/// Returns twice the area of a triangle, in square substeps; positive if clockwise on screen.
 #[inline]
 fn cross(a: Point, b: Point, c: Point) -> i64 {
     let [abx, aby] = [i64::from(b.x - a.x), i64::from(b.y - a.y)];
@@ -89,8 +90,8 @@ fn cross(a: Point, b: Point, c: Point) -> i64 {
     abx * acy - aby * acx
 }
 
-/// An edge of a clockwise triangle: not negative on its inner side, counting the edge itself only
-/// where it is a top or a left one.
+/// Edge function of a clockwise triangle: not negative on the inner side. The edge itself counts as
+/// inside only if it is a top or left edge.
 struct Edge {
     from: Point,
     step_x: i64,
@@ -123,8 +124,8 @@ struct Slope {
 }
 
 impl Slope {
-    /// The corners are taken in an order of their own, so that two faces over the same three
-    /// points are exactly as near and the lower id wins.
+    /// Computes the function with the corners in sorted order, so that two faces over the same
+    /// three points are exactly equally near, and the lower id wins.
     fn new(mut corners: [Point; 3]) -> Self {
         corners.sort_unstable_by_key(|p| (p.x, p.y, p.nearness.to_bits()));
         let [a, b, c] = corners;
@@ -141,7 +142,7 @@ impl Slope {
         }
     }
 
-    /// Kept within the corners' range: slivers have slopes that rounding blows up.
+    /// Evaluates the function, clamped to the range of the corners: slivers have unreliable slopes.
     #[inline]
     fn at(&self, x: i32, y: i32) -> f32 {
         let (dx, dy) = (f64::from(x) - self.origin[0], f64::from(y) - self.origin[1]);

@@ -1,4 +1,4 @@
-//! Meshes to pictures.
+//! Rendering of a mesh to a picture.
 
 use glam::Vec3;
 use meshlod_mesh::Mesh;
@@ -15,18 +15,18 @@ use crate::srgb::{decode, encode};
 use crate::visibility::{NO_FACE, Sample, draw_tiles};
 use crate::{BackFaces, Background, Camera, Picture, PictureError, Style};
 
-/// Draws a mesh.
+/// Renders a mesh.
 ///
-/// First the nearest face of every sample is found, tile by tile, as [`visibility`] does it; then
-/// every pixel is shaded once per face that it sees, at the middle of what it sees of it, and the
-/// shades are averaged in linear light [BH13]. The same pixels for any number of threads and on
-/// any machine.
+/// First, the nearest face of every sample is found tile by tile, as in [`visibility`]. Then every
+/// pixel is shaded once per face that it sees, at the mean position of that face's samples, and the
+/// shades are averaged in linear light [BH13]. Pixels do not depend on the number of threads or on
+/// the machine.
 ///
 /// Cost: O(faces + samples covered, counting layers + pixels). Memory beside the picture: 16 bytes
 /// a vertex, 4 a face, and for smooth normals 12 a vertex (creased: 12 a face and 4 a vertex).
 ///
 /// # Errors
-/// A mesh that breaks [`Mesh::validate`], an impossible size, or a paint that does not go with the
+/// A mesh that breaks [`Mesh::validate`], a size out of range, or a paint that does not match the
 /// mesh.
 ///
 /// [`visibility`]: crate::visibility()
@@ -37,11 +37,11 @@ pub fn render(mesh: &Mesh, camera: &Camera, style: &Style) -> Result<Picture, Pi
     let scene = Scene::new(mesh, camera, style)?;
     let across = style.antialiasing.across();
     let samples = style.size.map(|side| side * across);
-    // In samples a tile is about 64 to 128 wide: its 8 bytes a sample stay in the second cache.
+    // A tile is 64 to 128 samples wide: at 8 bytes a sample, it stays in the L2 cache.
     let tiling = Tiling { size: samples, side: across * if across == 1 { 64 } else { 32 } };
     let lens = camera.lens(samples[0], samples[1]);
     let tiles = draw_tiles(mesh, &lens, tiling, |window, samples| {
-        let grid = Grid { samples, window, across: across as usize };
+        let grid = TileSamples { samples, window, across: across as usize };
         (grid.pixels(), scene.shade(&grid))
     });
     let mut rgba = vec![0; 4 * width as usize * height as usize];
@@ -55,74 +55,74 @@ pub fn render(mesh: &Mesh, camera: &Camera, style: &Style) -> Result<Picture, Pi
     Picture::new(width, height, rgba)
 }
 
-/// All that shading a pixel needs.
+/// Everything needed to shade a pixel.
 struct Scene<'a> {
     mesh: &'a Mesh,
     style: &'a Style<'a>,
-    /// Over pixels, not samples.
+    /// Camera mapped to pixels, not samples.
     lens: Lens,
     lights: Lights,
     normals: CornerNormals<'a>,
-    pigment: Albedo<'a>,
+    albedo: Albedo<'a>,
 }
 
-/// The samples of a tile.
-struct Grid<'a> {
+/// Samples of a tile.
+struct TileSamples<'a> {
     samples: &'a [Sample],
     window: SampleRect,
-    /// Samples along a pixel's side.
+    /// Samples per pixel side.
     across: usize,
 }
 
-/// What a pixel sees of one face.
+/// Part of a face that is visible in a pixel.
 #[derive(Clone, Copy, Default)]
-struct Glimpse {
+struct VisiblePart {
     face: u32,
     samples: u32,
-    /// Sum of the places of its samples, counted in samples from the tile's corner.
+    /// Sum of the positions of its samples, relative to the tile's corner.
     sum: [u32; 2],
 }
 
-/// Samples in a pixel at most.
-const MOST_SAMPLES: usize = 16;
+/// Maximum number of samples per pixel.
+const MAX_SAMPLES: usize = 16;
 
-/// Faces kept at hand while a tile is shaded; neighbouring pixels mostly share theirs.
-const FACETS_AT_HAND: usize = 128;
+/// Number of faces cached while a tile is shaded; neighbouring pixels mostly share theirs.
+const FACET_CACHE: usize = 128;
 
 impl<'a> Scene<'a> {
     fn new(mesh: &'a Mesh, camera: &Camera, style: &'a Style) -> Result<Self, PictureError> {
         let lens = camera.lens(style.size[0], style.size[1]);
         let lights = Lights::new(style.lighting, lens.axes());
-        let pigment = Albedo::new(mesh, &style.paint)?;
+        let albedo = Albedo::new(mesh, &style.paint)?;
         let normals = CornerNormals::new(mesh, style.normals);
-        Ok(Self { mesh, style, lens, lights, normals, pigment })
+        Ok(Self { mesh, style, lens, lights, normals, albedo })
     }
 
-    /// The pixels of a tile, four bytes each.
-    fn shade(&self, grid: &Grid) -> Vec<u8> {
+    /// Shades the pixels of a tile, four bytes each.
+    fn shade(&self, grid: &TileSamples) -> Vec<u8> {
         let pixels = grid.pixels();
-        let mut facets = vec![None; FACETS_AT_HAND];
+        let mut facets = vec![None; FACET_CACHE];
         let mut rgba = Vec::new();
         for (row, y) in (pixels.start[1]..pixels.end[1]).enumerate() {
             let background = self.background(y);
             for column in 0..(pixels.end[0] - pixels.start[0]) as usize {
-                let mut glimpses = [Glimpse::default(); MOST_SAMPLES];
-                let count = grid.glimpses(column, row, &mut glimpses);
-                let shade = |glimpse: &Glimpse| self.shade_glimpse(glimpse, grid, &mut facets);
-                rgba.extend(mix(&glimpses[..count], shade, background, grid.across));
+                let mut parts = [VisiblePart::default(); MAX_SAMPLES];
+                let count = grid.parts(column, row, &mut parts);
+                let shade = |part: &VisiblePart| self.shade_part(part, grid, &mut facets);
+                rgba.extend(mix(&parts[..count], shade, background, grid.across));
             }
         }
         rgba
     }
 
-    /// Linear light of the background in a row of pixels; none where it is transparent.
+    /// Returns the linear colour of the background in a row of pixels; `None` if transparent.
     fn background(&self, y: i32) -> Option<Vec3> {
         match self.style.background {
             Background::Transparent => None,
             Background::Plain(color) => Some(decode(color)),
             Background::Gradient { top, bottom } => {
                 let t = (y as f32 + 0.5) / self.style.size[1] as f32;
-                // Even steps of sRGB look like even steps.
+                // Interpolated in sRGB, where even steps look even.
                 let [top, bottom] = [top, bottom].map(|color| Vec3::from(color.map(f32::from)));
                 let between = top.lerp(bottom, t) / 255.0;
                 Some(Vec3::from(between.to_array().map(crate::srgb::decode_unit)))
@@ -130,14 +130,19 @@ impl<'a> Scene<'a> {
         }
     }
 
-    /// Linear light of what a pixel sees of a face.
-    fn shade_glimpse(&self, glimpse: &Glimpse, grid: &Grid, facets: &mut [Option<Facet>]) -> Vec3 {
-        let facet = self.facet(glimpse.face as usize, facets);
-        let [x, y] = grid.middle(glimpse);
+    /// Shades the part of a face that is visible in a pixel.
+    fn shade_part(
+        &self,
+        part: &VisiblePart,
+        grid: &TileSamples,
+        facets: &mut [Option<Facet>],
+    ) -> Vec3 {
+        let facet = self.facet(part.face as usize, facets);
+        let [x, y] = grid.middle(part);
         let fragment = facet.at(&self.lens, x, y);
         let color = match self.style.back_faces {
             BackFaces::Tint(tint) if facet.from_behind => decode(tint),
-            _ => self.pigment.color(self.mesh, &fragment),
+            _ => self.albedo.color(self.mesh, &fragment),
         };
         let to_eye = -self.lens.ray(x, y).as_vec3().normalize_or_zero();
         let lit = self.lights.on(color, facet.normal(&fragment), to_eye);
@@ -147,7 +152,7 @@ impl<'a> Scene<'a> {
     }
 
     fn facet(&self, face: usize, facets: &mut [Option<Facet>]) -> Facet {
-        let slot = &mut facets[face % FACETS_AT_HAND];
+        let slot = &mut facets[face % FACET_CACHE];
         match slot {
             Some(facet) if facet.face == face => *facet,
             _ => *slot.insert(Facet::new(self.mesh, face, self.lens.eye(), &self.normals)),
@@ -155,8 +160,8 @@ impl<'a> Scene<'a> {
     }
 }
 
-impl Grid<'_> {
-    /// The tile in pixels.
+impl TileSamples<'_> {
+    /// Returns the rectangle of pixels that the tile covers.
     fn pixels(&self) -> SampleRect {
         let across = self.across as i32;
         SampleRect {
@@ -165,8 +170,8 @@ impl Grid<'_> {
         }
     }
 
-    /// The faces that a pixel of the tile sees, in the order of their first samples.
-    fn glimpses(&self, column: usize, row: usize, found: &mut [Glimpse; MOST_SAMPLES]) -> usize {
+    /// Collects the faces that a pixel of the tile sees, in the order of their first samples.
+    fn parts(&self, column: usize, row: usize, found: &mut [VisiblePart; MAX_SAMPLES]) -> usize {
         let tile_width = (self.window.end[0] - self.window.start[0]) as usize;
         let mut count = 0;
         for y in row * self.across..(row + 1) * self.across {
@@ -175,7 +180,7 @@ impl Grid<'_> {
                 if face == NO_FACE {
                     continue;
                 }
-                let known = found[..count].iter().position(|glimpse| glimpse.face == face);
+                let known = found[..count].iter().position(|part| part.face == face);
                 let at = known.unwrap_or(count);
                 count = count.max(at + 1);
                 found[at].face = face;
@@ -187,27 +192,27 @@ impl Grid<'_> {
         count
     }
 
-    /// The middle of a glimpse's samples, which lies on the face, in pixels of the picture.
-    fn middle(&self, glimpse: &Glimpse) -> [f64; 2] {
+    /// Returns the mean position of a fragment's samples, in pixels of the picture.
+    fn middle(&self, part: &VisiblePart) -> [f64; 2] {
         [0, 1].map(|axis| {
-            let mean = f64::from(glimpse.sum[axis]) / f64::from(glimpse.samples);
+            let mean = f64::from(part.sum[axis]) / f64::from(part.samples);
             (f64::from(self.window.start[axis]) + mean + 0.5) / self.across as f64
         })
     }
 }
 
-/// The mean of a pixel's glimpses and what they leave of the background.
+/// Averages the visible parts of faces in a pixel with the uncovered background.
 fn mix(
-    glimpses: &[Glimpse],
-    mut shade: impl FnMut(&Glimpse) -> Vec3,
+    parts: &[VisiblePart],
+    mut shade: impl FnMut(&VisiblePart) -> Vec3,
     background: Option<Vec3>,
     across: usize,
 ) -> [u8; 4] {
     let (mut sum, mut covered) = (Vec3::ZERO, 0);
-    for glimpse in glimpses {
-        // Clamped one by one, or a glossy spot would outshine the edge that smooths it.
-        sum += shade(glimpse).clamp(Vec3::ZERO, Vec3::ONE) * glimpse.samples as f32;
-        covered += glimpse.samples;
+    for part in parts {
+        // Clamped one by one, or a glossy spot would outshine the antialiasing of its edge.
+        sum += shade(part).clamp(Vec3::ZERO, Vec3::ONE) * part.samples as f32;
+        covered += part.samples;
     }
     let all = (across * across) as u32;
     let (mean, alpha) = match background {

@@ -1,4 +1,4 @@
-//! Small meshes for this crate's tests.
+//! Test fixtures: small meshes.
 
 use glam::DVec3;
 use meshlod_mesh::{Attributes, Layer, LayerKind, Mesh, VertexId, WedgeId};
@@ -20,7 +20,7 @@ pub(crate) fn sheet(n: u32) -> Mesh {
     Mesh::new(positions, faces)
 }
 
-/// The same with uvs from (0, 0) at the lower left to (1, 1).
+/// A [`sheet`] with uvs from (0, 0) at the lower left to (1, 1).
 pub(crate) fn sheet_with_uv(n: u32) -> Mesh {
     let mut mesh = sheet(n);
     let values = mesh.positions.iter().flat_map(|p| [p[0], p[1]].map(|x| (x * 0.5 + 0.5) as f32));

@@ -1,5 +1,5 @@
-//! Spots where a level lets through what its original hides: the background through a crack, an
-//! inner part through an outer one.
+//! See-through test: finds pixels where a level shows what its original hides, such as the
+//! background through a crack or an inner part through an outer one.
 
 use meshlod_mesh::Mesh;
 use rayon::prelude::*;
@@ -7,23 +7,23 @@ use rayon::prelude::*;
 use crate::error::check_length;
 use crate::{Camera, PictureError, visibility};
 
-/// A mesh whose faces are told apart: by component, object or what else is seen as a whole.
+/// Mesh whose faces are labelled by component, object or any other part.
 #[derive(Clone, Copy, Debug)]
 pub struct LabelledMesh<'a> {
-    /// The mesh.
+    /// Mesh to look at.
     pub mesh: &'a Mesh,
-    /// The part that each face belongs to.
+    /// Label of each face.
     pub label_of_face: &'a [u32],
 }
 
-/// How breaches are looked for.
+/// Options of the see-through test.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SeeThroughOptions {
     /// Width and height of a view, in pixels.
     pub side: u32,
-    /// What the original shows within so many pixels of a spot may be seen at the spot.
+    /// Radius in pixels within which a level may show what the original shows.
     pub radius: u32,
-    /// Outlines may move by so many pixels.
+    /// Distance in pixels by which silhouettes may move.
     pub outline: u32,
 }
 
@@ -33,83 +33,83 @@ impl Default for SeeThroughOptions {
     }
 }
 
-/// How much of a level is breached.
+/// Numbers of see-through pixels of a level.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct SeeThroughCounts {
     /// Pixels that show the original.
     pub shown: usize,
-    /// Those of them where the level lets the background through.
+    /// Pixels of these where the level lets the background through.
     pub background: usize,
-    /// Those of them where the level lets a hidden part through.
+    /// Pixels of these where the level lets a hidden part through.
     pub hidden: usize,
 }
 
-/// What a level shows at a pixel that its original hides.
+/// What a level wrongly shows at a see-through pixel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SeeThrough {
-    /// Nothing at all.
+    /// The background.
     Background,
-    /// This part.
+    /// The part with this label.
     Hidden(u32),
 }
 
-/// An original from 24 sides.
+/// Visibility of an original from 24 sides, against which levels are tested for see-through pixels.
 ///
-/// A pixel is a breach where the level lets a part or the background through that the original does
-/// not show nearby ([`SeeThroughOptions::radius`]). Outlines shift in any level: what the original has
-/// right beyond the nearest border of what it shows at the pixel, no farther than
-/// [`SeeThroughOptions::outline`], is no breach, if that border is an outline: before the background, or
-/// with a leap in depth. So these are breaches: a gap between parts that touched, a hole within a
-/// part, an inner part that comes through an outer one, a line where parts cross that wanders. A fin
-/// that gets shorter is none, be it before the background or before the body.
+/// A pixel is see-through if the level shows a part, or the background, that the original neither
+/// shows there nor nearby ([`SeeThroughOptions::radius`]). Silhouettes move in any level, so it is
+/// allowed to show what the original has just beyond the nearest border of the part at that pixel,
+/// if the border is within [`SeeThroughOptions::outline`] and a silhouette: next to the background,
+/// or at a jump in depth. Hence these count: a gap between parts that touched, a hole in a part, an
+/// inner part that pokes through an outer one, an intersection of parts that shifts. A fin that
+/// gets shorter does not count, be it in front of the background or of the body.
 ///
-/// Memory: 8 bytes a pixel: 200 MB by the default.
+/// Memory: 8 bytes a pixel, 200 MB with default options.
 pub struct ReferenceVisibility {
     frame: Frame,
     views: Vec<ReferenceView>,
 }
 
-/// How pixels lie in a view, and which are near.
+/// Pixel layout of a view, and the neighbourhood of a pixel.
 struct Frame {
     side: usize,
-    /// Pixels beside each side of a view that show nothing, so that no step leads out of it.
+    /// Empty pixels around the view, so that no offset leaves it.
     margin: usize,
-    /// Steps to the pixels around a pixel, nearest first.
+    /// Offsets to the pixels around a pixel, nearest first.
     steps: Vec<isize>,
-    /// How many of them are within the radius.
+    /// Number of offsets within the radius.
     within: usize,
 }
 
-/// What each pixel shows, with the margin.
+/// View of the original: what each pixel shows, including the margin.
 struct ReferenceView {
     camera: Camera,
     seen: Vec<VisibleLabel>,
-    /// Neighbouring pixels whose depths differ by more than this part of them are before and behind.
-    leap: f32,
+    /// Relative difference in depth above which neighbouring pixels form a silhouette.
+    jump: f32,
 }
 
-/// A part and its depth.
+/// Label and depth at a pixel.
 #[derive(Clone, Copy)]
 struct VisibleLabel {
-    part: u32,
+    label: u32,
     depth: f32,
 }
 
-/// Depths that differ by more than so many widths of a pixel from one pixel to the next are a leap:
-/// that is the slope of a surface seen at 7 degrees.
-const LEAP_PX: f32 = 8.0;
+/// Depth difference between neighbouring pixels that counts as a jump, in pixel widths: the slope
+/// of a surface seen at 7 degrees.
+const JUMP_PX: f32 = 8.0;
 
-/// No part.
+/// Label of the background.
 const BACKGROUND: u32 = u32::MAX;
-/// What the margin shows.
+/// Label of the margin.
 const OUTSIDE: u32 = u32::MAX - 1;
 
 impl ReferenceVisibility {
-    /// Looks at the original from the corners of two icosahedra, by [`Camera::icosahedron_views`]
+    /// Renders the original from the corners of two icosahedra, see [`Camera::icosahedron_views`]
     /// and [`Camera::other_icosahedron_views`].
     ///
     /// # Errors
-    /// As for [`visibility()`], and labels for another number of faces.
+    /// Those of [`visibility()`], and a number of labels that differs from the number of faces.
     pub fn new(
         original: LabelledMesh<'_>,
         options: SeeThroughOptions,
@@ -118,27 +118,32 @@ impl ReferenceVisibility {
         let cameras = first.into_iter().chain(Camera::other_icosahedron_views(original.mesh));
         let frame = Frame::new(options);
         let view = |camera| {
-            let mut padded = vec![VisibleLabel { part: OUTSIDE, depth: 0.0 }; frame.pixels()];
-            for (at, seen) in look(original, &camera, options.side)?.into_iter().enumerate() {
+            let mut padded = vec![VisibleLabel { label: OUTSIDE, depth: 0.0 }; frame.pixels()];
+            for (at, seen) in
+                labels_and_depths(original, &camera, options.side)?.into_iter().enumerate()
+            {
                 padded[frame.padded(at)] = seen;
             }
-            let leap = LEAP_PX * camera.pixel_width(options.side) as f32;
-            Ok(ReferenceView { camera, seen: padded, leap })
+            let jump = JUMP_PX * camera.pixel_width(options.side) as f32;
+            Ok(ReferenceView { camera, seen: padded, jump })
         };
         let views = cameras.map(view).collect::<Result<_, PictureError>>()?;
         Ok(Self { frame, views })
     }
 
-    /// How often a level shows what the original hides, over all views.
+    /// Counts the see-through pixels of a level over all views.
     ///
     /// # Errors
-    /// As for [`ReferenceVisibility::new`].
-    pub fn breaches(&self, level: LabelledMesh<'_>) -> Result<SeeThroughCounts, PictureError> {
+    /// Those of [`ReferenceVisibility::new`].
+    pub fn see_through_counts(
+        &self,
+        level: LabelledMesh<'_>,
+    ) -> Result<SeeThroughCounts, PictureError> {
         let mut sum = SeeThroughCounts::default();
         for (view, original) in self.views.iter().enumerate() {
-            sum.shown += original.seen.iter().filter(|seen| seen.part < OUTSIDE).count();
-            for breach in self.breaches_in(view, level)?.into_iter().flatten() {
-                match breach {
+            sum.shown += original.seen.iter().filter(|seen| seen.label < OUTSIDE).count();
+            for pixel in self.see_through_pixels(view, level)?.into_iter().flatten() {
+                match pixel {
                     SeeThrough::Background => sum.background += 1,
                     SeeThrough::Hidden(_) => sum.hidden += 1,
                 }
@@ -147,22 +152,23 @@ impl ReferenceVisibility {
         Ok(sum)
     }
 
-    /// The same of one view, pixel by pixel, row after row from the top.
+    /// Finds the see-through pixels of a level in one view, row after row from the top.
     ///
     /// # Errors
-    /// As for [`ReferenceVisibility::new`].
-    pub fn breaches_in(
+    /// Those of [`ReferenceVisibility::new`].
+    pub fn see_through_pixels(
         &self,
         view: usize,
         level: LabelledMesh<'_>,
     ) -> Result<Vec<Option<SeeThrough>>, PictureError> {
         let view = &self.views[view];
-        let level = look(level, &view.camera, self.frame.side as u32)?;
-        let of = |at: usize| self.frame.breach(view, self.frame.padded(at), level[at].part);
+        let level = labels_and_depths(level, &view.camera, self.frame.side as u32)?;
+        let of =
+            |at: usize| self.frame.see_through_at(view, self.frame.padded(at), level[at].label);
         Ok((0..level.len()).into_par_iter().map(of).collect())
     }
 
-    /// Where the views are taken from.
+    /// Returns the cameras of the views.
     pub fn cameras(&self) -> impl ExactSizeIterator<Item = Camera> + '_ {
         self.views.iter().map(|view| view.camera)
     }
@@ -186,31 +192,31 @@ impl Frame {
         (self.side + 2 * self.margin).pow(2)
     }
 
-    /// Where a pixel of the picture is in a view with its margin.
+    /// Returns the index of a pixel in a view with its margin.
     fn padded(&self, at: usize) -> usize {
         let [x, y] = [at % self.side, at / self.side].map(|i| i + self.margin);
         y * (self.side + 2 * self.margin) + x
     }
 
-    /// What is wrong where the level shows `shown`.
-    fn breach(
+    /// Tests the pixel `at`, where the level shows `shown`.
+    fn see_through_at(
         &self,
-        ReferenceView { seen, leap, .. }: &ReferenceView,
+        ReferenceView { seen, jump, .. }: &ReferenceView,
         at: usize,
         shown: u32,
     ) -> Option<SeeThrough> {
-        let part = seen[at].part;
+        let part = seen[at].label;
         if part == shown || part == BACKGROUND {
             return None;
         }
         let mut around = self.steps.iter().map(|&step| at.wrapping_add_signed(step));
-        if around.clone().take(self.within).any(|near| seen[near].part == shown) {
+        if around.clone().take(self.within).any(|near| seen[near].label == shown) {
             return None;
         }
-        let beyond = around.find(|&near| seen[near].part != part && seen[near].part != OUTSIDE);
+        let beyond = around.find(|&near| seen[near].label != part && seen[near].label != OUTSIDE);
         if let Some(beyond) = beyond
-            && seen[beyond].part == shown
-            && (shown == BACKGROUND || self.is_behind(seen, beyond, part, *leap))
+            && seen[beyond].label == shown
+            && (shown == BACKGROUND || self.is_behind(seen, beyond, part, *jump))
         {
             return None;
         }
@@ -220,26 +226,26 @@ impl Frame {
         }
     }
 
-    /// Whether a pixel is well behind those beside it that show a part.
-    fn is_behind(&self, seen: &[VisibleLabel], at: usize, part: u32, leap: f32) -> bool {
+    /// Reports whether a pixel is well behind those of its neighbours that show a part.
+    fn is_behind(&self, seen: &[VisibleLabel], at: usize, label: u32, jump: f32) -> bool {
         let row = (self.side + 2 * self.margin) as isize;
         let sides = [-row - 1, -row, 1 - row, -1, 1, row - 1, row, row + 1];
         let beside = sides.map(|step| seen[at.wrapping_add_signed(step)]);
-        let mut before = beside.into_iter().filter(|beside| beside.part == part);
-        before.all(|before| seen[at].depth - before.depth > leap * before.depth)
+        let mut before = beside.into_iter().filter(|beside| beside.label == part);
+        before.all(|before| seen[at].depth - before.depth > jump * before.depth)
     }
 }
 
-/// What each pixel's middle sees.
-fn look(
+/// Finds the label and depth at each pixel.
+fn labels_and_depths(
     of: LabelledMesh<'_>,
     camera: &Camera,
     side: u32,
 ) -> Result<Vec<VisibleLabel>, PictureError> {
-    check_length("parts of faces", of.label_of_face.len(), of.mesh.faces.len())?;
+    check_length("labels of faces", of.label_of_face.len(), of.mesh.faces.len())?;
     let seen = visibility(of.mesh, camera, [side; 2])?;
     let seen = seen.faces().zip(seen.depths()).map(|(face, depth)| VisibleLabel {
-        part: face.map_or(BACKGROUND, |face| of.label_of_face[face.index()]),
+        label: face.map_or(BACKGROUND, |face| of.label_of_face[face.index()]),
         depth: depth.unwrap_or_default() as f32,
     });
     Ok(seen.collect())
@@ -264,7 +270,7 @@ mod tests {
         (mesh, parts)
     }
 
-    fn breaches(original: &(Mesh, Vec<u32>), level: &(Mesh, Vec<u32>)) -> SeeThroughCounts {
+    fn counts(original: &(Mesh, Vec<u32>), level: &(Mesh, Vec<u32>)) -> SeeThroughCounts {
         let parted = |of: &'_ (Mesh, Vec<u32>)| (of.0.clone(), of.1.clone());
         let (original, level) = (parted(original), parted(level));
         ReferenceVisibility::new(
@@ -272,34 +278,34 @@ mod tests {
             OPTIONS,
         )
         .unwrap()
-        .breaches(LabelledMesh { mesh: &level.0, label_of_face: &level.1 })
+        .see_through_counts(LabelledMesh { mesh: &level.0, label_of_face: &level.1 })
         .unwrap()
     }
 
     #[test]
-    fn an_original_is_not_breached_and_outlines_may_move() {
+    fn an_original_is_not_see_through_and_silhouettes_may_move() {
         let original = balls(1.0, 0.8);
         for outer in [1.0, 0.98, 0.9] {
-            let level = breaches(&original, &balls(outer, 0.8));
+            let level = counts(&original, &balls(outer, 0.8));
             assert_eq!((level.background, level.hidden), (0, 0), "{outer}");
             assert!(level.shown > 24 * 8_000, "{level:?}");
         }
     }
 
     #[test]
-    fn an_outline_that_goes_far_is_a_breach() {
-        assert!(breaches(&balls(1.0, 0.5), &balls(0.7, 0.5)).background > 24 * 1000);
+    fn a_silhouette_that_moves_far_is_see_through() {
+        assert!(counts(&balls(1.0, 0.5), &balls(0.7, 0.5)).background > 24 * 1000);
     }
 
     #[test]
-    fn an_inner_part_that_comes_through_is_a_breach() {
-        let through = breaches(&balls(1.0, 0.9), &balls(1.0, 1.05));
+    fn an_inner_part_that_pokes_through_is_see_through() {
+        let through = counts(&balls(1.0, 0.9), &balls(1.0, 1.05));
         assert_eq!(through.background, 0);
         assert!(through.hidden * 10 > through.shown * 7, "{through:?}");
     }
 
     #[test]
-    fn parts_that_part_are_breached_and_their_outlines_are_not() {
+    fn a_gap_between_parts_is_see_through_and_a_trimmed_silhouette_is_not() {
         let whole = sheet(16);
         // The left and the right half are two parts; all of the last column of the left goes.
         let column = |face: usize| face / 2 % 16;
@@ -310,8 +316,8 @@ mod tests {
             (mesh, faces.map(|face| u32::from(column(face) > 7)).collect::<Vec<_>>())
         };
         let original = parts(|_| true);
-        let parted = breaches(&original, &parts(|column| column != 7));
-        let trimmed = breaches(&original, &parts(|column| column != 0));
+        let parted = counts(&original, &parts(|column| column != 7));
+        let trimmed = counts(&original, &parts(|column| column != 0));
         assert!(parted.background > 10 * trimmed.background, "{parted:?} {trimmed:?}");
         assert!(parted.background * 20 > parted.shown, "{parted:?}");
     }
@@ -329,7 +335,7 @@ mod tests {
 
     #[test]
     fn an_outline_before_another_part_may_move_and_a_line_of_contact_may_not() {
-        let [hovers, lies] = [0.25, 0.001].map(|z| breaches(&plaque(0.5, z), &plaque(0.35, z)));
+        let [hovers, lies] = [0.25, 0.001].map(|z| counts(&plaque(0.5, z), &plaque(0.35, z)));
         assert!(lies.hidden > 10 * hovers.hidden, "{lies:?} {hovers:?}");
         assert!(lies.hidden * 50 > lies.shown, "{lies:?}");
     }

@@ -1,26 +1,27 @@
-//! The sRGB transfer curve as tables, made at compile time by + - * / alone: the same everywhere.
+//! sRGB transfer curve as tables, computed at compile time with + - * / only: the same everywhere.
 
 /// Linear light of each of the 256 sRGB levels.
 pub(crate) static DECODE: [f32; 256] = decode_table();
 
-/// sRGB level of linear light in steps of 1/4096. Near black one level is 1.24 steps, so that
-/// decoding and encoding again gives every level back.
+/// sRGB level of linear light in steps of 1/4096. Near black one level spans 1.24 steps, so
+/// decoding and encoding again restores every level.
 static ENCODE: [u8; STEPS + 1] = encode_table();
 const STEPS: usize = 4096;
 
-/// The sRGB level nearest to a linear value; outside of [0, 1] it is clamped, NaN is black.
+/// Returns the sRGB level nearest to a linear value, clamped to [0, 1]; NaN becomes black.
 #[inline]
 pub(crate) fn encode(linear: f32) -> u8 {
     ENCODE[(linear.clamp(0.0, 1.0) * STEPS as f32 + 0.5) as usize]
 }
 
-/// Linear light of an sRGB colour.
+/// Converts an sRGB colour to linear light.
 #[inline]
 pub(crate) fn decode(color: [u8; 3]) -> glam::Vec3 {
     glam::Vec3::from(color.map(|level| DECODE[level as usize]))
 }
 
-/// Linear light of an sRGB value in [0, 1] that is not a whole level; NaN is black.
+/// Converts an sRGB value in [0, 1] to linear light, interpolating between levels; NaN becomes
+/// black.
 #[inline]
 pub(crate) fn decode_unit(value: f32) -> f32 {
     let at = value.clamp(0.0, 1.0) * 255.0;
@@ -53,7 +54,7 @@ const fn encode_table() -> [u8; STEPS + 1] {
     table
 }
 
-/// IEC 61966-2-1.
+/// Evaluates the transfer curve of IEC 61966-2-1.
 const fn decode_exact(encoded: f64) -> f64 {
     if encoded <= 0.04045 {
         return encoded / 12.92;
@@ -62,7 +63,7 @@ const fn decode_exact(encoded: f64) -> f64 {
     x * x * fifth_root(x * x)
 }
 
-/// Newton's iteration for y^5 = x, from above; 20 rounds settle all of [0.007, 1].
+/// Solves y^5 = x by Newton's iteration from above; 20 rounds converge on all of [0.007, 1].
 const fn fifth_root(x: f64) -> f64 {
     let mut y = 1.0;
     let mut round = 0;

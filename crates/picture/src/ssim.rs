@@ -1,26 +1,26 @@
-//! Structural similarity: how alike pictures are in light, contrast and form.
+//! Structural similarity (SSIM): agreement of pictures in luminance, contrast and structure.
 
 use rayon::prelude::*;
 
 use crate::error::check_same_size;
-use crate::plane::{Plane, balanced, bell};
+use crate::plane::{Plane, gaussian, normalized};
 use crate::{Picture, PictureError};
 
-/// The similarity of each pixel's surroundings in luma, row after row from the top: 1 where they
-/// are the same, at least -1.
+/// Computes the SSIM of luma around each pixel, row after row from the top: 1 if equal, at least
+/// -1.
 ///
-/// Surroundings are 11 by 11 pixels under a bell curve. Alpha is not looked at. The same for any
+/// The window is a Gaussian of 11 by 11 pixels. Alpha is ignored. The result does not depend on the
 /// number of threads. Cost: O(pixels), less than [`flip`](crate::flip()).
 ///
 /// # Errors
 /// Pictures of different sizes.
 /// # References
-/// [WBSS04] with the constants given there; differs: the picture goes on beyond its edges.
+/// [WBSS04] with the constants given there; differs: the picture is extended beyond its edges.
 pub fn ssim(reference: &Picture, test: &Picture) -> Result<Vec<f32>, PictureError> {
     check_same_size(reference, test)?;
     let size = [reference.width(), reference.height()];
     let [a, b] = [reference, test].map(|picture| luma(picture, size));
-    let window = balanced(&bell(1.5, 5));
+    let window = normalized(&gaussian(1.5, 5));
     let local = |of: &(dyn Fn(usize) -> f32 + Sync)| {
         Plane::from_fn(size, of).filtered(&window, &window).values
     };
@@ -37,11 +37,12 @@ pub fn ssim(reference: &Picture, test: &Picture) -> Result<Vec<f32>, PictureErro
     Ok((0..a.len()).into_par_iter().with_min_len(1024).map(similarity).collect())
 }
 
-/// Squares of 1% and 3% of the range: what keeps quotients of next to nothing from mattering.
+/// Stabilizing constants, the squares of 1% and 3% of the range: they bound quotients of tiny
+/// values.
 const C1: f32 = 1e-4;
 const C2: f32 = 9e-4;
 
-/// Luma of sRGB as in Rec. 601, which [WBSS04] takes, in [0, 1].
+/// Computes the luma of sRGB in [0, 1] as in Rec. 601, which [WBSS04] uses.
 fn luma(picture: &Picture, size: [u32; 2]) -> Vec<f32> {
     let rgba = picture.rgba();
     let luma = |i: usize| {

@@ -1,27 +1,27 @@
-//! How a picture shall look.
+//! Look of a picture.
 
 use meshlod_mesh::{LayerKind, Mesh};
 
 use crate::{ColorMap, Texture};
 
-/// How a mesh is drawn. Colours are sRGB.
+/// Style in which a mesh is rendered. Colours are sRGB.
 #[derive(Clone, Debug)]
 pub struct Style<'a> {
     /// Width and height in pixels.
     pub size: [u32; 2],
-    /// The colour of the surface.
+    /// Colour of the surface.
     pub paint: Paint<'a>,
-    /// How round it looks.
+    /// Shading normals.
     pub normals: Normals,
-    /// The light on it.
+    /// Lighting of the surface.
     pub lighting: Lighting,
-    /// How the inner sides of faces look.
+    /// Look of faces seen from behind.
     pub back_faces: BackFaces,
     /// Lines along the edges of all faces.
     pub wireframe: Option<Wireframe>,
-    /// What is behind.
+    /// Background of the picture.
     pub background: Background,
-    /// How edges are smoothed.
+    /// Number of samples per pixel.
     pub antialiasing: Antialiasing,
 }
 
@@ -41,7 +41,7 @@ impl Default for Style<'_> {
 }
 
 impl Style<'_> {
-    /// The style in which pictures of two meshes are compared, beside
+    /// Returns the style for comparing pictures of two meshes, together with
     /// [`Camera::icosahedron_views`](crate::Camera::icosahedron_views): 1024 by 1024, headlight
     /// plus ambient, mid-grey background.
     pub fn comparison() -> Self {
@@ -54,22 +54,22 @@ impl Style<'_> {
     }
 }
 
-/// The colour of a surface, before light.
+/// Colour of a surface before lighting.
 #[derive(Clone, Debug)]
 pub enum Paint<'a> {
     /// One colour.
     Plain([u8; 3]),
     /// One colour per face.
     FaceColors(&'a [[u8; 3]]),
-    /// One number per face, as a colour.
+    /// One number per face, shown through a colour map.
     FaceValues(Values<'a>),
-    /// One number per vertex, as a colour; numbers are blended over faces, and only then coloured.
+    /// One number per vertex, interpolated over faces, then shown through a colour map.
     VertexValues(Values<'a>),
-    /// The mesh's first colour layer, taken as sRGB; light grey where it has none.
+    /// First colour layer of the mesh, taken as sRGB; light grey if it has none.
     Colors,
-    /// The colour and texture of each face's material.
+    /// Colour and texture of each face's material.
     Materials(&'a Materials),
-    /// A checkerboard of so many squares a side over the first uv layer.
+    /// Checkerboard over the first uv layer.
     Checker {
         /// Squares per unit of uv.
         squares: u32,
@@ -77,9 +77,9 @@ pub enum Paint<'a> {
 }
 
 impl<'a> Paint<'a> {
-    /// The paint in which a mesh is compared with its levels: its materials where they have a
-    /// texture, else a checkerboard over its uvs, its colours, the colours of its materials, or
-    /// the default: the first of these that it has.
+    /// Chooses the paint for comparing a mesh with its levels: the first that applies of its
+    /// materials, if they have a texture, a checkerboard over its uvs, its colours, the colours of
+    /// its materials, and the default.
     ///
     /// `materials` has an entry for every material label of the mesh, or at least one.
     pub fn comparison(mesh: &Mesh, materials: &'a Materials) -> Self {
@@ -108,90 +108,91 @@ impl Default for Paint<'_> {
     }
 }
 
-/// Numbers over a mesh and how they become colours.
+/// Numbers over a mesh, and the colour map that shows them.
 #[derive(Clone, Copy, Debug)]
 pub struct Values<'a> {
-    /// One per face or per vertex. NaN is shown grey.
+    /// One number per face or per vertex; NaN is shown grey.
     pub values: &'a [f32],
-    /// The colours.
+    /// Colour map for the numbers.
     pub map: ColorMap,
-    /// The numbers with the first and the last colour of the map; beyond them it does not change.
+    /// Numbers at the first and the last colour of the map; others are clamped.
     pub range: [f32; 2],
 }
 
-/// Materials by label: `mesh.materials` names an entry for every face. A mesh without labels is
-/// all of the first.
+/// Materials by label: each material label of a mesh is an index into these. A mesh without labels
+/// uses the first for all faces.
 #[derive(Clone, Debug, Default)]
 pub struct Materials {
-    /// One per name of the mesh's material labels.
+    /// One material per material label of the mesh.
     pub materials: Vec<PaintMaterial>,
-    /// What they share.
+    /// Textures that the materials refer to.
     pub textures: Vec<Texture>,
 }
 
-/// What a surface is made of.
+/// Material of a surface in [`Paint::Materials`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PaintMaterial {
-    /// Linear RGB.
+    /// Base colour, linear RGB.
     pub base_color: [f32; 3],
-    /// What multiplies it, by index into [`Materials::textures`]; looked up by the first uv layer.
+    /// Index of a texture in [`Materials::textures`] that multiplies the base colour; it is sampled
+    /// with the first uv layer.
     pub texture: Option<usize>,
 }
 
-/// How round a surface looks.
+/// Shading normals of a surface.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Normals {
-    /// Every face is flat.
+    /// Flat shading: one normal per face.
     Flat,
-    /// One normal per vertex: no edge is sharp.
+    /// Smooth shading: one normal per vertex.
     #[default]
     Smooth,
-    /// Smooth where neighbouring faces bend by less than an angle, sharp where by more.
+    /// Smooth where the angle between neighbouring faces is below a limit, sharp elsewhere.
     Creased {
-        /// The angle, in radians.
+        /// Crease angle, in radians.
         crease_rad: f64,
     },
-    /// The mesh's normal layer; smooth where it has none.
+    /// Normal layer of the mesh; smooth if it has none.
     FromMesh,
 }
 
-/// The light on a surface.
+/// Lighting of a surface.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Lighting {
-    /// From the upper left, with a soft sky and a faint gloss: for pictures to look at.
+    /// From the upper left, with a soft sky and a faint gloss, for pictures to look at.
     #[default]
     Studio,
-    /// From the eye, with an even rest: for pictures to compare.
+    /// From the eye, with uniform ambient light, for pictures to compare.
     Headlight,
-    /// Mostly even, a little from the eye: for colours that mean something, as in heat maps.
+    /// Mostly uniform, a little from the eye, for colours that carry meaning, as in heat maps.
     Soft,
-    /// Colours as they are.
+    /// No lighting: colours are shown unchanged.
     Unlit,
 }
 
-/// How the inner sides of faces look.
+/// Look of faces seen from behind.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum BackFaces {
-    /// As the outer ones.
+    /// Like front faces.
     #[default]
     Same,
-    /// In one colour, whatever the paint: turned faces and holes catch the eye.
+    /// One colour regardless of the paint, so that flipped faces and holes stand out.
     Tint([u8; 3]),
 }
 
 impl BackFaces {
-    /// A red that no surface is mistaken for.
+    /// Tint in a red that is not mistaken for a surface colour.
     pub const RED: Self = Self::Tint([196, 92, 78]);
 }
 
-/// Lines along the edges of all faces. They fade where faces become too small for them.
+/// Lines along the edges of all faces; they fade where faces become too small for them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Wireframe {
-    /// The colour, not lit.
+    /// Colour of the lines, not lit.
     pub color: [u8; 3],
     /// Width of a line between two faces, in pixels.
     pub width_px: f32,
-    /// How much of the surface a line hides, 0 to 1.
+    /// Opacity of the lines, 0 to 1.
     pub opacity: f32,
 }
 
@@ -201,18 +202,18 @@ impl Default for Wireframe {
     }
 }
 
-/// What is behind the mesh.
+/// Background of a picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Background {
-    /// Nothing: alpha says how much of a pixel is covered.
+    /// Transparent: alpha is the covered fraction of a pixel.
     Transparent,
     /// One colour.
     Plain([u8; 3]),
-    /// From one colour at the top to another at the bottom.
+    /// Vertical gradient.
     Gradient {
-        /// At the top.
+        /// Colour at the top.
         top: [u8; 3],
-        /// At the bottom.
+        /// Colour at the bottom.
         bottom: [u8; 3],
     },
 }
@@ -223,22 +224,22 @@ impl Default for Background {
     }
 }
 
-/// How many samples a pixel is made of.
+/// Number of samples per pixel.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Antialiasing {
-    /// One: hard edges.
+    /// One sample: aliased edges.
     Off,
-    /// 2 by 2.
+    /// 2 by 2 samples.
     Four,
-    /// 3 by 3.
+    /// 3 by 3 samples.
     #[default]
     Nine,
-    /// 4 by 4.
+    /// 4 by 4 samples.
     Sixteen,
 }
 
 impl Antialiasing {
-    /// Samples along a pixel's side.
+    /// Returns the number of samples per pixel side.
     pub(crate) fn across(self) -> u32 {
         match self {
             Self::Off => 1,

@@ -1,4 +1,4 @@
-//! Textures and how they are looked up.
+//! Textures with mipmaps and anisotropic sampling.
 
 use glam::{Vec2, Vec3};
 
@@ -6,12 +6,12 @@ use crate::PictureError;
 use crate::error::{check_length, check_size};
 use crate::srgb::{DECODE, encode};
 
-/// An sRGB image that repeats over the uv plane, with its coarser copies.
+/// sRGB image that repeats over the uv plane, with its mipmaps.
 ///
 /// uv (0, 0) is the lower left corner of the image, (1, 1) the upper right.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Texture {
-    /// The image, then halves of halves down to a single texel.
+    /// Mip levels: the image, then successive halves down to a single texel.
     levels: Vec<Level>,
 }
 
@@ -22,11 +22,12 @@ struct Level {
     texels: Vec<[u8; 4]>,
 }
 
-/// How many places along a stretched footprint are looked up at most.
-const MOST_PROBES: f32 = 8.0;
+/// Maximum number of probes along an elongated footprint.
+const MAX_PROBES: f32 = 8.0;
 
 impl Texture {
-    /// A texture of given texels: four bytes each, row after row from the top. Alpha is not used.
+    /// Creates a texture from texels: four bytes each, row after row from the top. Alpha is
+    /// ignored.
     ///
     /// # Errors
     /// A side of zero or above [`MAX_SIDE`](crate::MAX_SIDE), or not `4 * width * height` bytes.
@@ -41,8 +42,8 @@ impl Texture {
         Ok(Self { levels })
     }
 
-    /// A checkerboard of `squares` by `squares`, reddish to the right and greenish upwards, so
-    /// that turns and stretches show.
+    /// Creates a checkerboard of `squares` by `squares`, redder to the right and greener upwards,
+    /// so that rotation and distortion show.
     pub fn checker(squares: u32) -> Self {
         const SIDE: u32 = 512;
         let squares = squares.clamp(1, SIDE);
@@ -58,15 +59,15 @@ impl Texture {
         Self::new(SIDE, SIDE, &rgba).expect("the size is right")
     }
 
-    /// Linear light at `uv`, averaged over a footprint: what a step of a pixel to the right and
-    /// down adds to uv.
+    /// Samples the texture at `uv`, in linear light, averaged over a footprint: the change of uv
+    /// per pixel to the right and per pixel down.
     pub(crate) fn sample(&self, uv: Vec2, footprint: [Vec2; 2]) -> Vec3 {
         let base = &self.levels[0];
         let size = Vec2::new(base.width as f32, base.height as f32);
         let [x, y] = footprint.map(|step| (step * size).length());
         let (long, along, short) = if x > y { (x, footprint[0], y) } else { (y, footprint[1], x) };
-        // A long and narrow footprint is seen through several round ones in a row.
-        let probes = (long / short.max(1.0)).clamp(1.0, MOST_PROBES).ceil();
+        // An elongated footprint is covered by several round ones in a row.
+        let probes = (long / short.max(1.0)).clamp(1.0, MAX_PROBES).ceil();
         let probes = if probes.is_finite() { probes } else { 1.0 };
         let width = short.max(long / probes);
         let mut sum = Vec3::ZERO;
@@ -77,7 +78,8 @@ impl Texture {
         sum / probes
     }
 
-    /// Linear light around `uv` over a footprint `width` texels wide, from the two nearest levels.
+    /// Samples around `uv` over a footprint `width` texels wide, between the two nearest mip
+    /// levels.
     fn trilinear(&self, uv: Vec2, mut width: f32) -> Vec3 {
         let mut level = 0;
         while width >= 2.0 && level + 1 < self.levels.len() {
@@ -93,8 +95,8 @@ impl Texture {
 }
 
 impl Level {
-    /// The mean of every two by two texels in linear light; of an odd side the last row or column
-    /// goes unseen. None where one texel is all there is.
+    /// Computes the next mip level: the mean of every two by two texels in linear light. The last
+    /// row or column of an odd side is ignored. Returns `None` for a single texel.
     fn half(&self) -> Option<Self> {
         if self.width == 1 && self.height == 1 {
             return None;
@@ -127,8 +129,8 @@ impl Level {
     }
 }
 
-/// The two texels on either side of a place on an axis, and how far it is from the first to the
-/// second. No finite place is the start.
+/// Returns the two texels on either side of a coordinate, and its distance from the first in
+/// texels. A coordinate that is not finite counts as zero.
 fn neighbours(place: f32, count: u32) -> ([u32; 2], f32) {
     let within = if place.is_finite() { place - place.floor() } else { 0.0 };
     let at = within * count as f32 - 0.5;

@@ -1,9 +1,9 @@
-//! Tangent and cosine by + - * / alone. The ones of the platform's library may differ in the last
-//! bit from machine to machine, and so could pixels.
+//! Tangent and cosine computed with + - * / only. Those of the platform's library may differ in the
+//! last bit from machine to machine, and with them the pixels.
 
-/// Tangent of an angle in [0, π/2).
+/// Returns the tangent of an angle in [0, π/2).
 pub(crate) fn tangent(angle_rad: f64) -> f64 {
-    // Below 0.03 three terms of the series are exact to rounding; doubling leads back.
+    // Below 0.03 the series is exact to rounding; doubling the angle leads back.
     const HALVINGS: i32 = 6;
     let x = angle_rad / f64::from(1 << HALVINGS);
     let square = x * x;
@@ -15,13 +15,13 @@ pub(crate) fn tangent(angle_rad: f64) -> f64 {
     tangent
 }
 
-/// Cosine of an angle in [0, π].
+/// Returns the cosine of an angle in [0, π].
 pub(crate) fn cosine(angle_rad: f64) -> f64 {
     let t = tangent(angle_rad.clamp(0.0, std::f64::consts::PI) * 0.5);
     (1.0 - t * t) / (1.0 + t * t)
 }
 
-/// Angle in [0, π] of a cosine in [-1, 1], in radians, to 1e-4.
+/// Returns the angle in [0, π] of a cosine in [-1, 1], in radians, accurate to 1e-4.
 ///
 /// # References
 /// [AS64] 4.4.45.

@@ -1,4 +1,4 @@
-//! Which face is seen where: the first half of every picture, and all of a crack test.
+//! Visible face at each pixel: the first half of every picture, and all of a crack test.
 
 use meshlod_mesh::{FaceId, Mesh};
 use rayon::prelude::*;
@@ -10,7 +10,7 @@ use crate::project::Point;
 use crate::raster::{SampleRect, cover};
 use crate::{Camera, PictureError};
 
-/// The face that each pixel's middle sees, and how far away it is.
+/// Face visible at the centre of each pixel, with its depth.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Visibility {
     width: u32,
@@ -19,27 +19,27 @@ pub struct Visibility {
     samples: Vec<Sample>,
 }
 
-/// The nearest face at a sample; nothing where `face` is [`NO_FACE`].
+/// Nearest face at a sample; none if `face` is [`NO_FACE`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Sample {
     pub nearness: f32,
     pub face: u32,
 }
 
-/// One more than the last face can be.
+/// Id that no face has.
 pub(crate) const NO_FACE: u32 = u32::MAX;
 
-/// Finds the nearest face at the middle of every pixel; of equally near ones that of the lowest id.
+/// Finds the nearest face at the centre of every pixel; of equally near faces, the lowest id wins.
 ///
-/// `size` is width and height in pixels. Faces are seen from both sides. Faces that share an edge
-/// leave no pixel of it out, and a lone edge covers no pixel twice: a pixel without a face within a
-/// closed silhouette is a crack. The same for any number of threads.
+/// `size` is width and height in pixels. Faces are seen from both sides. Faces with a common edge
+/// leave no gap along it, and a boundary edge covers no pixel twice, so a pixel without a face
+/// within a closed silhouette is a crack. The result does not depend on the number of threads.
 ///
-/// Cost: O(faces + pixels covered, counting layers). Memory: 16 bytes a vertex, 8 a pixel, 4 a face
-/// and 64-pixel tile that it touches.
+/// Cost: O(faces + pixels covered, counting layers). Memory: 16 bytes a vertex, 8 a pixel, 4 per
+/// face and 64-pixel tile that it touches.
 ///
 /// # Errors
-/// A mesh that breaks [`Mesh::validate`], or an impossible size.
+/// A mesh that breaks [`Mesh::validate`], or a size out of range.
 pub fn visibility(
     mesh: &Mesh,
     camera: &Camera,
@@ -63,28 +63,28 @@ pub fn visibility(
 }
 
 impl Visibility {
-    /// Pixels in a row.
+    /// Returns the width in pixels.
     pub fn width(&self) -> u32 {
         self.width
     }
 
-    /// Rows.
+    /// Returns the height in pixels.
     pub fn height(&self) -> u32 {
         self.height
     }
 
-    /// The face that each pixel sees, row after row from the top.
+    /// Returns the face visible at each pixel, row after row from the top.
     pub fn faces(&self) -> impl ExactSizeIterator<Item = Option<FaceId>> + '_ {
         self.samples.iter().map(|s| (s.face != NO_FACE).then_some(FaceId(s.face)))
     }
 
-    /// The depth along the camera's forward axis at each pixel, in model units.
+    /// Returns the depth along the camera's forward axis at each pixel, in model units.
     pub fn depths(&self) -> impl ExactSizeIterator<Item = Option<f64>> + '_ {
         let depth = |s: &Sample| self.near / f64::from(s.nearness);
         self.samples.iter().map(move |s| (s.face != NO_FACE).then(|| depth(s)))
     }
 
-    /// How many pixels see a face.
+    /// Counts the pixels that see a face.
     pub fn covered(&self) -> usize {
         self.faces().flatten().count()
     }
@@ -94,7 +94,7 @@ impl Sample {
     const NOTHING: Self = Self { nearness: 0.0, face: NO_FACE };
 }
 
-/// Draws every tile and hands its window and samples to `finish`; what that gives comes back in
+/// Draws all tiles and passes the rectangle and samples of each to `finish`; returns its results in
 /// the order of the tiles.
 pub(crate) fn draw_tiles<T: Send>(
     mesh: &Mesh,

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use meshlod::Mesh;
 use meshlod::io::write_file;
-use meshlod::picture::{Background, Camera, Style, beside, render};
+use meshlod::picture::{Background, Camera, Style, render, side_by_side};
 
 use crate::demo::sample_report::SampleReport;
 use crate::failure::Failure;
@@ -35,7 +35,7 @@ impl TitlePicture {
         let draw = |mesh: &&Mesh| render(mesh, &camera, &style);
         let tiles: Vec<_> =
             meshes.iter().map(draw).collect::<Result<_, _>>().map_err(Failure::new)?;
-        let picture = beside(&tiles).map_err(Failure::new)?;
+        let picture = side_by_side(&tiles).map_err(Failure::new)?;
         let file = folder.join("hero.png");
         write_file(&file, &picture.png())?;
         let faces: Vec<usize> = meshes.iter().map(|mesh| mesh.faces.len()).collect();

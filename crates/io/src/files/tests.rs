@@ -49,10 +49,10 @@ fn an_image_that_differs_is_not_overwritten() {
     write(&scene).unwrap();
     scene.images = vec![image(b"two")];
     let error = write(&scene).unwrap_err().to_string();
-    assert!(error.contains("a.png") && error.contains("there already"), "{error}");
+    assert!(error.contains("a.png") && error.contains("already exists"), "{error}");
     assert_eq!(fs::read(folder.path().join("maps/a.png")).unwrap(), b"one");
     scene.images[0].name = "..".into();
-    assert!(write(&scene).unwrap_err().to_string().contains("out of the folder"));
+    assert!(write(&scene).unwrap_err().to_string().contains("outside the folder"));
 }
 
 #[test]

@@ -1,4 +1,4 @@
-//! Accessors: the typed arrays of a document, out of its buffers.
+//! Accessors: reading the typed arrays of a document from its buffers.
 
 use std::borrow::Cow;
 
@@ -6,7 +6,7 @@ use super::document::{Document, missing};
 use super::schema::{Accessor, Sparse};
 use crate::ParseError;
 
-/// The component types of the format, by its numbers.
+/// Component types, by the numbers of the specification.
 pub(super) mod component {
     pub const I8: u32 = 5120;
     pub const U8: u32 = 5121;
@@ -16,32 +16,32 @@ pub(super) mod component {
     pub const F32: u32 = 5126;
 }
 
-/// An accessor's elements, one after the other without gaps.
+/// Elements of an accessor, stored without gaps.
 struct PackedElements<'a> {
     accessor: &'a Accessor,
-    /// Components an element.
+    /// Components per element.
     width: usize,
     bytes: Cow<'a, [u8]>,
 }
 
-/// The numbers of an accessor, normalised where it says so.
+/// Elements of an accessor as floats, normalised if the accessor says so.
 #[derive(Debug, PartialEq)]
 pub(super) struct Values {
-    /// Numbers an element.
+    /// Components per element.
     pub width: usize,
-    /// `width` numbers for each element.
+    /// Components of all elements, `width` for each.
     pub values: Vec<f32>,
 }
 
 impl Values {
-    /// How many elements there are.
+    /// Returns the number of elements.
     pub fn count(&self) -> usize {
         self.values.len() / self.width
     }
 }
 
 impl Document<'_> {
-    /// An accessor of any type as numbers, all of them finite.
+    /// Reads an accessor of any type as floats, all of them finite.
     pub fn floats(&self, index: usize) -> Result<Values, ParseError> {
         let PackedElements { accessor, width, bytes } = self.packed(index)?;
         let values = numbers(&bytes, accessor.component_type, accessor.normalized);
@@ -54,13 +54,14 @@ impl Document<'_> {
         }
     }
 
-    /// An accessor of indices, each below `limit`.
+    /// Reads an accessor of indices, each below `limit`.
     pub fn indices(&self, index: usize, limit: usize) -> Result<Vec<u32>, ParseError> {
         let PackedElements { accessor, width, bytes } = self.packed(index)?;
         let kind = accessor.component_type;
         if width != 1 || !matches!(kind, component::U8 | component::U16 | component::U32) {
             let shape = &accessor.shape;
-            let reason = format!("indices must be unsigned SCALAR, not {shape} of type {kind}");
+            let reason =
+                format!("indices must be SCALAR of an unsigned type, not {shape} of type {kind}");
             return Err(wrong(index, reason));
         }
         let indices = whole_numbers(&bytes, kind);
@@ -83,9 +84,12 @@ impl Document<'_> {
         let size = component_size(accessor.component_type).ok_or_else(|| {
             wrong(index, format!("unknown component type {}", accessor.component_type))
         })?;
-        // Columns of small matrices have gaps; no attribute in use has that type.
+        // Columns of small matrices are padded; no attribute in use has that type.
         if accessor.shape.starts_with("MAT") && size < 4 {
-            return Err(wrong(index, "matrices of small integers are not read".to_owned()));
+            return Err(wrong(
+                index,
+                "matrices of 8-bit or 16-bit integers are not supported".to_owned(),
+            ));
         }
         let values = accessor.count.saturating_mul(width);
         self.spend(&format!("accessor {index}"), values)?;
@@ -110,7 +114,8 @@ impl Document<'_> {
         let (view, bytes) = self.view(view)?;
         let stride = view.byte_stride.filter(|&stride| stride > 0).unwrap_or(element);
         if stride < element {
-            let reason = format!("a stride of {stride} for elements of {element} bytes");
+            let reason =
+                format!("the stride of {stride} bytes is less than the element size of {element}");
             return Err(wrong(index, reason));
         }
         let Some(last) = accessor.count.checked_sub(1) else { return Ok(Cow::Borrowed(&[])) };
@@ -120,7 +125,10 @@ impl Document<'_> {
             .and_then(|length| bytes.get(start..start.checked_add(length)?))
             .ok_or_else(|| {
                 let (count, found) = (accessor.count, bytes.len());
-                wrong(index, format!("{count} elements do not fit its view of {found} bytes"))
+                wrong(
+                    index,
+                    format!("{count} elements do not fit in its buffer view of {found} bytes"),
+                )
             })?;
         if stride == element {
             return Ok(Cow::Borrowed(bytes));
@@ -145,7 +153,7 @@ impl Document<'_> {
             let part = length.and_then(|length| bytes.get(offset..offset.checked_add(length)?));
             part.ok_or_else(|| {
                 let count = sparse.count;
-                wrong(index, format!("{count} sparse elements do not fit bufferView {view}"))
+                wrong(index, format!("{count} sparse elements do not fit in bufferView {view}"))
             })
         };
         let kind = sparse.indices.component_type;
@@ -153,7 +161,12 @@ impl Document<'_> {
             component::U8 => 1,
             component::U16 => 2,
             component::U32 => 4,
-            _ => return Err(wrong(index, format!("sparse indices of component type {kind}"))),
+            _ => {
+                return Err(wrong(
+                    index,
+                    format!("sparse indices must be unsigned, not of component type {kind}"),
+                ));
+            }
         };
         let indices = cut(sparse.indices.buffer_view, sparse.indices.byte_offset, size)?;
         let values = cut(sparse.values.buffer_view, sparse.values.byte_offset, element)?;
@@ -161,7 +174,8 @@ impl Document<'_> {
             let start = (at as usize).saturating_mul(element);
             let Some(place) = into.get_mut(start..start.saturating_add(element)) else {
                 let count = into.len() / element;
-                let reason = format!("sparse element {at}, but there are only {count} elements");
+                let reason =
+                    format!("sparse element {at} is out of range: there are only {count} elements");
                 return Err(wrong(index, reason));
             };
             place.copy_from_slice(value);
@@ -195,7 +209,7 @@ fn component_size(kind: u32) -> Option<usize> {
     })
 }
 
-/// Components as floats; `normalized` integers become [-1, 1] or [0, 1].
+/// Converts components to floats; `normalized` integers become [-1, 1] or [0, 1].
 fn numbers(bytes: &[u8], kind: u32, normalized: bool) -> Vec<f32> {
     let scaled = |greatest: f32| if normalized { greatest } else { 1.0 };
     match kind {
@@ -210,7 +224,8 @@ fn numbers(bytes: &[u8], kind: u32, normalized: bool) -> Vec<f32> {
     }
 }
 
-/// `clamped` for signed integers, of which the least one normalises to a little below -1.
+/// Maps components to floats. `clamped` is for normalised signed integers, whose least value would
+/// come out slightly below -1.
 fn map<const N: usize>(bytes: &[u8], number: impl Fn([u8; N]) -> f32, clamped: bool) -> Vec<f32> {
     let (components, _) = bytes.as_chunks::<N>();
     if clamped {

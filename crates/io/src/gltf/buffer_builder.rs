@@ -1,4 +1,4 @@
-//! The accessors, buffer views and the one buffer of a document that is being written.
+//! Builder for the accessors, buffer views and single buffer of a document being written.
 
 use std::ops::Range;
 
@@ -10,27 +10,27 @@ use super::decompress::MESHOPT;
 use super::document::Document;
 use crate::meshopt::{Filter, encode_attributes, encode_triangles};
 
-/// What becomes an accessor of its own.
+/// Array to be written as an accessor of its own.
 pub(super) struct Blob {
-    /// Component type by the format's number.
+    /// Component type, by the number of the specification.
     pub component: u32,
-    /// `SCALAR`, `VEC3`, …
+    /// Element type: `SCALAR`, `VEC3`, …
     pub shape: &'static str,
     pub normalized: bool,
     pub count: usize,
-    /// The elements, each beginning at a multiple of four bytes unless they are indices.
+    /// Elements, each aligned to four bytes unless they are indices.
     pub bytes: Vec<u8>,
-    /// Bytes from one element to the next where there is padding between.
+    /// Bytes from one element to the next, if there is padding between them.
     pub stride: Option<usize>,
-    /// Least and greatest element, which positions must have.
+    /// Minimum and maximum of every component; required for positions.
     pub extent: Option<[[f32; 3]; 2]>,
     pub usage: Usage,
     pub part: Part,
-    /// What turns `bytes` into the elements, in a pool that packs.
+    /// Filter that decodes `bytes` into the elements, if the builder compresses.
     pub filter: Filter,
 }
 
-/// What bytes are counted as.
+/// Category under which bytes are counted in the report.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Part {
     Positions,
@@ -38,17 +38,17 @@ pub(super) enum Part {
     Attributes,
 }
 
-/// What a GPU does with a blob.
+/// Buffer view target.
 #[derive(Clone, Copy, PartialEq)]
 pub(super) enum Usage {
     Vertices = 34962,
     Indices = 34963,
 }
 
-/// A document's accessors and buffer views, those of its first reading in their places.
+/// Accessors, buffer views and buffer of a document being written.
 ///
-/// Places that are free are used again; none moves, so whatever names one, extensions that nobody
-/// here knows included, keeps its meaning.
+/// Entries of a document that was read keep their indices. Indices that became free are reused and
+/// none is renumbered, so every reference stays valid, even from unknown extensions.
 #[derive(Default)]
 pub(super) struct BufferBuilder {
     accessors: Vec<Value>,
@@ -56,55 +56,55 @@ pub(super) struct BufferBuilder {
     free_accessors: Vec<usize>,
     free_views: Vec<usize>,
     bytes: Vec<u8>,
-    /// Whether what is added is compressed, and then how large the buffer is to which it unfolds.
-    unfolded: Option<usize>,
-    /// Whether something added is of a type that the format has not by itself.
+    /// Size of the fallback buffer that the compressed views decode to; `None` without compression.
+    fallback_size: Option<usize>,
+    /// True once an array was added whose type needs `KHR_mesh_quantization`.
     quantized: bool,
-    /// What was added, by [`Part`].
+    /// Bytes added so far, by [`Part`].
     pub added: [Bytes; 3],
 }
 
 impl BufferBuilder {
-    /// From now on compresses what is added.
-    pub fn pack(&mut self) {
-        self.unfolded = Some(0);
+    /// Compresses all arrays added from now on.
+    pub fn compress(&mut self) {
+        self.fallback_size = Some(0);
     }
 
-    /// The pool of a document that was read, `free_accessors` and what only they used given up.
+    /// Starts from a document that was read, freeing `free_accessors` and the views only they use.
     pub fn of(document: &Document<'_>, free_accessors: &[bool]) -> Self {
         let array = |key| document.json.get(key).and_then(Value::as_array).cloned();
-        let mut pool = Self {
+        let mut builder = Self {
             accessors: array("accessors").unwrap_or_default(),
             views: array("bufferViews").unwrap_or_default(),
             ..Self::default()
         };
-        let free_views = free_views(document, &pool.accessors, free_accessors);
-        pool.free_accessors = places(free_accessors);
-        pool.free_views = places(&free_views);
-        pool.keep_bytes(document, &free_views);
-        pool
+        let free_views = free_views(document, &builder.accessors, free_accessors);
+        builder.free_accessors = indices_of(free_accessors);
+        builder.free_views = indices_of(&free_views);
+        builder.keep_bytes(document, &free_views);
+        builder
     }
 
     pub fn is_quantized(&self) -> bool {
         self.quantized
     }
 
-    pub fn is_packed(&self) -> bool {
-        self.unfolded.is_some_and(|length| length > 0)
+    pub fn is_compressed(&self) -> bool {
+        self.fallback_size.is_some_and(|length| length > 0)
     }
 
-    /// Adds an accessor with its buffer view, and says its number.
+    /// Adds an accessor with its buffer view and returns its index.
     pub fn add(&mut self, blob: Blob) -> usize {
-        // Unsigned integers that are normalised may be colours and texture coordinates anyway; no
-        // position is normalised, and joints are no more than unsigned.
+        // Core glTF already allows normalised unsigned integers for colours and texture coordinates
+        // and unsigned ones for joints; positions are never normalised.
         let signed = matches!(blob.component, component::I8 | component::I16);
         let position = blob.part == Part::Positions && blob.component != component::F32;
         self.quantized |= signed || position;
         self.align();
         let stored = self.bytes.len();
-        let mut view = match self.unfolded {
+        let mut view = match self.fallback_size {
             None => self.view_of(&blob.bytes),
-            Some(at) => self.packed_view_of(&blob, at),
+            Some(at) => self.compressed_view_of(&blob, at),
         };
         let added = &mut self.added[blob.part as usize];
         added.resident += blob.bytes.len();
@@ -113,7 +113,7 @@ impl BufferBuilder {
         if let Some(stride) = blob.stride {
             view.insert("byteStride".into(), stride.into());
         }
-        let view = place(&mut self.views, &mut self.free_views, view.into());
+        let view = insert(&mut self.views, &mut self.free_views, view.into());
         let mut accessor = json!({
             "bufferView": view,
             "componentType": blob.component,
@@ -127,20 +127,20 @@ impl BufferBuilder {
             accessor["min"] = json!(min);
             accessor["max"] = json!(max);
         }
-        place(&mut self.accessors, &mut self.free_accessors, accessor)
+        insert(&mut self.accessors, &mut self.free_accessors, accessor)
     }
 
-    /// Adds a buffer view of bytes that are no accessor's, such as an image.
+    /// Adds a buffer view without an accessor, such as an image, and returns its index.
     pub fn add_view(&mut self, bytes: &[u8]) -> usize {
         let view = self.view_of(bytes);
-        place(&mut self.views, &mut self.free_views, view.into())
+        insert(&mut self.views, &mut self.free_views, view.into())
     }
 
-    /// Puts accessors, views and the description of the buffer into the document, and gives back
-    /// the buffer.
+    /// Puts accessors, views and the description of the buffer into the document; returns the
+    /// contents of the buffer.
     pub fn finish(mut self, json: &mut Map<String, Value>) -> Vec<u8> {
         drop_last(&mut self.accessors, &mut self.free_accessors);
-        // A place that is still free must hold something valid: one zero.
+        // An index that is still free must refer to something valid: a single zero.
         for at in std::mem::take(&mut self.free_accessors) {
             let view = self.add_view(&[0; 4]);
             self.accessors[at] = json!({
@@ -157,7 +157,7 @@ impl BufferBuilder {
             .unwrap_or_default();
         buffer.insert("byteLength".into(), self.bytes.len().into());
         let mut buffers = if self.bytes.is_empty() { vec![] } else { vec![buffer.into()] };
-        if let Some(length) = self.unfolded.filter(|&length| length > 0) {
+        if let Some(length) = self.fallback_size.filter(|&length| length > 0) {
             let fallback = json!({ MESHOPT[0]: { "fallback": true } });
             buffers.push(json!({ "byteLength": length, "extensions": fallback }));
         }
@@ -173,7 +173,7 @@ impl BufferBuilder {
         self.bytes
     }
 
-    /// Appends bytes to the buffer, and describes where they are.
+    /// Appends bytes to the buffer and returns the view that describes them.
     fn view_of(&mut self, bytes: &[u8]) -> Map<String, Value> {
         self.align();
         let view = json!({
@@ -190,8 +190,8 @@ impl BufferBuilder {
         self.bytes.resize(self.bytes.len().next_multiple_of(4), 0);
     }
 
-    /// Appends a blob as a stream, and describes where it is and where it unfolds to.
-    fn packed_view_of(&mut self, blob: &Blob, at: usize) -> Map<String, Value> {
+    /// Appends an array as a meshopt stream and returns the view that describes it and its target.
+    fn compressed_view_of(&mut self, blob: &Blob, at: usize) -> Map<String, Value> {
         let stride = blob.bytes.len() / blob.count.max(1);
         let (mode, stream) = match blob.usage {
             Usage::Vertices => ("ATTRIBUTES", encode_attributes(&blob.bytes, stride)),
@@ -207,7 +207,7 @@ impl BufferBuilder {
             Filter::Exponential => drop(packed.insert("filter".into(), "EXPONENTIAL".into())),
             _ => {}
         }
-        self.unfolded = Some((at + blob.bytes.len()).next_multiple_of(4));
+        self.fallback_size = Some((at + blob.bytes.len()).next_multiple_of(4));
         let view = json!({
             "buffer": 1, "byteOffset": at, "byteLength": blob.bytes.len(),
             "extensions": { MESHOPT[0]: packed },
@@ -218,7 +218,8 @@ impl BufferBuilder {
         }
     }
 
-    /// Copies what the kept views show, once where they overlap, and makes them show the copy.
+    /// Copies the bytes of the kept views, overlapping ones once, and points the views at the
+    /// copies.
     fn keep_bytes(&mut self, document: &Document<'_>, free: &[bool]) {
         let mut kept: Vec<usize> = (0..free.len()).filter(|&view| !free[view]).collect();
         let range = |view: usize| {
@@ -226,15 +227,15 @@ impl BufferBuilder {
             (view.buffer, view.byte_offset, view.byte_offset + view.byte_length)
         };
         kept.sort_by_key(|&view| range(view));
-        // The run of overlapping views that is being copied: its buffer, its bytes there, and where
-        // the first of them is here.
+        // Current run of overlapping views: its buffer, its byte range there, and where the copy of
+        // that range begins.
         let mut run: Option<(usize, Range<usize>, usize)> = None;
         for view in kept {
             let (buffer, start, end) = range(view);
             let (run_range, run_at) = match &mut run {
                 Some((b, range, at)) if *b == buffer && start < range.end => (range, *at),
                 _ => {
-                    // The same place modulo 8, so that every alignment holds.
+                    // Same offset modulo 8, so that every alignment holds.
                     while self.bytes.len() % 8 != start % 8 {
                         self.bytes.push(0);
                     }
@@ -252,7 +253,7 @@ impl BufferBuilder {
     }
 }
 
-/// Indices of two or four bytes as triangles.
+/// Decodes indices of two or four bytes into triangles.
 fn triangles(bytes: &[u8], size: usize) -> Vec<[u32; 3]> {
     let indices: Vec<u32> = match size {
         2 => bytes.as_chunks().0.iter().map(|&b| u32::from(u16::from_le_bytes(b))).collect(),
@@ -261,12 +262,12 @@ fn triangles(bytes: &[u8], size: usize) -> Vec<[u32; 3]> {
     indices.as_chunks().0.to_vec()
 }
 
-fn places(flags: &[bool]) -> Vec<usize> {
-    // The first is taken first.
-    (0..flags.len()).rev().filter(|&place| flags[place]).collect()
+fn indices_of(flags: &[bool]) -> Vec<usize> {
+    // Reversed, so that popping yields the lowest index first.
+    (0..flags.len()).rev().filter(|&index| flags[index]).collect()
 }
 
-fn place(values: &mut Vec<Value>, free: &mut Vec<usize>, value: Value) -> usize {
+fn insert(values: &mut Vec<Value>, free: &mut Vec<usize>, value: Value) -> usize {
     match free.pop() {
         Some(at) => {
             values[at] = value;
@@ -279,7 +280,7 @@ fn place(values: &mut Vec<Value>, free: &mut Vec<usize>, value: Value) -> usize 
     }
 }
 
-/// Free places at the end need not be there at all.
+/// Removes free entries at the end.
 fn drop_last(values: &mut Vec<Value>, free: &mut Vec<usize>) {
     while free.first().is_some_and(|&at| at + 1 == values.len()) {
         values.pop();
@@ -287,7 +288,7 @@ fn drop_last(values: &mut Vec<Value>, free: &mut Vec<usize>) {
     }
 }
 
-/// One flag per buffer view: is it used by free accessors, and by nothing else?
+/// Computes one flag per buffer view: true if free accessors use it and nothing else does.
 fn free_views(document: &Document<'_>, accessors: &[Value], free_accessors: &[bool]) -> Vec<bool> {
     let count = document.views.len();
     let (mut by_free, mut by_others) = (vec![false; count], vec![false; count]);
@@ -301,7 +302,7 @@ fn free_views(document: &Document<'_>, accessors: &[Value], free_accessors: &[bo
     by_free.iter().zip(by_others).map(|(&by_free, by_others)| by_free && !by_others).collect()
 }
 
-/// Marks every number under the key `bufferView` at any depth, which JSON's reader bounds.
+/// Marks every number under a key `bufferView`; the JSON parser bounds the depth.
 fn mark_views(value: &Value, marks: &mut [bool]) {
     match value {
         Value::Array(values) => values.iter().for_each(|value| mark_views(value, marks)),

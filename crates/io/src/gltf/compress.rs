@@ -1,4 +1,4 @@
-//! What is asked of compressed glTF, what it came to, and which meshes can have a grid.
+//! Options and report of glTF compression, and the quantization grids of meshes.
 
 use std::collections::BTreeSet;
 
@@ -10,22 +10,22 @@ use super::primitives::is_surface;
 use super::schema::parse_target_name;
 use crate::{Scene, Unsupported};
 
-/// How geometry is written small: [Kap20], and [KS21] where `meshopt` asks for it.
+/// Options for compressed geometry: quantization [Kap20] and, optionally, meshopt streams [KS21].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Compression {
-    /// Bits of the longest side of a mesh, 1 to 16; all axes and primitives share its cells.
+    /// Bits for the longest side of a mesh, 1 to 16; all axes and primitives share one grid.
     pub position_bits: u32,
-    /// Bits of each component of normals and tangents, 2 to 16; up to 8 take one byte.
+    /// Bits per component of normals and tangents, 2 to 16; up to 8 are stored in one byte.
     pub normal_bits: u32,
-    /// Bits of a texture from side to side, 1 to 16; up to 8 take one byte.
+    /// Bits per texture coordinate in [0, 1], 1 to 16; up to 8 are stored in one byte.
     pub uv_bits: u32,
-    /// Whether buffer views are compressed, too; else a GPU can take them from the file.
+    /// True to also compress the buffer views; otherwise a GPU can use them straight from the file.
     pub meshopt: bool,
 }
 
 impl Default for Compression {
-    /// What is seldom told from the original: 14 bits for positions, 8 for normals and 12 for
-    /// texture coordinates, compressed.
+    /// Settings that are rarely told from the original: 14 bits for positions, 8 for normals and 12
+    /// for texture coordinates, with meshopt compression.
     fn default() -> Self {
         Self { position_bits: 14, normal_bits: 8, uv_bits: 12, meshopt: true }
     }
@@ -39,56 +39,57 @@ impl Compression {
             ("uv bits", self.uv_bits, 1),
         ] {
             if !(least..=16).contains(&bits) {
-                return Err(Unsupported::new(name, format!("{bits} cannot be; {least} to 16 can")));
+                return Err(Unsupported::new(name, format!("must be {least} to 16, not {bits}")));
             }
         }
         Ok(())
     }
 }
 
-/// Bytes of arrays as a GPU holds them, and as the file does.
+/// Size of arrays in GPU memory and in the file.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Bytes {
-    /// After quantization.
+    /// Bytes after quantization.
     pub resident: usize,
-    /// After the codecs, too; the same without them.
+    /// Bytes in the file, after meshopt compression if enabled.
     pub stored: usize,
 }
 
-/// What compression came to.
+/// Sizes and error of a compressed file.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct CompressionReport {
-    /// Of positions.
+    /// Size of the positions.
     pub positions: Bytes,
-    /// Of indices.
+    /// Size of the indices.
     pub connectivity: Bytes,
-    /// Of all else at vertices.
+    /// Size of all other vertex data.
     pub attributes: Bytes,
-    /// The farthest that a vertex moved, in the units of its own mesh.
+    /// Largest distance that a vertex moved, in the units of its own mesh.
     pub max_position_error: f64,
-    /// What stays as floats, and why: `mesh 2: …`.
+    /// One line for each mesh whose positions stay floats, with the reason: `mesh 2: …`.
     pub kept: Vec<String>,
 }
 
-/// The cells on which the positions of a mesh lie.
+/// Uniform grid that the positions of a mesh are quantized to.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct QuantizationGrid {
-    /// The corner of the first cell, in numbers of 32 bits.
+    /// Corner of the first cell, representable in `f32`.
     pub origin: [f64; 3],
-    /// Their side, in a number of 32 bits.
+    /// Side of a cell, representable in `f32`.
     pub cell: f64,
-    /// The greatest number of a cell.
+    /// Largest cell index per axis.
     pub most: u16,
 }
 
 impl QuantizationGrid {
-    /// The grid of so many bits over points; none where its cells are no number of 32 bits.
+    /// Builds the grid with that many bits over the points; `None` if it is not representable in
+    /// `f32`.
     fn over<'a>(points: impl Iterator<Item = &'a [f64; 3]>, bits: u32) -> Option<Self> {
         let bounds = Bounds::of(points);
         let origin = bounds.min.map(|x| f64::from(rounded_down(x)));
         let longest = (0..3).map(|axis| bounds.max[axis] - origin[axis]).fold(0.0, f64::max);
         let most = ((1u32 << bits) - 1) as u16;
-        // Rounded up, so that the last cell is among them.
+        // Rounded up, so that the farthest point is still inside the grid.
         let cell = -f64::from(rounded_down(-longest / f64::from(most)));
         let cell = if longest == 0.0 { 1.0 } else { cell };
         let sound = origin.iter().all(|x| x.abs() <= f64::from(f32::MAX))
@@ -96,7 +97,7 @@ impl QuantizationGrid {
         sound.then_some(Self { origin, cell, most })
     }
 
-    /// The nearest cell.
+    /// Returns the cell nearest to a point.
     pub fn quantized(&self, point: [f64; 3]) -> [u16; 3] {
         let most = f64::from(self.most);
         std::array::from_fn(|axis| {
@@ -104,20 +105,20 @@ impl QuantizationGrid {
         })
     }
 
-    /// Where a cell is.
+    /// Returns the point that a cell stands for.
     pub fn place(&self, cell: [u16; 3]) -> [f64; 3] {
         std::array::from_fn(|axis| self.origin[axis] + f64::from(cell[axis]) * self.cell)
     }
 }
 
-/// The greatest number of 32 bits that is not above `x`.
+/// Returns the largest `f32` not above `x`.
 fn rounded_down(x: f64) -> f32 {
     let near = x as f32;
     if f64::from(near) > x { near.next_down() } else { near }
 }
 
-/// The grid of each mesh, in common with its levels; none where its positions must stay floats,
-/// which `kept` is told.
+/// Chooses the grid of each mesh, shared with its levels; `None` if its positions must stay floats,
+/// with the reason appended to `kept`.
 pub(super) fn grids(
     json: &Value,
     scene: &Scene,
@@ -136,11 +137,11 @@ pub(super) fn grids(
                 let points = std::iter::once(mesh).chain(coarser).flat_map(|mesh| &mesh.positions);
                 match QuantizationGrid::over(points, bits) {
                     Some(grid) => return Some(grid),
-                    None => "is too large or too small for a node to scale",
+                    None => "is too large or too small for a node's scale",
                 }
             }
         };
-        kept.push(format!("mesh {index}: positions stay floats, as it {why}"));
+        kept.push(format!("mesh {index}: positions stay floats, because it {why}"));
         None
     };
     (0..scene.meshes.len()).map(&mut grid).collect()
@@ -152,7 +153,7 @@ fn has_target(scene: &Scene, index: usize) -> bool {
     layers.any(|layer| matches!(parse_target_name(&layer.name), Some((_, "POSITION"))))
 }
 
-/// Why a node's transform cannot stand for the grid of a mesh, by all that shows it.
+/// Returns why no node transform can stand in for the grid of a mesh; `None` if one can.
 fn why_floats(json: &Value, mesh: usize) -> Option<&'static str> {
     let array = |value: &'_ Value, key: &str| {
         value.get(key).and_then(Value::as_array).cloned().unwrap_or_default()
@@ -161,7 +162,7 @@ fn why_floats(json: &Value, mesh: usize) -> Option<&'static str> {
     if !primitives.iter().all(is_surface) {
         return Some("has points or lines");
     }
-    // Thickness is in the mesh's own units.
+    // A material's thickness is in the mesh's own units, which quantization changes.
     let volumes = array(json, "materials");
     let has_volume = |i: usize| {
         volumes.get(i).is_some_and(|m| m["extensions"]["KHR_materials_volume"].is_object())
@@ -169,7 +170,7 @@ fn why_floats(json: &Value, mesh: usize) -> Option<&'static str> {
     let mut named = BTreeSet::new();
     primitives.iter().for_each(|primitive| name_materials(primitive, &mut named));
     if named.into_iter().any(has_volume) {
-        return Some("has a material with a thickness");
+        return Some("has a material with thickness");
     }
     for node in array(json, "nodes").iter().filter(|node| node["mesh"] == mesh) {
         if node.get("skin").is_some() {
@@ -184,7 +185,7 @@ fn why_floats(json: &Value, mesh: usize) -> Option<&'static str> {
     None
 }
 
-/// The materials of a primitive, those of its variants, too.
+/// Collects the materials of a primitive, including those of its variants.
 fn name_materials(value: &Value, into: &mut BTreeSet<usize>) {
     match value {
         Value::Array(values) => values.iter().for_each(|value| name_materials(value, into)),

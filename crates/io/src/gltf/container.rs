@@ -1,4 +1,4 @@
-//! The GLB container: JSON and binary chunk in one file.
+//! GLB container: JSON and a binary chunk in one file.
 
 use crate::{ParseError, Unsupported};
 
@@ -7,19 +7,22 @@ const JSON: &[u8; 4] = b"JSON";
 const BIN: &[u8; 4] = b"BIN\0";
 const HEADER: usize = 12;
 
-/// Splits a file into JSON and binary chunk; a file without the GLB magic is JSON alone.
+/// Splits a file into JSON and binary chunk; a file without the GLB magic is JSON only.
 pub(super) fn split(bytes: &[u8]) -> Result<(&[u8], Option<&[u8]>), ParseError> {
     if !bytes.starts_with(MAGIC) {
         return plain_json(bytes).map(|json| (json, None));
     }
     let version = word(bytes, 4)?;
     if version != 2 {
-        return Err(ParseError::byte(4, format!("GLB version {version}; only 2 is read")));
+        return Err(ParseError::byte(
+            4,
+            format!("GLB version {version}; only version 2 is supported"),
+        ));
     }
     let length = word(bytes, 8)?;
     if length < HEADER || length > bytes.len() {
         let found = bytes.len();
-        let reason = format!("the header tells of {length} bytes, but the file has {found}");
+        let reason = format!("the header declares {length} bytes, but the file has {found}");
         return Err(ParseError::byte(8, reason));
     }
     let bytes = &bytes[..length];
@@ -27,9 +30,9 @@ pub(super) fn split(bytes: &[u8]) -> Result<(&[u8], Option<&[u8]>), ParseError> 
     if kind != JSON {
         return Err(ParseError::byte(HEADER + 4, "the first chunk of a GLB must be JSON"));
     }
-    // Some writers fill up with zeros instead of spaces.
+    // Some writers pad with zeros instead of spaces.
     let json = &json[..json.len() - json.iter().rev().take_while(|&&byte| byte == 0).count()];
-    // Chunks of other kinds are extensions and may be skipped, but the second one alone is BIN.
+    // Chunks of other types are extensions and may be skipped; only the second chunk may be BIN.
     if next == bytes.len() {
         return Ok((json, None));
     }
@@ -37,13 +40,13 @@ pub(super) fn split(bytes: &[u8]) -> Result<(&[u8], Option<&[u8]>), ParseError> 
     Ok((json, (kind == BIN).then_some(bin)))
 }
 
-/// Puts JSON and binary chunk together.
+/// Joins JSON and binary chunk into a GLB file.
 pub(super) fn join(json: &[u8], bin: &[u8]) -> Result<Vec<u8>, Unsupported> {
     let padded = |chunk: &[u8]| chunk.len().next_multiple_of(4);
     let bin_size = if bin.is_empty() { 0 } else { 8 + padded(bin) };
     let length = HEADER + 8 + padded(json) + bin_size;
     let Ok(total) = u32::try_from(length) else {
-        let reason = format!("{length} bytes are more than a GLB can have; write .gltf");
+        let reason = format!("{length} bytes exceed the 4 GB limit of GLB; write .gltf instead");
         return Err(Unsupported::new("file", reason));
     };
     let mut out = Vec::with_capacity(length);
@@ -71,9 +74,10 @@ fn plain_json(bytes: &[u8]) -> Result<&[u8], ParseError> {
             "header",
             "this is a web page (HTML), not glTF; download the file itself",
         )),
-        Some(_) => {
-            Err(ParseError::part("header", "neither GLB (no \"glTF\" at the start) nor JSON"))
-        }
+        Some(_) => Err(ParseError::part(
+            "header",
+            "neither GLB (it does not start with \"glTF\") nor JSON",
+        )),
         None => Err(ParseError::part("header", "the file is empty")),
     }
 }
@@ -85,7 +89,7 @@ fn chunk(bytes: &[u8], at: usize) -> Result<(&[u8], &[u8], usize), ParseError> {
     let contents = &bytes[start..];
     let contents = contents.get(..length).ok_or_else(|| {
         let left = contents.len();
-        ParseError::byte(at, format!("a chunk of {length} bytes, but only {left} are left"))
+        ParseError::byte(at, format!("the chunk declares {length} bytes, but only {left} are left"))
     })?;
     Ok((kind, contents, start + length))
 }
@@ -96,7 +100,7 @@ fn word(bytes: &[u8], at: usize) -> Result<usize, ParseError> {
 }
 
 fn ends(at: usize) -> ParseError {
-    ParseError::byte(at, "the file ends here, within a GLB header")
+    ParseError::byte(at, "the file ends inside a GLB header")
 }
 
 #[cfg(test)]

@@ -1,14 +1,14 @@
-//! Grids in the nodes: the transform that turns cells back into places.
+//! Node transforms that map quantized positions back to model space.
 
 use serde_json::{Value, json};
 
 use super::compress::QuantizationGrid;
 use super::lod::{give_to_child, moving};
 
-/// Lets every node that shows a mesh with a grid scale and move it to its place.
+/// Makes every node that shows a quantized mesh scale and translate it back to model space.
 ///
-/// A node that has no transform, no children and does not move takes it on; else a new child takes
-/// the mesh and the transform, and is not the parent of anything.
+/// The transform goes into the node itself if it has no transform, no children and is not moved by
+/// animations or skins; otherwise into a new leaf child that takes over the mesh.
 pub(super) fn add_transforms(json: &mut Value, grids: &[Option<QuantizationGrid>]) {
     let count = json.get("nodes").and_then(Value::as_array).map_or(0, Vec::len);
     let moving = moving(json);

@@ -1,4 +1,4 @@
-//! A glTF document: JSON, buffers, and checked access to its arrays.
+//! Checked access to a glTF document: JSON, buffers and arrays.
 
 use std::cell::Cell;
 
@@ -9,17 +9,17 @@ use super::schema::{self, Accessor, Buffer, BufferView};
 use super::uri::{self, Uri};
 use crate::{ParseError, Resolve};
 
-/// How many values a file may unfold to for each of its bytes.
+/// Largest number of values that a file may expand to per byte.
 ///
-/// One is honest work; accessors shared by many primitives, strips and accessors without data give
-/// more. Instanced test scenes stay below 4.
-const UNFOLDING: u64 = 64;
+/// A plain file needs one. Accessors shared by many primitives, strips and accessors without data
+/// take more; instanced test scenes stay below 4.
+const MAX_EXPANSION: u64 = 64;
 
-/// The buffers of a document.
+/// Buffers of a document.
 #[derive(Debug)]
 pub(super) struct Buffers {
     pub bytes: Vec<Vec<u8>>,
-    /// The bytes that the file had before anything was unfolded from them.
+    /// Bytes in the file, before decompression.
     pub stored: usize,
 }
 
@@ -29,19 +29,19 @@ impl Buffers {
     }
 }
 
-/// A document with its parts in reach.
+/// JSON document with its typed entries and its buffers.
 pub(super) struct Document<'a> {
     pub json: &'a Value,
     pub buffers: &'a [Vec<u8>],
     pub accessors: Vec<Accessor>,
     pub views: Vec<BufferView>,
     pub meshes: Vec<schema::GltfMesh>,
-    /// How many more values may come out of it.
+    /// Number of values that may still be read, see [`Document::spend`].
     budget: Cell<u64>,
 }
 
 impl<'a> Document<'a> {
-    /// Types the parts that geometry needs.
+    /// Parses the entries that geometry needs.
     pub fn new(json: &'a Value, buffers: &'a Buffers) -> Result<Self, ParseError> {
         let Buffers { bytes: buffers, stored } = buffers;
         let views: Vec<BufferView> = schema::array(json, "bufferViews", "bufferView")?;
@@ -51,24 +51,24 @@ impl<'a> Document<'a> {
         let accessors: Vec<Accessor> = schema::array(json, "accessors", "accessor")?;
         let meshes: Vec<schema::GltfMesh> = schema::array(json, "meshes", "mesh")?;
         for (i, mesh) in json["meshes"].as_array().into_iter().flatten().enumerate() {
-            // Types alone would take arrays as well.
+            // Deserializing the struct would accept arrays as well.
             if !mesh["primitives"].as_array().is_some_and(|p| p.iter().all(Value::is_object)) {
                 return Err(ParseError::part(
                     format!("mesh {i}"),
-                    "has a primitive that is no object",
+                    "has a primitive that is not an object",
                 ));
             }
         }
         // An entry of the document takes about a hundred bytes of JSON.
         let entries = accessors.len() + meshes.iter().map(|m| m.primitives.len()).sum::<usize>();
-        // What was unfolded has done some of it already, but each of its bytes may be a value.
-        let unfolded = buffers.iter().map(Vec::len).sum::<usize>() as u64;
-        let values = (stored + 100 * entries) as u64 * UNFOLDING;
-        let budget = Cell::new((1 << 16) + values.max(4 * unfolded));
+        // Decompression has used part of the allowance, but each byte it made may be a value.
+        let decompressed = buffers.iter().map(Vec::len).sum::<usize>() as u64;
+        let values = (stored + 100 * entries) as u64 * MAX_EXPANSION;
+        let budget = Cell::new((1 << 16) + values.max(4 * decompressed));
         Ok(Self { json, buffers, accessors, views, meshes, budget })
     }
 
-    /// The bytes of a buffer view.
+    /// Returns a buffer view and its bytes.
     pub fn view(&self, index: usize) -> Result<(&BufferView, &'a [u8]), ParseError> {
         let Some(view) = self.views.get(index) else {
             return Err(missing("bufferView", index, self.views.len()));
@@ -76,8 +76,8 @@ impl<'a> Document<'a> {
         Ok((view, &self.buffers[view.buffer][view.byte_offset..][..view.byte_length]))
     }
 
-    /// Accounts for `values` numbers about to be made, so that a small file cannot ask for more
-    /// memory than there is.
+    /// Charges `values` numbers about to be read against the budget, so that a small file cannot
+    /// exhaust the memory.
     pub fn spend(&self, part: &str, values: usize) -> Result<(), ParseError> {
         let left = self.budget.get().checked_sub(values as u64).ok_or_else(|| {
             let reason = format!("{values} values here are far more than the file has data for");
@@ -88,16 +88,16 @@ impl<'a> Document<'a> {
     }
 }
 
-/// An entry that is named, but not there.
+/// Error for an index without an entry.
 pub(super) fn missing(entry: &str, index: usize, count: usize) -> ParseError {
-    ParseError::part(format!("{entry} {index}"), format!("is named, but there are only {count}"))
+    ParseError::part(format!("{entry} {index}"), format!("does not exist: there are only {count}"))
 }
 
-/// Refuses what cannot be read: another version, a required extension that is not known here.
+/// Rejects other versions of glTF and unknown required extensions.
 pub(super) fn check_head(json: &Value) -> Result<(), ParseError> {
     let version = json.pointer("/asset/version").and_then(Value::as_str).unwrap_or("");
     if !version.starts_with("2.") {
-        let reason = format!("glTF version {version:?}; only 2.0 is read");
+        let reason = format!("glTF version {version:?}; only 2.0 is supported");
         return Err(ParseError::part("asset", reason));
     }
     let required: Vec<String> = schema::array(json, "extensionsRequired", "extensionsRequired")?;
@@ -105,14 +105,13 @@ pub(super) fn check_head(json: &Value) -> Result<(), ParseError> {
         None => Ok(()),
         Some(name) if compresses(name) => Err(compressed("extensionsRequired", name)),
         Some(name) => {
-            let reason = format!("the file needs the extension {name}, which is not known here");
+            let reason = format!("the file requires the extension {name}, which is not supported");
             Err(ParseError::part("extensionsRequired", reason))
         }
     }
 }
 
-/// The extensions that change how geometry is to be read and are read so, and those that leave
-/// geometry alone.
+/// Reports whether an extension is supported or leaves the geometry alone.
 fn is_understood(name: &str) -> bool {
     const GEOMETRY: [&str; 4] = ["KHR_mesh_quantization", "MSFT_lod", MESHOPT[0], MESHOPT[1]];
     const OTHERS: [&str; 12] = [
@@ -136,14 +135,15 @@ fn compresses(name: &str) -> bool {
     name.contains("draco") || name.contains("meshopt")
 }
 
-/// Geometry in a compressed form.
+/// Error for geometry in an unsupported compressed form.
 pub(super) fn compressed(part: &str, extension: &str) -> ParseError {
-    let reason = format!("compressed with {extension}, which is not read; decompress it first");
+    let reason =
+        format!("compressed with {extension}, which is not supported; decompress it first");
     ParseError::part(part, reason)
 }
 
-/// The buffers of a document: the chunk of the GLB, data URIs, files. Those that are but places to
-/// unfold to are empty.
+/// Loads the buffers of a document from the GLB chunk, data URIs and files. Fallback buffers are
+/// left empty.
 pub(super) fn buffers(
     json: &Value,
     chunk: Option<&[u8]>,
@@ -153,24 +153,24 @@ pub(super) fn buffers(
     let load = |(i, buffer): (usize, &Buffer)| {
         let named = buffer.uri.is_some() || (i == 0 && chunk.is_some());
         if decompress::is_fallback(&json["buffers"][i])
-            || !named && decompress::is_unfolded_into(json, i)
+            || !named && decompress::is_decompression_target(json, i)
         {
             return Ok(Vec::new());
         }
         let wrong = |reason| ParseError::part(format!("buffer {i}"), reason);
         let bytes = match (&buffer.uri, chunk) {
             (None, Some(chunk)) if i == 0 => chunk.to_vec(),
-            (None, _) => return Err(wrong("has neither a URI nor the chunk of a GLB".to_owned())),
+            (None, _) => return Err(wrong("has neither a URI nor a GLB chunk".to_owned())),
             (Some(uri), _) => match uri::parse(uri).map_err(wrong)? {
                 Uri::Data(bytes) => bytes,
                 Uri::File(name) => resolve(&name).ok_or_else(|| {
-                    wrong(format!("names the file {name:?}, which cannot be read"))
+                    wrong(format!("refers to the file {name:?}, which cannot be read"))
                 })?,
             },
         };
         if bytes.len() < buffer.byte_length {
             let (found, expected) = (bytes.len(), buffer.byte_length);
-            return Err(wrong(format!("has {found} bytes where {expected} are declared")));
+            return Err(wrong(format!("has {found} bytes, but {expected} are declared")));
         }
         Ok(bytes)
     };
@@ -190,8 +190,10 @@ fn check_view(index: usize, view: &BufferView, buffers: &[Vec<u8>]) -> Result<()
         Some(end) if end <= buffer.len() => Ok(()),
         _ => {
             let (offset, length, found) = (view.byte_offset, view.byte_length, buffer.len());
-            let reason =
-                format!("{length} bytes at {offset} of buffer {}, which has {found}", view.buffer);
+            let reason = format!(
+                "{length} bytes at {offset} exceed buffer {}, which has {found} bytes",
+                view.buffer
+            );
             Err(ParseError::part(part, reason))
         }
     }

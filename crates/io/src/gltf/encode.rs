@@ -1,4 +1,4 @@
-//! The faces of one primitive as the arrays that a GPU reads.
+//! Vertex and index arrays of a primitive.
 
 use meshlod_mesh::{Layer, LayerKind, Mesh, WedgeId};
 
@@ -11,39 +11,39 @@ use super::{quantize, vertex_cache};
 use crate::Unsupported;
 use crate::meshopt::Filter;
 
-/// The arrays of a primitive.
+/// Arrays of a primitive.
 pub(super) struct Arrays {
     /// Positions of the vertices.
     pub positions: Blob,
-    /// The layers asked for, in order.
+    /// The requested layers, in order.
     pub layers: Vec<Blob>,
-    /// Three per face.
+    /// Indices, three per face.
     pub indices: Blob,
-    /// The farthest that a vertex moved.
+    /// Largest distance that a vertex moved.
     pub position_error: f64,
 }
 
-/// How numbers are written: as they are, or small.
+/// Number formats of the arrays: compression options and grid, if any.
 #[derive(Clone, Copy, Default)]
 pub(super) struct Numbers<'a> {
     pub compression: Option<&'a Compression>,
-    /// Of the mesh's positions, if they are to lie on one.
+    /// Grid that the positions are quantized to, if any.
     pub grid: Option<&'a QuantizationGrid>,
 }
 
-/// A layer and the component type that its file had it in, if it came from one.
+/// Layer with the component type it had in the file, if it came from one.
 #[derive(Clone, Copy)]
 pub(super) struct Typed<'a> {
     pub layer: &'a Layer,
     pub component: Option<u32>,
 }
 
-/// Makes the arrays of the faces at `faces`. Every pair of a vertex and its wedge is one vertex of
-/// the primitive, in the order of wedges, which is that of the file where the mesh came from one;
-/// small ones in that of use, with faces after their neighbours.
+/// Builds the arrays for the given faces. Every distinct pair of vertex and wedge becomes a vertex
+/// of the primitive, in the order of wedges: the order of the file, if the mesh came from one.
+/// Compressed arrays are instead sorted for the vertex cache.
 ///
 /// # Errors
-/// When a coordinate is beyond 32 bits, or a layer is of a width that the format has not.
+/// If a coordinate exceeds 32 bits, or glTF has no type for the width of a layer.
 pub(super) fn arrays(
     mesh: &Mesh,
     faces: &[u32],
@@ -67,13 +67,13 @@ pub(super) fn arrays(
     Ok(Arrays { layers, positions, indices, position_error })
 }
 
-/// A primitive that shows nothing at `point`: the format allows no empty mesh.
+/// Builds a primitive with one degenerate face at `point`, as glTF does not allow empty meshes.
 pub(super) fn nothing(point: [f64; 3]) -> Result<Arrays, Unsupported> {
     let face = [meshlod_mesh::VertexId(0); 3];
     arrays(&Mesh::new(vec![point], vec![face]), &[0], &[], Numbers::default())
 }
 
-/// Wedge and vertex of each corner in one number, the wedge first.
+/// Packs wedge and vertex of each corner into one number, the wedge in the high half.
 fn keys(mesh: &Mesh, face: usize) -> [u64; 3] {
     let vertices = mesh.faces[face];
     let wedges = match &mesh.attributes {
@@ -88,7 +88,7 @@ fn wedge_of(key: u64) -> WedgeId {
 }
 
 fn index_blob(indices: &[u32], vertices: usize) -> Blob {
-    // The greatest number of a type restarts strips and is no index.
+    // The largest value of an index type is reserved for primitive restart.
     let (component, bytes): (_, Vec<u8>) = if vertices < usize::from(u16::MAX) {
         (component::U16, indices.iter().flat_map(|&i| (i as u16).to_le_bytes()).collect())
     } else {
@@ -118,7 +118,7 @@ fn positions(
         let vertex = key as u32;
         let position = mesh.positions[vertex as usize].map(|x| x as f32);
         if !position.iter().all(|x| x.is_finite()) {
-            let reason = "a coordinate is beyond 32-bit floats, which is all that glTF has";
+            let reason = "a coordinate does not fit in 32-bit floats, the only type that glTF has";
             return Err(Unsupported::new(format!("v{vertex}"), reason));
         }
         points.push(position);
@@ -135,7 +135,7 @@ fn positions(
     Ok((blob, 0.0))
 }
 
-/// The least and the greatest of each coordinate.
+/// Computes the minimum and maximum of each coordinate.
 pub(super) fn extent(points: &[[f32; 3]]) -> [[f32; 3]; 2] {
     let mut extent = [[f32::INFINITY; 3], [f32::NEG_INFINITY; 3]];
     for point in points {
@@ -161,7 +161,7 @@ fn layer_blob(
         9 => "MAT3",
         16 => "MAT4",
         width => {
-            let reason = format!("is {width} wide; glTF has 1 to 4, 9 and 16");
+            let reason = format!("has {width} components; glTF allows 1 to 4, 9 and 16");
             return Err(Unsupported::new(format!("layer {:?}", layer.name), reason));
         }
     };
@@ -170,7 +170,7 @@ fn layer_blob(
     if matches!(layer.kind, LayerKind::Uv(_)) {
         flip_v(&mut values);
     }
-    // Colours of 16 bits stay that fine.
+    // 16-bit colours keep their precision.
     let small = numbers.compression.filter(|_| component != Some(component::U16));
     let small = small
         .and_then(|compression| quantize::layer(layer.kind, layer.width, &values, compression));
@@ -204,7 +204,7 @@ fn layer_blob(
     })
 }
 
-/// Whether colours are bytes divided by 255, so that bytes lose nothing.
+/// Reports whether all colours are bytes divided by 255, so that bytes lose nothing.
 fn all_are_bytes(values: &[f32]) -> bool {
     values.iter().all(|&x| (0.0..=1.0).contains(&x) && (x * 255.0).round() / 255.0 == x)
 }
@@ -213,13 +213,14 @@ fn component_size(component: u32) -> usize {
     if component == component::U8 { 1 } else { 2 }
 }
 
-/// Values times `scale` as unsigned integers, each element filled up to a multiple of four bytes.
+/// Writes values times `scale` as unsigned integers, each element padded to a multiple of four
+/// bytes.
 fn whole_numbers(values: &[f32], width: usize, component: u32, scale: f32) -> (Vec<u8>, usize) {
     let stride = (width * component_size(component)).next_multiple_of(4);
     let mut bytes = Vec::with_capacity(values.len() / width * stride);
     for element in values.chunks_exact(width) {
         for &value in element {
-            // `as` saturates: what is out of range becomes the nearest that is in it.
+            // `as` saturates, so values out of range are clamped.
             let whole = (value * scale).round();
             match component {
                 component::U8 => bytes.push(whole as u8),

@@ -1,4 +1,4 @@
-//! Levels of detail in a document, by the extension `MSFT_lod`.
+//! Levels of detail, linked by the extension `MSFT_lod`.
 
 use std::collections::BTreeSet;
 
@@ -10,20 +10,19 @@ use super::nodes::{self, MSFT_LOD};
 use super::primitives::Replacer;
 use crate::Unsupported;
 
-/// A coarser level of a whole scene.
+/// Coarser level of a whole scene.
 #[derive(Clone, Debug)]
 pub struct Level {
-    /// One mesh for each of the scene's, in its order, with its material labels.
+    /// One mesh for each mesh of the scene, in the same order and with the same material labels.
     pub meshes: Vec<Mesh>,
-    /// The level is shown where a node covers less than this part of the screen, in [0, 1], and
-    /// the next one does not yet.
+    /// Screen coverage in [0, 1] below which this level is shown, until the next one takes over.
     pub screen_coverage: f64,
 }
 
-/// Adds the levels of all meshes, and nodes that show them.
+/// Adds the levels of all meshes, and the nodes that show them.
 ///
-/// `templates` are the meshes of the document before their geometry was replaced, `grids` what
-/// the positions of each lie on.
+/// `templates` are the meshes of the document before their geometry was replaced, `grids` the
+/// quantization grids of their positions.
 pub(super) fn add(
     json: &mut Value,
     templates: &[Value],
@@ -55,16 +54,19 @@ fn check(levels: &[Level], meshes: usize) -> Result<(), Unsupported> {
         let wrong = |reason| Err(Unsupported::new(format!("level {}", k + 1), reason));
         if level.meshes.len() != meshes {
             let found = level.meshes.len();
-            return wrong(format!("has {found} meshes where the scene has {meshes}"));
+            return wrong(format!("has {found} meshes, but the scene has {meshes}"));
         }
         if !(0.0..=1.0).contains(&level.screen_coverage) {
-            return wrong(format!("a screen coverage of {}, not in [0, 1]", level.screen_coverage));
+            return wrong(format!(
+                "the screen coverage must be in [0, 1], not {}",
+                level.screen_coverage
+            ));
         }
     }
     Ok(())
 }
 
-/// Adds the meshes, level after level, and says the number of the first.
+/// Adds the meshes, level after level, and returns the index of the first.
 fn add_meshes(
     json: &mut Value,
     templates: &[Value],
@@ -89,7 +91,8 @@ fn add_meshes(
     Ok(extend(json, "meshes", new))
 }
 
-/// Appends to an array of the document, which may not be there yet, and says where.
+/// Appends to an array of the document, creating it if needed; returns the index of the first
+/// entry.
 fn extend(json: &mut Value, key: &str, new: Vec<Value>) -> usize {
     let mut values = match json[key].take() {
         Value::Array(values) => values,
@@ -101,8 +104,8 @@ fn extend(json: &mut Value, key: &str, new: Vec<Value>) -> usize {
     first
 }
 
-/// The nodes that animations or skins move: a level that stands beside such a node would not
-/// follow it.
+/// Finds the nodes that animations or skins move: a sibling node of a coarser level would not
+/// follow them.
 pub(super) fn moving(json: &Value) -> BTreeSet<usize> {
     let array = |value: &Value, key: &str| {
         value.get(key).and_then(Value::as_array).cloned().unwrap_or_default()
@@ -122,7 +125,7 @@ fn base_name(json: &Value, node: usize, mesh: usize) -> String {
     named.strip_suffix("_LOD0").map(str::to_owned).unwrap_or(named)
 }
 
-/// Moves the mesh of a node, with what belongs to it, to a new child, and says which.
+/// Moves the mesh of a node, with its skin and weights, to a new child and returns the child.
 pub(super) fn give_to_child(json: &mut Value, node: usize) -> usize {
     let mut child = Map::new();
     if let Some(parent) = json["nodes"][node].as_object_mut() {
@@ -134,7 +137,7 @@ pub(super) fn give_to_child(json: &mut Value, node: usize) -> usize {
     }
     let number = extend(json, "nodes", vec![child.into()]);
     extend(&mut json["nodes"][node], "children", vec![number.into()]);
-    // Weights of morph targets are animated where the mesh is.
+    // Animations of morph target weights follow the mesh.
     let animations = json.get_mut("animations").and_then(Value::as_array_mut);
     let channels = animations
         .into_iter()
@@ -149,7 +152,7 @@ pub(super) fn give_to_child(json: &mut Value, node: usize) -> usize {
     number
 }
 
-/// Adds the nodes of the coarser levels of a node, at its place, and links them to it.
+/// Adds nodes for the coarser levels with the transform of `node`, and links them to it.
 fn link(json: &mut Value, node: usize, name: &str, meshes: &[usize], levels: &[Level]) {
     let mut shown = json["nodes"][node].take();
     let coarser = meshes.iter().enumerate().map(|(k, &mesh)| {
@@ -165,7 +168,7 @@ fn link(json: &mut Value, node: usize, name: &str, meshes: &[usize], levels: &[L
     });
     let first = extend(json, "nodes", coarser.collect());
     let ids: Vec<usize> = (first..first + meshes.len()).collect();
-    // The least coverage of each level; the last is shown however small.
+    // Minimum coverage of each level; the last level is shown down to zero.
     let coverage: Vec<f64> =
         levels.iter().map(|level| level.screen_coverage).chain([0.0]).collect();
     shown["name"] = format!("{name}_LOD0").into();
@@ -174,7 +177,7 @@ fn link(json: &mut Value, node: usize, name: &str, meshes: &[usize], levels: &[L
     json["nodes"][node] = shown;
 }
 
-/// Sets an entry of an object of a node; extras that are no object go.
+/// Sets an entry of an object of a node, replacing extras that are not an object.
 fn set(node: &mut Value, object: &str, key: &str, value: Value) {
     if !node[object].is_object() {
         node[object] = json!({});
@@ -182,7 +185,7 @@ fn set(node: &mut Value, object: &str, key: &str, value: Value) {
     node[object][key] = value;
 }
 
-/// Names an extension under `extensionsUsed` or `extensionsRequired`, once.
+/// Adds an extension to `extensionsUsed` or `extensionsRequired`, once.
 pub(super) fn list_extension(json: &mut Value, key: &str, extension: &str) {
     let listed = json.get(key).and_then(Value::as_array);
     if !listed.is_some_and(|names| names.iter().any(|name| name == extension)) {

@@ -1,4 +1,4 @@
-//! Materials and images of a document, as far as a picture needs them.
+//! Base colours and images of a document.
 
 use serde_json::Value;
 
@@ -8,7 +8,7 @@ use super::schema::{self, Texture};
 use super::uri::{self, Uri};
 use crate::{Image, Material, ParseError, Resolve};
 
-/// Reads the materials; each image that they name is one of `images`.
+/// Reads the materials; every image they refer to must be below `images`.
 pub(super) fn materials(json: &Value, images: usize) -> Result<Vec<Material>, ParseError> {
     let textures: Vec<Texture> = schema::array(json, "textures", "texture")?;
     let materials: Vec<schema::GltfMaterial> = schema::array(json, "materials", "material")?;
@@ -33,9 +33,9 @@ pub(super) fn materials(json: &Value, images: usize) -> Result<Vec<Material>, Pa
     materials.into_iter().map(read).collect()
 }
 
-/// Reads the images, which stay encoded. One whose file is not there has no bytes: a picture is
-/// the poorer, the geometry is not. The same goes for a file that is no image: a document from
-/// elsewhere must not carry what else can be read here into what is written.
+/// Reads the images, still encoded. An image whose file is missing gets no bytes, which costs the
+/// pictures something but not the geometry. A file that is not an image gets none either: a
+/// document from elsewhere must not make the writer copy arbitrary files from this machine.
 pub(super) fn images(
     document: &Document<'_>,
     resolve: Resolve<'_>,
@@ -59,7 +59,7 @@ pub(super) fn images(
     images.into_iter().enumerate().map(&mut read).collect()
 }
 
-/// The name of an image that is no file of its own, as a file: other formats write it as one.
+/// Makes a file name for an embedded image, as other formats write images to files.
 fn file_name(name: Option<String>, index: usize, bytes: &[u8]) -> String {
     let name = name.filter(|name| !name.is_empty()).unwrap_or_else(|| format!("image{index}"));
     let suffix = match mime_type(bytes) {

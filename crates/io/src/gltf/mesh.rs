@@ -1,4 +1,4 @@
-//! A mesh of a document: its primitives as one surface.
+//! Reading a mesh of a document: its primitives merged into one surface.
 
 use meshlod_mesh::{Attributes, Labels, Layer, LayerKind, Mesh, VertexId, WedgeId, weld};
 use rustc_hash::FxHashMap;
@@ -8,11 +8,11 @@ use super::document::{Document, compressed};
 use super::schema::Primitive;
 use crate::{ParseError, Weld};
 
-/// Reads mesh `index`: all its triangle primitives as one mesh, whose material labels say which
-/// primitive a face is of. Points and lines have a label, but no face.
+/// Reads mesh `index` with all its triangle primitives; the material label of a face is the number
+/// of its primitive. Points and lines get a label but no faces.
 ///
-/// Primitives that name the same positions share their vertices, and those that name the same
-/// attributes altogether share their wedges.
+/// Primitives with the same POSITION accessor share their vertices, and those with all accessors in
+/// common share their wedges.
 pub(super) fn read(document: &Document<'_>, index: usize, how: Weld) -> Result<Mesh, ParseError> {
     let mut builder = Builder::default();
     for (p, primitive) in document.meshes[index].primitives.iter().enumerate() {
@@ -30,7 +30,7 @@ pub(super) fn read(document: &Document<'_>, index: usize, how: Weld) -> Result<M
     Ok(mesh)
 }
 
-/// What an attribute means.
+/// Returns the layer kind of an attribute.
 pub(super) fn kind(name: &str) -> LayerKind {
     let numbered = |prefix| name.strip_prefix(prefix).and_then(|set| set.parse::<u8>().ok());
     match name {
@@ -45,17 +45,17 @@ pub(super) fn kind(name: &str) -> LayerKind {
     }
 }
 
-/// Turns texture coordinates from an origin at the upper left to one at the lower left, or back.
+/// Flips texture coordinates between an origin at the upper left and one at the lower left.
 ///
-/// In 32 bits `1 - v` rounds where v is small, by 2^-25 at most; what has been turned once comes
-/// back bit for bit after two more turns, so a level written and read again is the same.
+/// In 32 bits, `1 - v` rounds small v by up to 2^-25. After the first flip, two more restore the
+/// value bit for bit, so writing a level and reading it again changes nothing.
 pub(super) fn flip_v(uvs: &mut [f32]) {
     for uv in uvs.as_chunks_mut::<2>().0 {
         uv[1] = 1.0 - uv[1];
     }
 }
 
-/// A mesh as it grows by primitives.
+/// Mesh under construction, one primitive at a time.
 #[derive(Default)]
 struct Builder {
     mesh: Mesh,
@@ -64,7 +64,7 @@ struct Builder {
     wedge_count: usize,
     layers: Vec<Layer>,
     layer_by_name: FxHashMap<String, usize>,
-    /// Accessor of positions → its first vertex.
+    /// POSITION accessor → its first vertex.
     vertex_pools: FxHashMap<usize, usize>,
     /// All accessors of a primitive → its first wedge.
     wedge_pools: FxHashMap<Vec<(String, usize)>, usize>,
@@ -83,7 +83,7 @@ impl Builder {
         }
         let accessors = primitive.accessors().map_err(|reason| ParseError::part(part, reason))?;
         let Some(&(_, positions)) = accessors.iter().find(|(name, _)| name == "POSITION") else {
-            return Err(ParseError::part(part, "has no POSITION"));
+            return Err(ParseError::part(part, "has no POSITION attribute"));
         };
         let first_vertex = match self.vertex_pools.get(&positions) {
             Some(&first) => first,
@@ -138,7 +138,7 @@ impl Builder {
             let values = document.floats(*accessor)?;
             if values.count() != count {
                 let found = values.count();
-                let reason = format!("{name} has {found} elements, but POSITION {count}");
+                let reason = format!("{name} has {found} elements, but POSITION has {count}");
                 return Err(ParseError::part(part, reason));
             }
             self.add_values(name, values, first)
@@ -150,11 +150,11 @@ impl Builder {
         Ok(first)
     }
 
-    /// Appends values to the layer of that name, with zeros up to wedge `first` where it lacks some.
+    /// Appends values to the layer of that name, padding it with zeros up to wedge `first`.
     fn add_values(&mut self, name: &str, mut new: Values, first: usize) -> Result<(), String> {
         let kind = kind(name);
         if !fits(kind, new.width) {
-            return Err(format!("{name} cannot be {} wide", new.width));
+            return Err(format!("{name} cannot have {} components", new.width));
         }
         if matches!(kind, LayerKind::Uv(_)) {
             flip_v(&mut new.values);
@@ -173,7 +173,9 @@ impl Builder {
         }
         if new.width != layer.width {
             let (known, width) = (layer.width, new.width);
-            return Err(format!("{name} is {width} wide, but {known} in an earlier primitive"));
+            return Err(format!(
+                "{name} has {width} components, but {known} in an earlier primitive"
+            ));
         }
         layer.values.resize(first * layer.width, 0.0);
         layer.values.append(&mut new.values);
@@ -199,7 +201,7 @@ fn ids_fit(accessor: usize, count: usize) -> Result<(), ParseError> {
     if u32::try_from(count).is_ok() {
         return Ok(());
     }
-    let reason = "the mesh has more than 2^32 vertices with this";
+    let reason = "exceeds the limit of 2^32 vertices in a mesh";
     Err(ParseError::part(format!("accessor {accessor}"), reason))
 }
 
@@ -213,7 +215,7 @@ fn fits(kind: LayerKind, width: usize) -> bool {
     }
 }
 
-/// Makes colours of three values ones of four, opaque.
+/// Turns RGB colours into opaque RGBA.
 fn add_alpha(width: &mut usize, values: &mut Vec<f32>) {
     if *width == 3 {
         let opaque = |&[r, g, b]: &[f32; 3]| [r, g, b, 1.0];
@@ -222,8 +224,8 @@ fn add_alpha(width: &mut usize, values: &mut Vec<f32>) {
     }
 }
 
-/// The triangles of a list, a strip or a fan of indices. Strips and fans turn on triangles that
-/// repeat an index; those are no faces.
+/// Lists the triangles of an index list, strip or fan. Degenerate triangles, which strips and fans
+/// use as joints, are dropped.
 fn triangles(mode: u32, indices: &[u32]) -> impl Iterator<Item = [u32; 3]> {
     let list = (mode == 4).then(|| indices.as_chunks::<3>().0.iter().copied());
     let windows = if mode == 4 { &[][..] } else { indices };

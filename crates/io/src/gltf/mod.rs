@@ -1,4 +1,4 @@
-//! glTF 2.0 and GLB, with all that a document holds carried through.
+//! glTF 2.0 and GLB; everything else in a document is carried through.
 
 mod accessor;
 mod buffer_builder;
@@ -30,4 +30,4 @@ pub use lod::Level;
 pub use parts::{QuantizedPart, write_parts_glb};
 pub use primitive_rows::PrimitiveRows;
 pub use read::{SourceDocument, read};
-pub use write::{Written, write, write_compressed, write_compressed_glb, write_glb};
+pub use write::{GltfFiles, write, write_compressed, write_compressed_glb, write_glb};

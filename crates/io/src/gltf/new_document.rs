@@ -1,4 +1,4 @@
-//! A document for a scene that came from no glTF.
+//! New documents, for scenes that were not read from glTF.
 
 use serde_json::{Map, Value, json};
 
@@ -6,11 +6,12 @@ use super::buffer_builder::BufferBuilder;
 use crate::scene::IDENTITY;
 use crate::{Material, Node, Scene, SceneMesh};
 
-/// The JSON of a scene but for the geometry: its meshes have bare primitives, one a material label.
-pub(super) fn document(scene: &Scene, pool: &mut BufferBuilder) -> Value {
+/// Builds the JSON of a scene without geometry; each mesh has an empty primitive per material
+/// label.
+pub(super) fn document(scene: &Scene, builder: &mut BufferBuilder) -> Value {
     let mut images = Images::default();
     let materials: Vec<Value> =
-        scene.materials.iter().map(|m| material(m, images.texture(m, scene, pool))).collect();
+        scene.materials.iter().map(|m| material(m, images.texture(m, scene, builder))).collect();
     let mut json = json!({
         "asset": {
             "version": "2.0",
@@ -26,7 +27,7 @@ pub(super) fn document(scene: &Scene, pool: &mut BufferBuilder) -> Value {
         ("textures", (0..images.json.len()).map(|i| json!({ "source": i })).collect()),
         ("images", images.json),
     ] {
-        // The format has no empty arrays.
+        // glTF does not allow empty arrays.
         if !Vec::<Value>::is_empty(&values) {
             json[key] = values.into();
         }
@@ -34,7 +35,7 @@ pub(super) fn document(scene: &Scene, pool: &mut BufferBuilder) -> Value {
     json
 }
 
-/// The kind of an encoded image by its first bytes, where it is one that glTF knows.
+/// Detects the MIME type of an encoded image by its first bytes, if glTF knows the type.
 pub(super) fn mime_type(bytes: &[u8]) -> Option<&'static str> {
     match bytes {
         [0x89, b'P', b'N', b'G', ..] => Some("image/png"),
@@ -45,7 +46,7 @@ pub(super) fn mime_type(bytes: &[u8]) -> Option<&'static str> {
     }
 }
 
-/// The images in use; image `i` is texture `i`.
+/// Images in use; image `i` is texture `i`.
 #[derive(Default)]
 struct Images {
     json: Vec<Value>,
@@ -54,13 +55,13 @@ struct Images {
 }
 
 impl Images {
-    /// The texture of a material; none where its image is neither PNG nor JPEG, as glTF has no
-    /// other.
+    /// Returns the texture of a material; `None` if its image is neither PNG nor JPEG, the only
+    /// types that core glTF allows.
     fn texture(
         &mut self,
         material: &Material,
         scene: &Scene,
-        pool: &mut BufferBuilder,
+        builder: &mut BufferBuilder,
     ) -> Option<usize> {
         let index = material.base_color_image?;
         if let Some(&texture) = self.of_scene.get(&index) {
@@ -69,7 +70,7 @@ impl Images {
         let image = scene.images.get(index)?;
         let kind =
             mime_type(&image.bytes).filter(|kind| matches!(*kind, "image/png" | "image/jpeg"))?;
-        let view = pool.add_view(&image.bytes);
+        let view = builder.add_view(&image.bytes);
         self.json.push(json!({ "name": image.name, "bufferView": view, "mimeType": kind }));
         self.of_scene.insert(index, self.json.len() - 1);
         Some(self.json.len() - 1)

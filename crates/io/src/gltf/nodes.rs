@@ -1,4 +1,4 @@
-//! The nodes of a document: which are shown, where, and that they form trees.
+//! Nodes of a document: checking that they form trees, and their transforms.
 
 use glam::{DMat4, DQuat, DVec3};
 use serde_json::Value;
@@ -7,18 +7,19 @@ use super::document::missing;
 use super::schema::{self, GltfScene};
 use crate::{Node, ParseError, Scene};
 
-/// The most faces that a scene may show, over all instances. 2^28 take some 10 GB as one mesh.
+/// Maximum number of faces a scene may show, over all instances; 2^28 take about 10 GB when
+/// flattened.
 const MOST_SHOWN_FACES: usize = 1 << 28;
 
-/// The greatest entry of a world transform: positions of 32 bits stay finite under it.
+/// Largest entry of a world transform that keeps 32-bit positions finite.
 const GREATEST_ENTRY: f64 = 1e200;
 
-/// The extension that links a node to its coarser levels.
+/// Extension that links a node to its coarser levels.
 pub(super) const MSFT_LOD: &str = "MSFT_lod";
 
-/// Reads nodes and roots into a scene that has its meshes.
+/// Reads nodes and roots into a scene that already has its meshes.
 ///
-/// Coarser levels by `MSFT_lod` are nodes, but neither roots nor children of any.
+/// Coarser levels linked by `MSFT_lod` stay in the list, but are no roots and nobody's children.
 pub(super) fn read(json: &Value, scene: &mut Scene) -> Result<(), ParseError> {
     let nodes: Vec<schema::GltfNode> = schema::array(json, "nodes", "node")?;
     let parents = parents(&nodes)?;
@@ -37,10 +38,10 @@ pub(super) fn read(json: &Value, scene: &mut Scene) -> Result<(), ParseError> {
             children: node.children.into_iter().filter(|&child| !hidden[child]).collect(),
         });
     }
-    check_placements(scene)
+    check_instances(scene)
 }
 
-/// One flag per node: is it a coarser level of another, by `MSFT_lod`?
+/// Computes one flag per node: true if it is a coarser level of another node by `MSFT_lod`.
 pub(super) fn levels(json: &Value, count: usize) -> Vec<bool> {
     let mut hidden = vec![false; count];
     let nodes = json.get("nodes").and_then(Value::as_array);
@@ -71,7 +72,7 @@ fn parents(nodes: &[schema::GltfNode]) -> Result<Vec<Option<usize>>, ParseError>
     Ok(parents)
 }
 
-/// With one parent at most, what cannot be reached from above runs in a circle.
+/// Checks for cycles: with at most one parent each, nodes unreachable from the roots form cycles.
 fn check_trees(nodes: &[schema::GltfNode], parents: &[Option<usize>]) -> Result<(), ParseError> {
     let mut reached = vec![false; nodes.len()];
     let mut stack: Vec<usize> = (0..nodes.len()).filter(|&i| parents[i].is_none()).collect();
@@ -82,20 +83,20 @@ fn check_trees(nodes: &[schema::GltfNode], parents: &[Option<usize>]) -> Result<
     match reached.iter().position(|&reached| !reached) {
         None => Ok(()),
         Some(node) => {
-            let reason = "is in a circle of nodes that are each other's children";
+            let reason = "is part of a cycle: it is its own ancestor";
             Err(ParseError::part(format!("node {node}"), reason))
         }
     }
 }
 
-/// The roots of the scene that is shown first; without scenes, every node that has no parent.
+/// Returns the roots of the default scene or, without scenes, every node that has no parent.
 fn roots(json: &Value, parents: &[Option<usize>]) -> Result<Vec<usize>, ParseError> {
     let scenes: Vec<GltfScene> = schema::array(json, "scenes", "scene")?;
     let shown = match json.get("scene") {
         None => 0,
         Some(shown) => shown
             .as_u64()
-            .ok_or_else(|| ParseError::part("scene", "must be the number of a scene"))?
+            .ok_or_else(|| ParseError::part("scene", "must be the index of a scene"))?
             as usize,
     };
     if scenes.is_empty() {
@@ -108,7 +109,7 @@ fn roots(json: &Value, parents: &[Option<usize>]) -> Result<Vec<usize>, ParseErr
         match parents.get(node) {
             None => return Err(missing("node", node, parents.len())),
             Some(Some(parent)) => {
-                let reason = format!("names node {node}, which is a child of node {parent}");
+                let reason = format!("lists node {node}, which is a child of node {parent}");
                 return Err(ParseError::part(format!("scene {shown}"), reason));
             }
             Some(None) => {}
@@ -122,10 +123,10 @@ fn transform(node: &schema::GltfNode) -> Result<DMat4, String> {
         return Ok(DMat4::from_cols_array(matrix));
     }
     let rotation = DQuat::from_array(node.rotation.unwrap_or([0.0, 0.0, 0.0, 1.0]));
-    // Those of 32 bits are a little off unit length.
+    // 32-bit quaternions are slightly off unit length.
     let length = rotation.length();
     if !(0.5..2.0).contains(&length) {
-        return Err(format!("its rotation is no unit quaternion: its length is {length}"));
+        return Err(format!("its rotation must be a unit quaternion, but has length {length}"));
     }
     Ok(DMat4::from_scale_rotation_translation(
         DVec3::from_array(node.scale.unwrap_or([1.0; 3])),
@@ -134,19 +135,19 @@ fn transform(node: &schema::GltfNode) -> Result<DMat4, String> {
     ))
 }
 
-/// That no transform leaves the numbers, and that instances do not multiply beyond memory.
-fn check_placements(scene: &Scene) -> Result<(), ParseError> {
+/// Checks that all world transforms are finite, and that instancing stays within memory.
+fn check_instances(scene: &Scene) -> Result<(), ParseError> {
     let mut faces = 0;
     for instance in scene.instances() {
         let part = || format!("node {}", instance.node);
         let entries = instance.transform.as_flattened();
         if !entries.iter().all(|entry| entry.abs() <= GREATEST_ENTRY) {
-            return Err(ParseError::part(part(), "its place in the world is not finite"));
+            return Err(ParseError::part(part(), "its world transform is not finite"));
         }
         let mesh = &scene.meshes[instance.mesh].mesh;
         faces += mesh.faces.len().max(mesh.positions.len());
         if faces > MOST_SHOWN_FACES {
-            let reason = format!("the scene shows more than {MOST_SHOWN_FACES} faces up to here");
+            let reason = format!("the scene shows more than {MOST_SHOWN_FACES} faces");
             return Err(ParseError::part(part(), reason));
         }
     }

@@ -1,4 +1,4 @@
-//! Parts of a mesh in eight bits an axis, each a node of its own that turns them into places.
+//! Meshes split into parts with 8-bit positions, each shown by a node that scales it back.
 
 use serde_json::{Value, json};
 
@@ -6,26 +6,27 @@ use super::accessor::component;
 use super::container;
 use crate::Unsupported;
 
-/// A part of a mesh with its own grid of 256 cells an axis.
+/// Part of a mesh, quantized to its own grid of 256 cells per axis.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct QuantizedPart {
-    /// Rows of the matrix that turns cells into places; its fourth column moves. As glTF wants of
-    /// nodes, it scales, turns and moves, and does not shear.
+    /// Rows of the 3×4 matrix that maps cells to model space. As glTF requires of nodes, it is made
+    /// of scale, rotation and translation, without shear.
     pub matrix: [[f32; 4]; 3],
-    /// Cells of the vertices.
+    /// Grid cells of the vertices.
     pub positions: Vec<[u8; 3]>,
     /// Faces, by index into `positions`.
     pub faces: Vec<[u32; 3]>,
 }
 
-/// Writes parts as GLB with `KHR_mesh_quantization`: a mesh with one primitive and a node for each.
+/// Writes parts as GLB with `KHR_mesh_quantization`: one mesh with one primitive, and one node,
+/// each.
 ///
-/// A position takes four bytes, an index two, or four where a part has more than 65535 vertices.
-/// Parts without faces are left out. Vertices are drawn at the place that the matrix gives in 32
-/// bits, so vertices of two parts meet where their matrices agree on the bit.
+/// A position takes four bytes; an index takes two, or four if a part has more than 65535 vertices.
+/// Parts without faces are left out. The matrices are applied in 32 bits, so vertices of two parts
+/// coincide only if their matrices give the same bits.
 ///
 /// # Errors
-/// When a matrix is not finite or a face names a vertex that is not there; above 4 GB.
+/// If a matrix is not finite or a face refers to a vertex that does not exist; above 4 GB.
 /// # References
 /// [Kap20]
 pub fn write_parts_glb(parts: &[QuantizedPart]) -> Result<Vec<u8>, Unsupported> {
@@ -74,14 +75,16 @@ fn check(index: usize, part: &QuantizedPart) -> Result<(), Unsupported> {
     }
     let count = part.positions.len();
     match part.faces.iter().flatten().find(|&&v| v as usize >= count) {
-        Some(vertex) => wrong(format!("a face names vertex {vertex} of {count}")),
+        Some(vertex) => {
+            wrong(format!("a face refers to vertex {vertex}, but there are only {count}"))
+        }
         None => Ok(()),
     }
 }
 
-/// The least type that has all indices; the greatest number of each restarts strips.
+/// Returns the smallest usable index type; the largest value of a type is reserved for restart.
 fn index_type(parts: &[&QuantizedPart]) -> (u32, usize) {
-    // One byte would do for small parts, but newer GPU interfaces do not take such indices.
+    // One byte would do for small parts, but modern GPU APIs have no 8-bit indices.
     match parts.iter().map(|part| part.positions.len()).max().unwrap_or(0) {
         ..=65535 => (component::U16, 2),
         _ => (component::U32, 4),
@@ -100,7 +103,7 @@ fn mesh(index: usize) -> Value {
     json!({ "primitives": [primitive] })
 }
 
-/// Positions and indices of each part, one after the other.
+/// Builds the accessors: positions and indices of each part in turn.
 fn accessors(parts: &[&QuantizedPart], component: u32, size: usize) -> Vec<Value> {
     let (mut vertices, mut indices) = (0, 0);
     let mut accessors = Vec::with_capacity(2 * parts.len());

@@ -1,4 +1,4 @@
-//! Where the vertices of a mesh stand in the document.
+//! Mapping from the vertices of a mesh back to the accessors of the document.
 
 use std::ops::Range;
 
@@ -7,19 +7,19 @@ use serde_json::Value;
 use super::primitives::is_surface;
 use super::read::SourceDocument;
 
-/// The positions of a primitive, in a mesh that was read without welding.
+/// Vertices of a primitive and the POSITION accessor that they were read from.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct PrimitiveRows {
-    /// The accessor of its POSITION.
+    /// POSITION accessor of the primitive.
     pub accessor: usize,
-    /// The vertices of the mesh that are the accessor's rows, in their order.
+    /// Vertices of the mesh that are the elements of the accessor, in order.
     pub vertices: Range<usize>,
 }
 
 impl SourceDocument {
-    /// The vertices of each primitive of a mesh, as [`Weld::Off`](crate::Weld::Off) numbers them:
-    /// the rows of one POSITION accessor after those of another, each accessor once. `None` for
-    /// points and lines. Empty for a mesh that is not there.
+    /// Returns the vertices of each primitive of a mesh, numbered as with
+    /// [`Weld::Off`](crate::Weld::Off): the elements of the POSITION accessors one after the other,
+    /// each accessor once. `None` for points and lines; empty if there is no such mesh.
     pub fn primitive_rows(&self, mesh: usize) -> Vec<Option<PrimitiveRows>> {
         let json = &self.0.json;
         let primitives =

@@ -1,4 +1,4 @@
-//! The geometry of a mesh put into its JSON.
+//! Replacing the geometry in the JSON of a mesh.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -14,29 +14,29 @@ use super::lod;
 use super::schema::{self, parse_target_name};
 use crate::Unsupported;
 
-/// Where geometry goes to, and the document that it came from, if any.
+/// Writer of new geometry into the meshes of a document.
 pub(super) struct Replacer<'a> {
     pub document: Option<&'a Document<'a>>,
-    pub pool: BufferBuilder,
-    /// How small numbers are written, if they are.
+    pub builder: BufferBuilder,
+    /// Compression options, if the output is compressed.
     pub compression: Option<&'a Compression>,
-    /// The farthest that a vertex moved by it.
+    /// Largest distance that quantization moved a vertex.
     pub position_error: f64,
 }
 
 impl<'a> Replacer<'a> {
-    pub fn new(document: Option<&'a Document<'a>>, pool: BufferBuilder) -> Self {
-        Self { document, pool, compression: None, position_error: 0.0 }
+    pub fn new(document: Option<&'a Document<'a>>, builder: BufferBuilder) -> Self {
+        Self { document, builder, compression: None, position_error: 0.0 }
     }
 
-    /// Replaces the triangle primitives in the JSON of a mesh by the faces of `mesh`.
+    /// Replaces the triangle primitives in the JSON of a mesh with the faces of `mesh`.
     ///
-    /// Primitives keep all but their arrays, of which they have the kinds that they had, and those
-    /// that no primitive had. Primitives that no face is left of go; of a mesh that has no face
-    /// one stays that shows nothing. Positions lie on the grid, if there is one.
+    /// Primitives keep everything but their arrays. Each gets the attributes that it had, and those
+    /// that no primitive had. A primitive left without faces is dropped; a mesh left without faces
+    /// keeps one degenerate primitive. Positions are quantized to the grid, if there is one.
     ///
     /// # Errors
-    /// When the mesh is not valid, when a face's label names no triangle primitive, or see
+    /// If the mesh is invalid or a face's label is not a triangle primitive; also those of
     /// [`encode::arrays`].
     pub fn replace(
         &mut self,
@@ -81,18 +81,18 @@ impl<'a> Replacer<'a> {
         Ok(())
     }
 
-    /// What compression came to.
+    /// Returns the sizes and the error of the compressed arrays.
     pub fn report(&self, kept: Vec<String>) -> CompressionReport {
-        let [positions, connectivity, attributes] = self.pool.added;
+        let [positions, connectivity, attributes] = self.builder.added;
         let max_position_error = self.position_error;
         CompressionReport { positions, connectivity, attributes, max_position_error, kept }
     }
 
-    /// Names the extensions that the arrays need.
+    /// Lists the extensions that the arrays need in the document.
     pub fn list_extensions(&self, json: &mut Value) {
         let needed = [
-            ("KHR_mesh_quantization", self.pool.is_quantized()),
-            (MESHOPT[0], self.pool.is_packed()),
+            ("KHR_mesh_quantization", self.builder.is_quantized()),
+            (MESHOPT[0], self.builder.is_compressed()),
         ];
         for (extension, _) in needed.into_iter().filter(|&(_, needed)| needed) {
             lod::list_extension(json, "extensionsUsed", extension);
@@ -100,14 +100,15 @@ impl<'a> Replacer<'a> {
         }
     }
 
-    /// The primitive with other arrays, those of `names` in order.
+    /// Returns a copy of the primitive with other arrays; `names` are those of the layers, in
+    /// order.
     fn with_arrays(&mut self, primitive: &Value, arrays: Arrays, names: &[&String]) -> Value {
         self.position_error = self.position_error.max(arrays.position_error);
         let mut attributes = Map::new();
         let mut targets: Vec<Map<String, Value>> = Vec::new();
-        attributes.insert("POSITION".into(), self.pool.add(arrays.positions).into());
+        attributes.insert("POSITION".into(), self.builder.add(arrays.positions).into());
         for (name, blob) in names.iter().zip(arrays.layers) {
-            let accessor = self.pool.add(blob).into();
+            let accessor = self.builder.add(blob).into();
             match parse_target_name(name) {
                 None => drop(attributes.insert((*name).clone(), accessor)),
                 Some((target, attribute)) => {
@@ -118,7 +119,7 @@ impl<'a> Replacer<'a> {
         }
         let mut new = primitive.clone();
         new["attributes"] = attributes.into();
-        new["indices"] = self.pool.add(arrays.indices).into();
+        new["indices"] = self.builder.add(arrays.indices).into();
         if let Some(entries) = new.as_object_mut() {
             entries.shift_remove("mode");
             entries.shift_remove("targets");
@@ -130,18 +131,18 @@ impl<'a> Replacer<'a> {
     }
 }
 
-/// Whether the JSON of a primitive is of triangles, and so of what is replaced.
+/// Reports whether a primitive consists of triangles, which are what is replaced.
 pub(super) fn is_surface(primitive: &Value) -> bool {
     matches!(primitive.get("mode").and_then(Value::as_u64), None | Some(4..=6))
 }
 
-/// The accessors of a primitive's attributes by layer name.
+/// Returns the accessors of a primitive's attributes by layer name.
 pub(super) fn attributes(primitive: &Value) -> BTreeMap<String, usize> {
     let typed = <schema::Primitive as serde::Deserialize>::deserialize(primitive);
     typed.ok().and_then(|primitive| primitive.accessors().ok()).into_iter().flatten().collect()
 }
 
-/// The faces of each primitive. Without labels, all are of the first that has triangles.
+/// Groups the faces by primitive. Without labels, all belong to the first triangle primitive.
 fn faces_by_primitive(mesh: &Mesh, primitives: &[Value]) -> Result<Vec<Vec<u32>>, String> {
     let mut faces = vec![Vec::new(); primitives.len()];
     let only = primitives.iter().position(is_surface).unwrap_or(0);
@@ -152,7 +153,8 @@ fn faces_by_primitive(mesh: &Mesh, primitives: &[Value]) -> Result<Vec<Vec<u32>>
             _ => {
                 let count = primitives.len();
                 return Err(format!(
-                    "face f{face} has label {label}, which is none of its {count} triangle primitives"
+                    "face f{face} has label {label}, which is not one of its {count} triangle \
+                     primitives"
                 ));
             }
         }
@@ -160,13 +162,13 @@ fn faces_by_primitive(mesh: &Mesh, primitives: &[Value]) -> Result<Vec<Vec<u32>>
     Ok(faces)
 }
 
-/// The layers of a mesh by the names of attributes that they are written under.
+/// Returns the layers of a mesh by the attribute names they are written under.
 fn by_attribute(mesh: &Mesh) -> BTreeMap<String, &Layer> {
     let mut named: BTreeMap<String, &Layer> = BTreeMap::new();
     let layers = mesh.attributes.as_ref().map_or(&[][..], |attributes| &attributes.layers);
     for layer in layers {
         let mut name = attribute_name(layer);
-        // Two names can become the same; no layer is lost for it.
+        // Names may collide after conversion; no layer is lost.
         while named.contains_key(&name) {
             name.push('_');
         }
@@ -185,7 +187,7 @@ fn attribute_name(layer: &Layer) -> String {
         LayerKind::Weights(set) => format!("WEIGHTS_{set}"),
         LayerKind::Other if layer.name.starts_with('_') => layer.name.clone(),
         LayerKind::Other if parse_target_name(&layer.name).is_some() => layer.name.clone(),
-        // The format wants an underscore and capitals for names of one's own.
+        // glTF requires custom attribute names to begin with an underscore, in capitals.
         LayerKind::Other => {
             let plain =
                 |c: char| if c.is_ascii_alphanumeric() { c.to_ascii_uppercase() } else { '_' };

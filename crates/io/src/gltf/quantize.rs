@@ -7,7 +7,7 @@ use super::buffer_builder::{Blob, Part, Usage};
 use super::compress::{Compression, QuantizationGrid};
 use crate::meshopt::{Filter, encode_exponential, encode_octahedral};
 
-/// An array of integers for a GPU, each element filled up to a multiple of four bytes.
+/// Builds an array of normalised integers, each element padded to a multiple of four bytes.
 fn integers(shape: &'static str, component: u32, count: usize, values: &[i32]) -> Blob {
     let width = values.len() / count.max(1);
     let size = if matches!(component, component::I8 | component::U8) { 1 } else { 2 };
@@ -33,7 +33,7 @@ fn integers(shape: &'static str, component: u32, count: usize, values: &[i32]) -
     }
 }
 
-/// Positions by the numbers of their cells, and the farthest that one moved.
+/// Quantizes positions to grid cells; also returns the largest distance that one moved.
 pub(super) fn positions(points: &[[f64; 3]], grid: &QuantizationGrid) -> (Blob, f64) {
     let cells: Vec<[u16; 3]> = points.iter().map(|&point| grid.quantized(point)).collect();
     let moved = |(cell, point): (&[u16; 3], &[f64; 3])| {
@@ -53,7 +53,7 @@ pub(super) fn positions(points: &[[f64; 3]], grid: &QuantizationGrid) -> (Blob, 
     (blob, error)
 }
 
-/// A layer's values as integers, or as floats of fewer bits; `None` where they stay as they are.
+/// Quantizes a layer to integers or to floats with fewer bits; `None` if it stays as it is.
 pub(super) fn layer(
     kind: LayerKind,
     width: usize,
@@ -82,7 +82,7 @@ pub(super) fn all_in_unit(values: &[f32]) -> bool {
     values.iter().all(|x| (0.0..=1.0).contains(x))
 }
 
-/// Normals, or tangents with their handedness.
+/// Quantizes normals, or tangents with their handedness.
 fn directions(width: usize, values: &[f32], compression: &Compression) -> Blob {
     let shape = if width == 3 { "VEC3" } else { "VEC4" };
     let small = compression.normal_bits <= 8;
@@ -100,7 +100,7 @@ fn directions(width: usize, values: &[f32], compression: &Compression) -> Blob {
     Blob { bytes, filter: Filter::Octahedral, ..plain }
 }
 
-/// Texture coordinates in [0, 1], with zeros in the bits that were not asked for.
+/// Quantizes texture coordinates in [0, 1]; unused low bits are zero.
 fn uvs(values: &[f32], bits: u32) -> Blob {
     let (component, all) = if bits <= 8 { (component::U8, 8) } else { (component::U16, 16) };
     let greatest = f64::from((1u32 << all) - 1);

@@ -8,13 +8,13 @@ use super::document::{self, Buffers, Document};
 use super::{container, decompress, materials, mesh, nodes};
 use crate::{ParseError, Resolve, Scene, SceneMesh, Weld};
 
-/// The glTF document that a scene came from; what is not geometry goes from it to the output.
+/// glTF document that a scene was read from; on writing, everything but geometry is copied from it.
 ///
-/// Cheap to clone.
+/// Cloning is cheap.
 #[derive(Clone, Debug)]
 pub struct SourceDocument(pub(super) Arc<Contents>);
 
-/// A document's JSON and buffers, and how its vertices were read.
+/// JSON and buffers of a document, and how its vertices were welded.
 #[derive(Debug)]
 pub(super) struct Contents {
     pub json: Value,
@@ -22,22 +22,22 @@ pub(super) struct Contents {
     pub weld: Weld,
 }
 
-/// Reads glTF or GLB, whichever the bytes are; `resolve` gives the buffers and images that the
-/// document names by file.
+/// Reads glTF or GLB, detected from the bytes; `resolve` loads the buffers and images that the
+/// document refers to.
 ///
-/// Every mesh of the document is one of the scene; its material labels are its primitives, in
-/// order, whose materials are `SceneMesh::materials`. Attributes become layers named as in the
-/// document; texture coordinates are turned to an origin at the lower left. Morph targets become
-/// layers named `target 0 POSITION`. Skins and poses are carried through, not applied.
+/// Every mesh of the document becomes a mesh of the scene. Its material labels are the primitives
+/// in order, and `SceneMesh::materials` holds their materials. Attributes become layers named as in
+/// the document, with texture coordinates flipped to an origin at the lower left. Morph targets
+/// become layers named `target 0 POSITION`. Skins and poses are carried through, not applied.
 ///
-/// Read: triangles, strips and fans; any index and component type; strides; sparse accessors;
-/// `KHR_mesh_quantization`; `EXT_meshopt_compression` and `KHR_meshopt_compression`, of which
-/// nothing is left behind the reader; `MSFT_lod` (the finest level is shown). Carried through, and
+/// Supported: triangles, strips and fans; any index and component type; strides; sparse accessors;
+/// `KHR_mesh_quantization`; `EXT_meshopt_compression` and `KHR_meshopt_compression`, which are
+/// decompressed and removed; `MSFT_lod`, of which the finest level is shown. Carried through but
 /// not applied to texture coordinates: `KHR_texture_transform`.
 ///
 /// # Errors
-/// The place (`accessor 7`, `bufferView 3`) and the reason. Geometry compressed by Draco and
-/// unknown required extensions are refused by name; a coordinate that is not finite, too.
+/// The location (`accessor 7`, `bufferView 3`) and the reason. Geometry compressed with Draco and
+/// unknown required extensions are rejected by name, as are coordinates that are not finite.
 /// # References
 /// [Kap20]; [KS21] and [KSL25], in [`crate::meshopt`].
 pub fn read(bytes: &[u8], resolve: Resolve<'_>, weld: Weld) -> Result<Scene, ParseError> {
@@ -76,7 +76,7 @@ fn scene_mesh(
     Ok(SceneMesh { name, mesh: mesh::read(document, index, weld)?, materials })
 }
 
-/// Drops the URIs of buffers, which can be most of the document: their bytes are read.
+/// Removes the URIs of buffers, often most of the document, as their bytes have been loaded.
 fn forget_uris(json: &mut Value) {
     let buffers = json.get_mut("buffers").and_then(Value::as_array_mut);
     for buffer in buffers.into_iter().flatten().filter_map(Value::as_object_mut) {

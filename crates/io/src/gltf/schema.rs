@@ -1,6 +1,6 @@
-//! The parts of a glTF document that geometry needs, as types.
+//! Typed view of the entries of a glTF document that geometry needs.
 //!
-//! The document itself is kept as JSON, so that what is not named here is carried through.
+//! The document itself is kept as JSON, so that everything else is carried through.
 
 use serde::Deserialize;
 use serde::de::DeserializeOwned;
@@ -91,16 +91,16 @@ impl Primitive {
         4
     }
 
-    /// Whether it is a surface: triangles, a strip or a fan, not points or lines.
+    /// Reports whether it is a surface (triangles, a strip or a fan) rather than points or lines.
     pub fn has_faces(&self) -> bool {
         matches!(self.mode, 4..=6)
     }
 
-    /// Each attribute by name and accessor, then those of the morph targets by
+    /// Lists the attributes with their accessors, then those of the morph targets under their
     /// [`target_name`].
     ///
     /// # Errors
-    /// When one does not name its accessor by a number.
+    /// If the value of an attribute is not an accessor index.
     pub fn accessors(&self) -> Result<Vec<(String, usize)>, String> {
         let own = self.attributes.iter().map(|(name, value)| (name.clone(), value));
         let targets = self.targets.iter().enumerate().flat_map(|(k, target)| {
@@ -109,18 +109,18 @@ impl Primitive {
         own.chain(targets)
             .map(|(name, value)| match value.as_u64() {
                 Some(index) => Ok((name, index as usize)),
-                None => Err(format!("attribute {name} must be the number of an accessor")),
+                None => Err(format!("attribute {name} must be the index of an accessor")),
             })
             .collect()
     }
 }
 
-/// The layer name of an attribute of a morph target.
+/// Returns the layer name of an attribute of a morph target.
 pub(super) fn target_name(target: usize, attribute: &str) -> String {
     format!("target {target} {attribute}")
 }
 
-/// The target and the attribute of a name made by [`target_name`].
+/// Splits a name made by [`target_name`] into target and attribute.
 pub(super) fn parse_target_name(name: &str) -> Option<(usize, &str)> {
     let (target, attribute) = name.strip_prefix("target ")?.split_once(' ')?;
     Some((target.parse().ok()?, attribute))
@@ -163,7 +163,7 @@ pub(super) struct MetallicRoughness {
     pub base_color_texture: Option<TextureUse>,
 }
 
-/// A texture as a material names it.
+/// Reference of a material to a texture.
 #[derive(Debug, Deserialize)]
 pub(super) struct TextureUse {
     pub index: usize,
@@ -192,8 +192,7 @@ pub(super) struct Buffer {
     pub byte_length: usize,
 }
 
-/// The array `json[key]` as types; none when it is not there. Errors name the entry, as
-/// `accessor 7`.
+/// Deserializes the array `json[key]`; empty if absent. Errors name the entry, as in `accessor 7`.
 pub(super) fn array<T: DeserializeOwned>(
     json: &Value,
     key: &str,
@@ -204,7 +203,8 @@ pub(super) fn array<T: DeserializeOwned>(
         return Err(ParseError::part(key, "must be an array"));
     };
     let typed = |(i, value): (usize, &Value)| {
-        // An array would do for a struct, field after field; what follows counts on objects.
+        // Deserializing would accept an array for a struct, field by field; later code needs
+        // objects.
         if value.is_array() {
             return Err(ParseError::part(format!("{entry} {i}"), "must not be an array"));
         }

@@ -1,20 +1,20 @@
-//! What a buffer or an image names: bytes within the document, or a file.
+//! URIs of buffers and images: embedded data or a file name.
 
 use base64::Engine;
 use base64::alphabet::STANDARD;
 use base64::engine::{DecodePaddingMode, GeneralPurpose, GeneralPurposeConfig};
 use percent_encoding::{AsciiSet, NON_ALPHANUMERIC, percent_decode_str, utf8_percent_encode};
 
-/// A parsed URI.
+/// Parsed URI.
 #[derive(Debug, PartialEq)]
 pub(super) enum Uri {
-    /// The bytes of a `data:` URI.
+    /// Bytes of a `data:` URI.
     Data(Vec<u8>),
-    /// A file by its name relative to the document, decoded.
+    /// File name relative to the document, percent-decoded.
     File(String),
 }
 
-/// Parses a URI: `data:` with its bytes, or a relative file name. Others (`https:`) have no file.
+/// Parses a `data:` URI or a relative file name; absolute URLs such as `https:` are errors.
 pub(super) fn parse(uri: &str) -> Result<Uri, String> {
     if let Some(data) = strip_scheme(uri, "data:") {
         return data_bytes(data).map(Uri::Data);
@@ -22,13 +22,13 @@ pub(super) fn parse(uri: &str) -> Result<Uri, String> {
     if let Some(scheme) =
         ["http:", "https:", "ftp:"].iter().find(|s| strip_scheme(uri, s).is_some())
     {
-        return Err(format!("nothing is fetched from {scheme}; put the file beside"));
+        return Err(format!("{scheme} URIs are not downloaded; put the file next to the document"));
     }
     let name = percent_decode_str(uri).decode_utf8().map_err(|_| "its URI is not UTF-8")?;
     Ok(Uri::File(name.into_owned()))
 }
 
-/// A file name as a URI.
+/// Encodes a file name as a URI.
 pub(super) fn of_file(name: &str) -> String {
     const KEPT: &AsciiSet =
         &NON_ALPHANUMERIC.remove(b'-').remove(b'_').remove(b'.').remove(b'~').remove(b'/');

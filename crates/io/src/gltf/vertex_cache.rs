@@ -1,15 +1,15 @@
-//! Triangles in an order in which each follows its neighbours, and vertices in that of first use:
-//! what caches and the codecs of indices want.
+//! Vertex cache order: triangles that follow their neighbours, vertices in the order of first use.
+//! Helps GPU caches and index codecs alike.
 
-/// How many vertices, the newest first, count as seen lately. The codec knows 16 edges and 16
+/// Number of recently used vertices that are scored. The index codec remembers 16 edges and 16
 /// vertices.
 const CACHE: usize = 16;
 
-/// Sorts triangles and gives back the vertices that they use, by their old numbers, in the order
-/// of their new ones.
+/// Sorts triangles for the vertex cache and renumbers their vertices by first use; returns the old
+/// number of each new vertex.
 ///
-/// Greedy, after Forsyth: next comes the triangle whose vertices were used last and have the
-/// fewest triangles left. Cost: O(n).
+/// Greedy, after Forsyth: the next triangle is the one whose vertices were used most recently and
+/// have the fewest triangles left. Cost: O(n).
 pub(super) fn arrange(triangles: &mut [[u32; 3]], vertex_count: usize) -> Vec<u32> {
     let order = Greedy::new(triangles, vertex_count).run();
     let sorted: Vec<[u32; 3]> = order.iter().map(|&t| triangles[t as usize]).collect();
@@ -17,7 +17,7 @@ pub(super) fn arrange(triangles: &mut [[u32; 3]], vertex_count: usize) -> Vec<u3
     number_by_use(triangles, vertex_count)
 }
 
-/// Numbers vertices by first use, and says which they were.
+/// Renumbers vertices by first use and returns the old number of each new one.
 fn number_by_use(triangles: &mut [[u32; 3]], vertex_count: usize) -> Vec<u32> {
     let mut new = vec![u32::MAX; vertex_count];
     let mut old = Vec::with_capacity(vertex_count);
@@ -34,12 +34,13 @@ fn number_by_use(triangles: &mut [[u32; 3]], vertex_count: usize) -> Vec<u32> {
 
 struct Greedy<'a> {
     triangles: &'a [[u32; 3]],
-    /// Where the triangles of each vertex begin in `around`, and how many of them are left.
+    /// Start of each vertex's triangles in `around`.
     first: Vec<u32>,
+    /// Number of unsorted triangles of each vertex; `around` lists those first.
     left: Vec<u32>,
     around: Vec<u32>,
     done: Vec<bool>,
-    /// The newest vertices, the last one first.
+    /// Recently used vertices, newest first.
     cache: Vec<u32>,
 }
 
@@ -71,7 +72,7 @@ impl<'a> Greedy<'a> {
 
     fn run(mut self) -> Vec<u32> {
         let mut order = Vec::with_capacity(self.triangles.len());
-        // Where nothing follows, the first one that is left.
+        // If no neighbour is left, continue with the first unsorted triangle.
         for start in 0..self.triangles.len() as u32 {
             let mut next = (!self.done[start as usize]).then_some(start);
             while let Some(triangle) = next {
@@ -105,7 +106,7 @@ impl<'a> Greedy<'a> {
         &self.around[first..first + self.left[vertex as usize] as usize]
     }
 
-    /// The best of the triangles at vertices seen lately; of equal ones, the first in the input.
+    /// Returns the best triangle at a recently used vertex; of equals, the first in the input.
     fn best(&self) -> Option<u32> {
         let near = self.cache.iter().flat_map(|&vertex| self.around(vertex));
         let score = |&t: &u32| -> f32 {

@@ -1,4 +1,4 @@
-//! Writing glTF and GLB: the document that the scene came from, with other geometry.
+//! Writing glTF and GLB: the document that the scene was read from, with its geometry replaced.
 
 use meshlod_mesh::Mesh;
 use serde_json::{Map, Value};
@@ -13,53 +13,54 @@ use super::uri::{self, Uri};
 use super::{container, dequantize_nodes, mesh, new_document};
 use crate::{Image, Scene, Unsupported};
 
-/// A `.gltf` file and the files that go with it.
+/// Contents of a `.gltf` file and of the files that belong to it.
 #[derive(Clone, Debug)]
-pub struct Written {
-    /// The JSON document.
+pub struct GltfFiles {
+    /// JSON document.
     pub document: Vec<u8>,
-    /// The buffer and the name of its file, if there is one.
+    /// File name and contents of the buffer, if there is one.
     pub buffer: Option<(String, Vec<u8>)>,
-    /// Images that the document names as files, by those names.
+    /// Images that the document refers to as files, under those names.
     pub images: Vec<Image>,
 }
 
-/// Writes a scene as GLB, everything in one; `levels`, which may be none, hold coarser meshes.
+/// Writes a scene as a single GLB file; `levels`, which may be empty, are its coarser levels.
 ///
-/// A scene that came from glTF is written as that document. Its nodes, materials, animations,
-/// extras, extensions and all else pass through; a mesh that was not changed keeps its arrays bit
-/// by bit, and one that was gets new ones (f32, 16-bit indices where they do, colours as they
-/// were). The buffer is put together anew without what nothing uses any more. Any other scene gets
-/// a plain document with its nodes, materials, PNGs and JPEGs. A mesh that has no face left keeps
-/// one without area, as glTF knows no empty mesh.
+/// A scene read from glTF is written as that document. Nodes, materials, animations, extras,
+/// extensions and everything else pass through. An unchanged mesh keeps its arrays bit for bit; a
+/// changed one gets new arrays (f32, 16-bit indices where possible, colours in their old type). The
+/// buffer is rebuilt without what is no longer used. Any other scene gets a new document with its
+/// nodes, materials, PNGs and JPEGs. A mesh without faces keeps one degenerate triangle, as glTF
+/// does not allow empty meshes.
 ///
 /// With levels, every node with a mesh is named `…_LOD0` and linked by the extension `MSFT_lod` to
-/// nodes `…_LOD1`, `…_LOD2` and so on, and its `extras.MSFT_screencoverage` says when each is
-/// shown. A node that has children or moves keeps its name, and a child takes its mesh.
+/// nodes `…_LOD1`, `…_LOD2` and so on, and its `extras.MSFT_screencoverage` holds the coverage at
+/// which each is shown. A node that has children or is animated keeps its name, and a new child
+/// takes its mesh.
 ///
 /// # Errors
-/// When a mesh is not valid or leaves 32 bits; when labels or numbers of meshes do not match the
-/// source; above 4 GB.
+/// If a mesh is invalid or exceeds 32 bits, if the labels or the number of meshes do not match the
+/// source, or above 4 GB.
 pub fn write_glb(scene: &Scene, levels: &[Level]) -> Result<Vec<u8>, Unsupported> {
     Output::of(scene, levels, None)?.into_glb(scene)
 }
 
-/// Writes a scene as GLB like [`write_glb`], but small, and tells what that came to.
+/// Writes a scene as compressed GLB, and reports the sizes and the error.
 ///
-/// Positions are whole numbers on a grid of each mesh, which its levels share, with equal cells on
-/// all axes: a vertex moves by half a cell an axis at most, and primitives that met still meet.
-/// The nodes that show it, or new children of theirs, scale and move it to its place. Positions
+/// Positions are quantized to a uniform grid per mesh, shared by its levels, with equal cells on
+/// all axes. A vertex moves by at most half a cell per axis, and primitives that met still meet.
+/// The nodes that show the mesh, or new children of them, scale and translate it back. Positions
 /// stay floats, and the report says so, where a node cannot do that: with skins, morph targets,
-/// points or lines, materials of a thickness, instances.
+/// points or lines, materials with thickness, instancing.
 ///
-/// Normals and tangents become bytes or shorts; texture coordinates in [0, 1] normalised integers,
-/// others stay floats; colours in [0, 1] bytes, unless the file had shorts. Everything else is as
-/// it was. Faces come after their neighbours and vertices in the order of use. With
-/// [`Compression::meshopt`] the geometry is in streams, and texture coordinates beyond [0, 1] have
-/// the bits asked for. Images and animations stay as they are.
+/// Normals and tangents become bytes or shorts. Texture coordinates in [0, 1] become normalised
+/// integers; others stay floats. Colours in [0, 1] become bytes, unless the file had shorts.
+/// Everything else is kept. Faces and vertices are sorted for the vertex cache. With
+/// [`Compression::meshopt`], the geometry is stored in meshopt streams, and texture coordinates
+/// outside [0, 1] are rounded to the requested bits as well. Images and animations are kept.
 ///
 /// # Errors
-/// As for [`write_glb`]; also bits that cannot be.
+/// Those of [`write_glb`]; also bit counts out of range.
 /// # References
 /// [Kap20], [KS21]
 pub fn write_compressed_glb(
@@ -72,34 +73,35 @@ pub fn write_compressed_glb(
     Ok((output.into_glb(scene)?, report))
 }
 
-/// Writes a scene as a `.gltf` of that stem, with its buffer as `stem.bin`. Images that were files
-/// stay files. See [`write_glb`].
+/// Writes a scene as a `.gltf` file of the given stem, with its buffer as `stem.bin`. Images that
+/// were files stay files. See [`write_glb`].
 ///
 /// # Errors
-/// As for [`write_glb`], but for the size.
-pub fn write(scene: &Scene, levels: &[Level], stem: &str) -> Result<Written, Unsupported> {
+/// Those of [`write_glb`], except for the size.
+pub fn write(scene: &Scene, levels: &[Level], stem: &str) -> Result<GltfFiles, Unsupported> {
     Output::of(scene, levels, None)?.into_files(scene, stem)
 }
 
-/// Writes a scene as [`write()`], but small as [`write_compressed_glb`] has it.
+/// Writes a scene as compressed `.gltf`: like [`write()`], compressed as by
+/// [`write_compressed_glb`].
 ///
 /// # Errors
-/// As for [`write_compressed_glb`], but for the size.
+/// Those of [`write_compressed_glb`], except for the size.
 pub fn write_compressed(
     scene: &Scene,
     levels: &[Level],
     stem: &str,
     compression: &Compression,
-) -> Result<(Written, CompressionReport), Unsupported> {
+) -> Result<(GltfFiles, CompressionReport), Unsupported> {
     let mut output = Output::of(scene, levels, Some(compression))?;
     let report = std::mem::take(&mut output.report);
     Ok((output.into_files(scene, stem)?, report))
 }
 
-/// A document with its geometry in it, but for the buffer.
+/// Document with its new geometry, before its buffer is attached.
 struct Output {
     json: Map<String, Value>,
-    pool: BufferBuilder,
+    builder: BufferBuilder,
     report: CompressionReport,
 }
 
@@ -113,10 +115,10 @@ impl Output {
         match &scene.source {
             Some(source) => Self::with_source(scene, &source.0, levels, compression),
             None => {
-                let mut pool = BufferBuilder::default();
-                let json = new_document::document(scene, &mut pool);
+                let mut builder = BufferBuilder::default();
+                let json = new_document::document(scene, &mut builder);
                 let all = vec![true; scene.meshes.len()];
-                let mut replacer = Replacer::new(None, pool);
+                let mut replacer = Replacer::new(None, builder);
                 replacer.compression = compression;
                 Self::finish(json, scene, &all, replacer, levels)
             }
@@ -134,8 +136,10 @@ impl Output {
         let document = Document::new(json, buffers).map_err(unreadable)?;
         let count = document.meshes.len();
         if scene.meshes.len() != count {
-            let reason =
-                format!("it has {count} meshes, the scene {}; drop the source", scene.meshes.len());
+            let reason = format!(
+                "has {count} meshes, but the scene has {}; drop the source",
+                scene.meshes.len()
+            );
             return Err(Unsupported::new("source", reason));
         }
         let mut changed = Vec::new();
@@ -143,13 +147,13 @@ impl Output {
             let old = mesh::read(&document, index, source.weld).map_err(unreadable)?;
             changed.push(compression.is_some() || !same_geometry(&old, &mesh.mesh));
         }
-        let pool = BufferBuilder::of(&document, &free_accessors(&document, &changed));
-        let mut replacer = Replacer::new(Some(&document), pool);
+        let builder = BufferBuilder::of(&document, &free_accessors(&document, &changed));
+        let mut replacer = Replacer::new(Some(&document), builder);
         replacer.compression = compression;
         Self::finish(json.clone(), scene, &changed, replacer, levels)
     }
 
-    /// Puts the meshes that changed and the levels into the document.
+    /// Puts the changed meshes and the levels into the document.
     fn finish(
         mut json: Value,
         scene: &Scene,
@@ -164,7 +168,7 @@ impl Output {
             grids = compress::grids(&json, scene, levels, compression.position_bits, &mut kept);
             dequantize_nodes::add_transforms(&mut json, &grids);
             if compression.meshopt {
-                replacer.pool.pack();
+                replacer.builder.compress();
             }
         }
         for (index, mesh) in scene.meshes.iter().enumerate().filter(|&(index, _)| changed[index]) {
@@ -178,32 +182,32 @@ impl Output {
         let report = replacer.report(kept);
         replacer.list_extensions(&mut json);
         match json {
-            Value::Object(json) => Ok(Self { json, pool: replacer.pool, report }),
-            _ => Err(Unsupported::new("source", "is no JSON object")),
+            Value::Object(json) => Ok(Self { json, builder: replacer.builder, report }),
+            _ => Err(Unsupported::new("source", "is not a JSON object")),
         }
     }
 
     fn into_glb(mut self, scene: &Scene) -> Result<Vec<u8>, Unsupported> {
         self.embed_images(scene, |_| true);
-        let buffer = self.pool.finish(&mut self.json);
+        let buffer = self.builder.finish(&mut self.json);
         container::join(&to_bytes(self.json)?, &buffer)
     }
 
-    fn into_files(mut self, scene: &Scene, stem: &str) -> Result<Written, Unsupported> {
-        // One that lies elsewhere is not ours to write.
+    fn into_files(mut self, scene: &Scene, stem: &str) -> Result<GltfFiles, Unsupported> {
+        // An image outside the folder is embedded: that file is not ours to write.
         self.embed_images(scene, |name| crate::files::inner_path(name).is_none());
         let images = self.external_images(scene);
-        let bytes = self.pool.finish(&mut self.json);
+        let bytes = self.builder.finish(&mut self.json);
         let name = format!("{stem}.bin");
         if let Some(buffer) = self.json.get_mut("buffers") {
             buffer[0]["uri"] = uri::of_file(&name).into();
         }
         let document = to_bytes(self.json)?;
-        Ok(Written { document, buffer: (!bytes.is_empty()).then_some((name, bytes)), images })
+        Ok(GltfFiles { document, buffer: (!bytes.is_empty()).then_some((name, bytes)), images })
     }
 
-    /// Takes images that are files into the buffer, where their bytes are known and `inside` says
-    /// so of their names.
+    /// Moves images from files into the buffer, if their bytes are known and `inside` holds for
+    /// their names.
     fn embed_images(&mut self, scene: &Scene, inside: impl Fn(&str) -> bool) {
         let images = self.json.get_mut("images").and_then(Value::as_array_mut);
         for (image, read) in images.into_iter().flatten().zip(&scene.images) {
@@ -211,7 +215,7 @@ impl Output {
             let Some(kind) = mime_type(&name, &read.bytes).filter(|_| inside(&name)) else {
                 continue;
             };
-            image["bufferView"] = self.pool.add_view(&read.bytes).into();
+            image["bufferView"] = self.builder.add_view(&read.bytes).into();
             image["mimeType"] = kind.into();
             if let Some(image) = image.as_object_mut() {
                 image.shift_remove("uri");
@@ -231,7 +235,7 @@ impl Output {
     }
 }
 
-/// The file that an image of a document names.
+/// Returns the file that an image of a document refers to.
 fn file_name(image: &Value) -> Option<String> {
     match uri::parse(image.get("uri")?.as_str()?) {
         Ok(Uri::File(name)) => Some(name),
@@ -239,7 +243,7 @@ fn file_name(image: &Value) -> Option<String> {
     }
 }
 
-/// The kind of an image by its bytes, else by its name; none where there are no bytes.
+/// Returns the MIME type of an image by its bytes, else by its name; `None` without bytes.
 fn mime_type(name: &str, bytes: &[u8]) -> Option<&'static str> {
     let by_name = || {
         let suffix = name.rsplit('.').next().unwrap_or_default().to_ascii_lowercase();
@@ -248,7 +252,7 @@ fn mime_type(name: &str, bytes: &[u8]) -> Option<&'static str> {
     (!bytes.is_empty()).then(|| new_document::mime_type(bytes).unwrap_or_else(by_name))
 }
 
-/// Whether meshes are equal in all that is written of them.
+/// Reports whether two meshes are equal in everything that is written of them.
 fn same_geometry(a: &Mesh, b: &Mesh) -> bool {
     let label = |mesh: &Mesh, face| mesh.materials.as_ref().map(|labels| labels.of(face));
     a.positions == b.positions
@@ -257,7 +261,7 @@ fn same_geometry(a: &Mesh, b: &Mesh) -> bool {
         && (0..a.faces.len()).all(|face| label(a, face) == label(b, face))
 }
 
-/// One flag per accessor: is it of a triangle primitive of a changed mesh, and of nothing else?
+/// Computes one flag per accessor: true if only triangle primitives of changed meshes use it.
 fn free_accessors(document: &Document<'_>, changed: &[bool]) -> Vec<bool> {
     let count = document.accessors.len();
     let (mut replaced, mut kept) = (vec![false; count], vec![false; count]);

@@ -1,38 +1,38 @@
-//! Mode 0: elements of any kind, each byte as its difference from the element before.
+//! Mode 0: elements of any kind, stored byte by byte as differences from the element before.
 //!
-//! Up to 256 elements are a block. In a block each byte of the element has its plane of
-//! differences, in groups of 16 with as many bits as the group needs.
+//! Up to 256 elements form a block. Each byte position of the element has its own plane of
+//! differences in a block, in groups of 16 that each use as many bits as they need.
 
 use super::stream::{Malformed, Stream};
 
-/// Elements a group.
+/// Elements per group.
 const GROUP: usize = 16;
-/// The most elements a block has.
+/// Maximum number of elements per block.
 const MOST: usize = 256;
-/// The header of version 0; version 1 follows.
+/// Header byte of version 0; version 1 is one higher.
 const HEADER: u8 = 0xa0;
-/// The least bytes of a tail of version 0, and of version 1.
+/// Minimum bytes of the tail, for versions 0 and 1.
 const TAILS: [usize; 2] = [32, 24];
 
-/// How many bits the groups of a plane can choose from.
+/// Bit widths that a group can choose from in version 0.
 const CHOICES_0: [u32; 4] = [0, 2, 4, 8];
-/// In version 1, by the plane's control mode.
+/// Bit widths in version 1, by the control mode of the plane.
 const CHOICES_1: [[u32; 4]; 2] = [[0, 1, 2, 4], [1, 2, 4, 8]];
 
-/// The elements of a block.
+/// Returns the number of elements per block.
 fn block_length(stride: usize) -> usize {
     ((8192 / stride) & !(GROUP - 1)).min(MOST)
 }
 
-/// `count` elements of `stride` bytes out of a stream.
+/// Decodes `count` elements of `stride` bytes.
 pub(super) fn decode(stream: &[u8], count: usize, stride: usize) -> Result<Vec<u8>, Malformed> {
     let version = match stream.first() {
         Some(&header) if header == HEADER || header == HEADER + 1 => header - HEADER,
         Some(&header) => {
-            let reason = format!("header {header:#04x}, not 0xa0 or 0xa1 of attributes");
+            let reason = format!("header {header:#04x}; attribute streams begin with 0xa0 or 0xa1");
             return Err(Malformed::new(0, reason));
         }
-        None => return Err(Malformed::new(0, "no byte at all")),
+        None => return Err(Malformed::new(0, "the stream is empty")),
     };
     let modes = if version == 0 { 0 } else { stride / 4 };
     let tail = (stride + modes).max(TAILS[usize::from(version)]);
@@ -49,7 +49,7 @@ pub(super) fn decode(stream: &[u8], count: usize, stride: usize) -> Result<Vec<u
     Ok(bytes)
 }
 
-/// That the stream is long enough for the planes of all blocks, however small they are.
+/// Checks that the stream can hold the planes of all blocks, even at their smallest.
 fn check_length(
     data: &Stream<'_>,
     count: usize,
@@ -65,18 +65,18 @@ fn check_length(
     let needed = (count / block).saturating_mul(least(block)).saturating_add(rest);
     if data.left() < needed || count.checked_mul(stride).is_none() {
         let left = data.left();
-        let reason = format!("{left} bytes cannot be {count} elements of {stride} bytes");
+        let reason = format!("{left} bytes are too few for {count} elements of {stride} bytes");
         return Err(data.wrong(reason));
     }
     Ok(())
 }
 
-/// How four bytes of an element that lie together follow from those before.
+/// Prediction of four adjacent bytes from those of the element before.
 #[derive(Clone, Copy)]
 enum Channel {
     Bytes,
     Shorts,
-    /// The bits that differ, turned left by so many.
+    /// XOR, rotated left by this many bits.
     Words(u32),
 }
 
@@ -93,7 +93,7 @@ fn channels(modes: &[u8], stride: usize) -> Result<Vec<Channel>, String> {
     modes.iter().map(channel).collect()
 }
 
-/// One block, whose length says how many elements it has; `last` is the element before it.
+/// Decodes one block, whose length gives its number of elements; `last` is the element before it.
 fn decode_block(
     data: &mut Stream<'_>,
     version: u8,
@@ -111,7 +111,7 @@ fn decode_block(
             read_plane(data, control, &mut plane[..count.next_multiple_of(GROUP)], count)?;
         }
         for (i, element) in block.chunks_exact_mut(stride).enumerate() {
-            *last = follow(*last, planes.map(|plane| plane[i]), channel);
+            *last = apply_difference(*last, planes.map(|plane| plane[i]), channel);
             element[4 * c..4 * c + 4].copy_from_slice(last);
         }
     }
@@ -155,7 +155,8 @@ fn read_group(data: &mut Stream<'_>, bits: u32, group: &mut [u8; GROUP]) -> Resu
             let sentinel = (1u8 << bits) - 1;
             for (i, value) in group.iter_mut().enumerate() {
                 let (byte, at) = (packed[i / per_byte], (i % per_byte) as u32);
-                // Single bits come from the lowest on, pairs and fours from the highest.
+                // Single bits are packed from the lowest up, pairs and nibbles from the highest
+                // down.
                 let shift = if bits == 1 { at } else { 8 - bits * (at + 1) };
                 *value = byte >> shift & sentinel;
                 if *value == sentinel {
@@ -167,8 +168,8 @@ fn read_group(data: &mut Stream<'_>, bits: u32, group: &mut [u8; GROUP]) -> Resu
     Ok(())
 }
 
-/// The four bytes that follow others, by their differences.
-fn follow(last: [u8; 4], difference: [u8; 4], channel: Channel) -> [u8; 4] {
+/// Applies the differences of four bytes to those of the element before.
+fn apply_difference(last: [u8; 4], difference: [u8; 4], channel: Channel) -> [u8; 4] {
     match channel {
         Channel::Bytes => std::array::from_fn(|k| {
             let d = difference[k];
@@ -190,13 +191,13 @@ fn follow(last: [u8; 4], difference: [u8; 4], channel: Channel) -> [u8; 4] {
     }
 }
 
-/// Elements of `stride` bytes (4, 8 … 256) as a stream of version 0.
+/// Encodes elements of `stride` bytes (4, 8 … 256) as a version 0 stream.
 ///
-/// Bytes after the last whole element are left out. It has at most one byte, 9 for each 8 of the
-/// elements rounded up to 16, and 256 for the tail. Cost: O(bytes).
+/// Bytes after the last whole element are dropped. The stream takes at most one byte for the
+/// header, 9 for each 8 of the elements rounded up to 16, and 256 for the tail. Cost: O(bytes).
 ///
 /// # Panics
-/// When `stride` is none that can be.
+/// If `stride` is not a multiple of 4 from 4 to 256.
 pub fn encode(bytes: &[u8], stride: usize) -> Vec<u8> {
     assert!(stride > 0 && stride <= 256 && stride.is_multiple_of(4), "a stride of {stride}");
     let mut out = vec![HEADER];
@@ -231,7 +232,7 @@ fn write_plane<'a>(out: &mut Vec<u8>, plane: impl Iterator<Item = &'a u8>, last:
     }
 }
 
-/// The bytes that a group takes with so many bits.
+/// Returns the number of bytes that a group takes with a given bit width.
 fn size(group: &[u8; GROUP], bits: u32) -> usize {
     match bits {
         0 if group.iter().any(|&value| value != 0) => usize::MAX,

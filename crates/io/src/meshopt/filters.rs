@@ -1,8 +1,8 @@
-//! What is done to elements after their stream is unfolded, and before it is made.
+//! Filters: transforms applied after decoding a stream, and their inverses for encoding.
 
 use super::Filter;
 
-/// Applies a filter to elements of `stride` bytes, which the layout's rules allow.
+/// Applies a filter to elements of `stride` bytes; the stride must be valid for the filter.
 pub(super) fn apply(filter: Filter, stride: usize, bytes: &mut [u8]) {
     match (filter, stride) {
         (Filter::None, _) => {}
@@ -23,14 +23,14 @@ pub(super) fn apply(filter: Filter, stride: usize, bytes: &mut [u8]) {
     }
 }
 
-/// Elements of four signed bytes.
+/// Transforms elements of four signed bytes.
 fn small(bytes: &mut [u8], change: impl Fn([i32; 4]) -> [i32; 4]) {
     for element in bytes.as_chunks_mut::<4>().0 {
         *element = change(element.map(|b| i32::from(b as i8))).map(|x| x as u8);
     }
 }
 
-/// Elements of four signed shorts.
+/// Transforms elements of four signed shorts.
 fn wide(bytes: &mut [u8], change: impl Fn([i32; 4]) -> [i32; 4]) {
     for element in bytes.as_chunks_mut::<8>().0 {
         let shorts = element.as_chunks::<2>().0;
@@ -42,19 +42,20 @@ fn wide(bytes: &mut [u8], change: impl Fn([i32; 4]) -> [i32; 4]) {
     }
 }
 
-/// A direction from two coordinates on the octahedron and what stands for 1.
+/// Decodes a unit vector from two octahedral coordinates and the value that stands for 1.
 fn octahedral([x, y, one, rest]: [i32; 4], greatest: f32) -> [i32; 4] {
     let (x, y) = (x as f32 / one as f32, y as f32 / one as f32);
     let z = 1.0 - x.abs() - y.abs();
     let fold = z.min(0.0);
     let (x, y) = (x - fold.copysign(x), y - fold.copysign(y));
     let length = (x * x + y * y + z * z).sqrt();
-    // What is no number becomes 0.
+    // NaN becomes 0.
     let [x, y, z] = [x, y, z].map(|c| (c / length * greatest).round() as i32);
     [x, y, z, rest]
 }
 
-/// A rotation from three components; the largest is missing, and the last number says which it is.
+/// Decodes a unit quaternion from three components; the last number tells which one, the largest,
+/// is left out.
 fn quaternion([x, y, z, last]: [i32; 4]) -> [i32; 4] {
     let one = (last | 3) as f32;
     let range = std::f32::consts::FRAC_1_SQRT_2;
@@ -67,14 +68,13 @@ fn quaternion([x, y, z, last]: [i32; 4]) -> [i32; 4] {
     out
 }
 
-/// A float from a mantissa of 24 bits and an exponent of 8.
+/// Decodes a float from a 24-bit mantissa and an 8-bit exponent.
 fn exponential(word: i32) -> f32 {
     let mantissa = f64::from(word << 8 >> 8);
     (mantissa * 2f64.powi(word >> 24)) as f32
 }
 
-/// Red, green, blue and alpha from luma and two differences; the highest bit of alpha says how
-/// many bits there are.
+/// Decodes RGBA from YCoCg and alpha; the highest set bit of alpha gives the bit depth.
 fn color([y, co, cg, alpha]: [i32; 4], greatest: f32) -> [i32; 4] {
     let all = (1 << (32 - alpha.leading_zeros())) - 1;
     let opaque = alpha & (all >> 1);
@@ -82,13 +82,13 @@ fn color([y, co, cg, alpha]: [i32; 4], greatest: f32) -> [i32; 4] {
     rgba.map(|c| (c as f32 * (greatest / all as f32)).round() as i32)
 }
 
-/// Directions as elements that [`Filter::Octahedral`] gives back, with `bits` a coordinate.
+/// Encodes unit vectors for [`Filter::Octahedral`], with `bits` per coordinate.
 ///
-/// The fourth of each is carried along: -1, 0 or 1. Elements have 4 bytes up to 8 bits, else 8.
-/// What is no direction (zero, not finite) becomes +z.
+/// The fourth component of each (-1, 0 or 1) is kept. Elements have 4 bytes for up to 8 bits, else
+/// 8. Vectors without a direction (zero, not finite) become +z.
 ///
 /// # Panics
-/// Unless there are 2 to 16 bits.
+/// If `bits` is not in 2 to 16.
 pub fn encode_octahedral(directions: &[[f32; 4]], bits: u32) -> Vec<u8> {
     assert!((2..=16).contains(&bits), "{bits} bits");
     let one = ((1i32 << (bits - 1)) - 1) as f64;
@@ -99,7 +99,7 @@ pub fn encode_octahedral(directions: &[[f32; 4]], bits: u32) -> Vec<u8> {
         let usable = sum.is_finite() && sum > 0.0;
         let [mut x, mut y] = if usable { [x / sum, y / sum] } else { [0.0; 2] };
         if usable && z < 0.0 {
-            // The lower half is folded over the edges of the upper one.
+            // The lower hemisphere folds over the edges of the upper one.
             (x, y) = ((1.0 - y.abs()).copysign(x), (1.0 - x.abs()).copysign(y));
         }
         let w = (f64::from(w).clamp(-1.0, 1.0) * greatest).round();
@@ -113,18 +113,18 @@ pub fn encode_octahedral(directions: &[[f32; 4]], bits: u32) -> Vec<u8> {
     }
 }
 
-/// Floats as words that [`Filter::Exponential`] gives back, as multiples of `step`, which is made
-/// a power of two not above it.
+/// Encodes floats for [`Filter::Exponential`] as multiples of `step`, rounded down to a power of
+/// two.
 ///
-/// A float off by half a step at most, more only where it has more than 2^23 steps. None when a
-/// float is not finite or no such step can be had.
+/// The error is at most half a step, and larger only if a value exceeds 2^23 steps. Returns `None`
+/// if a float is not finite or the step cannot be represented.
 pub fn encode_exponential(floats: &[f32], step: f64) -> Option<Vec<u8>> {
     const MOST: f64 = ((1 << 23) - 1) as f64;
     let greatest = floats.iter().fold(0.0f64, |most, &x| most.max(f64::from(x).abs()));
     if !(step > 0.0 && floats.iter().all(|x| x.is_finite())) {
         return None;
     }
-    // The step, or the least that lets all of them into 24 bits.
+    // The step, or the smallest power of two for which all mantissas fit in 24 bits.
     let exponent = step.log2().floor().max((greatest / MOST).log2().ceil());
     if !(-100.0..=100.0).contains(&exponent) {
         return None;

@@ -1,9 +1,9 @@
-//! The codecs of `EXT_meshopt_compression` and `KHR_meshopt_compression`, from their
+//! Codecs of `EXT_meshopt_compression` and `KHR_meshopt_compression`, written from their
 //! specifications.
 //!
-//! A stream holds `count` elements of `stride` bytes; how many, how large and by which mode and
-//! filter is said beside it, in a [`Layout`]. [`decode`] takes any bytes: what is wrong is told by
-//! its place, and no more is allocated than the stream unfolds to.
+//! A stream holds `count` elements of `stride` bytes. Count, stride, mode and filter are not part
+//! of it but given separately, as a [`Layout`]. [`decode`] accepts arbitrary bytes: errors come
+//! with their offset, and no more memory is allocated than the decoded elements need.
 //!
 //! ```
 //! use meshlod_io::meshopt::{Filter, Layout, Mode, decode, encode_attributes, encode_triangles};
@@ -32,65 +32,67 @@ pub use filters::{encode_exponential, encode_octahedral};
 pub use stream::Malformed;
 pub use triangles::encode as encode_triangles;
 
-/// How elements were made a stream.
+/// Encoding of the elements in a stream.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Mode {
-    /// Elements of any kind, as differences byte by byte: versions 0 and 1.
+    /// Elements of any kind, as bytewise differences; versions 0 and 1.
     Attributes,
-    /// The indices of a list of triangles.
+    /// Indices of a triangle list.
     Triangles,
-    /// Indices of anything else.
+    /// Indices of any other kind.
     Indices,
 }
 
-/// What is done to elements after [`Mode::Attributes`].
+/// Transform applied to decoded elements of [`Mode::Attributes`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Filter {
-    /// Nothing.
+    /// No transform.
     #[default]
     None,
-    /// Directions, from two coordinates on an octahedron.
+    /// Unit vectors in octahedral encoding.
     Octahedral,
-    /// Rotations, from the three smaller components.
+    /// Unit quaternions from their three smaller components.
     Quaternion,
-    /// Floats, from mantissas of 24 bits and exponents.
+    /// Floats from 24-bit mantissas and 8-bit exponents.
     Exponential,
-    /// Colours, from luma and two differences (KHR alone).
+    /// Colours from YCoCg (KHR only).
     Color,
 }
 
-/// What a stream unfolds to.
+/// Format and size of the elements in a stream.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Layout {
-    /// How its elements are encoded.
+    /// Encoding of the elements.
     pub mode: Mode,
-    /// What is done to them then.
+    /// Filter applied after decoding.
     pub filter: Filter,
-    /// How many elements there are.
+    /// Number of elements.
     pub count: usize,
-    /// Bytes an element.
+    /// Bytes per element.
     pub stride: usize,
 }
 
 impl Layout {
-    /// That mode, filter, count and stride go together.
+    /// Checks that mode, filter, count and stride are compatible.
     ///
     /// # Errors
-    /// The rule of the specification that is broken.
+    /// The rule of the specification that is violated.
     pub fn check(&self) -> Result<(), String> {
         let Self { mode, filter, count, stride } = *self;
         match mode {
             Mode::Attributes if stride == 0 || stride > 256 || stride % 4 != 0 => {
-                return Err(format!("attributes of {stride} bytes; 4, 8 … 256 can be"));
+                return Err(format!(
+                    "the stride of attributes must be a multiple of 4 up to 256, not {stride}"
+                ));
             }
             Mode::Triangles | Mode::Indices if !matches!(stride, 2 | 4) => {
-                return Err(format!("indices of {stride} bytes; 2 or 4 can be"));
+                return Err(format!("the stride of indices must be 2 or 4, not {stride}"));
             }
             Mode::Triangles if count % 3 != 0 => {
-                return Err(format!("{count} indices are no whole triangles"));
+                return Err(format!("the number of indices must be a multiple of 3, not {count}"));
             }
             Mode::Triangles | Mode::Indices if filter != Filter::None => {
-                return Err("indices have no filter".to_owned());
+                return Err("indices cannot have a filter".to_owned());
             }
             _ => {}
         }
@@ -99,16 +101,21 @@ impl Layout {
             Filter::Octahedral | Filter::Color => matches!(stride, 4 | 8),
             Filter::Quaternion => stride == 8,
         };
-        if fits { Ok(()) } else { Err(format!("a filter {filter:?} on {stride} bytes")) }
+        if fits {
+            Ok(())
+        } else {
+            Err(format!("filter {filter:?} does not support a stride of {stride}"))
+        }
     }
 }
 
-/// Unfolds a stream: `count` elements of `stride` bytes, one after the other, little-endian.
+/// Decodes a stream to `count` contiguous elements of `stride` bytes, little-endian.
 ///
 /// Cost: O(bytes out).
 /// # Errors
-/// When the layout breaks a rule, or the stream is of another version, shorter, longer or not
-/// what an encoder makes; what the specification leaves undefined in filters gives some value.
+/// If the layout is invalid, or the stream has an unknown version, is too short or too long, or is
+/// nothing an encoder produces. Where the specification leaves a filter's result undefined, it is
+/// arbitrary.
 pub fn decode(stream: &[u8], layout: &Layout) -> Result<Vec<u8>, Malformed> {
     layout.check().map_err(|reason| Malformed { at: 0, reason })?;
     let Layout { mode, filter, count, stride } = *layout;
@@ -123,7 +130,7 @@ pub fn decode(stream: &[u8], layout: &Layout) -> Result<Vec<u8>, Malformed> {
     }
 }
 
-/// Indices as 2 or 4 bytes each; the specification lets those of 2 wrap around.
+/// Stores indices in 2 or 4 bytes each; with 2, the specification lets them wrap around.
 fn to_bytes(indices: Vec<u32>, stride: usize) -> Vec<u8> {
     let all = indices.iter();
     match stride {

@@ -1,12 +1,12 @@
-//! A compressed stream as it is read: from the front, up to its tail.
+//! Cursor over a compressed stream, from the front up to its tail.
 
 use thiserror::Error;
 
-/// What is wrong with a compressed stream.
+/// Error in a compressed stream.
 #[derive(Clone, Debug, Error, PartialEq, Eq)]
 #[error("byte {at}: {reason}")]
 pub struct Malformed {
-    /// Which byte of the stream.
+    /// Byte offset in the stream.
     pub at: usize,
     /// What is wrong there.
     pub reason: String,
@@ -18,18 +18,19 @@ impl Malformed {
     }
 }
 
-/// The bytes of a stream between its header and its tail.
+/// Bytes of a stream between its header and its tail.
 pub(super) struct Stream<'a> {
     bytes: &'a [u8],
     at: usize,
 }
 
 impl<'a> Stream<'a> {
-    /// Splits header byte, body and a tail of so many bytes.
+    /// Splits a stream into header byte, body and a tail of the given length.
     pub fn split(bytes: &'a [u8], tail: usize) -> Result<(u8, Self, &'a [u8]), Malformed> {
         let Some(end) = bytes.len().checked_sub(tail).filter(|&end| end > 0) else {
             let found = bytes.len();
-            let reason = format!("{found} bytes are less than header and tail, {}", tail + 1);
+            let reason =
+                format!("{found} bytes are fewer than the {} of header and tail", tail + 1);
             return Err(Malformed::new(found, reason));
         };
         let (body, tail) = bytes.split_at(end);
@@ -44,13 +45,13 @@ impl<'a> Stream<'a> {
         let rest = &self.bytes[self.at..];
         let Some(taken) = rest.get(..count) else {
             let left = rest.len();
-            return Err(self.wrong(format!("{count} bytes should follow, {left} do")));
+            return Err(self.wrong(format!("expected {count} more bytes, but only {left} follow")));
         };
         self.at += count;
         Ok(taken)
     }
 
-    /// A number of 32 bits, seven a byte, the low ones first; one to five bytes.
+    /// Reads a 32-bit number in one to five bytes, seven bits each, low bits first.
     pub fn varint(&mut self) -> Result<u32, Malformed> {
         let mut value = 0u32;
         for shift in [0, 7, 14, 21, 28] {
@@ -60,7 +61,7 @@ impl<'a> Stream<'a> {
                 return Ok(value);
             }
         }
-        Err(self.wrong("a number of more than five bytes"))
+        Err(self.wrong("a variable-length number exceeds five bytes"))
     }
 
     pub fn left(&self) -> usize {
@@ -70,7 +71,7 @@ impl<'a> Stream<'a> {
     pub fn finish(&self) -> Result<(), Malformed> {
         match self.left() {
             0 => Ok(()),
-            left => Err(self.wrong(format!("{left} bytes too many before the tail"))),
+            left => Err(self.wrong(format!("{left} unexpected bytes before the tail"))),
         }
     }
 
@@ -79,7 +80,7 @@ impl<'a> Stream<'a> {
     }
 }
 
-/// Appends a number as [`Stream::varint`] reads it.
+/// Appends a number in the form that [`Stream::varint`] reads.
 pub(super) fn push_varint(out: &mut Vec<u8>, mut value: u32) {
     while value >= 0x80 {
         out.push(value as u8 | 0x80);
@@ -88,12 +89,12 @@ pub(super) fn push_varint(out: &mut Vec<u8>, mut value: u32) {
     out.push(value as u8);
 }
 
-/// The difference that a whole number stands for: 0, -1, 1, -2 …
+/// Decodes a zigzag number: 0, -1, 1, -2 …
 pub(super) fn unzigzag(value: u32) -> u32 {
     (value >> 1) ^ 0u32.wrapping_sub(value & 1)
 }
 
-/// A difference as a whole number, small where it is near 0.
+/// Encodes a difference as a zigzag number, small if it is near 0.
 pub(super) fn zigzag(difference: u32) -> u32 {
     (difference << 1) ^ ((difference as i32 >> 31) as u32)
 }

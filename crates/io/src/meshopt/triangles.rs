@@ -1,17 +1,17 @@
-//! Mode 1: lists of triangles, most of them in one byte by an edge and a vertex seen lately.
+//! Mode 1: triangle lists, mostly one byte per triangle, which refers to a recent edge and vertex.
 
 use super::stream::{Malformed, Stream, push_varint, unzigzag, zigzag};
 
 const HEADER: u8 = 0xe1;
-/// Length of the table at the end, of which the first 14 can be named.
+/// Length of the table in the tail, and how many of its entries codes can refer to.
 const TABLE: usize = 16;
 const NAMED: usize = 14;
-/// Vertices that a code with an edge can name by how long ago they came: 1 to 12.
+/// Limit on the age of a recent vertex that a code can refer to beside an edge: 1 to 12.
 const NEAR: usize = 13;
-/// The code of an edge or vertex that is spelt out.
+/// Code of an edge or vertex that is stored explicitly.
 const EXPLICIT: u8 = 15;
 
-/// What came last, the newest at 0.
+/// Ring buffer of the 16 most recent entries; age 0 is the newest.
 struct Fifo<T> {
     newest: usize,
     filled: usize,
@@ -38,13 +38,13 @@ impl<T: Copy + Default + PartialEq> Fifo<T> {
     }
 }
 
-/// What encoder and decoder both know.
+/// State that encoder and decoder keep in step.
 struct State {
     edges: Fifo<[u32; 2]>,
     vertices: Fifo<u32>,
-    /// The first index that did not come yet, where they come in order.
+    /// Next new index, if indices first appear in order.
     next: u32,
-    /// The last index that was spelt out.
+    /// Last explicitly stored index.
     last: u32,
 }
 
@@ -58,7 +58,7 @@ impl State {
         self.next.wrapping_sub(1)
     }
 
-    /// After a triangle on a known edge `a b`.
+    /// Updates the state after a triangle on the known edge `a b`.
     fn push_on_edge(&mut self, [a, b, c]: [u32; 3], new: bool) {
         if new {
             self.vertices.push(c);
@@ -67,7 +67,7 @@ impl State {
         self.edges.push([a, c]);
     }
 
-    /// After a triangle of its own; codes 0 and 15 say which of `b` and `c` are new.
+    /// Updates the state after a triangle without a known edge; codes 0 and 15 mark new vertices.
     fn push_alone(&mut self, [a, b, c]: [u32; 3], codes: [u8; 2]) {
         self.vertices.push(a);
         for (vertex, code) in [b, c].into_iter().zip(codes) {
@@ -81,11 +81,14 @@ impl State {
     }
 }
 
-/// The indices of `count` triangles out of a stream.
+/// Decodes the indices of `count` triangles.
 pub(super) fn decode(stream: &[u8], count: usize) -> Result<Vec<u32>, Malformed> {
     let (header, mut codes, table) = Stream::split(stream, TABLE)?;
     if header != HEADER {
-        return Err(Malformed::new(0, format!("header {header:#04x}, not 0xe1 of triangles")));
+        return Err(Malformed::new(
+            0,
+            format!("header {header:#04x}; triangle streams begin with 0xe1"),
+        ));
     }
     let triangle_codes = codes.take(count)?;
     let mut data = codes;
@@ -96,7 +99,7 @@ pub(super) fn decode(stream: &[u8], count: usize) -> Result<Vec<u32>, Malformed>
             EXPLICIT => decode_alone(&mut data, &mut state, code & 15, table)?,
             edge => decode_on_edge(&mut data, &mut state, edge, code & 15)?,
         };
-        let missing = || Malformed::new(1 + i, "names an edge or a vertex that was not there yet");
+        let missing = || Malformed::new(1 + i, "refers to an edge or a vertex before the first");
         indices.extend(triangle.ok_or_else(missing)?);
     }
     data.finish()?;
@@ -122,7 +125,7 @@ fn decode_on_edge(
             state.last = state.last.wrapping_add(step);
             state.last
         }
-        _ => spelt(data, state)?,
+        _ => read_explicit(data, state)?,
     };
     state.push_on_edge([a, b, c], near == 0 || near >= NEAR);
     Ok(Some([a, b, c]))
@@ -138,17 +141,19 @@ fn decode_alone(
     let pair = if named { table[usize::from(code)] } else { data.byte()? };
     let codes = [pair >> 4, pair & 15];
     if named && codes.contains(&EXPLICIT) {
-        return Err(data.wrong(format!("entry {pair:#04x} of the table spells indices out")));
+        return Err(
+            data.wrong(format!("table entry {pair:#04x} must not contain explicit indices"))
+        );
     }
     if !named && pair == 0 {
         state.next = 0;
     }
-    let a = if code == EXPLICIT { spelt(data, state)? } else { state.take_next() };
+    let a = if code == EXPLICIT { read_explicit(data, state)? } else { state.take_next() };
     let mut others = [0; 2];
     for (other, code) in others.iter_mut().zip(codes) {
         *other = match code {
             0 => state.take_next(),
-            EXPLICIT => spelt(data, state)?,
+            EXPLICIT => read_explicit(data, state)?,
             age => match state.vertices.get(usize::from(age) - 1) {
                 Some(vertex) => vertex,
                 None => return Ok(None),
@@ -160,45 +165,46 @@ fn decode_alone(
     Ok(Some(triangle))
 }
 
-/// An index as its difference from the last one that was spelt out.
-fn spelt(data: &mut Stream<'_>, state: &mut State) -> Result<u32, Malformed> {
+/// Reads an explicit index, stored as the difference from the last one.
+fn read_explicit(data: &mut Stream<'_>, state: &mut State) -> Result<u32, Malformed> {
     state.last = state.last.wrapping_add(unzigzag(data.varint()?));
     Ok(state.last)
 }
 
-/// A triangle as it will be told.
-enum Told {
-    /// In one byte.
-    Code(u8),
-    /// By a pair for the table, with the first index next in order or spelt out.
+/// Encoded form of a triangle.
+enum TriangleCode {
+    /// Single code byte.
+    OnEdge(u8),
+    /// Pair of vertex codes, with the first index either next in order or explicit.
     Alone { pair: u8, first_is_next: bool },
 }
 
-/// Triangles as a stream. It decodes to them in their order; each may begin with another of its
-/// corners.
+/// Encodes a triangle list. Decoding keeps the order of the triangles but may rotate their corners.
 ///
-/// Small where triangles follow their neighbours and vertices are numbered by first use: about a
-/// byte each, and at most 17. Cost: O(n).
+/// Compact if triangles follow their neighbours and vertices are numbered by first use: about one
+/// byte per triangle, at most 17. Cost: O(n).
 pub fn encode(triangles: &[[u32; 3]]) -> Vec<u8> {
     let mut state = State::new();
-    // The indices spelt out, and where those of each triangle end.
+    // Explicit indices of all triangles, and where those of each triangle end.
     let (mut data, mut ends) = (Vec::new(), Vec::with_capacity(triangles.len()));
-    let mut told = Vec::with_capacity(triangles.len());
+    let mut codes = Vec::with_capacity(triangles.len());
     for &triangle in triangles {
-        told.push(tell(triangle, &mut state, &mut data));
+        codes.push(encode_triangle(triangle, &mut state, &mut data));
         ends.push(data.len());
     }
-    let table = table(&told);
+    let table = table(&codes);
     let mut out = vec![HEADER];
     let name = |pair| table[..NAMED].iter().position(|&entry| entry == pair);
-    out.extend(told.iter().map(|told| match *told {
-        Told::Code(code) => code,
-        Told::Alone { pair, first_is_next: true } => 0xf0 | name(pair).map_or(14, |at| at as u8),
-        Told::Alone { first_is_next: false, .. } => 0xff,
+    out.extend(codes.iter().map(|code| match *code {
+        TriangleCode::OnEdge(code) => code,
+        TriangleCode::Alone { pair, first_is_next: true } => {
+            0xf0 | name(pair).map_or(14, |at| at as u8)
+        }
+        TriangleCode::Alone { first_is_next: false, .. } => 0xff,
     }));
     let mut start = 0;
-    for (told, end) in told.iter().zip(ends) {
-        if let Told::Alone { pair, first_is_next } = *told
+    for (code, end) in codes.iter().zip(ends) {
+        if let TriangleCode::Alone { pair, first_is_next } = *code
             && !(first_is_next && name(pair).is_some())
         {
             out.push(pair);
@@ -210,22 +216,23 @@ pub fn encode(triangles: &[[u32; 3]]) -> Vec<u8> {
     out
 }
 
-/// The code of a triangle, and the indices that it spells out.
-fn tell(triangle: [u32; 3], state: &mut State, data: &mut Vec<u8>) -> Told {
-    let turns = [triangle, turned(triangle), turned(turned(triangle))];
-    let on_edge = turns
+/// Encodes one triangle, appending its explicit indices to `data`.
+fn encode_triangle(triangle: [u32; 3], state: &mut State, data: &mut Vec<u8>) -> TriangleCode {
+    let rotations = [triangle, rotated(triangle), rotated(rotated(triangle))];
+    let on_edge = rotations
         .iter()
         .filter_map(|&[a, b, c]| Some((state.edges.age([a, b], 15)?, [a, b, c])))
         .min_by_key(|&(age, _)| age);
     if let Some((age, triangle)) = on_edge {
-        return Told::Code((age as u8) << 4 | tell_third(triangle, state, data));
+        return TriangleCode::OnEdge((age as u8) << 4 | encode_third(triangle, state, data));
     }
-    let [a, b, c] = turns.into_iter().find(|turn| turn[0] == state.next).unwrap_or(triangle);
+    let [a, b, c] =
+        rotations.into_iter().find(|rotation| rotation[0] == state.next).unwrap_or(triangle);
     let first_is_next = a == state.next;
     if first_is_next {
         state.take_next();
     } else {
-        spell(a, state, data);
+        write_explicit(a, state, data);
     }
     let codes = [b, c].map(|vertex| {
         if vertex == state.next {
@@ -235,21 +242,21 @@ fn tell(triangle: [u32; 3], state: &mut State, data: &mut Vec<u8>) -> Told {
         match state.vertices.age(vertex, NAMED) {
             Some(age) => age as u8 + 1,
             None => {
-                spell(vertex, state, data);
+                write_explicit(vertex, state, data);
                 EXPLICIT
             }
         }
     });
     state.push_alone([a, b, c], codes);
-    Told::Alone { pair: codes[0] << 4 | codes[1], first_is_next }
+    TriangleCode::Alone { pair: codes[0] << 4 | codes[1], first_is_next }
 }
 
-fn turned([a, b, c]: [u32; 3]) -> [u32; 3] {
+fn rotated([a, b, c]: [u32; 3]) -> [u32; 3] {
     [b, c, a]
 }
 
-/// How the third index of a triangle on a known edge is told.
-fn tell_third(triangle: [u32; 3], state: &mut State, data: &mut Vec<u8>) -> u8 {
+/// Encodes the third index of a triangle on a known edge and returns its code.
+fn encode_third(triangle: [u32; 3], state: &mut State, data: &mut Vec<u8>) -> u8 {
     let c = triangle[2];
     let near = state.vertices.age(c, NEAR).filter(|&age| age > 0);
     let code = match near {
@@ -264,24 +271,24 @@ fn tell_third(triangle: [u32; 3], state: &mut State, data: &mut Vec<u8>) -> u8 {
     };
     match code {
         13 | 14 => state.last = c,
-        EXPLICIT => spell(c, state, data),
+        EXPLICIT => write_explicit(c, state, data),
         _ => {}
     }
     state.push_on_edge(triangle, near.is_none());
     code
 }
 
-fn spell(index: u32, state: &mut State, data: &mut Vec<u8>) {
+fn write_explicit(index: u32, state: &mut State, data: &mut Vec<u8>) {
     push_varint(data, zigzag(index.wrapping_sub(state.last)));
     state.last = index;
 }
 
-/// The pairs that are told most often. The first is that of three new vertices, which spelt out
-/// would begin the numbering anew.
-fn table(told: &[Told]) -> [u8; TABLE] {
+/// Selects the most frequent pairs for the table. Its first entry stands for three new vertices, a
+/// pair that would restart the numbering if it were stored explicitly.
+fn table(codes: &[TriangleCode]) -> [u8; TABLE] {
     let mut counts = [0usize; 256];
-    for told in told {
-        if let Told::Alone { pair, first_is_next: true } = *told
+    for code in codes {
+        if let TriangleCode::Alone { pair, first_is_next: true } = *code
             && pair >> 4 != EXPLICIT
             && pair & 15 != EXPLICIT
         {

@@ -1,25 +1,25 @@
-//! Names that hold for all faces from here on, as `usemtl`, `g` and `o` give them.
+//! Labels that hold from a statement on, as `usemtl`, `g` and `o` set them.
 
 use std::collections::HashMap;
 
 use meshlod_mesh::Labels;
 
-/// Names by runs of faces.
+/// Labels by runs of consecutive faces.
 #[derive(Default)]
 pub(super) struct LabelRuns {
-    /// The number of each name, by first use.
+    /// Number of each name, by first use.
     numbers: HashMap<String, u32>,
-    /// The first face of each run and its name's number. Faces before the first run have "".
+    /// First face and name number of each run. Faces before the first run have the name "".
     runs: Vec<(usize, u32)>,
 }
 
 impl LabelRuns {
-    /// From face `face` on the name is `name`.
+    /// Sets the name of all faces from `face` on.
     pub(super) fn set(&mut self, face: usize, name: String) {
         if self.runs.is_empty() && face > 0 {
             self.set_number(0, String::new());
         }
-        // A name that no face came to use.
+        // Drop a name that no face used.
         self.runs.pop_if(|&mut (start, _)| start == face);
         self.set_number(face, name);
     }
@@ -30,8 +30,8 @@ impl LabelRuns {
         self.runs.push((face, number));
     }
 
-    /// The names that some face has, in order of use, and which each face has; `None` where no
-    /// face has any but "".
+    /// Returns the names in use, in order of first use, and the label of each face; `None` if no
+    /// face has a name other than "".
     pub(super) fn finish(mut self, faces: usize) -> Option<Labels> {
         self.runs.retain(|&(start, _)| start < faces);
         let mut numbered = vec![String::new(); self.numbers.len()];

@@ -1,7 +1,7 @@
 //! Wavefront OBJ with its material library.
 //!
-//! Topology comes from the `v` index of each corner, so a texture seam does not tear the surface:
-//! what `vt` and `vn` say there becomes wedges. `o` and `g` become objects, `usemtl` materials.
+//! Topology comes from the `v` index of each corner, so a texture seam does not split the surface;
+//! the `vt` and `vn` values there become wedges. `o` and `g` become objects, `usemtl` materials.
 
 mod labels;
 mod mtl;

@@ -1,4 +1,4 @@
-//! Material libraries: colour, opacity and colour image; the rest is for renderers of its time.
+//! Material libraries: diffuse colour, opacity and colour texture; everything else is ignored.
 
 use std::collections::{HashMap, HashSet};
 use std::io::{self, Write};
@@ -6,30 +6,30 @@ use std::io::{self, Write};
 use crate::text_cursor::TextCursor;
 use crate::{FileLocation, Image, Material, ParseError, Scene};
 
-/// What a library says of a material.
+/// Properties of a material in a library.
 #[derive(Clone, Debug, PartialEq)]
 struct Definition {
     color: [f32; 3],
     opacity: Option<f32>,
-    /// Counts where there is no opacity: exporters that write both disagree on this one.
+    /// Used only if there is no opacity: exporters that write both disagree about this one.
     transparency: f32,
     image: Option<String>,
 }
 
 impl Default for Definition {
     fn default() -> Self {
-        // The grey that the format gives a material without Kd.
+        // Default grey of the format for a material without Kd.
         Self { color: [0.8; 3], opacity: None, transparency: 0.0, image: None }
     }
 }
 
-/// The materials of all libraries of a file, by name.
+/// Materials of all libraries of a file, by name.
 #[derive(Default)]
 pub(super) struct Library {
     definitions: HashMap<String, Definition>,
 }
 
-/// Materials and images of a scene, and which material each label has.
+/// Materials and images of a scene, and the material of each label.
 pub(super) struct Resolved {
     pub(super) materials: Vec<Material>,
     pub(super) images: Vec<Image>,
@@ -37,8 +37,8 @@ pub(super) struct Resolved {
 }
 
 impl Library {
-    /// Adds the libraries that an `mtllib` line names: one name with blanks in it, or several.
-    /// What is not there is passed over; the first definition of a name counts.
+    /// Loads the libraries of an `mtllib` line, which is one name with blanks or several names.
+    /// Missing files are ignored; the first definition of a name wins.
     pub(super) fn add(
         &mut self,
         names: &str,
@@ -57,7 +57,7 @@ impl Library {
         Ok(())
     }
 
-    /// Reads the library `name`, which its errors name, too.
+    /// Parses the library `name`, adding the name to errors.
     fn parse(&mut self, name: &str, bytes: &[u8]) -> Result<(), ParseError> {
         let in_library = |error: ParseError| ParseError {
             location: FileLocation::Part(format!("{name}, {}", error.location)),
@@ -67,7 +67,7 @@ impl Library {
     }
 
     fn parse_lines(&mut self, bytes: &[u8]) -> Result<(), ParseError> {
-        // An empty library is one without materials.
+        // An empty library has no materials.
         if bytes.is_empty() {
             return Ok(());
         }
@@ -99,7 +99,7 @@ impl Library {
 impl Definition {
     fn set(&mut self, word: &[u8], text: &mut TextCursor) -> Result<(), ParseError> {
         match word {
-            // `Kd spectral` and `Kd xyz` give the colour in other spaces: it stays grey.
+            // `Kd spectral` and `Kd xyz` use other colour spaces: the colour stays grey.
             b"Kd" if text.more() && !text.comes(b's') && !text.comes(b'x') => {
                 let red = text.attribute("")?;
                 let green = if text.more() { text.attribute("")? } else { red };
@@ -125,7 +125,7 @@ impl Definition {
     }
 }
 
-/// The file name behind the options of a `map_Kd` line; it may have blanks in it.
+/// Returns the file name after the options of a `map_Kd` line; it may contain blanks.
 fn image_name(line: &str) -> Option<String> {
     let mut rest = line.trim_start();
     while rest.starts_with('-') {
@@ -135,7 +135,7 @@ fn image_name(line: &str) -> Option<String> {
             "-o" | "-s" | "-t" => (1, 3),
             "-blendu" | "-blendv" | "-boost" | "-bm" | "-cc" | "-clamp" | "-imfchan"
             | "-texres" | "-type" => (1, 1),
-            // No option, but a name that begins so.
+            // Not an option but a name that begins with a dash.
             _ => break,
         };
         for count in 0..most {
@@ -155,10 +155,10 @@ fn split_word(text: &str) -> (&str, &str) {
     (word, rest.trim_start())
 }
 
-/// The materials with these names, for each name one but none for "", and their images.
+/// Looks up the materials with these names, except "", and their images.
 ///
-/// A name that no library defines keeps its name and is grey; an image that is not there keeps its
-/// name and has no bytes.
+/// A name without a definition gives a grey material; a missing image keeps its name and has no
+/// bytes.
 pub(super) fn materials(
     names: &[String],
     library: &Library,
@@ -186,7 +186,7 @@ pub(super) fn materials(
     resolved
 }
 
-/// Writes the materials of a scene, under the names that [`write`](super::write()) uses.
+/// Writes the materials of a scene under the names that [`write`](super::write()) uses.
 ///
 /// # Errors
 /// Those of `out`.
@@ -201,7 +201,7 @@ pub fn write(scene: &Scene, out: &mut dyn Write) -> io::Result<()> {
     Ok(())
 }
 
-/// A name for each material that no other has and that fits a line.
+/// Makes the material names unique and fit for one line.
 pub(super) fn names(materials: &[Material]) -> Vec<String> {
     let mut taken = HashSet::new();
     let unique = |(i, material): (usize, &Material)| {
@@ -217,7 +217,7 @@ pub(super) fn names(materials: &[Material]) -> Vec<String> {
     materials.iter().enumerate().map(unique).collect()
 }
 
-/// A name without what would end its line or be trimmed.
+/// Trims a name and replaces its control characters.
 pub(super) fn one_line(name: &str) -> String {
     name.trim().chars().map(|c| if c.is_control() { '_' } else { c }).collect()
 }

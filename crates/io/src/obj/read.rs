@@ -1,4 +1,4 @@
-//! OBJ in: one pass over the bytes.
+//! Reading OBJ in one pass over the bytes.
 
 use std::num::NonZeroU32;
 
@@ -11,19 +11,19 @@ use crate::polygon::triangulate;
 use crate::text_cursor::{TextCursor, quoted};
 use crate::{Node, ParseError, Scene, SceneMesh};
 
-/// Reads an OBJ file as one mesh under one node; `resolve` gives the bytes of the files that
-/// `mtllib` and `map_Kd` name, or `None` where they are not there.
+/// Reads an OBJ file as one mesh under one node; `resolve` loads the files that `mtllib` and
+/// `map_Kd` refer to, or returns `None` if there is no such file.
 ///
-/// Polygons are triangulated. Of each `v` three coordinates count, and the colour behind them; of
-/// each `vt` two. Values of `vt`, `vn` and colours that are not finite become 0, as do those of
-/// corners that lack what others have; colours above 1 are taken to be of 255. `o` wins over `g`.
-/// A material whose library or image is missing keeps its name. Lines, points, curves and what
-/// else is no face are left out.
+/// Polygons are triangulated. A `v` gives three coordinates and, if present, a colour; a `vt` gives
+/// two coordinates. Values of `vt`, `vn` and colours that are not finite become 0, as do those of
+/// corners that lack what others have. Colours above 1 are taken to be out of 255. `o` wins over
+/// `g`. A material whose library or image is missing keeps its name. Lines, points, curves and
+/// everything else that is not a face are ignored.
 ///
-/// Cost: O(n), n = bytes, beside that of concave polygons.
+/// Cost: O(n), n = bytes, plus that of triangulating concave polygons.
 /// # Errors
-/// The line and the reason: what is no number, a coordinate that is not finite, an index out of
-/// range, a face of fewer than three corners. A file without faces, one that is no text.
+/// The line and the reason: an invalid number, a coordinate that is not finite, an index out of
+/// range, a face with fewer than three corners. Also a file without faces, or one that is not text.
 pub fn read(
     bytes: &[u8],
     resolve: &mut dyn FnMut(&str) -> Option<Vec<u8>>,
@@ -38,14 +38,15 @@ pub fn read(
     reader.finish(resolve)
 }
 
-/// A corner as the file has it, ids counted from 1 and not yet compared with what there is.
+/// Corner of a face; its ids count from 1 and are not yet range-checked.
 #[derive(Clone, Copy)]
 struct Corner {
     vertex: NonZeroU32,
     ids: CornerIds,
 }
 
-/// A polygon that names what comes later in the file. `n - 2` faces hold its place.
+/// Polygon that refers to elements later in the file. Meanwhile, `n - 2` placeholder faces stand
+/// for it.
 struct Forward {
     line: usize,
     first_face: usize,
@@ -57,14 +58,14 @@ struct ObjReader<'a> {
     positions: Vec<[f64; 3]>,
     pools: Pools,
     faces: Vec<[VertexId; 3]>,
-    /// For each face; empty until a corner has any.
+    /// Attribute ids of each face's corners; empty until a corner has any.
     corners: Vec<[CornerIds; 3]>,
     forward: Vec<Forward>,
     objects: LabelRuns,
     materials: LabelRuns,
     has_object: bool,
     libraries: Vec<String>,
-    /// The polygon being read, its vertices and its triangles.
+    /// Current polygon, its vertices and its triangles.
     polygon: Vec<Corner>,
     outline: Vec<u32>,
     triangles: Vec<[u32; 3]>,
@@ -121,9 +122,9 @@ impl<'a> ObjReader<'a> {
                 self.libraries.push(name);
                 Ok(())
             }
-            // Lines, curves, smoothing groups, and what programs added to the format.
+            // Lines, curves, smoothing groups, and vendor extensions of the format.
             other if is_keyword(other) => Ok(()),
-            other => Err(self.text.error(format!("{} begins no OBJ statement", quoted(other)))),
+            other => Err(self.text.error(format!("{} is not an OBJ statement", quoted(other)))),
         }
     }
 
@@ -131,14 +132,14 @@ impl<'a> ObjReader<'a> {
         const NEED: &str = "a vertex needs three coordinates";
         let position = [self.text.number(NEED)?, self.text.number(NEED)?, self.text.number(NEED)?];
         if self.positions.len() == u32::MAX as usize {
-            return Err(self.text.error("more than 2^32 vertices"));
+            return Err(self.text.error("more than 2^32 vertices are not supported"));
         }
         self.positions.push(position);
         if self.text.more() { self.vertex_extras() } else { Ok(()) }
     }
 
-    /// What may stand behind a position: `w`, `r g b`, `r g b a` or `w r g b`, told apart by
-    /// their number; of four the first is the red.
+    /// Reads the numbers after a position: `w`, `r g b`, `r g b a` or `w r g b`, told apart by
+    /// their count. Of four, the first is taken as red.
     fn vertex_extras(&mut self) -> Result<(), ParseError> {
         let mut extras = [0.0; 4];
         let mut count = 0;
@@ -178,17 +179,19 @@ impl<'a> ObjReader<'a> {
         }
         if self.polygon.len() < 3 {
             let found = self.polygon.len();
-            return Err(self.text.error(format!("a face needs three corners, this has {found}")));
+            return Err(self
+                .text
+                .error(format!("a face needs at least three corners, but this one has {found}")));
         }
         let first_face = self.faces.len();
         if first_face + self.polygon.len() > u32::MAX as usize / 3 {
-            return Err(self.text.error("more than 2^32 corners"));
+            return Err(self.text.error("more than 2^32 corners are not supported"));
         }
         self.triangulate(known);
         let has_ids = !self.corners.is_empty()
             || self.polygon.iter().any(|corner| corner.ids != CornerIds::default());
         if has_ids {
-            // Does something once: for the faces before the first that has any.
+            // Has an effect once, for the faces before the first one with ids.
             self.corners.resize(first_face, Default::default());
         }
         for triangle in &self.triangles {
@@ -205,7 +208,7 @@ impl<'a> ObjReader<'a> {
         Ok(())
     }
 
-    /// Fills `triangles` with those of `polygon`: a fan while not all of its positions are known.
+    /// Triangulates `polygon` into `triangles`; as a fan while some positions are still unknown.
     fn triangulate(&mut self, known: bool) {
         self.triangles.clear();
         if known {
@@ -217,7 +220,7 @@ impl<'a> ObjReader<'a> {
         }
     }
 
-    /// `v`, `v/vt`, `v//vn` or `v/vt/vn`; the slashes may stand without a number behind them.
+    /// Reads `v`, `v/vt`, `v//vn` or `v/vt/vn`; the number after a slash may be missing.
     fn corner(&mut self) -> Result<Corner, ParseError> {
         let vertex = self.index("vertex", self.positions.len())?;
         let mut ids = CornerIds::default();
@@ -228,7 +231,7 @@ impl<'a> ObjReader<'a> {
             }
         }
         if !self.text.at_blank() {
-            return Err(self.text.refuse("part of a corner such as 1, 1/2, 1//3 or 1/2/3"));
+            return Err(self.text.refuse("a valid part of a corner; write 1, 1/2, 1//3 or 1/2/3"));
         }
         Ok(Corner { vertex, ids })
     }
@@ -244,7 +247,8 @@ impl<'a> ObjReader<'a> {
         self.index(what, count).map(Some)
     }
 
-    /// An index counted from 1, or back from the last of `count` so far when negative.
+    /// Reads an index counted from 1 or, if negative, back from the last of `count` elements so
+    /// far.
     #[inline]
     fn index(&mut self, what: &str, count: usize) -> Result<NonZeroU32, ParseError> {
         let written = self.text.integer("an index is missing")?;
@@ -288,7 +292,7 @@ impl<'a> ObjReader<'a> {
         })
     }
 
-    /// Checks and triangulates the polygons that named what came later.
+    /// Checks and triangulates the polygons that referred to later elements.
     fn settle_forward(&mut self) -> Result<(), ParseError> {
         for Forward { line, first_face, corners } in std::mem::take(&mut self.forward) {
             for &corner in &corners {
@@ -343,11 +347,11 @@ fn check_range(
 #[cold]
 fn out_of_range(line: usize, what: &str, written: i64, count: usize) -> ParseError {
     let there = match count {
-        _ if written == 0 => "they count from 1".to_owned(),
+        _ if written == 0 => "indices start at 1".to_owned(),
         0 => "there is none".to_owned(),
         1 => "there is only 1".to_owned(),
         _ => format!("there are only {count}"),
     };
     let so_far = if written < 0 && count > 0 { " so far" } else { "" };
-    ParseError::line(line, format!("a face names {what} {written}, but {there}{so_far}"))
+    ParseError::line(line, format!("a face refers to {what} {written}, but {there}{so_far}"))
 }

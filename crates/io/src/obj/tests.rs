@@ -61,7 +61,7 @@ fn faces_may_name_what_comes_later() {
     assert_eq!(first.faces[0], [0, 1, 3].map(VertexId), "the dart is split at its reflex corner");
     assert_eq!(
         error(&format!("f 1 2 3\nf 1 2 9\n{SQUARE}")),
-        "line 2: a face names vertex 9, but there are only 4"
+        "line 2: a face refers to vertex 9, but there are only 4"
     );
 }
 
@@ -134,20 +134,23 @@ fn what_is_wrong_is_named_with_its_line() {
         ("v 1 2\n", "line 5: a vertex needs three coordinates"),
         ("v 1 2 nan\n", "line 5: \"nan\" is not a finite number"),
         ("v 1 2 3.1+e2\n", "line 5: \"3.1+e2\" is not a number"),
-        ("f 1 2\n", "line 5: a face needs three corners, this has 2"),
-        ("f\n", "line 5: a face needs three corners, this has 0"),
-        ("f 1 2 0\n", "line 5: a face names vertex 0, but they count from 1"),
-        ("f 1 2 -5\n", "line 5: a face names vertex -5, but there are only 4 so far"),
-        ("f 1 2 3\nf 1 2 5\n", "line 6: a face names vertex 5, but there are only 4"),
-        ("f 1/1 2/1 3/1\n", "line 5: a face names texture coordinate 1, but there is none"),
-        ("vn 0 0 1\nf 1//1 2//1 3//2\n", "line 6: a face names normal 2, but there is only 1"),
-        ("f 1 2 99999999999999999999\n", "line 5: \"99999999999999999999\" is not a whole number"),
+        ("f 1 2\n", "line 5: a face needs at least three corners, but this one has 2"),
+        ("f\n", "line 5: a face needs at least three corners, but this one has 0"),
+        ("f 1 2 0\n", "line 5: a face refers to vertex 0, but indices start at 1"),
+        ("f 1 2 -5\n", "line 5: a face refers to vertex -5, but there are only 4 so far"),
+        ("f 1 2 3\nf 1 2 5\n", "line 6: a face refers to vertex 5, but there are only 4"),
+        ("f 1/1 2/1 3/1\n", "line 5: a face refers to texture coordinate 1, but there is none"),
+        ("vn 0 0 1\nf 1//1 2//1 3//2\n", "line 6: a face refers to normal 2, but there is only 1"),
+        ("f 1 2 99999999999999999999\n", "line 5: \"99999999999999999999\" is not an integer"),
         (
             "vt 0 0\nf 1 2 3/1/1/1\n",
-            "line 6: \"/1\" is not part of a corner such as 1, 1/2, 1//3 or 1/2/3",
+            "line 6: \"/1\" is not a valid part of a corner; write 1, 1/2, 1//3 or 1/2/3",
         ),
-        ("f 1,2,3\n", "line 5: \",2,3\" is not part of a corner such as 1, 1/2, 1//3 or 1/2/3"),
-        ("<html>\n", "line 5: \"<html>\" begins no OBJ statement"),
+        (
+            "f 1,2,3\n",
+            "line 5: \",2,3\" is not a valid part of a corner; write 1, 1/2, 1//3 or 1/2/3",
+        ),
+        ("<html>\n", "line 5: \"<html>\" is not an OBJ statement"),
         ("l 1 2\n", "line 5: the file ends without faces (4 vertices)"),
     ] {
         assert_eq!(error(&format!("{SQUARE}{text}")), message);

@@ -1,4 +1,4 @@
-//! Wedges from the corners of an OBJ file.
+//! Building wedges from the corners of an OBJ file.
 
 use std::num::NonZeroU32;
 
@@ -6,24 +6,24 @@ use meshlod_mesh::{Attributes, Buckets, Layer, LayerKind, VertexId, WedgeId};
 
 use crate::vertex_attributes::{named_layer, normalize_colors, per_vertex};
 
-/// What a corner names beside its vertex; ids counted from 1.
+/// Attribute ids of a corner, counted from 1.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct CornerIds {
     pub(super) uv: Option<NonZeroU32>,
     pub(super) normal: Option<NonZeroU32>,
 }
 
-/// The values that corners name, and those of vertices.
+/// Values that corners refer to by id, and colours of vertices.
 #[derive(Default)]
 pub(super) struct Pools {
     pub(super) uvs: Vec<[f32; 2]>,
     pub(super) normals: Vec<[f32; 3]>,
-    /// For the vertices up to the last that has one; empty where none has.
+    /// Colours of the vertices up to the last one that has any; empty if none has.
     colors: Vec<[f32; 3]>,
 }
 
 impl Pools {
-    /// Gives the last of `vertices` a colour; those before it without one are white.
+    /// Sets the colour of the last of `vertices`; earlier ones without a colour are white.
     pub(super) fn add_color(&mut self, vertices: usize, color: [f32; 3]) {
         self.colors.resize(vertices - 1, WHITE);
         self.colors.push(color);
@@ -37,7 +37,7 @@ impl Pools {
         ids.normal.map_or([0.0; 3], |id| self.normals[id.get() as usize - 1])
     }
 
-    /// The values as bits: equal for what is one wedge.
+    /// Returns the values of a corner as bits; corners of a vertex with equal keys share a wedge.
     fn key(&self, ids: CornerIds) -> [u32; 5] {
         let ([u, v], [x, y, z]) = (self.uv(ids), self.normal(ids));
         [u, v, x, y, z].map(f32::to_bits)
@@ -46,11 +46,11 @@ impl Pools {
 
 const WHITE: [f32; 3] = [1.0; 3];
 
-/// The attributes of a mesh: one wedge for each vertex with one uv and one normal, by *value*, so
-/// that exporters which write each corner's values anew make no seams.
+/// Builds the attributes of a mesh: one wedge per vertex and distinct uv and normal, compared by
+/// *value*, so that exporters which repeat the values at each corner cause no seams.
 ///
-/// `corners` is empty or has an entry per face; its ids must be in the pools. Wedges are numbered
-/// by vertex. `None` where no corner and no vertex has any attribute.
+/// `corners` is empty or has an entry per face, whose ids must exist in the pools. Wedges are
+/// numbered by vertex. Returns `None` if no corner and no vertex has attributes.
 pub(super) fn attributes(
     vertices: usize,
     faces: &[[VertexId; 3]],
@@ -73,22 +73,22 @@ pub(super) fn attributes(
     Some(Attributes { corners: numbers, wedge_count: shown.len(), layers })
 }
 
-/// A vertex and a corner at it that shows a wedge's values.
-struct Shown {
+/// Wedge under construction: its vertex and a corner with its values.
+struct WedgeSource {
     vertex: usize,
     corner: u32,
 }
 
-/// Numbers the wedges vertex by vertex, into `numbers` for each corner.
+/// Numbers the wedges vertex by vertex, storing the wedge of each corner in `numbers`.
 fn number(
     vertices: usize,
     faces: &[[VertexId; 3]],
     ids: &[CornerIds],
     pools: &Pools,
     numbers: &mut [WedgeId],
-) -> Vec<Shown> {
+) -> Vec<WedgeSource> {
     let corners = Buckets::new(vertices, faces.as_flattened().iter().map(|v| v.index()));
-    let mut shown: Vec<Shown> = Vec::with_capacity(vertices);
+    let mut shown: Vec<WedgeSource> = Vec::with_capacity(vertices);
     let mut keyed: Vec<([u32; 5], u32)> = Vec::new();
     for vertex in 0..vertices {
         let around = corners.of(vertex);
@@ -97,10 +97,10 @@ fn number(
             for &corner in around {
                 numbers[corner as usize] = WedgeId::new(shown.len());
             }
-            shown.push(Shown { vertex, corner });
+            shown.push(WedgeSource { vertex, corner });
             continue;
         }
-        // Sorted rather than compared with each other: one vertex may have a million corners.
+        // Sorted instead of compared pairwise, as one vertex may have a million corners.
         keyed.clear();
         keyed.extend(around.iter().map(|&corner| (pools.key(ids[corner as usize]), corner)));
         keyed.sort_unstable();
@@ -108,14 +108,14 @@ fn number(
             for &(_, corner) in same {
                 numbers[corner as usize] = WedgeId::new(shown.len());
             }
-            shown.push(Shown { vertex, corner: same[0].1 });
+            shown.push(WedgeSource { vertex, corner: same[0].1 });
         }
     }
     shown
 }
 
-fn layers(shown: &[Shown], ids: &[CornerIds], pools: &Pools) -> Vec<Layer> {
-    let of = |shown: &Shown| ids[shown.corner as usize];
+fn layers(shown: &[WedgeSource], ids: &[CornerIds], pools: &Pools) -> Vec<Layer> {
+    let of = |shown: &WedgeSource| ids[shown.corner as usize];
     let mut layers = Vec::new();
     if ids.iter().any(|ids| ids.uv.is_some()) {
         let values = shown.iter().flat_map(|shown| pools.uv(of(shown))).collect();

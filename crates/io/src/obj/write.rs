@@ -1,4 +1,4 @@
-//! OBJ out: one pool each of positions, uvs and normals.
+//! Writing OBJ: one pool each of positions, uvs and normals.
 
 use std::collections::HashMap;
 use std::io::{self, Write};
@@ -9,13 +9,12 @@ use super::mtl::{names, one_line};
 use crate::line_writer::LineWriter;
 use crate::{Precision, Scene};
 
-/// Writes all that a scene shows, in world space, as one OBJ; `mtl_name` names the library that
-/// [`write_mtl`](super::write_mtl) writes.
+/// Writes everything that a scene shows, in world space, as one OBJ; `mtl_name` is the file name of
+/// the library that [`write_mtl`](super::write_mtl) writes.
 ///
-/// Equal uvs and equal normals are written once. Colours are written behind the positions, for
-/// each vertex that of its first wedge. Objects become `o`, materials `usemtl` under names made
-/// unique. Read back, positions (at `F64`), uvs and normals are the same to the bit. Other layers
-/// have no place in the format.
+/// Equal uvs and equal normals are written once. Colours follow the positions; a vertex gets the
+/// colour of its first wedge. Objects become `o`, materials `usemtl`, with names made unique.
+/// Positions (at `F64`), uvs and normals read back bit for bit. Other layers are not written.
 ///
 /// # Errors
 /// Those of `out`, and a position that `precision` cannot hold.
@@ -54,7 +53,7 @@ fn write_positions(mesh: &Mesh, lines: &mut LineWriter) -> io::Result<()> {
     Ok(())
 }
 
-/// The colour of each vertex's first wedge; white where no face uses it.
+/// Returns the colour of each vertex's first wedge, white for unused vertices.
 fn vertex_colors(mesh: &Mesh) -> Option<Vec<[f32; 3]>> {
     let attributes = mesh.attributes.as_ref()?;
     let layer = attributes.layer(LayerKind::Color(0))?;
@@ -68,13 +67,13 @@ fn vertex_colors(mesh: &Mesh) -> Option<Vec<[f32; 3]>> {
     Some(colors)
 }
 
-/// The values of a layer, each once, and the number from 1 that each wedge's has.
+/// Numbers, from 1, of the distinct values of a layer, for each wedge.
 struct ValueNumbers {
     of_wedge: Option<Vec<u32>>,
 }
 
 impl ValueNumbers {
-    /// Writes the values of a layer, where the mesh has it.
+    /// Writes the distinct values of a layer, if the mesh has it.
     fn write(mesh: &Mesh, kind: LayerKind, word: &str, lines: &mut LineWriter) -> io::Result<Self> {
         let layer = mesh.attributes.as_ref().and_then(|attributes| attributes.layer(kind));
         let Some(layer) = layer else { return Ok(Self { of_wedge: None }) };
@@ -98,17 +97,17 @@ impl ValueNumbers {
     }
 }
 
-/// LineWriter that say where a label begins to hold.
+/// Writer of a statement whenever the label changes.
 struct Changes<'a> {
     word: &'static str,
     labels: Option<&'a Labels>,
     names: Vec<String>,
-    /// The label that holds; none does before the first line.
+    /// Label in effect; `None` before the first statement.
     current: Option<u32>,
 }
 
 impl<'a> Changes<'a> {
-    /// `names` stand for the first of the labels' own.
+    /// `names` replace the first names of the labels.
     fn new(word: &'static str, labels: Option<&'a Labels>, names: &[String]) -> Self {
         let own = labels.map_or(&[][..], |labels| &labels.names);
         let rest = own.iter().skip(names.len()).map(|name| one_line(name));
@@ -122,7 +121,7 @@ impl<'a> Changes<'a> {
             return Ok(());
         }
         let name = &self.names[label as usize];
-        // Before the first line no name holds anyway.
+        // Before the first statement, faces have no name anyway.
         if self.current.is_some() || !name.is_empty() {
             lines.word(self.word);
             lines.word(name);

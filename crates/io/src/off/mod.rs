@@ -1,5 +1,5 @@
-//! Object file format: OFF, and with normals, colours and texture coordinates at the vertices
-//! NOFF, COFF, STOFF and their combinations, as Geomview has them.
+//! Object File Format (OFF), including the variants of Geomview with normals, colours and texture
+//! coordinates at the vertices: NOFF, COFF, STOFF and their combinations.
 
 mod read;
 mod write;

@@ -1,4 +1,4 @@
-//! OFF in.
+//! Reading OFF.
 
 use meshlod_mesh::{Attributes, LayerKind, Mesh, VertexId};
 
@@ -9,16 +9,16 @@ use crate::vertex_attributes::{named_layer, normalize_colors, per_vertex};
 
 /// Reads a text OFF file.
 ///
-/// The header may be missing or stand before the counts without a blank; comments may stand
-/// anywhere. Polygons are triangulated, colours of faces left out. Colours of vertices have three
-/// or four parts; where any is above 1, they are of 255. Normals, colours and texture coordinates
-/// that are not finite become 0.
+/// The header may be missing or run into the counts without a blank; comments may appear anywhere.
+/// Polygons are triangulated, and face colours ignored. Vertex colours have three or four
+/// components; if any exceeds 1, all are taken to be out of 255. Normals, colours and texture
+/// coordinates that are not finite become 0.
 ///
-/// Cost: O(n), n = bytes, beside that of concave polygons.
+/// Cost: O(n), n = bytes, plus that of triangulating concave polygons.
 /// # Errors
-/// The line and the reason: counts that the file is too short for, what is no number, a coordinate
-/// that is not finite, an index out of range, a face of fewer than three corners; files without
-/// faces, binary ones, and those in other than three dimensions.
+/// The line and the reason: counts that exceed the file, an invalid number, a coordinate that is
+/// not finite, an index out of range, a face with fewer than three corners. Also files without
+/// faces, binary files, and dimensions other than three.
 /// # References
 /// [PLM93], section OFF of its manual.
 pub fn read(bytes: &[u8]) -> Result<Mesh, ParseError> {
@@ -49,17 +49,17 @@ pub fn read(bytes: &[u8]) -> Result<Mesh, ParseError> {
     Ok(Mesh { attributes, ..Mesh::new(columns.positions, triangles) })
 }
 
-/// What a vertex has behind its position, in this order.
+/// Attributes that follow each vertex position, in this order.
 #[derive(Clone, Copy, Default)]
 struct VertexFormat {
     has_normal: bool,
-    /// Parts of a colour: 0 where there is none, 3 until the first vertex tells.
+    /// Colour components: 0 without colours, 3 until the first vertex is seen.
     color_width: usize,
     has_uv: bool,
 }
 
 impl VertexFormat {
-    /// Colours have as many parts as the line of the first vertex leaves room for.
+    /// Derives the number of colour components from the numbers on the line of the first vertex.
     fn measure_color(&mut self, text: &TextCursor) -> Result<(), ParseError> {
         if self.color_width == 0 {
             return Ok(());
@@ -72,7 +72,7 @@ impl VertexFormat {
                 Ok(())
             }
             _ => Err(text.error(format!(
-                "a vertex of this header has {} or {} numbers, this line has {words}",
+                "this header calls for {} or {} numbers per vertex, but this line has {words}",
                 others + 3,
                 others + 4
             ))),
@@ -80,11 +80,11 @@ impl VertexFormat {
     }
 }
 
-/// The header word, if there is one, up to the first count.
+/// Reads the header word, if there is one, up to the first count.
 fn header(text: &mut TextCursor) -> Result<VertexFormat, ParseError> {
     if text.comes_digit() {
         return if text.take_word(b"4OFF") || text.take_word(b"4nOFF") {
-            Err(text.error("only three dimensions are read"))
+            Err(text.error("only three-dimensional OFF is supported"))
         } else {
             Ok(VertexFormat::default())
         };
@@ -94,39 +94,39 @@ fn header(text: &mut TextCursor) -> Result<VertexFormat, ParseError> {
     let color_width = if text.take(b'C') { 3 } else { 0 };
     let has_normal = text.take(b'N');
     if text.comes(b'4') || text.comes(b'n') {
-        return Err(text.error("only three dimensions are read"));
+        return Err(text.error("only three-dimensional OFF is supported"));
     }
     if !text.take_word(b"OFF") {
-        return Err(start.refuse("an OFF header, nor a count"));
+        return Err(start.refuse("an OFF header or a count"));
     }
     if text.more() && text.take_word(b"BINARY") {
-        return Err(text.error("this OFF file is binary; convert it to text, or to PLY"));
+        return Err(text.error("binary OFF is not supported; convert the file to text or to PLY"));
     }
     Ok(VertexFormat { has_normal, color_width, has_uv })
 }
 
-/// The numbers of vertices and faces; that of edges is not needed.
+/// Reads the numbers of vertices and faces; the number of edges is ignored.
 fn counts(text: &mut TextCursor) -> Result<[usize; 2], ParseError> {
     const NEED: &str = "the counts of vertices and faces are missing";
     let mut counts = [0; 2];
     for count in &mut counts {
         text.more_anywhere();
         let number = text.integer(NEED)?;
-        *count = usize::try_from(number).map_err(|_| text.error("a negative count"))?;
+        *count = usize::try_from(number).map_err(|_| text.error("a count is negative"))?;
     }
     let line = text.line();
     text.words_left();
-    // A vertex has 3 numbers at least and a face 4, each of 2 bytes at least with its blank.
+    // A vertex has at least 3 numbers and a face 4, each of at least 2 bytes with its blank.
     let [vertices, faces] = counts;
     if vertices.saturating_mul(6).saturating_add(faces.saturating_mul(8)) > text.left() + 1 {
         let reason = format!(
-            "the header counts {vertices} vertices and {faces} faces, but only {} bytes follow",
+            "the header declares {vertices} vertices and {faces} faces, but only {} bytes follow",
             text.left()
         );
         return Err(ParseError::line(line, reason));
     }
     if vertices > u32::MAX as usize {
-        return Err(ParseError::line(line, "more than 2^32 vertices"));
+        return Err(ParseError::line(line, "more than 2^32 vertices are not supported"));
     }
     Ok(counts)
 }
@@ -139,7 +139,7 @@ fn need(text: &mut TextCursor, done: usize, all: usize, what: &str) -> Result<()
     Err(text.error(format!("the file ends after {done} of {all} {what}")))
 }
 
-/// The values of the vertices.
+/// Values of the vertices.
 #[derive(Default)]
 struct Columns {
     positions: Vec<[f64; 3]>,
@@ -153,7 +153,7 @@ impl Columns {
         let mut position = [0.0; 3];
         for x in &mut position {
             text.more_anywhere();
-            *x = text.number("the file ends within a vertex")?;
+            *x = text.number("the file ends inside a vertex")?;
         }
         self.positions.push(position);
         let normal_width = if layout.has_normal { 3 } else { 0 };
@@ -165,7 +165,7 @@ impl Columns {
         ] {
             for _ in 0..width {
                 text.more_anywhere();
-                values.push(text.attribute("the file ends within a vertex")?);
+                values.push(text.attribute("the file ends inside a vertex")?);
             }
         }
         Ok(())
@@ -185,7 +185,7 @@ impl Columns {
     }
 }
 
-/// The polygon being read and its triangles.
+/// Buffers for the current polygon and its triangles.
 #[derive(Default)]
 struct Scratch {
     polygon: Vec<u32>,
@@ -193,8 +193,7 @@ struct Scratch {
 }
 
 impl Scratch {
-    /// Reads one face: its number of corners, the corners, a colour or whatever else stands behind
-    /// them on the line.
+    /// Reads one face: the number of corners, then the corners; the rest of the line is ignored.
     fn face(
         &mut self,
         positions: &[[f64; 3]],
@@ -203,15 +202,17 @@ impl Scratch {
     ) -> Result<(), ParseError> {
         let corners = text.integer("a face is missing")?;
         if corners < 3 {
-            return Err(text.error(format!("a face needs three corners, this has {corners}")));
+            return Err(text.error(format!(
+                "a face needs at least three corners, but this one has {corners}"
+            )));
         }
         self.polygon.clear();
         for _ in 0..corners {
             text.more_anywhere();
-            let index = text.integer("the file ends within a face")?;
+            let index = text.integer("the file ends inside a face")?;
             if index < 0 || index >= positions.len() as i64 {
                 let count = positions.len();
-                let reason = format!("a face names vertex {index}, but there are only {count}");
+                let reason = format!("a face refers to vertex {index}, but there are only {count}");
                 return Err(text.error(reason));
             }
             self.polygon.push(index as u32);
@@ -288,7 +289,7 @@ mod tests {
         }
         assert_eq!(
             error("COFF\n3 1 0\n0 0 0 7\n1 0 0 7\n0 1 0 7\n3 0 1 2\n"),
-            "line 3: a vertex of this header has 6 or 7 numbers, this line has 4"
+            "line 3: this header calls for 6 or 7 numbers per vertex, but this line has 4"
         );
     }
 
@@ -303,16 +304,19 @@ mod tests {
         for (text, message) in [
             ("", "byte 0: the file is empty"),
             ("# only\n", "line 1: the file is empty"),
-            ("ply\n", "line 1: \"ply\" is not an OFF header, nor a count"),
+            ("ply\n", "line 1: \"ply\" is not an OFF header or a count"),
             ("OFF\n3", "line 2: the counts of vertices and faces are missing"),
             (
                 "OFF\n353535235358 6 0\n0 0 0\n",
-                "line 2: the header counts 353535235358 vertices and 6 faces, but only 7 bytes \
+                "line 2: the header declares 353535235358 vertices and 6 faces, but only 7 bytes \
                  follow",
             ),
-            ("4OFF\n3 1 0\n", "line 1: only three dimensions are read"),
-            ("nOFF\n3\n", "line 1: only three dimensions are read"),
-            ("OFF BINARY\n", "line 1: this OFF file is binary; convert it to text, or to PLY"),
+            ("4OFF\n3 1 0\n", "line 1: only three-dimensional OFF is supported"),
+            ("nOFF\n3\n", "line 1: only three-dimensional OFF is supported"),
+            (
+                "OFF BINARY\n",
+                "line 1: binary OFF is not supported; convert the file to text or to PLY",
+            ),
             ("OFF\n3 0 0\n0 0 0\n1 0 0\n0 1 0\n", "line 5: the file has no faces"),
             (
                 "OFF\n3 1 0\n0 0 0\n1 0 inf\n0 1 0\n3 0 1 2\n",
@@ -320,11 +324,11 @@ mod tests {
             ),
             (
                 "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 3\n",
-                "line 6: a face names vertex 3, but there are only 3",
+                "line 6: a face refers to vertex 3, but there are only 3",
             ),
             (
                 "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n2 0 1   \n",
-                "line 6: a face needs three corners, this has 2",
+                "line 6: a face needs at least three corners, but this one has 2",
             ),
             (
                 "OFF\n3 2 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2 0 0 0 0 0",

@@ -1,4 +1,4 @@
-//! OFF out.
+//! Writing OFF.
 
 use std::io::{self, Write};
 
@@ -8,12 +8,12 @@ use crate::Precision;
 use crate::line_writer::LineWriter;
 use crate::vertex_attributes::split_at_seams;
 
-/// Writes a mesh as text OFF, with normals (N), the first colours (C) and texture coordinates (ST)
-/// at the vertices where it has them.
+/// Writes a mesh as text OFF, with the normals (N), the first colours (C) and the texture
+/// coordinates (ST) of its vertices, if it has them.
 ///
-/// The format has one set of attributes per vertex: a vertex with several wedges is written once
-/// for each. Other layers, materials and objects have no place in it. Read back, a mesh without
-/// seams is the same, to the bit at `F64`.
+/// The format has one set of attributes per vertex, so a vertex with several wedges is written once
+/// for each. Other layers, materials and objects are not written. A mesh without seams reads back
+/// unchanged, bit for bit at `F64`.
 ///
 /// # Errors
 /// Those of `out`, and a position that `precision` cannot hold.
@@ -31,10 +31,10 @@ pub fn write(mesh: &Mesh, precision: Precision, out: &mut dyn Write) -> io::Resu
         lines.integer(count);
     }
     lines.end()?;
-    for row in &split.vertices {
-        lines.position(row.vertex.index(), mesh.positions[row.vertex.index()])?;
+    for vertex in &split.vertices {
+        lines.position(vertex.vertex.index(), mesh.positions[vertex.vertex.index()])?;
         for layer in [normals, colors, uvs].into_iter().flatten() {
-            match row.wedge {
+            match vertex.wedge {
                 Some(wedge) => lines.attributes(layer.of(wedge)),
                 None => lines.attributes(&vec![0.0; layer.width]),
             }

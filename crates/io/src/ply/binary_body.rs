@@ -1,4 +1,4 @@
-//! The body as binary data of either byte order.
+//! Binary bodies, in either byte order.
 
 use meshlod_mesh::VertexId;
 
@@ -7,13 +7,13 @@ use super::bulk;
 use super::header::{Element, Header, Scalar};
 use crate::ParseError;
 
-/// BinaryBody data; `BIG` is the byte order.
+/// Reader of a binary body; big-endian if `BIG`.
 #[derive(Clone)]
 pub(super) struct BinaryBody<'a, const BIG: bool> {
     rest: &'a [u8],
-    /// Bytes of the whole file.
+    /// Length of the whole file in bytes.
     total: usize,
-    /// Where the row that was begun last begins.
+    /// Byte offset of the current row.
     row_at: usize,
 }
 
@@ -22,7 +22,7 @@ impl<'a, const BIG: bool> BinaryBody<'a, BIG> {
         Self { rest: &bytes[header.body..], total: bytes.len(), row_at: header.body }
     }
 
-    /// An error: the file ends within a row.
+    /// Creates the error for a file that ends inside a row.
     fn ended(&self, row: Row) -> ParseError {
         ParseError::byte(self.total, format!("the file ends inside {row}"))
     }
@@ -37,7 +37,7 @@ impl<'a, const BIG: bool> BinaryBody<'a, BIG> {
     }
 }
 
-/// The bytes of a number in little-endian order.
+/// Brings the bytes of a number into little-endian order.
 #[inline]
 pub(super) fn little<const N: usize, const BIG: bool>(mut raw: [u8; N]) -> [u8; N] {
     if BIG {
@@ -71,7 +71,7 @@ impl<const BIG: bool> BodyReader for BinaryBody<'_, BIG> {
         })
     }
 
-    fn pass(&mut self, kind: Scalar, count: usize, row: Row) -> Result<(), ParseError> {
+    fn skip_numbers(&mut self, kind: Scalar, count: usize, row: Row) -> Result<(), ParseError> {
         let bytes = count.checked_mul(kind.size()).filter(|&bytes| bytes <= self.rest.len());
         self.rest = &self.rest[bytes.ok_or_else(|| self.ended(row))?..];
         Ok(())

@@ -1,4 +1,4 @@
-//! The body as a stream of numbers, whatever its encoding.
+//! Common interface of text and binary bodies: a stream of numbers.
 
 use std::fmt;
 
@@ -7,7 +7,7 @@ use meshlod_mesh::VertexId;
 use super::header::{Element, Scalar, Shape, shown};
 use crate::ParseError;
 
-/// Which row is being read, for errors: prints as `vertex 12 of 2903`, counted from 0.
+/// Row being read; displayed in errors as `vertex 12 of 2903`, counted from 0.
 #[derive(Clone, Copy)]
 pub(super) struct Row<'a> {
     pub element: &'a Element,
@@ -20,29 +20,31 @@ impl fmt::Display for Row<'_> {
     }
 }
 
-/// Numbers in the order of the file. A clone reads on from the same place.
+/// Reader of the numbers of a body, in the order of the file. A clone continues from the same
+/// place.
 pub(super) trait BodyReader: Clone {
-    /// To be called before the first number of a row.
+    /// Must be called before the first number of a row.
     fn begin_row(&mut self);
 
-    /// To be called behind the last number of a row.
+    /// Must be called after the last number of a row.
     fn end_row(&mut self, row: Row) -> Result<(), ParseError>;
 
-    /// The next number; every type fits `f64` exactly.
+    /// Reads the next number; every scalar type fits in `f64` exactly.
     fn number(&mut self, kind: Scalar, row: Row) -> Result<f64, ParseError>;
 
-    /// Passes over so many numbers.
-    fn pass(&mut self, kind: Scalar, count: usize, row: Row) -> Result<(), ParseError>;
+    /// Skips `count` numbers of a type.
+    fn skip_numbers(&mut self, kind: Scalar, count: usize, row: Row) -> Result<(), ParseError>;
 
-    /// The most items of a type, or rows of an element, that the rest of the file can hold.
+    /// Returns an upper bound for the number of items of a type in the rest of the file.
     fn most_items(&self, kind: Scalar) -> usize;
+    /// Returns an upper bound for the number of rows of an element in the rest of the file.
     fn most_rows(&self, element: &Element) -> usize;
 
-    /// An error about the row that was begun last.
+    /// Creates an error located at the current row.
     fn wrong(&self, reason: String) -> ParseError;
 
-    /// Takes the first rows in one sweep, as long as they are plain, and gives their number; the
-    /// others are left to the careful way, and so are all errors. See [`super::bulk`].
+    /// Reads leading rows in bulk as long as they have the common layout, and returns their number.
+    /// The remaining rows, and all errors, are left to the general path. See [`super::bulk`].
     fn bulk_positions(
         &mut self,
         _element: &Element,
@@ -52,7 +54,7 @@ pub(super) trait BodyReader: Clone {
         0
     }
 
-    /// The same for faces.
+    /// Reads leading triangles in bulk, see [`BodyReader::bulk_positions`].
     fn bulk_triangles(
         &mut self,
         _element: &Element,
@@ -62,40 +64,40 @@ pub(super) trait BodyReader: Clone {
         0
     }
 
-    /// The length of a list, which the rest of the file can hold.
+    /// Reads the length of a list, checked against the rest of the file.
     fn length(&mut self, length: Scalar, item: Scalar, row: Row) -> Result<usize, ParseError> {
         let claimed = self.number(length, row)?;
         if claimed < 0.0 {
-            return Err(self.wrong(format!("{row} has a list of length {claimed}")));
+            return Err(self.wrong(format!("{row} has a list of negative length {claimed}")));
         }
         if claimed > self.most_items(item) as f64 {
             return Err(self.wrong(format!(
-                "{row} has a list of {claimed} values, but the file ends before that many"
+                "{row} has a list of {claimed} values, but the file ends before that"
             )));
         }
         Ok(claimed as usize)
     }
 
-    /// Passes over one property of a row.
-    fn pass_property(&mut self, shape: Shape, row: Row) -> Result<(), ParseError> {
+    /// Skips one property of a row.
+    fn skip_property(&mut self, shape: Shape, row: Row) -> Result<(), ParseError> {
         match shape {
-            Shape::One(kind) => self.pass(kind, 1, row),
+            Shape::One(kind) => self.skip_numbers(kind, 1, row),
             Shape::List { length, item } => {
                 let count = self.length(length, item, row)?;
-                self.pass(item, count, row)
+                self.skip_numbers(item, count, row)
             }
         }
     }
 
-    /// Passes over all rows of an element.
+    /// Skips all rows of an element.
     fn skip(&mut self, element: &Element) -> Result<(), ParseError> {
-        // Rows of nothing take no bytes: their count alone could keep us for ever.
+        // Rows without properties take no bytes: a huge count alone could keep us busy forever.
         let count = if element.properties.is_empty() { 0 } else { element.count };
         for index in 0..count {
             let row = Row { element, index };
             self.begin_row();
             for property in &element.properties {
-                self.pass_property(property.shape, row)?;
+                self.skip_property(property.shape, row)?;
             }
             self.end_row(row)?;
         }

@@ -1,19 +1,20 @@
-//! The daily load in one sweep: binary rows of floating x, y, z, and of three indices.
+//! Fast path for the common case: binary rows with floating-point x, y, z, and faces of three
+//! indices.
 //!
-//! Both functions stop before the first row that is anything else, cut off, not finite or out of
-//! range; the careful way goes on from there, and finds the words for what is wrong.
+//! Both functions stop before the first row that is anything else, truncated, not finite or out of
+//! range. The general path continues from there and reports errors.
 
 use meshlod_mesh::VertexId;
 
 use super::binary_body::little;
 use super::header::{Element, Scalar, Shape};
 
-/// Bytes of a face of three 32-bit indices behind its length.
+/// Bytes of a face with three 32-bit indices and an 8-bit length.
 pub(super) const TRIANGLE_ROW: usize = 13;
 
-/// Appends the positions of the first rows; gives how many rows that were.
+/// Appends the positions of leading rows and returns their number.
 ///
-/// `xyz`: which properties are the coordinates.
+/// `xyz` are the indices of the coordinate properties.
 pub(super) fn positions<const BIG: bool>(
     bytes: &[u8],
     element: &Element,
@@ -38,7 +39,7 @@ pub(super) fn positions<const BIG: bool>(
     }
 }
 
-/// The rows that are there in full.
+/// Iterates over the rows that are complete.
 fn whole_rows(bytes: &[u8], size: usize, count: u64) -> std::slice::ChunksExact<'_, u8> {
     let there = (bytes.len() / size) as u64;
     bytes[..there.min(count) as usize * size].chunks_exact(size)
@@ -62,7 +63,7 @@ fn gather<const N: usize>(
     positions.len() - before
 }
 
-/// Appends the first rows while they are triangles of vertices below `vertices`; gives how many.
+/// Appends leading faces while they are triangles with valid indices, and returns their number.
 pub(super) fn triangles<const BIG: bool>(
     bytes: &[u8],
     element: &Element,
@@ -72,7 +73,7 @@ pub(super) fn triangles<const BIG: bool>(
     let limit = match element.properties[..] {
         [ref list] => match list.shape {
             Shape::List { length: Scalar::U8 | Scalar::I8, item: Scalar::U32 } => u32::MAX,
-            // Read without a sign, a negative index lies above every vertex.
+            // Read as unsigned, a negative index exceeds every vertex.
             Shape::List { length: Scalar::U8 | Scalar::I8, item: Scalar::I32 } => 1 << 31,
             _ => return 0,
         },

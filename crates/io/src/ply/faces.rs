@@ -1,4 +1,4 @@
-//! Faces and strips, to triangles.
+//! Elements `face` and `tristrips`, converted to triangles.
 
 use meshlod_mesh::VertexId;
 
@@ -7,10 +7,10 @@ use super::header::{Element, Shape};
 use crate::ParseError;
 use crate::polygon::triangulate;
 
-/// Ends a strip within a list; no vertex has this index.
+/// Index that ends a strip within a list; no vertex has it.
 const RESTART: u32 = u32::MAX;
 
-/// The triangles so far, and room that is used again for every row.
+/// Triangles read so far, and buffers reused for every row.
 #[derive(Default)]
 pub(super) struct Faces {
     pub triangles: Vec<[VertexId; 3]>,
@@ -19,7 +19,7 @@ pub(super) struct Faces {
 }
 
 impl Faces {
-    /// Adds the rows of an element `face` or `tristrips`.
+    /// Reads all rows of an element `face` or `tristrips`.
     pub fn read<B: BodyReader>(
         &mut self,
         body: &mut B,
@@ -55,7 +55,7 @@ impl Faces {
                             self.list.push(vertex);
                         }
                     }
-                    shape => body.pass_property(shape, row)?,
+                    shape => body.skip_property(shape, row)?,
                 }
             }
             body.end_row(row)?;
@@ -75,8 +75,8 @@ impl Faces {
         self.triangles.extend(self.corners.iter().map(|triangle| triangle.map(vertex)));
     }
 
-    /// Every second triangle of a strip is turned round. Those that repeat a vertex only join one
-    /// part of a strip to the next.
+    /// Expands strips: every second triangle is flipped, and triangles that repeat a vertex, which
+    /// only join parts of a strip, are dropped.
     fn add_strips(&mut self) {
         for strip in self.list.split(|&v| v == RESTART) {
             for (i, window) in strip.windows(3).enumerate() {
@@ -90,10 +90,10 @@ impl Faces {
     }
 }
 
-/// The index of a vertex, or why it is none.
+/// Converts a vertex index, or explains why it is invalid.
 fn checked(index: f64, vertices: usize) -> Result<u32, String> {
     if index.fract() == 0.0 && (0.0..vertices as f64).contains(&index) {
         return Ok(index as u32);
     }
-    Err(format!("names vertex {index}, but there are only {vertices} vertices, counted from 0"))
+    Err(format!("refers to vertex {index}, but there are only {vertices}, counted from 0"))
 }

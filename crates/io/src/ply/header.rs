@@ -1,10 +1,10 @@
-//! The header: which elements follow, and what each of their rows holds.
+//! Header: the elements that follow, and the properties of their rows.
 
 use std::collections::HashSet;
 
 use crate::ParseError;
 
-/// How the body is written.
+/// Encoding of the body.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Encoding {
     Text,
@@ -12,7 +12,7 @@ pub(super) enum Encoding {
     BigEndian,
 }
 
-/// The type of a number.
+/// Scalar type.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Scalar {
     I8,
@@ -25,11 +25,11 @@ pub(super) enum Scalar {
     F64,
 }
 
-/// What a property holds in each row.
+/// Shape of a property: a single number or a list.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Shape {
     One(Scalar),
-    /// A length, then so many items.
+    /// Length, followed by that many items.
     List {
         length: Scalar,
         item: Scalar,
@@ -42,7 +42,7 @@ pub(super) struct Property {
     pub shape: Shape,
 }
 
-/// `count` rows of `properties`.
+/// Element: `count` rows of `properties`.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Element {
     pub name: String,
@@ -54,13 +54,14 @@ pub(super) struct Element {
 pub(super) struct Header {
     pub encoding: Encoding,
     pub elements: Vec<Element>,
-    /// Where the body begins: its byte, and its line counted from 1.
+    /// Byte offset of the body.
     pub body: usize,
+    /// Line of the body, counted from 1.
     pub body_line: usize,
 }
 
 impl Header {
-    /// Reads up to and with the line `end_header`.
+    /// Parses the header up to and including the line `end_header`.
     pub fn parse(bytes: &[u8]) -> Result<Self, ParseError> {
         if bytes.is_empty() {
             return Err(ParseError::byte(0, "the file is empty"));
@@ -78,7 +79,7 @@ impl Header {
                 Some("end_header") => {
                     let encoding = draft
                         .encoding
-                        .ok_or_else(|| wrong("the header ends without a line \"format\"".into()))?;
+                        .ok_or_else(|| wrong("the header has no line \"format\"".into()))?;
                     let body = bytes.len() - lines.rest.len();
                     let body_line = lines.number + 1;
                     return Ok(Self { encoding, elements: draft.elements, body, body_line });
@@ -91,7 +92,7 @@ impl Header {
     }
 }
 
-/// HeaderLines that end in LF, CR LF or CR, without the end.
+/// Iterator over lines ending in LF, CR LF or CR, returned without the line end.
 struct HeaderLines<'a> {
     rest: &'a [u8],
     number: usize,
@@ -117,18 +118,19 @@ impl<'a> Iterator for HeaderLines<'a> {
     }
 }
 
-/// The header so far.
+/// Header under construction.
 #[derive(Default)]
 struct Draft {
     encoding: Option<Encoding>,
     elements: Vec<Element>,
-    /// Names of elements, and of the properties of the last one.
+    /// Names of the elements so far.
     element_names: HashSet<String>,
+    /// Names of the properties of the last element.
     property_names: HashSet<String>,
 }
 
 impl Draft {
-    /// Takes one line in.
+    /// Processes one line.
     fn add<'a>(
         &mut self,
         keyword: &str,
@@ -140,7 +142,7 @@ impl Draft {
             "element" => self.add_element(words.next(), words.next()),
             "property" => self.add_property(words),
             _ => Err(format!(
-                "unknown keyword \"{}\"; known are format, element, property, comment, obj_info, \
+                "unknown keyword \"{}\"; expected format, element, property, comment, obj_info or \
                  end_header",
                 shown(keyword)
             )),
@@ -154,7 +156,7 @@ impl Draft {
             Some("binary_big_endian") => Encoding::BigEndian,
             other => {
                 return Err(format!(
-                    "unknown format \"{}\"; known are ascii, binary_little_endian, \
+                    "unknown format \"{}\"; expected ascii, binary_little_endian or \
                      binary_big_endian",
                     shown(other.unwrap_or_default())
                 ));
@@ -171,7 +173,7 @@ impl Draft {
             .parse()
             .map_err(|_| format!("element {}: \"{}\" is not a count", shown(name), shown(count)))?;
         if !self.element_names.insert(name.to_owned()) {
-            return Err(format!("a second element {}", shown(name)));
+            return Err(format!("the element {} is declared twice", shown(name)));
         }
         self.property_names.clear();
         self.elements.push(Element { name: name.to_owned(), count, properties: Vec::new() });
@@ -187,7 +189,7 @@ impl Draft {
             Some("list") => {
                 let length = scalar(words.next())?;
                 if matches!(length, Scalar::F32 | Scalar::F64) {
-                    return Err("the length of a list must have a whole-number type".into());
+                    return Err("the length of a list must have an integer type".into());
                 }
                 Shape::List { length, item: scalar(words.next())? }
             }
@@ -195,14 +197,18 @@ impl Draft {
         };
         let name = words.next().ok_or("a property needs a type and a name")?.to_owned();
         if !self.property_names.insert(name.clone()) {
-            return Err(format!("element {}: a second {}", shown(&element.name), shown(&name)));
+            return Err(format!(
+                "element {}: the property {} is declared twice",
+                shown(&element.name),
+                shown(&name)
+            ));
         }
         element.properties.push(Property { name, shape });
         Ok(())
     }
 }
 
-/// The type of a name, in the old and in the sized spelling.
+/// Parses a scalar type, in the original or the sized spelling.
 fn scalar(name: Option<&str>) -> Result<Scalar, String> {
     let name = name.ok_or("a property needs a type and a name")?;
     Ok(match name {
@@ -218,7 +224,7 @@ fn scalar(name: Option<&str>) -> Result<Scalar, String> {
     })
 }
 
-/// A word of the file as an error shows it: short, and on one line.
+/// Formats a word of the file for an error: shortened, and on one line.
 pub(super) fn shown(word: &str) -> String {
     const MOST: usize = 40;
     let mut text: String = word.chars().take(MOST).flat_map(char::escape_debug).collect();
@@ -229,7 +235,7 @@ pub(super) fn shown(word: &str) -> String {
 }
 
 impl Scalar {
-    /// Bytes in binary data.
+    /// Returns the size in binary data, in bytes.
     pub fn size(self) -> usize {
         match self {
             Self::I8 | Self::U8 => 1,
@@ -239,7 +245,7 @@ impl Scalar {
         }
     }
 
-    /// Least and greatest value; `None` for the floating types.
+    /// Returns the minimum and maximum of an integer type; `None` for the floating-point types.
     pub fn whole_range(self) -> Option<(i64, i64)> {
         Some(match self {
             Self::I8 => (i8::MIN.into(), i8::MAX.into()),
@@ -254,7 +260,7 @@ impl Scalar {
 }
 
 impl Shape {
-    /// Least bytes in binary data: a list may be empty.
+    /// Returns the minimum size in binary data, in bytes: a list may be empty.
     pub fn least_size(self) -> usize {
         match self {
             Self::One(scalar) => scalar.size(),
@@ -264,22 +270,22 @@ impl Shape {
 }
 
 impl Element {
-    /// Least bytes of a row in binary data; its bytes where there are no lists.
+    /// Returns the minimum size of a row in binary data, which is exact if there are no lists.
     pub fn least_row_size(&self) -> usize {
         self.properties.iter().map(|property| property.shape.least_size()).sum()
     }
 
-    /// Whether every row has the same size.
+    /// Reports whether all rows have the same size.
     pub fn is_fixed(&self) -> bool {
         self.properties.iter().all(|property| matches!(property.shape, Shape::One(_)))
     }
 
-    /// Whether its rows are faces or strips.
+    /// Reports whether the rows are faces or strips.
     pub fn holds_faces(&self) -> bool {
         matches!(self.name.as_str(), "face" | "tristrips")
     }
 
-    /// Which property lists the vertices of a face.
+    /// Returns the index of the property that lists the vertices of a face.
     pub fn face_list(&self) -> Option<usize> {
         self.properties.iter().position(|property| {
             matches!(property.name.as_str(), "vertex_indices" | "vertex_index")

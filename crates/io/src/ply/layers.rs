@@ -1,4 +1,4 @@
-//! Which vertex properties make which layer: one table, read in both directions.
+//! Mapping between vertex properties and attribute layers, in both directions.
 
 use std::collections::{HashMap, HashSet};
 
@@ -6,28 +6,28 @@ use meshlod_mesh::{Layer, LayerKind};
 
 use super::header::{Property, Shape};
 
-/// A layer of the file, before its values.
+/// Attribute layer with the properties that it is read from.
 #[derive(Debug, PartialEq)]
 pub(super) struct LayerColumns {
     pub kind: LayerKind,
     pub name: String,
-    /// Never empty; one per value of a wedge.
+    /// One column per component; never empty.
     pub columns: Vec<Column>,
 }
 
-/// Where one value comes from.
+/// Source of one component of a layer.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Column {
-    /// By index among the element's properties.
+    /// Index among the properties of the element.
     pub property: usize,
-    /// What the file's number is divided by.
+    /// Divisor for the numbers in the file.
     pub unit: f64,
 }
 
-/// The layers among the properties of a vertex, in the order of the file.
+/// Finds the attribute layers among the properties of a vertex, in the order of the file.
 ///
-/// Sets of which a name is missing, and what is not known, become [`LayerKind::Other`]; lists and
-/// the coordinates become nothing.
+/// Incomplete sets and unknown names become [`LayerKind::Other`]; lists and the coordinates are
+/// skipped.
 pub(super) fn columns(properties: &[Property]) -> Vec<LayerColumns> {
     let mut free = free_numbers(properties);
     let mut layers: Vec<LayerColumns> = Vec::new();
@@ -60,7 +60,7 @@ pub(super) fn columns(properties: &[Property]) -> Vec<LayerColumns> {
     layers
 }
 
-/// The properties that hold one number each, by name, without the coordinates.
+/// Collects the scalar properties by name, without the coordinates.
 fn free_numbers(properties: &[Property]) -> HashMap<&str, usize> {
     properties
         .iter()
@@ -74,7 +74,7 @@ fn is_coordinate(name: &str) -> bool {
     matches!(name, "x" | "y" | "z")
 }
 
-/// The columns of all these names, which are then no longer free, or `None` if one is not.
+/// Removes all these names from `free` and returns their columns; `None` if one is missing.
 fn take(free: &mut HashMap<&str, usize>, names: &[String]) -> Option<Vec<Column>> {
     let columns = names
         .iter()
@@ -86,9 +86,9 @@ fn take(free: &mut HashMap<&str, usize>, names: &[String]) -> Option<Vec<Column>
     Some(columns)
 }
 
-/// The known set that begins with a name: its kind and all its names, without alpha.
+/// Returns the kind and all names, without alpha, of the known set that begins with a name.
 fn known_set(first: &str) -> Option<(LayerKind, Vec<String>)> {
-    // What others call the set that is written as "s t".
+    // Alternative names of the set that is written as "s t".
     if let Some(second) = match first {
         "u" => Some("v"),
         "texture_u" => Some("texture_v"),
@@ -112,11 +112,11 @@ fn known_set(first: &str) -> Option<(LayerKind, Vec<String>)> {
         _ => return None,
     };
     let names = set_names(kind);
-    // "s01" and "red0" are names of something else.
+    // "s01" and "red0" belong to no known set.
     (names[0] == first).then_some((kind, names))
 }
 
-/// The names of a known set, without alpha; none for the other layers.
+/// Returns the names of a known set, without alpha; empty for other layers.
 fn set_names(kind: LayerKind) -> Vec<String> {
     let several = |stems: &[&str], set| stems.iter().map(|stem| numbered(stem, set)).collect();
     let four = |stem: &str, set: u8| (0..4).map(|i| format!("{stem}{set}_{i}")).collect();
@@ -131,7 +131,7 @@ fn set_names(kind: LayerKind) -> Vec<String> {
     }
 }
 
-/// The name in a set: the first set has no number.
+/// Returns the name of a component in a set; the first set has no number.
 fn numbered(stem: &str, set: u8) -> String {
     match set {
         0 => stem.to_owned(),
@@ -139,7 +139,7 @@ fn numbered(stem: &str, set: u8) -> String {
     }
 }
 
-/// The free names `name_0 name_1` … that begin with this one; else this one alone.
+/// Returns the free names `name_0 name_1` … if `first` begins such a run, else `first` alone.
 fn run_from(first: &str, free: &HashMap<&str, usize>) -> Vec<String> {
     let Some(base) = first.strip_suffix("_0") else { return vec![first.to_owned()] };
     let run = (0..).map(|i| format!("{base}_{i}"));
@@ -147,14 +147,14 @@ fn run_from(first: &str, free: &HashMap<&str, usize>) -> Vec<String> {
     if run.is_empty() { vec![first.to_owned()] } else { run }
 }
 
-/// What a colour is divided by: the greatest value of a whole-number type, 1 for the others.
+/// Returns the divisor of a colour: the maximum of an integer type, 1 for other types.
 fn greatest(property: &Property) -> f64 {
     let (Shape::One(kind) | Shape::List { item: kind, .. }) = property.shape;
     kind.whole_range().map_or(1.0, |(_, most)| most as f64)
 }
 
-/// The property names that each layer is written under, one per value of a wedge. No name comes
-/// twice, and none is a coordinate's.
+/// Chooses the property names to write each layer under, one per component. All names are distinct,
+/// and none is a coordinate's.
 pub(super) fn names(layers: &[Layer]) -> Vec<Vec<String>> {
     let mut used: HashSet<String> = ["x", "y", "z"].map(str::to_owned).into();
     layers
@@ -190,7 +190,7 @@ fn layer_names(layer: &Layer, used: &HashSet<String>) -> Vec<String> {
     }
 }
 
-/// A name that the header can hold.
+/// Turns a name into one word that the header can hold.
 fn one_word(name: &str) -> String {
     let odd = |c: char| c.is_whitespace() || c.is_control();
     match name.trim() {

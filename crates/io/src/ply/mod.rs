@@ -1,25 +1,25 @@
-//! PLY: the scan people's format, as text and as binary of either byte order.
+//! PLY, the usual format of scans, as text and as binary of either byte order.
 //!
-//! Elements `vertex`, `face` and `tristrips` are read, whatever their order and scalar types, others
-//! are skipped. Polygons become triangles, strips are expanded. What else stands beside a vertex
-//! becomes a layer, with one wedge per vertex:
+//! The elements `vertex`, `face` and `tristrips` are read, in any order and with any scalar types;
+//! others are skipped. Polygons are triangulated and strips expanded. Other vertex properties
+//! become layers, with one wedge per vertex:
 //!
 //! | properties | layer |
 //! |---|---|
 //! | `nx ny nz` | normal |
 //! | `u v`, `s t` or `texture_u texture_v` | uv 0; `s1 t1` … further sets |
-//! | `red green blue`, and `alpha` where there is one | colour 0; `red1` … further sets |
+//! | `red green blue`, with `alpha` if present | colour 0; `red1` … further sets |
 //! | `tx ty tz tw` | tangent |
 //! | `joint0_0` … `joint0_3`, `weight0_0` … `weight0_3` | joints, weights 0, and so on |
-//! | `name_0 name_1` … in a row | another layer `name` of that width |
+//! | consecutive `name_0 name_1` … | another layer `name` of that width |
 //! | any other scalar | another layer of its name, 1 wide |
 //!
-//! Whole-number colours are divided by the greatest value of their type. What is written reads
-//! back by the same table.
+//! Integer colours are divided by the maximum of their type. Written files read back by the same
+//! table.
 //!
-//! The parser is ours: the crate `ply-rs-bw` 4.0 reads the 871,414 faces of the Stanford dragon in
-//! 32 ms with an allocation for each, `serde-ply` 0.2 in 64 ms, and neither says at which byte or
-//! line a file goes wrong. This one takes 4 ms (one core of a virtual machine, best of 25).
+//! The parser is our own: the crate `ply-rs-bw` 4.0 reads the 871,414 faces of the Stanford dragon
+//! in 32 ms with an allocation for each, `serde-ply` 0.2 in 64 ms, and neither reports the byte or
+//! line of an error. This one takes 4 ms (one core of a virtual machine, best of 25).
 
 mod binary_body;
 mod body;
@@ -45,15 +45,15 @@ use vertices::Vertices;
 
 pub use write::write;
 
-/// The mesh in the bytes of a PLY file.
+/// Reads a PLY file.
 ///
-/// Attributes are `None` where vertices have nothing but positions. Faces of fewer than three
-/// corners, and the folded triangles that join the parts of a strip, are left out; a face that
-/// repeats a vertex stays. TextBody holds its numbers at the type that the header declares, so that
-/// both encodings of a mesh read the same.
-/// Memory: no more than a small multiple of `bytes`, whatever the header claims.
+/// Attributes are `None` if vertices have only positions. Faces with fewer than three corners and
+/// the degenerate triangles that join parts of a strip are dropped; a face that repeats a vertex is
+/// kept. Numbers in text are rounded to the type that the header declares, so that both encodings
+/// of a mesh read the same. Memory: at most a small multiple of `bytes`, whatever the header
+/// claims.
 /// # Errors
-/// Everything that is not a mesh of at least one face, by line of text or byte of binary data.
+/// Anything that is not a mesh of at least one face, with the line of text or byte of binary data.
 pub fn read(bytes: &[u8]) -> Result<Mesh, ParseError> {
     let header = Header::parse(bytes)?;
     check_elements(&header)?;
@@ -64,25 +64,26 @@ pub fn read(bytes: &[u8]) -> Result<Mesh, ParseError> {
     }
 }
 
-/// What must be announced for there to be a mesh.
+/// Checks that the header declares the elements that a mesh needs.
 fn check_elements(header: &Header) -> Result<(), ParseError> {
     let wrong = |reason: &str| Err(ParseError::part("header", reason));
     let Some(vertex) = header.elements.iter().find(|element| element.name == "vertex") else {
-        return wrong("there is no element vertex");
+        return wrong("the file declares no element vertex");
     };
     if header.elements.iter().any(Element::holds_faces) {
         return Ok(());
     }
     if vertex.face_list().is_some() {
         return wrong(
-            "no faces: the list vertex_indices belongs to element vertex; \
+            "no faces: the list vertex_indices belongs to the element vertex; \
              a line \"element face\" with the number of faces is missing before it",
         );
     }
-    wrong("no faces: there is neither an element face nor an element tristrips")
+    wrong("no faces: the file declares neither an element face nor an element tristrips")
 }
 
-/// Reads the elements in order. Faces that stand before the vertices wait until those are known.
+/// Reads the elements in order. Faces that precede the vertices are read again once those are
+/// known.
 fn read_body<B: BodyReader>(header: &Header, mut body: B) -> Result<Mesh, ParseError> {
     let mut vertices: Option<Vertices> = None;
     let mut faces = Faces::default();
@@ -104,15 +105,18 @@ fn read_body<B: BodyReader>(header: &Header, mut body: B) -> Result<Mesh, ParseE
         faces.read(&mut body, element, &vertices.positions)?;
     }
     if faces.triangles.is_empty() {
-        return Err(ParseError::part("header", "no faces: there is none with three corners"));
+        return Err(ParseError::part("header", "no faces: no face has three corners"));
     }
     if u32::try_from(faces.triangles.len()).is_err() {
-        return Err(ParseError::part("header", "more than 4,294,967,295 triangles"));
+        return Err(ParseError::part(
+            "header",
+            "more than 4,294,967,295 triangles are not supported",
+        ));
     }
     Ok(mesh(vertices.positions, faces.triangles, vertices.layers))
 }
 
-/// One wedge per vertex where there are layers.
+/// Builds the mesh, with one wedge per vertex if there are layers.
 fn mesh(positions: Vec<[f64; 3]>, faces: Vec<[VertexId; 3]>, layers: Vec<Layer>) -> Mesh {
     let attributes = (!layers.is_empty()).then(|| Attributes {
         corners: faces.iter().map(|face| face.map(|v| WedgeId(v.0))).collect(),

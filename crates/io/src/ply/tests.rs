@@ -237,8 +237,8 @@ fn errors_in_text_name_the_line_and_the_row() {
         ),
         (
             "0 0 0 1\n",
-            "line 10: numbers are left over after vertex 0 of 4: this line or the one before it \
-             does not fit the properties in the header",
+            "line 10: too many numbers after vertex 0 of 4: this line or the one before it \
+             does not match the properties in the header",
         ),
     ];
     for (body, expected) in cases {
@@ -247,18 +247,18 @@ fn errors_in_text_name_the_line_and_the_row() {
     let faces = [
         (
             "3 0 1 4\n",
-            "line 14: face 0 of 1 names vertex 4, but there are only 4 vertices, counted from 0",
+            "line 14: face 0 of 1 refers to vertex 4, but there are only 4, counted from 0",
         ),
         (
             "3 0 1 -1\n",
-            "line 14: face 0 of 1 names vertex -1, but there are only 4 vertices, counted from 0",
+            "line 14: face 0 of 1 refers to vertex -1, but there are only 4, counted from 0",
         ),
-        ("300 0 1 2\n", "line 14: face 0 of 1: \"300\" is not a whole number from 0 to 255"),
+        ("300 0 1 2\n", "line 14: face 0 of 1: \"300\" is not an integer from 0 to 255"),
         (
             "99 0 1 2\n",
-            "line 14: face 0 of 1 has a list of 99 values, but the file ends before that many",
+            "line 14: face 0 of 1 has a list of 99 values, but the file ends before that",
         ),
-        ("2 0 1\n", "header: no faces: there is none with three corners"),
+        ("2 0 1\n", "header: no faces: no face has three corners"),
         ("", "line 14: the file ends inside face 0 of 1"),
     ];
     for (body, expected) in faces {
@@ -273,7 +273,7 @@ fn errors_in_binary_name_the_byte_and_the_row() {
     assert_eq!(
         message(&whole[..end - 1]),
         format!(
-            "byte {}: face 3 of 4 has a list of 3 values, but the file ends before that many",
+            "byte {}: face 3 of 4 has a list of 3 values, but the file ends before that",
             end - 13
         )
     );
@@ -284,10 +284,12 @@ fn errors_in_binary_name_the_byte_and_the_row() {
     );
     whole[end - 4] = 4;
     assert!(
-        message(&whole).starts_with(&format!("byte {}: face 3 of 4 names vertex 4,", end - 13))
+        message(&whole).starts_with(&format!("byte {}: face 3 of 4 refers to vertex 4,", end - 13))
     );
     whole[end - 1] = 0x80;
-    assert!(message(&whole).starts_with(&format!("byte {}: face 3 of 4 names vertex -", end - 13)));
+    assert!(
+        message(&whole).starts_with(&format!("byte {}: face 3 of 4 refers to vertex -", end - 13))
+    );
     whole[vertices + 12..][..4].copy_from_slice(&f32::INFINITY.to_le_bytes());
     assert!(message(&whole).starts_with(&format!("byte {}: vertex 1 has a coord", vertices + 12)));
 }
@@ -310,14 +312,14 @@ fn claims_take_no_memory() {
     assert!(message(&bytes).contains("has a list of 2147483647 values, but the file ends"));
     let end = bytes.len() - 4;
     bytes[end..].copy_from_slice(&(-5i32).to_be_bytes());
-    assert!(message(&bytes).contains("has a list of length -5"));
+    assert!(message(&bytes).contains("has a list of negative length -5"));
 }
 
 #[test]
 fn what_is_missing_is_named() {
     assert_eq!(
         message(HEAD.replace("float y", "float why")),
-        "header: element vertex has no number y"
+        "header: element vertex has no scalar property y"
     );
     assert_eq!(
         message(HEAD.replace("vertex_indices", "corners") + SQUARE),
@@ -333,7 +335,7 @@ fn attributes_that_are_not_finite_are_named() {
     let body = "0 0 0 1\n1 0 0 1e60\n";
     assert_eq!(
         message(head + body),
-        "line 12: vertex 1 has a value of \"heat\" that is not finite in 32 bits: 1e60"
+        "line 12: vertex 1 has a value of \"heat\" that is not finite as a 32-bit float: 1e60"
     );
 }
 
@@ -393,9 +395,9 @@ fn broken_files_give_one_clear_line() {
     let table = [
         ("zero-bytes.ply", "byte 0: the file is empty"),
         ("bad-header.ply", "line 7: unknown type"),
-        ("header-only.ply", "header: there is no element vertex"),
-        ("no-elements-binary.ply", "header: no faces: there is none with three corners"),
-        ("issue623.ply", "header: no faces: the list vertex_indices belongs to element vertex"),
+        ("header-only.ply", "header: the file declares no element vertex"),
+        ("no-elements-binary.ply", "header: no faces: no face has three corners"),
+        ("issue623.ply", "header: no faces: the list vertex_indices belongs to the element vertex"),
         ("cow-newline-damaged-big-endian.ply", "byte "),
     ];
     for (name, beginning) in table {

@@ -1,15 +1,16 @@
-//! The body as text.
+//! Text bodies.
 
 use super::body::{BodyReader, Row};
 use super::header::{Element, Header, Scalar, shown};
 use crate::ParseError;
 
-/// TextBody: numbers between white space, a row a line. A row may go on over further lines, but two
-/// rows never share one, so a missing or surplus number is found where it is.
+/// Reader of a text body: numbers separated by white space, one row per line. A row may continue on
+/// further lines, but two rows never share one, so that a missing or surplus number is found where
+/// it occurs.
 #[derive(Clone)]
 pub(super) struct TextBody<'a> {
     rest: &'a [u8],
-    /// Counted from 1.
+    /// Current line, counted from 1.
     line: usize,
 }
 
@@ -18,7 +19,7 @@ impl<'a> TextBody<'a> {
         Self { rest: &bytes[header.body..], line: header.body_line }
     }
 
-    /// Goes to the next word, over ends of lines.
+    /// Skips to the next word, across line ends.
     fn skip_space(&mut self) {
         while let [first, after @ ..] = self.rest {
             match first {
@@ -56,7 +57,7 @@ impl BodyReader for TextBody<'_> {
             return Ok(());
         }
         Err(self.wrong(format!(
-            "numbers are left over after {row}: this line or the one before it does not fit the \
+            "too many numbers after {row}: this line or the one before it does not match the \
              properties in the header"
         )))
     }
@@ -69,11 +70,11 @@ impl BodyReader for TextBody<'_> {
         })
     }
 
-    fn pass(&mut self, kind: Scalar, count: usize, row: Row) -> Result<(), ParseError> {
+    fn skip_numbers(&mut self, kind: Scalar, count: usize, row: Row) -> Result<(), ParseError> {
         (0..count).try_for_each(|_| self.number(kind, row).map(drop))
     }
 
-    /// A digit and a space each, but for the last.
+    /// Counts a digit and a space for each item but the last.
     fn most_items(&self, _kind: Scalar) -> usize {
         self.rest.len().div_ceil(2)
     }
@@ -87,7 +88,7 @@ impl BodyReader for TextBody<'_> {
     }
 }
 
-/// A number of a type, or why it is none.
+/// Parses a number of a type, or explains why it is invalid.
 fn parse_number(word: &[u8], kind: Scalar) -> Result<f64, String> {
     const NOT: &str = "is not a number";
     if let Some(value) = short_whole(word)
@@ -104,14 +105,14 @@ fn parse_number(word: &[u8], kind: Scalar) -> Result<f64, String> {
         Some((least, most))
             if value.fract() != 0.0 || !(least as f64..=most as f64).contains(&value) =>
         {
-            Err(format!("is not a whole number from {least} to {most}"))
+            Err(format!("is not an integer from {least} to {most}"))
         }
         _ => Ok(value),
     }
 }
 
-/// A whole number of up to seven digits, exact in every floating type. Indices are read by this,
-/// three times as fast as by the general parser.
+/// Parses an integer of up to seven digits, exact in every floating-point type. Handles indices,
+/// three times as fast as the general parser.
 fn short_whole(word: &[u8]) -> Option<i64> {
     let (sign, digits) = match word {
         // "-0" would lose its sign.

@@ -1,4 +1,4 @@
-//! The element `vertex`: positions, and layers of what else stands beside them.
+//! Element `vertex`: positions, and layers of the other properties.
 
 use meshlod_mesh::Layer;
 
@@ -7,21 +7,24 @@ use super::header::{Element, Shape};
 use super::layers::{self, LayerColumns};
 use crate::ParseError;
 
-/// All vertices of a file.
+/// Vertices of a file.
 #[derive(Default)]
 pub(super) struct Vertices {
     pub positions: Vec<[f64; 3]>,
-    /// One wedge per vertex.
+    /// Attribute layers, one wedge per vertex.
     pub layers: Vec<Layer>,
 }
 
-/// Reads every row of the element.
+/// Reads all rows of the element.
 pub(super) fn read<B: BodyReader>(body: &mut B, element: &Element) -> Result<Vertices, ParseError> {
     if element.count > u64::from(u32::MAX) {
         let most = body.most_rows(element);
         return Err(ParseError::part(
             "header",
-            format!("{} vertices are claimed, but no more than {most} can follow", element.count),
+            format!(
+                "the header declares {} vertices, but at most {most} can follow",
+                element.count
+            ),
         ));
     }
     let xyz = coordinates(element)?;
@@ -46,7 +49,7 @@ pub(super) fn read<B: BodyReader>(body: &mut B, element: &Element) -> Result<Ver
     Ok(vertices)
 }
 
-/// Which properties are x, y and z.
+/// Returns the indices of the properties x, y and z.
 fn coordinates(element: &Element) -> Result<[usize; 3], ParseError> {
     let mut xyz = [0; 3];
     for (at, name) in xyz.iter_mut().zip(["x", "y", "z"]) {
@@ -55,13 +58,13 @@ fn coordinates(element: &Element) -> Result<[usize; 3], ParseError> {
             .iter()
             .position(|property| property.name == name && matches!(property.shape, Shape::One(_)));
         *at = found.ok_or_else(|| {
-            ParseError::part("header", format!("element vertex has no number {name}"))
+            ParseError::part("header", format!("element vertex has no scalar property {name}"))
         })?;
     }
     Ok(xyz)
 }
 
-/// One number per property; lists leave theirs alone.
+/// Reads one number per property, skipping lists.
 fn read_numbers<B: BodyReader>(
     body: &mut B,
     row: Row,
@@ -70,14 +73,14 @@ fn read_numbers<B: BodyReader>(
     for (number, property) in numbers.iter_mut().zip(&row.element.properties) {
         match property.shape {
             Shape::One(kind) => *number = body.number(kind, row)?,
-            list @ Shape::List { .. } => body.pass_property(list, row)?,
+            list @ Shape::List { .. } => body.skip_property(list, row)?,
         }
     }
     Ok(())
 }
 
 impl Vertices {
-    /// Adds one vertex from the numbers of its row.
+    /// Adds the vertex of a row.
     fn add(
         &mut self,
         body: &impl BodyReader,
@@ -98,7 +101,8 @@ impl Vertices {
                 let value = (numbers[column.property] / column.unit) as f32;
                 if !value.is_finite() {
                     return Err(body.wrong(format!(
-                        "vertex {vertex} has a value of \"{}\" that is not finite in 32 bits: {:?}",
+                        "vertex {vertex} has a value of \"{}\" that is not finite as a 32-bit float: \
+                         {:?}",
                         layer.name, numbers[column.property]
                     )));
                 }
@@ -110,7 +114,7 @@ impl Vertices {
 }
 
 impl LayerColumns {
-    /// The empty layer, with room for so many wedges.
+    /// Creates the layer, empty, with capacity for the given number of wedges.
     fn layer(&self, wedges: usize) -> Layer {
         let width = self.columns.len();
         let values = Vec::with_capacity(wedges * width);

@@ -1,4 +1,4 @@
-//! Writing: binary little-endian, vertices with their layers, then triangles.
+//! Writing binary little-endian PLY: vertices with their layers, then triangles.
 
 use std::io::{Error, ErrorKind, Result, Write};
 
@@ -7,18 +7,18 @@ use meshlod_mesh::{Attributes, Layer, LayerKind, Mesh};
 use super::layers;
 use crate::Precision;
 
-/// Bytes gathered before they go out.
+/// Bytes buffered before they are written.
 const BLOCK: usize = 1 << 16;
 
-/// Writes a mesh as binary little-endian PLY; labels of faces are left out.
+/// Writes a mesh as binary little-endian PLY; material and object labels are not written.
 ///
 /// Coordinates are `float` or `double` as `precision` says, colours `uchar`, other layers `float`,
-/// by the names in the [module's table](super). PLY has values at vertices only: where wedges are
-/// not one to one with the vertices, every wedge that a face uses becomes a vertex of its own, which
-/// tears the seams and leaves out unused vertices.
+/// under the names in the [module's table](super). PLY has values at vertices only: unless wedges
+/// and vertices correspond one to one, every wedge in use becomes a vertex of its own, which splits
+/// seams and drops unused vertices.
 /// # Errors
-/// Those of `out`; a mesh that breaks [`Mesh::validate`]; a coordinate that is not finite as a
-/// `float`: nothing has been written then.
+/// Those of `out`. Before anything is written: a mesh that breaks [`Mesh::validate`], and a
+/// coordinate that is not finite as a `float`.
 pub fn write(mesh: &Mesh, precision: Precision, out: &mut dyn Write) -> Result<()> {
     mesh.validate().map_err(invalid)?;
     if precision == Precision::F32 {
@@ -46,11 +46,11 @@ pub fn write(mesh: &Mesh, precision: Precision, out: &mut dyn Write) -> Result<(
     out.write_all(&block)
 }
 
-/// What the vertices of the file are.
+/// Vertex rows of the file.
 enum Rows {
-    /// The vertices of the mesh, each with the wedge of the same index.
+    /// Vertices of the mesh, each with the wedge of equal index.
     Vertices,
-    /// The used wedges, each with its vertex; and the faces over them.
+    /// Wedges in use, each with its vertex, and the faces over them.
     Wedges { rows: Vec<(u32, u32)>, faces: Vec<[u32; 3]> },
 }
 
@@ -66,7 +66,7 @@ impl Rows {
         }
     }
 
-    /// Numbers the used wedges in their order.
+    /// Numbers the wedges in use, in order.
     fn of_wedges(mesh: &Mesh, attributes: &Attributes) -> Self {
         let mut owner = vec![None; attributes.wedge_count];
         for (face, corners) in mesh.faces.iter().zip(&attributes.corners) {
@@ -93,7 +93,7 @@ impl Rows {
         }
     }
 
-    /// The vertex and the wedge of a row.
+    /// Returns the vertex and the wedge of a row.
     fn at(&self, row: usize) -> (usize, usize) {
         match self {
             Self::Vertices => (row, row),
@@ -138,12 +138,12 @@ fn header(faces: usize, precision: Precision, vertices: usize, layers: &[Layer])
     lines.join("\n")
 }
 
-/// Colours, as every program writes them.
+/// Reports whether a layer is written as bytes, as is customary for colours.
 fn is_bytes(layer: &Layer) -> bool {
     matches!((layer.kind, layer.width), (LayerKind::Color(_), 3 | 4))
 }
 
-/// A layer and how its values are written.
+/// Encoder for the values of a layer.
 struct LayerEncoder<'a> {
     layer: &'a Layer,
     bytes: bool,
@@ -183,13 +183,13 @@ fn flush_if_full(block: &mut Vec<u8>, out: &mut dyn Write) -> Result<()> {
     Ok(())
 }
 
-/// Larger numbers would become infinite without a word.
+/// Checks that every coordinate fits in `f32`; larger ones would silently become infinite.
 fn check_fits_f32(mesh: &Mesh) -> Result<()> {
     let large = |position: &[f64; 3]| position.iter().any(|&x| !(x as f32).is_finite());
     match mesh.positions.iter().position(large) {
         None => Ok(()),
         Some(vertex) => Err(invalid(format!(
-            "vertex {vertex} at {:?} does not fit 32-bit floats; write 64-bit ones",
+            "vertex {vertex} at {:?} does not fit in 32-bit floats; write with 64 bits",
             mesh.positions[vertex]
         ))),
     }

@@ -1,5 +1,5 @@
-//! Simple model format of QSlim: vertices and faces as in OBJ, properties bound to either, scopes
-//! with transformations.
+//! Simple Model Format (SMF) of QSlim: vertices and faces as in OBJ, properties bound to either,
+//! and nested scopes with transformations.
 
 mod read;
 mod scope;

@@ -1,4 +1,4 @@
-//! SMF in.
+//! Reading SMF.
 
 use meshlod_mesh::{Attributes, Layer, LayerKind, Mesh, VertexId, WedgeId, merge_equal_wedges};
 
@@ -8,18 +8,18 @@ use crate::polygon::triangulate;
 use crate::text_cursor::{TextCursor, quoted};
 use crate::vertex_attributes::{named_layer, normalize_colors, per_vertex};
 
-/// Reads an SMF file: `v`, `f` and `t`, the properties `c`, `n` and `r` as `bind` says, and scopes
-/// with `trans`, `scale`, `rot`, `t_trans`, `t_scale` and `set vertex_correction`.
+/// Reads an SMF file: `v`, `f` and `t`, the properties `c`, `n` and `r` as bound by `bind`, and
+/// scopes with `trans`, `scale`, `rot`, `t_trans`, `t_scale` and `set vertex_correction`.
 ///
-/// Faces of more than three corners are triangulated. Normals are made unit and turned as their
-/// vertices are; properties that are not finite become 0; where a colour is above 1, all are of
-/// 255. `#` and `$` begin comments; `tex` is passed over.
+/// Polygons are triangulated. Normals are normalised and transformed with their vertices.
+/// Properties that are not finite become 0, and if a colour exceeds 1, all are taken to be out of
+/// 255. `#` and `$` begin comments; `tex` is ignored.
 ///
-/// Cost: O(n log n), n = bytes, beside that of concave polygons.
+/// Cost: O(n log n), n = bytes, plus that of triangulating concave polygons.
 /// # Errors
-/// The line and the reason: an unknown command, what is no number, a coordinate that is not
-/// finite, a vertex that is not there, a property that is not bound or not given for each vertex
-/// or face; a file without faces.
+/// The line and the reason: an unknown command, an invalid number, a coordinate that is not finite,
+/// a vertex that does not exist, a property that is not bound or not given for each vertex or face.
+/// Also a file without faces.
 /// # References
 /// [Gar98] (the format's page in QSlim 2.0).
 pub fn read(bytes: &[u8]) -> Result<Mesh, ParseError> {
@@ -34,14 +34,14 @@ pub fn read(bytes: &[u8]) -> Result<Mesh, ParseError> {
     reader.finish(&text)
 }
 
-/// What a property's values belong to.
+/// Element that the values of a property belong to.
 #[derive(Clone, Copy, PartialEq)]
 enum Binding {
     Vertex,
     Face,
 }
 
-/// One of the three properties.
+/// Property with its binding and values.
 struct BoundLayer {
     letter: &'static str,
     kind: LayerKind,
@@ -54,7 +54,7 @@ struct SmfReader {
     scopes: Scopes,
     positions: Vec<[f64; 3]>,
     faces: Vec<[VertexId; 3]>,
-    /// The face of the file that each of `faces` is part of.
+    /// Face of the file that each triangle in `faces` is part of.
     origins: Vec<u32>,
     faces_in_file: u32,
     properties: [BoundLayer; 3],
@@ -127,10 +127,12 @@ impl SmfReader {
         let position = [text.number(NEED)?, text.number(NEED)?, text.number(NEED)?];
         let position = self.scopes.position(position);
         if !position.iter().all(|x| x.is_finite()) {
-            return Err(text.error("a vertex is moved out of all numbers by its transformation"));
+            return Err(
+                text.error("the transformation moves the vertex out of the range of numbers")
+            );
         }
         if self.positions.len() == u32::MAX as usize {
-            return Err(text.error("more than 2^32 vertices"));
+            return Err(text.error("more than 2^32 vertices are not supported"));
         }
         self.positions.push(position);
         Ok(())
@@ -142,17 +144,19 @@ impl SmfReader {
             let index = text.integer("")?;
             let Some(v) = self.scopes.vertex(index, self.positions.len()) else {
                 let count = self.positions.len();
-                let reason = format!("a face names vertex {index}, but there are {count} so far");
+                let reason =
+                    format!("a face refers to vertex {index}, but there are {count} so far");
                 return Err(text.error(reason));
             };
             self.polygon.push(v);
         }
         if self.polygon.len() < 3 {
             let found = self.polygon.len();
-            return Err(text.error(format!("a face needs three corners, this has {found}")));
+            return Err(text
+                .error(format!("a face needs at least three corners, but this one has {found}")));
         }
         if self.faces.len() + self.polygon.len() > u32::MAX as usize / 3 {
-            return Err(text.error("more than 2^32 corners"));
+            return Err(text.error("more than 2^32 corners are not supported"));
         }
         self.triangles.clear();
         triangulate(&self.positions, &self.polygon, &mut self.triangles);
@@ -164,7 +168,7 @@ impl SmfReader {
         Ok(())
     }
 
-    /// `bind c|n|r vertex|face`.
+    /// Runs `bind c|n|r vertex|face`.
     fn bind(&mut self, text: &mut TextCursor) -> Result<(), ParseError> {
         let letter = text.word();
         let Some(property) =
@@ -179,7 +183,7 @@ impl SmfReader {
         };
         if !property.values.is_empty() && property.binding != Some(binding) {
             let letter = property.letter;
-            return Err(text.error(format!("{letter} is bound to vertices and to faces")));
+            return Err(text.error(format!("{letter} is bound to both vertices and faces")));
         }
         property.binding = Some(binding);
         Ok(())
@@ -192,11 +196,11 @@ impl SmfReader {
     ) -> Result<[f32; N], ParseError> {
         let BoundLayer { letter, binding, .. } = &self.properties[property];
         if binding.is_none() {
-            return Err(text.error(format!("{letter} comes before \"bind {letter}\"")));
+            return Err(text.error(format!("{letter} is used before \"bind {letter}\"")));
         }
         let mut values = [0.0; N];
         for value in &mut values {
-            *value = text.attribute("a property needs more numbers")?;
+            *value = text.attribute("the property needs more numbers")?;
         }
         Ok(values)
     }
@@ -216,7 +220,7 @@ impl SmfReader {
             };
             let (letter, given) = (property.letter, property.values.len() / property.width);
             if given != all {
-                let reason = format!("the file ends after {given} {letter} for {all} {what}");
+                let reason = format!("the file has {given} values of {letter} for {all} {what}");
                 return Err(text.error(reason));
             }
         }
@@ -227,7 +231,7 @@ impl SmfReader {
         Ok(mesh)
     }
 
-    /// A wedge for each vertex; for each corner where a property is bound to faces.
+    /// Builds the attributes: one wedge per vertex, or per corner if a property is bound to faces.
     fn attributes(&self) -> Option<Attributes> {
         let given = || self.properties.iter().filter(|property| !property.values.is_empty());
         if given().all(|property| property.binding == Some(Binding::Vertex)) {
@@ -242,7 +246,7 @@ impl SmfReader {
         })
     }
 
-    /// A property's values for each corner.
+    /// Expands the values of a property to corners.
     fn spread(&self, property: &BoundLayer) -> Layer {
         let of = |i: u32| property.values[i as usize * property.width..][..property.width].iter();
         let values = self.faces.iter().zip(&self.origins).flat_map(|(face, &origin)| {
@@ -314,10 +318,10 @@ mod tests {
     #[test]
     fn what_is_wrong_is_named_with_its_line() {
         for (commands, message) in [
-            ("f 1 2 5\n", "line 8: a face names vertex 5, but there are 4 so far"),
-            ("f 0 1 2\n", "line 8: a face names vertex 0, but there are 4 so far"),
-            ("f 1 2/2 3\n", "line 8: \"/2\" is not a whole number"),
-            ("f 1 2\n", "line 8: a face needs three corners, this has 2"),
+            ("f 1 2 5\n", "line 8: a face refers to vertex 5, but there are 4 so far"),
+            ("f 0 1 2\n", "line 8: a face refers to vertex 0, but there are 4 so far"),
+            ("f 1 2/2 3\n", "line 8: \"/2\" is not an integer"),
+            ("f 1 2\n", "line 8: a face needs at least three corners, but this one has 2"),
             ("v 1 2\n", "line 8: a vertex needs three coordinates"),
             ("3vv\n", "line 8: \"3vv\" is not an SMF command"),
             ("c 1 0 0\n", "line 8: c comes before \"bind c\""),

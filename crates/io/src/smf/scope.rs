@@ -1,23 +1,23 @@
-//! What holds between `begin` and `end`: transformations, and where vertices are counted from.
+//! Scopes between `begin` and `end`: transformations, and the base of vertex indices.
 
 use glam::{DMat3, DMat4, DVec2, DVec3};
 
 use crate::ParseError;
 use crate::text_cursor::{TextCursor, quoted};
 
-/// More than any file nests, and few enough to be small.
+/// Limit on nesting: more than any real file needs, and little memory.
 const MOST_SCOPES: usize = 1000;
 
-/// The innermost scope last; the file itself is the first.
+/// Stack of scopes, innermost last; the first one is the file itself.
 pub(super) struct Scopes(Vec<Scope>);
 
 #[derive(Clone, Copy)]
 struct Scope {
     transform: DMat4,
-    /// To be applied to texture coordinates: scale, then offset.
+    /// Scale of texture coordinates, applied before the offset.
     uv_scale: DVec2,
     uv_offset: DVec2,
-    /// Vertices before the scope.
+    /// Number of vertices before the scope.
     first: usize,
     correction: i64,
 }
@@ -33,7 +33,7 @@ impl Scopes {
         }])
     }
 
-    /// Runs a command if it concerns scopes; false where it does not. `vertices`: those so far.
+    /// Runs a command if it concerns scopes, else returns false. `vertices` counts those so far.
     pub(super) fn run(
         &mut self,
         command: &[u8],
@@ -69,7 +69,7 @@ impl Scopes {
 
     fn begin(&mut self, vertices: usize, text: &TextCursor) -> Result<(), ParseError> {
         if self.0.len() > MOST_SCOPES {
-            return Err(text.error(format!("more than {MOST_SCOPES} scopes in each other")));
+            return Err(text.error(format!("more than {MOST_SCOPES} nested scopes")));
         }
         let scope = Scope { first: vertices, ..*self.inner() };
         self.0.push(scope);
@@ -78,7 +78,7 @@ impl Scopes {
 
     fn end(&mut self, text: &TextCursor) -> Result<(), ParseError> {
         if self.0.len() == 1 {
-            return Err(text.error("an end without a begin"));
+            return Err(text.error("end without begin"));
         }
         self.0.pop();
         Ok(())
@@ -96,8 +96,8 @@ impl Scopes {
         Ok(())
     }
 
-    /// `set vertex_correction N`, or with a `=` before the number. Other variables are for the
-    /// programs that know them.
+    /// Runs `set vertex_correction N`, optionally with a `=` before the number. Other variables are
+    /// ignored.
     fn set(&mut self, text: &mut TextCursor) -> Result<(), ParseError> {
         if text.word() == b"vertex_correction" {
             if text.more() {
@@ -108,8 +108,8 @@ impl Scopes {
         Ok(())
     }
 
-    /// The vertex that an index names, among `vertices` so far: from the scope's first when
-    /// positive, back from the last when negative.
+    /// Resolves a vertex index among `vertices` so far: relative to the first of the scope if
+    /// positive, back from the last if negative.
     pub(super) fn vertex(&self, index: i64, vertices: usize) -> Option<u32> {
         let scope = self.0.last()?;
         let v = if index < 0 {
@@ -122,7 +122,7 @@ impl Scopes {
 
     pub(super) fn position(&self, position: [f64; 3]) -> [f64; 3] {
         match self.0.last() {
-            // Not through the identity: -0 stays -0.
+            // Bypasses the identity, so that -0 stays -0.
             Some(scope) if scope.transform != DMat4::IDENTITY => {
                 scope.transform.transform_point3(position.into()).into()
             }
@@ -130,11 +130,12 @@ impl Scopes {
         }
     }
 
-    /// A unit normal, turned as the surface is; 0 stays 0.
+    /// Transforms a normal with the surface and normalises it; 0 stays 0.
     pub(super) fn normal(&self, normal: [f32; 3]) -> [f32; 3] {
         let mut normal = DVec3::from(normal.map(f64::from));
         if let Some(scope) = self.0.last() {
-            // The cofactors are the inverse transpose times the determinant: no division by 0.
+            // The cofactor matrix is the inverse transpose times the determinant, without a
+            // division.
             let DMat3 { x_axis: x, y_axis: y, z_axis: z } = DMat3::from_mat4(scope.transform);
             let cofactors = DMat3::from_cols(y.cross(z), z.cross(x), x.cross(y));
             normal = cofactors * normal * cofactors.determinant().signum();

@@ -1,4 +1,4 @@
-//! SMF out.
+//! Writing SMF.
 
 use std::io::{self, Write};
 
@@ -8,12 +8,12 @@ use crate::Precision;
 use crate::line_writer::LineWriter;
 use crate::vertex_attributes::split_at_seams;
 
-/// Writes a mesh as SMF, with the first colours, normals and texture coordinates at the vertices
-/// where it has them.
+/// Writes a mesh as SMF, with the first colours, the normals and the texture coordinates of its
+/// vertices, if it has them.
 ///
-/// The format has one set of properties per vertex: a vertex with several wedges is written once
-/// for each. Opacity, other layers, materials and objects have no place in it. Read back, a mesh
-/// without seams is the same, to the bit at `F64`, but normals are made unit.
+/// The format has one set of properties per vertex, so a vertex with several wedges is written once
+/// for each. Opacity, other layers, materials and objects are not written. A mesh without seams
+/// reads back unchanged, bit for bit at `F64`, except that normals are normalised.
 ///
 /// # Errors
 /// Those of `out`, and a position that `precision` cannot hold.
@@ -28,9 +28,9 @@ pub fn write(mesh: &Mesh, precision: Precision, out: &mut dyn Write) -> io::Resu
         lines.word(&header);
         lines.end()?;
     }
-    for row in &split.vertices {
+    for vertex in &split.vertices {
         lines.word("v");
-        lines.position(row.vertex.index(), mesh.positions[row.vertex.index()])?;
+        lines.position(vertex.vertex.index(), mesh.positions[vertex.vertex.index()])?;
         lines.end()?;
     }
     for face in &split.faces {
@@ -49,9 +49,9 @@ pub fn write(mesh: &Mesh, precision: Precision, out: &mut dyn Write) -> io::Resu
         };
         lines.word(&format!("bind {letter} vertex"));
         lines.end()?;
-        for row in &split.vertices {
+        for vertex in &split.vertices {
             let mut values = [0.0; 3];
-            if let Some(wedge) = row.wedge {
+            if let Some(wedge) = vertex.wedge {
                 for (value, &x) in values.iter_mut().zip(layer.of(wedge)) {
                     *value = x;
                 }

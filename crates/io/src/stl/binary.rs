@@ -1,4 +1,4 @@
-//! Binary STL: 80 free bytes, a count, 50 bytes per facet.
+//! Binary STL: an 80-byte header, a count, 50 bytes per facet.
 
 use std::io::{Result as IoResult, Write};
 
@@ -11,10 +11,11 @@ use crate::ParseError;
 
 const HEADER: usize = 80;
 const PREAMBLE: usize = HEADER + 4;
-/// A normal and three corners as 32-bit floats, and two bytes that mean nothing certain.
+/// Bytes of a facet: normal and three corners as 32-bit floats, and two bytes without a fixed
+/// meaning.
 const FACET: usize = 50;
 
-/// Whether the file is just as long as its count of facets says.
+/// Reports whether the length of the file matches its count of facets exactly.
 pub(super) fn has_fitting_length(bytes: &[u8]) -> bool {
     claimed(bytes).is_some_and(|count| {
         count.checked_mul(FACET).and_then(|n| n.checked_add(PREAMBLE)) == Some(bytes.len())
@@ -26,11 +27,11 @@ fn claimed(bytes: &[u8]) -> Option<usize> {
     Some(u32::from_le_bytes(*count) as usize)
 }
 
-/// Reads as many facets as are claimed; what follows them means nothing.
+/// Reads as many facets as the header declares; bytes after them are ignored.
 pub(super) fn read(bytes: &[u8]) -> Result<Mesh, ParseError> {
     let Some(claimed) = claimed(bytes) else {
-        let reason = "not an STL file: neither a text that begins with \"solid\", nor as long as \
-                      the header of a binary file";
+        let reason = "not an STL file: it neither begins with \"solid\" as text does, nor is it \
+                      as long as a binary header";
         return Err(ParseError::byte(bytes.len(), reason));
     };
     let body = &bytes[PREAMBLE..];
@@ -40,7 +41,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<Mesh, ParseError> {
         return Err(ParseError::byte(bytes.len(), reason));
     }
     if claimed == 0 {
-        return Err(ParseError::byte(HEADER, "no faces: the count of facets is 0"));
+        return Err(ParseError::byte(HEADER, "no faces: the number of facets is 0"));
     }
     let mut welder = Welder::with_facets(claimed);
     let mut faces = Vec::with_capacity(claimed);
@@ -63,14 +64,14 @@ fn float(facet: &[u8], at: usize) -> f64 {
 /// Writes a mesh as binary STL: 32-bit floats, computed normals, no attributes, no names.
 ///
 /// # Errors
-/// Those of `out`; a mesh that breaks [`Mesh::validate`], a coordinate that is not finite as a
-/// 32-bit float: nothing has been written then.
+/// Those of `out`. Before anything is written: a mesh that breaks [`Mesh::validate`], and a
+/// coordinate that is not finite as a 32-bit float.
 pub fn write(mesh: &Mesh, out: &mut dyn Write) -> IoResult<()> {
     mesh.validate().map_err(invalid)?;
     let large = |position: &[f64; 3]| position.iter().any(|&x| !(x as f32).is_finite());
     if let Some(vertex) = mesh.positions.iter().position(large) {
         let position = mesh.positions[vertex];
-        let reason = format!("vertex {vertex} at {position:?} does not fit 32-bit floats");
+        let reason = format!("vertex {vertex} at {position:?} does not fit in 32-bit floats");
         return Err(invalid(reason));
     }
     let count = u32::try_from(mesh.faces.len()).map_err(invalid)?;

@@ -1,8 +1,8 @@
 //! STL: triangles without indices, as binary and as text.
 //!
-//! Corners at the same place, bit for bit (and −0 is 0), become one vertex. Normals in the file are
-//! passed over when reading and computed when writing. Several solids of a text that have facets
-//! become named objects.
+//! Corners at the same position, bit for bit (−0 equals 0), are welded into one vertex. Normals in
+//! the file are ignored on reading and computed on writing. If a text file has several solids with
+//! facets, they become named objects.
 
 mod binary;
 #[cfg(test)]
@@ -20,18 +20,17 @@ use crate::ParseError;
 pub use binary::write;
 pub use text::write as write_ascii;
 
-/// How much of the beginning tells text from binary: a binary file of one facet is no longer
-/// than this, and its facet always holds a zero byte unless someone colours it oddly.
+/// Bytes at the beginning searched for zeros to recognise binary files. A binary file of one facet
+/// is shorter than this, and its facet contains a zero byte in practice.
 const SNIFFED: usize = 512;
 
-/// The mesh in the bytes of an STL file.
+/// Reads an STL file.
 ///
-/// Vertices are numbered as they first come. A facet that is so small that its corners meet stays,
-/// as a face that repeats a vertex.
-/// Cost: O(n) expected, n = facets. Memory: no more than a small multiple of `bytes`, whatever the
-/// header claims.
+/// Vertices are numbered in order of appearance. A facet whose corners coincide is kept, as a face
+/// that repeats a vertex. Cost: O(n) expected, n = facets. Memory: at most a small multiple of
+/// `bytes`, whatever the header claims.
 /// # Errors
-/// Everything that is not a mesh of at least one face, by line of text or byte of binary data.
+/// Anything that is not a mesh of at least one face, with the line of text or byte of binary data.
 pub fn read(bytes: &[u8]) -> Result<Mesh, ParseError> {
     if bytes.is_empty() {
         return Err(ParseError::byte(0, "the file is empty"));
@@ -39,15 +38,15 @@ pub fn read(bytes: &[u8]) -> Result<Mesh, ParseError> {
     if is_text(bytes) { text::read(bytes) } else { binary::read(bytes) }
 }
 
-/// Some binary files begin with "solid" too: one whose length fits its count is binary for
-/// certain, and so is one with zero bytes near its beginning.
+/// Tells text from binary. Some binary files begin with "solid" too: they are recognised by a
+/// length that matches their count, or by zero bytes near the beginning.
 fn is_text(bytes: &[u8]) -> bool {
     let begins =
         bytes.trim_ascii_start().get(..5).is_some_and(|w| w.eq_ignore_ascii_case(b"solid"));
     begins && !binary::has_fitting_length(bytes) && !bytes[..bytes.len().min(SNIFFED)].contains(&0)
 }
 
-/// The unit normal of a triangle; zero where it has no area.
+/// Returns the unit normal of a triangle, or zero if it has no area.
 fn normal([a, b, c]: [DVec3; 3]) -> DVec3 {
     (b - a).cross(c - a).normalize_or_zero()
 }

@@ -116,7 +116,7 @@ fn errors_name_the_line_or_the_byte() {
     let solid = |facet: String| message(format!("solid s\n{facet}endsolid s\n"));
     assert_eq!(
         solid(FACET.replace("1 0 0", "1 x 0")),
-        "line 5: \"x\" stands where a coordinate should"
+        "line 5: expected a coordinate, found \"x\""
     );
     assert_eq!(
         solid(FACET.replace("1 0 0", "1 NaN 0")),
@@ -124,13 +124,13 @@ fn errors_name_the_line_or_the_byte() {
     );
     assert_eq!(
         solid(FACET.replace("endloop\n", "")),
-        "line 7: \"endfacet\" stands where endloop should"
+        "line 7: expected endloop, found \"endfacet\""
     );
     assert_eq!(
         message(format!("solid s\n{}", &FACET[..50])),
-        "line 5: the file ends where a coordinate should stand"
+        "line 5: the file ends where a coordinate is expected"
     );
-    assert_eq!(message("solid s\nendsolid s\njunk"), "line 3: \"junk\" stands where solid should");
+    assert_eq!(message("solid s\nendsolid s\njunk"), "line 3: expected solid, found \"junk\"");
     assert_eq!(message(""), "byte 0: the file is empty");
     assert!(message("<html>").starts_with("byte 6: not an STL file"));
 
@@ -167,7 +167,7 @@ fn shared_meshes_have_the_counts_of_their_table() {
 fn broken_files_give_one_clear_line() {
     let table = [
         ("no-triangles-ascii.stl", "line 2: no faces: no solid has a facet"),
-        ("no-triangles-binary.stl", "byte 80: no faces: the count of facets is 0"),
+        ("no-triangles-binary.stl", "byte 80: no faces: the number of facets is 0"),
     ];
     for (name, expected) in table {
         let Some(path) = shared_mesh(&format!("broken/{name}")) else { continue };

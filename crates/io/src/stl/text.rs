@@ -1,4 +1,4 @@
-//! Text STL: keywords and numbers between white space.
+//! Text STL: keywords and numbers separated by white space.
 
 use std::io::{Result as IoResult, Write};
 
@@ -8,7 +8,7 @@ use super::weld::Welder;
 use super::{invalid, normal, write_blocks};
 use crate::ParseError;
 
-/// Reads every solid; those without facets leave no trace.
+/// Reads all solids; those without facets are dropped.
 pub(super) fn read(bytes: &[u8]) -> Result<Mesh, ParseError> {
     let mut words = Words { rest: bytes, line: 1 };
     let mut welder = Welder::with_facets(0);
@@ -39,7 +39,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<Mesh, ParseError> {
     Ok(Mesh { objects, ..Mesh::new(welder.positions, faces) })
 }
 
-/// The words of a text, and the line of the last one, counted from 1.
+/// Iterator over words that keeps the line of the last one, counted from 1.
 struct Words<'a> {
     rest: &'a [u8],
     line: usize,
@@ -73,7 +73,7 @@ impl<'a> Words<'a> {
         }
     }
 
-    /// What stands behind a keyword on its line.
+    /// Reads the rest of the line after a keyword.
     fn rest_of_line(&mut self) -> String {
         let end = self.rest.iter().position(|b| matches!(b, b'\n' | b'\r'));
         let (name, rest) = self.rest.split_at(end.unwrap_or(self.rest.len()));
@@ -81,7 +81,7 @@ impl<'a> Words<'a> {
         String::from_utf8_lossy(name.trim_ascii()).into_owned()
     }
 
-    /// The corners of a facet. Its normal may be anything of three words.
+    /// Reads the corners of a facet; its normal may be any three words.
     fn facet(&mut self) -> Result<[[f64; 3]; 3], ParseError> {
         self.expect("facet")?;
         self.expect("normal")?;
@@ -116,25 +116,25 @@ impl<'a> Words<'a> {
     }
 
     fn unexpected(&self, word: &[u8], expected: &str) -> ParseError {
-        ParseError::line(self.line, format!("{} stands where {expected} should", shown(word)))
+        ParseError::line(self.line, format!("expected {expected}, found {}", shown(word)))
     }
 
     fn ended(&self, expected: &str) -> ParseError {
-        ParseError::line(self.line, format!("the file ends where {expected} should stand"))
+        ParseError::line(self.line, format!("the file ends where {expected} is expected"))
     }
 }
 
-/// A word of the file as an error shows it: quoted, short, and on one line.
+/// Formats a word of the file for an error: quoted, shortened, and on one line.
 fn shown(word: &[u8]) -> String {
     let short = &word[..word.len().min(40)];
     format!("\"{}\"", String::from_utf8_lossy(short).escape_debug())
 }
 
-/// Writes a mesh as text STL: coordinates to the last bit, computed normals, a solid for every
-/// object that has faces, no attributes.
+/// Writes a mesh as text STL: exact coordinates, computed normals, one solid per object with faces,
+/// no attributes.
 ///
 /// # Errors
-/// Those of `out`; a mesh that breaks [`Mesh::validate`]: nothing has been written then.
+/// Those of `out`. Before anything is written: a mesh that breaks [`Mesh::validate`].
 pub fn write(mesh: &Mesh, out: &mut dyn Write) -> IoResult<()> {
     mesh.validate().map_err(invalid)?;
     let label = |face: u32| mesh.objects.as_ref().map_or(0, |objects| objects.of(face as usize));

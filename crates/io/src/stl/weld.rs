@@ -1,36 +1,36 @@
-//! Corners at the same place become one vertex.
+//! Welding of corners at the same position.
 
 use std::collections::hash_map::RandomState;
 use std::hash::BuildHasher;
 
 use meshlod_mesh::VertexId;
 
-/// The vertices so far, and a table to find the one at a place.
+/// Vertices so far, with a hash table to find them by position.
 ///
-/// A table of bare ids takes a fifth of the room of a hash map that holds the places once more, and
-/// finds the dragon's 2.6 M corners in about four fifths of its time.
+/// A table of bare ids takes a fifth of the memory of a hash map that stores the positions again,
+/// and looks up the dragon's 2.6 M corners in about four fifths of its time.
 pub(super) struct Welder {
-    /// The places of the vertices, in the order in which they came.
+    /// Positions of the vertices, in order of appearance.
     pub positions: Vec<[f64; 3]>,
-    /// Open addressing over a power of two of slots, of which half stay free.
+    /// Open-addressing table with a power-of-two number of slots, at most half full.
     slots: Vec<Option<Slot>>,
-    hasher: PlaceHasher,
+    hasher: PositionHasher,
 }
 
-/// One more than a vertex id, so that a free slot takes no room of its own.
+/// Vertex id plus one, so that an empty slot takes no extra space.
 type Slot = std::num::NonZeroU32;
 
 impl Welder {
-    /// Room for the vertices of so many facets: a closed mesh has half as many.
+    /// Allocates for the given number of facets: a closed mesh has half as many vertices.
     pub fn with_facets(facets: usize) -> Self {
         Self {
             positions: Vec::with_capacity(facets / 2),
             slots: vec![None; facets.next_power_of_two().max(8)],
-            hasher: PlaceHasher::new(),
+            hasher: PositionHasher::new(),
         }
     }
 
-    /// The vertex at a finite place, bit for bit; −0 is 0.
+    /// Returns the vertex at a finite position, compared bit for bit with −0 equal to 0.
     pub fn vertex(&mut self, position: [f64; 3]) -> VertexId {
         let position = position.map(|x| x + 0.0);
         let slot = self.find(position);
@@ -46,7 +46,7 @@ impl Welder {
         id
     }
 
-    /// The slot of a place, or the free one where it belongs.
+    /// Returns the slot of a position, or the empty one where it belongs.
     fn find(&self, position: [f64; 3]) -> usize {
         let mask = self.slots.len() - 1;
         let mut slot = self.hasher.hash(position) & mask;
@@ -68,11 +68,11 @@ impl Welder {
     }
 }
 
-/// Two folded multiplications with secret factors, so that no file can be made whose places all
-/// collide. Ids follow the order of the file, so the secret never shows in what is read.
-struct PlaceHasher([u64; 3]);
+/// Hash of two folded multiplications with secret factors, so that no file can be crafted whose
+/// positions all collide. Ids follow the order of the file, so the secret never affects the result.
+struct PositionHasher([u64; 3]);
 
-impl PlaceHasher {
+impl PositionHasher {
     fn new() -> Self {
         let state = RandomState::new();
         Self([0, 1, 2].map(|i| state.hash_one(i)))
@@ -85,7 +85,7 @@ impl PlaceHasher {
     }
 }
 
-/// The halves of the long product, joined.
+/// Folds the two halves of the long product.
 fn fold(a: u64, b: u64) -> u64 {
     let product = u128::from(a) * u128::from(b);
     product as u64 ^ (product >> 64) as u64

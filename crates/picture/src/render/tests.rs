@@ -7,7 +7,7 @@ use crate::{
     View, Wireframe,
 };
 
-/// Colours as they are, one sample a pixel, on black.
+/// Unlit style with one sample per pixel, on black.
 fn bare(side: u32) -> Style<'static> {
     Style {
         size: [side, side],
@@ -33,7 +33,7 @@ fn hash(bytes: &[u8]) -> u64 {
     })
 }
 
-/// Smooth and flat, textured, lined, seen through: a bit of everything.
+/// Styles that cover smooth and flat shading, textures, wireframe and transparency.
 fn everything() -> Vec<Picture> {
     let (ball, mut bent) = (ball(2), sheet_with_uv(9));
     bent.positions.iter_mut().for_each(|p| p[2] = 0.4 * p[0] * p[0] - 0.3 * p[1]);
@@ -66,7 +66,7 @@ fn pixels_are_the_same_everywhere() {
     };
     let one = with_threads(1);
     assert!(one == with_threads(2) && one == with_threads(5), "threads leave a trace");
-    // On purpose to be renewed when a picture is meant to change; look at it first.
+    // Update these hashes only when a picture is meant to change, and look at it first.
     let hashes: Vec<_> = one.iter().map(|p| format!("{:016x}", hash(p.rgba()))).collect();
     assert_eq!(hashes, ["02861914000fa511", "9ab5cb4f606ba87f", "be24cebba9cb8013"]);
 }
@@ -95,7 +95,7 @@ fn a_texture_is_seen_upright() {
     let expected: [[i32; 3]; 4] = [[255, 0, 0], [0, 255, 0], [0, 0, 255], [255; 3]];
     for (seen, wanted) in quarters.iter().zip(expected) {
         for (seen, wanted) in seen.iter().zip(wanted) {
-            // A hundredth of its neighbour shows as 25 of 255 in sRGB.
+            // A hundredth of the neighbour in linear light is 25 of 255 in sRGB.
             assert!((i32::from(*seen) - wanted).abs() < 40, "{quarters:?}");
         }
     }
@@ -240,13 +240,13 @@ fn what_does_not_fit_the_mesh_is_refused() {
         |mesh: &Mesh, style: Style| render(mesh, &camera, &style).unwrap_err().to_string();
     let mesh = sheet(1);
     let message = refused(&mesh, Style { paint: Paint::FaceColors(&[]), ..bare(5) });
-    assert_eq!(message, "colours of faces: 0 entries where 2 are needed");
+    assert_eq!(message, "colours of faces: expected 2 entries, found 0");
     let message = refused(&mesh, bare(0));
     assert!(message.contains("0 x 0"), "{message}");
     let material = PaintMaterial { base_color: [1.0; 3], texture: Some(3) };
     let materials = Materials { materials: vec![material], textures: vec![] };
     let message = refused(&mesh, Style { paint: Paint::Materials(&materials), ..bare(5) });
-    assert_eq!(message, "material 0 names texture 3, but there are only 0");
+    assert_eq!(message, "material 0 refers to texture 3, but there are only 0");
     let mut broken = sheet(1);
     broken.positions[2][1] = f64::NAN;
     assert!(refused(&broken, bare(5)).contains("v2"));

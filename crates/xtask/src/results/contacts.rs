@@ -15,17 +15,17 @@ use ways::{Level, Way, by_component};
 const FILES: [&str; 5] =
     ["fish-clown.obj", "fish-bream.obj", "city.glb", "sponza.obj", "skyscraper.obj"];
 const RATIOS: [f64; 3] = [0.5, 0.25, 0.1];
-/// What shall be left of the pixels that others breach.
+/// Target ratio of see-through pixels to those of the other methods.
 const GOAL: f64 = 0.1;
 
 /// A level and what of it shows that should not.
 struct Figures {
     way: Way,
     level: Level,
-    breaches: SeeThroughCounts,
+    see_through: SeeThroughCounts,
 }
 
-/// SeeThroughCounts and new open edges per mesh, ratio and way.
+/// See-through pixels and new open edges per mesh, ratio and way.
 pub fn section(_: &Project) -> Result<String> {
     let mut table = Table::new([
         "mesh, ratio, way",
@@ -82,19 +82,19 @@ fn skipped(missing: &[&str]) -> String {
 /// The figures of all ways, for each ratio.
 fn figures(mesh: &Mesh) -> Result<Vec<Vec<Figures>>> {
     let targets = RATIOS.map(|ratio| Target::Ratio(ratio).faces_of(mesh.faces.len()));
-    let cover = ReferenceVisibility::new(parted(mesh), SeeThroughOptions::default())?;
+    let reference = ReferenceVisibility::new(labelled(mesh), SeeThroughOptions::default())?;
     let mut of_ratios: Vec<Vec<Figures>> = RATIOS.map(|_| Vec::new()).into();
     for way in Way::ALL {
         for (level, figures) in way.levels(mesh, &targets)?.into_iter().zip(&mut of_ratios) {
-            let breaches = cover.breaches(parted(&level.mesh))?;
-            figures.push(Figures { way, level, breaches });
+            let see_through = reference.see_through_counts(labelled(&level.mesh))?;
+            figures.push(Figures { way, level, see_through });
         }
     }
     Ok(of_ratios)
 }
 
 /// By its objects.
-fn parted(mesh: &Mesh) -> LabelledMesh<'_> {
+fn labelled(mesh: &Mesh) -> LabelledMesh<'_> {
     let label_of_face = mesh.objects.as_ref().map_or(&[][..], |objects| &objects.of_face);
     LabelledMesh { mesh, label_of_face }
 }
@@ -108,7 +108,7 @@ fn add_rows(table: &mut Table, what: &str, all: &[Figures]) {
             _ => "–".to_owned(),
         });
         let miss = if own.level.reached { "" } else { "*" };
-        let SeeThroughCounts { background, hidden, .. } = own.breaches;
+        let SeeThroughCounts { background, hidden, .. } = own.see_through;
         table.row([
             format!("{what}, {}", own.way.name()),
             format!("{}{miss}", own.level.mesh.faces.len()),
@@ -133,7 +133,7 @@ fn meeting(all: &[Figures]) -> Vec<Way> {
 
 impl Figures {
     fn sum(&self) -> usize {
-        self.breaches.background + self.breaches.hidden
+        self.see_through.background + self.see_through.hidden
     }
 
     /// Plain `qem` and the peer; `None` for what this is.
@@ -157,7 +157,7 @@ mod tests {
             Figures {
                 way,
                 level,
-                breaches: SeeThroughCounts { hidden, ..SeeThroughCounts::default() },
+                see_through: SeeThroughCounts { hidden, ..SeeThroughCounts::default() },
             }
         };
         let with = |locked: Figures| {

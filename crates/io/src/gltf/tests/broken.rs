@@ -1,4 +1,4 @@
-//! Documents that are wrong: one clear error, or what can be had of them.
+//! Invalid documents: one clear error, or whatever can be read of them.
 
 use meshlod_fixtures::shared_mesh;
 use serde_json::{Value, json};
@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 use super::{read_parts, square};
 use crate::ReadOptions;
 
-/// A square after a change to its JSON.
+/// Reads the square after a change to its JSON.
 fn spoilt(change: impl FnOnce(&mut Value)) -> Result<crate::Scene, String> {
     let (mut json, buffer) = square();
     change(&mut json);

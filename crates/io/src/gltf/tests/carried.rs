@@ -1,4 +1,4 @@
-//! What of a document comes through, and how geometry is put in.
+//! What is carried through from a document, and how its geometry is replaced.
 
 use meshlod_fixtures::{cube, seam_strip};
 use meshlod_mesh::{Attributes, Labels, Layer, LayerKind, Mesh, WedgeId};

@@ -1,4 +1,4 @@
-//! Levels of detail: what is written, and what shows.
+//! Levels of detail: what is written, and what is shown.
 
 use serde_json::json;
 
@@ -6,7 +6,7 @@ use super::{assert_valid, json_of, read_alone, read_parts, square};
 use crate::gltf::{Level, write, write_glb};
 use crate::{Node, Scene};
 
-/// Levels of which each has the first faces of the one before.
+/// Levels that each keep the first faces of the one before.
 pub(super) fn levels(scene: &Scene) -> Vec<Level> {
     let level = |faces: usize, screen_coverage| Level {
         meshes: scene

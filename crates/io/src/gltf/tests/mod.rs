@@ -1,4 +1,4 @@
-//! The reader and the writers together: on documents made here, and on the shared meshes.
+//! Reader and writers together, on documents built here and on the shared meshes.
 
 mod broken;
 mod carried;
@@ -13,24 +13,24 @@ use serde_json::{Value, json};
 use super::{container, read, write_glb};
 use crate::{ParseError, Scene, Weld};
 
-/// Reads bytes that name no file.
+/// Reads bytes that refer to no other file.
 fn read_alone(bytes: &[u8]) -> Result<Scene, ParseError> {
     read(bytes, &mut |_| None, Weld::Exact)
 }
 
-/// Reads a document made of JSON and a buffer.
+/// Reads a document built from JSON and a buffer.
 fn read_parts(json: &Value, buffer: &[u8]) -> Result<Scene, ParseError> {
     read_alone(&container::join(json.to_string().as_bytes(), buffer).unwrap())
 }
 
-/// Writes a scene as GLB, which the crate `gltf` must accept, and reads it again.
+/// Writes a scene as GLB, checks that the crate `gltf` accepts it, and reads it again.
 fn round_trip(scene: &Scene) -> Scene {
     let glb = write_glb(scene, &[]).unwrap();
     assert_valid(&glb);
     read_alone(&glb).unwrap()
 }
 
-/// That another reader, which checks what it reads, takes a file.
+/// Checks that another, validating reader accepts a file.
 fn assert_valid(bytes: &[u8]) {
     if let Err(error) = gltf::Gltf::from_slice(bytes) {
         let (json, _) = container::split(bytes).unwrap();
@@ -38,12 +38,12 @@ fn assert_valid(bytes: &[u8]) {
     }
 }
 
-/// The JSON of a GLB.
+/// Returns the JSON of a GLB.
 fn json_of(glb: &[u8]) -> Value {
     serde_json::from_slice(container::split(glb).unwrap().0).unwrap()
 }
 
-/// A document of one square of two triangles, seen from above, and its buffer: the corners
+/// Document of one square of two triangles, and its buffer: the corners
 /// (0,0) (1,0) (0,1) (1,1) as floats, then the indices as shorts.
 fn square() -> (Value, Vec<u8>) {
     let corners = [[0.0f32, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [1.0, 1.0, 0.0]];

@@ -1,4 +1,4 @@
-//! Documents with anything changed: never a panic, and what is read can be written.
+//! Arbitrarily changed documents: never a panic, and whatever is read can be written.
 
 use proptest::prelude::*;
 use serde_json::{Value, json};
@@ -7,7 +7,7 @@ use super::carried::rich;
 use super::{container, json_of, levels, read_alone};
 use crate::gltf::{Compression, write_compressed_glb, write_glb};
 
-/// Reads; what can be read must be sound, and writable with and without levels.
+/// Reads a document; if that succeeds, the scene must be valid and writable, also with levels.
 fn check(bytes: &[u8]) {
     let Ok(scene) = read_alone(bytes) else { return };
     scene.flatten().validate().unwrap();
@@ -24,7 +24,7 @@ fn check(bytes: &[u8]) {
     }
 }
 
-/// Every place in a document, as pointers.
+/// Lists every value in a document as a JSON pointer.
 fn pointers(value: &Value, at: &str, into: &mut Vec<String>) {
     into.push(at.to_owned());
     match value {
@@ -42,7 +42,7 @@ fn pointers(value: &Value, at: &str, into: &mut Vec<String>) {
     }
 }
 
-/// Values that readers stumble over.
+/// Values that readers may stumble over.
 fn odd() -> impl Strategy<Value = Value> {
     let values = [
         json!(null),

@@ -1,4 +1,4 @@
-//! Compressed buffer views: unfolded at reading, or refused with their place.
+//! Compressed buffer views: decompressed on reading, or rejected with their location.
 
 use serde_json::{Value, json};
 
@@ -7,7 +7,7 @@ use crate::Scene;
 use crate::gltf::write_glb;
 use crate::meshopt::{encode_attributes, encode_triangles};
 
-/// The square with both its views compressed under a name, into a buffer that is not there.
+/// The square with both its views compressed by the named extension, into a fallback buffer.
 fn packed_square(name: &str) -> (Value, Vec<u8>) {
     let (mut json, plain) = square();
     let positions = encode_attributes(&plain[..48], 12);
@@ -73,9 +73,9 @@ fn each_fault_of_compression_is_told_with_its_place() {
         ("bufferView 0", "byte ", |e| e["byteLength"] = 40.into()),
         ("bufferView 0", "filter", |e| e["filter"] = "QUATERNION".into()),
         ("bufferView 0", "missing field", |e| drop(e.as_object_mut().unwrap().remove("count"))),
-        ("bufferView 0", "no object", |e| *e = json!([0])),
+        ("bufferView 0", "not an object", |e| *e = json!([0])),
         ("buffer 7", "only 2", |e| e["buffer"] = 7.into()),
-        ("buffer 0", "compressed bytes", |e| e["byteLength"] = json!(1u64 << 40)),
+        ("buffer 0", "compressed range", |e| e["byteLength"] = json!(1u64 << 40)),
     ];
     assert!(spoilt(|_| {}).is_ok());
     for (place, reason, change) in faults {

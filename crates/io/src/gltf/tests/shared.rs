@@ -1,4 +1,4 @@
-//! What the shared glTF files hold, and that it comes through.
+//! Contents of the shared glTF files, and that they are carried through.
 
 use std::path::{Path, PathBuf};
 

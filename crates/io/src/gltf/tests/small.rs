@@ -1,4 +1,4 @@
-//! Scenes written small: every corner comes back, as near as the bits promise.
+//! Compressed scenes: every corner reads back within the error that the bits allow.
 
 use glam::DVec3;
 use meshlod_fixtures::{cube, seam_strip, shared_mesh, two_objects};
@@ -15,7 +15,7 @@ const PLAIN: Compression =
     Compression { position_bits: 12, normal_bits: 8, uv_bits: 12, meshopt: false };
 const PACKED: Compression = Compression { meshopt: true, ..PLAIN };
 
-/// Gives each wedge of all meshes a number, by which it is found again.
+/// Numbers all wedges of all meshes, so that they can be identified after reading.
 fn numbered(mut scene: Scene) -> Scene {
     let mut numbers = 0..;
     for mesh in scene.meshes.iter_mut().map(|mesh| &mut mesh.mesh) {
@@ -39,7 +39,7 @@ fn number_layer(mesh: &Mesh) -> &Layer {
     layers.iter().find(|layer| layer.name == "_NUMBER").unwrap()
 }
 
-/// Face by face the numbers of its wedges from the least on, with its corners in the world.
+/// Lists the wedge numbers of each face, smallest first, with its corners in world space.
 fn faces(scene: &Scene) -> Vec<([u32; 3], [DVec3; 3])> {
     let flat = scene.flatten();
     let numbers = number_layer(&flat);
@@ -57,7 +57,7 @@ fn faces(scene: &Scene) -> Vec<([u32; 3], [DVec3; 3])> {
     faces
 }
 
-/// The values of a kind by wedge number, where a scene has one mesh.
+/// Returns the values of a layer by wedge number, for a scene with one mesh.
 fn values(scene: &Scene, kind: LayerKind) -> Vec<(u32, Vec<f32>)> {
     let mesh = &scene.meshes[0].mesh;
     let layer = mesh.attributes.as_ref().unwrap().layer(kind).unwrap();
@@ -69,7 +69,7 @@ fn values(scene: &Scene, kind: LayerKind) -> Vec<(u32, Vec<f32>)> {
     all
 }
 
-/// Writes small and reads again; every corner must be within half a cell an axis.
+/// Writes compressed and reads again; every corner must be within half a cell per axis.
 fn check(scene: &Scene, how: &Compression, what: &str) -> Scene {
     let (glb, report) = write_compressed_glb(scene, &[], how).unwrap();
     let again = read_alone(&glb).unwrap();
@@ -80,11 +80,11 @@ fn check(scene: &Scene, how: &Compression, what: &str) -> Scene {
         points.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(l, h), p| (l.min(*p), h.max(*p)))
     };
     let (low, high) = bounds(&old);
-    // Nodes may scale: half a cell of the largest mesh in the world, and what 32 bits lose.
+    // Nodes may scale: half a cell of the largest mesh in world space, plus 32-bit rounding.
     let cells = f64::from((1u32 << how.position_bits) - 1);
     let most = (high - low).length() * (0.5 * 3f64.sqrt() / cells + 1e-6)
         + low.abs().max(high.abs()).max_element() * 1e-6;
-    // What is shown several times has the same numbers; each must be where one of them was.
+    // Instances share their numbers; each corner must match one of them.
     let rest = new;
     for (numbers, places) in &old {
         let start = rest.partition_point(|(other, _)| other < numbers);
@@ -215,7 +215,7 @@ fn primitives_that_met_still_meet() {
     }
 }
 
-/// The square after a change, numbered.
+/// Numbered square after a change to its JSON.
 fn square_with(change: impl FnOnce(&mut Value)) -> Scene {
     let (mut json, buffer) = square();
     change(&mut json);
@@ -318,7 +318,7 @@ fn bits_that_cannot_be_are_refused() {
         Compression { uv_bits: u32::MAX, ..PLAIN },
     ] {
         let error = write_compressed_glb(&dressed(), &[], &how).unwrap_err();
-        assert!(error.to_string().contains("16 can"), "{error}");
+        assert!(error.to_string().contains("to 16"), "{error}");
     }
 }
 
