@@ -31,7 +31,7 @@ impl std::fmt::Display for FileLocation {
 pub struct ParseError {
     /// Location of the error.
     pub location: FileLocation,
-    /// What is wrong there and, where that is clear, what to do about it.
+    /// The problem and, where that is clear, what to do about it.
     pub reason: String,
 }
 

@@ -120,7 +120,7 @@ pub fn write(path: &Path, scene: &Scene, options: &WriteOptions) -> Result<(), I
 /// [`gltf::write_glb`].
 ///
 /// # Errors
-/// Those of [`write()`]; also any other suffix, and levels whose number of meshes differs from the
+/// Errors of [`write()`]; also any other suffix, and levels whose number of meshes differs from the
 /// scene's.
 pub fn write_lods(path: &Path, scene: &Scene, levels: &[gltf::Level]) -> Result<(), IoError> {
     let unsupported = |error| IoError::unsupported(path, error);
@@ -143,7 +143,7 @@ pub fn write_lods(path: &Path, scene: &Scene, levels: &[gltf::Level]) -> Result<
 /// [`gltf::write_compressed_glb`].
 ///
 /// # Errors
-/// Those of [`write()`]; also any other suffix, and bit counts out of range.
+/// Errors of [`write()`]; also any other suffix, and bit counts out of range.
 pub fn write_compressed(
     path: &Path,
     scene: &Scene,

@@ -68,7 +68,7 @@ impl<'a> LineWriter<'a> {
     /// Ends the line.
     ///
     /// # Errors
-    /// Those of `out`.
+    /// Errors of `out`.
     pub(crate) fn end(&mut self) -> io::Result<()> {
         self.buffer.push('\n');
         self.at_start = true;
@@ -78,7 +78,7 @@ impl<'a> LineWriter<'a> {
     /// Writes what is still buffered.
     ///
     /// # Errors
-    /// Those of `out`.
+    /// Errors of `out`.
     pub(crate) fn finish(mut self) -> io::Result<()> {
         self.flush()
     }

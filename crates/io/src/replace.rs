@@ -11,7 +11,7 @@ use crate::IoError;
 /// Writes a file atomically: the old contents of `path` stay until the new ones are complete.
 ///
 /// # Errors
-/// Those of the system, with the path.
+/// Errors of the system, with the path.
 pub fn write_file(path: &Path, bytes: &[u8]) -> Result<(), IoError> {
     replace(path, |out| out.write_all(bytes)).map_err(|error| IoError::system(path, error))
 }
@@ -31,7 +31,7 @@ pub fn abandon_files() {
 /// A target that is not a regular file (a pipe, a device) is written in place.
 ///
 /// # Errors
-/// Those of the system and those of `fill`; no temporary file is left behind.
+/// Errors of the system and those of `fill`; no temporary file is left behind.
 pub(crate) fn replace<E: From<io::Error>>(
     path: &Path,
     fill: impl FnOnce(&mut dyn Write) -> Result<(), E>,

@@ -142,7 +142,7 @@ impl<'a> TextCursor<'a> {
     /// 0.
     ///
     /// # Errors
-    /// Those of [`TextCursor::number`], except for values that are not finite.
+    /// Errors of [`TextCursor::number`], except for values that are not finite.
     #[inline]
     pub(crate) fn attribute(&mut self, need: &str) -> Result<f32, ParseError> {
         let start = self.at;
@@ -208,7 +208,7 @@ impl<'a> TextCursor<'a> {
         }
         // 18 digits fit in an i64, and no valid index or count has more.
         if at == first || at - first > 18 {
-            return Err(self.refuse("a whole number"));
+            return Err(self.refuse("an integer"));
         }
         self.at = at;
         Ok(if negative { -value } else { value })

@@ -31,7 +31,7 @@ impl Texture {
     /// Decodes a PNG file.
     ///
     /// # Errors
-    /// Those of [`Texture::decode`].
+    /// Errors of [`Texture::decode`].
     pub fn from_png(bytes: &[u8]) -> Result<Self, PictureError> {
         let wrong = |e: png::DecodingError| damaged("png", e);
         let mut decoder = png::Decoder::new(Cursor::new(bytes));
@@ -57,7 +57,7 @@ impl Texture {
     /// Decodes a JPEG file.
     ///
     /// # Errors
-    /// Those of [`Texture::decode`].
+    /// Errors of [`Texture::decode`].
     pub fn from_jpeg(bytes: &[u8]) -> Result<Self, PictureError> {
         let options = DecoderOptions::default()
             .set_max_width(MAX_SIDE as usize)

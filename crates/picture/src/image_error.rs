@@ -49,7 +49,7 @@ struct ReferenceImage {
 /// Cost: 24 pictures of 1024 by 1024 and their comparison, two to six seconds of one core.
 ///
 /// # Errors
-/// Those of [`render`].
+/// Errors of [`render`].
 pub fn image_error(
     original: &Mesh,
     level: &Mesh,
@@ -62,7 +62,7 @@ impl<'a> ReferenceImages<'a> {
     /// Draws the twelve pictures of an original, which take 60 MB.
     ///
     /// # Errors
-    /// Those of [`render`].
+    /// Errors of [`render`].
     pub fn new(original: &Mesh, paint: &Paint<'a>) -> Result<Self, PictureError> {
         Self::with_style(original, Style { paint: paint.clone(), ..Style::comparison() })
     }
@@ -71,7 +71,7 @@ impl<'a> ReferenceImages<'a> {
     /// less strict, as small differences are not visible; state the side along with such a figure.
     ///
     /// # Errors
-    /// Those of [`render`].
+    /// Errors of [`render`].
     pub fn of_side(original: &Mesh, paint: &Paint<'a>, side: u32) -> Result<Self, PictureError> {
         let style = Style { paint: paint.clone(), size: [side; 2], ..Style::comparison() };
         Self::with_style(original, style)
@@ -89,7 +89,7 @@ impl<'a> ReferenceImages<'a> {
     /// Compares a level with the original.
     ///
     /// # Errors
-    /// Those of [`render`].
+    /// Errors of [`render`].
     pub fn error_of(&self, level: &Mesh) -> Result<ImageError, PictureError> {
         let mut views = [ViewError::default(); 12];
         for (error, view) in views.iter_mut().zip(&self.views) {

@@ -49,7 +49,7 @@ impl Picture {
     /// Writes a PNG: RGB if every pixel is opaque, else RGBA. The bytes are reproducible.
     ///
     /// # Errors
-    /// Those of the encoder and of `out`.
+    /// Errors of the encoder and of `out`.
     pub fn write_png(&self, out: &mut impl Write) -> Result<(), PictureError> {
         let mut encoder = png::Encoder::new(out, self.width, self.height);
         encoder.set_depth(png::BitDepth::Eight);

@@ -109,7 +109,7 @@ impl ReferenceVisibility {
     /// and [`Camera::other_icosahedron_views`].
     ///
     /// # Errors
-    /// Those of [`visibility()`], and a number of labels that differs from the number of faces.
+    /// Errors of [`visibility()`], and a number of labels that differs from the number of faces.
     pub fn new(
         original: LabelledMesh<'_>,
         options: SeeThroughOptions,
@@ -134,7 +134,7 @@ impl ReferenceVisibility {
     /// Counts the see-through pixels of a level over all views.
     ///
     /// # Errors
-    /// Those of [`ReferenceVisibility::new`].
+    /// Errors of [`ReferenceVisibility::new`].
     pub fn see_through_counts(
         &self,
         level: LabelledMesh<'_>,
@@ -155,7 +155,7 @@ impl ReferenceVisibility {
     /// Finds the see-through pixels of a level in one view, row after row from the top.
     ///
     /// # Errors
-    /// Those of [`ReferenceVisibility::new`].
+    /// Errors of [`ReferenceVisibility::new`].
     pub fn see_through_pixels(
         &self,
         view: usize,

@@ -60,7 +60,7 @@ pub fn write_glb(scene: &Scene, levels: &[Level]) -> Result<Vec<u8>, Unsupported
 /// outside [0, 1] are rounded to the requested bits as well. Images and animations are kept.
 ///
 /// # Errors
-/// Those of [`write_glb`]; also bit counts out of range.
+/// Errors of [`write_glb`]; also bit counts out of range.
 /// # References
 /// [Kap20], [KS21]
 pub fn write_compressed_glb(
@@ -77,7 +77,7 @@ pub fn write_compressed_glb(
 /// were files stay files. See [`write_glb`].
 ///
 /// # Errors
-/// Those of [`write_glb`], except for the size.
+/// Errors of [`write_glb`], except for the size.
 pub fn write(scene: &Scene, levels: &[Level], stem: &str) -> Result<GltfFiles, Unsupported> {
     Output::of(scene, levels, None)?.into_files(scene, stem)
 }
@@ -86,7 +86,7 @@ pub fn write(scene: &Scene, levels: &[Level], stem: &str) -> Result<GltfFiles, U
 /// [`write_compressed_glb`].
 ///
 /// # Errors
-/// Those of [`write_compressed_glb`], except for the size.
+/// Errors of [`write_compressed_glb`], except for the size.
 pub fn write_compressed(
     scene: &Scene,
     levels: &[Level],

@@ -8,7 +8,7 @@ use thiserror::Error;
 pub struct Malformed {
     /// Byte offset in the stream.
     pub at: usize,
-    /// What is wrong there.
+    /// Description of the error.
     pub reason: String,
 }
 

@@ -189,7 +189,7 @@ pub(super) fn materials(
 /// Writes the materials of a scene under the names that [`write`](super::write()) uses.
 ///
 /// # Errors
-/// Those of `out`.
+/// Errors of `out`.
 pub fn write(scene: &Scene, out: &mut dyn Write) -> io::Result<()> {
     for (name, material) in names(&scene.materials).iter().zip(&scene.materials) {
         let [r, g, b, opacity] = material.base_color;

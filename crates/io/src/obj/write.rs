@@ -17,7 +17,7 @@ use crate::{Precision, Scene};
 /// Positions (at `F64`), uvs and normals read back bit for bit. Other layers are not written.
 ///
 /// # Errors
-/// Those of `out`, and a position that `precision` cannot hold.
+/// Errors of `out`, and a position that `precision` cannot hold.
 pub fn write(
     scene: &Scene,
     precision: Precision,

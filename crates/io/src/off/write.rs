@@ -16,7 +16,7 @@ use crate::vertex_attributes::split_at_seams;
 /// unchanged, bit for bit at `F64`.
 ///
 /// # Errors
-/// Those of `out`, and a position that `precision` cannot hold.
+/// Errors of `out`, and a position that `precision` cannot hold.
 pub fn write(mesh: &Mesh, precision: Precision, out: &mut dyn Write) -> io::Result<()> {
     const LAYERS: [LayerKind; 3] = [LayerKind::Normal, LayerKind::Color(0), LayerKind::Uv(0)];
     let find = |kind| mesh.attributes.as_ref().and_then(|a: &Attributes| a.layer(kind));

@@ -17,7 +17,7 @@ const BLOCK: usize = 1 << 16;
 /// and vertices correspond one to one, every wedge in use becomes a vertex of its own, which splits
 /// seams and drops unused vertices.
 /// # Errors
-/// Those of `out`. Before anything is written: a mesh that breaks [`Mesh::validate`], and a
+/// Errors of `out`. Before anything is written: a mesh that breaks [`Mesh::validate`], and a
 /// coordinate that is not finite as a `float`.
 pub fn write(mesh: &Mesh, precision: Precision, out: &mut dyn Write) -> Result<()> {
     mesh.validate().map_err(invalid)?;

@@ -16,7 +16,7 @@ use crate::vertex_attributes::split_at_seams;
 /// reads back unchanged, bit for bit at `F64`, except that normals are normalised.
 ///
 /// # Errors
-/// Those of `out`, and a position that `precision` cannot hold.
+/// Errors of `out`, and a position that `precision` cannot hold.
 pub fn write(mesh: &Mesh, precision: Precision, out: &mut dyn Write) -> io::Result<()> {
     let split = split_at_seams(mesh);
     let mut lines = LineWriter::new(out, precision);

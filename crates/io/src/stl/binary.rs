@@ -64,7 +64,7 @@ fn float(facet: &[u8], at: usize) -> f64 {
 /// Writes a mesh as binary STL: 32-bit floats, computed normals, no attributes, no names.
 ///
 /// # Errors
-/// Those of `out`. Before anything is written: a mesh that breaks [`Mesh::validate`], and a
+/// Errors of `out`. Before anything is written: a mesh that breaks [`Mesh::validate`], and a
 /// coordinate that is not finite as a 32-bit float.
 pub fn write(mesh: &Mesh, out: &mut dyn Write) -> IoResult<()> {
     mesh.validate().map_err(invalid)?;

@@ -134,7 +134,7 @@ fn shown(word: &[u8]) -> String {
 /// no attributes.
 ///
 /// # Errors
-/// Those of `out`. Before anything is written: a mesh that breaks [`Mesh::validate`].
+/// Errors of `out`. Before anything is written: a mesh that breaks [`Mesh::validate`].
 pub fn write(mesh: &Mesh, out: &mut dyn Write) -> IoResult<()> {
     mesh.validate().map_err(invalid)?;
     let label = |face: u32| mesh.objects.as_ref().map_or(0, |objects| objects.of(face as usize));
