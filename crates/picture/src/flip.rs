@@ -44,8 +44,8 @@ struct PerceivedImage {
     /// CIE L*a*b* colours, without detail too fine to be seen.
     colors: Vec<Vec3>,
     /// Strength of the edge at each pixel.
+    edges: Vec<f32>,
     /// Strength of the point or line at each pixel.
-    points: Vec<f32>,
     points: Vec<f32>,
 }
 

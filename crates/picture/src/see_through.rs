@@ -205,18 +205,18 @@ impl Frame {
         at: usize,
         shown: u32,
     ) -> Option<SeeThrough> {
-        let part = seen[at].label;
-        if part == shown || part == BACKGROUND {
+        let label = seen[at].label;
+        if label == shown || label == BACKGROUND {
             return None;
         }
         let mut around = self.steps.iter().map(|&step| at.wrapping_add_signed(step));
         if around.clone().take(self.within).any(|near| seen[near].label == shown) {
             return None;
         }
-        let beyond = around.find(|&near| seen[near].label != part && seen[near].label != OUTSIDE);
+        let beyond = around.find(|&near| seen[near].label != label && seen[near].label != OUTSIDE);
         if let Some(beyond) = beyond
             && seen[beyond].label == shown
-            && (shown == BACKGROUND || self.is_behind(seen, beyond, part, *jump))
+            && (shown == BACKGROUND || self.is_behind(seen, beyond, label, *jump))
         {
             return None;
         }
@@ -231,7 +231,7 @@ impl Frame {
         let row = (self.side + 2 * self.margin) as isize;
         let sides = [-row - 1, -row, 1 - row, -1, 1, row - 1, row, row + 1];
         let beside = sides.map(|step| seen[at.wrapping_add_signed(step)]);
-        let mut before = beside.into_iter().filter(|beside| beside.label == part);
+        let mut before = beside.into_iter().filter(|beside| beside.label == label);
         before.all(|before| seen[at].depth - before.depth > jump * before.depth)
     }
 }
