@@ -329,16 +329,19 @@ mod tests {
             ("", "byte 0: the file is empty"),
             ("solid x\n", "line 1: not a PLY file: its first line must be \"ply\""),
             ("ply\nformat ascii 1.0\n", "line 2: the file ends before \"end_header\""),
-            ("ply\nend_header\n", "line 2: the header ends without a line \"format\""),
+            ("ply\nend_header\n", "line 2: the header has no line \"format\""),
             ("ply\nelement vertex -3\n", "line 2: element vertex: \"-3\" is not a count"),
             ("ply\nproperty int x\n", "line 2: a property before the first element"),
             ("ply\nelement e 1\nproperty real x\n", "line 3: unknown type \"real\""),
             ("ply\nelement e 1\nproperty int\n", "line 3: a property needs a type and a name"),
-            ("ply\nelement e 1\nelement e 1\n", "line 3: a second element e"),
-            ("ply\nelement e 1\nproperty int x\nproperty int x\n", "line 4: element e: a second x"),
+            ("ply\nelement e 1\nelement e 1\n", "line 3: the element e is declared twice"),
+            (
+                "ply\nelement e 1\nproperty int x\nproperty int x\n",
+                "line 4: element e: the property x is declared twice",
+            ),
             (
                 "ply\nelement e 1\nproperty list float int x\n",
-                "line 3: the length of a list must have a whole-number type",
+                "line 3: the length of a list must have an integer type",
             ),
         ];
         for (text, message) in cases {

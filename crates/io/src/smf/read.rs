@@ -324,19 +324,19 @@ mod tests {
             ("f 1 2\n", "line 8: a face needs at least three corners, but this one has 2"),
             ("v 1 2\n", "line 8: a vertex needs three coordinates"),
             ("3vv\n", "line 8: \"3vv\" is not an SMF command"),
-            ("c 1 0 0\n", "line 8: c comes before \"bind c\""),
+            ("c 1 0 0\n", "line 8: c is used before \"bind c\""),
             ("bind c corner\n", "line 8: \"corner\" is not vertex or face"),
             ("bind q face\n", "line 8: \"q\" is not c, n or r"),
-            ("end\n", "line 8: an end without a begin"),
+            ("end\n", "line 8: end without begin"),
             ("rot w 90\n", "line 8: \"w\" is not an axis"),
             (
                 "scale 1e300 1 1\nscale 1e300 1 1\nv 1 1 1\n",
-                "line 10: a vertex is moved out of all numbers by its transformation",
+                "line 10: the transformation moves the vertex out of the range of numbers",
             ),
             ("", "line 7: the file ends without faces (4 vertices)"),
             (
                 "f 1 2 3\nbind c face\nc 1 1 1\nc 1 1 1\n",
-                "line 11: the file ends after 2 c for 1 faces",
+                "line 11: the file has 2 values of c for 1 faces",
             ),
         ] {
             assert_eq!(error(&format!("{SQUARE}{commands}")), message);

@@ -58,7 +58,7 @@ fn a_placeholder_need_not_be_called_one_but_nothing_else_may_lie_in_it() {
     );
     let error =
         spoilt(|j| drop(j["bufferViews"][0].as_object_mut().unwrap().shift_remove("extensions")));
-    assert!(error.unwrap_err().starts_with("bufferView 0: 48 bytes at 0 of buffer 1"));
+    assert!(error.unwrap_err().starts_with("bufferView 0: 48 bytes at 0 exceed buffer 1"));
 }
 
 #[test]

@@ -265,7 +265,7 @@ fn meshes_that_no_node_can_scale_keep_their_floats_and_the_report_says_so() {
         ("an extension", |j| {
             j["nodes"][0]["extensions"] = json!({ "EXT_mesh_gpu_instancing": {} })
         }),
-        ("a thickness", |j| {
+        ("with thickness", |j| {
             j["materials"] = json!([{ "extensions": { "KHR_materials_volume": {} } }]);
             j["meshes"][0]["primitives"][0]["material"] = 0.into();
         }),
