@@ -341,6 +341,8 @@ mod tests {
         ] {
             assert_eq!(error(&format!("{SQUARE}{commands}")), message);
         }
-        assert!(error(&"begin\n".repeat(2000)).starts_with("line 1001: more than 1000 nested scopes"));
+        assert!(
+            error(&"begin\n".repeat(2000)).starts_with("line 1001: more than 1000 nested scopes")
+        );
     }
 }
