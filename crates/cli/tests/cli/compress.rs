@@ -99,7 +99,7 @@ fn people_read_what_became_of_it() {
     run.sample("sphere", 2_000, "in.ply");
     let done = run.run(&["compress", "in.ply", "in.mlq"]);
     assert_eq!((done.code, &done.err[..]), (0, ""));
-    for word in ["a triangle", "less than f32", "blocks", "encode_seconds: "] {
+    for word in ["per triangle", "less than f32", "blocks", "encode_seconds: "] {
         assert!(done.text().contains(word), "{word}: {done:?}");
     }
     assert!(run.run(&["decompress", "in.mlq", "out.ply"]).text().contains("decode_seconds: "));

@@ -526,7 +526,7 @@ fn what_is_there_of_a_file_is_a_mesh() {
     assert!(faces < TORUS);
     write(&run, "longer.mlod", &[&whole[..], b"!"].concat());
     let lines = refused_by_all(&run, "longer.mlod");
-    assert!(lines[0].contains("the file goes on"), "{lines:?}");
+    assert!(lines[0].contains("unexpected data after the last chunk"), "{lines:?}");
 }
 
 #[test]

@@ -26,7 +26,7 @@ fn info_knows_a_cube() {
     });
     assert_eq!(info, expected);
     let text = run.run(&["info", "cube.obj"]);
-    assert!(text.text().contains("in no face") && text.err.is_empty(), "{text:?}");
+    assert!(text.text().contains("unused  ") && text.err.is_empty(), "{text:?}");
 }
 
 #[test]
