@@ -1,8 +1,8 @@
-//! Attributes: layers of values over wedges, with corner indices of their own.
+//! Vertex attributes: layers of values over wedges, with corner indices of their own.
 
 use crate::WedgeId;
 
-/// What a layer means, and so how it is interpolated and written.
+/// Meaning of a layer, which decides how it is interpolated and written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum LayerKind {
     /// Unit normal, 3 wide.
@@ -17,12 +17,12 @@ pub enum LayerKind {
     Joints(u8),
     /// Joint weights set by number, 4 wide.
     Weights(u8),
-    /// Any other named layer, of any width.
+    /// Any other layer, of any width.
     Other,
 }
 
 impl LayerKind {
-    /// The width that a layer of this kind must have, where it has only one.
+    /// Returns the width that a layer of this kind must have; `None` if the kind allows several.
     pub fn width(self) -> Option<usize> {
         match self {
             Self::Normal => Some(3),
@@ -33,49 +33,49 @@ impl LayerKind {
     }
 }
 
-/// One attribute over all wedges.
+/// One attribute: values for every wedge.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Layer {
-    /// What the values mean.
+    /// Meaning of the values.
     pub kind: LayerKind,
-    /// The file's name of it; for the known kinds the name is free.
+    /// Name in the file; a known kind may have any name.
     pub name: String,
-    /// Values per wedge.
+    /// Number of values per wedge.
     pub width: usize,
-    /// `width` values for each wedge, wedge after wedge.
+    /// Values of all wedges, `width` for each, wedge after wedge.
     pub values: Vec<f32>,
 }
 
 impl Layer {
-    /// The values of one wedge: a slice of `width`.
+    /// Returns the values of one wedge, a slice of `width`.
     #[inline]
     pub fn of(&self, wedge: WedgeId) -> &[f32] {
         &self.values[wedge.index() * self.width..][..self.width]
     }
 
-    /// The values of one wedge, to change.
+    /// Returns the values of one wedge, a mutable slice of `width`.
     #[inline]
     pub fn of_mut(&mut self, wedge: WedgeId) -> &mut [f32] {
         &mut self.values[wedge.index() * self.width..][..self.width]
     }
 }
 
-/// The attributes of a mesh: wedges at the corners of its faces, layers of values over the wedges.
+/// Attributes of a mesh: wedges at the corners of its faces, and layers of values over the wedges.
 ///
 /// Every wedge belongs to one vertex. An edge whose two faces use different wedges at an end is a
 /// seam.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Attributes {
-    /// The wedge of every corner, one triple per face of the mesh, in its order.
+    /// Wedges at the corners of each face, in the order of the mesh's faces.
     pub corners: Vec<[WedgeId; 3]>,
-    /// How many wedges there are; every layer has this many values times its width.
+    /// Number of wedges; a layer has this many values times its width.
     pub wedge_count: usize,
-    /// The layers.
+    /// Layers of values over the wedges.
     pub layers: Vec<Layer>,
 }
 
 impl Attributes {
-    /// The first layer of a kind.
+    /// Returns the first layer of a kind.
     pub fn layer(&self, kind: LayerKind) -> Option<&Layer> {
         self.layers.iter().find(|layer| layer.kind == kind)
     }

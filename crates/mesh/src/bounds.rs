@@ -2,12 +2,12 @@
 
 use glam::DVec3;
 
-/// An axis-aligned box. Empty (`min` above `max`) until a point is added.
+/// An axis-aligned box, empty (`min` above `max`) until a point is added.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bounds {
-    /// Least corner.
+    /// Corner with the smallest coordinates.
     pub min: [f64; 3],
-    /// Greatest corner.
+    /// Corner with the largest coordinates.
     pub max: [f64; 3],
 }
 
@@ -18,10 +18,10 @@ impl Default for Bounds {
 }
 
 impl Bounds {
-    /// The box of no points.
+    /// The empty box, which contains no point.
     pub const EMPTY: Self = Self { min: [f64::INFINITY; 3], max: [f64::NEG_INFINITY; 3] };
 
-    /// The least box around some points.
+    /// Returns the smallest box that contains all points.
     pub fn of<'a>(points: impl IntoIterator<Item = &'a [f64; 3]>) -> Self {
         let mut bounds = Self::EMPTY;
         for &point in points {
@@ -30,10 +30,10 @@ impl Bounds {
         bounds
     }
 
-    /// Grows to hold `point`.
+    /// Extends the box to contain `point`.
     #[inline]
     pub fn add(&mut self, point: [f64; 3]) {
-        // Comparisons, since `min` minds a NaN on either side, which takes five instructions for one.
+        // Comparisons: `f64::min` checks both sides for NaN, five instructions instead of one.
         for (axis, x) in point.into_iter().enumerate() {
             let (min, max) = (self.min[axis], self.max[axis]);
             self.min[axis] = if x < min { x } else { min };
@@ -41,7 +41,7 @@ impl Bounds {
         }
     }
 
-    /// Grows to hold `other`.
+    /// Extends the box to contain `other`.
     #[inline]
     pub fn merge(&mut self, other: &Self) {
         for axis in 0..3 {
@@ -50,13 +50,13 @@ impl Bounds {
         }
     }
 
-    /// Whether it holds no point.
+    /// Returns true if the box contains no point.
     #[inline]
     pub fn is_empty(&self) -> bool {
         self.min[0] > self.max[0]
     }
 
-    /// The middle; the origin when empty.
+    /// Returns the center, or the origin if the box is empty.
     pub fn center(&self) -> [f64; 3] {
         if self.is_empty() {
             return [0.0; 3];
@@ -64,7 +64,7 @@ impl Bounds {
         (DVec3::from(self.min) * 0.5 + DVec3::from(self.max) * 0.5).into()
     }
 
-    /// The length of the diagonal, in model units; 0 when empty.
+    /// Returns the length of the diagonal in model units, 0 if the box is empty.
     pub fn diagonal(&self) -> f64 {
         if self.is_empty() {
             return 0.0;
@@ -84,7 +84,7 @@ mod tests {
     }
 
     #[test]
-    fn nothing_has_no_extent() {
+    fn the_empty_box_has_no_extent() {
         assert_eq!((Bounds::EMPTY.diagonal(), Bounds::EMPTY.center()), (0.0, [0.0; 3]));
     }
 }

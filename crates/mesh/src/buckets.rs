@@ -1,15 +1,15 @@
-//! Things by a small whole number, in two arrays.
+//! Counting sort into buckets, stored in two flat arrays.
 
-/// The numbers `0..n` sorted into buckets; each bucket keeps their order.
+/// The numbers `0..n` grouped into buckets, in ascending order within each.
 #[derive(Clone, Debug)]
 pub struct Buckets {
-    /// Where each bucket starts in `members`; one more entry than buckets.
+    /// Start of each bucket in `members`, and the end of the last.
     starts: Vec<u32>,
     members: Vec<u32>,
 }
 
 impl Buckets {
-    /// Puts `i` into the bucket that the `i`-th of `of_members` names, of `count` buckets.
+    /// Sorts `0..n` into `count` buckets, where item `i` of `of_members` is the bucket of `i`.
     ///
     /// Cost: O(count + members).
     pub fn new(
@@ -25,7 +25,7 @@ impl Buckets {
             sum += *start;
             *start = sum;
         }
-        // Each start is counted down from its bucket's end, so the members go in backwards.
+        // Filled from the back: each start is counted down from the end of its bucket.
         let mut members = vec![0; of_members.len()];
         for (member, bucket) in of_members.enumerate().rev() {
             starts[bucket] -= 1;
@@ -34,7 +34,7 @@ impl Buckets {
         Self { starts, members }
     }
 
-    /// The members of a bucket, in order.
+    /// Returns the members of a bucket in ascending order.
     #[inline]
     pub fn of(&self, bucket: usize) -> &[u32] {
         &self.members[self.starts[bucket] as usize..self.starts[bucket + 1] as usize]

@@ -2,8 +2,10 @@
 
 use crate::VertexId;
 
-/// The component of every face, numbered from 0 in the order of their first faces, and how many
-/// there are. Faces that share a vertex are in one component.
+/// Returns the connected component of every face, and the number of components.
+///
+/// Faces that share a vertex are in one component. Components are numbered from 0 in the order of
+/// their first faces.
 pub fn face_components(faces: &[[VertexId; 3]], vertex_count: usize) -> (Vec<u32>, usize) {
     let mut parent: Vec<u32> = (0..vertex_count as u32).collect();
     for &[a, b, c] in faces {

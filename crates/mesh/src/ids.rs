@@ -10,13 +10,13 @@ macro_rules! id {
         pub struct $name(pub u32);
 
         impl $name {
-            #[doc = concat!("The id of ", $what, " at `index` of its array.\n\nPanics at 2^32 and above: no mesh here is that large.")]
+            #[doc = concat!("Creates the id of ", $what, ", from its index in its array.\n\n# Panics\nIf `index` is 2³² or more.")]
             #[inline]
             pub fn new(index: usize) -> Self {
                 Self(u32::try_from(index).expect("ids are 32 bits"))
             }
 
-            /// Where it stands in its array.
+            /// Returns the index into its array.
             #[inline]
             pub const fn index(self) -> usize {
                 self.0 as usize
@@ -37,9 +37,9 @@ macro_rules! id {
     };
 }
 
-id!(VertexId, "v", "a vertex: a point of the surface");
-id!(FaceId, "f", "a face: a triangle");
-id!(WedgeId, "w", "a wedge: a vertex with one set of attributes");
+id!(VertexId, "v", "a vertex");
+id!(FaceId, "f", "a face");
+id!(WedgeId, "w", "a wedge");
 
 #[cfg(test)]
 mod tests {

@@ -1,26 +1,26 @@
-//! What must stay when a mesh is coarsened.
+//! Constraints on simplification.
 
 use crate::VertexId;
 
-/// How freely a vertex may be contracted.
+/// Freedom of a vertex in simplification.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Lock {
-    /// As its cost says.
+    /// Contracted when its cost is the lowest.
     #[default]
     Free,
-    /// Late: its contractions cost more.
+    /// Contracted late, because its contractions cost more.
     Protected,
-    /// Never: it stays where it is. Others may be contracted into it. An edge is locked when both
-    /// its ends are.
+    /// Never moved or removed, though other vertices may be contracted into it. An edge is locked
+    /// if both its ends are.
     Locked,
 }
 
-/// What must stay when a mesh is coarsened: locks of vertices, and ties between them.
+/// Constraints on simplification: locks of vertices, and ties between them.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Locks {
-    /// One per vertex; empty when all are free.
+    /// Lock of each vertex; empty if all are free.
     pub of_vertex: Vec<Lock>,
-    /// Two or more vertices at one place each: those of a tie move together, to one place, or not
-    /// at all. No vertex is in two ties.
+    /// Groups of two or more vertices at the same position, which move together to one position
+    /// or not at all. No vertex is in two groups.
     pub ties: Vec<Vec<VertexId>>,
 }

@@ -1,112 +1,113 @@
-//! The mesh itself.
+//! The triangle mesh.
 
 use glam::DVec3;
 use thiserror::Error;
 
 use crate::{Attributes, Bounds, FaceId, Labels, VertexId};
 
-/// A triangle mesh: positions, faces, and what hangs on them.
+/// A triangle mesh: positions, faces, attributes and labels.
 ///
-/// Faces index positions; that alone is its topology. [`Mesh::validate`] says what must hold.
+/// Faces index positions, and these indices alone define the topology. [`Mesh::validate`] lists
+/// what must hold.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Mesh {
-    /// One point per vertex, in model units.
+    /// Position of each vertex, in model units.
     pub positions: Vec<[f64; 3]>,
-    /// Three vertices per face, counter-clockwise seen from outside.
+    /// Vertices of each face, counter-clockwise seen from outside.
     pub faces: Vec<[VertexId; 3]>,
-    /// Normals, uvs, colours and so on, over wedges.
+    /// Normals, texture coordinates, colours and other values over wedges.
     pub attributes: Option<Attributes>,
-    /// The material of each face.
+    /// Material of each face.
     pub materials: Option<Labels>,
-    /// The named object of each face.
+    /// Named object of each face.
     pub objects: Option<Labels>,
 }
 
-/// Why a mesh is not one.
+/// Reason why a mesh is invalid.
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum MeshError {
     /// A coordinate is NaN or infinite.
     #[error("vertex {vertex} has a coordinate that is not finite: {position:?}")]
     NotFinite {
-        /// The vertex.
+        /// Vertex with the coordinate.
         vertex: VertexId,
-        /// Its position.
+        /// Position of that vertex.
         position: [f64; 3],
     },
-    /// A face names a vertex that is not there.
+    /// A face refers to a vertex that does not exist.
     #[error("face {face} names vertex {vertex}, but there are only {count} vertices")]
     BadVertex {
-        /// The face.
+        /// Face that refers to it.
         face: FaceId,
-        /// The vertex it names.
+        /// Vertex that does not exist.
         vertex: VertexId,
-        /// How many vertices there are.
+        /// Number of vertices.
         count: usize,
     },
-    /// A corner names a wedge that is not there.
+    /// A corner refers to a wedge that does not exist.
     #[error("face {face} names wedge {wedge}, but there are only {count} wedges")]
     BadWedge {
-        /// The face.
+        /// Face that refers to it.
         face: FaceId,
-        /// The wedge it names.
+        /// Wedge that does not exist.
         wedge: u32,
-        /// How many wedges there are.
+        /// Number of wedges.
         count: usize,
     },
-    /// A wedge stands at two vertices.
-    #[error("face {face} has wedge w{wedge} at {vertex}, another face has it elsewhere")]
+    /// A wedge is used at two vertices.
+    #[error("face {face} uses wedge w{wedge} at vertex {vertex}, an earlier face at another")]
     SharedWedge {
-        /// The face.
+        /// Face that uses the wedge at a second vertex.
         face: FaceId,
-        /// The wedge.
+        /// Wedge used at two vertices.
         wedge: u32,
-        /// The vertex it is at there.
+        /// Second of the two vertices.
         vertex: VertexId,
     },
-    /// An array that goes with another has the wrong length.
-    #[error("{what} has {found} entries where {expected} are needed")]
+    /// An array has another length than the array it belongs to requires.
+    #[error("{what}: {found} entries, but {expected} are needed")]
     BadLength {
-        /// Which array.
+        /// Name of the array.
         what: String,
-        /// Its length.
+        /// Length of the array.
         found: usize,
-        /// The length it must have.
+        /// Length it must have.
         expected: usize,
     },
-    /// A face is labelled with a name that is not there.
-    #[error("face {face} has {what} {label}, but there are only {count}")]
+    /// The label of a face has no name.
+    #[error("face {face} has {what} {label}, but there are only {count} {what}s")]
     BadLabel {
-        /// The face.
+        /// Face with the label.
         face: FaceId,
-        /// Material or object.
+        /// Kind of label: `material` or `object`.
         what: &'static str,
-        /// The label.
+        /// Label without a name.
         label: u32,
-        /// How many names there are.
+        /// Number of names.
         count: usize,
     },
 }
 
 impl Mesh {
-    /// A mesh of bare geometry.
+    /// Creates a mesh without attributes or labels.
     pub fn new(positions: Vec<[f64; 3]>, faces: Vec<[VertexId; 3]>) -> Self {
         Self { positions, faces, ..Self::default() }
     }
 
-    /// The three corner positions of a face.
+    /// Returns the positions of the three corners of a face.
     #[inline]
     pub fn triangle(&self, [a, b, c]: [VertexId; 3]) -> [DVec3; 3] {
         let at = |v: VertexId| DVec3::from(self.positions[v.index()]);
         [at(a), at(b), at(c)]
     }
 
-    /// The box around the vertices that faces use; unused vertices do not count.
+    /// Returns the box around the vertices that faces use; unused vertices do not count.
     pub fn bounds(&self) -> Bounds {
         let used = self.used_vertices();
         Bounds::of(self.positions.iter().zip(used).filter(|(_, used)| *used).map(|(p, _)| p))
     }
 
-    /// One flag per vertex: does any face use it?
+    /// Returns a flag for each vertex: true if a face uses it.
     pub fn used_vertices(&self) -> Vec<bool> {
         let mut used = vec![false; self.positions.len()];
         for v in self.faces.iter().flatten() {
@@ -115,8 +116,12 @@ impl Mesh {
         used
     }
 
-    /// Checks that every index is in range, every array as long as its partner, every position
-    /// finite. What a reader gives back has passed this.
+    /// Checks that every position is finite, every index in range, every array of the right length,
+    /// and every wedge at one vertex only.
+    ///
+    /// Meshes from readers have passed this check.
+    /// # Errors
+    /// The first violation found.
     pub fn validate(&self) -> Result<(), MeshError> {
         for (i, &position) in self.positions.iter().enumerate() {
             if !position.iter().all(|x| x.is_finite()) {
@@ -132,8 +137,9 @@ impl Mesh {
         self.validate_attributes()
     }
 
-    /// The part of [`Mesh::validate`] that is about what hangs on faces: attributes, materials and
-    /// objects, whatever the faces are.
+    /// Checks attributes, materials and objects as [`Mesh::validate`] does, whatever the faces are.
+    /// # Errors
+    /// The first violation found.
     pub fn validate_attributes(&self) -> Result<(), MeshError> {
         self.validate_corners()?;
         self.validate_labels("material", self.materials.as_ref())?;
@@ -160,9 +166,10 @@ impl Mesh {
         Ok(())
     }
 
-    /// Every wedge belongs to one vertex.
+    /// Checks that every wedge is used at one vertex only.
     fn validate_wedges(&self, attributes: &Attributes) -> Result<(), MeshError> {
-        // As many as corners name: nothing else here is as long as the count says.
+        // Sized by the highest wedge in use: `wedge_count` may be far beyond the length of any
+        // array.
         let named = attributes.corners.iter().flatten().max().map_or(0, |w| w.index() + 1);
         let mut home = vec![None; named];
         for (i, (face, corners)) in self.faces.iter().zip(&attributes.corners).enumerate() {
@@ -196,7 +203,7 @@ impl Mesh {
         }
     }
 
-    /// Drops the vertices and wedges that no face uses; the rest keep their order.
+    /// Removes the vertices and wedges that no face uses; the others keep their order.
     pub fn compact(&mut self) {
         let (map, kept) = dense_map(self.positions.len(), self.faces.iter().flatten().map(|v| v.0));
         self.positions = kept.iter().map(|&v| self.positions[v as usize]).collect();
@@ -210,7 +217,7 @@ impl Mesh {
 }
 
 impl Attributes {
-    /// Drops the wedges that no corner uses; the rest keep their order.
+    /// Removes the wedges that no corner uses; the others keep their order.
     pub fn compact(&mut self) {
         let (map, kept) = dense_map(self.wedge_count, self.corners.iter().flatten().map(|w| w.0));
         for layer in &mut self.layers {
@@ -228,7 +235,8 @@ impl Attributes {
     }
 }
 
-/// Old index → new index for the used ones (others keep `u32::MAX`), and the used ones in order.
+/// Returns the new index of each old one (`u32::MAX` if it is unused), and the used indices in
+/// order.
 fn dense_map(count: usize, used: impl Iterator<Item = u32>) -> (Vec<u32>, Vec<u32>) {
     let mut map = vec![u32::MAX; count];
     for i in used {

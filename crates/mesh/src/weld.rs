@@ -1,4 +1,4 @@
-//! Joining vertices that stand at the same place, and wedges that hold the same values.
+//! Merging of vertices at the same position, and of wedges with the same values.
 
 use std::cmp::Ordering;
 use std::collections::HashMap;
@@ -7,13 +7,13 @@ use std::collections::hash_map::Entry;
 use crate::{Attributes, Buckets, Mesh, VertexId, WedgeId};
 use glam::DVec3;
 
-/// Joins the vertices of `mesh` that stand at the same place, and says how many went away.
+/// Merges the vertices of `mesh` that are at the same position, and returns the number removed.
 ///
 /// `epsilon` is in model units. At 0 (or below, or NaN) the coordinates must be equal, where -0
-/// equals 0. Above, vertices are taken in order, and each joins the first kept one within
-/// `epsilon`, so what is kept is farther apart than that and nothing moves by more. Vertices keep
-/// their order. Wedges keep their values, but those of one vertex with equal values become one
-/// ([`merge_equal_wedges`]). Faces that lose their area stay.
+/// equals 0. Above 0, vertices are taken in order, and each is merged into the first kept vertex
+/// within `epsilon`: kept vertices are farther apart than that, and no vertex moves farther.
+/// Vertices keep their order. Wedges keep their values, but wedges of one vertex with equal values
+/// are merged too ([`merge_equal_wedges`]). Faces that lose their area stay.
 ///
 /// Cost: O(n), n = vertices.
 pub fn weld(mesh: &mut Mesh, epsilon: f64) -> usize {
@@ -25,18 +25,18 @@ pub fn weld(mesh: &mut Mesh, epsilon: f64) -> usize {
     removed
 }
 
-/// For each point the first that is kept within `epsilon` of it, as [`weld`] keeps them: itself, or
-/// one before it.
+/// Returns for each point the point that [`weld`] merges it into: itself, or an earlier one within
+/// `epsilon`.
 ///
 /// Cost: O(n), n = points.
 pub fn first_near(points: &[[f64; 3]], epsilon: f64) -> Vec<u32> {
     if epsilon > 0.0 { first_within(points, epsilon) } else { first_equal(points) }
 }
 
-/// Makes one wedge of those that a vertex has with equal values, and drops unused ones.
+/// Merges the wedges of each vertex that have equal values, and removes unused wedges.
 ///
-/// So an edge stays a seam only where its faces really differ. The first of equal wedges is kept,
-/// and the rest keep their order. Without attributes, nothing happens.
+/// An edge then is a seam only if the values of its faces really differ. The first of equal wedges
+/// is kept, and wedges keep their order. A mesh without attributes does not change.
 ///
 /// Cost: O(n log k), n = wedges, k = wedges of one vertex.
 pub fn merge_equal_wedges(mesh: &mut Mesh) {
@@ -47,7 +47,7 @@ pub fn merge_equal_wedges(mesh: &mut Mesh) {
             vertex_of[wedge.index()] = Some(vertex);
         }
     }
-    // Unused wedges share a bucket behind those of the vertices.
+    // Unused wedges share one bucket, after those of the vertices.
     let unused = mesh.positions.len();
     let bucket = |vertex: &Option<VertexId>| vertex.map_or(unused, VertexId::index);
     let by_vertex = Buckets::new(unused + 1, vertex_of.iter().map(bucket));
@@ -58,7 +58,7 @@ pub fn merge_equal_wedges(mesh: &mut Mesh) {
         around.extend(by_vertex.of(vertex).iter().map(|&wedge| WedgeId(wedge)));
         around.sort_by(|&a, &b| compare_values(attributes, a, b));
         for same in around.chunk_by(|&a, &b| compare_values(attributes, a, b).is_eq()) {
-            // The sort is stable: the first of equal ones is the least.
+            // The sort is stable: the first of equal wedges has the lowest id.
             for wedge in same {
                 kept[wedge.index()] = same[0];
             }
@@ -70,9 +70,9 @@ pub fn merge_equal_wedges(mesh: &mut Mesh) {
     attributes.compact();
 }
 
-/// An order of wedges by all their values, in which only equal values are equal.
+/// Orders wedges by all their values, bit by bit but with -0 equal to 0.
 fn compare_values(attributes: &Attributes, a: WedgeId, b: WedgeId) -> Ordering {
-    // Adding 0 makes 0 of -0.
+    // Adding 0 turns -0 into 0.
     let bits = |x: &f32| (x + 0.0).to_bits();
     let values = |layer: usize, wedge| attributes.layers[layer].of(wedge).iter().map(bits);
     (0..attributes.layers.len())
@@ -81,7 +81,7 @@ fn compare_values(attributes: &Attributes, a: WedgeId, b: WedgeId) -> Ordering {
         .unwrap_or(Ordering::Equal)
 }
 
-/// For each vertex the first one with equal coordinates: itself, or one before it.
+/// Returns for each vertex the first one with equal coordinates: itself, or an earlier one.
 fn first_equal(positions: &[[f64; 3]]) -> Vec<u32> {
     // The standard hasher: positions chosen to collide must not make this quadratic.
     let mut first: HashMap<[u64; 3], u32> = HashMap::with_capacity(positions.len());
@@ -93,15 +93,15 @@ fn first_equal(positions: &[[f64; 3]]) -> Vec<u32> {
         .collect()
 }
 
-/// For each vertex the first kept one within `epsilon`: itself, or one before it.
+/// Returns for each vertex the first kept one within `epsilon`: itself, or an earlier one.
 ///
-/// Kept vertices are in a hashed grid of cells of twice `epsilon`, so that what is within
-/// `epsilon` of a point lies in 8 cells; no cell holds more than a few, as they stand apart.
+/// Kept vertices are in a hashed grid with cells twice `epsilon` wide, so that all of them within
+/// `epsilon` of a point lie in 8 cells. They are more than `epsilon` apart: no cell holds many.
 fn first_within(positions: &[[f64; 3]], epsilon: f64) -> Vec<u32> {
-    // Above that, squares overflow.
+    // Squares of larger distances would overflow.
     let epsilon = epsilon.min(1e150);
     let mut newest: HashMap<[i64; 3], u32> = HashMap::with_capacity(positions.len());
-    // The kept vertex before this one in its cell.
+    // The kept vertex added to the same cell before this one.
     let mut older: Vec<Option<u32>> = vec![None; positions.len()];
     let mut joined = Vec::with_capacity(positions.len());
     for v in 0..positions.len() as u32 {
@@ -113,7 +113,7 @@ fn first_within(positions: &[[f64; 3]], epsilon: f64) -> Vec<u32> {
         let mut found = None;
         for corner in 0..8 {
             let at = |axis: usize| if corner >> axis & 1 == 0 { low[axis] } else { high[axis] };
-            // Where both ends share a cell, once is enough.
+            // If both ends lie in one cell, visit it once.
             if (0..3).any(|axis| corner >> axis & 1 == 1 && low[axis] == high[axis]) {
                 continue;
             }
@@ -138,16 +138,17 @@ fn first_within(positions: &[[f64; 3]], epsilon: f64) -> Vec<u32> {
     joined
 }
 
-/// The cell of a coordinate. Where cells are finer than the coordinates each is its own.
+/// Returns the cell of a coordinate; where cells are finer than `f64`, every coordinate has its
+/// own.
 fn cell(x: f64, epsilon: f64) -> i64 {
     const WHOLE: f64 = (1_u64 << 52) as f64;
     let cell = (x / (2.0 * epsilon)).floor();
     if cell.abs() < WHOLE { cell as i64 } else { (x + 0.0).to_bits() as i64 }
 }
 
-/// Makes faces use the vertices that others joined, drops the others, and says how many.
+/// Replaces each vertex by the one it was merged into, and returns the number of vertices removed.
 ///
-/// `joined` names for each vertex itself, or one before it that names itself.
+/// `joined` holds for each vertex itself, or an earlier one that is kept.
 fn join(mesh: &mut Mesh, joined: Vec<u32>) -> usize {
     let mut renumbered = joined;
     let mut kept = 0;

@@ -1,18 +1,18 @@
 //! Regular grids of quads, each split into two faces.
 
 use glam::DVec3;
-
 use meshlod_mesh::{Mesh, VertexId};
 
-/// How many quads each way: `columns` first, `rows` second.
+/// Number of quads in each direction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Size {
+pub(crate) struct Size {
     pub columns: usize,
     pub rows: usize,
 }
 
 impl Size {
-    /// About `faces / 2` quads, `aspect` times as many columns as rows, at least 3 each way.
+    /// Returns the size with about `faces / 2` quads and `aspect` times as many columns as rows, at
+    /// least 3 of each.
     ///
     /// `2 * columns * rows` is within `rows` of `faces` from 18 faces on.
     pub fn for_faces(faces: usize, aspect: f64) -> Self {
@@ -23,10 +23,10 @@ impl Size {
     }
 }
 
-/// A grid closed both ways, as a torus is; `place(column, row)` gives the vertices.
+/// Builds a grid closed in both directions, like a torus, from the vertices `place(column, row)`.
 ///
-/// A face looks along (direction of columns) × (direction of rows).
-pub(super) fn wrapped(size: Size, place: impl Fn(usize, usize) -> DVec3) -> Mesh {
+/// Faces point along (direction of columns) × (direction of rows).
+pub(crate) fn wrapped(size: Size, place: impl Fn(usize, usize) -> DVec3) -> Mesh {
     let Size { columns, rows } = size;
     let vertex = |c: usize, r: usize| VertexId::new((r % rows) * columns + c % columns);
     let mut mesh = Mesh::default();
@@ -40,10 +40,10 @@ pub(super) fn wrapped(size: Size, place: impl Fn(usize, usize) -> DVec3) -> Mesh
     mesh
 }
 
-/// An open grid of `columns + 1` by `rows + 1` vertices; `place(column, row)` gives them.
+/// Builds an open grid from `columns + 1` by `rows + 1` vertices `place(column, row)`.
 ///
-/// A face looks along (direction of columns) × (direction of rows).
-pub(super) fn open(size: Size, place: impl Fn(usize, usize) -> DVec3) -> Mesh {
+/// Faces point along (direction of columns) × (direction of rows).
+pub(crate) fn open(size: Size, place: impl Fn(usize, usize) -> DVec3) -> Mesh {
     let Size { columns, rows } = size;
     let vertex = |c: usize, r: usize| VertexId::new(r * (columns + 1) + c);
     let mut mesh = Mesh::default();
@@ -61,7 +61,7 @@ pub(super) fn open(size: Size, place: impl Fn(usize, usize) -> DVec3) -> Mesh {
     mesh
 }
 
-/// The two faces of a quad, by its first diagonal.
-pub(super) fn split<T: Copy>([a, b, c, d]: [T; 4]) -> [[T; 3]; 2] {
+/// Splits a quad along its first diagonal.
+pub(crate) fn split<T: Copy>([a, b, c, d]: [T; 4]) -> [[T; 3]; 2] {
     [[a, b, c], [a, c, d]]
 }

@@ -3,28 +3,29 @@
 use std::f64::consts::TAU;
 
 use glam::DVec3;
-
-use super::tetrahedra::polygonize;
 use meshlod_mesh::{Mesh, face_components};
+
+use crate::tetrahedra::polygonize;
 
 /// Periods of the gyroid across the lattice.
 const PERIODS: f64 = 3.0;
-/// The level whose inside is kept: below 0, so that its tubes are thinner than its tunnels.
+/// Level whose inside is kept: below 0, so that tubes are thinner than tunnels.
 const LEVEL: f64 = -0.3;
-/// Radius of the ball: clear of the lattice's border.
+/// Radius of the ball, which stays clear of the border of the lattice.
 const RADIUS: f64 = 0.97;
-/// How far from the edge that the ball cuts its rounding begins, in units of length.
+/// Width of the rounding along the edges that the ball cuts, in units of length.
 const ROUNDING: f64 = 0.15;
 /// Faces are near `SQUARE * cells² - LINE * cells`: fitted at 12 to 98 cells a side.
 const SQUARE: f64 = 42.0;
 const LINE: f64 = 52.0;
 
-/// One of the gyroid's two labyrinths, cut off by a ball: one closed surface with dozens of tunnels.
+/// Builds one of the gyroid's two labyrinths inside a ball: a closed surface with dozens of
+/// tunnels.
 ///
 /// Faces: within 5 % of `faces` from 20,000 on; at least about 5,000, below which the lattice would
-/// be too coarse for the tunnels. The edges that the ball cuts are rounded a little. Which tunnels
-/// the ball grazes depends on the size, and with them the genus, between 28 and 43.
-/// Cost: O(faces^1.5).
+/// be too coarse for the tunnels. The edges that the ball cuts are slightly rounded. The ball
+/// grazes different tunnels at different sizes, so the genus varies, between 28 and 43. Cost:
+/// O(faces^1.5).
 /// # References
 /// [Sch70], by the usual trigonometric level set.
 pub fn gyroid(faces: usize) -> Mesh {
@@ -33,20 +34,20 @@ pub fn gyroid(faces: usize) -> Mesh {
     largest_piece(polygonize(cells, |p| both(labyrinth(p), p.length() - RADIUS)))
 }
 
-/// Negative inside the labyrinth; grows by about 1 per unit of length.
+/// Signed field of the labyrinth: negative inside, with a slope of about 1 per unit of length.
 fn labyrinth(p: DVec3) -> f64 {
     let scale = TAU * PERIODS / 2.0;
     let [(sx, cx), (sy, cy), (sz, cz)] = (p * scale).to_array().map(f64::sin_cos);
     (sx * cy + sy * cz + sz * cx - LEVEL) / (1.4 * scale)
 }
 
-/// Negative where both are, the edge between them rounded.
+/// Intersects two fields: negative where both are, with a rounded edge between them.
 fn both(a: f64, b: f64) -> f64 {
     let near = (1.0 - (a - b).abs() / ROUNDING).max(0.0);
     a.max(b) + 0.25 * ROUNDING * near * near
 }
 
-/// Leaves only the component with the most faces, the first of them where several have as many.
+/// Keeps only the component with the most faces, the first one in case of a tie.
 fn largest_piece(mut mesh: Mesh) -> Mesh {
     let (of_face, count) = face_components(&mesh.faces, mesh.positions.len());
     let mut sizes = vec![0usize; count];

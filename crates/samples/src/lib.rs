@@ -1,12 +1,12 @@
 //! Procedural triangle meshes of any size, the same on every run.
 //!
-//! Every sample takes the number of faces wanted and comes as near as its structure allows; each
-//! says how near. Model units are arbitrary: each fits about [-1, 1]³. Up is +y.
+//! Every sample takes the desired number of faces and comes as close to it as its structure allows;
+//! its documentation says how close. All fit roughly into [-1, 1]³, with +y up.
 //!
-//! Closed ones are watertight 2-manifolds without degenerate faces, their faces counter-clockwise
-//! seen from outside. Sines and cosines are the standard library's, so that coordinates may differ
-//! by an ulp from platform to platform; faces never do, except in the gyroid, where a lattice
-//! point within an ulp of the surface could take the other side.
+//! Closed samples are watertight 2-manifolds without degenerate faces, counter-clockwise seen from
+//! outside. Sines and cosines are those of the standard library, so coordinates may differ by an
+//! ulp between platforms. Faces do not differ, except in the gyroid, where a lattice point within
+//! an ulp of the surface could fall on the other side.
 //!
 //! ```
 //! let mesh = meshlod_samples::by_name("knot", Some(20_000)).expect("a knot is known");
@@ -34,15 +34,15 @@ pub use torus::{faceted_torus, torus};
 
 use meshlod_mesh::Mesh;
 
-/// The samples that [`by_name`] knows.
+/// Names of the samples, as [`by_name`] takes them.
 pub const NAMES: [&str; 7] =
     ["sphere", "torus", "faceted-torus", "knot", "gyroid", "terrain", "fish"];
 
-/// The most faces that [`by_name`] makes; it takes a greater wish as this.
+/// Largest number of faces that [`by_name`] makes; larger requests are clamped to it.
 pub const MAX_FACES: usize = 500_000_000;
 
-/// The sample of that name with about `faces` faces (its own default where `None`); `None` where
-/// the name is unknown.
+/// Builds the named sample with about `faces` faces, or a default number for `None`; returns `None`
+/// if the name is unknown.
 pub fn by_name(name: &str, faces: Option<usize>) -> Option<Mesh> {
     let (make, default_faces): (fn(usize) -> Mesh, usize) = match name {
         "sphere" => (sphere, 5_000),

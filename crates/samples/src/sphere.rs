@@ -1,12 +1,11 @@
 //! A geodesic sphere.
 
 use glam::DVec3;
-
 use meshlod_mesh::{Mesh, VertexId};
 
-/// A sphere of radius 1: an icosahedron with every face split into n², pushed onto the sphere.
+/// Builds a unit sphere: an icosahedron with every face split into n², projected onto the sphere.
 ///
-/// 20 n² faces, at least 20, with the n that comes nearest: off by about one part in n at most.
+/// Faces: 20 n² with the closest n, off by at most about one part in n; at least 20.
 pub fn sphere(faces: usize) -> Mesh {
     let n = (faces as f64 / 20.0).sqrt().round().max(1.0) as usize;
     let corners = icosahedron();
@@ -27,7 +26,7 @@ const ICOSAHEDRON_FACES: [[usize; 3]; 20] = [
     [4, 9, 5], [2, 4, 11], [6, 2, 10], [8, 6, 7], [9, 8, 1],
 ];
 
-/// Its corners: those of three golden rectangles, one in each coordinate plane, as unit vectors.
+/// Returns the corners of the icosahedron: three golden rectangles, one in each coordinate plane.
 fn icosahedron() -> [DVec3; 12] {
     let g = (1.0 + 5f64.sqrt()) / 2.0;
     let flat = [(-1.0, g), (1.0, g), (-1.0, -g), (1.0, -g)];
@@ -40,7 +39,7 @@ fn icosahedron() -> [DVec3; 12] {
     corners
 }
 
-/// The sphere as it grows: corners first, then edges and insides as faces come to them.
+/// The sphere while it is built: corners first, then edges and interiors, face by face.
 struct Growth {
     n: usize,
     corners: [DVec3; 12],
@@ -50,7 +49,7 @@ struct Growth {
 }
 
 impl Growth {
-    /// Adds the n² faces of an icosahedron's face, row after row from its first corner.
+    /// Adds the n² parts of one face of the icosahedron, row by row from its first corner.
     fn split(&mut self, [a, b, c]: [usize; 3]) {
         let mut above = vec![VertexId::new(a)];
         for row in 1..=self.n {
@@ -65,7 +64,7 @@ impl Growth {
         }
     }
 
-    /// The `row + 1` vertices of a row, from the side ab to the side ac.
+    /// Returns the `row + 1` vertices of a row, from side ab to side ac.
     fn row(&mut self, [a, b, c]: [usize; 3], row: usize) -> Vec<VertexId> {
         let mut ids = vec![self.on_edge(a, b, row)];
         for i in 1..row {
@@ -81,7 +80,7 @@ impl Growth {
         ids
     }
 
-    /// The vertex `step` of n steps from corner `a` to corner `b`.
+    /// Returns the vertex `step` of n steps from corner `a` to corner `b`.
     fn on_edge(&mut self, a: usize, b: usize, step: usize) -> VertexId {
         if step == 0 || step == self.n {
             return VertexId::new(if step == 0 { a } else { b });
@@ -94,7 +93,7 @@ impl Growth {
         VertexId::new(first + step - 1)
     }
 
-    /// Adds the vertices between two corners; gives the first.
+    /// Adds the vertices between two corners; returns the index of the first.
     fn add_edge(&mut self, a: usize, b: usize) -> usize {
         let first = self.mesh.positions.len();
         self.edges.push(([a, b], first));

@@ -1,14 +1,14 @@
 //! Mountains: an open height field of fractal noise.
 
 use glam::{DVec2, DVec3};
-
-use super::grid::{self, Size};
 use meshlod_mesh::Mesh;
 
-/// Mountains over the square [-1, 1]² of x and z, heights along +y; one surface with one boundary.
+use crate::grid::{self, Size};
+
+/// Builds mountains over the square [-1, 1]² of x and z, with heights along +y and one boundary.
 ///
-/// Faces: `2 n²` with the n that comes nearest; off by about one part in n at most, at least 2.
-/// The landscape is the same at any size: more faces only show finer rocks.
+/// Faces: `2 n²` with the closest n, off by at most about one part in n; at least 2. The landscape
+/// is the same at any size: more faces only resolve finer rocks.
 pub fn terrain(faces: usize) -> Mesh {
     let n = (faces as f64 / 2.0).sqrt().round().max(1.0) as usize;
     grid::open(Size { columns: n, rows: n }, |column, row| {
@@ -17,17 +17,17 @@ pub fn terrain(faces: usize) -> Mesh {
     })
 }
 
-/// Octaves of noise: the finest has 2,048 cells along a side, fine for meshes of millions of faces.
+/// Octaves of noise: the finest has 2,048 cells along a side, enough for millions of faces.
 const OCTAVES: u32 = 11;
 /// Cells of the coarsest octave along a side.
 const FREQUENCY: f64 = 1.2;
-/// Height of a slope over its run at which finer noise has faded to half.
+/// Slope at which finer noise has faded to half.
 const STEEPNESS: f64 = 0.7;
 
-/// Height above the plain, in [-0.3, 0.6] or so.
+/// Returns the height above the plain, roughly in [-0.3, 0.6].
 ///
 /// Every octave fades where the slope so far is steep, so that valleys are rough, flanks smooth and
-/// ridges sharp, as weather leaves them.
+/// ridges sharp, as if eroded.
 fn height(place: DVec2) -> f64 {
     let mut sum = 0.0;
     let mut slope = DVec2::ZERO;
@@ -43,13 +43,13 @@ fn height(place: DVec2) -> f64 {
     sum
 }
 
-/// Noise at a place, in [-1, 1], and its derivative.
+/// Noise at a point, in [-1, 1], and its derivative.
 struct Noise {
     value: f64,
     slope: DVec2,
 }
 
-/// Smooth noise: hashed values at whole places, blended by quintics between them.
+/// Computes smooth noise: hashed values at integer points, blended by quintics.
 fn noise(place: DVec2, seed: u32) -> Noise {
     let cell = place.floor();
     let [x, y] = (place - cell).to_array();
@@ -68,7 +68,7 @@ fn quintic(t: f64) -> (f64, f64) {
     (t * t * t * (t * (6.0 * t - 15.0) + 10.0), 30.0 * t * t * (t - 1.0) * (t - 1.0))
 }
 
-/// A number in [-1, 1] that depends on nothing but the three.
+/// Hashes the three arguments to a number in [-1, 1].
 fn hashed(x: i32, y: i32, seed: u32) -> f64 {
     let mut bits = (x as u32).wrapping_mul(0x9E37_79B1)
         ^ (y as u32).wrapping_mul(0x85EB_CA77)

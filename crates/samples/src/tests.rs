@@ -1,9 +1,9 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use glam::DVec3;
+use meshlod_mesh::{Connectivity, VertexId, face_components};
 
 use super::*;
-use meshlod_mesh::{Connectivity, VertexId, face_components};
 
 const CLOSED: [&str; 6] = ["sphere", "torus", "faceted-torus", "knot", "gyroid", "fish"];
 

@@ -1,20 +1,21 @@
 //! A closed level set as a mesh, by marching tetrahedra.
 //!
-//! Every cube of a lattice is cut into six tetrahedra around its diagonal, each face of which is cut
-//! alike on both sides. In a tetrahedron the surface is one triangle or one quad, by the signs at
-//! the corners alone; so neighbours agree, and the result is a closed 2-manifold for *any* signs,
-//! which marching cubes does not give.
+//! Every cube of a lattice is cut into six tetrahedra around its diagonal, and neighbouring cubes
+//! cut their common face alike. The signs at the corners of a tetrahedron alone decide its surface:
+//! one triangle or one quad. So neighbours agree, and the result is a closed 2-manifold for *any*
+//! signs, which marching cubes does not guarantee.
 
 use glam::DVec3;
-
-use super::grid::split;
 use meshlod_mesh::{Mesh, VertexId};
 
-/// The surface of where `field` is negative, inside the cube [-1, 1]³ with `cells` cells a side.
+use crate::grid::split;
+
+/// Builds the surface around the region where `field` is negative, in the cube [-1, 1]³ of `cells`
+/// cells per side.
 ///
-/// `field` must not be negative on the border of the cube, else the surface ends there.
-/// Cost: O(cells³) calls of `field`, O(cells²) memory beside the mesh.
-pub(super) fn polygonize(cells: usize, field: impl Fn(DVec3) -> f64) -> Mesh {
+/// `field` must not be negative on the border of the cube, or the surface ends there.
+/// Cost: O(cells³) calls of `field`, and O(cells²) memory besides the mesh.
+pub(crate) fn polygonize(cells: usize, field: impl Fn(DVec3) -> f64) -> Mesh {
     let mut march = March {
         cells,
         field: &field,
@@ -33,16 +34,16 @@ pub(super) fn polygonize(cells: usize, field: impl Fn(DVec3) -> f64) -> Mesh {
     march.mesh
 }
 
-/// A vertex never comes nearer to a lattice point than this part of the edge it lies on: no face
+/// Least distance of a vertex from a lattice point, as a fraction of its edge, so that no face
 /// degenerates where the surface passes through a lattice point.
 const LEAST_FRACTION: f64 = 0.04;
-/// Steps of bisection: 2⁻¹² of a cell is far below what the mesh resolves.
+/// Number of bisections: 2⁻¹² of a cell is far below what the mesh resolves.
 const BISECTIONS: usize = 12;
-/// No vertex yet on an edge.
+/// Marks an edge without a vertex.
 const NONE: u32 = u32::MAX;
 
-/// The lattice points of one height: values, and the vertices on the seven edges up from each, by
-/// the edge's direction as a bit per axis.
+/// One layer of lattice points: their values, and the vertices on the seven edges that start at
+/// each, by the direction of the edge as one bit per axis.
 #[derive(Default)]
 struct Layer {
     values: Vec<f64>,
@@ -57,17 +58,17 @@ impl Layer {
     }
 }
 
-/// Where a lattice point lies.
+/// Returns the position of a lattice point.
 fn place(cells: usize, point: [usize; 3]) -> DVec3 {
     DVec3::from(point.map(|i| 2.0 * i as f64 / cells as f64 - 1.0))
 }
 
-/// The three axes in every order: even ones first. A tetrahedron goes from a cube's least corner to
-/// its greatest, one axis after the other; even orders give positive volumes.
+/// Permutations of the axes, even ones first. A tetrahedron runs from the lowest corner of a cube
+/// to the highest, one axis after the other; even permutations give positive volumes.
 const ORDERS: [[usize; 3]; 6] = [[0, 1, 2], [1, 2, 0], [2, 0, 1], [0, 2, 1], [2, 1, 0], [1, 0, 2]];
 
-/// A lattice point that is a tetrahedron's corner: a bit per axis, from the cube's least corner.
-type Corner = usize;
+/// A corner of a cube: one bit per axis, counted from the lowest corner.
+type CubeCorner = usize;
 
 struct March<'a, F> {
     cells: usize,
@@ -92,8 +93,8 @@ impl<F: Fn(DVec3) -> f64> March<'_, F> {
         }
     }
 
-    /// Adds the surface within a tetrahedron of positive volume.
-    fn tetrahedron(&mut self, cube: [usize; 3], corners: [Corner; 4], inside: &[bool; 8]) {
+    /// Adds the surface inside a tetrahedron of positive volume.
+    fn tetrahedron(&mut self, cube: [usize; 3], corners: [CubeCorner; 4], inside: &[bool; 8]) {
         let ([a, b, c, d], count) = inside_first(corners, inside);
         let mut vertex = |from, to| self.vertex(cube, from, to);
         match count {
@@ -113,8 +114,8 @@ impl<F: Fn(DVec3) -> f64> March<'_, F> {
         }
     }
 
-    /// The vertex on an edge whose ends lie on different sides.
-    fn vertex(&mut self, cube: [usize; 3], from: Corner, to: Corner) -> VertexId {
+    /// Returns the vertex on an edge whose ends are on different sides of the surface.
+    fn vertex(&mut self, cube: [usize; 3], from: CubeCorner, to: CubeCorner) -> VertexId {
         let (low, high) = (from & to, from | to);
         let (slot, direction) = (self.slot(cube, low), low ^ high);
         let layer = if low & 4 == 0 { &self.below } else { &self.above };
@@ -129,8 +130,8 @@ impl<F: Fn(DVec3) -> f64> March<'_, F> {
         id
     }
 
-    /// Where the field changes its sign between two lattice points.
-    fn crossing(&self, cube: [usize; 3], low: Corner, high: Corner) -> DVec3 {
+    /// Finds the sign change of the field between two lattice points.
+    fn crossing(&self, cube: [usize; 3], low: CubeCorner, high: CubeCorner) -> DVec3 {
         let [start, end] = [low, high].map(|corner| place(self.cells, at(cube, corner)));
         let starts_inside = self.value(cube, low) < 0.0;
         let (mut near, mut far) = (0.0, 1.0);
@@ -145,28 +146,29 @@ impl<F: Fn(DVec3) -> f64> March<'_, F> {
         start.lerp(end, (0.5 * (near + far)).clamp(LEAST_FRACTION, 1.0 - LEAST_FRACTION))
     }
 
-    fn value(&self, cube: [usize; 3], corner: Corner) -> f64 {
+    fn value(&self, cube: [usize; 3], corner: CubeCorner) -> f64 {
         let layer = if corner & 4 == 0 { &self.below } else { &self.above };
         layer.values[self.slot(cube, corner)]
     }
 
-    /// Where a corner stands in its layer.
-    fn slot(&self, cube: [usize; 3], corner: Corner) -> usize {
+    /// Returns the index of a corner in its layer.
+    fn slot(&self, cube: [usize; 3], corner: CubeCorner) -> usize {
         let [x, y, _] = at(cube, corner);
         y * (self.cells + 1) + x
     }
 }
 
-/// The lattice point of a cube's corner.
-fn at([x, y, z]: [usize; 3], corner: Corner) -> [usize; 3] {
+/// Returns the lattice point at a corner of a cube.
+fn at([x, y, z]: [usize; 3], corner: CubeCorner) -> [usize; 3] {
     [x + (corner & 1), y + (corner >> 1 & 1), z + (corner >> 2)]
 }
 
-/// The corners with those inside first, still of positive volume, and how many are inside.
-fn inside_first(corners: [Corner; 4], inside: &[bool; 8]) -> ([Corner; 4], usize) {
+/// Sorts the corners inside the surface first, keeping the volume positive; returns their number
+/// too.
+fn inside_first(corners: [CubeCorner; 4], inside: &[bool; 8]) -> ([CubeCorner; 4], usize) {
     let mut sorted = corners;
     let mut swaps = 0;
-    // Four corners: three rounds of neighbour swaps put any order right.
+    // Bubble sort: three rounds sort four corners.
     for _ in 0..3 {
         for i in 0..3 {
             if !inside[sorted[i]] && inside[sorted[i + 1]] {
@@ -177,7 +179,7 @@ fn inside_first(corners: [Corner; 4], inside: &[bool; 8]) -> ([Corner; 4], usize
     }
     let count = sorted.iter().filter(|&&corner| inside[corner]).count();
     if swaps % 2 == 1 {
-        // One more swap among corners of one side mends the sign.
+        // One more swap, between corners on one side, restores the sign of the volume.
         if count >= 2 { sorted.swap(0, 1) } else { sorted.swap(2, 3) }
     }
     (sorted, count)

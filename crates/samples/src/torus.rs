@@ -1,20 +1,20 @@
-//! Tori: smooth, and of flat facets.
+//! Tori: smooth and faceted.
 
 use std::f64::consts::TAU;
 
 use glam::DVec3;
-
-use super::grid::{self, Size};
 use meshlod_mesh::Mesh;
 
-/// From the axis to the middle of the tube.
+use crate::grid::{self, Size};
+
+/// Distance from the axis to the center line of the tube.
 const RING: f64 = 0.7;
 /// Radius of the tube.
 const TUBE: f64 = 0.3;
 
-/// A smooth torus around the y axis, nearly square quads split into two.
+/// Builds a smooth torus around the y axis, of nearly square quads split into two faces each.
 ///
-/// Faces: within half a row of quads around the tube of `faces`, a few per cent from 1,000 on; at
+/// Faces: within half a row of quads around the tube of `faces`, a few percent from 1,000 on; at
 /// least 18.
 pub fn torus(faces: usize) -> Mesh {
     let size = Size::for_faces(faces, RING / TUBE);
@@ -23,14 +23,15 @@ pub fn torus(faces: usize) -> Mesh {
     })
 }
 
-/// Flat facets around the axis and around the tube.
+/// Number of flat facets around the axis and around the tube.
 const FACETS: Size = Size { columns: 12, rows: 6 };
 
-/// A torus of 12 × 6 flat trapezoids that meet in creases, each finely split.
+/// Builds a torus of 12 × 6 flat trapezoids that meet in creases, each finely split.
 ///
-/// What a simplifier should find here: all but 144 faces can go at no error, and no crease may
-/// blur. Faces: 144 times a product of two whole numbers that differ
-/// little; within one part in the square root of `faces / 144`, at least 144.
+/// A good simplifier removes all but 144 faces without error and keeps every crease sharp.
+///
+/// Faces: 144 times the product of two integers that differ little, within one part in the square
+/// root of `faces / 144`; at least 144.
 pub fn faceted_torus(faces: usize) -> Mesh {
     let parts = faces as f64 / (2 * FACETS.columns * FACETS.rows) as f64;
     let rows = parts.sqrt().round().max(1.0);
@@ -48,12 +49,12 @@ pub fn faceted_torus(faces: usize) -> Mesh {
     })
 }
 
-/// How far `i` is into its group of `of`, in [0, 1).
+/// Returns the relative position of `i` in its group of `of`, in [0, 1).
 fn fraction(i: usize, of: usize) -> f64 {
     (i % of) as f64 / of as f64
 }
 
-/// The point at `u` turns around the axis and `v` turns around the tube.
+/// Returns the point at `u` turns around the axis and `v` turns around the tube.
 fn point(u: f64, v: f64) -> DVec3 {
     let (sin_u, cos_u) = (TAU * u).sin_cos();
     let (sin_v, cos_v) = (TAU * v).sin_cos();

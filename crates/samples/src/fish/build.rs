@@ -1,19 +1,19 @@
-//! The grid, the patches that grow out of it, and their wedges, put together.
+//! Assembly of the grid, the patches that replace blocks of it, and their wedges.
 
 use std::collections::BTreeMap;
 
 use glam::DVec3;
-
-use super::patch::{Chart, Patch, Spot, Within, in_cell, rim, within};
 use meshlod_mesh::{Attributes, Layer, LayerKind, Mesh, VertexId, WedgeId};
 
-/// Cells 14 and 15 of the texture hold the seams of the mouth and the tail.
+use super::patch::{Chart, Patch, Spot, Within, in_cell, rim, within};
+
+/// Texture cells of the faces that close the mouth and the tail.
 const LACES: [usize; 2] = [14, 15];
 
 /// A corner of a face: its vertex, texture coordinate and colour.
 type Corner = (VertexId, [f64; 2], DVec3);
 
-/// The fish while it grows.
+/// The fish while it is built.
 pub(super) struct Builder {
     rings: usize,
     around: usize,
@@ -21,7 +21,7 @@ pub(super) struct Builder {
     corners: Vec<[WedgeId; 3]>,
     uvs: Vec<f32>,
     colors: Vec<f32>,
-    /// Wedges by vertex and the bits of their values: equal ones are one.
+    /// Wedges by vertex and the bits of their values; equal wedges are shared.
     wedges: BTreeMap<(VertexId, [u32; 5]), WedgeId>,
 }
 
@@ -38,7 +38,8 @@ impl Builder {
         }
     }
 
-    /// Adds the grid without the patches' blocks, and laces its ends; `spot(ring, turn)` gives it.
+    /// Adds the grid of points `spot(ring, turn)` without the blocks of patches, and closes both
+    /// ends.
     pub fn body(&mut self, patches: &[Patch], spot: impl Fn(usize, f64) -> Spot) {
         let around = self.around;
         let mut colors = Vec::new();
@@ -85,8 +86,8 @@ impl Builder {
         self.lace(self.rings, |k| [k, around - k], LACES[1], colors);
     }
 
-    /// Closes a ring by quads between pairs of its points, `around / 2` steps from a point that is
-    /// its own partner to another such; `pair(k)` gives them.
+    /// Closes a ring by quads between the pairs of points `pair(k)`, in `around / 2` steps from a
+    /// point paired with itself to another.
     fn lace(
         &mut self,
         ring: usize,
@@ -112,7 +113,7 @@ impl Builder {
         }
     }
 
-    /// Adds a patch's walls and cap.
+    /// Adds the walls and the cap of a patch.
     pub fn patch(&mut self, patch: &Patch) {
         let [a, b] = patch.block.size();
         let rim = rim(a, b);
@@ -134,7 +135,7 @@ impl Builder {
         self.cap(patch, &rim, &below);
     }
 
-    /// Adds the cap over a patch whose walls end in the vertices `top` along `rim`.
+    /// Adds the cap of a patch whose walls end in the vertices `top` along `rim`.
     fn cap(&mut self, patch: &Patch, rim: &[[usize; 2]], top: &[VertexId]) {
         let [a, b] = patch.block.size();
         let mut ids = BTreeMap::new();
@@ -153,7 +154,7 @@ impl Builder {
         }
     }
 
-    /// The body's vertex at a place of a patch's block.
+    /// Returns the vertex of the body at a point of the block of a patch.
     fn root(&self, patch: &Patch, i: usize, j: usize) -> VertexId {
         self.vertex(patch.block.rings[0] + i, patch.block.around[0] + j)
     }
@@ -173,7 +174,7 @@ impl Builder {
         VertexId::new(self.mesh.positions.len() - 1)
     }
 
-    /// Adds a quad, cut by its shorter diagonal.
+    /// Adds a quad, split along its shorter diagonal.
     fn quad(&mut self, [a, b, c, d]: [Corner; 4]) {
         let length = |a: Corner, b: Corner| {
             let [a, b] = [a.0, b.0].map(|v| DVec3::from(self.mesh.positions[v.index()]));
@@ -205,7 +206,7 @@ impl Builder {
         wedge
     }
 
-    /// The mesh, with normals, and without the vertices inside blocks.
+    /// Returns the mesh, with normals and without the vertices inside blocks.
     pub fn finish(self) -> Mesh {
         let normals = vertex_normals(&self.mesh);
         let mut of_wedge = vec![[0.0; 3]; self.wedges.len()];
@@ -229,7 +230,7 @@ impl Builder {
     }
 }
 
-/// Unit normals of vertices: those of their faces, weighted by the angle there [TW98].
+/// Computes unit normals of vertices: face normals weighted by the angle at the vertex [TW98].
 fn vertex_normals(mesh: &Mesh) -> Vec<[f32; 3]> {
     let mut sums = vec![DVec3::ZERO; mesh.positions.len()];
     for &face in &mesh.faces {

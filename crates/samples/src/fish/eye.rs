@@ -6,22 +6,23 @@ use super::body::{self, Side, Site};
 use super::fin::Root;
 use super::patch::{Block, Chart, Patch, Shape, Spot, Within};
 
-/// Where the left eye sits.
+/// Position of the left eye.
 pub(super) const ROOT: Root = Root::Along([0.085, 0.155], 0.335);
-/// Radius of the whole eye, in units of the model.
+/// Radius of the eye, in model units.
 const RADIUS: f64 = 0.052;
 
-/// The eye's rings: radius as a part of the whole, and height above the skin.
+/// Rings of the eye: radius as a fraction of the whole, and height above the skin.
 const RINGS: [[f64; 2]; 3] = [[1.0, 0.0], [0.86, 0.013], [0.56, 0.020]];
-/// Height of the pupil's middle.
+/// Height of the center of the pupil.
 const PUPIL: f64 = 0.023;
 
-/// An eye that grows out of `block`.
+/// Creates the eye that replaces `block`.
 pub(super) fn patch(side: Side, block: Block, site: Site) -> Patch {
     Patch { block, levels: RINGS.len() - 1, shape: Box::new(Eye { side, site }) }
 }
 
-/// Half the size of an eye around `middle`, along and in turns: as a circle on the skin.
+/// Returns half the size, along and in turns, of an eye around `middle` that is a circle on the
+/// skin.
 pub(super) fn open(middle: [f64; 2]) -> [f64; 2] {
     let step = 1e-3;
     let [along, turn] = middle;
@@ -31,8 +32,7 @@ pub(super) fn open(middle: [f64; 2]) -> [f64; 2] {
     [RADIUS / per_along, RADIUS / per_turn]
 }
 
-/// The place of a point of the square [-1, 1]² around the eye's block once the square is rounded to
-/// a disc.
+/// Maps a point of the square [-1, 1]² around the block of an eye to the disc that it is bent to.
 pub(super) fn on_disc(a: f64, b: f64, site: &Site) -> [f64; 2] {
     let square = a.abs().max(b.abs());
     let round = if square == 0.0 { 0.0 } else { square / a.hypot(b) };
@@ -45,12 +45,12 @@ struct Eye {
 }
 
 impl Eye {
-    /// The square's coordinates, in [-1, 1]; `v` runs downward on the right side.
+    /// Returns the coordinates in the square [-1, 1]²; `v` runs downward on the right side.
     fn square(&self, at: Within) -> [f64; 2] {
         [2.0 * at.u - 1.0, (2.0 * at.v - 1.0) * self.side.sign()]
     }
 
-    /// Part of the eye's radius at a place, and the height there.
+    /// Returns the relative radius of a point of the eye, and its height.
     fn ring(at: Within, square: f64) -> [f64; 2] {
         let level = at.t * (RINGS.len() - 1) as f64;
         let [radius, height] = RINGS[level.round() as usize];

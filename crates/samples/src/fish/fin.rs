@@ -6,22 +6,22 @@ use super::body::{self, FIN_RIM, FIN_ROOT, Side, Site, Sites, step};
 use super::patch::{Chart, Shape, Spot, Within};
 use super::radians;
 
-/// A fin that grows out of a block of the grid.
+/// A fin that replaces a block of the grid.
 pub(super) struct Fin {
     pub root: Root,
-    /// Rows of quads from root to rim at 32 quads around the body.
+    /// Number of rows of quads from root to rim, at 32 quads around the body.
     pub levels: usize,
-    /// The first of the two charts that its sides take.
+    /// Texture cell of the first side; the second side has the next one.
     cell: usize,
     kind: Kind,
 }
 
-/// Where a fin stands, given for the left.
+/// Root of a fin, on the left side.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Root {
-    /// Its chord runs along the body: from, to, and the place around.
+    /// Chord along the body: from, to, and the position around it.
     Along([f64; 2], f64),
-    /// Its chord runs around the body: the place along, from and to around.
+    /// Chord around the body: the position along it, from and to.
     Around(f64, [f64; 2]),
 }
 
@@ -31,19 +31,20 @@ const ANAL: Root = Root::Along([0.50, 0.71], 0.0);
 pub(super) const PECTORAL: Root = Root::Around(0.265, [0.15, 0.275]);
 pub(super) const PELVIC: Root = Root::Along([0.33, 0.42], 0.085);
 
-/// Half the size of the slits in the body from which they grow, along and in turns.
+/// Half the size of the slit of a pectoral fin in the body, along and in turns.
 pub(super) const PECTORAL_SLIT: [f64; 2] = [0.007, 0.03];
+/// Half the size of the slit of a pelvic fin.
 pub(super) const PELVIC_SLIT: [f64; 2] = [0.034, 0.008];
 
 enum Kind {
-    /// On the back or below, in the plane of symmetry: height, and how far it sweeps back.
+    /// In the plane of symmetry, on the back or the belly: its height and backward sweep.
     Median { height: f64, sweep: f64 },
-    /// One of a pair: its span, and its chord at the rim, as vectors.
+    /// One of a pair: its span and its chord at the rim, as vectors.
     Paired { side: Side, site: Site, span: DVec3, chord: DVec3 },
 }
 
 impl Fin {
-    /// All fins but the tail.
+    /// Returns all fins except the tail.
     pub fn all(sites: &Sites) -> Vec<Self> {
         let median = |root, levels, cell, height, sweep| {
             let kind = Kind::Median { height, sweep };
@@ -65,7 +66,7 @@ impl Fin {
         fins
     }
 
-    /// Left for the median ones.
+    /// Returns the side of the fin, left for median ones.
     pub fn side(&self) -> Side {
         match self.kind {
             Kind::Median { .. } => Side::Left,
@@ -73,7 +74,7 @@ impl Fin {
         }
     }
 
-    /// The place with `u` along the chord and `v` across the sheet, whichever way the block lies.
+    /// Converts a point of the block so that `u` runs along the chord and `v` across the sheet.
     fn local(&self, at: Within) -> Within {
         match (self.root, self.side()) {
             (Root::Along(..), _) => at,
@@ -83,11 +84,11 @@ impl Fin {
     }
 }
 
-/// Half the thickness at the root; it thins towards the rim.
+/// Half the thickness at the root; the fin gets thinner towards the rim.
 const THICKNESS: f64 = 0.011;
 
 impl Fin {
-    /// The middle of the sheet: `u` along its chord, `t` from root to rim.
+    /// Returns a point of the center surface: `u` along the chord, `t` from root to rim.
     fn sheet(&self, u: f64, t: f64) -> DVec3 {
         match self.kind {
             Kind::Median { height, sweep } => self.median(u, t, height, sweep),
@@ -122,7 +123,7 @@ impl Fin {
         root + t * height * rise * root.y.signum() * DVec3::Y + height * back * DVec3::X
     }
 
-    /// The unit vector across the sheet, the way the block's coordinate across it grows.
+    /// Returns the unit vector across the sheet, in the direction of growing `v`.
     fn across(&self) -> DVec3 {
         match (&self.kind, self.root) {
             (Kind::Median { .. }, Root::Along(_, 0.5)) => DVec3::NEG_Z,
@@ -141,7 +142,7 @@ impl Fin {
 impl Shape for Fin {
     fn place(&self, at: Within) -> DVec3 {
         let at = self.local(at);
-        // Thin at the rim and at both edges, nowhere nothing.
+        // Thin at the rim and at both edges, but never zero.
         let round = 0.25 + 0.75 * (1.0 - (2.0 * at.u - 1.0).powi(4));
         let half = THICKNESS * round * (1.0 - 0.75 * at.t);
         self.sheet(at.u, at.t) + self.across() * half * (2.0 * at.v - 1.0)
@@ -153,7 +154,7 @@ impl Shape for Fin {
         let rays = 0.06 * radians(6.0 * at.u).cos();
         let color = FIN_ROOT.lerp(FIN_RIM, step(0.1, 1.0, at.t)) * (1.0 + rays);
         let color = color.min(DVec3::ONE);
-        // The narrow faces on the rims fold out beside their side's chart.
+        // The narrow faces along the rims unfold next to the chart of their side.
         let fold = 0.06 * (1.0 - (2.0 * at.v - 1.0).abs());
         let u = match at.u {
             0.0 => -fold,

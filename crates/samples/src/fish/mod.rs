@@ -1,8 +1,8 @@
 //! A reef fish: one closed surface with texture coordinates, colours and normals.
 //!
-//! The body is a grid of rings from the mouth to the tail fin. Every other fin and both eyes grow
-//! out of a block of the grid's quads, which is taken out: walls rise on its rim, a cap closes them.
-//! So it stays one 2-manifold of genus 0 at any size.
+//! The body is a grid of rings from the mouth to the tail fin. Each of the other fins and both eyes
+//! replace a block of quads of the grid: walls rise from the rim of the block, and a cap closes
+//! them. So the fish is one 2-manifold of genus 0 at any size.
 //!
 //! ```text
 //!      cap  ┌──┬──┐          mouth ring 0 .. 2   lips at 2, then M rings of the body,
@@ -27,12 +27,11 @@ use patch::{Block, Patch};
 
 use meshlod_mesh::Mesh;
 
-/// A fish, from -1 to 1 along x, that swims towards -x; its left side looks to +z.
+/// Builds a fish from -1 to 1 along x that swims towards -x, with its left side towards +z.
 ///
-/// One wedge for each vertex of the body but two along the belly, and own wedges for each side of
-/// each fin, the eyes, the mouth and the rim of the tail, so that no chart of its uvs overlaps
-/// another. Layers: `Normal` (smooth everywhere), `Uv(0)`, `Color(0)` (3 wide, as shown, not
-/// linear).
+/// The body has one wedge per vertex, two along the belly. Each side of each fin, the eyes, the
+/// mouth and the rim of the tail have wedges of their own, so that no two texture charts overlap.
+/// Layers: `Normal` (smooth everywhere), `Uv(0)` and `Color(0)` (3 wide, sRGB).
 ///
 /// Faces: within 2 % of `faces` from 2,000 on; at least about 1,300.
 pub fn fish(faces: usize) -> Mesh {
@@ -50,25 +49,26 @@ pub fn fish(faces: usize) -> Mesh {
     builder.finish()
 }
 
-/// Rings inside the mouth, before the lips.
+/// Number of rings inside the mouth, before the lips.
 const MOUTH_RINGS: usize = 2;
 
-/// How finely the grid is cut.
+/// Resolution of the grid.
 struct Plan {
-    /// Quads from the innermost ring of the mouth to the tail's end.
+    /// Number of quads from the innermost ring of the mouth to the end of the tail.
     rings: usize,
-    /// Quads around: a multiple of 8.
+    /// Number of quads around the body, a multiple of 8.
     around: usize,
 }
 
 impl Plan {
-    /// The plan that comes nearest to `faces`, its quads on the flank about square.
+    /// Returns the plan with the number of faces closest to `faces` and nearly square quads on the
+    /// flank.
     fn for_faces(faces: usize) -> Self {
         // Measured: 3.9 faces per square of `around` where quads are square.
         let around = ((faces as f64 / 3.9).sqrt() / 8.0).round().max(2.0) as usize * 8;
         let plan = |rings| Self { rings, around };
         let least = 26;
-        // More rings are more faces, so the nearest lies where the count passes the wish.
+        // More rings mean more faces: bisect for the smallest plan that is large enough.
         let (mut low, mut high) = (least, least + 4 * around);
         while low < high {
             let middle = (low + high) / 2;
@@ -87,12 +87,14 @@ impl Plan {
         2 * self.rings * self.around + 2 * (self.around - 2) + walls
     }
 
-    /// The body's coordinate of a ring that far behind the lips: 0 at the lips, 1 at the tail's end.
+    /// Returns the coordinate along the body of a ring behind the lips: 0 at the lips, 1 at the
+    /// tail's end.
     fn along(&self, ring: usize) -> f64 {
         ring as f64 / (self.rings - MOUTH_RINGS) as f64
     }
 
-    /// The block at a root, of this side; `thickness` quads across where the root has no width.
+    /// Returns the block at a root on one side, `thickness` quads wide across the chord of the
+    /// root.
     fn block(&self, root: Root, side: Side, thickness: usize) -> Block {
         let ring = |along: f64| (along * (self.rings - MOUTH_RINGS) as f64).round() as usize;
         let place = |turn: f64| (turn * self.around as f64).round() as usize;
@@ -117,12 +119,13 @@ impl Plan {
         self.block(eye::ROOT, side, (self.around / 8).max(2))
     }
 
-    /// Quads across a fin's root: an even number, so that a line runs along its rim.
+    /// Returns the number of quads across the root of a fin: even, so that an edge runs along its
+    /// rim.
     fn thickness(&self) -> usize {
         2 * (self.around as f64 / 40.0).round().max(1.0) as usize
     }
 
-    /// Where the grid must bend, to run round the eyes and close up to the fins.
+    /// Returns the blocks that the grid bends for: around the eyes, and close to the fins.
     fn sites(&self) -> Sites {
         let site = |block: Block| {
             let [first, last] = block.rings.map(|ring| self.along(ring - MOUTH_RINGS));
@@ -139,7 +142,7 @@ impl Plan {
         }
     }
 
-    /// Eyes and fins, in the order of their texture charts.
+    /// Returns the eyes and fins, in the order of their texture charts.
     fn patches(&self) -> Vec<Patch> {
         let sites = self.sites();
         let mut patches: Vec<_> = [Side::Left, Side::Right]
@@ -155,7 +158,7 @@ impl Plan {
     }
 }
 
-/// An angle from turns.
+/// Converts turns to radians.
 fn radians(turn: f64) -> f64 {
     TAU * turn
 }

@@ -1,4 +1,4 @@
-//! Patches: blocks of the grid, and what grows out of them.
+//! Patches: blocks of the grid, and the shapes that replace them.
 
 use glam::DVec3;
 
@@ -9,8 +9,8 @@ pub(super) struct Spot {
     pub color: DVec3,
 }
 
-/// A block of the grid's quads: from the first ring to the last, and around likewise; places around
-/// may go past the count, up to three times, and start again.
+/// A block of quads of the grid, as ranges of rings and of positions around the body, which wrap
+/// and may reach up to three times around.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Block {
     pub rings: [usize; 2],
@@ -18,12 +18,12 @@ pub(super) struct Block {
 }
 
 impl Block {
-    /// Quads along and around.
+    /// Returns the number of quads along and around the body.
     pub fn size(&self) -> [usize; 2] {
         [self.rings[1] - self.rings[0], self.around[1] - self.around[0]]
     }
 
-    /// Whether it takes the quad there out of the grid.
+    /// Returns true if the quad is in the block.
     pub fn holds(&self, ring: usize, j: usize, around: usize) -> bool {
         let [first, last] = self.rings;
         (first..last).contains(&ring)
@@ -31,8 +31,8 @@ impl Block {
     }
 }
 
-/// A place of a patch: `u` along the body and `v` around it over the block, `t` from the body (0)
-/// to the cap (1); each in [0, 1].
+/// A point of a patch: `u` along the body, `v` around it, `t` from the body to the cap; each in
+/// [0, 1].
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Within {
     pub u: f64,
@@ -40,22 +40,22 @@ pub(super) struct Within {
     pub t: f64,
 }
 
-/// A place in one cell of the texture; the cell is [0, 1]².
+/// A point in one cell of the texture; the cell is [0, 1]².
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Chart {
     pub cell: usize,
     pub uv: [f64; 2],
 }
 
-/// What grows out of a block.
+/// Shape of a patch.
 pub(super) trait Shape {
-    /// Where a place lies; never asked for `t` = 0, which is the body's.
+    /// Returns the position of a point; not called for `t` = 0, which is on the body.
     fn place(&self, at: Within) -> DVec3;
-    /// How a corner at `at` looks in a quad whose middle is `quad`.
+    /// Returns texture chart and colour of the corner `at` of a quad with the center `quad`.
     fn look(&self, at: Within, quad: Within) -> (Chart, Spot);
 }
 
-/// A block, how many rows of quads its walls have, and its shape.
+/// A block of the grid, the number of rows of quads in its walls, and its shape.
 pub(super) struct Patch {
     pub block: Block,
     pub levels: usize,
@@ -63,14 +63,14 @@ pub(super) struct Patch {
 }
 
 impl Patch {
-    /// Faces of its walls: all that it adds, for the cap has as many as the block had.
+    /// Returns the number of faces added, those of the walls: the cap has as many as the block had.
     pub fn added_faces(&self) -> usize {
         let [a, b] = self.block.size();
         4 * (a + b) * self.levels
     }
 }
 
-/// The places on a block's rim, counter-clockwise from outside.
+/// Returns the points on the rim of a block, counter-clockwise seen from outside.
 pub(super) fn rim(a: usize, b: usize) -> Vec<[usize; 2]> {
     let mut rim: Vec<_> = (0..a).map(|i| [i, 0]).collect();
     rim.extend((0..b).map(|j| [a, j]));
@@ -79,12 +79,12 @@ pub(super) fn rim(a: usize, b: usize) -> Vec<[usize; 2]> {
     rim
 }
 
-/// The place of a block's point `i` along and `j` around.
+/// Returns the point of a patch at `i` quads along and `j` quads around.
 pub(super) fn within(i: usize, j: usize, [a, b]: [usize; 2], t: f64) -> Within {
     Within { u: i as f64 / a as f64, v: j as f64 / b as f64, t }
 }
 
-/// A place of a cell in the whole texture: two rows of eight below the body.
+/// Maps a point of a cell to the whole texture, where two rows of eight cells are below the body.
 pub(super) fn in_cell(Chart { cell, uv }: Chart) -> [f64; 2] {
     let [column, row] = [(cell % 8) as f64, (cell / 8) as f64];
     [(column + 0.03 + 0.94 * uv[0]) / 8.0, (row + 0.03 + 0.94 * uv[1]) * 0.18]
