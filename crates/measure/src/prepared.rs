@@ -1,7 +1,7 @@
 //! A mesh prepared for repeated distance measurements.
 
-use meshlod_mesh::{FaceId, Mesh, VertexId};
-use meshlod_spatial::{Bvh, BvhError, LocalFrame};
+use meshlod_mesh::{FaceId, Frame, Mesh, VertexId};
+use meshlod_spatial::{Bvh, BvhError};
 use thiserror::Error;
 
 use crate::size::triangle_area;
@@ -45,7 +45,7 @@ impl<'m> PreparedSurface<'m> {
     pub fn new(mesh: &'m Mesh) -> Result<Self, SurfaceError> {
         let bvh = Bvh::new(mesh)?;
         let bounds = mesh.bounds();
-        let frame = LocalFrame::of(&bounds);
+        let frame = Frame::of(&bounds);
         let mut total = 0.0;
         let area_of = |face: &FaceId| {
             let corners = mesh.faces[face.index()].map(|v| frame.local(mesh.positions[v.index()]));

@@ -1,15 +1,15 @@
 //! Surface area and enclosed volume.
 
 use glam::DVec3;
-use meshlod_mesh::Mesh;
-use meshlod_spatial::{CompensatedSum, LocalFrame};
+use meshlod_mesh::{Frame, Mesh};
+use meshlod_spatial::CompensatedSum;
 
 /// Computes the total area of the faces, in squared model units; 0 without faces.
 ///
 /// Indices must be in range and positions finite. Infinite only if the area exceeds `f64`.
 /// Cost: O(faces).
 pub fn area(mesh: &Mesh) -> f64 {
-    let frame = LocalFrame::of(&mesh.bounds());
+    let frame = Frame::of(&mesh.bounds());
     let sum: CompensatedSum =
         local_triangles(mesh, frame).map(|triangle| triangle_area(&triangle)).collect();
     frame.model_squared(sum.value())
@@ -23,7 +23,7 @@ pub fn area(mesh: &Mesh) -> f64 {
 /// Accurate to about 1e-15 of the volume of the box, wherever the mesh lies. Indices must be in
 /// range and positions finite. Cost: O(faces).
 pub fn volume(mesh: &Mesh) -> f64 {
-    let frame = LocalFrame::of(&mesh.bounds());
+    let frame = Frame::of(&mesh.bounds());
     // From edges, not corners: the product of two long corner vectors of a small face would lose
     // most of its digits.
     let sum: CompensatedSum =
@@ -31,7 +31,7 @@ pub fn volume(mesh: &Mesh) -> f64 {
     frame.model_squared(sum.value() / 6.0) / frame.scale()
 }
 
-fn local_triangles(mesh: &Mesh, frame: LocalFrame) -> impl Iterator<Item = [DVec3; 3]> {
+fn local_triangles(mesh: &Mesh, frame: Frame) -> impl Iterator<Item = [DVec3; 3]> {
     mesh.faces.iter().map(move |face| face.map(|v| frame.local(mesh.positions[v.index()])))
 }
 

@@ -1,9 +1,8 @@
 //! The mesh that an extraction returns.
 
 use glam::{DVec3, Vec3};
-use meshlod_mesh::{Mesh, VertexId};
+use meshlod_mesh::{Frame, Mesh, VertexId};
 
-use crate::frame::Frame;
 use crate::pack::ExactPositions;
 use crate::query::Region;
 use crate::query::{Focus, QueryError};
@@ -106,14 +105,14 @@ impl Level {
     fn exact_stored(&self, v: u32) -> DVec3 {
         let rounded = || Vec3::from(self.positions[v as usize]).as_dvec3();
         let exact = self.exact.get(self.nodes[v as usize]);
-        exact.map_or_else(rounded, |exact| self.frame.point(exact.into()))
+        exact.map_or_else(rounded, |exact| self.frame.local(exact))
     }
 
     /// Converts the level to a mesh in model units. Vertices of the input come back exactly if the
     /// model is [lossless](crate::Forest::lossless).
     pub fn mesh(&self) -> Mesh {
         let position = |(&node, &rounded): (&u32, &[f32; 3])| {
-            self.exact.get(node).unwrap_or_else(|| self.frame.model(rounded))
+            self.exact.get(node).unwrap_or_else(|| self.frame.model(Vec3::from(rounded)))
         };
         Mesh::new(
             self.nodes.iter().zip(&self.positions).map(position).collect(),
@@ -165,11 +164,11 @@ mod tests {
 
     #[test]
     fn an_edge_that_turns_back_is_a_fold() {
-        let frame = Frame::new(&Bounds { min: [0.0; 3], max: [1.0; 3] });
+        let frame = Frame::of_diagonal(&Bounds { min: [0.0; 3], max: [1.0; 3] });
         let level = |height: f64| {
             let corners = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.5, 1.0, 0.0], [0.5, 0.9, height]];
             let places: Vec<_> =
-                corners.iter().map(|&c| frame.store(DVec3::from(c)).to_array()).collect();
+                corners.iter().map(|&c| frame.local(c).as_vec3().to_array()).collect();
             Level::from_nodes(frame, 4, |node| places[node as usize], vec![[0, 1, 2], [0, 3, 1]])
         };
         assert_eq!((level(0.1).folds(), level(2.0).folds()), (1, 0));

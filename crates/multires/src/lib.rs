@@ -70,8 +70,8 @@ mod cut;
 mod explicit;
 mod file;
 mod forest;
-mod frame;
 mod implicit;
+mod length16;
 mod level;
 mod model;
 mod pack;
@@ -86,7 +86,6 @@ pub use cut::{Certificate, CertifyError, Cut, CutChange, Flaw, Located, Patch, U
 pub use explicit::{Explicit, ExplicitCut};
 pub use file::{Archive, Extract, FileError, ModelFile, Source, Storage};
 pub use forest::{BuildError, Forest, Recorder};
-pub use frame::Frame;
 pub use implicit::{Extractor, Implicit, SplitRule};
 pub use level::Level;
 pub use model::{Model, ModelBytes};

@@ -1,12 +1,11 @@
 //! The bounding volume hierarchy: four boxes a node, triangles in leaf order.
 
 use glam::Vec4;
-use meshlod_mesh::{FaceId, Mesh, MeshError};
+use meshlod_mesh::{FaceId, Frame, Mesh, MeshError};
 use rayon::prelude::*;
 use thiserror::Error;
 
 use crate::build::build;
-use crate::frame::LocalFrame;
 use crate::triangle::Triangle;
 
 /// A bounding volume hierarchy over the faces of a mesh. It copies the triangles it needs.
@@ -14,7 +13,7 @@ use crate::triangle::Triangle;
 /// Size: about 120 bytes a face. Building gives the same result for any number of threads.
 #[derive(Clone, Debug)]
 pub struct Bvh {
-    pub(crate) frame: LocalFrame,
+    pub(crate) frame: Frame,
     pub(crate) nodes: Vec<Node>,
     /// Triangles in leaf order, in local coordinates.
     pub(crate) triangles: Vec<Triangle>,
@@ -65,7 +64,7 @@ impl Bvh {
         if mesh.faces.is_empty() {
             return Err(BvhError::Empty);
         }
-        let frame = LocalFrame::of(&mesh.bounds());
+        let frame = Frame::of(&mesh.bounds());
         let triangle = |face: FaceId| -> Triangle {
             mesh.faces[face.index()].map(|v| frame.local(mesh.positions[v.index()]))
         };

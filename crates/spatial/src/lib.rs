@@ -23,7 +23,6 @@ mod build;
 mod bvh;
 mod closest;
 mod curve;
-mod frame;
 mod octree;
 mod sum;
 #[cfg(test)]
@@ -33,7 +32,6 @@ mod triangle;
 pub use bvh::{Bvh, BvhError};
 pub use closest::ClosestPoint;
 pub use curve::curve_order;
-pub use frame::LocalFrame;
 pub use octree::{Octree, OctreeLeaf};
 pub use sum::CompensatedSum;
 pub use triangle::{Triangle, closest_point};

@@ -1,14 +1,14 @@
 //! Coordinates in which boxes fit an `f32`.
 
 use glam::DVec3;
+use meshlod_mesh::Frame;
 
 use super::{BoxF32, Corners};
 
 /// Maps boxes to coordinates about the median of a sample of their centres, near size 1.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct FloatFrame {
-    origin: DVec3,
-    scale: f64,
+    frame: Frame,
 }
 
 /// Coordinates beyond this are clamped: sums of two of them still fit an `f32`.
@@ -20,7 +20,7 @@ impl FloatFrame {
 
     pub(super) fn of(count: usize, corners: &impl Fn(u32) -> Corners) -> Self {
         if count == 0 {
-            return Self { origin: DVec3::ZERO, scale: 1.0 };
+            return Self { frame: Frame::new(DVec3::ZERO, 0) };
         }
         let samples = Self::SAMPLES.min(count);
         let centers: Vec<DVec3> =
@@ -36,9 +36,8 @@ impl FloatFrame {
         if far == 0.0 {
             far = (0..count as u32).flat_map(corners).map(size).fold(0.0, f64::max);
         }
-        let exponent = if far > 0.0 { -far.log2().floor() } else { 0.0 };
-        // Scaling by a power of two is exact.
-        Self { origin, scale: 2f64.powi(exponent.clamp(-1000.0, 1000.0) as i32) }
+        let exponent = if far > 0.0 { far.log2().floor() } else { 0.0 };
+        Self { frame: Frame::new(origin, exponent.clamp(-1000.0, 1000.0) as i32) }
     }
 
     /// Converts a box to `f32`. Rounding is monotone, so boxes that overlap still do.
@@ -49,7 +48,7 @@ impl FloatFrame {
 
     #[inline]
     fn local(&self, p: DVec3) -> DVec3 {
-        ((p - self.origin) * self.scale).clamp(DVec3::splat(-FARTHEST), DVec3::splat(FARTHEST))
+        self.frame.local(p).clamp(DVec3::splat(-FARTHEST), DVec3::splat(FARTHEST))
     }
 }
 

@@ -17,7 +17,7 @@ mod tests;
 use glam::{DVec3, Vec3};
 
 use crate::forest::Forest;
-use crate::frame::Length16;
+use crate::length16::Length16;
 use enclosing_ball::EnclosingBall;
 use overlay::{Fragment, Overlay};
 use stars::Stars;

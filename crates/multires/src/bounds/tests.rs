@@ -48,7 +48,7 @@ fn excess(mesh: &Mesh, mt: &Implicit, level: &Level, factor: f64) -> f64 {
     };
     let error = |v: u32| {
         let update = mt.update_of(level.nodes[v as usize]);
-        update.map_or(0.0, |u| mt.frame().length_of_model(mt.error(u).get()) * factor)
+        update.map_or(0.0, |u| mt.frame().model_length(mt.error(u).get()) * factor)
     };
     let of_face: Vec<f64> =
         level.faces.iter().map(|face| face.map(error).into_iter().fold(0.0, f64::max)).collect();

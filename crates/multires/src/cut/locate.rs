@@ -76,7 +76,7 @@ impl Cut<'_> {
     /// Cost: proportional to the roots and the vertices as close as that triangle.
     pub fn locate(&self, point: [f64; 3]) -> Option<Located> {
         let mt = self.front.mt;
-        let at = mt.frame().point(point.into());
+        let at = mt.frame().local(point);
         if !at.is_finite() {
             return None;
         }
@@ -113,8 +113,8 @@ impl Cut<'_> {
         best.map(|Candidate { slot, point, squared }| Located {
             slot,
             nodes: self.front.triangles.nodes(slot),
-            closest: mt.frame().model_point(point),
-            distance: mt.frame().length_of_model(squared.sqrt()),
+            closest: mt.frame().model(point),
+            distance: mt.frame().model_length(squared.sqrt()),
         })
     }
 

@@ -7,7 +7,8 @@
 mod build;
 mod extract;
 
-use crate::frame::Frame;
+use meshlod_mesh::Frame;
+
 use crate::pack::ExactPositions;
 use crate::query::{Ball, Criterion};
 

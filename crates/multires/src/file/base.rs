@@ -4,7 +4,7 @@ use std::io;
 
 use thiserror::Error;
 
-use super::decoder_state::DecoderState;
+use super::decoder_state::{DecoderState, is_finite};
 use super::exact_coding::{self, Deltas};
 use super::header::{Header, UNKNOWN_FLAGS};
 use super::streams::{Packer, Unpacker};
@@ -52,7 +52,9 @@ pub(super) fn read(header: &Header, bytes: &[u8]) -> Result<DecoderState, BaseEr
     let mut input = Unpacker::new(bytes)?;
     let [x, y, z, a, b, c] = unpack(&mut input, roots, faces)?;
     let position = |i| {
-        lattice.checked_position([x[i], y[i], z[i]]).filter(|&position| about.frame.holds(position))
+        lattice
+            .checked_position([x[i], y[i], z[i]])
+            .filter(|&position| is_finite(&about.frame, position))
     };
     let positions: Option<Vec<_>> = (0..roots).map(position).collect();
     let positions = positions.ok_or(BaseError::Invalid("a vertex is out of range"))?;

@@ -8,7 +8,7 @@ use glam::Vec3;
 use super::lattice::Lattice;
 use super::normal_predictor::NormalPredictor;
 use super::streams::Unpacker;
-use crate::frame::Length16;
+use crate::length16::Length16;
 use crate::pack::radius8;
 
 /// Positions of the two children of a node relative to their parent, in cells of the lattice.

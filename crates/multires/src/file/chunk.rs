@@ -16,8 +16,8 @@ use super::exact_coding::{self, Deltas};
 use super::header::UNKNOWN_FLAGS;
 use super::streams::{Packer, Unpacker};
 use crate::forest::{NONE, NonFanSplit};
-use crate::frame::Length16;
 use crate::implicit::{DetachedUpdate, has_three_corners};
+use crate::length16::Length16;
 use crate::pack::{error9, error16, radius8, radius16};
 
 /// Reason why a chunk cannot be decoded.

@@ -1,12 +1,12 @@
 //! State shared by decoder and encoder: the nodes decoded so far and the updates that create them.
 
 use glam::Vec3;
+use meshlod_mesh::Frame;
 
 use super::exact_coding::Deltas;
 use super::lattice::Lattice;
 use super::normal_predictor::NormalPredictor;
 use crate::forest::NONE;
-use crate::frame::Frame;
 use crate::implicit::{BaseMesh, DetachedUpdate};
 use crate::pack::ExactPositions;
 
@@ -89,7 +89,7 @@ impl DecoderState {
         let position = deltas.position(at, self.predicted_position(node));
         let position = position.ok_or("one of its exact positions is not finite")?;
         let is_near =
-            self.lattice.rounds_to(self.stored_position(node), self.frame.point(position.into()));
+            self.lattice.rounds_to(self.stored_position(node), self.frame.local(position));
         is_near
             .then(|| self.exact.push(node, position))
             .ok_or("one of its exact positions is outside the lattice cell of its vertex")
@@ -102,12 +102,12 @@ impl DecoderState {
 
     /// Returns true if stored positions are finite in model units.
     pub(super) fn are_finite(&self, positions: &[Vec3]) -> bool {
-        positions.iter().all(|&position| self.frame.holds(position))
+        positions.iter().all(|&position| is_finite(&self.frame, position))
     }
 
     /// Returns the lattice position of a node in model units, the prediction of its exact position.
     pub(super) fn predicted_position(&self, node: u32) -> [f64; 3] {
-        self.frame.model(self.stored_position(node).into())
+        self.frame.model(self.stored_position(node))
     }
 
     /// Returns the surface-normal predictor at a node, from the children of the updates above it.
@@ -123,4 +123,9 @@ impl DecoderState {
     pub(super) fn root_count(&self) -> u32 {
         self.base.positions.len() as u32
     }
+}
+
+/// Returns true if a stored position has finite coordinates in model units.
+pub(super) fn is_finite(frame: &Frame, position: Vec3) -> bool {
+    frame.model(position).iter().all(|x| x.is_finite())
 }

@@ -1,11 +1,11 @@
 //! Header and index of a file of contractions.
 
 use glam::{DVec3, Vec3};
+use meshlod_mesh::Frame;
 
 use super::lattice::Lattice;
 use super::{FileError, MAGIC, VERSION};
 use crate::bounds::ErrorKind;
-use crate::frame::Frame;
 use crate::implicit::ModelInfo;
 use crate::query::Area;
 
@@ -83,7 +83,7 @@ impl Header {
         out.extend((self.chunks.len() as u32).to_le_bytes());
         let origin = self.about.frame.model([0.0; 3]);
         out.extend(origin.iter().flat_map(|x| x.to_le_bytes()));
-        out.extend(self.about.frame.length_of_model(1.0).to_le_bytes());
+        out.extend(self.about.frame.model_length(1.0).to_le_bytes());
         out.extend([self.diagonal, self.rounding].iter().flat_map(|x| x.to_le_bytes()));
         for ChunkEntry { stored, updates, faces, area } in &self.chunks {
             let words = [stored.bytes, stored.checksum, *updates, *faces];
@@ -118,7 +118,7 @@ impl Header {
             return Err(FileError::Checksum("the header".into()));
         }
         let origin = [0, 1, 2].map(|k| f64_at(bytes, 40 + 8 * k));
-        let frame = Frame::from_parts(origin, f64_at(bytes, 64));
+        let frame = Frame::from_unit(origin, f64_at(bytes, 64));
         let lattice = Lattice::from_bytes([bytes[BODY_AT], bytes[BODY_AT + 1]]);
         let bad = |why| FileError::Header(why);
         let this = Self {

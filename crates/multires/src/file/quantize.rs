@@ -7,8 +7,8 @@ use super::normal_predictor::NormalPredictor;
 use super::unflatten::unflatten;
 use crate::bounds::ErrorKind;
 use crate::forest::{BuildError, Forest, MAX_LEVELS, NONE};
-use crate::frame::Length16;
 use crate::implicit::{Implicit, Order};
+use crate::length16::Length16;
 use crate::pack::{ERRORS, error9, error16, radius8, radius16};
 use crate::query::SLACK;
 

@@ -71,7 +71,7 @@ pub(super) fn write(
         lattice,
         lossless: forest.exact.is_lossless(),
         diagonal,
-        rounding: forest.frame.length_of_model(max_displacement),
+        rounding: forest.frame.model_length(max_displacement),
         roots: mt.root_count() as u32,
         base_faces: mt.base_faces() as u32,
         base: Section::of(&sections.base),
@@ -125,7 +125,7 @@ fn encode_sections(
 pub(super) fn lattice(forest: &Forest, storage: &Storage, diagonal: f64) -> Lattice {
     let part = if forest.exact.is_lossless() { LOSSLESS_ROUNDING } else { ROUNDING };
     let most = storage.rounding.unwrap_or(part * diagonal);
-    Lattice::within(forest.frame.length(most))
+    Lattice::within(forest.frame.local_length(most))
 }
 
 /// Returns the bounding-box diagonal of the finest mesh, in model units.
@@ -133,5 +133,5 @@ pub(super) fn diagonal(forest: &Forest) -> f64 {
     let leaves = forest.faces.iter().flatten().map(|&leaf| forest.positions[leaf as usize]);
     let places: Vec<_> = leaves.map(|p| p.map(f64::from)).collect();
     let bounds = Bounds::of(&places);
-    if bounds.is_empty() { 0.0 } else { forest.frame.length_of_model(bounds.diagonal()) }
+    if bounds.is_empty() { 0.0 } else { forest.frame.model_length(bounds.diagonal()) }
 }

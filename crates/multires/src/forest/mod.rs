@@ -7,12 +7,12 @@ mod smooth_errors;
 use std::collections::BTreeMap;
 
 use glam::{DVec3, Vec3};
-use meshlod_mesh::Mesh;
+use meshlod_mesh::{Frame, Mesh};
 use meshlod_simplify::{Options, Simplifier, SimplifyError, Target};
 use thiserror::Error;
 
 use crate::bounds::ErrorKind;
-use crate::frame::{Frame, Length16};
+use crate::length16::Length16;
 use crate::pack::ExactPositions;
 use crate::pack::MIN_ERROR;
 use crate::query::{Ball, PackedBall};
@@ -195,7 +195,7 @@ impl Forest {
     /// Returns the position of a node in stored units, exact if it is known.
     pub(crate) fn exact_stored(&self, node: u32) -> DVec3 {
         let rounded = || Vec3::from(self.positions[node as usize]).as_dvec3();
-        self.exact.get(node).map_or_else(rounded, |exact| self.frame.point(exact.into()))
+        self.exact.get(node).map_or_else(rounded, |exact| self.frame.local(exact))
     }
 
     /// Returns the update that contracts each node, or [`NONE`] for roots.

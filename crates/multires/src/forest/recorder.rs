@@ -6,12 +6,12 @@
 
 use std::collections::BTreeMap;
 
-use meshlod_mesh::{Bounds, FaceId, VertexId};
+use meshlod_mesh::{Bounds, FaceId, Frame, VertexId};
 use meshlod_simplify::{Neighbourhood, Observe, Placed, Simplifier, Spoke, Surface};
 
 use crate::bounds::ErrorKind;
 use crate::forest::{BuildError, Forest, MAX_LEVELS, NONE, NonFanSplit, Update};
-use crate::frame::{Frame, Length16};
+use crate::length16::Length16;
 use crate::pack::ExactPositions;
 use crate::query::SLACK;
 
@@ -55,8 +55,8 @@ impl Recorder {
         alive.iter().enumerate().for_each(|(i, face)| forest_face[face.index()] = i as u32);
         let faces: Vec<_> = alive.iter().map(|&face| surface.face(face).map(|v| v.0)).collect();
         let corners = faces.iter().flatten().map(|&v| surface.position(VertexId(v)).to_array());
-        let frame = Frame::new(&Bounds::of(&corners.collect::<Vec<_>>()));
-        let at = |v: usize| frame.store(surface.position(VertexId::new(v))).to_array();
+        let frame = Frame::of_diagonal(&Bounds::of(&corners.collect::<Vec<_>>()));
+        let at = |v: usize| frame.local(surface.position(VertexId::new(v))).as_vec3().to_array();
         let standing = |node: usize| LiveNode {
             node: node as u32,
             level: 0,
@@ -136,8 +136,8 @@ impl Recorder {
         };
         let radius = self.radius(hood, placed, &both);
         let Self { forest, live, .. } = self;
-        let position = forest.frame.store(placed.position);
-        let own = Length16::up(forest.frame.length(placed.error_estimate));
+        let position = forest.frame.local(placed.position).as_vec3();
+        let own = Length16::up(forest.frame.local_length(placed.error_estimate));
         let error = own.max(both[0].error).max(both[1].error);
         forest.rings.extend(ring().map(|v| live[v.index()].node));
         if let Some(end) = open_end {
@@ -181,7 +181,7 @@ impl Recorder {
     /// Returns the radius of the update's ball: about the new node, around its ring and the balls
     /// of both children, and around exact positions where they are known.
     fn radius(&self, hood: &Neighbourhood, placed: &Placed, both: &[LiveNode; 2]) -> Length16 {
-        let center = self.forest.frame.store(placed.position).as_dvec3();
+        let center = self.forest.frame.local(placed.position).as_vec3().as_dvec3();
         let reach = |node: u32| center.distance_squared(self.forest.exact_stored(node));
         let ring = hood.ring().iter().map(|r| reach(self.live[r.id.index()].node));
         let ring = ring.fold(0.0, f64::max).sqrt();

@@ -2,7 +2,7 @@
 
 use crate::bounds::ErrorKind;
 use crate::forest::Forest;
-use crate::frame::Length16;
+use crate::length16::Length16;
 
 impl Forest {
     /// Smooths the error estimates: each becomes the geometric mean of itself and of the trend at

@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use glam::Vec3;
+use meshlod_mesh::Frame;
 
 use super::positions::StoredPositions;
 use super::splits::{Local, Split, Splits};
@@ -10,7 +11,7 @@ use super::{FLAG, Implicit, LAST_WING, NO_WING, OPEN, Order};
 use crate::bounds::ErrorKind;
 use crate::forest::MAX_RANKED;
 use crate::forest::{MAX_LEVELS, NONE, NonFanSplit};
-use crate::frame::{Frame, Length16};
+use crate::length16::Length16;
 use crate::pack::ExactPositions;
 
 /// An update taken out of its model. Nodes are numbered roots first, then the children of each

@@ -8,7 +8,7 @@
 
 use super::splits::{Local, Split};
 use super::{FLAG, OPEN};
-use crate::frame::Length16;
+use crate::length16::Length16;
 use crate::pack::{ERRORS, error9, error16, radius8, radius16};
 
 #[derive(Clone, Debug)]

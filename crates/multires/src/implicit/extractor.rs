@@ -1,7 +1,7 @@
 //! Static extraction by the face list.
 
 use super::Subtree;
-use crate::frame::Length16;
+use crate::length16::Length16;
 use crate::level::Level;
 use crate::model::Model;
 use crate::query::Criterion;
@@ -49,7 +49,7 @@ impl<'m> Extractor<'m> {
     pub fn uniform(&mut self, tolerance: f64) -> Result<&Level, QueryError> {
         Query::uniform(tolerance).validate()?;
         let mt = self.model.implicit();
-        let most = mt.frame().length(tolerance);
+        let most = mt.frame().local_length(tolerance);
         // The greatest code within the tolerance: codes are in the order of lengths.
         let within = Length16::up(most);
         let within = if within.get() > most { within.0.checked_sub(1) } else { Some(within.0) };

@@ -29,10 +29,11 @@ mod splits;
 use std::collections::BTreeMap;
 
 use glam::{DVec3, Vec3};
+use meshlod_mesh::Frame;
 
 use crate::bounds::ErrorKind;
 use crate::forest::{MAX_LEVELS, NonFanSplit};
-use crate::frame::{Frame, Length16};
+use crate::length16::Length16;
 use crate::level::Level;
 use crate::pack::ExactPositions;
 use crate::query::{Ball, PackedBall};
@@ -119,7 +120,9 @@ impl Implicit {
     /// # Panics
     /// `node` is not below [`node_count`](Self::node_count).
     pub fn position(&self, node: u32) -> [f64; 3] {
-        self.exact.get(node).unwrap_or_else(|| self.frame.model(self.stored_position(node)))
+        self.exact
+            .get(node)
+            .unwrap_or_else(|| self.frame.model(Vec3::from(self.stored_position(node))))
     }
 
     /// Returns the two nodes that a node is split into, which have higher numbers, or `None` for a
@@ -180,7 +183,7 @@ impl Implicit {
     /// Returns the position of a node in stored units, exact if it is known.
     pub(crate) fn exact_stored(&self, node: u32) -> DVec3 {
         let rounded = || Vec3::from(self.stored_position(node)).as_dvec3();
-        self.exact.get(node).map_or_else(rounded, |exact| self.frame.point(exact.into()))
+        self.exact.get(node).map_or_else(rounded, |exact| self.frame.local(exact))
     }
 
     /// Builds a level from faces over the model's nodes.

@@ -1,7 +1,7 @@
 //! Updates seen from their coarse sides, in 16 bytes each or 10.
 
 use super::compact::CompactSplits;
-use crate::frame::Length16;
+use crate::length16::Length16;
 
 /// All updates of a model.
 #[derive(Clone, Debug)]

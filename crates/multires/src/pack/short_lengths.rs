@@ -1,6 +1,6 @@
 //! Radii in eight bits and errors in nine, as files and compact models store them.
 
-use crate::frame::Length16;
+use crate::length16::Length16;
 
 /// Low bits dropped from a radius, leaving 3 bits of mantissa. With 2 bits files shrink by .1 byte
 /// per vertex, but cameras get 1 % more faces and small focuses up to 9 %.

@@ -1,8 +1,9 @@
 //! The refinement criterion: whether a query requires an update.
 
 use glam::{DVec3, Vec3};
+use meshlod_mesh::Frame;
 
-use crate::frame::{Frame, Length16};
+use crate::length16::Length16;
 use crate::query::Region;
 use crate::query::{Query, QueryError, Tolerance};
 
@@ -100,9 +101,9 @@ impl<'f> Criterion<'f> {
         query.validate()?;
         let region = Region::new(&query.focus, frame);
         let tolerance = match query.tolerance {
-            Tolerance::Uniform(most) => StoredTolerance::Uniform(frame.length(most)),
+            Tolerance::Uniform(most) => StoredTolerance::Uniform(frame.local_length(most)),
             Tolerance::Pixels { camera, pixels } => StoredTolerance::Perspective(Viewpoint {
-                at: frame.point(camera.eye.into()),
+                at: frame.local(camera.eye),
                 slope: pixels * camera.pixel(),
             }),
             Tolerance::Field(field) => StoredTolerance::Field { field, part: 1.0, frame: *frame },
@@ -141,10 +142,10 @@ impl<'f> Criterion<'f> {
             StoredTolerance::Uniform(most) => *most,
             StoredTolerance::Perspective(viewpoint) => viewpoint.least(ball),
             StoredTolerance::Field { field, part, frame } => {
-                let center = frame.model(ball.center.as_vec3().into());
-                let most = field(center, frame.length_of_model(ball.radius));
+                let center = frame.model(ball.center.as_vec3());
+                let most = field(center, frame.model_length(ball.radius));
                 // An invalid tolerance counts as 0: `max` prefers the number over NaN.
-                frame.length(part * most.max(0.0))
+                frame.local_length(part * most.max(0.0))
             }
         }
     }
@@ -256,7 +257,7 @@ mod tests {
     use crate::query::{Focus, ViewCamera};
 
     fn criterion(focus: Focus, tolerance: Tolerance<'_>) -> Criterion<'_> {
-        let frame = Frame::new(&Bounds { min: [-1.0; 3], max: [1.0; 3] });
+        let frame = Frame::of_diagonal(&Bounds { min: [-1.0; 3], max: [1.0; 3] });
         Criterion::new(&Query { focus, tolerance }, &frame).unwrap()
     }
 
@@ -337,7 +338,7 @@ mod tests {
 
     #[test]
     fn invalid_queries_are_refused() {
-        let frame = Frame::new(&Bounds { min: [-1.0; 3], max: [1.0; 3] });
+        let frame = Frame::of_diagonal(&Bounds { min: [-1.0; 3], max: [1.0; 3] });
         let ask = |focus, tolerance| Criterion::new(&Query { focus, tolerance }, &frame).err();
         let fine = || Tolerance::Uniform(0.1);
         assert!(ask(Focus::Everything, Tolerance::Uniform(f64::NAN)).is_some());

@@ -1,9 +1,9 @@
 //! The focus of a query in stored units, with its intersection tests.
 
 use glam::DVec3;
+use meshlod_mesh::Frame;
 use meshlod_spatial::closest_point;
 
-use crate::frame::Frame;
 use crate::query::{Focus, ViewCamera};
 
 /// A focus prepared for intersection tests.
@@ -23,13 +23,15 @@ const ROUNDING: f64 = 1.0 / (1u64 << 22) as f64;
 impl Region {
     /// Converts a valid focus to stored units.
     pub(crate) fn new(focus: &Focus, frame: &Frame) -> Self {
-        let point = |p: [f64; 3]| frame.point(p.into());
+        let point = |p: [f64; 3]| frame.local(p);
         match focus {
             Focus::Everything => Self::Everything,
             Focus::Point(at) => Self::Sphere(point(*at), 0.0),
             Focus::Segment(ends) => Self::Segment(ends.map(point)),
             Focus::Box(corners) => Self::Box(corners.map(point)),
-            Focus::Sphere { center, radius } => Self::Sphere(point(*center), frame.length(*radius)),
+            Focus::Sphere { center, radius } => {
+                Self::Sphere(point(*center), frame.local_length(*radius))
+            }
             Focus::Frustum(camera) => Self::Planes(planes(camera, point(camera.eye))),
         }
     }

@@ -4,8 +4,10 @@
 use super::field::{GridPlacement, HeightField};
 use super::grid::{Extent, Grid, GridPoint, RightTriangle};
 use super::{GridVertex, Rtin};
-use crate::frame::{Frame, Length16};
+use crate::length16::Length16;
 use crate::query::SLACK;
+use glam::DVec3;
+use meshlod_mesh::Frame;
 
 impl Rtin {
     /// Builds the hierarchy, measuring each triangle of each level against all vertices under it.
@@ -22,24 +24,24 @@ impl Rtin {
     }
 
     fn without_errors(field: &HeightField) -> Self {
-        let frame = Frame::new(&field.bounds());
+        let frame = Frame::of_diagonal(&field.bounds());
         let GridPlacement { step, up, .. } = field.placement;
         let [across, along, up] = GridPlacement::axes(up);
-        let first = frame.point(field.placement.point(GridPoint::default(), 0.0));
+        let first = frame.local(field.placement.point(GridPoint::default(), 0.0));
         let placement = GridPlacement {
             origin: [first[across], first[along]],
-            step: step.map(|length| frame.length(length)),
+            step: step.map(|length| frame.local_length(length)),
             ..field.placement
         };
         let stored = |&height: &f64| {
             let height =
-                frame.point(field.placement.point(GridPoint::default(), height))[up] as f32;
+                frame.local(field.placement.point(GridPoint::default(), height))[up] as f32;
             GridVertex { height, ..GridVertex::default() }
         };
         let mut vertices: Vec<_> = field.heights.iter().map(stored).collect();
         let lost = field.heights.iter().zip(&vertices).map(|(height, vertex)| {
-            let mut point = [0.0; 3];
-            point[up] = vertex.height;
+            let mut point = DVec3::ZERO;
+            point[up] = vertex.height.into();
             (frame.model(point)[up] - height).abs()
         });
         let mut fit = field.fit;

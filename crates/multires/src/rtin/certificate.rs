@@ -4,7 +4,7 @@ use thiserror::Error;
 
 use super::Rtin;
 use super::grid::GridPoint;
-use crate::frame::Length16;
+use crate::length16::Length16;
 use crate::query::Ball;
 
 /// Reasons why a hierarchy cannot be certified.

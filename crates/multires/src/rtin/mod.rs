@@ -16,7 +16,9 @@ mod recognize;
 #[cfg(test)]
 mod tests;
 
-use crate::frame::{Frame, Length16};
+use meshlod_mesh::Frame;
+
+use crate::length16::Length16;
 use crate::level::Level;
 use crate::query::Ball;
 use crate::query::{Query, QueryError};

@@ -36,7 +36,7 @@ fn the_closest_triangle_is_found() {
             // On the surface, close to it, and far away.
             let away = [0.0, 0.1, 10.0][step % 3] * mesh.bounds().diagonal();
             let point = dice.place(mesh).map(|x| x + away * (dice.roll() - 0.5));
-            let at = mt.frame().point(point.into());
+            let at = mt.frame().local(point);
             let distance = |nodes: [u32; 3]| closest_point(at, &nodes.map(corner)).distance(at);
             let least = cut.triangles().map(|(_, nodes)| distance(nodes)).fold(f64::MAX, f64::min);
             let found = cut.locate(point).unwrap();

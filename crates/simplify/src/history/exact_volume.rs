@@ -7,8 +7,8 @@
 //! steps of one unit in the last place, which come in as many sizes as there are coordinates.
 
 use glam::DVec3;
-use meshlod_mesh::{Connectivity, Lock, Locks, Mesh};
-use meshlod_spatial::{CompensatedSum, LocalFrame};
+use meshlod_mesh::{Connectivity, Frame, Lock, Locks, Mesh};
+use meshlod_spatial::CompensatedSum;
 use rustc_hash::FxHashMap;
 use thiserror::Error;
 
@@ -104,7 +104,7 @@ pub fn conserve_volume(
     locks: &Locks,
 ) -> Result<VolumeResidual, ExactVolumeError> {
     let bounds = mesh.bounds();
-    let frame = LocalFrame::of(&bounds);
+    let frame = Frame::of(&bounds);
     let wanted = VolumeSums::of(mesh, &mesh.positions, &frame);
     if !wanted.is_closed() {
         return Err(ExactVolumeError::OpenMesh);
@@ -132,7 +132,7 @@ struct VolumeSums {
 }
 
 impl VolumeSums {
-    fn of(mesh: &Mesh, positions: &[[f64; 3]], frame: &LocalFrame) -> Self {
+    fn of(mesh: &Mesh, positions: &[[f64; 3]], frame: &Frame) -> Self {
         let mut sum = CompensatedSum::default();
         let (mut terms, mut normal, mut lengths) = (0.0, DVec3::ZERO, 0.0);
         for face in &mesh.faces {
@@ -169,7 +169,7 @@ fn free(level: &Mesh, mesh: &Mesh, locks: &Locks) -> Vec<bool> {
 /// Volume correction in progress.
 struct VolumeCorrection<'l> {
     level: &'l mut Mesh,
-    frame: LocalFrame,
+    frame: Frame,
     /// Six times the target volume.
     wanted: f64,
     free: Vec<bool>,
@@ -322,7 +322,7 @@ mod tests {
 
     /// Returns the residual as a reader of the file computes it, relative to a corner of the box.
     fn as_read(level: &Mesh, mesh: &Mesh) -> f64 {
-        let frame = LocalFrame::of(&meshlod_mesh::Bounds {
+        let frame = Frame::of(&meshlod_mesh::Bounds {
             min: mesh.bounds().min,
             max: mesh.bounds().min.map(|x| x + 1.0),
         });
@@ -358,7 +358,7 @@ mod tests {
         for x in level.positions.iter().flatten() {
             assert_eq!((*x as f32).to_string().parse(), Ok(*x));
         }
-        let frame = LocalFrame::of(&mesh.bounds());
+        let frame = Frame::of(&mesh.bounds());
         let volume = |of: &Mesh| VolumeSums::of(of, &of.positions, &frame).volume;
         assert!((volume(&level) / volume(&mesh) - 1.0).abs() < 1e-13);
     }

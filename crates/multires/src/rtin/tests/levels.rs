@@ -4,7 +4,7 @@ use meshlod_fixtures as fixtures;
 use meshlod_mesh::{Connectivity, Mesh};
 
 use super::{SIZES, Sample};
-use crate::frame::Length16;
+use crate::length16::Length16;
 use crate::rtin::{HeightField, Rtin, RtinExtractor};
 use crate::tests::walks::{Dice, query};
 use crate::{Level, Query, ViewCamera};

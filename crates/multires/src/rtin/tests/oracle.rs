@@ -4,7 +4,7 @@ use std::cmp::Reverse;
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::{SIZES, Sample};
-use crate::frame::Length16;
+use crate::length16::Length16;
 use crate::query::{Ball, Criterion};
 use crate::rtin::grid::{Extent, GridPoint};
 use crate::rtin::{Rtin, RtinExtractor};
