@@ -1,4 +1,4 @@
-//! Locks of what a scene shows, for the meshes that it is made of.
+//! Locks for the meshes of a scene, where they meet as the scene shows them.
 
 use std::collections::BTreeMap;
 
@@ -7,14 +7,16 @@ use meshlod_check::{LockOptions, LockReason, VertexLocks, locks};
 use meshlod_io::{MeshInstance, Scene, SceneMesh};
 use meshlod_mesh::{Labels, Lock, Mesh, VertexId, first_near};
 
-/// What must stay of each mesh of a scene, by where its meshes meet in the world.
+/// Computes locks for each mesh of a scene, from the places where its meshes meet in world space.
 ///
-/// A mesh that several nodes show is as little free as in any of its places. Vertices of two nodes
-/// at one place are locked, since meshes move apart; so are those that rounding to 32 bits may have
-/// parted, within 2^-22 of their largest coordinate. Those of one mesh at one place are tied.
+/// A mesh shown by several nodes gets the strictest lock of all its instances. Vertices of two
+/// nodes at the same position are locked, since meshes are simplified independently. So are
+/// vertices that rounding to 32 bits may have separated: those within 2^-22 of their largest
+/// coordinate. Vertices of one mesh at the same position are tied.
 ///
-/// Meshes that no node shows are free, and so is what the world squeezes to a plane, a line or a
-/// point, as a scale of 0 does: there all of it meets itself. So is what it takes beyond all numbers.
+/// Meshes that no node shows stay free. So do instances that a transform flattens to a plane, a
+/// line or a point, which would meet themselves everywhere, and instances with infinite
+/// coordinates.
 ///
 /// Cost: that of [`locks`] for [`Scene::flatten`].
 pub fn scene_locks(scene: &Scene, options: &LockOptions) -> Vec<VertexLocks> {
@@ -29,7 +31,7 @@ pub fn scene_locks(scene: &Scene, options: &LockOptions) -> Vec<VertexLocks> {
     for tie in &flat.locks.ties {
         let members: Vec<Home> = tie.iter().map(|v| world.homes[v.index()]).collect();
         let own = |home: &Home| scene.meshes[home.mesh].mesh.positions[home.vertex.index()];
-        // Rounding in the world may bring together what is apart in its mesh.
+        // Rounding in world space may move vertices together that are apart in their mesh.
         let is_one = |home: &Home| home.node == members[0].node && own(home) == own(&members[0]);
         if members.iter().all(is_one) {
             let tie = members.iter().map(|home| home.vertex).collect();
@@ -49,14 +51,14 @@ fn lock(of_meshes: &mut [VertexLocks], home: &Home) {
     of_meshes[home.mesh].hold(home.vertex, Lock::Locked, Some(LockReason::SharedPosition));
 }
 
-/// All that a scene shows, without what is squeezed.
+/// All instances of a scene in world space, without flattened ones.
 struct World {
     mesh: Mesh,
-    /// Where each vertex comes from.
+    /// Origin of each vertex.
     homes: Vec<Home>,
 }
 
-/// A vertex of a mesh where a node shows it.
+/// A vertex of a mesh, in the instance of a node.
 #[derive(Clone, Copy)]
 struct Home {
     node: usize,
@@ -64,8 +66,8 @@ struct Home {
     vertex: VertexId,
 }
 
-/// Two coordinates that were the same are one unit in the last place of 32 bits apart at most, half
-/// for the rounding of each: 2^-23 of the largest. In space that is up to 1.74 times as far.
+/// Largest distance that rounding to 32 bits separates equal points by, relative to their largest
+/// coordinate: one unit in the last place per axis, 2^-23, and 1.74 times that in space.
 const ROUNDING: f64 = 1.0 / (1 << 22) as f64;
 
 impl World {
@@ -74,7 +76,7 @@ impl World {
         let mut objects = Labels::default();
         for MeshInstance { node, mesh, transform } in scene.instances() {
             let transform = DMat4::from_cols_array_2d(&transform);
-            if squeezes(&DMat3::from_mat4(transform)) {
+            if flattens(&DMat3::from_mat4(transform)) {
                 continue;
             }
             let own = &scene.meshes[mesh].mesh;
@@ -105,7 +107,7 @@ impl World {
         this
     }
 
-    /// The vertices that are as good as at one place with one of another node.
+    /// Returns the vertices at the same position as one of another node, up to rounding.
     fn near_across_nodes(&self) -> Vec<Home> {
         let mut across = Vec::new();
         let ends = [self.homes.first(), self.homes.last()].map(|home| home.map(|home| home.node));
@@ -128,8 +130,9 @@ impl World {
         across
     }
 
-    /// The vertices that faces use, by the exponent of the largest coordinate: rounding is as fine as
-    /// that. What is only just in one octave is in the one below too.
+    /// Groups the vertices that faces use by the exponent of their largest coordinate, which
+    /// determines their rounding. Vertices close to the lower end of an octave are in the octave
+    /// below too.
     fn by_octave(&self) -> BTreeMap<u64, Vec<usize>> {
         let used = self.mesh.used_vertices();
         let mut octaves: BTreeMap<u64, Vec<usize>> = BTreeMap::new();
@@ -145,8 +148,9 @@ impl World {
     }
 }
 
-/// Whether a transform takes volumes to nothing, but for rounding; how long its axes are does not matter.
-fn squeezes(linear: &DMat3) -> bool {
+/// Returns true if a transform flattens volumes, up to rounding and whatever the lengths of its
+/// axes.
+fn flattens(linear: &DMat3) -> bool {
     let axes = [linear.x_axis, linear.y_axis, linear.z_axis].map(|axis| axis.normalize_or_zero());
     let [x, y, z] = axes;
     let volume = x.dot(y.cross(z)).abs();

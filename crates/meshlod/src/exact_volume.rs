@@ -1,4 +1,4 @@
-//! The levels of a scene with the volumes of its meshes.
+//! Exact conservation of the volumes of the meshes of a scene.
 
 use meshlod_io::{Format, Precision, Scene};
 use meshlod_mesh::{Locks, Mesh};
@@ -6,7 +6,7 @@ use meshlod_simplify::{Digits, ExactVolumeError, SimplifyError, VolumeResidual, 
 
 use crate::locks;
 
-/// The numbers that positions come to be when a file of this kind is read again.
+/// Returns the precision that positions have when a file of this format is read again.
 pub fn digits_of(format: Format, precision: Precision) -> Digits {
     match (format, precision) {
         (Format::Stl | Format::Gltf | Format::Glb, _) | (Format::Ply, Precision::F32) => {
@@ -17,13 +17,15 @@ pub fn digits_of(format: Format, precision: Precision) -> Digits {
     }
 }
 
-/// Gives every level the volume of its mesh, as [`conserve_volume`] does, each in its own space: what
-/// a node's transform rounds when it is written out comes on top.
+/// Moves vertices of every level so that it has the volume of its mesh, as
+/// [`conserve_volume`] does.
 ///
-/// `levels` are of the meshes of `scene`, in their order, and `locks` those of all its meshes. A level
-/// that cannot have its mesh's volume is left as it is.
+/// `levels` belong to the meshes of `scene`, in that order, and `locks` count vertices through all
+/// its meshes, see [`join_locks`](crate::join_locks). A level that cannot get the volume of its
+/// mesh is left as it is. Volumes are exact in the space of each mesh, before the transforms of
+/// nodes.
 /// # Errors
-/// Locks that are not for this scene.
+/// Locks that do not match the scene.
 pub fn conserve_volumes(
     scene: &Scene,
     levels: &mut [Mesh],

@@ -1,12 +1,12 @@
-//! Scenes fused as a whole.
+//! Fusing of all meshes of a scene.
 
 use meshlod_check::{Fused, fuse};
 use meshlod_io::Scene;
 use meshlod_mesh::FaceId;
 
-/// Fuses every mesh of a scene in its own space; see [`fuse`]. Meshes are not fused with each other.
+/// Fuses every mesh of a scene by itself; see [`fuse`]. Meshes are not fused with each other.
 ///
-/// A material whose base colour is not opaque can be seen through. Whether a texture is, is not known.
+/// Faces count as transparent if the base colour of their material is; textures are not looked at.
 pub fn fuse_scene(scene: &mut Scene) -> Fused {
     let mut all = Fused::default();
     for own in &mut scene.meshes {

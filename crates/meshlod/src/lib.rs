@@ -1,19 +1,23 @@
-//! **meshlod** is level of detail for triangle meshes: read any common mesh, get a much smaller one
-//! that is close, know how close, look at it, write it with all that came with it.
+//! **meshlod** is level of detail for triangle meshes: it reads any common mesh, makes a much
+//! smaller one that is close to it, measures how close, draws it, and writes it with everything
+//! that came with it.
 //!
 //! # Words
-//! - A **vertex** is a point of the surface, a **face** a triangle, a **corner** one of its three.
+//! - A **vertex** is a point of the surface, a **face** a triangle, a **corner** one of the three
+//!   of a face.
 //! - A **wedge** is a vertex with one set of attributes (what a GPU calls a vertex). A **seam** is
-//!   an edge whose two faces use different wedges: the surface is whole there, the texture is not.
+//!   an edge whose two faces use different wedges: the surface is continuous there, the texture is
+//!   not.
 //! - A **boundary edge** has one face, a **non-manifold edge** three or more.
-//! - A **contraction** makes one vertex of two or three. A **refusal** is why one may not happen.
+//! - A **contraction** merges two or three vertices into one. A **refusal** is the reason why one
+//!   is not allowed.
 //! - A **level** is a mesh coarser than the input, a **chain** a list of levels.
-//! - An **error** is a length in model units. `error_estimate` is the algorithm's own word;
-//!   a measured one comes from [`measure`]. They are never mixed.
+//! - An **error** is a length in model units. `error_estimate` is the estimate of the algorithm;
+//!   measured errors come from [`measure`]. The two are never mixed.
 //!
 //! # A tour
-//! A [`Mesh`] is positions, faces, and what hangs on them. [`mesh`] has the type, its
-//! [`Connectivity`](mesh::Connectivity), and procedural samples of any size:
+//! A [`Mesh`] holds positions, faces, attributes and labels. [`mesh`] has the type and its
+//! [`Connectivity`](mesh::Connectivity), [`samples`] has procedural meshes of any size:
 //!
 //! ```
 //! use meshlod::mesh::Connectivity;
@@ -24,8 +28,8 @@
 //! assert!(connectivity.is_closed() && connectivity.non_manifold_edges() == 0);
 //! ```
 //!
-//! [`simplify`](simplify()) makes it coarser: to a number of faces, to a part of them, or as far as
-//! an error allows. The report says what was reached, and if it was not, why.
+//! [`simplify`](simplify()) makes a coarser mesh: of a number of faces, of a fraction of them, or
+//! as coarse as an error allows. The report says what was reached, and if the target was not, why:
 //!
 //! ```
 //! # let knot = meshlod::samples::knot(20_000);
@@ -36,7 +40,8 @@
 //! # Ok::<(), meshlod::SimplifyError>(())
 //! ```
 //!
-//! [`measure`] says how far two meshes are apart, both ways, and what became of area and volume:
+//! [`measure`] has the distance between two meshes, in both directions, and their areas and
+//! volumes:
 //!
 //! ```
 //! # use meshlod::{Options, Target, simplify};
@@ -51,22 +56,22 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! [`picture`] draws it, with the same pixels on every machine:
+//! [`picture`] draws a mesh, with the same pixels on every machine:
 //!
 //! ```
 //! # let level = meshlod::samples::knot(2_000);
 //! use meshlod::picture::{Camera, Style, View, Wireframe, render};
 //!
 //! let camera = Camera::fit_mesh(&level, &View::default());
-//! let style = Style { size: [200, 200], wireframe: Some(Wireframe::default()), ..Style::default() };
+//! let wireframe = Some(Wireframe::default());
+//! let style = Style { size: [200, 200], wireframe, ..Style::default() };
 //! assert!(render(&level, &camera, &style)?.png().starts_with(b"\x89PNG"));
 //! # Ok::<(), meshlod::picture::PictureError>(())
 //! ```
 //!
-//! Files hold more than a mesh. [`read`] gives a [`Scene`]: nodes, meshes, materials, images, and of
-//! glTF all the rest. [`simplify_scene`] shares one target among its meshes, so that detail stays
-//! where the world shows it; [`write()`] puts the coarser geometry in the place of the old one and
-//! keeps everything else.
+//! Files hold more than a mesh. [`read`] returns a [`Scene`]: nodes, meshes, materials, images, and
+//! everything else of a glTF file. [`simplify_scene`] shares one target among its meshes, so that
+//! detail stays where the scene shows it. [`write()`] replaces the geometry and keeps the rest:
 //!
 //! ```
 //! use meshlod::{Options, ReadOptions, Target, WriteOptions, read, simplify_scene, write};
@@ -82,7 +87,8 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! A chain of levels comes from one run, each level from the one before; GLB holds it whole:
+//! A chain of levels comes from one run, each level from the previous one. A GLB file holds all of
+//! them:
 //!
 //! ```
 //! use meshlod::io::{gltf::Level, write_lods};
@@ -101,8 +107,59 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! [`strip`] draws it as triangle strips, one set of them at every level: vertices are shown by what they have become,
-//! and strips are mended where the level changed.
+//! [`build`] writes *all* levels of a mesh to one `.mlod` file, and [`extract`] reads from it the
+//! mesh that a query asks for: fine in one region, within an error in pixels of a camera, or of at
+//! most so many faces. No level has a crack, and the file proves it. [`multires`] has the model
+//! behind it, with cuts that follow a camera:
+//!
+//! ```
+//! # let knot = meshlod::samples::knot(4_000);
+//! # let folder = tempfile::tempdir()?;
+//! # let path = folder.path().join("knot.mlod");
+//! use meshlod::{BuildOptions, ExtractOptions, build, extract};
+//! use meshlod::multires::{Query, ViewCamera};
+//!
+//! build(&knot, &path, &BuildOptions::default())?;
+//! let (eye, look, up) = ([0.0, 0.0, 20.0], [0.0; 3], [0.0, 1.0, 0.0]);
+//! let camera = ViewCamera { eye, look, up, fov_rad: 0.8, viewport: [640, 480] };
+//! let query = Query::pixels(camera, 1.0);
+//! let far_away = extract(&path, &ExtractOptions { query, ..Default::default() })?;
+//! assert!(far_away.faces.len() < 2_000, "as many faces as one pixel needs");
+//! # Ok::<(), meshlod::LevelsError>(())
+//! ```
+//!
+//! [`compress`] writes a mesh in a few bytes: `.mlq` to draw from directly, `.mlz` to send.
+//! [`codec`] has the schemes:
+//!
+//! ```
+//! # let knot = meshlod::samples::knot(4_000);
+//! # let folder = tempfile::tempdir()?;
+//! # let path = folder.path().join("knot.mlz");
+//! use meshlod::{CompressOptions, compress, decompress};
+//!
+//! let report = compress(&knot, &path, &CompressOptions::default())?;
+//! assert!(report.bytes < 4 * knot.faces.len());
+//! assert_eq!(decompress(&path)?.faces.len(), knot.faces.len());
+//! # Ok::<(), meshlod::CompressedFileError>(())
+//! ```
+//!
+//! [`check_report`] lists what is wrong with a mesh, and where its objects touch. [`check`] has the
+//! kinds of findings, repair, and locks that keep simplification from opening a contact:
+//!
+//! ```
+//! use meshlod::check::{CheckOptions, RepairOptions, repair};
+//! use meshlod::{check_report, samples};
+//!
+//! let mut mesh = samples::torus(1_000);
+//! mesh.faces.push(mesh.faces[7]);
+//! let report = check_report(&mesh, &CheckOptions::default(), 100);
+//! assert!(report.has_errors(), "a face is there twice");
+//! let (repaired, _) = repair(&mesh, &RepairOptions::default());
+//! assert!(check_report(&repaired, &CheckOptions::default(), 100).is_clean());
+//! ```
+//!
+//! [`strip`] draws a mesh as triangle strips, one set for all levels: each vertex is replaced by
+//! the one it has been contracted into, and strips are repaired where the level changed:
 //!
 //! ```
 //! # let knot = meshlod::samples::knot(2_000);
@@ -120,18 +177,21 @@
 //! # Ok::<(), meshlod::SimplifyError>(())
 //! ```
 //!
-//! [`spatial`] has what the others search with: the exact closest point of a surface.
+//! [`spatial`] has the search structures behind these: the exact closest point of a surface.
 //!
-//! # What always holds
-//! No input crashes it: what is wrong with a file is said in one line that names the place. Same
-//! input, same options, same bytes out, for any number of threads. After every contraction a
-//! surface is as manifold, as closed and as oriented as before. Files are written whole or not at
-//! all.
+//! # Guarantees
+//! - No input makes it crash: errors in files are reported in one line with their position.
+//! - The same input and options give the same bytes, for any number of threads.
+//! - After every contraction a surface is as manifold, as closed and as oriented as before.
+//! - Files are written whole or not at all.
 #![forbid(unsafe_code)]
 
+mod check_report;
+mod compressed;
 mod contacts;
 mod exact_volume;
 mod fuse;
+mod levels;
 mod locks;
 mod materials;
 mod place;
@@ -151,9 +211,14 @@ pub use meshlod_simplify as simplify;
 pub use meshlod_spatial as spatial;
 pub use meshlod_strip as strip;
 
+pub use check_report::{CheckReport, check_report};
+pub use compressed::{
+    CompressOptions, CompressReport, CompressedFileError, compress, decompress, decompress_bytes,
+};
 pub use contacts::scene_locks;
 pub use exact_volume::{conserve_volumes, digits_of};
 pub use fuse::fuse_scene;
+pub use levels::{BuildOptions, BuildReport, ExtractOptions, LevelsError, build, extract};
 pub use locks::join_locks;
 pub use materials::{UnreadImage, materials_of};
 pub use meshlod_io::{Format, IoError, ReadOptions, Scene, WriteOptions, read, write};

@@ -1,17 +1,18 @@
-//! Locks of a scene: vertices are counted through all its meshes, mesh after mesh.
+//! Locks of a whole scene, with vertices numbered through all its meshes, mesh after mesh.
 
 use meshlod_io::Scene;
 use meshlod_mesh::{Lock, Locks, VertexId};
 use meshlod_simplify::SimplifyError;
 
-/// The locks of all meshes of a scene as [`SceneSimplifier`](crate::SceneSimplifier) takes them, of
-/// those of each. Meshes at the end may be left out: nothing of them is locked.
+/// Joins the locks of each mesh into those of the scene, as
+/// [`SceneSimplifier`](crate::SceneSimplifier) takes them.
 ///
-/// What is tied but apart is locked: a transform can bring together in the world what is not at one
-/// place in its mesh.
+/// Meshes at the end may be left out and are free. Tied vertices at different positions are locked
+/// instead: a transform can move them together in world space although they are apart in their
+/// mesh.
 ///
 /// # Errors
-/// Locks that are not for their mesh.
+/// Locks that do not match their mesh.
 pub fn join_locks(scene: &Scene, of_meshes: &[Locks]) -> Result<Locks, SimplifyError> {
     let mut all = Locks::default();
     if of_meshes.iter().all(|own| *own == Locks::default()) {
@@ -42,7 +43,7 @@ pub fn join_locks(scene: &Scene, of_meshes: &[Locks]) -> Result<Locks, SimplifyE
     Ok(all)
 }
 
-/// The locks of each mesh among those of all.
+/// Splits the locks of a scene into those of each mesh.
 pub(crate) fn split(scene: &Scene, all: &Locks) -> Result<Vec<Locks>, SimplifyError> {
     let starts = starts(scene.meshes.iter().map(|mesh| mesh.mesh.positions.len()));
     let (found, expected) = (all.of_vertex.len(), starts[scene.meshes.len()]);
@@ -73,7 +74,7 @@ pub(crate) fn split(scene: &Scene, all: &Locks) -> Result<Vec<Locks>, SimplifyEr
     Ok(of_meshes)
 }
 
-/// Where each of some runs starts, and where the last ends.
+/// Returns the start of each of some consecutive runs, and the end of the last.
 fn starts(counts: impl Iterator<Item = usize>) -> Vec<usize> {
     let ends = counts.scan(0, |end, count| {
         *end += count;
@@ -82,7 +83,7 @@ fn starts(counts: impl Iterator<Item = usize>) -> Vec<usize> {
     std::iter::once(0).chain(ends).collect()
 }
 
-/// The run that a vertex is in.
+/// Returns the run that a vertex is in.
 fn owner(starts: &[usize], v: VertexId) -> usize {
     starts.partition_point(|&start| start <= v.index()) - 1
 }
@@ -95,7 +96,8 @@ mod tests {
 
     use super::*;
 
-    /// A scene of two meshes and a bare one between them; two vertices of the last are at one place.
+    /// A scene of two meshes and a bare one between them; two vertices of the last are at one
+    /// place.
     fn scene() -> Scene {
         let mut pinched = samples::sphere(100);
         pinched.positions[5] = pinched.positions[3];

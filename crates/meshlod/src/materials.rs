@@ -1,14 +1,15 @@
-//! A scene's materials as pictures want them.
+//! Materials of a scene for drawing.
 
 use meshlod_io::{Image, Scene};
 use meshlod_picture::{Materials, PaintMaterial, Texture};
 
-/// The materials of a scene, for a picture of [`Scene::flatten`], and the images that could not be
-/// read.
+/// Returns the materials of a scene for a picture of [`Scene::flatten`], and the images that could
+/// not be decoded.
 ///
-/// There is one entry for every material of the scene and a light grey one for faces without.
-/// Where an image cannot be read the material keeps its colour alone. Cost: that of decoding each
-/// image that a material uses, once.
+/// There is one entry for every material of the scene, and a light grey one for faces without a
+/// material. A material whose image cannot be decoded keeps its colour only.
+///
+/// Cost: decoding each image that a material uses, once.
 pub fn materials_of(scene: &Scene) -> (Materials, Vec<UnreadImage>) {
     let mut textures = Vec::new();
     let mut unread = Vec::new();
@@ -39,12 +40,12 @@ pub fn materials_of(scene: &Scene) -> (Materials, Vec<UnreadImage>) {
     (Materials { materials, textures }, unread)
 }
 
-/// An image that a picture has to do without.
+/// An image that could not be decoded.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct UnreadImage {
-    /// The scene's name of it.
+    /// Name of the image in the scene.
     pub name: String,
-    /// What is wrong with it.
+    /// Reason why it could not be decoded.
     pub reason: String,
 }
 

@@ -1,13 +1,12 @@
-//! How large the world shows things.
+//! Size of a scene and its instances in world space.
 
 use glam::{DMat3, DMat4, DVec3};
 use meshlod_io::Scene;
 use meshlod_mesh::Bounds;
 
-/// The box around all that the scene shows, in world space: that of [`Scene::flatten`], without
-/// making it. Vertices that no face uses do not count.
+/// Returns the bounding box of a scene in world space, without vertices that no face uses.
 ///
-/// Cost: linear in what is shown.
+/// Equal to the box of [`Scene::flatten`], which is not built. Cost: linear in the faces shown.
 pub fn world_bounds(scene: &Scene) -> Bounds {
     let mut bounds = Bounds::EMPTY;
     for placement in scene.instances() {
@@ -25,10 +24,10 @@ pub fn world_bounds(scene: &Scene) -> Bounds {
     bounds
 }
 
-/// The most by which a transform lengthens anything: its greatest singular value.
+/// Returns the largest factor by which a transform scales a length: its largest singular value.
 ///
-/// Squaring MᵀM over and over leaves the direction that it lengthens most. Plain arithmetic, so
-/// that the same meshes come out on every machine.
+/// Repeated squaring of MᵀM isolates the direction of that factor. Only plain arithmetic is used,
+/// so that results are the same on every machine.
 pub(crate) fn length_scale(transform: &[[f64; 4]; 4]) -> f64 {
     let linear = DMat3::from_mat4(DMat4::from_cols_array_2d(transform));
     let size = linear.to_cols_array().iter().fold(0.0, |size: f64, x| size.max(x.abs()));
@@ -45,7 +44,7 @@ pub(crate) fn length_scale(transform: &[[f64; 4]; 4]) -> f64 {
     size * (trace(&(square * power)) / trace(&power)).sqrt()
 }
 
-/// After so many, singular values that differ by 1e-12 are told apart or as good as equal.
+/// Number of squarings: enough to separate singular values that differ by 1e-12.
 const SQUARINGS: usize = 40;
 
 fn trace(matrix: &DMat3) -> f64 {

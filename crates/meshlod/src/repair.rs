@@ -1,13 +1,13 @@
-//! Scenes repaired as a whole.
+//! Repair of all meshes of a scene.
 
 use meshlod_check::{RepairOptions, RepairReport, repair};
 use meshlod_io::Scene;
 
-/// Repairs every mesh of a scene in its own space, also those that no node shows; see [`repair`].
+/// Repairs every mesh of a scene, including those that no node shows; see [`repair`].
 ///
-/// Nodes, materials and all else stay, and so do the names of materials that lose their last face.
-/// Lengths in `options` are in the units of each mesh. Counts are of meshes, however often they are
-/// shown.
+/// Nodes, materials and everything else stay, even materials that lose their last face. Lengths in
+/// `options` are in the units of each mesh. Repairs of a mesh count once, however many nodes show
+/// it.
 pub fn repair_scene(scene: &mut Scene, options: &RepairOptions) -> RepairReport {
     let mut all = RepairReport::default();
     for mesh in &mut scene.meshes {

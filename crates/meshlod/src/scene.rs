@@ -1,4 +1,4 @@
-//! Scenes simplified as a whole: one budget or one bound for all their meshes.
+//! Simplification of a scene: one budget or one error bound for all its meshes.
 
 use meshlod_io::Scene;
 use meshlod_mesh::Mesh;
@@ -10,52 +10,51 @@ use thiserror::Error;
 use crate::locks;
 use crate::place::length_scale;
 
-/// The meshes of a scene at work under one target: each detail goes where the world misses it
-/// least.
+/// Simplifies the meshes of a scene under one target, always where it is cheapest in world space.
 ///
-/// Everything is counted and measured as the scene shows it: a mesh that three nodes show has its
-/// faces three times, and errors are in world units, by the greatest length scale of its nodes.
-/// Meshes that no node shows, and those without a face that could go, stay as they are.
+/// Everything is counted and measured as the scene shows it: the faces of a mesh that three nodes
+/// show count three times, and errors are in world units, by the largest length scale of its nodes.
+/// Meshes that no node shows, and those without a face to contract, stay as they are.
 ///
-/// Levels taken from one run are nested. Of a scene with one mesh, placed as it is, this is
+/// Levels taken from one run are nested. For a scene with one mesh and no transform this is
 /// [`Simplifier`].
 pub struct SceneSimplifier<'s> {
     scene: &'s Scene,
     method: Method,
     parts: Vec<Part<'s>>,
-    /// Shown faces of the meshes that stay as they are.
+    /// Number of shown faces in meshes that stay as they are.
     still_faces: usize,
 }
 
-/// A mesh at work.
+/// A mesh that is simplified.
 struct Part<'s> {
     mesh: usize,
-    /// How many nodes show it.
+    /// Number of nodes that show it.
     copies: usize,
-    /// World units per unit of the mesh, where it is shown largest.
+    /// World units per unit of the mesh, in its largest instance.
     scale: f64,
-    /// The same of costs.
+    /// Costs in world space per cost in the space of the mesh.
     cost_scale: f64,
     simplifier: Simplifier<'s>,
 }
 
-/// Why a scene cannot be simplified.
+/// Reason why a scene cannot be simplified.
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum SceneError {
-    /// There is nothing to simplify.
+    /// No node shows a mesh.
     #[error("nodes: none of them shows a mesh")]
     Nothing,
-    /// Its only mesh, or what is asked for.
+    /// The only mesh of the scene, or an option or target, is invalid.
     #[error(transparent)]
     Whole(#[from] SimplifyError),
-    /// One of its meshes.
+    /// One of several meshes is invalid.
     #[error("mesh {mesh}{}: {source}", in_brackets(name))]
     Mesh {
-        /// Its index in the scene.
+        /// Index of the mesh in the scene.
         mesh: usize,
-        /// Its name there.
+        /// Name of the mesh in the scene.
         name: String,
-        /// What is wrong with it.
+        /// Reason why the mesh cannot be simplified.
         source: SimplifyError,
     },
 }
@@ -63,7 +62,7 @@ pub enum SceneError {
 /// Simplifies every mesh of a scene in place, under one target; see [`SceneSimplifier`].
 ///
 /// # Errors
-/// As for [`SceneSimplifier::new`], and a target that is none; then the scene is as it was.
+/// As for [`SceneSimplifier::new`], and an invalid target; the scene then is unchanged.
 pub fn simplify_scene(
     scene: &mut Scene,
     target: Target,
@@ -80,16 +79,16 @@ pub fn simplify_scene(
 }
 
 impl<'s> SceneSimplifier<'s> {
-    /// Connects every mesh that the scene shows; nothing is contracted yet.
+    /// Prepares every mesh that the scene shows; nothing is contracted yet.
     ///
-    /// `options.locks` count vertices through all meshes of the scene, mesh after mesh, see
-    /// [`join_locks`](crate::join_locks). Meshes move apart: what is tied across two of them is
-    /// locked. `options.vanish_below` is in world units; something of every mesh stays.
+    /// `options.locks` number vertices through all meshes of the scene, mesh after mesh, see
+    /// [`join_locks`](crate::join_locks). Vertices tied across two meshes are locked, since meshes
+    /// are simplified independently. `options.vanish_below` is in world units; no mesh vanishes
+    /// completely.
     ///
     /// Cost: O(n log n), n = faces.
     /// # Errors
-    /// A mesh that breaks a rule of meshes; a lock mask of another length; when no mesh has a face
-    /// to work on.
+    /// An invalid mesh, locks of another length, or no mesh with a face to contract.
     pub fn new(scene: &'s Scene, options: &Options) -> Result<Self, SceneError> {
         let locks = locks::split(scene, &options.locks)?;
         let shown = shown(scene);
@@ -101,7 +100,7 @@ impl<'s> SceneSimplifier<'s> {
             if copies == 0 {
                 continue;
             }
-            // What the world squeezes to a point is smaller than anything.
+            // A mesh scaled to a point is smaller than any size.
             let vanish_below = options.vanish_below.map(|size| size / scale);
             let vanish_below = vanish_below.map(|size| if size.is_nan() { 0.0 } else { size });
             let options = Options { method: Some(method), locks, vanish_below, ..*options };
@@ -123,13 +122,13 @@ impl<'s> SceneSimplifier<'s> {
         }
     }
 
-    /// Contracts until the target is reached or nothing more may be contracted.
+    /// Contracts until the target is reached or no contraction is allowed any more.
     ///
-    /// A number of faces is shared: the mesh whose next contraction is the cheapest in the world
-    /// goes on. A bound of the error holds for each mesh by itself, at its size in the world.
+    /// A number of faces is shared: the next contraction is the cheapest of all meshes in world
+    /// space. An error bound holds for each mesh by itself, at its size in world space.
     ///
     /// # Errors
-    /// A target that is none.
+    /// An invalid target.
     pub fn run(
         &mut self,
         target: Target,
@@ -151,19 +150,19 @@ impl<'s> SceneSimplifier<'s> {
         Ok(Report { reached: report.output_faces <= budget, ..report })
     }
 
-    /// Faces that the scene shows now.
+    /// Returns the number of faces that the scene shows now.
     pub fn live_faces(&self) -> usize {
         let of = |part: &Part<'_>| part.copies * part.simplifier.live_faces();
         self.still_faces + self.parts.iter().map(of).sum::<usize>()
     }
 
-    /// Faces that the scene showed at first.
+    /// Returns the number of faces that the scene showed at first.
     pub fn input_faces(&self) -> usize {
         let of = |part: &Part<'_>| part.copies * self.scene.meshes[part.mesh].mesh.faces.len();
         self.still_faces + self.parts.iter().map(of).sum::<usize>()
     }
 
-    /// Every mesh of the scene as it is now, in the scene's order.
+    /// Returns the current level of every mesh, in the order of the scene.
     pub fn level(&self) -> Vec<Mesh> {
         let mut parts = self.parts.iter().peekable();
         let meshes = self.scene.meshes.iter().enumerate();
@@ -174,7 +173,7 @@ impl<'s> SceneSimplifier<'s> {
         now.collect()
     }
 
-    /// The simplifier of the only mesh, as it is now; `None` if there are several.
+    /// Returns the simplifier of the only mesh in its current state; `None` if there are several.
     pub fn into_only(mut self) -> Option<Simplifier<'s>> {
         let only = self.parts.pop().filter(|_| self.parts.is_empty());
         only.filter(|_| self.scene.meshes.len() == 1).map(|part| part.simplifier)
@@ -187,14 +186,14 @@ impl<'s> SceneSimplifier<'s> {
     ) -> Result<Report, SimplifyError> {
         for part in &mut self.parts {
             let own = error / part.scale;
-            // A mesh that the world squeezes to a point may lose anything.
+            // A mesh scaled to a point may lose anything.
             let own = if own.is_nan() { f64::INFINITY } else { own };
             part.simplifier.run(Target::Error(own), observer)?;
         }
         self.report()
     }
 
-    /// Takes steps in the mesh with the cheapest next one, until `budget` faces are shown.
+    /// Contracts in the mesh with the cheapest next contraction until `budget` faces are shown.
     fn share(&mut self, budget: usize, observer: &mut dyn Observe) {
         let mut costs: Vec<Option<f64>> = self.parts.iter_mut().map(Part::next_cost).collect();
         let mut faces = self.live_faces();
@@ -213,7 +212,7 @@ impl<'s> SceneSimplifier<'s> {
         }
     }
 
-    /// What was done so far, summed over the meshes; a target of an error counts as reached.
+    /// Returns the report so far, summed over the meshes; error targets count as reached.
     fn report(&mut self) -> Result<Report, SimplifyError> {
         let mut whole = Report {
             method: self.method,
@@ -233,7 +232,7 @@ impl<'s> SceneSimplifier<'s> {
         places.sort_by_key(|place| place.mesh);
         let mut places = places.into_iter().peekable();
         for part in &mut self.parts {
-            // A run to where it stands does nothing and tells all.
+            // A run to the current number of faces does nothing and returns the report.
             let here = Target::Faces(part.simplifier.live_faces());
             let report = part.simplifier.run(here, &mut ())?;
             whole.degenerate_faces += part.copies * report.degenerate_faces;
@@ -243,7 +242,7 @@ impl<'s> SceneSimplifier<'s> {
             whole.held.add(&report.held, part.copies);
             whole.error_estimate = whole.error_estimate.max(part.scale * report.error_estimate);
             whole.refusals += report.refusals;
-            // Parts are in the order of their meshes; those between them have nothing to contract.
+            // Parts are in the order of their meshes; other meshes have nothing to contract.
             while let Some(place) = places.next_if(|place| place.mesh <= part.mesh) {
                 if place.mesh == part.mesh {
                     whole.volume.add(&report.volume, &place.transform);
@@ -262,20 +261,20 @@ impl<'s> SceneSimplifier<'s> {
 }
 
 impl Part<'_> {
-    /// The cost of the next contraction in world terms.
+    /// Returns the cost of the next contraction in world space.
     fn next_cost(&mut self) -> Option<f64> {
         self.simplifier.next_cost().map(|cost| cost * self.cost_scale)
     }
 
-    /// A cost in world terms in those of the mesh; at least that of the next contraction, however
-    /// the division rounds, so that there is always one to try.
+    /// Converts a cost in world space to the space of the mesh; at least the cost of the next
+    /// contraction, however the division rounds, so that there is always one to try.
     fn cost_up_to(&mut self, world: f64) -> f64 {
         let own = self.simplifier.next_cost().unwrap_or(0.0);
         own.max(world / self.cost_scale)
     }
 }
 
-/// For each mesh how many nodes show it, and the greatest length scale of those.
+/// Returns for each mesh the number of nodes that show it, and their largest length scale.
 fn shown(scene: &Scene) -> Vec<(usize, f64)> {
     let mut shown = vec![(0, 0.0f64); scene.meshes.len()];
     for placement in scene.instances() {
@@ -286,8 +285,8 @@ fn shown(scene: &Scene) -> Vec<(usize, f64)> {
     shown
 }
 
-/// The place of the least cost, the first of equal ones, and how far the cost there may rise until
-/// another is in front: a run that was interrupted goes on as if it had not been.
+/// Returns the index of the lowest cost, the first of equal ones, and how far it may rise before
+/// another is lower: an interrupted run then continues as if it had not been interrupted.
 fn cheapest(costs: &[Option<f64>]) -> Option<(usize, f64)> {
     let known = || costs.iter().enumerate().filter_map(|(i, cost)| Some((i, (*cost)?)));
     let (first, _) = known().min_by(|a, b| a.1.total_cmp(&b.1))?;

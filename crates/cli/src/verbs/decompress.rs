@@ -4,8 +4,7 @@ use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
 use clap::Args;
-use meshlod::codec::{Compressed, Malformed, TransportFile};
-use meshlod::{Mesh, Scene};
+use meshlod::{Mesh, Scene, decompress_bytes};
 use serde_json::{Value, json};
 
 use crate::answer::Answer;
@@ -35,7 +34,7 @@ impl Decompress {
         session.progress.stage(&format!("reading {}", files::name(&self.input)));
         let bytes = files::read_all(&self.input)?;
         let start = Instant::now();
-        let mesh = decode(&bytes).map_err(|error| Failure::at(&self.input, error))?;
+        let mesh = decompress_bytes(&bytes).map_err(|error| Failure::at(&self.input, error))?;
         let time = start.elapsed();
         let (json, text) = (self.json(&mesh, time), self.text(&mesh, time));
         let name = self.input.file_stem().map_or("mesh".into(), |stem| stem.to_string_lossy());
@@ -58,15 +57,4 @@ impl Decompress {
         let name = files::name(&self.output);
         format!("{name}: {}\ndecode_seconds: {seconds}\n", faces(mesh.faces.len()))
     }
-}
-
-/// Decodes a file, choosing the decoder by its first bytes.
-fn decode(bytes: &[u8]) -> Result<Mesh, Malformed> {
-    if bytes.starts_with(&TransportFile::MAGIC) {
-        return TransportFile::open(bytes)?.decode();
-    }
-    if !bytes.starts_with(&Compressed::MAGIC) {
-        return Err(Malformed { at: 0, reason: "not an .mlq or .mlz file".into() });
-    }
-    Compressed::from_bytes(bytes)?.decode()
 }

@@ -1,0 +1,235 @@
+//! Compressed files in one call: a mesh in, a mesh out.
+
+use std::path::{Path, PathBuf};
+
+use meshlod_codec::{
+    AttributeBounds, CompressError, Compressed, CompressionTarget, Lattice, LatticeError,
+    Malformed, Scheme, Transport, TransportError, TransportFile, TransportOptions,
+    TransportQuantization,
+};
+use meshlod_io::{IoError, write_file};
+use meshlod_mesh::Mesh;
+use thiserror::Error;
+
+/// Options of [`compress`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CompressOptions {
+    /// Accuracy or size of the positions; the default is 11 bits per axis.
+    pub target: CompressionTarget,
+    /// Storage of positions: any scheme in `.mlq` (default: blocks), only the lattice in `.mlz`.
+    pub scheme: Option<Scheme>,
+    /// Largest errors of attributes, which only `.mlq` holds.
+    pub attributes: AttributeBounds,
+}
+
+impl Default for CompressOptions {
+    fn default() -> Self {
+        let attributes = AttributeBounds::default();
+        Self { target: CompressionTarget::Bits(11), scheme: None, attributes }
+    }
+}
+
+/// Result of [`compress`]: what the file holds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct CompressReport {
+    /// Number of vertices in the file.
+    pub vertices: usize,
+    /// Number of faces in the file: those of the mesh, without degenerate ones.
+    pub faces: usize,
+    /// Size of the file in bytes.
+    pub bytes: usize,
+    /// True if the target is met; a mesh can be too small for a reduction.
+    pub reached: bool,
+}
+
+/// Reason why a compressed file cannot be written or read.
+#[derive(Debug, Error)]
+pub enum CompressedFileError {
+    /// The file cannot be read or written.
+    #[error(transparent)]
+    Io(#[from] IoError),
+    /// The suffix of the file is not that of a compressed format.
+    #[error("{}: a compressed file must end in .mlq or .mlz", .0.display())]
+    UnknownFormat(PathBuf),
+    /// A `.mlz` file supports neither this scheme nor a target of a reduction.
+    #[error("a .mlz file takes a number of bits or an error, and no scheme but the lattice")]
+    Unsupported,
+    /// The mesh or the target is invalid.
+    #[error(transparent)]
+    Compress(#[from] CompressError),
+    /// The mesh cannot be encoded for transport.
+    #[error(transparent)]
+    Transport(#[from] TransportError),
+    /// The cells of the lattice are too small or too large.
+    #[error(transparent)]
+    Lattice(#[from] LatticeError),
+    /// The file is damaged or of another format.
+    #[error("{}: {source}", path.display())]
+    Malformed {
+        /// Path of the file.
+        path: PathBuf,
+        /// What is wrong, and where.
+        source: Malformed,
+    },
+}
+
+/// Compresses a mesh to a file: `.mlq` to draw from directly, `.mlz` to send.
+///
+/// Both hold a single surface, without materials and objects; `.mlz` leaves attributes out too. The
+/// file is written whole or not at all. [`codec`](crate::codec) has the parts.
+///
+/// # Errors
+/// Another suffix, an invalid mesh, a target that the format does not support, and errors of the
+/// file system.
+///
+/// ```
+/// use meshlod::{CompressOptions, compress, decompress, samples};
+/// # let folder = tempfile::tempdir()?;
+/// # let path = folder.path().join("gyroid.mlz");
+///
+/// let gyroid = samples::gyroid(6_000);
+/// let report = compress(&gyroid, &path, &CompressOptions::default())?;
+/// assert!(report.bytes < 4 * gyroid.faces.len(), "less than 4 bytes per face");
+/// assert_eq!(decompress(&path)?.faces.len(), gyroid.faces.len());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn compress(
+    mesh: &Mesh,
+    path: &Path,
+    options: &CompressOptions,
+) -> Result<CompressReport, CompressedFileError> {
+    let suffix = path.extension().map(|suffix| suffix.to_ascii_lowercase());
+    let (bytes, report) = match suffix.as_ref().and_then(|suffix| suffix.to_str()) {
+        Some("mlq") => for_drawing(mesh, options)?,
+        Some("mlz") => for_transport(mesh, options)?,
+        _ => return Err(CompressedFileError::UnknownFormat(path.to_owned())),
+    };
+    write_file(path, &bytes)?;
+    Ok(report)
+}
+
+fn for_drawing(
+    mesh: &Mesh,
+    options: &CompressOptions,
+) -> Result<(Vec<u8>, CompressReport), CompressedFileError> {
+    let scheme = options.scheme.unwrap_or(Scheme::Blocks);
+    let done = meshlod_codec::compress(mesh, scheme, options.target, &options.attributes)?;
+    let (vertices, faces) = (done.compressed.vertices(), done.compressed.faces());
+    let bytes = done.compressed.to_bytes();
+    let report = CompressReport { vertices, faces, bytes: bytes.len(), reached: done.reached };
+    Ok((bytes, report))
+}
+
+fn for_transport(
+    mesh: &Mesh,
+    options: &CompressOptions,
+) -> Result<(Vec<u8>, CompressReport), CompressedFileError> {
+    let quantization = transport_quantization(mesh, options)?;
+    let options = TransportOptions { quantization, ..TransportOptions::default() };
+    let done = Transport::encode(mesh, &options)?;
+    let file = TransportFile::open(&done.bytes).expect("a file just encoded opens");
+    let (vertices, faces) = (file.vertices(), file.faces());
+    let report = CompressReport { vertices, faces, bytes: done.bytes.len(), reached: true };
+    Ok((done.bytes, report))
+}
+
+/// Returns the cells that meet the target in a `.mlz` file.
+fn transport_quantization(
+    mesh: &Mesh,
+    options: &CompressOptions,
+) -> Result<TransportQuantization, CompressedFileError> {
+    let Some(cell) = options.target.cell(mesh)? else {
+        return Err(CompressedFileError::Unsupported);
+    };
+    match (options.scheme, options.target) {
+        (Some(Scheme::Lattice), _) => Ok(TransportQuantization::Lattice(Lattice::within(cell)?)),
+        (Some(_), _) => Err(CompressedFileError::Unsupported),
+        (None, CompressionTarget::Bits(bits)) => Ok(TransportQuantization::Bits(bits)),
+        (None, _) => {
+            let bounds = mesh.bounds();
+            let longest = (0..3).map(|k| bounds.max[k] - bounds.min[k]).fold(0.0, f64::max);
+            let bits = (longest / cell + 1.0).log2().ceil() as u32;
+            Ok(TransportQuantization::Bits(bits.max(1)))
+        }
+    }
+}
+
+/// Reads the mesh of a compressed file, `.mlq` or `.mlz`, recognised by its content.
+///
+/// # Errors
+/// A file that cannot be read, is damaged or has another format.
+pub fn decompress(path: &Path) -> Result<Mesh, CompressedFileError> {
+    let bytes = std::fs::read(path).map_err(|error| IoError::system(path, error))?;
+    decompress_bytes(&bytes)
+        .map_err(|source| CompressedFileError::Malformed { path: path.to_owned(), source })
+}
+
+/// Decodes the mesh of a compressed file in memory, `.mlq` or `.mlz`, recognised by its content.
+///
+/// # Errors
+/// Bytes that are damaged or have another format.
+pub fn decompress_bytes(bytes: &[u8]) -> Result<Mesh, Malformed> {
+    if bytes.starts_with(&TransportFile::MAGIC) {
+        return TransportFile::open(bytes)?.decode();
+    }
+    if !bytes.starts_with(&Compressed::MAGIC) {
+        return Err(Malformed { at: 0, reason: "not an .mlq or .mlz file".into() });
+    }
+    Compressed::from_bytes(bytes)?.decode()
+}
+
+#[cfg(test)]
+mod tests {
+    use meshlod_samples as samples;
+
+    use super::*;
+
+    #[test]
+    fn every_format_and_target_comes_back() {
+        let folder = tempfile::tempdir().unwrap();
+        let mesh = samples::fish(1_500);
+        let error = CompressionTarget::Error(1e-3);
+        for (name, target, scheme) in [
+            ("a.mlq", CompressionTarget::Bits(11), None),
+            ("b.mlq", error, Some(Scheme::Lattice)),
+            ("c.MLQ", CompressionTarget::Reduction(0.5), None),
+            ("d.mlz", CompressionTarget::Bits(11), None),
+            ("e.mlz", error, None),
+            ("f.mlz", error, Some(Scheme::Lattice)),
+        ] {
+            let path = folder.path().join(name);
+            let options = CompressOptions { target, scheme, ..Default::default() };
+            let report = compress(&mesh, &path, &options).unwrap();
+            let decoded = decompress(&path).unwrap();
+            assert_eq!(report.bytes as u64, std::fs::metadata(&path).unwrap().len(), "{name}");
+            assert_eq!((report.reached, report.faces), (true, mesh.faces.len()), "{name}");
+            assert_eq!(decoded.faces.len(), mesh.faces.len(), "{name}");
+            assert_eq!(
+                decoded.attributes.is_some(),
+                name.to_lowercase().ends_with("mlq"),
+                "{name}"
+            );
+        }
+    }
+
+    #[test]
+    fn what_a_file_cannot_hold_is_refused() {
+        let folder = tempfile::tempdir().unwrap();
+        let mesh = samples::sphere(100);
+        let refused = |name: &str, options: &CompressOptions| {
+            let path = folder.path().join(name);
+            let error = compress(&mesh, &path, options).unwrap_err().to_string();
+            assert!(!path.exists());
+            error
+        };
+        let default = CompressOptions::default();
+        assert!(refused("a.ply", &default).ends_with("must end in .mlq or .mlz"));
+        let reduction = CompressOptions { target: CompressionTarget::Reduction(0.5), ..default };
+        assert!(refused("a.mlz", &reduction).starts_with("a .mlz file takes"));
+        let blocks = CompressOptions { scheme: Some(Scheme::Blocks), ..default };
+        assert!(refused("a.mlz", &blocks).starts_with("a .mlz file takes"));
+        let path = folder.path().join("b.mlq");
+        std::fs::write(&path, b"something else").unwrap();
+        assert!(decompress(&path).unwrap_err().to_string().contains("b.mlq"));
+    }
+}

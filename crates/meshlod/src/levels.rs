@@ -1,0 +1,228 @@
+//! Multiresolution files in one call: all levels of a mesh in, one mesh out.
+
+use std::fs::File;
+use std::path::{Path, PathBuf};
+
+use meshlod_io::{IoError, write_file};
+use meshlod_mesh::Mesh;
+use meshlod_multires::{
+    Archive, Certificate, ErrorKind, FileError, Forest, Level, ModelFile, Query, Rtin,
+    RtinExtractor, Storage,
+};
+use meshlod_simplify::{Method, Options};
+use thiserror::Error;
+
+/// Options of [`build`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BuildOptions {
+    /// Simplification method that makes the levels.
+    pub method: Method,
+    /// Meaning of the stored errors; proven bounds take several times as long as estimates.
+    pub errors: ErrorKind,
+    /// True to keep the vertices of the mesh bit for bit, so that the finest level is the mesh.
+    pub lossless: bool,
+    /// Rounding of vertices, and size of the chunks that are read one by one.
+    pub storage: Storage,
+}
+
+impl Default for BuildOptions {
+    fn default() -> Self {
+        Self {
+            method: Method::LindstromTurk,
+            errors: ErrorKind::Estimate,
+            lossless: false,
+            storage: Storage::default(),
+        }
+    }
+}
+
+/// Result of [`build`]: what the file holds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct BuildReport {
+    /// Number of faces of the finest level: those of the mesh, without degenerate and duplicate
+    /// ones.
+    pub full_faces: usize,
+    /// Number of faces of the coarsest level.
+    pub base_faces: usize,
+    /// Number of updates between the coarsest level and the finest.
+    pub updates: usize,
+    /// Proof that no level has a crack.
+    pub certificate: Certificate,
+    /// Size of the file in bytes.
+    pub bytes: usize,
+}
+
+/// Options of [`extract`].
+#[derive(Clone, Debug)]
+pub struct ExtractOptions<'f> {
+    /// Region to refine, and the error allowed there; by default the whole model, without error.
+    pub query: Query<'f>,
+    /// Largest number of faces. The best mesh within it then only weighs errors by the query.
+    pub max_faces: Option<usize>,
+    /// True to leave out faces that do not intersect the focus of the query.
+    pub crop: bool,
+}
+
+impl Default for ExtractOptions<'static> {
+    fn default() -> Self {
+        Self { query: Query::uniform(0.0), max_faces: None, crop: false }
+    }
+}
+
+/// Reason why a multiresolution file cannot be built or extracted from.
+#[derive(Debug, Error)]
+pub enum LevelsError {
+    /// The file cannot be read or written.
+    #[error(transparent)]
+    Io(#[from] IoError),
+    /// The mesh has no levels, the file is damaged, or the query is invalid.
+    #[error("{}: {source}", path.display())]
+    File {
+        /// Path of the file.
+        path: PathBuf,
+        /// What is wrong.
+        source: FileError,
+    },
+}
+
+/// Writes all levels of a mesh to a `.mlod` file, and certifies that no level has a crack.
+///
+/// The file holds the surface only: attributes, materials and objects are left out. It is written
+/// whole or not at all. [`multires`](crate::multires) has the parts, also for height fields.
+///
+/// Cost: O(n log n), n = faces, and several times that for [`ErrorKind::Bound`].
+/// # Errors
+/// A mesh that cannot be simplified, a rounding that is negative or larger than the mesh, and
+/// errors of the file system.
+///
+/// ```
+/// use meshlod::{BuildOptions, ExtractOptions, build, extract, samples};
+/// # let folder = tempfile::tempdir()?;
+/// # let path = folder.path().join("torus.mlod");
+///
+/// let torus = samples::torus(3_000);
+/// let report = build(&torus, &path, &BuildOptions::default())?;
+/// assert_eq!(report.full_faces, torus.faces.len());
+///
+/// let options = ExtractOptions { max_faces: Some(500), ..Default::default() };
+/// assert!(extract(&path, &options)?.faces.len() <= 500);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn build(mesh: &Mesh, path: &Path, options: &BuildOptions) -> Result<BuildReport, LevelsError> {
+    let (bytes, report) = encode(mesh, options)
+        .map_err(|source| LevelsError::File { path: path.to_owned(), source })?;
+    write_file(path, &bytes)?;
+    Ok(report)
+}
+
+fn encode(mesh: &Mesh, options: &BuildOptions) -> Result<(Vec<u8>, BuildReport), FileError> {
+    let record = if options.lossless { Forest::lossless } else { Forest::new };
+    let mut forest = record(mesh, &Options { method: Some(options.method), ..Options::default() })?;
+    match options.errors {
+        ErrorKind::Estimate => forest.smooth_errors(),
+        ErrorKind::Bound => forest.measure_bounds(),
+    }
+    let (bytes, certificate) = Archive::write(&forest, &options.storage)?;
+    let archive = Archive::open(bytes)?;
+    let (base_faces, updates) = (archive.base_faces(), archive.update_count());
+    let (full_faces, bytes) = (forest.full_faces(), archive.into_source());
+    let report = BuildReport { full_faces, base_faces, updates, certificate, bytes: bytes.len() };
+    Ok((bytes, report))
+}
+
+/// Extracts one mesh from a `.mlod` file, reading only the parts that it needs.
+///
+/// # Errors
+/// A file that cannot be read or is damaged, and an invalid query.
+///
+/// ```
+/// use meshlod::multires::{Focus, Query, Tolerance};
+/// use meshlod::{BuildOptions, ExtractOptions, build, extract, samples};
+/// # let folder = tempfile::tempdir()?;
+/// # let path = folder.path().join("knot.mlod");
+/// # build(&samples::knot(4_000), &path, &BuildOptions::default())?;
+///
+/// // Fine in a ball, coarse elsewhere.
+/// let focus = Focus::Sphere { center: [0.9, 0.0, 0.0], radius: 0.2 };
+/// let query = Query { focus, tolerance: Tolerance::Uniform(0.001) };
+/// let near = extract(&path, &ExtractOptions { query, ..Default::default() })?;
+/// let all = extract(&path, &ExtractOptions::default())?;
+/// assert!(2 * near.faces.len() < all.faces.len());
+/// # Ok::<(), meshlod::LevelsError>(())
+/// ```
+pub fn extract(path: &Path, options: &ExtractOptions<'_>) -> Result<Mesh, LevelsError> {
+    let file = File::open(path).map_err(|error| IoError::system(path, error))?;
+    let level = level(file, options);
+    level
+        .map(|level| level.mesh())
+        .map_err(|source| LevelsError::File { path: path.to_owned(), source })
+}
+
+fn level(file: File, options: &ExtractOptions<'_>) -> Result<Level, FileError> {
+    let ExtractOptions { query, max_faces, crop } = options;
+    let level = match (ModelFile::open(file)?, *max_faces) {
+        (ModelFile::Contractions(archive), None) => archive.extract(query)?.level,
+        (ModelFile::Contractions(archive), Some(faces)) => {
+            archive.extract_at_most(faces, query)?.level
+        }
+        (ModelFile::HeightField(field), None) => Rtin::new(&field).level(query)?,
+        (ModelFile::HeightField(field), Some(faces)) => {
+            RtinExtractor::new(&Rtin::new(&field)).at_most(faces, query)?.clone()
+        }
+    };
+    Ok(if *crop { level.within(&query.focus)? } else { level })
+}
+
+#[cfg(test)]
+mod tests {
+    use meshlod_multires::Focus;
+    use meshlod_samples as samples;
+
+    use super::*;
+
+    #[test]
+    fn a_lossless_file_restores_the_mesh() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("knot.mlod");
+        let mesh = samples::knot(1_000);
+        let report = build(&mesh, &path, &BuildOptions { lossless: true, ..Default::default() });
+        let report = report.unwrap();
+        assert_eq!(report.bytes as u64, std::fs::metadata(&path).unwrap().len());
+        let finest = extract(&path, &ExtractOptions::default()).unwrap();
+        assert_eq!(finest.faces.len(), mesh.faces.len());
+        let sorted = |mesh: &Mesh| {
+            let mut bits: Vec<_> = mesh.positions.iter().map(|p| p.map(f64::to_bits)).collect();
+            bits.sort_unstable();
+            bits
+        };
+        assert_eq!(sorted(&finest), sorted(&mesh));
+    }
+
+    #[test]
+    fn bounds_and_budgets_are_kept() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("sphere.mlod");
+        let options = BuildOptions { errors: ErrorKind::Bound, ..Default::default() };
+        let report = build(&samples::sphere(500), &path, &options).unwrap();
+        let budget = ExtractOptions { max_faces: Some(100), ..Default::default() };
+        assert!((report.base_faces..=100).contains(&extract(&path, &budget).unwrap().faces.len()));
+        let focus = Focus::Sphere { center: [0.0, 1.0, 0.0], radius: 0.3 };
+        let query = Query { focus, ..Query::uniform(0.0) };
+        let whole = ExtractOptions { query, ..Default::default() };
+        let cropped = ExtractOptions { crop: true, ..whole.clone() };
+        let faces = |options| extract(&path, options).unwrap().faces.len();
+        assert!(faces(&cropped) < faces(&whole));
+    }
+
+    #[test]
+    fn failures_name_the_file() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("empty.mlod");
+        let options = BuildOptions::default();
+        let refused = build(&Mesh::default(), &path, &options).unwrap_err().to_string();
+        assert!(refused.contains("empty.mlod") && !path.exists(), "{refused}");
+        std::fs::write(&path, b"not one").unwrap();
+        let refused = extract(&path, &ExtractOptions::default()).unwrap_err().to_string();
+        assert!(refused.contains("empty.mlod"), "{refused}");
+    }
+}
