@@ -1,15 +1,16 @@
-//! Strips of whole meshes by setting: vertices and indices a face, ACMR and seconds; and what a vertex cache takes and
-//! gives. docs/notes/strips.md has the figures of `cargo xtask results strips`, whose settings differ a little.
+//! Compares strip settings on whole meshes: vertices and indices per face, ACMR, overdraw and
+//! seconds. docs/notes/strips.md has the figures of `cargo xtask results strips`, whose settings
+//! differ a little.
 //!
-//! `cargo run --release -p meshlod-strip --example strips -- bunny.ply fandisk.off`, with meshes of the shared folder;
-//! `--thorough` in front for the slow settings too.
+//! `cargo run --release -p meshlod-strip --example strips -- bunny.ply fandisk.off`, with meshes of
+//! the shared folder; put `--thorough` in front for the slow settings too.
 
 use std::time::Instant;
 
 use meshlod_fixtures::shared_mesh;
 use meshlod_mesh::{Mesh, VertexId};
 use meshlod_strip::{
-    CacheAware, Options, Prices, Quality, StripStatistics, difference, overdraw, stripify,
+    CacheAware, Prices, StripOptions, StripQuality, StripStatistics, difference, overdraw, stripify,
 };
 
 fn main() {
@@ -30,8 +31,8 @@ fn main() {
 }
 
 fn figures(name: &str, mesh: &Mesh, thorough: bool) {
-    let best = |moves_per_face| Quality::Best { moves_per_face };
-    let row = |setting: &str, options: &Options| {
+    let best = |moves_per_face| StripQuality::Best { moves_per_face };
+    let row = |setting: &str, options: &StripOptions| {
         let start = Instant::now();
         let strips = stripify(&mesh.faces, options);
         let seconds = start.elapsed().as_secs_f64();
@@ -51,25 +52,25 @@ fn figures(name: &str, mesh: &Mesh, thorough: bool) {
             overdraw(triangles.iter().copied(), &mesh.positions),
         );
     };
-    let fast = Options { quality: Quality::Fast, ..Options::default() };
+    let fast = StripOptions { quality: StripQuality::Fast, ..StripOptions::default() };
     row("fast", &fast);
     eprintln!("{name}: fast, {:.1} million faces a second", rate(&mesh.faces, &fast) * 1e-6);
     let moves: &[f64] = if thorough { &[20.0, 60.0, 300.0, 1500.0] } else { &[20.0, 60.0] };
     for &moves in moves {
-        let options = Options { quality: best(moves), ..Options::default() };
+        let options = StripOptions { quality: best(moves), ..StripOptions::default() };
         row(&format!("best, {moves} moves"), &options);
-        let options = Options { prices: Prices::with_restarts(), ..options };
+        let options = StripOptions { prices: Prices::with_restarts(), ..options };
         row(&format!("best, {moves} moves, restarts priced"), &options);
     }
     for longest in [10, 12, 14, 16, 20, 24, 32, 48, 96] {
         let cache = Some(CacheAware { longest, ..CacheAware::default() });
-        let options = Options { quality: best(60.0), cache, ..Options::default() };
+        let options = StripOptions { quality: best(60.0), cache, ..StripOptions::default() };
         row(&format!("cache-aware, {longest} faces at most"), &options);
     }
 }
 
-/// Faces a second, the most of some rounds.
-fn rate(faces: &[[VertexId; 3]], options: &Options) -> f64 {
+/// Faces per second, the best of 50 runs.
+fn rate(faces: &[[VertexId; 3]], options: &StripOptions) -> f64 {
     let seconds = |_| {
         let start = Instant::now();
         std::hint::black_box(stripify(faces, options));

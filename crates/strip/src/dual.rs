@@ -1,61 +1,65 @@
-//! Which face lies across which side: the dual graph of a list of faces.
+//! The dual graph of a list of faces: which face lies across which side.
 
 use meshlod_mesh::VertexId;
 
-use crate::cover::{Cell, Port};
+use crate::path_cover::{DualEdge, DualNode};
 use crate::verify::has_three_corners;
 
-/// The faces as cells without links, and what lies across their sides: the side of a face that runs along the
-/// same edge the other way.
+/// Builds the dual graph without links. Two sides are opposite if they run along the same edge in
+/// opposite directions.
 ///
-/// Any faces are taken. Where an edge has more than two sides, they are paired as far as their directions allow;
-/// sides that run the same way are never paired, for no strip can go from one to the other. A face that repeats a
-/// vertex has nothing across. Cost: O(n) where the faces of a vertex come near each other, at worst O(n log n).
+/// Any faces are accepted. On an edge with more than two sides as many as possible are paired.
+/// Sides that run in the same direction are never paired, because no strip can cross there. A face
+/// that repeats a vertex has no neighbours. Cost: O(n) if the faces of a vertex are close in the
+/// list, O(n log n) in the worst case.
 ///
-/// Panics above [`Port::MOST_CELLS`] faces.
-pub(crate) fn cells(faces: &[[VertexId; 3]]) -> Vec<Cell> {
-    assert!(faces.len() <= Port::MOST_CELLS, "sides are numbered in 32 bits");
+/// # Panics
+/// Above [`DualEdge::MAX_NODES`] faces.
+pub(crate) fn nodes(faces: &[[VertexId; 3]]) -> Vec<DualNode> {
+    assert!(faces.len() <= DualEdge::MAX_NODES, "sides are numbered in 32 bits");
     let most = faces.as_flattened().iter().fold(0, |most, v| v.0.max(most)) as usize;
-    // A table over vertices that are hardly there is not worth having, and could be any size.
+    // With few of the vertex ids in use, a table indexed by them does not pay and could have any
+    // size.
     if most > 8 * faces.len() {
         return sorted(faces);
     }
-    listed(faces, most + 1).unwrap_or_else(|| sorted(faces))
+    pair_by_lists(faces, most + 1).unwrap_or_else(|| sorted(faces))
 }
 
-/// How many rising sides may be looked at for each face, on average, before sorting is the better way. Meshes need 2
-/// to 4; fans of thousands need thousands.
-const MOST_LOOKS: usize = 64;
+/// Number of rising sides inspected per face, on average, before sorting becomes the better choice.
+/// Meshes need 2 to 4; fans of thousands of faces need thousands.
+const MAX_LOOKS: usize = 64;
 
-/// In two passes: sides that rise to a higher vertex are listed at the lower one, and those that fall look there.
+/// Pairs sides in two passes: sides that rise to a higher vertex are listed at the lower one, and
+/// falling sides look themselves up there. Gives up after [`MAX_LOOKS`] per face.
 ///
-/// Which sides rise is as good as random, so nothing branches on it.
-fn listed(faces: &[[VertexId; 3]], vertex_count: usize) -> Option<Vec<Cell>> {
+/// Whether a side rises is as good as random, so nothing branches on it.
+fn pair_by_lists(faces: &[[VertexId; 3]], vertex_count: usize) -> Option<Vec<DualNode>> {
     let Sides { starts, mut rising, falling } = Sides::new(faces, vertex_count);
-    let mut cells = vec![Cell::ALONE; faces.len()];
-    let mut looks = faces.len() * MOST_LOOKS;
-    for port in falling {
-        let [from, to] = ends(&faces[port.cell()], port.side());
+    let mut nodes = vec![DualNode::ISOLATED; faces.len()];
+    let mut looks = faces.len() * MAX_LOOKS;
+    for edge in falling {
+        let [from, to] = ends(&faces[edge.node()], edge.side());
         let list = &mut rising[starts[to.index()] as usize..starts[to.index() + 1] as usize];
         let found = list.iter().position(|rising| rising.0 == from);
         looks = looks.checked_sub(found.map_or(list.len(), |place| place + 1))?;
         if let Some(place) = found {
-            let (_, other) = std::mem::replace(&mut list[place], (to, Port::NONE));
-            cells[port.cell()].across[port.side()] = other;
-            cells[other.cell()].across[other.side()] = port;
+            let (_, other) = std::mem::replace(&mut list[place], (to, DualEdge::NONE));
+            nodes[edge.node()].across[edge.side()] = other;
+            nodes[other.node()].across[other.side()] = edge;
         }
     }
-    Some(cells)
+    Some(nodes)
 }
 
-/// The sides of all faces that have three vertices.
+/// Sides of all faces with three distinct vertices.
 struct Sides {
-    /// Where the rising sides of each vertex begin.
+    /// Start of each vertex's rising sides.
     starts: Vec<u32>,
-    /// Those that run from a lower vertex to a higher one, by the lower: the higher, and the side.
-    rising: Vec<(VertexId, Port)>,
-    /// The others, in order.
-    falling: Vec<Port>,
+    /// Higher vertex and side of each rising side, grouped by the lower vertex.
+    rising: Vec<(VertexId, DualEdge)>,
+    /// Falling sides, in the order of the faces.
+    falling: Vec<DualEdge>,
 }
 
 impl Sides {
@@ -73,15 +77,16 @@ impl Sides {
             rising_count += *start;
             *start = rising_count;
         }
-        let rising = vec![(VertexId(0), Port::NONE); rising_count as usize + 1];
-        let falling = vec![Port::NONE; count - rising_count as usize + 1];
+        let rising = vec![(VertexId(0), DualEdge::NONE); rising_count as usize + 1];
+        let falling = vec![DualEdge::NONE; count - rising_count as usize + 1];
         let mut sides = Self { starts, rising, falling };
         sides.fill(faces);
         sides
     }
 
-    /// Writes down all sides, from the last to the first, for the starts walk down from their ends. What does not
-    /// belong where it is written is written over, or stands at the very end and is taken off.
+    /// Writes all sides from the last to the first, because the starts move down from the ends of
+    /// their groups. An entry in the wrong list is overwritten later, or lands in the last slot,
+    /// which is removed.
     fn fill(&mut self, faces: &[[VertexId; 3]]) {
         let (last_rising, last_falling) = (self.rising.len() - 1, self.falling.len() - 1);
         let mut falls = last_falling;
@@ -93,10 +98,10 @@ impl Sides {
                 let start = &mut self.starts[from.index()];
                 *start -= u32::from(rises);
                 let place = if rises { *start as usize } else { last_rising };
-                self.rising[place] = (to, Port::new(f, side));
+                self.rising[place] = (to, DualEdge::new(f, side));
                 falls -= usize::from(!rises);
                 let place = if rises { last_falling } else { falls };
-                self.falling[place] = Port::new(f, side);
+                self.falling[place] = DualEdge::new(f, side);
             }
         }
         self.rising.pop();
@@ -104,40 +109,40 @@ impl Sides {
     }
 }
 
-/// The same by sorting all sides by edge.
-fn sorted(faces: &[[VertexId; 3]]) -> Vec<Cell> {
+/// Pairs sides by sorting all of them by edge.
+fn sorted(faces: &[[VertexId; 3]]) -> Vec<DualNode> {
     let mut sides = Vec::with_capacity(3 * faces.len());
     for (f, face) in faces.iter().enumerate().filter(|(_, face)| has_three_corners(face)) {
         for side in 0..3 {
             let [from, to] = ends(face, side);
-            sides.push((from.min(to), from.max(to), from > to, Port::new(f, side)));
+            sides.push((from.min(to), from.max(to), from > to, DualEdge::new(f, side)));
         }
     }
-    sides.sort_unstable_by_key(|&(low, high, falls, port)| (low, high, falls, port.cell()));
-    let mut cells = vec![Cell::ALONE; faces.len()];
+    sides.sort_unstable_by_key(|&(low, high, falls, edge)| (low, high, falls, edge.node()));
+    let mut nodes = vec![DualNode::ISOLATED; faces.len()];
     for edge in sides.chunk_by(|a, b| (a.0, a.1) == (b.0, b.1)) {
         let (rising, falling) = edge.split_at(edge.partition_point(|side| !side.2));
         for (&(.., p), &(.., q)) in rising.iter().zip(falling) {
-            cells[p.cell()].across[p.side()] = q;
-            cells[q.cell()].across[q.side()] = p;
+            nodes[p.node()].across[p.side()] = q;
+            nodes[q.node()].across[q.side()] = p;
         }
     }
-    cells
+    nodes
 }
 
-/// The vertices a side of a face runs from and to.
+/// Returns the vertices a side of a face runs from and to.
 #[inline]
 pub(crate) fn ends(face: &[VertexId; 3], side: usize) -> [VertexId; 2] {
     [face[side], face[next(side)]]
 }
 
-/// The side after one.
+/// Returns the next side of a face.
 #[inline]
 pub(crate) fn next(side: usize) -> usize {
     if side == 2 { 0 } else { side + 1 }
 }
 
-/// The side before one.
+/// Returns the previous side of a face.
 #[inline]
 pub(crate) fn previous(side: usize) -> usize {
     if side == 0 { 2 } else { side - 1 }
@@ -153,7 +158,7 @@ mod tests {
     #[test]
     fn lists_and_sorting_find_the_same() {
         for mesh in [samples::sphere(500), fan(), moebius(9)] {
-            let by_lists = listed(&mesh.faces, mesh.positions.len());
+            let by_lists = pair_by_lists(&mesh.faces, mesh.positions.len());
             assert_eq!(by_lists, Some(sorted(&mesh.faces)));
         }
     }
@@ -165,11 +170,11 @@ mod tests {
             .map(|i| i * 1789 % blades)
             .map(|i| [0, i + 1, (i + 1) % blades + 1].map(VertexId))
             .collect();
-        assert_eq!(listed(&faces, 4001), None);
-        let joined = cells(&faces)
+        assert_eq!(pair_by_lists(&faces, 4001), None);
+        let joined = nodes(&faces)
             .iter()
-            .flat_map(|cell| cell.across)
-            .filter(|port| !port.is_none())
+            .flat_map(|node| node.across)
+            .filter(|edge| !edge.is_none())
             .count();
         assert_eq!(joined, 2 * blades as usize);
     }
@@ -178,15 +183,15 @@ mod tests {
     fn only_sides_that_run_opposite_are_paired() {
         let faces = [[0, 1, 2], [1, 0, 3], [1, 0, 4], [0, 1, 5], [6, 6, 7], [0, 1, u32::MAX]]
             .map(|face| face.map(VertexId));
-        for cells in [cells(&faces), listed(&faces[..5], 8).unwrap()] {
+        for nodes in [nodes(&faces), pair_by_lists(&faces[..5], 8).unwrap()] {
             let partner =
-                |f: usize| Some(cells[f].across[0]).filter(|p| !p.is_none()).map(Port::cell);
+                |f: usize| Some(nodes[f].across[0]).filter(|p| !p.is_none()).map(DualEdge::node);
             let mut partners = [partner(0), partner(3)];
             partners.sort();
             assert_eq!(partners, [Some(1), Some(2)]);
             assert_eq!(partner(4), None);
-            for (f, p) in cells.iter().enumerate().map(|(f, cell)| (f, cell.across[0])) {
-                assert!(p.is_none() || cells[p.cell()].across[p.side()] == Port::new(f, 0));
+            for (f, p) in nodes.iter().enumerate().map(|(f, node)| (f, node.across[0])) {
+                assert!(p.is_none() || nodes[p.node()].across[p.side()] == DualEdge::new(f, 0));
             }
         }
     }

@@ -1,24 +1,24 @@
-//! From paths of faces to the vertices that draw them.
+//! Turns paths of faces into vertex sequences.
 
 use meshlod_mesh::VertexId;
 
-use crate::cover::{Cover, Port};
 use crate::dual::{ends, next, previous};
+use crate::path_cover::{DualEdge, PathCover};
 use crate::strips::Strips;
 use crate::verify::has_three_corners;
 
-impl Cover {
-    /// The strips of the paths, in the order of their first cells; `faces` are those the cover is of. Faces that
-    /// repeat a vertex are left out.
+impl PathCover {
+    /// Builds the strips of the paths, in the order of their first nodes; `faces` are the faces of
+    /// the cover. Faces that repeat a vertex are left out.
     pub(crate) fn strips(&self, faces: &[[VertexId; 3]]) -> Strips {
         let mut strips = Strips::default();
-        let mut drawn = vec![false; self.cells.len()];
+        let mut drawn = vec![false; self.nodes.len()];
         let mut strip = Vec::new();
-        for cell in 0..self.cells.len() {
-            if has_three_corners(&faces[cell]) && self.is_end(cell) && !drawn[cell] {
-                let far = self.draw(faces, cell, &mut strip);
+        for node in 0..self.nodes.len() {
+            if has_three_corners(&faces[node]) && self.is_end(node) && !drawn[node] {
+                let far = self.draw(faces, node, &mut strip);
                 drawn[far] = true;
-                if self.better_end(cell, far) == far {
+                if self.better_end(node, far) == far {
                     strip.clear();
                     self.draw(faces, far, &mut strip);
                 }
@@ -28,29 +28,29 @@ impl Cover {
         strips
     }
 
-    /// Which of the two ends of a path to draw it from, so that it costs least; the first, if either will do.
+    /// Returns the end from which a path is cheaper to draw, `end` if both cost the same.
     pub(crate) fn better_end(&self, end: usize, far: usize) -> usize {
         if self.starts_odd(end) && !self.starts_odd(far) { far } else { end }
     }
 
-    /// Whether a strip that starts at this end of a path has to say its first vertex twice.
+    /// Returns whether a strip that starts at this end of a path must double its first vertex.
     ///
-    /// The second triangle drops the older of the two vertices it shares with the first, and so decides in which
-    /// order they come; the winding of the first triangle may not agree with that order.
+    /// The second triangle drops the older of the two vertices it shares with the first, and so
+    /// decides their order, which may not agree with the winding of the first triangle.
     pub(crate) fn starts_odd(&self, end: usize) -> bool {
-        let entry = self.cells[end].links.first().map(|side| self.cells[end].across[side]);
+        let entry = self.nodes[end].links.first().map(|side| self.nodes[end].across[side]);
         entry.is_some_and(|entry| self.turn(entry) == Some(Turn::Next))
     }
 
-    /// Where the path that comes in through `entry` goes on; nowhere, if it ends there.
+    /// Returns the turn of the path that enters by `entry`, `None` if it ends there.
     #[inline]
-    pub(crate) fn turn(&self, entry: Port) -> Option<Turn> {
-        let onward = self.cells[entry.cell()].links.without(entry.side()).first()?;
+    pub(crate) fn turn(&self, entry: DualEdge) -> Option<Turn> {
+        let onward = self.nodes[entry.node()].links.without(entry.side()).first()?;
         Some(if onward == next(entry.side()) { Turn::Next } else { Turn::Previous })
     }
 
-    /// Puts the vertices of the path that ends in `end` behind those of `strip`, which are even in number. The other
-    /// end of the path.
+    /// Appends the vertices of the path that ends at `end` to `strip`, whose length must be even.
+    /// Returns the other end of the path.
     pub(crate) fn draw(
         &self,
         faces: &[[VertexId; 3]],
@@ -58,7 +58,7 @@ impl Cover {
         strip: &mut Vec<VertexId>,
     ) -> usize {
         let face = &faces[end];
-        let Some(side) = self.cells[end].links.first() else {
+        let Some(side) = self.nodes[end].links.first() else {
             strip.extend(face);
             return end;
         };
@@ -70,39 +70,39 @@ impl Cover {
             (older, newer) = (newer, older);
         }
         strip.extend([older, newer]);
-        let mut entry = self.cells[end].across[side];
+        let mut entry = self.nodes[end].across[side];
         loop {
-            let face = &faces[entry.cell()];
+            let face = &faces[entry.node()];
             let found = face[previous(entry.side())];
             let Some(turn) = self.turn(entry) else {
                 strip.push(found);
-                return entry.cell();
+                return entry.node();
             };
-            // The older vertex is dropped, unless it is said once more: a swap.
+            // The older vertex is dropped unless it is repeated, which is a swap.
             let pivot = ends(face, entry.side())[usize::from(turn == Turn::Next)];
             if pivot == older {
                 strip.push(older);
             }
             strip.push(found);
             older = pivot;
-            entry = self.cells[entry.cell()].across[turn.side(entry)];
+            entry = self.nodes[entry.node()].across[turn.side(entry)];
         }
     }
 }
 
-/// Which side a path leaves a cell by.
+/// Direction in which a path leaves a node, relative to the side it entered by.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(crate) enum Turn {
-    /// The side after the one it came in by: it turns about the last vertex of that one.
+    /// By the next side, about the last vertex of the entry side.
     Next,
-    /// The side before: it turns about the first vertex of that one.
+    /// By the previous side, about the first vertex of the entry side.
     Previous,
 }
 
 impl Turn {
-    /// The side it leaves by, having come in by `entry`.
+    /// Returns the side of departure for an entry.
     #[inline]
-    pub(crate) fn side(self, entry: Port) -> usize {
+    pub(crate) fn side(self, entry: DualEdge) -> usize {
         if self == Self::Next { next(entry.side()) } else { previous(entry.side()) }
     }
 

@@ -1,50 +1,53 @@
-//! What a cover costs, so that what a link changes is known from the cells beside it.
+//! The cost of a path cover, as a sum of local terms, so that a change of a link is priced from its
+//! neighbourhood.
 
-use crate::cover::{Links, Port};
+use crate::path_cover::{DualEdge, Links};
 
-/// What strips cost beyond one vertex for each triangle; a thousand vertices at most.
+/// Prices of strips beyond one vertex per triangle, each clamped to a thousand vertices.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Prices {
-    /// A strip: its first two vertices, and a restart if that counts.
+    /// Price of a strip: its first two vertices, and a restart if that counts.
     pub strip: f64,
-    /// A swap: a vertex said again.
+    /// Price of a swap, which repeats a vertex.
     pub swap: f64,
-    /// An end of a strip at which it cannot start without doubling a vertex. A strip has two ends and pays only
-    /// if it can start at neither.
+    /// Price of an end at which a strip cannot start without doubling a vertex. A strip has two
+    /// ends and pays only if it can start at neither.
     pub odd_end: f64,
 }
 
 impl Default for Prices {
-    /// Fewest vertices: a restart costs nothing. An odd end costs .4: of the bunny, 60 moves a face, .5 and .3 leave .001
-    /// vertices a face more.
+    /// Returns the prices for the fewest vertices, where a restart is free. An odd end costs .4: on
+    /// the bunny with 60 moves per face, .5 and .3 leave .001 vertices per face more.
     fn default() -> Self {
         Self { strip: 2.0, swap: 1.0, odd_end: 0.4 }
     }
 }
 
 impl Prices {
-    /// Fewest indices, where a restart between strips is one. The bunny, 1000 moves a face: 1.106 indices and 1.089
-    /// vertices a face with 2.5 for a strip, 1.109 and 1.086 without.
+    /// Returns the prices for the fewest indices, where a restart is an index. The bunny, 1000
+    /// moves per face: 1.106 indices and 1.089 vertices per face with 2.5 for a strip, 1.109 and
+    /// 1.086 without.
     pub fn with_restarts() -> Self {
         Self { strip: 3.0, ..Self::default() }
     }
 }
 
-/// The parts of a vertex that prices are told in: whole numbers sum up to the same in any order.
+/// Fixed-point units per vertex; integers give the same sum in any order.
 pub(crate) const UNIT: f64 = 256.0;
 
-/// The prices as tables.
+/// Lookup tables of the prices.
 #[derive(Clone, Debug)]
 pub(crate) struct Energy {
-    /// Of a cell, by its links.
-    cells: [i32; 8],
-    /// Of a link, by how its path goes on beyond both its cells: 4 × [`ONWARD`] of one + that of the other.
+    /// Cost of a node by its links.
+    nodes: [i32; 8],
+    /// Cost of a link by how its path goes on at both ends: 4 · [`ONWARD`] of one end + [`ONWARD`]
+    /// of the other.
     links: [i32; 16],
-    most_won_back: i32,
+    max_regain: i32,
 }
 
-/// By the links of a cell and one of them: how the path goes on beyond that cell. 0: it ends. 1: by the next side.
-/// 2: by the previous side.
+/// How a path goes on beyond a node, by the node's links and the side of entry: 0 for an end, 1 by
+/// the next side, 2 by the previous side.
 const ONWARD: [[u8; 4]; 8] = [
     [0, 0, 0, 0],
     [0, 0, 0, 0],
@@ -56,49 +59,51 @@ const ONWARD: [[u8; 4]; 8] = [
     [0, 0, 0, 0],
 ];
 
-/// A price of more vertices counts as so many.
-const MOST: f64 = 1000.0;
+/// Largest price, in vertices.
+const MAX_PRICE: f64 = 1000.0;
 
 impl Energy {
     pub(crate) fn new(prices: &Prices) -> Self {
-        let units = |price: f64| (price.clamp(-MOST, MOST) * UNIT).round() as i32;
+        let units = |price: f64| (price.clamp(-MAX_PRICE, MAX_PRICE) * UNIT).round() as i32;
         let (strip, swap, odd) = (units(prices.strip), units(prices.swap), units(prices.odd_end));
-        let mut cells = [0; 8];
-        for (links, cost) in cells.iter_mut().enumerate() {
+        let mut nodes = [0; 8];
+        for (links, cost) in nodes.iter_mut().enumerate() {
             *cost = (strip * (2 - links.count_ones() as i32)) / 2;
         }
         let mut links = [0; 16];
-        // Both turn about the same vertex where one goes on by the next side and the other by the previous one.
+        // Both ends turn about the same vertex if one goes on by the next side and the other by the
+        // previous one.
         (links[4 + 2], links[2 * 4 + 1]) = (swap, swap);
         (links[1], links[4]) = (odd, odd);
-        Self { cells, links, most_won_back: strip + swap }
+        Self { nodes, links, max_regain: strip + swap }
     }
 
-    /// What a link between `p` and `q` costs, by the links of their cells.
+    /// Returns the cost of a link between `p` and `q`, given the links of their nodes.
     #[inline]
-    pub(crate) fn link(&self, p: Port, of_p: Links, q: Port, of_q: Links) -> i32 {
-        let onward = |port: Port, links: Links| ONWARD[links.bits()][port.side()] as usize;
+    pub(crate) fn link(&self, p: DualEdge, of_p: Links, q: DualEdge, of_q: Links) -> i32 {
+        let onward = |edge: DualEdge, links: Links| ONWARD[links.bits()][edge.side()] as usize;
         self.links[onward(p, of_p) * 4 + onward(q, of_q)]
     }
 
-    /// What a trail that goes on is expected to win back at most: a strip, where it meets an end, and a swap.
-    /// The bunny, 60 moves a face: two swaps less 1.107 vertices a face in .8 s, half a swap less or more 1.104 in .9, no
-    /// end to it 1.106 in 1.9.
+    /// Most that a tunnel is expected to regain by going on: a strip, if it meets an end, and a
+    /// swap. The bunny, 60 moves per face: two swaps less give 1.107 vertices per face in .8 s,
+    /// half a swap less or more 1.104 in .9 s, no limit 1.106 in 1.9 s.
     #[inline]
-    pub(crate) fn most_won_back(&self) -> i32 {
-        self.most_won_back
+    pub(crate) fn max_regain(&self) -> i32 {
+        self.max_regain
     }
 
-    /// What a cell costs by its links.
+    /// Returns the cost of a node, given its links.
     #[inline]
-    pub(crate) fn cell(&self, links: Links) -> i32 {
-        self.cells[links.bits()]
+    pub(crate) fn node(&self, links: Links) -> i32 {
+        self.nodes[links.bits()]
     }
 }
 
-/// Whether a path swaps at a link between `p` and `q`: it turns about the same vertex before and after.
+/// Returns whether a path swaps at a link between `p` and `q`, that is, turns about the same vertex
+/// before and after.
 #[inline]
-pub(crate) fn swaps(p: Port, of_p: Links, q: Port, of_q: Links) -> bool {
-    let onward = |port: Port, links: Links| ONWARD[links.bits()][port.side()];
+pub(crate) fn swaps(p: DualEdge, of_p: Links, q: DualEdge, of_q: Links) -> bool {
+    let onward = |edge: DualEdge, links: Links| ONWARD[links.bits()][edge.side()];
     onward(p, of_p) + onward(q, of_q) == 3 && onward(p, of_p) != 0 && onward(q, of_q) != 0
 }

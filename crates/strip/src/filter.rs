@@ -1,26 +1,26 @@
-//! What is taken out of display strips: vertices that draw nothing.
+//! Filters that remove vertices which draw nothing from display strips.
 
 use meshlod_mesh::VertexId;
 
 use crate::strips::Strips;
 use crate::verify::has_three_corners;
 
-/// A way to shorten a display strip that looks at nothing else. All draw what the strip draws.
+/// A filter that shortens a display strip by looking at that strip alone, without changing what it
+/// draws.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Filter {
-    /// Nothing is taken out.
+    /// Removes nothing.
     #[default]
     None,
-    /// The simple triangle strip scanner [ESAV99]: what says one or two vertices again and again says
-    /// them once.
+    /// The simple triangle strip scanner [ESAV99]: collapses repetitions of one or two vertices.
     Stss,
-    /// The degenerate-triangle-free filter [KY05]: the strip is written anew of the triangles it draws,
-    /// as far as each goes on from the one before.
+    /// The degenerate-triangle-free filter [KY05]: rebuilds strips from the triangles drawn, as far
+    /// as each continues the one before.
     Dtff,
 }
 
 impl Filter {
-    /// Appends what is left of a strip.
+    /// Filters a strip and appends the result to `to`.
     ///
     /// Cost: linear.
     pub fn strip(self, strip: &[VertexId], to: &mut Strips) {
@@ -32,7 +32,8 @@ impl Filter {
     }
 }
 
-/// (*aa*)⁺ becomes *aa*, (*ab*)⁺ becomes *ab*: two vertices at a time, so windings stay.
+/// Collapses (*aa*)⁺ to *aa* and (*ab*)⁺ to *ab*; it removes two vertices at a time, so windings
+/// are kept.
 fn stss(strip: &[VertexId]) -> Vec<VertexId> {
     let mut left = Vec::with_capacity(strip.len());
     for &vertex in strip {
@@ -57,7 +58,8 @@ fn dtff(strip: &[VertexId], to: &mut Strips) {
             Some(Step::Swap) => written.extend([b, c]),
             Some(Step::Reset) | None => {
                 to.push(written.drain(..));
-                // One that begins at an odd place pays for its winding.
+                // A strip that begins at an odd position doubles its first vertex to keep the
+                // winding.
                 written.extend((place % 2 == 1).then_some(a));
                 written.extend([a, b, c]);
             }
@@ -67,20 +69,20 @@ fn dtff(strip: &[VertexId], to: &mut Strips) {
     to.push(written);
 }
 
-/// A triangle as a strip says it.
+/// A triangle of a strip and its position.
 #[derive(Clone, Copy)]
 struct Window {
     place: usize,
     corners: [VertexId; 3],
 }
 
-/// How a strip gets from a triangle to the next [KY05, 3.1].
+/// How a strip gets from one triangle to the next [KY05, 3.1].
 enum Step {
-    /// *abc*, *bcd*: by a vertex.
+    /// *abc*, *bcd*: by one vertex.
     Regular,
-    /// *abc*, *cbd*, wound alike: by two, and one window that draws nothing.
+    /// *abc*, *cbd*, with the same winding: by two vertices and one degenerate window.
     Swap,
-    /// Not at all.
+    /// The strip ends and a new one starts.
     Reset,
 }
 
@@ -117,7 +119,7 @@ mod tests {
 
     #[test]
     fn the_filter_does_what_the_paper_shows() {
-        // [KY05, 3.1], with the vertex put back that the print lost, and without the one too many
+        // [KY05, 3.1], with the vertex restored that the print lost, and without the surplus one
         // behind its swap.
         assert_eq!(filtered(Filter::Dtff, "aabcbcbcddccdcffxxyzz"), ["aabcdcf", "xxyz"]);
     }

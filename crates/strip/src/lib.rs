@@ -1,42 +1,44 @@
-//! Triangle strips that follow the level.
+//! Triangle strips for meshes and for all their levels of detail.
 //!
-//! [`Strips`] are what a GPU draws as strips: sequences of vertices, every three in a row a triangle, every
-//! second one turned. [`difference`] says whether they draw exactly the triangles of a mesh.
+//! [`Strips`] hold strips as a GPU draws them: vertex sequences in which every three consecutive
+//! vertices form a triangle, every second one with reversed winding. [`difference`] checks that
+//! they draw exactly the triangles of a mesh.
 //!
-//! [`stripify`] makes strips of any faces: fast ones in one pass, or the best that a path cover of the dual graph can
-//! be annealed to; and cuts and orders them for a vertex cache if it is asked to. [`StripStatistics`] say what they
-//! send.
+//! [`stripify`] builds strips from any list of faces: greedily in one pass, or by annealing a path
+//! cover of the dual graph. On request it cuts and orders them for a vertex cache.
+//! [`StripStatistics`] count the vertices and indices sent.
 //!
 //! ```
 //! use meshlod_samples as samples;
-//! use meshlod_strip::{Options, Quality, StripStatistics, difference, stripify};
+//! use meshlod_strip::{StripOptions, StripQuality, StripStatistics, difference, stripify};
 //!
 //! let faces = samples::sphere(1000).faces;
-//! let fast = stripify(&faces, &Options { quality: Quality::Fast, ..Options::default() });
-//! let best = stripify(&faces, &Options::default());
+//! let fast = stripify(&faces, &StripOptions { quality: StripQuality::Fast, ..StripOptions::default() });
+//! let best = stripify(&faces, &StripOptions::default());
 //! assert_eq!(difference(&best, &faces), Default::default());
 //! assert!(best.vertices().len() <= fast.vertices().len());
 //! assert!(StripStatistics::new(&best).vertices_sent < faces.len() * 5 / 4);
 //! ```
 //!
-//! A [`SkipStrip`] leads the strips of a mesh down the half-edge contractions of a [`MergeTree`]: to every level its
-//! display strips, shortened by a [`Filter`] or [repaired](SkipStrip::repaired). [`LevelStrips`] and [`CutStrips`] follow
-//! levels and cuts for the price of what changes. docs/notes/strips.md tells how.
+//! A [`SkipStrip`] carries the strips of a mesh down the half-edge contractions of a [`MergeTree`].
+//! It gives display strips for every level, shortened by a [`Filter`] or
+//! [repaired](SkipStrip::repaired). [`LevelStrips`] and [`CutStrips`] follow levels and cuts at a
+//! cost proportional to the change. See docs/notes/strips.md.
 
 #![forbid(unsafe_code)]
 
 mod anneal;
-mod cover;
+mod cache_runs;
 mod dual;
 mod emit;
 mod energy;
-mod even;
 mod filter;
 mod greedy;
 mod measure;
 mod order;
 mod overdraw;
-mod pieces;
+mod parity;
+mod path_cover;
 mod random;
 mod region;
 mod repair;
@@ -45,17 +47,17 @@ mod sequence;
 mod skip;
 mod stripify;
 mod strips;
-mod trail;
+mod tunnel;
 mod verify;
 
+pub use cache_runs::CacheAware;
 pub use energy::Prices;
 pub use filter::Filter;
 pub use measure::{StripStatistics, acmr};
 pub use overdraw::overdraw;
-pub use pieces::CacheAware;
-pub use repair::{Effort, LevelStrips, LiveStrips};
+pub use repair::{LevelStrips, LiveStrips, StripEffort};
 pub use selective::{CutStrips, PointsMove};
 pub use skip::{HistoryError, MergeTree, SkipStrip};
-pub use stripify::{Options, Quality, stripify};
+pub use stripify::{StripOptions, StripQuality, stripify};
 pub use strips::Strips;
 pub use verify::{Difference, difference};

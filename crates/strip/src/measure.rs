@@ -1,4 +1,4 @@
-//! What strips cost.
+//! Statistics of strips.
 
 use std::collections::VecDeque;
 
@@ -6,33 +6,35 @@ use meshlod_mesh::VertexId;
 
 use crate::strips::{Strips, drawn};
 
-/// What strips send, and what a vertex cache makes of it.
+/// Vertices and indices that strips send, and how well a vertex cache serves them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StripStatistics {
-    /// Triangles drawn.
+    /// Number of triangles drawn.
     pub triangles: usize,
-    /// Vertices sent where each strip is drawn on its own.
+    /// Number of vertices sent if each strip is drawn on its own.
     pub vertices_sent: usize,
-    /// Indices of one draw with a restart between strips.
+    /// Number of indices of one draw call with a restart between strips.
     pub indices_with_restart: usize,
-    /// Indices of one draw where triangles that draw nothing lead from strip to strip.
+    /// Number of indices of one draw call with degenerate triangles between strips.
     pub indices_stitched: usize,
-    /// How many strips there are.
+    /// Number of strips.
     pub strips: usize,
-    /// Places inside strips where three vertices in a row draw nothing: each swap makes one.
+    /// Number of degenerate windows inside strips; each swap makes one.
     pub swaps: usize,
-    /// First vertices said twice, so that a strip begins with an odd triangle.
+    /// Number of strips that double their first vertex to begin with an odd triangle.
     pub odd_starts: usize,
-    /// Vertices transformed by triangle with a cache of 16, first in, first out; 0 without triangles.
+    /// Vertices transformed per triangle with a first-in, first-out cache of 16 entries; 0 without
+    /// triangles.
     pub acmr16: f64,
-    /// Likewise with a cache of 32.
+    /// Vertices transformed per triangle with a first-in, first-out cache of 32 entries; 0 without
+    /// triangles.
     pub acmr32: f64,
 }
 
 impl StripStatistics {
     /// Measures strips.
     ///
-    /// Cost: linear, with 48 comparisons a vertex.
+    /// Cost: linear, with 48 comparisons per vertex.
     pub fn new(strips: &Strips) -> Self {
         let triangles = strips.triangles().count();
         let nothing = |strip: &[VertexId]| strip.len().saturating_sub(2) - drawn(strip).count();
@@ -51,13 +53,13 @@ impl StripStatistics {
     }
 }
 
-/// Whether a strip says its first vertex twice.
+/// Returns whether a strip doubles its first vertex.
 pub(crate) fn starts_odd(strip: &[VertexId]) -> bool {
     strip.len() > 2 && strip[0] == strip[1]
 }
 
-/// How many vertices are transformed for each triangle with a cache of `entries` that drops the one that came first;
-/// 0 without triangles.
+/// Returns the vertices transformed per triangle (average cache miss ratio) with a first-in,
+/// first-out cache; 0 without triangles.
 pub fn acmr(strips: &Strips, entries: usize) -> f64 {
     let mut cache = VecDeque::new();
     let mut misses = 0_usize;
@@ -100,7 +102,7 @@ mod tests {
     fn what_came_first_goes_first() {
         let mut strips = Strips::default();
         strips.push([0, 1, 2, 0, 3, 0].map(VertexId));
-        // With three entries 0 is still there when it comes again, but 3 drives it out all the same.
+        // With three entries 0 is still cached when it is repeated, but 3 evicts it all the same.
         let triangles = strips.triangles().count() as f64;
         assert_eq!(acmr(&strips, 3) * triangles, 5.0);
         assert_eq!(acmr(&strips, 4) * triangles, 4.0);

@@ -1,21 +1,22 @@
-//! Faces that lie side by side brought near each other in memory.
+//! Breadth-first order of faces, which brings neighbours close to each other in memory.
 
-use crate::cover::{Cell, Cover, Port};
+use crate::path_cover::{DualEdge, DualNode, PathCover};
 
-/// The faces of a mesh in the order of their distance, in faces, from one of them.
+/// Faces in breadth-first order of the dual graph.
 pub(crate) struct Order {
-    /// The faces, first to last.
+    /// The faces in this order.
     pub(crate) faces: Vec<u32>,
-    /// The most faces that are at one distance.
+    /// Largest number of faces at one distance.
     pub(crate) widest: usize,
 }
 
 impl Order {
-    /// Breadth first from the first face of each component.
+    /// Traverses each component breadth first from its first face.
     ///
-    /// A run of this order that is longer than `widest` has neighbours only in the runs before and after.
-    pub(crate) fn new(cover: &Cover) -> Self {
-        let count = cover.cells.len();
+    /// A run of this order longer than `widest` has neighbours only in the runs before and after
+    /// it.
+    pub(crate) fn new(cover: &PathCover) -> Self {
+        let count = cover.nodes.len();
         let mut faces = Vec::with_capacity(count);
         let mut reached = vec![false; count];
         let mut widest = 0;
@@ -29,9 +30,9 @@ impl Order {
                 let next = faces.len();
                 widest = widest.max(next - ring);
                 for at in ring..next {
-                    for port in cover.cells[faces[at] as usize].across {
-                        if !port.is_none() && !std::mem::replace(&mut reached[port.cell()], true) {
-                            faces.push(port.cell() as u32);
+                    for edge in cover.nodes[faces[at] as usize].across {
+                        if !edge.is_none() && !std::mem::replace(&mut reached[edge.node()], true) {
+                            faces.push(edge.node() as u32);
                         }
                     }
                 }
@@ -41,22 +42,22 @@ impl Order {
         Self { faces, widest }
     }
 
-    /// The things that belong to the faces, in this order.
+    /// Sorts per-face values into this order.
     pub(crate) fn sorted<T: Copy>(&self, things: &[T]) -> Vec<T> {
         self.faces.iter().map(|&face| things[face as usize]).collect()
     }
 
-    /// The cover of the faces in this order.
-    pub(crate) fn sort(&self, cover: &Cover) -> Cover {
+    /// Sorts a cover into this order.
+    pub(crate) fn sort(&self, cover: &PathCover) -> PathCover {
         let mut place = vec![0; self.faces.len()];
         for (at, &face) in self.faces.iter().enumerate() {
             place[face as usize] = at as u32;
         }
-        let moved = |port: Port| match port.is_none() {
-            true => port,
-            false => Port::new(place[port.cell()] as usize, port.side()),
+        let moved = |edge: DualEdge| match edge.is_none() {
+            true => edge,
+            false => DualEdge::new(place[edge.node()] as usize, edge.side()),
         };
-        let cell = |cell: Cell| Cell { across: cell.across.map(moved), ..cell };
-        Cover { cells: self.sorted(&cover.cells).into_iter().map(cell).collect() }
+        let node = |node: DualNode| DualNode { across: node.across.map(moved), ..node };
+        PathCover { nodes: self.sorted(&cover.nodes).into_iter().map(node).collect() }
     }
 }

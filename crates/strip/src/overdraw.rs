@@ -1,15 +1,20 @@
-//! How often the same pixel is shaded again.
+//! Overdraw: how often a covered pixel is shaded.
 
 use meshlod_mesh::VertexId;
 
-/// Pixels along each side of a view. A triangle of a dense mesh covers few of them, and that is what is drawn.
+/// Pixels along each side of a view. The triangles of a dense mesh cover few pixels, as when it is
+/// drawn.
 const SIZE: usize = 256;
 
-/// An estimate of how many times a pixel that is covered is shaded, if `triangles` are drawn in their order: the mean
-/// over views along the axes, from both ends, without perspective. 1 is the least; 0 where nothing is seen.
+/// Estimates overdraw: how many times a covered pixel is shaded if `triangles` are drawn in order,
+/// as the mean over orthographic views along the axes from both ends. At least 1; 0 if nothing is
+/// visible.
 ///
-/// A pixel is shaded where its centre lies in a triangle that faces the viewer and nothing drawn so far is nearer.
-/// `positions` are those of the vertices; what is not finite is not drawn. Panics on a vertex without a position.
+/// A pixel is shaded if its centre lies in a triangle that faces the viewer and nothing drawn
+/// before is nearer. Triangles with non-finite positions are not drawn.
+///
+/// # Panics
+/// On a vertex without a position.
 pub fn overdraw(
     triangles: impl Iterator<Item = [VertexId; 3]> + Clone,
     positions: &[[f64; 3]],
@@ -32,15 +37,15 @@ pub fn overdraw(
     if covered == 0 { 0.0 } else { shaded as f64 / covered as f64 }
 }
 
-/// The cube that is seen.
+/// The cube in view.
 struct Frame {
     low: [f64; 3],
-    /// Pixels by unit of length.
+    /// Pixels per unit of length.
     scale: f64,
 }
 
 impl Frame {
-    /// Nothing, where the positions have no finite extent.
+    /// Encloses the positions; `None` without a finite extent.
     fn new(positions: impl Iterator<Item = [f64; 3]>) -> Option<Self> {
         let mut low = [f64::INFINITY; 3];
         let mut high = [f64::NEG_INFINITY; 3];
@@ -54,18 +59,19 @@ impl Frame {
         (extent > 0.0 && extent.is_finite()).then(|| Self { low, scale: SIZE as f64 / extent })
     }
 
-    /// Where a place is seen, in pixels, and how far from the viewer.
+    /// Projects a position to pixels and depth.
     fn seen(&self, position: [f64; 3], axis: usize, from_above: bool) -> [f64; 3] {
         let at = |k: usize| (position[k] - self.low[k]) * self.scale;
         let [x, y, z] = [at((axis + 1) % 3), at((axis + 2) % 3), at(axis)];
-        // From below the picture is mirrored, so that what winds counter-clockwise still faces the viewer.
+        // Seen from below the picture is mirrored, so that counter-clockwise triangles still face
+        // the viewer.
         if from_above { [x, y, -z] } else { [y, x, z] }
     }
 }
 
-/// What is seen along one axis.
+/// A depth buffer for one direction.
 struct View {
-    /// How far what is nearest is, by pixel.
+    /// Smallest depth by pixel.
     nearest: Vec<f64>,
     shaded: usize,
 }
@@ -87,7 +93,8 @@ impl View {
             for x in first(0)..end(0) {
                 let at = [x as f64 + 0.5, y as f64 + 0.5, 0.0];
                 let weights = [cross(b, c, at), cross(c, a, at), cross(a, b, at)];
-                // A centre on an edge is taken by both sides: the estimate is none the worse.
+                // Both triangles at an edge take a centre on it, which does not matter to the
+                // estimate.
                 if weights.iter().all(|&weight| weight >= 0.0) {
                     let depth = (weights[0] * a[2] + weights[1] * b[2] + weights[2] * c[2]) / area;
                     let nearest = &mut self.nearest[y * SIZE + x];
@@ -101,7 +108,7 @@ impl View {
     }
 }
 
-/// Twice the area of a triangle in the picture, positive where it winds counter-clockwise.
+/// Returns twice the area of a triangle in the picture, positive if it winds counter-clockwise.
 fn cross(a: [f64; 3], b: [f64; 3], c: [f64; 3]) -> f64 {
     (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
 }

@@ -1,57 +1,58 @@
-//! Cells whose links are changed step by step, and what each step costs.
+//! Part of a path cover whose links are changed step by step, with the cost of each step.
 
-use crate::cover::{Cell, Links, Port};
 use crate::energy::{Energy, swaps};
+use crate::path_cover::{DualEdge, DualNode, Links};
 
-/// Some cells of a cover in a row. Those with a neighbour outside must be held: then what a change costs is seen
-/// from cells inside, and regions beside each other can be changed at the same time.
+/// A run of consecutive nodes of a cover. Nodes with a neighbour outside must be frozen: then the
+/// cost of a change depends only on nodes inside, and adjacent regions can be changed in parallel.
 pub(crate) struct Region<'a> {
-    cells: &'a mut [Cell],
-    /// The cell that `cells` begin with.
+    nodes: &'a mut [DualNode],
+    /// Index of the first of `nodes` in the cover.
     first: usize,
     energy: &'a Energy,
 }
 
-/// How far a path is walked each way to see that it ends. The bunny, 60 moves a face: 256 leave 1.0941 vertices a face
-/// in 1.1 s, 1024 1.0927 in 1.4. A ribbon of 4,000 faces, all one path: 1.7 s and 6.4, and without a limit the square.
-const MOST_WALKED: usize = 256;
+/// Limit on walking a path each way to find its end. The bunny, 60 moves per face: 1.0941 vertices
+/// per face in 1.1 s with 256, 1.0927 in 1.4 s with 1024. A ribbon of 4,000 faces in one path takes
+/// 1.7 s and 6.4 s, and quadratic time without a limit.
+const MAX_WALK: usize = 256;
 
 impl<'a> Region<'a> {
-    pub(crate) fn new(cells: &'a mut [Cell], first: usize, energy: &'a Energy) -> Self {
-        Self { cells, first, energy }
+    pub(crate) fn new(nodes: &'a mut [DualNode], first: usize, energy: &'a Energy) -> Self {
+        Self { nodes, first, energy }
     }
 
-    /// The cells it has.
+    /// Returns the nodes of the region.
     pub(crate) fn range(&self) -> std::ops::Range<usize> {
-        self.first..self.first + self.cells.len()
+        self.first..self.first + self.nodes.len()
     }
 
     #[inline]
-    pub(crate) fn cell(&self, cell: usize) -> &Cell {
-        &self.cells[cell - self.first]
+    pub(crate) fn node(&self, node: usize) -> &DualNode {
+        &self.nodes[node - self.first]
     }
 
     #[inline]
-    pub(crate) fn links(&self, cell: usize) -> Links {
-        self.cell(cell).links
+    pub(crate) fn links(&self, node: usize) -> Links {
+        self.node(node).links
     }
 
     #[inline]
-    pub(crate) fn across(&self, port: Port) -> Port {
-        self.cell(port.cell()).across[port.side()]
+    pub(crate) fn across(&self, edge: DualEdge) -> DualEdge {
+        self.node(edge.node()).across[edge.side()]
     }
 
-    /// Whether a trail that has cost so much may still end with a cost below `limit`.
+    /// Returns whether a tunnel of this cost may still come down to `limit`.
     #[inline]
-    pub(crate) fn may_pay(&self, cost: i32, limit: i32) -> bool {
-        cost <= limit + self.energy.most_won_back()
+    pub(crate) fn can_pay(&self, cost: i32, limit: i32) -> bool {
+        cost <= limit + self.energy.max_regain()
     }
 
-    /// Makes the link at `p` where it is not, cuts it where it is; what that adds to the cost.
+    /// Toggles the link at `p` and returns the change in cost.
     #[inline]
-    pub(crate) fn toggle(&mut self, p: Port) -> i32 {
+    pub(crate) fn toggle(&mut self, p: DualEdge) -> i32 {
         let q = self.across(p);
-        let (of_p, of_q) = (self.links(p.cell()), self.links(q.cell()));
+        let (of_p, of_q) = (self.links(p.node()), self.links(q.node()));
         let made = !of_p.has(p.side());
         let link = self.energy.link(p, of_p.with(p.side()), q, of_q.with(q.side()));
         let cost = self.beside(p) + self.beside(q) + if made { link } else { -link };
@@ -59,56 +60,57 @@ impl<'a> Region<'a> {
         cost
     }
 
-    /// [`Region::toggle`] without the cost.
+    /// Toggles the link at `p` without computing the cost.
     #[inline]
-    pub(crate) fn flip(&mut self, p: Port) {
-        for port in [p, self.across(p)] {
-            let links = &mut self.cells[port.cell() - self.first].links;
-            *links = links.toggled(port.side());
+    pub(crate) fn flip(&mut self, p: DualEdge) {
+        for edge in [p, self.across(p)] {
+            let links = &mut self.nodes[edge.node() - self.first].links;
+            *links = links.toggled(edge.side());
         }
     }
 
-    /// Whether a cell ends a path, or the path swaps beside it.
-    pub(crate) fn is_defect(&self, cell: usize) -> bool {
-        let links = self.links(cell);
+    /// Returns whether a node ends a path or is next to a swap.
+    pub(crate) fn is_defect(&self, node: usize) -> bool {
+        let links = self.links(node);
         let swaps = |side| {
-            let here = Port::new(cell, side);
+            let here = DualEdge::new(node, side);
             let there = self.across(here);
-            swaps(here, links, there, self.links(there.cell()))
+            swaps(here, links, there, self.links(there.node()))
         };
         links.count() < 2 || (0..3).any(|side| links.has(side) && swaps(side))
     }
 
-    /// What toggling `p` adds to the cost of its cell and of the cell's other link.
+    /// Returns the change in cost of a node and its other link when `p` is toggled.
     #[inline]
-    fn beside(&self, p: Port) -> i32 {
-        let cell = self.cell(p.cell());
-        let (old, new) = (cell.links, cell.links.toggled(p.side()));
-        let cost = self.energy.cell(new) - self.energy.cell(old);
+    fn beside(&self, p: DualEdge) -> i32 {
+        let node = self.node(p.node());
+        let (old, new) = (node.links, node.links.toggled(p.side()));
+        let cost = self.energy.node(new) - self.energy.node(old);
         let Some(side) = old.without(p.side()).first() else { return cost };
-        let here = Port::new(p.cell(), side);
-        let there = cell.across[side];
-        let of_there = self.links(there.cell());
+        let here = DualEdge::new(p.node(), side);
+        let there = node.across[side];
+        let of_there = self.links(there.node());
         cost + self.energy.link(here, new, there, of_there)
             - self.energy.link(here, old, there, of_there)
     }
 
-    /// Whether the path through the link at `p` ends somewhere. False also where that is not known, because the
-    /// path leaves the region on both sides or is too long both ways: what is so long need not change here.
-    pub(crate) fn ends(&self, p: Port) -> bool {
+    /// Returns whether the path through the link at `p` is known to end. False if it closes, leaves
+    /// the region both ways, or is longer than [`MAX_WALK`] both ways: such a long path need not
+    /// change here.
+    pub(crate) fn ends(&self, p: DualEdge) -> bool {
         let q = self.across(p);
-        // Both ways at once: an end is as far as the nearer one.
+        // Walk both ways at once, so that the nearer end decides.
         let (mut ahead, mut behind) = (Some(p), Some(q));
-        for _ in 0..MOST_WALKED {
+        for _ in 0..MAX_WALK {
             for (walker, start) in [(&mut ahead, q), (&mut behind, p)] {
                 let Some(entry) = *walker else { continue };
-                let cell = self.cell(entry.cell());
-                let Some(side) = cell.links.without(entry.side()).first() else { return true };
-                let next = cell.across[side];
-                if next.cell() == start.cell() {
+                let node = self.node(entry.node());
+                let Some(side) = node.links.without(entry.side()).first() else { return true };
+                let next = node.across[side];
+                if next.node() == start.node() {
                     return false;
                 }
-                *walker = Some(next).filter(|next| self.range().contains(&next.cell()));
+                *walker = Some(next).filter(|next| self.range().contains(&next.node()));
             }
         }
         false
@@ -120,23 +122,24 @@ mod tests {
     use meshlod_mesh::VertexId;
 
     use super::*;
-    use crate::cover::Cover;
     use crate::energy::Prices;
+    use crate::path_cover::PathCover;
 
     #[test]
     fn an_end_is_looked_for_no_further_than_it_pays() {
-        // A ribbon that does not close.
+        // An open ribbon.
         let faces: Vec<_> = (0..3000u32)
             .map(|i| if i % 2 == 0 { [i, i + 1, i + 2] } else { [i + 1, i, i + 2] })
             .map(|face| face.map(VertexId))
             .collect();
-        let mut cover = Cover::new(&faces);
-        cover.follow(0..3000);
+        let mut cover = PathCover::new(&faces);
+        cover.link_sequence(0..3000);
         let energy = Energy::new(&Prices::default());
-        let link =
-            |cell: usize, cover: &Cover| Port::new(cell, cover.cells[cell].links.first().unwrap());
-        let ports = [10, 1500, 2990].map(|cell| link(cell, &cover));
-        let region = Region::new(&mut cover.cells, 0, &energy);
-        assert_eq!(ports.map(|port| region.ends(port)), [true, false, true]);
+        let link = |node: usize, cover: &PathCover| {
+            DualEdge::new(node, cover.nodes[node].links.first().unwrap())
+        };
+        let edges = [10, 1500, 2990].map(|node| link(node, &cover));
+        let region = Region::new(&mut cover.nodes, 0, &energy);
+        assert_eq!(edges.map(|edge| region.ends(edge)), [true, false, true]);
     }
 }

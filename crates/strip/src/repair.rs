@@ -1,25 +1,25 @@
-//! Strips that are made good again where the level changed.
+//! Repairs strips where the level changed.
 
 mod levels;
 mod live;
-mod mender;
+mod local_search;
 
 pub use levels::LevelStrips;
 pub use live::LiveStrips;
 
 use meshlod_mesh::VertexId;
 
-use self::mender::Mender;
-use crate::cover::Cover;
+use self::local_search::LocalSearch;
 use crate::filter::Filter;
+use crate::path_cover::PathCover;
 use crate::skip::SkipStrip;
 use crate::strips::Strips;
 use crate::verify::has_three_corners;
 
-/// How much is tried.
+/// Effort spent on repairing strips.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-pub enum Effort {
-    /// As fast as a level may change.
+pub enum StripEffort {
+    /// Fast enough for a level that changes every frame.
     Quick,
     /// For levels that are made once.
     #[default]
@@ -27,38 +27,38 @@ pub enum Effort {
 }
 
 impl SkipStrip {
-    /// The strips of the level: those that [`Filter::Dtff`](crate::Filter::Dtff) leaves, made better by local
-    /// changes that start where the level is not as the mesh is.
+    /// Returns the strips of the level: the result of [`Filter::Dtff`](crate::Filter::Dtff),
+    /// improved by local changes that start where the level differs from the mesh.
     ///
-    /// They never send more vertices than the filter leaves. The same for the same level, however it was come to.
-    /// Cost: linear.
-    pub fn repaired(&mut self, effort: Effort) -> Strips {
+    /// They never send more vertices than the filter alone, and do not depend on the levels shown
+    /// before. Cost: linear.
+    pub fn repaired(&mut self, effort: StripEffort) -> Strips {
         let mut seed = Seed::default();
         self.each_strip(|strip, shown| seed.add(strip, shown));
         let Seed { faces, ends, is_changed } = seed;
-        let mut cover = Cover::new(&faces);
+        let mut cover = PathCover::new(&faces);
         let mut start = 0;
         for end in ends {
-            cover.follow(start..end);
+            cover.link_sequence(start..end);
             start = end;
         }
         let starts = starts(&cover, &is_changed);
-        Mender::new(effort).mend(&mut cover, &starts);
+        LocalSearch::new(effort).improve(&mut cover, &starts);
         let repaired = cover.strips(&faces);
-        // Where little is to be gained, it may be lost by luck.
+        // With little to gain, annealing may lose by luck.
         let filtered = self.display(Filter::Dtff);
         let is_better = repaired.vertices().len() <= filtered.vertices().len();
         if is_better { repaired } else { filtered }
     }
 }
 
-/// The triangles that display strips draw, one strip after the other.
+/// Triangles drawn by display strips, one strip after the other.
 #[derive(Default)]
 struct Seed {
     faces: Vec<[VertexId; 3]>,
-    /// Where each strip ends in `faces`.
+    /// End of each strip in `faces`.
     ends: Vec<usize>,
-    /// Whether the level shows it otherwise than the mesh, or one beside it in the strip is gone.
+    /// True for triangles that differ from the mesh, or whose neighbour in the strip has vanished.
     is_changed: Vec<bool>,
 }
 
@@ -67,7 +67,7 @@ impl Seed {
         let start = self.faces.len();
         let mut is_one_gone = false;
         for (place, (was, is)) in strip.array_windows().zip(shown.array_windows()).enumerate() {
-            // What never drew anything cannot be gone.
+            // A window that draws nothing in the mesh cannot vanish.
             if !has_three_corners(was) {
                 continue;
             }
@@ -87,11 +87,11 @@ impl Seed {
     }
 }
 
-/// What changed, and what lies beside it.
-fn starts(cover: &Cover, is_changed: &[bool]) -> Vec<u32> {
-    let near = |cell: &u32| {
-        let mut beside = cover.cells[*cell as usize].across.iter().filter(|port| !port.is_none());
-        is_changed[*cell as usize] || beside.any(|port| is_changed[port.cell()])
+/// Lists the changed nodes and their neighbours.
+fn starts(cover: &PathCover, is_changed: &[bool]) -> Vec<u32> {
+    let near = |node: &u32| {
+        let mut beside = cover.nodes[*node as usize].across.iter().filter(|edge| !edge.is_none());
+        is_changed[*node as usize] || beside.any(|edge| is_changed[edge.node()])
     };
     (0..is_changed.len() as u32).filter(near).collect()
 }
@@ -105,12 +105,12 @@ mod tests {
 
     use super::*;
     use crate::skip::MergeTree;
-    use crate::stripify::{Options, stripify};
+    use crate::stripify::{StripOptions, stripify};
     use crate::verify::{Difference, difference};
 
     fn skip_strip(mesh: &Mesh) -> SkipStrip {
         let tree = MergeTree::record(mesh, Target::Faces(0)).unwrap();
-        let strips = stripify(tree.faces(), &Options::default());
+        let strips = stripify(tree.faces(), &StripOptions::default());
         SkipStrip::new(tree, strips)
     }
 
@@ -119,7 +119,7 @@ mod tests {
         for part in [0, 5, 10, 3, 9] {
             skip.set_level(skip.tree().contractions() * part / 10);
             let level = skip.tree().level(skip.level());
-            for effort in [Effort::Quick, Effort::Thorough] {
+            for effort in [StripEffort::Quick, StripEffort::Thorough] {
                 let repaired = skip.repaired(effort);
                 assert_eq!(difference(&repaired, &level), Difference::default(), "{effort:?}");
                 let filtered = skip.display(Filter::Dtff);
@@ -138,7 +138,7 @@ mod tests {
     fn the_mesh_itself_keeps_its_strips() {
         let mut skip = skip_strip(&samples::sphere(500));
         let sent = |strips: &Strips| (strips.len(), strips.vertices().len());
-        assert_eq!(sent(&skip.repaired(Effort::Thorough)), sent(skip.strips()));
+        assert_eq!(sent(&skip.repaired(StripEffort::Thorough)), sent(skip.strips()));
     }
 
     #[test]
@@ -147,8 +147,8 @@ mod tests {
         skip.set_level(skip.tree().contractions_to(400));
         let [dtff, quick, thorough] = [
             skip.display(Filter::Dtff),
-            skip.repaired(Effort::Quick),
-            skip.repaired(Effort::Thorough),
+            skip.repaired(StripEffort::Quick),
+            skip.repaired(StripEffort::Thorough),
         ]
         .map(|strips| strips.vertices().len());
         assert!(2 * quick < 2 * dtff * 2 / 3 && thorough < quick, "{dtff}, {quick}, {thorough}");
@@ -158,10 +158,10 @@ mod tests {
     fn a_level_is_the_same_however_it_is_come_to() {
         let mut skip = skip_strip(&samples::torus(500));
         skip.set_level(100);
-        let straight = skip.repaired(Effort::Quick);
+        let straight = skip.repaired(StripEffort::Quick);
         skip.set_level(200);
         skip.display(Filter::None);
         skip.set_level(100);
-        assert_eq!(skip.repaired(Effort::Quick), straight);
+        assert_eq!(skip.repaired(StripEffort::Quick), straight);
     }
 }

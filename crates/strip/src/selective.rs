@@ -1,43 +1,43 @@
-//! Strips of a cut: fine where it is looked at, coarse elsewhere.
+//! Strips of a view-dependent cut.
 
 use meshlod_mesh::VertexId;
 use meshlod_multires::{Cut, Implicit};
 use thiserror::Error;
 
-use crate::repair::{Effort, LiveStrips};
-use crate::stripify::{Options, stripify};
+use crate::repair::{LiveStrips, StripEffort};
+use crate::stripify::{StripOptions, stripify};
 use crate::strips::Strips;
 
-/// The strips of a cut that follows its queries, of an MT of half-edge contractions.
+/// Strips of a cut that follows its queries, for a multiresolution model of half-edge contractions.
 ///
-/// They draw exactly the cut's triangles. Vertices are the nodes of the finest level, so one vertex buffer, of
-/// [`Implicit::position`] by node, serves all cuts. Where points move, [`LiveStrips`] takes the
-/// [patches](Cut::patches) of a cut as they are.
+/// They draw exactly the cut's triangles. Vertices are nodes of the finest level, so one vertex
+/// buffer, filled from [`Implicit::position`], serves all cuts. For models whose points move, feed
+/// the [patches](Cut::patches) of a cut to [`LiveStrips`] directly.
 #[derive(Clone, Debug)]
 pub struct CutStrips {
-    /// By node: the leaf at its place.
+    /// Leaf at the position of each node.
     leaves: Vec<VertexId>,
     live: LiveStrips,
 }
 
-/// An MT in which points move.
+/// Error: the model was not built by half-edge contractions, so points move.
 #[derive(Clone, Copy, Debug, Error, PartialEq, Eq)]
 #[error(
-    "node {0} is where none of its children is; make the model of half-edge contractions, as of qem-endpoint"
+    "node {0} is at the position of neither child; build the model from half-edge contractions, for example with qem-endpoint"
 )]
 pub struct PointsMove(pub u32);
 
 impl CutStrips {
-    /// Strips for a cut of `mt` as it is.
+    /// Builds strips for the current cut of `mt`.
     ///
-    /// Cost: of [`stripify`], and linear in the MT.
+    /// Cost: one [`stripify`], plus linear in the model.
     /// # Errors
-    /// An MT of other than half-edge contractions.
+    /// If the model was not built by half-edge contractions.
     pub fn new(
         mt: &Implicit,
         cut: &Cut<'_>,
-        options: &Options,
-        effort: Effort,
+        options: &StripOptions,
+        effort: StripEffort,
     ) -> Result<Self, PointsMove> {
         let leaves = leaves(mt)?;
         let triangles = cut.triangles().map(|(place, nodes)| (place, shown(&leaves, nodes)));
@@ -47,10 +47,10 @@ impl CutStrips {
         Ok(Self { leaves, live })
     }
 
-    /// Follows the last update of the cut, whose every update must be followed. How many triangles came, went or
-    /// have another corner.
+    /// Follows the last update of the cut; no update may be skipped. Returns the number of
+    /// triangles added, removed or changed.
     ///
-    /// Cost: of what changed.
+    /// Cost: proportional to the change.
     pub fn update(&mut self, cut: &Cut<'_>) -> usize {
         let Self { leaves, live } = self;
         live.update(
@@ -58,14 +58,14 @@ impl CutStrips {
         )
     }
 
-    /// The strips as they are now.
+    /// Returns the current strips.
     ///
-    /// Cost: linear in all of them.
+    /// Cost: linear in their length.
     pub fn strips(&self) -> Strips {
         self.live.strips()
     }
 
-    /// The vertex that a node of the MT is, itself a node of the finest level.
+    /// Returns the vertex for a node of the model, itself a node of the finest level.
     pub fn vertex(&self, node: u32) -> VertexId {
         self.leaves[node as usize]
     }
@@ -75,7 +75,7 @@ fn shown(leaves: &[VertexId], nodes: [u32; 3]) -> [VertexId; 3] {
     nodes.map(|node| leaves[node as usize])
 }
 
-/// By node, the leaf at its place.
+/// Finds for each node the leaf at its position.
 fn leaves(mt: &Implicit) -> Result<Vec<VertexId>, PointsMove> {
     let mut leaves: Vec<_> = (0..mt.node_count()).map(VertexId::new).collect();
     // Children have higher numbers.
@@ -104,12 +104,13 @@ mod tests {
         Model::new(&Forest::new(mesh, &options).unwrap()).unwrap()
     }
 
-    /// Moves a sphere of full detail across.
+    /// Moves a fully detailed sphere across the model.
     fn follows(mesh: &Mesh) {
         let model = model(mesh, Method::QemEndpoint);
         let mut cut = model.cut();
-        let options = Options::default();
-        let mut strips = CutStrips::new(model.implicit(), &cut, &options, Effort::Quick).unwrap();
+        let options = StripOptions::default();
+        let mut strips =
+            CutStrips::new(model.implicit(), &cut, &options, StripEffort::Quick).unwrap();
         let bounds = mesh.bounds();
         for step in [0, 3, 10, 11, 12, 4, 0, 7] {
             let center = std::array::from_fn(|k| {
@@ -134,7 +135,8 @@ mod tests {
     fn vertices_are_where_their_nodes_are() {
         let model = model(&samples::sphere(400), Method::QemEndpoint);
         let mt = model.implicit();
-        let strips = CutStrips::new(mt, &model.cut(), &Options::default(), Effort::Quick).unwrap();
+        let strips =
+            CutStrips::new(mt, &model.cut(), &StripOptions::default(), StripEffort::Quick).unwrap();
         for node in 0..mt.node_count() as u32 {
             let leaf = strips.vertex(node).0;
             assert_eq!(mt.position(leaf), mt.position(node));
@@ -145,8 +147,12 @@ mod tests {
     #[test]
     fn where_points_move_it_is_said() {
         let model = model(&samples::sphere(400), Method::Qem);
-        let made =
-            CutStrips::new(model.implicit(), &model.cut(), &Options::default(), Effort::Quick);
+        let made = CutStrips::new(
+            model.implicit(),
+            &model.cut(),
+            &StripOptions::default(),
+            StripEffort::Quick,
+        );
         assert!(made.is_err());
     }
 }

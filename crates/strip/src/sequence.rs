@@ -1,4 +1,4 @@
-//! All strips as the indices of one draw.
+//! Index sequences that draw all strips in one call.
 
 use meshlod_mesh::VertexId;
 
@@ -6,10 +6,10 @@ use crate::measure::starts_odd;
 use crate::strips::Strips;
 
 impl Strips {
-    /// The index that ends a strip and lets the next begin, wherever 32-bit indices are drawn with primitive restart.
+    /// Index that ends a strip where 32-bit indices are drawn with primitive restart.
     pub const RESTART: u32 = u32::MAX;
 
-    /// The indices of all strips, with [`Strips::RESTART`] between them.
+    /// Returns the indices of all strips, with [`Strips::RESTART`] between them.
     pub fn with_restarts(&self) -> Vec<u32> {
         let mut indices = Vec::with_capacity(self.vertices().len() + self.len());
         for strip in self.iter() {
@@ -21,8 +21,8 @@ impl Strips {
         indices
     }
 
-    /// All strips as one, for where nothing restarts a strip: triangles that repeat a vertex lead from each to the next,
-    /// at the cost of two vertices, or three where the next would be turned.
+    /// Joins all strips into one, for use without primitive restart. Degenerate triangles lead from
+    /// each strip to the next, at the cost of two vertices, or three if the next would be turned.
     pub fn stitched(&self) -> Vec<VertexId> {
         let mut sequence: Vec<VertexId> =
             Vec::with_capacity(self.vertices().len() + 3 * self.len());
@@ -31,7 +31,8 @@ impl Strips {
                 sequence.extend(strip);
                 continue;
             };
-            // A strip that doubles its first vertex to be odd may as well begin at an odd place.
+            // A strip that doubles its first vertex for parity may start at an odd position
+            // instead.
             let odd = usize::from(starts_odd(strip));
             sequence.extend([last, strip[odd]]);
             if sequence.len() % 2 != odd {

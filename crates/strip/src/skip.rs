@@ -1,10 +1,10 @@
 //! One set of strips for all levels.
 
-mod descent;
+mod cursor;
 mod pointers;
 mod tree;
 
-pub(crate) use descent::Descent;
+pub(crate) use cursor::LevelCursor;
 pub use tree::{HistoryError, MergeTree};
 
 use meshlod_mesh::VertexId;
@@ -13,13 +13,13 @@ use self::pointers::Pointers;
 use crate::filter::Filter;
 use crate::strips::Strips;
 
-/// The strips of a mesh, with each vertex shown by the one it has become.
+/// Strips of a mesh in which each vertex is shown by its current representative.
 ///
-/// At a level these are the **display strips**. They draw exactly its triangles; what has lost an edge
-/// repeats a vertex and draws nothing. A [`Filter`] takes such vertices out.
+/// At a level these are the **display strips**. They draw exactly its triangles; a triangle that
+/// has collapsed repeats a vertex and draws nothing. A [`Filter`] removes such vertices.
 /// # References
-/// [ESAV99], [KY05]. Differs: a vertex is active by its turn among the contractions, so a level is set
-/// in no time.
+/// [ESAV99], [KY05]. Differs: a vertex is active by its rank among the contractions, so setting a
+/// level takes constant time.
 #[derive(Clone, Debug)]
 pub struct SkipStrip {
     tree: MergeTree,
@@ -29,44 +29,47 @@ pub struct SkipStrip {
 }
 
 impl SkipStrip {
-    /// Strips of the tree's mesh, at the mesh itself.
+    /// Starts at the full mesh with strips of the tree's mesh.
     ///
     /// # Panics
-    /// Strips of more vertices than the mesh has.
+    /// If the strips use a vertex that the mesh does not have.
     pub fn new(tree: MergeTree, strips: Strips) -> Self {
         let vertices = tree.vertices();
-        assert!(strips.vertices().iter().all(|v| v.index() < vertices), "they are of this mesh");
+        assert!(
+            strips.vertices().iter().all(|v| v.index() < vertices),
+            "strips use vertices of this mesh"
+        );
         Self { pointers: Pointers::new(vertices), tree, strips, contractions: 0 }
     }
 
-    /// The contractions it follows.
+    /// Returns the tree of contractions.
     pub fn tree(&self) -> &MergeTree {
         &self.tree
     }
 
-    /// The strips of the mesh.
+    /// Returns the strips of the full mesh.
     pub fn strips(&self) -> &Strips {
         &self.strips
     }
 
-    /// Goes to the level after so many contractions, at most all, up or down.
+    /// Moves to the level after this many contractions, clamped to the maximum.
     pub fn set_level(&mut self, contractions: usize) {
         self.contractions = contractions.min(self.tree.contractions());
     }
 
-    /// How many contractions the level is after.
+    /// Returns the number of contractions of the current level.
     pub fn level(&self) -> usize {
         self.contractions
     }
 
-    /// The vertex that stands for one of the mesh's.
+    /// Returns the vertex that represents a vertex of the mesh at the current level.
     ///
-    /// Cost: of the way up where it was not followed before, else constant.
+    /// Cost: the length of the path up the tree the first time, then constant.
     pub fn shown(&mut self, vertex: VertexId) -> VertexId {
         self.tree.shown(vertex, self.contractions, &mut self.pointers)
     }
 
-    /// The display strips of the level, filtered: in one pass.
+    /// Returns the display strips of the level, filtered.
     ///
     /// Cost: linear in the strips of the mesh.
     pub fn display(&mut self, filter: Filter) -> Strips {
@@ -75,7 +78,7 @@ impl SkipStrip {
         display
     }
 
-    /// Calls `visit` with each strip of the mesh, and with what shows its vertices at the level.
+    /// Calls `visit` with each strip of the mesh and with its vertices as shown at the level.
     pub(crate) fn each_strip(&mut self, mut visit: impl FnMut(&[VertexId], &[VertexId])) {
         let Self { tree, strips, contractions, pointers } = self;
         let mut shown = Vec::new();
@@ -99,7 +102,7 @@ mod tests {
 
     const FILTERS: [Filter; 3] = [Filter::None, Filter::Stss, Filter::Dtff];
 
-    /// Strips of two faces each.
+    /// Builds strips of two faces each.
     fn pairs(tree: &MergeTree) -> Strips {
         let mut strips = Strips::default();
         for pair in tree.faces().chunks(2) {

@@ -1,55 +1,55 @@
-//! Strips of any faces.
+//! Strips of any list of faces.
 
 use meshlod_mesh::VertexId;
 use rayon::prelude::*;
 
 use crate::anneal::{Annealing, Starts};
-use crate::cover::Cover;
+use crate::cache_runs::CacheAware;
 use crate::energy::Prices;
 use crate::order::Order;
-use crate::pieces::CacheAware;
+use crate::path_cover::PathCover;
 use crate::strips::Strips;
 
-/// How good strips shall be.
+/// Quality of the strips, traded for time.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Quality {
-    /// In one pass, laid side by side.
+pub enum StripQuality {
+    /// Greedy strips in one pass.
     Fast,
-    /// As few vertices as that many changes tried for each face find: [`Quality::QUICK`], [`Quality::THOROUGH`].
+    /// Fewest vertices, by annealing: see [`StripQuality::QUICK`] and [`StripQuality::THOROUGH`].
     Best {
-        /// How many, a million at most. 60 take one or two seconds for the 69 thousand faces of the bunny on one core of 2026, and
-        /// twice as many twice as long.
+        /// Number of moves tried per face, at most a million. 60 take one or two seconds for the 69
+        /// thousand faces of the bunny on one core of 2026; the time is proportional.
         moves_per_face: f64,
     },
 }
 
-impl Quality {
-    /// The bunny: 1.094 vertices a face.
+impl StripQuality {
+    /// Annealing with 60 moves per face: 1.094 vertices per face on the bunny.
     pub const QUICK: Self = Self::Best { moves_per_face: 60.0 };
 
-    /// The bunny: 1.086 vertices a face.
+    /// Annealing with 1500 moves per face: 1.086 vertices per face on the bunny.
     pub const THOROUGH: Self = Self::Best { moves_per_face: 1500.0 };
 }
 
-/// What strips are wanted.
+/// Options of [`stripify`].
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Options<'a> {
-    /// How good they shall be.
-    pub quality: Quality,
-    /// What counts as their cost.
+pub struct StripOptions<'a> {
+    /// Quality of the strips.
+    pub quality: StripQuality,
+    /// Prices that annealing minimises.
     pub prices: Prices,
-    /// Whether strips shall be cut and ordered for a vertex cache, and for which.
+    /// Vertex cache to cut and order the strips for, if any.
     pub cache: Option<CacheAware>,
-    /// A label for each face, and no strip goes from one label to another.
+    /// A label for each face; no strip crosses from one label to another.
     pub clusters: Option<&'a [u32]>,
-    /// Other seeds give other strips, about as good.
+    /// Seed of the random numbers; other seeds give other strips of about the same quality.
     pub seed: u64,
 }
 
-impl Default for Options<'_> {
+impl Default for StripOptions<'_> {
     fn default() -> Self {
         Self {
-            quality: Quality::QUICK,
+            quality: StripQuality::QUICK,
             prices: Prices::default(),
             cache: None,
             clusters: None,
@@ -58,31 +58,32 @@ impl Default for Options<'_> {
     }
 }
 
-/// Strips that draw exactly `faces`, each as often as it is there and as it is wound.
+/// Builds strips that draw exactly `faces`, with their winding and multiplicity.
 ///
-/// Any faces are taken: at edges of more than two faces, or where two neighbours are not oriented alike, a strip
-/// goes on as far as it can. Faces that repeat a vertex are left out. The same faces and options give the same
-/// strips.
+/// Any faces are accepted: at edges with more than two faces, or between faces of opposite
+/// orientation, strips go on as far as they can. Faces that repeat a vertex are left out. The
+/// result is deterministic.
 ///
-/// Panics unless there are as many labels as faces, where there are labels, and above a billion faces.
-pub fn stripify(faces: &[[VertexId; 3]], options: &Options) -> Strips {
-    let mut cover = Cover::new(faces);
+/// # Panics
+/// If there are labels, but not one per face; above a billion faces.
+pub fn stripify(faces: &[[VertexId; 3]], options: &StripOptions) -> Strips {
+    let mut cover = PathCover::new(faces);
     if let Some(labels) = options.clusters {
-        cover.part(labels);
+        cover.split_by_labels(labels);
     }
     match options.quality {
-        Quality::Fast => {
-            let strips = cover.lay(faces);
+        StripQuality::Fast => {
+            let strips = cover.cover_greedily(faces);
             match &options.cache {
                 None => strips,
                 Some(cache) => cover.strips_for_cache(faces, cache),
             }
         }
-        Quality::Best { moves_per_face } => {
+        StripQuality::Best { moves_per_face } => {
             let order = Order::new(&cover);
             let faces = order.sorted(faces);
-            let run = LEAST_RUN.max(RUN_IN_RINGS * order.widest);
-            let moves_per_face = moves_per_face.min(MOST_MOVES);
+            let run = MIN_RUN.max(RUN_RINGS * order.widest);
+            let moves_per_face = moves_per_face.min(MAX_MOVES);
             let (mut cover, strips) =
                 best_try(order.sort(&cover), &faces, run, moves_per_face, options);
             match &options.cache {
@@ -93,27 +94,28 @@ pub fn stripify(faces: &[[VertexId; 3]], options: &Options) -> Strips {
     }
 }
 
-/// The best of some annealings of a cover from different seeds, with its strips. All begin with the fast strips: from
-/// none at all the bunny comes to 1.097 vertices a face with 60 moves, and a regular torus, 1.001 from them, to 1.029.
+/// Anneals a cover from several seeds and returns the best, with its strips. All start from the
+/// greedy strips: from no links at all the bunny reaches 1.097 vertices per face with 60 moves, and
+/// a regular torus 1.029 instead of 1.001.
 fn best_try(
-    mut cover: Cover,
+    mut cover: PathCover,
     faces: &[[VertexId; 3]],
     run: usize,
-    moves_per_cell: f64,
-    options: &Options,
-) -> (Cover, Strips) {
-    let laid = cover.lay(faces);
-    let tries = (ENOUGH_FACES / faces.len().max(1)).clamp(1, MOST_TRIES) as u64;
+    moves_per_node: f64,
+    options: &StripOptions,
+) -> (PathCover, Strips) {
+    let laid = cover.cover_greedily(faces);
+    let tries = (SINGLE_TRY_FACES / faces.len().max(1)).clamp(1, MAX_TRIES) as u64;
     let annealed = |number: u64| {
         let mut cover = cover.clone();
         let seed = options.seed.wrapping_mul(tries).wrapping_add(number);
-        let annealing = Annealing { prices: options.prices, heat: HEAT, moves_per_cell, seed };
+        let annealing = Annealing { prices: options.prices, heat: HEAT, moves_per_node, seed };
         cover.anneal(Starts::Runs(run), &annealing);
-        cover.even_out(&options.prices, seed);
+        cover.fix_parity(&options.prices, seed);
         let strips = cover.strips(faces);
         (cover, strips)
     };
-    // What is said again is in the vertices already.
+    // A repeated vertex is already counted among the vertices.
     let cost = |strips: &Strips| {
         strips.vertices().len() as f64 + (options.prices.strip - 2.0) * strips.len() as f64
     };
@@ -122,28 +124,30 @@ fn best_try(
     best.filter(|(_, strips)| cost(strips) <= cost(&laid)).unwrap_or((cover, laid))
 }
 
-/// More for a face would never end, and gain nothing.
-const MOST_MOVES: f64 = 1e6;
+/// Upper limit of the moves per face; more bring no gain.
+const MAX_MOVES: f64 = 1e6;
 
-/// Meshes with fewer faces are annealed several times: how well one time comes out is more and more a matter of luck,
-/// and there is time. fandisk.off, 13 thousand faces, 500 moves a face: from 1.069 to 1.076 vertices a face.
-const ENOUGH_FACES: usize = 100_000;
+/// Meshes with fewer faces are annealed several times, because a single run depends more on luck,
+/// and there is time. fandisk.off, 13 thousand faces, 500 moves per face: from 1.069 to 1.076
+/// vertices per face.
+const SINGLE_TRY_FACES: usize = 100_000;
 
-/// How many times at most.
-const MOST_TRIES: usize = 8;
+/// Largest number of annealing runs.
+const MAX_TRIES: usize = 8;
 
-/// How hot the annealing begins and ends, in vertices. Few moves want less heat, many want more: the bunny with 60 moves
-/// a face comes to 1.0965, 1.0936, 1.0942 and 1.0940 vertices a face from .3, .65, .8 and 1, fandisk.off with 500 to
-/// 1.0733, 1.0721, 1.0709 and 1.0733 from .65, .8, 1 and 1.2, the mean of eight times.
+/// First and last temperature of the annealing, in vertices. Few moves want less heat, many want
+/// more: with 60 moves per face the bunny reaches 1.0965, 1.0936, 1.0942 and 1.0940 vertices per
+/// face from .3, .65, .8 and 1. With 500 fandisk.off reaches 1.0733, 1.0721, 1.0709 and 1.0733 from
+/// .65, .8, 1 and 1.2, the mean of eight runs.
 const HEAT: [f64; 2] = [0.9, 0.12];
 
-/// How many faces are annealed together at least: half a megabyte of cells, which a core's own cache holds. The bunny,
-/// 300 moves a face: 1.0944 vertices a face with half of that, 1.0924 with this, 1.0918 as a whole, in half as much
-/// time again.
-const LEAST_RUN: usize = 32768;
+/// Smallest number of faces annealed together: half a megabyte of nodes, which fits the cache of a
+/// core. The bunny, 300 moves per face: 1.0944 vertices per face with half of it, 1.0924 with this,
+/// 1.0918 with the whole mesh at once in one and a half times the time.
+const MIN_RUN: usize = 32768;
 
-/// How wide that is at least, in faces: those at its border wait.
-const RUN_IN_RINGS: usize = 12;
+/// Smallest width of such a run in rings of faces, because the faces at its border are frozen.
+const RUN_RINGS: usize = 12;
 
 #[cfg(test)]
 mod tests {
@@ -154,11 +158,14 @@ mod tests {
     use super::*;
     use crate::verify::{Difference, difference};
 
-    fn quick() -> Options<'static> {
-        Options { quality: Quality::Best { moves_per_face: 20.0 }, ..Options::default() }
+    fn quick() -> StripOptions<'static> {
+        StripOptions {
+            quality: StripQuality::Best { moves_per_face: 20.0 },
+            ..StripOptions::default()
+        }
     }
 
-    /// Meshes as they should be, and faces as they should not.
+    /// Well-formed meshes and malformed lists of faces.
     fn all_sorts() -> Vec<Mesh> {
         let soup = |seed: u32| {
             let corner = |i: u32| i.wrapping_mul(2_654_435_761).wrapping_add(seed) >> 16;
@@ -186,9 +193,9 @@ mod tests {
     #[test]
     fn exactly_the_faces_are_drawn_whatever_they_are() {
         for mesh in all_sorts() {
-            for quality in [Quality::Fast, quick().quality] {
+            for quality in [StripQuality::Fast, quick().quality] {
                 for cache in [None, Some(CacheAware::default())] {
-                    let strips = stripify(&mesh.faces, &Options { quality, cache, ..quick() });
+                    let strips = stripify(&mesh.faces, &StripOptions { quality, cache, ..quick() });
                     assert_eq!(difference(&strips, &mesh.faces), Difference::default());
                 }
             }
@@ -200,16 +207,17 @@ mod tests {
         let faces = torus(24, 32);
         let strips = stripify(
             &faces,
-            &Options { quality: Quality::Best { moves_per_face: 300.0 }, ..quick() },
+            &StripOptions { quality: StripQuality::Best { moves_per_face: 300.0 }, ..quick() },
         );
         assert!(strips.vertices().len() < faces.len() * 105 / 100, "{}", strips.vertices().len());
     }
 
     #[test]
     fn annealing_in_runs_is_the_same_for_any_number_of_threads() {
-        // Long enough for several runs.
+        // Enough faces for several runs.
         let faces = torus(300, 200);
-        let options = Options { quality: Quality::Best { moves_per_face: 1.0 }, ..quick() };
+        let options =
+            StripOptions { quality: StripQuality::Best { moves_per_face: 1.0 }, ..quick() };
         let with = |threads: usize| {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
             pool.install(|| stripify(&faces, &options))
@@ -222,7 +230,7 @@ mod tests {
     #[test]
     fn laid_strips_follow_the_rows_of_a_torus() {
         let faces = torus(24, 32);
-        let strips = stripify(&faces, &Options { quality: Quality::Fast, ..quick() });
+        let strips = stripify(&faces, &StripOptions { quality: StripQuality::Fast, ..quick() });
         assert!(strips.vertices().len() < faces.len() * 110 / 100, "{}", strips.vertices().len());
     }
 
@@ -230,7 +238,7 @@ mod tests {
     fn no_strip_leaves_its_cluster() {
         let faces = torus(12, 12);
         let labels: Vec<u32> = (0..faces.len() as u32).map(|f| f / 24).collect();
-        let strips = stripify(&faces, &Options { clusters: Some(&labels), ..quick() });
+        let strips = stripify(&faces, &StripOptions { clusters: Some(&labels), ..quick() });
         assert_eq!(difference(&strips, &faces), Difference::default());
         let label = |triangle: [VertexId; 3]| {
             let of = |face: &[VertexId; 3]| face.iter().all(|v| triangle.contains(v));
@@ -249,10 +257,13 @@ mod tests {
     fn the_same_seed_gives_the_same_strips() {
         let faces = samples::sphere(500).faces;
         assert_eq!(stripify(&faces, &quick()), stripify(&faces, &quick()));
-        assert_ne!(stripify(&faces, &quick()), stripify(&faces, &Options { seed: 1, ..quick() }));
+        assert_ne!(
+            stripify(&faces, &quick()),
+            stripify(&faces, &StripOptions { seed: 1, ..quick() })
+        );
     }
 
-    /// A torus of `m` by `n` squares, each cut the same way: every vertex has six faces.
+    /// Builds a torus of `m` by `n` squares, all cut the same way: every vertex has six faces.
     fn torus(m: u32, n: u32) -> Vec<[VertexId; 3]> {
         let at = |i: u32, j: u32| VertexId(i % m * n + j % n);
         let square = |i, j| {

@@ -1,21 +1,22 @@
-//! Sequences of vertices, every three in a row a triangle.
+//! Vertex sequences in which every three consecutive vertices form a triangle.
 
 use meshlod_mesh::VertexId;
 
-/// Triangle strips, one after the other.
+/// A list of triangle strips.
 ///
-/// The windows of three vertices of a strip are its triangles, those at odd places with their first two
-/// exchanged, so that the winding stays. A window that repeats a vertex draws nothing: so a swap is a vertex
-/// said twice, and a strip that must begin with an odd triangle says its first vertex twice.
+/// Every window of three vertices of a strip is a triangle; windows at odd positions have their
+/// first two vertices exchanged, so that the winding is kept. A window that repeats a vertex draws
+/// nothing. So a swap is a repeated vertex, and a strip that must begin with an odd triangle
+/// repeats its first vertex.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Strips {
     vertices: Vec<VertexId>,
-    /// Where each strip ends in `vertices`.
+    /// End of each strip in `vertices`.
     ends: Vec<u32>,
 }
 
 impl Strips {
-    /// Puts one strip more at the end; of an empty one nothing stays.
+    /// Appends a strip; an empty one is ignored.
     pub fn push(&mut self, strip: impl IntoIterator<Item = VertexId>) {
         let start = self.vertices.len();
         self.vertices.extend(strip);
@@ -26,35 +27,36 @@ impl Strips {
         }
     }
 
-    /// How many strips there are.
+    /// Returns the number of strips.
     pub fn len(&self) -> usize {
         self.ends.len()
     }
 
-    /// Whether there is none.
+    /// Returns true if there are no strips.
     pub fn is_empty(&self) -> bool {
         self.ends.is_empty()
     }
 
-    /// The vertices of all strips, one strip after the other: what is sent where each is drawn on its own.
+    /// Returns the vertices of all strips, one strip after the other, as sent when each is drawn on
+    /// its own.
     pub fn vertices(&self) -> &[VertexId] {
         &self.vertices
     }
 
-    /// The strips, first to last.
+    /// Iterates over the strips.
     pub fn iter(&self) -> impl ExactSizeIterator<Item = &[VertexId]> {
         let start = |strip: usize| if strip == 0 { 0 } else { self.ends[strip - 1] as usize };
         (0..self.ends.len())
             .map(move |strip| &self.vertices[start(strip)..self.ends[strip] as usize])
     }
 
-    /// The triangles drawn, in the order and with the winding they are drawn in.
+    /// Iterates over the triangles drawn, in drawing order and with their winding.
     pub fn triangles(&self) -> impl Iterator<Item = [VertexId; 3]> {
         self.iter().flat_map(drawn)
     }
 }
 
-/// The triangles one strip draws.
+/// Iterates over the triangles drawn by one strip.
 pub(crate) fn drawn(strip: &[VertexId]) -> impl Iterator<Item = [VertexId; 3]> {
     let wound = |(place, window): (usize, &[VertexId])| {
         let (a, b, c) = (window[0], window[1], window[2]);

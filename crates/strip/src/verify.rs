@@ -1,20 +1,20 @@
-//! Whether strips draw the triangles they stand for.
+//! Checks that strips draw the triangles they should.
 
 use meshlod_mesh::VertexId;
 
 use crate::strips::Strips;
 
-/// What strips draw too little and too much.
+/// Difference between the triangles strips draw and those of a mesh.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Difference {
-    /// Triangles of the mesh that are not drawn.
+    /// Number of triangles of the mesh that are not drawn.
     pub missing: usize,
-    /// Triangles drawn that the mesh does not have, or not so often.
+    /// Number of triangles drawn that the mesh does not have, or not as often.
     pub extra: usize,
 }
 
-/// How what `strips` draw differs from `faces`: both as multisets of triangles, each up to the corner it
-/// begins with. Faces that repeat a vertex are not asked for. Cost: O(n log n).
+/// Compares the triangles that `strips` draw with `faces`, as multisets of triangles up to
+/// rotation. Faces that repeat a vertex are ignored. Cost: O(n log n).
 pub fn difference(strips: &Strips, faces: &[[VertexId; 3]]) -> Difference {
     let wanted = sorted(faces.iter().copied().filter(has_three_corners));
     let drawn = sorted(strips.triangles());
@@ -28,19 +28,19 @@ pub fn difference(strips: &Strips, faces: &[[VertexId; 3]]) -> Difference {
     Difference { missing: wanted.len() - both, extra: drawn.len() - both }
 }
 
-/// The triangles in order, each beginning with its lowest vertex.
+/// Sorts triangles, each rotated to begin with its lowest vertex.
 fn sorted(triangles: impl Iterator<Item = [VertexId; 3]>) -> Vec<[VertexId; 3]> {
     let mut triangles: Vec<_> = triangles.map(lowest_first).collect();
     triangles.sort_unstable();
     triangles
 }
 
-/// Whether a face repeats no vertex.
+/// Returns whether a face has three distinct vertices.
 pub(crate) fn has_three_corners([a, b, c]: &[VertexId; 3]) -> bool {
     a != b && b != c && c != a
 }
 
-/// A triangle from its lowest vertex.
+/// Rotates a triangle to begin with its lowest vertex.
 pub(crate) fn lowest_first([a, b, c]: [VertexId; 3]) -> [VertexId; 3] {
     let lowest = a.min(b).min(c);
     if lowest == a {

@@ -1,16 +1,18 @@
-//! The bunny in strips, against what is known of others.
+//! Strips of the bunny against known results of other programs.
 
 use meshlod_fixtures::shared_mesh;
 use meshlod_mesh::Mesh;
-use meshlod_strip::{CacheAware, Options, Quality, StripStatistics, difference, stripify};
+use meshlod_strip::{
+    CacheAware, StripOptions, StripQuality, StripStatistics, difference, stripify,
+};
 
 fn bunny() -> Option<Mesh> {
     let path = shared_mesh("bunny.ply")?;
     Some(meshlod_io::read(&path, &Default::default()).expect("it is whole").flatten())
 }
 
-/// Vertices and indices a face, and misses of a cache of 16.
-fn figures(mesh: &Mesh, options: &Options) -> [f64; 3] {
+/// Vertices and indices per face, and cache misses per face with 16 entries.
+fn figures(mesh: &Mesh, options: &StripOptions) -> [f64; 3] {
     let strips = stripify(&mesh.faces, options);
     assert_eq!(difference(&strips, &mesh.faces), Default::default());
     let s = StripStatistics::new(&strips);
@@ -21,7 +23,7 @@ fn figures(mesh: &Mesh, options: &Options) -> [f64; 3] {
 #[test]
 fn fast_strips_are_shorter_than_meshopts() {
     let Some(mesh) = bunny() else { return };
-    let options = Options { quality: Quality::Fast, ..Options::default() };
+    let options = StripOptions { quality: StripQuality::Fast, ..StripOptions::default() };
     let [vertices, indices, _] = figures(&mesh, &options);
     assert!(vertices < 1.274 && indices < 1.334, "{vertices} {indices}");
 }
@@ -29,14 +31,14 @@ fn fast_strips_are_shorter_than_meshopts() {
 #[test]
 fn quick_strips_take_a_tenth_more_vertices_than_faces() {
     let Some(mesh) = bunny() else { return };
-    let [vertices, indices, _] = figures(&mesh, &Options::default());
+    let [vertices, indices, _] = figures(&mesh, &StripOptions::default());
     assert!(vertices <= 1.10 && indices <= 1.125, "{vertices} {indices}");
 }
 
 #[test]
 fn strips_for_a_cache_find_most_of_it_and_are_long_all_the_same() {
     let Some(mesh) = bunny() else { return };
-    let options = Options { cache: Some(CacheAware::default()), ..Options::default() };
+    let options = StripOptions { cache: Some(CacheAware::default()), ..StripOptions::default() };
     let [_, indices, misses] = figures(&mesh, &options);
     assert!(indices <= 1.30 && misses <= 0.77, "{indices} {misses}");
 }

@@ -1,48 +1,48 @@
-//! Strips that follow the level, each from the last.
+//! Strips that follow a changing level incrementally.
 
-use super::{Effort, LiveStrips};
-use crate::skip::{Descent, MergeTree};
+use super::{LiveStrips, StripEffort};
+use crate::skip::{LevelCursor, MergeTree};
 use crate::strips::Strips;
 
-/// The strips of a level that goes up and down.
+/// Strips of a level that goes up and down.
 ///
-/// Unlike [`SkipStrip::repaired`](crate::SkipStrip::repaired) this looks at nothing but what the way from level to
-/// level changes; so the strips depend on the way.
+/// Unlike [`SkipStrip::repaired`](crate::SkipStrip::repaired) it updates only what changes from one
+/// level to the next, so the strips depend on the levels before.
 #[derive(Clone, Debug)]
 pub struct LevelStrips {
-    descent: Descent,
+    cursor: LevelCursor,
     live: LiveStrips,
 }
 
 impl LevelStrips {
-    /// The strips of a tree's mesh, at the mesh itself.
-    pub fn new(tree: MergeTree, strips: &Strips, effort: Effort) -> Self {
+    /// Starts at the full mesh with the given strips.
+    pub fn new(tree: MergeTree, strips: &Strips, effort: StripEffort) -> Self {
         let triangles = (0..).zip(tree.faces().iter().copied());
-        Self { live: LiveStrips::new(triangles, strips, effort), descent: Descent::new(tree) }
+        Self { live: LiveStrips::new(triangles, strips, effort), cursor: LevelCursor::new(tree) }
     }
 
-    /// Goes to the level after so many contractions, at most all. How many triangles came, went or have another
-    /// corner.
+    /// Moves to the level after this many contractions, clamped to the maximum. Returns the number
+    /// of triangles added, removed or changed.
     ///
-    /// Cost: of what lies below the vertices that come or go.
+    /// Cost: proportional to the faces below the vertices that vanish or return.
     pub fn set_level(&mut self, contractions: usize) -> usize {
-        let changes = self.descent.go(contractions);
+        let changes = self.cursor.move_to(contractions);
         self.live.update(changes)
     }
 
-    /// How many contractions the level is after.
+    /// Returns the number of contractions of the current level.
     pub fn level(&self) -> usize {
-        self.descent.level()
+        self.cursor.level()
     }
 
-    /// The contractions it follows.
+    /// Returns the tree of contractions.
     pub fn tree(&self) -> &MergeTree {
-        self.descent.tree()
+        self.cursor.tree()
     }
 
-    /// The strips of the level.
+    /// Returns the strips of the current level.
     ///
-    /// Cost: linear in them.
+    /// Cost: linear in their length.
     pub fn strips(&self) -> Strips {
         self.live.strips()
     }
@@ -56,13 +56,13 @@ mod tests {
     use meshlod_simplify::Target;
 
     use super::*;
-    use crate::stripify::{Options, stripify};
+    use crate::stripify::{StripOptions, stripify};
     use crate::verify::{Difference, difference};
 
     fn start(mesh: &Mesh) -> LevelStrips {
         let tree = MergeTree::record(mesh, Target::Faces(0)).unwrap();
-        let strips = stripify(tree.faces(), &Options::default());
-        LevelStrips::new(tree, &strips, Effort::Quick)
+        let strips = stripify(tree.faces(), &StripOptions::default());
+        LevelStrips::new(tree, &strips, StripEffort::Quick)
     }
 
     fn holds_everywhere(mesh: &Mesh) {

@@ -1,78 +1,79 @@
-//! Strips of faces that change, kept good where they change.
+//! Strips of a changing list of triangles, repaired where it changes.
 
 use meshlod_mesh::VertexId;
 use rustc_hash::FxHashMap;
 
-use super::Effort;
-use super::mender::Mender;
-use crate::cover::{Cell, Cover, Links, Port};
+use super::StripEffort;
+use super::local_search::LocalSearch;
 use crate::dual::ends;
+use crate::path_cover::{DualEdge, DualNode, Links, PathCover};
 use crate::strips::Strips;
 use crate::verify::{has_three_corners, lowest_first};
 
-/// Strips of the triangles in a list of places, some of which are written over from time to time.
+/// Strips of triangles in numbered slots, which may be overwritten.
 ///
-/// They draw exactly what is in the list. A change takes the strips apart where it is, and joins and leads
-/// them anew around there; all else stays.
+/// They draw exactly the triangles in the slots. A change breaks the strips at that place and
+/// relinks them around it; the rest stays.
 #[derive(Clone, Debug)]
 pub struct LiveStrips {
-    /// By place; [`FREE`] where nothing is.
+    /// Triangle in each slot, [`FREE`] for an empty one.
     faces: Vec<[VertexId; 3]>,
-    cover: Cover,
-    /// By what they run from and to: sides with nothing across.
-    open: FxHashMap<[VertexId; 2], Port>,
-    mender: Mender,
-    /// Where the next repair starts, each place once.
+    cover: PathCover,
+    /// Sides without a neighbour, by the vertices they run from and to.
+    open: FxHashMap<[VertexId; 2], DualEdge>,
+    local_search: LocalSearch,
+    /// Slots where the next repair starts, each once.
     changed: Vec<u32>,
     is_changed: Vec<bool>,
-    /// Room for sides that have nothing across for the moment.
-    loose: Vec<Port>,
+    /// Scratch buffer of sides that have lost their neighbour.
+    loose: Vec<DualEdge>,
 }
 
-/// No triangle.
+/// Marks an empty slot.
 const FREE: [VertexId; 3] = [VertexId(0); 3];
 
 impl LiveStrips {
-    /// The triangles in some places, with strips for them. What the strips lack, or draw that is in no place, does no
-    /// harm.
+    /// Places triangles in slots and adopts strips for them. Triangles missing from the strips, or
+    /// drawn but in no slot, do no harm.
     ///
-    /// Cost: O(n log n); memory for the greatest place.
+    /// Cost: O(n log n); memory for the highest slot.
     /// # Panics
-    /// Places of a billion and more.
+    /// On a slot of a billion or more.
     pub fn new(
         triangles: impl IntoIterator<Item = (u32, [VertexId; 3])>,
         strips: &Strips,
-        effort: Effort,
+        effort: StripEffort,
     ) -> Self {
         let mut faces = Vec::new();
         for (place, triangle) in triangles {
-            assert!((place as usize) < Port::MOST_CELLS, "places are numbered in 30 bits");
+            assert!((place as usize) < DualEdge::MAX_NODES, "slots are numbered in 30 bits");
             faces.resize(faces.len().max(place as usize + 1), FREE);
             faces[place as usize] = triangle;
         }
-        let mut cover = Cover::new(&faces);
+        let mut cover = PathCover::new(&faces);
         follow(&mut cover, &faces, strips);
-        let sides = (0..faces.len()).flat_map(|place| (0..3).map(move |k| Port::new(place, k)));
-        let is_open =
-            |port: &Port| cover.across(*port).is_none() && has_three_corners(&faces[port.cell()]);
-        let open = sides.filter(is_open).map(|port| (ends(&faces[port.cell()], port.side()), port));
+        let sides = (0..faces.len()).flat_map(|place| (0..3).map(move |k| DualEdge::new(place, k)));
+        let is_open = |edge: &DualEdge| {
+            cover.across(*edge).is_none() && has_three_corners(&faces[edge.node()])
+        };
+        let open = sides.filter(is_open).map(|edge| (ends(&faces[edge.node()], edge.side()), edge));
         Self {
             open: open.collect(),
             is_changed: vec![false; faces.len()],
             faces,
             cover,
-            mender: Mender::new(effort),
+            local_search: LocalSearch::new(effort),
             changed: Vec::new(),
             loose: Vec::new(),
         }
     }
 
-    /// Writes over some places, `None` for nothing, and repairs the strips there. How many triangles came, went or
-    /// have another corner.
+    /// Overwrites slots, `None` to empty one, and repairs the strips there. Returns the number of
+    /// triangles added, removed or changed.
     ///
-    /// Cost: of the changes, and of the strips that go through them as far as they are walked.
+    /// Cost: proportional to the changes and the walks along the strips through them.
     /// # Panics
-    /// Places of a billion and more.
+    /// On a slot of a billion or more.
     pub fn update(
         &mut self,
         changes: impl IntoIterator<Item = (u32, Option<[VertexId; 3]>)>,
@@ -87,29 +88,29 @@ impl LiveStrips {
         count
     }
 
-    /// The strips as they are now.
+    /// Returns the current strips.
     ///
-    /// Cost: linear in all of them.
+    /// Cost: linear in their length.
     pub fn strips(&self) -> Strips {
         self.cover.strips(&self.faces)
     }
 
     fn write(&mut self, place: usize, triangle: [VertexId; 3]) {
-        assert!(place < Port::MOST_CELLS, "places are numbered in 30 bits");
+        assert!(place < DualEdge::MAX_NODES, "slots are numbered in 30 bits");
         while self.faces.len() <= place {
             self.faces.push(FREE);
-            let across = [Port::NONE; 3];
-            self.cover.cells.push(Cell { across, links: Links::default(), held: false });
+            let across = [DualEdge::NONE; 3];
+            self.cover.nodes.push(DualNode { across, links: Links::default(), frozen: false });
             self.is_changed.push(false);
         }
         if self.faces[place] == triangle {
             return;
         }
         for side in 0..3 {
-            let port = Port::new(place, side);
+            let edge = DualEdge::new(place, side);
             let key = ends(&self.faces[place], side);
-            // Where three faces meet another side may be known by the same ends.
-            if self.cover.across(port).is_none() && self.open.get(&key) == Some(&port) {
+            // On an edge of three faces another side may have the same ends.
+            if self.cover.across(edge).is_none() && self.open.get(&key) == Some(&edge) {
                 self.open.remove(&key);
             }
         }
@@ -117,39 +118,39 @@ impl LiveStrips {
         self.mark(place);
     }
 
-    /// Parts the sides of what changed from those that do not run along them any more.
+    /// Disconnects sides of changed triangles from those that no longer run along them.
     fn loosen(&mut self) {
         for i in 0..self.changed.len() {
             for side in 0..3 {
-                let port = Port::new(self.changed[i] as usize, side);
-                let other = self.cover.across(port);
+                let edge = DualEdge::new(self.changed[i] as usize, side);
+                let other = self.cover.across(edge);
                 if other.is_none() {
-                    self.loose.push(port);
-                } else if !self.is_across(port, other) {
-                    self.cover.sever(port);
-                    self.loose.extend([port, other]);
-                    self.mark(other.cell());
+                    self.loose.push(edge);
+                } else if !self.is_across(edge, other) {
+                    self.cover.disconnect(edge);
+                    self.loose.extend([edge, other]);
+                    self.mark(other.node());
                 }
             }
         }
     }
 
-    /// Lets the loose sides lie across from those that run along them.
+    /// Connects loose sides with those that run along them.
     fn join(&mut self) {
         let mut loose = std::mem::take(&mut self.loose);
-        for port in loose.drain(..) {
-            let face = &self.faces[port.cell()];
-            if !has_three_corners(face) || !self.cover.across(port).is_none() {
+        for edge in loose.drain(..) {
+            let face = &self.faces[edge.node()];
+            if !has_three_corners(face) || !self.cover.across(edge).is_none() {
                 continue;
             }
-            let [from, to] = ends(face, port.side());
+            let [from, to] = ends(face, edge.side());
             match self.open.remove(&[to, from]) {
                 Some(other) => {
-                    self.cover.join(port, other);
-                    self.mark(other.cell());
+                    self.cover.connect(edge, other);
+                    self.mark(other.node());
                 }
                 None => {
-                    self.open.entry([from, to]).or_insert(port);
+                    self.open.entry([from, to]).or_insert(edge);
                 }
             }
         }
@@ -160,7 +161,7 @@ impl LiveStrips {
         let Self { faces, changed, is_changed, cover, .. } = self;
         changed.iter().for_each(|&place| is_changed[place as usize] = false);
         changed.retain(|&place| has_three_corners(&faces[place as usize]));
-        self.mender.mend(cover, changed);
+        self.local_search.improve(cover, changed);
         changed.clear();
     }
 
@@ -170,15 +171,15 @@ impl LiveStrips {
         }
     }
 
-    fn is_across(&self, port: Port, other: Port) -> bool {
-        let [from, to] = ends(&self.faces[port.cell()], port.side());
-        let whole = [port, other].iter().all(|p| has_three_corners(&self.faces[p.cell()]));
-        whole && ends(&self.faces[other.cell()], other.side()) == [to, from]
+    fn is_across(&self, edge: DualEdge, other: DualEdge) -> bool {
+        let [from, to] = ends(&self.faces[edge.node()], edge.side());
+        let whole = [edge, other].iter().all(|p| has_three_corners(&self.faces[p.node()]));
+        whole && ends(&self.faces[other.node()], other.side()) == [to, from]
     }
 }
 
-/// Links what strips draw one after the other.
-fn follow(cover: &mut Cover, faces: &[[VertexId; 3]], strips: &Strips) {
+/// Links triangles that strips draw one after the other.
+fn follow(cover: &mut PathCover, faces: &[[VertexId; 3]], strips: &Strips) {
     let mut places: Vec<_> = faces.iter().copied().map(lowest_first).zip(0..).collect();
     places.sort_unstable();
     let place = |triangle: [VertexId; 3]| {
@@ -187,13 +188,13 @@ fn follow(cover: &mut Cover, faces: &[[VertexId; 3]], strips: &Strips) {
         places.get(at).filter(|(face, _)| *face == key).map(|&(_, place): &(_, usize)| place)
     };
     for strip in strips.iter() {
-        cover.follow(crate::strips::drawn(strip).filter_map(place));
+        cover.link_sequence(crate::strips::drawn(strip).filter_map(place));
     }
 }
 
 #[cfg(test)]
 impl LiveStrips {
-    /// Panics unless the strips draw what is in the list.
+    /// Panics unless the strips draw what is in the slots.
     pub(crate) fn check(&self) {
         use crate::verify::{Difference, difference};
         self.cover.check();
@@ -206,14 +207,15 @@ mod tests {
     use meshlod_samples as samples;
 
     use super::*;
-    use crate::stripify::{Options, stripify};
+    use crate::stripify::{StripOptions, stripify};
 
     #[test]
     fn whatever_is_written_is_drawn() {
-        let mut strips = LiveStrips::new([], &Strips::default(), Effort::Quick);
+        let mut strips = LiveStrips::new([], &Strips::default(), StripEffort::Quick);
         let mut random = crate::random::Random::new(1, 0);
         for _ in 0..200 {
-            // Few vertices: edges of many faces, faces there twice, faces without three corners.
+            // Few vertices, so that there are edges of many faces, duplicate faces, and degenerate
+            // ones.
             let changes: Vec<_> = (0..20)
                 .map(|_| {
                     let corners = [0; 3].map(|_| VertexId::new(random.below(9)));
@@ -229,9 +231,9 @@ mod tests {
     #[test]
     fn strips_are_taken_over() {
         let faces = samples::torus(300).faces;
-        let strips = stripify(&faces, &Options::default());
+        let strips = stripify(&faces, &StripOptions::default());
         let places = (0..).zip(faces.iter().copied());
-        let live = LiveStrips::new(places.map(|(i, f)| (2 * i, f)), &strips, Effort::Quick);
+        let live = LiveStrips::new(places.map(|(i, f)| (2 * i, f)), &strips, StripEffort::Quick);
         live.check();
         let sent = |strips: &Strips| (strips.len(), strips.vertices().len());
         assert_eq!(sent(&live.strips()), sent(&strips));
@@ -240,9 +242,9 @@ mod tests {
     #[test]
     fn what_is_taken_away_and_put_back_costs_little() {
         let faces = samples::sphere(2000).faces;
-        let strips = stripify(&faces, &Options::default());
+        let strips = stripify(&faces, &StripOptions::default());
         let places = || (0..).zip(faces.iter().copied());
-        let mut live = LiveStrips::new(places(), &strips, Effort::Thorough);
+        let mut live = LiveStrips::new(places(), &strips, StripEffort::Thorough);
         assert_eq!(live.update((100..200).map(|place| (place, None))), 100);
         live.check();
         live.update(places().map(|(place, face)| (place, Some(face))));

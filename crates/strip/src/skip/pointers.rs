@@ -1,11 +1,12 @@
-//! Parent pointers, shortened where they have been followed.
+//! Parent pointers with path compression.
 
 use meshlod_mesh::VertexId;
 
-/// By vertex: one on its way up that is gone, behind which its way goes on.
+/// For each vertex, a vanished ancestor from which the search for its representative can continue.
 ///
-/// A vertex goes before the one it becomes. So where one on the way up is gone, all below it are, and a
-/// shortened pointer holds as long as its last gone vertex is gone: coming back, it heals by itself.
+/// A vertex vanishes before its parent. So the descendants of a vanished vertex have vanished too,
+/// and a shortcut is valid as long as its target has vanished; when the target returns, the search
+/// ignores it.
 /// # References
 /// [ESAV99], path compression.
 #[derive(Clone, Debug)]
@@ -18,7 +19,7 @@ impl Pointers {
         Self { last: (0..vertices).map(VertexId::new).collect() }
     }
 
-    /// The first vertex on the way up that is not gone.
+    /// Returns the nearest ancestor that has not vanished.
     #[inline]
     pub(super) fn shown(
         &mut self,
@@ -51,7 +52,7 @@ mod tests {
 
     #[test]
     fn shortened_pointers_follow_what_comes_back() {
-        // 0 becomes 1, that 2, …
+        // 0 merges into 1, 1 into 2, …
         let parents: Vec<_> = (1..=9).chain([9]).map(VertexId::new).collect();
         let mut pointers = Pointers::new(10);
         for made in [9, 3, 7, 0, 5, 9, 1, 2, 0] {

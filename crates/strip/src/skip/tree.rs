@@ -1,4 +1,4 @@
-//! Which vertex each one becomes, and when.
+//! The merge tree: which vertex each one merges into, and when.
 
 use meshlod_mesh::{Mesh, VertexId};
 use meshlod_simplify::{History, Method, Options, Simplifier, SimplifyError, Target};
@@ -7,43 +7,43 @@ use thiserror::Error;
 use super::pointers::Pointers;
 use crate::verify::{has_three_corners, lowest_first};
 
-/// A mesh and its half-edge contractions, first to last: after so many of them it is at a level.
+/// A mesh and its half-edge contractions, in order; a level is the mesh after some of them.
 ///
-/// Points never move, so every vertex of every level is one of the mesh's and one vertex buffer serves
-/// all. Faces that repeat a vertex or an earlier face are left out.
+/// Points never move, so every vertex of a level is a vertex of the mesh and one vertex buffer
+/// serves all levels. Degenerate faces and duplicates are left out.
 /// # References
 /// [KY05], the merge tree.
 #[derive(Clone, Debug)]
 pub struct MergeTree {
     faces: Vec<[VertexId; 3]>,
-    /// By vertex: what it becomes.
+    /// Vertex that each vertex merges into.
     parents: Vec<VertexId>,
-    /// By vertex: the contraction it goes with, or [`STAYS`].
+    /// Contraction at which each vertex vanishes, or [`STAYS`].
     turns: Vec<u32>,
-    /// After so many contractions, from none.
+    /// Number of faces left after 0, 1, 2, … contractions.
     faces_left: Vec<u32>,
 }
 
-/// The turn of a vertex that never goes.
+/// Rank of a vertex that never vanishes.
 const STAYS: u32 = u32::MAX;
 
-/// Why a history is none that strips can follow.
+/// Reasons why strips cannot follow a history.
 #[derive(Clone, Copy, Debug, Error, PartialEq, Eq)]
 pub enum HistoryError {
-    /// Its vertex is not one of the two that were contracted.
+    /// The merged vertex is at neither end of the edge.
     #[error(
-        "contraction {0} moves a point; strips follow half-edge contractions, as of qem-endpoint"
+        "contraction {0} moves a point; strips need half-edge contractions, for example by qem-endpoint"
     )]
     Moves(usize),
-    /// A face that went with it has not lost an edge: it is of another mesh, or a component vanished.
+    /// A removed face does not collapse: the history is of another mesh, or a component vanished.
     #[error(
-        "contraction {0} is not one of this mesh's; record it without letting components vanish"
+        "contraction {0} does not fit this mesh; record this mesh, without letting components vanish"
     )]
     Foreign(usize),
 }
 
 impl MergeTree {
-    /// A mesh without contractions.
+    /// Creates a tree without contractions.
     ///
     /// Cost: O(n log n).
     pub fn new(mesh: &Mesh) -> Self {
@@ -57,22 +57,22 @@ impl MergeTree {
         }
     }
 
-    /// A mesh with the contractions that bring it to a target, by `qem-endpoint`.
+    /// Simplifies a mesh to a target by `qem-endpoint` and records the contractions.
     /// # Errors
-    /// A mesh or a target that simplification does not take.
+    /// If simplification refuses the mesh or the target.
     pub fn record(mesh: &Mesh, target: Target) -> Result<Self, SimplifyError> {
         let options = Options { method: Some(Method::QemEndpoint), ..Options::default() };
         let mut history = History::default();
         Simplifier::new(mesh, &options)?.run(target, &mut history)?;
-        Ok(Self::of_history(mesh, &history).expect("it was recorded of this mesh just now"))
+        Ok(Self::from_history(mesh, &history).expect("just recorded from this mesh"))
     }
 
-    /// A mesh with the contractions of a history.
+    /// Builds the tree from a recorded history.
     ///
-    /// Cost: linear, but for the mesh's faces, which are sorted.
+    /// Cost: linear, apart from sorting the mesh's faces.
     /// # Errors
-    /// A history that moves points, or is not of this mesh.
-    pub fn of_history(mesh: &Mesh, history: &History) -> Result<Self, HistoryError> {
+    /// If the history moves points or is of another mesh.
+    pub fn from_history(mesh: &Mesh, history: &History) -> Result<Self, HistoryError> {
         let mut this = Self::new(mesh);
         let mut pointers = Pointers::new(mesh.positions.len());
         for (turn, contraction) in history.contractions().iter().enumerate() {
@@ -103,33 +103,34 @@ impl MergeTree {
         Ok(this)
     }
 
-    /// How many contractions there are.
+    /// Returns the number of contractions.
     pub fn contractions(&self) -> usize {
         self.faces_left.len() - 1
     }
 
-    /// How many vertices the mesh has.
+    /// Returns the number of vertices of the mesh.
     pub fn vertices(&self) -> usize {
         self.parents.len()
     }
 
-    /// How many faces are left after so many contractions, at most all.
+    /// Returns the number of faces left after this many contractions, clamped to the maximum.
     pub fn faces_left(&self, contractions: usize) -> usize {
         self.faces_left[contractions.min(self.contractions())] as usize
     }
 
-    /// The least contractions that leave no more than so many faces; all where none do.
+    /// Returns the fewest contractions that leave at most `faces` faces, or all contractions if
+    /// none suffice.
     pub fn contractions_to(&self, faces: usize) -> usize {
         let found = self.faces_left.partition_point(|&left| left as usize > faces);
         found.min(self.contractions())
     }
 
-    /// The faces of the mesh.
+    /// Returns the faces of the mesh.
     pub fn faces(&self) -> &[[VertexId; 3]] {
         &self.faces
     }
 
-    /// The faces of the level after so many contractions, by the vertices of the mesh.
+    /// Returns the faces of the level after this many contractions, by vertices of the mesh.
     ///
     /// Cost: linear.
     pub fn level(&self, contractions: usize) -> Vec<[VertexId; 3]> {
@@ -139,7 +140,7 @@ impl MergeTree {
         shown.filter(has_three_corners).collect()
     }
 
-    /// The vertices that go, first to last.
+    /// Lists the vertices that vanish, in order.
     pub(super) fn order(&self) -> Vec<VertexId> {
         let mut order = vec![VertexId(0); self.contractions()];
         for (v, &turn) in self.turns.iter().enumerate().filter(|(_, turn)| **turn != STAYS) {
@@ -148,12 +149,12 @@ impl MergeTree {
         order
     }
 
-    /// What a vertex becomes; itself if it stays.
+    /// Returns the vertex that a vertex merges into, itself if it stays.
     pub(super) fn parent(&self, vertex: VertexId) -> VertexId {
         self.parents[vertex.index()]
     }
 
-    /// The vertex that stands for one after so many contractions.
+    /// Returns the vertex that represents `vertex` after this many contractions.
     #[inline]
     pub(super) fn shown(
         &self,
@@ -166,7 +167,7 @@ impl MergeTree {
     }
 }
 
-/// The faces with three corners that repeat no earlier one, in their order.
+/// Drops degenerate faces and duplicates of earlier ones; keeps the order.
 fn whole_faces(faces: &[[VertexId; 3]]) -> Vec<[VertexId; 3]> {
     let whole = faces.iter().filter(|face| has_three_corners(face)).zip(0u32..);
     let mut sorted: Vec<_> = whole.map(|(&face, i)| (lowest_first(face), i, face)).collect();
@@ -185,7 +186,7 @@ mod tests {
     use crate::strips::Strips;
     use crate::verify::{Difference, difference};
 
-    /// Every triangle a strip of its own.
+    /// Makes every triangle a strip of its own.
     fn apart(faces: &[[VertexId; 3]]) -> Strips {
         let mut strips = Strips::default();
         faces.iter().for_each(|&face| strips.push(face));
@@ -227,7 +228,7 @@ mod tests {
         let mut history = History::default();
         let mut simplifier = Simplifier::new(&mesh, &Options::default()).unwrap();
         simplifier.run(Target::Ratio(0.5), &mut history).unwrap();
-        assert_eq!(MergeTree::of_history(&mesh, &history).err(), Some(HistoryError::Moves(0)));
+        assert_eq!(MergeTree::from_history(&mesh, &history).err(), Some(HistoryError::Moves(0)));
     }
 
     #[test]
@@ -238,7 +239,7 @@ mod tests {
         let mut simplifier = Simplifier::new(&mesh, &options).unwrap();
         simplifier.run(Target::Ratio(0.5), &mut history).unwrap();
         for other in [samples::torus(200), tetrahedron()] {
-            let error = MergeTree::of_history(&other, &history).err();
+            let error = MergeTree::from_history(&other, &history).err();
             assert!(matches!(error, Some(HistoryError::Foreign(_))), "{error:?}");
         }
     }

@@ -1,4 +1,4 @@
-//! From level to level, by what changes.
+//! Moves between levels of a merge tree by what changes.
 
 use meshlod_mesh::VertexId;
 
@@ -6,37 +6,38 @@ use super::pointers::Pointers;
 use super::tree::MergeTree;
 use crate::verify::has_three_corners;
 
-/// A level of a merge tree, which knows the faces that the way to another one changes.
+/// A current level of a merge tree that can list the faces changed by a move to another level.
 #[derive(Clone, Debug)]
-pub(crate) struct Descent {
+pub(crate) struct LevelCursor {
     tree: MergeTree,
     pointers: Pointers,
     contractions: usize,
-    /// The vertices that go, first to last.
+    /// Vertices that vanish, in order.
     order: Vec<VertexId>,
-    below: Below,
-    /// By face: the last time it was looked at.
+    below: SubtreeFaces,
+    /// Number of the move that last visited each face.
     seen: Vec<u32>,
     times: u32,
 }
 
-/// The faces of the mesh by their corners, those of each vertex with all that became it in one run.
+/// Faces by vertex, stored so that the faces of a vertex and of all its descendants are
+/// consecutive.
 #[derive(Clone, Debug)]
-struct Below {
-    /// By vertex: where its run starts, and where it ends.
+struct SubtreeFaces {
+    /// Start and end of each vertex's range in `faces`.
     runs: Vec<[u32; 2]>,
     faces: Vec<u32>,
 }
 
-/// A place in a list of triangles, and what is there now.
+/// A slot in a list of triangles, and its new content.
 pub(crate) type Change = (u32, Option<[VertexId; 3]>);
 
-impl Descent {
-    /// At the mesh itself.
+impl LevelCursor {
+    /// Starts at the full mesh.
     pub(crate) fn new(tree: MergeTree) -> Self {
         let order = tree.order();
         Self {
-            below: Below::new(&tree, &order),
+            below: SubtreeFaces::new(&tree, &order),
             pointers: Pointers::new(tree.vertices()),
             seen: vec![0; tree.faces().len()],
             tree,
@@ -54,8 +55,8 @@ impl Descent {
         self.contractions
     }
 
-    /// Goes to the level after so many contractions: the faces on the way, some of which may be as they were.
-    pub(crate) fn go(&mut self, contractions: usize) -> Vec<Change> {
+    /// Moves to another level and lists the faces on the way, some of which may be unchanged.
+    pub(crate) fn move_to(&mut self, contractions: usize) -> Vec<Change> {
         let to = contractions.min(self.tree.contractions());
         let from = std::mem::replace(&mut self.contractions, to);
         let Self { tree, pointers, order, below, seen, times, .. } = self;
@@ -74,7 +75,7 @@ impl Descent {
     }
 }
 
-impl Below {
+impl SubtreeFaces {
     fn new(tree: &MergeTree, order: &[VertexId]) -> Self {
         let mut own = vec![0; tree.vertices()];
         tree.faces().iter().flatten().for_each(|v| own[v.index()] += 1);
@@ -96,10 +97,10 @@ impl Below {
     }
 }
 
-/// By vertex: a run with a place for each of its own corners, and behind them the runs of those that become it.
+/// Lays out a range for each vertex: its own corners, then the ranges of its descendants.
 fn runs(tree: &MergeTree, order: &[VertexId], own: &[u32]) -> Vec<[u32; 2]> {
     let parent = |v: VertexId| tree.parent(v).index();
-    // What becomes a vertex has done so before it goes.
+    // Descendants vanish before their ancestor.
     let mut counts = own.to_vec();
     order.iter().for_each(|&v| counts[parent(v)] += counts[v.index()]);
     let mut stays = vec![true; tree.vertices()];
@@ -110,7 +111,7 @@ fn runs(tree: &MergeTree, order: &[VertexId], own: &[u32]) -> Vec<[u32; 2]> {
         runs[v] = [end, end + counts[v]];
         end += counts[v];
     }
-    // Where the next run within each begins. The last to go has its place before those below it.
+    // Start of the next child range in each. The last to vanish comes first.
     let mut next: Vec<u32> = runs.iter().zip(own).map(|(run, own)| run[0] + own).collect();
     for &v in order.iter().rev() {
         let start = next[parent(v)];
@@ -133,14 +134,14 @@ mod tests {
     fn changes_lead_to_every_level(mesh: &Mesh) {
         let tree = MergeTree::record(mesh, Target::Faces(0)).unwrap();
         let mut faces: Vec<_> = tree.faces().iter().copied().map(Some).collect();
-        let mut descent = Descent::new(tree);
-        let all = descent.tree().contractions();
+        let mut cursor = LevelCursor::new(tree);
+        let all = cursor.tree().contractions();
         for part in [1, 5, 4, 10, 0, 9, 3] {
-            for (face, triangle) in descent.go(all * part / 10) {
+            for (face, triangle) in cursor.move_to(all * part / 10) {
                 faces[face as usize] = triangle;
             }
             let mut there: Vec<_> = faces.iter().copied().flatten().collect();
-            let mut level = descent.tree().level(descent.level());
+            let mut level = cursor.tree().level(cursor.level());
             there.sort_unstable();
             level.sort_unstable();
             assert_eq!(there, level, "{part}");
@@ -157,9 +158,9 @@ mod tests {
     #[test]
     fn little_is_looked_at_for_a_small_step() {
         let tree = MergeTree::record(&samples::sphere(4000), Target::Faces(0)).unwrap();
-        let mut descent = Descent::new(tree);
-        let half = descent.tree().contractions_to(2000);
-        descent.go(half);
-        assert!(descent.go(half + 1).len() < 100);
+        let mut cursor = LevelCursor::new(tree);
+        let half = cursor.tree().contractions_to(2000);
+        cursor.move_to(half);
+        assert!(cursor.move_to(half + 1).len() < 100);
     }
 }
