@@ -164,14 +164,16 @@
 //! ```
 //! # let knot = meshlod::samples::knot(2_000);
 //! use meshlod::Target;
-//! use meshlod::strip::{Difference, Effort, MergeTree, Options, SkipStrip, difference, stripify};
+//! use meshlod::strip::{
+//!     Difference, MergeTree, SkipStrip, StripEffort, StripOptions, difference, stripify,
+//! };
 //!
 //! let tree = MergeTree::record(&knot, Target::Ratio(0.1))?;
-//! let strips = stripify(tree.faces(), &Options::default());
+//! let strips = stripify(tree.faces(), &StripOptions::default());
 //! let mut skip = SkipStrip::new(tree, strips);
 //! skip.set_level(skip.tree().contractions_to(500));
 //!
-//! let (strips, level) = (skip.repaired(Effort::Quick), skip.tree().level(skip.level()));
+//! let (strips, level) = (skip.repaired(StripEffort::Quick), skip.tree().level(skip.level()));
 //! assert_eq!(difference(&strips, &level), Difference::default());
 //! assert!(strips.vertices().len() < 700, "three a triangle would be 1500");
 //! # Ok::<(), meshlod::SimplifyError>(())

@@ -11,7 +11,7 @@ use clap::{Args, ValueEnum};
 use meshlod::Mesh;
 use meshlod::mesh::{Connectivity, VertexId};
 use meshlod::strip::{
-    self, Difference, Effort, Filter, MergeTree, SkipStrip, StripStatistics, Strips,
+    self, Difference, Filter, MergeTree, SkipStrip, StripEffort, StripStatistics, Strips,
 };
 use serde_json::{Value, json};
 
@@ -191,11 +191,11 @@ impl Strip {
 
     fn stripify(&self, faces: &[[VertexId; 3]]) -> Strips {
         let quality = match (self.quality, self.effort) {
-            (QualityArg::Fast, _) => strip::Quality::Fast,
-            (QualityArg::Best, EffortArg::Quick) => strip::Quality::QUICK,
-            (QualityArg::Best, EffortArg::Thorough) => strip::Quality::THOROUGH,
+            (QualityArg::Fast, _) => strip::StripQuality::Fast,
+            (QualityArg::Best, EffortArg::Quick) => strip::StripQuality::QUICK,
+            (QualityArg::Best, EffortArg::Thorough) => strip::StripQuality::THOROUGH,
         };
-        strip::stripify(faces, &strip::Options { quality, ..strip::Options::default() })
+        strip::stripify(faces, &strip::StripOptions { quality, ..strip::StripOptions::default() })
     }
 
     fn json(&self, source: &StripSource, levels: &[StrippedLevel]) -> Value {
@@ -248,7 +248,7 @@ impl StrippedLevel {
     }
 }
 
-impl From<EffortArg> for Effort {
+impl From<EffortArg> for StripEffort {
     fn from(tried: EffortArg) -> Self {
         match tried {
             EffortArg::Quick => Self::Quick,

@@ -6,7 +6,7 @@ mod whole;
 
 use anyhow::{Context, Result};
 use meshlod::Target;
-use meshlod::strip::{Effort, LevelStrips, MergeTree};
+use meshlod::strip::{LevelStrips, MergeTree, StripEffort};
 use meshlod_bench::{least_seconds, one_core};
 
 use self::sent::{BASES, Base, Levels, Model};
@@ -132,7 +132,7 @@ fn sweep() -> Result<String> {
         let way = (10..100).rev().chain(11..=100);
         let to: Vec<usize> =
             way.map(|percent| tree.contractions_to(mesh.faces.len() * percent / 100)).collect();
-        let start = LevelStrips::new(tree.clone(), &strips, Effort::Quick);
+        let start = LevelStrips::new(tree.clone(), &strips, StripEffort::Quick);
         let mut live = start.clone();
         let (mut changed, mut all) = (0, Vec::new());
         for &level in &to {

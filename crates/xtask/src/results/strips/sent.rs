@@ -2,8 +2,8 @@
 
 use meshlod::mesh::VertexId;
 use meshlod::strip::{
-    Difference, Effort, Filter, MergeTree, Options, Quality, SkipStrip, Strips, difference,
-    stripify,
+    Difference, Filter, MergeTree, SkipStrip, StripEffort, StripOptions, StripQuality, Strips,
+    difference, stripify,
 };
 use meshlod_bench::peer::meshopt_strips;
 
@@ -29,7 +29,7 @@ impl Base {
     pub fn strips(self, faces: &[[VertexId; 3]]) -> Strips {
         match self {
             Self::Meshopt => meshopt_strips(faces),
-            Self::Fast => of_quality(faces, Quality::Fast),
+            Self::Fast => of_quality(faces, StripQuality::Fast),
             Self::Best => best(faces),
         }
     }
@@ -135,8 +135,8 @@ fn level(skip: &mut SkipStrip, percent: usize, anew: usize) -> Level {
     let ways = [
         skip.display(Filter::Stss),
         skip.display(Filter::Dtff),
-        skip.repaired(Effort::Quick),
-        skip.repaired(Effort::Thorough),
+        skip.repaired(StripEffort::Quick),
+        skip.repaired(StripEffort::Thorough),
     ];
     let [stss, dtff, quick, repair] = ways.map(|strips| {
         assert_eq!(difference(&strips, &faces), Difference::default());
@@ -151,9 +151,9 @@ fn contractions_to(tree: &MergeTree, percent: usize) -> usize {
 
 /// Small meshes are annealed several times, which is more than this says.
 fn best(faces: &[[VertexId; 3]]) -> Strips {
-    of_quality(faces, Quality::Best { moves_per_face: 100.0 })
+    of_quality(faces, StripQuality::Best { moves_per_face: 100.0 })
 }
 
-fn of_quality(faces: &[[VertexId; 3]], quality: Quality) -> Strips {
-    stripify(faces, &Options { quality, ..Options::default() })
+fn of_quality(faces: &[[VertexId; 3]], quality: StripQuality) -> Strips {
+    stripify(faces, &StripOptions { quality, ..StripOptions::default() })
 }

@@ -3,7 +3,8 @@
 use anyhow::Result;
 use meshlod::mesh::VertexId;
 use meshlod::strip::{
-    CacheAware, Difference, Options, Quality, StripStatistics, Strips, difference, stripify,
+    CacheAware, Difference, StripOptions, StripQuality, StripStatistics, Strips, difference,
+    stripify,
 };
 use meshlod_bench::least_seconds;
 use meshlod_bench::peer::meshopt_strips;
@@ -40,12 +41,12 @@ pub fn table() -> Result<String> {
             table.row(figures(format!("{file}, {setting}"), faces, &strips, seconds));
         };
         row("meshoptimizer".into(), &|| meshopt_strips(faces));
-        row("`fast`".into(), &|| of(faces, Quality::Fast, None));
+        row("`fast`".into(), &|| of(faces, StripQuality::Fast, None));
         for moves in MOVES {
-            let quality = Quality::Best { moves_per_face: moves };
+            let quality = StripQuality::Best { moves_per_face: moves };
             row(format!("`best`, {moves} moves"), &|| of(faces, quality, None));
         }
-        let quality = Quality::Best { moves_per_face: FOR_CACHE };
+        let quality = StripQuality::Best { moves_per_face: FOR_CACHE };
         row("for a cache".into(), &|| of(faces, quality, Some(CacheAware::default())));
     }
     Ok(table.markdown())
@@ -60,14 +61,14 @@ pub fn trade_off() -> Result<Option<String>> {
             StripStatistics::new(strips);
         [acmr16, indices_with_restart as f64 / triangles as f64]
     };
-    let quality = Quality::Best { moves_per_face: FOR_CACHE };
+    let quality = StripQuality::Best { moves_per_face: FOR_CACHE };
     let curve = LONGEST.map(|longest| {
         point(&of(faces, quality, Some(CacheAware { longest, ..CacheAware::default() })))
     });
     let lines = vec![
         Line::new("for a cache of 16, strips of 13 to 160 triangles", "#1e8449", curve.into()),
         Line::new("best", "#333333", vec![point(&of(faces, quality, None))]),
-        Line::new("fast", "#2471a3", vec![point(&of(faces, Quality::Fast, None))]),
+        Line::new("fast", "#2471a3", vec![point(&of(faces, StripQuality::Fast, None))]),
         Line::new("meshoptimizer", "#c0392b", vec![point(&meshopt_strips(faces))]),
     ];
     let caption = "bunny: indices with restarts a triangle, by ACMR-16".into();
@@ -76,8 +77,8 @@ pub fn trade_off() -> Result<Option<String>> {
     Ok(Some(page(&[plot])))
 }
 
-fn of(faces: &[[VertexId; 3]], quality: Quality, cache: Option<CacheAware>) -> Strips {
-    stripify(faces, &Options { quality, cache, ..Options::default() })
+fn of(faces: &[[VertexId; 3]], quality: StripQuality, cache: Option<CacheAware>) -> Strips {
+    stripify(faces, &StripOptions { quality, cache, ..StripOptions::default() })
 }
 
 fn figures(name: String, faces: &[[VertexId; 3]], strips: &Strips, seconds: f64) -> Vec<String> {
