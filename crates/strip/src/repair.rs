@@ -6,6 +6,7 @@ mod local_search;
 
 pub use levels::LevelStrips;
 pub use live::LiveStrips;
+pub use local_search::StripEffort;
 
 use meshlod_mesh::VertexId;
 
@@ -15,16 +16,6 @@ use crate::path_cover::PathCover;
 use crate::skip::SkipStrip;
 use crate::strips::Strips;
 use crate::verify::has_three_corners;
-
-/// Effort spent on repairing strips.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-pub enum StripEffort {
-    /// Fast enough for a level that changes every frame.
-    Quick,
-    /// For levels that are made once.
-    #[default]
-    Thorough,
-}
 
 impl SkipStrip {
     /// Returns the strips of the level: the result of [`Filter::Dtff`](crate::Filter::Dtff),

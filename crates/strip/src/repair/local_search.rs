@@ -1,11 +1,20 @@
 //! Local search for better strips around given nodes.
 
-use super::StripEffort;
 use crate::anneal::{Annealing, Limits, Starts};
 use crate::energy::{Energy, Prices};
 use crate::path_cover::PathCover;
 use crate::random::Random;
 use crate::region::Region;
+
+/// Effort spent on repairing strips.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum StripEffort {
+    /// Fast enough for a level that changes every frame.
+    Quick,
+    /// For levels that are made once.
+    #[default]
+    Thorough,
+}
 
 /// Temperatures of a quick repair, in vertices, one per pass; each pass tries one move at every
 /// defect.
