@@ -8,8 +8,8 @@ use meshlod_check::{
 };
 use meshlod_mesh::{Attributes, Labels, Layer, LayerKind, Mesh, VertexId, WedgeId};
 
-/// Faces over few vertices, where nearly everything is wrong: byte 0 chooses the number of vertices,
-/// byte 1 what hangs on them and whether holes are closed; coordinates and faces follow.
+/// Faces over few vertices, where nearly everything is wrong. Byte 0 chooses the number of
+/// vertices, byte 1 the attributes and whether holes are closed; coordinates and faces follow.
 fn mesh(bytes: &[u8]) -> Option<(Mesh, RepairOptions)> {
     let (&[count, extras], rest) = bytes.split_first_chunk()?;
     let count = 3 + usize::from(count % 61);
@@ -17,7 +17,7 @@ fn mesh(bytes: &[u8]) -> Option<(Mesh, RepairOptions)> {
     let (points, _) = coordinates.as_chunks::<3>();
     let (triples, _) = faces.as_chunks::<3>();
     let positions = points.iter().map(|p| p.map(coordinate)).collect();
-    // One of the vertices they may name is not there.
+    // One of the vertices that faces may name does not exist.
     let faces: Vec<_> =
         triples.iter().map(|t| t.map(|v| VertexId(u32::from(v) % (count as u32 + 1)))).collect();
     let mut mesh = Mesh::new(positions, faces);
@@ -29,7 +29,7 @@ fn mesh(bytes: &[u8]) -> Option<(Mesh, RepairOptions)> {
     Some((mesh, RepairOptions { weld, holes, ..RepairOptions::default() }))
 }
 
-/// Small whole numbers, and a few that are hard.
+/// Small integers, and a few difficult values.
 fn coordinate(byte: u8) -> f64 {
     match byte as i8 {
         -128 => f64::NAN,
@@ -40,7 +40,7 @@ fn coordinate(byte: u8) -> f64 {
     }
 }
 
-/// Wedges by vertex, or by corner; sometimes one value short.
+/// Wedges by vertex or by corner, sometimes one value short.
 fn attributes(mesh: &Mesh, extras: u8) -> Attributes {
     let own = extras & 32 != 0;
     let wedge = |f: usize, k: usize| if own { (3 * f + k) as u32 } else { mesh.faces[f][k].0 };
@@ -58,14 +58,14 @@ fn attributes(mesh: &Mesh, extras: u8) -> Attributes {
     Attributes { corners, wedge_count, layers }
 }
 
-/// Objects in turns; sometimes one label short.
+/// Alternating objects, sometimes one label short.
 fn objects(mesh: &Mesh, extras: u8) -> Labels {
     let labelled = mesh.faces.len().saturating_sub(usize::from(extras & 64 != 0));
     let of_face = (0..labelled).map(|f| (f / 3 % 2) as u32).collect();
     Labels { names: vec!["a".into(), "b".into()], of_face }
 }
 
-/// The errors of a repaired mesh that the report does not tell.
+/// Errors of a repaired mesh that the report does not mention.
 fn untold(mesh: &Mesh, one_sided: usize) -> Vec<Finding> {
     let kinds = match one_sided {
         0 => Kinds::errors(),
@@ -87,8 +87,8 @@ libfuzzer_sys::fuzz_target!(init: meshlod_fuzz::plant("check"), |bytes: &[u8]| {
     assert!(left.is_empty(), "{left:?} is left of {summary:?} after {report:?}");
     let (fused, _) = fuse(&mended, |face| face.index() % 5 != 4);
     meshlod_fuzz::accept(&fused);
-    // What was split is at one place, and welding joins it anew; borders that were in each other's
-    // way can be stitched once the hole behind one of them is closed.
+    // Split vertices coincide, and welding joins them again. Borders that obstructed each other can
+    // be stitched once the hole behind one of them is closed.
     if options.weld.is_none() && options.holes.is_none() {
         let (again, twice) = repair(&mended, &options);
         assert!(again == mended, "repaired twice: {report:?}, then {twice:?}");

@@ -5,11 +5,11 @@ use meshlod_io::{Weld, gltf};
 libfuzzer_sys::fuzz_target!(init: meshlod_fuzz::plant("gltf"), |bytes: &[u8]| {
     if let Ok(scene) = gltf::read(bytes, &mut |_| Some(bytes.to_vec()), Weld::Exact) {
         meshlod_fuzz::accept_scene(&scene);
-        // What passes through from the document must not trip the writer.
+        // The parts of the document that are carried through must not trip the writer.
         let _ = gltf::write_glb(&scene, &[]);
         let how = gltf::Compression { meshopt: bytes.len() % 2 == 0, ..Default::default() };
         if let Ok((glb, _)) = gltf::write_compressed_glb(&scene, &[], &how) {
-            gltf::read(&glb, &mut |_| None, Weld::Exact).expect("what was written is read");
+            gltf::read(&glb, &mut |_| None, Weld::Exact).expect("written glTF can be read");
         }
     }
 });

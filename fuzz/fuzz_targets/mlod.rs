@@ -2,12 +2,12 @@
 
 use meshlod_fuzz::models;
 use meshlod_multires::{
-    Archive, ViewCamera, Cut, UpdateLimits, Focus, HeightField, Implicit, Level, Model, ModelFile, Query,
-    RtinExtractor, Rtin, Tolerance,
+    Archive, Cut, Focus, HeightField, Implicit, Level, Model, ModelFile, Query, Rtin,
+    RtinExtractor, Tolerance, UpdateLimits, ViewCamera,
 };
 
 libfuzzer_sys::fuzz_target!(init: meshlod_fuzz::plant("mlod"), |bytes: &[u8]| {
-    // A mutation with the right checksums is what gets past the door.
+    // With the right checksums, more mutations get past the header.
     let mut bytes = bytes.to_vec();
     models::seal(&mut bytes);
     match ModelFile::open(bytes) {
@@ -17,7 +17,7 @@ libfuzzer_sys::fuzz_target!(init: meshlod_fuzz::plant("mlod"), |bytes: &[u8]| {
     }
 });
 
-/// What a query takes of a file without a proof, and all that is proved of it.
+/// Runs queries directly on an uncertified file, and walks the certified models read from it.
 fn take_parts(archive: &Archive<Vec<u8>>) {
     let queries = queries(archive.diagonal());
     for query in &queries {
@@ -35,20 +35,21 @@ fn take_parts(archive: &Archive<Vec<u8>>) {
     }
 }
 
-/// Follows the queries there and back.
+/// Follows the queries back and forth.
 fn walk(implicit: &Implicit, queries: &[Query<'_>]) {
     let mut cut = Cut::new(implicit);
     for query in queries.iter().chain(queries.iter().rev()) {
-        let change = cut.update(query, &UpdateLimits::default()).expect("it was asked before");
+        let change =
+            cut.update(query, &UpdateLimits::default()).expect("the query was accepted before");
         assert!(change.done, "there is all the time");
         accept(&cut.level());
     }
-    let model = Model::from_implicit(implicit).expect("it has a certificate");
+    let model = Model::from_implicit(implicit).expect("the model has a certificate");
     let mut extractor = model.extractor();
     for query in queries {
-        accept(extractor.exact(query).expect("a query"));
+        accept(extractor.exact(query).expect("the query is valid"));
         for faces in [0, 1 + implicit.full_faces() / 2, usize::MAX] {
-            accept(extractor.at_most(faces, query).expect("a query"));
+            accept(extractor.at_most(faces, query).expect("the query is valid"));
         }
     }
 }
@@ -72,7 +73,7 @@ fn accept(level: &Level) {
     meshlod_fuzz::accept(&level.mesh());
 }
 
-/// Of all kinds, in the scale of the file.
+/// Queries of all kinds, in the scale of the file.
 fn queries(diagonal: f64) -> Vec<Query<'static>> {
     // At other scales directions have no length.
     let side = if (1e-100..1e100).contains(&diagonal) { diagonal } else { 1.0 };

@@ -3,7 +3,7 @@
 use meshlod_codec::Compressed;
 
 libfuzzer_sys::fuzz_target!(init: meshlod_fuzz::plant("mlq"), |bytes: &[u8]| {
-    // A mutation with the right checksums is what gets past the door.
+    // With the right checksums, more mutations get past the header.
     let mut bytes = bytes.to_vec();
     Compressed::seal(&mut bytes);
     let Ok(compressed) = Compressed::from_bytes(&bytes) else { return };

@@ -3,13 +3,13 @@
 use meshlod_codec::{Malformed, TransportFile};
 
 libfuzzer_sys::fuzz_target!(init: meshlod_fuzz::plant("mlz"), |bytes: &[u8]| {
-    // A mutation with the right checksums is what gets past the door.
+    // With the right checksums, more mutations get past the header.
     let mut bytes = bytes.to_vec();
     TransportFile::seal(&mut bytes);
     let _ = decode(&bytes);
 });
 
-/// Each block by itself, and all.
+/// Decodes each block by itself, and all together.
 fn decode(bytes: &[u8]) -> Result<(), Malformed> {
     let file = TransportFile::open(bytes)?;
     for block in 0..file.blocks() {

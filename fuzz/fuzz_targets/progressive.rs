@@ -3,7 +3,7 @@
 use meshlod_simplify::{Progressive, ProgressiveError};
 
 libfuzzer_sys::fuzz_target!(init: meshlod_fuzz::plant("progressive"), |bytes: &[u8]| {
-    // A mutation with the right checksum is what gets past the door.
+    // With the right checksum, more mutations get past the header.
     let mut bytes = bytes.to_vec();
     Progressive::seal(&mut bytes);
     match Progressive::from_bytes(&bytes) {

@@ -3,7 +3,7 @@
 use meshlod_mesh::{Connectivity, Lock, Locks, Mesh, VertexId};
 use meshlod_simplify::{Method, Options, Target, simplify};
 
-/// Faces over few vertices, where nearly every edge is a special case: bytes 0 to 3 choose the
+/// Faces over few vertices, where nearly every edge is a special case. Bytes 0 to 3 choose the
 /// number of vertices, the method, the ratio and the locks; coordinates and faces follow.
 fn mesh(bytes: &[u8]) -> Option<(Mesh, Target, Options)> {
     let (&[count, method, ratio, locks], rest) = bytes.split_first_chunk()?;
@@ -24,7 +24,7 @@ fn mesh(bytes: &[u8]) -> Option<(Mesh, Target, Options)> {
     Some((mesh, Target::Ratio(f64::from(ratio) / 255.0), options))
 }
 
-/// Every third vertex locked, every fifth protected, all at one place tied, as the bits say.
+/// Locks every third vertex, protects every fifth, and ties coincident ones, as the bits choose.
 fn locks_of(bits: u8, positions: &[[f64; 3]]) -> Locks {
     let lock = |v: usize| match () {
         _ if bits & 2 != 0 && v.is_multiple_of(3) => Lock::Locked,
@@ -42,7 +42,7 @@ fn locks_of(bits: u8, positions: &[[f64; 3]]) -> Locks {
     Locks { of_vertex: (0..positions.len()).map(lock).collect(), ties }
 }
 
-/// Open and non-manifold edges.
+/// Counts open and non-manifold edges.
 fn defects(mesh: &Mesh) -> (usize, usize) {
     let c = Connectivity::new(&mesh.faces, mesh.positions.len());
     (c.boundary_edges(), c.non_manifold_edges())
@@ -50,9 +50,9 @@ fn defects(mesh: &Mesh) -> (usize, usize) {
 
 libfuzzer_sys::fuzz_target!(|bytes: &[u8]| {
     let Some((mesh, target, options)) = mesh(bytes) else { return };
-    // With nothing contracted yet, but without the faces that are left out.
+    // Before any contraction, but after cleaning has removed faces.
     let Ok((cleaned, _)) = simplify(&mesh, Target::Ratio(1.0), &options) else { return };
-    let (level, _) = simplify(&mesh, target, &options).expect("the target is one");
+    let (level, _) = simplify(&mesh, target, &options).expect("the target is valid");
     meshlod_fuzz::accept(&level);
     let (before, after) = (defects(&cleaned), defects(&level));
     assert!(after.0 <= before.0 && after.1 <= before.1, "{before:?} became {after:?}");

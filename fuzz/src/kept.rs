@@ -1,17 +1,17 @@
-//! The corpus that is kept: what long runs of the fuzzer found worth trying, in one file a target.
+//! The kept corpus: interesting inputs found by long runs of the fuzzer, one file per target.
 //!
-//! An input is its length, four bytes, and its bytes.
+//! An input is stored as its length in four bytes, followed by its bytes.
 
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// The longest input that is kept, in bytes: longer ones are few, and most of the size.
+/// Longest input that is kept, in bytes; longer ones are few, but make up most of the size.
 const LONGEST: usize = 512;
 
-/// The inputs kept for a target; none where there is no file.
+/// Returns the kept inputs of a target, none if there is no file.
 ///
 /// # Panics
-/// When the file is damaged.
+/// If the file is damaged.
 pub fn kept(target: &str) -> Vec<Vec<u8>> {
     let packed = fs::read(file(target)).unwrap_or_default();
     let (mut rest, mut inputs) = (packed.as_slice(), Vec::new());
@@ -23,11 +23,11 @@ pub fn kept(target: &str) -> Vec<Vec<u8>> {
     inputs
 }
 
-/// Keeps the short inputs that a target's corpus holds now, in the order of length and bytes; gives
-/// how many.
+/// Keeps the short inputs of a target's current corpus, sorted by length and bytes, and returns
+/// their number.
 ///
 /// # Errors
-/// The corpus cannot be read, the file cannot be written.
+/// If the corpus cannot be read or the file cannot be written.
 pub fn keep(target: &str) -> std::io::Result<usize> {
     let files = fs::read_dir(corpus(target))?;
     let mut inputs = files.map(|file| fs::read(file?.path())).collect::<Result<Vec<_>, _>>()?;
@@ -37,12 +37,12 @@ pub fn keep(target: &str) -> std::io::Result<usize> {
         .iter()
         .flat_map(|input| (input.len() as u32).to_le_bytes().into_iter().chain(input.clone()))
         .collect();
-    fs::create_dir_all(file(target).parent().expect("it is in a folder"))?;
+    fs::create_dir_all(file(target).parent().expect("the file is in a folder"))?;
     fs::write(file(target), packed)?;
     Ok(inputs.len())
 }
 
-/// The folder that the fuzzer reads a target's inputs from, and adds to.
+/// Returns the folder that the fuzzer reads a target's inputs from, and adds to.
 pub fn corpus(target: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("corpus").join(target)
 }

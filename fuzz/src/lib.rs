@@ -1,4 +1,4 @@
-//! What the fuzz targets share: seeds, and what must hold of anything that a reader lets through.
+//! Shared code of the fuzz targets: seeds, and checks of anything a reader accepts.
 //!
 //! `cargo fuzz run -s none ply` runs one of them.
 
@@ -12,20 +12,20 @@ use meshlod_mesh::Mesh;
 pub use kept::keep;
 pub use seeds::plant;
 
-/// Checks a mesh that a reader gave.
+/// Checks a mesh returned by a reader.
 ///
 /// # Panics
-/// When it breaks what [`Mesh::validate`] says must hold.
+/// If it violates [`Mesh::validate`].
 pub fn accept(mesh: &Mesh) {
     if let Err(error) = mesh.validate() {
         panic!("a reader let through a mesh whose {error}");
     }
 }
 
-/// Checks a scene that a reader gave, and its flattened mesh.
+/// Checks a scene returned by a reader, and its flattened mesh.
 ///
 /// # Panics
-/// When one of its meshes is not valid, or an index leads nowhere.
+/// If one of its meshes is invalid, or an index is out of range.
 pub fn accept_scene(scene: &Scene) {
     for mesh in &scene.meshes {
         accept(&mesh.mesh);

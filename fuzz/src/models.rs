@@ -1,27 +1,27 @@
-//! Multiresolution files that say plainly what they hold: packed, but not pressed, so that mutations
-//! meet the numbers and not a code of them.
+//! Multiresolution files without entropy coding, so that mutations hit the numbers themselves.
 
 use meshlod_fixtures as fixtures;
-use meshlod_samples as samples;
 use meshlod_multires::{Archive, BuildError, Forest, HeightField, HeightPrecision, Storage};
+use meshlod_samples as samples;
 use meshlod_simplify::{Method, Options};
 
-/// Where a file of contractions (docs/formats/mlod.md) says how many chunks it has, and where the table of
-/// them starts.
+/// Offsets of the number of chunks and of the table of chunks in a file of contractions
+/// (docs/formats/mlod.md).
 const CHUNKS: usize = 36;
 const TABLE: usize = 88;
-/// How long an entry of the table is.
+/// Length of an entry of the table.
 const ENTRY: usize = 44;
-/// Where the size of the coarsest mesh is, before its checksum.
+/// Offset of the size of the coarsest mesh, which its checksum follows.
 const BASE: usize = 28;
-/// How a height field starts, where its checksum is, the length of the rest, that rest, and the heights.
+/// Magic bytes of a height field, and the offsets of its checksum, of the length of the rest, of
+/// the rest, and of the heights.
 const FIELD: &[u8] = b"meshlodh";
 const FIELD_CHECKSUM: usize = 12;
 const FIELD_LENGTH: usize = 16;
 const FIELD_BODY: usize = 24;
 const HEIGHTS: usize = FIELD_BODY + 72;
 
-/// Writes the checksums and lengths that fit, for both kinds of files.
+/// Writes matching checksums and lengths, for both kinds of files.
 pub fn seal(bytes: &mut [u8]) {
     if bytes.starts_with(FIELD) && bytes.len() >= FIELD_BODY {
         let length = (bytes.len() - FIELD_BODY) as u64;
@@ -33,7 +33,7 @@ pub fn seal(bytes: &mut [u8]) {
     }
 }
 
-/// Small files of all kinds.
+/// Builds small files of all kinds.
 pub(crate) fn seeds() -> Vec<Vec<u8>> {
     let meshes = [
         fixtures::tetrahedron(),
@@ -61,13 +61,13 @@ pub(crate) fn seeds() -> Vec<Vec<u8>> {
     files.chain(fields).collect()
 }
 
-/// With chunks so small that there are some.
+/// Builds a file with chunks small enough that there are several.
 fn contractions(forest: Result<Forest, BuildError>) -> Vec<u8> {
     let storage = Storage { updates_per_chunk: 8, ..Storage::default() };
     plain(&Archive::write(&forest.expect("a mesh"), &storage).expect("a proof").0)
 }
 
-/// The same file of contractions, not pressed.
+/// Decompresses a file of contractions.
 fn plain(bytes: &[u8]) -> Vec<u8> {
     let index = TABLE + ENTRY * word(bytes, CHUNKS);
     let (mut head, mut pieces, mut from) = (bytes[..index].to_vec(), Vec::new(), index);
@@ -83,10 +83,10 @@ fn plain(bytes: &[u8]) -> Vec<u8> {
     head
 }
 
-/// The same height field, not pressed.
+/// Decompresses a height field.
 fn plain_field(bytes: &[u8]) -> Vec<u8> {
     let (mut out, mut rest) = (bytes[..HEIGHTS].to_vec(), &bytes[HEIGHTS..]);
-    // Each part has a byte for how wide its numbers are, and how long it is.
+    // Each part has its bit width in one byte, and its length.
     while rest.len() >= 5 {
         let (part, after) = rest.split_at(5 + word(rest, 1));
         let packed = if part.len() > 5 { unpressed(&part[5..]) } else { Vec::new() };
@@ -100,7 +100,7 @@ fn plain_field(bytes: &[u8]) -> Vec<u8> {
     out
 }
 
-/// A frame of Zstandard (RFC 8878) with the same content in raw blocks.
+/// Rewrites a Zstandard frame (RFC 8878) with its content in raw blocks.
 fn unpressed(frame: &[u8]) -> Vec<u8> {
     const WINDOW: u8 = 0x70;
     const LONGEST: usize = 1 << 16;

@@ -1,8 +1,8 @@
-//! Files to start from, made by our writers and by hand, so that mutations begin near the grammar.
+//! Seed files, made by our writers and by hand, so that mutations start near the grammar.
 
 use meshlod_codec::{
-    AttributeBounds, CompressionTarget, Lattice, Reconstruction, Scheme, Transport, TransportOptions,
-    TransportQuantization, compress,
+    AttributeBounds, CompressionTarget, Lattice, Reconstruction, Scheme, Transport,
+    TransportOptions, TransportQuantization, compress,
 };
 use meshlod_fixtures as fixtures;
 use meshlod_io::{Precision, Scene, gltf, obj, off, ply, smf, stl};
@@ -13,11 +13,10 @@ use meshlod_simplify::{self as simplify, History, Options, Progressive, Simplifi
 use crate::kept::{corpus, kept};
 use crate::models;
 
-/// Writes a target's seeds, and what is kept for it, into its corpus; the fuzzer reads them after
-/// this.
+/// Writes the seeds of a target and its kept inputs into its corpus, where the fuzzer reads them.
 ///
 /// # Panics
-/// When the corpus cannot be written.
+/// If the corpus cannot be written.
 pub fn plant(target: &str) {
     let folder = corpus(target);
     std::fs::create_dir_all(&folder).expect("a folder for the corpus");
@@ -67,11 +66,12 @@ fn write(target: &str, mesh: &Mesh) -> Vec<u8> {
             Ok(())
         }
     }
-    .expect("memory takes all bytes");
+    .expect("writing to memory succeeds");
     out
 }
 
-/// Meshes as glTF of whole numbers, with and without streams, and with every filter named.
+/// Meshes as glTF with integer components, with and without compressed streams, and with every
+/// filter.
 fn small_gltf(meshes: &[Mesh]) -> Vec<Vec<u8>> {
     let write = |mesh: &Mesh, meshopt: bool| {
         let scene = Scene::from_mesh("seed", mesh.clone());
@@ -87,7 +87,8 @@ fn small_gltf(meshes: &[Mesh]) -> Vec<Vec<u8>> {
 /// Meshes of one block and of several, on a grid and on a lattice.
 fn transports() -> Vec<Vec<u8>> {
     let lattice = Lattice::new(-6).expect("an exponent");
-    let meshes = [fixtures::cube(), fixtures::hourglass(), fixtures::moebius(20), samples::knot(90)];
+    let meshes =
+        [fixtures::cube(), fixtures::hourglass(), fixtures::moebius(20), samples::knot(90)];
     let write = |mesh: &Mesh, quantization| {
         let options = TransportOptions { quantization, block_faces: 16 };
         Transport::encode(mesh, &options).expect("a fixture fits").bytes
@@ -96,15 +97,15 @@ fn transports() -> Vec<Vec<u8>> {
     meshes.iter().flat_map(|mesh| grids.map(|quantization| write(mesh, quantization))).collect()
 }
 
-/// A progressive mesh of all that can be contracted.
+/// A progressive mesh of all possible contractions.
 fn sequence(mesh: &Mesh) -> Vec<u8> {
     let mut history = History::default();
     let mut simplifier = Simplifier::new(mesh, &Options::default()).expect("a fixture is a mesh");
     simplifier.run(simplify::Target::Faces(0), &mut history).expect("a target");
-    Progressive::new(simplifier, history).expect("all is taken down").to_bytes()
+    Progressive::new(simplifier, history).expect("every contraction is recorded").to_bytes()
 }
 
-/// Small meshes by every scheme.
+/// Small meshes compressed by every scheme.
 fn compressed() -> Vec<Vec<u8>> {
     let meshes = [
         fixtures::cube(),
@@ -125,7 +126,8 @@ fn compressed() -> Vec<Vec<u8>> {
     done.map(|done| done.expect("a mesh").compressed.to_bytes()).collect()
 }
 
-/// Small meshes as the target `check` reads them, with what it asks of attributes and holes.
+/// Small meshes in the input format of the target `check`, with its options for attributes and
+/// holes.
 fn few_faces() -> Vec<Vec<u8>> {
     let meshes = [
         fixtures::cube(),
@@ -188,7 +190,7 @@ const SMF: [&str; 2] = [
     "bind n face\nbind r vertex\nv 0 0 0\nv 1 0 0\nv 0 1 0\nn 0 0 1\nr 0 0\nr 1 0\nr 0 1\nf -1 -2 -3\n",
 ];
 
-/// A triangle of streams of version 1 with each filter, and one of indices.
+/// A triangle in streams of version 1 with each filter, and one in index streams.
 const FILTERED: &str = r#"{"asset":{"version":"2.0"},"extensionsRequired":["KHR_meshopt_compression","KHR_mesh_quantization"],
 "meshes":[{"primitives":[{"attributes":{"POSITION":0,"NORMAL":1,"COLOR_0":2,"TEXCOORD_0":3},"indices":4}]}],"nodes":[{"mesh":0}],
 "accessors":[{"bufferView":1,"componentType":5122,"normalized":true,"count":4,"type":"VEC3"},{"bufferView":0,"componentType":5122,"normalized":true,"count":4,"type":"VEC3"},{"bufferView":2,"componentType":5123,"normalized":true,"count":4,"type":"VEC4"},{"bufferView":3,"componentType":5126,"count":4,"type":"VEC2"},{"bufferView":4,"componentType":5123,"count":3,"type":"SCALAR"}],

@@ -1,4 +1,4 @@
-//! Simplification of procedural meshes to 10 %, with the peer beside it.
+//! Simplifies procedural meshes to 10 %, by us and by meshoptimizer.
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use meshlod::samples;
@@ -15,7 +15,7 @@ fn to_a_tenth(c: &mut Criterion) {
             group.bench_function(format!("{name}/{}", method.name()), |b| {
                 b.iter(|| {
                     let (level, report) = simplify(&mesh, Target::Ratio(0.1), &options).unwrap();
-                    // The benchmark carries its expected result.
+                    // The benchmark checks its own result.
                     assert!(report.reached && level.faces.len() * 10 <= mesh.faces.len());
                 });
             });

@@ -1,11 +1,11 @@
-//! The fast engine on a mesh as large as one likes: copies of a shared one side by side, each a little
-//! different, so that no two costs are the same.
+//! The kernel on meshes of any size: copies of a shared mesh side by side, each slightly different,
+//! so that no two costs are equal.
 //!
 //! ```text
 //! cargo run --release -p meshlod-bench --example large -- dragon.ply 1 64
 //! ```
-//! Takes a shared mesh and how many million faces to go to; says how long each million took, and the
-//! most memory the process has had.
+//! Takes a shared mesh and sizes in million faces. Prints the time per million faces and the peak
+//! memory of the process.
 
 use std::time::Instant;
 
@@ -16,8 +16,8 @@ use meshlod_bench::read;
 
 fn main() -> Result<()> {
     let mut args = std::env::args().skip(1);
-    let name = args.next().context("which mesh?")?;
-    let mut mesh = read(&name)?.with_context(|| format!("{name} is not here"))?;
+    let name = args.next().context("name a mesh")?;
+    let mut mesh = read(&name)?.with_context(|| format!("{name} is not available"))?;
     mesh.attributes = None;
     println!("million faces | copies | s | s per million | peak, bytes per face | left");
     for millions in args {
@@ -42,7 +42,7 @@ fn line(mesh: &Mesh) -> Result<()> {
     Ok(())
 }
 
-/// Copies in a cube, a box apart, each vertex moved by up to a tenth of an edge.
+/// Places copies in a cubic grid, each vertex moved by up to a tenth of an edge.
 fn tiled(mesh: &Mesh, copies: usize) -> Mesh {
     let bounds = mesh.bounds();
     let edge = bounds.diagonal() / (mesh.faces.len() as f64).sqrt();
@@ -68,7 +68,7 @@ fn tiled(mesh: &Mesh, copies: usize) -> Mesh {
     tiled
 }
 
-/// Numbers between -1 and 1, the same in every run: splitmix64.
+/// Reproducible random numbers between -1 and 1: splitmix64.
 struct Noise(u64);
 
 impl Noise {
@@ -81,10 +81,12 @@ impl Noise {
     }
 }
 
-/// The most memory that this process has had at once, in bytes.
+/// Returns the peak memory of this process in bytes.
 fn peak() -> Result<u64> {
-    let status = std::fs::read_to_string("/proc/self/status").context("only Linux tells")?;
-    let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:")).context("no peak")?;
+    let status = std::fs::read_to_string("/proc/self/status")
+        .context("peak memory is read from /proc, on Linux only")?;
+    let line =
+        status.lines().find_map(|line| line.strip_prefix("VmHWM:")).context("VmHWM is missing")?;
     let kilobytes: u64 = line.trim().trim_end_matches("kB").trim().parse()?;
     Ok(kilobytes * 1024)
 }

@@ -1,24 +1,25 @@
-//! The fast engine on meshes with attributes, beside meshoptimizer's simplify with attributes: speed on
-//! one core by turns, on the model tiled to a million faces, and the image error of the model itself.
+//! The kernel on meshes with attributes against meshoptimizer's simplify with attributes: speed on
+//! one core in alternating rounds, on the model tiled to a million faces, and the image error of
+//! the model itself.
 //!
 //! ```text
 //! cargo run --release -p meshlod-bench --example painted -- 3 512 igea.ply pirate.obj
 //! ```
-//! Takes a number of rounds, 0 for none; the side of the pictures, 0 for none; names of shared models. Those
-//! without attributes get smooth normals.
+//! Takes a number of rounds (0 for none), the side of the pictures in pixels (0 for none), and
+//! names of shared models. Models without attributes get smooth normals.
 
 use anyhow::{Context, Result};
 use meshlod::materials_of;
 use meshlod::mesh::{Attributes, Layer, LayerKind, Mesh, VertexId, WedgeId};
 use meshlod::picture::{Paint, ReferenceImages};
 use meshlod::simplify::{Method, Options, Target, simplify};
-use meshlod_bench::peer::{Settings, SimplifyOptions, Torn, Update, simplify_with_attributes};
+use meshlod_bench::peer::{GpuMesh, Settings, SimplifyOptions, Update, simplify_with_attributes};
 use meshlod_bench::{alternate, one_core, read_scene};
 
-/// A model is put beside itself until it has as many faces.
+/// Number of faces up to which a model is tiled.
 const FACES: usize = 1_000_000;
 
-/// The peer at its best, see docs/notes/image-error.md.
+/// The best settings of meshoptimizer, see docs/notes/image-error.md.
 const PEER: Settings = Settings {
     normal_weight: 0.1,
     uv_weight: 2.0,
@@ -28,11 +29,11 @@ const PEER: Settings = Settings {
 
 fn main() -> Result<()> {
     let mut args = std::env::args().skip(1);
-    let rounds: usize = args.next().context("how many rounds?")?.parse()?;
-    let side: u32 = args.next().context("pictures of which side?")?.parse()?;
+    let rounds: usize = args.next().context("give a number of rounds")?.parse()?;
+    let side: u32 = args.next().context("give the side of the pictures")?.parse()?;
     println!("mesh ratio faces | speed M/s ours theirs ratio | FLIP ours theirs qem");
     for name in args {
-        let scene = read_scene(&name)?.with_context(|| format!("{name} is not here"))?;
+        let scene = read_scene(&name)?.with_context(|| format!("{name} is not available"))?;
         let (materials, _) = materials_of(&scene);
         let mut mesh = scene.flatten();
         if mesh.attributes.is_none() {
@@ -60,10 +61,11 @@ fn options(method: Method) -> Options {
 }
 
 fn speed(mesh: &Mesh, ratio: f64, rounds: usize) {
-    let torn = Torn::new(mesh);
+    let torn = GpuMesh::new(mesh);
     let faces = (mesh.faces.len() as f64 * ratio) as usize;
     let options = options(Method::LindstromTurk);
-    let ours = || simplify(mesh, Target::Faces(faces), &options).expect("it can be");
+    let ours =
+        || simplify(mesh, Target::Faces(faces), &options).expect("the mesh can be simplified");
     let theirs = || torn.faces_left(faces, &PEER);
     print!(" {} {} of {} |", ours().1.output_faces, theirs(), mesh.faces.len());
     let took = one_core(|| alternate(rounds, ours, theirs));
@@ -86,7 +88,7 @@ fn looks(mesh: &Mesh, ratio: f64, portrait: &ReferenceImages<'_>) -> Result<()> 
     Ok(())
 }
 
-/// A mesh beside itself, in a square.
+/// Tiles a mesh in a square.
 fn tiled(mesh: &Mesh) -> Mesh {
     let times = FACES.div_ceil(mesh.faces.len());
     let side = (times as f64).sqrt().ceil() as usize;

@@ -1,5 +1,5 @@
-//! The fast engine with one thread and with two, in the file's order and in none: wall time by turns,
-//! and whether the levels are the same.
+//! The kernel with one thread and with two, with the mesh in file order and shuffled: wall time in
+//! alternating rounds, and whether the levels are equal.
 //!
 //! ```text
 //! cargo run --release -p meshlod-bench --example threads -- 5 dragon.ply igea.ply
@@ -16,10 +16,10 @@ use meshlod_bench::read;
 
 fn main() -> Result<()> {
     let mut args = std::env::args().skip(1);
-    let rounds: usize = args.next().context("how many rounds?")?.parse()?;
-    println!("mesh ratio | 1 thread s | 2 threads times as fast | scrambled times as slow | means");
+    let rounds: usize = args.next().context("give a number of rounds")?.parse()?;
+    println!("mesh ratio | 1 thread s | speed with 2 threads | slowdown shuffled | means");
     for name in args {
-        let mut mesh = read(&name)?.with_context(|| format!("{name} is not here"))?;
+        let mut mesh = read(&name)?.with_context(|| format!("{name} is not available"))?;
         mesh.attributes = None;
         let scrambled = scrambled(&mesh);
         for ratio in [0.1, 0.01] {
@@ -59,15 +59,16 @@ fn pool(threads: usize) -> Result<rayon::ThreadPool> {
     Ok(rayon::ThreadPoolBuilder::new().num_threads(threads).build()?)
 }
 
-/// Seconds by the clock on the wall: what threads are for.
+/// Measures wall time, which is what threads save.
 fn timed(mesh: &Mesh, ratio: f64) -> (f64, Mesh) {
     let options = Options { method: Some(Method::LindstromTurk), ..Options::default() };
     let start = Instant::now();
-    let (level, _) = simplify(mesh, Target::Ratio(ratio), &options).expect("it can be");
+    let (level, _) =
+        simplify(mesh, Target::Ratio(ratio), &options).expect("the mesh can be simplified");
     (start.elapsed().as_secs_f64(), level)
 }
 
-/// The same mesh with its vertices and faces in no order.
+/// Shuffles the vertices and faces of a mesh.
 fn scrambled(mesh: &Mesh) -> Mesh {
     let places = shuffled(mesh.positions.len(), 1);
     let mut positions = vec![[0.0; 3]; places.len()];
@@ -78,12 +79,12 @@ fn scrambled(mesh: &Mesh) -> Mesh {
     Mesh::new(positions, shuffled(mesh.faces.len(), 2).iter().map(moved).collect())
 }
 
-/// The numbers below `count` in no order, the same in every run.
+/// Returns a reproducible shuffle of the numbers below `count`.
 fn shuffled(count: usize, seed: u64) -> Vec<u32> {
     let mut all: Vec<u32> = (0..count as u32).collect();
     let mut state = seed;
     for i in (1..count).rev() {
-        // The upper bits of a linear congruence are random enough.
+        // The upper bits of a linear congruential generator are random enough.
         state =
             state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         all.swap(i, (state >> 33) as usize % (i + 1));

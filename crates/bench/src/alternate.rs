@@ -1,21 +1,22 @@
-//! Two pieces of work by turns.
+//! Timing of two pieces of work in alternating rounds.
 
 use cpu_time::ProcessTime;
 
-/// What two pieces of work took, by turns.
+/// Times of two pieces of work.
 #[derive(Clone, Copy, Debug)]
 pub struct Ratio {
-    /// Median seconds of the first, of all its threads.
+    /// Median CPU seconds of the first, over all threads.
     pub ours: f64,
-    /// Median seconds of the second likewise.
+    /// Median CPU seconds of the second, over all threads.
     pub theirs: f64,
-    /// Median over the rounds of second ÷ first: how many times as fast the first is.
+    /// Median of second ÷ first over the rounds: the speed of the first relative to the second.
     pub ratio: f64,
 }
 
-/// Does both by turns, `rounds` times after one that does not count.
+/// Runs both in turn, for `rounds` rounds after one to warm up.
 ///
-/// Panics without rounds.
+/// # Panics
+/// If there are no rounds.
 pub fn alternate<A, B>(
     rounds: usize,
     mut ours: impl FnMut() -> A,
@@ -33,21 +34,21 @@ pub fn alternate<A, B>(
     Ratio { ours: median(a), theirs: median(b), ratio: median(ratios) }
 }
 
-/// The least seconds that the work takes, of all its threads, in some rounds.
+/// Returns the fewest CPU seconds over some rounds, all threads included.
 ///
 /// Infinite without rounds.
 pub fn least_seconds<T>(rounds: usize, mut work: impl FnMut() -> T) -> f64 {
     (0..rounds).map(|_| seconds(&mut work)).fold(f64::INFINITY, f64::min)
 }
 
-/// Does the work on one core: rayon's threads are one while it runs.
+/// Runs work on one core, in a rayon pool of one thread.
 pub fn one_core<T: Send>(work: impl FnOnce() -> T + Send) -> T {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build();
-    pool.expect("one thread can be had").install(work)
+    pool.expect("a pool of one thread can be built").install(work)
 }
 
 fn seconds<T>(work: &mut impl FnMut() -> T) -> f64 {
-    // Not by the wall clock: others are at work here too.
+    // CPU time, because the machine may be busy with other work.
     let start = ProcessTime::now();
     std::hint::black_box(work());
     start.elapsed().as_secs_f64()

@@ -1,5 +1,5 @@
-//! meshlod beside its peers: the same work by turns in one run, so that whatever else the machine
-//! does falls on both.
+//! Comparisons with other programs: both do the same work in alternating rounds, so that other load
+//! on the machine affects both alike.
 mod alternate;
 mod corpus;
 pub mod peer;

@@ -1,6 +1,6 @@
-//! meshoptimizer, through its crate: the yardstick.
+//! meshoptimizer, called through its crate for comparison.
 
-// Its crate has no safe way to simplify with update.
+// The crate has no safe function for simplify with update.
 #![allow(unsafe_code)]
 
 mod attributes;
@@ -10,18 +10,18 @@ mod strips;
 
 use meshlod::mesh::{Mesh, VertexId};
 
-pub use attributes::{Settings, Torn, Update, simplify_with_attributes};
+pub use attributes::{GpuMesh, Settings, Update, simplify_with_attributes};
 pub use border::simplify_with_border_lock;
 pub use codec::meshopt_codec;
 pub use meshopt::SimplifyOptions;
 pub use strips::meshopt_strips;
 
-/// A mesh as meshoptimizer takes it.
+/// A mesh in meshoptimizer's layout.
 #[derive(Clone, Debug)]
 pub struct Indexed {
-    /// x y z of each vertex.
+    /// Position of each vertex.
     pub positions: Vec<f32>,
-    /// Three to a face.
+    /// Indices, three per face.
     pub indices: Vec<u32>,
 }
 
@@ -47,7 +47,7 @@ impl From<&Indexed> for Mesh {
     }
 }
 
-/// meshoptimizer's simplify with update (its most accurate), as near to `faces` as it comes.
+/// Simplifies to about `faces` faces by meshoptimizer's simplify with update, its most accurate.
 pub fn simplify_with_update(input: &Indexed, faces: usize) -> Indexed {
     let mut output = input.clone();
     let vertices = output.positions.len() / 3;

@@ -1,4 +1,4 @@
-//! Our FLIP against the one of its authors.
+//! Our FLIP against its authors' implementation.
 
 use meshlod::picture::{Camera, Paint, Picture, Style, flip, render};
 use meshlod::samples;

@@ -1,5 +1,5 @@
-//! The codecs of `EXT_meshopt_compression` beside those of meshoptimizer itself: each reads what
-//! the other writes.
+//! The codecs of `EXT_meshopt_compression` against meshoptimizer's own: each decodes what the other
+//! encodes.
 
 use meshlod::io::meshopt::{
     Filter, Layout, Mode, decode, encode_attributes, encode_exponential, encode_octahedral,
@@ -11,7 +11,7 @@ fn layout(mode: Mode, count: usize, stride: usize) -> Layout {
     Layout { mode, filter: Filter::None, count, stride }
 }
 
-/// Numbers that look like chance, the same each time.
+/// Returns reproducible pseudo-random numbers.
 fn chance(count: usize) -> impl Iterator<Item = u32> {
     let mut state = 0x9e37_79b9u32;
     std::iter::repeat_with(move || {
@@ -23,7 +23,7 @@ fn chance(count: usize) -> impl Iterator<Item = u32> {
     .take(count)
 }
 
-/// Elements of which some bytes hardly change, some slowly, some without rule.
+/// Builds elements of which some bytes rarely change, some change slowly, and some are random.
 fn elements<const N: usize>(count: usize) -> Vec<[u8; N]> {
     let element = |(i, noise): (usize, u32)| {
         std::array::from_fn(|k| match k % 4 {
@@ -36,7 +36,7 @@ fn elements<const N: usize>(count: usize) -> Vec<[u8; N]> {
     chance(count).enumerate().map(element).collect()
 }
 
-/// Triangles of a grid, every so often one from anywhere.
+/// Builds the triangles of a grid, with a random one now and then.
 fn triangles() -> Vec<[u32; 3]> {
     let n = 60;
     let cell = |i: u32| {
@@ -77,7 +77,7 @@ fn attributes_are_read_by_either() {
     }
 }
 
-/// Triangles as indices, each from its least corner on.
+/// Splits indices into triangles, each rotated to begin with its lowest index.
 fn sorted(indices: &[u32]) -> Vec<[u32; 3]> {
     let turned = |&[a, b, c]: &[u32; 3]| [[a, b, c], [b, c, a], [c, a, b]].into_iter().min();
     indices.as_chunks().0.iter().filter_map(turned).collect()
@@ -102,20 +102,20 @@ fn indices_are_read_by_either() {
     assert_eq!(words(&ours), indices);
 }
 
-/// Bytes as elements of four numbers.
+/// Splits bytes into elements of four numbers.
 fn fours(bytes: &[u8]) -> Vec<[i16; 4]> {
     let number = |&b: &[u8; 2]| i16::from_le_bytes(b);
     let numbers: Vec<i16> = bytes.as_chunks().0.iter().map(number).collect();
     numbers.as_chunks().0.to_vec()
 }
 
-/// What our filter makes of elements.
+/// Applies our filter to elements.
 fn filtered(bytes: &[u8], filter: Filter, stride: usize) -> Vec<u8> {
     let layout = Layout { mode: Mode::Attributes, filter, count: bytes.len() / stride, stride };
     decode(&encode_attributes(bytes, stride), &layout).unwrap()
 }
 
-/// That numbers are the same within one.
+/// Asserts that numbers differ by at most one.
 fn assert_near(ours: &[[i16; 4]], theirs: &[[i16; 4]], what: &str) {
     for (a, b) in ours.iter().zip(theirs) {
         let off = (0..4).map(|k| (i32::from(a[k]) - i32::from(b[k])).abs()).max();
@@ -166,7 +166,7 @@ fn filters_do_as_the_peers_do() {
 #[test]
 fn streams_of_a_real_mesh_are_no_larger_than_the_peers() {
     let Some(path) = shared_mesh("bunny.ply") else {
-        return println!("skipped: bunny.ply is not there");
+        return println!("skipped: bunny.ply is not available");
     };
     let mesh = meshlod::io::read(&path, &Default::default()).unwrap().into_mesh();
     let triangles: Vec<[u32; 3]> = mesh.faces.iter().map(|face| face.map(|v| v.0)).collect();
@@ -179,6 +179,6 @@ fn streams_of_a_real_mesh_are_no_larger_than_the_peers() {
         .collect();
     let ours = encode_triangles(fetched.as_chunks().0).len();
     let theirs = meshopt::encode_index_buffer(&fetched, count).unwrap().len();
-    println!("bunny: {ours} bytes of indices, the peer's {theirs}");
+    println!("bunny: {ours} bytes of indices, meshoptimizer's {theirs}");
     assert!(ours <= theirs + theirs / 200, "{ours} bytes, the peer's {theirs}");
 }

@@ -1,7 +1,7 @@
-//! `cargo xtask compare`: our simplification beside meshoptimizer's, by turns in one run.
+//! `cargo xtask compare`: our simplification against meshoptimizer's, in alternating rounds.
 //!
-//! Ours is `lindstrom-turk` of bare geometry, theirs simplify with update, their most accurate. One
-//! core, CPU time, files excluded.
+//! Compares `lindstrom-turk` on bare geometry with meshoptimizer's simplify with update, its most
+//! accurate. CPU time on one core, without file input and output.
 
 use anyhow::{Context, Result, bail, ensure};
 use meshlod::measure::{DistanceOptions, PreparedSurface, surface_distance, volume};
@@ -20,16 +20,16 @@ const RATIOS: [f64; 2] = [0.1, 0.01];
 const ROUNDS: usize = 7;
 const SAMPLES: usize = 200_000;
 
-/// What is asked for.
-struct Wish {
+/// Parsed command-line options.
+struct Arguments {
     meshes: Vec<String>,
     ratios: Vec<f64>,
     rounds: usize,
     json: bool,
 }
 
-/// One mesh at one ratio.
-struct Row {
+/// Result for one mesh at one ratio.
+struct Comparison {
     mesh: String,
     ratio: f64,
     input_faces: usize,
@@ -38,42 +38,42 @@ struct Row {
     theirs: Side,
 }
 
-/// What one of the two made of it.
+/// Result of one of the two programs.
 struct Side {
     faces: usize,
-    /// Of the diagonal, in percent.
+    /// Mean distance in percent of the diagonal.
     mean: f64,
     max: f64,
-    /// Relative, of the positions as a file of floats has them; none of an open mesh.
+    /// Relative change of the volume after rounding positions to f32; `None` for an open mesh.
     volume: Option<f64>,
 }
 
-/// Prints the table, or one JSON object.
+/// Prints the comparison as a table or as one JSON object.
 ///
 /// # Errors
-/// Options that are none, meshes that are not here.
+/// Invalid options; a mesh that is not available.
 pub fn run(arguments: &[String]) -> Result<()> {
-    let wish = Wish::of(arguments)?;
+    let parsed = Arguments::of(arguments)?;
     let mut rows = Vec::new();
-    for name in &wish.meshes {
+    for name in &parsed.meshes {
         let mesh = read(name)?;
-        for &ratio in &wish.ratios {
+        for &ratio in &parsed.ratios {
             eprintln!("{name}, {} …", percent(ratio));
-            rows.push(row(name, &mesh, ratio, wish.rounds)?);
+            rows.push(row(name, &mesh, ratio, parsed.rounds)?);
         }
     }
-    if wish.json {
-        let rows: Vec<Value> = rows.iter().map(Row::json).collect();
-        println!("{}", json!({ "rounds": wish.rounds, "rows": rows }));
+    if parsed.json {
+        let rows: Vec<Value> = rows.iter().map(Comparison::json).collect();
+        println!("{}", json!({ "rounds": parsed.rounds, "rows": rows }));
     } else {
         print!("{}", table(&rows));
     }
     Ok(())
 }
 
-impl Wish {
+impl Arguments {
     fn of(arguments: &[String]) -> Result<Self> {
-        let mut wish = Self {
+        let mut parsed = Self {
             meshes: MESHES.map(str::to_owned).to_vec(),
             ratios: RATIOS.to_vec(),
             rounds: ROUNDS,
@@ -81,47 +81,49 @@ impl Wish {
         };
         let mut arguments = arguments.iter();
         while let Some(option) = arguments.next() {
-            let mut value = || arguments.next().with_context(|| format!("{option}: of what?"));
+            let mut value = || arguments.next().with_context(|| format!("{option} needs a value"));
             match option.as_str() {
-                "--meshes" => wish.meshes = value()?.split(',').map(str::to_owned).collect(),
+                "--meshes" => parsed.meshes = value()?.split(',').map(str::to_owned).collect(),
                 "--ratios" => {
-                    wish.ratios = value()?.split(',').map(ratio).collect::<Result<_>>()?
+                    parsed.ratios = value()?.split(',').map(ratio).collect::<Result<_>>()?
                 }
-                "--rounds" => wish.rounds = value()?.parse().context("--rounds: a number")?,
-                "--json" => wish.json = true,
-                _ => bail!("{option} is no option: {OPTIONS}"),
+                "--rounds" => {
+                    parsed.rounds = value()?.parse().context("--rounds must be a number")?
+                }
+                "--json" => parsed.json = true,
+                _ => bail!("unknown option {option}; the options are {OPTIONS}"),
             }
         }
-        ensure!(wish.rounds > 0, "--rounds: at least 1");
-        Ok(wish)
+        ensure!(parsed.rounds > 0, "--rounds must be at least 1");
+        Ok(parsed)
     }
 }
 
-/// `10%` or `0.1`.
+/// Parses `10%` or `0.1`.
 fn ratio(text: &str) -> Result<f64> {
     let (number, unit) = text.strip_suffix('%').map_or((text, 1.0), |number| (number, 0.01));
-    let ratio = unit * number.parse::<f64>().with_context(|| format!("{text} is no ratio"))?;
-    ensure!((0.0..=1.0).contains(&ratio), "{text}: a ratio goes from 0% to 100%");
+    let ratio = unit * number.parse::<f64>().with_context(|| format!("invalid ratio {text}"))?;
+    ensure!((0.0..=1.0).contains(&ratio), "a ratio must be between 0% and 100%, not {text}");
     Ok(ratio)
 }
 
-/// A shared mesh by its name, `.ply` where it has no suffix, as bare geometry.
+/// Reads a shared mesh as bare geometry; `.ply` is appended to a name without suffix.
 fn read(name: &str) -> Result<Mesh> {
     let file = if name.contains('.') { name.to_owned() } else { format!("{name}.ply") };
     let mesh = meshlod_bench::read(&file)?.with_context(|| {
-        format!("{file} is not among the shared meshes; MESHLOD_MESHES names their folder")
+        format!("{file} is not among the shared meshes; set MESHLOD_MESHES to their folder")
     })?;
     Ok(Mesh { attributes: None, ..mesh })
 }
 
-fn row(name: &str, mesh: &Mesh, ratio: f64, rounds: usize) -> Result<Row> {
+fn row(name: &str, mesh: &Mesh, ratio: f64, rounds: usize) -> Result<Comparison> {
     let options = Options { method: Some(Method::LindstromTurk), ..Options::default() };
     let (indexed, target) = (Indexed::from(mesh), Target::Ratio(ratio));
     let faces = target.faces_of(mesh.faces.len());
-    let ours = || simplify(mesh, target, &options).expect("it can be simplified").0;
+    let ours = || simplify(mesh, target, &options).expect("the mesh can be simplified").0;
     let theirs = || simplify_with_update(&indexed, faces);
     let original = PreparedSurface::new(mesh)?;
-    Ok(Row {
+    Ok(Comparison {
         mesh: name.to_owned(),
         ratio,
         input_faces: mesh.faces.len(),
@@ -152,8 +154,8 @@ impl Side {
     }
 }
 
-impl Row {
-    /// Million input faces a second, ours and theirs.
+impl Comparison {
+    /// Returns our rate and theirs in million input faces per second.
     fn rates(&self) -> [f64; 2] {
         [self.took.ours, self.took.theirs].map(|seconds| self.input_faces as f64 / seconds * 1e-6)
     }
@@ -173,7 +175,7 @@ impl Row {
     }
 }
 
-fn table(rows: &[Row]) -> String {
+fn table(rows: &[Comparison]) -> String {
     let mut table = Table::new([
         "mesh, ratio",
         "faces",
@@ -185,7 +187,7 @@ fn table(rows: &[Row]) -> String {
         "volume (theirs)",
     ]);
     for row in rows {
-        let Row { mesh, ratio, took, ours, theirs, .. } = row;
+        let Comparison { mesh, ratio, took, ours, theirs, .. } = row;
         let [our_rate, their_rate] = row.rates();
         table.row([
             format!("{mesh}, {}", percent(*ratio)),
@@ -213,13 +215,14 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_asked_for_is_understood() {
+    fn arguments_are_parsed() {
         let words = |text: &str| text.split(' ').map(str::to_owned).collect::<Vec<_>>();
-        let wish = Wish::of(&words("--meshes horse-97k,igea --ratios 10%,0.01 --json")).unwrap();
-        assert_eq!((wish.meshes.len(), wish.json, wish.rounds), (2, true, ROUNDS));
-        assert!((wish.ratios[0] - 0.1).abs() < 1e-12 && wish.ratios[1] == 0.01);
+        let parsed =
+            Arguments::of(&words("--meshes horse-97k,igea --ratios 10%,0.01 --json")).unwrap();
+        assert_eq!((parsed.meshes.len(), parsed.json, parsed.rounds), (2, true, ROUNDS));
+        assert!((parsed.ratios[0] - 0.1).abs() < 1e-12 && parsed.ratios[1] == 0.01);
         for bad in ["--rounds 0", "--rounds", "--ratios 200%", "horse", "--ratios ten"] {
-            assert!(Wish::of(&words(bad)).is_err(), "{bad}");
+            assert!(Arguments::of(&words(bad)).is_err(), "{bad}");
         }
     }
 }

@@ -1,7 +1,7 @@
-//! `cargo xtask doc`: documentation without a warning, but for the keys of references.
+//! `cargo xtask doc`: builds the documentation; warnings are errors, except for reference keys.
 //!
-//! The tool takes `[GH97]` in a comment for a link to an item. Where the key is in
-//! docs/REFERENCES.md, that warning says nothing; every other is an error.
+//! rustdoc takes `[GH97]` in a comment for a link to an item. That warning is ignored if the key is
+//! in docs/REFERENCES.md.
 
 use std::process::{Command, Stdio};
 
@@ -11,7 +11,7 @@ use serde_json::Value;
 use crate::check::keys_of;
 use crate::project::Project;
 
-/// Documents all crates of the workspace.
+/// Documents all crates of the workspace and prints the warnings.
 pub fn run(project: &Project) -> Result<()> {
     let references = project.read("docs/REFERENCES.md")?;
     let keys = keys_of(&references);
@@ -28,18 +28,19 @@ pub fn run(project: &Project) -> Result<()> {
         println!("{finding}");
     }
     if !findings.is_empty() || !output.status.success() {
-        bail!("{} found in the documentation", findings.len());
+        bail!("{} warnings in the documentation", findings.len());
     }
     Ok(())
 }
 
-/// What a line of cargo's messages complains about; `None` where that is nothing or a key.
+/// Returns the warning in a line of cargo's JSON output; `None` for anything else and for reference
+/// keys.
 fn finding(line: &str, keys: &[&str]) -> Option<String> {
     let message: Value = serde_json::from_str(line).ok()?;
     let message = message.get("message")?;
     let text = message.get("message")?.as_str()?;
     let link = text.strip_prefix("unresolved link to `").and_then(|rest| rest.strip_suffix('`'));
-    // A summary such as "3 warnings emitted" has no place.
+    // Summaries such as "3 warnings emitted" have no span.
     let has_place = message.get("spans")?.as_array().is_some_and(|spans| !spans.is_empty());
     if !has_place || link.is_some_and(|link| keys.contains(&link)) {
         return None;

@@ -1,4 +1,4 @@
-//! `cargo xtask VERB`: what the project does to itself.
+//! `cargo xtask VERB`: checks, documentation and measurements of the project itself.
 #![forbid(unsafe_code)]
 
 mod check;
@@ -13,12 +13,12 @@ use std::process::ExitCode;
 use project::Project;
 
 const USAGE: &str = "usage: cargo xtask VERB
-  check    references, arrows between crates, imports, names of types, phrases, lengths of files
-  doc      the documentation of all crates, warnings being errors
-  results [SECTION...]  every figure of docs/RESULTS.md; or prints the sections with such titles
-  textured [MODEL...]  image errors of levels beside meshoptimizer's
+  check    check references, arrows between crates, imports, names of types, phrases, lengths of files
+  doc      build the documentation of all crates; warnings are errors
+  results [SECTION...]  remake docs/RESULTS.md, or only the sections with such titles
+  textured [MODEL...]  compare image errors of levels with meshoptimizer's
   compare [--meshes NAME,...] [--ratios 10%,...] [--rounds N] [--json]
-                       speed, distance and volume by turns with meshoptimizer's simplify with update";
+                       compare speed, distance and volume with meshoptimizer's simplify with update";
 
 fn main() -> ExitCode {
     let mut arguments = std::env::args().skip(1);

@@ -1,10 +1,10 @@
-//! The project's folder and its text files.
+//! The project's root folder and its text files.
 
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result};
 
-/// A folder with a workspace in it.
+/// A workspace folder.
 pub struct Project {
     root: PathBuf,
 }
@@ -12,35 +12,35 @@ pub struct Project {
 /// A text file of the project.
 #[derive(Clone, Debug)]
 pub struct Text {
-    /// Its path from the root, with slashes.
+    /// Path from the root, with slashes.
     pub path: String,
-    /// Its contents.
+    /// Contents of the file.
     pub text: String,
 }
 
-/// Folders that hold nothing written by hand.
+/// Folders without hand-written files.
 const GENERATED: [&str; 4] = ["target", "corpus", "artifacts", "out"];
 
 impl Project {
-    /// The project that this program was built from.
+    /// Returns the project that this program was built from.
     pub fn here() -> Self {
         Self { root: Path::new(env!("CARGO_MANIFEST_DIR")).join("../..") }
     }
 
-    /// Its folder.
+    /// Returns the root folder.
     pub fn root(&self) -> &Path {
         &self.root
     }
 
-    /// One file of it.
+    /// Reads one file, given its path from the root.
     pub fn read(&self, path: &str) -> Result<Text> {
         let text =
             std::fs::read_to_string(self.root.join(path)).with_context(|| path.to_owned())?;
         Ok(Text { path: path.to_owned(), text })
     }
 
-    /// The files below `folder` (from the root) that end in `suffix`, in order of their paths;
-    /// none where the folder is missing.
+    /// Reads all files below `folder` (from the root) that end in `suffix`, sorted by path; empty
+    /// if the folder is missing.
     pub fn files(&self, folder: &str, suffix: &str) -> Result<Vec<Text>> {
         let mut paths = Vec::new();
         self.walk(folder, suffix, &mut paths)?;

@@ -1,4 +1,4 @@
-//! `cargo xtask results`: every figure of docs/RESULTS.md, made anew.
+//! `cargo xtask results`: regenerates docs/RESULTS.md.
 
 mod accuracy;
 mod check;
@@ -22,9 +22,9 @@ use crate::project::Project;
 
 type Section = fn(&Project) -> Result<String>;
 
-/// With their titles, in the order of the page.
+/// Sections and their titles, in the order of the page.
 const SECTIONS: [(&str, Section); 12] = [
-    // First, while this program is small: see there.
+    // First, while this process is still small: see the module.
     ("Memory and determinism", memory::section),
     ("Accuracy", accuracy::section),
     ("Volume", volume::section),
@@ -39,13 +39,13 @@ const SECTIONS: [(&str, Section); 12] = [
     ("Reading and measuring", reading::section),
 ];
 
-/// Makes all tables, writes docs/RESULTS.md and the same as a dated record beside it.
+/// Makes all tables, and writes docs/RESULTS.md and a dated copy in docs/records.
 ///
-/// Takes some minutes. Tables whose meshes are not here say so. With `names`, only the sections that
-/// have one of them in their title are made anew, in both; they say when.
+/// Takes some minutes. Tables whose meshes are missing say so. With `names`, only the sections
+/// whose title contains one of them are remade, and marked with the date.
 ///
 /// # Errors
-/// A name that no title has, before anything is made; a table that cannot be.
+/// A name that no title contains, before any work; a table that cannot be made.
 pub fn run(project: &Project, names: &[String]) -> Result<()> {
     check_names(names)?;
     let machine = machine::describe();
@@ -54,8 +54,8 @@ pub fn run(project: &Project, names: &[String]) -> Result<()> {
     let mut page = match old.split_once("\n## ") {
         Some((head, _)) => head.to_owned(),
         None => format!(
-            "# Results\n\nMade by `cargo xtask results` on {}, {}. Distances are measured both ways with \
-             500,000 samples each and all vertices, in % of the diagonal of the input's box.\n",
+            "# Results\n\nMade by `cargo xtask results` on {}, {}. Distances are measured in both directions with \
+             500,000 samples each and all vertices, in % of the diagonal of the input's bounding box.\n",
             machine.date, machine.what
         ),
     };
@@ -69,7 +69,7 @@ pub fn run(project: &Project, names: &[String]) -> Result<()> {
         eprintln!("{title} …");
         page.push_str(&heading);
         if is_asked {
-            page.push_str(&format!("Made anew on {}, {}.\n\n", machine.date, machine.what));
+            page.push_str(&format!("Remade on {}, {}.\n\n", machine.date, machine.what));
         }
         page.push_str(&section(project)?);
     }
@@ -82,7 +82,7 @@ pub fn run(project: &Project, names: &[String]) -> Result<()> {
     Ok(())
 }
 
-/// A section of a page with its heading, or nothing where the page has none of it.
+/// Returns a section of a page with its heading, or an empty string if there is no such section.
 fn section_of<'p>(page: &'p str, heading: &str) -> &'p str {
     let Some(start) = page.find(heading) else { return "" };
     let end = page[start + heading.len()..].find("\n## ");
@@ -94,7 +94,7 @@ fn check_names(names: &[String]) -> Result<()> {
     match names.iter().find(unknown) {
         Some(name) => {
             let titles = SECTIONS.map(|(title, _)| title).join(", ");
-            bail!("no section has {name:?} in its title; there are {titles}")
+            bail!("no section title contains {name:?}; the sections are {titles}")
         }
         None => Ok(()),
     }
@@ -104,7 +104,7 @@ fn is_named(title: &str, name: &str) -> bool {
     title.to_lowercase().contains(&name.to_lowercase())
 }
 
-/// Prints the table of image errors alone, of the models that have one of `names` in theirs.
+/// Prints only the table of image errors, for the models whose name contains one of `names`.
 pub fn textured(names: &[String]) -> Result<()> {
     print!("{}", textured::table_of(names)?);
     Ok(())

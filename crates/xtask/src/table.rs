@@ -1,12 +1,12 @@
-//! Tables in Markdown.
+//! Markdown tables.
 
-/// A table with a heading row; the first column is text, the others are figures.
+/// A table with a header row; the first column is text, the others are numbers.
 pub struct Table {
     rows: Vec<Vec<String>>,
 }
 
 impl Table {
-    /// A table with these headings.
+    /// Creates a table with these headers.
     pub fn new<'h>(headings: impl IntoIterator<Item = &'h str>) -> Self {
         let headings: Vec<String> = headings.into_iter().map(str::to_owned).collect();
         let rule = (0..headings.len()).map(|column| if column == 0 { "---" } else { "--:" });
@@ -14,14 +14,14 @@ impl Table {
         Self { rows: vec![headings, rule] }
     }
 
-    /// Adds a row.
+    /// Appends a row.
     pub fn row(&mut self, cells: impl Into<Vec<String>>) {
         let cells = cells.into();
         debug_assert_eq!(cells.len(), self.rows[0].len());
         self.rows.push(cells);
     }
 
-    /// The table as Markdown, with a blank line behind.
+    /// Formats the table as Markdown, followed by a blank line.
     pub fn markdown(&self) -> String {
         let rows = self.rows.iter().map(|cells| format!("| {} |\n", cells.join(" | ")));
         rows.collect::<String>() + "\n"

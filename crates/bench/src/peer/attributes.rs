@@ -1,65 +1,66 @@
-//! meshoptimizer's simplification that minds attributes.
+//! meshoptimizer's attribute-aware simplification.
 
 use std::collections::HashMap;
 
 use meshlod::mesh::{Attributes, Labels, Layer, LayerKind, Mesh, VertexId, WedgeId};
 use meshopt::SimplifyOptions;
 
-/// How meshoptimizer shall mind attributes.
+/// Settings of meshoptimizer's attribute-aware simplification.
 #[derive(Clone, Copy, Debug)]
 pub struct Settings {
-    /// What a normal counts beside a position, where the mesh is 1 long.
+    /// Weight of normals relative to positions, for a mesh scaled to length 1.
     pub normal_weight: f32,
-    /// What uvs count.
+    /// Weight of uvs relative to positions, for a mesh scaled to length 1.
     pub uv_weight: f32,
-    /// What else the library is told.
+    /// Flags passed to the library.
     pub options: SimplifyOptions,
-    /// Whether vertices move and attributes change with them.
+    /// Treatment of the remaining vertices.
     pub update: Update,
 }
 
-/// What becomes of the vertices that stay.
+/// Treatment of the vertices that remain.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Update {
-    /// Nothing: simplify with attributes.
+    /// Vertices keep position and attributes: simplify with attributes.
     Nothing,
-    /// They move to the best place, and their attributes change: simplify with update.
+    /// Vertices move to the best position and their attributes change: simplify with update.
     All,
 }
 
-/// A mesh as a GPU has it, and as meshoptimizer takes it.
-pub struct Torn {
-    vertices: Vec<TornVertex>,
-    /// Their positions.
+/// A mesh as a GPU vertex buffer, in meshoptimizer's layout.
+pub struct GpuMesh {
+    vertices: Vec<GpuVertex>,
+    /// Position of each vertex.
     positions: Vec<f32>,
-    /// Their guiding attributes: normal, uv.
+    /// Attributes of each vertex that the metric uses: normal, uv.
     attributes: Vec<f32>,
-    /// Three to a face.
+    /// Indices, three per face.
     indices: Vec<u32>,
 }
 
-/// The vertex, wedge and material label of a vertex of the GPU.
-type TornVertex = (VertexId, Option<WedgeId>, u32);
+/// Vertex, wedge and material label of a GPU vertex.
+type GpuVertex = (VertexId, Option<WedgeId>, u32);
 
-/// Attributes per vertex that guide the library: three of a normal, two of a uv.
+/// Number of attributes in the metric: three of a normal, two of a uv.
 const WIDTH: usize = 5;
 
-/// The layers that guide, and where they stand in a row of attributes.
+/// Layers in the metric, and their offsets in a row of attributes.
 const GUIDES: [(LayerKind, usize); 2] = [(LayerKind::Normal, 0), (LayerKind::Uv(0), 3)];
 
-/// A level of as near to `faces` as meshoptimizer comes from above, with all layers of the mesh.
+/// Simplifies by meshoptimizer to `faces` faces, or the nearest number above that it reaches, with
+/// all layers of the mesh.
 ///
-/// Everything is simplified in one call, so that detail goes where it is missed least; a vertex of
-/// two materials is two to the library, as its wedges are, which keeps the border between them.
+/// The whole mesh is simplified in one call, so that detail goes where it is missed least. A vertex
+/// of two materials is split in two, like one with two wedges, which keeps the border between them.
 pub fn simplify_with_attributes(mesh: &Mesh, faces: usize, settings: &Settings) -> Mesh {
-    let mut torn = Torn::new(mesh);
-    let count = torn.simplify(3 * faces, settings);
-    torn.indices.truncate(count);
-    torn.into_mesh(mesh, settings)
+    let mut reduced = GpuMesh::new(mesh);
+    let count = reduced.simplify(3 * faces, settings);
+    reduced.indices.truncate(count);
+    reduced.into_mesh(mesh, settings)
 }
 
-impl Torn {
-    /// Every vertex with its wedge and its material is one to the library.
+impl GpuMesh {
+    /// Splits vertices so that each has one wedge and one material.
     pub fn new(mesh: &Mesh) -> Self {
         let mut known = HashMap::new();
         let mut vertices = Vec::new();
@@ -75,25 +76,25 @@ impl Torn {
                 }));
             }
         }
-        let position = |&(v, ..): &TornVertex| mesh.positions[v.index()].map(|x| x as f32);
+        let position = |&(v, ..): &GpuVertex| mesh.positions[v.index()].map(|x| x as f32);
         let positions = vertices.iter().flat_map(position).collect();
         let attributes = guides(mesh, &vertices);
         Self { vertices, positions, attributes, indices }
     }
 
-    /// How many faces the library leaves of a mesh: what it does, and a copy of what it changes.
+    /// Returns the number of faces the library leaves; works on a copy.
     pub fn faces_left(&self, faces: usize, settings: &Settings) -> usize {
         let Self { positions, attributes, indices, .. } = self;
-        let mut torn = Self {
+        let mut reduced = Self {
             vertices: Vec::new(),
             positions: positions.clone(),
             attributes: attributes.clone(),
             indices: indices.clone(),
         };
-        torn.simplify(3 * faces, settings) / 3
+        reduced.simplify(3 * faces, settings) / 3
     }
 
-    /// Calls the library; gives how many indices are left.
+    /// Calls the library and returns the number of indices left.
     fn simplify(&mut self, target: usize, settings: &Settings) -> usize {
         let Settings { normal_weight: normal, uv_weight: uv, options, update } = *settings;
         let weights = [normal, normal, normal, uv, uv];
@@ -141,7 +142,8 @@ impl Torn {
         }
     }
 
-    /// What the library left, with the mesh's own positions and values but where it changed them.
+    /// Builds the level, with the mesh's own positions and values except where the library changed
+    /// them.
     fn into_mesh(self, mesh: &Mesh, settings: &Settings) -> Mesh {
         let (triples, _) = self.indices.as_chunks::<3>();
         let corners: Vec<_> = triples.iter().map(|t| t.map(WedgeId)).collect();
@@ -169,7 +171,7 @@ impl Torn {
         level
     }
 
-    /// A layer over the vertices of the GPU.
+    /// Copies a layer to the GPU vertices.
     fn layer(&self, layer: &Layer, update: Update) -> Layer {
         let guide = GUIDES.into_iter().find(|(kind, _)| *kind == layer.kind);
         let values = self.vertices.iter().enumerate().flat_map(|(i, &(_, wedge, _))| {
@@ -182,9 +184,9 @@ impl Torn {
     }
 }
 
-/// Normal and uv of each vertex. Where a mesh has no normals, those that its pictures are shaded with
-/// guide as well: the library does better with them (docs/notes/image-error.md).
-fn guides(mesh: &Mesh, vertices: &[TornVertex]) -> Vec<f32> {
+/// Collects normal and uv of each vertex. A mesh without normals gets those its pictures are shaded
+/// with, because the library does better with them (docs/notes/image-error.md).
+fn guides(mesh: &Mesh, vertices: &[GpuVertex]) -> Vec<f32> {
     let layer = |kind| mesh.attributes.as_ref().and_then(|all| all.layer(kind));
     let smooth = if layer(LayerKind::Normal).is_none() { smooth_normals(mesh) } else { vec![] };
     let mut rows = vec![0.0; WIDTH * vertices.len()];
@@ -201,7 +203,7 @@ fn guides(mesh: &Mesh, vertices: &[TornVertex]) -> Vec<f32> {
     rows
 }
 
-/// The mean normal of the faces around each vertex, by their areas.
+/// Computes vertex normals as the area-weighted mean of face normals.
 fn smooth_normals(mesh: &Mesh) -> Vec<[f32; 3]> {
     let mut sums = vec![[0.0; 3]; mesh.positions.len()];
     for &face in &mesh.faces {

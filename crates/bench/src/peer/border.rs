@@ -1,13 +1,14 @@
-//! meshoptimizer's simplification with its lock of borders.
+//! meshoptimizer's simplification with its border lock.
 
 use meshlod::mesh::{Labels, Mesh, VertexId};
 use meshopt::{SimplifyOptions, simplify_decoder};
 
-/// A level of as near to `faces` as meshoptimizer comes by positions alone, with the vertices of open borders
-/// locked. No vertex moves; those that no face uses any more stay in the list.
+/// Simplifies to about `faces` faces by meshoptimizer, positions only, with the vertices of open
+/// borders locked. No vertex moves; unused vertices stay in the list.
 ///
-/// Objects are kept, if no vertex is shared by two: a face is of the object of two of its corners, since
-/// where several vertices are at one place the library may take all of them to one of another object.
+/// Objects are kept if no two share a vertex: a face belongs to the object of two of its corners,
+/// because at coincident vertices the library may replace all of them by a vertex of another
+/// object.
 pub fn simplify_with_border_lock(mesh: &Mesh, faces: usize) -> Mesh {
     let positions: Vec<[f32; 3]> = mesh.positions.iter().map(|p| p.map(|x| x as f32)).collect();
     let indices: Vec<u32> = mesh.faces.iter().flatten().map(|v| v.0).collect();
@@ -23,7 +24,7 @@ pub fn simplify_with_border_lock(mesh: &Mesh, faces: usize) -> Mesh {
     level
 }
 
-/// The object of every vertex; 0 where no face uses it.
+/// Returns the object of each vertex; 0 for unused vertices.
 fn of_vertices(mesh: &Mesh, objects: &Labels) -> Vec<u32> {
     let mut of_vertex = vec![0; mesh.positions.len()];
     for (face, &object) in mesh.faces.iter().zip(&objects.of_face) {

@@ -1,13 +1,13 @@
-//! meshoptimizer's codecs of vertices and indices.
+//! meshoptimizer's vertex and index codecs.
 
 use meshlod::mesh::VertexId;
 use meshopt::{encode_index_buffer, encode_vertex_buffer, optimize_vertex_cache_strip};
 
-/// What positions and faces take by meshoptimizer's codecs, in bytes: positions as four `u16`, in the order in which
-/// faces in the order for strips come to them.
+/// Returns the sizes of encoded positions and faces in bytes: positions as four `u16` in order of
+/// first use, faces in the order optimised for strips.
 ///
 /// # Panics
-/// Where the library refuses what it has ordered itself.
+/// If the library refuses its own order.
 pub fn meshopt_codec(positions: &[[u16; 3]], faces: &[[VertexId; 3]]) -> [usize; 2] {
     let indices: Vec<u32> = faces.iter().flatten().map(|v| v.0).collect();
     let mut indices = optimize_vertex_cache_strip(&indices, positions.len());
@@ -16,8 +16,9 @@ pub fn meshopt_codec(positions: &[[u16; 3]], faces: &[[VertexId; 3]]) -> [usize;
     [bytes, encode_index_buffer(&indices, vertices.len()).expect("indices are in range").len()]
 }
 
-/// The vertices in the order in which indices come to them; those that none comes to are left out. The crate's own
-/// way (`optimize_vertex_fetch_remap`, meshopt 0.7.0) gives a map that is too short where there are such.
+/// Sorts vertices by first use in the indices, dropping unused ones. The crate's own function
+/// (`optimize_vertex_fetch_remap`, meshopt 0.7.0) returns a map that is too short if there are
+/// unused vertices.
 fn by_first_use(indices: &mut [u32], positions: &[[u16; 3]]) -> Vec<[u16; 4]> {
     let mut number = vec![u32::MAX; positions.len()];
     let mut vertices = Vec::new();

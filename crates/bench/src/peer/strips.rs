@@ -4,10 +4,10 @@ use meshlod::mesh::VertexId;
 use meshlod::strip::Strips;
 use meshopt::{optimize_vertex_cache_strip, stripify};
 
-/// Strips of faces by meshoptimizer, after its vertex cache order for strips.
+/// Builds strips by meshoptimizer, after its vertex cache order for strips.
 ///
 /// # Panics
-/// Where the library refuses what it has ordered itself.
+/// If the library refuses its own order.
 pub fn meshopt_strips(faces: &[[VertexId; 3]]) -> Strips {
     const RESTART: u32 = u32::MAX;
     let indices: Vec<u32> = faces.iter().flatten().map(|v| v.0).collect();

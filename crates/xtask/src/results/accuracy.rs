@@ -1,4 +1,4 @@
-//! How near the levels are to their meshes, beside the peers.
+//! Distances of levels to their meshes, ours and other programs'.
 
 use anyhow::Result;
 use meshlod::measure::{Distance, DistanceOptions, PreparedSurface, surface_distance};
@@ -9,7 +9,7 @@ use meshlod_bench::peer::{Indexed, simplify_with_update};
 use crate::project::Project;
 use crate::table::Table;
 
-/// A peer as measured before: mean, RMS and maximum, in % of the diagonal, at a ratio.
+/// A recorded result of another program: mean, RMS and maximum in percent of the diagonal.
 struct Peer {
     file: &'static str,
     ratio: f64,
@@ -24,8 +24,9 @@ const fn peer(file: &'static str, ratio: f64, name: &'static str, figures: [f64;
 const FILES: [&str; 4] = ["bunny.ply", "horse-97k.ply", "igea.ply", "dragon.ply"];
 const RATIOS: [f64; 2] = [0.1, 0.01];
 
-/// The best quadric peer by mean error and CGAL 5.5.1's Lindstrom–Turk: VTK 9.7.2, libigl 2.6.3,
-/// Blender 5.0.1, measured on 2026-11-21 with the same metric on the same meshes.
+/// The best quadric program by mean error, and CGAL 5.5.1's Lindstrom–Turk. The others are VTK
+/// 9.7.2, libigl 2.6.3 and Blender 5.0.1. Measured on 2026-11-21 with the same metric on the same
+/// meshes.
 const PEERS: [Peer; 16] = [
     peer("bunny.ply", 0.1, "VTK", [0.01908, 0.02491, 0.2318]),
     peer("bunny.ply", 0.1, "CGAL", [0.01424, 0.01923, 0.3285]),
@@ -45,10 +46,10 @@ const PEERS: [Peer; 16] = [
     peer("dragon.ply", 0.01, "CGAL", [0.02441, 0.03350, 0.7891]),
 ];
 
-/// `pm` takes minutes on more faces than this.
+/// Largest number of faces for `pm`, which takes minutes beyond.
 const MOST_FOR_PM: usize = 100_000;
 
-/// A table of mean, RMS and maximum per mesh, ratio and method.
+/// Tables mean, RMS and maximum distance by mesh, ratio and method.
 pub fn section(_: &Project) -> Result<String> {
     let mut table = Table::new(["mesh, ratio, method", "faces", "mean %", "RMS %", "max %"]);
     for file in FILES {
@@ -60,8 +61,8 @@ pub fn section(_: &Project) -> Result<String> {
     }
     Ok(format!(
         "Ours and meshoptimizer's simplify with update (crate meshopt 0.7.0) in this run; the best \
-         quadric peer and CGAL's Lindstrom–Turk as measured on 2026-11-21. Any row again: `meshlod simplify MESH out.ply \
-         --ratio R --method M`, `meshlod measure MESH out.ply`.\n\n{}",
+         quadric program and CGAL's Lindstrom–Turk as measured on 2026-11-21. To reproduce a row: \
+         `meshlod simplify MESH out.ply --ratio R --method M`, `meshlod measure MESH out.ply`.\n\n{}",
         table.markdown()
     ))
 }

@@ -1,4 +1,4 @@
-//! What checking takes, from a hundred thousand faces to four million.
+//! Checking times, for meshes of a hundred thousand to four million faces.
 
 use anyhow::Result;
 use meshlod::check::{BroadPhase, CheckOptions, Kind, Kinds, findings};
@@ -9,11 +9,11 @@ use crate::project::Project;
 use crate::table::Table;
 
 const ROUNDS: usize = 5;
-/// File, and how often every face is parted in four.
+/// Mesh files, and the number of 1:4 subdivisions.
 const MESHES: [(&str, usize); 5] =
     [("horse-97k.ply", 0), ("igea.ply", 0), ("dragon.ply", 0), ("igea.ply", 1), ("igea.ply", 2)];
 
-/// Seconds for a million faces, by what is asked for.
+/// Seconds per million faces, by kinds of findings.
 pub fn section(_: &Project) -> Result<String> {
     let of_pairs = [Kind::SelfIntersection, Kind::Contact, Kind::Crowded];
     let meeting = of_pairs.into_iter().fold(Kinds::NONE, Kinds::with);
@@ -25,25 +25,25 @@ pub fn section(_: &Project) -> Result<String> {
         (meeting, BroadPhase::Octree),
     ];
     let mut table = Table::new([
-        "mesh, s for a million faces",
+        "mesh, s per million faces",
         "faces",
         "all kinds",
-        "all but what meets",
-        "what meets, by tree",
-        "what meets, by cubes",
+        "all but intersections",
+        "intersections, by tree",
+        "intersections, by octree",
     ]);
     for (file, times) in MESHES {
         let Some(mut mesh) = meshlod_bench::read(file)? else { continue };
         for _ in 0..times {
-            mesh = in_four(&mesh);
+            mesh = subdivided(&mesh);
         }
         let faces = mesh.faces.len();
         let name =
-            if times == 0 { file.to_owned() } else { format!("{file} in {}", 1 << (2 * times)) };
+            if times == 0 { file.to_owned() } else { format!("{file} × {}", 1 << (2 * times)) };
         let mut row = vec![name, faces.to_string()];
         for (kinds, broad_phase) in columns {
             let options = CheckOptions { kinds, broad_phase, ..CheckOptions::default() };
-            // Cubes take nine times as long: one round tells.
+            // The octree takes nine times as long, so one round must do.
             let rounds = if broad_phase == BroadPhase::Octree { 1 } else { ROUNDS };
             let seconds = one_core(|| least_seconds(rounds, || findings(&mesh, &options)));
             row.push(format!("{:.3}", seconds / faces as f64 * 1e6));
@@ -51,16 +51,16 @@ pub fn section(_: &Project) -> Result<String> {
         table.row(row);
     }
     Ok(format!(
-        "One core, CPU time, the least of {ROUNDS} rounds, by cubes of one; files excluded, all that is derived \
-         from the faces included. As recorded and not run here: CGAL's self-intersections take \
-         1.72 s for a million faces (CGAL/cgal pull request 4344, 2019). Again: `cargo xtask results \
-         check`.\n\n{}",
+        "CPU time on one core, the best of {ROUNDS} rounds (one round by octree); file input and output are \
+         excluded, everything derived from the faces is included. As published, not run here: CGAL's \
+         self-intersection test takes 1.72 s per million faces (CGAL/cgal pull request 4344, 2019). \
+         To reproduce: `cargo xtask results check`.\n\n{}",
         table.markdown()
     ))
 }
 
-/// The mesh with each face parted in four at the middles of its edges, in the order of the faces.
-fn in_four(mesh: &Mesh) -> Mesh {
+/// Subdivides each face into four at the edge midpoints, keeping the order of faces.
+fn subdivided(mesh: &Mesh) -> Mesh {
     let connectivity = Connectivity::new(&mesh.faces, mesh.positions.len());
     let mut positions = mesh.positions.clone();
     let mut middles = vec![None; 3 * mesh.faces.len()];
@@ -91,7 +91,7 @@ mod tests {
 
     #[test]
     fn a_closed_mesh_in_four_is_closed_and_as_connected() {
-        let mesh = in_four(&samples::torus(200));
+        let mesh = subdivided(&samples::torus(200));
         let connectivity = Connectivity::new(&mesh.faces, mesh.positions.len());
         assert_eq!(mesh.faces.len(), 4 * samples::torus(200).faces.len());
         assert!(connectivity.is_closed() && connectivity.inconsistent_edges() == 0);

@@ -1,4 +1,4 @@
-//! The command line program, built and run.
+//! Builds and runs the command-line program.
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
@@ -8,11 +8,11 @@ use wait4::{ResourceUsage, Wait4};
 
 use crate::project::Project;
 
-/// The program `meshlod`, built for release.
+/// The release build of `meshlod`.
 pub struct Program(PathBuf);
 
 impl Program {
-    /// Builds it.
+    /// Builds the program.
     pub fn build(project: &Project) -> Result<Self> {
         let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
         let status = Command::new(cargo)
@@ -20,14 +20,14 @@ impl Program {
             .current_dir(project.root())
             .status()?;
         if !status.success() {
-            bail!("meshlod does not build");
+            bail!("building meshlod failed");
         }
         let target = std::env::current_exe()?;
-        let folder = target.parent().context("a program has a folder")?;
+        let folder = target.parent().context("the path of a program has a folder")?;
         Ok(Self(folder.join("meshlod")))
     }
 
-    /// Runs it to a successful end, and says what it used.
+    /// Runs the program and returns its resource usage; fails if it does.
     pub fn run(&self, arguments: &[&str], files: [&Path; 2]) -> Result<ResourceUsage> {
         let mut child = Command::new(&self.0)
             .arg(arguments[0])

@@ -1,4 +1,4 @@
-//! Compressed meshes: the paper's parts, every scheme at 11 bits, and rates against distortion.
+//! Compressed meshes: the paper's parts, every scheme at 11 bits, and rate-distortion curves.
 
 mod global;
 mod rates;
@@ -16,8 +16,8 @@ use self::global::{Rounding, global};
 use crate::project::Project;
 use crate::table::Table;
 
-/// The meshes of the paper, or of their sizes.
-const OF_PAPER: [&str; 5] =
+/// The meshes of the paper, or meshes of the same size.
+const PAPER_MESHES: [&str; 5] =
     ["horse.ply", "feline.ply", "squirrel-20k.obj", "armadillo-173k.ply", "dragon-100k.ply"];
 const MESHES: [&str; 10] = [
     "squirrel-20k.obj",
@@ -45,32 +45,33 @@ pub fn section(project: &Project) -> Result<String> {
         std::fs::write(folder.join("rates.svg"), drawing).context("rates.svg")?;
     }
     Ok(format!(
-        "Distances are means of both ways (Metro's), 200,000 samples each, in parts of those of cubic cells for the whole \
-         mesh, 2047 along the longest side. Sizes are all that decoding needs. Drawn in docs/notes/compression.md. Again: \
-         `cargo xtask results compression`.\n\n{}{}{}",
-        of_paper()?,
-        schemes()?,
+        "Distances are symmetric means (Metro's), 200,000 samples each way, relative to those of a global \
+         grid of cubic cells with 2047 along the longest side. Sizes include everything that decoding \
+         needs. Plotted in docs/notes/compression.md. To reproduce: `cargo xtask results \
+         compression`.\n\n{}{}{}",
+        paper_table()?,
+        scheme_table()?,
         sent::table()?
     ))
 }
 
-fn apart(mesh: &Mesh, decoded: &Mesh) -> Result<Distance> {
+fn distance_of(mesh: &Mesh, decoded: &Mesh) -> Result<Distance> {
     let options = DistanceOptions { samples: 200_000, ..DistanceOptions::default() };
     Ok(distance(mesh, decoded, &options)?)
 }
 
-/// Parts at a reduction of 70 %, truncated against truncated and centred against rounded.
-fn of_paper() -> Result<String> {
+/// Tables parts at a reduction of 70 %: truncated against truncated cells, centred against rounded.
+fn paper_table() -> Result<String> {
     let mut table = Table::new([
         "parts at a reduction of 70 %",
         "parts",
-        "stored again, %",
+        "duplicated vertices, %",
         "reduction, %",
         "truncated",
         "centred",
         "CPU s",
     ]);
-    for name in OF_PAPER {
+    for name in PAPER_MESHES {
         let Some(mesh) = meshlod_bench::read(name)? else { continue };
         let parting = Partitioner::new(&mesh)?;
         let mut row = vec![name.to_owned()];
@@ -82,14 +83,14 @@ fn of_paper() -> Result<String> {
         ] {
             let mut parts = None;
             seconds = least_seconds(1, || parts = Some(parting.within_reduction(0.7, cells)));
-            let parts = parts.context("it has run")??;
+            let parts = parts.context("the work has run")??;
             if row.len() == 1 {
                 row.push(parts.parts().len().to_string());
                 row.push(format!("{:.1}", 100.0 * parts.overhead()));
                 row.push(format!("{:.2}", 100.0 * parts.reduction()));
             }
-            let whole = apart(&mesh, &global(&mesh, BITS, rounding))?;
-            ratios.push(apart(&mesh, &parts.decode())?.mean() / whole.mean());
+            let whole = distance_of(&mesh, &global(&mesh, BITS, rounding))?;
+            ratios.push(distance_of(&mesh, &parts.decode())?.mean() / whole.mean());
         }
         row.extend(ratios.iter().map(|ratio| format!("{ratio:.2}")));
         row.push(format!("{seconds:.1}"));
@@ -98,33 +99,33 @@ fn of_paper() -> Result<String> {
     Ok(table.markdown())
 }
 
-/// Every scheme as good as 11 bits.
-fn schemes() -> Result<String> {
+/// Tables every scheme at a quality of 11 bits.
+fn scheme_table() -> Result<String> {
     let mut table = Table::new([
-        "as good as 11 bits",
+        "at the quality of 11 bits",
         "reduction, %",
         "mean",
-        "most",
-        "faces turned over",
-        "by 11 bits",
-        "positions, bytes a vertex",
-        "faces, bytes each",
-        "all, bytes a face",
+        "max",
+        "flipped faces",
+        "flipped by 11 bits",
+        "positions, bytes per vertex",
+        "faces, bytes per face",
+        "total, bytes per face",
         "CPU s",
     ]);
     for name in MESHES {
         let Some(mesh) = meshlod_bench::read(name)? else { continue };
         let rounded = global(&mesh, BITS, Rounding::Nearest);
-        let whole = apart(&mesh, &rounded)?;
+        let whole = distance_of(&mesh, &rounded)?;
         for (title, scheme) in SCHEMES {
             let bounds = AttributeBounds::default();
             let mut done = None;
             let seconds = least_seconds(1, || {
                 done = Some(compress(&mesh, scheme, CompressionTarget::Bits(BITS), &bounds));
             });
-            let Compression { compressed, vertices, .. } = done.context("it has run")??;
+            let Compression { compressed, vertices, .. } = done.context("the work has run")??;
             let decoded = compressed.decode()?;
-            let is = apart(&mesh, &decoded)?;
+            let is = distance_of(&mesh, &decoded)?;
             let mut moved = Mesh::new(mesh.positions.clone(), mesh.faces.clone());
             for (vertex, place) in vertices.iter().zip(&decoded.positions) {
                 moved.positions[vertex.index()] = *place;

@@ -1,4 +1,4 @@
-//! The tables of the paper on face constriction [LJ05], with ours beside them.
+//! The tables of the face constriction paper [LJ05], with our figures beside them.
 
 use anyhow::Result;
 use meshlod::mesh::Mesh;
@@ -10,8 +10,8 @@ use crate::table::Table;
 
 const ROUNDS: usize = 9;
 
-/// A row of the paper's tables 1 and 2: faces; volume errors and seconds of Wu, Lee & Jang, and Kim
-/// & Jang.
+/// A row of the paper's tables 1 and 2: number of faces; volume errors and seconds of Wu, Lee &
+/// Jang, and Kim & Jang.
 const PAPER: [(usize, [f64; 3], [f64; 3]); 5] = [
     (40_000, [2.989e-5, -1.575e-22, -2.967e-21], [0.668, 0.606, 0.681]),
     (20_000, [7.550e-5, 4.872e-22, -3.801e-21], [0.987, 1.012, 1.054]),
@@ -25,13 +25,13 @@ const METHODS: [Method; 3] = [Method::Wu, Method::LeeJang, Method::KimJang];
 /// Volume errors and times at the paper's five sizes of the bunny.
 pub fn section(_: &Project) -> Result<String> {
     let Some(mesh) = meshlod_bench::read("bunny.ply")? else {
-        return Ok("The bunny is not here.\n".to_owned());
+        return Ok("bunny.ply is not available.\n".to_owned());
     };
     Ok(format!(
-        "bunny.ply, 69,451 faces, open at the base. Its unit is not the paper's, whose bunny was \
-         scaled: compare signs, growth and orders of magnitude.\n\n\
-         Volume before less after, summed over the contractions with a closed ring:\n\n{}\
-         Time of `lee-jang` against `kim-jang`, one core, CPU time, by turns, medians of {ROUNDS} \
+        "bunny.ply, 69,451 faces, open at the base. The paper's bunny was scaled, so compare \
+         signs, growth and orders of magnitude.\n\n\
+         Volume before minus volume after, summed over the contractions with a closed ring:\n\n{}\
+         Time of `lee-jang` and `kim-jang`: CPU time on one core, medians of {ROUNDS} alternating \
          rounds, connectivity included; the paper leaves out what both have in common:\n\n{}",
         volumes(&mesh)?.markdown(),
         times(&mesh)?.markdown(),
@@ -65,7 +65,7 @@ fn times(mesh: &Mesh) -> Result<Table> {
         "lee-jang, s",
         "kim-jang, s",
         "lee-jang ÷ kim-jang",
-        "the same in the paper",
+        "lee-jang ÷ kim-jang (paper)",
     ]);
     for (faces, _, [_, lee_jang, kim_jang]) in PAPER {
         let Ratio { ours, theirs, ratio } = one_core(|| {

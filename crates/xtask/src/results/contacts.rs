@@ -1,4 +1,4 @@
-//! What shows through where components meet, and what opens, beside meshoptimizer.
+//! Pixels that show through where components meet, and edges that open, ours and meshoptimizer's.
 
 mod open;
 mod ways;
@@ -18,7 +18,7 @@ const RATIOS: [f64; 3] = [0.5, 0.25, 0.1];
 /// Target ratio of see-through pixels to those of the other methods.
 const GOAL: f64 = 0.1;
 
-/// A level and what of it shows that should not.
+/// A level and its see-through pixels.
 struct Figures {
     way: Way,
     level: Level,
@@ -57,18 +57,19 @@ pub fn section(_: &Project) -> Result<String> {
 fn text(met: &[String]) -> String {
     let met = if met.is_empty() { "nowhere".to_owned() } else { met.join("; ") };
     format!(
-        "Levels of meshes whose components touch and cross, in 24 views of 1024 by 1024. A pixel counts where the \
-         level lets the background or a component through that the original does not show within 4 \
-         pixels, unless an outline moved there, by 32 pixels at most \
-         (`picture::ReferenceVisibility`). Ratios are those of the sums, to plain `qem` with the same values on its faces and to \
-         meshoptimizer's simplify with its border lock, which sees positions only; `bare` is without attributes \
-         and materials. `locked` is what \
-         `--lock-contacts` does, `fused` what `check::fuse` makes of all that crosses, both with components as \
-         objects. Targets are parts of the input's faces, before fusing; (*) marks what ended above. \
-         An edge is open if no face of any component runs against it between the same two places, and new if none of the \
-         input's open edges became it. Again: `cargo xtask results contacts`.\n\n\
-         A tenth of both or less, on target and with no new open edge: {met}. Nowhere else. Why is told in \
-         [docs/notes/contacts.md](notes/contacts.md#effect)."
+        "Levels of meshes whose components touch and cross, in 24 views of 1024 by 1024. A pixel counts \
+         if the level shows the background or a component there that the original does not show \
+         within 4 pixels, unless a silhouette moved there, by at most 32 pixels \
+         (`picture::ReferenceVisibility`). Ratios are of the sums, relative to plain `qem` with the \
+         same attributes and to meshoptimizer's simplify with its border lock, which sees positions \
+         only; `bare` is without attributes and materials. `locked` is what `--lock-contacts` does, \
+         `fused` the result of `check::fuse`, both with components as objects. Targets are \
+         fractions of the input's faces, before fusing; (*) marks levels that stopped above. An edge \
+         is open if no face of any component has the opposite side between the same two positions, \
+         and new if no open edge of the input became it. To reproduce: `cargo xtask results \
+         contacts`.\n\n\
+         A tenth of both or less, on target and with no new open edge: {met}. Nowhere else. The reasons \
+         are in [docs/notes/contacts.md](notes/contacts.md#effect)."
     )
 }
 
@@ -76,10 +77,10 @@ fn skipped(missing: &[&str]) -> String {
     if missing.is_empty() {
         return String::new();
     }
-    format!("Not here, and left out: {}.\n\n", missing.join(", "))
+    format!("Not available: {}.\n\n", missing.join(", "))
 }
 
-/// The figures of all ways, for each ratio.
+/// Measures all ways at each ratio.
 fn figures(mesh: &Mesh) -> Result<Vec<Vec<Figures>>> {
     let targets = RATIOS.map(|ratio| Target::Ratio(ratio).faces_of(mesh.faces.len()));
     let reference = ReferenceVisibility::new(labelled(mesh), SeeThroughOptions::default())?;
@@ -120,7 +121,7 @@ fn add_rows(table: &mut Table, what: &str, all: &[Figures]) {
     }
 }
 
-/// The ways that meet the goal against both.
+/// Lists the ways that reach the goal against both baselines.
 fn meeting(all: &[Figures]) -> Vec<Way> {
     let is_met = |own: &&Figures| {
         let is_below = |other: Option<&Figures>| {
@@ -136,7 +137,7 @@ impl Figures {
         self.see_through.background + self.see_through.hidden
     }
 
-    /// Plain `qem` and the peer; `None` for what this is.
+    /// Returns the figures of plain `qem` and of meshoptimizer; `None` for the baseline itself.
     fn others<'a>(&self, all: &'a [Self]) -> [Option<&'a Self>; 2] {
         [Way::Plain(self.way.values()), Way::Peer]
             .map(|other| all.iter().find(|figures| figures.way == other && figures.way != self.way))

@@ -1,4 +1,4 @@
-//! All levels in one structure: what it takes, on disk and in memory, and how fast it answers.
+//! The multiresolution model: its size on disk and in memory, and its query speed.
 
 use anyhow::Result;
 use meshlod::measure::{DistanceOptions, distance};
@@ -16,27 +16,27 @@ use crate::table::Table;
 
 const MESHES: [&str; 4] = ["bunny.ply", "horse-97k.ply", "igea.ply", "dragon.ply"];
 const ROUNDS: usize = 5;
-/// In parts of the diagonal.
+/// Tolerances in parts of the diagonal.
 const TOLERANCES: [f64; 4] = [3e-3, 3e-4, 3e-5, 0.0];
 const PIXELS: [f64; 3] = [1.0, 0.25, 0.02];
 const FRAMES: i32 = 200;
-/// About how many updates a chunk has.
+/// Approximate numbers of updates per chunk.
 const CHUNKS: [usize; 3] = [1 << 10, 1 << 12, 1 << 14];
 
 pub fn section(_: &Project) -> Result<String> {
     let mut room = Table::new([
-        "bytes a vertex",
+        "bytes per vertex",
         "in memory",
         "compact",
         "face list",
         "explicit",
-        "file: 1,024 a chunk",
+        "file: 1,024 per chunk",
         "4,096",
         "16,384",
         "moved, %",
         "first mesh, bytes",
-        "its max, %",
-        "a ball of 2 % at full detail reads, %",
+        "its max error, %",
+        "read for a ball of 2 % at full detail, %",
     ]);
     let mut build = Table::new([
         "build",
@@ -44,10 +44,10 @@ pub fn section(_: &Project) -> Result<String> {
         "recorded, ×",
         "whole file, ×",
         "packing, M updates/s",
-        "certificate, µs an update",
+        "certificate, µs per update",
     ]);
     let mut rates = Table::new([
-        "million faces a second",
+        "million faces per second",
         "one tolerance: .3 %",
         ".03 %",
         ".003 %",
@@ -74,22 +74,23 @@ pub fn section(_: &Project) -> Result<String> {
     for file in MESHES {
         let Some(mesh) = meshlod_bench::read(file)? else { continue };
         one_core(|| -> Result<()> {
-            let (forest, row) = built(file, &mesh)?;
+            let (forest, row) = build_times(file, &mesh)?;
             build.row(row);
-            room.row(in_bytes(file, &mesh, &forest)?);
-            rates.row(answered(file, &mesh.bounds(), &forest)?);
-            more.row(beyond(file, &mesh.bounds(), &forest)?);
+            room.row(sizes(file, &mesh, &forest)?);
+            rates.row(extraction_rates(file, &mesh.bounds(), &forest)?);
+            more.row(relative_sizes(file, &mesh.bounds(), &forest)?);
             if file == "dragon.ply" {
-                following = followed(&mesh.bounds(), &forest)?;
+                following = follow(&mesh.bounds(), &forest)?;
             }
             Ok(())
         })?;
     }
     Ok(format!(
-        "By `lindstrom-turk`, evened out, one core, CPU time, the least of {ROUNDS} rounds. Files move vertices by .005 % of the diagonal \
-         at most, but for those of triangles that would lose their area. The camera is 1.2 diagonals from the \
-         middle, 1920 × 1080, 46° high. Right triangles are in docs/notes/rtin.md, more in \
-         docs/notes/multires.md. Again: `cargo xtask results levels`.\n\n{}{}{}{}{following}",
+        "By `lindstrom-turk`, with smoothed errors; CPU time on one core, the best of {ROUNDS} rounds. Files \
+         move vertices by at most .005 % of the diagonal, except those of triangles that would lose \
+         their area. The camera is 1.2 diagonals from the centre, 1920 × 1080, with a vertical field \
+         of view of 46°. Right triangles are in docs/notes/rtin.md, more in docs/notes/multires.md. \
+         To reproduce: `cargo xtask results levels`.\n\n{}{}{}{}{following}",
         room.markdown(),
         build.markdown(),
         rates.markdown(),
@@ -97,8 +98,8 @@ pub fn section(_: &Project) -> Result<String> {
     ))
 }
 
-/// A forest, and what building takes.
-fn built(file: &str, mesh: &Mesh) -> Result<(Forest, Vec<String>)> {
+/// Builds a forest and times it.
+fn build_times(file: &str, mesh: &Mesh) -> Result<(Forest, Vec<String>)> {
     let options = Options { vanish_below: None, ..Options::default() };
     let ready = || Simplifier::new(mesh, &options);
     let bare = least_seconds(ROUNDS, || {
@@ -129,12 +130,12 @@ fn built(file: &str, mesh: &Mesh) -> Result<(Forest, Vec<String>)> {
     Ok((forest, std::iter::once(file.to_owned()).chain(figures).collect()))
 }
 
-/// What each encoding takes.
-fn in_bytes(file: &str, mesh: &Mesh, forest: &Forest) -> Result<Vec<String>> {
+/// Measures the size of each encoding.
+fn sizes(file: &str, mesh: &Mesh, forest: &Forest) -> Result<Vec<String>> {
     let vertices = mesh.used_vertices().iter().filter(|&&used| used).count() as f64;
     let each = |bytes: usize| format!("{:.1}", bytes as f64 / vertices);
     let bytes = Model::new(forest)?.bytes();
-    let compact = compacted(forest)?.map_or("–".into(), |compact| each(compact.bytes()));
+    let compact = compacted_model(forest)?.map_or("–".into(), |compact| each(compact.bytes()));
     let mut row = vec![
         file.to_owned(),
         each(bytes.implicit),
@@ -154,7 +155,7 @@ fn in_bytes(file: &str, mesh: &Mesh, forest: &Forest) -> Result<Vec<String>> {
     let coarse = Cut::at(&coarse, &Query::uniform(0.0))?.level().mesh();
     let apart = distance(mesh, &coarse, &DistanceOptions::default())?;
     row.extend([first.to_string(), format!("{:.3}", apart.percent(apart.max()))]);
-    // Somewhere on the mesh.
+    // An arbitrary vertex of the mesh.
     let center = mesh.positions[mesh.faces[mesh.faces.len() / 3][0].index()];
     let focus = Focus::Sphere { center, radius: 0.02 * archive.diagonal() };
     let read = archive.extract(&Query { focus, tolerance: Tolerance::Uniform(0.0) })?.bytes;
@@ -163,8 +164,8 @@ fn in_bytes(file: &str, mesh: &Mesh, forest: &Forest) -> Result<Vec<String>> {
     Ok(row)
 }
 
-/// How fast meshes are extracted.
-fn answered(file: &str, bounds: &Bounds, forest: &Forest) -> Result<Vec<String>> {
+/// Measures extraction rates.
+fn extraction_rates(file: &str, bounds: &Bounds, forest: &Forest) -> Result<Vec<String>> {
     let mut model = Model::new(forest)?;
     for pixels in PIXELS {
         let slope = pixels * camera(bounds, 0.0, 1.2).pixel();
@@ -190,19 +191,19 @@ fn answered(file: &str, bounds: &Bounds, forest: &Forest) -> Result<Vec<String>>
     }
     let all = Query::uniform(0.0);
     rate(&mut || Cut::at(model.implicit(), &all).ok().map(|cut| cut.face_count()));
-    let compact = compacted(forest)?;
+    let compact = compacted_model(forest)?;
     rate(&mut || compact.as_ref().and_then(|mt| Some(Cut::at(mt, &all).ok()?.face_count())));
     Ok(row)
 }
 
-/// The model as a file gives it back, in half the memory.
-fn compacted(forest: &Forest) -> Result<Option<Implicit>> {
+/// Reads the model back from a file in its compact form, half the memory.
+fn compacted_model(forest: &Forest) -> Result<Option<Implicit>> {
     let bytes = Archive::write(forest, &Storage::default())?.0;
     Ok(Archive::open(bytes)?.read()?.0.compacted())
 }
 
-/// How much larger cuts are that nothing is forced for, and how much smaller those of the weaker rule.
-fn beyond(file: &str, bounds: &Bounds, forest: &Forest) -> Result<Vec<String>> {
+/// Compares the sizes of saturated cuts and of cuts by the weaker rule with exact cuts.
+fn relative_sizes(file: &str, bounds: &Bounds, forest: &Forest) -> Result<Vec<String>> {
     let mut model = Model::new(forest)?;
     let weaker = Model::with_rule(forest, SplitRule::Wings)?;
     let query = |pixels| Query::pixels(camera(bounds, 0.0, 1.2), pixels);
@@ -223,17 +224,17 @@ fn beyond(file: &str, bounds: &Bounds, forest: &Forest) -> Result<Vec<String>> {
     Ok(row)
 }
 
-/// Frames of an orbit and of a dolly, and budgets.
-fn followed(bounds: &Bounds, forest: &Forest) -> Result<String> {
+/// Follows an orbit and a dolly frame by frame, and times face budgets.
+fn follow(bounds: &Bounds, forest: &Forest) -> Result<String> {
     let model = Model::new(forest)?;
     let mut table = Table::new([
-        "following the dragon, median of 200 frames",
+        "tracking the dragon, median of 200 frames",
         "faces",
         "orbit of .1°, µs",
         "orbit of 1°, µs",
         "dolly of .5 %, µs",
-        "the same, ns a changed triangle",
-        "at most so many faces: choosing and extracting, ms",
+        "dolly, ns per changed triangle",
+        "selecting and extracting at this face budget, ms",
     ]);
     for pixels in [1.0, 0.2, 0.023] {
         let orbit = |turn: f64| move |frame| (turn.to_radians() * f64::from(frame), 1.2);
@@ -257,13 +258,13 @@ fn followed(bounds: &Bounds, forest: &Forest) -> Result<String> {
 }
 
 struct Frames {
-    /// Of a frame, in µs.
+    /// Time per frame in µs.
     median: f64,
-    /// In ns.
+    /// Time per changed triangle in ns.
     a_triangle: f64,
 }
 
-/// Follows a camera by its angle and its distance in diagonals.
+/// Follows a camera, given its angle and its distance in diagonals by frame.
 fn frames(
     model: &Model,
     bounds: &Bounds,

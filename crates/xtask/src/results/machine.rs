@@ -1,16 +1,16 @@
-//! Where and when figures were made.
+//! Date and machine of a measurement.
 
 use std::process::Command;
 
-/// The machine and the day.
+/// Date and machine.
 pub struct Machine {
-    /// The day, as 2026-01-31.
+    /// Date, as 2026-01-31.
     pub date: String,
-    /// Processor, cores and compiler.
+    /// Processor, number of cores, and compiler.
     pub what: String,
 }
 
-/// This machine, today.
+/// Describes this machine and today's date.
 pub fn describe() -> Machine {
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
     let rustc = output("rustc", &["--version"]).unwrap_or_default();

@@ -1,4 +1,4 @@
-//! What the program needs and whether it always gives the same bytes.
+//! Peak memory of the program, and whether its output depends on the number of threads.
 
 use std::path::Path;
 
@@ -8,13 +8,13 @@ use super::command::Program;
 use crate::project::Project;
 use crate::table::Table;
 
-/// Peak resident memory of a whole run, and the same bytes from 1 and 2 threads.
+/// Tables the peak resident memory of whole runs, and compares outputs with 1 and 2 threads.
 pub fn section(project: &Project) -> Result<String> {
     let mut table = Table::new([
         "meshlod simplify MESH out.ply --ratio 10%",
         "peak, MB",
         "bytes per input face",
-        "same bytes with 1 and 2 threads",
+        "same output with 1 and 2 threads",
     ]);
     let program = Program::build(project)?;
     let mut runs = Vec::new();
@@ -22,9 +22,9 @@ pub fn section(project: &Project) -> Result<String> {
         let Some(path) = meshlod_bench::shared_mesh(file) else { continue };
         runs.push((file, run(&program, &path)?));
     }
-    // Read only now: what this program holds would count as the peak of those it starts.
+    // Read the mesh only now: memory held by this process would count in the peak of its children.
     for (file, (peak, same)) in runs {
-        let faces = meshlod_bench::read(file)?.context("it was there")?.faces.len();
+        let faces = meshlod_bench::read(file)?.context("the mesh was read before")?.faces.len();
         table.row([
             file.to_owned(),
             format!("{:.0}", peak as f64 / 1e6),
@@ -35,7 +35,7 @@ pub fn section(project: &Project) -> Result<String> {
     Ok(table.markdown())
 }
 
-/// The peak of two runs, in bytes, and whether their outputs are the same.
+/// Returns the larger peak of two runs, in bytes, and whether their outputs are equal.
 fn run(program: &Program, path: &Path) -> Result<(u64, bool)> {
     let folder = tempfile::tempdir()?;
     let mut peak = 0;

@@ -1,22 +1,22 @@
-//! Lines over levels, as a small SVG.
+//! Line plots as small SVG files.
 
 use std::fmt::Write;
 
-/// A plot of lines.
+/// A line plot.
 pub struct Plot {
     pub caption: String,
-    /// What goes from left to right: from, to.
+    /// Range of the horizontal axis.
     pub across: [f64; 2],
-    /// What is written behind those numbers.
+    /// Unit written after the numbers of the horizontal axis.
     pub unit: &'static str,
-    /// Where the lowest line lies; zero, or where the values begin below.
+    /// Start of the vertical axis, lowered if values lie below; zero if `None`.
     pub up_from: Option<f64>,
-    /// Whether the names stand below the lines, at the right.
+    /// True to put the legend at the lower right.
     pub low_key: bool,
     pub lines: Vec<Line>,
 }
 
-/// A line with its name; a dot where it is but one point.
+/// A named line, drawn as a dot if it has a single point.
 pub struct Line {
     name: &'static str,
     color: &'static str,
@@ -34,13 +34,13 @@ impl Line {
     }
 }
 
-/// Width and height of a plot in its own units, and the rectangle of its lines: left, right, top, bottom.
+/// Size of a plot, and the rectangle of its lines: left, right, top, bottom.
 const SIZE: [f64; 2] = [380.0, 300.0];
 const INNER: [f64; 4] = [52.0, 358.0, 28.0, 268.0];
-/// Between the names in the key.
+/// Line height of the legend.
 const STEP: f64 = 15.0;
 
-/// Plots two in a row.
+/// Lays out plots, two to a row.
 pub fn page(plots: &[Plot]) -> String {
     let columns = plots.len().min(2);
     let [width, height] = [SIZE[0] * columns as f64, SIZE[1] * plots.len().div_ceil(2) as f64];
@@ -110,7 +110,7 @@ impl Plot {
 }
 
 impl Line {
-    /// Through these places of the drawing.
+    /// Draws the line through these points of the picture.
     fn svg(&self, places: &[[f64; 2]]) -> String {
         let Self { color, .. } = self;
         if let ([[x, y]], _) | ([[x, y], _], 1) = (places, self.points.len()) {
@@ -125,12 +125,12 @@ impl Line {
     }
 }
 
-/// Without what a sum of parts has left.
+/// Removes floating-point noise.
 fn rounded(value: f64) -> f64 {
     (value * 1e6).round() / 1e6
 }
 
-/// A round number that goes four to eight times into a range.
+/// Returns a round step that divides a range into four to eight.
 fn step(range: f64) -> f64 {
     let decade = 10f64.powf((range / 4.0).log10().floor());
     let times = [5.0, 2.0, 1.0].into_iter().find(|times| range / (decade * times) >= 4.0);

@@ -1,4 +1,4 @@
-//! Readers beside tobj, and the rate of distance samples.
+//! Reading speed against tobj, and the rate of distance samples.
 
 use std::time::Instant;
 
@@ -12,7 +12,7 @@ use crate::table::Table;
 
 const ROUNDS: usize = 7;
 
-/// Three one-line tables in one.
+/// Tables three single figures.
 pub fn section(_: &Project) -> Result<String> {
     let mut table = Table::new(["on one core", "figure"]);
     one_core(|| -> Result<()> {
@@ -20,7 +20,7 @@ pub fn section(_: &Project) -> Result<String> {
             let bytes = std::fs::read(&path)?;
             let read = || meshlod::io::ply::read(&bytes).map(|mesh| mesh.faces.len());
             let least = (0..ROUNDS).map(|_| seconds(read)).fold(f64::INFINITY, f64::min);
-            table.row(["dragon.ply read, best ms".to_owned(), format!("{:.1}", least * 1e3)]);
+            table.row(["reading dragon.ply, best, ms".to_owned(), format!("{:.1}", least * 1e3)]);
         }
         if let Some(path) = meshlod_bench::shared_mesh("sponza.obj") {
             let bytes = std::fs::read(&path)?;
@@ -29,7 +29,7 @@ pub fn section(_: &Project) -> Result<String> {
                 || meshlod::io::obj::read(&bytes, &mut |_| None).map(|scene| scene.meshes.len()),
                 || tobj_read(&bytes),
             );
-            let what = "sponza.obj read, times as fast as tobj".to_owned();
+            let what = "reading sponza.obj, speed relative to tobj".to_owned();
             table.row([what, format!("{:.2}", ratio.ratio)]);
         }
         if let Some(mesh) = meshlod_bench::read("dragon.ply")? {
@@ -40,9 +40,11 @@ pub fn section(_: &Project) -> Result<String> {
             let distance = surface_distance(&fine, &coarse, &options)?;
             let queries = 2 * options.samples + mesh.positions.len() + level.positions.len();
             let rate = queries as f64 / start.elapsed().as_secs_f64() / 1e6;
-            let what = "dragon against its 10 %, million samples and vertices a second".to_owned();
+            let what =
+                "distance of dragon to its 10 % level, million samples and vertices per second"
+                    .to_owned();
             table.row([what, format!("{rate:.2}")]);
-            anyhow::ensure!(distance.mean() > 0.0, "a level is not its mesh");
+            anyhow::ensure!(distance.mean() > 0.0, "a level differs from its mesh");
         }
         Ok(())
     })

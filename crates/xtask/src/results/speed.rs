@@ -1,4 +1,4 @@
-//! Simplification by turns with meshoptimizer, on one core.
+//! Simplification speed against meshoptimizer, in alternating rounds on one core.
 
 use anyhow::Result;
 use meshlod::simplify::{Method, Options, Target, simplify};
@@ -19,14 +19,14 @@ const METHODS: [Method; 6] = [
 ];
 const MESHES: [&str; 4] = ["bunny.ply", "horse-97k.ply", "igea.ply", "dragon.ply"];
 
-/// Seconds and ratio per mesh and method.
+/// Tables seconds and speed ratio by mesh and method.
 pub fn section(_: &Project) -> Result<String> {
     let mut table = Table::new([
         "mesh to 10 %, method",
         "ours, s",
         "million faces/s",
         "meshoptimizer, s",
-        "times as fast",
+        "speed ratio",
     ]);
     for file in MESHES {
         let Some(mesh) = meshlod_bench::read(file)? else { continue };
@@ -48,9 +48,9 @@ pub fn section(_: &Project) -> Result<String> {
         }
     }
     Ok(format!(
-        "One core, CPU time, by turns, medians of {ROUNDS} rounds; files excluded, connectivity and the mesh \
-         that comes out included. The peer is simplify with update. Again: `cargo xtask \
-         results speed`.\n\n{}",
+        "CPU time on one core, medians of {ROUNDS} alternating rounds. File input and output are \
+         excluded; connectivity and the output mesh are included. meshoptimizer runs simplify with \
+         update. To reproduce: `cargo xtask results speed`.\n\n{}",
         table.markdown()
     ))
 }

@@ -1,4 +1,4 @@
-//! Strips at every level: what filters and repair save, over strips of three makes.
+//! Strips at every level: savings of filters and repair, starting from three kinds of strips.
 
 mod drawn;
 mod sent;
@@ -13,7 +13,7 @@ use self::sent::{BASES, Base, Levels, Model};
 use crate::project::Project;
 use crate::table::Table;
 
-/// Those of [KY05].
+/// Models of [KY05].
 const MODELS: [&str; 4] = ["bishop.obj", "eight.off", "femur.off", "triceratops.off"];
 
 pub fn section(project: &Project) -> Result<String> {
@@ -23,16 +23,16 @@ pub fn section(project: &Project) -> Result<String> {
         models.push(Model::new(file, MergeTree::record(&mesh, Target::Ratio(0.1))?));
     }
     if models.len() < MODELS.len() {
-        return Ok("The paper's models are not here.\n".to_owned());
+        return Ok("The paper's models are not available.\n".to_owned());
     }
     let mut saved = Table::new([
         "strips of the mesh, model",
-        "vertices a triangle of the mesh",
+        "vertices per triangle of the full mesh",
         "DTFF saves, %",
         "repair, quick",
         "repair",
-        "strips anew",
-        "most vertices a triangle: STSS",
+        "rebuilt",
+        "maximum vertices per triangle: STSS",
         "DTFF",
         "repair, quick",
         "repair",
@@ -59,10 +59,11 @@ pub fn section(project: &Project) -> Result<String> {
         }
     }
     Ok(format!(
-        "The paper's models at 10, 20, … 100 % of their faces, by `qem-endpoint`. Savings are over STSS on the same \
-         strips, the mean of the ten levels, of which the last saves nothing. Repair: of the same strips, 100 moves a \
-         triangle; quick: 4 passes. `best` and strips made anew at each level: 100 moves a face. Drawn in docs/notes/strips.md. \
-         Again: `cargo xtask results strips`.\n\n{}{}{}{}",
+        "The paper's models at 10, 20, … 100 % of their faces, by `qem-endpoint`. Savings are relative to \
+         STSS on the same strips, averaged over the ten levels; the last saves nothing. Repair starts \
+         from the same strips, with 100 moves per triangle; quick repair makes 4 passes. `best`, and \
+         strips rebuilt at each level: 100 moves per face. Plotted in docs/notes/strips.md. To \
+         reproduce: `cargo xtask results strips`.\n\n{}{}{}{}",
         whole::table()?,
         saved.markdown(),
         by_level(&fast),
@@ -79,7 +80,7 @@ fn row(base: Base, levels: &Levels) -> Vec<String> {
 }
 
 fn mean(base: Base, all: &[Levels]) -> Vec<String> {
-    let mut row = vec![format!("**{}, mean and most**", base.name())];
+    let mut row = vec![format!("**{}, mean and maximum**", base.name())];
     let mean = |of: &dyn Fn(&Levels) -> f64| all.iter().map(of).sum::<f64>() / all.len() as f64;
     row.push(format!("{:.3}", mean(&Levels::of_mesh)));
     row.extend((0..4).map(|way| format!("**{:.1}**", mean(&|levels| levels.saved()[way]))));
@@ -88,7 +89,7 @@ fn mean(base: Base, all: &[Levels]) -> Vec<String> {
     row
 }
 
-/// Vertices a triangle on `fast` strips, level by level.
+/// Tables vertices per triangle by level, starting from `fast` strips.
 fn by_level(all: &[Levels]) -> String {
     let mut text = String::new();
     for levels in all {
@@ -100,7 +101,7 @@ fn by_level(all: &[Levels]) -> String {
             "DTFF",
             "repair, quick",
             "repair",
-            "anew",
+            "rebuilt",
             "DTFF over independent triangles, %",
             "repair",
         ]);
@@ -110,17 +111,17 @@ fn by_level(all: &[Levels]) -> String {
     text
 }
 
-/// The horse from all faces to a tenth and back by hundredths, followed.
+/// Follows the horse from all faces to a tenth and back in steps of a hundredth.
 fn sweep() -> Result<String> {
     const ROUNDS: usize = 3;
     let Some(mesh) = meshlod_bench::read("horse.ply")? else { return Ok(String::new()) };
     let tree = MergeTree::record(&mesh, Target::Ratio(0.1))?;
     let mut table = Table::new([
-        "the horse to a tenth and back by hundredths, quick",
-        "vertices a triangle at first",
+        "the horse to a tenth and back in steps of a hundredth, quick repair",
+        "vertices per triangle at the start",
         "mean",
-        "most",
-        "at last",
+        "maximum",
+        "at the end",
         "triangles changed",
         "µs each",
     ]);

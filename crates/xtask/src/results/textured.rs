@@ -1,5 +1,5 @@
-//! How levels look with their textures, beside meshoptimizer's simplification that minds
-//! attributes.
+//! Image errors of textured levels, ours and those of meshoptimizer's attribute-aware
+//! simplification.
 
 use anyhow::{Context, Result};
 use meshlod::mesh::Mesh;
@@ -13,11 +13,11 @@ use crate::table::Table;
 
 const MODELS: [&str; 5] =
     ["flight-helmet/FlightHelmet.gltf", "duck.glb", "pirate.obj", "spot.obj", "fish-bream.obj"];
-/// Those that place their vertices best, and the one that moves none, as the peer does.
+/// The most accurate methods, and one that moves no vertex, as meshoptimizer does.
 const METHODS: [Method; 3] = [Method::Qem, Method::LindstromTurk, Method::QemEndpoint];
 const RATIOS: [f64; 2] = [0.25, 0.1];
 
-/// The peer at its best over the five models: how that was found is in docs/notes/image-error.md.
+/// The best settings of meshoptimizer over the five models; see docs/notes/image-error.md.
 const PEER: Settings = Settings {
     normal_weight: 0.1,
     uv_weight: 2.0,
@@ -25,25 +25,29 @@ const PEER: Settings = Settings {
     update: Update::Nothing,
 };
 
-/// FLIP and SSIM of every model, ratio and method.
+/// Tables FLIP and SSIM by model, ratio and method.
 pub fn section(_: &Project) -> Result<String> {
     Ok(format!(
-        "Mean FLIP (0 is best) and SSIM (1 is best) of twelve views of 1024 by 1024, over the pixels \
-         that show the original or the level; with the model's textures, or a checkerboard over the \
-         uvs where it brings none. Ours have the face count of meshoptimizer's simplify with \
-         attributes. Any model again: `cargo xtask textured MODEL`.\n\n{}",
+        "Mean FLIP (0 is best) and SSIM (1 is best) over twelve views of 1024 by 1024, over the pixels \
+         covered by the original or the level, with the model's textures, or a checkerboard in uv \
+         space if it has none. Our levels have the face count of meshoptimizer's simplify with \
+         attributes. To reproduce a model: `cargo xtask textured MODEL`.\n\n{}",
         table(&MODELS)?
     ))
 }
 
-/// The table of the models that have one of `names` in theirs; of all without names.
+/// Tables the models whose name contains one of `names`; all models if there are no names.
 ///
 /// # Errors
-/// A name that is in none.
+/// No model matches.
 pub fn table_of(names: &[String]) -> Result<String> {
     let named = |model: &&str| names.iter().any(|name| model.contains(name.as_str()));
     let models: Vec<&str> = MODELS.into_iter().filter(|m| names.is_empty() || named(m)).collect();
-    anyhow::ensure!(!models.is_empty(), "the models are {}", MODELS.join(", "));
+    anyhow::ensure!(
+        !models.is_empty(),
+        "no model has such a name; the models are {}",
+        MODELS.join(", ")
+    );
     table(&models)
 }
 
@@ -67,7 +71,7 @@ fn table(models: &[&str]) -> Result<String> {
     Ok(table.markdown())
 }
 
-/// The levels of all methods and peers, by name.
+/// Makes the levels of all methods and of meshoptimizer, with their names.
 fn levels(scene: &Scene, mesh: &Mesh, ratio: f64) -> Result<Vec<(&'static str, Mesh)>> {
     let faces = Target::Ratio(ratio).faces_of(mesh.faces.len());
     let peer = simplify_with_attributes(mesh, faces, &PEER);

@@ -1,4 +1,4 @@
-//! What is left of the volume in the files that are written.
+//! Change of the volume, measured on the written files.
 
 use anyhow::{Context, Result};
 use meshlod::io::Precision;
@@ -23,7 +23,7 @@ const METHODS: [Method; 6] = [
     Method::Qem,
 ];
 
-/// The relative change of the volume per mesh, ratio and method.
+/// Tables the relative change of the volume by mesh, ratio and method.
 pub fn section(_: &Project) -> Result<String> {
     let mut table = Table::new(
         ["mesh, ratio"].into_iter().chain(METHODS.map(Method::name)).collect::<Vec<_>>(),
@@ -43,14 +43,14 @@ pub fn section(_: &Project) -> Result<String> {
         }
     }
     Ok(format!(
-        "|ΔV| / V of closed meshes, of the level as read back from PLY. Any row again: `meshlod \
+        "|ΔV| / V of closed meshes, of the level as read back from PLY. To reproduce a row: `meshlod \
          simplify MESH out.ply --ratio R --method M --precision f64`, `meshlod measure MESH \
          out.ply --json`.\n\n{}",
         table.markdown()
     ))
 }
 
-/// The closed meshes that are here, and a sample.
+/// Reads the available closed meshes and adds a sample.
 fn meshes() -> Result<Vec<(String, Mesh)>> {
     let mut meshes = vec![("gyroid (sample)".to_owned(), samples::gyroid(50_000))];
     for file in MESHES {

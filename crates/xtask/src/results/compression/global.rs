@@ -1,17 +1,17 @@
-//! Cubic cells for a whole mesh: what schemes are held against.
+//! A global grid of cubic cells: the baseline for the compression schemes.
 
 use meshlod::Mesh;
 
-/// Where in its cell a vertex is put.
+/// Position of a vertex within its cell.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub enum Rounding {
-    /// At the least corner.
+    /// At the lowest corner.
     Down,
-    /// In the middle.
+    /// At the centre.
     Nearest,
 }
 
-/// The mesh with 2^bits - 1 cells along the longest side of its box.
+/// Quantizes a mesh to 2^bits - 1 cells along the longest side of its bounding box.
 pub fn global(mesh: &Mesh, bits: u32, rounding: Rounding) -> Mesh {
     let (numbers, cell) = numbers(mesh, bits, rounding);
     let least = mesh.bounds().min;
@@ -19,7 +19,7 @@ pub fn global(mesh: &Mesh, bits: u32, rounding: Rounding) -> Mesh {
     Mesh::new(numbers.into_iter().map(place).collect(), mesh.faces.clone())
 }
 
-/// The numbers of the cells, and their side.
+/// Returns the cell of each vertex, and the side of a cell.
 pub fn numbers(mesh: &Mesh, bits: u32, rounding: Rounding) -> (Vec<[u32; 3]>, f64) {
     let bounds = mesh.bounds();
     let longest = (0..3).map(|k| bounds.max[k] - bounds.min[k]).fold(0.0, f64::max);
@@ -31,10 +31,10 @@ pub fn numbers(mesh: &Mesh, bits: u32, rounding: Rounding) -> (Vec<[u32; 3]>, f6
     (mesh.positions.iter().map(number).collect(), cell)
 }
 
-/// So much of a face's area is none.
+/// Smallest part of a face's area that counts as area.
 const NO_AREA: f64 = 1e-9;
 
-/// How many faces look the other way than they did, or have lost their area; `moved` has the same faces.
+/// Counts faces that are flipped or degenerate in `moved`, which has the faces of `mesh`.
 pub fn turned_over(mesh: &Mesh, moved: &Mesh) -> usize {
     let normal = |mesh: &Mesh, face: usize| {
         let [a, b, c] = mesh.triangle(mesh.faces[face]);

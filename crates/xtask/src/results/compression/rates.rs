@@ -1,26 +1,27 @@
-//! Bytes against distortion, drawn.
+//! Rate-distortion plots.
 
 use anyhow::Result;
 use meshlod::Mesh;
 use meshlod::codec::{AttributeBounds, CompressionTarget, Reconstruction, Scheme, compress};
 use meshlod_bench::peer::meshopt_codec;
 
-use super::apart;
+use super::distance_of;
 use super::global::{Rounding, global, numbers};
 use crate::results::plot::{Line, Plot, page};
 
 const MESHES: [&str; 2] = ["bunny.ply", "horse.ply"];
 const BITS: [u32; 5] = [8, 10, 11, 12, 14];
 
-/// Bytes a vertex for positions alone, and bytes a face for all, by how many bits of the whole mesh are as good.
+/// Plots bytes per vertex for positions and bytes per face in total, against the equivalent bits of
+/// a global grid.
 pub fn drawing() -> Result<Option<String>> {
     let mut plots = Vec::new();
     for file in MESHES {
         let Some(mesh) = meshlod_bench::read(file)? else { return Ok(None) };
         let [positions, all] = lines(&mesh)?;
         let name = file.trim_end_matches(".ply");
-        plots.push(plot(format!("{name}: positions, bytes a vertex"), positions));
-        plots.push(plot(format!("{name}: all, bytes a face"), all));
+        plots.push(plot(format!("{name}: positions, bytes per vertex"), positions));
+        plots.push(plot(format!("{name}: total, bytes per face"), all));
     }
     Ok(Some(page(&plots)))
 }
@@ -30,12 +31,12 @@ fn plot(caption: String, lines: Vec<Line>) -> Plot {
 }
 
 fn lines(mesh: &Mesh) -> Result<[Vec<Line>; 2]> {
-    let reference = apart(mesh, &global(mesh, 11, Rounding::Nearest))?.mean();
+    let reference = distance_of(mesh, &global(mesh, 11, Rounding::Nearest))?.mean();
     let as_good = |mean: f64| 11.0 + (reference / mean).log2();
     let (vertices, faces) = (mesh.positions.len() as f64, mesh.faces.len() as f64);
     let (mut positions, mut all) = (Vec::new(), Vec::new());
     let schemes = [
-        ("parts, as the paper", "#999999", Scheme::Parts(Reconstruction::Truncated)),
+        ("parts, as in the paper", "#999999", Scheme::Parts(Reconstruction::Truncated)),
         ("parts", "#d9822b", Scheme::Parts(Reconstruction::Centred)),
         ("blocks", "#c53030", Scheme::Blocks),
         ("lattice", "#2b6cb0", Scheme::Lattice),
@@ -45,7 +46,7 @@ fn lines(mesh: &Mesh) -> Result<[Vec<Line>; 2]> {
         for bits in BITS {
             let done =
                 compress(mesh, scheme, CompressionTarget::Bits(bits), &AttributeBounds::default())?;
-            let at = as_good(apart(mesh, &done.compressed.decode()?)?.mean());
+            let at = as_good(distance_of(mesh, &done.compressed.decode()?)?.mean());
             let sizes = done.compressed.sizes();
             points[0].push([at, sizes.positions as f64 / vertices]);
             points[1].push([at, sizes.total as f64 / faces]);
@@ -55,8 +56,7 @@ fn lines(mesh: &Mesh) -> Result<[Vec<Line>; 2]> {
         all.push(Line::new(name, color, second));
     }
     let packed = BITS.map(|bits| [f64::from(bits), 3.0 * f64::from(bits) / 8.0]);
-    positions
-        .push(Line::new("as many bits for the whole mesh", "#444444", packed.to_vec()).dashed());
+    positions.push(Line::new("global grid of as many bits", "#444444", packed.to_vec()).dashed());
     let peer = BITS.map(|bits| {
         let (cells, _) = numbers(mesh, bits, Rounding::Nearest);
         let cells: Vec<_> = cells.iter().map(|cell| cell.map(|x| x as u16)).collect();

@@ -1,4 +1,4 @@
-//! Files to be sent, beside Draco's.
+//! Transport files, ours and Draco's.
 
 use anyhow::{Context, Result};
 use meshlod::codec::{Transport, TransportFile, TransportOptions};
@@ -6,7 +6,8 @@ use meshlod_bench::{least_seconds, one_core};
 
 use crate::table::Table;
 
-/// Bytes a triangle of Draco, 11 bits, compression level 7, the whole mesh in one: measured with its own program.
+/// Bytes per triangle of Draco with 11 bits and compression level 7, the whole mesh in one piece,
+/// measured with its own program.
 const DRACO: [(&str, f64); 10] = [
     ("squirrel-20k.obj", 1.210),
     ("fandisk-32k.ply", 0.985),
@@ -21,16 +22,16 @@ const DRACO: [(&str, f64); 10] = [
 ];
 const ROUNDS: usize = 5;
 
-/// Sizes by part, and how fast, on one core.
+/// Tables sizes by section, and speed on one core.
 pub fn table() -> Result<String> {
     let mut table = Table::new([
         "`.mlz`, 11 bits",
         "blocks",
-        "positions, bytes a triangle",
+        "positions, bytes per triangle",
         "faces",
         "headers",
-        "all",
-        "Draco, no blocks",
+        "total",
+        "Draco, without blocks",
         "ratio",
         "encoded, M triangles/s",
         "decoded, MB/s of `f32` and `u32`",
@@ -43,7 +44,7 @@ pub fn table() -> Result<String> {
         let mut done = None;
         let encode =
             one_core(|| least_seconds(ROUNDS, || done = Some(Transport::encode(&mesh, &options))));
-        let done = done.context("it has run")??;
+        let done = done.context("the work has run")??;
         let file = TransportFile::open(&done.bytes)?;
         let (mut positions, mut indices) = (Vec::new(), Vec::new());
         let decode = one_core(|| {
@@ -64,5 +65,5 @@ pub fn table() -> Result<String> {
         table.row(row);
     }
     let mean = all.iter().sum::<f64>() / all.len().max(1) as f64;
-    Ok(format!("{}The mean of all is {mean:.3} bytes a triangle.\n\n", table.markdown()))
+    Ok(format!("{}The mean of the totals is {mean:.3} bytes per triangle.\n\n", table.markdown()))
 }

@@ -1,16 +1,16 @@
-//! Edges that a level has open and its input had not.
+//! Open edges of a level that its input does not have.
 
 use meshlod::mesh::{Mesh, VertexId};
 use meshlod::simplify::History;
 
-/// Where a vertex is, to the bit; 0 and -0 are one.
+/// Bit pattern of a position; 0 and -0 are equal.
 type Place = [u64; 3];
 
-/// Two places that a side of a face runs between, in its direction, and its ends.
+/// A side of a face: the two positions it runs between, and its vertices.
 type Run = ([Place; 2], [VertexId; 2]);
 
-/// The sides that no side runs against between the same two places, whatever components the two are of; one of
-/// those that run alike.
+/// Lists the sides without an opposite side between the same two positions, whatever component it
+/// is of; duplicates once.
 pub fn open_sides(mesh: &Mesh) -> Vec<[VertexId; 2]> {
     let ends = mesh.faces.iter().flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]);
     let place = |v: VertexId| place(mesh.positions[v.index()]);
@@ -23,7 +23,7 @@ pub fn open_sides(mesh: &Mesh) -> Vec<[VertexId; 2]> {
     open.map(|&(_, ends)| ends).collect()
 }
 
-/// How many open sides of a level do not run where some of `known` do.
+/// Counts the open sides of a level that are not among `known`.
 pub fn newly_open(level: &Mesh, known: impl Iterator<Item = [[f64; 3]; 2]>) -> usize {
     let mut known: Vec<[Place; 2]> = known.map(|ends| ends.map(place)).collect();
     known.sort_unstable();
@@ -32,14 +32,14 @@ pub fn newly_open(level: &Mesh, known: impl Iterator<Item = [[f64; 3]; 2]>) -> u
     open.iter().filter(|side| known.binary_search(&places(side)).is_err()).count()
 }
 
-/// Where each vertex of a mesh is after these contractions, or the one that stands for it.
+/// Returns the position of each vertex's representative after the recorded contractions.
 pub fn positions_after(mesh: &Mesh, history: &History) -> Vec<[f64; 3]> {
     let mut positions = mesh.positions.clone();
     for contraction in history.contractions() {
         let kept = contraction.contracted[usize::from(contraction.kept)];
         positions[kept.index()] = contraction.to;
     }
-    // Last to first: whoever stayed and went later already is where it went.
+    // From last to first, so that the position of the kept vertex is known.
     for contraction in history.contractions().iter().rev() {
         let kept = contraction.contracted[usize::from(contraction.kept)];
         for v in contraction.contracted.iter() {
@@ -49,7 +49,7 @@ pub fn positions_after(mesh: &Mesh, history: &History) -> Vec<[f64; 3]> {
     positions
 }
 
-/// Those of some sides of a mesh that lie on one of `known`, but for rounding: cutting makes several of one.
+/// Keeps the sides that lie on one of `known` up to rounding; cutting splits a side into several.
 pub fn lying_on(
     sides: Vec<[VertexId; 2]>,
     mesh: &Mesh,
@@ -63,10 +63,10 @@ pub fn lying_on(
     sides.into_iter().filter(lies_on).collect()
 }
 
-/// What cutting may be off, as a part of the diagonal.
+/// Tolerance for cut positions, as a part of the diagonal.
 const ROUNDING: f64 = 1e-9;
 
-/// Of a point and a segment.
+/// Squared distance of a point and a segment.
 fn distance_squared(p: [f64; 3], [a, b]: &[[f64; 3]; 2]) -> f64 {
     let less = |p: &[f64; 3], q: &[f64; 3]| [0, 1, 2].map(|axis| p[axis] - q[axis]);
     let dot = |p: [f64; 3], q: [f64; 3]| p[0] * q[0] + p[1] * q[1] + p[2] * q[2];
@@ -87,14 +87,14 @@ mod tests {
 
     use super::*;
 
-    /// A flat grid of squares whose left and right half are two components that share places.
+    /// Builds a flat grid whose left and right half are two components with coincident vertices.
     fn halves(cells: usize) -> Mesh {
         let mut mesh = Mesh::default();
         for half in 0..2 {
             let first = mesh.positions.len();
             let at = |i: usize, j: usize| VertexId::new(first + i * (cells + 1) + j);
             for (i, j) in (0..=cells).flat_map(|i| (0..=cells).map(move |j| (i, j))) {
-                // Waves, so that no two edges cost the same.
+                // A wave, so that no two edges cost the same.
                 let [x, y] = [(i + half * cells) as f64, j as f64];
                 mesh.positions.push([x, y, (x * 0.7).sin() + (y * 0.9).cos()]);
             }

@@ -1,4 +1,4 @@
-//! Ways to coarsen a mesh of many components, from fine to coarse.
+//! Ways to simplify a mesh of many components.
 
 use anyhow::Result;
 use meshlod::check::{LockOptions, fuse, locks};
@@ -8,40 +8,40 @@ use meshlod_bench::peer::simplify_with_border_lock;
 
 use super::open::{lying_on, newly_open, open_sides, positions_after};
 
-/// How a mesh is coarsened.
+/// A way to simplify a mesh.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Way {
-    /// By `qem`.
+    /// Plain `qem`.
     Plain(Values),
-    /// By meshoptimizer's simplify with its border lock, which sees positions only.
+    /// meshoptimizer's simplify with its border lock, which sees positions only.
     Peer,
-    /// By `qem` with contacts locked.
+    /// `qem` with contacts locked.
     Locked(Values),
-    /// By `qem` with contacts locked, after components that cross were made one.
+    /// `qem` with contacts locked, after fusing components that cross.
     Fused(Values),
 }
 
-/// What hangs on the faces.
+/// Attributes and materials, kept or dropped.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Values {
-    /// Attributes and materials as they are.
+    /// Attributes and materials are kept.
     Kept,
-    /// None.
+    /// Attributes and materials are dropped.
     Dropped,
 }
 
-/// A level by some way.
+/// A level made in some way.
 pub struct Level {
-    /// Its objects are the components of the input.
+    /// Mesh of the level, with the components of the input as objects.
     pub mesh: Mesh,
-    /// Whether it has no more faces than asked for.
+    /// True if the level has no more faces than asked for.
     pub reached: bool,
-    /// Its open edges that were not open.
+    /// Number of open edges that were not open in the input.
     pub newly_open: usize,
 }
 
 impl Way {
-    /// All, in the order of the table.
+    /// All ways, in the order of the table.
     pub const ALL: [Self; 7] = [
         Self::Plain(Values::Kept),
         Self::Plain(Values::Dropped),
@@ -52,7 +52,7 @@ impl Way {
         Self::Fused(Values::Dropped),
     ];
 
-    /// What ours has hanging on its faces; the peer sees nothing.
+    /// Returns the values our way keeps; meshoptimizer sees none.
     pub fn values(self) -> Values {
         match self {
             Self::Plain(values) | Self::Locked(values) | Self::Fused(values) => values,
@@ -60,7 +60,7 @@ impl Way {
         }
     }
 
-    /// As the table calls it.
+    /// Returns the name in the table.
     pub fn name(self) -> String {
         let name = match self {
             Self::Plain(_) => "`qem`",
@@ -72,7 +72,8 @@ impl Way {
         format!("{name}{bare}")
     }
 
-    /// The levels of so many faces, the finest first, of a mesh whose objects are its components.
+    /// Simplifies a mesh, whose objects are its components, to each number of faces in turn, the
+    /// largest first.
     pub fn levels(self, mesh: &Mesh, targets: &[usize]) -> Result<Vec<Level>> {
         match self {
             Self::Plain(values) => ours(mesh, values, Locks::default(), open_sides(mesh), targets),
@@ -88,7 +89,7 @@ impl Way {
     }
 }
 
-/// The same mesh with its components as its objects.
+/// Makes the components of a mesh its objects.
 pub fn by_component(mut mesh: Mesh) -> Mesh {
     let (of_face, count) = face_components(&mesh.faces, mesh.positions.len());
     let names = (0..count).map(|component| component.to_string()).collect();
@@ -100,7 +101,7 @@ fn contacts(mesh: &Mesh) -> Locks {
     locks(mesh, &LockOptions { contacts: true, boundary: Lock::Free }).locks
 }
 
-/// Levels of one run; the sides of `open` may stay open.
+/// Makes the levels in one run; the sides in `open` may stay open.
 fn ours(
     mesh: &Mesh,
     values: Values,
@@ -128,7 +129,7 @@ fn ours(
 
 fn theirs(mesh: &Mesh, faces: usize) -> Level {
     let level = simplify_with_border_lock(mesh, faces);
-    // What is open is locked: it stays where it was.
+    // Open borders are locked, so their vertices do not move.
     let newly_open = newly_open(&level, ends(&open_sides(mesh), &mesh.positions));
     Level { reached: level.faces.len() <= faces, mesh: level, newly_open }
 }

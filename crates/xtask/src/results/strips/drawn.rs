@@ -1,9 +1,9 @@
-//! Figure 5 and table 2 of [KY05], with ours beside them.
+//! Figure 5 and table 2 of [KY05], with our figures beside them.
 
-use super::sent::{Level, Levels};
+use super::sent::{Levels, SentLevel};
 use crate::results::plot::{Line, Plot, page};
 
-/// Table 2 of the paper, from 10 %: what DTFF and STSS save of eight's independent triangles.
+/// The paper's table 2, from 10 %: savings of DTFF and STSS over independent triangles, for eight.
 const TABLE_2: [[f64; 2]; 10] = [
     [18.4, -72.4],
     [32.0, -11.1],
@@ -17,10 +17,10 @@ const TABLE_2: [[f64; 2]; 10] = [
     [64.2, 64.2],
 ];
 
-/// Table 1 of the paper: triangles + 2 · strips + swaps, in the order of the models.
+/// The paper's table 1: triangles + 2 · strips + swaps, in the order of the models.
 const TABLE_1: [f64; 4] = [570.0, 1648.0, 10254.0, 7372.0];
 
-/// Vertices sent by level, a plot a model.
+/// Plots vertices sent by level, one plot per model.
 pub fn figure_5(all: &[Levels]) -> String {
     let plots = all.iter().zip(TABLE_1).map(|(levels, whole)| {
         let sent = |way: usize| points(levels, |level| level.sent[way] as f64);
@@ -36,7 +36,7 @@ pub fn figure_5(all: &[Levels]) -> String {
             Line::new("the paper's strips", "#333333", vec![[100.0, whole]]),
         ];
         if levels.model() == "eight" {
-            // Of the others the paper prints no numbers.
+            // The paper prints no numbers for the others.
             for (column, name, color) in
                 [(1, "STSS, paper", "#c0392b"), (0, "DTFF, paper", "#2471a3")]
             {
@@ -53,7 +53,7 @@ pub fn figure_5(all: &[Levels]) -> String {
     page(&plots.collect::<Vec<_>>())
 }
 
-/// What is saved of independent triangles, and how many vertices a triangle takes.
+/// Plots the savings over independent triangles, and the vertices per triangle.
 pub fn table_2(eight: &Levels) -> String {
     let ours = |way: usize| points(eight, |level| level.over_independent(way));
     let paper = |column: usize| {
@@ -74,6 +74,6 @@ fn plot(caption: String, lines: Vec<Line>, low_key: bool) -> Plot {
     Plot { caption, across: [0.0, 100.0], unit: " %", up_from: None, low_key, lines }
 }
 
-fn points(levels: &Levels, of: impl Fn(&Level) -> f64) -> Vec<[f64; 2]> {
+fn points(levels: &Levels, of: impl Fn(&SentLevel) -> f64) -> Vec<[f64; 2]> {
     levels.levels().iter().map(|level| [level.percent as f64, of(level)]).collect()
 }

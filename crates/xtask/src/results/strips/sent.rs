@@ -1,4 +1,4 @@
-//! What is sent at each level.
+//! Vertices sent at each level.
 
 use meshlod::mesh::VertexId;
 use meshlod::strip::{
@@ -7,7 +7,7 @@ use meshlod::strip::{
 };
 use meshlod_bench::peer::meshopt_strips;
 
-/// The strips of the mesh that all levels come from.
+/// Strips of the full mesh that all levels are derived from.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub enum Base {
     Meshopt,
@@ -35,11 +35,11 @@ impl Base {
     }
 }
 
-/// A model with its contractions.
+/// A model and its contractions.
 pub struct Model {
     name: &'static str,
     tree: MergeTree,
-    /// Vertices that strips made anew send, from a tenth of its faces to all.
+    /// Vertices sent by strips rebuilt at each level, from a tenth of the faces to all.
     anew: [usize; 10],
 }
 
@@ -53,23 +53,25 @@ impl Model {
     }
 }
 
-/// What is sent of a model, from a tenth of its faces to all.
+/// Vertices sent for a model, from a tenth of its faces to all.
 pub struct Levels {
     model: &'static str,
-    levels: Vec<Level>,
+    levels: Vec<SentLevel>,
 }
 
-/// Vertices sent at a level.
-pub struct Level {
+/// Vertices sent at one level.
+pub struct SentLevel {
     pub percent: usize,
     pub triangles: usize,
-    /// By STSS, DTFF, quick repair, repair, and strips anew.
+    /// Vertices sent with STSS, DTFF, quick repair, thorough repair, and rebuilt strips.
     pub sent: [usize; 5],
 }
 
 impl Levels {
+    /// Measures all levels of a model.
+    ///
     /// # Panics
-    /// Where something is drawn that the level has not, or has and is not drawn.
+    /// If strips do not draw exactly the triangles of a level.
     pub fn of(model: &Model, base: Base) -> Self {
         let mut skip = SkipStrip::new(model.tree.clone(), base.strips(model.tree.faces()));
         let levels =
@@ -81,18 +83,19 @@ impl Levels {
         self.model
     }
 
-    pub fn levels(&self) -> &[Level] {
+    pub fn levels(&self) -> &[SentLevel] {
         &self.levels
     }
 
-    /// Vertices a triangle of the mesh itself.
+    /// Returns vertices per triangle of the full mesh.
     pub fn of_mesh(&self) -> f64 {
         self.levels.last().map_or(0.0, |level| level.each(0))
     }
 
-    /// What DTFF, quick repair, repair and strips anew save over STSS, in %, on average.
+    /// Returns the mean savings over STSS of DTFF, quick repair, thorough repair and rebuilt
+    /// strips, in percent.
     pub fn saved(&self) -> [f64; 4] {
-        let saved = |way: usize, level: &Level| {
+        let saved = |way: usize, level: &SentLevel| {
             100.0 * (1.0 - level.sent[way] as f64 / level.sent[0] as f64)
         };
         [1, 2, 3, 4].map(|way| {
@@ -101,12 +104,13 @@ impl Levels {
         })
     }
 
-    /// The most vertices a triangle of any level by STSS, DTFF, quick repair and repair.
+    /// Returns the largest number of vertices per triangle over all levels, for STSS, DTFF, quick
+    /// and thorough repair.
     pub fn most(&self) -> [f64; 4] {
         [0, 1, 2, 3].map(|way| self.levels.iter().map(|level| level.each(way)).fold(0.0, f64::max))
     }
 
-    /// For a table.
+    /// Formats the levels as table rows.
     pub fn rows(&self) -> impl Iterator<Item = Vec<String>> + '_ {
         self.levels.iter().map(|level| {
             let mut row = vec![format!("{} %", level.percent), level.triangles.to_string()];
@@ -117,19 +121,19 @@ impl Levels {
     }
 }
 
-impl Level {
-    /// Vertices a triangle.
+impl SentLevel {
+    /// Returns vertices per triangle.
     pub fn each(&self, way: usize) -> f64 {
         self.sent[way] as f64 / self.triangles as f64
     }
 
-    /// What a way saves over triangles sent one by one, in %.
+    /// Returns the savings over independent triangles, in percent.
     pub fn over_independent(&self, way: usize) -> f64 {
         100.0 * (1.0 - self.each(way) / 3.0)
     }
 }
 
-fn level(skip: &mut SkipStrip, percent: usize, anew: usize) -> Level {
+fn level(skip: &mut SkipStrip, percent: usize, anew: usize) -> SentLevel {
     skip.set_level(contractions_to(skip.tree(), percent));
     let faces = skip.tree().level(skip.level());
     let ways = [
@@ -142,14 +146,14 @@ fn level(skip: &mut SkipStrip, percent: usize, anew: usize) -> Level {
         assert_eq!(difference(&strips, &faces), Difference::default());
         strips.vertices().len()
     });
-    Level { percent, triangles: faces.len(), sent: [stss, dtff, quick, repair, anew] }
+    SentLevel { percent, triangles: faces.len(), sent: [stss, dtff, quick, repair, anew] }
 }
 
 fn contractions_to(tree: &MergeTree, percent: usize) -> usize {
     tree.contractions_to(tree.faces().len() * percent / 100)
 }
 
-/// Small meshes are annealed several times, which is more than this says.
+/// Small meshes are annealed several times, so they get more moves than this.
 fn best(faces: &[[VertexId; 3]]) -> Strips {
     of_quality(faces, StripQuality::Best { moves_per_face: 100.0 })
 }

@@ -1,4 +1,4 @@
-//! Strips of whole meshes, beside meshoptimizer's.
+//! Strips of whole meshes, ours and meshoptimizer's.
 
 use anyhow::Result;
 use meshlod::mesh::VertexId;
@@ -14,17 +14,17 @@ use crate::table::Table;
 
 const MESHES: [&str; 5] =
     ["bunny.ply", "horse-97k.ply", "fandisk.off", "fandisk-32k.ply", "igea.ply"];
-/// The longest strips that a cache is sent, in faces.
+/// Largest strip lengths for a vertex cache, in faces.
 const LONGEST: [usize; 8] = [13, 16, 20, 26, 34, 48, 80, 160];
-/// As the command line tries, quickly and thoroughly.
+/// Moves per face of the command line's quick and thorough settings.
 const MOVES: [f64; 2] = [60.0, 1500.0];
 const FOR_CACHE: f64 = 200.0;
 
-/// Vertices and indices a triangle, misses and seconds, by setting.
+/// Tables vertices and indices per triangle, cache misses and seconds, by setting.
 pub fn table() -> Result<String> {
     let mut table = Table::new([
         "whole meshes",
-        "vertices a triangle",
+        "vertices per triangle",
         "indices with restarts",
         "strips",
         "swaps",
@@ -52,7 +52,7 @@ pub fn table() -> Result<String> {
     Ok(table.markdown())
 }
 
-/// What indices cost in misses, by the length of strips, on the bunny.
+/// Plots indices against cache misses for several strip lengths on the bunny.
 pub fn trade_off() -> Result<Option<String>> {
     let Some(mesh) = meshlod_bench::read("bunny.ply")? else { return Ok(None) };
     let faces = &mesh.faces;
@@ -71,7 +71,7 @@ pub fn trade_off() -> Result<Option<String>> {
         Line::new("fast", "#2471a3", vec![point(&of(faces, StripQuality::Fast, None))]),
         Line::new("meshoptimizer", "#c0392b", vec![point(&meshopt_strips(faces))]),
     ];
-    let caption = "bunny: indices with restarts a triangle, by ACMR-16".into();
+    let caption = "bunny: indices with restarts per triangle, by ACMR-16".into();
     let plot =
         Plot { across: [0.6, 1.1], unit: "", up_from: Some(1.0), low_key: false, caption, lines };
     Ok(Some(page(&[plot])))
