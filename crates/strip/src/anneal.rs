@@ -2,8 +2,9 @@
 
 use rayon::prelude::*;
 
+use crate::dual_node::{DualEdge, DualNode};
 use crate::energy::{Energy, Prices, UNIT};
-use crate::path_cover::{DualEdge, DualNode, PathCover};
+use crate::path_cover::PathCover;
 use crate::random::Random;
 use crate::region::Region;
 

@@ -2,7 +2,7 @@
 
 use meshlod_mesh::VertexId;
 
-use crate::path_cover::{DualEdge, DualNode};
+use crate::dual_node::{DualEdge, DualNode};
 use crate::verify::has_three_corners;
 
 /// Builds the dual graph without links. Two sides are opposite if they run along the same edge in

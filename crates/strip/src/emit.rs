@@ -3,7 +3,8 @@
 use meshlod_mesh::VertexId;
 
 use crate::dual::{ends, next, previous};
-use crate::path_cover::{DualEdge, PathCover};
+use crate::dual_node::DualEdge;
+use crate::path_cover::PathCover;
 use crate::strips::Strips;
 use crate::verify::has_three_corners;
 

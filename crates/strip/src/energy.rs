@@ -1,7 +1,7 @@
 //! The cost of a path cover, as a sum of local terms, so that a change of a link is priced from its
 //! neighbourhood.
 
-use crate::path_cover::{DualEdge, Links};
+use crate::dual_node::{DualEdge, Links};
 
 /// Prices of strips beyond one vertex per triangle, each clamped to a thousand vertices.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -2,8 +2,9 @@
 
 use meshlod_mesh::VertexId;
 
+use crate::dual_node::DualEdge;
 use crate::emit::Turn;
-use crate::path_cover::{DualEdge, PathCover};
+use crate::path_cover::PathCover;
 use crate::strips::Strips;
 use crate::verify::has_three_corners;
 

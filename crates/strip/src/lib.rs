@@ -13,7 +13,8 @@
 //! use meshlod_strip::{StripOptions, StripQuality, StripStatistics, difference, stripify};
 //!
 //! let faces = samples::sphere(1000).faces;
-//! let fast = stripify(&faces, &StripOptions { quality: StripQuality::Fast, ..StripOptions::default() });
+//! let options = StripOptions { quality: StripQuality::Fast, ..StripOptions::default() };
+//! let fast = stripify(&faces, &options);
 //! let best = stripify(&faces, &StripOptions::default());
 //! assert_eq!(difference(&best, &faces), Default::default());
 //! assert!(best.vertices().len() <= fast.vertices().len());
@@ -30,6 +31,7 @@
 mod anneal;
 mod cache_runs;
 mod dual;
+mod dual_node;
 mod emit;
 mod energy;
 mod filter;

@@ -1,6 +1,7 @@
 //! Breadth-first order of faces, which brings neighbours close to each other in memory.
 
-use crate::path_cover::{DualEdge, DualNode, PathCover};
+use crate::dual_node::{DualEdge, DualNode};
+use crate::path_cover::PathCover;
 
 /// Faces in breadth-first order of the dual graph.
 pub(crate) struct Order {

@@ -1,7 +1,7 @@
 //! Part of a path cover whose links are changed step by step, with the cost of each step.
 
+use crate::dual_node::{DualEdge, DualNode, Links};
 use crate::energy::{Energy, swaps};
-use crate::path_cover::{DualEdge, DualNode, Links};
 
 /// A run of consecutive nodes of a cover. Nodes with a neighbour outside must be frozen: then the
 /// cost of a change depends only on nodes inside, and adjacent regions can be changed in parallel.

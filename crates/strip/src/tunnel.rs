@@ -7,7 +7,7 @@
 //! all. The tunnel is kept as soon as its cost is within the limit; otherwise every change is
 //! undone.
 
-use crate::path_cover::{DualEdge, Links};
+use crate::dual_node::{DualEdge, Links};
 use crate::random::Random;
 use crate::region::Region;
 

@@ -6,7 +6,8 @@ use rustc_hash::FxHashMap;
 use super::StripEffort;
 use super::local_search::LocalSearch;
 use crate::dual::ends;
-use crate::path_cover::{DualEdge, DualNode, Links, PathCover};
+use crate::dual_node::{DualEdge, DualNode, Links};
+use crate::path_cover::PathCover;
 use crate::strips::Strips;
 use crate::verify::{has_three_corners, lowest_first};
 
