@@ -1,8 +1,21 @@
-//! The loop: take the cheapest vertex, contract its cheapest edge, put what became of it back.
+//! The loop: contracts edges, the cheapest first.
 //!
-//! A vertex has one entry in the queue, by the cheapest of its edges when it was last looked at. What
-//! contractions around it change is seen when the entry is among the next: the edge is costed again, by
-//! itself and then by the contraction, and goes through if it costs at most [`Metric::SLACK`] buckets more.
+//! 1. Take a batch of up to sixteen vertices from the cheapest bucket of the queue
+//!    ([`CollapseLoop::take_batch`]).
+//! 2. Recost those whose edge is stale; requeue those that have become too expensive
+//!    ([`CollapseLoop::recost_batch`]).
+//! 3. Try the cheapest edge of the next vertex ([`CollapseLoop::contract`]): gather the one-ring of
+//!    the edge, compute its cost and the optimal place ([`CollapseLoop::price`]), and put the new
+//!    vertex there.
+//! 4. Check for flipped faces, for the deviation from the old surface, for faces flipped in uv, and
+//!    against the error bound. A contraction that deviates too far or flips a uv is deferred, not
+//!    refused.
+//! 5. Commit: update the rings, quadrics and attributes around ([`CollapseLoop::apply`]).
+//! 6. Requeue the vertex that stays, a few buckets behind the front.
+//!
+//! A vertex has one queue entry, for its cheapest edge when it was last costed. Contractions nearby
+//! only mark it as stale. It is recosted when its entry comes up, first by that one edge, and goes
+//! ahead if the cost has risen by at most [`Metric::SLACK`] buckets.
 
 use glam::DVec3;
 
@@ -25,56 +38,61 @@ use crate::kernel::volume::VolumeTally;
 use crate::refusal::{Refusal, Refusals};
 use crate::surface::ties::Ties;
 
-/// How many buckets behind the front a new vertex is put, not looked at: many are gone before they come
-/// up. Mean error of horse-97k at 10 % and 1 %, and millions of instructions of both: looked at at once
-/// .00723, .0572, 849; 4 .00721, .0580; 6 .00720, .0578, 789; 8 .00723, .0586, 766; 10 .00727, .0583.
+/// Number of buckets behind the front at which a new vertex is queued without being costed: many
+/// are gone before their entry comes up.
+///
+/// Mean error of horse-97k at 10 % and 1 %, and millions of instructions for both: costed at once
+/// .00723, .0572, 849; 4 .00721, .0580; 6 .00720, .0578, 789; 8 .00723, .0586, 766; 10 .00727,
+/// .0583.
 const NEW_VERTEX_DELAY: u16 = 6;
 
-/// By how many buckets a contraction waits that turns a face over in its texture. Those turned in the
-/// flight helmet at 25 and 10 %, FLIP of pirate at 5 %, which has few faces left to go: 0 95, 111, .314;
-/// 4 44, 51, .324; 8 21, 41, .348; 16 .348; refused for good 9, 20, .393. Else FLIP is the same.
+/// Number of buckets by which a contraction that flips a face in uv is deferred.
+///
+/// Flipped faces in the flight helmet at 25 % and 10 %, and FLIP of pirate at 5 %, which has few
+/// faces left to remove: 0 95, 111, .314; 4 44, 51, .324; 8 21, 41, .348; 16 .348; refused for good
+/// 9, 20, .393. FLIP is the same elsewhere.
 pub(crate) const UV_FLIP_DELAY: u16 = 8;
 
-/// A part of a surface at work, with what it looks like.
+/// A part of the surface being simplified, with its queue and its attributes.
 pub(crate) struct CollapseLoop<'v, A> {
     pub(crate) vertices: Vertices<'v>,
     pub(crate) model: &'v mut A,
     pub(crate) live_faces: usize,
-    /// The square of the greatest estimate so far, in the frame's units.
+    /// Square of the largest error estimate so far, in the frame's units.
     pub(crate) error: f64,
-    /// What holds the surface within a bound, where there is one.
+    /// Error bound that every contraction must respect, if one is set.
     pub(crate) within: Option<BoundPart<'v>>,
     pub(crate) refusals: Refusals,
     pub(crate) volume: VolumeTally,
-    /// What was done, where that is wanted.
+    /// Contractions done so far, if an observer wants them.
     pub(crate) log: Option<Vec<Logged>>,
-    /// What vertices are tied to, where any are.
+    /// Ties between vertices, if there are any.
     pub(crate) ties: Option<&'v mut Ties>,
-    /// The components that may vanish, where any may.
+    /// Components that may vanish as a whole, if any may.
     pub(crate) components: Option<&'v mut Components>,
     pub(crate) queue: &'v mut BucketQueue,
     pub(crate) edge_ring: &'v mut EdgeRing,
     pub(crate) deferral: &'v mut Deferral,
 }
 
-/// Why the edge at the front was not contracted.
+/// Reason why the edge at the front was not contracted.
 pub(crate) enum Rejection {
-    /// It costs so much by now.
+    /// Its cost now lies in this later bucket.
     CostRose(u16),
-    /// It takes the surface too far for now, or turns a texture, but may go in this bucket.
+    /// It deviates too far for now, or flips a face in uv; it may be tried again in this bucket.
     Deferred(u16),
-    /// It may not be, at a cost in this bucket.
+    /// It must not be contracted. The bucket is that of its cost.
     Refused(Refusal, u16),
 }
 
-/// An edge that may be contracted for what it costs.
+/// An edge whose cost is within the slack of the front.
 struct PricedEdge {
     ends: Ends,
-    /// By its geometry alone.
+    /// Quadric of the geometry alone.
     quadric: EdgeQuadricF64,
-    /// Where its vertex goes, as seen from the middle.
+    /// Place of the new vertex relative to the middle of the edge.
     from_middle: DVec3,
-    /// Of the cost.
+    /// Bucket of the cost.
     bucket: u16,
 }
 
@@ -103,13 +121,13 @@ impl<'v, A: AttributeModel> CollapseLoop<'v, A> {
         }
     }
 
-    /// AttributeModel at all vertices for the first time, but for those that wait.
+    /// Costs and queues all vertices for the first time, except those that wait for another part.
     pub(crate) fn cost_all_vertices(&mut self) {
         widest(CostAll(self));
     }
 
-    /// Contracts until no more than `faces` are left, or what comes next is in a bucket behind `last`,
-    /// or nothing more may be contracted.
+    /// Contracts until at most `faces` are left, or the next edge lies in a bucket behind `last`,
+    /// or no further contraction is possible.
     pub(crate) fn run(&mut self, faces: usize, last: u16) {
         widest(ContractAll { collapse_loop: self, faces, last });
     }
@@ -132,7 +150,7 @@ impl<'v, A: AttributeModel> CollapseLoop<'v, A> {
         }
     }
 
-    /// Takes the next vertex out of the queue; `None` if its entry does not stand for it any more.
+    /// Takes the next vertex from the queue; `None` if its entry is out of date.
     #[inline(always)]
     fn pop(&mut self) -> Option<u32> {
         let (_, bucket) = self.queue.next();
@@ -145,7 +163,7 @@ impl<'v, A: AttributeModel> CollapseLoop<'v, A> {
         is_due.then_some(v)
     }
 
-    /// Whether anything is left in a bucket not behind `last`; sees to it that what comes next is ready.
+    /// Makes the next batch ready. Returns whether its bucket is at most `last`.
     #[inline(always)]
     fn take_batch(&mut self, last: u16) -> bool {
         let (next, front) = self.queue.next();
@@ -160,8 +178,8 @@ impl<'v, A: AttributeModel> CollapseLoop<'v, A> {
         true
     }
 
-    /// AttributeModel at those of the next that have changed: first only at the edges that they would go by, of
-    /// all of them at once. Who costs too much by now is queued again.
+    /// Recosts the stale vertices of the batch: first only their cheapest known edges, all of them
+    /// at once. A vertex whose cost has risen beyond the slack is requeued.
     #[inline(always)]
     fn recost_batch(&mut self) {
         let (taken, front) = self.queue.next();
@@ -199,13 +217,13 @@ impl<'v, A: AttributeModel> CollapseLoop<'v, A> {
         }
     }
 
-    /// The bucket of what comes next.
+    /// Returns the bucket of the next step, an edge or a component.
     pub(crate) fn next_bucket(&mut self) -> Option<u16> {
         let of_component = self.components.as_ref().and_then(|components| components.next_bucket());
         self.next_edge_bucket().into_iter().chain(of_component).min()
     }
 
-    /// A bucket that nothing comes before.
+    /// Returns a lower bound on the bucket of the next step.
     pub(crate) fn lowest_bucket(&self) -> usize {
         let of_component = self.components.as_ref().and_then(|components| components.next_bucket());
         self.queue.lowest().min(of_component.map_or(usize::MAX, usize::from))
@@ -222,14 +240,14 @@ impl<'v, A: AttributeModel> CollapseLoop<'v, A> {
         None
     }
 
-    /// Whether an entry still stands for its vertex.
+    /// Returns whether a queue entry is still the current one of its vertex.
     #[inline(always)]
     fn is_due(&self, v: u32, bucket: u16) -> bool {
         let vertex = self.vertices.get(v);
         vertex.bucket == bucket && !vertex.flags.any(INACTIVE)
     }
 
-    /// Lets all edges try again that were refused.
+    /// Makes all refused edges eligible again.
     pub(crate) fn wake_all(&mut self) {
         self.components.iter_mut().for_each(|components| components.wake_all());
         self.queue.put_back();
@@ -241,13 +259,13 @@ impl<'v, A: AttributeModel> CollapseLoop<'v, A> {
         }
     }
 
-    /// Lets a vertex go on that has waited.
+    /// Queues a vertex that has waited for its neighbours to be in the same part.
     pub(crate) fn release(&mut self, v: u32) {
         self.vertices.get_mut(v).flags.clear(VertexFlags::OUTER);
         self.put_first(v);
     }
 
-    /// Queues a vertex before all others, to be looked at there.
+    /// Queues a vertex before all others; it is costed when its entry comes up.
     fn put_first(&mut self, v: u32) {
         let vertex = self.vertices.get_mut(v);
         vertex.floor = 0;
@@ -256,8 +274,8 @@ impl<'v, A: AttributeModel> CollapseLoop<'v, A> {
         self.queue.push(v, 0);
     }
 
-    /// Reads the vertices that come next, and their neighbours, in loops whose loads do not wait for
-    /// each other: met one by one, they would cost a memory latency each.
+    /// Reads the next vertices and their neighbours in loops whose loads do not depend on each
+    /// other. Read one by one, each would cost a memory latency.
     fn prefetch(&self) {
         let (vertices, (next, _)) = (&self.vertices, self.queue.next());
         let mut sum = 0;
@@ -276,6 +294,7 @@ impl<'v, A: AttributeModel> CollapseLoop<'v, A> {
         std::hint::black_box(sum);
     }
 
+    /// Tries the cheapest edge of a vertex, and requeues the vertex accordingly.
     #[inline(always)]
     fn try_collapse(&mut self, v: u32, front: u16) {
         let Some(target) = self.target(v) else { return self.requeue(v, front, None) };
@@ -290,7 +309,7 @@ impl<'v, A: AttributeModel> CollapseLoop<'v, A> {
             Err(Rejection::Refused(refusal, bucket)) => {
                 self.refusals.add(refusal);
                 let vertex = self.vertices.get_mut(v);
-                // It must rise, or the edge would be tried for ever.
+                // The floor must rise, or the edge would be tried for ever.
                 vertex.floor = bucket.max(front).max(vertex.floor.saturating_add(1));
                 self.requeue(v, front, None);
             }
@@ -302,7 +321,7 @@ impl<'v, A: AttributeModel> CollapseLoop<'v, A> {
         edge.iter().all(|&v| self.vertices.get(v).flags.any(VertexFlags::TIED))
     }
 
-    /// Wakes a vertex whose edges were refused: it may have others now.
+    /// Requeues a vertex whose edges were refused: it may have other edges now.
     pub(crate) fn wake(&mut self, v: u32, front: u16) {
         let vertex = self.vertices.get_mut(v);
         if vertex.floor > 0 && !vertex.flags.any(INACTIVE) {
@@ -310,7 +329,8 @@ impl<'v, A: AttributeModel> CollapseLoop<'v, A> {
         }
     }
 
-    /// The neighbour that its cheapest edge went to when it was looked at, or what has become of it.
+    /// Returns the other end of the vertex's cheapest edge when it was last costed, or the vertex
+    /// that this end has been contracted into.
     #[inline(always)]
     fn target(&mut self, v: u32) -> Option<u32> {
         let mut target = self.vertices.get(v).target;
@@ -327,7 +347,8 @@ impl<'v, A: AttributeModel> CollapseLoop<'v, A> {
         (target != v && !barred).then_some(target)
     }
 
-    /// The first look at all vertices: at the edges to those after each, so that an edge is seen once.
+    /// Costs all vertices for the first time. Only edges to later vertices are costed, so each edge
+    /// is costed once.
     #[inline(always)]
     fn cost_all(&mut self) {
         let Self { vertices, model, queue, .. } = self;
@@ -358,8 +379,9 @@ impl<'v, A: AttributeModel> CollapseLoop<'v, A> {
         }
     }
 
-    /// AttributeModel for the cheapest edge of a vertex and queues it, at the front or behind. What has just
-    /// been seen of an edge is not doubted: another rounding must not bring it back to the front.
+    /// Costs all edges of a vertex and queues it by the cheapest, at the front or behind it.
+    /// `known` is an edge costed a moment ago, with its bucket: another rounding must not bring it
+    /// back to the front.
     #[inline(always)]
     fn requeue(&mut self, v: u32, front: u16, known: Option<(u32, u16)>) {
         self.vertices.refresh(v);
@@ -377,7 +399,7 @@ impl<'v, A: AttributeModel> CollapseLoop<'v, A> {
         self.queue.push(v, bucket);
     }
 
-    /// Queues a vertex behind the front, to be looked at there if it is still there then.
+    /// Queues a vertex behind the front without costing it.
     #[inline(always)]
     fn defer(&mut self, v: u32, bucket: u16) {
         let vertex = self.vertices.get_mut(v);
@@ -386,7 +408,7 @@ impl<'v, A: AttributeModel> CollapseLoop<'v, A> {
         self.queue.push(v, vertex.bucket);
     }
 
-    /// Gathers what is around an edge, and finds what it costs and where its vertex goes.
+    /// Gathers the one-ring of an edge, and computes its cost and the place of the new vertex.
     #[inline(always)]
     fn price(&mut self, v: u32, target: u32, front: u16) -> Result<PricedEdge, Rejection> {
         let Self { vertices, model, edge_ring, .. } = self;
@@ -418,7 +440,7 @@ impl<'v, A: AttributeModel> CollapseLoop<'v, A> {
         }
     }
 
-    /// Contracts an edge; gives the vertex that stays.
+    /// Contracts an edge after all checks. Returns the vertex that stays.
     #[inline(always)]
     fn contract(&mut self, v: u32, target: u32, front: u16) -> Result<u32, Rejection> {
         let PricedEdge { ends, quadric, from_middle, bucket } = self.price(v, target, front)?;
@@ -429,12 +451,12 @@ impl<'v, A: AttributeModel> CollapseLoop<'v, A> {
         if free && from_middle.length_squared() > f64::from(edge_ring.reach()) {
             return Err(refused(Refusal::Volume));
         }
-        // The place as it will be read back, so that normals are those of the faces as they are.
+        // The place as it is stored, so that the normals are those of the actual faces.
         let from = end0.place();
         let place =
             if free { (from.as_dvec3() + from_middle + quadric.half).as_vec3() } else { from };
         edge_ring.try_place(place - from).map_err(refused)?;
-        // A length: attributes have no part in it.
+        // A mean square distance: attributes do not count.
         let mean_square =
             quadric.at(from_middle).max(0.0) / quadric.weight().max(f64::MIN_POSITIVE);
         let now = edge_ring.deviation(place - from).max(mean_square as f32);
@@ -458,7 +480,7 @@ impl<'v, A: AttributeModel> CollapseLoop<'v, A> {
         Ok(v0)
     }
 
-    /// Writes a contraction that may be made, and takes it down.
+    /// Carries out a contraction that has passed all checks, and records it.
     #[inline(always)]
     pub(crate) fn commit(
         &mut self,
@@ -486,7 +508,7 @@ impl<'v, A: AttributeModel> CollapseLoop<'v, A> {
         }
     }
 
-    /// Writes a contraction that may be.
+    /// Updates vertices, rings, quadrics and attributes for a contraction.
     #[inline(always)]
     fn apply(&mut self, collapse: &Collapse, quadric: &EdgeQuadricF64, moved: f32, front: u16) {
         let Ends { v0, v1, .. } = collapse.ends;
@@ -530,7 +552,7 @@ impl<'v, A: AttributeModel> CollapseLoop<'v, A> {
     }
 }
 
-/// A first look at all vertices.
+/// SIMD task of [`CollapseLoop::cost_all_vertices`].
 struct CostAll<'e, 'v, A>(&'e mut CollapseLoop<'v, A>);
 
 impl<A: AttributeModel> SimdTask for CostAll<'_, '_, A> {
@@ -542,7 +564,7 @@ impl<A: AttributeModel> SimdTask for CostAll<'_, '_, A> {
     }
 }
 
-/// Contractions, see [`CollapseLoop::run`].
+/// SIMD task of [`CollapseLoop::run`].
 struct ContractAll<'e, 'v, A> {
     collapse_loop: &'e mut CollapseLoop<'v, A>,
     faces: usize,
@@ -558,10 +580,10 @@ impl<A: AttributeModel> SimdTask for ContractAll<'_, '_, A> {
     }
 }
 
-/// Vertices that do not wait for anything.
+/// Flags of vertices without a valid queue entry: dead, barred, or waiting for another part.
 const INACTIVE: VertexFlags = VertexFlags(VertexFlags::DEAD.0 | VertexFlags::SHUT.0);
 
-/// A vertex whose edges were refused may have others now.
+/// Queues a vertex at the front again after its edges were refused, if it is not queued.
 #[cold]
 fn wake(vertex: &mut Vertex, id: u32, queue: &mut BucketQueue, front: u16) {
     vertex.floor = 0;

@@ -1,10 +1,31 @@
-//! The fast engine: `lindstrom-turk` at the speed of quadrics, and `qem` without attributes.
+//! The kernel: `lindstrom-turk`, attributes included, and `qem` without attributes, at the speed of
+//! quadrics.
 //!
-//! It answers to the same rules as the general engine, which is its oracle, by other means: rings
-//! instead of stars of faces, one queue entry a vertex instead of one an edge, floats, and costs from
-//! nine numbers a vertex, or ten. docs/notes/kernel.md tells why each of these.
+//! It obeys the rules of the general engine, which is its oracle, by other means: one-rings instead
+//! of lists of faces, one queue entry per vertex instead of one per edge, single precision, and
+//! edge costs from nine or ten numbers at each end. `docs/notes/kernel.md` gives the reasons and
+//! the figures.
+//!
+//! From the ground up:
+//!
+//! | module | what it holds |
+//! |---|---|
+//! | `simd` | rows of eight floats, and the choice of register width |
+//! | `mesh` | vertices of 128 bytes with their one-rings, in a local frame |
+//! | `setup`, `prepare` | from the faces of the input to vertices with rings |
+//! | `collapse` | one contraction: its ends, the edge's one-ring, the deviation |
+//! | `metric` | what an edge costs: swept volume or plane distance |
+//! | `attributes` | quadrics of normals, uvs and colours at the wedges |
+//! | `bound` | a bound on the distance to the input |
+//! | `schedule` | edge costs, the bucket queue, deferral |
+//! | `collapse_loop` | the loop; `tied` and `vanish` are its rarer steps |
+//! | `partition` | parts that coarsen side by side |
+//! | `run`, `level`, `contraction_log` | the face to `Simplifier`: runs, levels, observers |
+//!
+//! A wedge is known by its *slot*, an index: the first wedge of a vertex has the vertex's own id,
+//! all further wedges follow after the last vertex.
 
-// Lanes go by their number, in one row as in the next.
+// Lanes are indexed by number, across several rows at once.
 #![allow(clippy::needless_range_loop)]
 
 mod attributes;
@@ -36,10 +57,10 @@ use crate::simplifier::Started;
 pub(crate) use crate::kernel::metric::plane_distance::PlaneDistance;
 pub(crate) use crate::kernel::metric::swept_volume::SweptVolume;
 
-/// Sets the kernel to work on a valid mesh, and says what was found in it.
+/// Prepares the kernel for a valid mesh. Also returns what was found in the input.
 ///
 /// # Errors
-/// No face has three different vertices.
+/// If no face has three different vertices.
 pub(crate) fn start<'m, M: Metric + 'm>(
     metric: M,
     mesh: &'m Mesh,

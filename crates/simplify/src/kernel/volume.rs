@@ -1,4 +1,4 @@
-//! What contractions did to the volume, as the fast engine counts it.
+//! Accounting of the volume lost by contractions.
 
 use glam::Vec3;
 use meshlod_mesh::Bounds;
@@ -6,9 +6,9 @@ use meshlod_mesh::Bounds;
 use crate::history::volume::{Unconserved, VolumeLoss};
 use crate::kernel::mesh::local_frame::Frame;
 
-/// The volume lost, and the contractions that could not choose their place by it, in the frame.
+/// Volume lost so far, and the contractions that could not preserve it, in the frame.
 ///
-/// Places are rounded, so a free contraction loses a little too.
+/// Places are rounded, so free contractions lose a little too.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct VolumeTally {
     sixfold: f64,
@@ -16,7 +16,7 @@ pub(crate) struct VolumeTally {
     held: Unchosen,
 }
 
-/// How many, and the box of where they were.
+/// Number of contractions, and the bounding box of where they were.
 #[derive(Clone, Copy, Debug)]
 struct Unchosen {
     contractions: usize,
@@ -43,7 +43,7 @@ impl VolumeTally {
         }
     }
 
-    /// Counts a component that vanishes, of vertices at `places` around a sixth of `sixfold`.
+    /// Counts a vanished component with these vertices and a sixth of `sixfold` as its volume.
     pub(crate) fn add_component(&mut self, places: &[Vec3], sixfold: f64, is_open: bool) {
         let kind = if is_open { &mut self.open } else { &mut self.held };
         kind.contractions += 1;
@@ -55,14 +55,14 @@ impl VolumeTally {
         }
     }
 
-    /// Counts what another part has lost.
+    /// Adds the tally of another part.
     pub(crate) fn merge(&mut self, other: &Self) {
         self.sixfold += other.sixfold;
         self.open.merge(&other.open);
         self.held.merge(&other.held);
     }
 
-    /// The same in model units.
+    /// Converts the tally to model units.
     pub(crate) fn loss(&self, frame: &Frame) -> VolumeLoss {
         VolumeLoss {
             running_sum: self.sixfold * frame.unit.powi(3) / 6.0,
@@ -101,7 +101,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_could_not_be_conserved_is_told_apart() {
+    fn open_and_held_contractions_are_counted_apart() {
         let mesh = cube();
         let frame = Frame::new(&mesh, &mesh.bounds());
         let mut volume = VolumeTally::default();

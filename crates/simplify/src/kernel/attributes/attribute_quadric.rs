@@ -1,10 +1,10 @@
-//! What the faces around a wedge expect of its attributes, summed so that an edge asks its two ends
-//! only.
+//! The attribute quadric [Hop99] of a wedge: the error against the linear attributes of the faces
+//! around, summed such that an edge needs only its two ends.
 //!
-//! An attribute is linear over a face: at *x* from the wedge it is *a + g·x*. All faces around agree on
-//! *a*, the wedge's own value; so seen from there a star is, by squares of areas *w* as the geometry's,
-//! *W* = Σ *w*, *B* = Σ *w g* for each channel and *G* = Σ *w g g'* over all of them. A vertex at *x*
-//! with the value *a + δ* is off by *x'Gx* − 2 *δ B·x* + *W δ²* [Hop99].
+//! An attribute is linear over a face: *a + g·x* at *x* from the wedge. All faces around have the
+//! wedge's own value *a* in common. Relative to the wedge, with the weights *w* of the geometry,
+//! the sums are *W* = Σ *w*, *B* = Σ *w g* for each channel and *G* = Σ *w g g'* over all channels.
+//! A vertex at *x* with the value *a + δ* has the error *x'Gx* − 2 *δ B·x* + *W δ²*.
 
 use glam::{DMat3, DVec3, Vec3, Vec4};
 
@@ -15,10 +15,10 @@ use crate::kernel::metric::edge_quadric::{
 use crate::kernel::metric::edge_quadric_f64::{EdgeQuadricF64, symmetric};
 use crate::kernel::simd::{LANES, Row, TINY};
 
-/// The sums of a star, in whole registers.
+/// Attribute quadric of a wedge, in whole registers.
 ///
 /// ```text
-/// G.xx G.yy G.zz G.xy | G.xz G.yz W 0 | of each channel: B.x B.y B.z a
+/// G.xx G.yy G.zz G.xy | G.xz G.yz W 0 | for each channel: B.x B.y B.z a
 /// ```
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(64))]
@@ -30,7 +30,7 @@ pub(crate) struct AttributeQuadric<const K: usize> {
 impl<const K: usize> AttributeQuadric<K> {
     pub(crate) const EMPTY: Self = Self { squares: [Vec4::ZERO; 2], channels: [Vec4::ZERO; K] };
 
-    /// A wedge of these values that has no faces yet.
+    /// Returns the quadric of a wedge with these values and no faces yet.
     pub(crate) fn of_values(values: [f32; K]) -> Self {
         let mut quadric = Self::EMPTY;
         for (channel, value) in quadric.channels.iter_mut().zip(values) {
@@ -39,8 +39,8 @@ impl<const K: usize> AttributeQuadric<K> {
         quadric
     }
 
-    /// One face, its corners at the origin, `a` and `b`, where the channels are `to_a` and `to_b`
-    /// more; it comes to the same from every corner.
+    /// Returns the quadric of one face with corners at the origin, `a` and `b`; `to_a` and `to_b`
+    /// are the differences of the channels. It is the same from every corner.
     #[inline(always)]
     pub(crate) fn face<M: Metric>(a: Vec3, b: Vec3, to_a: [f32; K], to_b: [f32; K]) -> Self {
         let normal = a.cross(b);
@@ -84,7 +84,7 @@ impl<const K: usize> AttributeQuadric<K> {
         self.squares[1].z
     }
 
-    /// Its values; only of what is at a wedge, not of one face.
+    /// Returns the values of the wedge. Meaningless for the quadric of a single face.
     #[inline(always)]
     pub(crate) fn values(&self) -> [f32; K] {
         let mut values = [0.0; K];
@@ -94,7 +94,7 @@ impl<const K: usize> AttributeQuadric<K> {
         values
     }
 
-    /// G: xx, yy, zz, xy, xz, yz.
+    /// Returns G: xx, yy, zz, xy, xz, yz.
     #[inline(always)]
     pub(crate) fn squares(&self) -> [f32; 6] {
         let [a, b] = &self.squares;
@@ -105,7 +105,7 @@ impl<const K: usize> AttributeQuadric<K> {
         symmetric(self.squares())
     }
 
-    /// What it costs if the wedge goes to a place `by` further, and takes these values there.
+    /// Returns the cost of moving the wedge by `by` and giving it these values.
     pub(crate) fn cost_onto(&self, by: Vec3, values: &[f32; K]) -> f32 {
         let by4 = by.extend(0.0);
         let squares = by.as_dvec3().dot(self.matrix() * by.as_dvec3()) as f32;
@@ -116,15 +116,15 @@ impl<const K: usize> AttributeQuadric<K> {
         squares + each.sum::<f32>()
     }
 
-    /// The values that fit best a place `by` further.
+    /// Returns the values that fit best at `by` from the wedge.
     pub(crate) fn best_values(&self, by: DVec3) -> [f32; K] {
         let share = 1.0 / f64::from(self.weight() + TINY);
         self.channels.map(|own| own.w + (own.truncate().as_dvec3().dot(by) * share) as f32)
     }
 }
 
-/// Adds to what eight edges sweep what the best value of each channel leaves of their squares: seen
-/// from the middle they are x'Sx − 2 q·x + c, and this adds to S, q and c.
+/// Adds the attribute error that remains with the best value of each channel to the quadrics x'Sx −
+/// 2 q·x + c of eight edges.
 #[inline(always)]
 pub(crate) fn add_attribute_quadrics<'f, const K: usize>(
     sides: [EdgeSide<u32>; 2],
@@ -134,8 +134,8 @@ pub(crate) fn add_attribute_quadrics<'f, const K: usize>(
     add_all_channels::<K, false>(sides, quadric, edges, &mut [0.0; LANES]);
 }
 
-/// The same; and adds to `onto` what each second end costs if it goes to the place of the first and takes
-/// its values.
+/// Adds the attribute error as [`add_attribute_quadrics`] does. Also adds to `onto` the cost of
+/// contracting each second end onto the first, with the first end's values.
 #[inline(always)]
 pub(crate) fn add_attribute_quadrics_and_onto<'f, const K: usize>(
     sides: [EdgeSide<u32>; 2],
@@ -185,7 +185,7 @@ fn add_all_channels<'f, const K: usize, const ONTO: bool>(
     }
 }
 
-/// One channel of it.
+/// Adds one channel to the quadrics.
 #[inline(always)]
 fn add_channel([c0, c1]: &[[Row; 4]; 2], [w0, w1]: [&Row; 2], edges: &mut EdgeQuadrics) {
     for lane in 0..LANES {
@@ -210,7 +210,7 @@ fn add_channel([c0, c1]: &[[Row; 4]; 2], [w0, w1]: [&Row; 2], edges: &mut EdgeQu
     }
 }
 
-/// One channel of what goes to the place of the first end.
+/// Adds the cost of one channel for contracting the second end onto the first.
 #[inline(always)]
 fn channel_onto([c0, c1]: &[[Row; 4]; 2], w1: &Row, edges: &EdgeQuadrics, onto: &mut Row) {
     for lane in 0..LANES {
@@ -225,8 +225,8 @@ fn slope_of([x, y, z, _]: &[Row; 4], lane: usize) -> Vec3 {
     Vec3::new(x[lane], y[lane], z[lane])
 }
 
-/// The same for a wedge at one end of an edge that moves without another: `from` is its place as seen from
-/// the middle.
+/// Returns the quadric, with the best values, of a wedge that moves alone. `from` is its place
+/// relative to the middle of the edge.
 pub(crate) fn unpaired_quadric<const K: usize>(
     quadric: &AttributeQuadric<K>,
     from: Vec3,
@@ -246,7 +246,7 @@ pub(crate) fn unpaired_quadric<const K: usize>(
     EdgeQuadric { sum, slope, at_middle: from.dot(slope) }
 }
 
-/// The same for one edge, in doubles, G with it.
+/// Adds the attribute error of a pair of wedges to the quadric of one edge, in f64.
 pub(crate) fn add_pair_f64<const K: usize>(
     quadric: &mut EdgeQuadricF64,
     v0: &AttributeQuadric<K>,
@@ -269,7 +269,8 @@ pub(crate) fn add_pair_f64<const K: usize>(
     }
 }
 
-/// The same for a wedge that moves without another, from a place seen from the middle.
+/// Adds the attribute error of a wedge that moves alone to the quadric of one edge, in f64. `from`
+/// is its place relative to the middle.
 pub(crate) fn add_unpaired_f64<const K: usize>(
     edge: &mut EdgeQuadricF64,
     wedge: &AttributeQuadric<K>,
@@ -287,7 +288,7 @@ pub(crate) fn add_unpaired_f64<const K: usize>(
     edge.at_middle += from.dot(squares * from);
 }
 
-/// The values that fit best at `x` from the middle of an edge.
+/// Returns the values of a merged pair that fit best at `x` from the middle of the edge.
 pub(crate) fn best_values<const K: usize>(
     v0: &AttributeQuadric<K>,
     v1: &AttributeQuadric<K>,
@@ -306,13 +307,13 @@ pub(crate) fn best_values<const K: usize>(
     values
 }
 
-/// A channel of two wedges that become one.
+/// One channel of two wedges that become one.
 struct PairedChannel {
     both: DVec3,
     less: DVec3,
-    /// Half the change along the edge.
+    /// Half the change of the value along the edge.
     change: f64,
-    /// How far the best value in the middle is from the mean, times the weight.
+    /// Difference of the best value at the middle from the mean of both, times the weight.
     off: f64,
 }
 

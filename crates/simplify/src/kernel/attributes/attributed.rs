@@ -1,4 +1,4 @@
-//! Attributes in the costs and contractions of the kernel.
+//! [`AttributeModel`] for quadrics at the wedges.
 
 use crate::kernel::attributes::attribute_quadric::{
     add_attribute_quadrics, add_pair_f64, add_unpaired_f64,

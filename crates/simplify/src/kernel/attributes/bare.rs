@@ -1,4 +1,4 @@
-//! A surface without attributes: nothing is added to its costs, and nothing is left of it in the code.
+//! [`AttributeModel`] for a surface without attributes. It compiles to nothing.
 
 use crate::kernel::attributes::{AttributeModel, RecordedValues};
 use crate::kernel::collapse::edge_ring::EdgeRing;
@@ -12,7 +12,7 @@ use crate::kernel::simd::LANES;
 use crate::refusal::Refusal;
 use meshlod_mesh::Attributes;
 
-/// No attributes, and what costs by this rule.
+/// No attributes: the metric alone.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct NoAttributes<M>(pub(crate) M);
 
@@ -81,8 +81,8 @@ impl<M: Metric> AttributeModel for NoAttributes<M> {
     }
 }
 
-/// Which end goes into which, if pins and ties alone decide: what is in a tie stays where the other
-/// end is in none.
+/// Decides which end is contracted into which by pins and ties alone. A tied end stays where it is
+/// if the other end is not tied.
 #[inline(always)]
 pub(crate) fn by_pins(vertices: &Vertices, v: u32, target: u32) -> Result<Ends, Refusal> {
     let [first, second] = [v, target].map(|v| vertices.get(v).flags);

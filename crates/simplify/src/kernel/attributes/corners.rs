@@ -1,4 +1,4 @@
-//! The wedges at the corners of faces, as the input has them.
+//! The wedges at the corners of the input's faces.
 
 use crate::kernel::mesh::vertex::NO_VERTEX;
 use crate::surface::wedges::labels;
@@ -6,25 +6,25 @@ use meshlod_mesh::{Layer, Mesh, WedgeId};
 use rustc_hash::FxHashMap;
 use std::borrow::Cow;
 
-/// The wedges at the corners of a mesh, split further where the material changes or the object.
+/// Wedges at the corners of a mesh, split where the material or the object changes.
 pub(crate) struct Corners<'m> {
     of_face: Cow<'m, [[WedgeId; 3]]>,
-    /// The wedges of the input that those after its own are of, and how many it has.
+    /// Input wedges that the wedges after the first `own` are split from.
     pub(crate) split: Vec<u32>,
     pub(crate) own: usize,
-    /// The material and object of each wedge, where there are several.
+    /// Material and object of each wedge, if there are several.
     labels: Vec<u32>,
-    /// By vertex: its first wedge.
+    /// First wedge of each vertex.
     first: Vec<u32>,
-    /// Whether the mesh has attributes, or there are wedges for its labels alone.
+    /// True if the mesh has attributes, false if there are wedges for its labels alone.
     pub(crate) are_given: bool,
-    /// The other wedges that vertices have, in order; their slots follow those of vertices.
+    /// Further wedges of vertices, sorted. Their slots follow those of the vertices.
     pub(crate) others: Vec<(u32, u32)>,
 }
 
 impl<'m> Corners<'m> {
-    /// `None` if there is nothing that could differ at a vertex. `faces` are those of the mesh, on
-    /// copies of vertices where it has them, of `vertices` in all.
+    /// Finds the wedges. Returns `None` if nothing can differ at a vertex. `faces` are those of the
+    /// mesh with copies of vertices, `vertices` the number of vertices with copies.
     pub(crate) fn new(
         mesh: &'m Mesh,
         faces: impl Iterator<Item = [u32; 3]>,
@@ -55,7 +55,7 @@ impl<'m> Corners<'m> {
         Some(corners)
     }
 
-    /// Gives each label wedges of its own; the first label to use one keeps it.
+    /// Gives each label wedges of its own. The first label to use a wedge keeps it.
     fn split_by(&mut self, labels: &[u32]) {
         self.labels = vec![u32::MAX; self.own];
         let mut copies = FxHashMap::default();
@@ -93,7 +93,7 @@ impl<'m> Corners<'m> {
         self.others.dedup();
     }
 
-    /// The slot of a wedge at a vertex.
+    /// Returns the slot of a wedge at a vertex.
     #[inline]
     fn slot(&self, v: u32, wedge: WedgeId) -> u32 {
         if self.first[v as usize] == wedge.0 {
@@ -103,7 +103,7 @@ impl<'m> Corners<'m> {
         (self.first.len() + found) as u32
     }
 
-    /// The slots at the corners of a face; what is no face has those of its vertices.
+    /// Returns the slots at the corners of a face; the vertices themselves for a degenerate face.
     #[inline]
     pub(crate) fn slots(&self, i: usize, [a, b, c]: [u32; 3]) -> [u32; 3] {
         if !is_face([a, b, c]) {
@@ -113,19 +113,20 @@ impl<'m> Corners<'m> {
         [self.slot(a, of_a), self.slot(b, of_b), self.slot(c, of_c)]
     }
 
-    /// The wedge that each slot is; `NOBODY` where there is none.
+    /// Returns the wedge of each slot, or `NO_VERTEX`.
     pub(crate) fn wedges(&self) -> impl Iterator<Item = u32> + '_ {
         let others = self.others.iter().map(|&(_, wedge)| wedge);
         self.first.iter().copied().chain(others)
     }
 
-    /// The wedge that a slot is.
+    /// Returns the wedge of a slot.
     pub(crate) fn wedge(&self, slot: u32) -> u32 {
         let other = || self.others[slot as usize - self.first.len()].1;
         self.first.get(slot as usize).copied().unwrap_or_else(other)
     }
 
-    /// The chart of each slot, as the first slot of its vertex in it; nothing where each is its own.
+    /// Returns the chart of each slot, which is the first slot of its vertex in the chart. Empty if
+    /// each slot is its own chart.
     pub(crate) fn charts(&self, textures: Option<&[&Layer]>) -> Vec<u32> {
         let Some(textures) = textures.filter(|_| !self.others.is_empty()) else {
             return Vec::new();
@@ -154,7 +155,7 @@ impl<'m> Corners<'m> {
         charts
     }
 
-    /// The wedge of the input that one is, or is split from.
+    /// Returns the input wedge that a wedge is or is split from.
     pub(crate) fn source(&self, wedge: u32) -> u32 {
         match (wedge as usize).checked_sub(self.own) {
             Some(split) if wedge != NO_VERTEX => self.split[split],
@@ -163,7 +164,7 @@ impl<'m> Corners<'m> {
     }
 }
 
-/// Whether three vertices are a face.
+/// Returns true if the three vertices are different.
 pub(crate) fn is_face([a, b, c]: [u32; 3]) -> bool {
     a != b && b != c && c != a
 }

@@ -1,28 +1,29 @@
-//! The wedges at the corners of the faces around an edge.
+//! The slots at the corners of the faces around an edge.
 
 use crate::kernel::attributes::seam_sectors::SeamSectors;
 use crate::kernel::collapse::edge_ring::EdgeRing;
 use crate::kernel::collapse::{Ends, WedgePairs};
 use crate::kernel::mesh::one_ring::{Vertices, is_seam};
 
-/// The slots of the faces around an edge. Of spoke i, those of its apex, of `ids[i]` and `ids[i + 1]`.
+/// Slots of the faces around an edge. For spoke i they are at its apex, at `ids[i]` and at `ids[i +
+/// 1]`.
 #[derive(Debug, Default)]
 pub(crate) struct FaceWedges {
     pub(crate) spokes: Vec<[u32; 3]>,
-    /// Of the two faces that go: `v0`'s, `v1`'s and the wing's.
+    /// Slots of the two dying faces, at `v0`, at `v1` and at the wing.
     pub(crate) dying: [[u32; 3]; 2],
-    /// Those of the new vertex in each spoke.
+    /// Slots of the new vertex in each spoke.
     pub(crate) apexes: Vec<u32>,
 }
 
 impl FaceWedges {
-    /// Of the spokes, then of the faces that go.
+    /// Returns the slots of an old face: the spokes first, then the dying faces.
     pub(crate) fn face(&self, i: usize) -> [u32; 3] {
         let len = self.spokes.len();
         if i < len { self.spokes[i] } else { self.dying[i - len] }
     }
 
-    /// Finds them.
+    /// Finds all slots around an edge.
     #[inline(always)]
     pub(crate) fn find(
         &mut self,
@@ -37,7 +38,7 @@ impl FaceWedges {
         let Self { spokes, dying, .. } = self;
         spokes.clear();
         spokes.resize(edge_ring.len, [0; 3]);
-        // Around both ends the ring begins with a wing, after the face that goes.
+        // Around both ends the ring begins at a wing, after a dying face.
         let mut slot = at0.after;
         for (i, (spoke, &w)) in spokes.iter_mut().zip(edge_ring.ids()).enumerate() {
             let apex = if i < edge_ring.of_v0 { v0 } else { v1 };
@@ -85,7 +86,7 @@ impl FaceWedges {
                 *apex = pair.map_or(*apex, |pair| pair[0]);
             }
         }
-        // The ghost's faces go with those beside them.
+        // The ghost's faces take the slots of their neighbours.
         if let Some(ghost) = edge_ring.ghost {
             let at = |i: usize| (ghost + edge_ring.len + i) % edge_ring.len;
             apexes[at(edge_ring.len - 1)] = apexes[at(edge_ring.len - 2)];

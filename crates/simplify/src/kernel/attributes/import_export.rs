@@ -1,4 +1,4 @@
-//! Wedges from the corners of faces, and back.
+//! Conversion of the corners of faces to wedges with quadrics, and back.
 
 use crate::kernel::metric::Metric;
 use std::marker::PhantomData;
@@ -16,8 +16,8 @@ use crate::kernel::mesh::one_ring::{GHOST, Vertices};
 use crate::kernel::mesh::vertex::{NO_VERTEX, VertexFlags};
 
 impl<'m, M: Metric, const K: usize> WedgeQuadrics<'m, M, K> {
-    /// The quadrics of a mesh whose rings are made; flags the vertices on seams, and puts the squares of
-    /// seams in their stars.
+    /// Builds the quadrics of a mesh whose rings are made. Flags the vertices on seams, and adds
+    /// the seam quadrics to them.
     pub(crate) fn new(
         mut layers: AttributeLayers<'m>,
         corners: Corners<'m>,
@@ -78,8 +78,8 @@ impl<'m, M: Metric, const K: usize> WedgeQuadrics<'m, M, K> {
         }
     }
 
-    /// Sectors from the faces around the vertices that have several wedges: vertex, the neighbour where
-    /// the face begins, slot.
+    /// Builds the sectors of the vertices with several wedges from the faces around: the vertex,
+    /// the neighbour where the face begins, and the slot.
     fn sort_sectors(&mut self, vertices: &mut Vertices, mut around: Vec<(u32, u32, u32)>) {
         around.sort_unstable();
         for faces in around.chunk_by(|a, b| a.0 == b.0) {
@@ -91,7 +91,7 @@ impl<'m, M: Metric, const K: usize> WedgeQuadrics<'m, M, K> {
             let ring = vertices.neighbours(v);
             let mut slots: Vec<u32> =
                 ring.iter().map(|&w| begins(w).unwrap_or(NO_VERTEX)).collect();
-            // The ghost's faces go with those beside them.
+            // The ghost's faces take the slots of their neighbours.
             let count = slots.len();
             if let Some(ghost) = ring.iter().position(|&w| w == GHOST) {
                 slots[ghost] = slots[(ghost + 1) % count];
@@ -120,7 +120,8 @@ impl<'m, M: Metric, const K: usize> WedgeQuadrics<'m, M, K> {
         }
     }
 
-    /// The attributes of faces, by their numbers and corners in the input; wedges in the input's order.
+    /// Returns the attributes of faces, given by their indices and corners in the kernel's
+    /// vertices. The wedges are in the input's order.
     pub(crate) fn to_attributes(&self, faces: impl Iterator<Item = (u32, [u32; 3])>) -> Attributes {
         let live = self.live_slots();
         let slots = |(i, face): (u32, [u32; 3])| {
@@ -149,7 +150,8 @@ impl<'m, M: Metric, const K: usize> WedgeQuadrics<'m, M, K> {
         Attributes { corners, wedge_count: left.len(), layers: self.layers.layers(&left) }
     }
 
-    /// The attributes of all faces, wedges as in the input; what is no face has one more.
+    /// Returns the attributes of all faces, with the input's wedge indices. Degenerate faces have
+    /// one extra wedge.
     pub(crate) fn to_all_attributes(&self, faces: impl Iterator<Item = [u32; 3]>) -> Attributes {
         let live = self.live_slots();
         let wedges: Vec<u32> = self.corners.wedges().collect();
@@ -170,19 +172,19 @@ impl<'m, M: Metric, const K: usize> WedgeQuadrics<'m, M, K> {
         Attributes { corners, wedge_count: left.len(), layers: self.layers.layers(&left) }
     }
 
-    /// What is in a slot, or the input's values of a wedge that no slot has.
+    /// Returns the values in a slot, or the input's values of a wedge without a slot.
     fn left(&self, slot: u32, own: u32) -> SurvivingWedge<K> {
         let is_wedge = (own as usize) < self.corners.own + self.corners.split.len();
         let wedge = if is_wedge { self.corners.source(own) } else { NO_VERTEX };
         if slot == NO_VERTEX {
             return SurvivingWedge { slot: 0, own, wedge, moved: !is_wedge, channels: [0.0; K] };
         }
-        // What no face has used has nothing to keep.
+        // A slot that no face uses has nothing to keep.
         let moved = self.merged_into[slot as usize] == slot || !is_wedge;
         SurvivingWedge { slot, own, wedge, moved, channels: self.quadric(slot).values() }
     }
 
-    /// Takes down what a contraction has made of the wedges of a vertex.
+    /// Records the values that a contraction has given to the wedges of a vertex.
     pub(crate) fn record_values(&mut self, vertex: u32) {
         let sectors = self.seams.of(vertex).iter().map(|sector| sector.slot);
         let mut slots: Vec<u32> = sectors.collect();
@@ -199,7 +201,7 @@ impl<'m, M: Metric, const K: usize> WedgeQuadrics<'m, M, K> {
         }
     }
 
-    /// The slot that each is or has become part of.
+    /// Returns for each slot the live slot that it is or has been merged into.
     fn live_slots(&self) -> Vec<u32> {
         let of = |(slot, &target): (u32, &u32)| if target == NO_VERTEX { slot } else { target };
         let mut live: Vec<u32> = (0..).zip(&self.merged_into).map(of).collect();

@@ -1,5 +1,5 @@
-//! The layers of a mesh as the fast engine has them: those that count as channels, in its lengths; and
-//! the rest, which only moves along.
+//! The attribute layers of a mesh: the costed ones as channels, scaled to lengths; the others are
+//! only carried along.
 
 use std::ops::Range;
 
@@ -11,39 +11,40 @@ use crate::options::AttributeWeights;
 use crate::surface::charts::is_shading;
 use crate::surface::interpolate::{Place, interpolate};
 
-/// No attribute counts for more, in the frame's units.
+/// Largest absolute value of a channel, in the frame's units.
 const MAX_LENGTH: f64 = 1e9;
 
-/// A layer that counts, or the part of it that does.
+/// A costed layer, or the costed part of one.
 #[derive(Clone, Debug)]
 struct CostedLayer {
     layer: usize,
     /// Its channels.
     channels: Range<usize>,
-    /// The engine's lengths to one of its values.
+    /// Length in the frame's units per unit of its values.
     scale: f64,
-    /// The least and the greatest of its values, in channels.
+    /// Smallest and largest of its values, as channels.
     range: [f32; 2],
     is_normal: bool,
     is_uv: bool,
 }
 
-/// The layers of a mesh.
+/// Attribute layers of a mesh.
 pub(crate) struct AttributeLayers<'m> {
     layers: &'m [Layer],
     costed: Vec<CostedLayer>,
-    /// What lengths in textures count, as on the surface.
+    /// Weight of lengths in uv relative to lengths on the surface.
     pub(crate) uv_weight: f32,
-    /// Layers that channels do not hold, or not all of, by slot.
+    /// Values by slot of the layers that are not, or not fully, held by channels.
     uncosted: Vec<Layer>,
-    /// Which layers they are.
+    /// Indices of these layers.
     uncosted_of: Vec<usize>,
 }
 
-/// A slot that is left: whose wedge of the input it was, and whether that one's values are still its.
+/// A surviving slot with the input wedge it came from. `moved` is false if it still has that
+/// wedge's values.
 pub(crate) struct SurvivingWedge<const K: usize> {
     pub(crate) slot: u32,
-    /// Where it stands among the wedges.
+    /// Index of the wedge, split ones included.
     pub(crate) own: u32,
     pub(crate) wedge: u32,
     pub(crate) moved: bool,
@@ -51,8 +52,8 @@ pub(crate) struct SurvivingWedge<const K: usize> {
 }
 
 impl<'m> AttributeLayers<'m> {
-    /// The layers of a mesh, those that count weighed as in the general engine; `most` channels of them
-    /// at most, the first layers first.
+    /// Selects the costed layers, weighted as in the general engine, up to `most` channels, the
+    /// first layers first.
     pub(crate) fn new(
         mesh: &'m Mesh,
         frame: &Frame,
@@ -84,23 +85,23 @@ impl<'m> AttributeLayers<'m> {
         Self { layers, costed, uv_weight, uncosted: Vec::new(), uncosted_of: Vec::new() }
     }
 
-    /// How many channels count.
+    /// Returns the number of channels.
     pub(crate) fn channels(&self) -> usize {
         self.costed.last().map_or(0, |last| last.channels.end)
     }
 
-    /// The channels of textures' places: each time the first of two.
+    /// Returns the first of the two channels of each uv layer.
     pub(crate) fn uvs(&self) -> impl Iterator<Item = usize> + '_ {
         self.costed.iter().filter(|costed| costed.is_uv).map(|costed| costed.channels.start)
     }
 
-    /// Whether something moves along that no channel holds.
+    /// Returns true if values outside the channels are carried along.
     pub(crate) fn has_uncosted(&self) -> bool {
         !self.uncosted.is_empty()
     }
 
-    /// Takes what channels do not hold of these wedges, as the values of the slots. A slot without a
-    /// wedge has none.
+    /// Stores the values of these wedges that channels do not hold, by slot. A slot without a wedge
+    /// has zeros.
     pub(crate) fn fill(&mut self, wedges: &[u32]) {
         for (i, layer) in self.layers.iter().enumerate() {
             let width = layer.width;
@@ -117,8 +118,8 @@ impl<'m> AttributeLayers<'m> {
         }
     }
 
-    /// The channels of a wedge. What is no number counts as zero, and nothing for more than floats
-    /// have room for the squares of.
+    /// Returns the channels of a wedge. NaN and infinity become zero, and lengths are clamped such
+    /// that their squares fit in a float.
     pub(crate) fn channels_of<const K: usize>(&self, wedge: u32) -> [f32; K] {
         let mut channels = [0.0; K];
         for CostedLayer { layer, channels: at, scale, .. } in &self.costed {
@@ -131,8 +132,8 @@ impl<'m> AttributeLayers<'m> {
         channels
     }
 
-    /// Makes of channels that fit best such as may be: normals of their length, all in the range of the
-    /// input. `before` stands in for directions that cancel.
+    /// Makes the best-fitting channels valid: normals get their length, all others are clamped to
+    /// the input's range. `before` replaces a normal that cancels out.
     #[inline(always)]
     pub(crate) fn clamp_values<const K: usize>(&self, channels: &mut [f32; K], before: &[f32; K]) {
         for CostedLayer { channels: at, scale, range: [low, high], is_normal, .. } in &self.costed {
@@ -149,14 +150,14 @@ impl<'m> AttributeLayers<'m> {
         }
     }
 
-    /// Takes textures, all that is no normal, from other channels.
+    /// Copies all channels but the normals from others.
     pub(crate) fn copy_textures<const K: usize>(&self, channels: &mut [f32; K], other: &[f32; K]) {
         for CostedLayer { channels: at, .. } in self.costed.iter().filter(|c| !c.is_normal) {
             channels[at.clone()].copy_from_slice(&other[at.clone()]);
         }
     }
 
-    /// The same of what channels do not hold, from slot to slot.
+    /// Copies the values that channels do not hold, except shading, from another slot.
     pub(crate) fn copy_uncosted(&mut self, slot: u32, other: u32) {
         for layer in self.uncosted.iter_mut().filter(|layer| !is_shading(layer)) {
             let from = other as usize * layer.width;
@@ -164,19 +165,19 @@ impl<'m> AttributeLayers<'m> {
         }
     }
 
-    /// The layers in which wedges of one chart are equal; `None` where nothing is shading, so that each
-    /// wedge is a chart.
+    /// Returns the layers in which all wedges of a chart agree; `None` if no layer is shading, so
+    /// that each wedge is its own chart.
     pub(crate) fn textures(&self) -> Option<Vec<&'m Layer>> {
         let any_shading = self.layers.iter().any(is_shading);
         any_shading.then(|| self.layers.iter().filter(|layer| !is_shading(layer)).collect())
     }
 
-    /// Adds what channels do not hold at a place between slots.
+    /// Interpolates the values that channels do not hold at a place between slots.
     pub(crate) fn uncosted_at(&self, place: &Place, values: &mut Vec<f32>) {
         interpolate(&self.uncosted, place, values);
     }
 
-    /// Gives a slot the first of what [`Self::rest_at`] found; gives what is left.
+    /// Gives a slot the first values found by [`Self::uncosted_at`]. Returns the remaining ones.
     pub(crate) fn set_uncosted<'v>(&mut self, slot: u32, mut values: &'v [f32]) -> &'v [f32] {
         for layer in &mut self.uncosted {
             let (these, others) = values.split_at(layer.width);
@@ -186,7 +187,7 @@ impl<'m> AttributeLayers<'m> {
         values
     }
 
-    /// The layers over the slots that are left.
+    /// Returns the layers over the surviving slots.
     pub(crate) fn layers<const K: usize>(&self, left: &[SurvivingWedge<K>]) -> Vec<Layer> {
         let of_layer = |(i, layer): (usize, &Layer)| {
             let costed = self.costed.iter().find(|costed| costed.layer == i);
@@ -214,18 +215,19 @@ impl<'m> AttributeLayers<'m> {
     }
 }
 
-/// The least and the greatest of the first `width` values of each wedge, as channels.
+/// Returns the smallest and largest of the first `width` values of all wedges, as channels.
 fn range(layer: &Layer, width: usize, scale: f64) -> [f32; 2] {
     let costed = layer.values.chunks_exact(layer.width).flat_map(|values| &values[..width]);
     let finite = costed.copied().filter(|x| x.is_finite());
     let [low, high] =
         finite.fold([f32::INFINITY, f32::NEG_INFINITY], |[low, high], x| [low.min(x), high.max(x)]);
-    // Values that are no numbers count as zero.
+    // NaN and infinity count as zero.
     let [low, high] = [low.min(0.0), high.max(0.0)].map(|x| (f64::from(x) * scale) as f32);
     [low, high]
 }
 
-/// The length of a unit of uv on the surface: the root of its area by that of its texture.
+/// Returns the length of a unit of uv on the surface: the square root of the area on the surface
+/// over that in uv.
 fn length_of_uv(mesh: &Mesh, layer: &Layer) -> f64 {
     let Some(attributes) = &mesh.attributes else { return 0.0 };
     let (mut area, mut in_texture) = (0.0, 0.0);

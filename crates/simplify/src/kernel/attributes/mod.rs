@@ -1,5 +1,5 @@
-//! What the engine asks of attributes; [`NoAttributes`] where there are none, and nothing is left of it in the
-//! code.
+//! Attributes in the kernel: the trait [`AttributeModel`], its implementation by quadrics at the
+//! wedges, and [`NoAttributes`](bare::NoAttributes), which compiles to nothing.
 
 pub(crate) mod attribute_quadric;
 pub(crate) mod attributed;
@@ -30,22 +30,22 @@ use crate::kernel::simd::LANES;
 use crate::refusal::Refusal;
 use meshlod_mesh::{Attributes, WedgeId};
 
-/// Attributes, as costs and contractions have to do with them.
+/// Attributes as costs and contractions use them.
 pub(crate) trait AttributeModel: Sized + Send + Sync {
-    /// What the surface itself costs.
+    /// Error metric of the geometry.
     type Metric: Metric;
 
-    /// Whether the surface may be worked on in parts.
+    /// True if the surface may be split into parts.
     const IN_PARTS: bool;
 
-    /// What each of so many parts looks like.
+    /// Splits the model for this number of parts.
     fn for_parts(self, parts: usize) -> Vec<Self>;
 
-    /// Adds to the squares of edges what attributes leave of them where they are best.
+    /// Adds to the quadrics of eight edges the attribute error that remains with the best values.
     fn add_attribute_quadrics(&self, sides: [EdgeSide<u32>; 2], edges: &mut EdgeQuadrics);
 
-    /// What eight edges cost if any of their vertices is on a seam. Of those without such an end,
-    /// what they cost if both may go anywhere.
+    /// Returns the costs of eight edges if any of their vertices is on a seam. Edges without such
+    /// an end are costed as if both ends were free.
     fn seam_costs(
         &self,
         vertices: &Vertices,
@@ -53,21 +53,21 @@ pub(crate) trait AttributeModel: Sized + Send + Sync {
         vs: &[u32; LANES],
     ) -> Option<Costs>;
 
-    /// Which end of an edge goes into which.
+    /// Decides which end of an edge is contracted into which.
     fn orient(&self, vertices: &Vertices, v: u32, target: u32) -> Result<Ends, Refusal>;
 
-    /// The squares of an edge with free ends, by those of the geometry.
+    /// Adds the attributes to the quadric of an edge with free ends.
     fn with_attributes(&self, ends: &Ends, geometry: EdgeQuadricF64) -> EdgeQuadricF64;
 
-    /// What attributes cost where `v1` goes to the place of `v0`.
+    /// Returns the attribute cost of contracting `v1` onto `v0`.
     fn cost_onto(&self, vertices: &Vertices, ends: &Ends) -> f32;
 
-    /// Finds what a contraction that may be otherwise makes of attributes; whether it turns a face over
-    /// in its texture.
+    /// Computes the attributes after a contraction without applying it. Returns whether it flips a
+    /// face in uv.
     fn preview(&mut self, vertices: &Vertices, edge_ring: &EdgeRing, collapse: &Collapse) -> bool;
 
-    /// Carries out what was last looked ahead to, before the vertices themselves change; gives what the
-    /// star of the new vertex has beside its faces.
+    /// Applies the last preview, before the vertices themselves change. Returns what the quadric of
+    /// the new vertex has in addition to its faces.
     fn apply(
         &mut self,
         vertices: &mut Vertices,
@@ -75,30 +75,33 @@ pub(crate) trait AttributeModel: Sized + Send + Sync {
         collapse: &Collapse,
     ) -> VertexQuadric;
 
-    /// Reads what is wanted of a vertex soon.
+    /// Reads what will soon be needed of a vertex.
     fn prefetch(&self, v: u32) -> u32;
 
-    /// What faces have by now, by their numbers and their corners as the engine was given them.
+    /// Returns the current attributes of these faces, given by their indices and their corners in
+    /// the kernel's vertices.
     fn attributes(&self, faces: impl Iterator<Item = (u32, [u32; 3])>) -> Option<Attributes>;
 
-    /// The same of all faces, dead ones too, with every wedge in its place.
+    /// Returns the current attributes of all faces, dead ones included, with every wedge at its
+    /// index.
     fn all_attributes(&self, faces: impl Iterator<Item = [u32; 3]>) -> Option<Attributes>;
 
-    /// Takes down the values that a contraction has given to a vertex: the next of those that are logged.
+    /// Records the values that a contraction has given to a vertex.
     fn record(&mut self, vertex: u32);
 
     /// Counts a logged step that gives no vertex new values.
     fn skip_record(&mut self);
 
-    /// What was taken down.
+    /// Takes the recorded values.
     fn recorded(&mut self) -> Vec<RecordedValues>;
 }
 
-/// The values that a wedge has after a contraction, by the number of that in the log.
+/// Values of a wedge after a contraction.
 #[derive(Clone, Debug)]
 pub(crate) struct RecordedValues {
+    /// Index of the contraction in the log.
     pub(crate) number: usize,
     pub(crate) wedge: WedgeId,
-    /// In all layers, one after the other.
+    /// Values in all layers, one after the other.
     pub(crate) values: Vec<f32>,
 }

@@ -1,8 +1,8 @@
-//! The values that wedges have after a contraction.
+//! The values of wedges after a contraction.
 //!
-//! Those that meet along the edge become one, with the values that fit both best. Where a vertex has
-//! several of one chart, creases in the shading, the others stay with their faces: each has the normal
-//! that fits it best, all have one place in the textures.
+//! A pair along the edge becomes one wedge with the values that fit both best. Where a vertex has
+//! several wedges in one chart, creases in the shading, the unpaired ones stay with their faces:
+//! each takes the normal that fits it best, and all share one place in uv.
 
 use crate::kernel::attributes::attribute_quadric::{AttributeQuadric, best_values};
 use crate::kernel::attributes::scratch::NewValues;
@@ -12,7 +12,7 @@ use crate::kernel::metric::Metric;
 use glam::Vec3;
 
 impl<M: Metric, const K: usize> WedgeQuadrics<'_, M, K> {
-    /// The values of the wedge that two become.
+    /// Returns the values of the wedge that a pair becomes.
     pub(crate) fn values(&self, collapse: &Collapse, [s0, s1]: [u32; 2]) -> [f32; K] {
         let (f0, f1) = (self.quadric(s0), self.quadric(s1));
         let before = f0.values();
@@ -24,10 +24,10 @@ impl<M: Metric, const K: usize> WedgeQuadrics<'_, M, K> {
         values
     }
 
-    /// Finds the new values of all slots of both ends.
+    /// Computes the new values of all slots of both ends.
     ///
-    /// Where `v0` stays, its values do; but if others come to it they are all written again, for what
-    /// becomes of a value in channels and back may be off by its last digit.
+    /// If `v0` stays where it is, its values do. But if unpaired slots of `v1` join it, all are
+    /// written again, because a value converted to channels and back may differ in its last digit.
     pub(crate) fn find_values(&mut self, collapse: &Collapse) {
         let mut renewed = std::mem::take(&mut self.scratch.renewed);
         renewed.clear();
@@ -61,7 +61,7 @@ impl<M: Metric, const K: usize> WedgeQuadrics<'_, M, K> {
         self.scratch.renewed = renewed;
     }
 
-    /// Gives slots of one chart one place in the textures.
+    /// Gives all slots of one chart the same place in uv.
     fn unify_charts(&self, renewed: &mut [NewValues<K>]) {
         for i in 0..renewed.len() {
             let chart = self.chart(renewed[i].leader);
@@ -86,7 +86,7 @@ impl<M: Metric, const K: usize> WedgeQuadrics<'_, M, K> {
         }
     }
 
-    /// Gives slots that go to another chart that one, and what no channel holds of its textures.
+    /// Assigns slots to the chart they join, and copies its textures outside the channels.
     pub(crate) fn update_charts(&mut self, wedge_pairs: &WedgePairs) {
         let Self { scratch, charts, layers, .. } = self;
         if charts.is_empty() {

@@ -1,30 +1,30 @@
-//! Room to work in for one contraction, made once.
+//! Working memory for one contraction, allocated once.
 
 use crate::kernel::attributes::attribute_quadric::AttributeQuadric;
 use crate::kernel::attributes::face_wedges::FaceWedges;
 use crate::kernel::collapse::edge_ring::ROOM;
 
-/// Values at corners of spokes, a channel of all in one row, and the lanes beyond their end.
+/// Values at corners of spokes: one row per channel, with room for the lanes beyond the end.
 type Rows<const K: usize> = [[f32; ROOM]; K];
 
-/// Room for a contraction.
+/// Working memory for the attributes of one contraction.
 pub(crate) struct Scratch<const K: usize> {
-    /// At `ids[i]` of spoke i.
+    /// Values at `ids[i]` of spoke i.
     pub(crate) first: Rows<K>,
-    /// Where there are seams, at `ids[i + 1]` of spoke i, at its apex before and after.
+    /// Values at `ids[i + 1]` of spoke i, at seams only; then those at its apex before and after.
     pub(crate) second: Rows<K>,
     pub(crate) before: Rows<K>,
     pub(crate) after: Rows<K>,
-    /// What the field of each spoke becomes, less what it was.
+    /// Change of each spoke's quadric.
     pub(crate) changes: [AttributeQuadric<K>; ROOM],
-    /// What it becomes, where there are seams.
+    /// New quadric of each spoke, at seams only.
     pub(crate) new: [AttributeQuadric<K>; ROOM],
-    /// Where there are none: the new vertex's values.
+    /// Values of the new vertex, away from seams.
     pub(crate) values: [f32; K],
-    /// Where there are seams: the slots that have new values, and which is where.
+    /// Slots with new values, at seams only.
     pub(crate) renewed: Vec<NewValues<K>>,
     pub(crate) slots: FaceWedges,
-    /// What slots take over that no channel holds.
+    /// Values outside the channels, taken over by slots.
     pub(crate) uncosted: Vec<f32>,
 }
 
@@ -53,8 +53,8 @@ impl<const K: usize> Scratch<K> {
 pub(crate) struct NewValues<const K: usize> {
     pub(crate) slot: u32,
     pub(crate) values: [f32; K],
-    /// The slot whose chart it has from now on.
+    /// Slot whose chart this one joins.
     pub(crate) leader: u32,
-    /// What it counts for the place in the textures that its chart has from now on.
+    /// Weight in the mean of its chart's places in uv.
     pub(crate) weight: f32,
 }

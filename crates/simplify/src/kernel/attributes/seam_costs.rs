@@ -1,8 +1,8 @@
-//! What edges cost where seams are, eight at a time.
+//! Costs of edges at seams, eight at a time.
 //!
-//! An edge along a seam has a pair of slots on each side. The second goes into a lane that is not wanted
-//! otherwise, if there is one. One end may have to go to the other; both costs are found, and each edge
-//! takes its own.
+//! An edge along a seam has a pair of slots on each side. The second pair goes into an unused lane,
+//! if there is one. Some edges must contract one end onto the other: both costs are computed, and
+//! each edge takes the one that applies.
 
 use glam::Vec3;
 
@@ -20,8 +20,8 @@ use crate::kernel::metric::{Metric, edges_between, least_costs};
 use crate::kernel::simd::{LANES, Row, Row3, SimdTask, widest};
 
 impl<M: Metric, const K: usize> WedgeQuadrics<'_, M, K> {
-    /// What eight edges cost if any of their vertices is on a seam. Of those without such an end, what
-    /// they cost if both may go anywhere.
+    /// Returns the costs of eight edges if any of their vertices is on a seam. Edges without such
+    /// an end are costed as if both ends were free.
     #[inline(always)]
     pub(crate) fn costs_at_seams(
         &self,
@@ -42,7 +42,7 @@ impl<M: Metric, const K: usize> WedgeQuadrics<'_, M, K> {
         Some(Costs { costs, any_special: VertexFlags(any).any(VertexFlags::SPECIAL) || floor > 0 })
     }
 
-    /// What slots of `v1` cost that meet none, if it goes to the place of `v0`: `by` from its own.
+    /// Returns the cost of the unpaired slots of `v1` when it moves by `by` to the place of `v0`.
     pub(crate) fn unpaired_onto(&self, ends: &Ends, by: Vec3) -> f32 {
         let cost = |slot: u32| {
             let quadric = self.quadric(slot);
@@ -57,7 +57,7 @@ impl<M: Metric, const K: usize> WedgeQuadrics<'_, M, K> {
     }
 }
 
-/// The costs of eight edges.
+/// SIMD task that costs eight edges.
 struct CostsAtSeams<'a, 'm, 'v, M, const K: usize> {
     wedges: &'a WedgeQuadrics<'m, M, K>,
     vertices: &'a Vertices<'v>,
@@ -76,26 +76,26 @@ impl<M: Metric, const K: usize> SimdTask for CostsAtSeams<'_, '_, '_, M, K> {
     }
 }
 
-/// How an edge is contracted.
+/// Motion of the ends of an edge.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Motion {
     Not,
     Free,
-    /// Its second end goes to the first.
+    /// The second end is contracted onto the first.
     Onto,
 }
 
-/// Eight edges, by the slots that meet along them.
+/// Eight edges with their pairs of slots.
 struct SeamBatch {
     ends: [[u32; LANES]; 2],
     slots: [[u32; LANES]; 2],
     ways: [Motion; LANES],
-    /// EdgeQuadrics with slots that meet none.
+    /// Edges that have unpaired slots.
     unpaired: [Option<Ends>; LANES],
-    /// On the other side of an edge, if there are others: which edge's, and the slots.
+    /// Second pairs: the lane of the edge, and the slots.
     others: [(usize, [u32; 2]); LANES],
     others_len: usize,
-    /// The lanes lent to the first of these.
+    /// Lanes lent to the first of these.
     lent: [usize; LANES],
     lent_len: usize,
 }
@@ -126,7 +126,7 @@ impl SeamBatch {
         for lane in 0..LANES {
             let (u, v) = (us.get(lane), vs[lane]);
             let flags = VertexFlags(vertices.get(u).flags.0 | vertices.get(v).flags.0);
-            // Lanes beyond the end look at the first one again.
+            // Lanes beyond the end repeat the first edge.
             let again = lane > 0 && (u, v) == (us.get(0), vs[0]);
             if flags.any(VertexFlags::SHUT) || again {
                 self.put(lane, [u, v], [NO_VERTEX; 2], Motion::Not);
@@ -165,7 +165,7 @@ impl SeamBatch {
         }
     }
 
-    /// Lends lanes that are not wanted to other sides. Whether any lane is wanted.
+    /// Lends unused lanes to second pairs. Returns whether any lane is in use.
     #[inline(always)]
     fn lend(&mut self) -> bool {
         let mut wanted = 0;
@@ -219,7 +219,7 @@ impl SeamBatch {
         costs
     }
 
-    /// Joins the other sides that no lane was lent to, each in that of its edge.
+    /// Adds the second pairs that got no lane, each in the lane of its edge.
     #[inline(always)]
     fn add_other_sides<M: Metric, const K: usize>(
         &self,
@@ -248,7 +248,7 @@ impl SeamBatch {
         }
     }
 
-    /// Joins what meets nothing, one by one: there is little of it.
+    /// Adds the unpaired slots one by one, as there are few.
     #[inline(always)]
     fn add_unpaired<M: Metric, const K: usize>(
         &self,
@@ -272,7 +272,7 @@ impl SeamBatch {
     }
 }
 
-/// What the second ends cost by their geometry alone if they go to the first ones.
+/// Returns the geometric cost of contracting each second end onto the first.
 #[inline(always)]
 fn onto_first<M: Metric>(first: &VertexQuadrics, second: &VertexQuadrics, half: &Row3) -> Row {
     let mut costs = [0.0; LANES];

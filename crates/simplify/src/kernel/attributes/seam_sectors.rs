@@ -1,29 +1,30 @@
-//! Where around a vertex which of its wedges is at the faces.
+//! The slot of a vertex in each of the faces around it.
 //!
-//! Most vertices have one wedge: its slot is the vertex's own number, and nothing is kept here. The
-//! others are flagged, and have a list of sectors: runs of faces with one wedge, counter-clockwise.
+//! Most vertices have one wedge: its slot is the vertex's own id, and nothing is stored here. The
+//! others are flagged and have a list of sectors, which are runs of faces with one wedge,
+//! counter-clockwise.
 
 use crate::kernel::collapse::WedgeSides;
 use crate::kernel::mesh::one_ring::{LONG, Vertices, index_in, index_in_ring};
 use crate::kernel::mesh::vertex::{RING, VertexFlags};
 
-/// A run of faces around a vertex that have one wedge: from this neighbour on, counter-clockwise.
+/// A run of faces around a vertex with one wedge, counter-clockwise from the neighbour `from`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Sector {
     pub(crate) from: u32,
     pub(crate) slot: u32,
 }
 
-/// The sectors of the vertices that have several wedges.
+/// Sectors of the vertices that have several wedges.
 #[derive(Default)]
 pub(crate) struct SeamSectors {
-    /// By vertex, which list; nothing at all in a mesh without seams.
+    /// Index of each vertex's list; empty in a mesh without seams.
     of_vertex: Vec<u32>,
     lists: Vec<Vec<Sector>>,
 }
 
 impl SeamSectors {
-    /// The sectors of a vertex; none if it has one wedge in the slot of its own number.
+    /// Returns the sectors of a vertex; none if it has one wedge in the slot of its own id.
     #[inline(always)]
     pub(crate) fn of(&self, v: u32) -> &[Sector] {
         match self.of_vertex.get(v as usize) {
@@ -32,20 +33,21 @@ impl SeamSectors {
         }
     }
 
-    /// The slots of `v` on both sides of its edge to a neighbour, if they differ.
+    /// Returns the slots of `v` on the two sides of its edge to a neighbour, if they differ.
     #[inline]
     pub(crate) fn parted(&self, v: u32, neighbour: u32) -> Option<[u32; 2]> {
         parted(self.of(v), neighbour)
     }
 
-    /// The slot of the face that begins at a neighbour, if that of the face before is `before`.
+    /// Returns the slot of the face that begins at a neighbour; `before` is that of the preceding
+    /// face.
     #[inline]
     pub(crate) fn next(&self, v: u32, neighbour: u32, before: u32) -> u32 {
         let sector = self.of(v).iter().find(|sector| sector.from == neighbour);
         sector.map_or(before, |sector| sector.slot)
     }
 
-    /// The slots of `v` on both sides of its edge to a neighbour.
+    /// Returns the slots of `v` on the two sides of its edge to a neighbour.
     #[inline(always)]
     pub(crate) fn sides(&self, vertices: &Vertices, v: u32, neighbour: u32) -> WedgeSides {
         let vertex = vertices.get(v);
@@ -66,8 +68,8 @@ impl SeamSectors {
         WedgeSides { before: slot, after: slot }
     }
 
-    /// Gives a vertex these slots, of the face that begins at each of its neighbours. Whether it has
-    /// anything but the slot of its own number.
+    /// Sets the slots of a vertex, given for the face that begins at each neighbour. Returns
+    /// whether there is any slot other than its own id.
     pub(crate) fn set(&mut self, v: u32, (ring, slots): (&[u32], &[u32]), vertices: usize) -> bool {
         let (own, last) = (slots[0], slots[slots.len() - 1]);
         let any = own != v || slots.iter().any(|&slot| slot != own);
@@ -96,9 +98,9 @@ impl SeamSectors {
         any
     }
 
-    /// A neighbour `gone` of `v` becomes `kept`. Of a wing, whose face with the two goes, `first` is the
-    /// one where that face begins: a sector of this face alone is no more. Whether it still has anything
-    /// but the slot of its own number.
+    /// Replaces the neighbour `gone` of `v` by `kept`. If `v` is a wing, `first` is the neighbour
+    /// where its dying face begins; a sector of that face alone is removed. Returns whether there
+    /// is still any slot other than its own id.
     pub(crate) fn rename(&mut self, v: u32, gone: u32, kept: u32, first: Option<u32>) -> bool {
         let sectors = match self.of_vertex.get(v as usize) {
             Some(&list) if list != u32::MAX => &mut self.lists[list as usize],
@@ -113,7 +115,7 @@ impl SeamSectors {
         for sector in sectors.iter_mut().filter(|sector| sector.from == gone) {
             sector.from = kept;
         }
-        // Where one is gone, those on both sides of it may be of one wedge.
+        // Where a sector is gone, the ones on its two sides may have the same wedge.
         let mut last = sectors.last().map_or(v, |last| last.slot);
         let single = sectors.iter().all(|sector| sector.slot == last);
         match single {
@@ -126,7 +128,7 @@ impl SeamSectors {
     }
 }
 
-/// The slots before and after a neighbour where a sector begins, if they differ.
+/// Returns the slots before and after a neighbour where a sector begins, if they differ.
 #[inline(always)]
 fn parted(sectors: &[Sector], neighbour: u32) -> Option<[u32; 2]> {
     let mut before = sectors.last()?.slot;
@@ -139,7 +141,7 @@ fn parted(sectors: &[Sector], neighbour: u32) -> Option<[u32; 2]> {
     None
 }
 
-/// The slot at a neighbour in the midst of a sector: of that which begins next before.
+/// Returns the slot at a neighbour inside a sector: that of the last sector that begins before it.
 #[inline(always)]
 fn within(ring: &[u32; RING], len: usize, sectors: &[Sector], neighbour: u32) -> u32 {
     let at = |w: u32| index_in_ring(ring, len, w).unwrap_or(0) as u32;
@@ -162,7 +164,7 @@ fn within_long(vertices: &Vertices, sectors: &[Sector], v: u32, neighbour: u32) 
 }
 
 impl Vertices<'_> {
-    /// Where in a ring a live vertex is, or one that it has taken the place of.
+    /// Returns the index in a ring of a live vertex, or of a dead one contracted into it.
     pub(crate) fn index_of_live(&self, ring: &[u32], v: u32) -> Option<usize> {
         index_in(ring, v).or_else(|| {
             ring.iter()
@@ -170,7 +172,8 @@ impl Vertices<'_> {
         })
     }
 
-    /// The live vertex that this one is or has gone into; nothing is shortened on the way.
+    /// Returns the live vertex that `v` is or has been contracted into, without shortening the
+    /// path.
     fn find_live(&self, mut v: u32) -> u32 {
         while self.get(v).flags.any(VertexFlags::DEAD) {
             v = self.get(v).target;

@@ -1,4 +1,4 @@
-//! What no channel holds of attributes: it moves along, from the closest point of the faces as they were.
+//! Attributes outside the metric: interpolated at the closest point of the old faces.
 
 use crate::kernel::metric::Metric;
 use glam::{DVec3, Vec3};
@@ -13,8 +13,8 @@ use crate::kernel::mesh::vertex::NO_VERTEX;
 use crate::surface::interpolate::{Place, shares};
 
 impl<M: Metric, const K: usize> WedgeQuadrics<'_, M, K> {
-    /// Gives the wedges that become one what is closest on the faces that they stand for. Without `slots`
-    /// vertices are slots.
+    /// Gives merged wedges the values at the closest point of the old faces that they belong to.
+    /// Without `slots`, the slots are the vertices.
     #[inline(always)]
     pub(crate) fn move_uncosted(
         &mut self,
@@ -49,7 +49,7 @@ impl<M: Metric, const K: usize> WedgeQuadrics<'_, M, K> {
                 *taken = pair[0];
             }
         }
-        // Only now: the values before were still wanted.
+        // Only now: until here the old values were needed.
         let mut left = &values[..];
         for slot in taken.into_iter().filter(|&slot| slot != NO_VERTEX) {
             left = self.layers.set_uncosted(slot, left);
@@ -58,7 +58,7 @@ impl<M: Metric, const K: usize> WedgeQuadrics<'_, M, K> {
     }
 }
 
-/// Whether there is this one of the old faces: the spokes, then those that go.
+/// Returns true if an old face exists: the spokes first, then the dying faces.
 fn is_face(edge_ring: &EdgeRing, i: usize) -> bool {
     match i.checked_sub(edge_ring.len) {
         None => edge_ring.is_face(i),
@@ -66,7 +66,7 @@ fn is_face(edge_ring: &EdgeRing, i: usize) -> bool {
     }
 }
 
-/// The new place's closest on one of the old faces.
+/// Returns the point of an old face closest to the new place.
 fn place(edge_ring: &EdgeRing, collapse: &Collapse, i: usize, slots: Option<&FaceWedges>) -> Place {
     let Ends { v0, v1, .. } = collapse.ends;
     let (corners, own) = match i.checked_sub(edge_ring.len) {

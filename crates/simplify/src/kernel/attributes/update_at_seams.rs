@@ -1,4 +1,4 @@
-//! Contractions where seams are: every face asks which wedges it has.
+//! Update of attributes by a contraction near seams, where the slots of every face are looked up.
 
 use crate::kernel::attributes::attribute_quadric::AttributeQuadric;
 use crate::kernel::attributes::face_wedges::FaceWedges;
@@ -12,7 +12,7 @@ use crate::kernel::metric::Metric;
 use crate::kernel::simd::SimdTask;
 use glam::Vec3;
 
-/// A contraction where something around has a seam, see [`WedgeQuadrics::contract_by_slots`].
+/// SIMD task of a contraction near a seam, see [`WedgeQuadrics::apply_at_seams`].
 pub(crate) struct UpdateAtSeams<'a, 'm, 'v, M, const K: usize> {
     pub(crate) wedges: &'a mut WedgeQuadrics<'m, M, K>,
     pub(crate) vertices: &'a mut Vertices<'v>,
@@ -30,7 +30,7 @@ impl<M: Metric, const K: usize> SimdTask for UpdateAtSeams<'_, '_, '_, M, K> {
 }
 
 impl<M: Metric, const K: usize> WedgeQuadrics<'_, M, K> {
-    /// Where something around has a seam. Gives what the new star has of seams.
+    /// Applies a contraction near a seam. Returns the seam quadrics of the new vertex.
     #[inline(always)]
     fn apply_at_seams(
         &mut self,
@@ -58,7 +58,7 @@ impl<M: Metric, const K: usize> WedgeQuadrics<'_, M, K> {
         M::renewed_seams(constraint, edge_ring.ghost.is_some())
     }
 
-    /// Brings up to date what the faces that change have added to all quadrics around.
+    /// Updates all quadrics around for the faces that change.
     #[inline(always)]
     fn update_quadrics(&mut self, edge_ring: &EdgeRing, collapse: &Collapse, slots: &FaceWedges) {
         let Self { quadrics, scratch, .. } = self;
@@ -92,7 +92,7 @@ impl<M: Metric, const K: usize> WedgeQuadrics<'_, M, K> {
         }
     }
 
-    /// Takes the squares of cuts that change out of the stars around.
+    /// Removes the seam quadrics of edges that change from the vertices around.
     fn remove_constraints(
         &self,
         vertices: &mut Vertices,
@@ -116,7 +116,7 @@ impl<M: Metric, const K: usize> WedgeQuadrics<'_, M, K> {
         }
     }
 
-    /// Puts what they become in; gives what the new vertex has of them.
+    /// Adds the seam quadrics of the changed edges. Returns those of the new vertex.
     fn add_constraints(
         &self,
         vertices: &mut Vertices,
@@ -143,7 +143,7 @@ impl<M: Metric, const K: usize> WedgeQuadrics<'_, M, K> {
         sum
     }
 
-    /// Whether charts differ across an edge, at this end.
+    /// Returns true if the charts differ across an edge at its end `v`.
     pub(crate) fn is_cut(&self, v: u32, w: u32) -> bool {
         self.seams.parted(v, w).is_some_and(|[a, b]| self.chart(a) != self.chart(b))
     }

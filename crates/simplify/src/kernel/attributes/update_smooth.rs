@@ -1,4 +1,4 @@
-//! What a contraction does to the quadrics around it.
+//! Update of attributes by a contraction away from seams, where slots are vertices.
 
 use crate::kernel::attributes::attribute_quadric::AttributeQuadric;
 use crate::kernel::attributes::scratch::Scratch;
@@ -12,7 +12,7 @@ use crate::kernel::simd::{LANES, Row, Row3, TINY, sum_of, transpose_back};
 use glam::{Vec3, Vec4};
 
 impl<M: Metric, const K: usize> WedgeQuadrics<'_, M, K> {
-    /// Where nothing around has a seam: slots are vertices. As looked ahead to.
+    /// Applies the last preview of a contraction away from seams.
     #[inline(always)]
     pub(crate) fn apply_smooth(&mut self, edge_ring: &EdgeRing, collapse: &Collapse) {
         let Ends { v0, v1, .. } = collapse.ends;
@@ -57,9 +57,9 @@ impl<M: Metric, const K: usize> WedgeQuadrics<'_, M, K> {
 }
 
 impl<const K: usize> Scratch<K> {
-    /// Puts what each spoke changes in its place; gives the sum of the new faces where there are no
-    /// seams, each new one where there are. `values` are those of both ends and of the new vertex, which
-    /// without seams are those of all apexes.
+    /// Computes the change of each spoke's quadric, and at seams also its new quadric. Returns the
+    /// sum over the new faces, which is used away from seams. There the values of both ends and of
+    /// the new vertex are those of all apexes.
     #[inline(always)]
     pub(crate) fn quadric_changes<M: Metric, const SEAMS: bool>(
         &mut self,
@@ -171,19 +171,19 @@ fn write<const K: usize>(
     }
 }
 
-/// Eight faces, and how a channel's slope on them follows from its values.
+/// Eight faces, and how a channel's gradient on them follows from its values.
 struct GradientFaces {
     along_a: Row3,
     along_b: Row3,
     weight: Row,
-    /// The weight's inverse.
+    /// Inverse of the weight.
     scale: Row,
-    /// The weight by the square of the normal.
+    /// Weight divided by the square of the normal.
     per_square: Row,
 }
 
 impl GradientFaces {
-    /// No face where the normal is zero.
+    /// A zero normal stands for no face.
     #[inline(always)]
     fn new<M: Metric>(
         spokes: &edge_ring::Spokes,
@@ -210,14 +210,14 @@ impl GradientFaces {
         faces
     }
 
-    /// The slope by the weight.
+    /// Returns the gradient times the weight.
     #[inline(always)]
     fn slope(&self, lane: usize, to_a: f32, to_b: f32) -> Vec3 {
         (self.along_a.get(lane) * to_a + self.along_b.get(lane) * to_b) * self.per_square[lane]
     }
 }
 
-/// The field of the face of the edge and a wing, by the values at both ends and at the wing.
+/// Returns the quadric of a dying face from the values at both ends and at the wing.
 pub(crate) fn dying_quadric<M: Metric, const K: usize>(
     edge_ring: &EdgeRing,
     wing: usize,

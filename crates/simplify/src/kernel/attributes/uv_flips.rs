@@ -1,8 +1,7 @@
-//! What a contraction would make of attributes, found before it is decided; and whether a face turns
-//! over in its texture.
+//! Preview of the attributes after a contraction, and the test for faces flipped in uv.
 //!
-//! A face that is left shall have the same sign of its area in uv as before, or next to no area there.
-//! Else what the texture shows would be there twice, once the wrong way round.
+//! A face shall keep the sign of its area in uv, or have next to none there. Otherwise a part of
+//! the texture would be seen twice, once mirrored.
 
 use crate::kernel::attributes::scratch::Scratch;
 use crate::kernel::attributes::wedge_quadrics::WedgeQuadrics;
@@ -12,18 +11,18 @@ use crate::kernel::mesh::one_ring::{Vertices, is_seam};
 use crate::kernel::metric::Metric;
 use crate::kernel::simd::{LANES, Row, SimdTask};
 
-/// The square of the area in the texture, as a part of that on the surface, that is none; where a length in
-/// the texture is one on the surface.
+/// Square of the area in uv, relative to that on the surface, below which a face counts as flat,
+/// for textures of weight one.
 const FLAT: f32 = 1.6e-3;
 
-/// [`FLAT`] where a length in the texture is so many on the surface.
+/// Returns [`FLAT`] for textures of another weight.
 #[inline(always)]
 fn flat(weight: f32) -> f32 {
     let area = weight * weight;
     FLAT * area * area
 }
 
-/// A look ahead where something around has a seam.
+/// SIMD task of a preview near a seam.
 pub(crate) struct UvFlipsAtSeams<'a, 'm, 'v, M, const K: usize> {
     pub(crate) wedges: &'a mut WedgeQuadrics<'m, M, K>,
     pub(crate) vertices: &'a Vertices<'v>,
@@ -41,14 +40,15 @@ impl<M: Metric, const K: usize> SimdTask for UvFlipsAtSeams<'_, '_, '_, M, K> {
 }
 
 impl<M: Metric, const K: usize> WedgeQuadrics<'_, M, K> {
-    /// Whether anything around has a seam.
+    /// Returns true if an end or a ring vertex is on a seam.
     #[inline(always)]
     pub(crate) fn has_seam(&self, vertices: &Vertices, edge_ring: &EdgeRing, ends: Ends) -> bool {
         let any = |v: &u32| is_seam(vertices, *v);
         any(&ends.v0) || any(&ends.v1) || edge_ring.ids().iter().any(any)
     }
 
-    /// Where nothing around has a seam: slots are vertices. Whether a face turns over in its texture.
+    /// Computes the new values away from seams, where slots are vertices. Returns whether a face
+    /// flips in uv.
     #[inline(always)]
     pub(crate) fn preview_smooth(&mut self, edge_ring: &EdgeRing, collapse: &Collapse) -> bool {
         let Ends { v0, v1, .. } = collapse.ends;
@@ -66,7 +66,7 @@ impl<M: Metric, const K: usize> WedgeQuadrics<'_, M, K> {
         layers.uvs().any(|u| scratch.folds::<false>(edge_ring, (u, flat), [&of_v0, &of_v1]))
     }
 
-    /// The same where something has.
+    /// Computes the new values near a seam. Returns whether a face flips in uv.
     #[inline(always)]
     fn preview_at_seams(
         &mut self,
@@ -96,8 +96,8 @@ impl<M: Metric, const K: usize> WedgeQuadrics<'_, M, K> {
 }
 
 impl<const K: usize> Scratch<K> {
-    /// Whether more faces look the other way than most in the plane of two channels, from `u` on, than
-    /// did before. Less than `flat` is no area.
+    /// Returns true if more faces face the minority side in the plane of the channels `u` and `u +
+    /// 1` than before. Areas below `flat` do not count.
     #[inline(always)]
     fn folds<const SEAMS: bool>(
         &self,
@@ -134,7 +134,7 @@ impl<const K: usize> Scratch<K> {
                     (ax[lane] - x) * (by[lane] - y) - (ay[lane] - y) * (bx[lane] - x)
                 };
                 let (old, new) = (old.get(lane), new.get(lane));
-                // Lanes past the end are faces of one point, and the ghost's have no area either.
+                // Lanes beyond the end are degenerate, and the ghost's faces have no area either.
                 before.count(area(x0[lane], y0[lane]), old.dot(old), flat);
                 after.count(area(x1[lane], y1[lane]), new.dot(new), flat);
             }
@@ -143,7 +143,7 @@ impl<const K: usize> Scratch<K> {
     }
 }
 
-/// How many faces look which way in a texture.
+/// Number of faces by orientation in uv.
 #[derive(Default)]
 struct UvOrientations {
     up: u32,
@@ -151,7 +151,7 @@ struct UvOrientations {
 }
 
 impl UvOrientations {
-    /// Adds a face by twice its area in the texture, and the square of that on the surface.
+    /// Counts a face by twice its area in uv and the square of that on the surface.
     #[inline(always)]
     fn count(&mut self, area: f32, on_surface: f32, flat: f32) {
         let counts = (area * area > on_surface * flat) & (on_surface > 0.0);

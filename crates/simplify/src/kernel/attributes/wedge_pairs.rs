@@ -1,4 +1,4 @@
-//! Which wedges of two vertices meet along their edge, and which of the two goes into the other.
+//! Pairing of the wedges along an edge, and the choice of the end that is contracted.
 
 use crate::kernel::attributes::bare::by_pins;
 use crate::kernel::attributes::seam_sectors::Sector;
@@ -9,7 +9,7 @@ use crate::kernel::metric::Metric;
 use crate::refusal::Refusal;
 
 impl<M: Metric, const K: usize> WedgeQuadrics<'_, M, K> {
-    /// Which end of an edge goes into which, and what meets.
+    /// Decides which end of an edge is contracted into which, and pairs their slots.
     #[inline(always)]
     pub(crate) fn ends(&self, vertices: &Vertices, v: u32, target: u32) -> Result<Ends, Refusal> {
         if !is_seam(vertices, v) && !is_seam(vertices, target) {
@@ -25,7 +25,8 @@ impl<M: Metric, const K: usize> WedgeQuadrics<'_, M, K> {
         if !leaves && !goes {
             return Err(Refusal::Seam);
         }
-        // Where two of one end meet one of the other not all may be one: that other end goes.
+        // Where two slots of one end meet one of the other, not all can become one: that other end
+        // goes.
         let [[a, _], [b, _]] = wedge_pairs.pairs;
         let one_meets_two = wedge_pairs.are_two && a == b;
         let turns = if leaves && goes { one_meets_two } else { leaves };
@@ -34,7 +35,7 @@ impl<M: Metric, const K: usize> WedgeQuadrics<'_, M, K> {
         Ok(Ends { v0, v1, free: leaves && goes, wedge_pairs: self.one_each(wedge_pairs) })
     }
 
-    /// One of `v1` that meets two goes into that of the lower wedge.
+    /// Resolves a slot of `v1` in two pairs: it is merged into the slot of the lower wedge.
     #[inline(always)]
     fn one_each(&self, mut wedge_pairs: WedgePairs) -> WedgePairs {
         let [[a, s], [b, t]] = wedge_pairs.pairs;
@@ -47,8 +48,8 @@ impl<M: Metric, const K: usize> WedgeQuadrics<'_, M, K> {
         wedge_pairs
     }
 
-    /// Whether the charts of an end of an edge all have one at the other end to go to, and only one.
-    /// Takes down whether it has slots that meet none.
+    /// Returns true if each chart of an end has exactly one chart at the other end to join. Also
+    /// notes whether the end has unpaired slots.
     #[inline(always)]
     fn may_leave(&self, wedge_pairs: &mut WedgePairs, (end, v): (usize, u32)) -> bool {
         let [[a, s], [b, t]] = wedge_pairs.pairs;
@@ -67,7 +68,7 @@ impl<M: Metric, const K: usize> WedgeQuadrics<'_, M, K> {
         all_go && !(first == second && parts())
     }
 
-    /// The slots of an end that do not meet any along the edge. They stay with their faces.
+    /// Returns the unpaired slots of an end, which stay with their faces.
     #[inline(always)]
     pub(crate) fn unpaired(&self, ends: &Ends, end: usize) -> impl Iterator<Item = u32> + '_ {
         let (v, wedge_pairs) = ([ends.v0, ends.v1][end], ends.wedge_pairs);
@@ -79,7 +80,7 @@ impl<M: Metric, const K: usize> WedgeQuadrics<'_, M, K> {
         sectors.iter().enumerate().filter_map(first)
     }
 
-    /// The slot of `v0` whose chart that of a slot of `v1` becomes.
+    /// Returns the slot of `v0` whose chart a slot of `v1` joins.
     pub(crate) fn leader(&self, wedge_pairs: &WedgePairs, slot: u32) -> u32 {
         let chart = self.chart(slot);
         let found = wedge_pairs.pairs().iter().find(|pair| self.chart(pair[1]) == chart);

@@ -1,10 +1,11 @@
-//! Attributes in the fast engine: a field at each wedge, beside the vertices.
+//! Attributes of the kernel: a quadric at each wedge, beside the vertices.
 //!
-//! A wedge is known by its slot: a vertex's first has the vertex's own number, the others follow after
-//! all of these. So a mesh without seams asks nobody which wedge it is.
+//! A wedge is known by its slot. The first wedge of a vertex has the vertex's own id as its slot,
+//! the others follow after the last vertex. So a mesh without seams needs no lookup.
 //!
-//! SeamSectors are contracted along themselves, both sides at once; a vertex that has no seam goes into one
-//! that has, which stays where it is. So do the ends of seams, and where several meet.
+//! Seams are contracted along themselves, both sides at once. A vertex off the seam is contracted
+//! into one on it, which stays where it is. The ends of seams and the points where several meet
+//! stay too.
 
 use std::marker::PhantomData;
 
@@ -16,26 +17,26 @@ use crate::kernel::attributes::scratch::Scratch;
 use crate::kernel::attributes::seam_sectors::SeamSectors;
 use crate::kernel::metric::Metric;
 
-/// All wedges of a surface.
+/// Quadrics of all wedges of a surface.
 pub(crate) struct WedgeQuadrics<'m, M, const K: usize> {
-    /// The metric of the geometry, which weighs faces for attributes too.
+    /// Metric of the geometry, which also weights faces for attributes.
     pub(crate) metric: PhantomData<M>,
-    /// By slot.
+    /// Quadrics by slot.
     pub(crate) quadrics: Vec<AttributeQuadric<K>>,
-    /// By slot: the one that it has become part of; itself if it has new values, `NOBODY` if it has
+    /// By slot: the slot it was merged into, itself if it has new values, `NO_VERTEX` if it has
     /// those of the input.
     pub(crate) merged_into: Vec<u32>,
     pub(crate) seams: SeamSectors,
-    /// By slot: the chart that it is of, see [`WedgeQuadrics::chart`]; empty where each is its own.
+    /// Chart of each slot, see [`WedgeQuadrics::chart`]; empty if each slot is its own.
     pub(crate) charts: Vec<u32>,
     pub(crate) layers: AttributeLayers<'m>,
     pub(crate) corners: Corners<'m>,
     pub(crate) scratch: Box<Scratch<K>>,
-    /// The values that contractions gave, where that is wanted.
+    /// Values given by contractions, if an observer wants them.
     pub(crate) record: Vec<RecordedValues>,
-    /// How many contractions have been logged.
+    /// Number of logged contractions.
     pub(crate) logged: usize,
-    /// What is at no wedge.
+    /// Quadric of a slot that does not exist.
     pub(crate) none: AttributeQuadric<K>,
 }
 
@@ -45,8 +46,9 @@ impl<M: Metric, const K: usize> WedgeQuadrics<'_, M, K> {
         self.quadrics.get(slot as usize).unwrap_or(&self.none)
     }
 
-    /// What the slots of one vertex have in common that differ in normals and tangents alone: their
-    /// place in the textures. A cut between charts stays; a crease in the shading is no obstacle.
+    /// Returns the chart of a slot. Slots of one vertex that differ in normals and tangents only
+    /// share a chart and a place in uv. A cut between charts is kept, a crease in the shading is no
+    /// obstacle.
     #[inline]
     pub(crate) fn chart(&self, slot: u32) -> u32 {
         self.charts.get(slot as usize).copied().unwrap_or(slot)

@@ -1,8 +1,8 @@
-//! How far a contraction takes the surface away from itself: the two old vertices from the new
-//! faces, the new vertex from the old ones.
+//! Deviation of the surface by a contraction: the distances of the two old vertices from the new
+//! faces, and of the new vertex from the old faces.
 //!
 //! The cost is a mean over planes, and planes do not see the tip of a spike: all of them pass close
-//! by its foot. Nor do they see a vertex that slides out along a fin.
+//! to its foot. Nor do they see a vertex that slides out along a fin.
 
 use glam::Vec3;
 
@@ -10,8 +10,8 @@ use crate::kernel::collapse::edge_ring::{EdgeRing, ROOM, Spokes, row3};
 use crate::kernel::simd::{LANES, Row3, TINY, select_max, select_min};
 
 impl EdgeRing {
-    /// The square of the greatest of the three distances. `place` as seen from v0; the new faces are
-    /// those last put.
+    /// Returns the square of the largest of the three distances. `place` is relative to `v0`; the
+    /// new faces are those of the last [`EdgeRing::try_place`].
     #[inline(always)]
     pub(crate) fn deviation(&self, place: Vec3) -> f32 {
         let beyond = [f32::INFINITY; LANES];
@@ -42,7 +42,8 @@ impl EdgeRing {
         select_max(nearest[0], select_max(nearest[1], nearest[2]))
     }
 
-    /// The squares of how far a place is from each of the old faces: the spokes, then those that go.
+    /// Returns the squared distance of a place from each old face: the spokes, then the dying
+    /// faces.
     pub(crate) fn squared_distances_to_old(&self, place: Vec3) -> [f32; ROOM] {
         let mut squares = [0.0; ROOM];
         for start in self.lane_starts() {
@@ -60,7 +61,7 @@ impl EdgeRing {
         squares
     }
 
-    /// The square of how far a place is from the planes of the old faces that stay, at most.
+    /// Returns the largest squared distance of a place from the planes of the old faces that stay.
     pub(crate) fn off_planes(&self, place: Vec3) -> f32 {
         let mut farthest = 0.0;
         for start in self.lane_starts() {
@@ -75,7 +76,7 @@ impl EdgeRing {
         farthest
     }
 
-    /// The dying faces: two corners as seen from v0, and the normal.
+    /// Returns the dying faces: two corners relative to `v0`, and the normal.
     #[inline(always)]
     fn dying_faces(&self) -> [[Vec3; 3]; 2] {
         let (first, last) = self.dying_normals();
@@ -83,11 +84,11 @@ impl EdgeRing {
     }
 }
 
-/// The faces around an edge, for many points.
+/// Faces around an edge, laid out for distance queries of many points.
 #[derive(Default)]
 pub(crate) struct FaceFan(Vec<FaceRows>);
 
-/// Eight faces: an apex as seen from v0, the other corners as seen from the apex, the normal.
+/// Eight faces: the apex relative to `v0`, the other corners relative to the apex, and the normal.
 struct FaceRows {
     apex: Row3,
     a: Row3,
@@ -96,13 +97,14 @@ struct FaceRows {
 }
 
 impl FaceFan {
-    /// Lays out the faces with the new vertex, which are those last put. `place` as seen from v0.
+    /// Lays out the faces with the new vertex, from the last [`EdgeRing::try_place`]. `place` is
+    /// relative to `v0`.
     pub(crate) fn lay_new(&mut self, edge_ring: &EdgeRing, place: Vec3) {
         self.0.clear();
         self.lay(edge_ring, &edge_ring.new, |_| place);
     }
 
-    /// Lays out the faces with the old vertices, those that die too.
+    /// Lays out the old faces, the dying ones included.
     pub(crate) fn lay_old(&mut self, edge_ring: &EdgeRing) {
         self.0.clear();
         self.lay(edge_ring, &edge_ring.old, |of_v1| edge_ring.along * of_v1);
@@ -135,7 +137,7 @@ impl FaceFan {
         }
     }
 
-    /// The square of the distance of a point, as seen from v0.
+    /// Returns the squared distance of a point given relative to `v0`.
     #[inline]
     pub(crate) fn squared(&self, point: Vec3) -> f32 {
         let mut nearest = [f32::INFINITY; LANES];
@@ -160,7 +162,7 @@ struct CornerFace {
     bb: f32,
     ab: f32,
     to_a: f32,
-    /// The square of the normal, and one over it.
+    /// Square of the normal. `to_unit` is its inverse.
     nn: f32,
     to_unit: f32,
 }
@@ -173,8 +175,8 @@ impl CornerFace {
         Self { a, b, normal, aa, bb, ab, to_a, nn, to_unit }
     }
 
-    /// The square of the distance of a point from it, or from its first edge where it does not lie
-    /// over it: the outer edge is left out.
+    /// Returns the squared distance of a point from the face, or from its first edge if the point
+    /// is not over the face. The outer edge is left out.
     #[inline(always)]
     fn squared(&self, point: Vec3) -> f32 {
         let (pa, pb) = (point.dot(self.a), point.dot(self.b));
@@ -186,7 +188,7 @@ impl CornerFace {
         if is_over { height * height * self.to_unit } else { edge }
     }
 
-    /// The square of the distance of a point from all of it.
+    /// Returns the squared distance of a point from the whole face.
     #[inline(always)]
     fn squared_of_all(&self, point: Vec3) -> f32 {
         let pb = point.dot(self.b);
@@ -195,7 +197,8 @@ impl CornerFace {
         select_min(select_min(self.squared(point), second), self.squared_of_rim(point))
     }
 
-    /// The square of the distance of a point from the outer edge, where the face has an area.
+    /// Returns the squared distance of a point from the outer edge; infinite if the face has no
+    /// area.
     #[inline(always)]
     fn squared_of_rim(&self, point: Vec3) -> f32 {
         let (along, from_a) = (self.b - self.a, point - self.a);

@@ -1,10 +1,10 @@
-//! What is around an edge, gathered once for all that a contraction asks.
+//! The one-ring of an edge, gathered once for all checks of a contraction.
 //!
 //! ```text
-//!        x1 = ids[0]                  The ring of what becomes of v0 and v1: first the vertices
-//!       /  | \                        around v0, from wing to wing, then the others around v1.
-//!   x2 —— v0 — v1 —— y                Spoke i is the face of ids[i], ids[i + 1] and v0, or v1 for
-//!       \  | /                        the last ones. Ghosts have their places too, and no area.
+//!        x1 = ids[0]                  The ring of the new vertex: first the neighbours of v0, from
+//!       /  | \                        wing to wing, then the other neighbours of v1. Spoke i is the
+//!   x2 —— v0 — v1 —— y                face of ids[i], ids[i + 1] and v0, or v1 for the last ones.
+//!       \  | /                        The ghost has a place in the ring too; its faces have no area.
 //!        xk = ids[of_v0]
 //! ```
 
@@ -17,35 +17,35 @@ use crate::kernel::mesh::vertex::{RING, VertexFlags, VertexQuadric};
 use crate::kernel::simd::{LANES, Row, Row3, select_max, sum_of, transpose, transpose_back};
 use crate::refusal::Refusal;
 
-/// Room for a ring and the lanes beyond its end.
+/// Room for the longest ring and the lanes beyond its end.
 pub(crate) const ROOM: usize = MAX_RING + 2 * LANES;
 
-/// The least cosine between a face's normal before and after, as in the general engine.
+/// Smallest cosine between the normals of a face before and after, as in the general engine.
 const MIN_COSINE: f32 = 0.2;
 
-/// What is around an edge.
+/// One-ring of an edge, with positions relative to `v0`.
 pub(crate) struct EdgeRing {
-    /// The ring.
+    /// Vertices of the ring.
     pub(crate) ids: [u32; ROOM],
-    /// How many of them there are.
+    /// Number of vertices in the ring.
     pub(crate) len: usize,
-    /// How many spokes are v0's: those before.
+    /// Number of spokes at `v0`, which come first.
     pub(crate) of_v0: usize,
-    /// The ghost's place in the ring.
+    /// Index of the ghost in the ring.
     pub(crate) ghost: Option<usize>,
-    /// v1 as seen from v0.
+    /// Position of `v1` relative to `v0`.
     pub(crate) along: Vec3,
-    /// The ring as seen from v0.
+    /// Positions of the ring relative to `v0`.
     pub(crate) ring: [[f32; ROOM]; 3],
-    /// One where a spoke is v1's.
+    /// One for the spokes at `v1`, zero for the others.
     pub(crate) of_v1: [f32; ROOM],
-    /// Twice the area of each spoke along its normal, now.
+    /// Normals of the old spokes, twice their area long.
     pub(crate) old: [[f32; ROOM]; 3],
-    /// The same with the new vertex.
+    /// Normals of the spokes at the new vertex, twice their area long.
     pub(crate) new: [[f32; ROOM]; 3],
-    /// What a boundary edge counts.
+    /// Weight of a boundary edge.
     pub(crate) boundary_weight: f32,
-    /// What a contraction changes in the star of each spoke.
+    /// Change of each spoke's quadric by the contraction.
     pub(crate) changes: [VertexQuadric; ROOM],
 }
 
@@ -67,13 +67,14 @@ impl EdgeRing {
         }
     }
 
-    /// The ring's vertices.
+    /// Returns the vertices of the ring.
     #[inline(always)]
     pub(crate) fn ids(&self) -> &[u32] {
         &self.ids[..self.len]
     }
 
-    /// Gathers the ring of an edge, or says why it may not be contracted wherever its vertex goes.
+    /// Gathers the ring of an edge, or refuses an edge that must not be contracted wherever the new
+    /// vertex goes.
     #[inline(always)]
     pub(crate) fn gather(
         &mut self,
@@ -93,7 +94,8 @@ impl EdgeRing {
         }
         self.len = len;
         self.of_v0 = ring0.len() - 2;
-        // The last of the first part is the first of the second; the last of all is written beyond.
+        // The last vertex of the first part is the first of the second. The very last is written
+        // beyond the end.
         let found = write_after(&mut self.ids, 0, (vertices, v0), v1)
             && write_after(&mut self.ids, self.of_v0, (vertices, v1), v0);
         if !found {
@@ -104,7 +106,8 @@ impl EdgeRing {
         Ok(())
     }
 
-    /// The link condition [DEGN99]: no common neighbours but the wings. Copies of a vertex are one.
+    /// Checks the link condition [DEGN99]: the ends have no common neighbours but the wings. Copies
+    /// of a vertex count as one.
     #[inline(always)]
     fn link(&self, vertices: &Vertices, ends: [u32; 2]) -> Result<(), Refusal> {
         let (first, second) = self.ids().split_at(self.of_v0 + 1);
@@ -117,7 +120,7 @@ impl EdgeRing {
         }
         for wing in [first[0], first[self.of_v0]] {
             let wing = vertices.get(wing);
-            // A wing of three faces would be left between two on the same vertices.
+            // A wing with three faces would be left between two faces on the same vertices.
             if wing.len <= 3 && !wing.flags.any(VertexFlags::BARRED) {
                 return Err(Refusal::Link);
             }
@@ -125,7 +128,8 @@ impl EdgeRing {
         if vertices.copied.is_empty() { Ok(()) } else { self.link_of_copies(vertices, ends) }
     }
 
-    /// As the input has it, where copies are one vertex: no edge may come to be twice.
+    /// Checks the link condition on the input's vertices, where copies are one: no edge may appear
+    /// twice.
     fn link_of_copies(&self, vertices: &Vertices, ends: [u32; 2]) -> Result<(), Refusal> {
         let origin = |&v: &u32| vertices.origin(v);
         let mut origins: Vec<u32> = self.ids().iter().chain(&ends).map(origin).collect();
@@ -140,8 +144,8 @@ impl EdgeRing {
             let copy_of_end = |w: &u32| vertices.origin(*w) == vertices.origin(end);
             let new = self.ids[others].iter().filter(|&&w| w != GHOST);
             for &w in new {
-                // Nor between copies, of which others may have the edge, nor to a hub, whose list may
-                // name dead vertices.
+                // Also not between copies, another of which may have the edge, and not to a hub,
+                // whose list may contain dead vertices.
                 let vertex = vertices.get(w);
                 let unclear = vertices.is_split(w) || vertex.flags.any(VertexFlags::BARRED);
                 if unclear || vertices.neighbours(w).iter().any(copy_of_end) {
@@ -152,7 +156,7 @@ impl EdgeRing {
         Ok(())
     }
 
-    /// AttributeModel up where the ring is, and what its faces are now.
+    /// Loads the positions of the ring, and computes the old normals.
     #[inline(always)]
     fn load_positions(&mut self, vertices: &Vertices, v0: u32, v1: u32) {
         let (from, to) = (vertices.get(v0).place(), vertices.get(v1).place());
@@ -160,7 +164,7 @@ impl EdgeRing {
         for start in self.lane_starts() {
             self.load_lanes(vertices, start, from);
         }
-        // The ring closes; the lanes beyond are faces of one point.
+        // Close the ring. The lanes beyond are degenerate faces.
         for x in &mut self.ring {
             x[self.len.next_multiple_of(LANES)] = x[0];
         }
@@ -180,7 +184,7 @@ impl EdgeRing {
         }
     }
 
-    /// AttributeModel up where eight of the ring are, and whose spokes theirs are.
+    /// Loads the positions of eight vertices of the ring, and marks the spokes at `v1`.
     #[inline(always)]
     fn load_lanes(&mut self, vertices: &Vertices, start: usize, from: Vec3) {
         let first = self.ids[0];
@@ -200,7 +204,7 @@ impl EdgeRing {
         *chunk_mut(&mut self.of_v1, start) = of_v1;
     }
 
-    /// Puts the ghost on the boundary: an edge to it is one that there is.
+    /// Places the ghost on the boundary vertex before it, so that its edge is an existing one.
     #[cold]
     fn place_ghost(&mut self, ghost: usize) {
         let before = (ghost + self.len - 1) % self.len;
@@ -212,14 +216,14 @@ impl EdgeRing {
         }
     }
 
-    /// Where each eight spokes begin.
+    /// Returns the start index of each group of eight spokes.
     #[inline(always)]
     pub(crate) fn lane_starts(&self) -> impl Iterator<Item = usize> + use<> {
         (0..self.len).step_by(LANES)
     }
 
-    /// Puts the new vertex at `place`, as seen from v0. Whether no face turns over, or by more than a
-    /// limit, or loses its area.
+    /// Places the new vertex, relative to `v0`, and computes the new normals. Refuses if a face
+    /// flips, turns by more than the limit, or loses its area.
     #[inline(always)]
     pub(crate) fn try_place(&mut self, place: Vec3) -> Result<(), Refusal> {
         for start in self.lane_starts() {
@@ -246,7 +250,7 @@ impl EdgeRing {
         if turned == 0 { Ok(()) } else { Err(Refusal::Flip) }
     }
 
-    /// The dying faces' normals, in the order of the wings they have.
+    /// Returns the normals of the two faces at the edge, in the order of their wings.
     #[inline(always)]
     pub(crate) fn dying_normals(&self) -> (Vec3, Vec3) {
         let (mut first, mut last) = (Vec3::ZERO, Vec3::ZERO);
@@ -259,7 +263,8 @@ impl EdgeRing {
         (first, last)
     }
 
-    /// What each spoke's star becomes, less what it was, and the new vertex's star but for boundaries.
+    /// Computes the change of each spoke's quadric. Returns the quadric of the new vertex without
+    /// boundary edges.
     #[inline(always)]
     pub(crate) fn quadric_changes(&mut self) -> VertexQuadric {
         let mut sums = [[0.0; LANES]; 9];
@@ -295,8 +300,9 @@ impl EdgeRing {
         ])
     }
 
-    /// The sum of n over the faces as they are, each once, and what n·x is where the volume stays, seen
-    /// from the middle; by the normals of the dying faces.
+    /// Returns the plane g·x = level on which the volume is preserved, relative to the middle of
+    /// the edge: the sum g of all old normals, each face once, and the level. The arguments are the
+    /// normals of the dying faces.
     #[inline(always)]
     pub(crate) fn volume_plane(&self, (first, last): (Vec3, Vec3)) -> (DVec3, f64) {
         let (n0, n1) = self.sums();
@@ -304,7 +310,7 @@ impl EdgeRing {
         ((n0 + n1 + first + last).as_dvec3(), (n1 - n0).as_dvec3().dot(half))
     }
 
-    /// The sums of the old normals around v0 and around v1.
+    /// Returns the sums of the old normals around `v0` and around `v1`.
     #[inline(always)]
     fn sums(&self) -> (Vec3, Vec3) {
         let (mut of_v0, mut of_v1) = (Row3::ZERO, Row3::ZERO);
@@ -320,8 +326,8 @@ impl EdgeRing {
         (sum(&of_v0), sum(&of_v1))
     }
 
-    /// Whether the surface ends here. Around a vertex that stands for one fan of several it ends only
-    /// where it does around the other end: the other fans go on.
+    /// Returns true if the edge is at the boundary. If `v0` is one of several copies, only a
+    /// boundary around `v1` counts: the other fans go on.
     #[inline(always)]
     pub(crate) fn is_open(&self, vertices: &Vertices, v0: u32) -> bool {
         match self.ghost {
@@ -330,7 +336,8 @@ impl EdgeRing {
         }
     }
 
-    /// The boundary edges among the spokes: where in the ring they end, from which apex before.
+    /// Returns the boundary edges among the spokes: the index in the ring of the far end, and
+    /// whether the near end is `v1`.
     #[inline(always)]
     pub(crate) fn boundary(&self) -> [(usize, bool); 2] {
         let Some(ghost) = self.ghost else { return [(0, false); 2] };
@@ -339,25 +346,25 @@ impl EdgeRing {
         [(before, before >= self.of_v0), (after, ghost >= self.of_v0)]
     }
 
-    /// Where in the ring the wing is of one of the faces that go.
+    /// Returns the index in the ring of the wing of the first or second dying face.
     #[inline(always)]
     pub(crate) fn wing(&self, dying: usize) -> usize {
         if dying == 0 { 0 } else { self.of_v0 }
     }
 
-    /// A vertex of the ring as seen from v0.
+    /// Returns the position of a ring vertex relative to `v0`.
     #[inline(always)]
     pub(crate) fn relative(&self, i: usize) -> Vec3 {
         one(&self.ring, i)
     }
 
-    /// Whether a spoke is a face, none of the ghost's.
+    /// Returns true if a spoke is a face, not one of the ghost.
     #[inline(always)]
     pub(crate) fn is_face(&self, spoke: usize) -> bool {
         self.ghost.is_none_or(|ghost| ghost != spoke && ghost != (spoke + 1) % self.len)
     }
 
-    /// The farthest of the ring and the ends from the middle of the edge, squared.
+    /// Returns the largest squared distance of the ring and the ends from the middle of the edge.
     #[inline(always)]
     pub(crate) fn reach(&self) -> f32 {
         let half = self.along * 0.5;
@@ -375,7 +382,7 @@ impl EdgeRing {
         farthest
     }
 
-    /// Eight spokes.
+    /// Returns eight spokes.
     #[inline(always)]
     pub(crate) fn spokes(&self, start: usize) -> Spokes {
         Spokes {
@@ -386,7 +393,7 @@ impl EdgeRing {
     }
 }
 
-/// Eight spokes: the ring's vertices, those after them, and which end's they are.
+/// Eight spokes: the ring's vertices, the ones after them, and which end the spokes belong to.
 #[derive(Clone, Copy)]
 pub(crate) struct Spokes {
     pub(crate) a: Row3,
@@ -395,14 +402,14 @@ pub(crate) struct Spokes {
 }
 
 impl Spokes {
-    /// Twice the area along the normal with this apex.
+    /// Returns the normal, twice the area long, of the face with this apex.
     #[inline(always)]
     fn normal(&self, lane: usize, apex: Vec3) -> Vec3 {
         (self.a.get(lane) - apex).cross(self.b.get(lane) - apex)
     }
 }
 
-/// n and n n' of one face: x, y, z, xx, yy, zz, xy, xz, yz.
+/// Returns n and n n' of one face: x, y, z, xx, yy, zz, xy, xz, yz.
 #[inline(always)]
 fn sums_of(Vec3 { x, y, z }: Vec3) -> [f32; 9] {
     [x, y, z, x * x, y * y, z * z, x * y, x * z, y * z]
@@ -435,8 +442,9 @@ fn write([x, y, z]: &mut [[f32; ROOM]; 3], start: usize, from: &Row3) {
     *chunk_mut(z, start) = from.z;
 }
 
-/// Writes the ring of a vertex from the neighbour after `end` on, and what comes to lie beyond it; false
-/// if `end` is no neighbour. Whole rooms: a copy of unknown length is a call.
+/// Writes the ring of `v` from the neighbour after `end` on. Returns false if `end` is not a
+/// neighbour. Always copies the whole array, also beyond the ring's end: a copy of variable length
+/// is a call.
 #[inline(always)]
 fn write_after(
     to: &mut [u32; ROOM],
@@ -465,7 +473,7 @@ fn write_long_after(to: &mut [u32], ring: &[u32], end: u32) -> bool {
     true
 }
 
-/// Whether those in a range that ends with the ring have one before it.
+/// Returns true if an id in the range also occurs in the ring before it.
 #[inline(always)]
 fn has_before(ids: &[u32; RING], range: Range<usize>) -> bool {
     let (start, mut times) = (range.start as u32, 0);
@@ -477,7 +485,7 @@ fn has_before(ids: &[u32; RING], range: Range<usize>) -> bool {
     times > 0
 }
 
-/// The ghost's faces have no area.
+/// Clears the normals of the ghost's two faces.
 fn clear(normals: &mut [[f32; ROOM]; 3], ghost: usize, len: usize) {
     for normals in normals {
         normals[ghost] = 0.0;

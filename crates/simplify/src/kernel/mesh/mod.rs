@@ -1,4 +1,4 @@
-//! The surface at work: vertices in 128 bytes each, with their one-rings.
+//! The surface: vertices of 128 bytes with their one-rings, in a local frame.
 
 pub(crate) mod local_frame;
 pub(crate) mod one_ring;

@@ -1,8 +1,8 @@
-//! Rings: sixteen neighbours in the vertex itself, more of them in a list beside.
+//! One-rings: up to sixteen neighbours in the vertex itself, longer rings in a list beside.
 //!
-//! A ring in the vertex is kept up by every contraction. One in a list is not: those of its vertices
-//! that have gone into others are replaced by them when it is next read, so that a hub of a hundred
-//! thousand faces costs its neighbours nothing.
+//! A ring in the vertex is kept up to date by every contraction. A list is not: neighbours that
+//! have been contracted are replaced when the list is next read, so a hub of a hundred thousand
+//! faces costs its neighbours nothing.
 
 use glam::Vec4;
 use rayon::prelude::*;
@@ -10,17 +10,19 @@ use rayon::prelude::*;
 use crate::kernel::mesh::vertex::{Bf16, NO_VERTEX, RING, Vertex, VertexFlags, VertexQuadric};
 use std::ops::Range;
 
-/// The length of a ring that is in a list, by the first number in its place; the second is a count.
+/// Value of [`Vertex::len`] for a ring in a list. The first number of `ring` is then the index of
+/// the list, the second its length.
 pub(crate) const LONG: u8 = u8::MAX;
 
-/// No edge is contracted to make a ring longer than this; a vertex whose ring is, waits until its
-/// neighbours have become fewer. Costs grow with the square of it.
+/// Longest ring that a contraction may create. A vertex with a longer one waits until its
+/// neighbours have become fewer. The cost of a contraction grows with the square of this.
 pub(crate) const MAX_RING: usize = 64;
 
-/// The vertex that closes the rings of boundary vertices. It has no record of its own.
+/// Vertex that closes the rings of boundary vertices. It has no record of its own.
 pub(crate) const GHOST: u32 = u32::MAX - 1;
 
-/// What the ghost looks like, and vertices of other parts: edges to them are not contracted.
+/// Record read in place of the ghost and of vertices in other parts: their edges are not
+/// contracted.
 static ELSEWHERE: Vertex = Vertex {
     quadric: VertexQuadric([Vec4::ZERO; 3]),
     target: NO_VERTEX,
@@ -33,31 +35,31 @@ static ELSEWHERE: Vertex = Vertex {
     ring: [NO_VERTEX; RING],
 };
 
-/// All vertices, dead ones too, and the rings that they have no room for.
+/// All vertices, dead ones included, and the rings too long for them.
 pub(crate) struct VertexStore {
     pub(crate) all: Vec<Vertex>,
     pub(crate) long: Vec<LongRing>,
-    /// The vertices that the last ones are copies of.
+    /// Originals of the copies, which are the last vertices.
     pub(crate) copied: Vec<u32>,
-    /// The vertices that have copies, in order.
+    /// Vertices that have copies, sorted.
     pub(crate) split: Vec<u32>,
-    /// What a boundary edge counts.
+    /// Weight of boundary edges.
     pub(crate) boundary_weight: f32,
 }
 
-/// A ring in a list, of a vertex that may have another by now.
+/// A ring in a list. Its vertex may have a ring elsewhere by now.
 pub(crate) struct LongRing {
     pub(crate) of: u32,
     ring: Vec<u32>,
 }
 
-/// A run of the vertices. Of others it knows only the ids.
+/// A range of the vertices. Vertices outside the range are known by their ids only.
 pub(crate) struct Vertices<'v> {
     pub(crate) all: &'v mut [Vertex],
-    /// The id of the first.
+    /// Id of the first vertex.
     pub(crate) base: u32,
     pub(crate) long: &'v mut Vec<LongRing>,
-    /// The vertices that those from `first_copy` on are copies of.
+    /// Originals of the copies, which are the vertices from `first_copy` on.
     pub(crate) copied: &'v [u32],
     pub(crate) split: &'v [u32],
     pub(crate) first_copy: u32,
@@ -79,24 +81,24 @@ impl VertexStore {
         Self { all, long, copied, split, boundary_weight }
     }
 
-    /// All of the vertices.
+    /// Borrows all vertices.
     pub(crate) fn whole(&mut self) -> Vertices<'_> {
         let first_copy = self.own() as u32;
         let Self { all, long, copied, split, .. } = self;
         Vertices { all, base: 0, long, copied, split, first_copy }
     }
 
-    /// How many of the vertices are the input's.
+    /// Returns the number of vertices that the input has.
     pub(crate) fn own(&self) -> usize {
         self.all.len() - self.copied.len()
     }
 
-    /// The vertex of the input that it is, or is a copy of.
+    /// Returns the vertex of the input that `v` is, or is a copy of.
     pub(crate) fn origin(&self, v: u32) -> u32 {
         (v as usize).checked_sub(self.own()).map_or(v, |copy| self.copied[copy])
     }
 
-    /// The live vertex that each is or has gone into.
+    /// Returns for each vertex the live vertex that it is or has been contracted into.
     pub(crate) fn live_vertices(&self) -> Vec<u32> {
         let next = |(v, vertex): (usize, &Vertex)| match vertex.flags.any(VertexFlags::DEAD) {
             true => vertex.target,
@@ -118,17 +120,17 @@ impl VertexStore {
 }
 
 impl<'v> Vertices<'v> {
-    /// Vertices of which none is a copy.
+    /// Borrows vertices none of which is a copy.
     pub(crate) fn new(all: &'v mut [Vertex], base: u32, long: &'v mut Vec<LongRing>) -> Self {
         Self { all, base, long, copied: &[], split: &[], first_copy: GHOST }
     }
 
-    /// Their ids.
+    /// Returns the ids of the vertices.
     pub(crate) fn ids(&self) -> Range<u32> {
         self.base..self.base + self.all.len() as u32
     }
 
-    /// Takes over the lists of a part of it.
+    /// Takes over the long rings of a part.
     pub(crate) fn adopt(&mut self, lists: Vec<LongRing>) {
         for (slot, list) in lists.into_iter().enumerate() {
             let next = self.long.len() as u32;
@@ -140,19 +142,19 @@ impl<'v> Vertices<'v> {
         }
     }
 
-    /// A vertex; of the ghost and of those in other parts, only that they are not to be touched.
+    /// Returns a vertex. The ghost and vertices of other parts read as one that is barred.
     #[inline(always)]
     pub(crate) fn get(&self, v: u32) -> &Vertex {
         self.all.get(v.wrapping_sub(self.base) as usize).unwrap_or(&ELSEWHERE)
     }
 
-    /// A vertex of this part.
+    /// Returns a vertex of this part for writing.
     #[inline(always)]
     pub(crate) fn get_mut(&mut self, v: u32) -> &mut Vertex {
         &mut self.all[v.wrapping_sub(self.base) as usize]
     }
 
-    /// The vertex of the input that it is, or is a copy of.
+    /// Returns the vertex of the input that `v` is, or is a copy of.
     #[inline]
     pub(crate) fn origin(&self, v: u32) -> u32 {
         if v < self.first_copy || v == GHOST {
@@ -161,12 +163,13 @@ impl<'v> Vertices<'v> {
         self.copied[(v - self.first_copy) as usize]
     }
 
-    /// Whether it is one of several copies of a vertex where the surface is not manifold.
+    /// Returns true if `v` is one of several copies of a non-manifold vertex.
     pub(crate) fn is_split(&self, v: u32) -> bool {
         (v >= self.first_copy && v != GHOST) || self.split.binary_search(&v).is_ok()
     }
 
-    /// The live vertex that this one is or has gone into.
+    /// Returns the live vertex that `v` is or has been contracted into, and shortens the path to
+    /// it.
     pub(crate) fn live_vertex(&mut self, mut v: u32) -> u32 {
         while self.get(v).flags.any(VertexFlags::DEAD) {
             let next = self.get(v).target;
@@ -179,7 +182,7 @@ impl<'v> Vertices<'v> {
         v
     }
 
-    /// Brings its ring up to date.
+    /// Brings the ring of a vertex up to date.
     #[inline(always)]
     pub(crate) fn refresh(&mut self, v: u32) {
         if self.get(v).len == LONG {
@@ -187,7 +190,7 @@ impl<'v> Vertices<'v> {
         }
     }
 
-    /// Its neighbours, counter-clockwise, as last brought up to date.
+    /// Returns the neighbours of a vertex, counter-clockwise, as last brought up to date.
     #[inline(always)]
     pub(crate) fn neighbours(&self, v: u32) -> &[u32] {
         let vertex = self.get(v);
@@ -197,6 +200,7 @@ impl<'v> Vertices<'v> {
         }
     }
 
+    /// Replaces contracted neighbours in a long ring by their live vertices.
     #[cold]
     fn refresh_long(&mut self, v: u32) {
         let slot = self.get(v).ring[0] as usize;
@@ -213,19 +217,19 @@ impl<'v> Vertices<'v> {
         self.long[slot].ring = list;
     }
 
-    /// Gives it the first `len` of these as neighbours.
+    /// Sets the ring of a vertex to the first `len` of these ids.
     #[inline(always)]
     pub(crate) fn set_ring_of<const N: usize>(&mut self, v: u32, ring: &[u32; N], len: usize) {
         if len > RING {
             return self.set_long(v, &ring[..len]);
         }
         let vertex = self.get_mut(v);
-        // All of the room, always: a copy of unknown length is a call.
+        // Copy the whole array: a copy of variable length is a call.
         vertex.ring.copy_from_slice(&ring[..RING]);
         vertex.len = len as u8;
     }
 
-    /// Gives it these neighbours.
+    /// Sets the ring of a vertex.
     #[inline(always)]
     pub(crate) fn set_ring(&mut self, v: u32, ring: &[u32]) {
         if ring.len() > RING {
@@ -256,7 +260,7 @@ impl<'v> Vertices<'v> {
 }
 
 impl Vertex {
-    /// Takes a neighbour out; true if that has made a hub into a vertex like others.
+    /// Removes a neighbour. Returns true if the vertex was a hub and no longer is.
     #[inline(always)]
     pub(crate) fn remove_neighbour(&mut self, neighbour: u32) -> bool {
         if self.len == LONG {
@@ -269,7 +273,7 @@ impl Vertex {
         }
         let len = self.len as usize;
         if let Some(at) = index_in_ring(&self.ring, len, neighbour) {
-            // All of it, always: a move of unknown length is a call.
+            // Move the whole array: a move of variable length is a call.
             for i in 0..RING - 1 {
                 let (here, next) = (self.ring[i], self.ring[i + 1]);
                 self.ring[i] = if (i as u32) < at as u32 { here } else { next };
@@ -279,7 +283,7 @@ impl Vertex {
         false
     }
 
-    /// Puts a neighbour in the place of another.
+    /// Replaces a neighbour by another.
     #[inline(always)]
     pub(crate) fn replace_neighbour(&mut self, gone: u32, kept: u32) {
         if self.len != LONG {
@@ -290,7 +294,7 @@ impl Vertex {
     }
 }
 
-/// Where it is among the first `len` of a ring, found without a guess.
+/// Returns the index of `v` among the first `len` ids of a ring, without a branch.
 #[inline(always)]
 pub(crate) fn index_in_ring(ring: &[u32; RING], len: usize, v: u32) -> Option<usize> {
     let (len, mut beyond) = (len as u32, 0);
@@ -300,12 +304,13 @@ pub(crate) fn index_in_ring(ring: &[u32; RING], len: usize, v: u32) -> Option<us
     (beyond as usize).checked_sub(1)
 }
 
-/// Where it is in a ring.
+/// Returns the index of `v` in a ring.
 #[inline(always)]
 pub(crate) fn index_in(ring: &[u32], v: u32) -> Option<usize> {
     ring.iter().position(|&w| w == v)
 }
 
+/// Returns true if a vertex lies on a seam.
 #[inline(always)]
 pub(crate) fn is_seam(vertices: &Vertices, v: u32) -> bool {
     vertices.get(v).flags.any(VertexFlags::SEAM)

@@ -1,43 +1,46 @@
-//! A vertex as the fast engine has it: 128 bytes, two lines of the cache.
+//! A vertex of the kernel: 128 bytes, two cache lines.
 //!
-//! The first line is what a neighbour asks for when it looks for its cheapest edge, the second is the
-//! ring. A look at a star reads both lines of its vertex and one of each neighbour, nothing else.
+//! The first line holds what a neighbour reads to find its cheapest edge, the second the ring.
+//! Costing all edges of a vertex reads both of its lines and one line of each neighbour.
 
 use glam::{Vec3, Vec4};
 
-/// How many neighbours a vertex has room for. Of horse-97k's vertices on the way to 1 %, fewer than
-/// one in a thousand have more.
+/// Number of neighbours that a vertex has room for. Of horse-97k's vertices on the way to 1 %,
+/// fewer than one in a thousand have more.
 pub(crate) const RING: usize = 16;
 
-/// No vertex.
+/// Id of no vertex.
 pub(crate) const NO_VERTEX: u32 = u32::MAX;
 
-/// A live vertex, or one that has gone into another.
+/// A live vertex, or one that has been contracted into another.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(128))]
 pub(crate) struct Vertex {
-    /// Where it is, in the engine's frame, and what the faces around it come to: `place` and `star`.
+    /// Its place in the frame, and its quadric there.
     pub(crate) quadric: VertexQuadric,
-    /// The neighbour that its cheapest edge goes to; of a dead one, the vertex it has gone into.
+    /// Other end of its cheapest edge. For a dead vertex, the vertex that it was contracted into.
     pub(crate) target: u32,
-    /// The square of how far the surface has moved here.
+    /// Square of the distance that the surface has moved here.
     pub(crate) moved: f32,
-    /// The bucket that its entry in the queue is in.
+    /// Bucket of its entry in the queue.
     pub(crate) bucket: u16,
-    /// EdgeQuadrics up to this bucket have been refused since the ring changed.
+    /// Highest bucket whose edges have been refused since the ring changed.
     pub(crate) floor: u16,
     pub(crate) flags: VertexFlags,
-    /// How many of `ring` are its neighbours; `LONG` where they are elsewhere.
+    /// Number of neighbours in `ring`, or [`LONG`](crate::kernel::mesh::one_ring::LONG) if they are
+    /// in a list.
     pub(crate) len: u8,
-    /// What its squares are at its own place.
+    /// Constant term of its quadric.
     pub(crate) constant: Bf16,
-    /// The neighbours, counter-clockwise seen from outside.
+    /// Neighbours, counter-clockwise as seen from outside.
     pub(crate) ring: [u32; RING],
 }
 
-/// The squares at a vertex, seen from there, in three registers: (the place), a vector; a matrix as xx,
-/// yy, zz, xy, xz, yz. By `lindstrom-turk` the sums of n and of n n' over the faces around, n twice the
-/// area along the normal; by `qem` b and A of x'Ax − 2b·x + c.
+/// Place of a vertex and its quadric relative to that place, in three registers: the place, a
+/// vector, and a symmetric matrix as xx, yy, zz, xy, xz, yz.
+///
+/// For `lindstrom-turk` these are the sums of n and of n n' over the faces around, where n is twice
+/// the area along the normal; for `qem`, b and A of x'Ax − 2b·x + c.
 ///
 /// ```text
 /// place.x place.y place.z  x | y z  xx yy | zz xy xz yz
@@ -46,47 +49,48 @@ pub(crate) struct Vertex {
 #[repr(C)]
 pub(crate) struct VertexQuadric(pub(crate) [Vec4; 3]);
 
-/// What squares are at their vertex itself, c of x'Ax − 2b·x + c: a float without its lower half, since
-/// that is the room there is. It is off by one part in 256; costs are told apart by a fifth. Where all is
-/// remembered, what comes to it in smaller parts is lost.
+/// Constant term c of x'Ax − 2b·x + c, the value of a quadric at its vertex: a float without its
+/// lower half, for lack of room. It is off by one part in 256, while buckets are a fifth apart.
+/// Where nothing is forgotten, increments smaller than its precision are lost.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Bf16(u16);
 
-/// All the squares of a vertex.
+/// Quadric of a vertex with its constant term.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct FullQuadric {
     pub(crate) star: VertexQuadric,
     pub(crate) constant: Bf16,
 }
 
-/// Yes-or-no facts about a vertex.
+/// Flags of a vertex.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct VertexFlags(pub(crate) u8);
 
 impl VertexFlags {
-    /// It may not move.
+    /// The vertex must not move.
     pub(crate) const PINNED: Self = Self(1);
-    /// It has gone into another.
+    /// The vertex has been contracted into another.
     pub(crate) const DEAD: Self = Self(2);
-    /// No edge to it may be contracted: the ghost, and hubs until they have shrunk.
+    /// Edges to this vertex must not be contracted: the ghost, and hubs until they have shrunk.
     pub(crate) const BARRED: Self = Self(4);
-    /// A face of it has changed since it was looked at.
+    /// A face of the vertex has changed since it was costed.
     pub(crate) const STALE: Self = Self(8);
-    /// It has neighbours in another part, so it waits until both are in one.
+    /// The vertex has neighbours in another part, and waits until both parts are one.
     pub(crate) const OUTER: Self = Self(64);
-    /// No edge to it may be contracted, as things are.
+    /// Edges to this vertex must not be contracted for now.
     pub(crate) const SHUT: Self = Self(Self::BARRED.0 | Self::OUTER.0);
-    /// It moves together with the others of its tie, or not at all.
+    /// The vertex moves together with the others of its tie, or not at all.
     pub(crate) const TIED: Self = Self(16);
-    /// It goes late: what moves it costs [more](crate::kernel::rule::protection).
+    /// The vertex goes late: contractions that move it cost
+    /// [more](crate::kernel::metric::protection).
     pub(crate) const PROTECTED: Self = Self(128);
-    /// It has several wedges, or another slot than that of its own number.
+    /// The vertex has several wedges, or one in a slot other than its own id.
     pub(crate) const SEAM: Self = Self(32);
 
-    /// Not free by itself.
+    /// The vertex is not free to move by itself.
     pub(crate) const HELD: Self = Self(Self::PINNED.0 | Self::TIED.0);
 
-    /// What makes a cost other than that of a free edge.
+    /// The cost of an edge at this vertex differs from that of a free edge.
     pub(crate) const SPECIAL: Self =
         Self(Self::PINNED.0 | Self::SHUT.0 | Self::PROTECTED.0 | Self::TIED.0);
 
@@ -95,7 +99,8 @@ impl VertexFlags {
         self.0 & of.0 != 0
     }
 
-    /// Whether a vertex stays where it is if an edge to one of these flags is contracted.
+    /// Returns true if a vertex with these flags stays where it is when its edge to one with
+    /// `other` is contracted.
     #[inline(always)]
     pub(crate) fn stays_beside(self, other: Self) -> bool {
         self.any(Self::PINNED) || (self.any(Self::TIED) && !other.any(Self::TIED))
@@ -115,7 +120,7 @@ impl VertexFlags {
 impl Bf16 {
     pub(crate) const NONE: Self = Self(0);
 
-    /// The nearest to this; nothing below zero, which is rounding.
+    /// Rounds to the nearest value. Values below zero are rounding errors and become zero.
     #[inline(always)]
     pub(crate) fn new(value: f32) -> Self {
         Self((value.max(0.0).to_bits().saturating_add(1 << 15) >> 16) as u16)
@@ -148,7 +153,7 @@ impl VertexQuadric {
         self.0[2] -= change.0[2];
     }
 
-    /// One face, without a place.
+    /// Returns the quadric of one face, without a place.
     #[inline(always)]
     pub(crate) fn face(normal: Vec3) -> Self {
         let Vec3 { x, y, z } = normal;
@@ -157,7 +162,7 @@ impl VertexQuadric {
         Self([Vec4::new(0.0, 0.0, 0.0, x), second, third])
     }
 
-    /// The squares of the areas swept over a boundary edge; seen from its ends.
+    /// Returns the quadric of the areas swept over a boundary edge, relative to either end.
     pub(crate) fn boundary(along: Vec3, weight: f32) -> Self {
         let Vec3 { x, y, z } = along;
         let squared = along.length_squared();
@@ -174,7 +179,7 @@ impl VertexQuadric {
         Vec3::new(self.0[0].w, self.0[1].x, self.0[1].y)
     }
 
-    /// xx, yy, zz, xy, xz, yz.
+    /// Returns the matrix: xx, yy, zz, xy, xz, yz.
     #[inline(always)]
     pub(crate) fn squares(&self) -> [f32; 6] {
         let [_, b, c] = &self.0;
@@ -202,7 +207,7 @@ impl Vertex {
         self.quadric.0[0].truncate()
     }
 
-    /// Puts it at a place, with the squares that it has there.
+    /// Moves the vertex to a place, where it has this quadric.
     #[inline(always)]
     pub(crate) fn put(&mut self, place: Vec3, quadric: FullQuadric) {
         let VertexQuadric([first, second, third]) = quadric.star;

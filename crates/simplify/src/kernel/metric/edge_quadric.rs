@@ -1,13 +1,13 @@
-//! Quadratic forms of edges, eight at a time in single precision.
+//! Quadrics of edges, eight at a time in single precision.
 
 use crate::kernel::mesh::one_ring::Vertices;
 use crate::kernel::simd::{LANES, Row, Row3, transpose};
 use glam::{Vec3, Vec4};
 
-/// How strongly the optimum is pulled to the middle of the edge, as in the general engine.
+/// Strength of the pull of the optimum to the middle of the edge, as in the general engine.
 pub(crate) const PULL: f32 = 1e-5;
 
-/// One end of eight edges: one and the same or one of each.
+/// One end of eight edges: shared by all, or one for each.
 #[derive(Clone, Copy)]
 pub(crate) enum EdgeSide<T> {
     Of(T),
@@ -35,7 +35,7 @@ impl<T: Copy> EdgeSide<T> {
 }
 
 impl EdgeSide<Vec4> {
-    /// Four floats of each, in rows.
+    /// Transposes four floats of each end into rows.
     #[inline(always)]
     pub(crate) fn rows(self) -> [Row; 4] {
         match self {
@@ -48,19 +48,20 @@ impl EdgeSide<Vec4> {
     }
 }
 
-/// What eight edges cost if none is special.
+/// Costs of eight edges.
 pub(crate) struct Costs {
     pub(crate) costs: Row,
-    /// Whether one may be: has an end with one of [`SPECIAL`], or a floor.
+    /// True if an edge may have an end with a flag of
+    /// [`SPECIAL`](crate::kernel::mesh::vertex::VertexFlags::SPECIAL), or a floor.
     pub(crate) any_special: bool,
 }
 
-/// A symmetric matrix: xx, yy, zz, xy, xz, yz.
+/// Symmetric matrix: xx, yy, zz, xy, xz, yz.
 #[derive(Clone, Copy)]
 pub(crate) struct SymmetricMatrix(pub(crate) [f32; 6]);
 
 impl SymmetricMatrix {
-    /// The product with a vector.
+    /// Multiplies the matrix by a vector.
     #[inline(always)]
     pub(crate) fn apply(&self, Vec3 { x, y, z }: Vec3) -> Vec3 {
         let [xx, yy, zz, xy, xz, yz] = self.0;
@@ -72,7 +73,7 @@ impl SymmetricMatrix {
         self.0[0] + self.0[1] + self.0[2]
     }
 
-    /// x'Ax.
+    /// Evaluates x'Ax.
     pub(crate) fn at(&self, Vec3 { x, y, z }: Vec3) -> f32 {
         let [xx, yy, zz, xy, xz, yz] = self.0;
         let squares = xx * x * x + yy * y * y + zz * z * z;
@@ -80,21 +81,21 @@ impl SymmetricMatrix {
     }
 }
 
-/// The product v v': xx, yy, zz, xy, xz, yz.
+/// Returns the outer product v v': xx, yy, zz, xy, xz, yz.
 #[inline(always)]
 pub(crate) fn outer(Vec3 { x, y, z }: Vec3) -> [f32; 6] {
     [x * x, y * y, z * z, x * y, x * z, y * z]
 }
 
-/// The squares of eight vertices.
+/// Quadrics of eight vertices.
 pub(crate) struct VertexQuadrics {
     pub(crate) place: Row3,
     pub(crate) vector: Row3,
     pub(crate) squares: [Row; 6],
     pub(crate) constant: Row,
-    /// All that any of them has.
+    /// Union of the flags.
     pub(crate) flags: u8,
-    /// Zero where none has any.
+    /// Bitwise or of the floors; zero if no vertex has one.
     pub(crate) floor: u16,
 }
 
@@ -127,7 +128,7 @@ pub(crate) fn lane_of(rows: &[Row; 6], lane: usize) -> [f32; 6] {
     [a[lane], b[lane], c[lane], d[lane], e[lane], f[lane]]
 }
 
-/// Squares of one edge, seen from its middle: S, q and c.
+/// Quadric of one edge relative to its middle: S, q and c.
 pub(crate) struct EdgeQuadric {
     pub(crate) sum: SymmetricMatrix,
     pub(crate) slope: Vec3,
@@ -139,8 +140,9 @@ impl EdgeQuadric {
         Self { sum: SymmetricMatrix([0.0; 6]), slope: Vec3::ZERO, at_middle: 0.0 };
 }
 
-/// The squares of eight edges, seen from the middle of each: x'Sx − 2 q·x + c. The volume stays where g·x
-/// is `level`, if the rule asks for that. The same from either end, to the bit, but at seams.
+/// Quadrics of eight edges, each relative to its middle: x'Sx − 2 q·x + c. The volume is preserved
+/// where g·x is `level`, if the metric asks for that. Away from seams both directions of an edge
+/// give the same bits.
 pub(crate) struct EdgeQuadrics {
     pub(crate) half: Row3,
     /// S.
@@ -164,14 +166,14 @@ impl EdgeQuadrics {
         level: [0.0; LANES],
     };
 
-    /// The squares of one.
+    /// Returns the quadric of one edge.
     #[inline(always)]
     pub(crate) fn part(&self, lane: usize) -> EdgeQuadric {
         let (slope, at_middle) = (self.slope.get(lane), self.at_middle[lane]);
         EdgeQuadric { sum: SymmetricMatrix(lane_of(&self.sum, lane)), slope, at_middle }
     }
 
-    /// Gives one these squares.
+    /// Sets the quadric of one edge.
     #[inline(always)]
     pub(crate) fn set(&mut self, lane: usize, part: &EdgeQuadric) {
         for (sum, part) in self.sum.iter_mut().zip(part.sum.0) {
@@ -181,7 +183,7 @@ impl EdgeQuadrics {
         self.at_middle[lane] = part.at_middle;
     }
 
-    /// Adds to the squares of one.
+    /// Adds to the quadric of one edge.
     #[inline(always)]
     pub(crate) fn add(&mut self, lane: usize, part: &EdgeQuadric) {
         for (sum, part) in self.sum.iter_mut().zip(part.sum.0) {

@@ -1,13 +1,13 @@
-//! The squares of one edge in doubles, for where its vertex goes.
+//! The quadric of one edge in f64, from which the place of the new vertex is computed.
 
 use glam::{DMat3, DVec3};
 
 use crate::kernel::mesh::vertex::VertexQuadric;
 
-/// The squares of an edge, seen from its middle: x'Sx − 2 q·x + c; and the plane of equal volumes.
+/// Quadric of an edge relative to its middle, x'Sx − 2 q·x + c, and the plane of equal volume.
 #[derive(Clone, Copy)]
 pub(crate) struct EdgeQuadricF64 {
-    /// Half the edge.
+    /// Half of the edge vector.
     pub(crate) half: DVec3,
     /// S.
     pub(crate) sum: DMat3,
@@ -15,20 +15,20 @@ pub(crate) struct EdgeQuadricF64 {
     pub(crate) slope: DVec3,
     /// c.
     pub(crate) at_middle: f64,
-    /// The sum of n over the faces, each once.
+    /// Sum of the normals of the faces, each face once.
     pub(crate) normal: DVec3,
-    /// `normal`·x where the volume stays.
+    /// Value of `normal`·x where the volume is preserved.
     pub(crate) level: f64,
 }
 
 impl EdgeQuadricF64 {
-    /// The squares there.
+    /// Evaluates the quadric at a place relative to the middle.
     #[inline(always)]
     pub(crate) fn at(&self, x: DVec3) -> f64 {
         x.dot(self.sum * x) - 2.0 * self.slope.dot(x) + self.at_middle
     }
 
-    /// Together with another edge between the same two places.
+    /// Adds the quadric of another edge between the same two places.
     pub(crate) fn with(&self, other: &Self) -> Self {
         Self {
             half: self.half,
@@ -40,19 +40,19 @@ impl EdgeQuadricF64 {
         }
     }
 
-    /// The sum of the faces' weights.
+    /// Returns the sum of the faces' weights.
     pub(crate) fn weight(&self) -> f64 {
         self.sum.x_axis.x + self.sum.y_axis.y + self.sum.z_axis.z
     }
 }
 
-/// The matrix of the squares at a vertex.
+/// Returns the matrix of a vertex quadric.
 #[inline(always)]
 pub(crate) fn matrix(star: &VertexQuadric) -> DMat3 {
     symmetric(star.squares())
 }
 
-/// The matrix of xx, yy, zz, xy, xz, yz.
+/// Returns the matrix of xx, yy, zz, xy, xz, yz.
 #[inline(always)]
 pub(crate) fn symmetric([xx, yy, zz, xy, xz, yz]: [f32; 6]) -> DMat3 {
     let column = |x: f32, y: f32, z: f32| DVec3::new(x.into(), y.into(), z.into());

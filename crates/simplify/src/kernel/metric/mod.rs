@@ -1,12 +1,12 @@
-//! What the loop asks of a method: the squares that vertices and edges have, what they cost at their
-//! least, and what a contraction makes of them.
+//! The error metric of a method: the quadrics of vertices and edges, their minimum, and their
+//! update by a contraction.
 //!
-//! | | [`SweptVolume`](crate::kernel::memoryless::SweptVolume) | [`PlaneDistance`](crate::kernel::quadrics::PlaneDistance) |
+//! | | [`SweptVolume`](crate::kernel::SweptVolume) | [`PlaneDistance`](crate::kernel::PlaneDistance) |
 //! |---|---|---|
-//! | squares | of the volumes that faces sweep | of distances from planes, times areas |
-//! | where they are least | on the plane of equal volumes | anywhere |
-//! | a new vertex has those of | its faces | its faces, and a tenth of what its ends had |
-//! | the vertices around it, of | their faces | what they had |
+//! | square of | the volume swept by a face | the distance from a plane, weighted by area |
+//! | minimized | on the plane of equal volume | anywhere |
+//! | new vertex | the quadrics of its faces | nine tenths of its faces', a tenth of its ends' |
+//! | vertices around | the quadrics of their faces | unchanged |
 
 pub(crate) mod edge_quadric;
 pub(crate) mod edge_quadric_f64;
@@ -25,31 +25,33 @@ use glam::{DVec3, Vec3};
 use crate::engine::locks;
 use crate::options::Method;
 
-/// A method, by its squares.
+/// Error metric of a method.
 pub(crate) trait Metric: Copy + Send + Sync {
-    /// Whether a vertex has nothing but the squares of the faces and lines around it as they are.
+    /// True if a vertex has the quadrics of its current faces and lines, and nothing else.
     const IS_MEMORYLESS: bool;
 
-    /// The method by its name.
+    /// The method.
     const METHOD: Method;
 
-    /// What a boundary edge counts, unless another weight is asked for.
+    /// Default weight of a boundary edge.
     const BOUNDARY_WEIGHT: f32;
 
-    /// By how many buckets of a quarter octave a cost may have risen since its vertex was looked at.
+    /// Number of buckets, four to the octave, by which a cost may have risen since its vertex was
+    /// costed.
     const SLACK: u16;
 
-    /// What the square of half the length of an edge counts. Short edges go first where all costs are
-    /// rounding.
+    /// Weight of the square of half the edge length. Short edges go first where all costs are
+    /// rounding errors.
     const SHORT_FIRST: f32;
 
-    /// What a face adds to each of its vertices, by twice its area along its normal.
+    /// Returns what a face adds to each of its vertices. The normal is twice the area long.
     fn face(normal: Vec3) -> VertexQuadric;
 
-    /// What an edge of the boundary adds to both of its ends, by the same of its face.
+    /// Returns what a boundary edge adds to both ends. The normal is that of its face, twice the
+    /// area long.
     fn boundary(along: Vec3, normal: Vec3, weight: f32) -> VertexQuadric;
 
-    /// Adds to the squares of one of eight edges what the ends have beside planes through them.
+    /// Adds the linear and constant terms of the ends to the quadric of one of eight edges.
     fn add_linear_terms(
         edges: &mut EdgeQuadrics,
         lane: usize,
@@ -57,20 +59,21 @@ pub(crate) trait Metric: Copy + Send + Sync {
         second: &VertexQuadrics,
     );
 
-    /// The weight of a face for attributes, by the square of twice its area, and that weight by the
-    /// square: in the terms of [`Self::face`].
+    /// Returns the weight of a face for attributes from the square of twice its area, and the
+    /// weight divided by that square. Weights are those of [`Self::face`].
     fn face_weight(squared: f32) -> (f32, f32);
 
-    /// What an edge between two charts adds to both of its ends, which otherwise would cost nothing
-    /// to move across the surface.
+    /// Returns what an edge between two charts adds to both ends, which otherwise could move across
+    /// the surface at no cost.
     fn seam(along: Vec3) -> VertexQuadric;
 
-    /// What of [`Self::seam`] a new vertex takes beside what [`Self::merge`] keeps, where the sum over
-    /// its own edges is `seams`; `open` where the surface ends at it.
+    /// Returns the part of the seam quadrics that a new vertex takes in addition to what
+    /// [`Self::merged_quadric`] keeps. `seams` is the sum over its own edges; `open` is true at a
+    /// boundary.
     fn renewed_seams(seams: VertexQuadric, open: bool) -> VertexQuadric;
 
-    /// What one of eight edges costs beside planes through its second end, where that goes to the
-    /// place of the first: `half` is half the edge.
+    /// Returns the linear and constant part of the cost of one of eight edges when the second end
+    /// is contracted onto the first. `half` is half the edge vector.
     fn offsets_onto(
         first: &VertexQuadrics,
         second: &VertexQuadrics,
@@ -78,20 +81,21 @@ pub(crate) trait Metric: Copy + Send + Sync {
         half: Vec3,
     ) -> f32;
 
-    /// What they are at their least.
+    /// Returns the minimum of the quadric of one of eight edges.
     fn min_cost(edges: &EdgeQuadrics, lane: usize) -> f32;
 
-    /// What they are where `end1` goes to the place of `end0`.
+    /// Returns the cost of contracting `end1` onto `end0`.
     fn cost_onto(end0: &Vertex, end1: &Vertex) -> f32;
 
-    /// Those of a gathered edge, in doubles.
+    /// Returns the quadric of a gathered edge in f64.
     fn edge_quadric(edge_ring: &EdgeRing, end0: &Vertex, end1: &Vertex) -> EdgeQuadricF64;
 
-    /// Where they are least, as seen from the middle; not a number where there is no such place.
+    /// Returns where the quadric is smallest, relative to the middle of the edge; not finite if
+    /// there is no such place.
     fn optimum(quadric: &EdgeQuadricF64) -> DVec3;
 
-    /// What the vertex of a contraction has from now on, before any has moved. Boundary edges around
-    /// that move with it are brought up to date.
+    /// Returns the quadric of the new vertex, before any vertex is changed. Also updates the
+    /// boundary edges that move with the new vertex.
     fn merged_quadric(
         vertices: &mut Vertices,
         edge_ring: &mut EdgeRing,
@@ -99,18 +103,20 @@ pub(crate) trait Metric: Copy + Send + Sync {
         collapse: &Collapse,
     ) -> FullQuadric;
 
-    /// Does to a vertex of the ring what the spokes on its two sides change; `kept` is the new vertex.
+    /// Applies to a ring vertex the changes of its two incident spokes. `kept` is the new vertex.
     fn update_neighbour(vertex: &mut Vertex, changes: [&VertexQuadric; 2], kept: u32);
 
-    /// Takes a face that goes out of a vertex of the ring.
+    /// Subtracts a dying face from a ring vertex.
     fn remove_face(vertex: &mut Vertex, normal: Vec3);
 }
 
-/// What an edge to a protected vertex costs, times: as if all moved so much farther.
+/// Returns the factor on the cost of an edge at a protected vertex, as if everything moved that
+/// many times farther.
 pub(crate) fn protection<M: Metric>() -> f32 {
     locks::PROTECTION.powi(M::METHOD.cost_power()) as f32
 }
 
+/// Returns the quadrics of eight edges from those of their ends.
 #[inline(always)]
 pub(crate) fn edges_between<M: Metric>(
     first: &VertexQuadrics,
@@ -133,7 +139,7 @@ pub(crate) fn edges_between<M: Metric>(
     edges
 }
 
-/// What each costs.
+/// Returns the cost of each of eight edges.
 #[inline(always)]
 pub(crate) fn least_costs<M: Metric>(edges: &EdgeQuadrics) -> Row {
     let mut costs = [0.0; LANES];

@@ -1,14 +1,15 @@
-//! `qem` [GH97]: the squares of distances from the planes of all faces that have gone into a vertex. As
-//! in the general engine's `methods/qem.rs`, planes weigh by area, and memory fades.
+//! The metric of `qem` [GH97]: squared distances from the planes of all faces merged into a vertex.
+//! As in the general engine's `methods/qem.rs`, planes are weighted by area and memory fades.
 //!
-//! What a vertex remembers are not planes through it, so it has all of x'Ax − 2b·x + c, seen from it.
-//! FullQuadric from the middle of an edge, with ends at −h and h, both together are
+//! The remembered planes do not pass through the vertex, so its quadric has all terms of x'Ax −
+//! 2b·x + c, relative to the vertex. Relative to the middle of an edge with ends at −h and h, the
+//! sum of both is
 //!
 //! ```text
 //! x'(A₀ + A₁)x − 2 ((A₁ − A₀)h + b₀ + b₁)·x + h'(A₀ + A₁)h + 2 (b₁ − b₀)·h + c₀ + c₁
 //! ```
 //!
-//! Where a new vertex is free to go, b is next to nothing there, and c is what was lost on the way.
+//! At a new vertex that was free to move, b is almost zero, and c is what was lost on the way.
 
 use glam::{DMat3, DVec3, Vec3};
 
@@ -25,15 +26,15 @@ use crate::kernel::simd::{LANES, TINY, select_max, sum_of};
 use crate::methods::qem::{BOUNDARY_WEIGHT, MEMORY};
 use crate::options::Method;
 
-/// What an edge between two charts counts, as in the general engine.
+/// Weight of an edge between two charts, as in the general engine.
 const SEAM_WEIGHT: f32 = 1.0;
 
-/// Remembers a part of what faces have been.
+/// Area-weighted squared distances from planes, with fading memory.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PlaneDistance;
 
 impl PlaneDistance {
-    /// The squares of one edge, in doubles, from those of its ends.
+    /// Returns the quadric of one edge in f64 from those of its ends.
     #[inline(always)]
     fn along(end0: &Vertex, end1: &Vertex) -> EdgeQuadricF64 {
         let half = (end1.place() - end0.place()).as_dvec3() * 0.5;
@@ -58,13 +59,13 @@ impl Metric for PlaneDistance {
 
     const BOUNDARY_WEIGHT: f32 = BOUNDARY_WEIGHT as f32;
 
-    /// Mean error of horse-97k at 10 % and 1 %, and of igea at 10 %: 0 .00882, .0714, .00510; 1 .00883,
-    /// .0726, .00509; 2 .00885, .0732, .00511; 4 .00895, .0747, .00516, for 6 % fewer instructions
-    /// than 1; all with 1e-7 of the length.
+    /// Mean error of horse-97k at 10 % and 1 %, and of igea at 10 %: 0 .00882, .0714, .00510; 1
+    /// .00883, .0726, .00509; 2 .00885, .0732, .00511; 4 .00895, .0747, .00516, for 6 % fewer
+    /// instructions than 1; all with a length weight of 1e-7.
     const SLACK: u16 = 1;
 
-    /// Mean error of fandisk-32k, which is half of flats, and of igea at 10 %: 1e-9 .00589, .00510; 1e-7
-    /// .00584, .00509; 3e-7 .00582, .00509; 1e-6 .00553, .00510.
+    /// Mean error of fandisk-32k, half of which is flat, and of igea at 10 %: 1e-9 .00589, .00510;
+    /// 1e-7 .00584, .00509; 3e-7 .00582, .00509; 1e-6 .00553, .00510.
     const SHORT_FIRST: f32 = 1e-6;
 
     #[inline(always)]
@@ -72,7 +73,7 @@ impl Metric for PlaneDistance {
         VertexQuadric::new(Vec3::ZERO, plane(normal))
     }
 
-    /// A plane on the edge at right angles to the face.
+    /// Returns the quadric of a plane through the edge, perpendicular to the face.
     fn boundary(along: Vec3, normal: Vec3, weight: f32) -> VertexQuadric {
         let across = along.cross(normal.normalize_or_zero()) * weight.sqrt();
         VertexQuadric::new(Vec3::ZERO, outer(across))
@@ -92,8 +93,8 @@ impl Metric for PlaneDistance {
         edges.at_middle[lane] += 2.0 * (b1 - b0).dot(h) + (c0 + c1);
     }
 
-    /// By S = L D L', with a pull to the middle on the diagonal. No part of D is less than that, so
-    /// rounding cannot make one too small.
+    /// Solves by S = L D L', with a pull to the middle on the diagonal. No entry of D is smaller
+    /// than the pull, so rounding cannot make one too small.
     #[inline(always)]
     fn min_cost(edges: &EdgeQuadrics, lane: usize) -> f32 {
         let [xx, yy, zz, xy, xz, yz] = lane_of(&edges.sum, lane);
@@ -110,14 +111,14 @@ impl Metric for PlaneDistance {
         edges.at_middle[lane] - (x * x * d1 + y * y * d2 + z * z * d3)
     }
 
-    /// The area.
+    /// The weight is the area.
     #[inline(always)]
     fn face_weight(squared: f32) -> (f32, f32) {
         let per_square = 0.5 * (squared + TINY).sqrt().recip();
         (squared * per_square, per_square)
     }
 
-    /// The square of the distance from the edge's line.
+    /// Returns the squared distance from the edge's line.
     fn seam(along: Vec3) -> VertexQuadric {
         let [xx, yy, zz, xy, xz, yz] = outer(along);
         let squared = along.length_squared();
@@ -125,7 +126,7 @@ impl Metric for PlaneDistance {
         VertexQuadric::new(Vec3::ZERO, across.map(|x| SEAM_WEIGHT * x))
     }
 
-    /// As of its faces: where the surface ends all is remembered, elsewhere most is forgotten.
+    /// As for faces: everything is remembered at a boundary, most is forgotten elsewhere.
     #[inline(always)]
     fn renewed_seams(seams: VertexQuadric, open: bool) -> VertexQuadric {
         let share = if open { 0.0 } else { (1.0 - MEMORY) as f32 };
@@ -155,7 +156,7 @@ impl Metric for PlaneDistance {
         EdgeQuadricF64 { normal, level, ..Self::along(end0, end1) }
     }
 
-    /// Anywhere; the middle where there are no planes.
+    /// The place is unconstrained; the middle if there are no planes.
     #[inline(always)]
     fn optimum(quadric: &EdgeQuadricF64) -> DVec3 {
         let pull = f64::from(PULL) * quadric.weight();
@@ -165,7 +166,7 @@ impl Metric for PlaneDistance {
         (quadric.sum + DMat3::from_diagonal(DVec3::splat(pull))).inverse() * quadric.slope
     }
 
-    /// Where the surface ends all is remembered: the planes there are not in the faces around.
+    /// At a boundary everything is remembered, as its planes are not those of the faces around.
     #[inline(always)]
     fn merged_quadric(
         _: &mut Vertices,
@@ -185,7 +186,7 @@ impl Metric for PlaneDistance {
         FullQuadric { star, constant: Bf16::new((quadric.at(x) * memory) as f32) }
     }
 
-    /// Only its edge to the new vertex has changed.
+    /// Only the vertex's edge to the new vertex has changed.
     #[inline(always)]
     fn update_neighbour(vertex: &mut Vertex, _: [&VertexQuadric; 2], kept: u32) {
         if vertex.target == kept {
@@ -197,7 +198,7 @@ impl Metric for PlaneDistance {
     fn remove_face(_: &mut Vertex, _: Vec3) {}
 }
 
-/// The planes of the faces that a contraction leaves around its vertex, so many times.
+/// Returns the weighted sum of the plane quadrics of the new vertex's faces.
 #[inline(always)]
 fn faces(edge_ring: &EdgeRing, weight: f32) -> VertexQuadric {
     let mut sums = [[0.0; LANES]; 6];
@@ -217,7 +218,7 @@ fn faces(edge_ring: &EdgeRing, weight: f32) -> VertexQuadric {
     VertexQuadric::new(Vec3::ZERO, squares)
 }
 
-/// The plane of a face by twice its area along its normal, times its area.
+/// Returns the area-weighted plane quadric of a face. The normal is twice the area long.
 #[inline(always)]
 fn plane(normal: Vec3) -> [f32; 6] {
     let by = 0.5 * (normal.dot(normal) + TINY).sqrt().recip();
@@ -237,7 +238,7 @@ mod tests {
 
     const ENDS: [Vec3; 2] = [Vec3::new(3.0, -1.0, 2.0), Vec3::new(3.5, -0.5, 1.25)];
 
-    /// A vertex that has the squares of distances from planes, wherever they are.
+    /// Returns a vertex with the quadric of these planes, wherever they are.
     fn vertex(place: Vec3, planes: &[Plane]) -> Vertex {
         let (mut star, mut constant) = (VertexQuadric::default(), 0.0);
         for &(normal, point) in planes {
@@ -255,7 +256,8 @@ mod tests {
         planes.iter().map(|plane| off(plane).powi(2)).sum()
     }
 
-    /// The planes of two ends: of a flat, an edge and a corner; some through their ends, some not.
+    /// Planes of two ends on a flat, at an edge and at a corner. Some pass through their ends, some
+    /// do not.
     fn cases() -> [[Vec<Plane>; 2]; 3] {
         let up = Vec3::new(0.2, 1.0, -0.5);
         let (left, right) = (Vec3::new(1.0, 0.3, 0.1), Vec3::new(-0.2, 0.1, 0.8));
@@ -269,7 +271,7 @@ mod tests {
     }
 
     #[test]
-    fn an_edge_has_the_squares_of_all_planes_of_its_ends() {
+    fn an_edge_has_the_quadric_of_all_planes_of_its_ends() {
         for planes in cases() {
             let (end0, end1) = (vertex(ENDS[0], &planes[0]), vertex(ENDS[1], &planes[1]));
             let quadric = PlaneDistance::along(&end0, &end1);
@@ -289,7 +291,7 @@ mod tests {
     }
 
     #[test]
-    fn rows_come_to_the_same_least_as_doubles() {
+    fn rows_give_the_same_minimum_as_f64() {
         for planes in cases() {
             let mut all = [0, 1].map(|end| vertex(ENDS[end], &planes[end]));
             let quadric = PlaneDistance::along(&all[0], &all[1]);
@@ -306,7 +308,7 @@ mod tests {
     }
 
     #[test]
-    fn the_best_place_is_the_corner_or_the_middle_of_a_flat() {
+    fn the_optimum_is_the_corner_or_the_middle_on_a_flat() {
         let corner = Vec3::new(3.2, -0.9, 1.5);
         let planes = [Vec3::X, Vec3::Y, Vec3::Z].map(|normal| (normal, corner));
         let best = |planes: [&[Plane]; 2]| {

@@ -1,10 +1,10 @@
-//! `lindstrom-turk` [LT98]: the squares of the volumes that the faces around sweep, at their least on
-//! the plane where the volume stays. A vertex has those of the faces that it has now.
+//! The metric of `lindstrom-turk` [LT98]: squared volumes swept by the faces around, minimized on
+//! the plane that preserves the volume. A vertex has the quadrics of its current faces.
 //!
-//! Every plane of a star passes through its vertex. FullQuadric from the middle of an edge, with ends at −h
-//! and h, stars (A₀, N₀) and (A₁, N₁), S = A₀ + A₁, q = (A₁ − A₀)h and g = N₀ + N₁, the squares are
-//! x'Sx − 2q·x + h'Sh, and the volume stays where g·x = (N₁ − N₀)·h. Faces that both stars have
-//! contain h; they count twice in S and g and nowhere else.
+//! All face planes at a vertex pass through it. For an edge with ends at −h and h, vertex quadrics
+//! (A₀, N₀) and (A₁, N₁), S = A₀ + A₁, q = (A₁ − A₀)h and g = N₀ + N₁, the quadric relative to the
+//! middle is x'Sx − 2q·x + h'Sh, and the volume is preserved where g·x = (N₁ − N₀)·h. The planes of
+//! faces at both ends contain h: they count twice in S and g and cancel elsewhere.
 
 use glam::{DVec3, Vec3};
 
@@ -20,13 +20,14 @@ use crate::kernel::metric::edge_quadric_f64::{EdgeQuadricF64, matrix};
 use crate::kernel::simd::{TINY, select_max};
 use crate::options::Method;
 
-/// Forgets all that faces have been.
+/// Squared swept volumes, without memory.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SweptVolume;
 
 #[cfg(test)]
 impl SweptVolume {
-    /// The squares of one edge, in doubles, from those of its ends: faces that both have count twice.
+    /// Returns the quadric of one edge in f64 from those of its ends. Faces at both ends count
+    /// twice.
     pub(crate) fn along(end0: &Vertex, end1: &Vertex) -> EdgeQuadricF64 {
         let half = (end1.place() - end0.place()).as_dvec3() * 0.5;
         let (a0, a1) = (matrix(&end0.quadric), matrix(&end1.quadric));
@@ -42,10 +43,11 @@ impl SweptVolume {
     }
 }
 
-/// What an edge of a seam counts. The
-/// mean of the logarithms of FLIP over pirate, spot, duck and the flight helmet at 25, 10, 3 and 1 % of
-/// the faces: 0.5 -3.214, -2.362, -1.378, -.749; 1.5 -3.209, -2.349, -1.380, -.854; 4.5 -3.202, -2.337,
-/// -1.378, -.850; 9 -3.191, -2.331, -1.341, -.806.
+/// Weight of a seam edge.
+///
+/// Mean of the logarithms of FLIP over pirate, spot, duck and the flight helmet at 25, 10, 3 and 1
+/// % of the faces: 0.5 -3.214, -2.362, -1.378, -.749; 1.5 -3.209, -2.349, -1.380, -.854; 4.5
+/// -3.202, -2.337, -1.378, -.850; 9 -3.191, -2.331, -1.341, -.806.
 const SEAM_WEIGHT: f32 = 1.5;
 
 impl Metric for SweptVolume {
@@ -89,13 +91,13 @@ impl Metric for SweptVolume {
         let trace = sum.trace();
         let scale = (trace + TINY).recip();
         let to_unit = (g.dot(g) + TINY).recip();
-        // The place on the plane of equal volumes that is next to the middle.
+        // The point of the plane of equal volume nearest to the middle.
         let x0 = g * (edges.level[lane] * to_unit);
         let slope = q - sum.apply(x0);
         let there = edges.at_middle[lane] - x0.dot(q + slope);
 
-        // Two directions in the plane, at right angles, the second along the slope; as long as keeps
-        // all that follows about one.
+        // Two orthogonal directions in the plane, the second along the slope, scaled such that all
+        // further terms are about one.
         let across = g.cross(slope) * scale;
         let e1 = across * to_unit;
         let e2 = g.cross(e1);
@@ -134,7 +136,7 @@ impl Metric for SweptVolume {
         SymmetricMatrix(end1.quadric.squares()).at(to)
     }
 
-    /// Each face once.
+    /// Counts each face once.
     #[inline(always)]
     fn edge_quadric(edge_ring: &EdgeRing, end0: &Vertex, end1: &Vertex) -> EdgeQuadricF64 {
         let (a0, a1) = (end0.quadric, end1.quadric);
@@ -161,7 +163,7 @@ impl Metric for SweptVolume {
         }
     }
 
-    /// On the plane of equal volumes.
+    /// The place lies on the plane of equal volume.
     #[inline(always)]
     fn optimum(quadric: &EdgeQuadricF64) -> DVec3 {
         let EdgeQuadricF64 { sum, slope, normal, level, .. } = *quadric;
@@ -213,7 +215,7 @@ impl Metric for SweptVolume {
     }
 }
 
-/// Brings the boundary's part of the stars up to date; gives that of the new vertex.
+/// Updates the boundary edges of the ring vertices. Returns those of the new vertex.
 #[cold]
 fn renew_boundary(
     vertices: &mut Vertices,

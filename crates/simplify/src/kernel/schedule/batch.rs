@@ -1,4 +1,4 @@
-//! EdgeQuadrics of any vertices, costed eight at a time.
+//! Batches of edges, costed eight at a time.
 
 use crate::kernel::attributes::AttributeModel;
 use crate::kernel::mesh::one_ring::Vertices;
@@ -6,7 +6,7 @@ use crate::kernel::metric::edge_quadric::EdgeSide;
 use crate::kernel::schedule::edge_costs::costs;
 use crate::kernel::simd::LANES;
 
-/// EdgeQuadrics to be costed, `ROOM` at most.
+/// Up to `ROOM` edges to be costed.
 pub(crate) struct Batch<const ROOM: usize> {
     us: [u32; ROOM],
     vs: [u32; ROOM],
@@ -18,20 +18,20 @@ impl<const ROOM: usize> Batch<ROOM> {
         Self { us: [0; ROOM], vs: [0; ROOM], len: 0 }
     }
 
-    /// Whether there is room for so many more.
+    /// Returns true if there is room for `more` edges.
     #[inline(always)]
     pub(crate) fn has_room(&self, more: usize) -> bool {
         self.len + more <= ROOM
     }
 
-    /// Takes an edge up `if_so`, which is not to be guessed by a branch.
+    /// Adds an edge `if_so`, without a branch.
     #[inline(always)]
     pub(crate) fn push(&mut self, u: u32, v: u32, if_so: bool) {
         (self.us[self.len], self.vs[self.len]) = (u, v);
         self.len += usize::from(if_so);
     }
 
-    /// Tells the cost of each, in their order, and forgets them.
+    /// Reports the cost of each edge in order, and empties the batch.
     #[inline(always)]
     pub(crate) fn cost_all(
         &mut self,
@@ -41,7 +41,7 @@ impl<const ROOM: usize> Batch<ROOM> {
     ) {
         let mut start = 0;
         while start < self.len {
-            // Lanes beyond the end look at the first one again.
+            // Lanes beyond the end repeat the first edge.
             let (mut us, mut vs) = ([self.us[start]; LANES], [self.vs[start]; LANES]);
             for lane in 0..LANES.min(self.len - start) {
                 (us[lane], vs[lane]) = (self.us[start + lane], self.vs[start + lane]);

@@ -1,9 +1,9 @@
-//! What the edges of a vertex cost: the least that their squares come to, by the [rule](Metric), and a
-//! little for their length.
+//! Costs of the edges of a vertex: the minimum of the edge's quadric by the [metric](Metric), plus
+//! a small term for its length.
 //!
-//! All from the squares at the two ends. Of planes through them, seen from the middle of the edge, with
-//! ends at −h and h and matrices A₀ and A₁, those are x'Sx − 2q·x + h'Sh, S = A₀ + A₁, q = (A₁ − A₀)h; the
-//! rule adds the rest.
+//! All of it comes from the quadrics at the two ends. For planes through the ends at −h and h, with
+//! matrices A₀ and A₁, the quadric relative to the middle is x'Sx − 2q·x + h'Sh, where S = A₀ + A₁
+//! and q = (A₁ − A₀)h. The metric adds the rest.
 
 use crate::kernel::attributes::AttributeModel;
 use crate::kernel::mesh::one_ring::{LONG, MAX_RING, Vertices};
@@ -13,16 +13,16 @@ use crate::kernel::metric::{Metric, edges_between, least_costs, protection};
 use crate::kernel::schedule::bucket_queue::{NONE, bucket};
 use crate::kernel::simd::{LANES, Row, select_max};
 
-/// A vertex's cheapest edge.
+/// Cheapest edge of a vertex.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Cheapest {
-    /// Of its cost; `NONE` if there is no edge.
+    /// Bucket of the cost; `NONE` if there is no edge.
     pub(crate) bucket: u16,
-    /// Its other end.
+    /// Other end of the edge.
     pub(crate) target: u32,
 }
 
-/// The cheapest edge from `u`, of those above its floor; its ring is up to date.
+/// Returns the cheapest edge of `u` above its floor. The ring must be up to date.
 #[inline(always)]
 pub(crate) fn cheapest(vertices: &Vertices, model: &impl AttributeModel, u: u32) -> Cheapest {
     let vertex = vertices.get(u);
@@ -50,7 +50,7 @@ fn cheapest_of<const ROOM: usize>(
 ) -> Cheapest {
     let (mut least, mut left) = (Rank::LAST, len as u32);
     for some in ring.as_chunks::<LANES>().0 {
-        // Lanes beyond the end look at the first one again.
+        // Lanes beyond the end repeat the first edge.
         let mut ids = *some;
         for (lane, id) in (0..).zip(&mut ids) {
             *id = if lane < left { *id } else { some[0] };
@@ -67,16 +67,16 @@ fn cheapest_of<const ROOM: usize>(
     least.cheapest()
 }
 
-/// An edge among others of its vertex, by its cost, then by its end. A number, since which one is less
-/// is not to be guessed by a branch.
+/// Order of the edges of one vertex: by cost, then by the other end. An integer, so that the
+/// minimum takes no branch.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) struct Rank(u64);
 
 impl Rank {
-    /// Behind all edges.
+    /// Rank behind all edges.
     pub(crate) const LAST: Self = Self(u64::MAX);
 
-    /// What is no number costs more than anything.
+    /// Ranks an edge. NaN counts as infinite.
     #[inline(always)]
     pub(crate) fn new(cost: f32, to: u32) -> Self {
         let cost = if cost < f32::INFINITY { select_max(cost, 0.0) } else { f32::INFINITY };
@@ -92,8 +92,8 @@ impl Rank {
     }
 }
 
-/// What eight edges cost; infinite where an edge may not be contracted, or costs no more than has been
-/// refused at its first end.
+/// Returns the costs of eight edges. The cost is infinite if an edge must not be contracted, or if
+/// its bucket is not above the floor of its first end.
 #[inline(always)]
 pub(crate) fn costs<A: AttributeModel>(
     vertices: &Vertices,
@@ -121,8 +121,8 @@ pub(crate) fn costs<A: AttributeModel>(
     found.costs
 }
 
-/// Costs of edges with an end that stays where it is or goes late, or that may not be contracted, or
-/// not now.
+/// Corrects the costs of edges with an end that stays in place or goes late, and of those that must
+/// not be contracted, or not now.
 #[cold]
 fn correct<A: AttributeModel>(
     costs: &mut Row,
@@ -169,7 +169,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_no_number_comes_last() {
+    fn nan_and_infinite_costs_come_last() {
         let rank = |cost| Rank::new(cost, 7);
         assert!(
             rank(-1.0) == rank(0.0) && rank(0.0) < rank(1e-30) && rank(2.0) < Rank::new(2.0, 8)

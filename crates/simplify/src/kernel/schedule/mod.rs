@@ -1,4 +1,4 @@
-//! Which edge comes next: costs of edges, the queue, and what has to wait.
+//! Scheduling: the costs of edges, the queue, and the deferral of contractions.
 
 pub(crate) mod batch;
 pub(crate) mod bucket_queue;

@@ -15,7 +15,7 @@ use crate::kernel::setup::build_rings::Fans;
 use crate::kernel::setup::vertex_order::Order;
 use crate::options::AttributeWeights;
 
-/// A mesh with a texture cut in two across, each half with its own wedges where they meet.
+/// A mesh with a texture cut in two across. Each half has its own wedges where they meet.
 pub(in crate::kernel) fn halved(mut mesh: Mesh) -> Mesh {
     let (count, center) = (mesh.positions.len(), mesh.bounds().center()[0]);
     let middle = |face: &[VertexId; 3]| {
@@ -35,7 +35,7 @@ pub(in crate::kernel) fn halved(mut mesh: Mesh) -> Mesh {
     mesh
 }
 
-/// The same with a normal for each face, which makes a wedge of every corner.
+/// A halved mesh with one normal per face, so that every corner has its own wedge.
 pub(in crate::kernel) fn faceted(mesh: Mesh) -> Mesh {
     let mut mesh = halved(mesh);
     let Some(smooth) = mesh.attributes.take() else { return mesh };
@@ -56,7 +56,7 @@ pub(in crate::kernel) fn faceted(mesh: Mesh) -> Mesh {
     mesh
 }
 
-/// A surface at work: the engine's names, the rings, and what it looks like in so many channels.
+/// The vertex order, the rings, and the quadrics with K channels of a mesh.
 fn start<const K: usize>(mesh: &Mesh) -> (Order, Fans, WedgeQuadrics<'_, SweptVolume, K>) {
     let frame = Frame::new(mesh, &mesh.bounds());
     let (order, places) = Order::new(mesh, &frame);
@@ -70,7 +70,7 @@ fn start<const K: usize>(mesh: &Mesh) -> (Order, Fans, WedgeQuadrics<'_, SweptVo
     (order, fans, wedges)
 }
 
-/// What all quadrics come to by the faces as they are, and by the contractions.
+/// Simplifies, and compares all quadrics with those built anew from the faces that are left.
 fn check_quadrics(mesh: &Mesh, faces: usize) {
     let (order, fans, wedges) = start::<2>(mesh);
     let numbers = || mesh.faces.iter().map(|face| order.face(face));
@@ -121,14 +121,14 @@ fn check_quadrics(mesh: &Mesh, faces: usize) {
         let slots: Vec<u32> = model.seams.of(v).iter().map(|sector| sector.slot).collect();
         for pair in slots.windows(2).filter(|p| model.chart(p[0]) == model.chart(p[1])) {
             let [a, b] = [pair[0], pair[1]].map(|slot| model.quadric(slot).values());
-            assert_eq!(a, b, "one place in the textures");
+            assert_eq!(a, b, "one place in uv");
         }
     }
     for (found, wanted) in
         model.quadrics.iter().zip(&again.quadrics).filter(|(_, w)| w.weight() > 0.0)
     {
         let apart = |a: glam::Vec4, b: glam::Vec4| (a - b).abs().max_element();
-        // What a sliver is left with is rounding, where edges are one long.
+        // Slivers are left with rounding errors, as edges have a length of about one.
         let most = 1e-3 * (wanted.squares[0].max_element() + wanted.weight()) + 1e-6;
         assert!(apart(found.squares[0], wanted.squares[0]) < most);
         assert!(apart(found.squares[1], wanted.squares[1]) < most);
@@ -138,7 +138,7 @@ fn check_quadrics(mesh: &Mesh, faces: usize) {
     }
 }
 
-/// What an edge costs, one by one and in doubles.
+/// Costs a single edge in f64.
 fn cost_of(vertices: &Vertices, wedges: &WedgeQuadrics<'_, SweptVolume, 5>, u: u32, v: u32) -> f64 {
     let Ok(ends) = wedges.orient(vertices, u, v) else { return f64::INFINITY };
     let (end0, end1) = (vertices.get(ends.v0), vertices.get(ends.v1));
@@ -150,7 +150,7 @@ fn cost_of(vertices: &Vertices, wedges: &WedgeQuadrics<'_, SweptVolume, 5>, u: u
 }
 
 #[test]
-fn eight_edges_at_seams_cost_what_each_does() {
+fn eight_edges_at_seams_cost_the_same_as_one_by_one() {
     let grid = faceted(meshlod_fixtures::grid(12));
     let (mut free, mut held) = (0, 0);
     for mesh in [halved(samples::knot(3000)), faceted(samples::torus(1000)), grid] {
@@ -165,7 +165,7 @@ fn eight_edges_at_seams_cost_what_each_does() {
                     free += usize::from(ends.free);
                     held += usize::from(!ends.free);
                 }
-                // What the pull to the middle takes is counted another way, and floats round.
+                // The pull to the middle is computed differently, and floats round.
                 let apart = (f64::from(found) - wanted).abs();
                 let weight = wedges.quadric(v).weight() + wedges.quadric(w).weight();
                 let is_near = apart < 1e-2 * wanted + f64::from(1e-3 * weight);
@@ -181,7 +181,7 @@ fn eight_edges_at_seams_cost_what_each_does() {
     assert!(free > 0 && held > 0);
 }
 
-/// A mesh with a crease in its normals half around that ends twice.
+/// A mesh with a crease in its normals that runs half around and ends twice.
 fn slit(mesh: Mesh) -> Mesh {
     let (count, center) = (mesh.positions.len(), mesh.bounds().center()[1]);
     let mut mesh = halved(mesh);
@@ -200,7 +200,7 @@ fn slit(mesh: Mesh) -> Mesh {
 }
 
 #[test]
-fn a_crease_that_ends_is_not_forgotten() {
+fn a_crease_that_ends_keeps_both_normals() {
     let mesh = slit(samples::torus(1000));
     let (_, mut fans, wedges) = start::<5>(&mesh);
     let vertices = fans.store.whole();
@@ -213,7 +213,8 @@ fn a_crease_that_ends_is_not_forgotten() {
                     continue;
                 };
                 let [of_v0, of_v1] = wedge_pairs.sides.map(|sides| sides.before != sides.after);
-                // The end of the crease goes into one of its wedges, not both of them into its end.
+                // The end of the crease is contracted into one of its wedges, not both wedges into
+                // the end.
                 assert!(of_v0 || !of_v1);
                 at_the_end += usize::from(of_v0 && !of_v1);
             }
@@ -223,7 +224,7 @@ fn a_crease_that_ends_is_not_forgotten() {
 }
 
 #[test]
-fn fields_and_sectors_stay_those_of_the_faces_as_they_are() {
+fn quadrics_and_sectors_match_the_faces_that_are_left() {
     check_quadrics(&halved(samples::torus(3000)), 600);
     check_quadrics(&halved(samples::knot(3000)), 1500);
     check_quadrics(&halved(meshlod_fixtures::grid(30)), 300);
