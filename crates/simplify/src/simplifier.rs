@@ -44,7 +44,8 @@ impl<'m> Simplifier<'m> {
     /// [`Method::Qem`], the policy engine for the others.
     ///
     /// # Errors
-    /// The mesh, its extent, the locks or an option is invalid, or no face has three different vertices.
+    /// The mesh, its extent, the locks or an option is invalid, or no face has three different
+    /// vertices.
     pub fn new(mesh: &'m Mesh, options: &Options) -> Result<Self, SimplifyError> {
         let bounds = validate(mesh, options)?;
         let method = options.method.unwrap_or_default();

@@ -1,4 +1,4 @@
-//! What becomes of attributes.
+//! Attributes through simplification.
 
 use std::collections::HashMap;
 
@@ -72,7 +72,8 @@ fn an_end_that_stays_keeps_its_values_to_the_bit() {
     }
 }
 
-/// How much of a unit square's left half is dark in a mesh with grey levels, and of its right half.
+/// Fraction of a unit square's left half that is dark in a mesh with grey levels, and of its right
+/// half.
 fn dark_halves(mesh: &Mesh) -> [f64; 2] {
     let mut dark = [0.0; 2];
     let attributes = mesh.attributes.as_ref().unwrap();
@@ -321,7 +322,7 @@ fn attributes_that_count_for_nothing_change_no_position() {
     // Seams still do: compare where there are none.
     let flat = with_layers(bare.clone(), &[(LayerKind::Color(0), |[x, ..]| vec![x as f32; 3])]);
     let [with, without] = [&flat, &bare].map(|mesh| {
-        // Where there are none at all, the fast one would go another way.
+        // The policy engine, since the kernel takes another path where there are none at all.
         let mut simplifier = Simplifier::on_policy_engine(mesh, &options).unwrap();
         simplifier.run(Target::Ratio(0.1), &mut ()).unwrap();
         simplifier.level()
@@ -365,7 +366,7 @@ fn creases_in_the_shading_stop_nothing_and_tear_no_texture() {
     }
 }
 
-/// How many faces are turned over in their texture.
+/// Number of faces flipped in their texture.
 fn turned(mesh: &Mesh) -> usize {
     let area =
         |[a, b, c]: [&[f32]; 3]| (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);

@@ -1,4 +1,4 @@
-//! What a boundary weighs: the more, the closer it stays, by either engine and by quadrics.
+//! Boundary weights: the higher, the closer a boundary stays, on both engines.
 
 use meshlod_mesh::{Connectivity, FaceId, Mesh, Side, Twin, VertexId};
 use meshlod_samples as samples;
@@ -9,7 +9,7 @@ fn options(method: Method, boundary_weight: Option<f64>) -> Options {
     Options { method: Some(method), boundary_weight, ..Options::default() }
 }
 
-/// The boundary edges of a mesh, as faces without area.
+/// Boundary edges of a mesh, as faces without area.
 fn rim(mesh: &Mesh) -> Mesh {
     let connectivity = Connectivity::new(&mesh.faces, mesh.positions.len());
     let sides = (0..mesh.faces.len()).flat_map(|f| (0..3).map(move |k| (f, k)));
@@ -22,7 +22,7 @@ fn rim(mesh: &Mesh) -> Mesh {
     Mesh::new(mesh.positions.clone(), open.map(edge).collect())
 }
 
-/// The mean distance of the boundary's vertices from the boundary of a level.
+/// Mean distance of the boundary's vertices from the boundary of a level.
 fn slipped(mesh: &Mesh, level: &Mesh) -> f64 {
     let now = Bvh::new(&rim(level)).unwrap();
     let ends: Vec<VertexId> = rim(mesh).faces.iter().map(|edge| edge[0]).collect();
@@ -37,13 +37,13 @@ fn hills() -> Mesh {
 #[test]
 fn a_higher_weight_keeps_a_boundary_closer() {
     let mesh = hills();
-    let slips = |is_fast: bool, options: &Options| {
-        let start = if is_fast { Simplifier::new } else { Simplifier::on_policy_engine };
+    let slips = |on_kernel: bool, options: &Options| {
+        let start = if on_kernel { Simplifier::new } else { Simplifier::on_policy_engine };
         let mut simplifier = start(&mesh, options).unwrap();
         assert!(simplifier.run(Target::Ratio(0.05), &mut ()).unwrap().reached);
         slipped(&mesh, &simplifier.level())
     };
-    for (method, is_fast) in [
+    for (method, on_kernel) in [
         (Method::LindstromTurk, true),
         (Method::LindstromTurk, false),
         (Method::LindstromTurkFaces, false),
@@ -54,9 +54,9 @@ fn a_higher_weight_keeps_a_boundary_closer() {
         assert!(method.weighs_boundaries());
         let weights = [0.01, 1.0, 100.0];
         let [low, middle, high] =
-            weights.map(|weight| slips(is_fast, &options(method, Some(weight))));
+            weights.map(|weight| slips(on_kernel, &options(method, Some(weight))));
         let falls = high < 0.8 * middle && middle < 0.95 * low;
-        assert!(falls, "{method:?}, fast {is_fast}: {low} {middle} {high}");
+        assert!(falls, "{method:?}, kernel {on_kernel}: {low} {middle} {high}");
     }
 }
 

@@ -1,4 +1,4 @@
-//! What every method must keep on every mesh.
+//! Invariants that every method must keep on every mesh.
 
 use std::collections::{HashMap, HashSet};
 
@@ -41,7 +41,7 @@ fn bare(mesh: Mesh) -> Mesh {
     Mesh { attributes: None, ..mesh }
 }
 
-/// What a contraction must not change, or not make worse.
+/// Properties that a contraction must not change, or must not make worse.
 #[derive(Debug, PartialEq)]
 struct Topology {
     components: usize,
@@ -63,31 +63,32 @@ fn topology(mesh: &Mesh) -> Topology {
     }
 }
 
-/// Locks for every nth vertex.
+/// Locks every nth vertex.
 fn every_nth(mesh: &Mesh, n: usize, lock: Lock) -> Locks {
     let of = |v: usize| if v.is_multiple_of(n) { lock } else { Lock::Free };
     Locks { of_vertex: (0..mesh.positions.len()).map(of).collect(), ties: Vec::new() }
 }
 
-/// A method, and an engine that does it.
+/// Method on one of the two engines.
 #[derive(Clone, Copy, Debug)]
-struct Way {
+struct Runner {
     method: Method,
-    /// By the general engine even where there is a fast way.
-    general: bool,
+    /// True to run a kernel method on the policy engine.
+    on_policy_engine: bool,
 }
 
-impl Way {
-    /// Every method as it is done, and what the fast engine does by the general one too.
+impl Runner {
+    /// Every method on its own engine, and the kernel's two on the policy engine too.
     fn all() -> impl Iterator<Item = Self> {
-        let as_done = Method::ALL.into_iter().map(|method| Self { method, general: false });
-        let fast = [Method::LindstromTurk, Method::Qem];
-        as_done.chain(fast.map(|method| Self { method, general: true }))
+        let as_done =
+            Method::ALL.into_iter().map(|method| Self { method, on_policy_engine: false });
+        let of_kernel = [Method::LindstromTurk, Method::Qem];
+        as_done.chain(of_kernel.map(|method| Self { method, on_policy_engine: true }))
     }
 
     fn start<'m>(self, mesh: &'m Mesh, options: &Options) -> Result<Simplifier<'m>, SimplifyError> {
         let options = Options { method: Some(self.method), ..options.clone() };
-        match self.general {
+        match self.on_policy_engine {
             true => Simplifier::on_policy_engine(mesh, &options),
             false => Simplifier::new(mesh, &options),
         }
@@ -103,22 +104,22 @@ impl Way {
         self.go(mesh, Target::Ratio(ratio), &Options::default())
     }
 
-    /// Whether it works in floats, on meshes without attributes.
-    fn is_fast(self) -> bool {
-        matches!(self.method, Method::LindstromTurk | Method::Qem) && !self.general
+    /// Returns true if the kernel runs it, in single precision.
+    fn is_kernel(self) -> bool {
+        matches!(self.method, Method::LindstromTurk | Method::Qem) && !self.on_policy_engine
     }
 }
 
 fn run(mesh: &Mesh, method: Method, ratio: f64) -> (Mesh, Report) {
-    Way { method, general: false }.run(mesh, ratio)
+    Runner { method, on_policy_engine: false }.run(mesh, ratio)
 }
 
 fn each_level(check: impl Fn(&str, &Mesh, &Mesh, &Report)) {
     for (name, mesh) in meshes() {
-        for way in Way::all() {
+        for runner in Runner::all() {
             for ratio in [0.5, 0.1, 0.0] {
-                let (level, report) = way.run(&mesh, ratio);
-                check(&format!("{name} by {way:?} to {ratio}"), &mesh, &level, &report);
+                let (level, report) = runner.run(&mesh, ratio);
+                check(&format!("{name} by {runner:?} to {ratio}"), &mesh, &level, &report);
             }
         }
     }
@@ -132,7 +133,8 @@ fn a_level_is_as_closed_manifold_and_oriented_as_its_mesh() {
         assert_eq!(before.euler, after.euler, "{what}");
         assert_eq!(before.boundary_loops_closed, after.boundary_loops_closed, "{what}");
         assert!(after.non_manifold_edges <= before.non_manifold_edges, "{what}");
-        // A strip without orientation may shift where its two turns meet, and must keep one.
+        // A non-orientable strip may shift where its two orientations meet, and must keep one such
+        // place.
         if before.inconsistent_edges == 0 {
             assert_eq!(after.inconsistent_edges, 0, "{what}");
         }
@@ -158,10 +160,10 @@ fn a_level_is_valid_and_has_no_face_twice() {
 #[test]
 fn smooth_samples_reach_their_target() {
     for mesh in [samples::sphere(2000), samples::torus(2000), samples::knot(3000)] {
-        for way in Way::all() {
-            let (level, report) = way.run(&mesh, 0.05);
+        for runner in Runner::all() {
+            let (level, report) = runner.run(&mesh, 0.05);
             let target = mesh.faces.len() / 20;
-            // A face takes four with it, an edge two.
+            // Contracting a face removes four faces, an edge two.
             assert!(report.reached && (target - 3..=target).contains(&level.faces.len()));
         }
     }
@@ -169,21 +171,21 @@ fn smooth_samples_reach_their_target() {
 
 #[test]
 fn what_stopped_it_is_reported() {
-    for way in Way::all() {
-        let (level, report) = way.run(&fixtures::tetrahedron(), 0.0);
+    for runner in Runner::all() {
+        let (level, report) = runner.run(&fixtures::tetrahedron(), 0.0);
         assert_eq!(level.faces.len(), 4);
         let refused: u64 = report.refusals.iter().map(|(_, count)| count).sum();
-        // Where a vertex has one entry for all its edges, a refusal stands for those that cost as much.
-        let least = if way.is_fast() { 1 } else { 6 };
-        assert!(refused >= least, "all six edges are refused, not {refused}, by {way:?}");
+        // Where a vertex has one entry for all its edges, one refusal covers those of equal cost.
+        let least = if runner.is_kernel() { 1 } else { 6 };
+        assert!(refused >= least, "all six edges are refused, not {refused}, by {runner:?}");
     }
 }
 
 #[test]
 fn every_single_step_keeps_a_closed_surface_closed() {
-    for way in Way::all() {
+    for runner in Runner::all() {
         let mesh = samples::torus(300);
-        let mut simplifier = way.start(&mesh, &Options::default()).unwrap();
+        let mut simplifier = runner.start(&mesh, &Options::default()).unwrap();
         while simplifier.step(f64::INFINITY, &mut ()) {
             let level = simplifier.level();
             assert_eq!(topology(&level), Topology { ..topology(&mesh) });
@@ -192,23 +194,23 @@ fn every_single_step_keeps_a_closed_surface_closed() {
     }
 }
 
-/// The normals of the faces that a step changes, before it and after.
+/// Normals of the faces that a step changes, before and after.
 #[derive(Default)]
 struct Turned(HashMap<FaceId, [DVec3; 2]>);
 
 impl Observe for Turned {
-    fn before(&mut self, surface: &Surface, hood: &Neighbourhood, _: &Placed) {
-        for spoke in hood.spokes() {
+    fn before(&mut self, surface: &Surface, neighbourhood: &Neighbourhood, _: &Placed) {
+        for spoke in neighbourhood.spokes() {
             let normal = surface.area_normal(spoke.face);
             self.0.entry(spoke.face).or_insert([normal; 2]);
         }
     }
 
-    fn after(&mut self, surface: &Surface, hood: &Neighbourhood, _: &Placed) {
-        for spoke in hood.spokes() {
+    fn after(&mut self, surface: &Surface, neighbourhood: &Neighbourhood, _: &Placed) {
+        for spoke in neighbourhood.spokes() {
             self.0.entry(spoke.face).or_default()[1] = surface.area_normal(spoke.face);
         }
-        for dying in hood.dying() {
+        for dying in neighbourhood.dying() {
             self.0.remove(&dying.face);
         }
     }
@@ -220,15 +222,15 @@ fn no_step_turns_a_face_over() {
     let bare_fish = bare(fish.clone());
     for mesh in [samples::knot(1500), samples::gyroid(1500), samples::terrain(800), fish, bare_fish]
     {
-        for way in Way::all() {
-            let mut simplifier = way.start(&mesh, &Options::default()).unwrap();
+        for runner in Runner::all() {
+            let mut simplifier = runner.start(&mesh, &Options::default()).unwrap();
             loop {
                 let mut turned = Turned::default();
                 if !simplifier.step(f64::INFINITY, &mut turned) {
                     break;
                 }
                 for (face, [before, after]) in turned.0 {
-                    assert!(before.dot(after) > 0.0, "{way:?} turns {face}");
+                    assert!(before.dot(after) > 0.0, "{runner:?} turns {face}");
                 }
             }
         }
@@ -245,45 +247,45 @@ fn volume_is_conserved_by_those_who_say_so() {
             };
             mesh.faces.iter().map(sixfold).sum::<f64>() / 6.0
         };
-        for way in Way::all() {
-            let (level, report) = way.run(&mesh, 0.1);
+        for runner in Runner::all() {
+            let (level, report) = runner.run(&mesh, 0.1);
             let lost = (volume(&mesh) - volume(&level)) / volume(&mesh);
             let off = report.volume.running_sum / volume(&mesh) - lost;
-            let rounding = if way.is_fast() { 1e-7 } else { 1e-13 };
-            assert!(off.abs() < rounding, "{way:?}: the sum is {off:e} off {lost:e}");
+            let rounding = if runner.is_kernel() { 1e-7 } else { 1e-13 };
+            assert!(off.abs() < rounding, "{runner:?}: the sum is {off:e} off {lost:e}");
             let conserved = lost.abs() < rounding;
-            assert_eq!(conserved, way.method.conserves_volume(), "{way:?}: {lost:e}");
+            assert_eq!(conserved, runner.method.conserves_volume(), "{runner:?}: {lost:e}");
         }
     }
 }
 
 #[test]
 fn where_the_volume_is_not_conserved_is_told() {
-    for way in Way::all().filter(|way| way.method.conserves_volume()) {
-        let (_, report) = way.run(&samples::terrain(800), 0.1);
+    for runner in Runner::all().filter(|runner| runner.method.conserves_volume()) {
+        let (_, report) = runner.run(&samples::terrain(800), 0.1);
         let Unconserved { contractions, bounds } = report.volume.open;
         assert!(contractions > 0 && bounds.diagonal() > 0.0);
         let mesh = samples::sphere(800);
         let locks = every_nth(&mesh, 9, Lock::Locked);
         let options = Options { locks, ..Options::default() };
-        let (_, report) = way.go(&mesh, Target::Ratio(0.3), &options);
-        assert!(report.volume.held.contractions > 0, "{way:?}");
-        assert!(report.volume.running_sum.abs() > 1e-9, "{way:?}");
+        let (_, report) = runner.go(&mesh, Target::Ratio(0.3), &options);
+        assert!(report.volume.held.contractions > 0, "{runner:?}");
+        assert!(report.volume.running_sum.abs() > 1e-9, "{runner:?}");
     }
 }
 
 #[test]
 fn steps_stop_where_they_would_cost_too_much() {
     let mesh = samples::knot(1000);
-    for way in Way::all() {
-        let mut simplifier = way.start(&mesh, &Options::default()).unwrap();
+    for runner in Runner::all() {
+        let mut simplifier = runner.start(&mesh, &Options::default()).unwrap();
         for _ in 0..20 {
             assert!(simplifier.step(f64::INFINITY, &mut ()));
         }
         let (before, most_cost) = (simplifier.live_faces(), 2.0 * simplifier.next_cost().unwrap());
         while simplifier.step(most_cost, &mut ()) {}
         let stopped = simplifier.live_faces();
-        assert!((before / 4..before).contains(&stopped), "{way:?}: {before} {stopped}");
+        assert!((before / 4..before).contains(&stopped), "{runner:?}: {before} {stopped}");
         assert!(simplifier.step(f64::INFINITY, &mut ()) && simplifier.live_faces() < stopped);
     }
 }
@@ -291,10 +293,10 @@ fn steps_stop_where_they_would_cost_too_much() {
 #[test]
 fn the_same_bytes_for_any_number_of_threads() {
     for (name, mesh) in meshes() {
-        for way in Way::all() {
+        for runner in Runner::all() {
             let with = |threads| {
                 let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-                pool.install(|| way.run(&mesh, 0.2))
+                pool.install(|| runner.run(&mesh, 0.2))
             };
             assert_eq!(with(1), with(2), "{name}");
         }
@@ -305,9 +307,9 @@ fn the_same_bytes_for_any_number_of_threads() {
 fn locked_vertices_stay_where_they_are() {
     let mesh = samples::sphere(1000);
     let locks = every_nth(&mesh, 7, Lock::Locked);
-    for way in Way::all() {
+    for runner in Runner::all() {
         let options = Options { locks: locks.clone(), ..Options::default() };
-        let (level, _) = way.go(&mesh, Target::Faces(0), &options);
+        let (level, _) = runner.go(&mesh, Target::Faces(0), &options);
         let places: HashSet<_> = level.positions.iter().map(|p| p.map(f64::to_bits)).collect();
         for (v, position) in mesh.positions.iter().enumerate().step_by(7) {
             assert!(places.contains(&position.map(f64::to_bits)), "{}", VertexId::new(v));
@@ -318,8 +320,8 @@ fn locked_vertices_stay_where_they_are() {
 #[test]
 fn a_wider_bound_goes_on_where_a_narrower_one_stopped() {
     let mesh = samples::knot(2000);
-    for way in Way::all() {
-        let mut simplifier = way.start(&mesh, &Options::default()).unwrap();
+    for runner in Runner::all() {
+        let mut simplifier = runner.start(&mesh, &Options::default()).unwrap();
         let mut faces = mesh.faces.len();
         for error in [0.005, 0.01, 0.02, 0.04] {
             let report = simplifier.run(Target::Error(error), &mut ()).unwrap();
@@ -337,10 +339,10 @@ fn a_locked_boundary_keeps_every_vertex() {
     let mesh = samples::terrain(800);
     let options = Options { lock_boundary: true, ..Options::default() };
     let edges = |mesh: &Mesh| Connectivity::new(&mesh.faces, mesh.positions.len()).boundary_edges();
-    for way in Way::all() {
-        let (level, report) = way.go(&mesh, Target::Faces(0), &options);
-        assert_eq!(edges(&level), edges(&mesh), "{way:?}");
-        assert!(!report.reached && level.faces.len() < mesh.faces.len() / 2, "{way:?}");
+    for runner in Runner::all() {
+        let (level, report) = runner.go(&mesh, Target::Faces(0), &options);
+        assert_eq!(edges(&level), edges(&mesh), "{runner:?}");
+        assert!(!report.reached && level.faces.len() < mesh.faces.len() / 2, "{runner:?}");
     }
 }
 
@@ -355,10 +357,10 @@ fn endpoint_keeps_to_the_vertices_of_the_input() {
 #[test]
 fn a_flat_costs_nothing_and_keeps_its_outline() {
     let mesh = fixtures::grid(16);
-    for way in Way::all() {
-        let (level, report) = way.go(&mesh, Target::Error(1e-9), &Options::default());
+    for runner in Runner::all() {
+        let (level, report) = runner.go(&mesh, Target::Error(1e-9), &Options::default());
         let left = level.faces.len();
-        assert!(left <= 8, "{left} faces are left of a square by {way:?}");
+        assert!(left <= 8, "{left} faces are left of a square by {runner:?}");
         assert!(report.error_estimate < 1e-9);
         assert!((level.bounds().diagonal() - 16.0 * 2f64.sqrt()).abs() < 1e-6);
     }
@@ -368,11 +370,11 @@ fn a_flat_costs_nothing_and_keeps_its_outline() {
 fn an_error_bound_stops_what_would_exceed_it() {
     let mesh = samples::sphere(5000);
     let methods = [Method::Qem, Method::LindstromTurk];
-    for way in Way::all().filter(|way| methods.contains(&way.method)) {
+    for runner in Runner::all().filter(|runner| methods.contains(&runner.method)) {
         let mut last = mesh.faces.len();
         for error in [1e-3, 3e-3, 1e-2, 3e-2] {
-            let (level, report) = way.go(&mesh, Target::Error(error), &Options::default());
-            assert!(report.error_estimate <= error && level.faces.len() < last, "{way:?}");
+            let (level, report) = runner.go(&mesh, Target::Error(error), &Options::default());
+            assert!(report.error_estimate <= error && level.faces.len() < last, "{runner:?}");
             last = level.faces.len();
         }
     }
@@ -420,7 +422,7 @@ fn what_is_no_mesh_is_refused() {
     }
 }
 
-/// Open and non-manifold edges, and components.
+/// Number of open and non-manifold edges, and of components.
 fn defects(mesh: &Mesh) -> [usize; 3] {
     let c = Connectivity::new(&mesh.faces, mesh.positions.len());
     let components = face_components(&mesh.faces, mesh.positions.len()).1;
@@ -433,7 +435,7 @@ proptest! {
     fn a_soup_gets_no_worse(
         positions in prop::collection::vec(prop::array::uniform3(-4i8..4), 4..14),
         raw in prop::collection::vec(prop::array::uniform3(0u32..14), 1..40),
-        way in prop::sample::select(Way::all().collect::<Vec<_>>()),
+        runner in prop::sample::select(Runner::all().collect::<Vec<_>>()),
         ratio in 0.0..1.0f64,
     ) {
         let count = positions.len() as u32;
@@ -441,8 +443,8 @@ proptest! {
             positions.iter().map(|p| p.map(f64::from)).collect(),
             raw.iter().map(|face| face.map(|v| VertexId(v % count))).collect(),
         );
-        // All is degenerate, then there is nothing to keep.
-        if let Ok(mut simplifier) = way.start(&mesh, &Options::default()) {
+        // If every face is degenerate, there is nothing to keep.
+        if let Ok(mut simplifier) = runner.start(&mesh, &Options::default()) {
             let cleaned = simplifier.level();
             simplifier.run(Target::Ratio(ratio), &mut ()).unwrap();
             let level = simplifier.level();
@@ -476,7 +478,7 @@ fn normals_of_its_own_at_every_face_stop_nothing() {
     for method in Method::ALL {
         let (level, report) = run(&mesh, method, 0.1);
         assert!(report.reached, "{}", report.refusals);
-        // Where faces of several normals meet they still do: it is a crease, not one smooth vertex.
+        // Faces of several normals still meet here: a crease, not one smooth vertex.
         assert!(level.attributes.as_ref().unwrap().wedge_count > level.positions.len());
     }
 }

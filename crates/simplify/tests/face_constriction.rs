@@ -1,9 +1,9 @@
-//! What [LJ05] says of itself and of [Wu01].
+//! Claims of [LJ05] about itself and [Wu01].
 
 use meshlod_mesh::{Mesh, VertexId};
 use meshlod_simplify::{Method, Options, Simplifier};
 
-/// A plain of unit squares with a regular pyramid on it: all edges of its tip turn alike.
+/// Plane of unit squares with a regular pyramid on it: all edges of its tip turn alike.
 fn pyramid_on_a_plain() -> Mesh {
     const SIDE: u32 = 21;
     let at = |x: u32, y: u32| VertexId(y * SIDE + x);
@@ -11,7 +11,7 @@ fn pyramid_on_a_plain() -> Mesh {
     let height = |x: u32, y: u32| if (x, y) == (middle, middle) { 1.0 } else { 0.0 };
     let positions = (0..SIDE * SIDE).map(|i| {
         let (x, y) = (i % SIDE, i / SIDE);
-        // Not quite flat, or the order on the plain would be that of rounding.
+        // Not quite flat, or the order on the plane would be that of rounding errors.
         let ripple = 0.05 * (f64::from(x) * 0.9).sin() * (f64::from(y) * 1.1).cos();
         [f64::from(x), f64::from(y), height(x, y) + ripple]
     });
@@ -25,7 +25,7 @@ fn pyramid_on_a_plain() -> Mesh {
     Mesh::new(positions.collect(), faces.collect())
 }
 
-/// How many faces are left when the tip goes.
+/// Number of faces left when the tip is removed.
 fn faces_at_the_end_of_the_tip(method: Method) -> usize {
     let mesh = pyramid_on_a_plain();
     let options = Options { method: Some(method), ..Options::default() };

@@ -1,4 +1,5 @@
-//! Meshes made to be slow or to break the arithmetic. What counts is that they end, and how.
+//! Meshes made to be slow or to break the arithmetic. They must terminate, with a valid result or
+//! an error.
 
 use meshlod_fixtures as fixtures;
 use meshlod_mesh::{Attributes, Connectivity, Layer, LayerKind, Mesh, VertexId, WedgeId};
@@ -79,7 +80,7 @@ fn all_in_one_point_ends() {
     assert!(level.faces.len() <= mesh.faces.len());
 }
 
-/// A sphere with one layer of four values a vertex.
+/// Sphere with one layer of four values per vertex.
 fn with_layer(kind: LayerKind, value: impl Fn(usize) -> [f32; 4]) -> Mesh {
     let mut mesh = samples::sphere(2000);
     let count = mesh.positions.len();
@@ -121,7 +122,7 @@ fn a_wedge_at_two_vertices_is_no_mesh() {
     assert!(matches!(error, SimplifyError::Mesh(_)), "{error}");
 }
 
-/// A closed fold: two sheets so near to each other that their normals all but cancel.
+/// Closed fold: two sheets so close that their normals nearly cancel.
 fn fold() -> Mesh {
     let mut mesh = samples::sphere(2000);
     mesh.positions.iter_mut().for_each(|p| p[2] *= 1e-7);

@@ -1,4 +1,4 @@
-//! The fast engine by the rules of the general one, its oracle, and on meshes made to break it.
+//! The kernel against the policy engine, its oracle, and on meshes made to break it.
 
 use std::collections::HashSet;
 
@@ -10,8 +10,8 @@ use meshlod_simplify::{
 };
 use meshlod_spatial::Bvh;
 
-/// What the fast engine does.
-const FAST: [Method; 2] = [Method::LindstromTurk, Method::Qem];
+/// Methods that the kernel runs.
+const KERNEL_METHODS: [Method; 2] = [Method::LindstromTurk, Method::Qem];
 
 fn options(method: Method) -> Options {
     Options { method: Some(method), ..Options::default() }
@@ -44,7 +44,7 @@ fn meshes() -> Vec<(&'static str, Mesh)> {
     ]
 }
 
-/// Terrains that all have one edge of theirs in common, with `n` faces on each side of it.
+/// Terrains that all share one edge line, with `n` faces on each of its edges.
 fn pages(n: usize) -> Mesh {
     let page = fixtures::grid(8);
     let spine = |v: usize| page.positions[v][0] == 0.0;
@@ -69,7 +69,7 @@ fn pages(n: usize) -> Mesh {
     mesh
 }
 
-/// Components, Euler number, whether closed, non-manifold and inconsistent edges.
+/// Components, Euler number, closedness, non-manifold and inconsistent edges.
 fn topology(mesh: &Mesh) -> (usize, i64, bool, usize, usize) {
     let c = Connectivity::new(&mesh.faces, mesh.positions.len());
     let used = mesh.used_vertices().iter().filter(|&&used| used).count();
@@ -94,7 +94,7 @@ fn check_level(what: &str, level: &Mesh, report: &Report) {
 
 #[test]
 fn a_level_is_valid_and_as_closed_manifold_and_oriented_as_its_mesh() {
-    for method in FAST {
+    for method in KERNEL_METHODS {
         for (name, mesh) in meshes() {
             for ratio in [0.5, 0.1, 0.0] {
                 let what = format!("{name} to {ratio}");
@@ -108,7 +108,7 @@ fn a_level_is_valid_and_as_closed_manifold_and_oriented_as_its_mesh() {
 
 #[test]
 fn targets_of_a_few_faces_are_met_or_refused_in_words() {
-    for method in FAST {
+    for method in KERNEL_METHODS {
         for (name, mesh) in meshes() {
             for faces in [0, 1, 4] {
                 let (level, report) = run(method, &mesh, Target::Faces(faces));
@@ -125,7 +125,7 @@ fn targets_of_a_few_faces_are_met_or_refused_in_words() {
 
 #[test]
 fn smooth_samples_reach_their_target() {
-    for method in FAST {
+    for method in KERNEL_METHODS {
         for mesh in [samples::sphere(2000), samples::torus(2000), samples::knot(3000)] {
             let (level, report) = run(method, &mesh, Target::Ratio(0.05));
             let target = mesh.faces.len() / 20;
@@ -136,7 +136,7 @@ fn smooth_samples_reach_their_target() {
 
 #[test]
 fn a_flat_stays_one_and_grows_no_hubs() {
-    for method in FAST {
+    for method in KERNEL_METHODS {
         let mesh = fixtures::grid(200);
         let (level, report) = run(method, &mesh, Target::Ratio(0.02));
         assert!(report.reached, "{report:?}");
@@ -150,7 +150,7 @@ fn a_flat_stays_one_and_grows_no_hubs() {
 
 #[test]
 fn a_hub_shrinks_with_its_rim() {
-    for method in FAST {
+    for method in KERNEL_METHODS {
         let (level, report) = run(method, &fixtures::cone(100_000), Target::Faces(100));
         assert!(report.reached, "{report:?}");
         check_level("cone", &level, &report);
@@ -160,7 +160,7 @@ fn a_hub_shrinks_with_its_rim() {
 
 #[test]
 fn faces_given_twice_are_left_out() {
-    for method in FAST {
+    for method in KERNEL_METHODS {
         let mut mesh = fixtures::cone(2_000);
         mesh.faces.extend_from_within(..);
         let (level, report) = run(method, &mesh, Target::Faces(100));
@@ -171,7 +171,7 @@ fn faces_given_twice_are_left_out() {
 
 #[test]
 fn scale_and_place_change_nothing_to_speak_of() {
-    for method in FAST {
+    for method in KERNEL_METHODS {
         let mesh = samples::torus(2_000);
         let (at_home, _) = run(method, &mesh, Target::Ratio(0.1));
         for (scale, shift) in [(2f64.powi(-90), 0.0), (2f64.powi(90), 0.0), (1.0, 1e6)] {
@@ -196,7 +196,7 @@ fn scale_and_place_change_nothing_to_speak_of() {
 
 #[test]
 fn faces_without_area_and_points_in_one_place_end() {
-    for method in FAST {
+    for method in KERNEL_METHODS {
         let positions = (0..200).map(|i| [f64::from(i) * f64::from(i), 0.0, 0.0]).collect();
         let strip = |i: u32| [VertexId(i), VertexId(i + 1), VertexId(i + 2)];
         let mut line = Mesh::new(positions, (0..198).map(strip).collect());
@@ -214,7 +214,7 @@ fn faces_without_area_and_points_in_one_place_end() {
 
 #[test]
 fn tiny_and_huge_faces_go_together() {
-    for method in FAST {
+    for method in KERNEL_METHODS {
         // A sphere a millionth of the other's size, and one a hundred-millionth.
         let mut mesh = samples::sphere(2000);
         let (vertices, faces) = (mesh.positions.clone(), mesh.faces.clone());
@@ -231,7 +231,7 @@ fn tiny_and_huge_faces_go_together() {
 
 #[test]
 fn a_thousand_components_keep_apart() {
-    for method in FAST {
+    for method in KERNEL_METHODS {
         let one = fixtures::tetrahedron();
         let mut mesh = Mesh::default();
         for i in 0..1000u32 {
@@ -246,7 +246,7 @@ fn a_thousand_components_keep_apart() {
 
 #[test]
 fn locked_vertices_stay() {
-    for method in FAST {
+    for method in KERNEL_METHODS {
         let mesh = samples::terrain(2000);
         let every_fifth = |v: usize| if v.is_multiple_of(5) { Lock::Locked } else { Lock::Free };
         let locks = Locks {
@@ -267,7 +267,7 @@ fn locked_vertices_stay() {
     }
 }
 
-/// The farthest of vertices, middles of edges and middles of faces from another surface.
+/// Greatest distance of vertices, edge midpoints and face centres from another surface.
 fn farthest_point(from: &Mesh, to: &Mesh) -> f64 {
     let to = Bvh::new(to).unwrap();
     let points = from.faces.iter().flat_map(|&face| {
@@ -279,7 +279,7 @@ fn farthest_point(from: &Mesh, to: &Mesh) -> f64 {
 
 #[test]
 fn a_bound_of_the_error_is_kept_both_ways() {
-    for method in FAST {
+    for method in KERNEL_METHODS {
         for (mesh, parts) in [
             (samples::torus(3000), [3, 10]),
             (samples::fish(4000), [3, 20]),
@@ -301,7 +301,7 @@ fn a_bound_of_the_error_is_kept_both_ways() {
 
 #[test]
 fn a_bound_holds_after_another_target_and_after_another_bound() {
-    for method in FAST {
+    for method in KERNEL_METHODS {
         let mesh = samples::fish(4000);
         let bare = Mesh { attributes: None, ..mesh.clone() };
         let diagonal = mesh.bounds().diagonal();
@@ -337,7 +337,7 @@ fn volume_stays_and_runs_are_alike() {
 
 #[test]
 fn what_was_found_in_the_input_is_told_as_by_the_general_engine() {
-    for method in FAST {
+    for method in KERNEL_METHODS {
         let mut dirty = samples::terrain(500);
         dirty.attributes = None;
         let first = dirty.faces[0];
@@ -359,14 +359,14 @@ fn what_was_found_in_the_input_is_told_as_by_the_general_engine() {
                     let faces = [degenerate_faces, duplicate_faces, report.output_faces];
                     (faces, report.non_manifold_vertices, report.held, simplifier.level())
                 };
-                let fast = found(Simplifier::new(&mesh, &options).unwrap());
-                assert_eq!(fast, found(Simplifier::on_policy_engine(&mesh, &options).unwrap()));
+                let kernel = found(Simplifier::new(&mesh, &options).unwrap());
+                assert_eq!(kernel, found(Simplifier::on_policy_engine(&mesh, &options).unwrap()));
             }
         }
     }
 }
 
-/// The faces of a surface that are left, by the input's ids, and where their corners are.
+/// Remaining faces of a surface by the input's ids, and the positions of their corners.
 fn of_surface(simplifier: &Simplifier<'_>) -> Vec<[[u64; 3]; 3]> {
     let surface = simplifier.surface();
     let alive = (0..surface.face_count()).map(FaceId::new).filter(|&f| surface.is_alive(f));
@@ -374,7 +374,7 @@ fn of_surface(simplifier: &Simplifier<'_>) -> Vec<[[u64; 3]; 3]> {
     alive.map(|f| surface.face(f).map(place)).collect()
 }
 
-/// The same of a level.
+/// Faces of a level, and the positions of their corners.
 fn of_level(level: &Mesh) -> Vec<[[u64; 3]; 3]> {
     let place = |v: VertexId| level.positions[v.index()].map(f64::to_bits);
     level.faces.iter().map(|face| face.map(place)).collect()
@@ -382,11 +382,12 @@ fn of_level(level: &Mesh) -> Vec<[[u64; 3]; 3]> {
 
 #[test]
 fn what_observers_see_is_the_level_to_the_bit() {
-    for method in FAST {
+    for method in KERNEL_METHODS {
         for (name, mesh) in meshes() {
             let mesh = Mesh { attributes: None, ..mesh };
             let mut simplifier = Simplifier::new(&mesh, &options(method)).unwrap();
-            // Seen, not seen, seen again; looked at before the start and after.
+            // Observed, unobserved, observed again; with the surface requested before the start and
+            // after.
             assert_eq!(of_surface(&simplifier), of_level(&simplifier.level()), "{name}");
             for (ratio, is_seen) in
                 [(0.7, true), (0.5, false), (0.3, true), (0.1, true), (0.0, false)]
@@ -411,7 +412,7 @@ fn what_observers_see_is_the_level_to_the_bit() {
     }
 }
 
-/// Counts what it is told, and wants to see nothing.
+/// Observer that counts removed faces and needs no surface.
 #[derive(Default)]
 struct Count(usize);
 
@@ -427,7 +428,7 @@ impl Observe for Count {
 
 #[test]
 fn every_face_that_goes_is_counted() {
-    for method in FAST {
+    for method in KERNEL_METHODS {
         let mesh = samples::torus(30_000);
         let mut simplifier = Simplifier::new(&mesh, &options(method)).unwrap();
         let (mut alone, mut beside) = (Count::default(), Count::default());
@@ -440,14 +441,14 @@ fn every_face_that_goes_is_counted() {
 
 #[test]
 fn runs_and_steps_go_the_same_way() {
-    for method in FAST {
+    for method in KERNEL_METHODS {
         let mesh = samples::knot(3000);
         let mut by_steps = Simplifier::new(&mesh, &options(method)).unwrap();
         let mut by_runs = Simplifier::new(&mesh, &options(method)).unwrap();
         for ratio in [0.5, 0.2, 0.05] {
             by_runs.run(Target::Ratio(ratio), &mut ()).unwrap();
             while by_steps.live_faces() > by_runs.live_faces() {
-                // Told what it costs, it can be made for that, or is found to be refused.
+                // At its announced cost it is either made or found to be refused.
                 let cost = by_steps.next_cost().unwrap();
                 let before = by_steps.live_faces();
                 let made = by_steps.step(cost, &mut ());
@@ -461,10 +462,10 @@ fn runs_and_steps_go_the_same_way() {
 
 #[test]
 fn damaged_files_end() {
-    for method in FAST {
+    for method in KERNEL_METHODS {
         for path in fixtures::shared_broken() {
             let Ok(text) = std::fs::read(&path) else { continue };
-            // Any bytes make a soup: four of them an index.
+            // Arbitrary bytes make a soup: four of them are an index.
             let index = |bytes: &[u8]| VertexId(u32::from(bytes[0]) % 40);
             let faces = text.chunks_exact(3).take(500);
             let faces = faces.map(|b| [index(b), index(&b[1..]), index(&b[2..])]).collect();
@@ -477,7 +478,7 @@ fn damaged_files_end() {
     }
 }
 
-/// A sphere of which single vertices stand out by a third of its radius.
+/// Sphere of which single vertices stand out by a third of its radius.
 fn hedgehog() -> Mesh {
     let mut mesh = samples::sphere(20_000);
     mesh.attributes = None;
@@ -487,7 +488,7 @@ fn hedgehog() -> Mesh {
     mesh
 }
 
-/// How far the vertices of a mesh are at most from a level of it.
+/// Greatest distance of the vertices of a mesh from a level of it.
 fn farthest(mesh: &Mesh, level: &Mesh) -> f64 {
     let level = Bvh::new(level).unwrap();
     let squared = |&p| level.closest(p, None).distance_squared;
@@ -496,7 +497,7 @@ fn farthest(mesh: &Mesh, level: &Mesh) -> f64 {
 
 #[test]
 fn tips_stay_while_others_go() {
-    for method in FAST {
+    for method in KERNEL_METHODS {
         let mesh = hedgehog();
         let (level, report) = run(method, &mesh, Target::Ratio(0.15));
         assert!(report.reached);
@@ -508,7 +509,7 @@ fn tips_stay_while_others_go() {
 
 #[test]
 fn tips_that_are_cut_off_are_in_the_estimate() {
-    for method in FAST {
+    for method in KERNEL_METHODS {
         for mesh in [hedgehog(), Mesh { attributes: None, ..samples::fish(5000) }] {
             for faces in [1000, 100] {
                 let (level, report) = run(method, &mesh, Target::Faces(faces));
@@ -521,7 +522,7 @@ fn tips_that_are_cut_off_are_in_the_estimate() {
 
 #[test]
 fn a_bound_of_the_error_keeps_tips() {
-    for method in FAST {
+    for method in KERNEL_METHODS {
         let mesh = hedgehog();
         let most = 0.02 * mesh.bounds().diagonal();
         let (level, report) = run(method, &mesh, Target::Error(most));

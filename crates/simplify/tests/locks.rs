@@ -1,4 +1,4 @@
-//! What locks, protection and ties hold.
+//! Locks, protection and ties hold.
 
 use std::collections::HashMap;
 
@@ -10,7 +10,7 @@ use meshlod_simplify::{
 };
 use proptest::prelude::*;
 
-/// A box of `n` unit squares a side from `start` on, closed.
+/// Closed box of `n` unit squares a side, from `start`.
 fn boxed(n: [i32; 3], start: [i32; 3]) -> Mesh {
     let mut ids = HashMap::new();
     let mut mesh = Mesh::default();
@@ -35,7 +35,7 @@ fn boxed(n: [i32; 3], start: [i32; 3]) -> Mesh {
     mesh
 }
 
-/// Several meshes as one, their vertices apart.
+/// Joins several meshes into one, keeping their vertices separate.
 fn beside(meshes: &[Mesh]) -> Mesh {
     let mut all = Mesh::default();
     for mesh in meshes {
@@ -46,7 +46,7 @@ fn beside(meshes: &[Mesh]) -> Mesh {
     all
 }
 
-/// Ties of all vertices that are at one place.
+/// Ties all vertices at the same position.
 fn ties(mesh: &Mesh) -> Locks {
     let mut places: HashMap<_, Vec<VertexId>> = HashMap::new();
     for (v, position) in mesh.positions.iter().enumerate() {
@@ -57,7 +57,7 @@ fn ties(mesh: &Mesh) -> Locks {
     Locks { ties, ..Locks::default() }
 }
 
-/// Two boxes that touch in a side, and a smaller one on top of both.
+/// Two boxes that share a side, and a smaller one on top of both.
 fn three_boxes(n: i32) -> Mesh {
     beside(&[
         boxed([n; 3], [0; 3]),
@@ -85,7 +85,7 @@ fn two_tiles(n: u32) -> Mesh {
     beside(&[tile(0), tile(n)])
 }
 
-/// Where every vertex went, and where that is.
+/// Final vertex of every vertex, and its position.
 struct Trace {
     into: HashMap<VertexId, VertexId>,
     at: Vec<[f64; 3]>,
@@ -103,7 +103,7 @@ impl Trace {
         self.at[v.index()]
     }
 
-    /// The ties that are torn.
+    /// Ties whose vertices are apart.
     fn torn<'l>(&self, locks: &'l Locks) -> Option<&'l Vec<VertexId>> {
         let at = |v: &VertexId| self.end(*v).map(f64::to_bits);
         locks.ties.iter().find(|tie| tie.iter().any(|v| at(v) != at(&tie[0])))
@@ -111,9 +111,9 @@ impl Trace {
 }
 
 impl Observe for Trace {
-    fn before(&mut self, _: &Surface, hood: &Neighbourhood, placed: &Placed) {
-        let kept = hood.contracted()[placed.kept];
-        let gone = hood.contracted().iter().filter(|&&v| v != kept);
+    fn before(&mut self, _: &Surface, neighbourhood: &Neighbourhood, placed: &Placed) {
+        let kept = neighbourhood.contracted()[placed.kept];
+        let gone = neighbourhood.contracted().iter().filter(|&&v| v != kept);
         self.into.extend(gone.map(|&v| (v, kept)));
         self.at[kept.index()] = placed.position.into();
     }
@@ -125,7 +125,7 @@ fn defects(mesh: &Mesh) -> [usize; 3] {
     [c.boundary_edges(), c.non_manifold_edges(), components]
 }
 
-/// Runs with all ties, sees that they hold, and gives the level.
+/// Runs with all ties, checks that they hold, and returns the level.
 fn tied_run(mesh: &Mesh, method: Method, ratio: f64) -> Mesh {
     let locks = ties(mesh);
     let options = Options { method: Some(method), locks: locks.clone(), ..Options::default() };
@@ -150,7 +150,7 @@ fn touching_boxes_stay_touching() {
     }
 }
 
-/// The boundary edges inside the ground, by their ends, with how often each is there.
+/// Boundary edges inside the ground, by their ends, with their counts.
 fn seams_inside(level: &Mesh, border: f64) -> HashMap<[[u64; 3]; 2], usize> {
     let mut count = HashMap::new();
     let mut edges: HashMap<[VertexId; 2], usize> = HashMap::new();
@@ -238,7 +238,7 @@ proptest! {
         );
         let locks = ties(&mesh);
         let options = Options { method: Some(method), locks: locks.clone(), ..Options::default() };
-        // All is degenerate, then there is nothing to keep.
+        // If every face is degenerate, there is nothing to keep.
         if let Ok(mut simplifier) = Simplifier::new(&mesh, &options) {
             let before = defects(&simplifier.level());
             let mut trace = Trace::new(&mesh);
@@ -314,7 +314,7 @@ fn surfaces_that_are_cut_otherwise_stay_together() {
     }
 }
 
-/// A torus with half of it locked in some way.
+/// Torus of which half is locked in some way.
 fn halved(lock: Lock) -> (Mesh, Locks) {
     let mesh = samples::torus(2000);
     let of = |p: &[f64; 3]| if p[0] > 0.0 { lock } else { Lock::Free };
@@ -349,15 +349,15 @@ fn both_engines_protect_as_much() {
         .flat_map(|method| [0.6, 0.3, 0.1].map(|ratio| (method, ratio)));
     for (method, ratio) in cases {
         let options = Options { method: Some(method), locks: locks.clone(), ..Options::default() };
-        let [fast, general] = [true, false].map(|is_fast| {
-            let start = if is_fast { Simplifier::new } else { Simplifier::on_policy_engine };
+        let [kernel, policies] = [true, false].map(|on_kernel| {
+            let start = if on_kernel { Simplifier::new } else { Simplifier::on_policy_engine };
             let mut simplifier = start(&mesh, &options).unwrap();
             simplifier.run(Target::Ratio(ratio), &mut ()).unwrap();
             let level = simplifier.level();
             let there = level.positions.iter().filter(|p| p[0] > 0.01).count();
             there as f64 / level.positions.len() as f64
         });
-        assert!((fast - general).abs() < 0.05, "{ratio}: {fast} {general}");
+        assert!((kernel - policies).abs() < 0.05, "{ratio}: {kernel} {policies}");
     }
 }
 

@@ -1,4 +1,4 @@
-//! The fast engine on meshes of several parts: by any number of threads, in any order of the file.
+//! The kernel on meshes of several parts: any number of threads, any order of the file.
 
 use std::collections::HashSet;
 
@@ -7,8 +7,8 @@ use meshlod_mesh::{Connectivity, Lock, Locks, Mesh, VertexId};
 use meshlod_samples as samples;
 use meshlod_simplify::{History, Method, Options, Report, Simplifier, Target, simplify};
 
-/// What the fast engine does.
-const FAST: [Method; 2] = [Method::LindstromTurk, Method::Qem];
+/// Methods that the kernel runs.
+const KERNEL_METHODS: [Method; 2] = [Method::LindstromTurk, Method::Qem];
 
 fn options(method: Method) -> Options {
     Options { method: Some(method), ..Options::default() }
@@ -23,7 +23,7 @@ fn run(method: Method, mesh: &Mesh, target: Target) -> (Mesh, Report) {
     run_with(2, mesh, target, &options(method))
 }
 
-/// Several parts of vertices each, with boundaries, with flats, in pieces, and not manifold.
+/// Meshes of several partitions, with boundaries, with flats, in pieces, and non-manifold.
 fn large() -> Vec<(&'static str, Mesh)> {
     let terrain = Mesh { attributes: None, ..samples::terrain(120_000) };
     vec![
@@ -35,7 +35,7 @@ fn large() -> Vec<(&'static str, Mesh)> {
     ]
 }
 
-/// So many copies side by side.
+/// Places copies of a mesh side by side.
 fn pieces(of: &Mesh, count: u32) -> Mesh {
     let mut mesh = Mesh::default();
     for i in 0..count {
@@ -48,7 +48,7 @@ fn pieces(of: &Mesh, count: u32) -> Mesh {
     mesh
 }
 
-/// A square and another across it: the middle column of vertices is in both.
+/// Two squares that cross: the middle column of vertices is in both.
 fn crossing(square: &Mesh) -> Mesh {
     let middle = square.bounds().center()[0];
     let mut mesh = square.clone();
@@ -68,7 +68,7 @@ fn crossing(square: &Mesh) -> Mesh {
     mesh
 }
 
-/// The same mesh with its vertices and faces in no order.
+/// Shuffles the vertices and faces of a mesh.
 fn scrambled(mesh: &Mesh) -> Mesh {
     let places = shuffled(mesh.positions.len());
     let mut positions = vec![[0.0; 3]; places.len()];
@@ -99,7 +99,7 @@ fn euler(mesh: &Mesh) -> (i64, usize, usize) {
 
 #[test]
 fn any_number_of_threads_gives_the_same_bytes() {
-    for method in FAST {
+    for method in KERNEL_METHODS {
         for (name, mesh) in large() {
             let bound = Target::Error(0.005 * mesh.bounds().diagonal());
             for target in [Target::Ratio(0.5), Target::Ratio(0.03), bound] {
@@ -113,7 +113,7 @@ fn any_number_of_threads_gives_the_same_bytes() {
 
 #[test]
 fn targets_are_met_to_the_face_and_topology_is_kept() {
-    for method in FAST {
+    for method in KERNEL_METHODS {
         for (name, mesh) in large() {
             let before = euler(&mesh);
             for faces in [mesh.faces.len() - 1, mesh.faces.len() / 2, mesh.faces.len() / 3 + 1] {
@@ -131,7 +131,7 @@ fn targets_are_met_to_the_face_and_topology_is_kept() {
 
 #[test]
 fn whoever_observes_sees_the_same_level() {
-    for method in FAST {
+    for method in KERNEL_METHODS {
         for (name, mesh) in large() {
             let (level, _) = run(method, &mesh, Target::Ratio(0.05));
             let mut simplifier = Simplifier::new(&mesh, &options(method)).unwrap();
@@ -149,7 +149,7 @@ fn whoever_observes_sees_the_same_level() {
 
 #[test]
 fn targets_of_a_few_faces_end() {
-    for method in FAST {
+    for method in KERNEL_METHODS {
         for (name, mesh) in large() {
             for faces in [0, 1, 4] {
                 let (level, report) = run(method, &mesh, Target::Faces(faces));
@@ -163,7 +163,7 @@ fn targets_of_a_few_faces_end() {
 
 #[test]
 fn a_file_in_no_order_is_simplified_as_well() {
-    for method in FAST {
+    for method in KERNEL_METHODS {
         for mesh in [samples::knot(80_000), samples::torus(80_000)] {
             let other = scrambled(&mesh);
             let [(level, first), (_, second)] =
@@ -186,7 +186,7 @@ fn a_file_in_no_order_is_simplified_as_well() {
 
 #[test]
 fn locks_hold_across_parts() {
-    for method in FAST {
+    for method in KERNEL_METHODS {
         let mesh = samples::torus(100_000);
         let every_fifth = |v: usize| if v.is_multiple_of(5) { Lock::Locked } else { Lock::Free };
         let of_vertex = (0..mesh.positions.len()).map(every_fifth).collect();
@@ -201,7 +201,7 @@ fn locks_hold_across_parts() {
 
 #[test]
 fn a_bound_of_the_error_holds_across_parts() {
-    for method in FAST {
+    for method in KERNEL_METHODS {
         let mesh = samples::torus(100_000);
         let (level, report) = run(method, &mesh, Target::Error(1e-3));
         assert!(report.error_estimate <= 1e-3 && level.faces.len() < mesh.faces.len() / 4);
@@ -210,7 +210,7 @@ fn a_bound_of_the_error_holds_across_parts() {
 
 #[test]
 fn a_stray_vertex_far_off_and_one_place_for_all_end() {
-    for method in FAST {
+    for method in KERNEL_METHODS {
         let mut mesh = samples::torus(60_000);
         mesh.positions.push([1e300, -1e300, 1e300]);
         let (level, report) = run(method, &mesh, Target::Ratio(0.1));

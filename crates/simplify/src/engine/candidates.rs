@@ -1,4 +1,4 @@
-//! What may be contracted: edges, or faces with edges where a face cannot go.
+//! Candidate policies: edges alone, or faces with edges where a face cannot be contracted.
 
 use meshlod_mesh::{Connectivity, FaceId, VertexId};
 
@@ -7,8 +7,8 @@ use crate::surface::contracted::Contracted;
 use crate::surface::neighbourhood::{Neighbourhood, Spoke};
 use crate::surface::{Flags, Surface};
 
-/// A candidate by number: side k of face f, from corner k to corner k + 1, is 4f + k; the face
-/// itself is 4f + 3.
+/// Candidate number: side k of face f, from corner k to corner k + 1, is 4f + k; the face itself is
+/// 4f + 3.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct CandidateId(pub(crate) u32);
 
@@ -28,7 +28,7 @@ impl CandidateId {
         FaceId(self.0 / 4)
     }
 
-    /// Which of its face's four candidates: a side by its corner, or 3.
+    /// Returns the index among the four candidates of its face: a side's corner, or 3.
     #[inline]
     pub(crate) fn slot(self) -> usize {
         (self.0 % 4) as usize
@@ -44,11 +44,11 @@ impl CandidateId {
     }
 }
 
-/// Every edge, by one of its sides.
+/// Candidate policy that contracts every edge, represented by one of its sides.
 ///
-/// A side lives as long as its face, whatever becomes of its vertices. So a contraction moves no
-/// candidate; it only ends those of the dying faces, and where two edges fall together it keeps one
-/// side of the two.
+/// A side lives as long as its face, whatever becomes of its vertices, so a contraction moves no
+/// candidate. It only closes those of removed faces, and keeps one of the two sides where two edges
+/// coincide.
 pub(crate) struct EdgeCandidates;
 
 impl Candidates for EdgeCandidates {
@@ -69,10 +69,12 @@ impl Candidates for EdgeCandidates {
     }
 }
 
-/// Every face with at most one special corner, and every edge with a special end.
+/// Candidate policy that contracts every face with at most one special corner, and every edge with
+/// a special end.
 ///
-/// A face whose corners are inside a chart, off every boundary and free to move, is contracted as a
-/// whole; onto a corner that is not; and where two are not, it is left to its edges.
+/// A face whose corners are inside a chart, off every boundary and free to move is contracted to
+/// any position; a face with one special corner is contracted onto it; a face with more is left to
+/// its edges.
 pub(crate) struct FaceAndEdgeCandidates;
 
 impl Candidates for FaceAndEdgeCandidates {
@@ -119,7 +121,7 @@ impl Candidates for FaceAndEdgeCandidates {
     }
 }
 
-/// Whether a vertex cannot simply be merged into a face's middle.
+/// Returns true if a vertex cannot simply be merged into the interior of a face.
 #[inline]
 fn special(surface: &Surface, v: VertexId) -> bool {
     surface.flags(v).any(Flags::BOUNDARY.or(Flags::PINNED).or(Flags::SEAM).or(Flags::TIED))
@@ -132,7 +134,7 @@ fn close_dying(neighbourhood: &Neighbourhood, sink: &mut dyn CandidateSink) {
     }
 }
 
-/// Leaves one open side on the edge from the new vertex to one on the ring.
+/// Keeps exactly one side open on the edge from the new vertex to a ring vertex.
 fn keep_one(neighbourhood: &Neighbourhood, ring: u32, sink: &mut dyn CandidateSink) {
     let side = |spoke: &Spoke| {
         let k = if spoke.a == ring { spoke.corner() } else { (spoke.corner() + 2) % 3 };

@@ -1,4 +1,4 @@
-//! What every contraction must respect: as manifold, closed and oriented after as before.
+//! Checks that keep a surface as manifold, closed and oriented as it was.
 
 use glam::DVec3;
 use meshlod_mesh::VertexId;
@@ -7,23 +7,24 @@ use crate::refusal::Refusal;
 use crate::surface::neighbourhood::Neighbourhood;
 use crate::surface::{Flags, Surface};
 
-/// The rules that do not ask for the new place, the cheapest and most often met first.
+/// Checks that do not depend on the new position, the cheapest and most selective first.
 const OF_TOPOLOGY: [Check; 3] = [shape, link, closing];
 
-/// A reason against a contraction, wherever its vertex goes.
+/// Check of a contraction, independent of the new position.
 type Check = fn(&Surface, &Neighbourhood) -> Result<(), Refusal>;
 
-/// Whether what is around may become one vertex at all.
+/// Checks whether the gathered vertices may be merged at all.
 pub(crate) fn topology(surface: &Surface, neighbourhood: &Neighbourhood) -> Result<(), Refusal> {
     OF_TOPOLOGY.iter().try_for_each(|check| check(surface, neighbourhood))
 }
 
-/// The least cosine between a face's normal before and after; found on bunny, horse and dragon:
-/// 0 lets folds through that raise the maximum, 0.5 costs a tenth of the accuracy at 1 %.
+/// Smallest allowed cosine between a face's normals before and after. Found on bunny, horse and
+/// dragon: 0 lets folds through that raise the maximum error, 0.5 costs a tenth of the accuracy at
+/// 1 %.
 const LEAST_COSINE: f64 = 0.2;
 
-/// An edge of at most two faces, or a face with as many neighbours as sides; not one that joins two
-/// boundaries across the surface; not the last of what hangs together.
+/// Allows an edge with at most two faces, or a face with as many neighbours as sides. Refuses to
+/// join two boundaries across the surface, and to remove the last faces of a component.
 fn shape(surface: &Surface, neighbourhood: &Neighbourhood) -> Result<(), Refusal> {
     let inner = if neighbourhood.contracted.len() == 2 { 2 } else { 4 };
     if neighbourhood.dying.len() > inner {
@@ -36,7 +37,7 @@ fn shape(surface: &Surface, neighbourhood: &Neighbourhood) -> Result<(), Refusal
     lasting(neighbourhood)
 }
 
-/// Something is left, and every wing still hangs on it by a face.
+/// Checks that some face survives and every wing keeps one.
 fn lasting(neighbourhood: &Neighbourhood) -> Result<(), Refusal> {
     let hangs_on = |wing: usize| {
         neighbourhood
@@ -52,8 +53,8 @@ fn lasting(neighbourhood: &Neighbourhood) -> Result<(), Refusal> {
     }
 }
 
-/// The link condition for vertices [DEGN99]: a common neighbour of contracted vertices is the apex
-/// of a dying face on just these.
+/// Checks the link condition for vertices [DEGN99]: a common neighbour of contracted vertices must
+/// be the apex of a removed face on exactly these.
 fn link(_: &Surface, neighbourhood: &Neighbourhood) -> Result<(), Refusal> {
     let apart = |adjacent: u8, wing: u8| adjacent.count_ones() < 2 || adjacent == wing;
     let ok = neighbourhood.ring.iter().all(|r| {
@@ -62,18 +63,19 @@ fn link(_: &Surface, neighbourhood: &Neighbourhood) -> Result<(), Refusal> {
     if ok { Ok(()) } else { Err(Refusal::Link) }
 }
 
-/// The link condition for edges: no two surviving faces on the same two wings, or they would
-/// become one face twice. So does a tetrahedron end.
+/// Checks the link condition for edges: no two surviving faces share the same two wings, or they
+/// would become duplicates. This also protects tetrahedra.
 fn closing(_: &Surface, neighbourhood: &Neighbourhood) -> Result<(), Refusal> {
     let shared = |place: u32| neighbourhood.ring[place as usize].adjacent.count_ones() > 1;
     let across = neighbourhood.spokes.iter().filter(|spoke| shared(spoke.a) && shared(spoke.b));
-    // The two sides of a leaf have one apex: with them would go what closes the edges to it.
+    // The two sides of a thin sheet share one apex: removing both would also remove what closes the
+    // edges to it.
     let leaf = matches!(neighbourhood.dying[..], [a, b] if a.apex() == b.apex());
     if across.count() < 2 && !leaf { Ok(()) } else { Err(Refusal::Link) }
 }
 
-/// No surviving face turns over, or by more than a limit, or loses its area. One without area
-/// before may do as it likes.
+/// Checks that no surviving face flips, turns by more than the limit or loses its area. A face
+/// without area before is not checked.
 pub(crate) fn flip(
     surface: &Surface,
     neighbourhood: &Neighbourhood,

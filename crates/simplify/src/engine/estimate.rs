@@ -1,4 +1,4 @@
-//! How far a contraction takes the surface from the input: an estimate of the maximum, not a bound.
+//! Estimate of a contraction's maximum distance from the input; it is not an upper bound.
 
 use glam::DVec3;
 use meshlod_mesh::VertexId;
@@ -7,17 +7,18 @@ use meshlod_spatial::closest_point;
 use crate::surface::neighbourhood::{Neighbourhood, Spoke};
 use crate::surface::{Placed, Surface};
 
-/// The larger of what the placement says of itself and how far the contracted vertices end up from
-/// the new faces, on top of what was moved there before, in model units. The two are taken as
-/// independent.
+/// Returns the estimated distance from the input after a contraction, in model units.
+///
+/// This combines the larger of the placement's own estimate and the distance of the contracted
+/// vertices from the new faces with the distance moved before. The two are taken as independent.
 pub(crate) fn estimate(surface: &Surface, neighbourhood: &Neighbourhood, placed: &Placed) -> f64 {
     let now = placed.error_estimate.max(stand_off(surface, neighbourhood, placed.position));
     now.hypot(surface.moved(neighbourhood.contracted()))
 }
 
-/// How far the contracted vertices are from the faces they had and that now meet in `position`; one
-/// that had none but dying ones, from all that survive. Quadrics do not see the tip of a spike: its
-/// planes all pass close by its foot.
+/// Returns the distance of the contracted vertices from their own faces with the corner moved to
+/// `position`, or from all surviving faces if a vertex had only removed ones. Quadrics miss the tip
+/// of a spike, because its planes all pass close to its foot.
 fn stand_off(surface: &Surface, neighbourhood: &Neighbourhood, position: DVec3) -> f64 {
     let ring = |place: u32| neighbourhood.ring()[place as usize].position;
     let squared = |v: DVec3, spoke: &Spoke| {

@@ -1,9 +1,9 @@
-//! The one loop: take the cheapest candidate, ask whether it may, contract, renew.
+//! Policy engine: contracts the cheapest candidate that passes all checks, then updates costs.
 //!
-//! Costs are renewed lazily. A candidate whose vertices have changed since it was costed is costed
-//! again only when it comes to the front; as long as costs rise with contractions this is the order
-//! of eager renewal, at about half the evaluations.
-//! A refused candidate waits until the neighbourhood of one of its vertices changes.
+//! Costs are updated lazily. A candidate whose vertices have changed since it was costed is costed
+//! again only when it reaches the front of the queue. As long as contractions can only raise costs,
+//! this gives the order of eager updates with about half the evaluations. A refused candidate is
+//! parked until the neighbourhood of one of its vertices changes.
 
 pub(crate) mod candidates;
 pub(crate) mod checks;
@@ -33,7 +33,7 @@ use crate::surface::level::level;
 use crate::surface::neighbourhood::{Neighbourhood, freedom};
 use crate::surface::{Flags, Placed, State, Surface};
 
-/// An algorithm: a choice of policies. What stops it and who observes come with each run.
+/// Algorithm as a choice of policies. Limits and observer are passed with each run.
 pub(crate) struct Algorithm<C, M, P, L> {
     pub(crate) candidates: C,
     pub(crate) memory: M,
@@ -41,27 +41,27 @@ pub(crate) struct Algorithm<C, M, P, L> {
     pub(crate) placement: L,
 }
 
-/// An algorithm at work on a surface.
+/// Algorithm running on a surface.
 pub(crate) struct Engine<C, M, P, L> {
     algorithm: Algorithm<C, M, P, L>,
     surface: Surface,
     neighbourhood: Neighbourhood,
-    /// Room for one of the edges that a face goes by.
+    /// Scratch space for an edge of a contracted face.
     part: Neighbourhood,
-    /// Room for those that ties make go with one.
+    /// Scratch space for the edges that ties contract together with one.
     mates: Vec<Neighbourhood>,
     waiting: Waiting,
     vanishing: Vanishing,
-    /// How many components have vanished.
+    /// Number of components that have vanished.
     vanished: usize,
-    /// Room for the candidates that a contraction opens.
+    /// Scratch space for the candidates that a contraction opens.
     opened: Vec<CandidateId>,
-    /// Room for the entries of a bucket.
+    /// Scratch space for the entries of a bucket.
     taken: Vec<(Entry, Contracted)>,
     refusals: Refusals,
     error_estimate: f64,
     volume: VolumeLoss,
-    /// The narrowest bound of the error that has refused a candidate since all were awake.
+    /// Smallest error bound that has refused a candidate since all candidates were last retried.
     refused_above: f64,
 }
 
@@ -75,7 +75,7 @@ where
     fn new(algorithm: Algorithm<C, M, P, L>, ready: PreparedSurface) -> Self {
         let PreparedSurface { mut surface, connectivity, vanishing } = ready;
         let seeds = algorithm.candidates.seed(&surface, &connectivity);
-        // Its room is wanted for the queue.
+        // Frees its memory before the queue is allocated.
         drop(connectivity);
         let entries: Vec<Entry> =
             seeds.into_par_iter().map(|id| algorithm.entry(&surface, id)).collect();
@@ -98,7 +98,7 @@ where
         }
     }
 
-    /// Wakes everybody where a narrower bound than this has refused somebody.
+    /// Requeues all parked candidates if a smaller error bound than this has refused any.
     #[inline]
     fn retry_within(&mut self, error: f64) {
         if error > self.refused_above {
@@ -108,7 +108,7 @@ where
         }
     }
 
-    /// Takes the cheapest candidate off the queue.
+    /// Takes the cheapest candidate off the queue, with its cost up to date.
     fn next_up_to_date(&mut self) -> Option<Entry> {
         loop {
             let Some(entry) = self.waiting.queue.pop() else {
@@ -126,8 +126,8 @@ where
         }
     }
 
-    /// Costs the stale entries of a bucket again, in loops whose loads do not wait for each other:
-    /// met one by one between contractions, they would cost a memory latency each.
+    /// Costs the stale entries of a bucket again in loops of independent loads. One by one between
+    /// contractions, each would cost a memory latency.
     fn refresh_bucket(&mut self, bucket: Vec<Entry>) {
         let mut taken = std::mem::take(&mut self.taken);
         taken.extend(bucket.into_iter().filter_map(|entry| Some((entry, self.take(entry)?))));
@@ -138,7 +138,8 @@ where
         self.taken = taken;
     }
 
-    /// The vertices of an entry that has left the queue; nothing if its candidate is off the sink.
+    /// Returns the vertices of an entry that has left the queue, or `None` if its candidate is
+    /// closed.
     #[inline]
     fn take(&mut self, entry: Entry) -> Option<Contracted> {
         let state = self.surface.state(entry.id);
@@ -149,7 +150,7 @@ where
             .then(|| self.algorithm.candidates.vertices(&self.surface, entry.id))
     }
 
-    /// The entry, costed again if its vertices have changed.
+    /// Returns the entry, costed again if its vertices have changed.
     #[inline]
     fn refresh(&self, entry: Entry, vertices: &Contracted) -> Entry {
         if entry.stamp == self.surface.stamp(vertices) {
@@ -181,7 +182,7 @@ where
         Ok(())
     }
 
-    /// Contracts what is gathered, and brings all that is kept up to date.
+    /// Contracts the gathered candidate and updates memory, candidates and error.
     fn apply(&mut self, placed: &Placed, observer: &mut dyn Observe) {
         let Self { algorithm, surface, neighbourhood, part, volume, .. } = self;
         let observer = &mut (volume, observer);
@@ -198,14 +199,14 @@ where
         self.update_candidates(placed);
     }
 
-    /// Opens what may go in the place of a refused candidate.
+    /// Opens the alternatives to a refused candidate.
     fn open_alternatives(&mut self, entry: Entry) {
         let Self { algorithm, surface, opened, .. } = self;
         algorithm.candidates.refused(entry.id, &mut SurfaceCandidates { surface, opened });
         self.enqueue_opened();
     }
 
-    /// Puts the candidates that were opened in the queue.
+    /// Puts the newly opened candidates in the queue.
     fn enqueue_opened(&mut self) {
         let Self { algorithm, surface, waiting, opened, .. } = self;
         for id in opened.drain(..) {
@@ -214,7 +215,7 @@ where
         }
     }
 
-    /// Brings the sink up to date after a contraction, and wakes those who waited for a change.
+    /// Updates the candidates after a contraction, and wakes those parked at the vertices around.
     fn update_candidates(&mut self, placed: &Placed) {
         let Self { algorithm, surface, neighbourhood, opened, .. } = self;
         let kept = neighbourhood.contracted[placed.kept];
@@ -236,12 +237,13 @@ where
                 waiting.wake_tied(v, surface);
             }
         }
-        // The kept vertex has the flags of all the contracted; those who waited are awake.
+        // The kept vertex has the flags of all contracted ones, and their parked candidates are
+        // awake.
         surface.unflag(kept, Flags::AWAITED);
     }
 }
 
-/// Contracts an edge before the eyes of the observer.
+/// Contracts the gathered edge and notifies the observer.
 fn contract_edge(
     surface: &mut Surface,
     neighbourhood: &Neighbourhood,
@@ -254,8 +256,8 @@ fn contract_edge(
     observer.gone(neighbourhood.dying.len());
 }
 
-/// Contracts a face as two edges: its other corners follow each other into the kept one. So wedges,
-/// the history and all that is built on it know of edges only.
+/// Contracts a face as two edges: its other corners are merged into the kept one in turn. Wedges,
+/// the history and all observers therefore handle edges only.
 fn contract_face(
     surface: &mut Surface,
     neighbourhood: &Neighbourhood,
@@ -267,42 +269,42 @@ fn contract_face(
     observer.face();
     for &gone in neighbourhood.contracted.iter().filter(|&&v| v != kept) {
         part.gather(surface, Contracted::edge([kept, gone]))
-            .expect("what may be contracted as a face may be as its edges");
+            .expect("a face that may be contracted can be contracted edge by edge");
         contract_edge(surface, part, &Placed { kept: 0, ..*placed }, observer);
     }
 }
 
-/// An engine with its algorithm erased.
+/// Running engine with its algorithm erased.
 pub(crate) trait Run {
-    /// Contracts until `stop` says enough or no candidate is left that may.
+    /// Contracts until a limit of `stop` is reached or no candidate is allowed.
     fn run(&mut self, stop: &Stop, observer: &mut dyn Observe);
-    /// One contraction; false when no candidate is left that may, at the cost allowed.
+    /// Makes one contraction. Returns false if no candidate is allowed at this cost.
     fn step(&mut self, stop: &Stop, observer: &mut dyn Observe) -> bool;
-    /// The cost of what is next, before any check.
+    /// Returns the cost of the next candidate, before any check.
     fn next_cost(&mut self) -> Option<f64>;
-    /// How many faces are left.
+    /// Returns the number of faces left.
     fn live_faces(&self) -> usize;
     fn surface(&self) -> &Surface;
     fn into_surface(self: Box<Self>) -> Surface;
-    /// The mesh that it was given, as it is now.
+    /// Returns the input mesh in its current state.
     fn level(&self, mesh: &Mesh) -> Mesh {
         level(mesh, self.surface())
     }
     fn tally(&self) -> Tally;
 }
 
-/// What was done so far.
+/// Counts and totals of a run so far.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Tally {
-    /// How many components have vanished.
+    /// Number of components that have vanished.
     pub(crate) vanished: usize,
     pub(crate) refusals: Refusals,
-    /// The greatest estimate of a contraction, in model units.
+    /// Greatest error estimate of a contraction, in model units.
     pub(crate) error_estimate: f64,
     pub(crate) volume: VolumeLoss,
 }
 
-/// What an algorithm is set to work on.
+/// Surface prepared for an algorithm to start on.
 pub(crate) struct PreparedSurface {
     pub(crate) surface: Surface,
     pub(crate) connectivity: Connectivity,
@@ -386,14 +388,15 @@ where
     P: Priority<M> + 'static,
     L: Placement<M> + 'static,
 {
-    /// Sets it to work.
+    /// Starts the algorithm.
     pub(crate) fn start(self, ready: PreparedSurface) -> Box<dyn Run> {
         Box::new(Engine::new(self, ready))
     }
 }
 
 impl<C: Candidates, M, P: Priority<M>, L> Algorithm<C, M, P, L> {
-    /// A candidate with its cost now; what may never be contracted goes last, and is refused there.
+    /// Builds a queue entry with the current cost. A candidate that may never be contracted gets an
+    /// infinite cost, goes last and is refused there.
     #[inline]
     fn entry(&self, surface: &Surface, id: CandidateId) -> Entry {
         let contracted = self.candidates.vertices(surface, id);
@@ -410,7 +413,8 @@ impl<C: Candidates, M, P: Priority<M>, L> Algorithm<C, M, P, L> {
         self.priority.cost(surface, &self.memory, contracted, Freedom::Free)
     }
 
-    /// The cost where a vertex is not free, or others have to go with it: of all that go.
+    /// Returns the cost of a candidate with special vertices: the sum over all edges contracted
+    /// with it.
     fn special_cost(&self, surface: &Surface, contracted: &Contracted) -> Option<f64> {
         if surface.is_crowded(contracted) {
             return None;
@@ -429,7 +433,7 @@ impl<C: Candidates, M, P: Priority<M>, L> Algorithm<C, M, P, L> {
     }
 }
 
-/// What makes a cost more than the method's own of a free contraction.
+/// Flags of vertices whose contractions cost more than the method's own cost of a free one.
 const SPECIAL: Flags = Flags::PINNED.or(Flags::SEAM).or(Flags::TIED).or(Flags::PROTECTED);
 
 fn freedom_of_partner(surface: &Surface, edge: [VertexId; 2]) -> Option<Freedom> {

@@ -2,7 +2,7 @@
 //!
 //! | policy | decides |
 //! |---|---|
-//! | [`Candidates`] | which edges and faces may be contracted, initially and after each contraction |
+//! | [`Candidates`] | the edges and faces that may be contracted, and updates to them |
 //! | [`Priority`] | the cost of a candidate, or that it is never contracted |
 //! | [`Placement`] | the position of the new vertex, or a refusal |
 //! | [`Stop`] | when the run ends |

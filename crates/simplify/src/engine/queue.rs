@@ -1,20 +1,20 @@
-//! The queue of candidates: exact order, and most entries written only once.
+//! Candidate queue with exact order, in which most entries are written only once.
 //!
-//! Costs fall into buckets by their leading bits, eight to the octave. Only the lowest bucket in
-//! use is kept in order, as a heap small enough for the cache; the others are plain lists.
+//! Costs are sorted into buckets by their leading bits, eight to the octave. Only the lowest bucket
+//! in use is kept in order, as a heap small enough for the cache. The others are plain lists.
 
 use std::cmp::{Ordering, Reverse};
 use std::collections::BinaryHeap;
 
 use crate::engine::candidates::CandidateId;
 
-/// A cost as the queue orders it: the leading 32 bits of a non-negative double, which sort as it
-/// does and keep 20 bits of its mantissa at any scale.
+/// Sort key of a cost: the leading 32 bits of a non-negative double, which preserve its order and
+/// 20 bits of its mantissa at any scale.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) struct Key(u32);
 
 impl Key {
-    /// The key of a cost; below zero counts as zero, NaN as infinite.
+    /// Returns the key of a cost. Negative costs count as zero, NaN as infinite.
     #[inline]
     pub(crate) fn new(cost: f64) -> Self {
         if cost.is_nan() {
@@ -23,7 +23,7 @@ impl Key {
         Self((cost.max(0.0).to_bits() >> 32) as u32)
     }
 
-    /// The least cost with this key.
+    /// Returns the smallest cost with this key.
     #[inline]
     pub(crate) fn cost(self) -> f64 {
         f64::from_bits(u64::from(self.0) << 32)
@@ -35,25 +35,25 @@ impl Key {
     }
 }
 
-/// Buckets for every non-negative double: 11 bits of exponent, 3 of mantissa.
+/// Number of buckets for non-negative doubles: 11 bits of exponent, 3 of mantissa.
 const BUCKETS: usize = 1 << 14;
 
-/// Fewer entries than this are all kept in order: a scene can have thousands of small meshes, and
-/// the empty buckets alone take 400 kB.
+/// Number of entries below which all are kept in order: a scene can have thousands of small meshes,
+/// and the empty buckets alone take 400 kB.
 const FEW: usize = 4096;
 
-/// A candidate in the queue. Ordered by cost, then by id.
+/// Queue entry of a candidate. Ordered by cost, then by id.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Entry {
     pub(crate) key: Key,
-    /// The candidate.
+    /// Candidate of the entry.
     pub(crate) id: CandidateId,
-    /// The versions of its vertices when the cost was found.
+    /// Sum of the versions of its vertices when the cost was computed.
     pub(crate) stamp: u32,
 }
 
 impl Entry {
-    /// Both in one word: one comparison in the heap instead of two.
+    /// Packs cost and id into one word, so that the heap compares once.
     #[inline]
     fn order(&self) -> u64 {
         u64::from(self.key.0) << 32 | u64::from(self.id.0)
@@ -74,11 +74,11 @@ impl PartialOrd for Entry {
     }
 }
 
-/// See the module.
+/// Bucket queue with a heap at the front, see the module documentation.
 pub(crate) struct Queue {
-    /// The entries below bucket `next`, in order.
+    /// Heap of the entries below bucket `next`.
     front: BinaryHeap<Reverse<Entry>>,
-    /// The lowest bucket not yet in `front`.
+    /// Lowest bucket that is not in `front` yet.
     next: usize,
     buckets: Vec<Vec<Entry>>,
 }
@@ -111,20 +111,20 @@ impl Queue {
         }
     }
 
-    /// The least entry of the front, left where it is; `None` when the front is used up.
+    /// Returns the smallest entry of the front without removing it; `None` if the front is empty.
     #[inline]
     pub(crate) fn peek(&self) -> Option<Entry> {
         self.front.peek().map(|entry| entry.0)
     }
 
-    /// Takes the least entry of the front; `None` when the front is used up.
+    /// Removes the smallest entry of the front; `None` if the front is empty.
     #[inline]
     pub(crate) fn pop(&mut self) -> Option<Entry> {
         self.front.pop().map(|entry| entry.0)
     }
 
-    /// The next bucket that holds anything, for the caller to look through and push again, which
-    /// puts what still belongs there to the front. `None` when the queue is used up.
+    /// Takes the next non-empty bucket for the caller to refresh and push again, which moves
+    /// entries that still belong there to the front. `None` if the queue is empty.
     pub(crate) fn next_bucket(&mut self) -> Option<Vec<Entry>> {
         let ahead = self.buckets.get(self.next..)?.iter().position(|bucket| !bucket.is_empty())?;
         self.next += ahead + 1;

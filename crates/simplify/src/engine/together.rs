@@ -1,4 +1,4 @@
-//! Edges between the same two ties: contracted in one step, to one place, or not at all.
+//! Contraction of all edges between the same two ties in one step, to one position.
 
 use crate::engine::Engine;
 use crate::engine::checks::{flip, topology};
@@ -16,9 +16,9 @@ where
     P: Priority<M>,
     L: Placement<M>,
 {
-    /// Contracts the gathered edge and its partners: all checks of all of them come first.
+    /// Contracts the gathered edge and its partners, after all checks of all of them.
     ///
-    /// For the history these are as many contractions, one after the other.
+    /// The history records one contraction per edge.
     pub(super) fn contract_together(
         &mut self,
         stop: &Stop,
@@ -35,11 +35,11 @@ where
             return Err(Refusal::Error);
         }
         all().try_for_each(|neighbourhood| flip(surface, neighbourhood, placed.position))?;
-        // Each is as it was gathered, since no face is around two of them.
+        // Each neighbourhood is still valid, since no two edges share a face.
         for (i, error_estimate) in errors.into_iter().enumerate() {
             if let Some(mate) = i.checked_sub(1) {
                 std::mem::swap(&mut self.neighbourhood, &mut self.mates[mate]);
-                // Its place is not its own choice.
+                // Its position is dictated by the tie.
                 self.neighbourhood.freedom = Freedom::At(placed.kept);
             }
             self.apply(&Placed { error_estimate, ..placed }, observer);
@@ -47,7 +47,7 @@ where
         Ok(())
     }
 
-    /// Gathers what is around the partners, and leaves all of them the freedom that each has.
+    /// Gathers the neighbourhoods of the partners, and restricts all to their common freedom.
     fn gather_mates(&mut self) -> Result<(), Refusal> {
         let Self { surface, neighbourhood, mates, .. } = self;
         let partners = std::mem::take(&mut neighbourhood.partners);
@@ -70,9 +70,10 @@ where
         Ok(())
     }
 
-    /// Of the places that the method finds for each edge the one from which no surface is far.
+    /// Selects, among the positions that the method finds for each edge, the one with the smallest
+    /// largest error.
     ///
-    /// The error of it is the greatest that the method finds anywhere.
+    /// Its error estimate is the greatest that the method gives for any of them.
     fn place_together(&self, count: usize) -> Result<Placed, Refusal> {
         let Self { algorithm, surface, neighbourhood, mates, .. } = self;
         let all = || std::iter::once(neighbourhood).chain(&mates[..count]);
@@ -92,7 +93,7 @@ where
     }
 }
 
-/// Whether no face is around two of the edges.
+/// Returns true if no two edges share a neighbouring face.
 fn are_apart(neighbourhood: &Neighbourhood, mates: &[Neighbourhood]) -> bool {
     let all = || std::iter::once(neighbourhood).chain(mates);
     let at = |neighbourhood: &Neighbourhood, other: &Neighbourhood| {

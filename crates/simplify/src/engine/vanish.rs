@@ -1,4 +1,4 @@
-//! Components that vanish as a whole.
+//! Removal of whole components by the engine.
 
 use crate::engine::Engine;
 use crate::engine::policy::{Candidates, Memory, Observe, Placement, Priority, Stop};
@@ -12,7 +12,8 @@ where
     P: Priority<M>,
     L: Placement<M>,
 {
-    /// Takes a component out, unless it is all that is left or larger than the bound of the error.
+    /// Removes a component, unless it is the last or larger than the error bound. Returns true if
+    /// it was removed.
     pub(super) fn vanish(
         &mut self,
         component: VanishingComponent,

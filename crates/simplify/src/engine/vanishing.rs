@@ -1,37 +1,39 @@
-//! Small components, which may vanish as a whole where nothing of them can be spared for less.
+//! Small components, which may vanish as a whole where that costs less than contracting them
+//! further.
 //!
-//! Components that share a place are one here: what is seen as one surface goes or stays as one,
-//! however its vertices are torn.
+//! Components that share a position count as one here: what looks like one surface is removed or
+//! kept as one, even if its vertices are split.
 
 use meshlod_mesh::{Bounds, FaceId, VertexId, face_components, first_near};
 
 use crate::options::Method;
 use crate::surface::{Flags, Surface};
 
-/// A component that may vanish.
+/// Component that may vanish.
 pub(crate) struct VanishingComponent {
-    /// What it costs, in the terms of contractions.
+    /// Cost of removing it, comparable to the costs of contractions.
     pub(crate) cost: f64,
-    /// The diagonal of its box in the input, in model units: that far the surface is moved, as if it
-    /// shrank to a point of its own.
+    /// Bounding-box diagonal in the input, in model units. It counts as the distance moved, as if
+    /// the component shrank to a point.
     pub(crate) size: f64,
-    /// The faces of the input that are of it.
+    /// Input faces of the component.
     pub(crate) faces: Vec<FaceId>,
 }
 
-/// The components that may vanish, and have not.
+/// Components that may vanish and have not yet.
 #[derive(Default)]
 pub(crate) struct Vanishing {
-    /// The cheapest last.
+    /// Candidates for removal, the cheapest last.
     waiting: Vec<VanishingComponent>,
-    /// Those too large for the bound of the error.
+    /// Components larger than the error bound.
     refused: Vec<VanishingComponent>,
 }
 
 impl Vanishing {
-    /// The components of an untouched surface that are small enough, and that no lock holds.
+    /// Finds the components of an untouched surface that are smaller than `below` and held by no
+    /// lock.
     ///
-    /// Cost: linear, and n log n of those that may vanish.
+    /// Cost: linear, plus O(n log n), n = components that may vanish.
     pub(crate) fn new(surface: &Surface, method: Method, below: Option<f64>) -> Self {
         let Some(below) = below else { return Self::default() };
         let alive = (0..surface.face_count()).map(FaceId::new).filter(|&f| surface.is_alive(f));
@@ -63,24 +65,24 @@ impl Vanishing {
         this
     }
 
-    /// The cheapest, taken out, if it costs no more than this.
+    /// Takes the cheapest component if it costs at most this.
     #[inline]
     pub(crate) fn take_up_to(&mut self, cost: f64) -> Option<VanishingComponent> {
         self.waiting.pop_if(|component| component.cost <= cost)
     }
 
-    /// The cost of the cheapest.
+    /// Returns the cost of the cheapest component.
     #[inline]
     pub(crate) fn next_cost(&self) -> Option<f64> {
         self.waiting.last().map(|component| component.cost)
     }
 
-    /// Puts one aside until the bound of the error is wider.
+    /// Sets a component aside until the error bound grows.
     pub(crate) fn refuse(&mut self, component: VanishingComponent) {
         self.refused.push(component);
     }
 
-    /// Lets those try again that were refused.
+    /// Makes the refused components available again.
     pub(crate) fn wake_all(&mut self) {
         if !self.refused.is_empty() {
             self.waiting.append(&mut self.refused);
@@ -95,7 +97,8 @@ impl Vanishing {
     }
 }
 
-/// The component of every face, by the places of its corners, and how many there are.
+/// Returns the component of every face by the positions of its corners, and the number of
+/// components.
 fn components(surface: &Surface, corners: &[[VertexId; 3]]) -> (Vec<u32>, usize) {
     let vertices = (0..surface.vertex_count()).map(VertexId::new);
     let places: Vec<[f64; 3]> = vertices.map(|v| surface.position(v).to_array()).collect();
@@ -105,25 +108,26 @@ fn components(surface: &Surface, corners: &[[VertexId; 3]]) -> (Vec<u32>, usize)
     face_components(&corners, places.len())
 }
 
-/// How far a component is taken to move that vanishes, as a part of its size: about the mean distance
-/// from its middle. Mean error in % of the diagonal, of sponza at 25 % by `qem` and `lindstrom-turk`,
-/// what is below 5 % of it free to go: 0.1 .0022, .0071; 0.3 .0023, .0020; 1 .0033, .0023; 3 .0041,
-/// .0037. The maximum of `qem`: .99, .73, .42, .58.
+/// Fraction of its size by which a vanishing component counts as moved: about the mean distance
+/// from its centre. Mean error in % of the diagonal, sponza at 25 % with `qem` and
+/// `lindstrom-turk`, components below 5 % of the diagonal free to vanish: 0.1 .0022, .0071; 0.3
+/// .0023, .0020; 1 .0033, .0023; 3 .0041, .0037. The maximum with `qem`: .99, .73, .42, .58.
 const SHRINKAGE: f64 = 0.3;
 
-/// What it costs that a component goes, in the terms of a method: as if all of it moved so far.
+/// Returns the cost of removing a component, in the units of a method: as if all of it moved by a
+/// fraction of its size.
 pub(crate) fn cost(method: Method, size: f64, area: f64, faces: usize) -> f64 {
     let cost = match method {
         Method::Qem | Method::QemEndpoint | Method::KimJang => area * size * size,
         Method::LindstromTurk | Method::LindstromTurkFaces => (area * size).powi(2),
-        // A sample a face, nearly.
+        // About one sample per face.
         Method::Pm => faces as f64 * size * size,
         Method::LeeJang | Method::Wu | Method::Spr => size,
     };
     cost * SHRINKAGE.powi(method.cost_power())
 }
 
-/// The cost of a component of a surface, more where a vertex of it is protected.
+/// Returns the cost of a component of a surface, raised if a vertex of it is protected.
 fn cost_on(surface: &Surface, method: Method, component: &VanishingComponent) -> f64 {
     let VanishingComponent { size, faces, .. } = component;
     let area = 0.5 * faces.iter().map(|&f| surface.area_normal(f).length()).sum::<f64>();

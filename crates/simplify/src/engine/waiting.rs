@@ -1,4 +1,5 @@
-//! The candidates that wait, and the sink that a candidates policy keeps of them.
+//! Open candidates, and the view of them that a [`Candidates`](super::policy::Candidates) policy
+//! updates.
 
 use meshlod_mesh::VertexId;
 use rustc_hash::FxHashMap;
@@ -8,7 +9,7 @@ use crate::engine::policy::CandidateSink;
 use crate::engine::queue::{Entry, Queue};
 use crate::surface::{Flags, State, Surface};
 
-/// The candidates that wait: in the queue, or parked until their neighbourhood changes.
+/// Open candidates: in the queue, or parked until their neighbourhood changes.
 pub(super) struct Waiting {
     pub(super) queue: Queue,
     parked: FxHashMap<VertexId, Vec<Entry>>,
@@ -36,7 +37,7 @@ impl Waiting {
         }
     }
 
-    /// Lets those try again who wait for a change at a vertex.
+    /// Requeues the candidates parked at a vertex.
     pub(super) fn wake(&mut self, vertex: VertexId, surface: &mut Surface) {
         surface.unflag(vertex, Flags::AWAITED);
         for entry in self.parked.remove(&vertex).into_iter().flatten() {
@@ -44,7 +45,8 @@ impl Waiting {
         }
     }
 
-    /// The same for those tied to it; what they cost is found anew.
+    /// Requeues the candidates parked at the vertices tied to this one, and makes their costs
+    /// stale.
     pub(super) fn wake_tied(&mut self, vertex: VertexId, surface: &mut Surface) {
         for other in surface.ties.with(vertex).to_vec() {
             surface.touch(other);
@@ -60,7 +62,7 @@ impl Waiting {
         }
     }
 
-    /// Puts a parked candidate in the queue; one that went another way since stays there.
+    /// Puts a candidate in the queue if it is still parked.
     fn unpark(&mut self, entry: Entry, surface: &mut Surface) {
         if surface.state(entry.id) == State::Parked {
             self.put(entry, surface);
@@ -68,7 +70,7 @@ impl Waiting {
     }
 }
 
-/// The sink, as a candidates policy sees them after a contraction.
+/// Candidate states on the surface, as a policy updates them after a contraction.
 pub(super) struct SurfaceCandidates<'a> {
     pub(super) surface: &'a mut Surface,
     pub(super) opened: &'a mut Vec<CandidateId>,

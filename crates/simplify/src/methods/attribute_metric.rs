@@ -1,17 +1,18 @@
-//! What quadrics may know of attributes, as the methods see it.
+//! Attribute term of the quadric methods.
 
 use crate::engine::policy::Memory;
 use crate::methods::quadric::Quadric;
 use crate::surface::Surface;
 use crate::surface::contracted::Contracted;
 
-/// What quadrics know of attributes: `()` for nothing.
+/// Attribute term added to geometric quadrics; `()` for none.
 pub(crate) trait AttributeMetric: Memory {
-    /// The cost of a contraction as a function of the position, seen from the first of the
-    /// contracted, where the values may be what fits best.
+    /// Returns the cost of a contraction as a function of the position, relative to the first
+    /// contracted vertex, with the attribute values that fit best.
     fn free(&self, geometry: Quadric, surface: &Surface, of: &Contracted) -> Quadric;
 
-    /// The same where position and values stay those of one of the contracted.
+    /// Returns the cost of a contraction when position and values stay those of one contracted
+    /// vertex.
     fn staying(
         &self,
         geometry: Quadric,

@@ -1,11 +1,11 @@
-//! Attributes in the quadrics [Hop99].
+//! Attribute quadrics [Hop99]: the attribute term of the quadric methods.
 //!
-//! Over a face every attribute is linear. So a face expects of a vertex not only that it is on its
-//! plane, but that it has there the values that the face would have at that place. The faces around a
-//! wedge expect different values; whatever value it takes, the least sum of squares is that of the
-//! faces' deviations from their mean, a quadric in the position alone: the Schur complement of
-//! [Hop99], written as a variance. Two wedges that become one add, for each attribute, the squared
-//! difference of their means; so nothing large is ever subtracted.
+//! Every attribute is linear over a face. So a face expects a vertex not only to lie on its plane,
+//! but also to have the values that the face would have at that position. The faces around a wedge
+//! expect different values. Whatever value it takes, the least sum of squares is that of the faces'
+//! deviations from their mean, a quadric in the position alone: the Schur complement of [Hop99],
+//! written as a variance. Merging two wedges adds, for each attribute, the squared difference of
+//! their means, so nothing large is ever subtracted.
 
 use glam::DVec3;
 use meshlod_mesh::{FaceId, VertexId, WedgeId};
@@ -20,8 +20,8 @@ use crate::surface::neighbourhood::Neighbourhood;
 use crate::surface::wedges::Wedges;
 use crate::surface::{Placed, Surface};
 
-/// How much of what was expected a new wedge remembers; the rest is its faces as they are. FLIP at
-/// 10 % of the faces, by views of 512 pixels, with weights of 0.01 and 0.3:
+/// Fraction of the accumulated quadric that a new wedge keeps; the rest comes from its current
+/// faces. FLIP at 10 % of the faces, views of 512 pixels, weights of 0.01 and 0.3:
 ///
 /// | memory | flight helmet | duck | pirate | spot | bream |
 /// |---|---|---|---|---|---|
@@ -30,11 +30,12 @@ use crate::surface::{Placed, Surface};
 /// | 0.1 | .0504 | .1561 | .2167 | .1723 | .1653 |
 /// | 0 | .0511 | .1547 | .2182 | .1764 | .1664 |
 ///
-/// Seams and boundaries forget as well: a face's attribute_quadrics need no fence.
+/// Wedges on seams and boundaries fade as well, because the attribute term has no constraint planes
+/// to preserve.
 const MEMORY: f64 = 0.1;
 
-/// One channel of a wedge: at `x` from its vertex the faces around expect, in the mean,
-/// value + off + slope·x.
+/// Linear function of one channel of a wedge: at `x` from its vertex the surrounding faces expect,
+/// on average, value + off + slope·x.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Channel {
     slope: DVec3,
@@ -43,40 +44,40 @@ struct Channel {
 }
 
 impl Channel {
-    /// The same, seen from `by` further and with another value.
+    /// Returns the function relative to a vertex moved by `by`, with another value.
     fn moved(self, by: DVec3, value: f64) -> Self {
         Self { off: self.off + self.slope.dot(by) + (self.value - value), value, ..self }
     }
 }
 
-/// What the faces around a wedge expect, and their weight: that of their areas.
+/// Mean attribute functions of the faces around a wedge, weighted by area.
 #[derive(Clone, Debug, Default)]
 struct WedgeQuadric {
     weight: f64,
     channels: Vec<Channel>,
 }
 
-/// Attributes of a surface in quadrics.
+/// Attribute quadrics of all wedges of a surface.
 pub(crate) struct AttributeQuadrics {
     channels: Channels,
     count: usize,
-    /// By wedge.
+    /// Total weight, by wedge.
     weights: Vec<f64>,
-    /// By wedge, `count` for each.
+    /// Mean channel functions, `count` per wedge.
     expected: Vec<Channel>,
-    /// By vertex: how far the faces around each of its wedges are from their mean.
+    /// Variance of the faces around each wedge, summed by vertex.
     spreads: Vec<Quadric>,
-    /// By vertex: its wedge, if it has one only.
+    /// Wedge of each vertex that has only one.
     single_wedge: Vec<Option<WedgeId>>,
     merged: Merged,
 }
 
-/// What a contraction makes, from before the surface changes until after.
+/// Result of a contraction, kept from before the surface changes until after.
 #[derive(Default)]
 struct Merged {
     wedges: Vec<(WedgeId, WedgeQuadric)>,
     spread: Quadric,
-    /// What both are seen from.
+    /// Origin of the functions and of the variance.
     at: DVec3,
 }
 
@@ -114,7 +115,7 @@ impl AttributeQuadrics {
         &mut self.expected[wedge.index() * self.count..][..self.count]
     }
 
-    /// Adds what a face expects of its corner k, at vertex v.
+    /// Adds a face at its corner k, at vertex v.
     fn add_face(
         &mut self,
         wedges: &Wedges,
@@ -145,8 +146,8 @@ impl AttributeQuadrics {
         self.weights[own / self.count] = total;
     }
 
-    /// The squared difference of what two wedges expect, seen from the vertex of `a`; that of `b` is
-    /// `by` further.
+    /// Adds the squared difference of two wedges' mean functions, relative to the vertex of `a`;
+    /// the vertex of `b` is at `by`.
     #[inline]
     fn between(&self, sum: &mut Quadric, a: WedgeId, b: WedgeId, by: DVec3) {
         let weight = harmonic(self.weights[a.index()], self.weights[b.index()]);
@@ -156,8 +157,8 @@ impl AttributeQuadrics {
         }
     }
 
-    /// What the value of `kept` at its vertex costs by what `gone` expects, whose vertex is `by`
-    /// further.
+    /// Returns the squared residual of the value of `kept` at its vertex against the mean functions
+    /// of `gone`, whose vertex is at `by`.
     #[inline]
     fn residual(&self, kept: WedgeId, gone: WedgeId, by: DVec3) -> f64 {
         let off = |(kept, gone): (&Channel, &Channel)| {
@@ -166,20 +167,21 @@ impl AttributeQuadrics {
         self.weights[gone.index()] * self.of(kept).iter().zip(self.of(gone)).map(off).sum::<f64>()
     }
 
-    /// What the value of a wedge that stays costs by its own faces.
+    /// Returns the squared residual of a wedge's value against the mean functions of its own faces.
     #[inline]
     fn own_residual(&self, wedge: WedgeId) -> f64 {
         self.weights[wedge.index()] * self.of(wedge).iter().map(|c| c.off * c.off).sum::<f64>()
     }
 
-    /// The spreads at the ends of an edge, seen from the first, and how far on the second is.
+    /// Returns the variance at the ends of an edge, relative to the first, and the offset of the
+    /// second.
     #[inline]
     fn spread(&self, surface: &Surface, [v0, v1]: [VertexId; 2]) -> (Quadric, DVec3) {
         let by = surface.position(v1) - surface.position(v0);
         (self.spreads[v0.index()] + self.spreads[v1.index()].seen_from(-by), by)
     }
 
-    /// The wedges that meet along an edge.
+    /// Returns the pairs of wedges that meet along an edge.
     fn pairs(&self, surface: &Surface, ends: [VertexId; 2]) -> Vec<[WedgeId; 2]> {
         let mut pairs = Vec::with_capacity(4);
         surface.wedges.iter().for_each(|wedges| wedges.pair(surface, ends, &mut pairs));
@@ -191,8 +193,8 @@ impl AttributeQuadrics {
         Some([self.single_wedge[v0.index()]?, self.single_wedge[v1.index()]?])
     }
 
-    /// What the wedges of an edge expect where they become those of its end `kept`; and the spread
-    /// of it all, seen from there.
+    /// Merges the wedges of an edge into those of its end `kept`. Returns the merged functions and
+    /// the total variance, relative to that end.
     fn join(
         &self,
         surface: &Surface,
@@ -206,7 +208,7 @@ impl AttributeQuadrics {
                 let channels = self.of(kept).to_vec();
                 joined.push((kept, WedgeQuadric { weight: self.weights[kept.index()], channels }));
             }
-            // One that meets several becomes the first.
+            // A wedge that meets several becomes the first.
             if pairs[..i].iter().all(|before| before[1] != gone) {
                 let into = joined.iter_mut().find(|(wedge, _)| *wedge == kept);
                 into.into_iter().for_each(|(_, into)| self.absorb(into, gone, by, &mut spread));
@@ -215,7 +217,7 @@ impl AttributeQuadrics {
         (joined, spread)
     }
 
-    /// Adds what `gone` expects, whose vertex is `by` further.
+    /// Adds the functions of `gone`, whose vertex is at `by`.
     fn absorb(&self, into: &mut WedgeQuadric, gone: WedgeId, by: DVec3, spread: &mut Quadric) {
         let weight = self.weights[gone.index()];
         let between = harmonic(into.weight, weight);
@@ -289,7 +291,7 @@ impl Memory for AttributeQuadrics {
         let corners = || neighbourhood.spokes().iter().map(|spoke| (spoke.face, spoke.corner()));
         self.single_wedge[v.index()] = only(corners().map(|(face, k)| wedges.at(face, k)));
         self.spreads[v.index()] = spread.seen_from(by) * MEMORY;
-        // One that met no other keeps no memory.
+        // A wedge that met no other starts without memory.
         for (face, k) in corners() {
             let wedge = wedges.at(face, k);
             self.start(wedges, wedge);
@@ -307,7 +309,7 @@ impl Memory for AttributeQuadrics {
 }
 
 impl AttributeQuadrics {
-    /// Gives a wedge its values as they are now, and nothing that is expected of it.
+    /// Resets a wedge to its current values, without any weight.
     fn start(&mut self, wedges: &Wedges, wedge: WedgeId) {
         self.weights[wedge.index()] = 0.0;
         let channels = &mut self.expected[wedge.index() * self.count..][..self.count];
@@ -317,14 +319,14 @@ impl AttributeQuadrics {
     }
 }
 
-/// The weight of the squared difference of two means.
+/// Returns the weight of the squared difference of two means.
 #[inline]
 fn harmonic(a: f64, b: f64) -> f64 {
     let sum = a + b;
     if sum > 0.0 { a * (b / sum) } else { 0.0 }
 }
 
-/// The item that all are, if they are.
+/// Returns the common value if all items are equal.
 fn only(mut all: impl Iterator<Item = WedgeId>) -> Option<WedgeId> {
     let first = all.next()?;
     all.all(|other| other == first).then_some(first)
@@ -354,12 +356,11 @@ mod tests {
         let surface = Surface::new(mesh, &Connectivity::new(&mesh.faces, mesh.positions.len()));
         let weights = AttributeWeights { normal: 0.0, uv: 1.0, color: 0.0 };
         let channels = Channels::new(&surface, &weights).unwrap();
-        let attribute_quadrics =
-            AttributeQuadrics::new(&surface, surface.wedges.as_ref().unwrap(), channels);
-        (surface, attribute_quadrics)
+        let quadrics = AttributeQuadrics::new(&surface, surface.wedges.as_ref().unwrap(), channels);
+        (surface, quadrics)
     }
 
-    /// What each face around the vertices expects at `x` in a channel, with its area.
+    /// Value that each face around the vertices expects at `x` in a channel, with its area.
     fn expected(
         (surface, this): &(Surface, AttributeQuadrics),
         ends: [VertexId; 2],

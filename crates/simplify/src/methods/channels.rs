@@ -1,9 +1,9 @@
-//! The attributes that count in quadrics, as numbers in model units.
+//! Attribute channels of the quadric methods, in model units.
 //!
-//! A channel is one number of a layer, times a length: so that attributes can be weighed against
-//! distances, whatever the size of the model and of its textures. For normals and colours the length
-//! is the diagonal; for uvs it is that of a unit of uv on the model, on average, so that an error
-//! there is how far the texture slides.
+//! A channel is one value of a layer times a length, so that attributes can be weighed against
+//! distances whatever the size of the model and of its textures. For normals and colours this
+//! length is the diagonal. For texture coordinates it is the average length of a unit of uv on the
+//! model, so that an error is the distance that the texture slides.
 
 use glam::DVec3;
 use meshlod_mesh::{FaceId, Layer, LayerKind, WedgeId};
@@ -12,21 +12,21 @@ use crate::options::AttributeWeights;
 use crate::surface::Surface;
 use crate::surface::wedges::Wedges;
 
-/// A layer that counts.
+/// Layer with a nonzero weight.
 struct Counted {
     layer: usize,
-    /// Of its values; what comes after, as alpha does, does not count.
+    /// Number of its values that count; the rest, such as alpha, does not.
     width: usize,
     scale: f64,
 }
 
-/// Which numbers of a wedge count, and how much.
+/// Weighted channels of the wedges.
 pub(crate) struct Channels {
     counted: Vec<Counted>,
 }
 
 impl Channels {
-    /// The channels of a surface; none if it has no layer that counts.
+    /// Selects the channels of a surface; `None` if no layer counts.
     pub(crate) fn new(surface: &Surface, weights: &AttributeWeights) -> Option<Self> {
         let wedges = surface.wedges.as_ref()?;
         let diagonal = diagonal(surface);
@@ -46,12 +46,13 @@ impl Channels {
         (!counted.is_empty()).then_some(Self { counted })
     }
 
-    /// How many there are.
+    /// Returns the number of channels.
     pub(crate) fn count(&self) -> usize {
         self.counted.iter().map(|counted| counted.width).sum()
     }
 
-    /// A wedge's values in all channels, in model units. What is no number counts as zero.
+    /// Returns a wedge's values in all channels, in model units. Values that are not finite count
+    /// as zero.
     pub(crate) fn values<'a>(
         &'a self,
         wedges: &'a Wedges,
@@ -75,7 +76,8 @@ fn diagonal(surface: &Surface) -> f64 {
     low.distance(high)
 }
 
-/// The length of a unit of uv on the surface: the root of its area by that of its texture.
+/// Returns the length of a unit of uv on the surface: the root of the ratio of surface area to
+/// texture area.
 fn length_of_uv(surface: &Surface, wedges: &Wedges, layer: &Layer) -> f64 {
     let (mut area, mut in_texture) = (0.0, 0.0);
     for face in live_faces(surface) {

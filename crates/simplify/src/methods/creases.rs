@@ -1,7 +1,7 @@
-//! How sharply the surface turns at each vertex, for the priorities of face constriction [LJ05].
+//! Sharpness of the surface at each vertex, for the priorities of face constriction [LJ05].
 //!
 //! The turn of an edge is D = 1 − Na·Nb of its two faces, 0 to 2 (eq. 3). A vertex has the mean of
-//! its edges' turns, and a weight made of how they differ.
+//! its edges' turns, and a weight derived from how they differ.
 
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -14,20 +14,20 @@ use crate::surface::contracted::Contracted;
 use crate::surface::neighbourhood::Neighbourhood;
 use crate::surface::{Flags, Placed, Surface};
 
-/// A hub is known by as many of its faces.
+/// Number of faces by which the turns of a hub are sampled.
 const MOST_FACES: usize = 64;
 
-/// Most vertices have no more than this, and need not clear room for a hub.
+/// Valence up to which a small buffer is enough; most vertices stay below.
 const FEW_FACES: usize = 12;
 
-/// The turns at a vertex.
+/// Statistics of the turns at a vertex.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Turns {
-    /// G: their mean.
+    /// G: the mean.
     pub(crate) mean: f64,
-    /// VAR: their variance.
+    /// VAR: the variance.
     pub(crate) variance: f64,
-    /// The greatest difference of one from the mean.
+    /// Greatest deviation from the mean.
     pub(crate) farthest: f64,
 }
 
@@ -51,15 +51,15 @@ impl Turns {
     }
 }
 
-/// The mean turn and the weight of a vertex.
+/// Mean turn and weight of a vertex.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Crease {
     pub(crate) mean: f32,
     pub(crate) weight: f32,
 }
 
-/// The creases of a surface, found when they are asked for: of those that a contraction changes, half
-/// change again before anybody asks.
+/// Creases of a surface, computed on demand: half of those that a contraction changes are changed
+/// again before they are read.
 pub(crate) struct Creases {
     found: Vec<Cached>,
     normals: Vec<Vec3>,
@@ -67,7 +67,7 @@ pub(crate) struct Creases {
 }
 
 impl Creases {
-    /// Of an untouched surface; `weigh` makes a vertex's weight of its turns.
+    /// Prepares an untouched surface; `weigh` computes a vertex's weight from its turns.
     pub(crate) fn new(surface: &Surface, weigh: fn(&Turns) -> f64) -> Self {
         let normal = |f: usize| unit_normal(surface, FaceId::new(f));
         Self {
@@ -77,13 +77,13 @@ impl Creases {
         }
     }
 
-    /// The unit normal of a face; zero for one without area.
+    /// Returns the unit normal of a face; zero for one without area.
     #[inline]
     pub(crate) fn normal(&self, face: FaceId) -> DVec3 {
         self.normals[face.index()].as_dvec3()
     }
 
-    /// The crease of a vertex.
+    /// Returns the crease of a vertex.
     #[inline]
     pub(crate) fn at(&self, surface: &Surface, v: VertexId) -> Crease {
         let cached = &self.found[v.index()];
@@ -96,8 +96,8 @@ impl Creases {
         })
     }
 
-    /// The mean of the vertices' mean turns by their weights (eqs. 2 and 6): 0 to 2. Where none has
-    /// any weight, all weigh the same.
+    /// Returns the weighted mean of the vertices' mean turns (eqs. 2 and 6), 0 to 2; the plain mean
+    /// if all weights are zero.
     #[inline]
     pub(crate) fn turn(&self, surface: &Surface, of: &Contracted) -> f64 {
         let (mut sum, mut weights, mut plain) = (0.0, 0.0, 0.0);
@@ -129,7 +129,7 @@ fn unit_normal(surface: &Surface, face: FaceId) -> Vec3 {
     surface.area_normal(face).normalize_or_zero().as_vec3()
 }
 
-/// A crease, once somebody has asked for it. Whoever asks at the same time finds the same.
+/// Lazily computed crease. Threads that compute it at the same time find the same value.
 struct Cached(AtomicU64);
 
 impl Default for Cached {
@@ -139,7 +139,7 @@ impl Default for Cached {
 }
 
 impl Cached {
-    /// The bits of no crease: a mean is never NaN.
+    /// Bits that encode no crease: a mean is never NaN.
     const NOTHING: u64 = u64::MAX;
 
     #[inline]
@@ -157,9 +157,9 @@ impl Cached {
     }
 }
 
-/// The turns of the edges between the first `N` faces of a vertex.
+/// Computes the turns of the edges between the first `N` faces of a vertex.
 fn turns<const N: usize>(surface: &Surface, normals: &[Vec3], v: VertexId) -> Turns {
-    // Of each face the corners after the vertex and before it, and the normal.
+    // For each face, the corners after and before the vertex, and the normal.
     let (mut next, mut last) = ([VertexId(0); N], [VertexId(0); N]);
     let mut normal = [Vec3::ZERO; N];
     let mut count = 0;
@@ -188,8 +188,8 @@ fn turns<const N: usize>(surface: &Surface, normals: &[Vec3], v: VertexId) -> Tu
     Turns::of(&turns[..found])
 }
 
-/// The turn of the boundary where it leaves a vertex for `to`. It counts like that of an edge: the
-/// corners of a boundary would otherwise be as cheap as its straights.
+/// Returns the turn of the boundary where it leaves a vertex for `to`. It counts like that of an
+/// edge; otherwise the corners of a boundary would be as cheap as its straight parts.
 #[cold]
 fn boundary_turn(
     surface: &Surface,

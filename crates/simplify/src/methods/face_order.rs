@@ -1,4 +1,4 @@
-//! The order of face constriction: how large, how sharp, and how many edges meet after it.
+//! Priority of face constriction: size, sharpness, and the resulting valence.
 
 use meshlod_mesh::FaceId;
 
@@ -7,14 +7,14 @@ use crate::methods::creases::Creases;
 use crate::surface::Surface;
 use crate::surface::contracted::{Contracted, Freedom};
 
-/// wb: what turns count against balance. Mean error of horse-97k at 10 % and 1 %, by [LJ05]: 0.5
+/// wb: weight of turns against balance. Mean error of horse-97k at 10 % and 1 %, by [LJ05]: 0.5
 /// .0230, .146; 0.7 .0223, .149; 0.8 .0216, .167; 0.9 .0217, .183; 0.95 .0230, .207.
 const TURN_WEIGHT: f64 = 0.8;
 
-/// √area · (wb · turn + (1 − wb) · balance), each of the two between 0 and 1 (eqs. 1 and 7 of
-/// [LJ05]). [LJ05] and [Wu01] differ in how vertices weigh in the turn.
+/// Cost √area · (wb · turn + (1 − wb) · balance), both terms between 0 and 1 (eqs. 1 and 7 of
+/// [LJ05]). [LJ05] and [Wu01] differ in the weights of vertices in the turn.
 pub(crate) struct FaceOrder {
-    /// The greatest valence that a contraction of the input would make.
+    /// Greatest valence that a contraction of the input would produce.
     most_valence: f64,
 }
 
@@ -42,7 +42,7 @@ impl Priority<Creases> for FaceOrder {
     }
 }
 
-/// The edges that meet in the new vertex (eq. 4).
+/// Returns the valence of the new vertex (eq. 4).
 #[inline]
 fn valence_after(surface: &Surface, of: &Contracted) -> f64 {
     let sum = of.iter().map(|&v| surface.valence(v) as f64).sum::<f64>();
@@ -50,7 +50,7 @@ fn valence_after(surface: &Surface, of: &Contracted) -> f64 {
     (sum - lost).max(0.0)
 }
 
-/// The area of a face; of an edge, that of the equilateral face on it.
+/// Returns the area of a face, or of the equilateral triangle on an edge.
 #[inline]
 fn size(surface: &Surface, of: &Contracted) -> f64 {
     let [a, b] = [of[0], of[1]].map(|v| surface.position(v));

@@ -1,8 +1,8 @@
-//! The faces around a vertex that is yet to be placed, and what of them is nearest to a point.
+//! Triangle fan around a vertex whose position is not fixed yet, with closest-point queries.
 
 use glam::DVec3;
 
-/// The faces from a centre to the edges of a ring, and the rims among the edges from the centre.
+/// Triangles from a centre to the edges of a ring, and the feature edges among the spokes.
 #[derive(Default)]
 pub(crate) struct Fan {
     centre: DVec3,
@@ -10,47 +10,47 @@ pub(crate) struct Fan {
     rims: Vec<Rim>,
 }
 
-/// An edge from the centre that is a boundary edge or a seam.
+/// Spoke that is a boundary edge or a seam.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Rim {
-    /// Its other end, by place in the ring.
+    /// Index in the ring of its other end.
     pub(crate) place: u32,
-    /// Where that is.
+    /// Position of that end.
     pub(crate) end: DVec3,
-    /// One of its faces.
+    /// Index of one of its faces.
     pub(crate) spoke: u32,
 }
 
-/// A face, with what a projection onto it wants.
+/// Triangle of the fan, with what a projection onto it needs.
 #[derive(Clone, Copy)]
 struct Triangle {
-    /// The corners after the centre.
+    /// Corners other than the centre.
     ends: [DVec3; 2],
-    /// The same from the centre.
+    /// Those corners relative to the centre.
     legs: [DVec3; 2],
     /// Unit normal; zero for a sliver.
     normal: DVec3,
     /// Squared lengths of the legs.
     lengths: [f64; 2],
-    /// What weighs the legs, given as products with the legs: the inverse of their Gram matrix.
+    /// Rows that map a point to its coefficients of the legs: the inverse of their Gram matrix.
     inverse: [DVec3; 2],
 }
 
-/// Squared sine of the angle at the centre below which a face is all edges.
+/// Squared sine of the angle at the centre below which a face is treated as its edges only.
 const SLIVER: f64 = 1e-12;
 
-/// The point of a fan nearest to another.
+/// Closest point of a fan to a query point.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Nearest {
-    /// From it to the other.
+    /// Vector from it to the query point.
     pub(crate) off: DVec3,
-    /// The square of that.
+    /// Squared length of `off`.
     pub(crate) squared: f64,
-    /// How much of the centre is in it: 1 there, 0 on the ring.
+    /// Weight of the centre in it: 1 at the centre, 0 on the ring.
     pub(crate) weight: f64,
-    /// The face that it is on.
+    /// Face that contains it.
     pub(crate) spoke: usize,
-    /// The rim that it is on, if it was to be on one.
+    /// Rim edge that contains it, if it had to be on one.
     pub(crate) rim: Option<usize>,
 }
 
@@ -60,7 +60,7 @@ impl Fan {
         self.rims.clear();
     }
 
-    /// Adds the face to an edge of the ring; in order.
+    /// Adds the triangle of the next ring edge.
     pub(crate) fn add_spoke(&mut self, ends: [DVec3; 2]) {
         self.spokes.push(Triangle::new(ends, self.centre));
     }
@@ -73,7 +73,7 @@ impl Fan {
         &self.rims
     }
 
-    /// Puts the centre somewhere else.
+    /// Moves the centre.
     pub(crate) fn place(&mut self, centre: DVec3) {
         self.centre = centre;
         for triangle in &mut self.spokes {
@@ -81,18 +81,18 @@ impl Fan {
         }
     }
 
-    /// The sum of the squared lengths of the edges from the centre, of a closed ring.
+    /// Returns the sum of the squared lengths of the spokes, for a closed ring.
     pub(crate) fn squared_lengths(&self) -> f64 {
         self.spokes.iter().map(|triangle| 0.5 * triangle.lengths.iter().sum::<f64>()).sum()
     }
 
-    /// The unit normal of a face; zero for a sliver.
+    /// Returns the unit normal of a face; zero for a sliver.
     #[inline]
     pub(crate) fn normal(&self, spoke: usize) -> DVec3 {
         self.spokes[spoke].normal
     }
 
-    /// The point nearest to `x`; on a rim where it must be and there is one.
+    /// Returns the point nearest to `x`, restricted to the rim if `on_rim` is set and there is one.
     #[inline]
     pub(crate) fn nearest(&self, x: DVec3, on_rim: bool) -> Nearest {
         let from = x - self.centre;
@@ -136,9 +136,10 @@ impl Triangle {
         Self { ends, legs, normal, lengths: [aa, bb], inverse }
     }
 
-    /// Offers its point nearest to `from`, seen from the centre.
+    /// Offers the triangle's point nearest to `from`, which is relative to the centre.
     ///
-    /// Where the projection falls outside, that is on an edge that it is beyond.
+    /// If the projection falls outside, the nearest point is on one of the edges that it lies
+    /// beyond.
     #[inline]
     fn offer(&self, from: DVec3, spoke: usize, nearest: &mut Nearest) {
         let [a, b] = self.legs;
@@ -163,7 +164,8 @@ impl Triangle {
     }
 }
 
-/// From the nearest point of the segment from the origin to `end` to `x`, and how far along it is.
+/// Returns the vector to `x` from the nearest point of the segment from the origin to `end`, and
+/// that point's parameter.
 #[inline]
 fn to_segment(x: DVec3, end: DVec3) -> (DVec3, f64) {
     let along = x.dot(end) / end.length_squared();

@@ -1,21 +1,21 @@
-//! Edges where the surface ends, or a chart of its textures, or where it meets another.
+//! Feature edges: boundaries, texture seams and contacts with other surfaces.
 
 use meshlod_mesh::{FaceId, Side, VertexId};
 
 use crate::surface::ties::is_contact;
 use crate::surface::{Flags, Surface};
 
-/// An edge that is seen in silhouettes, textures or contacts wherever it goes.
+/// Edge that is visible in silhouettes, textures or contacts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct FeatureEdge {
-    /// Its ends, as its face goes round; of a line within the surface, one of its two faces.
+    /// Ends of the edge in the orientation of its face, or of one of its two faces.
     pub(crate) ends: [VertexId; 2],
     pub(crate) is_boundary: bool,
 }
 
-/// The boundary edges and lines at some vertices, each once.
+/// Returns the feature edges at some vertices, each once.
 ///
-/// Cost: the square of a vertex's faces, but only of those that are on one.
+/// Cost: quadratic in the valence, only for vertices on a feature edge.
 pub(crate) fn feature_edges(surface: &Surface, vertices: &[VertexId]) -> Vec<FeatureEdge> {
     let mut found = Vec::new();
     for (i, &v) in vertices.iter().enumerate() {
@@ -39,14 +39,14 @@ pub(crate) fn feature_edges(surface: &Surface, vertices: &[VertexId]) -> Vec<Fea
     found
 }
 
-/// The two sides of a face at a vertex, each with its other end.
+/// Returns the two sides of a face at a vertex, each with its other end.
 fn sides_at(surface: &Surface, face: FaceId, v: VertexId) -> [(VertexId, Side); 2] {
     let (corners, k) = (surface.face(face), surface.corner(face, v));
     let (next, last) = ((k + 1) % 3, (k + 2) % 3);
     [(corners[next], Side::new(face, k)), (corners[last], Side::new(face, last))]
 }
 
-/// Whether an edge with two faces is seen as a line: a seam, or where a tied surface has it too.
+/// Returns true if an edge with two faces is a feature: a seam, or a contact with a tied surface.
 #[inline]
 pub(super) fn is_feature(surface: &Surface, side: Side, twin: Side) -> bool {
     is_seam(surface, side, twin) || is_contact(surface, ends(surface, side))
@@ -57,7 +57,7 @@ fn ends(surface: &Surface, side: Side) -> [VertexId; 2] {
     [face[k], face[(k + 1) % 3]]
 }
 
-/// Whether the two faces of an edge use different charts at an end of it.
+/// Returns true if the two faces of an edge use different charts at one of its ends.
 fn is_seam(surface: &Surface, side: Side, twin: Side) -> bool {
     let Some(wedges) = &surface.wedges else { return false };
     let ends = |side: Side| [side.corner(), (side.corner() + 1) % 3];

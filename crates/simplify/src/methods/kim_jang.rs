@@ -1,4 +1,4 @@
-//! Edge contraction in the order of quadrics, moved to where the volume stays [KJ04].
+//! Edge contraction ordered by quadrics, with positions moved to conserve the volume [KJ04].
 
 use glam::DVec3;
 
@@ -10,13 +10,13 @@ use crate::surface::contracted::Freedom;
 use crate::surface::neighbourhood::Neighbourhood;
 use crate::surface::{Placed, Surface};
 
-/// How far, in mean spokes of its own, the optimum may be moved along the line from the middle of
-/// the ring; beyond, it goes the shortest way.
+/// Limit on moving the optimum along the line from the middle of the ring, in units of the mean
+/// spoke; beyond it, the shortest way is taken.
 const REACH: f64 = 0.5;
 
-/// The optimum of the quadrics, moved along the line from the middle of the ring to where it
-/// conserves the volume; by the shortest way where that line hardly leaves the surface. An open ring
-/// has no volume; there it is the optimum.
+/// Placement at the quadric optimum, moved along the line from the middle of the ring until the
+/// volume is conserved, or by the shortest way where that line is nearly parallel to the surface.
+/// An open ring has no volume and keeps the optimum.
 pub(crate) struct VolumeConserving;
 
 impl Placement<Quadrics> for VolumeConserving {
@@ -38,7 +38,7 @@ impl Placement<Quadrics> for VolumeConserving {
         let spoke = ring.iter().map(|r| r.position.distance(base)).sum::<f64>() / ring.len() as f64;
         let plane = VolumePlane::new(surface, neighbourhood, base);
         let optimum = placed.position - base;
-        // N = E + (Vol_b / Vol_c)(C − E), E being where offsets start.
+        // N = E + (Vol_b / Vol_c)(C − E), with E as the origin of the offsets.
         let along = optimum * (plane.level / plane.normal.dot(optimum));
         let offset =
             if along.distance(optimum) <= REACH * spoke { along } else { plane.nearest(optimum) };

@@ -11,20 +11,20 @@ use crate::surface::contracted::Freedom;
 use crate::surface::neighbourhood::Neighbourhood;
 use crate::surface::{Placed, Surface};
 
-/// How far the ratio of the volumes may be from 1; beyond, the face is postponed and its shortest
-/// edge may go. Mean error of bunny and igea at 10 %: 0.5 .0430, .0141; 0.1 .0387, .0134; 0.05 .0333,
-/// .0116; 0.02 .0268, .0092. But at 0.05 every third candidate is refused, at 0.02 most are, and what
-/// is left is a method for edges.
+/// Largest deviation of the ratio of the volumes from 1. Beyond it the face is postponed and its
+/// shortest edge becomes a candidate. Mean error of bunny and igea at 10 %: 0.5 .0430, .0141; 0.1
+/// .0387, .0134; 0.05 .0333, .0116; 0.02 .0268, .0092. But at 0.05 every third candidate is
+/// refused, and at 0.02 most are, which leaves a method for edges.
 const MOST_STRETCH: f64 = 0.1;
 
-/// M: weighs a vertex by its least typical edge (eq. 5), so that one whose edges are all alike, such
-/// as the tip of a pyramid, still counts.
+/// M: weight of a vertex by its least typical edge (eq. 5), so that a vertex whose edges are all
+/// alike, such as the tip of a pyramid, still counts.
 pub(crate) fn weight(turns: &Turns) -> f64 {
     turns.farthest.exp()
 }
 
-/// The centroid, moved along the line from a point below the surface to where it conserves the
-/// volume (eqs. 8 to 12).
+/// Placement at the centroid, moved along the line from a point below the surface until the volume
+/// is conserved (eqs. 8 to 12).
 pub(crate) struct Constriction;
 
 impl Placement<Creases> for Constriction {
@@ -59,7 +59,7 @@ fn constrict(
         seen &= normal.dot(corner) >= 0.0;
     });
     let k = volume.level / volume.normal.dot(depth * inward);
-    // Written so that what is no number is refused.
+    // Written so that NaN is refused.
     if !(seen && (k - 1.0).abs() <= MOST_STRETCH) {
         return Err(Refusal::Volume);
     }
@@ -67,8 +67,8 @@ fn constrict(
     Ok(Placed { position, kept: 0, error_estimate: 0.0 })
 }
 
-/// The mean direction out of the patch: that of the face, and of each other as much as it differs
-/// (eq. 10).
+/// Returns the mean outward direction of the patch: the face's normal, plus each other normal
+/// weighted by its difference (eq. 10).
 fn direction(creases: &Creases, neighbourhood: &Neighbourhood, normal: DVec3) -> DVec3 {
     let faces = neighbourhood
         .spokes()
@@ -90,7 +90,7 @@ mod tests {
     use crate::methods::wu;
     use crate::surface::contracted::Contracted;
 
-    /// A regular pyramid without its base: the tip is vertex 0.
+    /// Regular pyramid without its base; the tip is vertex 0.
     fn pyramid() -> Mesh {
         let rim = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [-1.0, 0.0, 0.0], [0.0, -1.0, 0.0]];
         let positions = [[0.0, 0.0, 1.0]].into_iter().chain(rim).collect();

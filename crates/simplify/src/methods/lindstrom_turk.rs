@@ -1,9 +1,10 @@
-//! Memoryless simplification [LT98]: an edge costs the squares of the volumes that its vertex, put
-//! where it conserves the volume, sweeps over the faces around as they are.
+//! Memoryless simplification [LT98]: the cost of an edge is the sum of squared volumes that its
+//! vertex, placed to conserve the volume, sweeps over the current faces around.
 //!
-//! Every plane of a vertex's star passes through the vertex. So what an edge costs is found from six
-//! numbers and a vector per end, as cheaply as by quadrics, and they are kept up by the change of
-//! each face alone. Only the place itself is found from all the faces around, exactly.
+//! Every plane of a vertex's star passes through the vertex. The cost of an edge therefore follows
+//! from six numbers and a vector per end, as cheaply as with quadrics, and these are updated by the
+//! change of each face alone. Only the position itself is computed from all the faces around,
+//! exactly.
 
 use glam::DVec3;
 use meshlod_mesh::{FaceId, VertexId};
@@ -18,27 +19,31 @@ use crate::surface::contracted::{Contracted, Freedom};
 use crate::surface::neighbourhood::Neighbourhood;
 use crate::surface::{Flags, Placed, Surface};
 
-/// How strongly the optimum is pulled to the middle of the edge; it decides along flats. Mean error
-/// of horse-97k at 10 % and 1 %: 1e-6 .00718, .0569; 1e-5 .00715, .0573; 1e-4 .00726, .0575; 1e-3
-/// .00764, .0580. Of igea: .00437, .0307; .00437, .0308; .00443, .0310; .00486, .0317.
+/// Strength of the pull of the optimum towards the middle of the edge, which decides on flat
+/// regions. Mean error of horse-97k at 10 % and 1 %: 1e-6 .00718, .0569; 1e-5 .00715, .0573; 1e-4
+/// .00726, .0575; 1e-3 .00764, .0580. Of igea: .00437, .0307; .00437, .0308; .00443, .0310; .00486,
+/// .0317.
 const PULL: f64 = 1e-5;
 
-/// What an area on an feature_edge counts against a volume over the length of the edge: both squared, a
-/// half and a sixth of what the products of vectors give. Of a boundary, unless another is asked for.
+/// Weight of a squared area at a feature edge against a squared volume over the squared length of
+/// the edge. Both come as products of vectors, without their factors of a half and a sixth. It is
+/// also the default weight of boundaries.
 const FEATURE_WEIGHT: f64 = 9.0;
 
-/// The least sine of the angle between a direction and a plane that may fix each other [LT98].
+/// Smallest sine of the angle between a direction and a plane at which their intersection is used
+/// [LT98].
 const COMPATIBLE: f64 = 0.017;
 
-/// A sum of vectors whose square is less than this part of their squares' sum is rounding.
+/// A sum of vectors is rounding error if its square is less than this fraction of the sum of their
+/// squares.
 const CANCELLED: f64 = 1e-12;
 
-/// What the faces around a vertex come to, seen from it.
+/// Sums over the faces around a vertex, relative to it.
 #[derive(Clone, Copy, Debug, Default)]
 struct Star {
-    /// The sum of n n', n twice the area of a face along its normal.
+    /// Sum of n n', n a face's normal of twice its area.
     squares: Symmetric,
-    /// The sum of n.
+    /// Sum of n.
     normal: DVec3,
 }
 
@@ -56,7 +61,7 @@ impl Star {
     }
 }
 
-/// A star per vertex.
+/// Sums over the star of every vertex.
 pub(crate) struct Stars(Vec<Star>);
 
 impl Stars {
@@ -97,10 +102,10 @@ impl Memory for Stars {
     }
 }
 
-/// The least swept volume, as priority and as placement, of edges and of faces.
+/// Least swept volume as priority and as placement, for edges and for faces.
 #[derive(Clone, Copy)]
 pub(crate) struct Memoryless {
-    /// What an area under a boundary counts.
+    /// Weight of a squared area under a boundary.
     boundary: f64,
 }
 
@@ -126,8 +131,9 @@ impl Priority<Stars> for Memoryless {
         let offset = |v: VertexId| surface.position(v) - origin;
         let Star { mut squares, mut normal } = memory.0[of[0].index()];
         let (mut linear, mut constant, mut level) = (DVec3::ZERO, 0.0, 0.0);
-        // The faces that two of them share count twice. To take them out would need a look at them,
-        // and was worse: mean error of horse-97k .00719, .0593 instead of .00715, .0573.
+        // The faces shared by two of the vertices count twice. Removing them would need a look at
+        // each, and gave worse results: mean error of horse-97k .00719, .0593 instead of .00715,
+        // .0573.
         for &v in &of[1..] {
             let (star, d) = (&memory.0[v.index()], offset(v));
             let square = star.squares.apply(d);
@@ -146,14 +152,15 @@ impl Priority<Stars> for Memoryless {
     }
 }
 
-/// The mean of the contracted vertices, seen from the first.
+/// Returns the mean of the contracted vertices, relative to the first.
 #[inline]
 fn middle(surface: &Surface, of: &Contracted) -> DVec3 {
     let origin = surface.position(of[0]);
     of.iter().map(|&v| surface.position(v) - origin).sum::<DVec3>() / of.len() as f64
 }
 
-/// The cost of an edge with an end on an feature_edge, from all the faces around. Few edges have one.
+/// Returns the cost of an edge with an end on a feature edge, computed from all the faces around.
+/// Few edges have one.
 fn cost_at_feature(surface: &Surface, of: &Contracted, boundary: f64) -> Option<f64> {
     let mut neighbourhood = Neighbourhood::default();
     neighbourhood.gather(surface, *of).ok()?;
@@ -173,8 +180,8 @@ impl Placement<Stars> for Memoryless {
     }
 }
 
-/// The place of any gathered contraction, from the faces around as they are. Where these nearly
-/// cancel, as in folds, the place that conserves the volume can be far outside of them.
+/// Places a gathered contraction, using the current faces around. Where these nearly cancel, as in
+/// folds, the position that conserves the volume can be far outside of them.
 pub(crate) fn place(surface: &Surface, neighbourhood: &Neighbourhood) -> Result<Placed, Refusal> {
     place_with(surface, neighbourhood, FEATURE_WEIGHT)
 }
@@ -199,11 +206,12 @@ fn place_with(
     }
 }
 
-/// Where the vertex goes, from the first of the contracted, and what it sweeps over wherever it goes.
+/// Position of the new vertex relative to the first contracted one, with the swept volume as a
+/// function of the position.
 struct SweptPlacement {
     offset: DVec3,
     swept: Quadric,
-    /// Of the contracted, from the first.
+    /// Mean of the contracted vertices, relative to the first.
     middle: DVec3,
 }
 
@@ -243,7 +251,7 @@ fn choose(
     SweptPlacement { offset, swept, middle }
 }
 
-/// The boundary edges around: sums of their directions and of the products of their ends.
+/// Sums over the boundary edges around: of their directions, and of the products of their ends.
 #[derive(Clone, Copy, Debug, Default)]
 struct BoundarySums {
     directions: DVec3,
@@ -251,7 +259,7 @@ struct BoundarySums {
     squares: f64,
 }
 
-/// The places that leave the area under a boundary as it is.
+/// Line of positions that preserve the area under a boundary.
 struct AreaLine {
     start: DVec3,
     direction: DVec3,
@@ -264,8 +272,8 @@ impl BoundarySums {
         self.squares += from.distance_squared(to);
     }
 
-    /// Where the sum of the areas between the boundary and a vertex is least; `None` where there is
-    /// no boundary, or all of a closed one.
+    /// Returns the line on which the sum of the areas between the boundary and a vertex is least;
+    /// `None` without a boundary, or with a complete closed one.
     fn line(&self) -> Option<AreaLine> {
         let (e, squared) = (self.directions, self.directions.length_squared());
         let start = e.cross(self.products) / squared;
@@ -274,8 +282,9 @@ impl BoundarySums {
 }
 
 impl AreaLine {
-    /// The place on it that conserves the volume too, where it crosses that plane at an angle and
-    /// within `reach` of `toward`; else the one that sweeps over least.
+    /// Returns the position on the line that also conserves the volume, if the line crosses that
+    /// plane at a sufficient angle and within `reach` of `toward`; otherwise the one with the least
+    /// swept volume.
     fn best(&self, volume: &VolumePlane, swept: &Quadric, toward: DVec3, reach: f64) -> DVec3 {
         let (slope, e) = (volume.normal.dot(self.direction), self.direction);
         if slope.abs() > COMPATIBLE * volume.normal.length() * e.length() {

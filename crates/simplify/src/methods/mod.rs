@@ -1,4 +1,4 @@
-//! The methods as sets of policies: the table of the house.
+//! Table of the methods, each as a set of policies.
 
 mod attribute_metric;
 mod attribute_quadrics;
@@ -36,7 +36,7 @@ use crate::methods::spr::Turn;
 use crate::methods::wu::WeightedMean;
 use crate::options::{Method, Options};
 
-/// Sets a method to work.
+/// Starts a method on a prepared surface.
 pub(crate) fn start(method: Method, options: &Options, ready: PreparedSurface) -> Box<dyn Run> {
     let surface = &ready.surface;
     match method {
@@ -95,7 +95,7 @@ pub(crate) fn start(method: Method, options: &Options, ready: PreparedSurface) -
     }
 }
 
-/// Quadrics with attributes, where there are any that count.
+/// Starts a quadric method, with an attribute term if any attributes count.
 fn by_quadrics<R: PlacementRule + Copy + 'static>(
     options: &Options,
     rule: R,

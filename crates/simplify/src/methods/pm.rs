@@ -1,12 +1,12 @@
-//! Progressive meshes [Hop96]: the energy of samples that the surface is to pass close by.
+//! Progressive meshes [Hop96]: the energy is the squared distance of surface samples.
 //!
-//! An edge costs how much the squared distances of the samples around it grow when it goes, with its
-//! vertex at the best place, and a little for the lengths of the new edges, as springs. The place is
-//! found as there: project the samples, move the vertex to where they want it, again.
+//! The cost of an edge is the increase of the squared distances of the samples around it when it is
+//! contracted, with its vertex at the best position, plus a small spring energy of the new edges.
+//! The position is found as in the paper: project the samples, move the vertex to fit them, repeat.
 //!
-//! Our choices: a sample pulls along its face's normal instead of straight at itself, which gets
-//! there in two rounds instead of many; only the best of the three starts is followed; springs count
-//! in the energy alone and do not pull.
+//! Our choices: a sample pulls along its face's normal instead of straight towards itself, which
+//! converges in two rounds instead of many. Only the best of the three starts is followed. Springs
+//! enter the energy but exert no pull.
 
 use std::cell::RefCell;
 
@@ -21,20 +21,20 @@ use crate::surface::contracted::{Contracted, Freedom};
 use crate::surface::neighbourhood::Neighbourhood;
 use crate::surface::{Placed, Surface};
 
-/// What the squared lengths of the edges around the new vertex count against squared distances.
+/// Weight of the squared lengths of the edges around the new vertex against squared distances.
 /// bunny, mean error in % of the diagonal at 10 % and 1 %, and flips refused: 1e-3 .0157 .096 100,
-/// 1e-4 .0145 .089 800, 1e-5 .0144 .087 3000. It is what keeps flats in order.
+/// 1e-4 .0145 .089 800, 1e-5 .0144 .087 3000. It keeps flat regions in order.
 const SPRING: f64 = 1e-5;
 
-/// How often the vertex is moved to where the samples want it. bunny at 1 %: 3 rounds .0901, 2 .0889.
+/// Number of times the vertex is moved to fit the samples. bunny at 1 %: 3 rounds .0901, 2 .0889.
 const ROUNDS: usize = 2;
 
-/// How strongly the vertex is held where it is, against the samples' pull. Less lets it run off along
-/// the surface, where samples say nothing: bunny at 10 % has a maximum of .88 % with 1e-3, .34 with
-/// 1e-2, .29 with 1e-1, and a mean of .0148, .0150, .0157.
+/// Strength of the pull to the current position against the samples. With less, the vertex drifts
+/// along the surface, where samples exert no pull: bunny at 10 % has a maximum of .88 % with 1e-3,
+/// .34 with 1e-2, .29 with 1e-1, and a mean of .0148, .0150, .0157.
 const HOLD: f64 = 1e-2;
 
-/// [Hop96] as priority and as placement.
+/// Sample energy of [Hop96], as priority and as placement.
 pub(crate) struct Energy;
 
 impl Priority<Samples> for Energy {
@@ -62,7 +62,7 @@ impl Placement<Samples> for Energy {
         let best =
             SCRATCH.with_borrow_mut(|scratch| scratch.fit.solve(surface, samples, neighbourhood));
         let best = best.ok_or(Refusal::LastFaces)?;
-        // Samples know how far they have come in all; what the engine will add is taken out.
+        // Samples measure the total distance moved; the part that the engine adds is subtracted.
         let before = surface.moved(neighbourhood.contracted()).powi(2);
         let error_estimate = (best.worst - before).max(0.0).sqrt();
         Ok(Placed { position: best.position, kept: best.kept, error_estimate })
@@ -73,49 +73,49 @@ thread_local! {
     static SCRATCH: RefCell<PmScratch> = RefCell::default();
 }
 
-/// PmScratch for the contractions that a thread looks at.
+/// Scratch space of a thread.
 #[derive(Default)]
 struct PmScratch {
     neighbourhood: Neighbourhood,
     fit: SampleFit,
 }
 
-/// One contraction, seen from the first of its vertices.
+/// Fit of one contraction to its samples, relative to the first contracted vertex.
 #[derive(Default)]
 struct SampleFit {
     fan: Fan,
     points: Vec<Point>,
 }
 
-/// A sample.
+/// Sample position.
 struct Point {
     place: DVec3,
     on_rim: bool,
 }
 
-/// Where a contraction puts its vertex.
+/// Best position found for the new vertex.
 struct FittedPlace {
     position: DVec3,
     kept: usize,
     cost: f64,
-    /// The greatest squared distance of a sample then.
+    /// Greatest squared distance of a sample there.
     worst: f64,
 }
 
-/// What the samples say of a place.
+/// Energy and pull of the samples at a position.
 #[derive(Clone, Copy)]
 struct Evaluation {
     place: DVec3,
-    /// The sum of squared distances, and the springs.
+    /// Sum of squared distances, plus the springs.
     energy: f64,
-    /// The greatest squared distance.
+    /// Greatest squared distance.
     worst: f64,
-    /// Where the samples want the vertex.
+    /// Position that fits the samples better.
     better: DVec3,
 }
 
 impl SampleFit {
-    /// The best place for the new vertex; none where no face is left for the samples.
+    /// Returns the best position for the new vertex; `None` if no face is left for the samples.
     fn solve(
         &mut self,
         surface: &Surface,
@@ -138,7 +138,7 @@ impl SampleFit {
             Freedom::At(kept) => self.evaluate(ends[kept]),
             Freedom::Free => self.descend([ends[0], ends[1], ends[1] * 0.5]),
         };
-        // An end keeps its position to the bit.
+        // An end keeps its position exactly.
         let position = match ends.iter().position(|&end| end == view.place) {
             Some(end) => [v0, v1][end],
             None => v0 + view.place,
@@ -152,7 +152,7 @@ impl SampleFit {
         })
     }
 
-    /// The best of these places, moved on as long as that lowers the energy.
+    /// Returns the best of these positions, moved on as long as that lowers the energy.
     fn descend(&mut self, starts: [DVec3; 3]) -> Evaluation {
         let [first, second, third] = starts.map(|start| self.evaluate(start));
         let mut best = first;
@@ -172,7 +172,7 @@ impl SampleFit {
         best
     }
 
-    /// Projects all samples to the faces around `place`.
+    /// Projects all samples onto the faces around `place`, and evaluates them.
     fn evaluate(&mut self, place: DVec3) -> Evaluation {
         self.fan.place(place);
         let (mut energy, mut worst) = (SPRING * self.fan.squared_lengths(), 0.0f64);
@@ -214,7 +214,7 @@ mod tests {
         (surface, samples)
     }
 
-    /// The same sum by brute force: every sample of the faces around against every new face.
+    /// Sums the energy by brute force: every sample of the faces around against every new face.
     fn by_brute_force(samples: &Samples, neighbourhood: &Neighbourhood, position: DVec3) -> f64 {
         let ring = |place: u32| neighbourhood.ring()[place as usize].position;
         let mut sum = 0.0;

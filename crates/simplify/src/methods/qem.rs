@@ -1,12 +1,13 @@
-//! Quadric error metrics [GH97]: an edge costs what its best place costs by the planes of all the
-//! faces that have gone into its ends.
+//! Quadric error metrics [GH97]: the cost of an edge is the least weighted squared distance to the
+//! planes of all faces merged into its ends.
 //!
-//! Our choices: planes weigh by area; boundary edges, seams and contacts stand as planes at right angles to
-//! their faces; quadrics are kept relative to their vertices, and the optimum is pulled a little
-//! towards the middle of the edge, so that flats and straight edges need no special case. And memory
-//! fades: what counts at a vertex is mostly the surface as it is, a little of what it was. Memory is
-//! what costs quadrics their accuracy [LT98] [Hop99]; forgetting all of it would mean summing every
-//! ring anew, forgetting most of it needs only the faces that a contraction has in hand anyway.
+//! Our choices: planes are weighted by area. Boundary edges, seams and contacts add constraint
+//! planes perpendicular to their faces. Quadrics are stored relative to their vertices, and the
+//! optimum is pulled a little towards the middle of the edge, so that flat regions and straight
+//! edges need no special case. And memory fades: the quadric of a vertex is mostly the surface as
+//! it is, and a little of what it was. Memory is what costs quadrics their accuracy [LT98] [Hop99].
+//! Forgetting all of it would mean summing every ring anew, while forgetting most of it needs only
+//! the faces that a contraction gathers anyway.
 
 use glam::DVec3;
 use meshlod_mesh::{Connectivity, FaceId, Side, Twin, VertexId};
@@ -20,17 +21,18 @@ use crate::surface::contracted::{Contracted, Freedom};
 use crate::surface::neighbourhood::Neighbourhood;
 use crate::surface::{Flags, Placed, Surface};
 
-/// How strongly the optimum is pulled to the middle of the edge. Of 1e-9 … 1e-3, 1e-5 gave the least
-/// mean error on bunny, horse, igea and dragon at 10 % and 1 %; up to 1e-4 all are within 2 %.
+/// Strength of the pull of the optimum towards the middle of the edge. Of 1e-9 … 1e-3, 1e-5 gave
+/// the least mean error on bunny, horse, igea and dragon at 10 % and 1 %; up to 1e-4 all are within
+/// 2 %.
 const PULL: f64 = 1e-5;
 
-/// What the length of an edge counts against distance, both squared. Enough to take short edges first
-/// where all costs are rounding: a flat of a million faces otherwise grows hubs, and takes fifty
-/// times as long. 1e-6 already shows in the error of bunny at 1 %.
+/// Weight of the squared edge length against squared distance. Enough to take short edges first
+/// where all costs are rounding errors: otherwise a flat of a million faces grows hubs and takes
+/// fifty times as long. 1e-6 already shows in the error of bunny at 1 %.
 pub(super) const SHORT_FIRST: f64 = 1e-9;
 
-/// How much of the summed quadrics a new vertex remembers; the rest is its faces as they are. Mean
-/// error in % of the diagonal at 1 % of the faces:
+/// Fraction of the summed quadrics that a new vertex keeps; the rest comes from its current faces.
+/// Mean error in % of the diagonal at 1 % of the faces:
 ///
 /// | memory | bunny | horse | igea | dragon | armadillo | lucy |
 /// |---|---|---|---|---|---|---|
@@ -39,17 +41,19 @@ pub(super) const SHORT_FIRST: f64 = 1e-9;
 /// | 0.1 | .1227 | .0720 | .0357 | .0268 | .0954 | .1165 |
 /// | 0 | .1179 | .0724 | .0357 | | | |
 ///
-/// Nothing left of it brings no more, but would lose what a flat's vertices know of its rim.
+/// Forgetting everything gains nothing more, but would lose what the vertices of a flat know of its
+/// rim.
 pub(crate) const MEMORY: f64 = 0.1;
 
-/// The weight of a boundary edge's plane, against the square of its length as an area; unless another is
-/// asked for.
+/// Default weight of a boundary edge's constraint plane, relative to the square of its length as an
+/// area.
 pub(crate) const BOUNDARY_WEIGHT: f64 = 2.0;
 
-/// The weight of the plane of a seam or a contact likewise.
+/// Weight of the constraint plane of a seam or a contact, relative to the square of its length as
+/// an area.
 const FEATURE_WEIGHT: f64 = 1.0;
 
-/// A quadric per vertex, and what is known of attributes.
+/// Quadrics of all vertices, and the attribute term.
 pub(crate) struct Quadrics<A = ()> {
     quadrics: Vec<Quadric>,
     attributes: A,
@@ -73,7 +77,7 @@ impl<A> Quadrics<A> {
         Self { quadrics, attributes }
     }
 
-    /// The sum of the contracted vertices' quadrics, seen from the first.
+    /// Returns the sum of the contracted vertices' quadrics, relative to the first.
     #[inline]
     fn sum(&self, surface: &Surface, contracted: &Contracted) -> Quadric {
         let origin = surface.position(contracted[0]);
@@ -90,7 +94,8 @@ impl<A: AttributeMetric> Memory for Quadrics<A> {
         let origin = surface.position(neighbourhood.contracted()[0]);
         let sum = self.sum(surface, neighbourhood.contracted());
         let mut merged = sum.seen_from(placed.position - origin);
-        // Fences are not in the faces around: where one stands, all is remembered.
+        // Constraint planes cannot be rebuilt from the faces around, so vertices on feature edges
+        // keep everything.
         let on_feature = |&v: &VertexId| surface.flags(v).any(Flags::FEATURE);
         if !neighbourhood.contracted().iter().any(on_feature) {
             merged = merged * MEMORY + star(neighbourhood, placed.position) * (1.0 - MEMORY);
@@ -104,7 +109,7 @@ impl<A: AttributeMetric> Memory for Quadrics<A> {
     }
 }
 
-/// The planes of the surviving faces, with their vertex at `position`, seen from there.
+/// Returns the quadric of the surviving faces with their vertex at `position`, relative to it.
 fn star(neighbourhood: &Neighbourhood, position: DVec3) -> Quadric {
     let at = |place: u32| neighbourhood.ring()[place as usize].position - position;
     neighbourhood
@@ -144,25 +149,25 @@ fn add_face(
     }
 }
 
-/// Where a rule of placement puts the vertex, and what that costs.
+/// Position chosen by a placement rule, with its cost.
 pub(crate) struct CostedPlacement {
-    /// From the first of the contracted.
+    /// Offset from the first contracted vertex.
     offset: DVec3,
     kept: usize,
     cost: f64,
 }
 
-/// The optimum of the summed quadric, as priority and as placement.
+/// Placement at the optimum of the summed quadric; priority and placement in one.
 #[derive(Clone, Copy)]
 pub(crate) struct Optimal;
 
-/// The better end of the edge, as priority and as placement: no vertex ever moves.
+/// Placement at the better end of the edge, so that no vertex moves; priority and placement in one.
 #[derive(Clone, Copy)]
 pub(crate) struct Endpoint;
 
-/// What a choice is made by.
+/// Sum of the quadrics of a candidate, for placement rules.
 pub(crate) struct EdgeSum<'a, A> {
-    /// Seen from the first of the contracted.
+    /// Geometric quadric, relative to the first contracted vertex.
     geometry: Quadric,
     attributes: &'a A,
     surface: &'a Surface,
@@ -176,7 +181,7 @@ impl<'a, A: AttributeMetric> EdgeSum<'a, A> {
         Self { geometry, attributes: &memory.attributes, surface, of }
     }
 
-    /// The place of one of the contracted.
+    /// Places the new vertex at one of the contracted ones.
     #[inline]
     fn at(&self, kept: usize) -> CostedPlacement {
         let Self { geometry, surface, of, .. } = *self;
@@ -186,7 +191,7 @@ impl<'a, A: AttributeMetric> EdgeSum<'a, A> {
     }
 }
 
-/// A rule of placement.
+/// Rule that places the new vertex of a quadric method.
 pub(crate) trait PlacementRule: Sync {
     fn choose<A: AttributeMetric>(sum: &EdgeSum<'_, A>, freedom: Freedom) -> CostedPlacement;
 }
@@ -245,11 +250,11 @@ impl<R: PlacementRule, A: AttributeMetric> Placement<Quadrics<A>> for R {
     ) -> Result<Placed, Refusal> {
         let sum = EdgeSum::new(memory, surface, neighbourhood.contracted());
         let choice = R::choose(&sum, neighbourhood.freedom());
-        // An end keeps its position to the bit.
+        // An end keeps its position exactly.
         let origin = surface.position(neighbourhood.contracted()[0]);
         let kept = surface.position(neighbourhood.contracted()[choice.kept]);
         let position = if choice.offset == kept - origin { kept } else { origin + choice.offset };
-        // A length: attributes have no part in it.
+        // The estimate is a distance, so attributes do not contribute.
         let error_estimate = sum.geometry.distance(sum.geometry.at(choice.offset));
         Ok(Placed { position, kept: choice.kept, error_estimate })
     }

@@ -1,13 +1,13 @@
-//! Quadrics: squared distance to weighted planes [GH97], seen from a point of the surface.
+//! Quadrics: weighted squared distances to planes [GH97], relative to a point of the surface.
 //!
-//! A quadric is kept relative to its vertex, not to the world's origin: the planes around a vertex
-//! pass through it, so the sums stay small and nothing cancels, wherever the model stands.
+//! A quadric is stored relative to its vertex, not to the world's origin. The planes around a
+//! vertex pass through it, so the sums stay small and nothing cancels, wherever the model is.
 
 use std::ops::{Add, Mul};
 
 use glam::{DMat3, DVec3};
 
-/// A symmetric 3 × 3 matrix.
+/// Symmetric 3 × 3 matrix.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Symmetric {
     /// xx, yy, zz.
@@ -38,13 +38,13 @@ impl Mul<f64> for Symmetric {
 }
 
 impl Symmetric {
-    /// n n'.
+    /// Returns the outer product n n'.
     #[inline]
     pub(crate) fn outer(n: DVec3) -> Self {
         Self { diagonal: n * n, off_diagonal: DVec3::new(n.y * n.z, n.z * n.x, n.x * n.y) }
     }
 
-    /// The unit matrix, this many times.
+    /// Returns the identity matrix times `factor`.
     #[inline]
     pub(crate) fn scalar(factor: f64) -> Self {
         Self { diagonal: DVec3::splat(factor), off_diagonal: DVec3::ZERO }
@@ -55,7 +55,7 @@ impl Symmetric {
         self.diagonal.element_sum()
     }
 
-    /// Itself times `x`.
+    /// Returns the matrix times `x`.
     #[inline]
     pub(crate) fn apply(&self, x: DVec3) -> DVec3 {
         let o = self.off_diagonal;
@@ -63,7 +63,7 @@ impl Symmetric {
             + DVec3::new(o.z * x.y + o.y * x.z, o.z * x.x + o.x * x.z, o.y * x.x + o.x * x.y)
     }
 
-    /// P times this times P, P the projection along the unit vector `n`.
+    /// Returns PAP, A the matrix and P the projection along the unit vector `n`.
     #[inline]
     pub(crate) fn within(&self, n: DVec3) -> Self {
         let an = self.apply(n);
@@ -80,13 +80,14 @@ impl Symmetric {
         }
     }
 
-    /// The x with this times x = `right`; nothing finite where there is none.
+    /// Solves for the x with matrix · x = `right`; the result is not finite if there is none.
     #[inline]
     pub(crate) fn solve(&self, right: DVec3) -> DVec3 {
-        // The determinant is a cube. A power of two keeps it in range and changes no digit.
+        // The determinant is a cubic in the entries. Scaling by a power of two keeps it in range
+        // and changes no digit.
         let unit = 1.0 / f64::from_bits(self.trace().to_bits() & f64::INFINITY.to_bits());
         let (d, o, right) = (self.diagonal * unit, self.off_diagonal * unit, right * unit);
-        // Symmetric, so the rows of the adjugate are cross products of the columns.
+        // The matrix is symmetric, so the rows of the adjugate are cross products of the columns.
         let (x, y, z) =
             (DVec3::new(d.x, o.z, o.y), DVec3::new(o.z, d.y, o.x), DVec3::new(o.y, o.x, d.z));
         let (yz, zx, xy) = (y.cross(z), z.cross(x), x.cross(y));
@@ -94,14 +95,14 @@ impl Symmetric {
     }
 }
 
-/// The function Q(x) = x'Ax + 2b·x + c, x an offset from the quadric's origin, and its weight.
+/// Quadratic function Q(x) = x'Ax + 2b·x + c, x an offset from the quadric's origin, with its
+/// weight.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Quadric {
     a: Symmetric,
     b: DVec3,
     c: f64,
-    /// The sum of the planes' weights: with areas as weights, Q / weight is a mean squared
-    /// distance.
+    /// Sum of the planes' weights: with areas as weights, Q / weight is a mean squared distance.
     weight: f64,
 }
 
@@ -134,14 +135,15 @@ impl Mul<f64> for Quadric {
 }
 
 impl Quadric {
-    /// Squared distance to the plane through the origin with this unit normal, times `weight`.
+    /// Returns the squared distance to the plane through the origin with this unit normal, times
+    /// `weight`.
     #[inline]
     pub(crate) fn plane(normal: DVec3, weight: f64) -> Self {
         Self { a: Symmetric::outer(normal) * weight, weight, ..Self::default() }
     }
 
-    /// The plane of a face through the origin, given twice its area along its normal, weighted by
-    /// its area. A face without area has no plane and weighs nothing.
+    /// Returns the quadric of a face through the origin, given its normal of twice its area,
+    /// weighted by its area; zero for a face without area.
     #[inline]
     pub(crate) fn face(area_normal: DVec3) -> Self {
         let twice_area = area_normal.length();
@@ -152,31 +154,32 @@ impl Quadric {
         }
     }
 
-    /// x'Ax + 2b·x + c, weighing as much as the squares in A.
+    /// Returns x'Ax + 2b·x + c with the trace of A as weight.
     #[inline]
     pub(crate) fn new(a: Symmetric, b: DVec3, c: f64) -> Self {
         Self { a, b, c, weight: a.trace() }
     }
 
-    /// (`normal`·x − `level`)².
+    /// Returns (`normal`·x − `level`)² as a quadric.
     #[inline]
     pub(crate) fn squared_plane(normal: DVec3, level: f64) -> Self {
         Self::new(Symmetric::outer(normal), -level * normal, level * level)
     }
 
-    /// (x − from)'A(x − from).
+    /// Returns (x − from)'A(x − from) as a quadric.
     #[inline]
     pub(crate) fn squared(a: Symmetric, from: DVec3) -> Self {
         Self::new(a, DVec3::ZERO, 0.0).seen_from(-from)
     }
 
-    /// The same function with a weight that counts for nothing in the mean.
+    /// Returns the function with weight zero, so that it does not count in the mean.
     #[inline]
     pub(crate) fn as_constraint(self) -> Self {
         Self { weight: 0.0, ..self }
     }
 
-    /// Adds the square of offset + slope·x, times `weight`, which counts for nothing in the mean.
+    /// Adds the square of offset + slope·x, times `weight`, without adding to the weight of the
+    /// mean.
     #[inline]
     pub(crate) fn add_linear(&mut self, slope: DVec3, offset: f64, weight: f64) {
         self.a = self.a + Symmetric::outer(slope) * weight;
@@ -184,42 +187,42 @@ impl Quadric {
         self.c += weight * offset * offset;
     }
 
-    /// The same function and a constant more.
+    /// Returns the function plus a constant.
     #[inline]
     pub(crate) fn raised(self, by: f64) -> Self {
         Self { c: self.c + by, ..self }
     }
 
-    /// The same function, seen from an origin moved by `offset`.
+    /// Returns the function relative to an origin moved by `offset`.
     #[inline]
     pub(crate) fn seen_from(self, offset: DVec3) -> Self {
         let ax = self.a.apply(offset);
         Self { b: self.b + ax, c: self.c + (2.0 * self.b + ax).dot(offset), ..self }
     }
 
-    /// Q at an offset. Rounding can put it a little below zero; it is cut there.
+    /// Evaluates Q at an offset, clamped at zero because rounding can make it slightly negative.
     #[inline]
     pub(crate) fn at(&self, x: DVec3) -> f64 {
         let value = (self.a.apply(x) + 2.0 * self.b).dot(x) + self.c;
         if value < 0.0 { 0.0 } else { value }
     }
 
-    /// The value that stands for this mean squared distance.
+    /// Returns the value that corresponds to a mean squared distance.
     #[inline]
     pub(crate) fn mean_of(&self, squared: f64) -> f64 {
         self.weight * squared
     }
 
-    /// The root of the mean squared distance that a value of this quadric stands for.
+    /// Returns the root mean squared distance that a value of this quadric corresponds to.
     #[inline]
     pub(crate) fn distance(&self, value: f64) -> f64 {
         if self.weight > 0.0 { (value / self.weight).sqrt() } else { 0.0 }
     }
 
-    /// The offset where Q + `pull`·trace(A)·|x − toward|² is least.
+    /// Returns the offset at which Q + `pull`·trace(A)·|x − toward|² is least.
     ///
-    /// The pull decides only where the planes leave the point free, along a flat or an edge, and
-    /// keeps the system well conditioned there: no rank to guess, no special case.
+    /// The pull matters only where the planes leave the point free, along a flat or an edge, and
+    /// keeps the system well conditioned there, without a rank decision or a special case.
     #[inline]
     pub(crate) fn optimum(&self, toward: DVec3, pull: f64) -> DVec3 {
         let spring = pull * self.a.trace();
@@ -230,7 +233,8 @@ impl Quadric {
         if solution.is_finite() { solution } else { toward }
     }
 
-    /// The t where the same is least on the line `start` + t·`direction`.
+    /// Returns the t at which the pulled function of [`Self::optimum`] is least on the line `start`
+    /// + t·`direction`.
     #[inline]
     pub(crate) fn least_along(
         &self,
@@ -245,10 +249,11 @@ impl Quadric {
         -slope.dot(direction) / bend.dot(direction)
     }
 
-    /// The same on the plane `normal`·x = `level`; `toward` where that is no plane.
+    /// Returns the optimum of [`Self::optimum`] restricted to the plane `normal`·x = `level`, or
+    /// unrestricted if that is not a plane.
     ///
-    /// Across the plane the function is replaced by one that is stiff there, so that one solution
-    /// of three unknowns does for two.
+    /// Across the plane the function is replaced by a stiff one, so that one system of three
+    /// unknowns solves the problem of two.
     #[inline]
     pub(crate) fn optimum_on(&self, normal: DVec3, level: f64, toward: DVec3, pull: f64) -> DVec3 {
         let length = normal.length();
@@ -264,7 +269,7 @@ impl Quadric {
         let slope = self.a.apply(start) + self.b;
         let within = self.a.within(n) + Symmetric::outer(n) * trace + Symmetric::scalar(spring);
         let step = within.solve(n * slope.dot(n) - slope);
-        // Rounding must not cost any of the volume.
+        // Rounding must not change the volume.
         let step = step - n * step.dot(n);
         if step.is_finite() { start + step } else { start }
     }

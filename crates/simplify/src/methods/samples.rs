@@ -1,7 +1,7 @@
-//! Points of the first surface, each on the face that stands for it now.
+//! Samples of the input surface, each attached to the face that represents it now.
 //!
-//! Samples lie in one array, linked from face to face. A sample of a rim, which is a boundary edge or
-//! a seam, stays on rims: it is what holds feature_edges and the borders of textures.
+//! Samples are stored in one array and linked by face. A sample on a rim, that is a boundary edge
+//! or a seam, stays on rims; this preserves outlines and the borders of textures.
 
 use glam::DVec3;
 use meshlod_mesh::{Connectivity, FaceId, Side, Twin, VertexId};
@@ -12,43 +12,43 @@ use crate::methods::feature_edges::is_feature;
 use crate::surface::neighbourhood::{Neighbourhood, Spoke};
 use crate::surface::{Placed, Surface};
 
-/// Random samples for each face of the input, beside one at each vertex and one in the middle of
+/// Scattered samples per face of the input, besides one at each vertex and one in the middle of
 /// each rim edge.
 const PER_FACE: f64 = 0.5;
 
-/// A point of the first surface.
+/// Sample of the input surface.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Sample {
     pub(crate) point: DVec3,
-    /// Squared distance to where it stands now.
+    /// Squared distance to its projection on the current surface.
     pub(crate) squared: f64,
-    /// The side of its face that it must keep to, if it is of a rim.
+    /// Side of its face that it must stay on, if it is on a rim.
     side: Option<u8>,
-    /// The next one on the same face.
+    /// Next sample on the same face.
     next: u32,
 }
 
 impl Sample {
-    /// Whether it must keep to a rim.
+    /// Returns true if it must stay on a rim.
     #[inline]
     pub(crate) fn on_rim(&self) -> bool {
         self.side.is_some()
     }
 }
 
-/// All samples, by face.
+/// All samples, linked by face.
 pub(crate) struct Samples {
     samples: Vec<Sample>,
-    /// The first sample of each face.
+    /// First sample of each face.
     first: Vec<u32>,
-    /// For each face a bit for each side that is a rim.
+    /// One bit per side of each face, set for rims.
     rims: Vec<u8>,
-    /// Room for those of a contraction.
+    /// Scratch space for the samples of a contraction.
     moving: Vec<u32>,
     fan: Fan,
 }
 
-/// The end of a list.
+/// End of a list.
 const NONE: u32 = u32::MAX;
 
 impl Samples {
@@ -65,7 +65,7 @@ impl Samples {
             this.add_rims(surface, connectivity, face);
         }
         let mut held = vec![false; surface.vertex_count()];
-        // Rims first, so that their vertices are held by them.
+        // Rims first, so that vertices on rims become rim samples.
         for on_rim in [true, false] {
             alive().for_each(|face| this.add_vertices(surface, face, on_rim, &mut held));
         }
@@ -118,14 +118,14 @@ impl Samples {
         std::iter::successors(first, move |&i| listed(self.samples[i as usize].next))
     }
 
-    /// Calls `each` with every sample that a contraction sets in motion.
+    /// Calls `each` for every sample that a contraction moves.
     pub(crate) fn moving(&self, neighbourhood: &Neighbourhood, mut each: impl FnMut(&Sample)) {
         self.moving_ids(neighbourhood, |i| each(&self.samples[i as usize]));
     }
 
     fn moving_ids(&self, neighbourhood: &Neighbourhood, mut each: impl FnMut(u32)) {
         for spoke in neighbourhood.spokes() {
-            // What is on the rim across from the contracted corner stays there.
+            // Samples on the rim opposite the contracted corner stay there.
             let across = ((spoke.corner() + 1) % 3) as u8;
             self.of_face(spoke.face)
                 .filter(|&i| self.samples[i as usize].side != Some(across))
@@ -136,13 +136,13 @@ impl Samples {
         }
     }
 
-    /// The sides of a face that are rims, a bit for each.
+    /// Returns the rim sides of a face, one bit each.
     #[inline]
     fn rims(&self, face: FaceId) -> u8 {
         self.rims[face.index()]
     }
 
-    /// The faces after a contraction, as far as its ring goes.
+    /// Builds the fan of the faces after a contraction.
     pub(crate) fn fan(
         &self,
         surface: &Surface,
@@ -215,7 +215,7 @@ impl Memory for Samples {
 }
 
 impl Samples {
-    /// Leaves on the faces around only what does not move.
+    /// Unlinks the moving samples from the faces around.
     fn unlink(&mut self, neighbourhood: &Neighbourhood) {
         for dying in neighbourhood.dying() {
             self.first[dying.face.index()] = NONE;
@@ -234,7 +234,7 @@ impl Samples {
         }
     }
 
-    /// Gives the sides of the new faces their marks; `fan` is of this contraction.
+    /// Marks the rim sides of the new faces; `fan` must be of this contraction.
     fn mark_rims(&mut self, neighbourhood: &Neighbourhood) {
         let fan = std::mem::take(&mut self.fan);
         for rim in fan.rims() {
@@ -251,7 +251,7 @@ impl Samples {
     }
 }
 
-/// Point `i` of a sequence that fills any triangle evenly.
+/// Returns point `i` of a sequence that fills any triangle evenly.
 ///
 /// # References
 /// [Rob18], the sequence of the plastic number, folded into the triangle.

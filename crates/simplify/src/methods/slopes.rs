@@ -1,20 +1,21 @@
-//! How values change over a face.
+//! Gradients of linear functions over a face.
 
 use glam::DVec3;
 
-/// The squared sine of a face's angles below which no slope on it can be trusted: with the lengths
-/// it would go up without bound. Flight helmet, duck and fish are the same for 0 and for 1e-4 to 1 %.
+/// Squared sine of a face's angles below which no gradient on it can be trusted: it would grow
+/// without bound as the face narrows. Flight helmet, duck and fish are the same for 0 and for 1e-4
+/// to 1 %.
 const SLIVER: f64 = 1e-6;
 
-/// The slope over a triangle of what is linear on it.
+/// Gradient of a linear function over a triangle, given its values at the corners.
 pub(crate) struct Slopes {
-    /// Of a unit step to the first of the two other corners, and to the second.
+    /// Gradient for a unit step of the value at each of the other two corners.
     to: [DVec3; 2],
     pub(crate) area: f64,
 }
 
 impl Slopes {
-    /// Of the triangle from the origin to `a` and `b`; none for a sliver.
+    /// Prepares the triangle from the origin to `a` and `b`; `None` for a sliver.
     pub(crate) fn of(a: DVec3, b: DVec3) -> Option<Self> {
         let normal = a.cross(b);
         let squared = normal.length_squared();

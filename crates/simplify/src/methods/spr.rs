@@ -1,12 +1,12 @@
-//! Simple polygon reduction [Mel98]: an edge costs its length times how sharply the surface turns at
-//! the end that is given up, and nothing moves.
+//! Simple polygon reduction [Mel98]: the cost of an edge is its length times the turn of the
+//! surface at the removed end, and no vertex moves.
 //!
 //! cost(u→v) = |u−v| · max over the faces f at u of min over the faces n on uv of (1 − f·n) / 2.
 //!
-//! The inner minimum lets a crease be shortened along itself. Our choices: a boundary edge stands as
-//! a face at right angles to its own, so that the same formula keeps feature_edges and their corners; both
-//! directions are looked at and the cheaper is taken; and a little of the length always counts, so
-//! that flats are taken short edges first.
+//! The inner minimum lets a crease be shortened along itself. Our choices: a boundary edge adds a
+//! virtual face perpendicular to its own, so that the same formula preserves boundaries and their
+//! corners. Both directions are tried and the cheaper one is taken. A small part of the length
+//! always counts, so that flat regions are contracted short edges first.
 
 use glam::DVec3;
 use meshlod_mesh::{FaceId, VertexId};
@@ -17,19 +17,19 @@ use crate::surface::contracted::{Contracted, Freedom};
 use crate::surface::neighbourhood::Neighbourhood;
 use crate::surface::{Flags, Placed, Surface};
 
-/// What counts of the length where nothing turns. Without it a flat is taken in the order of its ids
-/// and grows hubs.
+/// Weight of the length where nothing turns. Without it a flat region is contracted in the order of
+/// ids and grows hubs.
 const FLAT: f64 = 1e-4;
 
-/// Faces and fences on the edge that are compared with; what has more is refused anyway.
+/// Number of faces, real and virtual, compared on an edge; an edge with more is refused anyway.
 const MOST_SIDES: usize = 4;
 
-/// [Mel98] as priority and as placement.
+/// Turn of the surface [Mel98], as priority and as placement.
 pub(crate) struct Turn;
 
 impl Priority<()> for Turn {
     fn cost(&self, surface: &Surface, _: &(), of: &Contracted, freedom: Freedom) -> Option<f64> {
-        // A hub would be gone round for each of its edges, and is refused anyway.
+        // A hub would be traversed for each of its edges, and is refused anyway.
         (!surface.is_crowded(of)).then(|| cheaper(surface, of, freedom).1)
     }
 }
@@ -47,7 +47,7 @@ impl Placement<()> for Turn {
     }
 }
 
-/// Which end is kept, and what that costs.
+/// Returns the end to keep, and the cost.
 fn cheaper(surface: &Surface, of: &Contracted, freedom: Freedom) -> (usize, f64) {
     let onto = |kept: usize| (kept, cost(surface, of[1 - kept], of[kept]));
     match freedom {
@@ -59,7 +59,7 @@ fn cheaper(surface: &Surface, of: &Contracted, freedom: Freedom) -> (usize, f64)
     }
 }
 
-/// The cost of giving up `u` for `v` [Mel98].
+/// Returns the cost of contracting `u` onto `v` [Mel98].
 fn cost(surface: &Surface, u: VertexId, v: VertexId) -> f64 {
     let mut sides = [DVec3::ZERO; MOST_SIDES];
     let mut count = 0;
@@ -79,8 +79,8 @@ fn cost(surface: &Surface, u: VertexId, v: VertexId) -> f64 {
     surface.position(u).distance(surface.position(v)) * (sharpest + FLAT)
 }
 
-/// The normals of a face at `u`, and of the fences on its sides there, or only on the one to `v`;
-/// none of a face without area.
+/// Returns the normals of a face at `u` and of the virtual faces on its boundary sides there, or
+/// only on the side to `v`; nothing for a face without area.
 fn normals(
     surface: &Surface,
     u: VertexId,
@@ -92,7 +92,7 @@ fn normals(
         return [Some(normal), None, None];
     }
     let (vertices, corner) = (surface.face(face), surface.corner(face, u));
-    let fence = |from: VertexId, to: VertexId| {
+    let virtual_face = |from: VertexId, to: VertexId| {
         let other = if from == u { to } else { from };
         let wanted = v.is_none_or(|v| v == other);
         let faces = || surface.star(u).filter(|&face| surface.face(face).contains(&other));
@@ -100,7 +100,7 @@ fn normals(
         (wanted && faces().count() == 1).then(|| along.cross(normal).try_normalize()).flatten()
     };
     let (next, last) = (vertices[(corner + 1) % 3], vertices[(corner + 2) % 3]);
-    [Some(normal), fence(u, next), fence(last, u)]
+    [Some(normal), virtual_face(u, next), virtual_face(last, u)]
 }
 
 #[cfg(test)]

@@ -1,25 +1,26 @@
-//! Where a new vertex conserves the volume.
+//! Plane of positions at which a new vertex conserves the volume.
 //!
 //! With the ring around a contraction fixed, the volume behind its faces is an affine function of
-//! the new vertex. So the places that conserve it are a plane: exactly, for any closed ring.
+//! the new vertex. The positions that conserve it therefore form a plane, exactly, for any closed
+//! ring.
 
 use glam::DVec3;
 
 use crate::surface::Surface;
 use crate::surface::neighbourhood::Neighbourhood;
 
-/// The plane `normal`·x = `level`, x an offset from the origin that was given.
+/// Plane `normal`·x = `level`, x an offset from the given origin.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct VolumePlane {
-    /// Twice the area of the faces that are replaced, along their normals.
+    /// Sum of the normals of the replaced faces, each twice the area long.
     pub(crate) normal: DVec3,
     /// Six times the volume between the origin and those faces.
     pub(crate) level: f64,
 }
 
 impl VolumePlane {
-    /// The plane for a gathered contraction, seen from `origin`, which should be near: volumes of
-    /// what is far away cancel badly.
+    /// Builds the plane of a gathered contraction, relative to `origin`. This should be near,
+    /// because the volumes of distant faces cancel badly.
     pub(crate) fn new(surface: &Surface, neighbourhood: &Neighbourhood, origin: DVec3) -> Self {
         let mut plane = Self::default();
         old_faces(surface, neighbourhood, origin, |normal, corner| plane.add(normal, corner));
@@ -32,13 +33,13 @@ impl VolumePlane {
         self.level += normal.dot(corner);
     }
 
-    /// Six times the volume that a vertex at `x` would lose.
+    /// Returns six times the volume lost with a vertex at `x`.
     #[inline]
     pub(crate) fn loss(&self, x: DVec3) -> f64 {
         self.level - self.normal.dot(x)
     }
 
-    /// The place nearest to `x` that conserves the volume; `x` where none does.
+    /// Returns the position nearest to `x` that conserves the volume; `x` if there is none.
     #[inline]
     pub(crate) fn nearest(&self, x: DVec3) -> DVec3 {
         let moved = x + self.normal * (self.loss(x) / self.normal.length_squared());
@@ -46,8 +47,8 @@ impl VolumePlane {
     }
 }
 
-/// Calls `each` with twice the area of every face around along its normal, and a corner of it seen
-/// from `origin`.
+/// Calls `each` for every face around, with its normal of twice its area and one of its corners
+/// relative to `origin`.
 #[inline]
 pub(crate) fn old_faces(
     surface: &Surface,

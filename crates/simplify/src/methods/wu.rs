@@ -1,4 +1,4 @@
-//! Face constriction as it was before volume counted [Wu01].
+//! Face constriction without volume conservation [Wu01].
 
 use glam::DVec3;
 
@@ -16,7 +16,7 @@ pub(crate) fn weight(turns: &Turns) -> f64 {
     turns.variance
 }
 
-/// The mean of the corners by their weights (eq. 13 of [LJ05]).
+/// Placement at the weighted mean of the corners (eq. 13 of [LJ05]).
 pub(crate) struct WeightedMean;
 
 impl Placement<Creases> for WeightedMean {

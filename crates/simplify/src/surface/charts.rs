@@ -1,19 +1,19 @@
-//! Which wedges of a vertex are one place in the textures.
+//! Texture charts: groups of a vertex's wedges that share one position in the textures.
 //!
-//! Wedges of one vertex that differ in their normals and tangents alone are in one chart: a crease in
-//! the shading, not a cut in a texture. A flat-shaded mesh has a wedge per corner and no seam at all.
+//! Wedges of one vertex that differ only in normals and tangents are in one chart: a crease in the
+//! shading, not a cut in a texture. A flat-shaded mesh has one wedge per corner and no seams.
 
 use std::cmp::Ordering;
 
 use meshlod_mesh::{Layer, LayerKind, VertexId, WedgeId};
 
-/// Whether a layer is shading, which a wedge keeps when its vertex moves.
+/// Returns true if a layer is shading, which a wedge keeps when its vertex moves.
 pub(crate) fn is_shading(layer: &Layer) -> bool {
     matches!(layer.kind, LayerKind::Normal | LayerKind::Tangent)
 }
 
-/// The chart of every wedge, as the lowest wedge of its vertex in it. `labels` has the material of
-/// each wedge, or nothing; wedges of different materials are in different charts.
+/// Returns the chart of every wedge, as the lowest wedge of its vertex in it. `labels` holds the
+/// material of each wedge, or nothing; wedges of different materials are in different charts.
 pub(crate) fn charts(
     layers: &[Layer],
     labels: &[u32],

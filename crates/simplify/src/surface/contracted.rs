@@ -1,10 +1,10 @@
-//! The vertices that become one: two for an edge, three for a face.
+//! Contracted vertices: two for an edge, three for a face.
 
 use std::ops::Deref;
 
 use meshlod_mesh::VertexId;
 
-/// Two or three vertices; reads as a slice.
+/// Contracted vertices of an edge or a face, as a slice of two or three.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Contracted {
     vertices: [VertexId; 3],
@@ -12,13 +12,13 @@ pub struct Contracted {
 }
 
 impl Contracted {
-    /// The ends of an edge.
+    /// Builds the pair of an edge's ends.
     #[inline]
     pub fn edge([v0, v1]: [VertexId; 2]) -> Self {
         Self { vertices: [v0, v1, v1], count: 2 }
     }
 
-    /// The corners of a face.
+    /// Builds the triple of a face's corners.
     #[inline]
     pub fn face(vertices: [VertexId; 3]) -> Self {
         Self { vertices, count: 3 }
@@ -34,18 +34,18 @@ impl Deref for Contracted {
     }
 }
 
-/// How free a contraction is to place its vertex.
+/// Freedom of a contraction to place its vertex.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Freedom {
-    /// Anywhere.
+    /// Free to place the vertex anywhere.
     #[default]
     Free,
-    /// Only where this one of the contracted is.
+    /// Restricted to the position of the contracted vertex with this index.
     At(usize),
 }
 
 impl Freedom {
-    /// What is left by both; nothing where each leaves another place.
+    /// Combines two freedoms; `None` if they require different positions.
     #[inline]
     pub(crate) fn and(self, other: Self) -> Option<Self> {
         match (self, other) {

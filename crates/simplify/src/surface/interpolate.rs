@@ -1,40 +1,41 @@
-//! The values of a wedge at a point of a face, out of those at its corners, as each layer asks.
+//! Interpolation of attribute values at a point of a face, by the rule of each layer.
 
 use glam::DVec3;
 use meshlod_mesh::{Layer, LayerKind, WedgeId};
 use meshlod_spatial::Triangle;
 
-/// A point of a face: the wedges at its corners and what each counts there.
+/// Point of a face: the wedges at its corners and their barycentric weights.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Place {
     pub(crate) wedges: [WedgeId; 3],
-    /// None below zero, one in all.
+    /// Barycentric weights: non-negative, with sum one.
     pub(crate) shares: [f64; 3],
 }
 
 impl Place {
-    /// The corner that counts most, the first of equals.
+    /// Returns the corner with the greatest weight, the first of equals.
     fn nearest(&self) -> usize {
         (1..3).fold(0, |most, k| if self.shares[k] > self.shares[most] { k } else { most })
     }
 
-    /// The corner that the point is at, if it is at one.
+    /// Returns the corner at which the point is, if any.
     fn corner(&self) -> Option<usize> {
         self.shares.iter().position(|&share| share == 1.0)
     }
 
-    /// Value `i` of a layer here, linear over the face.
+    /// Interpolates value `i` of a layer linearly.
     #[inline]
     fn mean(&self, layer: &Layer, i: usize) -> f64 {
-        // What counts nothing may be infinite.
+        // A value of zero weight may be infinite.
         let of = |k: usize| self.shares[k] * f64::from(layer.of(self.wedges[k])[i]);
         (0..3).filter(|&k| self.shares[k] > 0.0).map(of).sum()
     }
 }
 
-/// What each corner counts at a point of a triangle; a point at a corner is that corner alone.
+/// Returns the barycentric weights of a point of a triangle; exactly one corner for a point at that
+/// corner.
 ///
-/// By areas, or along the longest edge where the triangle has none.
+/// Computed from areas, or along the longest edge if the triangle has no area.
 pub(crate) fn shares(point: DVec3, triangle: &Triangle) -> [f64; 3] {
     if let Some(k) = triangle.iter().position(|&corner| corner == point) {
         return std::array::from_fn(|i| if i == k { 1.0 } else { 0.0 });
@@ -62,8 +63,8 @@ fn along_longest(point: DVec3, triangle: &Triangle) -> [f64; 3] {
     shares
 }
 
-/// Writes the values of all layers at a place, one layer after the other. At a corner they are the
-/// corner's to the bit.
+/// Appends the values of all layers at a point, layer by layer. At a corner they are exactly the
+/// corner's values.
 pub(crate) fn interpolate(layers: &[Layer], place: &Place, out: &mut Vec<f32>) {
     if let Some(k) = place.corner() {
         out.extend(layers.iter().flat_map(|layer| layer.of(place.wedges[k])));
@@ -75,7 +76,7 @@ pub(crate) fn interpolate(layers: &[Layer], place: &Place, out: &mut Vec<f32>) {
         let nearest = layer.of(place.wedges[place.nearest()]);
         match layer.kind {
             LayerKind::Normal | LayerKind::Tangent => direction(layer, place, nearest, out),
-            // Written below, with the weights that go with it.
+            // Written below, together with their weights.
             LayerKind::Joints(_) => out.extend_from_slice(nearest),
             _ => out.extend((0..layer.width).map(linear)),
         }
@@ -85,8 +86,8 @@ pub(crate) fn interpolate(layers: &[Layer], place: &Place, out: &mut Vec<f32>) {
     }
 }
 
-/// A unit vector; the nearest corner's where the three cancel. What comes after it, as the hand of a
-/// tangent does, is no amount and stays the nearest corner's.
+/// Writes a unit vector, or the nearest corner's where the three cancel. Components beyond the
+/// third, such as the handedness of a tangent, cannot be averaged and stay the nearest corner's.
 fn direction(layer: &Layer, place: &Place, nearest: &[f32], out: &mut Vec<f32>) {
     let start = out.len();
     out.extend_from_slice(nearest);
@@ -97,11 +98,11 @@ fn direction(layer: &Layer, place: &Place, nearest: &[f32], out: &mut Vec<f32>) 
     }
 }
 
-/// A joint and how strongly it pulls.
+/// Joint and its weight.
 type Influence = (f32, f64);
 
-/// Joints are names and never averaged: the corners' influences are put together, and the strongest
-/// kept, as many as there is room for, scaled to what they were in all.
+/// Interpolates skinning influences. Joints are names and never averaged: the influences of the
+/// corners are combined, and the strongest that fit are kept and scaled to the original total.
 fn skin(layers: &[Layer], place: &Place, out: &mut [f32]) {
     let mut influences: Vec<Influence> = Vec::with_capacity(24);
     let mut all = 0.0;
@@ -117,7 +118,7 @@ fn skin(layers: &[Layer], place: &Place, out: &mut [f32]) {
             }
         }
     }
-    // Equal ones by name, so that the order of corners does not show.
+    // Ties are ordered by name, so that the order of corners has no effect.
     influences.sort_by(|a, b| b.1.total_cmp(&a.1).then(a.0.total_cmp(&b.0)));
     influences.truncate(sets(layers).map(|(joints, weights)| joints.shared(&weights)).sum());
     let kept: f64 = influences.iter().map(|(_, weight)| weight).sum();
@@ -138,7 +139,7 @@ fn add(influences: &mut Vec<Influence>, (joint, weight): Influence) {
     }
 }
 
-/// Where a layer's values stand among those of a wedge.
+/// Range of a layer's values among those of a wedge.
 struct Range {
     layer: usize,
     start: usize,
@@ -151,7 +152,8 @@ impl Range {
     }
 }
 
-/// Each layer of joints with the weights of its number: together they are one list of influences.
+/// Pairs each layer of joints with the layer of weights of the same number; together they form one
+/// list of influences.
 fn sets(layers: &[Layer]) -> impl Iterator<Item = (Range, Range)> + '_ {
     let range = |layer: usize| {
         let start = layers[..layer].iter().map(|before| before.width).sum();

@@ -1,10 +1,10 @@
-//! A mesh out of the surface as it is.
+//! Extraction of the current mesh from a surface.
 
 use meshlod_mesh::{FaceId, Mesh, VertexId};
 
 use crate::surface::Surface;
 
-/// The faces that are left, with what they use, in the input's order.
+/// Returns the remaining faces and what they use, in the order of the input.
 pub(crate) fn level(mesh: &Mesh, surface: &Surface) -> Mesh {
     let kept: Vec<u32> =
         (0..surface.face_count() as u32).filter(|&f| surface.is_alive(FaceId(f))).collect();

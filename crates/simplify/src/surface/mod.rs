@@ -1,8 +1,8 @@
-//! The surface while it shrinks: vertices with their stars, faces, wedges.
+//! Surface that contractions change in place: vertices with their stars, faces, wedges.
 //!
-//! A star is a run of face ids in one shared array, so that the faces around a vertex load side by
-//! side; a vertex's position, star and flags are one record, since they are wanted together.
-//! Nothing here needs the surface to be manifold.
+//! The star of a vertex, the faces around it, is a contiguous range of one shared array, so that
+//! its faces load side by side. Position, star and flags of a vertex form one record because they
+//! are needed together. The surface need not be manifold.
 
 pub(crate) mod charts;
 pub(crate) mod contracted;
@@ -21,39 +21,39 @@ use crate::surface::neighbourhood::Neighbourhood;
 use crate::surface::ties::Ties;
 use crate::surface::wedges::Wedges;
 
-/// Where a contraction puts its vertex, and which of the contracted lives on as it.
+/// Position of the new vertex of a contraction, and the vertex that stays as it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Placed {
-    /// The new position.
+    /// Position of the new vertex.
     pub position: DVec3,
-    /// The vertex that stays, by its place among the contracted.
+    /// Index of the vertex that stays, among the contracted ones.
     pub kept: usize,
-    /// An estimate of how far the surface is from the input's here, in model units.
+    /// Estimated distance of the surface from the input here, in model units.
     pub error_estimate: f64,
 }
 
-/// More faces than this around a candidate are refused.
+/// Number of faces around a candidate above which it is refused.
 pub(crate) const MOST_FACES: usize = 256;
 
-/// The largest star that is searched for each face that leaves it.
+/// Size up to which a star is searched each time a face leaves it.
 const MOST_SEARCHED: u32 = 32;
 
-/// What is known of a candidate.
+/// State of a candidate.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[repr(u8)]
 pub(crate) enum State {
-    /// Not on the books.
+    /// Not a candidate at present.
     #[default]
     Closed,
     /// In the queue.
     Queued,
-    /// Refused; not in the queue.
+    /// Refused and not in the queue.
     Parked,
-    /// Closed, but its entry is still in the queue, to be dropped when met.
+    /// Closed, but its entry is still in the queue and is dropped when it comes up.
     Ghost,
 }
 
-/// A face, and how the candidates on it stand: whoever wants one wants the other.
+/// Face with the states of its candidates, which are needed together.
 #[derive(Clone, Copy, Debug)]
 struct FaceRecord {
     vertices: [VertexId; 3],
@@ -61,7 +61,7 @@ struct FaceRecord {
     states: States,
 }
 
-/// The states of a face's four candidates, two bits each.
+/// States of a face's four candidates, two bits each.
 #[derive(Clone, Copy, Debug, Default)]
 struct States(u8);
 
@@ -86,36 +86,36 @@ impl States {
 struct VertexRecord {
     position: DVec3,
     star: u32,
-    /// Faces in the star, those that are gone but not yet taken out among them.
+    /// Number of faces in the star, including removed ones that are still listed.
     valence: u32,
     gone: u32,
     version: u32,
     flags: Flags,
-    /// How far the surface is estimated to have moved here, in model units.
+    /// Estimated distance that the surface has moved here, in model units.
     moved: f32,
 }
 
-/// What the engine must know of a vertex.
+/// Properties of a vertex that the engine checks.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Flags(u32);
 
 impl Flags {
-    /// It ends a boundary edge.
+    /// The vertex ends a boundary edge.
     pub(crate) const BOUNDARY: Self = Self(1);
-    /// It must not move: locked, or not manifold.
+    /// The vertex must not move: it is locked or non-manifold.
     pub(crate) const PINNED: Self = Self(2);
-    /// It may have more than one chart.
+    /// The vertex may have more than one chart.
     pub(crate) const SEAM: Self = Self(4);
-    /// A refused candidate waits for its neighbourhood to change.
+    /// A parked candidate waits for its neighbourhood to change.
     pub(crate) const AWAITED: Self = Self(8);
-    /// It is in a tie, see [`Ties`].
+    /// The vertex is in a tie, see [`Ties`].
     pub(crate) const TIED: Self = Self(16);
-    /// Its contractions cost more.
+    /// Contractions of the vertex cost more.
     pub(crate) const PROTECTED: Self = Self(32);
-    /// A lock or a tie holds it: what it is part of stays.
+    /// A lock or a tie holds the vertex, and its component stays.
     pub(crate) const HELD: Self = Self(64);
 
-    /// It may be on a line that is seen: a boundary, a seam, a contact.
+    /// The vertex may be on a feature edge: a boundary, a seam or a contact.
     pub(crate) const FEATURE: Self = Self::BOUNDARY.or(Self::SEAM).or(Self::TIED);
 
     #[inline]
@@ -129,7 +129,7 @@ impl Flags {
     }
 }
 
-/// A surface that contractions change in place. Ids stay those of the input mesh.
+/// Surface that contractions change in place. Ids stay those of the input mesh.
 pub struct Surface {
     vertices: Vec<VertexRecord>,
     faces: Vec<FaceRecord>,
@@ -137,12 +137,12 @@ pub struct Surface {
     live_faces: usize,
     pub(crate) wedges: Option<Wedges>,
     pub(crate) ties: Ties,
-    /// What the cost of a contraction is multiplied by where a vertex is protected.
+    /// Factor on the cost of a contraction with a protected vertex.
     pub(crate) protection: f64,
 }
 
 impl Surface {
-    /// The surface of the faces that `connectivity` connects; others are not alive in it.
+    /// Builds the surface of the faces that `connectivity` connects; all others are not alive.
     pub(crate) fn new(mesh: &Mesh, connectivity: &Connectivity) -> Self {
         let face = |&vertices: &[VertexId; 3]| FaceRecord {
             vertices,
@@ -197,25 +197,25 @@ impl Surface {
         }
     }
 
-    /// How many faces are left.
+    /// Returns the number of faces left.
     #[inline]
     pub fn live_faces(&self) -> usize {
         self.live_faces
     }
 
-    /// Whether a face is left.
+    /// Returns true if the face is still part of the surface.
     #[inline]
     pub fn is_alive(&self, face: FaceId) -> bool {
         self.faces[face.index()].alive
     }
 
-    /// The vertices of a face now; of one that is gone, when it went.
+    /// Returns the vertices of a face; for a removed face, those at its removal.
     #[inline]
     pub fn face(&self, face: FaceId) -> [VertexId; 3] {
         self.faces[face.index()].vertices
     }
 
-    /// How a candidate stands.
+    /// Returns the state of a candidate.
     #[inline]
     pub(crate) fn state(&self, id: CandidateId) -> State {
         self.faces[id.face().index()].states.get(id.slot())
@@ -226,13 +226,13 @@ impl Surface {
         self.faces[id.face().index()].states.set(id.slot(), state);
     }
 
-    /// Where a vertex is now; one that is gone, where it was last.
+    /// Returns the position of a vertex; for a removed vertex, its last one.
     #[inline]
     pub fn position(&self, vertex: VertexId) -> DVec3 {
         self.vertices[vertex.index()].position
     }
 
-    /// The faces around a vertex, in no order.
+    /// Iterates over the faces around a vertex, in no particular order.
     #[inline]
     pub fn star(&self, vertex: VertexId) -> impl Iterator<Item = FaceId> + '_ {
         let VertexRecord { star, valence, .. } = self.vertices[vertex.index()];
@@ -240,40 +240,40 @@ impl Surface {
         star.iter().copied().filter(|face| self.faces[face.index()].alive)
     }
 
-    /// How many faces are around a vertex.
+    /// Returns the number of faces around a vertex.
     #[inline]
     pub fn valence(&self, vertex: VertexId) -> usize {
         let VertexRecord { valence, gone, .. } = self.vertices[vertex.index()];
         (valence - gone) as usize
     }
 
-    /// Whether more faces meet in these vertices than are looked at. The hub of a huge fan can wait:
-    /// its rim is contracted first, and an attempt at the hub would cost the square of its faces.
+    /// Returns true if too many faces meet at these vertices. The hub of a huge fan can wait until
+    /// its rim has been contracted; contracting it first would cost the square of its valence.
     #[inline]
     pub(crate) fn is_crowded(&self, vertices: &[VertexId]) -> bool {
         vertices.iter().map(|&v| self.valence(v)).sum::<usize>() > MOST_FACES
     }
 
-    /// How many vertices the input had; ids run below this.
+    /// Returns the number of vertices of the input, which bounds their ids.
     #[inline]
     pub fn vertex_count(&self) -> usize {
         self.vertices.len()
     }
 
-    /// How many faces the input had; ids run below this.
+    /// Returns the number of faces of the input, which bounds their ids.
     #[inline]
     pub fn face_count(&self) -> usize {
         self.faces.len()
     }
 
-    /// Twice the area of a face, along its normal.
+    /// Returns the normal of a face, twice its area long.
     #[inline]
     pub fn area_normal(&self, face: FaceId) -> DVec3 {
         let [a, b, c] = self.face(face).map(|v| self.position(v));
         (b - a).cross(c - a)
     }
 
-    /// Which corner of `face` is at `vertex`.
+    /// Returns the corner of `face` that is at `vertex`.
     #[inline]
     pub(crate) fn corner(&self, face: FaceId, vertex: VertexId) -> usize {
         corner_of(self.face(face), vertex)
@@ -295,26 +295,28 @@ impl Surface {
         self.vertices[vertex.index()].flags.0 &= !flag.0;
     }
 
-    /// The greatest estimate of how far the surface has moved at these vertices, in model units.
+    /// Returns the greatest estimated distance that the surface has moved at these vertices, in
+    /// model units.
     #[inline]
     pub(crate) fn moved(&self, vertices: &[VertexId]) -> f64 {
         vertices.iter().map(|v| self.vertices[v.index()].moved).fold(0.0, f32::max).into()
     }
 
-    /// Makes every cost that was found at a vertex stale.
+    /// Makes every cost computed from a vertex stale.
     #[inline]
     pub(crate) fn touch(&mut self, vertex: VertexId) {
         let version = &mut self.vertices[vertex.index()].version;
         *version = version.wrapping_add(1);
     }
 
-    /// A number that changes whenever a vertex among these does, and never comes back.
+    /// Returns a number that changes whenever one of these vertices does, and never repeats.
     #[inline]
     pub(crate) fn stamp(&self, vertices: &[VertexId]) -> u32 {
         vertices.iter().fold(0, |sum, v| sum.wrapping_add(self.vertices[v.index()].version))
     }
 
-    /// Makes one vertex of the contracted ones, at `placed`, exactly as `neighbourhood` was gathered.
+    /// Merges the contracted vertices into one at `placed`, using `neighbourhood` exactly as it was
+    /// gathered.
     pub(crate) fn contract(&mut self, neighbourhood: &Neighbourhood, placed: &Placed) {
         let kept = neighbourhood.contracted[placed.kept];
         if let Some(mut wedges) = self.wedges.take() {
@@ -339,7 +341,7 @@ impl Surface {
         self.join(neighbourhood, kept, placed);
     }
 
-    /// Ends all of a component at once: these are its faces, those that are gone among them.
+    /// Removes a component, given all of its faces including those already removed.
     pub(crate) fn take_out(&mut self, component: &[FaceId]) {
         for &id in component {
             let face = &mut self.faces[id.index()];
@@ -358,7 +360,8 @@ impl Surface {
         }
     }
 
-    /// Gives `kept` the surviving faces, the flags and a version above all the contracted.
+    /// Gives `kept` the surviving faces, the flags of all contracted vertices and a version above
+    /// theirs.
     fn join(&mut self, neighbourhood: &Neighbourhood, kept: VertexId, placed: &Placed) {
         let mut joined = VertexRecord {
             position: placed.position,
@@ -394,8 +397,8 @@ impl Surface {
         self.vertices[kept.index()] = joined;
     }
 
-    /// A face that is gone leaves a star: at once a small one, together with others a large one,
-    /// which would take too long to search each time.
+    /// Removes a dead face from the star of a vertex: immediately from a small star, and in batches
+    /// from a large one, which would take too long to search each time.
     fn remove_from_star(&mut self, vertex: VertexId) {
         let VertexRecord { star, valence, gone, .. } = &mut self.vertices[vertex.index()];
         *gone += 1;
@@ -413,7 +416,7 @@ impl Surface {
         (*valence, *gone) = (kept as u32 - *star, 0);
     }
 
-    /// Moves the stars together again, with room for `more` and then some.
+    /// Compacts the stars, with room for at least `more` entries.
     fn pack_stars(&mut self, more: usize) {
         let live = self.live_faces * 3;
         let mut packed = Vec::with_capacity(live + live / 4 + more + 64);
@@ -426,7 +429,7 @@ impl Surface {
     }
 }
 
-/// Which of a face's vertices this is.
+/// Returns the index of a vertex among a face's corners.
 #[inline]
 pub(crate) fn corner_of(face: [VertexId; 3], vertex: VertexId) -> usize {
     usize::from(face[0] != vertex) + usize::from(face[0] != vertex && face[1] != vertex)

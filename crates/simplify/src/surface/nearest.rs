@@ -1,8 +1,8 @@
-//! Where on the surface as it was a new vertex stands, wedge by wedge.
+//! Closest points on the old faces from which a new vertex takes its attributes, wedge by wedge.
 //!
-//! The new vertex is off the old faces and off the contracted edge. Each of its wedges takes its
-//! values from the closest point of the old faces that it stands for: those of its chart for
-//! textures, those of the wedge itself for shading, so that a crease stays one.
+//! The new vertex is generally off the old faces and off the contracted edge. Each of its wedges
+//! takes its values from the closest point of the old faces that it represents: those of its chart
+//! for texture coordinates, those of the wedge itself for shading, so that a crease stays one.
 
 use glam::DVec3;
 use meshlod_mesh::{FaceId, WedgeId};
@@ -13,20 +13,20 @@ use crate::surface::neighbourhood::Neighbourhood;
 use crate::surface::wedges::Wedges;
 use crate::surface::{Placed, Surface};
 
-/// A face around, as it was.
+/// Old face around a contraction, with its closest point to the new vertex.
 struct Near {
-    /// The wedge that its contracted corners become; none for one that meets no other.
+    /// Wedge that its contracted corners become; `None` for one that meets no other.
     wedge: Option<WedgeId>,
-    /// The chart that they become part of.
+    /// Chart that they become part of.
     chart: WedgeId,
     triangle: Triangle,
     wedges: [WedgeId; 3],
-    /// Of its points the closest to the new vertex.
+    /// Closest point to the new vertex.
     closest: DVec3,
     distance_squared: f64,
 }
 
-/// The faces around a contraction, before the surface changes.
+/// Old faces around a contraction.
 pub(crate) struct Nearby(Vec<Near>);
 
 impl Nearby {
@@ -59,7 +59,8 @@ impl Nearby {
         Self(spokes.chain(dying).collect())
     }
 
-    /// Where the shading of this wedge of the new vertex comes from, and where its textures.
+    /// Returns the points from which this wedge of the new vertex takes its shading and its texture
+    /// coordinates.
     pub(crate) fn places(&self, wedge: WedgeId, chart: WedgeId) -> [Option<Place>; 2] {
         let nearest = |counts: &dyn Fn(&Near) -> bool| {
             let faces = self.0.iter().filter(|near| counts(near));

@@ -1,8 +1,8 @@
-//! Everything around a candidate, gathered once and lent to all policies.
+//! Neighbourhood of a candidate, gathered once and shared by all policies.
 //!
 //! ```text
 //!          vl              v0 v1   contracted
-//!        / || \            vl vr   wings: apexes of the dying faces
+//!        / || \            vl vr   wings: apexes of the removed faces
 //!   a --v0-||--v1-- b      a b …   the rest of the ring
 //!        \ || /            faces v0 a vl …: spokes, they survive with v0, v1 replaced
 //!          vr
@@ -16,37 +16,37 @@ use crate::surface::contracted::{Contracted, Freedom};
 use crate::surface::ties;
 use crate::surface::{Flags, Surface, corner_of};
 
-/// A face that survives the contraction: one corner is contracted, two are on the ring.
+/// Face that survives the contraction: one corner is contracted, two are on the ring.
 #[derive(Clone, Copy, Debug)]
 pub struct Spoke {
-    /// The face.
+    /// Face id.
     pub face: FaceId,
-    /// Its corner after the contracted one, as a place in the ring.
+    /// Index in the ring of the corner after the contracted one.
     pub a: u32,
-    /// The corner after that.
+    /// Index in the ring of the corner after `a`.
     pub b: u32,
     corner: u8,
     owner: u8,
 }
 
 impl Spoke {
-    /// Which corner of the face is contracted.
+    /// Returns the contracted corner of the face.
     #[inline]
     pub fn corner(&self) -> usize {
         self.corner.into()
     }
 
-    /// Which of the contracted vertices that is.
+    /// Returns the index of that corner's vertex among the contracted ones.
     #[inline]
     pub fn owner(&self) -> usize {
         self.owner.into()
     }
 }
 
-/// A face that goes: two or all three of its corners are contracted.
+/// Face that the contraction removes: two or all three of its corners are contracted.
 #[derive(Clone, Copy, Debug)]
 pub struct Dying {
-    /// The face.
+    /// Face id.
     pub face: FaceId,
     apex: u32,
 }
@@ -54,27 +54,28 @@ pub struct Dying {
 impl Dying {
     const NO_APEX: u32 = u32::MAX;
 
-    /// Its corner that is not contracted, as a place in the ring: a wing.
+    /// Returns the index in the ring of the corner that is not contracted, a wing.
     #[inline]
     pub fn apex(&self) -> Option<usize> {
         (self.apex != Self::NO_APEX).then_some(self.apex as usize)
     }
 }
 
-/// A vertex next to a contracted one.
+/// Ring vertex: a neighbour of a contracted vertex.
 #[derive(Clone, Copy, Debug)]
 pub struct RingVertex {
-    /// The vertex.
+    /// Vertex id.
     pub id: VertexId,
-    /// Where it is.
+    /// Position of the vertex.
     pub position: DVec3,
-    /// One bit per contracted vertex: is there an edge to it?
+    /// One bit per contracted vertex, set if an edge leads to it.
     pub(crate) adjacent: u8,
-    /// The same bits for the ends of the contracted edges it is a wing of.
+    /// One bit per contracted vertex, set for the ends of the contracted edges of which this is a
+    /// wing.
     pub(crate) wing: u8,
 }
 
-/// The neighbourhood of one candidate. Reused from one to the next.
+/// Neighbourhood of a candidate, reused from one to the next.
 #[derive(Default)]
 pub struct Neighbourhood {
     pub(crate) contracted: Contracted,
@@ -82,52 +83,53 @@ pub struct Neighbourhood {
     pub(crate) spokes: Vec<Spoke>,
     pub(crate) dying: Vec<Dying>,
     pub(crate) ring: Vec<RingVertex>,
-    /// Wedges that meet along an edge: at its first end and at its second.
+    /// Wedges that meet along the edge: at its first end and at its second.
     pub(crate) wedge_pairs: Vec<[WedgeId; 2]>,
-    /// The edges that have to go with this one, for ties.
+    /// Edges that ties contract together with this one.
     pub(crate) partners: Vec<[VertexId; 2]>,
-    /// Room for the faces around, with the contracted vertex they were met at and their vertices.
+    /// Scratch space: the faces around, with the contracted vertex at which they were found and
+    /// their vertices.
     star: Vec<(FaceId, u8, [VertexId; 3])>,
 }
 
 impl Neighbourhood {
-    /// The vertices that become one.
+    /// Returns the contracted vertices.
     pub fn contracted(&self) -> &Contracted {
         &self.contracted
     }
 
-    /// The faces that survive.
+    /// Returns the surviving faces.
     pub fn spokes(&self) -> &[Spoke] {
         &self.spokes
     }
 
-    /// The faces that go.
+    /// Returns the removed faces.
     pub fn dying(&self) -> &[Dying] {
         &self.dying
     }
 
-    /// The vertices around.
+    /// Returns the ring vertices.
     pub fn ring(&self) -> &[RingVertex] {
         &self.ring
     }
 
-    /// How far the farthest vertex of the ring is from a place.
+    /// Returns the distance of the farthest ring vertex from a position.
     pub(crate) fn radius(&self, from: DVec3) -> f64 {
         self.ring.iter().map(|r| r.position.distance_squared(from)).fold(0.0, f64::max).sqrt()
     }
 
-    /// Whether the ring is closed: only then is there a volume to conserve.
+    /// Returns true if the ring is closed; only then is there a volume to conserve.
     #[inline]
     pub(crate) fn is_closed(&self, surface: &Surface) -> bool {
         !self.contracted.iter().any(|&v| surface.flags(v).any(Flags::BOUNDARY))
     }
 
-    /// Where the new vertex may be.
+    /// Returns the freedom of the new vertex's position.
     pub fn freedom(&self) -> Freedom {
         self.freedom
     }
 
-    /// Fills this with what is around `contracted`; refuses what pins or seams forbid.
+    /// Gathers the neighbourhood of `contracted`; refuses what pins or seams forbid.
     pub(crate) fn gather(
         &mut self,
         surface: &Surface,
@@ -143,7 +145,8 @@ impl Neighbourhood {
         Ok(())
     }
 
-    /// The same of an edge whose contraction has been decided on elsewhere: nothing is refused.
+    /// Gathers the neighbourhood of an edge whose contraction was decided elsewhere; nothing is
+    /// refused.
     pub(crate) fn gather_decided(
         &mut self,
         surface: &Surface,
@@ -168,7 +171,7 @@ impl Neighbourhood {
     }
 
     fn look_around(&mut self, surface: &Surface) {
-        // Short loops of loads that do not wait for each other: most of the time here is memory's.
+        // Short loops of independent loads: most of the time here is memory latency.
         self.star.clear();
         for (owner, &v) in self.contracted.iter().enumerate() {
             let star = surface.star(v);
@@ -196,7 +199,7 @@ impl Neighbourhood {
             let (a, b) = (self.ring_place(a, mask, 0), self.ring_place(b, mask, 0));
             self.spokes.push(Spoke { face, a, b, corner: corner as u8, owner: owner as u8 });
         } else if mask.trailing_zeros() as usize == owner {
-            // Only the first of its contracted corners brings a dying face.
+            // Each removed face is added once, by the first of its contracted corners.
             let apex = match (bit_a, bit_b) {
                 (0, _) => self.ring_place(a, mask, mask),
                 (_, 0) => self.ring_place(b, mask, mask),
@@ -206,7 +209,7 @@ impl Neighbourhood {
         }
     }
 
-    /// A search along the ring: it is short, and stays so by [`Surface::is_crowded`].
+    /// The linear search is short because [`Surface::is_crowded`] limits the ring.
     #[inline]
     fn ring_place(&mut self, id: VertexId, adjacent: u8, wing: u8) -> u32 {
         if let Some(place) = self.ring.iter().position(|r| r.id == id) {
@@ -219,8 +222,8 @@ impl Neighbourhood {
     }
 }
 
-/// How free the contraction of these vertices is, which wedges of an edge's ends meet along it, and
-/// which other edges have to go with it.
+/// Determines how free a contraction is, which wedges meet along an edge, and which other edges
+/// ties contract with it.
 pub(crate) fn freedom(
     surface: &Surface,
     contracted: &Contracted,
@@ -232,7 +235,8 @@ pub(crate) fn freedom(
     let mut pinned = None;
     let mut seam = false;
     let mut tied = false;
-    // A face has no edge to slide along a boundary or a tie: its corner there is where it goes.
+    // A face has no edge to slide along a boundary or a tie, so it is contracted onto its corner
+    // there.
     let pins = if contracted.len() == 2 { Flags::PINNED } else { PINS_OF_FACE };
     for (i, &v) in contracted.iter().enumerate() {
         let flags = surface.flags(v);
@@ -262,5 +266,5 @@ pub(crate) fn freedom(
     by_pin.and(by_tie).ok_or(Refusal::Tied)?.and(by_seam).ok_or(Refusal::Seam)
 }
 
-/// What a face with such a corner goes to.
+/// Flags of a corner that a face is contracted onto.
 const PINS_OF_FACE: Flags = Flags::PINNED.or(Flags::BOUNDARY).or(Flags::TIED);

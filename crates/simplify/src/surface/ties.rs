@@ -1,4 +1,4 @@
-//! Vertices of several objects at one place, which move together or not at all.
+//! Ties: vertices of several objects at one position, which move together or not at all.
 
 use meshlod_mesh::VertexId;
 use rustc_hash::FxHashMap;
@@ -7,11 +7,11 @@ use crate::refusal::Refusal;
 use crate::surface::contracted::Freedom;
 use crate::surface::{Flags, Surface};
 
-/// Ties of more are locked: an edge between two ties is looked for from each of their vertices.
+/// Number of vertices above which a tie is locked: edges between two ties are searched from each of
+/// their vertices.
 pub(crate) const MOST_MEMBERS: usize = 16;
 
-/// The ties that are left. Where a vertex goes into another, it leaves its tie; the other stands for
-/// it in its own.
+/// Current ties. A vertex merged into another leaves its tie; the other represents it there.
 #[derive(Default)]
 pub(crate) struct Ties {
     of_vertex: FxHashMap<VertexId, u32>,
@@ -27,12 +27,12 @@ impl Ties {
         Self { of_vertex, members }
     }
 
-    /// The vertices of a tie, itself among them; none for one that is in no tie.
+    /// Returns the vertices of the tie of `vertex`, including itself; empty if it is in no tie.
     pub(crate) fn with(&self, vertex: VertexId) -> &[VertexId] {
         self.of_vertex.get(&vertex).map_or(&[], |&tie| &self.members[tie as usize])
     }
 
-    /// A vertex is gone.
+    /// Removes a vertex from its tie.
     pub(crate) fn leave(&mut self, vertex: VertexId) {
         if let Some(tie) = self.of_vertex.remove(&vertex) {
             self.members[tie as usize].retain(|&member| member != vertex);
@@ -40,18 +40,18 @@ impl Ties {
     }
 }
 
-/// A surface with ties, as the rule for them sees it.
+/// Surface with ties, as the tie rule needs it.
 pub(crate) trait TiedSurface {
-    /// Whether a vertex is in a tie.
+    /// Returns true if a vertex is in a tie.
     fn is_tied(&self, vertex: VertexId) -> bool;
 
-    /// The vertices of its tie, itself among them; none for one that is in no tie.
+    /// Returns the vertices of its tie, including itself; empty if it is in no tie.
     fn tie_of(&self, vertex: VertexId) -> &[VertexId];
 
-    /// Whether there is an edge between two vertices.
+    /// Returns true if an edge connects two vertices.
     fn are_joined(&self, a: VertexId, b: VertexId) -> bool;
 
-    /// Whether too many faces are around these vertices for a contraction.
+    /// Returns true if too many faces are around these vertices for a contraction.
     fn is_crowded(&self, vertices: &[VertexId]) -> bool;
 }
 
@@ -74,12 +74,13 @@ impl TiedSurface for Surface {
     }
 }
 
-/// What ties make of the contraction of an edge: how free it is by them, and in `partners` the edges
-/// that have to go with it, with their ends in the order of its own.
+/// Determines how free ties leave the contraction of an edge, and collects in `partners` the edges
+/// to contract with it, each with its ends in the same order.
 ///
-/// An edge between a tie and a free vertex goes to the tie. One between two ties takes with it every
-/// edge between the two, one at most at each vertex. A vertex without such an edge stays where it is,
-/// so all go there: if that is at both ends, none may.
+/// An edge between a tie and a free vertex is contracted onto the tie. An edge between two ties
+/// takes with it every edge between them, at most one at each vertex. A vertex without such an edge
+/// stays, so all must be contracted onto its end; if both ends have one, the contraction is
+/// refused.
 pub(crate) fn partners(
     surface: &impl TiedSurface,
     [v0, v1]: [VertexId; 2],
@@ -120,7 +121,7 @@ pub(crate) fn partners(
     }
 }
 
-/// Whether an edge between two ties has others with it.
+/// Returns true if an edge between two ties has parallel edges on tied surfaces.
 pub(crate) fn is_contact(surface: &Surface, edge: [VertexId; 2]) -> bool {
     if !edge.iter().all(|&v| surface.is_tied(v)) {
         return false;

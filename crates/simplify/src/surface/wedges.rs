@@ -1,8 +1,8 @@
-//! Attributes while the surface shrinks: wedges follow their vertices.
+//! Attributes of the changing surface: wedges follow their vertices.
 //!
-//! Where an edge is contracted, the wedges that meet along it become one, with the values that the
-//! surface had next to the new place. A chart of the removed end that meets none has nowhere to go; so a seam can only be contracted
-//! along itself, or by an end that has no seam onto one that has.
+//! When an edge is contracted, the wedges that meet along it become one, with the values of the
+//! surface next to the new position. A chart of the removed end that meets none would be lost. A
+//! seam can therefore only be contracted along itself, or from an end off the seam onto it.
 
 use meshlod_mesh::{Attributes, FaceId, Labels, Layer, Mesh, VertexId, WedgeId};
 use rustc_hash::FxHashMap;
@@ -15,8 +15,8 @@ use crate::surface::nearest::Nearby;
 use crate::surface::neighbourhood::Neighbourhood;
 use crate::surface::{Flags, Placed, Surface};
 
-/// The wedges of a surface: those of its mesh, split further where the material changes or the
-/// object, so that these borders are seams like any other.
+/// Wedges of a surface: those of its mesh, split further where the material or the object changes,
+/// so that these borders are seams like any other.
 pub(crate) struct Wedges {
     corners: Vec<[WedgeId; 3]>,
     layers: Vec<Layer>,
@@ -24,7 +24,7 @@ pub(crate) struct Wedges {
 }
 
 impl Wedges {
-    /// The wedges of a mesh that has attributes, materials or objects.
+    /// Builds the wedges of a mesh with attributes, materials or objects.
     pub(crate) fn new(mesh: &Mesh) -> Option<Self> {
         let labels = labels(mesh);
         let (mut corners, mut layers, count) = match (&mesh.attributes, &labels) {
@@ -44,31 +44,31 @@ impl Wedges {
         Some(Self { corners, layers, charts })
     }
 
-    /// The layers, of all wedges.
+    /// Returns the attribute layers of all wedges.
     #[inline]
     pub(crate) fn layers(&self) -> &[Layer] {
         &self.layers
     }
 
-    /// How many wedges there are, those that no face uses any more among them.
+    /// Returns the number of wedges, including those no face uses any more.
     #[inline]
     pub(crate) fn count(&self) -> usize {
         self.charts.len()
     }
 
-    /// The wedge at a corner of a face.
+    /// Returns the wedge at a corner of a face.
     #[inline]
     pub(crate) fn at(&self, face: FaceId, corner: usize) -> WedgeId {
         self.corners[face.index()][corner]
     }
 
-    /// The wedges at the corners of a face.
+    /// Returns the wedges at the corners of a face.
     #[inline]
     pub(crate) fn of(&self, face: FaceId) -> [WedgeId; 3] {
         self.corners[face.index()]
     }
 
-    /// The wedges at the ends of the edge in each of its faces; equal pairs once.
+    /// Collects the wedges at the ends of the edge in each of its faces; equal pairs once.
     pub(crate) fn pair(
         &self,
         surface: &Surface,
@@ -87,7 +87,7 @@ impl Wedges {
         }
     }
 
-    /// The chart at a corner of a face.
+    /// Returns the chart at a corner of a face.
     #[inline]
     pub(crate) fn chart_at(&self, face: FaceId, corner: usize) -> WedgeId {
         self.chart(self.at(face, corner))
@@ -103,8 +103,8 @@ impl Wedges {
         self.chart(a) == self.chart(b)
     }
 
-    /// Which ends of the edge can be given up: those whose every chart meets exactly one chart of
-    /// the other end.
+    /// Determines which ends of the edge can be removed: those whose every chart meets exactly one
+    /// chart of the other end.
     pub(crate) fn freedom(
         &self,
         surface: &Surface,
@@ -127,8 +127,9 @@ impl Wedges {
         }
     }
 
-    /// How free a face with a corner on a seam is: that one stays, and the others must each be able
-    /// to follow along its edge to it. `room` is for the wedges that meet there.
+    /// Determines how free a face with a corner on a seam is: that corner stays, and each of the
+    /// others must be able to follow its edge to it. `room` is scratch space for the wedges that
+    /// meet there.
     pub(crate) fn freedom_of_face(
         &self,
         surface: &Surface,
@@ -149,7 +150,7 @@ impl Wedges {
         Ok(Freedom::At(stays))
     }
 
-    /// The wedges whose values a contraction changes; some may come more than once.
+    /// Iterates over the wedges whose values a contraction changes, possibly with repetitions.
     pub(crate) fn changing<'a>(
         &'a self,
         neighbourhood: &'a Neighbourhood,
@@ -164,9 +165,9 @@ impl Wedges {
         paired.chain(alone)
     }
 
-    /// Makes one set of wedges of the two ends', before `surface` itself changes. Those that meet
-    /// along the edge become one. The rest stay with their faces and their shading, and take their
-    /// textures from the wedge that their chart became.
+    /// Merges the wedges of the two ends, before `surface` itself changes. Wedges that meet along
+    /// the edge become one. The others stay with their faces and their shading, and take their
+    /// texture coordinates from the wedge that their chart became.
     pub(crate) fn contract(
         &mut self,
         surface: &Surface,
@@ -174,7 +175,7 @@ impl Wedges {
         placed: &Placed,
     ) {
         let (pairs, kept) = (&neighbourhood.wedge_pairs, placed.kept);
-        // An end that stays where it is keeps its values to the bit.
+        // An end that stays in place keeps its values exactly.
         if placed.position != surface.position(neighbourhood.contracted[kept]) {
             self.take_values(&Nearby::new(self, surface, neighbourhood, placed), pairs, kept);
         }
@@ -182,7 +183,7 @@ impl Wedges {
             let wedge = self.at(spoke.face, spoke.corner());
             let end = spoke.owner();
             let met = pairs.iter().filter(|pair| pair[end] == wedge);
-            // The lowest of several, as in the fast engine, whose contractions are made again here.
+            // The lowest of several, as in the kernel, whose contractions are replayed here.
             if let Some(pair) = met.min_by_key(|pair| pair[kept]) {
                 self.set(spoke.face, spoke.corner(), pair[kept]);
             } else if let Some(pair) = pairs.iter().find(|p| self.same_chart(p[end], wedge)) {
@@ -191,7 +192,7 @@ impl Wedges {
         }
     }
 
-    /// Gives the wedges that become one the values of the places they stand at.
+    /// Gives merged wedges the values at their new positions.
     fn take_values(&mut self, nearby: &Nearby, pairs: &[[WedgeId; 2]], kept: usize) {
         let mut taken: Vec<(WedgeId, Vec<f32>)> = Vec::with_capacity(pairs.len());
         for wedge in pairs.iter().map(|pair| pair[kept]) {
@@ -208,13 +209,13 @@ impl Wedges {
                 taken.push((wedge, values));
             }
         }
-        // Only now: the values before were still wanted.
+        // Written only now, because the old values were still needed.
         for (wedge, values) in taken {
             self.restore(wedge, &values);
         }
     }
 
-    /// Of two sets of values, takes the shading of the second into the first.
+    /// Copies the shading of the second set of values into the first.
     fn shade(&self, values: &mut [f32]) {
         let (first, second) = values.split_at_mut(self.width());
         let mut start = 0;
@@ -227,7 +228,7 @@ impl Wedges {
         }
     }
 
-    /// Gives a wedge the chart and the textures of another; its shading stays.
+    /// Gives a wedge the chart and texture values of another; its shading stays.
     fn follow(&mut self, wedge: WedgeId, other: WedgeId) {
         for layer in self.layers.iter_mut().filter(|layer| !is_shading(layer)) {
             let from = other.index() * layer.width;
@@ -236,17 +237,17 @@ impl Wedges {
         self.charts[wedge.index()] = self.chart(other);
     }
 
-    /// The values of a wedge in all layers, one after the other.
+    /// Iterates over the values of a wedge, layer by layer.
     pub(crate) fn values(&self, wedge: WedgeId) -> impl Iterator<Item = f32> + '_ {
         self.layers.iter().flat_map(move |layer| layer.of(wedge)).copied()
     }
 
-    /// How many values a wedge has in all layers.
+    /// Returns the number of values of a wedge in all layers.
     pub(crate) fn width(&self) -> usize {
         self.layers.iter().map(|layer| layer.width).sum()
     }
 
-    /// Gives a wedge back the values that [`Self::values`] gave.
+    /// Restores the values of a wedge as [`Self::values`] returned them.
     pub(crate) fn restore(&mut self, wedge: WedgeId, mut values: &[f32]) {
         for layer in &mut self.layers {
             let (these, rest) = values.split_at(layer.width);
@@ -259,7 +260,7 @@ impl Wedges {
         self.corners[face.index()][corner] = wedge;
     }
 
-    /// The attributes of the faces at `kept`, in that order, with all wedges still in place.
+    /// Returns the attributes of the faces in `kept`, in that order, with all wedges included.
     pub(crate) fn select(&self, kept: &[u32]) -> Attributes {
         Attributes {
             corners: kept.iter().map(|&f| self.corners[f as usize]).collect(),
@@ -269,7 +270,7 @@ impl Wedges {
     }
 }
 
-/// The material and object of every face as one number, where there are several.
+/// Combines material and object of every face into one label, if there are several.
 pub(crate) fn labels(mesh: &Mesh) -> Option<Vec<u32>> {
     let several = |labels: &&Labels| labels.names.len() > 1;
     let [materials, objects] =
@@ -286,7 +287,8 @@ pub(crate) fn labels(mesh: &Mesh) -> Option<Vec<u32>> {
     Some(pairs.map(number).collect())
 }
 
-/// Gives each label wedges of its own; the first label to use one keeps it. The label of each wedge.
+/// Splits wedges between labels: the first label to use a wedge keeps it, the others get copies.
+/// Returns the label of each wedge.
 fn split_by(
     labels: &[u32],
     corners: &mut [[WedgeId; 3]],

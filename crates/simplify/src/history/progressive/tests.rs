@@ -4,7 +4,8 @@ use meshlod_samples as samples;
 use super::*;
 use crate::{Method, Options, Target};
 
-/// Goes down in steps, and meets every level again to the bit: up, down, and by its number of faces.
+/// Simplifies in steps, and checks that every level is restored exactly: up, down, and by its
+/// number of faces.
 fn there_and_back(mesh: &Mesh, method: Method) -> Progressive {
     let mut history = History::default();
     let mut simplifier =
@@ -47,7 +48,7 @@ fn every_level_comes_back_to_the_bit() {
 }
 
 /// With uvs and normals of its own, two materials and two objects.
-fn dressed() -> Mesh {
+fn with_attributes() -> Mesh {
     let mut mesh = samples::fish(500);
     let count = mesh.faces.len() as u32;
     let labels = |part: u32| Labels {
@@ -59,9 +60,9 @@ fn dressed() -> Mesh {
     mesh
 }
 
-/// The same with a normal for each face.
+/// Mesh with attributes of which every face has its own wedges, with normals of their own.
 fn faceted() -> Mesh {
-    let mut mesh = dressed();
+    let mut mesh = with_attributes();
     let Some(all) = mesh.attributes.take() else { return mesh };
     let corners = || all.corners.iter().flatten();
     let own = |layer: &Layer| {
@@ -82,7 +83,7 @@ fn faceted() -> Mesh {
 fn attributes_come_back_to_the_bit() {
     for method in Method::ALL {
         there_and_back(&samples::fish(500), method);
-        there_and_back(&dressed(), method);
+        there_and_back(&with_attributes(), method);
         there_and_back(&faceted(), method);
     }
 }
@@ -97,7 +98,7 @@ fn a_history_with_a_gap_is_refused() {
 
 #[test]
 fn bytes_and_back_is_the_same() {
-    for mesh in [samples::torus(300), samples::terrain(300), dressed()] {
+    for mesh in [samples::torus(300), samples::terrain(300), with_attributes()] {
         let mut progressive = there_and_back(&mesh, Method::Qem);
         let bytes = progressive.to_bytes();
         let mut again = Progressive::from_bytes(&bytes).unwrap();
@@ -113,7 +114,7 @@ fn bytes_and_back_is_the_same() {
 
 #[test]
 fn bytes_cut_anywhere_are_refused() {
-    let bytes = there_and_back(&dressed(), Method::Qem).to_bytes();
+    let bytes = there_and_back(&with_attributes(), Method::Qem).to_bytes();
     for end in (0..bytes.len()).step_by(397) {
         assert!(Progressive::from_bytes(&bytes[..end]).is_err(), "{end}");
     }
@@ -122,7 +123,7 @@ fn bytes_cut_anywhere_are_refused() {
 /// One wrong byte with a checksum that fits: refused by name, or levels that are meshes.
 #[test]
 fn a_wrong_byte_never_makes_a_wrong_mesh() {
-    let bytes = there_and_back(&dressed(), Method::Qem).to_bytes();
+    let bytes = there_and_back(&with_attributes(), Method::Qem).to_bytes();
     let mut refused = 0;
     for place in (20..bytes.len()).step_by(173) {
         let mut wrong = bytes.clone();
