@@ -12,40 +12,41 @@ use crate::kernel::schedule::bucket_queue::{bucket, last_bucket};
 /// A component that may vanish.
 #[derive(Clone, Debug)]
 pub(crate) struct Component {
-    /// The bucket of its cost.
+    /// Bucket of its cost.
     pub(crate) bucket: u16,
-    /// The diagonal of its bounding box in the input, in the frame's units.
+    /// Diagonal of its bounding box in the input, in the frame's units.
     pub(crate) size: f32,
     /// All of its vertices.
     pub(crate) vertices: Vec<u32>,
 }
 
-/// The components that may vanish, and those that have.
+/// Components that may vanish, and those that have.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Components {
-    /// The cheapest last.
+    /// Components that may vanish, the cheapest last.
     waiting: Vec<Component>,
-    /// Those larger than the error bound.
+    /// Components larger than the error bound.
     pub(crate) refused: Vec<Component>,
     pub(crate) vanished: Vec<Component>,
 }
 
-/// What [`Components::new`] reads of the surface at work.
+/// Arguments of [`Components::new`].
 pub(crate) struct Pieces<'a, 'v> {
     pub(crate) mesh: &'a Mesh,
     pub(crate) frame: &'a Frame,
     pub(crate) vertices: &'a Vertices<'v>,
-    /// By vertex of the input: whether a lock or a tie holds it.
+    /// True for each vertex of the input that a lock or a tie holds.
     pub(crate) is_held: &'a [bool],
 }
 
 impl Components {
-    /// The components of an untouched surface whose bounding box has a diagonal below `below`, in model
-    /// units, and that no lock or tie holds. Components that share a position are one: what is seen as
-    /// one surface goes or stays as one, however its vertices are torn.
+    /// Finds the components of an unchanged surface whose bounding box has a diagonal below
+    /// `below`, in model units, and which no lock or tie holds. Components that share a position
+    /// count as one: what is seen as one surface vanishes or stays as one, however its vertices are
+    /// split.
     ///
-    /// `faces` are those of the mesh in the kernel's vertices. Cost: linear, and n log n of those that
-    /// may vanish.
+    /// `faces` are those of the mesh in the kernel's vertices. Cost: linear, and n log n in the
+    /// components that may vanish.
     pub(crate) fn new<M: Metric>(
         pieces: &Pieces<'_, '_>,
         faces: impl Iterator<Item = [u32; 3]>,
@@ -87,19 +88,19 @@ impl Components {
         components
     }
 
-    /// The bucket of the cheapest component that may vanish.
+    /// Returns the bucket of the cheapest component that may vanish.
     #[inline]
     pub(crate) fn next_bucket(&self) -> Option<u16> {
         self.waiting.last().map(|component| component.bucket)
     }
 
-    /// Takes out the cheapest component whose cost is in a bucket up to `last`.
+    /// Takes the cheapest component if its bucket is at most `last`.
     pub(crate) fn take_up_to(&mut self, last: u16) -> Option<Component> {
         let is_due = |component: &mut Component| component.bucket <= last.min(last_bucket());
         self.waiting.pop_if(is_due)
     }
 
-    /// Queues again what an error bound has refused.
+    /// Makes the components that an error bound has refused eligible again.
     pub(crate) fn wake_all(&mut self) {
         if !self.refused.is_empty() {
             self.waiting.append(&mut self.refused);

@@ -1,7 +1,7 @@
-//! What the fast engine has done, in order, and how it is shown to those who want to see the surface.
+//! The log of the kernel's steps, and its replay for observers.
 //!
-//! The engine has no faces. So its contractions are made again on a surface that has: without costs or
-//! checks, all of which is decided.
+//! The kernel has no faces. For observers its contractions are repeated on a surface that has them,
+//! without costs and checks, as everything is decided.
 
 use glam::Vec3;
 use meshlod_mesh::{FaceId, Mesh, VertexId};
@@ -16,28 +16,28 @@ use crate::surface::contracted::Freedom;
 use crate::surface::neighbourhood::Neighbourhood;
 use crate::surface::{Placed, Surface};
 
-/// A contraction as it is taken down: 28 bytes.
+/// A logged contraction: 28 bytes.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct LoggedContraction {
     pub(crate) kept: u32,
     pub(crate) gone: u32,
-    /// Where the kept one is after it.
+    /// Place of the kept vertex afterwards.
     pub(crate) place: Vec3,
-    /// The square of how far the surface has moved there.
+    /// Square of the distance that the surface has moved there.
     pub(crate) moved: f32,
-    /// The bucket that it came from.
+    /// Bucket that the contraction was taken from.
     pub(crate) front: u16,
 }
 
-/// A step as it is taken down.
+/// A logged step.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Logged {
     Contraction(LoggedContraction),
-    /// The component of this number among those that have vanished.
+    /// Index of the component among those that have vanished.
     Vanished(usize),
 }
 
-/// From the engine's ids and places to the input's.
+/// Correspondence between the kernel's ids and places and those of the input.
 #[derive(Clone, Copy)]
 pub(crate) struct InputNames<'w> {
     pub(crate) mesh: &'w Mesh,
@@ -47,20 +47,20 @@ pub(crate) struct InputNames<'w> {
 }
 
 impl InputNames<'_> {
-    /// The vertex of the input that one is, or is a copy of.
+    /// Returns the vertex of the input that `v` is, or is a copy of.
     #[inline]
     pub(crate) fn input(&self, v: u32) -> VertexId {
         VertexId(self.order.input(self.store.origin(v)))
     }
 
-    /// The position of a vertex of the input at a place.
+    /// Returns the position in model units of an input vertex at a place.
     #[inline]
     pub(crate) fn position(&self, input: VertexId, place: Vec3) -> [f64; 3] {
         self.frame.to_model_or_input(self.mesh.positions[input.index()], place)
     }
 }
 
-/// What parts have done side by side as if one had: by cost, each part in its order.
+/// Merges the logs of parts that ran side by side: by cost, each part in its own order.
 pub(crate) fn merge(logs: impl Iterator<Item = Vec<Logged>>) -> Vec<Logged> {
     let mut merged: Vec<(u16, Logged)> = Vec::new();
     for log in logs {
@@ -76,7 +76,7 @@ pub(crate) fn merge(logs: impl Iterator<Item = Vec<Logged>>) -> Vec<Logged> {
     merged.into_iter().map(|(_, done)| done).collect()
 }
 
-/// Makes contractions again on a surface, before the eyes of the observer.
+/// Repeats contractions on a surface and shows them to the observer.
 pub(crate) fn replay(
     (log, values): (&[Logged], &[RecordedValues]),
     components: &[Component],
@@ -103,7 +103,7 @@ pub(crate) fn replay(
         let placed = Placed { position, kept: 0, error_estimate };
         observer.before(surface, &edge_ring, &placed);
         surface.contract(&edge_ring, &placed);
-        // The engine's values, not those of the surface's own making.
+        // The kernel's values, not those computed by the surface.
         while let Some(next) = values.next_if(|next| next.number == number) {
             surface.wedges.iter_mut().for_each(|all| all.restore(next.wedge, &next.values));
         }
@@ -111,7 +111,7 @@ pub(crate) fn replay(
     }
 }
 
-/// Takes a component out of a surface, before the eyes of the observer.
+/// Removes a component from a surface and shows it to the observer.
 fn vanish(
     component: &Component,
     names: InputNames<'_>,

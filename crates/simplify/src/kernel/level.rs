@@ -1,4 +1,4 @@
-//! A mesh out of the fast engine's vertices as they are.
+//! Export of the current surface as a mesh.
 
 use meshlod_mesh::{Mesh, VertexId};
 use rayon::prelude::*;
@@ -7,8 +7,8 @@ use crate::kernel::attributes::AttributeModel;
 use crate::kernel::contraction_log::InputNames;
 use crate::kernel::setup::vertex_order::numbers;
 
-/// The faces that are left, with what they use, in the input's order. `split` are those on copies of
-/// vertices, where there are any.
+/// Returns the faces that are left with the vertices they use, in the input's order. `split` are
+/// the faces with copies of vertices, if there are any.
 pub(crate) fn level(
     names: InputNames<'_>,
     model: &impl AttributeModel,
@@ -42,7 +42,8 @@ pub(crate) fn level(
     level
 }
 
-/// All vertices and faces of the input as they are; a face that is gone repeats a vertex.
+/// Returns all vertices and faces of the input in their current state. A removed face repeats a
+/// vertex.
 pub(crate) fn workspace(
     names: InputNames<'_>,
     model: &impl AttributeModel,
@@ -63,7 +64,7 @@ pub(crate) fn workspace(
     }
 }
 
-/// The faces whose corners are still three, by what the corners have become.
+/// Returns the faces whose corners are still three different vertices, with their current corners.
 fn live_faces(
     count: usize,
     face: impl Fn(usize) -> [u32; 3] + Sync,

@@ -1,11 +1,11 @@
 //! The surface in parts that coarsen side by side, at one common cost.
 //!
-//! A part is a run of the vertices. Those with neighbours in another part wait; all others are
+//! A part is a run of the vertices. Vertices with neighbours in another part wait; all others are
 //! contracted as if their part were alone, which in memory it is. All parts go on to the same cost
-//! before any goes further, so they coarsen evenly. When the borders weigh too much, a few parts at a
-//! time become one and the next round begins, until there is one.
+//! before any goes further, so they coarsen evenly. When the borders weigh too much, a few parts at
+//! a time are merged and the next round begins, until one is left.
 //!
-//! What is a part, and how far it goes, depends on the surface alone: the result is the same for any
+//! The parts, and how far each goes, depend on the surface alone: the result is the same for any
 //! number of threads.
 
 use std::ops::Range;
@@ -26,34 +26,38 @@ use crate::kernel::volume::VolumeTally;
 use crate::refusal::Refusals;
 use crate::surface::ties::Ties;
 
-/// The most vertices of a part in the first round: 6 MB of records. Smaller meshes are one part: in four
-/// parts of 12,000, horse-97k has .00734 and .0583 at 10 % and 1 % instead of .00722 and .0571.
+/// Largest number of vertices of a part in the first round: 6 MB of records. Smaller meshes are one
+/// part: in four parts of 12,000, horse-97k has .00734 and .0583 at 10 % and 1 % instead of .00722
+/// and .0571.
 const PART: usize = 3 << 14;
 
-/// How many parts become one.
+/// Number of parts merged into one.
 const JOINED: usize = 4;
 
-/// A round ends when there are no more faces than so many for each vertex that waits. Mean error of the
-/// dragon at 1 %, which has .0238 in one part: 3 .02378, 5 .02364, 10 .02371. On the way to none every
-/// level counts; of igea's at 15 and 10 %, and of armadillo-173k's at 10 and 5 %: 5 .00400, .00566, .0165,
-/// .0242; 10 .00364, .00462, .0128, .0236; 20 .00350, .00461, .0128, .0237, for less in parts.
+/// A round ends when there are no more than this many faces for each waiting vertex.
+///
+/// Mean error of the dragon at 1 %, which has .0238 in one part: 3 .02378, 5 .02364, 10 .02371. On
+/// the way to zero faces every level counts; igea's at 15 and 10 %, and armadillo-173k's at 10 and
+/// 5 %: 5 .00400, .00566, .0165, .0242; 10 .00364, .00462, .0128, .0236; 20 .00350, .00461, .0128,
+/// .0237, with less done in parts.
 const FACES_A_WAITING: usize = 10;
 
-/// How many faces more than the target a round leaves for each vertex that waits: what waits is cheap by
-/// then, and has to go before the target is reached. Mean error of the dragon at 10 %, which has .00264
-/// in one part: 0 .00293, 2, 3 and 4 .00266.
+/// Number of faces beyond the target that a round leaves for each waiting vertex: by then their
+/// edges are cheap, and must go before the target is reached. Mean error of the dragon at 10 %,
+/// which has .00264 in one part: 0 .00293, 2, 3 and 4 .00266.
 const LEFT_OVER: usize = 2;
 
-/// A step ends at the cost at which there are entries for this share of the faces that may go.
+/// A step ends at the cost at which the queues have entries for this fraction, 1/4, of the faces to
+/// remove.
 const STEPS: usize = 4;
 
-/// Where no more faces than so many a part may go, the parts go one after the other.
+/// Up to this many faces to remove per part, the parts run one after the other.
 const FEW: usize = 4;
 
-/// How many faces go in a surface of one part before it is said how many have gone.
+/// Number of faces removed from a surface of one part between two progress reports.
 const FACES_A_CALL: usize = 8192;
 
-/// What needs the surface in one part: ties and components that may vanish.
+/// Constraints that need the surface in one part: ties, and components that may vanish.
 #[derive(Default)]
 pub(crate) struct Whole {
     pub(crate) ties: Option<Ties>,
@@ -66,32 +70,32 @@ impl Whole {
     }
 }
 
-/// A surface at work.
+/// A surface in parts.
 pub(crate) struct Partition<A> {
     pub(crate) store: VertexStore,
-    /// What each part looks like.
+    /// Attribute model of each part.
     pub(crate) models: Vec<A>,
     pub(crate) live_faces: usize,
-    /// The square of the greatest estimate so far, in the frame's units.
+    /// Square of the largest error estimate so far, in the frame's units.
     pub(crate) error: f64,
     pub(crate) refusals: Refusals,
     pub(crate) volume: VolumeTally,
-    /// What moves together, and what may vanish, where anything does.
+    /// Ties, and components that may vanish, if there are any.
     pub(crate) whole: Whole,
-    /// What was done, where that is wanted.
+    /// Steps done so far, if an observer wants them.
     pub(crate) log: Option<Vec<Logged>>,
     parts: Vec<PartState>,
 }
 
-/// What a part has from one round to the next.
+/// State of a part that is kept between rounds.
 struct PartState {
     vertices: Range<usize>,
     queue: BucketQueue,
     long: Vec<LongRing>,
-    /// Room to work in, made once: simplification may go on step by step.
+    /// Working memory, allocated once, since simplification may go on step by step.
     edge_ring: Box<EdgeRing>,
     deferral: Deferral,
-    /// Those with neighbours in other parts.
+    /// Vertices with neighbours in other parts.
     waiting: Vec<u32>,
 }
 
@@ -101,7 +105,7 @@ impl<A: AttributeModel> Partition<A> {
         Self { whole, ..Self::of_at_most(part, store, model, live_faces) }
     }
 
-    /// In parts of at most so many vertices.
+    /// Splits the surface into parts of at most `part` vertices.
     fn of_at_most(part: usize, mut store: VertexStore, model: A, live_faces: usize) -> Self {
         let mut count = 1;
         while A::IN_PARTS && store.own().div_ceil(count) > part {
@@ -124,7 +128,7 @@ impl<A: AttributeModel> Partition<A> {
         partition
     }
 
-    /// AttributeModel at all vertices for the first time, but for those that wait.
+    /// Costs all vertices for the first time, except those that wait.
     fn cost_all_vertices(&mut self) {
         self.loops().into_par_iter().for_each(|(mut collapse_loop, waiting)| {
             let vertices = &mut collapse_loop.vertices;
@@ -136,8 +140,8 @@ impl<A: AttributeModel> Partition<A> {
         });
     }
 
-    /// Contracts until no more than `faces` are left, or all costs are in buckets behind `last`, or
-    /// nothing more may be contracted. Says now and then how many faces have gone.
+    /// Contracts until at most `faces` are left, or all costs are in buckets behind `last`, or no
+    /// further contraction is possible. Reports progress as numbers of removed faces.
     pub(crate) fn run(
         &mut self,
         faces: usize,
@@ -154,24 +158,24 @@ impl<A: AttributeModel> Partition<A> {
         }
     }
 
-    /// The bucket of what comes next where there is one part.
+    /// Returns the bucket of the next step. The surface must be one part.
     pub(crate) fn next_bucket(&mut self) -> Option<u16> {
         self.loops().iter_mut().filter_map(|(collapse_loop, _)| collapse_loop.next_bucket()).min()
     }
 
-    /// Lets all edges try again that were refused.
+    /// Makes all refused edges eligible again.
     pub(crate) fn wake_all(&mut self) {
         self.loops().into_par_iter().for_each(|(mut collapse_loop, _)| collapse_loop.wake_all());
     }
 
-    /// All parts become one.
+    /// Merges all parts into one.
     pub(crate) fn unite(&mut self) {
         while self.parts.len() > 1 {
             self.merge_parts();
         }
     }
 
-    /// Goes on to so many faces, or until the borders weigh too much.
+    /// Contracts to this number of faces, or until the borders weigh too much.
     fn round(
         &mut self,
         faces: usize,
@@ -217,7 +221,7 @@ impl<A: AttributeModel> Partition<A> {
         self.log = log;
     }
 
-    /// A few parts at a time become one; vertices that need not wait any more are queued.
+    /// Merges groups of parts. Vertices that need not wait any more are queued.
     fn merge_parts(&mut self) {
         let mut parts = std::mem::take(&mut self.parts);
         self.parts = cut(&self.store, parts.len() / JOINED);
@@ -244,7 +248,7 @@ impl<A: AttributeModel> Partition<A> {
         });
     }
 
-    /// An engine for each part, and its vertices that wait.
+    /// Returns a loop for each part, with the part's waiting vertices.
     fn loops(&mut self) -> Vec<(CollapseLoop<'_, A>, &mut Vec<u32>)> {
         let first_copy = self.store.own() as u32;
         let VertexStore { all, copied, split, .. } = &mut self.store;
@@ -265,7 +269,7 @@ impl<A: AttributeModel> Partition<A> {
         loops
     }
 
-    /// Gives the long rings to the parts that their vertices are in.
+    /// Gives the long rings to the parts of their vertices.
     fn hand_out(&mut self, long: Vec<LongRing>) {
         let mut parts = self.parts.iter_mut().peekable();
         for list in long {
@@ -278,7 +282,8 @@ impl<A: AttributeModel> Partition<A> {
     }
 }
 
-/// Partition of equal size; one has all, several have no copies: whatever is next to those waits.
+/// Cuts the vertices into parts of equal size. A single part has all vertices, several have no
+/// copies: the neighbours of copies wait.
 fn cut(store: &VertexStore, count: usize) -> Vec<PartState> {
     let whole = if count == 1 { store.all.len() } else { store.own() };
     let part = |i: usize| PartState {
@@ -297,17 +302,17 @@ fn has_far_neighbours(vertices: &Vertices, v: u32) -> bool {
     vertices.neighbours(v).iter().any(|w| *w != GHOST && !ids.contains(w))
 }
 
-/// How far all parts go before any goes further.
+/// Limit up to which all parts go before any goes further.
 struct CostStep {
     /// The last bucket.
     last: u16,
-    /// How many faces each of several parts may lose at most.
+    /// Largest number of faces that each of several parts may lose.
     shares: Vec<usize>,
 }
 
 impl CostStep {
-    /// The next step up to the bucket `last`, in which no more than `excess` faces go; `None` where no
-    /// part has anything to do.
+    /// Plans the next step up to the bucket `last`, which removes at most `excess` faces; `None` if
+    /// no part has anything to do.
     fn new<A: AttributeModel>(
         loops: &[CollapseLoop<'_, A>],
         excess: usize,
@@ -341,7 +346,8 @@ impl CostStep {
         Some(Self { last: until as u16, shares })
     }
 
-    /// Goes so far from `live` faces, but not below `stop`; gives what is left.
+    /// Carries out the step from `live` faces, but not below `stop`. Returns the number of faces
+    /// left.
     fn run<A: AttributeModel>(
         &self,
         loops: &mut [CollapseLoop<'_, A>],
@@ -362,14 +368,14 @@ impl CostStep {
                 .fold(live, |live, collapse_loop| run(collapse_loop, live, stop, self.last));
         }
         let gone = loops.par_iter_mut().zip(&self.shares).map(|(collapse_loop, share)| {
-            // The last contraction may take one face more.
+            // The last contraction may remove one face more.
             live - run(collapse_loop, live, live - share.saturating_sub(1), self.last)
         });
         live - gone.sum::<usize>()
     }
 }
 
-/// Lets one part go from `live` to `stop` faces of all; gives how many are left.
+/// Runs one part until `stop` of all `live` faces are left. Returns the number of faces left.
 fn run<A: AttributeModel>(
     collapse_loop: &mut CollapseLoop<'_, A>,
     live: usize,
@@ -415,7 +421,8 @@ mod tests {
             Self { mesh, order, partition }
         }
 
-        /// The faces that are left, by what rings say and by what has become of the input's.
+        /// Compares the faces that are left by the rings with those by the contracted input
+        /// vertices.
         fn check(&mut self) {
             let live_vertices = self.partition.store.live_vertices();
             let face =
@@ -461,7 +468,7 @@ mod tests {
     }
 
     #[test]
-    fn rings_are_those_of_the_faces_in_every_round() {
+    fn rings_match_the_faces_in_every_round() {
         for mesh in meshes() {
             let faces = mesh.faces.len();
             let mut test = Test::new(mesh, 100);
@@ -497,7 +504,7 @@ mod tests {
     }
 
     #[test]
-    fn levels_on_the_way_have_few_vertices_that_wait() {
+    fn levels_on_the_way_have_few_untouched_vertices() {
         let mut test = Test::new(samples::sphere(160_000), 20_000);
         let all = &test.partition.store.all;
         let mut untouched: Vec<bool> =
@@ -518,7 +525,7 @@ mod tests {
     }
 
     #[test]
-    fn a_target_in_the_midst_of_a_round_is_met_and_gone_on_from() {
+    fn a_target_within_a_round_is_met_and_can_be_continued() {
         let mut test = Test::new(samples::sphere(4000), 200);
         for faces in [3901, 3900, 3300, 2000, 1999, 500, 50] {
             test.partition.run(faces, NONE, None, &mut |_| ());

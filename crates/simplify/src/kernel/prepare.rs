@@ -1,5 +1,8 @@
-//! From a mesh to vertices with rings, in the engine's frame.
+//! Preparation: from a mesh to vertices with rings, locks, ties and attributes.
 
+use meshlod_mesh::{Bounds, Lock, Mesh, VertexId};
+
+use crate::clean;
 use crate::engine::Run;
 use crate::engine::locks::Held;
 use crate::kernel::attributes::AttributeModel;
@@ -21,32 +24,30 @@ use crate::options::{AttributeWeights, Options};
 use crate::simplifier::InputSummary;
 use crate::surface::MOST_FACES;
 use crate::surface::ties::{MOST_MEMBERS, Ties};
-use meshlod_mesh::{Bounds, Lock, Mesh, VertexId};
 
-use crate::clean;
-
-/// As many channels of attributes count at most; the rest of them only moves along.
+/// Largest number of costed attribute channels; further ones are only carried along.
 const MAX_CHANNELS: usize = 8;
 
-/// No boundary counts for more: floats would run out, and nothing changes any more.
+/// Largest weight of a boundary: beyond it floats would overflow, and nothing changes any more.
 const MAX_BOUNDARY_WEIGHT: f64 = 1e9;
 
-/// A mesh about to be simplified.
+/// A mesh ready to be simplified.
 pub(crate) struct Prepared<'m, M> {
     metric: M,
     mesh: &'m Mesh,
     frame: Frame,
     order: Order,
     fans: Fans,
-    /// The faces on copies of vertices, or without those that repeat another, where there are any.
+    /// The faces with copies of vertices, or without repeated faces, if they differ from the
+    /// input's.
     faces: Option<Vec<[u32; 3]>>,
     input: InputSummary,
     whole: Whole,
 }
 
 impl<'m, M: Metric + 'm> Prepared<'m, M> {
-    /// Vertices where the surface is not manifold are split into copies that stay where they are, until
-    /// every copy has one fan of faces.
+    /// Prepares a mesh. Non-manifold vertices are split into copies that stay where they are, until
+    /// each copy has one fan of faces.
     pub(crate) fn new(metric: M, mesh: &'m Mesh, bounds: &Bounds, options: &Options) -> Self {
         let frame = Frame::new(mesh, bounds);
         let (order, mut places) = Order::new(mesh, &frame);
@@ -89,8 +90,9 @@ impl<'m, M: Metric + 'm> Prepared<'m, M> {
         prepared
     }
 
-    /// Holds the copies of vertices together; where they have too many faces, nothing goes into them
-    /// either: each time, whoever observes would look at all.
+    /// Pins all copies of vertices. If the copies of a vertex have too many faces together, nothing
+    /// is contracted into them either, since observers would have to visit all these faces each
+    /// time.
     fn pin(&mut self) {
         let store = &mut self.fans.store;
         let own = store.own() as u32;
@@ -114,7 +116,7 @@ impl<'m, M: Metric + 'm> Prepared<'m, M> {
         store.split = split;
     }
 
-    /// Ties vertices; where a tie has too many of them they stay.
+    /// Ties vertices. The vertices of a tie with too many members are pinned.
     fn tie(&mut self, options: &Options) {
         let mut ties = Vec::new();
         let store = &mut self.fans.store;
@@ -148,14 +150,14 @@ impl<'m, M: Metric + 'm> Prepared<'m, M> {
         self.whole.components = Some(Components::new::<M>(&pieces, faces, below));
     }
 
-    /// Flags what locks hold; gives by vertex of the input whether it is locked.
+    /// Applies the locks. Returns for each vertex of the input whether it is locked.
     fn lock(&mut self, options: &Options) -> Vec<bool> {
         let mut is_locked = vec![false; self.mesh.positions.len()];
         let locks = &options.locks.of_vertex;
         if locks.is_empty() && !options.lock_boundary {
             return is_locked;
         }
-        // Where copies end, the surface may go on.
+        // Where a fan of copies ends, the surface may go on.
         let with_copies = options.lock_boundary && self.input.non_manifold_vertices > 0;
         let connectivity = with_copies.then(|| clean::connect(self.mesh).0);
         let own = self.fans.store.own() as u32;
@@ -189,12 +191,12 @@ impl<'m, M: Metric + 'm> Prepared<'m, M> {
         is_locked
     }
 
-    /// What was found in the input.
+    /// Returns what was found in the input.
     pub(crate) fn input(&self) -> InputSummary {
         self.input
     }
 
-    /// How many faces there are to work on.
+    /// Returns the number of faces to simplify.
     pub(crate) fn live_faces(&self) -> usize {
         self.fans.faces
     }
@@ -207,7 +209,7 @@ impl<'m, M: Metric + 'm> Prepared<'m, M> {
 }
 
 impl<'m, M: Metric + 'm> Prepared<'m, M> {
-    /// Costs all vertices, and what is at them.
+    /// Builds the attribute quadrics, and costs all vertices.
     pub(crate) fn start(self, weights: &AttributeWeights) -> Box<dyn Run + 'm> {
         let faces = numbers(self.mesh, &self.order, self.faces.as_deref());
         let Some(corners) = Corners::new(self.mesh, faces, self.fans.store.all.len()) else {
@@ -216,7 +218,7 @@ impl<'m, M: Metric + 'm> Prepared<'m, M> {
         };
         let layers = AttributeLayers::new(self.mesh, &self.frame, weights, MAX_CHANNELS);
         match layers.channels() {
-            // Code for fewer channels is only worth its size where the costs are the default's.
+            // Code for fewer channels is worth its size only with the default method.
             0..=2 if M::IS_MEMORYLESS => self.with_attributes::<2>(layers, corners),
             3 if M::IS_MEMORYLESS => self.with_attributes::<3>(layers, corners),
             0..=5 => self.with_attributes::<5>(layers, corners),

@@ -1,4 +1,4 @@
-//! A mesh at work by the fast engine, as [`Simplifier`](crate::Simplifier) has it.
+//! A run of the kernel, as [`Simplifier`](crate::Simplifier) drives it.
 
 use std::cell::OnceCell;
 
@@ -22,24 +22,24 @@ use crate::kernel::setup::vertex_order::{Order, numbers};
 use crate::refusal::Refusal;
 use crate::surface::Surface;
 
-/// What is worked on, and how the engine has it.
+/// The input mesh, and its correspondence with the kernel's vertices.
 pub(crate) struct KernelInput<'m> {
     pub(crate) mesh: &'m Mesh,
     pub(crate) frame: Frame,
     pub(crate) order: Order,
-    /// The faces on copies of vertices, where there are any.
+    /// The faces with copies of vertices, if they differ from the input's.
     pub(crate) faces: Option<Vec<[u32; 3]>>,
 }
 
-/// A mesh at work.
+/// A mesh being simplified by the kernel.
 pub(crate) struct KernelRun<'m, A> {
     source: KernelInput<'m>,
     partition: Partition<A>,
-    /// The narrowest bound of the error that has refused an edge since all were awake.
+    /// Smallest error bound that has refused an edge since all edges were last made eligible.
     refused_above: f64,
-    /// The input, if a bound of the error has been asked for.
+    /// Input surface, if an error bound has been asked for.
     input: OnceCell<InputSurface>,
-    /// As it is now, if anybody has looked since it last changed unseen.
+    /// Current surface, if it was asked for and has not changed unobserved since.
     surface: OnceCell<Surface>,
 }
 
@@ -54,18 +54,18 @@ impl<'m, A: AttributeModel> KernelRun<'m, A> {
         InputNames { mesh, frame, order, store: &self.partition.store }
     }
 
-    /// The components that have vanished.
+    /// Returns the components that have vanished.
     fn vanished(&self) -> &[Component] {
         self.partition.whole.components.as_ref().map_or(&[], |all| &all.vanished)
     }
 
-    /// What the engine's costs are multiplied by in model units.
+    /// Returns the factor from the kernel's costs to model units.
     fn cost_unit(&self) -> f64 {
         self.source.frame.unit.powi(A::Metric::METHOD.cost_power())
     }
 
-    /// The last bucket with something that costs no more than this. The cost of a bucket is the least
-    /// in it, so that what [`Run::next_cost`] tells is always enough to go on.
+    /// Returns the last bucket that holds costs of at most `cost`. The cost of a bucket is its
+    /// smallest, so a limit taken from [`Run::next_cost`] always allows at least one try.
     fn last_bucket(&self, cost: f64) -> u16 {
         let unit = self.cost_unit();
         let costs_at_most = |bucket: u16| f64::from(min_cost_in(bucket)) * unit <= cost;
@@ -78,7 +78,7 @@ impl<'m, A: AttributeModel> KernelRun<'m, A> {
         }
     }
 
-    /// Lets those try again that a narrower bound of the error has refused.
+    /// Makes edges eligible again that a smaller error bound has refused.
     fn try_again_within(&mut self, error: f64) {
         if error > self.refused_above {
             self.refused_above = f64::INFINITY;
@@ -86,7 +86,7 @@ impl<'m, A: AttributeModel> KernelRun<'m, A> {
         }
     }
 
-    /// Goes on to so many faces, and shows the observer what it wants to see.
+    /// Simplifies to this number of faces, and shows the observer what it wants to see.
     fn advance(&mut self, faces: usize, stop: &Stop, observer: &mut dyn Observe) {
         let is_shown = observer.needs_surface();
         if is_shown {
@@ -119,7 +119,7 @@ impl<'m, A: AttributeModel> KernelRun<'m, A> {
     }
 }
 
-/// What it takes to stay within this error, in model units.
+/// Returns an error bound, given in model units. Builds the input surface if it is missing.
 fn bound<'o>(
     error: f64,
     source: &KernelInput<'_>,

@@ -1,20 +1,20 @@
-//! Eight at a time: rows of floats that go through the same arithmetic, lane by lane.
+//! Rows of eight floats that go through the same arithmetic lane by lane.
 //!
-//! A loop over the lanes of rows, with no branch in it, becomes registers as wide as the machine has
-//! them; the numbers are the same for any width. [`widest`] is where the width is chosen.
+//! A loop over the lanes of rows, without a branch, is compiled to registers as wide as the machine
+//! has them. The results are the same for any width, which [`widest`] chooses.
 
 use glam::{Mat4, Vec3, Vec4};
 
-/// How many.
+/// Number of lanes in a row.
 pub(crate) const LANES: usize = 8;
 
-/// Keeps a division by nothing from being one.
+/// Added to denominators to avoid a division by zero.
 pub(crate) const TINY: f32 = 1e-30;
 
-/// A number of each.
+/// One number per lane.
 pub(crate) type Row = [f32; LANES];
 
-/// A vector of each.
+/// One vector per lane.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Row3 {
     pub(crate) x: Row,
@@ -41,7 +41,7 @@ impl Row3 {
     }
 }
 
-/// Eight rows of four as four rows of eight.
+/// Transposes eight rows of four to four rows of eight.
 #[inline(always)]
 pub(crate) fn transpose(rows: [Vec4; LANES]) -> [Row; 4] {
     let [a, b, c, d, e, f, g, h] = rows;
@@ -61,7 +61,7 @@ fn concat(left: Vec4, right: Vec4) -> Row {
     [a, b, c, d, e, f, g, h]
 }
 
-/// Four rows of eight as eight rows of four.
+/// Transposes four rows of eight to eight rows of four.
 #[inline(always)]
 pub(crate) fn transpose_back(rows: [Row; 4]) -> [Vec4; LANES] {
     let half = |start: usize| {
@@ -73,27 +73,27 @@ pub(crate) fn transpose_back(rows: [Row; 4]) -> [Vec4; LANES] {
     [l.x_axis, l.y_axis, l.z_axis, l.w_axis, r.x_axis, r.y_axis, r.z_axis, r.w_axis]
 }
 
-/// The sum of all lanes, halves by halves.
+/// Sums all lanes, in a fixed order.
 #[inline(always)]
 pub(crate) fn sum_of(&[a, b, c, d, e, f, g, h]: &Row) -> f32 {
     (Vec4::new(a, b, c, d) + Vec4::new(e, f, g, h)).element_sum()
 }
 
-/// The lesser of two; where one is no number, the second.
+/// Returns the smaller of two numbers; the second if one is NaN.
 #[inline(always)]
 pub(crate) fn select_min(a: f32, b: f32) -> f32 {
     if a < b { a } else { b }
 }
 
-/// The greater of two; where one is no number, the second.
+/// Returns the larger of two numbers; the second if one is NaN.
 #[inline(always)]
 pub(crate) fn select_max(a: f32, b: f32) -> f32 {
     if a > b { a } else { b }
 }
 
-/// SimdTask for [`widest`]. A function that is always inlined, which a closure need not be.
+/// Work for [`widest`]. Unlike a closure, its method can be marked `inline(always)`.
 pub(crate) trait SimdTask {
-    /// What it comes to.
+    /// Result of the work.
     type Output;
 
     fn work(self) -> Self::Output;
@@ -133,7 +133,7 @@ mod tests {
     use crate::kernel::attributes::import_export::tests::{faceted, halved};
     use crate::{Method, Options, Target, simplify};
 
-    /// Whether tests go without wide registers, all of them: it is not to be seen.
+    /// Makes all tests go without wide registers, which must not change any result.
     static ARE_NARROW: AtomicBool = AtomicBool::new(false);
 
     pub(crate) fn tests_are_narrow() -> bool {
@@ -141,7 +141,7 @@ mod tests {
     }
 
     #[test]
-    fn the_width_is_not_seen() {
+    fn results_do_not_depend_on_the_register_width() {
         let bare = Mesh { attributes: None, ..samples::terrain(4000) };
         for (mesh, method) in [
             (samples::knot(4000), Method::LindstromTurk),
@@ -163,7 +163,7 @@ mod tests {
     }
 
     #[test]
-    fn rows_become_columns() {
+    fn transposing_swaps_rows_and_columns() {
         let mut rows = [Vec4::ZERO; LANES];
         for (lane, row) in rows.iter_mut().enumerate() {
             *row = Vec4::new(0.0, 10.0, 20.0, 30.0) + lane as f32;
@@ -178,7 +178,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_number_gives_way() {
+    fn nan_gives_way_to_numbers() {
         assert_eq!((select_min(f32::NAN, 1.0), select_max(f32::NAN, 1.0)), (1.0, 1.0));
         assert_eq!((select_min(2.0, 1.0), select_max(2.0, 1.0)), (1.0, 2.0));
     }

@@ -17,7 +17,7 @@ use crate::refusal::Refusal;
 use crate::surface::contracted::Freedom;
 use crate::surface::ties::{TiedSurface, Ties, partners};
 
-/// The surface at work with its ties.
+/// The surface with its ties.
 struct Tied<'a, 'v> {
     vertices: &'a Vertices<'v>,
     ties: &'a Ties,
@@ -36,7 +36,8 @@ impl TiedSurface for Tied<'_, '_> {
         self.vertices.neighbours(a.0).contains(&b.0)
     }
 
-    /// Where no edge may be contracted for the length of its ring, or for where its vertices are.
+    /// Returns true if edges of one of these vertices must not be contracted for now, for the
+    /// length of its ring or because it has neighbours in another part.
     fn is_crowded(&self, vertices: &[VertexId]) -> bool {
         vertices.iter().any(|v| self.vertices.get(v.0).flags.any(VertexFlags::SHUT))
     }
@@ -46,23 +47,24 @@ impl TiedSurface for Tied<'_, '_> {
 struct TiedEdge {
     ends: Ends,
     ring: Box<EdgeRing>,
-    /// By its geometry alone.
+    /// Quadric of the geometry alone.
     quadric: EdgeQuadricF64,
 }
 
-/// The edges of one step, and what they cost together.
+/// Edges of one step, and their joint cost.
 struct Joint {
     edges: Vec<TiedEdge>,
-    /// Where their vertices go, as seen from the middle.
+    /// Place of each new vertex relative to the middle of its edge.
     from_middle: DVec3,
     bucket: u16,
 }
 
 impl<A: AttributeModel> CollapseLoop<'_, A> {
-    /// Contracts an edge between two ties with all others between them; gives the vertex that stays.
+    /// Contracts an edge between two ties together with all other edges between them. Returns the
+    /// vertex that stays.
     ///
-    /// All checks of all edges come first. For the history these are as many contractions, one after
-    /// the other.
+    /// All checks of all edges come first. In the history these are separate contractions, one
+    /// after the other.
     #[cold]
     pub(crate) fn collapse_together(
         &mut self,
@@ -107,7 +109,8 @@ impl<A: AttributeModel> CollapseLoop<'_, A> {
         Ok(ends[0].v0)
     }
 
-    /// Which end of each edge between two ties goes into which: all move, or all stay at one end.
+    /// Decides which end of each edge between two ties is contracted into which: all vertices move,
+    /// or all stay at one end.
     fn ends_together(&mut self, edge: [u32; 2]) -> Result<Vec<Ends>, Refusal> {
         let Self { vertices, model, ties, .. } = self;
         let Some(ties) = ties else { return Err(Refusal::Tied) };
@@ -145,7 +148,8 @@ impl<A: AttributeModel> CollapseLoop<'_, A> {
         Ok(all)
     }
 
-    /// Gathers what is around the edges, and finds what they cost together and where they go.
+    /// Gathers the one-rings of the edges, and computes their joint cost and the place of the new
+    /// vertices.
     fn price_together(&mut self, ends: &[Ends], front: u16) -> Result<Joint, Rejection> {
         let refused = |refusal| Rejection::Refused(refusal, front);
         let Self { vertices, model, edge_ring, .. } = self;
@@ -195,8 +199,8 @@ impl<A: AttributeModel> CollapseLoop<'_, A> {
         }
     }
 
-    /// The contraction of one of the edges to `place`, the square of how far it takes the surface by
-    /// itself, and with all that was before.
+    /// Returns the contraction of one of the edges to `place`, the square of its own deviation, and
+    /// that square with all earlier ones.
     fn step_of(
         &self,
         edge: &mut TiedEdge,
@@ -215,7 +219,8 @@ impl<A: AttributeModel> CollapseLoop<'_, A> {
         Ok((collapse, now, now + end0.moved.max(end1.moved)))
     }
 
-    /// Holds all of the edges against the bound, if there is one, before any counts as contracted.
+    /// Checks all edges against the error bound, if there is one, before any of them counts as
+    /// contracted.
     fn admit_together(
         &mut self,
         edges: &[TiedEdge],
@@ -241,7 +246,7 @@ impl<A: AttributeModel> CollapseLoop<'_, A> {
         Ok(())
     }
 
-    /// Wakes what is tied to vertices around that have changed: its edges may have partners now.
+    /// Requeues vertices that are tied to changed ones: their edges may have partners now.
     #[cold]
     pub(crate) fn wake_tied(&mut self, kept: u32, front: u16) {
         let Some(ties) = &self.ties else { return };
@@ -256,7 +261,7 @@ impl<A: AttributeModel> CollapseLoop<'_, A> {
     }
 }
 
-/// Whether no face is around two of the edges.
+/// Returns true if no two of the edges touch the same face.
 fn are_apart(edges: &[TiedEdge]) -> bool {
     let touches = |edge: &TiedEdge, other: &TiedEdge| {
         edge.ring.ids().iter().any(|&v| v == other.ends.v0 || v == other.ends.v1)

@@ -12,7 +12,8 @@ use crate::kernel::schedule::bucket_queue::NONE;
 use crate::refusal::Refusal;
 
 impl<A: AttributeModel> CollapseLoop<'_, A> {
-    /// Takes out the cheapest component whose cost is in a bucket up to `last`; false where there is none.
+    /// Removes the cheapest component if its bucket is at most `last`. Returns false if there is
+    /// none.
     #[cold]
     pub(crate) fn vanish_up_to(&mut self, last: u16) -> bool {
         while let Some(component) = self.components.as_mut().and_then(|all| all.take_up_to(last)) {
@@ -30,7 +31,7 @@ impl<A: AttributeModel> CollapseLoop<'_, A> {
         false
     }
 
-    /// The faces that are left of a component.
+    /// Returns the faces that are left of a component.
     fn faces_of(&self, component: &Component) -> Vec<[u32; 3]> {
         let mut faces = Vec::new();
         let live = |v: &u32| !self.vertices.get(*v).flags.any(VertexFlags::DEAD);
@@ -45,7 +46,7 @@ impl<A: AttributeModel> CollapseLoop<'_, A> {
         faces
     }
 
-    /// All vertices of it become one without faces.
+    /// Merges all vertices of a component into one without faces.
     fn vanish(&mut self, component: Component, faces: &[[u32; 3]]) {
         let live = |v: &u32| !self.vertices.get(*v).flags.any(VertexFlags::DEAD);
         let left: Vec<u32> = component.vertices.iter().copied().filter(live).collect();

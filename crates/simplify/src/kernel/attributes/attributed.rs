@@ -1,5 +1,7 @@
 //! [`AttributeModel`] for quadrics at the wedges.
 
+use meshlod_mesh::Attributes;
+
 use crate::kernel::attributes::attribute_quadric::{
     add_attribute_quadrics, add_pair_f64, add_unpaired_f64,
 };
@@ -16,7 +18,6 @@ use crate::kernel::metric::edge_quadric::{Costs, EdgeQuadrics, EdgeSide};
 use crate::kernel::metric::edge_quadric_f64::EdgeQuadricF64;
 use crate::kernel::simd::{LANES, widest};
 use crate::refusal::Refusal;
-use meshlod_mesh::Attributes;
 
 impl<M: Metric, const K: usize> AttributeModel for WedgeQuadrics<'_, M, K> {
     type Metric = M;

@@ -1,5 +1,7 @@
 //! [`AttributeModel`] for a surface without attributes. It compiles to nothing.
 
+use meshlod_mesh::Attributes;
+
 use crate::kernel::attributes::{AttributeModel, RecordedValues};
 use crate::kernel::collapse::edge_ring::EdgeRing;
 use crate::kernel::collapse::{Collapse, Ends};
@@ -10,7 +12,6 @@ use crate::kernel::metric::edge_quadric::{Costs, EdgeQuadrics, EdgeSide};
 use crate::kernel::metric::edge_quadric_f64::EdgeQuadricF64;
 use crate::kernel::simd::LANES;
 use crate::refusal::Refusal;
-use meshlod_mesh::Attributes;
 
 /// No attributes: the metric alone.
 #[derive(Clone, Copy, Debug)]

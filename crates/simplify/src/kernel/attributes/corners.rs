@@ -1,10 +1,12 @@
 //! The wedges at the corners of the input's faces.
 
-use crate::kernel::mesh::vertex::NO_VERTEX;
-use crate::surface::wedges::labels;
+use std::borrow::Cow;
+
 use meshlod_mesh::{Layer, Mesh, WedgeId};
 use rustc_hash::FxHashMap;
-use std::borrow::Cow;
+
+use crate::kernel::mesh::vertex::NO_VERTEX;
+use crate::surface::wedges::labels;
 
 /// Wedges at the corners of a mesh, split where the material or the object changes.
 pub(crate) struct Corners<'m> {

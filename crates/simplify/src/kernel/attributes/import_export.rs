@@ -1,6 +1,5 @@
 //! Conversion of the corners of faces to wedges with quadrics, and back.
 
-use crate::kernel::metric::Metric;
 use std::marker::PhantomData;
 
 use meshlod_mesh::{Attributes, WedgeId};
@@ -14,6 +13,7 @@ use crate::kernel::attributes::seam_sectors::SeamSectors;
 use crate::kernel::attributes::wedge_quadrics::WedgeQuadrics;
 use crate::kernel::mesh::one_ring::{GHOST, Vertices};
 use crate::kernel::mesh::vertex::{NO_VERTEX, VertexFlags};
+use crate::kernel::metric::Metric;
 
 impl<'m, M: Metric, const K: usize> WedgeQuadrics<'m, M, K> {
     /// Builds the quadrics of a mesh whose rings are made. Flags the vertices on seams, and adds

@@ -19,6 +19,8 @@ pub(crate) mod uv_flips;
 pub(crate) mod wedge_pairs;
 pub(crate) mod wedge_quadrics;
 
+use meshlod_mesh::{Attributes, WedgeId};
+
 use crate::kernel::collapse::edge_ring::EdgeRing;
 use crate::kernel::collapse::{Collapse, Ends};
 use crate::kernel::mesh::one_ring::Vertices;
@@ -28,7 +30,6 @@ use crate::kernel::metric::edge_quadric::{Costs, EdgeQuadrics, EdgeSide};
 use crate::kernel::metric::edge_quadric_f64::EdgeQuadricF64;
 use crate::kernel::simd::LANES;
 use crate::refusal::Refusal;
-use meshlod_mesh::{Attributes, WedgeId};
 
 /// Attributes as costs and contractions use them.
 pub(crate) trait AttributeModel: Sized + Send + Sync {

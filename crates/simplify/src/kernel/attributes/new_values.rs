@@ -4,12 +4,13 @@
 //! several wedges in one chart, creases in the shading, the unpaired ones stay with their faces:
 //! each takes the normal that fits it best, and all share one place in uv.
 
+use glam::Vec3;
+
 use crate::kernel::attributes::attribute_quadric::{AttributeQuadric, best_values};
 use crate::kernel::attributes::scratch::NewValues;
 use crate::kernel::attributes::wedge_quadrics::WedgeQuadrics;
 use crate::kernel::collapse::{Collapse, WedgePairs};
 use crate::kernel::metric::Metric;
-use glam::Vec3;
 
 impl<M: Metric, const K: usize> WedgeQuadrics<'_, M, K> {
     /// Returns the values of the wedge that a pair becomes.

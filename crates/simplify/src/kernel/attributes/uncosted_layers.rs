@@ -1,6 +1,5 @@
 //! Attributes outside the metric: interpolated at the closest point of the old faces.
 
-use crate::kernel::metric::Metric;
 use glam::{DVec3, Vec3};
 use meshlod_mesh::WedgeId;
 use meshlod_spatial::closest_point;
@@ -10,6 +9,7 @@ use crate::kernel::attributes::wedge_quadrics::WedgeQuadrics;
 use crate::kernel::collapse::edge_ring::EdgeRing;
 use crate::kernel::collapse::{Collapse, Ends};
 use crate::kernel::mesh::vertex::NO_VERTEX;
+use crate::kernel::metric::Metric;
 use crate::surface::interpolate::{Place, shares};
 
 impl<M: Metric, const K: usize> WedgeQuadrics<'_, M, K> {

@@ -1,5 +1,7 @@
 //! Update of attributes by a contraction near seams, where the slots of every face are looked up.
 
+use glam::Vec3;
+
 use crate::kernel::attributes::attribute_quadric::AttributeQuadric;
 use crate::kernel::attributes::face_wedges::FaceWedges;
 use crate::kernel::attributes::update_smooth::dying_quadric;
@@ -10,7 +12,6 @@ use crate::kernel::mesh::one_ring::{GHOST, Vertices, is_seam};
 use crate::kernel::mesh::vertex::{VertexFlags, VertexQuadric};
 use crate::kernel::metric::Metric;
 use crate::kernel::simd::SimdTask;
-use glam::Vec3;
 
 /// SIMD task of a contraction near a seam, see [`WedgeQuadrics::apply_at_seams`].
 pub(crate) struct UpdateAtSeams<'a, 'm, 'v, M, const K: usize> {

@@ -1,5 +1,7 @@
 //! Update of attributes by a contraction away from seams, where slots are vertices.
 
+use glam::{Vec3, Vec4};
+
 use crate::kernel::attributes::attribute_quadric::AttributeQuadric;
 use crate::kernel::attributes::scratch::Scratch;
 use crate::kernel::attributes::wedge_quadrics::WedgeQuadrics;
@@ -9,7 +11,6 @@ use crate::kernel::mesh::one_ring::GHOST;
 use crate::kernel::metric::Metric;
 use crate::kernel::metric::edge_quadric::outer;
 use crate::kernel::simd::{LANES, Row, Row3, TINY, sum_of, transpose_back};
-use glam::{Vec3, Vec4};
 
 impl<M: Metric, const K: usize> WedgeQuadrics<'_, M, K> {
     /// Applies the last preview of a contraction away from seams.

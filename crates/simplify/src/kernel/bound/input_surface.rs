@@ -1,4 +1,4 @@
-//! The input, as a bound of the error is measured from it.
+//! The input surface, as the error bound measures distances from it.
 
 use glam::Vec3;
 use meshlod_mesh::{FaceId, Mesh};
@@ -6,36 +6,40 @@ use meshlod_spatial::Bvh;
 
 use crate::kernel::mesh::local_frame::Frame;
 
-/// The faces of the input, and points of it that are to stay near the surface: its vertices, and some
-/// along edges that stand out, where the surface ends or is sharp. What lies between is then near too.
+/// Faces of the input, and the points of it that must stay near the surface: its vertices, and
+/// samples along prominent edges, where the surface ends or is sharp. What lies between is then
+/// near too.
 pub(crate) struct InputSurface {
     faces: Bvh,
     frame: Frame,
-    /// Of all vertices, copies too, in the frame.
+    /// Places of all vertices in the frame, copies included.
     places: Vec<Vec3>,
-    /// EdgeQuadrics that stand out.
+    /// Prominent edges.
     rims: Vec<[u32; 2]>,
 }
 
-/// Points along edges, by the vertex that they are nearest to.
+/// Points along edges, grouped by the nearest vertex.
 pub(crate) struct EdgeSamples {
     points: Vec<Vec3>,
-    /// Where those of each vertex begin; empty if there are none at all.
+    /// Start of each vertex's points; empty if there are no points.
     starts: Vec<u32>,
 }
 
-/// A vertex stands out if its faces' normals sum to less than this part of their lengths: on a ridge
-/// of 28 degrees. The sample `fish` within .3 % of the diagonal: .30 %, without such points .55.
+/// A vertex is prominent if the normals of its faces sum to less than this part of their lengths,
+/// as on a ridge of 28 degrees. The sample `fish` within .3 % of the diagonal: .30 %, without such
+/// points .55 %.
 const SHARP: f32 = 0.97;
 
-/// A closed ring of edges sums to nothing but for rounding, which is less than this part of its length.
+/// The edges of a closed ring sum to zero but for rounding, which is less than this part of their
+/// length.
 const CLOSED: f32 = 1e-3;
 
-/// So many points are taken of an edge at most.
+/// Largest number of points on one edge.
 const MAX_EDGE_POINTS: usize = 32;
 
 impl InputSurface {
-    /// That of a valid mesh with faces; `faces` and `places` are as the engine has them.
+    /// Builds the surface of a valid mesh with faces; `faces` and `places` are in the kernel's
+    /// vertices.
     pub(crate) fn new(
         mesh: &Mesh,
         frame: Frame,
@@ -47,14 +51,14 @@ impl InputSurface {
         Self { faces, frame, places, rims }
     }
 
-    /// Where a vertex was.
+    /// Returns the original place of a vertex.
     #[inline]
     pub(crate) fn place(&self, v: u32) -> Vec3 {
         self.places[v as usize]
     }
 
-    /// How far a place is from the input, in the frame: something up to `enough` if it is no farther,
-    /// `None` beyond `most`. `near` is a face thought to be.
+    /// Returns the distance of a place from the input, in the frame: any value up to `enough` if it
+    /// is no larger than that, `None` beyond `max_error`. `near` is a face expected to be close.
     #[inline]
     pub(crate) fn distance(
         &self,
@@ -69,7 +73,7 @@ impl InputSurface {
         Some((found.distance_squared.sqrt() / unit) as f32)
     }
 
-    /// Points along the edges that stand out, no farther from each other than this, or few.
+    /// Samples the prominent edges at this spacing, up to a limit.
     pub(crate) fn between(&self, spacing: f32) -> EdgeSamples {
         let mut found = Vec::new();
         for &[u, v] in &self.rims {
@@ -89,7 +93,7 @@ impl InputSurface {
 }
 
 impl EdgeSamples {
-    /// Those of a vertex.
+    /// Returns the points of a vertex.
     #[inline]
     pub(crate) fn of(&self, v: u32) -> &[Vec3] {
         match self.starts.get(v as usize..v as usize + 2) {
@@ -99,12 +103,12 @@ impl EdgeSamples {
     }
 }
 
-/// What tells whether a vertex stands out.
+/// Sums over the faces at a vertex that show whether it is prominent.
 #[derive(Clone, Copy, Default)]
 struct StarSums {
     normal: Vec3,
     area: f32,
-    /// Of the edges across from it, which are a ring if there is no boundary.
+    /// Sum of the edges opposite the vertex, which form a closed ring if there is no boundary.
     across: Vec3,
     length: f32,
 }
@@ -119,7 +123,7 @@ impl StarSums {
     }
 }
 
-/// EdgeQuadrics of vertices that stand out.
+/// Returns the edges at prominent vertices.
 fn rims(places: &[Vec3], faces: impl Iterator<Item = [u32; 3]> + Clone) -> Vec<[u32; 2]> {
     let mut sums = vec![StarSums::default(); places.len()];
     for face in faces.clone() {
@@ -133,7 +137,7 @@ fn rims(places: &[Vec3], faces: impl Iterator<Item = [u32; 3]> + Clone) -> Vec<[
             sums.length += across.length();
         }
     }
-    // Of an edge with two faces the one side is enough; one of the boundary may have either.
+    // One side is enough for an edge with two faces; a boundary edge may run in either direction.
     let is_rim = |&[u, v]: &[u32; 2]| {
         let [u_sums, v_sums] = [sums[u as usize], sums[v as usize]];
         let stand_out = u_sums.stands_out() || v_sums.stands_out();

@@ -1,9 +1,9 @@
-//! A bound of the error, held by distances from the input itself.
+//! A bound on the error, held by measured distances to the input.
 //!
-//! The estimate of how far the surface has moved adds squares, which says nothing of steps that all go
-//! the same way. So ways are added as lengths too, and where their sum comes near the bound the
-//! surface is held against the input: what has gone into the vertices around against the new faces, and
-//! points of the new faces against those of the input.
+//! The estimate of how far the surface has moved adds squares, which misses steps that all go the
+//! same way. So the distances travelled are also added as lengths. Where their sum comes near the
+//! bound, the surface is compared with the input: the input vertices merged into the vertices
+//! around with the new faces, and points of the new faces with the input.
 
 pub(crate) mod input_surface;
 pub(crate) mod probe;
@@ -16,46 +16,46 @@ use crate::kernel::collapse::deviation::FaceFan;
 use crate::kernel::collapse::edge_ring::EdgeRing;
 use crate::kernel::mesh::one_ring::{GHOST, VertexStore};
 
-/// Up to which part of the bound the sum of ways is believed. A way is taken at vertices and planes, and
-/// now and then more is between. Greatest distances of the bunny, fandisk-32k and the sample `fish` as
-/// parts of a bound of .1 % of the diagonal: .5 1.00, 1.00, 1.00; .7 1.40, 1.09, 1.40.
+/// Part of the bound up to which the sum of distances is trusted. Distances are taken at vertices
+/// and planes only, and are sometimes larger in between. Greatest distances of the bunny,
+/// fandisk-32k and the sample `fish` relative to a bound of .1 % of the diagonal: .5 1.00, 1.00,
+/// 1.00; .7 1.40, 1.09, 1.40.
 const SURE: f32 = 0.5;
 
-/// A step that by itself goes so many times as far as the bound is refused without a look.
+/// A single step that goes this many times as far as the bound is refused without measuring.
 const TOO_FAR: f32 = 2.0;
 
-/// So many points of an old edge are held against the new faces.
+/// Number of points on each old edge that are compared with the new faces.
 const EDGE_POINTS: usize = 3;
 
-/// A bound of the error, and what it takes to hold it.
+/// Bound on the distance to the input, for the whole surface.
 pub(crate) struct ErrorBound<'m> {
     input: &'m InputSurface,
     between: EdgeSamples,
-    /// In the frame's units.
+    /// The bound, in the frame's units.
     max_error: f32,
-    /// Which vertices of the input have gone into which: of each the next, in a ring through the one
-    /// that lives.
+    /// Rings of merged input vertices: the next one of each, through the one that is live.
     next: Vec<u32>,
-    /// How far the surface has moved at each vertex, all steps added up.
+    /// Distance that the surface has moved at each vertex, all steps added up.
     travelled: Vec<f32>,
 }
 
-/// A part of the surface as it is held within a bound.
+/// Error bound of a part of the surface.
 pub(crate) struct BoundPart<'v> {
     input: &'v InputSurface,
     between: &'v EdgeSamples,
     max_error: f32,
-    /// The id of the first vertex.
+    /// Id of the first vertex.
     base: u32,
     next: &'v mut [u32],
     travelled: &'v mut [f32],
-    /// Room for the faces around an edge, before and after.
+    /// Working memory for the faces around an edge, before and after.
     old: FaceFan,
     new: FaceFan,
 }
 
 impl<'m> ErrorBound<'m> {
-    /// `most` in the frame's units, for the surface as it is now.
+    /// Sets a bound, in the frame's units, for the surface in its current state.
     ///
     /// Cost: O(n), n = vertices of the input.
     pub(crate) fn new(max_error: f32, input: &'m InputSurface, store: &VertexStore) -> Self {
@@ -69,7 +69,7 @@ impl<'m> ErrorBound<'m> {
         Self { input, between: input.between(max_error), max_error, next, travelled }
     }
 
-    /// That of each of some runs of the vertices, by their lengths.
+    /// Splits the bound into consecutive vertex ranges of the given lengths.
     pub(crate) fn split(&mut self, lengths: &[usize]) -> Vec<BoundPart<'_>> {
         let Self { input, between, max_error, next, travelled } = self;
         let (mut next, mut travelled, mut base) = (&mut next[..], &mut travelled[..], 0);
@@ -94,35 +94,37 @@ impl<'m> ErrorBound<'m> {
     }
 }
 
-/// A contraction that a bound may refuse.
+/// A contraction to be checked against the bound.
 pub(crate) struct BoundedStep<'a> {
-    /// With the new faces put.
+    /// Ring of the edge, with the new vertex placed.
     pub(crate) edge_ring: &'a EdgeRing,
-    /// `v1` goes into `v0`.
+    /// Ends of the edge: `v1` is contracted into `v0`.
     pub(crate) ends: [u32; 2],
-    /// Where `v0` was.
+    /// Old place of `v0`.
     pub(crate) from: Vec3,
-    /// The new place as seen from there.
+    /// New place relative to the old place of `v0`.
     pub(crate) displacement: Vec3,
-    /// The square of how far the surface goes.
+    /// Squared deviation by this step alone.
     pub(crate) now: f32,
 }
 
 impl BoundPart<'_> {
-    /// The bound, in the frame's units.
+    /// Returns the bound, in the frame's units.
     pub(crate) fn max_error(&self) -> f32 {
         self.max_error
     }
 
-    /// The square of how far the surface is from the input after a step, or `estimate` where that cannot
-    /// be near the bound; `None` if it is beyond. The step is taken for carried out.
+    /// Checks a step and counts it as carried out. Returns the squared distance of the surface from
+    /// the input, or `estimate` where that cannot be near the bound; `None` if it is beyond the
+    /// bound.
     pub(crate) fn admit(&mut self, step: &BoundedStep<'_>, estimate: f32) -> Option<f32> {
         let (way, moved) = self.judge(step, estimate)?;
         self.carry_out(step.ends, way);
         Some(moved)
     }
 
-    /// How far the surface moves in all by a step, and what [`Self::admit`] gives.
+    /// Checks a step. Returns the total distance travelled with it, and the result of
+    /// [`Self::admit`].
     pub(crate) fn judge(&mut self, step: &BoundedStep<'_>, estimate: f32) -> Option<(f32, f32)> {
         let [v0, v1] = step.ends.map(|v| self.slot(v));
         let before = self.travelled[v0].max(self.travelled[v1]);
@@ -134,14 +136,15 @@ impl BoundPart<'_> {
         Some((farthest, farthest * farthest))
     }
 
-    /// Takes a step for carried out that moves the surface so far in all.
+    /// Counts a step as carried out, with the total distance travelled.
     pub(crate) fn carry_out(&mut self, ends: [u32; 2], way: f32) {
         let [v0, v1] = ends.map(|v| self.slot(v));
         self.travelled[v0] = way;
         self.next.swap(v0, v1);
     }
 
-    /// How far the surface is from the input after a step; `None` if beyond the bound.
+    /// Measures the distance of the surface from the input after a step; `None` if it is beyond the
+    /// bound.
     fn measure(&mut self, step: &BoundedStep<'_>, before: f32) -> Option<f32> {
         if step.now.sqrt() > TOO_FAR * self.max_error {
             return None;
@@ -155,7 +158,8 @@ impl BoundPart<'_> {
         Some(of_new.max(self.of_old(step)?))
     }
 
-    /// The farthest of some points of the new faces from the input; `None` if beyond the bound.
+    /// Returns the largest distance of sampled points of the new faces from the input; `None` if it
+    /// is beyond the bound.
     fn of_new(&self, step: &BoundedStep<'_>) -> Option<f32> {
         let &BoundedStep { edge_ring, from, displacement, .. } = step;
         let mut probe = Probe::new(self.input, self.max_error);
@@ -176,12 +180,12 @@ impl BoundPart<'_> {
         Some(probe.farthest())
     }
 
-    /// The farthest of some points of the old edges from the new faces. As far as the old edges are off,
-    /// the new faces may be nearer to the input.
+    /// Returns the largest distance of sampled points of the old edges from the new faces. By as
+    /// much as the old edges are off, the new faces may be nearer to the input.
     fn of_edges(&self, edge_ring: &EdgeRing) -> f32 {
         let spokes = (0..edge_ring.len).filter(|&i| edge_ring.ids[i] != GHOST);
         let spokes = spokes.map(|i| (edge_ring.along * edge_ring.of_v1[i], edge_ring.relative(i)));
-        // What the spokes do not have of the dying faces.
+        // The edges of the dying faces that are not spokes.
         let is_face = |wing: usize| edge_ring.ghost != Some(wing);
         let first = is_face(0).then(|| (edge_ring.along, edge_ring.relative(0)));
         let last =
@@ -192,8 +196,9 @@ impl BoundPart<'_> {
         points.map(|point| self.new.squared(point)).fold(0.0, f32::max).sqrt()
     }
 
-    /// The farthest of what has gone into the ends from the new faces; `None` if something around was
-    /// within the bound of the old faces and is not within that of the new ones.
+    /// Returns the largest distance of the input vertices merged into the ends from the new faces;
+    /// `None` if a point around was within the bound of the old faces and is not within that of the
+    /// new ones.
     fn of_old(&mut self, step: &BoundedStep<'_>) -> Option<f32> {
         let &BoundedStep { edge_ring, ends, from, .. } = step;
         let max_error = self.max_error * self.max_error;
@@ -223,7 +228,8 @@ impl BoundPart<'_> {
         Some(farthest.sqrt())
     }
 
-    /// Moves what comes after `last` to after `head`: what was too far is so again, most often.
+    /// Moves the vertex after `last` to directly after `head`: what was too far once will most
+    /// often be so again.
     fn put_first(&mut self, head: u32, last: u32, at: u32) {
         if last != head && at != head {
             let [of_head, of_last, own] = [head, last, at].map(|v| self.slot(v));

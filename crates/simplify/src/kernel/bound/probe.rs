@@ -1,22 +1,22 @@
-//! Looking for the input from points of new faces.
+//! Measures distances from points of new faces to the input.
 
 use glam::Vec3;
 use meshlod_mesh::FaceId;
 
 use crate::kernel::bound::input_surface::InputSurface;
 
-/// How often a way is halved at most.
+/// Largest number of times that a segment is halved.
 const HALVINGS: u32 = 4;
 
-/// A way is halved on while something on it can be beyond the bound by more than this.
+/// A segment is halved while a point on it may exceed the bound by more than this factor.
 const OVER: f32 = 1.1;
 
-/// A way is not halved on where its ends and its middle are within this part of the bound, and the input
-/// is not looked for any closer. CPU time of the bunny within .1 %: .25 1.2, .4 1.0; at .6 fandisk-32k is
-/// 1.24 times as far off as .3 % instead of 1.1.
+/// A segment is not halved further if its ends and its middle are within this part of the bound,
+/// and closer points of the input are not searched for. CPU time of the bunny within .1 %: .25 1.2,
+/// .4 1.0; at .6 fandisk-32k deviates by 1.24 times .3 % instead of 1.1.
 const CALM: f32 = 0.4;
 
-/// Finds how far places are from the input, one near the other.
+/// Measures distances to the input for points near each other.
 pub(crate) struct Probe<'v> {
     input: &'v InputSurface,
     max_error: f32,
@@ -24,21 +24,22 @@ pub(crate) struct Probe<'v> {
     farthest: f32,
 }
 
-/// A place, and how far it is from the input.
+/// A place, and its distance from the input.
 pub(crate) type Probed = (Vec3, f32);
 
 impl<'v> Probe<'v> {
-    /// `most` is the bound, in the frame's units.
+    /// Starts a measurement with this bound, in the frame's units.
     pub(crate) fn new(input: &'v InputSurface, max_error: f32) -> Self {
         Self { input, max_error, near: None, farthest: 0.0 }
     }
 
-    /// The farthest place yet.
+    /// Returns the largest distance so far.
     pub(crate) fn farthest(&self) -> f32 {
         self.farthest
     }
 
-    /// How far a place is from the input, at most; `None` if beyond the bound.
+    /// Returns an upper bound on the distance of a place from the input; `None` if it is beyond the
+    /// error bound.
     pub(crate) fn at(&mut self, place: Vec3) -> Option<f32> {
         let limits = [CALM * self.max_error, self.max_error];
         let apart = self.input.distance(place, &mut self.near, limits)?;
@@ -46,13 +47,13 @@ impl<'v> Probe<'v> {
         Some(apart)
     }
 
-    /// Looks at points between two places; `None` if one is beyond the bound.
+    /// Measures points between two places; `None` if one is beyond the bound.
     pub(crate) fn along(&mut self, ends: [Probed; 2]) -> Option<()> {
         self.halve(ends, HALVINGS)
     }
 
     fn halve(&mut self, [a, b]: [Probed; 2], times: u32) -> Option<()> {
-        // Distance does not change faster than the place does.
+        // The distance is 1-Lipschitz.
         let highest = (a.1 + b.1 + a.0.distance(b.0)) / 2.0;
         if times == 0 || highest <= OVER * self.max_error {
             return Some(());

@@ -4,11 +4,12 @@
 //! have been contracted are replaced when the list is next read, so a hub of a hundred thousand
 //! faces costs its neighbours nothing.
 
+use std::ops::Range;
+
 use glam::Vec4;
 use rayon::prelude::*;
 
 use crate::kernel::mesh::vertex::{Bf16, NO_VERTEX, RING, Vertex, VertexFlags, VertexQuadric};
-use std::ops::Range;
 
 /// Value of [`Vertex::len`] for a ring in a list. The first number of `ring` is then the index of
 /// the list, the second its length.

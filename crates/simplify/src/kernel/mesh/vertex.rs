@@ -223,7 +223,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_constant_is_off_by_less_than_one_part_in_two_hundred() {
+    fn bf16_is_off_by_less_than_one_part_in_two_hundred() {
         for i in 0..1000 {
             let value = 1e-20 * 1.1f32.powi(i % 500) * (1.0 + i as f32 / 1000.0);
             let off = Bf16::new(value).get() / value - 1.0;

@@ -1,8 +1,9 @@
 //! Quadrics of edges, eight at a time in single precision.
 
+use glam::{Vec3, Vec4};
+
 use crate::kernel::mesh::one_ring::Vertices;
 use crate::kernel::simd::{LANES, Row, Row3, transpose};
-use glam::{Vec3, Vec4};
 
 /// Strength of the pull of the optimum to the middle of the edge, as in the general engine.
 pub(crate) const PULL: f32 = 1e-5;

@@ -13,6 +13,9 @@ pub(crate) mod edge_quadric_f64;
 pub(crate) mod plane_distance;
 pub(crate) mod swept_volume;
 
+use glam::{DVec3, Vec3};
+
+use crate::engine::locks;
 use crate::kernel::collapse::Collapse;
 use crate::kernel::collapse::edge_ring::EdgeRing;
 use crate::kernel::mesh::one_ring::Vertices;
@@ -20,9 +23,6 @@ use crate::kernel::mesh::vertex::{FullQuadric, Vertex, VertexQuadric};
 use crate::kernel::metric::edge_quadric::{EdgeQuadrics, SymmetricMatrix, VertexQuadrics, lane_of};
 use crate::kernel::metric::edge_quadric_f64::EdgeQuadricF64;
 use crate::kernel::simd::{LANES, Row};
-use glam::{DVec3, Vec3};
-
-use crate::engine::locks;
 use crate::options::Method;
 
 /// Error metric of a method.

@@ -1,28 +1,30 @@
-//! From faces to rings. Around a vertex where the surface is manifold, the faces are one fan, closed or
-//! open; an open one is closed by the ghost.
+//! Builds one-rings from faces. The faces around a manifold vertex are one fan, closed or open; an
+//! open one is closed by the ghost.
+
+use glam::Vec3;
+use rayon::prelude::*;
 
 use crate::kernel::mesh::one_ring::{GHOST, LONG, LongRing, VertexStore, Vertices};
 use crate::kernel::mesh::vertex::{NO_VERTEX, RING, Vertex};
 use crate::kernel::metric::Metric;
 use crate::kernel::setup::face_blocks::{CELL, CellFaces};
 use crate::kernel::setup::split_non_manifold::Pair;
-use glam::Vec3;
-use rayon::prelude::*;
 
-/// Pairs of neighbours that a vertex has room for before they are a ring.
+/// Number of neighbour pairs that a vertex has room for before they are a ring.
 const PAIRS: usize = RING / 2;
 
-/// Faces made vertices with rings, and those where that cannot be done.
+/// Vertices with rings, and the vertices for which there is no ring.
 pub(crate) struct Fans {
     pub(crate) store: VertexStore,
-    /// Faces of three different vertices.
+    /// Number of faces with three different vertices.
     pub(crate) faces: usize,
-    /// Vertices whose faces are not one fan, in their order. They have no ring.
+    /// Vertices whose faces are not one fan, in order. They have no ring.
     pub(crate) irregular: Vec<u32>,
 }
 
 impl Fans {
-    /// Rings of vertices at these places, the last of them copies, from `count` faces.
+    /// Builds the rings of vertices at these places, the last of which are copies, from `count`
+    /// faces.
     pub(crate) fn new<M: Metric>(
         (places, copied): (&[Vec3], Vec<u32>),
         count: usize,
@@ -43,7 +45,7 @@ impl Fans {
     }
 }
 
-/// Makes the rings of a cell; gives those that are long, and the vertices that have none.
+/// Builds the rings of a cell. Returns the long ones, and the vertices without one.
 fn close<M: Metric>(
     (number, all): (usize, &mut [Vertex]),
     places: &[Vec3],
@@ -58,11 +60,11 @@ fn close<M: Metric>(
     (long, irregular)
 }
 
-/// A run of vertices whose rings are made.
+/// A run of vertices whose rings are being built.
 struct Cell<'c> {
     number: usize,
     vertices: Vertices<'c>,
-    /// Those of all vertices.
+    /// Places of all vertices.
     places: &'c [Vec3],
     boundary_weight: f32,
     irregular: Vec<u32>,
@@ -93,7 +95,8 @@ impl Cell<'_> {
         }
     }
 
-    /// Gives each vertex its faces' star and pairs; those that it has no room for are given back.
+    /// Gives each vertex the quadric and the pairs of its faces. Returns the pairs that it has no
+    /// room for.
     fn collect<M: Metric>(&mut self, cells: &CellFaces) -> Vec<(u32, Pair)> {
         let (places, first) = (self.places, self.vertices.base);
         let all = &mut *self.vertices.all;
@@ -116,7 +119,7 @@ impl Cell<'_> {
         beyond
     }
 
-    /// Of a vertex whose pairs are all in the place of its ring.
+    /// Builds the ring of a vertex whose pairs are all in the vertex.
     #[inline(always)]
     fn ring_of<M: Metric>(&mut self, v: u32, len: usize) {
         let vertex = self.vertices.get_mut(v);
@@ -135,7 +138,8 @@ impl Cell<'_> {
         }
     }
 
-    /// Of a vertex with many faces, by sorting: a search for each would cost the square of them.
+    /// Builds the ring of a vertex with many faces by sorting: a search for each pair would take
+    /// quadratic time.
     fn ring_of_many<M: Metric>(&mut self, v: u32, pairs: &mut Vec<Pair>) {
         match chain_many(pairs) {
             Some(Chain::Closed) => {
@@ -152,7 +156,7 @@ impl Cell<'_> {
         self.irregular.push(v);
     }
 
-    /// A ring through the ghost, and the edges to it.
+    /// Sets a ring through the ghost, and adds the two boundary edges.
     fn open<M: Metric>(&mut self, v: u32, pairs: &[Pair]) {
         let (first, last) = (pairs[0][0], pairs[pairs.len() - 1][1]);
         let mut ring: Vec<u32> = pairs.iter().map(|pair| pair[0]).collect();
@@ -166,14 +170,15 @@ impl Cell<'_> {
     }
 }
 
-/// A fan.
+/// Kind of a fan.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Chain {
     Closed,
     Open,
 }
 
-/// What the first of each pair counts in [`closed`]: one, and the number of the pair after it.
+/// Weight of the first entry of each pair in [`closed`]: one in the upper half, and its index in
+/// the lower.
 const FIRSTS: [u32; RING] = {
     let (mut counts, mut pair) = ([0; RING], 0);
     while pair < PAIRS {
@@ -183,8 +188,8 @@ const FIRSTS: [u32; RING] = {
     counts
 };
 
-/// The ring of `len` pairs, one beside the other, that are a closed fan. No search: that would guess
-/// wrong where it ends as often as not.
+/// Returns the ring of `len` pairs that form a closed fan. There is no early exit, which would be
+/// mispredicted as often as not.
 #[inline(always)]
 fn closed(pairs: &[u32; RING], len: usize) -> Option<[u32; RING]> {
     let (mut ring, mut next) = ([NO_VERTEX; RING], pairs[1]);
@@ -203,7 +208,7 @@ fn closed(pairs: &[u32; RING], len: usize) -> Option<[u32; RING]> {
     (next == pairs[0] && len > 1).then_some(ring)
 }
 
-/// Sorts pairs so that each begins with what the one before ends with; `None` if that is not one open
+/// Sorts pairs such that each begins where the one before ends; `None` if they are not one open
 /// fan.
 fn chain_open(pairs: &mut [Pair]) -> Option<()> {
     let is_end = |v: u32| pairs.iter().any(|pair| pair[1] == v);
@@ -217,7 +222,7 @@ fn chain_open(pairs: &mut [Pair]) -> Option<()> {
     are_distinct(pairs).then_some(())
 }
 
-/// Whether no neighbour stands twice in an open fan.
+/// Returns true if no neighbour occurs twice in an open fan.
 fn are_distinct(pairs: &[Pair]) -> bool {
     let mut all: Vec<u32> = pairs.iter().map(|pair| pair[0]).collect();
     all.push(pairs[pairs.len() - 1][1]);
@@ -225,7 +230,7 @@ fn are_distinct(pairs: &[Pair]) -> bool {
     all.windows(2).all(|two| two[0] != two[1])
 }
 
-/// The same of many pairs.
+/// Sorts many pairs into one fan; `None` if they are not one.
 fn chain_many(pairs: &mut Vec<Pair>) -> Option<Chain> {
     let mut sorted = std::mem::take(pairs);
     sorted.sort_unstable();

@@ -1,29 +1,29 @@
-//! The faces by cells: runs of vertices short enough that their records stay in the cache while their
-//! rings are made, and that threads can share among them.
+//! The faces sorted by cells: runs of vertices short enough that their records stay in the cache
+//! while their rings are built, and that threads can share.
 
 use rayon::prelude::*;
 
-/// Vertices of a cell: 128 kB of records.
+/// Number of vertices in a cell: 128 kB of records.
 pub(crate) const CELL: usize = 1 << 10;
 
-/// Faces that are looked through by one thread at a time.
+/// Smallest number of faces that one thread sorts at a time.
 const BLOCK: usize = 1 << 16;
 
-/// The most blocks: each has a number for each cell.
+/// Largest number of blocks: each stores one number per cell.
 const BLOCKS: usize = 64;
 
-/// Faces of three different vertices by the cells of their corners, in their order. A face with
+/// Faces of three different vertices by the cells of their corners, in input order. A face with
 /// corners in two cells is in both.
 pub(crate) struct CellFaces {
     blocks: Vec<Block>,
-    /// How many faces, each counted once.
+    /// Number of faces, each counted once.
     pub(crate) faces: usize,
 }
 
-/// The same of a run of the faces.
+/// A run of the faces, sorted by cell.
 struct Block {
     by_cell: Vec<[u32; 3]>,
-    /// Where each cell's end in `by_cell`.
+    /// End of each cell's faces in `by_cell`.
     ends: Vec<u32>,
     faces: usize,
 }
@@ -43,7 +43,7 @@ impl CellFaces {
         Self { blocks, faces }
     }
 
-    /// The faces with a corner in a cell.
+    /// Returns the faces with a corner in a cell.
     pub(crate) fn of(&self, cell: usize) -> impl Iterator<Item = &[[u32; 3]]> {
         self.blocks.iter().map(move |block| {
             let start = if cell == 0 { 0 } else { block.ends[cell - 1] };
@@ -75,7 +75,7 @@ impl Block {
     }
 }
 
-/// Does it for each cell that a face has a corner in.
+/// Calls `act` for each cell that contains a corner of a face.
 #[inline(always)]
 fn for_cells([a, b, c]: [u32; 3], mut act: impl FnMut(usize)) {
     let (a, b, c) = (a as usize / CELL, b as usize / CELL, c as usize / CELL);
@@ -93,7 +93,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_face_is_in_each_cell_of_its_corners_once_and_in_order() {
+    fn each_cell_has_the_faces_of_its_corners_once_and_in_order() {
         let far = 2 * CELL as u32 + 5;
         let faces = [[0, 1, 2], [3, far, 1], [far, far + 1, 0], [7, 7, 9], [2, 1, 0]];
         let cells = CellFaces::new(3 * CELL, faces.len(), |i| faces[i]);

@@ -1,4 +1,4 @@
-//! From the faces of the input to vertices with rings.
+//! Setup: from the faces of the input to vertices with rings.
 
 pub(crate) mod build_rings;
 pub(crate) mod face_blocks;

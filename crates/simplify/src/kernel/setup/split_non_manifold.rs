@@ -1,12 +1,12 @@
-//! Vertices where the surface is not manifold, split aside: each fan of faces gets a copy, and all
-//! copies stay where they are. In the result they are one vertex again, so topology is as it was.
+//! Splits non-manifold vertices: each fan of faces gets a copy, and all copies stay where they are.
+//! In the result they are one vertex again, so the topology is preserved.
 
 use rustc_hash::FxHashMap;
 
-/// The two other corners of a face, in its turn.
+/// The other two corners of a face, in its orientation.
 pub(crate) type Pair = [u32; 2];
 
-/// A corner of a face at a vertex.
+/// Corner of a face at a vertex.
 #[derive(Clone, Copy)]
 struct Corner {
     face: u32,
@@ -14,10 +14,11 @@ struct Corner {
     pair: Pair,
 }
 
-/// Gives each fan around the irregular vertices a vertex of its own: the first keeps the id. Where a
-/// vertex has one fan only, which is no ring, each of its faces gets one.
+/// Gives each fan around the irregular vertices a vertex of its own; the first fan keeps the id. If
+/// a vertex has a single fan which is not a ring, each of its faces gets a vertex.
 ///
-/// Returns the vertices that the copies are of; their ids follow those of all `vertices`.
+/// Returns the vertices that the copies are of. The ids of the copies follow those of all
+/// `vertices`.
 pub(crate) fn split(faces: &mut [[u32; 3]], irregular: &[u32], vertices: usize) -> Vec<u32> {
     let stars = stars(faces, irregular);
     let mut copied = Vec::new();
@@ -37,7 +38,7 @@ pub(crate) fn split(faces: &mut [[u32; 3]], irregular: &[u32], vertices: usize) 
     copied
 }
 
-/// The corners of faces at each of these vertices.
+/// Collects the corners of faces at each of these vertices.
 fn stars(faces: &[[u32; 3]], of: &[u32]) -> Vec<Vec<Corner>> {
     let place: FxHashMap<u32, usize> = of.iter().enumerate().map(|(i, &v)| (v, i)).collect();
     let mut stars = vec![Vec::new(); of.len()];
@@ -54,8 +55,8 @@ fn stars(faces: &[[u32; 3]], of: &[u32]) -> Vec<Vec<Corner>> {
     stars
 }
 
-/// Makes all faces that repeat one before, in the same turn, `[0, 0, 0]`, and says how many those were.
-/// Their corners are all irregular.
+/// Replaces all faces that repeat an earlier one with the same orientation by `[0, 0, 0]`, and
+/// returns their number. The corners of such faces are all irregular.
 pub(crate) fn drop_duplicates(faces: &mut [[u32; 3]], irregular: &[u32]) -> usize {
     let mut seen = FxHashMap::default();
     let mut count = 0;
@@ -73,7 +74,8 @@ pub(crate) fn drop_duplicates(faces: &mut [[u32; 3]], irregular: &[u32]) -> usiz
     count
 }
 
-/// The fans of a star: faces that hang together by edges that have one face on either side.
+/// Splits the faces at a vertex into fans: faces connected by edges that have one face on either
+/// side.
 fn fans(star: &[Corner]) -> Vec<Vec<Corner>> {
     let mut from: FxHashMap<u32, Vec<usize>> = FxHashMap::default();
     let mut to: FxHashMap<u32, usize> = FxHashMap::default();

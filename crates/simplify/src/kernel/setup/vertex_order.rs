@@ -1,7 +1,8 @@
-//! The order that the engine has the vertices in: along a curve that fills space, whatever the file's.
+//! The order of the vertices in the kernel: along a space-filling curve, whatever the order of the
+//! file.
 //!
-//! What is near is near in memory then, and a run of vertices is a part of the surface with a short
-//! border.
+//! Vertices near each other are then near in memory, and a run of vertices is a part of the surface
+//! with a short border.
 
 use glam::Vec3;
 use meshlod_mesh::{Mesh, VertexId};
@@ -10,18 +11,18 @@ use rayon::prelude::*;
 
 use crate::kernel::mesh::local_frame::Frame;
 
-/// The two names of each vertex.
+/// The two ids of each vertex.
 pub(crate) struct Order {
-    /// The engine's, by the input's.
+    /// The kernel's ids, by those of the input.
     ids: Vec<u32>,
-    /// The input's, by the engine's.
+    /// The input's ids, by those of the kernel.
     inputs: Vec<u32>,
 }
 
 impl Order {
-    /// The order of a mesh's vertices, and their places in the frame in that order.
+    /// Orders the vertices of a mesh. Also returns their places in the frame, in that order.
     pub(crate) fn new(mesh: &Mesh, frame: &Frame) -> (Self, Vec<Vec3>) {
-        // Unused vertices may be anywhere; those that are used are within this.
+        // Unused vertices may be anywhere; used ones are within this.
         let within = Vec3::splat((mesh.faces.len() as f32).sqrt());
         let near = |p: Vec3| p.clamp(-within, within).to_array();
         let keys: Vec<[f32; 3]> =
@@ -36,27 +37,28 @@ impl Order {
         (Self { ids, inputs }, places)
     }
 
-    /// The engine's name of a vertex.
+    /// Returns the kernel's id of a vertex.
     #[inline]
     pub(crate) fn id(&self, input: VertexId) -> u32 {
         self.ids[input.index()]
     }
 
-    /// The input's name of a vertex.
+    /// Returns the input's id of a vertex.
     #[inline]
     pub(crate) fn input(&self, id: u32) -> u32 {
         self.inputs[id as usize]
     }
 
-    /// The engine's names of a face's corners.
+    /// Returns the kernel's ids of a face's corners.
     #[inline(always)]
     pub(crate) fn face(&self, &[a, b, c]: &[VertexId; 3]) -> [u32; 3] {
-        // `map` over an array is not inlined, and was a tenth of all time.
+        // `map` over an array is not inlined, and took a tenth of the time.
         [self.ids[a.index()], self.ids[b.index()], self.ids[c.index()]]
     }
 }
 
-/// The faces of a mesh by the engine's names, or those on copies of vertices.
+/// Returns the faces of a mesh in the kernel's ids, or those with copies of vertices if there are
+/// any.
 pub(crate) fn numbers<'a>(
     mesh: &'a Mesh,
     order: &'a Order,
