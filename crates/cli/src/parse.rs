@@ -182,13 +182,6 @@ pub fn methods() -> String {
     format!("Simplification method: {}; the verb compare shows which suits a mesh", names())
 }
 
-/// Returns the help text of `--method` where the default depends on the mesh.
-pub fn methods_or_suited() -> String {
-    let [one, other] = [Method::LindstromTurk, Method::Qem].map(Method::name);
-    let exception = "for attributes together with ties or removable components";
-    format!("{} [default: {one}; {other} {exception}]", methods())
-}
-
 fn names() -> String {
     Method::ALL.map(Method::name).join(", ")
 }

@@ -70,7 +70,8 @@ struct TargetArgs {
     /// Target ratio of the faces: 10% or 0.1
     #[arg(long, value_name = "RATIO", value_parser = parse::ratio, allow_hyphen_values = true)]
     ratio: Option<f64>,
-    /// Largest error by the method's own estimate: 0.5 in model units, or 0.1% of the diagonal
+    /// Largest distance from the input: 0.5 in model units, or 0.1% of the diagonal. lindstrom-turk
+    /// and qem measure it as they go, both ways; the other methods stop by their own estimate
     #[arg(long, value_name = "BOUND", value_parser = parse::bound, allow_hyphen_values = true)]
     error: Option<Bound>,
 }
@@ -78,9 +79,9 @@ struct TargetArgs {
 /// Method and its options.
 #[derive(Args)]
 pub struct MethodArgs {
-    #[arg(long, value_name = "NAME", value_parser = parse::method,
-        help = parse::methods_or_suited())]
-    method: Option<Method>,
+    #[arg(long, value_name = "NAME", default_value = Method::default().name(),
+        value_parser = parse::method, help = parse::methods())]
+    method: Method,
     #[command(flatten)]
     pub fuse: FuseArgs,
     #[command(flatten)]
@@ -118,7 +119,7 @@ impl MethodArgs {
     /// Builds the simplification options for a scene.
     pub fn options(&self, input: &InputScene<'_>, session: &Session) -> Result<Options, Failure> {
         let options = Options {
-            method: self.method,
+            method: Some(self.method),
             weights: self.weights(),
             boundary_weight: self.boundary,
             ..Options::default()
