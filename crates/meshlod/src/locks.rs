@@ -24,7 +24,7 @@ pub fn join_locks(scene: &Scene, of_meshes: &[Locks]) -> Result<Locks, SimplifyE
         let Some(own) = of_meshes.get(i) else { continue };
         let (found, expected) = (own.of_vertex.len(), positions.len());
         if found != 0 && found != expected {
-            return Err(SimplifyError::BadMask { found, expected });
+            return Err(SimplifyError::LockCount { found, expected });
         }
         all.of_vertex[start..start + found].copy_from_slice(&own.of_vertex);
         for (tie, members) in own.ties.iter().enumerate() {
@@ -48,7 +48,7 @@ pub(crate) fn split(scene: &Scene, all: &Locks) -> Result<Vec<Locks>, SimplifyEr
     let starts = starts(scene.meshes.iter().map(|mesh| mesh.mesh.positions.len()));
     let (found, expected) = (all.of_vertex.len(), starts[scene.meshes.len()]);
     if found != 0 && found != expected {
-        return Err(SimplifyError::BadMask { found, expected });
+        return Err(SimplifyError::LockCount { found, expected });
     }
     let mut of_meshes = vec![Locks::default(); scene.meshes.len()];
     if *all == Locks::default() {

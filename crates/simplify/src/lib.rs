@@ -40,7 +40,7 @@ pub use options::{AttributeWeights, Method, Options, Report, SimplifyError, Targ
 pub use refusal::{Refusal, Refusals};
 pub use simplifier::Simplifier;
 pub use surface::contracted::{Contracted, Freedom};
-pub use surface::neighbourhood::{Dying, Neighbourhood, RingVertex, Spoke};
+pub use surface::neighbourhood::{Neighbourhood, RemovedFace, RingVertex, Spoke};
 pub use surface::{Placed, Surface};
 
 /// Simplifies a mesh and returns the result with a report.

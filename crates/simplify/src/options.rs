@@ -248,7 +248,7 @@ pub enum SimplifyError {
     },
     /// The locks have a different number of vertices than the mesh.
     #[error("the locks cover {found} vertices, but the mesh has {expected}")]
-    BadMask {
+    LockCount {
         /// Number of vertices in the locks.
         found: usize,
         /// Number of vertices of the mesh.

@@ -375,7 +375,7 @@ fn turned(mesh: &Mesh) -> usize {
 }
 
 #[test]
-fn hardly_a_face_turns_over_in_its_texture() {
+fn few_faces_flip_in_their_texture() {
     // Bent to and fro until it nearly folds, on a hill with bends of its own.
     let mut hill = fixtures::grid(100);
     hill.positions.iter_mut().for_each(|[x, y, z]| *z = 4.0 * (*x * 0.4).sin() * (*y * 0.3).cos());

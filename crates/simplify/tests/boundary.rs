@@ -61,7 +61,7 @@ fn a_higher_weight_keeps_a_boundary_closer() {
 }
 
 #[test]
-fn without_one_it_is_the_weight_of_the_method() {
+fn the_default_weight_is_that_of_the_method() {
     let mesh = hills();
     for (method, weight) in
         [(Method::LindstromTurk, 9.0), (Method::LindstromTurkFaces, 9.0), (Method::Qem, 2.0)]
@@ -73,7 +73,7 @@ fn without_one_it_is_the_weight_of_the_method() {
 }
 
 #[test]
-fn nothing_and_a_great_deal_are_weights() {
+fn zero_and_huge_weights_are_accepted() {
     let mesh = hills();
     for method in [Method::LindstromTurk, Method::Qem] {
         for weight in [0.0, 1e300] {
@@ -86,7 +86,7 @@ fn nothing_and_a_great_deal_are_weights() {
 }
 
 #[test]
-fn what_is_no_weight_is_refused() {
+fn invalid_weights_are_refused() {
     for weight in [-1.0, f64::NAN, f64::INFINITY] {
         let refused =
             simplify(&hills(), Target::Ratio(0.5), &options(Method::LindstromTurk, Some(weight)));

@@ -170,7 +170,7 @@ fn smooth_samples_reach_their_target() {
 }
 
 #[test]
-fn what_stopped_it_is_reported() {
+fn the_reason_for_stopping_is_reported() {
     for runner in Runner::all() {
         let (level, report) = runner.run(&fixtures::tetrahedron(), 0.0);
         assert_eq!(level.faces.len(), 4);
@@ -210,14 +210,14 @@ impl Observe for Turned {
         for spoke in neighbourhood.spokes() {
             self.0.entry(spoke.face).or_default()[1] = surface.area_normal(spoke.face);
         }
-        for dying in neighbourhood.dying() {
-            self.0.remove(&dying.face);
+        for removed in neighbourhood.removed_faces() {
+            self.0.remove(&removed.face);
         }
     }
 }
 
 #[test]
-fn no_step_turns_a_face_over() {
+fn no_step_flips_a_face() {
     let fish = samples::fish(800);
     let bare_fish = bare(fish.clone());
     for mesh in [samples::knot(1500), samples::gyroid(1500), samples::terrain(800), fish, bare_fish]
@@ -238,7 +238,7 @@ fn no_step_turns_a_face_over() {
 }
 
 #[test]
-fn volume_is_conserved_by_those_who_say_so() {
+fn methods_that_claim_to_conserve_volume_do() {
     for mesh in [samples::torus(1500), samples::knot(1500), samples::gyroid(1500)] {
         let volume = |mesh: &Mesh| -> f64 {
             let sixfold = |&face: &[VertexId; 3]| {
@@ -260,7 +260,7 @@ fn volume_is_conserved_by_those_who_say_so() {
 }
 
 #[test]
-fn where_the_volume_is_not_conserved_is_told() {
+fn contractions_that_cannot_conserve_volume_are_reported() {
     for runner in Runner::all().filter(|runner| runner.method.conserves_volume()) {
         let (_, report) = runner.run(&samples::terrain(800), 0.1);
         let Unconserved { contractions, bounds } = report.volume.open;
@@ -411,7 +411,7 @@ fn the_seam_of_a_strip_keeps_its_two_wedges() {
 }
 
 #[test]
-fn what_is_no_mesh_is_refused() {
+fn invalid_meshes_are_refused() {
     let empty = Mesh::default();
     assert!(simplify(&empty, Target::Faces(1), &Options::default()).is_err());
     let mut nan = fixtures::tetrahedron();
@@ -458,7 +458,7 @@ proptest! {
 }
 
 #[test]
-fn normals_of_its_own_at_every_face_stop_nothing() {
+fn flat_shading_does_not_block_contraction() {
     let mut mesh = samples::torus(2000);
     let corners = (0..mesh.faces.len() as u32 * 3).map(WedgeId).collect::<Vec<_>>();
     let normals = mesh.faces.iter().flat_map(|&face| {

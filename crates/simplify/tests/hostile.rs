@@ -115,7 +115,7 @@ fn joints_are_never_blended() {
 }
 
 #[test]
-fn a_wedge_at_two_vertices_is_no_mesh() {
+fn a_wedge_at_two_vertices_is_refused() {
     let mut mesh = with_layer(LayerKind::Other, |_| [0.0; 4]);
     mesh.attributes.as_mut().unwrap().corners[0].swap(0, 1);
     let error = simplify(&mesh, Target::Ratio(0.5), &Options::default()).unwrap_err();

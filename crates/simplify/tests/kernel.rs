@@ -336,7 +336,7 @@ fn volume_stays_and_runs_are_alike() {
 }
 
 #[test]
-fn what_was_found_in_the_input_is_told_as_by_the_general_engine() {
+fn both_engines_report_the_same_input() {
     for method in KERNEL_METHODS {
         let mut dirty = samples::terrain(500);
         dirty.attributes = None;
@@ -381,7 +381,7 @@ fn of_level(level: &Mesh) -> Vec<[[u64; 3]; 3]> {
 }
 
 #[test]
-fn what_observers_see_is_the_level_to_the_bit() {
+fn observers_see_exactly_the_level() {
     for method in KERNEL_METHODS {
         for (name, mesh) in meshes() {
             let mesh = Mesh { attributes: None, ..mesh };
@@ -399,7 +399,8 @@ fn what_observers_see_is_the_level_to_the_bit() {
                     true => simplifier.run(target, &mut history).unwrap(),
                     false => simplifier.run(target, &mut ()).unwrap(),
                 };
-                let died = (0..history.contractions().len()).map(|i| history.died(i).len()).sum();
+                let died =
+                    (0..history.contractions().len()).map(|i| history.removed_faces(i).len()).sum();
                 let gone = if is_seen { before - simplifier.live_faces() } else { 0 };
                 assert_eq!(gone, died, "{name} to {ratio}");
                 assert_eq!(

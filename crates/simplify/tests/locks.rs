@@ -362,7 +362,7 @@ fn both_engines_protect_as_much() {
 }
 
 #[test]
-fn a_bound_is_of_the_error_and_not_of_its_cost() {
+fn an_error_bound_ignores_the_cost_of_protection() {
     let (mesh, locks) = halved(Lock::Protected);
     for method in Method::ALL {
         let faces = |locks: &Locks| {
@@ -389,7 +389,7 @@ fn locks_of_another_mesh_are_refused_by_name() {
     let [v0, v1, v8] = [0, 1, 8].map(VertexId);
     assert_eq!(
         refused(vec![Lock::Locked; 7], &[]),
-        Some(SimplifyError::BadMask { found: 7, expected: 8 })
+        Some(SimplifyError::LockCount { found: 7, expected: 8 })
     );
     assert_eq!(
         refused(vec![], &[&[], &[0, 8]]),

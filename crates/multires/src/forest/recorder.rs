@@ -172,8 +172,8 @@ impl Recorder {
         }
         let kept = hood.contracted()[placed.kept];
         live[kept.index()] = LiveNode { node, level, error, radius };
-        for dying in hood.dying() {
-            forest.created_by[self.forest_face[dying.face.index()] as usize] =
+        for removed in hood.removed_faces() {
+            forest.created_by[self.forest_face[removed.face.index()] as usize] =
                 node - forest.vertices as u32;
         }
     }
@@ -198,7 +198,11 @@ impl Recorder {
             own.map(|spoke| [spoke.a, spoke.b].map(|at| node(hood.ring()[at as usize].id)));
         let non_fan = NonFanSplit {
             second: around.collect(),
-            created_faces: hood.dying().iter().map(|d| surface.face(d.face).map(node)).collect(),
+            created_faces: hood
+                .removed_faces()
+                .iter()
+                .map(|d| surface.face(d.face).map(node))
+                .collect(),
         };
         forest.non_fan_splits.insert(forest.updates.len() as u32, non_fan);
     }
@@ -213,7 +217,7 @@ impl Observe for Recorder {
         if !self.is_complete(surface) {
             return;
         }
-        self.live_faces -= hood.dying().len();
+        self.live_faces -= hood.removed_faces().len();
         let fan = open_end(hood);
         let run = fan.and_then(|_| Run::of(surface, hood, placed.kept));
         if run.is_none() {
@@ -306,11 +310,11 @@ fn wings(
     [first, second]: [VertexId; 2],
 ) -> Option<[Option<usize>; 2]> {
     let mut wings = [None; 2];
-    for dying in hood.dying() {
-        let [a, b, c] = surface.face(dying.face);
+    for removed in hood.removed_faces() {
+        let [a, b, c] = surface.face(removed.face);
         let is = |from, to| [(a, b), (b, c), (c, a)].contains(&(from, to));
         let wing = &mut wings[usize::from(!is(second, first))];
-        if wing.replace(dying.apex()?).is_some() {
+        if wing.replace(removed.apex()?).is_some() {
             return None;
         }
     }

@@ -62,8 +62,8 @@ impl Candidates for EdgeCandidates {
     }
 
     fn update(&self, neighbourhood: &Neighbourhood, _: VertexId, sink: &mut dyn CandidateSink) {
-        close_dying(neighbourhood, sink);
-        for wing in neighbourhood.dying.iter().filter_map(|dying| dying.apex()) {
+        close_removed(neighbourhood, sink);
+        for wing in neighbourhood.removed_faces.iter().filter_map(|removed| removed.apex()) {
             keep_one(neighbourhood, wing as u32, sink);
         }
     }
@@ -112,7 +112,7 @@ impl Candidates for FaceAndEdgeCandidates {
     }
 
     fn update(&self, neighbourhood: &Neighbourhood, kept: VertexId, sink: &mut dyn CandidateSink) {
-        close_dying(neighbourhood, sink);
+        close_removed(neighbourhood, sink);
         for (place, r) in neighbourhood.ring.iter().enumerate() {
             if [kept, r.id].iter().any(|&v| special(sink.surface(), v)) {
                 keep_one(neighbourhood, place as u32, sink);
@@ -127,10 +127,10 @@ fn special(surface: &Surface, v: VertexId) -> bool {
     surface.flags(v).any(Flags::BOUNDARY.or(Flags::PINNED).or(Flags::SEAM).or(Flags::TIED))
 }
 
-fn close_dying(neighbourhood: &Neighbourhood, sink: &mut dyn CandidateSink) {
-    for dying in &neighbourhood.dying {
-        (0..3).for_each(|k| sink.close(CandidateId::side(dying.face, k)));
-        sink.close(CandidateId::whole(dying.face));
+fn close_removed(neighbourhood: &Neighbourhood, sink: &mut dyn CandidateSink) {
+    for removed in &neighbourhood.removed_faces {
+        (0..3).for_each(|k| sink.close(CandidateId::side(removed.face, k)));
+        sink.close(CandidateId::whole(removed.face));
     }
 }
 

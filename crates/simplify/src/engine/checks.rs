@@ -27,11 +27,13 @@ const LEAST_COSINE: f64 = 0.2;
 /// join two boundaries across the surface, and to remove the last faces of a component.
 fn shape(surface: &Surface, neighbourhood: &Neighbourhood) -> Result<(), Refusal> {
     let inner = if neighbourhood.contracted.len() == 2 { 2 } else { 4 };
-    if neighbourhood.dying.len() > inner {
+    if neighbourhood.removed_faces.len() > inner {
         return Err(Refusal::NonManifold);
     }
     let on_boundary = |&v: &VertexId| surface.flags(v).any(Flags::BOUNDARY);
-    if neighbourhood.dying.len() == inner && neighbourhood.contracted.iter().all(on_boundary) {
+    if neighbourhood.removed_faces.len() == inner
+        && neighbourhood.contracted.iter().all(on_boundary)
+    {
         return Err(Refusal::Boundary);
     }
     lasting(neighbourhood)
@@ -45,7 +47,7 @@ fn lasting(neighbourhood: &Neighbourhood) -> Result<(), Refusal> {
             .iter()
             .any(|spoke| spoke.a as usize == wing || spoke.b as usize == wing)
     };
-    let mut wings = neighbourhood.dying.iter().filter_map(|dying| dying.apex());
+    let mut wings = neighbourhood.removed_faces.iter().filter_map(|removed| removed.apex());
     if wings.all(hangs_on) && !neighbourhood.spokes.is_empty() {
         Ok(())
     } else {
@@ -58,7 +60,8 @@ fn lasting(neighbourhood: &Neighbourhood) -> Result<(), Refusal> {
 fn link(_: &Surface, neighbourhood: &Neighbourhood) -> Result<(), Refusal> {
     let apart = |adjacent: u8, wing: u8| adjacent.count_ones() < 2 || adjacent == wing;
     let ok = neighbourhood.ring.iter().all(|r| {
-        apart(r.adjacent, r.wing) && (r.adjacent.count_ones() < 3 || neighbourhood.dying.len() == 1)
+        apart(r.adjacent, r.wing)
+            && (r.adjacent.count_ones() < 3 || neighbourhood.removed_faces.len() == 1)
     });
     if ok { Ok(()) } else { Err(Refusal::Link) }
 }
@@ -70,7 +73,7 @@ fn closing(_: &Surface, neighbourhood: &Neighbourhood) -> Result<(), Refusal> {
     let across = neighbourhood.spokes.iter().filter(|spoke| shared(spoke.a) && shared(spoke.b));
     // The two sides of a thin sheet share one apex: removing both would also remove what closes the
     // edges to it.
-    let leaf = matches!(neighbourhood.dying[..], [a, b] if a.apex() == b.apex());
+    let leaf = matches!(neighbourhood.removed_faces[..], [a, b] if a.apex() == b.apex());
     if across.count() < 2 && !leaf { Ok(()) } else { Err(Refusal::Link) }
 }
 

@@ -44,7 +44,7 @@ pub(crate) const PROTECTION: f64 = 2.0;
 pub(crate) fn validate(locks: &Locks, mesh: &Mesh) -> Result<(), SimplifyError> {
     let (found, expected) = (locks.of_vertex.len(), mesh.positions.len());
     if found != 0 && found != expected {
-        return Err(SimplifyError::BadMask { found, expected });
+        return Err(SimplifyError::LockCount { found, expected });
     }
     let mut seen = vec![false; if locks.ties.is_empty() { 0 } else { expected }];
     for (tie, members) in locks.ties.iter().enumerate() {

@@ -253,7 +253,7 @@ fn contract_edge(
     observer.before(surface, neighbourhood, placed);
     surface.contract(neighbourhood, placed);
     observer.after(surface, neighbourhood, placed);
-    observer.gone(neighbourhood.dying.len());
+    observer.gone(neighbourhood.removed_faces.len());
 }
 
 /// Contracts a face as two edges: its other corners are merged into the kept one in turn. Wedges,

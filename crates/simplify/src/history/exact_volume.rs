@@ -364,7 +364,7 @@ mod tests {
     }
 
     #[test]
-    fn in_doubles_nothing_is_left_either() {
+    fn doubles_leave_no_residual() {
         let mesh = samples::knot(20_000);
         let mut level = coarse(&mesh, 0.1);
         level.positions.iter_mut().flatten().for_each(|x| *x *= 1.0 + 1e-8);
@@ -396,7 +396,7 @@ mod tests {
     }
 
     #[test]
-    fn a_mesh_of_four_faces_says_what_is_left() {
+    fn a_mesh_of_four_faces_reports_its_residual() {
         let mesh = fixtures::tetrahedron();
         let mut level = mesh.clone();
         level.positions[0] = level.positions[0].map(|x| x - 1e-6);
@@ -406,7 +406,7 @@ mod tests {
     }
 
     #[test]
-    fn what_cannot_be_is_refused_and_left_alone() {
+    fn impossible_corrections_are_refused_and_change_nothing() {
         let settle = |level: &Mesh, mesh: &Mesh| {
             let mut moved = level.clone();
             let found = conserve_volume(&mut moved, mesh, Digits::F32, &Locks::default());

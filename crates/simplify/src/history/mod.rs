@@ -24,7 +24,7 @@ pub struct Contraction {
     /// Position of the kept vertex after, in model units.
     pub to: [f64; 3],
     moved: u32,
-    died: u32,
+    removed_faces: u32,
     blended: u32,
 }
 
@@ -42,7 +42,7 @@ pub(crate) struct Moved {
 pub struct History {
     contractions: Vec<Contraction>,
     moved: Vec<Moved>,
-    died: Vec<FaceId>,
+    removed_faces: Vec<FaceId>,
     blended: Vec<WedgeId>,
     /// Values of the blended wedges before, all layers of a wedge in sequence.
     values: Vec<f32>,
@@ -51,7 +51,7 @@ pub struct History {
 /// Lists that the contractions refer to by their start indices.
 pub(crate) struct Lists {
     pub(crate) moved: Vec<Moved>,
-    pub(crate) died: Vec<FaceId>,
+    pub(crate) removed_faces: Vec<FaceId>,
     pub(crate) blended: Vec<WedgeId>,
     pub(crate) values: Vec<f32>,
 }
@@ -60,7 +60,7 @@ impl Contraction {
     /// Returns the starts of the moved corners, removed faces and blended wedges; each list ends
     /// where the next contraction's starts.
     pub(crate) fn starts(&self) -> [u32; 3] {
-        [self.moved, self.died, self.blended]
+        [self.moved, self.removed_faces, self.blended]
     }
 }
 
@@ -71,19 +71,22 @@ impl History {
     }
 
     /// Returns the faces removed by the contraction at `index`.
-    pub fn died(&self, index: usize) -> &[FaceId] {
-        let end = self.contractions.get(index + 1).map_or(self.died.len(), |c| c.died as usize);
-        &self.died[self.contractions[index].died as usize..end]
+    pub fn removed_faces(&self, index: usize) -> &[FaceId] {
+        let end = self
+            .contractions
+            .get(index + 1)
+            .map_or(self.removed_faces.len(), |c| c.removed_faces as usize);
+        &self.removed_faces[self.contractions[index].removed_faces as usize..end]
     }
 
     /// Returns the number of faces removed in total.
-    pub(crate) fn all_died(&self) -> usize {
-        self.died.len()
+    pub(crate) fn removed_face_count(&self) -> usize {
+        self.removed_faces.len()
     }
 
     pub(crate) fn into_lists(self) -> Lists {
-        let Self { moved, died, blended, values, .. } = self;
-        Lists { moved, died, blended, values }
+        let Self { moved, removed_faces, blended, values, .. } = self;
+        Lists { moved, removed_faces, blended, values }
     }
 }
 
@@ -96,7 +99,7 @@ impl Observe for History {
             from: surface.position(kept).into(),
             to: placed.position.into(),
             moved: self.moved.len() as u32,
-            died: self.died.len() as u32,
+            removed_faces: self.removed_faces.len() as u32,
             blended: self.blended.len() as u32,
         });
         let moved = neighbourhood.spokes().iter().filter(|spoke| spoke.owner() != placed.kept);
@@ -104,7 +107,7 @@ impl Observe for History {
             corner: CandidateId::side(spoke.face, spoke.corner()),
             wedge: surface.wedges.as_ref().map_or(WedgeId(0), |w| w.at(spoke.face, spoke.corner())),
         }));
-        self.died.extend(neighbourhood.dying().iter().map(|dying| dying.face));
+        self.removed_faces.extend(neighbourhood.removed_faces().iter().map(|removed| removed.face));
         if let Some(wedges) = &surface.wedges {
             for wedge in wedges.changing(neighbourhood, placed.kept) {
                 self.blended.push(wedge);
@@ -125,9 +128,9 @@ impl Observe for History {
             from: place,
             to: place,
             moved: self.moved.len() as u32,
-            died: self.died.len() as u32,
+            removed_faces: self.removed_faces.len() as u32,
             blended: self.blended.len() as u32,
         });
-        self.died.extend_from_slice(faces);
+        self.removed_faces.extend_from_slice(faces);
     }
 }

@@ -74,7 +74,7 @@ fn direction(creases: &Creases, neighbourhood: &Neighbourhood, normal: DVec3) ->
         .spokes()
         .iter()
         .map(|s| s.face)
-        .chain(neighbourhood.dying().iter().map(|d| d.face));
+        .chain(neighbourhood.removed_faces().iter().map(|d| d.face));
     let sum = faces.fold(normal, |sum, face| {
         let other = creases.normal(face);
         sum + (1.0 - normal.dot(other)) * other

@@ -92,10 +92,10 @@ impl Memory for Stars {
                 star.add(new);
             }
         }
-        for dying in neighbourhood.dying() {
-            if let Some(apex) = dying.apex() {
+        for removed in neighbourhood.removed_faces() {
+            if let Some(apex) = removed.apex() {
                 self.0[neighbourhood.ring()[apex].id.index()]
-                    .remove(surface.area_normal(dying.face));
+                    .remove(surface.area_normal(removed.face));
             }
         }
         self.0[neighbourhood.contracted()[placed.kept].index()] = joined;

@@ -131,8 +131,8 @@ impl Samples {
                 .filter(|&i| self.samples[i as usize].side != Some(across))
                 .for_each(&mut each);
         }
-        for dying in neighbourhood.dying() {
-            self.of_face(dying.face).for_each(&mut each);
+        for removed in neighbourhood.removed_faces() {
+            self.of_face(removed.face).for_each(&mut each);
         }
     }
 
@@ -174,11 +174,13 @@ impl Samples {
                 }
             }
         }
-        for dying in neighbourhood.dying().iter().filter(|dying| self.rims(dying.face) != 0) {
-            let Some(apex) = dying.apex() else { continue };
-            let corner = surface.corner(dying.face, neighbourhood.ring()[apex].id);
+        for removed in
+            neighbourhood.removed_faces().iter().filter(|removed| self.rims(removed.face) != 0)
+        {
+            let Some(apex) = removed.apex() else { continue };
+            let corner = surface.corner(removed.face, neighbourhood.ring()[apex].id);
             let at_apex = 1 << corner | 1 << ((corner + 2) % 3);
-            if self.rims(dying.face) & at_apex != 0 {
+            if self.rims(removed.face) & at_apex != 0 {
                 on_rim(apex as u32);
             }
         }
@@ -217,8 +219,8 @@ impl Memory for Samples {
 impl Samples {
     /// Unlinks the moving samples from the faces around.
     fn unlink(&mut self, neighbourhood: &Neighbourhood) {
-        for dying in neighbourhood.dying() {
-            self.first[dying.face.index()] = NONE;
+        for removed in neighbourhood.removed_faces() {
+            self.first[removed.face.index()] = NONE;
         }
         for spoke in neighbourhood.spokes() {
             let across = ((spoke.corner() + 1) % 3) as u8;

@@ -65,8 +65,8 @@ pub(crate) fn old_faces(
         let corner = contracted[spoke.owner()];
         each((ring(spoke.a) - corner).cross(ring(spoke.b) - corner), corner);
     }
-    for dying in neighbourhood.dying() {
-        let [a, b, c] = surface.face(dying.face).map(|v| surface.position(v) - origin);
+    for removed in neighbourhood.removed_faces() {
+        let [a, b, c] = surface.face(removed.face).map(|v| surface.position(v) - origin);
         each((b - a).cross(c - a), a);
     }
 }

@@ -326,13 +326,13 @@ impl Surface {
         for spoke in neighbourhood.spokes.iter().filter(|spoke| spoke.owner() != placed.kept) {
             self.faces[spoke.face.index()].vertices[spoke.corner()] = kept;
         }
-        for dying in &neighbourhood.dying {
-            self.faces[dying.face.index()].alive = false;
-            if let Some(apex) = dying.apex() {
+        for removed in &neighbourhood.removed_faces {
+            self.faces[removed.face.index()].alive = false;
+            if let Some(apex) = removed.apex() {
                 self.remove_from_star(neighbourhood.ring[apex].id);
             }
         }
-        self.live_faces -= neighbourhood.dying.len();
+        self.live_faces -= neighbourhood.removed_faces.len();
         for &gone in neighbourhood.contracted.iter().filter(|&&v| v != kept) {
             if self.flags(gone).any(Flags::TIED) {
                 self.ties.leave(gone);

@@ -51,12 +51,12 @@ impl Nearby {
             let chart = becomes.or(follows).map_or(own, |pair| pair[kept]);
             near(spoke.face, becomes.map(|pair| pair[kept]), wedges.chart(chart))
         });
-        let dying = neighbourhood.dying.iter().map(|dying| {
-            let corner = surface.corner(dying.face, neighbourhood.contracted[kept]);
-            let own = wedges.at(dying.face, corner);
-            near(dying.face, Some(own), wedges.chart(own))
+        let removed = neighbourhood.removed_faces.iter().map(|removed| {
+            let corner = surface.corner(removed.face, neighbourhood.contracted[kept]);
+            let own = wedges.at(removed.face, corner);
+            near(removed.face, Some(own), wedges.chart(own))
         });
-        Self(spokes.chain(dying).collect())
+        Self(spokes.chain(removed).collect())
     }
 
     /// Returns the points from which this wedge of the new vertex takes its shading and its texture

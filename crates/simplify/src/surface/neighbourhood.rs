@@ -45,13 +45,13 @@ impl Spoke {
 
 /// Face that the contraction removes: two or all three of its corners are contracted.
 #[derive(Clone, Copy, Debug)]
-pub struct Dying {
+pub struct RemovedFace {
     /// Face id.
     pub face: FaceId,
     apex: u32,
 }
 
-impl Dying {
+impl RemovedFace {
     const NO_APEX: u32 = u32::MAX;
 
     /// Returns the index in the ring of the corner that is not contracted, a wing.
@@ -81,7 +81,7 @@ pub struct Neighbourhood {
     pub(crate) contracted: Contracted,
     pub(crate) freedom: Freedom,
     pub(crate) spokes: Vec<Spoke>,
-    pub(crate) dying: Vec<Dying>,
+    pub(crate) removed_faces: Vec<RemovedFace>,
     pub(crate) ring: Vec<RingVertex>,
     /// Wedges that meet along the edge: at its first end and at its second.
     pub(crate) wedge_pairs: Vec<[WedgeId; 2]>,
@@ -104,8 +104,8 @@ impl Neighbourhood {
     }
 
     /// Returns the removed faces.
-    pub fn dying(&self) -> &[Dying] {
-        &self.dying
+    pub fn removed_faces(&self) -> &[RemovedFace] {
+        &self.removed_faces
     }
 
     /// Returns the ring vertices.
@@ -166,7 +166,7 @@ impl Neighbourhood {
     fn clear(&mut self, contracted: Contracted) {
         self.contracted = contracted;
         self.spokes.clear();
-        self.dying.clear();
+        self.removed_faces.clear();
         self.ring.clear();
     }
 
@@ -203,9 +203,9 @@ impl Neighbourhood {
             let apex = match (bit_a, bit_b) {
                 (0, _) => self.ring_place(a, mask, mask),
                 (_, 0) => self.ring_place(b, mask, mask),
-                _ => Dying::NO_APEX,
+                _ => RemovedFace::NO_APEX,
             };
-            self.dying.push(Dying { face, apex });
+            self.removed_faces.push(RemovedFace { face, apex });
         }
     }
 

@@ -87,7 +87,7 @@ impl MergeTree {
             if !is_new(kept) || !is_new(gone) {
                 return Err(HistoryError::Foreign(turn));
             }
-            let died = history.died(turn);
+            let died = history.removed_faces(turn);
             for face in died {
                 let corners = mesh.faces.get(face.index()).ok_or(HistoryError::Foreign(turn))?;
                 let shown = corners.map(|v| this.shown(v, turn, &mut pointers));

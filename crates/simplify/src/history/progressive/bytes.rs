@@ -190,13 +190,13 @@ fn put_splits(out: &mut Vec<u8>, splits: &VertexSplits) {
         put(out, split.kept.0);
         put(out, split.removed.0);
         split.position.iter().for_each(|x| out.extend_from_slice(&x.to_le_bytes()));
-        for list in [splits.moved_range(i), splits.died_range(i), splits.blended_range(i)] {
+        for list in [splits.moved_range(i), splits.removed_range(i), splits.blended_range(i)] {
             put(out, list.len() as u32);
         }
     }
     splits.moved.iter().for_each(|corner| put(out, corner.0));
     splits.wedges.iter().for_each(|wedge| put(out, wedge.0));
-    splits.died.iter().for_each(|face| put(out, face.0));
+    splits.removed_faces.iter().for_each(|face| put(out, face.0));
     splits.blended.iter().for_each(|wedge| put(out, wedge.0));
     put_floats(out, &splits.values);
 }
@@ -339,13 +339,13 @@ impl<'b> ByteReader<'b> {
             let mut record = ByteReader { bytes: record, at: 0 };
             let [kept, removed] = [record.number("a split")?, record.number("a split")?];
             let position = record.doubles(1)?[0];
-            let [moved, died, blended] = starts;
+            let [moved, removed_faces, blended] = starts;
             splits.push(VertexSplit {
                 kept: VertexId(kept),
                 removed: VertexId(removed),
                 position,
                 moved,
-                died,
+                removed_faces,
                 blended,
             });
             for start in &mut starts {
@@ -354,7 +354,7 @@ impl<'b> ByteReader<'b> {
                 *start = sum.ok_or(ProgressiveError::Bad { what: "split", index, why })?;
             }
         }
-        let [moved, died, blended] = starts.map(|end| end as usize);
+        let [moved, removed_faces, blended] = starts.map(|end| end as usize);
         let width = attributes.map_or(0, |a| a.layers.iter().map(|layer| layer.width).sum());
         let own = if attributes.is_some() { moved } else { 0 };
         let values = blended.saturating_mul(width);
@@ -362,7 +362,11 @@ impl<'b> ByteReader<'b> {
             splits,
             moved: self.numbers(moved, "moved corners")?.into_iter().map(CandidateId).collect(),
             wedges: self.numbers(own, "wedges of corners")?.into_iter().map(WedgeId).collect(),
-            died: self.numbers(died, "new faces")?.into_iter().map(FaceId).collect(),
+            removed_faces: self
+                .numbers(removed_faces, "new faces")?
+                .into_iter()
+                .map(FaceId)
+                .collect(),
             blended: self.numbers(blended, "blended wedges")?.into_iter().map(WedgeId).collect(),
             values: self.floats(values, "blended values")?,
         })

@@ -57,7 +57,7 @@ fn ranges(read: &Progressive) -> Result<(), ProgressiveError> {
         if !corners.iter().all(|corner| is_face(corner.face()) && corner.slot() < 3) {
             return bad(index, "it moves a corner that does not exist");
         }
-        if !splits.died[splits.died_range(index)].iter().all(|&face| is_face(face)) {
+        if !splits.removed_faces[splits.removed_range(index)].iter().all(|&face| is_face(face)) {
             return bad(index, "it adds a face that does not exist");
         }
         if splits.blended[splits.blended_range(index)].iter().any(|w| w.index() >= wedges) {
@@ -79,7 +79,7 @@ fn fits(read: &Progressive, index: usize) -> Result<(), &'static str> {
     let (mesh, splits) = (&read.mesh, &read.splits);
     let kept = splits.splits[index].kept;
     let corners = &splits.moved[splits.moved_range(index)];
-    let died = &splits.died[splits.died_range(index)];
+    let removed_faces = &splits.removed_faces[splits.removed_range(index)];
     if corners.len() > MOST_CORNERS {
         return Err("it moves more corners than a contraction can");
     }
@@ -93,10 +93,10 @@ fn fits(read: &Progressive, index: usize) -> Result<(), &'static str> {
         }
     }
     // A component that vanished may have many faces.
-    let mut died = died.to_vec();
-    died.sort_unstable();
-    let there = died.iter().any(|face| read.alive[face.index()]);
-    let twice = died.windows(2).any(|pair| pair[0] == pair[1]);
+    let mut removed_faces = removed_faces.to_vec();
+    removed_faces.sort_unstable();
+    let there = removed_faces.iter().any(|face| read.alive[face.index()]);
+    let twice = removed_faces.windows(2).any(|pair| pair[0] == pair[1]);
     if there || twice { Err("it adds a face that is already alive") } else { Ok(()) }
 }
 
@@ -134,8 +134,8 @@ impl WedgeVertices {
             let corner = read.splits.moved[i];
             self.enter(read, corner.face().index(), corner.slot())?;
         }
-        for i in read.splits.died_range(index) {
-            let face = read.splits.died[i].index();
+        for i in read.splits.removed_range(index) {
+            let face = read.splits.removed_faces[i].index();
             (0..3).try_for_each(|slot| self.enter(read, face, slot))?;
         }
         Ok(())

@@ -40,7 +40,7 @@ struct VertexSplits {
     moved: Vec<CandidateId>,
     /// Wedges of those corners on the other side of the split; empty without attributes.
     wedges: Vec<WedgeId>,
-    died: Vec<FaceId>,
+    removed_faces: Vec<FaceId>,
     /// Wedges whose values change.
     blended: Vec<WedgeId>,
     /// Values of those wedges on the other side of the split, all layers of a wedge in sequence.
@@ -55,7 +55,7 @@ struct VertexSplit {
     /// Position of the kept vertex on the other side of the split.
     position: [f64; 3],
     moved: u32,
-    died: u32,
+    removed_faces: u32,
     blended: u32,
 }
 
@@ -63,7 +63,7 @@ impl Progressive {
     /// Builds the progressive mesh from the input down to the simplifier's current level, which
     /// stays current. Returns `None` if the history has not observed every contraction.
     pub fn new(simplifier: Simplifier<'_>, history: History) -> Option<Self> {
-        if simplifier.live_faces() + history.all_died() != simplifier.first_faces() {
+        if simplifier.live_faces() + history.removed_face_count() != simplifier.first_faces() {
             return None;
         }
         let (mesh, surface) = simplifier.into_surface();
@@ -86,9 +86,11 @@ impl Progressive {
     /// Returns the number of faces of the finest level.
     pub fn full_faces(&self) -> usize {
         let undone = &self.splits.splits[self.coarsened..];
-        let to_come = undone.first().map_or(0, |s| self.splits.died.len() - s.died as usize);
-        // Faces that died by splits not yet refined are missing; those refined are alive.
-        self.live_faces + self.splits.died.len() - to_come
+        let to_come = undone
+            .first()
+            .map_or(0, |s| self.splits.removed_faces.len() - s.removed_faces as usize);
+        // The current level lacks the faces of the splits that are not refined yet.
+        self.live_faces + self.splits.removed_faces.len() - to_come
     }
 
     /// Returns the number of splits.
@@ -107,7 +109,7 @@ impl Progressive {
         self.coarsened = last;
         let split = self.splits.splits[last];
         self.swap(last, split.removed);
-        for &face in &self.splits.died[self.splits.died_range(last)] {
+        for &face in &self.splits.removed_faces[self.splits.removed_range(last)] {
             self.alive[face.index()] = true;
             self.live_faces += 1;
         }
@@ -118,7 +120,7 @@ impl Progressive {
     pub fn coarsen(&mut self) -> bool {
         let Some(&split) = self.splits.splits.get(self.coarsened) else { return false };
         self.swap(self.coarsened, split.kept);
-        for &face in &self.splits.died[self.splits.died_range(self.coarsened)] {
+        for &face in &self.splits.removed_faces[self.splits.removed_range(self.coarsened)] {
             self.alive[face.index()] = false;
             self.live_faces -= 1;
         }
@@ -130,7 +132,7 @@ impl Progressive {
     pub fn go_to(&mut self, faces: usize) {
         while self.live_faces > faces && self.coarsen() {}
         while let Some(last) = self.coarsened.checked_sub(1) {
-            if self.live_faces + self.splits.died_range(last).len() > faces {
+            if self.live_faces + self.splits.removed_range(last).len() > faces {
                 return;
             }
             self.refine();
@@ -189,20 +191,20 @@ impl VertexSplits {
     fn new(history: History, attributes: bool) -> Self {
         let splits = history.contractions().iter().map(|contraction| {
             let kept = usize::from(contraction.kept);
-            let [moved, died, blended] = contraction.starts();
+            let [moved, removed_faces, blended] = contraction.starts();
             VertexSplit {
                 kept: contraction.contracted[kept],
                 removed: contraction.contracted[1 - kept],
                 position: contraction.from,
                 moved,
-                died,
+                removed_faces,
                 blended: if attributes { blended } else { 0 },
             }
         });
         let mut this = Self { splits: splits.collect(), ..Self::default() };
         let lists = history.into_lists();
         this.moved = lists.moved.iter().map(|moved| moved.corner).collect();
-        this.died = lists.died;
+        this.removed_faces = lists.removed_faces;
         if attributes {
             this.wedges = lists.moved.iter().map(|moved| moved.wedge).collect();
             (this.blended, this.values) = (lists.blended, lists.values);
@@ -224,8 +226,8 @@ impl VertexSplits {
         self.range(index, |split| split.moved, self.moved.len())
     }
 
-    fn died_range(&self, index: usize) -> std::ops::Range<usize> {
-        self.range(index, |split| split.died, self.died.len())
+    fn removed_range(&self, index: usize) -> std::ops::Range<usize> {
+        self.range(index, |split| split.removed_faces, self.removed_faces.len())
     }
 
     fn blended_range(&self, index: usize) -> std::ops::Range<usize> {

@@ -102,7 +102,7 @@ fn bytes_and_back_is_the_same() {
         let mut progressive = there_and_back(&mesh, Method::Qem);
         let bytes = progressive.to_bytes();
         let mut again = Progressive::from_bytes(&bytes).unwrap();
-        assert_eq!(again.live_faces(), again.full_faces() - progressive.splits.died.len());
+        assert_eq!(again.live_faces(), again.full_faces() - progressive.splits.removed_faces.len());
         for faces in [0, 100, 200, 1000] {
             progressive.go_to(faces);
             again.go_to(faces);
