@@ -1,9 +1,8 @@
-//! The kernel: `lindstrom-turk`, attributes included, and `qem` without attributes, at the speed of
-//! quadrics.
+//! The kernel: the fast engine of `lindstrom-turk` and `qem`.
 //!
-//! It obeys the rules of the general engine, which is its oracle, by other means: one-rings instead
-//! of lists of faces, one queue entry per vertex instead of one per edge, single precision, and
-//! edge costs from nine or ten numbers at each end. `docs/notes/kernel.md` gives the reasons and
+//! It follows the rules of the policy engine, which is its oracle, by other means: one-rings
+//! instead of lists of faces, one queue entry per vertex instead of one per edge, single precision,
+//! and edge costs from nine or ten numbers at each end. `docs/notes/kernel.md` gives the reasons and
 //! the figures.
 //!
 //! From the ground up:

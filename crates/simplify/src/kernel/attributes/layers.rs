@@ -52,7 +52,7 @@ pub(crate) struct SurvivingWedge<const K: usize> {
 }
 
 impl<'m> AttributeLayers<'m> {
-    /// Selects the costed layers, weighted as in the general engine, up to `most` channels, the
+    /// Selects the costed layers, weighted as in the policy engine, up to `most` channels, the
     /// first layers first.
     pub(crate) fn new(
         mesh: &'m Mesh,

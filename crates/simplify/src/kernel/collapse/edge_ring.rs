@@ -1,10 +1,10 @@
 //! The one-ring of an edge, gathered once for all checks of a contraction.
 //!
 //! ```text
-//!        x1 = ids[0]                  The ring of the new vertex: first the neighbours of v0, from
-//!       /  | \                        wing to wing, then the other neighbours of v1. Spoke i is the
-//!   x2 —— v0 — v1 —— y                face of ids[i], ids[i + 1] and v0, or v1 for the last ones.
-//!       \  | /                        The ghost has a place in the ring too; its faces have no area.
+//!        x1 = ids[0]                The ring of the new vertex: first the neighbours of v0, from
+//!       /  | \                      wing to wing, then the other neighbours of v1. Spoke i is the
+//!   x2 —— v0 — v1 —— y              face of ids[i], ids[i + 1] and v0, or v1 for the last ones.
+//!       \  | /                      The ghost has a place in the ring too; its faces have no area.
 //!        xk = ids[of_v0]
 //! ```
 
@@ -20,7 +20,7 @@ use crate::refusal::Refusal;
 /// Room for the longest ring and the lanes beyond its end.
 pub(crate) const ROOM: usize = MAX_RING + 2 * LANES;
 
-/// Smallest cosine between the normals of a face before and after, as in the general engine.
+/// Smallest cosine between the normals of a face before and after, as in the policy engine.
 const MIN_COSINE: f32 = 0.2;
 
 /// One-ring of an edge, with positions relative to `v0`.

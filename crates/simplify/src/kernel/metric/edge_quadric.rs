@@ -5,7 +5,7 @@ use glam::{Vec3, Vec4};
 use crate::kernel::mesh::one_ring::Vertices;
 use crate::kernel::simd::{LANES, Row, Row3, transpose};
 
-/// Strength of the pull of the optimum to the middle of the edge, as in the general engine.
+/// Strength of the pull of the optimum to the middle of the edge, as in the policy engine.
 pub(crate) const PULL: f32 = 1e-5;
 
 /// One end of eight edges: shared by all, or one for each.

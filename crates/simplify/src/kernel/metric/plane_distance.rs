@@ -1,5 +1,5 @@
 //! The metric of `qem` [GH97]: squared distances from the planes of all faces merged into a vertex.
-//! As in the general engine's `methods/qem.rs`, planes are weighted by area and memory fades.
+//! As in the policy engine's `methods/qem.rs`, planes are weighted by area and memory fades.
 //!
 //! The remembered planes do not pass through the vertex, so its quadric has all terms of x'Ax −
 //! 2b·x + c, relative to the vertex. Relative to the middle of an edge with ends at −h and h, the
@@ -26,7 +26,7 @@ use crate::kernel::simd::{LANES, TINY, select_max, sum_of};
 use crate::methods::qem::{BOUNDARY_WEIGHT, MEMORY};
 use crate::options::Method;
 
-/// Weight of an edge between two charts, as in the general engine.
+/// Weight of an edge between two charts, as in the policy engine.
 const SEAM_WEIGHT: f32 = 1.0;
 
 /// Area-weighted squared distances from planes, with fading memory.
