@@ -1,4 +1,4 @@
-//! The fast engine and the general one, on the same methods: the same accuracy, and the same volume.
+//! The kernel and the policy engine on the same methods: equal accuracy, and equal volume.
 
 use meshlod::measure::{DistanceOptions, PreparedSurface, surface_distance, volume};
 use meshlod::samples;
@@ -17,8 +17,8 @@ fn figures(mesh: &Mesh, mut simplifier: Simplifier<'_>, ratio: f64) -> [f64; 2] 
 
 /// Every vertex moved to a mean of its neighbours at random, more than half the way.
 ///
-/// On the samples as they are all edges of a row cost the same, and where a bucket takes them in the
-/// order they came a level is some 5 % farther off than by the general engine's order.
+/// On the unmodified samples all edges of a row cost the same. Where a bucket takes them in
+/// insertion order, a level is some 5 % farther off than by the order of the policy engine.
 fn shaken(mesh: &Mesh) -> Mesh {
     let mut state = 1u64;
     let mut random = || {

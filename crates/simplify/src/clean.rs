@@ -39,7 +39,7 @@ fn duplicates(faces: &[[VertexId; 3]], connectivity: &Connectivity) -> Vec<FaceI
 fn repeats_lower(faces: &[[VertexId; 3]], connectivity: &Connectivity, face: FaceId) -> bool {
     let [a, b, c] = faces[face.index()];
     let turns = [[a, b, c], [b, c, a], [c, a, b]];
-    // A hub has many faces, its rim few.
+    // A hub has many faces, but the vertices on its rim have few.
     let corner = [a, b, c].into_iter().min_by_key(|&v| connectivity.star(v).len());
     connectivity
         .star(corner.unwrap_or(a))

@@ -159,13 +159,13 @@ pub struct Options {
     pub weights: AttributeWeights,
     /// True to keep every vertex of a boundary edge in place.
     pub lock_boundary: bool,
-    /// Factor on the cost of moving a boundary, for methods for which [`Method::weighs_boundaries`]
+    /// Weight of boundary movement in the costs of methods for which [`Method::weighs_boundaries`]
     /// is true.
     ///
-    /// Zero makes boundaries free to move; the kernel counts values above 1e9 as 1e9.
+    /// Zero ignores boundaries in the costs; the kernel counts values above 1e9 as 1e9.
     /// `lindstrom-turk` and `lindstrom-turk-faces` weigh squared areas under the boundary against
-    /// squared volumes, the methods based on quadrics weigh planes on boundary edges against planes
-    /// of faces. `None` selects the method's own factor: 9 for the former, 2 for the latter.
+    /// squared volumes, and the methods based on quadrics weigh planes on boundary edges against
+    /// planes of faces. `None` selects the method's own weight: 9 for the former, 2 for the latter.
     pub boundary_weight: Option<f64>,
     /// Vertices that stay in place, cost more to move, or move together as ties. Tied vertices
     /// without edges to move along together stay in place.

@@ -61,7 +61,8 @@ impl<'m> Simplifier<'m> {
     /// methods that tests compare the kernel with.
     ///
     /// # Errors
-    /// As [`Self::new`].
+    /// The mesh, its extent, the locks or an option is invalid, or no face has three different
+    /// vertices.
     #[cfg(feature = "oracle")]
     pub fn on_policy_engine(mesh: &'m Mesh, options: &Options) -> Result<Self, SimplifyError> {
         validate(mesh, options)?;

@@ -128,10 +128,10 @@ fn skin_weights_stay_one_in_all() {
     }
 }
 
-/// A tube around z whose texture goes around it once and meets itself along x = 1, y = 0.
+/// Tube around z whose texture wraps once and meets itself along x = 1, y = 0.
 fn tube(around: u32, along: u32) -> Mesh {
     let at = |i: u32, j: u32| VertexId(j * around + i % around);
-    // The last column of wedges is at the vertices of the first.
+    // The last column of wedges belongs to the vertices of the first.
     let wedge = |i: u32, j: u32| WedgeId(j * (around + 1) + i);
     let mut mesh = Mesh::default();
     let mut values = Vec::new();
@@ -178,7 +178,8 @@ fn a_texture_meets_itself_along_its_seam() {
             assert!(off.abs() < 0.03, "{}: {p:?} {uv:?}", method.name());
             us[v.index()].push(uv[0]);
         }
-        // On the seam the texture begins and ends, and nowhere else has a vertex two places in it.
+        // Only vertices on the seam, where the texture begins and ends, have two texture
+        // coordinates.
         let seam: Vec<_> = us.iter().filter(|us| us.iter().any(|u| *u != us[0])).collect();
         assert!(seam.len() >= 2, "{}", method.name());
         let at_an_end = |u: &f32| *u < 0.03 || *u > 0.97;
@@ -186,14 +187,14 @@ fn a_texture_meets_itself_along_its_seam() {
     }
 }
 
-/// A box of `n` by `n` squares a side, with a texture of its own on each side.
+/// Box of `n` by `n` squares per side, each side with its own texture.
 fn boxed(n: i32) -> Mesh {
     let mut ids = std::collections::HashMap::new();
     let mut mesh = Mesh::default();
     let (mut values, mut corners) = (Vec::new(), Vec::new());
     for side in 0..6 {
         let axis = side / 2;
-        // Two axes across, in the order that makes the side look out.
+        // Two axes across, ordered so that the side faces outwards.
         let [u, v] = [[1, 2], [2, 1]][side % 2].map(|step| (axis + step) % 3);
         let mut corner = |mesh: &mut Mesh, i: i32, j: i32| {
             let mut p = [n * (1 - side as i32 % 2); 3];
@@ -287,7 +288,7 @@ fn values_out_of_all_bounds_do_no_harm() {
         _ => vec![0.0; 3],
     };
     let mut mesh = samples::sphere(1000);
-    // Faces without area, and some that hardly have any.
+    // Faces without area, and some with hardly any.
     for face in [3, 50, 400] {
         let [a, b, _] = mesh.faces[face];
         let [a, b] = [a, b].map(|v| v.index());
@@ -319,7 +320,7 @@ fn attributes_that_count_for_nothing_change_no_position() {
     let bare = Mesh { attributes: None, ..mesh.clone() };
     let (weights, method) = (AttributeWeights::NONE, Some(Method::Qem));
     let options = Options { weights, method, ..Options::default() };
-    // Seams still do: compare where there are none.
+    // Seams still count, so the comparison uses a mesh without any.
     let flat = with_layers(bare.clone(), &[(LayerKind::Color(0), |[x, ..]| vec![x as f32; 3])]);
     let [with, without] = [&flat, &bare].map(|mesh| {
         // The policy engine, since the kernel takes another path where there are none at all.
@@ -330,7 +331,7 @@ fn attributes_that_count_for_nothing_change_no_position() {
     assert_eq!((with.positions, with.faces), (without.positions, without.faces));
 }
 
-/// A torus with a texture all over it, and a normal of its own at every corner.
+/// Textured torus with a separate normal at every corner.
 fn faceted() -> Mesh {
     let mesh = samples::torus(2000);
     let around = |p: [f64; 3]| vec![p[1].atan2(p[0]).cos() as f32, p[2] as f32];
@@ -376,7 +377,7 @@ fn turned(mesh: &Mesh) -> usize {
 
 #[test]
 fn few_faces_flip_in_their_texture() {
-    // Bent to and fro until it nearly folds, on a hill with bends of its own.
+    // Texture bent back and forth until it nearly folds, on a hill with bends of its own.
     let mut hill = fixtures::grid(100);
     hill.positions.iter_mut().for_each(|[x, y, z]| *z = 4.0 * (*x * 0.4).sin() * (*y * 0.3).cos());
     let uv = |[x, y, _]: [f64; 3]| {
@@ -385,6 +386,6 @@ fn few_faces_flip_in_their_texture() {
     let hill = with_layers(hill, &[(LayerKind::Uv(0), uv)]);
     assert_eq!(turned(&hill), 0);
     let levels = [0.1, 0.05].map(|ratio| turned(&to(&hill, Method::LindstromTurk, ratio)));
-    // Where nothing minds it, 18 and 13; the order that edges go in makes it 4 more or less.
+    // Without a check they are 18 and 13; the order of edges changes this by about 4.
     assert!(levels[0] + levels[1] <= 20, "{levels:?}");
 }

@@ -18,7 +18,7 @@ fn pyramid_on_a_plain() -> Mesh {
     let faces = (0..(SIDE - 1) * (SIDE - 1)).flat_map(|i| {
         let (x, y) = (i % (SIDE - 1), i / (SIDE - 1));
         let [a, b, c, d] = [at(x, y), at(x + 1, y), at(x + 1, y + 1), at(x, y + 1)];
-        // Diagonals run to the tip, so that it has the same four faces twice over.
+        // The diagonals run to the tip, which therefore has the same four faces twice.
         let to_tip = (x + 1 == middle) == (y + 1 == middle);
         if to_tip { [[a, b, c], [a, c, d]] } else { [[a, b, d], [b, c, d]] }
     });

@@ -61,7 +61,7 @@ fn scale_changes_nothing_until_it_is_refused_by_name() {
     };
     for method in Method::ALL {
         let faces = |factor| scaled(factor, method).unwrap().0.faces;
-        // Powers of two round alike.
+        // Scaling by a power of two does not change rounding.
         for factor in [2f64.powi(-90), 2f64.powi(90)] {
             assert_eq!(faces(factor), faces(1.0), "{} at {factor:e}", method.name());
         }

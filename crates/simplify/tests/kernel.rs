@@ -86,7 +86,7 @@ fn check_level(what: &str, level: &Mesh, report: &Report) {
     for face in &level.faces {
         let [a, b, c] = *face;
         assert!(a != b && b != c && c != a, "{what}: {face:?}");
-        // The two sides of a leaf are two faces.
+        // The two sides of a thin sheet are two faces.
         let turned = [[a, b, c], [b, c, a], [c, a, b]].into_iter().min();
         assert!(seen.insert(turned), "{what}: {face:?} stands twice");
     }
@@ -180,7 +180,7 @@ fn scale_and_place_change_nothing_to_speak_of() {
             let (level, report) = run(method, &other, Target::Ratio(0.1));
             assert!(report.reached);
             if shift == 0.0 {
-                // Powers of two round alike.
+                // Scaling by a power of two does not change rounding.
                 assert_eq!(level.faces, at_home.faces, "{scale:e}");
             }
             let diagonal =
@@ -215,7 +215,7 @@ fn faces_without_area_and_points_in_one_place_end() {
 #[test]
 fn tiny_and_huge_faces_go_together() {
     for method in KERNEL_METHODS {
-        // A sphere a millionth of the other's size, and one a hundred-millionth.
+        // Spheres a millionth and a hundred-millionth of the size of the first.
         let mut mesh = samples::sphere(2000);
         let (vertices, faces) = (mesh.positions.clone(), mesh.faces.clone());
         for (i, scale) in [1e-6, 1e-8].into_iter().enumerate() {

@@ -16,7 +16,7 @@ fn boxed(n: [i32; 3], start: [i32; 3]) -> Mesh {
     let mut mesh = Mesh::default();
     for side in 0..6usize {
         let axis = side / 2;
-        // Two axes across, in the order that makes the side look out.
+        // Two axes across, ordered so that the side faces outwards.
         let [u, v] = [[1, 2], [2, 1]][side % 2].map(|step| (axis + step) % 3);
         let mut at = |i: i32, j: i32| {
             let mut p = start;
@@ -182,14 +182,15 @@ fn tiles_show_no_crack() {
             let level = tied_run(&mesh, method, ratio);
             let seams = seams_inside(&level, border);
             assert!(seams.values().all(|&count| count == 2), "{}: {seams:?}", method.name());
-            // It is coarser than it was, and still there.
+            // The border has been coarsened and still exists.
             assert!((1..n as usize).contains(&seams.len()), "{}: {}", method.name(), seams.len());
         }
     }
 }
 
 proptest! {
-    /// Boxes anywhere, touching, in each other, the same twice; and what is tied may be locked too.
+    /// Boxes at random positions, touching, nested or duplicated, with some tied vertices also
+    /// locked.
     #[test]
     fn whatever_is_tied_stays_together(
         boxes in prop::collection::vec(
@@ -224,7 +225,7 @@ proptest! {
 
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(2000))]
-    /// Soups of few places, where a surface touches itself at nearly every vertex.
+    /// Soups of few positions, where a surface touches itself at nearly every vertex.
     #[test]
     fn what_touches_itself_gets_no_worse(
         positions in prop::collection::vec(prop::array::uniform3(0i8..3), 6..24),
@@ -276,7 +277,7 @@ fn what_was_contracted_together_comes_back_to_the_bit() {
 
 #[test]
 fn a_third_object_that_cannot_follow_stays_where_it_touches() {
-    // The corner of the third box is in the middle of the side that the other two share.
+    // The corner of the third box lies in the middle of the side shared by the other two.
     let mesh = beside(&[boxed([4; 3], [0; 3]), boxed([4; 3], [4, 0, 0]), boxed([1; 3], [4, 4, 2])]);
     for method in Method::ALL {
         let level = tied_run(&mesh, method, 0.0);
@@ -336,7 +337,7 @@ fn what_is_protected_goes_last_and_is_not_safe() {
         };
         let (with, without) = (share(&locks, 0.6), share(&Locks::default(), 0.6));
         assert!(with > without + 0.05, "{}: {with} {without}", method.name());
-        // There is nothing else to take at the end.
+        // At the end only protected vertices are left to contract.
         assert!(share(&locks, 0.02) < 1.0);
     }
 }
@@ -409,7 +410,7 @@ fn locks_of_another_mesh_are_refused_by_name() {
 
 #[test]
 fn a_crowd_at_one_place_stays_there() {
-    // Many needles with their tips at one place.
+    // Many needles with their tips at one position.
     let needle = |i: u32| {
         let (y, x) = (f64::from(i) * 0.1).sin_cos();
         let base = [[x, y, 1.0], [x, y, 1.2], [x * 1.1, y * 1.1, 1.1]];

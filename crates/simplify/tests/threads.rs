@@ -171,7 +171,7 @@ fn a_file_in_no_order_is_simplified_as_well() {
                 [&mesh, &other].map(|mesh| run(method, mesh, Target::Ratio(0.05)));
             assert_eq!(first.output_faces, second.output_faces);
             assert!((first.error_estimate / second.error_estimate).ln().abs() < 0.2);
-            // The level keeps the order of its file: a locked or untouched vertex says so.
+            // The level keeps the vertex order of its file, as locked or untouched vertices show.
             let (kept, _) = run(method, &other, Target::Faces(other.faces.len() - 2));
             let left: HashSet<_> = kept.positions.iter().map(|p| p.map(f64::to_bits)).collect();
             let untouched = |p: &&[f64; 3]| left.contains(&p.map(f64::to_bits));

@@ -340,7 +340,7 @@ mod tests {
     use super::*;
     use crate::options::AttributeWeights;
 
-    /// A torus with uvs of its positions.
+    /// Torus with its positions as uvs.
     fn torus(uv: fn([f64; 3]) -> [f64; 2]) -> (Surface, AttributeQuadrics) {
         let mut mesh = samples::torus(300);
         let values = mesh.positions.iter().flat_map(|&p| uv(p)).map(|x| x as f32).collect();

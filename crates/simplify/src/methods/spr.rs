@@ -118,7 +118,7 @@ mod tests {
         Mesh::new(positions.to_vec(), faces.iter().map(|face| face.map(VertexId)).collect())
     }
 
-    /// A roof with a ridge of right angles along x, closed below: v0 and v1 on the ridge.
+    /// Roof with a ridge of right angles along x, closed below, and with v0 and v1 on the ridge.
     fn roof() -> Mesh {
         let positions = [
             [0.0, 0.0, 1.0],
@@ -143,19 +143,19 @@ mod tests {
 
     #[test]
     fn a_roof_costs_what_it_does_by_hand() {
-        // At v0: the slopes (0, ∓1, 1) / √2 and the gable (−1, 0, 1) / √2. On v0v1 both slopes, so
-        // only the gable turns: 1 − 1/2 from either, halved.
+        // At v0: the slopes (0, ∓1, 1) / √2 and the gable (−1, 0, 1) / √2. Both slopes meet at
+        // v0v1, so only the gable turns: 1 − 1/2 from either, halved.
         let along_the_ridge = 2.0 * (0.25 + FLAT);
         assert!((cost_in(&roof(), 0, 1) - along_the_ridge).abs() < 1e-15);
-        // Down to v2 only the slope of −y and the gable are on the edge: the other slope is at a
-        // right angle to the one, 1 − 1/2 from the other, and the other is less.
+        // On the edge to v2 are only the slope of −y and the gable. The other slope is at a right
+        // angle to the first and 1 − 1/2 from the second, which is less.
         let down = 3f64.sqrt() * (0.25 + FLAT);
         assert!((cost_in(&roof(), 0, 2) - down).abs() < 1e-15);
     }
 
     #[test]
     fn an_outline_turns_at_its_corners_only() {
-        // A square of four, open, with v4 in the middle of it and v5 on a side.
+        // Open square of side 2 with v4 in its middle and v5 on a side.
         let positions = [
             [0.0, 0.0, 0.0],
             [2.0, 0.0, 0.0],

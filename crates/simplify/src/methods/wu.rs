@@ -10,8 +10,8 @@ use crate::surface::contracted::Freedom;
 use crate::surface::neighbourhood::Neighbourhood;
 use crate::surface::{Placed, Surface};
 
-/// VAR: weighs a vertex by how its edges differ (eq. 2 of [LJ05]). One whose edges are all alike
-/// weighs nothing, however sharp they are.
+/// VAR: weight of a vertex by the variance of its edges' turns (eq. 2 of [LJ05]). A vertex whose
+/// edges are all alike has no weight, however sharp they are.
 pub(crate) fn weight(turns: &Turns) -> f64 {
     turns.variance
 }

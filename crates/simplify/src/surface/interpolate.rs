@@ -224,7 +224,7 @@ mod tests {
     fn joints_are_put_together_by_name_and_the_strongest_stay() {
         let joints = layer(LayerKind::Joints(0), 2, &[3.0, 5.0, 5.0, 9.0, 9.0, 9.0]);
         let weights = layer(LayerKind::Weights(0), 2, &[0.75, 0.25, 0.5, 0.5, 1.0, 0.0]);
-        // 3: 0.375; 5: 0.125 + 0.125; 9: 0.125 + 0.25. Of the equals the first name leads.
+        // 3: 0.375; 5: 0.125 + 0.125; 9: 0.125 + 0.25. Equal weights are ordered by name.
         let found = values(&[joints, weights], &PLACE);
         assert_eq!(found, [3.0, 9.0, 0.5, 0.5]);
     }
@@ -241,7 +241,8 @@ mod tests {
             ],
             &PLACE,
         );
-        // 2 has 0.125 + 0.375, 1 has 0.375, 3 has 0.125 and no room; the rest is one again.
+        // 2 has 0.125 + 0.375 and 1 has 0.375. 3 has 0.125 and does not fit; the rest is scaled to
+        // one.
         assert_eq!(found[..2], [2.0, 1.0]);
         assert!((found[2] - 3.0 / 7.0).abs() < 1e-6 && (found[3] - 4.0 / 7.0).abs() < 1e-6);
     }

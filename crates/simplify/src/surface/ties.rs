@@ -137,8 +137,9 @@ mod tests {
 
     use super::*;
 
-    /// Two unit squares at one place, v0 to v3 and v4 to v7 around them, cut along one diagonal or
-    /// along both; and a triangle that meets them in their first corner only.
+    /// Two unit squares at the same positions, v0 to v3 and v4 to v7 in order around them, cut
+    /// along the same diagonal or along both, and a triangle that touches them only in their first
+    /// corner.
     fn squares(cut_alike: bool, ties: &[&[u32]]) -> Surface {
         let corners = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]];
         let third = [[0.0, 0.0, 0.0], [0.0, 0.0, 1.0], [-1.0, 0.0, 1.0]];

@@ -142,7 +142,7 @@ impl Progressive {
     }
 }
 
-/// FNV-1a, eight bytes at a time: against damage, not against malice.
+/// FNV-1a over eight bytes at a time. It detects damage, not manipulation.
 fn checksum(bytes: &[u8]) -> u64 {
     let (words, rest) = bytes.as_chunks::<8>();
     let words = words.iter().map(|&word| u64::from_le_bytes(word));

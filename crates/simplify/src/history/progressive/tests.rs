@@ -47,7 +47,7 @@ fn every_level_comes_back_to_the_bit() {
     }
 }
 
-/// With uvs and normals of its own, two materials and two objects.
+/// Mesh with uvs and normals of its own, two materials and two objects.
 fn with_attributes() -> Mesh {
     let mut mesh = samples::fish(500);
     let count = mesh.faces.len() as u32;
@@ -120,7 +120,8 @@ fn bytes_cut_anywhere_are_refused() {
     }
 }
 
-/// One wrong byte with a checksum that fits: refused by name, or levels that are meshes.
+/// Corrupts one byte under a matching checksum: reading must fail with an error or yield valid
+/// levels.
 #[test]
 fn a_wrong_byte_never_makes_a_wrong_mesh() {
     let bytes = there_and_back(&with_attributes(), Method::Qem).to_bytes();
@@ -143,7 +144,7 @@ fn a_wrong_byte_never_makes_a_wrong_mesh() {
     assert!(refused > 30, "{refused}");
 }
 
-/// Found by the fuzzer: 48 bytes that claimed 800 million wedges of no layer.
+/// Regression test for a fuzzer finding: 48 bytes that claimed 800 million wedges without a layer.
 #[test]
 fn wedges_that_the_bytes_cannot_name_are_refused() {
     let mut bytes = b"meshlodp".to_vec();
