@@ -17,22 +17,25 @@
 //! only mark it as stale. It is recosted when its entry comes up, first by that one edge, and goes
 //! ahead if the cost has risen by at most [`Metric::SLACK`] buckets.
 
+mod queueing;
+
 use glam::DVec3;
 
 use crate::kernel::attributes::AttributeModel;
 use crate::kernel::bound::{BoundPart, BoundedStep};
 use crate::kernel::collapse::edge_ring::EdgeRing;
 use crate::kernel::collapse::{Collapse, Ends};
+use crate::kernel::collapse_loop::queueing::wake;
 use crate::kernel::components::Components;
 use crate::kernel::contraction_log::{Logged, LoggedContraction};
-use crate::kernel::mesh::one_ring::{GHOST, MAX_RING, Vertices};
-use crate::kernel::mesh::vertex::{NO_VERTEX, RING, Vertex, VertexFlags};
+use crate::kernel::mesh::one_ring::{GHOST, Vertices};
+use crate::kernel::mesh::vertex::{NO_VERTEX, VertexFlags};
 use crate::kernel::metric::edge_quadric_f64::EdgeQuadricF64;
 use crate::kernel::metric::{Metric, protection};
 use crate::kernel::schedule::batch::Batch;
 use crate::kernel::schedule::bucket_queue::{AHEAD, BucketQueue, NONE, bucket, last_bucket};
 use crate::kernel::schedule::deferral::Deferral;
-use crate::kernel::schedule::edge_costs::{Cheapest, Rank, cheapest};
+use crate::kernel::schedule::edge_costs::{Cheapest, cheapest};
 use crate::kernel::simd::{SimdTask, widest};
 use crate::kernel::volume::VolumeTally;
 use crate::refusal::{Refusal, Refusals};
@@ -121,11 +124,6 @@ impl<'v, A: AttributeModel> CollapseLoop<'v, A> {
         }
     }
 
-    /// Costs and queues all vertices for the first time, except those that wait for another part.
-    pub(crate) fn cost_all_vertices(&mut self) {
-        widest(CostAll(self));
-    }
-
     /// Contracts until at most `faces` are left, or the next edge lies in a bucket behind `last`,
     /// or no further contraction is possible.
     pub(crate) fn run(&mut self, faces: usize, last: u16) {
@@ -185,7 +183,7 @@ impl<'v, A: AttributeModel> CollapseLoop<'v, A> {
         let (taken, front) = self.queue.next();
         let (mut next, len) = ([0; AHEAD], taken.len());
         next[..len].copy_from_slice(taken);
-        let (mut changed, mut dear, mut count) = (Batch::<AHEAD>::new(), [0; AHEAD], 0);
+        let (mut changed, mut risen, mut count) = (Batch::<AHEAD>::new(), [0; AHEAD], 0);
         for &v in &next[..len] {
             if !self.is_due(v, front) {
                 continue;
@@ -198,14 +196,14 @@ impl<'v, A: AttributeModel> CollapseLoop<'v, A> {
                 target.is_some() && vertex.flags.any(VertexFlags::STALE),
             );
             vertex.flags.clear(VertexFlags::STALE);
-            dear[count] = v;
+            risen[count] = v;
             count += usize::from(target.is_none());
         }
         changed.cost_all(&self.vertices, self.model, |[v, _], cost| {
-            dear[count] = v;
+            risen[count] = v;
             count += usize::from(bucket(cost) > front.saturating_add(A::Metric::SLACK));
         });
-        for &v in &dear[..count] {
+        for &v in &risen[..count] {
             self.vertices.refresh(v);
             let Cheapest { bucket, target } = cheapest(&self.vertices, self.model, v);
             let vertex = self.vertices.get_mut(v);
@@ -215,83 +213,6 @@ impl<'v, A: AttributeModel> CollapseLoop<'v, A> {
                 self.queue.push(v, bucket);
             }
         }
-    }
-
-    /// Returns the bucket of the next step, an edge or a component.
-    pub(crate) fn next_bucket(&mut self) -> Option<u16> {
-        let of_component = self.components.as_ref().and_then(|components| components.next_bucket());
-        self.next_edge_bucket().into_iter().chain(of_component).min()
-    }
-
-    /// Returns a lower bound on the bucket of the next step.
-    pub(crate) fn lowest_bucket(&self) -> usize {
-        let of_component = self.components.as_ref().and_then(|components| components.next_bucket());
-        self.queue.lowest().min(of_component.map_or(usize::MAX, usize::from))
-    }
-
-    fn next_edge_bucket(&mut self) -> Option<u16> {
-        while self.take_batch(last_bucket()) {
-            let (next, bucket) = self.queue.next();
-            if next.last().is_some_and(|&v| self.is_due(v, bucket)) {
-                return Some(bucket);
-            }
-            self.pop();
-        }
-        None
-    }
-
-    /// Returns whether a queue entry is still the current one of its vertex.
-    #[inline(always)]
-    fn is_due(&self, v: u32, bucket: u16) -> bool {
-        let vertex = self.vertices.get(v);
-        vertex.bucket == bucket && !vertex.flags.any(INACTIVE)
-    }
-
-    /// Makes all refused edges eligible again.
-    pub(crate) fn wake_all(&mut self) {
-        self.components.iter_mut().for_each(|components| components.wake_all());
-        self.queue.put_back();
-        for v in self.vertices.ids() {
-            let vertex = self.vertices.get(v);
-            if vertex.floor > 0 && !vertex.flags.any(INACTIVE) {
-                self.put_first(v);
-            }
-        }
-    }
-
-    /// Queues a vertex that has waited for its neighbours to be in the same part.
-    pub(crate) fn release(&mut self, v: u32) {
-        self.vertices.get_mut(v).flags.clear(VertexFlags::OUTER);
-        self.put_first(v);
-    }
-
-    /// Queues a vertex before all others; it is costed when its entry comes up.
-    fn put_first(&mut self, v: u32) {
-        let vertex = self.vertices.get_mut(v);
-        vertex.floor = 0;
-        vertex.target = NO_VERTEX;
-        vertex.bucket = 0;
-        self.queue.push(v, 0);
-    }
-
-    /// Reads the next vertices and their neighbours in loops whose loads do not depend on each
-    /// other. Read one by one, each would cost a memory latency.
-    fn prefetch(&self) {
-        let (vertices, (next, _)) = (&self.vertices, self.queue.next());
-        let mut sum = 0;
-        for &v in next {
-            sum ^= vertices.get(v).ring[0] ^ vertices.get(v).target ^ self.model.prefetch(v);
-        }
-        for &v in next {
-            let vertex = vertices.get(v);
-            if vertex.flags.any(VertexFlags::DEAD) || vertex.len > RING as u8 {
-                continue;
-            }
-            for &w in &vertex.ring[..vertex.len as usize] {
-                sum ^= vertices.get(w).target ^ self.model.prefetch(w);
-            }
-        }
-        std::hint::black_box(sum);
     }
 
     /// Tries the cheapest edge of a vertex, and requeues the vertex accordingly.
@@ -321,14 +242,6 @@ impl<'v, A: AttributeModel> CollapseLoop<'v, A> {
         edge.iter().all(|&v| self.vertices.get(v).flags.any(VertexFlags::TIED))
     }
 
-    /// Requeues a vertex whose edges were refused: it may have other edges now.
-    pub(crate) fn wake(&mut self, v: u32, front: u16) {
-        let vertex = self.vertices.get_mut(v);
-        if vertex.floor > 0 && !vertex.flags.any(INACTIVE) {
-            wake(vertex, v, self.queue, front);
-        }
-    }
-
     /// Returns the other end of the vertex's cheapest edge when it was last costed, or the vertex
     /// that this end has been contracted into.
     #[inline(always)]
@@ -347,67 +260,6 @@ impl<'v, A: AttributeModel> CollapseLoop<'v, A> {
         (target != v && !barred).then_some(target)
     }
 
-    /// Costs all vertices for the first time. Only edges to later vertices are costed, so each edge
-    /// is costed once.
-    #[inline(always)]
-    fn cost_all(&mut self) {
-        let Self { vertices, model, queue, .. } = self;
-        let first = vertices.base;
-        let mut least = vec![Rank::LAST; vertices.all.len()];
-        let mut report = |[v, w]: [u32; 2], cost: f32| {
-            let least = &mut least[(v - first) as usize];
-            *least = (*least).min(Rank::new(cost, w));
-        };
-        let mut batch = Batch::<{ 4 * MAX_RING }>::new();
-        for v in vertices.ids() {
-            for &w in vertices.neighbours(v).iter().take(MAX_RING) {
-                batch.push(v, w, w > v && w != GHOST);
-            }
-            if !batch.has_room(MAX_RING) {
-                batch.cost_all(vertices, *model, &mut report);
-            }
-        }
-        batch.cost_all(vertices, *model, report);
-        for (v, least) in vertices.ids().zip(least) {
-            let vertex = vertices.get_mut(v);
-            if vertex.len > 0 && !vertex.flags.any(VertexFlags::OUTER) {
-                let Cheapest { bucket, target } = least.cheapest();
-                vertex.target = target;
-                vertex.bucket = bucket;
-                queue.push(v, bucket);
-            }
-        }
-    }
-
-    /// Costs all edges of a vertex and queues it by the cheapest, at the front or behind it.
-    /// `known` is an edge costed a moment ago, with its bucket: another rounding must not bring it
-    /// back to the front.
-    #[inline(always)]
-    fn requeue(&mut self, v: u32, front: u16, known: Option<(u32, u16)>) {
-        self.vertices.refresh(v);
-        let Cheapest { mut bucket, target } = cheapest(&self.vertices, self.model, v);
-        if let Some((of, least)) = known
-            && of == target
-        {
-            bucket = bucket.max(least);
-        }
-        let bucket = bucket.max(front);
-        let vertex = self.vertices.get_mut(v);
-        vertex.target = target;
-        vertex.bucket = bucket;
-        vertex.flags.clear(VertexFlags::STALE);
-        self.queue.push(v, bucket);
-    }
-
-    /// Queues a vertex behind the front without costing it.
-    #[inline(always)]
-    fn defer(&mut self, v: u32, bucket: u16) {
-        let vertex = self.vertices.get_mut(v);
-        vertex.target = NO_VERTEX;
-        vertex.bucket = last_bucket().min(bucket);
-        self.queue.push(v, vertex.bucket);
-    }
-
     /// Gathers the one-ring of an edge, and computes its cost and the place of the new vertex.
     #[inline(always)]
     fn price(&mut self, v: u32, target: u32, front: u16) -> Result<PricedEdge, Rejection> {
@@ -420,8 +272,8 @@ impl<'v, A: AttributeModel> CollapseLoop<'v, A> {
         let quadric = A::Metric::edge_quadric(edge_ring, end0, end1);
         let whole = if free { model.with_attributes(&ends, quadric) } else { quadric };
         let from_middle = if free { A::Metric::optimum(&whole) } else { -quadric.half };
-        let offsets = if free { 0.0 } else { f64::from(model.cost_onto(vertices, &ends)) };
-        let cost = whole.at(from_middle) + offsets;
+        let attributes = if free { 0.0 } else { f64::from(model.cost_onto(vertices, &ends)) };
+        let cost = whole.at(from_middle) + attributes;
         if !cost.is_finite() {
             return Err(refused(Refusal::Volume));
         }
@@ -466,9 +318,9 @@ impl<'v, A: AttributeModel> CollapseLoop<'v, A> {
         }
         let collapse =
             Collapse { ends, half: quadric.half, from_middle, place, displacement: place - from };
-        let turns = model.preview(vertices, edge_ring, &collapse);
+        let flips = model.preview(vertices, edge_ring, &collapse);
         let later = bucket.saturating_add(UV_FLIP_DELAY).min(last_bucket());
-        if turns && front < later {
+        if flips && front < later {
             return Err(Rejection::Deferred(later));
         }
         if let Some(within) = &mut self.within {
@@ -552,18 +404,6 @@ impl<'v, A: AttributeModel> CollapseLoop<'v, A> {
     }
 }
 
-/// SIMD task of [`CollapseLoop::cost_all_vertices`].
-struct CostAll<'e, 'v, A>(&'e mut CollapseLoop<'v, A>);
-
-impl<A: AttributeModel> SimdTask for CostAll<'_, '_, A> {
-    type Output = ();
-
-    #[inline(always)]
-    fn work(self) {
-        self.0.cost_all();
-    }
-}
-
 /// SIMD task of [`CollapseLoop::run`].
 struct ContractAll<'e, 'v, A> {
     collapse_loop: &'e mut CollapseLoop<'v, A>,
@@ -577,19 +417,5 @@ impl<A: AttributeModel> SimdTask for ContractAll<'_, '_, A> {
     #[inline(always)]
     fn work(self) {
         self.collapse_loop.contract_all(self.faces, self.last);
-    }
-}
-
-/// Flags of vertices without a valid queue entry: dead, barred, or waiting for another part.
-const INACTIVE: VertexFlags = VertexFlags(VertexFlags::DEAD.0 | VertexFlags::SHUT.0);
-
-/// Queues a vertex at the front again after its edges were refused, if it is not queued.
-#[cold]
-fn wake(vertex: &mut Vertex, id: u32, queue: &mut BucketQueue, front: u16) {
-    vertex.floor = 0;
-    if vertex.bucket == NONE {
-        vertex.target = NO_VERTEX;
-        vertex.bucket = front;
-        queue.push(id, front);
     }
 }

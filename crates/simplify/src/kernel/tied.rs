@@ -92,8 +92,8 @@ impl<A: AttributeModel> CollapseLoop<'_, A> {
         }
         let later = bucket.saturating_add(UV_FLIP_DELAY).min(last_bucket());
         for (edge, (collapse, ..)) in edges.iter().zip(&steps) {
-            let turns = self.model.preview(&self.vertices, &edge.ring, collapse);
-            if turns && front < later {
+            let flips = self.model.preview(&self.vertices, &edge.ring, collapse);
+            if flips && front < later {
                 return Err(Rejection::Deferred(later));
             }
         }
