@@ -10,7 +10,7 @@
 //! # Ok::<(), meshlod_simplify::SimplifyError>(())
 //! ```
 //!
-//! Two engines run them: the kernel runs [`Method::LindstromTurk`] and [`Method::Qem`], and the
+//! Two engines run the methods: the kernel runs [`Method::LindstromTurk`] and [`Method::Qem`], and the
 //! policy engine runs the other papers' methods, each as a set of policies. The method alone
 //! decides.
 //!

@@ -11,7 +11,7 @@ pub(crate) mod estimate;
 pub(crate) mod locks;
 pub(crate) mod policy;
 pub(crate) mod queue;
-mod together;
+mod tied;
 mod vanish;
 pub(crate) mod vanishing;
 mod waiting;
@@ -49,7 +49,7 @@ pub(crate) struct Engine<C, M, P, L> {
     /// Scratch space for an edge of a contracted face.
     part: Neighbourhood,
     /// Scratch space for the edges that ties contract together with one.
-    mates: Vec<Neighbourhood>,
+    tied: Vec<Neighbourhood>,
     waiting: Waiting,
     vanishing: Vanishing,
     /// Number of components that have vanished.
@@ -85,7 +85,7 @@ where
             surface,
             neighbourhood: Neighbourhood::default(),
             part: Neighbourhood::default(),
-            mates: Vec::new(),
+            tied: Vec::new(),
             waiting,
             vanishing,
             vanished: 0,
@@ -170,7 +170,7 @@ where
         neighbourhood.gather(surface, contracted)?;
         topology(surface, neighbourhood)?;
         if !neighbourhood.partners.is_empty() {
-            return self.contract_together(stop, observer);
+            return self.contract_tied(stop, observer);
         }
         let mut placed = algorithm.placement.place(surface, &algorithm.memory, neighbourhood)?;
         placed.error_estimate = estimate(surface, neighbourhood, &placed);

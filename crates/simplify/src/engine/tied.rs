@@ -19,16 +19,16 @@ where
     /// Contracts the gathered edge and its partners, after all checks of all of them.
     ///
     /// The history records one contraction per edge.
-    pub(super) fn contract_together(
+    pub(super) fn contract_tied(
         &mut self,
         stop: &Stop,
         observer: &mut dyn Observe,
     ) -> Result<(), Refusal> {
-        self.gather_mates()?;
+        self.gather_tied()?;
         let count = self.neighbourhood.partners.len();
-        let placed = self.place_together(count)?;
-        let Self { surface, neighbourhood, mates, .. } = self;
-        let all = || std::iter::once(&*neighbourhood).chain(&mates[..count]);
+        let placed = self.place_tied(count)?;
+        let Self { surface, neighbourhood, tied, .. } = self;
+        let all = || std::iter::once(&*neighbourhood).chain(&tied[..count]);
         let errors: Vec<f64> =
             all().map(|neighbourhood| estimate(surface, neighbourhood, &placed)).collect();
         if errors.iter().any(|&error| error > stop.error) {
@@ -37,8 +37,8 @@ where
         all().try_for_each(|neighbourhood| flip(surface, neighbourhood, placed.position))?;
         // Each neighbourhood is still valid, since no two edges share a face.
         for (i, error_estimate) in errors.into_iter().enumerate() {
-            if let Some(mate) = i.checked_sub(1) {
-                std::mem::swap(&mut self.neighbourhood, &mut self.mates[mate]);
+            if let Some(partner) = i.checked_sub(1) {
+                std::mem::swap(&mut self.neighbourhood, &mut self.tied[partner]);
                 // Its position is dictated by the tie.
                 self.neighbourhood.freedom = Freedom::At(placed.kept);
             }
@@ -48,25 +48,25 @@ where
     }
 
     /// Gathers the neighbourhoods of the partners, and restricts all to their common freedom.
-    fn gather_mates(&mut self) -> Result<(), Refusal> {
-        let Self { surface, neighbourhood, mates, .. } = self;
+    fn gather_tied(&mut self) -> Result<(), Refusal> {
+        let Self { surface, neighbourhood, tied, .. } = self;
         let partners = std::mem::take(&mut neighbourhood.partners);
-        if mates.len() < partners.len() {
-            mates.resize_with(partners.len(), Neighbourhood::default);
+        if tied.len() < partners.len() {
+            tied.resize_with(partners.len(), Neighbourhood::default);
         }
-        let mates = &mut mates[..partners.len()];
+        let tied = &mut tied[..partners.len()];
         let mut freedom = neighbourhood.freedom;
-        for (mate, &edge) in mates.iter_mut().zip(&partners) {
-            mate.gather(surface, Contracted::edge(edge))?;
-            topology(surface, mate)?;
-            freedom = freedom.and(mate.freedom).ok_or(Refusal::Tied)?;
+        for (partner, &edge) in tied.iter_mut().zip(&partners) {
+            partner.gather(surface, Contracted::edge(edge))?;
+            topology(surface, partner)?;
+            freedom = freedom.and(partner.freedom).ok_or(Refusal::Tied)?;
         }
         neighbourhood.partners = partners;
-        if !are_apart(neighbourhood, mates) {
+        if !are_apart(neighbourhood, tied) {
             return Err(Refusal::Tied);
         }
         neighbourhood.freedom = freedom;
-        mates.iter_mut().for_each(|mate| mate.freedom = freedom);
+        tied.iter_mut().for_each(|partner| partner.freedom = freedom);
         Ok(())
     }
 
@@ -74,9 +74,9 @@ where
     /// largest error.
     ///
     /// Its error estimate is the greatest that the method gives for any of them.
-    fn place_together(&self, count: usize) -> Result<Placed, Refusal> {
-        let Self { algorithm, surface, neighbourhood, mates, .. } = self;
-        let all = || std::iter::once(neighbourhood).chain(&mates[..count]);
+    fn place_tied(&self, count: usize) -> Result<Placed, Refusal> {
+        let Self { algorithm, surface, neighbourhood, tied, .. } = self;
+        let all = || std::iter::once(neighbourhood).chain(&tied[..count]);
         let place =
             |neighbourhood| algorithm.placement.place(surface, &algorithm.memory, neighbourhood);
         let places = all().map(place).collect::<Result<Vec<Placed>, _>>()?;
@@ -94,8 +94,8 @@ where
 }
 
 /// Returns true if no two edges share a neighbouring face.
-fn are_apart(neighbourhood: &Neighbourhood, mates: &[Neighbourhood]) -> bool {
-    let all = || std::iter::once(neighbourhood).chain(mates);
+fn are_apart(neighbourhood: &Neighbourhood, tied: &[Neighbourhood]) -> bool {
+    let all = || std::iter::once(neighbourhood).chain(tied);
     let at = |neighbourhood: &Neighbourhood, other: &Neighbourhood| {
         neighbourhood.ring.iter().any(|r| other.contracted.contains(&r.id))
     };
