@@ -33,7 +33,7 @@ use crate::kernel::mesh::vertex::{NO_VERTEX, VertexFlags};
 use crate::kernel::metric::edge_quadric_f64::EdgeQuadricF64;
 use crate::kernel::metric::{Metric, protection};
 use crate::kernel::schedule::batch::Batch;
-use crate::kernel::schedule::bucket_queue::{AHEAD, BucketQueue, NONE, bucket, last_bucket};
+use crate::kernel::schedule::bucket_queue::{BATCH_LEN, BucketQueue, NONE, bucket, last_bucket};
 use crate::kernel::schedule::deferral::Deferral;
 use crate::kernel::schedule::edge_costs::{Cheapest, cheapest};
 use crate::kernel::simd::{SimdTask, widest};
@@ -181,9 +181,9 @@ impl<'v, A: AttributeModel> CollapseLoop<'v, A> {
     #[inline(always)]
     fn recost_batch(&mut self) {
         let (taken, front) = self.queue.next();
-        let (mut next, len) = ([0; AHEAD], taken.len());
+        let (mut next, len) = ([0; BATCH_LEN], taken.len());
         next[..len].copy_from_slice(taken);
-        let (mut changed, mut risen, mut count) = (Batch::<AHEAD>::new(), [0; AHEAD], 0);
+        let (mut changed, mut risen, mut count) = (Batch::<BATCH_LEN>::new(), [0; BATCH_LEN], 0);
         for &v in &next[..len] {
             if !self.is_due(v, front) {
                 continue;

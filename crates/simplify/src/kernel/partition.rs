@@ -29,10 +29,10 @@ use crate::surface::ties::Ties;
 /// Largest number of vertices of a part in the first round: 6 MB of records. Smaller meshes are one
 /// part: in four parts of 12,000, horse-97k has .00734 and .0583 at 10 % and 1 % instead of .00722
 /// and .0571.
-const PART: usize = 3 << 14;
+const MAX_PART: usize = 3 << 14;
 
 /// Number of parts merged into one.
-const JOINED: usize = 4;
+const MERGED_PARTS: usize = 4;
 
 /// A round ends when there are no more than this many faces for each waiting vertex.
 ///
@@ -40,22 +40,22 @@ const JOINED: usize = 4;
 /// the way to zero faces every level counts; igea's at 15 and 10 %, and armadillo-173k's at 10 and
 /// 5 %: 5 .00400, .00566, .0165, .0242; 10 .00364, .00462, .0128, .0236; 20 .00350, .00461, .0128,
 /// .0237, with less done in parts.
-const FACES_A_WAITING: usize = 10;
+const FACES_PER_WAITING: usize = 10;
 
 /// Number of faces beyond the target that a round leaves for each waiting vertex: by then their
 /// edges are cheap, and must go before the target is reached. Mean error of the dragon at 10 %,
 /// which has .00264 in one part: 0 .00293, 2, 3 and 4 .00266.
-const LEFT_OVER: usize = 2;
+const FACES_LEFT_PER_WAITING: usize = 2;
 
 /// A step ends at the cost at which the queues have entries for this fraction, 1/4, of the faces to
 /// remove.
-const STEPS: usize = 4;
+const STEP_FRACTION: usize = 4;
 
 /// Up to this many faces to remove per part, the parts run one after the other.
-const FEW: usize = 4;
+const SERIAL_FACES_PER_PART: usize = 4;
 
 /// Number of faces removed from a surface of one part between two progress reports.
-const FACES_A_CALL: usize = 8192;
+const FACES_PER_REPORT: usize = 8192;
 
 /// Constraints that need the surface in one part: ties, and components that may vanish.
 #[derive(Default)]
@@ -101,7 +101,7 @@ struct PartState {
 
 impl<A: AttributeModel> Partition<A> {
     pub(crate) fn new(store: VertexStore, model: A, live_faces: usize, whole: Whole) -> Self {
-        let part = if whole.is_none() { PART } else { usize::MAX };
+        let part = if whole.is_none() { MAX_PART } else { usize::MAX };
         Self { whole, ..Self::of_at_most(part, store, model, live_faces) }
     }
 
@@ -109,7 +109,7 @@ impl<A: AttributeModel> Partition<A> {
     fn of_at_most(part: usize, mut store: VertexStore, model: A, live_faces: usize) -> Self {
         let mut count = 1;
         while A::IN_PARTS && store.own().div_ceil(count) > part {
-            count *= JOINED;
+            count *= MERGED_PARTS;
         }
         let long = std::mem::take(&mut store.long);
         let mut partition = Self {
@@ -184,7 +184,7 @@ impl<A: AttributeModel> Partition<A> {
         gone: &mut dyn FnMut(usize),
     ) {
         let waiting: usize = self.parts.iter().map(|part| part.waiting.len()).sum();
-        let stop = (faces + LEFT_OVER * waiting).max(FACES_A_WAITING * waiting);
+        let stop = (faces + FACES_LEFT_PER_WAITING * waiting).max(FACES_PER_WAITING * waiting);
         let mut live = self.live_faces;
         let mut log = self.log.take();
         let mut loops: Vec<CollapseLoop<'_, A>> =
@@ -224,9 +224,9 @@ impl<A: AttributeModel> Partition<A> {
     /// Merges groups of parts. Vertices that need not wait any more are queued.
     fn merge_parts(&mut self) {
         let mut parts = std::mem::take(&mut self.parts);
-        self.parts = cut(&self.store, parts.len() / JOINED);
+        self.parts = cut(&self.store, parts.len() / MERGED_PARTS);
         let mut lists = Vec::new();
-        for (joined, parts) in self.parts.iter_mut().zip(parts.chunks_mut(JOINED)) {
+        for (joined, parts) in self.parts.iter_mut().zip(parts.chunks_mut(MERGED_PARTS)) {
             for part in &mut *parts {
                 joined.queue.append(std::mem::take(&mut part.queue));
                 joined.waiting.append(&mut part.waiting);
@@ -332,7 +332,7 @@ impl CostStep {
         let (mut total, mut until) = (0, None);
         for (bucket, &more) in entries.iter().enumerate().filter(|(_, more)| **more > 0) {
             (total, until) = (total + more, Some(bucket));
-            if total > excess / STEPS {
+            if total > excess / STEP_FRACTION {
                 break;
             }
         }
@@ -358,11 +358,11 @@ impl CostStep {
             return run(
                 collapse_loop,
                 live,
-                stop.max(live.saturating_sub(FACES_A_CALL)),
+                stop.max(live.saturating_sub(FACES_PER_REPORT)),
                 self.last,
             );
         }
-        if live - stop <= loops.len() * FEW {
+        if live - stop <= loops.len() * SERIAL_FACES_PER_PART {
             let loops = loops.iter_mut();
             return loops
                 .fold(live, |live, collapse_loop| run(collapse_loop, live, stop, self.last));

@@ -227,7 +227,7 @@ impl<A: AttributeModel> CollapseLoop<'_, A> {
         steps: &mut [(Collapse, f32, f32)],
     ) -> Result<(), Refusal> {
         let Some(within) = &mut self.within else { return Ok(()) };
-        let mut ways = Vec::with_capacity(edges.len());
+        let mut checked = Vec::with_capacity(edges.len());
         for (edge, (collapse, now, moved)) in edges.iter().zip(steps) {
             let Ends { v0, v1, .. } = collapse.ends;
             let from = self.vertices.get(v0).place();
@@ -238,11 +238,11 @@ impl<A: AttributeModel> CollapseLoop<'_, A> {
                 displacement: collapse.displacement,
                 now: *now,
             };
-            let (way, farthest) = within.judge(&step, *moved).ok_or(Refusal::Error)?;
+            let (travelled, farthest) = within.check(&step, *moved).ok_or(Refusal::Error)?;
             *moved = farthest;
-            ways.push(([v0, v1], way));
+            checked.push(([v0, v1], travelled));
         }
-        ways.into_iter().for_each(|(ends, way)| within.carry_out(ends, way));
+        checked.into_iter().for_each(|(ends, travelled)| within.carry_out(ends, travelled));
         Ok(())
     }
 

@@ -118,28 +118,28 @@ impl BoundPart<'_> {
     /// the input, or `estimate` where that cannot be near the bound; `None` if it is beyond the
     /// bound.
     pub(crate) fn admit(&mut self, step: &BoundedStep<'_>, estimate: f32) -> Option<f32> {
-        let (way, moved) = self.judge(step, estimate)?;
-        self.carry_out(step.ends, way);
+        let (travelled, moved) = self.check(step, estimate)?;
+        self.carry_out(step.ends, travelled);
         Some(moved)
     }
 
     /// Checks a step. Returns the total distance travelled with it, and the result of
     /// [`Self::admit`].
-    pub(crate) fn judge(&mut self, step: &BoundedStep<'_>, estimate: f32) -> Option<(f32, f32)> {
+    pub(crate) fn check(&mut self, step: &BoundedStep<'_>, estimate: f32) -> Option<(f32, f32)> {
         let [v0, v1] = step.ends.map(|v| self.slot(v));
         let before = self.travelled[v0].max(self.travelled[v1]);
-        let way = before + step.now.max(step.edge_ring.off_planes(step.displacement)).sqrt();
-        if way <= SURE * self.max_error {
-            return Some((way, estimate));
+        let travelled = before + step.now.max(step.edge_ring.off_planes(step.displacement)).sqrt();
+        if travelled <= SURE * self.max_error {
+            return Some((travelled, estimate));
         }
         let farthest = self.measure(step, before)?;
         Some((farthest, farthest * farthest))
     }
 
     /// Counts a step as carried out, with the total distance travelled.
-    pub(crate) fn carry_out(&mut self, ends: [u32; 2], way: f32) {
+    pub(crate) fn carry_out(&mut self, ends: [u32; 2], travelled: f32) {
         let [v0, v1] = ends.map(|v| self.slot(v));
-        self.travelled[v0] = way;
+        self.travelled[v0] = travelled;
         self.next.swap(v0, v1);
     }
 
@@ -149,18 +149,18 @@ impl BoundPart<'_> {
         if step.now.sqrt() > TOO_FAR * self.max_error {
             return None;
         }
-        let of_new = self.of_new(step)?;
+        let new_to_input = self.new_faces_to_input(step)?;
         self.old.lay_old(step.edge_ring);
         self.new.lay_new(step.edge_ring, step.displacement);
-        if self.of_edges(step.edge_ring) > self.max_error + before {
+        if self.old_edges_to_new_faces(step.edge_ring) > self.max_error + before {
             return None;
         }
-        Some(of_new.max(self.of_old(step)?))
+        Some(new_to_input.max(self.input_to_new_faces(step)?))
     }
 
     /// Returns the largest distance of sampled points of the new faces from the input; `None` if it
     /// is beyond the bound.
-    fn of_new(&self, step: &BoundedStep<'_>) -> Option<f32> {
+    fn new_faces_to_input(&self, step: &BoundedStep<'_>) -> Option<f32> {
         let &BoundedStep { edge_ring, from, displacement, .. } = step;
         let mut probe = Probe::new(self.input, self.max_error);
         let apex = (from + displacement, probe.at(from + displacement)?);
@@ -182,7 +182,7 @@ impl BoundPart<'_> {
 
     /// Returns the largest distance of sampled points of the old edges from the new faces. By as
     /// much as the old edges are off, the new faces may be nearer to the input.
-    fn of_edges(&self, edge_ring: &EdgeRing) -> f32 {
+    fn old_edges_to_new_faces(&self, edge_ring: &EdgeRing) -> f32 {
         let spokes = (0..edge_ring.len).filter(|&i| edge_ring.ids[i] != GHOST);
         let spokes = spokes.map(|i| (edge_ring.along * edge_ring.of_v1[i], edge_ring.relative(i)));
         // The edges of the dying faces that are not spokes.
@@ -199,7 +199,7 @@ impl BoundPart<'_> {
     /// Returns the largest distance of the input vertices merged into the ends from the new faces;
     /// `None` if a point around was within the bound of the old faces and is not within that of the
     /// new ones.
-    fn of_old(&mut self, step: &BoundedStep<'_>) -> Option<f32> {
+    fn input_to_new_faces(&mut self, step: &BoundedStep<'_>) -> Option<f32> {
         let &BoundedStep { edge_ring, ends, from, .. } = step;
         let max_error = self.max_error * self.max_error;
         let mut farthest = 0.0f32;

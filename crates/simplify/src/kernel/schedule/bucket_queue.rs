@@ -5,16 +5,16 @@
 //! by buckets per octave: 8 .00719, 4 .00720, 2 .00726, 1 .00730.
 
 /// Number of bits of a float below its bucket: all of the mantissa's 23 but two.
-const BELOW: u32 = 21;
+const SUB_BUCKET_BITS: u32 = 21;
 
 /// Number of buckets for finite costs.
-const BUCKETS: usize = (f32::INFINITY.to_bits() >> BELOW) as usize;
+const BUCKETS: usize = (f32::INFINITY.to_bits() >> SUB_BUCKET_BITS) as usize;
 
 /// Bucket of a vertex that is not queued.
 pub(crate) const NONE: u16 = u16::MAX;
 
 /// Number of vertices taken in one batch and made ready before the first is tried.
-pub(crate) const AHEAD: usize = 16;
+pub(crate) const BATCH_LEN: usize = 16;
 
 /// Vertices by the bucket of their cost.
 pub(crate) struct BucketQueue {
@@ -30,13 +30,13 @@ pub(crate) struct BucketQueue {
 /// Returns the bucket of a cost; `NONE` for infinity and NaN.
 #[inline(always)]
 pub(crate) fn bucket(cost: f32) -> u16 {
-    let bucket = cost.max(0.0).to_bits() >> BELOW;
+    let bucket = cost.max(0.0).to_bits() >> SUB_BUCKET_BITS;
     if cost < f32::INFINITY { bucket as u16 } else { NONE }
 }
 
 /// Returns the smallest cost in a bucket.
 pub(crate) fn min_cost_in(bucket: u16) -> f32 {
-    f32::from_bits(u32::from(bucket) << BELOW)
+    f32::from_bits(u32::from(bucket) << SUB_BUCKET_BITS)
 }
 
 /// Returns the bucket of the greatest finite costs.
@@ -49,7 +49,7 @@ impl Default for BucketQueue {
         Self {
             buckets: vec![Vec::new(); BUCKETS],
             lowest: BUCKETS,
-            next: Vec::with_capacity(AHEAD),
+            next: Vec::with_capacity(BATCH_LEN),
             front: 0,
         }
     }
@@ -73,7 +73,7 @@ impl BucketQueue {
             let Some(list) = self.buckets.get_mut(self.lowest) else { return false };
             if !list.is_empty() {
                 self.front = self.lowest as u16;
-                self.next.extend(list.drain(list.len().saturating_sub(AHEAD)..));
+                self.next.extend(list.drain(list.len().saturating_sub(BATCH_LEN)..));
                 return true;
             }
             self.lowest += 1;
@@ -145,9 +145,9 @@ mod tests {
     #[test]
     fn buckets_are_last_in_first_out_and_a_batch_can_be_put_back() {
         let mut queue = BucketQueue::default();
-        (0..AHEAD as u32 + 3).for_each(|v| queue.push(v, 9));
+        (0..BATCH_LEN as u32 + 3).for_each(|v| queue.push(v, 9));
         assert!(!queue.take(8) && queue.take(9));
-        assert_eq!((queue.next().0.len(), queue.pop()), (AHEAD, Some(18)));
+        assert_eq!((queue.next().0.len(), queue.pop()), (BATCH_LEN, Some(18)));
         queue.put_back();
         queue.push(40, 4);
         let all: Vec<u32> = std::iter::from_fn(|| next(&mut queue)).collect();
