@@ -49,18 +49,29 @@ fn simplify_reaches_a_ratio_and_says_so() {
 }
 
 #[test]
-fn attributes_are_counted_where_no_method_is_named() {
+fn no_option_changes_the_method_or_drops_attribute_weights() {
     let run = Run::new();
     run.sample("fish", 1_000, "in.obj");
-    let simplify = |rest: &[&str]| {
-        run.json(&[&["simplify", "in.obj", "out.obj", "--ratio", "50%"], rest].concat())
-    };
-    assert_eq!(simplify(&[])["method"], "lindstrom-turk");
-    // What the fast engine does not do is left to one that counts them in the general engine.
-    assert_eq!(simplify(&["--keep-objects=5%"])["method"], "qem");
-    run.sample("knot", 1_000, "in.ply");
-    let bare = ["simplify", "in.ply", "out.ply", "--ratio", "50%", "--keep-objects=5%"];
-    assert_eq!(run.json(&bare)["method"], "lindstrom-turk");
+    for rest in [&[][..], &["--keep-objects=5%"], &["--lock-contacts"]] {
+        let level = |weight: &str| {
+            let arguments = ["simplify", "in.obj", "out.obj", "--ratio", "20%", "--weight-uv", weight];
+            assert_eq!(run.json(&[&arguments, rest].concat())["method"], "lindstrom-turk");
+            std::fs::read(run.path("out.obj")).unwrap()
+        };
+        assert_ne!(level("0"), level("50"), "{rest:?}");
+    }
+}
+
+#[test]
+fn an_error_bound_holds_where_components_may_vanish_or_vertices_are_tied() {
+    let run = Run::new();
+    run.sample("fish", 4_000, "in.ply");
+    for rest in [&["--keep-objects=0.0001%"][..], &["--lock-contacts"], &["--method", "qem"]] {
+        let arguments = ["simplify", "in.ply", "out.ply", "--error", "1%"];
+        let report = run.json(&[&arguments, rest].concat());
+        let measured = number(&report["error_measured"]["max"]);
+        assert!(measured <= 0.011 * number(&report["error_measured"]["diagonal"]), "{rest:?}");
+    }
 }
 
 #[test]

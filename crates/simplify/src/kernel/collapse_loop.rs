@@ -130,22 +130,35 @@ impl<'v, A: AttributeModel> CollapseLoop<'v, A> {
         widest(ContractAll { collapse_loop: self, faces, last });
     }
 
+    /// Contracts edges, and between them removes each component once no edge costs less.
     #[inline(always)]
     fn contract_all(&mut self, faces: usize, last: u16) {
-        while self.live_faces > faces {
-            let is_ready = self.take_batch(last);
+        loop {
+            let component =
+                self.next_component().filter(|&bucket| bucket <= last.min(last_bucket()));
+            if let Some(until) = component.map_or(Some(last), |bucket| bucket.checked_sub(1)) {
+                self.contract_edges(faces, until);
+            }
+            match component {
+                Some(bucket) if self.live_faces > faces => self.vanish_up_to(bucket),
+                _ => return,
+            };
+        }
+    }
+
+    #[inline(always)]
+    fn contract_edges(&mut self, faces: usize, last: u16) {
+        while self.live_faces > faces && self.take_batch(last) {
             let (_, bucket) = self.queue.next();
-            if self.components.is_some() && self.vanish_up_to(if is_ready { bucket } else { last })
-            {
-                continue;
-            }
-            if !is_ready {
-                return;
-            }
             if let Some(v) = self.pop() {
                 self.try_collapse(v, bucket);
             }
         }
+    }
+
+    /// Returns the bucket of the cheapest component that may vanish.
+    fn next_component(&self) -> Option<u16> {
+        self.components.as_ref().and_then(|components| components.next_bucket())
     }
 
     /// Takes the next vertex from the queue; `None` if its entry is out of date.
