@@ -54,7 +54,8 @@ fn no_option_changes_the_method_or_drops_attribute_weights() {
     run.sample("fish", 1_000, "in.obj");
     for rest in [&[][..], &["--keep-objects=5%"], &["--lock-contacts"]] {
         let level = |weight: &str| {
-            let arguments = ["simplify", "in.obj", "out.obj", "--ratio", "20%", "--weight-uv", weight];
+            let arguments =
+                ["simplify", "in.obj", "out.obj", "--ratio", "20%", "--weight-uv", weight];
             assert_eq!(run.json(&[&arguments, rest].concat())["method"], "lindstrom-turk");
             std::fs::read(run.path("out.obj")).unwrap()
         };
