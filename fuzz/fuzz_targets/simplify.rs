@@ -14,7 +14,7 @@ fn mesh(bytes: &[u8]) -> Option<(Mesh, Target, Options)> {
     let positions: Vec<_> = points.iter().map(|p| p.map(|x| f64::from(x as i8))).collect();
     let faces = triples.iter().map(|t| t.map(|v| VertexId(u32::from(v) % count as u32)));
     let options = Options {
-        method: Some(Method::ALL[usize::from(method) % Method::ALL.len()]),
+        method: Method::ALL[usize::from(method) % Method::ALL.len()],
         lock_boundary: locks & 1 != 0,
         locks: locks_of(locks, &positions),
         vanish_below: (locks & 16 != 0).then_some(100.0),

@@ -48,7 +48,7 @@ pub(crate) fn seeds() -> Vec<Vec<u8>> {
     let methods = [Method::Qem, Method::LeeJang, Method::LindstromTurkFaces];
     let files = meshes.iter().flat_map(|mesh| {
         methods.into_iter().flat_map(move |method| {
-            let options = Options { method: Some(method), ..Options::default() };
+            let options = Options { method, ..Options::default() };
             [Forest::new, Forest::lossless].map(|record| contractions(record(mesh, &options)))
         })
     });

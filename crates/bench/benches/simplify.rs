@@ -11,7 +11,7 @@ fn to_a_tenth(c: &mut Criterion) {
     for (name, mesh) in [("gyroid", samples::gyroid(50_000)), ("terrain", samples::terrain(50_000))]
     {
         for method in Method::ALL {
-            let options = Options { method: Some(method), ..Options::default() };
+            let options = Options { method, ..Options::default() };
             group.bench_function(format!("{name}/{}", method.name()), |b| {
                 b.iter(|| {
                     let (level, report) = simplify(&mesh, Target::Ratio(0.1), &options).unwrap();

@@ -28,7 +28,7 @@ fn main() -> Result<()> {
 }
 
 fn line(mesh: &Mesh) -> Result<()> {
-    let options = Options { method: Some(Method::LindstromTurk), ..Options::default() };
+    let options = Options { method: Method::LindstromTurk, ..Options::default() };
     let start = Instant::now();
     let (level, _) = simplify(mesh, Target::Ratio(0.1), &options)?;
     let seconds = start.elapsed().as_secs_f64();

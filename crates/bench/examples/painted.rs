@@ -57,7 +57,7 @@ fn main() -> Result<()> {
 }
 
 fn options(method: Method) -> Options {
-    Options { method: Some(method), ..Options::default() }
+    Options { method, ..Options::default() }
 }
 
 fn speed(mesh: &Mesh, ratio: f64, rounds: usize) {

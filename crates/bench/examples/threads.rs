@@ -61,7 +61,7 @@ fn pool(threads: usize) -> Result<rayon::ThreadPool> {
 
 /// Measures wall time, which is what threads save.
 fn timed(mesh: &Mesh, ratio: f64) -> (f64, Mesh) {
-    let options = Options { method: Some(Method::LindstromTurk), ..Options::default() };
+    let options = Options { method: Method::LindstromTurk, ..Options::default() };
     let start = Instant::now();
     let (level, _) =
         simplify(mesh, Target::Ratio(ratio), &options).expect("the mesh can be simplified");

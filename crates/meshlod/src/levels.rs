@@ -117,7 +117,7 @@ pub fn build(mesh: &Mesh, path: &Path, options: &BuildOptions) -> Result<BuildRe
 
 fn encode(mesh: &Mesh, options: &BuildOptions) -> Result<(Vec<u8>, BuildReport), FileError> {
     let record = if options.lossless { Forest::lossless } else { Forest::new };
-    let mut forest = record(mesh, &Options { method: Some(options.method), ..Options::default() })?;
+    let mut forest = record(mesh, &Options { method: options.method, ..Options::default() })?;
     match options.errors {
         ErrorKind::Estimate => forest.smooth_errors(),
         ErrorKind::Bound => forest.measure_bounds(),

@@ -92,7 +92,7 @@ impl<'s> SceneSimplifier<'s> {
     pub fn new(scene: &'s Scene, options: &Options) -> Result<Self, SceneError> {
         let locks = locks::split(scene, &options.locks)?;
         let shown = shown(scene);
-        let method = options.method.unwrap_or_default();
+        let method = options.method;
         let mut this = Self { scene, method, parts: Vec::new(), still_faces: 0 };
         let mut still = None;
         for ((index, (copies, scale)), locks) in shown.into_iter().enumerate().zip(locks) {
@@ -103,7 +103,7 @@ impl<'s> SceneSimplifier<'s> {
             // A mesh scaled to a point is smaller than any size.
             let vanish_below = options.vanish_below.map(|size| size / scale);
             let vanish_below = vanish_below.map(|size| if size.is_nan() { 0.0 } else { size });
-            let options = Options { method: Some(method), locks, vanish_below, ..*options };
+            let options = Options { method, locks, vanish_below, ..*options };
             match Simplifier::new(mesh, &options) {
                 Ok(simplifier) => {
                     let cost_scale = scale.powi(method.cost_power());

@@ -52,7 +52,7 @@ fn both_engines_are_as_near_and_keep_the_volume() {
             (Method::Qem, 0.2),
             (Method::Qem, 0.05),
         ] {
-            let options = Options { method: Some(method), ..Options::default() };
+            let options = Options { method, ..Options::default() };
             let fast = Simplifier::new(&mesh, &options).unwrap();
             let general = Simplifier::on_policy_engine(&mesh, &options).unwrap();
             let [fast, general] = [fast, general].map(|engine| figures(&mesh, engine, ratio));

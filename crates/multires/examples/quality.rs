@@ -31,7 +31,7 @@ fn main() -> Result<(), Failure> {
     };
     let method = args.next().map_or(Some(Method::LindstromTurk), |name| Method::by_name(&name));
     let method = method.ok_or("no such method")?;
-    let options = Options { method: Some(method), ..Options::default() };
+    let options = Options { method, ..Options::default() };
     let mesh = meshlod_io::ply::read(&std::fs::read(path)?)?;
     println!("{} vertices, {} faces", mesh.positions.len(), mesh.faces.len());
     let start = ThreadTime::now();

@@ -152,8 +152,8 @@ impl Target {
 /// Options of a simplification.
 #[derive(Clone, Debug, Default)]
 pub struct Options {
-    /// Algorithm; `None` selects [`Method::default`].
-    pub method: Option<Method>,
+    /// Algorithm, which also decides the engine that runs it.
+    pub method: Method,
     /// Weights of the attributes in the costs of methods for which [`Method::counts_attributes`] is
     /// true.
     pub weights: AttributeWeights,
@@ -298,7 +298,7 @@ pub enum SimplifyError {
 /// Report of a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Report {
-    /// Algorithm that ran, also if none was chosen.
+    /// Algorithm that ran.
     pub method: Method,
     /// Number of faces of the input.
     pub input_faces: usize,

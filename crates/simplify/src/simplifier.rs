@@ -48,7 +48,7 @@ impl<'m> Simplifier<'m> {
     /// vertices.
     pub fn new(mesh: &'m Mesh, options: &Options) -> Result<Self, SimplifyError> {
         let bounds = validate(mesh, options)?;
-        let method = options.method.unwrap_or_default();
+        let method = options.method;
         let (engine, input) = match method {
             Method::LindstromTurk => kernel::start(SweptVolume, mesh, &bounds, options)?,
             Method::Qem => kernel::start(PlaneDistance, mesh, &bounds, options)?,
@@ -66,7 +66,7 @@ impl<'m> Simplifier<'m> {
     #[cfg(feature = "oracle")]
     pub fn on_policy_engine(mesh: &'m Mesh, options: &Options) -> Result<Self, SimplifyError> {
         validate(mesh, options)?;
-        let method = options.method.unwrap_or_default();
+        let method = options.method;
         let (engine, input) = by_policies(mesh, method, options)?;
         Ok(Self { mesh, engine, method, input })
     }

@@ -29,9 +29,7 @@ fn with_layers(mesh: Mesh, layers: &[Painted]) -> Mesh {
 }
 
 fn to(mesh: &Mesh, method: Method, ratio: f64) -> Mesh {
-    simplify(mesh, Target::Ratio(ratio), &Options { method: Some(method), ..Options::default() })
-        .unwrap()
-        .0
+    simplify(mesh, Target::Ratio(ratio), &Options { method, ..Options::default() }).unwrap().0
 }
 
 /// Every corner with its position and its values in a layer.
@@ -232,12 +230,8 @@ fn a_box_with_a_texture_a_side_goes_down_to_its_twelve_faces() {
     let mesh = boxed(5);
     mesh.validate().unwrap();
     for method in Method::ALL {
-        let (level, _) = simplify(
-            &mesh,
-            Target::Faces(0),
-            &Options { method: Some(method), ..Options::default() },
-        )
-        .unwrap();
+        let (level, _) =
+            simplify(&mesh, Target::Faces(0), &Options { method, ..Options::default() }).unwrap();
         assert_eq!(level.faces.len(), 12, "{}", method.name());
         let ends = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0];
         assert!(corners(&level, 0).all(|(_, uv)| uv.iter().all(|x| ends.contains(x))));
@@ -318,7 +312,7 @@ fn weights_are_numbers_of_at_least_0() {
 fn attributes_that_count_for_nothing_change_no_position() {
     let mesh = samples::fish(1000);
     let bare = Mesh { attributes: None, ..mesh.clone() };
-    let (weights, method) = (AttributeWeights::NONE, Some(Method::Qem));
+    let (weights, method) = (AttributeWeights::NONE, Method::Qem);
     let options = Options { weights, method, ..Options::default() };
     // Seams still count, so the comparison uses a mesh without any.
     let flat = with_layers(bare.clone(), &[(LayerKind::Color(0), |[x, ..]| vec![x as f32; 3])]);

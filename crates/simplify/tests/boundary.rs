@@ -6,7 +6,7 @@ use meshlod_simplify::{Method, Options, Simplifier, SimplifyError, Target, simpl
 use meshlod_spatial::Bvh;
 
 fn options(method: Method, boundary_weight: Option<f64>) -> Options {
-    Options { method: Some(method), boundary_weight, ..Options::default() }
+    Options { method, boundary_weight, ..Options::default() }
 }
 
 /// Boundary edges of a mesh, as faces without area.

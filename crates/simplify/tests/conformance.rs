@@ -87,7 +87,7 @@ impl Runner {
     }
 
     fn start<'m>(self, mesh: &'m Mesh, options: &Options) -> Result<Simplifier<'m>, SimplifyError> {
-        let options = Options { method: Some(self.method), ..options.clone() };
+        let options = Options { method: self.method, ..options.clone() };
         match self.on_policy_engine {
             true => Simplifier::on_policy_engine(mesh, &options),
             false => Simplifier::new(mesh, &options),

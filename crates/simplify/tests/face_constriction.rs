@@ -28,7 +28,7 @@ fn pyramid_on_a_plain() -> Mesh {
 /// Number of faces left when the tip is removed.
 fn faces_at_the_end_of_the_tip(method: Method) -> usize {
     let mesh = pyramid_on_a_plain();
-    let options = Options { method: Some(method), ..Options::default() };
+    let options = Options { method, ..Options::default() };
     let mut simplifier = Simplifier::new(&mesh, &options).unwrap();
     while simplifier.step(f64::INFINITY, &mut ()) {
         if simplifier.level().bounds().max[2] < 0.8 {

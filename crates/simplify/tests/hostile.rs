@@ -24,7 +24,7 @@ fn a_flat_grows_no_hubs() {
 #[test]
 fn a_hub_shrinks_with_its_rim() {
     for method in Method::ALL {
-        let options = Options { method: Some(method), ..Options::default() };
+        let options = Options { method, ..Options::default() };
         let (level, report) =
             simplify(&fixtures::cone(20_000), Target::Faces(100), &options).unwrap();
         assert!(report.reached, "{}: {}", method.name(), report.refusals);
@@ -57,7 +57,7 @@ fn scale_changes_nothing_until_it_is_refused_by_name() {
     let scaled = |factor: f64, method| {
         let mut mesh = samples::torus(1000);
         mesh.positions.iter_mut().flatten().for_each(|x| *x *= factor);
-        simplify(&mesh, Target::Ratio(0.1), &Options { method: Some(method), ..Options::default() })
+        simplify(&mesh, Target::Ratio(0.1), &Options { method, ..Options::default() })
     };
     for method in Method::ALL {
         let faces = |factor| scaled(factor, method).unwrap().0.faces;
@@ -134,7 +134,7 @@ fn no_vertex_leaves_the_box_of_a_fold() {
     let mesh = fold();
     let bounds = mesh.bounds();
     for method in Method::ALL {
-        let options = Options { method: Some(method), ..Options::default() };
+        let options = Options { method, ..Options::default() };
         let (level, _) = simplify(&mesh, Target::Ratio(0.05), &options).unwrap();
         for axis in 0..3 {
             let room = 0.1 * bounds.diagonal();

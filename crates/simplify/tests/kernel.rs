@@ -14,7 +14,7 @@ use meshlod_spatial::Bvh;
 const KERNEL_METHODS: [Method; 2] = [Method::LindstromTurk, Method::Qem];
 
 fn options(method: Method) -> Options {
-    Options { method: Some(method), ..Options::default() }
+    Options { method, ..Options::default() }
 }
 
 fn run(method: Method, mesh: &Mesh, target: Target) -> (Mesh, Report) {

@@ -128,7 +128,7 @@ fn defects(mesh: &Mesh) -> [usize; 3] {
 /// Runs with all ties, checks that they hold, and returns the level.
 fn tied_run(mesh: &Mesh, method: Method, ratio: f64) -> Mesh {
     let locks = ties(mesh);
-    let options = Options { method: Some(method), locks: locks.clone(), ..Options::default() };
+    let options = Options { method, locks: locks.clone(), ..Options::default() };
     let mut simplifier = Simplifier::new(mesh, &options).unwrap();
     let mut trace = Trace::new(mesh);
     let report = simplifier.run(Target::Ratio(ratio), &mut trace).unwrap();
@@ -208,7 +208,7 @@ proptest! {
         };
         let of_vertex = (0..mesh.positions.len()).map(lock).collect();
         let locks = Locks { of_vertex, ..ties(&mesh) };
-        let options = Options { method: Some(method), locks: locks.clone(), ..Options::default() };
+        let options = Options { method, locks: locks.clone(), ..Options::default() };
         let mut simplifier = Simplifier::new(&mesh, &options).unwrap();
         let mut trace = Trace::new(&mesh);
         simplifier.run(Target::Ratio(ratio), &mut trace).unwrap();
@@ -238,7 +238,7 @@ proptest! {
             raw.iter().map(|face| face.map(|v| VertexId(v % count))).collect(),
         );
         let locks = ties(&mesh);
-        let options = Options { method: Some(method), locks: locks.clone(), ..Options::default() };
+        let options = Options { method, locks: locks.clone(), ..Options::default() };
         // If every face is degenerate, there is nothing to keep.
         if let Ok(mut simplifier) = Simplifier::new(&mesh, &options) {
             let before = defects(&simplifier.level());
@@ -258,7 +258,7 @@ proptest! {
 fn what_was_contracted_together_comes_back_to_the_bit() {
     let mesh = three_boxes(6);
     for method in Method::ALL {
-        let options = Options { method: Some(method), locks: ties(&mesh), ..Options::default() };
+        let options = Options { method, locks: ties(&mesh), ..Options::default() };
         let mut simplifier = Simplifier::new(&mesh, &options).unwrap();
         let mut history = History::default();
         let mut levels = vec![simplifier.level()];
@@ -328,8 +328,7 @@ fn what_is_protected_goes_last_and_is_not_safe() {
     let (mesh, locks) = halved(Lock::Protected);
     for method in Method::ALL {
         let share = |locks: &Locks, ratio| {
-            let options =
-                Options { method: Some(method), locks: locks.clone(), ..Options::default() };
+            let options = Options { method, locks: locks.clone(), ..Options::default() };
             let (level, report) = simplify(&mesh, Target::Ratio(ratio), &options).unwrap();
             assert!(report.reached);
             let there = level.positions.iter().filter(|p| p[0] > 0.01).count();
@@ -349,7 +348,7 @@ fn both_engines_protect_as_much() {
         .into_iter()
         .flat_map(|method| [0.6, 0.3, 0.1].map(|ratio| (method, ratio)));
     for (method, ratio) in cases {
-        let options = Options { method: Some(method), locks: locks.clone(), ..Options::default() };
+        let options = Options { method, locks: locks.clone(), ..Options::default() };
         let [kernel, policies] = [true, false].map(|on_kernel| {
             let start = if on_kernel { Simplifier::new } else { Simplifier::on_policy_engine };
             let mut simplifier = start(&mesh, &options).unwrap();
@@ -367,8 +366,7 @@ fn an_error_bound_ignores_the_cost_of_protection() {
     let (mesh, locks) = halved(Lock::Protected);
     for method in Method::ALL {
         let faces = |locks: &Locks| {
-            let options =
-                Options { method: Some(method), locks: locks.clone(), ..Options::default() };
+            let options = Options { method, locks: locks.clone(), ..Options::default() };
             let mut simplifier = Simplifier::new(&mesh, &options).unwrap();
             let report = simplifier.run(Target::Error(0.02), &mut ()).unwrap();
             assert!(report.error_estimate <= 0.02);

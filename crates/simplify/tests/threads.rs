@@ -11,7 +11,7 @@ use meshlod_simplify::{History, Method, Options, Report, Simplifier, Target, sim
 const KERNEL_METHODS: [Method; 2] = [Method::LindstromTurk, Method::Qem];
 
 fn options(method: Method) -> Options {
-    Options { method: Some(method), ..Options::default() }
+    Options { method, ..Options::default() }
 }
 
 fn run_with(threads: usize, mesh: &Mesh, target: Target, options: &Options) -> (Mesh, Report) {

@@ -32,7 +32,7 @@ fn run(mesh: &Mesh, options: &Options, target: Target) -> (Mesh, Report) {
 
 /// How many faces each component of the input has left.
 fn left(mesh: &Mesh, method: Method, vanish_below: Option<f64>, faces: usize) -> Vec<usize> {
-    let options = Options { method: Some(method), vanish_below, ..Options::default() };
+    let options = Options { method, vanish_below, ..Options::default() };
     let (level, report) = run(mesh, &options, Target::Faces(faces));
     let mut left = vec![0; 1 + mesh.positions.len() / samples::sphere(400).positions.len()];
     for face in &level.faces {
@@ -62,8 +62,7 @@ fn what_is_small_vanishes_and_what_is_large_stays() {
 fn it_vanishes_when_it_is_coarse() {
     let mesh = balls(&[0.1, 0.1]);
     for method in Method::ALL {
-        let options =
-            Options { method: Some(method), vanish_below: Some(1.0), ..Options::default() };
+        let options = Options { method, vanish_below: Some(1.0), ..Options::default() };
         let mut simplifier = Simplifier::new(&mesh, &options).unwrap();
         let mut before = mesh.faces.len();
         while simplifier.step(f64::INFINITY, &mut ()) {
@@ -114,8 +113,7 @@ fn what_vanished_comes_back_to_the_bit() {
     let mut mesh = balls(&[0.1, 0.2]);
     mesh.faces.pop();
     for method in Method::ALL {
-        let options =
-            Options { method: Some(method), vanish_below: Some(1.0), ..Options::default() };
+        let options = Options { method, vanish_below: Some(1.0), ..Options::default() };
         let mut simplifier = Simplifier::new(&mesh, &options).unwrap();
         let mut history = History::default();
         let mut levels = vec![simplifier.level()];
@@ -143,8 +141,7 @@ fn the_report_counts_the_volume_that_vanished() {
         mesh.faces.iter().map(sixfold).sum::<f64>() / 6.0
     };
     for method in Method::ALL {
-        let options =
-            Options { method: Some(method), vanish_below: Some(2.0), ..Options::default() };
+        let options = Options { method, vanish_below: Some(2.0), ..Options::default() };
         let (level, report) = run(&mesh, &options, Target::Faces(4));
         assert_eq!(report.vanished, 1);
         let lost = volume(&mesh) - volume(&level);

@@ -100,7 +100,7 @@ mod tests {
     use crate::verify::{Difference, difference};
 
     fn model(mesh: &Mesh, method: Method) -> Model {
-        let options = meshlod_simplify::Options { method: Some(method), ..Default::default() };
+        let options = meshlod_simplify::Options { method, ..Default::default() };
         Model::new(&Forest::new(mesh, &options).unwrap()).unwrap()
     }
 

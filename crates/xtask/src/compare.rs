@@ -117,7 +117,7 @@ fn read(name: &str) -> Result<Mesh> {
 }
 
 fn row(name: &str, mesh: &Mesh, ratio: f64, rounds: usize) -> Result<Comparison> {
-    let options = Options { method: Some(Method::LindstromTurk), ..Options::default() };
+    let options = Options { method: Method::LindstromTurk, ..Options::default() };
     let (indexed, target) = (Indexed::from(mesh), Target::Ratio(ratio));
     let faces = target.faces_of(mesh.faces.len());
     let ours = || simplify(mesh, target, &options).expect("the mesh can be simplified").0;

@@ -72,7 +72,7 @@ impl<'s> ChainBuilder<'s> {
     pub fn start(setup: ChainSetup<'s>, method: Method, what: String) -> Result<Self, Failure> {
         let ChainSetup { subject, original, options, session } = setup;
         let path = Path::new(&subject.name);
-        let simplify = Options { method: Some(method), ..Options::default() };
+        let simplify = Options { method, ..Options::default() };
         session.progress.stage(&format!("{what}: building connectivity"));
         let run = SimplifyRun::start(&subject.scene, &simplify, path, session)?;
         Ok(Self { subject, original, options, run, session, what })

@@ -133,8 +133,7 @@ impl Build {
 
     fn contractions(&self, mesh: &Mesh, session: &Session) -> Result<Built, Failure> {
         let failed = |error: BuildError| Failure::at(&self.input, error);
-        let options =
-            Options { method: Some(self.method), vanish_below: None, ..Options::default() };
+        let options = Options { method: self.method, vanish_below: None, ..Options::default() };
         let mut simplifier =
             Simplifier::new(mesh, &options).map_err(|error| failed(error.into()))?;
         let watch = session.progress.contractions("contracting", Some(mesh.faces.len()));

@@ -119,7 +119,7 @@ impl MethodArgs {
     /// Builds the simplification options for a scene.
     pub fn options(&self, input: &InputScene<'_>, session: &Session) -> Result<Options, Failure> {
         let options = Options {
-            method: Some(self.method),
+            method: self.method,
             weights: self.weights(),
             boundary_weight: self.boundary,
             ..Options::default()

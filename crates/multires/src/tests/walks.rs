@@ -36,7 +36,7 @@ fn meshes() -> Vec<(&'static str, Mesh)> {
 }
 
 pub(crate) fn forest(mesh: &Mesh, method: Method) -> Forest {
-    Forest::new(mesh, &Options { method: Some(method), ..Options::default() }).unwrap()
+    Forest::new(mesh, &Options { method, ..Options::default() }).unwrap()
 }
 
 pub(crate) fn each(check: impl FnMut(&str, &Mesh, &Forest)) {

@@ -316,7 +316,7 @@ mod tests {
     use crate::{Method, Options, Target, simplify};
 
     fn coarse(mesh: &Mesh, ratio: f64) -> Mesh {
-        let options = Options { method: Some(Method::LindstromTurk), ..Options::default() };
+        let options = Options { method: Method::LindstromTurk, ..Options::default() };
         simplify(mesh, Target::Ratio(ratio), &options).unwrap().0
     }
 

@@ -152,7 +152,7 @@ mod tests {
             (samples::knot(4000), Method::Qem),
             (bare, Method::Qem),
         ] {
-            let options = Options { method: Some(method), ..Options::default() };
+            let options = Options { method, ..Options::default() };
             let [wide, narrow] = [false, true].map(|are_narrow| {
                 ARE_NARROW.store(are_narrow, Relaxed);
                 simplify(&mesh, Target::Ratio(0.1), &options).unwrap().0

@@ -61,7 +61,7 @@ impl MergeTree {
     /// # Errors
     /// If simplification refuses the mesh or the target.
     pub fn record(mesh: &Mesh, target: Target) -> Result<Self, SimplifyError> {
-        let options = Options { method: Some(Method::QemEndpoint), ..Options::default() };
+        let options = Options { method: Method::QemEndpoint, ..Options::default() };
         let mut history = History::default();
         Simplifier::new(mesh, &options)?.run(target, &mut history)?;
         Ok(Self::from_history(mesh, &history).expect("just recorded from this mesh"))
@@ -197,7 +197,7 @@ mod tests {
     fn levels_are_those_of_the_simplification() {
         let mesh = samples::knot(1000);
         let tree = MergeTree::record(&mesh, Target::Faces(0)).unwrap();
-        let options = Options { method: Some(Method::QemEndpoint), ..Options::default() };
+        let options = Options { method: Method::QemEndpoint, ..Options::default() };
         let mut simplifier = Simplifier::new(&mesh, &options).unwrap();
         for ratio in [1.0, 0.7, 0.31, 0.1] {
             let report = simplifier.run(Target::Ratio(ratio), &mut ()).unwrap();
@@ -233,7 +233,7 @@ mod tests {
 
     #[test]
     fn a_history_of_another_mesh_is_refused() {
-        let options = Options { method: Some(Method::QemEndpoint), ..Options::default() };
+        let options = Options { method: Method::QemEndpoint, ..Options::default() };
         let mut history = History::default();
         let mesh = samples::sphere(200);
         let mut simplifier = Simplifier::new(&mesh, &options).unwrap();

@@ -79,7 +79,7 @@ fn add_rows(
         if method == Method::Pm && mesh.faces.len() > MOST_FOR_PM {
             continue;
         }
-        let options = Options { method: Some(method), ..Options::default() };
+        let options = Options { method, ..Options::default() };
         let (level, _) = simplify(mesh, Target::Ratio(ratio), &options)?;
         table.row(row(&what(method.name()), &level, surface)?);
     }

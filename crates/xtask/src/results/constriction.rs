@@ -80,6 +80,6 @@ fn times(mesh: &Mesh) -> Result<Table> {
 }
 
 fn run(mesh: &Mesh, method: Method, faces: usize) -> Result<Report> {
-    let options = Options { method: Some(method), ..Options::default() };
+    let options = Options { method, ..Options::default() };
     Ok(simplify(mesh, Target::Faces(faces), &options)?.1)
 }

@@ -32,7 +32,7 @@ pub fn section(_: &Project) -> Result<String> {
         let Some(mesh) = meshlod_bench::read(file)? else { continue };
         let indexed = Indexed::from(&mesh);
         for method in METHODS {
-            let options = Options { method: Some(method), ..Options::default() };
+            let options = Options { method, ..Options::default() };
             let Ratio { ours, theirs, ratio } = one_core(|| {
                 alternate(
                     ROUNDS,

@@ -79,7 +79,7 @@ fn levels(scene: &Scene, mesh: &Mesh, ratio: f64) -> Result<Vec<(&'static str, M
     let mut levels = Vec::new();
     for method in METHODS {
         let mut scene = scene.clone();
-        let options = Options { method: Some(method), ..Options::default() };
+        let options = Options { method, ..Options::default() };
         simplify_scene(&mut scene, Target::Faces(peer.faces.len()), &options)?;
         levels.push((method.name(), scene.flatten()));
     }

@@ -34,7 +34,7 @@ pub fn section(_: &Project) -> Result<String> {
         for ratio in RATIOS {
             let mut row = vec![format!("{name}, {:.0} %", ratio * 100.0)];
             for method in METHODS {
-                let options = Options { method: Some(method), ..Options::default() };
+                let options = Options { method, ..Options::default() };
                 let (level, _) = simplify(&mesh, Target::Ratio(ratio), &options)?;
                 let level = through_file(level, &folder.path().join("level.ply"))?;
                 row.push(format!("{:.1e}", (volume(&level) - before).abs() / before.abs()));

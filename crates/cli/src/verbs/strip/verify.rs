@@ -26,7 +26,7 @@ pub(super) fn compare(
     if coarser.is_empty() {
         return Ok(());
     }
-    let options = Options { method: Some(Method::QemEndpoint), ..Options::default() };
+    let options = Options { method: Method::QemEndpoint, ..Options::default() };
     let mut simplifier = Simplifier::new(mesh, &options)?;
     for level in coarser {
         simplifier.run(Target::Faces(level.triangles), &mut ())?;

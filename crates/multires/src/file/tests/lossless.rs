@@ -43,7 +43,7 @@ fn placed(mut mesh: Mesh, place: impl Fn(f64, usize) -> f64) -> Mesh {
 fn each(mut check: impl FnMut(&str, &Mesh, &Forest, &Archive<Vec<u8>>)) {
     for (name, mesh) in meshes() {
         for method in [Method::Qem, Method::LeeJang] {
-            let options = Options { method: Some(method), ..Options::default() };
+            let options = Options { method, ..Options::default() };
             let forest = Forest::lossless(&mesh, &options).unwrap();
             let archive = Archive::open(Archive::write(&forest, &small()).unwrap().0).unwrap();
             check(&format!("{name} by {}", method.name()), &mesh, &forest, &archive);

@@ -8,8 +8,7 @@ use crate::{Method, Options, Target};
 /// number of faces.
 fn there_and_back(mesh: &Mesh, method: Method) -> Progressive {
     let mut history = History::default();
-    let mut simplifier =
-        Simplifier::new(mesh, &Options { method: Some(method), ..Options::default() }).unwrap();
+    let mut simplifier = Simplifier::new(mesh, &Options { method, ..Options::default() }).unwrap();
     let mut levels = vec![simplifier.level()];
     for ratio in [0.8, 0.5, 0.2, 0.05] {
         simplifier.run(Target::Ratio(ratio), &mut history).unwrap();
