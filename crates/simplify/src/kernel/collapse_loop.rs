@@ -25,7 +25,6 @@ use crate::kernel::attributes::AttributeModel;
 use crate::kernel::bound::{BoundPart, BoundedStep};
 use crate::kernel::collapse::edge_ring::EdgeRing;
 use crate::kernel::collapse::{Collapse, Ends};
-use crate::kernel::collapse_loop::queueing::wake;
 use crate::kernel::components::Components;
 use crate::kernel::contraction_log::{Logged, LoggedContraction};
 use crate::kernel::mesh::one_ring::{GHOST, Vertices};
@@ -399,7 +398,7 @@ impl<'v, A: AttributeModel> CollapseLoop<'v, A> {
                     vertex.replace_neighbour(v1, v0);
                 }
                 if woken {
-                    wake(vertex, id, queue, front);
+                    queue.wake(vertex, id, front);
                 }
             }
             last = change;

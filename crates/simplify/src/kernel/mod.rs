@@ -1,4 +1,4 @@
-//! The kernel: the fast engine of `lindstrom-turk` and `qem`.
+//! The kernel, which runs `lindstrom-turk` and `qem`.
 //!
 //! It follows the rules of the policy engine, which is its oracle, by other means: one-rings
 //! instead of lists of faces, one queue entry per vertex instead of one per edge, single precision,

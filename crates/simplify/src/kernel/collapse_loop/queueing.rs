@@ -3,9 +3,9 @@
 use crate::kernel::attributes::AttributeModel;
 use crate::kernel::collapse_loop::CollapseLoop;
 use crate::kernel::mesh::one_ring::{GHOST, MAX_RING};
-use crate::kernel::mesh::vertex::{NO_VERTEX, RING, Vertex, VertexFlags};
+use crate::kernel::mesh::vertex::{NO_VERTEX, RING, VertexFlags};
 use crate::kernel::schedule::batch::Batch;
-use crate::kernel::schedule::bucket_queue::{BucketQueue, NONE, last_bucket};
+use crate::kernel::schedule::bucket_queue::{NONE, last_bucket};
 use crate::kernel::schedule::edge_costs::{Cheapest, Rank, cheapest};
 use crate::kernel::simd::{SimdTask, widest};
 
@@ -110,7 +110,7 @@ impl<A: AttributeModel> CollapseLoop<'_, A> {
     pub(crate) fn wake(&mut self, v: u32, front: u16) {
         let vertex = self.vertices.get_mut(v);
         if vertex.floor > 0 && !vertex.flags.any(INACTIVE) {
-            wake(vertex, v, self.queue, front);
+            self.queue.wake(vertex, v, front);
         }
     }
 
@@ -174,16 +174,5 @@ impl<A: AttributeModel> SimdTask for CostAll<'_, '_, A> {
     #[inline(always)]
     fn work(self) {
         self.0.cost_all();
-    }
-}
-
-/// Queues a vertex at the front again after its edges were refused, if it is not queued.
-#[cold]
-pub(super) fn wake(vertex: &mut Vertex, id: u32, queue: &mut BucketQueue, front: u16) {
-    vertex.floor = 0;
-    if vertex.bucket == NONE {
-        vertex.target = NO_VERTEX;
-        vertex.bucket = front;
-        queue.push(id, front);
     }
 }
