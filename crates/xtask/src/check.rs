@@ -15,8 +15,6 @@ use crate::project::Project;
 
 pub use references::keys_of;
 
-/// Environment variable that turns warnings into errors.
-const STRICT: &str = "MESHLOD_STRICT";
 /// Folder of the crate that re-exports the others.
 const FACADE: &str = "meshlod";
 
@@ -34,25 +32,9 @@ pub fn run(project: &Project) -> Result<()> {
     let mut errors = [lengths.errors, circles.errors].concat();
     errors.extend(references::check(&files, &pages));
     errors.extend(arrows::check(&project.files("crates", "Cargo.toml")?, &pages)?);
-    // New rules, which older code does not follow yet.
-    let warnings = [
-        ("phrases", prose::check(&sources)),
-        ("type names within a crate", type_names::check_crates(&crates)),
-        ("public type names", type_names::check_facade(&crates, FACADE)),
-    ];
-    let is_strict = std::env::var_os(STRICT).is_some();
-    for (rule, found) in warnings {
-        if is_strict {
-            errors.extend(found);
-            continue;
-        }
-        for warning in &found {
-            println!("warning: {warning}");
-        }
-        if !found.is_empty() {
-            println!("warning: {rule}: {} findings, errors if {STRICT} is set", found.len());
-        }
-    }
+    errors.extend(prose::check(&sources));
+    errors.extend(type_names::check_crates(&crates));
+    errors.extend(type_names::check_facade(&crates, FACADE));
     for error in &errors {
         println!("error: {error}");
     }
