@@ -68,7 +68,7 @@ pub enum CompressedFileError {
     Malformed {
         /// Path of the file.
         path: PathBuf,
-        /// What is wrong, and where.
+        /// Reason, with the place in the file.
         source: Malformed,
     },
 }

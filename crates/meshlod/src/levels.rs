@@ -80,7 +80,7 @@ pub enum LevelsError {
     File {
         /// Path of the file.
         path: PathBuf,
-        /// What is wrong.
+        /// Reason.
         source: FileError,
     },
 }

@@ -44,7 +44,7 @@ pub struct SeeThroughCounts {
     pub hidden: usize,
 }
 
-/// What a level wrongly shows at a see-through pixel.
+/// Content that a level wrongly shows at a see-through pixel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SeeThrough {
     /// The background.

@@ -30,7 +30,7 @@ fn run(mesh: &Mesh, options: &Options, target: Target) -> (Mesh, Report) {
     simplify(mesh, target, options).unwrap()
 }
 
-/// How many faces each component of the input has left.
+/// Returns the number of faces left of each component of the input.
 fn left(mesh: &Mesh, method: Method, vanish_below: Option<f64>, faces: usize) -> Vec<usize> {
     let options = Options { method, vanish_below, ..Options::default() };
     let (level, report) = run(mesh, &options, Target::Faces(faces));
@@ -156,7 +156,7 @@ fn the_report_counts_the_volume_that_vanished() {
 
 #[test]
 fn faces_that_are_left_out_join_nothing() {
-    // A face that repeats a vertex names both cubes, and is none of either.
+    // A face that repeats a vertex names both cubes, and belongs to neither.
     let mut mesh = fixtures::cube();
     let count = mesh.positions.len() as u32;
     let second = fixtures::cube();

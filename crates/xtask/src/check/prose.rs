@@ -81,7 +81,10 @@ fn words(piece: &Piece) -> impl Iterator<Item = Word<'_>> {
 }
 
 fn negations(path: &str, words: &[Word<'_>]) -> Vec<String> {
+    let before = std::iter::once("").chain(words.iter().map(|word| word.1));
     let pairs = words.windows(2).map(|pair| (pair[0].0, [pair[0].1, pair[1].1]));
+    // "If there is ..." is plain English.
+    let pairs = before.zip(pairs).filter(|(before, _)| *before != "there").map(|(_, pair)| pair);
     let found = pairs.filter(|(_, pair)| NEGATIONS.contains(pair));
     found
         .map(|(line, pair)| {
@@ -141,5 +144,7 @@ mod tests {
             }
         }
         assert_eq!(errors("if x.is_none() {} // it is nonempty"), [""; 0]);
+        let plain = format!("/// `None` if there is {}.", "none");
+        assert_eq!(errors(&plain), [""; 0]);
     }
 }

@@ -1,4 +1,4 @@
-//! What is carried through from a document, and how its geometry is replaced.
+//! Tests of content that is carried through from a document, and of replaced geometry.
 
 use meshlod_fixtures::{cube, seam_strip};
 use meshlod_mesh::{Attributes, Labels, Layer, LayerKind, Mesh, WedgeId};
