@@ -1,19 +1,20 @@
-//! Timing of two pieces of work in alternating rounds.
+//! Timing of two programs in alternating rounds.
 
 use cpu_time::ProcessTime;
 
-/// Times of two pieces of work.
+/// CPU times of two programs on the same task, and their ratio.
 #[derive(Clone, Copy, Debug)]
 pub struct Ratio {
-    /// Median CPU seconds of the first, over all threads.
+    /// Median CPU time of the first program in seconds, summed over all threads.
     pub ours: f64,
-    /// Median CPU seconds of the second, over all threads.
+    /// Median CPU time of the second program in seconds, summed over all threads.
     pub theirs: f64,
-    /// Median of second ÷ first over the rounds: the speed of the first relative to the second.
+    /// Median over the rounds of the second time divided by the first: above 1 if the first program
+    /// is faster.
     pub ratio: f64,
 }
 
-/// Runs both in turn, for `rounds` rounds after one to warm up.
+/// Times two programs in alternating rounds, after one round to warm up.
 ///
 /// # Panics
 /// If there are no rounds.
@@ -34,14 +35,15 @@ pub fn alternate<A, B>(
     Ratio { ours: median(a), theirs: median(b), ratio: median(ratios) }
 }
 
-/// Returns the fewest CPU seconds over some rounds, all threads included.
+/// Returns the shortest CPU time of a task over several rounds, in seconds, summed over all
+/// threads.
 ///
 /// Infinite without rounds.
 pub fn least_seconds<T>(rounds: usize, mut work: impl FnMut() -> T) -> f64 {
     (0..rounds).map(|_| seconds(&mut work)).fold(f64::INFINITY, f64::min)
 }
 
-/// Runs work on one core, in a rayon pool of one thread.
+/// Runs a task in a rayon pool of one thread.
 pub fn one_core<T: Send>(work: impl FnOnce() -> T + Send) -> T {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build();
     pool.expect("a pool of one thread can be built").install(work)

@@ -1,4 +1,4 @@
-//! Comparisons with other programs: both do the same work in alternating rounds, so that other load
+//! Comparisons with other programs: both perform one task in alternating rounds, so that other load
 //! on the machine affects both alike.
 mod alternate;
 mod corpus;

@@ -1,4 +1,4 @@
-//! meshoptimizer, called through its crate for comparison.
+//! Simplification, compression and strips by meshoptimizer, for comparison.
 
 // The crate has no safe function for simplify with update.
 #![allow(unsafe_code)]
@@ -16,12 +16,12 @@ pub use codec::meshopt_codec;
 pub use meshopt::SimplifyOptions;
 pub use strips::meshopt_strips;
 
-/// A mesh in meshoptimizer's layout.
+/// An indexed triangle mesh in the layout that meshoptimizer takes.
 #[derive(Clone, Debug)]
 pub struct Indexed {
-    /// Position of each vertex.
+    /// Coordinates of the vertices, three floats each.
     pub positions: Vec<f32>,
-    /// Indices, three per face.
+    /// Vertex indices of the triangles, three per face.
     pub indices: Vec<u32>,
 }
 
@@ -47,7 +47,8 @@ impl From<&Indexed> for Mesh {
     }
 }
 
-/// Simplifies to about `faces` faces by meshoptimizer's simplify with update, its most accurate.
+/// Simplifies a mesh to about `faces` faces by `simplify_with_update`, meshoptimizer's most
+/// accurate simplification.
 pub fn simplify_with_update(input: &Indexed, faces: usize) -> Indexed {
     let mut output = input.clone();
     let vertices = output.positions.len() / 3;

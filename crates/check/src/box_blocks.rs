@@ -12,7 +12,8 @@ use meshlod_spatial::curve_order;
 
 use frame::FloatFrame;
 
-/// Boxes in a block, one a SIMD lane; also the children of a node.
+/// Number of boxes in a block, which is also the number of children of a tree node: one per SIMD
+/// lane.
 pub(crate) const LANES: usize = 8;
 
 /// A bounding volume hierarchy that finds all pairs of overlapping boxes.
@@ -59,23 +60,24 @@ pub(crate) struct OverlapRow {
     pub(crate) slot: usize,
     /// Index of the block; its slots start at `LANES * block`.
     pub(crate) block: usize,
-    /// One bit for each overlapping box of the block, the lowest bit for its first slot.
+    /// Bit mask of the boxes in the block that overlap the single box; the lowest bit is the first
+    /// slot of the block.
     pub(crate) lanes: u8,
 }
 
 impl OverlapRow {
-    /// Iterates over the slots of the boxes of the block that overlap, lowest first.
+    /// Iterates over the slots of the overlapping boxes of the block, lowest first.
     #[inline]
     pub(crate) fn others(self) -> impl Iterator<Item = usize> {
         SetBits(u32::from(self.lanes)).map(move |lane| self.block * LANES + lane)
     }
 }
 
-/// Least and greatest corner of a box.
+/// Minimum and maximum corner of a box.
 pub(crate) type Corners = [DVec3; 2];
 
 impl BoxBlocks {
-    /// Builds the hierarchy over the boxes of `count` items, all finite.
+    /// Builds the hierarchy over the boxes of `count` items. All coordinates must be finite.
     ///
     /// Cost: linear, except that crowds of centres within 2^-10 of the overall size are sorted
     /// again, as are crowds within 2^-10 of that, and so on.
@@ -133,13 +135,13 @@ impl BoxBlocks {
         self.groups.get(level).is_some_and(group)
     }
 
-    /// Returns the item in each slot, `u32::MAX` in an empty one.
+    /// Returns the item in each slot of the sorted order; an empty slot holds `u32::MAX`.
     pub(crate) fn items(&self) -> &[u32] {
         &self.items
     }
 
-    /// Visits every pair of overlapping boxes once, a row at a time, until the visitor breaks. The
-    /// order is deterministic.
+    /// Visits every pair of overlapping boxes once, one [`OverlapRow`] at a time, until the visitor
+    /// breaks. The order is deterministic.
     ///
     /// Boxes that only touch overlap. Rounding may add pairs that are apart by up to 1e-7 of their
     /// distance from the centre of all boxes.

@@ -1,4 +1,5 @@
-//! The check: finds every kind of finding in turn and passes it to a visitor.
+//! The mesh check: searches a mesh for each kind of defect in turn and passes what it finds to a
+//! visitor.
 
 pub(crate) mod boundary;
 pub(crate) mod edges;
@@ -20,22 +21,23 @@ use crate::kinds::Kinds;
 use crate::objects::ObjectsBy;
 use subject::Subject;
 
-/// Options of a check.
+/// Options of a mesh check.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct CheckOptions {
-    /// Kinds to find; others cost nothing.
+    /// Kinds of findings to search for; kinds left out take no time.
     pub kinds: Kinds,
-    /// Definition of an object, which distinguishes contacts from self-intersections.
+    /// Definition of an object: intersecting faces of two objects are contacts, those of one object
+    /// are self-intersections.
     pub objects: ObjectsBy,
-    /// Broad phase of the search for intersecting faces; the findings do not depend on it.
+    /// Method that finds candidate pairs of intersecting faces; the findings do not depend on it.
     pub broad_phase: BroadPhase,
 }
 
-/// Visitor of findings, which may end the check.
+/// Visitor of findings, which may stop the check by breaking.
 pub(crate) type Visit<'a> = dyn FnMut(&Finding) -> ControlFlow<()> + 'a;
 
-/// Passes all findings of `mesh` to `visit`, in the order of [`Kind::ALL`] and within a kind by
-/// lowest ids, until it breaks.
+/// Checks `mesh` and passes every finding to `visit` until it breaks, in the order of [`Kind::ALL`]
+/// and within a kind by lowest ids.
 ///
 /// Accepts any mesh, even one that [`Mesh::validate`] refuses: the first kinds report that. A face
 /// with a missing or non-finite vertex is excluded from the kinds that follow.
@@ -54,14 +56,14 @@ pub fn check(
     ControlFlow::Continue(())
 }
 
-/// Returns true if no requested kind is found; stops at the first finding.
+/// Returns true if the mesh has no finding of the requested kinds; stops at the first one.
 ///
 /// With `kinds: Kinds::errors()` this corresponds to the exit code of `meshlod check`.
 pub fn is_clean(mesh: &Mesh, options: &CheckOptions) -> bool {
     check(mesh, options, &mut |_| ControlFlow::Break(())).is_continue()
 }
 
-/// Returns the first finding in the order of [`check`] and stops there.
+/// Returns the first finding in the order of [`check`], without searching for more.
 pub fn first_finding(mesh: &Mesh, options: &CheckOptions) -> Option<Finding> {
     let mut found = None;
     let _ = check(mesh, options, &mut |finding| {
@@ -71,7 +73,7 @@ pub fn first_finding(mesh: &Mesh, options: &CheckOptions) -> Option<Finding> {
     found
 }
 
-/// Returns all findings in the order of [`check`].
+/// Returns all findings of a mesh, in the order of [`check`].
 pub fn findings(mesh: &Mesh, options: &CheckOptions) -> Vec<Finding> {
     let mut found = Vec::new();
     let _ = check(mesh, options, &mut |finding| {

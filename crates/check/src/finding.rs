@@ -1,133 +1,134 @@
-//! Findings of a check: one variant for each kind, with ids and positions.
+//! Findings of a mesh check: one variant for each kind, with ids and positions.
 
 use meshlod_mesh::{FaceId, MeshError, VertexId};
 
 use crate::objects::ObjectId;
 
-/// A defect or noteworthy feature of a mesh and where it is.
+/// A defect or noteworthy feature found in a mesh, with the vertices and faces concerned.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Finding {
-    /// A vertex with a NaN or infinite coordinate. Its faces are excluded from the kinds that
-    /// follow.
+    /// A vertex with a NaN or infinite coordinate. Its faces are excluded from all further checks.
     NonFiniteVertex {
-        /// Vertex concerned.
+        /// The vertex with the NaN or infinite coordinate.
         vertex: VertexId,
     },
-    /// A face with a missing vertex. It is excluded from the kinds that follow.
+    /// A face that refers to a vertex that does not exist. It is excluded from all further checks.
     BadIndex {
-        /// Face concerned.
+        /// The face that refers to the missing vertex.
         face: FaceId,
-        /// Id of the missing vertex.
+        /// Vertex id that is out of range.
         vertex: VertexId,
     },
-    /// Attributes, materials or objects that do not match the faces. Mismatched labels are ignored.
+    /// Attributes, materials or objects whose arrays do not match the faces. Mismatched labels are
+    /// ignored.
     BadAttributes {
-        /// First mismatch.
+        /// The first mismatch found.
         error: MeshError,
     },
     /// A vertex that no face uses.
     UnusedVertex {
-        /// Vertex concerned.
+        /// The vertex that no face uses.
         vertex: VertexId,
     },
-    /// Used vertices at bitwise the same position.
+    /// Two or more used vertices at bitwise the same position.
     CoincidentVertices {
-        /// Vertices at the position, two or more, lowest id first.
+        /// The coincident vertices, lowest id first.
         vertices: Vec<VertexId>,
     },
-    /// A degenerate face.
+    /// A face that repeats a vertex or has zero area.
     DegenerateFace {
-        /// Face concerned.
+        /// The degenerate face.
         face: FaceId,
-        /// Kind of degeneracy.
+        /// Whether the face repeats a vertex or has zero area.
         shape: Degeneracy,
     },
     /// A face with the same three vertices as an earlier one.
     DuplicateFace {
-        /// Face concerned.
+        /// The later of the two faces.
         face: FaceId,
-        /// First face with these vertices.
+        /// The first face with these three vertices.
         of: FaceId,
     },
     /// An edge that its two faces traverse in the same direction.
     InconsistentEdge {
-        /// Ends of the edge, lowest id first.
+        /// The two vertices of the edge, lowest id first.
         edge: [VertexId; 2],
-        /// Faces of the edge, lowest id first.
+        /// The two faces of the edge, lowest id first.
         faces: [FaceId; 2],
     },
     /// A loop of boundary edges.
     BoundaryLoop {
-        /// Vertices in order along the faces if these agree, starting with the lowest id. None
-        /// occurs twice: a pinched boundary is several loops.
+        /// Vertices of the loop, in the direction of its faces where they agree, starting with the
+        /// lowest id. No vertex occurs twice: a pinched boundary is several loops.
         vertices: Vec<VertexId>,
-        /// True if the last vertex is connected to the first. False if a non-manifold edge ends the
-        /// boundary; the lower end is then first.
+        /// True if the last vertex is connected to the first. If false, the boundary ends at
+        /// non-manifold edges, and the end with the lower id comes first.
         closed: bool,
     },
-    /// An edge with three faces or more.
+    /// An edge shared by three faces or more.
     NonManifoldEdge {
-        /// Ends of the edge, lowest id first.
+        /// The two vertices of the edge, lowest id first.
         edge: [VertexId; 2],
-        /// Faces of the edge, lowest id first.
+        /// All faces of the edge, lowest id first.
         faces: Vec<FaceId>,
     },
-    /// A vertex whose faces form more than one fan: edges at the vertex do not connect them all.
+    /// A vertex whose faces form more than one fan: they are not all connected through edges at the
+    /// vertex.
     NonManifoldVertex {
-        /// Vertex concerned.
+        /// The non-manifold vertex.
         vertex: VertexId,
-        /// Number of fans.
+        /// Number of separate fans of faces around the vertex.
         fans: usize,
     },
     /// A closed, consistently oriented shell whose faces point inwards. A shell is a set of faces
     /// connected through edges.
     InsideOut {
-        /// First face of the shell.
+        /// Lowest-numbered face of the shell.
         face: FaceId,
-        /// Signed enclosed volume, below 0, in cubed model units.
+        /// Signed volume that the shell encloses, negative, in cubic model units.
         volume: f64,
     },
-    /// Two faces of one object that intersect beyond what they share.
+    /// Two faces of one object that intersect elsewhere than in vertices and edges they share.
     SelfIntersection {
-        /// Object of both faces.
+        /// The object that both faces belong to.
         object: ObjectId,
-        /// Intersecting faces, lowest id first.
+        /// The two intersecting faces, lowest id first.
         faces: [FaceId; 2],
-        /// Intersection of the faces.
+        /// Kind, place and depth of the intersection.
         intersection: Intersection,
     },
     /// Faces of two objects that intersect or touch.
     Contact {
-        /// Objects, lowest id first.
+        /// The two objects that meet, lowest id first.
         objects: [ObjectId; 2],
-        /// A face of each object, in the order of `objects`.
+        /// One face of each object, in the order of `objects`.
         faces: [FaceId; 2],
-        /// Intersection of the faces.
+        /// Kind, place and depth of the intersection.
         intersection: Intersection,
     },
     /// The search for intersecting faces was given up because too many pairs are close: there may
     /// be more self-intersections and contacts than reported.
     Crowded {
-        /// Number of intersecting pairs found before giving up.
+        /// Number of intersecting pairs of faces found before giving up.
         found: usize,
     },
 }
 
-/// Way in which a face is degenerate.
+/// The way in which a face is degenerate.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Degeneracy {
-    /// Two corners are the same vertex.
+    /// Two corners of the face are the same vertex.
     RepeatedVertex,
-    /// The corners are exactly collinear.
+    /// The corners of the face are three vertices that are exactly collinear.
     ZeroArea,
 }
 
-/// Intersection of two faces.
+/// Kind, place and penetration depth of the intersection of two faces.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Intersection {
-    /// Kind of the intersection.
+    /// Whether the faces touch, cross or overlap.
     pub kind: IntersectionKind,
-    /// A point of the intersection, in model units.
+    /// A point that lies in both faces, in model units.
     pub point: [f64; 3],
     /// Penetration depth in model units: the least distance that one face would have to move along
     /// the normal of the other until it is on one side of it; 0 for faces that only touch or are
@@ -135,65 +136,65 @@ pub struct Intersection {
     pub depth: f64,
 }
 
-/// Kind of the intersection of two faces, exact.
+/// Kind of the intersection of two faces, decided exactly.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum IntersectionKind {
-    /// A single point, and neither face passes through the other.
+    /// The faces touch in a single point without passing through each other.
     Point,
-    /// A segment, and neither face passes through the other.
+    /// The faces touch along a line segment without passing through each other.
     Segment,
     /// The faces pass through each other.
     Crossing,
-    /// An area: the faces are coplanar.
+    /// The faces are coplanar and overlap in an area.
     Overlap,
 }
 
-/// Kind of a finding.
+/// Kind of a mesh defect or other finding, without its details.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Kind {
-    /// [`Finding::NonFiniteVertex`]
+    /// NaN or infinite coordinates of a vertex: [`Finding::NonFiniteVertex`].
     NonFiniteVertex,
-    /// [`Finding::BadIndex`]
+    /// A face with a vertex that does not exist: [`Finding::BadIndex`].
     BadIndex,
-    /// [`Finding::BadAttributes`]
+    /// Attributes or labels that do not match the faces: [`Finding::BadAttributes`].
     BadAttributes,
-    /// [`Finding::UnusedVertex`]
+    /// A vertex that no face uses: [`Finding::UnusedVertex`].
     UnusedVertex,
-    /// [`Finding::CoincidentVertices`]
+    /// Several vertices at one position: [`Finding::CoincidentVertices`].
     CoincidentVertices,
-    /// [`Finding::DegenerateFace`]
+    /// A face that repeats a vertex or has zero area: [`Finding::DegenerateFace`].
     DegenerateFace,
-    /// [`Finding::DuplicateFace`]
+    /// A face with the vertices of an earlier one: [`Finding::DuplicateFace`].
     DuplicateFace,
-    /// [`Finding::InconsistentEdge`]
+    /// An edge whose two faces disagree in orientation: [`Finding::InconsistentEdge`].
     InconsistentEdge,
-    /// [`Finding::BoundaryLoop`]
+    /// A loop of boundary edges: [`Finding::BoundaryLoop`].
     BoundaryLoop,
-    /// [`Finding::NonManifoldEdge`]
+    /// An edge with three faces or more: [`Finding::NonManifoldEdge`].
     NonManifoldEdge,
-    /// [`Finding::NonManifoldVertex`]
+    /// A vertex with several fans of faces: [`Finding::NonManifoldVertex`].
     NonManifoldVertex,
-    /// [`Finding::InsideOut`]
+    /// A closed shell whose faces point inwards: [`Finding::InsideOut`].
     InsideOut,
-    /// [`Finding::SelfIntersection`]
+    /// Two intersecting faces of one object: [`Finding::SelfIntersection`].
     SelfIntersection,
-    /// [`Finding::Contact`]
+    /// Two objects that intersect or touch: [`Finding::Contact`].
     Contact,
-    /// [`Finding::Crowded`]
+    /// A search for intersecting faces that was given up: [`Finding::Crowded`].
     Crowded,
 }
 
-/// Severity of a kind of finding.
+/// Severity of a finding, which depends on its kind.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Severity {
-    /// Noteworthy, but the mesh is usable.
+    /// The mesh is usable, but the finding is worth knowing.
     Warning,
-    /// Most programs refuse the mesh or process it incorrectly.
+    /// Most programs reject the mesh or process it incorrectly.
     Error,
 }
 
 impl Kind {
-    /// All kinds, in the order in which they are checked.
+    /// All kinds of findings, in the order in which a mesh is checked for them.
     pub const ALL: [Self; 15] = [
         Self::NonFiniteVertex,
         Self::BadIndex,
@@ -212,7 +213,7 @@ impl Kind {
         Self::Crowded,
     ];
 
-    /// Returns the name used in reports.
+    /// Returns the name of the kind of finding as used in reports.
     pub fn name(self) -> &'static str {
         match self {
             Self::NonFiniteVertex => "non-finite-vertex",
@@ -233,7 +234,7 @@ impl Kind {
         }
     }
 
-    /// Returns the severity of the kind.
+    /// Returns the severity of findings of this kind.
     pub fn severity(self) -> Severity {
         match self {
             Self::NonFiniteVertex

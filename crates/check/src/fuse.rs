@@ -15,19 +15,19 @@ use closed_groups::SolidGroups;
 use patches::patches;
 use solids::Solids;
 
-/// Counts of what fusing did.
+/// Counts of the changes that [`fuse`] made to a mesh.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Fused {
-    /// Counts of the imprint along which components were cut.
+    /// Counts of the cuts made where components intersect, before anything is removed.
     pub imprint: Imprint,
-    /// Pieces of faces removed because they were inside.
+    /// Number of faces, or pieces of cut faces, removed because they were inside another component.
     pub buried: usize,
-    /// Edges along which the rest was joined.
+    /// Number of edges along which the remaining surfaces were joined.
     pub joined: usize,
 }
 
 impl Fused {
-    /// Adds the counts of another mesh.
+    /// Adds the counts for another mesh to these.
     pub fn add(&mut self, other: &Self) {
         self.imprint.pairs += other.imprint.pairs;
         self.imprint.faces += other.imprint.faces;
@@ -37,7 +37,7 @@ impl Fused {
     }
 }
 
-/// Merges closed components that pass through each other into one surface.
+/// Merges closed components that pass through each other into a single surface.
 ///
 /// Components are cut along their intersections as in [`imprint`](crate::imprint()), what is inside
 /// is removed, and the rest is joined.

@@ -1,5 +1,5 @@
-//! Imprinting: cuts faces along their intersections with other components, so that both have the
-//! intersection as edges. Nothing moves.
+//! Imprinting: cuts faces where components intersect, so that both components have the intersection
+//! as edges. No vertex moves.
 
 mod crossings;
 mod cut_mesh;
@@ -17,19 +17,19 @@ use crate::objects::ObjectsBy;
 use cut_mesh::CutMesh;
 use points::IntersectionPoints;
 
-/// Counts of what imprinting did.
+/// Counts of the cuts that [`imprint`] made in a mesh.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Imprint {
-    /// Pairs of faces that intersected in more than a corner of both.
+    /// Number of pairs of faces that intersected in more than a common corner.
     pub pairs: usize,
-    /// Number of faces that were cut.
+    /// Number of original faces that were cut.
     pub faces: usize,
-    /// Number of new vertices.
+    /// Number of vertices added along the cuts.
     pub vertices: usize,
 }
 
-/// Cuts the faces of a mesh that has passed [`Mesh::validate`] along their intersections with other
-/// components.
+/// Cuts faces where they intersect other components of the mesh, which must have passed
+/// [`Mesh::validate`].
 ///
 /// Afterwards both sides of an intersection have vertices at bitwise the same positions and edges
 /// between them, even where intersections with several components cross in a face. In a face with
@@ -74,9 +74,9 @@ pub(crate) fn at_safe_scale<T>(mesh: &Mesh, act: impl FnOnce(&Mesh) -> (Mesh, T)
 pub(crate) struct Imprinted {
     pub(crate) mesh: Mesh,
     pub(crate) imprint: Imprint,
-    /// Original face of each face.
+    /// Original face of which each face is a part.
     pub(crate) parents: Vec<FaceId>,
-    /// Edges along which components intersect, the lower vertex first.
+    /// Edges along which components intersect, as vertex pairs with the lower id first.
     pub(crate) contact_edges: FxHashSet<[VertexId; 2]>,
 }
 

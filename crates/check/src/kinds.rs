@@ -1,40 +1,40 @@
-//! Sets of kinds of findings.
+//! Sets of kinds of findings, to choose what a mesh is checked for.
 
 use crate::finding::{Kind, Severity};
 
-/// A set of kinds of findings.
+/// A set of kinds of findings, to choose what a mesh is checked for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Kinds(u16);
 
 impl Kinds {
-    /// Set of all kinds.
+    /// The set of all kinds of findings.
     pub const ALL: Self = Self((1 << Kind::ALL.len()) - 1);
-    /// Empty set.
+    /// The empty set of kinds of findings.
     pub const NONE: Self = Self(0);
 
-    /// Returns the kinds of severity [`Severity::Error`].
+    /// Returns the set of the kinds of findings that are errors, not warnings.
     pub fn errors() -> Self {
         Kind::ALL.into_iter().filter(|kind| kind.severity() == Severity::Error).collect()
     }
 
-    /// Returns the set with `kind` added.
+    /// Returns the set with a kind of finding added.
     #[must_use]
     pub fn with(self, kind: Kind) -> Self {
         Self(self.0 | Self::bit(kind))
     }
 
-    /// Returns the set with `kind` removed.
+    /// Returns the set with a kind of finding removed.
     #[must_use]
     pub fn without(self, kind: Kind) -> Self {
         Self(self.0 & !Self::bit(kind))
     }
 
-    /// Returns true if the set contains `kind`.
+    /// Returns true if the set contains this kind of finding.
     pub fn contains(self, kind: Kind) -> bool {
         self.0 & Self::bit(kind) != 0
     }
 
-    /// Returns true if the set contains any of `kinds`.
+    /// Returns true if the set contains at least one of these kinds of findings.
     pub fn any_of(self, kinds: &[Kind]) -> bool {
         kinds.iter().any(|&kind| self.contains(kind))
     }

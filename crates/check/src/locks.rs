@@ -1,4 +1,4 @@
-//! Locks for simplification: vertices where components meet and where the surface ends.
+//! Vertex locks for simplification, for places where components meet and where the surface ends.
 
 use std::ops::ControlFlow;
 
@@ -15,33 +15,33 @@ use crate::unique_positions::UniquePositions;
 /// Options of [`locks`](locks()).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct LockOptions {
-    /// Hold vertices where components meet, also within an object, since components can drift
-    /// apart.
+    /// True to hold the vertices where components meet, even components of one object, which could
+    /// otherwise drift apart.
     pub contacts: bool,
-    /// Lock of the vertices of boundary edges; [`Lock::Free`] for none.
+    /// Lock applied to the vertices of boundary edges; [`Lock::Free`] leaves them free.
     pub boundary: Lock,
 }
 
-/// Reason why a vertex is held.
+/// Reason why a vertex is restricted during simplification.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum LockReason {
-    /// A face at the vertex passes through one of another component: protected.
+    /// A face at the vertex passes through a face of another component; the vertex is protected.
     Crossing,
-    /// A face at the vertex overlaps a coplanar face of another component: protected.
+    /// A face at the vertex overlaps a coplanar face of another component; the vertex is protected.
     Overlap,
-    /// The vertex or a face at it touches another component elsewhere than at its vertices:
-    /// protected.
+    /// The vertex or a face at it touches another component elsewhere than at its vertices; the
+    /// vertex is protected.
     Touching,
-    /// Faces of two objects share the vertex: protected.
+    /// Faces of two objects share the vertex, which is protected.
     SharedVertex,
-    /// Other vertices are at the same position: tied to them.
+    /// Other vertices are at the same position; the vertex is tied to them.
     SharedPosition,
-    /// The vertex is on a boundary edge: locked as [`LockOptions::boundary`] says.
+    /// The vertex is on a boundary edge; it gets the lock [`LockOptions::boundary`].
     Boundary,
 }
 
 impl LockReason {
-    /// All reasons, strongest first.
+    /// All reasons to hold a vertex, strongest first.
     pub const ALL: [Self; 6] = [
         Self::Crossing,
         Self::Overlap,
@@ -51,7 +51,7 @@ impl LockReason {
         Self::Boundary,
     ];
 
-    /// Returns the name used in reports.
+    /// Returns the name of the reason as used in reports.
     pub fn name(self) -> &'static str {
         match self {
             Self::Crossing => "crossing",
@@ -64,28 +64,28 @@ impl LockReason {
     }
 }
 
-/// Locks of the vertices of a mesh, with the reason for each.
+/// Locks of the vertices of a mesh, with the reason for each lock.
 #[derive(Clone, Debug, PartialEq)]
 pub struct VertexLocks {
-    /// Locks for the simplifier.
+    /// Locks to pass to the simplifier.
     pub locks: Locks,
-    /// Strongest reason for holding each vertex; `None` if it is free.
+    /// Strongest reason for the lock of each vertex; `None` if the vertex is free.
     pub reasons: Vec<Option<LockReason>>,
 }
 
 impl VertexLocks {
-    /// Creates locks that leave the given number of vertices free.
+    /// Creates locks for the given number of vertices that leave all of them free.
     pub fn free(vertices: usize) -> Self {
         let locks = Locks { of_vertex: vec![Lock::Free; vertices], ties: Vec::new() };
         Self { locks, reasons: vec![None; vertices] }
     }
 
-    /// Returns the number of vertices whose strongest reason is `reason`.
+    /// Returns the number of vertices that are held mainly for this reason.
     pub fn count(&self, reason: LockReason) -> usize {
         self.reasons.iter().filter(|of| **of == Some(reason)).count()
     }
 
-    /// Raises the lock of a vertex to at least `lock` and keeps the stronger reason.
+    /// Raises the lock of a vertex to at least `lock`, and keeps the stronger of its two reasons.
     pub fn hold(&mut self, vertex: VertexId, lock: Lock, reason: Option<LockReason>) {
         let of = &mut self.locks.of_vertex[vertex.index()];
         *of = lock.max(*of);
@@ -93,8 +93,8 @@ impl VertexLocks {
         *known = [*known, reason].into_iter().flatten().min();
     }
 
-    /// Raises the locks of tied vertices to the strictest in each tie and drops the ties of locked
-    /// vertices and duplicate ties.
+    /// Gives all vertices of a tie the strictest lock among them, and drops duplicate ties and ties
+    /// of locked vertices.
     pub fn resolve_ties(&mut self) {
         let of_vertex = &mut self.locks.of_vertex;
         self.locks.ties.retain(|tie| {
@@ -107,7 +107,8 @@ impl VertexLocks {
     }
 }
 
-/// Finds the vertices to hold during simplification of a mesh that has passed [`Mesh::validate`].
+/// Finds the vertices to lock, protect or tie when a mesh is simplified; the mesh must have passed
+/// [`Mesh::validate`].
 ///
 /// Vertices at one position are tied, whether of one component or of two. Vertices that named
 /// objects share are protected, as are those of faces that pass through, or overlap in a plane

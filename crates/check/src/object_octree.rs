@@ -6,7 +6,7 @@ use meshlod_spatial::Octree;
 use crate::check::subject::Subject;
 use crate::{CheckOptions, ObjectId};
 
-/// The leaves of an octree over the valid faces of a mesh, with the objects in each leaf.
+/// An octree over the valid faces of a mesh, with the faces and objects in each leaf.
 ///
 /// Every contact between objects lies in a leaf with faces of both, but not every such leaf has a
 /// contact. The leaves are those of [`Octree`].
@@ -16,20 +16,20 @@ use crate::{CheckOptions, ObjectId};
 /// candidates, whose faces are tested exactly.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ObjectOctree {
-    /// Least corner of the root.
+    /// Minimum corner of the root cube, in model units.
     pub origin: [f64; 3],
-    /// Side of the root, in model units.
+    /// Side length of the root cube, in model units.
     pub side: f64,
-    /// Nonempty leaves, sorted by level, then by z, y and x.
+    /// Nonempty leaves of the octree, sorted by level, then by z, y and x.
     pub leaves: Vec<ObjectLeaf>,
 }
 
 /// A leaf of an [`ObjectOctree`] with the faces and objects in it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ObjectLeaf {
-    /// Level of the leaf: its side is the root's divided by 2^level.
+    /// Level of the leaf: its side length is that of the root divided by 2^level.
     pub level: u8,
-    /// Index of the leaf along each axis, below 2^level.
+    /// Integer coordinates of the leaf in the grid of its level, each below 2^level.
     pub at: [u32; 3],
     /// Objects with faces in the leaf, lowest first.
     pub objects: Vec<ObjectId>,
@@ -38,7 +38,7 @@ pub struct ObjectLeaf {
 }
 
 impl ObjectOctree {
-    /// Builds the octree over `mesh`. Of the options, only `objects` matters.
+    /// Builds the octree over a mesh. The only option used is [`CheckOptions::objects`].
     ///
     /// Faces with missing or non-finite vertices are excluded.
     pub fn of(mesh: &Mesh, options: &CheckOptions) -> Self {
@@ -57,12 +57,12 @@ impl ObjectOctree {
         Self { origin: octree.origin(), side: octree.side(), leaves: leaves.collect() }
     }
 
-    /// Iterates over the leaves with faces of two objects or more.
+    /// Iterates over the leaves that contain faces of two objects or more.
     pub fn shared(&self) -> impl Iterator<Item = &ObjectLeaf> + '_ {
         self.leaves.iter().filter(|leaf| leaf.objects.len() > 1)
     }
 
-    /// Returns the least corner and the side of a leaf, in model units.
+    /// Returns the minimum corner and the side length of a leaf, in model units.
     pub fn corner_and_side(&self, leaf: &ObjectLeaf) -> ([f64; 3], f64) {
         let side = self.side / f64::from(1u32 << leaf.level);
         (std::array::from_fn(|axis| self.origin[axis] + f64::from(leaf.at[axis]) * side), side)

@@ -6,35 +6,35 @@ use meshlod_mesh::{Labels, Mesh, VertexId, face_components};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct ObjectId(pub u32);
 
-/// Definition of an object.
+/// Rule by which the faces of a mesh are grouped into objects.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum ObjectsBy {
-    /// Named objects of the file if it has two or more, else components.
+    /// Named objects of the file if there are two or more, otherwise connected components.
     #[default]
     Auto,
-    /// Named objects of the file; a single object if it names none.
+    /// Named objects of the file; if there are no names, the mesh is one object.
     Names,
-    /// Components: faces connected through shared vertices, regardless of names.
+    /// Connected components: faces connected through shared vertices, whatever their names.
     Components,
 }
 
-/// Objects and connected components of a mesh. Components can drift apart when it is simplified.
+/// Objects and connected components of a mesh.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Objects {
-    /// Object of every face.
+    /// Object that each face belongs to.
     pub of_face: Vec<ObjectId>,
-    /// Name of every object. Components are called `component 0` and so on, in the order of their
+    /// Name of each object. Components are called `component 0` and so on, in the order of their
     /// first faces, prefixed by the name of the file's object that contains the first face.
     pub names: Vec<String>,
-    /// Component of every face.
+    /// Connected component that each face belongs to.
     pub component_of_face: Vec<u32>,
-    /// Number of components.
+    /// Number of connected components.
     pub components: usize,
 }
 
 impl Objects {
-    /// Finds the objects of any mesh. Labels that do not match the faces are ignored; faces with
-    /// missing vertices form one component.
+    /// Groups the faces of a mesh into objects. Labels that do not match the faces are ignored;
+    /// faces with missing vertices form one component.
     pub fn of(mesh: &Mesh, by: ObjectsBy) -> Self {
         let (component_of_face, components) = components(mesh);
         let labels = labels(mesh).filter(|labels| match by {

@@ -28,23 +28,25 @@ pub(crate) use stitch::stitch;
 /// The steps on by default preserve the visible surface: they neither remove nor add any of it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RepairOptions {
-    /// Weld vertices within this distance of each other, in model units; 0 welds those at the same
-    /// position. Off by default, as parts that only touch would be joined.
+    /// Largest distance at which vertices are welded, in model units; 0 welds vertices at the same
+    /// position. `None`, the default, welds nothing, as parts that only touch would be joined.
     pub weld: Option<f64>,
-    /// Remove faces of zero area; on by default.
+    /// True to remove faces of zero area; on by default.
     pub degenerate: bool,
-    /// Remove duplicate faces of the same orientation; on by default.
+    /// True to remove duplicate faces of the same orientation; on by default.
     pub duplicates: bool,
-    /// Split non-manifold edges and non-manifold vertices; on by default.
+    /// True to split non-manifold edges and non-manifold vertices; on by default.
     pub split: bool,
-    /// Stitch boundary edges within this distance of each other, in model units, if the result is
-    /// manifold; 0, the default, stitches those at the same position.
+    /// Largest distance at which boundary edges are stitched, in model units, if the result is
+    /// manifold; 0, the default, stitches edges at the same positions.
     pub stitch: Option<f64>,
-    /// Reverse faces until neighbours agree, and closed shells that point inwards; on by default.
+    /// True to reverse faces until neighbours agree, and closed shells that point inwards; on by
+    /// default.
     pub orient: bool,
-    /// Fill holes; off by default, since it adds surface.
+    /// Limits on the size of holes to fill; `None`, the default, fills no hole, since that adds
+    /// surface.
     pub holes: Option<HoleLimits>,
-    /// Remove vertices that no face uses; on by default.
+    /// True to remove vertices that no face uses; on by default.
     pub unused: bool,
 }
 
@@ -63,7 +65,7 @@ impl Default for RepairOptions {
     }
 }
 
-/// Repairs a mesh as `options` say and reports what was done.
+/// Repairs a mesh by the steps that `options` selects, and reports the changes.
 ///
 /// Accepts any mesh, even one that [`Mesh::validate`] refuses; the result passes. Faces with
 /// missing or non-finite vertices are always removed. Steps run in the order of

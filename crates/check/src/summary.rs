@@ -1,8 +1,8 @@
-//! Counts of findings by kind.
+//! Counts of the findings of a mesh check, by kind.
 
 use crate::finding::{Finding, Kind, Severity};
 
-/// Counts of findings by kind, filled while visiting.
+/// Counts of the findings of a mesh check, by kind.
 ///
 /// ```
 /// use std::ops::ControlFlow;
@@ -22,32 +22,33 @@ pub struct Summary {
 }
 
 impl Summary {
-    /// Counts a finding.
+    /// Adds one finding to the counts.
     pub fn add(&mut self, finding: &Finding) {
         self.counts[finding.kind() as usize] += 1;
     }
 
-    /// Returns the number of findings of a kind.
+    /// Returns the number of findings of this kind.
     pub fn count(&self, kind: Kind) -> usize {
         self.counts[kind as usize]
     }
 
-    /// Returns the number of findings of a severity.
+    /// Returns the number of findings of this severity.
     pub fn of_severity(&self, severity: Severity) -> usize {
         self.found().filter(|(kind, _)| kind.severity() == severity).map(|(_, count)| count).sum()
     }
 
-    /// Returns the number of all findings.
+    /// Returns the total number of findings.
     pub fn total(&self) -> usize {
         self.counts.iter().sum()
     }
 
-    /// Returns the worst severity found; `None` without findings.
+    /// Returns the highest severity among the findings; `None` if there are no findings.
     pub fn worst(&self) -> Option<Severity> {
         self.found().map(|(kind, _)| kind.severity()).max()
     }
 
-    /// Iterates over the kinds found, in the order of [`Kind::ALL`], with their counts.
+    /// Iterates over the kinds with at least one finding, in the order of [`Kind::ALL`], with their
+    /// counts.
     pub fn found(&self) -> impl Iterator<Item = (Kind, usize)> + '_ {
         Kind::ALL.into_iter().map(|kind| (kind, self.count(kind))).filter(|&(_, count)| count > 0)
     }

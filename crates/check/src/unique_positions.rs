@@ -6,7 +6,8 @@ use std::hash::{BuildHasher, RandomState};
 use meshlod_mesh::VertexId;
 use rustc_hash::FxBuildHasher;
 
-/// The vertices of a mesh grouped by bitwise equal positions; 0 and -0 are equal.
+/// The vertices of a mesh grouped by position. Positions must be bitwise equal, except that 0 and
+/// -0 are equal.
 #[derive(Clone, Debug, PartialEq)]
 pub struct UniquePositions {
     /// Lowest vertex at the position of each vertex.
@@ -14,7 +15,7 @@ pub struct UniquePositions {
 }
 
 impl UniquePositions {
-    /// Groups all vertices. A position with a NaN is in a group of its own.
+    /// Groups vertices by position. A vertex with a NaN coordinate is in a group of its own.
     ///
     /// Cost: linear.
     pub fn of(positions: &[[f64; 3]]) -> Self {
@@ -32,20 +33,20 @@ impl UniquePositions {
         Self { representatives }
     }
 
-    /// Returns the lowest vertex at the position of `vertex`, possibly `vertex` itself.
+    /// Returns the lowest-numbered vertex at the position of `vertex`, possibly `vertex` itself.
     #[inline]
     pub fn representative(&self, vertex: VertexId) -> VertexId {
         self.representatives[vertex.index()]
     }
 
-    /// Iterates over the vertices at the position of an earlier one, lowest id first.
+    /// Iterates over the vertices at the position of an earlier vertex, lowest id first.
     pub fn duplicates(&self) -> impl Iterator<Item = VertexId> + '_ {
         let vertices = (0..self.representatives.len()).map(VertexId::new);
         vertices.filter(|&v| self.representative(v) != v)
     }
 
-    /// Returns the groups with two vertices or more among those for which `counts` holds. Groups
-    /// and the vertices in them are sorted.
+    /// Returns the groups of two vertices or more at one position, among the vertices for which
+    /// `counts` returns true. Groups and the vertices in them are sorted.
     pub fn groups(&self, counts: impl Fn(VertexId) -> bool) -> Vec<Vec<VertexId>> {
         let mut groups: HashMap<VertexId, Vec<VertexId>, FxBuildHasher> = HashMap::default();
         // Only positions with a duplicate can have two vertices that count.

@@ -1,4 +1,4 @@
-//! A check in one call.
+//! Checking a mesh in one call, with a report of what was found.
 
 use std::fmt;
 use std::ops::ControlFlow;
@@ -6,36 +6,36 @@ use std::ops::ControlFlow;
 use meshlod_check::{CheckOptions, Finding, Kind, Objects, Severity, Summary, check};
 use meshlod_mesh::Mesh;
 
-/// Findings of a check: all of them counted, some of each kind listed.
+/// Findings of a mesh check: all of them counted, the first of each kind listed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CheckReport {
-    /// Objects of the mesh, which findings refer to.
+    /// Objects of the mesh, which the findings refer to by index.
     pub objects: Objects,
     /// Number of findings of each kind.
     pub summary: Summary,
-    /// First findings of each kind, in the order of [`Kind::ALL`].
+    /// First findings of each kind, up to the requested number, in the order of [`Kind::ALL`].
     pub findings: Vec<Finding>,
 }
 
 impl CheckReport {
-    /// Returns true if nothing was found, neither errors nor warnings.
+    /// Returns true if the check found neither errors nor warnings.
     pub fn is_clean(&self) -> bool {
         self.summary.total() == 0
     }
 
-    /// Returns true if an error was found; warnings do not count.
+    /// Returns true if the check found at least one error; warnings do not count.
     pub fn has_errors(&self) -> bool {
         self.summary.worst() == Some(Severity::Error)
     }
 
-    /// Iterates over the listed findings of a kind.
+    /// Iterates over the listed findings of one kind.
     pub fn of(&self, kind: Kind) -> impl Iterator<Item = &Finding> {
         self.findings.iter().filter(move |finding| finding.kind() == kind)
     }
 }
 
-/// Prints the kinds that were found and their numbers, one line for each; `clean` if there are
-/// none.
+/// Prints one line for each kind found, with the number of its findings, or `clean` if nothing was
+/// found.
 impl fmt::Display for CheckReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         if self.is_clean() {
@@ -49,7 +49,8 @@ impl fmt::Display for CheckReport {
     }
 }
 
-/// Checks a mesh and reports the findings, at most `limit` of each kind in full.
+/// Checks a mesh and reports the findings: counts of all of them, and at most `limit` of each kind
+/// in full.
 ///
 /// Any mesh is accepted, also one that [`Mesh::validate`] refuses. [`check`](crate::check) has the
 /// kinds of findings, and a visitor for those who want to stop early.

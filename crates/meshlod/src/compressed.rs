@@ -1,4 +1,4 @@
-//! Compressed files in one call: a mesh in, a mesh out.
+//! Compressed files in one call: a mesh to a file, or a file to a mesh.
 
 use std::path::{Path, PathBuf};
 
@@ -14,11 +14,13 @@ use thiserror::Error;
 /// Options of [`compress`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CompressOptions {
-    /// Accuracy or size of the positions; the default is 11 bits per axis.
+    /// Accuracy or size that the positions must reach; the default is 11 bits per axis.
     pub target: CompressionTarget,
-    /// Storage of positions: any scheme in `.mlq` (default: blocks), only the lattice in `.mlz`.
+    /// Scheme by which positions are encoded: any in `.mlq`, by default blocks; only the lattice in
+    /// `.mlz`.
     pub scheme: Option<Scheme>,
-    /// Largest errors of attributes, which only `.mlq` holds.
+    /// Largest errors allowed for normals, texture coordinates and colours, which only `.mlq`
+    /// stores.
     pub attributes: AttributeBounds,
 }
 
@@ -29,16 +31,16 @@ impl Default for CompressOptions {
     }
 }
 
-/// Result of [`compress`]: what the file holds.
+/// Contents and size of the file that [`compress`] wrote.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct CompressReport {
     /// Number of vertices in the file.
     pub vertices: usize,
-    /// Number of faces in the file: those of the mesh, without degenerate ones.
+    /// Number of faces in the file; degenerate faces of the mesh are left out.
     pub faces: usize,
     /// Size of the file in bytes.
     pub bytes: usize,
-    /// True if the target is met; a mesh can be too small for a reduction.
+    /// True if the target was met. A mesh can be too small for the requested reduction in size.
     pub reached: bool,
 }
 
@@ -48,32 +50,33 @@ pub enum CompressedFileError {
     /// The file cannot be read or written.
     #[error(transparent)]
     Io(#[from] IoError),
-    /// The suffix of the file is not that of a compressed format.
+    /// The file name ends in neither `.mlq` nor `.mlz`.
     #[error("{}: a compressed file must end in .mlq or .mlz", .0.display())]
     UnknownFormat(PathBuf),
-    /// A `.mlz` file supports neither this scheme nor a target of a reduction.
+    /// A `.mlz` file was requested with a scheme or a target that only `.mlq` supports.
     #[error("a .mlz file takes a number of bits or an error, and no scheme but the lattice")]
     Unsupported,
     /// The mesh or the target is invalid.
     #[error(transparent)]
     Compress(#[from] CompressError),
-    /// The mesh cannot be encoded for transport.
+    /// The mesh cannot be encoded as a `.mlz` file.
     #[error(transparent)]
     Transport(#[from] TransportError),
-    /// The cells of the lattice are too small or too large.
+    /// The cells of the lattice would be too small or too large to encode.
     #[error(transparent)]
     Lattice(#[from] LatticeError),
-    /// The file is damaged or of another format.
+    /// The file is damaged or is not a compressed mesh.
     #[error("{}: {source}", path.display())]
     Malformed {
-        /// Path of the file.
+        /// Path of the damaged file.
         path: PathBuf,
-        /// Reason, with the place in the file.
+        /// Description of the defect and its place in the file.
         source: Malformed,
     },
 }
 
-/// Compresses a mesh to a file: `.mlq` to draw from directly, `.mlz` to send.
+/// Compresses a mesh to a file: `.mlq`, which can be drawn from directly, or the smaller `.mlz`,
+/// for transmission.
 ///
 /// Both hold a single surface, without materials and objects; `.mlz` leaves attributes out too. The
 /// file is written whole or not at all. [`codec`](crate::codec) has the parts.
@@ -154,7 +157,7 @@ fn transport_quantization(
     }
 }
 
-/// Reads the mesh of a compressed file, `.mlq` or `.mlz`, recognised by its content.
+/// Reads a mesh from a compressed file. The format, `.mlq` or `.mlz`, is recognised by the content.
 ///
 /// # Errors
 /// A file that cannot be read, is damaged or has another format.
@@ -164,7 +167,8 @@ pub fn decompress(path: &Path) -> Result<Mesh, CompressedFileError> {
         .map_err(|source| CompressedFileError::Malformed { path: path.to_owned(), source })
 }
 
-/// Decodes the mesh of a compressed file in memory, `.mlq` or `.mlz`, recognised by its content.
+/// Decodes a mesh from the bytes of a compressed file. The format, `.mlq` or `.mlz`, is recognised
+/// by the content.
 ///
 /// # Errors
 /// Bytes that are damaged or have another format.

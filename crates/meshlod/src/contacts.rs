@@ -1,4 +1,4 @@
-//! Locks for the meshes of a scene, where they meet as the scene shows them.
+//! Vertex locks for the meshes of a scene, at the places where they meet in world space.
 
 use std::collections::BTreeMap;
 
@@ -7,7 +7,8 @@ use meshlod_check::{LockOptions, LockReason, VertexLocks, locks};
 use meshlod_io::{MeshInstance, Scene, SceneMesh};
 use meshlod_mesh::{Labels, Lock, Mesh, VertexId, first_near};
 
-/// Computes locks for each mesh of a scene, from the places where its meshes meet in world space.
+/// Computes vertex locks for each mesh of a scene, at the places where its meshes meet in world
+/// space.
 ///
 /// A mesh shown by several nodes gets the strictest lock of all its instances. Vertices of two
 /// nodes at the same position are locked, since meshes are simplified independently. So are

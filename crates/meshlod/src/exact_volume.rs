@@ -1,4 +1,4 @@
-//! Exact conservation of the volumes of the meshes of a scene.
+//! Exact conservation of volume for all meshes of a scene.
 
 use meshlod_io::{Format, Precision, Scene};
 use meshlod_mesh::{Locks, Mesh};
@@ -6,7 +6,7 @@ use meshlod_simplify::{Digits, ExactVolumeError, SimplifyError, VolumeResidual, 
 
 use crate::locks;
 
-/// Returns the precision that positions have when a file of this format is read again.
+/// Returns the number format in which a mesh file stores positions, given its format and precision.
 pub fn digits_of(format: Format, precision: Precision) -> Digits {
     match (format, precision) {
         (Format::Stl | Format::Gltf | Format::Glb, _) | (Format::Ply, Precision::F32) => {
@@ -17,8 +17,8 @@ pub fn digits_of(format: Format, precision: Precision) -> Digits {
     }
 }
 
-/// Moves vertices of every level so that it has the volume of its mesh, as
-/// [`conserve_volume`] does.
+/// Adjusts the vertices of each simplified mesh until it has the volume of the original; see
+/// [`conserve_volume`].
 ///
 /// `levels` belong to the meshes of `scene`, in that order, and `locks` count vertices through all
 /// its meshes, see [`join_locks`](crate::join_locks). A level that cannot get the volume of its

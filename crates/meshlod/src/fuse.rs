@@ -1,10 +1,11 @@
-//! Fusing of all meshes of a scene.
+//! Fusing of the intersecting components within each mesh of a scene.
 
 use meshlod_check::{Fused, fuse};
 use meshlod_io::Scene;
 use meshlod_mesh::FaceId;
 
-/// Fuses every mesh of a scene by itself; see [`fuse`]. Meshes are not fused with each other.
+/// Merges intersecting closed components within each mesh of a scene; see [`fuse`]. Different
+/// meshes are not merged.
 ///
 /// Faces count as transparent if the base colour of their material is; textures are not looked at.
 pub fn fuse_scene(scene: &mut Scene) -> Fused {

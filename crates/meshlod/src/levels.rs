@@ -1,4 +1,4 @@
-//! Multiresolution files in one call: all levels of a mesh in, one mesh out.
+//! Multiresolution files in one call: all levels of a mesh to a file, or one mesh out of it.
 
 use std::fs::File;
 use std::path::{Path, PathBuf};
@@ -15,13 +15,13 @@ use thiserror::Error;
 /// Options of [`build`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BuildOptions {
-    /// Simplification method that makes the levels.
+    /// Simplification method whose contractions define the levels.
     pub method: Method,
-    /// Meaning of the stored errors; proven bounds take several times as long as estimates.
+    /// Whether the stored errors are estimates or proven bounds, which take several times as long.
     pub errors: ErrorKind,
-    /// True to keep the vertices of the mesh bit for bit, so that the finest level is the mesh.
+    /// True to keep the vertices of the mesh bit for bit, so that the finest level equals the mesh.
     pub lossless: bool,
-    /// Rounding of vertices, and size of the chunks that are read one by one.
+    /// Precision of the stored vertices, and size of the chunks that are read one by one.
     pub storage: Storage,
 }
 
@@ -36,15 +36,15 @@ impl Default for BuildOptions {
     }
 }
 
-/// Result of [`build`]: what the file holds.
+/// Contents and size of the file that [`build`] wrote.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct BuildReport {
-    /// Number of faces of the finest level: those of the mesh, without degenerate and duplicate
-    /// ones.
+    /// Number of faces of the finest level, which leaves out degenerate and duplicate faces of the
+    /// mesh.
     pub full_faces: usize,
     /// Number of faces of the coarsest level.
     pub base_faces: usize,
-    /// Number of updates between the coarsest level and the finest.
+    /// Number of refinement steps between the coarsest level and the finest.
     pub updates: usize,
     /// Proof that no level has a crack.
     pub certificate: Certificate,
@@ -55,11 +55,13 @@ pub struct BuildReport {
 /// Options of [`extract`].
 #[derive(Clone, Debug)]
 pub struct ExtractOptions<'f> {
-    /// Region to refine, and the error allowed there; by default the whole model, without error.
+    /// Region to refine, and the largest error allowed there; by default the whole model, without
+    /// error.
     pub query: Query<'f>,
-    /// Largest number of faces. The best mesh within it then only weighs errors by the query.
+    /// Largest number of faces of the mesh. If set, the query only decides where errors matter
+    /// most.
     pub max_faces: Option<usize>,
-    /// True to leave out faces that do not intersect the focus of the query.
+    /// True to leave out faces entirely outside the focus region of the query.
     pub crop: bool,
 }
 
@@ -69,23 +71,23 @@ impl Default for ExtractOptions<'static> {
     }
 }
 
-/// Reason why a multiresolution file cannot be built or extracted from.
+/// Reason why a multiresolution file cannot be built, or a mesh extracted from it.
 #[derive(Debug, Error)]
 pub enum LevelsError {
     /// The file cannot be read or written.
     #[error(transparent)]
     Io(#[from] IoError),
-    /// The mesh has no levels, the file is damaged, or the query is invalid.
+    /// The mesh cannot be built into levels, the file is damaged, or the query is invalid.
     #[error("{}: {source}", path.display())]
     File {
-        /// Path of the file.
+        /// Path of the multiresolution file.
         path: PathBuf,
-        /// Reason.
+        /// Description of the problem.
         source: FileError,
     },
 }
 
-/// Writes all levels of a mesh to a `.mlod` file, and certifies that no level has a crack.
+/// Writes all levels of detail of a mesh to a `.mlod` file, and proves that no level has a crack.
 ///
 /// The file holds the surface only: attributes, materials and objects are left out. It is written
 /// whole or not at all. [`multires`](crate::multires) has the parts, also for height fields.
@@ -130,7 +132,7 @@ fn encode(mesh: &Mesh, options: &BuildOptions) -> Result<(Vec<u8>, BuildReport),
     Ok((bytes, report))
 }
 
-/// Extracts one mesh from a `.mlod` file, reading only the parts that it needs.
+/// Extracts a mesh at one level of detail from a `.mlod` file, reading only the parts needed.
 ///
 /// # Errors
 /// A file that cannot be read or is damaged, and an invalid query.

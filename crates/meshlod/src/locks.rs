@@ -1,11 +1,11 @@
-//! Locks of a whole scene, with vertices numbered through all its meshes, mesh after mesh.
+//! Vertex locks of a whole scene, whose vertices are numbered mesh after mesh.
 
 use meshlod_io::Scene;
 use meshlod_mesh::{Lock, Locks, VertexId};
 use meshlod_simplify::SimplifyError;
 
-/// Joins the locks of each mesh into those of the scene, as
-/// [`SceneSimplifier`](crate::SceneSimplifier) takes them.
+/// Joins the vertex locks of the meshes of a scene into one list, as
+/// [`SceneSimplifier`](crate::SceneSimplifier) takes it.
 ///
 /// Meshes at the end may be left out and are free. Tied vertices at different positions are locked
 /// instead: a transform can move them together in world space although they are apart in their
@@ -43,7 +43,7 @@ pub fn join_locks(scene: &Scene, of_meshes: &[Locks]) -> Result<Locks, SimplifyE
     Ok(all)
 }
 
-/// Splits the locks of a scene into those of each mesh.
+/// Splits the vertex locks of a scene into one list for each mesh.
 pub(crate) fn split(scene: &Scene, all: &Locks) -> Result<Vec<Locks>, SimplifyError> {
     let starts = starts(scene.meshes.iter().map(|mesh| mesh.mesh.positions.len()));
     let (found, expected) = (all.of_vertex.len(), starts[scene.meshes.len()]);

@@ -1,10 +1,10 @@
-//! Materials of a scene for drawing.
+//! Materials of a scene, ready for drawing.
 
 use meshlod_io::{Image, Scene};
 use meshlod_picture::{Materials, PaintMaterial, Texture};
 
-/// Returns the materials of a scene for a picture of [`Scene::flatten`], and the images that could
-/// not be decoded.
+/// Returns the materials needed to draw the mesh made by [`Scene::flatten`], and the images that
+/// could not be decoded.
 ///
 /// There is one entry for every material of the scene, and a light grey one for faces without a
 /// material. A material whose image cannot be decoded keeps its colour only.
@@ -40,12 +40,12 @@ pub fn materials_of(scene: &Scene) -> (Materials, Vec<UnreadImage>) {
     (Materials { materials, textures }, unread)
 }
 
-/// An image that could not be decoded.
+/// A texture image of a scene that could not be decoded.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct UnreadImage {
     /// Name of the image in the scene.
     pub name: String,
-    /// Reason why it could not be decoded.
+    /// Reason why the image could not be decoded.
     pub reason: String,
 }
 

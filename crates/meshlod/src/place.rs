@@ -1,4 +1,4 @@
-//! Size of a scene and its instances in world space.
+//! Bounding box of a scene in world space, and scale of its instances.
 
 use glam::{DMat3, DMat4, DVec3};
 use meshlod_io::Scene;

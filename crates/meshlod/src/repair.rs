@@ -3,7 +3,7 @@
 use meshlod_check::{RepairOptions, RepairReport, repair};
 use meshlod_io::Scene;
 
-/// Repairs every mesh of a scene, including those that no node shows; see [`repair`].
+/// Repairs every mesh of a scene, including meshes that no node shows; see [`repair`].
 ///
 /// Nodes, materials and everything else stay, even materials that lose their last face. Lengths in
 /// `options` are in the units of each mesh. Repairs of a mesh count once, however many nodes show

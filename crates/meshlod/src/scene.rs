@@ -1,4 +1,4 @@
-//! Simplification of a scene: one budget or one error bound for all its meshes.
+//! Simplification of a scene: all its meshes share one target number of faces or error bound.
 
 use meshlod_io::Scene;
 use meshlod_mesh::Mesh;
@@ -10,7 +10,8 @@ use thiserror::Error;
 use crate::locks;
 use crate::place::length_scale;
 
-/// Simplifies the meshes of a scene under one target, always where it is cheapest in world space.
+/// Simplifies all meshes of a scene to one common target, always contracting where it costs least
+/// in world space.
 ///
 /// Everything is counted and measured as the scene shows it: the faces of a mesh that three nodes
 /// show count three times, and errors are in world units, by the largest length scale of its nodes.
@@ -38,13 +39,13 @@ struct Part<'s> {
     simplifier: Simplifier<'s>,
 }
 
-/// Reason why a scene cannot be simplified.
+/// Reason why the meshes of a scene cannot be simplified.
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum SceneError {
-    /// No node shows a mesh.
+    /// The scene has no node that shows a mesh.
     #[error("nodes: none of them shows a mesh")]
     Nothing,
-    /// The only mesh of the scene, or an option or target, is invalid.
+    /// An option or target is invalid, or the only mesh of the scene is.
     #[error(transparent)]
     Whole(#[from] SimplifyError),
     /// One of several meshes is invalid.
@@ -59,7 +60,7 @@ pub enum SceneError {
     },
 }
 
-/// Simplifies every mesh of a scene in place, under one target; see [`SceneSimplifier`].
+/// Simplifies all meshes of a scene in place, to one common target; see [`SceneSimplifier`].
 ///
 /// # Errors
 /// As for [`SceneSimplifier::new`], and an invalid target; the scene then is unchanged.
@@ -79,7 +80,7 @@ pub fn simplify_scene(
 }
 
 impl<'s> SceneSimplifier<'s> {
-    /// Prepares every mesh that the scene shows; nothing is contracted yet.
+    /// Prepares every mesh that the scene shows for simplification, without simplifying yet.
     ///
     /// `options.locks` number vertices through all meshes of the scene, mesh after mesh, see
     /// [`join_locks`](crate::join_locks). Vertices tied across two meshes are locked, since meshes
@@ -122,7 +123,8 @@ impl<'s> SceneSimplifier<'s> {
         }
     }
 
-    /// Contracts until the target is reached or no contraction is allowed any more.
+    /// Contracts edges and faces of all meshes until the target is reached or no contraction is
+    /// allowed any more.
     ///
     /// A number of faces is shared: the next contraction is the cheapest of all meshes in world
     /// space. An error bound holds for each mesh by itself, at its size in world space.
@@ -150,19 +152,20 @@ impl<'s> SceneSimplifier<'s> {
         Ok(Report { reached: report.output_faces <= budget, ..report })
     }
 
-    /// Returns the number of faces that the scene shows now.
+    /// Returns the number of faces that the scene currently shows, counting every instance.
     pub fn live_faces(&self) -> usize {
         let of = |part: &Part<'_>| part.copies * part.simplifier.live_faces();
         self.still_faces + self.parts.iter().map(of).sum::<usize>()
     }
 
-    /// Returns the number of faces that the scene showed at first.
+    /// Returns the number of faces that the scene showed before simplification, counting every
+    /// instance.
     pub fn input_faces(&self) -> usize {
         let of = |part: &Part<'_>| part.copies * self.scene.meshes[part.mesh].mesh.faces.len();
         self.still_faces + self.parts.iter().map(of).sum::<usize>()
     }
 
-    /// Returns the current level of every mesh, in the order of the scene.
+    /// Returns all meshes of the scene as simplified so far, in the order of the scene.
     pub fn level(&self) -> Vec<Mesh> {
         let mut parts = self.parts.iter().peekable();
         let meshes = self.scene.meshes.iter().enumerate();
@@ -173,7 +176,8 @@ impl<'s> SceneSimplifier<'s> {
         now.collect()
     }
 
-    /// Returns the simplifier of the only mesh in its current state; `None` if there are several.
+    /// Returns the simplifier of the scene's only mesh, in its current state; `None` if there are
+    /// several meshes.
     pub fn into_only(mut self) -> Option<Simplifier<'s>> {
         let only = self.parts.pop().filter(|_| self.parts.is_empty());
         only.filter(|_| self.scene.meshes.len() == 1).map(|part| part.simplifier)

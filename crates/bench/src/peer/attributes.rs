@@ -1,33 +1,34 @@
-//! meshoptimizer's attribute-aware simplification.
+//! Simplification with attributes by meshoptimizer.
 
 use std::collections::HashMap;
 
 use meshlod::mesh::{Attributes, Labels, Layer, LayerKind, Mesh, VertexId, WedgeId};
 use meshopt::SimplifyOptions;
 
-/// Settings of meshoptimizer's attribute-aware simplification.
+/// Settings of meshoptimizer's simplification with attributes.
 #[derive(Clone, Copy, Debug)]
 pub struct Settings {
-    /// Weight of normals relative to positions, for a mesh scaled to length 1.
+    /// Weight of normals relative to positions, for a mesh scaled to size 1.
     pub normal_weight: f32,
-    /// Weight of uvs relative to positions, for a mesh scaled to length 1.
+    /// Weight of texture coordinates relative to positions, for a mesh scaled to size 1.
     pub uv_weight: f32,
-    /// Flags passed to the library.
+    /// Option flags passed to meshoptimizer.
     pub options: SimplifyOptions,
-    /// Treatment of the remaining vertices.
+    /// Whether the remaining vertices keep their positions and attributes.
     pub update: Update,
 }
 
-/// Treatment of the vertices that remain.
+/// Treatment of the vertices that remain after simplification by meshoptimizer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Update {
-    /// Vertices keep position and attributes: simplify with attributes.
+    /// Vertices keep their positions and attributes, as in `simplify_with_attributes`.
     Nothing,
-    /// Vertices move to the best position and their attributes change: simplify with update.
+    /// Vertices move to the best position and their attributes change, as in
+    /// `simplify_with_update`.
     All,
 }
 
-/// A mesh as a GPU vertex buffer, in meshoptimizer's layout.
+/// A mesh with one set of attributes per vertex, as a GPU needs it, in meshoptimizer's layout.
 pub struct GpuMesh {
     vertices: Vec<GpuVertex>,
     /// Position of each vertex.
@@ -47,8 +48,8 @@ const WIDTH: usize = 5;
 /// Layers in the metric, and their offsets in a row of attributes.
 const GUIDES: [(LayerKind, usize); 2] = [(LayerKind::Normal, 0), (LayerKind::Uv(0), 3)];
 
-/// Simplifies by meshoptimizer to `faces` faces, or the nearest number above that it reaches, with
-/// all layers of the mesh.
+/// Simplifies a mesh with all its attributes by meshoptimizer, to `faces` faces or the nearest
+/// number above that it reaches.
 ///
 /// The whole mesh is simplified in one call, so that detail goes where it is missed least. A vertex
 /// of two materials is split in two, like one with two wedges, which keeps the border between them.
@@ -60,7 +61,7 @@ pub fn simplify_with_attributes(mesh: &Mesh, faces: usize, settings: &Settings) 
 }
 
 impl GpuMesh {
-    /// Splits vertices so that each has one wedge and one material.
+    /// Converts a mesh, splitting vertices so that each has one set of attributes and one material.
     pub fn new(mesh: &Mesh) -> Self {
         let mut known = HashMap::new();
         let mut vertices = Vec::new();
@@ -82,7 +83,7 @@ impl GpuMesh {
         Self { vertices, positions, attributes, indices }
     }
 
-    /// Returns the number of faces the library leaves; works on a copy.
+    /// Returns the number of faces to which meshoptimizer simplifies a copy of the mesh.
     pub fn faces_left(&self, faces: usize, settings: &Settings) -> usize {
         let Self { positions, attributes, indices, .. } = self;
         let mut reduced = Self {

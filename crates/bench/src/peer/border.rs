@@ -1,10 +1,10 @@
-//! meshoptimizer's simplification with its border lock.
+//! Simplification by meshoptimizer with its border lock.
 
 use meshlod::mesh::{Labels, Mesh, VertexId};
 use meshopt::{SimplifyOptions, simplify_decoder};
 
-/// Simplifies to about `faces` faces by meshoptimizer, positions only, with the vertices of open
-/// borders locked. No vertex moves; unused vertices stay in the list.
+/// Simplifies a mesh to about `faces` faces by meshoptimizer with open borders locked, using
+/// positions only. No vertex moves, and unused vertices stay in the list.
 ///
 /// Objects are kept if no two share a vertex: a face belongs to the object of two of its corners,
 /// because at coincident vertices the library may replace all of them by a vertex of another

@@ -3,8 +3,8 @@
 use meshlod::mesh::VertexId;
 use meshopt::{encode_index_buffer, encode_vertex_buffer, optimize_vertex_cache_strip};
 
-/// Returns the sizes of encoded positions and faces in bytes: positions as four `u16` in order of
-/// first use, faces in the order optimised for strips.
+/// Returns the sizes in bytes to which meshoptimizer encodes positions and faces: positions as four
+/// `u16` in order of first use, faces in the order optimised for strips.
 ///
 /// # Panics
 /// If the library refuses its own order.

@@ -1,10 +1,10 @@
-//! meshoptimizer's strips.
+//! Triangle strips built by meshoptimizer.
 
 use meshlod::mesh::VertexId;
 use meshlod::strip::Strips;
 use meshopt::{optimize_vertex_cache_strip, stripify};
 
-/// Builds strips by meshoptimizer, after its vertex cache order for strips.
+/// Builds triangle strips by meshoptimizer, with the faces in its vertex cache order for strips.
 ///
 /// # Panics
 /// If the library refuses its own order.

@@ -1,11 +1,12 @@
-//! Coordinates in which boxes fit an `f32`.
+//! Translated and scaled coordinates in which boxes can be rounded to `f32`.
 
 use glam::DVec3;
 use meshlod_mesh::Frame;
 
 use super::{BoxF32, Corners};
 
-/// Maps boxes to coordinates about the median of a sample of their centres, near size 1.
+/// Maps boxes to coordinates of magnitude about 1, centred at the median of a sample of their
+/// centres.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct FloatFrame {
     frame: Frame,

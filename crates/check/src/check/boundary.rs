@@ -35,7 +35,7 @@ pub(crate) struct BoundaryPolyline {
 }
 
 impl BoundaryPolyline {
-    /// Returns the number of vertices.
+    /// Returns the number of vertices of the polyline.
     pub fn len(self) -> usize {
         self.len as usize
     }
@@ -68,7 +68,7 @@ impl Boundary {
         &self.vertices[of.start as usize..][..of.len as usize]
     }
 
-    /// Returns all polylines, sorted by their vertices.
+    /// Returns all polylines of the boundary, sorted by their vertices.
     pub fn sorted_polylines(&self) -> Vec<BoundaryPolyline> {
         let mut polylines = self.polylines.clone();
         polylines.sort_by(|&a, &b| self.vertices(a).cmp(self.vertices(b)));

@@ -1,4 +1,4 @@
-//! Inconsistently oriented edges and non-manifold edges.
+//! Finds inconsistently oriented edges and non-manifold edges.
 
 use std::ops::ControlFlow;
 
@@ -47,7 +47,7 @@ pub fn non_manifold(subject: &Subject, visit: &mut Visit) -> ControlFlow<()> {
     ControlFlow::Continue(())
 }
 
-/// Sorts two values.
+/// Returns two values with the smaller one first.
 pub(crate) fn lowest_first<T: Ord>([a, b]: [T; 2]) -> [T; 2] {
     if a <= b { [a, b] } else { [b, a] }
 }

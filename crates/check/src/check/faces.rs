@@ -1,4 +1,4 @@
-//! Degenerate and duplicate faces.
+//! Finds degenerate and duplicate faces.
 
 use std::ops::ControlFlow;
 
@@ -31,8 +31,8 @@ pub fn duplicate(subject: &Subject, visit: &mut Visit) -> ControlFlow<()> {
     ControlFlow::Continue(())
 }
 
-/// Returns each face with the vertices of an earlier one in either orientation, lowest id first,
-/// paired with the first such face. Faces that repeat a vertex are not included.
+/// Pairs each face that has the same vertices as an earlier face, in either orientation, with the
+/// first such face. Faces that repeat a vertex are left out; lowest id first.
 pub(crate) fn duplicates(
     faces: &[[VertexId; 3]],
     connectivity: &Connectivity,

@@ -1,4 +1,4 @@
-//! Non-manifold vertices: those with more than one fan of faces.
+//! Finds non-manifold vertices: those whose faces form more than one fan.
 
 use std::ops::ControlFlow;
 

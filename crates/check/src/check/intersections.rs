@@ -1,4 +1,5 @@
-//! Self-intersections and contacts: faces that intersect beyond what they share.
+//! Finds self-intersections and contacts: faces that intersect elsewhere than in shared vertices
+//! and edges.
 
 use std::ops::ControlFlow;
 

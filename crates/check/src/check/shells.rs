@@ -1,4 +1,4 @@
-//! Closed shells whose faces point inwards.
+//! Finds closed shells whose faces point inwards.
 
 use std::borrow::Cow;
 use std::ops::ControlFlow;
@@ -33,7 +33,7 @@ pub(crate) struct Shells<'a> {
     pub all: Vec<Shell>,
 }
 
-/// A shell with the sums that give its volume.
+/// A shell with the sums from which its volume is computed.
 pub(crate) struct Shell {
     /// First face of the shell.
     pub first: FaceId,
@@ -100,8 +100,8 @@ impl Shell {
         self.closed &= closed;
     }
 
-    /// Returns the signed enclosed volume, in cubed model units; `None` if the shell is open or
-    /// inconsistently oriented, or if rounding may have decided the sign.
+    /// Returns the signed volume that the shell encloses, in cubic model units; `None` if the shell
+    /// is open or inconsistently oriented, or if rounding may have decided the sign.
     pub fn volume(&self) -> Option<f64> {
         let certain = self.sum.abs() > self.magnitude * Self::ROUNDING;
         (self.closed && certain).then_some(self.sum / 6.0)

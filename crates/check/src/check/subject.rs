@@ -1,4 +1,4 @@
-//! The mesh under check with derived data that several kinds share.
+//! The mesh under check, with derived data that several checks share.
 
 use std::borrow::Cow;
 use std::cell::OnceCell;
@@ -10,13 +10,14 @@ use crate::intersect::{IntersectingPairs, SearchInput};
 use crate::objects::Objects;
 use crate::unique_positions::UniquePositions;
 
-/// A mesh under check. Derived data is computed when first needed.
+/// A mesh under check, with derived data that is computed when first needed.
 pub struct Subject<'a> {
     pub mesh: &'a Mesh,
     options: &'a CheckOptions,
-    /// Faces of the mesh; invalid ones are replaced by [`EXCLUDED`], so that ids are kept.
+    /// Faces of the mesh; invalid ones are replaced by [`EXCLUDED`], so that face ids stay the
+    /// same.
     pub faces: Cow<'a, [[VertexId; 3]]>,
-    /// True if all faces are valid.
+    /// True if no face had to be excluded as invalid.
     pub all_valid: bool,
     connectivity: OnceCell<Connectivity>,
     unique: OnceCell<UniquePositions>,
@@ -70,7 +71,7 @@ impl<'a> Subject<'a> {
         })
     }
 
-    /// Returns a flag per vertex: true if any face uses it, even an excluded one.
+    /// Returns a flag per vertex, true if any face uses the vertex, even an excluded face.
     pub fn used(&self) -> &[bool] {
         self.used.get_or_init(|| {
             let mut used = vec![false; self.mesh.positions.len()];

@@ -1,4 +1,4 @@
-//! Invalid data: non-finite positions, indices out of range, arrays of the wrong size.
+//! Finds invalid data: non-finite positions, indices out of range, arrays of the wrong size.
 
 use std::ops::ControlFlow;
 

@@ -1,4 +1,4 @@
-//! Unused and coincident vertices.
+//! Finds unused and coincident vertices.
 
 use std::ops::ControlFlow;
 

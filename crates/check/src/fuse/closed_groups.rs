@@ -1,4 +1,4 @@
-//! Tests whether the remains of closed components are closed.
+//! Tests whether the faces left of fused components form a closed surface.
 
 use glam::{DMat3, DVec3};
 use meshlod_mesh::{Mesh, VertexId};
@@ -7,7 +7,7 @@ use rustc_hash::FxHashMap;
 use crate::union_find::UnionFind;
 use crate::unique_positions::UniquePositions;
 
-/// Groups of solid components connected through common positions.
+/// Groups of solid components that are connected through common vertex positions.
 pub struct SolidGroups {
     /// Group of each face; `None` if its component is not solid.
     of_face: Vec<Option<u32>>,
@@ -32,7 +32,8 @@ struct DivergenceSums {
 const ROUNDING: f64 = 1e-9;
 
 impl SolidGroups {
-    /// Builds the groups; `is_solid` has a flag per component.
+    /// Builds the groups from the component of each face and a flag per component, true if it is
+    /// solid.
     pub fn of(mesh: &Mesh, component: &[u32], is_solid: &[bool]) -> Self {
         let unique = UniquePositions::of(&mesh.positions);
         let solid = component.iter().map(|&own| Some(own).filter(|_| is_solid[own as usize]));
@@ -53,7 +54,7 @@ impl SolidGroups {
         self.of_face[face].map(|group| group as usize)
     }
 
-    /// Returns a flag per group: true if the kept faces form a closed surface.
+    /// Returns a flag per group, true if its faces that are kept form a closed surface.
     pub fn closed(&self, mesh: &Mesh, keeps: impl Fn(usize) -> bool) -> Vec<bool> {
         let mut sums: Vec<Option<DivergenceSums>> = vec![None; self.count];
         for (f, &face) in mesh.faces.iter().enumerate().filter(|(f, _)| keeps(*f)) {

@@ -1,4 +1,4 @@
-//! Splits a surface into patches along its intersections.
+//! Splits a surface into patches along its intersections with other components.
 
 use meshlod_mesh::{Connectivity, FaceId, Mesh, Side, Twin, VertexId};
 use rustc_hash::{FxHashMap, FxHashSet};

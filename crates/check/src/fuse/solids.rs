@@ -1,4 +1,4 @@
-//! Decides what is inside closed shells.
+//! Decides which parts of a mesh are inside closed shells.
 
 use std::f64::consts::TAU;
 
@@ -8,7 +8,7 @@ use meshlod_mesh::{Bounds, FaceId, Mesh};
 use super::patches::Patch;
 use crate::check::shells::Shells;
 
-/// Closed opaque shells of a mesh.
+/// Closed, opaque shells of a mesh, for tests of whether points are inside.
 pub struct Solids {
     solids: Vec<Solid>,
     /// Face tests that remain.
@@ -57,7 +57,7 @@ impl Solids {
         Self { solids: slots.into_iter().flatten().collect(), budget: 1 << 28 }
     }
 
-    /// Returns a flag per component: true if all of it is solid.
+    /// Returns a flag per component, true if it consists of closed opaque shells only.
     pub fn components(&self, component: &[u32]) -> Vec<bool> {
         let count = component.iter().max().map_or(0, |&most| most as usize + 1);
         let mut faces = vec![0; count];
@@ -68,8 +68,8 @@ impl Solids {
         faces.iter().map(|&others| others == 0).collect()
     }
 
-    /// Returns true if a shell of another component hides a patch of `component`, within the
-    /// budget.
+    /// Returns true if a patch of `component` is hidden inside a shell of another component; false
+    /// if the tests allowed for the mesh are used up.
     pub fn hide(&mut self, mesh: &Mesh, patch: &Patch, component: u32) -> bool {
         let samples = samples(mesh, patch);
         let Self { solids, budget } = self;

@@ -1,4 +1,4 @@
-//! Crossings inside a face of its intersection segments with several components.
+//! Splits the intersection segments in a face where they cross each other.
 
 use glam::{DVec2, DVec3};
 use meshlod_mesh::{FaceId, Mesh};

@@ -11,7 +11,7 @@ use crate::check::edges::lowest_first;
 use crate::repair::labels;
 use crate::unique_positions::UniquePositions;
 
-/// The cut mesh, built face by face.
+/// A mesh being rebuilt face by face, with its faces cut at intersections.
 pub struct CutMesh<'a> {
     mesh: &'a Mesh,
     unique: &'a UniquePositions,
@@ -109,7 +109,8 @@ impl<'a> CutMesh<'a> {
         Self { mesh, unique, points, done, vertices, wedges, contact_edges }
     }
 
-    /// Adds a face, or its pieces; returns their number.
+    /// Adds a face of the original mesh, or the pieces it is cut into; returns the number of faces
+    /// added.
     pub fn add(&mut self, face: FaceId) -> usize {
         let corners = self.mesh.faces[face.index()];
         let wedges = self.mesh.attributes.as_ref().map(|all| all.corners[face.index()]);
@@ -143,7 +144,8 @@ impl<'a> CutMesh<'a> {
         triangles.len()
     }
 
-    /// Returns the mesh and its edges along intersections, the lower vertex first.
+    /// Returns the finished mesh and its edges along intersections, as vertex pairs with the lower
+    /// id first.
     pub fn finish(self) -> (Mesh, FxHashSet<[VertexId; 2]>) {
         (self.done, self.contact_edges)
     }

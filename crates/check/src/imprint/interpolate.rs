@@ -1,8 +1,8 @@
-//! Interpolation of wedges for new vertices.
+//! Interpolation of attribute values for new vertices on cut faces.
 
 use meshlod_mesh::{Attributes, LayerKind, WedgeId};
 
-/// Appends a wedge interpolated between those of a face by barycentric weights.
+/// Appends a wedge whose values are interpolated from the wedges of a face by barycentric weights.
 pub fn interpolate_wedge(
     attributes: &mut Attributes,
     corners: [WedgeId; 3],
@@ -29,7 +29,7 @@ pub fn interpolate_wedge(
     WedgeId::new(attributes.wedge_count - 1)
 }
 
-/// Normalizes a vector unless it is zero.
+/// Scales a vector to length 1, unless it is zero.
 pub fn normalize(values: &mut [f32]) {
     let length = values.iter().map(|x| x * x).sum::<f32>().sqrt();
     if length > 0.0 {

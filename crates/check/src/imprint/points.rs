@@ -1,4 +1,4 @@
-//! Intersection points and segments of components.
+//! Points and segments in which faces of different components intersect.
 
 use glam::DVec3;
 use meshlod_mesh::{FaceId, Mesh, VertexId, first_near};
@@ -9,11 +9,12 @@ use crate::check::edges::lowest_first;
 use crate::check::subject::Subject;
 use crate::intersect::{Feature, SegmentEnd};
 
-/// Index of an intersection point.
+/// Index of an intersection point among all points of a mesh.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct PointId(u32);
 
-/// Intersection points and segments of all components. Vertices stand for their positions.
+/// Intersection points and segments of all components of a mesh; vertices at one position are
+/// represented by the lowest-numbered one.
 #[derive(Default)]
 pub struct IntersectionPoints {
     /// Number of pairs of faces that intersect.
@@ -26,14 +27,14 @@ pub struct IntersectionPoints {
     in_face: FxHashMap<FaceId, FaceInterior>,
 }
 
-/// Points and segments in the interior of a face.
+/// Intersection points and segments in the interior of a face.
 #[derive(Debug, Default)]
 pub struct FaceInterior {
     pub points: Vec<PointId>,
     pub segments: Vec<IntersectionSegment>,
 }
 
-/// Intersection of a face with another.
+/// Line segment in which a face intersects a face of another component.
 #[derive(Clone, Copy, Debug)]
 pub struct IntersectionSegment {
     pub ends: [EndPoint; 2],
@@ -64,7 +65,7 @@ const ROUNDING: f64 = 4e-14;
 type Known = FxHashMap<[MeshFeature; 2], PointId>;
 
 impl IntersectionPoints {
-    /// Finds where faces of different objects intersect.
+    /// Finds the points and segments in which faces of different objects intersect.
     pub fn of(subject: &Subject) -> Self {
         let mut points = Self::default();
         let mut known = Known::default();
@@ -84,12 +85,13 @@ impl IntersectionPoints {
         self.positions[point.0 as usize]
     }
 
-    /// Returns what lies in the interior of a face.
+    /// Returns the intersection points and segments in the interior of a face; `None` if there are
+    /// no such points.
     pub fn inside(&self, face: FaceId) -> Option<&FaceInterior> {
         self.in_face.get(&face)
     }
 
-    /// Returns the points along an edge, from its first to its second vertex.
+    /// Returns the intersection points on an edge, in order from its first vertex to its second.
     pub fn along(&self, edge: [VertexId; 2]) -> Vec<PointId> {
         let Some(points) = self.of_edge.get(&lowest_first(edge)) else { return Vec::new() };
         match edge[0] < edge[1] {
@@ -98,7 +100,7 @@ impl IntersectionPoints {
         }
     }
 
-    /// Returns the faces with points or segments inside, lowest id first.
+    /// Returns the faces with intersection points or segments in their interior, lowest id first.
     pub(super) fn faces(&self) -> Vec<FaceId> {
         let mut faces: Vec<FaceId> = self.in_face.keys().copied().collect();
         faces.sort_unstable();
@@ -222,7 +224,7 @@ impl MeshFeature {
     }
 }
 
-/// Bounds the rounding error of points computed from the given positions.
+/// Returns a bound on the rounding error of points computed from the given positions.
 pub fn rounding(positions: &[DVec3]) -> f64 {
     ROUNDING * positions.iter().map(|position| position.abs().max_element()).fold(0.0, f64::max)
 }

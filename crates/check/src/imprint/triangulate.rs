@@ -1,4 +1,4 @@
-//! Constrained triangulation of a face.
+//! Constrained triangulation of a face that is cut by points and segments.
 
 use std::collections::BTreeSet;
 
@@ -11,17 +11,17 @@ use crate::check::edges::lowest_first;
 type Delaunay =
     ConstrainedDelaunayTriangulation<Point2<f64>, (), (), (), HierarchyHintGenerator<f64>>;
 
-/// Points and segments that cut a face.
+/// Points and segments at which a face is cut.
 ///
 /// Points are numbered: the three corners, then the points on each edge in the order of the face,
 /// then those inside.
 #[derive(Debug, Default)]
 pub struct FaceCuts {
-    /// Parameters of the points on each edge, ascending from 0 to 1.
+    /// Parameters of the points on each of the three edges, ascending from 0 to 1.
     pub along: [Vec<f64>; 3],
-    /// Barycentric coordinates of the inner points to the second and third corner.
+    /// Barycentric coordinates of the points inside the face, for its second and third corner.
     pub inside: Vec<[f64; 2]>,
-    /// Pairs of points that must be connected by an edge.
+    /// Pairs of point numbers that an edge of the triangulation must connect.
     pub segments: Vec<[usize; 2]>,
 }
 
@@ -29,16 +29,16 @@ pub struct FaceCuts {
 /// triangulate: positions in space are not rounded to it.
 const STEPS: u64 = 1 << 52;
 
-/// Triangulation of a cut face.
+/// Triangulation of a face that was cut.
 #[derive(Debug, Default)]
 pub struct FaceTriangulation {
     /// Triangles as point numbers, oriented like the face.
     pub triangles: Vec<[usize; 3]>,
-    /// Edges along segments, each once, the lower point first.
+    /// Edges of the triangulation along the segments, each once, the lower point number first.
     pub segments: Vec<[usize; 2]>,
 }
 
-/// Triangulates a face.
+/// Triangulates a face with the given points and segments as vertices and edges.
 ///
 /// The triangulation is Delaunay with the segments as constraints, in barycentric coordinates, in
 /// which the points on edges lie on them exactly. Of segments that cross, one is left out.

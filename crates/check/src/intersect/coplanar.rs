@@ -6,7 +6,7 @@ use super::exact::{orientation, project, projection_axis};
 use super::triangle_pair::Triangle;
 use crate::{Intersection, IntersectionKind};
 
-/// Intersects two coplanar triangles; `None` if they are disjoint or one has zero area.
+/// Intersects two coplanar triangles; `None` if they do not touch or if one has zero area.
 ///
 /// Works in a projection along a coordinate axis, in which all orientations are exact.
 pub(super) fn intersect(a: &Triangle, b: &Triangle) -> Option<Intersection> {

@@ -1,4 +1,4 @@
-//! Exact geometric predicates.
+//! Exact geometric predicates for points, lines and planes.
 //!
 //! `robust` computes the signs of determinants of `f64` coordinates without error as long as no
 //! product overflows or underflows. [`super::ScaledPositions`] keeps coordinates in that range.
@@ -23,8 +23,8 @@ pub(crate) fn orientation(a: DVec2, b: DVec2, p: DVec2) -> f64 {
     orient2d(coord(a), coord(b), coord(p))
 }
 
-/// Projects a point along an axis. Triangles that are counter-clockwise seen from the axis's
-/// positive end stay so.
+/// Projects a point along a coordinate axis. Triangles that are counter-clockwise seen from the
+/// positive end of the axis stay counter-clockwise.
 #[inline]
 pub(crate) fn project(axis: usize, p: DVec3) -> DVec2 {
     match axis {

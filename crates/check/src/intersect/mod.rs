@@ -1,4 +1,5 @@
-//! Finds all pairs of faces that intersect beyond what they share, exactly.
+//! Finds all pairs of faces that intersect elsewhere than in shared vertices and edges, by exact
+//! predicates.
 //!
 //! Most close pairs are faces around a common vertex. These are certified ring by ring ([`rings`]),
 //! and the rings that fail are tested pair by pair ([`shared_vertex`]). Pairs that share no vertex
@@ -33,17 +34,17 @@ pub(crate) use exact::{orientation, project, projection_axis};
 pub(crate) use segment_end::{Feature, SegmentEnd};
 pub(crate) use soup::{ScaledPositions, SearchInput};
 
-/// Method that finds the pairs of faces that may intersect. The findings do not depend on it.
+/// Method of finding the pairs of faces that may intersect. The findings do not depend on it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum BroadPhase {
-    /// Bounding volume hierarchy tested against itself: fast.
+    /// Bounding volume hierarchy of the faces tested against itself; the faster method.
     #[default]
     Tree,
-    /// Octree: pairs of faces in a common leaf; see [`crate::ObjectOctree`].
+    /// Octree over the faces: pairs in a common leaf are tested; see [`crate::ObjectOctree`].
     Octree,
 }
 
-/// The pairs of faces that intersect beyond what they share.
+/// The pairs of faces that intersect elsewhere than in vertices and edges they share.
 #[derive(Debug)]
 pub(crate) struct IntersectingPairs {
     pairs: Vec<[FaceId; 2]>,
@@ -68,7 +69,7 @@ impl Limits {
 }
 
 impl IntersectingPairs {
-    /// Finds all pairs of faces that intersect beyond what they share.
+    /// Finds all pairs of faces that intersect elsewhere than in vertices and edges they share.
     ///
     /// Corners at one position are shared even if their vertices differ. Between two objects,
     /// sharing counts as a contact: one pair for each shared edge, and one for each shared position
@@ -96,18 +97,18 @@ impl IntersectingPairs {
         Self { pairs: search.found, complete, scale: soup.positions.scale() }
     }
 
-    /// Returns true if the search was not cut short.
+    /// Returns true if the search was not given up because too many faces are close to each other.
     pub(crate) fn complete(&self) -> bool {
         self.complete
     }
 
-    /// Returns the pairs in ascending order, the lower face of each first.
+    /// Returns the intersecting pairs of faces in ascending order, the lower id of each pair first.
     pub(crate) fn pairs(&self) -> &[[FaceId; 2]] {
         &self.pairs
     }
 
-    /// Computes how the faces of a pair intersect. `None` only occurs if coordinates differ too
-    /// much in magnitude for exact signs.
+    /// Computes how the faces of a pair intersect. `None` only occurs if coordinates differ so much
+    /// in magnitude that signs cannot be computed exactly.
     pub(crate) fn intersection(&self, mesh: &Mesh, pair: [FaceId; 2]) -> Option<Intersection> {
         let positions = ScaledPositions::new(&mesh.positions, self.scale);
         let [a, b] = pair.map(|f| positions.triangle(mesh.faces[f.index()]));

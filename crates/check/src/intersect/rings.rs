@@ -1,4 +1,4 @@
-//! Certifies the ring of faces around a vertex as a whole, where that is possible.
+//! Proves for all faces around a vertex at once that they do not intersect, where that is possible.
 
 use meshlod_mesh::VertexId;
 
@@ -36,7 +36,8 @@ const CERTAIN: f64 = 4.5e-16;
 const TINY: f64 = 1e-290;
 
 impl CertifiedRings {
-    /// Certifies all rings that it can. Excluded faces are not part of any ring.
+    /// Certifies all vertices whose ring of faces can be proved free of intersections. Excluded
+    /// faces are not part of any ring.
     pub(crate) fn of(input: &SearchInput<'_>, soup: &TriangleSoup<'_>) -> Self {
         let mut rings: Vec<RingSummary> = (0..input.positions.len())
             .map(|v| {
@@ -65,7 +66,7 @@ impl CertifiedRings {
         Self(rings.into_iter().map(RingSummary::certified).collect())
     }
 
-    /// Returns true if the ring of a vertex is certified.
+    /// Returns true if the faces around a vertex are proved free of intersections.
     #[inline]
     pub(crate) fn contains(&self, vertex: VertexId) -> bool {
         self.0[vertex.index()]

@@ -1,4 +1,4 @@
-//! End points of the intersection of two triangles.
+//! End points of the line segment in which two triangles intersect.
 
 use glam::{DVec2, DVec3};
 
@@ -17,14 +17,14 @@ pub(crate) enum Feature {
 /// An end point of the intersection segment of two triangles.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct SegmentEnd {
-    /// Feature of each triangle that contains it.
+    /// The feature of each of the two triangles that contains the point.
     pub(crate) on: [Feature; 2],
-    /// Position, rounded; bit for bit that of a corner if it is one.
+    /// Position of the point, rounded to `f64`; exact if it is a corner.
     pub(crate) position: DVec3,
 }
 
 impl SegmentEnd {
-    /// Computes the point at the intersection of two features.
+    /// Computes the point at the intersection of a feature of each triangle.
     pub(super) fn new(on: [Feature; 2], [a, b]: [&Triangle; 2]) -> Self {
         let position = match on {
             [Feature::Corner(i), _] => a[i],
@@ -78,7 +78,7 @@ fn crossing(of: &Triangle, edge: usize, plane: &Triangle) -> DVec3 {
 }
 
 impl Feature {
-    /// Returns the edge between two corners.
+    /// Returns the edge between two corners of a triangle.
     pub(crate) fn edge(i: usize, j: usize) -> Self {
         Self::Edge(if (i + 1) % 3 == j { i } else { j })
     }

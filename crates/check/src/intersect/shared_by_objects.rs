@@ -1,4 +1,4 @@
-//! Vertices and edges that objects share.
+//! Finds the vertices and edges that several objects share.
 
 use std::ops::ControlFlow;
 

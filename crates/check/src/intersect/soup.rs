@@ -1,5 +1,5 @@
-//! The triangle soup that is searched: corners merged by position, coordinates that cannot
-//! overflow.
+//! The triangle soup that is searched for intersections: corners merged by position, and
+//! coordinates scaled so that they cannot overflow.
 
 use std::borrow::Cow;
 use std::ops::Range;
@@ -15,7 +15,7 @@ use crate::{Objects, UniquePositions};
 #[derive(Clone, Copy)]
 pub(crate) struct SearchInput<'a> {
     pub(crate) positions: &'a [[f64; 3]],
-    /// Faces; an excluded one repeats a vertex, all others have finite positions.
+    /// Faces to search. An excluded face repeats a vertex; all others have finite positions.
     pub(crate) faces: &'a [[VertexId; 3]],
     /// Connectivity of these faces.
     pub(crate) connectivity: &'a Connectivity,
@@ -45,7 +45,8 @@ impl<'a> TriangleSoup<'a> {
         self.positions.triangle(self.corners[face.index()])
     }
 
-    /// Returns true if a face takes part: three distinct positions and an area.
+    /// Returns true if a face takes part in the search: its corners are at three positions and it
+    /// has an area.
     pub(crate) fn counts(&self, face: FaceId) -> bool {
         has_distinct_corners(&self.corners[face.index()])
             && projection_axis(&self.triangle(face)).is_some()
@@ -91,7 +92,7 @@ impl<'a> ScaledPositions<'a> {
         Self { positions, scale: 2f64.powi(exponent.clamp(-1022.0, 1022.0) as i32) }
     }
 
-    /// Scales positions by a given scale.
+    /// Multiplies all positions by a given scale.
     pub(crate) fn new(positions: &'a [[f64; 3]], scale: f64) -> Self {
         Self { positions, scale }
     }

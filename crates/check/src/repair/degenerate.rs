@@ -15,16 +15,16 @@ const ROUNDS: usize = 16;
 /// Largest star that is searched for an existing edge.
 const MOST_STAR: usize = 256;
 
-/// Counts of what was done.
+/// Counts of the changes made to remove faces of zero area.
 #[derive(Debug, Default, PartialEq)]
 pub struct Removed {
-    /// Edges flipped, each of which gave a face an area.
+    /// Number of edges flipped, each of which gave a face an area.
     pub flipped: usize,
-    /// Faces removed.
+    /// Number of faces removed.
     pub dropped: usize,
 }
 
-/// Removes the faces of zero area.
+/// Removes the faces of zero area from a mesh.
 ///
 /// If a corner lies on the opposite edge, that edge is flipped: the face and its neighbour become
 /// the two halves of the neighbour, split from the middle corner to the neighbour's tip, and the

@@ -3,7 +3,8 @@
 use meshlod_mesh::{Labels, Mesh, VertexId, WedgeId};
 use rustc_hash::FxHashMap;
 
-/// Removes the faces that are not kept, with their corners and labels; returns their number.
+/// Removes the faces for which `keeps` is false, with their corners and labels; returns their
+/// number.
 pub fn retain_faces(mesh: &mut Mesh, keeps: impl Fn(usize) -> bool) -> usize {
     let before = mesh.faces.len();
     if (0..before).all(&keeps) {
@@ -27,12 +28,12 @@ fn retain<T>(items: &mut Vec<T>, keeps: impl Fn(usize) -> bool) {
     });
 }
 
-/// Iterates over the materials and objects, if present.
+/// Iterates over the material and object labels that the mesh has.
 pub fn labels(mesh: &mut Mesh) -> impl Iterator<Item = &mut Labels> {
     mesh.materials.iter_mut().chain(mesh.objects.iter_mut())
 }
 
-/// Copies wedges used by several vertices so that each vertex has its own; returns the number of
+/// Copies wedges that several vertices use, so that each vertex has its own; returns the number of
 /// copies. The first vertex in the order of faces keeps the original.
 pub fn own_wedges(mesh: &mut Mesh) -> usize {
     let Some(attributes) = &mut mesh.attributes else { return 0 };
@@ -59,7 +60,7 @@ pub fn own_wedges(mesh: &mut Mesh) -> usize {
     copied.len()
 }
 
-/// Removes vertices and wedges that no face uses; returns the number of vertices.
+/// Removes vertices and wedges that no face uses; returns the number of vertices removed.
 pub fn drop_unused(mesh: &mut Mesh) -> usize {
     let before = mesh.positions.len();
     mesh.compact();

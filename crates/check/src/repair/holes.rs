@@ -1,4 +1,4 @@
-//! Fills holes.
+//! Fills holes of a mesh with new triangles.
 
 use meshlod_mesh::{Connectivity, FaceId, Mesh, Side, Twin, VertexId, WedgeId, face_components};
 use rustc_hash::FxHashSet;
@@ -8,18 +8,18 @@ use super::intersecting::intersecting;
 use super::triangulate::{HoleOutline, triangles_weighed, triangulate};
 use crate::check::boundary::{Boundary, BoundaryPolyline};
 
-/// Limits on the holes to fill.
+/// Limits on the size of the holes that are filled.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HoleLimits {
-    /// Maximum number of edges, never more than [`HoleLimits::MOST_EDGES`].
+    /// Maximum number of edges of a hole, never more than [`HoleLimits::MOST_EDGES`].
     pub edges: usize,
-    /// Maximum perimeter in model units.
+    /// Maximum perimeter of a hole, in model units.
     pub length: f64,
 }
 
 impl HoleLimits {
-    /// Maximum number of edges of a hole, whatever the limits: time grows with its cube, to 0.2 s
-    /// here.
+    /// Largest number of edges of a hole that can be filled, whatever the limits. Time grows with
+    /// its cube, to 0.2 s at this size.
     pub const MOST_EDGES: usize = 256;
 
     /// Budget of triangles weighed for all holes of a mesh: enough for 48 holes of 256 edges or a
@@ -28,16 +28,17 @@ impl HoleLimits {
     pub(super) const MOST_WEIGHED: usize = 1 << 27;
 }
 
-/// Counts of what was done.
+/// Counts of the holes filled and left open.
 #[derive(Debug, Default, PartialEq)]
 pub struct Filled {
-    /// Holes filled.
+    /// Number of holes filled.
     pub holes: usize,
-    /// Faces added.
+    /// Number of faces added to fill holes.
     pub faces: usize,
-    /// Holes within the limits for which no triangulation is valid.
+    /// Number of holes within the size limits for which no triangulation is valid.
     pub left: usize,
-    /// Holes within the limits that exceed the budget.
+    /// Number of holes within the size limits left open because the work allowed for the mesh was
+    /// used up.
     pub untried: usize,
 }
 

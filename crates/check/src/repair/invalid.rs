@@ -4,7 +4,7 @@ use meshlod_mesh::Mesh;
 
 use super::edit::retain_faces;
 
-/// Counts of what was removed.
+/// Counts of the invalid vertices and faces removed.
 pub struct Dropped {
     pub faces: usize,
     pub vertices: usize,

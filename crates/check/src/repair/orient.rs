@@ -4,17 +4,17 @@ use meshlod_mesh::{Connectivity, FaceId, Mesh, Side, Twin};
 
 use super::reverse::reverse_faces;
 
-/// Counts of what was done.
+/// Counts of the faces reversed and the shells left alone.
 #[derive(Debug, Default, PartialEq)]
 pub struct Oriented {
-    /// Faces reversed.
+    /// Number of faces reversed.
     pub turned: usize,
-    /// Shells that cannot be oriented and stay unchanged.
+    /// Number of shells left unchanged because they cannot be oriented consistently.
     pub impossible: usize,
 }
 
-/// Reverses faces until neighbours agree, in every shell as few as possible; in a tie the first
-/// face keeps its orientation.
+/// Reverses as few faces of every shell as possible so that neighbouring faces agree; in a tie the
+/// first face keeps its orientation.
 pub fn agree(mesh: &mut Mesh) -> Oriented {
     let connectivity = Connectivity::new(&mesh.faces, mesh.positions.len());
     if connectivity.inconsistent_edges() == 0 {

@@ -8,7 +8,7 @@ use crate::check::shells::Shells;
 /// Limit on the shells considered as enclosing others; the largest are taken.
 const MOST_ENCLOSING: usize = 512;
 
-/// Reverses every closed shell that points inwards; returns their number.
+/// Reverses every closed shell that points inwards; returns the number of shells reversed.
 ///
 /// A shell that another closed shell may enclose is kept, since it may be the wall of a cavity,
 /// which rightly points inwards. Bounding boxes decide, so some shells are kept that could be

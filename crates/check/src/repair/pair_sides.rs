@@ -18,7 +18,7 @@ struct EdgeFace {
     opens: bool,
 }
 
-/// Pairs the sides of one edge; some may stay unpaired.
+/// Pairs the face sides at one non-manifold edge, to be split apart; some may stay unpaired.
 ///
 /// If the faces around the edge alternate in orientation, each pair encloses one part of the
 /// inside, so that solids that touch along the edge are separated. Else the flattest pairs are

@@ -1,19 +1,20 @@
-//! Report of a repair: one count for each step.
+//! Report of a mesh repair: one count for each step.
 
-/// A step of a repair or a defect it left, with a count in the report.
+/// A step of a mesh repair, or a defect it left; the report has a count for each.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum RepairStep {
-    /// Mismatched layers, labels and corners removed, and wedges of several vertices split.
+    /// Mismatched layers, labels and corners that were removed, and wedges of several vertices that
+    /// were split.
     BadAttributes,
-    /// Faces removed that had a missing or non-finite vertex.
+    /// Faces removed because they had a missing or non-finite vertex.
     BadFaces,
-    /// Non-finite vertices removed.
+    /// Vertices removed because they had a NaN or infinite coordinate.
     BadVertices,
-    /// Vertices welded to another.
+    /// Vertices welded to another vertex.
     Welded,
     /// Duplicate faces of the same orientation removed.
     Duplicates,
-    /// Edges flipped to give a face of zero area some of its neighbour's.
+    /// Edges flipped to give a face of zero area part of its neighbour's area.
     FlippedEdges,
     /// Faces of zero area removed.
     Degenerate,
@@ -31,18 +32,19 @@ pub enum RepairStep {
     FilledHoles,
     /// Faces added to fill holes.
     FillingFaces,
-    /// Holes within the limits left open because no filling is valid.
+    /// Holes within the size limits that were left open because no triangulation is valid.
     HolesLeft,
-    /// Largest holes within the limits left open because the work budget was used up.
+    /// Holes within the size limits that were left open because the work allowed for the mesh was
+    /// used up; the largest ones.
     HolesUntried,
     /// Closed shells reversed to point outwards.
     TurnedShells,
-    /// Unused vertices removed.
+    /// Vertices removed because no face used them.
     Unused,
 }
 
 impl RepairStep {
-    /// All steps, in the order in which they run.
+    /// All repair steps, in the order in which they run.
     pub const ALL: [Self; 18] = [
         Self::BadAttributes,
         Self::BadFaces,
@@ -64,7 +66,7 @@ impl RepairStep {
         Self::Unused,
     ];
 
-    /// Returns the name used in reports.
+    /// Returns the name of the step as used in reports.
     pub fn name(self) -> &'static str {
         match self {
             Self::BadFaces => "bad-faces",
@@ -88,26 +90,26 @@ impl RepairStep {
         }
     }
 
-    /// Returns true if the step counts defects that were left rather than repairs.
+    /// Returns true if the step counts defects left in the mesh rather than repairs.
     pub fn is_unresolved(self) -> bool {
         matches!(self, Self::NotOrientable | Self::HolesLeft | Self::HolesUntried)
     }
 }
 
-/// Counts of what a repair did, one for each step.
+/// Counts of the changes a mesh repair made, one for each step.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct RepairReport {
     counts: [usize; RepairStep::ALL.len()],
 }
 
 impl RepairReport {
-    /// Adds to the count of a step.
+    /// Adds to the count of a repair step.
     pub fn add(&mut self, step: RepairStep, count: usize) {
         self.counts[step as usize] += count;
     }
 
-    /// Combines this report with that of a second repair of the same mesh: repairs are summed,
-    /// defects left are those that the second left.
+    /// Combines the reports of two successive repairs of a mesh: repairs are summed, and the
+    /// defects left are those of the second report.
     pub fn then(mut self, other: &Self) -> Self {
         for step in RepairStep::ALL {
             match step.is_unresolved() {
@@ -118,12 +120,13 @@ impl RepairReport {
         self
     }
 
-    /// Returns the count of a step.
+    /// Returns the count of a repair step.
     pub fn count(&self, step: RepairStep) -> usize {
         self.counts[step as usize]
     }
 
-    /// Iterates over the steps with a nonzero count, in order, with their counts.
+    /// Iterates over the repair steps with a nonzero count, in the order of [`RepairStep::ALL`],
+    /// with their counts.
     pub fn nonzero(&self) -> impl Iterator<Item = (RepairStep, usize)> + '_ {
         RepairStep::ALL
             .into_iter()
@@ -131,7 +134,7 @@ impl RepairReport {
             .filter(|&(_, count)| count > 0)
     }
 
-    /// Returns true if the repair changed nothing.
+    /// Returns true if the repair did not change the mesh.
     pub fn is_unchanged(&self) -> bool {
         self.nonzero().all(|(step, _)| step.is_unresolved())
     }

@@ -3,7 +3,7 @@
 use glam::DVec3;
 use meshlod_mesh::{LayerKind, Mesh};
 
-/// Reverses the flagged faces.
+/// Reverses the orientation of the flagged faces.
 ///
 /// Wedges stay with their corners. A normal may have been right all along: it is reversed only if
 /// all faces at its wedge are reversed and it agreed with them before. The tangent there then

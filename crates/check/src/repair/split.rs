@@ -8,16 +8,16 @@ use crate::check::edges::lowest_first;
 use crate::check::faces::duplicates;
 use crate::union_find::UnionFind;
 
-/// Counts of what was split.
+/// Counts of non-manifold edges split and vertices added.
 #[derive(Debug, Default, PartialEq)]
 pub struct Split {
-    /// Non-manifold edges.
+    /// Number of non-manifold edges split.
     pub edges: usize,
-    /// New vertices.
+    /// Number of vertices added.
     pub vertices: usize,
 }
 
-/// Splits all non-manifold edges and all non-manifold vertices.
+/// Splits all non-manifold edges and all non-manifold vertices of a mesh.
 ///
 /// At each non-manifold edge sides are paired ([`pair_sides`]); an unpaired side becomes a
 /// boundary. A vertex of the result is a set of corners connected across paired sides [GTLH98].

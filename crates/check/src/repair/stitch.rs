@@ -15,7 +15,7 @@ use crate::zero_area::has_zero_area;
 const ROUNDS: usize = 64;
 
 /// Stitches boundary edges that run in opposite directions between the same two positions; returns
-/// the number of pairs.
+/// the number of pairs stitched.
 ///
 /// Positions are the same within `epsilon`, in model units; joined vertices move to the first of
 /// them. Edges are joined only if exactly two sides of one object lie there, and only if every edge

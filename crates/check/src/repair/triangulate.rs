@@ -1,14 +1,14 @@
-//! Minimum-bend triangulation of a hole.
+//! Triangulation of a hole that bends the surface least.
 
 use glam::DVec3;
 
 use crate::zero_area::has_zero_area;
 
-/// Vertices around a hole and what lies across its edges.
+/// Vertices around a hole, with the faces across its edges.
 pub struct HoleOutline {
-    /// Positions in the order in which the new triangles traverse them.
+    /// Positions of the vertices, in the order in which the new triangles traverse them.
     pub points: Vec<[f64; 3]>,
-    /// Tip of the triangle across the edge from each point to the next.
+    /// Third corner of the existing face at each edge of the hole, from each point to the next.
     pub tips: Vec<[f64; 3]>,
 }
 
