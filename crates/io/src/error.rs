@@ -1,17 +1,17 @@
-//! Errors of reading and writing, with the place in the file.
+//! Errors in reading and writing mesh files, with the location in the file.
 
 use std::path::{Path, PathBuf};
 
 use thiserror::Error;
 
-/// Location in a file that an error refers to.
+/// Location of an error within a mesh file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum FileLocation {
     /// Line of a text file, counted from 1.
     Line(usize),
     /// Byte offset in a binary file, counted from 0.
     Byte(usize),
-    /// Named part of the file: `header`, `accessor 7`, `node 3`.
+    /// Named part of the file, such as `header`, `accessor 7` or `node 3`.
     Part(String),
 }
 
@@ -25,99 +25,100 @@ impl std::fmt::Display for FileLocation {
     }
 }
 
-/// Parse error: location and reason, without the file name.
+/// Error in the contents of a mesh file: its location and the reason, without the file name.
 #[derive(Clone, Debug, Error, PartialEq, Eq)]
 #[error("{location}: {reason}")]
 pub struct ParseError {
     /// Location of the error.
     pub location: FileLocation,
-    /// The problem and, where that is clear, what to do about it.
+    /// Description of the problem and, where that is clear, of what to do about it.
     pub reason: String,
 }
 
 impl ParseError {
-    /// Creates an error at a line, counted from 1.
+    /// Creates a parse error at a line of a text file, counted from 1.
     pub fn line(line: usize, reason: impl Into<String>) -> Self {
         Self { location: FileLocation::Line(line), reason: reason.into() }
     }
 
-    /// Creates an error at a byte offset, counted from 0.
+    /// Creates a parse error at a byte offset of a binary file, counted from 0.
     pub fn byte(byte: usize, reason: impl Into<String>) -> Self {
         Self { location: FileLocation::Byte(byte), reason: reason.into() }
     }
 
-    /// Creates an error in a named part of the file.
+    /// Creates a parse error in a named part of the file, such as `accessor 7`.
     pub fn part(part: impl Into<String>, reason: impl Into<String>) -> Self {
         Self { location: FileLocation::Part(part.into()), reason: reason.into() }
     }
 }
 
-/// Part of a scene that the output format cannot store, without the file name.
+/// Error for a part of a scene that the output format cannot store; does not name the file.
 #[derive(Clone, Debug, Error, PartialEq, Eq)]
 #[error("{part}: {reason}")]
 pub struct Unsupported {
-    /// Name of the part: `mesh 3`, `v12`.
+    /// Name of the part of the scene that cannot be stored, such as `mesh 3` or `v12`.
     pub part: String,
-    /// Why it cannot be stored and, where that is clear, what to do about it.
+    /// Reason why the part cannot be stored and, where that is clear, what to do about it.
     pub reason: String,
 }
 
 impl Unsupported {
-    /// Creates an error from the name of the part and the reason.
+    /// Creates the error for a part of a scene, given by name, that cannot be stored for a reason.
     pub fn new(part: impl Into<String>, reason: impl Into<String>) -> Self {
         Self { part: part.into(), reason: reason.into() }
     }
 }
 
-/// Reason why a file could not be read or written. Prints as one line that starts with the file.
+/// Reason why a mesh file could not be read or written. Prints as one line that starts with the
+/// path.
 #[derive(Debug, Error)]
 pub enum IoError {
-    /// The operating system reported an error.
+    /// The operating system reported an error, such as a missing file.
     #[error("{}: {source}", path.display())]
     System {
-        /// Path of the file.
+        /// Path of the file that could not be read or written.
         path: PathBuf,
-        /// Error of the operating system.
+        /// Error reported by the operating system.
         source: std::io::Error,
     },
-    /// The contents are invalid.
+    /// The contents of the file are invalid.
     #[error("{}: {source}", path.display())]
     Parse {
-        /// Path of the file.
+        /// Path of the invalid file.
         path: PathBuf,
-        /// Location and reason.
+        /// Location of the error in the file, and the reason.
         source: ParseError,
     },
-    /// The format cannot store the scene.
+    /// The file format cannot store some part of the scene.
     #[error("{}: {source}", path.display())]
     Unsupported {
-        /// Path of the file.
+        /// Path of the file that was to be written.
         path: PathBuf,
-        /// Part that cannot be stored, and why.
+        /// Part of the scene that cannot be stored, and the reason.
         source: Unsupported,
     },
-    /// The suffix is missing or belongs to no known format.
+    /// The file name has no suffix, or one that belongs to no supported format.
     #[error("{}: unknown suffix; supported are {known}", path.display())]
     UnknownFormat {
-        /// Path of the file.
+        /// Path of the file with the missing or unknown suffix.
         path: PathBuf,
-        /// The supported suffixes, separated by spaces.
+        /// Suffixes of all supported formats, separated by spaces.
         known: &'static str,
     },
 }
 
 impl IoError {
-    /// Wraps a system error with the path of the file.
+    /// Creates an error from an operating system error and the path of the file.
     pub fn system(path: &Path, source: std::io::Error) -> Self {
         Self::System { path: path.to_owned(), source }
     }
 
-    /// Wraps a parse error with the path of the file.
+    /// Creates an error from a parse error and the path of the file.
     pub fn parse(path: &Path, source: ParseError) -> Self {
         Self::Parse { path: path.to_owned(), source }
     }
 
-    /// Wraps an [`Unsupported`] with the path of the file.
+    /// Creates an error from an [`Unsupported`] and the path of the file.
     pub fn unsupported(path: &Path, source: Unsupported) -> Self {
         Self::Unsupported { path: path.to_owned(), source }
     }

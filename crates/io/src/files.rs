@@ -1,4 +1,4 @@
-//! Reading and writing by path; the suffix decides on the format.
+//! Reading and writing mesh files by path; the suffix determines the format.
 
 use std::fs;
 use std::io::{self, Write};
@@ -15,38 +15,40 @@ use crate::{
 /// Policy for merging vertices at equal or close positions when a file is read.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Weld {
-    /// Keeps the vertices of the file as they are.
+    /// Keeps the vertices as they are in the file.
     Off,
     /// Merges vertices at bit-identical positions in glTF and STL, which split vertices at seams.
+    ///
     /// Each set of attributes of a merged vertex becomes a wedge. Other formats index their
     /// vertices and are left as they are.
     #[default]
     Exact,
-    /// Merges vertices within this distance, in model units, in every format.
+    /// Merges vertices within this distance of each other, in model units, in every format.
     Within(f64),
 }
 
-/// Options for [`read()`].
+/// Options for reading a mesh file with [`read()`] or [`read_bytes`].
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ReadOptions {
-    /// Which vertices are merged into one.
+    /// Choice of the vertices to merge, such as those at bit-identical positions.
     pub weld: Weld,
 }
 
-/// Options for [`write()`].
+/// Options for writing a mesh file with [`write()`].
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct WriteOptions {
     /// Precision of coordinates in PLY, OBJ, OFF and SMF; STL and glTF always use 32 bits.
     pub precision: Precision,
 }
 
-/// Callback that loads the files a mesh file refers to: buffers, images, material libraries.
+/// Callback that loads the files a mesh file refers to by name: buffers, images, material
+/// libraries.
 ///
 /// It receives the name as the file has it, with `%20` and other escapes decoded, and returns
 /// `None` if there is no such file.
 pub type Resolve<'a> = &'a mut dyn FnMut(&str) -> Option<Vec<u8>>;
 
-/// Reads a mesh file together with the files that it refers to, relative to its folder.
+/// Reads a mesh file and the files that it refers to, such as buffers and images, from its folder.
 ///
 /// # Errors
 /// One line that names the file, the location in it and the reason: an unknown suffix, a missing
@@ -67,7 +69,7 @@ pub fn read(path: &Path, options: &ReadOptions) -> Result<Scene, IoError> {
     Ok(scene)
 }
 
-/// Reads a mesh file from memory; `resolve` loads the files that it refers to.
+/// Parses the contents of a mesh file held in memory; `resolve` loads the files that it refers to.
 ///
 /// # Errors
 /// The location and the reason if the contents are invalid.
@@ -95,7 +97,8 @@ pub fn read_bytes(
     Ok(scene)
 }
 
-/// Writes a scene and, next to it, the files that belong to it (`.bin`, `.mtl`, images).
+/// Writes a scene as a mesh file, with the `.bin`, `.mtl` and image files that belong to it next to
+/// it.
 ///
 /// Each file is written under a temporary name in the same folder and renamed when complete, the
 /// one at `path` last. PLY, STL, OFF and SMF store a single mesh: the result of [`Scene::flatten`].
@@ -116,8 +119,9 @@ pub fn write(path: &Path, scene: &Scene, options: &WriteOptions) -> Result<(), I
     }
 }
 
-/// Writes a scene and coarser levels of its meshes as glTF or GLB, linked by `MSFT_lod`; see
-/// [`gltf::write_glb`].
+/// Writes a scene and its coarser levels of detail as glTF or GLB, linked by `MSFT_lod`.
+///
+/// See [`gltf::write_glb`] for details.
 ///
 /// # Errors
 /// Errors of [`write()`]; also any other suffix, and levels whose number of meshes differs from the
@@ -139,8 +143,10 @@ pub fn write_lods(path: &Path, scene: &Scene, levels: &[gltf::Level]) -> Result<
     }
 }
 
-/// Writes a scene as compressed glTF or GLB and reports the sizes and the error; see
-/// [`gltf::write_compressed_glb`].
+/// Writes a scene as compressed glTF or GLB; returns the compressed sizes and the quantization
+/// error.
+///
+/// See [`gltf::write_compressed_glb`] for details.
 ///
 /// # Errors
 /// Errors of [`write()`]; also any other suffix, and bit counts out of range.

@@ -1,4 +1,4 @@
-//! Merging a scene into one mesh in world space.
+//! Flattening of a scene: all its meshes merged into one, in world space.
 
 use std::borrow::Cow;
 
@@ -8,14 +8,14 @@ use meshlod_mesh::{Attributes, Labels, Layer, LayerKind, Mesh, VertexId, WedgeId
 use crate::Scene;
 use crate::scene::IDENTITY;
 
-/// Occurrence of a mesh in the scene, with its transform to world space.
+/// One appearance of a mesh in a scene, with its transform to world space.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MeshInstance {
-    /// Node that shows the mesh.
+    /// Index of the node that shows the mesh, in [`Scene::nodes`].
     pub node: usize,
     /// Index of the mesh in [`Scene::meshes`].
     pub mesh: usize,
-    /// Column-major 4×4 matrix from mesh space to world space.
+    /// Column-major 4×4 matrix from the mesh's own space to world space.
     pub transform: [[f64; 4]; 4],
 }
 
@@ -33,8 +33,8 @@ impl MeshInstance {
 }
 
 impl Scene {
-    /// Lists the mesh instances of the scene, depth first from the roots. A mesh shown by several
-    /// nodes appears once for each.
+    /// Lists the mesh instances of the scene, depth first from the roots; a mesh shown by several
+    /// nodes is listed once for each.
     pub fn instances(&self) -> Vec<MeshInstance> {
         let mut instances = Vec::new();
         let mut seen = vec![false; self.nodes.len()];
@@ -55,7 +55,7 @@ impl Scene {
         instances
     }
 
-    /// Merges everything that the scene shows into one mesh in world space.
+    /// Merges all meshes that the scene shows into a single mesh in world space.
     ///
     /// Normals are transformed by the inverse transpose and stay unit vectors; a mirroring node
     /// flips winding and tangents. The layers are the union over all meshes, with zeros where a
@@ -82,7 +82,7 @@ impl Scene {
         flat
     }
 
-    /// Flattens the scene like [`Scene::flatten`], moving a single untransformed mesh out uncopied.
+    /// Flattens the scene as [`Scene::flatten`] does, without copying a single untransformed mesh.
     pub fn into_mesh(mut self) -> Mesh {
         let Some(only) = self.only_mesh() else { return self.flatten() };
         let instances = self.instances();

@@ -1,30 +1,30 @@
-//! Supported file formats and their suffixes.
+//! Supported mesh file formats and their suffixes.
 
 use std::path::Path;
 
 use crate::IoError;
 
-/// Mesh file format.
+/// File format of a mesh or scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Format {
-    /// Stanford polygon file (PLY), text or binary.
+    /// Polygon File Format (PLY, the Stanford format), text or binary.
     Ply,
-    /// Wavefront OBJ with its material library.
+    /// Wavefront OBJ with its material library (MTL).
     Obj,
-    /// Stereolithography file (STL), text or binary.
+    /// STL, the format of stereolithography: triangles without shared vertices, text or binary.
     Stl,
     /// Object File Format (OFF), including its COFF and NOFF variants.
     Off,
-    /// Simple Model Format (SMF) of Garland's QSlim.
+    /// Simple Model Format (SMF), the text format of Garland's QSlim.
     Smf,
-    /// glTF 2.0 as JSON, with buffers in separate files or embedded.
+    /// glTF 2.0 as a JSON file, with buffers embedded or in separate files.
     Gltf,
-    /// glTF 2.0 in a single binary file.
+    /// glTF 2.0 as a single binary file.
     Glb,
 }
 
 impl Format {
-    /// All formats with their suffixes.
+    /// All supported formats, each with its file name suffix.
     pub const ALL: [(&str, Self); 7] = [
         ("ply", Self::Ply),
         ("obj", Self::Obj),
@@ -35,13 +35,13 @@ impl Format {
         ("glb", Self::Glb),
     ];
 
-    /// Returns the format of a suffix such as `ply` or `GLB`, ignoring case.
+    /// Returns the format with a file name suffix such as `ply` or `GLB`, ignoring case.
     pub fn of_suffix(suffix: &str) -> Option<Self> {
         let found = Self::ALL.iter().find(|(known, _)| known.eq_ignore_ascii_case(suffix));
         found.map(|&(_, format)| format)
     }
 
-    /// Returns the format that the suffix of a path names.
+    /// Returns the format of a file, determined by the suffix of its path.
     ///
     /// # Errors
     /// [`IoError::UnknownFormat`] if the suffix is missing or unknown.

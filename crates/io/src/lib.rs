@@ -1,4 +1,6 @@
-//! Reads and writes mesh files: bytes in, typed errors out, one module per format.
+//! Reads and writes mesh files: PLY, OBJ, STL, OFF, SMF and glTF.
+//!
+//! Every format has a module of its own that turns bytes into a mesh or scene, or a typed error.
 //!
 //! [`read()`] and [`write()`] choose the format by the file's suffix. The contents of a file are a
 //! [`Scene`], and [`Scene::flatten`] merges it into one mesh. A scene read from glTF keeps its
@@ -42,12 +44,12 @@ pub use meshlod_mesh::{merge_equal_wedges, weld};
 pub use replace::{abandon_files, write_file};
 pub use scene::{Image, Material, Node, Scene, SceneMesh};
 
-/// Floating-point type that coordinates are written with.
+/// Precision of the floating-point coordinates in a written file.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Precision {
     /// 32-bit floats, which most programs read.
     #[default]
     F32,
-    /// 64-bit floats, which keep every coordinate bit for bit.
+    /// 64-bit floats, which keep every coordinate exactly.
     F64,
 }

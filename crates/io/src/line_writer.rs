@@ -1,4 +1,4 @@
-//! Buffered text output: lines of words and numbers.
+//! Buffered output of text formats: lines of words and numbers.
 
 use std::fmt::Write as _;
 use std::io::{self, Write};

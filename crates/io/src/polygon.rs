@@ -1,4 +1,4 @@
-//! Polygon triangulation: always `n - 2` triangles, concave polygons included, with bounded work.
+//! Triangulation of convex and concave polygons, always into `n - 2` triangles, with bounded work.
 
 use std::ops::RangeInclusive;
 

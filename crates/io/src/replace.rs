@@ -1,4 +1,4 @@
-//! Atomic file replacement: write a temporary file in the same folder, then rename it.
+//! Atomic file replacement: a temporary file in the same folder, renamed when complete.
 
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, BufWriter, ErrorKind, Write};
@@ -8,7 +8,8 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use crate::IoError;
 
-/// Writes a file atomically: the old contents of `path` stay until the new ones are complete.
+/// Writes a file atomically: an existing file at `path` is replaced only once the new one is
+/// complete.
 ///
 /// # Errors
 /// Errors of the system, with the path.
@@ -16,7 +17,8 @@ pub fn write_file(path: &Path, bytes: &[u8]) -> Result<(), IoError> {
     replace(path, |out| out.write_all(bytes)).map_err(|error| IoError::system(path, error))
 }
 
-/// Removes the temporary files of this process; for programs about to exit early, as on Ctrl-C.
+/// Deletes the unfinished temporary files of this process, for programs about to exit early, as on
+/// Ctrl-C.
 ///
 /// Threads that are still writing then have no file to finish, so end the process right after.
 pub fn abandon_files() {

@@ -1,23 +1,25 @@
-//! Contents of a file: meshes, the nodes that place them, materials and images.
+//! Scene: the meshes of a file, the nodes that place them, materials and images.
 
 use meshlod_mesh::Mesh;
 
 use crate::gltf::SourceDocument;
 
-/// Contents of a mesh file. Formats without nodes give one mesh under one root.
+/// Contents of a mesh file: meshes, the nodes that place them, materials and images.
+///
+/// Formats without nodes give one mesh under one root.
 #[derive(Clone, Debug, Default)]
 pub struct Scene {
-    /// Meshes, each in its own space.
+    /// Meshes of the scene, each in its own coordinate system.
     pub meshes: Vec<SceneMesh>,
-    /// Nodes, which refer to their children by index. No node has two parents.
+    /// Nodes of the scene graph, which refer to their children by index. No node has two parents.
     pub nodes: Vec<Node>,
-    /// Root nodes that the scene shows.
+    /// Indices of the root nodes that the scene shows, into [`Scene::nodes`].
     pub roots: Vec<usize>,
-    /// Materials of all meshes.
+    /// Materials used by the meshes of the scene.
     pub materials: Vec<Material>,
-    /// Images of the materials, still encoded.
+    /// Images used by the materials, still encoded as PNG, JPEG and the like.
     pub images: Vec<Image>,
-    /// glTF document that the scene was read from, if any.
+    /// glTF document that the scene was read from; `None` for other formats.
     ///
     /// A scene with a source is written to glTF as that document with its geometry replaced by
     /// [`Scene::meshes`]; changes to the other fields are ignored. Set this to `None` to write the
@@ -25,46 +27,49 @@ pub struct Scene {
     pub source: Option<SourceDocument>,
 }
 
-/// Mesh of a scene with its name and materials.
+/// Mesh of a scene, with its name and the materials of its faces.
 #[derive(Clone, Debug, Default)]
 pub struct SceneMesh {
-    /// Name in the file, or "".
+    /// Name of the mesh in the file; empty if it has none.
     pub name: String,
-    /// Geometry. From glTF, the `materials` labels are the primitives, in the order of the file.
+    /// Geometry of the mesh. In a mesh read from glTF, each `materials` label is a primitive, in
+    /// the order of the file.
     pub mesh: Mesh,
-    /// Index into `Scene::materials` for each label of `mesh.materials`; a mesh without labels has
-    /// one entry for all its faces.
+    /// Material of each label of `mesh.materials`, by index into [`Scene::materials`].
+    ///
+    /// A mesh without labels has one entry for all its faces.
     pub materials: Vec<Option<usize>>,
 }
 
-/// Node of the scene graph.
+/// Node of the scene graph, which places a mesh or other nodes by a transform.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Node {
-    /// Name in the file, or "".
+    /// Name of the node in the file; empty if it has none.
     pub name: String,
-    /// Column-major 4×4 matrix from this node's space to its parent's.
+    /// Column-major 4×4 matrix from this node's coordinate system to its parent's.
     pub transform: [[f64; 4]; 4],
-    /// Mesh that the node shows, by index into `Scene::meshes`.
+    /// Mesh that the node shows, by index into [`Scene::meshes`]; `None` if it has no mesh.
     pub mesh: Option<usize>,
-    /// Child nodes, by index into `Scene::nodes`.
+    /// Child nodes, by index into [`Scene::nodes`].
     pub children: Vec<usize>,
 }
 
-/// Base colour of a material; other properties are kept only in the glTF source.
+/// Material of a scene, reduced to its base colour; other properties are kept only in the glTF
+/// source.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Material {
-    /// Name in the file, or "".
+    /// Name of the material in the file; empty if it has none.
     pub name: String,
-    /// Base colour, linear RGBA.
+    /// Base colour of the material, linear RGBA.
     pub base_color: [f32; 4],
-    /// Image that multiplies the base colour, by index into `Scene::images`.
+    /// Texture that multiplies the base colour, by index into [`Scene::images`].
     pub base_color_image: Option<usize>,
 }
 
-/// Encoded image.
+/// Image of a scene, still encoded as PNG, JPEG and the like.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Image {
-    /// File name, or the name that the document gives the image.
+    /// File name of the image, or the name that the glTF document gives it.
     pub name: String,
     /// Encoded bytes, usually PNG or JPEG; empty if the image file was not found.
     pub bytes: Vec<u8>,
@@ -87,8 +92,8 @@ impl Default for Material {
 }
 
 impl Scene {
-    /// Wraps a mesh in a scene: one unnamed root shows it under `name`, and each of its material
-    /// labels becomes a white material.
+    /// Creates a scene with a single mesh called `name` under one unnamed root; each material label
+    /// of the mesh becomes a white material.
     pub fn from_mesh(name: impl Into<String>, mesh: Mesh) -> Self {
         let labels = mesh.materials.as_ref().map_or(&[][..], |labels| &labels.names);
         let materials: Vec<Material> = labels

@@ -1,4 +1,5 @@
-//! Cursor for text formats: one pass over the bytes, line by line, numbers parsed in place.
+//! Cursor for parsing text formats line by line in one pass over the bytes, with numbers parsed in
+//! place.
 
 use crate::ParseError;
 

@@ -1,4 +1,4 @@
-//! Attributes for formats with one set of them per vertex.
+//! Attributes for formats that store one set of them per vertex.
 
 use meshlod_mesh::{Attributes, Layer, LayerKind, Mesh, VertexId, WedgeId};
 

@@ -1,4 +1,4 @@
-//! Accessors: reading the typed arrays of a document from its buffers.
+//! Reading glTF accessors: typed arrays in the buffers of a document.
 
 use std::borrow::Cow;
 
@@ -34,7 +34,7 @@ pub(super) struct Values {
 }
 
 impl Values {
-    /// Returns the number of elements.
+    /// Returns the number of elements of the accessor.
     pub fn count(&self) -> usize {
         self.values.len() / self.width
     }
@@ -54,7 +54,7 @@ impl Document<'_> {
         }
     }
 
-    /// Reads an accessor of indices, each below `limit`.
+    /// Reads an accessor of vertex indices, each of which must be below `limit`.
     pub fn indices(&self, index: usize, limit: usize) -> Result<Vec<u32>, ParseError> {
         let PackedElements { accessor, width, bytes } = self.packed(index)?;
         let kind = accessor.component_type;

@@ -1,4 +1,4 @@
-//! Builder for the accessors, buffer views and single buffer of a document being written.
+//! Builder of the accessors, buffer views and single buffer of a glTF document being written.
 
 use std::ops::Range;
 
@@ -65,12 +65,13 @@ pub(super) struct BufferBuilder {
 }
 
 impl BufferBuilder {
-    /// Compresses all arrays added from now on.
+    /// Turns on meshopt compression for all arrays added from now on.
     pub fn compress(&mut self) {
         self.fallback_size = Some(0);
     }
 
-    /// Starts from a document that was read, freeing `free_accessors` and the views only they use.
+    /// Creates a builder from an existing document, without the accessors flagged in
+    /// `free_accessors` and the buffer views that only they use.
     pub fn of(document: &Document<'_>, free_accessors: &[bool]) -> Self {
         let array = |key| document.json.get(key).and_then(Value::as_array).cloned();
         let mut builder = Self {
@@ -93,7 +94,8 @@ impl BufferBuilder {
         self.fallback_size.is_some_and(|length| length > 0)
     }
 
-    /// Adds an accessor with its buffer view and returns its index.
+    /// Adds an array as an accessor with its own buffer view, and returns the index of the
+    /// accessor.
     pub fn add(&mut self, blob: Blob) -> usize {
         // Core glTF already allows normalised unsigned integers for colours and texture coordinates
         // and unsigned ones for joints; positions are never normalised.
@@ -136,7 +138,7 @@ impl BufferBuilder {
         insert(&mut self.views, &mut self.free_views, view.into())
     }
 
-    /// Puts accessors, views and the description of the buffer into the document; returns the
+    /// Enters the accessors, buffer views and buffer length in the JSON document, and returns the
     /// contents of the buffer.
     pub fn finish(mut self, json: &mut Map<String, Value>) -> Vec<u8> {
         drop_last(&mut self.accessors, &mut self.free_accessors);

@@ -10,22 +10,26 @@ use super::primitives::is_surface;
 use super::schema::parse_target_name;
 use crate::{Scene, Unsupported};
 
-/// Options for compressed geometry: quantization [Kap20] and, optionally, meshopt streams [KS21].
+/// Options for compressing the geometry of a glTF file: quantization [Kap20] and, optionally,
+/// meshopt streams [KS21].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Compression {
-    /// Bits for the longest side of a mesh, 1 to 16; all axes and primitives share one grid.
+    /// Bits per vertex coordinate along the longest side of a mesh, 1 to 16.
+    ///
+    /// All axes and primitives of the mesh share one grid.
     pub position_bits: u32,
     /// Bits per component of normals and tangents, 2 to 16; up to 8 are stored in one byte.
     pub normal_bits: u32,
     /// Bits per texture coordinate in [0, 1], 1 to 16; up to 8 are stored in one byte.
     pub uv_bits: u32,
-    /// True to also compress the buffer views; otherwise a GPU can use them straight from the file.
+    /// If true, geometry is also compressed with meshopt; if not, a GPU can use it straight from
+    /// the file.
     pub meshopt: bool,
 }
 
 impl Default for Compression {
-    /// Settings that are rarely told from the original: 14 bits for positions, 8 for normals and 12
-    /// for texture coordinates, with meshopt compression.
+    /// Returns settings whose result can rarely be told from the original: 14 bits for positions, 8
+    /// for normals and 12 for texture coordinates, with meshopt compression.
     fn default() -> Self {
         Self { position_bits: 14, normal_bits: 8, uv_bits: 12, meshopt: true }
     }
@@ -46,27 +50,27 @@ impl Compression {
     }
 }
 
-/// Size of arrays in GPU memory and in the file.
+/// Size in bytes of part of the compressed geometry, in GPU memory and in the file.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Bytes {
-    /// Bytes after quantization.
+    /// Bytes in GPU memory: after quantization, decompressed.
     pub resident: usize,
-    /// Bytes in the file, after meshopt compression if enabled.
+    /// Bytes in the file: after quantization and, if enabled, meshopt compression.
     pub stored: usize,
 }
 
-/// Sizes and error of a compressed file.
+/// Sizes and quantization error of a compressed glTF file.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct CompressionReport {
-    /// Size of the positions.
+    /// Size of all vertex positions.
     pub positions: Bytes,
-    /// Size of the indices.
+    /// Size of all vertex indices of the triangles.
     pub connectivity: Bytes,
-    /// Size of all other vertex data.
+    /// Size of all other vertex data: normals, texture coordinates, colours and so on.
     pub attributes: Bytes,
-    /// Largest distance that a vertex moved, in the units of its own mesh.
+    /// Largest distance by which quantization moved a vertex, in the units of its own mesh.
     pub max_position_error: f64,
-    /// One line for each mesh whose positions stay floats, with the reason: `mesh 2: …`.
+    /// Meshes whose positions were not quantized, one line each with the reason: `mesh 2: …`.
     pub kept: Vec<String>,
 }
 
@@ -97,7 +101,7 @@ impl QuantizationGrid {
         sound.then_some(Self { origin, cell, most })
     }
 
-    /// Returns the cell nearest to a point.
+    /// Returns the grid cell nearest to a point, as an index per axis.
     pub fn quantized(&self, point: [f64; 3]) -> [u16; 3] {
         let most = f64::from(self.most);
         std::array::from_fn(|axis| {
@@ -105,7 +109,7 @@ impl QuantizationGrid {
         })
     }
 
-    /// Returns the point that a cell stands for.
+    /// Returns the point that a grid cell stands for, in model units.
     pub fn place(&self, cell: [u16; 3]) -> [f64; 3] {
         std::array::from_fn(|axis| self.origin[axis] + f64::from(cell[axis]) * self.cell)
     }

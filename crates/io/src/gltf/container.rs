@@ -1,4 +1,4 @@
-//! GLB container: JSON and a binary chunk in one file.
+//! GLB container: a JSON chunk and a binary chunk in one file.
 
 use crate::{ParseError, Unsupported};
 

@@ -1,5 +1,7 @@
-//! Decompression of buffer views with `EXT_meshopt_compression` or `KHR_meshopt_compression`, done
-//! on reading: to the rest of the reader, the document was never compressed.
+//! Decompression of buffer views compressed with `EXT_meshopt_compression` or
+//! `KHR_meshopt_compression`.
+//!
+//! It is done on reading: to the rest of the reader, the document was never compressed.
 
 use serde::Deserialize;
 use serde_json::{Value, json};

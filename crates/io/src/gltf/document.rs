@@ -1,4 +1,4 @@
-//! Checked access to a glTF document: JSON, buffers and arrays.
+//! Checked access to a glTF document: its JSON, buffers and accessors.
 
 use std::cell::Cell;
 
@@ -41,7 +41,7 @@ pub(super) struct Document<'a> {
 }
 
 impl<'a> Document<'a> {
-    /// Parses the entries that geometry needs.
+    /// Parses the accessors, buffer views and meshes of a document and checks them.
     pub fn new(json: &'a Value, buffers: &'a Buffers) -> Result<Self, ParseError> {
         let Buffers { bytes: buffers, stored } = buffers;
         let views: Vec<BufferView> = schema::array(json, "bufferViews", "bufferView")?;
@@ -68,7 +68,7 @@ impl<'a> Document<'a> {
         Ok(Self { json, buffers, accessors, views, meshes, budget })
     }
 
-    /// Returns a buffer view and its bytes.
+    /// Returns a buffer view by index, with its bytes.
     pub fn view(&self, index: usize) -> Result<(&BufferView, &'a [u8]), ParseError> {
         let Some(view) = self.views.get(index) else {
             return Err(missing("bufferView", index, self.views.len()));
@@ -76,8 +76,8 @@ impl<'a> Document<'a> {
         Ok((view, &self.buffers[view.buffer][view.byte_offset..][..view.byte_length]))
     }
 
-    /// Charges `values` numbers about to be read against the budget, so that a small file cannot
-    /// exhaust the memory.
+    /// Counts `values` numbers about to be read towards a limit that grows with the file size, so
+    /// that a small file cannot exhaust memory.
     pub fn spend(&self, part: &str, values: usize) -> Result<(), ParseError> {
         let left = self.budget.get().checked_sub(values as u64).ok_or_else(|| {
             let reason = format!("{values} values here are far more than the file has data for");

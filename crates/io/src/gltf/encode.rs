@@ -1,4 +1,4 @@
-//! Vertex and index arrays of a primitive.
+//! Encoding of a primitive's vertices and indices as glTF arrays.
 
 use meshlod_mesh::{Layer, LayerKind, Mesh, WedgeId};
 

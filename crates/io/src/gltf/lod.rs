@@ -1,4 +1,4 @@
-//! Levels of detail, linked by the extension `MSFT_lod`.
+//! Levels of detail in glTF, linked by the extension `MSFT_lod`.
 
 use std::collections::BTreeSet;
 
@@ -10,12 +10,14 @@ use super::nodes::{self, MSFT_LOD};
 use super::primitives::Replacer;
 use crate::Unsupported;
 
-/// Coarser level of a whole scene.
+/// Coarser level of detail of a whole scene, to be written to a glTF file.
 #[derive(Clone, Debug)]
 pub struct Level {
-    /// One mesh for each mesh of the scene, in the same order and with the same material labels.
+    /// Simplified version of each mesh of the scene, in the same order and with the same material
+    /// labels.
     pub meshes: Vec<Mesh>,
-    /// Screen coverage in [0, 1] below which this level is shown, until the next one takes over.
+    /// Fraction of the screen that the object covers, 0 to 1, below which this level is shown
+    /// instead of the finer one.
     pub screen_coverage: f64,
 }
 

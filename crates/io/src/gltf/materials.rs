@@ -1,4 +1,4 @@
-//! Base colours and images of a document.
+//! Reading the base colours and images of a glTF document.
 
 use serde_json::Value;
 

@@ -1,4 +1,4 @@
-//! Reading a mesh of a document: its primitives merged into one surface.
+//! Reading a glTF mesh: its primitives merged into one surface.
 
 use meshlod_mesh::{Attributes, Labels, Layer, LayerKind, Mesh, VertexId, WedgeId, weld};
 use rustc_hash::FxHashMap;

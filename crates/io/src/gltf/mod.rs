@@ -1,4 +1,4 @@
-//! glTF 2.0 and GLB; everything else in a document is carried through.
+//! glTF 2.0 and GLB. Parts of a document other than geometry are passed through unchanged.
 
 mod accessor;
 mod buffer_builder;

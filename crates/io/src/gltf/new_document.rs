@@ -1,4 +1,4 @@
-//! New documents, for scenes that were not read from glTF.
+//! New glTF documents, for scenes that were read from another format.
 
 use serde_json::{Map, Value, json};
 

@@ -1,4 +1,4 @@
-//! Nodes of a document: checking that they form trees, and their transforms.
+//! Nodes of a glTF document: their transforms, and the check that they form trees.
 
 use glam::{DMat4, DQuat, DVec3};
 use serde_json::Value;

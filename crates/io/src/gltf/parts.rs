@@ -1,4 +1,5 @@
-//! Meshes split into parts with 8-bit positions, each shown by a node that scales it back.
+//! glTF files of a mesh split into parts with 8-bit positions; each part has a node that scales it
+//! back to model space.
 
 use serde_json::{Value, json};
 
@@ -6,20 +7,22 @@ use super::accessor::component;
 use super::container;
 use crate::Unsupported;
 
-/// Part of a mesh, quantized to its own grid of 256 cells per axis.
+/// Part of a mesh whose positions are quantized to 8 bits, on a grid of 256 cells per axis of its
+/// own.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct QuantizedPart {
-    /// Rows of the 3×4 matrix that maps cells to model space. As glTF requires of nodes, it is made
-    /// of scale, rotation and translation, without shear.
+    /// Rows of the 3×4 matrix that maps grid cells to model space.
+    ///
+    /// As glTF requires of nodes, it is made of scale, rotation and translation, without shear.
     pub matrix: [[f32; 4]; 3],
-    /// Grid cells of the vertices.
+    /// Grid cell of each vertex, as an index per axis.
     pub positions: Vec<[u8; 3]>,
-    /// Faces, by index into `positions`.
+    /// Triangles, as indices into `positions`.
     pub faces: Vec<[u32; 3]>,
 }
 
-/// Writes parts as GLB with `KHR_mesh_quantization`: one mesh with one primitive, and one node,
-/// each.
+/// Writes mesh parts as a GLB file with `KHR_mesh_quantization`, each as a node and a mesh with one
+/// primitive.
 ///
 /// A position takes four bytes; an index takes two, or four if a part has more than 65535 vertices.
 /// Parts without faces are left out. The matrices are applied in 32 bits, so vertices of two parts

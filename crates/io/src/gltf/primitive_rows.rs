@@ -1,4 +1,4 @@
-//! Mapping from the vertices of a mesh back to the accessors of the document.
+//! Mapping from the vertices of a mesh back to the elements of the glTF accessors they came from.
 
 use std::ops::Range;
 
@@ -7,19 +7,22 @@ use serde_json::Value;
 use super::primitives::is_surface;
 use super::read::SourceDocument;
 
-/// Vertices of a primitive and the POSITION accessor that they were read from.
+/// Vertices of a glTF primitive, and the POSITION accessor that they were read from.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct PrimitiveRows {
-    /// POSITION accessor of the primitive.
+    /// Index of the primitive's POSITION accessor in the document.
     pub accessor: usize,
-    /// Vertices of the mesh that are the elements of the accessor, in order.
+    /// Range of the mesh's vertices that were read from the accessor, in the order of its elements.
     pub vertices: Range<usize>,
 }
 
 impl SourceDocument {
-    /// Returns the vertices of each primitive of a mesh, numbered as with
-    /// [`Weld::Off`](crate::Weld::Off): the elements of the POSITION accessors one after the other,
-    /// each accessor once. `None` for points and lines; empty if there is no such mesh.
+    /// Returns, for each primitive of a glTF mesh, its vertices and their POSITION accessor; `None`
+    /// for points and lines.
+    ///
+    /// Vertices are numbered as with [`Weld::Off`](crate::Weld::Off): the elements of the POSITION
+    /// accessors one after the other, each accessor once. The list is empty if there is no such
+    /// mesh.
     pub fn primitive_rows(&self, mesh: usize) -> Vec<Option<PrimitiveRows>> {
         let json = &self.0.json;
         let primitives =

@@ -1,4 +1,4 @@
-//! Replacing the geometry in the JSON of a mesh.
+//! Replacement of the geometry in the JSON of a glTF mesh.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -29,7 +29,7 @@ impl<'a> Replacer<'a> {
         Self { document, builder, compression: None, position_error: 0.0 }
     }
 
-    /// Replaces the triangle primitives in the JSON of a mesh with the faces of `mesh`.
+    /// Replaces the triangle primitives in the JSON of a glTF mesh with the faces of `mesh`.
     ///
     /// Primitives keep everything but their arrays. Each gets the attributes that it had, and those
     /// that no primitive had. A primitive left without faces is dropped; a mesh left without faces
@@ -81,14 +81,14 @@ impl<'a> Replacer<'a> {
         Ok(())
     }
 
-    /// Returns the sizes and the error of the compressed arrays.
+    /// Returns the sizes of the compressed arrays and the quantization error.
     pub fn report(&self, kept: Vec<String>) -> CompressionReport {
         let [positions, connectivity, attributes] = self.builder.added;
         let max_position_error = self.position_error;
         CompressionReport { positions, connectivity, attributes, max_position_error, kept }
     }
 
-    /// Lists the extensions that the arrays need in the document.
+    /// Declares the extensions that the new arrays require in the JSON document.
     pub fn list_extensions(&self, json: &mut Value) {
         let needed = [
             ("KHR_mesh_quantization", self.builder.is_quantized()),

@@ -1,4 +1,5 @@
-//! Positions and attributes as integers, in the types that `KHR_mesh_quantization` allows.
+//! Quantization of positions and attributes to the integer types that `KHR_mesh_quantization`
+//! allows.
 
 use meshlod_mesh::LayerKind;
 

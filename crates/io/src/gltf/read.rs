@@ -1,4 +1,4 @@
-//! Reading glTF and GLB.
+//! Reading glTF and GLB files.
 
 use std::sync::Arc;
 
@@ -8,7 +8,8 @@ use super::document::{self, Buffers, Document};
 use super::{container, decompress, materials, mesh, nodes};
 use crate::{ParseError, Resolve, Scene, SceneMesh, Weld};
 
-/// glTF document that a scene was read from; on writing, everything but geometry is copied from it.
+/// glTF document that a scene was read from; when the scene is written, all but the geometry is
+/// copied from it.
 ///
 /// Cloning is cheap.
 #[derive(Clone, Debug)]
@@ -22,8 +23,8 @@ pub(super) struct Contents {
     pub weld: Weld,
 }
 
-/// Reads glTF or GLB, detected from the bytes; `resolve` loads the buffers and images that the
-/// document refers to.
+/// Parses a glTF or GLB file, told apart by the first bytes; `resolve` loads the buffers and images
+/// that it refers to.
 ///
 /// Every mesh of the document becomes a mesh of the scene. Its material labels are the primitives
 /// in order, and `SceneMesh::materials` holds their materials. Attributes become layers named as in

@@ -1,4 +1,4 @@
-//! Typed view of the entries of a glTF document that geometry needs.
+//! Typed view of the parts of a glTF document that define its geometry.
 //!
 //! The document itself is kept as JSON, so that everything else is carried through.
 
@@ -91,13 +91,14 @@ impl Primitive {
         4
     }
 
-    /// Reports whether it is a surface (triangles, a strip or a fan) rather than points or lines.
+    /// Reports whether the primitive consists of triangles, a strip or a fan, not of points or
+    /// lines.
     pub fn has_faces(&self) -> bool {
         matches!(self.mode, 4..=6)
     }
 
-    /// Lists the attributes with their accessors, then those of the morph targets under their
-    /// [`target_name`].
+    /// Lists the attributes with the indices of their accessors, then those of the morph targets
+    /// under their [`target_name`].
     ///
     /// # Errors
     /// If the value of an attribute is not an accessor index.

@@ -1,4 +1,4 @@
-//! URIs of buffers and images: embedded data or a file name.
+//! URIs of glTF buffers and images: embedded data or a file name.
 
 use base64::Engine;
 use base64::alphabet::STANDARD;

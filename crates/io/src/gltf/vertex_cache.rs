@@ -1,5 +1,7 @@
-//! Vertex cache order: triangles that follow their neighbours, vertices in the order of first use.
-//! Helps GPU caches and index codecs alike.
+//! Reordering for the GPU's vertex cache: neighbouring triangles in sequence, vertices in the order
+//! of first use.
+//!
+//! This order also helps index codecs.
 
 /// Number of recently used vertices that are scored. The index codec remembers 16 edges and 16
 /// vertices.

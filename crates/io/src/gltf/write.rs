@@ -1,4 +1,4 @@
-//! Writing glTF and GLB: the document that the scene was read from, with its geometry replaced.
+//! Writing glTF and GLB: the document that a scene was read from, with its geometry replaced.
 
 use meshlod_mesh::Mesh;
 use serde_json::{Map, Value};
@@ -13,18 +13,19 @@ use super::uri::{self, Uri};
 use super::{container, dequantize_nodes, mesh, new_document};
 use crate::{Image, Scene, Unsupported};
 
-/// Contents of a `.gltf` file and of the files that belong to it.
+/// Contents of a `.gltf` file and of the buffer and image files that belong to it.
 #[derive(Clone, Debug)]
 pub struct GltfFiles {
-    /// JSON document.
+    /// JSON text of the `.gltf` file.
     pub document: Vec<u8>,
-    /// File name and contents of the buffer, if there is one.
+    /// File name and contents of the binary buffer, if there is one.
     pub buffer: Option<(String, Vec<u8>)>,
-    /// Images that the document refers to as files, under those names.
+    /// Image files that the document refers to, by the names it uses.
     pub images: Vec<Image>,
 }
 
-/// Writes a scene as a single GLB file; `levels`, which may be empty, are its coarser levels.
+/// Encodes a scene as a single GLB file; `levels`, which may be empty, are its coarser levels of
+/// detail.
 ///
 /// A scene read from glTF is written as that document. Nodes, materials, animations, extras,
 /// extensions and everything else pass through. An unchanged mesh keeps its arrays bit for bit; a
@@ -45,7 +46,8 @@ pub fn write_glb(scene: &Scene, levels: &[Level]) -> Result<Vec<u8>, Unsupported
     Output::of(scene, levels, None)?.into_glb(scene)
 }
 
-/// Writes a scene as compressed GLB, and reports the sizes and the error.
+/// Encodes a scene as a compressed GLB file, and returns the compressed sizes and the quantization
+/// error.
 ///
 /// Positions are quantized to a uniform grid per mesh, shared by its levels, with equal cells on
 /// all axes. A vertex moves by at most half a cell per axis, and primitives that met still meet.
@@ -73,8 +75,9 @@ pub fn write_compressed_glb(
     Ok((output.into_glb(scene)?, report))
 }
 
-/// Writes a scene as a `.gltf` file of the given stem, with its buffer as `stem.bin`. Images that
-/// were files stay files. See [`write_glb`].
+/// Encodes a scene as a `.gltf` file named `stem.gltf` and its buffer `stem.bin`.
+///
+/// Images that were files stay files. See [`write_glb`].
 ///
 /// # Errors
 /// Errors of [`write_glb`], except for the size.
@@ -82,8 +85,9 @@ pub fn write(scene: &Scene, levels: &[Level], stem: &str) -> Result<GltfFiles, U
     Output::of(scene, levels, None)?.into_files(scene, stem)
 }
 
-/// Writes a scene as compressed `.gltf`: like [`write()`], compressed as by
-/// [`write_compressed_glb`].
+/// Encodes a scene as a compressed `.gltf` file and the files that belong to it.
+///
+/// Files are laid out as by [`write()`] and compressed as by [`write_compressed_glb`].
 ///
 /// # Errors
 /// Errors of [`write_compressed_glb`], except for the size.

@@ -1,4 +1,5 @@
-//! Mode 0: elements of any kind, stored byte by byte as differences from the element before.
+//! Meshopt mode 0: elements of any type, stored byte by byte as differences from the element
+//! before.
 //!
 //! Up to 256 elements form a block. Each byte position of the element has its own plane of
 //! differences in a block, in groups of 16 that each use as many bits as they need.
@@ -191,7 +192,8 @@ fn apply_difference(last: [u8; 4], difference: [u8; 4], channel: Channel) -> [u8
     }
 }
 
-/// Encodes elements of `stride` bytes (4, 8 … 256) as a version 0 stream.
+/// Compresses vertex elements of `stride` bytes each (a multiple of 4 up to 256) as a version 0
+/// meshopt stream.
 ///
 /// Bytes after the last whole element are dropped. The stream takes at most one byte for the
 /// header, 9 for each 8 of the elements rounded up to 16, and 256 for the tail. Cost: O(bytes).

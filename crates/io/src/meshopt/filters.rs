@@ -1,4 +1,4 @@
-//! Filters: transforms applied after decoding a stream, and their inverses for encoding.
+//! Meshopt filters: transforms applied after a stream is decoded, and their inverses for encoding.
 
 use super::Filter;
 
@@ -82,7 +82,8 @@ fn color([y, co, cg, alpha]: [i32; 4], greatest: f32) -> [i32; 4] {
     rgba.map(|c| (c as f32 * (greatest / all as f32)).round() as i32)
 }
 
-/// Encodes unit vectors for [`Filter::Octahedral`], with `bits` per coordinate.
+/// Encodes unit vectors in octahedral form with `bits` bits per coordinate, as
+/// [`Filter::Octahedral`] decodes them.
 ///
 /// The fourth component of each (-1, 0 or 1) is kept. Elements have 4 bytes for up to 8 bits, else
 /// 8. Vectors without a direction (zero, not finite) become +z.
@@ -113,8 +114,8 @@ pub fn encode_octahedral(directions: &[[f32; 4]], bits: u32) -> Vec<u8> {
     }
 }
 
-/// Encodes floats for [`Filter::Exponential`] as multiples of `step`, rounded down to a power of
-/// two.
+/// Quantizes floats to multiples of `step`, rounded down to a power of two, as
+/// [`Filter::Exponential`] decodes them.
 ///
 /// The error is at most half a step, and larger only if a value exceeds 2^23 steps. Returns `None`
 /// if a float is not finite or the step cannot be represented.

@@ -1,4 +1,4 @@
-//! Mode 2: indices of any kind, as differences from one of two earlier ones.
+//! Meshopt mode 2: any sequence of indices, as differences from one of two earlier ones.
 
 use super::stream::{Malformed, Stream, unzigzag};
 

@@ -1,5 +1,5 @@
-//! Codecs of `EXT_meshopt_compression` and `KHR_meshopt_compression`, written from their
-//! specifications.
+//! Codecs of the glTF extensions `EXT_meshopt_compression` and `KHR_meshopt_compression`, written
+//! from their specifications.
 //!
 //! A stream holds `count` elements of `stride` bytes. Count, stride, mode and filter are not part
 //! of it but given separately, as a [`Layout`]. [`decode`] accepts arbitrary bytes: errors come
@@ -32,48 +32,48 @@ pub use filters::{encode_exponential, encode_octahedral};
 pub use stream::Malformed;
 pub use triangles::encode as encode_triangles;
 
-/// Encoding of the elements in a stream.
+/// Meshopt compression mode: the type of data in a compressed stream.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Mode {
-    /// Elements of any kind, as bytewise differences; versions 0 and 1.
+    /// Vertex attributes or other elements of any type, as bytewise differences; versions 0 and 1.
     Attributes,
-    /// Indices of a triangle list.
+    /// Vertex indices of a triangle list.
     Triangles,
-    /// Indices of any other kind.
+    /// Any other sequence of indices.
     Indices,
 }
 
-/// Transform applied to decoded elements of [`Mode::Attributes`].
+/// Transform applied to the elements of a [`Mode::Attributes`] stream after decoding.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Filter {
-    /// No transform.
+    /// Elements are left as decoded.
     #[default]
     None,
-    /// Unit vectors in octahedral encoding.
+    /// Unit vectors stored in octahedral encoding.
     Octahedral,
-    /// Unit quaternions from their three smaller components.
+    /// Unit quaternions stored as their three smaller components.
     Quaternion,
-    /// Floats from 24-bit mantissas and 8-bit exponents.
+    /// Floats stored as 24-bit mantissas and 8-bit exponents.
     Exponential,
-    /// Colours from YCoCg (KHR only).
+    /// Colours stored as YCoCg; only in `KHR_meshopt_compression`.
     Color,
 }
 
-/// Format and size of the elements in a stream.
+/// Type, number and size of the elements in a meshopt stream.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Layout {
-    /// Encoding of the elements.
+    /// Compression mode of the stream.
     pub mode: Mode,
-    /// Filter applied after decoding.
+    /// Filter applied to the elements after decoding.
     pub filter: Filter,
-    /// Number of elements.
+    /// Number of elements in the stream.
     pub count: usize,
-    /// Bytes per element.
+    /// Size of a decoded element, in bytes.
     pub stride: usize,
 }
 
 impl Layout {
-    /// Checks that mode, filter, count and stride are compatible.
+    /// Checks that compression mode, filter, element count and stride are compatible.
     ///
     /// # Errors
     /// The rule of the specification that is violated.
@@ -109,7 +109,7 @@ impl Layout {
     }
 }
 
-/// Decodes a stream to `count` contiguous elements of `stride` bytes, little-endian.
+/// Decompresses a meshopt stream to the contiguous little-endian elements that `layout` describes.
 ///
 /// Cost: O(bytes out).
 /// # Errors

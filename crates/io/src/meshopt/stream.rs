@@ -1,12 +1,12 @@
-//! Cursor over a compressed stream, from the front up to its tail.
+//! Cursor over a meshopt stream, from the front up to its tail.
 
 use thiserror::Error;
 
-/// Error in a compressed stream.
+/// Error in a compressed meshopt stream.
 #[derive(Clone, Debug, Error, PartialEq, Eq)]
 #[error("byte {at}: {reason}")]
 pub struct Malformed {
-    /// Byte offset in the stream.
+    /// Byte offset of the error in the stream.
     pub at: usize,
     /// Description of the error.
     pub reason: String,

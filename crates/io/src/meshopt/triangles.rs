@@ -1,4 +1,5 @@
-//! Mode 1: triangle lists, mostly one byte per triangle, which refers to a recent edge and vertex.
+//! Meshopt mode 1: triangle lists, mostly one byte per triangle, which refers to a recent edge and
+//! vertex.
 
 use super::stream::{Malformed, Stream, push_varint, unzigzag, zigzag};
 
@@ -179,7 +180,8 @@ enum TriangleCode {
     Alone { pair: u8, first_is_next: bool },
 }
 
-/// Encodes a triangle list. Decoding keeps the order of the triangles but may rotate their corners.
+/// Compresses a triangle list as a meshopt stream. Triangles keep their order, but their corners
+/// may be rotated.
 ///
 /// Compact if triangles follow their neighbours and vertices are numbered by first use: about one
 /// byte per triangle, at most 17. Cost: O(n).

@@ -1,4 +1,4 @@
-//! Labels that hold from a statement on, as `usemtl`, `g` and `o` set them.
+//! Material, group and object names of an OBJ file, each valid until the next `usemtl`, `g` or `o`.
 
 use std::collections::HashMap;
 

@@ -1,4 +1,4 @@
-//! Wavefront OBJ with its material library.
+//! Wavefront OBJ files with their material libraries.
 //!
 //! Topology comes from the `v` index of each corner, so a texture seam does not split the surface;
 //! the `vt` and `vn` values there become wedges. `o` and `g` become objects, `usemtl` materials.

@@ -1,4 +1,4 @@
-//! Material libraries: diffuse colour, opacity and colour texture; everything else is ignored.
+//! MTL material libraries: diffuse colour, opacity and colour texture; everything else is ignored.
 
 use std::collections::{HashMap, HashSet};
 use std::io::{self, Write};
@@ -186,7 +186,8 @@ pub(super) fn materials(
     resolved
 }
 
-/// Writes the materials of a scene under the names that [`write`](super::write()) uses.
+/// Writes the materials of a scene as an MTL file, under the names that the OBJ writer
+/// [`write`](super::write()) uses.
 ///
 /// # Errors
 /// Errors of `out`.

@@ -1,4 +1,4 @@
-//! Reading OBJ in one pass over the bytes.
+//! Reading OBJ files in one pass over the bytes.
 
 use std::num::NonZeroU32;
 
@@ -11,8 +11,8 @@ use crate::polygon::triangulate;
 use crate::text_cursor::{TextCursor, quoted};
 use crate::{Node, ParseError, Scene, SceneMesh};
 
-/// Reads an OBJ file as one mesh under one node; `resolve` loads the files that `mtllib` and
-/// `map_Kd` refer to, or returns `None` if there is no such file.
+/// Parses an OBJ file as one mesh under one node; `resolve` loads the material library and the
+/// textures, or returns `None` if there is no such file.
 ///
 /// Polygons are triangulated. A `v` gives three coordinates and, if present, a colour; a `vt` gives
 /// two coordinates. Values of `vt`, `vn` and colours that are not finite become 0, as do those of

@@ -1,4 +1,4 @@
-//! Writing OBJ: one pool each of positions, uvs and normals.
+//! Writing OBJ files, with one list each of positions, texture coordinates and normals.
 
 use std::collections::HashMap;
 use std::io::{self, Write};
@@ -9,8 +9,8 @@ use super::mtl::{names, one_line};
 use crate::line_writer::LineWriter;
 use crate::{Precision, Scene};
 
-/// Writes everything that a scene shows, in world space, as one OBJ; `mtl_name` is the file name of
-/// the library that [`write_mtl`](super::write_mtl) writes.
+/// Writes all meshes that a scene shows, in world space, as one OBJ file; `mtl_name` is the file
+/// name of the material library that [`write_mtl`](super::write_mtl) writes.
 ///
 /// Equal uvs and equal normals are written once. Colours follow the positions; a vertex gets the
 /// colour of its first wedge. Objects become `o`, materials `usemtl`, with names made unique.

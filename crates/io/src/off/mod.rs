@@ -1,5 +1,5 @@
-//! Object File Format (OFF), including the variants of Geomview with normals, colours and texture
-//! coordinates at the vertices: NOFF, COFF, STOFF and their combinations.
+//! Object File Format (OFF), including Geomview's variants with vertex normals (NOFF), colours
+//! (COFF), texture coordinates (STOFF) or several of them.
 
 mod read;
 mod write;

@@ -1,4 +1,4 @@
-//! Reading OFF.
+//! Reading OFF files.
 
 use meshlod_mesh::{Attributes, LayerKind, Mesh, VertexId};
 
@@ -7,7 +7,7 @@ use crate::polygon::triangulate;
 use crate::text_cursor::TextCursor;
 use crate::vertex_attributes::{named_layer, normalize_colors, per_vertex};
 
-/// Reads a text OFF file.
+/// Parses an OFF file in text form.
 ///
 /// The header may be missing or run into the counts without a blank; comments may appear anywhere.
 /// Polygons are triangulated, and face colours ignored. Vertex colours have three or four

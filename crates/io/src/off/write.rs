@@ -1,4 +1,4 @@
-//! Writing OFF.
+//! Writing OFF files.
 
 use std::io::{self, Write};
 
@@ -8,8 +8,8 @@ use crate::Precision;
 use crate::line_writer::LineWriter;
 use crate::vertex_attributes::split_at_seams;
 
-/// Writes a mesh as text OFF, with the normals (N), the first colours (C) and the texture
-/// coordinates (ST) of its vertices, if it has them.
+/// Writes a mesh as a text OFF file, with the normals, the first colours and the texture
+/// coordinates of its vertices, if it has them.
 ///
 /// The format has one set of attributes per vertex, so a vertex with several wedges is written once
 /// for each. Other layers, materials and objects are not written. A mesh without seams reads back

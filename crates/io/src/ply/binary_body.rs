@@ -1,4 +1,4 @@
-//! Binary bodies, in either byte order.
+//! Binary PLY data, in either byte order.
 
 use meshlod_mesh::VertexId;
 

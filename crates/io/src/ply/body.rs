@@ -1,4 +1,4 @@
-//! Common interface of text and binary bodies: a stream of numbers.
+//! Common interface of text and binary PLY data: a stream of numbers.
 
 use std::fmt;
 

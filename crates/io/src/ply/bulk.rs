@@ -1,5 +1,4 @@
-//! Fast path for the common case: binary rows with floating-point x, y, z, and faces of three
-//! indices.
+//! Fast path for the most common PLY files: binary, with floating-point x, y, z and triangles only.
 //!
 //! Both functions stop before the first row that is anything else, truncated, not finite or out of
 //! range. The general path continues from there and reports errors.

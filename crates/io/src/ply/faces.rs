@@ -1,4 +1,4 @@
-//! Elements `face` and `tristrips`, converted to triangles.
+//! PLY faces and triangle strips, converted to triangles.
 
 use meshlod_mesh::VertexId;
 
@@ -19,7 +19,7 @@ pub(super) struct Faces {
 }
 
 impl Faces {
-    /// Reads all rows of an element `face` or `tristrips`.
+    /// Reads all rows of the PLY element `face` or `tristrips` as triangles.
     pub fn read<B: BodyReader>(
         &mut self,
         body: &mut B,

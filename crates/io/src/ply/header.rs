@@ -1,4 +1,4 @@
-//! Header: the elements that follow, and the properties of their rows.
+//! PLY header: the elements in the file, and the properties of their rows.
 
 use std::collections::HashSet;
 
@@ -61,7 +61,7 @@ pub(super) struct Header {
 }
 
 impl Header {
-    /// Parses the header up to and including the line `end_header`.
+    /// Parses a PLY header up to and including the line `end_header`.
     pub fn parse(bytes: &[u8]) -> Result<Self, ParseError> {
         if bytes.is_empty() {
             return Err(ParseError::byte(0, "the file is empty"));
@@ -235,7 +235,7 @@ pub(super) fn shown(word: &str) -> String {
 }
 
 impl Scalar {
-    /// Returns the size in binary data, in bytes.
+    /// Returns the size of a value of this type in binary PLY, in bytes.
     pub fn size(self) -> usize {
         match self {
             Self::I8 | Self::U8 => 1,
@@ -260,7 +260,7 @@ impl Scalar {
 }
 
 impl Shape {
-    /// Returns the minimum size in binary data, in bytes: a list may be empty.
+    /// Returns the minimum size of the property in binary PLY, in bytes; a list may be empty.
     pub fn least_size(self) -> usize {
         match self {
             Self::One(scalar) => scalar.size(),
@@ -270,17 +270,18 @@ impl Shape {
 }
 
 impl Element {
-    /// Returns the minimum size of a row in binary data, which is exact if there are no lists.
+    /// Returns the minimum size of a row in binary PLY, in bytes; it is exact if there are no
+    /// lists.
     pub fn least_row_size(&self) -> usize {
         self.properties.iter().map(|property| property.shape.least_size()).sum()
     }
 
-    /// Reports whether all rows have the same size.
+    /// Reports whether all rows of the element have the same size, because no property is a list.
     pub fn is_fixed(&self) -> bool {
         self.properties.iter().all(|property| matches!(property.shape, Shape::One(_)))
     }
 
-    /// Reports whether the rows are faces or strips.
+    /// Reports whether the element contains faces or triangle strips.
     pub fn holds_faces(&self) -> bool {
         matches!(self.name.as_str(), "face" | "tristrips")
     }

@@ -1,4 +1,4 @@
-//! Mapping between vertex properties and attribute layers, in both directions.
+//! Mapping between PLY vertex properties and attribute layers, in both directions.
 
 use std::collections::{HashMap, HashSet};
 

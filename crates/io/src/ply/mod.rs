@@ -1,4 +1,4 @@
-//! PLY, the usual format of scans, as text and as binary of either byte order.
+//! PLY, the usual file format of 3D scans, as text and as binary of either byte order.
 //!
 //! The elements `vertex`, `face` and `tristrips` are read, in any order and with any scalar types;
 //! others are skipped. Polygons are triangulated and strips expanded. Other vertex properties
@@ -45,7 +45,7 @@ use vertices::Vertices;
 
 pub use write::write;
 
-/// Reads a PLY file.
+/// Parses a PLY file, text or binary.
 ///
 /// Attributes are `None` if vertices have only positions. Faces with fewer than three corners and
 /// the degenerate triangles that join parts of a strip are dropped; a face that repeats a vertex is

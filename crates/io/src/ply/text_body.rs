@@ -1,4 +1,4 @@
-//! Text bodies.
+//! PLY data in text form.
 
 use super::body::{BodyReader, Row};
 use super::header::{Element, Header, Scalar, shown};

@@ -1,4 +1,4 @@
-//! Element `vertex`: positions, and layers of the other properties.
+//! PLY vertices: their positions, and attribute layers of the other properties.
 
 use meshlod_mesh::Layer;
 

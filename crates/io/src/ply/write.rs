@@ -1,4 +1,4 @@
-//! Writing binary little-endian PLY: vertices with their layers, then triangles.
+//! Writing binary little-endian PLY files: vertices with their attributes, then triangles.
 
 use std::io::{Error, ErrorKind, Result, Write};
 
@@ -10,7 +10,7 @@ use crate::Precision;
 /// Bytes buffered before they are written.
 const BLOCK: usize = 1 << 16;
 
-/// Writes a mesh as binary little-endian PLY; material and object labels are not written.
+/// Writes a mesh as a binary little-endian PLY file, without its material and object labels.
 ///
 /// Coordinates are `float` or `double` as `precision` says, colours `uchar`, other layers `float`,
 /// under the names in the [module's table](super). PLY has values at vertices only: unless wedges

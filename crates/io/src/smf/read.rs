@@ -1,4 +1,4 @@
-//! Reading SMF.
+//! Reading SMF files.
 
 use meshlod_mesh::{Attributes, Layer, LayerKind, Mesh, VertexId, WedgeId, merge_equal_wedges};
 
@@ -8,8 +8,10 @@ use crate::polygon::triangulate;
 use crate::text_cursor::{TextCursor, quoted};
 use crate::vertex_attributes::{named_layer, normalize_colors, per_vertex};
 
-/// Reads an SMF file: `v`, `f` and `t`, the properties `c`, `n` and `r` as bound by `bind`, and
-/// scopes with `trans`, `scale`, `rot`, `t_trans`, `t_scale` and `set vertex_correction`.
+/// Parses an SMF file.
+///
+/// Understood are `v`, `f` and `t`, the properties `c`, `n` and `r` as bound by `bind`, and scopes
+/// with `trans`, `scale`, `rot`, `t_trans`, `t_scale` and `set vertex_correction`.
 ///
 /// Polygons are triangulated. Normals are normalised and transformed with their vertices.
 /// Properties that are not finite become 0, and if a colour exceeds 1, all are taken to be out of

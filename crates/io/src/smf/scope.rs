@@ -1,4 +1,5 @@
-//! Scopes between `begin` and `end`: transformations, and the base of vertex indices.
+//! SMF scopes between `begin` and `end`: their transformations, and the first vertex that they
+//! count from.
 
 use glam::{DMat3, DMat4, DVec2, DVec3};
 

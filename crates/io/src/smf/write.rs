@@ -1,4 +1,4 @@
-//! Writing SMF.
+//! Writing SMF files.
 
 use std::io::{self, Write};
 
@@ -8,8 +8,8 @@ use crate::Precision;
 use crate::line_writer::LineWriter;
 use crate::vertex_attributes::split_at_seams;
 
-/// Writes a mesh as SMF, with the first colours, the normals and the texture coordinates of its
-/// vertices, if it has them.
+/// Writes a mesh as an SMF file, with the first colours, the normals and the texture coordinates of
+/// its vertices, if it has them.
 ///
 /// The format has one set of properties per vertex, so a vertex with several wedges is written once
 /// for each. Opacity, other layers, materials and objects are not written. A mesh without seams

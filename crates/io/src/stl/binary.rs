@@ -1,4 +1,4 @@
-//! Binary STL: an 80-byte header, a count, 50 bytes per facet.
+//! Binary STL: an 80-byte header, the number of facets, and 50 bytes per facet.
 
 use std::io::{Result as IoResult, Write};
 
@@ -61,7 +61,8 @@ fn float(facet: &[u8], at: usize) -> f64 {
     f32::from_le_bytes(*facet[at..].first_chunk().expect("inside the facet")).into()
 }
 
-/// Writes a mesh as binary STL: 32-bit floats, computed normals, no attributes, no names.
+/// Writes a mesh as a binary STL file: 32-bit coordinates and computed facet normals, without
+/// attributes or names.
 ///
 /// # Errors
 /// Errors of `out`. Before anything is written: a mesh that breaks [`Mesh::validate`], and a

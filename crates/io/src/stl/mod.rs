@@ -1,4 +1,4 @@
-//! STL: triangles without indices, as binary and as text.
+//! STL files: triangles without shared vertices, as binary and as text.
 //!
 //! Corners at the same position, bit for bit (−0 equals 0), are welded into one vertex. Normals in
 //! the file are ignored on reading and computed on writing. If a text file has several solids with
@@ -24,7 +24,7 @@ pub use text::write as write_ascii;
 /// is shorter than this, and its facet contains a zero byte in practice.
 const SNIFFED: usize = 512;
 
-/// Reads an STL file.
+/// Parses an STL file, binary or text.
 ///
 /// Vertices are numbered in order of appearance. A facet whose corners coincide is kept, as a face
 /// that repeats a vertex. Cost: O(n) expected, n = facets. Memory: at most a small multiple of

@@ -130,8 +130,8 @@ fn shown(word: &[u8]) -> String {
     format!("\"{}\"", String::from_utf8_lossy(short).escape_debug())
 }
 
-/// Writes a mesh as text STL: exact coordinates, computed normals, one solid per object with faces,
-/// no attributes.
+/// Writes a mesh as a text STL file: exact coordinates and computed facet normals, with one `solid`
+/// for each object that has faces.
 ///
 /// # Errors
 /// Errors of `out`. Before anything is written: a mesh that breaks [`Mesh::validate`].

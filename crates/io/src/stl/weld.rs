@@ -1,4 +1,4 @@
-//! Welding of corners at the same position.
+//! Merging of STL facet corners at the same position into vertices.
 
 use std::collections::hash_map::RandomState;
 use std::hash::BuildHasher;
@@ -21,7 +21,7 @@ pub(super) struct Welder {
 type Slot = std::num::NonZeroU32;
 
 impl Welder {
-    /// Allocates for the given number of facets: a closed mesh has half as many vertices.
+    /// Allocates memory for the given number of facets; a closed mesh has half as many vertices.
     pub fn with_facets(facets: usize) -> Self {
         Self {
             positions: Vec::with_capacity(facets / 2),
@@ -30,7 +30,8 @@ impl Welder {
         }
     }
 
-    /// Returns the vertex at a finite position, compared bit for bit with −0 equal to 0.
+    /// Returns the vertex at a position, new unless one has the same coordinates bit for bit; −0
+    /// equals 0.
     pub fn vertex(&mut self, position: [f64; 3]) -> VertexId {
         let position = position.map(|x| x + 0.0);
         let slot = self.find(position);
