@@ -1,13 +1,13 @@
-//! Axis-aligned boxes.
+//! Axis-aligned bounding boxes.
 
 use glam::DVec3;
 
-/// An axis-aligned box, empty (`min` above `max`) until a point is added.
+/// Axis-aligned bounding box, empty (`min` above `max`) until a point is added.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bounds {
-    /// Corner with the smallest coordinates.
+    /// Corner of the box with the smallest coordinates.
     pub min: [f64; 3],
-    /// Corner with the largest coordinates.
+    /// Corner of the box with the largest coordinates.
     pub max: [f64; 3],
 }
 
@@ -18,10 +18,10 @@ impl Default for Bounds {
 }
 
 impl Bounds {
-    /// The empty box, which contains no point.
+    /// Empty box, which contains no point.
     pub const EMPTY: Self = Self { min: [f64::INFINITY; 3], max: [f64::NEG_INFINITY; 3] };
 
-    /// Returns the smallest box that contains all points.
+    /// Returns the smallest axis-aligned box that contains all the points.
     pub fn of<'a>(points: impl IntoIterator<Item = &'a [f64; 3]>) -> Self {
         let mut bounds = Self::EMPTY;
         for &point in points {
@@ -41,7 +41,7 @@ impl Bounds {
         }
     }
 
-    /// Extends the box to contain `other`.
+    /// Extends the box to contain the box `other`.
     #[inline]
     pub fn merge(&mut self, other: &Self) {
         for axis in 0..3 {
@@ -56,7 +56,7 @@ impl Bounds {
         self.min[0] > self.max[0]
     }
 
-    /// Returns the center, or the origin if the box is empty.
+    /// Returns the center of the box, or the origin if the box is empty.
     pub fn center(&self) -> [f64; 3] {
         if self.is_empty() {
             return [0.0; 3];
@@ -64,7 +64,7 @@ impl Bounds {
         (DVec3::from(self.min) * 0.5 + DVec3::from(self.max) * 0.5).into()
     }
 
-    /// Returns the length of the diagonal in model units, 0 if the box is empty.
+    /// Returns the length of the box's diagonal in model units, or 0 if the box is empty.
     pub fn diagonal(&self) -> f64 {
         if self.is_empty() {
             return 0.0;

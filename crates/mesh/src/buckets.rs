@@ -1,6 +1,6 @@
-//! Counting sort into buckets, stored in two flat arrays.
+//! Counting sort of indices into buckets, stored in two flat arrays.
 
-/// The numbers `0..n` grouped into buckets, in ascending order within each.
+/// Indices `0..n` grouped into buckets, in ascending order within each.
 #[derive(Clone, Debug)]
 pub struct Buckets {
     /// Start of each bucket in `members`, and the end of the last.
@@ -9,7 +9,8 @@ pub struct Buckets {
 }
 
 impl Buckets {
-    /// Sorts `0..n` into `count` buckets, where item `i` of `of_members` is the bucket of `i`.
+    /// Groups the indices `0..n` into `count` buckets; item `i` of `of_members` is the bucket of
+    /// index `i`.
     ///
     /// Cost: O(count + members).
     pub fn new(
@@ -34,7 +35,7 @@ impl Buckets {
         Self { starts, members }
     }
 
-    /// Returns the members of a bucket in ascending order.
+    /// Returns the indices in a bucket, in ascending order.
     #[inline]
     pub fn of(&self, bucket: usize) -> &[u32] {
         &self.members[self.starts[bucket] as usize..self.starts[bucket + 1] as usize]

@@ -1,8 +1,8 @@
-//! Connected components, by a union-find over vertices.
+//! Connected components of a mesh, found by union-find over its vertices.
 
 use crate::VertexId;
 
-/// Returns the connected component of every face, and the number of components.
+/// Returns the number of each face's connected component, and the number of components.
 ///
 /// Faces that share a vertex are in one component. Components are numbered from 0 in the order of
 /// their first faces.

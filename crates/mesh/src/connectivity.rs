@@ -1,4 +1,5 @@
-//! Adjacency of faces: stars of vertices, twins of sides, marks of what is not manifold.
+//! Mesh connectivity: the faces around each vertex, neighbours across edges, and non-manifold
+//! places.
 //!
 //! Built in one pass over compact arrays, from faces alone: connectivity never reads positions.
 //! Any faces are accepted. A face that repeats a vertex has no sides and is left out.
@@ -11,31 +12,31 @@ use closed_fan::ClosedFan;
 
 use crate::{FaceId, VertexId};
 
-/// One side of a face, a half-edge: side `k` runs from corner `k` of the face to corner `k + 1`.
+/// Half-edge: one side of a face. Side `k` runs from corner `k` of the face to corner `k + 1`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Side(u32);
 
 impl Side {
-    /// Creates side `k` (0, 1 or 2) of `face`.
+    /// Creates the half-edge from corner `k` (0, 1 or 2) of `face` to the next corner.
     #[inline]
     pub fn new(face: FaceId, k: usize) -> Self {
         debug_assert!(k < 3);
         Self(face.0 * 3 + k as u32)
     }
 
-    /// Returns the face that the side belongs to.
+    /// Returns the face that the half-edge belongs to.
     #[inline]
     pub fn face(self) -> FaceId {
         FaceId(self.0 / 3)
     }
 
-    /// Returns the number of the side in its face, which is the corner it starts from.
+    /// Returns the corner of its face, 0 to 2, that the half-edge starts from.
     #[inline]
     pub fn corner(self) -> usize {
         (self.0 % 3) as usize
     }
 
-    /// Returns the vertices that the side runs from and to.
+    /// Returns the two vertices that the half-edge runs from and to.
     #[inline]
     pub fn ends(self, faces: &[[VertexId; 3]]) -> [VertexId; 2] {
         let face = faces[self.face().index()];
@@ -43,21 +44,22 @@ impl Side {
     }
 }
 
-/// Neighbour of a face across one of its sides.
+/// Neighbour of a face across one of its edges, if there is exactly one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Twin {
-    /// Exactly one other face, given by its side on the same edge. The two sides run in opposite
-    /// directions if the faces are consistently oriented.
+    /// Exactly one other face shares the edge: the neighbour, given by its half-edge.
+    ///
+    /// The two half-edges run in opposite directions if the faces are consistently oriented.
     Side(Side),
-    /// No face: a boundary edge.
+    /// No other face shares the edge: it is a boundary edge.
     Boundary,
-    /// Two or more other faces: a non-manifold edge.
+    /// Two or more other faces share the edge: it is non-manifold.
     NonManifold,
-    /// Undefined, because the face itself repeats a vertex and is left out.
+    /// Undefined, because the face itself uses a vertex twice and has no neighbours.
     Degenerate,
 }
 
-/// Flags of a vertex on the boundary or where the surface is not manifold.
+/// Flags of a vertex: whether it is on the boundary, and whether the surface is non-manifold there.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Marks(u8);
 
@@ -66,19 +68,21 @@ impl Marks {
     const NON_MANIFOLD_EDGE: u8 = 2;
     const PINCHED: u8 = 4;
 
-    /// Returns true if the vertex is an end of a boundary edge.
+    /// Returns true if the vertex is on the boundary, as an end of a boundary edge.
     #[inline]
     pub fn boundary(self) -> bool {
         self.0 & Self::BOUNDARY != 0
     }
 
-    /// Returns true if the vertex is an end of a non-manifold edge, or pinched.
+    /// Returns true if the surface is not manifold at the vertex: it ends a non-manifold edge or is
+    /// pinched.
     #[inline]
     pub fn non_manifold(self) -> bool {
         self.0 & (Self::NON_MANIFOLD_EDGE | Self::PINCHED) != 0
     }
 
-    /// Returns true if the faces around the vertex form more than one fan.
+    /// Returns true if the faces around the vertex form more than one fan, such as two cones
+    /// touching at their tips.
     #[inline]
     pub fn pinched(self) -> bool {
         self.0 & Self::PINCHED != 0
@@ -89,7 +93,8 @@ const BOUNDARY: u32 = u32::MAX;
 const NON_MANIFOLD: u32 = u32::MAX - 1;
 const DEGENERATE: u32 = u32::MAX - 2;
 
-/// Adjacency of the faces of a mesh: stars, twins and marks.
+/// Connectivity of a triangle mesh: the faces around each vertex, the neighbours across edges, and
+/// which vertices are on the boundary or non-manifold.
 ///
 /// Memory: 4 bytes per side, 4 per corner, 5 per vertex.
 #[derive(Clone, Debug)]
@@ -111,7 +116,7 @@ struct EdgeCounts {
 }
 
 impl Connectivity {
-    /// Builds the connectivity of `faces` over `vertex_count` vertices.
+    /// Computes the connectivity of a mesh with the given faces and number of vertices.
     ///
     /// Cost: linear in faces and vertices; a vertex of valence k costs at most O(k log k).
     /// # Panics
@@ -151,14 +156,15 @@ impl Connectivity {
         self.marks.len()
     }
 
-    /// Returns the faces around a vertex, in ascending order.
+    /// Returns the faces around a vertex in ascending order, without degenerate ones.
     #[inline]
     pub fn star(&self, vertex: VertexId) -> &[FaceId] {
         let v = vertex.index();
         &self.star[self.star_start[v] as usize..self.star_start[v + 1] as usize]
     }
 
-    /// Returns what lies across a side.
+    /// Returns the neighbour of a face across a half-edge: another face's half-edge, or the reason
+    /// that there is not exactly one.
     #[inline]
     pub fn twin(&self, side: Side) -> Twin {
         match self.twins[side.0 as usize] {
@@ -169,49 +175,51 @@ impl Connectivity {
         }
     }
 
-    /// Returns the flags of a vertex.
+    /// Returns flags that tell whether a vertex is on the boundary or the surface is non-manifold
+    /// there.
     #[inline]
     pub fn marks(&self, vertex: VertexId) -> Marks {
         self.marks[vertex.index()]
     }
 
-    /// Returns the number of edges.
+    /// Returns the number of edges of the mesh, each counted once.
     pub fn edge_count(&self) -> usize {
         self.edges.all
     }
 
-    /// Returns the number of edges with one face.
+    /// Returns the number of boundary edges, which only one face uses.
     pub fn boundary_edges(&self) -> usize {
         self.edges.boundary
     }
 
-    /// Returns the number of edges with three faces or more.
+    /// Returns the number of non-manifold edges, which three or more faces share.
     pub fn non_manifold_edges(&self) -> usize {
         self.edges.non_manifold
     }
 
-    /// Returns the number of edges that their two faces traverse in the same direction.
+    /// Returns the number of edges whose two faces are oriented inconsistently, one of them
+    /// flipped.
     pub fn inconsistent_edges(&self) -> usize {
         self.edges.inconsistent
     }
 
-    /// Returns the number of vertices whose faces form more than one fan.
+    /// Returns the number of pinched vertices, whose faces form more than one fan.
     pub fn pinched_vertices(&self) -> usize {
         self.marks.iter().filter(|marks| marks.pinched()).count()
     }
 
-    /// Returns the number of faces that repeat a vertex.
+    /// Returns the number of degenerate faces, which use a vertex more than once.
     pub fn degenerate_faces(&self) -> usize {
         self.degenerate_faces
     }
 
-    /// Returns true if there are faces and every edge has exactly two.
+    /// Returns true if the mesh has faces and every edge is shared by exactly two of them.
     pub fn is_closed(&self) -> bool {
         self.edges.all > 0 && self.edges.boundary == 0 && self.edges.non_manifold == 0
     }
 
-    /// Iterates over the edges: each once, by one of its sides, but a non-manifold edge by all of
-    /// its sides.
+    /// Iterates over the edges, each given once by one of its half-edges; only a non-manifold edge
+    /// is given by all of them.
     pub fn edges(&self) -> impl Iterator<Item = Side> + '_ {
         self.twins.iter().enumerate().filter_map(|(side, &twin)| match twin {
             DEGENERATE => None,

@@ -1,10 +1,10 @@
-//! Local coordinates around a mesh: near zero, at a size near one.
+//! Local coordinate systems that bring a mesh near the origin, to a size near one.
 
 use glam::DVec3;
 
 use crate::Bounds;
 
-/// A local coordinate system: an origin and a unit of length that is a power of two.
+/// Local coordinate system: an origin and a unit of length that is a power of two.
 ///
 /// Dividing by such a unit rounds nothing. In a frame that fits it, a mesh that is far from the
 /// origin, or extremely large or small, keeps the precision of `f32`, and fourth powers of its
@@ -32,15 +32,18 @@ const MAX_EXPONENT: i32 = 1022;
 const MAX_DIAGONAL_EXPONENT: f64 = 1000.0;
 
 impl Frame {
-    /// A frame with a unit of 2^`exponent`; exponents beyond ±1022 are clamped.
+    /// Creates a coordinate system with a unit of 2^`exponent` model units; exponents beyond ±1022
+    /// are clamped.
     pub fn new(origin: impl Into<DVec3>, exponent: i32) -> Self {
         let exponent = exponent.clamp(-MAX_EXPONENT, MAX_EXPONENT);
         let [unit, scale] = [exponent, -exponent].map(|exponent| 2f64.powi(exponent));
         Self { origin: origin.into(), unit, scale }
     }
 
-    /// A frame with a unit read from a file; `None` unless the origin is finite and the unit is a
-    /// power of two whose reciprocal is normal too.
+    /// Creates a coordinate system from an origin and a unit, such as read from a file.
+    ///
+    /// Returns `None` unless the origin is finite and the unit is a power of two whose reciprocal
+    /// is normal too.
     pub fn from_unit(origin: impl Into<DVec3>, unit: f64) -> Option<Self> {
         let (origin, scale) = (origin.into(), 1.0 / unit);
         let is_power = unit.is_normal() && unit > 0.0 && unit.log2().fract() == 0.0;
@@ -48,18 +51,21 @@ impl Frame {
         fits.then_some(Self { origin, unit, scale })
     }
 
-    /// The frame around the center of a finite box in which half of its longest side is 1 to 2
-    /// units long, or up to 4 at the very end of the range of `f64`. A box without extent keeps
-    /// the model's unit.
+    /// Creates a coordinate system around the center of a box, with half of its longest side 1 to 2
+    /// units long.
+    ///
+    /// It can be up to 4 units at the very end of the range of `f64`. The box must be finite; one
+    /// without extent keeps the model's unit.
     pub fn of(bounds: &Bounds) -> Self {
         let half = half_sides(bounds).max_element();
         let exponent = if half > 0.0 { half.log2().floor() } else { 0.0 };
         Self::new(bounds.center(), exponent as i32)
     }
 
-    /// The frame around the center of a box with the smallest unit that is at least the box's
-    /// diagonal, but no smaller than 2⁻¹⁰⁰⁰ and no larger than 2¹⁰⁰⁰. A box without extent keeps
-    /// the model's unit.
+    /// Creates a coordinate system around the center of a box, with the smallest unit not below the
+    /// length of the box's diagonal.
+    ///
+    /// The unit is at least 2⁻¹⁰⁰⁰ and at most 2¹⁰⁰⁰. A box without extent keeps the model's unit.
     pub fn of_diagonal(bounds: &Bounds) -> Self {
         let sides = half_sides(bounds);
         let longest = sides.max_element();
@@ -70,43 +76,44 @@ impl Frame {
         Self::new(bounds.center(), exponent.clamp(-most, most) as i32)
     }
 
-    /// Length of the local unit in model units: a power of two.
+    /// Returns the length of the local unit in model units, a power of two.
     #[inline]
     pub fn unit(&self) -> f64 {
         self.unit
     }
 
-    /// Local units per model unit: the reciprocal of [`Frame::unit`], a power of two as well.
+    /// Returns the number of local units per model unit, the reciprocal of [`Frame::unit`] and also
+    /// a power of two.
     #[inline]
     pub fn scale(&self) -> f64 {
         self.scale
     }
 
-    /// Converts a point of the model to local coordinates.
+    /// Converts a point from model coordinates to local coordinates.
     #[inline]
     pub fn local(&self, point: impl Into<DVec3>) -> DVec3 {
         (point.into() - self.origin) * self.scale
     }
 
-    /// Converts a point in local coordinates to the model's.
+    /// Converts a point from local coordinates to model coordinates.
     #[inline]
     pub fn model(&self, local: impl Into<DVec3>) -> [f64; 3] {
         (local.into() * self.unit + self.origin).into()
     }
 
-    /// Converts a length in model units to local units.
+    /// Converts a length from model units to local units.
     #[inline]
     pub fn local_length(&self, length: f64) -> f64 {
         length * self.scale
     }
 
-    /// Converts a length in local units to model units.
+    /// Converts a length from local units to model units.
     #[inline]
     pub fn model_length(&self, length: f64) -> f64 {
         length * self.unit
     }
 
-    /// Converts a squared length, or an area, in local units to model units.
+    /// Converts a squared length or an area from local units to model units.
     #[inline]
     pub fn model_squared(&self, squared: f64) -> f64 {
         squared * self.unit * self.unit

@@ -1,4 +1,4 @@
-//! Typed indices: `u32` inside, printed as `v12`, `f3`, `w7`.
+//! Typed 32-bit indices of vertices, faces and wedges, printed as `v12`, `f3` and `w7`.
 
 use std::fmt;
 
@@ -16,7 +16,7 @@ macro_rules! id {
                 Self(u32::try_from(index).expect("ids are 32 bits"))
             }
 
-            /// Returns the index into its array.
+            /// Returns the id as a `usize`, to index the array of vertices, faces or wedges.
             #[inline]
             pub const fn index(self) -> usize {
                 self.0 as usize

@@ -1,4 +1,4 @@
-//! Triangle meshes: ids, attributes, connectivity, bounds.
+//! Triangle meshes with attributes and labels, their connectivity and bounding boxes.
 //!
 //! No I/O, no threads, no policy. Positions are `f64`; attributes hang on *wedges*, which have
 //! their own corner indices, so that a texture seam never tears the surface.

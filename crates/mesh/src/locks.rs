@@ -1,26 +1,28 @@
-//! Constraints on simplification.
+//! Constraints on vertices in mesh simplification.
 
 use crate::VertexId;
 
-/// Freedom of a vertex in simplification.
+/// Constraint on a vertex in mesh simplification.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Lock {
-    /// Contracted when its cost is the lowest.
+    /// Simplification may move or remove the vertex freely.
     #[default]
     Free,
-    /// Contracted late, because its contractions cost more.
+    /// The vertex is more expensive to remove, so that simplification keeps it longer.
     Protected,
-    /// Never moved or removed, though other vertices may be contracted into it. An edge is locked
-    /// if both its ends are.
+    /// The vertex is never moved or removed, though other vertices may be contracted into it.
+    ///
+    /// An edge is locked if both its ends are.
     Locked,
 }
 
-/// Constraints on simplification: locks of vertices, and ties between them.
+/// Constraints on mesh simplification: locked vertices, and vertices that must stay together.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Locks {
-    /// Lock of each vertex; empty if all are free.
+    /// Constraint on each vertex; empty if all vertices are free.
     pub of_vertex: Vec<Lock>,
-    /// Groups of two or more vertices at the same position, which move together to one position
-    /// or not at all. No vertex is in two groups.
+    /// Groups of two or more vertices at the same position, which are moved together or not at all.
+    ///
+    /// No vertex is in two groups.
     pub ties: Vec<Vec<VertexId>>,
 }

@@ -1,11 +1,11 @@
-//! The triangle mesh.
+//! Triangle mesh and the checks of its validity.
 
 use glam::DVec3;
 use thiserror::Error;
 
 use crate::{Attributes, Bounds, FaceId, Labels, VertexId};
 
-/// A triangle mesh: positions, faces, attributes and labels.
+/// Triangle mesh: vertex positions, faces, attributes, and material and object labels.
 ///
 /// Faces index positions, and these indices alone define the topology. [`Mesh::validate`] lists
 /// what must hold.
@@ -15,99 +15,99 @@ pub struct Mesh {
     pub positions: Vec<[f64; 3]>,
     /// Vertices of each face, counter-clockwise seen from outside.
     pub faces: Vec<[VertexId; 3]>,
-    /// Normals, texture coordinates, colours and other values over wedges.
+    /// Normals, texture coordinates, colours and other vertex attributes, stored per wedge.
     pub attributes: Option<Attributes>,
-    /// Material of each face.
+    /// Material of each face, by name.
     pub materials: Option<Labels>,
-    /// Named object of each face.
+    /// Object that each face belongs to, by name.
     pub objects: Option<Labels>,
 }
 
-/// Reason why a mesh is invalid.
+/// Reason why a triangle mesh is invalid.
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum MeshError {
-    /// A coordinate is NaN or infinite.
+    /// A vertex coordinate is NaN or infinite.
     #[error("vertex {vertex} has a coordinate that is not finite: {position:?}")]
     NotFinite {
-        /// Vertex with the coordinate.
+        /// Vertex with a coordinate that is not finite.
         vertex: VertexId,
-        /// Position of that vertex.
+        /// Position of the vertex.
         position: [f64; 3],
     },
     /// A face refers to a vertex that does not exist.
     #[error("face {face} names vertex {vertex}, but there are only {count} vertices")]
     BadVertex {
-        /// Face that refers to it.
+        /// Face that refers to a missing vertex.
         face: FaceId,
-        /// Vertex that does not exist.
+        /// Vertex that the face refers to and that does not exist.
         vertex: VertexId,
-        /// Number of vertices.
+        /// Number of vertices in the mesh.
         count: usize,
     },
-    /// A corner refers to a wedge that does not exist.
+    /// A corner of a face refers to a wedge (set of attribute values) that does not exist.
     #[error("face {face} names wedge {wedge}, but there are only {count} wedges")]
     BadWedge {
-        /// Face that refers to it.
+        /// Face with the corner that refers to a missing wedge.
         face: FaceId,
-        /// Wedge that does not exist.
+        /// Index of the wedge that does not exist.
         wedge: u32,
-        /// Number of wedges.
+        /// Number of wedges in the mesh.
         count: usize,
     },
-    /// A wedge is used at two vertices.
+    /// A wedge (set of attribute values) is used at two different vertices.
     #[error("face {face} uses wedge w{wedge} at vertex {vertex}, an earlier face at another")]
     SharedWedge {
-        /// Face that uses the wedge at a second vertex.
+        /// Face that uses the wedge at the second vertex.
         face: FaceId,
-        /// Wedge used at two vertices.
+        /// Index of the wedge that is used at two vertices.
         wedge: u32,
-        /// Second of the two vertices.
+        /// Second vertex at which the wedge is used.
         vertex: VertexId,
     },
-    /// An array has another length than the array it belongs to requires.
+    /// The length of an array does not match the rest of the mesh.
     #[error("{what}: {found} entries, but {expected} are needed")]
     BadLength {
-        /// Name of the array.
+        /// Name of the array with the wrong length.
         what: String,
-        /// Length of the array.
+        /// Actual length of the array.
         found: usize,
-        /// Length it must have.
+        /// Length that the array must have.
         expected: usize,
     },
-    /// The label of a face has no name.
+    /// A face has a material or object label beyond the end of the list of names.
     #[error("face {face} has {what} {label}, but there are only {count} {what}s")]
     BadLabel {
-        /// Face with the label.
+        /// Face with the invalid label.
         face: FaceId,
-        /// Kind of label: `material` or `object`.
+        /// Type of the label: `material` or `object`.
         what: &'static str,
-        /// Label without a name.
+        /// Label of the face, which is not an index into the names.
         label: u32,
-        /// Number of names.
+        /// Number of material or object names.
         count: usize,
     },
 }
 
 impl Mesh {
-    /// Creates a mesh without attributes or labels.
+    /// Creates a mesh from positions and faces, without attributes or labels.
     pub fn new(positions: Vec<[f64; 3]>, faces: Vec<[VertexId; 3]>) -> Self {
         Self { positions, faces, ..Self::default() }
     }
 
-    /// Returns the positions of the three corners of a face.
+    /// Returns the positions of a face's three vertices.
     #[inline]
     pub fn triangle(&self, [a, b, c]: [VertexId; 3]) -> [DVec3; 3] {
         let at = |v: VertexId| DVec3::from(self.positions[v.index()]);
         [at(a), at(b), at(c)]
     }
 
-    /// Returns the box around the vertices that faces use; unused vertices do not count.
+    /// Returns the bounding box of all vertices that faces use; unused vertices do not count.
     pub fn bounds(&self) -> Bounds {
         let used = self.used_vertices();
         Bounds::of(self.positions.iter().zip(used).filter(|(_, used)| *used).map(|(p, _)| p))
     }
 
-    /// Returns a flag for each vertex: true if a face uses it.
+    /// Returns whether a face uses the vertex, for each vertex of the mesh.
     pub fn used_vertices(&self) -> Vec<bool> {
         let mut used = vec![false; self.positions.len()];
         for v in self.faces.iter().flatten() {
@@ -116,8 +116,8 @@ impl Mesh {
         used
     }
 
-    /// Checks that every position is finite, every index in range, every array of the right length,
-    /// and every wedge at one vertex only.
+    /// Checks the mesh: all positions finite, indices in range, array lengths consistent, and every
+    /// wedge used at one vertex only.
     ///
     /// Meshes from readers have passed this check.
     /// # Errors
@@ -137,7 +137,8 @@ impl Mesh {
         self.validate_attributes()
     }
 
-    /// Checks attributes, materials and objects as [`Mesh::validate`] does, whatever the faces are.
+    /// Checks only attributes, materials and objects as [`Mesh::validate`] does, not positions and
+    /// faces.
     /// # Errors
     /// The first violation found.
     pub fn validate_attributes(&self) -> Result<(), MeshError> {
@@ -203,7 +204,7 @@ impl Mesh {
         }
     }
 
-    /// Removes the vertices and wedges that no face uses; the others keep their order.
+    /// Removes the vertices and wedges that no face uses. The others keep their order.
     pub fn compact(&mut self) {
         let (map, kept) = dense_map(self.positions.len(), self.faces.iter().flatten().map(|v| v.0));
         self.positions = kept.iter().map(|&v| self.positions[v as usize]).collect();
@@ -217,7 +218,8 @@ impl Mesh {
 }
 
 impl Attributes {
-    /// Removes the wedges that no corner uses; the others keep their order.
+    /// Removes the wedges that no face corner uses, with their attribute values. The others keep
+    /// their order.
     pub fn compact(&mut self) {
         let (map, kept) = dense_map(self.wedge_count, self.corners.iter().flatten().map(|w| w.0));
         for layer in &mut self.layers {

@@ -1,4 +1,4 @@
-//! Merging of vertices at the same position, and of wedges with the same values.
+//! Welding: merging vertices at the same position, and wedges with the same values.
 
 use std::cmp::Ordering;
 use std::collections::HashMap;
@@ -7,7 +7,8 @@ use std::collections::hash_map::Entry;
 use crate::{Attributes, Buckets, Mesh, VertexId, WedgeId};
 use glam::DVec3;
 
-/// Merges the vertices of `mesh` that are at the same position, and returns the number removed.
+/// Merges vertices of `mesh` at the same position or within `epsilon`, and returns the number of
+/// vertices removed.
 ///
 /// `epsilon` is in model units. At 0 (or below, or NaN) the coordinates must be equal, where -0
 /// equals 0. Above 0, vertices are taken in order, and each is merged into the first kept vertex
@@ -25,15 +26,15 @@ pub fn weld(mesh: &mut Mesh, epsilon: f64) -> usize {
     removed
 }
 
-/// Returns for each point the point that [`weld`] merges it into: itself, or an earlier one within
-/// `epsilon`.
+/// Returns, for each point, the index of the point that [`weld`] would merge it into: its own, or
+/// an earlier one within `epsilon`.
 ///
 /// Cost: O(n), n = points.
 pub fn first_near(points: &[[f64; 3]], epsilon: f64) -> Vec<u32> {
     if epsilon > 0.0 { first_within(points, epsilon) } else { first_equal(points) }
 }
 
-/// Merges the wedges of each vertex that have equal values, and removes unused wedges.
+/// Merges wedges of a vertex that have equal attribute values, and removes unused wedges.
 ///
 /// An edge then is a seam only if the values of its faces really differ. The first of equal wedges
 /// is kept, and wedges keep their order. A mesh without attributes does not change.

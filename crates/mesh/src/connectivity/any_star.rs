@@ -1,4 +1,5 @@
-//! The general case: a star with any edges and fans.
+//! Connectivity around a vertex in the general case: any number of fans, boundary and non-manifold
+//! edges.
 
 use super::{BOUNDARY, Connectivity, EdgeCounts, Marks, NON_MANIFOLD, Side};
 use crate::{FaceId, VertexId};

@@ -1,4 +1,4 @@
-//! The common case: a star that is one closed fan.
+//! Connectivity around a vertex in the common case: its faces form one closed fan.
 
 use super::{EdgeCounts, Side};
 use crate::{FaceId, VertexId};
