@@ -1,4 +1,4 @@
-//! A ball cut out of Schoen's gyroid.
+//! Sample mesh of a gyroid (Schoen's minimal surface) inside a ball.
 
 use std::f64::consts::TAU;
 
@@ -19,8 +19,8 @@ const ROUNDING: f64 = 0.15;
 const SQUARE: f64 = 42.0;
 const LINE: f64 = 52.0;
 
-/// Builds one of the gyroid's two labyrinths inside a ball: a closed surface with dozens of
-/// tunnels.
+/// Builds one of the two labyrinths of the gyroid, a minimal surface, inside a ball: a closed
+/// surface with dozens of tunnels.
 ///
 /// Faces: within 5 % of `faces` from 20,000 on; at least about 5,000, below which the lattice would
 /// be too coarse for the tunnels. The edges that the ball cuts are slightly rounded. The ball

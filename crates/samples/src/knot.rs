@@ -1,4 +1,4 @@
-//! A trefoil knot.
+//! Sample mesh of a trefoil knot.
 
 use std::f64::consts::TAU;
 
@@ -18,7 +18,7 @@ const TUBE: f64 = 0.13;
 /// Length of the knot over the circumference of its tube, so that quads are nearly square.
 const ASPECT: f64 = 11.5;
 
-/// Builds a tube along the (2, 3) torus knot, the trefoil.
+/// Builds a closed tube along the (2, 3) torus knot, the trefoil.
 ///
 /// Faces: within half a ring of quads of `faces`, under 1 % from 10,000 on; at least 300, below
 /// which strands would intersect.

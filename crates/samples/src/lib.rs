@@ -34,15 +34,16 @@ pub use torus::{faceted_torus, torus};
 
 use meshlod_mesh::Mesh;
 
-/// Names of the samples, as [`by_name`] takes them.
+/// Names of all sample meshes, as accepted by [`by_name`].
 pub const NAMES: [&str; 7] =
     ["sphere", "torus", "faceted-torus", "knot", "gyroid", "terrain", "fish"];
 
-/// Largest number of faces that [`by_name`] makes; larger requests are clamped to it.
+/// Maximum number of faces of a sample made by [`by_name`]; larger requests are clamped to it.
 pub const MAX_FACES: usize = 500_000_000;
 
-/// Builds the named sample with about `faces` faces, or a default number for `None`; returns `None`
-/// if the name is unknown.
+/// Builds the sample mesh of that name with about `faces` faces, or a default number for `None`.
+///
+/// Returns `None` if the name is unknown.
 pub fn by_name(name: &str, faces: Option<usize>) -> Option<Mesh> {
     let (make, default_faces): (fn(usize) -> Mesh, usize) = match name {
         "sphere" => (sphere, 5_000),

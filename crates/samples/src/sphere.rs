@@ -1,9 +1,10 @@
-//! A geodesic sphere.
+//! Sample mesh of a geodesic sphere.
 
 use glam::DVec3;
 use meshlod_mesh::{Mesh, VertexId};
 
-/// Builds a unit sphere: an icosahedron with every face split into n², projected onto the sphere.
+/// Builds a geodesic unit sphere: an icosahedron with every face split into n², projected onto the
+/// sphere.
 ///
 /// Faces: 20 n² with the closest n, off by at most about one part in n; at least 20.
 pub fn sphere(faces: usize) -> Mesh {

@@ -1,11 +1,12 @@
-//! Mountains: an open height field of fractal noise.
+//! Sample mesh of mountains: an open height field of fractal noise.
 
 use glam::{DVec2, DVec3};
 use meshlod_mesh::Mesh;
 
 use crate::grid::{self, Size};
 
-/// Builds mountains over the square [-1, 1]² of x and z, with heights along +y and one boundary.
+/// Builds mountains as a height field over the square [-1, 1]² of x and z: an open surface with one
+/// boundary, and +y up.
 ///
 /// Faces: `2 n²` with the closest n, off by at most about one part in n; at least 2. The landscape
 /// is the same at any size: more faces only resolve finer rocks.

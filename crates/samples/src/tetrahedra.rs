@@ -1,4 +1,4 @@
-//! A closed level set as a mesh, by marching tetrahedra.
+//! Meshing of a closed level set by marching tetrahedra.
 //!
 //! Every cube of a lattice is cut into six tetrahedra around its diagonal, and neighbouring cubes
 //! cut their common face alike. The signs at the corners of a tetrahedron alone decide its surface:

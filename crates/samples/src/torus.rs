@@ -1,4 +1,4 @@
-//! Tori: smooth and faceted.
+//! Sample meshes of tori, smooth and faceted.
 
 use std::f64::consts::TAU;
 
@@ -12,7 +12,7 @@ const RING: f64 = 0.7;
 /// Radius of the tube.
 const TUBE: f64 = 0.3;
 
-/// Builds a smooth torus around the y axis, of nearly square quads split into two faces each.
+/// Builds a smooth torus around the y axis, from nearly square quads split into two faces each.
 ///
 /// Faces: within half a row of quads around the tube of `faces`, a few percent from 1,000 on; at
 /// least 18.
@@ -26,7 +26,7 @@ pub fn torus(faces: usize) -> Mesh {
 /// Number of flat facets around the axis and around the tube.
 const FACETS: Size = Size { columns: 12, rows: 6 };
 
-/// Builds a torus of 12 × 6 flat trapezoids that meet in creases, each finely split.
+/// Builds a torus with creases: 12 × 6 flat trapezoids, each finely subdivided.
 ///
 /// A good simplifier removes all but 144 faces without error and keeps every crease sharp.
 ///

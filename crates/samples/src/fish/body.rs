@@ -1,4 +1,4 @@
-//! The body and the tail fin: outline, cross-sections, colours.
+//! Body and tail fin of the fish: outline, cross-sections, colours.
 
 use glam::DVec3;
 

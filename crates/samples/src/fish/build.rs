@@ -1,4 +1,5 @@
-//! Assembly of the grid, the patches that replace blocks of it, and their wedges.
+//! Assembly of the fish's mesh: a grid of quads, the patches that replace parts of it, and their
+//! wedges.
 
 use std::collections::BTreeMap;
 

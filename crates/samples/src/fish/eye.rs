@@ -1,4 +1,4 @@
-//! Eyes: a dark rim, a golden iris, a black pupil.
+//! Eyes of the fish: a dark rim, a golden iris, a black pupil.
 
 use glam::DVec3;
 

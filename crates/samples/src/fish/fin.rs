@@ -1,4 +1,4 @@
-//! Fins: thin curved sheets with two sides.
+//! Fins of the fish: thin curved sheets with two sides.
 
 use glam::DVec3;
 

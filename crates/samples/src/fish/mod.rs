@@ -1,4 +1,4 @@
-//! A reef fish: one closed surface with texture coordinates, colours and normals.
+//! Sample mesh of a reef fish: one closed surface with texture coordinates, colours and normals.
 //!
 //! The body is a grid of rings from the mouth to the tail fin. Each of the other fins and both eyes
 //! replace a block of quads of the grid: walls rise from the rim of the block, and a cap closes
@@ -27,7 +27,9 @@ use patch::{Block, Patch};
 
 use meshlod_mesh::Mesh;
 
-/// Builds a fish from -1 to 1 along x that swims towards -x, with its left side towards +z.
+/// Builds a closed reef fish with texture coordinates, colours and normals.
+///
+/// It reaches from -1 to 1 along x and swims towards -x, with its left side towards +z.
 ///
 /// The body has one wedge per vertex, two along the belly. Each side of each fin, the eyes, the
 /// mouth and the rim of the tail have wedges of their own, so that no two texture charts overlap.

@@ -1,4 +1,4 @@
-//! Patches: blocks of the grid, and the shapes that replace them.
+//! Patches of the fish's body: blocks of quads, and the fins and eyes that replace them.
 
 use glam::DVec3;
 
