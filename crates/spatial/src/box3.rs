@@ -1,4 +1,4 @@
-//! Axis-aligned boxes in `f32`.
+//! Axis-aligned bounding boxes in `f32`.
 
 use glam::Vec3;
 

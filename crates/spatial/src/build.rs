@@ -1,4 +1,4 @@
-//! Top-down construction of the hierarchy by binned surface area cost.
+//! Top-down construction of a bounding volume hierarchy with the binned surface area heuristic.
 
 use glam::{Vec3, Vec4};
 use meshlod_mesh::FaceId;

@@ -1,4 +1,4 @@
-//! The bounding volume hierarchy: four boxes a node, triangles in leaf order.
+//! Bounding volume hierarchy of triangles, with four boxes per node.
 
 use glam::Vec4;
 use meshlod_mesh::{FaceId, Frame, Mesh, MeshError};
@@ -8,7 +8,8 @@ use thiserror::Error;
 use crate::build::build;
 use crate::triangle::Triangle;
 
-/// A bounding volume hierarchy over the faces of a mesh. It copies the triangles it needs.
+/// Bounding volume hierarchy over the faces of a mesh, for closest point queries. It copies the
+/// triangles it needs.
 ///
 /// Size: about 120 bytes a face. Building gives the same result for any number of threads.
 #[derive(Clone, Debug)]
@@ -23,13 +24,13 @@ pub struct Bvh {
     pub(crate) slots: Vec<u32>,
 }
 
-/// Reason why a hierarchy cannot be built.
+/// Reason why no bounding volume hierarchy can be built over a mesh.
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum BvhError {
     /// The mesh has no faces.
     #[error("the mesh has no faces")]
     Empty,
-    /// The mesh is invalid.
+    /// The mesh is invalid, such as with a face that refers to a missing vertex.
     #[error(transparent)]
     Mesh(#[from] MeshError),
 }
@@ -54,7 +55,7 @@ pub(crate) struct Node {
 pub(crate) const INNER: u8 = u8::MAX;
 
 impl Bvh {
-    /// Builds the hierarchy over all faces of `mesh`, degenerate ones included.
+    /// Builds the bounding volume hierarchy over all faces of `mesh`, degenerate ones included.
     ///
     /// Cost: O(n log n), n = faces; in parallel.
     /// # Errors
@@ -77,7 +78,8 @@ impl Bvh {
         Ok(Self { frame, nodes, triangles, faces, slots })
     }
 
-    /// Returns all faces in leaf order, in which neighbours follow one another.
+    /// Returns all faces in the order of the hierarchy's leaves, so that faces close in space are
+    /// close in the list.
     ///
     /// Queries made in this order find the nodes they need in the cache, and each answer is a good
     /// hint for the next query.

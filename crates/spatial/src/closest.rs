@@ -9,14 +9,14 @@ use crate::build::MAX_DEPTH;
 use crate::bvh::{INNER, Node};
 use crate::triangle::closest_point;
 
-/// The point of a mesh closest to a query point.
+/// Point of a mesh closest to a query point, with its face and distance.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ClosestPoint {
-    /// Position of the closest point, in model units.
+    /// Position of the closest point on the mesh, in model units.
     pub point: [f64; 3],
-    /// Face that it lies on; the one of lowest id if several are equally close.
+    /// Face that the closest point lies on; the lowest-numbered one if several are equally close.
     pub face: FaceId,
-    /// Squared distance to the query point, in squared model units.
+    /// Squared distance from the query point to the closest point, in square model units.
     pub distance_squared: f64,
 }
 
@@ -32,7 +32,7 @@ const SLACK: f64 = 1e-23;
 const STACK: usize = 3 * MAX_DEPTH + 4;
 
 impl Bvh {
-    /// Returns the point of the mesh closest to `point`, which must be finite.
+    /// Returns the point on the mesh closest to `point`, which must be finite.
     ///
     /// `hint` is a face thought to be near, such as the answer to a neighbouring query: a good one
     /// saves time, and none changes the answer. Exact up to `f64` rounding relative to the size of
@@ -46,8 +46,8 @@ impl Bvh {
         self.in_model(&best)
     }
 
-    /// Returns a point of the mesh within the distance `most` of `point`, which must be finite;
-    /// `None` if there is none.
+    /// Returns a point on the mesh within the distance `most` of `point`, which must be finite;
+    /// `None` if there is no such point.
     ///
     /// The search stops at any point within `enough`, else it returns the closest. `hint` works as
     /// in [`Self::closest`]. Lengths are in model units.

@@ -1,4 +1,4 @@
-//! Sorting points along a space-filling curve.
+//! Sorting points along a space-filling (Hilbert) curve.
 
 use glam::Vec3;
 use rayon::prelude::*;
@@ -10,8 +10,8 @@ const CELLS: f32 = (1u32 << BITS) as f32;
 /// Runs of equal keys at least this long are sorted again at a finer scale.
 const CROWD: usize = 32;
 
-/// Returns the indices of points sorted along Hilbert's curve, so that near points are near in the
-/// order.
+/// Returns the indices of points in order along the Hilbert curve, so that points close in space
+/// are close in the order.
 ///
 /// Points in one cell are sorted again in the box of that cell's points, so neither far-off points
 /// nor crowds spoil the order; coincident points keep their order. Coordinates are finite, in any

@@ -1,4 +1,4 @@
-//! An octree whose leaves list the triangles that pass through them.
+//! Octree whose leaves list the triangles that pass through them.
 
 use glam::DVec3;
 
@@ -15,7 +15,8 @@ const MOST_ENTRIES: usize = 64;
 /// margin.
 const SLACK: f64 = 1e-14;
 
-/// The leaves of an octree over triangles.
+/// Octree over triangles, stored as its nonempty leaves; each lists the triangles that pass through
+/// it.
 ///
 /// The root is a cube at the least corner of the bounding box of all triangles, with the longest
 /// side of that box. A cell is split into eight while it has more than 16 triangles, down to level
@@ -29,19 +30,19 @@ pub struct Octree {
     leaves: Vec<OctreeLeaf>,
 }
 
-/// A leaf of an octree, with the triangles that pass through it.
+/// Leaf cell of an octree, with the triangles that pass through it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct OctreeLeaf {
-    /// Level of the leaf: its side is the root's divided by 2^level.
+    /// Depth of the leaf: its side is the root cube's side divided by 2^level.
     pub level: u8,
-    /// Index of the leaf along each axis, below 2^level.
+    /// Position of the leaf in the grid of its level: an index per axis, below 2^level.
     pub at: [u32; 3],
-    /// Triangles that pass through the leaf, at least one, in ascending order.
+    /// Indices of the triangles that pass through the leaf, at least one, in ascending order.
     pub triangles: Vec<u32>,
 }
 
 impl Octree {
-    /// Builds the octree over `count` triangles. Coordinates are finite and below 1e300.
+    /// Builds the octree over `count` triangles, whose coordinates must be finite and below 1e300.
     ///
     /// Cost: about the number of entries times the number of levels.
     pub fn new(count: usize, triangle: impl Fn(u32) -> Triangle) -> Self {
@@ -60,17 +61,17 @@ impl Octree {
         Self { origin: lo.into(), side, leaves }
     }
 
-    /// Returns the least corner of the root.
+    /// Returns the corner of the root cube with the smallest coordinates.
     pub fn origin(&self) -> [f64; 3] {
         self.origin
     }
 
-    /// Returns the length of the side of the root.
+    /// Returns the side length of the root cube.
     pub fn side(&self) -> f64 {
         self.side
     }
 
-    /// Returns the nonempty leaves, sorted by level, then by z, y and x.
+    /// Returns the leaves that triangles pass through, sorted by level, then by z, y and x.
     pub fn leaves(&self) -> &[OctreeLeaf] {
         &self.leaves
     }

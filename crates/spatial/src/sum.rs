@@ -1,6 +1,7 @@
-//! Compensated summation.
+//! Compensated summation of floating-point numbers.
 
-/// A compensated sum, which accumulates the rounding error of each addition and adds it at the end.
+/// Compensated sum, which adds up the rounding error of each addition and corrects the result by
+/// it.
 ///
 /// Accurate to a few ulp of the sum unless terms cancel by more than fifteen digits.
 /// # References
@@ -12,7 +13,7 @@ pub struct CompensatedSum {
 }
 
 impl CompensatedSum {
-    /// Adds a term.
+    /// Adds a number to the sum.
     #[inline]
     pub fn add(&mut self, term: f64) {
         let total = self.total + term;
@@ -24,7 +25,7 @@ impl CompensatedSum {
         self.total = total;
     }
 
-    /// Returns the value of the sum.
+    /// Returns the corrected value of the sum.
     pub fn value(self) -> f64 {
         self.total + self.lost
     }

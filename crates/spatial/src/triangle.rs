@@ -1,8 +1,8 @@
-//! Closest point on a triangle in `f64`, robust for slivers and degenerate triangles.
+//! Closest point on a triangle, in `f64`; robust for slivers and degenerate triangles.
 
 use glam::DVec3;
 
-/// A triangle given by its three corners.
+/// Triangle, given by the positions of its three corners.
 pub type Triangle = [DVec3; 3];
 
 /// Squared sine of the first corner's angle below which the normal alone is not trusted.
@@ -10,7 +10,7 @@ pub type Triangle = [DVec3; 3];
 /// At a sine of 1e-6 the normal still has ten good digits.
 const SLIVER: f64 = 1e-12;
 
-/// Returns the point of the triangle closest to `p`.
+/// Returns the point on the triangle closest to the point `p`.
 ///
 /// If the projection of `p` falls inside, the result is a barycentric combination of the corners,
 /// else a point on one of the edges that `p` lies beyond. Slivers, whose normal is uncertain, and
