@@ -1,4 +1,4 @@
-//! Two-sided distance between surfaces.
+//! Two-sided distance between the surfaces of two meshes, measured by sampling.
 
 use meshlod_mesh::{FaceId, Mesh};
 use meshlod_spatial::ClosestPoint;
@@ -8,13 +8,14 @@ use thiserror::Error;
 use crate::prepared::{PreparedSurface, SurfaceError};
 use crate::sample::samples;
 
-/// Options of a distance measurement.
+/// Options for measuring the distance between two meshes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct DistanceOptions {
-    /// Number of samples on each surface, spread evenly by area. Half a million give the mean to
-    /// within about 0.1 %.
+    /// Number of sample points on each surface, spread evenly by area.
+    ///
+    /// Half a million give the mean distance to within about 0.1 %.
     pub samples: usize,
-    /// Seed of the random sample positions.
+    /// Seed of the random numbers that place the sample points.
     pub seed: u64,
 }
 
@@ -24,81 +25,81 @@ impl Default for DistanceOptions {
     }
 }
 
-/// Measured distance between two surfaces A and B, both ways, in model units.
+/// Distance measured between two surfaces A and B, in both directions, in model units.
 ///
 /// Mean and RMS are taken over the samples. The maximum is a lower bound of the true one, and exact
 /// if that is attained at a vertex.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Distance {
-    /// Distance of points of A from B.
+    /// Distance from points on A to the surface B.
     pub forward: OneSidedDistance,
-    /// Distance of points of B from A.
+    /// Distance from points on B to the surface A.
     pub backward: OneSidedDistance,
-    /// Length of the diagonal of A's bounding box.
+    /// Length of the diagonal of A's bounding box, in model units.
     pub diagonal: f64,
 }
 
-/// Measured distance of the points of one surface from another surface, in model units.
+/// Distance measured from points on one surface to another surface, in model units.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct OneSidedDistance {
-    /// Mean distance of the samples.
+    /// Mean distance of the sample points from the other surface, in model units.
     pub mean: f64,
-    /// Root mean square distance of the samples.
+    /// Root mean square distance of the sample points from the other surface, in model units.
     pub rms: f64,
-    /// Maximum distance over the samples and the used vertices.
+    /// Maximum distance of the sample points and of the vertices used by faces, in model units.
     pub max: f64,
-    /// Location of the maximum.
+    /// Location of the maximum distance, on both surfaces.
     pub place: Place,
 }
 
-/// A point of one surface and its closest point on the other.
+/// Point on one surface and the closest point on the other.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Place {
-    /// Point of the measured surface.
+    /// Point on the surface that is measured from.
     pub from: [f64; 3],
-    /// Closest point of the other surface.
+    /// Closest point on the other surface.
     pub to: [f64; 3],
-    /// Face of the other surface that `to` lies on.
+    /// Face of the other surface on which the closest point lies.
     pub face: FaceId,
 }
 
-/// Reason why a distance cannot be measured.
+/// Reason why the distance between two meshes cannot be measured.
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum MeasureError {
-    /// The first mesh cannot be measured.
+    /// The first of the two meshes cannot be measured.
     #[error("the first mesh: {0}")]
     First(SurfaceError),
-    /// The second mesh cannot be measured.
+    /// The second of the two meshes cannot be measured.
     #[error("the second mesh: {0}")]
     Second(SurfaceError),
-    /// The number of samples is 0.
+    /// The requested number of sample points is 0.
     #[error("the number of samples must be at least 1, not 0")]
     NoSamples,
 }
 
 impl Distance {
-    /// Returns the average of the mean distances of both directions.
+    /// Returns the mean distance: the average of both directions.
     pub fn mean(&self) -> f64 {
         (self.forward.mean + self.backward.mean) * 0.5
     }
 
-    /// Returns the quadratic mean of the RMS distances of both directions.
+    /// Returns the root mean square distance, combined from both directions.
     pub fn rms(&self) -> f64 {
         ((self.forward.rms.powi(2) + self.backward.rms.powi(2)) * 0.5).sqrt()
     }
 
-    /// Returns the larger maximum of both directions, a lower bound of the Hausdorff distance.
+    /// Returns the maximum distance in either direction, a lower bound of the Hausdorff distance.
     pub fn max(&self) -> f64 {
         self.forward.max.max(self.backward.max)
     }
 
-    /// Converts a length to a percentage of A's diagonal.
+    /// Converts a length in model units to a percentage of the diagonal of A's bounding box.
     pub fn percent(&self, length: f64) -> f64 {
         100.0 * length / self.diagonal
     }
 }
 
-/// Measures the distance between two meshes, both ways.
+/// Measures the distance between the surfaces of two meshes, in both directions.
 ///
 /// Each sample and each used vertex is compared with the exact closest point of the other mesh. The
 /// result is the same to the bit for any number of threads.
@@ -116,7 +117,8 @@ pub fn distance(a: &Mesh, b: &Mesh, options: &DistanceOptions) -> Result<Distanc
     surface_distance(&a, &b, options)
 }
 
-/// Measures the [`distance`] between two prepared surfaces, for surfaces measured more than once.
+/// Measures the [`distance`] between two prepared surfaces, which saves time if a surface is
+/// measured more than once.
 ///
 /// # Errors
 /// No samples.
@@ -132,7 +134,7 @@ pub fn surface_distance(
     Ok(Distance { forward, backward, diagonal: a.diagonal })
 }
 
-/// Computes the distance of each vertex of `a`, used or not, from the surface `b`, in model units.
+/// Computes the distance from each vertex of `a`, used or not, to the surface `b`, in model units.
 ///
 /// Returns one value per position; NaN for a position that is not finite. Cost: O(n log f), n =
 /// vertices of `a`, f = faces of `b`; in parallel.

@@ -1,4 +1,4 @@
-//! Meshes for tests.
+//! Test meshes for distance measurements.
 
 use meshlod_mesh::{Mesh, VertexId};
 

@@ -1,4 +1,4 @@
-//! Measures of triangle meshes: two-sided surface distance, area, volume and triangle quality.
+//! Measurements of triangle meshes: two-sided surface distance, area, volume and triangle quality.
 //!
 //! [`distance`] measures how far two meshes are apart, by samples spread evenly over both. To
 //! measure many meshes against one, build a [`PreparedSurface`] of each and call

@@ -1,4 +1,4 @@
-//! A mesh prepared for repeated distance measurements.
+//! Mesh prepared for repeated distance measurements.
 
 use meshlod_mesh::{FaceId, Frame, Mesh, VertexId};
 use meshlod_spatial::{Bvh, BvhError};
@@ -6,7 +6,8 @@ use thiserror::Error;
 
 use crate::size::triangle_area;
 
-/// A mesh with the search structure and the sampling table that distance measurements need.
+/// Mesh prepared for distance measurements, with a bounding volume hierarchy and a table for
+/// sampling.
 #[derive(Clone, Debug)]
 pub struct PreparedSurface<'m> {
     pub(crate) mesh: &'m Mesh,
@@ -18,7 +19,7 @@ pub struct PreparedSurface<'m> {
     pub(crate) diagonal: f64,
 }
 
-/// Reason why a mesh cannot be measured.
+/// Reason why distances to or from a mesh cannot be measured.
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum SurfaceError {
     /// The mesh has no faces or is invalid.
@@ -30,13 +31,14 @@ pub enum SurfaceError {
     /// The mesh is so large or small that squared distances would leave the range of `f64`.
     #[error("the diagonal {diagonal:e} must be between 1e-140 and 1e140: scale the mesh first")]
     Extent {
-        /// Length of the diagonal of the bounding box.
+        /// Length of the diagonal of the mesh's bounding box, in model units.
         diagonal: f64,
     },
 }
 
 impl<'m> PreparedSurface<'m> {
-    /// Builds the structures for searching and sampling `mesh`.
+    /// Prepares a mesh for distance measurements: builds its bounding volume hierarchy and sampling
+    /// table.
     ///
     /// Cost: O(n log n), n = faces; in parallel. Size: about 130 bytes a face.
     ///
@@ -64,12 +66,13 @@ impl<'m> PreparedSurface<'m> {
         Ok(Self { mesh, bvh, area_up_to, vertices, diagonal })
     }
 
-    /// Returns the diagonal of the bounding box of the used vertices, in model units.
+    /// Returns the length of the diagonal of the mesh's bounding box, in model units; unused
+    /// vertices do not count.
     pub fn diagonal(&self) -> f64 {
         self.diagonal
     }
 
-    /// Returns the bounding volume hierarchy over the faces.
+    /// Returns the bounding volume hierarchy over the faces of the mesh.
     pub fn bvh(&self) -> &Bvh {
         &self.bvh
     }

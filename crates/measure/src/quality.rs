@@ -1,29 +1,32 @@
-//! Triangle quality.
+//! Shape quality of triangles.
 
 use glam::DVec3;
 use meshlod_mesh::Mesh;
 use meshlod_spatial::CompensatedSum;
 
-/// Number of bins of the quality histogram.
+/// Number of bins of the triangle quality histogram.
 pub const QUALITY_BINS: usize = 10;
 
 /// Quality at or below which a triangle's area is only rounding error.
 const DEGENERATE: f64 = 1e-15;
 
-/// Statistics of triangle quality: 1 for an equilateral triangle, 0 for a degenerate one.
+/// Statistics of the shape quality of triangles: 1 for an equilateral triangle, 0 for a degenerate
+/// one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Quality {
-    /// Number of faces by quality: below 0.1, below 0.2 and so on; the last bin includes 1.
+    /// Number of triangles with a quality below 0.1, from 0.1 to 0.2 and so on; the last bin
+    /// includes 1.
     pub histogram: [usize; QUALITY_BINS],
-    /// Quality of the worst face.
+    /// Lowest quality of any triangle.
     pub min: f64,
-    /// Mean quality of the faces.
+    /// Mean quality of all triangles.
     pub mean: f64,
-    /// Number of faces whose area is zero up to rounding; the histogram includes them.
+    /// Number of degenerate triangles, whose area is zero up to rounding. The histogram includes
+    /// them.
     pub degenerate: usize,
 }
 
-/// Computes the quality statistics of all faces; `None` for a mesh without faces.
+/// Computes shape quality statistics of all triangles; `None` for a mesh without faces.
 ///
 /// Indices must be in range and positions finite. Cost: O(faces).
 pub fn quality(mesh: &Mesh) -> Option<Quality> {

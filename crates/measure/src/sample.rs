@@ -1,4 +1,4 @@
-//! Stratified sampling of a surface, independent of the number of threads.
+//! Stratified random sampling of a surface, independent of the number of threads.
 
 use std::ops::Range;
 

@@ -1,10 +1,10 @@
-//! Surface area and enclosed volume.
+//! Surface area and enclosed volume of a mesh.
 
 use glam::DVec3;
 use meshlod_mesh::{Frame, Mesh};
 use meshlod_spatial::CompensatedSum;
 
-/// Computes the total area of the faces, in squared model units; 0 without faces.
+/// Computes the total area of the faces, in square model units; 0 for a mesh without faces.
 ///
 /// Indices must be in range and positions finite. Infinite only if the area exceeds `f64`.
 /// Cost: O(faces).
@@ -15,8 +15,8 @@ pub fn area(mesh: &Mesh) -> f64 {
     frame.model_squared(sum.value())
 }
 
-/// Computes the signed volume, in cubed model units: positive if faces point outwards; 0 without
-/// faces.
+/// Computes the signed volume of the mesh in cubic model units, positive if faces point outwards
+/// and 0 without faces.
 ///
 /// For a closed mesh this is the enclosed volume, each region weighted by its winding number. For
 /// an open mesh it is the volume of the cones from the centre of the bounding box to the faces.
