@@ -1,4 +1,4 @@
-//! Binning of faces by picture tile.
+//! Sorting of faces into picture tiles before rasterization.
 
 use meshlod_mesh::Mesh;
 use rayon::prelude::*;

@@ -1,4 +1,4 @@
-//! Cameras, and fitting them to a mesh.
+//! Perspective cameras, and fitting them to a mesh.
 
 use glam::DVec3;
 use meshlod_mesh::{Bounds, Mesh};
@@ -16,19 +16,19 @@ pub struct Camera {
     near: f64,
 }
 
-/// Viewing direction and framing for [`Camera::fit`].
+/// Viewing direction and framing for fitting a [`Camera`] to a mesh or a box.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct View {
-    /// Viewing direction, of any length.
+    /// Direction in which the camera looks, a vector of any length.
     pub direction: [f64; 3],
-    /// Direction that points up in the picture, of any length.
+    /// Direction that points up in the picture, a vector of any length.
     pub up: [f64; 3],
     /// Field of view along the shorter side of the picture, in radians.
     pub fov_rad: f64,
-    /// Fraction of the frame that the object fills, 0 to 1, in width or height, whichever is
+    /// Fraction of the picture's width or height that the object fills, 0 to 1, whichever is
     /// larger.
     pub fill: f64,
-    /// Aspect ratio of the picture, width by height.
+    /// Aspect ratio of the picture: width divided by height.
     pub aspect: f64,
 }
 
@@ -61,7 +61,7 @@ impl View {
 
 impl Camera {
     /// Creates a camera at `eye` that looks at `target`; `fov_rad` is the field of view along the
-    /// picture's shorter side.
+    /// picture's shorter side, in radians.
     ///
     /// The near plane is at a thousandth of the distance to the target.
     pub fn look_at(eye: [f64; 3], target: [f64; 3], up: [f64; 3], fov_rad: f64) -> Self {
@@ -71,8 +71,9 @@ impl Camera {
         Self { eye, right, up, forward, tan_half_fov: half_tangent(fov_rad), near: near(distance) }
     }
 
-    /// Creates a camera that sees a whole box, framed as `view.fill` asks. An empty box counts as a
-    /// point at the origin.
+    /// Creates a camera that sees a whole bounding box and is framed according to `view`.
+    ///
+    /// An empty box counts as a point at the origin.
     pub fn fit(bounds: &Bounds, view: &View) -> Self {
         let corner = |i: usize| {
             let pick = |axis: usize| {
@@ -84,8 +85,10 @@ impl Camera {
         Self::fit_points(corners.map(corner), view)
     }
 
-    /// Creates a camera that sees a whole mesh, framed as `view.fill` asks; closer than
-    /// [`Camera::fit`] of its bounding box. Unused vertices are ignored.
+    /// Creates a camera that sees a whole mesh and is framed according to `view`.
+    ///
+    /// The camera is closer than that for the bounding box, [`Camera::fit`]. Unused vertices are
+    /// ignored.
     ///
     /// Cost: O(n), n = faces.
     pub fn fit_mesh(mesh: &Mesh, view: &View) -> Self {
@@ -93,16 +96,18 @@ impl Camera {
         Self::fit_points(points, view)
     }
 
-    /// Returns the twelve standard cameras for comparing two meshes: at the corners of an
-    /// icosahedron, with the mesh filling 80% of a square frame and a field of view of 45°.
+    /// Returns the twelve standard cameras for comparing pictures of two meshes, at the corners of
+    /// an icosahedron around `mesh`.
+    ///
+    /// The mesh fills 80% of a square frame, with a field of view of 45°.
     ///
     /// Use the cameras of the reference mesh for both pictures.
     pub fn icosahedron_views(mesh: &Mesh) -> [Self; 12] {
         Self::cyclic_views(mesh, [1.0, GOLDEN])
     }
 
-    /// Returns twelve more cameras, at the corners of the same icosahedron turned by a right angle,
-    /// for 24 in total.
+    /// Returns twelve more cameras around `mesh`, besides those of [`Camera::icosahedron_views`],
+    /// at the corners of the icosahedron turned by a right angle.
     pub fn other_icosahedron_views(mesh: &Mesh) -> [Self; 12] {
         Self::cyclic_views(mesh, [GOLDEN, 1.0])
     }
@@ -121,22 +126,24 @@ impl Camera {
         })
     }
 
-    /// Returns the position of the eye.
+    /// Returns the position of the camera's eye.
     pub fn eye(&self) -> [f64; 3] {
         self.eye.into()
     }
 
-    /// Returns the viewing direction, a unit vector.
+    /// Returns the direction in which the camera looks, a unit vector.
     pub fn forward(&self) -> [f64; 3] {
         self.forward.into()
     }
 
-    /// Returns the depth of the near plane along [`Camera::forward`], in model units.
+    /// Returns the distance of the near plane from the eye, along [`Camera::forward`], in model
+    /// units.
     pub fn near(&self) -> f64 {
         self.near
     }
 
-    /// Returns this camera with another near plane, which must be above zero.
+    /// Returns this camera with its near plane at another distance, in model units, which must be
+    /// above zero.
     pub fn with_near(self, near: f64) -> Self {
         Self { near: near.max(f64::MIN_POSITIVE), ..self }
     }

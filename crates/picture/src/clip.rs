@@ -1,4 +1,4 @@
-//! Clipping of faces that cross the near plane or exceed the range of fixed point.
+//! Clipping of faces that cross the near plane or exceed the range of fixed-point coordinates.
 
 use glam::DVec3;
 

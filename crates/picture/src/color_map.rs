@@ -4,17 +4,18 @@ use glam::Vec3;
 
 use crate::{Picture, PictureError, srgb};
 
-/// Colour map from numbers to colours.
+/// Perceptually uniform colour map, which shows numbers as colours.
 ///
 /// All maps are interpolated in Oklab [Ott20], where equal steps look equally large.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum ColorMap {
-    /// From pale grey (zero) over yellow and red to deep purple (maximum), for errors on a surface.
+    /// Pale grey at zero, then yellow and red to deep purple at the maximum: for errors on a
+    /// surface.
     #[default]
     Heat,
-    /// From deep violet over green to yellow, with evenly rising lightness, for any quantity.
+    /// Deep violet over green to yellow, with evenly rising lightness: for any quantity.
     Sequential,
-    /// From blue over near-white to red, for signed quantities with zero in the middle.
+    /// Blue over near-white to red: for signed quantities with zero in the middle.
     Diverging,
 }
 
@@ -51,7 +52,7 @@ const DIVERGING: [Oklab; 5] = [
 ];
 
 impl ColorMap {
-    /// Returns the sRGB colour at `t`, clamped to [0, 1]; grey for NaN.
+    /// Returns the sRGB colour for the number `t`, clamped to [0, 1]; grey for NaN.
     pub fn color(self, t: f32) -> [u8; 3] {
         if t.is_nan() {
             return NOT_A_NUMBER;
@@ -59,7 +60,7 @@ impl ColorMap {
         self.linear(t).to_array().map(srgb::encode)
     }
 
-    /// Draws the map as a horizontal bar, minimum at the left, for use as a legend.
+    /// Draws the colour map as a horizontal bar for use as a legend, with the minimum at the left.
     ///
     /// # Errors
     /// A width or height out of range.

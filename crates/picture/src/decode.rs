@@ -1,4 +1,4 @@
-//! Textures from PNG and JPEG files.
+//! Decoding of PNG and JPEG files as textures.
 
 use std::io::Cursor;
 
@@ -18,7 +18,7 @@ const MAX_DEFLATE_RATIO: usize = 1032;
 const MAX_JPEG_RATIO: usize = 8 * 64;
 
 impl Texture {
-    /// Decodes a PNG or JPEG file, detected by its first bytes.
+    /// Decodes a PNG or JPEG file as a texture; the type is detected from the first bytes.
     ///
     /// Grey, palette and 16-bit images are converted to 8-bit colour.
     ///
@@ -28,7 +28,7 @@ impl Texture {
         if bytes.starts_with(&JPEG_START) { Self::from_jpeg(bytes) } else { Self::from_png(bytes) }
     }
 
-    /// Decodes a PNG file.
+    /// Decodes a PNG file as a texture.
     ///
     /// # Errors
     /// Errors of [`Texture::decode`].
@@ -54,7 +54,7 @@ impl Texture {
         Self::new(width, height, &rgba)
     }
 
-    /// Decodes a JPEG file.
+    /// Decodes a JPEG file as a texture.
     ///
     /// # Errors
     /// Errors of [`Texture::decode`].

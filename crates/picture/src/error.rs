@@ -1,24 +1,24 @@
-//! Errors of pictures and textures.
+//! Errors in making pictures and textures.
 
 use meshlod_mesh::MeshError;
 use thiserror::Error;
 
 use crate::Picture;
 
-/// Reason why a picture or texture could not be made.
+/// Reason why a picture or a texture could not be made.
 #[derive(Debug, Error)]
 pub enum PictureError {
-    /// The mesh is invalid.
+    /// The mesh to be drawn is invalid.
     #[error(transparent)]
     Mesh(#[from] MeshError),
-    /// Width or height is zero or too large.
+    /// The width or the height of a picture is zero or too large.
     #[error(
         "a picture cannot have {width} x {height} pixels; sides must be between 1 and {MAX_SIDE}"
     )]
     Size {
-        /// Requested width.
+        /// Requested width in pixels.
         width: u64,
-        /// Requested height.
+        /// Requested height in pixels.
         height: u64,
     },
     /// Two pictures to be compared have different sizes.
@@ -27,17 +27,17 @@ pub enum PictureError {
         a[0], a[1], b[0], b[1]
     )]
     DifferentSizes {
-        /// Width and height of the first picture.
+        /// Width and height of the first picture, in pixels.
         a: [u32; 2],
-        /// Width and height of the second picture.
+        /// Width and height of the second picture, in pixels.
         b: [u32; 2],
     },
-    /// A list does not have the length that the mesh or the size requires.
+    /// A list does not have the length that the mesh or the picture size requires.
     #[error("{what}: expected {expected} entries, found {found}")]
     Length {
-        /// Contents of the list.
+        /// Name of what the list contains.
         what: &'static str,
-        /// Length of the list.
+        /// Actual length of the list.
         found: usize,
         /// Required length.
         expected: usize,
@@ -45,11 +45,11 @@ pub enum PictureError {
     /// A material refers to a texture that does not exist.
     #[error("material {material} refers to texture {texture}, but there are only {count}")]
     NoTexture {
-        /// Index of the material.
+        /// Index of the material that refers to a missing texture.
         material: usize,
-        /// Index of the texture it refers to.
+        /// Index of the texture that does not exist.
         texture: usize,
-        /// Number of textures.
+        /// Number of textures that exist.
         count: usize,
     },
     /// An image file is damaged or not of the expected type.
@@ -57,10 +57,10 @@ pub enum PictureError {
     Decode {
         /// Image type that was expected, `png` or `jpeg`.
         kind: &'static str,
-        /// Reason given by the decoder.
+        /// Reason given by the image decoder.
         reason: String,
     },
-    /// The PNG could not be written.
+    /// The picture could not be written as PNG.
     #[error("png: {0}")]
     Encode(#[from] png::EncodingError),
 }

@@ -1,4 +1,4 @@
-//! Visible faces, and points on them.
+//! Visible faces and points on them.
 
 use glam::{DVec3, Vec3};
 use meshlod_mesh::Mesh;

@@ -1,4 +1,4 @@
-//! FLIP: the difference perceived when two pictures alternate in place.
+//! FLIP: the difference a viewer perceives when two pictures alternate in place.
 
 use glam::Vec3;
 use rayon::prelude::*;
@@ -9,10 +9,12 @@ use crate::plane::{Plane, gaussian, normalized};
 use crate::srgb::decode;
 use crate::{Picture, PictureError};
 
-/// Pixels per degree of visual angle: a screen of 3840 pixels, 0.7 m wide, seen from 0.7 m.
+/// Pixels per degree of visual angle that [`flip`] assumes: a 3840-pixel-wide screen of 0.7 m, seen
+/// from 0.7 m.
 pub const PIXELS_PER_DEGREE: f64 = 67.0;
 
-/// Computes the FLIP error of each pixel, row after row from the top, from 0 (equal) to 1.
+/// Computes the FLIP error (perceived difference) of each pixel between two pictures, from 0
+/// (equal) to 1, row after row from the top.
 ///
 /// The viewing distance is given by [`PIXELS_PER_DEGREE`]. Alpha is ignored. The result does not
 /// depend on the number of threads; machines may differ in the last bits.

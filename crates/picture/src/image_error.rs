@@ -1,4 +1,5 @@
-//! Perceived error of a level: pictures from twelve sides, compared with the original's.
+//! Visual error of a level of detail: pictures from twelve sides, compared with those of the
+//! original.
 
 use std::ops::Range;
 
@@ -6,29 +7,31 @@ use meshlod_mesh::Mesh;
 
 use crate::{Camera, Paint, Picture, PictureError, Style, flip, render, ssim, visibility};
 
-/// Difference between pictures of a level and of its original.
+/// Visual difference between a level of detail and its original, measured on pictures from twelve
+/// sides.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ImageError {
-    /// Mean [`flip`](crate::flip()) over the twelve views, from 0 (equal) to 1.
+    /// Mean FLIP error over the twelve views, from 0 (equal) to 1; see [`flip`](crate::flip()).
     pub flip: f64,
-    /// Mean [`ssim`](crate::ssim()) over the twelve views; 1 if equal.
+    /// Mean structural similarity over the twelve views, 1 if equal; see [`ssim`](crate::ssim()).
     pub ssim: f64,
-    /// Errors of the single views, in the order of [`Camera::icosahedron_views`].
+    /// Errors of each view, in the order of [`Camera::icosahedron_views`].
     pub views: [ViewError; 12],
 }
 
-/// Difference between a level and its original in one view.
+/// Visual difference between a level of detail and its original, seen from one side.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ViewError {
-    /// Mean FLIP error over the pixels that show the original or the level.
+    /// Mean FLIP error over the pixels that show the original or the level, from 0 (equal) to 1.
     pub flip: f64,
-    /// Mean SSIM over these pixels.
+    /// Mean structural similarity (SSIM) over the pixels that show the original or the level; 1 if
+    /// equal.
     pub ssim: f64,
-    /// Number of these pixels.
+    /// Number of pixels that show the original or the level.
     pub pixels: usize,
 }
 
-/// Twelve pictures of an original, to compare levels with.
+/// Pictures of an original mesh from twelve sides, to compare its levels of detail with.
 pub struct ReferenceImages<'a> {
     style: Style<'a>,
     views: Vec<ReferenceImage>,
@@ -41,7 +44,7 @@ struct ReferenceImage {
     shown: Vec<bool>,
 }
 
-/// Compares pictures of a level with those of its original, from twelve sides.
+/// Compares pictures of a level of detail with those of its original, from twelve sides.
 ///
 /// The cameras are those of the original, the style is [`Style::comparison`] with this paint, which
 /// must suit both meshes.
@@ -59,7 +62,7 @@ pub fn image_error(
 }
 
 impl<'a> ReferenceImages<'a> {
-    /// Draws the twelve pictures of an original, which take 60 MB.
+    /// Draws the pictures of an original mesh from twelve sides; they take 60 MB.
     ///
     /// # Errors
     /// Errors of [`render`].
@@ -67,8 +70,10 @@ impl<'a> ReferenceImages<'a> {
         Self::with_style(original, Style { paint: paint.clone(), ..Style::comparison() })
     }
 
-    /// Draws smaller pictures of an original, `side` pixels wide and high. Comparison is faster but
-    /// less strict, as small differences are not visible; state the side along with such a figure.
+    /// Draws the pictures of an original mesh from twelve sides, `side` pixels wide and high.
+    ///
+    /// With smaller pictures, comparison is faster but less strict, as small differences are not
+    /// visible; state the side along with such a figure.
     ///
     /// # Errors
     /// Errors of [`render`].
@@ -86,7 +91,7 @@ impl<'a> ReferenceImages<'a> {
         Ok(Self { views: views.into_iter().collect::<Result<_, PictureError>>()?, style })
     }
 
-    /// Compares a level with the original.
+    /// Compares pictures of a level of detail with those of the original, from twelve sides.
     ///
     /// # Errors
     /// Errors of [`render`].

@@ -1,4 +1,4 @@
-//! Perceptual colour spaces and distances.
+//! Perceptual colour spaces and colour distances.
 
 use glam::{Mat3, Vec3};
 

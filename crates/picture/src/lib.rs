@@ -1,5 +1,6 @@
-//! Renders triangle meshes on the CPU, for reports, perceptual error and crack detection. Pixels
-//! are the same on every machine and for any number of threads.
+//! Renders triangle meshes on the CPU, for reports, comparison of pictures and crack detection.
+//!
+//! Pixels are the same on every machine and for any number of threads.
 //!
 //! A [`Camera`] can be fitted to the mesh, a [`Style`] describes the look, and [`render`] returns a
 //! [`Picture`] that can be saved as PNG:

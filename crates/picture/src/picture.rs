@@ -1,11 +1,12 @@
-//! Pictures, and saving them as PNG.
+//! Pictures in memory, and saving them as PNG.
 
 use std::io::Write;
 
 use crate::PictureError;
 use crate::error::{check_length, check_size};
 
-/// Image of sRGB pixels with straight alpha, rows from the top.
+/// Picture in memory: sRGB pixels with straight (not premultiplied) alpha, row after row from the
+/// top.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Picture {
     width: u32,
@@ -14,7 +15,7 @@ pub struct Picture {
 }
 
 impl Picture {
-    /// Creates a picture from its pixels: four bytes each, row after row from the top.
+    /// Creates a picture from its RGBA pixels: four bytes each, row after row from the top.
     ///
     /// # Errors
     /// A side of zero or above [`MAX_SIDE`](crate::MAX_SIDE), or not `4 * width * height` bytes.
@@ -24,29 +25,33 @@ impl Picture {
         Ok(Self { width, height, rgba })
     }
 
-    /// Returns the width in pixels.
+    /// Returns the width of the picture in pixels.
     pub fn width(&self) -> u32 {
         self.width
     }
 
-    /// Returns the height in pixels.
+    /// Returns the height of the picture in pixels.
     pub fn height(&self) -> u32 {
         self.height
     }
 
-    /// Returns all pixels: four bytes each, row after row from the top.
+    /// Returns all pixels as sRGB and alpha: four bytes each, row after row from the top.
     pub fn rgba(&self) -> &[u8] {
         &self.rgba
     }
 
-    /// Returns a pixel, `x` from the left and `y` from the top. Panics outside the picture.
+    /// Returns the RGBA value of the pixel `x` from the left and `y` from the top.
+    ///
+    /// Panics outside the picture.
     pub fn pixel(&self, x: u32, y: u32) -> [u8; 4] {
         assert!(x < self.width && y < self.height, "({x}, {y}) is outside of the picture");
         let at = 4 * (y as usize * self.width as usize + x as usize);
         [self.rgba[at], self.rgba[at + 1], self.rgba[at + 2], self.rgba[at + 3]]
     }
 
-    /// Writes a PNG: RGB if every pixel is opaque, else RGBA. The bytes are reproducible.
+    /// Writes the picture as PNG: RGB if every pixel is opaque, else RGBA.
+    ///
+    /// The bytes are the same on every run.
     ///
     /// # Errors
     /// Errors of the encoder and of `out`.
@@ -66,7 +71,7 @@ impl Picture {
         Ok(())
     }
 
-    /// Encodes the picture as PNG.
+    /// Returns the picture as the bytes of a PNG file.
     pub fn png(&self) -> Vec<u8> {
         let mut bytes = Vec::new();
         self.write_png(&mut bytes).expect("a whole picture is always written to memory");
@@ -74,7 +79,7 @@ impl Picture {
     }
 }
 
-/// Places pictures side by side, aligned at the top; the rest is transparent.
+/// Places pictures side by side in one picture, aligned at the top; the rest is transparent.
 ///
 /// # Errors
 /// An empty list, or a result that is too wide.
@@ -82,7 +87,8 @@ pub fn side_by_side(pictures: &[Picture]) -> Result<Picture, PictureError> {
     grid(pictures, pictures.len())
 }
 
-/// Arranges pictures in rows of `columns`; every cell is as large as the largest picture.
+/// Arranges pictures in a grid with `columns` columns; every cell is as large as the largest
+/// picture.
 ///
 /// # Errors
 /// An empty list, zero columns, or a result that is too large.

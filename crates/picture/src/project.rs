@@ -1,4 +1,4 @@
-//! Projection of vertices to fixed point, so that shared edges agree bit for bit.
+//! Projection of vertices to fixed-point pixel coordinates, so that shared edges agree bit for bit.
 
 use glam::DVec3;
 use rayon::prelude::*;

@@ -1,4 +1,4 @@
-//! Rendering of a mesh to a picture.
+//! Rendering of a mesh as a picture.
 
 use glam::Vec3;
 use meshlod_mesh::Mesh;
@@ -15,7 +15,7 @@ use crate::srgb::{decode, encode};
 use crate::visibility::{NO_FACE, Sample, draw_tiles};
 use crate::{BackFaces, Background, Camera, Picture, PictureError, Style};
 
-/// Renders a mesh.
+/// Renders a mesh as a picture, seen by a camera, in a style.
 ///
 /// First, the nearest face of every sample is found tile by tile, as in [`visibility`]. Then every
 /// pixel is shaded once per face that it sees, at the mean position of that face's samples, and the

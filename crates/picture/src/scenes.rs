@@ -1,4 +1,4 @@
-//! Test fixtures: small meshes.
+//! Small meshes for tests.
 
 use glam::DVec3;
 use meshlod_mesh::{Attributes, Layer, LayerKind, Mesh, VertexId, WedgeId};

@@ -7,23 +7,24 @@ use rayon::prelude::*;
 use crate::error::check_length;
 use crate::{Camera, PictureError, visibility};
 
-/// Mesh whose faces are labelled by component, object or any other part.
+/// Mesh with a label for each face: its component, its object or any other part.
 #[derive(Clone, Copy, Debug)]
 pub struct LabelledMesh<'a> {
-    /// Mesh to look at.
+    /// Mesh to be rendered.
     pub mesh: &'a Mesh,
-    /// Label of each face.
+    /// Label of each face; faces with the same label form a part.
     pub label_of_face: &'a [u32],
 }
 
-/// Options of the see-through test.
+/// Options for the see-through test, which finds cracks and hidden parts showing through.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SeeThroughOptions {
-    /// Width and height of a view, in pixels.
+    /// Width and height of each rendered view, in pixels.
     pub side: u32,
-    /// Radius in pixels within which a level may show what the original shows.
+    /// Distance in pixels by which parts of a level may be shifted from where the original shows
+    /// them.
     pub radius: u32,
-    /// Distance in pixels by which silhouettes may move.
+    /// Distance in pixels by which silhouettes of a level may move.
     pub outline: u32,
 }
 
@@ -33,27 +34,29 @@ impl Default for SeeThroughOptions {
     }
 }
 
-/// Numbers of see-through pixels of a level.
+/// Numbers of pixels where a level of detail shows what its original hides, over all views.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct SeeThroughCounts {
-    /// Pixels that show the original.
+    /// Number of pixels that show the original.
     pub shown: usize,
-    /// Pixels of these where the level lets the background through.
+    /// Number of pixels that show the original but where the level lets the background through.
     pub background: usize,
-    /// Pixels of these where the level lets a hidden part through.
+    /// Number of pixels that show the original but where the level shows a part that should be
+    /// hidden.
     pub hidden: usize,
 }
 
-/// Content that a level wrongly shows at a see-through pixel.
+/// Background or hidden part that a level wrongly shows at a pixel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SeeThrough {
-    /// The background.
+    /// The background shows through the level, as through a crack.
     Background,
-    /// The part with this label.
+    /// A part that the original hides shows through; this is its label.
     Hidden(u32),
 }
 
-/// Visibility of an original from 24 sides, against which levels are tested for see-through pixels.
+/// Original mesh as seen from 24 sides, against which its levels of detail are tested for cracks
+/// and hidden parts that show through.
 ///
 /// A pixel is see-through if the level shows a part, or the background, that the original neither
 /// shows there nor nearby ([`SeeThroughOptions::radius`]). Silhouettes move in any level, so it is
@@ -105,8 +108,9 @@ const BACKGROUND: u32 = u32::MAX;
 const OUTSIDE: u32 = u32::MAX - 1;
 
 impl ReferenceVisibility {
-    /// Renders the original from the corners of two icosahedra, see [`Camera::icosahedron_views`]
-    /// and [`Camera::other_icosahedron_views`].
+    /// Renders the original mesh from 24 sides, the corners of two icosahedra.
+    ///
+    /// See [`Camera::icosahedron_views`] and [`Camera::other_icosahedron_views`].
     ///
     /// # Errors
     /// Errors of [`visibility()`], and a number of labels that differs from the number of faces.
@@ -131,7 +135,7 @@ impl ReferenceVisibility {
         Ok(Self { frame, views })
     }
 
-    /// Counts the see-through pixels of a level over all views.
+    /// Counts the pixels, over all views, where a level of detail shows what the original hides.
     ///
     /// # Errors
     /// Errors of [`ReferenceVisibility::new`].
@@ -152,7 +156,8 @@ impl ReferenceVisibility {
         Ok(sum)
     }
 
-    /// Finds the see-through pixels of a level in one view, row after row from the top.
+    /// Finds the pixels of one view where a level of detail shows what the original hides, row
+    /// after row from the top.
     ///
     /// # Errors
     /// Errors of [`ReferenceVisibility::new`].
@@ -168,7 +173,7 @@ impl ReferenceVisibility {
         Ok((0..level.len()).into_par_iter().map(of).collect())
     }
 
-    /// Returns the cameras of the views.
+    /// Returns the cameras of the 24 views.
     pub fn cameras(&self) -> impl ExactSizeIterator<Item = Camera> + '_ {
         self.views.iter().map(|view| view.camera)
     }

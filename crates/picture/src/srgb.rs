@@ -1,4 +1,6 @@
-//! sRGB transfer curve as tables, computed at compile time with + - * / only: the same everywhere.
+//! Conversion between sRGB and linear light, by tables that are the same on every machine.
+//!
+//! They are computed at compile time with + - * / only.
 
 /// Linear light of each of the 256 sRGB levels.
 pub(crate) static DECODE: [f32; 256] = decode_table();

@@ -6,8 +6,8 @@ use crate::error::check_same_size;
 use crate::plane::{Plane, gaussian, normalized};
 use crate::{Picture, PictureError};
 
-/// Computes the SSIM of luma around each pixel, row after row from the top: 1 if equal, at least
-/// -1.
+/// Computes the structural similarity (SSIM) of two pictures around each pixel, in luma: 1 if
+/// equal, at least -1. Row after row from the top.
 ///
 /// The window is a Gaussian of 11 by 11 pixels. Alpha is ignored. The result does not depend on the
 /// number of threads. Cost: O(pixels), less than [`flip`](crate::flip()).

@@ -1,27 +1,27 @@
-//! Look of a picture.
+//! Style of a rendered picture: colours, lighting, wireframe, background, size.
 
 use meshlod_mesh::{LayerKind, Mesh};
 
 use crate::{ColorMap, Texture};
 
-/// Style in which a mesh is rendered. Colours are sRGB.
+/// Style in which a mesh is rendered, such as its colours and lighting. Colours are sRGB.
 #[derive(Clone, Debug)]
 pub struct Style<'a> {
-    /// Width and height in pixels.
+    /// Width and height of the picture, in pixels.
     pub size: [u32; 2],
-    /// Colour of the surface.
+    /// Source of the surface's colours, such as materials or one plain colour.
     pub paint: Paint<'a>,
-    /// Shading normals.
+    /// Normals used for shading the surface.
     pub normals: Normals,
     /// Lighting of the surface.
     pub lighting: Lighting,
-    /// Look of faces seen from behind.
+    /// Appearance of faces seen from behind.
     pub back_faces: BackFaces,
-    /// Lines along the edges of all faces.
+    /// Lines drawn along the edges of all faces; `None` for no wireframe.
     pub wireframe: Option<Wireframe>,
     /// Background of the picture.
     pub background: Background,
-    /// Number of samples per pixel.
+    /// Antialiasing of edges, as a number of samples per pixel.
     pub antialiasing: Antialiasing,
 }
 
@@ -41,9 +41,10 @@ impl Default for Style<'_> {
 }
 
 impl Style<'_> {
-    /// Returns the style for comparing pictures of two meshes, together with
-    /// [`Camera::icosahedron_views`](crate::Camera::icosahedron_views): 1024 by 1024, headlight
-    /// plus ambient, mid-grey background.
+    /// Returns the style for comparing pictures of two meshes, with the cameras of
+    /// [`Camera::icosahedron_views`](crate::Camera::icosahedron_views).
+    ///
+    /// Pictures are 1024 by 1024, lit by headlight plus ambient, on a mid-grey background.
     pub fn comparison() -> Self {
         Self {
             normals: Normals::FromMesh,
@@ -54,32 +55,34 @@ impl Style<'_> {
     }
 }
 
-/// Colour of a surface before lighting.
+/// Source of a surface's colours, before lighting.
 #[derive(Clone, Debug)]
 pub enum Paint<'a> {
-    /// One colour.
+    /// One colour for the whole surface.
     Plain([u8; 3]),
-    /// One colour per face.
+    /// One colour for each face.
     FaceColors(&'a [[u8; 3]]),
-    /// One number per face, shown through a colour map.
+    /// One number for each face, shown as a colour through a colour map.
     FaceValues(Values<'a>),
-    /// One number per vertex, interpolated over faces, then shown through a colour map.
+    /// One number for each vertex, interpolated over faces and shown as a colour through a colour
+    /// map.
     VertexValues(Values<'a>),
-    /// First colour layer of the mesh, taken as sRGB; light grey if it has none.
+    /// First vertex colours of the mesh, taken as sRGB; light grey if it has none.
     Colors,
-    /// Colour and texture of each face's material.
+    /// Base colour and texture of each face's material.
     Materials(&'a Materials),
-    /// Checkerboard over the first uv layer.
+    /// Checkerboard over the first texture coordinates of the mesh.
     Checker {
-        /// Squares per unit of uv.
+        /// Number of squares per unit of texture coordinates.
         squares: u32,
     },
 }
 
 impl<'a> Paint<'a> {
-    /// Chooses the paint for comparing a mesh with its levels: the first that applies of its
-    /// materials, if they have a texture, a checkerboard over its uvs, its colours, the colours of
-    /// its materials, and the default.
+    /// Chooses surface colours that suit the comparison of a mesh with its levels of detail.
+    ///
+    /// It takes the first that applies: its materials, if they have a texture; a checkerboard over
+    /// its texture coordinates; its vertex colours; the colours of its materials; the default.
     ///
     /// `materials` has an entry for every material label of the mesh, or at least one.
     pub fn comparison(mesh: &Mesh, materials: &'a Materials) -> Self {
@@ -108,38 +111,39 @@ impl Default for Paint<'_> {
     }
 }
 
-/// Numbers over a mesh, and the colour map that shows them.
+/// Numbers for the faces or vertices of a mesh, and the colour map that shows them.
 #[derive(Clone, Copy, Debug)]
 pub struct Values<'a> {
-    /// One number per face or per vertex; NaN is shown grey.
+    /// Number for each face or each vertex; NaN is shown grey.
     pub values: &'a [f32],
-    /// Colour map for the numbers.
+    /// Colour map that turns the numbers into colours.
     pub map: ColorMap,
-    /// Numbers at the first and the last colour of the map; others are clamped.
+    /// Numbers shown in the first and the last colour of the map; those beyond are clamped.
     pub range: [f32; 2],
 }
 
-/// Materials by label: each material label of a mesh is an index into these. A mesh without labels
-/// uses the first for all faces.
+/// Materials and textures of a mesh; its material labels are indices into the list of materials.
+///
+/// A mesh without labels uses the first material for all faces.
 #[derive(Clone, Debug, Default)]
 pub struct Materials {
-    /// One material per material label of the mesh.
+    /// Materials of the mesh, one for each material label.
     pub materials: Vec<PaintMaterial>,
-    /// Textures that the materials refer to.
+    /// Textures that the materials refer to by index.
     pub textures: Vec<Texture>,
 }
 
-/// Material of a surface in [`Paint::Materials`].
+/// Material of a surface: base colour and texture.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PaintMaterial {
-    /// Base colour, linear RGB.
+    /// Base colour of the material, linear RGB.
     pub base_color: [f32; 3],
-    /// Index of a texture in [`Materials::textures`] that multiplies the base colour; it is sampled
-    /// with the first uv layer.
+    /// Texture that multiplies the base colour, by index into [`Materials::textures`]; it is placed
+    /// by the mesh's first texture coordinates.
     pub texture: Option<usize>,
 }
 
-/// Shading normals of a surface.
+/// Normals used for shading a surface: flat, smooth or from the mesh.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Normals {
     /// Flat shading: one normal per face.
@@ -147,50 +151,52 @@ pub enum Normals {
     /// Smooth shading: one normal per vertex.
     #[default]
     Smooth,
-    /// Smooth where the angle between neighbouring faces is below a limit, sharp elsewhere.
+    /// Smooth shading across edges whose faces meet at less than the crease angle, sharp edges
+    /// elsewhere.
     Creased {
-        /// Crease angle, in radians.
+        /// Crease angle between the normals of neighbouring faces, in radians.
         crease_rad: f64,
     },
-    /// Normal layer of the mesh; smooth if it has none.
+    /// Normals stored in the mesh; smooth shading if it has none.
     FromMesh,
 }
 
 /// Lighting of a surface.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Lighting {
-    /// From the upper left, with a soft sky and a faint gloss, for pictures to look at.
+    /// Light from the upper left, with a soft sky and a faint gloss, for pictures to look at.
     #[default]
     Studio,
-    /// From the eye, with uniform ambient light, for pictures to compare.
+    /// Light from the eye, with uniform ambient light, for pictures to compare.
     Headlight,
-    /// Mostly uniform, a little from the eye, for colours that carry meaning, as in heat maps.
+    /// Mostly uniform light, a little of it from the eye, for colours that carry meaning, as in
+    /// heat maps.
     Soft,
     /// No lighting: colours are shown unchanged.
     Unlit,
 }
 
-/// Look of faces seen from behind.
+/// Appearance of faces seen from behind.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum BackFaces {
-    /// Like front faces.
+    /// Faces seen from behind look like those seen from the front.
     #[default]
     Same,
-    /// One colour regardless of the paint, so that flipped faces and holes stand out.
+    /// Faces seen from behind have this one colour, so that flipped faces and holes stand out.
     Tint([u8; 3]),
 }
 
 impl BackFaces {
-    /// Tint in a red that is not mistaken for a surface colour.
+    /// Red tint for faces seen from behind, which is not mistaken for a surface colour.
     pub const RED: Self = Self::Tint([196, 92, 78]);
 }
 
-/// Lines along the edges of all faces; they fade where faces become too small for them.
+/// Lines drawn along the edges of all faces; they fade where faces become too small for them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Wireframe {
-    /// Colour of the lines, not lit.
+    /// Colour of the lines, not affected by lighting.
     pub color: [u8; 3],
-    /// Width of a line between two faces, in pixels.
+    /// Width of a line along an edge between two faces, in pixels.
     pub width_px: f32,
     /// Opacity of the lines, 0 to 1.
     pub opacity: f32,
@@ -205,15 +211,15 @@ impl Default for Wireframe {
 /// Background of a picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Background {
-    /// Transparent: alpha is the covered fraction of a pixel.
+    /// Transparent background: the alpha of a pixel is the fraction that the mesh covers.
     Transparent,
-    /// One colour.
+    /// One colour over the whole background.
     Plain([u8; 3]),
-    /// Vertical gradient.
+    /// Vertical gradient between two colours.
     Gradient {
-        /// Colour at the top.
+        /// Colour at the top of the picture.
         top: [u8; 3],
-        /// Colour at the bottom.
+        /// Colour at the bottom of the picture.
         bottom: [u8; 3],
     },
 }
@@ -224,17 +230,17 @@ impl Default for Background {
     }
 }
 
-/// Number of samples per pixel.
+/// Antialiasing of edges, as a number of samples per pixel.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Antialiasing {
-    /// One sample: aliased edges.
+    /// One sample per pixel: edges are jagged.
     Off,
-    /// 2 by 2 samples.
+    /// 2 by 2 samples per pixel.
     Four,
-    /// 3 by 3 samples.
+    /// 3 by 3 samples per pixel.
     #[default]
     Nine,
-    /// 4 by 4 samples.
+    /// 4 by 4 samples per pixel.
     Sixteen,
 }
 

@@ -6,7 +6,7 @@ use crate::PictureError;
 use crate::error::{check_length, check_size};
 use crate::srgb::{DECODE, encode};
 
-/// sRGB image that repeats over the uv plane, with its mipmaps.
+/// Texture image in sRGB that repeats over the plane of texture coordinates, with its mipmaps.
 ///
 /// uv (0, 0) is the lower left corner of the image, (1, 1) the upper right.
 #[derive(Clone, Debug, PartialEq)]
@@ -26,8 +26,9 @@ struct Level {
 const MAX_PROBES: f32 = 8.0;
 
 impl Texture {
-    /// Creates a texture from texels: four bytes each, row after row from the top. Alpha is
-    /// ignored.
+    /// Creates a texture from RGBA texels: four bytes each, row after row from the top.
+    ///
+    /// Alpha is ignored.
     ///
     /// # Errors
     /// A side of zero or above [`MAX_SIDE`](crate::MAX_SIDE), or not `4 * width * height` bytes.
@@ -42,8 +43,8 @@ impl Texture {
         Ok(Self { levels })
     }
 
-    /// Creates a checkerboard of `squares` by `squares`, redder to the right and greener upwards,
-    /// so that rotation and distortion show.
+    /// Creates a checkerboard texture of `squares` by `squares`, redder to the right and greener
+    /// upwards, so that rotation and distortion show.
     pub fn checker(squares: u32) -> Self {
         const SIDE: u32 = 512;
         let squares = squares.clamp(1, SIDE);

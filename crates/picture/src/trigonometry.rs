@@ -1,5 +1,6 @@
-//! Tangent and cosine computed with + - * / only. Those of the platform's library may differ in the
-//! last bit from machine to machine, and with them the pixels.
+//! Tangent and cosine computed with + - * / only, so that they are the same on every machine.
+//!
+//! Those of the platform's library may differ in the last bit, and with them the pixels.
 
 /// Returns the tangent of an angle in [0, π/2).
 pub(crate) fn tangent(angle_rad: f64) -> f64 {

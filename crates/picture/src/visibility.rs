@@ -1,4 +1,4 @@
-//! Visible face at each pixel: the first half of every picture, and all of a crack test.
+//! The face visible at each pixel, for rendering and for crack tests.
 
 use meshlod_mesh::{FaceId, Mesh};
 use rayon::prelude::*;
@@ -10,7 +10,7 @@ use crate::project::Point;
 use crate::raster::{SampleRect, cover};
 use crate::{Camera, PictureError};
 
-/// Face visible at the centre of each pixel, with its depth.
+/// Picture of visible faces: the face at the centre of each pixel, with its depth.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Visibility {
     width: u32,
@@ -29,7 +29,8 @@ pub(crate) struct Sample {
 /// Id that no face has.
 pub(crate) const NO_FACE: u32 = u32::MAX;
 
-/// Finds the nearest face at the centre of every pixel; of equally near faces, the lowest id wins.
+/// Finds the face nearest to the camera at the centre of every pixel; of equally near ones, the
+/// lowest-numbered.
 ///
 /// `size` is width and height in pixels. Faces are seen from both sides. Faces with a common edge
 /// leave no gap along it, and a boundary edge covers no pixel twice, so a pixel without a face
@@ -63,28 +64,30 @@ pub fn visibility(
 }
 
 impl Visibility {
-    /// Returns the width in pixels.
+    /// Returns the width of the picture in pixels.
     pub fn width(&self) -> u32 {
         self.width
     }
 
-    /// Returns the height in pixels.
+    /// Returns the height of the picture in pixels.
     pub fn height(&self) -> u32 {
         self.height
     }
 
-    /// Returns the face visible at each pixel, row after row from the top.
+    /// Returns the face visible at each pixel, or `None` for the background, row after row from the
+    /// top.
     pub fn faces(&self) -> impl ExactSizeIterator<Item = Option<FaceId>> + '_ {
         self.samples.iter().map(|s| (s.face != NO_FACE).then_some(FaceId(s.face)))
     }
 
-    /// Returns the depth along the camera's forward axis at each pixel, in model units.
+    /// Returns the depth of the visible face at each pixel, in model units along the viewing
+    /// direction; `None` for the background.
     pub fn depths(&self) -> impl ExactSizeIterator<Item = Option<f64>> + '_ {
         let depth = |s: &Sample| self.near / f64::from(s.nearness);
         self.samples.iter().map(move |s| (s.face != NO_FACE).then(|| depth(s)))
     }
 
-    /// Counts the pixels that see a face.
+    /// Returns the number of pixels that show a face rather than the background.
     pub fn covered(&self) -> usize {
         self.faces().flatten().count()
     }
