@@ -1,4 +1,4 @@
-//! Lengths of sixteen bits, in stored units.
+//! Lengths packed into sixteen bits, in stored units.
 
 /// A length in sixteen bits, rounded up: five of exponent, eleven of mantissa, as `f32` has them.
 ///

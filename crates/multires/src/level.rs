@@ -21,11 +21,12 @@ const SPARSE: usize = 64;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Level {
     frame: Frame,
-    /// Node of the model that each vertex shows: a vertex has the same number in every level. Do
-    /// not change the numbers, as exact positions are found by them.
+    /// Number of each vertex's node in the model, which is the same in every level.
+    ///
+    /// Do not change the numbers, as exact positions are found by them.
     pub nodes: Vec<u32>,
-    /// Vertex positions in stored units and single precision; [`Level::mesh`] gives them in model
-    /// units.
+    /// Vertex positions in the model's stored units, in single precision; [`Level::mesh`] converts
+    /// them to model units.
     pub positions: Vec<[f32; 3]>,
     /// Vertex indices of each face, counter-clockwise seen from outside.
     pub faces: Vec<[u32; 3]>,
@@ -79,7 +80,7 @@ impl Level {
         Self { exact: exact.clone(), ..self }
     }
 
-    /// Returns the faces that intersect a focus, with their vertices.
+    /// Returns the faces that intersect the region `focus`, with their vertices.
     ///
     /// Intersection is exact up to the rounding of positions, except for segments and frusta, which
     /// may also return faces that only come close.
@@ -108,8 +109,9 @@ impl Level {
         exact.map_or_else(rounded, |exact| self.frame.local(exact))
     }
 
-    /// Converts the level to a mesh in model units. Vertices of the input come back exactly if the
-    /// model is [lossless](crate::Forest::lossless).
+    /// Converts the level to a mesh in model units.
+    ///
+    /// Vertices of the input come back exactly if the model is [lossless](crate::Forest::lossless).
     pub fn mesh(&self) -> Mesh {
         let position = |(&node, &rounded): (&u32, &[f32; 3])| {
             self.exact.get(node).unwrap_or_else(|| self.frame.model(Vec3::from(rounded)))
@@ -120,7 +122,7 @@ impl Level {
         )
     }
 
-    /// Counts the folded edges: those whose two face normals are more than 134° apart.
+    /// Counts the folded edges: those whose two faces have normals more than 134° apart.
     ///
     /// Cost: O(n log n).
     pub fn folds(&self) -> usize {
@@ -143,7 +145,7 @@ impl Level {
     }
 
     /// Returns the faces as triples of model nodes in a canonical order, so that equal meshes
-    /// compare equal.
+    /// compare as equal.
     pub fn canonical(&self) -> Vec<[u32; 3]> {
         let mut faces: Vec<_> =
             self.faces.iter().map(|f| f.map(|v| self.nodes[v as usize])).collect();

@@ -1,4 +1,4 @@
-//! Everything the extraction algorithms need, built from one forest.
+//! All tables that the extraction algorithms need, built from one contraction forest.
 
 use std::sync::OnceLock;
 
@@ -9,8 +9,8 @@ use crate::implicit::{
 };
 use crate::query::QueryError;
 
-/// An [`Implicit`] model plus the tables that make static extraction fast: the face list of the
-/// finest mesh and the dependencies between updates.
+/// Multiresolution model for fast extraction: an [`Implicit`] model, the face list of the finest
+/// mesh, and the dependencies between updates.
 ///
 /// A model is immutable, so any number of threads can each hold a [`Cut`] or an [`Extractor`] of
 /// it. Where memory is short, [`Cut::new`] works on the implicit model alone.
@@ -25,21 +25,21 @@ pub struct Model {
     weights: OnceLock<Vec<Weight>>,
 }
 
-/// Memory used by a [`Model`], in bytes.
+/// Memory used by the parts of a [`Model`], in bytes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ModelBytes {
-    /// The implicit model, which is all that a [`Cut`] needs.
+    /// Memory used by the implicit model, which is all that a [`Cut`] needs, in bytes.
     pub implicit: usize,
-    /// The face list.
+    /// Memory used by the face list, in bytes.
     pub faces: usize,
-    /// The dependencies between updates.
+    /// Memory used by the dependencies between updates, in bytes.
     pub dependencies: usize,
-    /// The nested balls of every range requested so far.
+    /// Memory used by all nested balls prepared so far, in bytes.
     pub saturated: usize,
 }
 
 impl Model {
-    /// Builds a model of all levels of a simplification.
+    /// Builds a model of all levels from a recorded simplification.
     ///
     /// Cost: linear.
     /// # Errors
@@ -63,8 +63,9 @@ impl Model {
         Self::new(&Forest::from_implicit(implicit)).expect("its nodes were numbered before")
     }
 
-    /// Builds a model whose [`Extractor`] follows the given split rule. A [`Cut`] always follows
-    /// the strict one.
+    /// Builds a model whose [`Extractor`] follows the given split rule.
+    ///
+    /// A [`Cut`] always follows the strict one.
     /// # Errors
     /// As for [`Model::new`].
     pub fn with_rule(forest: &Forest, rule: SplitRule) -> Result<Self, BuildError> {
@@ -78,8 +79,8 @@ impl Model {
         })
     }
 
-    /// Prepares nested balls so that [`Extractor::saturated`] can answer camera queries over the
-    /// whole model.
+    /// Prepares bounding balls that nest, so that [`Extractor::saturated`] can answer camera
+    /// queries over the whole model.
     ///
     /// `slopes` is the range of tolerances per unit of distance to support; a tolerance of `p`
     /// pixels has the slope `p * camera.pixel()`. A range of a factor of four works well; wider
@@ -93,15 +94,15 @@ impl Model {
         Ok(())
     }
 
-    /// Replaces the implicit model by its [compact form](Implicit::compacted) if it has one, and
-    /// returns true if so.
+    /// Replaces the implicit model by its [compact form](Implicit::compacted), if there is one, and
+    /// returns whether it did.
     pub fn compact(&mut self) -> bool {
         let Some(compact) = self.implicit.compacted() else { return false };
         self.implicit = compact;
         true
     }
 
-    /// Returns a cut at the base mesh, ready to follow a sequence of queries.
+    /// Returns a cut that starts as the base mesh, ready to follow a sequence of queries.
     pub fn cut(&self) -> Cut<'_> {
         Cut::new(&self.implicit)
     }
@@ -116,7 +117,7 @@ impl Model {
         &self.implicit
     }
 
-    /// Returns the memory used by each part.
+    /// Returns the memory used by each part of the model.
     pub fn bytes(&self) -> ModelBytes {
         ModelBytes {
             implicit: self.implicit.bytes(),

@@ -1,4 +1,4 @@
-//! Balls, and a small ball that encloses others.
+//! Balls, and the construction of a small ball that encloses others.
 
 use glam::DVec3;
 

@@ -22,18 +22,19 @@ use enclosing_ball::EnclosingBall;
 use overlay::{Fragment, Overlay};
 use stars::Stars;
 
-/// Meaning of the errors of a model's updates.
+/// Meaning of the errors stored with a model's updates: estimates or proven bounds.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum ErrorKind {
-    /// Estimate made by the simplification: most triangles are within it, some are not.
+    /// The errors are estimates by the simplification: most triangles are within them, some are
+    /// not.
     #[default]
     Estimate,
-    /// Proven bound: no triangle is farther off.
+    /// The errors are proven bounds: no triangle deviates by more.
     Bound,
 }
 
 impl Forest {
-    /// Replaces every update's error by a proven bound.
+    /// Replaces the error of every update by a proven bound on the distance to the finest mesh.
     ///
     /// Take any cut, and let *t* be the greatest error of the updates it leaves unrefined. Every
     /// point of the cut is then within *t* of the finest mesh, and every point of the finest mesh

@@ -12,64 +12,68 @@ use crate::forest::MAX_LEVELS;
 use crate::forest::by_level;
 use crate::implicit::{Implicit, Wing, has_three_corners};
 
-/// Statement proved about every cut of a model.
+/// Result of certifying a multiresolution model: what has been proved about its updates.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Certificate {
-    /// Number of updates whose two sides have the same boundary and whose wings are distinct: no
-    /// cut has a crack there or is less manifold than the input.
+    /// Number of updates proved sound: they open no crack and keep every cut as manifold as the
+    /// input.
+    ///
+    /// Their two sides have the same boundary, and their wings are distinct.
     pub sound: usize,
-    /// Number of updates where the input is already non-manifold or inconsistently oriented. Their
-    /// levels are proved, so they are the same in every cut; and with the children identified, both
-    /// sides have the same edges of an odd number of faces. Manifoldness is not proved.
+    /// Number of updates where the input is already non-manifold or inconsistently oriented, so
+    /// that manifoldness is not proved.
+    ///
+    /// Their levels are proved, so they are the same in every cut; and with the children
+    /// identified, both sides have the same edges of an odd number of faces.
     pub non_manifold: usize,
 }
 
-/// Reasons why a model cannot be certified.
+/// Reason why a multiresolution model cannot be certified.
 #[derive(Clone, Copy, Debug, Error, PartialEq, Eq)]
 pub enum CertifyError {
-    /// An update has a flaw that shows in some cut.
+    /// An update has a flaw that would show in some cut of the model.
     #[error("update {update} is not sound: {why}")]
     Update {
-        /// The update.
+        /// Index of the flawed update.
         update: u32,
-        /// The flaw.
+        /// Flaw of the update.
         why: Flaw,
     },
-    /// The finest mesh has the wrong number of faces.
+    /// The finest mesh does not have the number of faces that the model states.
     #[error("the finest mesh has {found} faces where the model says {expected}")]
     FullFaces {
-        /// Number of faces after all updates.
+        /// Number of faces after all updates have been applied.
         found: usize,
         /// Number of faces that the model states.
         expected: usize,
     },
 }
 
-/// Flaws of an update.
+/// Flaws that an update of a multiresolution model can have.
 #[derive(Clone, Copy, Debug, Error, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Flaw {
-    /// It may be applied before its vertex exists.
+    /// The update may be applied before the vertex that it splits exists.
     #[error("its vertex is created by an update of the same or a lower level")]
     VertexLater,
-    /// It may be applied before its ring is the recorded one.
+    /// The update may be applied before a neighbour of its vertex has been created.
     #[error("a neighbour of its vertex is created by an update of the same or a lower level")]
     NeighbourLater,
-    /// It may be applied after its ring has changed again.
+    /// The update may be applied after a neighbour of its vertex has been split.
     #[error("a neighbour of its vertex is split by an update of a higher level")]
     NeighbourEarlier,
-    /// It is fused with the next update, which cannot be applied.
+    /// The update is fused with the one that follows it, which cannot be applied.
     #[error("it is fused with a split that cannot follow it")]
     FusedBlocked,
-    /// It creates a triangle with two corners at one vertex.
+    /// The update creates a triangle with two corners at the same vertex.
     #[error("it creates a triangle with a repeated corner")]
     RepeatedCorner,
-    /// A wing is not around its vertex.
+    /// A wing of the update is not a neighbour of the vertex that the update splits.
     #[error("it creates fewer faces than stated, or removes some")]
     NoWing,
-    /// It creates an edge with three faces, or with two of opposite orientation.
+    /// The update creates an edge with three faces, or with two of opposite orientation.
     #[error("it creates a non-manifold or inconsistently oriented edge")]
     BadEdge,
-    /// It opens a crack.
+    /// The update opens a crack: its coarse and its fine side have different boundaries.
     #[error("its two sides have different boundaries")]
     Crack,
 }

@@ -1,4 +1,4 @@
-//! Inspection of updates: those that are due by the schedule, or all.
+//! Inspection of updates against a query: those that are due by the schedule, or all.
 
 use super::front::VertexState;
 use super::schedule::ScheduleEntry;

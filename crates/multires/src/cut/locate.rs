@@ -14,16 +14,16 @@ use crate::level::Level;
 use crate::query::Region;
 use crate::query::{Focus, QueryError};
 
-/// The triangle of a cut closest to a point.
+/// The triangle of a cut that is closest to a given point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Located {
-    /// Its slot in the list of triangles.
+    /// Slot of the triangle in the cut's list of triangles.
     pub slot: u32,
-    /// Its nodes.
+    /// Nodes of the model at the corners of the triangle.
     pub nodes: [u32; 3],
-    /// Its closest point, in model units.
+    /// Point of the triangle that is closest to the given point, in model units.
     pub closest: [f64; 3],
-    /// Distance to that point, in model units.
+    /// Distance from the given point to the triangle, in model units.
     pub distance: f64,
 }
 
@@ -35,7 +35,7 @@ struct Candidate {
 }
 
 impl Cut<'_> {
-    /// Returns the triangles that intersect a focus.
+    /// Returns the triangles of the cut that intersect the region `focus`.
     ///
     /// Intersection is exact up to the rounding of positions, except for segments and frusta, which
     /// may also return triangles that only come close.
@@ -68,8 +68,10 @@ impl Cut<'_> {
         Ok(mt.level_from_faces(faces.collect()))
     }
 
-    /// Returns the triangle closest to a point in model units, which contains the point if any
-    /// triangle does. Returns `None` if the cut has no triangles or a coordinate is not finite.
+    /// Returns the triangle of the cut closest to a point in model units, or `None` if the cut has
+    /// no triangles or a coordinate is not finite.
+    ///
+    /// It contains the point if any triangle does.
     ///
     /// Ties, as at a corner, go to the triangle with the least nodes.
     ///

@@ -23,7 +23,8 @@ use crate::level::Level;
 use crate::query::{Ball, Criterion, QueryKey};
 use crate::query::{Query, QueryError};
 
-/// A mesh extracted from an [`Implicit`] MT that follows a sequence of queries.
+/// A mesh extracted from an [`Implicit`] model, refined and coarsened to follow a sequence of
+/// queries such as the views of a moving camera.
 ///
 /// Whenever an update is interrupted, the mesh is one of the MT's: without cracks and as manifold
 /// as the input.
@@ -45,43 +46,44 @@ pub struct Cut<'m> {
 /// Number of inspections, at a few dozen nanoseconds each, between two readings of the clock.
 const INSPECTIONS_PER_CLOCK: usize = 256;
 
-/// Limits on the work of one [`Cut::update`].
+/// Limits on the work that one call of [`Cut::update`] may do.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct UpdateLimits {
-    /// Largest number of splits and merges; `None` for no limit.
+    /// Largest number of splits and merges of vertices; `None` for any number.
     pub changes: Option<usize>,
-    /// Time after which no further change is begun; inspections stop after half of it. A query of
-    /// another kind first clears the schedule of the last one, which takes a few nanoseconds per
-    /// vertex.
+    /// Time after which no further split or merge is begun; `None` for no time limit.
+    ///
+    /// Inspections of updates stop after half of it. A query that does not continue from the last
+    /// one first clears the schedule of that one, which takes a few nanoseconds per vertex.
     pub time: Option<Duration>,
 }
 
-/// Summary of the changes that an update made to a [`Cut`].
+/// Summary of the changes that one call of [`Cut::update`] made to a cut.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct CutChange {
-    /// Number of vertices split.
+    /// Number of vertex splits applied.
     pub splits: usize,
-    /// Number of vertices merged.
+    /// Number of vertex splits undone, each of which merges two vertices.
     pub merges: usize,
-    /// Number of updates inspected.
+    /// Number of vertex splits that were checked against the query.
     pub inspected: usize,
-    /// True if the cut answers the query; false if a limit was reached first.
+    /// True if the cut satisfies the query; false if a limit was reached first.
     pub done: bool,
 }
 
-/// A slot in the list of triangles whose content has changed.
+/// Change of one slot in a cut's list of triangles.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Patch {
-    /// Index of the slot.
+    /// Index of the changed slot.
     pub slot: u32,
-    /// Nodes of the triangle that was there.
+    /// Nodes of the triangle that was in the slot before; `None` if the slot was empty.
     pub old: Option<[u32; 3]>,
-    /// Nodes of the triangle that is there now.
+    /// Nodes of the triangle that is in the slot now; `None` if the slot is empty.
     pub new: Option<[u32; 3]>,
 }
 
 impl<'m> Cut<'m> {
-    /// Starts at the base mesh.
+    /// Creates a cut that starts as the base mesh, the coarsest level.
     pub fn new(mt: &'m Implicit) -> Self {
         let mut this = Self {
             front: Front::new(mt),
@@ -96,7 +98,7 @@ impl<'m> Cut<'m> {
         this
     }
 
-    /// Refines the base mesh to the answer of a query.
+    /// Creates a cut and refines it until it satisfies a query.
     /// # Errors
     /// The query is invalid.
     pub fn at(mt: &'m Implicit, query: &Query<'_>) -> Result<Self, QueryError> {
@@ -105,9 +107,10 @@ impl<'m> Cut<'m> {
         Ok(cut)
     }
 
-    /// Sets the hysteresis: vertices stay split until the tolerance exceeds their error by this
-    /// fraction, so that a trembling query changes nothing. By default there is none, and the
-    /// answer does not depend on earlier queries.
+    /// Sets the hysteresis: a split is undone only when the tolerance exceeds its error by this
+    /// fraction, so that a jittering query changes nothing.
+    ///
+    /// With `None`, the default, the answer does not depend on earlier queries.
     ///
     /// # Errors
     /// The fraction is negative or not finite.
@@ -121,7 +124,7 @@ impl<'m> Cut<'m> {
         Ok(())
     }
 
-    /// Moves from the answer of the last query to that of this one.
+    /// Refines and coarsens the cut until it satisfies a query or a limit is reached.
     ///
     /// The result is the smallest cut that satisfies the query, or an intermediate one if a limit
     /// was reached; the next call continues from there.
@@ -154,32 +157,33 @@ impl<'m> Cut<'m> {
         Ok(meter.change)
     }
 
-    /// Returns the number of faces.
+    /// Returns the number of faces of the current mesh.
     pub fn face_count(&self) -> usize {
         self.front.triangles.len()
     }
 
-    /// Returns the number of vertices.
+    /// Returns the number of vertices of the current mesh.
     pub fn vertex_count(&self) -> usize {
         self.front.vertex_count()
     }
 
-    /// Returns the number of slots, which is the length of a list indexed by [`Patch::slot`].
+    /// Returns the number of triangle slots, which is the length of a list indexed by
+    /// [`Patch::slot`].
     pub fn slots(&self) -> usize {
         self.front.triangles.slots()
     }
 
-    /// Iterates over the triangles by slot and nodes.
+    /// Iterates over the triangles of the current mesh, each by its slot and its three nodes.
     pub fn triangles(&self) -> impl Iterator<Item = (u32, [u32; 3])> + '_ {
         self.front.triangles.iter()
     }
 
-    /// Iterates over the slots that the last update changed, in no particular order.
+    /// Iterates over the triangle slots that the last update changed, in no particular order.
     pub fn patches(&self) -> impl Iterator<Item = Patch> + '_ {
         self.front.triangles.changes().map(|(slot, old, new)| Patch { slot, old, new })
     }
 
-    /// Returns the current mesh.
+    /// Returns a copy of the current mesh.
     pub fn level(&self) -> Level {
         self.front
             .mt

@@ -1,4 +1,4 @@
-//! Reconstruction of a forest from a packed model.
+//! Reconstruction of a contraction forest from a packed model.
 
 use super::front::{Front, resolve_wings};
 use super::triangles::Spoke;

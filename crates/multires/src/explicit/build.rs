@@ -4,7 +4,7 @@ use super::{Explicit, ExplicitTriangle, ExplicitUpdate};
 use crate::forest::Forest;
 
 impl Explicit {
-    /// Collects every triangle that the simplification ever had.
+    /// Builds the model from all triangles that occurred during a recorded simplification.
     ///
     /// Cost: linear, apart from scanning the stars of vertices.
     pub fn new(forest: &Forest) -> Self {

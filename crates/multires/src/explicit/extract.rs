@@ -7,7 +7,7 @@ use crate::level::Level;
 use crate::query::Criterion;
 use crate::query::{Query, QueryError};
 
-/// A mesh extracted from an [`Explicit`] MT that follows a sequence of queries.
+/// A mesh extracted from an [`Explicit`] model that follows a sequence of queries.
 #[derive(Clone, Debug)]
 pub struct ExplicitCut<'m> {
     mt: &'m Explicit,
@@ -42,7 +42,7 @@ impl Explicit {
 }
 
 impl<'m> ExplicitCut<'m> {
-    /// Starts at the base mesh.
+    /// Creates a cut that starts as the base mesh, the coarsest level.
     pub fn new(mt: &'m Explicit) -> Self {
         let is_base = |&t: &u32| mt.triangles[t as usize].creator.is_none();
         // Triangles that are never created belong to the base; those never refined either are in
@@ -51,7 +51,7 @@ impl<'m> ExplicitCut<'m> {
         Self { mt, applied: vec![false; mt.updates.len()], present }
     }
 
-    /// Moves from the answer of the last query to that of this one.
+    /// Refines and coarsens the cut until it satisfies a query.
     /// # Errors
     /// The query is invalid.
     pub fn update(&mut self, query: &Query<'_>) -> Result<(), QueryError> {
@@ -61,7 +61,7 @@ impl<'m> ExplicitCut<'m> {
         Ok(())
     }
 
-    /// Returns the current mesh.
+    /// Returns a copy of the current mesh.
     pub fn level(&self) -> Level {
         let faces = self.present.iter().map(|&t| self.mt.triangles[t as usize].nodes);
         let place = |node: u32| self.mt.positions[node as usize];

@@ -14,7 +14,8 @@ use crate::query::{Ball, Criterion};
 
 pub use extract::ExplicitCut;
 
-/// All triangles of all levels and the updates between them.
+/// Explicit multi-triangulation (MT): the triangles of all levels, and the updates that exchange
+/// them.
 #[derive(Clone, Debug)]
 pub struct Explicit {
     frame: Frame,
@@ -50,7 +51,7 @@ struct ExplicitTriangle {
 }
 
 impl Explicit {
-    /// Returns the number of updates.
+    /// Returns the number of updates, each of which replaces some triangles by finer ones.
     pub fn update_count(&self) -> usize {
         self.updates.len()
     }
@@ -60,7 +61,7 @@ impl Explicit {
         self.triangles.len()
     }
 
-    /// Returns the memory used by its vectors, in bytes.
+    /// Returns the memory used by the model's vectors, in bytes.
     pub fn bytes(&self) -> usize {
         let lists = |u: &ExplicitUpdate| 4 * (u.coarse.len() + u.fine.len() + u.needs.len());
         size_of_val(&self.positions[..])

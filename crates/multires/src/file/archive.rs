@@ -13,7 +13,7 @@ use crate::model::Model;
 use crate::query::Criterion;
 use crate::query::Query;
 
-/// A `.mlod` file of contractions, opened for reading: all levels of a mesh, coarsest first.
+/// Open `.mlod` file that stores all levels of a mesh as its contractions, coarsest level first.
 #[derive(Debug)]
 pub struct Archive<S> {
     source: S,
@@ -22,14 +22,14 @@ pub struct Archive<S> {
     complete: usize,
 }
 
-/// Result of a query on a file, with what was read to answer it.
+/// Mesh extracted from a `.mlod` file, with statistics of what was read to build it.
 #[derive(Clone, Debug)]
 pub struct Extract {
-    /// Mesh that answers the query.
+    /// Mesh that satisfies the query.
     pub level: Level,
-    /// Number of chunks read.
+    /// Number of chunks of updates read from the file.
     pub chunks: usize,
-    /// Number of updates in those chunks.
+    /// Number of updates (vertex splits) in the chunks that were read.
     pub updates: usize,
     /// Number of bytes read from the file.
     pub bytes: u64,
@@ -58,7 +58,7 @@ impl Archive<Vec<u8>> {
 }
 
 impl<S: Source> Archive<S> {
-    /// Opens a file and reads its header and index.
+    /// Opens a `.mlod` file and reads its header and index.
     /// # Errors
     /// A file of another format, a damaged header, or a file that ends before its base mesh does.
     pub fn open(source: S) -> Result<Self, FileError> {
@@ -76,18 +76,20 @@ impl<S: Source> Archive<S> {
         }
     }
 
-    /// Returns the number of chunks listed in the index, including those cut off.
+    /// Returns the number of chunks of updates listed in the file's index, including any that are
+    /// cut off.
     pub fn chunk_count(&self) -> usize {
         self.header.chunks.len()
     }
 
-    /// Returns the number of chunks present in full; in a truncated file this is less than
-    /// [`chunk_count`](Self::chunk_count).
+    /// Returns the number of chunks of updates present in full; in a truncated file this is less
+    /// than [`chunk_count`](Self::chunk_count).
     pub fn complete_chunks(&self) -> usize {
         self.complete
     }
 
-    /// Returns the byte offset at which the base mesh ends, then the end of each chunk.
+    /// Iterates over byte offsets in the file: the end of the base mesh, then the end of each
+    /// chunk.
     pub fn chunk_ends(&self) -> impl Iterator<Item = u64> + '_ {
         let base = self.header.len() + u64::from(self.header.base.bytes);
         let sizes = self.header.chunks.iter().map(|chunk| u64::from(chunk.stored.bytes));
@@ -98,7 +100,8 @@ impl<S: Source> Archive<S> {
         std::iter::once(base).chain(ends)
     }
 
-    /// Returns the number of updates listed in the index, including those cut off.
+    /// Returns the number of updates (vertex splits) listed in the file's index, including any that
+    /// are cut off.
     pub fn update_count(&self) -> usize {
         self.header.updates()
     }
@@ -108,12 +111,12 @@ impl<S: Source> Archive<S> {
         self.header.about.error_kind
     }
 
-    /// Returns the number of faces of the coarsest mesh.
+    /// Returns the number of faces of the base mesh, the coarsest level.
     pub fn base_faces(&self) -> usize {
         self.header.base_faces as usize
     }
 
-    /// Returns the underlying source of bytes.
+    /// Closes the archive and returns the source of bytes that it was reading.
     pub fn into_source(self) -> S {
         self.source
     }
@@ -123,7 +126,8 @@ impl<S: Source> Archive<S> {
         self.header.diagonal
     }
 
-    /// Returns true if the vertices of the finest mesh have the input's positions to the bit.
+    /// Returns true if the vertices of the finest mesh have exactly the input's positions, bit for
+    /// bit.
     ///
     /// The error of that level is then 0, whatever [`rounding`](Self::rounding) returns. In coarser
     /// levels, vertices that belong to the finest mesh are exact too.
@@ -131,7 +135,8 @@ impl<S: Source> Archive<S> {
         self.header.lossless
     }
 
-    /// Returns the largest distance that a vertex was moved to the file's lattice, in model units.
+    /// Returns the largest distance that rounding to the file's lattice moved a vertex, in model
+    /// units.
     ///
     /// In a [lossless](Self::is_lossless) file this concerns only vertices of coarser levels that
     /// are not vertices of the input.
@@ -146,7 +151,8 @@ impl<S: Source> Archive<S> {
         self.read_chunks(self.complete)
     }
 
-    /// Reads the first `count` chunks and certifies that no cut of the resulting model has a crack.
+    /// Reads the base mesh and the first `count` chunks, and certifies that no cut of the resulting
+    /// model has a crack.
     ///
     /// If these are all chunks of a lossless file, it also checks that every vertex of the finest
     /// mesh has its exact position.
@@ -181,7 +187,7 @@ impl<S: Source> Archive<S> {
         Err(FileError::Section { section: "the finest mesh".into(), why })
     }
 
-    /// Extracts the best cut with at most `faces` faces, like
+    /// Extracts the finest mesh of at most `faces` faces for a query, like
     /// [`Extractor::at_most`](crate::Extractor::at_most).
     ///
     /// For a uniform query, only chunks that may contribute to the answer are read.
@@ -218,7 +224,7 @@ impl<S: Source> Archive<S> {
         needed.count()
     }
 
-    /// Extracts the mesh that answers a query, reading only the chunks whose area the query may
+    /// Extracts the mesh that satisfies a query, reading only the chunks whose area the query may
     /// refine.
     ///
     /// Nothing is certified: a file crafted to mislead, with matching checksums, may give a mesh

@@ -1,16 +1,16 @@
-//! Detection of the kind of model a file holds, by its first bytes.
+//! Detection, from its first bytes, of what a multiresolution file holds.
 
 use super::archive::Archive;
 use super::source::{Source, read_range};
 use super::{FileError, VERSION};
 use crate::rtin::{HeightField, HeightPrecision};
 
-/// A multiresolution file of either kind.
+/// Open multiresolution file, which stores either the contractions of a mesh or a height field.
 #[derive(Debug)]
 pub enum ModelFile<S> {
-    /// The contractions of a mesh.
+    /// A file that stores the contractions of a mesh.
     Contractions(Archive<S>),
-    /// A height field, for [`Rtin`](crate::Rtin).
+    /// A file that stores a height field, from which [`Rtin`](crate::Rtin) builds all levels.
     HeightField(HeightField),
 }
 
@@ -23,8 +23,9 @@ const LENGTH: usize = 16;
 const BODY: usize = 24;
 
 impl<S: Source> ModelFile<S> {
-    /// Opens a multiresolution file: reads a height field whole, or the header and index of
-    /// contractions.
+    /// Opens a multiresolution file of either format.
+    ///
+    /// A height field is read whole; of a file of contractions only the header and the index are.
     /// # Errors
     /// A file of another format, a damaged file, or one that ends too early.
     pub fn open(source: S) -> Result<Self, FileError> {

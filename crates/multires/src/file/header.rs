@@ -1,4 +1,4 @@
-//! Header and index of a file of contractions.
+//! Header and index of a `.mlod` file of contractions.
 
 use glam::{DVec3, Vec3};
 use meshlod_mesh::Frame;

@@ -1,4 +1,4 @@
-//! Cubic lattice to which a file rounds positions.
+//! Cubic lattice to which a `.mlod` file rounds positions.
 
 use glam::{DVec3, IVec3, Vec3};
 

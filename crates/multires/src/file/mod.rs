@@ -47,10 +47,10 @@ pub enum FileError {
     /// The file cannot be read.
     #[error(transparent)]
     Io(#[from] io::Error),
-    /// The file does not start with the magic bytes.
+    /// The file does not start with the magic bytes of a multiresolution file.
     #[error("not a multiresolution file: it does not start with \"meshlodm\"")]
     Magic,
-    /// The file has a version that this program does not support.
+    /// The file has a format version that this program does not support.
     #[error("file version {0} is not supported: this program reads version {VERSION}")]
     Version(u32),
     /// The file ends before its base mesh or height field is complete.
@@ -58,30 +58,30 @@ pub enum FileError {
     Truncated {
         /// Length of the file in bytes.
         at: u64,
-        /// Section that is incomplete.
+        /// Name of the section that is incomplete.
         what: &'static str,
     },
-    /// The checksum of a section does not match its bytes.
+    /// The checksum of a section of the file does not match its bytes.
     #[error("the checksum of {0} does not match: the file is damaged")]
     Checksum(String),
-    /// Data follows the last chunk.
+    /// Unexpected data follows the last chunk of the file.
     #[error("unexpected data after the last chunk, at byte {at}")]
     TrailingData {
         /// Offset at which the file should end.
         at: u64,
     },
-    /// The header has an invalid field.
+    /// The file header has an invalid field.
     #[error("invalid header: {0}")]
     Header(&'static str),
-    /// A section decodes to invalid data.
+    /// A section of the file decodes to invalid data.
     #[error("{section}: {why}")]
     Section {
-        /// Name of the section.
+        /// Name of the damaged section.
         section: String,
         /// Description of the problem.
         why: String,
     },
-    /// Some cut of the model would have a crack.
+    /// The model fails certification: some cut of it would have a crack.
     #[error(transparent)]
     NotCertified(#[from] CertifyError),
     /// The requested rounding is negative, larger than the diagonal or not a number.

@@ -5,8 +5,8 @@ use std::io::{self, Read};
 
 use super::FileError;
 
-/// Bytes that several threads can read at any offset: a file, a buffer in memory, or a server that
-/// answers range requests.
+/// Random-access source of bytes that several threads can read at once: a file, a buffer in memory,
+/// or a server that answers range requests.
 pub trait Source {
     /// Returns the total number of bytes.
     /// # Errors

@@ -1,4 +1,4 @@
-//! Streams of bytes and numbers that compress well, because each holds values of one kind.
+//! Streams of bytes and numbers, separated by meaning so that they compress well.
 
 use std::io::{self, Read, Write};
 use std::ops::{BitOrAssign, Shl};

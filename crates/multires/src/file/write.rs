@@ -18,12 +18,14 @@ use crate::implicit::{Dependencies, DetachedUpdate, Implicit, ModelInfo, Order, 
 /// Options for writing a `.mlod` file.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Storage {
-    /// Largest distance that a vertex may be moved, in model units. The default is 0.005 % of the
-    /// diagonal; for a [lossless](Forest::lossless) forest it is 0.002 %, and vertices of the input
-    /// are not moved at all.
+    /// Largest distance that rounding may move a vertex, in model units; `None` for the default.
+    ///
+    /// The default is 0.005 % of the bounding-box diagonal; for a [lossless](Forest::lossless)
+    /// forest it is 0.002 %, and vertices of the input are not moved at all.
     pub rounding: Option<f64>,
-    /// Approximate number of updates in a chunk, at least 1. Larger chunks make the file a little
-    /// smaller, smaller ones let a query read less.
+    /// Approximate number of updates (vertex splits) in a chunk of the file, at least 1.
+    ///
+    /// Larger chunks make the file a little smaller, smaller ones let a query read less.
     pub updates_per_chunk: usize,
 }
 

@@ -27,7 +27,7 @@ pub(crate) const MAX_LEVELS: u16 = 1 << 15;
 /// Marks a missing node or update.
 pub(crate) const NONE: u32 = u32::MAX;
 
-/// The full sequence of contractions of a simplification, first to last.
+/// The recorded contractions of a simplification, first to last.
 ///
 /// Nodes are the vertices of all levels. The input's vertices are the leaves and keep their
 /// numbers; update `u` contracts its two children into node `vertices + u`. Refinement undoes
@@ -90,28 +90,28 @@ pub(crate) struct Update {
     pub(crate) fused_with_child: bool,
 }
 
-/// Reasons why no multiresolution model can be built from a mesh.
+/// Reason why no multiresolution model can be built from a mesh.
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum BuildError {
     /// The mesh cannot be simplified.
     #[error(transparent)]
     Simplify(#[from] SimplifyError),
-    /// The dependency graph of the updates is too deep.
+    /// The updates depend on each other in too long a chain.
     #[error("the updates depend on each other in a chain of more than {MAX_LEVELS}")]
     TooDeep,
     /// The mesh has more vertices than can be numbered.
     #[error("the mesh has too many vertices: about 2^29 are supported")]
     TooLarge,
-    /// Components vanished, and no update could bring them back.
+    /// Connected components vanished during simplification, which no update could undo.
     #[error("components vanished, which no update can undo: simplify with `vanish_below: None`")]
     Vanished,
-    /// The recorder was attached after the first contraction.
+    /// The recorder was attached to the simplifier after the first contraction.
     #[error("the recorder missed the start of the simplification")]
     NotFromStart,
 }
 
 impl Forest {
-    /// Simplifies a mesh to exhaustion and records every contraction.
+    /// Simplifies a mesh as far as possible and records every contraction.
     ///
     /// Only positions are kept; attributes are dropped. Components never vanish, whatever the
     /// options say.
@@ -121,7 +121,8 @@ impl Forest {
         Self::by(mesh, options, Recorder::new)
     }
 
-    /// Simplifies a mesh to exhaustion and keeps the exact positions of its vertices.
+    /// Simplifies a mesh as far as possible, recording every contraction and the exact positions of
+    /// all vertices.
     ///
     /// Levels show an uncontracted input vertex exactly where it was, and rounded positions
     /// elsewhere. No error is zero, so a tolerance of zero returns the input mesh. Costs 24 bytes
@@ -144,7 +145,7 @@ impl Forest {
         recorder.into_forest()
     }
 
-    /// Returns the number of faces of the finest level.
+    /// Returns the number of faces of the finest mesh.
     pub fn full_faces(&self) -> usize {
         self.faces.len()
     }
@@ -154,7 +155,7 @@ impl Forest {
         self.updates.len()
     }
 
-    /// Returns the meaning of the updates' errors.
+    /// Returns whether the errors of the updates are estimates or proven bounds.
     pub fn error_kind(&self) -> ErrorKind {
         self.error_kind
     }

@@ -1,4 +1,4 @@
-//! Records the contraction forest while the engine runs.
+//! Records the contraction forest while the simplification runs.
 //!
 //! Everything that must be monotone along dependencies is made so here, on the way up and in
 //! constant time per neighbour. An update is recorded before the updates it depends on, so each
@@ -15,7 +15,7 @@ use crate::length16::Length16;
 use crate::pack::ExactPositions;
 use crate::query::SLACK;
 
-/// Observer that records a [`Simplifier`] from its first contraction on.
+/// Observer that records the contractions of a [`Simplifier`], from the first one on.
 #[derive(Debug)]
 pub struct Recorder {
     forest: Forest,
@@ -45,7 +45,7 @@ struct LiveNode {
 pub(crate) const MAX_RANKED: usize = 250;
 
 impl Recorder {
-    /// Attaches to a simplifier, which must not have contracted anything yet.
+    /// Creates a recorder for a simplifier, which must not have contracted anything yet.
     pub fn new(simplifier: &Simplifier<'_>) -> Self {
         let surface = simplifier.surface();
         let vertices = surface.vertex_count();
@@ -86,7 +86,7 @@ impl Recorder {
         }
     }
 
-    /// Attaches to a simplifier and keeps the exact positions of all vertices, as
+    /// Creates a recorder that also keeps the exact positions of all vertices, as
     /// [`Forest::lossless`] does.
     pub fn lossless(simplifier: &Simplifier<'_>) -> Self {
         let mut this = Self::new(simplifier);
@@ -98,7 +98,7 @@ impl Recorder {
         this
     }
 
-    /// Returns the recorded forest.
+    /// Ends the recording and returns the forest of contractions.
     /// # Errors
     /// What made the record unusable on the way.
     pub fn into_forest(self) -> Result<Forest, BuildError> {

@@ -1,4 +1,4 @@
-//! The best cut within a face budget.
+//! The finest cut within a face budget.
 //!
 //! The priority of an update is its error relative to the tolerance, and at least that of every
 //! update that depends on it. Applying updates by falling priority therefore passes through cuts
@@ -38,8 +38,8 @@ struct Limit {
 pub(crate) struct Weight(u8);
 
 impl Extractor<'_> {
-    /// Returns the best cut of at most `faces` faces: the answer to the query with its tolerance
-    /// scaled, by one factor everywhere, as the budget allows.
+    /// Returns the finest mesh of at most `faces` faces that answers the query with its tolerance
+    /// scaled by one factor everywhere.
     ///
     /// Outside the focus the mesh stays as coarse as possible, and exact updates are never applied.
     /// The base mesh is returned even if it exceeds the budget.

@@ -1,4 +1,4 @@
-//! Updates in 10 bytes each.
+//! Compact form of the updates, in 10 bytes each.
 //!
 //! In depth-first order an update splits the first child of the update before it, or the second
 //! child of one not far behind, and its second child's updates are not far ahead. Both are stored

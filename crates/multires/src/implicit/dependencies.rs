@@ -5,14 +5,18 @@ use super::{Implicit, Order};
 use crate::forest::by_level;
 use crate::forest::{Forest, NONE};
 
-/// Condition under which an update may be applied.
+/// Condition under which a vertex may be split.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum SplitRule {
-    /// The star of the vertex is the recorded one, so the cuts are those of the explicit MT.
+    /// A vertex may be split if its star is the recorded one. The cuts are those of the explicit
+    /// MT.
     #[default]
     Strict,
-    /// Both wings are shown by different vertices. This is just what keeps a cut manifold, so cuts
-    /// are smaller; but triangles can appear that no contraction has checked, and fold over.
+    /// A vertex may be split if its two wings, the neighbours that both halves keep, are shown by
+    /// different vertices.
+    ///
+    /// This is just what keeps a cut manifold, so cuts are smaller; but triangles can appear that
+    /// no contraction has checked, and fold over.
     Wings,
 }
 

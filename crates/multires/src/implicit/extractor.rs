@@ -1,4 +1,4 @@
-//! Static extraction by the face list.
+//! Extraction of single meshes by the face list.
 
 use super::Subtree;
 use crate::length16::Length16;
@@ -7,7 +7,7 @@ use crate::model::Model;
 use crate::query::Criterion;
 use crate::query::{Query, QueryError};
 
-/// Extracts meshes from a [`Model`] by its face list, reusing its memory.
+/// Extracts meshes from a [`Model`], answering each query from scratch but reusing its buffers.
 #[derive(Clone, Debug)]
 pub struct Extractor<'m> {
     pub(super) model: &'m Model,
@@ -39,9 +39,10 @@ impl<'m> Extractor<'m> {
         }
     }
 
-    /// Returns the mesh at one tolerance everywhere, in model units. The answer is that of
-    /// [`Query::uniform`], but only errors are looked at, since they are monotone along
-    /// dependencies.
+    /// Returns the mesh for one tolerance everywhere, in model units.
+    ///
+    /// It is the answer to [`Query::uniform`], found from the errors alone, since these are
+    /// monotone along dependencies.
     ///
     /// A face is present at every tolerance below the error of the update that creates it.
     /// # Errors
@@ -56,7 +57,8 @@ impl<'m> Extractor<'m> {
         Ok(self.write(|update, _| Some(mt.error(update).0) > within))
     }
 
-    /// Returns a cut that satisfies the query, found without visiting any neighbour.
+    /// Returns a mesh that satisfies the query, judging each update by itself without visiting its
+    /// neighbours.
     ///
     /// It is not the smallest one; docs/notes/multires.md has figures.
     /// # Errors
@@ -71,8 +73,8 @@ impl<'m> Extractor<'m> {
         }))
     }
 
-    /// Returns the smallest cut that satisfies the query, by closing the set of required updates
-    /// under dependencies.
+    /// Returns the smallest mesh that satisfies the query: the required updates and all that they
+    /// depend on.
     /// # Errors
     /// The query is invalid.
     pub fn exact(&mut self, query: &Query<'_>) -> Result<&Level, QueryError> {
@@ -82,9 +84,10 @@ impl<'m> Extractor<'m> {
         Ok(self.write_chosen())
     }
 
-    /// Returns the mesh of the required updates alone, without their dependencies, as a lower bound
-    /// on the size of a cut. It serves to compare split rules: its faces may overlap, or meet four
-    /// at an edge.
+    /// Returns the mesh of the required updates without their dependencies, a lower bound on the
+    /// size of any answer.
+    ///
+    /// It serves to compare split rules: its faces may overlap, or meet four at an edge.
     /// # Errors
     /// The query is invalid.
     pub fn required(&mut self, query: &Query<'_>) -> Result<&Level, QueryError> {

@@ -1,4 +1,4 @@
-//! Packs a forest.
+//! Packs a contraction forest into the implicit model.
 
 use std::collections::BTreeMap;
 
@@ -8,7 +8,7 @@ use super::{FLAG, Implicit, LAST_WING, NO_WING, OPEN, Order};
 use crate::forest::{BuildError, Forest, NONE, NonFanSplit};
 
 impl Implicit {
-    /// Builds a model of all levels of a simplification.
+    /// Builds the packed model of all levels from a recorded simplification.
     ///
     /// Cost: linear.
     /// # Errors

@@ -1,4 +1,5 @@
-//! The implicit MT: the packed contractions, with no triangles but those of the base mesh.
+//! The implicit multi-triangulation (MT): packed contractions, with no triangles but the base
+//! mesh's.
 //!
 //! A split is described by two wings, between which the faces of the second child lie; each is
 //! stored as a rank among the vertices around. Dependencies are expressed by levels: a vertex may
@@ -50,7 +51,7 @@ pub(crate) use saturated::SaturatedBalls;
 use self::positions::StoredPositions;
 use self::splits::{Local, Splits};
 
-/// All levels of a mesh, in 40 bytes per vertex or 22 in compact form.
+/// All levels of a mesh as packed contractions, in 40 bytes per vertex or 22 in compact form.
 ///
 /// Nodes are the vertices of all levels: first the roots, then the children of update 0, of update
 /// 1…
@@ -89,7 +90,7 @@ const NO_WING: u8 = u8::MAX;
 const LAST_WING: u8 = u8::MAX - 1;
 
 impl Implicit {
-    /// Returns the number of updates.
+    /// Returns the number of updates (vertex splits) between the base mesh and the finest mesh.
     pub fn update_count(&self) -> usize {
         self.splits.len()
     }
@@ -109,13 +110,16 @@ impl Implicit {
         self.full_faces
     }
 
-    /// Returns the meaning of the updates' errors.
+    /// Returns whether the errors of the updates are estimates or proven bounds.
     pub fn error_kind(&self) -> ErrorKind {
         self.error_kind
     }
 
-    /// Returns the position of a node in model units, exact if it is known. Vertices of a
-    /// [`Patch`](crate::Patch) or a [`Level`](crate::Level) are identified by their nodes.
+    /// Returns the position of a node in model units, exactly as in the input if the model stores
+    /// it.
+    ///
+    /// Vertices of a [`Patch`](crate::Patch) or a [`Level`](crate::Level) are identified by their
+    /// nodes.
     ///
     /// # Panics
     /// `node` is not below [`node_count`](Self::node_count).
@@ -125,8 +129,9 @@ impl Implicit {
             .unwrap_or_else(|| self.frame.model(Vec3::from(self.stored_position(node))))
     }
 
-    /// Returns the two nodes that a node is split into, which have higher numbers, or `None` for a
-    /// vertex of the finest level.
+    /// Returns the two nodes that a node is split into, or `None` for a vertex of the finest mesh.
+    ///
+    /// They have higher numbers than the node.
     ///
     /// # Panics
     /// As for [`position`](Self::position).
@@ -139,8 +144,10 @@ impl Implicit {
         self.positions.len()
     }
 
-    /// Returns the model in its compact form of 22 bytes per vertex: 12 for the positions of two
-    /// children and 10 for the rest of an update.
+    /// Returns a compact form of the model with 22 bytes per vertex, or `None` if that would change
+    /// an answer.
+    ///
+    /// The positions of two children take 12 of these bytes, and the rest of an update 10.
     ///
     /// The compact model gives the same answers, and extraction reads half the memory. Returns
     /// `None` if anything would change: if radii, errors or positions are more precise than those
@@ -155,7 +162,7 @@ impl Implicit {
         Some(Self { positions, splits, trees, base, non_fan_splits, exact, ..*self })
     }
 
-    /// Returns the memory used, in bytes.
+    /// Returns the memory used by the model, in bytes.
     pub fn bytes(&self) -> usize {
         let non_fan = |o: &NonFanSplit| {
             size_of::<NonFanSplit>()

@@ -1,4 +1,4 @@
-//! Updates seen from their coarse sides, in 16 bytes each or 10.
+//! Updates as seen from their coarse sides, in 16 bytes each, or 10 in compact form.
 
 use super::compact::CompactSplits;
 use crate::length16::Length16;

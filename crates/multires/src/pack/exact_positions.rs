@@ -1,4 +1,4 @@
-//! Exact input positions of the nodes that have one.
+//! Exact input positions, for those nodes of a model that have one.
 
 use std::sync::Arc;
 

@@ -111,7 +111,8 @@ impl<'f> Criterion<'f> {
         Ok(Self { region, tolerance })
     }
 
-    /// Returns true if the ball's update is required: it meets the focus and its error exceeds the least tolerance in it.
+    /// Returns true if the ball's update is required: it meets the focus and its error exceeds the
+    /// least tolerance in it.
     #[inline]
     pub(crate) fn requires(&self, ball: &Ball) -> bool {
         self.exceeds(ball) && self.meets(ball)

@@ -9,17 +9,17 @@ use thiserror::Error;
 pub(crate) use criterion::{Area, Ball, Criterion, PackedBall, QueryKey, SLACK, Viewpoint};
 pub(crate) use region::Region;
 
-/// A request for a mesh: within the focus no triangle may deviate from the surface by more than the
+/// A request for a mesh that, within a region, deviates from the surface by no more than a
 /// tolerance.
 #[derive(Clone, Debug)]
 pub struct Query<'f> {
     /// Region where the tolerance must hold; elsewhere the mesh is as coarse as possible.
     pub focus: Focus,
-    /// Largest deviation allowed within the focus.
+    /// Largest deviation from the surface that is allowed within the focus.
     pub tolerance: Tolerance<'f>,
 }
 
-/// Region of interest, in model units.
+/// Region of interest of a query, in model units.
 #[derive(Clone, Debug, Default)]
 pub enum Focus {
     /// The whole model.
@@ -29,7 +29,7 @@ pub enum Focus {
     Point([f64; 3]),
     /// The segment between two points.
     Segment([[f64; 3]; 2]),
-    /// An axis-aligned box, given by its least and its greatest corner.
+    /// An axis-aligned box, given by its corners of least and of greatest coordinates.
     Box([[f64; 3]; 2]),
     /// A ball.
     Sphere {
@@ -42,37 +42,40 @@ pub enum Focus {
     Frustum(ViewCamera),
 }
 
-/// Largest deviation allowed for a triangle.
+/// Largest deviation from the surface that a query allows for a triangle.
 #[derive(Clone)]
 pub enum Tolerance<'f> {
     /// One tolerance everywhere, in model units.
     Uniform(f64),
-    /// A screen-space tolerance.
+    /// A tolerance in pixels, as seen by a camera.
     Pixels {
-        /// The camera that sees the mesh.
+        /// The camera from which the mesh is seen.
         camera: ViewCamera,
         /// Number of pixels that the error may span at the triangle's closest point to the camera.
+        ///
         /// Pixels are measured in the middle of the picture, so the viewing direction does not
         /// matter; towards the corners an error can span up to [`ViewCamera::stretch`] times as
         /// many.
         pixels: f64,
     },
-    /// Least tolerance within a ball, given by its center and radius in model units. It must not
-    /// decrease from a ball to a ball inside it. Negative values and NaN count as 0, the finest
-    /// level.
+    /// A tolerance that varies in space: a function that returns the least tolerance within a ball,
+    /// given the ball's center and radius in model units.
+    ///
+    /// It must not decrease from a ball to a ball inside it. Negative values and NaN count as 0,
+    /// the finest level.
     Field(&'f dyn Fn([f64; 3], f64) -> f64),
 }
 
 /// A perspective camera.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ViewCamera {
-    /// Position of the camera.
+    /// Position of the camera, in model units.
     pub eye: [f64; 3],
-    /// Point that the camera looks at.
+    /// Point that the camera looks at, in model units.
     pub look: [f64; 3],
     /// Direction that points up in the picture.
     pub up: [f64; 3],
-    /// Vertical field of view.
+    /// Vertical field of view, in radians.
     pub fov_rad: f64,
     /// Width and height of the picture, in pixels.
     pub viewport: [u32; 2],
@@ -84,41 +87,41 @@ pub enum QueryError {
     /// A coordinate of the focus or the camera is not finite.
     #[error("a coordinate of the {0} is not finite")]
     NotFinite(&'static str),
-    /// A length is negative or NaN.
+    /// A length or tolerance is negative or NaN.
     #[error("{what} must be at least 0, not {value}")]
     BadLength {
-        /// Name of the length.
+        /// Name of the invalid length.
         what: &'static str,
         /// The invalid value.
         value: f64,
     },
-    /// The range of tolerances to prepare is empty, or not positive and finite.
+    /// The range of tolerances to prepare nested balls for is empty, or not positive and finite.
     #[error("a range of tolerances must rise from above 0 to a finite end, not from {0} to {1}")]
     BadRange(f64, f64),
     /// The hysteresis is negative or not finite.
     #[error("the hysteresis must be finite and at least 0, not {0}")]
     BadHysteresis(f64),
-    /// The first corner of a box is not the least one.
+    /// The corners of the box are not those of least and of greatest coordinates, in this order.
     #[error("the box is inside out: give its least corner first")]
     InsideOut,
-    /// The model has no nested balls for this query.
+    /// The model has no nested balls that were prepared for this query.
     #[error(
         "only camera queries over the whole model, within a prepared range of tolerances, can be \
          saturated: use `exact`, or call `Model::saturate` first"
     )]
     NotSaturated,
-    /// The camera is degenerate.
+    /// The camera has no valid field of view, picture size or viewing direction.
     #[error("the camera sees nothing: {0}")]
     Blind(&'static str),
 }
 
 impl Query<'static> {
-    /// Asks for the whole surface within a tolerance in model units.
+    /// Creates a query for the whole surface with the same tolerance everywhere, in model units.
     pub fn uniform(tolerance: f64) -> Self {
         Self { focus: Focus::Everything, tolerance: Tolerance::Uniform(tolerance) }
     }
 
-    /// Asks for the whole surface within a number of pixels of a camera.
+    /// Creates a query for the whole surface with a tolerance in pixels, as seen by a camera.
     pub fn pixels(camera: ViewCamera, pixels: f64) -> Self {
         Self { focus: Focus::Everything, tolerance: Tolerance::Pixels { camera, pixels } }
     }
@@ -161,14 +164,17 @@ impl Focus {
 }
 
 impl ViewCamera {
-    /// Returns the fraction of the distance that a pixel spans in the middle of the picture.
+    /// Returns the size of a pixel in the middle of the picture, as a fraction of the distance from
+    /// the camera.
     pub fn pixel(&self) -> f64 {
         2.0 * (0.5 * self.fov_rad).tan() / f64::from(self.viewport[1])
     }
 
     /// Returns the factor by which an error in a corner of the picture can span more pixels than in
-    /// its middle. Divide a pixel tolerance by it to make it hold everywhere. It is 1.7 for a wide
-    /// picture 45° high.
+    /// its middle.
+    ///
+    /// Divide a pixel tolerance by it to make it hold everywhere. It is 1.7 for a wide picture 45°
+    /// high.
     ///
     /// A picture is flat: at an angle from its middle it is further away, and the line of sight
     /// meets it at that angle. Both stretch what is seen by the inverse of its cosine.

@@ -1,4 +1,4 @@
-//! The best level within a face budget.
+//! The finest level within a face budget.
 //!
 //! The priority of a vertex is its error relative to the tolerance, and at least that of every
 //! vertex that depends on it. Inserting vertices by falling priority therefore passes through cuts
@@ -19,8 +19,8 @@ const LOW_BITS: u32 = 16;
 const BUCKETS: usize = 1 << (u32::BITS - 1 - LOW_BITS);
 
 impl RtinExtractor<'_> {
-    /// Returns the best level of at most `faces` faces: the answer to the query with its tolerance
-    /// scaled, by one factor everywhere, as the budget allows.
+    /// Returns the finest mesh of at most `faces` faces that answers the query with its tolerance
+    /// scaled by one factor everywhere.
     ///
     /// Outside the focus the mesh stays as coarse as possible. The coarsest level is returned even
     /// if it exceeds the budget.

@@ -10,7 +10,8 @@ use glam::DVec3;
 use meshlod_mesh::Frame;
 
 impl Rtin {
-    /// Builds the hierarchy, measuring each triangle of each level against all vertices under it.
+    /// Builds all levels of a height field, measuring each triangle of each level against all
+    /// vertices under it.
     ///
     /// Cost: O(n log n).
     pub fn new(field: &HeightField) -> Self {

@@ -10,42 +10,42 @@ use super::field::{Fit, GridPlacement, HeightField};
 use super::grid::{Grid, GridPoint};
 use crate::pack::{unzigzag, zigzag};
 
-/// Precision with which heights are stored.
+/// Precision with which the heights of a height field are stored.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum HeightPrecision {
-    /// Bit for bit.
+    /// Heights are stored exactly, bit for bit.
     Exact,
-    /// Within this distance in model units, which must be positive.
+    /// Heights are stored to within this distance in model units, which must be positive.
     Within(f64),
 }
 
-/// Reasons why a field cannot be written or read.
+/// Reason why a height field cannot be written or read.
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum FieldBytesError {
-    /// The bound on rounding is not a positive length.
+    /// The requested bound on the rounding of heights is not a positive length.
     #[error("the bound on rounding must be a length above 0, not {0}")]
     BadBound(f64),
-    /// The data end early.
+    /// The data of the height field end early.
     #[error(
         "the height field is truncated: {needed} more bytes of its {what} are needed, only {found} are left"
     )]
     Short {
         /// Name of the truncated part.
         what: &'static str,
-        /// Bytes needed.
+        /// Number of bytes needed to complete the part.
         needed: usize,
-        /// Bytes available.
+        /// Number of bytes that are left.
         found: usize,
     },
-    /// A value is invalid.
+    /// A stored value of the height field is invalid.
     #[error("the height field is damaged: invalid {0}")]
     Bad(&'static str),
-    /// A part cannot be decompressed, or not to its expected length.
+    /// A part of the heights cannot be decompressed, or not to its expected length.
     #[error("part {part} of the heights is damaged: {why}")]
     Heights {
-        /// Index of the part, from 0.
+        /// Index of the damaged part, from 0.
         part: u32,
-        /// Message of the decompressor.
+        /// Error message of the decompressor.
         why: String,
     },
 }
@@ -79,7 +79,7 @@ enum Scale {
 }
 
 impl HeightField {
-    /// Encodes the field in little-endian bytes, without a checksum of its header.
+    /// Encodes the height field as little-endian bytes, without a checksum of its header.
     /// # Errors
     /// The bound on rounding is not a positive length.
     pub fn to_bytes(&self, precision: HeightPrecision) -> Result<Vec<u8>, FieldBytesError> {
@@ -102,7 +102,7 @@ impl HeightField {
         Ok(bytes)
     }
 
-    /// Decodes a field written by [`HeightField::to_bytes`].
+    /// Decodes a height field that [`HeightField::to_bytes`] wrote.
     ///
     /// Memory use is proportional to the number of bytes, whatever they contain.
     /// # Errors

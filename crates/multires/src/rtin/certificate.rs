@@ -1,4 +1,4 @@
-//! Verification of all that a hierarchy stores.
+//! Verification of all that an RTIN stores.
 
 use thiserror::Error;
 
@@ -7,38 +7,41 @@ use super::grid::GridPoint;
 use crate::length16::Length16;
 use crate::query::Ball;
 
-/// Reasons why a hierarchy cannot be certified.
+/// Reason why an [`Rtin`] cannot be certified: a vertex with a flaw.
 #[derive(Clone, Copy, Debug, Error, PartialEq, Eq)]
 #[error("the vertex at column {column}, row {row} is not sound: {why}")]
 pub struct RtinCertifyError {
-    /// Column of the vertex.
+    /// Grid column of the flawed vertex.
     pub column: u32,
-    /// Row of the vertex.
+    /// Grid row of the flawed vertex.
     pub row: u32,
-    /// The flaw.
+    /// Flaw of the vertex.
     pub why: RtinFlaw,
 }
 
-/// Flaws of a vertex.
+/// Flaws that a vertex of an [`Rtin`] can have.
 #[derive(Clone, Copy, Debug, Error, PartialEq, Eq, PartialOrd, Ord)]
 pub enum RtinFlaw {
-    /// A level without it would extend beyond the border.
+    /// A level without the vertex would extend beyond the border of the height field.
     #[error("it removes triangles across the border but is not in every level")]
     NotForced,
-    /// A triangle deviates by more than the error.
+    /// A triangle that the vertex removes deviates by more than the vertex's stored error.
     #[error("its error is less than the deviation of the triangles it removes")]
     NoBound,
-    /// A query might miss it.
+    /// The bounding ball of the vertex is too small, so that a query might miss the vertex.
     #[error("its ball does not contain the triangles it removes")]
     SmallBall,
-    /// A level might contain it without its dependencies.
+    /// A level might contain the vertex without the vertices that it depends on.
     #[error("its dependencies have smaller errors or balls")]
     NotNested,
 }
 
 impl Rtin {
-    /// Proves that errors are bounds, that errors and balls nest along dependencies, and that
-    /// triangles across the border are split in every level; returns the number of insertions.
+    /// Proves that every extracted level satisfies its query, and returns the number of vertices
+    /// checked.
+    ///
+    /// Errors are bounds, errors and balls nest along dependencies, and triangles across the border
+    /// are split in every level.
     ///
     /// No level can have a crack, whatever is stored: both sides of an insertion have the boundary
     /// of one diamond.

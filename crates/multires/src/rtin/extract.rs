@@ -7,7 +7,7 @@ use crate::level::Level;
 use crate::query::Criterion;
 use crate::query::{Query, QueryError};
 
-/// Extracts levels from a hierarchy, reusing its memory.
+/// Extracts meshes from an [`Rtin`], answering each query from scratch but reusing its buffers.
 ///
 /// Cost: linear in the result, whatever the size of the field, except for
 /// [`RtinExtractor::at_most`].
@@ -24,7 +24,7 @@ pub struct RtinExtractor<'m> {
 }
 
 impl<'m> RtinExtractor<'m> {
-    /// Creates an extractor with tables as long as the field.
+    /// Creates an extractor, whose tables have an entry for each vertex of the model.
     pub fn new(model: &'m Rtin) -> Self {
         let count = model.vertices.len();
         Self {
@@ -36,8 +36,8 @@ impl<'m> RtinExtractor<'m> {
         }
     }
 
-    /// Returns the smallest level that satisfies the query: the required vertices and their
-    /// dependencies.
+    /// Returns the smallest mesh that satisfies the query: the required vertices and all that they
+    /// depend on.
     /// # Errors
     /// The query is invalid.
     pub fn exact(&mut self, query: &Query<'_>) -> Result<&Level, QueryError> {
@@ -53,8 +53,9 @@ impl<'m> RtinExtractor<'m> {
         Ok(self.write_chosen())
     }
 
-    /// Returns a level that satisfies the query, judging each vertex by itself: since balls and
-    /// errors nest, the required vertices already form a cut.
+    /// Returns a mesh that satisfies the query, judging each vertex by itself.
+    ///
+    /// Since balls and errors nest, the required vertices already form a cut.
     ///
     /// It is not the smallest one; docs/notes/rtin.md has figures.
     /// # Errors

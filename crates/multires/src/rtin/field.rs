@@ -5,7 +5,7 @@ use meshlod_mesh::Bounds;
 
 use super::grid::{Grid, GridPoint};
 
-/// Heights over a regular grid in a plane perpendicular to a coordinate axis.
+/// Height field: heights over a regular grid in a plane perpendicular to a coordinate axis.
 ///
 /// Its surface consists of right triangles that halve each cell, with diagonals alternating between
 /// neighbours. A mesh that halves cells otherwise has the same vertices; [`Fit`] bounds the
@@ -22,11 +22,12 @@ pub struct HeightField {
 /// Largest differences between a mesh and the height field made from it, in model units.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Fit {
-    /// Largest distance by which a vertex was moved onto the grid, within the plane.
+    /// Largest distance by which a vertex was moved onto the grid, within the grid's plane, in
+    /// model units.
     pub moved: f64,
-    /// Largest change of height where a cell got the other diagonal.
+    /// Largest change of height where a grid cell was given its other diagonal, in model units.
     pub turned: f64,
-    /// Largest rounding of a height.
+    /// Largest error from rounding a height, in model units.
     pub rounded: f64,
 }
 
@@ -64,23 +65,24 @@ impl GridPlacement {
 }
 
 impl HeightField {
-    /// Returns the number of columns and of rows.
+    /// Returns the number of grid columns and of grid rows.
     pub fn size(&self) -> [u32; 2] {
         [self.grid.columns, self.grid.rows]
     }
 
-    /// Returns the axis of the heights: 0 for x, 1 for y, 2 for z.
+    /// Returns the coordinate axis along which heights are measured: 0 for x, 1 for y, 2 for z.
     pub fn axis(&self) -> usize {
         self.placement.up.into()
     }
 
-    /// Returns the heights row by row, in model units. Columns advance along the axis after that of
-    /// the heights, rows along the one after.
+    /// Returns the heights row by row, in model units.
+    ///
+    /// Columns advance along the axis after that of the heights, rows along the one after.
     pub fn heights(&self) -> &[f64] {
         &self.heights
     }
 
-    /// Returns the point at a column and a row, in model units.
+    /// Returns the surface point at a grid column and row, in model units.
     ///
     /// # Panics
     /// The point is outside the field.
@@ -90,12 +92,12 @@ impl HeightField {
         self.placement.point(place, self.heights[self.grid.index(place)]).into()
     }
 
-    /// Returns the bounds on the difference to the source.
+    /// Returns bounds on the difference between the height field and the mesh it was made from.
     pub fn fit(&self) -> Fit {
         self.fit
     }
 
-    /// Returns the bounding box of all points.
+    /// Returns the bounding box of all points of the height field, in model units.
     pub fn bounds(&self) -> Bounds {
         let low = self.heights.iter().copied().fold(f64::INFINITY, f64::min);
         let high = self.heights.iter().copied().fold(f64::NEG_INFINITY, f64::max);

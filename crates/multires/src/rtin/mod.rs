@@ -32,7 +32,7 @@ pub use self::extract::RtinExtractor;
 pub use self::field::{Fit, HeightField};
 pub use self::recognize::HeightFieldError;
 
-/// All levels of a height field as a right-triangulated irregular network.
+/// All levels of detail of a height field, as a right-triangulated irregular network.
 ///
 /// The nodes of its levels are vertices of the grid, row by row. Each level covers the rectangle of
 /// the field exactly. If that is not a square of 2ᵏ cells, triangles along its far sides are small
@@ -75,7 +75,7 @@ impl GridVertex {
 }
 
 impl Rtin {
-    /// Returns the smallest level that satisfies the query.
+    /// Returns the smallest mesh that satisfies the query.
     ///
     /// Cost: allocates tables as long as the field; for several levels use an [`RtinExtractor`],
     /// which keeps them.
@@ -85,27 +85,28 @@ impl Rtin {
         RtinExtractor::new(self).exact(query).cloned()
     }
 
-    /// Returns the number of columns and of rows.
+    /// Returns the number of grid columns and of grid rows.
     pub fn size(&self) -> [u32; 2] {
         [self.grid.columns, self.grid.rows]
     }
 
-    /// Returns the number of faces of the finest level.
+    /// Returns the number of faces of the finest mesh.
     pub fn full_faces(&self) -> usize {
         2 * (self.grid.columns as usize - 1) * (self.grid.rows as usize - 1)
     }
 
-    /// Returns the frame of the stored units.
+    /// Returns the frame that converts between stored units and model units.
     pub fn frame(&self) -> &Frame {
         &self.frame
     }
 
-    /// Returns the bounds on the distance from the finest level to the source.
+    /// Returns bounds on the difference between the finest mesh and the mesh the height field was
+    /// made from.
     pub fn fit(&self) -> Fit {
         self.fit
     }
 
-    /// Returns the memory used by its vectors, in bytes.
+    /// Returns the memory used by the model's vectors, in bytes.
     pub fn bytes(&self) -> usize {
         size_of_val(&self.vertices[..]) + size_of_val(&self.radii[..])
     }

@@ -9,53 +9,53 @@ use super::bytes::MAX_COORDINATE;
 use super::field::{Fit, GridPlacement, HeightField};
 use super::grid::{Grid, GridPoint};
 
-/// Reasons why a mesh is not a height field.
+/// Reason why a mesh cannot be read as a height field.
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum HeightFieldError {
     /// The mesh is invalid.
     #[error(transparent)]
     Mesh(#[from] MeshError),
-    /// Its vertices do not lie in columns and rows along any axis.
+    /// The vertices of the mesh do not line up in columns and rows along any axis.
     #[error(
         "the mesh is not a height field: seen along {axis}, its {vertices} vertices lie in {columns} columns \
          and {rows} rows; use contractions (`Forest`), which take any mesh"
     )]
     NoGrid {
-        /// Axis along which it comes closest.
+        /// Axis along which the vertices come closest to a grid.
         axis: char,
-        /// Number of columns.
+        /// Number of columns seen along the axis.
         columns: usize,
-        /// Number of rows.
+        /// Number of rows seen along the axis.
         rows: usize,
         /// Number of vertices that faces use.
         vertices: usize,
     },
-    /// A vertex is off the regular grid.
+    /// A vertex is off the regular grid of the others.
     #[error(
         "{vertex} at {position:?} is {by:.3} steps off column {column}, row {row}: the spacing is not regular"
     )]
     OffGrid {
-        /// The vertex.
+        /// The vertex that is off the grid.
         vertex: VertexId,
-        /// Its position.
+        /// Position of the vertex, in model units.
         position: [f64; 3],
-        /// The nearest column.
+        /// Grid column nearest to the vertex.
         column: u32,
-        /// The nearest row.
+        /// Grid row nearest to the vertex.
         row: u32,
-        /// Distance in columns or rows, whichever is more.
+        /// Distance of the vertex from the grid point, in columns or in rows, whichever is more.
         by: f64,
     },
     /// Two vertices are at the same grid point.
     #[error("{first} and {second} are both at column {column}, row {row}: weld them or remove one")]
     SamePoint {
-        /// One of the vertices.
+        /// One of the two vertices.
         first: VertexId,
-        /// The other vertex.
+        /// The other of the two vertices.
         second: VertexId,
-        /// Their column.
+        /// Grid column of both vertices.
         column: u32,
-        /// Their row.
+        /// Grid row of both vertices.
         row: u32,
     },
     /// A grid point has no vertex.
@@ -63,32 +63,32 @@ pub enum HeightFieldError {
         "the grid has a hole: no vertex at column {column}, row {row}, near {near:?}; fill it first"
     )]
     Hole {
-        /// Column of the point.
+        /// Grid column of the empty point.
         column: u32,
-        /// Row of the point.
+        /// Grid row of the empty point.
         row: u32,
-        /// Position of the point, with height 0.
+        /// Position of the empty point in model units, with height 0.
         near: [f64; 3],
     },
     /// A face is not half of a grid cell.
     #[error("{0} is not half of a grid cell")]
     NotHalfCell(FaceId),
-    /// A face is oriented against the others.
+    /// A face is oriented against the first face of the mesh.
     #[error("{0} is oriented against {first}", first = FaceId(0))]
     FlippedFace(FaceId),
-    /// A cell is not covered by its two halves.
+    /// A grid cell is not covered by two triangles that halve it.
     #[error(
         "the cell at column {column}, row {row} is not covered by its two halves: faces in it: {faces}"
     )]
     Cell {
-        /// First column of the cell.
+        /// Grid column at which the cell starts.
         column: u32,
-        /// First row of the cell.
+        /// Grid row at which the cell starts.
         row: u32,
         /// Number of faces in the cell.
         faces: usize,
     },
-    /// The grid has too many points, or too large coordinates.
+    /// The grid has too many points, or its coordinates are too large.
     #[error(
         "the grid is too large: at most 2^31 - 1 vertices with coordinates below 1e150 are supported"
     )]

@@ -1,4 +1,4 @@
-//! Serialization of fields.
+//! Serialization of height fields.
 
 use meshlod_mesh::Mesh;
 
