@@ -29,7 +29,7 @@ impl std::fmt::Display for FileLocation {
 #[derive(Clone, Debug, Error, PartialEq, Eq)]
 #[error("{location}: {reason}")]
 pub struct ParseError {
-    /// Location of the error.
+    /// Location of the error in the mesh file.
     pub location: FileLocation,
     /// Description of the problem and, where that is clear, of what to do about it.
     pub reason: String,

@@ -22,7 +22,7 @@ pub struct PreparedSurface<'m> {
 /// Reason why distances to or from a mesh cannot be measured.
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum SurfaceError {
-    /// The mesh has no faces or is invalid.
+    /// The mesh has no faces, or its positions or indices are invalid.
     #[error(transparent)]
     Mesh(#[from] BvhError),
     /// All faces have zero area, so there is nothing to sample.

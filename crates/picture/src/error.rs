@@ -39,7 +39,7 @@ pub enum PictureError {
         what: &'static str,
         /// Actual length of the list.
         found: usize,
-        /// Required length.
+        /// Length that the list must have.
         expected: usize,
     },
     /// A material refers to a texture that does not exist.

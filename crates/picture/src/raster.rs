@@ -1,4 +1,4 @@
-//! Exact rasterization of triangles.
+//! Exact rasterization of triangles, with integer edge functions.
 
 use crate::project::{Point, SUBSTEPS};
 

@@ -1,5 +1,6 @@
-//! See-through test: finds pixels where a level shows what its original hides, such as the
-//! background through a crack or an inner part through an outer one.
+//! See-through test: finds pixels where a level of detail shows what its original hides.
+//!
+//! This can be the background through a crack, or an inner part through an outer one.
 
 use meshlod_mesh::Mesh;
 use rayon::prelude::*;

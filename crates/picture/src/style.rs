@@ -161,7 +161,7 @@ pub enum Normals {
     FromMesh,
 }
 
-/// Lighting of a surface.
+/// Lighting of a surface: the light sources and their strengths.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Lighting {
     /// Light from the upper left, with a soft sky and a faint gloss, for pictures to look at.
@@ -194,11 +194,11 @@ impl BackFaces {
 /// Lines drawn along the edges of all faces; they fade where faces become too small for them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Wireframe {
-    /// Colour of the lines, not affected by lighting.
+    /// Colour of the wireframe lines, not affected by lighting.
     pub color: [u8; 3],
-    /// Width of a line along an edge between two faces, in pixels.
+    /// Width of a wireframe line along an edge between two faces, in pixels.
     pub width_px: f32,
-    /// Opacity of the lines, 0 to 1.
+    /// Opacity of the wireframe lines, from 0 (invisible) to 1.
     pub opacity: f32,
 }
 
@@ -208,7 +208,7 @@ impl Default for Wireframe {
     }
 }
 
-/// Background of a picture.
+/// Background of a picture: transparent, one colour or a gradient.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Background {
     /// Transparent background: the alpha of a pixel is the fraction that the mesh covers.

@@ -1,4 +1,4 @@
-//! Regular grids of quads, each split into two faces.
+//! Meshes of regular grids of quads, each split into two faces.
 
 use glam::DVec3;
 use meshlod_mesh::{Mesh, VertexId};

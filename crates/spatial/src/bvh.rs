@@ -27,7 +27,7 @@ pub struct Bvh {
 /// Reason why no bounding volume hierarchy can be built over a mesh.
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum BvhError {
-    /// The mesh has no faces.
+    /// The mesh has no faces to build a hierarchy over.
     #[error("the mesh has no faces")]
     Empty,
     /// The mesh is invalid, such as with a face that refers to a missing vertex.

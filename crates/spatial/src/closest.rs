@@ -1,4 +1,4 @@
-//! Closest point queries: conservative box tests in `f32`, triangle distances in `f64`.
+//! Closest point queries on a mesh: conservative box tests in `f32`, triangle distances in `f64`.
 
 use glam::{DVec3, Vec4};
 use meshlod_mesh::FaceId;

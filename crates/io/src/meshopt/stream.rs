@@ -8,7 +8,7 @@ use thiserror::Error;
 pub struct Malformed {
     /// Byte offset of the error in the stream.
     pub at: usize,
-    /// Description of the error.
+    /// Description of the error in the stream.
     pub reason: String,
 }
 
