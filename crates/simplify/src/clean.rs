@@ -1,9 +1,9 @@
-//! Faces left out before the first contraction: those that repeat a vertex or another face.
+//! Connectivity of a mesh without its degenerate and duplicate faces.
 
 use meshlod_mesh::{Connectivity, FaceId, Mesh, Side, Twin, VertexId};
 
-/// Builds the connectivity of a mesh without its duplicate faces, and returns the number of
-/// duplicates.
+/// Builds the connectivity of a mesh, leaving out duplicate faces, and returns it with their
+/// number.
 ///
 /// Two faces are duplicates if they have the same vertices in the same orientation. Opposite
 /// orientations are the two sides of a thin sheet and stay.

@@ -43,7 +43,7 @@ pub use surface::contracted::{Contracted, Freedom};
 pub use surface::neighbourhood::{Neighbourhood, RemovedFace, RingVertex, Spoke};
 pub use surface::{Placed, Surface};
 
-/// Simplifies a mesh and returns the result with a report.
+/// Simplifies a mesh to a target number of faces or error, and returns the result with a report.
 ///
 /// The result holds only what its faces use. If the target is out of reach, the mesh is reduced as
 /// far as the rules allow, and the report says so and counts the reasons.

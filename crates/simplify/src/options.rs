@@ -1,4 +1,4 @@
-//! Options, targets, errors and the report of a run.
+//! Options, targets, errors and the report of a simplification.
 
 use meshlod_mesh::{Locks, MeshError, VertexId};
 use thiserror::Error;
@@ -7,7 +7,7 @@ use crate::engine::locks::Held;
 use crate::history::volume::VolumeLoss;
 use crate::refusal::Refusals;
 
-/// Simplification algorithm.
+/// Mesh simplification algorithm.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Method {
     /// Quadric error metrics with optimal placement [GH97].
@@ -26,15 +26,16 @@ pub enum Method {
     Wu,
     /// Edge contraction ordered by quadrics, with positions moved to conserve the volume [KJ04].
     KimJang,
-    /// Progressive meshes: minimizes the distance energy of surface samples [Hop96].
+    /// Progressive meshes: edge contraction that minimizes the squared distances of surface samples
+    /// [Hop96].
     Pm,
-    /// Simple polygon reduction: edge length times turning angle, onto vertices of the input
-    /// [Mel98].
+    /// Simple polygon reduction: edge contraction onto input vertices, ordered by edge length times
+    /// turning angle [Mel98].
     Spr,
 }
 
 impl Method {
-    /// All methods, in a fixed order.
+    /// All simplification methods, in a fixed order.
     pub const ALL: [Self; 9] = [
         Self::Qem,
         Self::QemEndpoint,
@@ -47,7 +48,7 @@ impl Method {
         Self::Spr,
     ];
 
-    /// Returns the method's name on the command line and in reports.
+    /// Returns the name of the method on the command line and in reports.
     pub fn name(self) -> &'static str {
         match self {
             Self::Qem => "qem",
@@ -62,7 +63,8 @@ impl Method {
         }
     }
 
-    /// Returns the power of a length that the method's costs scale with.
+    /// Returns the power of length in the unit of the method's costs: 2 for squared distances, 6
+    /// for squared volumes.
     ///
     /// Quadrics give squared distances times areas, swept volumes squared volumes, and samples
     /// squared distances.
@@ -75,13 +77,13 @@ impl Method {
         }
     }
 
-    /// Returns true if the method's costs include attributes, weighted by [`Options::weights`].
-    /// Every method carries attributes along.
+    /// Returns true if attribute errors count in the method's costs, weighted by
+    /// [`Options::weights`]. Every method keeps attributes in the result.
     pub fn counts_attributes(self) -> bool {
         matches!(self, Self::Qem | Self::QemEndpoint | Self::LindstromTurk)
     }
 
-    /// Returns true if the method's costs weigh the movement of boundaries by
+    /// Returns true if the movement of boundaries counts in the method's costs, weighted by
     /// [`Options::boundary_weight`].
     pub fn weighs_boundaries(self) -> bool {
         match self {
@@ -91,8 +93,8 @@ impl Method {
         }
     }
 
-    /// Returns true if every contraction with a closed ring that may choose its position freely
-    /// conserves the volume.
+    /// Returns true if the method places new vertices so as to conserve the volume, wherever the
+    /// ring of faces is closed and no lock, tie or seam fixes the position.
     pub fn conserves_volume(self) -> bool {
         match self {
             Self::LindstromTurk | Self::LindstromTurkFaces | Self::LeeJang | Self::KimJang => true,
@@ -100,20 +102,20 @@ impl Method {
         }
     }
 
-    /// Returns the method with this name, if there is one.
+    /// Returns the simplification method with this name, if there is one.
     pub fn by_name(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|method| method.name() == name)
     }
 }
 
-/// Target at which a run stops.
+/// Number of faces or error at which a simplification stops.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Target {
-    /// At most this many faces; contractions may stop a few faces below.
+    /// At most this number of faces; the result may have a few faces fewer.
     Faces(usize),
-    /// At most this fraction of the input's faces, between 0 and 1.
+    /// At most this fraction of the input's faces, from 0 to 1.
     Ratio(f64),
-    /// As few faces as possible while the error stays within this, in model units.
+    /// As few faces as possible with an error of at most this distance, in model units.
     ///
     /// For [`Method::LindstromTurk`] and [`Method::Qem`] the error is checked against the input
     /// itself, at samples in both directions. The other methods rely on their own estimate.
@@ -121,7 +123,7 @@ pub enum Target {
 }
 
 impl Target {
-    /// Checks the target and returns it unchanged.
+    /// Returns the target unchanged, or an error if it is out of range.
     ///
     /// # Errors
     /// The ratio is outside 0 to 1, or the error is negative or NaN.
@@ -137,8 +139,8 @@ impl Target {
         }
     }
 
-    /// Returns the target number of faces for a mesh of `all` faces, and 0 for an error target,
-    /// which sets no number.
+    /// Returns the target number of faces for a mesh of `all` faces; 0 for an error target, which
+    /// does not limit the number.
     pub fn faces_of(self, all: usize) -> usize {
         match self {
             Self::Faces(faces) => faces,
@@ -149,29 +151,29 @@ impl Target {
     }
 }
 
-/// Options of a simplification.
+/// Options of a mesh simplification.
 #[derive(Clone, Debug, Default)]
 pub struct Options {
-    /// Algorithm, which also decides the engine that runs it.
+    /// Simplification algorithm, which also decides which of the two engines runs it.
     pub method: Method,
-    /// Weights of the attributes in the costs of methods for which [`Method::counts_attributes`] is
-    /// true.
+    /// Weights of attribute errors in the costs; only methods with [`Method::counts_attributes`]
+    /// use them.
     pub weights: AttributeWeights,
-    /// True to keep every vertex of a boundary edge in place.
+    /// True to keep every vertex on a boundary edge in place.
     pub lock_boundary: bool,
-    /// Weight of boundary movement in the costs of methods for which [`Method::weighs_boundaries`]
-    /// is true.
+    /// Weight of boundary movement in the costs, `None` for the method's default; only methods with
+    /// [`Method::weighs_boundaries`] use it.
     ///
     /// Zero ignores boundaries in the costs; the kernel counts values above 1e9 as 1e9.
     /// `lindstrom-turk` and `lindstrom-turk-faces` weigh squared areas under the boundary against
     /// squared volumes, and the methods based on quadrics weigh planes on boundary edges against
     /// planes of faces. `None` selects the method's own weight: 9 for the former, 2 for the latter.
     pub boundary_weight: Option<f64>,
-    /// Vertices that stay in place, cost more to move, or move together as ties. Tied vertices
-    /// without edges to move along together stay in place.
+    /// Locks of vertices: to stay in place, to cost more to move, or to move together as ties. Tied
+    /// vertices without edges to move along together stay in place.
     pub locks: Locks,
-    /// Length of the bounding-box diagonal, in model units, below which a connected component may
-    /// vanish as a whole; `None` keeps every component.
+    /// Bounding-box diagonal, in model units, below which a connected component may be removed as a
+    /// whole; `None` keeps every component.
     ///
     /// A component vanishes when that costs less than contracting it further. Its size then counts
     /// as an error. The last component never vanishes, nor does one with a locked or tied vertex.
@@ -179,7 +181,7 @@ pub struct Options {
 }
 
 impl Options {
-    /// Checks all weights.
+    /// Checks that all weights are finite and not negative.
     pub(crate) fn validate(&self) -> Result<(), SimplifyError> {
         self.weights.validate()?;
         match self.boundary_weight.filter(|weight| !weight.is_finite() || *weight < 0.0) {
@@ -189,15 +191,16 @@ impl Options {
     }
 }
 
-/// Weights of attribute errors against distance; 0 ignores an attribute.
+/// Weights of attribute errors relative to distances in the costs of contractions; 0 ignores an
+/// attribute.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AttributeWeights {
-    /// Weight of normals: a deviation of one counts as this fraction of the bounding-box diagonal.
+    /// Weight of normals: a deviation of 1 counts as this fraction of the bounding-box diagonal.
     pub normal: f64,
-    /// Weight of texture coordinates: a texture sliding by a length counts as this fraction of that
-    /// length.
+    /// Weight of texture coordinates: a texture sliding by some length counts as this fraction of
+    /// that length.
     pub uv: f64,
-    /// Weight of colours: a deviation of one counts as this fraction of the bounding-box diagonal.
+    /// Weight of colours: a deviation of 1 counts as this fraction of the bounding-box diagonal.
     pub color: f64,
 }
 
@@ -208,10 +211,10 @@ impl Default for AttributeWeights {
 }
 
 impl AttributeWeights {
-    /// Default weights, as a constant.
+    /// Default attribute weights, as a constant.
     pub const DEFAULT: Self = Self { normal: 0.005, uv: 0.5, color: 0.005 };
 
-    /// Weights of zero: costs depend on the geometry alone.
+    /// Attribute weights of zero: costs depend on the geometry alone.
     pub const NONE: Self = Self { normal: 0.0, uv: 0.0, color: 0.0 };
 
     fn all(&self) -> [f64; 3] {
@@ -226,45 +229,45 @@ impl AttributeWeights {
     }
 }
 
-/// Error of a simplification that cannot start.
+/// Reason why a mesh cannot be simplified.
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum SimplifyError {
-    /// The mesh is invalid, see [`meshlod_mesh::Mesh::validate`].
+    /// The mesh is invalid; see [`meshlod_mesh::Mesh::validate`].
     #[error(transparent)]
     Mesh(#[from] MeshError),
     /// The mesh has no faces.
     #[error("the mesh has no faces")]
     NoFaces,
-    /// None of the faces has three different vertices.
+    /// Every face repeats a vertex, so that nothing is left to simplify.
     #[error("none of the {0} faces has three different vertices")]
     AllDegenerate(usize),
-    /// The mesh is too small or too large to compute with.
+    /// The mesh is too small or too large for the computations to stay in range.
     #[error(
         "the diagonal of the mesh must be between 1e-30 and 1e30, not {diagonal:e}: scale the mesh"
     )]
     Extent {
-        /// Diagonal of the bounding box, in model units.
+        /// Diagonal of the mesh's bounding box, in model units.
         diagonal: f64,
     },
-    /// The locks have a different number of vertices than the mesh.
+    /// The number of vertices of the locks is not that of the mesh.
     #[error("the locks cover {found} vertices, but the mesh has {expected}")]
     LockCount {
-        /// Number of vertices in the locks.
+        /// Number of vertices that the locks are for.
         found: usize,
-        /// Number of vertices of the mesh.
+        /// Number of vertices in the mesh.
         expected: usize,
     },
-    /// A tie refers to a vertex that does not exist.
+    /// A tie contains a vertex that does not exist.
     #[error("tie {tie} names vertex {vertex}, but the mesh has only {count} vertices")]
     BadTie {
-        /// Index of the tie.
+        /// Index of the tie with the missing vertex.
         tie: usize,
-        /// Vertex that does not exist.
+        /// Vertex id that is out of range.
         vertex: VertexId,
-        /// Number of vertices of the mesh.
+        /// Number of vertices in the mesh.
         count: usize,
     },
-    /// A vertex occurs twice in the ties.
+    /// A vertex occurs in two ties, or twice in one.
     #[error("tie {tie} names vertex {vertex}, which is already tied")]
     TiedTwice {
         /// Index of the second tie, or of the tie that contains the vertex twice.
@@ -272,35 +275,35 @@ pub enum SimplifyError {
         /// Vertex that occurs twice.
         vertex: VertexId,
     },
-    /// The vertices of a tie are not at one position.
+    /// The vertices of a tie are at different positions.
     #[error(
         "the vertices of tie {tie} must share one position, but {} and {} do not",
         vertices[0],
         vertices[1]
     )]
     TornTie {
-        /// Index of the tie.
+        /// Index of the tie with the different positions.
         tie: usize,
         /// Two vertices of the tie at different positions.
         vertices: [VertexId; 2],
     },
-    /// A weight is negative or not finite.
+    /// The weight of an attribute or of boundaries is negative or not finite.
     #[error("the weight must be a number of at least 0, not {0}")]
     BadWeight(f64),
-    /// The size below which components may vanish is negative or NaN.
+    /// The size below which components may be removed is negative or NaN.
     #[error("the size below which components may vanish must be at least 0, not {0}")]
     BadSize(f64),
-    /// The target is out of range.
+    /// The target number of faces, ratio or error is out of range.
     #[error("the target must be a ratio between 0 and 1 or an error of at least 0, not {0}")]
     BadTarget(f64),
 }
 
-/// Report of a run.
+/// Report of a mesh simplification.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Report {
-    /// Algorithm that ran.
+    /// Simplification method that ran.
     pub method: Method,
-    /// Number of faces of the input.
+    /// Number of faces of the input mesh.
     pub input_faces: usize,
     /// Number of input faces left out because they repeat a vertex.
     pub degenerate_faces: usize,
@@ -308,22 +311,22 @@ pub struct Report {
     pub duplicate_faces: usize,
     /// Number of non-manifold input vertices, which are kept in place.
     pub non_manifold_vertices: usize,
-    /// Number of input vertices held by locks, by kind.
+    /// Numbers of input vertices that are locked, protected or tied.
     pub held: Held,
-    /// Number of faces left after the run.
+    /// Number of faces of the simplified mesh.
     pub output_faces: usize,
-    /// Number of components that have vanished.
+    /// Number of connected components that were removed as a whole.
     pub vanished: usize,
-    /// True if the target was reached.
+    /// True if the target number of faces or error was reached.
     pub reached: bool,
-    /// Greatest distance estimated for any contraction, in model units.
+    /// Greatest estimated distance of any contraction from the input, in model units.
     ///
     /// This estimates the maximum that `measure` finds and is not an upper bound of it. A component
     /// that has vanished counts with its size; its distance to the remaining surface is not
     /// measured.
     pub error_estimate: f64,
-    /// Number of refused candidates, by reason.
+    /// Number of refused contractions, by reason.
     pub refusals: Refusals,
-    /// Change of the enclosed volume.
+    /// Change of the enclosed volume by the contractions.
     pub volume: VolumeLoss,
 }

@@ -1,39 +1,40 @@
-//! Reasons to refuse a contraction, and their counts.
+//! Reasons why contractions are refused, and their counts.
 
 use std::fmt;
 use std::ops::AddAssign;
 
-/// Reason why a contraction is refused.
+/// Reason why the contraction of an edge or face is refused.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 #[repr(u8)]
 pub enum Refusal {
-    /// The edge has three or more faces.
+    /// An edge with three or more faces would be contracted.
     NonManifold,
-    /// The contraction would join two boundaries across the surface, or move a vertex off its
-    /// boundary.
+    /// Two boundaries would be joined across the surface, or a vertex would move off its boundary.
     Boundary,
-    /// The ends have a common neighbour other than the wings, so the link condition fails [DEGN99].
+    /// The two ends have a common neighbour besides the apexes of the edge's faces, so that the
+    /// link condition fails [DEGN99].
     Link,
-    /// A face would flip or lose its area.
+    /// A face would flip, or lose its area.
     Flip,
-    /// Two of the contracted vertices are locked.
+    /// At least two of the vertices to be merged are locked.
     Locked,
-    /// The vertices tied to the contracted ones cannot move along.
+    /// The vertices tied to those to be merged cannot move along with them.
     Tied,
-    /// An attribute chart would be lost: the contraction does not follow the seam.
+    /// A texture chart would be lost, because the contraction does not follow the seam.
     Seam,
-    /// The contraction would remove the last faces of a component.
+    /// The last faces of a connected component would be removed.
     LastFaces,
-    /// Too many faces meet at the contracted vertices.
+    /// Too many faces meet at the vertices to be merged.
     Valence,
-    /// No suitable position conserves the volume or, in `qem`, minimizes the cost.
+    /// No suitable position of the new vertex conserves the volume or, in `qem`, minimizes the
+    /// cost.
     Volume,
-    /// The contraction would exceed the target error.
+    /// The error would exceed the target.
     Error,
 }
 
 impl Refusal {
-    /// All reasons, in the order of [`Refusals`].
+    /// All reasons for refusal, in the order of [`Refusals`].
     pub const ALL: [Self; 11] = [
         Self::NonManifold,
         Self::Boundary,
@@ -48,7 +49,7 @@ impl Refusal {
         Self::Error,
     ];
 
-    /// Returns the name of the reason in reports.
+    /// Returns the name of the reason as used in reports.
     pub fn name(self) -> &'static str {
         match self {
             Self::NonManifold => "non_manifold",
@@ -66,17 +67,17 @@ impl Refusal {
     }
 }
 
-/// Number of refusals by reason. A candidate that is tried again counts again.
+/// Counts of refused contractions by reason. A contraction that is refused again counts again.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Refusals([u64; Refusal::ALL.len()]);
 
 impl Refusals {
-    /// Returns the number of refusals for this reason.
+    /// Returns the number of contractions refused for this reason.
     pub fn count(&self, refusal: Refusal) -> u64 {
         self.0[refusal as usize]
     }
 
-    /// Iterates over the reasons that occurred, with their counts.
+    /// Iterates over the reasons with at least one refusal, with their counts.
     pub fn iter(&self) -> impl Iterator<Item = (Refusal, u64)> + '_ {
         Refusal::ALL.into_iter().map(|r| (r, self.count(r))).filter(|&(_, count)| count > 0)
     }

@@ -1,4 +1,4 @@
-//! Incremental simplification: run to a target, take the level, run on.
+//! Incremental simplification: runs to a target, returns the level, and can continue from there.
 
 use meshlod_mesh::{Bounds, Mesh, VertexId};
 
@@ -16,8 +16,8 @@ use crate::surface::Surface;
 /// length and checks with the eighth; outside this range doubles would overflow or underflow.
 const EXTENTS: std::ops::RangeInclusive<f64> = 1e-30..=1e30;
 
-/// Incremental simplification of one mesh. Successive levels are nested: each is made from the one
-/// before.
+/// Incremental simplification of one mesh, whose successive levels are nested: each is made from
+/// the previous one.
 pub struct Simplifier<'m> {
     mesh: &'m Mesh,
     engine: Box<dyn Run + 'm>,
@@ -25,7 +25,7 @@ pub struct Simplifier<'m> {
     input: InputSummary,
 }
 
-/// Findings in the input: faces left out, and vertices held in place.
+/// Numbers of input faces left out and of input vertices held in place.
 #[derive(Clone, Copy)]
 pub(crate) struct InputSummary {
     pub(crate) degenerate_faces: usize,
@@ -34,11 +34,12 @@ pub(crate) struct InputSummary {
     pub(crate) held: Held,
 }
 
-/// Running engine, and the findings in its mesh.
+/// A running engine, and the summary of the mesh it works on.
 pub(crate) type Started<'m> = (Box<dyn Run + 'm>, InputSummary);
 
 impl<'m> Simplifier<'m> {
-    /// Connects the mesh and costs its candidates, without contracting any.
+    /// Builds the connectivity of the mesh and the costs of its contractions, without contracting
+    /// anything yet.
     ///
     /// The method alone decides which engine runs: the kernel for [`Method::LindstromTurk`] and
     /// [`Method::Qem`], the policy engine for the others.
@@ -57,8 +58,8 @@ impl<'m> Simplifier<'m> {
         Ok(Self { mesh, engine, method, input })
     }
 
-    /// Prepares any method on the policy engine, including the general versions of the two kernel
-    /// methods that tests compare the kernel with.
+    /// Prepares any method to run on the policy engine. Tests use it to compare the kernel with
+    /// general versions of its two methods.
     ///
     /// # Errors
     /// The mesh, its extent, the locks or an option is invalid, or no face has three different
@@ -71,7 +72,7 @@ impl<'m> Simplifier<'m> {
         Ok(Self { mesh, engine, method, input })
     }
 
-    /// Contracts until the target is reached or no contraction is allowed.
+    /// Contracts edges or faces until the target is reached or no contraction is allowed any more.
     ///
     /// # Errors
     /// The target is out of range.
@@ -85,14 +86,14 @@ impl<'m> Simplifier<'m> {
         Ok(self.report(target, &stop))
     }
 
-    /// Makes the next contraction that costs at most `most_cost`. Returns false if none is
-    /// possible.
+    /// Makes the next contraction if it costs at most `most_cost`. Returns false if there was no
+    /// such contraction.
     pub fn step(&mut self, most_cost: f64, observer: &mut dyn Observe) -> bool {
         let stop = Stop { cost: most_cost, ..Stop::NEVER };
         self.engine.step(&stop, observer)
     }
 
-    /// Returns the cost of the next candidate in the method's own units, see
+    /// Returns the cost of the next candidate for contraction in the units of the method, see
     /// [`Method::cost_power`](crate::Method::cost_power); `None` if no candidate is left.
     ///
     /// The candidate may still be refused, so the next contraction costs at least this.
@@ -100,7 +101,7 @@ impl<'m> Simplifier<'m> {
         self.engine.next_cost()
     }
 
-    /// Returns the current surface, in the ids of the input.
+    /// Returns the current surface, with the vertex and face ids of the input.
     ///
     /// The kernel builds it on the first call and then keeps it up to date while observers watch.
     /// In a removed face, each corner is the vertex that it was merged into.
@@ -108,7 +109,7 @@ impl<'m> Simplifier<'m> {
         self.engine.surface()
     }
 
-    /// Returns the number of faces left.
+    /// Returns the number of faces that the current mesh has.
     pub fn live_faces(&self) -> usize {
         self.engine.live_faces()
     }
@@ -141,12 +142,13 @@ impl<'m> Simplifier<'m> {
         })
     }
 
-    /// Returns the current mesh without unused vertices and wedges, in the order of the input.
+    /// Returns the current mesh without unused vertices and wedges; what remains is in the order of
+    /// the input.
     pub fn level(&self) -> Mesh {
         self.engine.level(self.mesh)
     }
 
-    /// Returns the number of faces before the first contraction.
+    /// Returns the number of input faces without those left out as degenerate or duplicate.
     pub(crate) fn first_faces(&self) -> usize {
         self.mesh.faces.len() - self.input.degenerate_faces - self.input.duplicate_faces
     }

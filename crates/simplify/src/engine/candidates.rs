@@ -1,4 +1,4 @@
-//! Candidate policies: edges alone, or faces with edges where a face cannot be contracted.
+//! Candidate policies: contract edges only, or faces, and edges where a face cannot be contracted.
 
 use meshlod_mesh::{Connectivity, FaceId, VertexId};
 
@@ -7,8 +7,8 @@ use crate::surface::contracted::Contracted;
 use crate::surface::neighbourhood::{Neighbourhood, Spoke};
 use crate::surface::{Flags, Surface};
 
-/// Candidate number: side k of face f, from corner k to corner k + 1, is 4f + k; the face itself is
-/// 4f + 3.
+/// Number of a candidate for contraction: side k of face f, from corner k to corner k + 1, is 4f +
+/// k; the face itself is 4f + 3.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct CandidateId(pub(crate) u32);
 
@@ -28,7 +28,8 @@ impl CandidateId {
         FaceId(self.0 / 4)
     }
 
-    /// Returns the index among the four candidates of its face: a side's corner, or 3.
+    /// Returns the index of a candidate among the four of its face: 0 to 2 for a side, 3 for the
+    /// face.
     #[inline]
     pub(crate) fn slot(self) -> usize {
         (self.0 % 4) as usize

@@ -1,4 +1,4 @@
-//! Checks that keep a surface as manifold, closed and oriented as it was.
+//! Checks that a contraction keeps the surface manifold and oriented, and closed where it was.
 
 use glam::DVec3;
 use meshlod_mesh::VertexId;
@@ -13,7 +13,7 @@ const OF_TOPOLOGY: [Check; 3] = [shape, link, closing];
 /// Check of a contraction, independent of the new position.
 type Check = fn(&Surface, &Neighbourhood) -> Result<(), Refusal>;
 
-/// Checks whether the gathered vertices may be merged at all.
+/// Checks that merging the vertices of an edge or face keeps the topology of the surface.
 pub(crate) fn topology(surface: &Surface, neighbourhood: &Neighbourhood) -> Result<(), Refusal> {
     OF_TOPOLOGY.iter().try_for_each(|check| check(surface, neighbourhood))
 }
@@ -77,8 +77,8 @@ fn closing(_: &Surface, neighbourhood: &Neighbourhood) -> Result<(), Refusal> {
     if across.count() < 2 && !leaf { Ok(()) } else { Err(Refusal::Link) }
 }
 
-/// Checks that no surviving face flips, turns by more than the limit or loses its area. A face
-/// without area before is not checked.
+/// Checks that no remaining face flips, turns by more than the limit or loses its area. Faces that
+/// had no area before are not checked.
 pub(crate) fn flip(
     surface: &Surface,
     neighbourhood: &Neighbourhood,

@@ -1,4 +1,5 @@
-//! Estimate of a contraction's maximum distance from the input; it is not an upper bound.
+//! Estimate of the distance from the input to the surface after a contraction; it is not an upper
+//! bound.
 
 use glam::DVec3;
 use meshlod_mesh::VertexId;
@@ -7,7 +8,8 @@ use meshlod_spatial::closest_point;
 use crate::surface::neighbourhood::{Neighbourhood, Spoke};
 use crate::surface::{Placed, Surface};
 
-/// Returns the estimated distance from the input after a contraction, in model units.
+/// Returns the estimated distance between the input and the surface after a contraction, in model
+/// units.
 ///
 /// This combines the larger of the placement's own estimate and the distance of the contracted
 /// vertices from the new faces with the distance moved before. The two are taken as independent.

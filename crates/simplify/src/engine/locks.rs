@@ -1,4 +1,4 @@
-//! Locks as vertex flags and ties.
+//! Application of vertex locks to a surface, as vertex flags and ties.
 
 use meshlod_mesh::{Connectivity, Lock, Locks, Mesh, VertexId};
 
@@ -6,19 +6,19 @@ use crate::options::{Method, Options, SimplifyError};
 use crate::surface::ties::{MOST_MEMBERS, Ties};
 use crate::surface::{Flags, Surface};
 
-/// Number of input vertices held by locks, by kind.
+/// Numbers of input vertices that are locked, protected or tied.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Held {
-    /// Number of vertices locked by the mask or as part of a boundary.
+    /// Number of vertices that stay in place, by their own lock or as part of a locked boundary.
     pub locked: usize,
-    /// Number of protected vertices that are not locked.
+    /// Number of protected vertices, which cost more to move, without those that are locked.
     pub protected: usize,
-    /// Number of tied vertices, locked or not.
+    /// Number of vertices that move together with others, whether locked or not.
     pub tied: usize,
 }
 
 impl Held {
-    /// Adds the counts of another mesh, `copies` times.
+    /// Adds the counts of another mesh that the scene shows `copies` times.
     pub fn add(&mut self, other: &Self, copies: usize) {
         self.locked += copies * other.locked;
         self.protected += copies * other.protected;
@@ -40,7 +40,7 @@ impl Held {
 /// From 5 on everything unprotected is contracted first, whatever the cost.
 pub(crate) const PROTECTION: f64 = 2.0;
 
-/// Checks that the locks match the mesh.
+/// Checks that vertex locks have the size of the mesh and that their ties are valid.
 pub(crate) fn validate(locks: &Locks, mesh: &Mesh) -> Result<(), SimplifyError> {
     let (found, expected) = (locks.of_vertex.len(), mesh.positions.len());
     if found != 0 && found != expected {
@@ -64,7 +64,7 @@ pub(crate) fn validate(locks: &Locks, mesh: &Mesh) -> Result<(), SimplifyError> 
     Ok(())
 }
 
-/// Flags locked and protected vertices, and stores the ties.
+/// Flags locked and protected vertices of a surface, and stores its ties.
 pub(crate) fn apply(
     options: &Options,
     method: Method,

@@ -33,7 +33,7 @@ use crate::surface::level::level;
 use crate::surface::neighbourhood::{Neighbourhood, freedom};
 use crate::surface::{Flags, Placed, State, Surface};
 
-/// Algorithm as a choice of policies. Limits and observer are passed with each run.
+/// Simplification algorithm, as a choice of policies. Limits and observer are passed with each run.
 pub(crate) struct Algorithm<C, M, P, L> {
     pub(crate) candidates: C,
     pub(crate) memory: M,
@@ -274,7 +274,7 @@ fn contract_face(
     }
 }
 
-/// Running engine with its algorithm erased.
+/// A running simplification, whatever its algorithm.
 pub(crate) trait Run {
     /// Contracts until a limit of `stop` is reached or no candidate is allowed.
     fn run(&mut self, stop: &Stop, observer: &mut dyn Observe);
@@ -293,18 +293,18 @@ pub(crate) trait Run {
     fn tally(&self) -> Tally;
 }
 
-/// Counts and totals of a run so far.
+/// Counts and totals of a simplification run so far.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Tally {
-    /// Number of components that have vanished.
+    /// Number of connected components that have been removed as a whole.
     pub(crate) vanished: usize,
     pub(crate) refusals: Refusals,
-    /// Greatest error estimate of a contraction, in model units.
+    /// Greatest estimated distance of any contraction from the input, in model units.
     pub(crate) error_estimate: f64,
     pub(crate) volume: VolumeLoss,
 }
 
-/// Surface prepared for an algorithm to start on.
+/// A surface prepared for a simplification algorithm to start on.
 pub(crate) struct PreparedSurface {
     pub(crate) surface: Surface,
     pub(crate) connectivity: Connectivity,
@@ -388,7 +388,7 @@ where
     P: Priority<M> + 'static,
     L: Placement<M> + 'static,
 {
-    /// Starts the algorithm.
+    /// Starts the algorithm on a prepared surface.
     pub(crate) fn start(self, ready: PreparedSurface) -> Box<dyn Run> {
         Box::new(Engine::new(self, ready))
     }

@@ -1,4 +1,4 @@
-//! Policies that define an algorithm for the engine.
+//! Policies that define a simplification algorithm for the engine.
 //!
 //! | policy | decides |
 //! |---|---|
@@ -36,7 +36,7 @@ pub(crate) trait Candidates: Sync {
     fn update(&self, neighbourhood: &Neighbourhood, kept: VertexId, sink: &mut dyn CandidateSink);
 }
 
-/// Set of open candidates, as a [`Candidates`] policy updates it.
+/// Set of candidates open for contraction, as a [`Candidates`] policy updates it.
 pub(crate) trait CandidateSink {
     /// Returns the surface of the candidates.
     fn surface(&self) -> &Surface;
@@ -67,7 +67,7 @@ pub(crate) trait Memory: Sync {
 
 impl Memory for () {}
 
-/// Policy that orders the contractions.
+/// Policy that decides the order of contractions by their costs.
 pub(crate) trait Priority<M>: Sync {
     /// Returns the cost of a candidate, which is contracted lowest first; `None` means never.
     ///
@@ -77,7 +77,7 @@ pub(crate) trait Priority<M>: Sync {
     -> Option<f64>;
 }
 
-/// Policy that positions the new vertex.
+/// Policy that positions the new vertex of a contraction.
 pub(crate) trait Placement<M>: Sync {
     /// Places the new vertex within the neighbourhood's freedom. The error estimate covers this
     /// contraction alone; the engine adds the accumulated error.
@@ -89,23 +89,23 @@ pub(crate) trait Placement<M>: Sync {
     ) -> Result<Placed, Refusal>;
 }
 
-/// Limits at which a run stops.
+/// Limits at which a simplification run stops.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Stop {
-    /// Face count at which the run stops.
+    /// Number of faces at which the run stops.
     pub(crate) faces: usize,
-    /// Limit of the estimated error in model units; contractions above it are refused.
+    /// Largest estimated error allowed, in model units; contractions above it are refused.
     pub(crate) error: f64,
-    /// Limit of the cost of the next contraction.
+    /// Largest cost of the next contraction at which the run goes on.
     pub(crate) cost: f64,
 }
 
 impl Stop {
-    /// Limits that never stop a run.
+    /// Limits that never stop a simplification run.
     pub(crate) const NEVER: Self = Self { faces: 0, error: f64::INFINITY, cost: f64::INFINITY };
 }
 
-/// Observer of the contractions of a run. Every method does nothing by default.
+/// Observer of the contractions of a simplification. All methods do nothing by default.
 ///
 /// Observers see edges only: a face is contracted as two edges, the second through the vertex of
 /// the first. They see the contractions in order, each with the surface as it was at that moment.

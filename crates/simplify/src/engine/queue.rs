@@ -8,8 +8,8 @@ use std::collections::BinaryHeap;
 
 use crate::engine::candidates::CandidateId;
 
-/// Sort key of a cost: the leading 32 bits of a non-negative double, which preserve its order and
-/// 20 bits of its mantissa at any scale.
+/// Sort key of a cost: the leading 32 bits of a non-negative `f64`, which preserve its order and 20
+/// bits of its mantissa at any scale.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) struct Key(u32);
 
@@ -46,7 +46,7 @@ const FEW: usize = 4096;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Entry {
     pub(crate) key: Key,
-    /// Candidate of the entry.
+    /// Edge or face that the queue entry stands for.
     pub(crate) id: CandidateId,
     /// Sum of the versions of its vertices when the cost was computed.
     pub(crate) stamp: u32,
@@ -74,7 +74,7 @@ impl PartialOrd for Entry {
     }
 }
 
-/// Bucket queue with a heap at the front, see the module documentation.
+/// Bucket queue with a heap for the cheapest entries; see the module documentation.
 pub(crate) struct Queue {
     /// Heap of the entries below bucket `next`.
     front: BinaryHeap<Reverse<Entry>>,
@@ -123,8 +123,9 @@ impl Queue {
         self.front.pop().map(|entry| entry.0)
     }
 
-    /// Takes the next non-empty bucket for the caller to refresh and push again, which moves
-    /// entries that still belong there to the front. `None` if the queue is empty.
+    /// Removes and returns the entries of the next non-empty bucket; the caller refreshes and
+    /// pushes them again, which moves those that still belong there to the front. `None` if the
+    /// queue is empty.
     pub(crate) fn next_bucket(&mut self) -> Option<Vec<Entry>> {
         let ahead = self.buckets.get(self.next..)?.iter().position(|bucket| !bucket.is_empty())?;
         self.next += ahead + 1;

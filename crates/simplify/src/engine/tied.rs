@@ -1,4 +1,4 @@
-//! Contraction of all edges between the same two ties in one step, to one position.
+//! Contraction of all edges that connect the same two ties in one step, to one position.
 
 use crate::engine::Engine;
 use crate::engine::checks::{flip, topology};
@@ -16,7 +16,8 @@ where
     P: Priority<M>,
     L: Placement<M>,
 {
-    /// Contracts the gathered edge and its partners, after all checks of all of them.
+    /// Contracts an edge together with the edges that ties connect to it, after all of them have
+    /// passed all checks.
     ///
     /// The history records one contraction per edge.
     pub(super) fn contract_tied(

@@ -1,4 +1,4 @@
-//! Removal of whole components by the engine.
+//! Removal of whole connected components.
 
 use crate::engine::Engine;
 use crate::engine::policy::{Candidates, Memory, Observe, Placement, Priority, Stop};

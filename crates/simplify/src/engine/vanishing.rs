@@ -1,5 +1,5 @@
-//! Small components, which may vanish as a whole where that costs less than contracting them
-//! further.
+//! Small connected components, which may be removed as a whole where that costs less than
+//! contracting them further.
 //!
 //! Components that share a position count as one here: what looks like one surface is removed or
 //! kept as one, even if its vertices are split.
@@ -9,18 +9,18 @@ use meshlod_mesh::{Bounds, FaceId, VertexId, face_components, first_near};
 use crate::options::Method;
 use crate::surface::{Flags, Surface};
 
-/// Component that may vanish.
+/// A connected component that may be removed as a whole.
 pub(crate) struct VanishingComponent {
-    /// Cost of removing it, comparable to the costs of contractions.
+    /// Cost of removing the component, comparable to the costs of contractions.
     pub(crate) cost: f64,
-    /// Bounding-box diagonal in the input, in model units. It counts as the distance moved, as if
-    /// the component shrank to a point.
+    /// Bounding-box diagonal of the component in the input, in model units. It counts as the
+    /// distance moved, as if the component shrank to a point.
     pub(crate) size: f64,
-    /// Input faces of the component.
+    /// Faces of the component in the input.
     pub(crate) faces: Vec<FaceId>,
 }
 
-/// Components that may vanish and have not yet.
+/// Connected components that may still be removed as a whole.
 #[derive(Default)]
 pub(crate) struct Vanishing {
     /// Candidates for removal, the cheapest last.
@@ -30,8 +30,8 @@ pub(crate) struct Vanishing {
 }
 
 impl Vanishing {
-    /// Finds the components of an untouched surface that are smaller than `below` and held by no
-    /// lock.
+    /// Finds the components of an unchanged surface whose bounding-box diagonal is less than
+    /// `below` and that contain no locked or tied vertex.
     ///
     /// Cost: linear, plus O(n log n), n = components that may vanish.
     pub(crate) fn new(surface: &Surface, method: Method, below: Option<f64>) -> Self {
@@ -65,24 +65,24 @@ impl Vanishing {
         this
     }
 
-    /// Takes the cheapest component if it costs at most this.
+    /// Takes the cheapest component out of the list if removing it costs at most `cost`.
     #[inline]
     pub(crate) fn take_up_to(&mut self, cost: f64) -> Option<VanishingComponent> {
         self.waiting.pop_if(|component| component.cost <= cost)
     }
 
-    /// Returns the cost of the cheapest component.
+    /// Returns the cost of removing the cheapest component.
     #[inline]
     pub(crate) fn next_cost(&self) -> Option<f64> {
         self.waiting.last().map(|component| component.cost)
     }
 
-    /// Sets a component aside until the error bound grows.
+    /// Sets aside a component that is larger than the error bound, until the bound grows.
     pub(crate) fn refuse(&mut self, component: VanishingComponent) {
         self.refused.push(component);
     }
 
-    /// Makes the refused components available again.
+    /// Makes the components that were set aside candidates for removal again.
     pub(crate) fn wake_all(&mut self) {
         if !self.refused.is_empty() {
             self.waiting.append(&mut self.refused);
@@ -114,8 +114,8 @@ fn components(surface: &Surface, corners: &[[VertexId; 3]]) -> (Vec<u32>, usize)
 /// .0023, .0020; 1 .0033, .0023; 3 .0041, .0037. The maximum with `qem`: .99, .73, .42, .58.
 const SHRINKAGE: f64 = 0.3;
 
-/// Returns the cost of removing a component, in the units of a method: as if all of it moved by a
-/// fraction of its size.
+/// Returns the cost of removing a component, in the units of a method's costs: as if all of it
+/// moved by a fraction of its size.
 pub(crate) fn cost(method: Method, size: f64, area: f64, faces: usize) -> f64 {
     let cost = match method {
         Method::Qem | Method::QemEndpoint | Method::KimJang => area * size * size,

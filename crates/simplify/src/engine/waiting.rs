@@ -1,5 +1,5 @@
-//! Open candidates, and the view of them that a [`Candidates`](super::policy::Candidates) policy
-//! updates.
+//! Candidates open for contraction, and their states as a [`Candidates`](super::policy::Candidates)
+//! policy updates them.
 
 use meshlod_mesh::VertexId;
 use rustc_hash::FxHashMap;
@@ -9,7 +9,7 @@ use crate::engine::policy::CandidateSink;
 use crate::engine::queue::{Entry, Queue};
 use crate::surface::{Flags, State, Surface};
 
-/// Open candidates: in the queue, or parked until their neighbourhood changes.
+/// Candidates open for contraction: queued, or parked until their neighbourhood changes.
 pub(super) struct Waiting {
     pub(super) queue: Queue,
     parked: FxHashMap<VertexId, Vec<Entry>>,
@@ -37,7 +37,7 @@ impl Waiting {
         }
     }
 
-    /// Requeues the candidates parked at a vertex.
+    /// Puts the candidates parked at a vertex back into the queue.
     pub(super) fn wake(&mut self, vertex: VertexId, surface: &mut Surface) {
         surface.unflag(vertex, Flags::AWAITED);
         for entry in self.parked.remove(&vertex).into_iter().flatten() {
@@ -45,8 +45,8 @@ impl Waiting {
         }
     }
 
-    /// Requeues the candidates parked at the vertices tied to this one, and makes their costs
-    /// stale.
+    /// Puts the candidates parked at vertices tied to this one back into the queue, and marks their
+    /// costs as out of date.
     pub(super) fn wake_tied(&mut self, vertex: VertexId, surface: &mut Surface) {
         for other in surface.ties.with(vertex).to_vec() {
             surface.touch(other);
@@ -70,7 +70,7 @@ impl Waiting {
     }
 }
 
-/// Candidate states on the surface, as a policy updates them after a contraction.
+/// States of the candidates of a surface, as a policy updates them after a contraction.
 pub(super) struct SurfaceCandidates<'a> {
     pub(super) surface: &'a mut Surface,
     pub(super) opened: &'a mut Vec<CandidateId>,

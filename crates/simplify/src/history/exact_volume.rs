@@ -1,4 +1,5 @@
-//! Corrects a level to the exact volume of its mesh, at the precision of the output file.
+//! Corrects a simplified mesh to exactly the volume of the original, at the precision of the output
+//! file.
 //!
 //! Rounding to `f32` alone changes a volume by 1e-9 of it and more. The volume is linear in each
 //! vertex: a unit step along an axis changes six times the volume by that component of the vertex's
@@ -26,15 +27,15 @@ const ENOUGH: f64 = 1e-15;
 /// volume, which the next round corrects.
 const ROUNDS: usize = 4;
 
-/// Number format in which positions are written.
+/// Number format in which a file stores positions.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Digits {
-    /// 32-bit floats, as in binary files by default.
+    /// 32-bit floats, as in binary mesh files by default.
     #[default]
     F32,
-    /// Shortest decimals of 32-bit floats, which are read as doubles, as in text files.
+    /// Shortest decimals of 32-bit floats, which are read back as 64-bit floats, as in text files.
     Decimal,
-    /// 64-bit floats: the full precision of the level.
+    /// 64-bit floats, which keep positions exactly.
     F64,
 }
 
@@ -48,44 +49,46 @@ impl Digits {
     }
 }
 
-/// Relative difference of volume between a level as written and its mesh.
+/// Relative difference in volume between a simplified mesh, as written to a file, and the original.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct VolumeResidual {
-    /// Difference before the correction, as a fraction of the mesh's volume.
+    /// Difference in volume before the correction, as a fraction of the original volume.
     pub before: f64,
-    /// Difference after the correction, as a fraction of the mesh's volume.
+    /// Difference in volume after the correction, as a fraction of the original volume.
     pub after: f64,
-    /// Greatest displacement of a vertex including its rounding, in model units.
+    /// Greatest distance by which the correction moved a vertex, including rounding, in model
+    /// units.
     pub farthest: f64,
 }
 
-/// Error of a volume correction.
+/// Reason why the volume of a simplified mesh cannot be corrected.
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
 pub enum ExactVolumeError {
-    /// The mesh is open and encloses no volume.
+    /// The original mesh is open and encloses no volume.
     #[error("the mesh is not a closed, oriented surface and has no volume: see `meshlod check`")]
     OpenMesh,
-    /// The level is open, which no method of this crate makes of a closed mesh.
+    /// The simplified mesh is open, although no method makes an open mesh of a closed one.
     #[error("the level is not a closed, oriented surface and has no volume")]
     OpenLevel,
-    /// The mesh encloses no volume.
+    /// The original mesh is closed but encloses no volume.
     #[error("the mesh encloses no volume, or parts of opposite orientation cancel")]
     Flat,
-    /// The correction would move vertices visibly.
+    /// The correction would move vertices by a visible distance.
     #[error(
         "the level's volume is off by {relative:e}, and correcting it would move vertices by more \
          than 1e-5 of the diagonal: use a method that conserves the volume, or fewer locks"
     )]
     TooFar {
-        /// Difference of volume, as a fraction of the mesh's volume.
+        /// Difference in volume, as a fraction of the original volume.
         relative: f64,
     },
-    /// A position is out of the range of `f32`.
+    /// A position is outside the range of 32-bit floats.
     #[error("the positions are out of the range of f32: write f64")]
     Unwritable,
 }
 
-/// Moves vertices of `level`, a closed mesh made from `mesh`, until its volume as written matches.
+/// Moves vertices of `level`, which was simplified from the closed mesh `mesh`, until its volume as
+/// written equals that of `mesh`.
 ///
 /// Vertices move by fractions of a millionth of the diagonal and end on numbers of the format
 /// `digits`. Vertices locked in `mesh`, and those that share a position with others, stay. The

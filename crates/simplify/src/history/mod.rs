@@ -1,4 +1,4 @@
-//! Record of all contractions, so that each can be undone exactly.
+//! Recording of all contractions of a simplification, so that each can be undone exactly.
 
 pub(crate) mod exact_volume;
 pub(crate) mod progressive;
@@ -12,32 +12,32 @@ use crate::surface::contracted::Contracted;
 use crate::surface::neighbourhood::Neighbourhood;
 use crate::surface::{Placed, Surface};
 
-/// Recorded contraction of an edge, or removal of a component.
+/// A recorded edge contraction, or the removal of a connected component.
 #[derive(Clone, Copy, Debug)]
 pub struct Contraction {
-    /// Contracted vertices.
+    /// The vertices that were merged.
     pub contracted: Contracted,
-    /// Index of the vertex that stays, among the contracted ones.
+    /// Index, among the contracted vertices, of the one that remained.
     pub kept: u8,
-    /// Position of the kept vertex before, in model units.
+    /// Position of the remaining vertex before the contraction, in model units.
     pub from: [f64; 3],
-    /// Position of the kept vertex after, in model units.
+    /// Position of the remaining vertex after the contraction, in model units.
     pub to: [f64; 3],
     moved: u32,
     removed_faces: u32,
     blended: u32,
 }
 
-/// Face corner that moved from a removed vertex to the kept one.
+/// A face corner that moved from a removed vertex to the one that remained.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Moved {
     pub(crate) corner: CandidateId,
-    /// Wedge of the corner before; arbitrary if the surface has none.
+    /// Wedge at the corner before the contraction; arbitrary if the surface has no attributes.
     pub(crate) wedge: WedgeId,
 }
 
-/// History of a run, recorded as an observer. About 140 bytes per contraction, more with
-/// attributes.
+/// History of a simplification run, recorded as an observer. It takes about 140 bytes per
+/// contraction, more with attributes.
 #[derive(Clone, Debug, Default)]
 pub struct History {
     contractions: Vec<Contraction>,
@@ -48,7 +48,7 @@ pub struct History {
     values: Vec<f32>,
 }
 
-/// Lists that the contractions refer to by their start indices.
+/// Data of all contractions in common lists, into which each contraction has start indices.
 pub(crate) struct Lists {
     pub(crate) moved: Vec<Moved>,
     pub(crate) removed_faces: Vec<FaceId>,
@@ -57,20 +57,20 @@ pub(crate) struct Lists {
 }
 
 impl Contraction {
-    /// Returns the starts of the moved corners, removed faces and blended wedges; each list ends
-    /// where the next contraction's starts.
+    /// Returns the start indices of the contraction's moved corners, removed faces and blended
+    /// wedges; each list ends where the next contraction's starts.
     pub(crate) fn starts(&self) -> [u32; 3] {
         [self.moved, self.removed_faces, self.blended]
     }
 }
 
 impl History {
-    /// Returns the contractions in order.
+    /// Returns the recorded contractions in the order in which they were made.
     pub fn contractions(&self) -> &[Contraction] {
         &self.contractions
     }
 
-    /// Returns the faces removed by the contraction at `index`.
+    /// Returns the faces that the contraction with this index removed.
     pub fn removed_faces(&self, index: usize) -> &[FaceId] {
         let end = self
             .contractions
@@ -79,7 +79,7 @@ impl History {
         &self.removed_faces[self.contractions[index].removed_faces as usize..end]
     }
 
-    /// Returns the number of faces removed in total.
+    /// Returns the number of faces removed by all contractions.
     pub(crate) fn removed_face_count(&self) -> usize {
         self.removed_faces.len()
     }

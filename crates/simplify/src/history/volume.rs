@@ -1,4 +1,4 @@
-//! Observer of the enclosed volume.
+//! Observer that sums the change of the enclosed volume.
 
 use glam::{DMat3, DMat4, DVec3};
 use meshlod_mesh::{Bounds, FaceId};
@@ -8,32 +8,33 @@ use crate::surface::contracted::Freedom;
 use crate::surface::neighbourhood::{Neighbourhood, Spoke};
 use crate::surface::{Flags, Placed, Surface};
 
-/// Volume lost by contractions, and the contractions that no method can make conserve it. A
+/// Volume lost by contractions, and the contractions in which no method can conserve it. A
 /// contracted face counts as two edges.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct VolumeLoss {
-    /// Sum over all contractions with a closed ring of the volume before minus the volume after, in
-    /// cubic model units: table 2 of [LJ05].
+    /// Volume before minus volume after, summed over all contractions with a closed ring, in cubic
+    /// model units: table 2 of [LJ05].
     pub running_sum: f64,
-    /// Contractions at a boundary, and open components that vanished: no volume is defined there,
-    /// so the sum leaves them out.
+    /// Contractions at a boundary, and open components that were removed as a whole. No volume is
+    /// defined there, so the sum leaves them out.
     pub open: Unconserved,
-    /// Contractions held to one position by a lock, a tie or a seam, and closed components that
-    /// vanished, each counted once. The sum includes them.
+    /// Contractions forced to one position by a lock, a tie or a seam, and closed components that
+    /// were removed as a whole, each counted once. The sum includes them.
     pub held: Unconserved,
 }
 
-/// Contractions that could not choose a position that conserves the volume.
+/// Contractions whose position could not be chosen to conserve the volume.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Unconserved {
-    /// Number of contractions.
+    /// Number of these contractions.
     pub contractions: usize,
-    /// Bounding box of their positions.
+    /// Bounding box of the positions of these contractions.
     pub bounds: Bounds,
 }
 
 impl VolumeLoss {
-    /// Adds the loss of another mesh that is placed by `transform` (columns, as in glTF).
+    /// Adds the volume lost by another mesh, placed by the matrix `transform` (columns, as in
+    /// glTF).
     pub fn add(&mut self, other: &Self, transform: &[[f64; 4]; 4]) {
         let transform = DMat4::from_cols_array_2d(transform);
         self.running_sum += other.running_sum * DMat3::from_mat4(transform).determinant().abs();

@@ -20,14 +20,14 @@ const MOST_FACES: usize = 64;
 /// Valence up to which a small buffer is enough; most vertices stay below.
 const FEW_FACES: usize = 12;
 
-/// Statistics of the turns at a vertex.
+/// Statistics of the angles by which the surface turns at the edges of a vertex.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Turns {
-    /// G: the mean.
+    /// Mean of the turns, G in [LJ05].
     pub(crate) mean: f64,
-    /// VAR: the variance.
+    /// Variance of the turns, VAR in [LJ05].
     pub(crate) variance: f64,
-    /// Greatest deviation from the mean.
+    /// Greatest deviation of a turn from the mean.
     pub(crate) farthest: f64,
 }
 
@@ -67,7 +67,8 @@ pub(crate) struct Creases {
 }
 
 impl Creases {
-    /// Prepares an untouched surface; `weigh` computes a vertex's weight from its turns.
+    /// Prepares the creases of an unchanged surface; `weigh` computes a vertex's weight from its
+    /// turns.
     pub(crate) fn new(surface: &Surface, weigh: fn(&Turns) -> f64) -> Self {
         let normal = |f: usize| unit_normal(surface, FaceId::new(f));
         Self {

@@ -36,7 +36,7 @@ use crate::methods::spr::Turn;
 use crate::methods::wu::WeightedMean;
 use crate::options::{Method, Options};
 
-/// Starts a method on a prepared surface.
+/// Starts a simplification method on a prepared surface.
 pub(crate) fn start(method: Method, options: &Options, ready: PreparedSurface) -> Box<dyn Run> {
     let surface = &ready.surface;
     match method {

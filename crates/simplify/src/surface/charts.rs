@@ -7,7 +7,7 @@ use std::cmp::Ordering;
 
 use meshlod_mesh::{Layer, LayerKind, VertexId, WedgeId};
 
-/// Returns true if a layer is shading, which a wedge keeps when its vertex moves.
+/// Returns true if a layer holds normals or tangents, which wedges keep when their vertex moves.
 pub(crate) fn is_shading(layer: &Layer) -> bool {
     matches!(layer.kind, LayerKind::Normal | LayerKind::Tangent)
 }

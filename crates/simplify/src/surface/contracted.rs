@@ -1,10 +1,10 @@
-//! Contracted vertices: two for an edge, three for a face.
+//! The vertices that a contraction merges: two for an edge, three for a face.
 
 use std::ops::Deref;
 
 use meshlod_mesh::VertexId;
 
-/// Contracted vertices of an edge or a face, as a slice of two or three.
+/// The two ends of a contracted edge or three corners of a contracted face, as a slice.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Contracted {
     vertices: [VertexId; 3],
@@ -12,13 +12,13 @@ pub struct Contracted {
 }
 
 impl Contracted {
-    /// Builds the pair of an edge's ends.
+    /// Creates the pair of the two ends of an edge.
     #[inline]
     pub fn edge([v0, v1]: [VertexId; 2]) -> Self {
         Self { vertices: [v0, v1, v1], count: 2 }
     }
 
-    /// Builds the triple of a face's corners.
+    /// Creates the triple of the three corners of a face.
     #[inline]
     pub fn face(vertices: [VertexId; 3]) -> Self {
         Self { vertices, count: 3 }
@@ -34,18 +34,18 @@ impl Deref for Contracted {
     }
 }
 
-/// Freedom of a contraction to place its vertex.
+/// Freedom that a contraction has in placing its new vertex.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Freedom {
-    /// Free to place the vertex anywhere.
+    /// The new vertex may be anywhere.
     #[default]
     Free,
-    /// Restricted to the position of the contracted vertex with this index.
+    /// The new vertex must be at the position of the contracted vertex with this index.
     At(usize),
 }
 
 impl Freedom {
-    /// Combines two freedoms; `None` if they require different positions.
+    /// Combines the restrictions of two contractions; `None` if they require different positions.
     #[inline]
     pub(crate) fn and(self, other: Self) -> Option<Self> {
         match (self, other) {

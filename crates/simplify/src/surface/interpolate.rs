@@ -4,7 +4,7 @@ use glam::DVec3;
 use meshlod_mesh::{Layer, LayerKind, WedgeId};
 use meshlod_spatial::Triangle;
 
-/// Point of a face: the wedges at its corners and their barycentric weights.
+/// Point in a face, given by the wedges at its corners and barycentric weights.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Place {
     pub(crate) wedges: [WedgeId; 3],
@@ -32,8 +32,8 @@ impl Place {
     }
 }
 
-/// Returns the barycentric weights of a point of a triangle; exactly one corner for a point at that
-/// corner.
+/// Returns the barycentric weights of a point in a triangle; for a point at a corner, exactly 1 for
+/// that corner and 0 for the others.
 ///
 /// Computed from areas, or along the longest edge if the triangle has no area.
 pub(crate) fn shares(point: DVec3, triangle: &Triangle) -> [f64; 3] {

@@ -1,10 +1,11 @@
-//! Extraction of the current mesh from a surface.
+//! Extraction of the current mesh from a surface being simplified.
 
 use meshlod_mesh::{FaceId, Mesh, VertexId};
 
 use crate::surface::Surface;
 
-/// Returns the remaining faces and what they use, in the order of the input.
+/// Returns the mesh of the remaining faces, with the vertices and wedges they use, in the order of
+/// the input.
 pub(crate) fn level(mesh: &Mesh, surface: &Surface) -> Mesh {
     let kept: Vec<u32> =
         (0..surface.face_count() as u32).filter(|&f| surface.is_alive(FaceId(f))).collect();

@@ -1,4 +1,4 @@
-//! Surface that contractions change in place: vertices with their stars, faces, wedges.
+//! Triangle surface that contractions change in place: vertices with their stars, faces, wedges.
 //!
 //! The star of a vertex, the faces around it, is a contiguous range of one shared array, so that
 //! its faces load side by side. Position, star and flags of a vertex form one record because they
@@ -21,35 +21,35 @@ use crate::surface::neighbourhood::Neighbourhood;
 use crate::surface::ties::Ties;
 use crate::surface::wedges::Wedges;
 
-/// Position of the new vertex of a contraction, and the vertex that stays as it.
+/// Position of the new vertex of a contraction, and the old vertex that becomes it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Placed {
-    /// Position of the new vertex.
+    /// Position of the new vertex, in model units.
     pub position: DVec3,
-    /// Index of the vertex that stays, among the contracted ones.
+    /// Index, among the contracted vertices, of the one that remains as the new vertex.
     pub kept: usize,
-    /// Estimated distance of the surface from the input here, in model units.
+    /// Estimated distance between the surface and the input at the new vertex, in model units.
     pub error_estimate: f64,
 }
 
-/// Number of faces around a candidate above which it is refused.
+/// Largest number of faces around a candidate at which it may still be contracted.
 pub(crate) const MOST_FACES: usize = 256;
 
 /// Size up to which a star is searched each time a face leaves it.
 const MOST_SEARCHED: u32 = 32;
 
-/// State of a candidate.
+/// State of a candidate for contraction.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[repr(u8)]
 pub(crate) enum State {
-    /// Not a candidate at present.
+    /// Not open for contraction at present.
     #[default]
     Closed,
-    /// In the queue.
+    /// Waiting in the queue.
     Queued,
-    /// Refused and not in the queue.
+    /// Refused, and out of the queue until its neighbourhood changes.
     Parked,
-    /// Closed, but its entry is still in the queue and is dropped when it comes up.
+    /// No longer open, but its queue entry remains and is dropped when it comes up.
     Ghost,
 }
 
@@ -95,24 +95,24 @@ struct VertexRecord {
     moved: f32,
 }
 
-/// Properties of a vertex that the engine checks.
+/// Flags of a vertex that the engine checks.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Flags(u32);
 
 impl Flags {
-    /// The vertex ends a boundary edge.
+    /// The vertex is an end of a boundary edge.
     pub(crate) const BOUNDARY: Self = Self(1);
     /// The vertex must not move: it is locked or non-manifold.
     pub(crate) const PINNED: Self = Self(2);
-    /// The vertex may have more than one chart.
+    /// The vertex may be on a seam: it may belong to more than one chart.
     pub(crate) const SEAM: Self = Self(4);
-    /// A parked candidate waits for its neighbourhood to change.
+    /// A candidate parked at the vertex waits for its neighbourhood to change.
     pub(crate) const AWAITED: Self = Self(8);
-    /// The vertex is in a tie, see [`Ties`].
+    /// The vertex is tied to others; see [`Ties`].
     pub(crate) const TIED: Self = Self(16);
-    /// Contractions of the vertex cost more.
+    /// The vertex is protected: contractions that involve it cost more.
     pub(crate) const PROTECTED: Self = Self(32);
-    /// A lock or a tie holds the vertex, and its component stays.
+    /// A lock or a tie holds the vertex, so that its component must not be removed.
     pub(crate) const HELD: Self = Self(64);
 
     /// The vertex may be on a feature edge: a boundary, a seam or a contact.
@@ -129,7 +129,8 @@ impl Flags {
     }
 }
 
-/// Surface that contractions change in place. Ids stay those of the input mesh.
+/// Triangle surface that contractions change in place. Vertex and face ids are those of the input
+/// mesh.
 pub struct Surface {
     vertices: Vec<VertexRecord>,
     faces: Vec<FaceRecord>,
@@ -137,12 +138,13 @@ pub struct Surface {
     live_faces: usize,
     pub(crate) wedges: Option<Wedges>,
     pub(crate) ties: Ties,
-    /// Factor on the cost of a contraction with a protected vertex.
+    /// Factor on the cost of a contraction that involves a protected vertex.
     pub(crate) protection: f64,
 }
 
 impl Surface {
-    /// Builds the surface of the faces that `connectivity` connects; all others are not alive.
+    /// Builds the surface of the faces that `connectivity` includes; all other faces count as
+    /// removed.
     pub(crate) fn new(mesh: &Mesh, connectivity: &Connectivity) -> Self {
         let face = |&vertices: &[VertexId; 3]| FaceRecord {
             vertices,
@@ -197,25 +199,25 @@ impl Surface {
         }
     }
 
-    /// Returns the number of faces left.
+    /// Returns the number of faces that have not been removed.
     #[inline]
     pub fn live_faces(&self) -> usize {
         self.live_faces
     }
 
-    /// Returns true if the face is still part of the surface.
+    /// Returns true if the face has not been removed from the surface.
     #[inline]
     pub fn is_alive(&self, face: FaceId) -> bool {
         self.faces[face.index()].alive
     }
 
-    /// Returns the vertices of a face; for a removed face, those at its removal.
+    /// Returns the vertices of a face, or those it had when it was removed.
     #[inline]
     pub fn face(&self, face: FaceId) -> [VertexId; 3] {
         self.faces[face.index()].vertices
     }
 
-    /// Returns the state of a candidate.
+    /// Returns the state of a candidate for contraction.
     #[inline]
     pub(crate) fn state(&self, id: CandidateId) -> State {
         self.faces[id.face().index()].states.get(id.slot())
@@ -226,13 +228,13 @@ impl Surface {
         self.faces[id.face().index()].states.set(id.slot(), state);
     }
 
-    /// Returns the position of a vertex; for a removed vertex, its last one.
+    /// Returns the position of a vertex, or its last position if it was removed.
     #[inline]
     pub fn position(&self, vertex: VertexId) -> DVec3 {
         self.vertices[vertex.index()].position
     }
 
-    /// Iterates over the faces around a vertex, in no particular order.
+    /// Iterates over the faces around a vertex in no particular order.
     #[inline]
     pub fn star(&self, vertex: VertexId) -> impl Iterator<Item = FaceId> + '_ {
         let VertexRecord { star, valence, .. } = self.vertices[vertex.index()];
@@ -240,40 +242,41 @@ impl Surface {
         star.iter().copied().filter(|face| self.faces[face.index()].alive)
     }
 
-    /// Returns the number of faces around a vertex.
+    /// Returns the number of faces that use a vertex.
     #[inline]
     pub fn valence(&self, vertex: VertexId) -> usize {
         let VertexRecord { valence, gone, .. } = self.vertices[vertex.index()];
         (valence - gone) as usize
     }
 
-    /// Returns true if too many faces meet at these vertices. The hub of a huge fan can wait until
-    /// its rim has been contracted; contracting it first would cost the square of its valence.
+    /// Returns true if too many faces meet at these vertices for a contraction. The hub of a huge
+    /// fan can wait until its rim has been contracted; contracting it first would cost the square
+    /// of its valence.
     #[inline]
     pub(crate) fn is_crowded(&self, vertices: &[VertexId]) -> bool {
         vertices.iter().map(|&v| self.valence(v)).sum::<usize>() > MOST_FACES
     }
 
-    /// Returns the number of vertices of the input, which bounds their ids.
+    /// Returns the number of vertices of the input mesh; all vertex ids are below it.
     #[inline]
     pub fn vertex_count(&self) -> usize {
         self.vertices.len()
     }
 
-    /// Returns the number of faces of the input, which bounds their ids.
+    /// Returns the number of faces of the input mesh; all face ids are below it.
     #[inline]
     pub fn face_count(&self) -> usize {
         self.faces.len()
     }
 
-    /// Returns the normal of a face, twice its area long.
+    /// Returns the normal vector of a face, whose length is twice the area.
     #[inline]
     pub fn area_normal(&self, face: FaceId) -> DVec3 {
         let [a, b, c] = self.face(face).map(|v| self.position(v));
         (b - a).cross(c - a)
     }
 
-    /// Returns the corner of `face` that is at `vertex`.
+    /// Returns the index of the corner of `face` that is at `vertex`.
     #[inline]
     pub(crate) fn corner(&self, face: FaceId, vertex: VertexId) -> usize {
         corner_of(self.face(face), vertex)
@@ -302,21 +305,22 @@ impl Surface {
         vertices.iter().map(|v| self.vertices[v.index()].moved).fold(0.0, f32::max).into()
     }
 
-    /// Makes every cost computed from a vertex stale.
+    /// Marks every cost computed from a vertex as out of date.
     #[inline]
     pub(crate) fn touch(&mut self, vertex: VertexId) {
         let version = &mut self.vertices[vertex.index()].version;
         *version = version.wrapping_add(1);
     }
 
-    /// Returns a number that changes whenever one of these vertices does, and never repeats.
+    /// Returns a number that changes whenever one of these vertices does and that never occurs
+    /// again.
     #[inline]
     pub(crate) fn stamp(&self, vertices: &[VertexId]) -> u32 {
         vertices.iter().fold(0, |sum, v| sum.wrapping_add(self.vertices[v.index()].version))
     }
 
-    /// Merges the contracted vertices into one at `placed`, using `neighbourhood` exactly as it was
-    /// gathered.
+    /// Merges the contracted vertices into one at `placed`; nothing may have changed since
+    /// `neighbourhood` was gathered.
     pub(crate) fn contract(&mut self, neighbourhood: &Neighbourhood, placed: &Placed) {
         let kept = neighbourhood.contracted[placed.kept];
         if let Some(mut wedges) = self.wedges.take() {
@@ -341,7 +345,7 @@ impl Surface {
         self.join(neighbourhood, kept, placed);
     }
 
-    /// Removes a component, given all of its faces including those already removed.
+    /// Removes a connected component, given all of its faces including those already removed.
     pub(crate) fn take_out(&mut self, component: &[FaceId]) {
         for &id in component {
             let face = &mut self.faces[id.index()];
@@ -429,7 +433,7 @@ impl Surface {
     }
 }
 
-/// Returns the index of a vertex among a face's corners.
+/// Returns the index of the face corner that is at a vertex.
 #[inline]
 pub(crate) fn corner_of(face: [VertexId; 3], vertex: VertexId) -> usize {
     usize::from(face[0] != vertex) + usize::from(face[0] != vertex && face[1] != vertex)

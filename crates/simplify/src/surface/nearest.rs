@@ -1,4 +1,5 @@
-//! Closest points on the old faces from which a new vertex takes its attributes, wedge by wedge.
+//! Closest points on the old faces around a contraction, from which the new vertex takes its
+//! attributes, wedge by wedge.
 //!
 //! The new vertex is generally off the old faces and off the contracted edge. Each of its wedges
 //! takes its values from the closest point of the old faces that it represents: those of its chart
@@ -26,7 +27,7 @@ struct Near {
     distance_squared: f64,
 }
 
-/// Old faces around a contraction.
+/// Faces around a contraction, as they were before it.
 pub(crate) struct Nearby(Vec<Near>);
 
 impl Nearby {

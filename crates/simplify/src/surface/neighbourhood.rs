@@ -1,4 +1,5 @@
-//! Neighbourhood of a candidate, gathered once and shared by all policies.
+//! The faces and vertices around a candidate for contraction, gathered once and shared by all
+//! policies.
 //!
 //! ```text
 //!          vl              v0 v1   contracted
@@ -16,37 +17,38 @@ use crate::surface::contracted::{Contracted, Freedom};
 use crate::surface::ties;
 use crate::surface::{Flags, Surface, corner_of};
 
-/// Face that survives the contraction: one corner is contracted, two are on the ring.
+/// A face that survives a contraction: one of its corners is contracted, the other two are on the
+/// ring.
 #[derive(Clone, Copy, Debug)]
 pub struct Spoke {
-    /// Face id.
+    /// Id of the surviving face.
     pub face: FaceId,
-    /// Index in the ring of the corner after the contracted one.
+    /// Index in the ring of the corner that follows the contracted one.
     pub a: u32,
-    /// Index in the ring of the corner after `a`.
+    /// Index in the ring of the corner that follows `a`.
     pub b: u32,
     corner: u8,
     owner: u8,
 }
 
 impl Spoke {
-    /// Returns the contracted corner of the face.
+    /// Returns the index of the face's corner that is contracted.
     #[inline]
     pub fn corner(&self) -> usize {
         self.corner.into()
     }
 
-    /// Returns the index of that corner's vertex among the contracted ones.
+    /// Returns the index, among the contracted vertices, of the one that is a corner of this face.
     #[inline]
     pub fn owner(&self) -> usize {
         self.owner.into()
     }
 }
 
-/// Face that the contraction removes: two or all three of its corners are contracted.
+/// A face that a contraction removes: two or all three of its corners are contracted.
 #[derive(Clone, Copy, Debug)]
 pub struct RemovedFace {
-    /// Face id.
+    /// Id of the face to be removed.
     pub face: FaceId,
     apex: u32,
 }
@@ -54,28 +56,30 @@ pub struct RemovedFace {
 impl RemovedFace {
     const NO_APEX: u32 = u32::MAX;
 
-    /// Returns the index in the ring of the corner that is not contracted, a wing.
+    /// Returns the index in the ring of the face's corner that is not contracted, called a wing;
+    /// `None` if all three are contracted.
     #[inline]
     pub fn apex(&self) -> Option<usize> {
         (self.apex != Self::NO_APEX).then_some(self.apex as usize)
     }
 }
 
-/// Ring vertex: a neighbour of a contracted vertex.
+/// A vertex of the ring: a neighbour of a contracted vertex.
 #[derive(Clone, Copy, Debug)]
 pub struct RingVertex {
-    /// Vertex id.
+    /// Id of the ring vertex.
     pub id: VertexId,
-    /// Position of the vertex.
+    /// Position of the ring vertex, in model units.
     pub position: DVec3,
-    /// One bit per contracted vertex, set if an edge leads to it.
+    /// Bit mask of the contracted vertices to which an edge leads from here.
     pub(crate) adjacent: u8,
-    /// One bit per contracted vertex, set for the ends of the contracted edges of which this is a
-    /// wing.
+    /// Bit mask of the contracted vertices that are ends of a contracted edge of which this vertex
+    /// is a wing.
     pub(crate) wing: u8,
 }
 
-/// Neighbourhood of a candidate, reused from one to the next.
+/// The faces and vertices around a candidate for contraction; one instance is reused for all
+/// candidates.
 #[derive(Default)]
 pub struct Neighbourhood {
     pub(crate) contracted: Contracted,
@@ -83,9 +87,9 @@ pub struct Neighbourhood {
     pub(crate) spokes: Vec<Spoke>,
     pub(crate) removed_faces: Vec<RemovedFace>,
     pub(crate) ring: Vec<RingVertex>,
-    /// Wedges that meet along the edge: at its first end and at its second.
+    /// Wedges that meet along the contracted edge, at its first end and at its second.
     pub(crate) wedge_pairs: Vec<[WedgeId; 2]>,
-    /// Edges that ties contract together with this one.
+    /// Edges that must be contracted together with this one, because their ends are tied.
     pub(crate) partners: Vec<[VertexId; 2]>,
     /// Scratch space: the faces around, with the contracted vertex at which they were found and
     /// their vertices.
@@ -93,22 +97,22 @@ pub struct Neighbourhood {
 }
 
 impl Neighbourhood {
-    /// Returns the contracted vertices.
+    /// Returns the vertices that the contraction merges: two for an edge, three for a face.
     pub fn contracted(&self) -> &Contracted {
         &self.contracted
     }
 
-    /// Returns the surviving faces.
+    /// Returns the faces around the contraction that survive it.
     pub fn spokes(&self) -> &[Spoke] {
         &self.spokes
     }
 
-    /// Returns the removed faces.
+    /// Returns the faces that the contraction removes.
     pub fn removed_faces(&self) -> &[RemovedFace] {
         &self.removed_faces
     }
 
-    /// Returns the ring vertices.
+    /// Returns the ring: the neighbours of the contracted vertices.
     pub fn ring(&self) -> &[RingVertex] {
         &self.ring
     }
@@ -118,18 +122,20 @@ impl Neighbourhood {
         self.ring.iter().map(|r| r.position.distance_squared(from)).fold(0.0, f64::max).sqrt()
     }
 
-    /// Returns true if the ring is closed; only then is there a volume to conserve.
+    /// Returns true if the surviving faces form a closed ring; only then is there a volume to
+    /// conserve.
     #[inline]
     pub(crate) fn is_closed(&self, surface: &Surface) -> bool {
         !self.contracted.iter().any(|&v| surface.flags(v).any(Flags::BOUNDARY))
     }
 
-    /// Returns the freedom of the new vertex's position.
+    /// Returns the freedom in placing the new vertex of the contraction.
     pub fn freedom(&self) -> Freedom {
         self.freedom
     }
 
-    /// Gathers the neighbourhood of `contracted`; refuses what pins or seams forbid.
+    /// Gathers the faces and vertices around the contraction of `contracted`; refuses it if locks,
+    /// ties or seams forbid it.
     pub(crate) fn gather(
         &mut self,
         surface: &Surface,
@@ -145,8 +151,8 @@ impl Neighbourhood {
         Ok(())
     }
 
-    /// Gathers the neighbourhood of an edge whose contraction was decided elsewhere; nothing is
-    /// refused.
+    /// Gathers the faces and vertices around an edge whose contraction was decided elsewhere;
+    /// nothing is refused.
     pub(crate) fn gather_decided(
         &mut self,
         surface: &Surface,
@@ -222,8 +228,8 @@ impl Neighbourhood {
     }
 }
 
-/// Determines how free a contraction is, which wedges meet along an edge, and which other edges
-/// ties contract with it.
+/// Determines the freedom in placing the new vertex, which wedges meet along an edge, and which
+/// other edges ties contract with it.
 pub(crate) fn freedom(
     surface: &Surface,
     contracted: &Contracted,

@@ -7,11 +7,11 @@ use crate::refusal::Refusal;
 use crate::surface::contracted::Freedom;
 use crate::surface::{Flags, Surface};
 
-/// Number of vertices above which a tie is locked: edges between two ties are searched from each of
-/// their vertices.
+/// Largest number of vertices of a tie; larger ones are locked, because edges between two ties are
+/// searched from each of their vertices.
 pub(crate) const MOST_MEMBERS: usize = 16;
 
-/// Current ties. A vertex merged into another leaves its tie; the other represents it there.
+/// The current ties. A vertex merged into another leaves its tie; the other takes its place.
 #[derive(Default)]
 pub(crate) struct Ties {
     of_vertex: FxHashMap<VertexId, u32>,
@@ -27,7 +27,7 @@ impl Ties {
         Self { of_vertex, members }
     }
 
-    /// Returns the vertices of the tie of `vertex`, including itself; empty if it is in no tie.
+    /// Returns all vertices tied to `vertex`, including itself; empty if it is not tied.
     pub(crate) fn with(&self, vertex: VertexId) -> &[VertexId] {
         self.of_vertex.get(&vertex).map_or(&[], |&tie| &self.members[tie as usize])
     }
@@ -40,7 +40,7 @@ impl Ties {
     }
 }
 
-/// Surface with ties, as the tie rule needs it.
+/// A surface with ties, as needed to decide which edges must be contracted together.
 pub(crate) trait TiedSurface {
     /// Returns true if a vertex is in a tie.
     fn is_tied(&self, vertex: VertexId) -> bool;
@@ -74,8 +74,8 @@ impl TiedSurface for Surface {
     }
 }
 
-/// Determines how free ties leave the contraction of an edge, and collects in `partners` the edges
-/// to contract with it, each with its ends in the same order.
+/// Determines the freedom that ties leave the contraction of an edge, and collects in `partners`
+/// the edges to contract with it, each with its ends in corresponding order.
 ///
 /// An edge between a tie and a free vertex is contracted onto the tie. An edge between two ties
 /// takes with it every edge between them, at most one at each vertex. A vertex without such an edge

@@ -1,4 +1,4 @@
-//! Attributes of the changing surface: wedges follow their vertices.
+//! Attributes of a surface being simplified: its wedges follow their vertices.
 //!
 //! When an edge is contracted, the wedges that meet along it become one, with the values of the
 //! surface next to the new position. A chart of the removed end that meets none would be lost. A
@@ -16,7 +16,7 @@ use crate::surface::neighbourhood::Neighbourhood;
 use crate::surface::{Flags, Placed, Surface};
 
 /// Wedges of a surface: those of its mesh, split further where the material or the object changes,
-/// so that these borders are seams like any other.
+/// so that borders between them are seams like any other.
 pub(crate) struct Wedges {
     corners: Vec<[WedgeId; 3]>,
     layers: Vec<Layer>,
@@ -50,7 +50,7 @@ impl Wedges {
         &self.layers
     }
 
-    /// Returns the number of wedges, including those no face uses any more.
+    /// Returns the number of wedges, including wedges that no face uses any more.
     #[inline]
     pub(crate) fn count(&self) -> usize {
         self.charts.len()
@@ -68,7 +68,7 @@ impl Wedges {
         self.corners[face.index()]
     }
 
-    /// Collects the wedges at the ends of the edge in each of its faces; equal pairs once.
+    /// Collects the wedges at the two ends of an edge in each of its faces; equal pairs occur once.
     pub(crate) fn pair(
         &self,
         surface: &Surface,
@@ -103,8 +103,8 @@ impl Wedges {
         self.chart(a) == self.chart(b)
     }
 
-    /// Determines which ends of the edge can be removed: those whose every chart meets exactly one
-    /// chart of the other end.
+    /// Determines which ends of an edge can be removed: those of which every chart meets exactly
+    /// one chart of the other end.
     pub(crate) fn freedom(
         &self,
         surface: &Surface,

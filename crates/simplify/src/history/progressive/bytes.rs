@@ -19,51 +19,52 @@ const VERSION: u32 = 1;
 const CHECKSUM: usize = 12;
 const BODY: usize = 20;
 
-/// Error of reading a progressive mesh.
+/// Reason why the bytes of a progressive mesh cannot be decoded.
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum ProgressiveError {
-    /// The magic number is missing.
+    /// The data does not start with the magic number of the format.
     #[error("this is not a progressive mesh: it does not start with \"meshlodp\"")]
     Magic,
-    /// The format version is unknown.
+    /// The version of the format is not supported.
     #[error(
         "version {0} of the progressive mesh format is not supported: only version 1 can be read"
     )]
     Version(u32),
-    /// The checksum does not match.
+    /// The checksum does not match the data.
     #[error("the checksum does not match: the file is damaged")]
     Checksum,
-    /// The data ends too early.
+    /// The data ends before the mesh is complete.
     #[error("byte {at}: the file ends within {what}")]
     Truncated {
-        /// Offset at which the incomplete part starts.
+        /// Byte offset at which the incomplete part starts.
         at: usize,
-        /// Name of the incomplete part.
+        /// Name of the part that is incomplete.
         what: &'static str,
     },
-    /// Data follows the end of the mesh.
+    /// Extra bytes follow the end of the mesh.
     #[error("byte {at}: data follows the end of the mesh")]
     Rest {
-        /// Offset at which the file should end.
+        /// Byte offset at which the data should end.
         at: usize,
     },
-    /// An element is invalid.
+    /// A part of the data, such as a split or a layer, is invalid.
     #[error("{what} {index} is invalid: {why}")]
     Bad {
-        /// Kind of element: a split, a layer, a name.
+        /// Kind of the invalid part: a split, a layer, a name.
         what: &'static str,
-        /// Index of the element.
+        /// Index of the invalid part among those of its kind.
         index: usize,
-        /// Explanation of the defect.
+        /// Explanation of why the part is invalid.
         why: &'static str,
     },
-    /// The base mesh is invalid.
+    /// The base mesh decoded from the data is invalid.
     #[error(transparent)]
     Mesh(#[from] MeshError),
 }
 
 impl Progressive {
-    /// Encodes all levels, whichever is current; decoding starts at the base.
+    /// Encodes the progressive mesh with all its levels. The decoded mesh starts at the base level,
+    /// whichever is current here.
     pub fn to_bytes(&self) -> Vec<u8> {
         let mut base = self.clone();
         while base.coarsen() {}
@@ -87,7 +88,8 @@ impl Progressive {
         out
     }
 
-    /// Updates the checksum of modified bytes, for tests of [`Self::from_bytes`].
+    /// Corrects the checksum of bytes that a test has modified, so that [`Self::from_bytes`] reads
+    /// on.
     pub fn seal(bytes: &mut [u8]) {
         if bytes.len() >= BODY {
             let sum = checksum(&bytes[BODY..]);
@@ -95,7 +97,8 @@ impl Progressive {
         }
     }
 
-    /// Decodes what [`Self::to_bytes`] wrote, positioned at the base.
+    /// Decodes a progressive mesh from the bytes written by [`Self::to_bytes`], with the base as
+    /// its current level.
     ///
     /// Accepts arbitrary bytes. Every level of the result is a valid mesh.
     ///

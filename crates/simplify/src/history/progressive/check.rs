@@ -1,10 +1,10 @@
-//! Checks that decoded splits can be applied and yield valid meshes.
+//! Checks that decoded vertex splits can be applied and yield valid meshes.
 
 use meshlod_mesh::{FaceId, MeshError, VertexId, WedgeId};
 
 use super::{Progressive, ProgressiveError};
 
-/// Refines the base to the finest level and back, checking every split before it is applied.
+/// Refines a decoded mesh to its finest level and back, checking every split before it is applied.
 ///
 /// Cost: linear.
 pub(super) fn check(read: &mut Progressive) -> Result<(), ProgressiveError> {

@@ -15,7 +15,7 @@ use crate::history::History;
 use crate::simplifier::Simplifier;
 use crate::surface::Surface;
 
-/// Progressive mesh: all levels of a run of a [`Simplifier`], positioned at one of them.
+/// Progressive mesh: all levels of a [`Simplifier`] run, one of which is current.
 ///
 /// Its levels are exactly those that [`Simplifier::level`] returned on the way: positions,
 /// attributes, materials, and the order of all. The finest level is the input without unused
@@ -60,8 +60,8 @@ struct VertexSplit {
 }
 
 impl Progressive {
-    /// Builds the progressive mesh from the input down to the simplifier's current level, which
-    /// stays current. Returns `None` if the history has not observed every contraction.
+    /// Builds a progressive mesh from a simplification and its history; the current level is that of
+    /// the simplifier. Returns `None` if the history has not recorded every contraction.
     pub fn new(simplifier: Simplifier<'_>, history: History) -> Option<Self> {
         if simplifier.live_faces() + history.removed_face_count() != simplifier.first_faces() {
             return None;
@@ -78,12 +78,12 @@ impl Progressive {
         })
     }
 
-    /// Returns the number of faces of the current level.
+    /// Returns the number of faces of the current level of detail.
     pub fn live_faces(&self) -> usize {
         self.live_faces
     }
 
-    /// Returns the number of faces of the finest level.
+    /// Returns the number of faces of the finest level of detail.
     pub fn full_faces(&self) -> usize {
         let undone = &self.splits.splits[self.coarsened..];
         let to_come = undone
@@ -93,17 +93,18 @@ impl Progressive {
         self.live_faces + self.splits.removed_faces.len() - to_come
     }
 
-    /// Returns the number of splits.
+    /// Returns the number of vertex splits between the base and the finest level.
     pub fn len(&self) -> usize {
         self.splits.splits.len()
     }
 
-    /// Returns true if there is only one level.
+    /// Returns true if there are no vertex splits, so that the base is the only level.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
-    /// Applies one split towards the finest level. Returns false there.
+    /// Applies one vertex split, towards the finest level. Returns false if the current level
+    /// already is the finest.
     pub fn refine(&mut self) -> bool {
         let Some(last) = self.coarsened.checked_sub(1) else { return false };
         self.coarsened = last;
@@ -116,7 +117,8 @@ impl Progressive {
         true
     }
 
-    /// Applies one contraction towards the base. Returns false there.
+    /// Undoes one vertex split, towards the base. Returns false if the current level already is the
+    /// base.
     pub fn coarsen(&mut self) -> bool {
         let Some(&split) = self.splits.splits.get(self.coarsened) else { return false };
         self.swap(self.coarsened, split.kept);
@@ -128,7 +130,7 @@ impl Progressive {
         true
     }
 
-    /// Moves to the finest level with at most `faces` faces, or to the base.
+    /// Makes the finest level with at most `faces` faces current, or the base if all have more.
     pub fn go_to(&mut self, faces: usize) {
         while self.live_faces > faces && self.coarsen() {}
         while let Some(last) = self.coarsened.checked_sub(1) {
@@ -139,7 +141,7 @@ impl Progressive {
         }
     }
 
-    /// Returns the current level, exactly as [`Simplifier::level`] returned it.
+    /// Returns the current level as a mesh, exactly as [`Simplifier::level`] returned it.
     pub fn level(&self) -> Mesh {
         let kept: Vec<u32> =
             (0..self.alive.len() as u32).filter(|&f| self.alive[f as usize]).collect();
