@@ -2,13 +2,13 @@
 
 use thiserror::Error;
 
-/// Error: the bytes to be decoded are damaged, incomplete or in another format.
+/// Error in bytes that were to be decoded.
 #[derive(Clone, Debug, Error, PartialEq, Eq)]
 #[error("byte {at}: {reason}")]
 pub struct Malformed {
-    /// Byte offset at which the error was found.
+    /// Offset of the error in bytes.
     pub at: usize,
-    /// Description of what is wrong with the bytes.
+    /// Description of the error.
     pub reason: String,
 }
 

@@ -1,4 +1,4 @@
-//! Partition of vertices into blocks of equal size, each close together.
+//! Vertices in blocks of equal size, each close together.
 
 use std::f64::consts::FRAC_1_SQRT_2;
 

@@ -171,6 +171,29 @@ fn faces_that_are_left_out_join_nothing() {
 }
 
 #[test]
+fn a_hub_that_vanishes_takes_its_own_faces() {
+    // Its apex has a long ring, in a list that contractions do not keep up.
+    for faces in [60, 200, 1000] {
+        let mut mesh = fixtures::cone(faces);
+        let below = 1.01 * mesh.bounds().diagonal();
+        let count = mesh.positions.len() as u32;
+        let ball = samples::sphere(500);
+        let far = 10.0 * below;
+        mesh.positions.extend(ball.positions.iter().map(|p| p.map(|x| 3.0 * below * x + far)));
+        mesh.faces.extend(ball.faces.iter().map(|face| face.map(|v| VertexId(v.0 + count))));
+        mesh.attributes = None;
+        for method in [Method::LindstromTurk, Method::Qem] {
+            let options = Options { method, vanish_below: Some(below), ..Options::default() };
+            let mut simplifier = Simplifier::new(&mesh, &options).unwrap();
+            for left in [450, 300, 100, 8] {
+                let report = simplifier.run(Target::Faces(left), &mut ()).unwrap();
+                assert_eq!(simplifier.level().faces.len(), report.output_faces);
+            }
+        }
+    }
+}
+
+#[test]
 fn what_is_no_size_is_refused() {
     for size in [-1.0, f64::NAN] {
         let options = Options { vanish_below: Some(size), ..Options::default() };

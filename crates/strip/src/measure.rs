@@ -1,4 +1,4 @@
-//! Statistics of triangle strips.
+//! Statistics of strips.
 
 use std::collections::VecDeque;
 
@@ -6,25 +6,22 @@ use meshlod_mesh::VertexId;
 
 use crate::strips::{Strips, drawn};
 
-/// Statistics of triangle strips: the vertices and indices they send, and how well a vertex cache
-/// serves them.
+/// Vertices and indices that strips send, and how well a vertex cache serves them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StripStatistics {
-    /// Number of triangles that the strips draw.
+    /// Number of triangles drawn.
     pub triangles: usize,
-    /// Number of vertices sent if each strip is drawn by a call of its own.
+    /// Number of vertices sent if each strip is drawn on its own.
     pub vertices_sent: usize,
-    /// Number of indices sent if all strips are drawn by one call with primitive restarts between
-    /// them.
+    /// Number of indices of one draw call with a restart between strips.
     pub indices_with_restart: usize,
-    /// Number of indices sent if all strips are drawn by one call with degenerate triangles between
-    /// them.
+    /// Number of indices of one draw call with degenerate triangles between strips.
     pub indices_stitched: usize,
-    /// Number of triangle strips.
+    /// Number of strips.
     pub strips: usize,
-    /// Number of degenerate triangles inside strips, one for each swap.
+    /// Number of degenerate windows inside strips; each swap makes one.
     pub swaps: usize,
-    /// Number of strips that double their first vertex to start with the right winding.
+    /// Number of strips that double their first vertex to begin with an odd triangle.
     pub odd_starts: usize,
     /// Vertices transformed per triangle with a first-in, first-out cache of 16 entries; 0 without
     /// triangles.
@@ -35,7 +32,7 @@ pub struct StripStatistics {
 }
 
 impl StripStatistics {
-    /// Measures a list of triangle strips.
+    /// Measures strips.
     ///
     /// Cost: linear, with 48 comparisons per vertex.
     pub fn new(strips: &Strips) -> Self {
@@ -61,10 +58,8 @@ pub(crate) fn starts_odd(strip: &[VertexId]) -> bool {
     strip.len() > 2 && strip[0] == strip[1]
 }
 
-/// Returns the average cache miss ratio of strips: vertices transformed per triangle with a
-/// first-in, first-out cache of `entries` vertices.
-///
-/// It is 0 without triangles.
+/// Returns the vertices transformed per triangle (average cache miss ratio) with a first-in,
+/// first-out cache; 0 without triangles.
 pub fn acmr(strips: &Strips, entries: usize) -> f64 {
     let mut cache = VecDeque::new();
     let mut misses = 0_usize;

@@ -1,4 +1,4 @@
-//! Graph of faces and their neighbours, for partitioning a mesh.
+//! Faces and their neighbours, for partitioning.
 
 use meshlod_mesh::{Bounds, Connectivity, FaceId, Mesh, Side, Twin, VertexId};
 

@@ -5,14 +5,13 @@ use meshlod_mesh::Bounds;
 use super::Part;
 use super::face_graph::FaceGraph;
 
-/// Point of a grid cell to which the vertices in it are decoded.
+/// Point of a cell to which a vertex is decoded.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Reconstruction {
-    /// The middle of the cell, which halves the largest error.
+    /// The middle, which halves the error.
     #[default]
     Centred,
-    /// The corner of the cell with the least coordinates, as in [LCL10]: on average, every vertex
-    /// is half a cell too low.
+    /// The least corner, as in [LCL10]: every vertex is half a cell too low on average.
     Truncated,
 }
 

@@ -1,4 +1,4 @@
-//! Encoding in bits of the steps by which a patch grows.
+//! Encoding of a patch's steps in bits.
 
 use std::ops::Range;
 

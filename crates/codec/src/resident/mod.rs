@@ -21,8 +21,7 @@ use crate::attributes::{LayerReport, PackedLayer};
 use crate::bytes::reduction;
 use crate::patch::Patches;
 
-/// Compressed mesh in memory, of which any block of vertices and any patch of faces can be decoded
-/// alone.
+/// Compressed mesh of which any block of vertices and any patch of faces can be decoded alone.
 ///
 /// It holds the faces and what they use, in an order of its own, but no materials or objects.
 #[derive(Clone, Debug, PartialEq)]
@@ -36,14 +35,13 @@ pub struct Compressed {
 /// Size of a compressed mesh by content, in bytes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct CompressedSizes {
-    /// Size of the vertex positions in bytes, with everything needed to decode them.
+    /// Positions, with everything needed to decode them.
     pub positions: usize,
-    /// Size of the faces in bytes, including the vertex of each corner.
+    /// Faces, and the vertex of each corner.
     pub connectivity: usize,
-    /// Size of all attribute layers in bytes.
+    /// All attribute layers.
     pub attributes: usize,
-    /// Size of the whole `.mlq` file in bytes: positions, connectivity, attributes and the file
-    /// header.
+    /// The whole file: the three above and the file header.
     pub total: usize,
 }
 
@@ -57,7 +55,7 @@ const MAX_FACES: usize = 1 << 27;
 const BLOCKS_PER_PATCH: usize = 4;
 
 impl Compressed {
-    /// Returns the sizes of positions, connectivity, attributes and the whole file, in bytes.
+    /// Returns the sizes of positions, connectivity, attributes and the whole file.
     pub fn sizes(&self) -> CompressedSizes {
         let positions = self.positions.bytes();
         let connectivity = self.patches.bytes() + self.wedge_vertices.bytes();
@@ -66,32 +64,32 @@ impl Compressed {
         CompressedSizes { positions, connectivity, attributes, total }
     }
 
-    /// Returns the number of vertices of the mesh.
+    /// Returns the number of vertices.
     pub fn vertices(&self) -> usize {
         self.positions.vertices()
     }
 
-    /// Returns the number of faces of the mesh.
+    /// Returns the number of faces.
     pub fn faces(&self) -> usize {
         self.patches.face_count()
     }
 
-    /// Returns the number of face patches, each of which [`Compressed::patch`] can decode alone.
+    /// Returns the number of patches, for [`Compressed::patch`].
     pub fn patches(&self) -> usize {
         self.patches.len()
     }
 
-    /// Returns the number of vertex blocks, or the number of parts with [`Scheme::Parts`].
+    /// Returns the number of parts with [`Scheme::Parts`], else the number of vertex blocks.
     pub fn blocks(&self) -> usize {
         self.positions.blocks()
     }
 
-    /// Returns the fraction of position storage saved, compared with three `f32` for each vertex.
+    /// Returns the fraction by which positions are smaller than three `f32` for each vertex.
     pub fn reduction(&self) -> f64 {
         reduction(self.positions.bytes(), self.vertices())
     }
 
-    /// Returns the compressed size and the largest error of each attribute layer.
+    /// Returns the size and the error of each attribute layer.
     pub fn layers(&self) -> Vec<LayerReport> {
         self.layers.iter().map(PackedLayer::report).collect()
     }

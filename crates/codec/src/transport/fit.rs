@@ -1,4 +1,4 @@
-//! Fitting of the probability and prediction models to a mesh.
+//! Fitting the models to a mesh.
 
 use super::border::Step;
 use super::encode::Residual;

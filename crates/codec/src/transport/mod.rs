@@ -28,57 +28,55 @@ use crate::lattice::Lattice;
 /// Encoded `.mlz` file, whose blocks can be decoded independently.
 #[derive(Clone, Debug)]
 pub struct Transport {
-    /// Contents of the `.mlz` file.
+    /// Bytes of the file.
     pub bytes: Vec<u8>,
-    /// Number of independently decodable blocks in the file.
+    /// Number of blocks.
     pub blocks: usize,
-    /// Size of the `.mlz` file by content, in bytes.
+    /// Size of the file by content.
     pub sizes: TransportSizes,
-    /// Parts of the input mesh that the file does not store.
+    /// Parts of the input mesh that the file does not hold.
     pub left_out: Vec<LeftOut>,
 }
 
-/// Part of a mesh that an `.mlz` file does not store.
+/// Part of a mesh that a transport file does not hold.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LeftOut {
-    /// Normals, texture coordinates and all other attributes.
+    /// Normals, texture coordinates and all other attributes of wedges.
     Attributes,
-    /// Materials assigned to faces.
+    /// Materials of faces.
     Materials,
-    /// Objects that faces belong to.
+    /// Objects of faces.
     Objects,
     /// Vertices that no face uses.
     UnusedVertices,
 }
 
-/// Size of an `.mlz` file by content, in bytes; the three numbers add up to the whole file.
+/// Size of a transport file by content, in bytes; the three add up to the file.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TransportSizes {
-    /// Size of the vertex positions, in bytes.
+    /// Positions of vertices.
     pub positions: f64,
-    /// Size of the vertex indices of all faces, with the welding of blocks, in bytes.
+    /// Vertices of faces, and the welding of blocks.
     pub connectivity: f64,
-    /// Size of everything else in bytes: header, index, models, and the coder's final state of each
-    /// block.
+    /// Header, index, models, and the coder's final state of each block.
     pub headers: f64,
 }
 
 /// Options of [`Transport::encode`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TransportOptions {
-    /// Grid to which vertex positions are rounded.
+    /// Grid that positions are rounded to.
     pub quantization: TransportQuantization,
     /// Approximate number of faces per block; some blocks have a quarter more.
     pub block_faces: usize,
 }
 
-/// Grid of cubic cells to which vertex positions are rounded.
+/// Grid of cubic cells that positions are rounded to.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum TransportQuantization {
-    /// Uniform grid over the mesh with 2^bits − 1 cells along its longest side, for 1 to 21 bits.
+    /// Uniform grid over the mesh with 2^bits − 1 cells along the longest side, for 1 to 21 bits.
     Bits(u32),
-    /// Cells of a lattice: vertices that several meshes share decode to the same place in all of
-    /// them.
+    /// Cells of a lattice: vertices that meshes share decode to the same place in all of them.
     Lattice(Lattice),
 }
 
@@ -103,21 +101,21 @@ pub enum TransportError {
     /// A coordinate is infinite, NaN, or too large for `f32`.
     #[error("{0} has a coordinate that is not finite or is beyond 1e38")]
     NotFinite(VertexId),
-    /// The requested number of bits is out of range.
+    /// The number of bits is out of range.
     #[error("bits must be between 1 and {MAX_BITS}, not {0}")]
     Bits(u32),
-    /// The mesh spans more grid cells than the format can number.
+    /// The mesh spans more cells than the format can number.
     #[error(
         "the mesh spans {cells:.0} cells, more than {MAX_BITS} bits can number: use larger cells"
     )]
     TooFine {
-        /// Number of grid cells along the longest side of the mesh.
+        /// Number of cells along the longest side.
         cells: f64,
     },
     /// The mesh is so far from the origin that neighbouring cells coincide in `f64`.
     #[error("the mesh is too far from the origin for cells of this size: use larger cells")]
     TooFar,
-    /// The requested number of faces per block is out of range.
+    /// The number of faces per block is out of range.
     #[error("faces per block must be between 16 and {most}, not {0}", most = max_block_faces())]
     Block(usize),
 }

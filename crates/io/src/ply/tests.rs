@@ -133,7 +133,7 @@ fn what_cannot_be_written_is_refused_before_anything_is() {
     assert_eq!(refused(&bad), "face f1 names vertex v4, but there are only 4 vertices");
     let mut shared = with_layer(LayerKind::Uv(0), 2, true);
     shared.attributes.as_mut().unwrap().corners[0] = [WedgeId(0); 3];
-    assert!(refused(&shared).contains("has wedge w0 at"));
+    assert!(refused(&shared).contains("uses wedge w0 at"));
 }
 
 #[test]

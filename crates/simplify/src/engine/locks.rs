@@ -91,7 +91,7 @@ pub(crate) fn apply(
     let mut ties = Vec::new();
     for tie in locks.ties.iter().filter(|tie| tie.len() > 1) {
         let few = tie.len() <= MOST_MEMBERS;
-        let flag = if few { Flags::TIED } else { Flags::PINNED };
+        let flag = if few { Flags::TIED } else { Flags::PINNED }.or(Flags::HELD);
         tie.iter().for_each(|&v| surface.flag(v, flag));
         if few {
             held.tied += tie.len();

@@ -82,6 +82,8 @@ pub(crate) struct Partition<A> {
     pub(crate) volume: VolumeTally,
     /// Ties, and components that may vanish, if there are any.
     pub(crate) whole: Whole,
+    /// Long rings of copies, which are in no part until all vertices are in one.
+    long_of_copies: Vec<LongRing>,
     /// Steps done so far, if an observer wants them.
     pub(crate) log: Option<Vec<Logged>>,
     parts: Vec<PartState>,
@@ -121,6 +123,7 @@ impl<A: AttributeModel> Partition<A> {
             refusals: Refusals::default(),
             volume: VolumeTally::default(),
             whole: Whole::default(),
+            long_of_copies: Vec::new(),
             log: None,
         };
         partition.hand_out(long);
@@ -225,7 +228,7 @@ impl<A: AttributeModel> Partition<A> {
     fn merge_parts(&mut self) {
         let mut parts = std::mem::take(&mut self.parts);
         self.parts = cut(&self.store, parts.len() / MERGED_PARTS);
-        let mut lists = Vec::new();
+        let mut lists: Vec<Vec<_>> = Vec::new();
         for (joined, parts) in self.parts.iter_mut().zip(parts.chunks_mut(MERGED_PARTS)) {
             for part in &mut *parts {
                 joined.queue.append(std::mem::take(&mut part.queue));
@@ -233,6 +236,9 @@ impl<A: AttributeModel> Partition<A> {
                 joined.deferral.merge(&part.deferral);
             }
             lists.push(parts.iter_mut().map(|part| std::mem::take(&mut part.long)).collect());
+        }
+        if let [lists] = &mut lists[..] {
+            lists.push(std::mem::take(&mut self.long_of_copies));
         }
         let work = self.loops().into_par_iter().zip(lists);
         work.for_each(|((mut collapse_loop, waiting), lists): (_, Vec<_>)| {
@@ -274,10 +280,12 @@ impl<A: AttributeModel> Partition<A> {
         let mut parts = self.parts.iter_mut().peekable();
         for list in long {
             while parts.next_if(|part| part.vertices.end <= list.of as usize).is_some() {}
-            if let Some(part) = parts.peek_mut() {
-                self.store.all[list.of as usize].ring[0] = part.long.len() as u32;
-                part.long.push(list);
-            }
+            let lists = match parts.peek_mut() {
+                Some(part) => &mut part.long,
+                None => &mut self.long_of_copies,
+            };
+            self.store.all[list.of as usize].ring[0] = lists.len() as u32;
+            lists.push(list);
         }
     }
 }

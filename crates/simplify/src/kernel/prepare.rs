@@ -147,7 +147,8 @@ impl<'m, M: Metric + 'm> Prepared<'m, M> {
             vertices: &self.fans.store.whole(),
             is_held: &is_held,
         };
-        self.whole.components = Some(Components::new::<M>(&pieces, faces, below));
+        let components = Components::new::<M>(&pieces, faces, below);
+        self.whole.components = components.next_bucket().map(|_| components);
     }
 
     /// Applies the locks. Returns for each vertex of the input whether it is locked.

@@ -132,18 +132,23 @@ impl<A: AttributeModel> CollapseLoop<'_, A> {
             freedom = freedom.and(own).ok_or(Refusal::Tied)?;
             all.push(ends);
         }
-        if let Freedom::At(kept) = freedom {
-            for (ends, edge) in all.iter_mut().zip(&edges) {
-                let (stays, goes) = (edge[kept], edge[1 - kept]);
-                let on_seam = [stays, goes].map(|v| vertices.get(v).flags);
-                if ends.v0 != stays && on_seam.iter().any(|f| f.any(VertexFlags::SEAM)) {
-                    return Err(Refusal::Seam);
-                }
-                *ends = match ends.v0 == stays {
-                    true => Ends { free: false, ..*ends },
-                    false => Ends { free: false, ..Ends::free(stays, goes) },
-                };
+        // All edges keep their vertices on one side, or vertices of two ties would share a place.
+        let is_seam = |v: &u32| vertices.get(*v).flags.any(VertexFlags::SEAM);
+        let on_seam = all.iter().zip(&edges).find(|(_, edge)| edge.iter().any(is_seam));
+        let (kept, free) = match (freedom, on_seam) {
+            (Freedom::At(kept), _) => (kept, false),
+            (Freedom::Free, Some((ends, edge))) => (usize::from(ends.v0 == edge[1]), true),
+            (Freedom::Free, None) => (0, true),
+        };
+        for (ends, edge) in all.iter_mut().zip(&edges) {
+            let (stays, goes) = (edge[kept], edge[1 - kept]);
+            if ends.v0 != stays && edge.iter().any(is_seam) {
+                return Err(Refusal::Seam);
             }
+            *ends = match ends.v0 == stays {
+                true => Ends { free, ..*ends },
+                false => Ends { free, ..Ends::free(stays, goes) },
+            };
         }
         Ok(all)
     }

@@ -32,10 +32,13 @@ impl<A: AttributeModel> CollapseLoop<'_, A> {
     }
 
     /// Returns the faces that are left of a component.
-    fn faces_of(&self, component: &Component) -> Vec<[u32; 3]> {
+    fn faces_of(&mut self, component: &Component) -> Vec<[u32; 3]> {
         let mut faces = Vec::new();
-        let live = |v: &u32| !self.vertices.get(*v).flags.any(VertexFlags::DEAD);
-        for &v in component.vertices.iter().filter(|v| live(v)) {
+        for &v in &component.vertices {
+            if self.vertices.get(v).flags.any(VertexFlags::DEAD) {
+                continue;
+            }
+            self.vertices.refresh(v);
             let ring = self.vertices.neighbours(v);
             for (&a, &b) in ring.iter().zip(ring.iter().cycle().skip(1)) {
                 if v < a && v < b && a != GHOST && b != GHOST {

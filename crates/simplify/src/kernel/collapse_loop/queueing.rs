@@ -5,7 +5,7 @@ use crate::kernel::collapse_loop::CollapseLoop;
 use crate::kernel::mesh::one_ring::{GHOST, MAX_RING};
 use crate::kernel::mesh::vertex::{NO_VERTEX, RING, VertexFlags};
 use crate::kernel::schedule::batch::Batch;
-use crate::kernel::schedule::bucket_queue::{NONE, last_bucket};
+use crate::kernel::schedule::bucket_queue::last_bucket;
 use crate::kernel::schedule::edge_costs::{Cheapest, Rank, cheapest};
 use crate::kernel::simd::{SimdTask, widest};
 
