@@ -1,4 +1,5 @@
-//! `cargo xtask compare`: our simplification against meshoptimizer's, in alternating rounds.
+//! `cargo xtask compare`: compares simplification by meshlod and by meshoptimizer, in alternating
+//! rounds.
 //!
 //! Compares `lindstrom-turk` on bare geometry with meshoptimizer's simplify with update, its most
 //! accurate. CPU time on one core, without file input and output.

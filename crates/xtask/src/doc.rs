@@ -1,4 +1,5 @@
-//! `cargo xtask doc`: builds the documentation; warnings are errors, except for reference keys.
+//! `cargo xtask doc`: builds the documentation; all warnings are errors, except those about
+//! reference keys.
 //!
 //! rustdoc takes `[GH97]` in a comment for a link to an item. That warning is ignored if the key is
 //! in docs/REFERENCES.md.
@@ -11,7 +12,7 @@ use serde_json::Value;
 use crate::check::keys_of;
 use crate::project::Project;
 
-/// Documents all crates of the workspace and prints the warnings.
+/// Builds the documentation of all crates in the workspace and prints the warnings.
 pub fn run(project: &Project) -> Result<()> {
     let references = project.read("docs/REFERENCES.md")?;
     let keys = keys_of(&references);

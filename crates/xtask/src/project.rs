@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result};
 
-/// A workspace folder.
+/// The project, given by the root folder of its workspace.
 pub struct Project {
     root: PathBuf,
 }
@@ -12,7 +12,7 @@ pub struct Project {
 /// A text file of the project.
 #[derive(Clone, Debug)]
 pub struct Text {
-    /// Path from the root, with slashes.
+    /// Path of the file from the project's root, with slashes.
     pub path: String,
     /// Contents of the file.
     pub text: String,
@@ -22,25 +22,25 @@ pub struct Text {
 const GENERATED: [&str; 4] = ["target", "corpus", "artifacts", "out"];
 
 impl Project {
-    /// Returns the project that this program was built from.
+    /// Returns the project that this program was compiled from.
     pub fn here() -> Self {
         Self { root: Path::new(env!("CARGO_MANIFEST_DIR")).join("../..") }
     }
 
-    /// Returns the root folder.
+    /// Returns the root folder of the project.
     pub fn root(&self) -> &Path {
         &self.root
     }
 
-    /// Reads one file, given its path from the root.
+    /// Reads a text file, given its path from the project's root.
     pub fn read(&self, path: &str) -> Result<Text> {
         let text =
             std::fs::read_to_string(self.root.join(path)).with_context(|| path.to_owned())?;
         Ok(Text { path: path.to_owned(), text })
     }
 
-    /// Reads all files below `folder` (from the root) that end in `suffix`, sorted by path; empty
-    /// if the folder is missing.
+    /// Reads all files in `folder` and its subfolders whose names end in `suffix`, sorted by path;
+    /// empty if the folder is missing.
     pub fn files(&self, folder: &str, suffix: &str) -> Result<Vec<Text>> {
         let mut paths = Vec::new();
         self.walk(folder, suffix, &mut paths)?;

@@ -1,4 +1,4 @@
-//! `cargo xtask results`: regenerates docs/RESULTS.md.
+//! `cargo xtask results`: measures everything again and rewrites docs/RESULTS.md.
 
 mod accuracy;
 mod check;
@@ -39,7 +39,7 @@ const SECTIONS: [(&str, Section); 12] = [
     ("Reading and measuring", reading::section),
 ];
 
-/// Makes all tables, and writes docs/RESULTS.md and a dated copy in docs/records.
+/// Makes all tables of measurements, and writes docs/RESULTS.md and a dated copy in docs/records.
 ///
 /// Takes some minutes. Tables whose meshes are missing say so. With `names`, only the sections
 /// whose title contains one of them are remade, and marked with the date.
@@ -104,7 +104,7 @@ fn is_named(title: &str, name: &str) -> bool {
     title.to_lowercase().contains(&name.to_lowercase())
 }
 
-/// Prints only the table of image errors, for the models whose name contains one of `names`.
+/// Prints only the table of image errors, for models whose name contains one of `names`.
 pub fn textured(names: &[String]) -> Result<()> {
     print!("{}", textured::table_of(names)?);
     Ok(())

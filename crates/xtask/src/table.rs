@@ -1,12 +1,12 @@
-//! Markdown tables.
+//! Tables in Markdown.
 
-/// A table with a header row; the first column is text, the others are numbers.
+/// A Markdown table with a header row; the first column is text, the others are numbers.
 pub struct Table {
     rows: Vec<Vec<String>>,
 }
 
 impl Table {
-    /// Creates a table with these headers.
+    /// Creates an empty table with these column headings.
     pub fn new<'h>(headings: impl IntoIterator<Item = &'h str>) -> Self {
         let headings: Vec<String> = headings.into_iter().map(str::to_owned).collect();
         let rule = (0..headings.len()).map(|column| if column == 0 { "---" } else { "--:" });
@@ -14,7 +14,7 @@ impl Table {
         Self { rows: vec![headings, rule] }
     }
 
-    /// Appends a row.
+    /// Appends a row of cells to the table.
     pub fn row(&mut self, cells: impl Into<Vec<String>>) {
         let cells = cells.into();
         debug_assert_eq!(cells.len(), self.rows[0].len());

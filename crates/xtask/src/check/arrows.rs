@@ -1,4 +1,4 @@
-//! Dependencies between crates follow the table in ARCHITECTURE.md, which is their only map.
+//! Checks that dependencies between crates follow the table in ARCHITECTURE.md, their only map.
 
 use anyhow::{Context, Result};
 use toml::Table;
@@ -19,8 +19,8 @@ struct MapRow<'p> {
     allowed: Vec<&'p str>,
 }
 
-/// Lists dependencies that the map does not allow, crates missing from it, rows without a crate, and
-/// rows that allow a crate further down.
+/// Lists errors: dependencies between crates that the map does not allow, crates missing from it,
+/// rows without a crate, and rows that allow a crate from a lower row.
 ///
 /// Build dependencies and target-specific dependencies count, dev-dependencies do not.
 /// # Errors

@@ -1,4 +1,4 @@
-//! Import circles: files that import each other in a circle cannot be read one by one.
+//! Finds import circles: files that import each other in a circle cannot be read one by one.
 
 use std::collections::BTreeSet;
 
@@ -7,16 +7,16 @@ use crate::check::modules::Crate;
 /// Folder whose files must not import each other in a circle.
 const LAYERED: &str = "crates/simplify/src/kernel/";
 
-/// Import circles, reported or refused.
+/// Circles of imports that were found: some are only reported, others are errors.
 #[derive(Debug, Default, PartialEq)]
 pub struct Circles {
-    /// The largest circle of each crate.
+    /// The largest import circle of each crate, for information.
     pub notes: Vec<String>,
-    /// Circles within the layered folder.
+    /// Import circles within the folder that must be layered, which are errors.
     pub errors: Vec<String>,
 }
 
-/// Finds the circles of imports among the files of each crate.
+/// Finds the circles of imports among the source files of each crate.
 pub fn check(crates: &[Crate<'_>]) -> Circles {
     let mut found = Circles::default();
     for krate in crates {

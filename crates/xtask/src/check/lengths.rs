@@ -1,4 +1,4 @@
-//! Long files give a reason for their length.
+//! Checks that long source files give a reason for their length.
 
 use crate::project::Text;
 
@@ -9,16 +9,16 @@ const TOO_LONG: usize = 600;
 const REASON: &str = "//! Long because ";
 const REASON_WITHIN: usize = 10;
 
-/// Long files, in two grades.
+/// Long source files that were found: some are only reported, others are errors.
 #[derive(Debug, Default, PartialEq)]
 pub struct Lengths {
-    /// Files that are long, which is allowed.
+    /// Source files that are long, but still allowed.
     pub notes: Vec<String>,
-    /// Files that are too long and give no reason.
+    /// Source files that are too long and give no reason.
     pub errors: Vec<String>,
 }
 
-/// Lists sources of more than 300 lines, and refuses those of more than 600 that do not say
+/// Lists source files of more than 300 lines, and as errors those of more than 600 that do not say
 /// `//! Long because …` in their first ten lines.
 pub fn check(sources: &[Text]) -> Lengths {
     let mut found = Lengths::default();

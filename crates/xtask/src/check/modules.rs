@@ -1,38 +1,38 @@
-//! The modules of each crate, and which of its files each imports from.
+//! The modules of each crate, and the modules that each of them imports from.
 
 use std::collections::BTreeSet;
 
 use crate::check::source::Source;
 
-/// A crate's modules, without tests.
+/// The modules of a crate, without test modules.
 pub struct Crate<'s> {
-    /// Folder below `crates`.
+    /// Name of the crate's folder in `crates`.
     pub name: &'s str,
-    /// One module for each file.
+    /// Modules of the crate, one for each source file.
     pub modules: Vec<Module<'s>>,
 }
 
-/// A file as a module.
+/// A source file as a module of its crate.
 pub struct Module<'s> {
     /// Path of the file from the root of the project.
     pub file: &'s str,
-    /// Code without comments, literals and test items.
+    /// Source code of the file without comments, literals and test items.
     pub code: &'s str,
     /// Module names from the crate's root; empty for the root.
     path: Vec<&'s str>,
     uses: Vec<Use>,
 }
 
-/// One name that a `use` declaration brings into scope.
+/// A name that a `use` declaration brings into scope.
 pub struct Use {
-    /// Path as written; ends in `*` for a glob.
+    /// Imported path as written; it ends in `*` for a glob import.
     pub path: Vec<String>,
-    /// Name in the importing module.
+    /// Name by which the imported item is known in the importing module.
     pub name: String,
     is_public: bool,
 }
 
-/// Groups sources by crate; files outside `src` and test modules are left out.
+/// Groups source files into crates; files outside `src` and test modules are left out.
 pub fn crates(sources: &[Source]) -> Vec<Crate<'_>> {
     let mut crates: Vec<Crate<'_>> = Vec::new();
     for source in sources {
@@ -79,12 +79,13 @@ impl Crate<'_> {
         &self.modules[self.module(&[]).expect("each crate has one")]
     }
 
-    /// Names that the root re-exports.
+    /// Iterates over the names that the root module re-exports.
     pub fn public_uses(&self) -> impl Iterator<Item = &Use> {
         self.root().uses.iter().filter(|used| used.is_public)
     }
 
-    /// For each module, the set of modules that define the names it imports with `use`.
+    /// Returns, for each module, the indices of the modules that define the names it imports with
+    /// `use`.
     ///
     /// Re-exports are followed to the defining module and are no imports themselves.
     pub fn imports(&self) -> Vec<BTreeSet<usize>> {

@@ -1,4 +1,4 @@
-//! Phrases that are refused in comments and strings.
+//! Checks comments and strings for refused phrases.
 
 use crate::check::source::{Piece, Source};
 
@@ -8,7 +8,7 @@ const OPENINGS: [&str; 9] =
 /// Germanisms for "is invalid" and "there is no". Kept as two words so that this file passes.
 const NEGATIONS: [[&str; 2]; 2] = [["is", "none"], ["are", "none"]];
 
-/// Lists summary lines with a refused opening, and comments and strings with a refused phrase.
+/// Lists doc comments with a refused opening, and comments and strings with a refused phrase.
 ///
 /// The summary line is the start of a `///` or `//!` block.
 pub fn check(sources: &[Source]) -> Vec<String> {

@@ -1,13 +1,15 @@
-//! Every cited key is in docs/REFERENCES.md, and every key there is cited.
+//! Checks that every cited reference is defined in docs/REFERENCES.md, and that every reference
+//! there is cited.
 
 use std::collections::BTreeMap;
 
 use crate::project::Text;
 
-/// The page that defines the keys, from the root.
+/// Path of the page that defines the reference keys, from the project's root.
 pub const PAGE: &str = "docs/REFERENCES.md";
 
-/// Lists keys that are cited in comments or pages but not defined, defined twice, or never cited.
+/// Lists reference keys that are cited in comments or pages but not defined, defined twice, or
+/// never cited.
 pub fn check(sources: &[Text], pages: &[Text]) -> Vec<String> {
     let Some(page) = pages.iter().find(|page| page.path == PAGE) else {
         return vec![format!("{PAGE} is missing")];
@@ -33,7 +35,7 @@ pub fn check(sources: &[Text], pages: &[Text]) -> Vec<String> {
     errors
 }
 
-/// Lists the keys that a page of references defines.
+/// Lists the reference keys that a page defines.
 pub fn keys_of(page: &Text) -> Vec<&str> {
     definitions(&page.text).map(|(_, key)| key).collect()
 }

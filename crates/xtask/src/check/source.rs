@@ -2,31 +2,32 @@
 
 use crate::project::Text;
 
-/// A source file, split into code, comments and strings.
+/// A Rust source file, split into code, comments and strings.
 pub struct Source {
-    /// Path from the root of the project, with slashes.
+    /// Path of the file from the project's root, with slashes.
     pub path: String,
-    /// Code with comments, literals and `#[cfg(test)]` items blanked, so that lines stay.
+    /// Code with comments, literals and `#[cfg(test)]` items blanked, so that line numbers stay the
+    /// same.
     pub code: String,
-    /// Comments with their markers; each line comment is one piece.
+    /// Comments with their markers; each `//` line is a piece of its own.
     pub comments: Vec<Piece>,
     /// Contents of string literals as written, escapes included.
     pub strings: Vec<Piece>,
-    /// Names of `#[cfg(test)]` modules in files of their own.
+    /// Names of the `#[cfg(test)]` modules that are in files of their own.
     pub test_modules: Vec<String>,
 }
 
-/// A comment or string literal.
+/// A comment or string literal with its place in the file.
 #[derive(Debug, PartialEq)]
 pub struct Piece {
-    /// Line of the first character, from 1.
+    /// Number of the line on which the piece begins, from 1.
     pub line: usize,
-    /// The whole comment, or the text between the quotes.
+    /// The whole comment with its marker, or the text between the quotes of a string.
     pub text: String,
 }
 
 impl Source {
-    /// Splits a file.
+    /// Splits a Rust source file into code, comments and strings.
     pub fn new(file: &Text) -> Self {
         let mut lexer = Lexer { rest: &file.text, line: 1, ..Lexer::default() };
         lexer.run();

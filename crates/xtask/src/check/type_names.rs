@@ -1,10 +1,11 @@
-//! Type names are unique within a crate, and public ones within the reach of the facade.
+//! Checks that type names are unique within a crate, and public ones across the crates that the
+//! facade re-exports.
 
 use std::collections::{BTreeMap, BTreeSet};
 
 use crate::check::modules::{Crate, Use};
 
-/// Lists type names defined more than once in a crate, outside tests.
+/// Lists type names that are defined more than once in a crate, outside tests.
 pub fn check_crates(crates: &[Crate<'_>]) -> Vec<String> {
     let mut errors = Vec::new();
     for krate in crates {
@@ -27,7 +28,7 @@ pub fn check_crates(crates: &[Crate<'_>]) -> Vec<String> {
     errors
 }
 
-/// Lists type names that are public at the root of more than one crate re-exported by the facade.
+/// Lists type names that are public at the root of several crates that the facade re-exports.
 ///
 /// A re-export from another crate of the workspace is the same item, so it does not count.
 pub fn check_facade(crates: &[Crate<'_>], facade: &str) -> Vec<String> {

@@ -1,4 +1,4 @@
-//! Distances of levels to their meshes, ours and other programs'.
+//! Measures the distance of simplified meshes from their originals, for meshlod and other programs.
 
 use anyhow::Result;
 use meshlod::measure::{Distance, DistanceOptions, PreparedSurface, surface_distance};
@@ -49,7 +49,7 @@ const PEERS: [Peer; 16] = [
 /// Largest number of faces for `pm`, which takes minutes beyond.
 const MOST_FOR_PM: usize = 100_000;
 
-/// Tables mean, RMS and maximum distance by mesh, ratio and method.
+/// Returns tables of the mean, RMS and maximum distance by mesh, ratio and method.
 pub fn section(_: &Project) -> Result<String> {
     let mut table = Table::new(["mesh, ratio, method", "faces", "mean %", "RMS %", "max %"]);
     for file in FILES {

@@ -1,4 +1,4 @@
-//! Builds and runs the command-line program.
+//! Builds and runs the command-line program `meshlod`.
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
@@ -8,11 +8,11 @@ use wait4::{ResourceUsage, Wait4};
 
 use crate::project::Project;
 
-/// The release build of `meshlod`.
+/// Path of the release build of `meshlod`.
 pub struct Program(PathBuf);
 
 impl Program {
-    /// Builds the program.
+    /// Builds `meshlod` in release mode.
     pub fn build(project: &Project) -> Result<Self> {
         let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
         let status = Command::new(cargo)
@@ -27,7 +27,7 @@ impl Program {
         Ok(Self(folder.join("meshlod")))
     }
 
-    /// Runs the program and returns its resource usage; fails if it does.
+    /// Runs `meshlod` and returns its time and memory; fails if the program fails.
     pub fn run(&self, arguments: &[&str], files: [&Path; 2]) -> Result<ResourceUsage> {
         let mut child = Command::new(&self.0)
             .arg(arguments[0])

@@ -1,4 +1,5 @@
-//! Compressed meshes: the paper's parts, every scheme at 11 bits, and rate-distortion curves.
+//! Measures compressed meshes: the paper's parts, every scheme at 11 bits, and rate-distortion
+//! curves.
 
 mod global;
 mod rates;

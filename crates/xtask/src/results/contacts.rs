@@ -1,4 +1,5 @@
-//! Pixels that show through where components meet, and edges that open, ours and meshoptimizer's.
+//! Measures pixels that show through where components meet, and edges that open, for meshlod and
+//! meshoptimizer.
 
 mod open;
 mod ways;
@@ -25,7 +26,8 @@ struct Figures {
     see_through: SeeThroughCounts,
 }
 
-/// See-through pixels and new open edges per mesh, ratio and way.
+/// Returns a table of see-through pixels and new open edges by mesh, ratio and way of
+/// simplification.
 pub fn section(_: &Project) -> Result<String> {
     let mut table = Table::new([
         "mesh, ratio, way",

@@ -1,4 +1,4 @@
-//! The multiresolution model: its size on disk and in memory, and its query speed.
+//! Measures the multiresolution model: its size on disk and in memory, and the speed of queries.
 
 use anyhow::Result;
 use meshlod::measure::{DistanceOptions, distance};

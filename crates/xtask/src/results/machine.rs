@@ -2,15 +2,15 @@
 
 use std::process::Command;
 
-/// Date and machine.
+/// Date of a measurement and description of the machine.
 pub struct Machine {
-    /// Date, as 2026-01-31.
+    /// Date of the measurement, as 2026-01-31.
     pub date: String,
-    /// Processor, number of cores, and compiler.
+    /// Processor, number of cores, and compiler version.
     pub what: String,
 }
 
-/// Describes this machine and today's date.
+/// Returns today's date and a description of this machine.
 pub fn describe() -> Machine {
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
     let rustc = output("rustc", &["--version"]).unwrap_or_default();

@@ -1,4 +1,5 @@
-//! Peak memory of the program, and whether its output depends on the number of threads.
+//! Measures the peak memory of `meshlod`, and tests whether its output depends on the number of
+//! threads.
 
 use std::path::Path;
 
@@ -8,7 +9,8 @@ use super::command::Program;
 use crate::project::Project;
 use crate::table::Table;
 
-/// Tables the peak resident memory of whole runs, and compares outputs with 1 and 2 threads.
+/// Returns a table of the peak resident memory of whole runs, and compares the outputs with 1 and 2
+/// threads.
 pub fn section(project: &Project) -> Result<String> {
     let mut table = Table::new([
         "meshlod simplify MESH out.ply --ratio 10%",

@@ -2,21 +2,22 @@
 
 use std::fmt::Write;
 
-/// A line plot.
+/// A line plot with its axes and lines.
 pub struct Plot {
     pub caption: String,
-    /// Range of the horizontal axis.
+    /// Lowest and highest value on the horizontal axis.
     pub across: [f64; 2],
-    /// Unit written after the numbers of the horizontal axis.
+    /// Unit written after each number on the horizontal axis.
     pub unit: &'static str,
-    /// Start of the vertical axis, lowered if values lie below; zero if `None`.
+    /// Value at which the vertical axis starts, lowered if data lies below; `None` starts it at
+    /// zero.
     pub up_from: Option<f64>,
-    /// True to put the legend at the lower right.
+    /// True to place the legend at the lower right.
     pub low_key: bool,
     pub lines: Vec<Line>,
 }
 
-/// A named line, drawn as a dot if it has a single point.
+/// A named line of a plot, drawn as a dot if it has a single point.
 pub struct Line {
     name: &'static str,
     color: &'static str,
@@ -40,7 +41,7 @@ const INNER: [f64; 4] = [52.0, 358.0, 28.0, 268.0];
 /// Line height of the legend.
 const STEP: f64 = 15.0;
 
-/// Lays out plots, two to a row.
+/// Lays out several plots as one SVG picture, two to a row.
 pub fn page(plots: &[Plot]) -> String {
     let columns = plots.len().min(2);
     let [width, height] = [SIZE[0] * columns as f64, SIZE[1] * plots.len().div_ceil(2) as f64];

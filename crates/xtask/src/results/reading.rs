@@ -1,4 +1,4 @@
-//! Reading speed against tobj, and the rate of distance samples.
+//! Measures the speed of reading files, against tobj, and of sampling distances.
 
 use std::time::Instant;
 
@@ -12,7 +12,7 @@ use crate::table::Table;
 
 const ROUNDS: usize = 7;
 
-/// Tables three single figures.
+/// Returns a table of speeds in reading files and sampling distances.
 pub fn section(_: &Project) -> Result<String> {
     let mut table = Table::new(["on one core", "figure"]);
     one_core(|| -> Result<()> {

@@ -1,4 +1,4 @@
-//! Simplification speed against meshoptimizer, in alternating rounds on one core.
+//! Measures the speed of simplification against meshoptimizer, in alternating rounds on one core.
 
 use anyhow::Result;
 use meshlod::simplify::{Method, Options, Target, simplify};
@@ -19,7 +19,7 @@ const METHODS: [Method; 6] = [
 ];
 const MESHES: [&str; 4] = ["bunny.ply", "horse-97k.ply", "igea.ply", "dragon.ply"];
 
-/// Tables seconds and speed ratio by mesh and method.
+/// Returns a table of seconds and speed ratios by mesh and method.
 pub fn section(_: &Project) -> Result<String> {
     let mut table = Table::new([
         "mesh to 10 %, method",

@@ -1,5 +1,5 @@
-//! Image errors of textured levels, ours and those of meshoptimizer's attribute-aware
-//! simplification.
+//! Measures image errors of simplified textured meshes, for meshlod and meshoptimizer's
+//! simplification with attributes.
 
 use anyhow::{Context, Result};
 use meshlod::mesh::Mesh;
@@ -25,7 +25,7 @@ const PEER: Settings = Settings {
     update: Update::Nothing,
 };
 
-/// Tables FLIP and SSIM by model, ratio and method.
+/// Returns a table of the image errors FLIP and SSIM by model, ratio and method.
 pub fn section(_: &Project) -> Result<String> {
     Ok(format!(
         "Mean FLIP (0 is best) and SSIM (1 is best) over twelve views of 1024 by 1024, over the pixels \
@@ -36,7 +36,8 @@ pub fn section(_: &Project) -> Result<String> {
     ))
 }
 
-/// Tables the models whose name contains one of `names`; all models if there are no names.
+/// Returns the table for the models whose name contains one of `names`, or for all models if
+/// `names` is empty.
 ///
 /// # Errors
 /// No model matches.

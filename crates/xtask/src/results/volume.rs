@@ -1,4 +1,4 @@
-//! Change of the volume, measured on the written files.
+//! Measures the change of volume by simplification, in the files written.
 
 use anyhow::{Context, Result};
 use meshlod::io::Precision;
@@ -23,7 +23,7 @@ const METHODS: [Method; 6] = [
     Method::Qem,
 ];
 
-/// Tables the relative change of the volume by mesh, ratio and method.
+/// Returns a table of the relative change of volume by mesh, ratio and method.
 pub fn section(_: &Project) -> Result<String> {
     let mut table = Table::new(
         ["mesh, ratio"].into_iter().chain(METHODS.map(Method::name)).collect::<Vec<_>>(),

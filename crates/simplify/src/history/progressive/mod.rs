@@ -60,8 +60,8 @@ struct VertexSplit {
 }
 
 impl Progressive {
-    /// Builds a progressive mesh from a simplification and its history; the current level is that of
-    /// the simplifier. Returns `None` if the history has not recorded every contraction.
+    /// Builds a progressive mesh from a simplification and its history. Its current level is that
+    /// of the simplifier. Returns `None` if the history has not recorded every contraction.
     pub fn new(simplifier: Simplifier<'_>, history: History) -> Option<Self> {
         if simplifier.live_faces() + history.removed_face_count() != simplifier.first_faces() {
             return None;

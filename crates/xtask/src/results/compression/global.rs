@@ -1,17 +1,18 @@
-//! A global grid of cubic cells: the baseline for the compression schemes.
+//! Rounding to a global grid of cubic cells, the baseline for the compression schemes.
 
 use meshlod::Mesh;
 
-/// Position of a vertex within its cell.
+/// Position that stands for a grid cell.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub enum Rounding {
-    /// At the lowest corner.
+    /// The lowest corner of the cell.
     Down,
-    /// At the centre.
+    /// The centre of the cell.
     Nearest,
 }
 
-/// Quantizes a mesh to 2^bits - 1 cells along the longest side of its bounding box.
+/// Rounds the vertices of a mesh to a grid of 2^bits - 1 cells along the longest side of its
+/// bounding box.
 pub fn global(mesh: &Mesh, bits: u32, rounding: Rounding) -> Mesh {
     let (numbers, cell) = numbers(mesh, bits, rounding);
     let least = mesh.bounds().min;
@@ -19,7 +20,7 @@ pub fn global(mesh: &Mesh, bits: u32, rounding: Rounding) -> Mesh {
     Mesh::new(numbers.into_iter().map(place).collect(), mesh.faces.clone())
 }
 
-/// Returns the cell of each vertex, and the side of a cell.
+/// Returns the grid cell of each vertex, and the side length of a cell.
 pub fn numbers(mesh: &Mesh, bits: u32, rounding: Rounding) -> (Vec<[u32; 3]>, f64) {
     let bounds = mesh.bounds();
     let longest = (0..3).map(|k| bounds.max[k] - bounds.min[k]).fold(0.0, f64::max);
@@ -34,7 +35,7 @@ pub fn numbers(mesh: &Mesh, bits: u32, rounding: Rounding) -> (Vec<[u32; 3]>, f6
 /// Smallest part of a face's area that counts as area.
 const NO_AREA: f64 = 1e-9;
 
-/// Counts faces that are flipped or degenerate in `moved`, which has the faces of `mesh`.
+/// Counts faces that are flipped or degenerate in `moved`, a copy of `mesh` with moved vertices.
 pub fn turned_over(mesh: &Mesh, moved: &Mesh) -> usize {
     let normal = |mesh: &Mesh, face: usize| {
         let [a, b, c] = mesh.triangle(mesh.faces[face]);

@@ -1,4 +1,4 @@
-//! Rate-distortion plots.
+//! Rate-distortion plots of the compression schemes.
 
 use anyhow::Result;
 use meshlod::Mesh;
@@ -12,8 +12,8 @@ use crate::results::plot::{Line, Plot, page};
 const MESHES: [&str; 2] = ["bunny.ply", "horse.ply"];
 const BITS: [u32; 5] = [8, 10, 11, 12, 14];
 
-/// Plots bytes per vertex for positions and bytes per face in total, against the equivalent bits of
-/// a global grid.
+/// Plots bytes per vertex for positions, and bytes per face in total, against the bits of a global
+/// grid of equal accuracy.
 pub fn drawing() -> Result<Option<String>> {
     let mut plots = Vec::new();
     for file in MESHES {

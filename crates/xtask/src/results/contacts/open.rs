@@ -1,4 +1,4 @@
-//! Open edges of a level that its input does not have.
+//! Finds open edges of a simplified mesh that its input does not have.
 
 use meshlod::mesh::{Mesh, VertexId};
 use meshlod::simplify::History;
@@ -9,8 +9,8 @@ type Place = [u64; 3];
 /// A side of a face: the two positions it runs between, and its vertices.
 type Run = ([Place; 2], [VertexId; 2]);
 
-/// Lists the sides without an opposite side between the same two positions, whatever component it
-/// is of; duplicates once.
+/// Lists the face sides that no other face traverses in the opposite direction between the same
+/// positions, in any component; duplicates are listed once.
 pub fn open_sides(mesh: &Mesh) -> Vec<[VertexId; 2]> {
     let ends = mesh.faces.iter().flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]);
     let place = |v: VertexId| place(mesh.positions[v.index()]);
@@ -23,7 +23,7 @@ pub fn open_sides(mesh: &Mesh) -> Vec<[VertexId; 2]> {
     open.map(|&(_, ends)| ends).collect()
 }
 
-/// Counts the open sides of a level that are not among `known`.
+/// Counts the open sides of a simplified mesh that are not among the positions `known`.
 pub fn newly_open(level: &Mesh, known: impl Iterator<Item = [[f64; 3]; 2]>) -> usize {
     let mut known: Vec<[Place; 2]> = known.map(|ends| ends.map(place)).collect();
     known.sort_unstable();
@@ -32,7 +32,8 @@ pub fn newly_open(level: &Mesh, known: impl Iterator<Item = [[f64; 3]; 2]>) -> u
     open.iter().filter(|side| known.binary_search(&places(side)).is_err()).count()
 }
 
-/// Returns the position of each vertex's representative after the recorded contractions.
+/// Returns, for each vertex of a mesh, the position of the vertex it was merged into by the
+/// recorded contractions.
 pub fn positions_after(mesh: &Mesh, history: &History) -> Vec<[f64; 3]> {
     let mut positions = mesh.positions.clone();
     for contraction in history.contractions() {
@@ -49,7 +50,8 @@ pub fn positions_after(mesh: &Mesh, history: &History) -> Vec<[f64; 3]> {
     positions
 }
 
-/// Keeps the sides that lie on one of `known` up to rounding; cutting splits a side into several.
+/// Keeps the sides that lie on one of `known` up to rounding, since cutting faces splits a side
+/// into several.
 pub fn lying_on(
     sides: Vec<[VertexId; 2]>,
     mesh: &Mesh,

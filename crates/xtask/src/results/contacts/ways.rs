@@ -1,4 +1,4 @@
-//! Ways to simplify a mesh of many components.
+//! Ways to simplify a mesh of many components, for comparison.
 
 use anyhow::Result;
 use meshlod::check::{LockOptions, fuse, locks};
@@ -8,20 +8,20 @@ use meshlod_bench::peer::simplify_with_border_lock;
 
 use super::open::{lying_on, newly_open, open_sides, positions_after};
 
-/// A way to simplify a mesh.
+/// A way to simplify a mesh of many components.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Way {
-    /// Plain `qem`.
+    /// `qem` without locks.
     Plain(Values),
-    /// meshoptimizer's simplify with its border lock, which sees positions only.
+    /// Simplification by meshoptimizer with its border lock, using positions only.
     Peer,
-    /// `qem` with contacts locked.
+    /// `qem` with locks where components meet.
     Locked(Values),
-    /// `qem` with contacts locked, after fusing components that cross.
+    /// `qem` with locks where components meet, after fusing components that intersect.
     Fused(Values),
 }
 
-/// Attributes and materials, kept or dropped.
+/// Whether simplification keeps attributes and materials.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Values {
     /// Attributes and materials are kept.
@@ -30,18 +30,18 @@ pub enum Values {
     Dropped,
 }
 
-/// A level made in some way.
+/// A simplified mesh with the figures about its size and open edges.
 pub struct Level {
-    /// Mesh of the level, with the components of the input as objects.
+    /// The simplified mesh, with the components of the input as its objects.
     pub mesh: Mesh,
-    /// True if the level has no more faces than asked for.
+    /// True if the mesh has no more faces than requested.
     pub reached: bool,
-    /// Number of open edges that were not open in the input.
+    /// Number of edges that are open but were not in the input.
     pub newly_open: usize,
 }
 
 impl Way {
-    /// All ways, in the order of the table.
+    /// All ways to simplify, in the order of the table.
     pub const ALL: [Self; 7] = [
         Self::Plain(Values::Kept),
         Self::Plain(Values::Dropped),
@@ -52,7 +52,7 @@ impl Way {
         Self::Fused(Values::Dropped),
     ];
 
-    /// Returns the values our way keeps; meshoptimizer sees none.
+    /// Returns whether attributes and materials are kept; meshoptimizer drops them.
     pub fn values(self) -> Values {
         match self {
             Self::Plain(values) | Self::Locked(values) | Self::Fused(values) => values,
@@ -60,7 +60,7 @@ impl Way {
         }
     }
 
-    /// Returns the name in the table.
+    /// Returns the name of this way in the table.
     pub fn name(self) -> String {
         let name = match self {
             Self::Plain(_) => "`qem`",
@@ -72,8 +72,8 @@ impl Way {
         format!("{name}{bare}")
     }
 
-    /// Simplifies a mesh, whose objects are its components, to each number of faces in turn, the
-    /// largest first.
+    /// Simplifies a mesh whose objects are its components to each of the target numbers of faces in
+    /// turn, the largest first.
     pub fn levels(self, mesh: &Mesh, targets: &[usize]) -> Result<Vec<Level>> {
         match self {
             Self::Plain(values) => ours(mesh, values, Locks::default(), open_sides(mesh), targets),
@@ -89,7 +89,7 @@ impl Way {
     }
 }
 
-/// Makes the components of a mesh its objects.
+/// Labels each connected component of a mesh as an object.
 pub fn by_component(mut mesh: Mesh) -> Mesh {
     let (of_face, count) = face_components(&mesh.faces, mesh.positions.len());
     let names = (0..count).map(|component| component.to_string()).collect();

@@ -1,4 +1,4 @@
-//! Figure 5 and table 2 of [KY05], with our figures beside them.
+//! Figure 5 and table 2 of [KY05], with measurements of meshlod beside them.
 
 use super::sent::{Levels, SentLevel};
 use crate::results::plot::{Line, Plot, page};
@@ -20,7 +20,7 @@ const TABLE_2: [[f64; 2]; 10] = [
 /// The paper's table 1: triangles + 2 · strips + swaps, in the order of the models.
 const TABLE_1: [f64; 4] = [570.0, 1648.0, 10254.0, 7372.0];
 
-/// Plots vertices sent by level, one plot per model.
+/// Plots the number of vertices sent at each level, one plot per model.
 pub fn figure_5(all: &[Levels]) -> String {
     let plots = all.iter().zip(TABLE_1).map(|(levels, whole)| {
         let sent = |way: usize| points(levels, |level| level.sent[way] as f64);
@@ -53,7 +53,8 @@ pub fn figure_5(all: &[Levels]) -> String {
     page(&plots.collect::<Vec<_>>())
 }
 
-/// Plots the savings over independent triangles, and the vertices per triangle.
+/// Plots the percentage of vertices saved relative to independent triangles, as in table 2 of the
+/// paper.
 pub fn table_2(eight: &Levels) -> String {
     let ours = |way: usize| points(eight, |level| level.over_independent(way));
     let paper = |column: usize| {

@@ -1,4 +1,4 @@
-//! Vertices sent at each level.
+//! Measures the number of vertices that triangle strips send at each level.
 
 use meshlod::mesh::VertexId;
 use meshlod::strip::{
@@ -7,7 +7,7 @@ use meshlod::strip::{
 };
 use meshlod_bench::peer::meshopt_strips;
 
-/// Strips of the full mesh that all levels are derived from.
+/// Triangle strips of the full-resolution mesh, from which those of all levels are derived.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub enum Base {
     Meshopt,
@@ -35,7 +35,7 @@ impl Base {
     }
 }
 
-/// A model and its contractions.
+/// A mesh and its recorded contractions, with the vertices that rebuilt strips send.
 pub struct Model {
     name: &'static str,
     tree: MergeTree,
@@ -53,22 +53,22 @@ impl Model {
     }
 }
 
-/// Vertices sent for a model, from a tenth of its faces to all.
+/// Vertices that triangle strips of a model send, at ten levels from a tenth of its faces to all.
 pub struct Levels {
     model: &'static str,
     levels: Vec<SentLevel>,
 }
 
-/// Vertices sent at one level.
+/// Vertices that triangle strips send at one level.
 pub struct SentLevel {
     pub percent: usize,
     pub triangles: usize,
-    /// Vertices sent with STSS, DTFF, quick repair, thorough repair, and rebuilt strips.
+    /// Number of vertices sent with STSS, DTFF, quick repair, thorough repair, and rebuilt strips.
     pub sent: [usize; 5],
 }
 
 impl Levels {
-    /// Measures all levels of a model.
+    /// Measures the strips at all levels of a model.
     ///
     /// # Panics
     /// If strips do not draw exactly the triangles of a level.
@@ -87,13 +87,13 @@ impl Levels {
         &self.levels
     }
 
-    /// Returns vertices per triangle of the full mesh.
+    /// Returns the number of vertices sent per triangle of the full-resolution mesh.
     pub fn of_mesh(&self) -> f64 {
         self.levels.last().map_or(0.0, |level| level.each(0))
     }
 
-    /// Returns the mean savings over STSS of DTFF, quick repair, thorough repair and rebuilt
-    /// strips, in percent.
+    /// Returns the mean percentage of vertices saved relative to STSS, by DTFF, quick repair,
+    /// thorough repair and rebuilt strips.
     pub fn saved(&self) -> [f64; 4] {
         let saved = |way: usize, level: &SentLevel| {
             100.0 * (1.0 - level.sent[way] as f64 / level.sent[0] as f64)
@@ -104,13 +104,13 @@ impl Levels {
         })
     }
 
-    /// Returns the largest number of vertices per triangle over all levels, for STSS, DTFF, quick
-    /// and thorough repair.
+    /// Returns the largest number of vertices per triangle at any level, for STSS, DTFF, quick
+    /// repair and thorough repair.
     pub fn most(&self) -> [f64; 4] {
         [0, 1, 2, 3].map(|way| self.levels.iter().map(|level| level.each(way)).fold(0.0, f64::max))
     }
 
-    /// Formats the levels as table rows.
+    /// Formats the measurements of all levels as table rows.
     pub fn rows(&self) -> impl Iterator<Item = Vec<String>> + '_ {
         self.levels.iter().map(|level| {
             let mut row = vec![format!("{} %", level.percent), level.triangles.to_string()];
@@ -122,12 +122,12 @@ impl Levels {
 }
 
 impl SentLevel {
-    /// Returns vertices per triangle.
+    /// Returns the number of vertices sent per triangle, with the strips of this column of `sent`.
     pub fn each(&self, way: usize) -> f64 {
         self.sent[way] as f64 / self.triangles as f64
     }
 
-    /// Returns the savings over independent triangles, in percent.
+    /// Returns the percentage of vertices saved relative to sending independent triangles.
     pub fn over_independent(&self, way: usize) -> f64 {
         100.0 * (1.0 - self.each(way) / 3.0)
     }

@@ -1,4 +1,4 @@
-//! Strips of whole meshes, ours and meshoptimizer's.
+//! Measures triangle strips of whole meshes, built by meshlod and meshoptimizer.
 
 use anyhow::Result;
 use meshlod::mesh::VertexId;
@@ -20,7 +20,7 @@ const LONGEST: [usize; 8] = [13, 16, 20, 26, 34, 48, 80, 160];
 const MOVES: [f64; 2] = [60.0, 1500.0];
 const FOR_CACHE: f64 = 200.0;
 
-/// Tables vertices and indices per triangle, cache misses and seconds, by setting.
+/// Returns a table of vertices and indices per triangle, cache misses and seconds, by setting.
 pub fn table() -> Result<String> {
     let mut table = Table::new([
         "whole meshes",
@@ -52,7 +52,7 @@ pub fn table() -> Result<String> {
     Ok(table.markdown())
 }
 
-/// Plots indices against cache misses for several strip lengths on the bunny.
+/// Plots the number of indices against cache misses, for several strip lengths on the bunny.
 pub fn trade_off() -> Result<Option<String>> {
     let Some(mesh) = meshlod_bench::read("bunny.ply")? else { return Ok(None) };
     let faces = &mesh.faces;
