@@ -1,4 +1,4 @@
-//! Result of a verb: text for people, JSON for programs, and the exit code.
+//! Result of a command: text for people, JSON for programs, and the exit code.
 
 use std::io::{self, ErrorKind, Write};
 use std::process::ExitCode;
@@ -7,17 +7,17 @@ use serde_json::Value;
 
 use crate::failure::Failure;
 
-/// Result of a verb, for programs and for people.
+/// Result of a command, for programs and for people.
 pub struct Answer {
-    /// Object printed with `--json`.
+    /// JSON object that is printed with `--json`.
     pub json: Value,
-    /// Text for people, in whole lines.
+    /// Text that is printed without `--json`, in whole lines.
     pub text: String,
     /// True if standard output carries a mesh or a picture, so that the text goes to standard
     /// error.
     pub file_on_stdout: bool,
-    /// True if the exit code reports failure in spite of the answer: a target was missed under
-    /// `--strict`, or a check found errors.
+    /// True if the exit code must report failure although there is an answer: a target was missed
+    /// under `--strict`, or a check found errors.
     pub missed: bool,
 }
 

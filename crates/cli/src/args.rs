@@ -1,4 +1,4 @@
-//! Option groups that several verbs share.
+//! Groups of command-line options that several commands share.
 
 use clap::{Args, ValueEnum};
 use meshlod::io::{Precision, Weld};
@@ -45,7 +45,8 @@ impl ReadArgs {
         ReadOptions { weld }
     }
 
-    /// Takes the distance of `--weld` for a verb that welds by itself, so that reading does not.
+    /// Takes the value of `--weld` for a command that welds by itself, so that reading the file
+    /// does not.
     pub fn take_weld(&mut self) -> Option<f64> {
         self.weld.take()
     }
@@ -65,8 +66,8 @@ impl WriteArgs {
         WriteOptions { precision: self.precision.unwrap_or(Precision::F32) }
     }
 
-    /// Switches to `f64`, unless `--precision` is given, if the default would move a coordinate by
-    /// more than `most`, in model units.
+    /// Switches to 64-bit coordinates, unless `--precision` is given, if the default would move a
+    /// coordinate by more than `most`, in model units.
     pub fn within(mut self, most: f64, scene: &Scene, format: Format) -> Self {
         if self.moves(scene, format) > most {
             self.precision.get_or_insert(Precision::F64);
@@ -74,7 +75,8 @@ impl WriteArgs {
         self
     }
 
-    /// Returns the largest distance that writing and reading moves a coordinate.
+    /// Returns the largest change of a coordinate when the scene is written and read back, in model
+    /// units.
     pub fn moves(&self, scene: &Scene, format: Format) -> f64 {
         let precision = self.options().precision;
         let positions = scene.meshes.iter().flat_map(|mesh| mesh.mesh.positions.as_flattened());
@@ -135,7 +137,7 @@ enum Axis {
 }
 
 impl ViewArgs {
-    /// Returns the view with this direction and up axis, and defaults for the rest.
+    /// Returns the view with the requested direction and up axis, and defaults for all else.
     pub fn view(&self) -> View {
         let up = match self.up {
             Axis::Y => UpAxis::Y,

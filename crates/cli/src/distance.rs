@@ -12,8 +12,8 @@ use crate::failure::Failure;
 use crate::numbers;
 use crate::table::aligned;
 
-/// Builds the surface of a scene in world space with the given meshes in place of its own, without
-/// attributes.
+/// Joins the meshes of a scene into one surface in world space without attributes, with `meshes` in
+/// place of its own.
 pub fn surface_of<'m>(scene: &Scene, meshes: impl IntoIterator<Item = &'m Mesh>) -> Mesh {
     let bare = |mesh: &Mesh| Mesh::new(mesh.positions.clone(), mesh.faces.clone());
     let meshes = meshes.into_iter().map(|m| SceneMesh { mesh: bare(m), ..SceneMesh::default() });
@@ -31,12 +31,12 @@ pub fn meshes(scene: &Scene) -> impl Iterator<Item = &Mesh> {
     scene.meshes.iter().map(|mesh| &mesh.mesh)
 }
 
-/// Prepares the mesh of a file for measurement.
+/// Prepares a mesh read from a file for distance measurements.
 pub fn ready<'m>(mesh: &'m Mesh, path: &Path) -> Result<PreparedSurface<'m>, Failure> {
     PreparedSurface::new(mesh).map_err(|error| Failure::at(path, error))
 }
 
-/// Measures the distance between the original and a level of its scene.
+/// Measures the distance between a scene's original surface and a simplified level.
 pub fn of_level(
     original: &PreparedSurface<'_>,
     scene: &Scene,
@@ -47,7 +47,8 @@ pub fn of_level(
     surface_distance(original, &level, &DistanceOptions::default())
 }
 
-/// Returns the distances each way and combined as JSON, in model units and percent of the diagonal.
+/// Returns the distances in each direction and combined as JSON, in model units and percent of the
+/// diagonal.
 pub fn to_json(distance: &Distance) -> Value {
     let lengths = |mean: f64, rms: f64, max: f64| {
         json!({
@@ -72,7 +73,7 @@ pub fn to_json(distance: &Distance) -> Value {
     json
 }
 
-/// Formats the distances each way and combined as a table.
+/// Formats the distances in each direction and combined as a table.
 pub fn to_table(distance: &Distance) -> String {
     let row = |name: &str, mean: f64, rms: f64, max: f64| {
         let cell = |length| {

@@ -1,4 +1,4 @@
-//! Failure of a verb: one line and an exit code.
+//! Failure of a command: one line of text and an exit code.
 
 use std::fmt;
 use std::path::Path;
@@ -8,7 +8,7 @@ use meshlod::IoError;
 
 use crate::files;
 
-/// Reason why a verb failed, as one line: `FILE: place: reason`.
+/// Reason why a command failed, as one line: `FILE: place: reason`.
 #[derive(Debug)]
 pub struct Failure {
     line: String,
@@ -20,12 +20,12 @@ impl Failure {
         Self { line: line.to_string(), wrong_usage: false }
     }
 
-    /// Creates a failure that names a file.
+    /// Creates a failure that begins with a file name.
     pub fn at(path: &Path, reason: impl fmt::Display) -> Self {
         Self::new(format_args!("{}: {reason}", files::name(path)))
     }
 
-    /// Creates a usage error that the command-line parser cannot detect.
+    /// Creates a usage error, for arguments that the command-line parser itself accepts.
     pub fn usage(line: impl fmt::Display) -> Self {
         Self { wrong_usage: true, ..Self::new(line) }
     }

@@ -11,7 +11,7 @@ use crate::args::{ReadArgs, WriteArgs};
 use crate::failure::Failure;
 use crate::session::Session;
 
-/// Returns true if a path stands for standard input or output.
+/// Returns true if a path is `-`, which stands for standard input or output.
 pub fn is_pipe(path: &Path) -> bool {
     path == Path::new("-")
 }
@@ -21,7 +21,7 @@ pub fn name(path: &Path) -> String {
     if is_pipe(path) { "-".into() } else { path.display().to_string() }
 }
 
-/// Reads a mesh from a file or standard input.
+/// Reads a scene from a file or standard input.
 pub fn read(path: &Path, reading: &ReadArgs, session: &Session) -> Result<Scene, Failure> {
     session.progress.stage(&format!("reading {}", name(path)));
     if let Some(verb) = opened_by(path) {
@@ -55,7 +55,8 @@ pub fn read_all(path: &Path) -> Result<Vec<u8>, Failure> {
     read.map_err(|error| Failure::at(path, error))
 }
 
-/// Refuses an output that cannot be written, before any work is done.
+/// Fails if an output file cannot be written, before any work is done; otherwise returns its
+/// format.
 pub fn check_output(path: &Path, session: &Session) -> Result<Format, Failure> {
     if !is_pipe(path) {
         let format = Format::of_path(path).map_err(Failure::usage)?;
@@ -70,7 +71,7 @@ pub fn check_output(path: &Path, session: &Session) -> Result<Format, Failure> {
     }
 }
 
-/// Refuses a picture that cannot be written, before any work is done.
+/// Fails if a picture cannot be written to a path, before any work is done.
 pub fn check_picture(path: &Path, session: &Session) -> Result<(), Failure> {
     if is_pipe(path) {
         return check_stdout(session);
@@ -81,7 +82,7 @@ pub fn check_picture(path: &Path, session: &Session) -> Result<(), Failure> {
     }
 }
 
-/// Refuses a path whose parent folder is missing, or that is itself a folder.
+/// Fails if the parent folder of an output path is missing, or if the path is a folder.
 pub fn check_place(path: &Path) -> Result<(), Failure> {
     if path.is_dir() {
         return Err(Failure::at(path, "is a folder; name a file to write"));
@@ -94,7 +95,7 @@ pub fn check_place(path: &Path) -> Result<(), Failure> {
     }
 }
 
-/// Refuses an output that would overwrite another file of the same run.
+/// Fails if an output path is that of another file of the same run, which would be overwritten.
 pub fn check_apart(path: &Path, others: &[&Path]) -> Result<(), Failure> {
     let same = |other: &&&Path| !is_pipe(other) && place_of(other) == place_of(path);
     match others.iter().find(same).filter(|_| !is_pipe(path)) {
@@ -116,7 +117,7 @@ fn place_of(path: &Path) -> PathBuf {
     })
 }
 
-/// Creates a folder if it is missing, and refuses one that is not writable.
+/// Creates a folder if it is missing, and fails if it is not writable.
 pub fn make_folder(folder: &Path) -> Result<(), Failure> {
     check_folder(folder)?;
     let tried = folder.join(format!(".{}", std::process::id()));
@@ -126,7 +127,7 @@ pub fn make_folder(folder: &Path) -> Result<(), Failure> {
         .map_err(|error| Failure::at(folder, error))
 }
 
-/// Refuses a folder path that is a file.
+/// Fails if the path of an output folder is that of a file.
 pub fn check_folder(folder: &Path) -> Result<(), Failure> {
     match folder.exists() && !folder.is_dir() {
         true => Err(Failure::at(folder, "is a file; name a folder to write to")),
@@ -143,7 +144,7 @@ pub fn write_picture(path: &Path, png: &[u8]) -> Result<(), Failure> {
     out.write_all(png).and_then(|()| out.flush()).map_err(|error| Failure::at(path, error))
 }
 
-/// Writes a mesh to a file or standard output.
+/// Writes a scene to a file or standard output.
 pub fn write(
     path: &Path,
     scene: &Scene,
@@ -160,7 +161,7 @@ pub fn write(
     out.flush().map_err(|error| Failure::at(path, error))
 }
 
-/// Reads back a file just written with [`write()`], with default options.
+/// Reads a file just written with [`write()`] again, with default options.
 pub fn read_again(
     path: &Path,
     scene: &Scene,

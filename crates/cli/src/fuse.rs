@@ -1,4 +1,4 @@
-//! Fusing of objects before they are simplified.
+//! Fusing of intersecting objects before simplification.
 
 use clap::Args;
 use meshlod::check::Fused;
@@ -26,7 +26,7 @@ pub struct FuseReport {
 }
 
 impl FuseArgs {
-    /// Fuses a scene if `--fuse` is given.
+    /// Fuses intersecting objects of a scene if `--fuse` is given.
     pub fn apply(&self, scene: &mut Scene, session: &Session) -> Option<FuseReport> {
         self.fuse.then(|| {
             session.progress.stage("fusing");
@@ -38,12 +38,12 @@ impl FuseArgs {
 }
 
 impl FuseReport {
-    /// Returns true if any objects met.
+    /// Returns true if fusing changed the scene.
     pub fn is_change(&self) -> bool {
         self.fused != Fused::default()
     }
 
-    /// Converts a ratio to a number of faces, relative to the faces before fusing.
+    /// Converts a target ratio to a number of faces, based on the faces before fusing.
     pub fn target(&self, target: Target) -> Target {
         match target {
             Target::Ratio(ratio) => Target::Faces((self.before as f64 * ratio) as usize),
@@ -62,7 +62,7 @@ impl FuseReport {
         })
     }
 
-    /// Formats the result as one line.
+    /// Formats the changes made by fusing as one line.
     pub fn to_text(&self) -> String {
         let Fused { imprint, buried, joined } = self.fused;
         format!(
@@ -78,12 +78,12 @@ impl FuseReport {
     }
 }
 
-/// Returns the JSON of a fusing step, or null if there was none.
+/// Returns the changes made by fusing as JSON; `null` without `--fuse`.
 pub fn to_json(done: Option<&FuseReport>) -> Value {
     done.map_or(Value::Null, FuseReport::to_json)
 }
 
-/// Returns the line of a fusing step, or an empty string if there was none.
+/// Formats the changes made by fusing as one line; empty without `--fuse`.
 pub fn to_text(done: Option<&FuseReport>) -> String {
     done.map_or(String::new(), FuseReport::to_text)
 }

@@ -35,7 +35,7 @@ pub struct LockArgs {
     keep_objects: Option<Bound>,
 }
 
-/// Scene with the path and options it was read with.
+/// A scene, with the path and the reading options it came from.
 pub struct InputScene<'o> {
     pub scene: &'o Scene,
     pub path: &'o Path,

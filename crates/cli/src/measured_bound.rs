@@ -1,4 +1,4 @@
-//! Search for the coarsest level whose measured distance is within a bound.
+//! Search for the simplified mesh with fewest faces whose measured distance is within a bound.
 
 use std::path::Path;
 use std::time::Duration;
@@ -10,11 +10,11 @@ use crate::failure::Failure;
 use crate::session::Session;
 use crate::simplify_run::{Simplified, SimplifyRun, measure};
 
-/// Search for the coarsest level within a measured bound.
+/// Search for the simplified scene with fewest faces whose measured distance is within a bound.
 pub struct BoundSearch<'s> {
     pub scene: &'s Scene,
     pub options: &'s Options,
-    /// PreparedSurface of the scene.
+    /// Original scene, prepared for distance measurements.
     pub original: &'s PreparedSurface<'s>,
     /// Largest measured distance allowed, in world units.
     pub bound: f64,
@@ -32,7 +32,7 @@ const STEP: f64 = 1.189_207_115_002_721;
 const MOST_STEPS: usize = 32;
 
 impl BoundSearch<'_> {
-    /// Finds the level and returns it with the total simplification time.
+    /// Finds the simplified scene and returns it with the total simplification time.
     ///
     /// The estimated error differs from the measured distance but grows with it. The bound on the
     /// estimate starts at the wanted distance and is halved, in fresh runs, until the level

@@ -1,4 +1,4 @@
-//! Multiresolution files: opening them and describing what they hold.
+//! Multiresolution files: opening them and describing their contents.
 
 use std::fs::File;
 use std::path::Path;
@@ -11,14 +11,14 @@ use crate::files;
 use crate::numbers::{count, percent, plural, value};
 use crate::session::Session;
 
-/// Suffix of multiresolution files.
+/// File name suffix of multiresolution files.
 pub const SUFFIX: &str = "mlod";
 
 pub fn is_model(path: &Path) -> bool {
     path.extension().is_some_and(|suffix| suffix.eq_ignore_ascii_case(SUFFIX))
 }
 
-/// Refuses an output that cannot be written, before any work is done.
+/// Fails if a multiresolution file cannot be written, before any work is done.
 pub fn check_output(path: &Path) -> Result<(), Failure> {
     if !is_model(path) {
         return Err(Failure::usage(format_args!(
@@ -29,7 +29,7 @@ pub fn check_output(path: &Path) -> Result<(), Failure> {
     files::check_place(path)
 }
 
-/// Opens a file, with a warning if it is truncated.
+/// Opens a multiresolution file, with a warning if it is truncated.
 pub fn open(path: &Path, session: &Session) -> Result<ModelFile<File>, Failure> {
     if files::is_pipe(path) {
         return Err(Failure::usage(
@@ -67,7 +67,7 @@ pub fn fit_json(fit: &Fit) -> Value {
     json!({ "moved": fit.moved, "turned": fit.turned, "rounded": fit.rounded })
 }
 
-/// Describes how far the finest level of a height field is from the mesh.
+/// Describes the distance of a height field's finest level from the mesh.
 pub fn fit_text(fit: &Fit) -> String {
     format!(
         "the finest level is off the mesh by up to {} where a cell is split along its other diagonal, \
@@ -77,7 +77,7 @@ pub fn fit_text(fit: &Fit) -> String {
     )
 }
 
-/// Returns whether the errors of a file are estimates or bounds.
+/// Returns the word for the errors stored in a file: estimates or bounds.
 pub fn error_kind<S: Source>(archive: &Archive<S>) -> &'static str {
     match archive.error_kind() {
         ErrorKind::Estimate => "estimate",
@@ -85,12 +85,12 @@ pub fn error_kind<S: Source>(archive: &Archive<S>) -> &'static str {
     }
 }
 
-/// Returns the largest displacement of a vertex of the mesh, in model units.
+/// Returns the largest displacement of a vertex by rounding in the file, in model units.
 pub fn rounding<S: Source>(archive: &Archive<S>) -> f64 {
     if archive.is_lossless() { 0.0 } else { archive.rounding() }
 }
 
-/// Describes the displacement of vertices in words.
+/// Describes in words the displacement of vertices by rounding.
 pub fn rounding_text<S: Source>(archive: &Archive<S>) -> String {
     let part = percent(100.0 * archive.rounding() / archive.diagonal());
     let moved = format!("moved by up to {} ({part})", value(archive.rounding()));

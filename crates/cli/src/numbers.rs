@@ -1,6 +1,6 @@
-//! Numbers formatted for people.
+//! Formatting of numbers for people.
 
-/// Formats a count with commas: 871,414.
+/// Formats a count with commas as thousands separators: 871,414.
 pub fn count(number: usize) -> String {
     let digits = number.to_string();
     let mut text = String::new();
@@ -13,7 +13,7 @@ pub fn count(number: usize) -> String {
     text
 }
 
-/// Formats a number of faces: 1 face, 2 faces.
+/// Formats a number of faces with its noun: 1 face, 2 faces.
 pub fn faces(number: usize) -> String {
     format!("{} face{}", count(number), plural(number))
 }
@@ -23,7 +23,7 @@ pub fn plural(number: usize) -> &'static str {
     if number == 1 { "" } else { "s" }
 }
 
-/// Formats six significant digits: 0.00123457, 12.3457, 1.23457e12.
+/// Formats a number with six significant digits: 0.00123457, 12.3457, 1.23457e12.
 pub fn value(number: f64) -> String {
     digits(number, 6)
 }
@@ -33,7 +33,7 @@ pub fn percent(number: f64) -> String {
     if number.is_finite() { format!("{}%", digits(number, 4)) } else { "-".into() }
 }
 
-/// Formats a relative change as a signed percentage; a dash if the quantity was zero.
+/// Formats a relative change as a signed percentage; a dash if the original value was zero.
 pub fn change(before: f64, after: f64) -> String {
     let change = 100.0 * (after - before) / before.abs();
     match change {

@@ -1,4 +1,4 @@
-//! Parsers of command-line values. Every error says what is expected.
+//! Parsers of command-line values, whose error messages say what is expected.
 
 use std::fmt;
 
@@ -7,7 +7,7 @@ use meshlod::{Format, Method, Target};
 
 use crate::numbers::{count, plural};
 
-/// Length given in model units or relative to the diagonal.
+/// Length in model units, or relative to the diagonal of the scene.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Bound {
     /// Length in model units.
@@ -17,7 +17,7 @@ pub enum Bound {
 }
 
 impl Bound {
-    /// Returns the length in model units.
+    /// Converts the length to model units, given the diagonal of the scene.
     pub fn length(self, diagonal: f64) -> f64 {
         match self {
             Self::Length(length) => length,
@@ -26,12 +26,12 @@ impl Bound {
     }
 }
 
-/// Requested size of a level.
+/// Requested size of a simplified mesh.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum LevelSize {
     /// Number of faces.
     Faces(usize),
-    /// Ratio of the input's faces.
+    /// Ratio of the number of faces of the input, from 0 to 1.
     Ratio(f64),
 }
 
@@ -43,7 +43,7 @@ impl LevelSize {
         }
     }
 
-    /// Formats the size for a file name: `10` for 10%, `500-faces`.
+    /// Formats the size for use in a file name: `10` for 10%, `500-faces`.
     pub fn in_file_names(self) -> String {
         self.to_string().replace('%', "").replace(' ', "-")
     }
@@ -59,12 +59,12 @@ impl fmt::Display for LevelSize {
     }
 }
 
-/// Viewing direction, by name or by components.
+/// Viewing direction, as the name of a side or as a vector.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ViewDirection {
-    /// Direction seen from a named side, if y is up.
+    /// Viewing direction from a named side of the model, in coordinates with y up.
     From([f64; 3]),
-    /// Direction given by its components.
+    /// Viewing direction given as a vector.
     Along([f64; 3]),
 }
 
@@ -129,17 +129,17 @@ pub fn positive(text: &str) -> Result<usize, String> {
     }
 }
 
-/// Parses a number of threads.
+/// Parses the value of `--threads`.
 pub fn threads(text: &str) -> Result<usize, String> {
     at_most(MAX_THREADS, text)
 }
 
-/// Parses a number of samples.
+/// Parses the value of `--samples`.
 pub fn samples(text: &str) -> Result<usize, String> {
     at_most(MAX_SAMPLES, text)
 }
 
-/// Parses a picture size: `640x480`.
+/// Parses a picture size in pixels: `640x480`.
 pub fn pixels(text: &str) -> Result<[u32; 2], String> {
     let sides = text.split_once('x').map(|(width, height)| (width.parse(), height.parse()));
     let allowed = 1..=meshlod::picture::MAX_SIDE;
@@ -172,7 +172,7 @@ pub fn view_direction(text: &str) -> Result<ViewDirection, String> {
     }
 }
 
-/// Parses the name of a method.
+/// Parses the name of a simplification method.
 pub fn method(text: &str) -> Result<Method, String> {
     Method::by_name(text).ok_or_else(|| format!("the methods are {}", names()))
 }
@@ -186,13 +186,13 @@ fn names() -> String {
     Method::ALL.map(Method::name).join(", ")
 }
 
-/// Parses a format by its suffix.
+/// Parses a file format given by its suffix, such as `ply`.
 pub fn format(text: &str) -> Result<Format, String> {
     let known = || Format::ALL.map(|(suffix, _)| suffix).join(", ");
     Format::of_suffix(text).ok_or_else(|| format!("the formats are {}", known()))
 }
 
-/// Parses a precision: `f32` or `f64`.
+/// Parses the type of written coordinates: `f32` or `f64`.
 pub fn precision(text: &str) -> Result<Precision, String> {
     match text {
         "f32" => Ok(Precision::F32),

@@ -1,4 +1,4 @@
-//! Progress display on a terminal; nothing elsewhere.
+//! Progress display, shown only on a terminal.
 
 use std::io::IsTerminal;
 use std::time::Duration;
@@ -23,13 +23,13 @@ impl Progress {
         Self { bar }
     }
 
-    /// Starts a stage of unknown length.
+    /// Shows a stage of work of unknown length.
     pub fn stage(&self, what: &str) {
         self.bar.set_style(ProgressStyle::default_spinner());
         self.bar.set_message(what.to_owned());
     }
 
-    /// Starts a simplification that removes `faces` faces, if the number is known.
+    /// Shows the progress of a simplification that removes `faces` faces, if that number is known.
     pub fn contractions(&self, what: &str, faces: Option<usize>) -> Watch<'_> {
         self.stage(what);
         if let Some(faces) = faces {
@@ -41,7 +41,7 @@ impl Progress {
         Watch { bar: &self.bar, gone: 0, shown: 0 }
     }
 
-    /// Runs `act` with the progress line hidden.
+    /// Runs `act` while the progress line is hidden.
     pub fn suspend(&self, act: impl FnOnce()) {
         self.bar.suspend(act);
     }
@@ -51,7 +51,7 @@ impl Progress {
     }
 }
 
-/// Observer that advances the bar by the faces that contractions remove.
+/// Observer of a simplification that advances the progress bar by the faces removed.
 pub struct Watch<'p> {
     bar: &'p ProgressBar,
     gone: u64,

@@ -5,23 +5,23 @@ use meshlod::multires::{Focus, Query, Tolerance, ViewCamera};
 use crate::failure::Failure;
 use crate::parse::{self, Bound};
 
-/// Largest error allowed in the focus.
+/// Largest error allowed in the focus region of a multiresolution query.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ErrorLimit {
     Length(Bound),
-    /// Error in pixels as the camera sees it.
+    /// Error in pixels, projected by the camera.
     Pixels(f64),
 }
 
-/// Region in which the error is limited.
+/// Focus region of a multiresolution query, in which the error is limited.
 #[derive(Clone, Debug)]
 pub enum FocusArg {
     Region(Focus),
-    /// View frustum of the camera.
+    /// The view frustum of the camera.
     Frustum,
 }
 
-/// Query as given on the command line.
+/// A multiresolution query as given on the command line.
 #[derive(Clone, Debug)]
 pub struct QueryRequest {
     pub error: ErrorLimit,
@@ -30,7 +30,7 @@ pub struct QueryRequest {
 }
 
 impl QueryRequest {
-    /// Converts the arguments to a query of a model with the given diagonal.
+    /// Converts the arguments to a multiresolution query, given the diagonal of the model.
     pub fn query(&self, diagonal: f64) -> Result<Query<'static>, Failure> {
         let camera = || {
             self.camera.ok_or_else(|| {
@@ -58,7 +58,7 @@ pub fn error_limit(text: &str) -> Result<ErrorLimit, String> {
     }
 }
 
-/// Parses a focus such as `box=x0,y0,z0,x1,y1,z1`.
+/// Parses a focus region such as `box=x0,y0,z0,x1,y1,z1`.
 pub fn focus(text: &str) -> Result<FocusArg, String> {
     let (name, rest) = text.split_once('=').unwrap_or((text, ""));
     let numbers = || rest.split(',').map(parse::number).collect::<Result<Vec<_>, _>>();

@@ -12,7 +12,7 @@ use crate::files;
 use crate::session::Session;
 use crate::simplify_run;
 
-/// Refuses a sequence file that cannot be written, before any work is done.
+/// Fails if a sequence file cannot be written, before any work is done.
 pub fn check(path: &Path, input: &Path, output: &Path) -> Result<(), Failure> {
     if files::is_pipe(path) {
         return Err(Failure::usage("--sequence needs a file, not standard output"));
@@ -21,7 +21,8 @@ pub fn check(path: &Path, input: &Path, output: &Path) -> Result<(), Failure> {
     files::check_place(path)
 }
 
-/// Refuses a scene without exactly one mesh, and warns of what the sequence will not store.
+/// Fails unless the scene has exactly one mesh, and warns about data that the sequence file will
+/// not store.
 pub fn check_scene(scene: &Scene, input: &Path, session: &Session) -> Result<(), Failure> {
     if scene.meshes.len() != 1 {
         return Err(several_meshes(input));
@@ -37,12 +38,13 @@ pub fn check_scene(scene: &Scene, input: &Path, session: &Session) -> Result<(),
     Ok(())
 }
 
-/// Creates the failure for a scene without exactly one mesh.
+/// Creates the failure for a scene that does not have exactly one mesh.
 pub fn several_meshes(input: &Path) -> Failure {
     Failure::at(input, "--sequence needs an input with exactly one mesh")
 }
 
-/// Writes a sequence, then runs `rest`; if that fails, a newly created sequence file is removed.
+/// Writes a sequence file and then runs `rest`; if that fails, a newly created sequence file is
+/// removed.
 pub fn write_with(
     path: &Path,
     sequence: &Progressive,
@@ -58,7 +60,7 @@ pub fn write_with(
     })
 }
 
-/// Replaces the mesh of a scene by the current level of its sequence.
+/// Replaces the only mesh of a scene by the current level of a progressive mesh.
 pub fn put_into(scene: &mut Scene, sequence: &Progressive, path: &Path) -> Result<(), Failure> {
     let [only] = &scene.meshes[..] else {
         return Err(Failure::at(

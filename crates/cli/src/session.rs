@@ -1,4 +1,4 @@
-//! State shared by all verbs: output format, messages and threads.
+//! State shared by all commands: output format, messages and threads.
 
 use std::fmt;
 use std::io::Write;
@@ -9,10 +9,10 @@ use crate::args::GlobalArgs;
 use crate::failure::Failure;
 use crate::progress::Progress;
 
-/// One run of the program.
+/// State of one run of the program.
 pub struct Session {
     pub json: bool,
-    /// Format of `-`.
+    /// File format of standard input and output.
     pub format: Option<Format>,
     pub progress: Progress,
     threads: Option<usize>,
@@ -30,12 +30,12 @@ impl Session {
         pool.build_global().map_err(|error| Failure::new(format_args!("--threads: {error}")))
     }
 
-    /// Prints a warning.
+    /// Prints a warning to standard error.
     pub fn warn(&self, line: impl fmt::Display) {
         self.progress.suspend(|| say(format_args!("warning: {line}")));
     }
 
-    /// Prints the reason why a verb failed.
+    /// Prints the reason why a command failed.
     pub fn complain(&self, failure: &Failure) {
         say(failure);
     }

@@ -14,7 +14,7 @@ pub fn refusals_json(report: &Report) -> Value {
     Value::Object(Refusal::ALL.into_iter().map(entry).collect::<Map<String, Value>>())
 }
 
-/// Returns the report fields that every verb prints as JSON.
+/// Returns those fields of a simplification report that every command prints as JSON.
 pub fn report_json(report: &Report) -> Value {
     json!({
         "input_faces": report.input_faces,
@@ -24,7 +24,7 @@ pub fn report_json(report: &Report) -> Value {
     })
 }
 
-/// Formats a line that explains why the target was not reached.
+/// Formats a line that explains why the target of a simplification was missed.
 pub fn why_not_reached(report: &Report) -> String {
     format!(
         "target not reached: no further contraction is possible at {} (refused: {})",
@@ -33,7 +33,7 @@ pub fn why_not_reached(report: &Report) -> String {
     )
 }
 
-/// Formats lines on faces left out and vertices kept in place; empty for a clean mesh.
+/// Formats lines about faces left out and vertices kept in place; empty if there are neither.
 pub fn mesh_notes(report: &Report) -> String {
     let mut text = String::new();
     let mut line = |number: usize, nouns: [&str; 2], what: &str| {

@@ -10,16 +10,16 @@ use meshlod::{Mesh, Options, Report, Scene, SceneError, SceneSimplifier, Target}
 use crate::failure::Failure;
 use crate::session::Session;
 
-/// Simplified scene with its report.
+/// A simplified scene with its report.
 pub struct Simplified {
     pub meshes: Vec<Mesh>,
     pub report: Report,
     pub measured: Option<Distance>,
-    /// Progressive mesh of all levels, if it was recorded.
+    /// Progressive mesh of all levels, if contractions were recorded.
     pub sequence: Option<Progressive>,
 }
 
-/// Scene simplifier with its progress label and elapsed time.
+/// A running simplification of a scene, with its progress label and elapsed time.
 pub struct SimplifyRun<'s> {
     simplifier: SceneSimplifier<'s>,
     session: &'s Session,
@@ -32,7 +32,7 @@ pub struct SimplifyRun<'s> {
 }
 
 impl<'s> SimplifyRun<'s> {
-    /// Builds the connectivity of the meshes of `scene`, read from `path`.
+    /// Builds the connectivity of the meshes of `scene`, which was read from `path`.
     pub fn start(
         scene: &'s Scene,
         options: &Options,
@@ -46,7 +46,7 @@ impl<'s> SimplifyRun<'s> {
         Ok(Self { simplifier, session, path, label, time: start.elapsed(), history: None })
     }
 
-    /// Sets the label shown on the terminal.
+    /// Sets the label of the progress line.
     pub fn set_label(&mut self, label: String) {
         self.label = label;
     }
@@ -56,13 +56,13 @@ impl<'s> SimplifyRun<'s> {
         self.history = Some(History::default());
     }
 
-    /// Returns all recorded levels as a progressive mesh; `None` unless the scene has one mesh and
-    /// every contraction was recorded.
+    /// Returns all recorded levels as a progressive mesh; `None` unless the scene has exactly one
+    /// mesh and every contraction was recorded.
     pub fn into_sequence(self) -> Option<Progressive> {
         Progressive::new(self.simplifier.into_only()?, self.history?)
     }
 
-    /// Simplifies further, to the given target.
+    /// Continues the simplification to the given target.
     pub fn simplify_to(&mut self, target: Target) -> Result<Report, Failure> {
         let now = self.simplifier.live_faces();
         let to_go = match target {
@@ -87,18 +87,19 @@ impl<'s> SimplifyRun<'s> {
         self.simplifier.input_faces()
     }
 
-    /// Returns the meshes at their current level.
+    /// Returns the meshes of the scene as simplified so far.
     pub fn level(&self) -> Vec<Mesh> {
         self.simplifier.level()
     }
 
-    /// Returns the wall-clock time spent on connectivity and contractions.
+    /// Returns the wall-clock time spent so far on connectivity and contractions.
     pub fn time(&self) -> Duration {
         self.time
     }
 }
 
-/// Measures a level against the original; warns and returns `None` if that is not possible.
+/// Measures the distance of a level from the original; prints a warning and returns `None` if that
+/// is not possible.
 pub fn measure(
     original: Option<&PreparedSurface<'_>>,
     scene: &Scene,
@@ -112,7 +113,7 @@ pub fn measure(
         .ok()
 }
 
-/// Replaces the meshes of a scene by those of a level.
+/// Replaces the meshes of a scene by simplified ones.
 pub fn replace(scene: &mut Scene, level: Vec<Mesh>) {
     for (mesh, level) in scene.meshes.iter_mut().zip(level) {
         mesh.mesh = level;

@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 use crate::numbers::{count, plural, value};
 
 /// Returns the contractions that could not conserve the volume as JSON; `null` for a method that
-/// does not conserve it.
+/// does not aim to.
 pub fn unconserved_json(method: Method, loss: &VolumeLoss) -> Value {
     let json =
         || json!({ "at_boundaries": with_bounds(&loss.open), "held": with_bounds(&loss.held) });

@@ -1,22 +1,22 @@
-//! Contacts grouped by pairs of objects.
+//! Contacts between objects, grouped by pairs of objects.
 
 use std::collections::BTreeMap;
 
 use meshlod::check::{Intersection, IntersectionKind, ObjectId};
 use meshlod::mesh::FaceId;
 
-/// Contacts between two objects.
+/// All contacts between two objects, with the deepest of them.
 #[derive(Clone, Debug)]
 pub struct ObjectPair {
-    /// Number of face pairs by kind of touch: vertex, edge, crossing, overlap.
+    /// Number of touching face pairs by kind of contact: vertex, edge, crossing, overlap.
     pub counts: [usize; 4],
-    /// Deepest touch, or the first if none has depth.
+    /// Intersection of the faces of the deepest contact, or of the first if all depths are 0.
     pub deepest: Intersection,
-    /// Faces of the deepest touch.
+    /// The two faces of the deepest contact.
     pub faces: [FaceId; 2],
 }
 
-/// Every kind of touch, in the order of [`ObjectPair::counts`].
+/// All kinds of contact with their names, in the order of [`ObjectPair::counts`].
 pub const KINDS: [(IntersectionKind, &str); 4] = [
     (IntersectionKind::Point, "vertex"),
     (IntersectionKind::Segment, "edge"),
@@ -24,7 +24,7 @@ pub const KINDS: [(IntersectionKind, &str); 4] = [
     (IntersectionKind::Overlap, "overlap"),
 ];
 
-/// All pairs of objects that meet.
+/// Contacts of a mesh by pairs of objects that meet.
 #[derive(Clone, Debug, Default)]
 pub struct Contacts(BTreeMap<[ObjectId; 2], ObjectPair>);
 
@@ -38,12 +38,13 @@ impl Contacts {
         }
     }
 
-    /// Returns the number of object pairs.
+    /// Returns the number of pairs of objects that meet.
     pub fn len(&self) -> usize {
         self.0.len()
     }
 
-    /// Returns the pairs with the most face pairs first; ties by object ids.
+    /// Returns the pairs of objects, those with the most touching faces first; ties are broken by
+    /// object ids.
     pub fn by_size(&self) -> Vec<([ObjectId; 2], &ObjectPair)> {
         let mut pairs: Vec<_> = self.0.iter().map(|(&objects, pair)| (objects, pair)).collect();
         pairs.sort_by_key(|(_, pair)| std::cmp::Reverse(pair.faces()));
@@ -52,7 +53,7 @@ impl Contacts {
 }
 
 impl ObjectPair {
-    /// Returns the number of face pairs.
+    /// Returns the number of touching face pairs of all objects.
     pub fn faces(&self) -> usize {
         self.counts.iter().sum()
     }

@@ -9,7 +9,7 @@ use meshlod::picture::{
 
 use crate::check::marks::{Mark, Marks};
 
-/// Width and height of a picture.
+/// Width and height of a picture, in pixels.
 pub const SIZE: [u32; 2] = [576, 480];
 
 /// Colour of unmarked faces.
@@ -18,7 +18,7 @@ const PLAIN: [u8; 3] = [214, 216, 219];
 /// Half the width of a line, as a fraction of the diagonal.
 const LINE: f64 = 0.002;
 
-/// Returns the views of a mesh: their names and viewing directions.
+/// Returns the views from which a mesh is drawn: their names and viewing directions.
 pub fn views() -> [(&'static str, [f64; 3]); 4] {
     let [x, y, z] = View::three_quarter(UpAxis::Y).direction;
     [
@@ -29,16 +29,16 @@ pub fn views() -> [(&'static str, [f64; 3]); 4] {
     ]
 }
 
-/// Part of the mesh to draw.
+/// Part of a mesh to draw.
 #[derive(Clone, Copy, PartialEq)]
 pub enum Part {
-    /// Whole mesh.
+    /// The whole mesh.
     Whole,
-    /// Marked parts only, so that those inside are visible.
+    /// Only the marked faces and edges, so that those inside are visible.
     Marked,
 }
 
-/// Mesh with its marks as colours and lines.
+/// A mesh to draw, with its findings marked by colours and lines.
 pub struct Drawing {
     mesh: Mesh,
     colors: Vec<[u8; 3]>,
@@ -71,7 +71,7 @@ impl Drawing {
         this
     }
 
-    /// Renders the drawing.
+    /// Renders the mesh with its marks.
     ///
     /// # Errors
     ///

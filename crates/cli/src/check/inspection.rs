@@ -1,4 +1,4 @@
-//! Collected results of a check.
+//! Results of a mesh check, collected for its reports.
 
 use std::ops::ControlFlow;
 
@@ -10,27 +10,27 @@ use meshlod::check::{
 use crate::check::contacts::Contacts;
 use crate::check::marks::Marks;
 
-/// Mesh with the findings of a check.
+/// A mesh with the results of its check.
 pub struct Inspection {
     pub mesh: Mesh,
     pub objects: Objects,
     pub summary: Summary,
-    /// First findings of each kind: as many as requested, and at least one.
+    /// The first findings of each kind: as many as requested, and at least one.
     pub findings: Vec<Finding>,
     /// Largest number of findings listed of each kind.
     pub limit: usize,
     pub contacts: Contacts,
-    /// Marks for the pictures of a page, if one is wanted.
+    /// Marks for the pictures of a report page, if one is requested.
     pub marks: Option<Marks>,
     pub kinds: Kinds,
 }
 
-/// Options of an inspection.
+/// Options for collecting the results of a mesh check.
 pub struct InspectionOptions {
     pub options: CheckOptions,
     /// Largest number of findings listed of each kind.
     pub limit: usize,
-    /// True if marks for a page are collected.
+    /// True to collect marks for the pictures of a report page.
     pub marks: bool,
 }
 
@@ -67,17 +67,17 @@ impl Inspection {
         }
     }
 
-    /// Returns the first finding of a kind.
+    /// Returns the first finding of this kind.
     pub fn first(&self, kind: Kind) -> Option<&Finding> {
         self.findings.iter().find(|finding| finding.kind() == kind)
     }
 
-    /// Iterates over the findings to list.
+    /// Iterates over the findings that reports list in full.
     pub fn listed(&self) -> impl Iterator<Item = &Finding> {
         self.findings.iter().filter(|_| self.limit > 0)
     }
 
-    /// Returns the number of findings of a kind that are not listed.
+    /// Returns the number of findings of this kind that reports do not list.
     pub fn left_out(&self, kind: Kind) -> usize {
         self.summary.count(kind).saturating_sub(self.limit)
     }
@@ -90,7 +90,7 @@ impl Inspection {
         self.summary.of_severity(Severity::Warning)
     }
 
-    /// Returns the name of an object.
+    /// Returns the name of an object of the mesh.
     pub fn name(&self, object: meshlod::check::ObjectId) -> &str {
         self.objects.names.get(object.0 as usize).map_or("", String::as_str)
     }

@@ -1,4 +1,4 @@
-//! Lock files: flags of vertices in the order of the input file, and ties.
+//! Lock files: lock states of vertices in the order of the input file, and ties.
 //!
 //! The format is described in docs/notes/locks.md.
 
@@ -20,15 +20,15 @@ const VERSION: u64 = 1;
 const FLAGS: [(Lock, u8, &str); 3] =
     [(Lock::Free, 0, "free"), (Lock::Locked, 1, "lock"), (Lock::Protected, 2, "protect")];
 
-/// Map from the vertex numbering of a file to the vertices of each mesh of its scene.
+/// Correspondence between the vertex numbers of a file and the vertices of each mesh of its scene.
 pub struct FileRows {
     of_meshes: Vec<Vec<VertexId>>,
-    /// Scene read without welding, if reading welds vertices.
+    /// The scene read without welding, if reading it normally welds vertices.
     torn: Option<Scene>,
 }
 
 impl FileRows {
-    /// Builds the map for the file that a scene was read from with `weld`.
+    /// Finds the correspondence for the file from which a scene was read with the option `weld`.
     ///
     /// # Errors
     ///
@@ -100,7 +100,7 @@ fn mark(positions: &[[f64; 3]]) -> String {
     format!("{hash:016x}")
 }
 
-/// Returns the locks of all meshes of a scene in the JSON of a lock file.
+/// Returns the vertex locks of all meshes of a scene as the JSON of a lock file.
 pub fn to_json(path: &Path, scene: &Scene, rows: &FileRows, lockings: &[VertexLocks]) -> Value {
     let file = path.file_name().map(|name| name.to_string_lossy().into_owned());
     let source = rows.torn.as_ref().unwrap_or(scene).source.as_ref();
@@ -160,7 +160,7 @@ fn mesh_json(rows: &[VertexId], VertexLocks { locks, reasons }: &VertexLocks) ->
     })
 }
 
-/// Reads the locks in a file for the meshes of the scene they were made from.
+/// Reads a lock file, and returns the vertex locks of each mesh of the scene.
 ///
 /// # Errors
 ///

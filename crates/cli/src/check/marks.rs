@@ -1,10 +1,10 @@
-//! Marks on the pictures of a check: faces and edges coloured by their defect.
+//! Marks on the pictures of a mesh check: faces and edges coloured by their defect.
 
 use meshlod::Mesh;
 use meshlod::check::{Finding, IntersectionKind, Objects};
 use meshlod::mesh::{FaceId, VertexId};
 
-/// Defect or contact that has a colour.
+/// A defect or contact that pictures mark by a colour.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Mark {
     Broken,
@@ -18,7 +18,7 @@ pub enum Mark {
 }
 
 impl Mark {
-    /// Every mark, in order of precedence on a face.
+    /// All marks; where several apply to a face, the first wins.
     pub const ALL: [Self; 8] = [
         Self::Broken,
         Self::NonManifold,
@@ -43,7 +43,7 @@ impl Mark {
         }
     }
 
-    /// Returns the text of the legend.
+    /// Returns the description of the mark for the legend.
     pub fn about(self) -> &'static str {
         match self {
             Self::Broken => "degenerate or duplicate face",
@@ -58,7 +58,7 @@ impl Mark {
     }
 }
 
-/// Marks on the faces, edges and vertices of a mesh.
+/// Marks on the faces, edges and vertices of a checked mesh.
 pub struct Marks {
     pub of_face: Vec<Option<Mark>>,
     pub edges: Vec<([VertexId; 2], Mark)>,
@@ -117,7 +117,7 @@ impl Marks {
         }
     }
 
-    /// Returns the marks in use, in the order of [`Mark::ALL`].
+    /// Returns the marks that occur on the mesh, in the order of [`Mark::ALL`].
     pub fn used(&self) -> Vec<Mark> {
         let of_edges = self.edges.iter().map(|(_, mark)| *mark);
         let of_vertices = self.vertices.iter().map(|(_, mark)| *mark);

@@ -1,4 +1,4 @@
-//! Report page of a check.
+//! Report page of a mesh check, in HTML.
 
 use std::path::Path;
 
@@ -26,7 +26,7 @@ use crate::page::renderer::{uri, view_from};
 /// Limit of object pairs in the table; the JSON has more.
 const MOST_PAIRS: usize = 60;
 
-/// Writes the page to an existing folder and returns its path.
+/// Writes the report page to an existing folder and returns its path.
 pub fn write(
     folder: &Path,
     name: &str,

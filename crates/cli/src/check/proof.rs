@@ -13,7 +13,7 @@ use crate::model_file;
 use crate::numbers::{count, faces, plural};
 use crate::session::Session;
 
-/// Proves that no cut of a file has a crack, or fails with the reason.
+/// Proves that no mesh extracted from a multiresolution file has a crack, or fails with the reason.
 pub fn prove(path: &Path, session: &Session) -> Result<Answer, Failure> {
     match model_file::open(path, session)? {
         ModelFile::Contractions(archive) => prove_contractions(path, &archive, session),

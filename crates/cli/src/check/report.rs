@@ -1,4 +1,4 @@
-//! JSON of a check.
+//! JSON report of a mesh check.
 
 use meshlod::check::{Degeneracy, Finding, Intersection, Kind, ObjectId, Severity};
 use serde_json::{Value, json};
@@ -7,7 +7,8 @@ use crate::check::contacts::KINDS;
 use crate::check::inspection::{Inspection, place};
 use crate::check::sites::Sites;
 
-/// Returns the JSON object of a check: counts by kind, findings, contacts by object pair.
+/// Returns the report of a mesh check as JSON: counts by kind, findings, contacts by pair of
+/// objects.
 pub fn json(inspection: &Inspection, sites: &Sites) -> Value {
     let Inspection { mesh, objects, summary, limit, .. } = inspection;
     let looked_for = || Kind::ALL.into_iter().filter(|&kind| inspection.kinds.contains(kind));

@@ -1,10 +1,10 @@
-//! Map from ids of a flattened scene to its nodes and meshes.
+//! Correspondence between the ids of a flattened scene and its nodes and meshes.
 
 use meshlod::Scene;
 use meshlod::mesh::{FaceId, VertexId};
 use serde_json::{Value, json};
 
-/// Placed meshes of a scene, in the order of [`Scene::flatten`].
+/// The meshes that the nodes of a scene place, in the order of [`Scene::flatten`].
 pub struct Sites(Vec<Site>);
 
 /// Mesh placed by a node.
@@ -36,7 +36,7 @@ impl Sites {
         Self(sites.collect())
     }
 
-    /// Formats a face id, with its node if there are several.
+    /// Formats a face id, preceded by its node if the scene has several.
     pub fn face(&self, face: FaceId) -> String {
         let site = self.0.iter().rfind(|site| site.first_face <= face.index());
         match site.filter(|_| self.0.len() > 1) {
@@ -45,7 +45,7 @@ impl Sites {
         }
     }
 
-    /// Formats a vertex id, with its node if there are several.
+    /// Formats a vertex id, preceded by its node if the scene has several.
     pub fn vertex(&self, vertex: VertexId) -> String {
         let site = self.0.iter().rfind(|site| site.first_vertex <= vertex.index());
         match site.filter(|_| self.0.len() > 1) {
@@ -54,7 +54,8 @@ impl Sites {
         }
     }
 
-    /// Returns the id ranges of nodes and meshes as JSON; `null` if there is only one.
+    /// Returns the ranges of ids that belong to each node and mesh as JSON; `null` if there is only
+    /// one.
     pub fn json(&self) -> Value {
         let json = |site: &Site| {
             json!({

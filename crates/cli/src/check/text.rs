@@ -1,4 +1,4 @@
-//! Text of a check.
+//! Text report of a mesh check.
 
 use meshlod::check::{Finding, Kind};
 
@@ -14,7 +14,8 @@ const MOST_PAIRS: usize = 12;
 /// Length at which names of objects are cut.
 const LONGEST_NAME: usize = 28;
 
-/// Formats a table of kinds with the first finding of each, a table of contacts, and the totals.
+/// Formats the report: a table of kinds with the first finding of each, a table of contacts, and
+/// totals.
 pub fn text(inspection: &Inspection, sites: &Sites) -> String {
     let objects = inspection.objects.names.len();
     let components = inspection.objects.components;
@@ -31,7 +32,7 @@ pub fn text(inspection: &Inspection, sites: &Sites) -> String {
     text + &format!("{}\n", verdict(inspection))
 }
 
-/// Formats the numbers of errors and warnings.
+/// Formats the numbers of errors and warnings in words.
 pub fn verdict(inspection: &Inspection) -> String {
     let (errors, warnings) = (inspection.errors(), inspection.warnings());
     match (errors, warnings) {
@@ -61,7 +62,7 @@ fn kinds(inspection: &Inspection, sites: &Sites) -> String {
     lines.collect()
 }
 
-/// Describes where a finding is, by ids and position.
+/// Describes the place of a finding, by ids and position.
 pub fn first(inspection: &Inspection, sites: &Sites, finding: &Finding) -> String {
     let ids = match finding {
         Finding::BadAttributes { error } => return error.to_string(),

@@ -1,4 +1,4 @@
-//! Comparison of methods on one mesh, each run independently.
+//! Comparison of simplification methods on one mesh, each run independently.
 
 use meshlod::Method;
 use meshlod::measure::{DistanceOptions, PreparedSurface};
@@ -15,31 +15,31 @@ use crate::simplify_report;
 use crate::simplify_run;
 use crate::volume::unconserved_text;
 
-/// Mesh, sizes and methods to compare.
+/// A mesh, and the sizes and methods for which to compare simplifications of it.
 pub struct Comparison<'s> {
     pub subject: &'s Subject,
     pub original: &'s PreparedSurface<'s>,
     pub options: DistanceOptions,
-    /// Sizes of the levels, finest first.
+    /// Sizes to simplify to, the largest first.
     pub sizes: Vec<LevelSize>,
     pub methods: Vec<Method>,
     pub pictures: bool,
 }
 
-/// Result of a comparison.
+/// Measurements and pictures from a comparison of methods.
 pub struct ComparisonResult {
-    /// Results, one per method.
+    /// Simplified meshes and measurements, one entry for each method.
     pub entries: Vec<MethodResult>,
-    /// Pictures of the input, if wanted.
+    /// Pictures of the input mesh, if requested.
     pub input: Option<LevelPictures>,
 }
 
-/// Levels that one method made of the mesh.
+/// Simplified meshes that one method made, with their measurements.
 pub struct MethodResult {
     pub chain: Chain,
-    /// Pictures of every level, if wanted.
+    /// Pictures of the simplified mesh of each size, if requested.
     pub pictures: Vec<LevelPictures>,
-    /// Reason why there are no more levels.
+    /// Reason why the method stopped before the last size.
     pub failure: Option<Failure>,
 }
 
@@ -56,13 +56,13 @@ struct PictureTools<'c> {
     reference: ReferenceImages<'c>,
 }
 
-/// Width and height of the pictures compared: a sixteenth of the protocol's pixels, so that a level
-/// costs a fraction of a second.
+/// Width and height in pixels of the pictures for the image error: a sixteenth of the protocol's
+/// pixel count, so that a level takes a fraction of a second.
 pub const COMPARED_SIDE: u32 = 256;
 
 impl Comparison<'_> {
-    /// Builds, measures, draws and writes all levels. The geometry of a level is freed before the
-    /// next is built, which is as large.
+    /// Simplifies, measures, draws and writes all levels. The memory of a level is freed before the
+    /// next is made.
     ///
     /// A method that fails becomes an entry with its failure. It is an error only if all methods
     /// fail.
@@ -138,12 +138,12 @@ impl Comparison<'_> {
 }
 
 impl ComparisonResult {
-    /// Iterates over the levels of one size with their entries.
+    /// Iterates over the methods that reached one size, with their simplified meshes.
     pub fn at(&self, size: usize) -> impl Iterator<Item = (&MethodResult, &Level)> + Clone {
         self.entries.iter().filter_map(move |entry| Some((entry, entry.chain.levels.get(size)?)))
     }
 
-    /// Returns the volume-conserving methods that could not conserve it at a size, with a
+    /// Returns the volume-conserving methods that could not conserve the volume at one size, with a
     /// description.
     pub fn unconserved(&self, size: usize) -> Vec<(Method, String)> {
         let line = |(entry, level): (&MethodResult, &Level)| {
@@ -153,7 +153,7 @@ impl ComparisonResult {
         self.at(size).filter_map(line).collect()
     }
 
-    /// Warns of methods that failed and targets that were not reached.
+    /// Prints warnings about methods that failed and targets that were missed.
     pub fn warn(&self, name: &str, session: &Session) {
         for MethodResult { chain, failure, .. } in &self.entries {
             let method = chain.method.name();

@@ -1,4 +1,4 @@
-//! Files of the levels, in a format that holds everything the input has.
+//! Files of simplified meshes, in a format that keeps everything the input has.
 
 use std::path::{Path, PathBuf};
 
@@ -9,15 +9,15 @@ use crate::files;
 use crate::parse::LevelSize;
 use crate::session::Session;
 
-/// Output folder with the format of the levels in it.
+/// Output folder, and the format of the meshes written to it.
 pub struct Output {
     pub folder: PathBuf,
     suffix: &'static str,
 }
 
 impl Output {
-    /// Chooses the input's own format if only that keeps its textures and nodes, else PLY, which
-    /// keeps every bit of the positions.
+    /// Chooses the file format: the input's own if no other keeps its textures and nodes, otherwise
+    /// PLY, which keeps positions exactly.
     pub fn new(folder: &Path, input: &Path, scene: &Scene, session: &Session) -> Self {
         let format = match files::is_pipe(input) {
             true => session.format,
@@ -33,13 +33,13 @@ impl Output {
         Self { folder: folder.to_owned(), suffix }
     }
 
-    /// Returns the file name of a level.
+    /// Returns the file name of a simplified mesh.
     pub fn file(&self, method: Method, size: LevelSize) -> String {
         format!("{}-{}.{}", method.name(), size.in_file_names(), self.suffix)
     }
 
-    /// Writes a level with 64-bit coordinates if the format allows, so that it measures the same
-    /// again.
+    /// Writes a simplified mesh with 64-bit coordinates where the format allows, so that it can be
+    /// measured again with equal results.
     pub fn write(&self, file: &str, scene: &Scene) -> Result<(), IoError> {
         write(&self.folder.join(file), scene, &WriteOptions { precision: Precision::F64 })
     }

@@ -1,4 +1,4 @@
-//! Report page of a comparison.
+//! Report page of a comparison of methods, in HTML.
 
 use maud::{Markup, html};
 use meshlod::measure::Distance;
@@ -11,7 +11,7 @@ use crate::page::chart::{Across, Chart, Series, chart};
 use crate::page::document::{Document, document};
 use crate::page::facts::facts;
 
-/// Builds the whole document.
+/// Builds the HTML page of a comparison.
 pub fn page(comparison: &Comparison<'_>, outcome: &ComparisonResult) -> Markup {
     let sizes = || (0..comparison.sizes.len()).filter(|&size| outcome.at(size).next().is_some());
     let links = sizes().map(|size| (anchor(size), comparison.sizes[size].to_string()));

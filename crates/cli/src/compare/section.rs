@@ -1,4 +1,4 @@
-//! Section of the comparison page for one size.
+//! Section of the comparison page about one size.
 
 use maud::{Markup, html};
 use meshlod::measure::Distance;
@@ -13,7 +13,7 @@ use crate::page::key::key;
 use crate::page::picture_row::{Layout, PictureColumn, picture_row};
 use crate::page::table;
 
-/// Builds the section: pictures, figures and refusals.
+/// Builds the section about one size: pictures, measurements and refused contractions.
 pub fn section(comparison: &Comparison<'_>, outcome: &ComparisonResult, size: usize) -> Markup {
     html! {
         section id=(anchor(size)) {
@@ -31,7 +31,7 @@ pub fn section(comparison: &Comparison<'_>, outcome: &ComparisonResult, size: us
     }
 }
 
-/// Returns the anchor of a size.
+/// Returns the HTML anchor of the section about one size.
 pub fn anchor(size: usize) -> String {
     format!("size-{}", size + 1)
 }

@@ -1,4 +1,4 @@
-//! Output of `compare`: the figures of the page as JSON and text.
+//! Output of `compare`: all measurements as JSON and text.
 
 use serde_json::{Value, json};
 
@@ -11,7 +11,7 @@ use crate::page::columns::{Column, legend};
 use crate::page::level_json::level_json;
 use crate::table::aligned;
 
-/// Returns all figures as JSON, with files relative to the folder.
+/// Returns all measurements as JSON, with file names relative to the output folder.
 pub fn json(comparison: &Comparison<'_>, outcome: &ComparisonResult, output: &Output) -> Value {
     let input = &comparison.subject.counts;
     let level = |method, level: &Level| {
@@ -40,7 +40,7 @@ pub fn json(comparison: &Comparison<'_>, outcome: &ComparisonResult, output: &Ou
     })
 }
 
-/// Formats a table for each size, and the path of the page.
+/// Formats the measurements as a table for each size, and the path of the page.
 pub fn text(comparison: &Comparison<'_>, outcome: &ComparisonResult, output: &Output) -> String {
     let input = &comparison.subject.counts;
     let mut text = format!("{}: {}\n", comparison.subject.name, numbers::faces(input.faces));

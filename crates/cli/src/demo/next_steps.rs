@@ -1,4 +1,4 @@
-//! End of the demo page: commands to try, and the files written.
+//! End of the demo page: commands to try on other meshes, and the files written.
 
 use maud::{Markup, html};
 
@@ -15,7 +15,7 @@ const STEPS: [(&str, &str); 7] = [
     ("Render the error", "meshlod render your.ply error.png --heat-against small.ply"),
 ];
 
-/// Lists the commands for each step on the reader's own mesh.
+/// Lists commands for readers to try on their own meshes.
 pub fn commands() -> Markup {
     html! {
         section id="own" {
@@ -34,7 +34,7 @@ pub fn commands() -> Markup {
     }
 }
 
-/// Lists the files written next to the page.
+/// Lists the mesh files written next to the page.
 pub fn files(reports: &[SampleReport]) -> Markup {
     html! {
         section id="files" {

@@ -1,4 +1,4 @@
-//! Report page of the demo.
+//! Report page of `demo`, in HTML.
 
 use maud::{Markup, html};
 
@@ -8,7 +8,7 @@ use crate::demo::{next_steps, section};
 use crate::numbers::count;
 use crate::page::document::{Document, document};
 
-/// Builds the whole document.
+/// Builds the HTML page of the demo.
 pub fn page(reports: &[SampleReport], title_picture: &TitlePicture) -> Markup {
     let samples =
         reports.iter().map(|report| (report.sample.name.into(), report.subject.title.clone()));

@@ -1,4 +1,4 @@
-//! Levels, files and pictures of one sample.
+//! Simplified meshes, files and pictures of one sample mesh.
 
 use std::path::Path;
 
@@ -20,26 +20,26 @@ use crate::verbs::lods::screen_coverage;
 /// Levels of a chain, as ratios of the input's faces.
 const RATIOS: [f64; 4] = [0.5, 0.25, 0.1, 0.03];
 
-/// Samples each way, in addition to all vertices: the mean is within about 0.2 %, and the page
-/// takes seconds.
+/// Number of random points per direction at which distances are measured, in addition to all
+/// vertices: the mean is then within about 0.2 %.
 pub const SAMPLES: usize = 100_000;
 
-/// Sample with its levels and pictures.
+/// A sample mesh with its simplified levels and pictures.
 pub struct SampleReport {
     pub sample: &'static DemoSample,
     pub subject: Subject,
-    /// Chains, one per method.
+    /// Simplified levels of the sample by each method.
     pub chains: Vec<Chain>,
-    /// Flattened scene at the levels of the main method.
+    /// Simplified scenes of the main method, each flattened to one mesh.
     pub shown: Vec<Mesh>,
-    /// Pictures of the input.
+    /// Pictures of the full-resolution sample.
     pub input: LevelPictures,
-    /// Pictures of the levels of the main method.
+    /// Pictures of the levels made by the main method.
     pub pictures: Vec<LevelPictures>,
 }
 
 impl SampleReport {
-    /// Simplifies, measures, writes and draws a sample.
+    /// Simplifies, measures, writes and draws one sample mesh.
     pub fn make(
         sample: &'static DemoSample,
         folder: &Path,
@@ -71,7 +71,7 @@ impl SampleReport {
         Ok(Self { sample, subject, chains, shown: main, input, pictures })
     }
 
-    /// Returns the chain of the main method.
+    /// Returns the levels made by the method that the page shows first.
     pub fn main_chain(&self) -> &Chain {
         let main = |chain: &&Chain| chain.method == main_method();
         self.chains.iter().find(main).expect("the main method is one of the methods")
@@ -79,12 +79,12 @@ impl SampleReport {
 }
 
 impl DemoSample {
-    /// Returns the file name of the input.
+    /// Returns the file name of the full-resolution sample.
     pub fn input_file(&self) -> String {
         format!("{}.ply", self.name)
     }
 
-    /// Returns the name of the file with the levels of the main method, linked by `MSFT_lod`.
+    /// Returns the name of the file with all levels of the main method, linked by `MSFT_lod`.
     pub fn lods_file(&self) -> String {
         format!("{}.glb", self.name)
     }

@@ -1,4 +1,4 @@
-//! Samples of the demo, and how they are shown.
+//! Sample meshes of the demo, with their descriptions and drawing styles.
 
 use meshlod::Scene;
 use meshlod::picture::{Normals, Wireframe};
@@ -7,29 +7,29 @@ use meshlod::samples;
 use crate::page::style::{OwnedPaint, SubjectStyle};
 use crate::page::subject::Subject;
 
-/// Sample with its title and style.
+/// A sample mesh of the demo, with its description and drawing style.
 pub struct DemoSample {
-    /// Name of the sample and of its files.
+    /// Name of the sample mesh and of its files.
     pub name: &'static str,
     pub title: &'static str,
-    /// Description: what to look for.
+    /// Description of the sample: the features to look at.
     pub about: &'static str,
-    /// Number of faces to generate.
+    /// Approximate number of faces to generate.
     pub faces: usize,
     pub paint: OwnedPaint,
     pub normals: Normals,
-    /// Colour of edges, visible against the paint.
+    /// Colour of the wireframe, chosen to stand out from the surface.
     pub line_color: [u8; 3],
-    /// Opacity of edges.
+    /// Opacity of the wireframe, from 0 to 1.
     pub line_opacity: f32,
-    /// Viewing direction.
+    /// Viewing direction of the pictures.
     pub direction: [f64; 3],
 }
 
 /// Dihedral angle, in radians, above which an edge is a crease: about 20°.
 const CREASE_RAD: f64 = 0.35;
 
-/// Samples in the order of the page; the first is its title picture.
+/// Sample meshes in the order of the page; the first is also on the title picture.
 pub const ALL: [DemoSample; 3] = [
     DemoSample {
         name: "fish",
@@ -71,7 +71,7 @@ pub const ALL: [DemoSample; 3] = [
 ];
 
 impl DemoSample {
-    /// Generates the sample.
+    /// Generates the sample mesh.
     pub fn subject(&self) -> Subject {
         let mesh = samples::by_name(self.name, Some(self.faces)).expect("every one is a sample");
         let scene = Scene::from_mesh(self.name, mesh);

@@ -1,4 +1,4 @@
-//! Section of the demo page for one sample.
+//! Section of the demo page about one sample mesh.
 
 use maud::{Markup, html};
 use meshlod::measure::Distance;
@@ -13,7 +13,7 @@ use crate::page::key::key;
 use crate::page::picture_row::{Layout, PictureColumn, picture_row};
 use crate::page::table;
 
-/// Builds the section: description, pictures and measurements.
+/// Builds the section about a sample: description, pictures and measurements.
 pub fn section(report: &SampleReport) -> Markup {
     html! {
         section id=(report.sample.name) {

@@ -1,4 +1,4 @@
-//! Output of `demo`: all figures as JSON, the main ones as text.
+//! Output of `demo`: all measurements as JSON, the main ones as text.
 
 use std::path::Path;
 
@@ -13,7 +13,7 @@ use crate::page::chain::{Chain, Level};
 use crate::page::level_json::level_json;
 use crate::table::aligned;
 
-/// Returns all figures and file paths as JSON.
+/// Returns all measurements and file paths as JSON.
 pub fn json(result: &DemoResult) -> Value {
     json!({
         "page": files::name(&result.page),
@@ -46,7 +46,7 @@ fn of_report(report: &SampleReport, folder: &Path) -> Value {
     json
 }
 
-/// Formats one line per level, and the path of the page.
+/// Formats a line about each level, and the path of the page.
 pub fn text(result: &DemoResult) -> String {
     let head = ["", "level", "faces", "RMS", "max", "seconds"].map(String::from);
     let mut rows = vec![head];

@@ -1,4 +1,4 @@
-//! Title picture of the page: a sample at several levels, side by side.
+//! Title picture of the demo page: a sample at several levels of detail, side by side.
 
 use std::path::{Path, PathBuf};
 
@@ -14,17 +14,17 @@ use crate::page::renderer;
 /// Width and height of one of its four tiles.
 const SIZE: [u32; 2] = [400, 320];
 
-/// Title picture, inline and as a file.
+/// Title picture of the demo page, embedded in it and as a file.
 pub struct TitlePicture {
     pub file: PathBuf,
     pub picture: renderer::InlinePicture,
     pub size: [u32; 2],
-    /// Number of faces of each tile.
+    /// Number of faces of the mesh in each tile of the picture.
     pub faces: Vec<usize>,
 }
 
 impl TitlePicture {
-    /// Draws the input and the levels from the second on.
+    /// Draws the sample and its levels side by side, leaving out the first level.
     pub fn make(report: &SampleReport, folder: &Path) -> Result<Self, Failure> {
         let subject = &report.subject;
         let levels = report.shown.iter().skip(1);

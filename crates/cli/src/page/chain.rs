@@ -1,4 +1,4 @@
-//! Chain of levels of one mesh by one method, with measurements.
+//! Levels of one mesh made by one method, with their measurements.
 
 use std::path::Path;
 use std::time::Duration;
@@ -15,7 +15,7 @@ use crate::parse::LevelSize;
 use crate::session::Session;
 use crate::simplify_run::SimplifyRun;
 
-/// Builder of a chain of levels.
+/// Builder of successive levels of one mesh by one method.
 pub struct ChainBuilder<'s> {
     subject: &'s Subject,
     original: &'s PreparedSurface<'s>,
@@ -26,39 +26,40 @@ pub struct ChainBuilder<'s> {
     what: String,
 }
 
-/// Levels of one subject by one method, finest first; each is made from the one before.
+/// Successive levels of a mesh made by one method, finest first; each is made from the previous
+/// one.
 pub struct Chain {
     pub method: Method,
     pub levels: Vec<Level>,
 }
 
-/// Figures of a level.
+/// Measurements of a simplified mesh.
 pub struct Level {
-    /// Requested size.
+    /// Requested number or ratio of faces.
     pub size: LevelSize,
     pub counts: Counts,
     pub report: Report,
-    /// Distance from the input, or the reason why it was not measured.
+    /// Distance from the original mesh, or the reason why it was not measured.
     pub measured: Result<Distance, String>,
     pub quality: Option<Quality>,
-    /// FLIP image error, if pictures were compared.
+    /// FLIP image error against the original mesh, if pictures were compared.
     pub flip: Option<f64>,
-    /// Wall-clock time from the input to this level, for connectivity and contractions.
+    /// Wall-clock time from the original mesh to this level, for connectivity and contractions.
     pub time: Duration,
-    /// File name in the folder of the page.
+    /// Name of the mesh file in the folder of the page.
     pub file: String,
 }
 
-/// Level with its geometry.
+/// A simplified scene with its measurements.
 pub struct LevelMesh {
     pub level: Level,
-    /// Meshes that replace those of the scene.
+    /// Simplified meshes in the order of the scene's own, which they replace.
     pub meshes: Vec<Mesh>,
-    /// Flattened scene with these meshes.
+    /// The simplified scene, flattened to one mesh.
     pub shown: Mesh,
 }
 
-/// Subject to simplify, and the options to measure it with.
+/// A mesh to simplify in several levels, and the options to measure them with.
 #[derive(Clone, Copy)]
 pub struct ChainSetup<'s> {
     pub subject: &'s Subject,
@@ -68,7 +69,8 @@ pub struct ChainSetup<'s> {
 }
 
 impl<'s> ChainBuilder<'s> {
-    /// Builds the connectivity of the subject's meshes; `what` labels the progress line.
+    /// Builds the connectivity of all meshes to be simplified; `what` is the label of the progress
+    /// line.
     pub fn start(setup: ChainSetup<'s>, method: Method, what: String) -> Result<Self, Failure> {
         let ChainSetup { subject, original, options, session } = setup;
         let path = Path::new(&subject.name);
@@ -78,7 +80,8 @@ impl<'s> ChainBuilder<'s> {
         Ok(Self { subject, original, options, run, session, what })
     }
 
-    /// Simplifies to the next size and measures the level; `file` is the name it will have.
+    /// Simplifies to the next size and measures the result; `file` is the name of the file to be
+    /// written.
     pub fn next_level(&mut self, size: LevelSize, file: String) -> Result<LevelMesh, Failure> {
         self.run.set_label(format!("{} to {size}", self.what));
         let report = self.run.simplify_to(size.target())?;
@@ -105,19 +108,20 @@ impl<'s> ChainBuilder<'s> {
 }
 
 impl Level {
-    /// Returns the change of volume in percent; `None` if the input is open.
+    /// Returns the change of volume in percent; `None` if the original mesh is open.
     pub fn volume_change(&self, input: &Counts) -> Option<f64> {
         let change = 100.0 * (self.counts.volume - input.volume) / input.volume.abs();
         (input.closed && change.is_finite()).then_some(change)
     }
 
-    /// Returns true if closedness, genus and number of components are those of the input.
+    /// Returns true if the level agrees with the original mesh in closedness, genus and number of
+    /// components.
     pub fn has_topology_of(&self, input: &Counts) -> bool {
         let of = |counts: &Counts| (counts.closed, counts.genus, counts.components);
         of(&self.counts) == of(input)
     }
 
-    /// Returns a measured length in percent of the diagonal.
+    /// Returns one of the measured distances in percent of the diagonal.
     pub fn percent(&self, length: fn(&Distance) -> f64) -> Option<f64> {
         self.measured.as_ref().ok().map(|distance| distance.percent(length(distance)))
     }

@@ -6,9 +6,9 @@ use meshlod::Method;
 use crate::page::figures::ROUNDING_PERCENT;
 use crate::page::key::{class, key, shape};
 
-/// Chart of errors against faces or time.
+/// Chart of the errors of simplified meshes against their number of faces or the time.
 pub struct Chart {
-    /// Alternative text.
+    /// Alternative text of the chart for screen readers.
     pub alt: String,
     /// Caption below the chart.
     pub caption: &'static str,
@@ -16,14 +16,14 @@ pub struct Chart {
     pub series: Vec<Series>,
 }
 
-/// Quantity on the horizontal axis.
+/// Quantity on the horizontal axis of a chart.
 #[derive(Clone, Copy)]
 pub enum Across {
     Faces,
     Seconds,
 }
 
-/// Points of a method: a positive abscissa and the error in percent.
+/// Data points of one method: a positive horizontal coordinate, and the error in percent.
 pub struct Series {
     pub method: Method,
     pub points: Vec<[f64; 2]>,
@@ -34,7 +34,7 @@ const SIZE: [f64; 2] = [440.0, 330.0];
 /// Left, right, top and bottom of the plot area.
 const PLOT: [f64; 4] = [58.0, 428.0, 12.0, 288.0];
 
-/// Draws one line per method, or one mark if there is only one level.
+/// Draws a line for each method, or a mark if there is only one level.
 pub fn chart(chart: &Chart) -> Markup {
     let axes = Axes::of(chart);
     html! {

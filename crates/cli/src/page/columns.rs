@@ -1,4 +1,4 @@
-//! Columns of figures of a level, shared by pages and terminal.
+//! Columns in tables of measurements, shared by pages and terminal.
 
 use meshlod::measure::Distance;
 
@@ -7,24 +7,26 @@ use crate::page::chain::Level;
 use crate::page::counts::Counts;
 use crate::page::figures::{digits, drift, power_of_ten, seconds};
 
-/// Figure that a level may have.
+/// A measurement of simplified meshes, as the column of a table.
 pub struct Column {
     pub head: &'static str,
-    /// Value for a level, given the counts of the input; `None` if it has none.
+    /// Function that returns the measurement of a level, given the counts of the original mesh;
+    /// `None` if it has no such measurement.
     pub value: fn(&Counts, &Level) -> Option<f64>,
-    /// Explanation, if the head needs one.
+    /// Explanation of the column, empty if its heading says enough.
     pub about: &'static str,
-    /// Formatter of the value.
+    /// Function that formats a value of the column.
     pub text: fn(f64) -> String,
     pub best: Option<Best>,
 }
 
-/// Criterion for the best value of a column.
+/// Rule by which the best value of a column is found.
 #[derive(Clone, Copy)]
 pub enum Best {
     Least,
     Greatest,
-    /// Smallest magnitude; values below the rounding error of this input are equally good.
+    /// The value nearest to zero is best; values below the rounding error of the original mesh are
+    /// equally good.
     NearestZero {
         rounding: fn(&Counts) -> f64,
     },
@@ -33,7 +35,7 @@ pub enum Best {
 /// Relative rounding error of the volume summed over a million faces.
 const ROUNDING: f64 = 1e-12;
 
-/// Columns by which levels are compared.
+/// Columns of measurements by which simplified meshes are compared.
 pub const COLUMNS: [Column; 11] = [
     Column {
         head: "Faces",
@@ -117,7 +119,7 @@ pub const COLUMNS: [Column; 11] = [
     },
 ];
 
-/// Returns sentences that explain the heads, and why one is missing.
+/// Returns sentences that explain the column headings, and why a column is missing.
 pub fn legend(input: &Counts, columns: &[&Column]) -> Vec<&'static str> {
     let abouts = columns.iter().map(|column| column.about).filter(|about| !about.is_empty());
     let open = (!input.closed).then_some("The input is open and encloses no volume.");
@@ -125,7 +127,7 @@ pub fn legend(input: &Counts, columns: &[&Column]) -> Vec<&'static str> {
 }
 
 impl Column {
-    /// Returns the columns for which at least one level has a value.
+    /// Returns the columns that have a value for at least one level.
     pub fn of<'l>(
         input: &Counts,
         levels: impl Iterator<Item = &'l Level> + Clone,
@@ -135,12 +137,12 @@ impl Column {
         COLUMNS.iter().filter(some).collect()
     }
 
-    /// Returns the value of a level with its text.
+    /// Returns the value of a level in this column, with its formatted text.
     pub fn cell(&self, input: &Counts, level: &Level) -> Option<(f64, String)> {
         (self.value)(input, level).map(|value| (value, (self.text)(value)))
     }
 
-    /// Returns for each level whether its text equals that of the best value.
+    /// Returns a flag per level, true if its formatted value equals the best one in this column.
     ///
     /// Only levels that reached their size compete, since any method is near the input if it has
     /// done nothing. Nobody wins if all are equal.
@@ -174,7 +176,7 @@ impl Best {
     }
 }
 
-/// Returns the number of refused contractions on the way to a level.
+/// Returns the number of contractions that were refused in making a level.
 pub fn refused(level: &Level) -> u64 {
     level.report.refusals.iter().map(|(_, count)| count).sum()
 }

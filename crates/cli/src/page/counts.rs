@@ -13,7 +13,7 @@ pub struct Counts {
     pub non_manifold_edges: usize,
     pub components: usize,
     pub closed: bool,
-    /// Genus of a closed manifold surface, summed over its components.
+    /// Genus summed over all components; `None` unless the surface is closed and manifold.
     pub genus: Option<usize>,
     pub diagonal: f64,
     pub area: f64,
@@ -21,7 +21,7 @@ pub struct Counts {
 }
 
 impl Counts {
-    /// Counts a mesh; unused vertices are left out.
+    /// Computes the counts and measures of a mesh, without unused vertices.
     pub fn of(mesh: &Mesh) -> Self {
         let vertices = used(mesh);
         let connectivity = Connectivity::new(&mesh.faces, mesh.positions.len());

@@ -1,19 +1,19 @@
-//! HTML document in one self-contained file.
+//! Self-contained HTML document.
 
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 const STYLE: &str = include_str!("style.css");
 
-/// Parts of a page.
+/// Parts of an HTML page.
 pub struct Document<'a> {
     pub title: &'a str,
-    /// Navigation links: anchor and text.
+    /// Navigation links, as pairs of anchor and text.
     pub links: Vec<(String, String)>,
     pub header: Markup,
     pub main: Markup,
 }
 
-/// Builds the whole document.
+/// Builds the whole HTML document.
 pub fn document(document: Document<'_>) -> Markup {
     let Document { title, links, header, main } = document;
     html! {

@@ -1,11 +1,11 @@
-//! List of the counts of an input.
+//! List of the counts and measures of an input mesh.
 
 use maud::{Markup, html};
 
 use crate::page::counts::Counts;
 use crate::page::figures::{figure, whole};
 
-/// Lists the counts of an input, each with its name.
+/// Lists the counts and measures of an input mesh, each with its name.
 pub fn facts(counts: &Counts) -> Markup {
     let number = |name: &str, markup: Markup| html! { div { dt { (name) } dd { (markup) } } };
     html! {
@@ -24,7 +24,7 @@ pub fn facts(counts: &Counts) -> Markup {
     }
 }
 
-/// Describes whether the input is closed, and its number of components.
+/// Describes whether a mesh is closed, and its number of components.
 pub fn shape(counts: &Counts) -> String {
     let closed = if counts.closed { "closed" } else { "open" };
     match counts.components {

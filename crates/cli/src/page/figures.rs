@@ -1,30 +1,30 @@
-//! Figures on a page, with their exact values for programs.
+//! Numbers on an HTML page, with their exact values for programs.
 
 use maud::{Markup, html};
 
 use crate::numbers;
 
-/// Shows `text` with the exact value that the JSON has.
+/// Shows a number as `text`, with its exact value as an attribute, as in the JSON output.
 pub fn figure(exact: f64, text: &str) -> Markup {
     // A true minus sign is as wide as a plus.
     let minus = text.strip_prefix('-').map(|size| format!("−{size}"));
     html! { data value=(exact) { (minus.as_deref().unwrap_or(text)) } }
 }
 
-/// Shows a whole number.
+/// Shows a whole number on an HTML page.
 pub fn whole(number: usize) -> Markup {
     html! { data value=(number) { (numbers::count(number)) } }
 }
 
-/// Shows a percentage without the percent sign.
+/// Shows a percentage without the percent sign on an HTML page.
 pub fn percent(percent: f64) -> Markup {
     figure(percent, &digits(percent))
 }
 
-/// Percentage of a length below which there is only rounding error.
+/// Percentage below which a value is only rounding error.
 pub const ROUNDING_PERCENT: f64 = 5e-6;
 
-/// Formats three significant digits, with at most five decimal places.
+/// Formats a percentage with three significant digits and at most five decimal places.
 pub fn digits(percent: f64) -> String {
     match percent.abs() {
         size if size < ROUNDING_PERCENT => "0".into(),

@@ -1,22 +1,23 @@
-//! Logarithmic scale that all heat maps share, in percent of the diagonal.
+//! Logarithmic colour scale shared by all heat maps, in percent of the diagonal.
 
 use meshlod::picture::{ColorMap, Values};
 
 /// Exponents of ten, in percent of the diagonal, of the first and the last colour.
 const DECADES: [i32; 2] = [-3, 0];
 
-/// Converts errors in model units to values for [`Paint`](meshlod::picture::Paint).
+/// Converts distances in model units to values on the colour scale, for
+/// [`Paint`](meshlod::picture::Paint).
 pub fn values(errors: &[f64], diagonal: f64) -> Vec<f32> {
     let decade = |error: &f64| (100.0 * error / diagonal).log10() as f32;
     errors.iter().map(|error| decade(error).max(DECADES[0] as f32)).collect()
 }
 
-/// Returns the values with their colour map and range.
+/// Returns the values together with their colour map and range.
 pub fn scale(values: &[f32]) -> Values<'_> {
     Values { values, map: ColorMap::Heat, range: DECADES.map(|decade| decade as f32) }
 }
 
-/// Returns the colours from smallest to largest as a CSS gradient.
+/// Returns the colours of the scale, from smallest to largest, as a CSS gradient.
 pub fn gradient() -> String {
     const STOPS: u8 = 16;
     let stop = |i: u8| {
@@ -27,7 +28,7 @@ pub fn gradient() -> String {
     format!("linear-gradient(90deg, {})", stops.join(", "))
 }
 
-/// Returns the evenly spaced labels of the gradient: percentages of the diagonal.
+/// Returns the evenly spaced labels of the colour scale: percentages of the diagonal.
 pub fn ticks() -> Vec<String> {
     let [low, high] = DECADES;
     (low..=high).map(|decade| format!("{}%", 10f64.powi(decade))).collect()

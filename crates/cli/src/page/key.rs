@@ -17,17 +17,17 @@ const SHAPES: [&str; 9] = [
     "M0-5L1.4-1.6L5-1.5L2.2.8L3.1 4.3L0 2.3L-3.1 4.3L-2.2.8L-5-1.5L-1.4-1.6z",
 ];
 
-/// Returns the shape of a method as an SVG path around the origin.
+/// Returns the marker shape of a method as an SVG path around the origin.
 pub fn shape(method: Method) -> &'static str {
     SHAPES[place(method)]
 }
 
-/// Returns the CSS class that sets a method's colour.
+/// Returns the CSS class that sets the colour of a method.
 pub fn class(method: Method) -> String {
     format!("m{}", place(method))
 }
 
-/// Draws the key of a method in a line of text.
+/// Draws the coloured marker of a method inside a line of text.
 pub fn key(method: Method) -> Markup {
     html! {
         svg class=(format!("key {}", class(method))) viewBox="-5 -5 10 10" aria-hidden="true" {

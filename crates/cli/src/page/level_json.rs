@@ -1,4 +1,4 @@
-//! JSON of the figures of a level.
+//! Measurements of a simplified mesh as JSON.
 
 use meshlod::Method;
 use serde_json::{Value, json};
@@ -10,8 +10,8 @@ use crate::parse::LevelSize;
 use crate::simplify_report::refusals_json;
 use crate::volume::unconserved_json;
 
-/// Returns the figures of a level as JSON. The change of volume is `null` if the input is open, and
-/// the unconserved volume if the method does not conserve it.
+/// Returns the measurements of a level as JSON. The change of volume is `null` if the original mesh
+/// is open, and the unconserved volume if the method does not conserve it.
 pub fn level_json(method: Method, level: &Level, input: &Counts) -> Value {
     let report = &level.report;
     json!({

@@ -1,4 +1,5 @@
-//! Parts of the pages that compare levels with their input, shared by `compare` and `demo`.
+//! Parts of the HTML pages of `compare` and `demo`, which compare simplified meshes with the
+//! original.
 //!
 //! A [`Subject`](subject::Subject) is a mesh and its style; a [`ChainBuilder`](chain::ChainBuilder)
 //! simplifies it by one method and measures a [`Level`](chain::Level) at every size; a

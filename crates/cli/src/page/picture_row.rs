@@ -1,4 +1,4 @@
-//! Pictures side by side: a column for the input, then one for each level.
+//! Row of pictures: a column for the original mesh, then one for each level.
 
 use maud::{Markup, html};
 
@@ -7,22 +7,22 @@ use crate::page::heat;
 use crate::page::renderer::{InlinePicture, LevelPictures, SIZE};
 use crate::page::subject::Subject;
 
-/// Column of pictures with its caption.
+/// Column of pictures of one mesh, with a caption.
 pub struct PictureColumn<'p> {
     pub caption: Markup,
     pub pictures: &'p LevelPictures,
 }
 
-/// Placement of columns that do not fit.
+/// Layout of columns that do not fit in one row.
 #[derive(Clone, Copy)]
 pub enum Layout {
-    /// Scroll sideways, to keep the order visible.
+    /// The row scrolls sideways, which keeps the order visible.
     Scroll,
-    /// Wrap to the next row.
+    /// Columns continue in the next row.
     Wrap,
 }
 
-/// Shows the pictures of a subject and of its levels.
+/// Shows pictures of the original mesh and of its levels side by side.
 pub fn picture_row(
     subject: &Subject,
     input: &LevelPictures,

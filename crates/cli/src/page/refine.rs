@@ -1,4 +1,4 @@
-//! Refinement of a mesh, so that colours at its vertices represent the whole surface.
+//! Subdivision of a mesh, so that colours at its vertices represent the whole surface.
 
 use meshlod::Mesh;
 use meshlod::mesh::VertexId;
@@ -6,7 +6,8 @@ use meshlod::mesh::VertexId;
 /// Limit of cuts along a side of a face, so that one face gives at most a million.
 const MOST_CUTS: usize = 1000;
 
-/// Subdivides the faces so that no edge is longer than `step`, up to a limit of cuts.
+/// Subdivides the faces until no edge is longer than `step`, in model units, or a limit on the
+/// number of cuts is reached.
 ///
 /// Every face is cut by itself, so vertices on shared edges are duplicated. Attributes are dropped.
 pub fn refined(mesh: &Mesh, step: f64) -> Mesh {

@@ -1,4 +1,4 @@
-//! Pictures of a subject and its levels from one viewpoint.
+//! Pictures of a mesh and its simplified levels from one viewpoint.
 
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
@@ -15,27 +15,27 @@ use crate::page::refine::refined;
 use crate::page::style::SubjectStyle;
 use crate::page::subject::Subject;
 
-/// Width and height of the pictures on the page: twice their displayed size, for high-resolution
+/// Width and height of the pictures in pixels: twice the displayed size, for high-resolution
 /// screens.
 pub const SIZE: [u32; 2] = [384, 320];
 
-/// Picture embedded in the page.
+/// Picture that is embedded in an HTML page.
 pub struct InlinePicture {
-    /// Data URI of the PNG.
+    /// PNG of the picture as a data URI.
     pub uri: String,
-    /// Alternative text.
+    /// Alternative text of the picture for screen readers.
     pub alt: String,
 }
 
-/// Pictures of a subject or of one of its levels.
+/// Pictures of a mesh or of one of its simplified levels.
 pub struct LevelPictures {
     pub shaded: InlinePicture,
     pub wired: InlinePicture,
-    /// Heat map of the distance from the input, for a level.
+    /// Heat map of the distance from the original mesh; only for a simplified level.
     pub heat: Option<InlinePicture>,
 }
 
-/// Renderer of a subject with a fixed camera.
+/// Renderer of a mesh and its simplified levels with a fixed camera.
 pub struct SubjectRenderer<'s> {
     subject: &'s Subject,
     original: &'s PreparedSurface<'s>,
@@ -48,12 +48,12 @@ impl<'s> SubjectRenderer<'s> {
         Self { subject, original, camera }
     }
 
-    /// Draws the pictures of the subject.
+    /// Draws the pictures of the original mesh.
     pub fn input(&self) -> Result<LevelPictures, Failure> {
         self.pictures(&self.subject.mesh, "")
     }
 
-    /// Draws the pictures of a level; `by` names its method.
+    /// Draws the pictures of a simplified level; `by` is the name of its method.
     pub fn level(&self, shown: &Mesh, by: &str) -> Result<LevelPictures, Failure> {
         let heat = Some(self.heat(shown, by)?);
         Ok(LevelPictures { heat, ..self.pictures(shown, by)? })
@@ -111,7 +111,7 @@ const HEAT_STEP: f64 = 0.01;
 /// Field of view of the shorter side, in radians: about 20°, like a long lens.
 const FOV_RAD: f64 = 0.35;
 
-/// Returns the view of a style for a picture size; `fill` as in [`View`].
+/// Returns the view of a mesh for a picture of this size in pixels; `fill` as in [`View`].
 pub fn view(style: &SubjectStyle, size: [u32; 2], fill: f64) -> View {
     let [width, height] = size.map(f64::from);
     View {
@@ -123,14 +123,14 @@ pub fn view(style: &SubjectStyle, size: [u32; 2], fill: f64) -> View {
     }
 }
 
-/// Returns the view in a direction with y up.
+/// Returns the view in a given direction, with the y axis up.
 pub fn view_from(direction: [f64; 3], size: [u32; 2]) -> View {
     let [width, height] = size.map(f64::from);
     let view = View { direction, fov_rad: FOV_RAD, fill: 0.94, ..View::default() };
     View { aspect: width / height, ..view }
 }
 
-/// Encodes a picture as a data URI.
+/// Encodes a picture as the data URI of a PNG.
 pub fn uri(picture: &Picture) -> String {
     format!("data:image/png;base64,{}", STANDARD.encode(picture.png()))
 }

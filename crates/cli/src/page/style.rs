@@ -1,4 +1,4 @@
-//! Drawing style of a mesh, by the attributes and materials it came with.
+//! Drawing style of a mesh, chosen by its attributes and materials.
 
 use meshlod::mesh::LayerKind;
 use meshlod::picture::{Materials, Normals, Paint, Style, Wireframe};
@@ -7,29 +7,29 @@ use meshlod::{Mesh, Scene, materials_of};
 use crate::failure::Failure;
 use crate::session::Session;
 
-/// Drawing style of a mesh and its levels.
+/// Drawing style of a mesh and its simplified levels.
 #[derive(Clone, Debug)]
 pub struct SubjectStyle {
     pub paint: OwnedPaint,
     pub normals: Normals,
-    /// Paint under the wireframe.
+    /// Colouring of the surface under the wireframe.
     pub wire_paint: OwnedPaint,
     pub wireframe: Wireframe,
-    /// Viewing direction.
+    /// Viewing direction of the pictures.
     pub direction: [f64; 3],
     pub up: [f64; 3],
 }
 
-/// Source of colours; an owned [`Paint`].
+/// Source of the colours of a surface, an owned [`Paint`].
 #[derive(Clone, Debug)]
 pub enum OwnedPaint {
     Plain([u8; 3]),
-    /// Colours of vertices or faces.
+    /// Colours of the vertices or faces of the mesh.
     Colors,
     Materials(Materials),
-    /// Checkerboard over the uvs.
+    /// Checkerboard in texture coordinates.
     Checker {
-        /// Squares per unit of uv.
+        /// Number of squares per unit of the texture coordinates.
         squares: u32,
     },
 }
@@ -41,7 +41,8 @@ const CREASE_RAD: f64 = 1.0;
 const CLAY: OwnedPaint = OwnedPaint::Plain([226, 208, 186]);
 
 impl OwnedPaint {
-    /// Returns the paint with which a scene is meant to be seen; `materials` are the scene's.
+    /// Returns the colouring that shows a scene as its author meant it; `materials` are those of
+    /// the scene.
     pub fn of(scene: &Scene, materials: Materials) -> Self {
         let white = |material: &meshlod::io::Material| material.base_color[..3] == [1.0; 3];
         let colors = |mesh: &meshlod::io::SceneMesh| has(&mesh.mesh, LayerKind::Color(0));
@@ -54,8 +55,8 @@ impl OwnedPaint {
         }
     }
 
-    /// Returns the paint in which a mesh is compared with its levels, by eye and by image error;
-    /// see [`Paint::comparison`].
+    /// Returns the colouring in which a mesh is compared with its levels, by eye and by image
+    /// error; see [`Paint::comparison`].
     pub fn comparison(mesh: &Mesh, materials: Materials) -> Self {
         match Paint::comparison(mesh, &materials) {
             Paint::Materials(_) => Self::Materials(materials),
@@ -76,7 +77,7 @@ impl OwnedPaint {
         }
     }
 
-    /// Returns the number of textures.
+    /// Returns the number of textures used.
     pub fn textures(&self) -> usize {
         match self {
             Self::Materials(materials) => materials.textures.len(),
@@ -86,7 +87,8 @@ impl OwnedPaint {
 }
 
 impl SubjectStyle {
-    /// Returns the style for a mesh: its own paint, and clay under the wireframe.
+    /// Returns the drawing style of a mesh: with `paint`, and in the colour of clay under the
+    /// wireframe.
     pub fn new(paint: OwnedPaint, mesh: &Mesh, direction: [f64; 3], up: [f64; 3]) -> Self {
         Self {
             paint,
@@ -98,12 +100,12 @@ impl SubjectStyle {
         }
     }
 
-    /// Returns the style for shaded pictures.
+    /// Returns the drawing style for shaded pictures.
     pub fn shaded(&self) -> Style<'_> {
         Style { paint: self.paint.as_paint(), normals: self.normals, ..Style::default() }
     }
 
-    /// Returns the style for pictures with a wireframe.
+    /// Returns the drawing style for pictures with a wireframe.
     pub fn wired(&self) -> Style<'_> {
         Style {
             paint: self.wire_paint.as_paint(),
@@ -124,7 +126,7 @@ pub fn materials(scene: &Scene, of: &std::path::Path, session: &Session) -> Mate
     materials
 }
 
-/// Returns the normals of the mesh if it has any, else normals with creases.
+/// Returns the mesh's own normals if it has any, otherwise computed ones with creases.
 pub fn normals_of(mesh: &Mesh) -> Normals {
     match has(mesh, LayerKind::Normal) {
         true => Normals::FromMesh,

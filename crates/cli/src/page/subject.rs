@@ -1,4 +1,4 @@
-//! Subject of a page: a scene with its style.
+//! Original mesh of a page, with its style and counts.
 
 use meshlod::measure::PreparedSurface;
 use meshlod::{Mesh, Scene};
@@ -7,21 +7,21 @@ use crate::failure::Failure;
 use crate::page::counts::Counts;
 use crate::page::style::SubjectStyle;
 
-/// Scene with its counts and style.
+/// A scene shown on a page, with its counts and drawing style.
 pub struct Subject {
-    /// Name in messages: a sample, or the path of a file.
+    /// Name of the scene in messages: the name of a sample, or the path of a file.
     pub name: String,
-    /// Title on the page.
+    /// Title of the scene on the page.
     pub title: String,
     pub scene: Scene,
-    /// Flattened scene, in world space.
+    /// The scene flattened to one mesh, in world space.
     pub mesh: Mesh,
     pub counts: Counts,
     pub style: SubjectStyle,
 }
 
 impl Subject {
-    /// Creates a subject; `named` holds its name and title.
+    /// Creates the subject of a page; `named` holds its name and title.
     pub fn new(named: [&str; 2], scene: Scene, style: impl FnOnce(&Mesh) -> SubjectStyle) -> Self {
         let mesh = scene.flatten();
         let (counts, style) = (Counts::of(&mesh), style(&mesh));
@@ -29,13 +29,13 @@ impl Subject {
         Self { name, title, scene, mesh, counts, style }
     }
 
-    /// Prepares the mesh for measurement.
+    /// Prepares the mesh for distance measurements.
     pub fn surface(&self) -> Result<PreparedSurface<'_>, Failure> {
         PreparedSurface::new(&self.mesh)
             .map_err(|error| Failure::new(format_args!("{}: {error}", self.name)))
     }
 
-    /// Flattens the scene with the given meshes in place of its own.
+    /// Flattens the scene to one mesh, with the given meshes in place of its own.
     pub fn shown_with(&self, level: &[Mesh]) -> Mesh {
         // The source document and its images are not needed for pictures.
         let mut scene = Scene {

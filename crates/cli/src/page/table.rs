@@ -1,4 +1,4 @@
-//! Rows of a table of levels.
+//! Rows of the table of measurements on an HTML page.
 
 use maud::{Markup, html};
 
@@ -7,7 +7,7 @@ use crate::page::columns::Column;
 use crate::page::counts::Counts;
 use crate::page::figures::figure;
 
-/// Builds the row of heads; `first` is the head of the names.
+/// Builds the heading row of a table; `first` is the heading of the first column.
 pub fn heads(first: &str, columns: &[&Column]) -> Markup {
     html! {
         thead { tr {
@@ -17,7 +17,7 @@ pub fn heads(first: &str, columns: &[&Column]) -> Markup {
     }
 }
 
-/// Builds the row of a level; `wins` marks the best values and may be shorter than `columns`.
+/// Builds the table row of a level; `wins` marks the best values and may be shorter than `columns`.
 pub fn row(
     name: &Markup,
     level: &Level,

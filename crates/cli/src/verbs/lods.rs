@@ -239,8 +239,8 @@ fn check_order(levels: &[LevelSize], input_faces: usize) -> Result<(), Failure> 
     }
 }
 
-/// Returns the fraction of the screen's area below which a level is within one pixel of the
-/// original.
+/// Returns the fraction of the screen's area that a model covers when its greatest distance from
+/// the original spans one pixel.
 pub fn screen_coverage(distance: &Distance) -> f64 {
     let most_pixels = distance.diagonal / distance.max();
     let coverage = (most_pixels / SCREEN_LINES).powi(2);

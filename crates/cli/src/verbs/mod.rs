@@ -1,4 +1,4 @@
-//! Verbs, one per file: arguments, work, answer.
+//! Commands of the program, one per file: arguments, work, answer.
 
 pub mod build;
 pub mod check;

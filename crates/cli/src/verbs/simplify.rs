@@ -116,7 +116,7 @@ struct WeightArgs {
 }
 
 impl MethodArgs {
-    /// Builds the simplification options for a scene.
+    /// Builds the simplification options for a scene from the arguments.
     pub fn options(&self, input: &InputScene<'_>, session: &Session) -> Result<Options, Failure> {
         let options = Options {
             method: self.method,
@@ -132,7 +132,7 @@ impl MethodArgs {
         AttributeWeights { normal: weight_normal, uv: weight_uv, color: weight_color }
     }
 
-    /// Warns of options that the method ignores.
+    /// Warns about options that the method ignores.
     pub fn warn(&self, report: &Report, session: &Session) {
         if self.weights() != WEIGHTS && !report.method.counts_attributes() {
             let method = report.method.name();

@@ -26,8 +26,8 @@ impl Compress {
         })
     }
 
-    /// Creates the failure for a compression error: wrong usage for an invalid target, else a
-    /// failure that names the input.
+    /// Creates the failure for a compression error: a usage error for an invalid target, otherwise
+    /// a failure that names the input file.
     pub(super) fn refused(&self, error: CompressError) -> Failure {
         match error {
             CompressError::Bits(_) | CompressError::Error(_) | CompressError::Reduction(_) => {

@@ -1,4 +1,4 @@
-//! Writes strips to files: glTF, or lists of vertices in JSON.
+//! Writes triangle strips to files: glTF, or lists of vertices in JSON.
 
 use std::cmp::Reverse;
 use std::path::Path;
@@ -20,7 +20,7 @@ const TRIANGLE_STRIP: u32 = 5;
 const ARRAY_BUFFER: u32 = 34962;
 const ELEMENT_ARRAY_BUFFER: u32 = 34963;
 
-/// Refuses an output that cannot be written.
+/// Fails if the triangle strips cannot be written to the output path.
 pub(super) fn check(out: &Path, input: &Path) -> Result<(), Failure> {
     if files::is_pipe(out) {
         return Err(Failure::usage("-: strips cannot go to standard output; name a file"));

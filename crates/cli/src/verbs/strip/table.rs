@@ -1,4 +1,4 @@
-//! Table of the figures of all levels.
+//! Table of the strip measurements of all levels.
 
 use crate::numbers::count;
 use crate::simplify_report;

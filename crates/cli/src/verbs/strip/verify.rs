@@ -1,4 +1,4 @@
-//! Verification of strips against an independent simplification.
+//! Verification of triangle strips against an independent simplification.
 
 use std::cmp::Reverse;
 
@@ -9,8 +9,8 @@ use meshlod::{Mesh, Method, Options, SimplifyError, Target};
 
 use super::StrippedLevel;
 
-/// Compares each level with the faces left by simplifying to it, and levels with all faces with
-/// `whole`, the cleaned faces of the mesh.
+/// Compares the triangles drawn at each level with the faces left by simplifying to it, and at full
+/// size with `whole`, the cleaned faces of the mesh.
 pub(super) fn compare(
     mesh: &Mesh,
     whole: &[[VertexId; 3]],
