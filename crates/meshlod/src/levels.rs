@@ -150,7 +150,7 @@ fn encode(mesh: &Mesh, options: &BuildOptions) -> Result<(Vec<u8>, BuildReport),
 /// let near = extract(&path, &ExtractOptions { query, ..Default::default() })?;
 /// let all = extract(&path, &ExtractOptions::default())?;
 /// assert!(2 * near.faces.len() < all.faces.len());
-/// # Ok::<(), meshlod::LevelsError>(())
+/// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn extract(path: &Path, options: &ExtractOptions<'_>) -> Result<Mesh, LevelsError> {
     let file = File::open(path).map_err(|error| IoError::system(path, error))?;

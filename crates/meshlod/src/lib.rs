@@ -125,7 +125,7 @@
 //! let query = Query::pixels(camera, 1.0);
 //! let far_away = extract(&path, &ExtractOptions { query, ..Default::default() })?;
 //! assert!(far_away.faces.len() < 2_000, "as many faces as one pixel needs");
-//! # Ok::<(), meshlod::LevelsError>(())
+//! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
 //! [`compress`] writes a mesh in a few bytes: `.mlq` to draw from directly, `.mlz` to send.
@@ -140,7 +140,7 @@
 //! let report = compress(&knot, &path, &CompressOptions::default())?;
 //! assert!(report.bytes < 4 * knot.faces.len());
 //! assert_eq!(decompress(&path)?.faces.len(), knot.faces.len());
-//! # Ok::<(), meshlod::CompressedFileError>(())
+//! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
 //! [`check_report`] lists what is wrong with a mesh, and where its objects touch. [`check`] has the
