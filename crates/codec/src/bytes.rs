@@ -2,13 +2,13 @@
 
 use thiserror::Error;
 
-/// Error in bytes that were to be decoded.
+/// Error: the bytes to be decoded are damaged, incomplete or in another format.
 #[derive(Clone, Debug, Error, PartialEq, Eq)]
 #[error("byte {at}: {reason}")]
 pub struct Malformed {
-    /// Offset of the error in bytes.
+    /// Byte offset at which the error was found.
     pub at: usize,
-    /// Description of the error.
+    /// Description of what is wrong with the bytes.
     pub reason: String,
 }
 

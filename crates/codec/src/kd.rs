@@ -1,4 +1,4 @@
-//! Vertices in blocks of equal size, each close together.
+//! Partition of vertices into blocks of equal size, each of vertices close together.
 
 use std::f64::consts::FRAC_1_SQRT_2;
 

@@ -1,5 +1,5 @@
-//! Strips for a vertex cache: paths cut into runs, each sent while the vertices it shares are still
-//! cached.
+//! Triangle strips for a vertex cache: paths cut into runs, each sent while the vertices it shares
+//! are still cached.
 
 mod fifo;
 
@@ -13,14 +13,16 @@ use crate::path_cover::PathCover;
 use crate::strips::Strips;
 use crate::verify::has_three_corners;
 
-/// Parameters of the vertex cache, and of the trade between cache misses and strip length.
+/// Vertex cache that strips are built for, and the trade between cache misses and strip length.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct CacheAware {
-    /// Number of cached vertices; the cache is first in, first out.
+    /// Number of vertices that the cache holds; it is first in, first out.
     pub entries: usize,
-    /// Largest number of faces per strip. Shorter strips hit the cache more often and take more
-    /// indices. The bunny with 16 entries: 1.34 indices and .73 misses per face with 14, 1.29 and
-    /// .76 with 20, 1.23 and .87 with 40.
+    /// Largest number of faces per strip; shorter strips hit the cache more often but take more
+    /// indices.
+    ///
+    /// The bunny with 16 entries: 1.34 indices and .73 misses per face with 14, 1.29 and .76 with
+    /// 20, 1.23 and .87 with 40.
     pub longest: usize,
 }
 

@@ -1,4 +1,4 @@
-//! The dual graph of a list of faces: which face lies across which side.
+//! The dual graph of a list of faces, which tells the face across each side.
 
 use meshlod_mesh::VertexId;
 

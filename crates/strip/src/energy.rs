@@ -3,15 +3,16 @@
 
 use crate::dual_node::{DualEdge, Links};
 
-/// Prices of strips beyond one vertex per triangle, each clamped to a thousand vertices.
+/// Prices of strips, in vertices sent beyond one per triangle; each is clamped to a thousand.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Prices {
-    /// Price of a strip: its first two vertices, and a restart if that counts.
+    /// Price of each strip, in vertices: its first two vertices, and a restart if that counts.
     pub strip: f64,
-    /// Price of a swap, which repeats a vertex.
+    /// Price of a swap, which repeats a vertex inside a strip, in vertices.
     pub swap: f64,
-    /// Price of an end at which a strip cannot start without doubling a vertex. A strip has two
-    /// ends and pays only if it can start at neither.
+    /// Price of a strip end that cannot be its start without doubling a vertex, in vertices.
+    ///
+    /// A strip has two ends and pays only if it can start at neither.
     pub odd_end: f64,
 }
 
@@ -24,9 +25,10 @@ impl Default for Prices {
 }
 
 impl Prices {
-    /// Returns the prices for the fewest indices, where a restart is an index. The bunny, 1000
-    /// moves per face: 1.106 indices and 1.089 vertices per face with 2.5 for a strip, 1.109 and
-    /// 1.086 without.
+    /// Returns the prices that give the fewest indices if a primitive restart takes one.
+    ///
+    /// The bunny, 1000 moves per face: 1.106 indices and 1.089 vertices per face with 2.5 for a
+    /// strip, 1.109 and 1.086 without.
     pub fn with_restarts() -> Self {
         Self { strip: 3.0, ..Self::default() }
     }

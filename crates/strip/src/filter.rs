@@ -5,22 +5,24 @@ use meshlod_mesh::VertexId;
 use crate::strips::Strips;
 use crate::verify::has_three_corners;
 
-/// A filter that shortens a display strip by looking at that strip alone, without changing what it
-/// draws.
+/// Filter that removes vertices from a triangle strip without changing what the strip draws.
+///
+/// It looks at each strip by itself.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Filter {
-    /// Removes nothing.
+    /// Removes nothing from the strip.
     #[default]
     None,
-    /// The simple triangle strip scanner [ESAV99]: collapses repetitions of one or two vertices.
+    /// The simple triangle strip scanner [ESAV99], which collapses repetitions of one or two
+    /// vertices.
     Stss,
-    /// The degenerate-triangle-free filter [KY05]: rebuilds strips from the triangles drawn, as far
-    /// as each continues the one before.
+    /// The degenerate-triangle-free filter [KY05], which rebuilds strips from the triangles drawn,
+    /// as far as each continues the one before.
     Dtff,
 }
 
 impl Filter {
-    /// Filters a strip and appends the result to `to`.
+    /// Filters a triangle strip and appends the result to `to`.
     ///
     /// Cost: linear.
     pub fn strip(self, strip: &[VertexId], to: &mut Strips) {

@@ -1,4 +1,4 @@
-//! Statistics of strips.
+//! Statistics of triangle strips.
 
 use std::collections::VecDeque;
 
@@ -6,22 +6,25 @@ use meshlod_mesh::VertexId;
 
 use crate::strips::{Strips, drawn};
 
-/// Vertices and indices that strips send, and how well a vertex cache serves them.
+/// Statistics of triangle strips: the vertices and indices they send, and how well a vertex cache
+/// serves them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StripStatistics {
-    /// Number of triangles drawn.
+    /// Number of triangles that the strips draw.
     pub triangles: usize,
-    /// Number of vertices sent if each strip is drawn on its own.
+    /// Number of vertices sent if each strip is drawn by a call of its own.
     pub vertices_sent: usize,
-    /// Number of indices of one draw call with a restart between strips.
+    /// Number of indices sent if all strips are drawn by one call with primitive restarts between
+    /// them.
     pub indices_with_restart: usize,
-    /// Number of indices of one draw call with degenerate triangles between strips.
+    /// Number of indices sent if all strips are drawn by one call with degenerate triangles between
+    /// them.
     pub indices_stitched: usize,
-    /// Number of strips.
+    /// Number of triangle strips.
     pub strips: usize,
-    /// Number of degenerate windows inside strips; each swap makes one.
+    /// Number of degenerate triangles inside strips, one for each swap.
     pub swaps: usize,
-    /// Number of strips that double their first vertex to begin with an odd triangle.
+    /// Number of strips that double their first vertex to start with the right winding.
     pub odd_starts: usize,
     /// Vertices transformed per triangle with a first-in, first-out cache of 16 entries; 0 without
     /// triangles.
@@ -32,7 +35,7 @@ pub struct StripStatistics {
 }
 
 impl StripStatistics {
-    /// Measures strips.
+    /// Measures a list of triangle strips.
     ///
     /// Cost: linear, with 48 comparisons per vertex.
     pub fn new(strips: &Strips) -> Self {
@@ -58,8 +61,10 @@ pub(crate) fn starts_odd(strip: &[VertexId]) -> bool {
     strip.len() > 2 && strip[0] == strip[1]
 }
 
-/// Returns the vertices transformed per triangle (average cache miss ratio) with a first-in,
-/// first-out cache; 0 without triangles.
+/// Returns the average cache miss ratio of strips: vertices transformed per triangle with a
+/// first-in, first-out cache of `entries` vertices.
+///
+/// It is 0 without triangles.
 pub fn acmr(strips: &Strips, entries: usize) -> f64 {
     let mut cache = VecDeque::new();
     let mut misses = 0_usize;

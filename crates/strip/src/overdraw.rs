@@ -6,9 +6,11 @@ use meshlod_mesh::VertexId;
 /// drawn.
 const SIZE: usize = 256;
 
-/// Estimates overdraw: how many times a covered pixel is shaded if `triangles` are drawn in order,
-/// as the mean over orthographic views along the axes from both ends. At least 1; 0 if nothing is
-/// visible.
+/// Estimates overdraw: the average number of times that a covered pixel is shaded if `triangles`
+/// are drawn in order.
+///
+/// It is the mean over orthographic views along the axes from both ends: at least 1, or 0 if
+/// nothing is visible.
 ///
 /// A pixel is shaded if its centre lies in a triangle that faces the viewer and nothing drawn
 /// before is nearer. Triangles with non-finite positions are not drawn.

@@ -1,4 +1,4 @@
-//! Fixes the parity of strips that would have to double their first vertex.
+//! Fixes the parity of triangle strips that would have to double their first vertex.
 
 use crate::anneal::{Annealing, Starts};
 use crate::energy::Prices;

@@ -1,4 +1,4 @@
-//! Repairs strips where the level changed.
+//! Repairs triangle strips where the level of detail has changed.
 
 mod levels;
 mod live;
@@ -18,8 +18,10 @@ use crate::strips::Strips;
 use crate::verify::has_three_corners;
 
 impl SkipStrip {
-    /// Returns the strips of the level: the result of [`Filter::Dtff`](crate::Filter::Dtff),
-    /// improved by local changes that start where the level differs from the mesh.
+    /// Returns triangle strips of the current level, filtered and then improved by local changes.
+    ///
+    /// The filter is [`Filter::Dtff`](crate::Filter::Dtff); the changes start where the level
+    /// differs from the mesh.
     ///
     /// They never send more vertices than the filter alone, and do not depend on the levels shown
     /// before. Cost: linear.

@@ -1,4 +1,4 @@
-//! Strips of a view-dependent cut.
+//! Triangle strips of a view-dependent cut.
 
 use meshlod_mesh::VertexId;
 use meshlod_multires::{Cut, Implicit};
@@ -8,7 +8,7 @@ use crate::repair::{LiveStrips, StripEffort};
 use crate::stripify::{StripOptions, stripify};
 use crate::strips::Strips;
 
-/// Strips of a cut that follows its queries, for a multiresolution model of half-edge contractions.
+/// Triangle strips that follow a cut of a multiresolution model built by half-edge contractions.
 ///
 /// They draw exactly the cut's triangles. Vertices are nodes of the finest level, so one vertex
 /// buffer, filled from [`Implicit::position`], serves all cuts. For models whose points move, feed
@@ -20,7 +20,7 @@ pub struct CutStrips {
     live: LiveStrips,
 }
 
-/// Error: the model was not built by half-edge contractions, so points move.
+/// Error: the multiresolution model was not built by half-edge contractions, so vertices move.
 #[derive(Clone, Copy, Debug, Error, PartialEq, Eq)]
 #[error(
     "node {0} is at the position of neither child; build the model from half-edge contractions, for example with qem-endpoint"
@@ -28,7 +28,7 @@ pub struct CutStrips {
 pub struct PointsMove(pub u32);
 
 impl CutStrips {
-    /// Builds strips for the current cut of `mt`.
+    /// Builds triangle strips for the current cut of the model `mt`.
     ///
     /// Cost: one [`stripify`], plus linear in the model.
     /// # Errors
@@ -47,8 +47,10 @@ impl CutStrips {
         Ok(Self { leaves, live })
     }
 
-    /// Follows the last update of the cut; no update may be skipped. Returns the number of
-    /// triangles added, removed or changed.
+    /// Follows the last update of the cut, and returns the number of triangles added, removed or
+    /// changed.
+    ///
+    /// No update of the cut may be skipped.
     ///
     /// Cost: proportional to the change.
     pub fn update(&mut self, cut: &Cut<'_>) -> usize {
@@ -58,14 +60,15 @@ impl CutStrips {
         )
     }
 
-    /// Returns the current strips.
+    /// Returns the current triangle strips, which draw exactly the cut's triangles.
     ///
     /// Cost: linear in their length.
     pub fn strips(&self) -> Strips {
         self.live.strips()
     }
 
-    /// Returns the vertex for a node of the model, itself a node of the finest level.
+    /// Returns the vertex at which a node of the model is drawn, which is a node of the finest
+    /// level.
     pub fn vertex(&self, node: u32) -> VertexId {
         self.leaves[node as usize]
     }

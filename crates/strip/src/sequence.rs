@@ -1,4 +1,4 @@
-//! Index sequences that draw all strips in one call.
+//! Index sequences that draw all triangle strips in one call.
 
 use meshlod_mesh::VertexId;
 
@@ -6,10 +6,11 @@ use crate::measure::starts_odd;
 use crate::strips::Strips;
 
 impl Strips {
-    /// Index that ends a strip where 32-bit indices are drawn with primitive restart.
+    /// Index that ends a triangle strip when 32-bit indices are drawn with primitive restart.
     pub const RESTART: u32 = u32::MAX;
 
-    /// Returns the indices of all strips, with [`Strips::RESTART`] between them.
+    /// Returns the indices of all strips for one draw call, with [`Strips::RESTART`] between
+    /// strips.
     pub fn with_restarts(&self) -> Vec<u32> {
         let mut indices = Vec::with_capacity(self.vertices().len() + self.len());
         for strip in self.iter() {
@@ -21,8 +22,9 @@ impl Strips {
         indices
     }
 
-    /// Joins all strips into one, for use without primitive restart. Degenerate triangles lead from
-    /// each strip to the next, at the cost of two vertices, or three if the next would be turned.
+    /// Joins all strips into one by degenerate triangles, for use without primitive restart.
+    ///
+    /// Each joint costs two vertices, or three if the next strip would be turned.
     pub fn stitched(&self) -> Vec<VertexId> {
         let mut sequence: Vec<VertexId> =
             Vec::with_capacity(self.vertices().len() + 3 * self.len());

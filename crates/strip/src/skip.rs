@@ -1,4 +1,4 @@
-//! One set of strips for all levels.
+//! One set of triangle strips for all levels of a mesh.
 
 mod cursor;
 mod pointers;
@@ -13,7 +13,8 @@ use self::pointers::Pointers;
 use crate::filter::Filter;
 use crate::strips::Strips;
 
-/// Strips of a mesh in which each vertex is shown by its current representative.
+/// Triangle strips of a mesh that serve all its levels, as each vertex is shown by its current
+/// representative.
 ///
 /// At a level these are the **display strips**. They draw exactly its triangles; a triangle that
 /// has collapsed repeats a vertex and draws nothing. A [`Filter`] removes such vertices.
@@ -29,7 +30,7 @@ pub struct SkipStrip {
 }
 
 impl SkipStrip {
-    /// Starts at the full mesh with strips of the tree's mesh.
+    /// Starts at the full-resolution mesh, with triangle strips of the merge tree's mesh.
     ///
     /// # Panics
     /// If the strips use a vertex that the mesh does not have.
@@ -42,34 +43,35 @@ impl SkipStrip {
         Self { pointers: Pointers::new(vertices), tree, strips, contractions: 0 }
     }
 
-    /// Returns the tree of contractions.
+    /// Returns the merge tree, which holds the mesh and its contractions.
     pub fn tree(&self) -> &MergeTree {
         &self.tree
     }
 
-    /// Returns the strips of the full mesh.
+    /// Returns the triangle strips of the full-resolution mesh.
     pub fn strips(&self) -> &Strips {
         &self.strips
     }
 
-    /// Moves to the level after this many contractions, clamped to the maximum.
+    /// Moves to the level after a given number of contractions, clamped to the maximum.
     pub fn set_level(&mut self, contractions: usize) {
         self.contractions = contractions.min(self.tree.contractions());
     }
 
-    /// Returns the number of contractions of the current level.
+    /// Returns the number of contractions between the full-resolution mesh and the current level.
     pub fn level(&self) -> usize {
         self.contractions
     }
 
-    /// Returns the vertex that represents a vertex of the mesh at the current level.
+    /// Returns the vertex that represents a vertex of the full-resolution mesh at the current
+    /// level.
     ///
     /// Cost: the length of the path up the tree the first time, then constant.
     pub fn shown(&mut self, vertex: VertexId) -> VertexId {
         self.tree.shown(vertex, self.contractions, &mut self.pointers)
     }
 
-    /// Returns the display strips of the level, filtered.
+    /// Returns the triangle strips of the current level, shortened by a filter.
     ///
     /// Cost: linear in the strips of the mesh.
     pub fn display(&mut self, filter: Filter) -> Strips {

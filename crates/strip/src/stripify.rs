@@ -1,4 +1,4 @@
-//! Strips of any list of faces.
+//! Builds triangle strips for any list of faces.
 
 use meshlod_mesh::VertexId;
 use rayon::prelude::*;
@@ -10,37 +10,41 @@ use crate::order::Order;
 use crate::path_cover::PathCover;
 use crate::strips::Strips;
 
-/// Quality of the strips, traded for time.
+/// Quality of triangle strips, traded for the time to build them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum StripQuality {
-    /// Greedy strips in one pass.
+    /// Greedy strips, built in one pass.
     Fast,
-    /// Fewest vertices, by annealing: see [`StripQuality::QUICK`] and [`StripQuality::THOROUGH`].
+    /// Strips of the fewest vertices, by annealing: see [`StripQuality::QUICK`] and
+    /// [`StripQuality::THOROUGH`].
     Best {
-        /// Number of moves tried per face, at most a million. 60 take one or two seconds for the 69
-        /// thousand faces of the bunny on one core of 2026; the time is proportional.
+        /// Number of annealing moves tried per face, at most a million.
+        ///
+        /// 60 take one or two seconds for the 69 thousand faces of the bunny on one core of 2026;
+        /// the time is proportional.
         moves_per_face: f64,
     },
 }
 
 impl StripQuality {
-    /// Annealing with 60 moves per face: 1.094 vertices per face on the bunny.
+    /// Annealing with 60 moves per face, which gives 1.094 vertices per face on the Stanford bunny.
     pub const QUICK: Self = Self::Best { moves_per_face: 60.0 };
 
-    /// Annealing with 1500 moves per face: 1.086 vertices per face on the bunny.
+    /// Annealing with 1500 moves per face, which gives 1.086 vertices per face on the Stanford
+    /// bunny.
     pub const THOROUGH: Self = Self::Best { moves_per_face: 1500.0 };
 }
 
 /// Options of [`stripify`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StripOptions<'a> {
-    /// Quality of the strips.
+    /// Quality of the strips, traded for the time to build them.
     pub quality: StripQuality,
-    /// Prices that annealing minimises.
+    /// Prices of strips and swaps, the sum of which annealing minimises.
     pub prices: Prices,
-    /// Vertex cache to cut and order the strips for, if any.
+    /// Vertex cache to cut and order the strips for; `None` to ignore caching.
     pub cache: Option<CacheAware>,
-    /// A label for each face; no strip crosses from one label to another.
+    /// Cluster label of each face; no strip crosses from one cluster to another.
     pub clusters: Option<&'a [u32]>,
     /// Seed of the random numbers; other seeds give other strips of about the same quality.
     pub seed: u64,
@@ -58,7 +62,7 @@ impl Default for StripOptions<'_> {
     }
 }
 
-/// Builds strips that draw exactly `faces`, with their winding and multiplicity.
+/// Builds triangle strips that draw exactly `faces`, with their winding and multiplicity.
 ///
 /// Any faces are accepted: at edges with more than two faces, or between faces of opposite
 /// orientation, strips go on as far as they can. Faces that repeat a vertex are left out. The

@@ -1,4 +1,4 @@
-//! Vertex sequences in which every three consecutive vertices form a triangle.
+//! Triangle strips: vertex sequences in which every three consecutive vertices form a triangle.
 
 use meshlod_mesh::VertexId;
 
@@ -16,7 +16,7 @@ pub struct Strips {
 }
 
 impl Strips {
-    /// Appends a strip; an empty one is ignored.
+    /// Appends a triangle strip, given by its vertices; an empty one is ignored.
     pub fn push(&mut self, strip: impl IntoIterator<Item = VertexId>) {
         let start = self.vertices.len();
         self.vertices.extend(strip);
@@ -27,30 +27,29 @@ impl Strips {
         }
     }
 
-    /// Returns the number of strips.
+    /// Returns the number of triangle strips in the list.
     pub fn len(&self) -> usize {
         self.ends.len()
     }
 
-    /// Returns true if there are no strips.
+    /// Returns true if the list has no triangle strips.
     pub fn is_empty(&self) -> bool {
         self.ends.is_empty()
     }
 
-    /// Returns the vertices of all strips, one strip after the other, as sent when each is drawn on
-    /// its own.
+    /// Returns the vertices of all strips, one strip after the other.
     pub fn vertices(&self) -> &[VertexId] {
         &self.vertices
     }
 
-    /// Iterates over the strips.
+    /// Iterates over the strips, each as the sequence of its vertices.
     pub fn iter(&self) -> impl ExactSizeIterator<Item = &[VertexId]> {
         let start = |strip: usize| if strip == 0 { 0 } else { self.ends[strip - 1] as usize };
         (0..self.ends.len())
             .map(move |strip| &self.vertices[start(strip)..self.ends[strip] as usize])
     }
 
-    /// Iterates over the triangles drawn, in drawing order and with their winding.
+    /// Iterates over the triangles that the strips draw, in drawing order and with their winding.
     pub fn triangles(&self) -> impl Iterator<Item = [VertexId; 3]> {
         self.iter().flat_map(drawn)
     }

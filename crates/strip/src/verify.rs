@@ -1,20 +1,22 @@
-//! Checks that strips draw the triangles they should.
+//! Checks that triangle strips draw the triangles they should.
 
 use meshlod_mesh::VertexId;
 
 use crate::strips::Strips;
 
-/// Difference between the triangles strips draw and those of a mesh.
+/// Difference between the triangles that strips draw and those of a mesh.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Difference {
-    /// Number of triangles of the mesh that are not drawn.
+    /// Number of triangles of the mesh that the strips do not draw.
     pub missing: usize,
-    /// Number of triangles drawn that the mesh does not have, or not as often.
+    /// Number of triangles that the strips draw but the mesh does not have, or not as often.
     pub extra: usize,
 }
 
 /// Compares the triangles that `strips` draw with `faces`, as multisets of triangles up to
-/// rotation. Faces that repeat a vertex are ignored. Cost: O(n log n).
+/// rotation.
+///
+/// Faces that repeat a vertex are ignored. Cost: O(n log n).
 pub fn difference(strips: &Strips, faces: &[[VertexId; 3]]) -> Difference {
     let wanted = sorted(faces.iter().copied().filter(has_three_corners));
     let drawn = sorted(strips.triangles());

@@ -15,21 +15,23 @@ use self::quantizer::UniformQuantizer;
 use crate::bytes::{Malformed, Reader};
 use crate::patch::Rows;
 
-/// Error bounds of attributes.
+/// Largest errors allowed for the attributes of a mesh.
 ///
 /// A bound below the resolution of `f32` is met as closely as `f32` allows.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AttributeBounds {
-    /// Normals and tangents, in radians, down to .00004 (16 bits twice). A direction of zero length
-    /// decodes to any.
+    /// Largest error of normals and tangents, in radians, down to .00004 (16 bits for each of two
+    /// coordinates).
+    ///
+    /// A direction of zero length decodes to an arbitrary one.
     pub direction_rad: f64,
-    /// Texture coordinates; 1 is the whole texture.
+    /// Largest error of texture coordinates, where 1 is the whole texture.
     pub uv: f64,
-    /// Colours, from 0 to 1.
+    /// Largest error of colours, whose values range from 0 to 1.
     pub color: f64,
-    /// Joint weights, from 0 to 1.
+    /// Largest error of joint weights, whose values range from 0 to 1.
     pub weight: f64,
-    /// All other layers, as a fraction of the range of their values.
+    /// Largest error of all other attributes, as a fraction of the range of their values.
     pub other: f64,
 }
 
@@ -56,13 +58,14 @@ enum Coding {
 /// Size and error of a compressed attribute layer.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LayerReport {
-    /// Kind of the values.
+    /// Meaning of the values in the layer, such as normals.
     pub kind: LayerKind,
-    /// Name of the layer in its file.
+    /// Name of the attribute layer in its file.
     pub name: String,
-    /// Size in bytes, with everything needed to decode the layer.
+    /// Compressed size of the layer in bytes, with everything needed to decode it.
     pub bytes: usize,
-    /// Largest error of a value: radians for directions, else the unit of the values.
+    /// Largest error of a value in the layer: in radians for directions, else in the unit of the
+    /// values.
     pub max_error: f64,
 }
 

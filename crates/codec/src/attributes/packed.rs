@@ -1,4 +1,4 @@
-//! Integers of nodes packed by rows: each row has its own minimum and number of bits.
+//! Packed integers of nodes, row by row: each row has its own minimum and number of bits.
 
 use crate::bits::{Bits, width};
 use crate::bytes::{Malformed, Reader};

@@ -1,4 +1,5 @@
-//! Vertices in blocks of 32, each block with a frame and cell sizes that follow the surface.
+//! Vertex positions in blocks of 32, each block with a frame and cell sizes that follow the
+//! surface.
 
 mod assign_cells;
 mod fit;
@@ -20,7 +21,8 @@ use crate::bits::Bits;
 use crate::bytes::{Malformed, Reader, reduction};
 use crate::kd::{BLOCK, blocks_of};
 
-/// Positions of a mesh in blocks of 32 vertices, each with a matrix that decodes small integers.
+/// Compressed positions of a mesh in blocks of 32 vertices, each with a matrix that decodes small
+/// integers.
 ///
 /// Each vertex is in one block, and faces may have corners in several, so nothing is stored twice
 /// and no cracks can open between blocks. Any vertex can be decoded alone, to the same bits on
@@ -37,10 +39,11 @@ pub struct VertexBlocks {
 /// Requested accuracy of decoded positions.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Accuracy {
-    /// As accurate as this many bits per axis for the whole mesh: rounding to cubic cells, 2^bits −
-    /// 1 of them along the longest side.
+    /// As accurate as a uniform grid over the whole mesh with this many bits per axis.
+    ///
+    /// The grid has 2^bits − 1 cubic cells along the longest side.
     Bits(u32),
-    /// Mean distance between the surfaces, in model units.
+    /// Mean distance between the original and the decoded surface, in model units.
     Error(f64),
 }
 
@@ -54,28 +57,32 @@ impl Accuracy {
     }
 }
 
-/// Error of the block encoding, next to that of a uniform grid with the same mean error.
+/// Error of a mesh stored in vertex blocks, next to that of a uniform grid with the same mean
+/// error.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct BlocksReport {
-    /// Error of the blocks.
+    /// Error of the surface decoded from the blocks.
     pub blocks: SurfaceChange,
-    /// Error of the cubic cells of the uniform grid.
+    /// Error of the surface rounded to the cubic cells of the uniform grid.
     pub cubes: SurfaceChange,
-    /// Side of these cubic cells, in model units.
+    /// Side of a cubic cell of the uniform grid, in model units.
     pub cube_side: f64,
     /// Number of blocks that were refined to avoid a flipped face or a distant vertex.
     pub refined_blocks: usize,
 }
 
-/// Difference between a surface and the original, estimated from the faces around each vertex.
+/// Difference between a decoded surface and the original, estimated from the faces around each
+/// vertex.
+///
 /// Lengths are in model units.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SurfaceChange {
-    /// Mean distance of the surface's points from the planes of their original faces.
+    /// Mean distance of the decoded surface's points from the planes of their original faces, in
+    /// model units.
     pub error_estimate: f64,
-    /// Largest distance between a vertex and the other surface.
+    /// Largest distance of a vertex from the other surface, in model units.
     pub max_estimate: f64,
-    /// Number of faces that turned by more than a right angle or lost their area.
+    /// Number of faces that turned by more than 90° or collapsed to zero area.
     pub flips: usize,
 }
 
@@ -85,20 +92,20 @@ pub enum BlocksError {
     /// A coordinate is infinite, NaN, or too large for `f32`.
     #[error("{0} has a coordinate that is not finite or is beyond 1e38")]
     NotFinite(VertexId),
-    /// The number of bits is out of range.
+    /// The requested number of bits is out of range.
     #[error("bits must be between 2 and 24, not {0}")]
     Bits(u32),
-    /// The distance is not positive and finite.
+    /// The requested mean distance is not positive and finite.
     #[error("the mean error must be a positive distance, not {0}")]
     Error(f64),
-    /// The distance would take more cells than can be numbered.
+    /// The requested mean distance would take more cells than can be numbered.
     #[error("a mean error of {0:e} would take more than 24 bits per axis: allow a larger error")]
     TooFine(f64),
 }
 
 impl VertexBlocks {
-    /// Encodes the vertices that faces use, with as few bits as found for the target, and reports
-    /// the error.
+    /// Encodes the vertices that faces use to a given accuracy, in as few bits as the search finds,
+    /// and reports the error.
     ///
     /// Besides the mean error, no vertex should be farther from the other surface than about twice
     /// the largest distance in equally accurate cubic cells, and no more faces should be flipped.
@@ -129,7 +136,7 @@ impl VertexBlocks {
         Ok((Self { layout, bits, vertices: Vec::new() }, report))
     }
 
-    /// Returns the mesh vertex of each stored vertex, in block order.
+    /// Returns the mesh vertex that each stored vertex comes from, in block order.
     ///
     /// Use it to renumber the connectivity. It is not part of the stored data.
     pub fn vertices(&self) -> &[VertexId] {
@@ -141,7 +148,8 @@ impl VertexBlocks {
         self.layout.blocks()
     }
 
-    /// Returns the matrix that maps a block's cells to model units, as three rows of four.
+    /// Returns the matrix that maps the integer cells of a block to model units, as three rows of
+    /// four.
     ///
     /// # Panics
     /// If there is no such block.
@@ -150,8 +158,9 @@ impl VertexBlocks {
         [0, 1, 2].map(|k| [u[k], v[k], w[k], first[k]].map(|x| x as f32))
     }
 
-    /// Returns the cell of a vertex, given by its index in [`VertexBlocks::vertices`]. The matrix
-    /// of its block maps the cell to a position.
+    /// Returns the integer cell of a vertex, given by its index in [`VertexBlocks::vertices`].
+    ///
+    /// The matrix of the vertex's block maps the cell to a position.
     ///
     /// # Panics
     /// If there is no such vertex.
@@ -171,7 +180,7 @@ impl VertexBlocks {
         placed(&sides, first, self.cell(at))
     }
 
-    /// Decodes all positions.
+    /// Decodes the positions of all stored vertices, in block order.
     pub fn positions(&self) -> Vec<[f64; 3]> {
         let mut positions = Vec::with_capacity(self.layout.vertices);
         for block in 0..self.blocks() {
@@ -184,13 +193,14 @@ impl VertexBlocks {
         positions
     }
 
-    /// Returns the size of the positions in bytes, with everything needed to decode them.
+    /// Returns the compressed size of the positions in bytes, with everything needed to decode
+    /// them.
     pub fn bytes(&self) -> usize {
         self.layout.bytes(&self.bits)
     }
 
-    /// Returns the fraction by which positions are smaller than three `f32` for each vertex; 0 for
-    /// an empty mesh.
+    /// Returns the fraction of position storage saved, compared with three `f32` for each vertex; 0
+    /// for an empty mesh.
     pub fn reduction(&self) -> f64 {
         reduction(self.bytes(), self.layout.vertices)
     }

@@ -1,4 +1,4 @@
-//! Vertices in blocks, rounded to a lattice that meshes can share.
+//! Vertex positions in blocks, rounded to a lattice that meshes can share.
 
 mod layout;
 mod search;
@@ -12,7 +12,7 @@ use self::shear::MAX_CELLS;
 use crate::bytes::{Malformed, Reader, reduction};
 use crate::kd::blocks_of;
 
-/// Lattice of cubic cells whose side is a power of two, with a vertex at the origin.
+/// Lattice of cubic cells whose side is a power of two, with a lattice point at the origin.
 ///
 /// Equal positions stay equal, in whatever mesh and on whatever machine: a cell is stored as
 /// integers, and decoding rounds once.
@@ -21,7 +21,8 @@ pub struct Lattice {
     exponent: i32,
 }
 
-/// Positions of a mesh on a lattice, in blocks of 32 vertices that can be decoded independently.
+/// Compressed positions of a mesh on a lattice, in blocks of 32 vertices that can be decoded
+/// independently.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LatticeBlocks {
     lattice: Lattice,
@@ -38,19 +39,19 @@ pub enum LatticeError {
     /// A coordinate is infinite or NaN.
     #[error("{0} has a coordinate that is not finite")]
     NotFinite(VertexId),
-    /// The mesh spans more cells than the format can number.
+    /// The mesh spans more lattice cells than the format can number.
     #[error("the mesh spans {cells:.0} cells, more than {MAX_CELLS}: use larger cells")]
     TooFine {
-        /// Number of cells along the longest side.
+        /// Number of lattice cells along the longest side of the mesh.
         cells: f64,
     },
-    /// The mesh is so far from the origin that `f64` does not have every cell.
+    /// The mesh is so far from the origin that `f64` cannot represent every lattice point there.
     #[error("the mesh is too far from the origin for cells of 2^{exponent}: use larger cells")]
     TooFar {
-        /// Exponent of the lattice.
+        /// Exponent of the lattice, whose cells have sides of 2^`exponent` model units.
         exponent: i32,
     },
-    /// The exponent is out of range.
+    /// The exponent of the lattice is out of range.
     #[error("the cell's exponent must be between -960 and 960, not {0}")]
     Exponent(i32),
 }
@@ -61,7 +62,7 @@ const HEADER: usize = 4 + 3 * 8;
 const MAX_NUMBER: f64 = (1u64 << 52) as f64;
 
 impl Lattice {
-    /// Creates a lattice with cells of 2^`exponent` model units.
+    /// Creates a lattice whose cells have sides of 2^`exponent` model units.
     /// # Errors
     /// An exponent below -960 or above 960.
     pub fn new(exponent: i32) -> Result<Self, LatticeError> {
@@ -69,7 +70,7 @@ impl Lattice {
         if is_valid { Ok(Self { exponent }) } else { Err(LatticeError::Exponent(exponent)) }
     }
 
-    /// Creates the coarsest lattice whose cells are no larger than `cell`.
+    /// Creates the coarsest lattice whose cells have sides of at most `cell` model units.
     /// # Errors
     /// A size that is not positive, or too large or small.
     pub fn within(cell: f64) -> Result<Self, LatticeError> {
@@ -78,21 +79,21 @@ impl Lattice {
         Self::new(if exponent.abs() <= 960.0 { exponent as i32 } else { i32::MAX })
     }
 
-    /// Returns the lattice with cells twice as large.
+    /// Returns the lattice with cells of twice the side.
     /// # Errors
     /// As [`Lattice::new`].
     pub fn coarser(self) -> Result<Self, LatticeError> {
         Self::new(self.exponent + 1)
     }
 
-    /// Returns the lattice with cells half as large.
+    /// Returns the lattice with cells of half the side.
     /// # Errors
     /// As [`Lattice::new`].
     pub fn finer(self) -> Result<Self, LatticeError> {
         Self::new(self.exponent - 1)
     }
 
-    /// Returns the side of a cell, in model units.
+    /// Returns the side of a lattice cell, in model units.
     pub fn cell(self) -> f64 {
         f64::from(self.exponent).exp2()
     }
@@ -140,7 +141,7 @@ impl LatticeBlocks {
         Ok(Self { lattice, first, layout: LatticeLayout::new(&cells, most), vertices: Vec::new() })
     }
 
-    /// Returns the mesh vertex of each stored vertex, in block order.
+    /// Returns the mesh vertex that each stored vertex comes from, in block order.
     ///
     /// Use it to renumber the connectivity. It is not part of the stored data.
     pub fn vertices(&self) -> &[VertexId] {
@@ -156,18 +157,19 @@ impl LatticeBlocks {
         self.place(self.layout.cell(at))
     }
 
-    /// Decodes all positions.
+    /// Decodes the positions of all stored vertices, in block order.
     pub fn positions(&self) -> Vec<[f64; 3]> {
         self.layout.cells().map(|cell| self.place(cell)).collect()
     }
 
-    /// Returns the size of the positions in bytes, with everything needed to decode them.
+    /// Returns the compressed size of the positions in bytes, with everything needed to decode
+    /// them.
     pub fn bytes(&self) -> usize {
         HEADER + self.layout.bytes()
     }
 
-    /// Returns the fraction by which positions are smaller than three `f32` for each vertex; 0 for
-    /// an empty mesh.
+    /// Returns the fraction of position storage saved, compared with three `f32` for each vertex; 0
+    /// for an empty mesh.
     pub fn reduction(&self) -> f64 {
         reduction(self.bytes(), self.layout.vertices)
     }

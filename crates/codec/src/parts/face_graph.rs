@@ -1,4 +1,4 @@
-//! Faces and their neighbours, for partitioning.
+//! Graph of faces and their neighbours, for partitioning a mesh.
 
 use meshlod_mesh::{Bounds, Connectivity, FaceId, Mesh, Side, Twin, VertexId};
 

@@ -5,13 +5,14 @@ use meshlod_mesh::Bounds;
 use super::Part;
 use super::face_graph::FaceGraph;
 
-/// Point of a cell to which a vertex is decoded.
+/// Point of a grid cell to which the vertices in it are decoded.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Reconstruction {
-    /// The middle, which halves the error.
+    /// The middle of the cell, which halves the largest error.
     #[default]
     Centred,
-    /// The least corner, as in [LCL10]: every vertex is half a cell too low on average.
+    /// The corner of the cell with the least coordinates, as in [LCL10]: on average, every vertex
+    /// is half a cell too low.
     Truncated,
 }
 

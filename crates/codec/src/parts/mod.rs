@@ -1,4 +1,4 @@
-//! Positions in 8 bits per axis, in parts that share one grid [LCL10].
+//! Vertex positions in 8 bits per axis, in parts of the mesh that share one grid [LCL10].
 
 mod face_graph;
 mod grid;
@@ -18,7 +18,7 @@ pub(crate) use self::packed::PackedParts;
 pub use self::partitioner::Partitioner;
 use crate::bytes::reduction;
 
-/// Mesh partitioned into parts, with positions in 8 bits per axis.
+/// Mesh partitioned into parts, with vertex positions in 8 bits per axis.
 ///
 /// Each part stores all its vertices. A vertex is in the same grid cell in all parts that have it.
 #[derive(Clone, Debug, PartialEq)]
@@ -32,15 +32,15 @@ pub struct Parts {
 /// Part of a mesh that spans at most 256 grid cells along each axis.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Part {
-    /// Grid cell of the part's local cell `[0; 3]`.
+    /// Cell of the shared grid at which the part's local cells start.
     pub offset: [i32; 3],
-    /// Local cell of each vertex, relative to the offset.
+    /// Local cell of each vertex of the part, counted from the offset along each axis.
     pub positions: Vec<[u8; 3]>,
-    /// Mesh vertex of each local vertex.
+    /// Mesh vertex that each vertex of the part comes from.
     pub vertices: Vec<VertexId>,
-    /// Faces as local vertex indices.
+    /// Faces of the part, as indices into its vertices.
     pub faces: Vec<[u32; 3]>,
-    /// Mesh face of each face.
+    /// Mesh face that each face of the part comes from.
     pub ids: Vec<FaceId>,
 }
 
@@ -53,13 +53,13 @@ pub enum PartsError {
     /// A coordinate is infinite, NaN, or too large for `f32`.
     #[error("{0} has a coordinate that is not finite or is too large for f32")]
     NotFinite(VertexId),
-    /// The reduction is not between 0 and 1.
+    /// The requested reduction of position storage is not between 0 and 1.
     #[error("the reduction must be between 0 and 1, not {0}")]
     Reduction(f64),
-    /// The mesh is too small for the requested reduction, because of the headers.
+    /// The mesh is too small for the requested reduction of position storage.
     #[error("the mesh is too small: the largest possible reduction is {best:.3}, in one part")]
     TooSmall {
-        /// Largest reduction that is possible.
+        /// Largest reduction of position storage that is possible for this mesh.
         best: f64,
     },
 }
@@ -70,7 +70,7 @@ const HEADER: usize = 1 + 2 * 4 + 3 * 4;
 const PART: usize = 4;
 
 impl Parts {
-    /// Returns the parts.
+    /// Returns the parts into which the mesh is partitioned.
     pub fn parts(&self) -> &[Part] {
         &self.parts
     }
@@ -80,7 +80,7 @@ impl Parts {
         self.vertices
     }
 
-    /// Returns the sides of a cell, in model units.
+    /// Returns the sides of a grid cell along x, y and z, in model units.
     pub fn cell(&self) -> [f32; 3] {
         self.grid.cell()
     }
@@ -90,12 +90,13 @@ impl Parts {
         self.cell().iter().map(|&side| f64::from(side)).sum::<f64>() / 3.0
     }
 
-    /// Returns the matrix that maps a part's local cells to model units, as three rows of four.
+    /// Returns the matrix that maps the local cells of a part to model units, as three rows of
+    /// four.
     pub fn matrix(&self, part: &Part) -> [[f32; 4]; 3] {
         self.grid.matrix(part)
     }
 
-    /// Decodes the mesh, with each vertex once.
+    /// Decodes the whole mesh, with each vertex once although several parts may store it.
     ///
     /// Vertices are in the order of their first part; faces come part by part.
     pub fn decode(&self) -> Mesh {
@@ -119,7 +120,8 @@ impl Parts {
         mesh
     }
 
-    /// Returns the size of the positions in bytes, with everything needed to decode them.
+    /// Returns the compressed size of the positions in bytes, with everything needed to decode
+    /// them.
     pub fn position_bytes(&self) -> usize {
         HEADER + self.parts.len() * self.part_header() + 3 * self.stored()
     }
@@ -147,12 +149,13 @@ impl Parts {
         (root * root) as usize
     }
 
-    /// Returns the fraction by which positions are smaller than three `f32` for each vertex.
+    /// Returns the fraction of position storage saved, compared with three `f32` for each vertex.
     pub fn reduction(&self) -> f64 {
         reduction(self.position_bytes(), self.vertices)
     }
 
-    /// Returns the number of repeated vertices, as a fraction of all.
+    /// Returns the number of vertices stored repeatedly by several parts, as a fraction of all
+    /// vertices.
     pub fn overhead(&self) -> f64 {
         self.stored() as f64 / self.vertices as f64 - 1.0
     }

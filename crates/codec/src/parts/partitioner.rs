@@ -45,7 +45,8 @@ impl<'m> Partitioner<'m> {
         Ok(Self { graph, merges, vertices: used.iter().filter(|&&used| used).count() })
     }
 
-    /// Partitions the mesh into `count` parts, or as many as there are faces.
+    /// Partitions the mesh into `count` parts, or into as many as there are faces if these are
+    /// fewer.
     ///
     /// Cost: some dozen times O(n log n).
     pub fn with_count(&self, count: usize, cells: Reconstruction) -> Parts {
@@ -57,8 +58,10 @@ impl<'m> Partitioner<'m> {
         Parts { grid, vertices: self.vertices, parts }
     }
 
-    /// Partitions the mesh into about as many parts as still give a reduction of the positions
-    /// between 0 and 1: more parts have smaller cells but repeat more vertices.
+    /// Partitions the mesh into about as many parts as still save a given fraction of position
+    /// storage.
+    ///
+    /// The fraction is between 0 and 1. More parts have smaller cells but repeat more vertices.
     ///
     /// The reduction is kept, and exceeded by little: by less than a thousandth on closed meshes of
     /// some thousand vertices. Cost: that of several [`Partitioner::with_count`].
@@ -95,8 +98,11 @@ impl<'m> Partitioner<'m> {
         Ok(best)
     }
 
-    /// Partitions the mesh into the fewest parts found whose cells have this mean side. If those
-    /// would take more than uncompressed positions, returns about as many parts as take less.
+    /// Partitions the mesh into the fewest parts found whose grid cells have a mean side of `cell`
+    /// model units.
+    ///
+    /// If those would take more than uncompressed positions, returns about as many parts as take
+    /// less.
     ///
     /// Cost: that of several [`Partitioner::with_count`].
     pub fn within_cell(&self, cell: f64, cells: Reconstruction) -> Parts {

@@ -1,4 +1,4 @@
-//! Encoding of a patch's steps in bits.
+//! Encoding in bits of the steps by which a patch grows.
 
 use std::ops::Range;
 

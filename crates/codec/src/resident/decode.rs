@@ -7,8 +7,9 @@ use crate::attributes::PackedLayer;
 use crate::bytes::Malformed;
 
 impl Compressed {
-    /// Decodes the whole mesh with each vertex once. Faces come patch by patch, with the wedges
-    /// that the input had.
+    /// Decodes the whole mesh, with each vertex once.
+    ///
+    /// Faces come patch by patch, with the wedges that the input had.
     ///
     /// # Errors
     /// Damaged data that the checksums did not catch.
@@ -32,7 +33,7 @@ impl Compressed {
         Ok(mesh)
     }
 
-    /// Decodes the faces of one patch with their vertices and wedges, and nothing else.
+    /// Decodes one patch of faces with its vertices and their attributes, and nothing else.
     ///
     /// With [`Scheme::Parts`](super::Scheme::Parts) a vertex appears once for each of its wedges.
     /// # Errors

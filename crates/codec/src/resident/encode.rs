@@ -1,4 +1,4 @@
-//! Encoding a mesh by each of the three schemes.
+//! Encoding of a mesh by each of the three storage schemes.
 
 use meshlod_mesh::{Mesh, VertexId, WedgeId};
 
@@ -16,7 +16,7 @@ use crate::parts::{PackedParts, Parts};
 use crate::patch::{Patches, Rows};
 
 impl Compressed {
-    /// Compresses a mesh with its vertices rounded to a lattice.
+    /// Compresses a mesh with its vertices rounded to a lattice, which other meshes can share.
     ///
     /// Cost: O(n log n).
     /// # Errors
@@ -31,7 +31,8 @@ impl Compressed {
         })
     }
 
-    /// Compresses a mesh with its vertices in blocks that are aligned with the surface.
+    /// Compresses a mesh with its vertices in blocks of 32 whose cells are aligned with the
+    /// surface.
     ///
     /// Cost: O(n log n).
     /// # Errors
@@ -46,8 +47,9 @@ impl Compressed {
         })
     }
 
-    /// Compresses a mesh with positions in the given parts of it. Faces that repeat a vertex are
-    /// left out.
+    /// Compresses a mesh that has been partitioned, with its positions in 8 bits per axis.
+    ///
+    /// Faces that repeat a vertex are left out.
     ///
     /// # Errors
     /// An invalid or empty mesh, or values that the file cannot hold.

@@ -1,4 +1,4 @@
-//! Reading and writing `.mlq` files: docs/formats/mlq.md.
+//! Reading and writing `.mlq` files, which docs/formats/mlq.md describes.
 
 use super::weld_parts::WeldExceptions;
 use super::{BLOCKS_PER_PATCH, Compressed, MAX_VALUES, Positions, WedgeVertices};
@@ -18,7 +18,7 @@ impl Compressed {
     /// The first eight bytes of every `.mlq` file.
     pub const MAGIC: [u8; 8] = *b"meshlodq";
 
-    /// Encodes the mesh as an `.mlq` file.
+    /// Encodes the compressed mesh as the bytes of an `.mlq` file.
     pub fn to_bytes(&self) -> Vec<u8> {
         let mut sections = [Vec::new(), Vec::new(), Vec::new()];
         let [positions, connectivity, attributes] = &mut sections;
@@ -48,8 +48,7 @@ impl Compressed {
         bytes
     }
 
-    /// Recomputes the checksums of a file that was changed, for tests of
-    /// [`Compressed::from_bytes`].
+    /// Recomputes the checksums of a modified `.mlq` file, for tests of [`Compressed::from_bytes`].
     #[doc(hidden)]
     pub fn seal(bytes: &mut [u8]) {
         if bytes.len() < HEADER {
@@ -68,7 +67,7 @@ impl Compressed {
         bytes[HEADER - 4..HEADER].copy_from_slice(&hash.to_le_bytes());
     }
 
-    /// Reads an `.mlq` file. Positions, faces and attributes stay compressed.
+    /// Reads an `.mlq` file, keeping its positions, faces and attributes compressed in memory.
     ///
     /// # Errors
     /// Bytes that are not an `.mlq` file, or are damaged.

@@ -21,7 +21,8 @@ use crate::attributes::{LayerReport, PackedLayer};
 use crate::bytes::reduction;
 use crate::patch::Patches;
 
-/// Compressed mesh of which any block of vertices and any patch of faces can be decoded alone.
+/// Compressed mesh in memory, of which any block of vertices and any patch of faces can be decoded
+/// alone.
 ///
 /// It holds the faces and what they use, in an order of its own, but no materials or objects.
 #[derive(Clone, Debug, PartialEq)]
@@ -35,13 +36,14 @@ pub struct Compressed {
 /// Size of a compressed mesh by content, in bytes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct CompressedSizes {
-    /// Positions, with everything needed to decode them.
+    /// Size of the vertex positions in bytes, with everything needed to decode them.
     pub positions: usize,
-    /// Faces, and the vertex of each corner.
+    /// Size of the faces in bytes, including the vertex of each corner.
     pub connectivity: usize,
-    /// All attribute layers.
+    /// Size of all attribute layers in bytes.
     pub attributes: usize,
-    /// The whole file: the three above and the file header.
+    /// Size of the whole `.mlq` file in bytes: positions, connectivity, attributes and the file
+    /// header.
     pub total: usize,
 }
 
@@ -55,7 +57,7 @@ const MAX_FACES: usize = 1 << 27;
 const BLOCKS_PER_PATCH: usize = 4;
 
 impl Compressed {
-    /// Returns the sizes of positions, connectivity, attributes and the whole file.
+    /// Returns the sizes of positions, connectivity, attributes and the whole file, in bytes.
     pub fn sizes(&self) -> CompressedSizes {
         let positions = self.positions.bytes();
         let connectivity = self.patches.bytes() + self.wedge_vertices.bytes();
@@ -64,32 +66,32 @@ impl Compressed {
         CompressedSizes { positions, connectivity, attributes, total }
     }
 
-    /// Returns the number of vertices.
+    /// Returns the number of vertices of the mesh.
     pub fn vertices(&self) -> usize {
         self.positions.vertices()
     }
 
-    /// Returns the number of faces.
+    /// Returns the number of faces of the mesh.
     pub fn faces(&self) -> usize {
         self.patches.face_count()
     }
 
-    /// Returns the number of patches, for [`Compressed::patch`].
+    /// Returns the number of face patches, each of which [`Compressed::patch`] can decode alone.
     pub fn patches(&self) -> usize {
         self.patches.len()
     }
 
-    /// Returns the number of parts with [`Scheme::Parts`], else the number of vertex blocks.
+    /// Returns the number of vertex blocks, or the number of parts with [`Scheme::Parts`].
     pub fn blocks(&self) -> usize {
         self.positions.blocks()
     }
 
-    /// Returns the fraction by which positions are smaller than three `f32` for each vertex.
+    /// Returns the fraction of position storage saved, compared with three `f32` for each vertex.
     pub fn reduction(&self) -> f64 {
         reduction(self.positions.bytes(), self.vertices())
     }
 
-    /// Returns the size and the error of each attribute layer.
+    /// Returns the compressed size and the largest error of each attribute layer.
     pub fn layers(&self) -> Vec<LayerReport> {
         self.layers.iter().map(PackedLayer::report).collect()
     }

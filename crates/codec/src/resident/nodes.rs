@@ -1,4 +1,4 @@
-//! Nodes: what faces have at their corners, which are vertices, or wedges if there are attributes.
+//! Nodes: the corners that faces refer to, which are vertices, or wedges if there are attributes.
 
 use meshlod_mesh::{FaceId, Mesh, VertexId};
 

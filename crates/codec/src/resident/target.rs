@@ -9,39 +9,39 @@ use crate::blocks::{Accuracy, BlocksError, VertexBlocks};
 use crate::lattice::{Lattice, LatticeBlocks};
 use crate::parts::{Partitioner, Parts, PartsError, Reconstruction};
 
-/// Storage scheme of positions.
+/// Storage scheme for vertex positions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Scheme {
-    /// 8 bits per axis, in parts that share one grid [LCL10].
+    /// Positions in 8 bits per axis, in parts of the mesh that share one grid [LCL10].
     Parts(Reconstruction),
-    /// Rounded to a lattice that meshes can share, with power-of-two cells.
+    /// Positions rounded to a lattice with power-of-two cells, which several meshes can share.
     Lattice,
-    /// In blocks of 32 vertices, each with cells that are aligned with the surface.
+    /// Positions in blocks of 32 vertices, each with cells that are aligned with the surface.
     Blocks,
 }
 
 /// Accuracy or size that a compressed mesh should have.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum CompressionTarget {
-    /// Bits per axis, from 2 to 24, of a uniform grid over the whole mesh that is as accurate.
+    /// Accuracy of a uniform grid over the whole mesh with this many bits per axis, from 2 to 24.
     ///
     /// The grid has cubic cells of the longest side / (2^bits - 1) and puts each vertex in the
     /// middle of its cell. [`Reconstruction::Truncated`] is compared with the same grid, truncated.
     Bits(u32),
-    /// Mean distance between the surfaces, in model units.
+    /// Mean distance between the original and the decoded surface, in model units.
     Error(f64),
-    /// Fraction by which positions should be smaller than three `f32` for each vertex.
+    /// Fraction of position storage to save, compared with three `f32` for each vertex.
     Reduction(f64),
 }
 
-/// Result of [`compress`].
+/// Result of [`compress`]: the compressed mesh, and whether it meets the target.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Compression {
     /// The compressed mesh.
     pub compressed: Compressed,
-    /// For each vertex of [`Compressed::decode`] the vertex of the input.
+    /// Vertex of the input that each vertex of [`Compressed::decode`] comes from.
     pub vertices: Vec<VertexId>,
-    /// True if the target is met.
+    /// True if the requested accuracy or size was reached.
     pub reached: bool,
 }
 
@@ -56,7 +56,7 @@ const MEAN_OF_CELL: f64 = 1.0 / 6.0;
 const MEAN_OF_TRUNCATED: f64 = 0.45;
 const BITS: std::ops::RangeInclusive<u32> = 2..=24;
 
-/// Compresses a mesh by a scheme, to an accuracy or a size.
+/// Compresses a mesh by a given storage scheme, to an accuracy or a size.
 ///
 /// If the mesh is too small for a reduction, the result has the largest one that was found, and
 /// [`Compression::reached`] is false.
@@ -95,7 +95,8 @@ enum Goal {
 }
 
 impl CompressionTarget {
-    /// Returns the side of the cubic cells that meet the target, with vertices in their middles.
+    /// Returns the side in model units of the cubic cells that meet the target if vertices are
+    /// decoded to their middles.
     ///
     /// A reduction has no such cells: `None`.
     /// # Errors
@@ -133,7 +134,7 @@ fn extent(bounds: &Bounds) -> (f64, f64) {
     (longest, farthest)
 }
 
-/// Partitions a mesh as [`compress`] does for [`Scheme::Parts`], and reports whether the target is
+/// Partitions a mesh as [`compress`] does for [`Scheme::Parts`], and returns whether the target is
 /// met.
 ///
 /// # Errors

@@ -74,7 +74,7 @@ impl Header {
     }
 }
 
-/// Opened `.mlz` file, whose blocks are decoded on request.
+/// Open `.mlz` file, whose blocks are decoded on request.
 #[derive(Clone, Debug)]
 pub struct TransportFile<'a> {
     grid: QuantizationGrid,
@@ -97,12 +97,12 @@ struct BlockSpan {
     faces: usize,
 }
 
-/// Decoded block.
+/// Part of a mesh, decoded from one block of an `.mlz` file.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct TransportBlock {
-    /// Positions of its vertices, including those on its border, in model units.
+    /// Positions of the block's vertices, including those on its border, in model units.
     pub positions: Vec<[f64; 3]>,
-    /// Faces as indices into the positions, counter-clockwise.
+    /// Faces of the block as indices into its positions, counter-clockwise.
     pub faces: Vec<[u32; 3]>,
 }
 
@@ -110,7 +110,7 @@ impl<'a> TransportFile<'a> {
     /// The first eight bytes of every `.mlz` file.
     pub const MAGIC: [u8; 8] = *b"meshlodz";
 
-    /// Reads the header and the index, but no block.
+    /// Opens an `.mlz` file: reads its header and index, but decodes no block.
     /// # Errors
     /// Bytes that are not an `.mlz` file, or are damaged.
     pub fn open(bytes: &'a [u8]) -> Result<Self, Malformed> {
@@ -150,7 +150,7 @@ impl<'a> TransportFile<'a> {
         Ok(Self { grid, first_bits, faces, vertices, models, places, blocks, checksum, at })
     }
 
-    /// Returns the number of blocks.
+    /// Returns the number of blocks in the file.
     pub fn blocks(&self) -> usize {
         self.places.len()
     }
@@ -165,13 +165,14 @@ impl<'a> TransportFile<'a> {
         self.faces
     }
 
-    /// Returns the side of a cell in model units. Positions are off by at most half of it along
-    /// each axis.
+    /// Returns the side of a quantization cell in model units.
+    ///
+    /// Positions are off by at most half of it along each axis.
     pub fn cell(&self) -> f64 {
         self.grid.cell
     }
 
-    /// Decodes one block, from its own bytes and the header alone.
+    /// Decodes one block, reading only its own bytes and the file header.
     ///
     /// # Errors
     /// A damaged block.
@@ -186,7 +187,7 @@ impl<'a> TransportFile<'a> {
         Ok(out)
     }
 
-    /// Decodes the mesh, with each vertex once and the faces block by block.
+    /// Decodes the whole mesh, with each vertex once and the faces block by block.
     ///
     /// # Errors
     /// A damaged file.
@@ -196,8 +197,9 @@ impl<'a> TransportFile<'a> {
         Ok(Mesh::new(positions, faces.iter().map(|face| face.map(VertexId)).collect()))
     }
 
-    /// Decodes the mesh into GPU buffers, replacing their contents. Positions are those of
-    /// [`TransportFile::decode`], rounded to `f32`.
+    /// Decodes the whole mesh into GPU buffers, replacing their contents.
+    ///
+    /// Positions are those of [`TransportFile::decode`], rounded to `f32`.
     ///
     /// # Errors
     /// A damaged file.
@@ -222,7 +224,7 @@ impl<'a> TransportFile<'a> {
         at..at + bytes
     }
 
-    /// Recomputes the checksums of a file that was changed, for tests of [`TransportFile::open`].
+    /// Recomputes the checksums of a modified `.mlz` file, for tests of [`TransportFile::open`].
     #[doc(hidden)]
     pub fn seal(bytes: &mut [u8]) {
         let Some(header) = header_end(bytes) else { return };

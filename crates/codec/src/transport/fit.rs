@@ -1,4 +1,4 @@
-//! Fitting the models to a mesh.
+//! Fitting of the probability and prediction models to a mesh.
 
 use super::border::Step;
 use super::encode::Residual;

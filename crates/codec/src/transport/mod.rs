@@ -28,55 +28,57 @@ use crate::lattice::Lattice;
 /// Encoded `.mlz` file, whose blocks can be decoded independently.
 #[derive(Clone, Debug)]
 pub struct Transport {
-    /// Bytes of the file.
+    /// Contents of the `.mlz` file.
     pub bytes: Vec<u8>,
-    /// Number of blocks.
+    /// Number of independently decodable blocks in the file.
     pub blocks: usize,
-    /// Size of the file by content.
+    /// Size of the `.mlz` file by content, in bytes.
     pub sizes: TransportSizes,
-    /// Parts of the input mesh that the file does not hold.
+    /// Parts of the input mesh that the file does not store.
     pub left_out: Vec<LeftOut>,
 }
 
-/// Part of a mesh that a transport file does not hold.
+/// Part of a mesh that an `.mlz` file does not store.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LeftOut {
-    /// Normals, texture coordinates and all other attributes of wedges.
+    /// Normals, texture coordinates and all other attributes.
     Attributes,
-    /// Materials of faces.
+    /// Materials assigned to faces.
     Materials,
-    /// Objects of faces.
+    /// Objects that faces belong to.
     Objects,
     /// Vertices that no face uses.
     UnusedVertices,
 }
 
-/// Size of a transport file by content, in bytes; the three add up to the file.
+/// Size of an `.mlz` file by content, in bytes; the three numbers add up to the whole file.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TransportSizes {
-    /// Positions of vertices.
+    /// Size of the vertex positions, in bytes.
     pub positions: f64,
-    /// Vertices of faces, and the welding of blocks.
+    /// Size of the vertex indices of all faces, with the welding of blocks, in bytes.
     pub connectivity: f64,
-    /// Header, index, models, and the coder's final state of each block.
+    /// Size of everything else in bytes: header, index, models, and the coder's final state of each
+    /// block.
     pub headers: f64,
 }
 
 /// Options of [`Transport::encode`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TransportOptions {
-    /// Grid that positions are rounded to.
+    /// Grid to which vertex positions are rounded.
     pub quantization: TransportQuantization,
     /// Approximate number of faces per block; some blocks have a quarter more.
     pub block_faces: usize,
 }
 
-/// Grid of cubic cells that positions are rounded to.
+/// Grid of cubic cells to which vertex positions are rounded.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum TransportQuantization {
-    /// Uniform grid over the mesh with 2^bits − 1 cells along the longest side, for 1 to 21 bits.
+    /// Uniform grid over the mesh with 2^bits − 1 cells along its longest side, for 1 to 21 bits.
     Bits(u32),
-    /// Cells of a lattice: vertices that meshes share decode to the same place in all of them.
+    /// Cells of a lattice: vertices that several meshes share decode to the same place in all of
+    /// them.
     Lattice(Lattice),
 }
 
@@ -101,21 +103,21 @@ pub enum TransportError {
     /// A coordinate is infinite, NaN, or too large for `f32`.
     #[error("{0} has a coordinate that is not finite or is beyond 1e38")]
     NotFinite(VertexId),
-    /// The number of bits is out of range.
+    /// The requested number of bits is out of range.
     #[error("bits must be between 1 and {MAX_BITS}, not {0}")]
     Bits(u32),
-    /// The mesh spans more cells than the format can number.
+    /// The mesh spans more grid cells than the format can number.
     #[error(
         "the mesh spans {cells:.0} cells, more than {MAX_BITS} bits can number: use larger cells"
     )]
     TooFine {
-        /// Number of cells along the longest side.
+        /// Number of grid cells along the longest side of the mesh.
         cells: f64,
     },
     /// The mesh is so far from the origin that neighbouring cells coincide in `f64`.
     #[error("the mesh is too far from the origin for cells of this size: use larger cells")]
     TooFar,
-    /// The number of faces per block is out of range.
+    /// The requested number of faces per block is out of range.
     #[error("faces per block must be between 16 and {most}, not {0}", most = max_block_faces())]
     Block(usize),
 }

@@ -1,4 +1,4 @@
-//! Prediction of vertices and of the spread around the prediction, for four blocks at a time.
+//! Prediction of vertex positions and of the spread around them, for four blocks at a time.
 //!
 //! The prediction is a parallelogram [TG98] corrected by weighted features of its surroundings. It
 //! is more certain across the surface than along it. Each number is one lane of four, so that the

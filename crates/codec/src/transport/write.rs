@@ -1,4 +1,4 @@
-//! Writing a mesh as a transport file.
+//! Encoding of a mesh as a transport file.
 
 use meshlod_mesh::{Connectivity, Mesh, VertexId};
 
@@ -20,8 +20,9 @@ use super::{
 const MAX_MESH_FACES: usize = 1 << 30;
 
 impl Transport {
-    /// Encodes a mesh: positions rounded to a grid, faces unchanged except for the corner they
-    /// start at.
+    /// Encodes a mesh as an `.mlz` file, with positions rounded to a grid.
+    ///
+    /// Faces are unchanged except for the corner they start at.
     ///
     /// Every vertex that a face uses comes back once. [`Transport::left_out`] lists what is not
     /// stored: attributes, materials, objects and unused vertices. Cost: O(n).

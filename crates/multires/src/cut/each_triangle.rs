@@ -1,4 +1,4 @@
-//! Enumeration of the triangles of all cuts.
+//! Enumeration of every triangle that occurs in some cut.
 
 use super::front::Front;
 use crate::forest::MAX_LEVELS;

@@ -1,4 +1,4 @@
-//! Static and dynamic extraction as published.
+//! Static and dynamic extraction from the explicit MT, as published.
 
 use std::collections::{BTreeSet, VecDeque};
 

@@ -56,7 +56,7 @@ impl Explicit {
         self.updates.len()
     }
 
-    /// Returns the number of triangles of all levels together.
+    /// Returns the number of triangles that occur in any level.
     pub fn triangle_count(&self) -> usize {
         self.triangles.len()
     }

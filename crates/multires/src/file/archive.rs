@@ -36,8 +36,8 @@ pub struct Extract {
 }
 
 impl Archive<Vec<u8>> {
-    /// Encodes a forest as the bytes of a `.mlod` file and certifies that none of its cuts has a
-    /// crack.
+    /// Encodes recorded contractions as the bytes of a `.mlod` file, and certifies that no cut of
+    /// the model has a crack.
     ///
     /// Vertices are rounded to a lattice as fine as `storage` demands. If the forest is
     /// [lossless](Forest::lossless), the input's vertices keep their exact positions. Errors are
@@ -49,8 +49,7 @@ impl Archive<Vec<u8>> {
         write::write(forest, storage)
     }
 
-    /// Recomputes all checksums of modified bytes, so that tests of [`Archive::read`] get past
-    /// them.
+    /// Recomputes all checksums of a modified `.mlod` file, for tests of [`Archive::read`].
     #[doc(hidden)]
     pub fn rewrite_checksums(bytes: &mut [u8]) {
         header::rewrite_checksums(bytes);

@@ -1,4 +1,4 @@
-//! The contraction forest recorded from a simplification, from which both encodings are built.
+//! The contraction forest recorded from a simplification, from which all models are built.
 
 mod by_level;
 mod recorder;
@@ -150,7 +150,7 @@ impl Forest {
         self.faces.len()
     }
 
-    /// Returns the number of edge contractions; a face contraction counts as two.
+    /// Returns the number of recorded edge contractions; a face contraction counts as two.
     pub fn update_count(&self) -> usize {
         self.updates.len()
     }

@@ -144,8 +144,8 @@ impl Implicit {
         self.positions.len()
     }
 
-    /// Returns a compact form of the model with 22 bytes per vertex, or `None` if that would change
-    /// an answer.
+    /// Returns a compact form of the model with 22 bytes per vertex, or `None` if the numbers would
+    /// change.
     ///
     /// The positions of two children take 12 of these bytes, and the rest of an update 10.
     ///

@@ -1,10 +1,10 @@
-//! Strips that follow a changing level incrementally.
+//! Triangle strips that follow a changing level of detail incrementally.
 
 use super::{LiveStrips, StripEffort};
 use crate::skip::{LevelCursor, MergeTree};
 use crate::strips::Strips;
 
-/// Strips of a level that goes up and down.
+/// Triangle strips of a mesh whose level of detail goes up and down.
 ///
 /// Unlike [`SkipStrip::repaired`](crate::SkipStrip::repaired) it updates only what changes from one
 /// level to the next, so the strips depend on the levels before.
@@ -15,14 +15,14 @@ pub struct LevelStrips {
 }
 
 impl LevelStrips {
-    /// Starts at the full mesh with the given strips.
+    /// Starts at the full-resolution mesh with the given triangle strips of it.
     pub fn new(tree: MergeTree, strips: &Strips, effort: StripEffort) -> Self {
         let triangles = (0..).zip(tree.faces().iter().copied());
         Self { live: LiveStrips::new(triangles, strips, effort), cursor: LevelCursor::new(tree) }
     }
 
-    /// Moves to the level after this many contractions, clamped to the maximum. Returns the number
-    /// of triangles added, removed or changed.
+    /// Moves to the level after a given number of contractions, clamped to the maximum, and returns
+    /// the number of triangles added, removed or changed.
     ///
     /// Cost: proportional to the faces below the vertices that vanish or return.
     pub fn set_level(&mut self, contractions: usize) -> usize {
@@ -30,17 +30,17 @@ impl LevelStrips {
         self.live.update(changes)
     }
 
-    /// Returns the number of contractions of the current level.
+    /// Returns the number of contractions between the full-resolution mesh and the current level.
     pub fn level(&self) -> usize {
         self.cursor.level()
     }
 
-    /// Returns the tree of contractions.
+    /// Returns the merge tree, which holds the mesh and its contractions.
     pub fn tree(&self) -> &MergeTree {
         self.cursor.tree()
     }
 
-    /// Returns the strips of the current level.
+    /// Returns the triangle strips of the current level.
     ///
     /// Cost: linear in their length.
     pub fn strips(&self) -> Strips {

@@ -1,4 +1,4 @@
-//! Strips of a changing list of triangles, repaired where it changes.
+//! Triangle strips of a changing list of triangles, repaired where the list changes.
 
 use meshlod_mesh::VertexId;
 use rustc_hash::FxHashMap;
@@ -11,7 +11,7 @@ use crate::path_cover::PathCover;
 use crate::strips::Strips;
 use crate::verify::{has_three_corners, lowest_first};
 
-/// Strips of triangles in numbered slots, which may be overwritten.
+/// Triangle strips of a list of triangles in numbered slots, which may be overwritten.
 ///
 /// They draw exactly the triangles in the slots. A change breaks the strips at that place and
 /// relinks them around it; the rest stays.
@@ -34,8 +34,9 @@ pub struct LiveStrips {
 const FREE: [VertexId; 3] = [VertexId(0); 3];
 
 impl LiveStrips {
-    /// Places triangles in slots and adopts strips for them. Triangles missing from the strips, or
-    /// drawn but in no slot, do no harm.
+    /// Places triangles in numbered slots and takes over triangle strips that draw them.
+    ///
+    /// Triangles missing from the strips, or drawn but in no slot, do no harm.
     ///
     /// Cost: O(n log n); memory for the highest slot.
     /// # Panics
@@ -69,8 +70,8 @@ impl LiveStrips {
         }
     }
 
-    /// Overwrites slots, `None` to empty one, and repairs the strips there. Returns the number of
-    /// triangles added, removed or changed.
+    /// Overwrites triangle slots (`None` empties one), repairs the strips there, and returns the
+    /// number of triangles added, removed or changed.
     ///
     /// Cost: proportional to the changes and the walks along the strips through them.
     /// # Panics
@@ -89,7 +90,7 @@ impl LiveStrips {
         count
     }
 
-    /// Returns the current strips.
+    /// Returns the current triangle strips, which draw exactly the triangles in the slots.
     ///
     /// Cost: linear in their length.
     pub fn strips(&self) -> Strips {

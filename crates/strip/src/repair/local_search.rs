@@ -1,4 +1,4 @@
-//! Local search for better strips around given nodes.
+//! Local search for better triangle strips around given nodes.
 
 use crate::anneal::{Annealing, Limits, Starts};
 use crate::energy::{Energy, Prices};
@@ -6,12 +6,12 @@ use crate::path_cover::PathCover;
 use crate::random::Random;
 use crate::region::Region;
 
-/// Effort spent on repairing strips.
+/// Effort spent on repairing triangle strips after a change.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum StripEffort {
-    /// Fast enough for a level that changes every frame.
+    /// Quick repair, fast enough for a level of detail that changes every frame.
     Quick,
-    /// For levels that are made once.
+    /// Thorough repair, for levels of detail that are made once.
     #[default]
     Thorough,
 }

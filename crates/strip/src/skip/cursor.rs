@@ -1,4 +1,4 @@
-//! Moves between levels of a merge tree by what changes.
+//! Moves between levels of a merge tree, visiting only what changes.
 
 use meshlod_mesh::VertexId;
 

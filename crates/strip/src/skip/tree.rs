@@ -1,4 +1,4 @@
-//! The merge tree: which vertex each one merges into, and when.
+//! The merge tree: the vertex that each one merges into, and when.
 
 use meshlod_mesh::{Mesh, VertexId};
 use meshlod_simplify::{History, Method, Options, Simplifier, SimplifyError, Target};
@@ -7,7 +7,8 @@ use thiserror::Error;
 use super::pointers::Pointers;
 use crate::verify::{has_three_corners, lowest_first};
 
-/// A mesh and its half-edge contractions, in order; a level is the mesh after some of them.
+/// A mesh and the sequence of its half-edge contractions; each level is the mesh after some of
+/// them.
 ///
 /// Points never move, so every vertex of a level is a vertex of the mesh and one vertex buffer
 /// serves all levels. Degenerate faces and duplicates are left out.
@@ -27,15 +28,16 @@ pub struct MergeTree {
 /// Rank of a vertex that never vanishes.
 const STAYS: u32 = u32::MAX;
 
-/// Reasons why strips cannot follow a history.
+/// Reason why a merge tree cannot be built from a recorded simplification.
 #[derive(Clone, Copy, Debug, Error, PartialEq, Eq)]
 pub enum HistoryError {
-    /// The merged vertex is at neither end of the edge.
+    /// A contraction moves a vertex instead of merging it into the other end of its edge.
     #[error(
         "contraction {0} moves a point; strips need half-edge contractions, for example by qem-endpoint"
     )]
     Moves(usize),
-    /// A removed face does not collapse: the history is of another mesh, or a component vanished.
+    /// A contraction does not fit the mesh: the history is of another mesh, or a component
+    /// vanished.
     #[error(
         "contraction {0} does not fit this mesh; record this mesh, without letting components vanish"
     )]
@@ -43,7 +45,7 @@ pub enum HistoryError {
 }
 
 impl MergeTree {
-    /// Creates a tree without contractions.
+    /// Creates the merge tree of a mesh without any contractions.
     ///
     /// Cost: O(n log n).
     pub fn new(mesh: &Mesh) -> Self {
@@ -57,7 +59,8 @@ impl MergeTree {
         }
     }
 
-    /// Simplifies a mesh to a target by `qem-endpoint` and records the contractions.
+    /// Simplifies a mesh to a target by half-edge contractions (`qem-endpoint`) and records them in
+    /// a merge tree.
     /// # Errors
     /// If simplification refuses the mesh or the target.
     pub fn record(mesh: &Mesh, target: Target) -> Result<Self, SimplifyError> {
@@ -67,7 +70,7 @@ impl MergeTree {
         Ok(Self::from_history(mesh, &history).expect("just recorded from this mesh"))
     }
 
-    /// Builds the tree from a recorded history.
+    /// Builds the merge tree of a mesh from the recorded history of its simplification.
     ///
     /// Cost: linear, apart from sorting the mesh's faces.
     /// # Errors
@@ -103,34 +106,36 @@ impl MergeTree {
         Ok(this)
     }
 
-    /// Returns the number of contractions.
+    /// Returns the number of contractions that the merge tree holds.
     pub fn contractions(&self) -> usize {
         self.faces_left.len() - 1
     }
 
-    /// Returns the number of vertices of the mesh.
+    /// Returns the number of vertices of the full-resolution mesh.
     pub fn vertices(&self) -> usize {
         self.parents.len()
     }
 
-    /// Returns the number of faces left after this many contractions, clamped to the maximum.
+    /// Returns the number of faces left after a given number of contractions, clamped to the
+    /// maximum.
     pub fn faces_left(&self, contractions: usize) -> usize {
         self.faces_left[contractions.min(self.contractions())] as usize
     }
 
-    /// Returns the fewest contractions that leave at most `faces` faces, or all contractions if
-    /// none suffice.
+    /// Returns the least number of contractions that leaves at most `faces` faces, or the number of
+    /// all contractions if none suffices.
     pub fn contractions_to(&self, faces: usize) -> usize {
         let found = self.faces_left.partition_point(|&left| left as usize > faces);
         found.min(self.contractions())
     }
 
-    /// Returns the faces of the mesh.
+    /// Returns the faces of the full-resolution mesh.
     pub fn faces(&self) -> &[[VertexId; 3]] {
         &self.faces
     }
 
-    /// Returns the faces of the level after this many contractions, by vertices of the mesh.
+    /// Returns the faces of the level after a given number of contractions, by vertices of the
+    /// full-resolution mesh.
     ///
     /// Cost: linear.
     pub fn level(&self, contractions: usize) -> Vec<[VertexId; 3]> {
