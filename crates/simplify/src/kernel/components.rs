@@ -9,18 +9,18 @@ use crate::kernel::mesh::vertex::VertexFlags;
 use crate::kernel::metric::{Metric, protection};
 use crate::kernel::schedule::bucket_queue::{bucket, last_bucket};
 
-/// A component that may vanish.
+/// A connected component that may be removed as a whole.
 #[derive(Clone, Debug)]
 pub(crate) struct Component {
-    /// Bucket of its cost.
+    /// Queue bucket of the component's cost.
     pub(crate) bucket: u16,
-    /// Diagonal of its bounding box in the input, in the frame's units.
+    /// Diagonal of the component's bounding box in the input, in the frame's units.
     pub(crate) size: f32,
-    /// All of its vertices.
+    /// All vertices of the component.
     pub(crate) vertices: Vec<u32>,
 }
 
-/// Components that may vanish, and those that have.
+/// Components that may be removed as a whole, and those that have been.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Components {
     /// Components that may vanish, the cheapest last.
@@ -88,19 +88,19 @@ impl Components {
         components
     }
 
-    /// Returns the bucket of the cheapest component that may vanish.
+    /// Returns the queue bucket of the cheapest component that may be removed.
     #[inline]
     pub(crate) fn next_bucket(&self) -> Option<u16> {
         self.waiting.last().map(|component| component.bucket)
     }
 
-    /// Takes the cheapest component if its bucket is at most `last`.
+    /// Takes the cheapest component out of the list if its bucket is at most `last`.
     pub(crate) fn take_up_to(&mut self, last: u16) -> Option<Component> {
         let is_due = |component: &mut Component| component.bucket <= last.min(last_bucket());
         self.waiting.pop_if(is_due)
     }
 
-    /// Makes the components that an error bound has refused eligible again.
+    /// Makes components that an error bound has refused candidates for removal again.
     pub(crate) fn wake_all(&mut self) {
         if !self.refused.is_empty() {
             self.waiting.append(&mut self.refused);

@@ -1,4 +1,4 @@
-//! The log of the kernel's steps, and its replay for observers.
+//! Log of the contractions made by the kernel, and its replay for observers.
 //!
 //! The kernel has no faces. For observers its contractions are repeated on a surface that has them,
 //! without costs and checks, as everything is decided.
@@ -16,24 +16,24 @@ use crate::surface::contracted::Freedom;
 use crate::surface::neighbourhood::Neighbourhood;
 use crate::surface::{Placed, Surface};
 
-/// A logged contraction: 28 bytes.
+/// A contraction in the log: 28 bytes.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct LoggedContraction {
     pub(crate) kept: u32,
     pub(crate) gone: u32,
-    /// Place of the kept vertex afterwards.
+    /// Position of the remaining vertex after the contraction, in the frame.
     pub(crate) place: Vec3,
-    /// Square of the distance that the surface has moved there.
+    /// Square of the distance that the surface has moved at that vertex.
     pub(crate) moved: f32,
     /// Bucket that the contraction was taken from.
     pub(crate) front: u16,
 }
 
-/// A logged step.
+/// A step in the log: a contraction, or the removal of a component.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Logged {
     Contraction(LoggedContraction),
-    /// Index of the component among those that have vanished.
+    /// Index of the component among those that were removed as a whole.
     Vanished(usize),
 }
 
@@ -47,7 +47,7 @@ pub(crate) struct InputNames<'w> {
 }
 
 impl InputNames<'_> {
-    /// Returns the vertex of the input that `v` is, or is a copy of.
+    /// Returns the input vertex that `v` is, or is a copy of.
     #[inline]
     pub(crate) fn input(&self, v: u32) -> VertexId {
         VertexId(self.order.input(self.store.origin(v)))
@@ -76,7 +76,7 @@ pub(crate) fn merge(logs: impl Iterator<Item = Vec<Logged>>) -> Vec<Logged> {
     merged.into_iter().map(|(_, done)| done).collect()
 }
 
-/// Repeats contractions on a surface and shows them to the observer.
+/// Repeats logged contractions on a surface and shows them to an observer.
 pub(crate) fn replay(
     (log, values): (&[Logged], &[RecordedValues]),
     components: &[Component],

@@ -20,13 +20,13 @@ struct Counted {
     scale: f64,
 }
 
-/// Weighted channels of the wedges.
+/// Weighted attribute values of the wedges, as channels comparable to lengths.
 pub(crate) struct Channels {
     counted: Vec<Counted>,
 }
 
 impl Channels {
-    /// Selects the channels of a surface; `None` if no layer counts.
+    /// Selects the attribute channels of a surface; `None` if no layer has a weight.
     pub(crate) fn new(surface: &Surface, weights: &AttributeWeights) -> Option<Self> {
         let wedges = surface.wedges.as_ref()?;
         let diagonal = diagonal(surface);
@@ -46,13 +46,13 @@ impl Channels {
         (!counted.is_empty()).then_some(Self { counted })
     }
 
-    /// Returns the number of channels.
+    /// Returns the number of attribute channels.
     pub(crate) fn count(&self) -> usize {
         self.counted.iter().map(|counted| counted.width).sum()
     }
 
-    /// Returns a wedge's values in all channels, in model units. Values that are not finite count
-    /// as zero.
+    /// Returns the values of a wedge in all channels, in model units. Values that are not finite
+    /// count as zero.
     pub(crate) fn values<'a>(
         &'a self,
         wedges: &'a Wedges,

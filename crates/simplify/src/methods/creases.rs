@@ -20,7 +20,8 @@ const MOST_FACES: usize = 64;
 /// Valence up to which a small buffer is enough; most vertices stay below.
 const FEW_FACES: usize = 12;
 
-/// Statistics of the angles by which the surface turns at the edges of a vertex.
+/// Statistics of the turns of the surface at the edges of a vertex; a turn is 1 minus the cosine of
+/// the angle between the normals of an edge's two faces.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Turns {
     /// Mean of the turns, G in [LJ05].

@@ -1,4 +1,4 @@
-//! Priority of face constriction: size, sharpness, and the resulting valence.
+//! Priority of face constriction by the size, sharpness and resulting valence of a face.
 
 use meshlod_mesh::FaceId;
 

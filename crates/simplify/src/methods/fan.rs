@@ -10,14 +10,14 @@ pub(crate) struct Fan {
     rims: Vec<Rim>,
 }
 
-/// Spoke that is a boundary edge or a seam.
+/// A spoke of the fan that is a boundary edge or a seam.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Rim {
     /// Index in the ring of its other end.
     pub(crate) place: u32,
-    /// Position of that end.
+    /// Position of the spoke's other end.
     pub(crate) end: DVec3,
-    /// Index of one of its faces.
+    /// Index of one of the faces at the spoke.
     pub(crate) spoke: u32,
 }
 
@@ -39,16 +39,16 @@ struct Triangle {
 /// Squared sine of the angle at the centre below which a face is treated as its edges only.
 const SLIVER: f64 = 1e-12;
 
-/// Closest point of a fan to a query point.
+/// Closest point of a triangle fan to a query point.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Nearest {
-    /// Vector from it to the query point.
+    /// Vector from the closest point to the query point.
     pub(crate) off: DVec3,
     /// Squared length of `off`.
     pub(crate) squared: f64,
-    /// Weight of the centre in it: 1 at the centre, 0 on the ring.
+    /// Barycentric weight of the centre in the closest point: 1 at the centre, 0 on the ring.
     pub(crate) weight: f64,
-    /// Face that contains it.
+    /// Index of the face that contains the closest point.
     pub(crate) spoke: usize,
     /// Rim edge that contains it, if it had to be on one.
     pub(crate) rim: Option<usize>,
@@ -60,7 +60,7 @@ impl Fan {
         self.rims.clear();
     }
 
-    /// Adds the triangle of the next ring edge.
+    /// Adds the triangle between the centre and the next edge of the ring.
     pub(crate) fn add_spoke(&mut self, ends: [DVec3; 2]) {
         self.spokes.push(Triangle::new(ends, self.centre));
     }
@@ -73,7 +73,7 @@ impl Fan {
         &self.rims
     }
 
-    /// Moves the centre.
+    /// Moves the centre of the fan.
     pub(crate) fn place(&mut self, centre: DVec3) {
         self.centre = centre;
         for triangle in &mut self.spokes {
@@ -92,7 +92,8 @@ impl Fan {
         self.spokes[spoke].normal
     }
 
-    /// Returns the point nearest to `x`, restricted to the rim if `on_rim` is set and there is one.
+    /// Returns the point of the fan nearest to `x`, restricted to the rim if `on_rim` is set and
+    /// there is a rim.
     #[inline]
     pub(crate) fn nearest(&self, x: DVec3, on_rim: bool) -> Nearest {
         let from = x - self.centre;

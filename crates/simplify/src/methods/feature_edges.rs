@@ -5,7 +5,7 @@ use meshlod_mesh::{FaceId, Side, VertexId};
 use crate::surface::ties::is_contact;
 use crate::surface::{Flags, Surface};
 
-/// Edge that is visible in silhouettes, textures or contacts.
+/// An edge that is visible in silhouettes, textures or contacts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct FeatureEdge {
     /// Ends of the edge in the orientation of its face, or of one of its two faces.
@@ -13,7 +13,7 @@ pub(crate) struct FeatureEdge {
     pub(crate) is_boundary: bool,
 }
 
-/// Returns the feature edges at some vertices, each once.
+/// Returns the feature edges at the given vertices, each once.
 ///
 /// Cost: quadratic in the valence, only for vertices on a feature edge.
 pub(crate) fn feature_edges(surface: &Surface, vertices: &[VertexId]) -> Vec<FeatureEdge> {

@@ -34,7 +34,7 @@ const ROUNDS: usize = 2;
 /// .34 with 1e-2, .29 with 1e-1, and a mean of .0148, .0150, .0157.
 const HOLD: f64 = 1e-2;
 
-/// Sample energy of [Hop96], as priority and as placement.
+/// Energy of surface samples [Hop96], as priority and as placement.
 pub(crate) struct Energy;
 
 impl Priority<Samples> for Energy {

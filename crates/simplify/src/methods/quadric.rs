@@ -63,7 +63,7 @@ impl Symmetric {
             + DVec3::new(o.z * x.y + o.y * x.z, o.z * x.x + o.x * x.z, o.y * x.x + o.x * x.y)
     }
 
-    /// Returns PAP, A the matrix and P the projection along the unit vector `n`.
+    /// Returns PAP, where A is the matrix and P the projection along the unit vector `n`.
     #[inline]
     pub(crate) fn within(&self, n: DVec3) -> Self {
         let an = self.apply(n);
@@ -80,7 +80,7 @@ impl Symmetric {
         }
     }
 
-    /// Solves for the x with matrix · x = `right`; the result is not finite if there is none.
+    /// Solves matrix · x = `right` for x; the result is not finite if the matrix is singular.
     #[inline]
     pub(crate) fn solve(&self, right: DVec3) -> DVec3 {
         // The determinant is a cubic in the entries. Scaling by a power of two keeps it in range
@@ -95,8 +95,8 @@ impl Symmetric {
     }
 }
 
-/// Quadratic function Q(x) = x'Ax + 2b·x + c, x an offset from the quadric's origin, with its
-/// weight.
+/// Quadratic function Q(x) = x'Ax + 2b·x + c with its weight, where x is an offset from the
+/// quadric's origin.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Quadric {
     a: Symmetric,
@@ -172,13 +172,13 @@ impl Quadric {
         Self::new(a, DVec3::ZERO, 0.0).seen_from(-from)
     }
 
-    /// Returns the function with weight zero, so that it does not count in the mean.
+    /// Returns the quadric with weight zero, so that it does not count in the mean.
     #[inline]
     pub(crate) fn as_constraint(self) -> Self {
         Self { weight: 0.0, ..self }
     }
 
-    /// Adds the square of offset + slope·x, times `weight`, without adding to the weight of the
+    /// Adds `weight` times the square of offset + slope·x, without adding to the weight of the
     /// mean.
     #[inline]
     pub(crate) fn add_linear(&mut self, slope: DVec3, offset: f64, weight: f64) {
@@ -187,13 +187,13 @@ impl Quadric {
         self.c += weight * offset * offset;
     }
 
-    /// Returns the function plus a constant.
+    /// Returns the quadric plus a constant.
     #[inline]
     pub(crate) fn raised(self, by: f64) -> Self {
         Self { c: self.c + by, ..self }
     }
 
-    /// Returns the function relative to an origin moved by `offset`.
+    /// Returns the quadric relative to an origin moved by `offset`.
     #[inline]
     pub(crate) fn seen_from(self, offset: DVec3) -> Self {
         let ax = self.a.apply(offset);
@@ -207,7 +207,7 @@ impl Quadric {
         if value < 0.0 { 0.0 } else { value }
     }
 
-    /// Returns the value that corresponds to a mean squared distance.
+    /// Returns the value of this quadric that corresponds to a mean squared distance.
     #[inline]
     pub(crate) fn mean_of(&self, squared: f64) -> f64 {
         self.weight * squared

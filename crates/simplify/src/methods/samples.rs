@@ -20,7 +20,7 @@ const PER_FACE: f64 = 0.5;
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Sample {
     pub(crate) point: DVec3,
-    /// Squared distance to its projection on the current surface.
+    /// Squared distance from the sample to its projection on the current surface.
     pub(crate) squared: f64,
     /// Side of its face that it must stay on, if it is on a rim.
     side: Option<u8>,
@@ -29,14 +29,14 @@ pub(crate) struct Sample {
 }
 
 impl Sample {
-    /// Returns true if it must stay on a rim.
+    /// Returns true if the sample must stay on a boundary or seam.
     #[inline]
     pub(crate) fn on_rim(&self) -> bool {
         self.side.is_some()
     }
 }
 
-/// All samples, linked by face.
+/// All samples of the input surface, linked by the faces that represent them.
 pub(crate) struct Samples {
     samples: Vec<Sample>,
     /// First sample of each face.
@@ -118,7 +118,7 @@ impl Samples {
         std::iter::successors(first, move |&i| listed(self.samples[i as usize].next))
     }
 
-    /// Calls `each` for every sample that a contraction moves.
+    /// Calls `each` for every sample that a contraction reassigns.
     pub(crate) fn moving(&self, neighbourhood: &Neighbourhood, mut each: impl FnMut(&Sample)) {
         self.moving_ids(neighbourhood, |i| each(&self.samples[i as usize]));
     }
@@ -142,7 +142,7 @@ impl Samples {
         self.rims[face.index()]
     }
 
-    /// Builds the fan of the faces after a contraction.
+    /// Builds the fan of faces that a contraction would make.
     pub(crate) fn fan(
         &self,
         surface: &Surface,

@@ -9,7 +9,7 @@ use glam::DVec3;
 use crate::surface::Surface;
 use crate::surface::neighbourhood::Neighbourhood;
 
-/// Plane `normal`·x = `level`, x an offset from the given origin.
+/// Plane `normal`·x = `level`, where x is an offset from a given origin.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct VolumePlane {
     /// Sum of the normals of the replaced faces, each twice the area long.
@@ -19,8 +19,8 @@ pub(crate) struct VolumePlane {
 }
 
 impl VolumePlane {
-    /// Builds the plane of a gathered contraction, relative to `origin`. This should be near,
-    /// because the volumes of distant faces cancel badly.
+    /// Builds the plane of positions that conserve the volume in a contraction. `origin` should be
+    /// near, because the volumes of distant faces cancel badly.
     pub(crate) fn new(surface: &Surface, neighbourhood: &Neighbourhood, origin: DVec3) -> Self {
         let mut plane = Self::default();
         old_faces(surface, neighbourhood, origin, |normal, corner| plane.add(normal, corner));
@@ -33,13 +33,14 @@ impl VolumePlane {
         self.level += normal.dot(corner);
     }
 
-    /// Returns six times the volume lost with a vertex at `x`.
+    /// Returns six times the volume lost if the new vertex is at `x`.
     #[inline]
     pub(crate) fn loss(&self, x: DVec3) -> f64 {
         self.level - self.normal.dot(x)
     }
 
-    /// Returns the position nearest to `x` that conserves the volume; `x` if there is none.
+    /// Returns the position nearest to `x` that conserves the volume; `x` itself if there is no
+    /// such position.
     #[inline]
     pub(crate) fn nearest(&self, x: DVec3) -> DVec3 {
         let moved = x + self.normal * (self.loss(x) / self.normal.length_squared());
@@ -47,8 +48,8 @@ impl VolumePlane {
     }
 }
 
-/// Calls `each` for every face around, with its normal of twice its area and one of its corners
-/// relative to `origin`.
+/// Calls `each` for every face that a contraction replaces, with its normal (twice the area long)
+/// and one of its corners relative to `origin`.
 #[inline]
 pub(crate) fn old_faces(
     surface: &Surface,

@@ -30,7 +30,7 @@ pub(crate) struct AttributeQuadric<const K: usize> {
 impl<const K: usize> AttributeQuadric<K> {
     pub(crate) const EMPTY: Self = Self { squares: [Vec4::ZERO; 2], channels: [Vec4::ZERO; K] };
 
-    /// Returns the quadric of a wedge with these values and no faces yet.
+    /// Returns the quadric of a wedge that has these attribute values and no faces yet.
     pub(crate) fn of_values(values: [f32; K]) -> Self {
         let mut quadric = Self::EMPTY;
         for (channel, value) in quadric.channels.iter_mut().zip(values) {
@@ -84,7 +84,8 @@ impl<const K: usize> AttributeQuadric<K> {
         self.squares[1].z
     }
 
-    /// Returns the values of the wedge. Meaningless for the quadric of a single face.
+    /// Returns the attribute values of the wedge. They mean nothing in the quadric of a single
+    /// face.
     #[inline(always)]
     pub(crate) fn values(&self) -> [f32; K] {
         let mut values = [0.0; K];
@@ -94,7 +95,7 @@ impl<const K: usize> AttributeQuadric<K> {
         values
     }
 
-    /// Returns G: xx, yy, zz, xy, xz, yz.
+    /// Returns the matrix G of the quadric, the sum over all channels: xx, yy, zz, xy, xz, yz.
     #[inline(always)]
     pub(crate) fn squares(&self) -> [f32; 6] {
         let [a, b] = &self.squares;
@@ -105,7 +106,7 @@ impl<const K: usize> AttributeQuadric<K> {
         symmetric(self.squares())
     }
 
-    /// Returns the cost of moving the wedge by `by` and giving it these values.
+    /// Returns the cost of moving the wedge by `by` and giving it these attribute values.
     pub(crate) fn cost_onto(&self, by: Vec3, values: &[f32; K]) -> f32 {
         let by4 = by.extend(0.0);
         let squares = by.as_dvec3().dot(self.matrix() * by.as_dvec3()) as f32;
@@ -116,7 +117,7 @@ impl<const K: usize> AttributeQuadric<K> {
         squares + each.sum::<f32>()
     }
 
-    /// Returns the values that fit best at `by` from the wedge.
+    /// Returns the attribute values with the least error at `by` from the wedge.
     pub(crate) fn best_values(&self, by: DVec3) -> [f32; K] {
         let share = 1.0 / f64::from(self.weight() + TINY);
         self.channels.map(|own| own.w + (own.truncate().as_dvec3().dot(by) * share) as f32)

@@ -13,7 +13,7 @@ use crate::kernel::metric::edge_quadric_f64::EdgeQuadricF64;
 use crate::kernel::simd::LANES;
 use crate::refusal::Refusal;
 
-/// No attributes: the metric alone.
+/// Attribute model of a surface without attributes: the geometric metric alone.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct NoAttributes<M>(pub(crate) M);
 
@@ -82,8 +82,8 @@ impl<M: Metric> AttributeModel for NoAttributes<M> {
     }
 }
 
-/// Decides which end is contracted into which by pins and ties alone. A tied end stays where it is
-/// if the other end is not tied.
+/// Decides which end of an edge is contracted into the other by pins and ties alone. A tied end
+/// stays in place if the other end is not tied.
 #[inline(always)]
 pub(crate) fn by_pins(vertices: &Vertices, v: u32, target: u32) -> Result<Ends, Refusal> {
     let [first, second] = [v, target].map(|v| vertices.get(v).flags);

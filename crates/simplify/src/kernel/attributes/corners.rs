@@ -14,7 +14,7 @@ pub(crate) struct Corners<'m> {
     /// Input wedges that the wedges after the first `own` are split from.
     pub(crate) split: Vec<u32>,
     pub(crate) own: usize,
-    /// Material and object of each wedge, if there are several.
+    /// Material and object label of each wedge, if there are several.
     labels: Vec<u32>,
     /// First wedge of each vertex.
     first: Vec<u32>,
@@ -25,8 +25,8 @@ pub(crate) struct Corners<'m> {
 }
 
 impl<'m> Corners<'m> {
-    /// Finds the wedges. Returns `None` if nothing can differ at a vertex. `faces` are those of the
-    /// mesh with copies of vertices, `vertices` the number of vertices with copies.
+    /// Finds the wedges of a mesh; `None` if no vertex can have several. `faces` are those of the
+    /// mesh with copies of vertices, `vertices` is the number of vertices with copies.
     pub(crate) fn new(
         mesh: &'m Mesh,
         faces: impl Iterator<Item = [u32; 3]>,
@@ -157,7 +157,7 @@ impl<'m> Corners<'m> {
         charts
     }
 
-    /// Returns the input wedge that a wedge is or is split from.
+    /// Returns the input wedge from which a wedge was split, or the wedge itself.
     pub(crate) fn source(&self, wedge: u32) -> u32 {
         match (wedge as usize).checked_sub(self.own) {
             Some(split) if wedge != NO_VERTEX => self.split[split],
@@ -166,7 +166,7 @@ impl<'m> Corners<'m> {
     }
 }
 
-/// Returns true if the three vertices are different.
+/// Returns true if the three vertices of a face are different.
 pub(crate) fn is_face([a, b, c]: [u32; 3]) -> bool {
     a != b && b != c && c != a
 }

@@ -28,7 +28,7 @@ struct CostedLayer {
     is_uv: bool,
 }
 
-/// Attribute layers of a mesh.
+/// Attribute layers of a mesh, with the scales by which costs measure them.
 pub(crate) struct AttributeLayers<'m> {
     layers: &'m [Layer],
     costed: Vec<CostedLayer>,
@@ -85,7 +85,7 @@ impl<'m> AttributeLayers<'m> {
         Self { layers, costed, uv_weight, uncosted: Vec::new(), uncosted_of: Vec::new() }
     }
 
-    /// Returns the number of channels.
+    /// Returns the number of attribute channels.
     pub(crate) fn channels(&self) -> usize {
         self.costed.last().map_or(0, |last| last.channels.end)
     }
@@ -95,7 +95,7 @@ impl<'m> AttributeLayers<'m> {
         self.costed.iter().filter(|costed| costed.is_uv).map(|costed| costed.channels.start)
     }
 
-    /// Returns true if values outside the channels are carried along.
+    /// Returns true if some attribute values are not held by channels.
     pub(crate) fn has_uncosted(&self) -> bool {
         !self.uncosted.is_empty()
     }
@@ -187,7 +187,7 @@ impl<'m> AttributeLayers<'m> {
         values
     }
 
-    /// Returns the layers over the surviving slots.
+    /// Returns the attribute layers of the surviving slots.
     pub(crate) fn layers<const K: usize>(&self, left: &[SurvivingWedge<K>]) -> Vec<Layer> {
         let of_layer = |(i, layer): (usize, &Layer)| {
             let costed = self.costed.iter().find(|costed| costed.layer == i);

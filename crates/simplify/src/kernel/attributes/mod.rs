@@ -31,7 +31,7 @@ use crate::kernel::metric::edge_quadric_f64::EdgeQuadricF64;
 use crate::kernel::simd::LANES;
 use crate::refusal::Refusal;
 
-/// Attributes as costs and contractions use them.
+/// Attribute model of a surface, as needed for costs and contractions.
 pub(crate) trait AttributeModel: Sized + Send + Sync {
     /// Error metric of the geometry.
     type Metric: Metric;
@@ -97,12 +97,12 @@ pub(crate) trait AttributeModel: Sized + Send + Sync {
     fn recorded(&mut self) -> Vec<RecordedValues>;
 }
 
-/// Values of a wedge after a contraction.
+/// Attribute values that a contraction gave to a wedge, recorded for observers.
 #[derive(Clone, Debug)]
 pub(crate) struct RecordedValues {
     /// Index of the contraction in the log.
     pub(crate) number: usize,
     pub(crate) wedge: WedgeId,
-    /// Values in all layers, one after the other.
+    /// Values in all attribute layers, one after the other.
     pub(crate) values: Vec<f32>,
 }

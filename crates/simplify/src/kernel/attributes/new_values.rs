@@ -1,4 +1,4 @@
-//! The values of wedges after a contraction.
+//! Computes the attribute values of wedges after a contraction.
 //!
 //! A pair along the edge becomes one wedge with the values that fit both best. Where a vertex has
 //! several wedges in one chart, creases in the shading, the unpaired ones stay with their faces:
@@ -13,7 +13,7 @@ use crate::kernel::collapse::{Collapse, WedgePairs};
 use crate::kernel::metric::Metric;
 
 impl<M: Metric, const K: usize> WedgeQuadrics<'_, M, K> {
-    /// Returns the values of the wedge that a pair becomes.
+    /// Returns the attribute values of the wedge that a pair of wedges becomes.
     pub(crate) fn values(&self, collapse: &Collapse, [s0, s1]: [u32; 2]) -> [f32; K] {
         let (f0, f1) = (self.quadric(s0), self.quadric(s1));
         let before = f0.values();
@@ -25,7 +25,7 @@ impl<M: Metric, const K: usize> WedgeQuadrics<'_, M, K> {
         values
     }
 
-    /// Computes the new values of all slots of both ends.
+    /// Computes the new attribute values at all slots of both ends of an edge.
     ///
     /// If `v0` stays where it is, its values do. But if unpaired slots of `v1` join it, all are
     /// written again, because a value converted to channels and back may differ in its last digit.

@@ -1,4 +1,4 @@
-//! Preview of the attributes after a contraction, and the test for faces flipped in uv.
+//! Preview of the attributes after a contraction, with the test for faces flipped in texture space.
 //!
 //! A face shall keep the sign of its area in uv, or have next to none there. Otherwise a part of
 //! the texture would be seen twice, once mirrored.
@@ -40,15 +40,15 @@ impl<M: Metric, const K: usize> SimdTask for UvFlipsAtSeams<'_, '_, '_, M, K> {
 }
 
 impl<M: Metric, const K: usize> WedgeQuadrics<'_, M, K> {
-    /// Returns true if an end or a ring vertex is on a seam.
+    /// Returns true if an end of the edge or a vertex of its ring is on a seam.
     #[inline(always)]
     pub(crate) fn has_seam(&self, vertices: &Vertices, edge_ring: &EdgeRing, ends: Ends) -> bool {
         let any = |v: &u32| is_seam(vertices, *v);
         any(&ends.v0) || any(&ends.v1) || edge_ring.ids().iter().any(any)
     }
 
-    /// Computes the new values away from seams, where slots are vertices. Returns whether a face
-    /// flips in uv.
+    /// Computes the new attribute values away from seams, where slots are vertices. Returns true if
+    /// a face flips in texture space.
     #[inline(always)]
     pub(crate) fn preview_smooth(&mut self, edge_ring: &EdgeRing, collapse: &Collapse) -> bool {
         let Ends { v0, v1, .. } = collapse.ends;

@@ -51,14 +51,15 @@ impl InputSurface {
         Self { faces, frame, places, rims }
     }
 
-    /// Returns the original place of a vertex.
+    /// Returns the position of a vertex in the input.
     #[inline]
     pub(crate) fn place(&self, v: u32) -> Vec3 {
         self.places[v as usize]
     }
 
-    /// Returns the distance of a place from the input, in the frame: any value up to `enough` if it
-    /// is no larger than that, `None` beyond `max_error`. `near` is a face expected to be close.
+    /// Returns the distance between a position and the input surface, in the frame's units; any
+    /// value up to `enough` if it is no larger than that, `None` beyond `max_error`. `near` is a
+    /// face expected to be close.
     #[inline]
     pub(crate) fn distance(
         &self,
@@ -73,7 +74,7 @@ impl InputSurface {
         Some((found.distance_squared.sqrt() / unit) as f32)
     }
 
-    /// Samples the prominent edges at this spacing, up to a limit.
+    /// Samples the prominent edges at this spacing, up to a limit on the number of samples.
     pub(crate) fn between(&self, spacing: f32) -> EdgeSamples {
         let mut found = Vec::new();
         for &[u, v] in &self.rims {
@@ -93,7 +94,7 @@ impl InputSurface {
 }
 
 impl EdgeSamples {
-    /// Returns the points of a vertex.
+    /// Returns the samples that are grouped at a vertex.
     #[inline]
     pub(crate) fn of(&self, v: u32) -> &[Vec3] {
         match self.starts.get(v as usize..v as usize + 2) {

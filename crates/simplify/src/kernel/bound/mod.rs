@@ -1,4 +1,4 @@
-//! A bound on the error, held by measured distances to the input.
+//! The error bound, enforced by measuring distances from the input.
 //!
 //! The estimate of how far the surface has moved adds squares, which misses steps that all go the
 //! same way. So the distances travelled are also added as lengths. Where their sum comes near the
@@ -28,7 +28,7 @@ const TOO_FAR: f32 = 2.0;
 /// Number of points on each old edge that are compared with the new faces.
 const EDGE_POINTS: usize = 3;
 
-/// Bound on the distance to the input, for the whole surface.
+/// Bound on the distance between surface and input, for the whole surface.
 pub(crate) struct ErrorBound<'m> {
     input: &'m InputSurface,
     between: EdgeSamples,
@@ -40,7 +40,7 @@ pub(crate) struct ErrorBound<'m> {
     travelled: Vec<f32>,
 }
 
-/// Error bound of a part of the surface.
+/// Error bound of one part of the surface.
 pub(crate) struct BoundPart<'v> {
     input: &'v InputSurface,
     between: &'v EdgeSamples,
@@ -94,7 +94,7 @@ impl<'m> ErrorBound<'m> {
     }
 }
 
-/// A contraction to be checked against the bound.
+/// A contraction to be checked against the error bound.
 pub(crate) struct BoundedStep<'a> {
     /// Ring of the edge, with the new vertex placed.
     pub(crate) edge_ring: &'a EdgeRing,
@@ -109,7 +109,7 @@ pub(crate) struct BoundedStep<'a> {
 }
 
 impl BoundPart<'_> {
-    /// Returns the bound, in the frame's units.
+    /// Returns the error bound, in the frame's units.
     pub(crate) fn max_error(&self) -> f32 {
         self.max_error
     }

@@ -1,4 +1,4 @@
-//! Measures distances from points of new faces to the input.
+//! Measures distances between points on new faces and the input.
 
 use glam::Vec3;
 use meshlod_mesh::FaceId;
@@ -24,22 +24,22 @@ pub(crate) struct Probe<'v> {
     farthest: f32,
 }
 
-/// A place, and its distance from the input.
+/// A position, and its distance from the input.
 pub(crate) type Probed = (Vec3, f32);
 
 impl<'v> Probe<'v> {
-    /// Starts a measurement with this bound, in the frame's units.
+    /// Starts measuring distances with this error bound, in the frame's units.
     pub(crate) fn new(input: &'v InputSurface, max_error: f32) -> Self {
         Self { input, max_error, near: None, farthest: 0.0 }
     }
 
-    /// Returns the largest distance so far.
+    /// Returns the largest distance measured so far.
     pub(crate) fn farthest(&self) -> f32 {
         self.farthest
     }
 
-    /// Returns an upper bound on the distance of a place from the input; `None` if it is beyond the
-    /// error bound.
+    /// Returns an upper bound on the distance of a position from the input; `None` if it is beyond
+    /// the error bound.
     pub(crate) fn at(&mut self, place: Vec3) -> Option<f32> {
         let limits = [CALM * self.max_error, self.max_error];
         let apart = self.input.distance(place, &mut self.near, limits)?;
@@ -47,7 +47,7 @@ impl<'v> Probe<'v> {
         Some(apart)
     }
 
-    /// Measures points between two places; `None` if one is beyond the bound.
+    /// Measures distances at points between two positions; `None` if one is beyond the error bound.
     pub(crate) fn along(&mut self, ends: [Probed; 2]) -> Option<()> {
         self.halve(ends, HALVINGS)
     }

@@ -1,5 +1,5 @@
-//! Deviation of the surface by a contraction: the distances of the two old vertices from the new
-//! faces, and of the new vertex from the old faces.
+//! Distance by which a contraction moves the surface: from the two old vertices to the new faces,
+//! and from the new vertex to the old faces.
 //!
 //! The cost is a mean over planes, and planes do not see the tip of a spike: all of them pass close
 //! to its foot. Nor do they see a vertex that slides out along a fin.
@@ -42,8 +42,8 @@ impl EdgeRing {
         select_max(nearest[0], select_max(nearest[1], nearest[2]))
     }
 
-    /// Returns the squared distance of a place from each old face: the spokes, then the dying
-    /// faces.
+    /// Returns the squared distance of a position from each old face: the spokes first, then the
+    /// dying faces.
     pub(crate) fn squared_distances_to_old(&self, place: Vec3) -> [f32; ROOM] {
         let mut squares = [0.0; ROOM];
         for start in self.lane_starts() {
@@ -61,7 +61,8 @@ impl EdgeRing {
         squares
     }
 
-    /// Returns the largest squared distance of a place from the planes of the old faces that stay.
+    /// Returns the largest squared distance of a position from the planes of the old faces that
+    /// stay.
     pub(crate) fn off_planes(&self, place: Vec3) -> f32 {
         let mut farthest = 0.0;
         for start in self.lane_starts() {
@@ -104,7 +105,7 @@ impl FaceFan {
         self.lay(edge_ring, &edge_ring.new, |_| place);
     }
 
-    /// Lays out the old faces, the dying ones included.
+    /// Lays out the old faces, including those that the contraction removes.
     pub(crate) fn lay_old(&mut self, edge_ring: &EdgeRing) {
         self.0.clear();
         self.lay(edge_ring, &edge_ring.old, |of_v1| edge_ring.along * of_v1);
@@ -137,7 +138,7 @@ impl FaceFan {
         }
     }
 
-    /// Returns the squared distance of a point given relative to `v0`.
+    /// Returns the squared distance from the faces to a point given relative to `v0`.
     #[inline]
     pub(crate) fn squared(&self, point: Vec3) -> f32 {
         let mut nearest = [f32::INFINITY; LANES];

@@ -23,7 +23,7 @@ pub(crate) const ROOM: usize = MAX_RING + 2 * LANES;
 /// Smallest cosine between the normals of a face before and after, as in the policy engine.
 const MIN_COSINE: f32 = 0.2;
 
-/// One-ring of an edge, with positions relative to `v0`.
+/// One-ring of an edge, with positions relative to its end `v0`.
 pub(crate) struct EdgeRing {
     /// Vertices of the ring.
     pub(crate) ids: [u32; ROOM],
@@ -67,7 +67,7 @@ impl EdgeRing {
         }
     }
 
-    /// Returns the vertices of the ring.
+    /// Returns the vertices of the edge's ring.
     #[inline(always)]
     pub(crate) fn ids(&self) -> &[u32] {
         &self.ids[..self.len]
@@ -352,13 +352,14 @@ impl EdgeRing {
         if dying == 0 { 0 } else { self.of_v0 }
     }
 
-    /// Returns the position of a ring vertex relative to `v0`.
+    /// Returns the position of the ring vertex with this index, relative to `v0`.
     #[inline(always)]
     pub(crate) fn relative(&self, i: usize) -> Vec3 {
         one(&self.ring, i)
     }
 
-    /// Returns true if a spoke is a face, not one of the ghost.
+    /// Returns true if a spoke is a face, and not one of the ghost's that close the ring at a
+    /// boundary.
     #[inline(always)]
     pub(crate) fn is_face(&self, spoke: usize) -> bool {
         self.ghost.is_none_or(|ghost| ghost != spoke && ghost != (spoke + 1) % self.len)
@@ -382,7 +383,7 @@ impl EdgeRing {
         farthest
     }
 
-    /// Returns eight spokes.
+    /// Returns the eight spokes from index `start` on.
     #[inline(always)]
     pub(crate) fn spokes(&self, start: usize) -> Spokes {
         Spokes {

@@ -1,4 +1,4 @@
-//! One edge contraction: its ends, the wedges paired along it, and the new place.
+//! One edge contraction: its ends, the wedges paired along the edge, and the new position.
 
 pub(crate) mod deviation;
 pub(crate) mod edge_ring;
@@ -10,7 +10,7 @@ use glam::{DVec3, Vec3};
 pub(crate) struct Ends {
     pub(crate) v0: u32,
     pub(crate) v1: u32,
-    /// True if the new vertex may go anywhere, false if it stays at `v0`.
+    /// True if the new vertex may be anywhere, false if it stays at `v0`.
     pub(crate) free: bool,
     /// Slots of the two ends that become one.
     pub(crate) wedge_pairs: WedgePairs,
@@ -24,17 +24,17 @@ impl Ends {
     }
 }
 
-/// A contraction about to be carried out.
+/// An edge contraction about to be carried out.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Collapse {
     pub(crate) ends: Ends,
-    /// Half of the edge vector.
+    /// Half of the vector along the edge.
     pub(crate) half: DVec3,
-    /// Optimal place relative to the middle of the edge, before rounding.
+    /// Optimal position of the new vertex relative to the middle of the edge, before rounding.
     pub(crate) from_middle: DVec3,
-    /// New place, rounded to floats.
+    /// Position of the new vertex, rounded to floats.
     pub(crate) place: Vec3,
-    /// New place relative to `v0`.
+    /// Position of the new vertex relative to `v0`.
     pub(crate) displacement: Vec3,
 }
 

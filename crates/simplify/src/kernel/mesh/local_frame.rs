@@ -1,4 +1,5 @@
-//! The local frame of the kernel: single precision, centred, faces of an area of about one.
+//! Local frame of the kernel: centred coordinates in single precision, scaled so that faces have an
+//! area of about one.
 //!
 //! Costs grow with the sixth power of a length. In the units of a scan in metres they would leave
 //! the range of floats.
@@ -6,7 +7,7 @@
 use glam::{DVec3, Vec3};
 use meshlod_mesh::{Bounds, Mesh};
 
-/// Transformation between model units and the frame.
+/// Transformation between model units and the local frame.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Frame {
     center: DVec3,
@@ -23,13 +24,13 @@ impl Frame {
         Self { center: bounds.center().into(), unit }
     }
 
-    /// Converts a position to the frame.
+    /// Converts a position from model units to the frame.
     #[inline]
     pub(crate) fn to_local(&self, position: [f64; 3]) -> Vec3 {
         ((DVec3::from(position) - self.center) / self.unit).as_vec3()
     }
 
-    /// Converts a place in the frame to model units.
+    /// Converts a position from the frame to model units.
     #[inline]
     pub(crate) fn to_model(&self, place: Vec3) -> [f64; 3] {
         (place.as_dvec3() * self.unit + self.center).to_array()

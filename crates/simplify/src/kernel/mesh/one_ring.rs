@@ -82,19 +82,19 @@ impl VertexStore {
         Self { all, long, copied, split, boundary_weight }
     }
 
-    /// Borrows all vertices.
+    /// Borrows the whole surface: all vertices.
     pub(crate) fn whole(&mut self) -> Vertices<'_> {
         let first_copy = self.own() as u32;
         let Self { all, long, copied, split, .. } = self;
         Vertices { all, base: 0, long, copied, split, first_copy }
     }
 
-    /// Returns the number of vertices that the input has.
+    /// Returns the number of vertices of the input, without copies.
     pub(crate) fn own(&self) -> usize {
         self.all.len() - self.copied.len()
     }
 
-    /// Returns the vertex of the input that `v` is, or is a copy of.
+    /// Returns the input vertex that `v` is, or is a copy of.
     pub(crate) fn origin(&self, v: u32) -> u32 {
         (v as usize).checked_sub(self.own()).map_or(v, |copy| self.copied[copy])
     }
@@ -126,7 +126,7 @@ impl<'v> Vertices<'v> {
         Self { all, base, long, copied: &[], split: &[], first_copy: GHOST }
     }
 
-    /// Returns the ids of the vertices.
+    /// Returns the range of vertex ids.
     pub(crate) fn ids(&self) -> Range<u32> {
         self.base..self.base + self.all.len() as u32
     }
@@ -155,7 +155,7 @@ impl<'v> Vertices<'v> {
         &mut self.all[v.wrapping_sub(self.base) as usize]
     }
 
-    /// Returns the vertex of the input that `v` is, or is a copy of.
+    /// Returns the input vertex that `v` is, or is a copy of.
     #[inline]
     pub(crate) fn origin(&self, v: u32) -> u32 {
         if v < self.first_copy || v == GHOST {
@@ -261,7 +261,8 @@ impl<'v> Vertices<'v> {
 }
 
 impl Vertex {
-    /// Removes a neighbour. Returns true if the vertex was a hub and no longer is.
+    /// Removes a neighbour from the vertex's ring. Returns true if the vertex was a hub and no
+    /// longer is.
     #[inline(always)]
     pub(crate) fn remove_neighbour(&mut self, neighbour: u32) -> bool {
         if self.len == LONG {
@@ -284,7 +285,7 @@ impl Vertex {
         false
     }
 
-    /// Replaces a neighbour by another.
+    /// Replaces a neighbour in the vertex's ring by another.
     #[inline(always)]
     pub(crate) fn replace_neighbour(&mut self, gone: u32, kept: u32) {
         if self.len != LONG {

@@ -9,30 +9,31 @@ use glam::{Vec3, Vec4};
 /// fewer than one in a thousand have more.
 pub(crate) const RING: usize = 16;
 
-/// Id of no vertex.
+/// Id that stands for no vertex.
 pub(crate) const NO_VERTEX: u32 = u32::MAX;
 
 /// A live vertex, or one that has been contracted into another.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(128))]
 pub(crate) struct Vertex {
-    /// Its place in the frame, and its quadric there.
+    /// Position of the vertex in the frame, and its quadric there.
     pub(crate) quadric: VertexQuadric,
-    /// Other end of its cheapest edge. For a dead vertex, the vertex that it was contracted into.
+    /// Other end of the vertex's cheapest edge. For a dead vertex, the vertex that it was
+    /// contracted into.
     pub(crate) target: u32,
-    /// Square of the distance that the surface has moved here.
+    /// Square of the distance that the surface has moved at the vertex.
     pub(crate) moved: f32,
-    /// Bucket of its entry in the queue.
+    /// Bucket of the vertex's entry in the queue.
     pub(crate) bucket: u16,
-    /// Highest bucket whose edges have been refused since the ring changed.
+    /// Highest bucket of which the vertex's edges have been refused since its ring changed.
     pub(crate) floor: u16,
     pub(crate) flags: VertexFlags,
     /// Number of neighbours in `ring`, or [`LONG`](crate::kernel::mesh::one_ring::LONG) if they are
     /// in a list.
     pub(crate) len: u8,
-    /// Constant term of its quadric.
+    /// Constant term of the vertex's quadric.
     pub(crate) constant: Bf16,
-    /// Neighbours, counter-clockwise as seen from outside.
+    /// Neighbours of the vertex, counter-clockwise as seen from outside.
     pub(crate) ring: [u32; RING],
 }
 
@@ -62,7 +63,7 @@ pub(crate) struct FullQuadric {
     pub(crate) constant: Bf16,
 }
 
-/// Flags of a vertex.
+/// Set of flags of a vertex.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct VertexFlags(pub(crate) u8);
 
@@ -77,11 +78,11 @@ impl VertexFlags {
     pub(crate) const STALE: Self = Self(8);
     /// The vertex has neighbours in another part, and waits until both parts are one.
     pub(crate) const OUTER: Self = Self(64);
-    /// Edges to this vertex must not be contracted for now.
+    /// Edges to this vertex must not be contracted at present.
     pub(crate) const SHUT: Self = Self(Self::BARRED.0 | Self::OUTER.0);
-    /// The vertex moves together with the others of its tie, or not at all.
+    /// The vertex moves together with those it is tied to, or not at all.
     pub(crate) const TIED: Self = Self(16);
-    /// The vertex goes late: contractions that move it cost
+    /// The vertex is protected: contractions that move it cost
     /// [more](crate::kernel::metric::protection).
     pub(crate) const PROTECTED: Self = Self(128);
     /// The vertex has several wedges, or one in a slot other than its own id.
@@ -153,7 +154,7 @@ impl VertexQuadric {
         self.0[2] -= change.0[2];
     }
 
-    /// Returns the quadric of one face, without a place.
+    /// Returns the quadric of one face, without a position.
     #[inline(always)]
     pub(crate) fn face(normal: Vec3) -> Self {
         let Vec3 { x, y, z } = normal;
@@ -162,7 +163,7 @@ impl VertexQuadric {
         Self([Vec4::new(0.0, 0.0, 0.0, x), second, third])
     }
 
-    /// Returns the quadric of the areas swept over a boundary edge, relative to either end.
+    /// Returns the quadric of the areas swept over by a boundary edge, relative to either end.
     pub(crate) fn boundary(along: Vec3, weight: f32) -> Self {
         let Vec3 { x, y, z } = along;
         let squared = along.length_squared();
@@ -179,7 +180,7 @@ impl VertexQuadric {
         Vec3::new(self.0[0].w, self.0[1].x, self.0[1].y)
     }
 
-    /// Returns the matrix: xx, yy, zz, xy, xz, yz.
+    /// Returns the matrix of the quadric: xx, yy, zz, xy, xz, yz.
     #[inline(always)]
     pub(crate) fn squares(&self) -> [f32; 6] {
         let [_, b, c] = &self.0;
@@ -207,7 +208,7 @@ impl Vertex {
         self.quadric.0[0].truncate()
     }
 
-    /// Moves the vertex to a place, where it has this quadric.
+    /// Moves the vertex to a position, and gives it the quadric there.
     #[inline(always)]
     pub(crate) fn put(&mut self, place: Vec3, quadric: FullQuadric) {
         let VertexQuadric([first, second, third]) = quadric.star;
