@@ -257,7 +257,7 @@ impl Kind {
 }
 
 impl Finding {
-    /// Returns the kind of the finding.
+    /// Returns the kind of defect that the finding reports.
     pub fn kind(&self) -> Kind {
         match self {
             Self::NonFiniteVertex { .. } => Kind::NonFiniteVertex,

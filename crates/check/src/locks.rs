@@ -12,7 +12,7 @@ use crate::kinds::Kinds;
 use crate::objects::ObjectsBy;
 use crate::unique_positions::UniquePositions;
 
-/// Options of [`locks`](locks()).
+/// Options for choosing vertex locks; see [`locks`](locks()).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct LockOptions {
     /// True to hold the vertices where components meet, even components of one object, which could

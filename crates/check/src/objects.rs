@@ -2,7 +2,7 @@
 
 use meshlod_mesh::{Labels, Mesh, VertexId, face_components};
 
-/// Index of an object of a mesh.
+/// Index of an object among the objects of a mesh.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct ObjectId(pub u32);
 

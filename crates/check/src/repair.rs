@@ -23,7 +23,7 @@ pub use holes::HoleLimits;
 pub use report::{RepairReport, RepairStep};
 pub(crate) use stitch::stitch;
 
-/// Options of [`repair`](repair()).
+/// Selection of repair steps; see [`repair`](repair()).
 ///
 /// The steps on by default preserve the visible surface: they neither remove nor add any of it.
 #[derive(Clone, Debug, PartialEq)]

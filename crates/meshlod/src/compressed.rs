@@ -11,7 +11,7 @@ use meshlod_io::{IoError, write_file};
 use meshlod_mesh::Mesh;
 use thiserror::Error;
 
-/// Options of [`compress`].
+/// Options for writing a compressed mesh file with [`compress`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CompressOptions {
     /// Accuracy or size that the positions must reach; the default is 11 bits per axis.
@@ -56,7 +56,7 @@ pub enum CompressedFileError {
     /// A `.mlz` file was requested with a scheme or a target that only `.mlq` supports.
     #[error("a .mlz file takes a number of bits or an error, and no scheme but the lattice")]
     Unsupported,
-    /// The mesh or the target is invalid.
+    /// The mesh to compress or the target is invalid.
     #[error(transparent)]
     Compress(#[from] CompressError),
     /// The mesh cannot be encoded as a `.mlz` file.

@@ -12,7 +12,7 @@ use meshlod_multires::{
 use meshlod_simplify::{Method, Options};
 use thiserror::Error;
 
-/// Options of [`build`].
+/// Options for writing a multiresolution file with [`build`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BuildOptions {
     /// Simplification method whose contractions define the levels.
@@ -52,7 +52,7 @@ pub struct BuildReport {
     pub bytes: usize,
 }
 
-/// Options of [`extract`].
+/// Options for extracting a mesh from a multiresolution file with [`extract`].
 #[derive(Clone, Debug)]
 pub struct ExtractOptions<'f> {
     /// Region to refine, and the largest error allowed there; by default the whole model, without

@@ -10,7 +10,7 @@ use crate::refusal::Refusals;
 /// Mesh simplification algorithm.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Method {
-    /// Quadric error metrics with optimal placement [GH97].
+    /// Edge contraction by quadric error metrics, with optimal placement of new vertices [GH97].
     Qem,
     /// Quadric error metrics with half-edge contraction: every vertex of the result is a vertex of
     /// the input [GH97].
@@ -20,9 +20,9 @@ pub enum Method {
     LindstromTurk,
     /// Memoryless simplification by face contraction, conserving the volume [LT98].
     LindstromTurkFaces,
-    /// Face constriction that conserves the volume [LJ05].
+    /// Face constriction (contraction of whole faces) that conserves the volume [LJ05].
     LeeJang,
-    /// Face constriction to the weighted mean of the corners [Wu01].
+    /// Face constriction (contraction of whole faces) to the weighted mean of the corners [Wu01].
     Wu,
     /// Edge contraction ordered by quadrics, with positions moved to conserve the volume [KJ04].
     KimJang,
@@ -235,7 +235,7 @@ pub enum SimplifyError {
     /// The mesh is invalid; see [`meshlod_mesh::Mesh::validate`].
     #[error(transparent)]
     Mesh(#[from] MeshError),
-    /// The mesh has no faces.
+    /// The mesh to simplify has no faces.
     #[error("the mesh has no faces")]
     NoFaces,
     /// Every face repeats a vertex, so that nothing is left to simplify.
@@ -272,7 +272,7 @@ pub enum SimplifyError {
     TiedTwice {
         /// Index of the second tie, or of the tie that contains the vertex twice.
         tie: usize,
-        /// Vertex that occurs twice.
+        /// Vertex that occurs twice in the ties.
         vertex: VertexId,
     },
     /// The vertices of a tie are at different positions.
@@ -284,7 +284,7 @@ pub enum SimplifyError {
     TornTie {
         /// Index of the tie with the different positions.
         tie: usize,
-        /// Two vertices of the tie at different positions.
+        /// Two vertices of the tie that are at different positions.
         vertices: [VertexId; 2],
     },
     /// The weight of an attribute or of boundaries is negative or not finite.

@@ -17,7 +17,7 @@ pub struct PointId(u32);
 /// represented by the lowest-numbered one.
 #[derive(Default)]
 pub struct IntersectionPoints {
-    /// Number of pairs of faces that intersect.
+    /// Number of pairs of intersecting faces of different components.
     pub pairs: usize,
     positions: Vec<DVec3>,
     /// Bound on the rounding error of each position.

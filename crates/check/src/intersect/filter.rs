@@ -6,7 +6,7 @@ use glam::{DVec2, DVec3};
 use super::exact::project;
 use super::triangle_pair::Triangle;
 
-/// Two triangles and a flag for each corner that the other does not share.
+/// Two triangles with a flag per corner, true if the other triangle does not share it.
 pub(super) struct Pair<'a> {
     pub(super) triangles: &'a [Triangle; 2],
     pub(super) unshared: [[bool; 3]; 2],

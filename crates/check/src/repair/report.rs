@@ -12,11 +12,11 @@ pub enum RepairStep {
     BadVertices,
     /// Vertices welded to another vertex.
     Welded,
-    /// Duplicate faces of the same orientation removed.
+    /// Faces removed because they duplicated an earlier face of the same orientation.
     Duplicates,
     /// Edges flipped to give a face of zero area part of its neighbour's area.
     FlippedEdges,
-    /// Faces of zero area removed.
+    /// Faces removed because their area was zero.
     Degenerate,
     /// Non-manifold edges split.
     SplitEdges,
