@@ -144,3 +144,21 @@ fn no_vertex_leaves_the_box_of_a_fold() {
         }
     }
 }
+
+#[test]
+fn a_hub_that_shares_its_vertex_with_a_surface_in_parts_is_simplified() {
+    // The apex of the cone is a copy with more neighbours than a vertex has room for.
+    let mut mesh = Mesh { attributes: None, ..samples::sphere(120_000) };
+    let (count, tip) = (mesh.positions.len() as u32, mesh.positions[0]);
+    let cone = fixtures::cone(30);
+    let beside = |p: &[f64; 3]| [0, 1, 2].map(|axis| tip[axis] * 1.1 + 0.1 * p[axis]);
+    mesh.positions.extend(cone.positions[1..].iter().map(beside));
+    let joined = |v: VertexId| VertexId(if v.0 == 0 { 0 } else { count + v.0 - 1 });
+    mesh.faces.extend(cone.faces.iter().map(|face| face.map(joined)));
+    for method in [Method::LindstromTurk, Method::Qem] {
+        let options = Options { method, ..Options::default() };
+        let (level, report) = simplify(&mesh, Target::Faces(200), &options).unwrap();
+        assert!(report.reached && report.non_manifold_vertices == 1);
+        assert_eq!(level.faces.len(), report.output_faces);
+    }
+}

@@ -186,8 +186,8 @@ impl Metric for PlaneDistance {
         FullQuadric { star, constant: Bf16::new((quadric.at(x) * memory) as f32) }
     }
 
-    /// Marks the vertex if its edge to the new vertex is its cheapest: of the geometry no other edge has
-    /// changed. Edges that attributes made cheaper are recosted when the entry comes up.
+    /// Marks the vertex if its edge to the new vertex is its cheapest: the geometry of no other edge
+    /// has changed. Edges that attributes made cheaper are recosted when the entry comes up.
     #[inline(always)]
     fn update_neighbour(vertex: &mut Vertex, _: [&VertexQuadric; 2], kept: u32) {
         if vertex.target == kept {
