@@ -84,8 +84,8 @@ impl Unchosen {
         (self.min, self.max) = (self.min.min(other.min), self.max.max(other.max));
     }
 
-    fn to_model(&self, frame: &Frame) -> Unconserved {
-        let Self { contractions, min, max } = *self;
+    fn to_model(self, frame: &Frame) -> Unconserved {
+        let Self { contractions, min, max } = self;
         let mut bounds = Bounds::EMPTY;
         if contractions > 0 {
             [min, max].iter().for_each(|&corner| bounds.add(frame.to_model(corner)));

@@ -26,19 +26,19 @@ impl Frame {
 
     /// Converts a position from model units to the frame.
     #[inline]
-    pub(crate) fn to_local(&self, position: [f64; 3]) -> Vec3 {
+    pub(crate) fn to_local(self, position: [f64; 3]) -> Vec3 {
         ((DVec3::from(position) - self.center) / self.unit).as_vec3()
     }
 
     /// Converts a position from the frame to model units.
     #[inline]
-    pub(crate) fn to_model(&self, place: Vec3) -> [f64; 3] {
+    pub(crate) fn to_model(self, place: Vec3) -> [f64; 3] {
         (place.as_dvec3() * self.unit + self.center).to_array()
     }
 
     /// Converts a place to model units; the exact input position if the vertex is still there.
     #[inline]
-    pub(crate) fn to_model_or_input(&self, input: [f64; 3], place: Vec3) -> [f64; 3] {
+    pub(crate) fn to_model_or_input(self, input: [f64; 3], place: Vec3) -> [f64; 3] {
         if self.to_local(input) == place { input } else { self.to_model(place) }
     }
 }
