@@ -36,7 +36,7 @@ pub use history::exact_volume::{Digits, ExactVolumeError, VolumeResidual, conser
 pub use history::progressive::{Progressive, ProgressiveError};
 pub use history::volume::{Unconserved, VolumeLoss};
 pub use history::{Contraction, History};
-pub use options::{AttributeWeights, Method, Options, Report, SimplifyError, Target};
+pub use options::{AttributeWeights, Method, Options, Report, SimplifyError, Target, Topology};
 pub use refusal::{Refusal, Refusals};
 pub use simplifier::Simplifier;
 pub use surface::contracted::{Contracted, Freedom};

@@ -151,6 +151,17 @@ impl Target {
     }
 }
 
+/// What a simplification may do to the topology of a surface.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Topology {
+    /// Connected components may vanish where that costs less than contracting them further, and
+    /// non-manifold vertices may move and be contracted.
+    #[default]
+    Free,
+    /// Closed surfaces stay closed, manifold surfaces stay manifold, and no component vanishes.
+    Keep,
+}
+
 /// Options of a mesh simplification.
 #[derive(Clone, Debug, Default)]
 pub struct Options {
@@ -172,11 +183,14 @@ pub struct Options {
     /// Locks of vertices: to stay in place, to cost more to move, or to move together as ties. Tied
     /// vertices without edges to move along together stay in place.
     pub locks: Locks,
+    /// What may happen to the topology of the surface.
+    pub topology: Topology,
     /// Bounding-box diagonal, in model units, below which a connected component may be removed as a
-    /// whole; `None` keeps every component.
+    /// whole; `None` sets no limit. With [`Topology::Keep`] no component is removed.
     ///
-    /// A component vanishes when that costs less than contracting it further. Its size then counts
-    /// as an error. The last component never vanishes, nor does one with a locked or tied vertex.
+    /// A component vanishes when that costs less than contracting it further. Its distance to what
+    /// remains then counts as an error. The last component never vanishes, nor does one with a
+    /// locked or tied vertex.
     pub vanish_below: Option<f64>,
 }
 
