@@ -29,7 +29,9 @@ pub use attributes::{Attributes, Layer, LayerKind};
 pub use bounds::Bounds;
 pub use buckets::Buckets;
 pub use components::face_components;
-pub use condition::{Borders, ConditionOptions, Conditioned, Conditioning, condition};
+pub use condition::{
+    Borders, ConditionOptions, Conditioned, Conditioning, NearBorders, condition, near_borders,
+};
 pub use connectivity::{Connectivity, Marks, Side, Twin};
 pub use frame::Frame;
 pub use ids::{FaceId, VertexId, WedgeId};

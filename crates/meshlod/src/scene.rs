@@ -76,7 +76,6 @@ pub fn simplify_scene(
     let report = simplifier.run(target, &mut ())?;
     let level = simplifier.level();
     drop(simplifier);
-    drop(conditioned);
     for (mesh, level) in scene.meshes.iter_mut().zip(level) {
         mesh.mesh = level;
     }
@@ -100,7 +99,7 @@ impl<'s> SceneSimplifier<'s> {
             if copies == 0 {
                 continue;
             }
-            let (mesh, options) = conditioned.part(index);
+            let (mesh, options) = (conditioned.mesh(index), conditioned.options(index));
             // A mesh scaled to a point is smaller than any size.
             let vanish_below = options.vanish_below.map(|size| size / scale);
             let vanish_below = vanish_below.map(|size| if size.is_nan() { 0.0 } else { size });

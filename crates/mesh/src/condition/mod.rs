@@ -9,6 +9,7 @@
 mod carry;
 mod fans;
 mod links;
+mod near;
 mod pairing;
 mod rejoin;
 mod stitch;
@@ -19,6 +20,7 @@ use crate::{Connectivity, FaceId, Locks, Mesh, Side, Twin, VertexId};
 
 use fans::Fans;
 use links::Links;
+pub use near::{NearBorders, near_borders};
 use rejoin::Joints;
 
 /// Treatment of boundary edges that lie on each other in the conditioning of a mesh.

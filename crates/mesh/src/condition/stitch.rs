@@ -25,11 +25,7 @@ pub(super) fn sew(
     };
     let may_meet = |a: Side, b: Side| {
         let ([v0, v1], [w0, w1]) = (a.ends(&mesh.faces), b.ends(&mesh.faces));
-        places.of(v0) == places.of(w1)
-            && places.of(v1) == places.of(w0)
-            && may_merge(v0, w1)
-            && may_merge(v1, w0)
-            && normal(mesh, a).dot(normal(mesh, b)) > FOLDED
+        may_merge(v0, w1) && may_merge(v1, w0) && lie_on_each_other(mesh, &places, a, b)
     };
     let mut sewn = Vec::new();
     for sides in places.by_edge(mesh, &border) {
@@ -37,6 +33,13 @@ pub(super) fn sew(
     }
     sewn.iter().for_each(|pair| links.link(pair[0], pair[1]));
     sewn
+}
+
+/// Returns true if two boundary edges have their ends at the same places, run in opposite
+/// directions, and do not fold two faces onto each other.
+pub(super) fn lie_on_each_other(mesh: &Mesh, places: &Places, a: Side, b: Side) -> bool {
+    let [[v0, v1], [w0, w1]] = [a, b].map(|side| side.ends(&mesh.faces).map(|v| places.of(v)));
+    v0 == w1 && v1 == w0 && normal(mesh, a).dot(normal(mesh, b)) > FOLDED
 }
 
 /// Returns all tied vertices, in order.

@@ -224,6 +224,17 @@ fn sewing_never_makes_an_edge_of_three_faces() {
 }
 
 #[test]
+fn near_borders_are_counted() {
+    let mut near = torn(&grid(3, 0.0));
+    for (i, p) in near.positions.iter_mut().enumerate() {
+        p[2] = 1e-4 * (i % 3) as f64;
+    }
+    let found = near_borders(&near, &[1e-6, 1e-3]);
+    assert_eq!(found.iter().map(|found| found.near_edges).collect::<Vec<_>>(), [6, 42]);
+    assert_eq!(found[1].boundary_edges, 54);
+}
+
+#[test]
 fn faces_without_area_do_no_harm() {
     let mut flat = torn(&grid(3, 0.0));
     flat.positions.iter_mut().for_each(|p| *p = [1.0, 2.0, 3.0]);
