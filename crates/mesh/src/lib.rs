@@ -30,7 +30,8 @@ pub use bounds::Bounds;
 pub use buckets::Buckets;
 pub use components::face_components;
 pub use condition::{
-    Borders, ConditionOptions, Conditioned, Conditioning, NearBorders, condition, near_borders,
+    Borders, ConditionOptions, Conditioned, Conditioning, NearBorders, Search, condition,
+    near_borders,
 };
 pub use connectivity::{Connectivity, Marks, Side, Twin};
 pub use frame::Frame;

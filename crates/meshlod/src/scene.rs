@@ -99,18 +99,16 @@ impl<'s> SceneSimplifier<'s> {
             if copies == 0 {
                 continue;
             }
-            let (mesh, options) = (conditioned.mesh(index), conditioned.options(index));
             // A mesh scaled to a point is smaller than any size.
-            let vanish_below = options.vanish_below.map(|size| size / scale);
+            let vanish_below = conditioned.options.vanish_below.map(|size| size / scale);
             let vanish_below = vanish_below.map(|size| if size.is_nan() { 0.0 } else { size });
-            let options = Options { vanish_below, ..options };
-            match Simplifier::new(mesh, &options) {
+            match conditioned.meshes[index].simplifier(vanish_below) {
                 Ok(simplifier) => {
                     let cost_scale = scale.powi(method.cost_power());
                     this.parts.push(Part { mesh: index, copies, scale, cost_scale, simplifier });
                 }
                 Err(error @ (SimplifyError::NoFaces | SimplifyError::AllDegenerate(_))) => {
-                    this.still_faces += copies * mesh.faces.len();
+                    this.still_faces += copies * scene.meshes[index].mesh.faces.len();
                     still.get_or_insert(error);
                 }
                 Err(source) => return Err(this.error_of(index, source)),
@@ -170,7 +168,7 @@ impl<'s> SceneSimplifier<'s> {
         let mut parts = self.parts.iter().peekable();
         let meshes = self.scene.meshes.iter().enumerate();
         let now = meshes.map(|(index, mesh)| match parts.next_if(|part| part.mesh == index) {
-            Some(part) => self.conditioned.rejoined(index, part.simplifier.level()),
+            Some(part) => self.conditioned.meshes[index].level(&part.simplifier),
             None => mesh.mesh.clone(),
         });
         now.collect()
@@ -179,11 +177,9 @@ impl<'s> SceneSimplifier<'s> {
     /// Returns the simplifier of the scene's only mesh, in its current state; `None` if there are
     /// several meshes, or if conditioning has changed the mesh.
     pub fn into_only(mut self) -> Option<Simplifier<'s>> {
-        if (0..self.scene.meshes.len()).any(|mesh| self.conditioned.is_conditioned(mesh)) {
-            return None;
-        }
         let only = self.parts.pop().filter(|_| self.parts.is_empty());
-        only.filter(|_| self.scene.meshes.len() == 1).map(|part| part.simplifier)
+        let is_only = self.scene.meshes.len() == 1 && !self.conditioned.meshes[0].is_changed();
+        only.filter(|_| is_only).map(|part| part.simplifier)
     }
 
     fn run_within(
@@ -243,7 +239,7 @@ impl<'s> SceneSimplifier<'s> {
             let here = Target::Faces(part.simplifier.live_faces());
             let report = part.simplifier.run(here, &mut ())?;
             whole.degenerate_faces += part.copies * report.degenerate_faces;
-            let left_out = self.conditioned.duplicate_faces(part.mesh);
+            let left_out = self.conditioned.meshes[part.mesh].counts().duplicate_faces;
             whole.duplicate_faces += part.copies * (report.duplicate_faces + left_out);
             whole.non_manifold_vertices += part.copies * report.non_manifold_vertices;
             whole.vanished += part.copies * report.vanished;

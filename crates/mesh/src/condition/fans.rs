@@ -3,7 +3,8 @@
 use std::collections::BTreeSet;
 
 use crate::condition::links::Links;
-use crate::{Connectivity, FaceId, Mesh, Side, Twin, VertexId};
+use crate::condition::suspects::Around;
+use crate::{Connectivity, FaceId, Side, Twin, VertexId};
 
 /// The vertices of the conditioned mesh.
 pub(super) struct Fans {
@@ -24,7 +25,10 @@ pub(super) fn corner(side: Side, end: usize) -> usize {
 impl Fans {
     /// Numbers the vertices. One that came from several of the input has the lowest of their ids,
     /// unless another vertex has it already; then it is a copy.
-    pub(super) fn new(mesh: &Mesh, links: &Links) -> Self {
+    ///
+    /// Vertices that are no suspects keep their ids.
+    pub(super) fn new(around: &Around, links: &Links) -> Self {
+        let Around { mesh, is_suspect, .. } = around;
         let mut joined = Joined::new(mesh.faces.len() * 3);
         for [a, b] in links.pairs() {
             joined.join(corner(a, 0), corner(b, 1));
@@ -40,19 +44,17 @@ impl Fans {
         let mut this = Self {
             of_corner: corners.to_vec(),
             copies: Vec::new(),
-            is_used: vec![false; inputs],
+            is_used: is_suspect.iter().map(|suspect| !suspect).collect(),
             inputs,
         };
-        for f in 0..mesh.faces.len() {
-            if !is_whole(mesh.faces[f]) {
+        for (i, v) in corners.iter().enumerate() {
+            if !is_suspect[v.index()] {
                 continue;
             }
-            for i in 3 * f..3 * f + 3 {
-                // The root is the first corner of its vertex.
-                let root = joined.root(i);
-                this.of_corner[i] =
-                    if root == i { this.number(lowest[i]) } else { this.of_corner[root] };
-            }
+            // The root is the first corner of its vertex.
+            let root = joined.root(i);
+            this.of_corner[i] =
+                if root == i { this.number(lowest[i]) } else { this.of_corner[root] };
         }
         this
     }
@@ -70,11 +72,6 @@ impl Fans {
         self.of_corner.as_chunks().0.to_vec()
     }
 
-    /// Returns the vertex at a corner, by the corner's index.
-    pub(super) fn at(&self, corner: usize) -> VertexId {
-        self.of_corner[corner]
-    }
-
     /// Returns the vertices at the ends of a side.
     pub(super) fn side_ends(&self, side: Side) -> [VertexId; 2] {
         [0, 1].map(|end| self.of_corner[corner(side, end)])
@@ -86,12 +83,8 @@ impl Fans {
     }
 
     /// Returns the number of vertices of the input that were merged into others.
-    pub(super) fn merged(&self, mesh: &Mesh) -> usize {
-        let used = mesh.used_vertices();
-        let whole = |face: &&[VertexId; 3]| is_whole(**face);
-        let mut in_whole = vec![false; used.len()];
-        mesh.faces.iter().filter(whole).flatten().for_each(|v| in_whole[v.index()] = true);
-        in_whole.iter().zip(&self.is_used).filter(|&(before, now)| *before && !now).count()
+    pub(super) fn merged(&self) -> usize {
+        self.is_used.iter().filter(|used| !*used).count()
     }
 
     /// Returns the number of vertices of the input that have copies.
@@ -104,13 +97,13 @@ impl Fans {
 
     /// Returns the sides at which this is not a manifold: of edges with more than two faces, or two
     /// that do not agree, and of faces that have lost a corner.
-    pub(super) fn odd_sides(&self, mesh: &Mesh) -> Vec<Side> {
+    pub(super) fn odd_sides(&self) -> Vec<Side> {
         let faces = self.faces();
         let connectivity = Connectivity::new(&faces, self.inputs + self.copies.len());
         let is_odd = |&side: &Side| match connectivity.twin(side) {
             Twin::NonManifold => true,
             Twin::Side(twin) => side.ends(&faces) == twin.ends(&faces),
-            Twin::Degenerate => is_whole(mesh.faces[side.face().index()]),
+            Twin::Degenerate => true,
             Twin::Boundary => false,
         };
         let sides = (0..faces.len()).flat_map(|f| (0..3).map(move |k| (f, k)));

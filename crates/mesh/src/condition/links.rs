@@ -3,6 +3,7 @@
 use std::collections::HashSet;
 
 use crate::condition::pairing;
+use crate::condition::suspects::continues;
 use crate::{Connectivity, FaceId, Mesh, Side, Twin, VertexId};
 
 /// No side.
@@ -12,9 +13,6 @@ const NONE: u32 = u32::MAX;
 pub(super) struct Links {
     /// Partner of side 3 f + k of face f.
     twins: Vec<Option<Side>>,
-    /// Edges of the input that are not manifold, each by all its sides: those of more than two
-    /// faces, of two that do not agree, and of a front with its back.
-    pub(super) opened: Vec<Vec<Side>>,
 }
 
 impl Links {
@@ -22,29 +20,27 @@ impl Links {
     /// those of an edge that has more.
     pub(super) fn new(mesh: &Mesh, connectivity: &Connectivity) -> Self {
         let twins = vec![None; mesh.faces.len() * 3];
-        let mut this = Self { twins, opened: Vec::new() };
+        let mut this = Self { twins };
         let mut many: Vec<([VertexId; 2], Side)> = Vec::new();
         for side in connectivity.edges() {
             match connectivity.twin(side) {
-                Twin::Side(twin) if is_continued(mesh, side, twin) => {
+                Twin::Side(twin) if continues(mesh, side, twin) => {
                     this.link(side, twin);
                 }
-                Twin::Side(twin) => this.opened.push(vec![side, twin]),
                 Twin::NonManifold => {
                     let mut ends = side.ends(&mesh.faces);
                     ends.sort_unstable();
                     many.push((ends, side));
                 }
-                Twin::Boundary | Twin::Degenerate => {}
+                Twin::Side(_) | Twin::Boundary | Twin::Degenerate => {}
             }
         }
         many.sort_unstable();
         for edge in many.chunk_by(|a, b| a.0 == b.0) {
             let sides: Vec<Side> = edge.iter().map(|&(_, side)| side).collect();
-            for pair in pairing::pair(mesh, &sides, |a, b| is_continued(mesh, a, b)) {
+            for pair in pairing::pair(mesh, &sides, |a, b| continues(mesh, a, b)) {
                 this.link(pair[0], pair[1]);
             }
-            this.opened.push(sides);
         }
         this
     }
@@ -82,14 +78,6 @@ fn index(side: Side) -> usize {
 
 fn side(index: usize) -> Side {
     Side::new(FaceId::new(index / 3), index % 3)
-}
-
-/// Returns true if two sides of one edge run in opposite directions and their faces are not the
-/// front and the back of one triangle.
-fn is_continued(mesh: &Mesh, a: Side, b: Side) -> bool {
-    let [from, to] = [a, b].map(|side| side.ends(&mesh.faces));
-    let apex = |side: Side| mesh.faces[side.face().index()][(side.corner() + 2) % 3];
-    from[0] == to[1] && from[1] == to[0] && apex(a) != apex(b)
 }
 
 /// Returns the faces that repeat one with a lower id, with the same material and orientation.

@@ -1,10 +1,11 @@
 //! Conditioning of a mesh for simplification: borders that lie on each other are sewn together, and
 //! non-manifold vertices are split, until every vertex has one fan of faces.
 //!
-//! Both are one question: which sides of faces belong together? [`links`] answers it for the edges
-//! that the faces share, [`stitch`] for borders at equal positions, and [`fans`] then numbers the
-//! vertices: corners that linked sides connect are one vertex. [`carry`] takes attributes and
-//! locks along, and [`rejoin`] makes one vertex of the copies that have not moved.
+//! Both are one question: which sides of faces belong together? [`suspects`] finds the places where
+//! it arises, [`links`] answers it for the edges that the faces share, [`stitch`] for borders at
+//! equal positions, and [`fans`] then numbers the vertices: corners that linked sides connect are
+//! one vertex. [`carry`] changes the mesh and takes attributes and locks along, and [`rejoin`] makes
+//! one vertex of the copies that have not moved.
 
 mod carry;
 mod fans;
@@ -13,15 +14,16 @@ mod near;
 mod pairing;
 mod rejoin;
 mod stitch;
+mod suspects;
 
-use std::borrow::Cow;
+use crate::{Connectivity, Locks, Mesh, Side};
 
-use crate::{Connectivity, FaceId, Locks, Mesh, Side, Twin, VertexId};
-
+use carry::Change;
 use fans::Fans;
 use links::Links;
 pub use near::{NearBorders, near_borders};
 use rejoin::Joints;
+use suspects::Around;
 
 /// Treatment of boundary edges that lie on each other in the conditioning of a mesh.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -33,9 +35,24 @@ pub enum Borders {
     Keep,
 }
 
+/// Which vertices the conditioning of a mesh looks at.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Search {
+    /// Vertices that end a boundary edge, an edge with an odd number of faces, or one whose faces do
+    /// not agree. A pinched vertex of closed fans, and a front with its back, are not found.
+    ///
+    /// One pass over the faces finds them.
+    Unbalanced,
+    /// All vertices on the boundary and all that are not manifold.
+    #[default]
+    All,
+}
+
 /// Options of [`condition`].
 #[derive(Clone, Copy, Debug, Default)]
 pub struct ConditionOptions {
+    /// Which vertices are looked at.
+    pub search: Search,
     /// What happens to boundary edges that lie on each other.
     pub borders: Borders,
     /// True to lock every vertex on the boundary of the conditioned mesh, where edges that the
@@ -103,37 +120,47 @@ impl Conditioned {
 /// some favour for the same material; a face and its reverse never are. Faces that repeat another
 /// with the same material and orientation are left out.
 ///
-/// Cost: O(n log n), n = boundary and non-manifold edges, and linear in all else.
+/// Cost: O(n log n), n = faces at boundary edges and non-manifold vertices, and linear in all else.
 /// # Panics
 /// If the mesh is not valid, see [`Mesh::validate`].
 pub fn condition(mesh: &Mesh, locks: &Locks, options: &ConditionOptions) -> Option<Conditioned> {
-    let mut connectivity = Connectivity::new(&mesh.faces, mesh.positions.len());
-    let duplicates = links::duplicate_faces(mesh, &connectivity);
-    let mut mesh = Cow::Borrowed(mesh);
+    let suspects = match options.search {
+        Search::Unbalanced => suspects::unbalanced(mesh),
+        Search::All => suspects::irregular(mesh),
+    };
+    let mut around = Around::new(mesh, &suspects);
+    let connect = |around: &Around| {
+        Connectivity::new(&around.mesh.faces, around.mesh.positions.len())
+    };
+    let mut connectivity = connect(&around);
+    let duplicates = links::duplicate_faces(&around.mesh, &connectivity);
+    let left_out: Vec<u32> = duplicates.iter().map(|face| around.faces[face.index()]).collect();
     if !duplicates.is_empty() {
-        mesh = Cow::Owned(without(&mesh, &duplicates));
-        connectivity = Connectivity::new(&mesh.faces, mesh.positions.len());
+        around.remove(&duplicates);
+        connectivity = connect(&around);
     }
-    let mut links = Links::new(&mesh, &connectivity);
+    let mut links = Links::new(&around.mesh, &connectivity);
+    let border = around.border(&connectivity);
     let mut sewn = match options.borders {
-        Borders::Stitch => stitch::sew(&mesh, &connectivity, locks, &mut links),
+        Borders::Stitch => stitch::sew(&around.mesh, &border, &around.locks(locks), &mut links),
         Borders::Keep => Vec::new(),
     };
-    let is_clean = links.opened.is_empty() && connectivity.pinched_vertices() == 0;
-    if duplicates.is_empty() && sewn.is_empty() && is_clean {
+    let fans = settle(&around, &mut links, &mut sewn);
+    if duplicates.is_empty() && sewn.is_empty() && fans.copies.is_empty() {
         return None;
     }
-    let fans = settle(&mesh, &mut links, &mut sewn);
     let counts = Conditioning {
         stitched_edges: sewn.len(),
-        stitched_vertices: fans.merged(&mesh),
+        stitched_vertices: fans.merged(),
         split_vertices: fans.split_vertices(),
-        duplicate_faces: duplicates.len(),
+        duplicate_faces: left_out.len(),
     };
-    let borders = options.lock_boundary.then(|| boundary_corners(&mesh, &connectivity, &links));
-    let locks = carry::locks(&mesh, locks, &fans, borders, &links.opened);
-    let joints = Joints::new(&mesh, &fans);
-    let mesh = carry::mesh(mesh.into_owned(), &fans, counts.stitched_edges > 0);
+    let open = border.into_iter().filter(|&side| !links.is_linked(side));
+    let locked = options.lock_boundary.then(|| open.flat_map(|side| fans.side_ends(side)).collect());
+    let change = Change::new(mesh.positions.len(), &around, &fans);
+    let locks = change.locks(mesh, locks, locked);
+    let mesh = change.mesh(mesh, &left_out, counts.stitched_edges > 0);
+    let joints = Joints::new(&mesh, &change);
     Some(Conditioned { mesh, locks, counts, joints })
 }
 
@@ -141,58 +168,25 @@ pub fn condition(mesh: &Mesh, locks: &Locks, options: &ConditionOptions) -> Opti
 ///
 /// Cutting only divides vertices further: where no sewn edge is left at a vertex, only what the
 /// input has remains to be cut, and that needs no third round.
-fn settle(mesh: &Mesh, links: &mut Links, sewn: &mut Vec<[Side; 2]>) -> Fans {
-    let mut fans = Fans::new(mesh, links);
-    if !sewn.is_empty() {
-        let odd = fans.odd_sides(mesh);
+fn settle(around: &Around, links: &mut Links, sewn: &mut Vec<[Side; 2]>) -> Fans {
+    let mut fans = Fans::new(around, links);
+    let mut odd = fans.odd_sides();
+    if !odd.is_empty() && !sewn.is_empty() {
         let held = fans.ends(&odd);
-        let is_odd = |side: &Side| fans.side_ends(*side).iter().any(|v| held.contains(v));
-        let before = sewn.len();
-        sewn.retain(|pair| {
-            let keep = !pair.iter().any(is_odd);
-            if !keep {
-                links.cut(pair[0]);
-            }
-            keep
-        });
-        if sewn.len() < before {
-            fans = Fans::new(mesh, links);
-        }
+        let is_held = |side: &Side| fans.side_ends(*side).iter().any(|v| held.contains(v));
+        let (cut, kept) = sewn.drain(..).partition(|pair| pair.iter().any(is_held));
+        *sewn = kept;
+        let cut: Vec<[Side; 2]> = cut;
+        cut.iter().for_each(|pair| links.cut(pair[0]));
+        fans = Fans::new(around, links);
+        odd = fans.odd_sides();
     }
-    let odd = fans.odd_sides(mesh);
     if !odd.is_empty() {
         odd.iter().for_each(|&side| links.cut(side));
         sewn.retain(|pair| links.is_linked(pair[0]));
-        fans = Fans::new(mesh, links);
+        fans = Fans::new(around, links);
     }
     fans
-}
-
-/// Returns the corners at the ends of all boundary edges that have not been sewn.
-fn boundary_corners(mesh: &Mesh, connectivity: &Connectivity, links: &Links) -> Vec<usize> {
-    let sides = (0..mesh.faces.len()).flat_map(|f| (0..3).map(move |k| Side::new(FaceId::new(f), k)));
-    sides
-        .filter(|&side| connectivity.twin(side) == Twin::Boundary && !links.is_linked(side))
-        .flat_map(|side| [fans::corner(side, 0), fans::corner(side, 1)])
-        .collect()
-}
-
-/// Returns a mesh without some of its faces, given in ascending order.
-fn without(mesh: &Mesh, faces: &[FaceId]) -> Mesh {
-    let mut out = faces.iter().map(|face| face.0).peekable();
-    let kept: Vec<u32> =
-        (0..mesh.faces.len() as u32).filter(|&f| out.next_if_eq(&f).is_none()).collect();
-    let pick = |corners: &[[VertexId; 3]]| kept.iter().map(|&f| corners[f as usize]).collect();
-    Mesh {
-        positions: mesh.positions.clone(),
-        faces: pick(&mesh.faces),
-        attributes: mesh.attributes.as_ref().map(|attributes| {
-            let corners = kept.iter().map(|&f| attributes.corners[f as usize]).collect();
-            crate::Attributes { corners, ..attributes.clone() }
-        }),
-        materials: mesh.materials.as_ref().map(|labels| labels.select(&kept)),
-        objects: mesh.objects.as_ref().map(|labels| labels.select(&kept)),
-    }
 }
 
 #[cfg(test)]

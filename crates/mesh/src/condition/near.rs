@@ -2,7 +2,8 @@
 
 use crate::condition::pairing;
 use crate::condition::stitch::{Places, lie_on_each_other};
-use crate::{Connectivity, Mesh, Side, Twin};
+use crate::condition::suspects::{Around, unbalanced};
+use crate::{Connectivity, Mesh, Side};
 
 /// Boundary edges of a mesh, and how many of them a small distance keeps apart from others.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -32,9 +33,9 @@ impl NearBorders {
 /// # Panics
 /// If the mesh is not valid, see [`Mesh::validate`].
 pub fn near_borders(mesh: &Mesh, distances: &[f64]) -> Vec<NearBorders> {
-    let connectivity = Connectivity::new(&mesh.faces, mesh.positions.len());
-    let border: Vec<Side> =
-        connectivity.edges().filter(|&side| connectivity.twin(side) == Twin::Boundary).collect();
+    let around = Around::new(mesh, &unbalanced(mesh));
+    let mesh = &around.mesh;
+    let border = around.border(&Connectivity::new(&mesh.faces, mesh.positions.len()));
     let at = |&distance: &f64| {
         let places = Places::new(mesh, &border, distance);
         let may_meet = |a: Side, b: Side| lie_on_each_other(mesh, &places, a, b);

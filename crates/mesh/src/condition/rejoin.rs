@@ -2,7 +2,8 @@
 
 use std::collections::HashMap;
 
-use crate::condition::fans::{Fans, Joined, is_whole};
+use crate::condition::carry::Change;
+use crate::condition::fans::{Joined, is_whole};
 use crate::{Mesh, VertexId, merge_equal_wedges};
 
 /// Bits of a position; -0 counts as 0.
@@ -21,10 +22,10 @@ pub(super) struct Joints {
 }
 
 impl Joints {
-    /// Finds the places of all vertices that have been split.
-    pub(super) fn new(mesh: &Mesh, fans: &Fans) -> Self {
+    /// Finds the places of all vertices that have been split, in the mesh after the change.
+    pub(super) fn new(mesh: &Mesh, change: &Change) -> Self {
         let mut this = Self { index: HashMap::new(), joints: Vec::new() };
-        for of in &fans.copies {
+        for of in &change.copies {
             let next = this.joints.len() as u32;
             let place = *this.index.entry(key(mesh.positions[of.index()])).or_insert(next);
             if place == next {
@@ -34,22 +35,17 @@ impl Joints {
         if this.joints.is_empty() {
             return this;
         }
-        let inputs = mesh.positions.len();
-        let mut joined = Joined::new(inputs + fans.copies.len());
-        let mut first: Vec<Option<VertexId>> = vec![None; inputs];
-        let mut is_used = vec![false; inputs + fans.copies.len()];
-        for (f, face) in mesh.faces.iter().enumerate().filter(|(_, face)| is_whole(**face)) {
-            for (k, v) in face.iter().enumerate() {
-                let now = fans.at(3 * f + k);
-                is_used[now.index()] = true;
-                let one = first[v.index()].get_or_insert(now);
-                joined.join(one.index(), now.index());
-            }
+        let mut joined = Joined::new(mesh.positions.len());
+        for [before, now] in &change.parted {
+            joined.join(before.index(), now.index());
         }
-        let copies = fans.copies.iter().map(|v| v.index());
-        for (now, at) in (0..inputs).chain(copies).enumerate().filter(|&(now, _)| is_used[now]) {
-            if let Some(&place) = this.index.get(&key(mesh.positions[at])) {
-                this.joints[place as usize].push(joined.root(now) as u32);
+        let mut is_used = vec![false; mesh.positions.len()];
+        for face in mesh.faces.iter().filter(|face| is_whole(**face)) {
+            face.iter().for_each(|v| is_used[v.index()] = true);
+        }
+        for (v, position) in mesh.positions.iter().enumerate().filter(|&(v, _)| is_used[v]) {
+            if let Some(&place) = this.index.get(&key(*position)) {
+                this.joints[place as usize].push(joined.root(v) as u32);
             }
         }
         this

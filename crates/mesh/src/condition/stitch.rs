@@ -2,22 +2,20 @@
 
 use crate::condition::links::Links;
 use crate::condition::pairing::{self, normal};
-use crate::{Connectivity, Lock, Locks, Mesh, Side, Twin, VertexId, first_near};
+use crate::{Lock, Locks, Mesh, Side, VertexId, first_near};
 
 /// Cosine of the angle between the normals of two faces that lie on each other, as the two sides
 /// of a leaf do. They are not sewn to a bag without volume.
 const FOLDED: f64 = -1.0 + 1e-9;
 
-/// Links boundary edges that lie on each other, and returns the pairs.
+/// Links those of some boundary edges that lie on each other, and returns the pairs.
 pub(super) fn sew(
     mesh: &Mesh,
-    connectivity: &Connectivity,
+    border: &[Side],
     locks: &Locks,
     links: &mut Links,
 ) -> Vec<[Side; 2]> {
-    let border: Vec<Side> =
-        connectivity.edges().filter(|&side| connectivity.twin(side) == Twin::Boundary).collect();
-    let places = Places::new(mesh, &border, 0.0);
+    let places = Places::new(mesh, border, 0.0);
     let ties = tied(locks);
     let lock = |v: VertexId| locks.of_vertex.get(v.index()).copied().unwrap_or(Lock::Free);
     let may_merge = |v: VertexId, w: VertexId| {
@@ -28,7 +26,7 @@ pub(super) fn sew(
         may_merge(v0, w1) && may_merge(v1, w0) && lie_on_each_other(mesh, &places, a, b)
     };
     let mut sewn = Vec::new();
-    for sides in places.by_edge(mesh, &border) {
+    for sides in places.by_edge(mesh, border) {
         sewn.extend(pairing::pair(mesh, &sides, may_meet));
     }
     sewn.iter().for_each(|pair| links.link(pair[0], pair[1]));
