@@ -128,6 +128,9 @@ pub fn condition(mesh: &Mesh, locks: &Locks, options: &ConditionOptions) -> Opti
         Search::Unbalanced => suspects::unbalanced(mesh),
         Search::All => suspects::irregular(mesh),
     };
+    if !suspects.contains(&true) {
+        return None;
+    }
     let mut around = Around::new(mesh, &suspects);
     let connect = |around: &Around| {
         Connectivity::new(&around.mesh.faces, around.mesh.positions.len())
