@@ -3,9 +3,10 @@
 
 mod bare;
 mod cache;
+mod deviation;
 mod extent;
-mod figures;
 mod hubs;
+mod inputs;
 mod maximum;
 mod peers;
 mod scenes;
@@ -20,7 +21,7 @@ use meshlod::mesh::Mesh;
 use super::command::Program;
 use crate::project::Project;
 
-/// What the tables are made with.
+/// Project and program that the tables are made with.
 pub struct Tools<'p> {
     project: &'p Project,
     program: Program,
@@ -41,9 +42,9 @@ const PARTS: [Part; 6] = [
     ),
     (
         "textured",
-        "With textures: mean FLIP (0 is best) by the protocol of docs/notes/image-error.md, models of \
-         several components. meshoptimizer prunes in both columns. Where the better of its levels \
-         has more faces than wanted, ours with as many is compared.",
+        "With textures: mean FLIP (0 is best) by the protocol of docs/notes/image-error.md. \
+         meshoptimizer prunes in both columns. Where the better of its levels has more faces than \
+         wanted, ours with as many is compared.",
         textured::table,
     ),
     (
@@ -124,7 +125,7 @@ impl Tools<'_> {
         let fixed = ["simplify".as_ref(), input.as_os_str(), output.as_os_str()];
         let options = ["--faces", &faces].into_iter().chain(more.iter().copied()).map(OsStr::new);
         let level = self.program.answer(fixed.into_iter().chain(options));
-        match level.and_then(|_| figures::read(output)) {
+        match level.and_then(|_| inputs::read(output)) {
             Ok(level) => Some(level),
             Err(error) => {
                 eprintln!("  {} to {faces}: {error:#}", name_of(input));

@@ -6,7 +6,8 @@ use anyhow::Result;
 use meshlod::measure::PreparedSurface;
 
 use super::Tools;
-use super::figures::{Figures, bare, cell, is_at_most, part_count, ratio, read, write};
+use super::deviation::{Deviation, cell, is_at_most, ratio};
+use super::inputs::{bare, part_count, read, write};
 use super::peers::{self, PEERS};
 use crate::table::Table;
 
@@ -44,15 +45,15 @@ pub fn table(tools: &Tools<'_>) -> Result<String> {
 }
 
 /// Level of one mesh at one number of faces, by us and by the peers.
-struct Row {
+struct BareRow {
     what: String,
     wanted: usize,
-    ours: Option<Figures>,
-    theirs: [Option<Figures>; 3],
+    ours: Option<Deviation>,
+    theirs: [Option<Deviation>; 3],
 }
 
 /// Measures a mesh, or returns `None` if it is of one component and not among the named ones.
-fn rows_of(tools: &Tools<'_>, path: &Path) -> Result<Option<Vec<Row>>> {
+fn rows_of(tools: &Tools<'_>, path: &Path) -> Result<Option<Vec<BareRow>>> {
     let mesh = read(path)?;
     let parts = part_count(&mesh);
     let name = super::name_of(path);
@@ -66,31 +67,31 @@ fn rows_of(tools: &Tools<'_>, path: &Path) -> Result<Option<Vec<Row>>> {
     write(&input, &mesh)?;
     let surface = PreparedSurface::new(&mesh)?;
     let wanted = PERCENTS.map(|percent| mesh.faces.len() * percent / 100);
-    let theirs = peers::figures(tools.project, &input, &surface, &wanted)?;
-    let row = |((percent, wanted), theirs)| -> Result<Row> {
+    let theirs = peers::deviations(tools.project, &input, &surface, &wanted)?;
+    let row = |((percent, wanted), theirs)| -> Result<BareRow> {
         let level = tools.simplify(&input, &output, wanted, &[]);
-        let ours = level.map(|level| Figures::of(&surface, &level)).transpose()?.flatten();
-        Ok(Row { what: format!("{name}, {percent} %"), wanted, ours, theirs })
+        let ours = level.map(|level| Deviation::of(&surface, &level)).transpose()?.flatten();
+        Ok(BareRow { what: format!("{name}, {percent} %"), wanted, ours, theirs })
     };
     let rows = PERCENTS.into_iter().zip(wanted).zip(theirs).map(row);
     rows.collect::<Result<_>>().map(Some)
 }
 
-impl Row {
+impl BareRow {
     fn is_reached(&self) -> bool {
         self.ours.is_some_and(|level| level.faces <= self.wanted)
     }
 
     /// Returns the least of one figure over the peers that reach the number of faces.
     fn best(&self, figure: Figure) -> Option<f64> {
-        let reached = |level: &&Figures| 100 * level.faces <= 101 * self.wanted;
+        let reached = |level: &&Deviation| 100 * level.faces <= 101 * self.wanted;
         self.theirs.iter().flatten().filter(reached).map(figure).min_by(f64::total_cmp)
     }
 
     /// Returns whether a figure of ours is at most `times` the best of theirs.
     fn is_within(&self, times: f64, figure: Figure) -> bool {
         let ours = self.ours.filter(|_| self.is_reached());
-        let is_at_most = |ours: Figures| {
+        let is_at_most = |ours: Deviation| {
             self.best(figure).is_none_or(|best| is_at_most(figure(&ours), times, best))
         };
         ours.is_some_and(is_at_most)
@@ -118,11 +119,11 @@ const CRITERIA: [(&str, f64, Figure); 2] =
     [("mean", 1.0, |level| level.mean), ("max", 1.25, |level| level.max)];
 
 /// A figure of a level, such as its mean distance.
-type Figure = fn(&Figures) -> f64;
+type Figure = fn(&Deviation) -> f64;
 /// A condition that rows are counted by.
-type Condition<'c> = &'c dyn Fn(&Row) -> bool;
+type Condition<'c> = &'c dyn Fn(&BareRow) -> bool;
 
-fn counts(rows: &[Row]) -> String {
+fn counts(rows: &[BareRow]) -> String {
     let [(_, _, mean), (_, _, max)] = CRITERIA;
     let count = |is: Condition<'_>| {
         let found = rows.iter().filter(|row| is(row)).count();
@@ -130,7 +131,7 @@ fn counts(rows: &[Row]) -> String {
     };
     let mut table = Table::new([&format!("of {} rows", rows.len())[..], "rows", "%"]);
     let lines: [(&str, Condition<'_>); 5] = [
-        ("number of faces reached", &Row::is_reached),
+        ("number of faces reached", &BareRow::is_reached),
         ("mean at most the best of theirs", &|row| row.is_within(1.0, mean)),
         ("mean at most 1.1 times", &|row| row.is_within(1.1, mean)),
         ("maximum at most 1.25 times the best of theirs", &|row| row.is_within(1.25, max)),
@@ -143,7 +144,7 @@ fn counts(rows: &[Row]) -> String {
     table.markdown()
 }
 
-fn listed(rows: &[&Row]) -> String {
+fn listed(rows: &[&BareRow]) -> String {
     let names = PEERS.map(|(_, name)| name);
     let headings = ["mesh, ratio", "faces wanted", "ours"].into_iter().chain(names);
     let mut table = Table::new(headings.chain(["short of"]));
@@ -160,13 +161,13 @@ fn listed(rows: &[&Row]) -> String {
 mod tests {
     use super::*;
 
-    fn level(faces: usize, mean: f64, max: f64) -> Option<Figures> {
-        Some(Figures { faces, mean, max })
+    fn level(faces: usize, mean: f64, max: f64) -> Option<Deviation> {
+        Some(Deviation { faces, mean, max })
     }
 
-    fn row(ours: Option<Figures>) -> Row {
+    fn row(ours: Option<Deviation>) -> BareRow {
         let theirs = [level(100, 1.0, 4.0), level(99, 2.0, 2.0), level(150, 0.1, 0.1)];
-        Row { what: "mesh".to_owned(), wanted: 100, ours, theirs }
+        BareRow { what: "mesh".to_owned(), wanted: 100, ours, theirs }
     }
 
     #[test]

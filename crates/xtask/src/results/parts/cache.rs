@@ -16,7 +16,7 @@ pub struct Cache {
 
 impl Cache {
     /// Opens the figures for an input, given by all bytes that they depend on; empty if there are
-    /// no figures yet.
+    /// no figures yet. A change of how distances are measured is not seen: delete the folder then.
     pub fn open<'b>(project: &Project, input: impl IntoIterator<Item = &'b [u8]>) -> Result<Self> {
         let mut hasher = DefaultHasher::new();
         for bytes in input {

@@ -5,7 +5,8 @@ use std::path::Path;
 use anyhow::Result;
 use meshlod::mesh::{Bounds, Mesh};
 
-use super::{Tools, figures, name_of};
+use super::inputs::read;
+use super::{Tools, name_of};
 use crate::table::Table;
 
 const PERCENTS: [usize; 4] = [50, 10, 3, 1];
@@ -20,7 +21,7 @@ pub fn table(tools: &Tools<'_>) -> Result<String> {
     let (mut count, mut beyond, mut failed) = (0, 0, 0);
     let [mut most, mut most_by_qem] = [0.0f64; 2];
     for path in meshlod_bench::shared_meshes() {
-        let mesh = figures::read(&path)?;
+        let mesh = read(&path)?;
         eprintln!("  {}: {} faces …", name_of(&path), mesh.faces.len());
         for percent in PERCENTS {
             count += 1;

@@ -7,12 +7,13 @@ use meshlod::samples;
 use meshlod_bench::fixtures::{doubled_back_to_back, with_merged_vertices};
 
 use super::Tools;
-use super::figures::{Figures, bare, cell, is_at_most, ratio, write};
+use super::deviation::{Deviation, cell, is_at_most, ratio};
+use super::inputs::{bare, write};
 use crate::table::Table;
 
 const FACES: usize = 100_000;
 const PAIRS: usize = 1_000;
-/// How many times the mean of the sample itself the mean may be.
+/// Factor by which the mean may be larger than that of the sample itself.
 const MEAN: f64 = 1.1;
 
 /// Returns a table of the sample and its non-manifold versions, bare and with attributes.
@@ -55,11 +56,11 @@ pub fn table(tools: &Tools<'_>) -> Result<String> {
 }
 
 /// Simplifies a mesh by way of an OBJ file, which holds its attributes, and measures the level.
-fn level(tools: &Tools<'_>, mesh: &Mesh, wanted: usize) -> Result<Option<Figures>> {
+fn level(tools: &Tools<'_>, mesh: &Mesh, wanted: usize) -> Result<Option<Deviation>> {
     let folder = tempfile::tempdir()?;
     let [input, output] = ["in.obj", "out.obj"].map(|file| folder.path().join(file));
     write(&input, mesh)?;
     let surface = PreparedSurface::new(mesh)?;
     let level = tools.simplify(&input, &output, wanted, &[]);
-    Ok(level.map(|level| Figures::of(&surface, &level)).transpose()?.flatten())
+    Ok(level.map(|level| Deviation::of(&surface, &level)).transpose()?.flatten())
 }

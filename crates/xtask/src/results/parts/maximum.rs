@@ -4,21 +4,22 @@ use anyhow::{Context, Result};
 use meshlod::measure::PreparedSurface;
 
 use super::Tools;
-use super::figures::{Figures, bare, is_at_most, ratio, read, write};
+use super::deviation::{Deviation, is_at_most, ratio};
+use super::inputs::{bare, read, write};
 use crate::table::Table;
 
 /// Models, with the mean of the default at 10 % and at 3 % on 2026-11-23, before pieces could
-/// vanish.
+/// vanish; skyscraper.obj then stopped at 404 faces of 369.
 const MESHES: [(&str, [f64; 2]); 6] = [
-    ("fandisk.off", [0.0, 0.0]),
-    ("rocker-arm.obj", [0.0, 0.0]),
-    ("bat-cover.stl", [0.0, 0.0]),
-    ("turbine.off", [0.0, 0.0]),
-    ("skyscraper.obj", [0.0, 0.0]),
-    ("cesium-milk-truck.glb", [0.0, 0.0]),
+    ("fandisk.off", [0.00187, 0.00911]),
+    ("rocker-arm.obj", [0.02213, 0.06041]),
+    ("bat-cover.stl", [0.01267, 0.16884]),
+    ("turbine.off", [0.01966, 0.08905]),
+    ("skyscraper.obj", [1.17393, 1.17393]),
+    ("cesium-milk-truck.glb", [0.04506, 0.49206]),
 ];
 const PERCENTS: [usize; 2] = [10, 3];
-/// How many times the former mean the mean may be.
+/// Factor by which the mean may be larger than it was.
 const MEAN: f64 = 1.02;
 
 /// Returns a table of the default beside `qem`, by mesh and ratio.
@@ -41,9 +42,9 @@ pub fn table(tools: &Tools<'_>) -> Result<String> {
         let [input, output] = ["in.ply", "out.ply"].map(|file| folder.path().join(file));
         write(&input, &mesh)?;
         let surface = PreparedSurface::new(&mesh)?;
-        let level = |faces: usize, more: &[&str]| -> Result<Figures> {
+        let level = |faces: usize, more: &[&str]| -> Result<Deviation> {
             let level = tools.simplify(&input, &output, faces, more).context("no level")?;
-            Figures::of(&surface, &level)?.context("a level without faces")
+            Deviation::of(&surface, &level)?.context("a level without faces")
         };
         for (percent, before) in PERCENTS.into_iter().zip(before) {
             let wanted = mesh.faces.len() * percent / 100;
@@ -55,7 +56,7 @@ pub fn table(tools: &Tools<'_>) -> Result<String> {
     Ok(table.markdown())
 }
 
-fn row(what: &str, wanted: usize, before: f64, ours: Figures, qem: Figures) -> [String; 8] {
+fn row(what: &str, wanted: usize, before: f64, ours: Deviation, qem: Deviation) -> [String; 8] {
     let faults = [
         (ours.faces > wanted).then_some("faces"),
         (!is_at_most(ours.mean, MEAN, before)).then_some("mean"),

@@ -8,7 +8,8 @@ use meshlod::measure::PreparedSurface;
 use serde_json::Value;
 
 use super::cache::{Cache, folder};
-use super::figures::{Figures, read};
+use super::deviation::Deviation;
+use super::inputs::read;
 use crate::project::Project;
 
 /// Names of the other programs in files, and in tables.
@@ -18,23 +19,23 @@ pub const PEERS: [(&str, &str); 3] = [
     ("meshopt-prune", "meshoptimizer, prune"),
 ];
 
-/// What the script needs, as the figures of the notes were made with.
+/// Packages that the script needs, in the versions that its figures were first made with.
 const PACKAGES: [&str; 4] =
     ["pymeshlab==2025.7.post1", "meshoptimizer==0.2.30a0", "trimesh==5.2.0", "numpy==2.4.6"];
 
-/// Figures of all peers for an input in a PLY file, by number of faces asked for.
+/// Measures the levels of all peers for an input in a PLY file, by number of faces asked for.
 ///
 /// Runs the peers only for what no earlier run has made: the figures are kept by the content of the
-/// file. `None` stands for a peer that leaves nothing.
-pub fn figures(
+/// file, the script and the packages. `None` stands for a peer that leaves nothing.
+pub fn deviations(
     project: &Project,
     input: &Path,
     surface: &PreparedSurface<'_>,
     wanted: &[usize],
-) -> Result<Vec<[Option<Figures>; 3]>> {
+) -> Result<Vec<[Option<Deviation>; 3]>> {
     let bytes = std::fs::read(input).with_context(|| input.display().to_string())?;
-    let packages = PACKAGES.map(str::as_bytes);
-    let mut cache = Cache::open(project, packages.into_iter().chain([&bytes[..]]))?;
+    let versions = PACKAGES.map(str::as_bytes).into_iter().chain([&include_bytes!("peers.py")[..]]);
+    let mut cache = Cache::open(project, versions.chain([&bytes[..]]))?;
     let name = |peer: &str, faces: usize| format!("{peer}-{faces}");
     let is_missing =
         |faces: &&usize| PEERS.iter().any(|(peer, _)| cache.get(&name(peer, **faces)).is_none());
@@ -45,12 +46,12 @@ pub fn figures(
         for level in missing.iter().flat_map(|&faces| PEERS.map(|(peer, _)| name(peer, faces))) {
             let path = levels.path().join(format!("{level}.ply"));
             let mesh = path.exists().then(|| read(&path)).transpose()?;
-            let figures = mesh.map(|mesh| Figures::of(surface, &mesh)).transpose()?.flatten();
-            cache.set(level, figures.map_or(Value::Null, Figures::to_json))?;
+            let deviation = mesh.map(|mesh| Deviation::of(surface, &mesh)).transpose()?.flatten();
+            cache.set(level, deviation.map_or(Value::Null, Deviation::to_json))?;
         }
     }
     let found =
-        |faces: usize, peer: &str| cache.get(&name(peer, faces)).and_then(Figures::from_json);
+        |faces: usize, peer: &str| cache.get(&name(peer, faces)).and_then(Deviation::from_json);
     Ok(wanted.iter().map(|&faces| PEERS.map(|(peer, _)| found(faces, peer))).collect())
 }
 

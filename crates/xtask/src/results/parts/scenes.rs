@@ -7,7 +7,8 @@ use meshlod_bench::fixtures::scene;
 
 use super::Tools;
 use super::cache::Cache;
-use super::figures::{Figures, bare, is_at_most, ratio, write};
+use super::deviation::{Deviation, is_at_most, ratio};
+use super::inputs::{bare, write};
 use crate::table::Table;
 
 const SCENES: u64 = 100;
@@ -42,31 +43,31 @@ pub fn table(tools: &Tools<'_>) -> Result<String> {
 }
 
 /// A level of a scene by us, and by removing pieces.
-struct Level {
+struct SceneLevel {
     percent: usize,
     wanted: usize,
-    ours: Option<Figures>,
-    removed: Option<Figures>,
+    ours: Option<Deviation>,
+    removed: Option<Deviation>,
 }
 
-fn levels_of(tools: &Tools<'_>, seed: u64) -> Result<Vec<Level>> {
+fn levels_of(tools: &Tools<'_>, seed: u64) -> Result<Vec<SceneLevel>> {
     let mesh = bare(scene(seed));
     let folder = tempfile::tempdir()?;
     let [input, output] = ["in.ply", "out.ply"].map(|file| folder.path().join(file));
     write(&input, &mesh)?;
     let surface = PreparedSurface::new(&mesh)?;
     let mut cache = Cache::open(tools.project, [&std::fs::read(&input)?[..]])?;
-    let level = |percent: usize| -> Result<Level> {
+    let level = |percent: usize| -> Result<SceneLevel> {
         let wanted = mesh.faces.len() * percent / 100;
         let level = tools.simplify(&input, &output, wanted, &[]);
-        let ours = level.map(|level| Figures::of(&surface, &level)).transpose()?.flatten();
+        let ours = level.map(|level| Deviation::of(&surface, &level)).transpose()?.flatten();
         let name = format!("removed-{wanted}");
         if cache.get(&name).is_none() {
-            let removed = Figures::of(&surface, &without_smallest(&mesh, wanted))?;
-            cache.set(name.clone(), removed.map(Figures::to_json).into())?;
+            let removed = Deviation::of(&surface, &without_smallest(&mesh, wanted))?;
+            cache.set(name.clone(), removed.map(Deviation::to_json).into())?;
         }
-        let removed = cache.get(&name).and_then(Figures::from_json);
-        Ok(Level { percent, wanted, ours, removed })
+        let removed = cache.get(&name).and_then(Deviation::from_json);
+        Ok(SceneLevel { percent, wanted, ours, removed })
     };
     PERCENTS.into_iter().map(level).collect()
 }
@@ -98,7 +99,7 @@ fn without_smallest(mesh: &Mesh, wanted: usize) -> Mesh {
     rest
 }
 
-impl Level {
+impl SceneLevel {
     /// Returns what the level falls short of: its number of faces, the mean, the maximum.
     fn faults(&self) -> [Option<String>; 3] {
         let Some(ours) = self.ours.filter(|level| level.faces <= self.wanted) else {
@@ -113,7 +114,7 @@ impl Level {
     }
 
     fn row(&self, seed: u64, faults: [Option<String>; 3]) -> Vec<String> {
-        let cell = |level: Option<Figures>| {
+        let cell = |level: Option<Deviation>| {
             level.map_or("–".to_owned(), |level| {
                 format!("{} faces: {}", level.faces, level.distances())
             })

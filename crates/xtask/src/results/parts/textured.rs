@@ -9,7 +9,6 @@ use serde_json::{Value, json};
 
 use super::Tools;
 use super::cache::Cache;
-use super::figures::part_count;
 use crate::results::textured::PEER;
 use crate::table::Table;
 
@@ -42,13 +41,13 @@ pub fn table(tools: &Tools<'_>) -> Result<String> {
     ]);
     let (mut count, mut reached, mut short) = (0, 0, 0);
     for name in MODELS {
-        let Some(model) = Model::read(name)? else { continue };
+        let Some(model) = TexturedModel::read(name)? else { continue };
         let paint = Paint::comparison(&model.mesh, &model.materials);
         let references = ReferenceImages::new(&model.mesh, &paint)?;
         for percent in PERCENTS {
             eprintln!("  {name}, {percent} % …");
             let wanted = model.mesh.faces.len() * percent / 100;
-            let row = Row::measure(tools, &model, &references, wanted)?;
+            let row = LooksRow::measure(tools, &model, &references, wanted)?;
             count += 1;
             reached += usize::from(row.is_reached());
             short += usize::from(row.fault().is_some());
@@ -62,21 +61,17 @@ pub fn table(tools: &Tools<'_>) -> Result<String> {
 }
 
 /// A model as it is read, and as one mesh.
-struct Model {
+struct TexturedModel {
     scene: Scene,
     mesh: Mesh,
     materials: Materials,
 }
 
-impl Model {
-    /// Reads a model; `None` if it is not available or is of one component.
+impl TexturedModel {
+    /// Reads a model; `None` if it is not available.
     fn read(name: &str) -> Result<Option<Self>> {
         let Some(scene) = meshlod_bench::read_scene(name)? else { return Ok(None) };
         let mesh = scene.flatten();
-        if part_count(&mesh) < 2 {
-            eprintln!("  {name} is of one component");
-            return Ok(None);
-        }
         let (materials, _) = materials_of(&scene);
         Ok(Some(Self { scene, mesh, materials }))
     }
@@ -98,7 +93,7 @@ impl Model {
 /// Faces of a level, and its FLIP.
 type Looks = (usize, f64);
 
-struct Row {
+struct LooksRow {
     wanted: usize,
     ours: Looks,
     /// Our level with as many faces as the better of theirs, where these are more than wanted.
@@ -106,10 +101,10 @@ struct Row {
     theirs: [Looks; 2],
 }
 
-impl Row {
+impl LooksRow {
     fn measure(
         tools: &Tools<'_>,
-        model: &Model,
+        model: &TexturedModel,
         references: &ReferenceImages<'_>,
         wanted: usize,
     ) -> Result<Self> {
