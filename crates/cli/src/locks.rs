@@ -1,20 +1,19 @@
-//! Options that keep vertices and objects in place.
+//! Options that keep vertices in place.
 
 use std::path::{Path, PathBuf};
 
 use clap::Args;
 use meshlod::check::LockOptions;
 use meshlod::mesh::{Lock, Locks};
-use meshlod::{Options, Report, Scene, join_locks, scene_locks, world_bounds};
+use meshlod::{Options, Report, Scene, join_locks, scene_locks};
 use serde_json::{Value, json};
 
 use crate::args::ReadArgs;
 use crate::check::lock_file::{self, FileRows};
 use crate::failure::Failure;
-use crate::parse::{self, Bound};
 use crate::session::Session;
 
-/// Options that keep vertices and objects in place.
+/// Options that keep vertices in place.
 #[derive(Args)]
 pub struct LockArgs {
     /// Lock every vertex of a boundary edge in place
@@ -27,12 +26,6 @@ pub struct LockArgs {
     /// Apply the vertex locks in a file written by check --locks
     #[arg(long, value_name = "FILE.json", conflicts_with_all = ["lock_contacts", "fuse"])]
     locks: Option<PathBuf>,
-    /// Keep every connected component whose bounding box has a diagonal of at least SIZE: a length
-    /// in model units, or 5% of the model's diagonal. Smaller ones may be removed as a whole, at an
-    /// error of their size, which --error limits [default: all are kept, as with no SIZE]
-    #[arg(long, value_name = "SIZE", num_args = 0..=1, default_missing_value = "0",
-        require_equals = true, value_parser = parse::bound, allow_negative_numbers = true)]
-    keep_objects: Option<Bound>,
 }
 
 /// A scene, with the path and the reading options it came from.
@@ -50,11 +43,9 @@ impl LockArgs {
         input: &InputScene<'_>,
         session: &Session,
     ) -> Result<Options, Failure> {
-        let size = |size: Bound| size.length(world_bounds(input.scene).diagonal());
         Ok(Options {
             lock_boundary: self.lock_boundary,
             locks: self.locks(input, session)?,
-            vanish_below: self.keep_objects.map(size),
             ..options
         })
     }

@@ -27,6 +27,7 @@ mod session;
 mod simplify_report;
 mod simplify_run;
 mod table;
+mod topology;
 mod verbs;
 mod volume;
 

@@ -1,24 +1,23 @@
 //! Search for the simplified mesh with fewest faces whose measured distance is within a bound.
 
-use std::path::Path;
 use std::time::Duration;
 
 use meshlod::measure::PreparedSurface;
-use meshlod::{Options, Report, Scene, Target};
+use meshlod::{Report, Scene, Target};
 
 use crate::failure::Failure;
 use crate::session::Session;
-use crate::simplify_run::{Simplified, SimplifyRun, measure};
+use crate::simplify_run::{ReadyScene, Simplified, SimplifyRun, measure};
 
 /// Search for the simplified scene with fewest faces whose measured distance is within a bound.
 pub struct BoundSearch<'s> {
     pub scene: &'s Scene,
-    pub options: &'s Options,
+    /// The scene, ready to be simplified.
+    pub ready: &'s ReadyScene<'s>,
     /// Original scene, prepared for distance measurements.
     pub original: &'s PreparedSurface<'s>,
     /// Largest measured distance allowed, in world units.
     pub bound: f64,
-    pub path: &'s Path,
     pub session: &'s Session,
 }
 
@@ -42,7 +41,7 @@ impl BoundSearch<'_> {
         let mut time = Duration::ZERO;
         let mut halvings = 0;
         loop {
-            let mut run = SimplifyRun::start(self.scene, self.options, self.path, self.session)?;
+            let mut run = SimplifyRun::start(self.ready, self.session)?;
             let level = self.level(&mut run, estimate)?;
             let within = self.is_within(&level);
             if within || halvings == HALVINGS {

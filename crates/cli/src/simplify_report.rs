@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use meshlod::Report;
+use meshlod::{Report, Topology};
 use meshlod::simplify::Refusal;
 use serde_json::{Map, Value, json};
 
@@ -24,13 +24,43 @@ pub fn report_json(report: &Report) -> Value {
     })
 }
 
-/// Formats a line that explains why the target of a simplification was missed.
-pub fn why_not_reached(report: &Report) -> String {
-    format!(
+/// Formats a line that explains why the target of a simplification was missed, and what would help.
+pub fn why_not_reached(report: &Report, topology: Topology) -> String {
+    let mut line = format!(
         "target not reached: no further contraction is possible at {} (refused: {})",
         faces(report.output_faces),
         report.refusals,
-    )
+    );
+    for advice in advice(report, topology) {
+        line += "; ";
+        line += &advice;
+    }
+    line
+}
+
+/// Returns what would let a simplification go on, by what has held it up.
+fn advice(report: &Report, topology: Topology) -> Vec<String> {
+    let refused = |refusal: Refusal| report.refusals.count(refusal) > 0;
+    let by_topology = [Refusal::NonManifold, Refusal::Link, Refusal::LastFaces];
+    let held = report.held.locked + report.held.tied;
+    let mut advice = Vec::new();
+    if topology == Topology::Keep
+        && (report.non_manifold_vertices > 0 || by_topology.into_iter().any(refused))
+    {
+        advice.push("--topology free would let components vanish and places come apart".into());
+    }
+    if held > 0 && (refused(Refusal::Locked) || refused(Refusal::Tied)) {
+        let vertices = if held == 1 { "vertex is" } else { "vertices are" };
+        let held = count(held);
+        advice.push(format!("{held} {vertices} locked or tied: fewer locks would help"));
+    }
+    if refused(Refusal::Boundary) {
+        advice.push("--weld EPS would close borders that lie near each other".into());
+    }
+    if refused(Refusal::Seam) {
+        advice.push("fewer texture charts and materials would help".into());
+    }
+    advice
 }
 
 /// Formats lines about faces left out and vertices kept in place; empty if there are neither.

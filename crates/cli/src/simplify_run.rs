@@ -5,7 +5,9 @@ use std::time::{Duration, Instant};
 
 use meshlod::measure::{Distance, PreparedSurface};
 use meshlod::simplify::{History, Progressive, SimplifyError};
-use meshlod::{Mesh, Options, Report, Scene, SceneError, SceneSimplifier, Target};
+use meshlod::{
+    Borders, ConditionedScene, Mesh, Options, Report, Scene, SceneError, SceneSimplifier, Target,
+};
 
 use crate::failure::Failure;
 use crate::session::Session;
@@ -17,6 +19,30 @@ pub struct Simplified {
     pub measured: Option<Distance>,
     /// Progressive mesh of all levels, if contractions were recorded.
     pub sequence: Option<Progressive>,
+}
+
+/// A scene ready to be simplified, with the time that its conditioning took.
+pub struct ReadyScene<'s> {
+    pub scene: ConditionedScene<'s>,
+    path: &'s Path,
+    time: Duration,
+}
+
+impl<'s> ReadyScene<'s> {
+    /// Conditions a scene that was read from `path`.
+    pub fn new(
+        scene: &'s Scene,
+        options: &Options,
+        borders: Borders,
+        path: &'s Path,
+        session: &Session,
+    ) -> Result<Self, Failure> {
+        session.progress.stage("building connectivity");
+        let start = Instant::now();
+        let scene =
+            ConditionedScene::new(scene, options, borders).map_err(|e| at(path, &e.into()))?;
+        Ok(Self { scene, path, time: start.elapsed() })
+    }
 }
 
 /// A running simplification of a scene, with its progress label and elapsed time.
@@ -32,18 +58,14 @@ pub struct SimplifyRun<'s> {
 }
 
 impl<'s> SimplifyRun<'s> {
-    /// Builds the connectivity of the meshes of `scene`, which was read from `path`.
-    pub fn start(
-        scene: &'s Scene,
-        options: &Options,
-        path: &'s Path,
-        session: &'s Session,
-    ) -> Result<Self, Failure> {
+    /// Builds the connectivity of the meshes of a scene.
+    pub fn start(ready: &'s ReadyScene<'_>, session: &'s Session) -> Result<Self, Failure> {
         session.progress.stage("building connectivity");
+        let path = ready.path;
         let start = Instant::now();
-        let simplifier = SceneSimplifier::new(scene, options).map_err(|e| at(path, &e))?;
-        let label = "simplifying".into();
-        Ok(Self { simplifier, session, path, label, time: start.elapsed(), history: None })
+        let simplifier = SceneSimplifier::new(&ready.scene).map_err(|e| at(path, &e))?;
+        let (label, time) = ("simplifying".into(), ready.time + start.elapsed());
+        Ok(Self { simplifier, session, path, label, time, history: None })
     }
 
     /// Sets the label of the progress line.

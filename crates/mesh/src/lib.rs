@@ -16,6 +16,7 @@ mod attributes;
 mod bounds;
 mod buckets;
 mod components;
+mod condition;
 mod connectivity;
 mod frame;
 mod ids;
@@ -28,6 +29,10 @@ pub use attributes::{Attributes, Layer, LayerKind};
 pub use bounds::Bounds;
 pub use buckets::Buckets;
 pub use components::face_components;
+pub use condition::{
+    Borders, ConditionOptions, Conditioned, Conditioning, NearBorders, Search, condition,
+    near_borders,
+};
 pub use connectivity::{Connectivity, Marks, Side, Twin};
 pub use frame::Frame;
 pub use ids::{FaceId, VertexId, WedgeId};

@@ -92,12 +92,13 @@
 //!
 //! ```
 //! use meshlod::io::{gltf::Level, write_lods};
-//! use meshlod::{Options, Scene, SceneSimplifier, Target, samples};
+//! use meshlod::{Borders, ConditionedScene, Options, Scene, SceneSimplifier, Target, samples};
 //! # let folder = tempfile::tempdir()?;
 //! # let out = folder.path().join("torus.glb");
 //!
 //! let scene = Scene::from_mesh("torus", samples::torus(4_000));
-//! let mut simplifier = SceneSimplifier::new(&scene, &Options::default())?;
+//! let conditioned = ConditionedScene::new(&scene, &Options::default(), Borders::Stitch)?;
+//! let mut simplifier = SceneSimplifier::new(&conditioned)?;
 //! let mut levels = Vec::new();
 //! for (ratio, screen_coverage) in [(0.5, 0.4), (0.1, 0.1)] {
 //!     simplifier.run(Target::Ratio(ratio), &mut ())?;
@@ -184,12 +185,15 @@
 //! # Guarantees
 //! - No input makes it crash: errors in files are reported in one line with their position.
 //! - The same input and options give the same bytes, for any number of threads.
-//! - After every contraction a surface is as manifold, as closed and as oriented as before.
+//! - With [`Topology::Keep`] a surface is as manifold, as closed and as oriented as before after
+//!   every contraction; with [`Topology::Free`], the default, borders that lie on each other may be
+//!   sewn together, non-manifold places may come apart, and components may vanish.
 //! - Files are written whole or not at all.
 #![forbid(unsafe_code)]
 
 mod check_report;
 mod compressed;
+mod conditioned;
 mod contacts;
 mod exact_volume;
 mod fuse;
@@ -217,6 +221,7 @@ pub use check_report::{CheckReport, check_report};
 pub use compressed::{
     CompressOptions, CompressReport, CompressedFileError, compress, decompress, decompress_bytes,
 };
+pub use conditioned::{ConditionedScene, simplify};
 pub use contacts::scene_locks;
 pub use exact_volume::{conserve_volumes, digits_of};
 pub use fuse::fuse_scene;
@@ -224,8 +229,8 @@ pub use levels::{BuildOptions, BuildReport, ExtractOptions, LevelsError, build, 
 pub use locks::join_locks;
 pub use materials::{UnreadImage, materials_of};
 pub use meshlod_io::{Format, IoError, ReadOptions, Scene, WriteOptions, read, write};
-pub use meshlod_mesh::Mesh;
-pub use meshlod_simplify::{Method, Options, Report, SimplifyError, Target, simplify};
+pub use meshlod_mesh::{Borders, Mesh};
+pub use meshlod_simplify::{Method, Options, Report, SimplifyError, Target, Topology};
 pub use place::world_bounds;
 pub use repair::repair_scene;
 pub use scene::{SceneError, SceneSimplifier, simplify_scene};

@@ -1,13 +1,13 @@
 //! Simplification of a scene: all its meshes share one target number of faces or error bound.
 
 use meshlod_io::Scene;
-use meshlod_mesh::Mesh;
+use meshlod_mesh::{Borders, Mesh};
 use meshlod_simplify::{
     Held, Method, Observe, Options, Refusals, Report, Simplifier, SimplifyError, Target, VolumeLoss,
 };
 use thiserror::Error;
 
-use crate::locks;
+use crate::ConditionedScene;
 use crate::place::length_scale;
 
 /// Simplifies all meshes of a scene to one common target, always contracting where it costs least
@@ -18,8 +18,9 @@ use crate::place::length_scale;
 /// Meshes that no node shows, and those without a face to contract, stay as they are.
 ///
 /// Levels taken from one run are nested. For a scene with one mesh and no transform this is
-/// [`Simplifier`].
+/// [`Simplifier`], on the conditioned mesh.
 pub struct SceneSimplifier<'s> {
+    conditioned: &'s ConditionedScene<'s>,
     scene: &'s Scene,
     method: Method,
     parts: Vec<Part<'s>>,
@@ -60,16 +61,18 @@ pub enum SceneError {
     },
 }
 
-/// Simplifies all meshes of a scene in place, to one common target; see [`SceneSimplifier`].
+/// Simplifies all meshes of a scene in place, to one common target; see [`ConditionedScene`] and
+/// [`SceneSimplifier`].
 ///
 /// # Errors
-/// As for [`SceneSimplifier::new`], and an invalid target; the scene then is unchanged.
+/// As for these two, and an invalid target; the scene then is unchanged.
 pub fn simplify_scene(
     scene: &mut Scene,
     target: Target,
     options: &Options,
 ) -> Result<Report, SceneError> {
-    let mut simplifier = SceneSimplifier::new(scene, options)?;
+    let conditioned = ConditionedScene::new(scene, options, Borders::Stitch)?;
+    let mut simplifier = SceneSimplifier::new(&conditioned)?;
     let report = simplifier.run(target, &mut ())?;
     let level = simplifier.level();
     drop(simplifier);
@@ -82,36 +85,30 @@ pub fn simplify_scene(
 impl<'s> SceneSimplifier<'s> {
     /// Prepares every mesh that the scene shows for simplification, without simplifying yet.
     ///
-    /// `options.locks` number vertices through all meshes of the scene, mesh after mesh, see
-    /// [`join_locks`](crate::join_locks). Vertices tied across two meshes are locked, since meshes
-    /// are simplified independently. `options.vanish_below` is in world units; no mesh vanishes
-    /// completely.
+    /// The option `vanish_below` is in world units; no mesh vanishes completely.
     ///
     /// Cost: O(n log n), n = faces.
     /// # Errors
-    /// An invalid mesh, locks of another length, or no mesh with a face to contract.
-    pub fn new(scene: &'s Scene, options: &Options) -> Result<Self, SceneError> {
-        let locks = locks::split(scene, &options.locks)?;
-        let shown = shown(scene);
-        let method = options.method;
-        let mut this = Self { scene, method, parts: Vec::new(), still_faces: 0 };
+    /// An invalid mesh or option, or no mesh with a face to contract.
+    pub fn new(conditioned: &'s ConditionedScene<'s>) -> Result<Self, SceneError> {
+        let scene = conditioned.scene;
+        let method = conditioned.options.method;
+        let mut this = Self { conditioned, scene, method, parts: Vec::new(), still_faces: 0 };
         let mut still = None;
-        for ((index, (copies, scale)), locks) in shown.into_iter().enumerate().zip(locks) {
-            let mesh = &scene.meshes[index].mesh;
+        for (index, (copies, scale)) in shown(scene).into_iter().enumerate() {
             if copies == 0 {
                 continue;
             }
             // A mesh scaled to a point is smaller than any size.
-            let vanish_below = options.vanish_below.map(|size| size / scale);
+            let vanish_below = conditioned.options.vanish_below.map(|size| size / scale);
             let vanish_below = vanish_below.map(|size| if size.is_nan() { 0.0 } else { size });
-            let options = Options { method, locks, vanish_below, ..*options };
-            match Simplifier::new(mesh, &options) {
+            match conditioned.meshes[index].simplifier(vanish_below) {
                 Ok(simplifier) => {
                     let cost_scale = scale.powi(method.cost_power());
                     this.parts.push(Part { mesh: index, copies, scale, cost_scale, simplifier });
                 }
                 Err(error @ (SimplifyError::NoFaces | SimplifyError::AllDegenerate(_))) => {
-                    this.still_faces += copies * mesh.faces.len();
+                    this.still_faces += copies * scene.meshes[index].mesh.faces.len();
                     still.get_or_insert(error);
                 }
                 Err(source) => return Err(this.error_of(index, source)),
@@ -127,7 +124,8 @@ impl<'s> SceneSimplifier<'s> {
     /// allowed any more.
     ///
     /// A number of faces is shared: the next contraction is the cheapest of all meshes in world
-    /// space. An error bound holds for each mesh by itself, at its size in world space.
+    /// space. An error bound holds for each mesh by itself, at its size in world space. Observers
+    /// see the ids of conditioned meshes.
     ///
     /// # Errors
     /// An invalid target.
@@ -170,17 +168,18 @@ impl<'s> SceneSimplifier<'s> {
         let mut parts = self.parts.iter().peekable();
         let meshes = self.scene.meshes.iter().enumerate();
         let now = meshes.map(|(index, mesh)| match parts.next_if(|part| part.mesh == index) {
-            Some(part) => part.simplifier.level(),
+            Some(part) => self.conditioned.meshes[index].level(&part.simplifier),
             None => mesh.mesh.clone(),
         });
         now.collect()
     }
 
     /// Returns the simplifier of the scene's only mesh, in its current state; `None` if there are
-    /// several meshes.
+    /// several meshes, or if conditioning has changed the mesh.
     pub fn into_only(mut self) -> Option<Simplifier<'s>> {
         let only = self.parts.pop().filter(|_| self.parts.is_empty());
-        only.filter(|_| self.scene.meshes.len() == 1).map(|part| part.simplifier)
+        let is_only = self.scene.meshes.len() == 1 && !self.conditioned.meshes[0].is_changed();
+        only.filter(|_| is_only).map(|part| part.simplifier)
     }
 
     fn run_within(
@@ -240,7 +239,8 @@ impl<'s> SceneSimplifier<'s> {
             let here = Target::Faces(part.simplifier.live_faces());
             let report = part.simplifier.run(here, &mut ())?;
             whole.degenerate_faces += part.copies * report.degenerate_faces;
-            whole.duplicate_faces += part.copies * report.duplicate_faces;
+            let left_out = self.conditioned.meshes[part.mesh].counts().duplicate_faces;
+            whole.duplicate_faces += part.copies * (report.duplicate_faces + left_out);
             whole.non_manifold_vertices += part.copies * report.non_manifold_vertices;
             whole.vanished += part.copies * report.vanished;
             whole.held.add(&report.held, part.copies);

@@ -1,8 +1,10 @@
 //! Comparison of simplification methods on one mesh, each run independently.
 
-use meshlod::Method;
+use std::path::Path;
+
 use meshlod::measure::{DistanceOptions, PreparedSurface};
 use meshlod::picture::ReferenceImages;
+use meshlod::{Method, Options, Topology};
 
 use crate::compare::output::Output;
 use crate::failure::Failure;
@@ -12,7 +14,8 @@ use crate::page::subject::Subject;
 use crate::parse::LevelSize;
 use crate::session::Session;
 use crate::simplify_report;
-use crate::simplify_run;
+use crate::simplify_run::{self, ReadyScene};
+use crate::topology::{self, TopologyArgs};
 use crate::volume::unconserved_text;
 
 /// A mesh, and the sizes and methods for which to compare simplifications of it.
@@ -24,6 +27,7 @@ pub struct Comparison<'s> {
     pub sizes: Vec<LevelSize>,
     pub methods: Vec<Method>,
     pub pictures: bool,
+    pub topology: &'s TopologyArgs,
 }
 
 /// Measurements and pictures from a comparison of methods.
@@ -69,6 +73,7 @@ impl Comparison<'_> {
     pub fn run(&self, output: &Output, session: &Session) -> Result<ComparisonResult, Failure> {
         let tools = self.pictures.then(|| self.picture_tools()).transpose()?;
         let context = RunContext { tools, output, session };
+        topology::warn(&self.ready(Method::default(), session)?.scene, session);
         let mut entries = Vec::new();
         for (i, &method) in self.methods.iter().enumerate() {
             let what = format!("{} ({} of {})", method.name(), i + 1, self.methods.len());
@@ -84,6 +89,15 @@ impl Comparison<'_> {
         }
         let input = context.tools.map(|tools| tools.renderer.input()).transpose()?;
         Ok(ComparisonResult { entries, input })
+    }
+
+    /// Returns the scene ready for a method.
+    fn ready(&self, method: Method, session: &Session) -> Result<ReadyScene<'_>, Failure> {
+        let Self { subject, topology, .. } = self;
+        let options = Options { method, ..Options::default() };
+        let options = topology.apply(options, &subject.scene)?;
+        let path = Path::new(&subject.name);
+        ReadyScene::new(&subject.scene, &options, topology.borders(), path, session)
     }
 
     fn picture_tools(&self) -> Result<PictureTools<'_>, Failure> {
@@ -106,7 +120,8 @@ impl Comparison<'_> {
         let RunContext { tools, output, session } = context;
         let method = entry.chain.method;
         let setup = ChainSetup { subject, original, options, session };
-        let mut builder = match ChainBuilder::start(setup, method, what.into()) {
+        let ready = self.ready(method, session)?;
+        let mut builder = match ChainBuilder::start(setup, &ready, what.into()) {
             Ok(builder) => builder,
             Err(failure) => {
                 entry.failure = Some(failure);
@@ -154,11 +169,11 @@ impl ComparisonResult {
     }
 
     /// Prints warnings about methods that failed and targets that were missed.
-    pub fn warn(&self, name: &str, session: &Session) {
+    pub fn warn(&self, name: &str, topology: Topology, session: &Session) {
         for MethodResult { chain, failure, .. } in &self.entries {
             let method = chain.method.name();
             for level in chain.levels.iter().filter(|level| !level.report.reached) {
-                let reason = simplify_report::why_not_reached(&level.report);
+                let reason = simplify_report::why_not_reached(&level.report, topology);
                 session.warn(format_args!("{name}: {method}, {}: {reason}", level.size));
             }
             if let Some(failure) = failure {

@@ -24,6 +24,7 @@ use crate::page::style::{self, OwnedPaint, SubjectStyle};
 use crate::page::subject::Subject;
 use crate::parse::{self, LevelSize};
 use crate::session::Session;
+use crate::topology::TopologyArgs;
 use comparison::Comparison;
 use output::Output;
 
@@ -44,6 +45,8 @@ pub struct Compare {
     /// Draw no pictures: the page has figures only
     #[arg(long)]
     no_pictures: bool,
+    #[command(flatten)]
+    topology: TopologyArgs,
     #[command(flatten)]
     viewpoint: ViewArgs,
     #[command(flatten)]
@@ -96,6 +99,7 @@ impl Compare {
             sizes: self.sizes.sorted(),
             methods: self.methods(),
             pictures: !self.no_pictures,
+            topology: &self.topology,
         };
         let outcome = comparison.run(&output, session)?;
 
@@ -104,7 +108,7 @@ impl Compare {
         write_file(&self.out.join("compare.json"), format!("{json:#}\n").as_bytes())?;
         let page = page::page(&comparison, &outcome).into_string();
         write_file(&self.out.join("index.html"), page.as_bytes())?;
-        outcome.warn(&subject.name, session);
+        outcome.warn(&subject.name, self.topology.kind(), session);
         Ok(Answer::new(json, summary::text(&comparison, &outcome, &output)))
     }
 

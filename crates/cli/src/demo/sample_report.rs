@@ -4,7 +4,7 @@ use std::path::Path;
 
 use meshlod::io::{gltf, write_lods};
 use meshlod::measure::DistanceOptions;
-use meshlod::{Mesh, Method, Scene, WriteOptions, write};
+use meshlod::{Borders, Mesh, Method, Options, Scene, WriteOptions, write};
 
 use crate::demo::samples::DemoSample;
 use crate::demo::{METHODS, main_method};
@@ -14,7 +14,7 @@ use crate::page::renderer::{LevelPictures, SubjectRenderer};
 use crate::page::subject::Subject;
 use crate::parse::LevelSize;
 use crate::session::Session;
-use crate::simplify_run;
+use crate::simplify_run::{self, ReadyScene};
 use crate::verbs::lods::screen_coverage;
 
 /// Levels of a chain, as ratios of the input's faces.
@@ -104,7 +104,11 @@ impl SampleFiles<'_> {
     /// Builds and writes all levels of a method.
     fn chain(&self, setup: ChainSetup<'_>, method: Method) -> Result<Vec<LevelMesh>, Failure> {
         let what = format!("{}: {}", self.sample.name, method.name());
-        let mut builder = ChainBuilder::start(setup, method, what)?;
+        let options = Options { method, ..Options::default() };
+        let (subject, session) = (setup.subject, setup.session);
+        let path = Path::new(&subject.name);
+        let ready = ReadyScene::new(&subject.scene, &options, Borders::Stitch, path, session)?;
+        let mut builder = ChainBuilder::start(setup, &ready, what)?;
         let level = |ratio| {
             let file = self.sample.level_file(method, LevelSize::Ratio(ratio));
             let made = builder.next_level(LevelSize::Ratio(ratio), file)?;

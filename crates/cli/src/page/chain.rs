@@ -1,19 +1,18 @@
 //! Levels of one mesh made by one method, with their measurements.
 
-use std::path::Path;
 use std::time::Duration;
 
 use meshlod::measure::{
     Distance, DistanceOptions, PreparedSurface, Quality, quality, surface_distance,
 };
-use meshlod::{Mesh, Method, Options, Report};
+use meshlod::{Mesh, Method, Report};
 
 use crate::failure::Failure;
 use crate::page::counts::Counts;
 use crate::page::subject::Subject;
 use crate::parse::LevelSize;
 use crate::session::Session;
-use crate::simplify_run::SimplifyRun;
+use crate::simplify_run::{ReadyScene, SimplifyRun};
 
 /// Builder of successive levels of one mesh by one method.
 pub struct ChainBuilder<'s> {
@@ -71,12 +70,14 @@ pub struct ChainSetup<'s> {
 impl<'s> ChainBuilder<'s> {
     /// Builds the connectivity of all meshes to be simplified; `what` is the label of the progress
     /// line.
-    pub fn start(setup: ChainSetup<'s>, method: Method, what: String) -> Result<Self, Failure> {
+    pub fn start(
+        setup: ChainSetup<'s>,
+        ready: &'s ReadyScene<'_>,
+        what: String,
+    ) -> Result<Self, Failure> {
         let ChainSetup { subject, original, options, session } = setup;
-        let path = Path::new(&subject.name);
-        let simplify = Options { method, ..Options::default() };
         session.progress.stage(&format!("{what}: building connectivity"));
-        let run = SimplifyRun::start(&subject.scene, &simplify, path, session)?;
+        let run = SimplifyRun::start(ready, session)?;
         Ok(Self { subject, original, options, run, session, what })
     }
 

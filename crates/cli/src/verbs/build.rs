@@ -10,7 +10,7 @@ use meshlod::multires::{
     Storage,
 };
 use meshlod::simplify::Simplifier;
-use meshlod::{Mesh, Method, Options, Target};
+use meshlod::{Mesh, Method, Options, Target, Topology};
 use serde_json::{Value, json};
 
 use crate::answer::Answer;
@@ -22,7 +22,7 @@ use crate::numbers::{count, faces, percent, value};
 use crate::parse::{self, Bound};
 use crate::session::Session;
 
-/// Write all levels of a mesh to one multiresolution file (.mlod)
+/// Write all levels of a mesh to one multiresolution file (.mlod). The topology of the mesh is kept
 #[derive(Args)]
 pub struct Build {
     /// Mesh to read, or -
@@ -133,7 +133,8 @@ impl Build {
 
     fn contractions(&self, mesh: &Mesh, session: &Session) -> Result<Built, Failure> {
         let failed = |error: BuildError| Failure::at(&self.input, error);
-        let options = Options { method: self.method, vanish_below: None, ..Options::default() };
+        let topology = Topology::Keep;
+        let options = Options { method: self.method, topology, ..Options::default() };
         let mut simplifier =
             Simplifier::new(mesh, &options).map_err(|error| failed(error.into()))?;
         let watch = session.progress.contractions("contracting", Some(mesh.faces.len()));

@@ -7,7 +7,7 @@ use clap::Args;
 use meshlod::io::gltf::Level;
 use meshlod::io::write_lods;
 use meshlod::measure::Distance;
-use meshlod::{Format, Options, Scene};
+use meshlod::{Format, Scene, Topology};
 use serde_json::{Value, json};
 
 use crate::answer::Answer;
@@ -21,8 +21,9 @@ use crate::numbers::{count, percent, value};
 use crate::parse::{self, LevelSize};
 use crate::session::Session;
 use crate::simplify_report;
-use crate::simplify_run::{self, Simplified, SimplifyRun};
+use crate::simplify_run::{self, ReadyScene, Simplified, SimplifyRun};
 use crate::table::aligned;
+use crate::topology;
 use crate::verbs::simplify::MethodArgs;
 
 /// Write a chain of coarser levels, as glTF with MSFT_lod or one file per level
@@ -54,7 +55,8 @@ struct LodLevel {
     size: LevelSize,
     simplified: Simplified,
     screen_coverage: f64,
-    file: PathBuf,
+    /// File that holds the level; `None` if it is the same as the level before and not written.
+    file: Option<PathBuf>,
 }
 
 /// Height of the screen, in lines, for which levels are chosen to be indistinguishable.
@@ -73,39 +75,49 @@ impl Lods {
         let fused = self.method.fuse.apply(&mut scene, session);
         let input = InputScene { scene: &scene, path: &self.input, reading: &self.reading };
         let options = self.method.options(&input, session)?;
-        let (mut chain, time) = self.chain(&scene, fused.as_ref(), &options, session)?;
-        let input_faces = chain.first().map_or(0, |level| level.simplified.report.input_faces);
-        self.write(format, &mut scene, &mut chain, session)?;
-        for level in chain.iter().filter(|level| !level.simplified.report.reached) {
-            let reason = simplify_report::why_not_reached(&level.simplified.report);
-            session.warn(Failure::at(&self.input, format_args!("{}: {reason}", level.size)));
-        }
+        let borders = self.method.topology.borders();
+        let ready = ReadyScene::new(&scene, &options, borders, &self.input, session)?;
+        let (mut chain, time) = self.chain(&scene, &ready, fused.as_ref(), session)?;
         if let Some(level) = chain.last() {
-            self.method.warn(&level.simplified.report, session);
+            self.method.warn(&level.simplified.report, &ready, session);
+        }
+        let (mut json, text) = (self.json(&chain, time), self.text(&chain, &ready, time));
+        topology::add_json(&mut json, &ready.scene);
+        self.write(format, &mut scene, &mut chain, session)?;
+        for level in &chain {
+            self.warn_of(level, options.topology, session);
         }
         let missed = chain.iter().any(|level| !level.simplified.report.reached);
-        Ok(Answer {
-            missed: self.strict && missed,
-            ..Answer::new(
-                self.json(&chain, input_faces, time),
-                self.text(&chain, input_faces, time),
-            )
-        })
+        Ok(Answer { missed: self.strict && missed, ..Answer::new(json, text) })
+    }
+
+    /// Warns of a target that was missed, and of a level that is not written.
+    fn warn_of(&self, level: &LodLevel, topology: Topology, session: &Session) {
+        let LodLevel { size, simplified, .. } = level;
+        let warn = |reason: &str| {
+            session.warn(Failure::at(&self.input, format_args!("{size}: {reason}")));
+        };
+        if !simplified.report.reached {
+            warn(&simplify_report::why_not_reached(&simplified.report, topology));
+        }
+        if level.file.is_none() {
+            warn("not written, since it is the same as the level before");
+        }
     }
 
     /// Builds all levels in one run, each from the one before.
     fn chain(
         &self,
         scene: &Scene,
+        ready: &ReadyScene<'_>,
         fused: Option<&fuse::FuseReport>,
-        options: &Options,
         session: &Session,
     ) -> Result<(Vec<LodLevel>, Duration), Failure> {
         let original = distance::surface_of(scene, distance::meshes(scene));
         let surface = distance::ready(&original, &self.input)
             .inspect_err(|failure| session.warn(format_args!("not measured: {failure}")))
             .ok();
-        let mut run = SimplifyRun::start(scene, options, &self.input, session)?;
+        let mut run = SimplifyRun::start(ready, session)?;
         check_order(&self.levels, run.input_faces())?;
         let mut chain: Vec<LodLevel> = Vec::new();
         for (i, &size) in self.levels.iter().enumerate() {
@@ -114,18 +126,27 @@ impl Lods {
             let meshes = run.level();
             let measured = simplify_run::measure(surface.as_ref(), scene, &meshes, session);
             let finer = chain.last().map_or(1.0, |level| level.screen_coverage);
+            let before = chain.last().map(|level| level.simplified.report.output_faces);
+            // No contraction leaves the number of faces as it is.
+            let is_same = match before {
+                Some(before) => report.output_faces == before,
+                None => report.output_faces == report.input_faces && !report.reached,
+            };
             chain.push(LodLevel {
                 size,
                 simplified: Simplified { meshes, report, measured, sequence: None },
                 screen_coverage: measured.as_ref().map_or(finer, screen_coverage).min(finer),
-                file: self.file_of(i + 1),
+                file: (!is_same).then(|| self.file_of(i + 1)),
             });
         }
         Ok((chain, run.time()))
     }
 
-    /// Returns the path of a level that has a file of its own.
+    /// Returns the path of the file that holds a level.
     fn file_of(&self, level: usize) -> PathBuf {
+        if Format::of_path(&self.output).is_ok_and(holds_levels) {
+            return self.output.clone();
+        }
         let stem = self.output.file_stem().unwrap_or_default().to_string_lossy();
         let suffix = self.output.extension().unwrap_or_default().to_string_lossy();
         self.output.with_file_name(format!("{stem}_LOD{level}.{suffix}"))
@@ -140,25 +161,26 @@ impl Lods {
         session: &Session,
     ) -> Result<(), Failure> {
         let meshes = |level: &mut LodLevel| std::mem::take(&mut level.simplified.meshes);
+        let written = chain.iter_mut().filter(|level| level.file.is_some());
         if !holds_levels(format) {
-            for level in chain {
+            for level in written {
                 simplify_run::replace(scene, meshes(level));
-                files::write(&level.file, scene, &self.writing, session)?;
+                if let Some(file) = &level.file {
+                    files::write(file, scene, &self.writing, session)?;
+                }
             }
             return Ok(());
         }
         session.progress.stage("writing");
-        let levels: Vec<Level> = chain
-            .iter_mut()
-            .map(|level| {
-                level.file.clone_from(&self.output);
-                Level { meshes: meshes(level), screen_coverage: level.screen_coverage }
-            })
-            .collect();
+        let level = |level: &mut LodLevel| Level {
+            meshes: meshes(level),
+            screen_coverage: level.screen_coverage,
+        };
+        let levels: Vec<Level> = written.map(level).collect();
         Ok(write_lods(&self.output, scene, &levels)?)
     }
 
-    fn json(&self, chain: &[LodLevel], input_faces: usize, time: Duration) -> Value {
+    fn json(&self, chain: &[LodLevel], time: Duration) -> Value {
         let level = |level: &LodLevel| {
             let report = &level.simplified.report;
             json!({
@@ -168,13 +190,13 @@ impl Lods {
                 "error_estimate": report.error_estimate,
                 "error_measured": level.simplified.measured.as_ref().map(distance::to_json),
                 "screen_coverage": level.screen_coverage,
-                "file": files::name(&level.file),
+                "file": level.file.as_deref().map(files::name),
             })
         };
         let report = chain.last().map(|level| &level.simplified.report);
         json!({
             "method": report.map(|report| report.method.name()),
-            "input_faces": input_faces,
+            "input_faces": report.map(|report| report.input_faces),
             "levels": chain.iter().map(level).collect::<Vec<_>>(),
             "simplify_seconds": time.as_secs_f64(),
             "degenerate_faces": report.map(|report| report.degenerate_faces),
@@ -186,7 +208,8 @@ impl Lods {
         })
     }
 
-    fn text(&self, chain: &[LodLevel], input_faces: usize, time: Duration) -> String {
+    fn text(&self, chain: &[LodLevel], ready: &ReadyScene<'_>, time: Duration) -> String {
+        let input_faces = chain.first().map_or(0, |level| level.simplified.report.input_faces);
         let mut rows = vec![
             ["level", "target", "faces", "mean", "RMS", "max", "coverage"].map(String::from),
             ["LOD0", "", &count(input_faces), "", "", "", ""].map(String::from),
@@ -211,7 +234,11 @@ impl Lods {
         text += "mean, RMS, max: measured distance from the input, in % of the diagonal\n";
         text += "coverage: the fraction of the screen below which the level is within one pixel of the\n";
         text += &format!("input, on a screen of {SCREEN_LINES} lines\n");
+        text += &topology::to_text(&ready.scene);
         text += &notes.unwrap_or_default();
+        for level in chain.iter().filter(|level| level.file.is_none()) {
+            text += &format!("{}: not written, the same as the level before\n", level.size);
+        }
         for file in written(chain) {
             text += &format!("{}\n", files::name(file));
         }
@@ -249,7 +276,7 @@ pub fn screen_coverage(distance: &Distance) -> f64 {
 
 /// Lists the files written, each once.
 fn written(chain: &[LodLevel]) -> Vec<&Path> {
-    let mut files: Vec<&Path> = chain.iter().map(|level| &*level.file).collect();
+    let mut files: Vec<&Path> = chain.iter().filter_map(|level| level.file.as_deref()).collect();
     files.dedup();
     files
 }

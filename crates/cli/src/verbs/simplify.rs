@@ -23,7 +23,8 @@ use crate::parse::{self, Bound};
 use crate::sequence;
 use crate::session::Session;
 use crate::simplify_report;
-use crate::simplify_run::{self, Simplified, SimplifyRun};
+use crate::simplify_run::{self, ReadyScene, Simplified, SimplifyRun};
+use crate::topology::{self, TopologyArgs};
 use crate::volume;
 
 /// Reduce a mesh to fewer faces
@@ -86,6 +87,8 @@ pub struct MethodArgs {
     pub fuse: FuseArgs,
     #[command(flatten)]
     locks: LockArgs,
+    #[command(flatten)]
+    pub topology: TopologyArgs,
     /// Cost weight of boundaries, where 0 means none [default: 9 for lindstrom-turk, 2 for qem]
     #[arg(long, value_name = "WEIGHT", value_parser = parse::weight, allow_negative_numbers = true)]
     boundary: Option<f64>,
@@ -124,6 +127,7 @@ impl MethodArgs {
             boundary_weight: self.boundary,
             ..Options::default()
         };
+        let options = self.topology.apply(options, input.scene)?;
         self.locks.apply(options, input, session)
     }
 
@@ -132,8 +136,9 @@ impl MethodArgs {
         AttributeWeights { normal: weight_normal, uv: weight_uv, color: weight_color }
     }
 
-    /// Warns about options that the method ignores.
-    pub fn warn(&self, report: &Report, session: &Session) {
+    /// Warns about options that the method ignores, and about borders that lie near each other.
+    pub fn warn(&self, report: &Report, ready: &ReadyScene<'_>, session: &Session) {
+        topology::warn(&ready.scene, session);
         if self.weights() != WEIGHTS && !report.method.counts_attributes() {
             let method = report.method.name();
             session.warn(format_args!(
@@ -166,14 +171,16 @@ impl TargetArgs {
 /// Scene with its target and options.
 struct Task<'s> {
     scene: &'s Scene,
+    ready: ReadyScene<'s>,
     target: Target,
     options: Options,
 }
 
 impl Simplify {
-    pub fn run(self, session: &Session) -> Result<Answer, Failure> {
+    pub fn run(mut self, session: &Session) -> Result<Answer, Failure> {
         let format = files::check_output(&self.output, session)?;
         if let Some(path) = &self.sequence {
+            self.method.topology.keep()?;
             sequence::check(path, &self.input, &self.output)?;
         }
         let mut scene = files::read(&self.input, &self.reading, session)?;
@@ -185,7 +192,9 @@ impl Simplify {
         let target = fused.as_ref().map_or(target, |fused| fused.target(target));
         let input = InputScene { scene: &scene, path: &self.input, reading: &self.reading };
         let options = self.method.options(&input, session)?;
-        let task = Task { scene: &scene, target, options };
+        let borders = self.method.topology.borders();
+        let ready = ReadyScene::new(&scene, &options, borders, &self.input, session)?;
+        let task = Task { scene: &scene, ready, target, options };
         let (mut done, mut time) = match target {
             Target::Error(_) => self.measured_run(&task, session)?,
             _ if self.measured => self.measured_run(&task, session)?,
@@ -200,20 +209,20 @@ impl Simplify {
         } else {
             None
         };
+        self.method.warn(&done.report, &task.ready, session);
+        if !done.report.reached {
+            let reason = simplify_report::why_not_reached(&done.report, task.options.topology);
+            session.warn(Failure::at(&self.input, reason));
+        }
+        let mut json = self.json(&done, &task.ready, fused.as_ref(), time);
+        let mut text = self.text(&done, &task.ready, fused.as_ref(), time);
         simplify_run::replace(&mut scene, std::mem::take(&mut done.meshes));
         let write = || files::write(&self.output, &scene, &self.writing, session);
         match (&self.sequence, &done.sequence) {
             (Some(path), Some(sequence)) => sequence::write_with(path, sequence, write)?,
             _ => write()?,
         }
-        self.method.warn(&done.report, session);
-        if !done.report.reached {
-            let reason = Failure::at(&self.input, simplify_report::why_not_reached(&done.report));
-            session.warn(reason);
-        }
-        let mut json = self.json(&done, fused.as_ref(), time);
         json["volume_residual"] = residual.into();
-        let mut text = self.text(&done, fused.as_ref(), time);
         if let Some(residual) = residual {
             text += &format!("volume_residual: {residual:.1e}\n");
         }
@@ -250,7 +259,7 @@ impl Simplify {
         task: &Task<'_>,
         session: &Session,
     ) -> Result<(Simplified, Duration), Failure> {
-        let mut run = SimplifyRun::start(task.scene, &task.options, &self.input, session)?;
+        let mut run = SimplifyRun::start(&task.ready, session)?;
         if self.sequence.is_some() {
             run.record();
         }
@@ -272,7 +281,7 @@ impl Simplify {
         task: &Task<'_>,
         session: &Session,
     ) -> Result<(Simplified, Duration), Failure> {
-        let &Task { scene, target, ref options } = task;
+        let &Task { scene, target, ref ready, .. } = task;
         let original = distance::surface_of(scene, distance::meshes(scene));
         let surface = match distance::ready(&original, &self.input) {
             Ok(surface) => Some(surface),
@@ -280,15 +289,20 @@ impl Simplify {
             Err(_) => None,
         };
         if let (Target::Error(bound), Some(original), true) = (target, &surface, self.measured) {
-            let path = &self.input;
-            return BoundSearch { scene, options, original, bound, path, session }.run();
+            return BoundSearch { scene, ready, original, bound, session }.run();
         }
         let (reduced, time) = self.plain_run(task, session)?;
         let measured = simplify_run::measure(surface.as_ref(), scene, &reduced.meshes, session);
         Ok((Simplified { measured, ..reduced }, time))
     }
 
-    fn json(&self, done: &Simplified, fused: Option<&fuse::FuseReport>, time: Duration) -> Value {
+    fn json(
+        &self,
+        done: &Simplified,
+        ready: &ReadyScene<'_>,
+        fused: Option<&fuse::FuseReport>,
+        time: Duration,
+    ) -> Value {
         let report = &done.report;
         let mut json = json!({ "method": report.method.name() });
         for (key, value) in simplify_report::report_json(report).as_object().into_iter().flatten() {
@@ -301,6 +315,7 @@ impl Simplify {
         json["degenerate_faces"] = report.degenerate_faces.into();
         json["duplicate_faces"] = report.duplicate_faces.into();
         json["non_manifold_vertices"] = report.non_manifold_vertices.into();
+        topology::add_json(&mut json, &ready.scene);
         json["fused"] = fuse::to_json(fused);
         json["held"] = locks::to_json(report);
         json["vanished"] = report.vanished.into();
@@ -309,17 +324,24 @@ impl Simplify {
         json
     }
 
-    fn text(&self, done: &Simplified, fused: Option<&fuse::FuseReport>, time: Duration) -> String {
+    fn text(
+        &self,
+        done: &Simplified,
+        ready: &ReadyScene<'_>,
+        fused: Option<&fuse::FuseReport>,
+        time: Duration,
+    ) -> String {
         let report = &done.report;
         let input_faces = fused.map_or(report.input_faces, |fused| fused.before);
         let part = 100.0 * report.output_faces as f64 / input_faces as f64;
         let mut text = format!(
-            "{}{}: {} to {} ({})\n{}",
+            "{}{}: {} to {} ({})\n{}{}",
             fuse::to_text(fused),
             files::name(&self.output),
             faces(input_faces),
             count(report.output_faces),
             percent(part),
+            topology::to_text(&ready.scene),
             simplify_report::mesh_notes(report),
         );
         text += &format!("error_estimate: {}\n", value(report.error_estimate));

@@ -2,6 +2,7 @@ use meshlod_fixtures::{fan, shared_mesh};
 use meshlod_io::{Node, ReadOptions, SceneMesh, read};
 use meshlod_measure::{DistanceOptions, distance};
 use meshlod_mesh::{Lock, Locks};
+use meshlod_simplify::Topology;
 use meshlod_samples as samples;
 
 use super::*;
@@ -23,8 +24,13 @@ fn faces(meshes: &[Mesh]) -> Vec<usize> {
     meshes.iter().map(|mesh| mesh.faces.len()).collect()
 }
 
+fn conditioned<'s>(scene: &'s Scene, options: &Options) -> ConditionedScene<'s> {
+    ConditionedScene::new(scene, options, Borders::Stitch).unwrap()
+}
+
 fn run(scene: &Scene, target: Target) -> (Vec<Mesh>, Report) {
-    let mut simplifier = SceneSimplifier::new(scene, &Options::default()).unwrap();
+    let conditioned = conditioned(scene, &Options::default());
+    let mut simplifier = SceneSimplifier::new(&conditioned).unwrap();
     let report = simplifier.run(target, &mut ()).unwrap();
     (simplifier.level(), report)
 }
@@ -83,7 +89,8 @@ fn a_bound_holds_in_the_world() {
 fn levels_of_one_run_go_on_from_each_other() {
     let pair =
         scene(vec![samples::torus(1_000), samples::knot(1_000)], vec![node(0, 1.0), node(1, 1.0)]);
-    let mut simplifier = SceneSimplifier::new(&pair, &Options::default()).unwrap();
+    let conditioned = conditioned(&pair, &Options::default());
+    let mut simplifier = SceneSimplifier::new(&conditioned).unwrap();
     simplifier.run(Target::Ratio(0.5), &mut ()).unwrap();
     simplifier.run(Target::Ratio(0.1), &mut ()).unwrap();
     assert_eq!(simplifier.level(), run(&pair, Target::Ratio(0.1)).0);
@@ -106,7 +113,10 @@ fn what_cannot_or_need_not_shrink_stays() {
 #[test]
 fn a_budget_out_of_reach_is_reported() {
     let pair = scene(vec![fan(), fan()], vec![node(0, 1.0), node(1, 1.0)]);
-    let (_, report) = run(&pair, Target::Faces(0));
+    let keep = Options { topology: Topology::Keep, ..Options::default() };
+    let ready = conditioned(&pair, &keep);
+    let mut simplifier = SceneSimplifier::new(&ready).unwrap();
+    let report = simplifier.run(Target::Faces(0), &mut ()).unwrap();
     assert!(!report.reached && report.output_faces > 0);
     assert!(report.refusals.iter().next().is_some() && report.non_manifold_vertices == 4);
 }
@@ -115,7 +125,9 @@ fn a_budget_out_of_reach_is_reported() {
 fn errors_name_the_mesh_where_there_are_several() {
     let mut bad = fan();
     bad.positions[1][2] = f64::NAN;
-    let error = |scene: &Scene| SceneSimplifier::new(scene, &Options::default()).err().unwrap();
+    let error = |scene: &Scene| {
+        SceneSimplifier::new(&conditioned(scene, &Options::default())).err().unwrap()
+    };
     let mut two = scene(vec![fan(), bad.clone()], vec![node(0, 1.0), node(1, 1.0)]);
     two.meshes[1].name = "wing".into();
     assert!(error(&two).to_string().starts_with("mesh 1 (wing): vertex v1"), "{}", error(&two));
@@ -131,13 +143,14 @@ fn lock_masks_run_over_all_meshes() {
     let locks = |of_vertex: Vec<Lock>| Locks { of_vertex, ties: Vec::new() };
     let first = [vec![Lock::Locked; count], vec![Lock::Free; count]].concat();
     let options = Options { locks: locks(first), ..Options::default() };
-    let mut simplifier = SceneSimplifier::new(&pair, &options).unwrap();
+    let ready = conditioned(&pair, &options);
+    let mut simplifier = SceneSimplifier::new(&ready).unwrap();
     simplifier.run(Target::Faces(0), &mut ()).unwrap();
     let level = simplifier.level();
     assert_eq!(level[0], pair.meshes[0].mesh);
     assert!(level[1].faces.len() < 10);
     let short = Options { locks: locks(vec![Lock::Locked; count]), ..Options::default() };
-    assert!(SceneSimplifier::new(&pair, &short).is_err());
+    assert!(ConditionedScene::new(&pair, &short, Borders::Stitch).is_err());
 }
 
 #[test]

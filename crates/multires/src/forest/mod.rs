@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 
 use glam::{DVec3, Vec3};
 use meshlod_mesh::{Frame, Mesh};
-use meshlod_simplify::{Options, Simplifier, SimplifyError, Target};
+use meshlod_simplify::{Options, Simplifier, SimplifyError, Target, Topology};
 use thiserror::Error;
 
 use crate::bounds::ErrorKind;
@@ -103,7 +103,7 @@ pub enum BuildError {
     #[error("the mesh has too many vertices: about 2^29 are supported")]
     TooLarge,
     /// Connected components vanished during simplification, which no update could undo.
-    #[error("components vanished, which no update can undo: simplify with `vanish_below: None`")]
+    #[error("components vanished, which no update can undo: simplify with `Topology::Keep`")]
     Vanished,
     /// The recorder was attached to the simplifier after the first contraction.
     #[error("the recorder missed the start of the simplification")]
@@ -113,8 +113,8 @@ pub enum BuildError {
 impl Forest {
     /// Simplifies a mesh as far as possible and records every contraction.
     ///
-    /// Only positions are kept; attributes are dropped. Components never vanish, whatever the
-    /// options say.
+    /// Only positions are kept; attributes are dropped. The topology is kept
+    /// ([`Topology::Keep`]) whatever the options say, since an update must be undone exactly.
     /// # Errors
     /// The mesh cannot be simplified.
     pub fn new(mesh: &Mesh, options: &Options) -> Result<Self, BuildError> {
@@ -138,7 +138,7 @@ impl Forest {
         options: &Options,
         recorder: impl FnOnce(&Simplifier<'_>) -> Recorder,
     ) -> Result<Self, BuildError> {
-        let options = Options { vanish_below: None, ..options.clone() };
+        let options = Options { topology: Topology::Keep, ..options.clone() };
         let mut simplifier = Simplifier::new(mesh, &options)?;
         let mut recorder = recorder(&simplifier);
         simplifier.run(Target::Faces(0), &mut recorder)?;

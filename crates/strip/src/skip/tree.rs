@@ -1,7 +1,7 @@
 //! The merge tree: the vertex that each one merges into, and when.
 
 use meshlod_mesh::{Mesh, VertexId};
-use meshlod_simplify::{History, Method, Options, Simplifier, SimplifyError, Target};
+use meshlod_simplify::{History, Method, Options, Simplifier, SimplifyError, Target, Topology};
 use thiserror::Error;
 
 use super::pointers::Pointers;
@@ -60,11 +60,12 @@ impl MergeTree {
     }
 
     /// Simplifies a mesh to a target by half-edge contractions (`qem-endpoint`) and records them in
-    /// a merge tree.
+    /// a merge tree. The topology of the mesh is kept, [`Topology::Keep`].
     /// # Errors
     /// If simplification refuses the mesh or the target.
     pub fn record(mesh: &Mesh, target: Target) -> Result<Self, SimplifyError> {
-        let options = Options { method: Method::QemEndpoint, ..Options::default() };
+        let (method, topology) = (Method::QemEndpoint, Topology::Keep);
+        let options = Options { method, topology, ..Options::default() };
         let mut history = History::default();
         Simplifier::new(mesh, &options)?.run(target, &mut history)?;
         Ok(Self::from_history(mesh, &history).expect("just recorded from this mesh"))

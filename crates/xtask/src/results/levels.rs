@@ -8,7 +8,7 @@ use meshlod::multires::{
     Tolerance, UpdateLimits, ViewCamera,
 };
 use meshlod::simplify::Simplifier;
-use meshlod::{Options, Target};
+use meshlod::{Options, Target, Topology};
 use meshlod_bench::{least_seconds, one_core};
 
 use crate::project::Project;
@@ -100,7 +100,7 @@ pub fn section(_: &Project) -> Result<String> {
 
 /// Builds a forest and times it.
 fn build_times(file: &str, mesh: &Mesh) -> Result<(Forest, Vec<String>)> {
-    let options = Options { vanish_below: None, ..Options::default() };
+    let options = Options { topology: Topology::Keep, ..Options::default() };
     let ready = || Simplifier::new(mesh, &options);
     let bare = least_seconds(ROUNDS, || {
         ready().map(|mut simplifier| simplifier.run(Target::Faces(0), &mut ()).map(|_| ()))

@@ -5,7 +5,7 @@ use std::cmp::Reverse;
 use meshlod::mesh::{FaceId, VertexId};
 use meshlod::simplify::Simplifier;
 use meshlod::strip::difference;
-use meshlod::{Mesh, Method, Options, SimplifyError, Target};
+use meshlod::{Mesh, Method, Options, SimplifyError, Target, Topology};
 
 use super::StrippedLevel;
 
@@ -26,7 +26,8 @@ pub(super) fn compare(
     if coarser.is_empty() {
         return Ok(());
     }
-    let options = Options { method: Method::QemEndpoint, ..Options::default() };
+    let (method, topology) = (Method::QemEndpoint, Topology::Keep);
+    let options = Options { method, topology, ..Options::default() };
     let mut simplifier = Simplifier::new(mesh, &options)?;
     for level in coarser {
         simplifier.run(Target::Faces(level.triangles), &mut ())?;

@@ -1,0 +1,116 @@
+//! Options for what may happen to the topology of a mesh.
+
+use clap::{Args, ValueEnum};
+use meshlod::{Borders, ConditionedScene, Options, Scene, Topology, world_bounds};
+use serde_json::Value;
+
+use crate::failure::Failure;
+use crate::numbers::{count, value};
+use crate::parse::{self, Bound};
+use crate::session::Session;
+
+/// Options for what may happen to the topology of a mesh.
+#[derive(Args, Clone)]
+pub struct TopologyArgs {
+    /// What may happen to the topology of the surface [default: free]
+    #[arg(long, value_name = "KIND")]
+    topology: Option<TopologyArg>,
+    /// Largest connected component that may vanish, by the diagonal of its bounding box: a length in
+    /// model units, or 5% of the model's diagonal [default: no limit]
+    #[arg(long, value_name = "SIZE", value_parser = parse::bound, allow_hyphen_values = true)]
+    vanish_below: Option<Bound>,
+    /// Former name of --vanish-below; without a size no component vanishes
+    #[arg(long, value_name = "SIZE", num_args = 0..=1, default_missing_value = "0", hide = true,
+        require_equals = true, value_parser = parse::bound, allow_negative_numbers = true,
+        conflicts_with = "vanish_below")]
+    keep_objects: Option<Bound>,
+    /// Leave boundary edges apart that lie exactly on each other, in place of sewing them together
+    #[arg(long)]
+    no_stitch: bool,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum TopologyArg {
+    /// Components may vanish where that costs less than simplifying them, borders that lie on each
+    /// other are sewn together, and non-manifold places may move and come apart
+    Free,
+    /// Closed stays closed, manifold stays manifold, and no component vanishes, as printing and
+    /// simulation need it
+    Keep,
+}
+
+impl TopologyArgs {
+    /// Adds what may happen to the topology to simplification options.
+    pub fn apply(&self, options: Options, scene: &Scene) -> Result<Options, Failure> {
+        let size = self.vanish_below.or(self.keep_objects);
+        if self.topology == Some(TopologyArg::Keep) && self.vanish_below.is_some() {
+            return Err(Failure::usage(
+                "--vanish-below does not go with --topology keep, with which nothing vanishes",
+            ));
+        }
+        let topology = self.kind();
+        let vanish_below = size.map(|size| size.length(world_bounds(scene).diagonal()));
+        Ok(Options { topology, vanish_below, ..options })
+    }
+
+    /// Returns what may happen to the topology.
+    pub fn kind(&self) -> Topology {
+        match self.topology {
+            Some(TopologyArg::Keep) => Topology::Keep,
+            Some(TopologyArg::Free) | None => Topology::Free,
+        }
+    }
+
+    /// Makes these the options for a run that is recorded, which keeps the topology.
+    pub fn keep(&mut self) -> Result<(), Failure> {
+        let is_free = self.topology == Some(TopologyArg::Free) || self.vanish_below.is_some();
+        if is_free {
+            return Err(Failure::usage(
+                "--sequence records a run with --topology keep; leave out --topology free and --vanish-below",
+            ));
+        }
+        self.topology = Some(TopologyArg::Keep);
+        Ok(())
+    }
+
+    /// Returns the treatment of boundary edges that lie on each other.
+    pub fn borders(&self) -> Borders {
+        if self.no_stitch { Borders::Keep } else { Borders::Stitch }
+    }
+}
+
+/// Adds what conditioning has changed in a scene to the JSON of a report.
+pub fn add_json(json: &mut Value, scene: &ConditionedScene<'_>) {
+    let counts = scene.counts();
+    json["stitched_edges"] = counts.stitched_edges.into();
+    json["stitched_vertices"] = counts.stitched_vertices.into();
+    json["split_vertices"] = counts.split_vertices.into();
+}
+
+/// Formats lines about what conditioning has changed in a scene; empty if that is nothing.
+pub fn to_text(scene: &ConditionedScene<'_>) -> String {
+    let counts = scene.counts();
+    let mut text = String::new();
+    if counts.stitched_edges > 0 {
+        let noun = if counts.stitched_edges == 1 { "pair" } else { "pairs" };
+        let edges = count(counts.stitched_edges);
+        text += &format!("{edges} {noun} of boundary edges stitched\n");
+    }
+    if counts.split_vertices > 0 {
+        let noun = if counts.split_vertices == 1 { "vertex" } else { "vertices" };
+        text += &format!("{} non-manifold {noun} split\n", count(counts.split_vertices));
+    }
+    text
+}
+
+/// Warns of many boundary edges that lie near each other, and names what would join them.
+pub fn warn(scene: &ConditionedScene<'_>, session: &Session) {
+    if let Some(near) = scene.near_borders() {
+        let distance = value(near.distance);
+        session.warn(format_args!(
+            "{} of {} boundary edges lie within {distance} of others: --weld {distance} would join them",
+            count(near.near_edges),
+            count(near.boundary_edges),
+        ));
+    }
+}

@@ -1,0 +1,228 @@
+//! Meshes and scenes ready to be simplified: conditioned, unless their topology is to be kept.
+
+use std::sync::OnceLock;
+
+use meshlod_io::Scene;
+use meshlod_mesh::{
+    Borders, ConditionOptions, Conditioned, Conditioning, Locks, Mesh, NearBorders, Search,
+    condition, near_borders,
+};
+use meshlod_simplify::{Options, Report, Simplifier, SimplifyError, Target, Topology};
+
+use crate::locks;
+
+/// Smallest number of near boundary edges that is worth mentioning.
+const MANY_EDGES: usize = 100;
+
+/// Smallest part of all boundary edges that is worth mentioning, as its reciprocal.
+const MANY_PARTS: usize = 20;
+
+/// A scene ready to be simplified, with the options for it.
+///
+/// With [`Topology::Free`] borders that lie on each other are sewn together, and non-manifold
+/// vertices are split, so that their copies move and are contracted freely; see [`condition`]. With
+/// [`Topology::Keep`] all meshes are simplified as they are. The scene itself does not change.
+pub struct ConditionedScene<'s> {
+    pub(crate) scene: &'s Scene,
+    pub(crate) options: Options,
+    pub(crate) meshes: Vec<ConditionedMesh<'s>>,
+    /// Number of nodes that show each mesh.
+    copies: Vec<usize>,
+}
+
+impl<'s> ConditionedScene<'s> {
+    /// Conditions every mesh that the scene shows, with the given treatment of borders that lie on
+    /// each other.
+    ///
+    /// `options.locks` number vertices through all meshes of the scene, mesh after mesh, see
+    /// [`join_locks`](crate::join_locks). Vertices tied across two meshes are locked, since meshes
+    /// are simplified independently.
+    ///
+    /// Cost: linear, with a sort of the boundary edges. Non-manifold vertices are split only when
+    /// a simplifier finds some.
+    /// # Errors
+    /// Locks of another length.
+    pub fn new(
+        scene: &'s Scene,
+        options: &Options,
+        borders: Borders,
+    ) -> Result<Self, SimplifyError> {
+        let locks = locks::split(scene, &options.locks)?;
+        let mut copies = vec![0; scene.meshes.len()];
+        scene.instances().iter().for_each(|placed| copies[placed.mesh] += 1);
+        let parts = scene.meshes.iter().zip(locks).zip(&copies);
+        let meshes = parts.map(|((mesh, locks), &copies)| {
+            let options = Options { locks, ..options.clone() };
+            ConditionedMesh::new(&mesh.mesh, options, (copies > 0).then_some(borders))
+        });
+        Ok(Self { scene, options: options.clone(), meshes: meshes.collect(), copies })
+    }
+
+    /// Returns what has been changed so far in the meshes of the scene, counting every instance.
+    pub fn counts(&self) -> Conditioning {
+        let mut all = Conditioning::default();
+        for (mesh, &copies) in self.meshes.iter().zip(&self.copies) {
+            (0..copies).for_each(|_| all += mesh.counts());
+        }
+        all
+    }
+
+    /// Returns the smallest distance by which welding would join most of the boundary edges that
+    /// lie near each other, and their number; `None` if they are few.
+    ///
+    /// Looks for distances of about a millionth to a ten-thousandth of the diagonal of the largest
+    /// mesh. Edges that lie exactly on each other are not counted where they have been sewn.
+    ///
+    /// Cost: as for [`near_borders`], at three distances.
+    pub fn near_borders(&self) -> Option<NearBorders> {
+        let valid = |mesh: &&Mesh| mesh.validate().is_ok();
+        let meshes: Vec<&Mesh> = self.meshes.iter().map(ConditionedMesh::mesh).filter(valid).collect();
+        let diagonal = meshes.iter().map(|mesh| mesh.bounds().diagonal()).fold(0.0, f64::max);
+        let power = diagonal.log10().floor();
+        if !power.is_finite() {
+            return None;
+        }
+        let distances = [-6.0, -5.0, -4.0].map(|below| 10_f64.powf(power + below));
+        let none = |distance| NearBorders { distance, boundary_edges: 0, near_edges: 0 };
+        let mut found = distances.map(none);
+        for mesh in meshes {
+            let of_mesh = near_borders(mesh, &distances);
+            found.iter_mut().zip(&of_mesh).for_each(|(all, own)| all.add(own));
+        }
+        let most = found.iter().map(|found| found.near_edges).max()?;
+        let is_many = most >= MANY_EDGES && most * MANY_PARTS >= found[0].boundary_edges;
+        let enough = |found: &NearBorders| found.near_edges * 10 >= most * 9;
+        found.into_iter().filter(|_| is_many).find(enough)
+    }
+}
+
+/// A mesh ready to be simplified, with the options for it.
+pub(crate) struct ConditionedMesh<'m> {
+    input: &'m Mesh,
+    options: Options,
+    /// Treatment of borders that lie on each other; `None` if the mesh is simplified as it is.
+    borders: Option<Borders>,
+    /// The mesh with its borders sewn, if there were any to sew.
+    sewn: Option<Conditioned>,
+    /// The mesh with all non-manifold vertices split too, once that has turned out to be needed.
+    split: OnceLock<Option<Conditioned>>,
+}
+
+impl<'m> ConditionedMesh<'m> {
+    /// Conditions a mesh at its borders, if a treatment for them is given and the topology need not
+    /// be kept. What is wrong with a mesh or its locks is left to the simplifier to say.
+    fn new(input: &'m Mesh, options: Options, borders: Option<Borders>) -> Self {
+        let is_wanted = options.topology == Topology::Free
+            && has_valid_locks(input, &options.locks)
+            && input.validate().is_ok();
+        let borders = borders.filter(|_| is_wanted);
+        let mut this = Self { input, options, borders, sewn: None, split: OnceLock::new() };
+        this.sewn = this.condition(Search::Unbalanced);
+        this
+    }
+
+    fn condition(&self, search: Search) -> Option<Conditioned> {
+        let lock_boundary = self.options.lock_boundary;
+        let options = ConditionOptions { search, borders: self.borders?, lock_boundary };
+        condition(self.input, &self.options.locks, &options)
+    }
+
+    /// Returns the conditioned mesh; `None` if the mesh is simplified as it is.
+    fn conditioned(&self) -> Option<&Conditioned> {
+        self.split.get().and_then(Option::as_ref).or(self.sewn.as_ref())
+    }
+
+    /// Returns the mesh as it is simplified.
+    fn mesh(&self) -> &Mesh {
+        self.conditioned().map_or(self.input, |found| &found.mesh)
+    }
+
+    /// Returns what has been changed so far.
+    pub(crate) fn counts(&self) -> Conditioning {
+        self.conditioned().map_or_else(Conditioning::default, |found| found.counts)
+    }
+
+    /// Returns true if the mesh is not simplified as it is.
+    pub(crate) fn is_changed(&self) -> bool {
+        self.conditioned().is_some()
+    }
+
+    /// Starts the simplification of the mesh. If non-manifold vertices turn up, they are split
+    /// first.
+    pub(crate) fn simplifier(
+        &self,
+        vanish_below: Option<f64>,
+    ) -> Result<Simplifier<'_>, SimplifyError> {
+        let first = self.start(vanish_below)?;
+        if self.borders.is_none() || self.split.get().is_some() {
+            return Ok(first);
+        }
+        let mut first = first;
+        let here = Target::Faces(first.live_faces());
+        if first.run(here, &mut ())?.non_manifold_vertices == 0 {
+            return Ok(first);
+        }
+        match self.split.get_or_init(|| self.condition(Search::All)) {
+            Some(_) => self.start(vanish_below),
+            None => Ok(first),
+        }
+    }
+
+    fn start(&self, vanish_below: Option<f64>) -> Result<Simplifier<'_>, SimplifyError> {
+        let options = Options { vanish_below, ..self.options.clone() };
+        match self.conditioned() {
+            // The locks include those of boundaries.
+            Some(found) => {
+                let locks = found.locks.clone();
+                let options = Options { locks, lock_boundary: false, ..options };
+                Simplifier::new(&found.mesh, &options)
+            }
+            None => Simplifier::new(self.input, &options),
+        }
+    }
+
+    /// Returns the current level in terms of the input.
+    pub(crate) fn level(&self, simplifier: &Simplifier<'_>) -> Mesh {
+        let mut level = simplifier.level();
+        if let Some(found) = self.conditioned() {
+            found.rejoin(&mut level);
+        }
+        level
+    }
+}
+
+/// Simplifies a mesh to a target number of faces or error, and returns the result with a report.
+///
+/// With [`Topology::Free`] the mesh is conditioned before, as a scene is: borders that lie on each
+/// other are sewn together, and non-manifold vertices are split; see [`condition`]. The result
+/// holds only what its faces use. If the target is out of reach, the mesh is reduced as far as the
+/// rules allow, and the report says so and counts the reasons.
+///
+/// # Errors
+/// The mesh, the target or an option is invalid, see [`SimplifyError`].
+pub fn simplify(
+    mesh: &Mesh,
+    target: Target,
+    options: &Options,
+) -> Result<(Mesh, Report), SimplifyError> {
+    let ready = ConditionedMesh::new(mesh, options.clone(), Some(Borders::Stitch));
+    let own = match target.valid()? {
+        Target::Ratio(_) => Target::Faces(target.faces_of(mesh.faces.len())),
+        target => target,
+    };
+    let mut simplifier = ready.simplifier(options.vanish_below)?;
+    let report = simplifier.run(own, &mut ())?;
+    let duplicate_faces = report.duplicate_faces + ready.counts().duplicate_faces;
+    let report = Report { input_faces: mesh.faces.len(), duplicate_faces, ..report };
+    Ok((ready.level(&simplifier), report))
+}
+
+/// Returns true if locks are for the vertices of a mesh.
+fn has_valid_locks(mesh: &Mesh, locks: &Locks) -> bool {
+    let count = mesh.positions.len();
+    let of_all = locks.of_vertex.is_empty() || locks.of_vertex.len() == count;
+    of_all && locks.ties.iter().flatten().all(|v| v.index() < count)
+}
+
+#[cfg(test)]
+mod tests;
