@@ -6,4 +6,4 @@ pub mod peer;
 
 pub use alternate::{Ratio, alternate, least_seconds, one_core};
 pub use corpus::{read, read_scene};
-pub use meshlod_fixtures::shared_mesh;
+pub use meshlod_fixtures::{self as fixtures, shared_mesh, shared_meshes};

@@ -188,9 +188,10 @@ pub struct Options {
     /// Bounding-box diagonal, in model units, below which a connected component may be removed as a
     /// whole; `None` sets no limit. With [`Topology::Keep`] no component is removed.
     ///
-    /// A component vanishes when that costs less than contracting it further. Its distance to what
-    /// remains then counts as an error. The last component never vanishes, nor does one with a
-    /// locked or tied vertex.
+    /// A component vanishes when that costs less than contracting it further. For
+    /// [`Method::LindstromTurk`] and [`Method::Qem`] its distance from what remains is the error.
+    /// The other methods remove components only below a given size, which counts as the error. The
+    /// largest component never vanishes, nor does one with a locked or tied vertex.
     pub vanish_below: Option<f64>,
 }
 
@@ -336,8 +337,8 @@ pub struct Report {
     /// Greatest estimated distance of any contraction from the input, in model units.
     ///
     /// This estimates the maximum that `measure` finds and is not an upper bound of it. A component
-    /// that has vanished counts with its size; its distance to the remaining surface is not
-    /// measured.
+    /// that the kernel has removed counts with its distance from the rest of the input, and one that
+    /// the policy engine has removed with its size.
     pub error_estimate: f64,
     /// Number of refused contractions, by reason.
     pub refusals: Refusals,

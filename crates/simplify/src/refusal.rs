@@ -31,11 +31,14 @@ pub enum Refusal {
     Volume,
     /// The error would exceed the target.
     Error,
+    /// The surface would move by a large part of the model's size, and much farther than anywhere
+    /// so far.
+    Disproportion,
 }
 
 impl Refusal {
     /// All reasons for refusal, in the order of [`Refusals`].
-    pub const ALL: [Self; 11] = [
+    pub const ALL: [Self; 12] = [
         Self::NonManifold,
         Self::Boundary,
         Self::Link,
@@ -47,6 +50,7 @@ impl Refusal {
         Self::Valence,
         Self::Volume,
         Self::Error,
+        Self::Disproportion,
     ];
 
     /// Returns the name of the reason as used in reports.
@@ -63,6 +67,7 @@ impl Refusal {
             Self::Valence => "valence",
             Self::Volume => "volume",
             Self::Error => "error",
+            Self::Disproportion => "disproportion",
         }
     }
 }

@@ -9,7 +9,7 @@ use crate::engine::vanishing::Vanishing;
 use crate::engine::{PreparedSurface, Run, Tally};
 use crate::kernel::{self, PlaneDistance, SweptVolume};
 use crate::methods;
-use crate::options::{Method, Options, Report, SimplifyError, Target};
+use crate::options::{Method, Options, Report, SimplifyError, Target, Topology};
 use crate::surface::Surface;
 
 /// Bounding-box diagonals that can be worked with. Costs grow with up to the sixth power of a
@@ -194,7 +194,8 @@ fn by_policies<'m>(
     let mut surface = Surface::new(mesh, &connectivity);
     let held = locks::apply(options, method, &connectivity, &mut surface);
     let input = InputSummary { degenerate_faces, duplicate_faces, non_manifold_vertices, held };
-    let vanishing = Vanishing::new(&surface, method, options.vanish_below);
+    let below = options.vanish_below.filter(|_| options.topology == Topology::Free);
+    let vanishing = Vanishing::new(&surface, method, below);
     let engine =
         methods::start(method, options, PreparedSurface { surface, connectivity, vanishing });
     Ok((engine, input))

@@ -42,7 +42,7 @@ impl Bvh {
     pub fn closest(&self, point: [f64; 3], hint: Option<FaceId>) -> ClosestPoint {
         let p = self.frame.local(point);
         let mut best = self.first(p, hint);
-        self.descend::<false>(p, &mut best, [0.0; 2]);
+        self.descend::<false>(p, &mut best, [0.0; 2], &All);
         self.in_model(&best)
     }
 
@@ -64,9 +64,19 @@ impl Bvh {
         let (enough, most) = (squared(enough.min(most)), squared(most));
         let mut best = self.first(p, hint);
         if best.distance_squared > enough {
-            self.descend::<true>(p, &mut best, [enough, most]);
+            self.descend::<true>(p, &mut best, [enough, most], &All);
         }
         (best.distance_squared <= most).then(|| self.in_model(&best))
+    }
+
+    /// Returns the squared distance, in square model units, of `point` from the closest selected
+    /// face; infinite if no face is selected.
+    pub(crate) fn closest_selected(&self, point: [f64; 3], selection: &impl Selection) -> f64 {
+        let p = self.frame.local(point);
+        let (face, distance_squared) = (FaceId(u32::MAX), f64::INFINITY);
+        let mut best = Candidate { point: p, face, distance_squared };
+        self.descend::<false>(p, &mut best, [0.0; 2], selection);
+        self.frame.model_squared(best.distance_squared)
     }
 
     fn first(&self, p: DVec3, hint: Option<FaceId>) -> Candidate {
@@ -91,12 +101,13 @@ impl Bvh {
     /// best so far.
     ///
     /// If `LIMITED`, stops once `best` is within `enough` and visits no box beyond `most`; both are
-    /// squared.
+    /// squared. Only selected faces count.
     fn descend<const LIMITED: bool>(
         &self,
         p: DVec3,
         best: &mut Candidate,
         [enough, most]: [f64; 2],
+        selection: &impl Selection,
     ) {
         let query = Query::new(p);
         let reach_of = |squared: f64| reach(if LIMITED { squared.min(most) } else { squared });
@@ -114,6 +125,9 @@ impl Bvh {
             let bottom = waiting;
             for child in within(distances, reach) {
                 let distance_squared = distances[child];
+                if !selection.has_child(index as usize, child) {
+                    continue;
+                }
                 if node.count[child] == INNER {
                     let mut i = waiting;
                     // Farthest at the bottom, so that the nearest is popped first.
@@ -126,7 +140,8 @@ impl Bvh {
                 } else if distance_squared <= reach {
                     let first = node.first[child] as usize;
                     for slot in first..first + usize::from(node.count[child]) {
-                        if best.improve(self.candidate(p, slot)) {
+                        let is_selected = selection.has_face(self.faces[slot]);
+                        if is_selected && best.improve(self.candidate(p, slot)) {
                             if LIMITED && best.distance_squared <= enough {
                                 return;
                             }
@@ -136,6 +151,30 @@ impl Bvh {
                 }
             }
         }
+    }
+}
+
+/// Selection of faces that count in a query.
+pub(crate) trait Selection {
+    /// Returns false if the child of a node has no selected face.
+    fn has_child(&self, node: usize, child: usize) -> bool;
+
+    /// Returns true if a face is selected.
+    fn has_face(&self, face: FaceId) -> bool;
+}
+
+/// Selection of all faces.
+struct All;
+
+impl Selection for All {
+    #[inline]
+    fn has_child(&self, _: usize, _: usize) -> bool {
+        true
+    }
+
+    #[inline]
+    fn has_face(&self, _: FaceId) -> bool {
+        true
     }
 }
 

@@ -23,6 +23,7 @@ mod build;
 mod bvh;
 mod closest;
 mod curve;
+mod labelled;
 mod octree;
 mod sum;
 #[cfg(test)]
@@ -32,6 +33,7 @@ mod triangle;
 pub use bvh::{Bvh, BvhError};
 pub use closest::ClosestPoint;
 pub use curve::curve_order;
+pub use labelled::LabelledBvh;
 pub use octree::{Octree, OctreeLeaf};
 pub use sum::CompensatedSum;
 pub use triangle::{Triangle, closest_point};

@@ -17,6 +17,8 @@ const USAGE: &str = "usage: cargo xtask VERB
   doc      build the documentation of all crates; warnings are errors
   results [SECTION...]  remake docs/RESULTS.md, or only the sections with such titles
   textured [MODEL...]  compare image errors of levels with meshoptimizer's
+  parts [--program PATH] [TABLE...]  measure models of many parts, or only these tables:
+                       bare, textured, extent, maximum, scenes, hubs
   compare [--meshes NAME,...] [--ratios 10%,...] [--rounds N] [--json]
                        compare speed, distance and volume with meshoptimizer's simplify with update";
 
@@ -29,6 +31,7 @@ fn main() -> ExitCode {
         Some("compare") => compare::run(&arguments.collect::<Vec<_>>()),
         Some("doc") => doc::run(&project),
         Some("results") => results::run(&project, &arguments.collect::<Vec<_>>()),
+        Some("parts") => results::parts(&project, &arguments.collect::<Vec<_>>()),
         Some("textured") => results::textured(&arguments.collect::<Vec<_>>()),
         _ => {
             eprintln!("{USAGE}");

@@ -9,6 +9,7 @@ mod contacts;
 mod levels;
 mod machine;
 mod memory;
+mod parts;
 mod plot;
 mod reading;
 mod speed;
@@ -23,13 +24,14 @@ use crate::project::Project;
 type Section = fn(&Project) -> Result<String>;
 
 /// Sections and their titles, in the order of the page.
-const SECTIONS: [(&str, Section); 12] = [
+const SECTIONS: [(&str, Section); 13] = [
     // First, while this process is still small: see the module.
     ("Memory and determinism", memory::section),
     ("Accuracy", accuracy::section),
     ("Volume", volume::section),
     ("Face constriction", constriction::section),
     ("Textured", textured::section),
+    ("Many parts", parts::section),
     ("Speed of simplification", speed::section),
     ("Check", check::section),
     ("Contacts", contacts::section),
@@ -108,6 +110,11 @@ fn is_named(title: &str, name: &str) -> bool {
 pub fn textured(names: &[String]) -> Result<()> {
     print!("{}", textured::table_of(names)?);
     Ok(())
+}
+
+/// Prints only the tables of models of many parts, as [`parts::run`] says.
+pub fn parts(project: &Project, arguments: &[String]) -> Result<()> {
+    parts::run(project, arguments)
 }
 
 #[cfg(test)]

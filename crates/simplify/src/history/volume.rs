@@ -15,6 +15,9 @@ pub struct VolumeLoss {
     /// Volume before minus volume after, summed over all contractions with a closed ring, in cubic
     /// model units: table 2 of [LJ05].
     pub running_sum: f64,
+    /// Volume of the closed components that were removed as a whole, in cubic model units. The sum
+    /// includes it.
+    pub vanished: f64,
     /// Contractions at a boundary, and open components that were removed as a whole. No volume is
     /// defined there, so the sum leaves them out.
     pub open: Unconserved,
@@ -37,7 +40,9 @@ impl VolumeLoss {
     /// glTF).
     pub fn add(&mut self, other: &Self, transform: &[[f64; 4]; 4]) {
         let transform = DMat4::from_cols_array_2d(transform);
-        self.running_sum += other.running_sum * DMat3::from_mat4(transform).determinant().abs();
+        let scale = DMat3::from_mat4(transform).determinant().abs();
+        self.running_sum += other.running_sum * scale;
+        self.vanished += other.vanished * scale;
         self.open.count_in(&other.open, &transform);
         self.held.count_in(&other.held, &transform);
     }
@@ -95,7 +100,9 @@ impl Observe for VolumeLoss {
                     let [a, b, c] = corners(face).map(|corner| corner - origin);
                     a.cross(b).dot(c)
                 };
-                self.running_sum += faces.iter().map(sixfold).sum::<f64>() / 6.0;
+                let volume = faces.iter().map(sixfold).sum::<f64>() / 6.0;
+                self.running_sum += volume;
+                self.vanished += volume.abs();
                 &mut self.held
             }
         };

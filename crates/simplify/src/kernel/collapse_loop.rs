@@ -19,7 +19,7 @@
 
 mod queueing;
 
-use glam::DVec3;
+use glam::{DVec3, Vec3};
 
 use crate::kernel::attributes::AttributeModel;
 use crate::kernel::bound::{BoundPart, BoundedStep};
@@ -55,6 +55,12 @@ const NEW_VERTEX_DELAY: u16 = 6;
 /// 9, 20, .393. FLIP is the same elsewhere.
 pub(crate) const UV_FLIP_DELAY: u16 = 8;
 
+/// Part of the diagonal by which a single step may always move the surface.
+const RUIN: f32 = 0.1;
+
+/// Multiple of the largest distance so far by which a single step may always move the surface.
+const LEAP: f32 = 8.0;
+
 /// A part of the surface being simplified, with its queue and its attributes.
 pub(crate) struct CollapseLoop<'v, A> {
     pub(crate) vertices: Vertices<'v>,
@@ -75,6 +81,8 @@ pub(crate) struct CollapseLoop<'v, A> {
     pub(crate) queue: &'v mut BucketQueue,
     pub(crate) edge_ring: &'v mut EdgeRing,
     pub(crate) deferral: &'v mut Deferral,
+    /// Half the size of the box, centred in the frame, that all vertices stay in.
+    pub(crate) room: Vec3,
 }
 
 /// Reason why the edge at the front was not contracted.
@@ -105,6 +113,7 @@ impl<'v, A: AttributeModel> CollapseLoop<'v, A> {
         queue: &'v mut BucketQueue,
         edge_ring: &'v mut EdgeRing,
         deferral: &'v mut Deferral,
+        room: Vec3,
     ) -> Self {
         Self {
             vertices,
@@ -120,6 +129,7 @@ impl<'v, A: AttributeModel> CollapseLoop<'v, A> {
             queue,
             edge_ring,
             deferral,
+            room,
         }
     }
 
@@ -275,7 +285,7 @@ impl<'v, A: AttributeModel> CollapseLoop<'v, A> {
     /// Gathers the one-ring of an edge, and computes its cost and the place of the new vertex.
     #[inline(always)]
     fn price(&mut self, v: u32, target: u32, front: u16) -> Result<PricedEdge, Rejection> {
-        let Self { vertices, model, edge_ring, .. } = self;
+        let Self { vertices, model, edge_ring, deferral, .. } = self;
         let refused = |refusal| Rejection::Refused(refusal, front);
         let ends = model.orient(vertices, v, target).map_err(refused)?;
         let Ends { v0, v1, free, .. } = ends;
@@ -283,7 +293,10 @@ impl<'v, A: AttributeModel> CollapseLoop<'v, A> {
         let (end0, end1) = (vertices.get(v0), vertices.get(v1));
         let quadric = A::Metric::edge_quadric(edge_ring, end0, end1);
         let whole = if free { model.with_attributes(&ends, quadric) } else { quadric };
-        let from_middle = if free { A::Metric::optimum(&whole) } else { -quadric.half };
+        let from_middle = match free {
+            true => A::Metric::optimum(&whole, deferral.allowed()),
+            false => -quadric.half,
+        };
         let attributes = if free { 0.0 } else { f64::from(model.cost_onto(vertices, &ends)) };
         let cost = whole.at(from_middle) + attributes;
         if !cost.is_finite() {
@@ -309,7 +322,7 @@ impl<'v, A: AttributeModel> CollapseLoop<'v, A> {
     fn contract(&mut self, v: u32, target: u32, front: u16) -> Result<u32, Rejection> {
         let PricedEdge { ends, quadric, from_middle, bucket } = self.price(v, target, front)?;
         let Ends { v0, v1, free, .. } = ends;
-        let Self { vertices, model, edge_ring, deferral, .. } = self;
+        let Self { vertices, model, edge_ring, deferral, room, .. } = self;
         let (end0, end1) = (vertices.get(v0), vertices.get(v1));
         let refused = |refusal| Rejection::Refused(refusal, bucket);
         if free && from_middle.length_squared() > f64::from(edge_ring.reach()) {
@@ -317,8 +330,11 @@ impl<'v, A: AttributeModel> CollapseLoop<'v, A> {
         }
         // The place as it is stored, so that the normals are those of the actual faces.
         let from = end0.place();
-        let place =
-            if free { (from.as_dvec3() + from_middle + quadric.half).as_vec3() } else { from };
+        let place = match free {
+            true => within(*room, from.as_dvec3() + quadric.half + from_middle),
+            false => from,
+        };
+        let from_middle = (place - from).as_dvec3() - quadric.half;
         edge_ring.try_place(place - from).map_err(refused)?;
         // A mean square distance: attributes do not count.
         let mean_square =
@@ -330,6 +346,9 @@ impl<'v, A: AttributeModel> CollapseLoop<'v, A> {
         }
         let collapse =
             Collapse { ends, half: quadric.half, from_middle, place, displacement: place - from };
+        if is_out_of_proportion(now, self.error as f32, *room) {
+            return Err(refused(Refusal::Disproportion));
+        }
         let flips = model.preview(vertices, edge_ring, &collapse);
         let later = bucket.saturating_add(UV_FLIP_DELAY).min(last_bucket());
         if flips && front < later {
@@ -414,6 +433,19 @@ impl<'v, A: AttributeModel> CollapseLoop<'v, A> {
         kept.flags.set(VertexFlags(protected));
         kept.floor = 0;
     }
+}
+
+/// Rounds a place to floats, and moves it into the box of this half size.
+#[inline(always)]
+pub(crate) fn within(room: Vec3, place: DVec3) -> Vec3 {
+    place.as_vec3().clamp(-room, room)
+}
+
+/// Returns true if a step would ruin the model: it moves the surface by this squared distance, and
+/// the largest so far is `largest`. Half the model's box has the size `room`.
+#[inline(always)]
+pub(crate) fn is_out_of_proportion(now: f32, largest: f32, room: Vec3) -> bool {
+    now > RUIN * RUIN * 4.0 * room.length_squared() && now > LEAP * LEAP * largest
 }
 
 /// SIMD task of [`CollapseLoop::run`].

@@ -1,33 +1,73 @@
-//! The connected components of the input that are small enough to vanish as a whole.
+//! The connected components of the input, each of which may vanish as a whole.
 
-use meshlod_mesh::{Bounds, Mesh, VertexId, face_components, first_near};
+use std::cmp::Reverse;
+use std::collections::BinaryHeap;
+use std::ops::Range;
 
-use crate::engine::vanishing;
+use glam::Vec3;
+use meshlod_mesh::{Bounds, Mesh, face_components};
+use meshlod_spatial::LabelledBvh;
+use rayon::prelude::*;
+
 use crate::kernel::mesh::local_frame::Frame;
 use crate::kernel::mesh::one_ring::Vertices;
 use crate::kernel::mesh::vertex::VertexFlags;
 use crate::kernel::metric::{Metric, protection};
 use crate::kernel::schedule::bucket_queue::{bucket, last_bucket};
 
-/// A connected component that may be removed as a whole.
+/// Largest number of faces of a component that are sampled.
+const SAMPLED_FACES: usize = 24;
+
+/// Weights of a face's centre and of each of its corners in the mean square distance. For a
+/// quadratic function they give the exact mean.
+const AT_CENTRE: f32 = 0.75;
+const AT_CORNER: f32 = 1.0 / 12.0;
+
+/// A connected component of the input.
 #[derive(Clone, Debug)]
 pub(crate) struct Component {
-    /// Queue bucket of the component's cost.
-    pub(crate) bucket: u16,
-    /// Diagonal of the component's bounding box in the input, in the frame's units.
-    pub(crate) size: f32,
-    /// All vertices of the component.
-    pub(crate) vertices: Vec<u32>,
+    /// Diagonal of the bounding box, in the frame's units.
+    size: f32,
+    /// Area, in the frame's units.
+    area: f32,
+    is_protected: bool,
+    /// True if a lock or a tie holds a vertex of it.
+    is_held: bool,
+    /// Number of faces in the input.
+    faces: usize,
+    vertices: Range<usize>,
+    samples: Range<usize>,
 }
 
-/// Components that may be removed as a whole, and those that have been.
-#[derive(Clone, Debug, Default)]
+/// Part of the surface of a component: a point of it, and the weight that this point has.
+#[derive(Clone, Copy, Debug)]
+struct Sample {
+    place: Vec3,
+    weight: f32,
+}
+
+/// Square distances of a component from what remains without it, in the frame's units.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Apart {
+    pub(crate) mean: f32,
+    pub(crate) greatest: f32,
+}
+
+/// Connected components that may be removed as a whole, and those that have been.
 pub(crate) struct Components {
-    /// Components that may vanish, the cheapest last.
-    waiting: Vec<Component>,
-    /// Components larger than the error bound.
-    pub(crate) refused: Vec<Component>,
-    pub(crate) vanished: Vec<Component>,
+    all: Vec<Component>,
+    /// Vertices of all components, one component after the other.
+    vertices: Vec<u32>,
+    samples: Vec<Sample>,
+    frame: Frame,
+    /// The input, to which components are labels. Faces in no component have one more.
+    input: LabelledBvh,
+    is_gone: Vec<bool>,
+    /// Components that may vanish, by a lower bound of the bucket of their cost.
+    waiting: BinaryHeap<Reverse<(u16, u32)>>,
+    /// Components that an error bound has refused.
+    refused: Vec<u32>,
+    vanished: Vec<u32>,
 }
 
 /// Arguments of [`Components::new`].
@@ -40,108 +80,181 @@ pub(crate) struct Pieces<'a, 'v> {
 }
 
 impl Components {
-    /// Finds the components of an unchanged surface whose bounding box has a diagonal below
-    /// `below`, in model units, and which no lock or tie holds. Components that share a position
-    /// count as one: what is seen as one surface vanishes or stays as one, however its vertices are
-    /// split.
+    /// Finds the components of an unchanged surface. All but the largest may vanish whose bounding
+    /// box has a diagonal below `below`, in model units, and which no lock or tie holds. Returns
+    /// `None` if there are no such components.
     ///
-    /// `faces` are those of the mesh in the kernel's vertices. Cost: linear, and n log n in the
-    /// components that may vanish.
+    /// `faces` are those of the mesh in the kernel's vertices. Cost: O(n log n), n = faces.
     pub(crate) fn new<M: Metric>(
         pieces: &Pieces<'_, '_>,
         faces: impl Iterator<Item = [u32; 3]>,
         below: f64,
+    ) -> Option<Self> {
+        let (of_face, count) = face_components(&pieces.mesh.faces, pieces.mesh.positions.len());
+        if count < 2 {
+            return None;
+        }
+        let mut components = Self::survey(pieces, faces, of_face, count);
+        let all = &components.all;
+        let by_area = |a: &usize, b: &usize| all[*a].area.total_cmp(&all[*b].area).then(b.cmp(a));
+        let largest = (0..count).max_by(by_area);
+        let below = (below / pieces.frame.unit) as f32;
+        let may_vanish = |&i: &usize| {
+            let Component { size, area, is_held, .. } = all[i];
+            Some(i) != largest && size < below && area > 0.0 && !is_held
+        };
+        let found: Vec<usize> = (0..count).filter(may_vanish).collect();
+        let entry = |&i: &usize| {
+            let apart = components.apart(i as u32);
+            Reverse((components.bucket::<M>(i as u32, &apart, all[i].faces), i as u32))
+        };
+        let waiting: Vec<_> = found.par_iter().map(entry).collect();
+        components.waiting = waiting.into();
+        (!components.waiting.is_empty()).then_some(components)
+    }
+
+    /// Measures and samples all components.
+    fn survey(
+        Pieces { mesh, frame, vertices, is_held }: &Pieces<'_, '_>,
+        faces: impl Iterator<Item = [u32; 3]>,
+        mut of_face: Vec<u32>,
+        count: usize,
     ) -> Self {
-        let Pieces { mesh, frame, vertices, is_held } = pieces;
-        let first = first_near(&mesh.positions, 0.0);
-        let live: Vec<(usize, [u32; 3])> =
-            faces.enumerate().filter(|(_, [a, b, c])| a != b && b != c && c != a).collect();
-        let corners: Vec<[VertexId; 3]> =
-            live.iter().map(|&(i, _)| mesh.faces[i].map(|v| VertexId(first[v.index()]))).collect();
-        let (of_face, count) = face_components(&corners, mesh.positions.len());
-        let mut found = vec![Piece::default(); count];
-        for (&(i, face), &component) in live.iter().zip(&of_face) {
-            let piece = &mut found[component as usize];
-            let [a, b, c] = mesh.triangle(mesh.faces[i]);
-            piece.area += 0.5 * (b - a).cross(c - a).length();
-            piece.faces += 1;
-            for (k, v) in mesh.faces[i].into_iter().enumerate() {
-                piece.bounds.add(mesh.positions[v.index()]);
-                piece.is_held |= is_held[v.index()];
-                piece.is_protected |= vertices.get(face[k]).flags.any(VertexFlags::PROTECTED);
+        let live = |[a, b, c]: [u32; 3]| a != b && b != c && c != a;
+        let mut lists = vec![Vec::new(); count];
+        let mut own = vec![Vec::new(); count];
+        for (i, face) in faces.enumerate() {
+            let component = &mut of_face[i];
+            if live(face) {
+                lists[*component as usize].push(i);
+                own[*component as usize].extend(face);
+            } else {
+                *component = count as u32;
             }
         }
-        let mut of_piece: Vec<Option<Component>> =
-            found.iter().map(|piece| piece.component::<M>(frame, below)).collect();
-        for (&(_, face), &component) in live.iter().zip(&of_face) {
-            if let Some(component) = &mut of_piece[component as usize] {
-                component.vertices.extend(face);
+        let input = LabelledBvh::new(mesh, of_face).expect("the mesh was found valid");
+        let mut components = Self {
+            all: Vec::with_capacity(count),
+            vertices: Vec::new(),
+            samples: Vec::new(),
+            frame: **frame,
+            input,
+            is_gone: vec![false; count + 1],
+            waiting: BinaryHeap::new(),
+            refused: Vec::new(),
+            vanished: Vec::new(),
+        };
+        components.is_gone[count] = true;
+        for (faces, mut own) in lists.into_iter().zip(own) {
+            own.sort_unstable();
+            own.dedup();
+            let (mut bounds, mut held) = (Bounds::EMPTY, false);
+            for v in faces.iter().flat_map(|&i| mesh.faces[i]) {
+                bounds.add(mesh.positions[v.index()]);
+                held |= is_held[v.index()];
             }
+            let is_protected = |v: &u32| vertices.get(*v).flags.any(VertexFlags::PROTECTED);
+            let is_protected = own.iter().any(is_protected);
+            let places =
+                |i: usize| mesh.faces[i].map(|v| frame.to_local(mesh.positions[v.index()]));
+            let triangles: Vec<[Vec3; 3]> = faces.iter().map(|&i| places(i)).collect();
+            let (first, start) = (components.vertices.len(), components.samples.len());
+            components.sample(&triangles);
+            components.vertices.extend(own);
+            components.all.push(Component {
+                size: (bounds.diagonal() / frame.unit) as f32,
+                area: triangles.iter().map(area).sum(),
+                is_protected,
+                is_held: held,
+                faces: faces.len(),
+                vertices: first..components.vertices.len(),
+                samples: start..components.samples.len(),
+            });
         }
-        let mut components = Self::default();
-        for mut component in of_piece.into_iter().flatten() {
-            component.vertices.sort_unstable();
-            component.vertices.dedup();
-            components.waiting.push(component);
-        }
-        components.sort();
         components
     }
 
-    /// Returns the queue bucket of the cheapest component that may be removed.
-    #[inline]
-    pub(crate) fn next_bucket(&self) -> Option<u16> {
-        self.waiting.last().map(|component| component.bucket)
+    /// Samples a component at the centres and corners of some of its faces.
+    fn sample(&mut self, triangles: &[[Vec3; 3]]) {
+        for triangle in triangles.iter().step_by(triangles.len().div_ceil(SAMPLED_FACES).max(1)) {
+            let area = area(triangle);
+            let centre = triangle.iter().sum::<Vec3>() / 3.0;
+            self.samples.push(Sample { place: centre, weight: AT_CENTRE * area });
+            let corner = |&place: &Vec3| Sample { place, weight: AT_CORNER * area };
+            self.samples.extend(triangle.iter().map(corner));
+        }
     }
 
-    /// Takes the cheapest component out of the list if its bucket is at most `last`.
-    pub(crate) fn take_up_to(&mut self, last: u16) -> Option<Component> {
-        let is_due = |component: &mut Component| component.bucket <= last.min(last_bucket());
-        self.waiting.pop_if(is_due)
+    /// Measures how far a component is from the input without it and without what has vanished.
+    pub(crate) fn apart(&self, component: u32) -> Apart {
+        let is_wanted = |other: u32| other != component && !self.is_gone[other as usize];
+        let to_frame = self.frame.unit.powi(-2);
+        let (mut sum, mut weights, mut greatest) = (0.0, f32::MIN_POSITIVE, 0.0f32);
+        for &Sample { place, weight } in &self.samples[self.all[component as usize].samples.clone()]
+        {
+            let squared = self.input.squared_distance(self.frame.to_model(place), is_wanted);
+            let squared = (squared * to_frame) as f32;
+            sum += weight * squared;
+            weights += weight;
+            greatest = greatest.max(squared);
+        }
+        Apart { mean: sum / weights, greatest }
+    }
+
+    /// Returns the bucket of the cost of removing a component that has `faces` faces left.
+    pub(crate) fn bucket<M: Metric>(&self, component: u32, apart: &Apart, faces: usize) -> u16 {
+        let Component { area, is_protected, .. } = self.all[component as usize];
+        let cost = M::vanishing_cost(area, faces as f32, apart.mean);
+        let cost = if is_protected { cost * protection::<M>() } else { cost };
+        bucket(cost).min(last_bucket())
+    }
+
+    /// Returns the vertices of a component.
+    pub(crate) fn vertices(&self, component: u32) -> &[u32] {
+        &self.vertices[self.all[component as usize].vertices.clone()]
+    }
+
+    /// Returns a lower bound of the bucket of the cheapest component that may be removed.
+    #[inline]
+    pub(crate) fn next_bucket(&self) -> Option<u16> {
+        self.waiting.peek().map(|Reverse((bucket, _))| *bucket)
+    }
+
+    /// Takes the first component whose bucket is at most `last` out of the queue.
+    pub(crate) fn take_up_to(&mut self, last: u16) -> Option<u32> {
+        self.next_bucket().filter(|&bucket| bucket <= last.min(last_bucket()))?;
+        self.waiting.pop().map(|Reverse((_, component))| component)
+    }
+
+    /// Queues a component.
+    pub(crate) fn put_back(&mut self, component: u32, bucket: u16) {
+        self.waiting.push(Reverse((bucket, component)));
+    }
+
+    /// Sets a component aside that an error bound refuses, until all are made eligible again.
+    pub(crate) fn refuse(&mut self, component: u32) {
+        self.refused.push(component);
+    }
+
+    /// Removes a component for good.
+    pub(crate) fn remove(&mut self, component: u32) {
+        self.is_gone[component as usize] = true;
+        self.vanished.push(component);
+    }
+
+    /// Returns the components that have vanished, in their order.
+    pub(crate) fn vanished(&self) -> &[u32] {
+        &self.vanished
     }
 
     /// Makes components that an error bound has refused candidates for removal again.
     pub(crate) fn wake_all(&mut self) {
-        if !self.refused.is_empty() {
-            self.waiting.append(&mut self.refused);
-            self.sort();
+        for component in std::mem::take(&mut self.refused) {
+            self.put_back(component, 0);
         }
     }
-
-    fn sort(&mut self) {
-        self.waiting.sort_by(|a, b| {
-            b.bucket.cmp(&a.bucket).then_with(|| b.vertices.first().cmp(&a.vertices.first()))
-        });
-    }
 }
 
-/// A connected component of the input.
-#[derive(Clone)]
-struct Piece {
-    bounds: Bounds,
-    area: f64,
-    faces: usize,
-    is_held: bool,
-    is_protected: bool,
-}
-
-impl Default for Piece {
-    fn default() -> Self {
-        let bounds = Bounds::EMPTY;
-        Self { bounds, area: 0.0, faces: 0, is_held: false, is_protected: false }
-    }
-}
-
-impl Piece {
-    fn component<M: Metric>(&self, frame: &Frame, below: f64) -> Option<Component> {
-        let size = self.bounds.diagonal();
-        if size >= below || self.is_held {
-            return None;
-        }
-        let cost = vanishing::cost(M::METHOD, size, self.area, self.faces);
-        let cost = (cost / frame.unit.powi(M::METHOD.cost_power())) as f32;
-        let cost = if self.is_protected { cost * protection::<M>() } else { cost };
-        let size = (size / frame.unit) as f32;
-        Some(Component { bucket: bucket(cost), size, vertices: Vec::new() })
-    }
+fn area([a, b, c]: &[Vec3; 3]) -> f32 {
+    0.5 * (b - a).cross(c - a).length()
 }

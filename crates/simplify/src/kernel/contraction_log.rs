@@ -8,7 +8,7 @@ use meshlod_mesh::{FaceId, Mesh, VertexId};
 
 use crate::engine::policy::Observe;
 use crate::kernel::attributes::RecordedValues;
-use crate::kernel::components::Component;
+use crate::kernel::components::Components;
 use crate::kernel::mesh::local_frame::Frame;
 use crate::kernel::mesh::one_ring::VertexStore;
 use crate::kernel::setup::vertex_order::Order;
@@ -33,8 +33,8 @@ pub(crate) struct LoggedContraction {
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Logged {
     Contraction(LoggedContraction),
-    /// Index of the component among those that were removed as a whole.
-    Vanished(usize),
+    /// Number of the component that was removed as a whole.
+    Vanished(u32),
 }
 
 /// Correspondence between the kernel's ids and places and those of the input.
@@ -79,7 +79,7 @@ pub(crate) fn merge(logs: impl Iterator<Item = Vec<Logged>>) -> Vec<Logged> {
 /// Repeats logged contractions on a surface and shows them to an observer.
 pub(crate) fn replay(
     (log, values): (&[Logged], &[RecordedValues]),
-    components: &[Component],
+    components: Option<&Components>,
     names: InputNames<'_>,
     surface: &mut Surface,
     observer: &mut dyn Observe,
@@ -90,7 +90,8 @@ pub(crate) fn replay(
         let done = match done {
             Logged::Contraction(done) => done,
             Logged::Vanished(component) => {
-                vanish(&components[*component], names, surface, observer);
+                let vertices = components.map_or(&[][..], |all| all.vertices(*component));
+                vanish(vertices, names, surface, observer);
                 continue;
             }
         };
@@ -113,12 +114,12 @@ pub(crate) fn replay(
 
 /// Removes a component from a surface and shows it to the observer.
 fn vanish(
-    component: &Component,
+    vertices: &[u32],
     names: InputNames<'_>,
     surface: &mut Surface,
     observer: &mut dyn Observe,
 ) {
-    let inputs = component.vertices.iter().map(|&v| names.input(v));
+    let inputs = vertices.iter().map(|&v| names.input(v));
     let mut faces: Vec<FaceId> = inputs.flat_map(|v| surface.star(v).collect::<Vec<_>>()).collect();
     faces.sort_unstable();
     faces.dedup();

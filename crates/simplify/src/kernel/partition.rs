@@ -10,6 +10,7 @@
 
 use std::ops::Range;
 
+use glam::Vec3;
 use rayon::prelude::*;
 
 use crate::kernel::attributes::AttributeModel;
@@ -57,17 +58,13 @@ const SERIAL_FACES_PER_PART: usize = 4;
 /// Number of faces removed from a surface of one part between two progress reports.
 const FACES_PER_REPORT: usize = 8192;
 
-/// Constraints that need the surface in one part: ties, and components that may vanish.
-#[derive(Default)]
+/// Constraints of the whole surface.
 pub(crate) struct Whole {
     pub(crate) ties: Option<Ties>,
+    /// Components that may vanish.
     pub(crate) components: Option<Components>,
-}
-
-impl Whole {
-    fn is_none(&self) -> bool {
-        self.ties.is_none() && self.components.is_none()
-    }
+    /// Half the size of the box, centred in the frame, that all vertices stay in.
+    pub(crate) room: Vec3,
 }
 
 /// A surface in parts.
@@ -80,8 +77,12 @@ pub(crate) struct Partition<A> {
     pub(crate) error: f64,
     pub(crate) refusals: Refusals,
     pub(crate) volume: VolumeTally,
-    /// Ties, and components that may vanish, if there are any.
-    pub(crate) whole: Whole,
+    /// Ties, if there are any. They need the surface in one part.
+    ties: Option<Ties>,
+    /// Components that may vanish, if any may, once the surface is in one part.
+    pub(crate) components: Option<Components>,
+    /// Half the size of the box that all vertices stay in.
+    room: Vec3,
     /// Long rings of copies, which are in no part until all vertices are in one.
     long_of_copies: Vec<LongRing>,
     /// Steps done so far, if an observer wants them.
@@ -103,8 +104,9 @@ struct PartState {
 
 impl<A: AttributeModel> Partition<A> {
     pub(crate) fn new(store: VertexStore, model: A, live_faces: usize, whole: Whole) -> Self {
-        let part = if whole.is_none() { MAX_PART } else { usize::MAX };
-        Self { whole, ..Self::of_at_most(part, store, model, live_faces) }
+        let Whole { ties, components, room } = whole;
+        let part = if ties.is_none() { MAX_PART } else { usize::MAX };
+        Self { ties, components, room, ..Self::of_at_most(part, store, model, live_faces) }
     }
 
     /// Splits the surface into parts of at most `part` vertices.
@@ -122,7 +124,9 @@ impl<A: AttributeModel> Partition<A> {
             error: 0.0,
             refusals: Refusals::default(),
             volume: VolumeTally::default(),
-            whole: Whole::default(),
+            ties: None,
+            components: None,
+            room: Vec3::INFINITY,
             long_of_copies: Vec::new(),
             log: None,
         };
@@ -257,6 +261,7 @@ impl<A: AttributeModel> Partition<A> {
     /// Returns a loop for each part, with the part's waiting vertices.
     fn loops(&mut self) -> Vec<(CollapseLoop<'_, A>, &mut Vec<u32>)> {
         let first_copy = self.store.own() as u32;
+        let room = self.room;
         let VertexStore { all, copied, split, .. } = &mut self.store;
         let mut rest = &mut all[..];
         let mut loops = Vec::with_capacity(self.parts.len());
@@ -266,11 +271,13 @@ impl<A: AttributeModel> Partition<A> {
             rest = others;
             let base = vertices.start as u32;
             let vertices = Vertices { all, base, long, copied, split, first_copy };
-            loops.push((CollapseLoop::new(vertices, model, queue, edge_ring, deferral), waiting));
+            let collapse_loop =
+                CollapseLoop::new(vertices, model, queue, edge_ring, deferral, room);
+            loops.push((collapse_loop, waiting));
         }
         if let [(collapse_loop, _)] = &mut loops[..] {
-            collapse_loop.ties = self.whole.ties.as_mut();
-            collapse_loop.components = self.whole.components.as_mut();
+            collapse_loop.ties = self.ties.as_mut();
+            collapse_loop.components = self.components.as_mut();
         }
         loops
     }

@@ -1,5 +1,6 @@
 //! Preparation: from a mesh to vertices with rings, locks, ties and attributes.
 
+use glam::Vec3;
 use meshlod_mesh::{Bounds, Lock, Mesh, VertexId};
 
 use crate::clean;
@@ -20,7 +21,7 @@ use crate::kernel::run::{KernelInput, KernelRun};
 use crate::kernel::setup::build_rings::Fans;
 use crate::kernel::setup::split_non_manifold;
 use crate::kernel::setup::vertex_order::{Order, numbers};
-use crate::options::{AttributeWeights, Options};
+use crate::options::{AttributeWeights, Options, Topology};
 use crate::simplifier::InputSummary;
 use crate::surface::MOST_FACES;
 use crate::surface::ties::{MOST_MEMBERS, Ties};
@@ -30,6 +31,10 @@ const MAX_CHANNELS: usize = 8;
 
 /// Largest weight of a boundary: beyond it floats would overflow, and nothing changes any more.
 const MAX_BOUNDARY_WEIGHT: f64 = 1e9;
+
+/// Part of the diagonal by which a vertex may leave the bounding box of the input: to preserve the
+/// volume of something round, vertices must lie outside.
+const BEYOND: f32 = 0.004;
 
 /// A mesh ready to be simplified.
 pub(crate) struct Prepared<'m, M> {
@@ -79,12 +84,15 @@ impl<'m, M: Metric + 'm> Prepared<'m, M> {
         }
         let held = Held::default();
         let input = InputSummary { degenerate_faces, duplicate_faces, non_manifold_vertices, held };
-        let whole = Whole::default();
+        let room = frame.to_local(bounds.max);
+        let room = room + Vec3::splat(BEYOND * (bounds.diagonal() / frame.unit) as f32);
+        let whole = Whole { ties: None, components: None, room };
         let mut prepared = Self { metric, mesh, frame, order, fans, faces, input, whole };
         prepared.pin();
         let is_held = prepared.lock(options);
         prepared.tie(options);
-        if let Some(below) = options.vanish_below {
+        if options.topology == Topology::Free {
+            let below = options.vanish_below.unwrap_or(f64::INFINITY);
             prepared.find_components(is_held, options, below);
         }
         prepared
@@ -147,8 +155,7 @@ impl<'m, M: Metric + 'm> Prepared<'m, M> {
             vertices: &self.fans.store.whole(),
             is_held: &is_held,
         };
-        let components = Components::new::<M>(&pieces, faces, below);
-        self.whole.components = components.next_bucket().map(|_| components);
+        self.whole.components = Components::new::<M>(&pieces, faces, below);
     }
 
     /// Applies the locks. Returns for each vertex of the input whether it is locked.

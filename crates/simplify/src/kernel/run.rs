@@ -10,7 +10,6 @@ use crate::engine::{Run, Tally};
 use crate::kernel::attributes::AttributeModel;
 use crate::kernel::bound::ErrorBound;
 use crate::kernel::bound::input_surface::InputSurface;
-use crate::kernel::components::Component;
 use crate::kernel::contraction_log::{InputNames, replay};
 use crate::kernel::level::{level, workspace};
 use crate::kernel::mesh::local_frame::Frame;
@@ -52,11 +51,6 @@ impl<'m, A: AttributeModel> KernelRun<'m, A> {
     fn names(&self) -> InputNames<'_> {
         let KernelInput { mesh, frame, order, .. } = &self.source;
         InputNames { mesh, frame, order, store: &self.partition.store }
-    }
-
-    /// Returns the components that have vanished.
-    fn vanished(&self) -> &[Component] {
-        self.partition.whole.components.as_ref().map_or(&[], |all| &all.vanished)
     }
 
     /// Returns the factor from the kernel's costs to model units.
@@ -107,7 +101,7 @@ impl<'m, A: AttributeModel> KernelRun<'m, A> {
         match (self.partition.log.take(), self.surface.take()) {
             (Some(log), Some(mut surface)) => {
                 let values = self.partition.models[0].recorded();
-                let components = self.vanished();
+                let components = self.partition.components.as_ref();
                 replay((&log, &values), components, self.names(), &mut surface, observer);
                 self.surface = surface.into();
             }
@@ -178,7 +172,7 @@ impl<A: AttributeModel> Run for KernelRun<'_, A> {
 
     fn tally(&self) -> Tally {
         Tally {
-            vanished: self.vanished().len(),
+            vanished: self.partition.components.as_ref().map_or(0, |all| all.vanished().len()),
             refusals: self.partition.refusals,
             error_estimate: self.partition.error.sqrt() * self.source.frame.unit,
             volume: self.partition.volume.loss(&self.source.frame),

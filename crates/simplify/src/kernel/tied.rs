@@ -7,7 +7,7 @@ use crate::kernel::attributes::AttributeModel;
 use crate::kernel::bound::BoundedStep;
 use crate::kernel::collapse::edge_ring::EdgeRing;
 use crate::kernel::collapse::{Collapse, Ends};
-use crate::kernel::collapse_loop::{CollapseLoop, Rejection, UV_FLIP_DELAY};
+use crate::kernel::collapse_loop::{CollapseLoop, Rejection, UV_FLIP_DELAY, within};
 use crate::kernel::mesh::one_ring::{GHOST, Vertices};
 use crate::kernel::mesh::vertex::VertexFlags;
 use crate::kernel::metric::edge_quadric_f64::EdgeQuadricF64;
@@ -78,7 +78,7 @@ impl<A: AttributeModel> CollapseLoop<'_, A> {
         let first = &edges[0];
         let from = self.vertices.get(first.ends.v0).place();
         let place = match first.ends.free {
-            true => (from.as_dvec3() + from_middle + first.quadric.half).as_vec3(),
+            true => within(self.room, from.as_dvec3() + first.quadric.half + from_middle),
             false => from,
         };
         let mut steps = Vec::with_capacity(edges.len());
@@ -157,7 +157,7 @@ impl<A: AttributeModel> CollapseLoop<'_, A> {
     /// vertices.
     fn price_together(&mut self, ends: &[Ends], front: u16) -> Result<Joint, Rejection> {
         let refused = |refusal| Rejection::Refused(refusal, front);
-        let Self { vertices, model, edge_ring, .. } = self;
+        let Self { vertices, model, edge_ring, deferral, .. } = self;
         let mut edges: Vec<TiedEdge> = Vec::with_capacity(ends.len());
         let mut joint: Option<EdgeQuadricF64> = None;
         let (mut onto, mut flags) = (0.0, VertexFlags::default());
@@ -180,7 +180,8 @@ impl<A: AttributeModel> CollapseLoop<'_, A> {
         }
         let Some(joint) = joint else { return Err(refused(Refusal::Tied)) };
         let free = ends[0].free;
-        let from_middle = if free { A::Metric::optimum(&joint) } else { -joint.half };
+        let from_middle =
+            if free { A::Metric::optimum(&joint, deferral.allowed()) } else { -joint.half };
         let cost = if free { joint.at(from_middle) } else { onto };
         if !cost.is_finite() {
             return Err(refused(Refusal::Volume));

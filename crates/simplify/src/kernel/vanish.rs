@@ -3,8 +3,7 @@
 use glam::{DVec3, Vec3};
 
 use crate::kernel::attributes::AttributeModel;
-use crate::kernel::collapse_loop::CollapseLoop;
-use crate::kernel::components::Component;
+use crate::kernel::collapse_loop::{CollapseLoop, is_out_of_proportion};
 use crate::kernel::contraction_log::Logged;
 use crate::kernel::mesh::one_ring::GHOST;
 use crate::kernel::mesh::vertex::VertexFlags;
@@ -14,16 +13,33 @@ use crate::refusal::Refusal;
 impl<A: AttributeModel> CollapseLoop<'_, A> {
     /// Removes the cheapest component if its bucket is at most `last`. Returns false if there is
     /// none.
+    ///
+    /// Costs only rise, as a component loses faces and as others vanish. So a cost found earlier is
+    /// a lower bound, and is computed again when its turn comes.
     #[cold]
     pub(crate) fn vanish_up_to(&mut self, last: u16) -> bool {
         while let Some(component) = self.components.as_mut().and_then(|all| all.take_up_to(last)) {
-            let faces = self.faces_of(&component);
-            if faces.len() >= self.live_faces {
+            let faces = self.faces_of(component);
+            let Some(components) = &mut self.components else { return false };
+            let apart = components.apart(component);
+            let cost = components.bucket::<A::Metric>(component, &apart, faces.len());
+            let bucket = self.deferral.delay(apart.greatest, cost).unwrap_or(cost);
+            let max_error = self.within.as_ref().map_or(f32::INFINITY, |bound| bound.max_error());
+            if faces.is_empty() {
+                continue;
+            } else if bucket > last {
+                components.put_back(component, bucket);
+            } else if faces.len() >= self.live_faces {
                 self.refusals.add(Refusal::LastFaces);
-            } else if self.within.as_ref().is_some_and(|bound| component.size > bound.max_error()) {
+            } else if is_out_of_proportion(apart.greatest, self.error as f32, self.room) {
+                components.refuse(component);
+                self.refusals.add(Refusal::Disproportion);
+            } else if apart.greatest > max_error * max_error {
+                components.refuse(component);
                 self.refusals.add(Refusal::Error);
-                self.components.iter_mut().for_each(|all| all.refused.push(component.clone()));
             } else {
+                components.remove(component);
+                self.error = self.error.max(apart.greatest.into());
                 self.vanish(component, &faces);
                 return true;
             }
@@ -32,9 +48,10 @@ impl<A: AttributeModel> CollapseLoop<'_, A> {
     }
 
     /// Returns the faces that are left of a component.
-    fn faces_of(&mut self, component: &Component) -> Vec<[u32; 3]> {
+    fn faces_of(&mut self, component: u32) -> Vec<[u32; 3]> {
         let mut faces = Vec::new();
-        for &v in &component.vertices {
+        let Some(components) = &self.components else { return faces };
+        for &v in components.vertices(component) {
             if self.vertices.get(v).flags.any(VertexFlags::DEAD) {
                 continue;
             }
@@ -50,12 +67,12 @@ impl<A: AttributeModel> CollapseLoop<'_, A> {
     }
 
     /// Merges all vertices of a component into one without faces.
-    fn vanish(&mut self, component: Component, faces: &[[u32; 3]]) {
+    fn vanish(&mut self, component: u32, faces: &[[u32; 3]]) {
+        let Some(components) = &self.components else { return };
         let live = |v: &u32| !self.vertices.get(*v).flags.any(VertexFlags::DEAD);
-        let left: Vec<u32> = component.vertices.iter().copied().filter(live).collect();
+        let left: Vec<u32> = components.vertices(component).iter().copied().filter(live).collect();
         self.count_volume(&left, faces);
         self.live_faces -= faces.len();
-        self.error = self.error.max(f64::from(component.size).powi(2));
         for &v in &left {
             let vertex = self.vertices.get_mut(v);
             vertex.bucket = NONE;
@@ -67,12 +84,10 @@ impl<A: AttributeModel> CollapseLoop<'_, A> {
                 vertex.target = left[0];
             }
         }
-        let Some(components) = &mut self.components else { return };
         if let Some(log) = &mut self.log {
-            log.push(Logged::Vanished(components.vanished.len()));
+            log.push(Logged::Vanished(component));
             self.model.skip_record();
         }
-        components.vanished.push(component);
     }
 
     fn count_volume(&mut self, left: &[u32], faces: &[[u32; 3]]) {

@@ -12,6 +12,8 @@ use crate::kernel::mesh::local_frame::Frame;
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct VolumeTally {
     sixfold: f64,
+    /// Six times the volume of the closed components that have vanished.
+    vanished: f64,
     open: Unchosen,
     held: Unchosen,
 }
@@ -52,20 +54,24 @@ impl VolumeTally {
         }
         if !is_open {
             self.sixfold += sixfold;
+            self.vanished += sixfold.abs();
         }
     }
 
     /// Adds the tally of another part.
     pub(crate) fn merge(&mut self, other: &Self) {
         self.sixfold += other.sixfold;
+        self.vanished += other.vanished;
         self.open.merge(&other.open);
         self.held.merge(&other.held);
     }
 
     /// Converts the tally to model units.
     pub(crate) fn loss(&self, frame: &Frame) -> VolumeLoss {
+        let sixth = frame.unit.powi(3) / 6.0;
         VolumeLoss {
-            running_sum: self.sixfold * frame.unit.powi(3) / 6.0,
+            running_sum: self.sixfold * sixth,
+            vanished: self.vanished * sixth,
             open: self.open.to_model(frame),
             held: self.held.to_model(frame),
         }

@@ -1,9 +1,11 @@
 //! Builds and runs the command-line program `meshlod`.
 
+use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
 use anyhow::{Context, Result, bail};
+use serde_json::Value;
 use wait4::{ResourceUsage, Wait4};
 
 use crate::project::Project;
@@ -12,6 +14,11 @@ use crate::project::Project;
 pub struct Program(PathBuf);
 
 impl Program {
+    /// Takes a build of `meshlod` by its path.
+    pub fn at(path: impl Into<PathBuf>) -> Self {
+        Self(path.into())
+    }
+
     /// Builds `meshlod` in release mode.
     pub fn build(project: &Project) -> Result<Self> {
         let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
@@ -42,5 +49,16 @@ impl Program {
             bail!("meshlod {} failed", arguments.join(" "));
         }
         Ok(used.rusage)
+    }
+
+    /// Runs `meshlod` with `--json` and returns its answer; fails with its message if the program
+    /// fails.
+    pub fn answer(&self, arguments: impl IntoIterator<Item = impl AsRef<OsStr>>) -> Result<Value> {
+        let output = Command::new(&self.0).args(arguments).arg("--json").output();
+        let output = output.with_context(|| self.0.display().to_string())?;
+        if !output.status.success() {
+            bail!("{}", String::from_utf8_lossy(&output.stderr).trim());
+        }
+        Ok(serde_json::from_slice(&output.stdout)?)
     }
 }

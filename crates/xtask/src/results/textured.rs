@@ -18,7 +18,7 @@ const METHODS: [Method; 3] = [Method::Qem, Method::LindstromTurk, Method::QemEnd
 const RATIOS: [f64; 2] = [0.25, 0.1];
 
 /// The best settings of meshoptimizer over the five models; see docs/notes/image-error.md.
-const PEER: Settings = Settings {
+pub(super) const PEER: Settings = Settings {
     normal_weight: 0.1,
     uv_weight: 2.0,
     options: SimplifyOptions::Permissive,

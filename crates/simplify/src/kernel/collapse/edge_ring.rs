@@ -13,7 +13,7 @@ use std::ops::Range;
 use glam::{DVec3, Vec3, Vec4};
 
 use crate::kernel::mesh::one_ring::{GHOST, MAX_RING, Vertices, index_in, index_in_ring};
-use crate::kernel::mesh::vertex::{RING, VertexFlags, VertexQuadric};
+use crate::kernel::mesh::vertex::{RING, VertexFlags, VertexQuadric, per_square};
 use crate::kernel::simd::{LANES, Row, Row3, select_max, sum_of, transpose, transpose_back};
 use crate::refusal::Refusal;
 
@@ -410,10 +410,12 @@ impl Spokes {
     }
 }
 
-/// Returns n and n n' of one face: x, y, z, xx, yy, zz, xy, xz, yz.
+/// Returns n and n n', weighted by [`per_square`], of one face: x, y, z, xx, yy, zz, xy, xz, yz.
 #[inline(always)]
-fn sums_of(Vec3 { x, y, z }: Vec3) -> [f32; 9] {
-    [x, y, z, x * x, y * y, z * z, x * y, x * z, y * z]
+fn sums_of(n: Vec3) -> [f32; 9] {
+    let Vec3 { x, y, z } = n;
+    let w = per_square(n.dot(n));
+    [x, y, z, w * x * x, w * y * y, w * z * z, w * x * y, w * x * z, w * y * z]
 }
 
 #[inline(always)]

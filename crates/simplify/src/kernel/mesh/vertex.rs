@@ -5,6 +5,8 @@
 
 use glam::{Vec3, Vec4};
 
+use crate::kernel::simd::TINY;
+
 /// Number of neighbours that a vertex has room for. Of horse-97k's vertices on the way to 1 %,
 /// fewer than one in a thousand have more.
 pub(crate) const RING: usize = 16;
@@ -133,6 +135,19 @@ impl Bf16 {
     }
 }
 
+/// Returns the weight of a face's squared swept volumes in the costs of `lindstrom-turk`, from the
+/// square of twice its area: one over the root of twice its area.
+///
+/// Squared volumes [LT98] weigh an area by its square, so what is small goes early, however far it
+/// sticks out. Plane distances weigh it once, and lose in the mean. Geometric means over four
+/// levels of nineteen models, relative to this weight: squared volumes as they are 1.01 in the
+/// mean, 1.22 in the maximum; one over the power .3 of twice the area 1.01, 1.08; .4 1.00, 1.02;
+/// .65 1.02, 1.05.
+#[inline(always)]
+pub(crate) fn per_square(squared: f32) -> f32 {
+    (squared + TINY).sqrt().sqrt().recip()
+}
+
 impl VertexQuadric {
     #[inline(always)]
     pub(crate) fn new(vector: Vec3, squares: [f32; 6]) -> Self {
@@ -160,7 +175,9 @@ impl VertexQuadric {
         let Vec3 { x, y, z } = normal;
         let second = Vec4::new(y, z, x, y) * Vec4::new(1.0, 1.0, x, y);
         let third = Vec4::new(z, x, x, y) * Vec4::new(z, y, z, z);
-        Self([Vec4::new(0.0, 0.0, 0.0, x), second, third])
+        let w = per_square(normal.dot(normal));
+        let second = second * Vec4::new(1.0, 1.0, w, w);
+        Self([Vec4::new(0.0, 0.0, 0.0, x), second, third * w])
     }
 
     /// Returns the quadric of the areas swept over by a boundary edge, relative to either end.

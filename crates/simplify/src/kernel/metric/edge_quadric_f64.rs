@@ -3,6 +3,7 @@
 use glam::{DMat3, DVec3};
 
 use crate::kernel::mesh::vertex::VertexQuadric;
+use crate::kernel::metric::edge_quadric::PULL;
 
 /// Quadric of an edge relative to its middle, x'Sx − 2 q·x + c, and the plane of equal volume.
 #[derive(Clone, Copy)]
@@ -38,6 +39,17 @@ impl EdgeQuadricF64 {
             normal: self.normal + other.normal,
             level: self.level + other.level,
         }
+    }
+
+    /// Returns where the quadric is smallest, relative to the middle; the middle if there are no
+    /// planes.
+    #[inline(always)]
+    pub(crate) fn minimum(&self) -> DVec3 {
+        let pull = f64::from(PULL) * self.weight();
+        if pull <= f64::MIN_POSITIVE {
+            return DVec3::ZERO;
+        }
+        (self.sum + DMat3::from_diagonal(DVec3::splat(pull))).inverse() * self.slope
     }
 
     /// Returns the sum of the faces' weights.

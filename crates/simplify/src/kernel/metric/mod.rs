@@ -87,12 +87,17 @@ pub(crate) trait Metric: Copy + Send + Sync {
     /// Returns the cost of contracting `end1` onto `end0`.
     fn cost_onto(end0: &Vertex, end1: &Vertex) -> f32;
 
+    /// Returns the cost of removing a component of this area, with `faces` faces left, at a mean
+    /// square distance from what remains: that of the contractions which would remove as many faces
+    /// and move the surface as far.
+    fn vanishing_cost(area: f32, faces: f32, mean_square: f32) -> f32;
+
     /// Returns the quadric of a gathered edge in f64.
     fn edge_quadric(edge_ring: &EdgeRing, end0: &Vertex, end1: &Vertex) -> EdgeQuadricF64;
 
-    /// Returns where the quadric is smallest, relative to the middle of the edge; not finite if
-    /// there is no such place.
-    fn optimum(quadric: &EdgeQuadricF64) -> DVec3;
+    /// Returns the best place, relative to the middle of the edge; not finite if there is none. The
+    /// volume is preserved as far as that adds no more than `allowed` to the mean square distance.
+    fn optimum(quadric: &EdgeQuadricF64, allowed: f64) -> DVec3;
 
     /// Returns the quadric of the new vertex, before any vertex is changed. Also updates the
     /// boundary edges that move with the new vertex.
@@ -109,6 +114,18 @@ pub(crate) trait Metric: Copy + Send + Sync {
     /// Subtracts a dying face from a ring vertex.
     fn remove_face(vertex: &mut Vertex, normal: Vec3);
 }
+
+/// Part of the usual square distance, or of the step's own, that preserving the volume may add.
+///
+/// Geometric means over four levels of nineteen models, and contractions of scans at 10 and 1 %
+/// that do not preserve the volume: no limit 1.00 in the mean, 1.00 in the maximum; 1 .993, .996,
+/// none; .5 none but two of armadillo-52k's; .2 .994, .961, a volume of 1e-4 lost there.
+pub(crate) const VOLUME_SHARE: f64 = 0.5;
+
+/// Factor on the cost of a component that vanishes. Mean and maximum of skyscraper at 25 %, and of
+/// city at 10 %, in % of the diagonal: 12 .199, 5.98, .161, 4.2; 3 .078, 2.3, .150, 3.0; 1 .091,
+/// 1.9, .169, 2.3; .3 .104, 1.4, .184, 2.4.
+pub(crate) const VANISHING: f32 = 3.0;
 
 /// Returns the factor on the cost of an edge at a protected vertex, as if everything moved that
 /// many times farther.

@@ -17,11 +17,11 @@ use crate::kernel::collapse::Collapse;
 use crate::kernel::collapse::edge_ring::{EdgeRing, row3};
 use crate::kernel::mesh::one_ring::Vertices;
 use crate::kernel::mesh::vertex::{Bf16, FullQuadric, Vertex, VertexFlags, VertexQuadric};
-use crate::kernel::metric::Metric;
 use crate::kernel::metric::edge_quadric::{
     EdgeQuadrics, PULL, SymmetricMatrix, VertexQuadrics, lane_of, outer,
 };
 use crate::kernel::metric::edge_quadric_f64::{EdgeQuadricF64, matrix};
+use crate::kernel::metric::{Metric, VANISHING};
 use crate::kernel::simd::{LANES, TINY, select_max, sum_of};
 use crate::methods::qem::{BOUNDARY_WEIGHT, MEMORY};
 use crate::options::Method;
@@ -150,6 +150,10 @@ impl Metric for PlaneDistance {
         moved + (end0.constant.get() + end1.constant.get())
     }
 
+    fn vanishing_cost(area: f32, faces: f32, mean_square: f32) -> f32 {
+        VANISHING * mean_square * area / faces
+    }
+
     #[inline(always)]
     fn edge_quadric(edge_ring: &EdgeRing, end0: &Vertex, end1: &Vertex) -> EdgeQuadricF64 {
         let (normal, level) = edge_ring.volume_plane(edge_ring.dying_normals());
@@ -158,12 +162,8 @@ impl Metric for PlaneDistance {
 
     /// The place is unconstrained; the middle if there are no planes.
     #[inline(always)]
-    fn optimum(quadric: &EdgeQuadricF64) -> DVec3 {
-        let pull = f64::from(PULL) * quadric.weight();
-        if pull <= f64::MIN_POSITIVE {
-            return DVec3::ZERO;
-        }
-        (quadric.sum + DMat3::from_diagonal(DVec3::splat(pull))).inverse() * quadric.slope
+    fn optimum(quadric: &EdgeQuadricF64, _: f64) -> DVec3 {
+        quadric.minimum()
     }
 
     /// At a boundary everything is remembered, as its planes are not those of the faces around.
@@ -297,7 +297,7 @@ mod tests {
             let mut all = [0, 1].map(|end| vertex(ENDS[end], &planes[end]));
             let quadric = PlaneDistance::along(&all[0], &all[1]);
             let short = f64::from(PlaneDistance::SHORT_FIRST) * quadric.weight();
-            let least = quadric.at(PlaneDistance::optimum(&quadric))
+            let least = quadric.at(PlaneDistance::optimum(&quadric, 0.0))
                 + short * quadric.half.length_squared();
             let mut long = Vec::new();
             let vertices = Vertices::new(&mut all, 0, &mut long);
@@ -314,7 +314,7 @@ mod tests {
         let planes = [Vec3::X, Vec3::Y, Vec3::Z].map(|normal| (normal, corner));
         let best = |planes: [&[Plane]; 2]| {
             let [end0, end1] = [0, 1].map(|end| vertex(ENDS[end], planes[end]));
-            PlaneDistance::optimum(&PlaneDistance::along(&end0, &end1))
+            PlaneDistance::optimum(&PlaneDistance::along(&end0, &end1), 0.0)
         };
         let middle = (ENDS[0] + ENDS[1]) / 2.0;
         let found = best([&planes[..2], &planes[2..]]);

@@ -1,5 +1,6 @@
-//! The metric of `lindstrom-turk` [LT98]: squared volumes swept by the faces around, minimized on
-//! the plane that preserves the volume. A vertex has the quadrics of its current faces.
+//! The metric of `lindstrom-turk` [LT98]: squared volumes swept by the faces around, each over the
+//! root of twice the face's area, minimized on the plane that preserves the volume. A vertex has the
+//! quadrics of its current faces.
 //!
 //! All face planes at a vertex pass through it. For an edge with ends at −h and h, vertex quadrics
 //! (A₀, N₀) and (A₁, N₁), S = A₀ + A₁, q = (A₁ − A₀)h and g = N₀ + N₁, the quadric relative to the
@@ -11,12 +12,14 @@ use glam::{DVec3, Vec3};
 use crate::kernel::collapse::edge_ring::EdgeRing;
 use crate::kernel::collapse::{Collapse, Ends};
 use crate::kernel::mesh::one_ring::Vertices;
-use crate::kernel::mesh::vertex::{Bf16, FullQuadric, Vertex, VertexFlags, VertexQuadric};
-use crate::kernel::metric::Metric;
+use crate::kernel::mesh::vertex::{
+    Bf16, FullQuadric, Vertex, VertexFlags, VertexQuadric, per_square,
+};
 use crate::kernel::metric::edge_quadric::{
     EdgeQuadrics, PULL, SymmetricMatrix, VertexQuadrics, lane_of,
 };
 use crate::kernel::metric::edge_quadric_f64::{EdgeQuadricF64, matrix};
+use crate::kernel::metric::{Metric, VANISHING, VOLUME_SHARE};
 use crate::kernel::simd::{TINY, select_max};
 use crate::options::Method;
 
@@ -113,7 +116,8 @@ impl Metric for SweptVolume {
 
     #[inline(always)]
     fn face_weight(squared: f32) -> (f32, f32) {
-        (squared, 1.0)
+        let per_square = per_square(squared);
+        (squared * per_square, per_square)
     }
 
     #[inline(always)]
@@ -134,6 +138,10 @@ impl Metric for SweptVolume {
     fn cost_onto(end0: &Vertex, end1: &Vertex) -> f32 {
         let to = end0.place() - end1.place();
         SymmetricMatrix(end1.quadric.squares()).at(to)
+    }
+
+    fn vanishing_cost(area: f32, faces: f32, mean_square: f32) -> f32 {
+        VANISHING * mean_square * (2.0 * area / faces).powf(1.5)
     }
 
     /// Counts each face once.
@@ -163,29 +171,12 @@ impl Metric for SweptVolume {
         }
     }
 
-    /// The place lies on the plane of equal volume.
+    /// The place lies on the plane of equal volume, or as near to it as `allowed` permits.
     #[inline(always)]
-    fn optimum(quadric: &EdgeQuadricF64) -> DVec3 {
-        let EdgeQuadricF64 { sum, slope, normal, level, .. } = *quadric;
-        let squared = normal.length_squared();
-        if squared <= f64::MIN_POSITIVE {
-            return DVec3::ZERO;
-        }
-        let up = normal / squared.sqrt();
-        let on_plane = normal * (level / squared);
-        let (e1, e2) = up.any_orthonormal_pair();
-        let pull = f64::from(PULL) * quadric.weight();
-        let (a1, a2) = (sum * e1, sum * e2);
-        let (m11, m12, m22) = (e1.dot(a1) + pull, e1.dot(a2), e2.dot(a2) + pull);
-        let slope = slope - sum * on_plane;
-        let (r1, r2) = (e1.dot(slope), e2.dot(slope));
-        let determinant = m11 * m22 - m12 * m12;
-        if determinant <= 0.0 {
-            return on_plane;
-        }
-        on_plane
-            + e1 * ((m22 * r1 - m12 * r2) / determinant)
-            + e2 * ((m11 * r2 - m12 * r1) / determinant)
+    fn optimum(quadric: &EdgeQuadricF64, allowed: f64) -> DVec3 {
+        let place = on_plane_of_equal_volume(quadric);
+        let allowed = allowed * quadric.weight();
+        if quadric.at(place) > allowed { towards(quadric, place, allowed) } else { place }
     }
 
     #[inline(always)]
@@ -213,6 +204,45 @@ impl Metric for SweptVolume {
     fn remove_face(vertex: &mut Vertex, normal: Vec3) {
         vertex.quadric.take(&VertexQuadric::face(normal));
     }
+}
+
+/// Returns where the quadric is smallest on the plane of equal volume.
+#[inline(always)]
+fn on_plane_of_equal_volume(quadric: &EdgeQuadricF64) -> DVec3 {
+    let EdgeQuadricF64 { sum, slope, normal, level, .. } = *quadric;
+    let squared = normal.length_squared();
+    if squared <= f64::MIN_POSITIVE {
+        return DVec3::ZERO;
+    }
+    let up = normal / squared.sqrt();
+    let on_plane = normal * (level / squared);
+    let (e1, e2) = up.any_orthonormal_pair();
+    let pull = f64::from(PULL) * quadric.weight();
+    let (a1, a2) = (sum * e1, sum * e2);
+    let (m11, m12, m22) = (e1.dot(a1) + pull, e1.dot(a2), e2.dot(a2) + pull);
+    let slope = slope - sum * on_plane;
+    let (r1, r2) = (e1.dot(slope), e2.dot(slope));
+    let determinant = m11 * m22 - m12 * m12;
+    if determinant <= 0.0 {
+        return on_plane;
+    }
+    on_plane
+        + e1 * ((m22 * r1 - m12 * r2) / determinant)
+        + e2 * ((m11 * r2 - m12 * r1) / determinant)
+}
+
+/// Goes from where the quadric is smallest at all towards a place on the plane of equal volume,
+/// until the quadric has grown by what is allowed.
+///
+/// At a corner of a box, or at the end of a bar, the plane is far away: there the volume is not
+/// preserved. On a scan this is very rare.
+#[cold]
+fn towards(quadric: &EdgeQuadricF64, place: DVec3, allowed: f64) -> DVec3 {
+    let best = quadric.minimum();
+    let allowed = allowed.max(VOLUME_SHARE * quadric.at(best));
+    let step = place - best;
+    let growth = step.dot(quadric.sum * step);
+    if growth <= allowed { place } else { best + step * (allowed / growth).sqrt() }
 }
 
 /// Updates the boundary edges of the ring vertices. Returns those of the new vertex.

@@ -146,7 +146,7 @@ fn cost_of(vertices: &Vertices, wedges: &WedgeQuadrics<'_, SweptVolume, 5>, u: u
         return (SweptVolume::cost_onto(end0, end1) + wedges.cost_onto(vertices, &ends)).into();
     }
     let whole = wedges.with_attributes(&ends, SweptVolume::along(end0, end1));
-    whole.at(SweptVolume::optimum(&whole))
+    whole.at(SweptVolume::optimum(&whole, f64::INFINITY))
 }
 
 #[test]
