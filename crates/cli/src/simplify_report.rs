@@ -2,8 +2,8 @@
 
 use std::time::Duration;
 
-use meshlod::{Report, Topology};
 use meshlod::simplify::Refusal;
+use meshlod::{Report, Topology};
 use serde_json::{Map, Value, json};
 
 use crate::numbers::{count, faces, value};
@@ -59,6 +59,9 @@ fn advice(report: &Report, topology: Topology) -> Vec<String> {
     }
     if refused(Refusal::Seam) {
         advice.push("fewer texture charts and materials would help".into());
+    }
+    if refused(Refusal::Disproportion) {
+        advice.push("what is left would destroy the shape: keep more faces".into());
     }
     advice
 }

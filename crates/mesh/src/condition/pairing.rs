@@ -9,7 +9,7 @@ use crate::{Mesh, Side};
 /// All pairs are compared, which must not take quadratic time. Real meshes have 3 to 8.
 const MOST_SIDES: usize = 32;
 
-/// What the same material on both sides of an edge is worth against a smaller angle: as much as the
+/// Worth of one material on both sides of an edge against a smaller angle: as much as the
 /// difference between going straight on and turning by 60°.
 const SAME_MATERIAL: f64 = 0.5;
 
@@ -46,7 +46,8 @@ pub(super) fn pair(
 
 /// Returns the cosine of the angle between two faces, with an addition for the same material.
 fn smoothness(mesh: &Mesh, a: Side, b: Side) -> f64 {
-    let material = |side: Side| mesh.materials.as_ref().map(|labels| labels.of(side.face().index()));
+    let material =
+        |side: Side| mesh.materials.as_ref().map(|labels| labels.of(side.face().index()));
     let same = if material(a) == material(b) { SAME_MATERIAL } else { 0.0 };
     normal(mesh, a).dot(normal(mesh, b)) + same
 }

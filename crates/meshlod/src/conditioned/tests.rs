@@ -5,7 +5,7 @@ use meshlod_samples as samples;
 use super::*;
 use crate::SceneSimplifier;
 
-/// The same faces with three vertices each.
+/// Takes a mesh apart into faces with three vertices each.
 fn torn(of: &Mesh) -> Mesh {
     let positions = of.faces.as_flattened().iter().map(|v| of.positions[v.index()]).collect();
     let faces = (0..of.faces.len() as u32).map(|f| [0, 1, 2].map(|k| VertexId(3 * f + k)));
@@ -81,8 +81,7 @@ fn a_scene_counts_what_it_shows() {
 fn a_conditioned_mesh_has_no_history_of_its_own() {
     let only = |mesh: Mesh| {
         let scene = Scene::from_mesh("", mesh);
-        let ready =
-            ConditionedScene::new(&scene, &Options::default(), Borders::Stitch).unwrap();
+        let ready = ConditionedScene::new(&scene, &Options::default(), Borders::Stitch).unwrap();
         SceneSimplifier::new(&ready).unwrap().into_only().is_some()
     };
     assert!(only(samples::sphere(200)) && !only(torn(&samples::sphere(200))));
