@@ -57,6 +57,14 @@ use crate::simplifier::Started;
 pub(crate) use crate::kernel::metric::plane_distance::PlaneDistance;
 pub(crate) use crate::kernel::metric::swept_volume::SweptVolume;
 
+pub(crate) fn hack(name: &'static str, default: f64) -> f64 {
+    use std::sync::OnceLock;
+    static ALL: OnceLock<std::collections::HashMap<String, f64>> = OnceLock::new();
+    let all = ALL
+        .get_or_init(|| std::env::vars().filter_map(|(k, v)| Some((k, v.parse().ok()?))).collect());
+    all.get(name).copied().unwrap_or(default)
+}
+
 /// Prepares the kernel for a valid mesh. Also returns what was found in the input.
 ///
 /// # Errors
@@ -72,5 +80,5 @@ pub(crate) fn start<'m, M: Metric + 'm>(
         return Err(SimplifyError::AllDegenerate(mesh.faces.len()));
     }
     let input = prepared.input();
-    Ok((prepared.start(&options.weights), input))
+    Ok((prepared.start(options), input))
 }

@@ -116,6 +116,13 @@ pub(crate) fn protection<M: Metric>() -> f32 {
     locks::PROTECTION.powi(M::METHOD.cost_power()) as f32
 }
 
+/// Returns the cost of an edge over which a seam gives way. `whole` is the cost of moving its faces
+/// by half its length along their normals.
+pub(crate) fn over_seams<M: Metric>(cost: f32, whole: f32) -> f32 {
+    let times = crate::kernel::hack("GIVE", 4.0) as f32;
+    times.powi(M::METHOD.cost_power()) * cost + crate::kernel::hack("FLOOR", 0.01) as f32 * whole
+}
+
 /// Returns the quadrics of eight edges from those of their ends.
 #[inline(always)]
 pub(crate) fn edges_between<M: Metric>(

@@ -90,6 +90,7 @@ fn check_quadrics(mesh: &Mesh, faces: usize) {
             .collect(),
         merged_into: Vec::new(),
         seams: SeamSectors::default(),
+        release: SeamRelease::NEVER,
         charts: Vec::new(),
         layers: AttributeLayers::new(
             mesh,
