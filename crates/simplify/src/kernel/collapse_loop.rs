@@ -30,7 +30,7 @@ use crate::kernel::contraction_log::{Logged, LoggedContraction};
 use crate::kernel::mesh::one_ring::{GHOST, Vertices};
 use crate::kernel::mesh::vertex::{NO_VERTEX, VertexFlags};
 use crate::kernel::metric::edge_quadric_f64::EdgeQuadricF64;
-use crate::kernel::metric::{Metric, over_seams, protection};
+use crate::kernel::metric::{Metric, protection, seam_price};
 use crate::kernel::schedule::batch::Batch;
 use crate::kernel::schedule::bucket_queue::{BATCH_LEN, BucketQueue, NONE, bucket, last_bucket};
 use crate::kernel::schedule::deferral::Deferral;
@@ -299,8 +299,7 @@ impl<'v, A: AttributeModel> CollapseLoop<'v, A> {
             f64::from(A::Metric::SHORT_FIRST) * whole.weight() * quadric.half.length_squared();
         let mut cost = (cost.max(0.0) + short) as f32;
         if ends.cuts_seam {
-            let along = quadric.half.length_squared();
-            cost = over_seams::<A::Metric>(cost, (whole.weight() * along) as f32);
+            cost *= seam_price::<A::Metric>();
         }
         if VertexFlags(end0.flags.0 | end1.flags.0).any(VertexFlags::PROTECTED) {
             cost *= protection::<A::Metric>();

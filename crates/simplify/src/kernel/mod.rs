@@ -57,14 +57,6 @@ use crate::simplifier::Started;
 pub(crate) use crate::kernel::metric::plane_distance::PlaneDistance;
 pub(crate) use crate::kernel::metric::swept_volume::SweptVolume;
 
-pub(crate) fn hack(name: &'static str, default: f64) -> f64 {
-    use std::sync::OnceLock;
-    static ALL: OnceLock<std::collections::HashMap<String, f64>> = OnceLock::new();
-    let all = ALL
-        .get_or_init(|| std::env::vars().filter_map(|(k, v)| Some((k, v.parse().ok()?))).collect());
-    all.get(name).copied().unwrap_or(default)
-}
-
 /// Prepares the kernel for a valid mesh. Also returns what was found in the input.
 ///
 /// # Errors

@@ -11,7 +11,7 @@ use crate::kernel::collapse_loop::{CollapseLoop, Rejection, UV_FLIP_DELAY};
 use crate::kernel::mesh::one_ring::{GHOST, Vertices};
 use crate::kernel::mesh::vertex::VertexFlags;
 use crate::kernel::metric::edge_quadric_f64::EdgeQuadricF64;
-use crate::kernel::metric::{Metric, over_seams, protection};
+use crate::kernel::metric::{Metric, protection, seam_price};
 use crate::kernel::schedule::bucket_queue::{NONE, bucket, last_bucket};
 use crate::refusal::Refusal;
 use crate::surface::contracted::Freedom;
@@ -190,8 +190,7 @@ impl<A: AttributeModel> CollapseLoop<'_, A> {
             f64::from(A::Metric::SHORT_FIRST) * joint.weight() * joint.half.length_squared();
         let mut cost = (cost.max(0.0) + short) as f32;
         if cuts_seam {
-            let along = joint.half.length_squared();
-            cost = over_seams::<A::Metric>(cost, (joint.weight() * along) as f32);
+            cost *= seam_price::<A::Metric>();
         }
         if flags.any(VertexFlags::PROTECTED) {
             cost *= protection::<A::Metric>();

@@ -16,7 +16,7 @@ use crate::kernel::mesh::vertex::{NO_VERTEX, VertexFlags};
 use crate::kernel::metric::edge_quadric::{
     Costs, EdgeQuadric, EdgeQuadrics, EdgeSide, SymmetricMatrix, VertexQuadrics, lane_of,
 };
-use crate::kernel::metric::{Metric, edges_between, least_costs, over_seams};
+use crate::kernel::metric::{Metric, edges_between, least_costs, seam_price};
 use crate::kernel::simd::{LANES, Row, Row3, SimdTask, widest};
 
 impl<M: Metric, const K: usize> WedgeQuadrics<'_, M, K> {
@@ -220,9 +220,7 @@ impl SeamBatch {
                 Motion::Onto => onto[lane],
             };
             if self.cuts_seam[lane] {
-                let h = edges.half.get(lane);
-                let trace = SymmetricMatrix(lane_of(&edges.sum, lane)).trace();
-                costs[lane] = over_seams::<M>(costs[lane], trace * h.dot(h));
+                costs[lane] *= seam_price::<M>();
             }
         }
         costs
