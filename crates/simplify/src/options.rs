@@ -155,10 +155,12 @@ impl Target {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Topology {
     /// Connected components may vanish where that costs less than contracting them further, and
-    /// non-manifold vertices may move and be contracted.
+    /// non-manifold vertices may move and be contracted. Seams of textures and borders of materials
+    /// give way where nothing else is left at a price in proportion, so charts may vanish too.
     #[default]
     Free,
-    /// Closed surfaces stay closed, manifold surfaces stay manifold, and no component vanishes.
+    /// Closed surfaces stay closed, manifold surfaces stay manifold, and no component or chart
+    /// vanishes.
     Keep,
 }
 

@@ -66,7 +66,8 @@ impl<M: Metric, const K: usize> WedgeQuadrics<'_, M, K> {
             false => self.cheapest_over_seams(vertices),
         };
         if cheapest == NONE || cheapest > front {
-            self.release = if front == NONE { SeamRelease::Never } else { SeamRelease::From(cheapest) };
+            self.release =
+                if front == NONE { SeamRelease::Never } else { SeamRelease::From(cheapest) };
             return false;
         }
         debug_assert!(held.may_come());

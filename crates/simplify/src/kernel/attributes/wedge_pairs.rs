@@ -48,7 +48,8 @@ impl<M: Metric, const K: usize> WedgeQuadrics<'_, M, K> {
         }
         let [[a, s], [b, t]] = wedge_pairs.pairs;
         // The end of a cut stays, and both sides of the cut are contracted into it.
-        let parts = [a == b && self.chart(s) != self.chart(t), s == t && self.chart(a) != self.chart(b)];
+        let parts =
+            [a == b && self.chart(s) != self.chart(t), s == t && self.chart(a) != self.chart(b)];
         let [leaves, goes] = match [moves[0] && !parts[0], moves[1] && !parts[1]] {
             [false, false] => moves,
             ways => ways,
