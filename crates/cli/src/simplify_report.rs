@@ -2,8 +2,8 @@
 
 use std::time::Duration;
 
-use meshlod::{Report, Topology};
 use meshlod::simplify::Refusal;
+use meshlod::{Report, Topology};
 use serde_json::{Map, Value, json};
 
 use crate::numbers::{count, faces, value};

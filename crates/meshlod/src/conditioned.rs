@@ -76,7 +76,8 @@ impl<'s> ConditionedScene<'s> {
     /// Cost: as for [`near_borders`], at three distances.
     pub fn near_borders(&self) -> Option<NearBorders> {
         let valid = |mesh: &&Mesh| mesh.validate().is_ok();
-        let meshes: Vec<&Mesh> = self.meshes.iter().map(ConditionedMesh::mesh).filter(valid).collect();
+        let meshes: Vec<&Mesh> =
+            self.meshes.iter().map(ConditionedMesh::mesh).filter(valid).collect();
         let diagonal = meshes.iter().map(|mesh| mesh.bounds().diagonal()).fold(0.0, f64::max);
         let power = diagonal.log10().floor();
         if !power.is_finite() {

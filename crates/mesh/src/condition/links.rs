@@ -97,5 +97,9 @@ pub(super) fn duplicate_faces(mesh: &Mesh, connectivity: &Connectivity) -> Vec<F
         let material = mesh.materials.as_ref().map_or(NONE, |labels| labels.of(face.index()));
         !seen.insert((turned, material))
     };
-    (0..mesh.faces.len()).map(FaceId::new).filter(|&face| is_suspect(face)).filter(repeats).collect()
+    (0..mesh.faces.len())
+        .map(FaceId::new)
+        .filter(|&face| is_suspect(face))
+        .filter(repeats)
+        .collect()
 }

@@ -129,9 +129,8 @@ pub fn condition(mesh: &Mesh, locks: &Locks, options: &ConditionOptions) -> Opti
         Search::All => suspects::irregular(mesh),
     };
     let mut around = Around::new(mesh, &suspects);
-    let connect = |around: &Around| {
-        Connectivity::new(&around.mesh.faces, around.mesh.positions.len())
-    };
+    let connect =
+        |around: &Around| Connectivity::new(&around.mesh.faces, around.mesh.positions.len());
     let mut connectivity = connect(&around);
     let duplicates = links::duplicate_faces(&around.mesh, &connectivity);
     let left_out: Vec<u32> = duplicates.iter().map(|face| around.faces[face.index()]).collect();
@@ -156,7 +155,8 @@ pub fn condition(mesh: &Mesh, locks: &Locks, options: &ConditionOptions) -> Opti
         duplicate_faces: left_out.len(),
     };
     let open = border.into_iter().filter(|&side| !links.is_linked(side));
-    let locked = options.lock_boundary.then(|| open.flat_map(|side| fans.side_ends(side)).collect());
+    let locked =
+        options.lock_boundary.then(|| open.flat_map(|side| fans.side_ends(side)).collect());
     let change = Change::new(mesh.positions.len(), &around, &fans);
     let locks = change.locks(mesh, locks, locked);
     let mesh = change.mesh(mesh, &left_out, counts.stitched_edges > 0);

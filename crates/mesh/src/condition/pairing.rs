@@ -46,7 +46,8 @@ pub(super) fn pair(
 
 /// Returns the cosine of the angle between two faces, with an addition for the same material.
 fn smoothness(mesh: &Mesh, a: Side, b: Side) -> f64 {
-    let material = |side: Side| mesh.materials.as_ref().map(|labels| labels.of(side.face().index()));
+    let material =
+        |side: Side| mesh.materials.as_ref().map(|labels| labels.of(side.face().index()));
     let same = if material(a) == material(b) { SAME_MATERIAL } else { 0.0 };
     normal(mesh, a).dot(normal(mesh, b)) + same
 }

@@ -190,7 +190,10 @@ fn what_is_locked_otherwise_or_tied_is_not_sewn() {
         condition(&torn, &locks, &ConditionOptions::default()).map(|found| found.locks.of_vertex)
     };
     let [free, locked] = [Lock::Free, Lock::Locked];
-    assert_eq!(sewn(Locks { of_vertex: vec![locked; 6], ..Default::default() }), Some(vec![locked; 6]));
+    assert_eq!(
+        sewn(Locks { of_vertex: vec![locked; 6], ..Default::default() }),
+        Some(vec![locked; 6])
+    );
     let mut of_vertex = vec![free; 6];
     of_vertex[0] = locked;
     assert_eq!(sewn(Locks { of_vertex, ..Default::default() }), None);
@@ -213,7 +216,8 @@ fn boundaries_that_remain_are_locked() {
 fn sewing_never_makes_an_edge_of_three_faces() {
     // Three torn faces around one edge, two of which run the same way.
     let at = [[0., 0., 0.], [1., 0., 0.]];
-    let positions = [at[0], at[1], [0., 1., 0.], at[0], at[1], [0., -1., 0.], at[0], at[1], [0., 0., 1.]];
+    let positions =
+        [at[0], at[1], [0., 1., 0.], at[0], at[1], [0., -1., 0.], at[0], at[1], [0., 0., 1.]];
     let found = conditioned(&mesh(&positions, &[[0, 1, 2], [4, 3, 5], [7, 6, 8]])).unwrap();
     assert_eq!((found.counts.stitched_edges, found.counts.stitched_vertices), (1, 2));
     assert_eq!(found.mesh.faces[1], [1, 0, 5].map(VertexId), "the one that goes straight on");
@@ -258,7 +262,9 @@ fn many_pieces_take_linear_time() {
     let count: u32 = 300_000;
     let side = |i: u32| [f64::from(i % 1000), f64::from(i / 1000 % 1000), 0.0];
     // All with an edge in common, all alone, or all at one vertex.
-    let faces = |common: u32| (0..count).map(move |i| [0, 1, 2].map(|k| if k < common { k } else { 3 * i + k }));
+    let faces = |common: u32| {
+        (0..count).map(move |i| [0, 1, 2].map(|k| if k < common { k } else { 3 * i + k }))
+    };
     for common in 0..3 {
         let positions: Vec<_> = (0..3 * count).map(side).collect();
         let soup = mesh(&positions, &faces(common).collect::<Vec<_>>());

@@ -81,8 +81,7 @@ fn a_scene_counts_what_it_shows() {
 fn a_conditioned_mesh_has_no_history_of_its_own() {
     let only = |mesh: Mesh| {
         let scene = Scene::from_mesh("", mesh);
-        let ready =
-            ConditionedScene::new(&scene, &Options::default(), Borders::Stitch).unwrap();
+        let ready = ConditionedScene::new(&scene, &Options::default(), Borders::Stitch).unwrap();
         SceneSimplifier::new(&ready).unwrap().into_only().is_some()
     };
     assert!(only(samples::sphere(200)) && !only(torn(&samples::sphere(200))));

@@ -2,8 +2,8 @@ use meshlod_fixtures::{fan, shared_mesh};
 use meshlod_io::{Node, ReadOptions, SceneMesh, read};
 use meshlod_measure::{DistanceOptions, distance};
 use meshlod_mesh::{Lock, Locks};
-use meshlod_simplify::Topology;
 use meshlod_samples as samples;
+use meshlod_simplify::Topology;
 
 use super::*;
 

@@ -30,7 +30,7 @@ use crate::kernel::contraction_log::{Logged, LoggedContraction};
 use crate::kernel::mesh::one_ring::{GHOST, Vertices};
 use crate::kernel::mesh::vertex::{NO_VERTEX, VertexFlags};
 use crate::kernel::metric::edge_quadric_f64::EdgeQuadricF64;
-use crate::kernel::metric::{Metric, protection};
+use crate::kernel::metric::{Metric, protection, seam_price};
 use crate::kernel::schedule::batch::Batch;
 use crate::kernel::schedule::bucket_queue::{BATCH_LEN, BucketQueue, NONE, bucket, last_bucket};
 use crate::kernel::schedule::deferral::Deferral;
@@ -190,8 +190,14 @@ impl<'v, A: AttributeModel> CollapseLoop<'v, A> {
         if !next.is_empty() {
             return front <= last;
         }
-        if !self.queue.take(last) {
-            return false;
+        loop {
+            let (is_taken, is_all) = (self.queue.take(last), last >= last_bucket());
+            let front = if is_taken { self.queue.next().1 } else { NONE };
+            match is_taken || is_all {
+                true if self.release_seams(front) => {}
+                true if is_taken => break,
+                _ => return false,
+            }
         }
         self.prefetch();
         self.recost_batch();
@@ -305,6 +311,9 @@ impl<'v, A: AttributeModel> CollapseLoop<'v, A> {
         let short =
             f64::from(A::Metric::SHORT_FIRST) * whole.weight() * quadric.half.length_squared();
         let mut cost = (cost.max(0.0) + short) as f32;
+        if ends.cuts_seam {
+            cost *= seam_price::<A::Metric>();
+        }
         if VertexFlags(end0.flags.0 | end1.flags.0).any(VertexFlags::PROTECTED) {
             cost *= protection::<A::Metric>();
         }
