@@ -35,8 +35,6 @@ pub(crate) enum SeamRelease {
 }
 
 impl SeamRelease {
-    pub(crate) const NEVER: Self = Self::Never;
-
     pub(crate) fn new(topology: Topology) -> Self {
         match topology {
             Topology::Free => Self::From(bucket(LEAST_FRONT)),
@@ -67,18 +65,20 @@ impl<M: Metric, const K: usize> WedgeQuadrics<'_, M, K> {
     /// whether they do.
     #[cold]
     pub(crate) fn give_way(&mut self, vertices: &Vertices, front: u16) -> bool {
-        let held = std::mem::replace(&mut self.release, SeamRelease::Done);
+        // Only then do costs count the edges that seams refuse.
+        self.release = SeamRelease::Done;
         let cheapest = match self.corners.others.is_empty() {
             true => NONE,
             false => self.cheapest_over_seams(vertices),
         };
-        if cheapest == NONE || cheapest > front {
-            self.release =
-                if front == NONE { SeamRelease::Never } else { SeamRelease::From(cheapest) };
-            return false;
+        if cheapest <= front && cheapest != NONE {
+            return true;
         }
-        debug_assert!(held.may_come());
-        true
+        self.release = match front {
+            NONE => SeamRelease::Never,
+            _ => SeamRelease::From(cheapest),
+        };
+        false
     }
 
     /// Returns the bucket of the cheapest edge that seams would refuse.
