@@ -37,7 +37,7 @@ impl<'m, M: Metric, const K: usize> WedgeQuadrics<'m, M, K> {
             merged_into: vec![NO_VERTEX; quadrics.len()],
             quadrics,
             seams: SeamSectors::default(),
-            release: SeamRelease::NEVER,
+            release: SeamRelease::Never,
             charts: corners.charts(layers.textures().as_deref()),
             layers,
             corners,

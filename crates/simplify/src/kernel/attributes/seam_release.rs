@@ -15,6 +15,13 @@ use crate::kernel::schedule::bucket_queue::{NONE, bucket};
 use crate::kernel::simd::{LANES, widest};
 use crate::options::Topology;
 
+/// Cost at the front, in the frame's units, below which seams hold. Edges are about one long there.
+///
+/// Below, the edges that seams refuse are not looked for: on the whole flight helmet that takes a
+/// tenth of the time to 10 %. FLIP of the milk truck at 5 % is .273 from 0 on, .244 from 1 on; the
+/// city and pirate are the same, the skyscraper at 50 % has .082 and .094.
+const LEAST_FRONT: f32 = 1.0;
+
 /// State of the seams: whether they hold, and for how long.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum SeamRelease {
@@ -28,11 +35,9 @@ pub(crate) enum SeamRelease {
 }
 
 impl SeamRelease {
-    pub(crate) const NEVER: Self = Self::Never;
-
     pub(crate) fn new(topology: Topology) -> Self {
         match topology {
-            Topology::Free => Self::From(0),
+            Topology::Free => Self::From(bucket(LEAST_FRONT)),
             Topology::Keep => Self::Never,
         }
     }
@@ -60,18 +65,20 @@ impl<M: Metric, const K: usize> WedgeQuadrics<'_, M, K> {
     /// whether they do.
     #[cold]
     pub(crate) fn give_way(&mut self, vertices: &Vertices, front: u16) -> bool {
-        let held = std::mem::replace(&mut self.release, SeamRelease::Done);
+        // Only then do costs count the edges that seams refuse.
+        self.release = SeamRelease::Done;
         let cheapest = match self.corners.others.is_empty() {
             true => NONE,
             false => self.cheapest_over_seams(vertices),
         };
-        if cheapest == NONE || cheapest > front {
-            self.release =
-                if front == NONE { SeamRelease::Never } else { SeamRelease::From(cheapest) };
-            return false;
+        if cheapest <= front && cheapest != NONE {
+            return true;
         }
-        debug_assert!(held.may_come());
-        true
+        self.release = match front {
+            NONE => SeamRelease::Never,
+            _ => SeamRelease::From(cheapest),
+        };
+        false
     }
 
     /// Returns the bucket of the cheapest edge that seams would refuse.

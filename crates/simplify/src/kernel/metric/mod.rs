@@ -27,7 +27,8 @@ use crate::options::Method;
 
 /// Factor on distances that decides how long seams hold.
 ///
-/// FLIP as in `docs/notes/image-error.md`, at 256 pixels: the flight helmet at 10, 5 and 2 %, the
+/// FLIP as in `docs/notes/image-error.md`, at 256 pixels, with seams that may give way from the
+/// start on: the flight helmet at 10, 5 and 2 %, the
 /// milk truck at 5 %, the city at 75 and 50 %, pirate at 5 %.
 ///
 /// | | helmet | truck | city | pirate |

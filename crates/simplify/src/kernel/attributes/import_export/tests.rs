@@ -96,7 +96,7 @@ fn octants(mesh: Mesh) -> Mesh {
 
 /// Simplifies, and compares all quadrics with those built anew from the faces that are left.
 fn check_quadrics(mesh: &Mesh, faces: usize) {
-    check_quadrics_with(mesh, faces, SeamRelease::NEVER);
+    check_quadrics_with(mesh, faces, SeamRelease::Never);
 }
 
 fn check_quadrics_with(mesh: &Mesh, faces: usize, release: SeamRelease) {
@@ -119,7 +119,7 @@ fn check_quadrics_with(mesh: &Mesh, faces: usize, release: SeamRelease) {
             .collect(),
         merged_into: Vec::new(),
         seams: SeamSectors::default(),
-        release: SeamRelease::NEVER,
+        release: SeamRelease::Never,
         charts: Vec::new(),
         layers: AttributeLayers::new(
             mesh,
