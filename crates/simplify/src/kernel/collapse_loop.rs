@@ -139,19 +139,30 @@ impl<'v, A: AttributeModel> CollapseLoop<'v, A> {
         widest(ContractAll { collapse_loop: self, faces, last });
     }
 
-    /// Contracts edges, and between them removes each component once no edge costs less.
+    /// Contracts edges, and between them removes each component once no edge costs less. When
+    /// nothing is left, edges that were refused are tried again, as long as that helps much.
     #[inline(always)]
     fn contract_all(&mut self, faces: usize, last: u16) {
+        let mut tried_at = usize::MAX;
         loop {
             let component =
                 self.next_component().filter(|&bucket| bucket <= last.min(last_bucket()));
             if let Some(until) = component.map_or(Some(last), |bucket| bucket.checked_sub(1)) {
                 self.contract_edges(faces, until);
             }
+            let is_all = last >= last_bucket() && self.within.is_none();
             match component {
-                Some(bucket) if self.live_faces > faces => self.vanish_up_to(bucket),
-                _ => return,
-            };
+                _ if self.live_faces <= faces => return,
+                Some(bucket) if self.release_seams(bucket) => {}
+                Some(bucket) => {
+                    self.vanish_up_to(bucket);
+                }
+                None if is_all && self.live_faces + self.live_faces / 64 < tried_at => {
+                    tried_at = self.live_faces;
+                    self.wake_all();
+                }
+                None => return,
+            }
         }
     }
 
