@@ -29,6 +29,9 @@ pub fn face_components(faces: &[[VertexId; 3]], vertex_count: usize) -> (Vec<u32
 }
 
 fn join(parent: &mut [u32], a: u32, b: u32) {
+    if parent[a as usize] == parent[b as usize] {
+        return;
+    }
     let (a, b) = (root(parent, a), root(parent, b));
     parent[a.max(b) as usize] = a.min(b);
 }

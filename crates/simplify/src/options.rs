@@ -66,12 +66,13 @@ impl Method {
     /// Returns the power of length in the unit of the method's costs: 2 for squared distances, 6
     /// for squared volumes.
     ///
-    /// Quadrics give squared distances times areas, swept volumes squared volumes, and samples
-    /// squared distances.
+    /// Quadrics give squared distances times areas, swept volumes squared volumes, which
+    /// [`Method::LindstromTurk`] divides by the root of an area, and samples squared distances.
     pub fn cost_power(self) -> i32 {
         match self {
             Self::Qem | Self::QemEndpoint | Self::KimJang => 4,
-            Self::LindstromTurk | Self::LindstromTurkFaces => 6,
+            Self::LindstromTurk => 5,
+            Self::LindstromTurkFaces => 6,
             Self::Pm => 2,
             Self::LeeJang | Self::Wu | Self::Spr => 1,
         }
@@ -155,10 +156,12 @@ impl Target {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Topology {
     /// Connected components may vanish where that costs less than contracting them further, and
-    /// non-manifold vertices may move and be contracted.
+    /// non-manifold vertices may move and be contracted. Seams of textures and borders of materials
+    /// give way where nothing else is left at a price in proportion, so charts may vanish too.
     #[default]
     Free,
-    /// Closed surfaces stay closed, manifold surfaces stay manifold, and no component vanishes.
+    /// Closed surfaces stay closed, manifold surfaces stay manifold, and no component or chart
+    /// vanishes.
     Keep,
 }
 

@@ -185,59 +185,6 @@ fn a_texture_meets_itself_along_its_seam() {
     }
 }
 
-/// Box of `n` by `n` squares per side, each side with its own texture.
-fn boxed(n: i32) -> Mesh {
-    let mut ids = std::collections::HashMap::new();
-    let mut mesh = Mesh::default();
-    let (mut values, mut corners) = (Vec::new(), Vec::new());
-    for side in 0..6 {
-        let axis = side / 2;
-        // Two axes across, ordered so that the side faces outwards.
-        let [u, v] = [[1, 2], [2, 1]][side % 2].map(|step| (axis + step) % 3);
-        let mut corner = |mesh: &mut Mesh, i: i32, j: i32| {
-            let mut p = [n * (1 - side as i32 % 2); 3];
-            (p[u], p[v]) = (i, j);
-            let vertex = *ids.entry(p).or_insert_with(|| {
-                mesh.positions.push(p.map(f64::from));
-                VertexId::new(mesh.positions.len() - 1)
-            });
-            values.extend([side as f32 + i as f32 / n as f32, j as f32 / n as f32]);
-            (vertex, WedgeId::new(values.len() / 2 - 1))
-        };
-        let first = corners.len();
-        let row = |i: i32, j: i32| (i * (n + 1) + j) as usize;
-        let points: Vec<_> = (0..=n)
-            .flat_map(|i| (0..=n).map(move |j| (i, j)))
-            .map(|(i, j)| corner(&mut mesh, i, j))
-            .collect();
-        for (i, j) in (0..n).flat_map(|i| (0..n).map(move |j| (i, j))) {
-            let [a, b, c, d] = [row(i, j), row(i + 1, j), row(i + 1, j + 1), row(i, j + 1)];
-            for triangle in [[a, b, c], [a, c, d]] {
-                mesh.faces.push(triangle.map(|k| points[k].0));
-                corners.push(triangle.map(|k| points[k].1));
-            }
-        }
-        assert_eq!(corners.len() - first, (2 * n * n) as usize);
-    }
-    let uv = Layer { kind: LayerKind::Uv(0), name: String::new(), width: 2, values };
-    let wedge_count = uv.values.len() / 2;
-    mesh.attributes = Some(Attributes { corners, wedge_count, layers: vec![uv] });
-    mesh
-}
-
-#[test]
-fn a_box_with_a_texture_a_side_goes_down_to_its_twelve_faces() {
-    let mesh = boxed(5);
-    mesh.validate().unwrap();
-    for method in Method::ALL {
-        let (level, _) =
-            simplify(&mesh, Target::Faces(0), &Options { method, ..Options::default() }).unwrap();
-        assert_eq!(level.faces.len(), 12, "{}", method.name());
-        let ends = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0];
-        assert!(corners(&level, 0).all(|(_, uv)| uv.iter().all(|x| ends.contains(x))));
-    }
-}
-
 #[test]
 fn attributes_cost_lindstrom_turk_no_volume() {
     let uv = |[x, y, z]: [f64; 3]| vec![(x * y) as f32, (z + x * x) as f32];

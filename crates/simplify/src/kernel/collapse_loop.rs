@@ -30,7 +30,7 @@ use crate::kernel::contraction_log::{Logged, LoggedContraction};
 use crate::kernel::mesh::one_ring::{GHOST, Vertices};
 use crate::kernel::mesh::vertex::{NO_VERTEX, VertexFlags};
 use crate::kernel::metric::edge_quadric_f64::EdgeQuadricF64;
-use crate::kernel::metric::{Metric, protection};
+use crate::kernel::metric::{Metric, protection, seam_price};
 use crate::kernel::schedule::batch::Batch;
 use crate::kernel::schedule::bucket_queue::{BATCH_LEN, BucketQueue, NONE, bucket, last_bucket};
 use crate::kernel::schedule::deferral::Deferral;
@@ -139,19 +139,30 @@ impl<'v, A: AttributeModel> CollapseLoop<'v, A> {
         widest(ContractAll { collapse_loop: self, faces, last });
     }
 
-    /// Contracts edges, and between them removes each component once no edge costs less.
+    /// Contracts edges, and between them removes each component once no edge costs less. When
+    /// nothing is left, edges that were refused are tried again, as long as that helps much.
     #[inline(always)]
     fn contract_all(&mut self, faces: usize, last: u16) {
+        let mut tried_at = usize::MAX;
         loop {
             let component =
                 self.next_component().filter(|&bucket| bucket <= last.min(last_bucket()));
             if let Some(until) = component.map_or(Some(last), |bucket| bucket.checked_sub(1)) {
                 self.contract_edges(faces, until);
             }
+            let is_all = last >= last_bucket() && self.within.is_none();
             match component {
-                Some(bucket) if self.live_faces > faces => self.vanish_up_to(bucket),
-                _ => return,
-            };
+                _ if self.live_faces <= faces => return,
+                Some(bucket) if self.release_seams(bucket) => {}
+                Some(bucket) => {
+                    self.vanish_up_to(bucket);
+                }
+                None if is_all && self.live_faces + self.live_faces / 64 < tried_at => {
+                    tried_at = self.live_faces;
+                    self.wake_all();
+                }
+                None => return,
+            }
         }
     }
 
@@ -190,8 +201,14 @@ impl<'v, A: AttributeModel> CollapseLoop<'v, A> {
         if !next.is_empty() {
             return front <= last;
         }
-        if !self.queue.take(last) {
-            return false;
+        loop {
+            let (is_taken, is_all) = (self.queue.take(last), last >= last_bucket());
+            let front = if is_taken { self.queue.next().1 } else { NONE };
+            match is_taken || is_all {
+                true if self.release_seams(front) => {}
+                true if is_taken => break,
+                _ => return false,
+            }
         }
         self.prefetch();
         self.recost_batch();
@@ -305,6 +322,9 @@ impl<'v, A: AttributeModel> CollapseLoop<'v, A> {
         let short =
             f64::from(A::Metric::SHORT_FIRST) * whole.weight() * quadric.half.length_squared();
         let mut cost = (cost.max(0.0) + short) as f32;
+        if ends.cuts_seam {
+            cost *= seam_price::<A::Metric>();
+        }
         if VertexFlags(end0.flags.0 | end1.flags.0).any(VertexFlags::PROTECTED) {
             cost *= protection::<A::Metric>();
         }

@@ -72,5 +72,5 @@ pub(crate) fn start<'m, M: Metric + 'm>(
         return Err(SimplifyError::AllDegenerate(mesh.faces.len()));
     }
     let input = prepared.input();
-    Ok((prepared.start(&options.weights), input))
+    Ok((prepared.start(options), input))
 }

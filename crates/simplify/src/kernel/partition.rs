@@ -67,6 +67,12 @@ pub(crate) struct Whole {
     pub(crate) room: Vec3,
 }
 
+impl Default for Whole {
+    fn default() -> Self {
+        Self { ties: None, components: None, room: Vec3::INFINITY }
+    }
+}
+
 /// A surface in parts.
 pub(crate) struct Partition<A> {
     pub(crate) store: VertexStore,

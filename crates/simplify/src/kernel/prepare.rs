@@ -10,6 +10,7 @@ use crate::kernel::attributes::AttributeModel;
 use crate::kernel::attributes::bare::NoAttributes;
 use crate::kernel::attributes::corners::Corners;
 use crate::kernel::attributes::layers::AttributeLayers;
+use crate::kernel::attributes::seam_release::SeamRelease;
 use crate::kernel::attributes::wedge_quadrics::WedgeQuadrics;
 use crate::kernel::components::{Components, Pieces};
 use crate::kernel::mesh::local_frame::Frame;
@@ -21,7 +22,7 @@ use crate::kernel::run::{KernelInput, KernelRun};
 use crate::kernel::setup::build_rings::Fans;
 use crate::kernel::setup::split_non_manifold;
 use crate::kernel::setup::vertex_order::{Order, numbers};
-use crate::options::{AttributeWeights, Options, Topology};
+use crate::options::{Options, Topology};
 use crate::simplifier::InputSummary;
 use crate::surface::MOST_FACES;
 use crate::surface::ties::{MOST_MEMBERS, Ties};
@@ -218,19 +219,20 @@ impl<'m, M: Metric + 'm> Prepared<'m, M> {
 
 impl<'m, M: Metric + 'm> Prepared<'m, M> {
     /// Builds the attribute quadrics, and costs all vertices.
-    pub(crate) fn start(self, weights: &AttributeWeights) -> Box<dyn Run + 'm> {
+    pub(crate) fn start(self, options: &Options) -> Box<dyn Run + 'm> {
         let faces = numbers(self.mesh, &self.order, self.faces.as_deref());
         let Some(corners) = Corners::new(self.mesh, faces, self.fans.store.all.len()) else {
             let metric = self.metric;
             return self.run(NoAttributes(metric));
         };
-        let layers = AttributeLayers::new(self.mesh, &self.frame, weights, MAX_CHANNELS);
+        let layers = AttributeLayers::new(self.mesh, &self.frame, &options.weights, MAX_CHANNELS);
+        let release = SeamRelease::new(options.topology);
         match layers.channels() {
             // Code for fewer channels is worth its size only with the default method.
-            0..=2 if M::IS_MEMORYLESS => self.with_attributes::<2>(layers, corners),
-            3 if M::IS_MEMORYLESS => self.with_attributes::<3>(layers, corners),
-            0..=5 => self.with_attributes::<5>(layers, corners),
-            _ => self.with_attributes::<MAX_CHANNELS>(layers, corners),
+            0..=2 if M::IS_MEMORYLESS => self.with_attributes::<2>(layers, corners, release),
+            3 if M::IS_MEMORYLESS => self.with_attributes::<3>(layers, corners, release),
+            0..=5 => self.with_attributes::<5>(layers, corners, release),
+            _ => self.with_attributes::<MAX_CHANNELS>(layers, corners, release),
         }
     }
 
@@ -238,11 +240,12 @@ impl<'m, M: Metric + 'm> Prepared<'m, M> {
         mut self,
         layers: AttributeLayers<'m>,
         corners: Corners<'m>,
+        release: SeamRelease,
     ) -> Box<dyn Run + 'm> {
         let faces = numbers(self.mesh, &self.order, self.faces.as_deref());
         let vertices = &mut self.fans.store.whole();
         let model = WedgeQuadrics::<M, K>::new(layers, corners, vertices, faces);
-        self.run(model)
+        self.run(WedgeQuadrics { release, ..model })
     }
 }
 

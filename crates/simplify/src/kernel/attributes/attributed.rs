@@ -48,6 +48,15 @@ impl<M: Metric, const K: usize> AttributeModel for WedgeQuadrics<'_, M, K> {
         self.costs_at_seams(vertices, us, vs)
     }
 
+    fn may_release_seams(&self) -> bool {
+        self.release.may_come()
+    }
+
+    #[inline(always)]
+    fn release_seams(&mut self, vertices: &Vertices, front: u16) -> bool {
+        self.release.is_asked(front) && self.give_way(vertices, front)
+    }
+
     #[inline(always)]
     fn with_attributes(&self, ends: &Ends, mut quadric: EdgeQuadricF64) -> EdgeQuadricF64 {
         for &[s0, s1] in ends.wedge_pairs.pairs() {

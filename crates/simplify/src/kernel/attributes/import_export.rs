@@ -9,6 +9,7 @@ use crate::kernel::attributes::attribute_quadric::AttributeQuadric;
 use crate::kernel::attributes::corners::{Corners, is_face};
 use crate::kernel::attributes::layers::{AttributeLayers, SurvivingWedge};
 use crate::kernel::attributes::scratch::Scratch;
+use crate::kernel::attributes::seam_release::SeamRelease;
 use crate::kernel::attributes::seam_sectors::SeamSectors;
 use crate::kernel::attributes::wedge_quadrics::WedgeQuadrics;
 use crate::kernel::mesh::one_ring::{GHOST, Vertices};
@@ -36,6 +37,7 @@ impl<'m, M: Metric, const K: usize> WedgeQuadrics<'m, M, K> {
             merged_into: vec![NO_VERTEX; quadrics.len()],
             quadrics,
             seams: SeamSectors::default(),
+            release: SeamRelease::Never,
             charts: corners.charts(layers.textures().as_deref()),
             layers,
             corners,

@@ -165,6 +165,16 @@ impl<'m> AttributeLayers<'m> {
         }
     }
 
+    /// Copies joints and their weights from another slot: all wedges of a vertex move as one.
+    pub(crate) fn copy_skin(&mut self, slot: u32, other: u32) {
+        let is_skin =
+            |layer: &&mut Layer| matches!(layer.kind, LayerKind::Joints(_) | LayerKind::Weights(_));
+        for layer in self.uncosted.iter_mut().filter(is_skin) {
+            let from = other as usize * layer.width;
+            layer.values.copy_within(from..from + layer.width, slot as usize * layer.width);
+        }
+    }
+
     /// Returns the layers in which all wedges of a chart agree; `None` if no layer is shading, so
     /// that each wedge is its own chart.
     pub(crate) fn textures(&self) -> Option<Vec<&'m Layer>> {

@@ -11,6 +11,7 @@ pub(crate) mod layers;
 pub(crate) mod new_values;
 pub(crate) mod scratch;
 pub(crate) mod seam_costs;
+pub(crate) mod seam_release;
 pub(crate) mod seam_sectors;
 pub(crate) mod uncosted_layers;
 pub(crate) mod update_at_seams;
@@ -56,6 +57,17 @@ pub(crate) trait AttributeModel: Sized + Send + Sync {
 
     /// Decides which end of an edge is contracted into which.
     fn orient(&self, vertices: &Vertices, v: u32, target: u32) -> Result<Ends, Refusal>;
+
+    /// Returns true if seams hold, but may give way.
+    fn may_release_seams(&self) -> bool {
+        false
+    }
+
+    /// Lets seams give way if that costs no more than the front; with `front` at `NONE`, no other
+    /// edge is left. Returns true if they hold no longer.
+    fn release_seams(&mut self, _: &Vertices, _front: u16) -> bool {
+        false
+    }
 
     /// Adds the attributes to the quadric of an edge with free ends.
     fn with_attributes(&self, ends: &Ends, geometry: EdgeQuadricF64) -> EdgeQuadricF64;

@@ -26,6 +26,8 @@ pub(crate) struct Scratch<const K: usize> {
     pub(crate) slots: FaceWedges,
     /// Values outside the channels, taken over by slots.
     pub(crate) uncosted: Vec<f32>,
+    /// Slots that take them over, with the slots merged into them.
+    pub(crate) taken: Vec<[u32; 2]>,
 }
 
 impl<const K: usize> Scratch<K> {
@@ -44,6 +46,7 @@ impl<const K: usize> Scratch<K> {
             renewed,
             slots,
             uncosted: Vec::new(),
+            taken: Vec::new(),
         })
     }
 }

@@ -16,7 +16,7 @@ use crate::kernel::mesh::vertex::{NO_VERTEX, VertexFlags};
 use crate::kernel::metric::edge_quadric::{
     Costs, EdgeQuadric, EdgeQuadrics, EdgeSide, SymmetricMatrix, VertexQuadrics, lane_of,
 };
-use crate::kernel::metric::{Metric, edges_between, least_costs};
+use crate::kernel::metric::{Metric, edges_between, least_costs, seam_price};
 use crate::kernel::simd::{LANES, Row, Row3, SimdTask, widest};
 
 impl<M: Metric, const K: usize> WedgeQuadrics<'_, M, K> {
@@ -47,10 +47,10 @@ impl<M: Metric, const K: usize> WedgeQuadrics<'_, M, K> {
         let cost = |slot: u32| {
             let quadric = self.quadric(slot);
             let mut values = quadric.best_values(by.as_dvec3());
-            self.layers.copy_textures(
-                &mut values,
-                &self.quadric(self.leader(&ends.wedge_pairs, slot)).values(),
-            );
+            let leader = self.leader(&ends.wedge_pairs, slot);
+            if leader != slot {
+                self.layers.copy_textures(&mut values, &self.quadric(leader).values());
+            }
             quadric.cost_onto(by, &values)
         };
         self.unpaired(ends, 1).map(cost).sum()
@@ -58,10 +58,10 @@ impl<M: Metric, const K: usize> WedgeQuadrics<'_, M, K> {
 }
 
 /// SIMD task that costs eight edges.
-struct CostsAtSeams<'a, 'm, 'v, M, const K: usize> {
-    wedges: &'a WedgeQuadrics<'m, M, K>,
-    vertices: &'a Vertices<'v>,
-    edges: (EdgeSide<u32>, &'a [u32; LANES]),
+pub(crate) struct CostsAtSeams<'a, 'm, 'v, M, const K: usize> {
+    pub(crate) wedges: &'a WedgeQuadrics<'m, M, K>,
+    pub(crate) vertices: &'a Vertices<'v>,
+    pub(crate) edges: (EdgeSide<u32>, &'a [u32; LANES]),
 }
 
 impl<M: Metric, const K: usize> SimdTask for CostsAtSeams<'_, '_, '_, M, K> {
@@ -90,6 +90,8 @@ struct SeamBatch {
     ends: [[u32; LANES]; 2],
     slots: [[u32; LANES]; 2],
     ways: [Motion; LANES],
+    /// True for edges over which a seam gives way.
+    cuts_seam: [bool; LANES],
     /// Edges that have unpaired slots.
     unpaired: [Option<Ends>; LANES],
     /// Second pairs: the lane of the edge, and the slots.
@@ -107,6 +109,7 @@ impl SeamBatch {
             ends: [[0; LANES]; 2],
             slots: [[NO_VERTEX; LANES]; 2],
             ways: [Motion::Not; LANES],
+            cuts_seam: [false; LANES],
             unpaired: [None; LANES],
             others: [(0, [NO_VERTEX; 2]); LANES],
             others_len: 0,
@@ -149,7 +152,8 @@ impl SeamBatch {
 
     #[inline(always)]
     fn put_ends(&mut self, lane: usize, ends: &Ends) {
-        let Ends { v0, v1, free, wedge_pairs } = ends;
+        let Ends { v0, v1, free, cuts_seam, wedge_pairs } = ends;
+        self.cuts_seam[lane] = *cuts_seam;
         self.put(
             lane,
             [*v0, *v1],
@@ -215,6 +219,9 @@ impl SeamBatch {
                 Motion::Free => costs[lane],
                 Motion::Onto => onto[lane],
             };
+            if self.cuts_seam[lane] {
+                costs[lane] *= seam_price::<M>();
+            }
         }
         costs
     }

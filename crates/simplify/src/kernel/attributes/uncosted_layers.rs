@@ -8,7 +8,6 @@ use crate::kernel::attributes::face_wedges::FaceWedges;
 use crate::kernel::attributes::wedge_quadrics::WedgeQuadrics;
 use crate::kernel::collapse::edge_ring::EdgeRing;
 use crate::kernel::collapse::{Collapse, Ends};
-use crate::kernel::mesh::vertex::NO_VERTEX;
 use crate::kernel::metric::Metric;
 use crate::surface::interpolate::{Place, shares};
 
@@ -22,7 +21,8 @@ impl<M: Metric, const K: usize> WedgeQuadrics<'_, M, K> {
         collapse: &Collapse,
         slots: Option<&FaceWedges>,
     ) {
-        if self.layers.has_uncosted() && collapse.displacement != Vec3::ZERO {
+        let moves = collapse.displacement != Vec3::ZERO || collapse.ends.cuts_seam;
+        if self.layers.has_uncosted() && moves {
             self.move_all_uncosted(edge_ring, collapse, slots);
         }
     }
@@ -36,8 +36,10 @@ impl<M: Metric, const K: usize> WedgeQuadrics<'_, M, K> {
         let mut values = std::mem::take(&mut self.scratch.uncosted);
         values.clear();
         let squares = edge_ring.squared_distances_to_old(collapse.displacement);
-        let mut taken = [NO_VERTEX; 2];
-        for (taken, pair) in taken.iter_mut().zip(collapse.ends.wedge_pairs.pairs()) {
+        let mut taken = std::mem::take(&mut self.scratch.taken);
+        taken.clear();
+        self.collect_merged(collapse, &mut taken);
+        taken.retain(|pair| {
             let stands_for = |i: usize| slots.is_none_or(|slots| pair.contains(&slots.face(i)[0]));
             let is_one = |&i: &usize| is_face(edge_ring, i) && stands_for(i);
             let nearest = (0..edge_ring.len + 2)
@@ -46,15 +48,40 @@ impl<M: Metric, const K: usize> WedgeQuadrics<'_, M, K> {
             if let Some(i) = nearest {
                 let place = place(edge_ring, collapse, i, slots);
                 self.layers.uncosted_at(&place, &mut values);
-                *taken = pair[0];
             }
-        }
+            nearest.is_some()
+        });
         // Only now: until here the old values were needed.
         let mut left = &values[..];
-        for slot in taken.into_iter().filter(|&slot| slot != NO_VERTEX) {
+        for &[slot, _] in &taken {
             left = self.layers.set_uncosted(slot, left);
         }
-        self.scratch.uncosted = values;
+        let [first, _] = collapse.ends.wedge_pairs.pairs()[0];
+        for &[slot, _] in taken.iter().filter(|[slot, merged]| slot == merged) {
+            self.layers.copy_skin(slot, first);
+        }
+        (self.scratch.uncosted, self.scratch.taken) = (values, taken);
+    }
+
+    /// Collects the pairs of slots that become one; slots whose chart does not go on along the edge
+    /// are paired with themselves.
+    fn collect_merged(&self, collapse: &Collapse, merged: &mut Vec<[u32; 2]>) {
+        let ends = &collapse.ends;
+        let stays = collapse.displacement == Vec3::ZERO;
+        if !stays {
+            merged.extend(ends.wedge_pairs.pairs());
+        }
+        for end in (0..2).filter(|&end| ends.cuts_seam && (end == 1 || !stays)) {
+            let joins = |slot: u32| {
+                ends.wedge_pairs
+                    .pairs()
+                    .iter()
+                    .any(|pair| self.chart(pair[end]) == self.chart(slot))
+            };
+            merged.extend(
+                self.unpaired(ends, end).filter(|&slot| !joins(slot)).map(|slot| [slot; 2]),
+            );
+        }
     }
 }
 

@@ -22,9 +22,54 @@ impl<M: Metric, const K: usize> WedgeQuadrics<'_, M, K> {
         let leaves = self.may_leave(&mut wedge_pairs, (0, v)) && !flags[0].stays_beside(flags[1]);
         let goes =
             self.may_leave(&mut wedge_pairs, (1, target)) && !flags[1].stays_beside(flags[0]);
+        if leaves || goes {
+            return Ok(self.turned([v, target], wedge_pairs, [leaves, goes]));
+        }
+        if !self.release.is_done() {
+            return Err(Refusal::Seam);
+        }
+        let moves = [!flags[0].stays_beside(flags[1]), !flags[1].stays_beside(flags[0])];
+        self.ends_across_seams([v, target], wedge_pairs, moves)
+    }
+
+    /// Decides which end of an edge is contracted into which where seams give way. `moves` are the
+    /// ends that no pin holds. Unpaired slots stay with their faces, each in its own chart.
+    #[cold]
+    fn ends_across_seams(
+        &self,
+        ends: [u32; 2],
+        mut wedge_pairs: WedgePairs,
+        moves: [bool; 2],
+    ) -> Result<Ends, Refusal> {
+        for end in 0..2 {
+            let mut sectors = self.seams.of(ends[end]).iter();
+            wedge_pairs.has_unpaired[end] =
+                sectors.any(|sector| wedge_pairs.is_unpaired(end, sector.slot));
+        }
+        let [[a, s], [b, t]] = wedge_pairs.pairs;
+        // The end of a cut stays, and both sides of the cut are contracted into it.
+        let parts =
+            [a == b && self.chart(s) != self.chart(t), s == t && self.chart(a) != self.chart(b)];
+        let [leaves, goes] = match [moves[0] && !parts[0], moves[1] && !parts[1]] {
+            [false, false] => moves,
+            ways => ways,
+        };
         if !leaves && !goes {
             return Err(Refusal::Seam);
         }
+        let free = leaves && goes && parts == [false; 2];
+        let ends = self.turned(ends, wedge_pairs, [leaves, goes]);
+        Ok(Ends { free: ends.free && free, cuts_seam: true, ..ends })
+    }
+
+    /// Turns an edge such that an end that may go is contracted into the other. At least one may.
+    #[inline(always)]
+    fn turned(
+        &self,
+        [v, target]: [u32; 2],
+        wedge_pairs: WedgePairs,
+        [leaves, goes]: [bool; 2],
+    ) -> Ends {
         // Where two slots of one end meet one of the other, not all can become one: that other end
         // goes.
         let [[a, _], [b, _]] = wedge_pairs.pairs;
@@ -32,7 +77,8 @@ impl<M: Metric, const K: usize> WedgeQuadrics<'_, M, K> {
         let turns = if leaves && goes { one_meets_two } else { leaves };
         let (v0, v1) = if turns { (target, v) } else { (v, target) };
         let wedge_pairs = if turns { wedge_pairs.turned() } else { wedge_pairs };
-        Ok(Ends { v0, v1, free: leaves && goes, wedge_pairs: self.one_each(wedge_pairs) })
+        let wedge_pairs = self.one_each(wedge_pairs);
+        Ends { v0, v1, free: leaves && goes, cuts_seam: false, wedge_pairs }
     }
 
     /// Resolves a slot of `v1` in two pairs: it is merged into the slot of the lower wedge.
@@ -43,7 +89,7 @@ impl<M: Metric, const K: usize> WedgeQuadrics<'_, M, K> {
             let [first, second] = [self.corners.wedge(a), self.corners.wedge(b)];
             wedge_pairs.pairs[0][0] = if first <= second { a } else { b };
             wedge_pairs.are_two = false;
-            wedge_pairs.has_unpaired[0] = !self.charts.is_empty();
+            wedge_pairs.has_unpaired[0] |= !self.charts.is_empty();
         }
         wedge_pairs
     }

@@ -12,6 +12,8 @@ pub(crate) struct Ends {
     pub(crate) v1: u32,
     /// True if the new vertex may be anywhere, false if it stays at `v0`.
     pub(crate) free: bool,
+    /// True if a seam gives way: a chart at `v0` or `v1` does not go on along the edge.
+    pub(crate) cuts_seam: bool,
     /// Slots of the two ends that become one.
     pub(crate) wedge_pairs: WedgePairs,
 }
@@ -20,7 +22,8 @@ impl Ends {
     /// Returns the ends of an edge that nothing constrains.
     #[inline(always)]
     pub(crate) fn free(v0: u32, v1: u32) -> Self {
-        Self { v0, v1, free: true, wedge_pairs: WedgePairs::smooth(v0, v1) }
+        let wedge_pairs = WedgePairs::smooth(v0, v1);
+        Self { v0, v1, free: true, cuts_seam: false, wedge_pairs }
     }
 }
 

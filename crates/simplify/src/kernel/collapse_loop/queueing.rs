@@ -126,6 +126,24 @@ impl<A: AttributeModel> CollapseLoop<'_, A> {
         }
     }
 
+    /// Lets seams give way once that is no dearer than the front, and queues the vertices on them.
+    /// Returns false if they hold, or have given way before. Within an error bound they always hold,
+    /// as it does not see them.
+    #[inline(always)]
+    pub(super) fn release_seams(&mut self, front: u16) -> bool {
+        if self.within.is_some() || !self.model.release_seams(&self.vertices, front) {
+            return false;
+        }
+        self.queue.put_back();
+        for v in self.vertices.ids() {
+            let flags = self.vertices.get(v).flags;
+            if flags.any(VertexFlags::SEAM) && !flags.any(INACTIVE) {
+                self.put_first(v);
+            }
+        }
+        true
+    }
+
     /// Queues a vertex that has waited for its neighbours to be in the same part.
     pub(crate) fn release(&mut self, v: u32) {
         self.vertices.get_mut(v).flags.clear(VertexFlags::OUTER);
@@ -150,7 +168,9 @@ impl<A: AttributeModel> CollapseLoop<'_, A> {
     /// Returns a lower bound on the bucket of the next step.
     pub(crate) fn lowest_bucket(&self) -> usize {
         let of_component = self.components.as_ref().and_then(|components| components.next_bucket());
-        self.queue.lowest().min(of_component.map_or(usize::MAX, usize::from))
+        let of_seams = self.within.is_none() && self.model.may_release_seams();
+        let of_seams = if of_seams { usize::from(last_bucket()) } else { usize::MAX };
+        self.queue.lowest().min(of_seams).min(of_component.map_or(usize::MAX, usize::from))
     }
 
     fn next_edge_bucket(&mut self) -> Option<u16> {
