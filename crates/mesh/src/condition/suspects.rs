@@ -72,8 +72,8 @@ impl Around {
             a != b && b != c && c != a && [a, b, c].iter().any(|v| suspects[v.index()])
         };
         let faces: Vec<u32> = (0..whole.faces.len() as u32).filter(near).collect();
-        let mut mesh = Mesh::default();
-        mesh.faces = faces.iter().map(|&f| whole.faces[f as usize]).collect();
+        let at = |&f: &u32| whole.faces[f as usize];
+        let mut mesh = Mesh::new(Vec::new(), faces.iter().map(at).collect());
         let mut vertices = mesh.faces.as_flattened().to_vec();
         vertices.sort_unstable();
         vertices.dedup();
