@@ -60,6 +60,9 @@ fn advice(report: &Report, topology: Topology) -> Vec<String> {
     if refused(Refusal::Seam) {
         advice.push("fewer texture charts and materials would help".into());
     }
+    if refused(Refusal::Disproportion) {
+        advice.push("what is left would destroy the shape: keep more faces".into());
+    }
     advice
 }
 

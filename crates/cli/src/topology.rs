@@ -12,7 +12,7 @@ use crate::session::Session;
 /// Options for what may happen to the topology of a mesh.
 #[derive(Args, Clone)]
 pub struct TopologyArgs {
-    /// What may happen to the topology of the surface [default: free]
+    /// Changes that are allowed to the topology of the surface [default: free]
     #[arg(long, value_name = "KIND")]
     topology: Option<TopologyArg>,
     /// Largest connected component that may vanish, by the diagonal of its bounding box: a length in

@@ -11,5 +11,6 @@ mod pipes;
 mod repair;
 mod run;
 mod strip;
+mod topology;
 mod usage;
 mod verbs;

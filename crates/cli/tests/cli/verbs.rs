@@ -52,7 +52,7 @@ fn simplify_reaches_a_ratio_and_says_so() {
 fn no_option_changes_the_method_or_drops_attribute_weights() {
     let run = Run::new();
     run.sample("fish", 1_000, "in.obj");
-    for rest in [&[][..], &["--keep-objects=5%"], &["--lock-contacts"]] {
+    for rest in [&[][..], &["--vanish-below=5%"], &["--lock-contacts"]] {
         let level = |weight: &str| {
             let arguments =
                 ["simplify", "in.obj", "out.obj", "--ratio", "20%", "--weight-uv", weight];
@@ -67,7 +67,7 @@ fn no_option_changes_the_method_or_drops_attribute_weights() {
 fn an_error_bound_holds_where_components_may_vanish_or_vertices_are_tied() {
     let run = Run::new();
     run.sample("fish", 4_000, "in.ply");
-    for rest in [&["--keep-objects=0.0001%"][..], &["--lock-contacts"], &["--method", "qem"]] {
+    for rest in [&["--vanish-below=0.0001%"][..], &["--lock-contacts"], &["--method", "qem"]] {
         let arguments = ["simplify", "in.ply", "out.ply", "--error", "1%"];
         let report = run.json(&[&arguments, rest].concat());
         let measured = number(&report["error_measured"]["max"]);
@@ -361,36 +361,15 @@ fn what_touches_is_held_where_contacts_are_locked() {
 }
 
 #[test]
-fn small_objects_go_where_that_is_allowed() {
+fn an_error_limit_bounds_what_vanishes() {
     let run = Run::new();
     std::fs::write(run.path("boxes.obj"), two_boxes()).unwrap();
-    // Two tetrahedra with legs of 10 and 1; the diagonal is 25.3.
-    let apart = "v 0 0 0\nv 10 0 0\nv 0 10 0\nv 0 0 10\nv 20 0 0\nv 21 0 0\nv 20 1 0\nv 20 0 1\n\
-        f 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\nf 5 7 6\nf 5 6 8\nf 5 8 7\nf 6 7 8\n";
-    std::fs::write(run.path("apart.obj"), apart).unwrap();
-    let vanished = |file: &str, options: &[&str]| {
-        let all = [&["simplify", file, "a.obj", "--faces", "4"], options].concat();
-        number(&run.json(&all)["vanished"])
-    };
-    assert_eq!(vanished("apart.obj", &[]), 0.0);
-    assert_eq!(vanished("apart.obj", &["--keep-objects"]), 0.0);
-    assert_eq!(vanished("apart.obj", &["--keep-objects=1.7"]), 0.0);
-    assert_eq!(vanished("apart.obj", &["--keep-objects=1.8"]), 1.0);
-    assert_eq!(vanished("apart.obj", &["--keep-objects=50%"]), 1.0);
-    // Boxes that touch are one component, which is larger than that.
-    assert_eq!(vanished("boxes.obj", &["--keep-objects=7"]), 0.0);
-    // An error limit also bounds what is removed.
     let within = |error: &str| {
-        let options = ["simplify", "apart.obj", "a.obj", "--error", error, "--keep-objects=50%"];
-        let report = run.json(&options);
-        (number(&report["vanished"]), number(&report["error_estimate"]) <= error.parse().unwrap())
+        let report = run.json(&["simplify", "boxes.obj", "a.obj", "--error", error]);
+        let error: f64 = error.parse().unwrap();
+        number(&report["error_estimate"]) <= error && report["vanished"] == 0
     };
-    assert_eq!((within("1.7"), within("1.8")), ((0.0, true), (1.0, true)));
-    for bad in ["-1", "nan", "-3%", "big"] {
-        let size = format!("--keep-objects={bad}");
-        let done = run.run(&["simplify", "boxes.obj", "a.obj", "--faces", "4", &size]);
-        assert_eq!(done.code, 2, "{bad}: {done:?}");
-    }
+    assert!(within("0.01") && within("0.1"));
 }
 
 #[test]

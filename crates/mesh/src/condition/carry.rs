@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use crate::condition::fans::Fans;
+use crate::condition::fans::FanVertices;
 use crate::condition::suspects::Around;
 use crate::{Attributes, Lock, Locks, Mesh, VertexId, WedgeId, merge_equal_wedges};
 
@@ -22,7 +22,7 @@ pub(super) struct Change {
 
 impl Change {
     /// Writes the fans around some vertices of a mesh of `inputs` vertices in terms of that mesh.
-    pub(super) fn new(inputs: usize, around: &Around, fans: &Fans) -> Self {
+    pub(super) fn new(inputs: usize, around: &Around, fans: &FanVertices) -> Self {
         let own = |v: &VertexId| around.vertices[v.index()];
         let copies: Vec<VertexId> = fans.copies.iter().map(own).collect();
         let added = (0..copies.len()).map(|i| VertexId::new(inputs + i));

@@ -7,7 +7,7 @@ use crate::condition::suspects::Around;
 use crate::{Connectivity, FaceId, Side, Twin, VertexId};
 
 /// The vertices of the conditioned mesh.
-pub(super) struct Fans {
+pub(super) struct FanVertices {
     /// Vertex at each corner, three for each face.
     of_corner: Vec<VertexId>,
     /// Vertices of the input that the copies are of; the copies follow the input's vertices.
@@ -22,7 +22,7 @@ pub(super) fn corner(side: Side, end: usize) -> usize {
     side.face().index() * 3 + (side.corner() + end) % 3
 }
 
-impl Fans {
+impl FanVertices {
     /// Numbers the vertices. One that came from several of the input has the lowest of their ids,
     /// unless another vertex has it already; then it is a copy.
     ///

@@ -19,7 +19,7 @@ mod suspects;
 use crate::{Connectivity, Locks, Mesh, Side};
 
 use carry::Change;
-use fans::Fans;
+use fans::FanVertices;
 use links::Links;
 pub use near::{NearBorders, near_borders};
 use rejoin::Joints;
@@ -53,7 +53,7 @@ pub enum Search {
 pub struct ConditionOptions {
     /// Which vertices are looked at.
     pub search: Search,
-    /// What happens to boundary edges that lie on each other.
+    /// Treatment of boundary edges that lie on each other.
     pub borders: Borders,
     /// True to lock every vertex on the boundary of the conditioned mesh, where edges that the
     /// splitting has opened do not count.
@@ -81,7 +81,7 @@ pub struct Conditioned {
     pub mesh: Mesh,
     /// Constraints on the vertices of the conditioned mesh.
     pub locks: Locks,
-    /// What has been changed.
+    /// Numbers of edges, vertices and faces that have been changed.
     pub counts: Conditioning,
     joints: Joints,
 }
@@ -128,6 +128,9 @@ pub fn condition(mesh: &Mesh, locks: &Locks, options: &ConditionOptions) -> Opti
         Search::Unbalanced => suspects::unbalanced(mesh),
         Search::All => suspects::irregular(mesh),
     };
+    if !suspects.contains(&true) {
+        return None;
+    }
     let mut around = Around::new(mesh, &suspects);
     let connect =
         |around: &Around| Connectivity::new(&around.mesh.faces, around.mesh.positions.len());
@@ -168,8 +171,8 @@ pub fn condition(mesh: &Mesh, locks: &Locks, options: &ConditionOptions) -> Opti
 ///
 /// Cutting only divides vertices further: where no sewn edge is left at a vertex, only what the
 /// input has remains to be cut, and that needs no third round.
-fn settle(around: &Around, links: &mut Links, sewn: &mut Vec<[Side; 2]>) -> Fans {
-    let mut fans = Fans::new(around, links);
+fn settle(around: &Around, links: &mut Links, sewn: &mut Vec<[Side; 2]>) -> FanVertices {
+    let mut fans = FanVertices::new(around, links);
     let mut odd = fans.odd_sides();
     if !odd.is_empty() && !sewn.is_empty() {
         let held = fans.ends(&odd);
@@ -178,13 +181,13 @@ fn settle(around: &Around, links: &mut Links, sewn: &mut Vec<[Side; 2]>) -> Fans
         *sewn = kept;
         let cut: Vec<[Side; 2]> = cut;
         cut.iter().for_each(|pair| links.cut(pair[0]));
-        fans = Fans::new(around, links);
+        fans = FanVertices::new(around, links);
         odd = fans.odd_sides();
     }
     if !odd.is_empty() {
         odd.iter().for_each(|&side| links.cut(side));
         sewn.retain(|pair| links.is_linked(pair[0]));
-        fans = Fans::new(around, links);
+        fans = FanVertices::new(around, links);
     }
     fans
 }

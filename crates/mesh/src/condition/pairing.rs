@@ -9,7 +9,7 @@ use crate::{Mesh, Side};
 /// All pairs are compared, which must not take quadratic time. Real meshes have 3 to 8.
 const MOST_SIDES: usize = 32;
 
-/// What the same material on both sides of an edge is worth against a smaller angle: as much as the
+/// Worth of one material on both sides of an edge against a smaller angle: as much as the
 /// difference between going straight on and turning by 60°.
 const SAME_MATERIAL: f64 = 0.5;
 

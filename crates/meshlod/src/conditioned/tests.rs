@@ -5,7 +5,7 @@ use meshlod_samples as samples;
 use super::*;
 use crate::SceneSimplifier;
 
-/// The same faces with three vertices each.
+/// Takes a mesh apart into faces with three vertices each.
 fn torn(of: &Mesh) -> Mesh {
     let positions = of.faces.as_flattened().iter().map(|v| of.positions[v.index()]).collect();
     let faces = (0..of.faces.len() as u32).map(|f| [0, 1, 2].map(|k| VertexId(3 * f + k)));
