@@ -83,7 +83,12 @@ pub fn mesh_notes(report: &Report) -> String {
     line(report.held.locked, vertices, "locked");
     line(report.held.protected, vertices, "protected");
     line(report.held.tied, vertices, "tied to others");
-    line(report.vanished, ["small component", "small components"], "removed");
+    let volume = report.volume.vanished;
+    let removed = match volume > 0.0 {
+        true => format!("removed, with a volume of {}", value(volume)),
+        false => "removed".into(),
+    };
+    line(report.vanished, ["component", "components"], &removed);
     text
 }
 

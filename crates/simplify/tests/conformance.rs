@@ -11,7 +11,7 @@ use meshlod_mesh::{
 use meshlod_samples as samples;
 use meshlod_simplify::{
     Method, Neighbourhood, Observe, Options, Placed, Report, Simplifier, SimplifyError, Surface,
-    Target, Unconserved, simplify,
+    Target, Topology, Unconserved, simplify,
 };
 use proptest::prelude::*;
 
@@ -43,7 +43,7 @@ fn bare(mesh: Mesh) -> Mesh {
 
 /// Properties that a contraction must not change, or must not make worse.
 #[derive(Debug, PartialEq)]
-struct Topology {
+struct Shape {
     components: usize,
     euler: i64,
     boundary_loops_closed: bool,
@@ -51,10 +51,10 @@ struct Topology {
     inconsistent_edges: usize,
 }
 
-fn topology(mesh: &Mesh) -> Topology {
+fn topology(mesh: &Mesh) -> Shape {
     let c = Connectivity::new(&mesh.faces, mesh.positions.len());
     let used = mesh.used_vertices().iter().filter(|&&used| used).count();
-    Topology {
+    Shape {
         components: face_components(&mesh.faces, mesh.positions.len()).1,
         euler: used as i64 - c.edge_count() as i64 + mesh.faces.len() as i64,
         boundary_loops_closed: c.is_closed(),
@@ -116,9 +116,10 @@ fn run(mesh: &Mesh, method: Method, ratio: f64) -> (Mesh, Report) {
 
 fn each_level(check: impl Fn(&str, &Mesh, &Mesh, &Report)) {
     for (name, mesh) in meshes() {
+        let options = Options { topology: Topology::Keep, ..Options::default() };
         for runner in Runner::all() {
             for ratio in [0.5, 0.1, 0.0] {
-                let (level, report) = runner.run(&mesh, ratio);
+                let (level, report) = runner.go(&mesh, Target::Ratio(ratio), &options);
                 check(&format!("{name} by {runner:?} to {ratio}"), &mesh, &level, &report);
             }
         }
@@ -188,7 +189,7 @@ fn every_single_step_keeps_a_closed_surface_closed() {
         let mut simplifier = runner.start(&mesh, &Options::default()).unwrap();
         while simplifier.step(f64::INFINITY, &mut ()) {
             let level = simplifier.level();
-            assert_eq!(topology(&level), Topology { ..topology(&mesh) });
+            assert_eq!(topology(&level), Shape { ..topology(&mesh) });
         }
         assert!(simplifier.live_faces() < 40);
     }
@@ -253,7 +254,9 @@ fn methods_that_claim_to_conserve_volume_do() {
             let off = report.volume.running_sum / volume(&mesh) - lost;
             let rounding = if runner.is_kernel() { 1e-7 } else { 1e-13 };
             assert!(off.abs() < rounding, "{runner:?}: the sum is {off:e} off {lost:e}");
-            let conserved = lost.abs() < rounding;
+            // The kernel leaves a debt where the place would be too far away.
+            let debt = if runner.is_kernel() { 1e-3 } else { 0.0 };
+            let conserved = lost.abs() < rounding + debt;
             assert_eq!(conserved, runner.method.conserves_volume(), "{runner:?}: {lost:e}");
         }
     }
@@ -444,7 +447,8 @@ proptest! {
             raw.iter().map(|face| face.map(|v| VertexId(v % count))).collect(),
         );
         // If every face is degenerate, there is nothing to keep.
-        if let Ok(mut simplifier) = runner.start(&mesh, &Options::default()) {
+        let options = Options { topology: Topology::Keep, ..Options::default() };
+        if let Ok(mut simplifier) = runner.start(&mesh, &options) {
             let cleaned = simplifier.level();
             simplifier.run(Target::Ratio(ratio), &mut ()).unwrap();
             let level = simplifier.level();

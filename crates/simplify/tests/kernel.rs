@@ -6,7 +6,8 @@ use meshlod_fixtures as fixtures;
 use meshlod_mesh::{Connectivity, FaceId, Lock, Locks, Mesh, VertexId, face_components};
 use meshlod_samples as samples;
 use meshlod_simplify::{
-    History, Method, Observe, Options, Report, Simplifier, SimplifyError, Target, simplify,
+    History, Method, Observe, Options, Report, Simplifier, SimplifyError, Target, Topology,
+    simplify,
 };
 use meshlod_spatial::Bvh;
 
@@ -98,7 +99,8 @@ fn a_level_is_valid_and_as_closed_manifold_and_oriented_as_its_mesh() {
         for (name, mesh) in meshes() {
             for ratio in [0.5, 0.1, 0.0] {
                 let what = format!("{name} to {ratio}");
-                let (level, report) = run(method, &mesh, Target::Ratio(ratio));
+                let keep = Options { topology: Topology::Keep, ..options(method) };
+                let (level, report) = simplify(&mesh, Target::Ratio(ratio), &keep).unwrap();
                 check_level(&what, &level, &report);
                 assert_eq!(topology(&level), topology(&mesh), "{what}");
             }
@@ -223,7 +225,8 @@ fn tiny_and_huge_faces_go_together() {
             mesh.positions.extend(vertices.iter().map(|p| p.map(|x| x * scale)));
             mesh.faces.extend(faces.iter().map(|face| face.map(|v| VertexId(v.0 + first))));
         }
-        let (level, report) = run(method, &mesh, Target::Ratio(0.0));
+        let keep = Options { topology: Topology::Keep, ..options(method) };
+        let (level, report) = simplify(&mesh, Target::Ratio(0.0), &keep).unwrap();
         check_level("spheres", &level, &report);
         assert_eq!(topology(&level).0, 3);
     }
@@ -239,7 +242,8 @@ fn a_thousand_components_keep_apart() {
             mesh.positions.extend(one.positions.iter().map(|&[x, y, z]| [x + f64::from(i), y, z]));
             mesh.faces.extend(one.faces.iter().map(|face| face.map(|v| VertexId(v.0 + first))));
         }
-        let (level, report) = run(method, &mesh, Target::Faces(4));
+        let keep = Options { topology: Topology::Keep, ..options(method) };
+        let (level, report) = simplify(&mesh, Target::Faces(4), &keep).unwrap();
         assert_eq!((level.faces.len(), report.reached), (4000, false));
     }
 }

@@ -6,7 +6,7 @@ use meshlod_mesh::{Connectivity, Lock, Locks, Mesh, VertexId, face_components};
 use meshlod_samples as samples;
 use meshlod_simplify::{
     History, Method, Neighbourhood, Observe, Options, Placed, Progressive, Simplifier,
-    SimplifyError, Surface, Target, simplify,
+    SimplifyError, Surface, Target, Topology, simplify,
 };
 use proptest::prelude::*;
 
@@ -208,7 +208,8 @@ proptest! {
         };
         let of_vertex = (0..mesh.positions.len()).map(lock).collect();
         let locks = Locks { of_vertex, ..ties(&mesh) };
-        let options = Options { method, locks: locks.clone(), ..Options::default() };
+        let topology = Topology::Keep;
+        let options = Options { method, locks: locks.clone(), topology, ..Options::default() };
         let mut simplifier = Simplifier::new(&mesh, &options).unwrap();
         let mut trace = Trace::new(&mesh);
         simplifier.run(Target::Ratio(ratio), &mut trace).unwrap();
@@ -238,7 +239,8 @@ proptest! {
             raw.iter().map(|face| face.map(|v| VertexId(v % count))).collect(),
         );
         let locks = ties(&mesh);
-        let options = Options { method, locks: locks.clone(), ..Options::default() };
+        let topology = Topology::Keep;
+        let options = Options { method, locks: locks.clone(), topology, ..Options::default() };
         // If every face is degenerate, there is nothing to keep.
         if let Ok(mut simplifier) = Simplifier::new(&mesh, &options) {
             let before = defects(&simplifier.level());

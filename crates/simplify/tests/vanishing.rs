@@ -6,7 +6,8 @@ use meshlod_fixtures as fixtures;
 use meshlod_mesh::{Lock, Locks, Mesh, VertexId, face_components};
 use meshlod_samples as samples;
 use meshlod_simplify::{
-    History, Method, Options, Progressive, Report, Simplifier, SimplifyError, Target, simplify,
+    History, Method, Options, Progressive, Report, Simplifier, SimplifyError, Target, Topology,
+    simplify,
 };
 
 /// The diagonal of a ball of diameter 2.
@@ -30,10 +31,12 @@ fn run(mesh: &Mesh, options: &Options, target: Target) -> (Mesh, Report) {
     simplify(mesh, target, options).unwrap()
 }
 
+/// The methods of the kernel.
+const KERNEL: [Method; 2] = [Method::LindstromTurk, Method::Qem];
+
 /// Returns the number of faces left of each component of the input.
-fn left(mesh: &Mesh, method: Method, vanish_below: Option<f64>, faces: usize) -> Vec<usize> {
-    let options = Options { method, vanish_below, ..Options::default() };
-    let (level, report) = run(mesh, &options, Target::Faces(faces));
+fn left(mesh: &Mesh, options: &Options, faces: usize) -> Vec<usize> {
+    let (level, report) = run(mesh, options, Target::Faces(faces));
     let mut left = vec![0; 1 + mesh.positions.len() / samples::sphere(400).positions.len()];
     for face in &level.faces {
         let x = face.iter().map(|v| level.positions[v.index()][0]).sum::<f64>() / 3.0;
@@ -48,13 +51,41 @@ fn left(mesh: &Mesh, method: Method, vanish_below: Option<f64>, faces: usize) ->
 fn what_is_small_vanishes_and_what_is_large_stays() {
     let mesh = balls(&[0.1, 0.5, 0.2]);
     for method in Method::ALL {
-        let none = left(&mesh, method, None, 0);
-        assert!(none.iter().all(|&faces| faces >= 4), "{}: {none:?}", method.name());
-        let [large, tiny, half, fifth] = left(&mesh, method, Some(0.3 * DIAGONAL), 0)[..] else {
+        let below = |vanish_below| Options { method, vanish_below, ..Options::default() };
+        let [large, tiny, half, fifth] = left(&mesh, &below(Some(0.3 * DIAGONAL)), 0)[..] else {
             panic!("four balls")
         };
         assert!(large >= 4 && half >= 4 && tiny + fifth == 0, "{}", method.name());
-        assert_eq!(left(&mesh, method, Some(0.0), 0), none, "{}", method.name());
+        let keep = Options { topology: Topology::Keep, ..below(Some(1e9)) };
+        for options in [below(Some(0.0)), keep] {
+            let all = left(&mesh, &options, 0);
+            assert!(all.iter().all(|&faces| faces >= 4), "{}: {all:?}", method.name());
+        }
+        let none = left(&mesh, &below(None), 0);
+        let vanished = none[1..].iter().filter(|&&faces| faces == 0).count();
+        assert_eq!(vanished, if KERNEL.contains(&method) { 3 } else { 0 }, "{}", method.name());
+    }
+}
+
+#[test]
+fn what_is_near_the_rest_vanishes_before_what_is_alone() {
+    // Small balls of one size: one almost touches the large ball, the others are far off.
+    let mut mesh = balls(&[0.1, 0.1, 0.1]);
+    let of_ball = mesh.positions.len() / 4;
+    for p in &mut mesh.positions[2 * of_ball..3 * of_ball] {
+        p[0] -= 4.9;
+    }
+    for method in KERNEL {
+        let mut simplifier =
+            Simplifier::new(&mesh, &Options { method, ..Options::default() }).unwrap();
+        let mut faces = mesh.faces.len();
+        while simplifier.run(Target::Faces(faces), &mut ()).unwrap().vanished == 0 {
+            faces -= 2;
+        }
+        let level = simplifier.level();
+        assert_eq!(face_components(&level.faces, level.positions.len()).1, 3);
+        let alone = level.positions.iter().filter(|p| p[0] > 2.0).count();
+        assert!(alone >= 8);
     }
 }
 
@@ -77,7 +108,8 @@ fn it_vanishes_when_it_is_coarse() {
 fn the_last_one_stays() {
     let mesh = balls(&[0.4, 0.3]);
     for method in Method::ALL {
-        let left = left(&mesh, method, Some(1e9), 0);
+        let options = Options { method, vanish_below: Some(1e9), ..Options::default() };
+        let left = left(&mesh, &options, 0);
         assert!(left[0] >= 4 && left[1] + left[2] == 0, "{}: {left:?}", method.name());
     }
 }
@@ -96,15 +128,46 @@ fn what_a_lock_holds_stays() {
 }
 
 #[test]
-fn a_size_is_an_error() {
+fn the_distance_from_the_rest_is_the_error() {
+    // The small ball reaches from 1.9 to 2.1 beyond the surface of the large one.
     let mesh = balls(&[0.1]);
-    let options = Options { vanish_below: Some(1.0), ..Options::default() };
-    let mut simplifier = Simplifier::new(&mesh, &options).unwrap();
+    for method in KERNEL {
+        let options = Options { method, ..Options::default() };
+        let mut simplifier = Simplifier::new(&mesh, &options).unwrap();
+        let narrow = simplifier.run(Target::Error(2.0), &mut ()).unwrap();
+        assert_eq!(narrow.vanished, 0);
+        let wide = simplifier.run(Target::Error(2.2), &mut ()).unwrap();
+        assert!(wide.vanished == 1 && (2.0..2.2).contains(&wide.error_estimate));
+    }
+}
+
+#[test]
+fn a_size_is_the_error_of_the_other_methods() {
+    let mesh = balls(&[0.1]);
     let size = 0.1 * DIAGONAL;
-    let narrow = simplifier.run(Target::Error(0.9 * size), &mut ()).unwrap();
-    assert_eq!(narrow.vanished, 0);
-    let wide = simplifier.run(Target::Error(1.1 * size), &mut ()).unwrap();
-    assert!(wide.vanished == 1 && wide.error_estimate > 0.9 * size);
+    for method in Method::ALL.into_iter().filter(|method| !KERNEL.contains(method)) {
+        let options = Options { method, vanish_below: Some(1.0), ..Options::default() };
+        let mut simplifier = Simplifier::new(&mesh, &options).unwrap();
+        let narrow = simplifier.run(Target::Error(0.9 * size), &mut ()).unwrap();
+        assert_eq!(narrow.vanished, 0);
+        let wide = simplifier.run(Target::Error(1.1 * size), &mut ()).unwrap();
+        assert!(wide.vanished == 1 && wide.error_estimate > 0.9 * size);
+    }
+}
+
+#[test]
+fn a_million_pieces_of_one_face_take_linear_time() {
+    // Far fewer here, but enough for anything quadratic to be felt.
+    let side = 300;
+    let mut mesh = Mesh::default();
+    for i in 0..side * side {
+        let (x, y) = ((i % side) as f64, (i / side) as f64);
+        let first = mesh.positions.len() as u32;
+        mesh.positions.extend([[x, y, 0.0], [x + 0.5, y, 0.0], [x, y + 0.5, 0.0]]);
+        mesh.faces.push([0, 1, 2].map(|k| VertexId(first + k)));
+    }
+    let (_, report) = run(&mesh, &Options::default(), Target::Ratio(0.5));
+    assert!(report.reached && report.vanished == side * side / 2);
 }
 
 #[test]

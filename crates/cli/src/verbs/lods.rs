@@ -204,6 +204,7 @@ impl Lods {
             "non_manifold_vertices": report.map(|report| report.non_manifold_vertices),
             "held": report.map(locks::to_json),
             "vanished": report.map(|report| report.vanished),
+            "vanished_volume": report.map(|report| report.volume.vanished),
             "refusals": report.map(simplify_report::refusals_json),
         })
     }

@@ -319,6 +319,7 @@ impl Simplify {
         json["fused"] = fuse::to_json(fused);
         json["held"] = locks::to_json(report);
         json["vanished"] = report.vanished.into();
+        json["vanished_volume"] = report.volume.vanished.into();
         json["refusals"] = simplify_report::refusals_json(report);
         json["file"] = files::name(&self.output).into();
         json

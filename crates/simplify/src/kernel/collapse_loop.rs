@@ -36,7 +36,7 @@ use crate::kernel::schedule::bucket_queue::{BATCH_LEN, BucketQueue, NONE, bucket
 use crate::kernel::schedule::deferral::Deferral;
 use crate::kernel::schedule::edge_costs::{Cheapest, cheapest};
 use crate::kernel::simd::{SimdTask, widest};
-use crate::kernel::volume::VolumeTally;
+use crate::kernel::volume::{VolumeDebts, VolumeTally};
 use crate::refusal::{Refusal, Refusals};
 use crate::surface::ties::Ties;
 
@@ -56,10 +56,10 @@ const NEW_VERTEX_DELAY: u16 = 6;
 pub(crate) const UV_FLIP_DELAY: u16 = 8;
 
 /// Part of the diagonal by which a single step may always move the surface.
-const RUIN: f32 = 0.1;
+const RUIN: f32 = 1.0 / 3.0;
 
 /// Multiple of the largest distance so far by which a single step may always move the surface.
-const LEAP: f32 = 8.0;
+const LEAP: f32 = 3.0;
 
 /// A part of the surface being simplified, with its queue and its attributes.
 pub(crate) struct CollapseLoop<'v, A> {
@@ -81,6 +81,7 @@ pub(crate) struct CollapseLoop<'v, A> {
     pub(crate) queue: &'v mut BucketQueue,
     pub(crate) edge_ring: &'v mut EdgeRing,
     pub(crate) deferral: &'v mut Deferral,
+    pub(crate) debts: &'v mut VolumeDebts,
     /// Half the size of the box, centred in the frame, that all vertices stay in.
     pub(crate) room: Vec3,
 }
@@ -112,7 +113,7 @@ impl<'v, A: AttributeModel> CollapseLoop<'v, A> {
         model: &'v mut A,
         queue: &'v mut BucketQueue,
         edge_ring: &'v mut EdgeRing,
-        deferral: &'v mut Deferral,
+        (deferral, debts): (&'v mut Deferral, &'v mut VolumeDebts),
         room: Vec3,
     ) -> Self {
         Self {
@@ -129,6 +130,7 @@ impl<'v, A: AttributeModel> CollapseLoop<'v, A> {
             queue,
             edge_ring,
             deferral,
+            debts,
             room,
         }
     }
@@ -139,29 +141,22 @@ impl<'v, A: AttributeModel> CollapseLoop<'v, A> {
         widest(ContractAll { collapse_loop: self, faces, last });
     }
 
-    /// Contracts edges, and between them removes each component once no edge costs less. When
-    /// nothing is left, edges that were refused are tried again, as long as that helps much.
+    /// Contracts edges, and between them removes each component once no edge costs less.
     #[inline(always)]
     fn contract_all(&mut self, faces: usize, last: u16) {
-        let mut tried_at = usize::MAX;
         loop {
             let component =
                 self.next_component().filter(|&bucket| bucket <= last.min(last_bucket()));
             if let Some(until) = component.map_or(Some(last), |bucket| bucket.checked_sub(1)) {
                 self.contract_edges(faces, until);
             }
-            let is_all = last >= last_bucket() && self.within.is_none();
             match component {
-                _ if self.live_faces <= faces => return,
-                Some(bucket) if self.release_seams(bucket) => {}
-                Some(bucket) => {
-                    self.vanish_up_to(bucket);
+                Some(bucket) if self.live_faces > faces => {
+                    if !self.release_seams(bucket) {
+                        self.vanish_up_to(bucket);
+                    }
                 }
-                None if is_all && self.live_faces + self.live_faces / 64 < tried_at => {
-                    tried_at = self.live_faces;
-                    self.wake_all();
-                }
-                None => return,
+                _ => return,
             }
         }
     }
@@ -302,7 +297,7 @@ impl<'v, A: AttributeModel> CollapseLoop<'v, A> {
     /// Gathers the one-ring of an edge, and computes its cost and the place of the new vertex.
     #[inline(always)]
     fn price(&mut self, v: u32, target: u32, front: u16) -> Result<PricedEdge, Rejection> {
-        let Self { vertices, model, edge_ring, deferral, .. } = self;
+        let Self { vertices, model, edge_ring, deferral, debts, .. } = self;
         let refused = |refusal| Rejection::Refused(refusal, front);
         let ends = model.orient(vertices, v, target).map_err(refused)?;
         let Ends { v0, v1, free, .. } = ends;
@@ -311,7 +306,11 @@ impl<'v, A: AttributeModel> CollapseLoop<'v, A> {
         let quadric = A::Metric::edge_quadric(edge_ring, end0, end1);
         let whole = if free { model.with_attributes(&ends, quadric) } else { quadric };
         let from_middle = match free {
-            true => A::Metric::optimum(&whole, deferral.allowed()),
+            true => {
+                let owed = debts.owed([v0, v1].map(|v| vertices.slot(v)));
+                let aim = EdgeQuadricF64 { level: whole.level + owed, ..whole };
+                A::Metric::optimum(&aim, deferral.allowed())
+            }
             false => -quadric.half,
         };
         let attributes = if free { 0.0 } else { f64::from(model.cost_onto(vertices, &ends)) };
@@ -351,7 +350,10 @@ impl<'v, A: AttributeModel> CollapseLoop<'v, A> {
         // The place as it is stored, so that the normals are those of the actual faces.
         let from = end0.place();
         let place = match free {
-            true => within(*room, from.as_dvec3() + quadric.half + from_middle),
+            true => {
+                let middle = from.as_dvec3() + quadric.half;
+                within(*room, middle + from_middle, || middle + quadric.minimum())
+            }
             false => from,
         };
         let from_middle = (place - from).as_dvec3() - quadric.half;
@@ -398,6 +400,12 @@ impl<'v, A: AttributeModel> CollapseLoop<'v, A> {
         let lost = quadric.level - quadric.normal.dot(displacement.as_dvec3() - quadric.half);
         let is_open = self.edge_ring.is_open(&self.vertices, v0);
         self.volume.add(place, lost, is_open, free);
+        let slots = [v0, v1].map(|v| self.vertices.slot(v));
+        let owed = self.debts.owed(slots);
+        let lost =
+            if free && !is_open && A::Metric::METHOD.conserves_volume() { lost } else { 0.0 };
+        let slot = (slots[0], self.vertices.all.len());
+        self.debts.settle(slot, (owed, lost), (quadric.normal, quadric.half));
         if let Some(log) = &mut self.log {
             let done = LoggedContraction { kept: v0, gone: v1, place, moved, front };
             log.push(Logged::Contraction(done));
@@ -455,10 +463,16 @@ impl<'v, A: AttributeModel> CollapseLoop<'v, A> {
     }
 }
 
-/// Rounds a place to floats, and moves it into the box of this half size.
+/// Rounds a place to floats, and moves it into the box of half the size `room`, unless the place
+/// where the costs are lowest lies outside, too.
 #[inline(always)]
-pub(crate) fn within(room: Vec3, place: DVec3) -> Vec3 {
-    place.as_vec3().clamp(-room, room)
+pub(crate) fn within(room: Vec3, place: DVec3, lowest: impl FnOnce() -> DVec3) -> Vec3 {
+    let place = place.as_vec3();
+    if place.abs().cmple(room).all() {
+        return place;
+    }
+    let lowest = lowest().as_vec3();
+    place.clamp(lowest.min(-room), lowest.max(room))
 }
 
 /// Returns true if a step would ruin the model: it moves the surface by this squared distance, and

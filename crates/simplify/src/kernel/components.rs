@@ -1,11 +1,12 @@
 //! The connected components of the input, each of which may vanish as a whole.
 
+use std::borrow::Cow;
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 use std::ops::Range;
 
 use glam::Vec3;
-use meshlod_mesh::{Bounds, Mesh, face_components};
+use meshlod_mesh::{Bounds, Mesh, VertexId, face_components};
 use meshlod_spatial::LabelledBvh;
 use rayon::prelude::*;
 
@@ -87,10 +88,20 @@ impl Components {
     /// `faces` are those of the mesh in the kernel's vertices. Cost: O(n log n), n = faces.
     pub(crate) fn new<M: Metric>(
         pieces: &Pieces<'_, '_>,
-        faces: impl Iterator<Item = [u32; 3]>,
+        faces: impl Iterator<Item = [u32; 3]> + Clone,
         below: f64,
     ) -> Option<Self> {
-        let (of_face, count) = face_components(&pieces.mesh.faces, pieces.mesh.positions.len());
+        let mesh = pieces.mesh;
+        let mut corners = Cow::Borrowed(&mesh.faces);
+        if !faces.clone().all(is_live) {
+            // Faces that are left out join nothing.
+            let joined = |(now, face): ([u32; 3], &[VertexId; 3])| match is_live(now) {
+                true => *face,
+                false => [face[0]; 3],
+            };
+            corners = Cow::Owned(faces.clone().zip(&mesh.faces).map(joined).collect());
+        }
+        let (of_face, count) = face_components(&corners, mesh.positions.len());
         if count < 2 {
             return None;
         }
@@ -120,12 +131,11 @@ impl Components {
         mut of_face: Vec<u32>,
         count: usize,
     ) -> Self {
-        let live = |[a, b, c]: [u32; 3]| a != b && b != c && c != a;
         let mut lists = vec![Vec::new(); count];
         let mut own = vec![Vec::new(); count];
         for (i, face) in faces.enumerate() {
             let component = &mut of_face[i];
-            if live(face) {
+            if is_live(face) {
                 lists[*component as usize].push(i);
                 own[*component as usize].extend(face);
             } else {
@@ -209,6 +219,12 @@ impl Components {
         bucket(cost).min(last_bucket())
     }
 
+    /// Returns the square of the distance that counts where a component vanishes: what is farther
+    /// from the rest than it is large is lost for its size.
+    pub(crate) fn loss(&self, component: u32, apart: &Apart) -> f32 {
+        apart.greatest.min(self.all[component as usize].size.powi(2))
+    }
+
     /// Returns the vertices of a component.
     pub(crate) fn vertices(&self, component: u32) -> &[u32] {
         &self.vertices[self.all[component as usize].vertices.clone()]
@@ -253,6 +269,10 @@ impl Components {
             self.put_back(component, 0);
         }
     }
+}
+
+fn is_live([a, b, c]: [u32; 3]) -> bool {
+    a != b && b != c && c != a
 }
 
 fn area([a, b, c]: &[Vec3; 3]) -> f32 {

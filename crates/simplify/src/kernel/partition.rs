@@ -23,7 +23,7 @@ use crate::kernel::mesh::one_ring::{GHOST, LongRing, VertexStore, Vertices};
 use crate::kernel::mesh::vertex::VertexFlags;
 use crate::kernel::schedule::bucket_queue::{BucketQueue, last_bucket};
 use crate::kernel::schedule::deferral::Deferral;
-use crate::kernel::volume::VolumeTally;
+use crate::kernel::volume::{VolumeDebts, VolumeTally};
 use crate::refusal::Refusals;
 use crate::surface::ties::Ties;
 
@@ -104,6 +104,7 @@ struct PartState {
     /// Working memory, allocated once, since simplification may go on step by step.
     edge_ring: Box<EdgeRing>,
     deferral: Deferral,
+    debts: VolumeDebts,
     /// Vertices with neighbours in other parts.
     waiting: Vec<u32>,
 }
@@ -240,7 +241,10 @@ impl<A: AttributeModel> Partition<A> {
         self.parts = cut(&self.store, parts.len() / MERGED_PARTS);
         let mut lists: Vec<Vec<_>> = Vec::new();
         for (joined, parts) in self.parts.iter_mut().zip(parts.chunks_mut(MERGED_PARTS)) {
+            let mut len = 0;
             for part in &mut *parts {
+                joined.debts.append(len, std::mem::take(&mut part.debts), part.vertices.len());
+                len += part.vertices.len();
                 joined.queue.append(std::mem::take(&mut part.queue));
                 joined.waiting.append(&mut part.waiting);
                 joined.deferral.merge(&part.deferral);
@@ -272,13 +276,13 @@ impl<A: AttributeModel> Partition<A> {
         let mut rest = &mut all[..];
         let mut loops = Vec::with_capacity(self.parts.len());
         for (part, model) in self.parts.iter_mut().zip(&mut self.models) {
-            let PartState { vertices, queue, long, edge_ring, deferral, waiting } = part;
+            let PartState { vertices, queue, long, edge_ring, deferral, debts, waiting } = part;
             let (all, others) = rest.split_at_mut(vertices.len());
             rest = others;
             let base = vertices.start as u32;
             let vertices = Vertices { all, base, long, copied, split, first_copy };
             let collapse_loop =
-                CollapseLoop::new(vertices, model, queue, edge_ring, deferral, room);
+                CollapseLoop::new(vertices, model, queue, edge_ring, (deferral, debts), room);
             loops.push((collapse_loop, waiting));
         }
         if let [(collapse_loop, _)] = &mut loops[..] {
@@ -313,6 +317,7 @@ fn cut(store: &VertexStore, count: usize) -> Vec<PartState> {
         long: Vec::new(),
         edge_ring: Box::new(EdgeRing::new(store.boundary_weight)),
         deferral: Deferral::default(),
+        debts: VolumeDebts::default(),
         waiting: Vec::new(),
     };
     (0..count).map(part).collect()

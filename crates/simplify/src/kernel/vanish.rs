@@ -23,7 +23,8 @@ impl<A: AttributeModel> CollapseLoop<'_, A> {
             let Some(components) = &mut self.components else { return false };
             let apart = components.apart(component);
             let cost = components.bucket::<A::Metric>(component, &apart, faces.len());
-            let bucket = self.deferral.delay(apart.greatest, cost).unwrap_or(cost);
+            let loss = components.loss(component, &apart);
+            let bucket = self.deferral.delay(loss, cost).unwrap_or(cost);
             let max_error = self.within.as_ref().map_or(f32::INFINITY, |bound| bound.max_error());
             if faces.is_empty() {
                 continue;
@@ -31,7 +32,7 @@ impl<A: AttributeModel> CollapseLoop<'_, A> {
                 components.put_back(component, bucket);
             } else if faces.len() >= self.live_faces {
                 self.refusals.add(Refusal::LastFaces);
-            } else if is_out_of_proportion(apart.greatest, self.error as f32, self.room) {
+            } else if is_out_of_proportion(loss, self.error as f32, self.room) {
                 components.refuse(component);
                 self.refusals.add(Refusal::Disproportion);
             } else if apart.greatest > max_error * max_error {

@@ -1,6 +1,6 @@
 //! Accounting of the volume lost by contractions.
 
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 use meshlod_mesh::Bounds;
 
 use crate::history::volume::{Unconserved, VolumeLoss};
@@ -16,6 +16,54 @@ pub(crate) struct VolumeTally {
     vanished: f64,
     open: Unchosen,
     held: Unchosen,
+}
+
+/// Part of half an edge by which a place may miss the plane of equal volume without a debt, so that
+/// rounding makes none.
+const NO_DEBT: f64 = 1e-4;
+
+/// Volume that contractions at each vertex of a part still owe, six times, in the frame. The next
+/// contraction there aims to repay it.
+///
+/// Empty as long as nothing is owed, as on most scans.
+#[derive(Debug, Default)]
+pub(crate) struct VolumeDebts(Vec<f32>);
+
+impl VolumeDebts {
+    /// Returns what both ends of an edge owe, each given by its index in the part.
+    #[inline(always)]
+    pub(crate) fn owed(&self, ends: [usize; 2]) -> f64 {
+        match &self.0[..] {
+            [] => 0.0,
+            all => ends.into_iter().map(|v| f64::from(all[v])).sum(),
+        }
+    }
+
+    /// Sets what a vertex owes in a part of `len` vertices after a contraction that lost `lost`, of
+    /// an edge whose ends owed `owed`. Faces with the sum `normal` moved, and half the edge is as
+    /// long as `half`.
+    #[inline(always)]
+    pub(crate) fn settle(
+        &mut self,
+        (vertex, len): (usize, usize),
+        (owed, lost): (f64, f64),
+        (normal, half): (DVec3, DVec3),
+    ) {
+        let least = NO_DEBT * NO_DEBT * normal.length_squared() * half.length_squared();
+        if owed != 0.0 || lost * lost > least {
+            self.0.resize(len, 0.0);
+            self.0[vertex] = (owed + lost) as f32;
+        }
+    }
+
+    /// Appends the debts of the next part. The parts have these numbers of vertices.
+    pub(crate) fn append(&mut self, len: usize, next: Self, next_len: usize) {
+        if !(self.0.is_empty() && next.0.is_empty()) {
+            self.0.resize(len, 0.0);
+            self.0.extend(next.0);
+            self.0.resize(len + next_len, 0.0);
+        }
+    }
 }
 
 /// Number of contractions, and the bounding box of where they were.

@@ -131,6 +131,12 @@ impl<'v> Vertices<'v> {
         self.base..self.base + self.all.len() as u32
     }
 
+    /// Returns the index of a vertex in its part.
+    #[inline(always)]
+    pub(crate) fn slot(&self, v: u32) -> usize {
+        v.wrapping_sub(self.base) as usize
+    }
+
     /// Takes over the long rings of a part.
     pub(crate) fn adopt(&mut self, lists: Vec<LongRing>) {
         for (slot, list) in lists.into_iter().enumerate() {
@@ -146,13 +152,14 @@ impl<'v> Vertices<'v> {
     /// Returns a vertex. The ghost and vertices of other parts read as one that is barred.
     #[inline(always)]
     pub(crate) fn get(&self, v: u32) -> &Vertex {
-        self.all.get(v.wrapping_sub(self.base) as usize).unwrap_or(&ELSEWHERE)
+        self.all.get(self.slot(v)).unwrap_or(&ELSEWHERE)
     }
 
     /// Returns a vertex of this part for writing.
     #[inline(always)]
     pub(crate) fn get_mut(&mut self, v: u32) -> &mut Vertex {
-        &mut self.all[v.wrapping_sub(self.base) as usize]
+        let slot = self.slot(v);
+        &mut self.all[slot]
     }
 
     /// Returns the input vertex that `v` is, or is a copy of.

@@ -234,15 +234,16 @@ fn on_plane_of_equal_volume(quadric: &EdgeQuadricF64) -> DVec3 {
 /// Goes from where the quadric is smallest at all towards a place on the plane of equal volume,
 /// until the quadric has grown by what is allowed.
 ///
-/// At a corner of a box, or at the end of a bar, the plane is far away: there the volume is not
-/// preserved. On a scan this is very rare.
+/// At a corner of a box, or at the end of a bar, the plane is farther away than half the edge: there
+/// the volume is not preserved. On a scan this is very rare.
 #[cold]
 fn towards(quadric: &EdgeQuadricF64, place: DVec3, allowed: f64) -> DVec3 {
     let best = quadric.minimum();
     let allowed = allowed.max(VOLUME_SHARE * quadric.at(best));
     let step = place - best;
     let growth = step.dot(quadric.sum * step);
-    if growth <= allowed { place } else { best + step * (allowed / growth).sqrt() }
+    let is_near = step.length_squared() <= quadric.half.length_squared();
+    if is_near || growth <= allowed { place } else { best + step * (allowed / growth).sqrt() }
 }
 
 /// Updates the boundary edges of the ring vertices. Returns those of the new vertex.

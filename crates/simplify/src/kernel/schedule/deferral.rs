@@ -87,17 +87,17 @@ mod tests {
         for _ in 0..1000 {
             deferral.wait(0.01, 0.01, front);
         }
-        assert_eq!(deferral.wait(0.01, 0.05, front), None);
+        assert_eq!(deferral.wait(0.01, 0.035, front), None);
         let waits =
             |deferral: &mut Deferral, moved| deferral.wait(moved, moved, front).unwrap() - front;
-        assert_eq!(waits(&mut deferral, 0.1), MIN_DELAY);
+        assert_eq!(waits(&mut deferral, 0.08), MIN_DELAY);
         assert!(waits(&mut deferral, 10.0) > 20);
         assert_eq!(deferral.wait(0.01, 0.01, front), None);
         // Just as far behind the front, wherever it is tried again.
         assert!(deferral.wait(10.0, 10.0, 0).unwrap() > front + 16);
         let mut joined = Deferral::default();
         joined.merge(&deferral);
-        assert_eq!(joined.wait(0.01, 0.05, 0), None);
+        assert_eq!(joined.wait(0.01, 0.035, 0), None);
     }
 
     #[test]
