@@ -158,9 +158,7 @@ impl<'m> ConditionedMesh<'m> {
         if self.borders.is_none() || self.split.get().is_some() {
             return Ok(first);
         }
-        let mut first = first;
-        let here = Target::Faces(first.live_faces());
-        if first.run(here, &mut ())?.non_manifold_vertices == 0 {
+        if first.non_manifold_vertices() == 0 {
             return Ok(first);
         }
         match self.split.get_or_init(|| self.condition(Search::All)) {

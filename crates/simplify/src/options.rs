@@ -152,12 +152,13 @@ impl Target {
     }
 }
 
-/// What a simplification may do to the topology of a surface.
+/// Changes that a simplification may make to the topology of a surface.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Topology {
-    /// Connected components may vanish where that costs less than contracting them further, and
-    /// non-manifold vertices may move and be contracted. Seams of textures and borders of materials
-    /// give way where nothing else is left at a price in proportion, so charts may vanish too.
+    /// Connected components may vanish where that costs less than contracting them further. Seams
+    /// of textures and borders of materials give way where nothing else is left at a price in
+    /// proportion, so charts may vanish too. Non-manifold vertices move only where
+    /// [`meshlod_mesh::condition`] has split them before.
     #[default]
     Free,
     /// Closed surfaces stay closed, manifold surfaces stay manifold, and no component or chart
@@ -186,15 +187,16 @@ pub struct Options {
     /// Locks of vertices: to stay in place, to cost more to move, or to move together as ties. Tied
     /// vertices without edges to move along together stay in place.
     pub locks: Locks,
-    /// What may happen to the topology of the surface.
+    /// Changes that are allowed to the topology of the surface.
     pub topology: Topology,
     /// Bounding-box diagonal, in model units, below which a connected component may be removed as a
     /// whole; `None` sets no limit. With [`Topology::Keep`] no component is removed.
     ///
     /// A component vanishes when that costs less than contracting it further. For
     /// [`Method::LindstromTurk`] and [`Method::Qem`] its distance from what remains is the error.
-    /// The other methods remove components only below a given size, which counts as the error. The
-    /// largest component never vanishes, nor does one with a locked or tied vertex.
+    /// The other methods remove components only below a given size, which counts as the error. One
+    /// component always stays, for the former two the largest, and so does one with a locked or tied
+    /// vertex.
     pub vanish_below: Option<f64>,
 }
 

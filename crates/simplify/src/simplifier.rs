@@ -114,6 +114,11 @@ impl<'m> Simplifier<'m> {
         self.engine.live_faces()
     }
 
+    /// Returns the number of non-manifold input vertices, which are kept in place.
+    pub fn non_manifold_vertices(&self) -> usize {
+        self.input.non_manifold_vertices
+    }
+
     /// Builds the report of the run so far.
     fn report(&self, target: Target, stop: &Stop) -> Report {
         let output_faces = self.live_faces();

@@ -1,4 +1,4 @@
-//! Distances from the faces of a mesh that have certain labels.
+//! Distances from the faces of a mesh that are left, without those of one label.
 
 use meshlod_mesh::{FaceId, Mesh};
 
@@ -9,16 +9,29 @@ use crate::closest::Selection;
 /// Label of a child whose faces have different labels.
 const MIXED: u32 = u32::MAX;
 
-/// Bounding volume hierarchy over faces with labels, such as their connected components, for
-/// distances from the faces with some of the labels.
+/// Bounding volume hierarchy over faces with labels, such as their connected components. Faces can
+/// be removed, and distances are those from what is left without one label.
 ///
-/// What has one label is passed over as a whole, however many faces it has.
+/// What has that label, or nothing left, is passed over as a whole, however many faces it has.
 #[derive(Clone, Debug)]
 pub struct LabelledBvh {
     bvh: Bvh,
     of_face: Vec<u32>,
-    /// Label of all faces in a node's child, or [`MIXED`].
-    of_children: Vec<[u32; 4]>,
+    is_left: Vec<bool>,
+    nodes: Vec<[Child; 4]>,
+    /// Child that each node is, as an index into all children.
+    parents: Vec<u32>,
+    /// Child that each face is in, as an index into all children.
+    leaves: Vec<u32>,
+}
+
+/// Faces below a child of a node.
+#[derive(Clone, Copy, Debug)]
+struct Child {
+    /// Label of all its faces, or [`MIXED`].
+    label: u32,
+    /// Number of faces left.
+    left: u32,
 }
 
 impl LabelledBvh {
@@ -32,46 +45,69 @@ impl LabelledBvh {
     /// If there are fewer labels than faces.
     pub fn new(mesh: &Mesh, of_face: Vec<u32>) -> Result<Self, BvhError> {
         let bvh = Bvh::new(mesh)?;
-        let mut of_children = vec![[MIXED; 4]; bvh.nodes.len()];
+        let mut nodes = vec![[Child { label: MIXED, left: 0 }; 4]; bvh.nodes.len()];
+        let mut parents = vec![u32::MAX; nodes.len()];
+        let mut leaves = vec![0; of_face.len()];
         // Children follow their parents.
         for (index, node) in bvh.nodes.iter().enumerate().rev() {
             for child in 0..4 {
                 let (first, count) = (node.first[child] as usize, node.count[child]);
-                of_children[index][child] = if count == INNER {
-                    let all = bvh.nodes[first].count.iter().zip(of_children[first]);
-                    common(all.filter(|(count, _)| **count > 0).map(|(_, label)| label))
+                let own = (4 * index + child) as u32;
+                nodes[index][child] = if count == INNER {
+                    parents[first] = own;
+                    let used = nodes[first].iter().filter(|child| child.left > 0);
+                    let left = used.clone().map(|child| child.left).sum();
+                    Child { label: common(used.map(|child| child.label)), left }
                 } else {
                     let faces = &bvh.faces[first..first + usize::from(count)];
-                    common(faces.iter().map(|face| of_face[face.index()]))
+                    faces.iter().for_each(|face| leaves[face.index()] = own);
+                    let label = common(faces.iter().map(|face| of_face[face.index()]));
+                    Child { label, left: count.into() }
                 };
             }
         }
-        Ok(Self { bvh, of_face, of_children })
+        let is_left = vec![true; of_face.len()];
+        Ok(Self { bvh, of_face, is_left, nodes, parents, leaves })
     }
 
-    /// Returns the squared distance, in square model units, of a finite point from the faces whose
-    /// labels `is_wanted` accepts; infinite if there are none.
+    /// Removes a face, if it is left.
     ///
-    /// Cost: O(log n) for points near the surface, n = faces.
-    pub fn squared_distance(&self, point: [f64; 3], is_wanted: impl Fn(u32) -> bool) -> f64 {
-        self.bvh.closest_selected(point, &Labels { bvh: self, is_wanted })
+    /// Cost: O(log n), n = faces.
+    pub fn remove(&mut self, face: FaceId) {
+        if !std::mem::replace(&mut self.is_left[face.index()], false) {
+            return;
+        }
+        let mut at = self.leaves[face.index()];
+        while at != u32::MAX {
+            let (node, child) = (at as usize / 4, at as usize % 4);
+            self.nodes[node][child].left -= 1;
+            at = self.parents[node];
+        }
+    }
+
+    /// Returns the squared distance, in square model units, of a finite point from the faces that
+    /// are left and have another label than `label`; infinite if there are none.
+    ///
+    /// Cost: O(log n) for points near these faces, n = faces.
+    pub fn squared_distance(&self, point: [f64; 3], label: u32) -> f64 {
+        self.bvh.closest_selected(point, &Without { bvh: self, label })
     }
 }
 
-/// Faces whose labels `is_wanted` accepts.
-struct Labels<'b, W> {
+/// Faces that are left and do not have one label.
+struct Without<'b> {
     bvh: &'b LabelledBvh,
-    is_wanted: W,
+    label: u32,
 }
 
-impl<W: Fn(u32) -> bool> Selection for Labels<'_, W> {
+impl Selection for Without<'_> {
     fn has_child(&self, node: usize, child: usize) -> bool {
-        let label = self.bvh.of_children[node][child];
-        label == MIXED || (self.is_wanted)(label)
+        let Child { label, left } = self.bvh.nodes[node][child];
+        left > 0 && label != self.label
     }
 
     fn has_face(&self, face: FaceId) -> bool {
-        (self.is_wanted)(self.bvh.of_face[face.index()])
+        self.bvh.is_left[face.index()] && self.bvh.of_face[face.index()] != self.label
     }
 }
 

@@ -15,8 +15,8 @@ pub struct VolumeLoss {
     /// Volume before minus volume after, summed over all contractions with a closed ring, in cubic
     /// model units: table 2 of [LJ05].
     pub running_sum: f64,
-    /// Volume of the closed components that were removed as a whole, in cubic model units. The sum
-    /// includes it.
+    /// Sum of the absolute volumes of the closed components that were removed as a whole, in cubic
+    /// model units.
     pub vanished: f64,
     /// Contractions at a boundary, and open components that were removed as a whole. No volume is
     /// defined there, so the sum leaves them out.

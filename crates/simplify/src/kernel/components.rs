@@ -6,7 +6,7 @@ use std::collections::BinaryHeap;
 use std::ops::Range;
 
 use glam::Vec3;
-use meshlod_mesh::{Bounds, Mesh, VertexId, face_components};
+use meshlod_mesh::{Bounds, FaceId, Mesh, VertexId, face_components};
 use meshlod_spatial::LabelledBvh;
 use rayon::prelude::*;
 
@@ -18,6 +18,9 @@ use crate::kernel::schedule::bucket_queue::{bucket, last_bucket};
 
 /// Largest number of faces of a component that are sampled.
 const SAMPLED_FACES: usize = 24;
+
+/// Part of the faces, one in this many, that components must have to take part from the start.
+const MANY: usize = 32;
 
 /// Weights of a face's centre and of each of its corners in the mean square distance. For a
 /// quadratic function they give the exact mean.
@@ -34,15 +37,14 @@ pub(crate) struct Component {
     is_protected: bool,
     /// True if a lock or a tie holds a vertex of it.
     is_held: bool,
-    /// Number of faces in the input.
-    faces: usize,
+    faces: Range<usize>,
     vertices: Range<usize>,
     samples: Range<usize>,
 }
 
 /// Part of the surface of a component: a point of it, and the weight that this point has.
 #[derive(Clone, Copy, Debug)]
-struct Sample {
+struct WeightedPoint {
     place: Vec3,
     weight: f32,
 }
@@ -59,14 +61,15 @@ pub(crate) struct Components {
     all: Vec<Component>,
     /// Vertices of all components, one component after the other.
     vertices: Vec<u32>,
-    samples: Vec<Sample>,
+    samples: Vec<WeightedPoint>,
+    /// Faces of all components, one component after the other.
+    faces: Vec<u32>,
     frame: Frame,
-    /// The input, to which components are labels. Faces in no component have one more.
+    /// The faces of the input that have not vanished, labelled by component.
     input: LabelledBvh,
-    is_gone: Vec<bool>,
     /// Components that may vanish, by a lower bound of the bucket of their cost.
     waiting: BinaryHeap<Reverse<(u16, u32)>>,
-    /// Components that an error bound has refused.
+    /// Components that have been refused.
     refused: Vec<u32>,
     vanished: Vec<u32>,
 }
@@ -117,7 +120,7 @@ impl Components {
         let found: Vec<usize> = (0..count).filter(may_vanish).collect();
         let entry = |&i: &usize| {
             let apart = components.apart(i as u32);
-            Reverse((components.bucket::<M>(i as u32, &apart, all[i].faces), i as u32))
+            Reverse((components.bucket::<M>(i as u32, &apart, all[i].faces.len()), i as u32))
         };
         let waiting: Vec<_> = found.par_iter().map(entry).collect();
         components.waiting = waiting.into();
@@ -142,19 +145,21 @@ impl Components {
                 *component = count as u32;
             }
         }
-        let input = LabelledBvh::new(mesh, of_face).expect("the mesh was found valid");
+        let left_out: Vec<usize> =
+            (0..of_face.len()).filter(|&i| of_face[i] == count as u32).collect();
+        let mut input = LabelledBvh::new(mesh, of_face).expect("the mesh was found valid");
+        left_out.into_iter().for_each(|i| input.remove(FaceId::new(i)));
         let mut components = Self {
             all: Vec::with_capacity(count),
             vertices: Vec::new(),
             samples: Vec::new(),
+            faces: Vec::new(),
             frame: **frame,
             input,
-            is_gone: vec![false; count + 1],
             waiting: BinaryHeap::new(),
             refused: Vec::new(),
             vanished: Vec::new(),
         };
-        components.is_gone[count] = true;
         for (faces, mut own) in lists.into_iter().zip(own) {
             own.sort_unstable();
             own.dedup();
@@ -176,10 +181,11 @@ impl Components {
                 area: triangles.iter().map(area).sum(),
                 is_protected,
                 is_held: held,
-                faces: faces.len(),
+                faces: components.faces.len()..components.faces.len() + faces.len(),
                 vertices: first..components.vertices.len(),
                 samples: start..components.samples.len(),
             });
+            components.faces.extend(faces.iter().map(|&i| i as u32));
         }
         components
     }
@@ -189,20 +195,20 @@ impl Components {
         for triangle in triangles.iter().step_by(triangles.len().div_ceil(SAMPLED_FACES).max(1)) {
             let area = area(triangle);
             let centre = triangle.iter().sum::<Vec3>() / 3.0;
-            self.samples.push(Sample { place: centre, weight: AT_CENTRE * area });
-            let corner = |&place: &Vec3| Sample { place, weight: AT_CORNER * area };
+            self.samples.push(WeightedPoint { place: centre, weight: AT_CENTRE * area });
+            let corner = |&place: &Vec3| WeightedPoint { place, weight: AT_CORNER * area };
             self.samples.extend(triangle.iter().map(corner));
         }
     }
 
     /// Measures how far a component is from the input without it and without what has vanished.
     pub(crate) fn apart(&self, component: u32) -> Apart {
-        let is_wanted = |other: u32| other != component && !self.is_gone[other as usize];
         let to_frame = self.frame.unit.powi(-2);
         let (mut sum, mut weights, mut greatest) = (0.0, f32::MIN_POSITIVE, 0.0f32);
-        for &Sample { place, weight } in &self.samples[self.all[component as usize].samples.clone()]
+        for &WeightedPoint { place, weight } in
+            &self.samples[self.all[component as usize].samples.clone()]
         {
-            let squared = self.input.squared_distance(self.frame.to_model(place), is_wanted);
+            let squared = self.input.squared_distance(self.frame.to_model(place), component);
             let squared = (squared * to_frame) as f32;
             sum += weight * squared;
             weights += weight;
@@ -223,6 +229,13 @@ impl Components {
     /// from the rest than it is large is lost for its size.
     pub(crate) fn loss(&self, component: u32, apart: &Apart) -> f32 {
         apart.greatest.min(self.all[component as usize].size.powi(2))
+    }
+
+    /// Returns true if components that may vanish have a good part of this many faces: then they
+    /// must take part from the start.
+    pub(crate) fn are_many(&self, faces: usize) -> bool {
+        let faces_of = |entry: &Reverse<(u16, u32)>| self.all[entry.0.1 as usize].faces.len();
+        self.waiting.iter().map(faces_of).sum::<usize>() > faces / MANY
     }
 
     /// Returns the vertices of a component.
@@ -247,14 +260,16 @@ impl Components {
         self.waiting.push(Reverse((bucket, component)));
     }
 
-    /// Sets a component aside that an error bound refuses, until all are made eligible again.
+    /// Sets a component aside that is refused, until all are made eligible again.
     pub(crate) fn refuse(&mut self, component: u32) {
         self.refused.push(component);
     }
 
     /// Removes a component for good.
     pub(crate) fn remove(&mut self, component: u32) {
-        self.is_gone[component as usize] = true;
+        for &face in &self.faces[self.all[component as usize].faces.clone()] {
+            self.input.remove(FaceId(face));
+        }
         self.vanished.push(component);
     }
 
@@ -263,7 +278,7 @@ impl Components {
         &self.vanished
     }
 
-    /// Makes components that an error bound has refused candidates for removal again.
+    /// Makes components that were refused candidates for removal again.
     pub(crate) fn wake_all(&mut self) {
         for component in std::mem::take(&mut self.refused) {
             self.put_back(component, 0);

@@ -85,7 +85,7 @@ pub(crate) struct Partition<A> {
     pub(crate) volume: VolumeTally,
     /// Ties, if there are any. They need the surface in one part.
     ties: Option<Ties>,
-    /// Components that may vanish, if any may, once the surface is in one part.
+    /// Components that may vanish once the surface is in one part, if there are any.
     pub(crate) components: Option<Components>,
     /// Half the size of the box that all vertices stay in.
     room: Vec3,
@@ -112,7 +112,8 @@ struct PartState {
 impl<A: AttributeModel> Partition<A> {
     pub(crate) fn new(store: VertexStore, model: A, live_faces: usize, whole: Whole) -> Self {
         let Whole { ties, components, room } = whole;
-        let part = if ties.is_none() { MAX_PART } else { usize::MAX };
+        let are_many = components.as_ref().is_some_and(|all| all.are_many(live_faces));
+        let part = if ties.is_some() || are_many { usize::MAX } else { MAX_PART };
         Self { ties, components, room, ..Self::of_at_most(part, store, model, live_faces) }
     }
 
@@ -284,6 +285,9 @@ impl<A: AttributeModel> Partition<A> {
             let collapse_loop =
                 CollapseLoop::new(vertices, model, queue, edge_ring, (deferral, debts), room);
             loops.push((collapse_loop, waiting));
+        }
+        for (collapse_loop, _) in &mut loops {
+            collapse_loop.error = self.error;
         }
         if let [(collapse_loop, _)] = &mut loops[..] {
             collapse_loop.ties = self.ties.as_mut();

@@ -7,7 +7,9 @@ use crate::kernel::attributes::AttributeModel;
 use crate::kernel::bound::BoundedStep;
 use crate::kernel::collapse::edge_ring::EdgeRing;
 use crate::kernel::collapse::{Collapse, Ends};
-use crate::kernel::collapse_loop::{CollapseLoop, Rejection, UV_FLIP_DELAY, within};
+use crate::kernel::collapse_loop::{
+    CollapseLoop, Rejection, UV_FLIP_DELAY, is_out_of_proportion, within,
+};
 use crate::kernel::mesh::one_ring::{GHOST, Vertices};
 use crate::kernel::mesh::vertex::VertexFlags;
 use crate::kernel::metric::edge_quadric_f64::EdgeQuadricF64;
@@ -93,6 +95,9 @@ impl<A: AttributeModel> CollapseLoop<'_, A> {
         if let Some(bucket) = self.deferral.wait(now, moved, front) {
             return Err(Rejection::Deferred(bucket));
         }
+        if is_out_of_proportion(now, self.error as f32, self.room) {
+            return Err(refused(Refusal::Disproportion));
+        }
         let later = bucket.saturating_add(UV_FLIP_DELAY).min(last_bucket());
         for (edge, (collapse, ..)) in edges.iter().zip(&steps) {
             let flips = self.model.preview(&self.vertices, &edge.ring, collapse);
@@ -160,7 +165,7 @@ impl<A: AttributeModel> CollapseLoop<'_, A> {
     /// vertices.
     fn price_together(&mut self, ends: &[Ends], front: u16) -> Result<Joint, Rejection> {
         let refused = |refusal| Rejection::Refused(refusal, front);
-        let Self { vertices, model, edge_ring, deferral, .. } = self;
+        let Self { vertices, model, edge_ring, deferral, debts, .. } = self;
         let mut edges: Vec<TiedEdge> = Vec::with_capacity(ends.len());
         let mut joint: Option<EdgeQuadricF64> = None;
         let (mut onto, mut flags) = (0.0, VertexFlags::default());
@@ -182,7 +187,9 @@ impl<A: AttributeModel> CollapseLoop<'_, A> {
         if !are_apart(&edges) {
             return Err(refused(Refusal::Tied));
         }
-        let Some(joint) = joint else { return Err(refused(Refusal::Tied)) };
+        let Some(mut joint) = joint else { return Err(refused(Refusal::Tied)) };
+        let owed = |ends: &Ends| debts.owed([ends.v0, ends.v1].map(|v| vertices.slot(v)));
+        joint.level += ends.iter().map(owed).sum::<f64>();
         let free = ends[0].free;
         let from_middle =
             if free { A::Metric::optimum(&joint, deferral.allowed()) } else { -joint.half };

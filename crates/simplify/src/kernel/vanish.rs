@@ -7,20 +7,23 @@ use crate::kernel::collapse_loop::{CollapseLoop, is_out_of_proportion};
 use crate::kernel::contraction_log::Logged;
 use crate::kernel::mesh::one_ring::GHOST;
 use crate::kernel::mesh::vertex::VertexFlags;
-use crate::kernel::schedule::bucket_queue::NONE;
+use crate::kernel::schedule::bucket_queue::{NONE, last_bucket};
 use crate::refusal::Refusal;
 
+/// Number of buckets after which a component is tried again that was out of proportion.
+const LATER: u16 = 8;
+
 impl<A: AttributeModel> CollapseLoop<'_, A> {
-    /// Removes the cheapest component if its bucket is at most `last`. Returns false if there is
-    /// none.
+    /// Removes the cheapest component if its bucket is at most `last`, unless it is refused or has
+    /// become more expensive.
     ///
     /// Costs only rise, as a component loses faces and as others vanish. So a cost found earlier is
     /// a lower bound, and is computed again when its turn comes.
     #[cold]
-    pub(crate) fn vanish_up_to(&mut self, last: u16) -> bool {
+    pub(crate) fn vanish_up_to(&mut self, last: u16) {
         while let Some(component) = self.components.as_mut().and_then(|all| all.take_up_to(last)) {
             let faces = self.faces_of(component);
-            let Some(components) = &mut self.components else { return false };
+            let Some(components) = &mut self.components else { return };
             let apart = components.apart(component);
             let cost = components.bucket::<A::Metric>(component, &apart, faces.len());
             let loss = components.loss(component, &apart);
@@ -33,19 +36,21 @@ impl<A: AttributeModel> CollapseLoop<'_, A> {
             } else if faces.len() >= self.live_faces {
                 self.refusals.add(Refusal::LastFaces);
             } else if is_out_of_proportion(loss, self.error as f32, self.room) {
-                components.refuse(component);
                 self.refusals.add(Refusal::Disproportion);
+                // By then the surface may have moved as far elsewhere.
+                match last.min(last_bucket()).saturating_add(LATER) {
+                    later if later < last_bucket() => components.put_back(component, later),
+                    _ => components.refuse(component),
+                }
             } else if apart.greatest > max_error * max_error {
                 components.refuse(component);
                 self.refusals.add(Refusal::Error);
             } else {
                 components.remove(component);
                 self.error = self.error.max(apart.greatest.into());
-                self.vanish(component, &faces);
-                return true;
+                return self.vanish(component, &faces);
             }
         }
-        false
     }
 
     /// Returns the faces that are left of a component.

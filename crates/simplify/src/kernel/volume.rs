@@ -23,7 +23,7 @@ pub(crate) struct VolumeTally {
 const NO_DEBT: f64 = 1e-4;
 
 /// Volume that contractions at each vertex of a part still owe, six times, in the frame. The next
-/// contraction there aims to repay it.
+/// contraction there that is free aims to repay it. What is beyond the end owes nothing.
 ///
 /// Empty as long as nothing is owed, as on most scans.
 #[derive(Debug, Default)]
@@ -35,7 +35,7 @@ impl VolumeDebts {
     pub(crate) fn owed(&self, ends: [usize; 2]) -> f64 {
         match &self.0[..] {
             [] => 0.0,
-            all => ends.into_iter().map(|v| f64::from(all[v])).sum(),
+            all => ends.into_iter().map(|v| all.get(v).map_or(0.0, |&debt| f64::from(debt))).sum(),
         }
     }
 

@@ -9,6 +9,7 @@ pub(crate) mod face_wedges;
 pub(crate) mod import_export;
 pub(crate) mod layers;
 pub(crate) mod new_values;
+pub(crate) mod refused_edges;
 pub(crate) mod scratch;
 pub(crate) mod seam_costs;
 pub(crate) mod seam_release;

@@ -127,8 +127,8 @@ impl<A: AttributeModel> CollapseLoop<'_, A> {
     }
 
     /// Lets seams give way once that is no dearer than the front, and queues the vertices on them.
-    /// Returns false if they hold, or have given way before. Within an error bound they always hold,
-    /// as it does not see them.
+    /// Returns false if they hold, or have given way before. Within an error bound they never begin
+    /// to give way, as it does not see them.
     #[inline(always)]
     pub(super) fn release_seams(&mut self, front: u16) -> bool {
         if self.within.is_some() || !self.model.release_seams(&self.vertices, front) {
@@ -162,7 +162,8 @@ impl<A: AttributeModel> CollapseLoop<'_, A> {
     /// Returns the bucket of the next step, an edge or a component.
     pub(crate) fn next_bucket(&mut self) -> Option<u16> {
         let of_component = self.components.as_ref().and_then(|components| components.next_bucket());
-        self.next_edge_bucket().into_iter().chain(of_component).min()
+        let until = of_component.unwrap_or(last_bucket());
+        self.next_edge_bucket(until).into_iter().chain(of_component).min()
     }
 
     /// Returns a lower bound on the bucket of the next step.
@@ -173,8 +174,8 @@ impl<A: AttributeModel> CollapseLoop<'_, A> {
         self.queue.lowest().min(of_seams).min(of_component.map_or(usize::MAX, usize::from))
     }
 
-    fn next_edge_bucket(&mut self) -> Option<u16> {
-        while self.take_batch(last_bucket()) {
+    fn next_edge_bucket(&mut self, until: u16) -> Option<u16> {
+        while self.take_batch(until) {
             let (next, bucket) = self.queue.next();
             if next.last().is_some_and(|&v| self.is_due(v, bucket)) {
                 return Some(bucket);

@@ -175,8 +175,12 @@ impl Metric for SweptVolume {
     #[inline(always)]
     fn optimum(quadric: &EdgeQuadricF64, allowed: f64) -> DVec3 {
         let place = on_plane_of_equal_volume(quadric);
+        let is_far = place.length_squared() > quadric.half.length_squared();
         let allowed = allowed * quadric.weight();
-        if quadric.at(place) > allowed { towards(quadric, place, allowed) } else { place }
+        match is_far && quadric.at(place) > allowed {
+            true => towards(quadric, place, allowed),
+            false => place,
+        }
     }
 
     #[inline(always)]
