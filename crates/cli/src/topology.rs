@@ -16,7 +16,8 @@ pub struct TopologyArgs {
     #[arg(long, value_name = "KIND")]
     topology: Option<TopologyArg>,
     /// Largest connected component that may vanish, by the diagonal of its bounding box: a length in
-    /// model units, or 5% of the model's diagonal [default: no limit]
+    /// model units, or 5% of the model's diagonal [default: no limit by lindstrom-turk and qem; by
+    /// other methods nothing vanishes]
     #[arg(long, value_name = "SIZE", value_parser = parse::bound, allow_hyphen_values = true)]
     vanish_below: Option<Bound>,
     /// Former name of --vanish-below; without a size no component vanishes
@@ -32,7 +33,8 @@ pub struct TopologyArgs {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 enum TopologyArg {
     /// Components may vanish where that costs less than simplifying them, borders that lie on each
-    /// other are sewn together, and non-manifold places may move and come apart
+    /// other are sewn together, non-manifold places may move and come apart, and charts and borders
+    /// of materials give way where little else is left
     Free,
     /// Closed stays closed, manifold stays manifold, and no component vanishes, as printing and
     /// simulation need it
