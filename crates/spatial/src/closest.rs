@@ -28,6 +28,10 @@ pub struct ClosestPoint {
 const SLACK_RELATIVE: f64 = 1.0 + 1.0 / (1 << 20) as f64;
 const SLACK: f64 = 1e-23;
 
+/// Squared distance in local coordinates below which a point touches a face. Where many faces meet
+/// at a point, the search for a closer one would visit them all.
+const TOUCHING: f64 = 1e-16;
+
 /// Size of the stack: three children of every node on the path may be waiting.
 const STACK: usize = 3 * MAX_DEPTH + 4;
 
@@ -70,12 +74,12 @@ impl Bvh {
     }
 
     /// Returns the squared distance, in square model units, of `point` from the closest selected
-    /// face; infinite if no face is selected.
+    /// face, or any as near as [`TOUCHING`]; infinite if no face is selected.
     pub(crate) fn closest_selected(&self, point: [f64; 3], selection: &impl Selection) -> f64 {
         let p = self.frame.local(point);
         let (face, distance_squared) = (FaceId(u32::MAX), f64::INFINITY);
         let mut best = Candidate { point: p, face, distance_squared };
-        self.descend::<false>(p, &mut best, [0.0; 2], selection);
+        self.descend::<true>(p, &mut best, [TOUCHING, f64::INFINITY], selection);
         self.frame.model_squared(best.distance_squared)
     }
 
