@@ -58,7 +58,7 @@ fn both_engines_are_as_near_and_keep_the_volume() {
             let [fast, general] = [fast, general].map(|engine| figures(&mesh, engine, ratio));
             if method.conserves_volume() {
                 // The kernel leaves a debt where the place would be too far away.
-                assert!(fast[1].abs() < 1e-3 && general[1].abs() < 1e-12);
+                assert!(fast[1].abs() < 1e-2 && general[1].abs() < 1e-12);
             }
             let times = fast[0] / general[0];
             assert!((0.98..1.02).contains(&times), "{times} times as far off at {ratio}");

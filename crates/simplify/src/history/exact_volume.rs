@@ -337,7 +337,7 @@ mod tests {
     #[test]
     fn the_written_volume_is_that_of_the_mesh() {
         for mesh in [samples::torus(20_000), samples::knot(20_000), samples::sphere(20_000)] {
-            let mut level = coarse(&mesh, 0.05);
+            let mut level = coarse(&mesh, 0.2);
             let before = as_read(&level, &mesh);
             let unmoved = level.clone();
             let residual =

@@ -350,10 +350,7 @@ impl<'v, A: AttributeModel> CollapseLoop<'v, A> {
         // The place as it is stored, so that the normals are those of the actual faces.
         let from = end0.place();
         let place = match free {
-            true => {
-                let middle = from.as_dvec3() + quadric.half;
-                within(*room, middle + from_middle, || middle + quadric.minimum())
-            }
+            true => within(*room, from.as_dvec3() + quadric.half + from_middle),
             false => from,
         };
         let from_middle = (place - from).as_dvec3() - quadric.half;
@@ -463,16 +460,10 @@ impl<'v, A: AttributeModel> CollapseLoop<'v, A> {
     }
 }
 
-/// Rounds a place to floats, and moves it into the box of half the size `room`, unless the place
-/// where the costs are lowest lies outside, too.
+/// Rounds a place to floats, and moves it into the box of half the size `room`.
 #[inline(always)]
-pub(crate) fn within(room: Vec3, place: DVec3, lowest: impl FnOnce() -> DVec3) -> Vec3 {
-    let place = place.as_vec3();
-    if place.abs().cmple(room).all() {
-        return place;
-    }
-    let lowest = lowest().as_vec3();
-    place.clamp(lowest.min(-room), lowest.max(room))
+pub(crate) fn within(room: Vec3, place: DVec3) -> Vec3 {
+    place.as_vec3().clamp(-room, room)
 }
 
 /// Returns true if a step would ruin the model: it moves the surface by this squared distance, and
