@@ -350,7 +350,7 @@ impl<'v, A: AttributeModel> CollapseLoop<'v, A> {
         // The place as it is stored, so that the normals are those of the actual faces.
         let from = end0.place();
         let place = match free {
-            true => within(*room, from.as_dvec3() + quadric.half + from_middle),
+            true => within::<A::Metric>(*room, from.as_dvec3() + quadric.half + from_middle),
             false => from,
         };
         let from_middle = (place - from).as_dvec3() - quadric.half;
@@ -460,10 +460,14 @@ impl<'v, A: AttributeModel> CollapseLoop<'v, A> {
     }
 }
 
-/// Rounds a place to floats, and moves it into the box of half the size `room`.
+/// Rounds a place to floats. If the metric preserves the volume, which drives vertices out, also
+/// moves it into the box of half the size `room`.
 #[inline(always)]
-pub(crate) fn within(room: Vec3, place: DVec3) -> Vec3 {
-    place.as_vec3().clamp(-room, room)
+pub(crate) fn within<M: Metric>(room: Vec3, place: DVec3) -> Vec3 {
+    match M::METHOD.conserves_volume() {
+        true => place.as_vec3().clamp(-room, room),
+        false => place.as_vec3(),
+    }
 }
 
 /// Returns true if a step would ruin the model: it moves the surface by this squared distance, and

@@ -80,7 +80,9 @@ impl<A: AttributeModel> CollapseLoop<'_, A> {
         let first = &edges[0];
         let from = self.vertices.get(first.ends.v0).place();
         let place = match first.ends.free {
-            true => within(self.room, from.as_dvec3() + first.quadric.half + from_middle),
+            true => {
+                within::<A::Metric>(self.room, from.as_dvec3() + first.quadric.half + from_middle)
+            }
             false => from,
         };
         let mut steps = Vec::with_capacity(edges.len());
