@@ -1,0 +1,136 @@
+//! Cameras that look at a flock.
+
+use glam::Vec3;
+use thiserror::Error;
+
+/// Perspective camera with square pixels, in body lengths.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Camera {
+    eye: Vec3,
+    right: Vec3,
+    up: Vec3,
+    forward: Vec3,
+    size: [u32; 2],
+    /// Tangents of half the fields of view across and down.
+    tangents: [f32; 2],
+    fov_rad: f32,
+}
+
+/// Reason why a camera cannot be made.
+#[derive(Clone, Copy, Debug, Error, PartialEq)]
+pub enum CameraError {
+    /// The eye or the target has a coordinate that is not finite.
+    #[error("the camera's eye and target must be finite, not {eye:?} and {target:?}")]
+    NotFinite {
+        /// Position of the eye.
+        eye: [f32; 3],
+        /// Point that the camera looks at.
+        target: [f32; 3],
+    },
+    /// The eye is at the target, so that there is no direction to look in.
+    #[error("the camera's eye is at its target, {0:?}")]
+    NoDirection([f32; 3]),
+    /// The field of view is outside 1° to 150°.
+    #[error("the camera's field of view must be between 1° and 150°, not {0}°")]
+    FieldOfView(f32),
+    /// The picture has no pixels.
+    #[error("the camera's picture must have pixels, not {0} x {1}")]
+    Size(u32, u32),
+}
+
+impl Camera {
+    /// Creates a camera at `eye` that looks at `target`, with +y up in the picture.
+    ///
+    /// `fov_rad` is the field of view along the picture's shorter side, in radians; `size` is width
+    /// and height in pixels.
+    ///
+    /// # Errors
+    /// A coordinate that is not finite, an eye at the target, a field of view outside 1° to 150°,
+    /// or a picture without pixels.
+    pub fn look_at(
+        eye: [f32; 3],
+        target: [f32; 3],
+        fov_rad: f32,
+        size: [u32; 2],
+    ) -> Result<Self, CameraError> {
+        let (from, to) = (Vec3::from(eye), Vec3::from(target));
+        if !(from.is_finite() && to.is_finite()) {
+            return Err(CameraError::NotFinite { eye, target });
+        }
+        let forward = (to - from).try_normalize().ok_or(CameraError::NoDirection(eye))?;
+        if !(0.017..=2.62).contains(&fov_rad) {
+            return Err(CameraError::FieldOfView(fov_rad.to_degrees()));
+        }
+        let [width, height] = size;
+        if width == 0 || height == 0 {
+            return Err(CameraError::Size(width, height));
+        }
+        let sideways = forward.cross(Vec3::Y).try_normalize();
+        let right = sideways.unwrap_or(Vec3::X);
+        let half = (fov_rad * 0.5).tan();
+        let shorter = width.min(height) as f32;
+        let tangents = size.map(|side| half * side as f32 / shorter);
+        Ok(Self { eye: from, right, up: right.cross(forward), forward, size, tangents, fov_rad })
+    }
+
+    /// Returns the position of the eye.
+    pub fn eye(&self) -> Vec3 {
+        self.eye
+    }
+
+    /// Returns unit vectors to the right, up and into the picture.
+    pub fn axes(&self) -> [Vec3; 3] {
+        [self.right, self.up, self.forward]
+    }
+
+    /// Returns width and height of the picture in pixels.
+    pub fn size(&self) -> [u32; 2] {
+        self.size
+    }
+
+    /// Returns the tangents of half the fields of view across and down.
+    pub fn tangents(&self) -> [f32; 2] {
+        self.tangents
+    }
+
+    /// Returns the number of pixels that a body length spans at distance 1.
+    pub fn pixels_at_one(&self) -> f32 {
+        self.size[0] as f32 / (2.0 * self.tangents[0])
+    }
+
+    /// Returns the camera of [`meshlod_picture`] that sees the same, for drawing.
+    pub fn for_picture(&self) -> meshlod_picture::Camera {
+        let wide = |v: Vec3| v.as_dvec3().to_array();
+        let target = wide(self.eye + self.forward);
+        meshlod_picture::Camera::look_at(wide(self.eye), target, wide(self.up), self.fov_rad.into())
+            .with_near(NEAR)
+    }
+}
+
+/// Distance of the near plane in pictures, in body lengths.
+const NEAR: f64 = 0.01;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_camera_that_sees_nothing_is_refused() {
+        let look = |eye, target, fov| Camera::look_at(eye, target, fov, [4, 3]);
+        assert!(matches!(
+            look([f32::NAN, 0.0, 0.0], [0.0; 3], 1.0),
+            Err(CameraError::NotFinite { .. })
+        ));
+        assert!(matches!(look([1.0; 3], [1.0; 3], 1.0), Err(CameraError::NoDirection(_))));
+        assert!(matches!(look([1.0; 3], [0.0; 3], f32::NAN), Err(CameraError::FieldOfView(_))));
+        assert!(Camera::look_at([1.0; 3], [0.0; 3], 1.0, [0, 3]).is_err());
+    }
+
+    #[test]
+    fn straight_down_has_a_frame_too() {
+        let camera = Camera::look_at([0.0, 9.0, 0.0], [0.0; 3], 1.0, [40, 30]).unwrap();
+        let [right, up, forward] = camera.axes();
+        assert!((right.cross(up) + forward).length() < 1e-6 && right.is_normalized());
+        assert!((camera.tangents()[0] / camera.tangents()[1] - 4.0 / 3.0).abs() < 1e-6);
+    }
+}

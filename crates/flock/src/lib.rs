@@ -1,0 +1,12 @@
+//! Flocks of instanced meshes: a simulation, policies that choose a level for every member, and the
+//! evaluation of what they cost and show.
+#![forbid(unsafe_code)]
+
+mod camera;
+mod flock;
+mod members;
+pub mod simulation;
+
+pub use camera::{Camera, CameraError};
+pub use flock::{Flock, School};
+pub use members::{Members, frame_of};

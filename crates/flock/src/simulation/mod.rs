@@ -1,0 +1,1 @@
+//! Simulation of schools that follow their leaders round obstacles.
