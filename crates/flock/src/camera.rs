@@ -14,6 +14,8 @@ pub struct Camera {
     /// Tangents of half the fields of view across and down.
     tangents: [f32; 2],
     fov_rad: f32,
+    velocity: Vec3,
+    gaze: [f32; 2],
 }
 
 /// Reason why a camera cannot be made.
@@ -70,7 +72,41 @@ impl Camera {
         let half = (fov_rad * 0.5).tan();
         let shorter = width.min(height) as f32;
         let tangents = size.map(|side| half * side as f32 / shorter);
-        Ok(Self { eye: from, right, up: right.cross(forward), forward, size, tangents, fov_rad })
+        Ok(Self {
+            eye: from,
+            right,
+            up: right.cross(forward),
+            forward,
+            size,
+            tangents,
+            fov_rad,
+            velocity: Vec3::ZERO,
+            gaze: [0.0; 2],
+        })
+    }
+
+    /// Returns this camera moving at a velocity, in body lengths a second; one that is not finite
+    /// counts as rest.
+    pub fn moving(self, velocity: [f32; 3]) -> Self {
+        let velocity = Vec3::from(velocity);
+        Self { velocity: if velocity.is_finite() { velocity } else { Vec3::ZERO }, ..self }
+    }
+
+    /// Returns this camera for a viewer who looks at a point of the picture: 0 is the middle, -1 and
+    /// 1 are the left and right, or the lower and upper rim. Values are clamped to that range.
+    pub fn with_gaze(self, gaze: [f32; 2]) -> Self {
+        Self { gaze: gaze.map(|x| if x.is_nan() { 0.0 } else { x.clamp(-1.0, 1.0) }), ..self }
+    }
+
+    /// Returns the velocity of the camera, in body lengths a second.
+    pub fn velocity(&self) -> Vec3 {
+        self.velocity
+    }
+
+    /// Returns the tangents of the angles between the view axis and where the viewer looks, to the
+    /// right and up.
+    pub fn gaze_tangents(&self) -> [f32; 2] {
+        [self.gaze[0] * self.tangents[0], self.gaze[1] * self.tangents[1]]
     }
 
     /// Returns the position of the eye.

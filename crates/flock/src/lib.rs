@@ -4,7 +4,9 @@
 
 mod camera;
 mod flock;
+pub mod levels;
 mod members;
+pub mod select;
 pub mod simulation;
 
 pub use camera::{Camera, CameraError};

@@ -12,6 +12,8 @@ pub struct Members {
     pub position: [Vec<f32>; 3],
     /// Unit vector in which each member swims, by axis.
     pub heading: [Vec<f32>; 3],
+    /// Speed of each member along its heading, in body lengths a second.
+    pub speed: Vec<f32>,
 }
 
 impl Members {
@@ -25,20 +27,22 @@ impl Members {
         self.len() == 0
     }
 
-    /// Adds a member; the heading must be a unit vector.
+    /// Adds a member at rest; the heading must be a unit vector.
     pub fn push(&mut self, position: [f32; 3], heading: [f32; 3]) {
         for axis in 0..3 {
             self.position[axis].push(position[axis]);
             self.heading[axis].push(heading[axis]);
         }
+        self.speed.push(0.0);
     }
 
-    /// Changes the number of members; new ones are at the origin and head along +z.
+    /// Changes the number of members; new ones rest at the origin and head along +z.
     pub fn resize(&mut self, count: usize) {
         self.position.iter_mut().for_each(|axis| axis.resize(count, 0.0));
         for (axis, values) in self.heading.iter_mut().enumerate() {
             values.resize(count, if axis == 2 { 1.0 } else { 0.0 });
         }
+        self.speed.resize(count, 0.0);
     }
 
     /// Returns the position of a member.

@@ -197,7 +197,7 @@ fn by_policies<'m>(
         .filter(|&v| connectivity.marks(VertexId::new(v)).non_manifold())
         .count();
     let mut surface = Surface::new(mesh, &connectivity);
-    let held = locks::apply(options, method, &connectivity, &mut surface);
+    let held = locks::apply(options, &connectivity, &mut surface);
     let input = InputSummary { degenerate_faces, duplicate_faces, non_manifold_vertices, held };
     let below = options.vanish_below.filter(|_| options.topology == Topology::Free);
     let vanishing = Vanishing::new(&surface, method, below);

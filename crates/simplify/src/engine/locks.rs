@@ -2,7 +2,7 @@
 
 use meshlod_mesh::{Connectivity, Lock, Locks, Mesh, VertexId};
 
-use crate::options::{Method, Options, SimplifyError};
+use crate::options::{Options, SimplifyError};
 use crate::surface::ties::{MOST_MEMBERS, Ties};
 use crate::surface::{Flags, Surface};
 
@@ -67,7 +67,6 @@ pub(crate) fn validate(locks: &Locks, mesh: &Mesh) -> Result<(), SimplifyError> 
 /// Flags locked and protected vertices of a surface, and stores its ties.
 pub(crate) fn apply(
     options: &Options,
-    method: Method,
     connectivity: &Connectivity,
     surface: &mut Surface,
 ) -> Held {
@@ -101,6 +100,6 @@ pub(crate) fn apply(
         }
     }
     surface.ties = Ties::new(ties);
-    surface.protection = PROTECTION.powi(method.cost_power());
+    surface.protection = options.protection_of_cost();
     held
 }

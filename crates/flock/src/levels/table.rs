@@ -1,0 +1,134 @@
+//! Table of all levels of a model, in one vertex buffer and one index buffer.
+
+use std::ops::Range;
+
+use meshlod_mesh::{Attributes, Labels, Layer, Mesh, MeshError, VertexId, WedgeId};
+use meshlod_picture::PictureError;
+use meshlod_simplify::SimplifyError;
+use thiserror::Error;
+
+use crate::levels::difference::Differences;
+use crate::levels::directions::DirectionGrid;
+use crate::levels::model::ModelAxes;
+
+/// Levels of one model: what a renderer binds once and draws thousands of times.
+///
+/// Vertices are in the frame of a member: left +x, up +y, heading +z, one body length long and
+/// centred at the origin.
+#[derive(Clone, Debug)]
+pub struct LevelTable {
+    /// Position of each vertex, in body lengths.
+    pub positions: Vec<[f32; 3]>,
+    /// Attribute layers, with values for every vertex; there are always normals.
+    pub layers: Vec<Layer>,
+    /// Vertices of each triangle, level after level, counter-clockwise seen from outside.
+    pub triangles: Vec<[u32; 3]>,
+    /// Material of each triangle, if the model has materials; within a level they are sorted.
+    pub materials: Option<Labels>,
+    /// Levels of all chains, chain after chain.
+    pub levels: Vec<Level>,
+    /// Chains; the first is [`ChainKind::Whole`].
+    pub chains: Vec<Chain>,
+    /// Directions of the facing chains.
+    pub directions: DirectionGrid,
+    /// What the levels of the whole chain show differently.
+    pub differences: Differences,
+    /// Radius of the ball around the origin that holds all vertices, in body lengths.
+    pub radius: f32,
+    /// Half of the extent along each axis, in body lengths.
+    pub half_extent: [f32; 3],
+}
+
+/// Level of a chain.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Level {
+    /// Chain of the level, an index into [`LevelTable::chains`].
+    pub chain: usize,
+    /// Triangles of the level, a range of [`LevelTable::triangles`].
+    pub triangles: Range<usize>,
+    /// Greatest distance of the model's vertices from the level, in body lengths.
+    pub error: f32,
+}
+
+/// Chain of levels, finest first.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Chain {
+    /// How the levels of the chain are coarsened.
+    pub kind: ChainKind,
+    /// Levels of the chain, a range of [`LevelTable::levels`]. All but the finest level of the
+    /// whole chain are coarser than the model.
+    pub levels: Range<usize>,
+}
+
+/// How the levels of a chain are coarsened.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ChainKind {
+    /// Evenly.
+    Whole,
+    /// Mostly on the member's left side.
+    LeftCoarsened,
+    /// Mostly on the member's right side.
+    RightCoarsened,
+    /// As the whole chain, without the faces that are hidden from a direction of the grid with this
+    /// number.
+    Facing(usize),
+}
+
+/// Reason why no levels can be built for a model.
+#[derive(Debug, Error)]
+pub enum TableError {
+    /// The model is not a valid mesh.
+    #[error(transparent)]
+    Mesh(#[from] MeshError),
+    /// The model has no faces, or its size is zero or out of range.
+    #[error("the model has no extent")]
+    NoExtent,
+    /// The forward and up axes of the model do not span a plane.
+    #[error("the model's forward and up axes must be two directions, not {:?} and {:?}", .0.forward, .0.up)]
+    Axes(ModelAxes),
+    /// The model cannot be simplified.
+    #[error(transparent)]
+    Simplify(#[from] SimplifyError),
+    /// A picture of the model cannot be drawn.
+    #[error(transparent)]
+    Picture(#[from] PictureError),
+    /// An option is out of range.
+    #[error("{0}")]
+    Option(String),
+}
+
+impl LevelTable {
+    /// Returns the number of triangles of a level.
+    #[inline]
+    pub fn triangle_count(&self, level: usize) -> usize {
+        self.levels[level].triangles.len()
+    }
+
+    /// Returns the number of levels of the whole chain, which the facing chains have too.
+    pub fn depth(&self) -> usize {
+        self.chains[0].levels.len()
+    }
+
+    /// Returns the chain of this kind; the whole chain if there is none.
+    pub fn chain(&self, kind: ChainKind) -> &Chain {
+        self.chains.iter().find(|chain| chain.kind == kind).unwrap_or(&self.chains[0])
+    }
+
+    /// Returns a level as a mesh of its own, with all vertices of the table.
+    pub fn mesh(&self, level: usize) -> Mesh {
+        let range = self.levels[level].triangles.clone();
+        let triangles = &self.triangles[range.clone()];
+        let kept: Vec<u32> = range.map(|triangle| triangle as u32).collect();
+        Mesh {
+            positions: self.positions.iter().map(|p| p.map(f64::from)).collect(),
+            faces: triangles.iter().map(|t| t.map(VertexId)).collect(),
+            attributes: Some(Attributes {
+                corners: triangles.iter().map(|t| t.map(WedgeId)).collect(),
+                wedge_count: self.positions.len(),
+                layers: self.layers.clone(),
+            }),
+            materials: self.materials.as_ref().map(|labels| labels.select(&kept)),
+            objects: None,
+        }
+    }
+}

@@ -1,0 +1,12 @@
+//! No levels: every member in full detail.
+
+use crate::select::{InstanceLevel, LANES, Policy, View};
+
+/// Draws every member in view in full detail.
+pub struct FullDetail;
+
+impl Policy for FullDetail {
+    fn select(&mut self, view: &View<'_>, levels: &mut [InstanceLevel]) {
+        view.assign(levels, |_, _, chosen| *chosen = [InstanceLevel::drawn(0); LANES]);
+    }
+}

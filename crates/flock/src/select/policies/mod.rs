@@ -1,0 +1,62 @@
+//! Policies, one a file.
+//!
+//! Those of the paper share one scale: a member at a distance `d` gets the share `NEAR * detail / d`
+//! of its triangles, and a factor makes it count as farther away than it is.
+
+mod budgeted;
+mod direction;
+mod distance;
+mod eccentricity;
+mod full_detail;
+mod layer;
+mod ours;
+mod paper;
+mod relative_distance;
+mod screen_error;
+mod speed;
+
+pub use budgeted::Budgeted;
+pub use direction::Direction;
+pub use distance::Distance;
+pub use eccentricity::Eccentricity;
+pub use full_detail::FullDetail;
+pub use layer::Layer;
+pub use ours::Ours;
+pub use paper::{Factors, Paper};
+pub use relative_distance::{Along, RelativeDistance};
+pub use screen_error::ScreenError;
+pub use speed::Speed;
+
+use crate::flock::School;
+use crate::levels::Chain;
+use crate::select::{ChainLevels, InstanceLevel, View};
+
+/// Distance up to which a member has all its triangles at a detail of 1, in body lengths.
+const NEAR: f32 = 4.0;
+
+/// Fills the levels of a chain by the paper's F(d) = 1/d, as a share of the triangles.
+fn fill_by_distance(levels: &mut ChainLevels, view: &View<'_>, chain: &Chain) {
+    let near = NEAR * view.detail();
+    levels.fill_by_share(view.table, chain, |distance| near / distance);
+}
+
+/// Runs `choose` for every school. Members of no school get levels by their own distance.
+fn each_school(
+    view: &View<'_>,
+    levels: &mut [InstanceLevel],
+    by_distance: &ChainLevels,
+    mut choose: impl FnMut(&School, &mut [InstanceLevel]),
+) {
+    let mut next = 0;
+    let mut alone = |range: std::ops::Range<usize>, levels: &mut [InstanceLevel]| {
+        view.assign_range(range, levels, |_, lanes, chosen| {
+            *chosen = lanes.distance_squared.map(|square| by_distance.at_squared(square));
+        });
+    };
+    for school in &view.flock.schools {
+        alone(next..school.members.start.max(next), levels);
+        choose(school, levels);
+        next = school.members.end;
+    }
+    alone(next..levels.len(), levels);
+}

@@ -1,0 +1,208 @@
+//! Levels by what their triangles add to the picture, under one budget for the whole flock.
+//!
+//! Every member falls into a cell: from which direction it is seen, how large, and how much of it
+//! others leave visible. Members of a cell are alike, so the budget is shared out among cells, not
+//! members, and the best choice costs the same for a hundred members as for a million:
+//! 1. [`visibility`]: members are splatted into a grid of tiles and depths; what lies in front of a
+//!    member hides it.
+//! 2. [`gains`]: for every direction and size the table knows what the next finer level adds to the
+//!    picture per triangle.
+//! 3. [`allocation`]: the steps of all cells are taken in the order of their gains until the budget
+//!    is spent [FS93].
+//! 4. A member keeps its level while it is within a band around that of its cell, and faces that it
+//!    turns away are left out by its facing chain.
+
+mod allocation;
+mod gains;
+mod visibility;
+
+use glam::Vec3;
+use rayon::prelude::*;
+
+use crate::levels::{ChainKind, LevelTable, NEAREST_FACING};
+use crate::select::policies::ours::allocation::Allocation;
+use crate::select::policies::ours::gains::{Gains, SIZES, size_of};
+use crate::select::policies::ours::visibility::{NOWHERE, VISIBILITIES, VisibilityGrid};
+use crate::select::{InstanceLevel, LANES, Lanes, Policy, View};
+
+/// Shares a budget of triangles out so that the picture of the whole flock changes least.
+pub struct Ours {
+    gains: Gains,
+    grid: VisibilityGrid,
+    allocation: Allocation,
+    /// First level of the facing chain of each direction.
+    facing: Vec<u16>,
+    /// Direction of the differences for each direction of the facing chains.
+    view_of_facing: Vec<u8>,
+    /// Depth in its chain of every level of the whole and the facing chains.
+    depth_of: Vec<u8>,
+    /// What is known of each member: first its froxel, then its cell.
+    places: Vec<u32>,
+    /// Size and direction of each member.
+    looks: Vec<Look>,
+}
+
+/// How a member looks to the camera.
+#[derive(Clone, Copy, Debug, Default)]
+struct Look {
+    size: u8,
+    /// Direction of the facing chains in which the eye is.
+    facing: u8,
+}
+
+/// Members that one task handles.
+const TASK: usize = 1 << 14;
+
+/// Number of a cell for members that are not drawn.
+const NO_CELL: u32 = u32::MAX;
+
+/// Bit of a cell's number for members that are too near for facing chains.
+const NEAR: u32 = 1 << 31;
+
+impl Ours {
+    /// Creates the policy for a table of levels.
+    pub fn new(table: &LevelTable) -> Self {
+        let directions = &table.directions;
+        let views = table.differences.directions();
+        let view_of = |cell: usize| views.cell(directions.axis(cell)) as u8;
+        let depth = table.depth();
+        let first = |cell: usize| table.chain(ChainKind::Facing(cell)).levels.start as u16;
+        let facing: Vec<u16> = (0..directions.len()).map(first).collect();
+        let mut depth_of = vec![0; table.levels.len()];
+        for start in facing.iter().copied().chain([0]) {
+            (0..depth).for_each(|i| depth_of[usize::from(start) + i] = i as u8);
+        }
+        Self {
+            gains: Gains::new(table),
+            grid: VisibilityGrid::new(table),
+            allocation: Allocation::new(views.len() * SIZES * VISIBILITIES),
+            view_of_facing: (0..directions.len()).map(view_of).collect(),
+            facing,
+            depth_of,
+            places: Vec::new(),
+            looks: Vec::new(),
+        }
+    }
+
+    /// Finds the froxel, the size and the direction of every member.
+    fn look(&mut self, view: &View<'_>) {
+        let count = view.flock.members.len();
+        self.places.resize(count, NOWHERE);
+        self.looks.resize(count, Look::default());
+        let grid = &self.grid;
+        let focal = view.camera.pixels_at_one();
+        let tasks = self.places.par_chunks_mut(TASK).zip(self.looks.par_chunks_mut(TASK));
+        tasks.enumerate().for_each(|(task, (places, looks))| {
+            let eights = places.chunks_mut(LANES).zip(looks.chunks_mut(LANES));
+            for (i, (places, looks)) in eights.enumerate() {
+                let first = task * TASK + i * LANES;
+                let lanes = view.lanes(first);
+                let froxels = grid.froxels(&lanes);
+                let facing = facing(view, first, &lanes);
+                for lane in 0..places.len() {
+                    let hidden = view.visible.is_some_and(|visible| !visible[first + lane]);
+                    let drawn = lanes.in_frustum[lane] & !hidden;
+                    places[lane] = if drawn { froxels[lane] } else { NOWHERE };
+                    let size = size_of(focal * focal / lanes.distance_squared[lane]);
+                    looks[lane] = Look { size: size as u8, facing: facing[lane] };
+                }
+            }
+        });
+    }
+
+    /// Replaces the froxel of every member by its cell, and counts the members of each cell.
+    fn sort_into_cells(&mut self, view: &View<'_>) {
+        let Self { grid, allocation, view_of_facing, places, looks, gains, .. } = self;
+        let nearest = size_of((view.camera.pixels_at_one() / NEAREST_FACING).powi(2));
+        allocation.clear();
+        for (member, (place, look)) in places.iter_mut().zip(looks.iter()).enumerate() {
+            if *place == NOWHERE {
+                *place = NO_CELL;
+                continue;
+            }
+            let size = usize::from(look.size);
+            let visibility = grid.visibility(view, member, *place, size);
+            let direction = usize::from(view_of_facing[usize::from(look.facing)]);
+            let cell = (direction * SIZES + size) * VISIBILITIES + visibility;
+            allocation.count(cell);
+            *place = cell as u32 | if size >= nearest { NEAR } else { 0 };
+        }
+        allocation.share_out(gains, view.budget.triangles);
+    }
+
+    /// Gives every member the level of its cell, or keeps its own if that is within the band.
+    /// Returns the number of triangles.
+    fn assign(&self, view: &View<'_>, levels: &mut [InstanceLevel], band: Band) -> usize {
+        let task = |(task, levels): (usize, &mut [InstanceLevel])| {
+            let first = task * TASK;
+            let mut triangles = 0;
+            for (i, level) in levels.iter_mut().enumerate() {
+                let (place, look) = (self.places[first + i], self.looks[first + i]);
+                if place == NO_CELL {
+                    *level = InstanceLevel::HIDDEN;
+                    continue;
+                }
+                let of_cell = self.allocation.choice((place & !NEAR) as usize);
+                let finest = if band == Band::Full { of_cell.finest } else { of_cell.best };
+                let depth = match level.level() {
+                    Some(before) => self.depth_of[before].clamp(finest, of_cell.coarsest),
+                    None => of_cell.best,
+                };
+                let chain =
+                    if place & NEAR != 0 { 0 } else { self.facing[usize::from(look.facing)] };
+                *level = InstanceLevel::drawn(usize::from(chain) + usize::from(depth));
+                triangles += view.table.triangle_count(usize::from(chain) + usize::from(depth));
+            }
+            triangles
+        };
+        levels.par_chunks_mut(TASK).enumerate().map(task).sum()
+    }
+}
+
+/// Levels that a member may keep.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Band {
+    /// Finer and coarser ones than that of its cell.
+    Full,
+    /// Only coarser ones, so that the budget holds.
+    Coarser,
+}
+
+impl Policy for Ours {
+    fn select(&mut self, view: &View<'_>, levels: &mut [InstanceLevel]) {
+        self.grid.start(view);
+        self.look(view);
+        self.grid.splat(view, &self.places, |member| usize::from(self.looks[member].size));
+        self.sort_into_cells(view);
+        if self.assign(view, levels, Band::Full) > view.budget.triangles {
+            self.assign(view, levels, Band::Coarser);
+        }
+    }
+}
+
+/// Returns the direction of the facing chains in which each of eight members sees the eye.
+#[inline(always)]
+fn facing(view: &View<'_>, first: usize, lanes: &Lanes) -> [u8; LANES] {
+    let heading = &view.flock.members.heading;
+    let mut h = [[0.0; LANES]; 3];
+    for axis in 0..3 {
+        let values = &heading[axis][first..];
+        for lane in 0..LANES {
+            h[axis][lane] = values.get(lane).copied().unwrap_or(values[values.len() - 1]);
+        }
+    }
+    let [x, y, z] = &lanes.offset;
+    let mut local = [[0.0; LANES]; 3];
+    for i in 0..LANES {
+        // Left is (h.z, 0, -h.x) made unit, up is heading × left; the eye is at minus the offset.
+        let flat = h[2][i] * h[2][i] + h[0][i] * h[0][i];
+        let scale = flat.max(1e-12).sqrt().recip();
+        let (lx, lz) = (h[2][i] * scale, -h[0][i] * scale);
+        local[0][i] = -(x[i] * lx + z[i] * lz);
+        let (ux, uy, uz) = (h[1][i] * lz, h[2][i] * lx - h[0][i] * lz, -h[1][i] * lx);
+        local[1][i] = -(x[i] * ux + y[i] * uy + z[i] * uz);
+        local[2][i] = -(x[i] * h[0][i] + y[i] * h[1][i] + z[i] * h[2][i]);
+    }
+    let directions = &view.table.directions;
+    std::array::from_fn(|i| directions.cell(Vec3::new(local[0][i], local[1][i], local[2][i])) as u8)
+}

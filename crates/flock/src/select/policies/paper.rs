@@ -1,0 +1,65 @@
+//! The paper's three factors together.
+
+use crate::levels::LevelTable;
+use crate::select::policies::direction::SidedLevels;
+use crate::select::policies::each_school;
+use crate::select::policies::layer::Shells;
+use crate::select::policies::relative_distance::{Along, RelativeTo};
+use crate::select::{InstanceLevel, Policy, View};
+
+/// Gives every member a level by its distance relative to the leader's, the side that the school
+/// turns to the camera, and its depth in the school [CC05].
+pub struct Paper {
+    chains: SidedLevels,
+    factors: Factors,
+}
+
+/// Factors of the paper that take part.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Factors {
+    /// All three.
+    All,
+    /// All but the direction: levels of the whole chain.
+    WithoutDirection,
+    /// All but the layer.
+    WithoutLayer,
+}
+
+impl Paper {
+    /// Creates the policy for a table of levels.
+    pub fn new(_table: &LevelTable) -> Self {
+        Self { chains: SidedLevels::default(), factors: Factors::All }
+    }
+
+    /// Returns the policy with only some of its factors.
+    pub fn with(self, factors: Factors) -> Self {
+        Self { factors, ..self }
+    }
+}
+
+impl Policy for Paper {
+    fn select(&mut self, view: &View<'_>, levels: &mut [InstanceLevel]) {
+        self.chains.fill(view);
+        each_school(view, levels, self.chains.whole(), |school, levels| {
+            let by_distance = match self.factors {
+                Factors::WithoutDirection => self.chains.whole(),
+                _ => self.chains.of(view, school),
+            };
+            let distance = RelativeTo::new(view, school, Along::Leader);
+            let shells = Shells::new(view, school);
+            let range = school.members.clone();
+            if self.factors == Factors::WithoutLayer {
+                view.assign_range(range, levels, |_, lanes, chosen| {
+                    *chosen = distance.squares(lanes).map(|square| by_distance.at_squared(square));
+                });
+            } else {
+                view.assign_range(range, levels, |_, lanes, chosen| {
+                    let (squares, factors) =
+                        (distance.squares(lanes), shells.squared_factors(lanes));
+                    *chosen =
+                        std::array::from_fn(|i| by_distance.at_squared(squares[i] * factors[i]));
+                });
+            }
+        });
+    }
+}

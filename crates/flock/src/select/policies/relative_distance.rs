@@ -1,0 +1,81 @@
+//! Levels by the paper's relative distance.
+
+use glam::Vec3;
+
+use crate::flock::School;
+use crate::levels::LevelTable;
+use crate::select::policies::{each_school, fill_by_distance};
+use crate::select::{ChainLevels, InstanceLevel, LANES, Lanes, Policy, View};
+
+/// Gives every member a share of its triangles by the leader's distance and its own place in the
+/// school, with one dot product a member [CC05].
+pub struct RelativeDistance {
+    levels: ChainLevels,
+    along: Along,
+}
+
+/// Direction in which relative distance grows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Along {
+    /// From the eye to the leader, which makes it the distance to first order.
+    Leader,
+    /// Along the view axis, as printed.
+    View,
+}
+
+impl RelativeDistance {
+    /// Creates the policy for a table of levels.
+    pub fn new(_table: &LevelTable) -> Self {
+        Self { levels: ChainLevels::new(), along: Along::Leader }
+    }
+
+    /// Returns the policy with the direction of distance as printed or corrected.
+    pub fn along(self, along: Along) -> Self {
+        Self { along, ..self }
+    }
+}
+
+impl Policy for RelativeDistance {
+    fn select(&mut self, view: &View<'_>, levels: &mut [InstanceLevel]) {
+        fill_by_distance(&mut self.levels, view, &view.table.chains[0]);
+        let by_distance = &self.levels;
+        each_school(view, levels, by_distance, |school, levels| {
+            let distance = RelativeTo::new(view, school, self.along);
+            view.assign_range(school.members.clone(), levels, |_, lanes, chosen| {
+                *chosen = distance.squares(lanes).map(|square| by_distance.at_squared(square));
+            });
+        });
+    }
+}
+
+/// Distance of members from the eye, as a linear function of their places.
+pub(super) struct RelativeTo {
+    direction: Vec3,
+    /// Distance that the direction gives to the eye itself.
+    offset: f32,
+}
+
+impl RelativeTo {
+    pub(super) fn new(view: &View<'_>, school: &School, along: Along) -> Self {
+        let [_, _, axis] = view.camera.axes();
+        let to_leader = school.leader - view.camera.eye();
+        let direction = match along {
+            Along::Leader => to_leader.try_normalize().unwrap_or(axis),
+            Along::View => axis,
+        };
+        // d + v·(p − leader) = v·(p − eye) + (d − v·(leader − eye)).
+        Self { direction, offset: to_leader.length() - direction.dot(to_leader) }
+    }
+
+    /// Returns the squares of the distances of eight members; zero behind the eye.
+    #[inline(always)]
+    pub(super) fn squares(&self, lanes: &Lanes) -> [f32; LANES] {
+        let [x, y, z] = &lanes.offset;
+        let v = self.direction;
+        std::array::from_fn(|i| {
+            let distance = x[i] * v.x + y[i] * v.y + z[i] * v.z + self.offset;
+            let distance = distance.max(0.0);
+            distance * distance
+        })
+    }
+}

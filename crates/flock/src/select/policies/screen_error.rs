@@ -1,0 +1,33 @@
+//! Levels by their error in pixels.
+
+use crate::levels::LevelTable;
+use crate::select::{ChainLevels, InstanceLevel, Policy, View};
+
+/// Gives every member the coarsest level whose error spans at most one pixel, at a detail of 1.
+pub struct ScreenError {
+    levels: ChainLevels,
+}
+
+impl ScreenError {
+    /// Creates the policy for a table of levels.
+    pub fn new(_table: &LevelTable) -> Self {
+        Self { levels: ChainLevels::new() }
+    }
+}
+
+impl Policy for ScreenError {
+    fn select(&mut self, view: &View<'_>, levels: &mut [InstanceLevel]) {
+        let View { table, camera, .. } = *view;
+        let whole = table.chains[0].levels.clone();
+        // Error in body lengths that spans a pixel at distance 1.
+        let tolerance = 1.0 / (view.detail() * camera.pixels_at_one());
+        self.levels.fill(|distance| {
+            let fits = |level: &usize| table.levels[*level].error <= tolerance * distance;
+            whole.clone().rev().find(fits).unwrap_or(whole.start)
+        });
+        let by_distance = &self.levels;
+        view.assign(levels, |_, lanes, chosen| {
+            *chosen = lanes.distance_squared.map(|square| by_distance.at_squared(square));
+        });
+    }
+}
