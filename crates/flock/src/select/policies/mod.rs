@@ -48,7 +48,7 @@ fn each_school(
     mut choose: impl FnMut(&School, &mut [InstanceLevel]),
 ) {
     let mut next = 0;
-    let mut alone = |range: std::ops::Range<usize>, levels: &mut [InstanceLevel]| {
+    let alone = |range: std::ops::Range<usize>, levels: &mut [InstanceLevel]| {
         view.assign_range(range, levels, |_, lanes, chosen| {
             *chosen = lanes.distance_squared.map(|square| by_distance.at_squared(square));
         });

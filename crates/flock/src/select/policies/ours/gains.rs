@@ -53,16 +53,15 @@ impl Gains {
         let views = table.differences.directions();
         let mut gains = Self { steps: Vec::new(), starts: vec![0], coarsest: Vec::new() };
         for view in 0..views.len() {
-            let facing = table.directions.cell(views.axis(view));
-            let chain = table.chain(ChainKind::Facing(facing)).levels.clone();
+            let triangles = mean_triangles(table, view);
             for size in 0..SIZES {
                 let px = pixels_of(size);
-                let level = |(depth, level): (usize, usize)| Candidate {
+                let level = |(depth, &triangles): (usize, &u32)| Candidate {
                     depth: depth as u8,
-                    triangles: table.triangle_count(level) as u32,
+                    triangles,
                     difference: table.differences.area(view, depth, px) * px * px,
                 };
-                let hull = hull(chain.clone().enumerate().map(level));
+                let hull = hull(triangles.iter().enumerate().map(level));
                 gains.coarsest.push((hull[0].depth, hull[0].triangles));
                 gains.steps.extend(hull.windows(2).map(|pair| Step {
                     log_gain: pair[0].gain_to(&pair[1]).log2(),
@@ -86,6 +85,23 @@ impl Gains {
     pub(super) fn coarsest(&self, look: usize) -> (u8, u32) {
         self.coarsest[look]
     }
+}
+
+/// Returns the number of triangles of every level, finest first, as a mean over the facing chains
+/// of directions that are compared in one.
+fn mean_triangles(table: &LevelTable, view: usize) -> Vec<u32> {
+    let (directions, views) = (&table.directions, table.differences.directions());
+    let is_near = |cell: &usize| views.cell(directions.axis(*cell)) == view;
+    let mut cells: Vec<usize> = (0..directions.len()).filter(is_near).collect();
+    if cells.is_empty() {
+        cells.push(directions.cell(views.axis(view)));
+    }
+    let of_level = |depth: usize| {
+        let level = |&cell: &usize| table.chain(ChainKind::Facing(cell)).levels.start + depth;
+        let sum: usize = cells.iter().map(|cell| table.triangle_count(level(cell))).sum();
+        sum.div_ceil(cells.len()) as u32
+    };
+    (0..table.depth()).map(of_level).collect()
 }
 
 /// Level that may be chosen.

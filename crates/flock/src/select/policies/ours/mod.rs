@@ -53,6 +53,9 @@ struct Look {
 /// Members that one task handles.
 const TASK: usize = 1 << 14;
 
+/// Times that the budget is shared out anew where the levels cost more than expected.
+const ATTEMPTS: usize = 4;
+
 /// Number of a cell for members that are not drawn.
 const NO_CELL: u32 = u32::MAX;
 
@@ -112,7 +115,7 @@ impl Ours {
 
     /// Replaces the froxel of every member by its cell, and counts the members of each cell.
     fn sort_into_cells(&mut self, view: &View<'_>) {
-        let Self { grid, allocation, view_of_facing, places, looks, gains, .. } = self;
+        let Self { grid, allocation, view_of_facing, places, looks, .. } = self;
         let nearest = size_of((view.camera.pixels_at_one() / NEAREST_FACING).powi(2));
         allocation.clear();
         for (member, (place, look)) in places.iter_mut().zip(looks.iter()).enumerate() {
@@ -127,7 +130,6 @@ impl Ours {
             allocation.count(cell);
             *place = cell as u32 | if size >= nearest { NEAR } else { 0 };
         }
-        allocation.share_out(gains, view.budget.triangles);
     }
 
     /// Gives every member the level of its cell, or keeps its own if that is within the band.
@@ -174,8 +176,19 @@ impl Policy for Ours {
         self.look(view);
         self.grid.splat(view, &self.places, |member| usize::from(self.looks[member].size));
         self.sort_into_cells(view);
-        if self.assign(view, levels, Band::Full) > view.budget.triangles {
-            self.assign(view, levels, Band::Coarser);
+        let budget = view.budget.triangles;
+        let mut target = budget;
+        for _ in 0..ATTEMPTS {
+            self.allocation.share_out(&self.gains, target);
+            if self.assign(view, levels, Band::Full) <= budget {
+                return;
+            }
+            let spent = self.assign(view, levels, Band::Coarser);
+            if spent <= budget {
+                return;
+            }
+            // Cells know the mean cost of their levels only.
+            target = (target as f64 * 0.98 * budget as f64 / spent as f64) as usize;
         }
     }
 }
