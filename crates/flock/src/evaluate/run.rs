@@ -13,7 +13,7 @@ use crate::evaluate::bootstrap::Interval;
 use crate::evaluate::curve::{Needed, Row, mean, triangles_for};
 use crate::evaluate::footage::Footage;
 use crate::evaluate::score::{FrameScore, Reference, temporal_error};
-use crate::levels::{LevelTable, Look};
+use crate::levels::{ChainKind, Level, LevelTable, Look};
 use crate::select::{Budget, InstanceLevel, Selector};
 
 /// Options of an evaluation.
@@ -263,9 +263,8 @@ impl<'a> Stage<'a> {
                         .iter()
                         .zip(chosen)
                         .filter(|(a, b)| a.level().is_some() && b.level().is_some());
-                    let depth = |level: &InstanceLevel| self.depth(*level);
                     let (same, other): (Vec<_>, Vec<_>) =
-                        both.partition(|(a, b)| depth(a) == depth(b));
+                        both.partition(|(a, b)| self.look_of(**a) == self.look_of(**b));
                     switches += other.len();
                     member_seconds += (same.len() + other.len()) as f64 * f64::from(*frame_s);
                 }
@@ -288,11 +287,10 @@ impl<'a> Stage<'a> {
 
     /// Returns what of a level can be seen to change: its depth in the chain, and the chain, but
     /// for facing chains, which show the same as the whole.
-    fn depth(&self, level: InstanceLevel) -> Option<(usize, usize)> {
-        let level = level.level()?;
-        let chain = self.table.levels[level].chain;
-        let start = self.table.chains[chain].levels.start;
-        Some((level - start, if chain > 2 { 0 } else { chain }))
+    fn look_of(&self, level: InstanceLevel) -> Option<(usize, ChainKind)> {
+        let Level { chain, depth, .. } = &self.table.levels[level.level()?];
+        let is_facing = matches!(chain, ChainKind::Facing(_));
+        Some((*depth, if is_facing { ChainKind::Whole } else { *chain }))
     }
 }
 
