@@ -1,6 +1,6 @@
 //! Cameras that look at a flock.
 
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 use thiserror::Error;
 
 /// Perspective camera with square pixels, in body lengths.
@@ -136,9 +136,14 @@ impl Camera {
 
     /// Returns the camera of [`meshlod_picture`] that sees the same, for drawing.
     pub fn for_picture(&self) -> meshlod_picture::Camera {
-        let wide = |v: Vec3| v.as_dvec3().to_array();
-        let target = wide(self.eye + self.forward);
-        meshlod_picture::Camera::look_at(wide(self.eye), target, wide(self.up), self.fov_rad.into())
+        self.looking(self.forward.as_dvec3())
+    }
+
+    /// Returns the camera of [`meshlod_picture`] at the same place that looks another way.
+    pub(crate) fn looking(&self, way: DVec3) -> meshlod_picture::Camera {
+        let (eye, up) = (self.eye.as_dvec3(), self.up.as_dvec3());
+        let target = (eye + way).to_array();
+        meshlod_picture::Camera::look_at(eye.into(), target, up.into(), self.fov_rad.into())
             .with_near(NEAR)
     }
 }

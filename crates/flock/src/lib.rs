@@ -3,6 +3,8 @@
 #![forbid(unsafe_code)]
 
 mod camera;
+pub mod draw;
+pub mod evaluate;
 mod flock;
 pub mod levels;
 mod members;

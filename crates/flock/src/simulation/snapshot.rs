@@ -20,20 +20,24 @@ impl Simulation {
         flock.members.resize(self.len());
         let [x, y, z] = flock.members.position.each_mut().map(|axis| axis.par_chunks_mut(CHUNK));
         let [u, v, w] = flock.members.heading.each_mut().map(|axis| axis.par_chunks_mut(CHUNK));
+        let speeds = flock.members.speed.par_chunks_mut(CHUNK);
         let places = self.places.par_chunks(CHUNK);
         let (from, to) = (&self.swarm.from, &self.swarm.to);
-        (x, y, z, u, v, w, places).into_par_iter().for_each(|(x, y, z, u, v, w, places)| {
-            for (i, &place) in places.iter().enumerate() {
-                let place = place as usize;
-                let ends = [at(&from.position, place), at(&to.position, place)];
-                let position = ends[0].lerp(ends[1], alpha);
-                let headings = [&from.velocity, &to.velocity].map(|axes| at(axes, place));
-                let [before, after] = headings.map(|velocity| velocity.normalize());
-                let heading = before.lerp(after, alpha).normalize();
-                [x[i], y[i], z[i]] = position.to_array();
-                [u[i], v[i], w[i]] = heading.to_array();
-            }
-        });
+        (x, y, z, u, v, w, speeds, places).into_par_iter().for_each(
+            |(x, y, z, u, v, w, speeds, places)| {
+                for (i, &place) in places.iter().enumerate() {
+                    let place = place as usize;
+                    let ends = [at(&from.position, place), at(&to.position, place)];
+                    let position = ends[0].lerp(ends[1], alpha);
+                    let headings = [&from.velocity, &to.velocity].map(|axes| at(axes, place));
+                    speeds[i] = headings[0].lerp(headings[1], alpha).length();
+                    let [before, after] = headings.map(|velocity| velocity.normalize());
+                    let heading = before.lerp(after, alpha).normalize();
+                    [x[i], y[i], z[i]] = position.to_array();
+                    [u[i], v[i], w[i]] = heading.to_array();
+                }
+            },
+        );
         self.snapshot_schools(alpha, &mut flock.schools);
     }
 

@@ -32,23 +32,23 @@ impl Policy for Direction {
 
 /// Levels by distance of the whole, the left-coarsened and the right-coarsened chain.
 #[derive(Default)]
-pub(super) struct SidedLevels([ChainLevels; 3]);
+pub(crate) struct SidedLevels([ChainLevels; 3]);
 
 impl SidedLevels {
-    pub(super) fn fill(&mut self, view: &View<'_>) {
+    pub(crate) fn fill(&mut self, view: &View<'_>) {
         let kinds = [ChainKind::Whole, ChainKind::LeftCoarsened, ChainKind::RightCoarsened];
         for (levels, kind) in self.0.iter_mut().zip(kinds) {
             fill_by_distance(levels, view, view.table.chain(kind));
         }
     }
 
-    pub(super) fn whole(&self) -> &ChainLevels {
+    pub(crate) fn whole(&self) -> &ChainLevels {
         &self.0[0]
     }
 
     /// Returns the levels for a school: those coarsened on the left if the camera looks towards
     /// the leader's left, within 60°, on the right if it looks that way, else the whole ones.
-    pub(super) fn of(&self, view: &View<'_>, school: &School) -> &ChainLevels {
+    pub(crate) fn of(&self, view: &View<'_>, school: &School) -> &ChainLevels {
         let [_, _, axis] = view.camera.axes();
         let towards = (school.leader - view.camera.eye()).try_normalize().unwrap_or(axis);
         let left = school.frame().x_axis.dot(towards);

@@ -15,7 +15,7 @@ pub struct Layer {
 
 /// Factors on the distance of members by shell, from the centre outwards, four shells of equal
 /// thickness, and those outside of the ellipsoid. The paper gives no numbers.
-const SHELLS: [f32; 5] = [4.0, 3.0, 2.0, 1.4, 1.0];
+pub(crate) const SHELLS: [f32; 5] = [4.0, 3.0, 2.0, 1.4, 1.0];
 
 impl Layer {
     /// Creates the policy for a table of levels.
@@ -48,14 +48,14 @@ pub(super) struct Shells {
 }
 
 impl Shells {
-    pub(super) fn new(view: &View<'_>, school: &School) -> Self {
+    pub(crate) fn new(view: &View<'_>, school: &School) -> Self {
         let to_unit_ball = school.to_unit_ball();
         Self { to_unit_ball, leader: to_unit_ball * (school.leader - view.camera.eye()) }
     }
 
     /// Returns the squares of the factors on the distances of eight members.
     #[inline(always)]
-    pub(super) fn squared_factors(&self, lanes: &Lanes) -> [f32; LANES] {
+    pub(crate) fn squared_factors(&self, lanes: &Lanes) -> [f32; LANES] {
         let [x, y, z] = &lanes.offset;
         let Mat3 { x_axis, y_axis, z_axis } = self.to_unit_ball;
         std::array::from_fn(|i| {

@@ -27,6 +27,10 @@ pub use relative_distance::{Along, RelativeDistance};
 pub use screen_error::ScreenError;
 pub use speed::Speed;
 
+pub(crate) use direction::SidedLevels;
+pub(crate) use layer::SHELLS;
+pub(crate) use relative_distance::RelativeTo;
+
 use crate::flock::School;
 use crate::levels::Chain;
 use crate::select::{ChainLevels, InstanceLevel, View};

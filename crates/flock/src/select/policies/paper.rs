@@ -15,7 +15,7 @@ pub struct Paper {
 }
 
 /// Factors of the paper that take part.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Factors {
     /// All three.
     All,

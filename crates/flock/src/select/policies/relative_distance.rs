@@ -49,14 +49,14 @@ impl Policy for RelativeDistance {
 }
 
 /// Distance of members from the eye, as a linear function of their places.
-pub(super) struct RelativeTo {
+pub(crate) struct RelativeTo {
     direction: Vec3,
     /// Distance that the direction gives to the eye itself.
     offset: f32,
 }
 
 impl RelativeTo {
-    pub(super) fn new(view: &View<'_>, school: &School, along: Along) -> Self {
+    pub(crate) fn new(view: &View<'_>, school: &School, along: Along) -> Self {
         let [_, _, axis] = view.camera.axes();
         let to_leader = school.leader - view.camera.eye();
         let direction = match along {
@@ -69,7 +69,7 @@ impl RelativeTo {
 
     /// Returns the squares of the distances of eight members; zero behind the eye.
     #[inline(always)]
-    pub(super) fn squares(&self, lanes: &Lanes) -> [f32; LANES] {
+    pub(crate) fn squares(&self, lanes: &Lanes) -> [f32; LANES] {
         let [x, y, z] = &lanes.offset;
         let v = self.direction;
         std::array::from_fn(|i| {

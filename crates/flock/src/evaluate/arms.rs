@@ -1,0 +1,73 @@
+//! Arms of the comparison: policies, what engines do, and controls.
+
+use crate::evaluate::controls::{RandomLevels, ShuffledLayer};
+use crate::levels::LevelTable;
+use crate::select::policies::{Along, Factors, Paper, RelativeDistance};
+use crate::select::{Policy, PolicyName};
+
+/// Way to choose levels that takes part in an evaluation.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Arm {
+    /// Policy by its name.
+    Policy(PolicyName),
+    /// Policy by its name; members without a visible pixel in full detail are skipped.
+    VisibleOnly(PolicyName),
+    /// Paper's policy without one of its factors.
+    Paper(Factors),
+    /// Relative distance along the view axis, as printed.
+    RelativeDistanceAsPrinted,
+    /// Control: levels at random.
+    Random,
+    /// Control: the paper's policy with the layers of other members.
+    ShuffledLayer,
+}
+
+impl Arm {
+    /// All arms in a fixed order. Full detail is not among them: it is the reference.
+    pub fn all() -> Vec<Self> {
+        let policies = PolicyName::ALL.into_iter().filter(|policy| *policy != PolicyName::None);
+        let visible =
+            [PolicyName::ScreenError, PolicyName::Budget, PolicyName::Paper, PolicyName::Ours];
+        policies
+            .map(Self::Policy)
+            .chain(visible.map(Self::VisibleOnly))
+            .chain([Self::Paper(Factors::WithoutDirection), Self::Paper(Factors::WithoutLayer)])
+            .chain([Self::RelativeDistanceAsPrinted, Self::Random, Self::ShuffledLayer])
+            .collect()
+    }
+
+    /// Returns the name of the arm in tables.
+    pub fn name(self) -> String {
+        match self {
+            Self::Policy(policy) => policy.name().into(),
+            Self::VisibleOnly(policy) => format!("{}, occluded skipped", policy.name()),
+            Self::Paper(Factors::All) => "paper".into(),
+            Self::Paper(Factors::WithoutDirection) => "paper without direction".into(),
+            Self::Paper(Factors::WithoutLayer) => "paper without layer".into(),
+            Self::RelativeDistanceAsPrinted => "relative-distance as printed".into(),
+            Self::Random => "control: random".into(),
+            Self::ShuffledLayer => "control: shuffled layers".into(),
+        }
+    }
+
+    pub(super) fn policy(self, table: &LevelTable) -> Box<dyn Policy> {
+        match self {
+            Self::Policy(policy) | Self::VisibleOnly(policy) => policy.policy(table),
+            Self::Paper(factors) => Box::new(Paper::new(table).with(factors)),
+            Self::RelativeDistanceAsPrinted => {
+                Box::new(RelativeDistance::new(table).along(Along::View))
+            }
+            Self::Random => Box::new(RandomLevels::new(table)),
+            Self::ShuffledLayer => Box::new(ShuffledLayer::new(table)),
+        }
+    }
+
+    /// Returns true if the bias of the arm is its budget of triangles, not its detail.
+    pub(super) fn has_budget(self) -> bool {
+        matches!(self, Self::Policy(policy) | Self::VisibleOnly(policy) if policy.has_budget())
+    }
+
+    pub(super) fn skips_occluded(self) -> bool {
+        matches!(self, Self::VisibleOnly(_))
+    }
+}

@@ -1,0 +1,22 @@
+//! What the policies cost and show: triangles against image error, at equal terms.
+//!
+//! [`Footage`] is a recorded flock seen by a camera. Every [`Arm`] chooses levels for the same
+//! frames; its one bias is set so that it draws a given share of the triangles of full detail. All
+//! arms are drawn by the same rasteriser with the same supersampling, and compared with full detail
+//! on the pixels that show the flock. The scores of an arm over all shares make a curve, on which
+//! the triangles needed for an image error are found.
+
+mod arms;
+mod bootstrap;
+mod controls;
+mod curve;
+mod footage;
+mod run;
+mod score;
+
+pub use arms::Arm;
+pub use bootstrap::Interval;
+pub use curve::{Needed, Row, triangles_for};
+pub use footage::Footage;
+pub use run::{Evaluation, EvaluationOptions, Still, evaluate};
+pub use score::{FrameScore, Reference};
