@@ -9,8 +9,8 @@ use crate::demo::Demo;
 use crate::failure::Failure;
 use crate::session::Session;
 use crate::verbs::{
-    build, check, compress, decompress, extract, info, lods, measure, render, repair, replay,
-    sample, simplify, strip,
+    build, check, compress, decompress, extract, flock, info, lods, measure, render, repair,
+    replay, sample, simplify, strip,
 };
 
 /// Level of detail for triangle meshes.
@@ -44,6 +44,7 @@ pub enum Verb {
     Measure(measure::Measure),
     Sample(sample::Sample),
     Render(render::Render),
+    Flock(flock::Flock),
     Demo(Demo),
 }
 
@@ -65,6 +66,7 @@ impl Verb {
             Self::Measure(verb) => verb.run(session),
             Self::Sample(verb) => verb.run(session),
             Self::Render(verb) => verb.run(session),
+            Self::Flock(verb) => verb.run(session),
             Self::Demo(verb) => verb.run(session),
         }
     }

@@ -13,6 +13,7 @@ mod demo;
 mod distance;
 mod failure;
 mod files;
+mod flock;
 mod fuse;
 mod locks;
 mod measured_bound;

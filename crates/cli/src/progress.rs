@@ -41,6 +41,17 @@ impl Progress {
         Watch { bar: &self.bar, gone: 0, shown: 0 }
     }
 
+    /// Shows how many of a known number of things are done.
+    pub fn part(&self, what: &str, done: usize, of: usize) {
+        if done == 0 {
+            self.stage(what);
+            let style = ProgressStyle::with_template("{spinner} {msg} {bar:40} {pos}/{len}");
+            self.bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
+            self.bar.set_length(of as u64);
+        }
+        self.bar.set_position(done as u64);
+    }
+
     /// Runs `act` while the progress line is hidden.
     pub fn suspend(&self, act: impl FnOnce()) {
         self.bar.suspend(act);

@@ -180,6 +180,30 @@
 //! # Ok::<(), meshlod::SimplifyError>(())
 //! ```
 //!
+//! [`flock`] simulates schools of thousands of members and chooses a level for each, frame by
+//! frame, under a budget of triangles. [`flock::scene`] has scenes with a camera, and
+//! [`flock::draw`] draws them:
+//!
+//! ```
+//! use std::sync::Arc;
+//! use meshlod::flock::levels::{ChainOptions, LevelTable, Look, ModelAxes};
+//! use meshlod::flock::scene::{Film, Scenario, ScenarioName, ScenarioOptions};
+//! use meshlod::flock::select::{Budget, PolicyName, Selector};
+//!
+//! let fish = meshlod::samples::fish(2_000);
+//! let options = ChainOptions { axes: ModelAxes::FISH, ..ChainOptions::default() };
+//! let table = Arc::new(LevelTable::new(&fish, &Look::default(), &options)?);
+//! let mut selector = Selector::new(PolicyName::Ours, table);
+//! let budget = Budget { triangles: 10_000, ..Budget::default() };
+//!
+//! let mut film = Film::new(Scenario::named(ScenarioName::Ring, &ScenarioOptions::default())?)?;
+//! let (flock, camera) = film.next_frame()?;
+//! let levels = selector.select(flock, &camera, &budget);
+//! assert_eq!(levels.len(), 150);
+//! assert!(selector.triangles() <= 10_000);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
 //! [`spatial`] has the search structures behind these: the exact closest point of a surface.
 //!
 //! # Guarantees
@@ -206,6 +230,7 @@ mod scene;
 
 pub use meshlod_check as check;
 pub use meshlod_codec as codec;
+pub use meshlod_flock as flock;
 pub use meshlod_io as io;
 pub use meshlod_measure as measure;
 pub use meshlod_mesh as mesh;

@@ -5,6 +5,7 @@ pub mod check;
 pub mod compress;
 pub mod decompress;
 pub mod extract;
+pub mod flock;
 pub mod info;
 pub mod lods;
 pub mod measure;

@@ -1,0 +1,97 @@
+//! Figures of the frames of a film.
+
+use meshlod::flock::levels::{ChainKind, LevelTable};
+use meshlod::flock::select::InstanceLevel;
+use serde_json::{Value, json};
+
+/// Figures of a frame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FrameFigures {
+    pub frame: usize,
+    /// Time since the first frame.
+    pub seconds: f64,
+    /// Number of members whose bounding ball meets the view.
+    pub members_in_view: usize,
+    /// Number of triangles drawn.
+    pub triangles: usize,
+    /// Number of triangles of all members in view at full detail.
+    pub full_triangles: usize,
+    /// Number of members that look different from the frame before because their level changed.
+    pub switches: usize,
+    pub simulation_ms: f64,
+    pub selection_ms: f64,
+    /// `None` if no picture was drawn.
+    pub draw_ms: Option<f64>,
+}
+
+/// Figures of all frames.
+#[derive(Clone, Debug, Default)]
+pub struct Figures {
+    pub frames: Vec<FrameFigures>,
+}
+
+impl FrameFigures {
+    fn json(&self) -> Value {
+        json!({
+            "frame": self.frame,
+            "seconds": self.seconds,
+            "members_in_view": self.members_in_view,
+            "triangles": self.triangles,
+            "full_triangles": self.full_triangles,
+            "switches": self.switches,
+            "simulation_ms": self.simulation_ms,
+            "selection_ms": self.selection_ms,
+            "draw_ms": self.draw_ms,
+        })
+    }
+}
+
+impl Figures {
+    /// Returns one JSON object a line, one line a frame.
+    pub fn lines(&self) -> String {
+        self.frames.iter().map(|frame| format!("{}\n", frame.json())).collect()
+    }
+
+    /// Returns the mean of a figure over the frames.
+    pub fn mean(&self, figure: impl Fn(&FrameFigures) -> f64) -> f64 {
+        self.frames.iter().map(figure).sum::<f64>() / self.frames.len().max(1) as f64
+    }
+
+    /// Returns the sum of a figure over the frames.
+    pub fn total(&self, figure: impl Fn(&FrameFigures) -> usize) -> usize {
+        self.frames.iter().map(figure).sum()
+    }
+
+    /// Returns the share of full detail that is drawn; `None` if no member is ever in view.
+    pub fn share(&self) -> Option<f64> {
+        let full = self.total(|frame| frame.full_triangles);
+        (full > 0).then(|| self.total(|frame| frame.triangles) as f64 / full as f64)
+    }
+
+    /// Returns how often a member in view changes its level in a second.
+    pub fn switches_per_member_second(&self, fps: f64) -> f64 {
+        let later = self.frames.iter().skip(1);
+        let members: usize = later.map(|frame| frame.members_in_view).sum();
+        self.total(|frame| frame.switches) as f64 * fps / members.max(1) as f64
+    }
+}
+
+/// Counts the members that are drawn in both frames, and differently.
+///
+/// The chains for directions show what the whole chain shows, so going from one to another changes
+/// nothing.
+pub fn switches(table: &LevelTable, before: &[InstanceLevel], now: &[InstanceLevel]) -> usize {
+    let shown = |level: &InstanceLevel| {
+        let level = level.level()?;
+        let chain = &table.chains[table.levels[level].chain];
+        let side = match chain.kind {
+            ChainKind::Whole | ChainKind::Facing(_) => 0,
+            // The chains of one side begin below the model itself.
+            ChainKind::LeftCoarsened => 1,
+            ChainKind::RightCoarsened => 2,
+        };
+        Some((side, level - chain.levels.start))
+    };
+    let differ = |(a, b)| matches!((shown(a), shown(b)), (Some(a), Some(b)) if a != b);
+    before.iter().zip(now).filter(|&pair| differ(pair)).count()
+}

@@ -1,0 +1,66 @@
+//! Parsers of the values that only `flock` takes.
+
+use meshlod::flock::scene::ScenarioName;
+use meshlod::flock::select::PolicyName;
+
+use crate::numbers::count;
+use crate::parse;
+
+/// Upper limit of `--members`.
+const MAX_MEMBERS: usize = 5_000_000;
+
+/// Upper limit of `--frames`.
+const MAX_FRAMES: usize = 100_000;
+
+/// Parses the value of `--members`.
+pub fn members(text: &str) -> Result<usize, String> {
+    at_most(MAX_MEMBERS, text)
+}
+
+/// Parses the value of `--frames`.
+pub fn frames(text: &str) -> Result<usize, String> {
+    at_most(MAX_FRAMES, text)
+}
+
+/// Parses the value of `--fps`.
+pub fn fps(text: &str) -> Result<f64, String> {
+    match parse::number(text)? {
+        fps if (0.1..=1000.0).contains(&fps) => Ok(fps),
+        _ => Err("it must be between 0.1 and 1000".into()),
+    }
+}
+
+/// Parses the value of `--detail`.
+pub fn detail(text: &str) -> Result<f64, String> {
+    match parse::number(text)? {
+        detail if (1e-6..=1e6).contains(&detail) => Ok(detail),
+        _ => Err("it must be between 0.000001 and 1000000".into()),
+    }
+}
+
+/// Parses the name of a scene.
+pub fn camera(text: &str) -> Result<ScenarioName, String> {
+    let known = || ScenarioName::ALL.map(ScenarioName::name).join(", ");
+    ScenarioName::by_name(text).ok_or_else(|| format!("the cameras are {}", known()))
+}
+
+/// Parses the name of a policy.
+pub fn policy(text: &str) -> Result<PolicyName, String> {
+    PolicyName::by_name(text).ok_or_else(|| format!("the policies are {}", policy_names()))
+}
+
+/// Returns the help text of `--policy`.
+pub fn policies() -> String {
+    format!("Policy that chooses the levels: {}", policy_names())
+}
+
+fn policy_names() -> String {
+    PolicyName::ALL.map(PolicyName::name).join(", ")
+}
+
+fn at_most(most: usize, text: &str) -> Result<usize, String> {
+    match parse::positive(text)? {
+        number if number <= most => Ok(number),
+        _ => Err(format!("it must be at most {}", count(most))),
+    }
+}

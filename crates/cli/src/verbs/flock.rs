@@ -1,0 +1,138 @@
+//! `flock`: films schools of a model, every member with the level that a policy chooses.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::time::Instant;
+
+use clap::Args;
+use meshlod::Mesh;
+use meshlod::flock::levels::{ChainOptions, LevelTable};
+use meshlod::flock::scene::{Film, Scenario, ScenarioName, ScenarioOptions, SceneError};
+use meshlod::flock::select::{Budget, PolicyName};
+use meshlod::samples;
+
+use crate::answer::Answer;
+use crate::failure::Failure;
+use crate::files;
+use crate::flock::model::{FlockModel, ModelArgs};
+use crate::flock::summary::Summary;
+use crate::flock::{names, shoot};
+use crate::parse;
+use crate::session::Session;
+
+/// Film schools of a model, every member only as fine as a policy decides
+///
+/// Writes the frames as PNG and their figures as OUT/frames.jsonl, one JSON object a line. Lengths
+/// are in body lengths: the longest side of the model's box is 1.
+#[derive(Args)]
+pub struct Flock {
+    #[command(flatten)]
+    pub model: ModelArgs,
+    /// Number of members
+    #[arg(long, value_name = "N", default_value_t = 150, value_parser = names::members,
+        allow_negative_numbers = true)]
+    pub members: usize,
+    /// Number of schools that share the members
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = parse::positive,
+        allow_negative_numbers = true)]
+    pub schools: usize,
+    /// Scene and path of the camera: ring circles a school, inside swims in it, far keeps away from
+    /// it, obstacles and terrain follow it past solids and over hills
+    #[arg(long, value_name = "NAME", default_value = "ring", value_parser = names::camera)]
+    pub camera: ScenarioName,
+    /// Policy that chooses the levels
+    #[arg(long, value_name = "NAME", default_value = "ours", value_parser = names::policy,
+        help = names::policies())]
+    pub policy: PolicyName,
+    /// Most triangles a frame by the policies budget and ours [default: a tenth of those of all
+    /// members at full detail]
+    #[arg(long, value_name = "N", value_parser = parse::positive, allow_negative_numbers = true)]
+    pub triangles: Option<usize>,
+    /// Fineness of the other policies: 2 keeps detail to twice the distance
+    #[arg(long, value_name = "X", default_value_t = 1.0, value_parser = names::detail,
+        allow_negative_numbers = true)]
+    pub detail: f64,
+    /// Number of frames
+    #[arg(long, value_name = "N", default_value_t = 60, value_parser = names::frames,
+        allow_negative_numbers = true)]
+    pub frames: usize,
+    /// Frames a second
+    #[arg(long, value_name = "X", default_value_t = 30.0, value_parser = names::fps,
+        allow_negative_numbers = true)]
+    pub fps: f64,
+    /// Width and height of the frames in pixels
+    #[arg(long, value_name = "WxH", default_value = "960x540", value_parser = parse::pixels)]
+    pub size: [u32; 2],
+    /// Seed of the simulation
+    #[arg(long, value_name = "N", default_value_t = 1, allow_negative_numbers = true)]
+    pub seed: u64,
+    /// Folder to write to; created if missing
+    #[arg(long, value_name = "DIR", default_value = "flock")]
+    pub out: PathBuf,
+    /// Draw no pictures: only OUT/frames.jsonl is written
+    #[arg(long)]
+    pub no_pictures: bool,
+}
+
+/// Faces of the terrain that the scenario of this name swims over.
+const TERRAIN_FACES: usize = 40_000;
+
+impl Flock {
+    pub fn run(self, session: &Session) -> Result<Answer, Failure> {
+        files::check_folder(&self.out)?;
+        let model = FlockModel::load(&self.model, session)?;
+        session.progress.stage("setting the scene");
+        let film = self.film()?;
+        session.progress.stage("building levels");
+        let start = Instant::now();
+        let table = Arc::new(self.table(&model)?);
+        let build_seconds = start.elapsed().as_secs_f64();
+        let full = self.members.saturating_mul(table.triangle_count(0));
+        let triangles = self.triangles.unwrap_or_else(|| (full / 10).max(1));
+        let budget = Budget { triangles, detail: self.detail as f32 };
+        let take = shoot::shoot(&self, &model, &table, film, &budget, session)?;
+        let summary = Summary {
+            options: &self,
+            model: &model,
+            table: &table,
+            build_seconds,
+            budget,
+            take: &take,
+        };
+        Ok(Answer::new(summary.json(), summary.text()))
+    }
+
+    /// Sets up the scene.
+    fn film(&self) -> Result<Film, Failure> {
+        let needs_terrain = self.camera == ScenarioName::Terrain;
+        let terrain: Option<Mesh> = needs_terrain.then(|| samples::terrain(TERRAIN_FACES));
+        let options = ScenarioOptions {
+            members: self.members,
+            schools: self.schools,
+            seed: self.seed,
+            size: self.size,
+            frame_s: 1.0 / self.fps,
+            terrain: terrain.as_ref(),
+        };
+        Scenario::named(self.camera, &options).and_then(Film::new).map_err(|error| match error {
+            SceneError::Schools { .. } => Failure::usage(format_args!("--schools: {error}")),
+            error => Failure::new(error),
+        })
+    }
+
+    fn table(&self, model: &FlockModel) -> Result<LevelTable, Failure> {
+        // The facing chains of a large model would fill the memory.
+        let directions = if model.mesh.faces.len() > MANY_FACES { 6 } else { 12 };
+        let options = ChainOptions {
+            axes: model.axes(),
+            method: self.model.method,
+            directions,
+            ..ChainOptions::default()
+        };
+        LevelTable::new(&model.mesh, &model.look, &options)
+            .map_err(|error| Failure::at(Path::new(&model.name), error))
+    }
+}
+
+/// Faces of a model above which its levels are told apart by fewer directions.
+const MANY_FACES: usize = 50_000;
